@@ -50,6 +50,9 @@ pub(crate) enum Command {
     Example(ExampleArgs),
     /// Guard real controllers over a network (needs the feature `live`)
     Live(crate::live::LiveArgs),
+    /// Switch regions of a running cell, clear silent robots, under tokens with roles
+    #[command(subcommand)]
+    Control(crate::control::args::ControlCommand),
     /// Show a cell in a browser (needs the feature `live`)
     View(crate::live::ViewArgs),
     /// Run the monitor again over a recording, and compare (needs the feature `live`)

@@ -5,6 +5,7 @@
 mod args;
 mod carry;
 mod check;
+mod control;
 mod convert;
 mod example;
 mod former_fields;
@@ -51,6 +52,7 @@ fn main() -> ExitCode {
         Some(Command::Region(command)) => region::region(&command),
         Some(Command::Example(args)) => example::copy(&args),
         Some(Command::Live(args)) => live::live(&args),
+        Some(Command::Control(command)) => control::control(&command),
         Some(Command::View(args)) => live::view(&args),
         Some(Command::Replay(args)) => live::replay(&args),
         Some(Command::Completions { shell }) => completions(shell),

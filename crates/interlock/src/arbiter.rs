@@ -128,20 +128,26 @@ impl Arbiter {
         outputs
     }
 
-    /// Declares that a silent robot is at rest outside of all regions, as seen by the integrator. Its slots are free, and others are
-    /// granted slots without it until it speaks again.
+    /// Whether a robot has been silent for long enough to be cleared: until its last grant has expired and it has come to rest.
     ///
     /// # Errors
-    /// How long it must have been silent still: until its last grant has expired and it has come to rest.
-    pub fn clear(&mut self, robot: RobotSlot, now: Micros) -> Result<Outputs, Micros> {
+    /// How long it must be silent still.
+    pub fn may_clear(&mut self, robot: RobotSlot, now: Micros) -> Result<(), Micros> {
         let settings = &self.settings.robots[robot.0];
         let needed = with_drift(self.settings.validity + settings.stop_time);
         let since = self.robots[robot.0].heard.or(self.started);
         let silent = since.map_or(Micros(0), |since| now - since);
         self.started.get_or_insert(now);
-        if silent < needed {
-            return Err(needed - silent);
-        }
+        if silent < needed { Err(needed - silent) } else { Ok(()) }
+    }
+
+    /// Declares that a silent robot is at rest outside of all regions, as seen by the integrator. Its slots are free, and others are
+    /// granted slots without it until it speaks again.
+    ///
+    /// # Errors
+    /// As [`Self::may_clear`].
+    pub fn clear(&mut self, robot: RobotSlot, now: Micros) -> Result<Outputs, Micros> {
+        self.may_clear(robot, now)?;
         Ok(self.clear_at_once(robot, now))
     }
 

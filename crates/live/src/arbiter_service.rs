@@ -1,18 +1,20 @@
 //! The arbiter of a cell's exchange regions, on the network.
 
-use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, SyncSender};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use elbowroom_cell::{Cell, configure};
 use elbowroom_interlock::wire::{self, Message};
-use elbowroom_interlock::{Arbiter, ArbiterEvent, ArbiterSettings, Boot, Micros, RobotSettings};
+use elbowroom_interlock::{Arbiter, ArbiterEvent, ArbiterSettings, Boot, Micros, Outputs, RobotSettings};
 use elbowroom_monitor::{RobotSlot, SlotId};
+use elbowroom_robot::RobotId;
 use elbowroom_status::SlotStatus;
 
 use crate::clock::Clock;
 use crate::configuration_number::configuration_number;
+use crate::event_handler::EventHandler;
 use crate::keys::Keys;
 use crate::network::{Network, NetworkError, Publisher, Subscription, Urgency};
 
@@ -21,13 +23,33 @@ const WAITING: usize = 1024;
 /// How often it is published who holds what; a change is published at once.
 const PERIOD: Duration = Duration::from_millis(100);
 
-/// Called with every event of the arbiter, in words.
-pub type EventHandler = Arc<dyn Fn(&str) + Send + Sync>;
+/// The thread of the arbiter answers much sooner.
+const ANSWER: Duration = Duration::from_secs(2);
+
+/// What the thread of the arbiter receives.
+enum Incoming {
+    /// Bytes of a guard.
+    Message(Vec<u8>),
+    /// A robot is to be cleared, or only asked for whether it may be.
+    Clear { robot: RobotSlot, is_question: bool, answer: SyncSender<Result<(), Micros>> },
+}
+
+/// Why a robot is not cleared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum NotCleared {
+    /// It has spoken lately: its grants may count still, and it may move.
+    #[error("it has spoken lately: it must be silent for another {:.1} s, so that it holds no grant and has come to rest", .0.0 as f64 * 1e-6)]
+    Spoke(Micros),
+    /// The arbiter has ended.
+    #[error("the arbiter does not answer")]
+    NoAnswer,
+}
 
 /// A running arbiter. It ends when it is dropped.
 pub struct ArbiterService {
     subscriptions: Vec<Subscription>,
-    inbox: Option<SyncSender<Vec<u8>>>,
+    inbox: Option<SyncSender<Incoming>>,
+    slots: Arc<Mutex<Vec<SlotStatus>>>,
     thread: Option<JoinHandle<()>>,
     // A network may end with its last owner.
     _network: Arc<dyn Network>,
@@ -46,30 +68,63 @@ impl ArbiterService {
     ) -> Result<Option<Self>, NetworkError> {
         let Some(settings) = settings(cell) else { return Ok(None) };
         let keys = Keys::new(&cell.name);
-        let (inbox, waiting) = mpsc::sync_channel::<Vec<u8>>(WAITING);
+        let (inbox, waiting) = mpsc::sync_channel::<Incoming>(WAITING);
         let (mut subscriptions, mut grants) = (Vec::new(), Vec::new());
         for robot in &cell.robots {
             let inbox = inbox.clone();
             let handler = Box::new(move |bytes: &[u8]| {
                 if bytes.len() <= wire::MAX_BYTES {
                     // A full queue is a lost message, which the guard repeats.
-                    let _ = inbox.try_send(bytes.to_vec());
+                    let _ = inbox.try_send(Incoming::Message(bytes.to_vec()));
                 }
             });
             subscriptions.push(network.subscribe(&keys.interlock_state(&robot.name), handler)?);
             grants.push(network.publisher(&keys.interlock_grants(&robot.name), Urgency::RealTime)?);
         }
+        let published: Arc<Mutex<Vec<SlotStatus>>> = Arc::default();
         let running = Running {
             slots: slot_regions(cell, settings.slots),
             robots: cell.robots.iter().map(|r| r.name.clone()).collect(),
             arbiter: Arbiter::new(settings, Boot(boot)),
             grants,
             status: network.publisher(&keys.interlocks(), Urgency::Display)?,
+            published: published.clone(),
             clock: Clock::start(),
             on_event,
         };
         let thread = std::thread::Builder::new().name("arbiter".into()).spawn(move || running.run(&waiting));
-        Ok(Some(Self { subscriptions, inbox: Some(inbox), thread: thread.ok(), _network: network.clone() }))
+        let (inbox, thread) = (Some(inbox), thread.ok());
+        Ok(Some(Self { subscriptions, inbox, slots: published, thread, _network: network.clone() }))
+    }
+
+    /// Who holds and waits for exchange regions.
+    pub fn slots(&self) -> Vec<SlotStatus> {
+        self.slots.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// Whether a robot has been silent for long enough to be cleared.
+    ///
+    /// # Errors
+    /// [`NotCleared`].
+    pub fn may_clear(&self, robot: RobotId) -> Result<(), NotCleared> {
+        self.ask(robot, true)
+    }
+
+    /// Declares that a silent robot is at rest outside of all exchange regions: somebody has seen it
+    /// ([`Arbiter::clear`]).
+    ///
+    /// # Errors
+    /// [`NotCleared`]; then nothing has changed.
+    pub fn clear(&self, robot: RobotId) -> Result<(), NotCleared> {
+        self.ask(robot, false)
+    }
+
+    fn ask(&self, robot: RobotId, is_question: bool) -> Result<(), NotCleared> {
+        let (answer, answered) = mpsc::sync_channel(1);
+        let request = Incoming::Clear { robot: RobotSlot(robot.0), is_question, answer };
+        let sent = self.inbox.as_ref().is_some_and(|inbox| inbox.send(request).is_ok());
+        let answer = if sent { answered.recv_timeout(ANSWER).ok() } else { None };
+        answer.ok_or(NotCleared::NoAnswer)?.map_err(NotCleared::Spoke)
     }
 }
 
@@ -123,16 +178,23 @@ struct Running {
     robots: Vec<String>,
     grants: Vec<Box<dyn Publisher>>,
     status: Box<dyn Publisher>,
+    published: Arc<Mutex<Vec<SlotStatus>>>,
     clock: Clock,
     on_event: Option<EventHandler>,
 }
 
 impl Running {
-    fn run(mut self, waiting: &Receiver<Vec<u8>>) {
+    fn run(mut self, waiting: &Receiver<Incoming>) {
         let mut published: Option<Instant> = None;
         loop {
             let has_changed = match waiting.recv_timeout(PERIOD) {
-                Ok(bytes) => self.take(&bytes),
+                Ok(Incoming::Message(bytes)) => self.take(&bytes),
+                Ok(Incoming::Clear { robot, is_question, answer }) => {
+                    let cleared = self.clear(robot, is_question);
+                    // Whoever asked may have stopped waiting.
+                    let _ = answer.send(cleared);
+                    !is_question && cleared.is_ok()
+                }
                 Err(RecvTimeoutError::Timeout) => false,
                 Err(RecvTimeoutError::Disconnected) => return,
             };
@@ -147,6 +209,21 @@ impl Running {
     fn take(&mut self, bytes: &[u8]) -> bool {
         let Ok(Message::State(state)) = wire::decode(bytes) else { return false };
         let outputs = self.arbiter.receive(&state, self.clock.micros());
+        self.send(outputs)
+    }
+
+    fn clear(&mut self, robot: RobotSlot, is_question: bool) -> Result<(), Micros> {
+        let now = self.clock.micros();
+        if is_question {
+            return self.arbiter.may_clear(robot, now);
+        }
+        let outputs = self.arbiter.clear(robot, now)?;
+        self.send(outputs);
+        Ok(())
+    }
+
+    /// Sends what the arbiter says. True where something has changed.
+    fn send(&mut self, outputs: Outputs) -> bool {
         for reply in outputs.replies {
             let robot = reply.robot;
             if let (Some(bytes), Some(grants)) = (wire::encode(&Message::Grants(reply)), self.grants.get_mut(robot.0)) {
@@ -172,6 +249,7 @@ impl Running {
         if let Ok(json) = serde_json::to_vec(&slots) {
             self.status.publish(&json);
         }
+        *self.published.lock().unwrap_or_else(PoisonError::into_inner) = slots;
     }
 
     fn words(&self, event: &ArbiterEvent) -> String {

@@ -42,6 +42,16 @@ impl RegionTable {
         Self { revision: (0, 0), active: vec![true; cell.regions.len()] }
     }
 
+    /// Switches a region, by its index in the cell; false where that changes nothing. Only for temporary regions.
+    pub fn switch(&mut self, region: usize, active: bool) -> bool {
+        if self.active[region] == active {
+            return false;
+        }
+        self.active[region] = active;
+        self.revision.1 += 1;
+        true
+    }
+
     /// The message of this table.
     pub fn message(&self, cell: &Cell) -> RegionTableMessage {
         let regions = cell.regions.iter().zip(&self.active).map(|(r, on)| (r.region.name.clone(), *on)).collect();

@@ -1,5 +1,6 @@
 //! A process of a live cell: nodes, arbiter, simulated controllers, in any combination.
 
+use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -11,13 +12,15 @@ use elbowroom_robot::RobotId;
 use elbowroom_rosbag::{BagError, CellWriter, Recorder};
 use elbowroom_view::{Server, ServerSettings, StatusFeed};
 
-use crate::arbiter_service::{ArbiterService, EventHandler};
+use crate::arbiter_service::ArbiterService;
 use crate::cell_observer::CellObserver;
 use crate::clock::{Clock, boot_number};
 use crate::configuration_number::configuration_number;
+use crate::control::{ControlOptions, ControlServer, DeskParts, JointsHeard};
+use crate::event_handler::EventHandler;
 use crate::network::{JoinedNetworks, Network, NetworkError, UdpNetwork, ZenohNetwork, ZenohSettings};
 use crate::node::{Node, NodeMonitor, NodeParts};
-use crate::region_keeper::RegionKeeper;
+use crate::region_keeper::{ProgramSwitches, RegionKeeper};
 use crate::service_error::ServiceError;
 use crate::simulated_controllers::SimulatedControllers;
 
@@ -43,7 +46,9 @@ pub struct ServiceOptions {
     pub web: Option<String>,
     /// Records everything that this process guards into this file.
     pub record: Option<PathBuf>,
-    /// Called with every event of the arbiter of this process, in words.
+    /// Serves the control interface; only beside the arbiter.
+    pub control: Option<ControlOptions>,
+    /// Called with every event of the arbiter and the control interface of this process, in words.
     pub on_event: Option<EventHandler>,
 }
 
@@ -52,8 +57,9 @@ pub struct Service {
     // In the order in which they end: controllers stop first.
     controllers: Option<SimulatedControllers>,
     nodes: Vec<Node>,
-    arbiter: Option<ArbiterService>,
-    keeper: Option<RegionKeeper>,
+    control: Option<ControlServer>,
+    arbiter: Option<Arc<ArbiterService>>,
+    keeper: Option<Arc<RegionKeeper>>,
     observer: Option<CellObserver>,
     server: Option<Server>,
     network: Arc<ZenohNetwork>,
@@ -78,9 +84,21 @@ impl Service {
         let clock = Clock::start();
         let (mut keeper, mut arbiter) = (None, None);
         if options.arbiter || is_whole_cell {
-            keeper = Some(RegionKeeper::start(&cell, &shared, boot_number())?);
-            arbiter = ArbiterService::start(&cell, &shared, boot_number(), options.on_event.clone())?;
+            let programs = program_switches(options);
+            keeper = Some(Arc::new(RegionKeeper::start(&cell, &shared, boot_number(), programs)?));
+            let started = ArbiterService::start(&cell, &shared, boot_number(), options.on_event.clone())?;
+            arbiter = started.map(Arc::new);
         }
+        let control = match (&options.control, &keeper) {
+            (None, _) => None,
+            (Some(_), None) => return Err(ServiceError::ControlWithoutArbiter),
+            (Some(control), Some(keeper)) => {
+                let (keeper, arbiter, on_event) = (keeper.clone(), arbiter.clone(), options.on_event.clone());
+                let joints = JointsHeard::start(&cell, &of_controllers, clock)?;
+                let parts = DeskParts { cell: cell.clone(), keeper, arbiter, joints, clock, on_event };
+                Some(ControlServer::start(parts, control)?)
+            }
+        };
         let slots = configure::slots(&cell).iter().flatten().map(|slot| slot.0 + 1).max().unwrap_or(0);
         let checksum = configuration_number(&cell);
         let recorder = options.record.as_ref().map(|file| start_recorder(file, &cell)).transpose()?;
@@ -120,7 +138,7 @@ impl Service {
             None
         };
         let server = web.map(|(server, _)| server);
-        Ok(Self { controllers, nodes, arbiter, keeper, observer, server, network })
+        Ok(Self { controllers, nodes, control, arbiter, keeper, observer, server, network })
     }
 
     /// Number of robots that this process guards.
@@ -148,13 +166,18 @@ impl Service {
         self.server.as_ref().map(Server::url)
     }
 
+    /// The address of the control interface, where there is one.
+    pub fn control_address(&self) -> Option<SocketAddr> {
+        self.control.as_ref().map(ControlServer::address)
+    }
+
     /// Ends everything, and completes the recording.
     ///
     /// # Errors
     /// [`ServiceError::Recording`] where it could not be written.
     pub fn stop(self) -> Result<(), ServiceError> {
-        let Self { controllers, nodes, arbiter, keeper, observer, server, network } = self;
-        drop((controllers, nodes, arbiter, keeper));
+        let Self { controllers, nodes, control, arbiter, keeper, observer, server, network } = self;
+        drop((controllers, nodes, control, arbiter, keeper));
         let recorder = observer.and_then(CellObserver::stop);
         if let Some(server) = server {
             server.stop();
@@ -166,6 +189,14 @@ impl Service {
     /// The network.
     pub fn network(&self) -> &Arc<ZenohNetwork> {
         &self.network
+    }
+}
+
+/// With tokens nobody switches without one, unless that is allowed.
+fn program_switches(options: &ServiceOptions) -> ProgramSwitches {
+    match &options.control {
+        Some(control) if !control.program_switches => ProgramSwitches::Ignored(options.on_event.clone()),
+        _ => ProgramSwitches::Obeyed,
     }
 }
 

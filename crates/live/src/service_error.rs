@@ -5,6 +5,7 @@ use elbowroom_rosbag::BagError;
 use elbowroom_view::ViewError;
 use thiserror::Error;
 
+use crate::control::ControlError;
 use crate::network::NetworkError;
 
 /// Why a service does not start.
@@ -19,6 +20,14 @@ pub enum ServiceError {
     /// The page cannot be served.
     #[error("--web: {0}")]
     Web(#[from] ViewError),
+    /// The control interface cannot be served.
+    #[error("--control: {0}")]
+    Control(#[from] ControlError),
+    /// A process without the arbiter cannot change what all share.
+    #[error(
+        "--control: this process does not have the arbiter\n  help: live CELL --arbiter --control ADDR, or the whole cell in one process"
+    )]
+    ControlWithoutArbiter,
     /// The recording cannot be written.
     #[error("--record: {0}")]
     Recording(#[from] BagError),

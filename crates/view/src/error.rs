@@ -14,7 +14,7 @@ pub enum ViewError {
     NoAddress(String),
     /// An address that other computers reach.
     #[error(
-        "{0} can be reached from other computers, and the page is sent without encryption: TLS is not built in\n  \
+        "{0} can be reached from other computers, and what is sent is not encrypted: TLS is not built in\n  \
          write: 127.0.0.1:{port}, and on the other computer open a tunnel: ssh -L {port}:127.0.0.1:{port} HOST", port = .0.port()
     )]
     NotLoopback(SocketAddr),

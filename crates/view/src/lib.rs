@@ -32,6 +32,7 @@ mod feed;
 mod frame;
 mod geometry;
 mod history;
+pub mod http;
 mod inbox;
 mod server;
 mod settings;

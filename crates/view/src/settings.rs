@@ -1,9 +1,10 @@
 //! Settings of the server.
 
-use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
+use std::net::SocketAddr;
 use std::time::Duration;
 
 use crate::ViewError;
+use crate::http::{ConnectionLimits, loopback_address};
 
 /// Where a [`Server`](crate::Server) serves, and what it grants its clients.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,6 +57,14 @@ impl Default for Limits {
     }
 }
 
+impl Limits {
+    /// Of connections without a token.
+    pub(crate) fn of_connections(&self) -> ConnectionLimits {
+        let Self { connections, head, request, head_bytes, .. } = *self;
+        ConnectionLimits { connections, head, request, head_bytes }
+    }
+}
+
 impl ServerSettings {
     /// For the text of an option: `127.0.0.1:8080`, `localhost:8080`, `[::1]:8080`, or a port alone.
     ///
@@ -72,42 +81,7 @@ impl ServerSettings {
     /// # Errors
     /// [`ViewError::NoAddress`], or [`ViewError::NotLoopback`] for an address that other computers reach.
     pub fn at(text: &str) -> Result<Self, ViewError> {
-        let address = address(text).ok_or_else(|| ViewError::NoAddress(text.to_owned()))?;
-        if !address.ip().is_loopback() {
-            return Err(ViewError::NotLoopback(address));
-        }
+        let address = loopback_address(text)?;
         Ok(Self { address, limits: Limits::default() })
     }
-}
-
-/// No names are looked up: a name may resolve to anything.
-fn address(text: &str) -> Option<SocketAddr> {
-    let localhost = IpAddr::V4(Ipv4Addr::LOCALHOST);
-    if let Ok(port) = text.parse::<u16>() {
-        return Some((localhost, port).into());
-    }
-    if let Some(port) = text.strip_prefix("localhost:") {
-        return Some((localhost, port.parse().ok()?).into());
-    }
-    if text == "localhost" {
-        return Some((localhost, 0).into());
-    }
-    text.parse().ok().or_else(|| {
-        let ip: IpAddr = text.trim_matches(['[', ']']).parse().ok()?;
-        Some((ip, 0).into())
-    })
-}
-
-/// The names under which a loopback address is reached.
-pub(crate) fn hosts(address: SocketAddr) -> Vec<String> {
-    let port = address.port();
-    let mut hosts = vec![format!("localhost:{port}"), address.to_string()];
-    for ip in [IpAddr::V4(Ipv4Addr::LOCALHOST), IpAddr::V6(Ipv6Addr::LOCALHOST)] {
-        hosts.push(SocketAddr::from((ip, port)).to_string());
-    }
-    hosts.dedup();
-    if port == 80 {
-        hosts.extend(["localhost", "127.0.0.1", "[::1]"].map(str::to_owned));
-    }
-    hosts
 }

@@ -6,10 +6,13 @@
 //! these name. [`Cell::load`](crate::Cell::load) refuses a cell that differs from its seal, and names the differences.
 //!
 //! [`TrustedKeys`] lists the accepted keys. [`edit()`] and [`seal()`] change a sealed cell on behalf of a class;
-//! [`history`] reads the log. `docs/roles.md` states what this protects against, and what it does not.
+//! [`history`] reads the log. A running cell is changed on behalf of the holders of [`AccessTokens`]; [`ControlLog`] keeps who
+//! changed what. `docs/roles.md` states what this protects against, and what it does not.
 
+mod access_tokens;
 mod authorize;
 mod change;
+mod control_log;
 mod edit;
 mod entry;
 mod hex;
@@ -29,7 +32,9 @@ use std::path::Path;
 use elbowroom_formats::FormatError;
 use elbowroom_monitor::AccessClass;
 
+pub use access_tokens::{AccessToken, AccessTokens};
 pub use change::Change;
+pub use control_log::{ControlEntry, ControlLog, Controlled, control_history, control_log_of};
 pub use edit::{CellEdit, Signer, edit, seal};
 pub use entry::LogEntry;
 pub use keys::{PrivateKey, PublicKey};

@@ -36,6 +36,15 @@ pub(crate) struct LiveArgs {
     /// Show the cell in a browser at this address
     #[arg(long, value_name = "ADDR")]
     pub(crate) web: Option<String>,
+    /// Serve the control interface at this loopback address, beside the arbiter (docs/control.md)
+    #[arg(long, value_name = "ADDR", requires = "tokens")]
+    pub(crate) control: Option<String>,
+    /// The tokens of those who may use the control interface
+    #[arg(long, value_name = "FILE", requires = "control")]
+    pub(crate) tokens: Option<PathBuf>,
+    /// Let programs switch temporary regions without a token, though there are tokens
+    #[arg(long, requires = "control")]
+    pub(crate) program_switches: bool,
     /// Record everything into this MCAP file
     #[arg(long, value_name = "FILE.mcap")]
     pub(crate) record: Option<PathBuf>,

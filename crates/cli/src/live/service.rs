@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use elbowroom::cell::Cell;
 use elbowroom::live::network::ZENOH_RUNTIME;
-use elbowroom::live::{DEFAULT_ADDRESS, Keys, Service, ServiceOptions};
+use elbowroom::live::{ControlOptions, DEFAULT_ADDRESS, Keys, Service, ServiceOptions};
 
 use super::LiveArgs;
 use crate::output::{ExitStatus, Failure, note};
@@ -28,6 +28,7 @@ pub(crate) fn live(args: &LiveArgs) -> Result<ExitStatus, Failure> {
         simulate: args.simulate,
         web: args.web.clone(),
         record: args.record.clone(),
+        control: control(args),
         on_event: Some(Arc::new(|event: &str| note(event))),
     };
     let stop = stop_signal()?;
@@ -44,9 +45,17 @@ pub(crate) fn live(args: &LiveArgs) -> Result<ExitStatus, Failure> {
     if let Some(url) = service.web_address() {
         note(url);
     }
+    if let Some(address) = service.control_address() {
+        note(format_args!("control: {address}"));
+    }
     let status = wait(&stop, args.duration.map(Duration::from_secs_f64), &service)?;
     service.stop().map_err(|e| Failure::Wrong(e.to_string()))?;
     Ok(status)
+}
+
+fn control(args: &LiveArgs) -> Option<ControlOptions> {
+    let (address, tokens) = (args.control.clone()?, args.tokens.clone()?);
+    Some(ControlOptions { address, tokens, log: None, program_switches: args.program_switches })
 }
 
 /// Starts this program again in its place, with the threads of Zenoh that wake the fewest for a message. Zenoh reads the variable

@@ -30,7 +30,7 @@ pub trait Publisher: Send {
 pub type Handler = Box<dyn Fn(&[u8]) + Send + Sync>;
 
 /// Ends when it is dropped.
-pub struct Subscription(#[allow(dead_code, reason = "held for its drop")] Box<dyn std::any::Any + Send>);
+pub struct Subscription(#[allow(dead_code, reason = "held for its drop")] Box<dyn std::any::Any + Send + Sync>);
 
 impl fmt::Debug for Subscription {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -39,7 +39,7 @@ impl fmt::Debug for Subscription {
 }
 
 impl Subscription {
-    pub(super) fn new(guard: impl Send + 'static) -> Self {
+    pub(super) fn new(guard: impl Send + Sync + 'static) -> Self {
         Self(Box::new(guard))
     }
 }

@@ -37,18 +37,18 @@ pub(super) struct Contents {
 
 /// The last joint state of a controller.
 #[derive(Debug, Clone)]
-pub(super) struct Heard {
+pub(crate) struct Heard {
     gate: InputGate,
     scratch: JointState,
-    pub(super) state: JointState,
+    pub(crate) state: JointState,
     /// Time of the joint values on their controller's clock; `None` before the first ones.
-    pub(super) stamp: Option<Micros>,
+    pub(crate) stamp: Option<Micros>,
     /// It has arrived since the last tick.
-    pub(super) is_new: bool,
+    pub(crate) is_new: bool,
 }
 
 impl Heard {
-    pub(super) fn new(checksum: u64) -> Self {
+    pub(crate) fn new(checksum: u64) -> Self {
         Self {
             gate: InputGate::new(checksum),
             scratch: JointState::with_capacity(),
@@ -59,17 +59,17 @@ impl Heard {
     }
 
     /// Messages that did not count.
-    pub(super) fn rejected(&self) -> u64 {
+    pub(crate) fn rejected(&self) -> u64 {
         self.gate.rejected
     }
 
     /// Where the controller's clock stands when this process's clock shows `local`.
-    pub(super) fn now(&mut self, local: Micros) -> Micros {
+    pub(crate) fn now(&mut self, local: Micros) -> Micros {
         self.gate.now(local)
     }
 
     /// Takes a message; false where it cannot be read or does not count.
-    fn take(&mut self, bytes: &[u8], arrived: Micros) -> bool {
+    pub(crate) fn take(&mut self, bytes: &[u8], arrived: Micros) -> bool {
         if self.scratch.decode(bytes).is_err() {
             self.gate.rejected += 1;
             return false;

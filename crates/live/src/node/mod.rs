@@ -32,6 +32,7 @@ use inbox::Inbox;
 use node_tick::follows;
 use outbox::Outbox;
 
+pub(crate) use inbox::Heard;
 pub use input_gate::{InputGate, Rejected};
 pub use node_monitor::NodeMonitor;
 pub use node_tick::NodeTick;

@@ -1,9 +1,6 @@
 //! The server: connections, requests, and the WebSocket of each page.
 
 mod assets;
-mod connection;
-mod guard;
-mod places;
 mod routes;
 mod session;
 mod shared;

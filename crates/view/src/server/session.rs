@@ -8,8 +8,8 @@ use axum::extract::ws::{CloseFrame, Message, Utf8Bytes, WebSocket};
 use serde::Deserialize;
 use tokio::time::{Instant, MissedTickBehavior, interval, timeout};
 
-use super::places::Place;
 use super::shared::Shared;
+use crate::http::Place;
 use crate::source::Command;
 
 /// Codes of the close message; the page shows the reason.

@@ -5,11 +5,10 @@ use std::sync::Arc;
 use axum::body::Bytes;
 use tokio::sync::{Semaphore, watch};
 
-use super::guard::Hosts;
-use super::places::Places;
 use super::token::Token;
 use crate::engine::SentFrame;
 use crate::history::History;
+use crate::http::Hosts;
 use crate::inbox::Inbox;
 use crate::settings::Limits;
 
@@ -23,8 +22,6 @@ pub(crate) struct Shared {
     pub(crate) inbox: Arc<Inbox>,
     pub(crate) history: Arc<History>,
     pub(crate) frames: watch::Receiver<SentFrame>,
-    /// Connections without a token.
-    pub(crate) places: Places,
     pub(crate) browsers: Arc<Semaphore>,
     pub(crate) mode: &'static str,
 }

@@ -1,39 +1,32 @@
 //! The server as its caller sees it.
 
-use std::io;
 use std::net::SocketAddr;
 use std::sync::Arc;
 use std::thread::JoinHandle;
 
 use elbowroom_cell::Cell;
-use tokio::net::TcpListener;
-use tokio::runtime::{Builder, Runtime};
 use tokio::sync::{Semaphore, watch};
 
-use super::guard::Hosts;
-use super::places::Places;
+use super::assets;
 use super::routes::routes;
 use super::shared::Shared;
 use super::token::Token;
-use super::{assets, connection};
 use crate::engine::{self, JogCell, Model, SentFrame};
 use crate::feed::StatusFeed;
 use crate::geometry;
 use crate::history::History;
+use crate::http::{Hosts, HttpServer};
 use crate::inbox::Inbox;
-use crate::settings::hosts;
 use crate::source::{RunningCell, ViewSource};
 use crate::{ServerSettings, ViewError};
 
 /// A cell in a browser, until it is stopped or dropped. It has threads of its own; its caller is not async.
 #[derive(Debug)]
 pub struct Server {
-    address: SocketAddr,
     token: Token,
     inbox: Arc<Inbox>,
-    stop: watch::Sender<bool>,
     engine: Option<JoinHandle<()>>,
-    runtime: Option<Runtime>,
+    http: HttpServer,
 }
 
 impl Server {
@@ -62,46 +55,40 @@ impl Server {
         settings: ServerSettings,
     ) -> Result<Self, ViewError> {
         let ServerSettings { address, limits } = settings;
-        if !address.ip().is_loopback() {
-            return Err(ViewError::NotLoopback(address));
-        }
-        let runtime = Builder::new_multi_thread().worker_threads(2).thread_name("view").enable_all().build()?;
-        let bind = |source: io::Error| ViewError::Bind { address, source };
-        let listener = runtime.block_on(TcpListener::bind(address)).map_err(bind)?;
-        let address = listener.local_addr()?;
         let token = Token::random()?;
         let (frame_sender, frames) = watch::channel(SentFrame::default());
-        let (stop, stopped) = watch::channel(false);
         let history = Arc::new(History::default());
-        let shared = Arc::new(Shared {
-            token: token.clone(),
-            hosts: Hosts::new(hosts(address)),
-            limits,
-            geometry: geometry::packed(&model.cell, source.mode())?.into(),
-            inbox: inbox.clone(),
-            history: history.clone(),
-            frames,
-            places: Places::new(limits.connections),
-            browsers: Arc::new(Semaphore::new(limits.browsers)),
-            mode: source.mode(),
-        });
-        let router = routes(shared.clone(), assets::assets()?);
-        runtime.spawn(connection::accept(listener, router, shared, stopped));
+        let shared = |hosts: &Hosts| -> Result<Shared, ViewError> {
+            Ok(Shared {
+                token: token.clone(),
+                hosts: hosts.clone(),
+                limits,
+                geometry: geometry::packed(&model.cell, source.mode())?.into(),
+                inbox: inbox.clone(),
+                history: history.clone(),
+                frames,
+                browsers: Arc::new(Semaphore::new(limits.browsers)),
+                mode: source.mode(),
+            })
+        };
+        let http = HttpServer::start("view", address, limits.of_connections(), |_, hosts| {
+            Ok(routes(Arc::new(shared(hosts)?), assets::assets()?))
+        })?;
         let (to_engine, kept) = (inbox.clone(), history);
         let engine = std::thread::Builder::new().name("view engine".into()).spawn(move || {
             engine::run(&model, &mut source, &to_engine, &kept, &frame_sender, limits.frame_period);
         })?;
-        Ok(Self { address, token, inbox, stop, engine: Some(engine), runtime: Some(runtime) })
+        Ok(Self { token, inbox, engine: Some(engine), http })
     }
 
     /// Where it serves.
     pub fn address(&self) -> SocketAddr {
-        self.address
+        self.http.address()
     }
 
     /// What to open in a browser, with the token: whoever has it sees the cell.
     pub fn url(&self) -> String {
-        format!("http://{}/#token={}", self.address, self.token.text())
+        format!("http://{}/#token={}", self.address(), self.token.text())
     }
 
     /// Returns when the program is asked to end: by Ctrl-C, or by SIGTERM where there is one.
@@ -109,10 +96,7 @@ impl Server {
     /// # Errors
     /// [`ViewError::System`] where signals cannot be received.
     pub fn wait_for_interrupt(&self) -> Result<(), ViewError> {
-        match &self.runtime {
-            Some(runtime) => Ok(runtime.block_on(interrupted())?),
-            None => Ok(()),
-        }
+        Ok(self.http.wait_for_interrupt()?)
     }
 
     /// Closes all connections and ends the threads.
@@ -121,14 +105,12 @@ impl Server {
     }
 
     fn end(&mut self) {
-        let _ = self.stop.send(true);
+        self.http.close();
         self.inbox.stop();
         if let Some(engine) = self.engine.take() {
             let _ = engine.join();
         }
-        if let Some(runtime) = self.runtime.take() {
-            runtime.shutdown_timeout(std::time::Duration::from_millis(500));
-        }
+        self.http.end();
     }
 }
 
@@ -136,19 +118,4 @@ impl Drop for Server {
     fn drop(&mut self) {
         self.end();
     }
-}
-
-#[cfg(unix)]
-async fn interrupted() -> io::Result<()> {
-    use tokio::signal::unix::{SignalKind, signal};
-    let mut terminated = signal(SignalKind::terminate())?;
-    tokio::select! {
-        interrupted = tokio::signal::ctrl_c() => interrupted,
-        _ = terminated.recv() => Ok(()),
-    }
-}
-
-#[cfg(not(unix))]
-async fn interrupted() -> io::Result<()> {
-    tokio::signal::ctrl_c().await
 }

@@ -1,4 +1,4 @@
-//! Which requests are answered: known hosts, pages of this server, no bodies.
+//! Which requests are answered: those for known hosts; where nothing but pages is served, those without a body.
 
 use axum::extract::{Request, State};
 use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, header};
@@ -7,7 +7,7 @@ use axum::response::{IntoResponse, Response};
 
 /// The names under which the server is reached.
 #[derive(Debug, Clone)]
-pub(crate) struct Hosts {
+pub struct Hosts {
     hosts: Vec<String>,
     policy: HeaderValue,
 }
@@ -32,8 +32,8 @@ impl Hosts {
         self.hosts.iter().any(|known| known == host).then_some(host)
     }
 
-    /// True where a WebSocket is opened by a page of this server: browsers let any page open one to any server, and say which.
-    pub(crate) fn is_own_page(&self, headers: &HeaderMap) -> bool {
+    /// True where a page of this server asks: browsers let any page ask any server, and say which one it is.
+    pub fn is_own_page(&self, headers: &HeaderMap) -> bool {
         let origin = only(headers, &header::ORIGIN).and_then(|origin| origin.strip_prefix("http://"));
         origin.is_some() && origin == self.host(headers)
     }
@@ -46,11 +46,11 @@ fn only<'h>(headers: &'h HeaderMap, name: &HeaderName) -> Option<&'h str> {
     values.next().is_none().then_some(value)
 }
 
-/// Refuses what no page of this server sends, and adds what tells browsers to keep it to themselves.
+/// Refuses requests for other hosts, and adds what tells browsers to keep the answer to themselves.
 pub(crate) async fn guard(State(hosts): State<Hosts>, request: Request, next: Next) -> Response {
-    let mut response = match refusal(&hosts, &request) {
-        Some((status, why)) => (status, why).into_response(),
-        None => next.run(request).await,
+    let mut response = match hosts.host(request.headers()) {
+        None => (StatusCode::MISDIRECTED_REQUEST, "this host is not served here\n").into_response(),
+        Some(_) => next.run(request).await,
     };
     let is_upgrade = response.status() == StatusCode::SWITCHING_PROTOCOLS;
     let headers = response.headers_mut();
@@ -72,19 +72,17 @@ pub(crate) async fn guard(State(hosts): State<Hosts>, request: Request, next: Ne
     response
 }
 
-fn refusal(hosts: &Hosts, request: &Request) -> Option<(StatusCode, &'static str)> {
-    let headers = request.headers();
-    if hosts.host(headers).is_none() {
-        return Some((StatusCode::MISDIRECTED_REQUEST, "this host is not served here\n"));
-    }
+/// Refuses what no page sends.
+pub(crate) async fn read_only(request: Request, next: Next) -> Response {
     if !matches!(*request.method(), Method::GET | Method::HEAD) {
-        return Some((StatusCode::METHOD_NOT_ALLOWED, "only GET is served here\n"));
+        return (StatusCode::METHOD_NOT_ALLOWED, "only GET is served here\n").into_response();
     }
+    let headers = request.headers();
     let length = headers.get(header::CONTENT_LENGTH);
     if length.is_some_and(|length| length != "0") || headers.contains_key(header::TRANSFER_ENCODING) {
-        return Some((StatusCode::PAYLOAD_TOO_LARGE, "no request has a body here\n"));
+        return (StatusCode::PAYLOAD_TOO_LARGE, "no request has a body here\n").into_response();
     }
-    None
+    next.run(request).await
 }
 
 #[cfg(test)]
@@ -101,7 +99,7 @@ mod tests {
 
     #[test]
     fn only_pages_of_this_server_are_own() {
-        let hosts = Hosts::new(crate::settings::hosts("127.0.0.1:8080".parse().unwrap()));
+        let hosts = Hosts::new(crate::http::loopback::hosts("127.0.0.1:8080".parse().unwrap()));
         let is_own = |pairs: &[_]| hosts.is_own_page(&headers(pairs));
         assert!(is_own(&[("host", "127.0.0.1:8080"), ("origin", "http://127.0.0.1:8080")]));
         assert!(is_own(&[("host", "localhost:8080"), ("origin", "http://localhost:8080")]));

@@ -1,6 +1,5 @@
 //! Connections: accepted, served, and closed where they hang.
 
-use std::sync::Arc;
 use std::time::Duration;
 
 use axum::Router;
@@ -13,8 +12,8 @@ use hyper_util::service::TowerToHyperService;
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::watch;
 
-use super::places::Place;
-use super::shared::Shared;
+use super::connection_limits::ConnectionLimits;
+use super::places::{Place, Places};
 
 /// After an error of the listener, such as too many open files.
 const RETRY: Duration = Duration::from_millis(20);
@@ -23,7 +22,8 @@ const RETRY: Duration = Duration::from_millis(20);
 pub(crate) async fn accept(
     listener: TcpListener,
     router: Router,
-    shared: Arc<Shared>,
+    limits: ConnectionLimits,
+    places: Places,
     mut stopped: watch::Receiver<bool>,
 ) {
     loop {
@@ -34,8 +34,8 @@ pub(crate) async fn accept(
         match accepted {
             Ok((stream, _)) => {
                 // Here, as tasks run in any order: a connection is as old as its acceptance.
-                let place = shared.places.enter();
-                _ = tokio::spawn(serve(stream, place, router.clone(), shared.clone()));
+                let place = places.enter();
+                _ = tokio::spawn(serve(stream, place, router.clone(), limits));
             }
             Err(_) => tokio::time::sleep(RETRY).await,
         }
@@ -43,8 +43,7 @@ pub(crate) async fn accept(
 }
 
 /// One request, or a WebSocket, which goes on by itself.
-async fn serve(stream: TcpStream, place: Place, router: Router, shared: Arc<Shared>) {
-    let limits = &shared.limits;
+async fn serve(stream: TcpStream, place: Place, router: Router, limits: ConnectionLimits) {
     let (router, held) = (TowerToHyperService::new(router), place.clone());
     // A WebSocket keeps the place of its connection.
     let service = service_fn(move |mut request: Request<Incoming>| {

@@ -1,0 +1,204 @@
+//! What was changed in a running cell: an append-only log beside its file.
+
+use std::fs::File;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use elbowroom_formats::FormatError;
+use elbowroom_monitor::AccessClass;
+use serde::{Deserialize, Serialize};
+
+use super::change::Change;
+use super::result::Result;
+use super::{hex, text, time};
+
+/// The log of the changes of a running cell: `cell.control.jsonl` beside `cell.toml`.
+pub fn control_log_of(cell: &Path) -> PathBuf {
+    cell.with_extension("control.jsonl")
+}
+
+/// A change of a running cell, and who asked for it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ControlEntry {
+    /// Counted from 1.
+    pub sequence: u64,
+    /// Time in UTC, by the clock of the service's computer.
+    pub time: String,
+    /// The access class of the token.
+    pub class: String,
+    /// The name of the token.
+    pub name: String,
+    /// The program that wrote the entry, with its version.
+    pub program: String,
+    /// The action: `switch region.cart`, `clear robot.left`.
+    pub action: String,
+    /// The note of the request.
+    pub note: Option<String>,
+    /// What differs.
+    pub changes: Vec<Change>,
+    /// The cell's checksum before.
+    pub checksum_before: String,
+    /// The cell's checksum after: the same where no region was edited.
+    pub checksum: String,
+    /// SHA-256 (hex) of the previous line; 64 zeros in the first entry.
+    pub previous: String,
+}
+
+/// A change that is to be logged.
+#[derive(Debug, Clone)]
+pub struct Controlled<'a> {
+    /// The access class of the token.
+    pub class: AccessClass,
+    /// The name of the token.
+    pub name: &'a str,
+    /// The action.
+    pub action: String,
+    /// The note of the request.
+    pub note: Option<&'a str>,
+    /// What differs.
+    pub changes: Vec<Change>,
+    /// The cell's checksum before and after.
+    pub checksums: [&'a str; 2],
+}
+
+/// The open log of a running cell: one process writes it at a time, and each line has the hash of the one before it.
+#[derive(Debug)]
+pub struct ControlLog {
+    path: PathBuf,
+    file: File,
+    entries: u64,
+    head: String,
+}
+
+impl ControlLog {
+    /// Opens the log, or begins it, and verifies that its lines follow each other.
+    ///
+    /// # Errors
+    /// [`FormatError`] at the line that was changed, or where another process writes the log.
+    pub fn open(path: &Path) -> Result<Self> {
+        let file = File::options().append(true).create(true).open(path).map_err(text::unwritable(path))?;
+        file.try_lock().map_err(|_| {
+            FormatError::new(path, None, "is written by another process").hint("one service with --control per cell")
+        })?;
+        let (entries, head) = verified(path)?;
+        Ok(Self { path: path.to_owned(), file, entries: entries.len() as u64, head })
+    }
+
+    /// Appends a change, and returns once it is on the disk.
+    ///
+    /// # Errors
+    /// [`FormatError`] where it cannot be written; then the change must not be made.
+    pub fn append(&mut self, controlled: Controlled<'_>) -> Result<ControlEntry> {
+        let Controlled { class, name, action, note, changes, checksums: [before, after] } = controlled;
+        let entry = ControlEntry {
+            sequence: self.entries + 1,
+            time: time::now(),
+            class: class.name().into(),
+            name: name.into(),
+            program: concat!("elbowroom ", env!("CARGO_PKG_VERSION")).into(),
+            action,
+            note: note.map(Into::into),
+            changes,
+            checksum_before: before.into(),
+            checksum: after.into(),
+            previous: self.head.clone(),
+        };
+        let line = line(&entry);
+        let written = self.file.write_all((line.clone() + "\n").as_bytes()).and_then(|()| self.file.sync_all());
+        written.map_err(text::unwritable(&self.path))?;
+        self.entries += 1;
+        self.head = hex::hash(line.as_bytes());
+        Ok(entry)
+    }
+
+    /// Names all that was logged so far: the hash of the last line. A request that names it cannot be repeated.
+    pub fn head(&self) -> &str {
+        &self.head
+    }
+}
+
+/// Reads a log and verifies it.
+///
+/// # Errors
+/// [`FormatError`] at the first line that does not follow the one before it.
+pub fn control_history(path: &Path) -> Result<Vec<ControlEntry>> {
+    Ok(verified(path)?.0)
+}
+
+fn line(entry: &ControlEntry) -> String {
+    // Serialization of texts and numbers cannot fail; an empty line would not be accepted again.
+    serde_json::to_string(entry).unwrap_or_default()
+}
+
+/// The entries, and the hash of the last line.
+fn verified(path: &Path) -> Result<(Vec<ControlEntry>, String)> {
+    let text = text::read(path)?;
+    let (mut entries, mut head) = (Vec::new(), "0".repeat(64));
+    for (number, written) in (1..).zip(text.lines()) {
+        let wrong = |what: &str| {
+            let hint = "the log from a backup; or keep this one as evidence under another name, and begin a new one";
+            FormatError::new(path, number, what).hint(hint)
+        };
+        let entry: ControlEntry =
+            serde_json::from_str(written).map_err(|_| wrong("is not an entry of a control log, or was modified"))?;
+        // Only the form that is written here: otherwise spaces or repeated keys would go unnoticed.
+        if entry.sequence != number as u64 || entry.previous != head || line(&entry) != written {
+            return Err(wrong("does not follow the entry before it, or was modified"));
+        }
+        head = hex::hash(written.as_bytes());
+        entries.push(entry);
+    }
+    if !text.is_empty() && !text.ends_with('\n') {
+        return Err(FormatError::new(path, entries.len(), "ends within a line: writing was interrupted")
+            .hint("remove that line: its change was not made"));
+    }
+    Ok((entries, head))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn switched(on: bool) -> Controlled<'static> {
+        let (before, after) = (Some((!on).to_string()), Some(on.to_string()));
+        let change = Change { item: "region.cart".into(), field: "active".into(), before, after };
+        Controlled {
+            class: AccessClass::Programmer,
+            name: "panel",
+            action: "switch region.cart".into(),
+            note: None,
+            changes: vec![change],
+            checksums: ["abc", "abc"],
+        }
+    }
+
+    #[test]
+    fn entries_follow_each_other_over_restarts_and_a_change_is_found() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = control_log_of(&folder.path().join("cell.toml"));
+        let mut log = ControlLog::open(&path).unwrap();
+        let first = log.append(switched(true)).unwrap();
+        assert_eq!((first.sequence, first.previous.as_str()), (1, "0".repeat(64).as_str()));
+        assert!(ControlLog::open(&path).unwrap_err().to_string().contains("another process"));
+        drop(log);
+        let mut log = ControlLog::open(&path).unwrap();
+        let second = log.append(switched(false)).unwrap();
+        assert_eq!(second.sequence, 2);
+        let text = std::fs::read_to_string(&path).unwrap();
+        assert_eq!(second.previous, hex::hash(text.lines().next().unwrap().as_bytes()));
+        drop(log);
+        assert_eq!(control_history(&path).unwrap(), [first, second]);
+        for wrong in [
+            text.replacen("true", "false", 1),
+            text.replacen("panel", "other", 1),
+            text.lines().skip(1).map(|l| format!("{l}\n")).collect(),
+            text.lines().rev().map(|l| format!("{l}\n")).collect(),
+            text.replacen(":1,", ": 1,", 1),
+            text.trim_end().to_owned(),
+        ] {
+            std::fs::write(&path, wrong).unwrap();
+            assert!(ControlLog::open(&path).is_err());
+        }
+    }
+}

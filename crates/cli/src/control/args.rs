@@ -1,0 +1,111 @@
+//! Arguments of `elbowroom control`.
+
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand, ValueEnum};
+
+use crate::region::args::Class;
+
+/// Verbs for a running cell (docs/control.md).
+#[derive(Debug, Subcommand)]
+pub(crate) enum ControlCommand {
+    /// Make a token: its hash goes to a file of the service, its secret to standard output, once
+    Token(TokenArgs),
+    /// List regions, whether they are on, and who holds exchange regions
+    Regions(RegionsArgs),
+    /// Switch a temporary region on or off
+    Switch(SwitchArgs),
+    /// Declare that a silent robot is at rest outside of its exchange regions, which you have seen
+    Clear(ClearArgs),
+    /// Verify and list the changes that a service has logged beside the cell file
+    Log(LogArgs),
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  elbowroom control token --role programmer --name \"line 4, panel\" --file tokens.toml > panel.secret
+  elbowroom live cell.toml --control 127.0.0.1:7448 --tokens tokens.toml")]
+pub(crate) struct TokenArgs {
+    /// What its holder may do
+    #[arg(long, value_enum)]
+    pub(crate) role: Class,
+    /// Its holder: a place or a function, for the log
+    #[arg(long)]
+    pub(crate) name: String,
+    /// The file of tokens; it is made where it is missing
+    #[arg(long, value_name = "FILE")]
+    pub(crate) file: PathBuf,
+}
+
+/// The service, and the holder of a token.
+#[derive(Debug, Args)]
+pub(crate) struct ServiceArgs {
+    /// The control address of the service
+    #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:7448")]
+    pub(crate) at: String,
+    /// The file with the secret of a token; default: the file named by the environment variable `ELBOWROOM_SECRET`
+    #[arg(long, value_name = "FILE")]
+    pub(crate) secret: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  elbowroom control regions --secret panel.secret")]
+pub(crate) struct RegionsArgs {
+    #[command(flatten)]
+    pub(crate) service: ServiceArgs,
+    /// Print one JSON document
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(crate) enum State {
+    On,
+    Off,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  elbowroom control switch cart on --secret panel.secret --note \"cart arrives\"")]
+pub(crate) struct SwitchArgs {
+    /// The region
+    pub(crate) region: String,
+    /// On or off
+    pub(crate) state: State,
+    #[command(flatten)]
+    pub(crate) service: ServiceArgs,
+    /// A comment for the log
+    #[arg(long, value_name = "TEXT")]
+    pub(crate) note: Option<String>,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  elbowroom control clear left --outside pallet --repeat left --secret integrator.secret
+
+See the robot at rest and outside of every region that you name: others may enter them at once.")]
+pub(crate) struct ClearArgs {
+    /// The robot
+    pub(crate) robot: String,
+    /// All its exchange regions
+    #[arg(long, value_name = "REGIONS", value_delimiter = ',', required = true)]
+    pub(crate) outside: Vec<String>,
+    /// The robot once more
+    #[arg(long, value_name = "ROBOT")]
+    pub(crate) repeat: String,
+    #[command(flatten)]
+    pub(crate) service: ServiceArgs,
+    /// A comment for the log
+    #[arg(long, value_name = "TEXT")]
+    pub(crate) note: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct LogArgs {
+    /// The cell file
+    pub(crate) cell: PathBuf,
+    /// Print one JSON document
+    #[arg(long)]
+    pub(crate) json: bool,
+}

@@ -1,0 +1,89 @@
+//! Requests to the control interface of a service.
+
+use std::io::{Read as _, Write as _};
+use std::net::{TcpStream, ToSocketAddrs as _};
+use std::path::PathBuf;
+use std::time::Duration;
+
+use serde_json::Value;
+
+use super::args::ServiceArgs;
+use crate::output::Failure;
+
+/// Longest wait for the service.
+const WAIT: Duration = Duration::from_secs(20);
+/// Longest answer.
+const MAX_ANSWER: u64 = 16 << 20;
+
+/// A service and the secret of a token.
+pub(crate) struct Client {
+    address: String,
+    secret: String,
+}
+
+impl Client {
+    pub(crate) fn new(args: &ServiceArgs) -> Result<Self, Failure> {
+        let named = || std::env::var_os("ELBOWROOM_SECRET").filter(|v| !v.is_empty()).map(PathBuf::from);
+        let file = args.secret.clone().or_else(named).ok_or_else(|| {
+            let help = "--secret FILE, or ELBOWROOM_SECRET=FILE in the environment (elbowroom control token makes one)";
+            Failure::Wrong(format!("the service asks for a token\n  write: {help}"))
+        })?;
+        let unreadable = |e: std::io::Error| Failure::Wrong(format!("{}: cannot be read: {e}", file.display()));
+        let secret = std::fs::read_to_string(&file).map_err(unreadable)?.trim().to_owned();
+        if secret.is_empty() || !secret.chars().all(|c| c.is_ascii_alphanumeric()) {
+            let what = format!("{}: is no secret: 64 hexadecimal digits on one line", file.display());
+            return Err(Failure::Wrong(what));
+        }
+        Ok(Self { address: args.at.clone(), secret })
+    }
+
+    /// What there is, and its revision.
+    pub(crate) fn regions(&self) -> Result<Value, Failure> {
+        self.ask("GET", "/regions", "", None)
+    }
+
+    /// Asks for a change of the present state.
+    pub(crate) fn change(&self, path: &str, request: &Value) -> Result<Value, Failure> {
+        let now = self.regions()?;
+        let revision = now["revision"].as_str().unwrap_or_default();
+        let headers = format!("If-Match: \"{revision}\"\r\nContent-Type: application/json\r\n");
+        self.ask("POST", path, &headers, Some(request))
+    }
+
+    fn ask(&self, method: &str, path: &str, headers: &str, body: Option<&Value>) -> Result<Value, Failure> {
+        let (address, secret) = (&self.address, &self.secret);
+        let body = body.map(Value::to_string).unwrap_or_default();
+        let request = format!(
+            "{method} {path} HTTP/1.1\r\nHost: {address}\r\nAuthorization: Bearer {secret}\r\n{headers}Content-Length: {}\r\n\r\n{body}",
+            body.len()
+        );
+        let answer = self.exchange(&request).map_err(|e| {
+            let help = format!("elbowroom live CELL --arbiter --control {address} --tokens FILE, or --at ADDR here");
+            Failure::Wrong(format!("{address}: the service does not answer: {e}\n  write: {help}"))
+        })?;
+        let (head, document) = answer.split_once("\r\n\r\n").unwrap_or((&answer, ""));
+        let document: Value = serde_json::from_str(document).unwrap_or_default();
+        match head.split(' ').nth(1) {
+            Some("200") => Ok(document),
+            status => Err(refusal(status.unwrap_or("no status"), &document)),
+        }
+    }
+
+    fn exchange(&self, request: &str) -> std::io::Result<String> {
+        let none = || std::io::Error::other("no such address");
+        let address = self.address.to_socket_addrs()?.next().ok_or_else(none)?;
+        let mut stream = TcpStream::connect_timeout(&address, WAIT)?;
+        stream.set_read_timeout(Some(WAIT))?;
+        stream.write_all(request.as_bytes())?;
+        let mut answer = Vec::new();
+        // One request per connection: the service closes it.
+        stream.take(MAX_ANSWER).read_to_end(&mut answer)?;
+        String::from_utf8(answer).map_err(std::io::Error::other)
+    }
+}
+
+fn refusal(status: &str, document: &Value) -> Failure {
+    let error = document["error"].as_str().map_or_else(|| format!("the service answers {status}"), str::to_owned);
+    let help = document["help"].as_str().map(|help| format!("\n  help: {help}")).unwrap_or_default();
+    Failure::Wrong(error + &help)
+}

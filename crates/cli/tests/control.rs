@@ -1,0 +1,159 @@
+//! `elbowroom control` with a service on the loopback network.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn control(folder: &Path, arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_elbowroom"));
+    command.current_dir(folder).env_remove("ELBOWROOM_SECRET").arg("control").args(arguments);
+    command.output().expect("elbowroom runs")
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// A file of tokens with one of each role, and a file `ROLE.secret` for each.
+fn make_tokens(folder: &Path) {
+    for role in ["operator", "programmer", "integrator"] {
+        let made = control(folder, &["token", "--role", role, "--name", role, "--file", "tokens.toml"]);
+        assert!(made.status.success(), "{}", text(&made.stderr));
+        let secret = text(&made.stdout);
+        assert_eq!(secret.trim().len(), 64);
+        std::fs::write(folder.join(format!("{role}.secret")), &secret).unwrap();
+        let kept = std::fs::read_to_string(folder.join("tokens.toml")).unwrap();
+        assert!(!kept.contains(secret.trim()) && !text(&made.stderr).contains(secret.trim()));
+    }
+}
+
+#[test]
+fn tokens_are_made_without_a_service_and_wrong_calls_say_what_to_write() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    make_tokens(folder);
+    std::fs::write(folder.join("empty.secret"), "").unwrap();
+    let cases: [(&[&str], &str); 6] = [
+        (
+            &["token", "--role", "operator", "--name", "operator", "--file", "tokens.toml"],
+            "has a token \"operator\" already",
+        ),
+        (&["token", "--role", "operator", "--name", " ", "--file", "tokens.toml"], "a token needs a name"),
+        (&["regions"], "--secret FILE, or ELBOWROOM_SECRET=FILE"),
+        (&["regions", "--secret", "missing.secret"], "missing.secret: cannot be read"),
+        (&["regions", "--secret", "empty.secret"], "is no secret"),
+        (&["regions", "--secret", "operator.secret", "--at", "127.0.0.1:1"], "the service does not answer"),
+    ];
+    for (arguments, message) in cases {
+        let Output { status, stderr, .. } = control(folder, arguments);
+        assert!(status.code() == Some(2) && text(&stderr).contains(message), "{arguments:?}: {}", text(&stderr));
+    }
+}
+
+#[cfg(feature = "live")]
+mod with_a_service {
+    use super::*;
+    use std::process::{Child, Stdio};
+    use std::time::{Duration, Instant};
+
+    const CELL: &str = r#"
+version = 1
+name = "rail"
+units = { length = "mm", angle = "deg" }
+[robot.rail]
+dh = [{ kind = "prismatic", min = 0, max = 2000, speed = 1000 }]
+links = [{ sphere = { radius = 50 } }]
+start = [1000]
+[region.cart]
+shape = "sphere"
+centre = [0, 0, 1000]
+radius = 100
+life = "temporary"
+warning = 100
+[region.end]
+shape = "sphere"
+centre = [0, 0, 2500]
+radius = 200
+warning = 100
+"#;
+
+    /// A process that is killed when it is dropped.
+    struct Process(Child);
+
+    impl Drop for Process {
+        fn drop(&mut self) {
+            let _ = self.0.kill();
+            let _ = self.0.wait();
+        }
+    }
+
+    /// Starts the whole cell, and returns its control address once it serves.
+    fn start(folder: &Path, arguments: &[&str]) -> (Process, String) {
+        use std::io::{BufRead as _, BufReader};
+        let mut command = Command::new(env!("CARGO_BIN_EXE_elbowroom"));
+        command.current_dir(folder).args(["live", "cell.toml", "--listen", "127.0.0.1:0", "--for", "100"]);
+        command.args(["--control", "127.0.0.1:0", "--tokens", "tokens.toml"]).args(arguments);
+        let mut process = Process(command.stderr(Stdio::piped()).spawn().expect("elbowroom starts"));
+        let mut lines = BufReader::new(process.0.stderr.take().unwrap()).lines().map_while(Result::ok);
+        let address = lines.find_map(|line| line.strip_prefix("control: ").map(str::to_owned));
+        // What is printed later must not fill the pipe.
+        std::thread::spawn(move || lines.for_each(drop));
+        (process, address.expect("a control address"))
+    }
+
+    #[test]
+    fn a_running_cell_is_listed_switched_and_logged() {
+        let folder = tempfile::tempdir().unwrap();
+        let folder = folder.path();
+        make_tokens(folder);
+        std::fs::write(folder.join("cell.toml"), CELL).unwrap();
+        let (_process, at) = start(folder, &[]);
+        let run = |arguments: &[&str], role: &str| {
+            let secret = format!("{role}.secret");
+            control(folder, &[arguments, &["--at", &at, "--secret", &secret]].concat())
+        };
+        let listed = text(&run(&["regions"], "operator").stdout);
+        assert!(listed.contains("cart") && listed.contains("temporary  off"), "{listed}");
+        assert!(listed.contains("rail: its controller is not heard"), "{listed}");
+        let refused = run(&["switch", "cart", "on"], "operator");
+        assert_eq!(refused.status.code(), Some(2));
+        assert!(text(&refused.stderr).contains("takes the programmer class"), "{}", text(&refused.stderr));
+        let switched = run(&["switch", "cart", "on", "--note", "cart arrives"], "programmer");
+        assert!(switched.status.success(), "{}", text(&switched.stderr));
+        assert!(text(&switched.stdout).contains("programmer (programmer): switch region.cart - cart arrives"));
+        assert!(text(&switched.stderr).contains("rail: is not heard, so it may be inside"));
+        assert!(text(&run(&["regions"], "operator").stdout).contains("temporary  on"));
+        let refused = run(&["clear", "rail", "--outside", "cart", "--repeat", "rail"], "integrator");
+        assert!(
+            text(&refused.stderr).contains("does not name the exchange regions of `rail`"),
+            "{}",
+            text(&refused.stderr)
+        );
+        let log = text(&control(folder, &["log", "cell.toml"]).stdout);
+        assert!(log.contains("region.cart: active false -> true") && log.lines().count() == 2, "{log}");
+        let file = folder.join("cell.control.jsonl");
+        let written = std::fs::read_to_string(&file).unwrap();
+        std::fs::write(&file, written.replace("cart arrives", "cart departs") + &written).unwrap();
+        let broken = control(folder, &["log", "cell.toml"]);
+        assert!(
+            broken.status.code() == Some(2) && text(&broken.stderr).contains("does not follow the entry before it")
+        );
+    }
+
+    #[test]
+    fn a_region_is_not_switched_on_around_a_simulated_robot() {
+        let folder = tempfile::tempdir().unwrap();
+        let folder = folder.path();
+        make_tokens(folder);
+        std::fs::write(folder.join("cell.toml"), CELL).unwrap();
+        let (_process, at) = start(folder, &["--simulate"]);
+        let began = Instant::now();
+        let secret = ["--at", &at, "--secret", "programmer.secret"];
+        while text(&control(folder, &[&["regions"][..], &secret].concat()).stdout).contains("not heard") {
+            assert!(began.elapsed() < Duration::from_secs(20), "the simulated controller is not heard");
+        }
+        let refused = control(folder, &[&["switch", "cart", "on"][..], &secret].concat());
+        assert_eq!(refused.status.code(), Some(2));
+        let message = text(&refused.stderr);
+        assert!(message.contains("robot `rail` is inside region `cart`: its distance is 0 mm"), "{message}");
+    }
+}

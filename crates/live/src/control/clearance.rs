@@ -1,0 +1,176 @@
+//! How far robots are from a region that is to be switched on or moved.
+
+use elbowroom_cell::{Cell, CellRegion, Frames, configure};
+use elbowroom_formats::FormatError;
+use elbowroom_kinematics::ChainState;
+use elbowroom_monitor::{Life, Monitor, RegionKind};
+use elbowroom_robot::RobotId;
+
+use crate::messages::JointState;
+
+/// A robot and its distance from a region.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Clearance {
+    /// The robot.
+    pub(crate) robot: RobotId,
+    /// A proven lower bound of the distance, 0 inside, m; `None` where it is not known where the robot is.
+    pub(crate) distance_m: Option<f64>,
+    /// How far any point of it may move until it stands, at most, if the region counts within [`UNTIL_IT_COUNTS_S`], m.
+    pub(crate) stopping_m: f64,
+}
+
+/// The nodes hear of a change at once, or, where that message is lost, with the next one.
+const UNTIL_IT_COUNTS_S: f64 = 0.2;
+
+/// The robots that a region guards against, with what they carry, and how far they are from it. One that is not heard has no
+/// distance; neither has one whose region follows a robot that is not heard. What follows an encoder or a path is where it is
+/// `t_s` after the start of this process.
+///
+/// # Errors
+/// [`FormatError`] where no monitor accepts the region.
+pub(crate) fn clearances(
+    cell: &Cell,
+    region: &CellRegion,
+    states: &[Option<JointState>],
+    t_s: f64,
+) -> Result<Vec<Clearance>, FormatError> {
+    let alone = with_only(cell, region);
+    let chains: Vec<Option<ChainState>> = alone.robots.iter().zip(states).map(|(r, s)| placed(r, s.as_ref())).collect();
+    let setups = configure::setups(&alone)?;
+    let monitors = configure::monitors(&alone, &setups)?;
+    let of_robot = |(robot, mut monitor): (&RobotId, Monitor)| {
+        let sources = sources(&alone, &setups[robot.0].sources, &chains, t_s);
+        let state = states[robot.0].as_ref().filter(|_| chains[robot.0].is_some());
+        let known = state.zip(sources).and_then(|(state, sources)| {
+            let are_attached = state.attached.iter().all(|a| monitor.attach(a.volume, &a.in_link).is_ok());
+            let mut query = monitor.region_distance(&sources);
+            query.set_q(&state.q);
+            let nearest = query.distances(f64::INFINITY).map(|(_, metres)| metres).next();
+            let stopping_m = query.motion_bound(&state.q, &at_standstill(cell, *robot, state));
+            nearest.filter(|_| are_attached).map(|metres| (metres, stopping_m))
+        });
+        let (distance_m, stopping_m) =
+            known.map_or((None, 0.0), |(distance_m, stopping_m)| (Some(distance_m), stopping_m));
+        Clearance { robot: *robot, distance_m, stopping_m }
+    };
+    let all = monitors.into_iter().enumerate().filter(|(i, _)| region.robots.contains(&RobotId(*i)));
+    Ok(all.map(|(i, monitor)| of_robot((&RobotId(i), monitor))).collect())
+}
+
+/// The cell with this region only, closed to everybody.
+fn with_only(cell: &Cell, region: &CellRegion) -> Cell {
+    let mut closed = region.clone();
+    (closed.region.kind, closed.region.life) = (RegionKind::Forbidden, Life::Permanent);
+    Cell { regions: vec![closed], ..cell.clone() }
+}
+
+/// The joint values at which the robot stands if it goes on as it moves until the region counts, and then brakes. Without
+/// velocities it counts as standing.
+fn at_standstill(cell: &Cell, robot: RobotId, state: &JointState) -> Vec<f64> {
+    let going_on_s = UNTIL_IT_COUNTS_S + cell.laws.reaction_s;
+    let limits = &cell.robots[robot.0].limits;
+    let moved = |((q, limit), qd): ((&f64, &elbowroom_cell::JointLimits), &f64)| {
+        q + qd * (going_on_s + qd.abs() / (2.0 * limit.stop))
+    };
+    let has_velocities = state.qd.len() == state.q.len() && state.qd.iter().all(|v| v.is_finite());
+    if has_velocities { state.q.iter().zip(limits).zip(&state.qd).map(moved).collect() } else { state.q.clone() }
+}
+
+fn placed(robot: &elbowroom_cell::CellRobot, state: Option<&JointState>) -> Option<ChainState> {
+    let chain = &robot.robot.chain;
+    let q = &state?.q;
+    if q.len() != chain.dof() || q.iter().any(|v| !v.is_finite()) {
+        return None;
+    }
+    let mut placed = ChainState::new(chain);
+    placed.q.copy_from_slice(q);
+    chain.forward_motion(&mut placed);
+    Some(placed)
+}
+
+/// What the region follows; `None` where that is a robot that is not heard.
+fn sources(
+    cell: &Cell,
+    follows: &[elbowroom_cell::Follow],
+    chains: &[Option<ChainState>],
+    t_s: f64,
+) -> Option<Vec<elbowroom_monitor::SourceState>> {
+    let is_known = |f: &elbowroom_cell::Follow| match f {
+        elbowroom_cell::Follow::Robot { robot, .. } => chains[robot.0].is_some(),
+        _ => true,
+    };
+    if !follows.iter().all(is_known) {
+        return None;
+    }
+    let or_start = |(chain, robot): (&Option<ChainState>, &elbowroom_cell::CellRobot)| {
+        chain.clone().unwrap_or_else(|| ChainState::new(&robot.robot.chain))
+    };
+    let all: Vec<ChainState> = chains.iter().zip(&cell.robots).map(or_start).collect();
+    Some(Frames::new(cell).sources(follows, &all, t_s))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CELL: &str = r#"
+version = 1
+units = { length = "mm", angle = "deg" }
+[robot.rail]
+dh = [{ kind = "prismatic", min = 0, max = 2000, speed = 1000 }]
+links = [{ sphere = { radius = 50 } }]
+[robot.other]
+dh = [{ kind = "prismatic", min = 0, max = 2000, speed = 1000 }]
+links = [{ sphere = { radius = 50 } }]
+base = { at = [3000, 0, 0] }
+[region.end]
+shape = "sphere"
+centre = [0, 0, 1500]
+radius = 200
+kind = "exchange"
+life = "temporary"
+warning = 100
+[region.on_other]
+shape = "sphere"
+centre = [-3000, 0, 0]
+radius = 200
+warning = 100
+follow = { robot = "other", frame = "flange" }
+"#;
+
+    fn at(q: f64) -> Option<JointState> {
+        Some(JointState { q: vec![q], qd: vec![0.0], ..JointState::default() })
+    }
+
+    #[test]
+    fn distances_are_those_of_the_arm_at_its_joint_values() {
+        let cell = Cell::parse("rails.toml", CELL).unwrap_or_else(|e| panic!("{e}"));
+        let distance = |region: usize, states: &[Option<JointState>]| {
+            let found = clearances(&cell, &cell.regions[region], states, 0.0).unwrap();
+            found.iter().map(|c| c.distance_m).collect::<Vec<_>>()
+        };
+        let near = |a: Option<f64>, b: f64| a.is_some_and(|a| (a - b).abs() < 1e-6);
+        let far = distance(0, &[at(1.0), at(0.0)]);
+        assert!(near(far[0], 0.25), "{far:?}");
+        assert!(far[1].is_some_and(|d| d > 2.0));
+        assert_eq!(distance(0, &[at(1.5), None]), [Some(0.0), None]);
+        assert_eq!(distance(0, &[at(f64::NAN), at(0.0)])[0], None);
+        // The region is where the other robot is: as far along its own rail.
+        let follows = distance(1, &[at(0.5), at(1.0)]);
+        assert!(follows.len() == 1 && near(follows[0], 0.25), "{follows:?}");
+        assert_eq!(distance(1, &[at(0.5), None]), [None]);
+    }
+
+    #[test]
+    fn a_robot_that_moves_needs_room_to_stop() {
+        let cell = Cell::parse("rails.toml", CELL).unwrap_or_else(|e| panic!("{e}"));
+        let moving = |qd: Vec<f64>| {
+            let state = JointState { q: vec![0.5], qd, ..JointState::default() };
+            clearances(&cell, &cell.regions[0], &[Some(state), None], 0.0).unwrap()[0].stopping_m
+        };
+        let braking_m = 0.5 * 0.5 / (2.0 * cell.robots[0].limits[0].stop);
+        let expected = 0.5 * (UNTIL_IT_COUNTS_S + cell.laws.reaction_s) + braking_m;
+        assert!((moving(vec![0.5]) - expected).abs() < 1e-9 && (moving(vec![-0.5]) - expected).abs() < 1e-9);
+        assert_eq!((moving(vec![0.0]), moving(Vec::new())), (0.0, 0.0));
+    }
+}

@@ -1,0 +1,307 @@
+//! Decides about requests, makes the changes and logs them.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use elbowroom_cell::seal::{AccessToken, Change, ControlEntry, ControlLog, Controlled};
+use elbowroom_cell::{Cell, CellRegion};
+use elbowroom_monitor::{AccessClass, Life, RegionKind};
+use elbowroom_robot::RobotId;
+use serde::Serialize;
+
+use super::clearance::clearances;
+use super::joints_heard::JointsHeard;
+use super::refusal::Refusal;
+use super::requests::{Clear, Switch};
+use crate::arbiter_service::{ArbiterService, NotCleared};
+use crate::clock::Clock;
+use crate::event_handler::EventHandler;
+use crate::region_keeper::RegionKeeper;
+
+/// Longest note.
+const MAX_NOTE: usize = 500;
+
+/// What the desk works with.
+pub(crate) struct DeskParts {
+    pub(crate) cell: Arc<Cell>,
+    pub(crate) keeper: Arc<RegionKeeper>,
+    /// `None` for a cell without exchange regions.
+    pub(crate) arbiter: Option<Arc<ArbiterService>>,
+    pub(crate) joints: JointsHeard,
+    pub(crate) clock: Clock,
+    pub(crate) on_event: Option<EventHandler>,
+}
+
+/// Takes one request at a time.
+pub(crate) struct Desk {
+    parts: DeskParts,
+    log: Mutex<ControlLog>,
+}
+
+/// A change that was made.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct Done {
+    /// What was logged.
+    pub(crate) entry: ControlEntry,
+    /// What the next request must name.
+    pub(crate) revision: String,
+    /// Robots of the region of which nobody knows where they are.
+    pub(crate) not_heard: Vec<String>,
+}
+
+/// The regions and robots of a cell.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct Overview {
+    pub(crate) cell: String,
+    pub(crate) checksum: String,
+    /// What a request for a change must name.
+    pub(crate) revision: String,
+    pub(crate) regions: Vec<RegionOverview>,
+    pub(crate) robots: Vec<RobotOverview>,
+}
+
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct RegionOverview {
+    pub(crate) name: String,
+    pub(crate) kind: &'static str,
+    pub(crate) life: &'static str,
+    pub(crate) active: bool,
+    /// The robots that it guards against.
+    pub(crate) robots: Vec<String>,
+    /// Of an exchange region.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) holder: Option<String>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) queue: Vec<String>,
+}
+
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct RobotOverview {
+    pub(crate) name: String,
+    /// Its controller is heard.
+    pub(crate) heard: bool,
+}
+
+impl Desk {
+    pub(crate) fn new(parts: DeskParts, log: ControlLog) -> Self {
+        Self { parts, log: Mutex::new(log) }
+    }
+
+    fn log(&self) -> MutexGuard<'_, ControlLog> {
+        self.log.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Everything that may be changed.
+    pub(crate) fn overview(&self) -> Overview {
+        let DeskParts { cell, keeper, arbiter, joints, .. } = &self.parts;
+        let (active, slots) = (keeper.active(), arbiter.as_ref().map(|a| a.slots()).unwrap_or_default());
+        let region = |(r, active): (&CellRegion, bool)| {
+            let slot = slots.iter().find(|slot| slot.regions.contains(&r.region.name));
+            RegionOverview {
+                name: r.region.name.clone(),
+                kind: r.region.kind.name(),
+                life: r.region.life.name(),
+                active,
+                robots: r.robots.iter().map(|id| cell.robots[id.0].name.clone()).collect(),
+                holder: slot.and_then(|slot| slot.holder.clone()),
+                queue: slot.map(|slot| slot.queue.clone()).unwrap_or_default(),
+            }
+        };
+        let robot = |(r, state): (&elbowroom_cell::CellRobot, Option<_>)| RobotOverview {
+            name: r.name.clone(),
+            heard: state.is_some(),
+        };
+        Overview {
+            cell: cell.name.clone(),
+            checksum: cell.checksum.clone(),
+            revision: revision(&self.log()),
+            regions: cell.regions.iter().zip(active).map(region).collect(),
+            robots: cell.robots.iter().zip(joints.states()).map(robot).collect(),
+        }
+    }
+
+    /// Switches a temporary region. One that a robot is inside of is not switched on.
+    pub(crate) fn switch(&self, who: &AccessToken, at: &str, request: &Switch) -> Result<Done, Refusal> {
+        let DeskParts { cell, keeper, .. } = &self.parts;
+        let (index, region) = self.region(&request.region)?;
+        self.require(who, AccessClass::needed_for(Life::Temporary), &format!("switch region `{}`", request.region))?;
+        if region.region.life == Life::Permanent {
+            let error = format!("region `{}` is permanent: it is always on", request.region);
+            return Err(
+                Refusal::new(409, error).help("life = \"temporary\" in the cell file makes it one that is switched")
+            );
+        }
+        let mut log = self.log();
+        is_present(&log, at)?;
+        let before = keeper.active()[index];
+        let not_heard = if request.active && !before { self.refuse_inside(region)? } else { Vec::new() };
+        let change = Change {
+            item: format!("region.{}", request.region),
+            field: "active".into(),
+            before: Some(before.to_string()),
+            after: Some(request.active.to_string()),
+        };
+        let entry = log.append(Controlled {
+            class: who.class,
+            name: &who.name,
+            action: format!("switch region.{}", request.region),
+            note: note(request.note.as_deref())?,
+            changes: vec![change],
+            checksums: [&cell.checksum, &cell.checksum],
+        })?;
+        keeper.switch(index, request.active);
+        let state = if request.active { "on" } else { "off" };
+        self.report(&format!("{}: switched {state} by {} ({})", request.region, who.name, who.class.name()));
+        Ok(Done { entry, revision: revision(&log), not_heard })
+    }
+
+    /// Clears a silent robot.
+    pub(crate) fn clear(&self, who: &AccessToken, at: &str, request: &Clear) -> Result<Done, Refusal> {
+        let DeskParts { cell, arbiter, .. } = &self.parts;
+        self.require(who, AccessClass::Integrator, "clear a robot")?;
+        let robot = self.robot_to_clear(request)?;
+        let no_arbiter = || Refusal::new(409, "the cell has no exchange regions, so there is nothing to clear");
+        let arbiter = arbiter.as_ref().ok_or_else(no_arbiter)?;
+        let mut log = self.log();
+        is_present(&log, at)?;
+        let refused = |why: NotCleared| refused_clear(&request.robot, why);
+        arbiter.may_clear(robot).map_err(refused)?;
+        let change = |region: &String| Change {
+            item: format!("robot.{}", request.robot),
+            field: format!("cleared of region.{region}"),
+            before: None,
+            after: Some("true".into()),
+        };
+        let controlled = |action: String, changes: Vec<Change>, note| Controlled {
+            class: who.class,
+            name: &who.name,
+            action,
+            note,
+            changes,
+            checksums: [&cell.checksum, &cell.checksum],
+        };
+        let action = format!("clear robot.{}", request.robot);
+        let changes = request.regions.iter().map(change).collect();
+        let entry = log.append(controlled(action.clone(), changes, note(request.note.as_deref())?))?;
+        if let Err(why) = arbiter.clear(robot) {
+            // It has spoken since it was asked for: what was logged was not done.
+            log.append(controlled(format!("{action}: not done, it has spoken"), Vec::new(), None))?;
+            return Err(refused(why));
+        }
+        self.report(&format!("{}: cleared by {} ({})", request.robot, who.name, who.class.name()));
+        Ok(Done { entry, revision: revision(&log), not_heard: Vec::new() })
+    }
+
+    /// The robot, if it and all its exchange regions are named twice and in full.
+    fn robot_to_clear(&self, request: &Clear) -> Result<RobotId, Refusal> {
+        let cell = &self.parts.cell;
+        let robot = cell.robots.iter().position(|r| r.name == request.robot).map(RobotId).ok_or_else(|| {
+            let names: Vec<&str> = cell.robots.iter().map(|r| r.name.as_str()).collect();
+            Refusal::new(404, format!("there is no robot `{}`", request.robot))
+                .help(format!("one of {}", names.join(", ")))
+        })?;
+        if request.repeat_robot != request.robot {
+            let error = format!("`repeat_robot` is `{}`, and `robot` is `{}`", request.repeat_robot, request.robot);
+            return Err(
+                Refusal::new(422, error).help("the name of the robot that you have seen at rest outside, twice")
+            );
+        }
+        let is_own =
+            |r: &&CellRegion| matches!(r.region.kind, RegionKind::Exchange { .. }) && r.robots.contains(&robot);
+        let mut own: Vec<&str> = cell.regions.iter().filter(is_own).map(|r| r.region.name.as_str()).collect();
+        let mut named: Vec<&str> = request.regions.iter().map(String::as_str).collect();
+        own.sort_unstable();
+        named.sort_unstable();
+        if own != named {
+            let error = format!("`regions` does not name the exchange regions of `{}`, each once", request.robot);
+            let all = format!("regions = {own:?}: all that you have seen it outside of");
+            return Err(Refusal::new(422, error).help(all));
+        }
+        Ok(robot)
+    }
+
+    fn region(&self, name: &str) -> Result<(usize, &CellRegion), Refusal> {
+        let regions = &self.parts.cell.regions;
+        let found = regions.iter().enumerate().find(|(_, r)| r.region.name == name);
+        found.ok_or_else(|| {
+            let names: Vec<&str> = regions.iter().map(|r| r.region.name.as_str()).collect();
+            Refusal::new(404, format!("there is no region `{name}`")).help(format!("one of {}", names.join(", ")))
+        })
+    }
+
+    /// Refused attempts are reported: somebody with a token tried.
+    fn require(&self, who: &AccessToken, least: AccessClass, what: &str) -> Result<(), Refusal> {
+        if who.class >= least {
+            return Ok(());
+        }
+        let error = format!("to {what} takes the {} class, and \"{}\" is {}", least.name(), who.name, who.class.name());
+        self.report(&error);
+        Err(Refusal::new(403, error).help(format!("a token of the {} class", least.name())))
+    }
+
+    /// An error where a robot is inside of a region that would stop it, or cannot stop outside; else the robots of which nobody knows where they are.
+    fn refuse_inside(&self, region: &CellRegion) -> Result<Vec<String>, Refusal> {
+        if matches!(region.region.kind, RegionKind::Monitored { .. }) {
+            return Ok(Vec::new());
+        }
+        let DeskParts { cell, joints, clock, .. } = &self.parts;
+        let found = clearances(cell, region, &joints.states(), clock.seconds())?;
+        let name = |robot: RobotId| cell.robots[robot.0].name.clone();
+        if let Some((near, distance_m)) =
+            found.iter().find_map(|c| Some((c, c.distance_m.filter(|d| *d <= c.stopping_m)?)))
+        {
+            let (robot, region, distance_mm) = (name(near.robot), &region.region.name, 1000.0 * distance_m);
+            let error = if distance_m > 0.0 {
+                let stopping_mm = 1000.0 * near.stopping_m;
+                format!(
+                    "robot `{robot}` is {distance_mm:.0} mm from region `{region}` and may need {stopping_mm:.0} mm to stop"
+                )
+            } else {
+                format!("robot `{robot}` is inside region `{region}`: its distance is 0 mm")
+            };
+            let refusal = Refusal::new(409, error).help("stop the robot outside of the region before");
+            return Err(Refusal { robot: Some(robot), distance_m: Some(distance_m), ..refusal });
+        }
+        Ok(found.iter().filter(|c| c.distance_m.is_none()).map(|c| name(c.robot)).collect())
+    }
+
+    fn report(&self, event: &str) {
+        if let Some(on_event) = &self.parts.on_event {
+            on_event(event);
+        }
+    }
+}
+
+fn revision(log: &ControlLog) -> String {
+    log.head().chars().take(16).collect()
+}
+
+/// A request names the state that it was made for: one that was recorded and is sent again, or that somebody else was faster
+/// than, is refused.
+fn is_present(log: &ControlLog, at: &str) -> Result<(), Refusal> {
+    if at == revision(log) {
+        return Ok(());
+    }
+    let error = format!("the cell has changed since `{at}`: the revision is `{}` now", revision(log));
+    Err(Refusal::new(412, error)
+        .help("read GET /regions, and if the request is right still, send it with the new revision"))
+}
+
+fn note(note: Option<&str>) -> Result<Option<&str>, Refusal> {
+    match note {
+        Some(text) if text.len() > MAX_NOTE => {
+            Err(Refusal::new(422, format!("`note` is longer than {MAX_NOTE} bytes")).help("a sentence"))
+        }
+        note => Ok(note),
+    }
+}
+
+fn refused_clear(robot: &str, why: NotCleared) -> Refusal {
+    match why {
+        NotCleared::Spoke(missing) => {
+            let refusal = Refusal::new(409, format!("robot `{robot}` is not cleared: {why}"));
+            let help = "stop its node if it still runs, see that the robot stands outside, and ask again";
+            Refusal { wait_s: Some(missing.0 as f64 * 1e-6), ..refusal.help(help) }
+        }
+        NotCleared::NoAnswer => Refusal::new(500, why.to_string()),
+    }
+}

@@ -1,0 +1,145 @@
+//! The requests of the control interface over HTTP: who asks, and what.
+
+use std::sync::Arc;
+
+use axum::Router;
+use axum::body::Bytes;
+use axum::extract::rejection::BytesRejection;
+use axum::extract::{DefaultBodyLimit, Request, State};
+use axum::http::{HeaderMap, StatusCode, header};
+use axum::middleware::{self, Next};
+use axum::response::{IntoResponse, Response};
+use axum::routing::{get, post};
+use elbowroom_cell::seal::{AccessToken, AccessTokens};
+use elbowroom_view::http::Hosts;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use super::desk::{Desk, Done};
+use super::refusal::Refusal;
+
+/// Longest body.
+const MAX_BODY: usize = 64 * 1024;
+
+/// What all requests share.
+struct Shared {
+    desk: Desk,
+    tokens: AccessTokens,
+    hosts: Hosts,
+}
+
+/// Only these paths exist.
+pub(crate) fn routes(desk: Desk, tokens: AccessTokens, hosts: Hosts) -> Router {
+    let only =
+        |method: &'static str| move || async move { answer(&Refusal::new(405, format!("this path takes {method}"))) };
+    Router::new()
+        .route("/regions", get(regions).fallback(only("GET")))
+        .route("/switch", post(switch).fallback(only("POST")))
+        .route("/clear", post(clear).fallback(only("POST")))
+        .fallback(|| async {
+            answer(&Refusal::new(404, "not here").help("GET /regions, POST /switch or POST /clear (docs/control.md)"))
+        })
+        .layer(DefaultBodyLimit::max(MAX_BODY))
+        .layer(middleware::from_fn(short))
+        .with_state(Arc::new(Shared { desk, tokens, hosts }))
+}
+
+/// Refuses a body that announces that it is too long, before it arrives.
+async fn short(request: Request, next: Next) -> Response {
+    let length = request.headers().get(header::CONTENT_LENGTH).and_then(|value| value.to_str().ok());
+    let is_long = length.is_some_and(|length| !length.parse::<usize>().is_ok_and(|length| length <= MAX_BODY));
+    if is_long { answer(&too_long()) } else { next.run(request).await }
+}
+
+fn too_long() -> Refusal {
+    Refusal::new(413, format!("the body is longer than {MAX_BODY} bytes"))
+}
+
+async fn regions(State(shared): State<Arc<Shared>>, headers: HeaderMap) -> Response {
+    if let Err(refusal) = holder(&shared, &headers) {
+        return answer(&refusal);
+    }
+    let overview = tokio::task::spawn_blocking(move || shared.desk.overview()).await;
+    overview.map_or_else(|_| answer(&broken()), |overview| json(StatusCode::OK, &overview))
+}
+
+async fn switch(state: State<Arc<Shared>>, headers: HeaderMap, body: Result<Bytes, BytesRejection>) -> Response {
+    change(state, headers, body, Desk::switch).await
+}
+
+async fn clear(state: State<Arc<Shared>>, headers: HeaderMap, body: Result<Bytes, BytesRejection>) -> Response {
+    change(state, headers, body, Desk::clear).await
+}
+
+/// Makes a change that a token holder asks for.
+async fn change<R: DeserializeOwned + Send + 'static>(
+    State(shared): State<Arc<Shared>>,
+    headers: HeaderMap,
+    body: Result<Bytes, BytesRejection>,
+    make: fn(&Desk, &AccessToken, &str, &R) -> Result<Done, Refusal>,
+) -> Response {
+    let made = tokio::task::spawn_blocking(move || {
+        let who = holder(&shared, &headers)?;
+        let at = revision(&headers)?;
+        let request = request(&headers, body)?;
+        make(&shared.desk, who, &at, &request)
+    });
+    match made.await {
+        Ok(Ok(done)) => json(StatusCode::OK, &done),
+        Ok(Err(refusal)) => answer(&refusal),
+        // The desk panicked: the service goes on, and whoever asked learns that it is not known what was done.
+        Err(_) => answer(&broken()),
+    }
+}
+
+fn broken() -> Refusal {
+    Refusal::new(500, "the request failed inside the service").help("GET /regions says what is so now")
+}
+
+/// The token's holder. A page of somebody else in a browser could not know the secret; it is refused all the same.
+fn holder<'s>(shared: &'s Shared, headers: &HeaderMap) -> Result<&'s AccessToken, Refusal> {
+    if headers.contains_key(header::ORIGIN) && !shared.hosts.is_own_page(headers) {
+        return Err(Refusal::new(403, "a page of another server may not control this cell"));
+    }
+    let mut given = headers.get_all(header::AUTHORIZATION).iter();
+    let only = given.next().filter(|_| given.next().is_none()).and_then(|value| value.to_str().ok());
+    let secret = only.and_then(|value| value.strip_prefix("Bearer "));
+    let found = secret.and_then(|secret| shared.tokens.find(secret));
+    found.ok_or_else(|| {
+        let help = "the header Authorization: Bearer SECRET (elbowroom control token makes one)";
+        Refusal::new(401, "the token is missing or another one").help(help)
+    })
+}
+
+/// The revision that the request was made for.
+fn revision(headers: &HeaderMap) -> Result<String, Refusal> {
+    let given = headers.get(header::IF_MATCH).and_then(|value| value.to_str().ok());
+    let text = given.map(|text| text.trim_matches('"')).filter(|text| !text.is_empty());
+    text.map(str::to_owned).ok_or_else(|| {
+        let help = "the header If-Match: \"REVISION\", with the `revision` of GET /regions: a request that is sent twice has no effect";
+        Refusal::new(428, "the request does not say for which revision of the cell it is").help(help)
+    })
+}
+
+fn request<R: DeserializeOwned>(headers: &HeaderMap, body: Result<Bytes, BytesRejection>) -> Result<R, Refusal> {
+    let kind = headers.get(header::CONTENT_TYPE).and_then(|value| value.to_str().ok()).unwrap_or_default();
+    if kind.split(';').next().map(str::trim) != Some("application/json") {
+        return Err(Refusal::new(415, "the body is no JSON").help("the header Content-Type: application/json"));
+    }
+    let body = body.map_err(|rejection| match rejection.status() {
+        StatusCode::PAYLOAD_TOO_LARGE => too_long(),
+        _ => Refusal::new(400, "the body did not arrive"),
+    })?;
+    serde_json::from_slice(&body).map_err(|e| Refusal::new(422, format!("the body is not such a request: {e}")))
+}
+
+fn answer(refusal: &Refusal) -> Response {
+    json(StatusCode::from_u16(refusal.status).unwrap_or(StatusCode::INTERNAL_SERVER_ERROR), refusal)
+}
+
+fn json(status: StatusCode, document: &impl Serialize) -> Response {
+    match serde_json::to_vec(document) {
+        Ok(bytes) => (status, [(header::CONTENT_TYPE, "application/json")], bytes).into_response(),
+        Err(_) => StatusCode::INTERNAL_SERVER_ERROR.into_response(),
+    }
+}

@@ -1,0 +1,62 @@
+//! The control interface of a running cell.
+
+use std::net::SocketAddr;
+use std::path::PathBuf;
+use std::time::Duration;
+
+use elbowroom_cell::seal::{AccessTokens, ControlLog, control_log_of};
+use elbowroom_formats::FormatError;
+use elbowroom_view::ViewError;
+use elbowroom_view::http::{ConnectionLimits, Hosts, HttpServer, loopback_address};
+
+use super::desk::{Desk, DeskParts};
+use super::routes::routes;
+
+/// The control interface of a service.
+#[derive(Debug, Clone)]
+pub struct ControlOptions {
+    /// The loopback address to serve at: `127.0.0.1:7448`.
+    pub address: String,
+    /// The file of tokens ([`AccessTokens`]).
+    pub tokens: PathBuf,
+    /// The log of changes; by default `cell.control.jsonl` beside the cell file.
+    pub log: Option<PathBuf>,
+    /// Programs may switch temporary regions without a token, as in a cell without this interface.
+    pub program_switches: bool,
+}
+
+/// Why the control interface does not start.
+#[derive(Debug, thiserror::Error)]
+pub enum ControlError {
+    /// The file of tokens or the log is wrong.
+    #[error(transparent)]
+    File(#[from] FormatError),
+    /// The address cannot be served at.
+    #[error(transparent)]
+    Address(#[from] ViewError),
+}
+
+/// Serves until it is dropped.
+#[derive(Debug)]
+pub(crate) struct ControlServer(HttpServer);
+
+impl ControlServer {
+    pub(crate) fn start(parts: DeskParts, options: &ControlOptions) -> Result<Self, ControlError> {
+        let address = loopback_address(&options.address)?;
+        let tokens = AccessTokens::read(&options.tokens)?;
+        let log = ControlLog::open(&options.log.clone().unwrap_or_else(|| control_log_of(&parts.cell.file)))?;
+        let desk = Desk::new(parts, log);
+        let limits = ConnectionLimits {
+            connections: 32,
+            head: Duration::from_secs(5),
+            request: Duration::from_secs(15),
+            head_bytes: 16 * 1024,
+        };
+        let make = move |_, hosts: &Hosts| Ok(routes(desk, tokens, hosts.clone()));
+        Ok(Self(HttpServer::start("control", address, limits, make)?))
+    }
+
+    pub(crate) fn address(&self) -> SocketAddr {
+        self.0.address()
+    }
+}
