@@ -14,6 +14,7 @@ pub mod network;
 pub mod node;
 mod region_keeper;
 mod regions_table;
+pub mod ros2;
 mod service;
 mod service_error;
 mod simulated_controllers;

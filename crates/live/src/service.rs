@@ -18,6 +18,7 @@ use crate::configuration_number::configuration_number;
 use crate::network::{Network, ZenohNetwork, ZenohSettings};
 use crate::node::{Node, NodeMonitor, NodeParts};
 use crate::region_keeper::RegionKeeper;
+use crate::ros2::{Participant, Ros2Settings};
 use crate::service_error::ServiceError;
 use crate::simulated_controllers::SimulatedControllers;
 
@@ -41,6 +42,8 @@ pub struct ServiceOptions {
     pub web: Option<String>,
     /// Records everything that this process guards into this file.
     pub record: Option<PathBuf>,
+    /// What it has to do with ROS 2.
+    pub ros2: Ros2Settings,
     /// Called with every event of the arbiter of this process, in words.
     pub on_event: Option<EventHandler>,
 }
@@ -49,6 +52,7 @@ pub struct ServiceOptions {
 pub struct Service {
     // In the order in which they end: controllers stop first.
     controllers: Option<SimulatedControllers>,
+    ros2: Option<Participant>,
     nodes: Vec<Node>,
     arbiter: Option<ArbiterService>,
     keeper: Option<RegionKeeper>,
@@ -100,8 +104,11 @@ impl Service {
                 recorder: tick_recorder,
             })?);
         }
+        let ros2 = Participant::start(&cell, &options.ros2, &robots, &shared, clock, options.on_event.clone())?;
+        let simulated: Vec<RobotId> =
+            robots.iter().copied().filter(|r| options.ros2.robot(&cell.robots[r.0].name).is_none()).collect();
         let controllers =
-            if options.simulate { Some(SimulatedControllers::start(&cell, &robots, &shared, clock)?) } else { None };
+            if options.simulate { Some(SimulatedControllers::start(&cell, &simulated, &shared, clock)?) } else { None };
         let web = match &options.web {
             Some(address) => {
                 let feed = StatusFeed::new();
@@ -110,14 +117,15 @@ impl Service {
             }
             None => None,
         };
-        let observer = if web.is_some() || recorder.is_some() {
+        let ros2_feed = ros2.as_ref().and_then(Participant::feed);
+        let observer = if web.is_some() || recorder.is_some() || ros2_feed.is_some() {
             let feed = web.as_ref().map(|(_, feed)| feed.clone());
-            Some(CellObserver::start(&cell, &shared, clock, feed, recorder)?)
+            Some(CellObserver::start(&cell, &shared, clock, feed, recorder, ros2_feed)?)
         } else {
             None
         };
         let server = web.map(|(server, _)| server);
-        Ok(Self { controllers, nodes, arbiter, keeper, observer, server, network })
+        Ok(Self { controllers, ros2, nodes, arbiter, keeper, observer, server, network })
     }
 
     /// Number of robots that this process guards.
@@ -150,8 +158,8 @@ impl Service {
     /// # Errors
     /// [`ServiceError::Recording`] where it could not be written.
     pub fn stop(self) -> Result<(), ServiceError> {
-        let Self { controllers, nodes, arbiter, keeper, observer, server, network } = self;
-        drop((controllers, nodes, arbiter, keeper));
+        let Self { controllers, ros2, nodes, arbiter, keeper, observer, server, network } = self;
+        drop((controllers, ros2, nodes, arbiter, keeper));
         let recorder = observer.and_then(CellObserver::stop);
         if let Some(server) = server {
             server.stop();
