@@ -138,6 +138,9 @@ fn print_table(outcomes: &[Outcome], total: Duration) {
     println!("{:<10} {:<7} {:>7.1} s", "all", "", total.as_secs_f64());
 }
 
+/// The command with the network.
+const LIVE: &str = "elbowroom-cli/live";
+
 fn fmt(context: &Context) -> Result<(), String> {
     shell::cargo(context.root, &["fmt", "--all", "--check"], &[])
 }
@@ -153,7 +156,7 @@ fn install_python(context: &Context) -> Result<(), String> {
 fn clippy(context: &Context) -> Result<(), String> {
     let args = ["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"];
     shell::cargo(context.root, &args, &network(context))?;
-    let live = ["clippy", "-p", "elbowroom-cli", "--features", "live", "--all-targets", "--", "-D", "warnings"];
+    let live = ["clippy", "--workspace", "--features", LIVE, "--all-targets", "--", "-D", "warnings"];
     shell::cargo(context.root, &live, &network(context))
 }
 
@@ -168,8 +171,10 @@ fn tests(context: &Context) -> Result<(), String> {
     }
     announce_data(context.root);
     shell::cargo(context.root, &["test", "--workspace"], &env)?;
-    // The command with the network, as processes.
-    shell::cargo(context.root, &["test", "-p", "elbowroom-cli", "--features", "live", "--test", "live", "--test", "recordings"], &env)?;
+    // The command with the network, as processes. With `--workspace` the dependencies are those that are there already.
+    let live = ["test", "--workspace", "--features", LIVE];
+    let tests = ["live", "live_control", "live_ros2", "recordings"].into_iter().flat_map(|name| ["--test", name]);
+    shell::cargo(context.root, &live.into_iter().chain(tests).collect::<Vec<_>>(), &env)?;
     if python.is_some() || context.offline {
         return Ok(());
     }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use elbowroom_avoidance::{AvoiderSettings, Rules};
 use elbowroom_formats::Warning;
+use elbowroom_kinematics::inverse::ConfigurationChoice;
 use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_monitor::{Laws, Part, Presence, Region, SourceLimits, Volume, VolumeModel, arm_volumes};
 use elbowroom_robot::{Collider, ObjectId, Robot, RobotId};
@@ -12,7 +13,7 @@ use elbowroom_spatial::Pose;
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 
 use crate::seal::Seal;
-use crate::{CellSensor, CellTool, Encoder, MovingObject, PoseTrack, TcpTarget};
+use crate::{CellSensor, CellTool, Encoder, MovingObject, PoseTrack};
 
 /// A tool centre point within this distance (m) of a collider counts as on its surface, such as a flange frame on the
 /// flange's face.
@@ -295,6 +296,17 @@ pub enum MoveTarget {
     Joints(Vec<f64>),
     /// A pose of the TCP.
     Tcp(TcpTarget),
+}
+
+/// The TCP at a pose. Where several joint values bring it there, `configuration` and `near` choose.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TcpTarget {
+    /// The TCP in the world.
+    pub in_world: Pose,
+    /// Shoulder, elbow and wrist; for six axes with a spherical wrist only.
+    pub configuration: ConfigurationChoice,
+    /// Only the solution nearest to these values of all joints (rad or m), which also chooses whole turns.
+    pub near: Option<Vec<f64>>,
 }
 
 /// Settings of the joint-space map of a robot.

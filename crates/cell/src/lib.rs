@@ -52,7 +52,7 @@ pub mod trajectory;
 
 pub use cell::{
     AvoidanceSpec, Cell, CellLaws, CellRegion, CellRegionId, CellRobot, Follow, JointLimits, MapSpec, MoveTarget,
-    Program, ProgramBody, ProgramStep, StepAction, TrajectoryRow, Units,
+    Program, ProgramBody, ProgramStep, StepAction, TcpTarget, TrajectoryRow, Units,
 };
 pub use file::{CellFile, QUATERNION_TOLERANCE};
 pub use frames::Frames;
@@ -62,5 +62,4 @@ pub use pair_file::{PairCounts, PairFile};
 pub use poses::{PoseRate, PoseTrack};
 pub use query_model::{OutOfReachProofs, QueryModel, QueryRobot};
 pub use sensor::{CellSensor, SensorKind};
-pub use tcp_target::TcpTarget;
 pub use tool::CellTool;

@@ -1,20 +1,9 @@
-//! A pose of the TCP as a goal, and which solution of inverse kinematics is wanted.
+//! Joint values for a pose of the TCP: the solutions of inverse kinematics that are wanted.
 
 use elbowroom_kinematics::inverse::{ConfigurationChoice, IkOptions, IkSolver};
 use elbowroom_spatial::Pose;
 
-use crate::{CellRobot, Units};
-
-/// The TCP at a pose. Where several joint values bring it there, `configuration` and `near` choose.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TcpTarget {
-    /// The TCP in the world.
-    pub in_world: Pose,
-    /// Shoulder, elbow and wrist; for six axes with a spherical wrist only.
-    pub configuration: ConfigurationChoice,
-    /// Only the solution nearest to these values of all joints (rad or m), which also chooses whole turns.
-    pub near: Option<Vec<f64>>,
-}
+use crate::{CellRobot, TcpTarget, Units};
 
 impl From<Pose> for TcpTarget {
     /// Any solution.

@@ -14,6 +14,7 @@ use elbowroom_view::StatusFeed;
 use crate::clock::Clock;
 use crate::keys::Keys;
 use crate::network::{Network, NetworkError, Subscription};
+use crate::ros2::CellFeed;
 
 /// How often the status of the cell is put together: the page shows 30 pictures a second.
 const PERIOD: Duration = Duration::from_millis(33);
@@ -51,6 +52,7 @@ impl CellObserver {
         clock: Clock,
         feed: Option<StatusFeed>,
         recorder: Option<Recorder>,
+        ros2: Option<CellFeed>,
     ) -> Result<Self, NetworkError> {
         let shared = Shared::default();
         lock(&shared).robots.resize(cell.robots.len(), None);
@@ -62,6 +64,9 @@ impl CellObserver {
                 let status = together(&cell, clock, &shared);
                 if let Some(recorder) = &recorder {
                     recorder.status(status.clone());
+                }
+                if let Some(ros2) = &ros2 {
+                    ros2.publish(status.clone());
                 }
                 if let Some(feed) = &feed {
                     feed.publish(status);

@@ -1,61 +1,28 @@
 //! A process of a live cell: nodes, arbiter, simulated controllers, in any combination.
 
 use std::net::SocketAddr;
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use elbowroom_cell::{Cell, configure};
-use elbowroom_formats::FormatError;
-use elbowroom_interlock::Boot;
-use elbowroom_monitor::{RegionKind, RobotSlot};
-use elbowroom_robot::RobotId;
-use elbowroom_rosbag::{BagError, CellWriter, Recorder};
-use elbowroom_view::{Server, ServerSettings, StatusFeed};
+use elbowroom_cell::Cell;
+use elbowroom_view::Server;
 
 use crate::arbiter_service::ArbiterService;
 use crate::cell_observer::CellObserver;
-use crate::clock::{Clock, boot_number};
-use crate::configuration_number::configuration_number;
-use crate::control::{ControlOptions, ControlServer, DeskParts, JointsHeard};
-use crate::event_handler::EventHandler;
-use crate::network::{JoinedNetworks, Network, NetworkError, UdpNetwork, ZenohNetwork, ZenohSettings};
-use crate::node::{Node, NodeMonitor, NodeParts};
-use crate::region_keeper::{ProgramSwitches, RegionKeeper};
+use crate::control::ControlServer;
+use crate::network::ZenohNetwork;
+use crate::node::Node;
+use crate::region_keeper::RegionKeeper;
+use crate::ros2::Participant;
 use crate::service_error::ServiceError;
+use crate::service_options::ServiceOptions;
+use crate::service_start::ServiceStart;
 use crate::simulated_controllers::SimulatedControllers;
-
-/// The address of a service without another one.
-pub const DEFAULT_ADDRESS: &str = "127.0.0.1:7447";
-
-/// What a process of a live cell does.
-#[derive(Clone, Default)]
-pub struct ServiceOptions {
-    /// The robots that it guards; empty: all, or none where it is only the arbiter.
-    pub robots: Vec<String>,
-    /// Accepts connections here.
-    pub listen: Option<String>,
-    /// Connects here.
-    pub connect: Option<String>,
-    /// Takes controllers by UDP datagrams at this address, too.
-    pub udp: Option<String>,
-    /// Grants exchange regions, and keeps which regions are switched on.
-    pub arbiter: bool,
-    /// Runs the programs of the cell file in place of the controllers.
-    pub simulate: bool,
-    /// Shows the cell in a browser at this address.
-    pub web: Option<String>,
-    /// Records everything that this process guards into this file.
-    pub record: Option<PathBuf>,
-    /// Serves the control interface; only beside the arbiter.
-    pub control: Option<ControlOptions>,
-    /// Called with every event of the arbiter and the control interface of this process, in words.
-    pub on_event: Option<EventHandler>,
-}
 
 /// A running process of a live cell; it ends when it is dropped.
 pub struct Service {
     // In the order in which they end: controllers stop first.
     controllers: Option<SimulatedControllers>,
+    ros2: Option<Participant>,
     nodes: Vec<Node>,
     control: Option<ControlServer>,
     arbiter: Option<Arc<ArbiterService>>,
@@ -71,74 +38,17 @@ impl Service {
     /// # Errors
     /// [`ServiceError`]; then nothing runs.
     pub fn start(cell: Cell, options: &ServiceOptions) -> Result<Self, ServiceError> {
-        let cell = Arc::new(stopping_in_time(cell));
-        let robots = guarded_robots(&cell, options)?;
-        let is_whole_cell = options.robots.is_empty() && !options.arbiter;
-        let listen = match (&options.listen, &options.connect) {
-            (None, None) => Some(DEFAULT_ADDRESS.to_owned()),
-            (listen, _) => listen.clone(),
-        };
-        let network = Arc::new(ZenohNetwork::open(&ZenohSettings { listen, connect: options.connect.clone() })?);
-        let shared: Arc<dyn Network> = network.clone();
-        let of_controllers = with_udp(&shared, options.udp.as_deref())?;
-        let clock = Clock::start();
-        let (mut keeper, mut arbiter) = (None, None);
-        if options.arbiter || is_whole_cell {
-            let programs = program_switches(options);
-            keeper = Some(Arc::new(RegionKeeper::start(&cell, &shared, boot_number(), programs)?));
-            let started = ArbiterService::start(&cell, &shared, boot_number(), options.on_event.clone())?;
-            arbiter = started.map(Arc::new);
-        }
-        let control = match (&options.control, &keeper) {
-            (None, _) => None,
-            (Some(_), None) => return Err(ServiceError::ControlWithoutArbiter),
-            (Some(control), Some(keeper)) => {
-                let (keeper, arbiter, on_event) = (keeper.clone(), arbiter.clone(), options.on_event.clone());
-                let joints = JointsHeard::start(&cell, &of_controllers, clock)?;
-                let parts = DeskParts { cell: cell.clone(), keeper, arbiter, joints, clock, on_event };
-                Some(ControlServer::start(parts, control)?)
-            }
-        };
-        let slots = configure::slots(&cell).iter().flatten().map(|slot| slot.0 + 1).max().unwrap_or(0);
-        let checksum = configuration_number(&cell);
-        let recorder = options.record.as_ref().map(|file| start_recorder(file, &cell)).transpose()?;
-        let mut nodes = Vec::new();
-        for (i, setup) in
-            configure::setups(&cell)?.into_iter().enumerate().filter(|(i, _)| robots.contains(&RobotId(*i)))
-        {
-            let monitor = NodeMonitor::new(&setup, RobotSlot(i), slots, checksum, Boot(boot_number()));
-            let monitor = monitor.map_err(|e| FormatError::new(&cell.file, cell.robots[i].line, e.to_string()))?;
-            let tick_recorder = recorder.as_ref().map(|r| r.robot(i as u32, monitor.monitor(), clock.seconds()));
-            nodes.push(Node::start(NodeParts {
-                cell: cell.clone(),
-                robot: RobotId(i),
-                setup,
-                monitor,
-                checksum,
-                clock,
-                network: of_controllers.clone(),
-                interlocks: shared.clone(),
-                recorder: tick_recorder,
-            })?);
-        }
-        let controllers =
-            if options.simulate { Some(SimulatedControllers::start(&cell, &robots, &shared, clock)?) } else { None };
-        let web = match &options.web {
-            Some(address) => {
-                let feed = StatusFeed::new();
-                let server = Server::watch(&cell, &feed, ServerSettings::at(address)?)?;
-                Some((server, feed))
-            }
-            None => None,
-        };
-        let observer = if web.is_some() || recorder.is_some() {
-            let feed = web.as_ref().map(|(_, feed)| feed.clone());
-            Some(CellObserver::start(&cell, &shared, clock, feed, recorder)?)
-        } else {
-            None
-        };
-        let server = web.map(|(server, _)| server);
-        Ok(Self { controllers, nodes, control, arbiter, keeper, observer, server, network })
+        let begin = ServiceStart::new(cell, options)?;
+        let keeper = begin.keeper()?;
+        let arbiter = begin.arbiter()?;
+        let control = begin.control(keeper.as_ref(), arbiter.as_ref())?;
+        let recorder = begin.recorder()?;
+        let nodes = begin.nodes(recorder.as_ref())?;
+        let ros2 = begin.ros2()?;
+        let controllers = begin.simulated_controllers()?;
+        let (server, feed) = begin.web()?.unzip();
+        let observer = begin.observer(feed, recorder, ros2.as_ref().and_then(Participant::feed))?;
+        Ok(Self { controllers, ros2, nodes, control, arbiter, keeper, observer, server, network: begin.zenoh })
     }
 
     /// Number of robots that this process guards.
@@ -176,8 +86,8 @@ impl Service {
     /// # Errors
     /// [`ServiceError::Recording`] where it could not be written.
     pub fn stop(self) -> Result<(), ServiceError> {
-        let Self { controllers, nodes, control, arbiter, keeper, observer, server, network } = self;
-        drop((controllers, nodes, control, arbiter, keeper));
+        let Self { controllers, ros2, nodes, control, arbiter, keeper, observer, server, network } = self;
+        drop((controllers, ros2, nodes, control, arbiter, keeper));
         let recorder = observer.and_then(CellObserver::stop);
         if let Some(server) = server {
             server.stop();
@@ -190,48 +100,4 @@ impl Service {
     pub fn network(&self) -> &Arc<ZenohNetwork> {
         &self.network
     }
-}
-
-/// With tokens nobody switches without one, unless that is allowed.
-fn program_switches(options: &ServiceOptions) -> ProgramSwitches {
-    match &options.control {
-        Some(control) if !control.program_switches => ProgramSwitches::Ignored(options.on_event.clone()),
-        _ => ProgramSwitches::Obeyed,
-    }
-}
-
-/// The network of the controllers: with UDP datagrams, where there is an address for them.
-fn with_udp(zenoh: &Arc<dyn Network>, address: Option<&str>) -> Result<Arc<dyn Network>, NetworkError> {
-    let Some(address) = address else { return Ok(zenoh.clone()) };
-    Ok(Arc::new(JoinedNetworks::new(vec![zenoh.clone(), Arc::new(UdpNetwork::bind(address, &[])?)])))
-}
-
-fn start_recorder(file: &Path, cell: &Cell) -> Result<Recorder, BagError> {
-    Recorder::start(CellWriter::create(file, cell, boot_number())?)
-}
-
-/// The cell as a service guards it. A controller goes on for `stale_ms` after the last override that it has heard, so that
-/// stopping distances assume this much more; and regions that controllers exchange need stopping distances.
-fn stopping_in_time(mut cell: Cell) -> Cell {
-    let has_exchange = cell.regions.iter().any(|r| matches!(r.region.kind, RegionKind::Exchange { .. }));
-    let laws = &mut cell.laws;
-    if laws.stopping_reaction_s.is_none() && has_exchange {
-        laws.stopping_reaction_s = Some(laws.reaction_s);
-    }
-    laws.stopping_reaction_s = laws.stopping_reaction_s.map(|reaction_s| reaction_s + laws.laws.stale_s);
-    cell
-}
-
-fn guarded_robots(cell: &Cell, options: &ServiceOptions) -> Result<Vec<RobotId>, ServiceError> {
-    if options.robots.is_empty() {
-        return Ok(if options.arbiter { Vec::new() } else { (0..cell.robots.len()).map(RobotId).collect() });
-    }
-    let find = |name: &String| {
-        let found = cell.robots.iter().position(|r| r.name == *name);
-        found.map(RobotId).ok_or_else(|| ServiceError::Robot {
-            name: name.clone(),
-            known: cell.robots.iter().map(|r| r.name.clone()).collect(),
-        })
-    };
-    options.robots.iter().map(find).collect()
 }

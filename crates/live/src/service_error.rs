@@ -7,6 +7,7 @@ use thiserror::Error;
 
 use crate::control::ControlError;
 use crate::network::NetworkError;
+use crate::ros2::Ros2Error;
 
 /// Why a service does not start.
 #[derive(Debug, Error)]
@@ -31,6 +32,9 @@ pub enum ServiceError {
     /// The recording cannot be written.
     #[error("--record: {0}")]
     Recording(#[from] BagError),
+    /// ROS 2 cannot be spoken as asked.
+    #[error(transparent)]
+    Ros2(#[from] Ros2Error),
     /// A robot that the cell does not have.
     #[error("--robots {name}: no robot of the cell has this name\n  help: one of {}", known.join(", "))]
     Robot {

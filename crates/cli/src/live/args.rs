@@ -2,18 +2,23 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{ArgGroup, Args};
 
 #[derive(Debug, Args)]
+#[command(group = ArgGroup::new("with_ros2").args(["ros2", "ros2_robot", "ros2_watchdog"]).multiple(true))]
 #[command(after_help = "Examples:
   elbowroom live cell.toml --simulate                  the whole cell in one process, with simulated controllers
   elbowroom live cell.toml --arbiter --listen 127.0.0.1:7447                       the arbiter alone
   elbowroom live cell.toml --robots left --connect 127.0.0.1:7447 --simulate       one robot, in a process of its own
   elbowroom live cell.toml --robots right --connect 127.0.0.1:7447 --simulate
+  elbowroom live cell.toml --simulate --ros2           with the topics of ROS 2 (docs/ros2.md)
+  elbowroom live cell.toml --ros2-robot left=/joint_states,/left_controller/speed_scaling_input
+  elbowroom live cell.toml --ros2-watchdog 100         beside each controller of ROS 2: stops it when the service is silent
 
 A process without --connect listens at 127.0.0.1:7447. Each robot publishes JSON under elbowroom/CELL/ROBOT/status
 (Zenoh); docs/live.md has all keys. Ctrl-C ends it: then every controller stops by itself.")]
 #[allow(clippy::struct_excessive_bools)] // each is a command-line flag
+#[allow(clippy::doc_markdown)] // help texts are printed as they are
 #[cfg_attr(not(feature = "live"), allow(dead_code))]
 pub(crate) struct LiveArgs {
     /// The cell file (docs/cell-file.md has every key)
@@ -51,6 +56,24 @@ pub(crate) struct LiveArgs {
     /// Run the programs of the cell file in place of the controllers
     #[arg(long)]
     pub(crate) simulate: bool,
+    /// Publish the cell in ROS 2, for RMW_IMPLEMENTATION=rmw_zenoh_cpp
+    #[arg(long)]
+    pub(crate) ros2: bool,
+    /// A robot whose controller speaks ROS 2, and its topics: ROBOT[=JOINT_STATES,SPEED_SCALING[,CONTROLLER_STATE]]; repeatable
+    #[arg(long, value_name = "ROBOT=TOPICS")]
+    pub(crate) ros2_robot: Vec<String>,
+    /// Only publish speed scaling 0 for each robot of whose service nothing was heard for this long
+    #[arg(long, value_name = "MS", value_parser = clap::value_parser!(u64).range(10..=60_000), conflicts_with_all = ["arbiter", "simulate", "web", "record", "ros2"])]
+    pub(crate) ros2_watchdog: Option<u64>,
+    /// The router of ROS 2 (rmw_zenohd, or this service itself); default: 127.0.0.1:7447
+    #[arg(long, value_name = "ADDR", requires = "with_ros2")]
+    pub(crate) ros2_router: Option<String>,
+    /// The domain; default: ROS_DOMAIN_ID, or 0
+    #[arg(long, value_name = "N", requires = "with_ros2")]
+    pub(crate) ros2_domain: Option<u32>,
+    /// The release of ROS 2: humble, jazzy, kilted or rolling; default: ROS_DISTRO, or jazzy
+    #[arg(long, value_name = "NAME", requires = "with_ros2", value_parser = ["humble", "jazzy", "kilted", "rolling"])]
+    pub(crate) ros2_distro: Option<String>,
     /// End after this time; default: at Ctrl-C
     #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
     pub(crate) duration: Option<f64>,

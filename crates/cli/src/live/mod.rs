@@ -8,7 +8,11 @@ mod record;
 #[cfg(feature = "live")]
 mod replay;
 #[cfg(feature = "live")]
+mod ros2;
+#[cfg(feature = "live")]
 mod service;
+#[cfg(feature = "live")]
+mod stop_signal;
 #[cfg(feature = "live")]
 mod view;
 

@@ -1,14 +1,17 @@
 //! `elbowroom live`: guards real controllers over a network.
 
 use std::sync::Arc;
-use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
+use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
 use elbowroom::cell::Cell;
 use elbowroom::live::network::ZENOH_RUNTIME;
+use elbowroom::live::ros2::Ros2Settings;
 use elbowroom::live::{ControlOptions, DEFAULT_ADDRESS, Keys, Service, ServiceOptions};
 
 use super::LiveArgs;
+use super::ros2::{ros2_settings, run_watchdog};
+use super::stop_signal::stop_signal;
 use crate::output::{ExitStatus, Failure, note};
 
 /// How often the process looks whether it has to end.
@@ -18,6 +21,10 @@ pub(crate) fn live(args: &LiveArgs) -> Result<ExitStatus, Failure> {
     with_few_threads();
     let cell = Cell::load(&args.cell)?;
     cell.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
+    let ros2 = ros2_settings(args)?;
+    if let Some(bound_ms) = args.ros2_watchdog {
+        return run_watchdog(&cell, &ros2, bound_ms, args);
+    }
     let keys = Keys::new(&cell.name);
     let options = ServiceOptions {
         robots: args.robots.clone(),
@@ -29,6 +36,7 @@ pub(crate) fn live(args: &LiveArgs) -> Result<ExitStatus, Failure> {
         web: args.web.clone(),
         record: args.record.clone(),
         control: control(args),
+        ros2,
         on_event: Some(Arc::new(|event: &str| note(event))),
     };
     let stop = stop_signal()?;
@@ -42,6 +50,7 @@ pub(crate) fn live(args: &LiveArgs) -> Result<ExitStatus, Failure> {
         checksum.get(..16).unwrap_or_default(),
         keys.status("ROBOT"),
     ));
+    note_of_ros2(args, &options.ros2);
     if let Some(url) = service.web_address() {
         note(url);
     }
@@ -75,15 +84,16 @@ fn with_few_threads() {
 #[cfg(not(unix))]
 fn with_few_threads() {}
 
-/// A message when the process is asked to end.
-fn stop_signal() -> Result<Receiver<()>, Failure> {
-    let (stop, stopped) = mpsc::channel();
-    // The receiver is gone only when the process ends.
-    let handler = move || {
-        let _ = stop.send(());
-    };
-    ctrlc::set_handler(handler).map_err(|e| Failure::Wrong(format!("Ctrl-C cannot be handled: {e}")))?;
-    Ok(stopped)
+fn note_of_ros2(args: &LiveArgs, ros2: &Ros2Settings) {
+    if ros2.is_used() {
+        let what = if args.ros2 { "the cell is published, " } else { "" };
+        note(format_args!(
+            "ROS 2: {what}{} robot(s), domain {}, router {}",
+            ros2.robots.len(),
+            ros2.domain,
+            ros2.router()
+        ));
+    }
 }
 
 fn wait(stop: &Receiver<()>, duration: Option<Duration>, service: &Service) -> Result<ExitStatus, Failure> {

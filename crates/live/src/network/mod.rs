@@ -11,3 +11,4 @@ pub use local::LocalNetwork;
 pub use pub_sub::{Handler, Network, NetworkError, Publisher, Subscription, Urgency};
 pub use udp::UdpNetwork;
 pub use zenoh_network::{ZENOH_RUNTIME, ZenohNetwork, ZenohSettings};
+pub(crate) use zenoh_network::{endpoint, open_session};

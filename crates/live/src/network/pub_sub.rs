@@ -39,7 +39,7 @@ impl fmt::Debug for Subscription {
 }
 
 impl Subscription {
-    pub(super) fn new(guard: impl Send + Sync + 'static) -> Self {
+    pub(crate) fn new(guard: impl Send + Sync + 'static) -> Self {
         Self(Box::new(guard))
     }
 }

@@ -42,34 +42,7 @@ impl ZenohNetwork {
     /// # Errors
     /// [`NetworkError::Address`]: not an address, or nobody can listen there.
     pub fn open(settings: &ZenohSettings) -> Result<Self, NetworkError> {
-        let listen = settings.listen.as_deref().map(endpoint).transpose()?;
-        let connect = settings.connect.as_deref().map(endpoint).transpose()?;
-        let mode = match (&listen, &connect) {
-            (None, Some(_)) => "client",
-            (None, None) => "peer",
-            _ => "router",
-        };
-        let list = |address: &Option<String>| serde_json::json!(address.iter().collect::<Vec<_>>()).to_string();
-        let entries = [
-            ("mode", format!("\"{mode}\"")),
-            ("listen/endpoints", list(&listen)),
-            ("connect/endpoints", list(&connect)),
-            ("connect/timeout_ms", "-1".to_owned()),
-            ("connect/exit_on_failure", "false".to_owned()),
-            ("connect/retry", r#"{"period_init_ms":50,"period_max_ms":200,"period_increase_factor":1.5}"#.to_owned()),
-            ("scouting/multicast/enabled", "false".to_owned()),
-            ("scouting/gossip/enabled", "false".to_owned()),
-            // A process that is cut off without closing its connection is given up after this time.
-            ("transport/link/tx/lease", "1000".to_owned()),
-        ];
-        let address = || settings.listen.clone().or_else(|| settings.connect.clone()).unwrap_or_default();
-        let wrong = |why: String| NetworkError::Address { address: address(), why };
-        let mut config = zenoh::Config::default();
-        for (key, value) in entries {
-            config.insert_json5(key, &value).map_err(|e| wrong(format!("{key}: {e}")))?;
-        }
-        let session = zenoh::open(config).wait().map_err(|e| wrong(e.to_string()))?;
-        Ok(Self { session })
+        Ok(Self { session: open_session(settings, &[])? })
     }
 
     /// The session, for what is beyond this trait.
@@ -78,8 +51,40 @@ impl ZenohNetwork {
     }
 }
 
+/// Opens a session with these settings, and further entries of Zenoh's configuration. Waits until there is a process to connect to.
+pub(crate) fn open_session(settings: &ZenohSettings, further: &[(&str, &str)]) -> Result<Session, NetworkError> {
+    let listen = settings.listen.as_deref().map(endpoint).transpose()?;
+    let connect = settings.connect.as_deref().map(endpoint).transpose()?;
+    let mode = match (&listen, &connect) {
+        (None, Some(_)) => "client",
+        (None, None) => "peer",
+        _ => "router",
+    };
+    let list = |address: &Option<String>| serde_json::json!(address.iter().collect::<Vec<_>>()).to_string();
+    let entries = [
+        ("mode", format!("\"{mode}\"")),
+        ("listen/endpoints", list(&listen)),
+        ("connect/endpoints", list(&connect)),
+        ("connect/timeout_ms", "-1".to_owned()),
+        ("connect/exit_on_failure", "false".to_owned()),
+        ("connect/retry", r#"{"period_init_ms":50,"period_max_ms":200,"period_increase_factor":1.5}"#.to_owned()),
+        ("scouting/multicast/enabled", "false".to_owned()),
+        ("scouting/gossip/enabled", "false".to_owned()),
+        // A process that is cut off without closing its connection is given up after this time.
+        ("transport/link/tx/lease", "1000".to_owned()),
+    ];
+    let address = || settings.listen.clone().or_else(|| settings.connect.clone()).unwrap_or_default();
+    let wrong = |why: String| NetworkError::Address { address: address(), why };
+    let mut config = zenoh::Config::default();
+    let further = further.iter().map(|(key, value)| (*key, (*value).to_owned()));
+    for (key, value) in entries.into_iter().chain(further) {
+        config.insert_json5(key, &value).map_err(|e| wrong(format!("{key}: {e}")))?;
+    }
+    zenoh::open(config).wait().map_err(|e| wrong(e.to_string()))
+}
+
 /// `tcp/HOST:PORT` of an address with or without `tcp/`.
-fn endpoint(address: &str) -> Result<String, NetworkError> {
+pub(crate) fn endpoint(address: &str) -> Result<String, NetworkError> {
     let host_and_port = address.strip_prefix("tcp/").unwrap_or(address);
     let wrong = |why: &str| NetworkError::Address { address: address.to_owned(), why: why.to_owned() };
     if host_and_port.contains('/') {

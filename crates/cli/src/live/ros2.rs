@@ -1,0 +1,65 @@
+//! What `elbowroom live` has to do with ROS 2.
+
+use std::sync::Arc;
+use std::sync::mpsc::RecvTimeoutError;
+use std::time::Duration;
+
+use elbowroom::cell::Cell;
+use elbowroom::live::ros2::{Ros2Robot, Ros2Settings, Watchdog};
+use elbowroom::ros2::rmw_zenoh::Distribution;
+
+use super::LiveArgs;
+use super::stop_signal::stop_signal;
+use crate::output::{ExitStatus, Failure, note};
+
+/// The settings of a call; where it has none, those of the environment count, as for every program of ROS 2.
+pub(super) fn ros2_settings(args: &LiveArgs) -> Result<Ros2Settings, Failure> {
+    if !(args.ros2 || !args.ros2_robot.is_empty() || args.ros2_watchdog.is_some()) {
+        return Ok(Ros2Settings::default());
+    }
+    let robots: Result<Vec<Ros2Robot>, _> = args.ros2_robot.iter().map(|robot| robot.parse()).collect();
+    let environment = |name: &str| std::env::var(name).ok().filter(|value| !value.is_empty());
+    let domain = match (args.ros2_domain, environment("ROS_DOMAIN_ID")) {
+        (Some(domain), _) => domain,
+        (None, None) => 0,
+        (None, Some(text)) => text
+            .parse()
+            .map_err(|_| Failure::Wrong(format!("ROS_DOMAIN_ID is {text}: not a number\n  help: --ros2-domain N")))?,
+    };
+    let distribution = args.ros2_distro.clone().or_else(|| environment("ROS_DISTRO"));
+    Ok(Ros2Settings {
+        publish: args.ros2,
+        robots: robots.map_err(|e| Failure::Wrong(e.to_string()))?,
+        domain,
+        distribution: if distribution.as_deref() == Some("humble") {
+            Distribution::Humble
+        } else {
+            Distribution::Jazzy
+        },
+        router: args.ros2_router.clone(),
+    })
+}
+
+/// Watches until Ctrl-C, or for the time of the call.
+pub(super) fn run_watchdog(
+    cell: &Cell,
+    settings: &Ros2Settings,
+    bound_ms: u64,
+    args: &LiveArgs,
+) -> Result<ExitStatus, Failure> {
+    let stop = stop_signal()?;
+    let bound = Duration::from_millis(bound_ms);
+    let watchdog = Watchdog::start(cell, settings, &args.robots, bound, Some(Arc::new(|event: &str| note(event))))
+        .map_err(|e| Failure::Wrong(e.to_string()))?;
+    note(format_args!("watchdog: {bound_ms} ms, domain {}, router {}", settings.domain, settings.router()));
+    let ended = match args.duration {
+        Some(seconds) => stop.recv_timeout(Duration::from_secs_f64(seconds)),
+        None => stop.recv().map_err(|_| RecvTimeoutError::Disconnected),
+    };
+    drop(watchdog);
+    // Asked to end, or the time is over.
+    match ended {
+        Ok(()) | Err(RecvTimeoutError::Timeout) => Ok(ExitStatus::Success),
+        Err(RecvTimeoutError::Disconnected) => Err(Failure::Wrong("Ctrl-C is not handled any more".into())),
+    }
+}

@@ -1,0 +1,49 @@
+//! The speed scaling of a robot whose controller does not speak ROS 2: what its node answers, for those who watch.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use elbowroom_interlock::Micros;
+
+use super::session::RosPublisher;
+use super::speed_scaling::{SpeedScaling, Wake};
+use crate::clock::Clock;
+use crate::messages::OverrideAnswer;
+use crate::network::{Network, NetworkError, Subscription};
+
+/// Publishes the override that a node answers to its controller.
+pub(super) struct AnsweredFactor {
+    // In the order in which they end.
+    _answers: Subscription,
+    _speed_scaling: SpeedScaling,
+}
+
+impl AnsweredFactor {
+    /// `key` is that of the node's answers; one counts until it is `oldest`.
+    pub(super) fn start(
+        network: &dyn Network,
+        key: &str,
+        clock: Clock,
+        oldest: Micros,
+        publisher: RosPublisher,
+    ) -> Result<Self, NetworkError> {
+        let last: Arc<Mutex<Option<(f64, Micros)>>> = Arc::default();
+        let wake = Wake::default();
+        let answers = {
+            let (last, wake) = (last.clone(), wake.clone());
+            let handler = Box::new(move |bytes: &[u8]| {
+                if let Ok(answer) = OverrideAnswer::decode(bytes) {
+                    let heard = (answer.speed_override, clock.micros());
+                    *last.lock().unwrap_or_else(PoisonError::into_inner) = Some(heard);
+                    wake.notify();
+                }
+            });
+            network.subscribe(key, handler)?
+        };
+        let factor = move || {
+            let last = *last.lock().unwrap_or_else(PoisonError::into_inner);
+            last.filter(|(_, at)| clock.micros() - *at <= oldest).map_or(0.0, |(factor, _)| factor)
+        };
+        let speed_scaling = SpeedScaling::start(publisher, wake, Box::new(factor));
+        Ok(Self { _answers: answers, _speed_scaling: speed_scaling })
+    }
+}

@@ -1,0 +1,37 @@
+//! What a process of a live cell does.
+
+use std::path::PathBuf;
+
+use crate::control::ControlOptions;
+use crate::event_handler::EventHandler;
+use crate::ros2::Ros2Settings;
+
+/// The address of a service without another one.
+pub const DEFAULT_ADDRESS: &str = "127.0.0.1:7447";
+
+/// What a process of a live cell does.
+#[derive(Clone, Default)]
+pub struct ServiceOptions {
+    /// The robots that it guards; empty: all, or none where it is only the arbiter.
+    pub robots: Vec<String>,
+    /// Accepts connections here.
+    pub listen: Option<String>,
+    /// Connects here.
+    pub connect: Option<String>,
+    /// Takes controllers by UDP datagrams at this address, too.
+    pub udp: Option<String>,
+    /// Grants exchange regions, and keeps which regions are switched on.
+    pub arbiter: bool,
+    /// Runs the programs of the cell file in place of the controllers.
+    pub simulate: bool,
+    /// Shows the cell in a browser at this address.
+    pub web: Option<String>,
+    /// Records everything that this process guards into this file.
+    pub record: Option<PathBuf>,
+    /// Serves the control interface; only beside the arbiter.
+    pub control: Option<ControlOptions>,
+    /// What it has to do with ROS 2.
+    pub ros2: Ros2Settings,
+    /// Called with every event of the arbiter and the control interface of this process, in words.
+    pub on_event: Option<EventHandler>,
+}

@@ -1,0 +1,193 @@
+//! The parts of a process of a live cell, in the order in which they start.
+
+use std::sync::Arc;
+
+use elbowroom_cell::configure::MonitorSetup;
+use elbowroom_cell::{Cell, configure};
+use elbowroom_formats::FormatError;
+use elbowroom_interlock::Boot;
+use elbowroom_monitor::{RegionKind, RobotSlot};
+use elbowroom_robot::RobotId;
+use elbowroom_rosbag::{CellWriter, Recorder};
+use elbowroom_view::{Server, ServerSettings, StatusFeed};
+
+use crate::arbiter_service::ArbiterService;
+use crate::cell_observer::CellObserver;
+use crate::clock::{Clock, boot_number};
+use crate::configuration_number::configuration_number;
+use crate::control::{ControlServer, DeskParts, JointsHeard};
+use crate::network::{JoinedNetworks, Network, NetworkError, UdpNetwork, ZenohNetwork, ZenohSettings};
+use crate::node::{Node, NodeMonitor, NodeParts};
+use crate::region_keeper::{ProgramSwitches, RegionKeeper};
+use crate::ros2::{CellFeed, Participant};
+use crate::service_error::ServiceError;
+use crate::service_options::{DEFAULT_ADDRESS, ServiceOptions};
+use crate::simulated_controllers::SimulatedControllers;
+
+/// What all parts share.
+pub(crate) struct ServiceStart<'o> {
+    options: &'o ServiceOptions,
+    cell: Arc<Cell>,
+    /// Those that this process guards.
+    robots: Vec<RobotId>,
+    pub(crate) zenoh: Arc<ZenohNetwork>,
+    shared: Arc<dyn Network>,
+    /// With UDP datagrams, where there is an address for them.
+    of_controllers: Arc<dyn Network>,
+    clock: Clock,
+}
+
+impl<'o> ServiceStart<'o> {
+    /// Opens the networks.
+    pub(crate) fn new(cell: Cell, options: &'o ServiceOptions) -> Result<Self, ServiceError> {
+        let cell = Arc::new(stopping_in_time(cell));
+        let robots = guarded_robots(&cell, options)?;
+        let listen = match (&options.listen, &options.connect) {
+            (None, None) => Some(DEFAULT_ADDRESS.to_owned()),
+            (listen, _) => listen.clone(),
+        };
+        let zenoh = Arc::new(ZenohNetwork::open(&ZenohSettings { listen, connect: options.connect.clone() })?);
+        let shared: Arc<dyn Network> = zenoh.clone();
+        let of_controllers = with_udp(&shared, options.udp.as_deref())?;
+        Ok(Self { options, cell, robots, zenoh, shared, of_controllers, clock: Clock::start() })
+    }
+
+    /// True where this process keeps the regions: as the arbiter, or as the only process.
+    fn keeps_regions(&self) -> bool {
+        self.options.arbiter || self.options.robots.is_empty()
+    }
+
+    pub(crate) fn keeper(&self) -> Result<Option<Arc<RegionKeeper>>, ServiceError> {
+        if !self.keeps_regions() {
+            return Ok(None);
+        }
+        let programs = program_switches(self.options);
+        Ok(Some(Arc::new(RegionKeeper::start(&self.cell, &self.shared, boot_number(), programs)?)))
+    }
+
+    pub(crate) fn arbiter(&self) -> Result<Option<Arc<ArbiterService>>, ServiceError> {
+        if !self.keeps_regions() {
+            return Ok(None);
+        }
+        let on_event = self.options.on_event.clone();
+        Ok(ArbiterService::start(&self.cell, &self.shared, boot_number(), on_event)?.map(Arc::new))
+    }
+
+    pub(crate) fn control(
+        &self,
+        keeper: Option<&Arc<RegionKeeper>>,
+        arbiter: Option<&Arc<ArbiterService>>,
+    ) -> Result<Option<ControlServer>, ServiceError> {
+        let Some(control) = &self.options.control else { return Ok(None) };
+        let keeper = keeper.ok_or(ServiceError::ControlWithoutArbiter)?;
+        let parts = DeskParts {
+            cell: self.cell.clone(),
+            keeper: keeper.clone(),
+            arbiter: arbiter.cloned(),
+            joints: JointsHeard::start(&self.cell, &self.of_controllers, self.clock)?,
+            clock: self.clock,
+            on_event: self.options.on_event.clone(),
+        };
+        Ok(Some(ControlServer::start(parts, control)?))
+    }
+
+    pub(crate) fn recorder(&self) -> Result<Option<Recorder>, ServiceError> {
+        let Some(file) = &self.options.record else { return Ok(None) };
+        Ok(Some(Recorder::start(CellWriter::create(file, &self.cell, boot_number())?)?))
+    }
+
+    pub(crate) fn nodes(&self, recorder: Option<&Recorder>) -> Result<Vec<Node>, ServiceError> {
+        let setups = configure::setups(&self.cell)?.into_iter().enumerate();
+        let guarded = setups.filter(|(i, _)| self.robots.contains(&RobotId(*i)));
+        guarded.map(|(i, setup)| self.node(RobotId(i), setup, recorder)).collect()
+    }
+
+    fn node(&self, robot: RobotId, setup: MonitorSetup, recorder: Option<&Recorder>) -> Result<Node, ServiceError> {
+        let cell = &self.cell;
+        let slots = configure::slots(cell).iter().flatten().map(|slot| slot.0 + 1).max().unwrap_or(0);
+        let checksum = configuration_number(cell);
+        let monitor = NodeMonitor::new(&setup, RobotSlot(robot.0), slots, checksum, Boot(boot_number()))
+            .map_err(|e| FormatError::new(&cell.file, cell.robots[robot.0].line, e.to_string()))?;
+        let recorder = recorder.map(|r| r.robot(robot.0 as u32, monitor.monitor(), self.clock.seconds()));
+        let (network, interlocks) = (self.of_controllers.clone(), self.shared.clone());
+        let cell = cell.clone();
+        let clock = self.clock;
+        Ok(Node::start(NodeParts { cell, robot, setup, monitor, checksum, clock, network, interlocks, recorder })?)
+    }
+
+    pub(crate) fn ros2(&self) -> Result<Option<Participant>, ServiceError> {
+        let on_event = self.options.on_event.clone();
+        let settings = &self.options.ros2;
+        Ok(Participant::start(&self.cell, settings, &self.robots, &self.shared, self.clock, on_event)?)
+    }
+
+    /// In place of the controllers, but for those that speak ROS 2.
+    pub(crate) fn simulated_controllers(&self) -> Result<Option<SimulatedControllers>, ServiceError> {
+        if !self.options.simulate {
+            return Ok(None);
+        }
+        let is_real = |robot: &RobotId| self.options.ros2.robot(&self.cell.robots[robot.0].name).is_some();
+        let robots: Vec<RobotId> = self.robots.iter().copied().filter(|robot| !is_real(robot)).collect();
+        Ok(Some(SimulatedControllers::start(&self.cell, &robots, &self.shared, self.clock)?))
+    }
+
+    /// The page in a browser, and what feeds it.
+    pub(crate) fn web(&self) -> Result<Option<(Server, StatusFeed)>, ServiceError> {
+        let Some(address) = &self.options.web else { return Ok(None) };
+        let feed = StatusFeed::new();
+        Ok(Some((Server::watch(&self.cell, &feed, ServerSettings::at(address)?)?, feed)))
+    }
+
+    /// What sees the whole cell, where anybody wants to know.
+    pub(crate) fn observer(
+        &self,
+        page: Option<StatusFeed>,
+        recorder: Option<Recorder>,
+        ros2: Option<CellFeed>,
+    ) -> Result<Option<CellObserver>, ServiceError> {
+        if page.is_none() && recorder.is_none() && ros2.is_none() {
+            return Ok(None);
+        }
+        Ok(Some(CellObserver::start(&self.cell, &self.shared, self.clock, page, recorder, ros2)?))
+    }
+}
+
+/// With tokens nobody switches without one, unless that is allowed.
+fn program_switches(options: &ServiceOptions) -> ProgramSwitches {
+    match &options.control {
+        Some(control) if !control.program_switches => ProgramSwitches::Ignored(options.on_event.clone()),
+        _ => ProgramSwitches::Obeyed,
+    }
+}
+
+/// The network of the controllers: with UDP datagrams, where there is an address for them.
+fn with_udp(zenoh: &Arc<dyn Network>, address: Option<&str>) -> Result<Arc<dyn Network>, NetworkError> {
+    let Some(address) = address else { return Ok(zenoh.clone()) };
+    Ok(Arc::new(JoinedNetworks::new(vec![zenoh.clone(), Arc::new(UdpNetwork::bind(address, &[])?)])))
+}
+
+/// The cell as a service guards it. A controller goes on for `stale_ms` after the last override that it has heard, so that
+/// stopping distances assume this much more; and regions that controllers exchange need stopping distances.
+fn stopping_in_time(mut cell: Cell) -> Cell {
+    let has_exchange = cell.regions.iter().any(|r| matches!(r.region.kind, RegionKind::Exchange { .. }));
+    let laws = &mut cell.laws;
+    if laws.stopping_reaction_s.is_none() && has_exchange {
+        laws.stopping_reaction_s = Some(laws.reaction_s);
+    }
+    laws.stopping_reaction_s = laws.stopping_reaction_s.map(|reaction_s| reaction_s + laws.laws.stale_s);
+    cell
+}
+
+fn guarded_robots(cell: &Cell, options: &ServiceOptions) -> Result<Vec<RobotId>, ServiceError> {
+    if options.robots.is_empty() {
+        return Ok(if options.arbiter { Vec::new() } else { (0..cell.robots.len()).map(RobotId).collect() });
+    }
+    let find = |name: &String| {
+        let found = cell.robots.iter().position(|r| r.name == *name);
+        found.map(RobotId).ok_or_else(|| ServiceError::Robot {
+            name: name.clone(),
+            known: cell.robots.iter().map(|r| r.name.clone()).collect(),
+        })
+    };
+    options.robots.iter().map(find).collect()
+}
