@@ -405,7 +405,7 @@ pub(crate) struct PlanArgs {
     /// Goal as a pose of the TCP in the world, in the cell file's units: x,y,z,roll,pitch,yaw or x,y,z,qx,qy,qz,qw
     #[arg(long, value_name = "x,y,z,r,p,y", allow_hyphen_values = true, conflicts_with_all = ["to", "urdf"])]
     pub(crate) to_pose: Option<Numbers>,
-    /// Configuration at --to-pose, of six axes with a spherical wrist: front or back, up or down, no_flip or flip, or
+    /// Configuration at --to-pose, of six axes with a spherical wrist: front or back, up or down, `no_flip` or flip, or
     /// some of them
     #[arg(long, value_name = "WORD,…", value_delimiter = ',', requires = "to_pose", conflicts_with = "to")]
     pub(crate) configuration: Vec<String>,

@@ -189,11 +189,12 @@ mod tests {
         assert_eq!(second.previous, hex::hash(text.lines().next().unwrap().as_bytes()));
         drop(log);
         assert_eq!(control_history(&path).unwrap(), [first, second]);
+        let lines = |lines: &[&str]| lines.join("\n") + "\n";
         for wrong in [
             text.replacen("true", "false", 1),
             text.replacen("panel", "other", 1),
-            text.lines().skip(1).map(|l| format!("{l}\n")).collect(),
-            text.lines().rev().map(|l| format!("{l}\n")).collect(),
+            lines(&text.lines().skip(1).collect::<Vec<_>>()),
+            lines(&text.lines().rev().collect::<Vec<_>>()),
             text.replacen(":1,", ": 1,", 1),
             text.trim_end().to_owned(),
         ] {

@@ -138,8 +138,8 @@ warning = 100
 follow = { robot = "other", frame = "flange" }
 "#;
 
-    fn at(q: f64) -> Option<JointState> {
-        Some(JointState { q: vec![q], qd: vec![0.0], ..JointState::default() })
+    fn at(q: f64) -> JointState {
+        JointState { q: vec![q], qd: vec![0.0], ..JointState::default() }
     }
 
     #[test]
@@ -150,15 +150,15 @@ follow = { robot = "other", frame = "flange" }
             found.iter().map(|c| c.distance_m).collect::<Vec<_>>()
         };
         let near = |a: Option<f64>, b: f64| a.is_some_and(|a| (a - b).abs() < 1e-6);
-        let far = distance(0, &[at(1.0), at(0.0)]);
+        let far = distance(0, &[Some(at(1.0)), Some(at(0.0))]);
         assert!(near(far[0], 0.25), "{far:?}");
         assert!(far[1].is_some_and(|d| d > 2.0));
-        assert_eq!(distance(0, &[at(1.5), None]), [Some(0.0), None]);
-        assert_eq!(distance(0, &[at(f64::NAN), at(0.0)])[0], None);
+        assert_eq!(distance(0, &[Some(at(1.5)), None]), [Some(0.0), None]);
+        assert_eq!(distance(0, &[Some(at(f64::NAN)), Some(at(0.0))])[0], None);
         // The region is where the other robot is: as far along its own rail.
-        let follows = distance(1, &[at(0.5), at(1.0)]);
+        let follows = distance(1, &[Some(at(0.5)), Some(at(1.0))]);
         assert!(follows.len() == 1 && near(follows[0], 0.25), "{follows:?}");
-        assert_eq!(distance(1, &[at(0.5), None]), [None]);
+        assert_eq!(distance(1, &[Some(at(0.5)), None]), [None]);
     }
 
     #[test]
