@@ -15,7 +15,7 @@ use crate::arbiter_service::ArbiterService;
 use crate::cell_observer::CellObserver;
 use crate::clock::{Clock, boot_number};
 use crate::configuration_number::configuration_number;
-use crate::control::{ControlServer, DeskParts, JointsHeard};
+use crate::control::{ControlParts, ControlServer, JointsHeard};
 use crate::network::{JoinedNetworks, Network, NetworkError, UdpNetwork, ZenohNetwork, ZenohSettings};
 use crate::node::{Node, NodeMonitor, NodeParts};
 use crate::region_keeper::{ProgramSwitches, RegionKeeper};
@@ -80,7 +80,7 @@ impl<'o> ServiceStart<'o> {
     ) -> Result<Option<ControlServer>, ServiceError> {
         let Some(control) = &self.options.control else { return Ok(None) };
         let keeper = keeper.ok_or(ServiceError::ControlWithoutArbiter)?;
-        let parts = DeskParts {
+        let parts = ControlParts {
             cell: self.cell.clone(),
             keeper: keeper.clone(),
             arbiter: arbiter.cloned(),

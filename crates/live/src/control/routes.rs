@@ -15,21 +15,21 @@ use elbowroom_view::http::Hosts;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::desk::{Desk, Done};
 use super::refusal::Refusal;
+use super::request_handler::{Done, RequestHandler};
 
 /// Longest body.
 const MAX_BODY: usize = 64 * 1024;
 
 /// What all requests share.
 struct Shared {
-    desk: Desk,
+    handler: RequestHandler,
     tokens: AccessTokens,
     hosts: Hosts,
 }
 
 /// Only these paths exist.
-pub(crate) fn routes(desk: Desk, tokens: AccessTokens, hosts: Hosts) -> Router {
+pub(crate) fn routes(handler: RequestHandler, tokens: AccessTokens, hosts: Hosts) -> Router {
     let only =
         |method: &'static str| move || async move { answer(&Refusal::new(405, format!("this path takes {method}"))) };
     Router::new()
@@ -41,7 +41,7 @@ pub(crate) fn routes(desk: Desk, tokens: AccessTokens, hosts: Hosts) -> Router {
         })
         .layer(DefaultBodyLimit::max(MAX_BODY))
         .layer(middleware::from_fn(short))
-        .with_state(Arc::new(Shared { desk, tokens, hosts }))
+        .with_state(Arc::new(Shared { handler, tokens, hosts }))
 }
 
 /// Refuses a body that announces that it is too long, before it arrives.
@@ -59,16 +59,16 @@ async fn regions(State(shared): State<Arc<Shared>>, headers: HeaderMap) -> Respo
     if let Err(refusal) = holder(&shared, &headers) {
         return answer(&refusal);
     }
-    let overview = tokio::task::spawn_blocking(move || shared.desk.overview()).await;
+    let overview = tokio::task::spawn_blocking(move || shared.handler.overview()).await;
     overview.map_or_else(|_| answer(&broken()), |overview| json(StatusCode::OK, &overview))
 }
 
 async fn switch(state: State<Arc<Shared>>, headers: HeaderMap, body: Result<Bytes, BytesRejection>) -> Response {
-    change(state, headers, body, Desk::switch).await
+    change(state, headers, body, RequestHandler::switch).await
 }
 
 async fn clear(state: State<Arc<Shared>>, headers: HeaderMap, body: Result<Bytes, BytesRejection>) -> Response {
-    change(state, headers, body, Desk::clear).await
+    change(state, headers, body, RequestHandler::clear).await
 }
 
 /// Makes a change that a token holder asks for.
@@ -76,18 +76,18 @@ async fn change<R: DeserializeOwned + Send + 'static>(
     State(shared): State<Arc<Shared>>,
     headers: HeaderMap,
     body: Result<Bytes, BytesRejection>,
-    make: fn(&Desk, &AccessToken, &str, &R) -> Result<Done, Refusal>,
+    make: fn(&RequestHandler, &AccessToken, &str, &R) -> Result<Done, Refusal>,
 ) -> Response {
     let made = tokio::task::spawn_blocking(move || {
         let who = holder(&shared, &headers)?;
         let at = revision(&headers)?;
         let request = request(&headers, body)?;
-        make(&shared.desk, who, &at, &request)
+        make(&shared.handler, who, &at, &request)
     });
     match made.await {
         Ok(Ok(done)) => json(StatusCode::OK, &done),
         Ok(Err(refusal)) => answer(&refusal),
-        // The desk panicked: the service goes on, and whoever asked learns that it is not known what was done.
+        // The handler panicked: the service goes on, and whoever asked learns that it is not known what was done.
         Err(_) => answer(&broken()),
     }
 }

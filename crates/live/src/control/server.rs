@@ -9,7 +9,7 @@ use elbowroom_formats::FormatError;
 use elbowroom_view::ViewError;
 use elbowroom_view::http::{ConnectionLimits, Hosts, HttpServer, loopback_address};
 
-use super::desk::{Desk, DeskParts};
+use super::request_handler::{ControlParts, RequestHandler};
 use super::routes::routes;
 
 /// The control interface of a service.
@@ -41,18 +41,18 @@ pub enum ControlError {
 pub(crate) struct ControlServer(HttpServer);
 
 impl ControlServer {
-    pub(crate) fn start(parts: DeskParts, options: &ControlOptions) -> Result<Self, ControlError> {
+    pub(crate) fn start(parts: ControlParts, options: &ControlOptions) -> Result<Self, ControlError> {
         let address = loopback_address(&options.address)?;
         let tokens = AccessTokens::read(&options.tokens)?;
         let log = ControlLog::open(&options.log.clone().unwrap_or_else(|| control_log_of(&parts.cell.file)))?;
-        let desk = Desk::new(parts, log);
+        let handler = RequestHandler::new(parts, log);
         let limits = ConnectionLimits {
             connections: 32,
             head: Duration::from_secs(5),
             request: Duration::from_secs(15),
             head_bytes: 16 * 1024,
         };
-        let make = move |_, hosts: &Hosts| Ok(routes(desk, tokens, hosts.clone()));
+        let make = move |_, hosts: &Hosts| Ok(routes(handler, tokens, hosts.clone()));
         Ok(Self(HttpServer::start("control", address, limits, make)?))
     }
 

@@ -20,8 +20,8 @@ use crate::region_keeper::RegionKeeper;
 /// Longest note.
 const MAX_NOTE: usize = 500;
 
-/// What the desk works with.
-pub(crate) struct DeskParts {
+/// What a request is decided and carried out with.
+pub(crate) struct ControlParts {
     pub(crate) cell: Arc<Cell>,
     pub(crate) keeper: Arc<RegionKeeper>,
     /// `None` for a cell without exchange regions.
@@ -32,8 +32,8 @@ pub(crate) struct DeskParts {
 }
 
 /// Takes one request at a time.
-pub(crate) struct Desk {
-    parts: DeskParts,
+pub(crate) struct RequestHandler {
+    parts: ControlParts,
     log: Mutex<ControlLog>,
 }
 
@@ -81,8 +81,8 @@ pub(crate) struct RobotOverview {
     pub(crate) heard: bool,
 }
 
-impl Desk {
-    pub(crate) fn new(parts: DeskParts, log: ControlLog) -> Self {
+impl RequestHandler {
+    pub(crate) fn new(parts: ControlParts, log: ControlLog) -> Self {
         Self { parts, log: Mutex::new(log) }
     }
 
@@ -92,7 +92,7 @@ impl Desk {
 
     /// Everything that may be changed.
     pub(crate) fn overview(&self) -> Overview {
-        let DeskParts { cell, keeper, arbiter, joints, .. } = &self.parts;
+        let ControlParts { cell, keeper, arbiter, joints, .. } = &self.parts;
         let (active, slots) = (keeper.active(), arbiter.as_ref().map(|a| a.slots()).unwrap_or_default());
         let region = |(r, active): (&CellRegion, bool)| {
             let slot = slots.iter().find(|slot| slot.regions.contains(&r.region.name));
@@ -121,7 +121,7 @@ impl Desk {
 
     /// Switches a temporary region. One that a robot is inside of is not switched on.
     pub(crate) fn switch(&self, who: &AccessToken, at: &str, request: &Switch) -> Result<Done, Refusal> {
-        let DeskParts { cell, keeper, .. } = &self.parts;
+        let ControlParts { cell, keeper, .. } = &self.parts;
         let (index, region) = self.region(&request.region)?;
         self.require(who, AccessClass::needed_for(Life::Temporary), &format!("switch region `{}`", request.region))?;
         if region.region.life == Life::Permanent {
@@ -156,7 +156,7 @@ impl Desk {
 
     /// Clears a silent robot.
     pub(crate) fn clear(&self, who: &AccessToken, at: &str, request: &Clear) -> Result<Done, Refusal> {
-        let DeskParts { cell, arbiter, .. } = &self.parts;
+        let ControlParts { cell, arbiter, .. } = &self.parts;
         self.require(who, AccessClass::Integrator, "clear a robot")?;
         let robot = self.robot_to_clear(request)?;
         let no_arbiter = || Refusal::new(409, "the cell has no exchange regions, so there is nothing to clear");
@@ -243,7 +243,7 @@ impl Desk {
         if matches!(region.region.kind, RegionKind::Monitored { .. }) {
             return Ok(Vec::new());
         }
-        let DeskParts { cell, joints, clock, .. } = &self.parts;
+        let ControlParts { cell, joints, clock, .. } = &self.parts;
         let found = clearances(cell, region, &joints.states(), clock.seconds())?;
         let name = |robot: RobotId| cell.robots[robot.0].name.clone();
         if let Some((near, distance_m)) =
