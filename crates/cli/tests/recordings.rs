@@ -13,7 +13,7 @@ dh = [{ kind = "prismatic", min = 0, max = 2000, speed = 1000, acceleration = 40
 links = [{ sphere = { radius = 50 } }]
 "#;
 const STEPS: &str = "[program.rail]\nsteps = [{ move = \"joint\", to = [1500] }]\n";
-const PLAYED: &str = "[program.rail]\ntrajectory = { file = \"log.csv\", columns = { joint_1 = \"rail/joint_1\" } }\n";
+const PLAYED: &str = "[program.rail]\ntrajectory = \"log.csv\"\n";
 
 #[test]
 fn a_recording_becomes_a_trajectory() {

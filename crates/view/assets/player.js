@@ -119,7 +119,7 @@
       if (!shown) return { connection: Link.state(), mode: Data.mode, cell: Data.cell, t_s: null, robots: [], regions: [], objects: [], slots: [], events: [] };
       const { frame } = shown, regions = [...shown.regions, ...shown.added];
       return {
-        connection: Link.state(), mode: Data.mode, cell: Data.cell, checksum: Data.checksum, t_s: isLive ? frame.t_s : t, live: isLive, number: frame.number,
+        connection: Link.state(), mode: Data.mode, cell: Data.cell, checksum: Data.checksum, t_s: isLive ? frame.t_s : t, frame_t_s: frame.t_s, live: isLive, number: frame.number,
         message: frame.message, nearest: pair(frame.nearest),
         robots: frame.robots.map((robot, i) => ({
           name: robot.robot, known: shown.robots[i].isKnown, q: robot.q, tcp: robot.tcp, tcp_drawn_m: shown.robots[i].tcp, override: robot.override,

@@ -59,7 +59,7 @@ pub(crate) struct LiveArgs {
     /// Publish the cell in ROS 2, for RMW_IMPLEMENTATION=rmw_zenoh_cpp
     #[arg(long)]
     pub(crate) ros2: bool,
-    /// A robot whose controller speaks ROS 2, and its topics: ROBOT[=JOINT_STATES,SPEED_SCALING[,CONTROLLER_STATE]]; repeatable
+    /// A robot whose controller speaks ROS 2, and its topics: `ROBOT[=JOINT_STATES,SPEED_SCALING[,CONTROLLER_STATE]]`; repeatable
     #[arg(long, value_name = "ROBOT=TOPICS")]
     pub(crate) ros2_robot: Vec<String>,
     /// Only publish speed scaling 0 for each robot of whose service nothing was heard for this long
