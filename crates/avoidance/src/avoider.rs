@@ -323,6 +323,12 @@ impl<'s> Avoider<'s> {
         Ok(())
     }
 
+    /// A detour is being planned: until it is known, a robot off its path rests where the detour is to begin, unless it has to
+    /// evade. Call it in each tick of the planning.
+    pub fn await_detour(&mut self) {
+        self.machine.await_detour();
+    }
+
     fn check_call(&self, dt: f64, reference: &Reference<'_>) -> Result<(), AvoidanceError> {
         if !(dt.is_finite() && dt > 0.0) {
             return Err(AvoidanceError::TickDuration(dt));
@@ -378,7 +384,8 @@ impl<'s> Avoider<'s> {
         }
         let ProximityQuery { scene, robot, chains, pairs, .. } = &self.query;
         let (chain, state) = (&scene.robots()[robot.0].robot.chain, &chains[robot.0]);
-        let task = VelocityTask { desired, bounds, mode: objective.mode(reference) };
+        let is_on_collision_course = self.escapes.is_on_collision_course();
+        let task = VelocityTask { desired, bounds, mode: objective.mode(reference), is_on_collision_course };
         let s = &self.settings.reactive;
         let reach_m = FIXED_RANGE_FACTOR * s.closing_s * s.speed_m_s;
         let border = match constraint {

@@ -25,6 +25,12 @@ const ENOUGH_GAP_M: f64 = 0.15;
 const BETTER_GAP_M: f64 = 0.02;
 /// Difference of durations by which another escape is better at the same gap, s.
 const BETTER_DURATION_S: f64 = 0.2;
+/// Moving obstacles are on a collision course where they come nearer to a robot that stops now than this many clearances …
+const COURSE_CLEARANCES: f64 = 3.0;
+/// … or, where they are nearer than that now, nearer than this share of their present distance …
+const COURSE_SHARE: f64 = 0.8;
+/// … and in any case while they are nearer than this many clearances.
+const NEAR_CLEARANCES: f64 = 2.0;
 /// Where a stop is free for longer than this (s), the search pauses …
 const UNHURRIED_S: f64 = 1.5;
 /// … for so many ticks.
@@ -111,6 +117,8 @@ pub(crate) struct EscapeSearch<'s> {
     /// What the last examined tick found, and the ticks until the next one.
     state: EscapeState,
     pause: usize,
+    /// What the last examined tick found: false where all that moves is predicted to pass.
+    is_on_collision_course: bool,
     /// Time since the robot follows it, s; `None` where it does not.
     followed_s: Option<f64>,
     /// Number of the next target.
@@ -165,6 +173,7 @@ impl<'s> EscapeSearch<'s> {
             is_fresh: false,
             state: EscapeState::Free,
             pause: 0,
+            is_on_collision_course: true,
             followed_s: None,
             index: 0,
             is_repeated: false,
@@ -189,10 +198,20 @@ impl<'s> EscapeSearch<'s> {
         self.check.detach(object, in_world)
     }
 
-    /// Forgets the known escape.
+    /// Forgets all that was found.
     pub(crate) fn reset(&mut self) {
-        (self.is_known, self.followed_s) = (false, None);
+        self.forget_escape();
         (self.state, self.pause) = (EscapeState::Free, 0);
+        self.is_on_collision_course = true;
+    }
+
+    fn forget_escape(&mut self) {
+        (self.is_known, self.followed_s) = (false, None);
+    }
+
+    /// False where all that moves and is evaded is predicted to pass a robot that stops.
+    pub(crate) fn is_on_collision_course(&self) -> bool {
+        self.is_on_collision_course
     }
 
     /// Replaces the next command (rad/s or m/s) by that of the known escape where no escape would be left after it.
@@ -217,9 +236,7 @@ impl<'s> EscapeSearch<'s> {
         // A scene that cannot be checked has no escape: the rules remain.
         let state = self.examine(tick, &mut constraint, next).unwrap_or(EscapeState::Unknown);
         if state == EscapeState::Free {
-            let pause = self.pause;
-            self.reset();
-            self.pause = pause;
+            self.forget_escape();
         }
         self.state = state;
         // An error was reported above: poses that can be placed can be placed again.
@@ -239,6 +256,12 @@ impl<'s> EscapeSearch<'s> {
         };
         self.set_next(tick, next);
         self.check.set_deadline(EscapeWork::UNLIMITED);
+        self.is_on_collision_course = true;
+        self.is_on_collision_course = !self.stop_lets_pass(tick)?;
+        if !self.is_on_collision_course {
+            self.pause = PAUSE_TICKS;
+            return Ok(EscapeState::Free);
+        }
         let stop = self.check_stop(tick, clearance.moving_m)?;
         let is_unhurried = stop.hit.is_none_or(|hit| hit.time_s > UNHURRIED_S);
         self.pause = if is_unhurried { PAUSE_TICKS } else { 0 };
@@ -295,6 +318,13 @@ impl<'s> EscapeSearch<'s> {
             self.next_q[j] = (tick.start.q[j] + next[j] * tick.dt).clamp(limit.lower, limit.upper);
             self.next_qd[j] = next[j];
         }
+    }
+
+    /// True where all that moves passes a robot that stops after the command, with more than the clearance of an escape.
+    fn stop_lets_pass(&mut self, tick: &EscapeTick<'_>) -> Result<bool, SceneError> {
+        let (nearest_m, clearance_m) = (tick.nearest.moving_m, self.settings.clearance_m);
+        let course_m = (COURSE_CLEARANCES * clearance_m).min(COURSE_SHARE * nearest_m);
+        Ok(nearest_m > NEAR_CLEARANCES * clearance_m && self.check_stop(tick, course_m)?.is_free())
     }
 
     fn check_stop(&mut self, tick: &EscapeTick<'_>, clearance_m: f64) -> Result<MotionCheck, SceneError> {

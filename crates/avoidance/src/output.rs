@@ -47,7 +47,8 @@ pub struct AvoiderOutput {
     /// Computing time of the search for escapes, µs, counted in elementary tests times their measured costs: the same in every run.
     pub escape_work_us: u64,
     /// A detour should be planned ([`crate::Avoider::plan_to`]): the robot is stationary off its path with no dynamic obstacle
-    /// near, or stalled for the stall timeout by stationary obstacles.
+    /// to evade, or stalled for the stall timeout by stationary obstacles. While an obstacle that passes is still in the way the
+    /// plan fails: plan again half a second later.
     pub requests_detour: bool,
     /// Durations of the stages.
     pub times: StageTimes,

@@ -78,6 +78,9 @@ pub struct VelocityTask<'a> {
     pub bounds: &'a VelocityBounds,
     /// The purpose of the desired velocity.
     pub mode: Mode,
+    /// False where all dynamic obstacles that move are predicted to pass: the rules then count only those at rest. Distances
+    /// are kept in any case.
+    pub is_on_collision_course: bool,
 }
 
 /// Summary of a reaction.
@@ -242,8 +245,11 @@ impl ReactiveController {
 
     /// Adds the correction of the rules and returns its size.
     fn evade(&mut self, pair: &ProximityPair, task: &VelocityTask<'_>) -> f64 {
-        let VelocityTask { desired, bounds, mode } = *task;
+        let VelocityTask { desired, bounds, mode, is_on_collision_course } = *task;
         let ObstacleKind::Dynamic { velocity, centre, radius_m, key } = pair.obstacle else { return 0.0 };
+        if !is_on_collision_course && velocity.length() > STATIONARY_M_S {
+            return 0.0;
+        }
         let by_task = self.point.iter().zip(desired).zip(&self.speeds).map(|((p, w), s)| *p * (w / s));
         let own = by_task.fold(Vec3::ZERO, |sum, v| sum + v);
         let relative = if mode == Mode::Transit { velocity - own } else { velocity };

@@ -53,7 +53,7 @@ pub(crate) enum Event {
     AtRest { dt: f64 },
     /// Off the path without a recent correction, not at rest.
     Moving,
-    /// Off the path without a recent correction, at the override 0.
+    /// Off the path without a recent correction, at the override 0 or while a detour is being planned.
     Halted,
     /// The tick failed: the robot is stopped where it is.
     Failed,
@@ -148,6 +148,13 @@ impl StateMachine {
     /// True where the robot has made no progress for the stall timeout.
     pub(crate) fn is_stalled(&self) -> bool {
         self.stalled_s >= self.stall_timeout_s
+    }
+
+    /// A detour is being planned from where the robot is: it does not return meanwhile.
+    pub(crate) fn await_detour(&mut self) {
+        if matches!(self.state, ControlState::Returning { .. }) {
+            self.apply(Event::Halted);
+        }
     }
 
     /// Starts a planned detour. A detour without waypoints leaves the robot where it is.

@@ -3,7 +3,9 @@
 mod common;
 
 use common::{Ball, DT, Random, Simulation, avoider, scene};
-use elbowroom_avoidance::{AvoiderState, DynamicObstacles, ObservedObject, PathKind, Reference};
+use elbowroom_avoidance::{
+    Avoider, AvoiderSettings, AvoiderState, DynamicObstacles, ObservedObject, PathKind, Reference, Rules,
+};
 use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_spatial::{FrameMotion, Pose, Vec3};
 
@@ -108,6 +110,35 @@ fn a_head_on_approach_is_evaded_sideways() {
         assert!(simulation.hits.is_empty(), "hit at {:?}", simulation.hits.first());
         assert!(farthest > 0.1, "it evades sideways");
         assert_eq!(simulation.avoider.q(), LEAN);
+    }
+}
+
+#[test]
+fn what_is_predicted_to_pass_is_not_evaded() {
+    let scene = scene();
+    // It passes the tip at 0.25 to 0.3 m, across and towards the base.
+    let passing = [(at(1.15, -1.0, 0.53), at(0.0, 0.5, 0.0)), (at(1.5, 0.42, 0.5), at(-0.5, 0.0, 0.0))];
+    for (from, velocity) in passing {
+        let ball = Ball { object: ObjectId(1), from, velocity, stops_s: f64::INFINITY };
+        let run = |horizon_s: f64| {
+            let mut settings = AvoiderSettings::default();
+            settings.escape.horizon_s = horizon_s;
+            let limits = common::limits(&scene);
+            let avoider = Avoider::new(&scene, RobotId(0), &LEAN, &limits, Rules::default(), settings).unwrap();
+            let mut simulation = Simulation::with(&scene, &LEAN, avoider);
+            let (mut nearest_m, mut deviation_s): (f64, f64) = (f64::INFINITY, 0.0);
+            while simulation.t < 6.0 {
+                let output = simulation.step(&at_rest, PathKind::PointToPoint, &[ball], 1.0);
+                nearest_m = nearest_m.min(output.nearest_m);
+                deviation_s = deviation_s.max(output.path_deviation_s);
+            }
+            assert!(simulation.hits.is_empty());
+            (nearest_m, deviation_s)
+        };
+        let (nearest_m, deviation_s) = run(3.0);
+        assert!((0.15..0.4).contains(&nearest_m), "{nearest_m}");
+        assert_eq!(deviation_s, 0.0, "it stays");
+        assert!(run(0.0).1 > 0.01, "without a prediction the rules make it leave");
     }
 }
 

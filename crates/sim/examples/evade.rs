@@ -1,7 +1,9 @@
 //! Statistics of many runs with and without avoidance, with an obstacle that crosses the workspace at random.
 //! Collisions are detected by continuous sweeps of the exact scene from tick to tick.
 //!
-//! `cargo run --release -p elbowroom-sim --example evade -- [RUNS] [CELL] [--noise-mm N] [--delay-ms N]`
+//! `cargo run --release -p elbowroom-sim --example evade -- [RUNS] [CELL] [--noise-mm N] [--delay-ms N] [--csv FILE]`
+//!
+//! `--csv` writes a row per run: whether it hits without and with avoidance, its extra time, and the time in each state.
 //!
 //! Environment: `EVADE_ONLY=135,301` makes these runs only, and prints what the arm did; `EVADE_EXPLAIN=5000` searches an escape
 //! with so many motions from several instants before each hit, against the true path of the obstacle.
@@ -13,6 +15,7 @@ mod random;
 #[path = "../tests/common/crossing.rs"]
 mod crossing;
 
+use std::io::Write;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -29,11 +32,26 @@ const EXPLAINED_S: [f64; 7] = [3.0, 2.5, 2.0, 1.5, 1.0, 0.75, 0.5];
 const AFTER_HIT_S: f64 = 1.5;
 /// Below this share of its speed a joint counts as stationary.
 const STATIONARY_SHARE: f64 = 1e-4;
+/// The columns of the table of `--csv`.
+const STATES: [AvoiderState; 6] = [
+    AvoiderState::Following,
+    AvoiderState::Evading,
+    AvoiderState::Returning,
+    AvoiderState::Detouring,
+    AvoiderState::Waiting,
+    AvoiderState::Halted,
+];
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments: Vec<String> = std::env::args().skip(1).collect();
-    let noise_mm = option(&mut arguments, "--noise-mm")?;
-    let delay_ms = option(&mut arguments, "--delay-ms")?;
+    let noise_mm: Option<f64> = option(&mut arguments, "--noise-mm")?;
+    let delay_ms: Option<f64> = option(&mut arguments, "--delay-ms")?;
+    let csv: Option<PathBuf> = option(&mut arguments, "--csv")?;
+    let mut rows = csv.map(std::fs::File::create).transpose()?;
+    if let Some(rows) = &mut rows {
+        let states = STATES.map(|s| format!("{}_s", s.name())).join(",");
+        writeln!(rows, "run,hit_without,hit_with,finished,extra_s,{states},plans")?;
+    }
     let mut arguments = arguments.into_iter();
     let runs: usize = arguments.next().map_or(Ok(100), |n| n.parse())?;
     let file = arguments
@@ -67,6 +85,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for some in chosen.chunks(50) {
         for run in compare(&cell, object, &paths, some)? {
             statistics.add(&cell, &run);
+            if let Some(rows) = &mut rows {
+                writeln!(rows, "{}", row(&run))?;
+            }
             if let (Some(tries), Some(hit)) = (explain_tries, run.on.robots[0].collisions.first()) {
                 explain(&cell, object, &paths[run.number], &run.on, hit.t_s, tries)?;
             }
@@ -78,11 +99,29 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 }
 
 /// Takes an option and its number from the arguments.
-fn option(arguments: &mut Vec<String>, name: &str) -> Result<Option<f64>, Box<dyn std::error::Error>> {
+fn option<T: std::str::FromStr>(arguments: &mut Vec<String>, name: &str) -> Result<Option<T>, String> {
     let Some(at) = arguments.iter().position(|a| a == name) else { return Ok(None) };
-    let number = arguments.get(at + 1).ok_or_else(|| format!("{name} needs a number"))?.parse()?;
+    let value =
+        arguments.get(at + 1).and_then(|text| text.parse().ok()).ok_or_else(|| format!("{name} needs a value"))?;
     arguments.drain(at..=at + 1);
-    Ok(Some(number))
+    Ok(Some(value))
+}
+
+/// The line of a run in the table of `--csv`.
+fn row(RunComparison { number, off, on }: &RunComparison) -> String {
+    let (without, with) = (&off.robots[0], &on.robots[0]);
+    let hits = [without, with].map(|track| u8::from(!track.collisions.is_empty()));
+    let samples = with.avoidance.iter().flat_map(|track| &track.samples);
+    let mut times_s = [0.0; STATES.len()];
+    for sample in samples {
+        if let Some(state) = STATES.iter().position(|s| *s == sample.state) {
+            times_s[state] += on.tick_s;
+        }
+    }
+    let times = times_s.map(|t| format!("{t:.3}")).join(",");
+    let plans = with.avoidance.as_ref().map_or(0, |track| track.plans.len());
+    let (finished, extra_s) = (u8::from(with.finished), on.duration_s - off.duration_s);
+    format!("{number},{},{},{finished},{extra_s:.3},{times},{plans}", hits[0], hits[1])
 }
 
 /// The runs of one object path, without avoidance and with it.

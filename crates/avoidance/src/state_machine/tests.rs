@@ -65,6 +65,21 @@ fn every_row_of_the_documented_table_is_a_transition() {
 }
 
 #[test]
+fn while_a_detour_is_planned_the_robot_does_not_return() {
+    let mut machine = StateMachine::new(TIMEOUT_S);
+    let idle = TickSummary { is_stationary: true, ..tick() };
+    for _ in 0..=(TIMEOUT_S / DT) as usize + 1 {
+        machine.end_tick(&idle);
+    }
+    assert!(matches!(machine.state(), ControlState::Returning { .. }), "{:?}", machine.state());
+    machine.await_detour();
+    assert!(matches!(machine.state(), ControlState::Holding { idle_s: 0.0 }), "{:?}", machine.state());
+    machine.end_tick(&TickSummary { is_corrected: true, ..idle });
+    machine.await_detour();
+    assert!(matches!(machine.state(), ControlState::Evading), "it may evade");
+}
+
+#[test]
 fn holding_ends_at_the_stall_timeout() {
     let mut state = ControlState::Following;
     for _ in 0..4 {

@@ -13,6 +13,10 @@ use elbowroom_spatial::{FrameMotion, Pose, Vec3};
 use elbowroom_testkit::random::{linear_congruential, unit};
 
 pub const DT: f64 = 0.004;
+/// Time between plans, s: while an obstacle is on the way they fail.
+const PLAN_INTERVAL_S: f64 = 0.5;
+/// Largest number of validated states of a plan.
+const PLAN_STATES: u64 = 40_000;
 /// Radius of a ball, m.
 pub const BALL: f64 = 0.08;
 
@@ -86,13 +90,20 @@ pub struct Simulation<'s> {
     pub output: AvoiderOutput,
     /// Number of planned detours.
     pub planned: usize,
+    /// Time of the next plan, s.
+    not_before_s: f64,
 }
 
 impl<'s> Simulation<'s> {
     pub fn new(scene: &'s Scene, q: &[f64]) -> Self {
+        Self::with(scene, q, avoider(scene, q))
+    }
+
+    /// With an avoider of other settings.
+    pub fn with(scene: &'s Scene, q: &[f64], avoider: Avoider<'s>) -> Self {
         Self {
             scene,
-            avoider: avoider(scene, q),
+            avoider,
             checker: Checker::new(scene, CheckerOptions::default()),
             state: SceneState::new(scene),
             t: 0.0,
@@ -104,6 +115,7 @@ impl<'s> Simulation<'s> {
             max_speed: 0.0,
             output: AvoiderOutput::default(),
             planned: 0,
+            not_before_s: 0.0,
         }
     }
 
@@ -122,12 +134,18 @@ impl<'s> Simulation<'s> {
         output
     }
 
-    /// Plans a detour to `goal` where one is requested.
+    /// Plans a detour to `goal` where one is requested, with as much work and as often as a run does.
     pub fn plan(&mut self, goal: &[f64]) -> bool {
-        if !self.output.requests_detour {
+        if !self.output.requests_detour || self.t < self.not_before_s {
             return false;
         }
-        let options = |clearance_m| RrtConnectSettings { clearance_m, ..RrtConnectSettings::default() };
+        self.not_before_s = self.t + PLAN_INTERVAL_S;
+        let options = |clearance_m| RrtConnectSettings {
+            clearance_m,
+            max_states: PLAN_STATES,
+            time_limit: std::time::Duration::from_mins(1),
+            ..RrtConnectSettings::default()
+        };
         let planned =
             self.avoider.plan_to(goal, &options(0.06)).is_ok() || self.avoider.plan_to(goal, &options(0.0)).is_ok();
         self.planned += usize::from(planned);

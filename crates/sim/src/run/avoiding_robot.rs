@@ -218,6 +218,9 @@ impl<'s> AvoidingRobot<'s> {
         if let Some(plan) = self.pending.take_if(|plan| t_s >= plan.ready_s) {
             self.use_plan(clock, plan);
         }
+        if self.pending.is_some() {
+            self.avoider.await_detour();
+        }
         // No closer to a border than a planned path can leave in time.
         let allowed = if self.at_border(clock, allowed) { 0.0 } else { allowed };
         clock.hold(!self.is_on_path());
