@@ -16,14 +16,14 @@ use crate::joint_limit::{
     JointLimit, arrival_speed, brake, distance_s, progress, speed_fraction, stop_s, update_bounds,
 };
 use crate::objective::Objective;
-use crate::path_rate::{PathState, approach_rate, path_rate};
+use crate::path_rate::{PathState, approach_rate, is_path_held, path_rate};
 use crate::proximity_query::{ProximityQuery, ProximityRange};
 use crate::reversal_limiter::ReversalLimiter;
 use crate::state_machine::{StateMachine, TickSummary};
 use crate::sweep_check::{SweepCheck, VelocitySegment};
 use crate::{
-    AvoidanceError, AvoiderOutput, AvoiderSettings, DynamicObstacles, EscapeState, ObstacleKind, ProximityPair,
-    Reaction, ReactiveController, Reference, Rules, StageTimes, VelocityBounds, VelocityTask,
+    AvoidanceError, AvoiderOutput, AvoiderSettings, DynamicObstacles, EscapeState, ObstacleKind, PathKind,
+    ProximityPair, Reaction, ReactiveController, Reference, Rules, StageTimes, VelocityBounds, VelocityTask,
 };
 
 /// Override below which the robot is stopped.
@@ -580,7 +580,7 @@ impl<'s> Avoider<'s> {
         let tick = TickSummary {
             dt,
             is_at_reference,
-            is_corrected: output.reaction.size > MIN_CORRECTION,
+            is_corrected: self.is_corrected(&output, reference.path),
             is_stalled: requires_motion
                 && allowed > 0.0
                 && (progress < MIN_PROGRESS || (is_following && is_stationary)),
@@ -604,6 +604,16 @@ impl<'s> Avoider<'s> {
         };
         output.state = self.machine.reported(&tick, output.reaction.is_active);
         output
+    }
+
+    /// True where the tick evaded something that will move on. Off a path that is held, waiting beside an obstacle that stands
+    /// still would not end: a detour leads past it.
+    fn is_corrected(&self, output: &AvoiderOutput, path: PathKind) -> bool {
+        let governing = output.reaction.governing.and_then(|g| self.query.pairs.get(g));
+        let stands = governing.is_some_and(|p| p.obstacle_velocity().length() <= STATIONARY_OBSTACLE_M_S);
+        let is_held = is_path_held(path, output.path_deviation_s, self.settings.max_deviation_s);
+        let will_move_on = !(stands && is_held) || output.escape == EscapeState::Escaping;
+        output.reaction.size > MIN_CORRECTION && will_move_on
     }
 
     /// True where the robot makes no progress for the stall timeout, and no obstacle moves.

@@ -27,6 +27,8 @@ const BETTER_GAP_M: f64 = 0.02;
 const BETTER_DURATION_S: f64 = 0.2;
 /// Moving obstacles are on a collision course where they come nearer to a robot that stops now than this many clearances …
 const COURSE_CLEARANCES: f64 = 3.0;
+/// … and remain so until they keep this many, so that the decision does not change with every tick.
+const PASSING_CLEARANCES: f64 = 4.0;
 /// … or, where they are nearer than that now, nearer than this share of their present distance …
 const COURSE_SHARE: f64 = 0.8;
 /// … and in any case while they are nearer than this many clearances.
@@ -224,7 +226,8 @@ impl<'s> EscapeSearch<'s> {
         self.begin = self.check.work();
         let evaded_moves = tick.obstacles.objects.iter().any(|o| !o.known && moves(o))
             || tick.obstacles.robots.iter().any(|n| !n.known && n.robot != self.robot && robot_moves(n));
-        if self.settings.horizon_s <= 0.0 || !evaded_moves || tick.start.speed_share <= 0.0 {
+        let is_needed = evaded_moves || self.followed_s.is_some();
+        if self.settings.horizon_s <= 0.0 || !is_needed || tick.start.speed_share <= 0.0 {
             self.reset();
             return EscapeState::Free;
         }
@@ -256,21 +259,21 @@ impl<'s> EscapeSearch<'s> {
         };
         self.set_next(tick, next);
         self.check.set_deadline(EscapeWork::UNLIMITED);
-        self.is_on_collision_course = true;
-        self.is_on_collision_course = !self.stop_lets_pass(tick)?;
-        if !self.is_on_collision_course {
-            self.pause = PAUSE_TICKS;
-            return Ok(EscapeState::Free);
-        }
-        let stop = self.check_stop(tick, clearance.moving_m)?;
-        let is_unhurried = stop.hit.is_none_or(|hit| hit.time_s > UNHURRIED_S);
+        let was_on_course = std::mem::replace(&mut self.is_on_collision_course, true);
+        let clearances = if was_on_course { PASSING_CLEARANCES } else { COURSE_CLEARANCES };
+        self.is_on_collision_course = !self.stop_lets_pass(tick, clearances)?;
+        let hit = if self.is_on_collision_course { self.check_stop(tick, clearance.moving_m)?.hit } else { None };
+        let is_unhurried = hit.is_none_or(|hit| hit.time_s > UNHURRIED_S);
         self.pause = if is_unhurried { PAUSE_TICKS } else { 0 };
-        let Some(hit) = stop.hit else { return Ok(EscapeState::Free) };
-        self.set_deadline(1.0);
         self.followed_s = self.followed_s.filter(|s| self.is_known && self.is_on_escape(tick, *s));
-        if let Some(followed_s) = self.followed_s {
-            return self.follow(tick, followed_s, &hit, clearance, constraint, next);
+        if let Some(followed_s) = self.followed_s
+            && (hit.is_some() || !self.can_stop_before_fixed(tick, clearance.fixed_m)?)
+        {
+            self.set_deadline(1.0);
+            return self.follow(tick, followed_s, hit, clearance, constraint, next);
         }
+        let Some(hit) = hit else { return Ok(EscapeState::Free) };
+        self.set_deadline(1.0);
         // What has to be proven again if nothing is found needs its part of the work.
         let has_to_be_proven = self.is_known && !self.is_fresh;
         self.set_deadline(if has_to_be_proven { FIND_SHARE } else { 1.0 });
@@ -281,7 +284,7 @@ impl<'s> EscapeSearch<'s> {
         // The command would lose the last escape: the robot takes it.
         self.is_known = self.is_known && (self.is_fresh || self.is_free_from_now(tick, clearance, constraint)?);
         if self.is_known {
-            return self.follow(tick, 0.0, &hit, clearance, constraint, next);
+            return self.follow(tick, 0.0, Some(hit), clearance, constraint, next);
         }
         Ok(EscapeState::Unknown)
     }
@@ -320,10 +323,10 @@ impl<'s> EscapeSearch<'s> {
         }
     }
 
-    /// True where all that moves passes a robot that stops after the command, with more than the clearance of an escape.
-    fn stop_lets_pass(&mut self, tick: &EscapeTick<'_>) -> Result<bool, SceneError> {
+    /// True where all that moves passes a robot that stops after the command, with so many clearances.
+    fn stop_lets_pass(&mut self, tick: &EscapeTick<'_>, clearances: f64) -> Result<bool, SceneError> {
         let (nearest_m, clearance_m) = (tick.nearest.moving_m, self.settings.clearance_m);
-        let course_m = (COURSE_CLEARANCES * clearance_m).min(COURSE_SHARE * nearest_m);
+        let course_m = (clearances * clearance_m).min(COURSE_SHARE * nearest_m);
         Ok(nearest_m > NEAR_CLEARANCES * clearance_m && self.check_stop(tick, course_m)?.is_free())
     }
 
@@ -335,6 +338,16 @@ impl<'s> EscapeSearch<'s> {
         self.check.meets_moving(&motion, tick.obstacles, clearance_m, |known| !known)
     }
 
+    /// True where a stop after the command is proven to keep clear of all that is fixed. On an escape the robot is faster than
+    /// rules would let it be there, so that its way may lead around what a stop would hit.
+    fn can_stop_before_fixed(&mut self, tick: &EscapeTick<'_>, clearance_m: f64) -> Result<bool, SceneError> {
+        let start = EscapeStart { q: &self.next_q, qd: &self.next_qd, ..tick.start };
+        self.stop.set_stop(&start);
+        let horizon_s = self.stop.duration_s;
+        let motion = TimedMotion { trajectory: &self.stop, elapsed_s: 0.0, begins_s: tick.dt, horizon_s };
+        self.check.keeps_clear_of_fixed(&motion, tick.obstacles, clearance_m)
+    }
+
     fn is_on_escape(&self, tick: &EscapeTick<'_>, followed_s: f64) -> bool {
         self.known.is_near(followed_s, tick.start.q, OFF_ESCAPE)
     }
@@ -344,7 +357,7 @@ impl<'s> EscapeSearch<'s> {
         &mut self,
         tick: &EscapeTick<'_>,
         followed_s: f64,
-        hit: &PredictedHit,
+        stop_hit: Option<PredictedHit>,
         clearance: EscapeClearance,
         constraint: &mut Option<&mut dyn PathConstraint>,
         next: &mut [f64],
@@ -359,7 +372,9 @@ impl<'s> EscapeSearch<'s> {
         let horizon_s = self.settings.horizon_s;
         let motion = TimedMotion { trajectory: &self.known, elapsed_s: after_s, begins_s: tick.dt, horizon_s };
         let remains = self.check.meets_moving(&motion, tick.obstacles, clearance.moving_m, |_| true)?;
-        if remains.hit.is_some() && self.find(tick, hit, clearance, constraint)? {
+        if let Some(hit) = remains.hit
+            && self.find(tick, &stop_hit.unwrap_or(hit), clearance, constraint)?
+        {
             self.followed_s = Some(0.0);
         }
         Ok(EscapeState::Escaping)

@@ -20,6 +20,14 @@ pub(crate) struct PathState<'a> {
     pub(crate) max_deviation_s: f64,
 }
 
+/// True where the robot is so far off its path that the path does not advance.
+pub(crate) fn is_path_held(path: PathKind, deviation_s: f64, max_deviation_s: f64) -> bool {
+    match path {
+        PathKind::Continuous => deviation_s > SAME_CONFIGURATION_S,
+        PathKind::PointToPoint => deviation_s >= max_deviation_s,
+    }
+}
+
 /// The rate of the path, 0 to 1. `approach_rate` is the rate of a path that is kept near obstacles.
 pub(crate) fn path_rate(reference: &Reference<'_>, state: &PathState<'_>, approach_rate: impl FnOnce() -> f64) -> f64 {
     let deviation_s = state.deviation_s;
