@@ -89,6 +89,10 @@ struct Correction {
     progress: f64,
     /// The next command is exactly the reference.
     is_reference: bool,
+    /// A stop after it hits nothing that is fixed, and nothing known that moves.
+    can_stop: bool,
+    /// It was replaced by braking.
+    is_braked: bool,
 }
 
 impl<'s> Avoider<'s> {
@@ -236,7 +240,9 @@ impl<'s> Avoider<'s> {
         let border = constraint.as_mut().map(|c| &mut **c as &mut dyn PathConstraint);
         let mut correction = self.correct(dt, reference, allowed, objective, border);
         let corrected = Instant::now();
-        let braked = !correction.is_reference && self.check(dt, reference, obstacles, objective, &mut correction);
+        if !correction.is_reference {
+            self.check(dt, reference, obstacles, objective, &mut correction);
+        }
         let checked = Instant::now();
         let escape = self.keep_escape(dt, reference, obstacles, allowed, constraint, &mut correction);
         let escaped = Instant::now();
@@ -249,7 +255,7 @@ impl<'s> Avoider<'s> {
             check: checked - corrected,
             escape: escaped - checked,
         };
-        let braked = braked && escape != EscapeState::Escaping;
+        let braked = correction.is_braked && escape != EscapeState::Escaping;
         let escape_work_us = self.escapes.work_us();
         let output = AvoiderOutput {
             reaction: correction.reaction,
@@ -374,7 +380,13 @@ impl<'s> Avoider<'s> {
                 _ => self.brake(dt),
             }
             let is_reference = objective == Objective::Path;
-            return Correction { reaction: Reaction::default(), progress: 1.0, is_reference };
+            return Correction {
+                reaction: Reaction::default(),
+                progress: 1.0,
+                is_reference,
+                can_stop: true,
+                is_braked: false,
+            };
         }
         self.reversals.restrict(&mut self.workspace.bounds);
         let Workspace { bounds, desired, next, .. } = &mut self.workspace;
@@ -414,7 +426,7 @@ impl<'s> Avoider<'s> {
             _ => {}
         }
         let is_reference = objective == Objective::Path && !reaction.is_active && !is_trapped;
-        Correction { reaction, progress, is_reference }
+        Correction { reaction, progress, is_reference, can_stop: true, is_braked: false }
     }
 
     fn update_bounds(&mut self, dt: f64) {
@@ -468,7 +480,7 @@ impl<'s> Avoider<'s> {
         }
     }
 
-    /// Checks the next command; true where it was replaced by braking.
+    /// Checks the next command, and replaces it by braking where that is safer.
     fn check(
         &mut self,
         dt: f64,
@@ -476,9 +488,11 @@ impl<'s> Avoider<'s> {
         obstacles: &DynamicObstacles<'_>,
         objective: Objective,
         correction: &mut Correction,
-    ) -> bool {
-        if self.can_stop(dt, obstacles, objective == Objective::Detour) {
-            return self.brake_before_hit(dt, obstacles);
+    ) {
+        correction.can_stop = self.can_stop(dt, obstacles, objective == Objective::Detour);
+        if correction.can_stop {
+            correction.is_braked = self.brake_before_hit(dt, obstacles);
+            return;
         }
         self.machine.abandon_detour();
         if objective == Objective::Path {
@@ -488,7 +502,7 @@ impl<'s> Avoider<'s> {
         } else {
             self.brake(dt);
         }
-        true
+        correction.is_braked = true;
     }
 
     /// Replaces the next command by that of an escape where none would be left after it.
@@ -513,7 +527,8 @@ impl<'s> Avoider<'s> {
             speed_share: allowed,
             reversals: &self.reversals,
         };
-        let tick = EscapeTick { dt, start, obstacles, reference_q: reference.q, nearest };
+        let can_stop = correction.can_stop;
+        let tick = EscapeTick { dt, start, obstacles, reference_q: reference.q, can_stop, nearest };
         let state = self.escapes.guard(&tick, constraint, &mut self.workspace.next);
         if state == EscapeState::Escaping {
             self.machine.abandon_detour();

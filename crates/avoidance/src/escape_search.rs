@@ -39,6 +39,9 @@ const UNHURRIED_S: f64 = 1.5;
 const PAUSE_TICKS: usize = 3;
 /// A better escape than the known one is looked for in every so many examined ticks.
 const IMPROVE_TICKS: usize = 4;
+/// Share of the work of a tick in which it is decided what passes; what is not proven to pass by then counts as on a collision
+/// course.
+const COURSE_SHARE_OF_WORK: f64 = 0.5;
 /// Share of the work of a tick that may be spent before the escape that is known is proven again, where that is needed.
 const FIND_SHARE: f64 = 0.5;
 /// Deviation of the robot from the escape that it follows, in rad or m, from which it no longer does.
@@ -90,6 +93,9 @@ pub(crate) struct EscapeTick<'a> {
     pub(crate) obstacles: &'a DynamicObstacles<'a>,
     /// The point of the path.
     pub(crate) reference_q: &'a [f64],
+    /// A stop after the command of the rules hits nothing that is fixed. On an escape the robot is faster than the rules would
+    /// let it be there: its way may lead around what a stop would hit.
+    pub(crate) can_stop: bool,
     /// Present distance of the nearest obstacle that is evaded, and of anything fixed, m.
     pub(crate) nearest: EscapeClearance,
 }
@@ -258,22 +264,17 @@ impl<'s> EscapeSearch<'s> {
             fixed_m: self.settings.fixed_clearance_m.min(0.5 * tick.nearest.fixed_m),
         };
         self.set_next(tick, next);
-        self.check.set_deadline(EscapeWork::UNLIMITED);
-        let was_on_course = std::mem::replace(&mut self.is_on_collision_course, true);
-        let clearances = if was_on_course { PASSING_CLEARANCES } else { COURSE_CLEARANCES };
-        self.is_on_collision_course = !self.stop_lets_pass(tick, clearances)?;
-        let hit = if self.is_on_collision_course { self.check_stop(tick, clearance.moving_m)?.hit } else { None };
+        let hit = self.stop_hit(tick, clearance.moving_m)?;
         let is_unhurried = hit.is_none_or(|hit| hit.time_s > UNHURRIED_S);
         self.pause = if is_unhurried { PAUSE_TICKS } else { 0 };
         self.followed_s = self.followed_s.filter(|s| self.is_known && self.is_on_escape(tick, *s));
+        self.set_deadline(1.0);
         if let Some(followed_s) = self.followed_s
-            && (hit.is_some() || !self.can_stop_before_fixed(tick, clearance.fixed_m)?)
+            && (hit.is_some() || !tick.can_stop)
         {
-            self.set_deadline(1.0);
             return self.follow(tick, followed_s, hit, clearance, constraint, next);
         }
         let Some(hit) = hit else { return Ok(EscapeState::Free) };
-        self.set_deadline(1.0);
         // What has to be proven again if nothing is found needs its part of the work.
         let has_to_be_proven = self.is_known && !self.is_fresh;
         self.set_deadline(if has_to_be_proven { FIND_SHARE } else { 1.0 });
@@ -323,29 +324,34 @@ impl<'s> EscapeSearch<'s> {
         }
     }
 
-    /// True where all that moves passes a robot that stops after the command, with so many clearances.
-    fn stop_lets_pass(&mut self, tick: &EscapeTick<'_>, clearances: f64) -> Result<bool, SceneError> {
-        let (nearest_m, clearance_m) = (tick.nearest.moving_m, self.settings.clearance_m);
-        let course_m = (clearances * clearance_m).min(COURSE_SHARE * nearest_m);
-        Ok(nearest_m > NEAR_CLEARANCES * clearance_m && self.check_stop(tick, course_m)?.is_free())
+    /// Where a stop after the command meets what moves, and whether anything is on a collision course at all.
+    fn stop_hit(&mut self, tick: &EscapeTick<'_>, clearance_m: f64) -> Result<Option<PredictedHit>, SceneError> {
+        let was_on_course = std::mem::replace(&mut self.is_on_collision_course, true);
+        let clearances = if was_on_course { PASSING_CLEARANCES } else { COURSE_CLEARANCES };
+        let (nearest_m, own_m) = (tick.nearest.moving_m, self.settings.clearance_m);
+        let mut from_s = 0.0;
+        if nearest_m > NEAR_CLEARANCES * own_m {
+            self.set_deadline(COURSE_SHARE_OF_WORK);
+            let passing = self.check_stop(tick, 0.0, (clearances * own_m).min(COURSE_SHARE * nearest_m))?;
+            self.is_on_collision_course = !passing.is_free();
+            if !self.is_on_collision_course {
+                return Ok(None);
+            }
+            // Before something comes as near as that, nothing comes nearer than the clearance.
+            from_s = passing.hit.filter(|_| passing.is_complete).map_or(0.0, |hit| hit.time_s);
+        }
+        self.check.set_deadline(EscapeWork::UNLIMITED);
+        let stop = self.check_stop(tick, from_s, clearance_m)?;
+        Ok(stop.hit.map(|hit| PredictedHit { time_s: from_s + hit.time_s, ..hit }))
     }
 
-    fn check_stop(&mut self, tick: &EscapeTick<'_>, clearance_m: f64) -> Result<MotionCheck, SceneError> {
+    /// Checks a stop after the command from `from_s` on.
+    fn check_stop(&mut self, tick: &EscapeTick<'_>, from_s: f64, clearance_m: f64) -> Result<MotionCheck, SceneError> {
         let start = EscapeStart { q: &self.next_q, qd: &self.next_qd, ..tick.start };
         self.stop.set_stop(&start);
-        let horizon_s = self.settings.horizon_s;
-        let motion = TimedMotion { trajectory: &self.stop, elapsed_s: 0.0, begins_s: tick.dt, horizon_s };
+        let horizon_s = self.settings.horizon_s - from_s;
+        let motion = TimedMotion { trajectory: &self.stop, elapsed_s: from_s, begins_s: tick.dt + from_s, horizon_s };
         self.check.meets_moving(&motion, tick.obstacles, clearance_m, |known| !known)
-    }
-
-    /// True where a stop after the command is proven to keep clear of all that is fixed. On an escape the robot is faster than
-    /// rules would let it be there, so that its way may lead around what a stop would hit.
-    fn can_stop_before_fixed(&mut self, tick: &EscapeTick<'_>, clearance_m: f64) -> Result<bool, SceneError> {
-        let start = EscapeStart { q: &self.next_q, qd: &self.next_qd, ..tick.start };
-        self.stop.set_stop(&start);
-        let horizon_s = self.stop.duration_s;
-        let motion = TimedMotion { trajectory: &self.stop, elapsed_s: 0.0, begins_s: tick.dt, horizon_s };
-        self.check.keeps_clear_of_fixed(&motion, tick.obstacles, clearance_m)
     }
 
     fn is_on_escape(&self, tick: &EscapeTick<'_>, followed_s: f64) -> bool {

@@ -104,10 +104,11 @@ fn the_work_of_a_tick_is_bounded_and_counted_alike_in_every_run() {
     };
     let most = |ticks: &[(EscapeState, u64)]| ticks.iter().map(|t| t.1).max().unwrap();
     let (free, tight) = (work(1_000_000), work(tight_us));
-    // The check of a stop is made in any case; a query that has begun ends.
+    // The check of a stop is made in any case, and where it finds nothing it is all; a query that has begun ends.
     let stop = most(&work(0));
-    assert!(most(&tight) <= u64::from(tight_us).max(stop) + 150, "{} {stop}", most(&tight));
-    assert!(most(&free) > most(&tight) + 150, "{} {}", most(&free), most(&tight));
+    let searching: Vec<(EscapeState, u64)> = tight.iter().copied().filter(|t| t.0 != EscapeState::Free).collect();
+    assert!(most(&searching) <= u64::from(tight_us).max(stop) + 150, "{} {stop}", most(&searching));
+    assert!(most(&free) > most(&searching) + 150, "{} {}", most(&free), most(&searching));
     // With less work per tick an escape is found, only later.
     assert!(tight.iter().any(|t| t.0 == EscapeState::Known) && !work(0).iter().any(|t| t.0 == EscapeState::Known));
     assert_eq!(work(tight_us), tight);
