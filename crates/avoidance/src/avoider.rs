@@ -621,8 +621,8 @@ impl<'s> Avoider<'s> {
         output
     }
 
-    /// True where the tick evaded something that will move on. Off a path that is held, waiting beside an obstacle that stands
-    /// still would not end: a detour leads past it.
+    /// True where the tick evaded something that will move on. Off a path that is held, waiting beside an obstacle at rest
+    /// would not end: a detour leads past it.
     fn is_corrected(&self, output: &AvoiderOutput, path: PathKind) -> bool {
         let governing = output.reaction.governing.and_then(|g| self.query.pairs.get(g));
         let stands = governing.is_some_and(|p| p.obstacle_velocity().length() <= STATIONARY_OBSTACLE_M_S);

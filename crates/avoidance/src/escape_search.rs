@@ -125,8 +125,7 @@ pub(crate) struct EscapeSearch<'s> {
     /// What the last examined tick found, and the ticks until the next one.
     state: EscapeState,
     pause: usize,
-    /// What the last examined tick found: false where all that moves is predicted to pass.
-    is_on_collision_course: bool,
+    course: ObstacleCourse,
     /// Time since the robot follows it, s; `None` where it does not.
     followed_s: Option<f64>,
     /// Number of the next target.
@@ -141,6 +140,15 @@ pub(crate) struct EscapeSearch<'s> {
     columns: Vec<[f64; 6]>,
     point: Vec<Vec3>,
     rest_q: Vec<f64>,
+}
+
+/// What the last examined tick found of all that moves and is evaded.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum ObstacleCourse {
+    /// Some of it comes near a robot that stops, or that was not excluded.
+    Collision,
+    /// All of it passes.
+    Passing,
 }
 
 /// Quality of an escape.
@@ -181,7 +189,7 @@ impl<'s> EscapeSearch<'s> {
             is_fresh: false,
             state: EscapeState::Free,
             pause: 0,
-            is_on_collision_course: true,
+            course: ObstacleCourse::Collision,
             followed_s: None,
             index: 0,
             is_repeated: false,
@@ -210,7 +218,7 @@ impl<'s> EscapeSearch<'s> {
     pub(crate) fn reset(&mut self) {
         self.forget_escape();
         (self.state, self.pause) = (EscapeState::Free, 0);
-        self.is_on_collision_course = true;
+        self.course = ObstacleCourse::Collision;
     }
 
     fn forget_escape(&mut self) {
@@ -219,7 +227,7 @@ impl<'s> EscapeSearch<'s> {
 
     /// False where all that moves and is evaded is predicted to pass a robot that stops.
     pub(crate) fn is_on_collision_course(&self) -> bool {
-        self.is_on_collision_course
+        self.course == ObstacleCourse::Collision
     }
 
     /// Replaces the next command (rad/s or m/s) by that of the known escape where no escape would be left after it.
@@ -326,15 +334,17 @@ impl<'s> EscapeSearch<'s> {
 
     /// Where a stop after the command meets what moves, and whether anything is on a collision course at all.
     fn stop_hit(&mut self, tick: &EscapeTick<'_>, clearance_m: f64) -> Result<Option<PredictedHit>, SceneError> {
-        let was_on_course = std::mem::replace(&mut self.is_on_collision_course, true);
-        let clearances = if was_on_course { PASSING_CLEARANCES } else { COURSE_CLEARANCES };
+        let clearances = match std::mem::replace(&mut self.course, ObstacleCourse::Collision) {
+            ObstacleCourse::Collision => PASSING_CLEARANCES,
+            ObstacleCourse::Passing => COURSE_CLEARANCES,
+        };
         let (nearest_m, own_m) = (tick.nearest.moving_m, self.settings.clearance_m);
         let mut from_s = 0.0;
         if nearest_m > NEAR_CLEARANCES * own_m {
             self.set_deadline(COURSE_SHARE_OF_WORK);
             let passing = self.check_stop(tick, 0.0, (clearances * own_m).min(COURSE_SHARE * nearest_m))?;
-            self.is_on_collision_course = !passing.is_free();
-            if !self.is_on_collision_course {
+            if passing.is_free() {
+                self.course = ObstacleCourse::Passing;
                 return Ok(None);
             }
             // Before something comes as near as that, nothing comes nearer than the clearance.
