@@ -1,9 +1,10 @@
 //! Statistics of many runs with and without avoidance, with an obstacle that crosses the workspace at random.
 //! Collisions are detected by continuous sweeps of the exact scene from tick to tick.
 //!
-//! `cargo run --release -p elbowroom-sim --example evade -- [RUNS] [CELL] [--noise-mm N] [--delay-ms N] [--csv FILE]`
+//! `cargo run --release -p elbowroom-sim --example evade -- [RUNS] [CELL] [--noise-mm N] [--delay-ms N] [--csv FILE]
+//! [--add FILE]`
 //!
-//! `--csv` writes a row per run: whether it hits without and with avoidance, its extra time, and the time in each state.
+//! `--add` adds the tables of a file to the cell, such as the regions of `examples/evade_regions.toml`. `--csv` writes a row per run: whether it hits without and with avoidance, its extra time, and the time in each state.
 //!
 //! Environment: `EVADE_ONLY=135,301` makes these runs only, and prints what the arm did; `EVADE_EXPLAIN=5000` searches an escape
 //! with so many motions from several instants before each hit, against the true path of the obstacle.
@@ -46,6 +47,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments: Vec<String> = std::env::args().skip(1).collect();
     let noise_mm: Option<f64> = option(&mut arguments, "--noise-mm")?;
     let delay_ms: Option<f64> = option(&mut arguments, "--delay-ms")?;
+    let add: Option<PathBuf> = option(&mut arguments, "--add")?;
     let csv: Option<PathBuf> = option(&mut arguments, "--csv")?;
     let mut rows = csv.map(std::fs::File::create).transpose()?;
     if let Some(rows) = &mut rows {
@@ -57,7 +59,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let file = arguments
         .next()
         .map_or_else(|| PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/evade.toml")), PathBuf::from);
-    let mut cell = Cell::load(file)?;
+    let mut text = std::fs::read_to_string(&file)?;
+    if let Some(add) = add {
+        text += &std::fs::read_to_string(add)?;
+    }
+    let mut cell = Cell::parse(file, &text)?;
     for spec in cell.avoidance.iter_mut().flatten() {
         spec.noise_m = noise_mm.map_or(spec.noise_m, |mm| 1e-3 * mm);
         spec.delay_s = delay_ms.map_or(spec.delay_s, |ms| 1e-3 * ms);
@@ -182,7 +188,27 @@ struct Statistics {
     over: [f64; 2],
     least_reversal_s: f64,
     plans: [usize; 2],
+    /// Runs in which a region was entered, and in which the monitor stopped the robot off its path at one.
+    entered: usize,
+    stopped: usize,
+    longest_stop_s: f64,
     show: bool,
+}
+
+/// Override below which the robot stands.
+const STOPPED_OVERRIDE: f64 = 1e-3;
+
+/// Longest time (s) for which the monitor stopped a robot at a region while it was off its path.
+fn longest_stop_s(track: &RobotTrack, tick_s: f64) -> f64 {
+    let (mut longest_s, mut stopped_s): (f64, f64) = (0.0, 0.0);
+    let avoidance = track.avoidance.iter().flat_map(|a| &a.samples);
+    for (sample, a) in track.samples.iter().zip(avoidance) {
+        let is_stopped =
+            a.path_deviation_s > 0.0 && sample.region.is_some() && sample.speed_override < STOPPED_OVERRIDE;
+        stopped_s = if is_stopped { stopped_s + tick_s } else { 0.0 };
+        longest_s = longest_s.max(stopped_s);
+    }
+    longest_s
 }
 
 impl Statistics {
@@ -205,6 +231,10 @@ impl Statistics {
             }
             self.unfinished += 1;
         }
+        let stop_s = longest_stop_s(with, on.tick_s);
+        self.entered += usize::from(on.regions.iter().any(|region| region.entered));
+        self.stopped += usize::from(stop_s > 0.0);
+        self.longest_stop_s = self.longest_stop_s.max(stop_s);
         let Some(track) = &with.avoidance else { return };
         if hit_off && !hit_on && with.finished {
             self.resolved += 1;
@@ -283,6 +313,10 @@ impl Statistics {
             at(&mut self.step_max_us, 1.0)
         );
         println!("runs with an escape: {}", self.escaped);
+        println!(
+            "runs that entered a region: {}; stopped off the path at one: {}, longest {:.2} s",
+            self.entered, self.stopped, self.longest_stop_s
+        );
     }
 }
 
