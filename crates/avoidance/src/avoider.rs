@@ -34,6 +34,8 @@ const MIN_PROGRESS: f64 = 0.15;
 const ARRIVED_S: f64 = 2e-3;
 /// Fraction of the top speed below which the robot is stationary.
 const STATIONARY_FRACTION: f64 = 5e-3;
+/// Largest distance from the start of a detour at which a stationary robot begins it, in seconds of joint motion.
+const MAX_DETOUR_DRIFT_S: f64 = 1e-3;
 /// Time constant of the return to the path shortly after a correction, s: a faster return would work against the evasion.
 const GENTLE_RETURN_S: f64 = 0.15;
 /// Size below which a correction does not count.
@@ -316,21 +318,22 @@ impl<'s> Avoider<'s> {
         Ok(PlannedDetour { start_q: self.command.q.clone(), waypoints: route.waypoints })
     }
 
-    /// Follows a detour from the next tick on, until an obstacle has to be evaded.
+    /// Follows a detour from the next tick on, until an obstacle has to be evaded. A robot that has come to rest a little beyond
+    /// the start of the detour goes back to it first.
     ///
     /// # Errors
-    /// The robot moves, or has moved since the detour was planned.
+    /// The robot moves, or has moved away since the detour was planned.
     pub fn follow_detour(&mut self, detour: PlannedDetour) -> Result<(), AvoidanceError> {
-        let is_elsewhere = distance_s(&detour.start_q, &self.command.q, &self.limits) > SAME_CONFIGURATION_S;
-        if is_elsewhere || !self.is_stationary() {
+        let drift_s = distance_s(&detour.start_q, &self.command.q, &self.limits);
+        if drift_s > MAX_DETOUR_DRIFT_S || !self.is_stationary() {
             return Err(AvoidanceError::NotStationary);
         }
-        self.machine.start_detour(Detour::new(detour.waypoints));
+        self.machine.start_detour(Detour::new(detour.waypoints, drift_s <= SAME_CONFIGURATION_S));
         Ok(())
     }
 
     /// A detour is being planned: until it is known, a robot off its path rests where the detour is to begin, unless it has to
-    /// evade. Call it in each tick of the planning.
+    /// evade what moves. Call it in each tick of the planning.
     pub fn await_detour(&mut self) {
         self.machine.await_detour();
     }
@@ -408,7 +411,9 @@ impl<'s> Avoider<'s> {
         let reaction = self.controller.react_within(chain, state, &task, pairs, border, next);
         let progress = progress(next, desired, &self.limits);
         self.command.intent.copy_from_slice(next);
-        let is_trapped = self.is_stalled() && progress < MIN_PROGRESS && reaction.overrun_m_s <= 0.0;
+        let is_resting = reaction.overrun_m_s <= 0.0
+            && ((self.is_stalled() && progress < MIN_PROGRESS)
+                || (self.machine.awaits_detour() && self.is_by_obstacle_at_rest(&reaction)));
         // The bounds were widened by the override; the scaled command must keep the original ones.
         self.update_bounds(dt);
         self.reversals.restrict(&mut self.workspace.bounds);
@@ -417,15 +422,15 @@ impl<'s> Avoider<'s> {
             *v = (*v * allowed).clamp(*low, *high);
         }
         match objective {
-            _ if reaction.is_active && !is_trapped => self.machine.abandon_detour(),
-            Objective::Path if !is_trapped => self.follow_reference(dt, reference),
+            _ if reaction.is_active && !is_resting => self.machine.abandon_detour(),
+            Objective::Path if !is_resting => self.follow_reference(dt, reference),
             Objective::Detour => next.iter_mut().zip(desired).for_each(|(v, w)| *v = *w * allowed),
             Objective::Rest => self.brake(dt),
-            // Trapped: rest instead of creeping.
-            _ if is_trapped => self.brake(dt),
+            // Trapped, or a detour is being planned from here: rest instead of creeping.
+            _ if is_resting => self.brake(dt),
             _ => {}
         }
-        let is_reference = objective == Objective::Path && !reaction.is_active && !is_trapped;
+        let is_reference = objective == Objective::Path && !reaction.is_active && !is_resting;
         Correction { reaction, progress, is_reference, can_stop: true, is_braked: false }
     }
 
@@ -624,11 +629,16 @@ impl<'s> Avoider<'s> {
     /// True where the tick evaded something that will move on. Off a path that is held, waiting beside an obstacle at rest
     /// would not end: a detour leads past it.
     fn is_corrected(&self, output: &AvoiderOutput, path: PathKind) -> bool {
-        let governing = output.reaction.governing.and_then(|g| self.query.pairs.get(g));
-        let stands = governing.is_some_and(|p| p.obstacle_velocity().length() <= STATIONARY_OBSTACLE_M_S);
         let is_held = is_path_held(path, output.path_deviation_s, self.settings.max_deviation_s);
-        let will_move_on = !(stands && is_held) || output.escape == EscapeState::Escaping;
+        let is_at_rest = self.is_by_obstacle_at_rest(&output.reaction);
+        let will_move_on = !(is_at_rest && is_held) || output.escape == EscapeState::Escaping;
         output.reaction.size > MIN_CORRECTION && will_move_on
+    }
+
+    /// True where the obstacle that governs a reaction is at rest.
+    fn is_by_obstacle_at_rest(&self, reaction: &Reaction) -> bool {
+        let governing = reaction.governing.and_then(|g| self.query.pairs.get(g));
+        governing.is_some_and(|p| p.obstacle_velocity().length() <= STATIONARY_OBSTACLE_M_S)
     }
 
     /// True where the robot makes no progress for the stall timeout, and no obstacle moves.

@@ -26,10 +26,12 @@ pub(crate) struct Detour {
 }
 
 impl Detour {
-    /// From the first waypoint, where the robot is, to the last.
-    pub(crate) fn new(mut waypoints: Vec<Vec<f64>>) -> Self {
+    /// From the first waypoint to the last. A robot that is not at the first goes there.
+    pub(crate) fn new(mut waypoints: Vec<Vec<f64>>, is_at_first: bool) -> Self {
         waypoints.reverse();
-        waypoints.pop();
+        if is_at_first {
+            waypoints.pop();
+        }
         Self { waypoints, speed: 0.0 }
     }
 
@@ -93,7 +95,7 @@ mod tests {
     fn after_braking_it_continues_from_the_remaining_speed() {
         let limits = [JointLimit { lower: -9.0, upper: 9.0, speed: 2.0, acceleration: 8.0, stop: 20.0 }; 2];
         let (reversals, dt) = (ReversalLimiter::new(2, 0.25), 0.004);
-        let mut detour = Detour::new(vec![vec![0.0, 0.0], vec![1.0, -0.5], vec![1.5, 0.5]]);
+        let mut detour = Detour::new(vec![vec![0.0, 0.0], vec![1.0, -0.5], vec![1.5, 0.5]], true);
         let (mut q, mut qd) = ([0.0, 0.0], [0.0, 0.0]);
         let mut next = [0.0, 0.0];
         let mut ticks = 0;

@@ -114,12 +114,14 @@ pub(crate) struct StateMachine {
     stalled_s: f64,
     /// Time since the last correction, s.
     since_correction_s: f64,
+    /// A detour is being planned from where the robot is.
+    awaits_detour: bool,
 }
 
 impl StateMachine {
     pub(crate) fn new(stall_timeout_s: f64) -> Self {
         let state = ControlState::Following;
-        Self { state, stall_timeout_s, stalled_s: 0.0, since_correction_s: f64::INFINITY }
+        Self { state, stall_timeout_s, stalled_s: 0.0, since_correction_s: f64::INFINITY, awaits_detour: false }
     }
 
     pub(crate) fn state(&self) -> &ControlState {
@@ -150,8 +152,14 @@ impl StateMachine {
         self.stalled_s >= self.stall_timeout_s
     }
 
-    /// A detour is being planned from where the robot is: it does not return meanwhile.
+    /// True where a detour is being planned in this tick.
+    pub(crate) fn awaits_detour(&self) -> bool {
+        self.awaits_detour
+    }
+
+    /// A detour is being planned from where the robot is in this tick: it does not return meanwhile.
     pub(crate) fn await_detour(&mut self) {
+        self.awaits_detour = true;
         if matches!(self.state, ControlState::Returning { .. }) {
             self.apply(Event::Halted);
         }
@@ -171,6 +179,7 @@ impl StateMachine {
 
     /// Ends a tick that failed.
     pub(crate) fn fail(&mut self) {
+        self.awaits_detour = false;
         self.apply(if self.is_recently_corrected() { Event::FailedWhileEvading } else { Event::Failed });
     }
 
@@ -180,6 +189,7 @@ impl StateMachine {
 
     /// Ends a tick.
     pub(crate) fn end_tick(&mut self, tick: &TickSummary) {
+        self.awaits_detour = false;
         self.stalled_s = if tick.is_stalled { self.stalled_s + tick.dt } else { 0.0 };
         self.since_correction_s = if tick.is_corrected { 0.0 } else { self.since_correction_s + tick.dt };
         self.apply(if self.has_detour() {

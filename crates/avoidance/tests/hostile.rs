@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{DT, Random, Simulation, limits, scene};
+use common::{DT, Random, Simulation, avoider, limits, scene};
 use elbowroom_avoidance::{
     AvoidanceError, Avoider, AvoiderOutput, AvoiderSettings, DynamicObstacles, JointLimit, Neighbour, ObservedObject,
     PathKind, Reference, Rules,
@@ -230,6 +230,59 @@ fn a_detour_does_not_start_in_motion() {
     }
     let error = simulation.avoider.plan_to(&HERE, &RrtConnectSettings::default()).unwrap_err();
     assert_eq!(error, AvoidanceError::NotStationary);
+}
+
+#[test]
+fn a_robot_pushed_off_its_goal_by_an_obstacle_at_rest_rests_until_its_detour_is_known() {
+    let scene = scene();
+    let (mut random, mut followed) = (Random(7), 0);
+    while followed < 10 {
+        let place = at(random.range(0.2, 0.9), random.range(-0.9, -0.2), random.range(0.1, 0.9));
+        if !(0.01..0.2).contains(&distance(&scene, &HERE, Some(place))) {
+            continue;
+        }
+        let mut avoider = avoider(&scene, &HERE);
+        let beside = [ball(place, false)];
+        let obstacles = DynamicObstacles { objects: &beside, robots: &[] };
+        let tick = |avoider: &mut Avoider<'_>| avoider.tick(DT, &resting_at(&HERE), &obstacles, 1.0).unwrap();
+        let is_pushed = (0..1_500).any(|_| tick(&mut avoider).path_deviation_s > 1e-3 && avoider.is_stationary());
+        if !is_pushed {
+            continue;
+        }
+        let detour = avoider.plan_detour(&HERE, &RrtConnectSettings::default(), None).unwrap();
+        // Planning takes 1 s.
+        for _ in 0..250 {
+            avoider.await_detour();
+            tick(&mut avoider);
+        }
+        avoider.follow_detour(detour).unwrap();
+        let arrives = (0..1_000).any(|_| tick(&mut avoider).path_deviation_s < 1e-6);
+        assert!(arrives, "ball at {place:?}: {:?}", avoider.q());
+        followed += 1;
+    }
+}
+
+#[test]
+fn a_detour_does_not_start_elsewhere() {
+    let scene = scene();
+    let detour_after = |drift_s: f64| {
+        let mut avoider = avoider(&scene, &HERE);
+        let tick = |avoider: &mut Avoider<'_>, to: &[f64]| {
+            avoider.tick(DT, &resting_at(to), &DynamicObstacles::default(), 1.0).unwrap()
+        };
+        tick(&mut avoider, &HERE);
+        let detour = avoider.plan_detour(&THERE, &RrtConnectSettings::default(), None).unwrap();
+        let to = [HERE[0] + drift_s * limits(&scene)[0].speed, HERE[1], HERE[2]];
+        for _ in 0..200 {
+            tick(&mut avoider, &to);
+        }
+        assert_eq!(avoider.q(), to);
+        let followed = avoider.follow_detour(detour);
+        (0..2_000).for_each(|_| _ = tick(&mut avoider, &THERE));
+        followed.map(|()| assert_eq!(avoider.q(), THERE))
+    };
+    assert_eq!(detour_after(5e-4), Ok(()));
+    assert_eq!(detour_after(5e-3), Err(AvoidanceError::NotStationary));
 }
 
 #[test]

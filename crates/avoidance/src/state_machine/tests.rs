@@ -6,7 +6,7 @@ const TIMEOUT_S: f64 = 0.6;
 const DT: f64 = 0.125;
 
 fn detour() -> Detour {
-    Detour::new(vec![vec![0.0], vec![1.0]])
+    Detour::new(vec![vec![0.0], vec![1.0]], true)
 }
 
 /// The state of a cell of the table: name and idle time, where `t` is the idle time of the row.
