@@ -107,7 +107,12 @@ impl Observer {
     fn wait(&self, what: &str, longest_s: u64, holds: impl Fn(&Seen) -> bool) {
         let began = Instant::now();
         while !holds(&self.seen.lock().unwrap()) {
-            assert!(began.elapsed() < Duration::from_secs(longest_s), "{what}");
+            let seen = || {
+                let seen = self.seen.lock().unwrap();
+                let last = |(s, at): &(RobotStatus, Instant)| (at.elapsed(), s.exchange.clone(), s.reason.clone());
+                (seen.count, seen.entries.clone(), seen.statuses.values().map(last).collect::<Vec<_>>())
+            };
+            assert!(began.elapsed() < Duration::from_secs(longest_s), "{what}: {:?}", seen());
             std::thread::sleep(Duration::from_millis(20));
         }
     }

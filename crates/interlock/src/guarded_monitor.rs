@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use elbowroom_monitor::{
-    ConfigError, Configuration, Interlock, Monitor, OverrideReason, SlotGrants, SlotId, Snapshot, TickReport,
+    ConfigError, Configuration, Interlock, Monitor, RegionId, SlotGrants, SlotId, Snapshot, TickReport,
 };
 use thiserror::Error;
 
@@ -91,7 +91,7 @@ impl GuardedMonitor {
         }
         let report = self.monitor.tick(snapshot);
         // A tick with invalid input has seen nothing: what was seen before must not count as seen after a grant was closed.
-        if !matches!(report.reason, OverrideReason::Fault(_)) {
+        if self.monitor.input_fault().is_none() {
             self.seen = Some(now);
             for slot in (0..self.guard.slots()).map(SlotId) {
                 self.guard.need(slot, self.grants.is_needed(slot));
@@ -137,6 +137,19 @@ impl GuardedMonitor {
     /// The monitor.
     pub fn monitor(&self) -> &Monitor {
         &self.monitor
+    }
+
+    /// The interlock for another monitor of this robot and this guard, as [`GuardedMonitor::replace`] takes it.
+    pub fn interlock(&self) -> Interlock {
+        Interlock::Granted(self.grants.clone())
+    }
+
+    /// Exchanges the monitor with `next`, which goes on where this one has ended ([`Monitor::continue_from`]). `next` was made with
+    /// [`GuardedMonitor::interlock`] and has the same exchange regions; the guard stays. Call it between two ticks; it does not
+    /// allocate.
+    pub fn replace(&mut self, next: &mut Monitor, same: &[Option<RegionId>]) {
+        next.continue_from(&mut self.monitor, same);
+        std::mem::swap(&mut self.monitor, next);
     }
 
     /// The monitor, to switch regions and attach volumes. Ticks go through [`GuardedMonitor::tick`].

@@ -7,3 +7,8 @@ use elbowroom_cell::Cell;
 pub fn configuration_number(cell: &Cell) -> u64 {
     cell.checksum.get(..16).and_then(|digits| u64::from_str_radix(digits, 16).ok()).unwrap_or(0)
 }
+
+/// The same as text: the first 16 hexadecimal digits.
+pub(crate) fn configuration_digits(cell: &Cell) -> String {
+    cell.checksum.chars().take(16).collect()
+}

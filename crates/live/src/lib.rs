@@ -6,6 +6,7 @@
 mod arbiter_service;
 mod carried_volumes;
 mod cell_observer;
+mod cell_versions;
 mod client;
 mod clock;
 mod configuration_number;
@@ -25,6 +26,7 @@ mod service_start;
 mod simulated_controllers;
 
 pub use arbiter_service::{ArbiterService, NotCleared};
+pub use cell_versions::{CellVersions, NoVersion};
 pub use client::{ControllerClient, ControllerState, Refused};
 pub use clock::{Clock, boot_number};
 pub use configuration_number::configuration_number;

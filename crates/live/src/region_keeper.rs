@@ -1,4 +1,4 @@
-//! Keeps which regions of a cell are switched on, and tells all nodes.
+//! Keeps which regions a cell has now and which are switched on, and says so to all nodes.
 
 use std::collections::BTreeSet;
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
@@ -6,10 +6,11 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use elbowroom_cell::Cell;
+use elbowroom_cell::{Cell, RegionEdit};
 use elbowroom_monitor::Life;
 use serde::{Deserialize, Serialize};
 
+use crate::configuration_number::configuration_digits;
 use crate::event_handler::EventHandler;
 use crate::keys::Keys;
 use crate::network::{Network, NetworkError, Subscription, Urgency};
@@ -38,9 +39,23 @@ pub enum ProgramSwitches {
     Ignored(Option<EventHandler>),
 }
 
-/// Keeps which regions are switched on; one process of a cell has it. It ends when it is dropped.
+/// A table, and the cell that has these regions.
+struct Kept {
+    table: RegionTable,
+    cell: Arc<Cell>,
+}
+
+/// The regions of a cell at one instant.
+#[derive(Debug, Clone)]
+pub(crate) struct PresentRegions {
+    pub(crate) cell: Arc<Cell>,
+    /// What is not as in the cell file.
+    pub(crate) edits: Vec<RegionEdit>,
+}
+
+/// Keeps which regions a cell has and which are switched on; one process of a cell has it. It ends when it is dropped.
 pub struct RegionKeeper {
-    table: Arc<Mutex<RegionTable>>,
+    kept: Arc<Mutex<Kept>>,
     subscription: Option<Subscription>,
     wake: Option<Sender<()>>,
     thread: Option<JoinHandle<()>>,
@@ -59,18 +74,21 @@ impl RegionKeeper {
         boot: u64,
         programs: ProgramSwitches,
     ) -> Result<Self, NetworkError> {
-        let table = Arc::new(Mutex::new(RegionTable { revision: (boot, 0), ..RegionTable::initial(cell) }));
+        let table = RegionTable { revision: (boot, 0), ..RegionTable::initial(cell) };
+        let kept = Arc::new(Mutex::new(Kept { table, cell: cell.clone() }));
         let (wake, woken) = mpsc::channel();
         let keys = Keys::new(&cell.name);
         let handler = {
-            let (table, cell, wake) = (table.clone(), cell.clone(), wake.clone());
+            let (kept, wake) = (kept.clone(), wake.clone());
             let ignored = Ignored::default();
             Box::new(move |bytes: &[u8]| {
                 let Ok(request) = serde_json::from_slice::<SwitchRequest>(bytes) else { return };
+                let mut kept = lock(&kept);
+                let Some(region) = find(&request.region, &kept.cell) else { return };
                 match &programs {
-                    ProgramSwitches::Ignored(on_event) => ignored.report(&request, &cell, on_event.as_ref()),
+                    ProgramSwitches::Ignored(on_event) => ignored.report(&request, on_event.as_ref()),
                     ProgramSwitches::Obeyed => {
-                        if find(&request.region, &cell).is_some_and(|r| lock(&table).switch(r, request.active)) {
+                        if kept.table.switch(region, request.active) {
                             // The other side is gone only when the keeper ends.
                             let _ = wake.send(());
                         }
@@ -80,10 +98,13 @@ impl RegionKeeper {
         };
         let subscription = network.subscribe(&keys.switch(), handler)?;
         let mut publisher = network.publisher(&keys.regions(), Urgency::RealTime)?;
-        let (published, cell) = (table.clone(), cell.clone());
+        let published = kept.clone();
         let publish = move || {
             loop {
-                let message = lock(&published).message(&cell);
+                let message = {
+                    let kept = lock(&published);
+                    kept.table.message(&kept.cell)
+                };
                 if let Ok(json) = serde_json::to_vec(&message) {
                     publisher.publish(&json);
                 }
@@ -95,7 +116,7 @@ impl RegionKeeper {
         };
         let thread = std::thread::Builder::new().name("regions".into()).spawn(publish);
         Ok(Self {
-            table,
+            kept,
             subscription: Some(subscription),
             wake: Some(wake),
             thread: thread.ok(),
@@ -103,23 +124,62 @@ impl RegionKeeper {
         })
     }
 
-    /// Per region of the cell whether it is on.
+    /// Per region of the cell as it is now whether it is on.
     pub fn active(&self) -> Vec<bool> {
-        lock(&self.table).active.clone()
+        lock(&self.kept).table.active.clone()
     }
 
-    /// Switches a temporary region, by its index in the cell; the nodes hear of it at once. Permanent regions stay on.
+    /// The regions as they are now.
+    pub(crate) fn present(&self) -> PresentRegions {
+        let kept = lock(&self.kept);
+        PresentRegions { cell: kept.cell.clone(), edits: kept.table.edits.clone() }
+    }
+
+    /// Switches a temporary region, by its index in the cell as it is now; the nodes hear of it at once. Permanent regions stay on.
     pub fn switch(&self, region: usize, active: bool) {
-        if lock(&self.table).switch(region, active)
-            && let Some(wake) = &self.wake
-        {
+        if lock(&self.kept).table.switch(region, active) {
+            self.publish();
+        }
+    }
+
+    /// From now on nodes that do not hear this keeper stop: regions may be moved, added and removed.
+    pub(crate) fn allow_edits(&self) {
+        lock(&self.kept).table.is_editable = true;
+        self.publish();
+    }
+
+    /// These are the regions from now on. Those that were there before are on or off as before; new ones are as `new_are_on`, permanent
+    /// ones on. While it is not `due`, nodes with the regions before may go on.
+    pub(crate) fn set(&self, regions: &PresentRegions, new_are_on: bool, is_due: bool) {
+        let mut kept = lock(&self.kept);
+        let PresentRegions { cell, edits } = regions;
+        let was_on = |name: &str| {
+            let before = kept.cell.regions.iter().zip(&kept.table.active);
+            before.filter(|(r, _)| r.region.name == name).map(|(_, on)| *on).next()
+        };
+        let on = |r: &elbowroom_cell::CellRegion| {
+            r.region.life == Life::Permanent || was_on(&r.region.name).unwrap_or(new_are_on)
+        };
+        let active = cell.regions.iter().map(on).collect();
+        let table = &mut kept.table;
+        (table.active, table.edits) = (active, edits.clone());
+        let former = std::mem::replace(&mut table.present, configuration_digits(cell));
+        table.former = if is_due { String::new() } else { former };
+        table.revision.1 += 1;
+        kept.cell = cell.clone();
+        drop(kept);
+        self.publish();
+    }
+
+    fn publish(&self) {
+        if let Some(wake) = &self.wake {
             let _ = wake.send(());
         }
     }
 }
 
-fn lock(table: &Mutex<RegionTable>) -> MutexGuard<'_, RegionTable> {
-    table.lock().unwrap_or_else(PoisonError::into_inner)
+fn lock(kept: &Mutex<Kept>) -> MutexGuard<'_, Kept> {
+    kept.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// The temporary region of this name. A permanent one is never switched.
@@ -130,12 +190,11 @@ fn find(name: &str, cell: &Cell) -> Option<usize> {
 /// Requests that were not obeyed. One report per region of the cell: programs repeat themselves, and names of regions that there
 /// are not would be without end.
 #[derive(Default)]
-struct Ignored(Mutex<BTreeSet<usize>>);
+struct Ignored(Mutex<BTreeSet<String>>);
 
 impl Ignored {
-    fn report(&self, request: &SwitchRequest, cell: &Cell, on_event: Option<&EventHandler>) {
-        let Some(region) = find(&request.region, cell) else { return };
-        let is_new = self.0.lock().unwrap_or_else(PoisonError::into_inner).insert(region);
+    fn report(&self, request: &SwitchRequest, on_event: Option<&EventHandler>) {
+        let is_new = self.0.lock().unwrap_or_else(PoisonError::into_inner).insert(request.region.clone());
         if let (true, Some(on_event)) = (is_new, on_event) {
             on_event(&format!(
                 "{}: a request to switch it, without a token, was ignored (--program-switches obeys such requests)",

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use elbowroom_cell::configure::MonitorSetup;
-use elbowroom_cell::{Cell, configure};
+use elbowroom_cell::{Cell, EditedRegions, configure};
 use elbowroom_formats::FormatError;
 use elbowroom_interlock::Boot;
 use elbowroom_monitor::{RegionKind, RobotSlot};
@@ -13,9 +13,10 @@ use elbowroom_view::{Server, ServerSettings, StatusFeed};
 
 use crate::arbiter_service::ArbiterService;
 use crate::cell_observer::CellObserver;
+use crate::cell_versions::CellVersions;
 use crate::clock::{Clock, boot_number};
 use crate::configuration_number::configuration_number;
-use crate::control::{ControlParts, ControlServer, JointsHeard};
+use crate::control::{ControlParts, ControlServer, JointsHeard, NodesHeard};
 use crate::network::{JoinedNetworks, Network, NetworkError, UdpNetwork, ZenohNetwork, ZenohSettings};
 use crate::node::{Node, NodeMonitor, NodeParts};
 use crate::region_keeper::{ProgramSwitches, RegionKeeper};
@@ -28,6 +29,7 @@ use crate::simulated_controllers::SimulatedControllers;
 pub(crate) struct ServiceStart<'o> {
     options: &'o ServiceOptions,
     cell: Arc<Cell>,
+    versions: Arc<CellVersions>,
     /// Those that this process guards.
     robots: Vec<RobotId>,
     pub(crate) zenoh: Arc<ZenohNetwork>,
@@ -40,7 +42,10 @@ pub(crate) struct ServiceStart<'o> {
 impl<'o> ServiceStart<'o> {
     /// Opens the networks.
     pub(crate) fn new(cell: Cell, options: &'o ServiceOptions) -> Result<Self, ServiceError> {
+        // A cell without a file has no other regions.
+        let edited = EditedRegions::read(&cell).ok();
         let cell = Arc::new(stopping_in_time(cell));
+        let versions = Arc::new(CellVersions::new(&cell, edited, stopping_in_time));
         let robots = guarded_robots(&cell, options)?;
         let listen = match (&options.listen, &options.connect) {
             (None, None) => Some(DEFAULT_ADDRESS.to_owned()),
@@ -49,7 +54,7 @@ impl<'o> ServiceStart<'o> {
         let zenoh = Arc::new(ZenohNetwork::open(&ZenohSettings { listen, connect: options.connect.clone() })?);
         let shared: Arc<dyn Network> = zenoh.clone();
         let of_controllers = with_udp(&shared, options.udp.as_deref())?;
-        Ok(Self { options, cell, robots, zenoh, shared, of_controllers, clock: Clock::start() })
+        Ok(Self { options, cell, versions, robots, zenoh, shared, of_controllers, clock: Clock::start() })
     }
 
     /// True where this process keeps the regions: as the arbiter, or as the only process.
@@ -81,13 +86,15 @@ impl<'o> ServiceStart<'o> {
         let Some(control) = &self.options.control else { return Ok(None) };
         let keeper = keeper.ok_or(ServiceError::ControlWithoutArbiter)?;
         let parts = ControlParts {
-            cell: self.cell.clone(),
+            versions: self.versions.clone(),
             keeper: keeper.clone(),
             arbiter: arbiter.cloned(),
+            nodes: NodesHeard::start(&self.cell, &self.shared, self.clock)?,
             joints: JointsHeard::start(&self.cell, &self.of_controllers, self.clock)?,
             clock: self.clock,
             on_event: self.options.on_event.clone(),
         };
+        keeper.allow_edits();
         Ok(Some(ControlServer::start(parts, control)?))
     }
 
@@ -111,8 +118,9 @@ impl<'o> ServiceStart<'o> {
         let recorder = recorder.map(|r| r.robot(robot.0 as u32, monitor.monitor(), self.clock.seconds()));
         let (network, interlocks) = (self.of_controllers.clone(), self.shared.clone());
         let cell = cell.clone();
-        let clock = self.clock;
-        Ok(Node::start(NodeParts { cell, robot, setup, monitor, checksum, clock, network, interlocks, recorder })?)
+        let (clock, versions) = (self.clock, Some(self.versions.clone()));
+        let parts = NodeParts { cell, robot, setup, monitor, checksum, clock, network, interlocks, recorder, versions };
+        Ok(Node::start(parts)?)
     }
 
     pub(crate) fn ros2(&self) -> Result<Option<Participant>, ServiceError> {

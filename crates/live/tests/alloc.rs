@@ -6,12 +6,12 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use elbowroom_cell::configure::{self, MonitorSetup};
-use elbowroom_cell::{Cell, CellRobot};
+use elbowroom_cell::{Cell, CellRobot, EditedRegions, RegionEdit};
 use elbowroom_interlock::wire::{MAX_BYTES, decode_state, encode_grants};
 use elbowroom_interlock::{Arbiter, ArbiterSettings, Boot, Micros, RobotSettings, StateMessage};
 use elbowroom_live::messages::{AttachedVolume, MAX_JOINT_STATE_BYTES, OVERRIDE_ANSWER_BYTES};
-use elbowroom_live::node::{NodeMonitor, NodeTick};
-use elbowroom_live::{ControllerClient, ControllerState, RegionTable, configuration_number};
+use elbowroom_live::node::{NodeMonitor, NodeTick, RegionBuilder};
+use elbowroom_live::{CellVersions, ControllerClient, ControllerState, RegionTable, configuration_number};
 use elbowroom_monitor::{EventKind, Fault, OverrideReason, Presence, RobotSlot, TickReport, VolumeId};
 use elbowroom_robot::RobotId;
 use elbowroom_status::StatusSample;
@@ -94,12 +94,16 @@ steps = [{ grip = "part" }, { release = "part" }]
 /// The node of the arm, its controller, the controller of the carriage, and the arbiter.
 struct Setup {
     cell: Arc<Cell>,
+    versions: Arc<CellVersions>,
     node: NodeTick,
+    builder: RegionBuilder,
+    /// The configuration that was due last.
+    present: String,
+    /// How often the node got other regions.
+    built: usize,
     client: ControllerClient,
     carriage: ControllerClient,
     arbiter: Arbiter,
-    /// The region that is switched.
-    gate: usize,
     /// What the arm carries in turn: nothing named, tools, a part, and a volume that there is not.
     carried: Vec<Vec<AttachedVolume>>,
 }
@@ -111,13 +115,20 @@ impl Setup {
         let setup = configure::setups(&cell).expect("setups").remove(0);
         let settings = ArbiterSettings::new(vec![RobotSettings::of(&setup.configuration)], 1);
         let monitor = NodeMonitor::new(&setup, RobotSlot(0), 1, checksum, Boot(1)).expect("a monitor");
+        let edited = EditedRegions::parse("swing.toml", CELL).expect("a file");
+        let versions = Arc::new(CellVersions::new(&cell, Some(edited), |cell| cell));
+        let carried = carried(&setup, &cell.robots[0]);
+        let node = NodeTick::new(cell.clone(), setup, monitor, checksum, None);
         Self {
-            carried: carried(&setup, &cell.robots[0]),
-            node: NodeTick::new(cell.clone(), setup, monitor, checksum, None),
+            carried,
+            builder: node.region_builder(RobotId(0), versions.clone()),
+            present: cell.checksum.chars().take(16).collect(),
+            built: 0,
+            versions,
+            node,
             client: ControllerClient::new(1, checksum),
             carriage: ControllerClient::new(1, checksum),
             arbiter: Arbiter::new(ArbiterSettings { checksum, ..settings }, Boot(1)),
-            gate: cell.regions.iter().position(|r| r.region.name == "gate").expect("a region"),
             cell,
         }
     }
@@ -188,9 +199,7 @@ fn main() {
         let now = Micros(1 + n * TICK_US);
         if n % 25 == 0 {
             // On the node's other thread: reading it allocates.
-            let mut table = RegionTable { revision: (1, n), ..RegionTable::initial(&s.cell) };
-            table.active[s.gate] = n % 4_000 < 2_000;
-            s.node.regions(&table.message(&s.cell), now);
+            hear_regions(&mut s, n, now);
         }
         let counter = Counter::new(ALLOCATOR);
         send_joint_states(&mut s, n, now, &mut sent);
@@ -224,7 +233,41 @@ fn main() {
     let counts = [seen.granted, seen.switched, seen.limited, seen.obeyed];
     assert!(counts.iter().zip([5, 5, 1000, 1000]).all(|(count, least)| *count >= least), "{counts:?}");
     assert!(seen.ticks > TICKS / 2, "{} ticks", seen.ticks);
+    assert!(s.built >= 10, "regions were built {} times", s.built);
     assert_eq!(seen.allocations, 0);
+}
+
+/// The gate is switched, and in turn at its place, elsewhere with one more region beside it, and not there at all.
+fn hear_regions(s: &mut Setup, n: u64, now: Micros) {
+    let edited = s.versions.edited().expect("a file");
+    let edit = |name: &str, table: Option<String>| RegionEdit { name: name.into(), table };
+    let table = edited.table(&[], "gate").expect("a region");
+    let edits = match n / 1_500 % 3 {
+        0 => Vec::new(),
+        1 => {
+            let moved = edited.moved("gate", &table, "centre = [800, 300, 400]").expect("a place");
+            vec![edit("gate", Some(moved)), edit("second", Some(table))]
+        }
+        _ => vec![edit("gate", None)],
+    };
+    let cell = s.versions.cell(&edits).expect("a cell");
+    let present = cell.checksum.chars().take(16).collect();
+    let of_cell = RegionTable::initial(&cell);
+    let mut table =
+        RegionTable { revision: (1, n), edits, present, active: of_cell.active, ..RegionTable::initial(&s.cell) };
+    if let Some(gate) = cell.regions.iter().position(|r| r.region.name == "gate") {
+        table.active[gate] = n % 4_000 < 2_000;
+    }
+    // Not yet due at first, so that the tick goes on with the regions before.
+    if n % 1_500 <= 100 {
+        table.former.clone_from(&s.present);
+    } else {
+        s.present.clone_from(&table.present);
+    }
+    s.node.regions(&table.message(&cell), now);
+    if n.is_multiple_of(100) {
+        s.built += usize::from(s.builder.build().expect("regions that can be built"));
+    }
 }
 
 /// The arm swings, the carriage moves to and fro; every second both are silent for 40 ms.

@@ -269,8 +269,19 @@ fn node(network: Arc<dyn Network>) -> Node {
     let setup = configure::setups(&cell).expect("setups").remove(0);
     let monitor = NodeMonitor::new(&setup, RobotSlot(0), 0, checksum, Boot(1)).expect("a monitor");
     let (robot, interlocks) = (RobotId(0), network.clone());
-    Node::start(NodeParts { cell, robot, setup, monitor, checksum, clock, network, interlocks, recorder })
-        .expect("a node")
+    Node::start(NodeParts {
+        cell,
+        robot,
+        setup,
+        monitor,
+        checksum,
+        clock,
+        network,
+        interlocks,
+        recorder,
+        versions: None,
+    })
+    .expect("a node")
 }
 
 /// The override and the position of a line that the example prints.

@@ -49,7 +49,18 @@ fn start(of_node: Arc<dyn Network>, of_controller: &dyn Network) -> Setup {
     let (network, interlocks) = (of_node.clone(), of_node);
     let (robot, recorder) = (RobotId(0), None);
     let keys = Keys::new(&cell.name);
-    let node = Node::start(NodeParts { cell, robot, setup, monitor, checksum, clock, network, interlocks, recorder });
+    let node = Node::start(NodeParts {
+        cell,
+        robot,
+        setup,
+        monitor,
+        checksum,
+        clock,
+        network,
+        interlocks,
+        recorder,
+        versions: None,
+    });
     let answers: Arc<Mutex<Vec<OverrideAnswer>>> = Arc::default();
     let taken = answers.clone();
     let handler = Box::new(move |bytes: &[u8]| {

@@ -51,6 +51,7 @@ mod carried_volume;
 mod checksum;
 mod configuration;
 mod configuration_edit;
+mod continued_monitor;
 mod distance_to_guarded;
 mod event;
 mod interlock;
@@ -85,6 +86,7 @@ pub use access::{AccessClass, SwitchError};
 pub use attached_volumes::AttachError;
 pub use configuration::{ConfigError, Configuration, ConfigurationParts};
 pub use configuration_edit::{ConfigurationEdit, EditError};
+pub use continued_monitor::same_regions;
 pub use event::{Event, EventKind};
 pub use interlock::{
     ExchangeState, Grant, Interlock, Occupancy, RobotSlot, SlotGrants, SlotId, ZoneArbiter, group_overlapping,

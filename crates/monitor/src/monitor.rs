@@ -30,38 +30,40 @@ const MIN_INFERENCE_OVERRIDE: f64 = 0.01;
 /// The monitor of one robot: see the [crate documentation](crate).
 #[derive(Debug)]
 pub struct Monitor {
-    config: Configuration,
-    active: Vec<bool>,
+    pub(crate) config: Configuration,
+    pub(crate) active: Vec<bool>,
     /// Regions that are measured in this tick: the active ones, and all exchange regions of which it is known where they are.
     measured: Vec<bool>,
-    now: Placement,
+    pub(crate) now: Placement,
     /// The placement after the lookahead time, for the direction-aware law.
-    predicted: Option<Placement>,
+    pub(crate) predicted: Option<Placement>,
     /// The chain at the program's velocities at override 1, for the laws that need it.
     intent: Option<ChainState>,
-    stopping_law: Option<StoppingLaw>,
+    pub(crate) stopping_law: Option<StoppingLaw>,
     clearances: RegionClearances,
     /// The motion since the previous tick.
-    sweep: RegionSweep,
-    zones: Vec<ZoneState>,
+    pub(crate) sweep: RegionSweep,
+    pub(crate) zones: Vec<ZoneState>,
     /// The same of all measured regions, the inactive ones included.
-    presence: Vec<ZoneState>,
+    pub(crate) presence: Vec<ZoneState>,
     /// Regions in whose warning zone the robot is, in this tick and in the previous one.
-    warned: Vec<u32>,
+    pub(crate) warned: Vec<u32>,
     previously_warned: Vec<u32>,
-    outputs: DigitalOutputs,
-    log: EventLog,
+    pub(crate) outputs: DigitalOutputs,
+    pub(crate) log: EventLog,
     /// Regions switched since the last tick.
     switched: Vec<(RegionId, bool)>,
     /// Regions switched for this tick: the motion since the previous tick does not count for them.
     just_switched: Vec<RegionId>,
-    watchdog: Watchdog,
+    pub(crate) watchdog: Watchdog,
     source_check: SourceCheck,
-    zone_client: Option<ZoneClient>,
-    last_override: Option<f64>,
+    pub(crate) zone_client: Option<ZoneClient>,
+    pub(crate) last_override: Option<f64>,
     /// True where a volume was attached since the last tick: then the override does not fall at a limited rate.
-    just_attached: bool,
-    fault: Option<Fault>,
+    pub(crate) just_attached: bool,
+    pub(crate) fault: Option<Fault>,
+    /// What stops the robot besides: its host knows it, the input does not show it.
+    pub(crate) external_fault: Option<Fault>,
 }
 
 /// The smallest requested override and its reason.
@@ -108,6 +110,7 @@ impl Monitor {
             last_override: None,
             just_attached: false,
             fault: None,
+            external_fault: None,
             now,
             zone_client,
             config,
@@ -254,6 +257,23 @@ impl Monitor {
     pub fn forget_position(&mut self) {
         self.watchdog.forget_position();
         self.sweep.reset();
+    }
+
+    /// Stops the robot, from the next tick on, for a fault that its host knows and the input does not show; `None` ends it. The
+    /// robot is measured as before, and rises from override 0 afterwards. Set it here instead of lowering the override of a
+    /// report: the monitor has to know which override the robot executes. Never allocates.
+    pub fn set_external_fault(&mut self, fault: Option<Fault>) {
+        self.external_fault = fault;
+    }
+
+    /// The fault of [`Monitor::set_external_fault`].
+    pub fn external_fault(&self) -> Option<Fault> {
+        self.external_fault
+    }
+
+    /// What is wrong with the input of the last tick. `None` where it was valid and the robot was measured.
+    pub fn input_fault(&self) -> Option<Fault> {
+        self.fault
     }
 
     /// True where a volume is a part of the robot at present.
@@ -560,6 +580,10 @@ impl Monitor {
         let v0 = s.programmed_override;
         let mut decision =
             Decision { speed_override: v0, immediate_limit: v0, reason: OverrideReason::Free, governing: None };
+        if let Some(fault) = self.external_fault {
+            let reason = OverrideReason::Fault(fault);
+            return Decision { speed_override: 0.0, immediate_limit: 0.0, reason, governing: None };
+        }
         if let Some(region) = self.zone_client.as_ref().and_then(ZoneClient::halted_by) {
             let (reason, governing) = (OverrideReason::Halted(region), self.clearances.get(region.0));
             return Decision { speed_override: 0.0, immediate_limit: 0.0, reason, governing };

@@ -186,6 +186,9 @@ pub enum Fault {
     Frozen,
     /// The robot brakes less than stated in [`StoppingSettings`](crate::StoppingSettings).
     Braking,
+    /// It is not known which regions there are now, or the monitor is not built for them yet. A monitor does not know this by
+    /// itself: its host says so with [`Monitor::set_external_fault`](crate::Monitor::set_external_fault).
+    Regions,
     /// The source of motion that an active region follows is stale or not finite.
     Source {
         /// The region.
@@ -223,6 +226,7 @@ impl fmt::Display for Fault {
             Self::NoVelocity => write!(f, "no joint velocities are known yet"),
             Self::Frozen => write!(f, "joint values do not change although the robot is reported to move"),
             Self::Braking => write!(f, "the robot brakes less than its stated deceleration"),
+            Self::Regions => write!(f, "the regions of the cell have changed, or are not known"),
             Self::Source { region } => write!(f, "the source that region {} follows is lost", region.0),
             Self::SourceJump { region } => {
                 write!(f, "the source that region {} follows jumped, or moves otherwise than it says", region.0)

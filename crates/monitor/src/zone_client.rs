@@ -110,6 +110,17 @@ impl ZoneClient {
         }
     }
 
+    /// Goes on where the client of a former monitor of the same robot has ended: what it holds, and where it was seen.
+    pub(crate) fn continue_from(&mut self, former: &Self) {
+        for session in &mut self.slots {
+            let Some(before) = former.slots.iter().find(|s| s.slot == session.slot) else { continue };
+            let SlotSession { occupancy, is_near_active_region, grant, state, left_s, .. } = *before;
+            (session.occupancy, session.is_near_active_region, session.grant) =
+                (occupancy, is_near_active_region, grant);
+            (session.state, session.left_s) = (state, left_s);
+        }
+    }
+
     /// The grants that the caller writes; `None` where the robots share an arbiter.
     pub(crate) fn slot_grants(&self) -> Option<&SlotGrants> {
         if let Interlock::Granted(grants) = &self.interlock { Some(grants) } else { None }

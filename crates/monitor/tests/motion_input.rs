@@ -113,6 +113,26 @@ fn a_robot_that_reacts_late_is_not_frozen() {
     assert!((ticks(0.3)..ticks(1.5)).any(|tick| reason(tick) == OverrideReason::Fault(Fault::Frozen)));
 }
 
+/// A robot that its host stops is at rest although its program would move it; it goes on when the host lets it.
+#[test]
+fn a_robot_that_its_host_stops_is_not_frozen() {
+    let mut m = monitor();
+    let intent = [0.5, 0.0, 0.0, 0.0, 0.0, 0.0];
+    let mut tick = |tick: u32, fault: Option<Fault>| {
+        m.set_external_fault(fault);
+        let stationary = Snapshot::stationary(TICK_S * f64::from(tick), &[-20.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        let report = m.tick(&Snapshot { qd: &[0.0; 6], intent: Some(&intent), ..stationary });
+        (report.speed_override, report.reason, m.input_fault())
+    };
+    for i in 0..5000 {
+        assert_eq!(tick(i, Some(Fault::Regions)), (0.0, OverrideReason::Fault(Fault::Regions), None), "tick {i}");
+    }
+    let (speed_override, reason, fault) = tick(5000, None);
+    assert!(speed_override > 0.0 && fault.is_none(), "{reason}");
+    // Stopped again, from whatever override was reached.
+    assert_eq!(tick(5001, Some(Fault::Regions)).0, 0.0);
+}
+
 #[test]
 fn a_reading_that_has_jumped_is_a_fault_until_it_returns() {
     let mut m = monitor();

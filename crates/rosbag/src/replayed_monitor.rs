@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use elbowroom_monitor::{
-    AccessClass, Configuration, Interlock, Monitor, Occupancy, RegionId, RegionKind, RobotSlot, SlotGrants, SlotId,
-    Snapshot, SourceState, TickReport, VolumeId, ZoneArbiter,
+    AccessClass, Configuration, Fault, Interlock, Monitor, Occupancy, RegionId, RegionKind, RobotSlot, SlotGrants,
+    SlotId, Snapshot, SourceState, TickReport, VolumeId, ZoneArbiter,
 };
 use elbowroom_ros2::msgs::elbowroom_msgs::{MonitorConfiguration, MonitorTick};
 
@@ -78,6 +78,8 @@ impl ReplayedMonitor {
         if tick.forgot_position {
             self.monitor.forget_position();
         }
+        // Which fault it was does not matter: each has the same effect.
+        self.monitor.set_external_fault(tick.has_external_fault.then_some(Fault::Regions));
         for switch in &tick.switched {
             let region = switch.region as usize;
             if region >= self.monitor.configuration().regions().len() {

@@ -13,6 +13,7 @@ pub(crate) fn write(to: &mut MonitorTick, robot: u32, snapshot: &Snapshot<'_>, r
         to.extend_from_slice(from);
     };
     to.robot = robot;
+    to.has_external_fault = monitor.external_fault().is_some();
     (to.now_s, to.stamp_s) = (snapshot.now_s, snapshot.stamp_s);
     copy(&mut to.q, snapshot.q);
     copy(&mut to.qd, snapshot.qd);

@@ -9,7 +9,7 @@ use std::sync::atomic::Ordering::SeqCst;
 use std::time::{Duration, Instant};
 
 use common::{SlowFile, position, rail, velocity};
-use elbowroom_monitor::{AccessClass, Monitor, Snapshot};
+use elbowroom_monitor::{AccessClass, Fault, Monitor, Snapshot};
 use elbowroom_rosbag::{CellWriter, Recorder, TickRecorder, replay};
 use elbowroom_status::{CellStatus, RobotStatus};
 
@@ -38,6 +38,7 @@ fn what_a_service_records_replays_to_the_bit() {
             monitor.switch(gate, on, AccessClass::Programmer).unwrap();
             ticks.switched(gate, on);
         }
+        monitor.set_external_fault((2300..2600).contains(&i).then_some(Fault::Regions));
         recorder.status(tick(&mut monitor, &mut ticks, 0.002 * f64::from(i)));
         if i % 100 == 0 {
             // A run of the test has no time between its ticks: the recorder gets it here.

@@ -39,6 +39,10 @@ pub struct RobotStatus {
     pub virtual_tcps: Vec<PointStatus>,
     /// Every region of the robot.
     pub regions: Vec<RegionStatus>,
+    /// The first 16 hexadecimal digits of the checksum of the configuration with which the tick ran; empty where that is the cell
+    /// file's.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub configuration: String,
     /// How the service is doing.
     pub health: HealthStatus,
     /// What happened since the status before.
@@ -143,6 +147,7 @@ impl RobotStatus {
             governing: report.governing.as_ref().map(point),
             virtual_tcps: sample.virtual_tcps.iter().map(point).collect(),
             regions: of_region().map(|(s, r)| RegionStatus::of(&r.name, s)).collect(),
+            configuration: String::new(),
             health: HealthStatus::default(),
             events: Vec::new(),
         }

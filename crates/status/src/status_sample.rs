@@ -6,6 +6,9 @@ use elbowroom_spatial::Pose;
 /// Most events between two statuses; further ones are counted, not kept.
 const MAX_EVENTS: usize = 256;
 
+/// So many regions may be added while the cell runs before a sample needs more memory.
+pub const SPARE_REGIONS: usize = 64;
+
 /// What a tick leaves for a [`RobotStatus`](crate::RobotStatus): plain copies, into memory that was allocated before.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StatusSample {
@@ -45,7 +48,7 @@ impl RegionSample {
 impl StatusSample {
     /// An empty sample with memory for this monitor.
     pub fn new(monitor: &Monitor) -> Self {
-        let regions = monitor.configuration().regions().len();
+        let regions = monitor.configuration().regions().len() + SPARE_REGIONS;
         let nothing = TickReport {
             stamp_s: 0.0,
             speed_override: 0.0,
@@ -94,6 +97,11 @@ impl StatusSample {
         for event in monitor.events() {
             if self.events.len() < MAX_EVENTS { self.events.push(*event) } else { self.lost_events += 1 }
         }
+    }
+
+    /// The regions have other indices from now on: those of the events that were not taken yet are changed. Does not allocate.
+    pub fn renumber(&mut self, new: impl Fn(RegionId) -> Option<RegionId>) {
+        self.events.iter_mut().for_each(|event| event.region = event.region.and_then(&new));
     }
 
     /// The events since the last call, and how many more there were.

@@ -53,6 +53,11 @@ impl CellFile {
         Ok(Self { file, entries, on_disk: false })
     }
 
+    /// For changes in memory, of which no seal says anything.
+    pub(crate) fn unsealed(self) -> Self {
+        Self { on_disk: false, ..self }
+    }
+
     /// Names of the regions, in file order.
     pub(crate) fn region_names(&self) -> Vec<String> {
         let tables = self.entries.iter().filter(|e| e.key == "region").filter_map(|e| match &e.node.data {

@@ -15,7 +15,7 @@ fn quoted(text: &str) -> String {
 }
 
 /// A value as canonical TOML: tables in the order of their keys.
-pub(super) fn text(node: &Node) -> String {
+pub(crate) fn text(node: &Node) -> String {
     match &node.data {
         Data::Text(t) => quoted(t),
         // -0 and 0 have the same text.

@@ -15,6 +15,12 @@ pub(crate) enum ControlCommand {
     Regions(RegionsArgs),
     /// Switch a temporary region on or off
     Switch(SwitchArgs),
+    /// Put a temporary region elsewhere
+    Move(MoveArgs),
+    /// Add a region
+    Add(AddArgs),
+    /// Remove a temporary region
+    Remove(RemoveArgs),
     /// Declare that a silent robot is at rest outside of its exchange regions, which you have seen
     Clear(ClearArgs),
     /// Verify and list the changes that a service has logged beside the cell file
@@ -73,6 +79,54 @@ pub(crate) struct SwitchArgs {
     pub(crate) region: String,
     /// On or off
     pub(crate) state: State,
+    #[command(flatten)]
+    pub(crate) service: ServiceArgs,
+    /// A comment for the log
+    #[arg(long, value_name = "TEXT")]
+    pub(crate) note: Option<String>,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  elbowroom control move cart 'base=[-900, 0, 0]' --secret panel.secret --note \"other dock\"")]
+pub(crate) struct MoveArgs {
+    /// The region
+    pub(crate) region: String,
+    /// Where it is from now on: the keys of the cell file that say so
+    #[arg(value_name = "KEY=VALUE", required = true)]
+    pub(crate) to: Vec<String>,
+    #[command(flatten)]
+    pub(crate) service: ServiceArgs,
+    /// A comment for the log
+    #[arg(long, value_name = "TEXT")]
+    pub(crate) note: Option<String>,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  elbowroom control add trolley trolley.toml --secret panel.secret
+  elbowroom teach cell.toml --shape box --name trolley --states taught.csv | elbowroom control add trolley - --secret panel.secret")]
+pub(crate) struct AddArgs {
+    /// Its name
+    pub(crate) region: String,
+    /// The file with its keys, as in a cell file, or with the table [region.NAME]; - is standard input
+    pub(crate) file: PathBuf,
+    /// It is switched off at first; temporary regions only
+    #[arg(long)]
+    pub(crate) off: bool,
+    #[command(flatten)]
+    pub(crate) service: ServiceArgs,
+    /// A comment for the log
+    #[arg(long, value_name = "TEXT")]
+    pub(crate) note: Option<String>,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  elbowroom control remove trolley --secret panel.secret")]
+pub(crate) struct RemoveArgs {
+    /// The region
+    pub(crate) region: String,
     #[command(flatten)]
     pub(crate) service: ServiceArgs,
     /// A comment for the log

@@ -26,6 +26,19 @@ pub(crate) fn control(command: &ControlCommand) -> Result<ExitStatus, Failure> {
             let request = json!({ "region": args.region, "active": active, "note": args.note });
             done(&Client::new(&args.service)?.change("/switch", &request)?)?;
         }
+        ControlCommand::Move(args) => {
+            let request = json!({ "region": args.region, "toml": keys(&args.to)?, "note": args.note });
+            done(&Client::new(&args.service)?.change("/move", &request)?)?;
+        }
+        ControlCommand::Add(args) => {
+            let toml = read(&args.file)?;
+            let request = json!({ "region": args.region, "toml": toml, "active": !args.off, "note": args.note });
+            done(&Client::new(&args.service)?.change("/add", &request)?)?;
+        }
+        ControlCommand::Remove(args) => {
+            let request = json!({ "region": args.region, "note": args.note });
+            done(&Client::new(&args.service)?.change("/remove", &request)?)?;
+        }
         ControlCommand::Clear(args) => {
             let (robot, regions, repeat) = (&args.robot, &args.outside, &args.repeat);
             let request = json!({ "robot": robot, "regions": regions, "repeat_robot": repeat, "note": args.note });
@@ -33,6 +46,23 @@ pub(crate) fn control(command: &ControlCommand) -> Result<ExitStatus, Failure> {
         }
     }
     Ok(ExitStatus::Success)
+}
+
+/// `KEY=VALUE` as lines of TOML.
+fn keys(written: &[String]) -> Result<String, Failure> {
+    let line = |text: &String| match text.split_once('=') {
+        Some((key, value)) => Ok(format!("{} = {}\n", key.trim(), value.trim())),
+        None => Err(Failure::Wrong(format!("`{text}` is no KEY=VALUE\n  write: 'centre=[0, 0, 900]'"))),
+    };
+    written.iter().map(line).collect()
+}
+
+fn read(file: &Path) -> Result<String, Failure> {
+    let unreadable = |e: std::io::Error| Failure::Wrong(format!("{}: cannot be read: {e}", file.display()));
+    if file == Path::new("-") {
+        return std::io::read_to_string(std::io::stdin().lock()).map_err(unreadable);
+    }
+    std::fs::read_to_string(file).map_err(unreadable)
 }
 
 fn token(args: &TokenArgs) -> Result<ExitStatus, Failure> {
@@ -80,6 +110,10 @@ fn regions(document: &Value) -> String {
 fn done(document: &Value) -> Result<(), Failure> {
     for robot in document["not_heard"].as_array().into_iter().flatten() {
         note(format_args!("{}: is not heard, so it may be inside", robot.as_str().unwrap_or_default()));
+    }
+    for robot in document["stopped"].as_array().into_iter().flatten() {
+        let robot = robot.as_str().unwrap_or_default();
+        note(format_args!("{robot}: its node has not taken the regions over, so it stops"));
     }
     match serde_json::from_value::<ControlEntry>(document["entry"].clone()) {
         Ok(logged) => print(&entry(&logged)),

@@ -2,13 +2,16 @@
 
 mod clearance;
 mod joints_heard;
+mod nodes_heard;
 mod refusal;
+mod region_changes;
 mod request_handler;
 mod requests;
 mod routes;
 mod server;
 
 pub(crate) use joints_heard::JointsHeard;
+pub(crate) use nodes_heard::NodesHeard;
 pub(crate) use request_handler::ControlParts;
 pub(crate) use server::ControlServer;
 pub use server::{ControlError, ControlOptions};

@@ -10,9 +10,11 @@ use serde::Serialize;
 
 use super::clearance::clearances;
 use super::joints_heard::JointsHeard;
+use super::nodes_heard::NodesHeard;
 use super::refusal::Refusal;
 use super::requests::{Clear, Switch};
 use crate::arbiter_service::{ArbiterService, NotCleared};
+use crate::cell_versions::CellVersions;
 use crate::clock::Clock;
 use crate::event_handler::EventHandler;
 use crate::region_keeper::RegionKeeper;
@@ -22,18 +24,19 @@ const MAX_NOTE: usize = 500;
 
 /// What a request is decided and carried out with.
 pub(crate) struct ControlParts {
-    pub(crate) cell: Arc<Cell>,
+    pub(crate) versions: Arc<CellVersions>,
     pub(crate) keeper: Arc<RegionKeeper>,
     /// `None` for a cell without exchange regions.
     pub(crate) arbiter: Option<Arc<ArbiterService>>,
     pub(crate) joints: JointsHeard,
+    pub(crate) nodes: NodesHeard,
     pub(crate) clock: Clock,
     pub(crate) on_event: Option<EventHandler>,
 }
 
 /// Takes one request at a time.
 pub(crate) struct RequestHandler {
-    parts: ControlParts,
+    pub(super) parts: ControlParts,
     log: Mutex<ControlLog>,
 }
 
@@ -46,6 +49,9 @@ pub(crate) struct Done {
     pub(crate) revision: String,
     /// Robots of the region of which nobody knows where they are.
     pub(crate) not_heard: Vec<String>,
+    /// Robots whose nodes run, but have not taken over the regions: they stop.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) stopped: Vec<String>,
 }
 
 /// The regions and robots of a cell.
@@ -86,13 +92,16 @@ impl RequestHandler {
         Self { parts, log: Mutex::new(log) }
     }
 
-    fn log(&self) -> MutexGuard<'_, ControlLog> {
+    pub(super) fn log(&self) -> MutexGuard<'_, ControlLog> {
         self.log.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Everything that may be changed.
     pub(crate) fn overview(&self) -> Overview {
-        let ControlParts { cell, keeper, arbiter, joints, .. } = &self.parts;
+        let ControlParts { keeper, arbiter, joints, .. } = &self.parts;
+        // In this order nothing changes in between.
+        let log = self.log();
+        let cell = keeper.present().cell;
         let (active, slots) = (keeper.active(), arbiter.as_ref().map(|a| a.slots()).unwrap_or_default());
         let region = |(r, active): (&CellRegion, bool)| {
             let slot = slots.iter().find(|slot| slot.regions.contains(&r.region.name));
@@ -113,7 +122,7 @@ impl RequestHandler {
         Overview {
             cell: cell.name.clone(),
             checksum: cell.checksum.clone(),
-            revision: revision(&self.log()),
+            revision: revision(&log),
             regions: cell.regions.iter().zip(active).map(region).collect(),
             robots: cell.robots.iter().zip(joints.states()).map(robot).collect(),
         }
@@ -121,8 +130,10 @@ impl RequestHandler {
 
     /// Switches a temporary region. One that a robot is inside of is not switched on.
     pub(crate) fn switch(&self, who: &AccessToken, at: &str, request: &Switch) -> Result<Done, Refusal> {
-        let ControlParts { cell, keeper, .. } = &self.parts;
-        let (index, region) = self.region(&request.region)?;
+        let keeper = &self.parts.keeper;
+        let mut log = self.log();
+        let cell = keeper.present().cell;
+        let (index, region) = find(&cell, &request.region)?;
         self.require(who, AccessClass::needed_for(Life::Temporary), &format!("switch region `{}`", request.region))?;
         if region.region.life == Life::Permanent {
             let error = format!("region `{}` is permanent: it is always on", request.region);
@@ -130,10 +141,9 @@ impl RequestHandler {
                 Refusal::new(409, error).help("life = \"temporary\" in the cell file makes it one that is switched")
             );
         }
-        let mut log = self.log();
         is_present(&log, at)?;
         let before = keeper.active()[index];
-        let not_heard = if request.active && !before { self.refuse_inside(region)? } else { Vec::new() };
+        let not_heard = if request.active && !before { self.refuse_inside(&cell, region)? } else { Vec::new() };
         let change = Change {
             item: format!("region.{}", request.region),
             field: "active".into(),
@@ -151,12 +161,12 @@ impl RequestHandler {
         keeper.switch(index, request.active);
         let state = if request.active { "on" } else { "off" };
         self.report(&format!("{}: switched {state} by {} ({})", request.region, who.name, who.class.name()));
-        Ok(Done { entry, revision: revision(&log), not_heard })
+        Ok(Done { entry, revision: revision(&log), not_heard, stopped: Vec::new() })
     }
 
     /// Clears a silent robot.
     pub(crate) fn clear(&self, who: &AccessToken, at: &str, request: &Clear) -> Result<Done, Refusal> {
-        let ControlParts { cell, arbiter, .. } = &self.parts;
+        let (arbiter, cell) = (&self.parts.arbiter, self.parts.keeper.present().cell);
         self.require(who, AccessClass::Integrator, "clear a robot")?;
         let robot = self.robot_to_clear(request)?;
         let no_arbiter = || Refusal::new(409, "the cell has no exchange regions, so there is nothing to clear");
@@ -188,12 +198,12 @@ impl RequestHandler {
             return Err(refused(why));
         }
         self.report(&format!("{}: cleared by {} ({})", request.robot, who.name, who.class.name()));
-        Ok(Done { entry, revision: revision(&log), not_heard: Vec::new() })
+        Ok(Done { entry, revision: revision(&log), not_heard: Vec::new(), stopped: Vec::new() })
     }
 
     /// The robot, if it and all its exchange regions are named twice and in full.
     fn robot_to_clear(&self, request: &Clear) -> Result<RobotId, Refusal> {
-        let cell = &self.parts.cell;
+        let cell = self.parts.versions.base();
         let robot = cell.robots.iter().position(|r| r.name == request.robot).map(RobotId).ok_or_else(|| {
             let names: Vec<&str> = cell.robots.iter().map(|r| r.name.as_str()).collect();
             Refusal::new(404, format!("there is no robot `{}`", request.robot))
@@ -219,17 +229,8 @@ impl RequestHandler {
         Ok(robot)
     }
 
-    fn region(&self, name: &str) -> Result<(usize, &CellRegion), Refusal> {
-        let regions = &self.parts.cell.regions;
-        let found = regions.iter().enumerate().find(|(_, r)| r.region.name == name);
-        found.ok_or_else(|| {
-            let names: Vec<&str> = regions.iter().map(|r| r.region.name.as_str()).collect();
-            Refusal::new(404, format!("there is no region `{name}`")).help(format!("one of {}", names.join(", ")))
-        })
-    }
-
     /// Refused attempts are reported: somebody with a token tried.
-    fn require(&self, who: &AccessToken, least: AccessClass, what: &str) -> Result<(), Refusal> {
+    pub(super) fn require(&self, who: &AccessToken, least: AccessClass, what: &str) -> Result<(), Refusal> {
         if who.class >= least {
             return Ok(());
         }
@@ -239,11 +240,11 @@ impl RequestHandler {
     }
 
     /// An error where a robot is inside of a region that would stop it, or cannot stop outside; else the robots of which nobody knows where they are.
-    fn refuse_inside(&self, region: &CellRegion) -> Result<Vec<String>, Refusal> {
+    pub(super) fn refuse_inside(&self, cell: &Cell, region: &CellRegion) -> Result<Vec<String>, Refusal> {
         if matches!(region.region.kind, RegionKind::Monitored { .. }) {
             return Ok(Vec::new());
         }
-        let ControlParts { cell, joints, clock, .. } = &self.parts;
+        let ControlParts { joints, clock, .. } = &self.parts;
         let found = clearances(cell, region, &joints.states(), clock.seconds())?;
         let name = |robot: RobotId| cell.robots[robot.0].name.clone();
         if let Some((near, distance_m)) =
@@ -264,20 +265,29 @@ impl RequestHandler {
         Ok(found.iter().filter(|c| c.distance_m.is_none()).map(|c| name(c.robot)).collect())
     }
 
-    fn report(&self, event: &str) {
+    pub(super) fn report(&self, event: &str) {
         if let Some(on_event) = &self.parts.on_event {
             on_event(event);
         }
     }
 }
 
-fn revision(log: &ControlLog) -> String {
+/// The region of this name, and its index.
+pub(super) fn find<'c>(cell: &'c Cell, name: &str) -> Result<(usize, &'c CellRegion), Refusal> {
+    let found = cell.regions.iter().enumerate().find(|(_, r)| r.region.name == name);
+    found.ok_or_else(|| {
+        let names: Vec<&str> = cell.regions.iter().map(|r| r.region.name.as_str()).collect();
+        Refusal::new(404, format!("there is no region `{name}`")).help(format!("one of {}", names.join(", ")))
+    })
+}
+
+pub(super) fn revision(log: &ControlLog) -> String {
     log.head().chars().take(16).collect()
 }
 
 /// A request names the state that it was made for: one that was recorded and is sent again, or that somebody else was faster
 /// than, is refused.
-fn is_present(log: &ControlLog, at: &str) -> Result<(), Refusal> {
+pub(super) fn is_present(log: &ControlLog, at: &str) -> Result<(), Refusal> {
     if at == revision(log) {
         return Ok(());
     }
@@ -286,7 +296,7 @@ fn is_present(log: &ControlLog, at: &str) -> Result<(), Refusal> {
         .help("read GET /regions, and if the request is right still, send it with the new revision"))
 }
 
-fn note(note: Option<&str>) -> Result<Option<&str>, Refusal> {
+pub(super) fn note(note: Option<&str>) -> Result<Option<&str>, Refusal> {
     match note {
         Some(text) if text.len() > MAX_NOTE => {
             Err(Refusal::new(422, format!("`note` is longer than {MAX_NOTE} bytes")).help("a sentence"))

@@ -35,9 +35,15 @@ pub(crate) fn routes(handler: RequestHandler, tokens: AccessTokens, hosts: Hosts
     Router::new()
         .route("/regions", get(regions).fallback(only("GET")))
         .route("/switch", post(switch).fallback(only("POST")))
+        .route("/move", post(move_region).fallback(only("POST")))
+        .route("/add", post(add).fallback(only("POST")))
+        .route("/remove", post(remove).fallback(only("POST")))
         .route("/clear", post(clear).fallback(only("POST")))
         .fallback(|| async {
-            answer(&Refusal::new(404, "not here").help("GET /regions, POST /switch or POST /clear (docs/control.md)"))
+            answer(
+                &Refusal::new(404, "not here")
+                    .help("GET /regions, POST /switch, /move, /add, /remove or /clear (docs/control.md)"),
+            )
         })
         .layer(DefaultBodyLimit::max(MAX_BODY))
         .layer(middleware::from_fn(short))
@@ -65,6 +71,18 @@ async fn regions(State(shared): State<Arc<Shared>>, headers: HeaderMap) -> Respo
 
 async fn switch(state: State<Arc<Shared>>, headers: HeaderMap, body: Result<Bytes, BytesRejection>) -> Response {
     change(state, headers, body, RequestHandler::switch).await
+}
+
+async fn move_region(state: State<Arc<Shared>>, headers: HeaderMap, body: Result<Bytes, BytesRejection>) -> Response {
+    change(state, headers, body, RequestHandler::move_region).await
+}
+
+async fn add(state: State<Arc<Shared>>, headers: HeaderMap, body: Result<Bytes, BytesRejection>) -> Response {
+    change(state, headers, body, RequestHandler::add).await
+}
+
+async fn remove(state: State<Arc<Shared>>, headers: HeaderMap, body: Result<Bytes, BytesRejection>) -> Response {
+    change(state, headers, body, RequestHandler::remove).await
 }
 
 async fn clear(state: State<Arc<Shared>>, headers: HeaderMap, body: Result<Bytes, BytesRejection>) -> Response {

@@ -44,7 +44,8 @@ impl ControlServer {
     pub(crate) fn start(parts: ControlParts, options: &ControlOptions) -> Result<Self, ControlError> {
         let address = loopback_address(&options.address)?;
         let tokens = AccessTokens::read(&options.tokens)?;
-        let log = ControlLog::open(&options.log.clone().unwrap_or_else(|| control_log_of(&parts.cell.file)))?;
+        let log =
+            ControlLog::open(&options.log.clone().unwrap_or_else(|| control_log_of(&parts.versions.base().file)))?;
         let handler = RequestHandler::new(parts, log);
         let limits = ConnectionLimits {
             connections: 32,

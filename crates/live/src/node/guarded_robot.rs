@@ -7,13 +7,15 @@ use elbowroom_cell::{Cell, Follow, Frames};
 use elbowroom_interlock::Micros;
 use elbowroom_kinematics::ChainState;
 use elbowroom_monitor::{
-    AccessClass, Fault, Monitor, OverrideReason, Presence, RegionId, Snapshot, SourceState, TickReport, VolumeId,
+    AccessClass, Fault, Interlock, Monitor, OverrideReason, Presence, RegionId, Snapshot, SourceState, TickReport,
+    VolumeId,
 };
 use elbowroom_rosbag::TickRecorder;
 use elbowroom_spatial::{FrameMotion, Pose};
 use elbowroom_status::StatusSample;
 
 use super::inbox::{Contents, Heard};
+use super::next_configuration::{NextConfiguration, NodeVersion};
 use super::node_monitor::NodeMonitor;
 use crate::messages::{AttachedVolume, JointState, MAX_ATTACHED, OverrideAnswer};
 use crate::regions_table::{RegionTable, TABLE_VALIDITY};
@@ -41,8 +43,14 @@ pub(super) struct GuardedRobot {
     names_attached: bool,
     /// Since when the robot is at rest where it cannot have moved to.
     jumped: Option<Micros>,
-    regions: RegionTable,
-    all_on: RegionTable,
+    /// Per region of the cell whether it is on.
+    active: Vec<bool>,
+    /// Without a table of regions the robot stops.
+    pub(super) awaits_regions: bool,
+    /// It is not known which regions there are now, or the monitor is not built for them yet.
+    has_other_regions: bool,
+    /// The configuration of the monitor, for whoever shows what it finds.
+    pub(super) version: Arc<NodeVersion>,
     answers: u64,
     checksum: u64,
     pub(super) sample: StatusSample,
@@ -72,8 +80,10 @@ impl GuardedRobot {
             stamp: None,
             now: Micros(0),
             jumped: None,
-            regions: RegionTable::initial(&cell),
-            all_on: RegionTable::all_on(&cell),
+            active: RegionTable::initial(&cell).active,
+            awaits_regions: false,
+            has_other_regions: false,
+            version: Arc::new(NodeVersion { number: String::new(), configuration: setup.configuration.clone() }),
             answers: 0,
             checksum,
             sample: StatusSample::new(monitor.monitor()),
@@ -101,11 +111,48 @@ impl GuardedRobot {
         if std::mem::take(&mut inbox.has_grants) {
             self.monitor.receive(&inbox.grants);
         }
-        let is_known = inbox.regions_heard.is_some_and(|heard| now - heard <= TABLE_VALIDITY);
-        let table = if is_known { &inbox.regions } else { &self.all_on };
-        if self.regions.active != table.active {
-            self.regions.active.copy_from_slice(&table.active);
+        self.take_regions(inbox, now);
+    }
+
+    /// Takes which regions there are and which are on; exchanges the monitor where another one was built.
+    fn take_regions(&mut self, inbox: &mut Contents, now: Micros) {
+        if let Some(mut next) = inbox.take_built() {
+            self.replace(&mut next, inbox);
+            inbox.left_over = Some(next);
         }
+        let is_known = inbox.regions_heard.is_some_and(|heard| now - heard <= TABLE_VALIDITY);
+        if is_known {
+            self.active.copy_from_slice(&inbox.regions.active);
+        } else {
+            self.active.fill(true);
+        }
+        let table = &inbox.regions;
+        let may_have_changed = table.is_editable && !is_known || self.awaits_regions && inbox.regions_heard.is_none();
+        self.has_other_regions = may_have_changed || !table.permits(&inbox.number);
+    }
+
+    /// Goes on with other regions. Nothing is allocated or freed: `next` holds what this had before.
+    fn replace(&mut self, next: &mut NextConfiguration, inbox: &mut Contents) {
+        for (on, before) in next.active_of_inbox.iter_mut().zip(&next.before) {
+            *on = before.map_or_else(|on| on, |before| inbox.regions.active[before]);
+        }
+        std::mem::swap(&mut inbox.regions.active, &mut next.active_of_inbox);
+        std::mem::swap(&mut inbox.cell, &mut next.cell_of_inbox);
+        std::mem::swap(&mut inbox.number, &mut next.number);
+        self.monitor.replace(&mut next.monitor, &next.same);
+        std::mem::swap(&mut self.active, &mut next.active);
+        std::mem::swap(&mut self.cell, &mut next.cell);
+        std::mem::swap(&mut self.setup, &mut next.setup);
+        std::mem::swap(&mut self.sources, &mut next.sources);
+        std::mem::swap(&mut self.version, &mut next.version);
+        let same = &next.same;
+        self.sample.renumber(|old| same.iter().position(|s| *s == Some(old)).map(RegionId));
+        // A recording is compared up to here: its monitor would not know what this one goes on with.
+        next.recorder = self.recorder.take();
+    }
+
+    pub(super) fn interlock(&self) -> Option<Interlock> {
+        self.monitor.interlock()
     }
 
     pub(super) fn monitor(&self) -> &Monitor {
@@ -133,15 +180,18 @@ impl GuardedRobot {
             intent: (!self.state.intent.is_empty()).then_some(&self.state.intent),
             sources: &self.sources,
         };
-        let mut report = self.monitor.tick(&snapshot, now);
+        let fault = match (self.has_other_regions, is_attached) {
+            (true, _) => Some(Fault::Regions),
+            // The robot carries what its monitor cannot know.
+            (false, false) => Some(Fault::WrongLength),
+            (false, true) => None,
+        };
+        self.monitor.monitor_mut().set_external_fault(fault);
+        let report = self.monitor.tick(&snapshot, now);
         if let Some(recorder) = &mut self.recorder {
             recorder.tick(seconds(now), &snapshot, &report, self.monitor.monitor());
         }
         let has_jumped = matches!(report.reason, OverrideReason::Fault(Fault::TooFast { .. }));
-        if !is_attached {
-            // The robot carries what its monitor cannot know.
-            (report.speed_override, report.reason) = (0.0, OverrideReason::Fault(Fault::WrongLength));
-        }
         self.sample.fill(self.monitor.monitor(), &snapshot, &report);
         self.sample.add_events(self.monitor.monitor());
         self.notice_standstill(has_jumped, now);
@@ -215,7 +265,7 @@ impl GuardedRobot {
 
     fn switch_regions(&mut self) {
         for (local, region) in self.setup.regions.iter().enumerate() {
-            let (id, on) = (RegionId(local), self.regions.active[region.0]);
+            let (id, on) = (RegionId(local), self.active[region.0]);
             let monitor = self.monitor.monitor_mut();
             if monitor.is_active(id) != on {
                 // Permanent regions are always on in a table, so that nothing is refused.

@@ -1,26 +1,28 @@
 //! What has arrived for a node since its last tick.
 
-use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use elbowroom_cell::Cell;
+use elbowroom_cell::{Cell, RegionEdit};
 use elbowroom_interlock::Micros;
 use elbowroom_interlock::wire::MAX_BYTES;
 
 use super::input_gate::InputGate;
+use super::next_configuration::NextConfiguration;
+use crate::configuration_number::configuration_digits;
 use crate::messages::JointState;
 use crate::regions_table::{RegionTable, RegionTableMessage};
 
 /// What has arrived since the last tick. Threads of the network write, the thread of the tick reads; what is written twice is
 /// read once, in its newest state.
-#[derive(Debug)]
 pub(super) struct Inbox {
     contents: Mutex<Contents>,
     news: Condvar,
+    /// For whoever builds other regions.
+    work: Condvar,
 }
 
 /// What is in the inbox.
-#[derive(Debug)]
 pub(super) struct Contents {
     /// The robot's own joint state.
     pub(super) own: Heard,
@@ -32,7 +34,32 @@ pub(super) struct Contents {
     /// Which regions are on, and when that was heard last.
     pub(super) regions: RegionTable,
     pub(super) regions_heard: Option<Micros>,
+    /// The cell with the regions that the tick has, and the first digits of its checksum.
+    pub(super) cell: Arc<Cell>,
+    pub(super) number: String,
+    /// Other regions: what is to be built, what the next tick takes, and what the last exchange has left over.
+    pub(super) wanted: Option<Wanted>,
+    pub(super) built: Option<Box<NextConfiguration>>,
+    pub(super) left_over: Option<Box<NextConfiguration>>,
     pub(super) is_closed: bool,
+}
+
+/// Regions that the tick does not have yet.
+pub(super) struct Wanted {
+    /// The first digits of the checksum of the cell that has them.
+    pub(super) number: String,
+    pub(super) edits: Vec<RegionEdit>,
+    /// Whether they are on.
+    pub(super) regions: Vec<(String, bool)>,
+}
+
+impl Contents {
+    /// What the next tick exchanges its configuration with, if it is still asked for and what the last exchange has left over is gone.
+    pub(super) fn take_built(&mut self) -> Option<Box<NextConfiguration>> {
+        let fits = |next: &&NextConfiguration| next.number == self.regions.present && next.from == self.number;
+        self.built.as_deref().filter(fits)?;
+        if self.left_over.is_some() { None } else { self.built.take() }
+    }
 }
 
 /// The last joint state of a controller.
@@ -82,17 +109,22 @@ impl Heard {
 }
 
 impl Inbox {
-    pub(super) fn new(checksum: u64, followed: Vec<bool>, regions: RegionTable) -> Self {
+    pub(super) fn new(checksum: u64, followed: Vec<bool>, cell: &Arc<Cell>) -> Self {
         let contents = Contents {
             own: Heard::new(checksum),
             followed: followed.into_iter().map(|is| is.then(|| Heard::new(checksum))).collect(),
             grants: Vec::with_capacity(MAX_BYTES),
             has_grants: false,
-            regions,
+            regions: RegionTable::initial(cell),
             regions_heard: None,
+            cell: cell.clone(),
+            number: configuration_digits(cell),
+            wanted: None,
+            built: None,
+            left_over: None,
             is_closed: false,
         };
-        Self { contents: Mutex::new(contents), news: Condvar::new() }
+        Self { contents: Mutex::new(contents), news: Condvar::new(), work: Condvar::new() }
     }
 
     pub(super) fn lock(&self) -> MutexGuard<'_, Contents> {
@@ -123,18 +155,54 @@ impl Inbox {
         }
     }
 
-    /// Which regions are switched on.
-    pub(super) fn take_regions(&self, message: &RegionTableMessage, cell: &Cell, arrived: Micros) {
+    /// Which regions there are, and which are switched on.
+    pub(super) fn take_regions(&self, message: &RegionTableMessage, arrived: Micros) {
         let mut contents = self.lock();
-        if contents.regions.take(message, cell) {
-            contents.regions_heard = Some(arrived);
+        let cell = contents.cell.clone();
+        if !contents.regions.take(message, &cell) {
+            return;
         }
+        contents.regions_heard = Some(arrived);
+        let number = contents.regions.present.clone();
+        let is_built = contents.built.as_ref().is_some_and(|b| b.number == number && b.from == contents.number);
+        let is_wanted = number != contents.number && !is_built;
+        let wanted = || Wanted { number, edits: message.edits.clone(), regions: message.regions.clone() };
+        contents.wanted = is_wanted.then(wanted);
+        if is_wanted || contents.left_over.is_some() {
+            self.work.notify_one();
+        }
+    }
+
+    /// Waits until there is something to build, at most for this time; frees what is left over. False at the end.
+    pub(super) fn wait_for_wanted(&self, longest: Duration) -> bool {
+        let is_idle = |c: &mut Contents| c.wanted.is_none() && c.left_over.is_none() && !c.is_closed;
+        let waited = self.work.wait_timeout_while(self.lock(), longest, is_idle);
+        !waited.unwrap_or_else(PoisonError::into_inner).0.is_closed
+    }
+
+    /// What is to be built, and the cell as it is now.
+    pub(super) fn take_wanted(&self) -> (Option<Wanted>, Arc<Cell>) {
+        let mut contents = self.lock();
+        let left_over = contents.left_over.take();
+        let taken = (contents.wanted.take(), contents.cell.clone());
+        drop(contents);
+        drop(left_over);
+        taken
+    }
+
+    /// Leaves it for the next tick.
+    pub(super) fn put_built(&self, next: Box<NextConfiguration>) {
+        let mut contents = self.lock();
+        let outdated = contents.built.replace(next);
+        drop(contents);
+        drop(outdated);
     }
 
     /// Ends the thread of the tick.
     pub(super) fn close(&self) {
         self.lock().is_closed = true;
         self.news.notify_all();
+        self.work.notify_all();
     }
 
     /// Waits for a joint state, or until the time is over.

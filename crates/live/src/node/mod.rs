@@ -1,14 +1,17 @@
 //! A node: guards one robot. Joint states in, overrides out.
 //!
-//! Three threads: those of the network put what arrives into the inbox; the tick's own thread computes the override, without
-//! allocation, when joint values arrive; another one sends. So nothing that a network does delays a tick.
+//! Four threads: those of the network put what arrives into the inbox; the tick's own thread computes the override, without
+//! allocation, when joint values arrive; another one sends; the last one builds monitors for regions that are moved, added and
+//! removed. So nothing that a network does delays a tick.
 
 mod guarded_robot;
 mod inbox;
 mod input_gate;
+mod next_configuration;
 mod node_monitor;
 mod node_tick;
 mod outbox;
+mod region_builder;
 
 use std::sync::Arc;
 use std::thread::JoinHandle;
@@ -24,11 +27,13 @@ use elbowroom_status::{EventStatus, HealthStatus, RobotStatus, StatusSample};
 
 use elbowroom_rosbag::TickRecorder;
 
+use crate::cell_versions::CellVersions;
 use crate::clock::Clock;
 use crate::keys::Keys;
 use crate::network::{Network, NetworkError, Publisher, Subscription, Urgency};
 use crate::regions_table::RegionTableMessage;
 use inbox::Inbox;
+use next_configuration::NodeVersion;
 use node_tick::follows;
 use outbox::Outbox;
 
@@ -36,6 +41,7 @@ pub(crate) use inbox::Heard;
 pub use input_gate::{InputGate, Rejected};
 pub use node_monitor::NodeMonitor;
 pub use node_tick::NodeTick;
+pub use region_builder::RegionBuilder;
 
 /// What a node needs.
 pub struct NodeParts {
@@ -57,6 +63,9 @@ pub struct NodeParts {
     pub interlocks: Arc<dyn Network>,
     /// Records every tick.
     pub recorder: Option<TickRecorder>,
+    /// For regions that are moved, added and removed while the node runs; then its robot stops until a table of regions was heard.
+    /// `None` where the regions stay those of the cell.
+    pub versions: Option<Arc<CellVersions>>,
 }
 
 /// A running node; it ends when it is dropped.
@@ -78,11 +87,15 @@ impl Node {
     /// # Panics
     /// Where the system gives no thread.
     pub fn start(parts: NodeParts) -> Result<Self, NetworkError> {
-        let NodeParts { cell, robot, setup, monitor, checksum, clock, network, interlocks, recorder } = parts;
+        let NodeParts { cell, robot, setup, monitor, checksum, clock, network, interlocks, recorder, versions } = parts;
         let (keys, name) = (Keys::new(&cell.name), cell.robots[robot.0].name.clone());
         let followed: Vec<bool> = (0..cell.robots.len()).map(|r| follows(&setup, RobotId(r))).collect();
-        let (configuration, sample) = (setup.configuration.clone(), StatusSample::new(monitor.monitor()));
+        let (state, sample) = (ChainState::new(setup.configuration.chain()), StatusSample::new(monitor.monitor()));
         let mut tick = NodeTick::new(cell.clone(), setup, monitor, checksum, recorder);
+        let builder = versions.map(|versions| {
+            tick.await_regions();
+            tick.region_builder(robot, versions)
+        });
         let (inbox, outbox) = (tick.inbox().clone(), tick.outbox().clone());
         let mut subscriptions = subscribe(&*network, &keys, &cell, robot, &followed, &inbox, clock)?;
         let grants = inbox.clone();
@@ -92,14 +105,19 @@ impl Node {
             answers: network.publisher(&keys.speed_override(&name), Urgency::RealTime)?,
             statuses: network.publisher(&keys.status(&name), Urgency::Display)?,
             states: interlocks.publisher(&keys.interlock_state(&name), Urgency::RealTime)?,
-            chain: ChainState::new(configuration.chain()),
-            configuration,
+            chain: state,
             sample,
             cell,
             robot,
         };
         let sending = outbox.clone();
+        let build = || {
+            if let Some(builder) = builder {
+                builder.run();
+            }
+        };
         let threads = [
+            std::thread::Builder::new().name(format!("build {name}")).spawn(build),
             std::thread::Builder::new().name(format!("tick {name}")).spawn(move || while tick.wait_and_tick(clock) {}),
             std::thread::Builder::new().name(format!("send {name}")).spawn(move || sender.run(&sending)),
         ];
@@ -136,10 +154,10 @@ fn subscribe(
         let handler = Box::new(move |bytes: &[u8]| inbox.take_followed(other, bytes, clock.micros()));
         subscriptions.push(network.subscribe(&keys.joint_states(&cell.robots[other].name), handler)?);
     }
-    let (inbox, cell) = (inbox.clone(), cell.clone());
+    let inbox = inbox.clone();
     let handler = Box::new(move |bytes: &[u8]| {
         let Ok(message) = serde_json::from_slice::<RegionTableMessage>(bytes) else { return };
-        inbox.take_regions(&message, &cell, clock.micros());
+        inbox.take_regions(&message, clock.micros());
     });
     subscriptions.push(network.subscribe(&keys.regions(), handler)?);
     Ok(subscriptions)
@@ -151,7 +169,6 @@ struct Sender {
     statuses: Box<dyn Publisher>,
     /// To the arbiter.
     states: Box<dyn Publisher>,
-    configuration: Configuration,
     sample: StatusSample,
     chain: ChainState,
     cell: Arc<Cell>,
@@ -170,7 +187,8 @@ impl Sender {
                     return;
                 }
                 std::mem::swap(&mut state, &mut outgoing.state);
-                (outgoing.answer.take(), outgoing.take_sample(&mut self.sample))
+                let sample = outgoing.take_sample(&mut self.sample);
+                (outgoing.answer.take(), sample.map(|sample| (sample, outgoing.version.clone())))
             };
             if let Some(answer) = answer {
                 answer.encode(&mut bytes);
@@ -179,30 +197,31 @@ impl Sender {
             if !state.is_empty() {
                 self.states.publish(&state);
             }
-            if let Some((t_s, sequence, health)) = status {
-                self.publish_status(t_s, sequence, health);
+            if let Some(((t_s, sequence, health), version)) = status {
+                self.publish_status(t_s, sequence, health, &version);
             }
         }
     }
 
-    fn publish_status(&mut self, t_s: f64, sequence: u64, health: HealthStatus) {
-        let tcp = self.tcp();
-        let mut status = RobotStatus::of_sample(t_s, &self.configuration, &self.sample, tcp.as_ref());
+    fn publish_status(&mut self, t_s: f64, sequence: u64, health: HealthStatus, version: &NodeVersion) {
+        let tcp = self.tcp(&version.configuration);
+        let mut status = RobotStatus::of_sample(t_s, &version.configuration, &self.sample, tcp.as_ref());
         (status.sequence, status.health) = (sequence, health);
+        status.configuration.clone_from(&version.number);
         if self.sample.joint_positions().is_empty() {
             "no joint values from the controller yet".clone_into(&mut status.reason);
         }
-        status.events = self.events(t_s);
+        status.events = self.events(t_s, &version.configuration);
         if let Ok(json) = serde_json::to_vec(&status) {
             self.statuses.publish(&json);
         }
     }
 
-    fn events(&mut self, t_s: f64) -> Vec<EventStatus> {
+    fn events(&mut self, t_s: f64, configuration: &Configuration) -> Vec<EventStatus> {
         let name = |r: Option<elbowroom_monitor::RegionId>| {
-            r.map_or_else(String::new, |r| self.configuration.regions()[r.0].name.clone())
+            r.map_or_else(String::new, |r| configuration.regions()[r.0].name.clone())
         };
-        let robot = self.configuration.robot();
+        let robot = configuration.robot();
         let (events, _) = self.sample.take_events();
         let event = |e: elbowroom_monitor::Event| EventStatus {
             t_s,
@@ -214,13 +233,13 @@ impl Sender {
     }
 
     /// Pose of the TCP in the world at the joint values of the sample.
-    fn tcp(&mut self) -> Option<Pose> {
+    fn tcp(&mut self, configuration: &Configuration) -> Option<Pose> {
         let q = self.sample.joint_positions();
         if q.len() != self.chain.q.len() {
             return None;
         }
         self.chain.q.copy_from_slice(q);
-        self.configuration.chain().forward(&mut self.chain);
+        configuration.chain().forward(&mut self.chain);
         let robot = &self.cell.robots[self.robot.0];
         Some(robot.base_in_world * self.chain.link_in_root(robot.flange) * robot.tcp_in_flange)
     }

@@ -2,7 +2,9 @@
 
 use elbowroom_cell::configure::MonitorSetup;
 use elbowroom_interlock::{Boot, Guard, GuardedMonitor, Micros};
-use elbowroom_monitor::{ConfigError, Monitor, Occupancy, RegionKind, RobotSlot, SlotId, Snapshot, TickReport};
+use elbowroom_monitor::{
+    ConfigError, Interlock, Monitor, Occupancy, RegionId, RegionKind, RobotSlot, SlotId, Snapshot, TickReport,
+};
 
 /// The monitor of a robot, with a guard where it has exchange regions.
 #[derive(Debug)]
@@ -55,6 +57,25 @@ impl NodeMonitor {
         match &mut self.monitor {
             Inner::Alone(monitor) => monitor,
             Inner::Guarded(guarded) => guarded.monitor_mut(),
+        }
+    }
+
+    /// What grants the slots of another monitor of this robot; `None` without exchange regions.
+    pub(super) fn interlock(&self) -> Option<Interlock> {
+        match &self.monitor {
+            Inner::Alone(_) => None,
+            Inner::Guarded(guarded) => Some(guarded.interlock()),
+        }
+    }
+
+    /// Exchanges the monitor with one for other regions, which goes on where this one has ended.
+    pub(super) fn replace(&mut self, next: &mut Monitor, same: &[Option<RegionId>]) {
+        match &mut self.monitor {
+            Inner::Alone(monitor) => {
+                next.continue_from(monitor, same);
+                std::mem::swap(&mut **monitor, next);
+            }
+            Inner::Guarded(guarded) => guarded.replace(next, same),
         }
     }
 

@@ -15,9 +15,11 @@ use super::guarded_robot::GuardedRobot;
 use super::inbox::{Contents, Inbox};
 use super::node_monitor::NodeMonitor;
 use super::outbox::Outbox;
+use super::region_builder::RegionBuilder;
+use crate::cell_versions::CellVersions;
 use crate::clock::Clock;
 use crate::messages::OverrideAnswer;
-use crate::regions_table::{RegionTable, RegionTableMessage};
+use crate::regions_table::RegionTableMessage;
 
 /// How often a status is published, at most.
 const STATUS_PERIOD: Micros = Micros(20_000);
@@ -37,7 +39,6 @@ pub struct NodeTick {
     guarded: GuardedRobot,
     inbox: Arc<Inbox>,
     outbox: Arc<Outbox>,
-    cell: Arc<Cell>,
     stale: Micros,
     health: HealthStatus,
     /// When a status was left last.
@@ -57,16 +58,28 @@ impl NodeTick {
         recorder: Option<TickRecorder>,
     ) -> Self {
         let followed = (0..cell.robots.len()).map(|r| follows(&setup, RobotId(r))).collect();
+        let (inbox, stale) = (Inbox::new(checksum, followed, &cell), cell.laws.laws.stale_s);
+        let guarded = GuardedRobot::new(cell, setup, monitor, checksum, recorder);
         Self {
-            inbox: Arc::new(Inbox::new(checksum, followed, RegionTable::initial(&cell))),
-            outbox: Arc::new(Outbox::new(monitor.monitor())),
-            guarded: GuardedRobot::new(cell.clone(), setup, monitor, checksum, recorder),
-            stale: Micros::from_seconds(cell.laws.laws.stale_s),
-            cell,
+            inbox: Arc::new(inbox),
+            outbox: Arc::new(Outbox::new(guarded.monitor(), guarded.version.clone())),
+            guarded,
+            stale: Micros::from_seconds(stale),
             health: HealthStatus::default(),
             published: None,
             reported: None,
         }
+    }
+
+    /// Until it has heard a table of regions, the robot stops: it may not know which ones there are.
+    pub fn await_regions(&mut self) {
+        self.guarded.awaits_regions = true;
+    }
+
+    /// Builds what the node of this robot needs when the table of regions has others. Without it the node stops then.
+    pub fn region_builder(&self, robot: RobotId, versions: Arc<CellVersions>) -> RegionBuilder {
+        let (interlock, version) = (self.guarded.interlock(), self.guarded.version.clone());
+        RegionBuilder::new(self.inbox.clone(), versions, robot, interlock, version)
     }
 
     pub(super) fn inbox(&self) -> &Arc<Inbox> {
@@ -92,9 +105,9 @@ impl NodeTick {
         self.inbox.take_grants(bytes);
     }
 
-    /// Puts in which regions are switched on.
+    /// Puts in which regions there are, and which are switched on.
     pub fn regions(&self, message: &RegionTableMessage, arrived: Micros) {
-        self.inbox.take_regions(message, &self.cell, arrived);
+        self.inbox.take_regions(message, arrived);
     }
 
     /// Answers the joint state that arrived last, if it is new; without one, ticks where the last one is stale. `None`: there was
@@ -172,6 +185,10 @@ impl NodeTick {
             if is_status_due && !outgoing.has_sample {
                 std::mem::swap(&mut outgoing.sample, &mut guarded.sample);
                 outgoing.has_sample = true;
+                if !Arc::ptr_eq(&outgoing.version, &guarded.version) {
+                    // The one before is held by who builds them: nothing is freed here.
+                    outgoing.version = guarded.version.clone();
+                }
                 (outgoing.t_s, outgoing.sequence) = (now.0 as f64 * 1e-6, guarded.sequence());
                 outgoing.health = std::mem::replace(health, HealthStatus { tick_max_us: 0, ..*health });
                 *published = Some(now);

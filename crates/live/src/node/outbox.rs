@@ -1,11 +1,12 @@
 //! What a node has to send.
 
-use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
 use elbowroom_interlock::wire::MAX_BYTES;
 use elbowroom_monitor::Monitor;
 use elbowroom_status::{HealthStatus, StatusSample};
 
+use super::next_configuration::NodeVersion;
 use crate::messages::OverrideAnswer;
 
 /// What the thread of the tick leaves for the thread that sends. A message that was not sent yet is replaced by the next one.
@@ -23,6 +24,8 @@ pub(super) struct Outgoing {
     /// The last tick, valid where `has_sample`.
     pub(super) sample: StatusSample,
     pub(super) has_sample: bool,
+    /// The configuration of that tick.
+    pub(super) version: Arc<NodeVersion>,
     pub(super) t_s: f64,
     pub(super) sequence: u64,
     pub(super) health: HealthStatus,
@@ -45,12 +48,13 @@ impl Outgoing {
 }
 
 impl Outbox {
-    pub(super) fn new(monitor: &Monitor) -> Self {
+    pub(super) fn new(monitor: &Monitor, version: Arc<NodeVersion>) -> Self {
         let contents = Outgoing {
             answer: None,
             state: Vec::with_capacity(MAX_BYTES),
             sample: StatusSample::new(monitor),
             has_sample: false,
+            version,
             t_s: 0.0,
             sequence: 0,
             health: HealthStatus::default(),

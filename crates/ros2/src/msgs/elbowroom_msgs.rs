@@ -220,6 +220,8 @@ message! {
         attached: Vec<VolumeAttachment>,
         /// The position before it was forgotten: the robot may have been moved by hand.
         forgot_position: bool,
+        /// A fault stopped the robot that the input does not show, such as other regions than the monitor's.
+        has_external_fault: bool,
         /// Time of the recording's clock, s.
         t_s: f64,
         /// Time of the monitor's clock, s: that of the controller, where they differ.

@@ -1,0 +1,78 @@
+//! With which regions the nodes of a cell run, as their statuses say.
+
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use elbowroom_cell::Cell;
+use elbowroom_interlock::Micros;
+use serde::Deserialize;
+
+use crate::clock::Clock;
+use crate::keys::Keys;
+use crate::network::{Network, NetworkError, Subscription};
+
+/// A node that was not heard for this long does not run, or does not hear the table of regions and has stopped by now: the validity of
+/// the table, and half a second for messages on the way.
+const SILENT: Micros = Micros(1_500_000);
+/// A node that is heard has built the regions by then, or stops when they are due.
+const LONGEST: Micros = Micros(4_000_000);
+/// How often it is looked.
+const POLL: Duration = Duration::from_millis(5);
+
+/// What of a status matters here.
+#[derive(Deserialize)]
+struct Running {
+    #[serde(default)]
+    configuration: String,
+}
+
+#[derive(Debug, Clone, Default)]
+struct Heard {
+    configuration: String,
+    /// When it was heard last; a node that was never heard may have run before this process has started.
+    at: Micros,
+}
+
+/// Listens to the statuses of all nodes of a cell.
+pub(crate) struct NodesHeard {
+    heard: Arc<Mutex<Vec<Heard>>>,
+    clock: Clock,
+    _subscriptions: Vec<Subscription>,
+}
+
+impl NodesHeard {
+    pub(crate) fn start(cell: &Cell, network: &Arc<dyn Network>, clock: Clock) -> Result<Self, NetworkError> {
+        let now = Heard { at: clock.micros(), ..Heard::default() };
+        let heard = Arc::new(Mutex::new(vec![now; cell.robots.len()]));
+        let keys = Keys::new(&cell.name);
+        let subscribe = |(i, robot): (usize, &elbowroom_cell::CellRobot)| {
+            let heard = heard.clone();
+            let handler = Box::new(move |bytes: &[u8]| {
+                let Ok(Running { configuration }) = serde_json::from_slice(bytes) else { return };
+                heard.lock().unwrap_or_else(PoisonError::into_inner)[i] = Heard { configuration, at: clock.micros() };
+            });
+            network.subscribe(&keys.status(&robot.name), handler)
+        };
+        let subscriptions = cell.robots.iter().enumerate().map(subscribe).collect::<Result<_, _>>()?;
+        Ok(Self { heard, clock, _subscriptions: subscriptions })
+    }
+
+    /// Waits until all nodes that run have this configuration: the first digits of its checksum, empty for that of the cell file.
+    /// Returns the indices of the robots whose nodes run with another one all the same.
+    pub(crate) fn wait_for(&self, configuration: &str) -> Vec<usize> {
+        let since = self.clock.micros();
+        loop {
+            let now = self.clock.micros();
+            let heard = self.heard.lock().unwrap_or_else(PoisonError::into_inner).clone();
+            let is_missing = |h: &Heard| {
+                let has_it = h.at > since && h.configuration == configuration;
+                !has_it && now - h.at <= SILENT
+            };
+            let missing: Vec<usize> = (0..heard.len()).filter(|r| is_missing(&heard[*r])).collect();
+            if missing.is_empty() || now - since > LONGEST {
+                return missing;
+            }
+            std::thread::sleep(POLL);
+        }
+    }
+}

@@ -1,0 +1,254 @@
+//! Moves, adds and removes regions while the cell runs.
+
+use std::sync::Arc;
+
+use elbowroom_cell::seal::{AccessToken, Change, ControlLog, Controlled};
+use elbowroom_cell::{RegionEdit, table_changes};
+use elbowroom_formats::FormatError;
+use elbowroom_monitor::{AccessClass, Life, RegionKind};
+use elbowroom_status::SPARE_REGIONS;
+
+use super::refusal::Refusal;
+use super::request_handler::{ControlParts, Done, RequestHandler, find, is_present, note, revision};
+use super::requests::{Add, Move, Remove};
+use crate::cell_versions::NoVersion;
+use crate::configuration_number::configuration_digits;
+use crate::region_keeper::PresentRegions;
+
+/// Longest name of a region that is added.
+const MAX_NAME: usize = 100;
+/// The table of regions is sent ten times a second: all keys of changed regions together have at most so many bytes.
+const MAX_EDITS: usize = 64 * 1024;
+/// A region that is moved is at both places until all nodes have the new one.
+const AT_NEW_PLACE: &str = " (new place)";
+
+/// A change that was asked for, before it is made.
+struct RegionChange<'a> {
+    action: &'static str,
+    region: &'a str,
+    before: &'a PresentRegions,
+    after: PresentRegions,
+    /// The keys of the region before and after.
+    tables: [Option<String>; 2],
+    /// Whether it is on afterwards; one that is removed is not.
+    is_on: bool,
+    note: Option<&'a str>,
+}
+
+impl RequestHandler {
+    /// Puts a temporary region elsewhere.
+    pub(crate) fn move_region(&self, who: &AccessToken, at: &str, request: &Move) -> Result<Done, Refusal> {
+        let mut log = self.log();
+        let (before, name) = (self.parts.keeper.present(), request.region.as_str());
+        let is_on = self.changeable(who, &before, name, "move")?;
+        is_present(&log, at)?;
+        let edited = self.parts.versions.edited().map_err(refused)?;
+        let table = edited.table(&before.edits, name);
+        let moved = edited.moved(name, table.as_deref().unwrap_or_default(), &request.toml).map_err(wrong)?;
+        let after = self.with(&before, name, Some(&moved))?;
+        let (action, note) = ("move", note(request.note.as_deref())?);
+        let tables = [table, Some(moved)];
+        self.carry_out(
+            &mut log,
+            who,
+            &RegionChange { action, region: name, before: &before, after, tables, is_on, note },
+        )
+    }
+
+    /// Adds a region.
+    pub(crate) fn add(&self, who: &AccessToken, at: &str, request: &Add) -> Result<Done, Refusal> {
+        let name = request.region.as_str();
+        self.require(who, AccessClass::needed_for(Life::Temporary), &format!("add region `{name}`"))?;
+        if name.is_empty()
+            || name.len() > MAX_NAME
+            || name.chars().any(char::is_control)
+            || name.ends_with(AT_NEW_PLACE)
+        {
+            return Err(
+                Refusal::new(400, "that is no name of a region").help(format!("at most {MAX_NAME} bytes, on one line"))
+            );
+        }
+        let mut log = self.log();
+        is_present(&log, at)?;
+        let before = self.parts.keeper.present();
+        if before.cell.regions.iter().any(|r| r.region.name == name) {
+            let error = format!("there is a region `{name}` already");
+            return Err(Refusal::new(409, error).help("another name; or move that one, or remove it before"));
+        }
+        let edited = self.parts.versions.edited().map_err(refused)?;
+        let table = edited.table_of(name, &request.toml).map_err(wrong)?;
+        let after = self.with(&before, name, Some(&table))?;
+        let (_, added) = find(&after.cell, name)?;
+        self.require(who, AccessClass::needed_for(added.region.life), &format!("add permanent region `{name}`"))?;
+        let is_on = added.region.life == Life::Permanent || request.active.unwrap_or(true);
+        let (action, note, tables) = ("add", note(request.note.as_deref())?, [None, Some(table)]);
+        self.carry_out(
+            &mut log,
+            who,
+            &RegionChange { action, region: name, before: &before, after, tables, is_on, note },
+        )
+    }
+
+    /// Removes a region.
+    pub(crate) fn remove(&self, who: &AccessToken, at: &str, request: &Remove) -> Result<Done, Refusal> {
+        let mut log = self.log();
+        let (before, name) = (self.parts.keeper.present(), request.region.as_str());
+        self.changeable(who, &before, name, "remove")?;
+        is_present(&log, at)?;
+        let edited = self.parts.versions.edited().map_err(refused)?;
+        let after = self.with(&before, name, None)?;
+        let (action, note) = ("remove", note(request.note.as_deref())?);
+        let tables = [edited.table(&before.edits, name), None];
+        let change = RegionChange { action, region: name, before: &before, after, tables, is_on: false, note };
+        self.carry_out(&mut log, who, &change)
+    }
+
+    /// Whether a region is on that this token may move or remove while the cell runs; else why it may not.
+    fn changeable(&self, who: &AccessToken, present: &PresentRegions, name: &str, what: &str) -> Result<bool, Refusal> {
+        let (index, region) = find(&present.cell, name)?;
+        let life = region.region.life;
+        self.require(who, AccessClass::needed_for(life), &format!("{what} {} region `{name}`", life.name()))?;
+        let in_the_file = "elbowroom region change, or an editor (docs/roles.md), and start the processes again";
+        if matches!(region.region.kind, RegionKind::Exchange { .. }) {
+            let error = format!(
+                "region `{name}` is an exchange region{}: such regions stay as they are while the cell runs",
+                self.holder(name)
+            );
+            return Err(Refusal::new(409, error).help(in_the_file));
+        }
+        if life == Life::Permanent && self.parts.versions.base().regions.iter().any(|r| r.region.name == name) {
+            let error =
+                format!("region `{name}` is permanent and in the cell file: it stays as it is while the cell runs");
+            return Err(Refusal::new(409, error).help(in_the_file));
+        }
+        Ok(self.parts.keeper.active()[index])
+    }
+
+    /// Who holds an exchange region, in words.
+    fn holder(&self, name: &str) -> String {
+        let slots = self.parts.arbiter.as_ref().map(|a| a.slots()).unwrap_or_default();
+        let of = slots.into_iter().find(|slot| slot.regions.iter().any(|r| r == name));
+        of.and_then(|slot| slot.holder).map_or_else(String::new, |holder| format!(", which robot `{holder}` holds"))
+    }
+
+    /// The regions with one that is another one.
+    fn with(&self, before: &PresentRegions, name: &str, table: Option<&str>) -> Result<PresentRegions, Refusal> {
+        let versions = &self.parts.versions;
+        let edit = RegionEdit { name: name.into(), table: table.map(Into::into) };
+        let edits = versions.edited().map_err(refused)?.with(&before.edits, edit);
+        let bytes: usize = edits.iter().map(|e| e.name.len() + e.table.as_ref().map_or(0, String::len)).sum();
+        // One is at two places while it is moved.
+        let most = versions.base().regions.len() + SPARE_REGIONS - 1;
+        let cell = versions.cell(&edits).map_err(refused)?;
+        if cell.regions.len() > most || bytes > MAX_EDITS {
+            let error = format!("{} regions, of which {bytes} bytes were changed, are too many", cell.regions.len());
+            let help = format!("{most} regions and {MAX_EDITS} bytes at most; put lasting ones into the cell file");
+            return Err(Refusal::new(409, error).help(help));
+        }
+        Ok(PresentRegions { cell, edits })
+    }
+
+    /// Makes and logs a change that is allowed, if no robot is in the way.
+    fn carry_out(&self, log: &mut ControlLog, who: &AccessToken, change: &RegionChange<'_>) -> Result<Done, Refusal> {
+        let RegionChange { action, region, before, after, is_on, .. } = change;
+        let not_heard = self.in_the_way(change)?;
+        let both = self.at_both_places(change)?;
+        let action = format!("{action} region.{region}");
+        let entry = log.append(controlled(who, action.clone(), change, false))?;
+        if let Some(both) = &both {
+            self.go_to(both, true);
+        } else {
+            self.go_to(after, *is_on);
+        }
+        // From here on the region protects at its new place; whoever has come in since the first look stops, and nothing is changed.
+        if let Err(refusal) = self.in_the_way(change) {
+            self.go_to(before, false);
+            let undone = format!("{action}: not done, a robot came in the way");
+            log.append(controlled(who, undone, change, true))?;
+            return Err(refusal);
+        }
+        let stopped = self.go_to(after, *is_on);
+        self.report(&format!("{region}: {} by {} ({})", done_word(change.action), who.name, who.class.name()));
+        Ok(Done { entry, revision: revision(log), not_heard, stopped })
+    }
+
+    /// An error where a robot is inside of the region at its new place, or cannot stop outside; else the robots that are not heard.
+    fn in_the_way(&self, change: &RegionChange<'_>) -> Result<Vec<String>, Refusal> {
+        if !change.is_on {
+            return Ok(Vec::new());
+        }
+        let (_, region) = find(&change.after.cell, change.region)?;
+        self.refuse_inside(&change.after.cell, region)
+    }
+
+    /// For a region that is moved and is on: it at both places.
+    fn at_both_places(&self, change: &RegionChange<'_>) -> Result<Option<PresentRegions>, Refusal> {
+        let [Some(_), Some(moved)] = &change.tables else { return Ok(None) };
+        if !change.is_on {
+            return Ok(None);
+        }
+        self.with(change.before, &format!("{}{AT_NEW_PLACE}", change.region), Some(moved)).map(Some)
+    }
+
+    /// Lets all nodes that run go on with these regions: first they prepare, then whoever has not done so stops. Returns who that is.
+    fn go_to(&self, regions: &PresentRegions, new_are_on: bool) -> Vec<String> {
+        let ControlParts { keeper, nodes, versions, .. } = &self.parts;
+        let is_base = Arc::ptr_eq(&regions.cell, versions.base());
+        let number = if is_base { String::new() } else { configuration_digits(&regions.cell) };
+        keeper.set(regions, new_are_on, false);
+        let missing = nodes.wait_for(&number);
+        keeper.set(regions, new_are_on, true);
+        missing.into_iter().map(|robot| regions.cell.robots[robot].name.clone()).collect()
+    }
+}
+
+/// What is logged of a change; `is_undone` where it was made and taken back.
+fn controlled<'a>(
+    who: &'a AccessToken,
+    action: String,
+    change: &'a RegionChange<'_>,
+    is_undone: bool,
+) -> Controlled<'a> {
+    let item = format!("region.{}", change.region);
+    let [mut before, mut after] = change.tables.each_ref().map(Option::as_deref);
+    let mut checksums = [change.before, &change.after].map(|regions| regions.cell.checksum.as_str());
+    if is_undone {
+        std::mem::swap(&mut before, &mut after);
+        checksums.reverse();
+    }
+    let of_key = |(field, before, after)| Change { item: item.clone(), field, before, after };
+    let mut changes: Vec<Change> = table_changes(before, after).into_iter().map(of_key).collect();
+    if change.tables[0].is_none() && !is_undone {
+        let (before, after) = (None, Some(change.is_on.to_string()));
+        changes.push(Change { item, field: "active".into(), before, after });
+    }
+    let note = change.note.filter(|_| !is_undone);
+    Controlled { class: who.class, name: &who.name, action, note, changes, checksums }
+}
+
+fn done_word(action: &str) -> &'static str {
+    match action {
+        "move" => "moved",
+        "add" => "added",
+        _ => "removed",
+    }
+}
+
+/// What is wrong with the keys of a region, in the words of a cell file.
+fn wrong(error: FormatError) -> Refusal {
+    let what = error.line.map_or_else(|| error.what.clone(), |line| format!("line {line}: {}", error.what));
+    let refusal = Refusal::new(400, what);
+    match error.write_instead {
+        Some(help) => refusal.help(help),
+        None => refusal,
+    }
+}
+
+fn refused(why: NoVersion) -> Refusal {
+    match why {
+        NoVersion::Wrong(error) => wrong(error),
+        NoVersion::NotContinued(why) => {
+            Refusal::new(409, why).help("change the cell file (docs/roles.md), and start the processes again")
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! Builds what a node needs for other regions, outside of the thread of its tick.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use elbowroom_cell::{Cell, configure};
+use elbowroom_monitor::{Interlock, Monitor, RegionKind, same_regions};
+use elbowroom_robot::RobotId;
+
+use super::inbox::{Inbox, Wanted};
+use super::next_configuration::{NextConfiguration, NodeVersion};
+use crate::cell_versions::CellVersions;
+use crate::configuration_number::configuration_digits;
+
+/// After a region that cannot be built, how long until the next attempt: a file may be missing still.
+const AGAIN_AFTER: Duration = Duration::from_secs(1);
+
+/// Builds what a node needs for other regions. [`Node`](super::Node) has one on a thread of its own; a program with its own loop calls
+/// [`Self::build`] on any thread but that of the ticks.
+pub struct RegionBuilder {
+    inbox: Arc<Inbox>,
+    versions: Arc<CellVersions>,
+    robot: RobotId,
+    interlock: Option<Interlock>,
+    /// Held here, so that the tick never frees one.
+    kept: Vec<Arc<NodeVersion>>,
+}
+
+impl RegionBuilder {
+    pub(super) fn new(
+        inbox: Arc<Inbox>,
+        versions: Arc<CellVersions>,
+        robot: RobotId,
+        interlock: Option<Interlock>,
+        version: Arc<NodeVersion>,
+    ) -> Self {
+        Self { inbox, versions, robot, interlock, kept: vec![version] }
+    }
+
+    /// Builds what the table that was heard last asks for, and leaves it for the next tick. False where there is nothing to build.
+    ///
+    /// # Errors
+    /// Why the node cannot have these regions, in words; then it stops once they are due.
+    pub fn build(&mut self) -> Result<bool, String> {
+        let (wanted, cell) = self.inbox.take_wanted();
+        let Some(wanted) = wanted else { return Ok(false) };
+        let next = self.next(&wanted, &cell)?;
+        self.inbox.put_built(next);
+        Ok(true)
+    }
+
+    /// Builds whenever there is something to build, until the node ends.
+    pub(super) fn run(mut self) {
+        while self.inbox.wait_for_wanted(AGAIN_AFTER) {
+            if self.build().is_err() {
+                // The next table asks for it again; the status says that the node has stopped, or goes on with the regions before.
+                std::thread::sleep(AGAIN_AFTER / 4);
+            }
+        }
+    }
+
+    fn next(&mut self, wanted: &Wanted, now: &Arc<Cell>) -> Result<Box<NextConfiguration>, String> {
+        let cell = self.versions.cell(&wanted.edits).map_err(|e| e.to_string())?;
+        if configuration_digits(&cell) != wanted.number {
+            return Err(
+                "this process builds other regions from the same keys: its cell file, or a file that it names, differs"
+                    .into(),
+            );
+        }
+        let setup_of = |cell: &Cell| {
+            let mut setups = configure::setups(cell).map_err(|e| e.to_string())?;
+            if self.robot.0 < setups.len() {
+                Ok(setups.swap_remove(self.robot.0))
+            } else {
+                Err("no such robot".to_owned())
+            }
+        };
+        let (setup, former) = (setup_of(&cell)?, setup_of(now)?);
+        let has_exchange = setup.configuration.regions().iter().any(|r| matches!(r.kind, RegionKind::Exchange { .. }));
+        let interlock = self.interlock.clone().filter(|_| has_exchange);
+        let monitor = Monitor::new(setup.configuration.clone(), interlock).map_err(|e| e.to_string())?;
+        let is_base = Arc::ptr_eq(&cell, self.versions.base());
+        let number = if is_base { String::new() } else { wanted.number.clone() };
+        let version = Arc::new(NodeVersion { number, configuration: setup.configuration.clone() });
+        self.kept.retain(|version| Arc::strong_count(version) > 1);
+        self.kept.push(version.clone());
+        let before = |r: &elbowroom_cell::CellRegion| {
+            let name = &r.region.name;
+            let is_on = || wanted.regions.iter().any(|(named, on)| named == name && *on);
+            now.regions.iter().position(|b| b.region.name == *name).ok_or_else(is_on)
+        };
+        Ok(Box::new(NextConfiguration {
+            from: configuration_digits(now),
+            number: wanted.number.clone(),
+            same: same_regions(monitor.configuration(), &former.configuration),
+            sources: Vec::with_capacity(setup.sources.len()),
+            before: cell.regions.iter().map(before).collect(),
+            active: vec![true; cell.regions.len()],
+            active_of_inbox: vec![true; cell.regions.len()],
+            cell_of_inbox: cell.clone(),
+            recorder: None,
+            cell,
+            setup,
+            monitor,
+            version,
+        }))
+    }
+}

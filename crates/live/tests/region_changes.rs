@@ -1,0 +1,321 @@
+//! Regions that are moved, added and removed over the control interface of a service with nodes.
+
+use std::io::{Read as _, Write as _};
+use std::net::{SocketAddr, TcpStream};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::SeqCst};
+use std::sync::{Arc, Mutex};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use elbowroom_cell::Cell;
+use elbowroom_cell::seal::{AccessTokens, control_history};
+use elbowroom_live::messages::OverrideAnswer;
+use elbowroom_live::network::{Network, Urgency};
+use elbowroom_live::{
+    Clock, ControlOptions, ControllerClient, ControllerState, Keys, Service, ServiceOptions, boot_number,
+};
+use elbowroom_monitor::AccessClass;
+use serde_json::{Value, json};
+
+const CELL: &str = r#"
+version = 1
+name = "rails"
+units = { length = "mm", angle = "deg" }
+[robot.left]
+dh = [{ kind = "prismatic", min = 0, max = 2000, speed = 1000 }]
+links = [{ sphere = { radius = 50 } }]
+[robot.right]
+dh = [{ kind = "prismatic", min = 0, max = 2000, speed = 1000 }]
+links = [{ sphere = { radius = 50 } }]
+base = { at = [900, 0, 0] }
+[region.pallet]
+shape = "sphere"
+centre = [450, 0, 1900]
+radius = 200
+kind = "exchange"
+warning = 100
+[region.cart]
+shape = "sphere"
+centre = [0, 0, 1700]
+radius = 100
+life = "temporary"
+warning = 100
+[region.wall]
+shape = "sphere"
+centre = [0, 900, 0]
+radius = 100
+warning = 100
+[monitor]
+stale_ms = 200
+"#;
+const TABLE: &str = "shape = \"sphere\"\ncentre = [0, 0, 1000]\nradius = 100\nwarning = 100\nlife = \"temporary\"\n";
+
+const OPERATOR: usize = 0;
+const PROGRAMMER: usize = 1;
+const INTEGRATOR: usize = 2;
+
+struct Setup {
+    folder: tempfile::TempDir,
+    address: SocketAddr,
+    listen: String,
+    secrets: [String; 3],
+    cell: Cell,
+    service: Service,
+}
+
+impl Setup {
+    /// The whole cell, or the arbiter alone.
+    fn new(is_arbiter_alone: bool) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let (file, tokens) = (folder.path().join("cell.toml"), folder.path().join("tokens.toml"));
+        std::fs::write(&file, CELL).unwrap();
+        let classes = [AccessClass::Operator, AccessClass::Programmer, AccessClass::Integrator];
+        let secrets = classes.map(|class| AccessTokens::add(&tokens, class, class.name()).unwrap());
+        let cell = Cell::load(&file).unwrap_or_else(|e| panic!("{e}"));
+        let control = ControlOptions { address: "127.0.0.1:0".into(), tokens, log: None, program_switches: false };
+        let free = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+        let listen = free.local_addr().unwrap().to_string();
+        drop(free);
+        let options = ServiceOptions {
+            listen: Some(listen.clone()),
+            arbiter: is_arbiter_alone,
+            control: Some(control),
+            ..ServiceOptions::default()
+        };
+        let service = Service::start(cell.clone(), &options).unwrap_or_else(|e| panic!("{e}"));
+        let address = service.control_address().unwrap();
+        Self { folder, address, listen, secrets, cell, service }
+    }
+
+    fn request(&self, method: &str, path: &str, headers: &str, body: &str) -> (u16, Value) {
+        let mut stream = TcpStream::connect(self.address).unwrap();
+        stream.set_read_timeout(Some(Duration::from_secs(30))).unwrap();
+        let (host, length) = (self.address, body.len());
+        let head = format!("{method} {path} HTTP/1.1\r\nHost: {host}\r\n{headers}Content-Length: {length}\r\n\r\n");
+        stream.write_all((head + body).as_bytes()).unwrap();
+        let mut answer = Vec::new();
+        let _ = stream.read_to_end(&mut answer);
+        let answer = String::from_utf8_lossy(&answer).into_owned();
+        let (head, body) = answer.split_once("\r\n\r\n").unwrap_or((&answer, ""));
+        let status = head.split(' ').nth(1).and_then(|word| word.parse().ok()).unwrap_or(0);
+        (status, serde_json::from_str(body).unwrap_or_default())
+    }
+
+    fn regions(&self) -> Value {
+        let bearer = format!("Authorization: Bearer {}\r\n", self.secrets[OPERATOR]);
+        self.request("GET", "/regions", &bearer, "").1
+    }
+
+    fn change_at(&self, class: usize, path: &str, revision: &str, body: &Value) -> (u16, Value) {
+        let secret = &self.secrets[class];
+        let headers =
+            format!("Authorization: Bearer {secret}\r\nIf-Match: \"{revision}\"\r\nContent-Type: application/json\r\n");
+        self.request("POST", path, &headers, &body.to_string())
+    }
+
+    fn change(&self, class: usize, path: &str, body: &Value) -> (u16, Value) {
+        let revision = self.regions()["revision"].as_str().unwrap().to_owned();
+        self.change_at(class, path, &revision, body)
+    }
+
+    /// A change that is made.
+    fn make(&self, path: &str, body: &Value) -> Value {
+        let (status, document) = self.change(PROGRAMMER, path, body);
+        assert_eq!(status, 200, "{path} {body}: {document}");
+        document
+    }
+
+    fn region(&self, name: &str) -> Option<Value> {
+        self.regions()["regions"].as_array().unwrap().iter().find(|r| r["name"] == name).cloned()
+    }
+}
+
+/// A controller on a thread of its own, whose robot stands where the test says.
+struct Controller {
+    q_mm: Arc<AtomicU64>,
+    is_closed: Arc<AtomicBool>,
+    /// The last answer, and the highest override of all.
+    last: Arc<Mutex<Option<OverrideAnswer>>>,
+    highest: Arc<Mutex<f64>>,
+    thread: Option<JoinHandle<()>>,
+    _subscription: elbowroom_live::network::Subscription,
+}
+
+impl Controller {
+    fn start(setup: &Setup, robot: &str, q_mm: u64) -> Self {
+        let (network, keys) = (setup.service.network().clone(), Keys::new(&setup.cell.name));
+        let (last, highest) = (Arc::<Mutex<Option<OverrideAnswer>>>::default(), Arc::new(Mutex::new(0.0)));
+        let (heard, most) = (last.clone(), highest.clone());
+        let handler = Box::new(move |bytes: &[u8]| {
+            let answer = OverrideAnswer::decode(bytes).unwrap();
+            let mut most = most.lock().unwrap();
+            *most = f64::max(*most, answer.speed_override);
+            *heard.lock().unwrap() = Some(answer);
+        });
+        let subscription = network.subscribe(&keys.speed_override(robot), handler).unwrap();
+        let mut joint_states = network.publisher(&keys.joint_states(robot), Urgency::RealTime).unwrap();
+        let (q, is_closed) = (Arc::new(AtomicU64::new(q_mm)), Arc::<AtomicBool>::default());
+        let (at, closed) = (q.clone(), is_closed.clone());
+        let run = move || {
+            let (clock, mut client) = (Clock::start(), ControllerClient::new(boot_number(), 0));
+            while !closed.load(SeqCst) {
+                let q = [at.load(SeqCst) as f64 * 1e-3];
+                let state =
+                    ControllerState { q: &q, qd: &[0.0], programmed_override: 1.0, ..ControllerState::default() };
+                joint_states.publish(client.joint_state(clock.micros(), &state));
+                std::thread::sleep(Duration::from_millis(10));
+            }
+        };
+        let thread = Some(std::thread::spawn(run));
+        Self { q_mm: q, is_closed, last, highest, thread, _subscription: subscription }
+    }
+
+    fn speed_override(&self) -> f64 {
+        self.last.lock().unwrap().as_ref().map_or(-1.0, |answer| answer.speed_override)
+    }
+}
+
+impl Drop for Controller {
+    fn drop(&mut self) {
+        self.is_closed.store(true, SeqCst);
+        let _ = self.thread.take().map(JoinHandle::join);
+    }
+}
+
+fn eventually(what: &str, mut holds: impl FnMut() -> bool) {
+    let began = Instant::now();
+    while !holds() {
+        assert!(began.elapsed() < Duration::from_secs(20), "{what}");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+}
+
+#[test]
+fn a_region_is_added_moved_and_removed_and_the_robot_obeys_at_once() {
+    let setup = Setup::new(false);
+    let controller = Controller::start(&setup, "left", 800);
+    eventually("free", || controller.speed_override() == 1.0);
+    // 50 mm before the border of the new region, in the middle of its warning zone.
+    let done = setup.make("/add", &json!({ "region": "table", "toml": TABLE, "note": "set up" }));
+    eventually("the added region limits", || (0.0..1.0).contains(&controller.speed_override()));
+    assert!(done["stopped"].is_null(), "{done}");
+    let entry = &done["entry"];
+    assert_eq!((entry["action"].as_str(), entry["note"].as_str()), (Some("add region.table"), Some("set up")));
+    assert_eq!(entry["checksum_before"], setup.cell.checksum.as_str());
+    assert_ne!(entry["checksum"], entry["checksum_before"]);
+    let shown = setup.regions();
+    assert_eq!(shown["checksum"], entry["checksum"]);
+    let region = setup.region("table").unwrap();
+    assert!(region["active"] == true && region["life"] == "temporary", "{region}");
+    // Away, and back.
+    setup.make("/move", &json!({ "region": "table", "toml": "centre = [0, 0, 1900]" }));
+    eventually("free again", || controller.speed_override() == 1.0);
+    let names: Vec<Value> = setup.regions()["regions"].as_array().unwrap().iter().map(|r| r["name"].clone()).collect();
+    assert_eq!(names, ["pallet", "cart", "wall", "table"], "no second place is left over");
+    let done = setup.make("/move", &json!({ "region": "table", "toml": "centre = [0, 0, 1000]" }));
+    let change = &done["entry"]["changes"][0];
+    assert_eq!((&change["field"], &change["before"]), (&json!("centre"), &json!("[0, 0, 1900]")));
+    eventually("limited again", || (0.0..1.0).contains(&controller.speed_override()));
+    setup.make("/remove", &json!({ "region": "table" }));
+    eventually("free at the end", || controller.speed_override() == 1.0);
+    assert_eq!(setup.region("table"), None);
+    assert_eq!(setup.regions()["checksum"], setup.cell.checksum.as_str(), "as it began");
+    // A temporary region of the file, switched off, is moved and switched on.
+    setup.make("/move", &json!({ "region": "cart", "toml": "centre = [0, 0, 1000]" }));
+    std::thread::sleep(Duration::from_millis(300));
+    assert_eq!(controller.speed_override(), 1.0);
+    setup.make("/switch", &json!({ "region": "cart", "active": true }));
+    eventually("the moved region limits", || (0.0..1.0).contains(&controller.speed_override()));
+    let entries = control_history(&setup.folder.path().join("cell.control.jsonl")).unwrap();
+    assert_eq!(entries.len(), 6);
+    for pair in entries.windows(2) {
+        assert_eq!(pair[1].checksum_before, pair[0].checksum);
+    }
+}
+
+#[test]
+fn what_is_not_allowed_is_refused_with_the_reason_and_changes_nothing() {
+    let setup = Setup::new(false);
+    let controller = Controller::start(&setup, "left", 800);
+    eventually("free", || controller.speed_override() == 1.0);
+    eventually("heard", || setup.regions()["robots"][0]["heard"] == true);
+    let before = setup.regions();
+    let add = |toml: &str| json!({ "region": "table", "toml": toml });
+    let to = |region: &str, toml: &str| json!({ "region": region, "toml": toml });
+    let permanent = TABLE.replace("temporary", "permanent");
+    let inside = "centre = [0, 0, 860]";
+    let around = TABLE.replace("1000", "860");
+    let cases: [(usize, &str, Value, u16, &str); 17] = [
+        (OPERATOR, "/add", add(TABLE), 403, "takes the programmer class"),
+        (OPERATOR, "/move", to("cart", inside), 403, "takes the programmer class"),
+        (OPERATOR, "/remove", json!({ "region": "cart" }), 403, "takes the programmer class"),
+        (PROGRAMMER, "/add", add(&permanent), 403, "takes the integrator class"),
+        (PROGRAMMER, "/move", to("wall", "centre = [0, 950, 0]"), 403, "takes the integrator class"),
+        (INTEGRATOR, "/move", to("wall", "centre = [0, 950, 0]"), 409, "is permanent and in the cell file"),
+        (INTEGRATOR, "/remove", json!({ "region": "wall" }), 409, "is permanent and in the cell file"),
+        (INTEGRATOR, "/remove", json!({ "region": "pallet" }), 409, "is an exchange region"),
+        (INTEGRATOR, "/add", add(&TABLE.replace("life = \"temporary\"", "kind = \"exchange\"")), 409, "exchange"),
+        (PROGRAMMER, "/move", to("carts", inside), 404, "there is no region `carts`"),
+        (PROGRAMMER, "/add", to("cart", TABLE), 409, "there is a region `cart` already"),
+        (PROGRAMMER, "/move", to("cart", "radius = 5"), 400, "`radius` does not say where region `cart` is"),
+        (PROGRAMMER, "/add", add("shape = \"cube\""), 400, "line 1: "),
+        (PROGRAMMER, "/add", add("shape = \"sphere\"\ncentre = [0, 0"), 400, "not TOML"),
+        (PROGRAMMER, "/add", add("shape = \"mesh\"\nmesh = \"/etc/passwd\""), 400, "outside of the cell's folder"),
+        (PROGRAMMER, "/add", json!({ "region": "a\nb", "toml": TABLE }), 400, "no name of a region"),
+        (PROGRAMMER, "/add", add(&around), 409, "is inside region `table`"),
+    ];
+    for (class, path, body, expected, message) in cases {
+        let (status, document) = setup.change(class, path, &body);
+        let error = document["error"].as_str().unwrap_or_default();
+        assert!(status == expected && error.contains(message), "{path} {body}: {status} {document}");
+    }
+    // The same file, the same message.
+    let wrong = "shape = \"sphere\"\ncentre = [0, 0, 1]\nradius = -5";
+    let of_file = Cell::parse("cell.toml", &format!("{CELL}\n[region.table]\n{wrong}")).unwrap_err();
+    let (_, document) = setup.change(PROGRAMMER, "/add", &add(wrong));
+    assert_eq!(document["error"].as_str().unwrap(), format!("line 3: {}", of_file.what));
+    // The distance, of a region that would stop the robot; one that slows it down is nobody's obstacle.
+    let (status, document) = setup.change(PROGRAMMER, "/add", &add(&around));
+    assert_eq!((status, document["robot"].as_str(), document["distance_m"].as_f64()), (409, Some("left"), Some(0.0)));
+    let revision = before["revision"].as_str().unwrap();
+    let (status, document) = setup.change_at(PROGRAMMER, "/add", &"1".repeat(16), &add(TABLE));
+    assert_eq!(status, 412, "{document}");
+    assert_eq!(setup.regions(), before, "nothing has changed");
+    assert_eq!(controller.speed_override(), 1.0);
+    let (status, _) = setup.change_at(PROGRAMMER, "/add", revision, &add(TABLE));
+    assert_eq!(status, 200);
+    assert_eq!(setup.change_at(PROGRAMMER, "/remove", revision, &json!({ "region": "table" })).0, 412);
+    // What is on may not be moved over the robot; what the integrator has added permanently, only the integrator removes.
+    let (status, document) = setup.change(PROGRAMMER, "/move", &to("table", inside));
+    assert!(status == 409 && document["distance_m"] == 0.0, "{document}");
+    let lasting = json!({ "region": "lasting", "toml": permanent.replace("1000", "1900") });
+    assert_eq!(setup.change(INTEGRATOR, "/add", &lasting).0, 200);
+    assert_eq!(setup.change(PROGRAMMER, "/remove", &json!({ "region": "lasting" })).0, 403);
+    assert_eq!(setup.change(INTEGRATOR, "/remove", &json!({ "region": "lasting" })).0, 200);
+}
+
+#[test]
+fn a_node_that_starts_later_has_the_present_regions_before_its_robot_may_move() {
+    let setup = Setup::new(true);
+    // Nobody guards the robots yet.
+    setup.make("/add", &json!({ "region": "table", "toml": TABLE }));
+    let connect = Some(setup.listen.clone());
+    let options = ServiceOptions { robots: vec!["left".into()], connect, ..ServiceOptions::default() };
+    // It stands within the region that the cell file does not have.
+    let controller = Controller::start(&setup, "left", 1000);
+    let node = Service::start(setup.cell.clone(), &options).unwrap_or_else(|e| panic!("{e}"));
+    eventually("it answers with the region's reason", || {
+        controller.last.lock().unwrap().as_ref().is_some_and(|a| a.reason == 1 && a.speed_override == 0.0)
+    });
+    assert_eq!(*controller.highest.lock().unwrap(), 0.0, "never more");
+    // Removed, it may go; a node that starts again has that, too.
+    setup.make("/remove", &json!({ "region": "table" }));
+    eventually("free", || controller.speed_override() == 1.0);
+    drop(node);
+    setup.make("/add", &json!({ "region": "table", "toml": TABLE.replace("1000", "500") }));
+    controller.q_mm.store(500, SeqCst);
+    *controller.highest.lock().unwrap() = 0.0;
+    let _node = Service::start(setup.cell.clone(), &options).unwrap_or_else(|e| panic!("{e}"));
+    eventually("stopped by the region", || controller.last.lock().unwrap().as_ref().is_some_and(|a| a.reason == 1));
+    assert_eq!(*controller.highest.lock().unwrap(), 0.0);
+}
