@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use xtask::crates;
+
 /// What was counted in one crate, or in all.
 #[derive(Debug, Default)]
 struct Size {
@@ -41,7 +43,7 @@ impl Size {
 
 /// Prints the sizes of the crates of the workspace at `root`.
 pub fn run(root: &Path) -> Result<(), String> {
-    let mut crates: Vec<PathBuf> = folders(&root.join("crates"))?;
+    let mut crates: Vec<PathBuf> = crates::find(root)?.into_iter().map(|found| found.folder).collect();
     crates.extend(["devtools", "xtask"].map(|name| root.join(name)).into_iter().filter(|path| path.is_dir()));
     println!(
         "{:<12} {:>5} {:>6} {:>6} {:>6}   {:>14}   {:>14}",
@@ -64,13 +66,6 @@ pub fn run(root: &Path) -> Result<(), String> {
     }
     println!("{}", all.row("all"));
     Ok(())
-}
-
-fn folders(parent: &Path) -> Result<Vec<PathBuf>, String> {
-    let entries = std::fs::read_dir(parent).map_err(|e| format!("{}: {e}", parent.display()))?;
-    let mut found: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).filter(|path| path.is_dir()).collect();
-    found.sort();
-    Ok(found)
 }
 
 fn each_source(folder: &Path, see: &mut impl FnMut(&str)) -> Result<(), String> {

@@ -3,6 +3,7 @@
 
 pub mod browser;
 pub mod call;
+pub mod crates;
 pub mod playwright;
 pub mod python;
 pub mod shell;

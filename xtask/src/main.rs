@@ -11,9 +11,12 @@ mod machine;
 mod native;
 mod peers;
 mod planning;
+mod quick;
+mod references;
 mod snippets;
 mod suite;
 mod terms;
+mod test_run;
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -27,6 +30,9 @@ cargo xtask COMMAND
   test [--only STEP]… [--list] [--offline]
         installs what the tests need and runs every check; --list names the steps.
         --offline installs nothing and says what it therefore leaves out
+  quick [--since COMMIT]
+        formats, layers, documents; lints and tests of the crates that differ from COMMIT (default HEAD) and of all that
+        depend on them
   layers
         who may depend on whom, that every crate takes the workspace lints, and no circles of files inside a crate
   terms
@@ -70,8 +76,6 @@ cargo xtask COMMAND
         how long it takes to say that a state is free, among 10, 100 and 1000 obstacles: along edges, and one by one
   scaling [--out DIR]
         time and memory of meshes of 1,000 to 2,000,000 triangles; --out writes the figures of docs/measurements/benchmarks.md
-  bench [ARGS…]
-        cargo bench, with ARGS
 
 Exit status: 0 all well, 1 a check failed, 2 the call is wrong.
 ";
@@ -96,25 +100,19 @@ fn dispatch(words: &[&str]) -> Result<(), Failure> {
             Ok(())
         }
         ["test", options @ ..] => suite::run(&root, &suite::Options::parse(options).map_err(Failure::Usage)?),
+        ["quick"] => Ok(quick::run(&root, "HEAD")?),
+        ["quick", "--since", commit] => Ok(quick::run(&root, commit)?),
         ["layers"] => Ok(layers::run(&root)?),
         ["inventory"] => Ok(inventory::run(&root)?),
         ["inventory", folder] => Ok(inventory::run(Path::new(folder))?),
         ["terms"] => Ok(terms::run(&root)?),
         ["models" | "figures", ..] | ["fuzz", "cells", ..] => devtools(&root, words, &[]),
-        ["judge", options @ ..] => {
-            eprintln!("warning: `judge` is now called `cross-validate`; the former name goes with the next version");
-            dispatch(&[&["cross-validate"], options].concat())
-        }
         [command, ..] if MEASURING.contains(command) => devtools(&root, words, &["--release"]),
         ["fuzz"] => fuzz(&root, "60"),
         ["fuzz", seconds] => fuzz(&root, seconds),
         ["peers", options @ ..] => Ok(peers::run(&root, &peers::Options::parse(options).map_err(Failure::Usage)?)?),
         ["planning", options @ ..] => {
             Ok(planning::run(&root, &planning::Options::parse(options).map_err(Failure::Usage)?)?)
-        }
-        ["bench", rest @ ..] => {
-            let args: Vec<&str> = ["bench", "--workspace"].iter().chain(rest).copied().collect();
-            Ok(shell::cargo(&root, &args, &[])?)
         }
         _ => Err(Failure::Usage(format!("unknown call `{}`", words.join(" ")))),
     }

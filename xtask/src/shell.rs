@@ -81,6 +81,11 @@ fn quoted(word: &str) -> String {
     if word.is_empty() || word.contains([' ', '\n', '"', '$', '*']) { format!("'{word}'") } else { word.to_owned() }
 }
 
+/// Where cargo puts what it builds.
+pub fn target_folder(root: &Path) -> std::path::PathBuf {
+    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), |folder| root.join(folder))
+}
+
 /// Makes a folder and those above it.
 ///
 /// # Errors

@@ -1,5 +1,8 @@
 //! Runs the commands that the documents promise.
 //!
+//! They are run with the command that the tests compiled: a `cargo` before cargo on the search path starts it for
+//! `cargo run`, and `elbowroom` is it. A release build would compile the workspace once more.
+//!
 //! A ```` ```sh ```` block that follows the line `<!-- run -->` must end with exit status 0 when bash runs it in the
 //! workspace root; `<!-- run: 1 -->` names another status.
 
@@ -17,13 +20,15 @@ struct Snippet {
 
 /// Runs every marked block of `README.md`, `CONTRIBUTING.md` and `docs/**/*.md`.
 pub fn run(root: &Path) -> Result<(), String> {
+    let search_path = search_path(root)?;
     let mut ran = 0;
     for path in documents(root)? {
         let text = std::fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
         let name = path.strip_prefix(root).unwrap_or(&path).display().to_string();
         for snippet in parse(&text).map_err(|e| format!("{name}:{e}"))? {
             println!("{name}:{}", snippet.line);
-            let status = shell::status(root, "bash", &["-euo", "pipefail", "-c", &snippet.text], &[])?;
+            let status =
+                shell::status(root, "bash", &["-euo", "pipefail", "-c", &snippet.text], &[("PATH", &search_path)])?;
             if status != snippet.expected {
                 let (line, expected) = (snippet.line, snippet.expected);
                 return Err(format!("{name}:{line}: the commands ended with {status}, the document says {expected}"));
@@ -33,6 +38,30 @@ pub fn run(root: &Path) -> Result<(), String> {
     }
     println!("snippets: {ran} blocks do what the documents say");
     Ok(())
+}
+
+/// The search path with the two programs that stand for the installed command.
+fn search_path(root: &Path) -> Result<String, String> {
+    let folder = shell::target_folder(root).join("snippets");
+    shell::make_folder(&folder)?;
+    let program = shell::target_folder(root).join("debug/elbowroom");
+    if !program.is_file() {
+        return Err(format!("{} is missing: run the step `tests` first, which compiles it", program.display()));
+    }
+    let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".into());
+    let elbowroom = format!("#!/bin/sh\nexec '{}' \"$@\"\n", program.display());
+    let stand_in = format!(
+        "#!/bin/sh\ncase \"$1 $2\" in\n    'run -qr' | 'run --release') shift 2; [ \"$1\" = -- ] && shift; exec '{}' \"$@\" ;;\nesac\n\
+         exec '{cargo}' \"$@\"\n",
+        program.display()
+    );
+    for (name, text) in [("elbowroom", elbowroom), ("cargo", stand_in)] {
+        let file = folder.join(name);
+        std::fs::write(&file, text).map_err(|e| format!("{}: {e}", file.display()))?;
+        shell::run(root, "chmod", &["+x", &file.to_string_lossy()], &[])?;
+    }
+    let rest = std::env::var("PATH").unwrap_or_default();
+    Ok(format!("{}:{rest}", folder.display()))
 }
 
 fn documents(root: &Path) -> Result<Vec<PathBuf>, String> {

@@ -1,11 +1,15 @@
 //! `cargo xtask test`: every check, timed, with a table at the end.
 
+use std::cell::RefCell;
 use std::path::Path;
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use xtask::{Failure, browser, playwright, python, shell};
+use xtask::shell::target_folder;
+use xtask::{Failure, shell};
 
-use crate::{layers, snippets, terms};
+use crate::references::References;
+use crate::{layers, snippets, terms, test_run};
 
 type Check = fn(&Context) -> Result<(), String>;
 
@@ -20,6 +24,8 @@ struct Outcome {
 struct Context<'a> {
     root: &'a Path,
     offline: bool,
+    /// What the tests compare with and open pages in, while it is being installed.
+    references: RefCell<Option<JoinHandle<Result<References, String>>>>,
 }
 
 struct Step {
@@ -28,43 +34,37 @@ struct Step {
     check: Check,
 }
 
-/// Cheap checks first: what fails fast should fail first.
-const STEPS: [Step; 12] = [
+/// Cheap checks first: what fails fast should fail first. The workspace is compiled twice: checked by `clippy` (and `docs`), built by `tests`.
+const STEPS: [Step; 10] = [
     Step { name: "fmt", what: "cargo fmt --check", check: fmt },
-    Step { name: "layers", what: "who may depend on whom, and no circles of files", check: |c| layers::run(c.root) },
+    Step {
+        name: "layers",
+        what: "who may depend on whom, no circles of files, sizes of files, functions and structs",
+        check: |c| layers::run(c.root),
+    },
     Step {
         name: "terms",
-        what: "no retired words, no long lines and no broken links in documents",
+        what: "no long lines, broken links or unknown names in documents",
         check: |c| terms::run(c.root),
     },
-    Step {
-        name: "models",
-        what: "committed robots and tools are what the generator writes",
-        check: |c| devtools(c, &["models", "--check"]),
-    },
-    Step {
-        name: "figures",
-        what: "committed figures of docs/laws.md are what the laws give",
-        check: |c| devtools(c, &["figures", "--check"]),
-    },
-    Step {
-        name: "python",
-        what: "target/venv with the references for kinematics and recordings",
-        check: install_python,
-    },
     Step { name: "clippy", what: "lints of all targets, warnings are errors", check: clippy },
-    Step { name: "tests", what: "unit, integration and documentation tests", check: tests },
+    Step { name: "docs", what: "cargo doc, warnings are errors", check: docs },
     Step {
-        name: "browser",
-        what: "report and view in headless Chromium: controls, distances, console",
-        check: open_pages,
+        name: "tests",
+        what: "unit and integration tests, with the references in Python and a browser",
+        check: tests,
+    },
+    Step { name: "doctests", what: "the examples of the documentation", check: doctests },
+    Step {
+        name: "generated",
+        what: "committed robots, tools and figures are what the generators write",
+        check: generated,
     },
     Step {
         name: "fuzz",
         what: "random cells under an independent oracle, a fixed choice of them",
         check: |c| devtools(c, &["fuzz", "cells", "--fixed"]),
     },
-    Step { name: "docs", what: "cargo doc, warnings are errors", check: docs },
     Step { name: "snippets", what: "commands that the documents promise", check: |c| snippets::run(c.root) },
 ];
 
@@ -110,11 +110,16 @@ pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
         }
         return Ok(());
     }
-    let context = Context { root, offline: options.offline };
-    let chosen =
-        STEPS.iter().filter(|step| options.only.is_empty() || options.only.iter().any(|name| name == step.name));
+    let is_chosen = |step: &&Step| options.only.is_empty() || options.only.iter().any(|name| name == step.name);
+    let chosen: Vec<&Step> = STEPS.iter().filter(is_chosen).collect();
+    let context = Context { root, offline: options.offline, references: RefCell::new(None) };
+    if chosen.iter().any(|step| step.name == "tests") {
+        // Downloads wait for the network, so they go on beside the first steps.
+        let (folder, offline) = (root.to_path_buf(), options.offline);
+        *context.references.borrow_mut() = Some(std::thread::spawn(move || References::find(&folder, offline)));
+    }
     let started = Instant::now();
-    let outcomes: Vec<Outcome> = chosen.map(|step| timed(step, &context)).collect();
+    let outcomes: Vec<Outcome> = chosen.into_iter().map(|step| timed(step, &context)).collect();
     print_table(&outcomes, started.elapsed());
     let failed: Vec<&str> = outcomes.iter().filter(|outcome| !outcome.ok).map(|outcome| outcome.name).collect();
     if failed.is_empty() { Ok(()) } else { Err(Failure::Check(format!("failed: {}", failed.join(", ")))) }
@@ -138,69 +143,29 @@ fn print_table(outcomes: &[Outcome], total: Duration) {
     println!("{:<10} {:<7} {:>7.1} s", "all", "", total.as_secs_f64());
 }
 
-/// The command with the network.
-const LIVE: &str = "elbowroom-cli/live";
+/// All tests run with the network in the command. Two sets of features would compile much of the workspace twice.
+pub const WORKSPACE: [&str; 3] = ["--workspace", "--features", "elbowroom-cli/live"];
 
 fn fmt(context: &Context) -> Result<(), String> {
     shell::cargo(context.root, &["fmt", "--all", "--check"], &[])
 }
 
-fn install_python(context: &Context) -> Result<(), String> {
-    if context.offline {
-        println!("--offline: nothing is installed");
-        return Ok(());
-    }
-    python::install(context.root)
-}
-
 fn clippy(context: &Context) -> Result<(), String> {
-    let args = ["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"];
-    shell::cargo(context.root, &args, &network(context))?;
-    let live = ["clippy", "--workspace", "--features", LIVE, "--all-targets", "--", "-D", "warnings"];
-    shell::cargo(context.root, &live, &network(context))
+    let args = [&["clippy"], &WORKSPACE[..], &["--all-targets", "--", "-D", "warnings"]].concat();
+    shell::cargo(context.root, &args, &network(context))
 }
 
 fn tests(context: &Context) -> Result<(), String> {
-    let python = python::ready(context.root).map(|path| path.to_string_lossy().into_owned());
-    let mut env = network(context);
-    match &python {
-        Some(path) => env.push(("ELBOWROOM_PYTHON", path)),
-        None => println!(
-            "target/venv is not ready: the comparisons with Pinocchio and with readers of recordings are skipped"
-        ),
-    }
+    let references = context.references.borrow_mut().take().and_then(|found| found.join().ok());
+    let references = references.unwrap_or_else(|| Err("the installation of the references panicked".into()))?;
     announce_data(context.root);
-    shell::cargo(context.root, &["test", "--workspace"], &env)?;
-    // The command with the network, as processes. With `--workspace` the dependencies are those that are there already.
-    let live = ["test", "--workspace", "--features", LIVE];
-    let tests = ["live", "live_control", "live_ros2", "recordings"].into_iter().flat_map(|name| ["--test", name]);
-    shell::cargo(context.root, &live.into_iter().chain(tests).collect::<Vec<_>>(), &env)?;
-    if python.is_some() || context.offline {
-        return Ok(());
-    }
-    let first = "run the step `python` first (cargo xtask test --only python)";
-    Err(format!("all that ran passed, but without the comparisons with Python: {first}, or say --offline"))
+    let env: Vec<_> = network(context).into_iter().chain(references.environment()).collect();
+    test_run::run(context.root, &WORKSPACE, &env)
 }
 
-/// The tests of the pages, which pass without a browser, with one.
-fn open_pages(context: &Context) -> Result<(), String> {
-    let found = if context.offline { browser::find(context.root) } else { Some(browser::install(context.root)?) };
-    let Some(browser) = found else {
-        println!("--offline: no Chromium is there, and none is installed: report and view are not opened in a browser");
-        return Ok(());
-    };
-    let driver =
-        if context.offline { playwright::ready(context.root) } else { Some(playwright::install(context.root)?) };
-    let (path, driver) = (browser.to_string_lossy(), driver.map(|path| path.to_string_lossy().into_owned()));
-    let mut env = network(context);
-    env.push(("ELBOWROOM_CHROMIUM", &path));
-    match &driver {
-        Some(python) => env.push(("ELBOWROOM_PLAYWRIGHT", python)),
-        None => {
-            println!("--offline: Playwright is not there, and is not installed: the view is not opened in a browser");
-        }
-    }
-    shell::cargo(context.root, &["test", "--workspace", "--test", "browser"], &env)
+fn doctests(context: &Context) -> Result<(), String> {
+    let args = [&["test", "--quiet", "--doc"], &WORKSPACE[..]].concat();
+    shell::cargo(context.root, &args, &network(context))
 }
 
 /// Tests on real robots pass where their data are missing: the log must show which run it was.
@@ -210,17 +175,23 @@ fn announce_data(root: &Path) {
     println!("{line} {}", folder.display());
 }
 
-/// A command of `elbowroom-devtools`, in the profile of the tests: what they compiled serves again.
+/// Commands of `elbowroom-devtools` in the profile and with the features of the tests: they have compiled it already.
 fn devtools(context: &Context, words: &[&str]) -> Result<(), String> {
-    let run = ["run", "--quiet", "--package", "elbowroom-devtools", "--"];
-    let args: Vec<&str> = run.iter().chain(words).copied().collect();
-    shell::cargo(context.root, &args, &network(context))
+    let build = [&["build", "--quiet"], &WORKSPACE[..], &["--bin", "elbowroom-devtools"]].concat();
+    shell::cargo(context.root, &build, &network(context))?;
+    let program = target_folder(context.root).join("debug/elbowroom-devtools");
+    shell::run(context.root, &program.to_string_lossy(), words, &[])
+}
+
+fn generated(context: &Context) -> Result<(), String> {
+    devtools(context, &["models", "--check"])?;
+    devtools(context, &["figures", "--check"])
 }
 
 fn docs(context: &Context) -> Result<(), String> {
     let mut env = network(context);
     env.push(("RUSTDOCFLAGS", "-D warnings"));
-    shell::cargo(context.root, &["doc", "--workspace", "--no-deps"], &env)
+    shell::cargo(context.root, &[&["doc", "--no-deps"], &WORKSPACE[..]].concat(), &env)
 }
 
 fn network<'a>(context: &Context) -> Vec<(&'static str, &'a str)> {

@@ -1,4 +1,4 @@
-//! Who may depend on whom. The order of [`LAYERS`] is the architecture; `docs/architecture.md` explains it. Inside a crate
+//! Who may depend on whom. The order of [`GROUPS`] is the architecture; `docs/architecture.md` explains it. Inside a crate
 //! no two files may use each other in a circle.
 
 mod circles;
@@ -10,40 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use toml::{Table, Value};
-
-/// Lowest layer first: a crate depends only on crates listed before it. Some are planned and not built yet.
-const LAYERS: [&str; 30] = [
-    "testkit",
-    "spatial",
-    "proximity",
-    "kinematics",
-    "robot",
-    "scene",
-    "formats",
-    "validity",
-    "monitor",
-    "interlock",
-    "cspace",
-    "planner",
-    "avoidance",
-    "shared_control",
-    "cooperation",
-    "vision",
-    "perception",
-    "cell",
-    "analysis",
-    "sim",
-    "inspect",
-    "report",
-    "status",
-    "ros2",
-    "rosbag",
-    "view",
-    "live",
-    "elbowroom",
-    "cli",
-    "python",
-];
+use xtask::crates::{self, Crate, GROUPS};
 
 /// Crates that may opt out of `forbid(unsafe_code)`: the glue that Python needs.
 const MAY_USE_UNSAFE: [&str; 1] = ["python"];
@@ -58,19 +25,15 @@ const NEVER: [(&str, &str, &str); 3] = [
 /// Checks the workspace at `root` and prints the result.
 pub fn run(root: &Path) -> Result<(), String> {
     let workspace = parse(&root.join("Cargo.toml"))?;
+    let found = crates::find(root)?;
     let mut manifests = BTreeMap::new();
-    let entries = std::fs::read_dir(root.join("crates")).map_err(|e| format!("crates: {e}"))?;
-    for entry in entries {
-        let path = entry.map_err(|e| format!("crates: {e}"))?.path();
-        let manifest = path.join("Cargo.toml");
-        if manifest.is_file() {
-            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            manifests.insert(name, parse(&manifest)?);
-        }
+    for found in &found {
+        manifests.insert(found.name.clone(), parse(&found.folder.join("Cargo.toml"))?);
     }
     let mut problems = problems(&workspace, &manifests);
-    for name in manifests.keys() {
-        problems.extend(circle_problems(name, &root.join("crates").join(name).join("src"))?);
+    for found in &found {
+        problems.extend(place_problem(found));
+        problems.extend(circle_problems(&found.name, &found.folder.join("src"))?);
     }
     for name in ["devtools", "xtask"] {
         problems.extend(circle_problems(name, &root.join(name).join("src"))?);
@@ -115,11 +78,17 @@ fn problems(workspace: &Table, manifests: &BTreeMap<String, Table>) -> Vec<Strin
     found
 }
 
+/// The group in which the crate is, where that is not its own.
+fn place_problem(found: &Crate) -> Option<String> {
+    let (group, _) = GROUPS.iter().find(|(_, crates)| crates.contains(&found.name.as_str()))?;
+    (found.group != *group)
+        .then(|| format!("crates/{}/{}: the crate belongs to crates/{group}", found.group, found.name))
+}
+
 fn name_problems(name: &str, manifest: &Table) -> Option<String> {
     let package = lookup(manifest, &["package", "name"]).and_then(Value::as_str).unwrap_or_default();
-    let expected = if name == "elbowroom" { name.to_owned() } else { format!("elbowroom-{name}") };
-    (package != expected)
-        .then(|| format!("crates/{name}/Cargo.toml: the package is called `{package}`, not `{expected}`"))
+    let expected = crates::package(name);
+    (package != expected).then(|| format!("{name}: the package is called `{package}`, not `{expected}`"))
 }
 
 fn lint_problem(name: &str, manifest: &Table) -> Option<String> {
@@ -128,13 +97,13 @@ fn lint_problem(name: &str, manifest: &Table) -> Option<String> {
     }
     let opted_in = lookup(manifest, &["lints", "workspace"]).and_then(Value::as_bool) == Some(true);
     (!opted_in)
-        .then(|| format!("crates/{name}/Cargo.toml: add `[lints]` with `workspace = true` (it forbids unsafe code)"))
+        .then(|| format!("{name}: add `[lints]` to Cargo.toml, with `workspace = true` (it forbids unsafe code)"))
 }
 
 fn order_problems(name: &str, uses: &BTreeSet<String>) -> Vec<String> {
     let Some(layer) = layer_of(name) else {
         return vec![format!(
-            "crates/{name} is not in LAYERS of xtask/src/layers/mod.rs: add it there, at its layer, and to docs/architecture.md"
+            "{name} is not in GROUPS of xtask/src/crates.rs: add it there, at its layer, and to docs/architecture.md"
         )];
     };
     let too_high = uses.iter().filter(|used| layer_of(used).is_none_or(|other| other >= layer));
@@ -142,7 +111,7 @@ fn order_problems(name: &str, uses: &BTreeSet<String>) -> Vec<String> {
 }
 
 fn layer_of(name: &str) -> Option<usize> {
-    LAYERS.iter().position(|&layer| layer == name)
+    GROUPS.iter().flat_map(|(_, crates)| *crates).position(|&layer| layer == name)
 }
 
 fn reaches(uses: &BTreeMap<&str, BTreeSet<String>>, from: &str, to: &str, seen: &mut BTreeSet<String>) -> bool {

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::native;
 
-const EXAMPLE: &str = "crates/validity/examples/state_times.rs";
+const EXAMPLE: &str = "crates/world/validity/examples/state_times.rs";
 
 /// `target/release/elbowroom`, built; or what `ELBOWROOM` names.
 pub fn program(root: &Path) -> Result<String, String> {

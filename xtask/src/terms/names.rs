@@ -46,13 +46,15 @@ impl KnownNames {
     /// Crates, examples and tests that a command names and that do not exist.
     fn command_names<'a>(&'a self, line: &'a str) -> impl Iterator<Item = String> + 'a {
         let after = |option: &'static str| line.split(option).skip(1).filter_map(|rest| words(rest).next());
-        let crates = after("-p elbowroom-").map(|name| (format!("crates/{name}/"), format!("crate {name}")));
+        let crates = after("-p elbowroom-").map(|name| (format!("/{name}/Cargo.toml"), format!("crate {name}")));
         let examples = after("--example ").map(|name| (format!("/examples/{name}"), format!("example {name}")));
         let tests = after("--test ").map(|name| (format!("/tests/{name}"), format!("test {name}")));
+        let benches = after("--bench ").map(|name| (format!("/benches/{name}"), format!("bench {name}")));
         let exists = |part: &str| self.paths.iter().any(|path| path.contains(part));
         crates
             .chain(examples)
             .chain(tests)
+            .chain(benches)
             .filter(move |(part, _)| !exists(part))
             .map(|(_, name)| format!("there is no {name}"))
     }
@@ -102,14 +104,18 @@ mod tests {
     #[test]
     fn names_of_documents_are_those_of_the_sources() {
         let mut known = KnownNames::default();
-        known.add("crates/scene/src/scene.rs", "pub struct Scene { step: u32 }");
-        known.add("crates/scene/examples/sweep.rs", "");
+        known.add("crates/world/scene/Cargo.toml", "");
+        known.add("crates/world/scene/src/scene.rs", "pub struct Scene { step: u32 }");
+        known.add("crates/world/scene/examples/sweep.rs", "");
         let problems = |text: &str| known.problems(Path::new("/nowhere"), "a.md", text);
         assert!(problems("`Scene`, `Scene::step(1)` and `run it`\n```\nScenery::walk\n```").is_empty());
         assert!(problems("cargo run -p elbowroom-scene --example sweep").is_empty());
         assert_eq!(problems("text\n`Scenery`"), ["a.md:2: `Scenery`: no source has the name Scenery"]);
         assert_eq!(problems("cargo test -p elbowroom-plan"), ["a.md:1: there is no crate plan"]);
-        assert_eq!(problems("see `crates/scene/src/gone.rs`"), ["a.md:1: there is no file `crates/scene/src/gone.rs`"]);
+        assert_eq!(
+            problems("see `crates/world/scene/src/gone.rs`"),
+            ["a.md:1: there is no file `crates/world/scene/src/gone.rs`"]
+        );
         assert!(problems("## Former names\n`Scenery`").is_empty());
     }
 }

@@ -1,0 +1,90 @@
+//! Every robot of the data against Pinocchio: poses, velocities and accelerations of all links at 1,000 random states.
+//!
+//! Needs a Python with `pin` and `numpy`, named by `ELBOWROOM_PYTHON` (default `python3`); without it the test passes with a message.
+#![allow(clippy::print_stdout)]
+
+use crate::common;
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use crate::common::{Random, robots};
+use elbowroom_kinematics::{Chain, ChainState, LinkId};
+
+const STATES: usize = 1000;
+const TOLERANCE: f64 = 1e-9;
+
+fn python() -> Option<String> {
+    let python = std::env::var("ELBOWROOM_PYTHON").unwrap_or_else(|_| "python3".into());
+    let probe = Command::new(&python).args(["-c", "import pinocchio, numpy"]).stderr(Stdio::null()).status();
+    if probe.is_ok_and(|s| s.success()) {
+        return Some(python);
+    }
+    println!("skipped: no `pin` and `numpy` in {python}; name a Python that has them in ELBOWROOM_PYTHON");
+    None
+}
+
+fn reference(python: &str, urdf: &Path, chain: &Chain, states: &str) -> Vec<f64> {
+    let names: Vec<&str> = chain.active_joints().iter().map(|j| chain.joints()[j.0].name.as_str()).collect();
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/python/pin_reference.py");
+    let mut child = Command::new(python)
+        .arg(script)
+        .arg(urdf)
+        .args([names.join(","), chain.links().join(",")])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut input = child.stdin.take().unwrap();
+    let states = states.to_owned();
+    let writer = std::thread::spawn(move || input.write_all(states.as_bytes()));
+    let output = child.wait_with_output().unwrap();
+    writer.join().unwrap().unwrap();
+    assert!(output.status.success(), "{}", urdf.display());
+    String::from_utf8(output.stdout).unwrap().split_whitespace().map(|w| w.parse().unwrap()).collect()
+}
+
+#[test]
+fn poses_velocities_and_accelerations_match_pinocchio() {
+    let Some(python) = python() else { return };
+    let mut worst = [0.0_f64; 3];
+    for (name, path) in robots() {
+        let chain = common::load(&path);
+        let mut random = Random(99);
+        let mut state = ChainState::new(&chain);
+        let mut ours = Vec::new();
+        let mut text = String::new();
+        for _ in 0..STATES {
+            random.state(&chain, &mut state.q);
+            state.qd.iter_mut().for_each(|v| *v = random.range(-2.0, 2.0));
+            state.qdd.iter_mut().for_each(|v| *v = random.range(-5.0, 5.0));
+            for v in state.q.iter().chain(&state.qd).chain(&state.qdd) {
+                write!(text, "{v:?} ").unwrap();
+            }
+            text.push('\n');
+            chain.forward_motion(&mut state);
+            for link in (0..chain.links().len()).map(LinkId) {
+                let motion = state.link_motion(link);
+                ours.extend(state.link_in_root(link).to_rows().into_iter().flatten());
+                for v in [motion.velocity, motion.angular_velocity, motion.acceleration, motion.angular_acceleration] {
+                    ours.extend(v.to_array());
+                }
+            }
+        }
+        let theirs = reference(&python, &path, &chain, &text);
+        assert_eq!(ours.len(), theirs.len(), "{name}");
+        let mut of_robot = [0.0_f64; 3];
+        for (i, (a, b)) in ours.iter().zip(&theirs).enumerate() {
+            assert!((a - b).abs() < TOLERANCE, "{name}, value {i}: {a} {b}");
+            let kind = [0, 1, 2][(i % 24).saturating_sub(6) / 6];
+            of_robot[kind] = of_robot[kind].max((a - b).abs());
+        }
+        let [pose, velocity, acceleration] = of_robot;
+        println!("{name:<42} pose {pose:.1e}, velocity {velocity:.1e}, acceleration {acceleration:.1e}");
+        for (w, r) in worst.iter_mut().zip(of_robot) {
+            *w = w.max(r);
+        }
+    }
+    println!("worst: pose {:.1e}, velocity {:.1e}, acceleration {:.1e}", worst[0], worst[1], worst[2]);
+}

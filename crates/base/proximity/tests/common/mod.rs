@@ -1,0 +1,83 @@
+//! Random shapes and poses for the tests, the same on every machine.
+#![allow(dead_code)]
+
+pub mod exact;
+
+use std::sync::Arc;
+
+use elbowroom_proximity::{
+    Capsule, ConvexHull, Cuboid, Cylinder, HalfSpace, Shape, Sphere, TriMesh, tessellate::tessellate,
+};
+use elbowroom_spatial::{Pose, Rotation, Vec3};
+use elbowroom_testkit::random::{split_mix, unit};
+
+/// The `SplitMix64` generator.
+pub struct Rng(pub u64);
+
+impl Rng {
+    pub fn bits(&mut self) -> u64 {
+        split_mix(&mut self.0)
+    }
+    pub fn unit(&mut self) -> f64 {
+        unit(self.bits())
+    }
+    pub fn range(&mut self, lo: f64, hi: f64) -> f64 {
+        lo + (hi - lo) * self.unit()
+    }
+    pub fn below(&mut self, n: usize) -> usize {
+        (self.bits() % n as u64) as usize
+    }
+    pub fn vec(&mut self, half: f64) -> Vec3 {
+        Vec3::new(self.range(-half, half), self.range(-half, half), self.range(-half, half))
+    }
+    /// One pose in four has its axes along the world's, one in eight its origin on a round number.
+    pub fn pose(&mut self, half: f64) -> Pose {
+        let quarter = std::f64::consts::FRAC_PI_2;
+        let rotation = match self.below(8) {
+            0 => Rotation::IDENTITY,
+            1 => Rotation::from_rpy(quarter * self.below(4) as f64, quarter * self.below(4) as f64, 0.0),
+            2 => Rotation::from_rpy(self.range(-1e-7, 1e-7), self.range(-1e-9, 1e-9), 0.0),
+            _ => Rotation::from_rotation_vector(self.vec(3.0)),
+        };
+        let at = self.vec(half);
+        let at = if self.below(8) == 0 { Vec3::new(at.x.round(), at.y.round(), at.z.round()) } else { at };
+        Pose::new(rotation, at)
+    }
+    /// One dimension in eight is zero or tiny.
+    pub fn size(&mut self) -> f64 {
+        match self.below(16) {
+            0 => 0.0,
+            1 => 1e-9,
+            _ => self.range(0.02, 1.0),
+        }
+    }
+    pub fn shape(&mut self, kind: &str) -> Shape {
+        match kind {
+            "sphere" => Shape::Sphere(Sphere { radius: self.size() }),
+            "capsule" => Shape::Capsule(Capsule { half_length: self.size(), radius: self.size() }),
+            "cylinder" => Shape::Cylinder(Cylinder { half_length: self.size(), radius: self.size() }),
+            "box" => Shape::Cuboid(Cuboid { half_extents: Vec3::new(self.size(), self.size(), self.size()) }),
+            "plane" => Shape::HalfSpace(HalfSpace),
+            "hull" => Shape::Hull(Arc::new(self.hull())),
+            "mesh" => {
+                let hull = Shape::Hull(Arc::new(self.hull()));
+                let (v, t) = tessellate(&hull, 0.01);
+                Shape::Mesh(Arc::new(TriMesh::new(v, t).unwrap()))
+            }
+            _ => unreachable!("{kind}"),
+        }
+    }
+    pub fn hull(&mut self) -> ConvexHull {
+        let n = 4 + self.below(30);
+        let size = self.range(0.1, 1.0);
+        let points: Vec<Vec3> = (0..n).map(|_| self.vec(size)).collect();
+        ConvexHull::from_points(&points).unwrap()
+    }
+}
+
+/// Cases per pair: `ELBOWROOM_LONG=1` asks for a million.
+pub fn cases(usual: usize) -> usize {
+    if std::env::var_os("ELBOWROOM_LONG").is_some() { 1_000_000 } else { usual }
+}
+
+pub const CONVEX: [&str; 5] = ["sphere", "capsule", "cylinder", "box", "hull"];

@@ -1,0 +1,78 @@
+//! Fits around the collision meshes of real robots; skipped where their descriptions are not installed.
+#![allow(clippy::print_stdout, reason = "the test prints how tight the fits are")]
+
+use std::cmp::Ordering;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use elbowroom_proximity::{ConvexHull, fit, project_point};
+use elbowroom_spatial::Vec3;
+
+fn data() -> PathBuf {
+    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../../shared/data");
+    std::env::var_os("ELBOWROOM_DATA").map_or_else(beside, PathBuf::from)
+}
+
+fn stl_files(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        let path = entry.path();
+        if path.is_dir() {
+            stl_files(&path, found);
+        } else if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("stl")) {
+            found.push(path);
+        }
+    }
+}
+
+/// Corners of a binary STL; `None` for any other file.
+fn corners(path: &Path) -> Option<Vec<Vec3>> {
+    let bytes = std::fs::read(path).ok()?;
+    let count = u32::from_le_bytes(bytes.get(80..84)?.try_into().ok()?) as usize;
+    let records = bytes.get(84..84 + 50 * count)?;
+    let coordinate = |b: &[u8]| f64::from(f32::from_le_bytes([b[0], b[1], b[2], b[3]]));
+    let corner = |b: &[u8]| Vec3::new(coordinate(b), coordinate(&b[4..]), coordinate(&b[8..]));
+    let mut all: Vec<Vec3> = records.chunks_exact(50).flat_map(|t| [12, 24, 36].map(|at| corner(&t[at..]))).collect();
+    all.sort_by(|a, b| a.to_array().partial_cmp(&b.to_array()).unwrap_or(Ordering::Equal));
+    all.dedup();
+    Some(all)
+}
+
+#[test]
+fn fits_around_real_links_hold_every_vertex() {
+    let root = data().join("urdf");
+    let mut files = Vec::new();
+    stl_files(&root, &mut files);
+    files.sort();
+    // Collision meshes of up to 1,200 triangles: the test build is slow.
+    let small = |p: &PathBuf| std::fs::metadata(p).is_ok_and(|m| m.len() < 60_000);
+    files.retain(|p| p.components().any(|c| c.as_os_str() == "collision") && small(p));
+    // Every third: all manufacturers are among them.
+    files = files.into_iter().step_by(3).take(24).collect();
+    if files.is_empty() {
+        println!("skipped: no data at {}", root.display());
+        return;
+    }
+    let mut ratios: BTreeMap<String, Vec<f64>> = BTreeMap::new();
+    for path in &files {
+        let Some(points) = corners(path).filter(|p| p.len() >= 12) else { continue };
+        let Ok(hull) = ConvexHull::from_points(&points) else { continue };
+        for fit in [fit::capsule(&points), fit::cuboid(&points), fit::tightest(&points)] {
+            let fit = fit.unwrap();
+            for &p in &points {
+                let out = project_point(&fit.shape, &fit.in_frame, p).signed_distance;
+                assert!(out <= 0.0, "{}: {p:?} is {out} m outside {fit:?}", path.display());
+            }
+        }
+        let ratio = fit::tightest(&points).unwrap().volume / hull.volume();
+        assert!(ratio >= 1.0 - 1e-9, "{}: tighter than the hull, {ratio}", path.display());
+        let robot = path.strip_prefix(&root).unwrap().components().next().unwrap();
+        ratios.entry(robot.as_os_str().to_string_lossy().into_owned()).or_default().push(ratio);
+    }
+    for (robot, r) in &ratios {
+        let mean = r.iter().sum::<f64>() / r.len() as f64;
+        let worst = r.iter().copied().fold(0.0, f64::max);
+        println!("{robot:32} {:3} links: tightest fit {mean:.2} times the hull's volume, worst {worst:.2}", r.len());
+        assert!(mean < 4.0, "{robot}: fits {mean} times the hull are no fits");
+    }
+    assert!(!ratios.is_empty());
+}

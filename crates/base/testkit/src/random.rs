@@ -1,0 +1,87 @@
+//! Generators of pseudo-random numbers, the same on every machine.
+//!
+//! Each function advances a state of 64 bits, which begins as the seed, and returns 64 bits. Tests with fixed results
+//! (golden hashes, thresholds that a seed was found to meet) depend on the sequences, so these never change.
+//!
+//! ```
+//! use elbowroom_testkit::random::{split_mix, unit};
+//! let mut state = 7;
+//! let values: Vec<f64> = (0..100).map(|_| unit(split_mix(&mut state))).collect();
+//! assert!(values.iter().all(|x| (0.0..1.0).contains(x)));
+//! ```
+
+/// `SplitMix64` (Steele, Lea, Flood: *Fast splittable pseudorandom number generators*, 2014). Any seed will do.
+pub fn split_mix(state: &mut u64) -> u64 {
+    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let z = (*state ^ (*state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+/// Xorshift with the shifts 13, 7, 17 (Marsaglia: *Xorshift RNGs*, 2003). The seed must not be 0, which yields only zeros.
+pub fn xorshift(state: &mut u64) -> u64 {
+    *state ^= *state << 13;
+    *state ^= *state >> 7;
+    *state ^= *state << 17;
+    *state
+}
+
+/// The linear congruential generator of Knuth's MMIX. Any seed will do; the low bits have short periods.
+pub fn linear_congruential(state: &mut u64) -> u64 {
+    *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+    *state
+}
+
+/// A number of `[0, 1)` from the upper 53 bits.
+pub fn unit(bits: u64) -> f64 {
+    (bits >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+/// Numbers of [`linear_congruential`] from a seed.
+///
+/// ```
+/// let mut random = elbowroom_testkit::random::Random(1);
+/// assert!((2.0..3.0).contains(&random.range(2.0, 3.0)) && random.below(4) < 4);
+/// ```
+pub struct Random(pub u64);
+
+impl Random {
+    /// A number of `[low, high)`.
+    pub fn range(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * unit(linear_congruential(&mut self.0))
+    }
+
+    /// A whole number below `count`; 0 for a count of 0.
+    pub fn below(&mut self, count: usize) -> usize {
+        // The low bits have short periods.
+        ((linear_congruential(&mut self.0) >> 11) % count.max(1) as u64) as usize
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The first three numbers from a seed.
+    fn first(generator: fn(&mut u64) -> u64, mut seed: u64) -> [u64; 3] {
+        std::array::from_fn(|_| generator(&mut seed))
+    }
+
+    /// Golden hashes of other crates follow from these sequences.
+    #[test]
+    fn the_sequences_are_the_published_ones() {
+        let split = [6_457_827_717_110_365_317, 3_203_168_211_198_807_973, 9_817_491_932_198_370_423];
+        assert_eq!(first(split_mix, 1_234_567), split);
+        assert_eq!(first(xorshift, 1), [1_082_269_761, 1_152_992_998_833_853_505, 11_177_516_664_432_764_457]);
+        assert_eq!(
+            first(linear_congruential, 0),
+            [1_442_695_040_888_963_407, 1_876_011_003_808_476_466, 11_166_244_414_315_200_793]
+        );
+    }
+
+    #[test]
+    fn numbers_are_below_one() {
+        assert_eq!(unit(0), 0.0);
+        assert_eq!(unit(u64::MAX), 1.0 - f64::EPSILON / 2.0);
+    }
+}

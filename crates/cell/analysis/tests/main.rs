@@ -1,0 +1,13 @@
+//! Integration tests of `elbowroom-analysis` in one program: a module per subject, whose first line says what belongs there.
+
+mod common;
+mod cover_cache;
+mod inspected_robots;
+mod map;
+mod plan;
+mod problems;
+mod query;
+mod region_constraint;
+mod several_robots;
+mod weights;
+mod weights_real;

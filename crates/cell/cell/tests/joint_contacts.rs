@@ -1,0 +1,95 @@
+//! All published robots, where the data is available: none begins to collide because of links that always touch at a joint.
+
+use std::path::{Path, PathBuf};
+
+use elbowroom_cell::{Cell, OutOfReachProofs, QueryModel};
+use elbowroom_robot::{GeometryId, JointContact, JointContactKind, RobotId, joint_contacts};
+use elbowroom_scene::{Checker, CheckerOptions, Scene, SceneState};
+
+fn robots() -> Vec<PathBuf> {
+    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../../shared/data");
+    let data = std::env::var_os("ELBOWROOM_DATA").map_or_else(beside, PathBuf::from).join("urdf");
+    let more = std::env::var_os("ELBOWROOM_MORE_ROBOTS").map(PathBuf::from);
+    if !data.is_dir() {
+        eprintln!("skipped: no data at {}", data.display());
+        return Vec::new();
+    }
+    let files = |folder: &Path| std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect::<Vec<_>>();
+    let of_folder = |folder: PathBuf| folder.join(format!("{}.urdf", folder.file_name().unwrap().to_str().unwrap()));
+    let mut robots: Vec<PathBuf> = files(&data).into_iter().map(of_folder).filter(|f| f.is_file()).collect();
+    // Other robots: a folder of URDFs.
+    robots.extend(more.iter().flat_map(|folder| files(folder)).filter(|f| f.extension().is_some_and(|e| e == "urdf")));
+    robots.sort();
+    assert!(robots.len() > 30, "only {}", robots.len());
+    robots
+}
+
+/// Pairs in contact at joint values.
+fn contacts(scene: &Scene, q: &[f64]) -> Vec<String> {
+    let mut state = SceneState::new(scene);
+    state.set_q(scene, RobotId(0), q).unwrap();
+    let mut found = Vec::new();
+    Checker::new(scene, CheckerOptions::default()).contacts(&state, |pair| found.push((pair.a, pair.b)));
+    let link = |id: GeometryId| scene.name(id).replace("r/", "");
+    found.into_iter().map(|(a, b)| format!("{} - {}", link(a), link(b))).collect()
+}
+
+#[test]
+fn no_robot_starts_in_contact_because_of_links_that_always_touch_at_a_joint() {
+    let mut with_pairs = Vec::new();
+    for urdf in robots() {
+        let text = format!(
+            "version = 1\nunits = {{ length = \"m\", angle = \"rad\" }}\n[robot.r]\nmodel = {:?}\n",
+            urdf.to_str().unwrap()
+        );
+        let cell = Cell::parse(urdf.with_file_name("cell.toml"), &text).unwrap();
+        let robot = &cell.robots[0].robot;
+        let zero = &cell.robots[0].start;
+        let middle: Vec<f64> =
+            robot.chain.lower().iter().zip(robot.chain.upper()).map(|(l, u)| 0.5 * (l + u)).collect();
+        let middle: Vec<f64> = middle.into_iter().map(|v| if v.is_finite() { v } else { 0.0 }).collect();
+        let found = joint_contacts(robot, zero);
+        let pair_name = |c: &JointContact| format!("{} - {}", robot.chain.links()[c.a.0], robot.chain.links()[c.b.0]);
+        let pairs: Vec<String> = found.iter().map(pair_name).collect();
+        let always: Vec<&String> =
+            pairs.iter().zip(&found).filter(|(_, c)| c.contacts == c.samples).map(|(n, _)| n).collect();
+        let motion = QueryModel::for_motion(&cell).scene(OutOfReachProofs::Omit).unwrap();
+        let query = QueryModel::of_cell(&cell).scene(OutOfReachProofs::Omit).unwrap();
+        let name = urdf.file_stem().unwrap().to_str().unwrap().to_owned();
+        println!(
+            "{name}: {:?}; else at zero {:?}, in the middle {:?}",
+            found.iter().map(|c| format!("{} {:?} {}", pair_name(c), c.kind, c.contacts)).collect::<Vec<_>>(),
+            contacts(&motion, zero),
+            contacts(&motion, &middle)
+        );
+        for q in [zero, &middle] {
+            let (left, all) = (contacts(&motion, q), contacts(&query, q));
+            // What is recognised is gone from motion, counts in queries, and nothing else changes.
+            assert!(always.iter().all(|pair| all.contains(pair)), "{name}: {all:?}");
+            let others: Vec<&String> = all.iter().filter(|pair| !pairs.contains(pair)).collect();
+            assert_eq!(left.iter().collect::<Vec<_>>(), others, "{name}: {all:?}");
+        }
+        for (pair, c) in pairs.iter().zip(&found) {
+            let (a, b) = pair.split_once(" - ").unwrap();
+            let share = if c.kind == JointContactKind::Pivot {
+                format!("{} of 1000", c.contacts)
+            } else {
+                "all 1000".to_owned()
+            };
+            let text = format!("`{a}` and `{b}` touch in {share} states");
+            let said = |w: &elbowroom_formats::Warning| w.what.contains(&text);
+            assert!(cell.warnings.iter().any(said), "{name}: {:?}", cell.warnings);
+        }
+        if !pairs.is_empty() {
+            with_pairs.push(name);
+        }
+    }
+    if !with_pairs.is_empty() {
+        for expected in ["abb_irb2400", "abb_irb4400l_30_243", "motoman_motomini"] {
+            assert!(with_pairs.iter().any(|name| name == expected), "{expected} is not in {with_pairs:?}");
+        }
+        for other in ["ur5e", "kuka_kr16_2", "staubli_tx60"] {
+            assert!(with_pairs.iter().all(|name| name != other), "{other} is in {with_pairs:?}");
+        }
+    }
+}

@@ -1,0 +1,11 @@
+//! Integration tests of `elbowroom-cell` in one program: a module per subject, whose first line says what belongs there.
+
+mod cell_units;
+mod common;
+mod errors;
+mod guarded_volumes;
+mod joint_contacts;
+mod keys;
+mod planning_scene;
+mod seal;
+mod tools;

@@ -1,0 +1,8 @@
+//! Integration tests of `elbowroom-report` in one program: a module per subject, whose first line says what belongs there.
+
+mod browser;
+mod moving_objects;
+mod page_data;
+mod report;
+mod report_demo;
+mod tools_and_parts;

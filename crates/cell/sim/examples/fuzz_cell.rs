@@ -1,0 +1,89 @@
+//! Mutation fuzzing of the cell file: `cargo run --release -p elbowroom-sim --example fuzz_cell -- FILE SECONDS [SEED]`.
+//!
+//! Mutates bytes, lines and numbers of FILE, resolves the result and runs it for a few ticks. Counts panics and
+//! readings slower than 5 s; exit status 1 if there were any. The first such input is kept in the temporary directory.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+use elbowroom_cell::Cell;
+use elbowroom_sim::{RunOptions, simulate};
+use elbowroom_testkit::random::Random;
+
+const NUMBERS: &[&str] =
+    &["0", "-1", "1e308", "-1e308", "1e-320", "nan", "inf", "9223372036854775807", "\"x\"", "[]", "{}"];
+
+fn mutate(text: &str, random: &mut Random) -> String {
+    let mut text = text.to_owned();
+    for _ in 0..=random.below(4) {
+        match random.below(3) {
+            0 => {
+                let mut bytes = text.into_bytes();
+                let i = random.below(bytes.len());
+                if let Some(b) = bytes.get_mut(i) {
+                    *b = random.below(256) as u8;
+                }
+                text = String::from_utf8_lossy(&bytes).into_owned();
+            }
+            1 => {
+                let mut lines: Vec<&str> = text.lines().collect();
+                let line = lines.get(random.below(lines.len())).copied().unwrap_or("");
+                if random.below(2) == 0 && lines.len() > 1 {
+                    lines.remove(random.below(lines.len()));
+                }
+                lines.insert(random.below(lines.len()), line);
+                text = lines.join("\n");
+            }
+            _ => {
+                let digits: Vec<usize> = text.match_indices(|c: char| c.is_ascii_digit()).map(|m| m.0).collect();
+                if let Some(&at) = digits.get(random.below(digits.len())) {
+                    text.replace_range(at..=at, NUMBERS[random.below(NUMBERS.len())]);
+                }
+            }
+        }
+    }
+    text
+}
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let (Some(file), Some(seconds)) = (arguments.first(), arguments.get(1).and_then(|s| s.parse().ok())) else {
+        eprintln!("usage: fuzz_cell FILE SECONDS [SEED]");
+        return ExitCode::from(2);
+    };
+    let Ok(text) = std::fs::read_to_string(file) else {
+        eprintln!("{file} cannot be read");
+        return ExitCode::from(2);
+    };
+    let mut random = Random(arguments.get(2).and_then(|s| s.parse().ok()).unwrap_or(0x9e37_79b9_7f4a_7c15));
+    std::panic::set_hook(Box::new(|_| {}));
+    let (begin, mut tried, mut sound, mut found) = (Instant::now(), 0_u64, 0_u64, 0_u64);
+    while begin.elapsed() < Duration::from_secs(seconds) {
+        let spoiled = mutate(&text, &mut random);
+        let started = Instant::now();
+        let outcome = catch_unwind(AssertUnwindSafe(|| {
+            Cell::parse(Path::new(file), &spoiled).is_ok_and(|mut cell| {
+                cell.max_s = cell.tick_s * 5.0;
+                let _ = simulate(&cell, &RunOptions::default());
+                true
+            })
+        }));
+        tried += 1;
+        sound += u64::from(matches!(outcome, Ok(true)));
+        if outcome.is_err() || started.elapsed() > Duration::from_secs(5) {
+            found += 1;
+            let kept = std::env::temp_dir().join(format!("fuzz_cell_{found}.toml"));
+            let _ = std::fs::write(&kept, &spoiled);
+            eprintln!(
+                "{} after {:?}: {}",
+                if outcome.is_err() { "panic" } else { "slow" },
+                started.elapsed(),
+                kept.display()
+            );
+        }
+    }
+    eprintln!("{tried} files, {sound} valid, {found} panics or slow readings");
+    ExitCode::from(u8::from(found > 0))
+}

@@ -1,0 +1,42 @@
+//! The hardest of the runs of the example `evade`: no hit, and no step longer than a tick in counted work.
+#![allow(clippy::print_stdout)]
+
+use crate::common::crossing;
+use std::path::Path;
+
+use elbowroom_cell::{Cell, Drive};
+use elbowroom_robot::ObjectId;
+use elbowroom_sim::RunOptions;
+use elbowroom_sim::run::simulate;
+
+/// Runs that hit before escapes were kept known, or that need most of them.
+const HARD: [usize; 2] = [135, 160];
+
+#[test]
+fn hard_runs_do_not_hit() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/evade.toml");
+    let cell = Cell::load(file).unwrap();
+    let moves = |o: &ObjectId| cell.moving_objects.iter().any(|m| m.object == *o);
+    let object = cell.avoidance[0].as_ref().unwrap().objects.iter().copied().find(moves).unwrap();
+    let seconds = crossing::without_obstacle(&cell).unwrap().duration_s;
+    let only = std::env::var("ELBOWROOM_EVADE_RUNS").ok();
+    let runs: Vec<usize> = only.map_or(HARD.to_vec(), |o| o.split(',').map(|n| n.trim().parse().unwrap()).collect());
+    let paths = crossing::paths(&cell, object, seconds, runs.iter().max().unwrap() + 1).unwrap();
+    for n in runs {
+        let mut cell = cell.clone();
+        cell.moving_objects.iter_mut().find(|m| m.object == object).unwrap().drive = Drive::Path(paths[n].clone());
+        let recording = simulate(&cell, &RunOptions::default()).unwrap().recording;
+        let robot = &recording.robots[0];
+        let steps = robot.avoidance.as_ref().unwrap().step_ns;
+        println!(
+            "run {n}: {:.2} s, finished {}, hits {}, step p50 {} p99 {} max {} us",
+            recording.duration_s,
+            robot.finished,
+            robot.collisions.len(),
+            steps.p50 / 1000,
+            steps.p99 / 1000,
+            steps.max / 1000
+        );
+        assert!(robot.collisions.is_empty(), "run {n}: {:?}", robot.collisions.first());
+    }
+}

@@ -1,0 +1,115 @@
+//! The example `pallet`: its program is valid, the cart crosses its path, and the arm evades it.
+
+use std::path::{Path, PathBuf};
+
+use elbowroom_avoidance::AvoiderState;
+use elbowroom_cell::Cell;
+use elbowroom_sim::{RunOptions, RunOutcome, RunSummary, simulate};
+
+fn file() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../examples/pallet/cell.toml")
+}
+
+fn run(text: &str, avoidance: bool) -> RunOutcome {
+    let cell = Cell::parse(file(), text).unwrap_or_else(|e| panic!("{e}"));
+    assert!(cell.warnings.is_empty(), "{:?}", cell.warnings);
+    simulate(&cell, &RunOptions { avoidance, ..RunOptions::default() }).unwrap_or_else(|e| panic!("{e}"))
+}
+
+#[test]
+fn the_program_succeeds_without_the_cart_and_collides_with_it() {
+    let text = std::fs::read_to_string(file()).unwrap();
+    let (begin, end) = (text.find("[object.cart]").unwrap(), text.find("[program.kr150]").unwrap());
+    let alone = run(&format!("{}{}", &text[..begin], &text[end..]), true);
+    let robot = &alone.recording.robots[0];
+    assert!(robot.finished && !alone.has_violation(), "{:?}", robot.collisions);
+
+    let met = run(&text, false);
+    let robot = &met.recording.robots[0];
+    assert!(robot.finished && met.has_violation() && robot.avoidance.is_none());
+    assert!(robot.collisions.iter().all(|c| c.b == "cart"), "{:?}", robot.collisions);
+}
+
+#[test]
+fn the_arm_evades_the_cart_and_completes_its_program() {
+    let text = std::fs::read_to_string(file()).unwrap();
+    let outcome = run(&text, true);
+    let robot = &outcome.recording.robots[0];
+    assert!(robot.finished && !outcome.has_violation(), "{:?}", robot.collisions);
+    let track = robot.avoidance.as_ref().unwrap();
+    assert_eq!(track.samples.len(), robot.samples.len());
+    assert!(track.samples.iter().any(|s| s.state == AvoiderState::Evading));
+    assert!(track.samples.iter().all(|s| s.nearest_m > 0.04), "the cart is closer than the clearance");
+    let summary = RunSummary::from(&outcome.recording).robots[0].avoidance.unwrap();
+    assert!(summary.evading_s > 0.1 && summary.off_path_s > 0.1 && summary.min_distance_m.is_some_and(|m| m > 0.04));
+    let occurred = |what: &str| outcome.recording.events.iter().any(|e| e.event.name() == what);
+    assert!(occurred("evade") && occurred("on_path"));
+    // Without an obstacle nearby the robot is exactly on its program: both runs end at the same configuration.
+    let without = run(&text, false);
+    assert_eq!(robot.samples.last().unwrap().q, without.recording.robots[0].samples.last().unwrap().q);
+    // The run is deterministic.
+    let again = run(&text, true);
+    let q = |o: &RunOutcome| o.recording.robots[0].samples.iter().map(|s| s.q.clone()).collect::<Vec<_>>();
+    assert_eq!(q(&outcome), q(&again));
+}
+
+#[test]
+fn an_override_of_zero_stops_the_evasion_too() {
+    let text = std::fs::read_to_string(file()).unwrap();
+    let region = "[region.everything]\nshape = \"sphere\"\ncentre = [0, 0, 0]\nradius = 9000\nwarning = 100\n";
+    let outcome = run(&format!("{text}\n{region}"), true);
+    let robot = &outcome.recording.robots[0];
+    // The program starts and is stopped; nothing moves after that.
+    let stopped = &robot.samples[robot.samples.len() / 4].q;
+    let first = &robot.samples[0].q;
+    assert!(first.iter().zip(stopped).all(|(a, b)| (a - b).abs() < 0.02), "the arm moved at override 0");
+    assert!(robot.samples.iter().skip(robot.samples.len() / 4).all(|s| s.q == *stopped), "the arm moved at override 0");
+}
+
+#[test]
+fn errors_in_the_table_name_the_line() {
+    let text = std::fs::read_to_string(file()).unwrap();
+    let wrong = |key: &str, word: &str| {
+        let line = 1 + text.lines().position(|l| l.starts_with("[avoidance.kr150]")).unwrap() + 1;
+        let with = text.replace("[avoidance.kr150]", &format!("[avoidance.kr150]\n{key}"));
+        let e = Cell::parse(file(), &with).unwrap_err();
+        assert!(e.to_string().contains(word) && e.write_instead.is_some(), "{e}");
+        assert_eq!(e.line, Some(line), "{e}");
+    };
+    wrong("speeed = 5", "speed");
+    wrong("speed = 0", "speed");
+    wrong("return_speed = 0", "return_speed");
+    wrong("stall_timeout = -1", "stall_timeout");
+    for key in ["speed", "clearance", "return_speed", "stall_timeout"] {
+        for value in ["0", "-1", "nan", "inf", "-inf", "1e9", "1e300", "1e-9", "\"fast\"", "[1]"] {
+            wrong(&format!("{key} = {value}"), &format!("avoidance.kr150.{key}"));
+        }
+    }
+    wrong("speed = 5e4", "10 mm per second to 20000 mm per second");
+    wrong("clearance = 1e-3", "0.1 mm to 5000 mm");
+    wrong("clearance = 1500", "1000 mm range of the rules");
+    wrong("stall_timeout = 3600", "0.01 to 60 s");
+    for key in ["horizon", "noise", "delay_ms"] {
+        for value in ["-1", "nan", "inf", "1e9", "\"long\"", "[1]"] {
+            wrong(&format!("{key} = {value}"), &format!("avoidance.kr150.{key}"));
+        }
+    }
+    wrong("horizon = 11", "0 to 10 s");
+    wrong("noise = 501", "0 to 500");
+    wrong("delay_ms = 2001", "0 to 2000 ms");
+    wrong("rules = \"nowhere.toml\"", "nowhere.toml");
+    let seen = "horizon = 2\nnoise = 12\ndelay_ms = 60";
+    let seen = Cell::parse(file(), &text.replace("[avoidance.kr150]", &format!("[avoidance.kr150]\n{seen}"))).unwrap();
+    let spec = seen.avoidance[0].as_ref().unwrap();
+    assert_eq!((spec.settings.escape.horizon_s, spec.noise_m, spec.delay_s), (2.0, 0.012, 0.06));
+    let sound = "speed = 20000\nclearance = 0.1\nreturn_speed = 1\nstall_timeout = 60";
+    let sound = text.replace("[avoidance.kr150]", &format!("[avoidance.kr150]\n{sound}"));
+    let cell = Cell::parse(file(), &sound).unwrap();
+    let settings = cell.avoidance[0].as_ref().unwrap().settings;
+    assert_eq!((settings.reactive.speed_m_s, settings.reactive.clearance_m), (20.0, 1e-4));
+    assert_eq!((settings.return_speed_fraction, settings.stall_timeout_s), (0.01, 60.0));
+    let unknown = text.replace("objects = [\"cart\"]", "objects = [\"card\"]");
+    assert!(Cell::parse(file(), &unknown).unwrap_err().to_string().contains("cart"));
+    let unknown_robot = text.replace("[avoidance.kr150]", "[avoidance.kr15]");
+    assert!(Cell::parse(file(), &unknown_robot).unwrap_err().to_string().contains("kr150"));
+}

@@ -1,0 +1,10 @@
+//! Integration tests of `elbowroom-live` in one program: a module per subject, whose first line says what belongs there.
+
+mod c_client;
+mod control;
+mod node;
+mod region_changes;
+mod region_table;
+mod ros2;
+mod ros2_peer;
+mod simulated;

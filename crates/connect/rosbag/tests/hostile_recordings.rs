@@ -1,0 +1,170 @@
+//! Recordings that somebody has changed: refused or replayed, never a panic.
+#![allow(clippy::print_stdout)]
+
+use std::collections::BTreeMap;
+use std::io::Cursor;
+use std::time::{Duration, Instant};
+
+use elbowroom_cell::Cell;
+use elbowroom_rosbag::{CellWriter, RunRecorder, replay};
+use elbowroom_sim::RunOptions;
+use elbowroom_sim::run::simulate_observed;
+use elbowroom_testkit::random::split_mix;
+
+const CHANGES: usize = 20_000;
+
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, n: usize) -> usize {
+        split_mix(&mut self.0) as usize % n.max(1)
+    }
+}
+
+/// Every kind of shape, a source, an exchange region, a tool.
+const CELL: &str = r#"
+version = 1
+name = "small"
+units = { length = "mm", angle = "deg" }
+tick_ms = 10
+[robot.arm]
+dh = [
+  { a = 300, alpha = 0, d = 200, theta = 0, min = -170, max = 170, speed = 180 },
+  { a = 300, alpha = 0, d = 0, theta = 0, min = -170, max = 170, speed = 180 },
+]
+links = [
+  { capsule = { from = [-300, 0, 0], to = [0, 0, 0], radius = 40 } },
+  { box = { at = [-150, 0, 0], size = [300, 60, 60] } },
+]
+[encoder.belt]
+direction = [0, 1, 0]
+speed = 20
+[region.ball]
+shape = "sphere"
+centre = [0, 500, 200]
+radius = 100
+warning = 200
+[region.post]
+shape = "cylinder"
+base = [500, 300, 0]
+radius = 50
+height = 500
+kind = "exchange"
+warning = 150
+[region.cart]
+shape = "box"
+base = [-500, 0, 0]
+size = [100, 100, 500]
+warning = 100
+follow = { encoder = "belt" }
+[region.wall]
+shape = "plane"
+origin = [0, -500, 0]
+x = [1, -500, 0]
+y = [0, -500, 1]
+kind = "monitored"
+slow_to = 50
+warning = 100
+[monitor]
+stopping_distance = true
+direction_aware = true
+[program.arm]
+steps = [{ move = "joint", to = [60, 40], speed = 100 }]
+"#;
+
+fn recording() -> Vec<u8> {
+    let cell = Cell::parse("small.toml", CELL).unwrap();
+    let mut file = Cursor::new(Vec::new());
+    let mut recorder = RunRecorder::new(CellWriter::new(&mut file, &cell, 0).unwrap(), &cell);
+    simulate_observed(&cell, &RunOptions::default(), &mut |_| {}, Some(&mut recorder)).unwrap();
+    recorder.finish().unwrap();
+    file.into_inner()
+}
+
+/// What a replay reads: the configuration and the first ticks.
+fn messages(recording: &[u8]) -> Vec<(String, Vec<u8>)> {
+    let all = mcap::MessageStream::new(recording).unwrap().map(Result::unwrap);
+    let mut messages: Vec<_> = all
+        .filter(|m| ["/elbowroom/configuration", "/elbowroom/tick"].contains(&m.channel.topic.as_str()))
+        .map(|m| (m.channel.topic.clone(), m.data.to_vec()))
+        .collect();
+    messages.truncate(12);
+    messages
+}
+
+fn written(messages: &[(String, Vec<u8>)]) -> Vec<u8> {
+    let mut file = Cursor::new(Vec::new());
+    let options = mcap::WriteOptions::new().compression(None).calculate_chunk_crcs(false);
+    let mut writer = options.create(&mut file).unwrap();
+    for (topic, payload) in messages {
+        let channel = writer.add_channel(0, topic, "cdr", &BTreeMap::new()).unwrap();
+        let header = mcap::records::MessageHeader { channel_id: channel, sequence: 0, log_time: 0, publish_time: 0 };
+        writer.write_to_known_channel(&header, payload).unwrap();
+    }
+    writer.finish().unwrap();
+    drop(writer);
+    file.into_inner()
+}
+
+fn mutate(bytes: &mut Vec<u8>, random: &mut Random) {
+    for _ in 0..=random.below(3) {
+        let at = random.below(bytes.len());
+        match random.below(5) {
+            0 => bytes.truncate(at),
+            1 => {
+                let number = [0.0, -1.0, f64::NAN, f64::INFINITY, 1e300, 1e-300][random.below(6)].to_le_bytes();
+                bytes.iter_mut().skip(at & !3).zip(number).for_each(|(byte, new)| *byte = new);
+            }
+            2 => {
+                let number = [u32::MAX, 0, 1, 7, 1 << 20][random.below(5)].to_le_bytes();
+                bytes.iter_mut().skip(at & !3).zip(number).for_each(|(byte, new)| *byte = new);
+            }
+            _ => bytes.iter_mut().skip(at).take(1).for_each(|byte| *byte ^= 1 << random.below(8)),
+        }
+    }
+}
+
+#[test]
+fn changed_messages_are_refused_or_replayed() {
+    let sound = messages(&recording());
+    assert_eq!(replay(&written(&sound)[..]).unwrap().differences, 0);
+    let mut random = Random(3);
+    let begin = Instant::now();
+    let mut kinds = BTreeMap::<String, usize>::new();
+    for _ in 0..CHANGES {
+        let mut changed = sound.clone();
+        // The configuration is compared with its checksum: half of the changes are to ticks.
+        let which = if random.below(2) == 0 { 0 } else { 1 + random.below(sound.len() - 1) };
+        mutate(&mut changed[which].1, &mut random);
+        let kind = match replay(&written(&changed)[..]) {
+            Ok(found) if found.differences > 0 => "differs".to_owned(),
+            Ok(found) if found.robots[0].skipped > 0 => "skipped".to_owned(),
+            Ok(_) => "same".to_owned(),
+            Err(e) => e.to_string().split(|c: char| c.is_ascii_digit()).next().unwrap_or_default().to_owned(),
+        };
+        *kinds.entry(kind).or_default() += 1;
+    }
+    println!("{CHANGES} in {:?}: {kinds:#?}", begin.elapsed());
+    assert!(begin.elapsed() < Duration::from_mins(5));
+    assert!(kinds["differs"] > 100 && kinds["same"] > 100 && kinds.len() > 10);
+}
+
+#[test]
+fn changed_files_are_refused_or_replayed() {
+    let sound = written(&messages(&recording()));
+    let mut random = Random(4);
+    let (mut refused, mut read) = (0, 0);
+    for _ in 0..CHANGES {
+        let mut changed = sound.clone();
+        mutate(&mut changed, &mut random);
+        match replay(&changed[..]) {
+            Ok(_) => read += 1,
+            Err(e) => {
+                assert!(!e.to_string().is_empty());
+                refused += 1;
+            }
+        }
+    }
+    println!("{read} read, {refused} refused");
+    assert!(read > CHANGES / 20 && refused > CHANGES / 20);
+}

@@ -1,0 +1,129 @@
+//! The recorder of a service: it never waits, counts what it loses, and leaves a file that can be read when it is killed.
+#![allow(clippy::print_stdout)]
+
+use std::io::{BufRead, BufReader};
+use std::process::{Command, Stdio};
+use std::sync::atomic::Ordering::SeqCst;
+use std::time::{Duration, Instant};
+
+use crate::common::{SlowFile, position, rail, velocity};
+use elbowroom_monitor::{AccessClass, Fault, Monitor, Snapshot};
+use elbowroom_rosbag::{CellWriter, Recorder, TickRecorder, replay};
+use elbowroom_status::{CellStatus, RobotStatus};
+
+/// Names the file that the second process of the test records into.
+const FILE: &str = "ELBOWROOM_TEST_RECORDING";
+
+fn tick(monitor: &mut Monitor, recorder: &mut TickRecorder, t_s: f64) -> CellStatus {
+    let (q, qd) = ([position(t_s)], [velocity(t_s)]);
+    let snapshot = Snapshot { qd: &qd, ..Snapshot::stationary(t_s, &q) };
+    let report = monitor.tick(&snapshot);
+    recorder.tick(t_s, &snapshot, &report, monitor);
+    let robots = vec![RobotStatus::of_tick(t_s, monitor, &snapshot, &report, None)];
+    CellStatus { t_s, robots, ..CellStatus::default() }
+}
+
+#[test]
+fn what_a_service_records_replays_to_the_bit() {
+    let (cell, mut monitor) = rail();
+    let file = SlowFile::default();
+    let recorder = Recorder::start(CellWriter::new(file.clone(), &cell, 1_700_000_000_000_000_000).unwrap()).unwrap();
+    let mut ticks = recorder.robot(0, &monitor, 0.0);
+    let gate = monitor.region("gate").unwrap();
+    for i in 0..5000_u32 {
+        if i % 500 == 250 {
+            let on = i % 1000 == 250;
+            monitor.switch(gate, on, AccessClass::Programmer).unwrap();
+            ticks.switched(gate, on);
+        }
+        monitor.set_external_fault((2300..2600).contains(&i).then_some(Fault::Regions));
+        recorder.status(tick(&mut monitor, &mut ticks, 0.002 * f64::from(i)));
+        if i % 100 == 0 {
+            // A run of the test has no time between its ticks: the recorder gets it here.
+            while recorder.waiting_ticks() > 0 {
+                std::thread::sleep(Duration::from_millis(1));
+            }
+        }
+    }
+    assert_eq!(recorder.lost_ticks(), 0);
+    recorder.finish().unwrap();
+    let bytes = file.bytes.lock().unwrap().get_ref().clone();
+    let found = replay(&bytes[..]).unwrap();
+    assert_eq!((found.ticks, found.differences, found.cut_off), (5000, 0, false));
+    let slowed = found.messages > 5000;
+    assert!(slowed);
+}
+
+#[test]
+fn a_file_that_does_not_answer_costs_ticks_and_no_time() {
+    let (cell, mut monitor) = rail();
+    let file = SlowFile::default();
+    let recorder = Recorder::start(CellWriter::new(file.clone(), &cell, 0).unwrap()).unwrap();
+    let mut ticks = recorder.robot(0, &monitor, 0.0);
+    for i in 0..100_u32 {
+        tick(&mut monitor, &mut ticks, 0.002 * f64::from(i));
+    }
+    std::thread::sleep(Duration::from_millis(100));
+    file.is_closed.store(true, SeqCst);
+    let begin = Instant::now();
+    for i in 100..100_000_u32 {
+        recorder.status(tick(&mut monitor, &mut ticks, 0.002 * f64::from(i)));
+    }
+    println!("100,000 ticks in {:?}", begin.elapsed());
+    assert!(begin.elapsed() < Duration::from_mins(1));
+    let lost = recorder.lost_ticks();
+    // What is on its way is bounded: the ticks that one robot has, and a chunk.
+    assert!(lost > 80_000, "only {lost} ticks were left out");
+    file.is_closed.store(false, SeqCst);
+    std::thread::sleep(Duration::from_millis(200));
+    tick(&mut monitor, &mut ticks, 200.0);
+    recorder.finish().unwrap();
+    let found = replay(&file.bytes.lock().unwrap().get_ref()[..]).unwrap();
+    let robot = &found.robots[0];
+    assert_eq!((found.lost_ticks, found.differences), (lost, 0));
+    // What was recorded behind the first hole is not compared.
+    assert!(robot.ticks >= 100 && robot.skipped >= 1);
+    assert_eq!(robot.ticks + lost + robot.skipped, 100_001);
+}
+
+/// Not a test of its own: the process that [`a_killed_process_leaves_a_file_up_to_its_last_second`] starts.
+#[test]
+fn records_until_it_is_killed() {
+    let Some(path) = std::env::var_os(FILE) else { return };
+    let (cell, mut monitor) = rail();
+    let recorder = Recorder::start(CellWriter::create(path.as_ref(), &cell, 0).unwrap()).unwrap();
+    let mut ticks = recorder.robot(0, &monitor, 0.0);
+    let begin = Instant::now();
+    while begin.elapsed() < Duration::from_mins(1) {
+        let t_s = begin.elapsed().as_secs_f64();
+        recorder.status(tick(&mut monitor, &mut ticks, t_s));
+        println!("tick {t_s}");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
+#[test]
+fn a_killed_process_leaves_a_file_up_to_its_last_second() {
+    let dir = tempfile::tempdir().unwrap();
+    for (run, lifetime_ms) in [1700, 3300].into_iter().enumerate() {
+        let file = dir.path().join(format!("{run}.mcap"));
+        let mut child = Command::new(std::env::current_exe().unwrap())
+            .args(["--exact", "records_until_it_is_killed", "--nocapture"])
+            .env(FILE, &file)
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let output = BufReader::new(child.stdout.take().unwrap());
+        let mut lines = output.lines().map_while(Result::ok).filter_map(|l| l.strip_prefix("tick ")?.parse().ok());
+        let first: f64 = lines.next().unwrap();
+        let last = lines.find(|t: &f64| *t - first > f64::from(lifetime_ms) / 1e3).unwrap();
+        // SIGKILL.
+        child.kill().unwrap();
+        child.wait().unwrap();
+        let found = replay(std::fs::File::open(&file).unwrap()).unwrap();
+        println!("killed at {last:.3} s, readable until {:.3} s", found.robots[0].until_s);
+        assert!(found.cut_off && found.differences == 0);
+        // A second, and what a busy machine adds.
+        assert!(last - found.robots[0].until_s < 1.5, "{} of {last}", found.robots[0].until_s);
+    }
+}

@@ -1,0 +1,278 @@
+//! What a server refuses, and that it goes on afterwards.
+
+use std::io::{Read as _, Write as _};
+use std::net::TcpStream;
+use std::time::{Duration, Instant};
+
+use crate::common::{Page, answer, cell, get, limits, open, settings, status, token};
+use elbowroom_testkit::random::split_mix;
+use elbowroom_view::{Limits, Server, ServerSettings};
+use serde_json::json;
+use tungstenite::Message;
+
+fn server() -> Server {
+    Server::jog(&cell(), settings()).unwrap()
+}
+
+/// A page gets its frames.
+fn assert_alive(server: &Server) {
+    assert_eq!(status(&get(server.address(), "/", "")), 200);
+    assert!(Page::of(server).frame().unwrap()["robots"].as_array().unwrap().len() == 2);
+}
+
+#[test]
+fn a_wrong_token_sees_nothing() {
+    let server = server();
+    for wrong in [json!({ "token": "" }), json!({ "token": "0".repeat(64) }), json!({ "token": &token(&server)[..63] })]
+    {
+        let mut page = Page::nameless(&server);
+        page.send(&wrong);
+        assert_eq!(page.next().unwrap_err(), "4401 the token is another one");
+    }
+    let mut silent = Page::nameless(&server);
+    assert_eq!(silent.next().unwrap_err(), "1013 no token has come");
+    // A command before the token is none.
+    let mut hasty = Page::nameless(&server);
+    hasty.send(&json!({ "type": "home" }));
+    assert!(hasty.next().unwrap_err().starts_with("4400"));
+    let address = server.address();
+    for headers in ["", "Authorization: Bearer \r\n", "Authorization: Bearer abc\r\n", "Authorization: Basic abc\r\n"] {
+        assert_eq!(status(&get(address, "/geometry", headers)), 401, "{headers}");
+        assert_eq!(status(&get(address, "/history", headers)), 401, "{headers}");
+    }
+    let right = format!("Authorization: Bearer {}\r\n", token(&server));
+    assert_eq!(status(&get(address, "/geometry", &right)), 200);
+    // What anybody may have says nothing about the cell.
+    for path in ["/", "/view.js", "/view.css"] {
+        assert!(!get(address, path, "").contains("two arms"));
+    }
+    assert_alive(&server);
+}
+
+#[test]
+fn pages_of_others_and_other_hosts_are_refused() {
+    let server = server();
+    let address = server.address();
+    let host = address.to_string();
+    for origin in ["http://evil.example", "null", "https://127.0.0.1", &format!("https://{host}"), "http://localhost:1"]
+    {
+        assert!(open(address, &host, Some(origin)).is_err_and(|e| e.contains("403")), "{origin}");
+    }
+    assert!(open(address, &host, None).is_err_and(|e| e.contains("403")));
+    for other in ["evil.example", "evil.example:80", "127.0.0.1", "127.0.0.1:1", "0.0.0.0:80"] {
+        assert!(open(address, other, Some(&format!("http://{other}"))).is_err_and(|e| e.contains("421")), "{other}");
+        let request = format!("GET / HTTP/1.1\r\nHost: {other}\r\n\r\n");
+        assert_eq!(status(&answer(address, request.as_bytes())), 421, "{other}");
+    }
+    assert_eq!(status(&answer(address, b"GET / HTTP/1.0\r\n\r\n")), 421);
+    let local = format!("localhost:{}", address.port());
+    assert!(open(address, &local, Some(&format!("http://{local}"))).is_ok());
+    assert_alive(&server);
+}
+
+#[test]
+fn only_the_files_of_the_page_are_served() {
+    let server = server();
+    let address = server.address();
+    for path in [
+        "/../../../../etc/passwd",
+        "/..%2f..%2f..%2fetc%2fpasswd",
+        "/%2e%2e/%2e%2e/etc/passwd",
+        "/....//....//etc/passwd",
+        "/view.js/../../etc/passwd",
+        "//etc/passwd",
+        "/etc/passwd",
+        "/three.js%00.html",
+        "/.git/config",
+        "/C:/Windows/win.ini",
+        "/..\\..\\etc\\passwd",
+        "http://evil.example/",
+        "/view.js.map",
+    ] {
+        let answer = get(address, path, "");
+        // An absolute address is one of the root; anything else is not there, or no address at all.
+        assert!(matches!(status(&answer), 400 | 404 | 421 | 0) || path.starts_with("http"), "{path}: {answer}");
+        assert!(!answer.contains("root:"), "{path}");
+    }
+    for path in ["/", "/view.css", "/three.js", "/view.js"] {
+        let answer = get(address, path, "");
+        assert_eq!(status(&answer), 200);
+        for header in [
+            "content-security-policy: default-src 'none'",
+            "x-content-type-options: nosniff",
+            "referrer-policy: no-referrer",
+        ] {
+            assert!(answer.contains(header), "{path} lacks {header}");
+        }
+    }
+    assert_alive(&server);
+}
+
+#[test]
+fn bodies_long_heads_and_large_messages_are_refused() {
+    let server = server();
+    let address = server.address();
+    let with_body = |method: &str, body: &str| {
+        let length = body.len();
+        let head = format!("{method} / HTTP/1.1\r\nHost: {address}\r\nContent-Length: {length}\r\n\r\n");
+        status(&answer(address, (head + body).as_bytes()))
+    };
+    let large = "x".repeat(4 << 20);
+    assert_eq!(with_body("POST", "abc"), 405);
+    assert_eq!(with_body("GET", "abc"), 413);
+    assert!(matches!(with_body("POST", &large), 405 | 0));
+    assert!(matches!(with_body("GET", &large), 413 | 0));
+    let claims = format!("GET / HTTP/1.1\r\nHost: {address}\r\nContent-Length: 99999999999999\r\n\r\n");
+    assert_eq!(status(&answer(address, claims.as_bytes())), 413);
+    let chunked = "Transfer-Encoding: chunked\r\n";
+    assert_eq!(status(&get(address, "/", chunked)), 413);
+    assert!(matches!(status(&get(address, "/", &format!("X: {large}\r\n"))), 400 | 431 | 0));
+    assert!(matches!(status(&get(address, &format!("/{large}"), "")), 400 | 414 | 431 | 0));
+    assert!(matches!(status(&get(address, "/", &"X: y\r\n".repeat(500))), 400 | 431 | 0));
+    let mut page = Page::of(&server);
+    let _ = page.send_raw(Message::text(large));
+    while page.next().is_ok() {}
+    assert_alive(&server);
+}
+
+#[test]
+fn garbage_ends_only_the_page_that_sends_it() {
+    let server = server();
+    let mut other = Page::of(&server);
+    other.frame().unwrap();
+    let mut random = 17;
+    let mut byte = || split_mix(&mut random) as u8;
+    let mut texts: Vec<String> = vec![
+        "{".into(),
+        "[]".into(),
+        "null".into(),
+        "{\"type\":\"jog\"}".into(),
+        "{\"type\":\"jog\",\"robot\":-1,\"q\":[]}".into(),
+        "{\"type\":\"jog\",\"robot\":0,\"q\":[\"a\"]}".into(),
+        "{\"type\":\"shutdown\"}".into(),
+        "[".repeat(10_000),
+        format!("{{\"type\":\"tcp\",\"robot\":0,\"position_m\":[1e999,0,0]}}"),
+    ];
+    texts.extend((0..150).map(|_| (0..byte()).map(|_| char::from(byte())).collect()));
+    for (i, text) in texts.iter().enumerate() {
+        let mut page = if i % 2 == 0 { Page::of(&server) } else { Page::nameless(&server) };
+        let message = if i % 3 == 0 { Message::binary(text.clone().into_bytes()) } else { Message::text(text.clone()) };
+        let _ = page.send_raw(message);
+        let end =
+            std::iter::from_fn(|| page.next().err().map_or(Some(None), |e| Some(Some(e)))).flatten().next().unwrap();
+        assert!(end.starts_with("4400"), "{text:?}: {end}");
+    }
+    // Bytes that are no WebSocket at all, and requests that are none.
+    for _ in 0..200 {
+        let bytes: Vec<u8> = (0..byte()).map(|_| byte()).collect();
+        let mut stream = TcpStream::connect(server.address()).unwrap();
+        let _ = stream.write_all(&bytes);
+    }
+    other.send(&json!({ "type": "jog", "robot": 1, "q": [0.1, 0.2] }));
+    other.frame_where(|frame| frame["robots"][1]["q"] == json!([0.1, 0.2]));
+    assert_alive(&server);
+}
+
+#[test]
+fn ten_thousand_hanging_connections_keep_nobody_out() {
+    const WAVES: usize = 40;
+    const WAVE: usize = 250;
+    let server = server();
+    let address = server.address();
+    let begin = Instant::now();
+    let mut slowest = Duration::ZERO;
+    let mut hanging: Vec<TcpStream> = Vec::new();
+    for wave in 0..WAVES {
+        hanging.clear();
+        for k in 0..WAVE {
+            let Ok(mut stream) = TcpStream::connect(address) else { continue };
+            let sent = match k % 3 {
+                // Nothing, half a head, and the whole head of a WebSocket whose token never comes.
+                0 => String::new(),
+                1 => format!("GET / HTTP/1.1\r\nHost: {address}\r\nX-Slow: "),
+                _ => format!(
+                    "GET /socket HTTP/1.1\r\nHost: {address}\r\nOrigin: http://{address}\r\nConnection: Upgrade\r\n\
+                     Upgrade: websocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n"
+                ),
+            };
+            let _ = stream.write_all(sent.as_bytes());
+            hanging.push(stream);
+        }
+        if wave % 4 == 0 {
+            let asked = Instant::now();
+            assert_alive(&server);
+            slowest = slowest.max(asked.elapsed());
+        }
+    }
+    eprintln!("{} connections in {:?}, the slowest answer took {slowest:?}", WAVES * WAVE, begin.elapsed());
+    assert!(slowest < Duration::from_secs(10), "{slowest:?}");
+    // Those that still hang are closed by the server within its limits.
+    for mut stream in hanging {
+        stream.set_read_timeout(Some(Duration::from_secs(10))).unwrap();
+        let closed = std::io::copy(&mut stream, &mut std::io::sink());
+        assert!(closed.is_ok() || closed.is_err_and(|e| e.kind() == std::io::ErrorKind::ConnectionReset));
+    }
+    assert_alive(&server);
+}
+
+/// The order in which connections were accepted counts, not that in which the server comes to them.
+#[test]
+fn a_websocket_is_as_old_as_its_connection() {
+    let long = Duration::from_secs(10);
+    let two = ServerSettings { limits: Limits { connections: 2, head: long, request: long, ..limits() }, ..settings() };
+    let server = Server::jog(&cell(), two).unwrap();
+    let address = server.address();
+    let connect = || {
+        let stream = TcpStream::connect(address).unwrap();
+        stream.set_read_timeout(Some(long / 2)).unwrap();
+        stream
+    };
+    let (mut page, mut younger) = (connect(), connect());
+    let upgrade = format!(
+        "GET /socket HTTP/1.1\r\nHost: {address}\r\nOrigin: http://{address}\r\nConnection: Upgrade\r\n\
+         Upgrade: websocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n"
+    );
+    page.write_all(upgrade.as_bytes()).unwrap();
+    let mut upgraded = [0; 12];
+    page.read_exact(&mut upgraded).unwrap();
+    assert_eq!(&upgraded, b"HTTP/1.1 101");
+    let mut youngest = connect();
+    std::io::copy(&mut page, &mut std::io::sink()).expect("the oldest connection makes room");
+    for stream in [&mut younger, &mut youngest] {
+        write!(stream, "GET /view.css HTTP/1.1\r\nHost: {address}\r\n\r\n").unwrap();
+        let mut answer = Vec::new();
+        stream.read_to_end(&mut answer).unwrap();
+        assert_eq!(status(&String::from_utf8_lossy(&answer)), 200);
+    }
+}
+
+#[test]
+fn more_browsers_than_allowed_are_refused_with_a_reason() {
+    let few = ServerSettings { limits: Limits { browsers: 2, ..limits() }, ..settings() };
+    let server = Server::jog(&cell(), few).unwrap();
+    let (mut one, two) = (Page::of(&server), Page::of(&server));
+    let mut three = Page::nameless(&server);
+    three.send(&json!({ "token": token(&server) }));
+    assert!(three.next().unwrap_err().starts_with("4429 too many browsers"));
+    drop(two);
+    one.frame().unwrap();
+    let begin = Instant::now();
+    while begin.elapsed() < Duration::from_secs(10) {
+        let mut again = Page::nameless(&server);
+        again.send(&json!({ "token": token(&server) }));
+        if again.next().is_ok() {
+            return;
+        }
+    }
+    panic!("the place of a browser that is gone stays taken");
+}
+
+#[test]
+fn a_stopped_server_is_gone() {
+    let server = server();
+    let address = server.address();
+    let mut page = Page::of(&server);
+    server.stop();
+    while page.next().is_ok() {}
+    assert!(TcpStream::connect_timeout(&address, Duration::from_millis(500)).is_err());
+}

@@ -1,0 +1,7 @@
+//! Integration tests of `elbowroom-view` in one program: a module per subject, whose first line says what belongs there.
+
+mod browser;
+mod common;
+mod feed;
+mod hostile;
+mod jog;

@@ -1,0 +1,218 @@
+//! `elbowroom live` as processes on the loopback network, watched through what they publish.
+#![cfg(feature = "live")]
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::process::{Child, Command, Output, Stdio};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+use elbowroom::live::Keys;
+use elbowroom::live::network::{Network, Subscription, ZenohNetwork, ZenohSettings};
+use elbowroom::status::RobotStatus;
+
+const CELL_NAME: &str = "two arms, one pallet";
+const ROBOTS: [&str; 2] = ["left", "right"];
+
+fn example() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../examples/exchange/cell.toml")
+}
+
+fn live(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_elbowroom"));
+    // However a test ends, its processes end by themselves.
+    command
+        .arg("live")
+        .arg(example())
+        .args(arguments)
+        .args(["--for", "100"])
+        .stderr(Stdio::null())
+        .stdin(Stdio::null());
+    command
+}
+
+/// A process that is killed when it is dropped.
+struct Process(Child);
+
+impl Process {
+    fn start(arguments: &[&str]) -> Self {
+        Self(live(arguments).spawn().expect("elbowroom starts"))
+    }
+}
+
+impl Drop for Process {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// An address that nobody listens at.
+fn free_address() -> String {
+    let listener = std::net::TcpListener::bind("127.0.0.1:0").expect("a free port");
+    listener.local_addr().expect("its address").to_string()
+}
+
+/// What was seen of the two robots.
+#[derive(Default)]
+struct Seen {
+    statuses: BTreeMap<String, (RobotStatus, Instant)>,
+    count: usize,
+    entries: BTreeMap<String, usize>,
+    /// Two robots that were both heard within 0.1 s were inside.
+    shared: usize,
+}
+
+impl Seen {
+    fn take(&mut self, status: RobotStatus) {
+        let is_inside = |s: &RobotStatus| s.exchange.values().any(|state| state == "inside");
+        let now = Instant::now();
+        let before = self.statuses.get(&status.robot).is_some_and(|(s, _)| is_inside(s));
+        if is_inside(&status) && !before {
+            *self.entries.entry(status.robot.clone()).or_default() += 1;
+        }
+        self.count += 1;
+        self.statuses.insert(status.robot.clone(), (status, now));
+        let recent = self.statuses.values().filter(|(_, at)| now - *at < Duration::from_millis(100));
+        self.shared += usize::from(recent.filter(|(s, _)| is_inside(s)).count() > 1);
+    }
+
+    fn entered(&self, robot: &str) -> usize {
+        self.entries.get(robot).copied().unwrap_or(0)
+    }
+}
+
+struct Observer {
+    seen: Arc<Mutex<Seen>>,
+    _network: ZenohNetwork,
+    _subscriptions: Vec<Subscription>,
+}
+
+impl Observer {
+    fn at(address: &str) -> Self {
+        let settings = ZenohSettings { connect: Some(address.to_owned()), ..ZenohSettings::default() };
+        let network = ZenohNetwork::open(&settings).expect("a session");
+        let seen: Arc<Mutex<Seen>> = Arc::default();
+        let subscribe = |robot: &&str| {
+            let seen = seen.clone();
+            let handler = Box::new(move |bytes: &[u8]| {
+                seen.lock().unwrap().take(serde_json::from_slice(bytes).expect("a status"));
+            });
+            network.subscribe(&Keys::new(CELL_NAME).status(robot), handler).expect("a key")
+        };
+        let subscriptions = ROBOTS.iter().map(subscribe).collect();
+        Self { seen, _network: network, _subscriptions: subscriptions }
+    }
+
+    fn wait(&self, what: &str, longest_s: u64, holds: impl Fn(&Seen) -> bool) {
+        let began = Instant::now();
+        while !holds(&self.seen.lock().unwrap()) {
+            let seen = || {
+                let seen = self.seen.lock().unwrap();
+                let last = |(s, at): &(RobotStatus, Instant)| (at.elapsed(), s.exchange.clone(), s.reason.clone());
+                (seen.count, seen.entries.clone(), seen.statuses.values().map(last).collect::<Vec<_>>())
+            };
+            assert!(began.elapsed() < Duration::from_secs(longest_s), "{what}: {:?}", seen());
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    }
+
+    fn shared(&self) -> usize {
+        self.seen.lock().unwrap().shared
+    }
+}
+
+#[test]
+fn a_whole_cell_in_one_process_is_published_and_never_shares_its_region() {
+    let address = free_address();
+    let _cell = Process::start(&["--simulate", "--listen", &address]);
+    let observer = Observer::at(&address);
+    observer.wait("no status", 20, |seen| seen.statuses.len() == 2);
+    let (before, began) = (observer.seen.lock().unwrap().count, Instant::now());
+    observer.wait("a robot never enters", 60, |seen| ROBOTS.iter().all(|r| seen.entered(r) > 0));
+    let rate = (observer.seen.lock().unwrap().count - before) as f64 / began.elapsed().as_secs_f64() / 2.0;
+    assert!(rate >= 10.0, "{rate} statuses per second");
+    assert_eq!(observer.shared(), 0);
+}
+
+#[test]
+fn processes_that_are_killed_never_make_two_robots_share_a_region() {
+    let address = free_address();
+    let start = |robot: &str| Process::start(&["--simulate", "--robots", robot, "--connect", &address]);
+    // Robots may start before their arbiter.
+    let mut robots = ROBOTS.map(start);
+    let mut arbiter = Process::start(&["--arbiter", "--listen", &address]);
+    let observer = Observer::at(&address);
+    observer.wait("a robot never enters", 60, |seen| ROBOTS.iter().all(|r| seen.entered(r) > 0));
+    let is_inside = |seen: &Seen, robot: &str| {
+        seen.statuses.get(robot).is_some_and(|(s, _)| s.exchange.values().any(|state| state == "inside"))
+    };
+    // A robot whose process dies inside: nobody else enters until it was heard again.
+    observer.wait("left is never inside", 60, |seen| is_inside(seen, "left"));
+    robots[0] = {
+        let Process(child) = &mut robots[0];
+        child.kill().expect("it is killed");
+        let right = observer.seen.lock().unwrap().entered("right");
+        std::thread::sleep(Duration::from_secs(3));
+        assert_eq!(
+            observer.seen.lock().unwrap().entered("right"),
+            right,
+            "right entered beside a robot that is not known"
+        );
+        start("left")
+    };
+    // An arbiter that dies: another one goes on.
+    drop(arbiter);
+    arbiter = Process::start(&["--arbiter", "--listen", &address]);
+    let before = ROBOTS.map(|r| observer.seen.lock().unwrap().entered(r));
+    observer.wait("robots do not go on with a new arbiter", 60, |seen| {
+        ROBOTS.iter().zip(before).all(|(r, before)| seen.entered(r) > before)
+    });
+    assert_eq!(observer.shared(), 0);
+    drop(arbiter);
+}
+
+#[test]
+fn a_recording_of_the_service_replays_to_the_bit() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("live.mcap");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_elbowroom"));
+    command.arg("live").arg(example()).args(["--simulate", "--listen", &free_address(), "--for", "4", "--record"]);
+    let output = command.arg(&file).output().expect("elbowroom runs");
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let replay =
+        Command::new(env!("CARGO_BIN_EXE_elbowroom")).arg("replay").arg(&file).output().expect("elbowroom runs");
+    assert!(replay.status.success(), "{}{}", text(&replay.stdout), text(&replay.stderr));
+    assert!(
+        text(&replay.stdout).contains("the same to the bit") && replay.stderr.is_empty(),
+        "{}",
+        text(&replay.stderr)
+    );
+}
+
+#[test]
+fn wrong_calls_say_what_to_write() {
+    let taken = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
+    let taken = taken.local_addr().expect("its address").to_string();
+    let cases = [
+        (
+            vec!["--robots", "middle", "--listen", "127.0.0.1:0"],
+            "--robots middle: no robot of the cell has this name\n  help: one of left, right",
+        ),
+        (vec!["--connect", "nowhere"], "nowhere: not HOST:PORT\n  help: write HOST:PORT, such as 127.0.0.1:7447"),
+        (vec!["--listen", "udp/127.0.0.1:7447"], "only tcp is supported"),
+        (vec!["--listen", &taken], &taken),
+        (vec!["--web", "0.0.0.0:8080", "--listen", "127.0.0.1:0"], "--web: "),
+        (vec!["--record", "/nowhere/live.mcap", "--listen", "127.0.0.1:0"], "--record: "),
+    ];
+    for (arguments, message) in cases {
+        let Output { status, stderr, .. } =
+            live(&[]).args(&arguments).stderr(Stdio::piped()).output().expect("elbowroom runs");
+        let stderr = text(&stderr);
+        assert!(status.code() == Some(2) && stderr.contains(message), "{arguments:?}: {status} {stderr}");
+    }
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}

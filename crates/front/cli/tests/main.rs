@@ -1,0 +1,32 @@
+//! Integration tests of `elbowroom-cli` in one program: a module per subject, whose first line says what belongs there.
+
+mod carry;
+mod check;
+mod common;
+mod configurations;
+mod imports;
+mod inspect;
+mod live;
+mod live_control;
+mod live_ros2;
+mod map;
+mod models;
+mod pair_file;
+mod pairs;
+mod perceived_run;
+mod pick_and_place;
+mod plan;
+mod plan_problems;
+mod plan_several;
+mod planned_moves;
+mod query;
+mod query_contacts;
+mod query_pairs;
+mod recordings;
+mod roles;
+mod rules;
+mod run;
+mod surface;
+mod tasks;
+mod teach;
+mod watch;

@@ -1,0 +1,174 @@
+//! `elbowroom plan --problems`: document, files, exit status, messages.
+
+use std::path::Path;
+
+use crate::common::{Answer, elbowroom, examples, keys};
+use serde_json::{Value, json};
+
+/// Values of the example robot with its forearm in front.
+const READY: [f64; 6] = [-0.8, 0.5, 0.0, 0.0, 0.4, 0.0];
+
+/// From the ready posture to these values of the first joints, past a post in front of the robot.
+fn problem(with_post: bool, to: &[f64]) -> Value {
+    let names: Vec<String> = (1..=6).map(|i| format!("joint_{i}")).collect();
+    let goal = |(value, joint): (&f64, &String)| json!({"joint_name": joint, "position": value});
+    let goal: Vec<Value> = to.iter().zip(&names).map(goal).collect();
+    let post = json!({"id": "post", "primitives": [{"type": "box", "dimensions": [0.1, 0.1, 1.8]}],
+        "primitive_poses": [{"position": [1.1, 0, 0.9], "orientation": [0, 0, 0, 1]}]});
+    let floor = json!({"id": "floor", "primitives": [{"type": "box", "dimensions": [4, 4, 0.1]}],
+        "primitive_poses": [{"position": [0, 0, -0.2]}]});
+    let objects = if with_post { vec![floor, post] } else { vec![floor] };
+    json!({
+        "scene": {"world": {"collision_objects": objects}},
+        "request": {
+            "start_state": {"joint_state": {"name": names, "position": READY}},
+            "goal_constraints": [{"joint_constraints": goal}]
+        }
+    })
+}
+
+const ALL: [f64; 6] = [0.8, 0.5, 0.0, 0.0, 0.4, 0.0];
+
+/// Sets with a solvable problem each, and one with a goal in the post.
+fn sets() -> Value {
+    json!({
+        "post": {"0001": problem(true, &ALL), "0002": problem(true, &[0.0])},
+        "../open": {"a/b": problem(false, &[0.8])}
+    })
+}
+
+/// `plan --urdf ns16 --problems …` on these sets, in a folder of its own.
+fn plan(sets: &Value, args: &[&str]) -> (tempfile::TempDir, Answer) {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("sets.json"), sets.to_string()).unwrap();
+    let robot = examples().join("models/ns16");
+    let (urdf, srdf) = (robot.join("ns16.urdf"), robot.join("ns16.srdf"));
+    let base = ["plan", "--urdf", urdf.to_str().unwrap(), "--srdf", srdf.to_str().unwrap(), "--problems", "sets.json"];
+    let answer = elbowroom(dir.path(), &[&base[..], args].concat());
+    (dir, answer)
+}
+
+fn rows(dir: &Path, file: &str) -> Vec<Vec<f64>> {
+    let csv = std::fs::read_to_string(dir.join("paths").join(file)).unwrap();
+    assert_eq!(csv.lines().next(), Some("t_s,joint_1,joint_2,joint_3,joint_4,joint_5,joint_6"));
+    csv.lines().skip(1).map(|line| line.split(',').map(|x| x.parse().unwrap()).collect()).collect()
+}
+
+#[test]
+fn the_document_has_the_documented_keys_and_the_files_the_paths() {
+    let (dir, answer) = plan(&sets(), &["--json", "--paths", "paths", "--period", "0.01"]);
+    let document = answer.expect(0).json();
+    assert_eq!(keys(&document), ["problems", "summary"]);
+    let problems = document["problems"].as_array().unwrap();
+    let documented = "cost_rad cost_raw_rad duration_s found id planning_us proven reason set simplify_us valid";
+    for problem in problems {
+        assert_eq!(keys(problem).join(" "), documented);
+    }
+    let facts: Vec<_> =
+        problems.iter().map(|p| ["set", "id", "valid", "found", "proven"].map(|key| p[key].clone())).collect();
+    let fact = |set: &str, id: &str, solved: bool| [json!(set), json!(id), json!(solved), json!(solved), json!(solved)];
+    assert_eq!(facts, [fact("post", "0001", true), fact("post", "0002", false), fact("../open", "a/b", true)]);
+    assert!(problems[1]["reason"].as_str().unwrap().contains("`post` are in collision"));
+    assert!(["planning_us", "cost_rad", "duration_s"].iter().all(|key| problems[1][key].is_null()));
+    let cost = |key: &str| problems[0][key].as_f64().unwrap();
+    assert!(cost("cost_rad") > 1.6 && cost("cost_rad") <= cost("cost_raw_rad"));
+    assert!((problems[2]["cost_rad"].as_f64().unwrap() - 1.6).abs() < 1e-12);
+    let all = &document["summary"]["all"];
+    assert_eq!([&all["total"], &all["valid"], &all["solved"], &all["proven"]], [3, 2, 2, 2]);
+    assert_eq!(keys(&all["planning_us"]), ["mean", "p50", "p95"]);
+    let names: Vec<_> = document["summary"]["sets"].as_array().unwrap().iter().map(|s| s["set"].clone()).collect();
+    assert_eq!(names, ["post", "../open"]);
+
+    let mut files: Vec<_> =
+        std::fs::read_dir(dir.path().join("paths")).unwrap().map(|f| f.unwrap().file_name()).collect();
+    files.sort();
+    assert_eq!(files, ["_open-a_b.csv", "post-0001.csv"]);
+    let path = rows(dir.path(), "post-0001.csv");
+    assert_eq!((&path[0][1..], &path.last().unwrap()[1..]), (&READY[..], &ALL[..]));
+    let duration = problems[0]["duration_s"].as_f64().unwrap();
+    assert!((path.last().unwrap()[0] - duration).abs() < 1e-9 && (path[1][0] - 0.01).abs() < 1e-12);
+    // Only joint_1 is planned.
+    assert!(rows(dir.path(), "_open-a_b.csv").iter().all(|row| row[2..] == READY[1..]));
+    // Deterministic.
+    let (_, again) = plan(&sets(), &["--json"]);
+    assert_eq!(again.json()["problems"][0]["cost_rad"], problems[0]["cost_rad"]);
+}
+
+#[test]
+fn the_table_fits_and_selections_apply() {
+    let (_, answer) = plan(&sets(), &[]);
+    let text = answer.expect(0).stdout;
+    let lines: Vec<&str> = text.lines().collect();
+    assert!(lines[..5].iter().all(|line| line.chars().count() <= 80), "{text}");
+    assert!(lines[2].starts_with("post") && lines[4].starts_with("all"), "{text}");
+    assert!(text.contains("not valid:\n  post 0002: goal: "), "{text}");
+    let count = |args: &[&str]| {
+        plan(&sets(), &[args, &["--json"]].concat()).1.expect(0).json()["summary"]["all"]["total"].clone()
+    };
+    assert_eq!(count(&["--only", "post"]), 2);
+    assert_eq!(count(&["--only", "../open,post", "--limit", "1"]), 2);
+}
+
+#[test]
+fn a_valid_problem_without_a_path_is_exit_status_1() {
+    // Only the first joint is planned, and the post is between.
+    let (dir, answer) =
+        plan(&json!({"post": {"1": problem(true, &[0.8])}}), &["--time-limit", "0.2", "--paths", "paths"]);
+    let text = answer.expect(1).stdout;
+    assert!(text.contains("not solved:\n  post 1: no path found"), "{text}");
+    assert_eq!(std::fs::read_dir(dir.path().join("paths")).unwrap().count(), 0);
+}
+
+#[test]
+fn wrong_files_and_calls_are_exit_status_2_with_a_remedy() {
+    let refused = |sets: &Value, args: &[&str], expected: &[&str]| {
+        let stderr = plan(sets, args).1.expect(2).stderr;
+        assert!(expected.iter().all(|e| stderr.contains(e)), "{args:?}: {stderr}");
+    };
+    refused(&sets(), &["--only", "pots"], &["no set `pots`", "write: post"]);
+    refused(&sets(), &["--clearance", "-1"], &["--clearance", "0 or more"]);
+    refused(&sets(), &["--limit", "0"], &["--limit"]);
+    refused(&sets(), &["--to", "1,2"], &["--to"]);
+    refused(&sets(), &["cell.toml"], &["cannot be used"]);
+    refused(&json!({"post": {}}), &[], &["sets.json", "no planning problem", "SET"]);
+    let mut unknown = sets();
+    unknown["post"]["0001"]["request"]["goal_constraints"][0]["joint_constraints"][0]["joint_name"] = json!("joint_0");
+    refused(&unknown, &[], &["set `post`, problem `0001`", "`joint_0`", "write: joint_1"]);
+    let mut flat = sets();
+    flat["../open"]["a/b"]["scene"]["world"]["collision_objects"][0]["primitives"][0]["dimensions"] = json!([1, 2]);
+    refused(&flat, &[], &["problem `a/b`", "collision_objects[0].primitives[0].dimensions", "[x, y, z]"]);
+
+    let dir = tempfile::tempdir().unwrap();
+    let urdf = examples().join("models/ns16/ns16.urdf");
+    let urdf = urdf.to_str().unwrap();
+    for (args, expected) in [
+        (&["plan", "--urdf", urdf][..], "--problems"),
+        (&["plan", "--problems", "p.json"], "--urdf"),
+        (&["plan", "--urdf", urdf, "--problems", "missing.json"], "missing.json"),
+        (&["plan", "cell.toml"], "--to"),
+    ] {
+        let stderr = elbowroom(dir.path(), args).expect(2).stderr;
+        assert!(stderr.contains(expected), "{args:?}: {stderr}");
+    }
+}
+
+#[test]
+fn a_robot_without_speeds_has_no_timed_paths() {
+    let dir = tempfile::tempdir().unwrap();
+    let urdf = std::fs::read_to_string(examples().join("models/ns16/ns16.urdf")).unwrap();
+    let urdf = urdf.replace("velocity=\"3.0543261909900767\" ", "");
+    std::fs::write(
+        dir.path().join("slow.urdf"),
+        urdf.replace("meshes/", &format!("{}/", examples().join("models/ns16/meshes").display())),
+    )
+    .unwrap();
+    std::fs::write(dir.path().join("sets.json"), sets().to_string()).unwrap();
+    let args = ["plan", "--urdf", "slow.urdf", "--problems", "sets.json", "--only", "../open", "--json"];
+    let answer = elbowroom(dir.path(), &args).expect(0);
+    assert!(answer.stderr.contains("no largest speed for joint_1: "), "{}", answer.stderr);
+    let problem = answer.json()["problems"][0].clone();
+    assert!(problem["found"] == true && problem["duration_s"].is_null(), "{problem}");
+    let refused = elbowroom(dir.path(), &[&args[..], &["--paths", "paths"]].concat()).expect(2);
+    assert!(refused.stderr.contains("joint_1") && refused.stderr.contains("<limit velocity="), "{}", refused.stderr);
+    assert!(!dir.path().join("paths").exists());
+}

@@ -1,0 +1,195 @@
+//! `elbowroom query`: columns, JSON, exit status, messages.
+
+use crate::common::{Answer, elbowroom, examples, keys, with_cell, with_input};
+
+const HEADER: &str = "index,collides,distance_m,a,b,ax,ay,az,bx,by,bz,level";
+
+/// An arm that meets a ball when it is straight, and a second on the other side.
+const CELL: &str = r#"version = 1
+units = { length = "mm", angle = "deg" }
+[robot.arm]
+dh = [{ a = 400, min = -170, max = 170, speed = 90 }, { a = 300, min = -170, max = 170, speed = 90 }]
+links = [[], { capsule = { from = [-300, 0, 0], to = [0, 0, 0], radius = 40 } }]
+start = [90, 0]
+[object.ball]
+shape = "sphere"
+at = [800, 0, 0]
+radius = 100
+"#;
+
+fn query(cell: &str, states: Option<&str>, args: &[&str]) -> Answer {
+    let dir = with_cell(cell);
+    let mut all = vec!["query", "cell.toml"];
+    if let Some(text) = states {
+        std::fs::write(dir.path().join("q.csv"), text).unwrap();
+        all.extend(["--states", "q.csv"]);
+    }
+    all.extend(args);
+    elbowroom(dir.path(), &all)
+}
+
+fn cells(line: &str) -> Vec<&str> {
+    line.split(',').collect()
+}
+
+#[test]
+fn distance_has_a_row_per_state_whatever_the_order_of_columns() {
+    for states in [
+        "joint_1,joint_2\n0,0\n1.5,0\n",
+        "joint_2,t_s,joint_1\n0,0,0\n\n0,1,1.5\n",
+        "arm.joint_2,joint_1\r\n0,0\r\n0,1.5\r\n",
+    ] {
+        let answer = query(CELL, Some(states), &["--ask", "distance"]).expect(0);
+        let lines: Vec<&str> = answer.stdout.lines().collect();
+        assert_eq!((lines.len(), lines[0]), (3, HEADER));
+        let (first, second) = (cells(lines[1]), cells(lines[2]));
+        // The tip's cap reaches to 740 mm, the ball begins at 700.
+        assert_eq!(first[..5], ["0", "1", "0.0", "arm/link_2", "ball"]);
+        assert_eq!((second.len(), second[0], second[1]), (12, "1", "0"));
+        let number = |i: usize| second[i].parse::<f64>().unwrap();
+        let [a, b] = [5, 8].map(|i| [number(i), number(i + 1), number(i + 2)]);
+        let apart = (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt();
+        assert!((apart - number(2)).abs() < 1e-9 && number(2) > 0.3, "{second:?}");
+        assert!(((b[0] - 0.8).hypot(b[1]) - 0.1).abs() < 1e-9, "on the ball: {b:?}");
+    }
+}
+
+#[test]
+fn states_come_from_standard_input_too() {
+    let states = "joint_1,joint_2\n0,0\n1.5,0\n";
+    let file = query(CELL, Some(states), &["--ask", "distance"]).expect(0);
+    let dir = with_cell(CELL);
+    let args = ["query", "cell.toml", "--ask", "distance", "--states", "-"];
+    assert_eq!(with_input(dir.path(), &args, states).expect(0).stdout, file.stdout);
+    let wrong = with_input(dir.path(), &args, "joint_1,joint_2\n0,x\n").expect(2);
+    assert!(wrong.stderr.contains("standard input:2:"), "{}", wrong.stderr);
+    for (input, expected, hint) in [
+        ("", "standard input:1: is empty", "joint_1"),
+        ("joint_1\n0\n", "standard input:1: ", "joint_2"),
+        ("joint_1,joint_2\n0,0\n\n1\n", "standard input:4: ", "write: "),
+        ("joint_1,joint_2\n0,nan\n", "standard input:2: ", "write: "),
+    ] {
+        let refused = with_input(dir.path(), &args, input).expect(2);
+        assert!(refused.stderr.contains(expected) && refused.stderr.contains(hint), "{input:?}: {}", refused.stderr);
+        assert!(refused.stdout.is_empty(), "{}", refused.stdout);
+    }
+    let ns16 = examples().join("models/ns16/ns16.urdf");
+    let joints = "joint_1,joint_2,joint_3,joint_4,joint_5,joint_6\n0,0,0,0,0,0\n";
+    let poses = with_input(dir.path(), &["inspect", ns16.to_str().unwrap(), "--states", "-"], joints).expect(0);
+    assert!(poses.stdout.lines().count() > 6, "{}", poses.stdout);
+}
+
+#[test]
+fn only_ask_collision_has_exit_status_1() {
+    let states = Some("joint_1,joint_2\n0,0\n1.5,0\n");
+    let answer = query(CELL, states, &["--ask", "collision"]).expect(1);
+    let lines: Vec<&str> = answer.stdout.lines().collect();
+    assert!(lines[1].starts_with("0,1,0.0,arm/link_2,ball,"), "{}", lines[1]);
+    assert!(lines[2].starts_with("1,0,,,,,,,,,,"), "{}", lines[2]);
+    assert!(["L1", "L2", "L3"].contains(&cells(lines[2])[11]));
+    query(CELL, Some("joint_1,joint_2\n1.5,0\n"), &["--ask", "collision"]).expect(0);
+    query(CELL, states, &["--ask", "distance"]).expect(0);
+    query(CELL, states, &["--ask", "tolerance=0.02"]).expect(0);
+    // Without states: the start, where the arm points elsewhere.
+    let answer = query(CELL, None, &["--ask", "collision"]).expect(0);
+    assert_eq!(answer.stdout.lines().count(), 2);
+}
+
+#[test]
+fn tolerance_names_the_nearest_pair_within_it() {
+    // Start: the arm along y; nearest to the ball is its shoulder end.
+    let far = query(CELL, None, &["--ask", "tolerance=0.1"]).expect(0);
+    assert!(far.stdout.lines().nth(1).unwrap().starts_with("0,0,,,,"), "{}", far.stdout);
+    let near = query(CELL, None, &["--ask", "tolerance=2"]).expect(0);
+    let distance = query(CELL, None, &["--ask", "distance"]).expect(0);
+    let (near, distance) = (near.stdout.lines().nth(1).unwrap(), distance.stdout.lines().nth(1).unwrap());
+    assert_eq!(cells(near)[1], "1");
+    assert_eq!(cells(near)[2..5], cells(distance)[2..5]);
+}
+
+#[test]
+fn json_is_the_same_as_rows() {
+    let states = Some("joint_1,joint_2\n0,0\n1.5,0\n");
+    let json = query(CELL, states, &["--ask", "collision", "--json"]).expect(1).json();
+    assert_eq!(keys(&json), ["ask", "colliding", "level", "model", "rows", "states", "tolerance_m"]);
+    let rows = json["rows"].as_array().unwrap();
+    assert_eq!(rows.len(), 2);
+    let mut columns: Vec<&str> = HEADER.split(',').collect();
+    columns.sort_unstable();
+    assert_eq!(keys(&rows[0]), columns);
+    assert_eq!((rows[0]["collides"].as_u64(), rows[0]["a"].as_str()), (Some(1), Some("arm/link_2")));
+    assert_eq!((rows[1]["collides"].as_u64(), rows[1]["distance_m"].is_null()), (Some(0), true));
+    assert_eq!((json["states"].as_u64(), json["colliding"].as_u64()), (Some(2), Some(1)));
+    let empty = query(CELL, Some("joint_1,joint_2\n"), &["--ask", "distance", "--json"]).expect(0);
+    assert_eq!(empty.json()["rows"].as_array().map(Vec::len), Some(0));
+    assert!(empty.stderr.contains("no state"), "{}", empty.stderr);
+}
+
+#[test]
+fn wrong_states_name_file_line_and_column() {
+    for (states, parts) in [
+        ("", &["q.csv:1:", "empty", "joint_1,joint_2"][..]),
+        ("joint_1\n0\n", &["q.csv:1:", "`joint_2`"]),
+        ("joint_1,joint_2,elbow\n0,0,0\n", &["q.csv:1:", "`elbow`"]),
+        ("joint_1,joint_1,joint_2\n0,0,0\n", &["q.csv:1:", "two columns"]),
+        ("0,0\n1,1\n", &["q.csv:1:", "names"]),
+        ("joint_1,joint_2\n0,0\nNaN,0\n", &["q.csv:3:", "joint_1"]),
+        ("joint_1,joint_2\n0,0\n0,inf\n", &["q.csv:3:", "joint_2"]),
+        ("joint_1,joint_2\n0,\n", &["q.csv:2:", "joint_2"]),
+        ("joint_1,joint_2\n\n0,0,0\n", &["q.csv:3:", "3 values"]),
+        ("joint_1,joint_2\n0\n", &["q.csv:2:", "1 values"]),
+        ("joint_1;joint_2\n0;0\n", &["q.csv:1:", "joint_1,joint_2"]),
+    ] {
+        for ask in ["collision", "distance", "tolerance=0.1"] {
+            let answer = query(CELL, Some(states), &["--ask", ask]).expect(2);
+            assert_eq!(answer.stdout, "", "{states:?}");
+            for part in parts {
+                assert!(answer.stderr.contains(part), "{states:?}: {}", answer.stderr);
+            }
+        }
+    }
+    let beyond = query(CELL, Some("joint_1,joint_2\n90,0\n"), &["--ask", "distance"]).expect(0);
+    assert!(beyond.stderr.contains("degrees") && beyond.stderr.contains("q.csv:2"), "{}", beyond.stderr);
+}
+
+#[test]
+fn contradictory_calls_are_refused() {
+    let dir = with_cell(CELL);
+    let urdf = examples().join("models/ns16/ns16.urdf");
+    let urdf = urdf.to_str().unwrap();
+    for (args, part) in [
+        (&["query", "cell.toml"][..], "--ask"),
+        (&["query", "--ask", "collision"], "CELL"),
+        (&["query", "cell.toml", "--ask", "touch"], "tolerance=0.02"),
+        (&["query", "cell.toml", "--ask", "tolerance"], "tolerance=0.02"),
+        (&["query", "cell.toml", "--ask", "tolerance=-1"], "0 or more"),
+        (&["query", "cell.toml", "--ask", "tolerance=nan"], "0 or more"),
+        (&["query", "cell.toml", "--ask", "collision", "--level", "L4"], "auto, L1, L2, L3"),
+        (&["query", "cell.toml", "--ask", "collision", "--srdf", "a.srdf"], "cannot be used"),
+        (&["query", "cell.toml", "--ask", "collision", "--urdf", urdf], "cannot be used"),
+        (&["query", urdf, "--ask", "collision"], "--urdf"),
+        (&["query", "missing.toml", "--ask", "collision"], "missing.toml"),
+        (&["query", "--urdf", "missing.urdf", "--ask", "collision"], "missing.urdf"),
+        (&["query", "cell.toml", "--ask", "collision", "--states", "missing.csv"], "missing.csv"),
+        (&["query", "cell.toml", "--ask", "collision", "--states", "."], "folder"),
+    ] {
+        let answer = elbowroom(dir.path(), args).expect(2);
+        assert!(answer.stderr.contains(part), "{args:?}: {}", answer.stderr);
+        assert_eq!(answer.stdout, "");
+    }
+}
+
+#[test]
+fn a_robot_alone_uses_bare_names_and_its_root_as_the_world() {
+    let urdf = examples().join("models/ns16/ns16.urdf");
+    let base = ["query", "--urdf", urdf.to_str().unwrap(), "--ask", "distance"];
+    let answer = elbowroom(&examples(), &base).expect(0);
+    let row = cells(answer.stdout.lines().nth(1).unwrap()).into_iter().map(str::to_owned).collect::<Vec<_>>();
+    assert_eq!(row[1], "0");
+    assert!(!row[3].contains('/') && row[3].starts_with("link_"), "{row:?}");
+    for level in ["L1", "L2", "capsule", "hull", "L3"] {
+        let coarse = elbowroom(&examples(), &[&base[..], &["--level", level]].concat()).expect(0);
+        let coarse = cells(coarse.stdout.lines().nth(1).unwrap())[2].parse::<f64>().unwrap();
+        assert!(coarse <= row[2].parse::<f64>().unwrap() + 1e-12, "{level}");
+    }
+}

@@ -1,0 +1,227 @@
+//! The laws beyond S1: direction, recovery, stopping distance, rate, speed zones, dynamic regions.
+
+use crate::common::{Random, arm, arm_volumes, configuration, gantry, parts};
+use elbowroom_kinematics::LinkId;
+use elbowroom_monitor::{
+    Configuration, ConfigurationParts, Guards, Laws, Monitor, OverrideReason, Region, RegionId, RegionKind, Snapshot,
+    SourceId, SourceState, StoppingSettings, Volume, VolumeId,
+};
+use elbowroom_proximity::separation;
+use elbowroom_spatial::{FrameMotion, Obb, Pose, Rotation, Vec3};
+
+fn point_monitor(regions: Vec<Region>, laws: Laws) -> Monitor {
+    let volumes = vec![Volume::tcp(LinkId(6), Vec3::ZERO)];
+    let regions = regions.into_iter().map(|r| r.guards(Guards::TCP)).collect();
+    let parts = ConfigurationParts { laws, ..parts(gantry(), volumes, regions) };
+    Monitor::new(Configuration::new(parts).unwrap(), None).unwrap()
+}
+
+fn ball() -> Region {
+    Region::sphere("ball", Vec3::ZERO, 0.5).warning(0.2)
+}
+
+fn direction_aware() -> Laws {
+    Laws { direction_aware: true, ..Laws::default() }
+}
+
+/// Override of one tick at x on the x axis with the program speed `speed` along x.
+fn override_at(m: &mut Monitor, now_s: f64, x: f64, speed: f64) -> f64 {
+    let (q, intent) = ([x, 0.0, 0.0, 0.0, 0.0, 0.0], [speed, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    m.tick(&Snapshot { intent: Some(&intent), ..Snapshot::stationary(now_s, &q) }).speed_override
+}
+
+#[test]
+fn a_robot_stopped_at_a_border_is_free_to_leave_and_only_to_leave() {
+    let mut m = point_monitor(vec![ball()], direction_aware());
+    assert!((override_at(&mut m, 0.0, 0.6, -0.3) - 0.5).abs() < 1e-12, "towards");
+    assert_eq!(override_at(&mut m, 1.0, 0.6, 0.3), 1.0, "away");
+    assert!((override_at(&mut m, 2.0, 0.6, 0.0) - 0.5).abs() < 1e-12, "without an intended motion");
+    let mut plain = point_monitor(vec![ball()], Laws::default());
+    assert!(
+        (override_at(&mut plain, 0.0, 0.6, 0.3) - 0.5).abs() < 1e-12,
+        "the law of S1 does not depend on the direction"
+    );
+}
+
+#[test]
+fn a_robot_inside_may_leave_slowly() {
+    let mut m = point_monitor(vec![ball()], direction_aware());
+    assert_eq!(override_at(&mut m, 0.0, 0.4, -0.3), 0.0, "deeper");
+    assert!((override_at(&mut m, 1.0, 0.4, 0.3) - 0.1).abs() < 1e-12, "out");
+}
+
+/// Within rounding of the border, and within the smallest decrease of the depth, a robot must be able to leave.
+#[test]
+fn a_robot_at_the_very_border_is_free_to_leave() {
+    // A thin plate as well: passing through it does not lead out.
+    let plate = Region::cuboid("plate", Vec3::new(0.5, 0.0, -0.5), Vec3::new(1e-3, 1.0, 1.0), Rotation::IDENTITY);
+    let regions = [(ball(), 0.5), (plate.warning(0.2).guards(Guards::TCP), 0.5005)];
+    for (region, border) in regions {
+        for depth in [0.0, 1e-17, 1e-16, 1e-15, 1e-13, 1e-12, 1e-10, 1e-8, 1e-6, 4.9e-6, 5.1e-6, -1e-16, -1e-13, -1e-9]
+        {
+            let mut m = point_monitor(vec![region.clone()], direction_aware());
+            let x = border - depth;
+            assert!(override_at(&mut m, 0.0, x, 0.3) >= 0.1 - 1e-12, "{} at depth {depth}: held", region.name);
+            assert!(override_at(&mut m, 1.0, x, -0.3) < 1e-6, "{} at depth {depth}: let in", region.name);
+        }
+    }
+}
+
+#[test]
+fn an_actual_approach_is_limited_whatever_the_program_intends() {
+    let mut m = point_monitor(vec![ball()], direction_aware());
+    let (q, qd, intent) =
+        ([0.6, 0.0, 0.0, 0.0, 0.0, 0.0], [-0.2, 0.0, 0.0, 0.0, 0.0, 0.0], [0.3, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    let report = m.tick(&Snapshot { qd: &qd, intent: Some(&intent), ..Snapshot::stationary(0.0, &q) });
+    assert!((report.speed_override - 0.5).abs() < 1e-12);
+}
+
+/// Random arms, regions and intents: where the override is above that of S1, every distance within a warning zone grows.
+#[test]
+fn a_decreasing_distance_never_clears_an_alarm() {
+    let mut r = Random(5);
+    let (mut cleared, mut held) = (0, 0);
+    for case in 0..20_000 {
+        let rotation = Rotation::from_axis_angle(r.direction(), r.between(-3.0, 3.0));
+        let at = Vec3::new(r.between(0.2, 1.2), r.between(-0.8, 0.8), r.between(0.1, 1.6));
+        let region = match case % 3 {
+            0 => Region::sphere("s", at, 0.15),
+            1 => Region::cylinder("c", at, 0.1, 0.3, rotation),
+            _ => Region::cuboid("b", at, Vec3::new(0.2, 0.15, 0.3), rotation),
+        };
+        let parts = parts(arm(), arm_volumes(), vec![region.warning(0.3)]);
+        let with_law = ConfigurationParts { laws: direction_aware(), ..parts.clone() };
+        let mut m = Monitor::new(Configuration::new(with_law).unwrap(), None).unwrap();
+        let mut plain = Monitor::new(Configuration::new(parts).unwrap(), None).unwrap();
+        let q: [f64; 6] = std::array::from_fn(|_| r.between(-1.5, 1.5));
+        let intent: [f64; 6] = std::array::from_fn(|_| r.between(-1.0, 1.0));
+        let s = Snapshot { intent: Some(&intent), ..Snapshot::stationary(0.0, &q) };
+        let paper = plain.tick(&s);
+        let (factor, Some(nearest)) = (m.tick(&s).speed_override, paper.governing) else { continue };
+        if factor <= paper.speed_override {
+            held += 1;
+            continue;
+        }
+        cleared += 1;
+        if nearest.distance_m == 0.0 {
+            continue; // Leaving from inside: other tests check the depth.
+        }
+        let mut distance_after = |dt: f64| {
+            let q = std::array::from_fn::<f64, 6, _>(|i| q[i] + intent[i] * dt);
+            plain_distance(&mut plain, 10.0 + dt, &q)
+        };
+        let d = nearest.distance_m;
+        assert!(distance_after(1e-4) > d, "case {case}: the distance {d} decreases, but the override is {factor}");
+    }
+    println!("{cleared} released, {held} held");
+    assert!(cleared > 500 && held > 500);
+}
+
+fn plain_distance(m: &mut Monitor, now_s: f64, q: &[f64; 6]) -> f64 {
+    m.tick(&Snapshot::stationary(now_s, q));
+    m.distance(RegionId(0), f64::INFINITY).unwrap()
+}
+
+#[test]
+fn the_stopping_law_stops_outside() {
+    let stopping = StoppingSettings {
+        reaction_s: 0.048,
+        period_s: 0.002,
+        joint_deceleration: vec![2.0; 6],
+        joint_acceleration: vec![2.0; 6],
+    };
+    let laws = Laws { stopping_distance: Some(stopping), ..Laws::default() };
+    // No warning zone at all: the stopping law alone must keep the point outside.
+    let mut m = point_monitor(vec![Region::sphere("ball", Vec3::ZERO, 0.5)], laws);
+    for speed in [0.2, 1.0, 3.0] {
+        let (mut x, mut sigma, dt) = (3.0, 1.0_f64, 0.002);
+        // The robot reacts 24 ticks late and brakes with at most 2 m/s²; the tick itself is the rest of the 0.05 s.
+        let mut queue = std::collections::VecDeque::from(vec![1.0; 24]);
+        for i in 0..10_000 {
+            let (q, qd) = ([x, 0.0, 0.0, 0.0, 0.0, 0.0], [-speed * sigma, 0.0, 0.0, 0.0, 0.0, 0.0]);
+            let intent = [-speed, 0.0, 0.0, 0.0, 0.0, 0.0];
+            let now_s = 100.0 * speed + dt * f64::from(i);
+            let s = Snapshot { qd: &qd, intent: Some(&intent), ..Snapshot::stationary(now_s, &q) };
+            queue.push_back(m.tick(&s).speed_override);
+            let commanded = queue.pop_front().unwrap();
+            sigma = commanded.max(sigma - 2.0 / speed * dt).min(sigma + 2.0 / speed * dt);
+            x -= speed * sigma * dt;
+        }
+        println!("{speed} m/s: at rest {:.2e} m from the region", x - 0.5);
+        assert!((0.5..0.51).contains(&x), "{speed} m/s: came to rest {} m from the region", x - 0.5);
+    }
+}
+
+#[test]
+fn the_override_changes_at_its_largest_rate() {
+    let laws = Laws { override_rate: 2.0, ..Laws::default() };
+    let mut m = point_monitor(vec![ball()], laws);
+    assert_eq!(override_at(&mut m, 0.0, 1.0, 0.0), 1.0);
+    assert!((override_at(&mut m, 0.1, 0.6, 0.0) - 0.8).abs() < 1e-12, "falling");
+    assert_eq!(override_at(&mut m, 0.2, 0.5, 0.0), 0.0, "contact stops at once");
+    assert!((override_at(&mut m, 0.3, 0.9, 0.0) - 0.2).abs() < 1e-12, "rising");
+}
+
+#[test]
+fn a_speed_zone_slows_and_never_stops() {
+    let zone = ball().kind(RegionKind::Monitored { slow_to: Some(0.3) });
+    let mut m = point_monitor(vec![zone], Laws::default());
+    assert_eq!(override_at(&mut m, 0.0, 0.1, 1.0), 0.3);
+    assert!((override_at(&mut m, 1.0, 0.6, 1.0) - 0.65).abs() < 1e-12);
+    assert_eq!(override_at(&mut m, 2.0, 0.9, 1.0), 1.0);
+}
+
+#[test]
+fn a_dynamic_region_follows_its_source_and_its_motion_counts() {
+    let region = Region::sphere("follower", Vec3::X * 0.1, 0.2).warning(0.5).follow(SourceId(0)).guards(Guards::TCP);
+    let volumes = vec![Volume::tcp(LinkId(6), Vec3::ZERO)];
+    let parts = ConfigurationParts { sources: vec!["belt".into()], ..parts(gantry(), volumes, vec![region]) };
+    let mut m = Monitor::new(Configuration::new(parts).unwrap(), None).unwrap();
+    let motion = FrameMotion { velocity: Vec3::Y * 0.4, acceleration: Vec3::Y * -1.0, ..FrameMotion::REST };
+    let quarter = Rotation::from_rpy(0.0, 0.0, std::f64::consts::FRAC_PI_2);
+    let source = SourceState { pose: Pose::new(quarter, Vec3::Y), motion, stamp_s: 0.0 };
+    // The region's centre: 1 m along y and its 0.1 m turned from x to y.
+    let q = [0.0, 0.6, 0.0, 0.0, 0.0, 0.0];
+    let report = m.tick(&Snapshot { sources: &[source], ..Snapshot::stationary(0.0, &q) });
+    assert!((report.speed_override - 0.3 / 0.5).abs() < 1e-12);
+    let tcp = report.governing.unwrap();
+    assert_eq!(report.reason, OverrideReason::Region(RegionId(0)));
+    assert!((tcp.velocity + Vec3::Y * 0.4).length() < 1e-12 && (tcp.acceleration - Vec3::Y).length() < 1e-12);
+}
+
+/// The virtual TCP is the closest point of the whole volume, with that point's velocity and acceleration.
+#[test]
+fn virtual_tcps_have_the_position_velocity_and_acceleration_of_the_closest_point() {
+    let mut r = Random(11);
+    let tool = Obb { pose: Pose::from_translation(Vec3::X * 0.2), half_extents: Vec3::new(0.2, 0.05, 0.04) };
+    let config = configuration(
+        arm(),
+        vec![Volume::tool_box(LinkId(6), tool)],
+        vec![Region::sphere("s", Vec3::new(0.9, 0.1, 1.0), 0.1).warning(3.0)],
+    );
+    let mut m = Monitor::new(config.clone(), None).unwrap();
+    for case in 0..2000 {
+        let q: [f64; 6] = std::array::from_fn(|_| r.between(-1.4, 1.4));
+        let qd: [f64; 6] = std::array::from_fn(|_| r.between(-1.0, 1.0));
+        let qdd: [f64; 6] = std::array::from_fn(|_| r.between(-3.0, 3.0));
+        let t0 = 10.0 * f64::from(case);
+        let snapshot = Snapshot { qd: &qd, qdd: &qdd, ..Snapshot::stationary(t0, &q) };
+        let report = m.tick(&snapshot);
+        let tcp = report.governing.unwrap();
+        assert_eq!(m.virtual_tcps(&snapshot).collect::<Vec<_>>(), [tcp]);
+        let (volume, region) = (&config.volumes()[0], &config.regions()[0]);
+        let exact = separation(&volume.shape, &m.volume_in_world(VolumeId(0)), &region.shape, &region.anchor);
+        assert!((exact.distance - tcp.distance_m).abs() < 1e-12);
+        // The same material point a little earlier and later.
+        let in_tool = m.volume_in_world(VolumeId(0)).inverse_transform_point(tcp.position);
+        let mut at = |dt: f64| {
+            let q = std::array::from_fn::<f64, 6, _>(|i| q[i] + qd[i] * dt + 0.5 * qdd[i] * dt * dt);
+            m.tick(&Snapshot::stationary(t0 + 5.0 + dt, &q));
+            m.volume_in_world(VolumeId(0)).transform_point(in_tool)
+        };
+        let h = 1e-4;
+        let (before, middle, after) = (at(-h), at(0.0), at(h));
+        assert!(((after - before) / (2.0 * h) - tcp.velocity).length() < 1e-5);
+        assert!(((after - middle * 2.0 + before) / (h * h) - tcp.acceleration).length() < 1e-3);
+    }
+}

@@ -1,0 +1,129 @@
+//! Input that must stop the robot.
+
+use crate::common::{Random, arm, arm_volumes, configuration, gantry, parts};
+use elbowroom_kinematics::LinkId;
+use elbowroom_monitor::{
+    Configuration, ConfigurationParts, EventKind, Fault, Monitor, OverrideReason, Region, RegionId, Snapshot, SourceId,
+    SourceState, Volume,
+};
+use elbowroom_spatial::{FrameMotion, Pose, Vec3};
+
+fn monitor() -> Monitor {
+    let region = Region::sphere("s", Vec3::new(1.0, 0.0, 1.0), 0.1).warning(0.2);
+    Monitor::new(configuration(arm(), arm_volumes(), vec![region]), None).unwrap()
+}
+
+const Q: [f64; 6] = [0.1, -0.3, 0.2, 0.0, 0.5, 0.0];
+
+/// The fault of the second of two snapshots.
+fn fault_of(change: impl Fn(&mut Snapshot)) -> Option<Fault> {
+    let mut m = monitor();
+    assert!(m.tick(&Snapshot::stationary(1.0, &Q)).speed_override > 0.0);
+    let mut s = Snapshot::stationary(1.01, &Q);
+    change(&mut s);
+    match m.tick(&s) {
+        report if report.speed_override > 0.0 => None,
+        report => match report.reason {
+            OverrideReason::Fault(fault) => Some(fault),
+            _ => None,
+        },
+    }
+}
+
+#[test]
+fn every_fault_is_named() {
+    const NAN: [f64; 6] = [f64::NAN; 6];
+    const FAR: [f64; 6] = [0.1, -0.3, 2.6, 0.0, 0.5, 0.0];
+    const JUMP: [f64; 6] = [1.1, -0.3, 0.2, 0.0, 0.5, 0.0];
+    const FAST: [f64; 6] = [0.0, 0.0, 0.0, 0.0, 0.0, -8.0];
+    assert_eq!(fault_of(|_| {}), None);
+    assert_eq!(fault_of(|s| s.stamp_s = 0.985), Some(Fault::Backwards));
+    assert_eq!(fault_of(|s| (s.now_s, s.stamp_s) = (1.05, 1.02)), Some(Fault::Stale));
+    assert_eq!(fault_of(|s| s.stamp_s = 1.02), Some(Fault::Backwards), "from the future");
+    assert_eq!(fault_of(|s| s.now_s = f64::INFINITY), Some(Fault::NotFinite));
+    assert_eq!(fault_of(|s| s.q = &NAN), Some(Fault::NotFinite));
+    assert_eq!(fault_of(|s| s.intent = Some(&NAN)), Some(Fault::NotFinite));
+    assert_eq!(fault_of(|s| s.q = &NAN[..5]), Some(Fault::WrongLength));
+    assert_eq!(fault_of(|s| s.qd = &NAN[..5]), Some(Fault::WrongLength));
+    assert_eq!(fault_of(|s| s.q = &FAR), Some(Fault::BeyondLimits { joint: 2 }));
+    assert_eq!(fault_of(|s| s.q = &JUMP), Some(Fault::TooFast { joint: 0 }));
+    assert_eq!(fault_of(|s| s.qd = &FAST), Some(Fault::TooFast { joint: 5 }));
+    assert_eq!(fault_of(|s| s.programmed_override = f64::NAN), Some(Fault::ProgrammedOverride));
+    assert_eq!(fault_of(|s| s.programmed_override = 1.01), Some(Fault::ProgrammedOverride));
+}
+
+#[test]
+fn a_fault_is_reported_once_until_recovery() {
+    let mut m = monitor();
+    m.tick(&Snapshot::stationary(1.0, &Q));
+    for i in 0..3 {
+        m.tick(&Snapshot { stamp_s: 0.5, ..Snapshot::stationary(1.01, &Q) });
+        let kinds: Vec<_> = m.events().iter().map(|e| e.kind).collect();
+        assert_eq!(kinds, if i == 0 { vec![EventKind::Fault] } else { vec![] });
+    }
+    assert!(m.tick(&Snapshot::stationary(1.02, &Q)).speed_override > 0.0);
+    assert!(m.events().iter().any(|e| e.kind == EventKind::Recovered));
+}
+
+#[test]
+fn a_lost_source_stops_the_robot_while_its_region_is_active() {
+    let region = Region::sphere("s", Vec3::ZERO, 0.1).follow(SourceId(0));
+    let volumes = vec![Volume::tcp(LinkId(6), Vec3::ZERO)];
+    let parts = ConfigurationParts { sources: vec!["belt".into()], ..parts(gantry(), volumes, vec![region]) };
+    let mut m = Monitor::new(Configuration::new(parts).unwrap(), None).unwrap();
+    let source = |stamp_s: f64, x: f64| SourceState {
+        pose: Pose::from_translation(Vec3::X * x),
+        motion: FrameMotion::REST,
+        stamp_s,
+    };
+    let q = [0.0; 6];
+    let lost = OverrideReason::Fault(Fault::Source { region: RegionId(0) });
+    let mut tick =
+        |now_s: f64, s: SourceState| m.tick(&Snapshot { sources: &[s], ..Snapshot::stationary(now_s, &q) }).reason;
+    assert_eq!(tick(0.0, source(0.0, 5.0)), OverrideReason::Free);
+    assert_eq!(tick(0.1, source(0.05, 5.0)), lost);
+    assert_eq!(tick(0.2, source(0.2, f64::NAN)), lost);
+    assert_eq!(tick(0.3, source(0.31, 5.0)), lost, "from the future");
+    assert_eq!(tick(0.4, source(0.4, 5.0)), OverrideReason::Free);
+}
+
+/// Numbers as from a faulty field bus: any bit pattern, or a plausible one with a flipped bit.
+fn corrupted(r: &mut Random, around: f64) -> f64 {
+    match r.bits() % 4 {
+        0 => f64::from_bits(r.bits()),
+        1 => f64::from_bits(around.to_bits() ^ (1 << (r.bits() % 64))),
+        _ => around,
+    }
+}
+
+#[test]
+fn ten_million_random_bit_patterns_neither_panic_nor_pass_as_valid() {
+    let mut r = Random(42);
+    let mut m = monitor();
+    let (mut last_now, mut last_stamp) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
+    let mut accepted = 0;
+    let mut clock = 0.0;
+    for i in 0..10_000_000_u32 {
+        if i % 10_000 == 0 {
+            // An accepted time stamp in the far future makes all later ones invalid.
+            (m, last_now, last_stamp, clock) = (monitor(), f64::NEG_INFINITY, f64::NEG_INFINITY, 0.0);
+        }
+        clock += 0.002;
+        let (now_s, stamp_s) = (corrupted(&mut r, clock), corrupted(&mut r, clock));
+        let q = Q.map(|v| corrupted(&mut r, v));
+        let qd = [0.0; 6].map(|v| corrupted(&mut r, v));
+        let v0 = corrupted(&mut r, 1.0);
+        let s = Snapshot { now_s, stamp_s, q: &q, qd: &qd, programmed_override: v0, ..Snapshot::stationary(0.0, &Q) };
+        let report = m.tick(&s);
+        assert!((0.0..=1.0).contains(&report.speed_override));
+        if report.speed_override > 0.0 {
+            accepted += 1;
+            assert!(q.iter().chain(&qd).chain([&now_s, &stamp_s]).all(|v| v.is_finite()));
+            assert!(now_s - stamp_s <= 0.02 && stamp_s <= now_s && now_s >= last_now && stamp_s >= last_stamp);
+            assert!(qd.iter().all(|v| v.abs() <= 7.5) && (0.0..=1.0).contains(&v0));
+            (last_now, last_stamp) = (now_s, stamp_s);
+        }
+    }
+    println!("10000000 snapshots, {accepted} accepted");
+    assert!(accepted > 10_000);
+}

@@ -1,0 +1,13 @@
+//! Integration tests of `elbowroom-monitor` in one program: a module per subject, whose first line says what belongs there.
+
+mod access;
+mod attached_volumes;
+mod common;
+mod direction;
+mod exchange;
+mod faults;
+mod granted;
+mod law;
+mod motion_input;
+mod region_distance_query;
+mod region_sweep;

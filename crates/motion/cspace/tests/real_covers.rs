@@ -1,0 +1,88 @@
+//! Maps of real robots on covers: time, a million configurations each, and the share of cells that are blocked needlessly.
+//!
+//! `cargo test --release -p elbowroom-cspace --test real_covers -- --ignored --nocapture` (minutes; the data is not part of
+//! the repository). `SAMPLES` is the number of configurations.
+#![allow(clippy::print_stdout, reason = "a table is what it is for")]
+
+use crate::common::occupancy::{compare, needless_share, occupancy};
+use crate::common::real::{ROBOTS, data, obstacles, reach};
+use crate::common::robots::{Case, axes};
+use elbowroom_cspace::{CoverMapBuilder, CoverMapSettings, CoverObstacle, Grid, Layer, RemainingJoints};
+use elbowroom_formats::robot::{LoadOptions, load};
+use elbowroom_spatial::{Pose, Vec3};
+
+/// Repetitions of which the fastest counts.
+const REPETITIONS: usize = 5;
+
+#[test]
+#[ignore = "minutes; cargo test --release -p elbowroom-cspace --test real_covers -- --ignored --nocapture"]
+fn maps_on_covers_miss_nothing() {
+    let Some(data) = data() else {
+        println!("skipped: no data at ../shared/data or $ELBOWROOM_DATA");
+        return;
+    };
+    let samples: usize = std::env::var("SAMPLES").map_or(1_000_000, |s| s.parse().unwrap());
+    let only = std::env::var("ROBOT").ok();
+    println!(
+        "{:<14} {:<7} {:>8} {:>8} {:>9} {:>9} {:>9}",
+        "robot", "others", "built ms", "all ms", "one moved", "blocked", "needless"
+    );
+    for name in ROBOTS.into_iter().filter(|name| only.as_ref().is_none_or(|o| o == name)) {
+        let file = data.join("urdf").join(name).join(format!("{name}.urdf"));
+        let robot = load(&file, &LoadOptions::default()).unwrap().robot;
+        for others in ["start", "any"] {
+            if std::env::var("MODE").is_ok_and(|m| m != others) {
+                continue;
+            }
+            let mut case = Case::new(obstacles(reach(&robot)));
+            case.fixed = (others == "start").then(|| vec![0.1; robot.chain.dof()]);
+            case.robot = robot.clone();
+            case.step = 2.0;
+            measure(name, others, &case, samples);
+        }
+    }
+}
+
+fn measure(name: &str, others: &str, case: &Case, samples: usize) {
+    let grid = Grid::new(axes(&case.robot, &case.joints, case.step).try_into().unwrap()).unwrap();
+    let remaining = case.fixed.as_deref().map_or(RemainingJoints::Swept, RemainingJoints::Fixed);
+    let slack_m = std::env::var("SLACK").ok().map(|s| s.parse().unwrap());
+    let settings = CoverMapSettings { slack_m };
+    let begin = processor_ms();
+    let builder = CoverMapBuilder::new(&case.robot, case.base, &grid, [0, 1, 2], remaining, settings).unwrap();
+    let build_ms = processor_ms() - begin;
+    let prepared: Vec<CoverObstacle> = case.obstacles.iter().map(|(s, _)| builder.obstacle(s).unwrap()).collect();
+    let placed: Vec<(&CoverObstacle, Pose)> =
+        prepared.iter().zip(&case.obstacles).map(|(o, (_, at))| (o, *at)).collect();
+    let repetitions = std::env::var("REPS").map_or(REPETITIONS, |s| s.parse().unwrap());
+    let shortest = |places: &[(&CoverObstacle, Pose)]| {
+        let mut shortest = f64::INFINITY;
+        for _ in 0..repetitions {
+            let begin = processor_ms();
+            for (obstacle, at) in places {
+                std::hint::black_box(builder.layer(obstacle, at).unwrap());
+            }
+            shortest = shortest.min(processor_ms() - begin);
+        }
+        shortest
+    };
+    let all_ms = shortest(&placed);
+    let moved = |at: &Pose| Pose::from_translation(Vec3::X * 0.01) * *at;
+    let one_ms = placed.iter().map(|(o, at)| shortest(&[(*o, moved(at))])).fold(0.0, f64::max);
+    let layers: Vec<Layer> = placed.iter().map(|(o, at)| builder.layer(o, at).unwrap()).collect();
+    let map = occupancy(&grid, &layers);
+    let hits = if samples == 0 { 1 } else { compare(case, &grid, &map, samples) };
+    assert!(hits > 0, "no sample is in collision: the test is void");
+    let needless =
+        if others == "any" || samples == 0 { f64::NAN } else { 100.0 * needless_share(case, &grid, &map, 1000) };
+    println!(
+        "{name:<14} {others:<7} {build_ms:>8.0} {all_ms:>8.2} {one_ms:>9.2} {:>9} {needless:>7.2} %",
+        map.blocked()
+    );
+}
+
+/// Processor time of all threads, ms: with other load the time that has passed says little.
+fn processor_ms() -> f64 {
+    let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
+    time.tv_sec as f64 * 1e3 + time.tv_nsec as f64 * 1e-6
+}

@@ -1,0 +1,218 @@
+//! Goals and constraints in space: several goals, task space regions, kept orientations, straight lines, shorter paths by a
+//! deadline. Every path is swept in the exact scene.
+
+use std::time::Duration;
+
+use crate::common::robots::{Random, cabinet, state_at, within_limits};
+use elbowroom_kinematics::ChainState;
+use elbowroom_planner::{
+    CoverModel, CoverObstacles, CoverRrtConnect, LinearMove, LinearMoveEnd, OrientationConstraint, PathConstraint,
+    PlannedPath, RrtConnect, RrtConnectError, RrtConnectSettings, TaskSpaceRegion,
+};
+use elbowroom_robot::RobotId;
+use elbowroom_scene::{Checker, CheckerOptions, Scene, SceneState, SweepOptions};
+use elbowroom_spatial::{Pose, Rotation, Vec3};
+
+const ROBOT: RobotId = RobotId(0);
+
+/// Covers of the robot and of what is around it.
+fn covers(scene: &Scene) -> (CoverModel, CoverObstacles) {
+    let state = SceneState::new(scene);
+    let model = CoverModel::new(scene, &state, ROBOT, 0.0).unwrap();
+    let obstacles = CoverObstacles::new(&model, scene, &state, 0.0);
+    (model, obstacles)
+}
+
+fn planner<'m>(scene: &'m Scene, (model, obstacles): &'m (CoverModel, CoverObstacles)) -> CoverRrtConnect<'m> {
+    CoverRrtConnect::new(RrtConnect::new(scene, ROBOT).unwrap(), model, obstacles)
+}
+
+fn assert_free(scene: &Scene, start: &SceneState, path: &PlannedPath) {
+    let mut exact = Checker::new(scene, CheckerOptions::default());
+    let hit = exact.sweep_path(start, ROBOT, &path.waypoints, &SweepOptions::default()).unwrap();
+    assert!(hit.is_none_or(|h| !h.1.certain), "{hit:?}");
+}
+
+fn tip(scene: &Scene, q: &[f64]) -> Pose {
+    let r = &scene.robots()[0];
+    let mut state = ChainState::new(&r.robot.chain);
+    state.q.copy_from_slice(q);
+    r.robot.chain.forward(&mut state);
+    r.base_in_world * state.link_in_root(r.robot.chain.tip())
+}
+
+/// Configurations along a path, `n` per segment.
+fn along(path: &PlannedPath, n: usize) -> impl Iterator<Item = Vec<f64>> + '_ {
+    path.waypoints.windows(2).flat_map(move |w| {
+        (0..=n).map(move |i| {
+            let share = i as f64 / n as f64;
+            w[0].iter().zip(&w[1]).map(|(a, b)| a + (b - a) * share).collect()
+        })
+    })
+}
+
+fn settings(max_states: u64) -> RrtConnectSettings {
+    RrtConnectSettings { max_states, time_limit: Duration::from_mins(1), ..RrtConnectSettings::default() }
+}
+
+#[test]
+fn the_first_of_several_goals_is_reached_and_invalid_ones_are_left_out() {
+    let scene = cabinet();
+    let mut random = Random(3);
+    let from = random.free(&scene, ROBOT).unwrap();
+    let start = state_at(&scene, ROBOT, &from);
+    let near: Vec<f64> = from.iter().map(|v| v + 0.01).collect();
+    let goals = [random.free(&scene, ROBOT).unwrap(), near.clone(), random.free(&scene, ROBOT).unwrap()];
+    let beyond = vec![9.0; from.len()];
+    let covers = covers(&scene);
+    let mut planner = planner(&scene, &covers);
+    let path = planner.plan_to_any(&start, &goals, &settings(200_000)).unwrap();
+    assert_eq!(path.waypoints, [from.clone(), near.clone()]);
+    let path = planner.plan_to_any(&start, &[&beyond, &goals[0], &goals[2]], &settings(200_000)).unwrap();
+    let reached = path.waypoints.last().unwrap();
+    assert!(*reached == goals[0] || *reached == goals[2]);
+    assert_free(&scene, &start, &path);
+    let error = planner.plan_to_any(&start, &[&beyond, &beyond], &settings(200_000)).unwrap_err();
+    assert!(matches!(error, RrtConnectError::OutOfLimits { .. }), "{error}");
+    let none: [Vec<f64>; 0] = [];
+    let error = planner.plan_to_any(&start, &none, &settings(200_000)).unwrap_err();
+    assert!(error.to_string().contains("there is no goal"), "{error}");
+}
+
+#[test]
+fn configurations_of_a_region_have_their_tip_in_it() {
+    let scene = cabinet();
+    let link = scene.robots()[0].robot.chain.tip();
+    let mut random = Random(8);
+    let start = state_at(&scene, ROBOT, &[0.0; 7]);
+    for _ in 0..6 {
+        let known = random.free(&scene, ROBOT).unwrap();
+        let in_link = Pose::from_translation(Vec3::new(0.0, 0.02, 0.2));
+        let pose = TaskSpaceRegion::at_pose(link, in_link, tip(&scene, &known) * in_link);
+        let region = TaskSpaceRegion {
+            half_extents_m: Vec3::new(0.05, 0.0, 0.1),
+            half_angles_rad: Vec3::new(0.0, 0.3, 1.0),
+            ..pose
+        };
+        let (exact, wide) =
+            (pose.configurations(&scene, &start, ROBOT, 0, 1), region.configurations(&scene, &start, ROBOT, 4, 1));
+        assert!(!exact.is_empty() && wide.len() > exact.len(), "{} and {}", exact.len(), wide.len());
+        for q in exact.iter().chain(&wide) {
+            assert!(within_limits(&scene, ROBOT, q) && region.contains(&(tip(&scene, q) * in_link)));
+        }
+        for q in &exact {
+            let off = pose.centre_in_world.inverse_mul(&(tip(&scene, q) * in_link));
+            assert!(off.translation.length() < 1e-8 && off.rotation.angle() < 1e-8);
+        }
+    }
+    let far = TaskSpaceRegion::at_pose(link, Pose::IDENTITY, Pose::from_translation(Vec3::X * 9.0));
+    assert!(far.configurations(&scene, &start, ROBOT, 0, 1).is_empty());
+}
+
+#[test]
+fn paths_become_shorter_until_the_limit_and_stay_free() {
+    let scene = cabinet();
+    let mut random = Random(5);
+    let (mut improved, mut shortest, mut gained) = (0, 0, 0.0);
+    let covers = covers(&scene);
+    for _ in 0..12 {
+        let (from, to) = (random.free(&scene, ROBOT).unwrap(), random.free(&scene, ROBOT).unwrap());
+        let start = state_at(&scene, ROBOT, &from);
+        let answer = planner(&scene, &covers).plan_anytime(&start, &[&to], &settings(300_000));
+        let Ok(answer) = answer else { continue };
+        assert_free(&scene, &start, &answer.path);
+        assert_eq!((&answer.path.waypoints[0], answer.path.waypoints.last().unwrap()), (&from, &to));
+        let lengths: Vec<f64> = answer.improvements.iter().map(|i| i.1).collect();
+        assert!(lengths.windows(2).all(|w| w[1] < w[0]), "{lengths:?}");
+        assert_eq!(*lengths.last().unwrap(), answer.path.length_rad);
+        improved += usize::from(lengths.len() > 1);
+        shortest += usize::from(answer.is_shortest);
+        gained += 1.0 - lengths[lengths.len() - 1] / lengths[0];
+    }
+    println!("{improved} became shorter by {gained:.2} in all, {shortest} are straight");
+    assert!(improved >= 3 && gained > 0.15, "{improved}, {gained}");
+}
+
+#[test]
+fn a_kept_orientation_is_kept_everywhere_on_the_path() {
+    let scene = cabinet();
+    let link = scene.robots()[0].robot.chain.tip();
+    let mut random = Random(13);
+    let tolerance = 0.15;
+    let covers = covers(&scene);
+    let constraint = OrientationConstraint::new(&scene, ROBOT, link, Vec3::Z, Vec3::X, tolerance);
+    // Configurations with the tip forward: projected ones that are free.
+    let mut exact = Checker::new(&scene, CheckerOptions::default());
+    let mut forward = Vec::new();
+    while forward.len() < 16 {
+        let mut q = random.free(&scene, ROBOT).unwrap();
+        if constraint.clone().project(&mut q) && within_limits(&scene, ROBOT, &q) {
+            let state = state_at(&scene, ROBOT, &q);
+            if exact.within(&state, 1e-3).is_none() {
+                forward.push(q);
+            }
+        }
+    }
+    let (mut found, mut bent) = (0, 0);
+    for ends in forward.chunks(2) {
+        let start = state_at(&scene, ROBOT, &ends[0]);
+        let exact = RrtConnect::new(&scene, ROBOT).unwrap().with_constraint(constraint.clone());
+        let limits = RrtConnectSettings { time_limit: Duration::from_secs(4), ..settings(1_000_000) };
+        let path = CoverRrtConnect::new(exact, &covers.0, &covers.1).plan(&start, &ends[1], &limits);
+        let path = match path {
+            Ok(path) => path,
+            Err(RrtConnectError::NotFound { .. } | RrtConnectError::Disconnected { .. }) => continue,
+            Err(e) => panic!("{e}"),
+        };
+        found += 1;
+        bent += usize::from(path.waypoints.len() > 2);
+        assert_free(&scene, &start, &path);
+        for q in along(&path, 200) {
+            let axis = tip(&scene, &q).rotation * Vec3::Z;
+            let angle = axis.cross(Vec3::X).length().atan2(axis.dot(Vec3::X));
+            assert!(angle <= tolerance, "{angle}");
+        }
+    }
+    println!("{found} of 8 found, {bent} with corners");
+    assert!(found >= 6 && bent >= 3, "{found} found, {bent} with corners");
+}
+
+#[test]
+fn a_straight_line_is_followed_or_the_share_is_told() {
+    let scene = cabinet();
+    let link = scene.robots()[0].robot.chain.tip();
+    let mut random = Random(31);
+    let (mut followed, mut blocked, mut unreachable) = (0, 0, 0);
+    let covers = covers(&scene);
+    for _ in 0..40 {
+        let from = random.free(&scene, ROBOT).unwrap();
+        let start = state_at(&scene, ROBOT, &from);
+        let in_link = Pose::from_translation(Vec3::Z * 0.17);
+        let begin = tip(&scene, &from) * in_link;
+        let by = Vec3::from([0; 3].map(|_| 0.5 * random.unit() - 0.25));
+        let turned = Rotation::from_axis_angle(Vec3::Y, random.unit() - 0.5);
+        let target_in_world = Pose::new(begin.rotation * turned, begin.translation + by);
+        let line = LinearMove { link, tip_in_link: in_link, target_in_world, tolerance_m: 1e-3, tolerance_rad: 2e-3 };
+        match planner(&scene, &covers).plan_linear(&start, &line, &settings(1_000_000)) {
+            Ok(path) => {
+                followed += 1;
+                assert_free(&scene, &start, &path);
+                for q in along(&path, 16) {
+                    let at = tip(&scene, &q) * in_link;
+                    let share = (at.translation - begin.translation).dot(by) / by.length_squared();
+                    let off = (at.translation - begin.translation - by * share).length();
+                    assert!(off <= 1.25e-3 && (-0.01..=1.01).contains(&share), "{off} at {share}");
+                }
+                let last = tip(&scene, path.waypoints.last().unwrap()) * in_link;
+                assert!(last.inverse_mul(&target_in_world).translation.length() < 1e-8);
+            }
+            Err(RrtConnectError::LinearMove { percent, end }) => {
+                assert!((0.0..100.0).contains(&percent));
+                blocked += usize::from(end == LinearMoveEnd::NotFree);
+                unreachable += usize::from(end == LinearMoveEnd::Unreachable);
+            }
+            Err(e) => panic!("{e}"),
+        }
+    }
+    assert!(followed > 5 && blocked > 2 && unreachable > 2, "{followed} {blocked} {unreachable}");
+}

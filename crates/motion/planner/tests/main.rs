@@ -1,0 +1,16 @@
+//! Integration tests of `elbowroom-planner` in one program: a module per subject, whose first line says what belongs there.
+
+mod clearance;
+mod common;
+mod cover_rrt_connect;
+mod disconnection;
+mod exact_check;
+mod goals;
+mod grid_planner;
+mod path_constraint;
+mod replan;
+mod rrt_connect;
+mod separating_value;
+mod several_robots;
+mod time_optimal;
+mod timing;

@@ -1,0 +1,43 @@
+//! Inverse kinematics of random points on the surfaces of real robots; few of them here, 10⁵ for each robot with
+//! `ELBOWROOM_LONG=1`. The example of the same name prints the table.
+#![allow(clippy::print_stdout)]
+
+use elbowroom_formats::robot::{self, LoadOptions};
+use elbowroom_kinematics::LinkId;
+
+use crate::problem::{IkProblem, SolverResults, measure};
+use crate::surface::{Random, Surface};
+
+#[test]
+fn reachable_surface_points_are_reached() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../..");
+    let data = std::env::var_os("ELBOWROOM_DATA").map_or_else(|| root.join("../shared/data"), Into::into);
+    if !data.is_dir() {
+        println!("skipped: no data at {}", data.display());
+        return;
+    }
+    let long = std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1");
+    let points_per_link = if long { 16_667 } else { 200 };
+    for name in ["kuka_kr150_2", "staubli_tx60", "ur5e", "abb_irb2400"] {
+        let path = data.join(format!("urdf/{name}/{name}.urdf"));
+        let robot = robot::load(&path, &LoadOptions::default()).unwrap().robot;
+        let mut random = Random(7);
+        for with_normal in [false, true] {
+            let mut whole = SolverResults::default();
+            for link in (0..robot.chain.links().len()).map(LinkId) {
+                let moves = robot.chain.path(link).iter().any(|j| robot.chain.joints()[j.0].kind.moves());
+                if !moves || robot.colliders[link.0].is_empty() {
+                    continue;
+                }
+                let surface = Surface::of(&robot.colliders[link.0]);
+                let draw = |_| IkProblem::draw(&robot.chain, link, &surface, with_normal, &mut random);
+                let problems: Vec<IkProblem> = (0..points_per_link).filter_map(draw).collect();
+                whole.add(measure(&robot.chain, &problems));
+            }
+            println!("{}", whole.text(name, "all", with_normal));
+            assert!(whole.asked() > points_per_link * 5);
+            assert!(whole.reached() * 1000 >= whole.asked() * 995, "{name}: {} of {}", whole.reached(), whole.asked());
+            assert!(whole.outside() <= 0.0, "{name}: an answer is {} beyond a limit", whole.outside());
+        }
+    }
+}

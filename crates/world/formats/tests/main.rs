@@ -1,0 +1,17 @@
+//! Integration tests of `elbowroom-formats` in one program: a module per subject, whose first line says what belongs there.
+
+mod any_point;
+mod assimp;
+mod common;
+mod data;
+mod dh_of_models;
+mod hostile;
+mod meshes;
+mod messages;
+mod model_robots;
+mod odd_files;
+#[path = "../examples/any_point/problem.rs"]
+mod problem;
+#[path = "../examples/any_point/surface.rs"]
+mod surface;
+mod tds;

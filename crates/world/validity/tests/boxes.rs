@@ -1,0 +1,77 @@
+//! Boxes in joint space proven in collision: so is every configuration in them, by the exact scene.
+
+use crate::common::{ROBOT, Random, obstacle_set, obstacles, scene};
+use elbowroom_robot::example;
+use elbowroom_scene::{Checker, CheckerOptions, SceneState};
+use elbowroom_spatial::Pose;
+use elbowroom_validity::{CoveredRobot, ObstacleSet, ValidityChecker, ValidityError};
+
+#[test]
+fn every_configuration_of_a_proven_box_collides() {
+    let mut random = Random(21);
+    let (mut proven, mut narrow) = (0, 0);
+    for round in 0..18 {
+        let joints = 2 + random.below(5);
+        let robot = random.robot(joints);
+        let base = random.pose(0.5);
+        let solids = obstacles(&mut random, [3, 12, 40][round % 3], 0.8);
+        let scene = scene(&robot, base, &solids);
+        let covered = CoveredRobot::new(&robot, base).unwrap();
+        let set = obstacle_set(&solids);
+        let mut checker = ValidityChecker::new(&covered, &set);
+        let mut exact = Checker::new(&scene, CheckerOptions::default());
+        let mut state = SceneState::new(&scene);
+        // Some joints are anywhere within their limits.
+        let (lower, upper) = (robot.chain.lower(), robot.chain.upper());
+        let whole: Vec<bool> = lower.iter().map(|low| low.is_finite() && random.below(3) == 0).collect();
+        let width = random.between(0.002, 0.08);
+        let half: Vec<f64> = (0..lower.len()).map(|i| if whole[i] { f64::INFINITY } else { width }).collect();
+        let centres: Vec<f64> = (0..50).flat_map(|_| random.q(&robot.chain)).collect();
+        let mut answers = Vec::new();
+        checker.boxes_are_in_collision(&centres, &half, &mut answers).unwrap();
+        assert_eq!(answers.len(), 50);
+        for (centre, _) in centres.chunks(lower.len()).zip(&answers).filter(|(_, proven)| **proven) {
+            proven += 1;
+            narrow += usize::from(whole.iter().all(|w| !w));
+            for _ in 0..20 {
+                // Corners are the farthest. Slides stay within their limits.
+                let within = |i: usize, c: f64| {
+                    if whole[i] { (lower[i], upper[i]) } else { ((c - width).max(lower[i]), (c + width).min(upper[i])) }
+                };
+                let q: Vec<f64> = (0..centre.len())
+                    .map(|i| within(i, centre[i]))
+                    .map(|(low, high)| [low, high, random.between(low, high)][random.below(3)])
+                    .collect();
+                state.set_q(&scene, ROBOT, &q).unwrap();
+                assert!(
+                    exact.collides(&state).is_some(),
+                    "round {round}: {q:?} is free, within {half:?} of {centre:?}"
+                );
+            }
+        }
+    }
+    assert!(proven > 60 && narrow < proven, "{proven} proven, {narrow} of them with all joints narrow");
+}
+
+#[test]
+fn numbers_that_are_none_prove_nothing_and_wrong_counts_are_errors() {
+    let arm = CoveredRobot::new(&example::arm().unwrap(), Pose::IDENTITY).unwrap();
+    let set = obstacle_set(&obstacles(&mut Random(3), 40, 0.5));
+    let mut checker = ValidityChecker::new(&arm, &set);
+    let mut answers = Vec::new();
+    let anything = [f64::NAN, f64::INFINITY, -1.0];
+    for odd in anything {
+        checker.boxes_are_in_collision(&[odd; 3], &[0.0; 3], &mut answers).unwrap();
+        assert!(odd == -1.0 || answers == [false]);
+        checker.boxes_are_in_collision(&[0.0; 6], &[odd; 3], &mut answers).unwrap();
+        assert_eq!(answers, [false, false]);
+    }
+    for (centres, half) in [(2, 3), (3, 2), (3, 6), (4, 3)] {
+        let error = checker.boxes_are_in_collision(&vec![0.0; centres], &vec![0.1; half], &mut answers).unwrap_err();
+        assert!(matches!(error, ValidityError::WrongCount { expected: 3, .. }), "{error}");
+    }
+    let nothing = ObstacleSet::default();
+    let mut alone = ValidityChecker::new(&arm, &nothing);
+    alone.boxes_are_in_collision(&[], &[0.0; 3], &mut answers).unwrap();
+    assert!(answers.is_empty());
+}

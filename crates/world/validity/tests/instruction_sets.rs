@@ -1,0 +1,75 @@
+//! One answer on every instruction set: a hash over states, edges and pairs that are not certain.
+
+use crate::common::{Random, obstacle_set, obstacles};
+use elbowroom_spatial::Pose;
+use elbowroom_validity::{CoveredRobot, NotCertain, ValidityChecker};
+use fearless_simd::Level as SimdLevel;
+
+/// Changes where an answer changes: on purpose with the covers or what an edge is divided into, else never.
+const EXPECTED: u64 = 0xd0e2_e60b_a8bb_4f3d;
+
+/// The hash of Fowler, Noll and Vo.
+struct Hash(u64);
+
+impl Hash {
+    fn add(&mut self, value: usize) {
+        for byte in (value as u64).to_le_bytes() {
+            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+    }
+}
+
+fn simd_levels() -> Vec<SimdLevel> {
+    let mut levels = vec![SimdLevel::new()];
+    #[cfg(target_arch = "x86_64")]
+    {
+        levels.extend(levels[0].as_sse2().map(SimdLevel::Sse2));
+        levels.extend(levels[0].as_sse4_2().map(SimdLevel::Sse4_2));
+        levels.extend(levels[0].as_avx2().map(SimdLevel::Avx2));
+    }
+    levels
+}
+
+#[test]
+fn every_instruction_set_gives_the_same_answers() {
+    let levels = simd_levels();
+    let mut hashes: Vec<Hash> = levels.iter().map(|_| Hash(0xcbf2_9ce4_8422_2325)).collect();
+    let mut random = Random(2024);
+    for round in 0..2 {
+        let joints = 3 + random.below(5);
+        let robot = random.robot(joints);
+        let solids = obstacles(&mut random, [4, 20][round % 2], 1.2);
+        let set = obstacle_set(&solids);
+        let covered = CoveredRobot::new(&robot, Pose::IDENTITY).unwrap();
+        let dof = robot.chain.dof();
+        let q: Vec<f64> = (0..64).flat_map(|_| random.q(&robot.chain)).collect();
+        let near: Vec<f64> = q.iter().map(|v| v * 0.9).collect();
+        for (&level, hash) in levels.iter().zip(&mut hashes) {
+            let mut checker = ValidityChecker::new(&covered, &set).with_simd_level(level);
+            let mut answers = Vec::new();
+            checker.states(&q, &mut answers).unwrap();
+            for &answer in &answers {
+                hash.add(answer as usize);
+            }
+            let mut pairs = Vec::new();
+            // In software a fused sum takes a hundred times as long.
+            for (i, (from, to)) in q.chunks(dof).zip(near.chunks(dof)).enumerate().step_by(2) {
+                hash.add(usize::from(checker.edge_is_free(from, to).unwrap()));
+                if i % 16 == 0 {
+                    checker.uncertain_pairs(from, to, &mut pairs).unwrap();
+                    for pair in &pairs {
+                        let (a, b) = match *pair {
+                            NotCertain::Links(a, b) => (a.0, 1000 + b.0),
+                            NotCertain::Obstacle(a, b) => (a.0, b),
+                        };
+                        hash.add(a);
+                        hash.add(b);
+                    }
+                }
+            }
+        }
+    }
+    for (level, hash) in levels.iter().zip(&hashes) {
+        assert_eq!(hash.0, EXPECTED, "{level:?}: {:#x}", hash.0);
+    }
+}

@@ -1,0 +1,9 @@
+//! Integration tests of `elbowroom-validity` in one program: a module per subject, whose first line says what belongs there.
+
+mod against_scene;
+mod boxes;
+mod common;
+mod covers;
+mod extreme_values;
+mod instruction_sets;
+mod point_clouds;

@@ -1,0 +1,66 @@
+//! The crates of the workspace and their groups: a folder `crates/GROUP/CRATE` for each.
+
+use std::path::{Path, PathBuf};
+
+/// Lowest layer first: a crate depends only on crates listed before it. Some are planned and not built yet.
+pub const GROUPS: [(&str, &[&str]); 7] = [
+    ("base", &["testkit", "spatial", "proximity", "kinematics", "robot"]),
+    ("world", &["scene", "formats", "validity", "inspect"]),
+    ("guard", &["monitor", "interlock"]),
+    ("motion", &["cspace", "planner", "avoidance", "shared_control", "cooperation", "vision", "perception"]),
+    ("cell", &["cell", "analysis", "sim", "report"]),
+    ("connect", &["status", "ros2", "rosbag", "view", "live"]),
+    ("front", &["elbowroom", "cli", "python"]),
+];
+
+/// One crate of the workspace.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Crate {
+    /// The folder above it.
+    pub group: String,
+    /// Its own folder's name, which its package has after `elbowroom-`.
+    pub name: String,
+    /// Its folder.
+    pub folder: PathBuf,
+}
+
+impl Crate {
+    /// The package's name.
+    #[must_use]
+    pub fn package(&self) -> String {
+        package(&self.name)
+    }
+}
+
+/// The package of the crate with this name.
+#[must_use]
+pub fn package(name: &str) -> String {
+    if name == "elbowroom" { name.to_owned() } else { format!("elbowroom-{name}") }
+}
+
+/// Every crate below `crates`, sorted by group and name.
+///
+/// # Errors
+/// A folder that cannot be read.
+pub fn find(root: &Path) -> Result<Vec<Crate>, String> {
+    let mut found = Vec::new();
+    for group in folders(&root.join("crates"))? {
+        for folder in folders(&group)? {
+            if folder.join("Cargo.toml").is_file() {
+                found.push(Crate { group: name_of(&group), name: name_of(&folder), folder });
+            }
+        }
+    }
+    Ok(found)
+}
+
+fn name_of(folder: &Path) -> String {
+    folder.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+fn folders(parent: &Path) -> Result<Vec<PathBuf>, String> {
+    let entries = std::fs::read_dir(parent).map_err(|e| format!("{}: {e}", parent.display()))?;
+    let mut found: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).filter(|path| path.is_dir()).collect();
+    found.sort();
+    Ok(found)
+}

@@ -1,0 +1,44 @@
+//! How long each unit took when it ran last, so that the longest start first.
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// The last times, seconds by unit.
+#[derive(Debug, Default)]
+pub struct Times {
+    file: PathBuf,
+    seconds: HashMap<String, f64>,
+}
+
+impl Times {
+    /// Reads the times below `root`; none where there was no run yet.
+    pub fn read(root: &Path) -> Self {
+        let file = root.join("target/test-times.txt");
+        let text = std::fs::read_to_string(&file).unwrap_or_default();
+        let entry = |line: &str| {
+            let (name, seconds) = line.split_once(' ')?;
+            Some((name.to_owned(), seconds.trim().parse().ok()?))
+        };
+        Self { file, seconds: text.lines().filter_map(entry).collect() }
+    }
+
+    /// Seconds of the last run; units that never ran count as long, so that they do not come last.
+    pub fn expected(&self, unit: &str) -> f64 {
+        self.seconds.get(unit).copied().unwrap_or(f64::INFINITY)
+    }
+
+    /// Keeps how long a unit took.
+    pub fn keep(&mut self, unit: &str, time: Duration) {
+        self.seconds.insert(unit.to_owned(), time.as_secs_f64());
+    }
+
+    /// Writes the file. The times only choose an order: one that cannot be written is no failure.
+    pub fn write(&self) {
+        let mut lines: Vec<String> = self.seconds.iter().map(|(name, s)| format!("{name} {s:.2}")).collect();
+        lines.sort();
+        if let Err(e) = std::fs::write(&self.file, lines.join("\n") + "\n") {
+            println!("{}: {e}; the next run does not know which tests are long", self.file.display());
+        }
+    }
+}
