@@ -1,5 +1,6 @@
 //! The sweep between two snapshots compared with an oracle that samples the motion.
 
+use crate::common;
 use crate::common::{Random, arm, arm_volumes, configuration, joint};
 use elbowroom_kinematics::{Chain, JointKind};
 use elbowroom_monitor::{
