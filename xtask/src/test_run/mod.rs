@@ -64,7 +64,10 @@ fn run_units(root: &Path, programs: &[Program], mut open: Vec<Unit>, env: &[(&st
     std::thread::scope(|scope| {
         for _ in 0..workers {
             scope.spawn(|| {
-                while let Some(unit) = locked(&progress).open.pop_front() {
+                loop {
+                    // A statement of its own: the lock must not last while the unit runs.
+                    let next = locked(&progress).open.pop_front();
+                    let Some(unit) = next else { break };
                     let started = Instant::now();
                     let ended = run_unit(&programs[unit.program], &unit, env);
                     report(&mut locked(&progress), &unit, &ended, started.elapsed());

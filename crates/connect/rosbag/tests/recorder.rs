@@ -108,7 +108,7 @@ fn a_killed_process_leaves_a_file_up_to_its_last_second() {
     for (run, lifetime_ms) in [1700, 3300].into_iter().enumerate() {
         let file = dir.path().join(format!("{run}.mcap"));
         let mut child = Command::new(std::env::current_exe().unwrap())
-            .args(["--exact", "records_until_it_is_killed", "--nocapture"])
+            .args(["--exact", "recorder::records_until_it_is_killed", "--nocapture"])
             .env(FILE, &file)
             .stdout(Stdio::piped())
             .spawn()
