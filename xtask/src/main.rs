@@ -14,6 +14,7 @@ mod planning;
 mod quick;
 mod references;
 mod snippets;
+mod soak;
 mod suite;
 mod terms;
 mod test_run;
@@ -33,6 +34,8 @@ cargo xtask COMMAND
   quick [--since COMMIT]
         formats, layers, documents; lints and tests of the crates that differ from COMMIT (default HEAD) and of all that
         depend on them
+  soak [NAME]…
+        runs of minutes to hours that the suite leaves out; without a name, lists them (docs/measurements/soak.md)
   layers
         who may depend on whom, that every crate takes the workspace lints, and no circles of files inside a crate
   terms
@@ -102,6 +105,7 @@ fn dispatch(words: &[&str]) -> Result<(), Failure> {
         ["test", options @ ..] => suite::run(&root, &suite::Options::parse(options).map_err(Failure::Usage)?),
         ["quick"] => Ok(quick::run(&root, "HEAD")?),
         ["quick", "--since", commit] => Ok(quick::run(&root, commit)?),
+        ["soak", names @ ..] => soak::run(&root, names),
         ["layers"] => Ok(layers::run(&root)?),
         ["inventory"] => Ok(inventory::run(&root)?),
         ["inventory", folder] => Ok(inventory::run(Path::new(folder))?),

@@ -1,0 +1,159 @@
+//! `cargo xtask soak`: runs that take minutes to hours, and that no change has to wait for.
+
+use std::path::Path;
+use std::time::Instant;
+
+use xtask::{Failure, shell};
+
+/// A long run.
+struct Run {
+    name: &'static str,
+    what: &'static str,
+    /// Words after `cargo`.
+    words: &'static [&'static str],
+    env: &'static [(&'static str, &'static str)],
+}
+
+const LONG: (&str, &str) = ("ELBOWROOM_LONG", "1");
+
+/// `docs/measurements/soak.md` has the last result of each.
+const RUNS: [Run; 12] = [
+    Run {
+        name: "geometry",
+        what: "random pairs of shapes and meshes, motions and sweeps beside their oracles, up to a million each",
+        words: &["test", "--release", "-p", "elbowroom-proximity", "-p", "elbowroom-scene"],
+        env: &[LONG],
+    },
+    Run {
+        name: "chains",
+        what: "100,000 random chains through every form of Denavit-Hartenberg parameters",
+        words: &["test", "--release", "-p", "elbowroom-kinematics", "-p", "elbowroom-formats"],
+        env: &[LONG],
+    },
+    Run {
+        name: "maps",
+        what: "joint-space maps of real robots, cell by cell",
+        words: &["test", "--release", "-p", "elbowroom-cspace", "--test", "main", "--", "--ignored", "--nocapture"],
+        env: &[],
+    },
+    Run {
+        name: "schedules",
+        what: "100,000 random schedules of faults between controllers that exchange regions",
+        words: &[
+            "test",
+            "--release",
+            "-p",
+            "elbowroom-interlock",
+            "--test",
+            "main",
+            "fault_schedules::",
+            "--",
+            "--nocapture",
+        ],
+        env: &[("ELBOWROOM_SCHEDULES", "100000")],
+    },
+    Run {
+        name: "model",
+        what: "the states of the interlock's protocol, half an hour per cell",
+        words: &["test", "--release", "-p", "elbowroom-interlock", "--lib", "model::", "--", "--nocapture"],
+        env: &[("ELBOWROOM_MODEL_STATES", "4000000000"), ("ELBOWROOM_MODEL_SECONDS", "1800")],
+    },
+    Run {
+        name: "messages",
+        what: "ten million hostile messages to a node",
+        words: &["test", "--release", "-p", "elbowroom-live", "--test", "main", "node::"],
+        env: &[("ELBOWROOM_MESSAGES", "10000000")],
+    },
+    Run {
+        name: "processes",
+        what: "eight nodes and an arbiter as processes that are killed, paused and cut off, for half an hour",
+        words: &[
+            "bench",
+            "-p",
+            "elbowroom-live",
+            "--bench",
+            "interlock_faults",
+            "--",
+            "--robots",
+            "8",
+            "--seconds",
+            "1800",
+        ],
+        env: &[],
+    },
+    Run {
+        name: "cells",
+        what: "10,000 random cells of each kind under an independent oracle",
+        words: &["xtask", "fuzz", "cells", "--count", "10000"],
+        env: &[],
+    },
+    Run {
+        name: "files",
+        what: "mutated files at every parser, five minutes each",
+        words: &["xtask", "fuzz", "300"],
+        env: &[],
+    },
+    Run {
+        name: "avoidance",
+        what: "a palletizer whose path a cart crosses, a thousand times without and with avoidance",
+        words: &["xtask", "evade", "1000"],
+        env: &[],
+    },
+    Run {
+        name: "robots",
+        what: "every robot of the data beside Pinocchio and Coal, 10,000 states each",
+        words: &["xtask", "cross-validate"],
+        env: &[LONG],
+    },
+    Run {
+        name: "paths",
+        what: "planned paths and timed motions at 10,000 points each, beside Coal",
+        words: &["xtask", "paths"],
+        env: &[],
+    },
+];
+
+/// Runs those that are named, or lists all.
+pub fn run(root: &Path, names: &[&str]) -> Result<(), Failure> {
+    if names.is_empty() {
+        for run in &RUNS {
+            println!("{:<10} {}", run.name, run.what);
+        }
+        return Ok(());
+    }
+    let chosen = names.iter().map(|name| named(name)).collect::<Result<Vec<&Run>, String>>().map_err(Failure::Usage)?;
+    let mut failed = Vec::new();
+    for run in chosen {
+        println!("\n== {}: {}", run.name, run.what);
+        let started = Instant::now();
+        let result = shell::cargo(root, run.words, run.env);
+        println!(
+            "{}: {} after {:.0} s",
+            run.name,
+            if result.is_ok() { "passed" } else { "FAILED" },
+            started.elapsed().as_secs_f64()
+        );
+        if result.is_err() {
+            failed.push(run.name);
+        }
+    }
+    if failed.is_empty() { Ok(()) } else { Err(Failure::Check(format!("failed: {}", failed.join(", ")))) }
+}
+
+fn named(name: &str) -> Result<&'static Run, String> {
+    let names = || RUNS.iter().map(|run| run.name).collect::<Vec<_>>().join(", ");
+    RUNS.iter()
+        .find(|run| run.name == name)
+        .ok_or_else(|| format!("no long run is called `{name}`; there are {}", names()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_run_is_found_by_its_name() {
+        assert_eq!(named("cells").unwrap().words[1], "fuzz");
+        assert!(named("everything").err().unwrap().contains("geometry"));
+    }
+}
