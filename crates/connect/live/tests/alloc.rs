@@ -231,7 +231,7 @@ fn main() {
     let expected = ["a region", "free", "not finite", "stale", "waiting", "wrong length"];
     assert!(expected.iter().all(|reason| seen.reasons.contains(reason)), "not all was seen: {:?}", seen.reasons);
     let counts = [seen.granted, seen.switched, seen.limited, seen.obeyed];
-    assert!(counts.iter().zip([5, 5, 1000, 1000]).all(|(count, least)| *count >= least), "{counts:?}");
+    assert!(counts.iter().zip([5, 5, 500, 1000]).all(|(count, least)| *count >= least), "{counts:?}");
     assert!(seen.ticks > TICKS / 2, "{} ticks", seen.ticks);
     assert!(s.built >= 10, "regions were built {} times", s.built);
     assert_eq!(seen.allocations, 0);
