@@ -1,16 +1,18 @@
-//! Mutation fuzzing of the cell file: `cargo run --release -p elbowroom-sim --example fuzz_cell -- FILE SECONDS [SEED]`.
+//! Mutation fuzzing of the cell file: `cargo xtask fuzz cell-file FILE SECONDS [SEED]`.
 //!
 //! Mutates bytes, lines and numbers of FILE, resolves the result and runs it for a few ticks. Counts panics and
-//! readings slower than 5 s; exit status 1 if there were any. The first such input is kept in the temporary directory.
+//! readings slower than 5 s; an error if there were any. Such inputs are kept in the temporary directory.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::Path;
-use std::process::ExitCode;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use elbowroom_cell::Cell;
 use elbowroom_sim::{RunOptions, simulate};
 use elbowroom_testkit::random::Random;
+use xtask::Failure;
+
+use super::words::{SEED, number};
 
 const NUMBERS: &[&str] =
     &["0", "-1", "1e308", "-1e308", "1e-320", "nan", "inf", "9223372036854775807", "\"x\"", "[]", "{}"];
@@ -47,24 +49,37 @@ fn mutate(text: &str, random: &mut Random) -> String {
     text
 }
 
-fn main() -> ExitCode {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let (Some(file), Some(seconds)) = (arguments.first(), arguments.get(1).and_then(|s| s.parse().ok())) else {
-        eprintln!("usage: fuzz_cell FILE SECONDS [SEED]");
-        return ExitCode::from(2);
-    };
-    let Ok(text) = std::fs::read_to_string(file) else {
-        eprintln!("{file} cannot be read");
-        return ExitCode::from(2);
-    };
-    let mut random = Random(arguments.get(2).and_then(|s| s.parse().ok()).unwrap_or(0x9e37_79b9_7f4a_7c15));
+/// What the words say.
+pub struct Options {
+    file: PathBuf,
+    seconds: u64,
+    seed: u64,
+}
+
+impl Options {
+    /// Reads `FILE SECONDS [SEED]`.
+    pub fn parse(words: &[&str]) -> Result<Self, String> {
+        let file = words.first().ok_or("FILE is missing")?.into();
+        Ok(Self {
+            file,
+            seconds: number("SECONDS", words.get(1), None)?,
+            seed: number("SEED", words.get(2), Some(SEED))?,
+        })
+    }
+}
+
+/// Mutates and runs the file until the time is over.
+pub fn run(options: &Options) -> Result<(), Failure> {
+    let file: &Path = &options.file;
+    let text = std::fs::read_to_string(file).map_err(|e| format!("{}: {e}", file.display()))?;
+    let mut random = Random(options.seed);
     std::panic::set_hook(Box::new(|_| {}));
     let (begin, mut tried, mut sound, mut found) = (Instant::now(), 0_u64, 0_u64, 0_u64);
-    while begin.elapsed() < Duration::from_secs(seconds) {
+    while begin.elapsed() < Duration::from_secs(options.seconds) {
         let spoiled = mutate(&text, &mut random);
         let started = Instant::now();
         let outcome = catch_unwind(AssertUnwindSafe(|| {
-            Cell::parse(Path::new(file), &spoiled).is_ok_and(|mut cell| {
+            Cell::parse(file, &spoiled).is_ok_and(|mut cell| {
                 cell.max_s = cell.tick_s * 5.0;
                 let _ = simulate(&cell, &RunOptions::default());
                 true
@@ -84,6 +99,6 @@ fn main() -> ExitCode {
             );
         }
     }
-    eprintln!("{tried} files, {sound} valid, {found} panics or slow readings");
-    ExitCode::from(u8::from(found > 0))
+    eprintln!("{}: {tried} files, {sound} valid", file.display());
+    if found == 0 { Ok(()) } else { Err(Failure::Check(format!("{found} panics or slow readings"))) }
 }

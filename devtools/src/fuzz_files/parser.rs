@@ -1,39 +1,57 @@
-//! Mutation fuzzing of one reader: `cargo run --release -p elbowroom-formats --example fuzz -- PARSER SECONDS [DIR [SEED]]`.
+//! Mutation fuzzing of one reader: `cargo xtask fuzz parser PARSER SECONDS [DIR [SEED]]`.
 //!
 //! PARSER is one of stl obj dae gltf ply off 3ds urdf srdf scene yaml mesh. Damages the built-in samples and the files of DIR (those
 //! of the parser's kind below 64 KiB), and counts panics, readings slower than 2 s, and results too large for the
-//! input. Limit the memory from outside (`ulimit -v`). The exit status is 1 if anything was found; the input is kept in
-//! the temporary directory.
+//! input. Limit the memory from outside (`ulimit -v`). An error if anything was found; the input is kept in the temporary
+//! directory.
 
-#[path = "../tests/common/corpus.rs"]
+#[path = "../../../crates/world/formats/tests/common/corpus.rs"]
 mod corpus;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-use corpus::{PARSERS, Random, mutate, run, samples};
+use xtask::Failure;
+
+use super::words::{SEED, number};
+use corpus::{PARSERS, Random, mutate, samples};
 
 const LARGEST_SEED: u64 = 64 * 1024;
 const SLOW: Duration = Duration::from_secs(2);
 
-fn main() -> ExitCode {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let parser = arguments.first().filter(|p| PARSERS.contains(&p.as_str()));
-    let (Some(parser), Some(seconds)) = (parser, arguments.get(1).and_then(|s| s.parse().ok())) else {
-        eprintln!("usage: fuzz PARSER SECONDS [DIR [SEED]], PARSER one of {}", PARSERS.join(" "));
-        return ExitCode::from(2);
-    };
-    let mut corpus = samples(parser);
-    if let Some(directory) = arguments.get(2) {
-        collect(Path::new(directory), parser, &mut corpus);
+/// What the words say.
+pub struct Options {
+    parser: &'static str,
+    seconds: u64,
+    directory: Option<PathBuf>,
+    seed: u64,
+}
+
+impl Options {
+    /// Reads `PARSER SECONDS [DIR [SEED]]`.
+    pub fn parse(words: &[&str]) -> Result<Self, String> {
+        let parser = PARSERS.into_iter().find(|parser| words.first() == Some(parser));
+        Ok(Self {
+            parser: parser.ok_or_else(|| format!("PARSER is one of {}", PARSERS.join(" ")))?,
+            seconds: number("SECONDS", words.get(1), None)?,
+            directory: words.get(2).map(PathBuf::from),
+            seed: number("SEED", words.get(3), Some(SEED))?,
+        })
     }
-    let seed = arguments.get(3).and_then(|s| s.parse().ok()).unwrap_or(0x9e37_79b9_7f4a_7c15);
+}
+
+/// Damages files and reads them until the time is over.
+pub fn run(options: &Options) -> Result<(), Failure> {
+    let parser = options.parser;
+    let mut corpus = samples(parser);
+    if let Some(directory) = &options.directory {
+        collect(directory, parser, &mut corpus);
+    }
     std::panic::set_hook(Box::new(|_| {}));
-    let report = fuzz(parser, Duration::from_secs(seconds), &corpus, Random(seed));
+    let report = fuzz(parser, Duration::from_secs(options.seconds), &corpus, Random(options.seed));
     eprintln!("{parser}: {} files, {report}", corpus.len());
-    ExitCode::from(u8::from(report.findings > 0))
+    if report.findings == 0 { Ok(()) } else { Err(Failure::Check(format!("{} findings", report.findings))) }
 }
 
 fn collect(directory: &Path, parser: &str, corpus: &mut Vec<Vec<u8>>) {
@@ -81,7 +99,7 @@ fn fuzz(parser: &str, time: Duration, corpus: &[Vec<u8>], mut random: Random) ->
         let other = random.below(corpus.len());
         mutate(&mut random, &mut bytes, &corpus[other]);
         let start = Instant::now();
-        let outcome = catch_unwind(AssertUnwindSafe(|| run(parser, &bytes)));
+        let outcome = catch_unwind(AssertUnwindSafe(|| corpus::run(parser, &bytes)));
         let elapsed = start.elapsed();
         report.executions += 1;
         report.slowest = report.slowest.max(elapsed);
