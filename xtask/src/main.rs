@@ -4,6 +4,7 @@
 //! `elbowroom-devtools`, which it starts: in the profile of the tests where it checks, as a release build where it measures.
 #![allow(clippy::print_stdout, reason = "this program talks to the person who started it")]
 
+mod artifacts;
 mod compile;
 mod inventory;
 mod layers;

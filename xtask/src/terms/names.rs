@@ -1,4 +1,4 @@
-//! Names that a document gives: types, functions, crates, examples, tests and files must exist.
+//! Names that a document gives: types, functions, crates, examples, benches, tests and files must exist.
 
 use std::collections::HashSet;
 use std::path::Path;
