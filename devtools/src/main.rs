@@ -4,8 +4,10 @@
 
 mod contacts;
 mod cross_validation;
+mod evade;
 mod figures;
 mod fuzz_cells;
+mod fuzz_files;
 mod models;
 mod path_checks;
 mod robots;
@@ -35,6 +37,9 @@ fn dispatch(words: &[&str]) -> Result<(), Failure> {
         ["fuzz", "cells", rest @ ..] => {
             fuzz_cells::run(&root, &fuzz_cells::Options::parse(rest).map_err(Failure::Usage)?)
         }
+        ["fuzz", "parser", rest @ ..] => fuzz_files::parser(rest),
+        ["fuzz", "cell-file", rest @ ..] => fuzz_files::cell_file(rest),
+        ["evade", rest @ ..] => evade::run(&root, rest),
         ["cross-validate", rest @ ..] => cross_validation::run(&root, rest),
         ["contacts", rest @ ..] => contacts::run(&root, rest),
         ["paths", rest @ ..] => path_checks::run(&root, rest),

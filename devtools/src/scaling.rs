@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::figures::svg::{Axis, Curve, Dash, Plot};
 use xtask::shell;
 
-/// Columns of the example's table.
+/// Columns of the bench's table.
 const TRIANGLES: usize = 0;
 const BUILD_MS: usize = 1;
 const NEAR_US: usize = 3;
@@ -13,10 +13,10 @@ const TOUCH_US: usize = 4;
 const WITHIN_US: usize = 5;
 const DISTANCE_US: usize = 6;
 
-/// Runs the example, prints its table and, with a folder, draws it.
+/// Runs the bench, prints its table and, with a folder, draws it.
 pub fn run(root: &Path, out: Option<&Path>) -> Result<(), String> {
-    let example = ["run", "--quiet", "--release", "-p", "elbowroom-proximity", "--example", "scaling"];
-    let text = shell::output(root, "cargo", &example)?;
+    let bench = ["bench", "--quiet", "-p", "elbowroom-proximity", "--bench", "scaling"];
+    let text = shell::output(root, "cargo", &bench)?;
     print!("{text}");
     let Some(out) = out else { return Ok(()) };
     let rows = text.lines().skip(1).map(row).collect::<Result<Vec<_>, _>>()?;
@@ -32,7 +32,7 @@ fn row(line: &str) -> Result<Vec<f64>, String> {
     let numbers: Result<Vec<f64>, _> = line.split_whitespace().map(str::parse).collect();
     match numbers {
         Ok(row) if row.len() == 7 => Ok(row),
-        _ => Err(format!("the example printed a row that is not seven numbers: {line:?}")),
+        _ => Err(format!("the bench printed a row that is not seven numbers: {line:?}")),
     }
 }
 

@@ -4,6 +4,7 @@
 //! `elbowroom-devtools`, which it starts: in the profile of the tests where it checks, as a release build where it measures.
 #![allow(clippy::print_stdout, reason = "this program talks to the person who started it")]
 
+mod artifacts;
 mod compile;
 mod inventory;
 mod layers;
@@ -48,6 +49,10 @@ cargo xtask COMMAND
         writes the figures of docs/laws.md under docs/figures; --check compares instead
   fuzz [SECONDS]
         throws mutated files at every parser, SECONDS each (default 60)
+  fuzz parser PARSER SECONDS [DIR [SEED]]
+        the same for one of stl obj dae gltf ply off 3ds urdf srdf scene yaml mesh, with the files of DIR too
+  fuzz cell-file FILE SECONDS [SEED]
+        the same for a cell file, which is also run for a few ticks
   fuzz cells [--count N] [--kind stop|exchange|faults|all] [--seed S] [--case I] [--no-shrink] [--json]
         runs N random cells (default 1000) of each kind under the monitor, and checks the recordings by kinematics and
         distances of its own, between ticks too: nobody enters, never two in an exchange region, no silent deadlock.
@@ -57,6 +62,10 @@ cargo xtask COMMAND
   rpq [--states N] [--out DIR] [--json]
         the paper's test of proximity queries: two RX60B at five distances, N states (default 5000), time per query by
         resolution level, allowed collision matrix and weight matrix; --out writes the figures of docs/measurements/rpq.md
+  evade [RUNS] [CELL] [--noise-mm N] [--delay-ms N] [--add FILE] [--csv FILE]
+        RUNS runs (default 100) of a palletizer whose path a cart crosses at random, without and with avoidance; --add
+        adds the tables of FILE to the cell. EVADE_ONLY: numbers of runs to make and show, as 135,160; EVADE_EXPLAIN:
+        how many motions to search for an escape before each hit
   cross-validate [--data DIR] [--states N] [--only NAME] [--json]
         every robot and cell of DIR (default ../shared/data) beside Pinocchio and Coal: distances and contacts on N random
         states (default 200; 10000 with ELBOWROOM_LONG=1), and the allowed collision matrix beside the SRDF
@@ -87,7 +96,7 @@ Exit status: 0 all well, 1 a check failed, 2 the call is wrong.
 const PARSERS: [&str; 11] = ["urdf", "srdf", "scene", "yaml", "stl", "obj", "dae", "gltf", "ply", "off", "mesh"];
 
 /// Commands of `elbowroom-devtools` that measure, or run long: as a release build.
-const MEASURING: [&str; 5] = ["cross-validate", "contacts", "paths", "rpq", "scaling"];
+const MEASURING: [&str; 6] = ["cross-validate", "contacts", "evade", "paths", "rpq", "scaling"];
 
 fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();
@@ -112,6 +121,7 @@ fn dispatch(words: &[&str]) -> Result<(), Failure> {
         ["terms"] => Ok(terms::run(&root)?),
         ["models" | "figures", ..] | ["fuzz", "cells", ..] => devtools(&root, words, &[]),
         [command, ..] if MEASURING.contains(command) => devtools(&root, words, &["--release"]),
+        ["fuzz", "parser" | "cell-file", ..] => devtools(&root, words, &["--release"]),
         ["fuzz"] => fuzz(&root, "60"),
         ["fuzz", seconds] => fuzz(&root, seconds),
         ["peers", options @ ..] => Ok(peers::run(&root, &peers::Options::parse(options).map_err(Failure::Usage)?)?),
@@ -137,16 +147,11 @@ fn fuzz(root: &Path, seconds: &str) -> Result<(), Failure> {
     if seconds.parse::<u64>().is_err() {
         return Err(Failure::Usage(format!("`fuzz {seconds}`: SECONDS is a whole number")));
     }
-    let example = |package, name| ["run", "--quiet", "--release", "-p", package, "--example", name, "--"];
+    let fuzz = |words: &[&str]| devtools(root, &[&["fuzz"], words].concat(), &["--release"]);
+    // Real files, where they are, damage more interestingly than the built-in samples.
+    let data = xtask::call::data_folder(root, None).display().to_string();
     for parser in PARSERS {
-        let mut args = example("elbowroom-formats", "fuzz").to_vec();
-        args.extend([parser, seconds]);
-        // Real files, where they are, damage more interestingly than the built-in samples.
-        let data = root.join("../shared/data").display().to_string();
-        args.push(&data);
-        shell::cargo(root, &args, &[])?;
+        fuzz(&["parser", parser, seconds, &data])?;
     }
-    let mut args = example("elbowroom-sim", "fuzz_cell").to_vec();
-    args.extend(["examples/figure12/cell.toml", seconds]);
-    Ok(shell::cargo(root, &args, &[])?)
+    fuzz(&["cell-file", "examples/figure12/cell.toml", seconds])
 }

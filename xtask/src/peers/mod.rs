@@ -82,7 +82,8 @@ pub fn run(root: &Path, options: &Options) -> Result<(), String> {
 /// elbowroom must run; any other that does not is named and left out.
 fn start(peers: &[Ready], workload: &workload::Workload, root: &Path) -> Result<(Vec<Runner>, Vec<String>), String> {
     let core = machine::core();
-    let mut runners = vec![Runner::start("elbowroom", &workload::elbowroom("serve"), workload, root, core)?];
+    let ours = [workload.elbowroom.display().to_string(), "serve".to_owned()];
+    let mut runners = vec![Runner::start("elbowroom", &ours, workload, root, core)?];
     let mut missing = Vec::new();
     for peer in peers {
         let started = match &peer.program {

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::native;
+use crate::{artifacts, native};
 
 /// Where the files are.
 pub struct Workload {
@@ -10,28 +10,23 @@ pub struct Workload {
     pub data: PathBuf,
     /// Paths and random poses made to go with them.
     pub extra: PathBuf,
-}
-
-/// elbowroom's runner as a command line; built by [`prepare`].
-pub fn elbowroom(verb: &str) -> Vec<String> {
-    let fixed = ["run", "--quiet", "--release", "-p", "elbowroom-proximity", "--example", "peers", "--", verb];
-    std::iter::once(native::cargo()).chain(fixed.map(str::to_owned)).collect()
+    /// elbowroom's runner, which has made them.
+    pub elbowroom: PathBuf,
 }
 
 /// Builds elbowroom's runner; makes the workload where none is given, and what goes with any.
 pub fn prepare(root: &Path, folder: &Path, given: Option<&Path>) -> Result<Workload, String> {
-    let cargo = native::cargo();
-    native::run(root, &[&cargo, "build", "--release", "-p", "elbowroom-proximity", "--example", "peers"], &[])?;
+    let elbowroom = artifacts::bench(root, "elbowroom-proximity", "peers")?;
     let data = match given {
         Some(given) => readable(given)?,
-        None => own(root, &folder.join("data"))?,
+        None => own(root, &elbowroom, &folder.join("data"))?,
     };
     let extra = folder.join("extra");
     // What an earlier workload left must not be taken for this one's.
     let _ = std::fs::remove_dir_all(&extra);
     xtask::shell::make_folder(&extra)?;
-    ours(root, "extend", &[&data, &extra])?;
-    Ok(Workload { data, extra })
+    ours(root, &elbowroom, "extend", &[&data, &extra])?;
+    Ok(Workload { data, extra, elbowroom })
 }
 
 fn readable(given: &Path) -> Result<PathBuf, String> {
@@ -42,19 +37,19 @@ fn readable(given: &Path) -> Result<PathBuf, String> {
 }
 
 /// Made once; the last file written tells that all are there.
-fn own(root: &Path, data: &Path) -> Result<PathBuf, String> {
+fn own(root: &Path, elbowroom: &Path, data: &Path) -> Result<PathBuf, String> {
     let done = data.join("complete");
     if !done.is_file() {
         eprintln!("making the workload in {}", data.display());
         xtask::shell::make_folder(data)?;
-        ours(root, "generate", &[data])?;
+        ours(root, elbowroom, "generate", &[data])?;
         std::fs::write(&done, "").map_err(|e| format!("{}: {e}", done.display()))?;
     }
     Ok(data.to_owned())
 }
 
-fn ours(root: &Path, verb: &str, folders: &[&Path]) -> Result<(), String> {
-    let mut words = elbowroom(verb);
+fn ours(root: &Path, elbowroom: &Path, verb: &str, folders: &[&Path]) -> Result<(), String> {
+    let mut words = vec![elbowroom.display().to_string(), verb.to_owned()];
     words.extend(folders.iter().map(|folder| folder.display().to_string()));
     native::run(root, &words.iter().map(String::as_str).collect::<Vec<_>>(), &[])
 }

@@ -1,4 +1,4 @@
-//! Names that a document gives: types, functions, crates, examples, tests and files must exist.
+//! Names that a document gives: types, functions, crates, examples, benches, tests and files must exist.
 
 use std::collections::HashSet;
 use std::path::Path;
@@ -49,11 +49,15 @@ impl KnownNames {
         let crates = after("-p elbowroom-").map(|name| (format!("/{name}/Cargo.toml"), format!("crate {name}")));
         let examples = after("--example ").map(|name| (format!("/examples/{name}"), format!("example {name}")));
         let tests = after("--test ").map(|name| (format!("/tests/{name}"), format!("test {name}")));
+        let modules =
+            line.split("--test main ").skip(1).filter_map(|rest| rest.trim_start_matches("-- ").split_once("::"));
+        let modules = modules.map(|(name, _)| (format!("/tests/{name}"), format!("module {name} of tests")));
         let benches = after("--bench ").map(|name| (format!("/benches/{name}"), format!("bench {name}")));
         let exists = |part: &str| self.paths.iter().any(|path| path.contains(part));
         crates
             .chain(examples)
             .chain(tests)
+            .chain(modules)
             .chain(benches)
             .filter(move |(part, _)| !exists(part))
             .map(|(_, name)| format!("there is no {name}"))
@@ -107,9 +111,13 @@ mod tests {
         known.add("crates/world/scene/Cargo.toml", "");
         known.add("crates/world/scene/src/scene.rs", "pub struct Scene { step: u32 }");
         known.add("crates/world/scene/examples/sweep.rs", "");
+        known.add("crates/world/scene/tests/main.rs", "mod walks;");
+        known.add("crates/world/scene/tests/walks.rs", "");
         let problems = |text: &str| known.problems(Path::new("/nowhere"), "a.md", text);
         assert!(problems("`Scene`, `Scene::step(1)` and `run it`\n```\nScenery::walk\n```").is_empty());
         assert!(problems("cargo run -p elbowroom-scene --example sweep").is_empty());
+        assert!(problems("cargo test -p elbowroom-scene --test main walks:: -- --nocapture").is_empty());
+        assert_eq!(problems("cargo test --test main runs::all"), ["a.md:1: there is no module runs of tests"]);
         assert_eq!(problems("text\n`Scenery`"), ["a.md:2: `Scenery`: no source has the name Scenery"]);
         assert_eq!(problems("cargo test -p elbowroom-plan"), ["a.md:1: there is no crate plan"]);
         assert_eq!(

@@ -1,9 +1,8 @@
 //! The programs that the tests are in, as cargo reports them.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
 
-use serde_json::Value;
+use crate::artifacts::{self, Artifact};
 
 /// A compiled program of tests.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -23,36 +22,21 @@ pub struct Program {
 /// # Errors
 /// Where something does not compile; cargo has printed why.
 pub fn compile(root: &Path, args: &[&str], env: &[(&str, &str)]) -> Result<Vec<Program>, String> {
-    let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".into());
-    let fixed = ["test", "--no-run", "--message-format", "json-render-diagnostics"];
-    let args: Vec<&str> = fixed.iter().chain(args).copied().collect();
-    println!("$ cargo {}", args.join(" "));
-    let mut command = Command::new(cargo);
-    command.args(&args).envs(env.iter().copied()).current_dir(root).stderr(Stdio::inherit());
-    let output = command.output().map_err(|e| format!("cannot start cargo: {e}"))?;
-    if !output.status.success() {
-        return Err("the tests do not compile".into());
-    }
-    programs(&String::from_utf8_lossy(&output.stdout))
+    programs(&artifacts::compile(root, &[&["test", "--no-run"], args].concat(), env)?)
 }
 
-/// The programs among cargo's messages, one JSON object a line.
-fn programs(messages: &str) -> Result<Vec<Program>, String> {
+/// The programs of tests among all.
+fn programs(artifacts: &[Artifact]) -> Result<Vec<Program>, String> {
     let mut found = Vec::new();
-    for line in messages.lines().filter(|line| line.starts_with('{')) {
-        let message: Value = serde_json::from_str(line).map_err(|e| format!("cargo's message `{line}`: {e}"))?;
-        let is_test = message["profile"]["test"] == true;
-        let (Some(executable), true) = (message["executable"].as_str(), is_test) else { continue };
-        let manifest = PathBuf::from(message["manifest_path"].as_str().unwrap_or_default());
+    for Artifact { executable, manifest, kind, name, .. } in artifacts.iter().filter(|artifact| artifact.is_test) {
         let folder = manifest.parent().unwrap_or(Path::new("")).to_path_buf();
-        let target = message["target"]["name"].as_str().unwrap_or_default();
-        let kind = message["target"]["kind"][0].as_str().unwrap_or_default();
         let crate_name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let short = if kind == "test" { target } else { kind };
-        let has_harness = kind != "test" || harness(&manifest, target)?;
+        let is_integration = kind == "test";
+        let short = if is_integration { name } else { kind };
+        let has_harness = !is_integration || harness(manifest, name)?;
         found.push(Program {
             name: format!("{crate_name}/{short}"),
-            executable: executable.into(),
+            executable: executable.clone(),
             folder,
             has_harness,
         });
@@ -76,15 +60,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn programs_of_tests_are_found_among_the_messages() {
-        let messages = concat!(
-            r#"{"reason":"compiler-artifact","profile":{"test":false},"executable":"/t/elbowroom","target":{"kind":["bin"],"name":"elbowroom"}}"#,
-            "\n   Finished\n",
-            r#"{"reason":"compiler-artifact","manifest_path":"/w/crates/base/robot/Cargo.toml","profile":{"test":true},"executable":"/t/robot-1","target":{"kind":["lib"],"name":"elbowroom_robot"}}"#,
-            "\n",
-            r#"{"reason":"build-finished","success":true}"#
-        );
-        let found = programs(messages).unwrap();
+    fn programs_of_tests_are_found_among_the_artifacts() {
+        let artifact = |executable: &str, kind: &str, is_test| Artifact {
+            executable: executable.into(),
+            manifest: "/w/crates/base/robot/Cargo.toml".into(),
+            kind: kind.into(),
+            name: "elbowroom_robot".into(),
+            is_test,
+        };
+        let found = programs(&[artifact("/t/elbowroom", "bin", false), artifact("/t/robot-1", "lib", true)]).unwrap();
         let expected = Program {
             name: "robot/lib".into(),
             executable: "/t/robot-1".into(),
@@ -92,6 +76,5 @@ mod tests {
             has_harness: true,
         };
         assert_eq!(found, [expected]);
-        assert!(programs("{not json").is_err());
     }
 }

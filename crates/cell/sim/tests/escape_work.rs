@@ -1,4 +1,4 @@
-//! The hardest of the runs of the example `evade`: no hit, and no step longer than a tick in counted work.
+//! The hardest of the runs of `cargo xtask evade`: no hit, and no step longer than a tick in counted work.
 #![allow(clippy::print_stdout)]
 
 use crate::common::crossing;
@@ -14,7 +14,7 @@ const HARD: [usize; 2] = [135, 160];
 
 #[test]
 fn hard_runs_do_not_hit() {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/evade.toml");
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/evade.toml");
     let cell = Cell::load(file).unwrap();
     let moves = |o: &ObjectId| cell.moving_objects.iter().any(|m| m.object == *o);
     let object = cell.avoidance[0].as_ref().unwrap().objects.iter().copied().find(moves).unwrap();

@@ -1,5 +1,5 @@
 //! What users do in their second hour, as typed commands on robots that the project does not have. Each test prints the command
-//! and what it answered: `cargo test -p elbowroom-cli --test tasks -- --nocapture`.
+//! and what it answered: `cargo test -p elbowroom-cli --test main tasks:: -- --nocapture`.
 
 #![allow(clippy::print_stdout, reason = "shows what users type and see")]
 

@@ -1,4 +1,4 @@
-//! A million configurations each; run with `cargo test --release -p elbowroom-cspace --test long -- --ignored`.
+//! A million configurations each; run with `cargo test --release -p elbowroom-cspace --test main long:: -- --ignored`.
 
 use crate::common::{Random, SampleCounts, grid, grid_of, missed_contacts};
 use elbowroom_cspace::{ConvexObstacle, Grid, Layer, ObstacleModel, OccupancyBitmap, PlanarArm, PlanarMapBuilder};
@@ -20,7 +20,7 @@ fn count(arm: &PlanarArm, grid: &Grid, obstacle: &ConvexObstacle, model: Obstacl
 }
 
 #[test]
-#[ignore = "half a minute; cargo test --release -p elbowroom-cspace --test long -- --ignored"]
+#[ignore = "half a minute; cargo test --release -p elbowroom-cspace --test main long:: -- --ignored"]
 fn a_million_configurations_of_the_large_arm() {
     let cuboid = |at, rpy| ConvexObstacle::cuboid(Pose::from_xyz_rpy(at, rpy), Vec3::new(0.25, 0.2, 0.3)).unwrap();
     let obstacles = [
@@ -45,7 +45,7 @@ fn a_million_configurations_of_the_large_arm() {
 }
 
 #[test]
-#[ignore = "half a minute; cargo test --release -p elbowroom-cspace --test long -- --ignored"]
+#[ignore = "half a minute; cargo test --release -p elbowroom-cspace --test main long:: -- --ignored"]
 fn a_million_configurations_of_the_papers_arm() {
     let at = Pose::from_xyz_rpy([0.22, 0.08, 0.05], [0.0, 0.0, 0.3]);
     let cube = ConvexObstacle::cuboid(at, Vec3::splat(0.04)).unwrap();

@@ -1,6 +1,6 @@
 //! Integration tests of `elbowroom-cspace` in one program: a module per subject, whose first line says what belongs there.
 
-#[path = "../examples/clock/mod.rs"]
+#[path = "../benches/clock/mod.rs"]
 mod clock;
 mod common;
 mod convex;

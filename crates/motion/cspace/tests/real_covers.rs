@@ -1,6 +1,6 @@
 //! Maps of real robots on covers: time, a million configurations each, and the share of cells that are blocked needlessly.
 //!
-//! `cargo test --release -p elbowroom-cspace --test real_covers -- --ignored --nocapture` (minutes; the data is not part of
+//! `cargo test --release -p elbowroom-cspace --test main real_covers:: -- --ignored --nocapture` (minutes; the data is not part of
 //! the repository). `SAMPLES` is the number of configurations.
 #![allow(clippy::print_stdout, reason = "a table is what it is for")]
 
@@ -15,7 +15,7 @@ use elbowroom_spatial::{Pose, Vec3};
 const REPETITIONS: usize = 5;
 
 #[test]
-#[ignore = "minutes; cargo test --release -p elbowroom-cspace --test real_covers -- --ignored --nocapture"]
+#[ignore = "minutes; cargo test --release -p elbowroom-cspace --test main real_covers:: -- --ignored --nocapture"]
 fn maps_on_covers_miss_nothing() {
     let Some(data) = data() else {
         println!("skipped: no data at ../shared/data or $ELBOWROOM_DATA");

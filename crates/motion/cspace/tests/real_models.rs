@@ -1,6 +1,6 @@
 //! The obstacle models of S2 on real robots: time and blocked cells of each, over the same cells.
 //!
-//! `cargo test --release -p elbowroom-cspace --test real_models -- --ignored --nocapture` (minutes; the data is not part of
+//! `cargo test --release -p elbowroom-cspace --test main real_models:: -- --ignored --nocapture` (minutes; the data is not part of
 //! the repository).
 #![allow(clippy::print_stdout, reason = "a table is what it is for")]
 
@@ -27,7 +27,7 @@ const MODELS: [ObstacleModel; 6] = [
 ];
 
 #[test]
-#[ignore = "minutes; cargo test --release -p elbowroom-cspace --test real_models -- --ignored --nocapture"]
+#[ignore = "minutes; cargo test --release -p elbowroom-cspace --test main real_models:: -- --ignored --nocapture"]
 fn slices_are_the_quickest_model() {
     let Some(data) = data() else {
         println!("skipped: no data at ../shared/data or $ELBOWROOM_DATA");
@@ -86,7 +86,7 @@ fn measure(name: &str, what: &str, case: &Case) {
 }
 
 #[test]
-#[ignore = "a minute; cargo test --release -p elbowroom-cspace --test real_models -- --ignored --nocapture"]
+#[ignore = "a minute; cargo test --release -p elbowroom-cspace --test main real_models:: -- --ignored --nocapture"]
 fn spheres_until_a_deadline_and_expansion_from_seeds() {
     let Some(data) = data() else {
         println!("skipped: no data at ../shared/data or $ELBOWROOM_DATA");

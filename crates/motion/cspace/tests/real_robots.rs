@@ -1,7 +1,7 @@
 //! Maps of real robots: a million configurations each, no collision in a free cell; and the share of cells that are blocked
 //! needlessly.
 //!
-//! `cargo test --release -p elbowroom-cspace --test real_robots -- --ignored --nocapture` (minutes; the data is not part of
+//! `cargo test --release -p elbowroom-cspace --test main real_robots:: -- --ignored --nocapture` (minutes; the data is not part of
 //! the repository).
 #![allow(clippy::print_stdout, reason = "a table is what it is for")]
 
@@ -13,7 +13,7 @@ use elbowroom_cspace::ObstacleModel;
 use elbowroom_formats::robot::{LoadOptions, load};
 
 #[test]
-#[ignore = "minutes; cargo test --release -p elbowroom-cspace --test real_robots -- --ignored --nocapture"]
+#[ignore = "minutes; cargo test --release -p elbowroom-cspace --test main real_robots:: -- --ignored --nocapture"]
 fn no_collision_lies_in_a_free_cell() {
     let Some(data) = data() else {
         println!("skipped: no data at ../shared/data or $ELBOWROOM_DATA");

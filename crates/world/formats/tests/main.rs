@@ -10,8 +10,8 @@ mod meshes;
 mod messages;
 mod model_robots;
 mod odd_files;
-#[path = "../examples/any_point/problem.rs"]
+#[path = "../benches/any_point/problem.rs"]
 mod problem;
-#[path = "../examples/any_point/surface.rs"]
+#[path = "../benches/any_point/surface.rs"]
 mod surface;
 mod tds;

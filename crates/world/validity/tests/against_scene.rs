@@ -1,7 +1,7 @@
 //! Answers against the exact scene: proven free never collides, proven hit always does.
 //!
 //! `ELBOWROOM_VALIDITY_STATES=1000000` compares as many configurations, and a tenth as many edges, over all robots of the data, in
-//! the release profile best: `cargo test --release -p elbowroom-validity --test against_scene real_robots -- --nocapture`. With
+//! the release profile best: `cargo test --release -p elbowroom-validity --test main against_scene::real_robots -- --nocapture`. With
 //! `ELBOWROOM_VALIDITY_JOBS=DIRECTORY` it writes configurations and answers for Coal, see `xtask/planning/README.md`.
 //!
 //! The scene is asked what the covers answer: whether a configuration collides that is proven free or hit, and whether any of

@@ -1,0 +1,92 @@
+//! Programs that cargo has compiled, as its messages report them.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use serde_json::Value;
+
+/// A compiled program.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Artifact {
+    /// The file to start.
+    pub executable: PathBuf,
+    /// The `Cargo.toml` of its package.
+    pub manifest: PathBuf,
+    /// What it is: `bin`, `lib`, `test`, `bench`.
+    pub kind: String,
+    /// The name of the target.
+    pub name: String,
+    /// Whether it is compiled for tests.
+    pub is_test: bool,
+}
+
+/// Compiles what the words choose, such as `test --no-run`, and answers the programs.
+///
+/// # Errors
+/// If something does not compile; cargo has printed why.
+pub fn compile(root: &Path, args: &[&str], env: &[(&str, &str)]) -> Result<Vec<Artifact>, String> {
+    let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".into());
+    let args: Vec<&str> = args.iter().copied().chain(["--message-format", "json-render-diagnostics"]).collect();
+    let line = args.join(" ");
+    eprintln!("$ cargo {line}");
+    let mut command = Command::new(cargo);
+    command.args(&args).envs(env.iter().copied()).current_dir(root).stderr(Stdio::inherit());
+    let output = command.output().map_err(|e| format!("cannot start cargo: {e}"))?;
+    if !output.status.success() {
+        return Err(format!("`cargo {line}` does not compile"));
+    }
+    artifacts(&String::from_utf8_lossy(&output.stdout))
+}
+
+/// Compiles a bench as `cargo bench` does, and answers its executable.
+///
+/// # Errors
+/// If it does not compile.
+pub fn bench(root: &Path, package: &str, name: &str) -> Result<PathBuf, String> {
+    let found = compile(root, &["bench", "--no-run", "-p", package, "--bench", name], &[])?;
+    let bench = found.into_iter().find(|artifact| artifact.kind == "bench" && artifact.name == name);
+    bench.map(|artifact| artifact.executable).ok_or_else(|| format!("cargo has not built the bench {name}"))
+}
+
+/// The programs among cargo's messages, one JSON object a line.
+fn artifacts(messages: &str) -> Result<Vec<Artifact>, String> {
+    let mut found = Vec::new();
+    for line in messages.lines().filter(|line| line.starts_with('{')) {
+        let message: Value = serde_json::from_str(line).map_err(|e| format!("cargo's message `{line}`: {e}"))?;
+        let Some(executable) = message["executable"].as_str() else { continue };
+        let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
+        found.push(Artifact {
+            executable: executable.into(),
+            manifest: text(&message["manifest_path"]).into(),
+            kind: text(&message["target"]["kind"][0]),
+            name: text(&message["target"]["name"]),
+            is_test: message["profile"]["test"] == true,
+        });
+    }
+    Ok(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn programs_are_found_among_the_messages() {
+        let messages = concat!(
+            r#"{"reason":"compiler-artifact","manifest_path":"/w/c/Cargo.toml","profile":{"test":false},"executable":null,"target":{"kind":["lib"],"name":"c"}}"#,
+            "\n   Finished\n",
+            r#"{"reason":"compiler-artifact","manifest_path":"/w/c/Cargo.toml","profile":{"test":true},"executable":"/t/c-1","target":{"kind":["bench"],"name":"times"}}"#,
+            "\n",
+            r#"{"reason":"build-finished","success":true}"#
+        );
+        let expected = Artifact {
+            executable: "/t/c-1".into(),
+            manifest: "/w/c/Cargo.toml".into(),
+            kind: "bench".into(),
+            name: "times".into(),
+            is_test: true,
+        };
+        assert_eq!(artifacts(messages).unwrap(), [expected]);
+        assert!(artifacts("{not json").is_err());
+    }
+}
