@@ -1,5 +1,7 @@
 //! SHA-256 over the exact bits of answers.
 
+use std::fmt::Write as _;
+
 use sha2::{Digest as _, Sha256};
 
 /// A hash of answers in their order. Everything has a fixed size or its length before it: different answers are different bytes.
@@ -37,7 +39,11 @@ impl Digest {
 
     /// 64 hexadecimal digits.
     pub fn hex(self) -> String {
-        self.0.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+        let mut digits = String::new();
+        for byte in self.0.finalize() {
+            let _ = write!(digits, "{byte:02x}");
+        }
+        digits
     }
 }
 

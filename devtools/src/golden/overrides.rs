@@ -32,30 +32,31 @@ pub fn groups_on(root: &Path, data: Option<&Path>, cells: usize, threads: usize)
     // Kinds by turns: any number of cells is an even share.
     let job = |i: usize| run(Kind::ALL[i % kinds], (i / kinds) as u64, &places);
     let hashes = in_order(cells, threads, job, |done| progress.done(done, "cells"));
+    let refused = hashes.iter().filter(|hash| hash.is_none()).count();
+    eprintln!("overrides: {refused} of {cells} cells refused");
     let of_kind = |(k, kind): (usize, Kind)| {
         let mut digest = Digest::default();
-        let cases: Vec<&String> = hashes.iter().skip(k).step_by(kinds).collect();
-        cases.iter().for_each(|hash| digest.text(hash));
-        HashedGroup::new(kind.name(), digest, cases.len())
+        let cases = hashes.iter().skip(k).step_by(kinds);
+        let count = cases.len();
+        cases.for_each(|hash| digest.text(hash.as_deref().unwrap_or("refused")));
+        HashedGroup::new(kind.name(), digest, count)
     };
     Ok(Kind::ALL.into_iter().enumerate().map(of_kind).collect())
 }
 
-/// The hash of one run; of the message where there is none.
-fn run(kind: Kind, case: u64, places: &Places<'_>) -> String {
+/// The hash of one run; `None` if the cell or a step of its programs is refused.
+fn run(kind: Kind, case: u64, places: &Places<'_>) -> Option<String> {
     let spec = generate::cell(kind, &mut kind.random(SEED, case), places);
+    let recording = recording(&spec, places)?;
     let mut digest = Digest::default();
-    match recording(&spec, places) {
-        Ok(recording) => add_recording(&mut digest, &recording),
-        Err(()) => digest.text("refused"),
-    }
-    digest.hex()
+    add_recording(&mut digest, &recording);
+    Some(digest.hex())
 }
 
-fn recording(spec: &CellSpec, places: &Places<'_>) -> Result<Recording, ()> {
-    let cell = Cell::parse(places.cells.join("fuzz.toml"), &spec.to_toml()).map_err(drop)?;
+fn recording(spec: &CellSpec, places: &Places<'_>) -> Option<Recording> {
+    let cell = Cell::parse(places.cells.join("fuzz.toml"), &spec.to_toml()).ok()?;
     let options = RunOptions { faults: spec.faults.clone(), ..RunOptions::default() };
-    simulate(&cell, &options).map(|outcome| outcome.recording).map_err(drop)
+    simulate(&cell, &options).ok().map(|outcome| outcome.recording)
 }
 
 fn add_recording(digest: &mut Digest, recording: &Recording) {

@@ -36,22 +36,32 @@ fn of_file(file: ProblemFile, seeds: usize, threads: usize) -> Result<Vec<Hashed
     let mut progress = Progress::new(Part::Plans, sets.len() * seeds);
     let job = |i: usize| hash(&model, sets[i / seeds], (i % seeds) as u64, engine.clone());
     let hashes = in_order(sets.len() * seeds, threads, job, |done| progress.done(done, &name));
-    let hashes = hashes.into_iter().collect::<Result<Vec<String>, String>>()?;
-    let of_set = |(set, hashes): (&&[PlanningProblem], &[String])| {
+    let hashes = hashes.into_iter().collect::<Result<Vec<SetHash>, String>>()?;
+    let found: usize = hashes.iter().map(|hash| hash.found).sum();
+    eprintln!("plans: {found} paths for {} problems of {name}, {}", problems.len(), urdf.display());
+    let of_set = |(set, hashes): (&&[PlanningProblem], &[SetHash])| {
         let mut digest = Digest::default();
-        hashes.iter().for_each(|hash| digest.text(hash));
+        for hash in hashes {
+            digest.text(&hash.hex);
+        }
         HashedGroup::new(&format!("{name}/{}", set[0].set), digest, set.len() * seeds)
     };
     Ok(sets.iter().zip(hashes.chunks(seeds)).map(of_set).collect())
 }
 
-/// The hash of a set's solutions with one seed.
+/// A set's solutions with one seed.
+struct SetHash {
+    hex: String,
+    /// Problems with a path.
+    found: usize,
+}
+
 fn hash(
     model: &ProblemModel,
     problems: &[PlanningProblem],
     seed: u64,
     mut engine: BoundedEngine,
-) -> Result<String, String> {
+) -> Result<SetHash, String> {
     let settings = ProblemSettings { seed, ..ProblemSettings::default() };
     let mut results = Digest::default();
     let ran = run(model, problems, &settings, &mut engine, &mut |result, motion| {
@@ -66,9 +76,9 @@ fn hash(
         }
         true
     });
-    ran.map_err(|e| e.to_string())?;
+    let found = ran.map_err(|e| e.to_string())?.iter().filter(|result| result.found).count();
     let mut digest = Digest::default();
     digest.text(&engine.digest.hex());
     digest.text(&results.hex());
-    Ok(digest.hex())
+    Ok(SetHash { hex: digest.hex(), found })
 }

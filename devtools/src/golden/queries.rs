@@ -53,7 +53,9 @@ pub fn digest(model: &QueryModel, states: &[Vec<f64>]) -> Result<Digest, String>
     let mut digest = Digest::default();
     for kind in KINDS {
         let mut add = |rows: &[_]| {
-            rows.iter().for_each(|row| add_record(&mut digest, &QueryRecord::of(row, model)));
+            for row in rows {
+                add_record(&mut digest, &QueryRecord::of(row, model));
+            }
             true
         };
         evaluate(&scene, &states, kind, Level::Auto, &mut add).map_err(|e| e.to_string())?;

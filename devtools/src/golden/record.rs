@@ -1,5 +1,6 @@
 //! A file of hashes: sorted lines `part group hash count`.
 
+use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
@@ -41,7 +42,11 @@ impl Record {
     }
 
     fn text(&self) -> String {
-        self.0.iter().map(|(part, group)| format!("{part} {group}\n")).collect()
+        let mut text = String::new();
+        for (part, group) in &self.0 {
+            let _ = writeln!(text, "{part} {group}");
+        }
+        text
     }
 
     /// Names each group of a part that is not as recorded, or is in one of the two alone.
