@@ -8,6 +8,7 @@ mod evade;
 mod figures;
 mod fuzz_cells;
 mod fuzz_files;
+mod golden;
 mod models;
 mod path_checks;
 mod robots;
@@ -43,6 +44,7 @@ fn dispatch(words: &[&str]) -> Result<(), Failure> {
         ["cross-validate", rest @ ..] => cross_validation::run(&root, rest),
         ["contacts", rest @ ..] => contacts::run(&root, rest),
         ["paths", rest @ ..] => path_checks::run(&root, rest),
+        ["golden", rest @ ..] => golden::run(&root, rest),
         ["rpq", rest @ ..] => rpq::run(&root, rest),
         ["scaling"] => Ok(scaling::run(&root, None)?),
         ["scaling", "--out", folder] => Ok(scaling::run(&root, Some(Path::new(folder)))?),

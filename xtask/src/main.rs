@@ -59,6 +59,11 @@ cargo xtask COMMAND
         Failing cells are made smaller and written to target/fuzz-cells
   fuzz cells --replay FILE
         runs one cell file under the same oracle; lines `# fault: …` in it are injected
+  golden [--data DIR] [--rows N] [--cells N] [--seeds N] [--only queries|overrides|plans] [--out FILE] [--against FILE]
+        [--json]
+        hashes of the exact bits of many answers: queries of N random states (default 1,000,000) over the robots of DIR, every
+        tick of N random cells (default 1000) under the monitor, paths of the problems of DIR with N seeds each (default 5).
+        --out records them, --against names each group that is not as recorded
   rpq [--states N] [--out DIR] [--json]
         the paper's test of proximity queries: two RX60B at five distances, N states (default 5000), time per query by
         resolution level, allowed collision matrix and weight matrix; --out writes the figures of docs/measurements/rpq.md
@@ -96,7 +101,7 @@ Exit status: 0 all well, 1 a check failed, 2 the call is wrong.
 const PARSERS: [&str; 11] = ["urdf", "srdf", "scene", "yaml", "stl", "obj", "dae", "gltf", "ply", "off", "mesh"];
 
 /// Commands of `elbowroom-devtools` that measure, or run long: as a release build.
-const MEASURING: [&str; 6] = ["cross-validate", "contacts", "evade", "paths", "rpq", "scaling"];
+const MEASURING: [&str; 7] = ["cross-validate", "contacts", "evade", "golden", "paths", "rpq", "scaling"];
 
 fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();

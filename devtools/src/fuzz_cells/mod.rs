@@ -1,11 +1,11 @@
 //! `cargo xtask fuzz cells`: random cells, run in simulated time, and an oracle that knows only the recording.
 
 mod checked_run;
-mod generate;
+pub mod generate;
 mod oracle;
 mod random;
 mod shrink;
-mod spec;
+pub mod spec;
 mod summary;
 
 use std::path::{Path, PathBuf};
@@ -85,9 +85,7 @@ fn kinds(word: &str) -> Result<Vec<Kind>, String> {
 
 /// Runs the cells, or one file, and prints what was found; fails where anything was.
 pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
-    let cells = root.join("target/fuzz-cells");
-    let written = std::fs::create_dir_all(&cells).and_then(|()| std::fs::write(cells.join("corner.obj"), CORNER));
-    written.map_err(|e| format!("{}: {e}", cells.display()))?;
+    let cells = write_cell_files(root)?;
     if let Some(file) = &options.replay {
         return replay(file);
     }
@@ -101,6 +99,14 @@ pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
     }
     let failed: usize = summaries.iter().map(Summary::failed).sum();
     if failed == 0 { Ok(()) } else { Err(Failure::Check(format!("{failed} cells failed: {}", cells.display()))) }
+}
+
+/// The folder that the cells stand in, with the files that they name.
+pub fn write_cell_files(root: &Path) -> Result<PathBuf, String> {
+    let cells = root.join("target/fuzz-cells");
+    let written = std::fs::create_dir_all(&cells).and_then(|()| std::fs::write(cells.join("corner.obj"), CORNER));
+    written.map_err(|e| format!("{}: {e}", cells.display()))?;
+    Ok(cells)
 }
 
 /// The cells of every kind that the test suite runs, always the same ones.

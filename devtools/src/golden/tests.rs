@@ -1,0 +1,31 @@
+//! Equal answers have equal hashes, and other answers have others.
+
+use elbowroom_cell::QueryModel;
+
+use super::overrides;
+use super::queries;
+use crate::cross_validation::world::{self, Files};
+
+#[test]
+fn hashes_of_queries_repeat_and_depend_on_each_state() {
+    let model = xtask::call::workspace_root().unwrap().join("examples/models/rx60b/rx60b");
+    let (urdf, srdf) = (model.with_extension("urdf"), Some(model.with_extension("srdf")));
+    let robot = world::load(&Files { name: "rx60b".into(), urdf: urdf.clone(), srdf }, true).unwrap();
+    let mut states = world::states(&robot, 300);
+    let model = QueryModel::of_robot(&urdf, robot);
+    let hash = |states: &[Vec<f64>]| queries::digest(&model, states).unwrap().hex();
+    let before = hash(&states);
+    assert_eq!(hash(&states), before);
+    states[299][1] += 1e-9;
+    assert_ne!(hash(&states), before);
+}
+
+#[test]
+fn hashes_of_overrides_do_not_depend_on_the_number_of_threads() {
+    let root = xtask::call::workspace_root().unwrap();
+    let groups = |cells, threads| overrides::groups_on(&root, None, cells, threads).unwrap();
+    let three = groups(3, 1);
+    assert_eq!(groups(3, 2), three);
+    assert_eq!(three.iter().map(|group| group.count).collect::<Vec<_>>(), [1, 1, 1]);
+    assert_ne!(groups(6, 2), three);
+}
