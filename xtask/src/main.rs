@@ -5,6 +5,8 @@
 #![allow(clippy::print_stdout, reason = "this program talks to the person who started it")]
 
 mod compile;
+mod dependents;
+mod faults;
 mod inventory;
 mod layers;
 mod machine;
@@ -35,6 +37,10 @@ cargo xtask COMMAND
         depend on them
   layers
         who may depend on whom, that every crate takes the workspace lints, and no circles of files inside a crate
+  faults [--only NAME]… [--list] [--check]
+        plants each fault of xtask/faults.toml in a copy of the committed sources and runs the tests of its crate, then those
+        of the crates that depend on it, until one fails; fails itself if a fault is not found. --list names the faults,
+        --check only sees that every one can be planted
   terms
         no retired word (docs/retired-terms.toml) in sources and documents, no long line, no broken link
   inventory [DIR]
@@ -105,6 +111,7 @@ fn dispatch(words: &[&str]) -> Result<(), Failure> {
         ["layers"] => Ok(layers::run(&root)?),
         ["inventory"] => Ok(inventory::run(&root)?),
         ["inventory", folder] => Ok(inventory::run(Path::new(folder))?),
+        ["faults", options @ ..] => faults::run(&root, &faults::Options::parse(options).map_err(Failure::Usage)?),
         ["terms"] => Ok(terms::run(&root)?),
         ["models" | "figures", ..] | ["fuzz", "cells", ..] => devtools(&root, words, &[]),
         [command, ..] if MEASURING.contains(command) => devtools(&root, words, &["--release"]),
