@@ -6,6 +6,8 @@
 
 mod artifacts;
 mod compile;
+mod dependents;
+mod faults;
 mod inventory;
 mod layers;
 mod machine;
@@ -39,6 +41,10 @@ cargo xtask COMMAND
         runs of minutes to hours that the suite leaves out; without a name, lists them (docs/measurements/soak.md)
   layers
         who may depend on whom, that every crate takes the workspace lints, and no circles of files inside a crate
+  faults [--only NAME]… [--list] [--check]
+        plants each fault of xtask/faults.toml in a copy of the committed sources and runs the tests of its crate, then those
+        of the crates that depend on it, until one fails; fails itself if a fault is not found. --list names the faults,
+        --check only sees that every one can be planted
   terms
         no retired word (docs/retired-terms.toml) in sources and documents, no long line, no broken link
   inventory [DIR]
@@ -123,6 +129,7 @@ fn dispatch(words: &[&str]) -> Result<(), Failure> {
         ["layers"] => Ok(layers::run(&root)?),
         ["inventory"] => Ok(inventory::run(&root)?),
         ["inventory", folder] => Ok(inventory::run(Path::new(folder))?),
+        ["faults", options @ ..] => faults::run(&root, &faults::Options::parse(options).map_err(Failure::Usage)?),
         ["terms"] => Ok(terms::run(&root)?),
         ["models" | "figures", ..] | ["fuzz", "cells", ..] => devtools(&root, words, &[]),
         [command, ..] if MEASURING.contains(command) => devtools(&root, words, &["--release"]),

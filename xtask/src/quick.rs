@@ -1,12 +1,11 @@
 //! `cargo xtask quick`: the checks of what changed, and of what depends on it.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::path::Path;
 
-use toml::{Table, Value};
-use xtask::crates::{self, Crate};
 use xtask::shell;
 
+use crate::dependents::{self, Package, dependents};
 use crate::{layers, suite, terms, test_run};
 
 /// Checks what differs from `since`, a commit: formats, layers, documents, then lints and tests of the changed crates and of
@@ -17,16 +16,17 @@ pub fn run(root: &Path, since: &str) -> Result<(), String> {
     shell::cargo(root, &["fmt", "--all", "--check"], &[])?;
     layers::run(root)?;
     terms::run(root)?;
-    let packages = affected(root, &files)?;
+    let all = dependents::packages(root)?;
+    let packages = affected(&all, &files);
     if packages.is_empty() {
         println!("no crate is affected");
         return Ok(());
     }
     println!("affected: {}", packages.join(", "));
     // With `--workspace` the features are those of the whole suite, so that nothing is compiled for this alone.
-    let excluded: Vec<String> = all_packages(root)?.into_iter().filter(|name| !packages.contains(name)).collect();
+    let excluded = all.keys().filter(|name| !packages.contains(name));
     let chosen: Vec<&str> =
-        suite::WORKSPACE.into_iter().chain(excluded.iter().flat_map(|name| ["--exclude", name.as_str()])).collect();
+        suite::WORKSPACE.into_iter().chain(excluded.flat_map(|name| ["--exclude", name.as_str()])).collect();
     shell::cargo(root, &[&["clippy"], &chosen[..], &["--all-targets", "--", "-D", "warnings"]].concat(), &[])?;
     test_run::run(root, &chosen, &[])
 }
@@ -39,75 +39,13 @@ fn changed(root: &Path, since: &str) -> Result<Vec<String>, String> {
 }
 
 /// The packages to check again, sorted.
-fn affected(root: &Path, files: &[String]) -> Result<Vec<String>, String> {
-    let mut manifests = BTreeMap::new();
-    let mut folders = Vec::new();
-    for Crate { group, name, folder } in crates::find(root)? {
-        manifests.insert(crates::package(&name), parse(&folder.join("Cargo.toml"))?);
-        folders.push((format!("crates/{group}/{name}/"), crates::package(&name)));
-    }
-    for (name, package) in [("devtools", "elbowroom-devtools"), ("xtask", "xtask")] {
-        manifests.insert(package.to_owned(), parse(&root.join(name).join("Cargo.toml"))?);
-        folders.push((format!("{name}/"), package.to_owned()));
-    }
+fn affected(packages: &BTreeMap<String, Package>, files: &[String]) -> Vec<String> {
     let concerns_all =
         |file: &String| ["Cargo.", ".cargo/", "examples/", "clients/"].iter().any(|s| file.starts_with(s));
     if files.iter().any(concerns_all) {
-        return Ok(manifests.into_keys().collect());
+        return packages.keys().cloned().collect();
     }
-    let changed = folders.into_iter().filter(|(folder, _)| files.iter().any(|file| file.starts_with(folder)));
-    Ok(dependents(&manifests, changed.map(|(_, package)| package).collect()))
-}
-
-fn all_packages(root: &Path) -> Result<Vec<String>, String> {
-    let found = crates::find(root)?.into_iter().map(|found| found.package());
-    Ok(found.chain(["elbowroom-devtools".to_owned(), "xtask".to_owned()]).collect())
-}
-
-/// The changed packages, all that link them, and those whose tests use one of these.
-fn dependents(manifests: &BTreeMap<String, Table>, changed: BTreeSet<String>) -> Vec<String> {
-    let uses = |package: &str, kind: &str, of: &BTreeSet<String>| {
-        let tables = manifests[package].get(kind).and_then(Value::as_table);
-        tables.is_some_and(|table| table.keys().any(|used| of.contains(used)))
-    };
-    let mut linked = changed;
-    loop {
-        let is_new = |package: &&String| !linked.contains(*package) && uses(package, "dependencies", &linked);
-        let more: Vec<String> = manifests.keys().filter(is_new).cloned().collect();
-        if more.is_empty() {
-            break;
-        }
-        linked.extend(more);
-    }
-    manifests.keys().filter(|p| linked.contains(*p) || uses(p, "dev-dependencies", &linked)).cloned().collect()
-}
-
-fn parse(path: &Path) -> Result<Table, String> {
-    let text = std::fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))?;
-    text.parse().map_err(|e| format!("{}: {e}", path.display()))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_links_a_change_is_affected_and_what_only_tests_with_it_stops_there() {
-        let manifest = |normal: &str, dev: &str| -> Table {
-            format!("[dependencies]\n{normal}\n[dev-dependencies]\n{dev}").parse().unwrap()
-        };
-        let manifests: BTreeMap<String, Table> = [
-            ("base", manifest("", "")),
-            ("middle", manifest("base = \"1\"", "")),
-            ("tested", manifest("", "middle = \"1\"")),
-            ("beyond", manifest("tested = \"1\"", "")),
-            ("other", manifest("", "")),
-        ]
-        .into_iter()
-        .map(|(name, table)| (name.to_owned(), table))
-        .collect();
-        let changed = |name: &str| dependents(&manifests, BTreeSet::from([name.to_owned()]));
-        assert_eq!(changed("base"), ["base", "middle", "tested"]);
-        assert_eq!(changed("other"), ["other"]);
-    }
+    let is_changed = |package: &Package| files.iter().any(|file| file.starts_with(&package.folder));
+    let changed = packages.iter().filter(|(_, package)| is_changed(package)).map(|(name, _)| name.clone());
+    dependents(packages, changed.collect()).into_keys().collect()
 }

@@ -39,7 +39,7 @@ const STEPS: [Step; 10] = [
     Step { name: "fmt", what: "cargo fmt --check", check: fmt },
     Step {
         name: "layers",
-        what: "who may depend on whom, no circles of files, sizes of files, functions and structs",
+        what: "who may depend on whom, no circles of files, the planted faults fit the sources",
         check: |c| layers::run(c.root),
     },
     Step {

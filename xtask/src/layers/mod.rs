@@ -1,5 +1,5 @@
 //! Who may depend on whom. The order of [`GROUPS`] is the architecture; `docs/architecture.md` explains it. Inside a crate
-//! no two files may use each other in a circle.
+//! no two files may use each other in a circle. The list of planted faults must fit the sources.
 
 mod circles;
 mod module;
@@ -11,6 +11,8 @@ use std::path::Path;
 
 use toml::{Table, Value};
 use xtask::crates::{self, Crate, GROUPS};
+
+use crate::faults;
 
 /// Crates that may opt out of `forbid(unsafe_code)`: the glue that Python needs.
 const MAY_USE_UNSAFE: [&str; 1] = ["python"];
@@ -38,11 +40,12 @@ pub fn run(root: &Path) -> Result<(), String> {
     for name in ["devtools", "xtask"] {
         problems.extend(circle_problems(name, &root.join(name).join("src"))?);
     }
+    problems.extend(faults::problems(root)?);
     if problems.is_empty() {
         println!("layers: {} crates, every dependency points to a lower layer, 0 circles of files", manifests.len());
         return Ok(());
     }
-    Err(format!("the layers are broken\n  {}", problems.join("\n  ")))
+    Err(format!("the layers, or the list of faults, are broken\n  {}", problems.join("\n  ")))
 }
 
 fn circle_problems(name: &str, src: &Path) -> Result<Vec<String>, String> {

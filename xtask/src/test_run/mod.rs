@@ -3,23 +3,27 @@
 //! `cargo test` runs one program after another, so that one core waits at the end of each. Each worker runs its unit on one
 //! thread: tests of different units run at once, tests of one module never do.
 
+mod first_failure;
+mod lock;
+mod process;
 mod programs;
 mod times;
 mod units;
 
 use std::collections::VecDeque;
-use std::io::Read;
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
-use programs::Program;
+pub use first_failure::{FirstFailure, first_failure, passes};
+use lock::locked;
+use process::{Ended, Limit, run_unit};
+pub use programs::{Program, compile};
 use times::Times;
 use units::Unit;
 
 /// A unit that takes longer hangs.
-const LONGEST: Duration = Duration::from_mins(10);
+const LIMIT: Limit = Limit { longest: Duration::from_mins(10), cancelled: None };
 
 /// How many tests passed, failed, and were left out.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
@@ -35,7 +39,7 @@ pub struct Counts {
 /// Where something does not compile, a test fails, or none ran.
 pub fn run(root: &Path, args: &[&str], env: &[(&str, &str)]) -> Result<(), String> {
     let started = Instant::now();
-    let programs = programs::compile(root, args, env)?;
+    let programs = compile(root, args, env)?;
     println!("{} programs, compiled in {:.1} s", programs.len(), started.elapsed().as_secs_f64());
     let (counts, failed) = run_units(root, &programs, units::units(&programs)?, env);
     println!("{} passed, {} failed, {} skipped", counts.passed, counts.failed, counts.ignored);
@@ -69,7 +73,7 @@ fn run_units(root: &Path, programs: &[Program], mut open: Vec<Unit>, env: &[(&st
                     let next = locked(&progress).open.pop_front();
                     let Some(unit) = next else { break };
                     let started = Instant::now();
-                    let ended = run_unit(&programs[unit.program], &unit, env);
+                    let ended = run_unit(&programs[unit.program], &unit, env, LIMIT);
                     report(&mut locked(&progress), &unit, &ended, started.elapsed());
                 }
             });
@@ -78,16 +82,6 @@ fn run_units(root: &Path, programs: &[Program], mut open: Vec<Unit>, env: &[(&st
     let progress = progress.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
     progress.times.write();
     (progress.counts, progress.failed)
-}
-
-fn locked(progress: &Mutex<Progress>) -> std::sync::MutexGuard<'_, Progress> {
-    progress.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
-}
-
-/// How a unit ended: whether well, and what it printed.
-struct Ended {
-    ok: bool,
-    output: String,
 }
 
 fn report(progress: &mut Progress, unit: &Unit, ended: &Ended, time: Duration) {
@@ -116,56 +110,6 @@ fn report(progress: &mut Progress, unit: &Unit, ended: &Ended, time: Duration) {
     }
 }
 
-/// Runs one unit on one thread, and stops it where it hangs.
-fn run_unit(program: &Program, unit: &Unit, env: &[(&str, &str)]) -> Ended {
-    let mut command = Command::new(&program.executable);
-    if !unit.tests.is_empty() {
-        command.args(["--exact", "--test-threads", "1"]).args(&unit.tests);
-    }
-    command.current_dir(&program.folder).env("CARGO_MANIFEST_DIR", &program.folder).envs(env.iter().copied());
-    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    let child = match command.spawn() {
-        Ok(child) => child,
-        Err(e) => return Ended { ok: false, output: format!("{}: {e}", program.executable.display()) },
-    };
-    wait(child)
-}
-
-fn wait(mut child: Child) -> Ended {
-    let (stdout, stderr) = (child.stdout.take(), child.stderr.take());
-    std::thread::scope(|scope| {
-        let printed = scope.spawn(|| read(stdout));
-        let complaints = scope.spawn(|| read(stderr));
-        let deadline = Instant::now() + LONGEST;
-        let ended = loop {
-            match child.try_wait() {
-                Ok(Some(status)) => break Ok(status.success()),
-                Ok(None) if Instant::now() > deadline => {
-                    let _ = child.kill();
-                    let _ = child.wait();
-                    break Err(format!("stopped after {} s", LONGEST.as_secs()));
-                }
-                Ok(None) => std::thread::sleep(Duration::from_millis(5)),
-                Err(e) => break Err(e.to_string()),
-            }
-        };
-        let mut output = printed.join().unwrap_or_default() + &complaints.join().unwrap_or_default();
-        if let Err(reason) = &ended {
-            output += reason;
-        }
-        Ended { ok: ended.unwrap_or(false), output }
-    })
-}
-
-fn read(stream: Option<impl Read>) -> String {
-    let mut bytes = Vec::new();
-    if let Some(mut stream) = stream {
-        // What was read until the stream broke is still worth showing.
-        let _ = stream.read_to_end(&mut bytes);
-    }
-    String::from_utf8_lossy(&bytes).into_owned()
-}
-
 /// The numbers of the harness's last line: `test result: ok. 3 passed; 0 failed; 1 ignored; …`.
 fn counts(output: &str) -> Option<Counts> {
     let line = output.lines().rev().find(|line| line.starts_with("test result:"))?;
@@ -192,16 +136,7 @@ mod tests {
         let mut progress =
             Progress { open: VecDeque::new(), counts: Counts::default(), failed: Vec::new(), times: Times::default() };
         let unit = Unit { name: "a/main".into(), program: 0, tests: vec!["x".into(), "y".into()] };
-        report(&mut progress, &unit, &Ended { ok: false, output: String::new() }, Duration::ZERO);
+        report(&mut progress, &unit, &Ended { ok: false, is_late: false, output: String::new() }, Duration::ZERO);
         assert_eq!((progress.counts.failed, progress.failed), (2, vec!["a/main".to_owned()]));
-    }
-
-    #[test]
-    fn what_a_program_prints_is_kept() {
-        let mut shell = Command::new("sh");
-        let child = shell.args(["-c", "echo out; echo err >&2; exit 3"]);
-        let child = child.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-        let ended = wait(child);
-        assert!(!ended.ok && ended.output.contains("out") && ended.output.contains("err"));
     }
 }
