@@ -5,6 +5,7 @@
 #![allow(clippy::print_stdout, reason = "this program talks to the person who started it")]
 
 mod compile;
+mod documents;
 mod inventory;
 mod layers;
 mod machine;
@@ -15,7 +16,6 @@ mod quick;
 mod references;
 mod snippets;
 mod suite;
-mod terms;
 mod test_run;
 
 use std::path::Path;
@@ -35,8 +35,8 @@ cargo xtask COMMAND
         depend on them
   layers
         who may depend on whom, that every crate takes the workspace lints, and no circles of files inside a crate
-  terms
-        no retired word (docs/retired-terms.toml) in sources and documents, no long line, no broken link
+  documents
+        no long line, no broken link, no unknown name in documents
   inventory [DIR]
         files, lines and public items of every crate, and how long files and functions get; DIR: of another checkout
   models [--check]
@@ -105,7 +105,7 @@ fn dispatch(words: &[&str]) -> Result<(), Failure> {
         ["layers"] => Ok(layers::run(&root)?),
         ["inventory"] => Ok(inventory::run(&root)?),
         ["inventory", folder] => Ok(inventory::run(Path::new(folder))?),
-        ["terms"] => Ok(terms::run(&root)?),
+        ["documents"] => Ok(documents::run(&root)?),
         ["models" | "figures", ..] | ["fuzz", "cells", ..] => devtools(&root, words, &[]),
         [command, ..] if MEASURING.contains(command) => devtools(&root, words, &["--release"]),
         ["fuzz"] => fuzz(&root, "60"),

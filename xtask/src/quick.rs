@@ -7,7 +7,7 @@ use toml::{Table, Value};
 use xtask::crates::{self, Crate};
 use xtask::shell;
 
-use crate::{layers, suite, terms, test_run};
+use crate::{documents, layers, suite, test_run};
 
 /// Checks what differs from `since`, a commit: formats, layers, documents, then lints and tests of the changed crates and of
 /// all that depend on them.
@@ -16,7 +16,7 @@ pub fn run(root: &Path, since: &str) -> Result<(), String> {
     println!("{} files differ from {since}", files.len());
     shell::cargo(root, &["fmt", "--all", "--check"], &[])?;
     layers::run(root)?;
-    terms::run(root)?;
+    documents::run(root)?;
     let packages = affected(root, &files)?;
     if packages.is_empty() {
         println!("no crate is affected");
