@@ -7,6 +7,7 @@
 mod artifacts;
 mod compile;
 mod dependents;
+mod documents;
 mod faults;
 mod inventory;
 mod layers;
@@ -19,7 +20,6 @@ mod references;
 mod snippets;
 mod soak;
 mod suite;
-mod terms;
 mod test_run;
 
 use std::path::Path;
@@ -45,8 +45,8 @@ cargo xtask COMMAND
         plants each fault of xtask/faults.toml in a copy of the committed sources and runs the tests of its crate, then those
         of the crates that depend on it, until one fails; fails itself if a fault is not found. --list names the faults,
         --check only sees that every one can be planted
-  terms
-        no retired word (docs/retired-terms.toml) in sources and documents, no long line, no broken link
+  documents
+        no long line, no broken link, no unknown name in documents
   inventory [DIR]
         files, lines and public items of every crate, and how long files and functions get; DIR: of another checkout
   models [--check]
@@ -130,7 +130,7 @@ fn dispatch(words: &[&str]) -> Result<(), Failure> {
         ["inventory"] => Ok(inventory::run(&root)?),
         ["inventory", folder] => Ok(inventory::run(Path::new(folder))?),
         ["faults", options @ ..] => faults::run(&root, &faults::Options::parse(options).map_err(Failure::Usage)?),
-        ["terms"] => Ok(terms::run(&root)?),
+        ["documents"] => Ok(documents::run(&root)?),
         ["models" | "figures", ..] | ["fuzz", "cells", ..] => devtools(&root, words, &[]),
         [command, ..] if MEASURING.contains(command) => devtools(&root, words, &["--release"]),
         ["fuzz", "parser" | "cell-file", ..] => devtools(&root, words, &["--release"]),

@@ -6,7 +6,7 @@ use std::path::Path;
 use xtask::shell;
 
 use crate::dependents::{self, Package, dependents};
-use crate::{layers, suite, terms, test_run};
+use crate::{documents, layers, suite, test_run};
 
 /// Checks what differs from `since`, a commit: formats, layers, documents, then lints and tests of the changed crates and of
 /// all that depend on them.
@@ -15,7 +15,7 @@ pub fn run(root: &Path, since: &str) -> Result<(), String> {
     println!("{} files differ from {since}", files.len());
     shell::cargo(root, &["fmt", "--all", "--check"], &[])?;
     layers::run(root)?;
-    terms::run(root)?;
+    documents::run(root)?;
     let all = dependents::packages(root)?;
     let packages = affected(&all, &files);
     if packages.is_empty() {

@@ -9,7 +9,7 @@ use xtask::shell::target_folder;
 use xtask::{Failure, shell};
 
 use crate::references::References;
-use crate::{layers, snippets, terms, test_run};
+use crate::{documents, layers, snippets, test_run};
 
 type Check = fn(&Context) -> Result<(), String>;
 
@@ -43,9 +43,9 @@ const STEPS: [Step; 10] = [
         check: |c| layers::run(c.root),
     },
     Step {
-        name: "terms",
+        name: "documents",
         what: "no long lines, broken links or unknown names in documents",
-        check: |c| terms::run(c.root),
+        check: |c| documents::run(c.root),
     },
     Step { name: "clippy", what: "lints of all targets, warnings are errors", check: clippy },
     Step { name: "docs", what: "cargo doc, warnings are errors", check: docs },

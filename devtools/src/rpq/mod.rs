@@ -1,5 +1,6 @@
-//! The paper's test of robotic proximity queries (S3, its figure 3): two RX60B side by side at several distances, an
-//! equidistributed set of joint values, time per query by resolution levels, allowed collision matrix and weight matrix.
+//! The paper's test of robotic proximity queries (Giralt et al., its figure 3): two RX60B side by side at several
+//! distances, an equidistributed set of joint values, time per query by resolution levels, allowed collision matrix and
+//! weight matrix.
 
 mod measure;
 mod report;

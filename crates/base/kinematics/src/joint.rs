@@ -70,8 +70,8 @@ impl Limits {
         value >= self.lower - tolerance && value <= self.upper + tolerance
     }
 
-    /// How far `value` (rad or m) is beyond the limits (the joint overshoot of S3): above 0 beyond the upper one, below 0 beyond
-    /// the lower one, 0 within them. NaN for NaN.
+    /// How far `value` (rad or m) is beyond the limits (the joint overshoot of Giralt et al.): above 0 beyond the upper
+    /// one, below 0 beyond the lower one, 0 within them. NaN for NaN.
     ///
     /// ```
     /// use elbowroom_kinematics::Limits;

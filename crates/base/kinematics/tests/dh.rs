@@ -10,7 +10,7 @@ use elbowroom_kinematics::dh::{ClassicalRow, GeneralizedRow, GeneralizedTable};
 use elbowroom_kinematics::{Chain, ChainState, JointKind, Limits, LinkId};
 use elbowroom_spatial::Pose;
 
-/// S4.3, written out as 4×4 matrices: the oracle.
+/// The product of the rows, written out as 4×4 matrices: the oracle.
 fn product(rows: &[GeneralizedRow], mut value: impl FnMut(&str) -> f64) -> [[f64; 4]; 4] {
     type M = [[f64; 4]; 4];
     let times =

@@ -1,5 +1,5 @@
-//! The same chain as direct and as modified Denavit-Hartenberg table, and as frames of S4: each product is
-//! forward kinematics for any axes, and each round-trips.
+//! The same chain as direct and as modified Denavit-Hartenberg table, and as frames of Reichenbach and Kovačić 2003: each
+//! product is forward kinematics for any axes, and each round-trips.
 //!
 //! 10⁵ chains with `ELBOWROOM_LONG=1`.
 #![allow(clippy::print_stdout)]
@@ -61,7 +61,7 @@ fn shares(kind: JointKind, q: f64) -> (f64, f64) {
     }
 }
 
-/// S4.3, as 4×4 matrices.
+/// The product of the rows, as 4×4 matrices.
 fn generalized(rows: &[GeneralizedRow], value: &dyn Fn(&str) -> f64) -> Matrix {
     rows.iter().fold(UNIT, |at, r| {
         let (turn, slide) = shares(r.kind, r.joint.as_deref().map_or(0.0, value));
@@ -79,7 +79,7 @@ fn modified(rows: &[ModifiedRow], value: &dyn Fn(&str) -> f64) -> Matrix {
     })
 }
 
-/// Equations 1 to 4 of S4, as 4×4 matrices.
+/// Equations 1 to 4 of Reichenbach and Kovačić 2003, as 4×4 matrices.
 fn paper(frames: &[LocalFrame], value: &dyn Fn(&str) -> f64) -> Matrix {
     frames.iter().fold(UNIT, |at, frame| {
         let center = (0..3).map(|i| along(i, frame.centre[i])).fold(UNIT, times);
@@ -329,7 +329,7 @@ fn kr150() -> Chain {
     Chain::new("kr150", links.to_vec(), joints.collect()).unwrap()
 }
 
-/// Seven local frames, the base and six joints, are seven rows a, b, d, α, θ (S4.4); what the last joint carries follows.
+/// Seven local frames, the base and six joints, are seven rows a, b, d, α, θ; what the last joint carries follows.
 #[test]
 fn the_kr150_has_the_shape_of_table_1_of_s4() {
     let mut models = vec![("dimensions", kr150())];
@@ -345,7 +345,7 @@ fn the_kr150_has_the_shape_of_table_1_of_s4() {
         assert_eq!(direct.frames[7..], ["link_6*", "link_6"]);
         assert!(direct.table.residual < 1e-12);
         let seven = &direct.table.rows[..7];
-        // The first row is the base, all zeros, as in S4; the second is the height of axis 1.
+        // The first row is the base, all zeros, as in the paper; the second is the height of axis 1.
         let r = &seven[0];
         assert_eq!((r.a, r.b, r.d, r.alpha, r.theta), (0.0, 0.0, 0.0, 0.0, 0.0));
         assert!((seven[1].d - 0.75).abs() < 1e-12 && seven[1].a == 0.0 && seven[1].b == 0.0);
@@ -358,7 +358,7 @@ fn the_kr150_has_the_shape_of_table_1_of_s4() {
         let joints: Vec<_> = seven.iter().filter_map(|r| r.joint.as_deref()).collect();
         assert_eq!(joints, ["joint_a1", "joint_a2", "joint_a3", "joint_a4", "joint_a5"]);
         assert_eq!(direct.table.rows[7].joint.as_deref(), Some("joint_a6"));
-        // Seven frames of the equations of S4, too.
+        // Seven frames of the paper's equations, too.
         assert_eq!(FrameChain::extract(&chain, chain.link("link_6").unwrap()).frames.len(), 7);
     }
     assert!(shown.iter().all(|s| *s == shown[0]), "the same robot, the same table, whatever the file's rounding");

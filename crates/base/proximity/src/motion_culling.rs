@@ -61,7 +61,7 @@ impl RelativeTwist {
 ///
 /// Where two bodies are apart and then touch for the first time, the contact lies on a face of the mesh whose outward
 /// normal N has N · V ≥ 0 at some point of the face, V being that point's velocity relative to the other body: at an edge
-/// or a corner it is one of the faces that meet there. All others need not be tested (S4's motion-based culling).
+/// or a corner it is one of the faces that meet there. All others need not be tested (Reichenbach and Kovačić 2003).
 ///
 /// Faces whose outward side is uncertain are never culled: open and one-sided surfaces, faces without area, closed surfaces of
 /// inconsistent orientation (see [`orient`](crate::repair::orient)), cavities inside others. A closed surface that intersects

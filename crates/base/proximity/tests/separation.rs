@@ -146,7 +146,7 @@ fn cylinders_are_within_the_stated_bound() {
     pair("cylinder", "cylinder", 1e-11);
 }
 
-/// The four tests of the tool's OBB against the elementary regions of S1.10, each compared with points sampled in the box.
+/// The four tests of the tool's OBB against the elementary regions, each compared with points sampled in the box.
 #[test]
 fn s1_10_obb_against_plane_sphere_cylinder_and_obb() {
     let mut rng = Rng(110);

@@ -2,7 +2,7 @@
 
 use crate::{Aabb, Pose, Vec3};
 
-/// The oriented box `B = (bc, bu, bv, bw, hu, hv, hw)` of S1, eq. 5: its pose has the centre `bc` and the axes
+/// The oriented box `B = (bc, bu, bv, bw, hu, hv, hw)` of Romanelli 2011, eq. 5: its pose has the centre `bc` and the axes
 /// `bu, bv, bw`, its half extents are `hu, hv, hw`.
 ///
 /// ```

@@ -39,7 +39,8 @@ pub struct RegionEdit {
 /// [robot.rail]
 /// dh = [{ kind = "prismatic", min = 0, max = 2000, speed = 1000 }]
 /// "#)?;
-/// let table = file.table_of("cart", "shape = \"sphere\"\ncentre = [0, 0, 2500]\nradius = 100\nwarning = 100")?;
+/// let table =
+///     file.table_of("cart", "shape = \"sphere\"\ncentre = [0, 0, 2500]\nradius = 100\nwarning = 100\nguards = [\"tcp\"]")?;
 /// let moved = file.moved("cart", &table, "centre = [0, 0, 2900]")?;
 /// let cell = file.cell(&[RegionEdit { name: "cart".into(), table: Some(moved) }])?;
 /// assert_eq!(cell.regions[0].region.anchor.translation.z, 2.9);

@@ -2,7 +2,7 @@
 //!
 //! [`HtmlReport`] puts everything into one file: the result on each robot, the regions, an animated 3-D scene in which the
 //! joints can be moved, with the distances of the guarded volumes to every region and object; plots of the distances over time,
-//! of the override with the governing region, after figure 12 of the interference-region paper (S1.13), and timing; the
+//! of the override with the governing region, after figure 12 of Romanelli 2011, and timing; the
 //! events. Nothing is loaded from a network: plotly.js and three.js are embedded. [`summary`] is the text summary.
 //!
 //! **Size.** Scripts and data are deflated; the scripts are 0.95 MB. Plots have at most 2,000 points per trace and the 3-D

@@ -16,7 +16,7 @@ static EXAMPLES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../../examples")
 /// Default output folder.
 const OUT: &str = "elbowroom-out";
 
-/// Runs the cell of the paper's figure 12 (S1.13) with the monitor on and off.
+/// Runs the cell of figure 12 of Romanelli 2011 with the monitor on and off.
 pub(crate) fn figure_12() -> Result<ExitStatus, Failure> {
     let out = PathBuf::from(OUT);
     extract(&out)?;

@@ -8,7 +8,6 @@ mod check;
 mod control;
 mod convert;
 mod example;
-mod former_fields;
 mod inspect;
 mod live;
 mod map;

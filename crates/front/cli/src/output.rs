@@ -4,8 +4,6 @@ use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
 
-use crate::former_fields;
-
 /// The exit status of a command that gave an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ExitStatus {
@@ -41,8 +39,7 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
 
 /// Prints one JSON document.
 pub(crate) fn print_json(document: &impl serde::Serialize) -> Result<(), Failure> {
-    let mut document = serde_json::to_value(document).map_err(|e| Failure::Wrong(e.to_string()))?;
-    former_fields::add(&mut document);
+    let document = serde_json::to_value(document).map_err(|e| Failure::Wrong(e.to_string()))?;
     print(&format!("{document:#}\n"))
 }
 

@@ -1,4 +1,4 @@
-//! Who may change what in a sealed cell, and what is noticed (S1.12): as an integrator, a programmer, and an operator with an
+//! Who may change what in a sealed cell, and what is noticed: as an integrator, a programmer, and an operator with an
 //! editor would try it.
 
 use std::io::Write;

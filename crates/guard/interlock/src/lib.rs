@@ -1,4 +1,4 @@
-//! Interlocks between robot controllers on a network (S1.8): regions that at most one robot is in at any time, whatever happens
+//! Interlocks between robot controllers on a network: regions that at most one robot is in at any time, whatever happens
 //! to processes and messages. `docs/interlocks.md` has the protocol, its invariants and a table of faults.
 //!
 //! Each robot has a [`Guard`], which reports where the robot is and learns which slots it holds. One [`Arbiter`] grants slots. Both

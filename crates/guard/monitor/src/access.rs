@@ -1,4 +1,4 @@
-//! Access classes of users (S1.12).
+//! Access classes of users.
 
 use crate::Life;
 

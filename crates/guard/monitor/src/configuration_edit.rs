@@ -1,4 +1,4 @@
-//! Edits of a configuration by users of an access class (S1.12).
+//! Edits of a configuration by users of an access class.
 
 use crate::{AccessClass, Configuration, Region};
 

@@ -1,7 +1,7 @@
-//! The override laws, one function each (S1, eqs. 1-4 and beyond). `override_law.rs` applies them to the pairs of
-//! volume and region of a tick; `docs/laws.md` shows their plots.
+//! The override laws, one function each (Romanelli 2011, eqs. 1-4 and beyond). `override_law.rs` applies them to the
+//! pairs of volume and region of a tick; `docs/laws.md` shows their plots.
 
-/// The laws of a monitor. The default is the law of S1 alone: `v = v₀ · clamp(d / δ, 0, 1)`.
+/// The laws of a monitor. The default is the law of Romanelli 2011 alone: `v = v₀ · clamp(d / δ, 0, 1)`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Laws {
     /// True: a region does not limit a volume whose distance from it increases. Off by default, because it needs the program's
@@ -42,7 +42,7 @@ pub struct StoppingSettings {
     pub joint_acceleration: Vec<f64>,
 }
 
-/// The law of the warning zone, `clamp(d / δ, 0, 1)` (S1, eqs. 1-3); with δ = 0 it is 0 inside and 1 outside.
+/// The law of the warning zone, `clamp(d / δ, 0, 1)` (Romanelli 2011, eqs. 1-3); with δ = 0 it is 0 inside and 1 outside.
 ///
 /// ```
 /// use elbowroom_monitor::laws::warning_factor;

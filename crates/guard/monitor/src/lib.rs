@@ -1,4 +1,4 @@
-//! Interference regions, checked every control tick (S1).
+//! Interference regions, checked every control tick (Romanelli 2011).
 //!
 //! An **interference region** is a solid that a robot must not enter ([`RegionKind::Forbidden`]), that it reports
 //! ([`RegionKind::Monitored`]) or that it shares with other robots ([`RegionKind::Exchange`]). A **warning zone** surrounds

@@ -575,7 +575,7 @@ impl Monitor {
         }
     }
 
-    /// The minimum over all regions (S1, eq. 4); of equal requests that of the region of lowest index.
+    /// The minimum over all regions (Romanelli 2011, eq. 4); of equal requests that of the region of lowest index.
     fn decide(&self, s: &Snapshot) -> Decision<'_> {
         let v0 = s.programmed_override;
         let mut decision =

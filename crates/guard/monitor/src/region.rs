@@ -18,7 +18,7 @@ pub struct VolumeId(pub usize);
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct SourceId(pub usize);
 
-/// How a region affects the robot (S1.2).
+/// How a region affects the robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum RegionKind {
     /// The override falls to 0 at the surface.
@@ -28,7 +28,7 @@ pub enum RegionKind {
         /// Largest override inside, 0..1, with a linear ramp in the warning zone.
         slow_to: Option<f64>,
     },
-    /// Forbidden to all robots except the holder of the slot (S1.8).
+    /// Forbidden to all robots except the holder of the slot.
     Exchange {
         /// Its lock in the shared [`ZoneArbiter`](crate::ZoneArbiter).
         slot: SlotId,
@@ -46,7 +46,7 @@ impl RegionKind {
     }
 }
 
-/// Who may switch a region (S1.3).
+/// Who may switch a region.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Life {
     /// Always active; only the integrator class may edit it.
@@ -93,7 +93,7 @@ impl Default for Guards {
 
 /// A solid with a warning zone.
 ///
-/// `anchor` is the frame of the region's characteristic point (S1.6: sphere: centre; cylinder: centre of the bottom
+/// `anchor` is the frame of the region's characteristic point (sphere: centre; cylinder: centre of the bottom
 /// base; plane: origin; parallelepiped: centre of the bottom base). The anchor of a dynamic region, which follows a source,
 /// is given in the source's frame.
 #[derive(Debug, Clone)]

@@ -1,4 +1,5 @@
-//! Broad and narrow phase of a tick (VCD and CPD of S1.11): which volumes are near which regions, and their closest points.
+//! Broad and narrow phase of a tick (VCD and CPD of Romanelli 2011): which volumes are near which regions, and their
+//! closest points.
 
 use elbowroom_proximity::Separation;
 use elbowroom_spatial::Vec3;

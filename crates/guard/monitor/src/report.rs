@@ -23,7 +23,7 @@ pub struct TickReport {
     pub measured_pairs: u32,
 }
 
-/// The closest point of the guarded volume to a region (S1.11, CPD).
+/// The closest point of the guarded volume to a region (CPD of Romanelli 2011).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VirtualTcp {
     /// The region.

@@ -1,4 +1,4 @@
-//! Regions from taught points: the robot is driven to characteristic points, whose positions are recorded (S1.9).
+//! Regions from taught points: the robot is driven to characteristic points, whose positions are recorded.
 //!
 //! Every function refuses points that do not determine its shape; the error names the points.
 
@@ -50,7 +50,7 @@ pub fn sphere_from_points(name: &str, points: [Vec3; 4]) -> Result<Region, Teach
 }
 
 /// A cylinder from the centre of its base, a point of the base's rim and a point at the height of its top (m).
-/// Its axis is perpendicular to the world's XY plane, as in S1, upwards or downwards.
+/// Its axis is perpendicular to the world's XY plane, as in Romanelli 2011, upwards or downwards.
 ///
 /// # Errors
 /// [`TeachError`] where radius or height is zero.

@@ -72,7 +72,7 @@ impl Volume {
         Self { name: "tcp".into(), part: Part::Tcp, link, shape, in_link, presence: Presence::Always }
     }
 
-    /// The tool's oriented box `B = (bc, bu, bv, bw, hu, hv, hw)` in the frame of its link (S1, eq. 5).
+    /// The tool's oriented box `B = (bc, bu, bv, bw, hu, hv, hw)` in the frame of its link (Romanelli 2011, eq. 5).
     pub fn tool_box(link: LinkId, obb_in_link: Obb) -> Self {
         let shape = Shape::Cuboid(Cuboid { half_extents: obb_in_link.half_extents });
         let presence = Presence::Always;

@@ -1,4 +1,4 @@
-//! State of a robot with respect to a region, with hysteresis, and the digital outputs derived from it (S1.7).
+//! State of a robot with respect to a region, with hysteresis, and the digital outputs derived from it.
 
 use crate::event::EventLog;
 use crate::interlock::Occupancy;

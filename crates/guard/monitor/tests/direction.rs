@@ -1,4 +1,4 @@
-//! The laws beyond S1: direction, recovery, stopping distance, rate, speed zones, dynamic regions.
+//! The laws beyond Romanelli 2011: direction, recovery, stopping distance, rate, speed zones, dynamic regions.
 
 use crate::common::{Random, arm, arm_volumes, configuration, gantry, parts};
 use elbowroom_kinematics::LinkId;
@@ -39,7 +39,7 @@ fn a_robot_stopped_at_a_border_is_free_to_leave_and_only_to_leave() {
     let mut plain = point_monitor(vec![ball()], Laws::default());
     assert!(
         (override_at(&mut plain, 0.0, 0.6, 0.3) - 0.5).abs() < 1e-12,
-        "the law of S1 does not depend on the direction"
+        "the law of the paper does not depend on the direction"
     );
 }
 
@@ -76,7 +76,8 @@ fn an_actual_approach_is_limited_whatever_the_program_intends() {
     assert!((report.speed_override - 0.5).abs() < 1e-12);
 }
 
-/// Random arms, regions and intents: where the override is above that of S1, every distance within a warning zone grows.
+/// Random arms, regions and intents: where the override is above that of the paper, every distance within a warning zone
+/// grows.
 #[test]
 fn a_decreasing_distance_never_clears_an_alarm() {
     let mut r = Random(5);

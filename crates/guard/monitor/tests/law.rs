@@ -1,4 +1,4 @@
-//! The override law compared with an oracle with the case distinctions of S1 (eqs. 1-4).
+//! The override law compared with an oracle with the case distinctions of Romanelli 2011 (eqs. 1-4).
 
 use crate::common::{Random, configuration, gantry};
 use elbowroom_kinematics::LinkId;

@@ -46,7 +46,7 @@ const STATIONARY_OBSTACLE_M_S: f64 = 0.01;
 /// constant of the controller): a reserve for the next ticks.
 const FIXED_RANGE_FACTOR: f64 = 1.5;
 
-/// Keeps one robot of a scene clear of dynamic obstacles, and returns it to its path (S4.11).
+/// Keeps one robot of a scene clear of dynamic obstacles, and returns it to its path.
 ///
 /// The path belongs to the caller: in each tick the reference is the next point of the path, advanced at the rate of the
 /// last output. Where no obstacle is near the command equals the reference.

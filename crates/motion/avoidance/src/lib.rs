@@ -1,4 +1,5 @@
-//! Reactive avoidance: near an obstacle the planned motion is corrected, and resumed afterwards (S4.10, S4.11).
+//! Reactive avoidance: near an obstacle the planned motion is corrected, and resumed afterwards (Reichenbach and Kovačić
+//! 2003).
 //!
 //! | | |
 //! | --- | --- |

@@ -8,7 +8,7 @@ use elbowroom_spatial::Vec3;
 pub struct ProximityPair {
     /// The link.
     pub link: LinkId,
-    /// Witness point on the link: the controlled collision point (S4.6).
+    /// Witness point on the link: the controlled collision point.
     pub on_link: Vec3,
     /// Unit vector from the obstacle to the link.
     pub away: Vec3,

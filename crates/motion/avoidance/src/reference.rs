@@ -11,7 +11,7 @@ pub struct Reference<'a> {
     pub path: PathKind,
 }
 
-/// The purpose of a path (S4.11).
+/// The purpose of a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PathKind {
     /// Every point counts (a seam, a line): the robot slows down rather than leaves it, and resumes it where it was left.

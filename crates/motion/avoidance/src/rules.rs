@@ -6,7 +6,7 @@ use crate::fuzzy::{Controller, FuzzyError};
 pub const DEFAULT_RULES: &str = include_str!("default.toml");
 
 /// A fuzzy controller with the inputs `proximity` (m) and `speed` (of approach, m/s) and the outputs `size` (share of
-/// the evasion speed, 0 to 1) and `direction` (degrees: 0 away from the obstacle, 90 perpendicular to its motion), S4.10.
+/// the evasion speed, 0 to 1) and `direction` (degrees: 0 away from the obstacle, 90 perpendicular to its motion).
 ///
 /// ```
 /// use elbowroom_avoidance::Rules;

@@ -1,4 +1,4 @@
-//! Table 1 of S2 reproduced, for its small arm and for one of a KR125's size:
+//! Table 1 of the joint-space paper reproduced, for its small arm and for one of a KR125's size:
 //! `cargo bench -p elbowroom-cspace --bench table1`.
 //!
 //! To time and blocked cells it adds how many collisions lie in free cells (sampled anywhere, behind the base, and in free

@@ -1,8 +1,8 @@
 //! Obstacles in configuration space: which joint values are in collision.
 //!
 //! Joints are divided into cells ([`GridAxis`], [`Grid`]); an [`OccupancyBitmap`] has one bit per cell of three joints (base,
-//! shoulder, elbow). A cell is blocked if *any* configuration in its box is in collision, not by its centre alone (S2,
-//! "Real-time joint-space models").
+//! shoulder, elbow). A cell is blocked if *any* configuration in its box is in collision, not by its centre alone (the
+//! joint-space paper, `docs/references.md`).
 //!
 //! Three builders compute blocked cells:
 //!

@@ -3,7 +3,7 @@
 use elbowroom_spatial::Vec3;
 
 /// A base axis (z, through the origin), a shoulder, an elbow; upper arm and forearm are capsules, wrist, tool and workpiece
-/// one sphere (S2, section II).
+/// one sphere (the joint-space paper, section II).
 ///
 /// In the plane of θ1, with `r` away from the base axis:
 ///
@@ -114,8 +114,8 @@ impl PlanarArm {
         wrist_radius_m: 0.22,
     };
 
-    /// The KUKA KR125 (the robot named in S2), without a tool: published dimensions, radii that enclose the solids of
-    /// `examples/models/kr125` at any values of the wrist's joints. The 45 mm between elbow and forearm are in the
+    /// The KUKA KR125 (the robot named in that paper), without a tool: published dimensions, radii that enclose the
+    /// solids of `examples/models/kr125` at any values of the wrist's joints. The 45 mm between elbow and forearm are in the
     /// forearm's length, √(1² + 0.045²) m, and in [`JointConvention::KR125`](crate::JointConvention::KR125). The part of the
     /// column outside of the upper arm's capsule is left out: it is rotationally symmetric about axis 1.
     ///
@@ -132,8 +132,8 @@ impl PlanarArm {
         wrist_radius_m: 0.23,
     };
 
-    /// The small arm of S2: links of 225 mm and 165 mm, radius of the upper arm 85 mm. Its limits are θ2 ≥ −30° above the
-    /// horizontal and 90° ≤ the angle between the links, which [`PlanarArm::from_paper`] translates.
+    /// The small arm of the joint-space paper: links of 225 mm and 165 mm, radius of the upper arm 85 mm. Its limits are
+    /// θ2 ≥ −30° above the horizontal and 90° ≤ the angle between the links, which [`PlanarArm::from_paper`] translates.
     pub const PAPER: Self = Self {
         offset_m: 0.0,
         height_m: 0.0,
@@ -144,8 +144,8 @@ impl PlanarArm {
         wrist_radius_m: 0.08,
     };
 
-    /// Converts joint values of S2 to those of this crate, radians: S2 measures θ2 up from the horizontal and θ3 as the
-    /// angle between the links (π is stretched).
+    /// Converts joint values (rad) of the joint-space paper to those of this crate. The paper measures θ2 up from the
+    /// horizontal and θ3 as the angle between the links (π is stretched).
     ///
     /// ```
     /// use elbowroom_cspace::PlanarArm;

@@ -1,4 +1,5 @@
-//! The method of S2, section IV: expansion from seeds, cell by cell, until the surface is closed. Kept as a reference.
+//! The method of the joint-space paper, section IV: expansion from seeds, cell by cell, until the surface is closed. Kept
+//! as a reference.
 
 use std::collections::VecDeque;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -180,7 +181,7 @@ fn seeds(arm: &PlanarArm, grid: &Grid, obstacle: &ConvexObstacle) -> Vec<CellInd
 }
 
 /// Base rotated to the target or away from it; in that plane the forearm's tip at the target with the elbow on either side
-/// (the cosine rule, S2, eq. 9 to 14), or the upper arm pointing at it.
+/// (the cosine rule, the paper's eqs. 9-14), or the upper arm pointing at it.
 fn configurations(arm: &PlanarArm, target: Vec3) -> Vec<[f64; 3]> {
     let mut result = Vec::new();
     let toward = target.y.atan2(target.x);
@@ -205,7 +206,7 @@ fn configurations(arm: &PlanarArm, target: Vec3) -> Vec<[f64; 3]> {
     result
 }
 
-/// The configuration in the turn of the axes, clamped to the limits (the limit cases of S2).
+/// The configuration in the turn of the axes, clamped to the limits (the paper's limit cases).
 fn cell_within_limits(grid: &Grid, q: [f64; 3]) -> Option<CellIndex> {
     let mut within = q;
     for (value, axis) in within.iter_mut().zip(grid.axes()) {

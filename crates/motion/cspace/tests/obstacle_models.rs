@@ -14,8 +14,8 @@ use elbowroom_spatial::{Pose, Vec3};
 
 const ARM: PlanarArm = PlanarArm::KR125_SIZED;
 
-/// The limits of S2 in this crate's angles: θ2 from −30° above the horizontal to upright and beyond, 90° and more
-/// between the links.
+/// The limits of the joint-space paper in this crate's angles: θ2 from −30° above the horizontal to upright and beyond,
+/// 90° and more between the links.
 fn paper_grid(step_deg: f64) -> Grid {
     grid_of(step_deg, [[-150.0, 150.0], [-40.0, 120.0], [-90.0, 0.0]])
 }

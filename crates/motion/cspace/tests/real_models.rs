@@ -1,4 +1,4 @@
-//! The obstacle models of S2 on real robots: time and blocked cells of each, over the same cells.
+//! The obstacle models of the joint-space paper on real robots: time and blocked cells of each, over the same cells.
 //!
 //! `cargo test --release -p elbowroom-cspace --test main real_models:: -- --ignored --nocapture` (minutes; the data is not part of
 //! the repository).

@@ -1,5 +1,5 @@
 //! Denavit-Hartenberg tables of every robot of the data set, from URDF, 3DS and glTF models: their product is the model's
-//! forward kinematics (S4.3). The 3DS and glTF models have no tracks; a file of joints is made from the URDF.
+//! forward kinematics. The 3DS and glTF models have no tracks; a file of joints is made from the URDF.
 #![allow(clippy::print_stdout)]
 
 use crate::common;
@@ -120,7 +120,7 @@ fn same_robot(urdf: &Chain, model: &Chain) {
 }
 
 /// The KR150 of the examples, a 3DS file, as it is and after writing and reading: seven local frames, base and six joints,
-/// are seven rows of the form of table 1 (S4.4).
+/// are seven rows of the form of table 1 of Reichenbach and Kovačić 2003.
 #[test]
 fn the_kr150_of_the_examples_has_the_published_geometry() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../examples/models/kr150/kr150.3ds");

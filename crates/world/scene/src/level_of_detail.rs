@@ -1,5 +1,5 @@
 //! Progressive level of detail: distant pairs are compared by one box each, approaching ones deeper in the box trees of their
-//! meshes, near ones exactly (S4).
+//! meshes, near ones exactly (Reichenbach and Kovačić 2003).
 
 use elbowroom_proximity::contact::Detail;
 

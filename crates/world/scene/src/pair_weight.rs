@@ -1,4 +1,4 @@
-//! The weight of a pair: which one to test first (S3, "Collision queries sorted using a weight matrix").
+//! The weight of a pair: which one to test first (Giralt et al., "Collision queries sorted using a weight matrix").
 //!
 //! Initial weights come from kinematics and geometry: the more joints lie between two links the more they move against each
 //! other, large geometry collides more often than small, and geometry whose reachable volumes hardly overlap seldom meets.

@@ -21,7 +21,7 @@ pub struct SceneRobot {
     pub base_in_world: Pose,
 }
 
-/// Robots and objects in one world (the *Scenario* of S3), constant: any number of threads may share one.
+/// Robots and objects in one world (the *Scenario* of Giralt et al.), constant: any number of threads may share one.
 ///
 /// What moves is in a [`SceneState`](crate::SceneState); a [`Checker`](crate::Checker) answers queries.
 ///

@@ -1,4 +1,4 @@
-//! One row per frame of the model, as in S4.
+//! One row per frame of the model, as in Reichenbach and Kovačić 2003.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt;
@@ -11,15 +11,15 @@ use super::residual::residual;
 use super::split::{along_z, exact_row, row_and_rest};
 use crate::{Chain, JointKind, LinkId};
 
-/// A generalized table that follows the frames of the model (S4.3, S4.4), while [`GeneralizedTable::extract`] follows the
+/// A generalized table that follows the frames of the model, while [`GeneralizedTable::extract`] follows the
 /// axes.
 ///
 /// Every frame between root and tip keeps its origin: that of the root link, of each joint, of each link on a fixed joint,
 /// and of the tip. A frame whose z axis is its joint's axis, and a frame without joint, keeps its orientation, too; any
 /// other is rotated so that its joint acts about or along z, as the convention requires, and about that axis so that entry
 /// (3,1) of its row is 0. Each frame is one row with a, b, d, α and θ; only where a kept frame has (3,1) ≠ 0 an auxiliary frame
-/// precedes it, marked by `*`. A model of a base and six joints has seven rows, as in table 1 of S4, followed by what the
-/// last joint carries: the tip, or a point of a surface.
+/// precedes it, marked by `*`. A model of a base and six joints has seven rows, as in table 1 of the paper, followed by
+/// what the last joint carries: the tip, or a point of a surface.
 ///
 /// ```
 /// use elbowroom_kinematics::dh::DirectTable;
@@ -53,7 +53,7 @@ impl DirectTable {
         Self::extract_to(chain, tip, Pose::IDENTITY)
     }
 
-    /// As [`DirectTable::extract`], to a frame fixed on the link `tip` (m): a tool, or a point of a surface (S4.6).
+    /// As [`DirectTable::extract`], to a frame fixed on the link `tip` (m): a tool, or a point of a surface.
     pub fn extract_to(chain: &Chain, tip: LinkId, tool_in_tip: Pose) -> Self {
         let mut rows = Rows {
             frames: vec![chain.links()[chain.root().0].clone()],
@@ -119,7 +119,7 @@ fn one_row_rotation(frame: &Pose, axis: Vec3) -> Rotation {
     onto.rotated_about(2, angle)
 }
 
-/// The columns of table 1 of S4: lengths in m, angles in rad.
+/// The columns of table 1 of Reichenbach and Kovačić 2003: lengths in m, angles in rad.
 impl fmt::Display for DirectTable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let widest = |names: &mut dyn Iterator<Item = usize>| names.max().unwrap_or(0).max(5);

@@ -14,7 +14,8 @@ impl GeneralizedTable {
         Self::extract_to(chain, tip, Pose::IDENTITY)
     }
 
-    /// As [`GeneralizedTable::extract`], to a frame fixed on the link `tip`: a tool, or a point of a surface (S4.6). `tool_in_tip` is in metres.
+    /// As [`GeneralizedTable::extract`], to a frame fixed on the link `tip`: a tool, or a point of a surface.
+    /// `tool_in_tip` is in metres.
     pub fn extract_to(chain: &Chain, tip: LinkId, tool_in_tip: Pose) -> Self {
         let mut rows = Vec::new();
         let mut pending = Pose::IDENTITY; // since the frame whose z is the last joint's axis

@@ -4,11 +4,11 @@
 //! | --- | --- | --- | --- |
 //! | classical ([`ClassicalRow`], [`Chain::from_dh`](crate::Chain::from_dh)) | `Rz(θ)·Tz(d)·Tx(a)·Rx(α)` | z of the frame before | the convention of data sheets; input |
 //! | generalized ([`GeneralizedTable::extract`], [`GeneralizedTable::to_chain`]) | `Rz(θ)·Tz(d)·Tx(a)·Ty(b)·Rx(α)` | z of the frame before | along common normals: classical (b = 0) where possible |
-//! | direct ([`DirectTable`]) | the same | z of the frame before | one row per frame of the model, as in table 1 of S4 |
+//! | direct ([`DirectTable`]) | the same | z of the frame before | one row per frame of the model |
 //! | modified ([`ModifiedTable`]) | `Rx(α)·Tx(a)·Rz(θ)·Tz(d)` | z of the frame after | Craig's convention |
 //!
-//! A generalized row is `T = Rz(θ)·Tz(d)·Tx(a)·Ty(b)·Rx(α)` (S4.3). The joint of a row acts about or along the z axis of
-//! the frame *before* the row: its value is added to θ (revolute) or d (prismatic).
+//! A generalized row is `T = Rz(θ)·Tz(d)·Tx(a)·Ty(b)·Rx(α)` (Reichenbach and Kovačić 2003). The joint of a row acts about
+//! or along the z axis of the frame *before* the row: its value is added to θ (revolute) or d (prismatic).
 //!
 //! [`GeneralizedTable::extract`] makes every joint axis the z axis of a frame. The transform from one axis to the next is a
 //! row times a rotation about and a translation along the second axis; that remainder commutes with the second joint, so

@@ -1,6 +1,7 @@
-//! A chain as frames with a centre and a rotation about a vector: the form of virtual-reality models (S4.2, eq. 1 to 4). Frame k has a fixed centre vector `p_center,k` and a fixed rotation by `θk`
-//! about the vector `p_rotation,k`; a dynamic frame i moves, besides, by a translation `c_i` and the angles `γ`, `β`, `α`
-//! about x, y and the actual z axis (roll, pitch, yaw):
+//! A chain as frames with a centre and a rotation about a vector: the form of virtual-reality models (Reichenbach and
+//! Kovačić 2003, eqs. 1-4). Frame k has a fixed centre vector `p_center,k` and a fixed rotation by `θk` about the vector
+//! `p_rotation,k`; a dynamic frame i moves, besides, by a translation `c_i` and the angles `γ`, `β`, `α` about x, y and
+//! the actual z axis (roll, pitch, yaw):
 //!
 //! ```text
 //! T_center,k   = T(p_center,k)                        (1)

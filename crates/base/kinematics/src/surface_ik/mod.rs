@@ -1,4 +1,4 @@
-//! Inverse kinematics of any point of a robot's surface (S4.6).
+//! Inverse kinematics of any point of a robot's surface, the end of the chain in Reichenbach and Kovačić 2003.
 //!
 //! The point of a robot that touches something is seldom its tip. A [`PointChain`] makes the point the origin of the last
 //! frame of a chain of its own: the joints between the root and the point's link, no others. It computes the point and

@@ -1,4 +1,4 @@
-//! Contact points: where two surfaces meet, the triangle there, and the normals (S4).
+//! Contact points: where two surfaces meet, the triangle there, and the normals.
 //!
 //! | | the point |
 //! | --- | --- |

@@ -1,4 +1,4 @@
-//! A shape and a half-space: the height of its lowest point (S1, eqs. 7-8 for the box).
+//! A shape and a half-space: the height of its lowest point (Romanelli 2011, eqs. 7-8 for the box).
 
 use elbowroom_spatial::{Pose, Vec3};
 

@@ -1,4 +1,4 @@
-//! Two boxes: the 15 separating axes of S1, eqs. 12-13 (Gottschalk, Lin, Manocha, "`OBBTree`", 1996).
+//! Two boxes: the 15 separating axes of Romanelli 2011, eqs. 12-13 (Gottschalk, Lin, Manocha, "`OBBTree`", 1996).
 
 use elbowroom_spatial::{Pose, Vec3};
 

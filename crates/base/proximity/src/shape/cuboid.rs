@@ -27,7 +27,8 @@ impl Cuboid {
         Vec3::new(h.x.copysign(dir.x), h.y.copysign(dir.y), h.z.copysign(dir.z))
     }
 
-    /// The point of the solid nearest to `p` (itself where inside), local frame: S1's algorithm 1, axis by axis.
+    /// The point of the solid nearest to `p` (itself where inside), local frame: algorithm 1 of Romanelli 2011, axis by
+    /// axis.
     #[inline]
     pub fn nearest(&self, p: Vec3) -> Vec3 {
         p.max(-self.half_extents).min(self.half_extents)

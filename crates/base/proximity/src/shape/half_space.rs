@@ -1,4 +1,4 @@
-/// The solid `z <= 0` of its frame: S1's plane region, whose Z axis is the outward normal.
+/// The solid `z <= 0` of its frame: the plane region of Romanelli 2011, whose Z axis is the outward normal.
 ///
 /// ```
 /// use elbowroom_proximity::{HalfSpace, Shape};

@@ -4,7 +4,7 @@ use std::str::FromStr;
 
 use elbowroom_cspace::ObstacleModel;
 
-/// What a map takes for an object (S2, sections II to V).
+/// What a map takes for an object (the joint-space paper, sections II to V).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MapModel {
     /// Solids that enclose it: no cell is missed.

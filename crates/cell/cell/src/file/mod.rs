@@ -18,7 +18,6 @@ mod poses;
 mod program;
 pub(crate) mod read;
 mod region;
-mod renamed;
 mod robot;
 mod sensor;
 mod tools;
@@ -72,9 +71,7 @@ impl CellFile {
     /// [`FormatError`] at the first wrong line, or the first line that differs from the seal.
     pub fn resolve(&self) -> Result<Cell> {
         let mut warnings = Vec::new();
-        // A copy: the seal covers the text as it was written.
-        let entries = renamed::with_new_names(&self.file, &self.entries, &mut warnings)?;
-        let root = Table { file: &self.file, name: String::new(), line: 1, entries: &entries };
+        let root = Table { file: &self.file, name: String::new(), line: 1, entries: &self.entries };
         root.only(KEYS)?;
         version(&root)?;
         let units = Units::read(&root)?;

@@ -1,4 +1,4 @@
-//! Seals: who may change what in a cell file, and a log of all edits (S1.12).
+//! Seals: who may change what in a cell file, and a log of all edits.
 //!
 //! A sealed cell has a log beside it, `cell.seal.jsonl` for `cell.toml`: one JSON line per edit, signed (Ed25519) by
 //! its author and chained to the previous line by its hash. The last line is the seal. It covers all inputs of the

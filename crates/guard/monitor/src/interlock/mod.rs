@@ -1,4 +1,4 @@
-//! Exchange regions (S1.8): an arbiter with locks and published occupancies.
+//! Exchange regions: an arbiter with locks and published occupancies.
 //!
 //! In each tick every controller publishes its robot's occupancy of every slot, and then requests the slots in whose warning
 //! zone the robot is. A slot is granted to one robot at a time, in the order of requests, and only while every other robot is

@@ -46,7 +46,7 @@ fn event(name: &str) -> Event {
 
 #[test]
 fn every_row_of_the_documented_table_is_a_transition() {
-    let lines = include_str!("../state_machine.rs").lines().filter_map(|l| l.strip_prefix("//! | "));
+    let lines = include_str!("mod.rs").lines().filter_map(|l| l.strip_prefix("//! | "));
     let cells = |line: &'static str| line.trim_end_matches(" |").split(" | ").collect::<Vec<_>>();
     let mut table = lines.map(cells);
     let events = table.next().unwrap().split_off(1);

@@ -1,4 +1,4 @@
-//! The obstacle models of S2: conservative simplifications of an obstacle.
+//! The obstacle models of the joint-space paper: conservative simplifications of an obstacle.
 
 mod model;
 mod model_layer;

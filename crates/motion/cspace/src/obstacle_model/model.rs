@@ -5,7 +5,7 @@ use std::str::FromStr;
 /// Most spheres of one obstacle.
 pub(crate) const MAX_SPHERES: u32 = 4096;
 
-/// The solid that represents an obstacle in a map (S2, sections II to V).
+/// The solid that represents an obstacle in a map (the joint-space paper, sections II to V).
 ///
 /// | model | solid | in the paper |
 /// | --- | --- | --- |

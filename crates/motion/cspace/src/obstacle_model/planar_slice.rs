@@ -1,4 +1,4 @@
-//! One slice, copied to a range of planes: the fastest model of S2 (section III).
+//! One slice, copied to a range of planes: the fastest model of the joint-space paper (section III).
 //!
 //! An obstacle within bounds of base angle, radius and height is enclosed by a rectangle in every plane that intersects it.
 //! A point of the arm's plane that is within a distance of the obstacle is within that distance of the rectangle, too, so

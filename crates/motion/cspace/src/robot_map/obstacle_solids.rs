@@ -1,4 +1,4 @@
-//! The obstacle models of S2 for any robot: simpler solids that enclose an obstacle.
+//! The obstacle models of the joint-space paper for any robot: simpler solids that enclose an obstacle.
 
 use std::f64::consts::PI;
 use std::sync::Arc;

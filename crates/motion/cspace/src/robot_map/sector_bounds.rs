@@ -1,4 +1,4 @@
-//! Bounds of angle, radius and height about an axis: what the slices of S2 know of an obstacle.
+//! Bounds of angle, radius and height about an axis: what slices know of an obstacle.
 
 use std::f64::consts::{PI, TAU};
 

@@ -1,4 +1,5 @@
-//! Spheres around the parts of an obstacle, more and smaller ones until a deadline (S2, section VI.C), for any robot.
+//! Spheres around the parts of an obstacle, more and smaller ones until a deadline (the joint-space paper, section VI.C),
+//! for any robot.
 
 use std::time::Instant;
 

@@ -1,4 +1,4 @@
-//! Inverse kinematics of random points on the surfaces of real robots (S4.6):
+//! Inverse kinematics of random points on the surfaces of real robots:
 //! `cargo bench -p elbowroom-formats --bench any_point -- [POINTS] [PINOCCHIO]`.
 //!
 //! POINTS (default 100,000) points for each robot, equally many on every moving link, sampled by area on its collision

@@ -143,7 +143,7 @@ impl<'s> Checker<'s> {
         self.all().distance(state)
     }
 
-    /// The collision point: the point, the link, the collider and its triangle, and the normals (S4). Of several collisions it
+    /// The collision point: the point, the link, the collider and its triangle, and the normals. Of several collisions it
     /// is that of the pair first in the order of the hierarchy: the link nearest to a base. `None` where nothing collides,
     /// margins included.
     ///
@@ -194,9 +194,9 @@ impl<'s> Checker<'s> {
     }
 
     /// The pairs that are near or may soon meet at the present velocities, each with its time to collision, in the order of the
-    /// hierarchy: progressive level of detail (S4). Distant pairs are compared by one box each, approaching ones deeper in the
-    /// box trees of their meshes, near and fast ones exactly, as `policy` says. `horizon_s` limits
-    /// [`ApproachingPair::earliest_s`].
+    /// hierarchy: progressive level of detail (Reichenbach and Kovačić 2003). Distant pairs are compared by one box each,
+    /// approaching ones deeper in the box trees of their meshes, near and fast ones exactly, as `policy` says.
+    /// `horizon_s` limits [`ApproachingPair::earliest_s`].
     ///
     /// Guaranteed for every policy: a pair nearer than `exact_m`, or not proven to be apart for `exact_s`, is measured
     /// exactly, contact included; a pair reported coarsely is farther; and a pair that is not reported is farther than

@@ -38,7 +38,7 @@ pub struct PairDistance {
     pub level: Level,
 }
 
-/// The collision point of the colliding link nearest to a base (S4: the collision point and its link).
+/// The collision point of the colliding link nearest to a base (after Reichenbach and Kovačić 2003).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CollisionPoint {
     /// The link that collides: of a pair the one nearer to its base, the first where both are as near.

@@ -206,9 +206,9 @@ impl CoverMapBuilder {
         Ok(division.bits.to_layer(self.grid.shape()))
     }
 
-    /// Blocks cells by expansion from seeds, the method of S2, section IV: from cells at which a link is nearest to the obstacle's
-    /// centre, neighbours are tested until no free neighbour of a blocked cell is untested; cells between two blocked neighbours
-    /// on opposite sides are blocked without a test.
+    /// Blocks cells by expansion from seeds, the method of the joint-space paper, section IV: from cells at which a link
+    /// is nearest to the obstacle's centre, neighbours are tested until no free neighbour of a blocked cell is untested;
+    /// cells between two blocked neighbours on opposite sides are blocked without a test.
     ///
     /// **Not conservative.** No cell beside a blocked one is missed, but parts of the blocked cells in which there is no seed are:
     /// an arm that reaches the obstacle with two links, or over its back, has several. The result is no [`Layer`], so that no map

@@ -16,8 +16,8 @@
 //! | `obstacle.rs`, `solid_core.rs`, `obstacle_lanes.rs` | obstacles; distances from them; an obstacle seen from sixteen cells |
 //! | `box_division.rs`, `group_test.rs`, `witnesses.rs` | boxes halved; one box; balls that blocked others |
 //! | `kernel.rs`, `place_memo.rs` | sixteen balls at a time; places that are known |
-//! | `slice_map.rs`, `slice_kernel.rs` | the slices of S2: one slice, copied over the first joint |
-//! | `seeds.rs` | where links are nearest to an obstacle, for the expansion of S2 |
+//! | `slice_map.rs`, `slice_kernel.rs` | one slice, copied over the first joint |
+//! | `seeds.rs` | where links are nearest to an obstacle, for the expansion from seeds |
 //! | `planar_arm_map.rs` | arms in a plane with round links, which have a faster way |
 //! | `cell_bits.rs` | blocked cells as bits |
 

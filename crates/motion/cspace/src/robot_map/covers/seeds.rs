@@ -1,4 +1,5 @@
-//! Seeds of the expansion of S2 (section IV), for any robot: configurations at which a link is nearest to the obstacle's centre.
+//! Seeds of the expansion of the joint-space paper (section IV), for any robot: configurations at which a link is nearest
+//! to the obstacle's centre.
 
 use super::box_division::BoxDivision;
 use crate::CellIndex;

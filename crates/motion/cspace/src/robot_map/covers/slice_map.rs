@@ -1,4 +1,4 @@
-//! One slice, copied over the first joint: the quickest model of S2 (section III), for any robot.
+//! One slice, copied over the first joint: the quickest model of the joint-space paper (section III), for any robot.
 //!
 //! The obstacle is enclosed in a sector of a ring about the first joint's axis. As the ring looks the same from all values of
 //! that joint, which cells of the two other joints touch it is found once, without that joint. The links that touch it there

@@ -1,43 +1,31 @@
-//! What the documents and the code are written in: no retired word, no line too long for a reader, no link that leads
-//! nowhere, no name that nothing has.
-//!
-//! `docs/retired-terms.toml` lists the words that have a standard term in their place; `docs/glossary.md` defines the
-//! terms.
+//! Checks of the documents: no line too long for a reader, no broken link, no name that the sources do not have.
 
 mod lines;
 mod links;
 mod names;
-mod retired;
 
 use std::path::{Path, PathBuf};
 
-/// Checks every source and document of the workspace and prints the result.
+/// Checks every document of the workspace and prints the result.
 pub fn run(root: &Path) -> Result<(), String> {
-    let terms = retired::read(&root.join(retired::LIST))?;
-    let files = files(root)?;
     let mut known = names::KnownNames::default();
-    let mut texts = Vec::new();
-    for path in &files {
-        let text = std::fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))?;
-        let name = path.strip_prefix(root).unwrap_or(path).display().to_string();
+    let mut documents = Vec::new();
+    for path in files(root)? {
+        let text = std::fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
+        let name = path.strip_prefix(root).unwrap_or(&path).display().to_string();
         known.add(&name, &text);
-        texts.push((name, text));
-    }
-    let mut problems = Vec::new();
-    for (name, text) in &texts {
-        problems.extend(retired::problems(&terms, name, text));
-        if is_document(name) {
-            problems.extend(lines::problems(name, text));
-            problems.extend(links::problems(root, name, text));
-            problems.extend(known.problems(root, name, text));
+        if path.extension().is_some_and(|ending| ending == "md") {
+            documents.push((name, text));
         }
     }
+    let mut problems = Vec::new();
+    for (name, text) in &documents {
+        problems.extend(lines::problems(name, text));
+        problems.extend(links::problems(root, name, text));
+        problems.extend(known.problems(root, name, text));
+    }
     if problems.is_empty() {
-        println!(
-            "terms: {} retired words in none of {} files; no long line, no broken link, no unknown name",
-            terms.len(),
-            files.len()
-        );
+        println!("documents: no long line, no broken link, no unknown name in {} documents", documents.len());
         return Ok(());
     }
     Err(format!("{} places\n  {}", problems.len(), problems.join("\n  ")))
@@ -54,7 +42,6 @@ fn files(root: &Path) -> Result<Vec<PathBuf>, String> {
     for folder in FOLDERS {
         collect(&root.join(folder), &mut found)?;
     }
-    found.retain(|path| !path.ends_with(retired::LIST));
     found.sort();
     Ok(found)
 }
@@ -76,8 +63,4 @@ fn collect(folder: &Path, found: &mut Vec<PathBuf>) -> Result<(), String> {
         }
     }
     Ok(())
-}
-
-fn is_document(name: &str) -> bool {
-    Path::new(name).extension().is_some_and(|ending| ending == "md")
 }

@@ -7,9 +7,6 @@ use std::path::Path;
 const FOREIGN: [&str; 5] =
     ["BVHModelOBBRSS", "DistanceResult", "OrbitControls", "computeCollisions", "computeDistances"];
 
-/// The glossary lists names that were replaced below this heading.
-const FORMER: &str = "## Former names";
-
 /// Every word of the sources, and the names of the files.
 #[derive(Debug, Default)]
 pub struct KnownNames {
@@ -31,7 +28,7 @@ impl KnownNames {
     pub fn problems(&self, root: &Path, document: &str, text: &str) -> Vec<String> {
         let mut found = Vec::new();
         let mut in_code = false;
-        for (i, line) in text.split(FORMER).next().unwrap_or_default().lines().enumerate() {
+        for (i, line) in text.lines().enumerate() {
             let mut report = |what: String| found.push(format!("{document}:{}: {what}", i + 1));
             self.command_names(line).for_each(&mut report);
             if line.trim_start().starts_with("```") {
@@ -124,6 +121,5 @@ mod tests {
             problems("see `crates/world/scene/src/gone.rs`"),
             ["a.md:1: there is no file `crates/world/scene/src/gone.rs`"]
         );
-        assert!(problems("## Former names\n`Scenery`").is_empty());
     }
 }

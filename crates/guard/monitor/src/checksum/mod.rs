@@ -1,4 +1,4 @@
-//! Checksum of a configuration (S1.12).
+//! Checksum of a configuration.
 
 use elbowroom_kinematics::{Chain, JointKind};
 use elbowroom_proximity::Shape;
