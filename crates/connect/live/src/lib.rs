@@ -2,6 +2,39 @@
 //! see what happens. Joint states come in and speed overrides go out through a [`network`], of Zenoh or of UDP datagrams.
 //!
 //! `docs/live.md` has the keys, the bytes and the bounds; `docs/interlocks.md` the protocol of exchange regions.
+//!
+//! ```
+//! use std::sync::{Arc, Mutex};
+//! use elbowroom_interlock::Micros;
+//! use elbowroom_live::messages::{JointState, OverrideAnswer};
+//! use elbowroom_live::network::{LocalNetwork, Network, Urgency};
+//! use elbowroom_live::{ControllerClient, ControllerState, Keys};
+//! let (network, keys) = (LocalNetwork::default(), Keys::new("welding"));
+//! let answers = Arc::new(Mutex::new(Vec::new()));
+//! let received = Arc::clone(&answers);
+//! let _answers = network.subscribe(&keys.speed_override("left"), Box::new(move |m| received.lock().unwrap().push(m.to_vec())))?;
+//! // In place of a node: 0.7 for every joint state.
+//! let mut reply = network.publisher(&keys.speed_override("left"), Urgency::RealTime)?;
+//! let _node = network.subscribe(&keys.joint_states("left"), Box::new(move |m| {
+//!     let (mut state, mut bytes) = (JointState::default(), Vec::new());
+//!     state.decode(m).unwrap();
+//!     let JointState { boot, sequence, .. } = state;
+//!     OverrideAnswer { boot, echo: sequence, sequence, speed_override: 0.7, ..Default::default() }.encode(&mut bytes);
+//!     reply.publish(&bytes);
+//! }))?;
+//! let mut client = ControllerClient::new(1, 0);
+//! let mut joints = network.publisher(&keys.joint_states("left"), Urgency::RealTime)?;
+//! let state = ControllerState { q: &[0.1], programmed_override: 1.0, ..Default::default() };
+//! joints.publish(client.joint_state(Micros(0), &state));
+//! client.receive(&answers.lock().unwrap()[0])?;
+//! assert_eq!(client.speed_override(Micros(2_000)), 0.7);
+//! assert_eq!(client.speed_override(Micros(21_000)), 0.0); // the watchdog's 20 ms are over
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! **Invariant.** If a controller applies what its [`ControllerClient`] says, its override is always 0 once the
+//! watchdog's time has passed since it sent the last joint values that were answered, whatever the network and the
+//! node do.
 
 mod arbiter_service;
 mod carried_volumes;
