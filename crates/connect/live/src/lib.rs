@@ -10,22 +10,25 @@
 //! use elbowroom_live::network::{LocalNetwork, Network, Urgency};
 //! use elbowroom_live::{ControllerClient, ControllerState, Keys};
 //! let (network, keys) = (LocalNetwork::default(), Keys::new("welding"));
-//! let answers = Arc::new(Mutex::new(Vec::new()));
-//! let received = Arc::clone(&answers);
-//! let _answers = network.subscribe(&keys.speed_override("left"), Box::new(move |m| received.lock().unwrap().push(m.to_vec())))?;
-//! // In place of a node: 0.7 for every joint state.
-//! let mut reply = network.publisher(&keys.speed_override("left"), Urgency::RealTime)?;
-//! let _node = network.subscribe(&keys.joint_states("left"), Box::new(move |m| {
-//!     let (mut state, mut bytes) = (JointState::default(), Vec::new());
-//!     state.decode(m).unwrap();
-//!     let JointState { boot, sequence, .. } = state;
-//!     OverrideAnswer { boot, echo: sequence, sequence, speed_override: 0.7, ..Default::default() }.encode(&mut bytes);
-//!     reply.publish(&bytes);
-//! }))?;
+//! let inbox = |key: &str| {
+//!     let messages = Arc::new(Mutex::new(Vec::new()));
+//!     let arrived = Arc::clone(&messages);
+//!     let subscription = network.subscribe(key, Box::new(move |bytes| arrived.lock().unwrap().push(bytes.to_vec())));
+//!     subscription.map(|subscription| (messages, subscription))
+//! };
+//! let (states, _of_the_node) = inbox(&keys.joint_states("left"))?;
+//! let (answers, _of_the_controller) = inbox(&keys.speed_override("left"))?;
+//! // The controller sends its joint values.
 //! let mut client = ControllerClient::new(1, 0);
-//! let mut joints = network.publisher(&keys.joint_states("left"), Urgency::RealTime)?;
 //! let state = ControllerState { q: &[0.1], programmed_override: 1.0, ..Default::default() };
-//! joints.publish(client.joint_state(Micros(0), &state));
+//! network.publisher(&keys.joint_states("left"), Urgency::RealTime)?.publish(client.joint_state(Micros(0), &state));
+//! // A node would tick a monitor with them; here the override is 0.7.
+//! let (mut received, mut bytes) = (JointState::default(), Vec::new());
+//! received.decode(&states.lock().unwrap()[0])?;
+//! let JointState { boot, sequence, .. } = received;
+//! OverrideAnswer { boot, echo: sequence, sequence: 1, speed_override: 0.7, ..Default::default() }.encode(&mut bytes);
+//! network.publisher(&keys.speed_override("left"), Urgency::RealTime)?.publish(&bytes);
+//! // The controller applies it while it is fresh.
 //! client.receive(&answers.lock().unwrap()[0])?;
 //! assert_eq!(client.speed_override(Micros(2_000)), 0.7);
 //! assert_eq!(client.speed_override(Micros(21_000)), 0.0); // the watchdog's 20 ms are over
