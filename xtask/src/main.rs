@@ -2,6 +2,8 @@
 //!
 //! This program is small, so that the first check runs after seconds. What needs the product's own crates is the program
 //! `elbowroom-devtools`, which it starts: in the profile of the tests where it checks, as a release build where it measures.
+//!
+//! **Invariant.** If a step of `test` fails, the steps after it always run all the same, and the exit status is always 1.
 #![allow(clippy::print_stdout, reason = "this program talks to the person who started it")]
 
 mod artifacts;

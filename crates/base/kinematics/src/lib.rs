@@ -37,6 +37,10 @@
 //! assert_eq!(state.link_motion(forearm).angular_velocity, Vec3::Y * 2.0);
 //! # Ok::<(), elbowroom_kinematics::ChainError>(())
 //! ```
+//!
+//! **Invariant.** While the joints of a chain move along a straight segment of joint space, no point within a radius
+//! of a link's origin ever travels farther than [`displacement_bound`](motion_bound::displacement_bound); with a NaN
+//! the bound is NaN.
 
 mod build;
 mod chain;

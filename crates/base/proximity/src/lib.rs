@@ -54,6 +54,9 @@
 //! let gap = separation(&forearm, &forearm_in_world, &column, &column_in_world);
 //! assert!((gap.distance - (0.6 - 0.06 - 0.15)).abs() < 1e-15);
 //! ```
+//!
+//! **Invariant.** For valid shapes at any poses, the exact distance is never below the reported lower bound and never
+//! above the reported distance; whatever is not finite is always a contact.
 
 pub mod advanced;
 mod bvh;

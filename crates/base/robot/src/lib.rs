@@ -15,6 +15,9 @@
 //! assert_eq!(collision_pairs(&[&arm], 1).len(), 3 + 3);
 //! # Ok::<(), elbowroom_kinematics::ChainError>(())
 //! ```
+//!
+//! **Invariant.** If more than one moving joint or a link with colliders is between two links with colliders, they are
+//! always a collision pair, unless no joint moves one against the other or the SRDF disables the pair.
 
 mod adjacency;
 mod collision_pairs;

@@ -10,6 +10,9 @@
 //! let p_in_tool = tool_in_world.inverse().transform_point(p_in_world);
 //! assert!((p_in_tool - Vec3::new(0.0, 0.0, 0.25)).length() < 1e-15);
 //! ```
+//!
+//! **Invariant.** If a pose is finite, the box of transformed points never loses one: [`Aabb::transformed`] contains
+//! the image of every point of the box up to rounding, and for an unbounded box it is all of space.
 
 mod aabb;
 mod frame_motion;

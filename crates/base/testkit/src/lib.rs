@@ -1,5 +1,18 @@
-//! What the tests, examples and tools of several crates share. No crate that is shipped links it: it is a dependency of
-//! tests only.
+//! Generators of pseudo-random numbers for the tests, examples and tools of several crates. No crate that is shipped links
+//! this one: it is a dependency of tests only.
+//!
+//! ```
+//! use elbowroom_testkit::random::Random;
+//! let mut random = Random(7);
+//! let lengths_m: Vec<f64> = (0..1000).map(|_| random.range(0.1, 0.5)).collect();
+//! assert!(lengths_m.iter().all(|length_m| (0.1..0.5).contains(length_m)));
+//! assert!((0..1000).all(|_| random.below(6) < 6));
+//! // A test that fails can be repeated by its seed.
+//! let again: Vec<f64> = { let mut random = Random(7); (0..1000).map(|_| random.range(0.1, 0.5)).collect() };
+//! assert_eq!(again, lengths_m);
+//! ```
+//!
+//! **Invariant.** From equal seeds, a generator always returns equal sequences: on every machine, in every release.
 
 pub mod bench;
 pub mod random;

@@ -28,6 +28,9 @@
 //! assert_eq!(hits, [true, false]);
 //! # Ok::<(), elbowroom_formats::FormatError>(())
 //! ```
+//!
+//! **Invariant.** For a given cell and table of states, the rows of a query always come in the order of the table, and
+//! the number of threads never changes them.
 
 mod cover_cache;
 pub mod map;

@@ -26,6 +26,9 @@
 //! assert_eq!(setups[0].configuration.regions()[0].warning_m, 0.3);
 //! # Ok::<(), elbowroom_formats::FormatError>(())
 //! ```
+//!
+//! **Invariant.** If a cell file is accepted, every name in its [`Cell`] is resolved and every number is in SI units
+//! and radians; a key that the format does not have is always an error with its line.
 
 mod cell;
 pub mod configure;

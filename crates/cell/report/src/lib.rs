@@ -34,6 +34,9 @@
 //! assert!(summary(&run, 80, false).contains("rail"));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! **Invariant.** Whatever cell and recording it is made of, a page never loads anything from a network, and a name in
+//! it is always text, never markup.
 
 mod downsample;
 mod explanation;

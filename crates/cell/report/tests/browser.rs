@@ -164,7 +164,7 @@ const PERSON: &str = "<script>
 fn chromium() -> Option<PathBuf> {
     let named = std::env::var_os("ELBOWROOM_CHROMIUM").map(PathBuf::from);
     if named.is_none() {
-        println!("skipped: no browser; name a Chromium in ELBOWROOM_CHROMIUM (cargo xtask test --only browser)");
+        println!("skipped: no browser; name a Chromium in ELBOWROOM_CHROMIUM (cargo xtask test --only tests)");
     }
     named
 }

@@ -28,6 +28,9 @@
 //! assert!(!outcome.has_violation());
 //! # Ok::<(), elbowroom_formats::FormatError>(())
 //! ```
+//!
+//! **Invariant.** If [`check`](check::check) says that entry into a region is excluded, a run under the monitors never
+//! enters it by more than 1 µm.
 
 pub mod check;
 pub mod csv;

@@ -3,6 +3,25 @@
 //! [`Message`] turns the structs of [`msgs`] into CDR and back, and gives their schemas and hashes. [`rmw_zenoh`] gives the
 //! keys, tokens and attachments with which a node of ROS 2 finds them. [`CellMessages`] makes the messages of a cell from its
 //! status: the same bytes go on the network and into recordings. `docs/ros2.md` lists the topics.
+//!
+//! ```
+//! use elbowroom_ros2::Message;
+//! use elbowroom_ros2::msgs::control_msgs::SpeedScalingFactor;
+//! use elbowroom_ros2::rmw_zenoh::{Distribution, Topic};
+//! // Under this key a node of ROS 2 finds the topic; it ends with the hash of the message's description.
+//! let topic = Topic::of::<SpeedScalingFactor>("/left/speed_scaling", Distribution::Jazzy);
+//! let key = topic.key(0);
+//! assert!(key.starts_with("0/left/speed_scaling/control_msgs::msg::dds_::SpeedScalingFactor_/RIHS01_"));
+//! // This is its payload.
+//! let message = SpeedScalingFactor { factor: 0.5 };
+//! let bytes = message.encode();
+//! assert_eq!(SpeedScalingFactor::decode(&bytes)?, message);
+//! assert!(SpeedScalingFactor::decode(&bytes[..11]).is_err());
+//! # Ok::<(), elbowroom_ros2::CdrError>(())
+//! ```
+//!
+//! **Invariant.** Whatever bytes arrive, [`Message::decode`] never panics and never reserves more memory than in
+//! proportion to them: they are exactly one message, or a [`CdrError`].
 
 mod cdr;
 mod cell_messages;

@@ -1,4 +1,4 @@
-//! MCAP recordings of a cell: written, read, replayed.
+//! MCAP recordings of a cell: writer, reader and replay.
 //!
 //! [`RunRecorder`] records a simulated run, [`Recorder`] a live service. A recording has the profile `ros2`: Foxglove, Rerun
 //! and the tools of ROS 2 read it. It also has what every monitor was built from and given, bit by bit, so that [`replay`]
@@ -24,6 +24,9 @@
 //! assert!(found.ticks > 1000 && found.differences == 0);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! **Invariant.** If the same version of the program replays a recording, every monitor always gives the recorded
+//! answers to the bit, up to the first tick that the recording lacks or the first change of its regions.
 
 mod bag_reader;
 mod bag_writer;

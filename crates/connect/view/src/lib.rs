@@ -24,6 +24,8 @@
 //! server.stop();
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! **Invariant.** Whatever browsers do, [`StatusFeed::publish`] never waits for one of them.
 
 mod engine;
 mod error;

@@ -35,7 +35,7 @@ fn tools() -> Option<(PathBuf, PathBuf)> {
     let named = |name: &str| std::env::var_os(name).map(PathBuf::from);
     let tools = named("ELBOWROOM_CHROMIUM").zip(named("ELBOWROOM_PLAYWRIGHT"));
     if tools.is_none() {
-        println!("skipped: no browser; cargo xtask test --only browser has one");
+        println!("skipped: no browser; cargo xtask test --only tests has one");
     }
     tools
 }

@@ -1,6 +1,9 @@
 //! The `elbowroom` command: parse, call, print.
 //!
 //! Exit status: 0 success; 1 negative result (a collision, a forbidden region entered, no path); 2 invalid input or call.
+//!
+//! **Invariant.** Unless its reader closes the output early, a negative result or an invalid input or call never ends
+//! with status 0.
 
 mod args;
 mod carry;

@@ -130,6 +130,8 @@
 //! ```
 //!
 //! This is not a certified safety device.
+//!
+//! **Invariant.** Without the feature `live`, no crate that opens a network connection is ever linked.
 
 pub mod prelude;
 

@@ -33,6 +33,10 @@
 //! // Without a fresh confirmation a grant is of no use.
 //! assert!(!guards[0].may_enter(SlotId(0), now + Micros(60_000)));
 //! ```
+//!
+//! **Invariant.** Under the assumptions of `docs/interlocks.md` (guards report truly, robots stop in their stopping
+//! times), no robot ever becomes committed to the active regions of a slot while another one is committed to them or
+//! inside.
 
 mod arbiter;
 mod event;

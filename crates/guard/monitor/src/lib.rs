@@ -40,8 +40,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The tick neither allocates, nor locks, nor panics; input that is stale, out of order, not a number or implausible
-//! is override 0 with a [`OverrideReason`]. This is not a certified safety device.
+//! This is not a certified safety device.
+//!
+//! **Invariant.** Whatever a snapshot holds, a tick never allocates, locks or panics; input that is stale, out of
+//! order, not finite or implausible is always override 0, with an [`OverrideReason`].
 
 mod access;
 mod attached_volumes;

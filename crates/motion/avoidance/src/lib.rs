@@ -10,6 +10,40 @@
 //!
 //! Avoidance proposes a motion. A monitor of interference regions scales it afterwards; the monitor never depends on this
 //! crate.
+//!
+//! ```
+//! use elbowroom_avoidance::{
+//!     Mode, ObstacleKind, ProximityPair, ReactiveController, ReactiveSettings, Rules, VelocityBounds, VelocityTask,
+//! };
+//! use elbowroom_kinematics::{ChainState, LinkId};
+//! use elbowroom_spatial::Vec3;
+//! let chain = elbowroom_robot::example::arm()?.chain;
+//! let mut state = ChainState::new(&chain);
+//! state.q.copy_from_slice(&[0.0, 1.2, 0.0]);
+//! chain.forward(&mut state);
+//! // A ball approaches the tip of the forearm from above.
+//! let tip_in_link = Vec3::Z * 0.4;
+//! let on_link = state.link_in_root(LinkId(3)).transform_point(tip_in_link);
+//! let (away, distance_m) = (-Vec3::Z, 0.08);
+//! let obstacle = ObstacleKind::Dynamic {
+//!     velocity: Vec3::Z * -0.3, centre: on_link + Vec3::Z * 0.18, radius_m: 0.1, key: 0,
+//! };
+//! let pair = ProximityPair { link: LinkId(3), on_link, away, distance_m, on_obstacle: on_link - away * distance_m, obstacle };
+//! let bounds = VelocityBounds { next: vec![[-1.0, 1.0]; 3], stoppable: vec![[-1.0, 1.0]; 3] };
+//! let task = VelocityTask { desired: &[0.0; 3], bounds: &bounds, mode: Mode::Transit, is_on_collision_course: true };
+//! let mut controller = ReactiveController::new(&chain, &[1.0; 3], Rules::default(), ReactiveSettings::default());
+//! let mut evasion = [0.0; 3];
+//! let reaction = controller.react(&chain, &state, &task, &[pair], &mut evasion);
+//! assert!(reaction.is_active && reaction.size > 0.0);
+//! // The tip yields.
+//! state.q.iter_mut().zip(evasion).for_each(|(q, speed)| *q += 0.01 * speed);
+//! chain.forward(&mut state);
+//! assert!((state.link_in_root(LinkId(3)).transform_point(tip_in_link) - on_link).dot(away) > 0.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! **Invariant.** While a proven escape is known and obstacles move as predicted, a command after which no escape
+//! would be left is never given: the robot follows the known one instead.
 
 mod avoider;
 mod border;

@@ -12,6 +12,26 @@
 //! | obstacles | convex | any: meshes, floors | any: meshes, floors |
 //! | time, 2 degrees | hundredths of a millisecond | milliseconds | tenths of a second |
 //! | result | spans of rows ([`Layer`]) | spans of rows ([`Layer`]) | a tree of boxes ([`BoxTree`]) |
+//!
+//! ```
+//! use elbowroom_cspace::{ConvexObstacle, Grid, GridAxis, JointMap, PlanarArm};
+//! use elbowroom_spatial::Vec3;
+//! let axis = |name: &str, min, max| GridAxis::from_degrees(name, min, max, 2.0);
+//! let grid = Grid::new([axis("base", -170.0, 170.0)?, axis("shoulder", -90.0, 90.0)?, axis("elbow", -120.0, 150.0)?])?;
+//! let mut map = JointMap::new(PlanarArm::KR125_SIZED, &grid)?;
+//! let mut reader = map.reader(); // for the thread that plans
+//! let entered = map.set_obstacle("head", &ConvexObstacle::sphere(Vec3::new(1.3, 0.4, 0.9), 0.25)?);
+//! assert!(entered.blocked() > 50_000);
+//! assert!(map.is_blocked([0.3, 0.7, 0.5])); // the wrist is in the sphere
+//! assert!(!map.is_blocked([2.0, 0.7, 0.5]));
+//! assert!(map.is_blocked([4.0, 0.7, 0.5])); // beyond the limits
+//! map.publish();
+//! assert_eq!(reader.latest().blocked(), map.occupancy().blocked());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! **Invariant.** For the robot model and the obstacles from which a builder made a layer, a free cell never contains
+//! a configuration that collides with them; a configuration outside the grid always counts as blocked.
 
 mod bits;
 mod cell_changes;

@@ -63,6 +63,9 @@
 //! - Without an accepted image for [`ExecutorSettings::stale_s`], the arm slows to a stop and reports why.
 //!
 //! An obstacle that moves into a stopped arm is not prevented from doing so. This is not a certified safety device.
+//!
+//! **Invariant.** Unless the last accepted image is at most [`ExecutorSettings::stale_s`] old, a tick of the
+//! [`ReplanningExecutor`] never speeds the arm up: it always brakes along its path to rest.
 
 mod arc_limit;
 mod cloud_watcher;

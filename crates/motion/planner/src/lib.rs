@@ -7,6 +7,27 @@
 //!
 //! Without a map, or for more than three joints, [`RrtConnect`] samples configurations in the exact scene and proves the path
 //! there.
+//!
+//! ```
+//! use elbowroom_planner::{KinematicLimits, RrtConnect, RrtConnectSettings};
+//! use elbowroom_robot::RobotId;
+//! use elbowroom_scene::{SceneState, example};
+//! let (scene, left) = (example::two_arms(), RobotId(0));
+//! let mut state = SceneState::new(&scene);
+//! state.set_q(&scene, left, &[-0.9, 1.3, 0.6])?;
+//! let (mut planner, settings) = (RrtConnect::new(&scene, left)?, RrtConnectSettings::default());
+//! // The part on the table is between start and goal.
+//! let path = planner.plan(&state, &[0.9, 1.3, 0.6], &settings)?;
+//! assert!(path.waypoints.len() > 2);
+//! let limits = KinematicLimits { velocity: vec![2.0; 3], acceleration: vec![8.0; 3], jerk: vec![80.0; 3] };
+//! let trajectory = planner.time_parametrize(&state, &path, &limits, 0.004, &settings)?;
+//! assert_eq!(trajectory.at(trajectory.seconds()).q, [0.9, 1.3, 0.6]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! **Invariant.** While the map or the scene stays as it was planned in, a returned path never leaves what was proven
+//! free: all cells that it touches are free, or sphere covers or a continuous sweep of the exact scene have proven
+//! every segment.
 #![deny(missing_docs)]
 #![forbid(unsafe_code)]
 

@@ -18,6 +18,30 @@
 //! times seconds, positions in the world frame; pixels are counted from the upper left corner of the image, whose first
 //! pixel has its centre at (0.5, 0.5). Memory is reused: once lists have grown, a frame allocates nothing.
 //!
+//! ```
+//! use elbowroom_spatial::Vec3;
+//! use elbowroom_vision::render::{RenderConditions, RenderedSolid, Renderer};
+//! use elbowroom_vision::{Camera, CameraTracker, CameraTrackerSettings, Channels, Frame, Intrinsics, ObstacleChange, Point2};
+//! let lens = Intrinsics::pinhole(160, 120, 1.2);
+//! let camera = Camera::look_at(lens, Vec3::new(0.0, 0.0, 4.0), Vec3::ZERO, Vec3::Y)?;
+//! let settings = CameraTrackerSettings { learning_frames: 5, ..CameraTrackerSettings::default() };
+//! let mut tracker = CameraTracker::new(camera.clone().into(), settings)?;
+//! let mut renderer = Renderer::new(camera, Channels::Grey, 7);
+//! let crate_on_floor = RenderedSolid::cuboid(Point2::new(0.4, 0.2), Vec3::new(0.4, 0.3, 0.2), 0.0, 240);
+//! let mut frame = Frame::default();
+//! for i in 0..6 {
+//!     let solids = if i < 5 { vec![] } else { vec![crate_on_floor.clone()] }; // five frames of the empty floor
+//!     renderer.render(&solids, &[], &RenderConditions::default(), &mut frame)?;
+//!     frame.stamp_s = f64::from(i) * 0.04;
+//!     tracker.process(&frame, None)?;
+//! }
+//! let obstacles = &tracker.report().obstacles;
+//! assert_eq!(obstacles.len(), 1);
+//! assert_eq!(obstacles[0].change, ObstacleChange::Entered);
+//! assert!(obstacles[0].aabb().contains(Vec3::new(0.4, 0.2, 0.1)));
+//! # Ok::<(), elbowroom_vision::VisionError>(())
+//! ```
+//!
 //! # Unknown is not free
 //!
 //! - A rejected frame ([`FrameStatus::Rejected`]) and a cloud without valid points ([`cloud::CloudStatus::Empty`]) change
@@ -48,6 +72,8 @@
 //!   high as the highest of them.
 //!
 //! This is not a certified safety device.
+//!
+//! **Invariant.** If a frame is rejected or a cloud has no valid point, no obstacle ever changes, so none disappears.
 
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]

@@ -1,4 +1,4 @@
-//! Files to models, and back. Hostile input is refused here.
+//! Readers and writers of files: robots, meshes, planning scenes, tables, images. Hostile input is refused here.
 //!
 //! | file | module | notes |
 //! | --- | --- | --- |
@@ -27,15 +27,29 @@
 //! The readers of meshes are part of this crate instead of libraries: they keep double precision, line numbers for
 //! messages, and one entry per object, and they check every count of a hostile file.
 //!
-//! ```no_run
-//! use elbowroom_formats::{mesh, robot};
-//! let loaded = robot::load("arm.urdf".as_ref(), &robot::LoadOptions::default())?;
-//! for warning in &loaded.warnings {
-//!     eprintln!("{warning}");
-//! }
-//! let table = mesh::load("table.stl".as_ref(), None)?;
-//! # Ok::<(), elbowroom_formats::FormatError>(())
 //! ```
+//! use elbowroom_formats::{mesh, robot};
+//! # let dir = tempfile::tempdir()?;
+//! # let (arm, plate) = (dir.path().join("arm.urdf"), dir.path().join("plate.off"));
+//! # std::fs::write(&arm, r#"<robot name="slide"><link name="rail"/><link name="cart"/>
+//! #   <joint name="x" type="prismatic"><parent link="rail"/><child link="cart"/>
+//! #   <limit lower="0" upper="2" velocity="1" effort="0"/></joint></robot>"#)?;
+//! # std::fs::write(&plate, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")?;
+//! let loaded = robot::load(&arm, &robot::LoadOptions::default())?;
+//! assert_eq!(loaded.robot.chain.dof(), 1);
+//! for warning in &loaded.warnings {
+//!     println!("{warning}");
+//! }
+//! assert_eq!(mesh::load(&plate, None)?.meshes[0].triangles.len(), 1);
+//! // A count that the file cannot hold is refused before memory is reserved.
+//! std::fs::write(&plate, "OFF\n4000000000 1 0\n0 0 0\n")?;
+//! let error = mesh::load(&plate, None).unwrap_err();
+//! assert!(error.to_string().contains("plate.off"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! **Invariant.** Whatever bytes a file has, reading never panics and never reserves more memory than in proportion to
+//! them: the result is a valid model or a [`FormatError`].
 
 mod affine;
 mod csv;

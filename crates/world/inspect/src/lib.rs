@@ -14,6 +14,9 @@
 //! println!("{inspection}");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! **Invariant.** Whatever looks wrong in a model (units, open meshes, links that touch), an inspection only reports
+//! it: it never repairs the model and never changes the file.
 
 mod deviation;
 mod dh;

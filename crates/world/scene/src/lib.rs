@@ -17,6 +17,9 @@
 //! assert_eq!(scene.name(contact.a), "left/forearm");
 //! # Ok::<(), elbowroom_scene::SceneError>(())
 //! ```
+//!
+//! **Invariant.** If a pair is tested and its exact models are in contact, no [`Level`], weight or order of pairs ever
+//! makes a [`Checker`] answer "free"; a state with joint values that are not finite is always refused.
 
 mod allowed_collision_matrix;
 mod attach;
