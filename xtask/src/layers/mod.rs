@@ -1,8 +1,9 @@
 //! Who may depend on whom. The order of [`GROUPS`] is the architecture; `docs/architecture.md` explains it. Inside a crate
-//! no two files may use each other in a circle.
+//! no two files may use each other in a circle. A ratchet limits sizes, and public items that nothing reaches.
 
 mod circles;
 mod module;
+mod ratchet;
 mod source;
 mod uses;
 
@@ -24,6 +25,15 @@ const NEVER: [(&str, &str, &str); 3] = [
 
 /// Checks the workspace at `root` and prints the result.
 pub fn run(root: &Path) -> Result<(), String> {
+    check(root, false)
+}
+
+/// Lowers and removes exceptions of the ratchet that are too large, then checks like [`run`].
+pub fn write(root: &Path) -> Result<(), String> {
+    check(root, true)
+}
+
+fn check(root: &Path, write: bool) -> Result<(), String> {
     let workspace = parse(&root.join("Cargo.toml"))?;
     let found = crates::find(root)?;
     let mut manifests = BTreeMap::new();
@@ -38,8 +48,14 @@ pub fn run(root: &Path) -> Result<(), String> {
     for name in ["devtools", "xtask"] {
         problems.extend(circle_problems(name, &root.join(name).join("src"))?);
     }
+    let ratchet = ratchet::check(root, &manifests, write)?;
+    problems.extend(ratchet.problems);
     if problems.is_empty() {
         println!("layers: {} crates, every dependency points to a lower layer, 0 circles of files", manifests.len());
+        println!(
+            "ratchet: {} exceptions in xtask/ratchet.toml, 0 public items that nothing reaches",
+            ratchet.exceptions
+        );
         return Ok(());
     }
     Err(format!("the layers are broken\n  {}", problems.join("\n  ")))
