@@ -11,7 +11,7 @@ use crate::region_surface::Surface;
 /// Levels along the longest side of a mesh that is only drawn.
 const DRAWN_LEVELS: f64 = 16_384.0;
 /// Step of coordinates from which the page computes distances, m.
-pub const EXACT_STEP_M: f64 = 1e-8;
+const EXACT_STEP_M: f64 = 1e-8;
 
 /// What a mesh is used for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
