@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 
 use xtask::crates;
 
+use crate::functions::functions;
+
 /// What was counted in one crate, or in all.
 #[derive(Debug, Default)]
 struct Size {
@@ -20,7 +22,7 @@ impl Size {
     fn add(&mut self, text: &str) {
         self.files.push(text.lines().count());
         self.public += text.lines().filter(|line| is_public(line)).count();
-        self.functions.extend(functions(text));
+        self.functions.extend(functions(text).iter().map(|function| function.lines));
     }
 
     fn join(&mut self, other: &Self) {
@@ -86,30 +88,6 @@ fn is_public(line: &str) -> bool {
     rest.and_then(|rest| rest.split_whitespace().next()).is_some_and(|word| ITEMS.contains(&word))
 }
 
-/// Lines of each function of a formatted source: from its `fn` to the brace that closes at the same depth.
-fn functions(text: &str) -> Vec<usize> {
-    let lines: Vec<&str> = text.lines().collect();
-    let mut found = Vec::new();
-    for (start, line) in lines.iter().enumerate() {
-        if !is_function(line) {
-            continue;
-        }
-        let depth = line.len() - line.trim_start().len();
-        let rest = lines[start..].iter();
-        let end =
-            rest.clone().position(|l| l.len() > depth && l[..depth].trim().is_empty() && l[depth..].starts_with('}'));
-        let one_line = line.trim_end().ends_with(['}', ';']);
-        found.push(if one_line { 1 } else { end.map_or(1, |lines| lines + 1) });
-    }
-    found
-}
-
-fn is_function(line: &str) -> bool {
-    let mut words = line.split_whitespace();
-    let before = ["pub", "pub(crate)", "pub(super)", "const", "unsafe"];
-    words.find(|word| !before.contains(word)) == Some("fn")
-}
-
 /// Median, 90th percentile and maximum.
 fn spread(lengths: &[usize]) -> [usize; 3] {
     let mut sorted = lengths.to_vec();
@@ -121,12 +99,6 @@ fn spread(lengths: &[usize]) -> [usize; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn functions_are_measured_to_their_brace() {
-        let text = "fn a() {\n    b();\n}\n\nimpl X {\n    pub fn c() {}\n    pub(crate) fn d(\n        e: u8,\n    ) -> u8 {\n        e\n    }\n}\n";
-        assert_eq!(functions(text), [3, 1, 5]);
-    }
 
     #[test]
     fn public_items_are_those_of_the_interface() {

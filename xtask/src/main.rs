@@ -11,6 +11,7 @@ mod compile;
 mod dependents;
 mod documents;
 mod faults;
+mod functions;
 mod inventory;
 mod layers;
 mod machine;
@@ -41,8 +42,10 @@ cargo xtask COMMAND
         depend on them
   soak [NAME]…
         runs of minutes to hours that the suite leaves out; without a name, lists them (docs/measurements/soak.md)
-  layers
-        who may depend on whom, that every crate takes the workspace lints, and no circles of files inside a crate
+  layers [--write]
+        who may depend on whom, that every crate takes the workspace lints, and no circles of files inside a crate; limits
+        of size, whose exceptions are in xtask/ratchet.toml, and no public item that nothing reaches.
+        --write lowers and removes exceptions that are too large; it adds none
   faults [--only NAME]… [--list] [--check]
         plants each fault of xtask/faults.toml in a copy of the committed sources and runs the tests of its crate, then those
         of the crates that depend on it, until one fails; fails itself if a fault is not found. --list names the faults,
@@ -129,6 +132,7 @@ fn dispatch(words: &[&str]) -> Result<(), Failure> {
         ["quick", "--since", commit] => Ok(quick::run(&root, commit)?),
         ["soak", names @ ..] => soak::run(&root, names),
         ["layers"] => Ok(layers::run(&root)?),
+        ["layers", "--write"] => Ok(layers::write(&root)?),
         ["inventory"] => Ok(inventory::run(&root)?),
         ["inventory", folder] => Ok(inventory::run(Path::new(folder))?),
         ["faults", options @ ..] => faults::run(&root, &faults::Options::parse(options).map_err(Failure::Usage)?),

@@ -1,8 +1,10 @@
 //! Who may depend on whom. The order of [`GROUPS`] is the architecture; `docs/architecture.md` explains it. Inside a crate
-//! no two files may use each other in a circle. The list of planted faults must fit the sources.
+//! no two files may use each other in a circle. A ratchet limits sizes, and public items that nothing reaches. The list of
+//! planted faults must fit the sources.
 
 mod circles;
 mod module;
+mod ratchet;
 mod source;
 mod uses;
 
@@ -26,6 +28,15 @@ const NEVER: [(&str, &str, &str); 3] = [
 
 /// Checks the workspace at `root` and prints the result.
 pub fn run(root: &Path) -> Result<(), String> {
+    check(root, false)
+}
+
+/// Lowers and removes exceptions of the ratchet that are too large, then checks like [`run`].
+pub fn write(root: &Path) -> Result<(), String> {
+    check(root, true)
+}
+
+fn check(root: &Path, write: bool) -> Result<(), String> {
     let workspace = parse(&root.join("Cargo.toml"))?;
     let found = crates::find(root)?;
     let mut manifests = BTreeMap::new();
@@ -41,8 +52,14 @@ pub fn run(root: &Path) -> Result<(), String> {
         problems.extend(circle_problems(name, &root.join(name).join("src"))?);
     }
     problems.extend(faults::problems(root)?);
+    let ratchet = ratchet::check(root, &manifests, write)?;
+    problems.extend(ratchet.problems);
     if problems.is_empty() {
         println!("layers: {} crates, every dependency points to a lower layer, 0 circles of files", manifests.len());
+        println!(
+            "ratchet: {} exceptions in xtask/ratchet.toml, 0 public items that nothing reaches",
+            ratchet.exceptions
+        );
         return Ok(());
     }
     Err(format!("the layers, or the list of faults, are broken\n  {}", problems.join("\n  ")))

@@ -56,7 +56,8 @@ pub fn tokens(text: &str) -> Vec<Token> {
     found
 }
 
-fn before_tests(text: &str) -> &str {
+/// The text of a file up to its unit tests, which by custom are its end.
+pub fn before_tests(text: &str) -> &str {
     let start = text.find("#[cfg(test)]\nmod ").filter(|at| {
         let line = text[*at..].lines().nth(1).unwrap_or_default();
         line.trim_end().ends_with('{')

@@ -17,7 +17,7 @@ use sha2::{Digest, Sha256};
 use crate::{Cell, CellRegionId, CellRobot, Follow};
 
 /// Ticks without an answer after which a controller stops by itself.
-pub const MISSED_ANSWERS: f64 = 2.0;
+const MISSED_ANSWERS: f64 = 2.0;
 
 /// Configuration of one robot's monitor, and how its indices relate to the cell's.
 #[derive(Debug, Clone)]

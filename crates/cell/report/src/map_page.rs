@@ -15,7 +15,7 @@ use crate::tables::escape;
 const PAGE: &str = include_str!("../assets/map/page.html");
 
 /// Most cells of a page: a browser holds one byte per cell.
-pub const MAX_PAGE_CELLS: usize = 1 << 26;
+const MAX_PAGE_CELLS: usize = 1 << 26;
 /// Most objects that have a number of their own.
 const MAX_OBJECTS: usize = 255;
 
@@ -23,7 +23,7 @@ const MAX_OBJECTS: usize = 255;
 /// cell. Of more than three joints the first and the last two are shown, the others at the middle of their ranges.
 ///
 /// # Errors
-/// More than [`MAX_PAGE_CELLS`] cells on the three axes, more than 255 objects, and errors of `out`.
+/// More than 2²⁶ cells on the three axes, more than 255 objects, and errors of `out`.
 pub fn write(mut out: impl Write, map: &CellMap, units: Units) -> io::Result<()> {
     let shown = shown_axes(map.axes.len());
     let counts = shown.map(|axis| axis.map_or(1, |axis| map.axes[axis].count()));

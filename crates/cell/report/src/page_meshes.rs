@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use elbowroom_proximity::repair::merge_targets;
 use elbowroom_spatial::{Aabb, Vec3};
 use serde_json::{Value, json};
 
@@ -11,7 +12,7 @@ use crate::region_surface::Surface;
 /// Levels along the longest side of a mesh that is only drawn.
 const DRAWN_LEVELS: f64 = 16_384.0;
 /// Step of coordinates from which the page computes distances, m.
-pub const EXACT_STEP_M: f64 = 1e-8;
+const EXACT_STEP_M: f64 = 1e-8;
 
 /// What a mesh is used for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -56,30 +57,26 @@ impl PageMeshes {
     }
 }
 
-/// Merges coincident vertices, so that the page can smooth normals; triangles without area are left out.
+/// Merges coincident vertices, so that the page can smooth normals; triangles without area, or with an index beyond the
+/// vertices, are left out.
 fn welded(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (Vec<Vec3>, Vec<u32>) {
-    let mut first: HashMap<[u64; 3], u32> = HashMap::new();
+    let target = merge_targets(vertices, 0.0);
+    let mut place = vec![None; vertices.len()];
     let mut corners = Vec::new();
     let mut index = Vec::with_capacity(3 * triangles.len());
-    for triangle in triangles {
-        let Some(points) = corners_of(vertices, *triangle) else { continue };
-        let welded = points.map(|p| {
-            *first.entry(p.to_array().map(f64::to_bits)).or_insert_with(|| {
-                corners.push(p);
+    for triangle in triangles.iter().filter(|t| t.iter().all(|&i| (i as usize) < vertices.len())) {
+        let [a, b, c] = triangle.map(|i| {
+            let first = target[i as usize] as usize;
+            *place[first].get_or_insert_with(|| {
+                corners.push(vertices[first]);
                 corners.len() as u32 - 1
             })
         });
-        let [a, b, c] = welded;
         if a != b && b != c && c != a {
-            index.extend(welded);
+            index.extend([a, b, c]);
         }
     }
     (corners, index)
-}
-
-fn corners_of(vertices: &[Vec3], triangle: [u32; 3]) -> Option<[Vec3; 3]> {
-    let at = |i: u32| vertices.get(i as usize).copied();
-    Some([at(triangle[0])?, at(triangle[1])?, at(triangle[2])?])
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
 
+use elbowroom_proximity::repair::merge_targets;
 use elbowroom_proximity::{Shape, Sphere, tessellate::tessellate};
 use elbowroom_spatial::{Pose, Vec3};
 
@@ -13,6 +14,8 @@ type Edge = (u32, u32);
 pub type Surface = (Vec<Vec3>, Vec<[u32; 3]>);
 
 const CHORD_ERROR_M: f64 = 1e-3;
+/// Vertices within this distance are one, m.
+const SAME_VERTEX_M: f64 = 1e-9;
 /// Half the side (m) of the patch drawn for a plane.
 const PATCH_M: f64 = 2.0;
 /// Thickness (m) of the half-space drawn behind a plane.
@@ -104,7 +107,7 @@ fn offset_along_normals(vertices: &[Vec3], triangles: &[[u32; 3]], margin: f64) 
 ///
 /// An open surface gives open curves.
 pub fn section(surface: &Surface, in_world: &Pose, height_m: f64) -> Vec<Vec<[f64; 2]>> {
-    let welded = weld(&surface.0);
+    let welded = merge_targets(&surface.0, SAME_VERTEX_M);
     let points: Vec<Vec3> = surface.0.iter().map(|&v| in_world.transform_point(v)).collect();
     let above = |i: u32| points[i as usize].z >= height_m;
     let mut next: HashMap<Edge, [Option<Edge>; 2]> = HashMap::new();
@@ -131,13 +134,6 @@ pub fn section(surface: &Surface, in_world: &Pose, height_m: f64) -> Vec<Vec<[f6
 fn cross(a: Vec3, b: Vec3, height: f64) -> [f64; 2] {
     let p = a.lerp(b, (height - a.z) / (b.z - a.z));
     [p.x, p.y]
-}
-
-/// For each vertex the first one at the same position.
-fn weld(vertices: &[Vec3]) -> Vec<u32> {
-    let mut first = HashMap::new();
-    let key = |v: &Vec3| v.to_array().map(|c| (c * 1e9).round() as i64);
-    vertices.iter().enumerate().map(|(i, v)| *first.entry(key(v)).or_insert(i as u32)).collect()
 }
 
 fn chains(mut next: HashMap<Edge, [Option<Edge>; 2]>, at: &HashMap<Edge, [f64; 2]>) -> Vec<Vec<[f64; 2]>> {

@@ -13,7 +13,7 @@ use crate::scene::{ReportRobot, ReportScene};
 use crate::summary;
 
 /// Largest number of evenly spaced frames.
-pub const MAX_FRAMES: usize = 1500;
+const MAX_FRAMES: usize = 1500;
 /// Largest number of frames that are added at events.
 const MAX_EVENT_FRAMES: usize = 200;
 

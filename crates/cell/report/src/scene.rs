@@ -125,7 +125,7 @@ impl ReportScene {
 
     /// The named tools of the robot added last.
     #[must_use]
-    pub fn with_tools(mut self, tools: Vec<(String, LinkId, Pose)>) -> Self {
+    fn with_tools(mut self, tools: Vec<(String, LinkId, Pose)>) -> Self {
         if let Some(robot) = self.robots.last_mut() {
             robot.tools = tools;
         }

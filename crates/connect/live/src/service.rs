@@ -61,11 +61,6 @@ impl Service {
         self.keeper.is_some()
     }
 
-    /// True where this process grants exchange regions, of which the cell has some.
-    pub fn grants_regions(&self) -> bool {
-        self.arbiter.is_some()
-    }
-
     /// Whether the simulated controllers still run; true where there are none.
     pub fn is_running(&self) -> bool {
         self.controllers.as_ref().is_none_or(SimulatedControllers::is_running)

@@ -4,12 +4,12 @@
 //! is its length with a closing zero, then its bytes; a sequence is its length, then its elements.
 
 /// What every payload begins with: plain CDR, little-endian, no options.
-pub const ENCAPSULATION: [u8; 4] = [0, 1, 0, 0];
+const ENCAPSULATION: [u8; 4] = [0, 1, 0, 0];
 
 /// Why bytes are not the message that they should be.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum CdrError {
-    /// The payload does not begin with [`ENCAPSULATION`].
+    /// The payload does not begin with the four bytes of plain CDR, little-endian.
     #[error("the payload begins with {0:02x?}, not with the 00 01 of little-endian CDR")]
     Encapsulation(Vec<u8>),
     /// The bytes end inside a value.

@@ -30,7 +30,7 @@ mod message;
 pub mod msgs;
 pub mod rmw_zenoh;
 
-pub use cdr::{CdrError, ENCAPSULATION, Reader, Writer};
+pub use cdr::{CdrError, Reader, Writer};
 pub use cell_messages::{CellMessages, CellUrdf, UrdfMesh};
 pub use description::{ElementType, FieldType, Multiplicity, TypeSet};
 pub use message::{Byte, Field, Message};

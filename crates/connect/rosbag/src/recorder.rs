@@ -36,7 +36,6 @@ struct Shared {
     /// Ticks that wait for the file.
     waiting: AtomicU64,
     stop: AtomicBool,
-    failed: AtomicBool,
 }
 
 enum Item {
@@ -71,11 +70,7 @@ impl Recorder {
         let of_thread = shared.clone();
         let thread = std::thread::Builder::new()
             .name("recorder".into())
-            .spawn(move || {
-                let result = write_all(writer, &items, &of_thread);
-                of_thread.failed.store(result.is_err(), Relaxed);
-                result
-            })
+            .spawn(move || write_all(writer, &items, &of_thread))
             .map_err(|source| BagError::Io { file: "the recorder's thread".into(), source })?;
         Ok(Self { queue, shared, thread })
     }
@@ -110,11 +105,6 @@ impl Recorder {
     /// Number of ticks that wait for the file.
     pub fn waiting_ticks(&self) -> u64 {
         self.shared.waiting.load(Relaxed)
-    }
-
-    /// True where the file cannot be written any more: [`Recorder::finish`] says why.
-    pub fn has_failed(&self) -> bool {
-        self.shared.failed.load(Relaxed)
     }
 
     /// Writes what waits, and the index of the file.

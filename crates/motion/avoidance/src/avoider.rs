@@ -277,28 +277,15 @@ impl<'s> Avoider<'s> {
     /// # Errors
     /// The robot moves, or as [`RrtConnect::plan_from_tight_ends`].
     pub fn plan_to(&mut self, goal: &[f64], options: &RrtConnectSettings) -> Result<(), AvoidanceError> {
-        self.plan_to_constrained(goal, options, None)
-    }
-
-    /// As [`plan_to`](Self::plan_to), with a constraint on the path ([`RrtConnect::with_constraint`]), such as regions in which a monitor
-    /// stops the robot.
-    ///
-    /// # Errors
-    /// The robot moves, or as [`RrtConnect::plan_from_tight_ends`].
-    pub fn plan_to_constrained(
-        &mut self,
-        goal: &[f64],
-        options: &RrtConnectSettings,
-        constraint: Option<&mut dyn PathConstraint>,
-    ) -> Result<(), AvoidanceError> {
-        let detour = self.plan_detour(goal, options, constraint)?;
+        let detour = self.plan_detour(goal, options, None)?;
         self.follow_detour(detour)
     }
 
-    /// Plans as [`plan_to_constrained`](Self::plan_to_constrained), for [`follow_detour`](Self::follow_detour) to follow later: planning takes time.
+    /// Plans as [`plan_to`](Self::plan_to), with a constraint on the path ([`RrtConnect::with_constraint`]), such as regions in which a
+    /// monitor stops the robot, for [`follow_detour`](Self::follow_detour) to follow later: planning takes time.
     ///
     /// # Errors
-    /// As [`plan_to_constrained`](Self::plan_to_constrained).
+    /// The robot moves, or as [`RrtConnect::plan_from_tight_ends`].
     pub fn plan_detour(
         &mut self,
         goal: &[f64],

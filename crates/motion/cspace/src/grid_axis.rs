@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 /// Most cells of one axis: ends of intervals are 16-bit.
-pub const MAX_AXIS_CELLS: usize = 1 << 15;
+const MAX_AXIS_CELLS: usize = 1 << 15;
 
 /// A joint's range in cells of equal width: cell `i` is centred on `min + (i + 1/2)·step` and holds all joint values within
 /// half a step of it.
@@ -97,7 +97,7 @@ impl GridAxis {
     /// value within the limits has a cell.
     ///
     /// # Errors
-    /// Limits or step not finite, an empty range, a step that is not positive, or more than [`MAX_AXIS_CELLS`] cells.
+    /// Limits or step not finite, an empty range, a step that is not positive, or more than 32,768 cells.
     pub fn new(joint: impl Into<String>, min: f64, max: f64, step: f64) -> Result<Self, GridAxisError> {
         let joint = joint.into();
         let parameters = [(AxisParameter::Min, min), (AxisParameter::Max, max), (AxisParameter::Step, step)];

@@ -21,9 +21,6 @@ pub struct JointConvention {
 }
 
 impl JointConvention {
-    /// The convention of the planar arm itself.
-    pub const PLANAR: Self = Self { sign: [1.0; 3], offset_rad: [0.0; 3] };
-
     /// The KUKA KR125: axis 1 has the opposite sense; axis 2 is 0 where the upper arm lies forward (planar: π/2); axis 3 is
     /// 0 where the forearm continues the upper arm. The line from elbow to wrist is atan(0.045) above the forearm.
     pub const KR125: Self = Self {

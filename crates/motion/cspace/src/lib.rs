@@ -55,7 +55,7 @@ mod seed_expansion;
 pub use cell_changes::CellChanges;
 pub use convex_obstacle::{ConvexObstacle, ConvexObstacleError};
 pub use grid::{CellIndex, Grid, TooManyCells};
-pub use grid_axis::{AxisParameter, GridAxis, GridAxisError, MAX_AXIS_CELLS};
+pub use grid_axis::{AxisParameter, GridAxis, GridAxisError};
 pub use joint_convention::JointConvention;
 pub use joint_map::JointMap;
 pub use layer::{Layer, RowSpan};

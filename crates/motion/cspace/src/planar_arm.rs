@@ -167,7 +167,7 @@ impl PlanarArm {
     }
 
     /// Shoulder, elbow and wrist in the plane of θ1: `[r, z]`.
-    pub fn joints_in_plane(&self, theta2: f64, theta3: f64) -> [[f64; 2]; 3] {
+    fn joints_in_plane(&self, theta2: f64, theta3: f64) -> [[f64; 2]; 3] {
         let shoulder = [self.offset_m, self.height_m];
         let (sin2, cos2) = theta2.sin_cos();
         let elbow = [shoulder[0] + self.upper_length_m * sin2, shoulder[1] + self.upper_length_m * cos2];

@@ -94,14 +94,9 @@ impl PerceptionPipeline {
         &self.arm
     }
 
-    /// The joint-space map. Fixed obstacles are added with [`PerceptionPipeline::map_mut`].
+    /// The joint-space map of the observed obstacles.
     pub fn map(&self) -> &JointMap {
         &self.map
-    }
-
-    /// The joint-space map, for fixed obstacles. Names that begin with `#` are reserved for observed obstacles.
-    pub fn map_mut(&mut self) -> &mut JointMap {
-        &mut self.map
     }
 
     /// The camera tracker: settings, foreground, detailed timings.

@@ -63,6 +63,18 @@ impl ImageFiles {
     }
 
     /// The same files with the layout of raw ones among them.
+    ///
+    /// ```
+    /// use elbowroom_vision::{Channels, Frame, FrameSource, ImageFiles, RawLayout};
+    /// let file = std::env::temp_dir().join(format!("elbowroom-{}.raw", std::process::id()));
+    /// std::fs::write(&file, [10, 20, 30, 40, 50, 60])?;
+    /// let layout = RawLayout { width: 3, height: 2, channels: Channels::Grey };
+    /// let mut frame = Frame::default();
+    /// assert!(ImageFiles::list([&file], 0.04).with_raw_layout(layout).next_frame(&mut frame)?);
+    /// assert_eq!(frame.width(), 3);
+    /// std::fs::remove_file(file)?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn with_raw_layout(mut self, layout: RawLayout) -> Self {
         self.raw = Some(layout);

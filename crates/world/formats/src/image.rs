@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::FormatError;
 
 /// Images with more columns or rows are refused, which bounds memory.
-pub const MAX_SIDE: usize = 16_384;
+const MAX_SIDE: usize = 16_384;
 
 /// Upper bound on the bytes that one byte of a file can decode to; deflate reaches 1032.
 const MAX_EXPANSION: usize = 1100;
@@ -115,7 +115,7 @@ fn to_8_bit(sample: u16) -> u8 {
     ((u32::from(sample) + 128) / 257) as u8
 }
 
-/// Refuses images without pixels, larger than [`MAX_SIDE`], or larger than a file of `file_bytes` bytes can encode.
+/// Refuses images without pixels, larger than 16,384 pixels a side, or larger than a file of `file_bytes` bytes can encode.
 pub(crate) fn check_size(header: &ImageHeader, file_bytes: usize, file: &Path) -> Result<(), FormatError> {
     let ImageHeader { width, height, .. } = *header;
     if width == 0 || height == 0 {

@@ -20,8 +20,8 @@ pub fn is_png(bytes: &[u8]) -> bool {
 /// bits, a transparent colour to an opacity channel; interlaced files are read too. `file` is named in messages.
 ///
 /// # Errors
-/// Files that are damaged, cut off, or announce more pixels than [`MAX_SIDE`](crate::image::MAX_SIDE) allows or their
-/// bytes can encode. `pixels` is then empty.
+/// Files that are damaged, cut off, or announce more than 16,384 pixels a side or more pixels than their bytes can
+/// encode. `pixels` is then empty.
 ///
 /// ```
 /// use elbowroom_formats::image::{ImageHeader, PixelFormat};

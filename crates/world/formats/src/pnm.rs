@@ -15,8 +15,8 @@ pub fn is_pnm(bytes: &[u8]) -> bool {
 /// images of 0 (black, 1 in the file) and 255. `file` is named in messages.
 ///
 /// # Errors
-/// Files that are damaged, cut off, or announce more pixels than [`MAX_SIDE`](crate::image::MAX_SIDE) allows or their
-/// bytes can encode. `pixels` is then empty.
+/// Files that are damaged, cut off, or announce more than 16,384 pixels a side or more pixels than their bytes can
+/// encode. `pixels` is then empty.
 ///
 /// ```
 /// use elbowroom_formats::pnm;

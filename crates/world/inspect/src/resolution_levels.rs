@@ -1,11 +1,10 @@
 //! Resolution levels of each link: boxes, capsule, hull, and coarse, middle and fine triangles.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
-
 use elbowroom_formats::MeshData;
 use elbowroom_proximity::{Shape, TriMesh, fit, tessellate::tessellate};
 use elbowroom_robot::Collider;
 use elbowroom_spatial::{Aabb, Pose, Vec3};
+use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::{deviation, simplify};
@@ -98,22 +97,7 @@ const CHORD_M: f64 = 1e-4;
 
 /// The levels of all links with solids, computed in parallel.
 pub(super) fn of_links(links: &[(String, Vec<Collider>)]) -> Vec<LinkLevels> {
-    let next = AtomicUsize::new(0);
-    let work = || {
-        let mut done = Vec::new();
-        loop {
-            let mine = next.fetch_add(1, Ordering::Relaxed);
-            let Some((name, colliders)) = links.get(mine) else { return done };
-            done.extend(of_link(name, colliders).map(|levels| (mine, levels)));
-        }
-    };
-    let cores = std::thread::available_parallelism().map_or(1, usize::from).min(links.len().max(1));
-    let mut all: Vec<(usize, LinkLevels)> = std::thread::scope(|s| {
-        let threads: Vec<_> = (0..cores).map(|_| s.spawn(work)).collect();
-        threads.into_iter().flat_map(|t| t.join().unwrap_or_default()).collect()
-    });
-    all.sort_by_key(|(i, _)| *i);
-    all.into_iter().map(|(_, levels)| levels).collect()
+    links.par_iter().with_max_len(1).filter_map(|(name, colliders)| of_link(name, colliders)).collect()
 }
 
 fn of_link(link: &str, colliders: &[Collider]) -> Option<LinkLevels> {

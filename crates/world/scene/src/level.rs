@@ -27,7 +27,7 @@ pub enum Level {
 
 impl Level {
     /// The levels with models of their own, coarse first.
-    pub const ANSWERING: [Self; 5] = [Self::L1, Self::L2, Self::Capsule, Self::Hull, Self::L3];
+    const ANSWERING: [Self; 5] = [Self::L1, Self::L2, Self::Capsule, Self::Hull, Self::L3];
 }
 
 impl fmt::Display for Level {

@@ -44,7 +44,7 @@ const LEAST_GAP_SHARE: [f64; 3] = [1.0, 0.5, 0.1];
 
 impl LevelOfDetail {
     /// Metres below which a pair is measured exactly whose points approach each other at no more than `closing_m_s`.
-    pub fn exact_below(&self, closing_m_s: f64) -> f64 {
+    fn exact_below(&self, closing_m_s: f64) -> f64 {
         let ahead = if self.exact_s > 0.0 { self.exact_s * closing_m_s.max(0.0) } else { 0.0 };
         let needed = self.exact_m.max(ahead);
         if needed.is_nan() || closing_m_s.is_nan() || self.exact_m.is_nan() || self.exact_s.is_nan() {

@@ -2,6 +2,7 @@
 
 use elbowroom_proximity::Shape;
 use elbowroom_spatial::{Pose, Vec3};
+use rayon::prelude::*;
 
 use crate::cover::SphereCover;
 
@@ -13,6 +14,22 @@ const CONSTRUCTION: u64 = 3;
 pub trait CoverSource: Sync {
     /// As [`SphereCover::new`].
     fn cover(&self, shapes: &[(&Shape, Pose)], slack_m: f64) -> Option<SphereCover>;
+}
+
+/// The covers of several bodies, in their order, built in parallel: each body as its shapes and its slack in metres. `None`
+/// as in [`SphereCover::new`].
+///
+/// ```
+/// use elbowroom_proximity::{Shape, Sphere};
+/// use elbowroom_spatial::Pose;
+/// use elbowroom_validity::{BuiltCovers, covers};
+/// let balls = [0.1, 0.2].map(|radius| Shape::Sphere(Sphere { radius }));
+/// let bodies = balls.each_ref().map(|ball| (vec![(ball, Pose::IDENTITY)], 0.001));
+/// let radii: Vec<f64> = covers(&bodies, &BuiltCovers).iter().map(|c| c.as_ref().unwrap().outer[0].radius).collect();
+/// assert!(radii[0] >= 0.1 && radii[1] >= 0.2);
+/// ```
+pub fn covers(bodies: &[(Vec<(&Shape, Pose)>, f64)], source: &dyn CoverSource) -> Vec<Option<SphereCover>> {
+    bodies.par_iter().with_max_len(1).map(|(shapes, slack_m)| source.cover(shapes, *slack_m)).collect()
 }
 
 /// Builds every cover.

@@ -37,7 +37,7 @@ mod validity;
 
 pub use check::{NotCertain, ValidityChecker};
 pub use cover::{Ball, SphereCover};
-pub use cover_source::{BuiltCovers, CoverSource, describe_cover};
+pub use cover_source::{BuiltCovers, CoverSource, covers, describe_cover};
 pub use error::ValidityError;
 pub use model::{AxisCylinder, CoveredLinkId, CoveredRobot};
 pub use obstacles::ObstacleSet;

@@ -4,7 +4,7 @@ use elbowroom_spatial::{Aabb, Vec3};
 
 use super::leaf_bounds::{box_of, interval, mean_normal, most_central};
 use super::node::{ARITY, LEAF_SIZE, Leaf, Node};
-use super::triangle_order::{in_chunks, order_triangles};
+use super::triangle_order::{fill, order_triangles};
 use super::unit_frame::UnitFrame;
 
 /// A tree without pointers: child `i` of node `m` at height `h` is number `16 m + i` at height `h - 1`; height 0 are
@@ -27,27 +27,21 @@ impl Bvh16 {
         (self.frame.center, self.radius)
     }
 
-    pub fn build(vertices: &[Vec3], triangles: &[[u32; 3]], threads: usize) -> Self {
+    pub fn build(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Self {
         let bounds = Aabb::from_points(triangles.iter().flatten().map(|&i| vertices[i as usize]));
         let frame = UnitFrame::of(&bounds);
-        let order = order_triangles(vertices, triangles, &frame, threads);
+        let order = order_triangles(vertices, triangles, &frame);
         let blank = Leaf { corner: [[[0.0; LEAF_SIZE]; 3]; 3] };
         let mut leaves = vec![blank; order.len().div_ceil(LEAF_SIZE)];
-        in_chunks(&mut leaves, threads, |first, chunk| {
-            for (i, leaf) in chunk.iter_mut().enumerate() {
-                fill_leaf(leaf, first + i, &order, |t| triangles[t].map(|v| frame.to_units(vertices[v as usize])));
-            }
+        fill(&mut leaves, |i, leaf| {
+            fill_leaf(leaf, i, &order, |t| triangles[t].map(|v| frame.to_units(vertices[v as usize])));
         });
         let mut levels = Vec::new();
         let mut children = leaves.len();
         let mut span = 1;
         loop {
             let mut level = vec![Node::EMPTY; children.div_ceil(ARITY)];
-            in_chunks(&mut level, threads.min(1 + leaves.len() / 512), |first, chunk| {
-                for (i, node) in chunk.iter_mut().enumerate() {
-                    fill_node(node, first + i, span, &leaves);
-                }
-            });
+            fill(&mut level, |i, node| fill_node(node, i, span, &leaves));
             levels.push(level);
             if children == 1 {
                 break;

@@ -5,6 +5,7 @@
 //! ranks that keep every run but the last full.
 
 use elbowroom_spatial::Vec3;
+use rayon::prelude::*;
 
 use super::node::{ARITY, LEAF_SIZE};
 use super::unit_frame::UnitFrame;
@@ -12,7 +13,9 @@ use super::unit_frame::UnitFrame;
 /// Bins per axis of the split search.
 const BINS: usize = 16;
 /// Below this many triangles a second thread costs more than it saves.
-const THREAD_THRESHOLD: usize = 16_384;
+const PARALLEL_RUN: usize = 16_384;
+/// Elements that one thread fills at least.
+const FILLED_RUN: usize = 1024;
 
 /// The bounds of a triangle, for sorting.
 #[derive(Clone, Copy)]
@@ -58,39 +61,25 @@ impl Bin {
 }
 
 /// Triangle indices in tree order.
-pub(super) fn order_triangles(
-    vertices: &[Vec3],
-    triangles: &[[u32; 3]],
-    frame: &UnitFrame,
-    threads: usize,
-) -> Vec<u32> {
+pub(super) fn order_triangles(vertices: &[Vec3], triangles: &[[u32; 3]], frame: &UnitFrame) -> Vec<u32> {
     let blank = TriangleBounds { low: [0.0; 3], high: [0.0; 3], triangle: 0 };
     let mut items = vec![blank; triangles.len()];
-    in_chunks(&mut items, threads, |first, chunk| {
-        for (i, item) in chunk.iter_mut().enumerate() {
-            *item = bounds_of(first + i, vertices, triangles, frame);
-        }
-    });
+    fill(&mut items, |i, item| *item = bounds_of(i, vertices, triangles, frame));
     let mut capacity = LEAF_SIZE;
     while capacity * ARITY < items.len() {
         capacity *= ARITY;
     }
-    arrange(&mut items, capacity, threads);
+    arrange(&mut items, capacity);
     items.iter().map(|i| i.triangle).collect()
 }
 
-/// Runs `work` on `threads` consecutive chunks, each with the index of its first element.
-pub(super) fn in_chunks<T: Send>(all: &mut [T], threads: usize, work: impl Fn(usize, &mut [T]) + Sync) {
-    if threads < 2 || all.len() < 1024 {
-        return work(0, all);
+/// Runs `work` on every element with its index, in parallel if there are many.
+pub(super) fn fill<T: Send>(all: &mut [T], work: impl Fn(usize, &mut T) + Send + Sync) {
+    if all.len() < 2 * FILLED_RUN {
+        all.iter_mut().enumerate().for_each(|(i, one)| work(i, one));
+    } else {
+        all.par_iter_mut().with_min_len(FILLED_RUN).enumerate().for_each(|(i, one)| work(i, one));
     }
-    let size = all.len().div_ceil(threads);
-    std::thread::scope(|scope| {
-        for (n, chunk) in all.chunks_mut(size).enumerate() {
-            let work = &work;
-            scope.spawn(move || work(n * size, chunk));
-        }
-    });
 }
 
 fn bounds_of(triangle: usize, vertices: &[Vec3], triangles: &[[u32; 3]], frame: &UnitFrame) -> TriangleBounds {
@@ -106,7 +95,7 @@ fn bounds_of(triangle: usize, vertices: &[Vec3], triangles: &[[u32; 3]], frame: 
 }
 
 /// Sorts one run; `capacity` is that of the largest subtree that can be below it.
-fn arrange(items: &mut [TriangleBounds], mut capacity: usize, threads: usize) {
+fn arrange(items: &mut [TriangleBounds], mut capacity: usize) {
     if items.len() <= LEAF_SIZE {
         return;
     }
@@ -115,14 +104,11 @@ fn arrange(items: &mut [TriangleBounds], mut capacity: usize, threads: usize) {
     }
     let at = split(items, capacity);
     let (left, right) = items.split_at_mut(at);
-    if threads > 1 && left.len().min(right.len()) >= THREAD_THRESHOLD {
-        std::thread::scope(|scope| {
-            scope.spawn(|| arrange(left, capacity, threads / 2));
-            arrange(right, capacity, threads - threads / 2);
-        });
+    if left.len().min(right.len()) >= PARALLEL_RUN {
+        rayon::join(|| arrange(left, capacity), || arrange(right, capacity));
     } else {
-        arrange(left, capacity, threads);
-        arrange(right, capacity, threads);
+        arrange(left, capacity);
+        arrange(right, capacity);
     }
 }
 

@@ -25,7 +25,21 @@ pub fn time_of_impact(
     time_of_impact_with(a, a_motion, b, b_motion, options, &mut Workspace::new())
 }
 
-/// [`time_of_impact`] with a workspace.
+/// [`time_of_impact`] with a workspace, which many calls share.
+///
+/// ```
+/// use elbowroom_proximity::ccd::{CcdOptions, ConstantTwist, time_of_impact_with};
+/// use elbowroom_proximity::{Shape, Sphere, Workspace};
+/// use elbowroom_spatial::{Pose, Vec3};
+/// let ball = Shape::Sphere(Sphere { radius: 0.1 });
+/// let flight = ConstantTwist::linear(Pose::IDENTITY, Vec3::X);
+/// let (mut workspace, options) = (Workspace::new(), CcdOptions::default());
+/// for x in [0.7, 0.9] {
+///     let other = Pose::from_translation(Vec3::X * x);
+///     let hit = time_of_impact_with(&ball, &flight, &ball, &other, &options, &mut workspace).unwrap();
+///     assert!((hit.time - (x - 0.2)).abs() < 1e-3);
+/// }
+/// ```
 pub fn time_of_impact_with(
     a: &Shape,
     a_motion: &dyn RigidMotion,

@@ -31,4 +31,4 @@ pub(crate) use shells::Shells;
 pub use components::{Component, split_components};
 pub use error::RepairError;
 pub use orient::{OrientReport, Oriented, orient};
-pub use weld::{WeldReport, Welded, weld};
+pub use weld::{WeldReport, Welded, merge_targets, weld};

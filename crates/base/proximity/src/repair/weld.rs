@@ -47,10 +47,7 @@ pub fn weld(vertices: &[Vec3], triangles: &[[u32; 3]], tolerance: f64) -> Result
         return Err(RepairError::Tolerance(tolerance));
     }
     check(vertices.len(), triangles)?;
-    let mut target = first_of_equal(vertices);
-    if tolerance > 0.0 {
-        merge_near(vertices, &mut target, tolerance, |_| true);
-    }
+    let target = merge_targets(vertices, tolerance);
     let merged = target.iter().enumerate().filter(|&(i, &t)| t as usize != i).count();
     let faces: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(|i| target[i as usize])).collect();
     let mut report = WeldReport { merged, ..WeldReport::default() };
@@ -58,6 +55,24 @@ pub fn weld(vertices: &[Vec3], triangles: &[[u32; 3]], tolerance: f64) -> Result
     let (vertices, triangles) = compact(vertices, &kept);
     report.unused = target.len() - merged - vertices.len();
     Ok(Welded { vertices, triangles, report })
+}
+
+/// For each vertex the index of the one into which [`weld`] merges it; its own index if it is kept. A tolerance that is not
+/// a positive finite number of metres merges equal coordinates.
+///
+/// ```
+/// use elbowroom_proximity::repair::merge_targets;
+/// use elbowroom_spatial::Vec3;
+/// let vertices = [Vec3::ZERO, Vec3::X, Vec3::ZERO, Vec3::X * (1.0 + 1e-10)];
+/// assert_eq!(merge_targets(&vertices, 0.0), [0, 1, 0, 3]);
+/// assert_eq!(merge_targets(&vertices, 1e-9), [0, 1, 0, 1]);
+/// ```
+pub fn merge_targets(vertices: &[Vec3], tolerance: f64) -> Vec<u32> {
+    let mut target = first_of_equal(vertices);
+    if tolerance > 0.0 && tolerance.is_finite() {
+        merge_near(vertices, &mut target, tolerance, |_| true);
+    }
+    target
 }
 
 /// Leaves out triangles without area. One with three different corners toggles whether its edges are matched, so it

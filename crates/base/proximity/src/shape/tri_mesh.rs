@@ -215,17 +215,13 @@ fn extremes(vertices: &[Vec3], triangles: &[[u32; 3]]) -> [Vec3; 6] {
     found
 }
 
-/// From this many triangles on, tree and topology are computed on a thread each.
+/// From this many triangles on, tree and topology are computed in parallel.
 const LARGE: usize = 20_000;
 
 /// The two long steps of making a mesh, concurrently where it is large.
 fn prepare(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (Topology, Bvh16) {
     if triangles.len() < LARGE {
-        return (topology::examine(vertices, triangles), Bvh16::build(vertices, triangles, 1));
+        return (topology::examine(vertices, triangles), Bvh16::build(vertices, triangles));
     }
-    std::thread::scope(|scope| {
-        let examination = scope.spawn(|| topology::examine(vertices, triangles));
-        let bvh = Bvh16::build(vertices, triangles, 2);
-        (examination.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)), bvh)
-    })
+    rayon::join(|| topology::examine(vertices, triangles), || Bvh16::build(vertices, triangles))
 }

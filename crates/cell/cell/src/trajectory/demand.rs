@@ -10,7 +10,7 @@ use super::playback::Playback;
 use crate::{Cell, CellRobot, Program, ProgramBody};
 
 /// Factor on the stated accelerations of programs: linear moves are timed from samples of their path.
-pub const ACCELERATION_MARGIN: f64 = 1.1;
+const ACCELERATION_MARGIN: f64 = 1.1;
 /// Tolerance (m) for rows beside a smooth path: half of the 0.5 mm that the stopping-distance law keeps in reserve.
 const BESIDE_M: f64 = 0.25e-3;
 /// Where a change of velocity moves a robot by less than this (m) per tick, the reserve covers it: the law assumes one

@@ -133,22 +133,10 @@ pub struct RunProgress {
 /// [`FormatError`] at the line of an infeasible step. Nothing has moved then, except where a part that another robot
 /// moves cannot be gripped.
 pub fn simulate(cell: &Cell, options: &RunOptions) -> Result<RunOutcome, FormatError> {
-    simulate_with(cell, options, &mut |_| {})
+    simulate_observed(cell, options, &mut |_| {}, None)
 }
 
-/// [`simulate`] with a progress callback.
-///
-/// # Errors
-/// As for [`simulate`].
-pub fn simulate_with(
-    cell: &Cell,
-    options: &RunOptions,
-    progress: &mut dyn FnMut(RunProgress),
-) -> Result<RunOutcome, FormatError> {
-    simulate_observed(cell, options, progress, None)
-}
-
-/// [`simulate_with`] with an observer of the monitors' ticks, such as one that records them.
+/// [`simulate`] with a progress callback and an observer of the monitors' ticks, such as one that records them.
 ///
 /// # Errors
 /// As for [`simulate`].

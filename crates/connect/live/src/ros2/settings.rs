@@ -9,7 +9,7 @@ use thiserror::Error;
 use crate::network::{NetworkError, endpoint};
 
 /// Where the sessions of ROS 2 find their router.
-pub const DEFAULT_ROUTER: &str = "127.0.0.1:7447";
+const DEFAULT_ROUTER: &str = "127.0.0.1:7447";
 
 /// The topics of the cell begin with this, but for those that ROS 2 has names for.
 const OWN: &str = "/elbowroom/";
@@ -25,7 +25,7 @@ pub struct Ros2Settings {
     pub domain: u32,
     /// The release of ROS 2.
     pub distribution: Distribution,
-    /// The router that the sessions of ROS 2 connect to; [`DEFAULT_ROUTER`] where none is given.
+    /// The router that the sessions of ROS 2 connect to; 127.0.0.1:7447 if none is given.
     pub router: Option<String>,
 }
 

@@ -87,8 +87,6 @@ impl Marker {
     pub const CYLINDER: i32 = 3;
     /// Lines, each between two points.
     pub const LINE_LIST: i32 = 5;
-    /// Balls.
-    pub const SPHERE_LIST: i32 = 7;
     /// A text that faces the camera.
     pub const TEXT_VIEW_FACING: i32 = 9;
     /// Triangles, each of three points.

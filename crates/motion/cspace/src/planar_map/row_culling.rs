@@ -30,12 +30,12 @@ impl LineBits {
     }
 
     /// Each line takes its bit from the line before it.
-    pub fn mask_from_before(self) -> u64 {
+    fn mask_from_before(self) -> u64 {
         (self.bits << 1 | self.bits >> (self.count - 1)) & self.all()
     }
 
     /// Each line takes its bit from the line after it.
-    pub fn mask_from_after(self) -> u64 {
+    fn mask_from_after(self) -> u64 {
         (self.bits >> 1 | self.bits << (self.count - 1)) & self.all()
     }
 

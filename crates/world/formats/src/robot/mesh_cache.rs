@@ -2,11 +2,12 @@
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 
 use elbowroom_proximity::TriMesh;
 use elbowroom_spatial::Vec3;
 use elbowroom_spatial::units::LengthUnit;
+use rayon::prelude::*;
 
 use crate::mesh;
 use crate::mesh_data::{MeshData, UpAxis};
@@ -75,23 +76,13 @@ fn key(scale: Vec3) -> Scale {
 
 fn load_files(scales_of: HashMap<PathBuf, Vec<Vec3>>, unit: Option<LengthUnit>) -> HashMap<PathBuf, Loaded> {
     let mut jobs: Vec<_> = scales_of.into_iter().collect();
-    // The largest file first, so that no thread starts it last.
-    jobs.sort_by_cached_key(|(path, _)| std::fs::metadata(path).map_or(0, |m| m.len()));
-    let threads = std::thread::available_parallelism().map_or(1, usize::from).min(jobs.len()).min(8);
-    let (jobs, files) = (Mutex::new(jobs), Mutex::new(HashMap::new()));
-    std::thread::scope(|scope| {
-        for _ in 0..threads {
-            scope.spawn(|| {
-                while let Some((path, scales)) = jobs.lock().ok().and_then(|mut jobs| jobs.pop()) {
-                    let loaded = load_file(&path, &scales, unit);
-                    if let Ok(mut files) = files.lock() {
-                        files.insert(path, loaded);
-                    }
-                }
-            });
-        }
-    });
-    files.into_inner().unwrap_or_default()
+    // The largest files first, so that none of them is the last to be started.
+    jobs.sort_by_cached_key(|(path, _)| std::cmp::Reverse(std::fs::metadata(path).map_or(0, |m| m.len())));
+    let load = |(path, scales): (PathBuf, Vec<Vec3>)| {
+        let loaded = load_file(&path, &scales, unit);
+        (path, loaded)
+    };
+    jobs.into_par_iter().with_max_len(1).map(load).collect()
 }
 
 fn load_file(path: &Path, scales: &[Vec3], unit: Option<LengthUnit>) -> Loaded {

@@ -11,7 +11,6 @@ mod single_forward;
 mod sphere_packs;
 
 use std::sync::OnceLock;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use elbowroom_kinematics::{Chain, LinkId};
 use elbowroom_proximity::Shape;
@@ -30,7 +29,7 @@ use self::body::push_tree;
 use self::close_pairs::closer_slacks;
 use self::lever_arms::{Reach, lever_arms};
 use crate::cover::{Ball, ROUNDING_M, SphereCover};
-use crate::cover_source::{BuiltCovers, CoverSource};
+use crate::cover_source::{BuiltCovers, CoverSource, covers};
 use crate::error::ValidityError;
 
 /// Largest protrusion of the cover of a link, m.
@@ -257,30 +256,13 @@ fn link_covers(robot: &Robot, source: &dyn CoverSource) -> Vec<(LinkId, Option<S
 /// The covers of all links with colliders, in the order of the chain, on all processors.
 fn usual_covers(robot: &Robot, source: &dyn CoverSource) -> Vec<(LinkId, Option<SphereCover>)> {
     let links: Vec<LinkId> = robot.links_with_colliders().collect();
-    let next = AtomicUsize::new(0);
-    let cover = |link: LinkId| {
+    let body = |link: &LinkId| {
         let shapes: Vec<_> = robot.colliders[link.0].iter().map(|c| (&c.shape, c.in_link)).collect();
-        source.cover(&shapes, slack_m(&shapes))
+        let slack_m = slack_m(&shapes);
+        (shapes, slack_m)
     };
-    let work = || {
-        let mut done = Vec::new();
-        while let Some(&link) = links.get(next.fetch_add(1, Ordering::Relaxed)) {
-            done.push((link, cover(link)));
-        }
-        done
-    };
-    let threads = std::thread::available_parallelism().map_or(1, usize::from).min(links.len());
-    let mut covers = std::thread::scope(|scope| {
-        let others: Vec<_> = (1..threads).map(|_| scope.spawn(work)).collect();
-        let mut covers = work();
-        for other in others {
-            // A panic of a thread goes on here.
-            covers.extend(other.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
-        }
-        covers
-    });
-    covers.sort_by_key(|(link, _)| *link);
-    covers
+    let bodies: Vec<_> = links.iter().map(body).collect();
+    links.into_iter().zip(covers(&bodies, source)).collect()
 }
 
 /// The slack of a cover by the size of what it covers.

@@ -1,12 +1,11 @@
 //! Builds layers of a robot's map on covers.
 
 use std::sync::OnceLock;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use elbowroom_proximity::Shape;
 use elbowroom_robot::Robot;
 use elbowroom_spatial::Pose;
-use elbowroom_validity::{BuiltCovers, CoverSource, SphereCover};
+use elbowroom_validity::{BuiltCovers, CoverSource, SphereCover, covers};
 
 use super::super::builder::RobotMapBuilder;
 use super::super::driven_chain::RemainingJoints;
@@ -15,7 +14,7 @@ use super::super::placed_obstacle::PlacedObstacle;
 use super::super::rigid_groups::{RigidGroup, RigidGroups};
 use super::axis_roles::AxisRoles;
 use super::box_division::BoxDivision;
-use super::cover_class::{CoverClass, CoveredGroup, classes, cover};
+use super::cover_class::{CoverClass, CoveredGroup, classes};
 use super::obstacle::CoverObstacle;
 use super::obstacle_lanes::ObstacleLanes;
 use super::planar_arm_map::PlanarArmMap;
@@ -117,7 +116,7 @@ impl CoverMapBuilder {
         let slack_m = settings.slack_m.unwrap_or_else(|| (SLACK_SHARE * reach).clamp(LEAST_SLACK_M, MOST_SLACK_M));
         let planar = PlanarArmMap::new(&exact.chain, &groups, grid, slack_m);
         let mut steps = StepChain::default();
-        let covers = covers(&groups, slack_m, source)?;
+        let covers = covers_of(&groups, slack_m, source)?;
         let covered: Vec<CoveredGroup<'_>> = groups
             .iter()
             .zip(covers)
@@ -253,32 +252,14 @@ impl CoverMapBuilder {
     }
 }
 
-/// The covers of groups of links, on as many threads as the machine runs at once.
-fn covers(groups: &[RigidGroup], slack_m: f64, source: &dyn CoverSource) -> Result<Vec<SphereCover>, RobotMapError> {
-    let threads = std::thread::available_parallelism().map_or(1, Into::into).min(groups.len());
-    let next = AtomicUsize::new(0);
-    let work = || {
-        let mut done = Vec::new();
-        while let Some((at, group)) =
-            Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|at| Some((at, groups.get(at)?)))
-        {
-            done.push((at, cover(group, slack_m, source)));
-        }
-        done
-    };
-    let mut all = std::thread::scope(|scope| {
-        let others: Vec<_> = (1..threads).map(|_| scope.spawn(work)).collect();
-        let mut all = work();
-        for other in others {
-            match other.join() {
-                Ok(done) => all.extend(done),
-                Err(panic) => std::panic::resume_unwind(panic),
-            }
-        }
-        all
-    });
-    all.sort_by_key(|(at, _)| *at);
-    all.into_iter().map(|(_, cover)| cover).collect()
+/// The covers of groups of links.
+fn covers_of(groups: &[RigidGroup], slack_m: f64, source: &dyn CoverSource) -> Result<Vec<SphereCover>, RobotMapError> {
+    let bodies: Vec<(Vec<(&Shape, Pose)>, f64)> = groups
+        .iter()
+        .map(|group| (group.solids.iter().map(|(shape, pose)| (shape, *pose)).collect(), slack_m))
+        .collect();
+    let invalid = || RobotMapError::InvalidPlacement("a link of the robot".into());
+    covers(&bodies, source).into_iter().map(|cover| cover.ok_or_else(invalid)).collect()
 }
 
 /// Length from base to tip along the links, m.

@@ -2,9 +2,8 @@
 
 use elbowroom_spatial::Vec3;
 use elbowroom_validity::lanes::{LANES, PointRow, Row};
-use elbowroom_validity::{Ball, CoverSource, SphereCover};
+use elbowroom_validity::{Ball, SphereCover};
 
-use super::super::error::RobotMapError;
 use super::super::rigid_groups::RigidGroup;
 use super::axis_roles::AxisRoles;
 use super::ball_tree::{LEAF, ball_tree};
@@ -89,13 +88,6 @@ pub(super) struct CoveredGroup<'a> {
     pub group: &'a RigidGroup,
     pub cover: SphereCover,
     pub path: Vec<usize>,
-}
-
-/// The cover of a group's solids.
-pub(super) fn cover(group: &RigidGroup, slack_m: f64, source: &dyn CoverSource) -> Result<SphereCover, RobotMapError> {
-    let solids: Vec<_> = group.solids.iter().map(|(shape, pose)| (shape, *pose)).collect();
-    let invalid = || RobotMapError::InvalidPlacement("a link of the robot".into());
-    source.cover(&solids, slack_m).ok_or_else(invalid)
 }
 
 /// The classes of some groups, those that few axes move first.
