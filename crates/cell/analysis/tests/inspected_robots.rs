@@ -38,7 +38,7 @@ fn states(model: &QueryModel) -> QueryStates {
         chain.lower().into_iter().zip(chain.upper()).map(|(l, u)| (l.max(-3.1), u.min(3.1))).collect();
     let mut random = Random(1);
     for _ in 0..50 {
-        let q = bounds.iter().map(|(lower, upper)| random.range(*lower, *upper).to_string());
+        let q = bounds.iter().map(|(lower, upper)| random.between(*lower, *upper).to_string());
         text += &(q.collect::<Vec<_>>().join(",") + "\n");
     }
     QueryStates::parse("q.csv".as_ref(), &text, model).unwrap()

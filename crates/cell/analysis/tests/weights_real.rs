@@ -47,7 +47,7 @@ fn random_state(scene: &Scene, random: &mut Random) -> SceneState {
     for (i, r) in scene.robots().iter().enumerate() {
         let chain = &r.robot.chain;
         let q: Vec<f64> =
-            chain.lower().iter().zip(chain.upper()).map(|(l, u)| random.range(l.max(-3.1), u.min(3.1))).collect();
+            chain.lower().iter().zip(chain.upper()).map(|(l, u)| random.between(l.max(-3.1), u.min(3.1))).collect();
         state.set_q(scene, RobotId(i), &q).unwrap();
     }
     state
