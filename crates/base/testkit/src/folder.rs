@@ -5,12 +5,17 @@ use std::path::{Path, PathBuf};
 
 /// The root of the workspace.
 pub fn workspace() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../..")
+    Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(3).map(Path::to_owned).unwrap_or_default()
 }
 
 /// The examples of the workspace.
 pub fn examples() -> PathBuf {
     workspace().join("examples")
+}
+
+/// The URDF of an example robot, such as `kr125`.
+pub fn model(name: &str) -> PathBuf {
+    examples().join("models").join(name).join(name).with_extension("urdf")
 }
 
 /// The data on real robots: `$ELBOWROOM_DATA`, or `../shared/data` beside the workspace. If that folder is missing, prints one
@@ -24,19 +29,16 @@ pub fn data_part(part: &str) -> Option<PathBuf> {
     found(data_place().join(part))
 }
 
-/// The robots in folders of the data, such as `urdf` and `cell`: every `NAME/NAME.urdf`, in the order of the names. Empty if
-/// the data is missing, with a line as [`data`] prints it.
-///
-/// # Panics
-/// If the data has no such folder.
+/// The robots in folders of the data, such as `urdf` and `cell`: every `NAME/NAME.urdf`, in the order of the names. For a
+/// missing folder, prints a line as [`data`] does.
 pub fn robots(parts: &[&str]) -> Vec<PathBuf> {
-    let Some(data) = data() else { return Vec::new() };
     let urdf = |folder: PathBuf| {
         let file = folder.join(folder.file_name()?).with_added_extension("urdf");
         file.is_file().then_some(file)
     };
-    let mut robots: Vec<PathBuf> = parts.iter().flat_map(|part| entries(&data.join(part))).filter_map(urdf).collect();
-    robots.sort_by(|a, b| a.file_name().cmp(&b.file_name()));
+    let mut robots: Vec<PathBuf> =
+        parts.iter().filter_map(|part| data_part(part)).flat_map(|part| entries(&part)).filter_map(urdf).collect();
+    robots.sort_by(|a, b| a.file_stem().cmp(&b.file_stem()));
     robots
 }
 
@@ -45,7 +47,7 @@ pub fn files_below(folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
     let mut waiting = vec![folder.to_owned()];
     while let Some(folder) = waiting.pop() {
-        for path in std::fs::read_dir(&folder).into_iter().flatten().flatten().map(|entry| entry.path()) {
+        for path in entries(&folder) {
             if path.is_dir() { waiting.push(path) } else { files.push(path) }
         }
     }
@@ -59,15 +61,14 @@ fn data_place() -> PathBuf {
 
 fn found(folder: PathBuf) -> Option<PathBuf> {
     if folder.is_dir() {
-        return Some(folder);
+        return Some(folder.canonicalize().unwrap_or(folder));
     }
     eprintln!("skipped: no data at {}", folder.display());
     None
 }
 
 fn entries(folder: &Path) -> Vec<PathBuf> {
-    let entries = std::fs::read_dir(folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
-    entries.flatten().map(|entry| entry.path()).collect()
+    std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()).collect()
 }
 
 #[cfg(test)]
@@ -77,7 +78,7 @@ mod tests {
     #[test]
     fn the_workspace_is_found_from_this_crate() {
         assert!(workspace().join("Cargo.lock").is_file());
-        assert!(examples().join("models").is_dir());
+        assert!(model("kr125").is_file());
     }
 
     #[test]

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-use corpus::{PARSERS, Random, mutate, run, samples};
+use corpus::{PARSERS, Xorshift, mutate, run, samples};
 
 const LARGEST_SEED: u64 = 64 * 1024;
 const SLOW: Duration = Duration::from_secs(2);
@@ -31,7 +31,7 @@ fn main() -> ExitCode {
     }
     let seed = arguments.get(3).and_then(|s| s.parse().ok()).unwrap_or(0x9e37_79b9_7f4a_7c15);
     std::panic::set_hook(Box::new(|_| {}));
-    let report = fuzz(parser, Duration::from_secs(seconds), &corpus, Random(seed));
+    let report = fuzz(parser, Duration::from_secs(seconds), &corpus, Xorshift(seed));
     eprintln!("{parser}: {} files, {report}", corpus.len());
     ExitCode::from(u8::from(report.findings > 0))
 }
@@ -73,7 +73,7 @@ impl std::fmt::Display for Report {
     }
 }
 
-fn fuzz(parser: &str, time: Duration, corpus: &[Vec<u8>], mut random: Random) -> Report {
+fn fuzz(parser: &str, time: Duration, corpus: &[Vec<u8>], mut random: Xorshift) -> Report {
     let mut report = Report::default();
     let end = Instant::now() + time;
     while Instant::now() < end {
