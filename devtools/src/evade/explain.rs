@@ -44,7 +44,7 @@ pub fn explain(
         let horizon_s = before_s + AFTER_HIT_S;
         let from = [&now.q[..], &qd[..]];
         let found = search_escape_tree(&scene, robot, &limits, from, &obstacles, horizon_s, tries, &mut || {
-            random.range(0.0, 1.0)
+            random.between(0.0, 1.0)
         })?;
         let outcome = found.gap_m.map_or_else(|| "no escape".to_owned(), |gap| format!("an escape, gap {gap:.3} m"));
         println!(

@@ -1,26 +1,22 @@
 //! Random numbers from a seed, the same on every machine (`SplitMix64`).
 
-use elbowroom_testkit::random::{split_mix, unit};
+use elbowroom_testkit::random::SplitMix;
 
 /// A stream of random numbers.
 #[derive(Debug, Clone)]
-pub struct Random(u64);
+pub struct Random(SplitMix);
 
 impl Random {
     /// The stream of one case of a run.
     pub fn of_case(seed: u64, case: u64) -> Self {
-        let mut stream = Self(seed ^ case.wrapping_mul(0x9E37_79B9_7F4A_7C15));
+        let mut stream = SplitMix(seed ^ case.wrapping_mul(0x9E37_79B9_7F4A_7C15));
         stream.bits();
-        stream
-    }
-
-    fn bits(&mut self) -> u64 {
-        split_mix(&mut self.0)
+        Self(stream)
     }
 
     /// In 0..1.
     pub fn unit(&mut self) -> f64 {
-        unit(self.bits())
+        self.0.unit()
     }
 
     /// In `low..high`, with four digits behind the point, so that cells can be read.
@@ -35,7 +31,7 @@ impl Random {
 
     /// A whole number of `low..=high`.
     pub fn whole(&mut self, low: usize, high: usize) -> usize {
-        low + (self.bits() % (high - low + 1) as u64) as usize
+        low + self.0.below(high - low + 1)
     }
 
     /// True in so many of 100 cases.

@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 use xtask::Failure;
 
 use super::words::{SEED, number};
-use corpus::{PARSERS, Random, mutate, samples};
+use corpus::{PARSERS, Xorshift, mutate, samples};
 
 const LARGEST_SEED: u64 = 64 * 1024;
 const SLOW: Duration = Duration::from_secs(2);
@@ -49,7 +49,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         collect(directory, parser, &mut corpus);
     }
     std::panic::set_hook(Box::new(|_| {}));
-    let report = fuzz(parser, Duration::from_secs(options.seconds), &corpus, Random(options.seed));
+    let report = fuzz(parser, Duration::from_secs(options.seconds), &corpus, Xorshift(options.seed));
     eprintln!("{parser}: {} files, {report}", corpus.len());
     if report.findings == 0 { Ok(()) } else { Err(Failure::Check(format!("{} findings", report.findings))) }
 }
@@ -91,7 +91,7 @@ impl std::fmt::Display for Report {
     }
 }
 
-fn fuzz(parser: &str, time: Duration, corpus: &[Vec<u8>], mut random: Random) -> Report {
+fn fuzz(parser: &str, time: Duration, corpus: &[Vec<u8>], mut random: Xorshift) -> Report {
     let mut report = Report::default();
     let end = Instant::now() + time;
     while Instant::now() < end {

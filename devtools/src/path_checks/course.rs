@@ -4,7 +4,6 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use elbowroom_scene::Scene;
-use elbowroom_testkit::random::{split_mix, unit};
 
 /// A path: a time (or length) and joint values, linear between.
 pub type Polyline = Vec<(f64, Vec<f64>)>;
@@ -132,13 +131,4 @@ pub fn along<Q: AsRef<[f64]>>(waypoints: &[Q]) -> Polyline {
         last = Some(q);
     }
     line
-}
-
-/// `SplitMix64` (Steele, Lea, Flood 2014).
-pub struct Random(pub u64);
-
-impl Random {
-    pub fn unit(&mut self) -> f64 {
-        unit(split_mix(&mut self.0))
-    }
 }

@@ -6,8 +6,9 @@ use std::time::Instant;
 
 use elbowroom_cspace::{ConvexObstacle, Grid, JointMap};
 use elbowroom_planner::{GridPlanner, GridPlannerSettings, KinematicLimits, example};
+use elbowroom_testkit::random::SplitMix;
 
-use super::course::{Course, Random, along};
+use super::course::{Course, along};
 
 /// Width of a cell, degrees.
 const STEP: f64 = 2.0;
@@ -30,7 +31,7 @@ pub fn course(folder: &Path, name: &str, obstacles: &[ConvexObstacle], pairs: us
         jerk: vec![30.0, 30.0, 50.0],
     };
     let mut course = Course::new(name, urdf(folder, &grid)?, scene);
-    let mut random = Random(1);
+    let mut random = SplitMix(1);
     while course.asked < pairs {
         let [from, to] = [0, 1].map(|_| free(&grid, &map, &mut random));
         course.asked += 1;
@@ -54,7 +55,7 @@ pub fn course(folder: &Path, name: &str, obstacles: &[ConvexObstacle], pairs: us
     Ok(course)
 }
 
-fn free(grid: &Grid, map: &JointMap, random: &mut Random) -> [f64; 3] {
+fn free(grid: &Grid, map: &JointMap, random: &mut SplitMix) -> [f64; 3] {
     loop {
         let cell = map.occupancy().shape().map(|n| ((random.unit() * n as f64) as usize).min(n - 1) as u16);
         if !map.occupancy().is_blocked(cell) {

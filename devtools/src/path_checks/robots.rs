@@ -9,8 +9,9 @@ use elbowroom_proximity::{Cuboid, Shape};
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{Checker, CheckerOptions, Object, Scene, SceneState};
 use elbowroom_spatial::Pose;
+use elbowroom_testkit::random::SplitMix;
 
-use super::course::{Course, Random, along};
+use super::course::{Course, along};
 use crate::cross_validation::world::{self, Files};
 
 /// Robots of the data that are planned for, each with the size of what stands around it.
@@ -106,7 +107,7 @@ fn free(scene: &Scene, count: usize) -> Result<Vec<Vec<f64>>, String> {
     let mut state = SceneState::new(scene);
     let chain = &scene.robots()[0].robot.chain;
     let each: Vec<(f64, f64)> = chain.lower().into_iter().zip(chain.upper()).collect();
-    let (mut random, mut free) = (Random(2), Vec::new());
+    let (mut random, mut free) = (SplitMix(2), Vec::new());
     let begin = Instant::now();
     while free.len() < count {
         if begin.elapsed() > Duration::from_secs(20) {
@@ -122,7 +123,7 @@ fn free(scene: &Scene, count: usize) -> Result<Vec<Vec<f64>>, String> {
 }
 
 /// Half a turn either way where there is no limit.
-fn within(low: f64, high: f64, random: &mut Random) -> f64 {
+fn within(low: f64, high: f64, random: &mut SplitMix) -> f64 {
     let turn = std::f64::consts::PI;
     let (low, high) = (if low.is_finite() { low } else { -turn }, if high.is_finite() { high } else { turn });
     low + (high - low) * random.unit()

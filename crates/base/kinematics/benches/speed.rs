@@ -8,6 +8,7 @@ use std::f64::consts::FRAC_PI_2;
 use std::hint::black_box;
 use std::time::Instant;
 
+use common::RandomGeometry;
 use elbowroom_kinematics::dh::ClassicalRow;
 use elbowroom_kinematics::inverse::{IkOptions, IkSolver};
 use elbowroom_kinematics::{Chain, ChainState, Joint, JointKind, Limits, LinkId};
@@ -87,7 +88,7 @@ fn report(label: &str, chain: &Chain) {
     });
     let (tip, mut columns) = (chain.tip(), vec![[0.0; 6]; n]);
     let jacobian = nanoseconds(|_| chain.jacobian(black_box(&state), tip, Vec3::Z, &mut columns));
-    common::Random(1).state(chain, &mut state.q);
+    common::SplitMix(1).state(chain, &mut state.q);
     chain.forward(&mut state);
     let target = state.link_in_root(tip);
     let mut solver = IkSolver::new(chain, tip, Pose::IDENTITY, IkOptions::default());

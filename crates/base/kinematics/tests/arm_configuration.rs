@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use crate::common::{Random, disguised_wrist_arm};
+use crate::common::{RandomGeometry, SplitMix, disguised_wrist_arm};
 use elbowroom_kinematics::dh::ClassicalRow;
 use elbowroom_kinematics::inverse::{ArmConfiguration, Elbow, IkOptions, IkSolver, Shoulder, Wrist};
 use elbowroom_kinematics::{Chain, ChainState, JointKind, Limits};
@@ -64,7 +64,7 @@ fn postures_known_by_sight() {
 fn the_geometry_of_the_links_says_the_same() {
     let chain = arm();
     let mut solver = solver(&chain);
-    let mut random = Random(3);
+    let mut random = SplitMix(3);
     let (mut q, mut seen) = (vec![0.0; 6], HashSet::new());
     for _ in 0..500 {
         random.state(&chain, &mut q);
@@ -92,7 +92,7 @@ fn the_geometry_of_the_links_says_the_same() {
 
 #[test]
 fn every_solution_has_a_name_of_its_own_in_any_frames() {
-    let mut random = Random(5);
+    let mut random = SplitMix(5);
     let mut all_eight = 0;
     for _ in 0..200 {
         let chain = disguised_wrist_arm(&mut random, PI);

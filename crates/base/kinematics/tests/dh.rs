@@ -5,7 +5,7 @@ use crate::common;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::common::awkward::{awkward_chain, awkward_offset, awkward_rotation};
-use crate::common::{Random, robots};
+use crate::common::{SplitMix, robots};
 use elbowroom_kinematics::dh::{ClassicalRow, GeneralizedRow, GeneralizedTable};
 use elbowroom_kinematics::{Chain, ChainState, JointKind, Limits, LinkId};
 use elbowroom_spatial::Pose;
@@ -40,12 +40,12 @@ fn product(rows: &[GeneralizedRow], mut value: impl FnMut(&str) -> f64) -> [[f64
     })
 }
 
-fn worst(chain: &Chain, table: &GeneralizedTable, tip: LinkId, random: &mut Random, states: usize) -> f64 {
+fn worst(chain: &Chain, table: &GeneralizedTable, tip: LinkId, random: &mut SplitMix, states: usize) -> f64 {
     let mut state = ChainState::new(chain);
     let mut worst: f64 = 0.0;
     for _ in 0..states {
         for v in &mut state.q {
-            *v = random.range(-PI, PI);
+            *v = random.between(-PI, PI);
         }
         chain.forward(&mut state);
         let got = product(&table.rows, |name| chain.joint_value(chain.joint(name).unwrap(), &state.q));
@@ -60,7 +60,7 @@ fn worst(chain: &Chain, table: &GeneralizedTable, tip: LinkId, random: &mut Rand
 
 #[test]
 fn awkward_chains() {
-    let mut random = Random(42);
+    let mut random = SplitMix(42);
     let (mut largest, mut with_b, mut auxiliary) = (0.0_f64, 0, 0);
     let long = std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1");
     for _ in 0..if long { 100_000 } else { 20_000 } {
@@ -88,17 +88,17 @@ fn awkward_chains() {
 /// Where no axes are nearly parallel, b is needed only in the row that ends at the tip.
 #[test]
 fn classical_where_classical_suffices() {
-    let mut random = Random(1);
+    let mut random = SplitMix(1);
     for _ in 0..2000 {
         let n = 1 + random.below(7);
-        let angle = |random: &mut Random| [FRAC_PI_2, -FRAC_PI_2, 0.0, PI, random.range(0.1, 3.0)][random.below(5)];
+        let angle = |random: &mut SplitMix| [FRAC_PI_2, -FRAC_PI_2, 0.0, PI, random.between(0.1, 3.0)][random.below(5)];
         let rows: Vec<ClassicalRow> = (0..n)
             .map(|i| ClassicalRow {
                 joint: format!("j{i}"),
                 kind: if random.below(5) == 0 { JointKind::Prismatic } else { JointKind::Revolute },
-                a: random.range(0.0, 1.0) * random.below(2) as f64,
+                a: random.between(0.0, 1.0) * random.below(2) as f64,
                 alpha: angle(&mut random),
-                d: random.range(-1.0, 1.0) * random.below(2) as f64,
+                d: random.between(-1.0, 1.0) * random.below(2) as f64,
                 theta: angle(&mut random),
                 limits: Limits::symmetric(PI),
             })
@@ -113,16 +113,16 @@ fn classical_where_classical_suffices() {
 
 #[test]
 fn a_chain_from_classical_rows_is_their_product() {
-    let mut random = Random(9);
+    let mut random = SplitMix(9);
     for _ in 0..500 {
         let rows: Vec<ClassicalRow> = (0..6)
             .map(|i| ClassicalRow {
                 joint: format!("joint_{}", i + 1),
                 kind: [JointKind::Revolute, JointKind::Prismatic, JointKind::Continuous][random.below(3)],
-                a: random.range(-1.0, 1.0),
-                alpha: random.range(-PI, PI),
-                d: random.range(-1.0, 1.0),
-                theta: random.range(-PI, PI),
+                a: random.between(-1.0, 1.0),
+                alpha: random.between(-PI, PI),
+                d: random.between(-1.0, 1.0),
+                theta: random.between(-PI, PI),
                 limits: Limits::symmetric(2.0),
             })
             .collect();
@@ -170,14 +170,14 @@ fn the_table_of_a_known_robot_is_recovered() {
 
 #[test]
 fn tables_round_trip_to_chains() {
-    let mut random = Random(77);
+    let mut random = SplitMix(77);
     for _ in 0..500 {
         let chain = awkward_chain(&mut random);
         let table = GeneralizedTable::extract(&chain, chain.tip());
         let again = table.to_chain("again").unwrap();
         let (mut a, mut b) = (ChainState::new(&chain), ChainState::new(&again));
         for v in &mut a.q {
-            *v = random.range(-PI, PI);
+            *v = random.between(-PI, PI);
         }
         for (value, id) in b.q.iter_mut().zip(again.active_joints()) {
             *value = chain.joint_value(chain.joint(&again.joints()[id.0].name).unwrap(), &a.q);
@@ -192,7 +192,7 @@ fn tables_round_trip_to_chains() {
 
 #[test]
 fn a_point_on_a_surface_can_be_the_end_of_the_table() {
-    let mut random = Random(13);
+    let mut random = SplitMix(13);
     for _ in 0..500 {
         let chain = awkward_chain(&mut random);
         let tool_in_tip = Pose::new(awkward_rotation(&mut random), awkward_offset(&mut random));
@@ -200,7 +200,7 @@ fn a_point_on_a_surface_can_be_the_end_of_the_table() {
         assert!(table.residual < 1e-9);
         let mut state = ChainState::new(&chain);
         for v in &mut state.q {
-            *v = random.range(-PI, PI);
+            *v = random.between(-PI, PI);
         }
         chain.forward(&mut state);
         let value = |name: &str| chain.joint_value(chain.joint(name).unwrap(), &state.q);
@@ -214,7 +214,7 @@ fn a_point_on_a_surface_can_be_the_end_of_the_table() {
 fn every_real_robot_has_a_table() {
     for (name, path) in robots() {
         let chain = common::load(&path);
-        let mut random = Random(5);
+        let mut random = SplitMix(5);
         for tip in chain.leaves() {
             let table = GeneralizedTable::extract(&chain, tip);
             let residual = worst(&chain, &table, tip, &mut random, 200);

@@ -8,7 +8,7 @@ use crate::common;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::common::awkward::{awkward_chain, awkward_offset, awkward_rotation};
-use crate::common::{Random, robots};
+use crate::common::{SplitMix, robots};
 use elbowroom_kinematics::dh::{
     ClassicalRow, DirectTable, GeneralizedRow, GeneralizedTable, ModifiedRow, ModifiedTable,
 };
@@ -126,11 +126,11 @@ impl Forms {
     }
 
     /// Largest difference from forward kinematics: generalized, direct, modified, frames.
-    fn worst(&self, chain: &Chain, tip: LinkId, random: &mut Random, states: usize) -> [f64; 4] {
+    fn worst(&self, chain: &Chain, tip: LinkId, random: &mut SplitMix, states: usize) -> [f64; 4] {
         let mut state = ChainState::new(chain);
         let mut worst = [0.0_f64; 4];
         for _ in 0..states {
-            state.q.iter_mut().for_each(|v| *v = random.range(-PI, PI));
+            state.q.iter_mut().for_each(|v| *v = random.between(-PI, PI));
             chain.forward(&mut state);
             let value = |name: &str| chain.joint_value(chain.joint(name).unwrap(), &state.q);
             let tip_in_root = state.link_in_root(tip);
@@ -177,7 +177,7 @@ fn chains(usual: usize) -> usize {
 
 #[test]
 fn awkward_chains_in_all_forms() {
-    let mut random = Random(2026);
+    let mut random = SplitMix(2026);
     let (mut largest, mut auxiliary, mut with_b) = ([0.0_f64; 4], 0, 0);
     let count = chains(3000);
     for _ in 0..count {
@@ -209,13 +209,13 @@ fn awkward_chains_in_all_forms() {
 /// Rows of every convention to a chain, and the chain to rows of every convention: the same product every time.
 #[test]
 fn tables_to_chains_to_tables() {
-    let mut random = Random(5);
+    let mut random = SplitMix(5);
     for _ in 0..chains(1500) {
         let n = 1 + random.below(7);
-        let angle = |random: &mut Random| [0.0, FRAC_PI_2, -FRAC_PI_2, PI, random.range(-PI, PI)][random.below(5)];
-        let length = |random: &mut Random| random.range(-1.0, 1.0) * random.below(2) as f64;
+        let angle = |random: &mut SplitMix| [0.0, FRAC_PI_2, -FRAC_PI_2, PI, random.between(-PI, PI)][random.below(5)];
+        let length = |random: &mut SplitMix| random.between(-1.0, 1.0) * random.below(2) as f64;
         let kinds = [JointKind::Revolute, JointKind::Prismatic, JointKind::Continuous, JointKind::Fixed];
-        let row = |i: usize, random: &mut Random| {
+        let row = |i: usize, random: &mut SplitMix| {
             let kind = kinds[random.below(4)];
             let joint = (kind != JointKind::Fixed).then(|| format!("j{i}"));
             let [alpha, theta] = [0, 1].map(|_| angle(random));
@@ -223,7 +223,7 @@ fn tables_to_chains_to_tables() {
             GeneralizedRow { joint, kind, alpha, a, b, theta, d }
         };
         let rows: Vec<GeneralizedRow> = (0..n).map(|i| row(i, &mut random)).collect();
-        let q: Vec<f64> = (0..n).map(|_| random.range(-PI, PI)).collect();
+        let q: Vec<f64> = (0..n).map(|_| random.between(-PI, PI)).collect();
         let value = |name: &str| q[name[1..].parse::<usize>().unwrap()];
 
         let given = GeneralizedTable { rows: rows.clone(), residual: 0.0 };
@@ -286,7 +286,7 @@ fn every_real_robot_in_all_forms() {
     let mut largest = [0.0_f64; 4];
     for (name, path) in robots() {
         let chain = common::load(&path);
-        let mut random = Random(11);
+        let mut random = SplitMix(11);
         for tip in chain.leaves() {
             let forms = Forms::of(&chain, tip, Pose::IDENTITY);
             forms.check_shape(&chain, tip);

@@ -3,7 +3,7 @@
 use crate::common;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use crate::common::{Random, disguised_wrist_arm, robots, serial};
+use crate::common::{RandomGeometry, SplitMix, disguised_wrist_arm, robots, serial};
 use elbowroom_kinematics::dh::ClassicalRow;
 use elbowroom_kinematics::inverse::{IkError, IkMethod, IkOptions, IkSolver, IkTask};
 use elbowroom_kinematics::{Chain, ChainState, Joint, JointId, JointKind, Limits, LinkId, Mimic};
@@ -41,7 +41,7 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
 
 #[test]
 fn spherical_wrists_are_detected_in_any_frames() {
-    let mut random = Random(2);
+    let mut random = SplitMix(2);
     for _ in 0..300 {
         let chain = disguised_wrist_arm(&mut random, PI);
         let mut solver = solver(&chain);
@@ -73,7 +73,7 @@ fn real_spherical_wrists_give_all_branches() {
         if solver.method() != IkMethod::SphericalWrist {
             continue;
         }
-        let mut random = Random(8);
+        let mut random = SplitMix(8);
         let (mut q, seed) = (vec![0.0; chain.dof()], vec![0.0; chain.dof()]);
         for _ in 0..100 {
             random.state(&chain, &mut q);
@@ -94,7 +94,7 @@ fn singular_poses_have_solutions() {
         let mut solver = solver(&chain);
         let (lower, upper) = (chain.lower(), chain.upper());
         let n = chain.dof();
-        let mut random = Random(4);
+        let mut random = SplitMix(4);
         for k in 0..60 {
             let mut q = vec![0.0; n];
             random.state(&chain, &mut q);
@@ -125,14 +125,14 @@ fn a_seed_on_the_solution_is_the_solution() {
     for (name, path) in robots() {
         let chain = common::load(&path);
         let mut solver = solver(&chain);
-        let mut random = Random(6);
+        let mut random = SplitMix(6);
         let mut q = vec![0.0; chain.dof()];
         for _ in 0..50 {
             random.state(&chain, &mut q);
             let target = tip_at(&chain, &q);
             let answer = solver.solve(&target, &q).unwrap_or_else(|e| panic!("{name} {q:?}: {e}"));
             assert!(distance(&answer.q, &q) < 1e-6, "{name} {q:?} {:?}", answer.q);
-            let mut near: Vec<f64> = q.iter().map(|v| v + random.range(-1e-4, 1e-4)).collect();
+            let mut near: Vec<f64> = q.iter().map(|v| v + random.between(-1e-4, 1e-4)).collect();
             for ((v, lo), hi) in near.iter_mut().zip(chain.lower()).zip(chain.upper()) {
                 *v = v.clamp(lo, hi);
             }
@@ -143,7 +143,7 @@ fn a_seed_on_the_solution_is_the_solution() {
 
 #[test]
 fn full_turns_follow_the_seed_within_the_limits() {
-    let mut random = Random(12);
+    let mut random = SplitMix(12);
     let chain = disguised_wrist_arm(&mut random, 3.0 * PI);
     let mut solver = solver(&chain);
     for _ in 0..200 {
@@ -174,7 +174,7 @@ fn full_turns_follow_the_seed_within_the_limits() {
 
 #[test]
 fn errors_name_the_cause() {
-    let mut random = Random(20);
+    let mut random = SplitMix(20);
     let chain = disguised_wrist_arm(&mut random, PI);
     let mut closed = solver(&chain);
     let far = Pose::from_translation(Vec3::X * 100.0);
@@ -240,7 +240,7 @@ fn a_target_beyond_reach_is_as_far_as_the_arm_ends_before_it() {
 
 #[test]
 fn extreme_numbers_terminate_without_success() {
-    let mut random = Random(21);
+    let mut random = SplitMix(21);
     let wrist = disguised_wrist_arm(&mut random, PI);
     let as_endless = |chain: &Chain, drop_wrist: bool| {
         let mut joints = chain.joints().to_vec();
@@ -255,7 +255,7 @@ fn extreme_numbers_terminate_without_success() {
     for chain in [wrist.clone(), as_endless(&wrist, false), as_endless(&wrist, true)] {
         let mut solver = solver(&chain);
         for _ in 0..300 {
-            let odd = |random: &mut Random| {
+            let odd = |random: &mut SplitMix| {
                 [0.0, -0.0, 1e-300, 1.0, -3.0, 1e6, -1e16, 1e100, -1e300, f64::MAX, f64::NAN, f64::INFINITY]
                     [random.below(12)]
             };
@@ -263,7 +263,7 @@ fn extreme_numbers_terminate_without_success() {
             let target = if random.below(2) == 0 {
                 Pose::from_translation(Vec3::new(odd(&mut random), odd(&mut random), odd(&mut random)))
             } else {
-                tip_at(&chain, &std::array::from_fn::<f64, 6, _>(|_| random.range(-PI, PI)))
+                tip_at(&chain, &std::array::from_fn::<f64, 6, _>(|_| random.between(-PI, PI)))
             };
             if let Ok(answer) = solver.solve(&target, &seed) {
                 let (m, rad) = errors(&chain, &answer.q, &target);
@@ -342,7 +342,7 @@ fn mimic_joints_on_the_path_are_followed() {
     assert_eq!(chain.dof(), 6);
     let mut solver = solver(&chain);
     assert_eq!(solver.method(), IkMethod::Numeric);
-    let mut random = Random(30);
+    let mut random = SplitMix(30);
     let (mut q, mut seed, mut found) = (vec![0.0; 6], vec![0.0; 6], 0);
     for _ in 0..200 {
         random.state(&chain, &mut q);

@@ -3,7 +3,7 @@
 #![allow(clippy::print_stdout)]
 
 use crate::common;
-use crate::common::{Random, robots};
+use crate::common::{RandomGeometry, SplitMix, robots};
 use elbowroom_kinematics::{Chain, ChainState, Joint, JointId, JointKind, Limits, LinkId, Mimic};
 use elbowroom_spatial::{FrameMotion, Pose, Vec3};
 use proptest::prelude::*;
@@ -56,7 +56,7 @@ fn direct_value(chain: &Chain, q: &[f64], joint: &Joint) -> f64 {
 }
 
 /// A random tree: links and joints shuffled, every kind, axes along anything, mimics and mimics of mimics.
-fn random_tree(random: &mut Random) -> Chain {
+fn random_tree(random: &mut SplitMix) -> Chain {
     let n = 2 + random.below(9);
     let mut order: Vec<usize> = (0..n).collect();
     for i in (1..n).rev() {
@@ -78,19 +78,19 @@ fn random_tree(random: &mut Random) -> Chain {
     for i in 1..joints.len() {
         let of = random.below(i);
         if random.below(3) == 0 && joints[of].kind != JointKind::Fixed {
-            let (multiplier, offset) = (random.range(-2.0, 2.0), random.range(-1.0, 1.0));
+            let (multiplier, offset) = (random.between(-2.0, 2.0), random.between(-1.0, 1.0));
             joints[i].mimic = Some(Mimic { joint: JointId(of), multiplier, offset });
         }
     }
     Chain::new("tree", (0..n).map(|i| format!("link {i}")).collect(), joints).unwrap()
 }
 
-fn random_state(random: &mut Random, chain: &Chain) -> ChainState {
+fn random_state(random: &mut SplitMix, chain: &Chain) -> ChainState {
     let mut state = ChainState::new(chain);
     for i in 0..chain.dof() {
-        state.q[i] = random.range(-3.0, 3.0);
-        state.qd[i] = random.range(-2.0, 2.0);
-        state.qdd[i] = random.range(-5.0, 5.0);
+        state.q[i] = random.between(-3.0, 3.0);
+        state.qd[i] = random.between(-2.0, 2.0);
+        state.qdd[i] = random.between(-5.0, 5.0);
     }
     state
 }
@@ -175,7 +175,7 @@ proptest! {
 
     #[test]
     fn random_trees_match_matrices_and_finite_differences(seed: u64) {
-        let mut random = Random(seed);
+        let mut random = SplitMix(seed);
         let chain = random_tree(&mut random);
         let mut state = random_state(&mut random, &chain);
         check_poses(&chain, &mut state);
@@ -187,7 +187,7 @@ proptest! {
     #[test]
     fn a_moved_root_frame_moves_everything_alike(seed: u64) {
         // The same tree on a rotated base: all poses and velocities rotate with it.
-        let mut random = Random(seed);
+        let mut random = SplitMix(seed);
         let chain = random_tree(&mut random);
         let base = random.pose();
         let mut joints = chain.joints().to_vec();
@@ -222,7 +222,7 @@ proptest! {
 fn every_real_robot_matches_matrices_and_finite_differences() {
     for (name, path) in robots() {
         let chain = common::load(&path);
-        let mut random = Random(11);
+        let mut random = SplitMix(11);
         for _ in 0..20 {
             let mut state = random_state(&mut random, &chain);
             random.state(&chain, &mut state.q);
@@ -236,7 +236,7 @@ fn every_real_robot_matches_matrices_and_finite_differences() {
 
 #[test]
 fn a_short_q_gives_nan_and_not_a_pose() {
-    let mut random = Random(3);
+    let mut random = SplitMix(3);
     let chain = loop {
         let chain = random_tree(&mut random);
         if chain.dof() > 1 {

@@ -9,7 +9,7 @@ use std::io::Write as _;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use crate::common::{Random, robots};
+use crate::common::{RandomGeometry, SplitMix, robots};
 use elbowroom_kinematics::{Chain, ChainState, LinkId};
 
 const STATES: usize = 1000;
@@ -51,14 +51,14 @@ fn poses_velocities_and_accelerations_match_pinocchio() {
     let mut worst = [0.0_f64; 3];
     for (name, path) in robots() {
         let chain = common::load(&path);
-        let mut random = Random(99);
+        let mut random = SplitMix(99);
         let mut state = ChainState::new(&chain);
         let mut ours = Vec::new();
         let mut text = String::new();
         for _ in 0..STATES {
             random.state(&chain, &mut state.q);
-            state.qd.iter_mut().for_each(|v| *v = random.range(-2.0, 2.0));
-            state.qdd.iter_mut().for_each(|v| *v = random.range(-5.0, 5.0));
+            state.qd.iter_mut().for_each(|v| *v = random.between(-2.0, 2.0));
+            state.qdd.iter_mut().for_each(|v| *v = random.between(-5.0, 5.0));
             for v in state.q.iter().chain(&state.qd).chain(&state.qdd) {
                 write!(text, "{v:?} ").unwrap();
             }

@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use crate::common::awkward::awkward_chain;
-use crate::common::{Random, serial};
+use crate::common::{RandomGeometry, SplitMix, serial};
 use elbowroom_kinematics::surface_ik::{OrientedPoint, PointChain, PointError, SurfaceIkOptions};
 use elbowroom_kinematics::{Chain, ChainState, JointKind, Limits, LinkId};
 use elbowroom_spatial::{Pose, Vec3};
@@ -49,7 +49,7 @@ proptest! {
 
     #[test]
     fn the_point_is_that_of_forward_kinematics_and_the_jacobian_its_derivative(seed in any::<u64>()) {
-        let mut random = Random(seed);
+        let mut random = SplitMix(seed);
         let chain = awkward_chain(&mut random);
         let link = LinkId(random.below(chain.links().len()));
         let (point, normal) = (random.vector(), random.vector().try_normalize().unwrap_or(Vec3::X));
@@ -85,7 +85,7 @@ proptest! {
     /// Solutions reach the target by the chain's own forward kinematics, within its limits.
     #[test]
     fn solutions_hold_and_joints_off_the_path_stay(seed in any::<u64>()) {
-        let mut random = Random(seed);
+        let mut random = SplitMix(seed);
         let chain = awkward_chain(&mut random);
         let link = LinkId(random.below(chain.links().len()));
         let (point, normal) = (random.vector(), random.vector().try_normalize().unwrap_or(Vec3::X));
@@ -125,7 +125,7 @@ proptest! {
 
     #[test]
     fn the_error_never_grows(seed in any::<u64>()) {
-        let mut random = Random(seed);
+        let mut random = SplitMix(seed);
         let chain = awkward_chain(&mut random);
         let mut end = PointChain::new(&chain, chain.tip(), random.vector(), None, SurfaceIkOptions::default()).unwrap();
         let mut q = vec![0.0; chain.dof()];
@@ -172,7 +172,7 @@ proptest! {
 fn reachable_targets_are_reached() {
     for bound in [0.8, 2.0, PI, 6.0] {
         let chain = six(Limits::symmetric(bound));
-        let mut random = Random(3);
+        let mut random = SplitMix(3);
         for link in (1..=6).map(LinkId) {
             for wanted in [false, true] {
                 let (mut q, mut reached) = (vec![0.0; 6], 0);
@@ -260,14 +260,14 @@ fn the_root_has_no_joints_and_an_unknown_link_is_refused() {
 #[test]
 fn a_near_start_gives_a_near_solution() {
     let chain = six(Limits::symmetric(6.0));
-    let mut random = Random(8);
+    let mut random = SplitMix(8);
     let mut end =
         PointChain::new(&chain, LinkId(6), Vec3::X * 0.2, Some(Vec3::X), SurfaceIkOptions::default()).unwrap();
     let mut worst: f64 = 0.0;
     for _ in 0..500 {
         let mut q = [0.0; 6];
         random.state(&chain, &mut q);
-        let near = q.map(|v| (v + random.range(-1e-3, 1e-3)).clamp(-6.0, 6.0));
+        let near = q.map(|v| (v + random.between(-1e-3, 1e-3)).clamp(-6.0, 6.0));
         let target = end.place(&near);
         let start = q;
         if end.solve(&target, &mut q).is_ok_and(|r| r.restarts == 0) {

@@ -10,6 +10,7 @@ mod common;
 use std::hint::black_box;
 use std::time::Instant;
 
+use common::RandomGeometry;
 use elbowroom_proximity::{
     Shape, Sphere, TriMesh, collides, penetration, separation, separation_within, tessellate::tessellate,
 };
@@ -21,7 +22,7 @@ const CASES: usize = 100;
 const LIMIT: f64 = 0.1;
 
 fn gather(first: &str, second: &str, wanted: impl Fn(Option<f64>) -> bool) -> Vec<Case> {
-    let mut rng = common::Rng(5);
+    let mut rng = common::SplitMix(5);
     let mut found = Vec::with_capacity(CASES);
     for _ in 0..20_000 {
         let case = (rng.shape(first), rng.pose(1.5), rng.shape(second), rng.pose(1.5));
@@ -88,7 +89,7 @@ fn bumpy_ball(chord_error: f64) -> Shape {
 
 fn meshes() {
     let (large, small) = (bumpy_ball(4.6e-5), bumpy_ball(1e-3));
-    let mut rng = common::Rng(1);
+    let mut rng = common::SplitMix(1);
     let triangles = |s: &Shape| if let Shape::Mesh(m) = s { m.triangles().len() } else { 0 };
     println!("two bumpy balls of {} triangles", triangles(&large));
     for at in [0.0, 0.9, 1.1, 2.0] {

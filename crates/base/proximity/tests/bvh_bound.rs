@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use crate::common::{CONVEX, Rng};
+use crate::common::{CONVEX, RandomGeometry, SplitMix};
 use elbowroom_proximity::advanced::{bvh_lower_bound, bvh_lower_bound_to_shape, mesh_separation};
 use elbowroom_proximity::{Shape, Sphere, TriMesh, Workspace, project_point, separation, tessellate::tessellate};
 use elbowroom_spatial::{Pose, Vec3};
 
-fn lump(r: &mut Rng, fine: f64) -> TriMesh {
+fn lump(r: &mut SplitMix, fine: f64) -> TriMesh {
     let (mut v, t) = tessellate(&Shape::Sphere(Sphere { radius: 0.3 }), fine);
-    let stretch = Vec3::new(r.range(0.5, 2.0), r.range(0.5, 1.5), r.range(0.5, 1.5));
+    let stretch = Vec3::new(r.between(0.5, 2.0), r.between(0.5, 1.5), r.between(0.5, 1.5));
     for p in &mut v {
         *p = p.scale(stretch);
     }
@@ -18,7 +18,7 @@ fn lump(r: &mut Rng, fine: f64) -> TriMesh {
 
 #[test]
 fn boxes_are_never_farther_than_surfaces_and_get_better_with_depth() {
-    let mut r = Rng(11);
+    let mut r = SplitMix(11);
     let mut workspace = Workspace::new();
     let (mut cleared, mut sum, mut exact_sum) = ([0; 6], [0.0; 6], 0.0);
     for _ in 0..80 {
@@ -41,7 +41,7 @@ fn boxes_are_never_farther_than_surfaces_and_get_better_with_depth() {
                 assert!(on(&a, &p, c.on_a) < 1e-6 && on(&b, &q, c.on_b) < 1e-6, "landmarks");
             }
             // With a limit: `None` only where it is proven, and otherwise the same bound.
-            let limit = r.range(0.0, 1.0);
+            let limit = r.between(0.0, 1.0);
             match bvh_lower_bound(&a, &p, &b, &q, level, limit, &mut workspace) {
                 None => assert!(exact.distance > limit),
                 Some(d) => assert!((d.lower_bound - c.lower_bound).abs() < 1e-4 && c.lower_bound < limit + 1e-4),
@@ -58,7 +58,7 @@ fn boxes_are_never_farther_than_surfaces_and_get_better_with_depth() {
 
 #[test]
 fn contained_shapes_have_the_bound_zero() {
-    let mut r = Rng(12);
+    let mut r = SplitMix(12);
     let mut workspace = Workspace::new();
     let (v, t) = tessellate(&Shape::Sphere(Sphere { radius: 2.0 }), 0.001);
     let hollow = TriMesh::new(v, t).unwrap();
@@ -76,7 +76,7 @@ fn contained_shapes_have_the_bound_zero() {
 
 #[test]
 fn boxes_of_a_mesh_are_never_farther_from_a_simple_shape() {
-    let mut r = Rng(13);
+    let mut r = SplitMix(13);
     let mut sum = [0.0; 4];
     let mut exact_sum = 0.0;
     for k in 0..200 {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::common::{CONVEX, Rng};
+use crate::common::{CONVEX, RandomGeometry, SplitMix};
 use elbowroom_proximity::ccd::{
     CcdOptions, ConstantTwist, MovingShape, RigidMotion, time_of_impact, time_to_collision,
 };
@@ -27,8 +27,8 @@ fn cuboid(x: f64, y: f64, z: f64) -> Shape {
 }
 
 /// A shape that sampling a motion would miss.
-fn thin(rng: &mut Rng) -> Shape {
-    let t = rng.range(1e-4, 1e-3);
+fn thin(rng: &mut SplitMix) -> Shape {
+    let t = rng.between(1e-4, 1e-3);
     match rng.below(6) {
         0 => cuboid(0.4, 0.4, t),
         1 => cuboid(0.6, t, t),
@@ -39,8 +39,8 @@ fn thin(rng: &mut Rng) -> Shape {
     }
 }
 
-fn mover(rng: &mut Rng, kind: usize) -> Shape {
-    let mut size = || rng.range(0.01, 0.1);
+fn mover(rng: &mut SplitMix, kind: usize) -> Shape {
+    let mut size = || rng.between(0.01, 0.1);
     match kind {
         0 => Shape::Sphere(Sphere { radius: size() }),
         1 => Shape::Capsule(Capsule { half_length: size(), radius: size() * 0.3 }),
@@ -58,10 +58,10 @@ fn mover(rng: &mut Rng, kind: usize) -> Shape {
 }
 
 /// Half of them towards the origin, three quarters with rotation, some about distant axes or many times.
-fn motion(rng: &mut Rng) -> ConstantTwist {
+fn motion(rng: &mut SplitMix) -> ConstantTwist {
     let from = Pose::new(Rotation::from_rotation_vector(rng.vec(3.0)), rng.vec(1.5));
     let aim = if rng.below(2) == 0 { rng.vec(0.3) } else { rng.vec(1.2) };
-    let travel = (aim - from.translation) * rng.range(1.0, 3.0);
+    let travel = (aim - from.translation) * rng.between(1.0, 3.0);
     match rng.below(4) {
         0 => ConstantTwist::linear(from, travel),
         1 => {
@@ -73,7 +73,7 @@ fn motion(rng: &mut Rng) -> ConstantTwist {
             from,
             Pose::new(Rotation::from_rotation_vector(rng.vec(3.0)), from.translation + travel),
         ),
-        _ => ConstantTwist::screw(from, rng.vec(0.8), rng.vec(6.0), rng.range(-1.0, 1.0)),
+        _ => ConstantTwist::screw(from, rng.vec(0.8), rng.vec(6.0), rng.between(-1.0, 1.0)),
     }
 }
 
@@ -159,7 +159,7 @@ fn check(
 
 #[test]
 fn thin_plates_and_wires_are_not_tunnelled_through() {
-    let mut rng = Rng(1);
+    let mut rng = SplitMix(1);
     let n = motions(2_000);
     let options = CcdOptions::default();
     let mut hits = 0;
@@ -174,7 +174,7 @@ fn thin_plates_and_wires_are_not_tunnelled_through() {
 
 #[test]
 fn no_tunnelling_when_both_move() {
-    let mut rng = Rng(2);
+    let mut rng = SplitMix(2);
     let n = motions(400);
     let options = CcdOptions { tolerance: 1e-5, ..CcdOptions::default() };
     let mut hits = 0;
@@ -193,7 +193,7 @@ fn no_tunnelling_when_both_move() {
 
 #[test]
 fn motions_with_speed_bounds_only_find_the_same() {
-    let mut rng = Rng(3);
+    let mut rng = SplitMix(3);
     let options = CcdOptions::default();
     for k in 0..motions(200) {
         let (a, b) = (mover(&mut rng, k % 6), thin(&mut rng));
@@ -362,7 +362,7 @@ fn exhausted_steps_are_a_contact_that_is_not_certain() {
 
 #[test]
 fn the_earliest_time_is_not_after_the_contact() {
-    let mut rng = Rng(5);
+    let mut rng = SplitMix(5);
     let mut tight = 0;
     for k in 0..300 {
         let (a, b) = (mover(&mut rng, k % 6), thin(&mut rng));
@@ -392,7 +392,7 @@ fn the_earliest_time_is_not_after_the_contact() {
 /// contact at the time of impact of the kept faces.
 #[test]
 fn the_first_contact_is_on_a_face_that_was_kept() {
-    let mut rng = Rng(7);
+    let mut rng = SplitMix(7);
     let options = CcdOptions { tolerance: 1e-7, max_steps: 100_000, ..CcdOptions::default() };
     let (mut hits, mut kept, mut all) = (0, 0, 0);
     for k in 0..motions(300) {
@@ -431,8 +431,8 @@ fn the_first_contact_is_on_a_face_that_was_kept() {
 }
 
 /// A bent tube: a closed mesh that is not convex.
-fn elbow(rng: &mut Rng) -> Shape {
-    let s = rng.range(0.05, 0.2);
+fn elbow(rng: &mut SplitMix) -> Shape {
+    let s = rng.between(0.05, 0.2);
     let outline = [(0.0, 0.0), (3.0, 0.0), (3.0, 1.0), (1.0, 1.0), (1.0, 3.0), (0.0, 3.0)];
     let level = |z: f64| outline.map(|(x, y)| Vec3::new(x, y, z) * s);
     let vertices = [level(0.0), level(1.0)].concat();
@@ -451,7 +451,7 @@ fn elbow(rng: &mut Rng) -> Shape {
 
 #[test]
 fn every_pair_of_shapes_has_an_answer() {
-    let mut rng = Rng(11);
+    let mut rng = SplitMix(11);
     for first in CONVEX.iter().chain(&["mesh", "plane"]) {
         for second in CONVEX.iter().chain(&["mesh", "plane"]) {
             for _ in 0..4 {

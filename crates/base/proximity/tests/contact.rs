@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::common::{CONVEX, Rng};
+use crate::common::{CONVEX, RandomGeometry, SplitMix};
 use elbowroom_proximity::advanced::{MeshFeatures, for_each_contact};
 use elbowroom_proximity::contact::{ContactPoint, ContactSettings, Detail, contact_point};
 use elbowroom_proximity::{
@@ -12,9 +12,10 @@ use elbowroom_proximity::{
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 /// A wavy ball, tessellated to a tolerance: closed, oriented outward, not convex.
-fn lump(r: &mut Rng, fine: f64) -> Shape {
+fn lump(r: &mut SplitMix, fine: f64) -> Shape {
     let (mut v, t) = tessellate(&Shape::Sphere(Sphere { radius: 0.3 }), fine);
-    let (stretch, wave) = (Vec3::new(r.range(0.5, 1.5), r.range(0.5, 1.5), r.range(0.5, 1.5)), r.range(0.0, 0.4));
+    let (stretch, wave) =
+        (Vec3::new(r.between(0.5, 1.5), r.between(0.5, 1.5), r.between(0.5, 1.5)), r.between(0.0, 0.4));
     for p in &mut v {
         let n = *p / 0.3;
         *p = (*p * (1.0 + wave * (4.0 * n.x).sin() * (3.0 * n.y).cos())).scale(stretch);
@@ -62,7 +63,7 @@ fn within(limit: f64) -> ContactSettings {
 
 #[test]
 fn two_meshes_touch_at_the_longest_crossing() {
-    let mut r = Rng(1);
+    let mut r = SplitMix(1);
     let (mut met, mut apart, mut inside) = (0, 0, 0);
     for _ in 0..100 {
         let (a, b) = (lump(&mut r, 0.01), lump(&mut r, 0.02));
@@ -111,12 +112,12 @@ fn two_meshes_touch_at_the_longest_crossing() {
 
 #[test]
 fn a_box_or_hull_touches_as_its_triangles_do() {
-    let mut r = Rng(2);
+    let mut r = SplitMix(2);
     let mut met = 0;
     for k in 0..200 {
         let a = lump(&mut r, 0.02);
         let kind = if k % 2 == 0 { "hull" } else { "box" };
-        let half_extents = Vec3::new(r.range(0.1, 0.5), r.range(0.1, 0.5), r.range(0.1, 0.5));
+        let half_extents = Vec3::new(r.between(0.1, 0.5), r.between(0.1, 0.5), r.between(0.1, 0.5));
         let b = if k % 2 == 0 { Shape::Hull(Arc::new(r.hull())) } else { Shape::Cuboid(Cuboid { half_extents }) };
         let (v, t) = tessellate(&b, 0.01);
         let same = Shape::Mesh(Arc::new(TriMesh::new(v, t).unwrap()));
@@ -146,7 +147,7 @@ fn a_box_or_hull_touches_as_its_triangles_do() {
 
 #[test]
 fn smooth_shapes_touch_at_the_deepest_point_of_the_mesh() {
-    let mut r = Rng(3);
+    let mut r = SplitMix(3);
     let mut met = [0; 4];
     for k in 0..400 {
         let a = lump(&mut r, 0.02);
@@ -180,7 +181,7 @@ fn smooth_shapes_touch_at_the_deepest_point_of_the_mesh() {
 
 #[test]
 fn contact_points_of_simple_shapes_are_as_far_apart_as_they_overlap() {
-    let mut r = Rng(4);
+    let mut r = SplitMix(4);
     let mut met = 0;
     // Includes pairs of cylinders for which the penetration once took seconds.
     for _ in 0..2000 {
@@ -208,7 +209,7 @@ fn contact_points_of_simple_shapes_are_as_far_apart_as_they_overlap() {
 
 #[test]
 fn within_a_limit_the_nearest_points_are_returned() {
-    let mut r = Rng(5);
+    let mut r = SplitMix(5);
     let (mut found_apart, mut workspace) = (0, Workspace::new());
     for k in 0..300 {
         let a = lump(&mut r, 0.02);
@@ -231,7 +232,7 @@ fn within_a_limit_the_nearest_points_are_returned() {
 
 #[test]
 fn contacts_are_the_same_when_moved_or_swapped() {
-    let mut r = Rng(6);
+    let mut r = SplitMix(6);
     let (mut met, mut moved, mut turned) = (0, 0, 0);
     for k in 0..200 {
         let a = lump(&mut r, 0.02);
@@ -262,7 +263,7 @@ fn degenerate_meshes_and_nan_have_an_answer() {
     let flat = mesh(vec![Vec3::ZERO, Vec3::X, Vec3::Y], vec![[0, 1, 2], [0, 1, 2], [2, 1, 0]]);
     let all =
         [point, line, flat, Shape::Cuboid(Cuboid { half_extents: Vec3::splat(0.5) }), Shape::HalfSpace(HalfSpace)];
-    let mut r = Rng(7);
+    let mut r = SplitMix(7);
     for a in &all {
         for b in &all {
             for k in 0..40 {
@@ -287,7 +288,7 @@ fn degenerate_meshes_and_nan_have_an_answer() {
 
 #[test]
 fn every_level_of_detail_is_conservative() {
-    let mut r = Rng(8);
+    let mut r = SplitMix(8);
     let mut workspace = Workspace::new();
     let simd_levels = [Detail::Boxes(0), Detail::Boxes(1), Detail::Boxes(2), Detail::Boxes(9), Detail::Exact];
     let (mut contacts, kinds) = ([0; 5], ["sphere", "capsule", "cylinder", "box", "hull", "plane"]);
@@ -323,7 +324,7 @@ fn every_instruction_set_gives_the_same_point_of_two_meshes() {
         simd_levels.extend(simd_levels[0].as_sse4_2().map(SimdLevel::Sse4_2));
         simd_levels.extend(simd_levels[0].as_avx2().map(SimdLevel::Avx2));
     }
-    let mut r = Rng(9);
+    let mut r = SplitMix(9);
     let mut met = 0;
     for _ in 0..60 {
         let (a, b) = (lump(&mut r, 0.01), lump(&mut r, 0.01));

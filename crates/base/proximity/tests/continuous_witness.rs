@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::common::Rng;
+use crate::common::SplitMix;
 use elbowroom_proximity::advanced::{mesh_separation, mesh_separation_with};
 use elbowroom_proximity::{
     Capsule, ConvexHull, Cuboid, Cylinder, DistanceSettings, Separation, Shape, TriMesh, WarmStart, WitnessPoints,
@@ -23,8 +23,8 @@ fn plate(kind: &str, half: Vec3) -> Shape {
 }
 
 /// Steps of the witness points over small tilts, metres; the bounds of every answer are checked as well.
-fn steps(a: &Shape, b: &Shape, b_in_a: impl Fn(&mut Rng) -> Pose, a_in_world: &Pose, size: f64) -> Vec<f64> {
-    let mut rng = Rng(16);
+fn steps(a: &Shape, b: &Shape, b_in_a: impl Fn(&mut SplitMix) -> Pose, a_in_world: &Pose, size: f64) -> Vec<f64> {
+    let mut rng = SplitMix(16);
     let mut last: Option<Separation> = None;
     let mut found = Vec::new();
     for _ in 0..400 {
@@ -47,8 +47,8 @@ fn steps(a: &Shape, b: &Shape, b_in_a: impl Fn(&mut Rng) -> Pose, a_in_world: &P
     found
 }
 
-fn tilted(rng: &mut Rng, most: f64, at: Vec3) -> Pose {
-    Pose::new(Rotation::from_rpy(rng.range(-most, most), rng.range(-most, most), 0.0), at)
+fn tilted(rng: &mut SplitMix, most: f64, at: Vec3) -> Pose {
+    Pose::new(Rotation::from_rpy(rng.between(-most, most), rng.between(-most, most), 0.0), at)
 }
 
 #[test]
@@ -80,7 +80,7 @@ fn cylinders_and_capsules_have_continuous_points() {
     for kind in KINDS {
         let floor = plate(kind, Vec3::new(0.9, 0.8, 0.1));
         for (shape, turn, height) in placements {
-            let at = |rng: &mut Rng| {
+            let at = |rng: &mut SplitMix| {
                 tilted(rng, 1e-9, Vec3::new(0.1, 0.05, 0.1 + height + 0.02)) * Pose::new(turn, Vec3::ZERO)
             };
             let worst = steps(&floor, shape, at, &Pose::IDENTITY, 1.5).into_iter().fold(0.0, f64::max);
@@ -91,12 +91,12 @@ fn cylinders_and_capsules_have_continuous_points() {
         for (second, above) in [(&pillar, 0.25), (&rod, 0.05)] {
             let world = Pose::new(lying, Vec3::ZERO);
             let up = world.inverse_transform_vector(Vec3::Z * (below + above + 0.02));
-            let at = |rng: &mut Rng| tilted(rng, 1e-9, up + Vec3::Z * 0.1);
+            let at = |rng: &mut SplitMix| tilted(rng, 1e-9, up + Vec3::Z * 0.1);
             let worst = steps(first, second, at, &world, 1.0).into_iter().fold(0.0, f64::max);
             assert!(worst < 5e-3, "{first:?} along {second:?}: a step of {worst} m");
         }
     }
-    let standing = |rng: &mut Rng| tilted(rng, 1e-9, Vec3::new(0.1, 0.0, 0.65));
+    let standing = |rng: &mut SplitMix| tilted(rng, 1e-9, Vec3::new(0.1, 0.0, 0.65));
     let worst = steps(&pillar, &pillar, standing, &Pose::IDENTITY, 1.0).into_iter().fold(0.0, f64::max);
     assert!(worst < 5e-3, "one on the other: a step of {worst} m");
 }
@@ -123,9 +123,9 @@ fn parallel_edges_have_continuous_points() {
         for (world, height) in [(roll, 0.2 * 2.0_f64.sqrt()), (Pose::IDENTITY, 0.1 + 0.1 * 2.0_f64.sqrt())] {
             let at =
                 world.inverse() * Pose::new(Rotation::from_rpy(quarter, 0.0, 0.0), Vec3::new(0.1, 0.0, height + 0.05));
-            let tilt = |rng: &mut Rng| {
+            let tilt = |rng: &mut SplitMix| {
                 Pose::new(
-                    at.rotation * Rotation::from_rpy(0.0, rng.range(-1e-9, 1e-9), rng.range(-1e-9, 1e-9)),
+                    at.rotation * Rotation::from_rpy(0.0, rng.between(-1e-9, 1e-9), rng.between(-1e-9, 1e-9)),
                     at.translation,
                 )
             };
@@ -154,7 +154,7 @@ fn of_several_tied_features_always_the_same_is_chosen() {
 /// Subdivided faces: the answer does not depend on the warm start.
 #[test]
 fn subdivided_faces_have_one_answer() {
-    let mut rng = Rng(161);
+    let mut rng = SplitMix(161);
     let cut = |n: u32| {
         let at = |i: u32, j: u32| Vec3::new(f64::from(i) / f64::from(n) - 0.5, f64::from(j) / f64::from(n) - 0.5, 0.0);
         let corners = (0..=n).flat_map(|i| (0..=n).map(move |j| at(i, j))).collect();
@@ -181,7 +181,7 @@ fn subdivided_faces_have_one_answer() {
 /// Without continuous witness points the distance is the same.
 #[test]
 fn any_witness_points_have_the_same_distance() {
-    let mut rng = Rng(162);
+    let mut rng = SplitMix(162);
     let mut workspace = Workspace::new();
     for (first, second) in KINDS.iter().flat_map(|a| KINDS.map(|b| (*a, b))) {
         let (a, b) = (plate(first, Vec3::new(0.4, 0.3, 0.01)), plate(second, Vec3::new(0.35, 0.3, 0.02)));

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::common::{CONVEX, Rng};
+use crate::common::{CONVEX, RandomGeometry, SplitMix};
 use elbowroom_proximity::advanced::{colliding_triangles, mesh_separation, triangles_within};
 use elbowroom_proximity::ccd::{CcdOptions, ConstantTwist, time_of_impact};
 use elbowroom_proximity::motion_culling::{FaceCulling, RelativeTwist};
@@ -93,7 +93,7 @@ fn size(s: &Shape) -> f64 {
 
 #[test]
 fn every_query_on_degenerate_meshes_has_an_answer() {
-    let mut rng = Rng(3);
+    let mut rng = SplitMix(3);
     let mut workspace = Workspace::new();
     let meshes = degenerate_meshes();
     for (name, triangles) in &meshes {

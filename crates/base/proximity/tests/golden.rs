@@ -4,7 +4,7 @@
 //! triangle meshes are hashed on every system and for every instruction set in `mesh_pairs.rs`.
 #![cfg(all(target_os = "linux", target_arch = "x86_64"))]
 
-use crate::common::Rng;
+use crate::common::{RandomGeometry, SplitMix};
 use elbowroom_proximity::advanced::is_farther_than;
 use elbowroom_proximity::ccd::{
     CcdOptions, ConstantTwist, MovingShape, RigidMotion, TimeOfImpact, contact_free_fraction, time_of_impact,
@@ -17,29 +17,21 @@ use elbowroom_proximity::{
     separation_within, within,
 };
 use elbowroom_spatial::{FrameMotion, Pose, Vec3};
+use elbowroom_testkit::hash::Fnv;
 
 const KINDS: [&str; 7] = ["sphere", "capsule", "cylinder", "box", "plane", "hull", "mesh"];
 
-/// FNV-1a, byte by byte.
-struct Hash(u64);
+/// A hash of answers.
+#[derive(Default)]
+struct Hash(Fnv);
 
 impl Hash {
-    fn new() -> Self {
-        Self(0xcbf2_9ce4_8422_2325)
-    }
-
-    fn bits(&mut self, x: u64) {
-        for byte in x.to_le_bytes() {
-            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-        }
-    }
-
     fn yes_no(&mut self, yes: bool) {
-        self.bits(u64::from(yes));
+        self.0.add(u64::from(yes));
     }
 
     fn number(&mut self, x: f64) {
-        self.bits(x.to_bits());
+        self.0.add(x.to_bits());
     }
 
     fn vector(&mut self, v: Vec3) {
@@ -62,7 +54,7 @@ impl Hash {
             self.vector(v);
         }
         for triangle in [c.triangle_a, c.triangle_b] {
-            self.bits(triangle.map_or(u64::MAX, u64::from));
+            self.0.add(triangle.map_or(u64::MAX, u64::from));
         }
         self.yes_no(c.touching);
     }
@@ -75,7 +67,7 @@ impl Hash {
         self.vector(hit.on_a);
         self.vector(hit.on_b);
         self.vector(hit.normal.unwrap_or_default());
-        self.bits(u64::from(hit.steps));
+        self.0.add(u64::from(hit.steps));
         self.yes_no(hit.certain);
     }
 }
@@ -88,18 +80,18 @@ fn settings(limit: f64, warm_start: &mut WarmStart) -> DistanceSettings<'_> {
     DistanceSettings { limit, warm_start: Some(warm_start), ..DistanceSettings::default() }
 }
 
-fn motion(r: &mut Rng) -> ConstantTwist {
+fn motion(r: &mut SplitMix) -> ConstantTwist {
     let start = r.pose(1.0);
     match r.below(3) {
         0 => ConstantTwist::linear(start, r.vec(1.5)),
         1 => ConstantTwist { rotation: r.vec(2.0), ..ConstantTwist::linear(start, r.vec(1.5)) },
-        _ => ConstantTwist::screw(start, r.vec(0.5), r.vec(2.0), r.range(-1.0, 1.0)),
+        _ => ConstantTwist::screw(start, r.vec(0.5), r.vec(2.0), r.between(-1.0, 1.0)),
     }
 }
 
 /// Distances with and without a limit, decisions, and the same with a workspace and a warm start.
 fn distances() -> u64 {
-    let (mut r, mut hash, mut workspace) = (Rng(101), Hash::new(), Workspace::new());
+    let (mut r, mut hash, mut workspace) = (SplitMix(101), Hash::default(), Workspace::new());
     for (first, second) in pairs() {
         let mut warm_start = WarmStart::default();
         for _ in 0..120 {
@@ -107,7 +99,7 @@ fn distances() -> u64 {
             if r.below(3) == 0 {
                 pb = Pose { rotation: pa.rotation, ..pb };
             }
-            let limit = r.range(0.0, 0.6);
+            let limit = r.between(0.0, 0.6);
             hash.separation(Some(separation(&a, &pa, &b, &pb)));
             hash.separation(separation_within(&a, &pa, &b, &pb, limit));
             hash.separation(workspace.separation(&a, &pa, &b, &pb, settings(limit, &mut warm_start)));
@@ -132,12 +124,12 @@ fn distances() -> u64 {
             hash.yes_no(workspace.within(&a, &pa, &b, &pb, wrong));
         }
     }
-    hash.0
+    hash.0.0
 }
 
 /// Projections of points, contact points and penetrations.
 fn contacts() -> u64 {
-    let (mut r, mut hash, mut workspace) = (Rng(102), Hash::new(), Workspace::new());
+    let (mut r, mut hash, mut workspace) = (SplitMix(102), Hash::default(), Workspace::new());
     for (first, second) in pairs() {
         for k in 0..30 {
             let (a, b, pa, pb) = (r.shape(first), r.shape(second), r.pose(0.6), r.pose(0.6));
@@ -156,11 +148,11 @@ fn contacts() -> u64 {
             }
         }
     }
-    hash.0
+    hash.0.0
 }
 
 fn motions() -> u64 {
-    let (mut r, mut hash) = (Rng(103), Hash::new());
+    let (mut r, mut hash) = (SplitMix(103), Hash::default());
     for (first, second) in pairs() {
         for _ in 0..25 {
             let (a, b, ma, mb) = (r.shape(first), r.shape(second), motion(&mut r), motion(&mut r));
@@ -179,16 +171,16 @@ fn motions() -> u64 {
             hash.number(when.earliest_s);
             if let Shape::Mesh(mesh) = &a {
                 let kept = FaceCulling::of(mesh).kept_faces(&RelativeTwist::between(&ma, &mb, 0.0, 1.0));
-                kept.iter().for_each(|t| hash.bits(t as u64));
+                kept.iter().for_each(|t| hash.0.add(t as u64));
             }
         }
     }
-    hash.0
+    hash.0.0
 }
 
 /// Queries for meshes only, and fits.
 fn meshes() -> u64 {
-    let (mut r, mut hash, mut workspace) = (Rng(104), Hash::new(), Workspace::new());
+    let (mut r, mut hash, mut workspace) = (SplitMix(104), Hash::default(), Workspace::new());
     for _ in 0..200 {
         let (a, b, pa, pb) = (r.shape("mesh"), r.shape("mesh"), r.pose(1.0), r.pose(1.0));
         let (Shape::Mesh(m), Shape::Mesh(n)) = (&a, &b) else { unreachable!() };
@@ -203,7 +195,7 @@ fn meshes() -> u64 {
         }
         hash.yes_no(m.contains(r.vec(0.5)));
     }
-    hash.0
+    hash.0.0
 }
 
 /// A change here is a change of answers: state why.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::common::Rng;
+use crate::common::{RandomGeometry, SplitMix};
 use elbowroom_proximity::advanced::{GroupWorkspace, MeshGroup, colliding_triangles};
 use elbowroom_proximity::{Capsule, Cuboid, Cylinder, Shape, Sphere, TriMesh, Workspace, tessellate::tessellate};
 use elbowroom_spatial::{Pose, Vec3};
@@ -15,8 +15,8 @@ fn triangulated(shape: &Shape, missing: usize) -> Arc<TriMesh> {
 }
 
 /// Closed meshes mostly, some open, some large enough to contain others, some far from their origin.
-fn mesh(random: &mut Rng) -> Arc<TriMesh> {
-    let mut size = || random.range(0.03, 0.2);
+fn mesh(random: &mut SplitMix) -> Arc<TriMesh> {
+    let mut size = || random.between(0.03, 0.2);
     let (x, y, z) = (size(), size(), size());
     let missing = if random.below(5) == 0 { 3 } else { 0 };
     match random.below(6) {
@@ -44,7 +44,7 @@ fn mesh(random: &mut Rng) -> Arc<TriMesh> {
 }
 
 /// Poses that bring the middles of the meshes near a point.
-fn poses(random: &mut Rng, meshes: &[Arc<TriMesh>], around: Vec3, spread: f64) -> Vec<Pose> {
+fn poses(random: &mut SplitMix, meshes: &[Arc<TriMesh>], around: Vec3, spread: f64) -> Vec<Pose> {
     let near = |mesh: &Arc<TriMesh>| {
         let pose = random.pose(spread);
         Pose::new(pose.rotation, around + pose.translation - pose.rotation * mesh.aabb().center())
@@ -73,7 +73,7 @@ fn simd_levels() -> Vec<SimdLevel> {
 
 #[test]
 fn groups_collide_where_a_pair_does() {
-    let mut random = Rng(4);
+    let mut random = SplitMix(4);
     let mut workspaces: Vec<_> = simd_levels().into_iter().map(GroupWorkspace::with_simd_level).collect();
     let (mut hits, mut asked) = (0, 0);
     for round in 0..30 {
@@ -100,7 +100,7 @@ fn groups_collide_where_a_pair_does() {
 
 #[test]
 fn meshes_that_nearly_touch() {
-    let mut random = Rng(5);
+    let mut random = SplitMix(5);
     let ball = triangulated(&Shape::Sphere(Sphere { radius: 0.1 }), 0);
     let rod = triangulated(&Shape::Cylinder(Cylinder { half_length: 0.4, radius: 0.03 }), 0);
     let groups = [MeshGroup::new(vec![ball.clone(), rod.clone()]), MeshGroup::new(vec![rod.clone(), ball.clone()])];
@@ -108,7 +108,7 @@ fn meshes_that_nearly_touch() {
     for _ in 0..2000 {
         let [a, b] = [random.pose(0.2), random.pose(0.2)];
         // Its vertices are on the sphere, its faces within 2 mm of it.
-        let gap = random.range(-6e-3, 3e-3);
+        let gap = random.between(-6e-3, 3e-3);
         let away = random.vec(1.0).try_normalize().unwrap_or(Vec3::X);
         let touching = Pose::new(b.rotation, a.translation + away * (0.2 + gap));
         let aside = Pose::from_translation(Vec3::X * 50.0);

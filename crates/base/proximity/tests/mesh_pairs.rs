@@ -5,28 +5,31 @@ use elbowroom_proximity::advanced::{
 };
 use elbowroom_proximity::{DistanceSettings, Separation, Shape, TriMesh, WarmStart, Workspace, collides, separation};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
-use elbowroom_testkit::random::{linear_congruential, unit};
+use elbowroom_testkit::hash::Fnv;
+use elbowroom_testkit::random::Random;
 use fearless_simd::Level as SimdLevel;
 
-/// A generator of numbers in [0, 1) by integer arithmetic, the same on every machine.
-struct Numbers(u64);
+/// Random meshes and rotations, by integer arithmetic and without library functions, the same on every machine.
+trait RandomMeshes {
+    fn vector(&mut self) -> Vec3;
 
-impl Numbers {
-    fn next(&mut self) -> f64 {
-        unit(linear_congruential(&mut self.0))
-    }
+    fn rotation(&mut self) -> Rotation;
 
-    fn signed(&mut self) -> f64 {
-        2.0 * self.next() - 1.0
-    }
+    /// A closed lump: the faces of a cube, subdivided and displaced.
+    fn lump(&mut self, cuts: usize) -> TriMesh;
 
+    /// Triangles of all sizes, slivers and points among them, anywhere.
+    fn soup(&mut self, count: usize) -> TriMesh;
+}
+
+impl RandomMeshes for Random {
     fn vector(&mut self) -> Vec3 {
-        Vec3::new(self.signed(), self.signed(), self.signed())
+        Vec3::from(self.within(1.0))
     }
 
     fn rotation(&mut self) -> Rotation {
         loop {
-            let q = [self.signed(), self.signed(), self.signed(), self.signed()];
+            let q: [f64; 4] = self.within(1.0);
             let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
             if length > 0.1
                 && let Some(r) = Rotation::from_quaternion_xyzw(q.map(|x| x / length))
@@ -36,12 +39,11 @@ impl Numbers {
         }
     }
 
-    /// A closed lump: the faces of a cube, subdivided and displaced, without library functions.
     fn lump(&mut self, cuts: usize) -> TriMesh {
         let mut vertices = Vec::new();
         let mut triangles = Vec::new();
-        let stretch = Vec3::new(0.3 + self.next(), 0.3 + self.next(), 0.3 + self.next());
-        let bump = 0.3 * self.next();
+        let stretch = Vec3::new(0.3 + self.unit(), 0.3 + self.unit(), 0.3 + self.unit());
+        let bump = 0.3 * self.unit();
         let shape = |p: Vec3| {
             let n = p / p.length();
             let wave = (5.0 * n.x * n.y + 3.0 * n.z).rem_euclid(1.0);
@@ -75,14 +77,13 @@ impl Numbers {
         TriMesh::new(vertices, triangles).unwrap()
     }
 
-    /// Triangles of all sizes, slivers and points among them, anywhere.
     fn soup(&mut self, count: usize) -> TriMesh {
         let mut vertices = Vec::new();
         for _ in 0..count {
             let p = self.vector() * 0.5;
-            let size = 0.3 * self.next() * self.next();
+            let size = 0.3 * self.unit() * self.unit();
             let (u, v) = (self.vector() * size, self.vector() * size);
-            match (self.next() * 8.0) as usize {
+            match (self.unit() * 8.0) as usize {
                 0 => vertices.extend([p, p, p]),
                 1 => vertices.extend([p, p + u, p + u]),
                 2 => vertices.extend([p, p + u, p + u * 0.3]),
@@ -187,7 +188,7 @@ fn with_settings(
 }
 
 /// Compares every query on a pair of surfaces.
-fn compare(a: &TriMesh, here: &Pose, b: &TriMesh, there: &Pose, n: &mut Numbers, s: &mut Workspace) {
+fn compare(a: &TriMesh, here: &Pose, b: &TriMesh, there: &Pose, n: &mut Random, s: &mut Workspace) {
     let (least, mut expected) = all_pairs(a, here, b, there);
     let far = here.translation.length() + there.translation.length() + 1.0;
     let close = 1e-10 * far;
@@ -244,10 +245,10 @@ fn rounds(short: usize, long: usize) -> usize {
 
 #[test]
 fn s3_2_lumps_against_all_pairs() {
-    let (mut n, mut s) = (Numbers(1), Workspace::new());
+    let (mut n, mut s) = (Random(1), Workspace::new());
     for round in 0..rounds(60, 3_000) {
         let (a, b) = (n.lump(2 + round % 4), n.lump(1 + round % 5));
-        let apart = 0.2 + n.next();
+        let apart = 0.2 + n.unit();
         let here = Pose { rotation: n.rotation(), translation: n.vector() };
         let there = Pose { rotation: n.rotation(), translation: here.translation + n.vector() * apart };
         compare(&a, &here, &b, &there, &mut n, &mut s);
@@ -256,7 +257,7 @@ fn s3_2_lumps_against_all_pairs() {
 
 #[test]
 fn s3_2_soups_of_degenerate_triangles_against_all_pairs() {
-    let (mut n, mut s) = (Numbers(2), Workspace::new());
+    let (mut n, mut s) = (Random(2), Workspace::new());
     for round in 0..rounds(150, 10_000) {
         let (a, b) = (n.soup(1 + round % 70), n.soup(1 + (round * 7) % 50));
         let spread = if round % 3 == 0 { 0.5 } else { 3.0 };
@@ -268,7 +269,7 @@ fn s3_2_soups_of_degenerate_triangles_against_all_pairs() {
 
 #[test]
 fn meshes_of_very_different_size_and_far_away() {
-    let (mut n, mut s) = (Numbers(3), Workspace::new());
+    let (mut n, mut s) = (Random(3), Workspace::new());
     for round in 0..rounds(60, 2_000) {
         let scale = [1e-3, 1e3, 1e-6][round % 3];
         let big = n.lump(3);
@@ -293,7 +294,7 @@ fn plates_that_face_each_other_exactly() {
         });
         TriMesh::new((0..(cuts + 1) * (cuts + 1)).map(point).collect(), faces.collect()).unwrap()
     };
-    let (mut n, mut s) = (Numbers(4), Workspace::new());
+    let (mut n, mut s) = (Random(4), Workspace::new());
     let plate = grid(6);
     for height in [0.0, 1e-15, 1e-9, 1e-3, 0.25, 4.0] {
         for shift in [Vec3::ZERO, Vec3::X * 0.5, Vec3::new(1.0, 1.0, 0.0), Vec3::X * 3.0] {
@@ -305,7 +306,7 @@ fn plates_that_face_each_other_exactly() {
 
 #[test]
 fn one_inside_the_other_collides() {
-    let (mut n, mut s) = (Numbers(5), Workspace::new());
+    let (mut n, mut s) = (Random(5), Workspace::new());
     let outer = n.lump(4);
     let shrunk = outer.vertices().iter().map(|v| *v * 0.3).collect();
     let inner = TriMesh::new(shrunk, outer.triangles().to_vec()).unwrap();
@@ -318,7 +319,7 @@ fn one_inside_the_other_collides() {
 
 #[test]
 fn nan_is_contact() {
-    let (mut n, mut s) = (Numbers(6), Workspace::new());
+    let (mut n, mut s) = (Random(6), Workspace::new());
     let m = n.lump(2);
     for bad in [f64::NAN, f64::INFINITY, 1e200, 1e155] {
         let there = Pose::from_translation(Vec3::new(bad, 0.0, 0.0));
@@ -351,43 +352,36 @@ fn simd_levels() -> Vec<(&'static str, SimdLevel)> {
     levels
 }
 
-fn mix(hash: &mut u64, x: u64) {
-    // FNV-1a, byte by byte.
-    for byte in x.to_le_bytes() {
-        *hash = (*hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-    }
-}
-
 /// Hashes of a fixed workload: all answers, last bits included; and the course of the search, that is which pairs were found and
 /// how many nodes were visited.
 fn golden(simd_level: SimdLevel) -> (u64, u64) {
-    let (mut n, mut s) = (Numbers(7), Workspace::with_simd_level(simd_level));
-    let (mut answers, mut course) = (0xcbf2_9ce4_8422_2325, 0xcbf2_9ce4_8422_2325);
+    let (mut n, mut s) = (Random(7), Workspace::with_simd_level(simd_level));
+    let (mut answers, mut course) = (Fnv::default(), Fnv::default());
     for round in 0..120 {
         let (a, b) = if round % 3 == 0 { (n.soup(60), n.soup(40)) } else { (n.lump(6), n.lump(5)) };
         let here = Pose { rotation: n.rotation(), translation: n.vector() };
         let there = Pose { rotation: n.rotation(), translation: here.translation + n.vector() * 0.8 };
         let found = mesh_separation(&a, &here, &b, &there, &mut s);
-        mix(&mut answers, found.distance.to_bits());
+        answers.add(found.distance.to_bits());
         // On contact, any common point is a valid answer.
         let points = if found.distance > 0.0 { &mut answers } else { &mut course };
         for x in [found.lower_bound, found.on_a.x, found.on_b.y, found.on_b.z] {
-            mix(points, x.to_bits());
+            points.add(x.to_bits());
         }
         let pair = colliding_triangles(&a, &here, &b, &there, &mut s);
         let near = triangles_within(&a, &here, &b, &there, 0.1, &mut s);
         for pair in [pair, near] {
-            mix(&mut answers, u64::from(pair.is_some()));
+            answers.add(u64::from(pair.is_some()));
             if let Some(MeshFeatures::Triangles(i, j)) = pair {
-                mix(&mut course, u64::from(i) << 32 | u64::from(j));
+                course.add(u64::from(i) << 32 | u64::from(j));
             }
         }
         let v = s.stats();
         for x in [v.nodes, v.boxes, v.leaves, v.triangles] {
-            mix(&mut course, u64::from(x));
+            course.add(u64::from(x));
         }
     }
-    (answers, course)
+    (answers.0, course.0)
 }
 
 /// The answers on any machine. A change here is a change of answers: state why.

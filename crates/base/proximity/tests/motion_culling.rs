@@ -4,7 +4,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use crate::common::Rng;
+use crate::common::{RandomGeometry, SplitMix};
 use elbowroom_proximity::ccd::{CcdOptions, ConstantTwist, RigidMotion, TimeOfImpact, time_of_impact};
 use elbowroom_proximity::motion_culling::{FaceCulling, KeptFaces, RelativeTwist};
 use elbowroom_proximity::{Shape, Sphere, TriMesh, separation, tessellate::tessellate};
@@ -15,9 +15,10 @@ fn motions() -> usize {
 }
 
 /// A wavy ball.
-fn lump(r: &mut Rng) -> TriMesh {
+fn lump(r: &mut SplitMix) -> TriMesh {
     let (mut v, t) = tessellate(&Shape::Sphere(Sphere { radius: 0.2 }), 0.004);
-    let (stretch, wave) = (Vec3::new(r.range(0.5, 1.5), r.range(0.5, 1.5), r.range(0.5, 1.5)), r.range(0.2, 0.6));
+    let (stretch, wave) =
+        (Vec3::new(r.between(0.5, 1.5), r.between(0.5, 1.5), r.between(0.5, 1.5)), r.between(0.2, 0.6));
     for p in &mut v {
         let n = *p / 0.2;
         *p = (*p * (1.0 + wave * (4.0 * n.x).sin() * (3.0 * n.y).cos())).scale(stretch);
@@ -26,13 +27,13 @@ fn lump(r: &mut Rng) -> TriMesh {
 }
 
 /// A motion towards the other mesh, with some rotation.
-fn step(r: &mut Rng, from: Vec3, to: Vec3) -> ConstantTwist {
+fn step(r: &mut SplitMix, from: Vec3, to: Vec3) -> ConstantTwist {
     let start = Pose::new(Rotation::from_rotation_vector(r.vec(3.0)), from);
-    let travel = (to - from) * r.range(0.2, 1.5) + r.vec(0.2);
+    let travel = (to - from) * r.between(0.2, 1.5) + r.vec(0.2);
     match r.below(3) {
         0 => ConstantTwist::linear(start, travel),
         1 => ConstantTwist { rotation: r.vec(0.5), ..ConstantTwist::linear(start, travel) },
-        _ => ConstantTwist::screw(start, r.vec(1.0), r.vec(0.6), r.range(-0.5, 0.5)),
+        _ => ConstantTwist::screw(start, r.vec(1.0), r.vec(0.6), r.between(-0.5, 0.5)),
     }
 }
 
@@ -43,7 +44,7 @@ fn kept(mesh: &TriMesh, faces: &KeptFaces) -> Option<Shape> {
 
 #[test]
 fn the_kept_faces_of_both_meet_when_all_do() {
-    let mut r = Rng(21);
+    let mut r = SplitMix(21);
     let options = CcdOptions { tolerance: 1e-7, max_steps: 100_000, ..CcdOptions::default() };
     let lumps: Vec<TriMesh> = (0..24).map(|_| lump(&mut r)).collect();
     let culling: Vec<FaceCulling> = lumps.iter().map(FaceCulling::of).collect();

@@ -7,22 +7,7 @@ use std::path::{Path, PathBuf};
 
 use elbowroom_proximity::{ConvexHull, fit, project_point};
 use elbowroom_spatial::Vec3;
-
-fn data() -> PathBuf {
-    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../../shared/data");
-    std::env::var_os("ELBOWROOM_DATA").map_or_else(beside, PathBuf::from)
-}
-
-fn stl_files(folder: &Path, found: &mut Vec<PathBuf>) {
-    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
-        let path = entry.path();
-        if path.is_dir() {
-            stl_files(&path, found);
-        } else if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("stl")) {
-            found.push(path);
-        }
-    }
-}
+use elbowroom_testkit::folder;
 
 /// Corners of a binary STL; `None` for any other file.
 fn corners(path: &Path) -> Option<Vec<Vec3>> {
@@ -39,19 +24,15 @@ fn corners(path: &Path) -> Option<Vec<Vec3>> {
 
 #[test]
 fn fits_around_real_links_hold_every_vertex() {
-    let root = data().join("urdf");
-    let mut files = Vec::new();
-    stl_files(&root, &mut files);
-    files.sort();
+    let Some(root) = folder::data_part("urdf") else { return };
+    let mut files = folder::files_below(&root);
+    files.retain(|p| p.extension().is_some_and(|e| e.eq_ignore_ascii_case("stl")));
     // Collision meshes of up to 1,200 triangles: the test build is slow.
     let small = |p: &PathBuf| std::fs::metadata(p).is_ok_and(|m| m.len() < 60_000);
     files.retain(|p| p.components().any(|c| c.as_os_str() == "collision") && small(p));
     // Every third: all manufacturers are among them.
     files = files.into_iter().step_by(3).take(24).collect();
-    if files.is_empty() {
-        println!("skipped: no data at {}", root.display());
-        return;
-    }
+    assert!(!files.is_empty(), "no small collision meshes in {}", root.display());
     let mut ratios: BTreeMap<String, Vec<f64>> = BTreeMap::new();
     for path in &files {
         let Some(points) = corners(path).filter(|p| p.len() >= 12) else { continue };

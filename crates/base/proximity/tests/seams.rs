@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::common::Rng;
+use crate::common::{RandomGeometry, SplitMix};
 use elbowroom_proximity::advanced::{colliding_triangles, mesh_separation};
 use elbowroom_proximity::{
     Shape, Sphere, TriMesh, Workspace, collides, project_point, separation, tessellate::tessellate,
@@ -10,7 +10,7 @@ use elbowroom_proximity::{
 use elbowroom_spatial::{Pose, Vec3};
 
 /// Triangles with their own corners, each offset by up to `off`.
-fn soup(rng: &mut Rng, shape: &Shape, off: f64) -> TriMesh {
+fn soup(rng: &mut SplitMix, shape: &Shape, off: f64) -> TriMesh {
     let (v, t) = tessellate(shape, 0.01);
     let corners: Vec<Vec3> = t.iter().flatten().map(|&i| v[i as usize] + rng.vec(off)).collect();
     let faces = (0..t.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
@@ -25,7 +25,7 @@ fn volume_of(shape: &Shape) -> f64 {
 
 #[test]
 fn shapes_inside_a_mesh_with_hairline_seams_collide() {
-    let mut rng = Rng(15);
+    let mut rng = SplitMix(15);
     for case in 0..120 {
         let kind = ["box", "cylinder", "hull", "capsule"][case % 4];
         let hull = rng.shape(kind);
@@ -57,7 +57,7 @@ fn shapes_inside_a_mesh_with_hairline_seams_collide() {
 
 #[test]
 fn point_containment_matches_the_mesh_without_seams() {
-    let mut rng = Rng(150);
+    let mut rng = SplitMix(150);
     for _ in 0..20 {
         let hull = rng.shape("hull");
         let (v, t) = tessellate(&hull, 0.01);
@@ -75,7 +75,7 @@ fn point_containment_matches_the_mesh_without_seams() {
 /// Distances are measured to the triangles as given, not to the welded ones.
 #[test]
 fn distances_are_to_the_triangles_as_given() {
-    let mut rng = Rng(151);
+    let mut rng = SplitMix(151);
     let outer = soup(&mut rng, &Shape::Cuboid(elbowroom_proximity::Cuboid { half_extents: Vec3::splat(0.5) }), 4e-7);
     assert!(outer.report().closed);
     let corner = outer.vertices()[0];
@@ -97,7 +97,7 @@ fn holes_stay_open_and_clean_meshes_are_unchanged() {
 /// A seam and a hole in one component: the hole leaves it open.
 #[test]
 fn a_seam_does_not_close_a_hole() {
-    let mut rng = Rng(152);
+    let mut rng = SplitMix(152);
     let outer = soup(&mut rng, &Shape::Sphere(Sphere { radius: 1.0 }), 1e-9);
     let holed = TriMesh::new(outer.vertices().to_vec(), outer.triangles()[1..].to_vec()).unwrap();
     assert!(!holed.report().closed && holed.report().welded > 0 && !holed.has_interior());

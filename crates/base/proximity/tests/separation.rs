@@ -1,7 +1,7 @@
 //! Distances checked by certificates: witness points inside the solids prove an upper bound, a support plane between them a lower
 //! bound. Neither uses the code under test.
 
-use crate::common::{CONVEX, Rng, cases};
+use crate::common::{CONVEX, RandomGeometry, SplitMix, cases};
 use elbowroom_proximity::{Cuboid, Shape, Sphere, collides, project_point, separation, separation_within, within};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
@@ -99,7 +99,7 @@ fn certify(a: &Shape, pa: &Pose, b: &Shape, pb: &Pose, tolerance: f64) -> bool {
 }
 
 fn pair(first: &str, second: &str, tolerance: f64) {
-    let mut rng = Rng(first.len() as u64 * 31 + second.len() as u64);
+    let mut rng = SplitMix(first.len() as u64 * 31 + second.len() as u64);
     let n = cases(10_000);
     let mut apart = 0;
     for _ in 0..n {
@@ -149,7 +149,7 @@ fn cylinders_are_within_the_stated_bound() {
 /// The four tests of the tool's OBB against the elementary regions, each compared with points sampled in the box.
 #[test]
 fn s1_10_obb_against_plane_sphere_cylinder_and_obb() {
-    let mut rng = Rng(110);
+    let mut rng = SplitMix(110);
     for case in 0..cases(2_000) / 4 {
         for other in ["plane", "sphere", "cylinder", "box"] {
             let (gun, region) = (rng.shape("box"), rng.shape(other));
@@ -161,7 +161,7 @@ fn s1_10_obb_against_plane_sphere_cylinder_and_obb() {
                 let mut coordinate = |h: f64| match rng.below(3) {
                     0 => -h,
                     1 => h,
-                    _ => rng.range(-h, h),
+                    _ => rng.between(-h, h),
                 };
                 let h = c.half_extents;
                 let p = pg.transform_point(Vec3::new(coordinate(h.x), coordinate(h.y), coordinate(h.z)));
@@ -176,7 +176,7 @@ fn s1_10_obb_against_plane_sphere_cylinder_and_obb() {
 
 #[test]
 fn swapped_and_moved_pairs_answer_the_same() {
-    let mut rng = Rng(7);
+    let mut rng = SplitMix(7);
     for first in ["sphere", "capsule", "cylinder", "box", "hull", "mesh", "plane"] {
         for second in ["sphere", "capsule", "cylinder", "box", "hull", "mesh", "plane"] {
             for _ in 0..100 {
@@ -194,12 +194,12 @@ fn swapped_and_moved_pairs_answer_the_same() {
 
 #[test]
 fn a_limit_changes_only_answers_beyond_it() {
-    let mut rng = Rng(9);
+    let mut rng = SplitMix(9);
     for first in ["sphere", "capsule", "cylinder", "box", "hull", "mesh", "plane"] {
         for second in ["sphere", "capsule", "cylinder", "box", "hull", "mesh", "plane"] {
             for _ in 0..100 {
                 let (a, b, pa, pb) = (rng.shape(first), rng.shape(second), rng.pose(1.5), rng.pose(1.5));
-                let (limit, all) = (rng.range(0.0, 1.0), separation(&a, &pa, &b, &pb));
+                let (limit, all) = (rng.between(0.0, 1.0), separation(&a, &pa, &b, &pb));
                 let limited = separation_within(&a, &pa, &b, &pb, limit);
                 match limited {
                     None => assert!(all.distance > limit - 1e-12, "{first} {second} {limit}: {all:?}"),
@@ -216,7 +216,7 @@ fn a_limit_changes_only_answers_beyond_it() {
 #[test]
 fn growing_a_shape_never_increases_the_distance() {
     use elbowroom_proximity::{Capsule, Cylinder};
-    let mut rng = Rng(11);
+    let mut rng = SplitMix(11);
     for _ in 0..cases(3_000) {
         let grow = 1.0 + rng.unit();
         let (r, h) = (rng.size(), rng.size());
@@ -293,7 +293,7 @@ fn touching_counts_as_contact() {
 
 #[test]
 fn nan_is_never_free() {
-    let mut rng = Rng(13);
+    let mut rng = SplitMix(13);
     let kinds = ["sphere", "capsule", "cylinder", "box", "hull", "mesh", "plane"];
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         for k in 0..3 {
@@ -328,7 +328,7 @@ fn nan_is_never_free() {
 
 #[test]
 fn random_bit_patterns_neither_panic_nor_hang() {
-    let mut rng = Rng(17);
+    let mut rng = SplitMix(17);
     let kinds = ["sphere", "capsule", "cylinder", "box", "hull", "mesh", "plane"];
     for _ in 0..20_000 {
         let (a, b) = (rng.shape(kinds[rng.0 as usize % 7]), rng.shape(kinds[(rng.0 >> 8) as usize % 7]));

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::common::{CONVEX, Rng, cases};
+use crate::common::{CONVEX, RandomGeometry, SplitMix, cases};
 use elbowroom_proximity::{
     ConvexHull, HullError, MeshError, Shape, TriMesh, collides, fit, penetration, project_point, separation,
     tessellate::tessellate,
@@ -31,7 +31,7 @@ fn pose_to_parry(p: &Pose) -> math::Pose {
 
 #[test]
 fn distances_agree_with_parry() {
-    let mut rng = Rng(21);
+    let mut rng = SplitMix(21);
     for first in ["sphere", "capsule", "box", "hull"] {
         for second in ["sphere", "capsule", "box", "hull"] {
             for _ in 0..cases(2_000) / 4 {
@@ -47,7 +47,7 @@ fn distances_agree_with_parry() {
 
 #[test]
 fn projected_points_lie_on_the_surface_along_the_normal() {
-    let mut rng = Rng(22);
+    let mut rng = SplitMix(22);
     for kind in ["sphere", "capsule", "cylinder", "box", "hull", "mesh", "plane"] {
         for _ in 0..cases(4_000) / 2 {
             let (s, pose, p) = (rng.shape(kind), rng.pose(1.0), rng.vec(1.5));
@@ -65,7 +65,7 @@ fn projected_points_lie_on_the_surface_along_the_normal() {
 
 #[test]
 fn moving_by_the_penetration_depth_separates_and_by_less_does_not() {
-    let mut rng = Rng(23);
+    let mut rng = SplitMix(23);
     for first in CONVEX.into_iter().chain(["mesh"]) {
         for second in CONVEX.into_iter().chain(["mesh", "plane"]) {
             for _ in 0..12 {
@@ -100,7 +100,7 @@ fn overlap_along(a: &Shape, pa: &Pose, b: &Shape, pb: &Pose, d: Vec3) -> f64 {
 
 #[test]
 fn penetration_of_primitives_is_the_least() {
-    let mut rng = Rng(28);
+    let mut rng = SplitMix(28);
     let kinds = ["sphere", "capsule", "cylinder", "box"];
     for (first, second) in kinds.iter().flat_map(|a| kinds.map(|b| (*a, b))) {
         let mut overlapping = 0;
@@ -114,7 +114,7 @@ fn penetration_of_primitives_is_the_least() {
             assert!(along <= overlap.depth + 1e-13, "{along} does not separate: {}", what());
             // Brute force: random directions, and directions near the answer.
             for k in 0..300 {
-                let near = if k % 2 == 0 { 10_f64.powf(rng.range(-6.0, 0.0)) } else { 100.0 };
+                let near = if k % 2 == 0 { 10_f64.powf(rng.between(-6.0, 0.0)) } else { 100.0 };
                 let Some(d) = (overlap.direction + rng.vec(near)).try_normalize() else { continue };
                 let other = overlap_along(&a, &pa, &b, &pb, d);
                 assert!(overlap.depth <= other + 1e-9, "{first} {second}: {other} along {d:?} is shorter: {}", what());
@@ -131,9 +131,9 @@ fn check_encloses(fit: &fit::Fit, points: &[Vec3]) {
 
 #[test]
 fn fits_enclose_every_point_and_are_tight() {
-    let mut rng = Rng(24);
+    let mut rng = SplitMix(24);
     for case in 0..40 {
-        let stretch = Vec3::new(1.0, rng.range(0.1, 1.0), rng.range(0.05, 0.5));
+        let stretch = Vec3::new(1.0, rng.between(0.1, 1.0), rng.between(0.05, 0.5));
         let pose = rng.pose(2.0);
         let points: Vec<Vec3> = (0..300).map(|_| pose.transform_point(rng.vec(0.3).scale(stretch))).collect();
         let hull = ConvexHull::from_points(&points).unwrap();
@@ -159,7 +159,7 @@ fn fits_enclose_every_point_and_are_tight() {
 
 #[test]
 fn hulls_contain_their_points_and_refuse_flat_input() {
-    let mut rng = Rng(25);
+    let mut rng = SplitMix(25);
     for _ in 0..200 {
         let n = 4 + rng.below(200);
         let grid = rng.below(2) == 0; // many coplanar, collinear and equal points
@@ -212,7 +212,7 @@ fn meshes_report_and_refuse() {
 
 #[test]
 fn meshes_of_hulls_have_the_distances_of_the_hulls() {
-    let mut rng = Rng(26);
+    let mut rng = SplitMix(26);
     for _ in 0..cases(600) / 2 {
         let solid = rng.shape("hull");
         let (v, t) = tessellate(&solid, 0.01);
@@ -240,7 +240,7 @@ fn a_solid_inside_a_closed_mesh_collides_and_in_its_cavity_is_free() {
     v.extend(inner_v);
     t.extend(inner_t.iter().map(|[a, b, c]| [a + first, c + first, b + first]));
     let shell = Shape::Mesh(Arc::new(TriMesh::new(v, t).unwrap()));
-    let mut rng = Rng(27);
+    let mut rng = SplitMix(27);
     for _ in 0..50 {
         let pose = Pose::new(Rotation::from_rotation_vector(rng.vec(3.0)), rng.vec(0.05));
         for other in [&small, &Shape::Sphere(elbowroom_proximity::Sphere { radius: 0.1 })] {

@@ -3,10 +3,10 @@
 
 use std::sync::Arc;
 
-use crate::common::Rng;
 use crate::common::exact::{
     Point, Square, Triangle, placed, placed_triangle, point_triangle, segment_triangle, triangles,
 };
+use crate::common::{RandomGeometry, SplitMix};
 use elbowroom_proximity::advanced::{
     colliding_triangles, for_each_contact, is_farther_than, mesh_separation, mesh_separation_with, triangles_within,
 };
@@ -21,7 +21,7 @@ fn mesh(corners: &[[Vec3; 3]]) -> TriMesh {
 }
 
 /// A triangle of this height over an edge about 1 m long; the corner projects anywhere onto that edge, or near an end.
-fn sliver(rng: &mut Rng, height: f64) -> [Vec3; 3] {
+fn sliver(rng: &mut SplitMix, height: f64) -> [Vec3; 3] {
     let (from, along) = (rng.vec(0.5), rng.vec(1.0));
     let across = along.cross(rng.vec(1.0)).try_normalize().unwrap_or(Vec3::X);
     let at = if rng.below(3) == 0 { 1e-9 } else { rng.unit() };
@@ -31,14 +31,14 @@ fn sliver(rng: &mut Rng, height: f64) -> [Vec3; 3] {
 }
 
 /// A triangle that the sliver passes through near its middle, or nearly so.
-fn across(rng: &mut Rng, sliver: &[Vec3; 3], height: f64, slender: bool) -> [Vec3; 3] {
+fn across(rng: &mut SplitMix, sliver: &[Vec3; 3], height: f64, slender: bool) -> [Vec3; 3] {
     let share = [rng.unit(), rng.unit(), rng.unit()];
     let sum: f64 = share.iter().sum();
     let inner = sliver[0] * (share[0] / sum) + sliver[1] * (share[1] / sum) + sliver[2] * (share[2] / sum);
     let miss = [0.0, height, 10.0 * height, 0.1][rng.below(4)];
     let through = inner + rng.vec(miss);
     let direction = rng.vec(1.0);
-    let (ahead, behind) = (rng.range(0.1, 1.0), rng.range(0.1, 1.0));
+    let (ahead, behind) = (rng.between(0.1, 1.0), rng.between(0.1, 1.0));
     let third = if slender { rng.vec(1.0) * height } else { rng.vec(1.0) };
     [through + direction * ahead, through - direction * behind, through + third]
 }
@@ -82,7 +82,7 @@ fn agree(a: &TriMesh, pa: &Pose, b: &TriMesh, pb: &Pose, exact: &Square, error: 
 
 #[test]
 fn crossing_slivers_are_never_apart() {
-    let mut rng = Rng(14);
+    let mut rng = SplitMix(14);
     let (mut hit, mut free) = (0, 0);
     for height in [1e-14, 1e-13, 1e-12, 1e-11, 1e-10, 1e-9, 1e-8, 1e-6, 1e-3] {
         for case in 0..160 {
@@ -104,7 +104,7 @@ fn crossing_slivers_are_never_apart() {
 /// Spheres and capsules near slivers.
 #[test]
 fn round_shapes_near_slivers_have_right_bounds() {
-    let mut rng = Rng(15);
+    let mut rng = SplitMix(15);
     for height in [1e-13, 1e-12, 1e-11, 1e-10, 1e-9, 1e-8, 1e-6] {
         for _ in 0..300 {
             let s = sliver(&mut rng, height);
@@ -145,11 +145,11 @@ fn check(a: &Shape, pa: &Pose, b: &Shape, square: &Square) {
 /// Boxes and hulls near slivers: the bounds are on the right side of the exact distance.
 #[test]
 fn flat_shapes_near_slivers_have_right_bounds() {
-    let mut rng = Rng(19);
+    let mut rng = SplitMix(19);
     for height in [1e-13, 1e-11, 1e-9, 1e-8, 1e-6] {
         for case in 0..12 {
             let s = sliver(&mut rng, height);
-            let half = rng.range(0.01, 0.2);
+            let half = rng.between(0.01, 0.2);
             let corners = cube(Vec3::ZERO, half);
             let shape = if case % 2 == 0 {
                 Shape::Cuboid(Cuboid { half_extents: Vec3::splat(half) })
@@ -172,13 +172,13 @@ fn flat_shapes_near_slivers_have_right_bounds() {
 /// Points at a distance from slivers: the projection onto the line must not be lost in an inaccurate normal.
 #[test]
 fn points_far_from_slivers_have_right_distances() {
-    let mut rng = Rng(16);
+    let mut rng = SplitMix(16);
     for height in [1e-15, 1e-14, 1e-13, 1e-12, 1e-10, 1e-8] {
         for _ in 0..400 {
             let s = sliver(&mut rng, height);
             // Over its middle, however inaccurate that direction is.
             let n = (s[1] - s[0]).cross(s[2] - s[0]).try_normalize().unwrap_or(Vec3::Z);
-            let p = (s[0] + s[1] + s[2]) / 3.0 + n * rng.range(-1.0, 1.0) + rng.vec(1.0) * (3.0 * height);
+            let p = (s[0] + s[1] + s[2]) / 3.0 + n * rng.between(-1.0, 1.0) + rng.vec(1.0) * (3.0 * height);
             let t = placed_triangle(s, &Pose::IDENTITY);
             let ball = Shape::Sphere(Sphere { radius: 0.0 });
             check(
@@ -216,7 +216,7 @@ fn least(a: &[[Vec3; 3]], pa: &Pose, b: &[[Vec3; 3]], pb: &Pose) -> Square {
 
 #[test]
 fn meshes_far_from_their_origin_have_one_answer() {
-    let mut rng = Rng(17);
+    let mut rng = SplitMix(17);
     let mut differ = 0;
     for case in 0..24 {
         let far = [1e3, 1e5, 1e6, 1e7][case % 4];
@@ -235,7 +235,7 @@ fn meshes_far_from_their_origin_have_one_answer() {
 
 #[test]
 fn meshes_of_hardly_any_size_have_one_answer() {
-    let mut rng = Rng(18);
+    let mut rng = SplitMix(18);
     for size in [1e-30, 1e-21, 1e-20, 1e-19, 1e-18, 1e-17, 1e-15] {
         for _ in 0..3 {
             let (a, b) = (cube(Vec3::ZERO, size), cube(Vec3::ZERO, size));

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::sync::Arc;
 
-use crate::common::Rng;
+use crate::common::{RandomGeometry, SplitMix};
 use elbowroom_proximity::contact::{for_each_triangle_contact, triangle_surface};
 use elbowroom_proximity::{
     Capsule, Cuboid, Cylinder, HalfSpace, Shape, Sphere, TriMesh, Workspace, collides, tessellate::tessellate,
@@ -11,9 +11,9 @@ use elbowroom_proximity::{
 use elbowroom_spatial::{Pose, Vec3};
 
 /// A wavy ball: closed, not convex.
-fn lump(r: &mut Rng, fine: f64) -> Shape {
+fn lump(r: &mut SplitMix, fine: f64) -> Shape {
     let (mut v, t) = tessellate(&Shape::Sphere(Sphere { radius: 0.3 }), fine);
-    let wave = r.range(0.0, 0.4);
+    let wave = r.between(0.0, 0.4);
     for p in &mut v {
         let n = *p / 0.3;
         *p = *p * (1.0 + wave * (4.0 * n.x).sin() * (3.0 * n.y).cos());
@@ -52,20 +52,22 @@ fn off_triangle(p: Vec3, [a, b, c]: [Vec3; 3]) -> f64 {
     [n.dot(p - a).abs(), outside(a, b), outside(b, c), outside(c, a)].into_iter().fold(0.0, f64::max)
 }
 
-fn others(r: &mut Rng) -> Vec<Shape> {
+fn others(r: &mut SplitMix) -> Vec<Shape> {
     vec![
         lump(r, 0.02),
-        Shape::Sphere(Sphere { radius: r.range(0.1, 0.4) }),
-        Shape::Capsule(Capsule { half_length: r.range(0.1, 0.3), radius: r.range(0.05, 0.2) }),
-        Shape::Cylinder(Cylinder { half_length: r.range(0.1, 0.3), radius: r.range(0.05, 0.2) }),
-        Shape::Cuboid(Cuboid { half_extents: Vec3::new(r.range(0.1, 0.4), r.range(0.1, 0.4), r.range(0.1, 0.4)) }),
+        Shape::Sphere(Sphere { radius: r.between(0.1, 0.4) }),
+        Shape::Capsule(Capsule { half_length: r.between(0.1, 0.3), radius: r.between(0.05, 0.2) }),
+        Shape::Cylinder(Cylinder { half_length: r.between(0.1, 0.3), radius: r.between(0.05, 0.2) }),
+        Shape::Cuboid(Cuboid {
+            half_extents: Vec3::new(r.between(0.1, 0.4), r.between(0.1, 0.4), r.between(0.1, 0.4)),
+        }),
         r.shape("hull"),
     ]
 }
 
 #[test]
 fn all_touching_triangles_are_found_and_no_others() {
-    let mut r = Rng(22);
+    let mut r = SplitMix(22);
     let mut workspace = Workspace::new();
     let (mut pairs, mut met) = (0, [0; 6]);
     for round in 0..24 {
@@ -100,7 +102,7 @@ fn all_touching_triangles_are_found_and_no_others() {
 
 #[test]
 fn triangles_of_round_shapes_lie_within_them() {
-    let mut r = Rng(23);
+    let mut r = SplitMix(23);
     for shape in others(&mut r) {
         let surface = triangle_surface(&shape, 1e-3).unwrap();
         let point = Shape::Sphere(Sphere { radius: 0.0 });

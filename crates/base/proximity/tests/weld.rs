@@ -1,6 +1,6 @@
 //! Mesh repair: welding, orientation and components, compared with simple implementations.
 
-use crate::common::Rng;
+use crate::common::{RandomGeometry, SplitMix};
 use elbowroom_proximity::repair::{RepairError, orient, split_components, weld};
 use elbowroom_proximity::{ConvexHull, TriMesh};
 use elbowroom_spatial::Vec3;
@@ -55,7 +55,7 @@ proptest! {
 
     #[test]
     fn a_scrambled_solid_is_restored(seed in any::<u64>(), turned in prop::collection::vec(any::<bool>(), 80)) {
-        let mut rng = Rng(seed);
+        let mut rng = SplitMix(seed);
         let hull = rng.hull();
         let (soup, faces) = scrambled(&hull, &mut rng, &turned);
         let welded = weld(&soup, &faces, 1e-7).unwrap();
@@ -70,7 +70,7 @@ proptest! {
 }
 
 /// Every face with its own corners, slightly offset, some reversed.
-fn scrambled(hull: &ConvexHull, rng: &mut Rng, turned: &[bool]) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+fn scrambled(hull: &ConvexHull, rng: &mut SplitMix, turned: &[bool]) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let (mut soup, mut faces) = (vec![], vec![]);
     for (k, t) in hull.triangles().iter().enumerate() {
         let first = soup.len() as u32;

@@ -4,9 +4,9 @@
 //! (golden hashes, thresholds that a seed was found to meet) depend on the sequences, so these never change.
 //!
 //! ```
-//! use elbowroom_testkit::random::{split_mix, unit};
-//! let mut state = 7;
-//! let values: Vec<f64> = (0..100).map(|_| unit(split_mix(&mut state))).collect();
+//! use elbowroom_testkit::random::SplitMix;
+//! let mut random = SplitMix(7);
+//! let values: Vec<f64> = (0..100).map(|_| random.unit()).collect();
 //! assert!(values.iter().all(|x| (0.0..1.0).contains(x)));
 //! ```
 
@@ -37,25 +37,79 @@ pub fn unit(bits: u64) -> f64 {
     (bits >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-/// Numbers of [`linear_congruential`] from a seed.
-///
-/// ```
-/// let mut random = elbowroom_testkit::random::Random(1);
-/// assert!((2.0..3.0).contains(&random.range(2.0, 3.0)) && random.below(4) < 4);
-/// ```
-pub struct Random(pub u64);
+/// Xorshift64* with the shifts 12, 25, 27 (Vigna: *An experimental exploration of Marsaglia's xorshift generators,
+/// scrambled*, 2016). The seed must not be 0, which yields only zeros.
+pub fn xorshift_star(state: &mut u64) -> u64 {
+    *state ^= *state >> 12;
+    *state ^= *state << 25;
+    *state ^= *state >> 27;
+    state.wrapping_mul(0x2545_f491_4f6c_dd1d)
+}
 
-impl Random {
-    /// A number of `[low, high)`.
-    pub fn range(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * unit(linear_congruential(&mut self.0))
-    }
+/// A generator with its state, and the draws that tests need. `$shift` drops low bits with short periods.
+macro_rules! generator {
+    ($(#[$documentation:meta])* $name:ident, $step:path, $shift:literal) => {
+        $(#[$documentation])*
+        #[derive(Debug, Clone)]
+        pub struct $name(pub u64);
 
-    /// A whole number below `count`; 0 for a count of 0.
-    pub fn below(&mut self, count: usize) -> usize {
-        // The low bits have short periods.
-        ((linear_congruential(&mut self.0) >> 11) % count.max(1) as u64) as usize
-    }
+        impl $name {
+            /// The next 64 bits.
+            pub fn bits(&mut self) -> u64 {
+                $step(&mut self.0)
+            }
+
+            /// A number of `[0, 1)`.
+            pub fn unit(&mut self) -> f64 {
+                unit(self.bits())
+            }
+
+            /// A number of `[low, high)`.
+            pub fn between(&mut self, low: f64, high: f64) -> f64 {
+                low + (high - low) * self.unit()
+            }
+
+            /// Numbers of `[-largest, largest)`, such as the coordinates of a vector.
+            pub fn within<const N: usize>(&mut self, largest: f64) -> [f64; N] {
+                std::array::from_fn(|_| self.between(-largest, largest))
+            }
+
+            /// A whole number below `count`, the remainder of the bits; 0 for a count of 0.
+            pub fn below(&mut self, count: usize) -> usize {
+                ((self.bits() >> $shift) % count.max(1) as u64) as usize
+            }
+
+            /// A whole number below `count`, which is at least 1: [`Self::unit`] times the count.
+            pub fn index(&mut self, count: usize) -> usize {
+                ((self.unit() * count as f64) as usize).min(count - 1)
+            }
+        }
+    };
+}
+
+generator! {
+    /// Numbers of [`linear_congruential`] from a seed.
+    ///
+    /// ```
+    /// let mut random = elbowroom_testkit::random::Random(1);
+    /// assert!((2.0..3.0).contains(&random.between(2.0, 3.0)) && random.below(4) < 4);
+    /// ```
+    Random, linear_congruential, 11
+}
+
+generator! {
+    /// Numbers of [`split_mix`] from a seed.
+    SplitMix, split_mix, 0
+}
+
+generator! {
+    /// Numbers of [`xorshift`] from a seed.
+    Xorshift, xorshift, 0
+}
+
+generator! {
+    /// Numbers of [`xorshift_star`] from a seed.
+    XorshiftStar, xorshift_star, 0
 }
 
 #[cfg(test)]
@@ -77,11 +131,28 @@ mod tests {
             first(linear_congruential, 0),
             [1_442_695_040_888_963_407, 1_876_011_003_808_476_466, 11_166_244_414_315_200_793]
         );
+        assert_eq!(
+            first(xorshift_star, 1),
+            [5_180_492_295_206_395_165, 12_380_297_144_915_551_517, 13_389_498_078_930_870_103]
+        );
     }
 
     #[test]
     fn numbers_are_below_one() {
         assert_eq!(unit(0), 0.0);
         assert_eq!(unit(u64::MAX), 1.0 - f64::EPSILON / 2.0);
+    }
+
+    /// Golden hashes of other crates follow from these draws, too.
+    #[test]
+    fn draws_are_made_of_the_next_bits() {
+        let (mut random, mut bits) = (Random(3), Random(3));
+        assert_eq!(random.unit(), unit(bits.bits()));
+        assert_eq!(random.between(-2.0, 4.0), -2.0 + 6.0 * bits.unit());
+        assert_eq!(random.within::<2>(0.5), [bits.unit() - 0.5, bits.unit() - 0.5]);
+        assert_eq!(random.below(10), ((bits.bits() >> 11) % 10) as usize);
+        assert_eq!(random.index(10), (10.0 * bits.unit()) as usize);
+        assert_eq!(SplitMix(3).below(10), (SplitMix(3).bits() % 10) as usize);
+        assert_eq!((random.below(0), random.below(1), random.index(1)), (0, 0, 0));
     }
 }

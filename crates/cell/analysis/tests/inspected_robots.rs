@@ -1,31 +1,18 @@
 //! All published robots, where the data is available: they load, have no suspect units, and exact and automatic levels
 //! agree.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use elbowroom_analysis::query::{Level, QueryKind, QueryRow, QueryStates, evaluate};
 use elbowroom_cell::{OutOfReachProofs, QueryModel};
 use elbowroom_formats::robot::{self, LoadOptions};
 use elbowroom_inspect::{InspectOptions, Inspection};
+use elbowroom_testkit::folder;
 use elbowroom_testkit::random::Random;
 
 fn robots() -> Vec<PathBuf> {
-    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../../shared/data");
-    let data = std::env::var_os("ELBOWROOM_DATA").map_or_else(beside, PathBuf::from);
-    if !data.is_dir() {
-        eprintln!("skipped: no data at {}", data.display());
-        return Vec::new();
-    }
-    let mut robots = Vec::new();
-    for group in ["urdf", "cell"] {
-        for entry in std::fs::read_dir(data.join(group)).unwrap() {
-            let folder = entry.unwrap().path();
-            let urdf = folder.join(format!("{}.urdf", folder.file_name().unwrap().to_str().unwrap()));
-            robots.extend(urdf.is_file().then_some(urdf));
-        }
-    }
-    assert!(robots.len() > 30, "only {}", robots.len());
-    robots.sort();
+    let robots = folder::robots(&["urdf", "cell"]);
+    assert!(robots.is_empty() || robots.len() > 30, "only {}", robots.len());
     robots
 }
 
@@ -38,7 +25,7 @@ fn states(model: &QueryModel) -> QueryStates {
         chain.lower().into_iter().zip(chain.upper()).map(|(l, u)| (l.max(-3.1), u.min(3.1))).collect();
     let mut random = Random(1);
     for _ in 0..50 {
-        let q = bounds.iter().map(|(lower, upper)| random.range(*lower, *upper).to_string());
+        let q = bounds.iter().map(|(lower, upper)| random.between(*lower, *upper).to_string());
         text += &(q.collect::<Vec<_>>().join(",") + "\n");
     }
     QueryStates::parse("q.csv".as_ref(), &text, model).unwrap()

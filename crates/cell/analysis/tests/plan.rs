@@ -1,6 +1,5 @@
 //! Paths in cells: obstacles, and what belongs to the robot.
 
-use std::path::Path;
 use std::time::Duration;
 
 use crate::common::{ARM, HEAD, parse, rail};
@@ -12,6 +11,7 @@ use elbowroom_planner::RrtConnectSettings;
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{Checker, CheckerOptions, Level, SceneState};
 use elbowroom_spatial::Vec3;
+use elbowroom_testkit::folder;
 
 fn request(robot: &str, from: &[f64], to: &[f64]) -> PathRequest {
     let options = RrtConnectSettings { time_limit: Duration::from_secs(2), ..RrtConnectSettings::default() };
@@ -103,12 +103,7 @@ fn the_rows_are_a_file_that_a_cell_reads_back() {
 /// Published robots with meshes and SRDF, some with prismatic or mimic joints.
 #[test]
 fn paths_of_real_robots_lead_around_a_post() {
-    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../../shared/data");
-    let data = std::env::var_os("ELBOWROOM_DATA").map_or_else(beside, Into::into);
-    if !data.is_dir() {
-        println!("skipped: no data at {}", data.display());
-        return;
-    }
+    let Some(data) = folder::data() else { return };
     let ready = [0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785, 0.01];
     let turned = |by: f64| [&[by][..], &ready[1..]].concat();
     let folder = data.join("urdf/panda");

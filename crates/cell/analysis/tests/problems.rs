@@ -1,6 +1,6 @@
 //! Sets of planning problems: what a problem becomes in the scene, and its solution.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use elbowroom_analysis::problems::{
     ProblemModel, ProblemResult, ProblemSettings, ProblemSummary, RrtConnectEngine, run,
@@ -11,6 +11,7 @@ use elbowroom_formats::{FormatError, Warning};
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{Checker, CheckerOptions, SceneState};
 use elbowroom_spatial::Vec3;
+use elbowroom_testkit::folder;
 use serde_json::{Value, json};
 
 /// An arm of 1 m that turns about z, and a finger at its end that slides up.
@@ -234,17 +235,6 @@ fn goals_of_other_robots_are_refused() {
     );
 }
 
-/// `$ELBOWROOM_DATA`, or `../shared/data` beside the workspace.
-fn data() -> Option<PathBuf> {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../../shared/data");
-    let data = std::env::var_os("ELBOWROOM_DATA").map_or(beside, PathBuf::from).join("problems");
-    if data.is_dir() {
-        return Some(data);
-    }
-    eprintln!("skipped: no data at {}", data.display());
-    None
-}
-
 /// The first problems of each set are solved; a checker of its own finds the rows of the paths free.
 fn first_of_each_set(urdf: &Path, srdf: &Path, file: &Path, per_set: usize) {
     let all = problem_set::read(file).unwrap_or_else(|e| panic!("{e}")).problems;
@@ -280,7 +270,7 @@ fn first_of_each_set(urdf: &Path, srdf: &Path, file: &Path, per_set: usize) {
 
 #[test]
 fn panda_with_meshes_solves_the_first_of_each_set() {
-    let Some(data) = data() else { return };
+    let Some(data) = folder::data_part("problems") else { return };
     let model = data.join("../urdf/panda");
     let file = data.join("mbm_panda/problems_first100.json");
     first_of_each_set(&model.join("panda.urdf"), &model.join("panda.srdf"), &file, 2);
@@ -288,7 +278,7 @@ fn panda_with_meshes_solves_the_first_of_each_set() {
 
 #[test]
 fn fetch_of_spheres_solves_the_first_of_each_set() {
-    let Some(data) = data() else { return };
+    let Some(data) = folder::data_part("problems") else { return };
     let folder = data.join("mbm_fetch");
     let (urdf, srdf) = (folder.join("fetch_spherized.urdf"), folder.join("fetch.srdf"));
     first_of_each_set(&urdf, &srdf, &folder.join("problems_first50.json"), 1);

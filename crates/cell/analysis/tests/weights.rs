@@ -55,7 +55,7 @@ fn states(model: &QueryModel, count: usize) -> QueryStates {
     let mut text = names.join(",") + "\n";
     let mut random = Random(18);
     for _ in 0..count {
-        let q = bounds.iter().map(|(lower, upper)| random.range(*lower, *upper).to_string());
+        let q = bounds.iter().map(|(lower, upper)| random.between(*lower, *upper).to_string());
         text += &(q.collect::<Vec<_>>().join(",") + "\n");
     }
     QueryStates::parse("q.csv".as_ref(), &text, model).unwrap()

@@ -1,21 +1,15 @@
 //! Default weights, from size and reach alone, on real robots where the data is available: fewer pairs are tested until the first
 //! contact than in the order of the file, with the same answers. Weights of a file of pairs override them.
 
-use std::path::{Path, PathBuf};
-
 use elbowroom_cell::{Cell, OutOfReachProofs, PairFile, QueryModel};
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{Checker, CheckerOptions, Level, PairContact, PairEdit, Scene, SceneState};
+use elbowroom_testkit::folder;
 use elbowroom_testkit::random::Random;
 
 /// Two arms of six axes side by side at a table, with a post and a beam.
 fn cell() -> Option<Cell> {
-    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../../shared/data");
-    let data = std::env::var_os("ELBOWROOM_DATA").map_or_else(beside, PathBuf::from).join("urdf");
-    if !data.is_dir() {
-        eprintln!("skipped: no data at {}", data.display());
-        return None;
-    }
+    let data = folder::data_part("urdf")?;
     let robot = |name: &str, model: &str, y: f64| {
         let urdf = data.join(model).join(format!("{model}.urdf"));
         let urdf = urdf.to_str().unwrap();
@@ -47,7 +41,7 @@ fn random_state(scene: &Scene, random: &mut Random) -> SceneState {
     for (i, r) in scene.robots().iter().enumerate() {
         let chain = &r.robot.chain;
         let q: Vec<f64> =
-            chain.lower().iter().zip(chain.upper()).map(|(l, u)| random.range(l.max(-3.1), u.min(3.1))).collect();
+            chain.lower().iter().zip(chain.upper()).map(|(l, u)| random.between(l.max(-3.1), u.min(3.1))).collect();
         state.set_q(scene, RobotId(i), &q).unwrap();
     }
     state

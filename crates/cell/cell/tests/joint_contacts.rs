@@ -1,26 +1,21 @@
 //! All published robots, where the data is available: none begins to collide because of links that always touch at a joint.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use elbowroom_cell::{Cell, OutOfReachProofs, QueryModel};
 use elbowroom_robot::{GeometryId, JointContact, JointContactKind, RobotId, joint_contacts};
 use elbowroom_scene::{Checker, CheckerOptions, Scene, SceneState};
+use elbowroom_testkit::folder;
 
 fn robots() -> Vec<PathBuf> {
-    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../../shared/data");
-    let data = std::env::var_os("ELBOWROOM_DATA").map_or_else(beside, PathBuf::from).join("urdf");
-    let more = std::env::var_os("ELBOWROOM_MORE_ROBOTS").map(PathBuf::from);
-    if !data.is_dir() {
-        eprintln!("skipped: no data at {}", data.display());
-        return Vec::new();
-    }
-    let files = |folder: &Path| std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect::<Vec<_>>();
-    let of_folder = |folder: PathBuf| folder.join(format!("{}.urdf", folder.file_name().unwrap().to_str().unwrap()));
-    let mut robots: Vec<PathBuf> = files(&data).into_iter().map(of_folder).filter(|f| f.is_file()).collect();
+    let mut robots = folder::robots(&["urdf"]);
+    assert!(robots.is_empty() || robots.len() > 30, "only {}", robots.len());
     // Other robots: a folder of URDFs.
-    robots.extend(more.iter().flat_map(|folder| files(folder)).filter(|f| f.extension().is_some_and(|e| e == "urdf")));
-    robots.sort();
-    assert!(robots.len() > 30, "only {}", robots.len());
+    if let Some(more) = std::env::var_os("ELBOWROOM_MORE_ROBOTS") {
+        let files = std::fs::read_dir(more).unwrap().map(|entry| entry.unwrap().path());
+        robots.extend(files.filter(|file| file.extension().is_some_and(|e| e == "urdf")));
+        robots.sort();
+    }
     robots
 }
 

@@ -177,7 +177,7 @@ fn folder(name: &str) -> PathBuf {
 }
 
 fn cell(folder: &Path) -> Cell {
-    let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../examples/models");
+    let models = elbowroom_testkit::folder::examples().join("models");
     std::fs::write(folder.join("wedge.stl"), WEDGE).unwrap();
     let file = folder.join("cell.toml");
     std::fs::write(&file, CELL.replace("MODELS", &models.display().to_string())).unwrap();

@@ -118,18 +118,18 @@ fn random_bars_and_posts_are_never_entered_and_measured_as_by_brute_force() {
     let mut r = Random(7);
     let (mut stopped, mut finished) = (0, 0);
     for _ in 0..24 {
-        let angle = r.range(0.5, 1.2);
-        let far = r.range(800.0, 1250.0);
+        let angle = r.between(0.5, 1.2);
+        let far = r.between(800.0, 1250.0);
         let place = format!(
             "[region.ball]\nshape = \"sphere\"\ncentre = [{:.3}, {:.3}, {:.3}]\nradius = {:.3}\nwarning = 80\n{STOPPING}\
              direction_aware = {}\n",
             far * angle.cos(),
             far * angle.sin(),
-            r.range(300.0, 600.0),
-            r.range(10.0, 60.0),
-            r.range(0.0, 1.0) < 0.5
+            r.between(300.0, 600.0),
+            r.between(10.0, 60.0),
+            r.between(0.0, 1.0) < 0.5
         );
-        let text = cell(r.range(300.0, 900.0), &place, true);
+        let text = cell(r.between(300.0, 900.0), &place, true);
         let outcome = run(&text);
         assert!(!outcome.recording.regions[0].entered, "{text}");
         assert!(assert_distance(&text, &outcome) > 0.0, "{text}");

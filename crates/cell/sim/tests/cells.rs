@@ -25,7 +25,7 @@ fn an_exchange_region_is_never_shared_and_all_robots_pass() {
     let mut random = random::Random(0x9e37_79b9_7f4a_7c15);
     let mut waited = 0;
     for _ in 0..1000 {
-        let outcome = run(&crossing(random.range(0.0, 1.5), random.range(0.0, 1.5)));
+        let outcome = run(&crossing(random.between(0.0, 1.5), random.between(0.0, 1.5)));
         let r = &outcome.recording;
         assert!(r.robots.iter().all(|r| r.finished), "a robot was left waiting");
         assert!(!outcome.has_violation());

@@ -1,13 +1,13 @@
 //! The example `pallet`: its program is valid, the cart crosses its path, and the arm evades it.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use elbowroom_avoidance::AvoiderState;
 use elbowroom_cell::Cell;
 use elbowroom_sim::{RunOptions, RunOutcome, RunSummary, simulate};
 
 fn file() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../examples/pallet/cell.toml")
+    elbowroom_testkit::folder::examples().join("pallet/cell.toml")
 }
 
 fn run(text: &str, avoidance: bool) -> RunOutcome {

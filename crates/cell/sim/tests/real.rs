@@ -1,25 +1,15 @@
 //! Published robots and a recording, where the data is available.
 
 use std::fmt::Write as _;
-use std::path::PathBuf;
 use std::time::Instant;
 
 use elbowroom_cell::Cell;
 use elbowroom_sim::{RunOptions, simulate};
-
-fn data() -> Option<PathBuf> {
-    let beside = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../../shared/data");
-    let dir = std::env::var_os("ELBOWROOM_DATA").map_or(beside, PathBuf::from);
-    if dir.is_dir() {
-        return Some(dir);
-    }
-    eprintln!("skipped: no data at {}", dir.display());
-    None
-}
+use elbowroom_testkit::folder;
 
 #[test]
 fn the_ns16_runs_guarded_with_its_meshes() {
-    let Some(data) = data() else { return };
+    let Some(data) = folder::data() else { return };
     let dir = data.join("urdf/comau_ns16arc");
     let text = "version = 1\nunits = { length = \"mm\", angle = \"deg\" }\n[robot.ns16]\nmodel = \"comau_ns16arc.urdf\"\nstart = [-40, 0, -90, 0, 40, 0]\n\
         [region.column]\nshape = \"cylinder\"\nbase = [1150, 0, 0]\nradius = 150\nheight = 2000\nwarning = 250\n\
@@ -42,7 +32,7 @@ fn the_ns16_runs_guarded_with_its_meshes() {
 
 #[test]
 fn the_tx40_recording_plays_under_whole_arm_guard_faster_than_real_time() {
-    let Some(data) = data() else { return };
+    let Some(data) = folder::data() else { return };
     let recording = std::fs::read_to_string(data.join("trajectories/staubli_tx40_real/pos_read_data.csv")).unwrap();
     let dir = tempfile::tempdir().unwrap();
     let urdf = data.join("urdf/staubli_tx40/staubli_tx40.urdf");

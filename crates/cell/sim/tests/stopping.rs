@@ -82,8 +82,9 @@ fn six_axis_arms_that_brake_softly_stay_outside() {
         let stop_time = [0.3, 0.5][case % 2];
         let ranges = [150.0, 60.0, 60.0, 120.0, 90.0, 180.0];
         let [from, to]: [Vec<String>; 2] =
-            std::array::from_fn(|_| ranges.iter().map(|r| format!("{:.2}", random.range(-r, *r))).collect());
-        let at: Vec<String> = [1000.0, 1000.0, 700.0].iter().map(|r| format!("{:.1}", random.range(-r, *r))).collect();
+            std::array::from_fn(|_| ranges.iter().map(|r| format!("{:.2}", random.between(-r, *r))).collect());
+        let at: Vec<String> =
+            [1000.0, 1000.0, 700.0].iter().map(|r| format!("{:.1}", random.between(-r, *r))).collect();
         let text = format!(
             "{HEAD}[monitor]\nstopping_distance = true\n[robot.r]\n{ARM}stop_time = {stop_time}\nstart = [{}]\n\
              [region.ball]\nshape = \"sphere\"\ncentre = [{}]\nradius = 200\nwarning = 10\n\

@@ -1,7 +1,6 @@
 //! The tick of a node, what it takes in and its controller's client do not allocate. Without the test harness, because the
 //! counter includes all threads of the process.
 
-use std::alloc::System;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -15,11 +14,11 @@ use elbowroom_live::{CellVersions, ControllerClient, ControllerState, RegionTabl
 use elbowroom_monitor::{EventKind, Fault, OverrideReason, Presence, RobotSlot, TickReport, VolumeId};
 use elbowroom_robot::RobotId;
 use elbowroom_status::StatusSample;
+use elbowroom_testkit::allocation::{AllocationCounter, COUNTING_ALLOCATOR, CountingAllocator};
 use elbowroom_testkit::random::split_mix;
-use stats_alloc::{INSTRUMENTED_SYSTEM, Region as Counter, StatsAlloc};
 
 #[global_allocator]
-static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
+static ALLOCATOR: CountingAllocator = COUNTING_ALLOCATOR;
 
 const TICK_US: u64 = 2_000;
 const TICKS: u64 = 20_000;
@@ -185,9 +184,6 @@ impl Seen {
 }
 
 fn main() {
-    let counter = Counter::new(ALLOCATOR);
-    drop(std::hint::black_box(Vec::<u8>::with_capacity(1)));
-    assert_eq!(allocations_since(&counter), 2, "the counter counts");
     let mut s = Setup::new();
     let mut seen = Seen::default();
     let mut sample = s.node.new_sample();
@@ -201,7 +197,7 @@ fn main() {
             // On the node's other thread: reading it allocates.
             hear_regions(&mut s, n, now);
         }
-        let counter = Counter::new(ALLOCATOR);
+        let counter = AllocationCounter::start();
         send_joint_states(&mut s, n, now, &mut sent);
         send_hostile(&s.node, n, now, &sent, &mut old, &mut random);
         if let Some(report) = s.node.tick(now) {
@@ -220,7 +216,7 @@ fn main() {
         if s.node.take_sample(&mut sample) {
             seen.sample(&mut sample);
         }
-        let mut allocations = allocations_since(&counter);
+        let mut allocations = counter.changes();
         if has_interlock {
             allocations += answer_interlock(&mut s, &interlock, now);
         }
@@ -329,14 +325,9 @@ fn answer_interlock(s: &mut Setup, bytes: &[u8], now: Micros) -> usize {
     let mut allocations = 0;
     for reply in &s.arbiter.receive(&message, now).replies {
         assert!(encode_grants(reply, &mut grants));
-        let counter = Counter::new(ALLOCATOR);
+        let counter = AllocationCounter::start();
         s.node.grants(&grants);
-        allocations += allocations_since(&counter);
+        allocations += counter.changes();
     }
     allocations
-}
-
-fn allocations_since(counter: &Counter<'_, System>) -> usize {
-    let change = counter.change();
-    change.allocations + change.reallocations + change.deallocations
 }

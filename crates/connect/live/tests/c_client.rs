@@ -59,7 +59,7 @@ fn compile(source: &Path, name: &str) -> Option<PathBuf> {
 }
 
 fn clients() -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../clients/c")
+    elbowroom_testkit::folder::workspace().join("clients/c")
 }
 
 fn hex(bytes: &[u8]) -> String {

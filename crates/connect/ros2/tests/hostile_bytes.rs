@@ -13,15 +13,7 @@ use elbowroom_ros2::msgs::tf2_msgs::TFMessage;
 use elbowroom_ros2::msgs::visualization_msgs::{Marker, MarkerArray};
 use elbowroom_ros2::rmw_zenoh::Attachment;
 use elbowroom_ros2::{CdrError, Message};
-use elbowroom_testkit::random::split_mix;
-
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, n: usize) -> usize {
-        split_mix(&mut self.0) as usize % n
-    }
-}
+use elbowroom_testkit::random::SplitMix;
 
 const MESSAGES: usize = 1_000_000;
 /// In a debug build on a busy machine.
@@ -82,7 +74,7 @@ fn seeds() -> Vec<(Vec<u8>, Decode)> {
 }
 
 /// Changes, cuts, lengthens or repeats.
-fn mutate(bytes: &mut Vec<u8>, random: &mut Random) {
+fn mutate(bytes: &mut Vec<u8>, random: &mut SplitMix) {
     for _ in 0..=random.below(4) {
         let at = random.below(bytes.len().max(1));
         match random.below(6) {
@@ -110,7 +102,7 @@ fn a_million_changed_messages_are_refused_or_read() {
     for (bytes, decode) in &seeds {
         decode(bytes).unwrap();
     }
-    let mut random = Random(17);
+    let mut random = SplitMix(17);
     let begin = Instant::now();
     let (mut read, mut slowest) = (0, Duration::ZERO);
     for i in 0..MESSAGES {

@@ -9,17 +9,9 @@ use elbowroom_cell::Cell;
 use elbowroom_rosbag::{CellWriter, RunRecorder, replay};
 use elbowroom_sim::RunOptions;
 use elbowroom_sim::run::simulate_observed;
-use elbowroom_testkit::random::split_mix;
+use elbowroom_testkit::random::SplitMix;
 
 const CHANGES: usize = 20_000;
-
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, n: usize) -> usize {
-        split_mix(&mut self.0) as usize % n.max(1)
-    }
-}
 
 /// Every kind of shape, a source, an exchange region, a tool.
 const CELL: &str = r#"
@@ -106,7 +98,7 @@ fn written(messages: &[(String, Vec<u8>)]) -> Vec<u8> {
     file.into_inner()
 }
 
-fn mutate(bytes: &mut Vec<u8>, random: &mut Random) {
+fn mutate(bytes: &mut Vec<u8>, random: &mut SplitMix) {
     for _ in 0..=random.below(3) {
         let at = random.below(bytes.len());
         match random.below(5) {
@@ -128,7 +120,7 @@ fn mutate(bytes: &mut Vec<u8>, random: &mut Random) {
 fn changed_messages_are_refused_or_replayed() {
     let sound = messages(&recording());
     assert_eq!(replay(&written(&sound)[..]).unwrap().differences, 0);
-    let mut random = Random(3);
+    let mut random = SplitMix(3);
     let begin = Instant::now();
     let mut kinds = BTreeMap::<String, usize>::new();
     for _ in 0..CHANGES {
@@ -152,7 +144,7 @@ fn changed_messages_are_refused_or_replayed() {
 #[test]
 fn changed_files_are_refused_or_replayed() {
     let sound = written(&messages(&recording()));
-    let mut random = Random(4);
+    let mut random = SplitMix(4);
     let (mut refused, mut read) = (0, 0);
     for _ in 0..CHANGES {
         let mut changed = sound.clone();

@@ -3,7 +3,7 @@
 //! Needs a Python with them, named by `ELBOWROOM_PYTHON` (default `python3`); without it the tests pass with a message.
 #![allow(clippy::print_stdout)]
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Stdio};
 
 use elbowroom_cell::Cell;
@@ -38,7 +38,7 @@ fn script(python: &str, arguments: &[&str]) -> String {
 }
 
 fn cell(example: &str) -> Cell {
-    let examples: PathBuf = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../examples");
+    let examples = elbowroom_testkit::folder::examples();
     Cell::load(examples.join(example).join("cell.toml")).unwrap()
 }
 

@@ -2,17 +2,13 @@
 #![allow(clippy::print_stdout)]
 
 use std::io::Cursor;
-use std::path::{Path, PathBuf};
 
 use elbowroom_cell::Cell;
 use elbowroom_robot::RobotId;
 use elbowroom_rosbag::{CellWriter, Replay, RunRecorder, replay};
 use elbowroom_sim::run::simulate_observed;
 use elbowroom_sim::{InputFault, InputFaultKind, Recording, RunOptions};
-
-fn examples() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../examples")
-}
+use elbowroom_testkit::folder::examples;
 
 fn recorded(cell: &Cell, options: &RunOptions) -> (Vec<u8>, Recording) {
     let mut file = Cursor::new(Vec::new());

@@ -219,7 +219,7 @@ fn a_telephone_does_not_scroll_sideways() {
 
 /// Four arms around a pallet.
 fn four_arms() -> Cell {
-    let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../examples/models");
+    let models = elbowroom_testkit::folder::examples().join("models");
     let text = r#"
 version = 1
 name = "four arms"

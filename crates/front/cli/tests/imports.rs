@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::common::{elbowroom, examples};
+use crate::common::{elbowroom, model};
 
 const SCENE: &str = "shelf\n* board\n0.9 0 0.5\n0 0 0 1\n1\nbox\n0.6 0.4 0.1\n0 0 0\n0 0 0 1\n0 0 0 0\n0\n* wedge\n0 2 0\n0 0 0 1\n1\nmesh\n4 4\n\
 0 0 0\n0.5 0 0\n0 0.5 0\n0 0 0.5\n0 2 1\n0 1 3\n1 2 3\n0 3 2\n0 0 0\n0 0 0 1\n0 0 0 0\n0\n* floor\n0 0 -0.01\n0 0 0 1\n1\nplane\n0 0 1 0\n\
@@ -137,7 +137,7 @@ fn an_srdf_is_written_from_models_and_cells_and_read_again() {
     let states = "states = { left = [90], right = [-90] }\n";
     write(here, "again.toml", &cell("srdf = \"bar.srdf\"\n").replace(states, ""));
     elbowroom(here, &["plan", "again.toml", "--to", "right"]).expect(0);
-    let arm = examples().join("models/kr125/kr125.urdf");
+    let arm = model("kr125");
     let arm = arm.to_str().unwrap();
     elbowroom(here, &["convert", arm, "first.srdf"]).expect(0);
     let first = std::fs::read_to_string(here.join("first.srdf")).unwrap();

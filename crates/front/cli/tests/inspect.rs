@@ -1,10 +1,10 @@
 //! `elbowroom inspect`: its output for the example arm.
 
 use crate::common;
-use crate::common::{elbowroom, examples, keys};
+use crate::common::{elbowroom, examples, keys, model};
 
 fn ns16() -> String {
-    examples().join("models/ns16/ns16.urdf").to_str().unwrap().to_owned()
+    model("ns16").to_str().unwrap().to_owned()
 }
 
 #[test]

@@ -1,12 +1,12 @@
 //! Robots out of 3DS models at the command line: convert, inspect, query.
 
 use crate::common;
-use crate::common::{elbowroom, examples, with_cell};
+use crate::common::{elbowroom, model, with_cell};
 use ::elbowroom::formats::robot::{self, LoadOptions};
 use ::elbowroom::formats::tds;
 
 fn ns16() -> String {
-    examples().join("models/ns16/ns16.urdf").to_str().unwrap().to_owned()
+    model("ns16").to_str().unwrap().to_owned()
 }
 
 #[test]

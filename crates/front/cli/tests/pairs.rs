@@ -138,8 +138,8 @@ fn an_srdf_is_written_and_silences_what_always_touches() {
     let text = std::fs::read_to_string(dir.path().join("new.srdf")).unwrap();
     let line = "<disable_collisions link1=\"forearm\" link2=\"hand\" reason=\"Default\"/>";
     assert!(text.contains(line), "{text}");
-    let kr125 = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../examples/models/kr125/kr125.urdf");
-    elbowroom(dir.path(), &["inspect", kr125, "--write-srdf", "kr125.srdf"]).expect(0);
+    let kr125 = elbowroom_testkit::folder::model("kr125");
+    elbowroom(dir.path(), &["inspect", kr125.to_str().unwrap(), "--write-srdf", "kr125.srdf"]).expect(0);
     let kr125 = std::fs::read_to_string(dir.path().join("kr125.srdf")).unwrap();
     assert!(kr125.contains("reason=\"Adjacent\""), "{kr125}");
     let query = ["query", "--urdf", "ball.urdf", "--srdf", "new.srdf", "--ask", "collision"];

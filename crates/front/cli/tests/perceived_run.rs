@@ -79,10 +79,6 @@ stopping_distance = true
 steps = [{ wait = 0.6 }, { move = "KIND", to = [-60, -31.1, 76.6, 0, 44.5, 0], speed = 30 }]
 "#;
 
-fn model() -> std::path::PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../examples/models/kr125/kr125.urdf")
-}
-
 fn lens() -> Intrinsics {
     Intrinsics::pinhole(320, 240, 0.92)
 }
@@ -95,8 +91,8 @@ fn cell(sensor: &str, kind: &str) -> String {
     let head = format!(
         "version = 1\nunits = {{ length = \"mm\", angle = \"deg\" }}\n[robot.kr]\nmodel = {:?}\nsrdf = {:?}\n\
          start = [60, -31.1, 76.6, 0, 44.5, 0]\n",
-        model().display().to_string(),
-        model().with_extension("srdf").display().to_string()
+        elbowroom_testkit::folder::model("kr125").display().to_string(),
+        elbowroom_testkit::folder::model("kr125").with_extension("srdf").display().to_string()
     );
     let lens = format!("[{:?}, {:?}]", lens().fx, lens().fy);
     head + &sensor.replace("FOCAL", &lens) + &REST.replace("KIND", kind)
@@ -123,7 +119,10 @@ fn learning_joints(t_s: f64) -> [f64; 6] {
 fn write_pictures(dir: &Path, frames: usize, leaves_s: f64) {
     let folder = dir.join("pictures");
     std::fs::create_dir(&folder).unwrap();
-    let arm = MappedArm::kr125(load(&model(), &LoadOptions::default()).unwrap().robot, Pose::IDENTITY);
+    let arm = MappedArm::kr125(
+        load(&elbowroom_testkit::folder::model("kr125"), &LoadOptions::default()).unwrap().robot,
+        Pose::IDENTITY,
+    );
     let (mut state, mut parts) = (ChainState::new(&arm.robot.chain), Vec::new());
     let mut joints = "t_s,joint_1,joint_2,joint_3,joint_4,joint_5,joint_6\n".to_owned();
     for i in 0..=136 {
@@ -341,7 +340,7 @@ fn events(dir: &Path) -> String {
 fn check_run(dir: &Path, answer: &Answer, sensors: &str, records_name: &str) {
     let json = answer.json();
     let (robot, sensor) = (&json["robots"][0], &json[sensors][0]);
-    let robot_model = load(&model(), &LoadOptions::default()).unwrap().robot;
+    let robot_model = load(&elbowroom_testkit::folder::model("kr125"), &LoadOptions::default()).unwrap().robot;
     let trace = std::fs::read_to_string(dir.join("out/trace.csv")).unwrap();
     let (least_m, when_s) = clearance(&trace, &robot_model, f64::INFINITY);
     let score = score(&records(dir, records_name), f64::INFINITY);
@@ -387,7 +386,7 @@ fn the_arm_goes_around_a_crate_that_only_the_camera_knows() {
     std::fs::write(dir.path().join("cell.toml"), blind).unwrap();
     run(dir.path()).expect(0);
     let trace = std::fs::read_to_string(dir.path().join("out/trace.csv")).unwrap();
-    let robot = load(&model(), &LoadOptions::default()).unwrap().robot;
+    let robot = load(&elbowroom_testkit::folder::model("kr125"), &LoadOptions::default()).unwrap().robot;
     assert_eq!(clearance(&trace, &robot, f64::INFINITY).0, 0.0);
 }
 
@@ -480,7 +479,7 @@ fn a_joint_move_waits_until_the_crate_has_left() {
     assert!(events.contains(",kr,above#1,wait") && events.contains(",kr,above#1,stop"), "{events}");
     assert!(events.contains(",resume"), "{events}");
     let trace = std::fs::read_to_string(dir.path().join("out/trace.csv")).unwrap();
-    let robot_model = load(&model(), &LoadOptions::default()).unwrap().robot;
+    let robot_model = load(&elbowroom_testkit::folder::model("kr125"), &LoadOptions::default()).unwrap().robot;
     let (least_m, when_s) = clearance(&trace, &robot_model, LEAVES_S);
     println!("joint move: least distance to the true crate {:.0} mm at {when_s:.2} s", least_m * 1e3);
     assert!(least_m > 0.03, "{least_m} m at {when_s} s");

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::common::{Answer, elbowroom, examples, keys};
+use crate::common::{Answer, elbowroom, examples, keys, model};
 use serde_json::{Value, json};
 
 /// Values of the example robot with its forearm in front.
@@ -139,7 +139,7 @@ fn wrong_files_and_calls_are_exit_status_2_with_a_remedy() {
     refused(&flat, &[], &["problem `a/b`", "collision_objects[0].primitives[0].dimensions", "[x, y, z]"]);
 
     let dir = tempfile::tempdir().unwrap();
-    let urdf = examples().join("models/ns16/ns16.urdf");
+    let urdf = model("ns16");
     let urdf = urdf.to_str().unwrap();
     for (args, expected) in [
         (&["plan", "--urdf", urdf][..], "--problems"),
@@ -155,7 +155,7 @@ fn wrong_files_and_calls_are_exit_status_2_with_a_remedy() {
 #[test]
 fn a_robot_without_speeds_has_no_timed_paths() {
     let dir = tempfile::tempdir().unwrap();
-    let urdf = std::fs::read_to_string(examples().join("models/ns16/ns16.urdf")).unwrap();
+    let urdf = std::fs::read_to_string(model("ns16")).unwrap();
     let urdf = urdf.replace("velocity=\"3.0543261909900767\" ", "");
     std::fs::write(
         dir.path().join("slow.urdf"),

@@ -1,6 +1,6 @@
 //! `elbowroom query`: columns, JSON, exit status, messages.
 
-use crate::common::{Answer, elbowroom, examples, keys, with_cell, with_input};
+use crate::common::{Answer, elbowroom, examples, keys, model, with_cell, with_input};
 
 const HEADER: &str = "index,collides,distance_m,a,b,ax,ay,az,bx,by,bz,level";
 
@@ -73,7 +73,7 @@ fn states_come_from_standard_input_too() {
         assert!(refused.stderr.contains(expected) && refused.stderr.contains(hint), "{input:?}: {}", refused.stderr);
         assert!(refused.stdout.is_empty(), "{}", refused.stdout);
     }
-    let ns16 = examples().join("models/ns16/ns16.urdf");
+    let ns16 = model("ns16");
     let joints = "joint_1,joint_2,joint_3,joint_4,joint_5,joint_6\n0,0,0,0,0,0\n";
     let poses = with_input(dir.path(), &["inspect", ns16.to_str().unwrap(), "--states", "-"], joints).expect(0);
     assert!(poses.stdout.lines().count() > 6, "{}", poses.stdout);
@@ -155,7 +155,7 @@ fn wrong_states_name_file_line_and_column() {
 #[test]
 fn contradictory_calls_are_refused() {
     let dir = with_cell(CELL);
-    let urdf = examples().join("models/ns16/ns16.urdf");
+    let urdf = model("ns16");
     let urdf = urdf.to_str().unwrap();
     for (args, part) in [
         (&["query", "cell.toml"][..], "--ask"),
@@ -181,7 +181,7 @@ fn contradictory_calls_are_refused() {
 
 #[test]
 fn a_robot_alone_uses_bare_names_and_its_root_as_the_world() {
-    let urdf = examples().join("models/ns16/ns16.urdf");
+    let urdf = model("ns16");
     let base = ["query", "--urdf", urdf.to_str().unwrap(), "--ask", "distance"];
     let answer = elbowroom(&examples(), &base).expect(0);
     let row = cells(answer.stdout.lines().nth(1).unwrap()).into_iter().map(str::to_owned).collect::<Vec<_>>();

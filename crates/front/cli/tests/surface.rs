@@ -1,6 +1,7 @@
 //! The command as a whole: no arguments, examples, completions, closed pipes, invalid files.
 
-use crate::common::{answer, command, elbowroom, examples, swing, with_cell};
+use crate::common::{answer, command, elbowroom, examples, model, swing, with_cell};
+use elbowroom_testkit::folder;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::Stdio;
@@ -74,7 +75,7 @@ fn a_closed_pipe_is_no_failure() {
     let header = "joint_1,joint_2,joint_3,joint_4,joint_5,joint_6\n";
     let states = header.to_owned() + &"0.1,0.2,0.3,0.4,0.5,0.6\n".repeat(5_000);
     std::fs::write(dir.path().join("q.csv"), states).unwrap();
-    let urdf = examples().join("models/ns16/ns16.urdf");
+    let urdf = model("ns16");
     let mut child = command(dir.path(), &["inspect", urdf.to_str().unwrap(), "--states", "q.csv"])
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
@@ -138,7 +139,7 @@ fn invalid_files_are_refused_by_name() {
         let answer = elbowroom(dir.path(), &["inspect", model]).expect(2);
         assert!(answer.stderr.contains(model), "{model}: {}", answer.stderr);
     }
-    let arm = examples().join("models/ns16/ns16.urdf");
+    let arm = model("ns16");
     for states in ["noise.csv", "folder", "missing.csv"] {
         let answer = elbowroom(dir.path(), &["inspect", arm.to_str().unwrap(), "--states", states]).expect(2);
         assert!(answer.stderr.contains(states), "{states}: {}", answer.stderr);
@@ -154,32 +155,21 @@ fn invalid_files_are_refused_by_name() {
 /// Files that broke other programs give a report or an error, never a crash.
 #[test]
 fn known_broken_files_end_with_a_report_or_an_error() {
-    let data = std::env::var_os("ELBOWROOM_DATA")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../../shared/data"), Into::into);
-    let mut folders = vec![data.join("malformed")];
-    if !folders[0].is_dir() {
-        println!("skipped: no data at {}", folders[0].display());
-        return;
-    }
+    let Some(malformed) = folder::data_part("malformed") else { return };
     let endings = ["urdf", "xml", "stl", "obj", "dae", "gltf", "glb", "3ds", "ply", "off"];
     let mut seen = 0;
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-            } else if path.extension().is_some_and(|e| endings.iter().any(|known| e.eq_ignore_ascii_case(known))) {
-                let answer = elbowroom(Path::new("."), &["inspect", path.to_str().unwrap(), "--json"]);
-                assert!(matches!(answer.status, 0 | 2), "{}: {}", path.display(), answer.stderr);
-                let answer_status = answer.status;
-                let answer = answer.expect(answer_status);
-                if answer.status == 0 {
-                    answer.json();
-                } else {
-                    assert!(answer.stderr.len() > 20, "{}", path.display());
-                }
-                seen += 1;
+    for path in folder::files_below(&malformed) {
+        if path.extension().is_some_and(|e| endings.iter().any(|known| e.eq_ignore_ascii_case(known))) {
+            let answer = elbowroom(Path::new("."), &["inspect", path.to_str().unwrap(), "--json"]);
+            assert!(matches!(answer.status, 0 | 2), "{}: {}", path.display(), answer.stderr);
+            let answer_status = answer.status;
+            let answer = answer.expect(answer_status);
+            if answer.status == 0 {
+                answer.json();
+            } else {
+                assert!(answer.stderr.len() > 20, "{}", path.display());
             }
+            seen += 1;
         }
     }
     assert!(seen > 10, "only {seen} files");

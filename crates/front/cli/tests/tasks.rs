@@ -4,21 +4,11 @@
 #![allow(clippy::print_stdout, reason = "shows what users type and see")]
 
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use crate::common::{Answer, elbowroom, with_cell};
+use elbowroom_testkit::folder;
 use tempfile::TempDir;
-
-/// `$ELBOWROOM_DATA`, or `../shared/data` beside the workspace; `None` and a message where it is missing.
-fn data() -> Option<PathBuf> {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../../shared/data");
-    let data = std::env::var_os("ELBOWROOM_DATA").map_or(beside, PathBuf::from);
-    if !data.join("urdf").is_dir() {
-        println!("skipped: no data at ../shared/data or $ELBOWROOM_DATA");
-        return None;
-    }
-    Some(data.canonicalize().unwrap())
-}
 
 /// The robot of a folder of the data, as a path for a cell file.
 fn urdf(data: &Path, name: &str) -> String {
@@ -52,7 +42,7 @@ fn rows(csv: &str) -> Vec<Vec<String>> {
 /// 1: guard an unseen arm with a gripper; 2: find out why it stopped; 3: check whether entry is excluded.
 #[test]
 fn guard_an_arm_with_a_gripper_and_find_out_why_it_stopped() {
-    let Some(data) = data() else { return };
+    let Some(data) = folder::data() else { return };
     let model = urdf(&data, "panda");
     let cell = |law: &str| {
         format!(
@@ -96,7 +86,7 @@ steps = [
 /// 4: distances between an arm and a belt for many states.
 #[test]
 fn distances_between_arm_and_belt() {
-    let Some(data) = data() else { return };
+    let Some(data) = folder::data() else { return };
     let dir = with_cell(&format!(
         "{HEAD}[robot.arm]\nmodel = \"{}\"\n[object.belt]\nshape = \"box\"\nat = [1800, 0, 350]\nsize = [600, 4000, 700]\n",
         urdf(&data, "kuka_kr150_2")
@@ -116,7 +106,7 @@ fn distances_between_arm_and_belt() {
 /// 5: plan to a pose and play it; 6: the same as a step of a program.
 #[test]
 fn plan_to_a_pose_and_play_it() {
-    let Some(data) = data() else { return };
+    let Some(data) = folder::data() else { return };
     let cell = format!(
         r#"{HEAD}[robot.ur]
 model = "{}"
@@ -160,7 +150,7 @@ size = [3000, 3000, 200]
 /// 7: pick, carry, place.
 #[test]
 fn pick_carry_place() {
-    let Some(data) = data() else { return };
+    let Some(data) = folder::data() else { return };
     let dir = with_cell(&format!(
         r#"{HEAD}[robot.kr]
 model = "{}"
@@ -198,7 +188,7 @@ steps = [
 /// 8: replay the recording of a real controller, in degrees.
 #[test]
 fn replay_a_recording_in_degrees() {
-    let Some(data) = data() else { return };
+    let Some(data) = folder::data() else { return };
     let recording = data.join("trajectories/staubli_tx40_real/pos_read_data.csv");
     let dir = tempfile::tempdir().unwrap();
     // The first 20 s, as another program would have written them.
@@ -230,7 +220,7 @@ trajectory = {{ file = "recorded.csv", angle = "deg", period_ms = 4 }}
 /// 9: the allowed collision matrix of an unseen arm; 10: what is near at the start.
 #[test]
 fn write_and_use_an_srdf() {
-    let Some(data) = data() else { return };
+    let Some(data) = folder::data() else { return };
     let arm = urdf(&data, "fanuc_m10ia");
     let dir = with_cell(&format!(
         "{HEAD}[robot.arm]\nmodel = \"{arm}\"\nsrdf = \"arm.srdf\"\n[object.rack]\nshape = \"box\"\nat = [1500, 0, 500]\nsize = [200, 800, 1000]\n"
@@ -245,7 +235,7 @@ fn write_and_use_an_srdf() {
 /// 11: plan between states of the model's SRDF.
 #[test]
 fn plan_between_named_states() {
-    let Some(data) = data() else { return };
+    let Some(data) = folder::data() else { return };
     let arm = urdf(&data, "panda");
     let dir = with_cell(&format!(
         "{HEAD}[robot.arm]\nmodel = \"{arm}\"\nsrdf = \"{}\"\n[object.shelf]\nshape = \"box\"\nat = [500, 0, 200]\nsize = [200, 600, 20]\n",
@@ -258,7 +248,7 @@ fn plan_between_named_states() {
 /// 12: does it stop in time; 13: what is missing.
 #[test]
 fn check_and_correct_a_warning_zone() {
-    let Some(data) = data() else { return };
+    let Some(data) = folder::data() else { return };
     let cell = |warning: &str| {
         format!(
             "{HEAD}[robot.arm]\nmodel = \"{}\"\nstart = [90, -90, 90, 0, 0, 0]\nstop_time = 0.6\n[region.aisle]\nshape = \"box\"\nfrom = [2500, -3000, 0]\nto = [4000, 3000, 3000]\n\
@@ -277,7 +267,7 @@ fn check_and_correct_a_warning_zone() {
 /// 14: two arms exchange a region.
 #[test]
 fn two_arms_exchange_a_region() {
-    let Some(data) = data() else { return };
+    let Some(data) = folder::data() else { return };
     let dir = with_cell(&format!(
         r#"{HEAD}[robot.left]
 model = "{}"
@@ -326,7 +316,7 @@ steps = [
 /// 15: a region from taught points.
 #[test]
 fn a_region_from_taught_points() {
-    let Some(data) = data() else { return };
+    let Some(data) = folder::data() else { return };
     let dir = with_cell(&format!("{HEAD}[robot.arm]\nmodel = \"{}\"\n", urdf(&data, "ur5e")));
     let states = "shoulder_pan_joint,shoulder_lift_joint,elbow_joint,wrist_1_joint,wrist_2_joint,wrist_3_joint\n\
                   0.3,-1.2,1.4,-1.7,-1.5,0\n0.5,-1.2,1.4,-1.7,-1.5,0\n";
@@ -343,7 +333,7 @@ fn a_region_from_taught_points() {
 /// 17: the tables of an unseen arm, and its poses.
 #[test]
 fn tables_and_poses_of_an_arm() {
-    let Some(data) = data() else { return };
+    let Some(data) = folder::data() else { return };
     let arm = urdf(&data, "abb_irb6600_225_255");
     let dir = tempfile::tempdir().unwrap();
     let answer = type_command(&dir, &format!("inspect {arm} --dh modified --brief"), 0);
@@ -357,7 +347,7 @@ fn tables_and_poses_of_an_arm() {
 /// 18: the obstacles of a planning scene, around an unseen arm.
 #[test]
 fn a_planning_scene_around_an_arm() {
-    let Some(data) = data() else { return };
+    let Some(data) = folder::data() else { return };
     let (arm, scene) =
         (urdf(&data, "panda"), data.join("problems/mbm_scene_configs/scenes/bookshelf/scene_small.yaml"));
     let cell = |frame: &str| {
@@ -379,7 +369,7 @@ fn a_planning_scene_around_an_arm() {
 /// 19: the joint-space map of an arm, as a page.
 #[test]
 fn the_map_of_an_arm_as_a_page() {
-    let Some(data) = data() else { return };
+    let Some(data) = folder::data() else { return };
     let dir = with_cell(&format!(
         "{HEAD}[robot.kr]\nmodel = \"{}\"\nstart = [0, -90, 90, 0, 0, 0]\n\
          [object.post]\nshape = \"box\"\nat = [1800, 300, 700]\nsize = [300, 300, 1400]\n",
@@ -396,7 +386,7 @@ fn the_map_of_an_arm_as_a_page() {
 /// 20: two arms planned in one call.
 #[test]
 fn two_arms_planned_in_one_call() {
-    let Some(data) = data() else { return };
+    let Some(data) = folder::data() else { return };
     let dir = with_cell(&format!(
         r#"{HEAD}[robot.left]
 model = "{}"
@@ -424,7 +414,7 @@ start = "home"
 /// 21: which triangles touch; 22: one file of pairs for all verbs.
 #[test]
 fn contacts_of_an_arm_and_a_file_of_pairs() {
-    let Some(data) = data() else { return };
+    let Some(data) = folder::data() else { return };
     let cell = |pairs: &str| {
         format!(
             "{HEAD}{pairs}[robot.arm]\nmodel = \"{}\"\nstart = [0, 0, 0, 0, 0, 0]\n\
@@ -451,7 +441,7 @@ fn contacts_of_an_arm_and_a_file_of_pairs() {
 /// 23: a tool is exchanged; 24: a region counts what the hand holds.
 #[test]
 fn a_tool_change_and_a_part_that_a_region_counts() {
-    let Some(data) = data() else { return };
+    let Some(data) = folder::data() else { return };
     let cell = |program: &str| {
         format!(
             r#"{HEAD}[robot.kr]

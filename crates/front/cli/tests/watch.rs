@@ -40,7 +40,7 @@ fn lens() -> Intrinsics {
 }
 
 fn cell() -> String {
-    let model = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../examples/models/kr125/kr125.urdf");
+    let model = elbowroom_testkit::folder::model("kr125");
     let head = format!(
         "version = 1\nunits = {{ length = \"mm\", angle = \"deg\" }}\n[robot.kr]\nmodel = {:?}\n[map.kr]\nstep = 4\n",
         model.display().to_string()
@@ -65,7 +65,7 @@ fn write_pictures(dir: &Path) {
     let folder = dir.join("pictures");
     std::fs::create_dir(&folder).unwrap();
     let camera = Camera::look_at(lens(), Vec3::new(1.7, 0.0, 6.5), Vec3::new(1.7, 0.0, 0.0), Vec3::Y).unwrap();
-    let model = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../examples/models/kr125/kr125.urdf");
+    let model = elbowroom_testkit::folder::model("kr125");
     let arm = MappedArm::kr125(load(&model, &LoadOptions::default()).unwrap().robot, Pose::IDENTITY);
     let mut renderer = Renderer::new(camera, Channels::Grey, 5);
     let (mut state, mut parts) = (ChainState::new(&arm.robot.chain), Vec::new());

@@ -2,16 +2,14 @@
 
 mod rail;
 
-use std::alloc::System;
-
 use elbowroom_interlock::wire::{MAX_BYTES, decode_state, encode_grants};
 use elbowroom_interlock::{Arbiter, ArbiterSettings, Boot, Micros, RobotSettings, StateMessage};
 use elbowroom_monitor::{EventKind, Snapshot};
+use elbowroom_testkit::allocation::{AllocationCounter, COUNTING_ALLOCATOR, CountingAllocator};
 use rail::{Carriage, REGION, SLOT};
-use stats_alloc::{INSTRUMENTED_SYSTEM, Region as Counter, StatsAlloc};
 
 #[global_allocator]
-static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
+static ALLOCATOR: CountingAllocator = COUNTING_ALLOCATOR;
 
 fn main() {
     let mut robot = Carriage::new(0, 0.0, 1.0).robot;
@@ -25,27 +23,22 @@ fn main() {
         let t = tick as f64 * 0.002;
         let (q, qd) = ([2.0 - 1.5 * t.cos()], [1.5 * t.sin()]);
         let now = Micros(1 + tick * 2_000);
-        let counter = Counter::new(ALLOCATOR);
+        let counter = AllocationCounter::start();
         let snapshot = Snapshot { qd: &qd, intent: Some(&qd), ..Snapshot::stationary(now.0 as f64 * 1e-6, &q) };
         robot.tick(&snapshot, now);
         granted += robot.monitor().events().iter().filter(|e| e.kind == EventKind::Granted).count();
         let state = robot.state(now);
         decode_state(state, &mut message).expect("a state");
-        allocations += allocations_since(&counter);
+        allocations += counter.changes();
         // The arbiter allocates: it is no part of the tick of a robot.
         let replies = arbiter.receive(&message, now).replies;
-        let counter = Counter::new(ALLOCATOR);
+        let counter = AllocationCounter::start();
         for reply in &replies {
             assert!(encode_grants(reply, &mut bytes));
             robot.receive(&bytes).expect("grants");
         }
-        allocations += allocations_since(&counter);
+        allocations += counter.changes();
     }
     assert!(granted > 3 && robot.monitor().is_active(REGION), "granted {granted}");
     assert_eq!((allocations, robot.guard().must_halt(SLOT)), (0, false));
-}
-
-fn allocations_since(counter: &Counter<'_, System>) -> usize {
-    let change = counter.change();
-    change.allocations + change.reallocations + change.deallocations
 }

@@ -9,10 +9,9 @@
 mod common;
 
 use std::error::Error;
-use std::path::Path;
 use std::time::Instant;
 
-use common::{Random, parts};
+use common::{RandomGeometry, XorshiftStar, parts};
 use elbowroom_formats::robot::{LoadOptions, load};
 use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_monitor::{
@@ -47,7 +46,7 @@ fn volumes(robot: &Robot) -> Vec<Volume> {
 
 /// Spheres, cylinders and boxes within reach of the arm, each with a warning zone of 10 cm.
 fn regions() -> Vec<Region> {
-    let mut r = Random(5);
+    let mut r = XorshiftStar(5);
     let one = |i: usize| {
         let at = r.direction() * r.between(0.5, 0.9) + Vec3::Z * 0.4;
         let turn = Rotation::from_axis_angle(r.direction(), r.between(-3.0, 3.0));
@@ -63,7 +62,7 @@ fn regions() -> Vec<Region> {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let urdf = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../examples/models/rx60b/rx60b.urdf");
+    let urdf = elbowroom_testkit::folder::model("rx60b");
     let robot = load(&urdf, &LoadOptions::default())?.robot;
     let own = volumes(&robot);
     let triangles: usize =

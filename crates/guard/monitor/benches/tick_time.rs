@@ -10,7 +10,7 @@ mod common;
 
 use std::time::Instant;
 
-use common::{Random, arm, arm_volumes, configuration, parts};
+use common::{RandomGeometry, XorshiftStar, arm, arm_volumes, configuration, parts};
 use elbowroom_monitor::{
     Configuration, ConfigurationParts, Laws, Monitor, Region, RegionId, Snapshot, StoppingSettings,
 };
@@ -46,7 +46,7 @@ fn untouched(regions: Vec<Region>, count: usize) -> Vec<Region> {
 
 /// Spheres, cylinders and boxes of 4 to 20 cm in a shell around the base of the arm, each with a warning zone of 10 cm.
 fn regions(count: usize, nearest: f64, farthest: f64) -> Vec<Region> {
-    let mut r = Random(17);
+    let mut r = XorshiftStar(17);
     let one = |i: usize| {
         let at = r.direction() * r.between(nearest, farthest) + Vec3::Z * 0.6;
         let turn = Rotation::from_axis_angle(r.direction(), r.between(-3.0, 3.0));

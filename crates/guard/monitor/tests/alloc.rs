@@ -2,10 +2,9 @@
 
 mod common;
 
-use std::alloc::System;
 use std::sync::Arc;
 
-use common::{Random, arm, arm_volumes, parts};
+use common::{RandomGeometry, XorshiftStar, arm, arm_volumes, parts};
 use elbowroom_kinematics::LinkId;
 use elbowroom_monitor::{
     AccessClass, Configuration, ConfigurationParts, EventKind, Laws, Life, Monitor, OverrideReason, Region, RegionKind,
@@ -13,13 +12,13 @@ use elbowroom_monitor::{
 };
 use elbowroom_proximity::{Shape, Sphere};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
-use stats_alloc::{INSTRUMENTED_SYSTEM, Region as Counter, StatsAlloc};
+use elbowroom_testkit::allocation::{AllocationCounter, COUNTING_ALLOCATOR, CountingAllocator};
 
 #[global_allocator]
-static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
+static ALLOCATOR: CountingAllocator = COUNTING_ALLOCATOR;
 
 fn main() {
-    let mut r = Random(3);
+    let mut r = XorshiftStar(3);
     let regions = (0..1000).map(|i| {
         let at = r.vec3(1.5);
         let turn = Rotation::from_axis_angle(r.direction(), r.between(-3.0, 3.0));
@@ -41,7 +40,7 @@ fn main() {
         let parts = ConfigurationParts { laws, ..parts(arm(), volumes, regions.clone()) };
         let mut m = Monitor::new(Configuration::new(parts).unwrap(), None).unwrap();
         let switchable = m.region("1").unwrap();
-        let counter = Counter::new(ALLOCATOR);
+        let counter = AllocationCounter::start();
         let (mut pairs, mut applied, mut t, mut carried) = (0, 0.0, 0.0_f64, 0);
         for i in 0..5000 {
             let now_s = 0.002 * f64::from(i);
@@ -63,9 +62,9 @@ fn main() {
             t += 0.002 * applied.max(0.1);
             assert!(m.events().len() < 8000);
         }
-        let change = counter.change();
+        let changes = counter.changes();
         assert!(pairs > 5000 && carried == 2500);
-        assert_eq!((change.allocations, change.reallocations, change.deallocations), (0, 0, 0));
+        assert_eq!(changes, 0);
     }
     exchange();
 }
@@ -97,7 +96,7 @@ fn exchange() {
             Monitor::new(Configuration::new(parts).unwrap(), Some((arbiter.clone(), RobotSlot(robot)).into())).unwrap()
         })
         .collect();
-    let counter = Counter::new(ALLOCATOR);
+    let counter = AllocationCounter::start();
     let (mut granted, mut waiting) = (0, 0);
     // Each applies its override, but creeps where it should stop.
     let mut robots = [(0.0_f64, 0.0), (2.0, 0.0)];
@@ -117,7 +116,7 @@ fn exchange() {
             waiting += monitor.events().iter().filter(|e| e.kind == EventKind::Waiting).count();
         }
     }
-    let change = counter.change();
+    let changes = counter.changes();
     assert!(granted > 5 && waiting > 5, "granted {granted}, waiting {waiting}");
-    assert_eq!((change.allocations, change.reallocations, change.deallocations), (0, 0, 0));
+    assert_eq!(changes, 0);
 }

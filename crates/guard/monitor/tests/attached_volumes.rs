@@ -1,7 +1,7 @@
 //! Volumes that are attached and detached while the robot runs.
 
 use crate::common;
-use crate::common::{Random, arm, arm_volumes, configuration, parts};
+use crate::common::{RandomGeometry, XorshiftStar, arm, arm_volumes, configuration, parts};
 use elbowroom_kinematics::LinkId;
 use elbowroom_monitor::{
     AttachError, Configuration, ConfigurationParts, Fault, Laws, Monitor, OverrideReason, Presence, Region, RegionId,
@@ -29,7 +29,7 @@ fn part_id() -> VolumeId {
     VolumeId(arm_volumes().len())
 }
 
-fn regions(r: &mut Random) -> Vec<Region> {
+fn regions(r: &mut XorshiftStar) -> Vec<Region> {
     let region = |i: usize| {
         let at = r.direction() * r.between(0.9, 1.9) + Vec3::Z * 0.6;
         let turn = Rotation::from_axis_angle(r.direction(), r.between(-3.0, 3.0));
@@ -81,7 +81,7 @@ fn monitor(laws: &Laws, volumes: Vec<Volume>, regions: &[Region]) -> Monitor {
 fn an_attached_volume_counts_as_one_that_was_always_there() {
     let mut differs = 0;
     for seed in 1..=4 {
-        let regions = regions(&mut Random(seed));
+        let regions = regions(&mut XorshiftStar(seed));
         for laws in laws() {
             let mut always = monitor(&laws, with_part(Presence::Always), &regions);
             let mut attached = monitor(&laws, with_part(Presence::Detached), &regions);
@@ -101,7 +101,7 @@ fn an_attached_volume_counts_as_one_that_was_always_there() {
 
 #[test]
 fn the_reported_distance_is_that_of_brute_force() {
-    let mut r = Random(9);
+    let mut r = XorshiftStar(9);
     let regions = regions(&mut r);
     let config = configuration(arm(), with_part(Presence::Detached), regions.clone());
     let mut m = Monitor::new(config.clone(), None).unwrap();

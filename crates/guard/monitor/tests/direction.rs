@@ -1,6 +1,6 @@
 //! The laws beyond Romanelli 2011: direction, recovery, stopping distance, rate, speed zones, dynamic regions.
 
-use crate::common::{Random, arm, arm_volumes, configuration, gantry, parts};
+use crate::common::{RandomGeometry, XorshiftStar, arm, arm_volumes, configuration, gantry, parts};
 use elbowroom_kinematics::LinkId;
 use elbowroom_monitor::{
     Configuration, ConfigurationParts, Guards, Laws, Monitor, OverrideReason, Region, RegionId, RegionKind, Snapshot,
@@ -80,7 +80,7 @@ fn an_actual_approach_is_limited_whatever_the_program_intends() {
 /// grows.
 #[test]
 fn a_decreasing_distance_never_clears_an_alarm() {
-    let mut r = Random(5);
+    let mut r = XorshiftStar(5);
     let (mut cleared, mut held) = (0, 0);
     for case in 0..20_000 {
         let rotation = Rotation::from_axis_angle(r.direction(), r.between(-3.0, 3.0));
@@ -193,7 +193,7 @@ fn a_dynamic_region_follows_its_source_and_its_motion_counts() {
 /// The virtual TCP is the closest point of the whole volume, with that point's velocity and acceleration.
 #[test]
 fn virtual_tcps_have_the_position_velocity_and_acceleration_of_the_closest_point() {
-    let mut r = Random(11);
+    let mut r = XorshiftStar(11);
     let tool = Obb { pose: Pose::from_translation(Vec3::X * 0.2), half_extents: Vec3::new(0.2, 0.05, 0.04) };
     let config = configuration(
         arm(),

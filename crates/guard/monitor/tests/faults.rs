@@ -1,6 +1,6 @@
 //! Input that must stop the robot.
 
-use crate::common::{Random, arm, arm_volumes, configuration, gantry, parts};
+use crate::common::{XorshiftStar, arm, arm_volumes, configuration, gantry, parts};
 use elbowroom_kinematics::LinkId;
 use elbowroom_monitor::{
     Configuration, ConfigurationParts, EventKind, Fault, Monitor, OverrideReason, Region, RegionId, Snapshot, SourceId,
@@ -88,7 +88,7 @@ fn a_lost_source_stops_the_robot_while_its_region_is_active() {
 }
 
 /// Numbers as from a faulty field bus: any bit pattern, or a plausible one with a flipped bit.
-fn corrupted(r: &mut Random, around: f64) -> f64 {
+fn corrupted(r: &mut XorshiftStar, around: f64) -> f64 {
     match r.bits() % 4 {
         0 => f64::from_bits(r.bits()),
         1 => f64::from_bits(around.to_bits() ^ (1 << (r.bits() % 64))),
@@ -98,7 +98,7 @@ fn corrupted(r: &mut Random, around: f64) -> f64 {
 
 #[test]
 fn ten_million_random_bit_patterns_neither_panic_nor_pass_as_valid() {
-    let mut r = Random(42);
+    let mut r = XorshiftStar(42);
     let mut m = monitor();
     let (mut last_now, mut last_stamp) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
     let mut accepted = 0;

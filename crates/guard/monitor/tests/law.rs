@@ -1,6 +1,6 @@
 //! The override law compared with an oracle with the case distinctions of Romanelli 2011 (eqs. 1-4).
 
-use crate::common::{Random, configuration, gantry};
+use crate::common::{RandomGeometry, XorshiftStar, configuration, gantry};
 use elbowroom_kinematics::LinkId;
 use elbowroom_monitor::{Guards, Monitor, Region, Snapshot, Volume};
 use elbowroom_spatial::{Rotation, Vec3};
@@ -10,15 +10,15 @@ const CASES: usize = 1_000_000;
 const PER_MONITOR: usize = 100;
 
 /// Builds a region and the oracle's distance function for a point.
-type Sample = fn(&mut Random, Rotation) -> (Region, Box<dyn Fn(Vec3) -> f64>);
+type Sample = fn(&mut XorshiftStar, Rotation) -> (Region, Box<dyn Fn(Vec3) -> f64>);
 
-fn sphere(r: &mut Random, _: Rotation) -> (Region, Box<dyn Fn(Vec3) -> f64>) {
+fn sphere(r: &mut XorshiftStar, _: Rotation) -> (Region, Box<dyn Fn(Vec3) -> f64>) {
     let (center, radius) = (r.vec3(1.0), r.between(0.0, 1.0));
     // Eq. 1: d is the distance to the centre.
     (Region::sphere("s", center, radius), Box::new(move |p| p.distance(center) - radius))
 }
 
-fn cylinder(r: &mut Random, rotation: Rotation) -> (Region, Box<dyn Fn(Vec3) -> f64>) {
+fn cylinder(r: &mut XorshiftStar, rotation: Rotation) -> (Region, Box<dyn Fn(Vec3) -> f64>) {
     let (base, radius, h) = (r.vec3(1.0), r.between(0.0, 1.0), r.between(0.0, 2.0));
     let oracle = move |p: Vec3| {
         let local = rotation.inverse() * (p - base);
@@ -35,7 +35,7 @@ fn cylinder(r: &mut Random, rotation: Rotation) -> (Region, Box<dyn Fn(Vec3) -> 
     (Region::cylinder("c", base, radius, h, rotation), Box::new(oracle))
 }
 
-fn plane(r: &mut Random, rotation: Rotation) -> (Region, Box<dyn Fn(Vec3) -> f64>) {
+fn plane(r: &mut XorshiftStar, rotation: Rotation) -> (Region, Box<dyn Fn(Vec3) -> f64>) {
     let origin = r.vec3(1.0);
     let (x, y) = (rotation * Vec3::X, rotation * Vec3::Y);
     let normal = x.cross(y);
@@ -44,7 +44,7 @@ fn plane(r: &mut Random, rotation: Rotation) -> (Region, Box<dyn Fn(Vec3) -> f64
     (Region::plane("p", origin, origin + x * 0.7, origin + x * 0.2 + y * 1.3).unwrap(), Box::new(oracle))
 }
 
-fn cuboid(r: &mut Random, rotation: Rotation) -> (Region, Box<dyn Fn(Vec3) -> f64>) {
+fn cuboid(r: &mut XorshiftStar, rotation: Rotation) -> (Region, Box<dyn Fn(Vec3) -> f64>) {
     let (base, size) = (r.vec3(1.0), r.vec3(1.0).abs());
     let oracle = move |p: Vec3| {
         let local = rotation.inverse() * (p - base);
@@ -63,7 +63,7 @@ fn cuboid(r: &mut Random, rotation: Rotation) -> (Region, Box<dyn Fn(Vec3) -> f6
 
 /// The largest deviation of the override over random regions, points and programmed overrides.
 fn worst_deviation(sample: Sample, turned: bool, seed: u64) -> (f64, usize) {
-    let mut r = Random(seed);
+    let mut r = XorshiftStar(seed);
     let (mut worst, mut warned) = (0.0_f64, 0);
     for _ in 0..CASES / PER_MONITOR {
         let rotation =
@@ -104,7 +104,7 @@ fn the_override_is_the_law_of_s1_for_every_shape_and_pose() {
 
 #[test]
 fn many_regions_combine_by_the_minimum() {
-    let mut r = Random(77);
+    let mut r = XorshiftStar(77);
     for _ in 0..200 {
         let mut oracles = vec![];
         let mut regions = vec![];

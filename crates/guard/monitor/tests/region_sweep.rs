@@ -1,7 +1,6 @@
 //! The sweep between two snapshots compared with an oracle that samples the motion.
 
-use crate::common;
-use crate::common::{Random, arm, arm_volumes, configuration, joint};
+use crate::common::{RandomGeometry, XorshiftStar, arm, arm_volumes, configuration, joint, parts};
 use elbowroom_kinematics::{Chain, JointKind};
 use elbowroom_monitor::{
     Configuration, ConfigurationParts, EventKind, Guards, Monitor, Region, RegionId, RegionSweep, Snapshot, SourceId,
@@ -28,7 +27,7 @@ fn sampled(config: &Configuration, from: &[f64; 6], to: &[f64; 6], region: &Regi
     smallest
 }
 
-fn thin(r: &mut Random) -> Region {
+fn thin(r: &mut XorshiftStar) -> Region {
     let at = r.direction() * r.between(0.3, 1.5) + Vec3::Z * 0.6;
     let turn = Rotation::from_axis_angle(r.direction(), r.between(-3.0, 3.0));
     match r.bits() % 3 {
@@ -40,7 +39,7 @@ fn thin(r: &mut Random) -> Region {
 
 #[test]
 fn the_closest_approach_agrees_with_samples() {
-    let mut r = Random(7);
+    let mut r = XorshiftStar(7);
     let (mut passed, mut free) = (0, 0);
     for _ in 0..600 {
         let region = thin(&mut r).guards(if r.bits().is_multiple_of(2) { Guards::TCP } else { Guards::ARM });
@@ -114,10 +113,8 @@ fn after_a_fault_the_motion_is_not_known() {
 #[test]
 fn a_region_that_passes_is_reported_and_one_that_jumps_is_not() {
     let tcp = vec![Volume::tcp(elbowroom_kinematics::LinkId(1), Vec3::ZERO)];
-    let parts = ConfigurationParts {
-        sources: vec!["belt".into()],
-        ..common::parts(rail(), tcp, vec![plate().follow(SourceId(0))])
-    };
+    let parts =
+        ConfigurationParts { sources: vec!["belt".into()], ..parts(rail(), tcp, vec![plate().follow(SourceId(0))]) };
     let mut m = Monitor::new(Configuration::new(parts).unwrap(), None).unwrap();
     let mut at = |i: u32, x: f64, speed: f64| {
         let now_s = 0.004 * f64::from(i);

@@ -3,16 +3,14 @@
 
 mod common;
 
-use std::alloc::System;
-
 use common::{Ball, DT, avoider, scene};
 use elbowroom_avoidance::{DynamicObstacles, PathKind, Reference};
 use elbowroom_robot::ObjectId;
 use elbowroom_spatial::Vec3;
-use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
+use elbowroom_testkit::allocation::{AllocationCounter, COUNTING_ALLOCATOR, CountingAllocator};
 
 #[global_allocator]
-static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
+static ALLOCATOR: CountingAllocator = COUNTING_ALLOCATOR;
 
 fn main() {
     let scene = scene();
@@ -35,9 +33,8 @@ fn main() {
     for _ in 0..3 {
         assert!(pass() > 100);
     }
-    let region = Region::new(ALLOCATOR);
+    let counter = AllocationCounter::start();
     let corrected = pass();
-    let used = region.change();
-    assert_eq!((used.allocations, used.reallocations), (0, 0));
+    assert_eq!(counter.allocations(), 0);
     assert!(corrected > 100);
 }

@@ -1,12 +1,13 @@
 //! The control loop on a small arm: it evades, returns to its path, and does not oscillate.
 
 use crate::common;
-use crate::common::{Ball, DT, Random, Simulation, avoider, scene};
+use crate::common::{Ball, DT, Simulation, avoider, scene};
 use elbowroom_avoidance::{
     Avoider, AvoiderSettings, AvoiderState, DynamicObstacles, ObservedObject, PathKind, Reference, Rules,
 };
 use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_spatial::{FrameMotion, Pose, Vec3};
+use elbowroom_testkit::random::Random;
 
 /// A configuration above the table.
 const LEAN: [f64; 3] = [0.0, 0.9, 0.6];
@@ -50,11 +51,11 @@ fn thrown(random: &mut Random) -> Ball {
 }
 
 fn any_ball(random: &mut Random) -> Ball {
-    let angle = random.range(-2.5, 2.5);
-    let speed = random.range(0.1, 0.8);
-    let velocity = at(angle.cos(), angle.sin(), random.range(-0.3, 0.3)) * speed;
-    let through = at(random.range(0.45, 0.7), random.range(-0.05, 0.05), random.range(0.45, 0.6));
-    let from = through - velocity * random.range(1.6, 2.0) * (0.5 / speed).max(1.0);
+    let angle = random.between(-2.5, 2.5);
+    let speed = random.between(0.1, 0.8);
+    let velocity = at(angle.cos(), angle.sin(), random.between(-0.3, 0.3)) * speed;
+    let through = at(random.between(0.45, 0.7), random.between(-0.05, 0.05), random.between(0.45, 0.6));
+    let from = through - velocity * random.between(1.6, 2.0) * (0.5 / speed).max(1.0);
     Ball { object: ObjectId(1), from, velocity, stops_s: f64::INFINITY }
 }
 

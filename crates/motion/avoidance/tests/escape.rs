@@ -1,6 +1,6 @@
 //! Fast obstacles that are escaped from, and borders that are kept.
 
-use crate::common::{Ball, DT, Random, Simulation, limits, scene};
+use crate::common::{Ball, DT, Simulation, limits, scene};
 use elbowroom_avoidance::{
     Avoider, AvoiderSettings, DynamicObstacles, EscapeSettings, EscapeState, PathKind, Reference, Rules,
     search_escape_tree,
@@ -9,16 +9,17 @@ use elbowroom_kinematics::ChainState;
 use elbowroom_planner::PathConstraint;
 use elbowroom_robot::{ObjectId, RobotId, example};
 use elbowroom_spatial::Vec3;
+use elbowroom_testkit::random::Random;
 
 const LEAN: [f64; 3] = [0.0, 0.9, 0.6];
 
 /// A ball towards a point near the arm, from afar.
 fn shot(random: &mut Random) -> Ball {
-    let about = random.range(-3.1, 3.1);
-    let climb = random.range(-0.3, 0.3);
+    let about = random.between(-3.1, 3.1);
+    let climb = random.between(-0.3, 0.3);
     let along = Vec3::new(about.cos() * f64::cos(climb), about.sin() * f64::cos(climb), f64::sin(climb));
-    let through = Vec3::new(random.range(0.35, 0.9), random.range(-0.3, 0.3), random.range(0.3, 0.8));
-    let speed = random.range(0.8, 3.0);
+    let through = Vec3::new(random.between(0.35, 0.9), random.between(-0.3, 0.3), random.between(0.3, 0.8));
+    let speed = random.between(0.8, 3.0);
     Ball { object: ObjectId(1), from: through - along * 2.5, velocity: along * speed, stops_s: f64::INFINITY }
 }
 
@@ -74,7 +75,7 @@ fn what_still_hits_is_inescapable() {
         let mut numbers = Random(5);
         let found =
             search_escape_tree(&scene, RobotId(0), &limits(&scene), [q, qd], &obstacles, 2.0, 2_000, &mut || {
-                numbers.range(0.0, 1.0)
+                numbers.between(0.0, 1.0)
             })
             .unwrap();
         assert_eq!(found.gap_m, None, "shot {shot_number} was escapable");
@@ -122,7 +123,7 @@ fn the_search_in_space_and_time_tells_what_can_be_escaped() {
         let mut numbers = Random(3);
         let start = [&LEAN[..], &[0.0; 3]];
         search_escape_tree(&scene, RobotId(0), &limits(&scene), start, &obstacles, 2.5, 500, &mut || {
-            numbers.range(0.0, 1.0)
+            numbers.between(0.0, 1.0)
         })
         .unwrap()
     };

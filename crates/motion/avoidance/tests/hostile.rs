@@ -1,7 +1,7 @@
 //! Invalid input and incomplete observations: no collision, no panic.
 
 use crate::common;
-use crate::common::{DT, Random, Simulation, avoider, limits, scene};
+use crate::common::{DT, Simulation, avoider, limits, scene};
 use elbowroom_avoidance::{
     AvoidanceError, Avoider, AvoiderOutput, AvoiderSettings, DynamicObstacles, JointLimit, Neighbour, ObservedObject,
     PathKind, Reference, Rules,
@@ -11,6 +11,7 @@ use elbowroom_proximity::{Cuboid, Shape, Sphere};
 use elbowroom_robot::{ObjectId, RobotId, example::arm};
 use elbowroom_scene::{Checker, CheckerOptions, Object, Scene, SceneState, Selection, example};
 use elbowroom_spatial::{FrameMotion, Pose, Vec3};
+use elbowroom_testkit::random::Random;
 
 const HERE: [f64; 3] = [-0.8, 0.9, 0.6];
 const THERE: [f64; 3] = [0.8, 0.9, 0.6];
@@ -236,7 +237,7 @@ fn a_robot_pushed_off_its_goal_by_an_obstacle_at_rest_rests_until_its_detour_is_
     let scene = scene();
     let (mut random, mut followed) = (Random(7), 0);
     while followed < 10 {
-        let place = at(random.range(0.2, 0.9), random.range(-0.9, -0.2), random.range(0.1, 0.9));
+        let place = at(random.between(0.2, 0.9), random.between(-0.9, -0.2), random.between(0.1, 0.9));
         if !(0.01..0.2).contains(&distance(&scene, &HERE, Some(place))) {
             continue;
         }
@@ -329,13 +330,13 @@ fn braking_near_a_limit_reports_the_actual_velocity() {
         for (limit, rate) in uneven.iter_mut().zip([8.0, 8.0, 80.0]) {
             (limit.acceleration, limit.stop) = (rate, rate);
         }
-        let start = [0.0, random.range(0.5, 0.9), random.range(1.6, 2.45)];
+        let start = [0.0, random.between(0.5, 0.9), random.between(1.6, 2.45)];
         let mut avoider =
             Avoider::new(&scene, RobotId(0), &start, &uneven, Rules::default(), AvoiderSettings::default()).unwrap();
-        let angle = random.range(-3.0, 3.0);
-        let velocity = at(angle.cos(), angle.sin(), random.range(-0.5, 0.5));
-        let through = at(random.range(0.2, 0.7), random.range(-0.1, 0.1), random.range(0.2, 0.6));
-        let stop = random.range(0.4, 1.3);
+        let angle = random.between(-3.0, 3.0);
+        let velocity = at(angle.cos(), angle.sin(), random.between(-0.5, 0.5));
+        let through = at(random.between(0.2, 0.7), random.between(-0.1, 0.1), random.between(0.2, 0.6));
+        let stop = random.between(0.4, 1.3);
         for n in 0..400 {
             let t = f64::from(n) * DT;
             let observed_ball = ObservedObject {

@@ -15,7 +15,7 @@ mod common;
 use std::time::Duration;
 
 use clock::best;
-use common::{Random, SampleCounts, grid, grid_of, missed_contacts, needless_share};
+use common::{SampleCounts, Xorshift, grid, grid_of, missed_contacts, needless_share};
 use elbowroom_cspace::{
     ConvexObstacle, Grid, Layer, ObstacleModel, OccupancyBitmap, PlanarArm, PlanarMapBuilder, expand_from_seeds,
 };
@@ -52,7 +52,7 @@ fn reproduce(title: &str, arm: &PlanarArm, grid: &Grid, solid: &ConvexObstacle, 
     let mut builder = PlanarMapBuilder::new(*arm, grid).unwrap();
     let (mut layer, mut occupancy) = (Layer::new(), OccupancyBitmap::new(grid.shape()));
     let print = |name: &str, time: Duration, occupancy: &OccupancyBitmap, beside: &str| {
-        let mut random = Random(0x9e37_79b9_7f4a_7c15);
+        let mut random = Xorshift(0x9e37_79b9_7f4a_7c15);
         let samples = SampleCounts { uniform: 200_000, beside: 200_000 };
         let missed = missed_contacts(arm, grid, occupancy, solid, samples, &mut random);
         let share = needless_share(arm, grid, occupancy, solid, 2000, &mut random) * 100.0;

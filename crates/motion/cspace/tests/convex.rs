@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::common::{Random, SampleCounts, fill, grid, grid_of, missed_contacts, needless_share};
+use crate::common::{RandomGeometry, SampleCounts, Xorshift, fill, grid, grid_of, missed_contacts, needless_share};
 use elbowroom_cspace::{ConvexObstacle, Grid, PlanarArm};
 use elbowroom_proximity::ConvexHull;
 use elbowroom_spatial::{Pose, Vec3};
@@ -38,27 +38,27 @@ fn hard_cases() -> Vec<ConvexObstacle> {
     ]
 }
 
-fn random_hull(random: &mut Random, size: f64) -> Arc<ConvexHull> {
+fn random_hull(random: &mut Xorshift, size: f64) -> Arc<ConvexHull> {
     loop {
-        let points: Vec<Vec3> = (0..4 + random.below(12)).map(|_| random.vector(size)).collect();
+        let points: Vec<Vec3> = (0..4 + random.index(12)).map(|_| random.vector(size)).collect();
         if let Ok(hull) = ConvexHull::from_points(&points) {
             return Arc::new(hull);
         }
     }
 }
 
-fn random_pose(random: &mut Random) -> Pose {
-    let at = Vec3::new(random.within(-2.3, 2.3), random.within(-2.3, 2.3), random.within(-1.0, 2.8));
-    let at = if random.below(5) == 0 { Vec3::new(at.x * 0.1, at.y * 0.1, at.z) } else { at };
-    let tilt = if random.below(3) == 0 { 0.0 } else { 3.0 };
+fn random_pose(random: &mut Xorshift) -> Pose {
+    let at = Vec3::new(random.between(-2.3, 2.3), random.between(-2.3, 2.3), random.between(-1.0, 2.8));
+    let at = if random.index(5) == 0 { Vec3::new(at.x * 0.1, at.y * 0.1, at.z) } else { at };
+    let tilt = if random.index(3) == 0 { 0.0 } else { 3.0 };
     let rpy = random.vector(tilt);
-    Pose::from_xyz_rpy([at.x, at.y, at.z], [rpy.x, rpy.y, random.within(-3.0, 3.0)])
+    Pose::from_xyz_rpy([at.x, at.y, at.z], [rpy.x, rpy.y, random.between(-3.0, 3.0)])
 }
 
-fn random_obstacle(random: &mut Random) -> ConvexObstacle {
+fn random_obstacle(random: &mut Xorshift) -> ConvexObstacle {
     let pose = random_pose(random);
-    let size = [0.01, 0.1, 0.3, 1.0, 4.0][random.below(5)];
-    if random.below(2) == 0 {
+    let size = [0.01, 0.1, 0.3, 1.0, 4.0][random.index(5)];
+    if random.index(2) == 0 {
         let half = (random.vector(size)).abs();
         ConvexObstacle::cuboid(pose, half).unwrap()
     } else {
@@ -67,7 +67,7 @@ fn random_obstacle(random: &mut Random) -> ConvexObstacle {
     }
 }
 
-fn check(arm: &PlanarArm, grid: &Grid, obstacle: &ConvexObstacle, samples: SampleCounts, random: &mut Random) {
+fn check(arm: &PlanarArm, grid: &Grid, obstacle: &ConvexObstacle, samples: SampleCounts, random: &mut Xorshift) {
     let occupancy = fill(arm, grid, obstacle);
     let missed = missed_contacts(arm, grid, &occupancy, obstacle, samples, random);
     assert_eq!(missed, 0, "step {}: {obstacle:?} blocks {}", grid.axes()[0].step().to_degrees(), occupancy.blocked());
@@ -75,7 +75,7 @@ fn check(arm: &PlanarArm, grid: &Grid, obstacle: &ConvexObstacle, samples: Sampl
 
 #[test]
 fn no_contact_with_a_hard_box_lies_in_a_free_cell() {
-    let mut random = Random(0x9e37_79b9_7f4a_7c15);
+    let mut random = Xorshift(0x9e37_79b9_7f4a_7c15);
     for step in [2.0, 5.0] {
         for obstacle in &hard_cases() {
             check(&ARM, &grid(step), obstacle, SampleCounts { uniform: 5_000, beside: 5_000 }, &mut random);
@@ -85,7 +85,7 @@ fn no_contact_with_a_hard_box_lies_in_a_free_cell() {
 
 #[test]
 fn no_contact_with_a_random_solid_lies_in_a_free_cell() {
-    let mut random = Random(77);
+    let mut random = Xorshift(77);
     for round in 0..48 {
         let step = [3.0, 4.0, 7.0, 12.0][round % 4];
         let ranges = [[-185.0, 185.0], [-140.0, 155.0], [-240.0, 200.0]];
@@ -102,13 +102,13 @@ fn no_contact_with_a_random_solid_lies_in_a_free_cell() {
 
 #[test]
 fn a_hundred_thousand_configurations_of_the_baseline() {
-    let mut random = Random(13);
+    let mut random = Xorshift(13);
     check(&ARM, &grid(2.0), &baseline(0.0), SampleCounts { uniform: 100_000, beside: 100_000 }, &mut random);
 }
 
 #[test]
 fn the_oracle_detects_solids_smaller_by_2_mm() {
-    let mut random = Random(7);
+    let mut random = Xorshift(7);
     let grid = grid(2.0);
     let places =
         [([1.3, 0.4, 0.9], [0.0, 0.0, 0.52]), ([1.3, 0.4, 0.9], [0.4, 0.7, 0.5]), ([-1.2, 0.3, 1.4], [0.2, 0.1, 0.9])];
@@ -125,7 +125,7 @@ fn the_oracle_detects_solids_smaller_by_2_mm() {
 
 #[test]
 fn few_cells_are_blocked_needlessly() {
-    let mut random = Random(11);
+    let mut random = Xorshift(11);
     let grid = grid(2.0);
     for (i, obstacle) in hard_cases().iter().enumerate() {
         let occupancy = fill(&ARM, &grid, obstacle);

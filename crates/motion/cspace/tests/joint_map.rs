@@ -2,16 +2,16 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::common::{Random, fill, grid};
+use crate::common::{RandomGeometry, Xorshift, fill, grid};
 use elbowroom_cspace::{CellChanges, CellIndex, ConvexObstacle, JointMap, OccupancyBitmap, PlanarArm};
 use elbowroom_spatial::{Pose, Vec3};
 
 const ARM: PlanarArm = PlanarArm::KR125_SIZED;
 
-fn random_obstacle(random: &mut Random) -> ConvexObstacle {
-    let at = Vec3::new(random.within(-1.8, 1.8), random.within(-1.8, 1.8), random.within(-0.3, 2.2));
-    if random.below(2) == 0 {
-        return ConvexObstacle::sphere(at, random.within(0.0, 0.5)).unwrap();
+fn random_obstacle(random: &mut Xorshift) -> ConvexObstacle {
+    let at = Vec3::new(random.between(-1.8, 1.8), random.between(-1.8, 1.8), random.between(-0.3, 2.2));
+    if random.index(2) == 0 {
+        return ConvexObstacle::sphere(at, random.between(0.0, 0.5)).unwrap();
     }
     let rpy = random.vector(3.0);
     let pose = Pose::from_xyz_rpy([at.x, at.y, at.z], [rpy.x, rpy.y, rpy.z]);
@@ -47,16 +47,16 @@ fn apply(before: &OccupancyBitmap, changes: &CellChanges) -> Vec<CellIndex> {
 
 #[test]
 fn updates_agree_with_rebuilding_the_map() {
-    let mut random = Random(3);
+    let mut random = Xorshift(3);
     let mut map = JointMap::new(ARM, &grid(5.0)).unwrap();
     let fixed = [random_obstacle(&mut random)];
     map.set_fixed(&fixed);
     let mut present: Vec<(usize, ConvexObstacle)> = Vec::new();
     for step in 0..60 {
         let before = map.occupancy().clone();
-        let name = random.below(4);
+        let name = random.index(4);
         present.retain(|(other, _)| *other != name);
-        let changes = if random.below(4) == 0 {
+        let changes = if random.index(4) == 0 {
             map.remove_obstacle(&name.to_string()).cloned().unwrap_or_default()
         } else {
             let obstacle = random_obstacle(&mut random);

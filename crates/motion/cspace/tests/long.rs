@@ -1,6 +1,6 @@
 //! A million configurations each; run with `cargo test --release -p elbowroom-cspace --test main long:: -- --ignored`.
 
-use crate::common::{Random, SampleCounts, grid, grid_of, missed_contacts};
+use crate::common::{SampleCounts, Xorshift, grid, grid_of, missed_contacts};
 use elbowroom_cspace::{ConvexObstacle, Grid, Layer, ObstacleModel, OccupancyBitmap, PlanarArm, PlanarMapBuilder};
 use elbowroom_spatial::{Pose, Vec3};
 
@@ -15,7 +15,7 @@ fn count(arm: &PlanarArm, grid: &Grid, obstacle: &ConvexObstacle, model: Obstacl
         &occupancy,
         obstacle,
         SampleCounts { uniform: 1_000_000, beside: 1_000_000 },
-        &mut Random(0x1234_5678_9abc_def1),
+        &mut Xorshift(0x1234_5678_9abc_def1),
     )
 }
 

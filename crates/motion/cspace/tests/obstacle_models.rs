@@ -4,7 +4,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use crate::common::{Random, SampleCounts, grid, grid_of, missed_contacts, needless_share};
+use crate::common::{SampleCounts, Xorshift, grid, grid_of, missed_contacts, needless_share};
 use elbowroom_cspace::{
     ConvexObstacle, Grid, Layer, ObstacleModel, OccupancyBitmap, PlanarArm, PlanarMapBuilder, expand_from_seeds,
     spheres_until,
@@ -54,7 +54,7 @@ const MODELS: [ObstacleModel; 6] = [
 
 #[test]
 fn no_model_misses_a_contact() {
-    let mut random = Random(5);
+    let mut random = Xorshift(5);
     for obstacle in &obstacles() {
         for model in MODELS {
             let grid = grid(4.0);
@@ -74,7 +74,7 @@ fn no_model_misses_a_contact() {
 
 #[test]
 fn no_model_misses_a_contact_of_the_papers_arm() {
-    let mut random = Random(6);
+    let mut random = Xorshift(6);
     let cube =
         ConvexObstacle::cuboid(Pose::from_xyz_rpy([0.22, 0.08, 0.05], [0.0, 0.0, 0.3]), Vec3::splat(0.04)).unwrap();
     let grid = paper_grid(5.0);
@@ -125,7 +125,7 @@ fn a_deadline_in_the_past_still_gives_one_sphere() {
 
 #[test]
 fn expansion_finds_the_components_of_its_seeds() {
-    let mut random = Random(8);
+    let mut random = Xorshift(8);
     let grid = grid(6.0);
     for obstacle in [&obstacles()[0], &obstacles()[3]] {
         let expansion = expand_from_seeds(&ARM, &grid, obstacle);

@@ -5,11 +5,12 @@
 #![allow(clippy::print_stdout, reason = "a table is what it is for")]
 
 use crate::common::occupancy::{compare, needless_share, occupancy};
-use crate::common::real::{ROBOTS, data, obstacles, reach};
+use crate::common::real::{ROBOTS, obstacles, reach};
 use crate::common::robots::{Case, axes};
 use elbowroom_cspace::{CoverMapBuilder, CoverMapSettings, CoverObstacle, Grid, Layer, RemainingJoints};
 use elbowroom_formats::robot::{LoadOptions, load};
 use elbowroom_spatial::{Pose, Vec3};
+use elbowroom_testkit::folder;
 
 /// Repetitions of which the fastest counts.
 const REPETITIONS: usize = 5;
@@ -17,10 +18,7 @@ const REPETITIONS: usize = 5;
 #[test]
 #[ignore = "minutes; cargo test --release -p elbowroom-cspace --test main real_covers:: -- --ignored --nocapture"]
 fn maps_on_covers_miss_nothing() {
-    let Some(data) = data() else {
-        println!("skipped: no data at ../shared/data or $ELBOWROOM_DATA");
-        return;
-    };
+    let Some(data) = folder::data() else { return };
     let samples: usize = std::env::var("SAMPLES").map_or(1_000_000, |s| s.parse().unwrap());
     let only = std::env::var("ROBOT").ok();
     println!(

@@ -9,13 +9,14 @@ use std::time::{Duration, Instant};
 
 use crate::clock::best;
 use crate::common::occupancy::compare;
-use crate::common::real::{ROBOTS, data, obstacles, reach};
+use crate::common::real::{ROBOTS, obstacles, reach};
 use crate::common::robots::{Case, axes, cuboid};
 use elbowroom_cspace::{
     CoverMapBuilder, CoverMapSettings, CoverObstacle, Grid, Layer, ObstacleModel, OccupancyBitmap, RemainingJoints,
     SphereRefinement,
 };
 use elbowroom_formats::robot::{LoadOptions, load};
+use elbowroom_testkit::folder;
 
 const MODELS: [ObstacleModel; 6] = [
     ObstacleModel::Exact,
@@ -29,10 +30,7 @@ const MODELS: [ObstacleModel; 6] = [
 #[test]
 #[ignore = "minutes; cargo test --release -p elbowroom-cspace --test main real_models:: -- --ignored --nocapture"]
 fn slices_are_the_quickest_model() {
-    let Some(data) = data() else {
-        println!("skipped: no data at ../shared/data or $ELBOWROOM_DATA");
-        return;
-    };
+    let Some(data) = folder::data() else { return };
     for name in ROBOTS {
         let file = data.join("urdf").join(name).join(format!("{name}.urdf"));
         let robot = load(&file, &LoadOptions::default()).unwrap().robot;
@@ -88,10 +86,7 @@ fn measure(name: &str, what: &str, case: &Case) {
 #[test]
 #[ignore = "a minute; cargo test --release -p elbowroom-cspace --test main real_models:: -- --ignored --nocapture"]
 fn spheres_until_a_deadline_and_expansion_from_seeds() {
-    let Some(data) = data() else {
-        println!("skipped: no data at ../shared/data or $ELBOWROOM_DATA");
-        return;
-    };
+    let Some(data) = folder::data() else { return };
     for name in ROBOTS {
         let file = data.join("urdf").join(name).join(format!("{name}.urdf"));
         let robot = load(&file, &LoadOptions::default()).unwrap().robot;

@@ -7,18 +7,16 @@
 
 use std::time::Instant;
 
-use crate::common::real::{ROBOTS, data, obstacles, reach};
+use crate::common::real::{ROBOTS, obstacles, reach};
 use crate::common::robots::Case;
 use elbowroom_cspace::ObstacleModel;
 use elbowroom_formats::robot::{LoadOptions, load};
+use elbowroom_testkit::folder;
 
 #[test]
 #[ignore = "minutes; cargo test --release -p elbowroom-cspace --test main real_robots:: -- --ignored --nocapture"]
 fn no_collision_lies_in_a_free_cell() {
-    let Some(data) = data() else {
-        println!("skipped: no data at ../shared/data or $ELBOWROOM_DATA");
-        return;
-    };
+    let Some(data) = folder::data() else { return };
     println!(
         "{:<14} {:>4} {:<10} {:>9} {:>9} {:>8} {:>9}",
         "robot", "step", "model", "ms", "blocked", "missed", "needless"

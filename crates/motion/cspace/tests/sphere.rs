@@ -1,6 +1,6 @@
 //! Spheres: no contact is missed, few cells are blocked needlessly.
 
-use crate::common::{Random, SampleCounts, fill, grid, missed_contacts, needless_share};
+use crate::common::{SampleCounts, Xorshift, fill, grid, missed_contacts, needless_share};
 use elbowroom_cspace::{ConvexObstacle, PlanarArm};
 use elbowroom_spatial::Vec3;
 
@@ -12,7 +12,7 @@ fn sphere(x: f64, y: f64, z: f64, radius: f64) -> ConvexObstacle {
 
 #[test]
 fn no_contact_lies_in_a_free_cell() {
-    let mut random = Random(0x9e37_79b9_7f4a_7c15);
+    let mut random = Xorshift(0x9e37_79b9_7f4a_7c15);
     let cases = [
         sphere(1.3, 0.4, 0.9, 0.25),
         sphere(1.3, 0.4, 0.9, 0.0),
@@ -44,7 +44,7 @@ fn no_contact_lies_in_a_free_cell() {
 
 #[test]
 fn the_oracle_detects_a_sphere_smaller_by_2_mm() {
-    let mut random = Random(7);
+    let mut random = Xorshift(7);
     let grid = grid(2.0);
     let (whole, smaller) = (sphere(1.3, 0.4, 0.9, 0.25), sphere(1.3, 0.4, 0.9, 0.248));
     let occupancy = fill(&ARM, &grid, &smaller);
@@ -55,7 +55,7 @@ fn the_oracle_detects_a_sphere_smaller_by_2_mm() {
 
 #[test]
 fn few_cells_are_blocked_needlessly() {
-    let mut random = Random(11);
+    let mut random = Xorshift(11);
     for (step, obstacle) in [(2.0, sphere(1.3, 0.4, 0.9, 0.25)), (5.0, sphere(-1.2, 0.3, 1.4, 0.25))] {
         let grid = grid(step);
         let occupancy = fill(&ARM, &grid, &obstacle);

@@ -1,7 +1,5 @@
 //! The KR125 of `examples/models`: its published table, and its solids within the planar arm of the joint-space map.
 
-use std::path::Path;
-
 use elbowroom_cspace::{JointConvention, PlanarArm};
 use elbowroom_formats::robot::{LoadOptions, load};
 use elbowroom_kinematics::{Chain, ChainState, JointKind, Limits, LinkId, dh::ClassicalRow};
@@ -15,7 +13,7 @@ use proptest::prelude::*;
 const CHORD_M: f64 = 5e-4;
 
 fn kr125() -> Robot {
-    let urdf = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../examples/models/kr125/kr125.urdf");
+    let urdf = elbowroom_testkit::folder::model("kr125");
     load(&urdf, &LoadOptions::default()).unwrap().robot
 }
 

@@ -3,7 +3,7 @@
 
 use std::time::Duration;
 
-use crate::common::robots::{Random, cabinet, state_at, within_limits};
+use crate::common::robots::{Random, cabinet, free_values, state_at, within_limits};
 use elbowroom_kinematics::ChainState;
 use elbowroom_planner::{
     CoverModel, CoverObstacles, CoverRrtConnect, LinearMove, LinearMoveEnd, OrientationConstraint, PathConstraint,
@@ -59,10 +59,14 @@ fn settings(max_states: u64) -> RrtConnectSettings {
 fn the_first_of_several_goals_is_reached_and_invalid_ones_are_left_out() {
     let scene = cabinet();
     let mut random = Random(3);
-    let from = random.free(&scene, ROBOT).unwrap();
+    let from = free_values(&mut random, &scene, ROBOT).unwrap();
     let start = state_at(&scene, ROBOT, &from);
     let near: Vec<f64> = from.iter().map(|v| v + 0.01).collect();
-    let goals = [random.free(&scene, ROBOT).unwrap(), near.clone(), random.free(&scene, ROBOT).unwrap()];
+    let goals = [
+        free_values(&mut random, &scene, ROBOT).unwrap(),
+        near.clone(),
+        free_values(&mut random, &scene, ROBOT).unwrap(),
+    ];
     let beyond = vec![9.0; from.len()];
     let covers = covers(&scene);
     let mut planner = planner(&scene, &covers);
@@ -86,7 +90,7 @@ fn configurations_of_a_region_have_their_tip_in_it() {
     let mut random = Random(8);
     let start = state_at(&scene, ROBOT, &[0.0; 7]);
     for _ in 0..6 {
-        let known = random.free(&scene, ROBOT).unwrap();
+        let known = free_values(&mut random, &scene, ROBOT).unwrap();
         let in_link = Pose::from_translation(Vec3::new(0.0, 0.02, 0.2));
         let pose = TaskSpaceRegion::at_pose(link, in_link, tip(&scene, &known) * in_link);
         let region = TaskSpaceRegion {
@@ -116,7 +120,8 @@ fn paths_become_shorter_until_the_limit_and_stay_free() {
     let (mut improved, mut shortest, mut gained) = (0, 0, 0.0);
     let covers = covers(&scene);
     for _ in 0..12 {
-        let (from, to) = (random.free(&scene, ROBOT).unwrap(), random.free(&scene, ROBOT).unwrap());
+        let (from, to) =
+            (free_values(&mut random, &scene, ROBOT).unwrap(), free_values(&mut random, &scene, ROBOT).unwrap());
         let start = state_at(&scene, ROBOT, &from);
         let answer = planner(&scene, &covers).plan_anytime(&start, &[&to], &settings(300_000));
         let Ok(answer) = answer else { continue };
@@ -145,7 +150,7 @@ fn a_kept_orientation_is_kept_everywhere_on_the_path() {
     let mut exact = Checker::new(&scene, CheckerOptions::default());
     let mut forward = Vec::new();
     while forward.len() < 16 {
-        let mut q = random.free(&scene, ROBOT).unwrap();
+        let mut q = free_values(&mut random, &scene, ROBOT).unwrap();
         if constraint.clone().project(&mut q) && within_limits(&scene, ROBOT, &q) {
             let state = state_at(&scene, ROBOT, &q);
             if exact.within(&state, 1e-3).is_none() {
@@ -185,7 +190,7 @@ fn a_straight_line_is_followed_or_the_share_is_told() {
     let (mut followed, mut blocked, mut unreachable) = (0, 0, 0);
     let covers = covers(&scene);
     for _ in 0..40 {
-        let from = random.free(&scene, ROBOT).unwrap();
+        let from = free_values(&mut random, &scene, ROBOT).unwrap();
         let start = state_at(&scene, ROBOT, &from);
         let in_link = Pose::from_translation(Vec3::Z * 0.17);
         let begin = tip(&scene, &from) * in_link;

@@ -9,7 +9,7 @@ use elbowroom_planner::{GridPlanner, GridPlannerError, GridPlannerSettings, Path
 const DEFAULT: GridPlannerSettings = GridPlannerSettings::DEFAULT;
 
 fn random_shape(random: &mut Random) -> [usize; 3] {
-    [1 + random.below(14), 1 + random.below(12), 1 + random.below(70)]
+    [1 + random.index(14), 1 + random.index(12), 1 + random.index(70)]
 }
 
 #[test]
@@ -53,7 +53,7 @@ fn paths_are_hardly_longer_than_the_grid_optimum() {
     let (mut sum, mut worst, mut count) = (0.0, 0.0_f64, 0);
     let weights = [[1.0; 3], [2.0, 1.0, 0.5]];
     for round in 0..150 {
-        let shape = [14 + random.below(20), 14 + random.below(20), 14 + random.below(60)];
+        let shape = [14 + random.index(20), 14 + random.index(20), 14 + random.index(60)];
         let (grid, occupancy) = (grid(shape), random_occupancy(shape, &mut random));
         let mut planner = GridPlanner::new(&grid, &occupancy).unwrap();
         let weights = weights[round % 2];

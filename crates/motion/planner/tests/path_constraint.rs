@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use crate::common::robots::{Random, cabinet, crane, state_at};
+use crate::common::robots::{Random, cabinet, crane, free_values, state_at};
 use elbowroom_planner::{
     KinematicLimits, PathConstraint, PathEnd, PlannedPath, RrtConnect, RrtConnectError, RrtConnectSettings,
 };
@@ -105,7 +105,9 @@ fn paths_and_trajectories_satisfy_the_constraint() {
     let (mut random, mut found, mut asked) = (Random(3), 0, 0);
     for scene in [example::two_arms(), cabinet(), crane()] {
         for _ in 0..8 {
-            let (Some(from), Some(to)) = (random.free(&scene, RobotId(0)), random.free(&scene, RobotId(0))) else {
+            let (Some(from), Some(to)) =
+                (free_values(&mut random, &scene, RobotId(0)), free_values(&mut random, &scene, RobotId(0)))
+            else {
                 continue;
             };
             let state = state_at(&scene, RobotId(0), &from);
@@ -170,7 +172,10 @@ fn a_distant_constraint_changes_nothing() {
     let scene = cabinet();
     let mut random = Random(11);
     for _ in 0..3 {
-        let (from, to) = (random.free(&scene, RobotId(0)).unwrap(), random.free(&scene, RobotId(0)).unwrap());
+        let (from, to) = (
+            free_values(&mut random, &scene, RobotId(0)).unwrap(),
+            free_values(&mut random, &scene, RobotId(0)).unwrap(),
+        );
         let state = state_at(&scene, RobotId(0), &from);
         let bare = RrtConnect::new(&scene, RobotId(0)).unwrap().plan(&state, &to, &settings());
         let constrained = plan(&scene, &state, &to, Everywhere(f64::INFINITY));

@@ -8,8 +8,8 @@ const DEFAULT: GridPlannerSettings = GridPlannerSettings::DEFAULT;
 
 /// A random position on a path.
 fn random_progress(waypoints: &[[f64; 3]], random: &mut Random) -> PathProgress {
-    let segment = random.below(waypoints.len().max(2) - 1);
-    let t = if random.below(3) == 0 { 0.0 } else { random.unit() };
+    let segment = random.index(waypoints.len().max(2) - 1);
+    let t = if random.index(3) == 0 { 0.0 } else { random.unit() };
     let to = waypoints.get(segment + 1).unwrap_or(&waypoints[segment]);
     PathProgress { segment, q: [0, 1, 2].map(|i| waypoints[segment][i] + (to[i] - waypoints[segment][i]) * t) }
 }
@@ -18,8 +18,8 @@ fn random_progress(waypoints: &[[f64; 3]], random: &mut Random) -> PathProgress 
 fn with_random_box(occupancy: &OccupancyBitmap, about: Option<[u16; 3]>, random: &mut Random) -> OccupancyBitmap {
     let mut occupancy = occupancy.clone();
     let shape = occupancy.shape();
-    let at = about.unwrap_or_else(|| shape.map(|n| random.below(n) as u16)).map(usize::from);
-    let half = [random.below(4), random.below(4), random.below(5)];
+    let at = about.unwrap_or_else(|| shape.map(|n| random.index(n) as u16)).map(usize::from);
+    let half = [random.index(4), random.index(4), random.index(5)];
     for i in at[0].saturating_sub(half[0])..=(at[0] + half[0]).min(shape[0] - 1) {
         for j in at[1].saturating_sub(half[1])..=(at[1] + half[1]).min(shape[1] - 1) {
             let (first, last) = (at[2].saturating_sub(half[2]) as u16, (at[2] + half[2]) as u16);
@@ -34,7 +34,7 @@ fn replanning_succeeds_where_planning_does() {
     let mut random = Random(23);
     let (mut kept, mut repaired, mut replanned, mut none) = (0, 0, 0, 0);
     for _ in 0..600 {
-        let shape = [16 + random.below(10), 12 + random.below(10), 20 + random.below(60)];
+        let shape = [16 + random.index(10), 12 + random.index(10), 20 + random.index(60)];
         let (grid, occupancy) = (grid(shape), random_occupancy(shape, &mut random));
         let mut planner = GridPlanner::new(&grid, &occupancy).unwrap();
         let Some((from, to)) = free_cell(&occupancy, &mut random).zip(free_cell(&occupancy, &mut random)) else {
@@ -42,7 +42,7 @@ fn replanning_succeeds_where_planning_does() {
         };
         let Ok(path) = planner.plan(grid.center(from), grid.center(to), &DEFAULT) else { continue };
         let here = random_progress(&path.waypoints, &mut random);
-        let about = (random.below(4) > 0).then(|| grid.cell(random_progress(&path.waypoints, &mut random).q).unwrap());
+        let about = (random.index(4) > 0).then(|| grid.cell(random_progress(&path.waypoints, &mut random).q).unwrap());
         let changed = with_random_box(&occupancy, about, &mut random);
         planner.update(&changed).unwrap();
         let status = planner.path_status(&path, here, &DEFAULT).unwrap();

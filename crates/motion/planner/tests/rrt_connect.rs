@@ -3,7 +3,7 @@
 use crate::common::robots;
 use std::time::Duration;
 
-use crate::common::robots::{Random, cabinet, crane, halved, sheet, state_at};
+use crate::common::robots::{Random, cabinet, crane, free_values, halved, sheet, state_at};
 use elbowroom_planner::{
     KinematicLimits, PathEnd, PlannedPath, RrtConnect, RrtConnectError, RrtConnectSettings, Trajectory,
 };
@@ -85,7 +85,9 @@ fn paths_and_trajectories_are_free_and_have_the_requested_ends() {
     for scene in [example::two_arms(), cabinet(), crane()] {
         let settings = RrtConnectSettings { time_limit: Duration::from_secs(2), ..RrtConnectSettings::default() };
         for _ in 0..12 {
-            let (Some(from), Some(to)) = (random.free(&scene, RobotId(0)), random.free(&scene, RobotId(0))) else {
+            let (Some(from), Some(to)) =
+                (free_values(&mut random, &scene, RobotId(0)), free_values(&mut random, &scene, RobotId(0)))
+            else {
                 continue;
             };
             let Some((path, trajectory)) =
@@ -106,7 +108,8 @@ fn paths_and_trajectories_are_free_and_have_the_requested_ends() {
 fn planning_is_reproducible() {
     let scene = cabinet();
     let mut random = Random(9);
-    let (from, to) = (random.free(&scene, RobotId(0)).unwrap(), random.free(&scene, RobotId(0)).unwrap());
+    let (from, to) =
+        (free_values(&mut random, &scene, RobotId(0)).unwrap(), free_values(&mut random, &scene, RobotId(0)).unwrap());
     let state = state_at(&scene, RobotId(0), &from);
     let plan = |seed| {
         let settings = RrtConnectSettings { seed, ..RrtConnectSettings::default() };
@@ -115,7 +118,7 @@ fn planning_is_reproducible() {
     assert_eq!(plan(1), plan(1));
     // Earlier queries of a planner have no effect.
     let mut planner = RrtConnect::new(&scene, RobotId(0)).unwrap();
-    let other = random.free(&scene, RobotId(0)).unwrap();
+    let other = free_values(&mut random, &scene, RobotId(0)).unwrap();
     let _ = planner.plan(&state, &other, &RrtConnectSettings::default());
     assert_eq!(planner.plan(&state, &to, &RrtConnectSettings::default()).unwrap().waypoints, plan(1));
 }
@@ -155,7 +158,7 @@ fn a_clearance_is_kept() {
 fn at_distance(scene: &Scene, random: &mut Random, range: std::ops::Range<f64>) -> Vec<f64> {
     let mut checker = Checker::new(scene, CheckerOptions::default());
     loop {
-        let q = random.free(scene, RobotId(0)).unwrap();
+        let q = free_values(random, scene, RobotId(0)).unwrap();
         let near = checker
             .between(Selection::Robot(RobotId(0)), Selection::All)
             .distance(&state_at(scene, RobotId(0), &q))

@@ -1,18 +1,16 @@
 //! Frames allocate nothing once lists have grown. Without the test harness, whose threads allocate too: the counter
 //! counts the whole process.
 
-use std::alloc::System;
-
 use elbowroom_spatial::Vec3;
+use elbowroom_testkit::allocation::{AllocationCounter, COUNTING_ALLOCATOR, CountingAllocator};
 use elbowroom_vision::render::{RenderConditions, RenderedSolid, Renderer};
 use elbowroom_vision::{
     ArmPart, Camera, CameraTracker, CameraTrackerSettings, Channels, Frame, Intrinsics, PixelMask, Point2,
     ShadowSettings, Template,
 };
-use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 
 #[global_allocator]
-static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
+static ALLOCATOR: CountingAllocator = COUNTING_ALLOCATOR;
 
 fn main() {
     let lens = Intrinsics { radial: [-0.1, 0.0, 0.0], ..Intrinsics::pinhole(160, 120, 1.1) };
@@ -41,13 +39,13 @@ fn main() {
         let painted = [(arm[0].clone(), 230)];
         renderer.render(if i < 5 { &[] } else { &solids }, &painted, &conditions, &mut frame).unwrap();
         frame.stamp_s = f64::from(i) * 0.04;
-        let region = Region::new(ALLOCATOR);
+        let counter = AllocationCounter::start();
         mask.clear();
         mask.mask_arm(tracker.calibration(), &arm, 0.02).unwrap();
         reported += tracker.process(&frame, Some(&mask)).unwrap().obstacles.len();
-        let change = region.change();
+        let allocations = counter.allocations();
         if i >= 245 {
-            measured += change.allocations + change.reallocations;
+            measured += allocations;
         }
     }
     assert!(reported > 200, "{reported}");

@@ -1,34 +1,22 @@
 //! Point clouds: files, noise, the arm, invalid points.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use elbowroom_formats::image::{ImageHeader, PixelFormat};
 use elbowroom_formats::png;
 use elbowroom_spatial::{Pose, Rotation, Vec3};
-use elbowroom_testkit::random::{unit, xorshift};
+use elbowroom_testkit::folder;
+use elbowroom_testkit::random::Xorshift;
 use elbowroom_vision::cloud::{CloudStatus, CloudTracker, CloudTrackerSettings, PointCloud};
 use elbowroom_vision::{ArmPart, Camera, Intrinsics, Obstacle, ObstacleChange, Point2, polygon, read_grey16};
 use proptest::prelude::*;
-
-/// Xorshift: the same numbers on every machine.
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f64 {
-        unit(xorshift(&mut self.0))
-    }
-
-    fn between(&mut self, from: f64, to: f64) -> f64 {
-        from + (to - from) * self.unit()
-    }
-}
 
 /// A box by two corners.
 type Cuboid = (Vec3, Vec3);
 
 /// The points that a sensor at `eye` measures on floor, boxes and a capsule, with noise and invalid points; world frame.
 fn scan(eye: Vec3, boxes: &[Cuboid], arm: Option<(Vec3, Vec3, f64)>, rays: usize, seed: u64) -> Vec<Vec3> {
-    let mut random = Random(seed | 1);
+    let mut random = Xorshift(seed | 1);
     (0..rays)
         .map(|_| {
             let target = Vec3::new(random.between(-1.5, 1.5), random.between(-1.2, 1.2), 0.0);
@@ -210,7 +198,7 @@ fn a_cloud_without_valid_points_changes_no_obstacle() {
 #[test]
 fn clusters_agree_with_a_naive_search() {
     // Points in a sparse block of voxels; clusters by comparing all voxels with all.
-    let mut random = Random(77);
+    let mut random = Xorshift(77);
     for round in 0..30 {
         let n = 20 + round * 4;
         let cubes: Vec<[i32; 3]> = (0..n).map(|_| std::array::from_fn(|_| (random.unit() * 8.0) as i32 - 4)).collect();
@@ -352,13 +340,7 @@ proptest! {
 /// Recorded clouds, where the data set is present.
 #[test]
 fn real_clouds_are_read_and_clustered() {
-    let root = std::env::var_os("ELBOWROOM_DATA")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../../shared/data"), PathBuf::from);
-    let clouds = root.join("clouds");
-    if !clouds.is_dir() {
-        println!("skipped: no data at {}", clouds.display());
-        return;
-    }
+    let Some(clouds) = folder::data_part("clouds") else { return };
     let known = [
         ("pcl_room_and_lamp/lamppost.pcd", 1771),
         ("pcl_room_and_lamp/min_cut_segmentation_tutorial.pcd", 9311),

@@ -3,17 +3,9 @@
 use crate::synthetic;
 use crate::synthetic::{SyntheticScene, cover_together};
 use elbowroom_spatial::Vec3;
-use elbowroom_testkit::random::{unit, xorshift};
+use elbowroom_testkit::random::Xorshift;
 use elbowroom_vision::render::RenderedSolid;
 use elbowroom_vision::{CameraTrackerSettings, ObstacleChange, Point2, ShadowSettings};
-
-struct Random(u64);
-
-impl Random {
-    fn between(&mut self, from: f64, to: f64) -> f64 {
-        from + (to - from) * unit(xorshift(&mut self.0))
-    }
-}
 
 /// A moving object.
 struct Mover {
@@ -26,7 +18,7 @@ struct Mover {
 }
 
 impl Mover {
-    fn random(random: &mut Random) -> Self {
+    fn random(random: &mut Xorshift) -> Self {
         Self {
             from: Point2::new(random.between(-0.8, 1.2), random.between(-0.9, 0.4)),
             step: Point2::new(random.between(-0.02, 0.02), random.between(-0.02, 0.02)),
@@ -52,7 +44,7 @@ impl Mover {
 fn objects_are_covered_and_obstacles_are_near_objects() {
     let (mut frames, mut objects, mut reported) = (0, 0, 0);
     for case in 0..24_u64 {
-        let mut random = Random(case * 7919 + 12_345);
+        let mut random = Xorshift(case * 7919 + 12_345);
         let shadows = (case % 2 == 1).then(ShadowSettings::default);
         let mut scene =
             SyntheticScene::new(320, 240, CameraTrackerSettings { shadows, ..CameraTrackerSettings::default() });

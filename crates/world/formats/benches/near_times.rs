@@ -8,7 +8,7 @@ use elbowroom_proximity::{Cuboid, Shape};
 use elbowroom_robot::{Robot, RobotId};
 use elbowroom_scene::{Checker, CheckerOptions, LevelOfDetail, Object, Scene, SceneMotion, SceneState, Selection};
 use elbowroom_spatial::{Pose, Vec3};
-use elbowroom_testkit::random::{linear_congruential, unit};
+use elbowroom_testkit::random::Random;
 
 fn main() {
     let mut words = elbowroom_testkit::bench::arguments();
@@ -85,7 +85,7 @@ fn random(scene: &Scene, r: &mut Random) -> Vec<Vec<f64>> {
 fn any(scene: &Scene, r: &mut Random) -> Vec<f64> {
     let chain = &scene.robots()[0].robot.chain;
     let limits = chain.active_joints().iter().map(|j| chain.joints()[j.0].limits);
-    limits.map(|l| l.lower.max(-3.0) + (l.upper.min(3.0) - l.lower.max(-3.0)) * r.next()).collect()
+    limits.map(|l| l.lower.max(-3.0) + (l.upper.min(3.0) - l.lower.max(-3.0)) * r.unit()).collect()
 }
 
 /// Twenty motions of a hundred steps each.
@@ -101,12 +101,4 @@ fn smooth(scene: &Scene, r: &mut Random) -> Vec<Vec<f64>> {
         from = to;
     }
     path
-}
-
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        unit(linear_congruential(&mut self.0))
-    }
 }

@@ -6,22 +6,17 @@ use elbowroom_formats::robot::{self, LoadOptions};
 use elbowroom_kinematics::LinkId;
 
 use crate::problem::{IkProblem, SolverResults, measure};
-use crate::surface::{Random, Surface};
+use crate::surface::{SplitMix, Surface};
 
 #[test]
 fn reachable_surface_points_are_reached() {
-    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../..");
-    let data = std::env::var_os("ELBOWROOM_DATA").map_or_else(|| root.join("../shared/data"), Into::into);
-    if !data.is_dir() {
-        println!("skipped: no data at {}", data.display());
-        return;
-    }
+    let Some(data) = elbowroom_testkit::folder::data() else { return };
     let long = std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1");
     let points_per_link = if long { 16_667 } else { 200 };
     for name in ["kuka_kr150_2", "staubli_tx60", "ur5e", "abb_irb2400"] {
         let path = data.join(format!("urdf/{name}/{name}.urdf"));
         let robot = robot::load(&path, &LoadOptions::default()).unwrap().robot;
-        let mut random = Random(7);
+        let mut random = SplitMix(7);
         for with_normal in [false, true] {
             let mut whole = SolverResults::default();
             for link in (0..robot.chain.links().len()).map(LinkId) {

@@ -3,13 +3,13 @@
 //! Needs the program `assimp` (in the package `cmeel-assimp`, which comes with `pin`) beside the Python that
 //! `ELBOWROOM_PYTHON` names, or on the search path; says so and passes without.
 
-use crate::common;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use elbowroom_formats::nodetree::{Keyframe, Node, NodeTree};
 use elbowroom_formats::{MeshData, tds};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
+use elbowroom_testkit::folder;
 use serde_json::Value;
 
 type Matrix = [[f64; 4]; 3];
@@ -123,9 +123,9 @@ fn largest(tree: &NodeTree) -> f64 {
 
 #[test]
 fn the_nine_files_are_read_as_assimp_reads_them() {
-    let Some(data) = common::data() else { return };
+    let Some(data) = folder::data() else { return };
     let Some(program) = assimp() else { return };
-    let files = common::files_below(&data.join("mesh/3ds_assimp"));
+    let files = folder::files_below(&data.join("mesh/3ds_assimp"));
     let files: Vec<_> = files.iter().filter(|f| f.extension().is_some_and(|e| e.eq_ignore_ascii_case("3ds"))).collect();
     assert_eq!(files.len(), 9);
     for file in files {

@@ -1,12 +1,12 @@
 //! Every file of the data set either loads or gives a message.
 
-use crate::common;
 use std::path::Path;
 use std::time::Instant;
 
 use elbowroom_formats::robot::{self, LoadOptions};
 use elbowroom_formats::{mesh, srdf};
 use elbowroom_proximity::Shape;
+use elbowroom_testkit::folder;
 
 fn extension(path: &Path) -> String {
     path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default()
@@ -64,10 +64,10 @@ fn outcome(path: &Path) -> Result<String, String> {
 
 #[test]
 fn every_file_loads_or_gives_a_reason() {
-    let Some(data) = common::data() else { return };
+    let Some(data) = folder::data() else { return };
     let skip = ["md", "txt", "yaml", "xml", "mtl", "rob", "octree", ""];
     for directory in ["malformed", "mesh", "urdf", "cell"] {
-        for path in common::files_below(&data.join(directory)) {
+        for path in folder::files_below(&data.join(directory)) {
             let name = path.strip_prefix(&data).unwrap().display().to_string();
             let is_license = name.contains("LICENSE") || name.contains("METADATA");
             if is_license || (directory != "malformed" && skip.contains(&extension(&path).as_str())) {
@@ -106,7 +106,7 @@ fn counted_elsewhere(sources: &str, name: &str) -> Option<(usize, usize)> {
 /// with its links.
 #[test]
 fn urdf_robots_are_complete() {
-    let Some(data) = common::data() else { return };
+    let Some(data) = folder::data() else { return };
     let sources = std::fs::read_to_string(data.join("SOURCES.md")).unwrap_or_default();
     let mut compared = 0;
     for directory in std::fs::read_dir(data.join("urdf")).unwrap().flatten() {

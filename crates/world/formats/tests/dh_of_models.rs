@@ -2,7 +2,6 @@
 //! forward kinematics. The 3DS and glTF models have no tracks; a file of joints is made from the URDF.
 #![allow(clippy::print_stdout)]
 
-use crate::common;
 use std::path::{Path, PathBuf};
 
 use elbowroom_formats::joints;
@@ -11,6 +10,7 @@ use elbowroom_kinematics::dh::{DirectTable, GeneralizedTable, ModifiedTable};
 use elbowroom_kinematics::frames::FrameChain;
 use elbowroom_kinematics::{Chain, ChainState, LinkId};
 use elbowroom_spatial::Pose;
+use elbowroom_testkit::folder;
 
 const STATES: usize = 200;
 
@@ -65,10 +65,10 @@ fn check(name: &str, chain: &Chain) {
 
 #[test]
 fn every_urdf_has_its_tables() {
-    let Some(data) = common::data() else { return };
+    let Some(data) = folder::data() else { return };
     let mut robots = 0;
     for directory in ["urdf", "cell"] {
-        for path in common::files_below(&data.join(directory)) {
+        for path in folder::files_below(&data.join(directory)) {
             if path.extension().is_none_or(|e| e != "urdf") || path.to_string_lossy().ends_with(".package.urdf") {
                 continue;
             }
@@ -84,7 +84,7 @@ fn every_urdf_has_its_tables() {
 
 #[test]
 fn derived_3ds_and_glb_models_have_the_tables_of_their_urdf() {
-    let Some(data) = common::data() else { return };
+    let Some(data) = folder::data() else { return };
     for name in ["comau_ns16arc", "staubli_rx160"] {
         let urdf = chain_of(&data.join(format!("urdf/{name}/{name}.urdf")), None);
         let side = tempfile::NamedTempFile::new().unwrap();
@@ -123,7 +123,7 @@ fn same_robot(urdf: &Chain, model: &Chain) {
 /// are seven rows of the form of table 1 of Reichenbach and Kovačić 2003.
 #[test]
 fn the_kr150_of_the_examples_has_the_published_geometry() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../examples/models/kr150/kr150.3ds");
+    let path = folder::examples().join("models/kr150/kr150.3ds");
     let loaded = robot::load(&path, &LoadOptions::default()).unwrap().robot;
     let dir = tempfile::tempdir().unwrap();
     let tds = dir.path().join("kr150.3ds");

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::common::corpus::{PARSERS, Random, mutate, run, samples};
+use crate::common::corpus::{PARSERS, Xorshift, mutate, run, samples};
 use elbowroom_formats::{MeshData, stl};
 use elbowroom_spatial::Vec3;
 use proptest::prelude::*;
@@ -44,7 +44,7 @@ proptest! {
 
     #[test]
     fn damaged_files_do_not_panic(seed in 1..u64::MAX) {
-        let mut random = Random(seed);
+        let mut random = Xorshift(seed);
         for parser in PARSERS {
             let list = samples(parser);
             let mut bytes = list[random.below(list.len())].clone();

@@ -1,6 +1,5 @@
 //! Robots from 3DS and glTF models: tracks, files of joints, and export as URDF and 3DS.
 
-use crate::common;
 use std::path::Path;
 
 use elbowroom_formats::nodetree::{Keyframe, Node, NodeTree};
@@ -10,7 +9,8 @@ use elbowroom_kinematics::{Chain, ChainState, JointKind, LinkId};
 use elbowroom_proximity::Shape;
 use elbowroom_robot::{Collider, Robot};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
-use elbowroom_testkit::random::{unit, xorshift};
+use elbowroom_testkit::folder;
+use elbowroom_testkit::random::Xorshift;
 
 fn box_mesh(name: &str) -> MeshData {
     let corner = |i: u32| Vec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)) * 0.2;
@@ -286,27 +286,20 @@ fn animations_of_gltf_are_joints() {
     assert!(animated(|j| j.replace("\"rotation\"", "\"roll\""), &keys).is_ok());
 }
 
-/// Xorshift in -1..1.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        2.0 * unit(xorshift(&mut self.0)) - 1.0
-    }
-
-    fn q(&mut self, chain: &Chain) -> Vec<f64> {
-        let bounds = chain.lower().into_iter().zip(chain.upper());
-        bounds.map(|(lo, hi)| (0.5 + 0.5 * self.next()) * (hi.min(7.0) - lo.max(-7.0)) + lo.max(-7.0)).collect()
-    }
+fn random_q(random: &mut Xorshift, chain: &Chain) -> Vec<f64> {
+    let bounds = chain.lower().into_iter().zip(chain.upper());
+    bounds
+        .map(|(lo, hi)| (0.5 + 0.5 * random.between(-1.0, 1.0)) * (hi.min(7.0) - lo.max(-7.0)) + lo.max(-7.0))
+        .collect()
 }
 
 /// Largest difference of a link's pose at random joint values; joints by name.
 fn apart(a: &Chain, b: &Chain, links: &[&str]) -> f64 {
-    let mut random = Random(0x1234_5678_9abc_def1);
+    let mut random = Xorshift(0x1234_5678_9abc_def1);
     let mut worst: f64 = 0.0;
     let (mut sa, mut sb) = (ChainState::new(a), ChainState::new(b));
     for _ in 0..100 {
-        sa.q = random.q(a);
+        sa.q = random_q(&mut random, a);
         for (id, value) in a.active_joints().iter().zip(&sa.q) {
             let same = b.joint(&a.joints()[id.0].name).expect("the joint");
             sb.q[b.q_index(same).expect("free")] = *value;
@@ -355,7 +348,7 @@ fn solids(robot: &Robot, link: &str) -> Vec<[Vec3; 3]> {
 
 #[test]
 fn the_derived_3ds_and_glb_are_their_urdf_again_with_a_file_of_joints() {
-    let Some(data) = common::data() else { return };
+    let Some(data) = folder::data() else { return };
     for name in ["comau_ns16arc", "staubli_rx160"] {
         let urdf = robot::load(
             &data.join(format!("urdf/{name}/{name}.urdf")),
@@ -425,10 +418,10 @@ fn round_trip(robot: &Robot, name: &str, links: &[&str]) -> (f64, f64, f64) {
 
 #[test]
 fn every_robot_of_the_data_survives_the_export_to_urdf_and_3ds() {
-    let Some(data) = common::data() else { return };
+    let Some(data) = folder::data() else { return };
     let mut worst = (0.0_f64, 0.0_f64, 0.0_f64);
     let mut robots = 0;
-    for path in common::files_below(&data.join("urdf")) {
+    for path in folder::files_below(&data.join("urdf")) {
         let folder = path.parent().and_then(Path::file_name).unwrap_or_default().to_string_lossy().into_owned();
         if path.file_name().is_none_or(|f| f.to_string_lossy() != format!("{folder}.urdf")) {
             continue;
@@ -451,7 +444,7 @@ fn every_robot_of_the_data_survives_the_export_to_urdf_and_3ds() {
 
 #[test]
 fn tracks_alone_carry_axes_and_limits_of_an_exported_robot() {
-    let Some(data) = common::data() else { return };
+    let Some(data) = folder::data() else { return };
     let urdf = robot::load(&data.join("urdf/kuka_kr150_2/kuka_kr150_2.urdf"), &LoadOptions::default()).unwrap().robot;
     let loaded = bare(&robot::to_tree(&urdf));
     let chain = &loaded.robot.chain;

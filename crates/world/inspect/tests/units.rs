@@ -1,7 +1,7 @@
 //! Unit errors of published robots, where the data is available: each factor is identified, and correct units are not
 //! suspected.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use elbowroom_formats::robot::{self, LoadOptions};
 use elbowroom_inspect::{SuspectQuantity, suspect_units};
@@ -9,6 +9,7 @@ use elbowroom_kinematics::{Chain, JointKind};
 use elbowroom_proximity::{Cuboid, Shape};
 use elbowroom_robot::{Collider, Robot};
 use elbowroom_spatial::{Pose, Vec3};
+use elbowroom_testkit::folder;
 
 /// The factor, the likely unit, and the unit it was read as.
 const FACTORS: [(f64, &str, &str); 9] = [
@@ -25,23 +26,13 @@ const FACTORS: [(f64, &str, &str); 9] = [
 
 /// All robots of the data, each solid replaced by its box.
 fn robots() -> Vec<(PathBuf, Robot)> {
-    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../../shared/data");
-    let data = std::env::var_os("ELBOWROOM_DATA").map_or_else(beside, PathBuf::from);
-    if !data.is_dir() {
-        eprintln!("skipped: no data at {}", data.display());
-        return Vec::new();
-    }
-    let folders = ["urdf", "cell"].into_iter().flat_map(|group| std::fs::read_dir(data.join(group)).unwrap());
-    let mut robots = Vec::new();
-    for folder in folders {
-        let folder = folder.unwrap().path();
-        let urdf = folder.join(format!("{}.urdf", folder.file_name().unwrap().to_str().unwrap()));
-        if urdf.is_file() {
-            let options = LoadOptions { load_visuals: false, ..LoadOptions::default() };
-            robots.push((urdf.clone(), boxed(robot::load(&urdf, &options).unwrap().robot)));
-        }
-    }
-    assert!(robots.len() > 30, "only {}", robots.len());
+    let load = |urdf: PathBuf| {
+        let options = LoadOptions { load_visuals: false, ..LoadOptions::default() };
+        let robot = boxed(robot::load(&urdf, &options).unwrap().robot);
+        (urdf, robot)
+    };
+    let robots: Vec<_> = folder::robots(&["urdf", "cell"]).into_iter().map(load).collect();
+    assert!(robots.is_empty() || robots.len() > 30, "only {}", robots.len());
     robots
 }
 

@@ -3,9 +3,7 @@
 
 mod common;
 
-use std::alloc::System;
-
-use common::{Random, scene_of};
+use common::{Random, RandomGeometry, scene_of};
 
 use elbowroom_kinematics::LinkId;
 use elbowroom_proximity::ccd::ConstantTwist;
@@ -15,10 +13,10 @@ use elbowroom_scene::{
     Checker, CheckerOptions, Level, LevelOfDetail, SceneMotion, SceneState, Selection, SweepMove, SweepOptions,
 };
 use elbowroom_spatial::Vec3;
-use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
+use elbowroom_testkit::allocation::{AllocationCounter, COUNTING_ALLOCATOR, CountingAllocator};
 
 #[global_allocator]
-static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
+static ALLOCATOR: CountingAllocator = COUNTING_ALLOCATOR;
 
 fn main() {
     let scene = scene_of(51, |_| {});
@@ -33,7 +31,7 @@ fn main() {
             // The first query about a selection or an arrangement of attached objects makes its list.
             checker.collides(state);
             checker.between(one, other).collides(state);
-            let region = Region::new(ALLOCATOR);
+            let counter = AllocationCounter::start();
             let mut found = 0;
             for _ in 0..200 {
                 state.set_q(&scene, RobotId(0), &r.q()).unwrap();
@@ -47,8 +45,7 @@ fn main() {
                 checker.approaching(state, &motion, &LevelOfDetail::default(), 1.0, |_| found += 1);
                 checker.between(one, other).distances_within(state, 0.2, |_| found += 1);
             }
-            let used = region.change();
-            assert_eq!((used.allocations, used.reallocations), (0, 0), "{level}");
+            assert_eq!(counter.allocations(), 0, "{level}");
             assert!(found > 400);
         }
     }
@@ -74,10 +71,10 @@ fn main() {
             hits
         };
         let first = sweep_all();
-        let region = Region::new(ALLOCATOR);
+        let counter = AllocationCounter::start();
         let second = sweep_all();
-        let used = region.change();
+        let allocations = counter.allocations();
         assert!(first == second && first > 10);
-        assert_eq!((used.allocations, used.reallocations), (0, 0));
+        assert_eq!(allocations, 0);
     }
 }

@@ -1,6 +1,6 @@
 //! Level of detail and time to collision: pairs left out or reported coarsely are proven to be distant.
 
-use crate::common::{Random, all_distances, apart, link, scene_of, shapes};
+use crate::common::{Random, RandomGeometry, all_distances, apart, link, scene_of, shapes};
 
 use elbowroom_proximity::ccd::{ConstantTwist, RigidMotion};
 use elbowroom_proximity::separation;

@@ -1,6 +1,6 @@
 //! An attached object against the same object placed at the same pose.
 
-use crate::common::{Random, apart, link, scene_of};
+use crate::common::{Random, RandomGeometry, apart, link, scene_of};
 
 use elbowroom_kinematics::LinkId;
 use elbowroom_robot::{GeometryId, ObjectId, RobotId};

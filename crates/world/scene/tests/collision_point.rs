@@ -1,6 +1,6 @@
 //! The collision point against the shapes themselves and against queries link by link.
 
-use crate::common::{Random, apart, link, scene_of, shapes};
+use crate::common::{Random, RandomGeometry, apart, link, scene_of, shapes};
 
 use elbowroom_proximity::project_point;
 use elbowroom_robot::{GeometryId, ObjectId, RobotId};

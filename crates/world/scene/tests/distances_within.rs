@@ -1,7 +1,7 @@
 //! The distances within a margin against each pair measured by itself.
 
 use crate::common;
-use crate::common::{Random, all_distances, link, scene_of};
+use crate::common::{Random, RandomGeometry, all_distances, link, scene_of};
 
 use elbowroom_robot::{GeometryId, RobotId};
 use elbowroom_scene::{Checker, CheckerOptions, Level, PairDistance, Scene, SceneState, Selection};

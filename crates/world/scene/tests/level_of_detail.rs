@@ -4,7 +4,7 @@
 use crate::common::rx60b;
 use std::time::{Duration, Instant};
 
-use crate::common::Random;
+use crate::common::{Random, RandomGeometry};
 use elbowroom_proximity::{Cuboid, Shape};
 use elbowroom_robot::{ObjectId, RobotId};
 

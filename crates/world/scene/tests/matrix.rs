@@ -3,7 +3,7 @@
 use crate::common;
 use std::collections::HashSet;
 
-use crate::common::{Random, apart, link, scene_of};
+use crate::common::{Random, RandomGeometry, apart, link, scene_of};
 
 use elbowroom_kinematics::LinkId;
 use elbowroom_robot::{GeometryId, ObjectId, Robot, RobotId, collision_pairs};

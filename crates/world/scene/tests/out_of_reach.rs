@@ -1,7 +1,7 @@
 //! Pairs proven out of reach are out of reach: objects placed where a link certainly reaches, at random and at the ends of its
 //! range.
 
-use crate::common::Random;
+use crate::common::{Random, RandomGeometry};
 
 use elbowroom_kinematics::{Chain, ChainState, Joint, JointId, JointKind, Limits, LinkId, Mimic};
 use elbowroom_proximity::{Capsule, Shape, Sphere};

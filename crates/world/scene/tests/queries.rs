@@ -1,6 +1,6 @@
 //! Every query against a direct test of all pairs.
 
-use crate::common::{Random, all_distances, apart, link, scene_of};
+use crate::common::{Random, RandomGeometry, all_distances, apart, link, scene_of};
 
 use elbowroom_kinematics::LinkId;
 use elbowroom_proximity::{HalfSpace, Shape, Sphere};

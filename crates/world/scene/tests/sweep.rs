@@ -4,7 +4,7 @@ use crate::common::rx60b;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use crate::common::{Random, apart, link, scene_of};
+use crate::common::{Random, RandomGeometry, apart, link, scene_of};
 
 use elbowroom_kinematics::LinkId;
 use elbowroom_proximity::ccd::ConstantTwist;

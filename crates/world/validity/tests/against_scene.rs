@@ -9,15 +9,15 @@
 
 #![allow(clippy::print_stdout, reason = "a comparison prints what it finds")]
 
-use crate::common;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use crate::common::{Kind, ROBOT, Random, Surroundings, coal_job, scene};
+use crate::common::{Kind, ROBOT, Random, RandomGeometry, Surroundings, coal_job, scene};
 use elbowroom_kinematics::LinkId;
 use elbowroom_robot::{GeometryId, Robot};
 use elbowroom_scene::{Checker, CheckerOptions, Scene, SceneState, SweepMove, SweepOptions};
 use elbowroom_spatial::Pose;
+use elbowroom_testkit::folder;
 use elbowroom_validity::{CoveredRobot, Validity, ValidityChecker};
 use fearless_simd::Level as SimdLevel;
 
@@ -238,7 +238,7 @@ fn random_robots_among_random_obstacles() {
     let mut random = Random(5);
     let mut all = Counts::default();
     for round in 0..12 {
-        let joints = 2 + random.below(6);
+        let joints = 2 + random.index(6);
         let robot = random.robot(joints);
         let base = random.pose(0.5);
         let count = [3, 12, 60][round % 3];
@@ -267,11 +267,11 @@ fn states_wanted() -> Option<usize> {
 }
 
 /// The robots to compare: a few, or all of the data.
-fn robots(data: &Path) -> Vec<PathBuf> {
+fn robots() -> Vec<PathBuf> {
     let few = ["panda", "ur5e", "kuka_kr150_2", "staubli_tx60"];
     let is_wanted =
         |path: &PathBuf| states_wanted().is_some() || few.iter().any(|name| path.ends_with(format!("{name}.urdf")));
-    common::robots(data).into_iter().filter(is_wanted).collect()
+    folder::robots(&["urdf"]).into_iter().filter(is_wanted).collect()
 }
 
 fn load(path: &Path) -> Robot {
@@ -366,10 +366,9 @@ fn compare(path: &Path, random: &mut Random, (states, extent): (usize, Extent)) 
 
 #[test]
 fn real_robots_among_random_obstacles() {
-    let Some(data) = common::data() else { return };
-    let paths = robots(&data);
+    let paths = robots();
     let extent = if states_wanted().is_some() { LONG } else { SHORT };
-    let per_robot = states_wanted().map_or(1500, |n| n.div_ceil(paths.len()));
+    let per_robot = states_wanted().map_or(1500, |n| n.div_ceil(paths.len().max(1)));
     println!("| robot | states | free | hit | not certain | edges | proven free | of the free | contradictions |");
     println!("| --- | --- | --- | --- | --- | --- | --- | --- | --- |");
     let next = AtomicUsize::new(0);

@@ -1,6 +1,6 @@
 //! Boxes in joint space proven in collision: so is every configuration in them, by the exact scene.
 
-use crate::common::{ROBOT, Random, obstacle_set, obstacles, scene};
+use crate::common::{ROBOT, Random, RandomGeometry, obstacle_set, obstacles, scene};
 use elbowroom_robot::example;
 use elbowroom_scene::{Checker, CheckerOptions, SceneState};
 use elbowroom_spatial::Pose;
@@ -11,7 +11,7 @@ fn every_configuration_of_a_proven_box_collides() {
     let mut random = Random(21);
     let (mut proven, mut narrow) = (0, 0);
     for round in 0..18 {
-        let joints = 2 + random.below(5);
+        let joints = 2 + random.index(5);
         let robot = random.robot(joints);
         let base = random.pose(0.5);
         let solids = obstacles(&mut random, [3, 12, 40][round % 3], 0.8);
@@ -23,7 +23,7 @@ fn every_configuration_of_a_proven_box_collides() {
         let mut state = SceneState::new(&scene);
         // Some joints are anywhere within their limits.
         let (lower, upper) = (robot.chain.lower(), robot.chain.upper());
-        let whole: Vec<bool> = lower.iter().map(|low| low.is_finite() && random.below(3) == 0).collect();
+        let whole: Vec<bool> = lower.iter().map(|low| low.is_finite() && random.index(3) == 0).collect();
         let width = random.between(0.002, 0.08);
         let half: Vec<f64> = (0..lower.len()).map(|i| if whole[i] { f64::INFINITY } else { width }).collect();
         let centres: Vec<f64> = (0..50).flat_map(|_| random.q(&robot.chain)).collect();
@@ -40,7 +40,7 @@ fn every_configuration_of_a_proven_box_collides() {
                 };
                 let q: Vec<f64> = (0..centre.len())
                     .map(|i| within(i, centre[i]))
-                    .map(|(low, high)| [low, high, random.between(low, high)][random.below(3)])
+                    .map(|(low, high)| [low, high, random.between(low, high)][random.index(3)])
                     .collect();
                 state.set_q(&scene, ROBOT, &q).unwrap();
                 assert!(

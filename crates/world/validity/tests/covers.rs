@@ -1,14 +1,14 @@
 //! Covers of spheres: complete, without pockets, close to the solid; inner spheres inside.
 
-use crate::common;
 use std::sync::Arc;
 
-use crate::common::{Random, mesh};
+use crate::common::{Random, RandomGeometry, mesh};
 use elbowroom_formats::robot::{LoadOptions, load};
 use elbowroom_proximity::{
     Capsule, ConvexHull, Cuboid, Cylinder, Shape, Sphere, TriMesh, project_point, tessellate::tessellate,
 };
 use elbowroom_spatial::{Pose, Vec3};
+use elbowroom_testkit::folder;
 use elbowroom_validity::{Ball, SphereCover};
 
 /// Divisions of a triangle before a part counts as not covered; far below the rounding that covers allow for.
@@ -222,12 +222,11 @@ fn a_mesh_inside_out_has_no_inner_balls_outside() {
 /// `ELBOWROOM_VALIDITY_COVERS=all` proves the covers of all robots of the data, in the release profile best.
 #[test]
 fn links_of_real_robots_are_covered() {
-    let Some(data) = common::data() else { return };
     let is_wanted = |path: &std::path::Path| match std::env::var_os("ELBOWROOM_VALIDITY_COVERS") {
         Some(_) => true,
         None => ["panda", "ur5e"].iter().any(|name| path.ends_with(format!("{name}.urdf"))),
     };
-    for path in common::robots(&data).into_iter().filter(|path| is_wanted(path)) {
+    for path in folder::robots(&["urdf"]).into_iter().filter(|path| is_wanted(path)) {
         let robot = load(&path, &LoadOptions::default()).unwrap().robot;
         for link in robot.links_with_colliders() {
             let shapes: Vec<_> = robot.colliders[link.0].iter().map(|c| (&c.shape, c.in_link)).collect();

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::common::{Random, single_joint};
+use crate::common::{Random, RandomGeometry, single_joint};
 use elbowroom_kinematics::{Chain, ChainState, Joint, JointId, JointKind, Limits, LinkId, Mimic};
 use elbowroom_proximity::{Capsule, Cuboid, Cylinder, HalfSpace, Shape, Sphere, TriMesh};
 use elbowroom_robot::{Collider, Robot};
@@ -123,10 +123,10 @@ fn huge_angles_are_where_double_precision_puts_them() {
 
 /// Balls that overlap by a micrometre, at random configurations of a chain with a base somewhere.
 fn balls_that_just_touch(base: Vec3, reach: f64, random: &mut Random) {
-    let joints = 2 + random.below(9);
+    let joints = 2 + random.index(9);
     let list: Vec<Joint> = (0..joints)
         .map(|i| {
-            let kind = [JointKind::Revolute, JointKind::Continuous, JointKind::Prismatic][random.below(3)];
+            let kind = [JointKind::Revolute, JointKind::Continuous, JointKind::Prismatic][random.index(3)];
             let limits = Limits::symmetric(if kind == JointKind::Prismatic { reach } else { 3.0 });
             let (origin, axis) = (random.pose(reach), random.vec3(1.0).try_normalize().unwrap_or(Vec3::Z));
             Joint { limits, ..single_joint(i, kind, origin, axis) }
@@ -139,7 +139,7 @@ fn balls_that_just_touch(base: Vec3, reach: f64, random: &mut Random) {
     let mut state = ChainState::new(&chain);
     state.q.copy_from_slice(&q);
     chain.forward(&mut state);
-    let (first, last) = (1 + random.below(joints - 1), joints);
+    let (first, last) = (1 + random.index(joints - 1), joints);
     let (at_first, at_last) = (random.vec3(reach), random.vec3(reach));
     let in_world = |link: usize, p: Vec3| base.transform_point(state.link_in_root(LinkId(link)).transform_point(p));
     let distance = in_world(first, at_first).distance(in_world(last, at_last));

@@ -1,23 +1,13 @@
 //! One answer on every instruction set: a hash over states, edges and pairs that are not certain.
 
-use crate::common::{Random, obstacle_set, obstacles};
+use crate::common::{Random, RandomGeometry, obstacle_set, obstacles};
 use elbowroom_spatial::Pose;
+use elbowroom_testkit::hash::Fnv;
 use elbowroom_validity::{CoveredRobot, NotCertain, ValidityChecker};
 use fearless_simd::Level as SimdLevel;
 
 /// Changes where an answer changes: on purpose with the covers or what an edge is divided into, else never.
 const EXPECTED: u64 = 0xd0e2_e60b_a8bb_4f3d;
-
-/// The hash of Fowler, Noll and Vo.
-struct Hash(u64);
-
-impl Hash {
-    fn add(&mut self, value: usize) {
-        for byte in (value as u64).to_le_bytes() {
-            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-        }
-    }
-}
 
 fn simd_levels() -> Vec<SimdLevel> {
     let mut levels = vec![SimdLevel::new()];
@@ -33,10 +23,10 @@ fn simd_levels() -> Vec<SimdLevel> {
 #[test]
 fn every_instruction_set_gives_the_same_answers() {
     let levels = simd_levels();
-    let mut hashes: Vec<Hash> = levels.iter().map(|_| Hash(0xcbf2_9ce4_8422_2325)).collect();
+    let mut hashes = vec![Fnv::default(); levels.len()];
     let mut random = Random(2024);
     for round in 0..2 {
-        let joints = 3 + random.below(5);
+        let joints = 3 + random.index(5);
         let robot = random.robot(joints);
         let solids = obstacles(&mut random, [4, 20][round % 2], 1.2);
         let set = obstacle_set(&solids);
@@ -49,12 +39,12 @@ fn every_instruction_set_gives_the_same_answers() {
             let mut answers = Vec::new();
             checker.states(&q, &mut answers).unwrap();
             for &answer in &answers {
-                hash.add(answer as usize);
+                hash.add(answer as u64);
             }
             let mut pairs = Vec::new();
             // In software a fused sum takes a hundred times as long.
             for (i, (from, to)) in q.chunks(dof).zip(near.chunks(dof)).enumerate().step_by(2) {
-                hash.add(usize::from(checker.edge_is_free(from, to).unwrap()));
+                hash.add(u64::from(checker.edge_is_free(from, to).unwrap()));
                 if i % 16 == 0 {
                     checker.uncertain_pairs(from, to, &mut pairs).unwrap();
                     for pair in &pairs {
@@ -62,8 +52,8 @@ fn every_instruction_set_gives_the_same_answers() {
                             NotCertain::Links(a, b) => (a.0, 1000 + b.0),
                             NotCertain::Obstacle(a, b) => (a.0, b),
                         };
-                        hash.add(a);
-                        hash.add(b);
+                        hash.add(a as u64);
+                        hash.add(b as u64);
                     }
                 }
             }

@@ -1,6 +1,6 @@
 //! Point clouds and very many obstacles: answers against plain distances.
 
-use crate::common::{Random, single_joint};
+use crate::common::{Random, RandomGeometry, single_joint};
 use elbowroom_kinematics::{Chain, ChainState, JointKind, Limits, LinkId};
 use elbowroom_proximity::{Shape, Sphere};
 use elbowroom_robot::{Collider, Robot};

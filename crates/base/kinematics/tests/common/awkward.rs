@@ -5,23 +5,27 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use elbowroom_kinematics::{Chain, Joint, JointId, JointKind, Limits, LinkId, Mimic};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
-use super::Random;
+use super::{RandomGeometry, SplitMix};
 
 /// Rotations that make axes parallel, opposite, perpendicular, nearly so, or anything; gimbal lock included.
-pub fn awkward_rotation(random: &mut Random) -> Rotation {
+pub fn awkward_rotation(random: &mut SplitMix) -> Rotation {
     let tiny = [0.0, 1e-15, 1e-12, 1e-10, 1e-8, 3.7e-6, 1e-4, 2e-3][random.below(8)];
-    let quarter = |random: &mut Random| FRAC_PI_2 * random.below(4) as f64;
+    let quarter = |random: &mut SplitMix| FRAC_PI_2 * random.below(4) as f64;
     match random.below(6) {
         0 => Rotation::IDENTITY,
         1 => Rotation::from_rpy(quarter(random), quarter(random), quarter(random)),
         2 => Rotation::from_rpy(quarter(random) + tiny, quarter(random) - tiny, quarter(random) + tiny),
-        3 => Rotation::from_rpy(tiny, -tiny, random.range(-PI, PI)),
-        4 => Rotation::from_rpy(random.range(-PI, PI), [FRAC_PI_2, -FRAC_PI_2][random.below(2)], random.range(-PI, PI)),
+        3 => Rotation::from_rpy(tiny, -tiny, random.between(-PI, PI)),
+        4 => Rotation::from_rpy(
+            random.between(-PI, PI),
+            [FRAC_PI_2, -FRAC_PI_2][random.below(2)],
+            random.between(-PI, PI),
+        ),
         _ => random.pose().rotation,
     }
 }
 
-pub fn awkward_offset(random: &mut Random) -> Vec3 {
+pub fn awkward_offset(random: &mut SplitMix) -> Vec3 {
     let v = random.vector();
     match random.below(5) {
         0 => Vec3::ZERO,
@@ -32,7 +36,7 @@ pub fn awkward_offset(random: &mut Random) -> Vec3 {
     }
 }
 
-pub fn awkward_chain(random: &mut Random) -> Chain {
+pub fn awkward_chain(random: &mut SplitMix) -> Chain {
     let n = random.below(8);
     let axes = [Vec3::Z, -Vec3::Z, Vec3::X, Vec3::Y, random.vector()];
     let mut joints: Vec<Joint> = (0..n)

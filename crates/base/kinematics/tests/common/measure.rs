@@ -6,7 +6,7 @@ use elbowroom_kinematics::inverse::{IkError, IkMethod, IkOptions, IkSolver};
 use elbowroom_kinematics::{Chain, ChainState};
 use elbowroom_spatial::Pose;
 
-use super::Random;
+use super::{RandomGeometry, SplitMix};
 
 pub struct Line {
     pub method: IkMethod,
@@ -43,7 +43,7 @@ pub fn measure(chain: &Chain, targets: usize) -> Line {
     let tip = chain.tip();
     let mut solver = IkSolver::new(chain, tip, Pose::IDENTITY, IkOptions::default());
     let mut state = ChainState::new(chain);
-    let mut random = Random(7);
+    let mut random = SplitMix(7);
     let mut seed = vec![0.0; chain.dof()];
     let (mut found, mut retried, mut times) = (0, 0, Vec::new());
     let (mut worst_m, mut worst_rad) = (0.0_f64, 0.0_f64);

@@ -9,44 +9,13 @@ use std::path::{Path, PathBuf};
 
 use elbowroom_kinematics::{Chain, Joint, JointId, JointKind, Limits, LinkId, Mimic};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
-use elbowroom_testkit::random::{split_mix, unit};
-
-pub fn data() -> Option<PathBuf> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../..");
-    let dir = std::env::var_os("ELBOWROOM_DATA").map_or_else(|| root.join("../shared/data"), PathBuf::from);
-    if dir.is_dir() {
-        return Some(dir);
-    }
-    println!("skipped: no data at {}", dir.display());
-    None
-}
+use elbowroom_testkit::folder;
+pub use elbowroom_testkit::random::SplitMix;
 
 /// Every robot of `urdf` and `cell`, by name.
 pub fn robots() -> Vec<(String, PathBuf)> {
-    let Some(data) = data() else {
-        return Vec::new();
-    };
-    let mut found = Vec::new();
-    for folder in ["urdf", "cell"] {
-        let Ok(entries) = std::fs::read_dir(data.join(folder)) else {
-            continue;
-        };
-        for entry in entries.flatten() {
-            let Ok(files) = std::fs::read_dir(entry.path()) else {
-                continue;
-            };
-            for file in files.flatten().map(|f| f.path()) {
-                let name = file.file_name().unwrap().to_string_lossy().into_owned();
-                if let Some(stem) = name.strip_suffix(".urdf")
-                    && !stem.ends_with(".package")
-                {
-                    found.push((stem.to_owned(), file));
-                }
-            }
-        }
-    }
-    found.sort();
-    found
+    let name = |file: &PathBuf| file.file_stem().unwrap().to_string_lossy().into_owned();
+    folder::robots(&["urdf", "cell"]).into_iter().map(|file| (name(&file), file)).collect()
 }
 
 pub fn robot(name: &str) -> Option<Chain> {
@@ -122,55 +91,46 @@ pub fn serial(joints: &[(JointKind, Pose, Vec3, Limits)]) -> Chain {
     Chain::new("serial", links, joints).unwrap()
 }
 
-/// A small reproducible generator (`SplitMix64`).
-pub struct Random(pub u64);
+/// Random geometry and states.
+pub trait RandomGeometry {
+    /// Each coordinate within 1 of 0.
+    fn vector(&mut self) -> Vec3;
 
-impl Random {
-    pub fn next(&mut self) -> u64 {
-        split_mix(&mut self.0)
+    fn pose(&mut self) -> Pose;
+
+    /// A configuration within the limits; unlimited joints within eight turns or metres.
+    fn state(&mut self, chain: &Chain, q: &mut [f64]);
+}
+
+impl RandomGeometry for SplitMix {
+    fn vector(&mut self) -> Vec3 {
+        Vec3::from(self.within(1.0))
     }
 
-    pub fn unit(&mut self) -> f64 {
-        unit(self.next())
-    }
-
-    pub fn range(&mut self, lower: f64, upper: f64) -> f64 {
-        lower + (upper - lower) * self.unit()
-    }
-
-    pub fn below(&mut self, n: usize) -> usize {
-        (self.next() % n as u64) as usize
-    }
-
-    pub fn vector(&mut self) -> Vec3 {
-        Vec3::new(self.range(-1.0, 1.0), self.range(-1.0, 1.0), self.range(-1.0, 1.0))
-    }
-
-    pub fn pose(&mut self) -> Pose {
+    fn pose(&mut self) -> Pose {
         let turn = self.vector() * 3.0;
         Pose::new(elbowroom_spatial::Rotation::from_rotation_vector(turn), self.vector())
     }
 
-    /// A configuration within the limits; unlimited joints within eight turns or metres.
-    pub fn state(&mut self, chain: &Chain, q: &mut [f64]) {
+    fn state(&mut self, chain: &Chain, q: &mut [f64]) {
         for (value, id) in q.iter_mut().zip(chain.active_joints()) {
             let joint = &chain.joints()[id.0];
             let unlimited = if joint.kind.turns() { std::f64::consts::PI } else { 1.0 };
-            *value = self.range(joint.limits.lower.max(-unlimited * 8.0), joint.limits.upper.min(unlimited * 8.0));
+            *value = self.between(joint.limits.lower.max(-unlimited * 8.0), joint.limits.upper.min(unlimited * 8.0));
         }
     }
 }
 
 /// Ortho-parallel basis and spherical wrist with every frame rotated at random: nothing of the geometry is along an axis.
-pub fn disguised_wrist_arm(random: &mut Random, limit: f64) -> Chain {
-    let lateral = random.range(-0.2, 0.2) * random.below(2) as f64;
+pub fn disguised_wrist_arm(random: &mut SplitMix, limit: f64) -> Chain {
+    let lateral = random.between(-0.2, 0.2) * random.below(2) as f64;
     let points = [
-        Vec3::new(0.0, 0.0, random.range(0.0, 0.5)),
-        Vec3::new(random.range(-0.4, 0.4) * random.below(3).min(1) as f64, lateral, random.range(0.0, 0.5)),
-        Vec3::new(0.0, 0.0, random.range(0.4, 1.0)),
-        Vec3::new(random.range(-0.2, 0.2), 0.0, random.range(-0.1, 0.1)),
-        Vec3::new(0.0, 0.0, random.range(0.4, 1.0)),
-        Vec3::new(0.0, 0.0, random.range(0.0, 0.1)),
+        Vec3::new(0.0, 0.0, random.between(0.0, 0.5)),
+        Vec3::new(random.between(-0.4, 0.4) * random.below(3).min(1) as f64, lateral, random.between(0.0, 0.5)),
+        Vec3::new(0.0, 0.0, random.between(0.4, 1.0)),
+        Vec3::new(random.between(-0.2, 0.2), 0.0, random.between(-0.1, 0.1)),
+        Vec3::new(0.0, 0.0, random.between(0.4, 1.0)),
+        Vec3::new(0.0, 0.0, random.between(0.0, 0.1)),
     ];
     let axes = [Vec3::Z, Vec3::Y, Vec3::Y, Vec3::Z, Vec3::Y, Vec3::Z];
     // In the file: model frame k = file frame k · hidden(k)
@@ -178,7 +138,7 @@ pub fn disguised_wrist_arm(random: &mut Random, limit: f64) -> Chain {
     let mut joints = Vec::new();
     let mut before = random.pose().rotation; // the base itself is rotated
     for k in 0..6 {
-        let bend = Rotation::from_axis_angle(axes[k], random.range(-2.0, 2.0)); // zero positions anywhere
+        let bend = Rotation::from_axis_angle(axes[k], random.between(-2.0, 2.0)); // zero positions anywhere
         let origin = Pose::new(before * bend * hidden[k].inverse(), before * points[k]);
         let sign = if random.below(2) == 0 { 1.0 } else { -1.0 };
         joints.push((JointKind::Revolute, origin, hidden[k] * (axes[k] * sign), Limits::symmetric(limit)));

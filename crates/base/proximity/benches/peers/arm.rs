@@ -2,11 +2,11 @@
 
 use elbowroom_proximity::TriMesh;
 use elbowroom_spatial::{Pose, Rotation, Vec3};
+use elbowroom_testkit::random::SplitMix;
 use std::f64::consts::PI;
 use std::path::Path;
 
 use crate::files::{Outcome, rounded, write_mesh, write_poses};
-use crate::random::Random;
 use crate::surfaces::Tube;
 
 pub const LINKS: usize = 7;
@@ -33,7 +33,7 @@ const RADII: [f64; LINKS + 1] = [0.078, 0.062, 0.052, 0.044, 0.04, 0.037, 0.03, 
 const JOINTS: [(usize, f64); LINKS - 1] = [(2, PI), (1, 2.2), (1, 2.4), (2, PI), (1, 2.0), (2, PI)];
 
 pub fn generate(folder: &Path) -> Outcome<()> {
-    let mut random = Random(7);
+    let mut random = SplitMix(7);
     let mut boxes = Vec::new();
     for link in 0..LINKS {
         let mesh = link_mesh(link, &mut random)?;
@@ -53,7 +53,7 @@ pub fn generate(folder: &Path) -> Outcome<()> {
     write_poses(&folder.join("robots_hard.pose"), 2 * LINKS, &hard)
 }
 
-fn link_mesh(link: usize, random: &mut Random) -> Outcome<TriMesh> {
+fn link_mesh(link: usize, random: &mut SplitMix) -> Outcome<TriMesh> {
     let [rings, sectors] = GRID[link];
     let (step, from, to) = (Vec3::from(STEPS[link]), RADII[link], RADII[link + 1]);
     let direction = step.try_normalize().unwrap_or(Vec3::Z);

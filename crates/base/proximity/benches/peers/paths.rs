@@ -5,9 +5,10 @@ use std::path::Path;
 use elbowroom_proximity::advanced::mesh_separation;
 use elbowroom_proximity::{TriMesh, Workspace};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
+use elbowroom_testkit::random::SplitMix;
 
 use crate::files::{Outcome, read_mesh, read_meta, read_poses, write_poses};
-use crate::random::Random;
+use crate::random::RandomGeometry;
 
 pub const TAGS: [&str; 2] = ["m4k", "m23k"];
 /// Records in one path.
@@ -24,7 +25,7 @@ pub fn extend(data: &Path, extra: &Path) -> Outcome<()> {
         }
         let [size, _] = read_meta(&data.join(format!("{tag}.meta")))?;
         let (a, b) = (read_mesh(&data.join(format!("{tag}_A.stl")))?, read_mesh(&data.join(format!("{tag}_B.stl")))?);
-        let mut walk = RandomWalk { a: &a, b: &b, size, random: Random(3), workspace: Workspace::new() };
+        let mut walk = RandomWalk { a: &a, b: &b, size, random: SplitMix(3), workspace: Workspace::new() };
         for (band, gaps) in [("near", [0.005, 0.15]), ("far", [0.6, 1.4])] {
             let file = data.join(format!("{tag}_{band}.pose"));
             if !file.is_file() {
@@ -45,7 +46,7 @@ struct RandomWalk<'a> {
     a: &'a TriMesh,
     b: &'a TriMesh,
     size: f64,
-    random: Random,
+    random: SplitMix,
     workspace: Workspace,
 }
 

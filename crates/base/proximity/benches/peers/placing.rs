@@ -6,9 +6,10 @@ use std::path::Path;
 use elbowroom_proximity::advanced::{colliding_triangles, mesh_separation};
 use elbowroom_proximity::{TriMesh, Workspace};
 use elbowroom_spatial::{Pose, Vec3};
+use elbowroom_testkit::random::SplitMix;
 
 use crate::files::{Outcome, rounded, write_mesh, write_meta, write_poses};
-use crate::random::Random;
+use crate::random::RandomGeometry;
 use crate::surfaces::{Tube, trefoil};
 
 const RECORDS: usize = 2000;
@@ -17,7 +18,7 @@ const PAIRS: [(&str, [usize; 4]); 2] = [("m4k", [50, 40, 80, 25]), ("m23k", [120
 
 pub fn generate(folder: &Path) -> Outcome<()> {
     for (tag, [rings_a, sectors_a, rings_b, sectors_b]) in PAIRS {
-        let mut random = Random(42);
+        let mut random = SplitMix(42);
         let a = rounded(&arm_like(rings_a, sectors_a, &mut random))?;
         let b = rounded(&trefoil(0.16, 0.055, 0.25, rings_b, sectors_b, &mut random))?;
         write_mesh(&folder.join(format!("{tag}_A.stl")), &a)?;
@@ -35,7 +36,7 @@ pub fn generate(folder: &Path) -> Outcome<()> {
 }
 
 /// A bent link with two flanges.
-fn arm_like(rings: usize, sectors: usize, random: &mut Random) -> crate::surfaces::Surface {
+fn arm_like(rings: usize, sectors: usize, random: &mut SplitMix) -> crate::surfaces::Surface {
     let axis = |s: f64| {
         let t = s - 0.5;
         Vec3::new(0.12 * (PI * s).sin(), 0.03 * (2.0 * PI * s).sin(), 0.58 * t)
@@ -49,7 +50,7 @@ struct Placing<'a> {
     a: &'a TriMesh,
     b: &'a TriMesh,
     size: f64,
-    random: Random,
+    random: SplitMix,
     workspace: Workspace,
 }
 

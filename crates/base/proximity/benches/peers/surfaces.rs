@@ -3,8 +3,7 @@
 use std::f64::consts::TAU;
 
 use elbowroom_spatial::Vec3;
-
-use crate::random::Random;
+use elbowroom_testkit::random::SplitMix;
 
 /// Vertices and triangles, outward.
 pub type Surface = (Vec<Vec3>, Vec<[u32; 3]>);
@@ -13,7 +12,7 @@ pub type Surface = (Vec<Vec3>, Vec<[u32; 3]>);
 struct Ripples(Vec<[f64; 5]>);
 
 impl Ripples {
-    fn new(random: &mut Random, waves: usize, amplitude: f64) -> Self {
+    fn new(random: &mut SplitMix, waves: usize, amplitude: f64) -> Self {
         let mut wave = |_| {
             let turns = [1 + random.below(5), 1 + random.below(6)].map(|n| n as f64 * TAU);
             let height = random.between(0.3, 1.0) * amplitude / waves as f64;
@@ -46,7 +45,7 @@ pub struct Tube<'a> {
 
 impl Tube<'_> {
     /// Closed, genus 0.
-    pub fn surface(&self, random: &mut Random) -> Surface {
+    pub fn surface(&self, random: &mut SplitMix) -> Surface {
         let ripples = Ripples::new(random, 8, self.ripple);
         let mut vertices = vec![(self.axis)(0.0)];
         let mut side = Vec3::X;
@@ -100,7 +99,7 @@ fn tube_triangles(rings: usize, sectors: usize) -> Vec<[u32; 3]> {
 }
 
 /// A rippled tube along a trefoil knot: closed, genus 1, `2 · rings · sectors` triangles.
-pub fn trefoil(scale: f64, tube: f64, ripple: f64, rings: usize, sectors: usize, random: &mut Random) -> Surface {
+pub fn trefoil(scale: f64, tube: f64, ripple: f64, rings: usize, sectors: usize, random: &mut SplitMix) -> Surface {
     let ripples = Ripples::new(random, 10, ripple);
     let knot = |t: f64| {
         let t = t * TAU;

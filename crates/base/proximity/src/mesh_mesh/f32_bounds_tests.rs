@@ -1,7 +1,7 @@
 //! Every decision in f32 is checked in f64: no box excludes its triangles, and no pair within the cutoff is left out.
 
 use elbowroom_spatial::{Pose, Rotation, Vec3};
-use elbowroom_testkit::random::{linear_congruential, unit};
+use elbowroom_testkit::random::Random;
 use fearless_simd::Level as SimdLevel;
 
 use super::cutoff::{Cutoff, WitnessFrame};
@@ -16,26 +16,26 @@ use crate::TriMesh;
 use crate::bvh::{ARITY, Bvh16, LEAF_SIZE, Node};
 use crate::triangle::triangle_triangle;
 
-struct Numbers(u64);
-
-impl Numbers {
-    fn next(&mut self) -> f64 {
-        unit(linear_congruential(&mut self.0))
-    }
-
-    fn vector(&mut self) -> Vec3 {
-        Vec3::new(2.0 * self.next() - 1.0, 2.0 * self.next() - 1.0, 2.0 * self.next() - 1.0)
-    }
-
-    fn below(&mut self, n: usize) -> usize {
-        (self.next() * n as f64) as usize
-    }
+/// Random meshes and poses.
+trait RandomMeshes {
+    fn vector(&mut self) -> Vec3;
 
     /// A wavy strip: neighbours in space are neighbours in the tree, some of them slivers.
+    fn strip(&mut self, count: usize) -> TriMesh;
+
+    /// A second pose for which surfaces are near each other.
+    fn pose(&mut self, a: &TriMesh, here: &Pose, b: &TriMesh) -> Pose;
+}
+
+impl RandomMeshes for Random {
+    fn vector(&mut self) -> Vec3 {
+        Vec3::from(self.within(1.0))
+    }
+
     fn strip(&mut self, count: usize) -> TriMesh {
-        let size = 10f64.powf(3.0 * self.next() - 2.0);
-        let off = self.vector() * 10f64.powf(4.0 * self.next() - 2.0);
-        let (twist, thin) = (self.next(), 10f64.powf(-4.0 * self.next()));
+        let size = 10f64.powf(3.0 * self.unit() - 2.0);
+        let off = self.vector() * 10f64.powf(4.0 * self.unit() - 2.0);
+        let (twist, thin) = (self.unit(), 10f64.powf(-4.0 * self.unit()));
         let point = |k: usize, n: &mut Self| {
             let (t, side) = (k as f64 / count as f64, (k % 2) as f64 * thin);
             let path = Vec3::new((9.0 * t).sin(), (7.0 * t * (1.0 + twist)).cos(), t);
@@ -45,12 +45,11 @@ impl Numbers {
         TriMesh::new(vertices, (0..count as u32).map(|k| [k, k + 1, k + 2]).collect()).unwrap()
     }
 
-    /// A second pose for which surfaces are near each other.
     fn pose(&mut self, a: &TriMesh, here: &Pose, b: &TriMesh) -> Pose {
-        let rotation = Rotation::from_rpy(6.0 * self.next(), 6.0 * self.next(), 6.0 * self.next());
-        let (p, q) = (a.vertices()[self.below(a.vertices().len())], b.vertices()[self.below(b.vertices().len())]);
+        let rotation = Rotation::from_rpy(6.0 * self.unit(), 6.0 * self.unit(), 6.0 * self.unit());
+        let (p, q) = (a.vertices()[self.index(a.vertices().len())], b.vertices()[self.index(b.vertices().len())]);
         let size = a.aabb().extent().length().min(b.aabb().extent().length());
-        let apart = self.vector() * (size * 10f64.powf(-4.0 * self.next()));
+        let apart = self.vector() * (size * 10f64.powf(-4.0 * self.unit()));
         Pose { rotation, translation: here.transform_point(p) + apart - rotation * q }
     }
 }
@@ -62,7 +61,7 @@ fn cases(usual: usize) -> usize {
 
 #[test]
 fn boxes_and_slabs_hold_their_triangles() {
-    let mut n = Numbers(1);
+    let mut n = Random(1);
     for count in [1, 7, 8, 9, 100, 130, 2_000, 40_000] {
         let mesh = n.strip(count);
         let tree = &mesh.bvh;
@@ -220,9 +219,9 @@ fn check_leaves(meshes: &MeshPair, pair: &NodePair, cutoff: &Cutoff, radius: f64
     decided
 }
 
-fn random_lanes(n: &mut Numbers, a: &Bvh16, b: &Bvh16, pair: &NodePair) -> (usize, usize) {
+fn random_lanes(n: &mut Random, a: &Bvh16, b: &Bvh16, pair: &NodePair) -> (usize, usize) {
     let mut lane = |tree: &Bvh16, height: u8, number: u32| {
-        n.below(tree.children(height.into(), number as usize).count_ones() as usize)
+        n.index(tree.children(height.into(), number as usize).count_ones() as usize)
     };
     let expanded = pair.expanded_sides();
     let i = if expanded.a { lane(a, pair.height_a, pair.a) } else { 0 };
@@ -230,10 +229,10 @@ fn random_lanes(n: &mut Numbers, a: &Bvh16, b: &Bvh16, pair: &NodePair) -> (usiz
 }
 
 /// The distance of some pair of triangles, plus a relative 1e-12: a radius at which rounding decides.
-fn distance_of_a_pair(n: &mut Numbers, meshes: &MeshPair, pair: &NodePair) -> Option<f64> {
+fn distance_of_a_pair(n: &mut Random, meshes: &MeshPair, pair: &NodePair) -> Option<f64> {
     let MeshPair { a, b, placement, .. } = *meshes;
-    let slot = |n: &mut Numbers, tree: &Bvh16, leaf: u32| {
-        leaf * LEAF_SIZE as u32 + n.below(tree.leaf_len(leaf as usize)) as u32
+    let slot = |n: &mut Random, tree: &Bvh16, leaf: u32| {
+        leaf * LEAF_SIZE as u32 + n.index(tree.leaf_len(leaf as usize)) as u32
     };
     let (slot_a, slot_b) = (slot(n, &a.bvh, pair.a), slot(n, &b.bvh, pair.b));
     let (s, t) = corners_in_a(a, a.bvh.triangle(slot_a), b, b.bvh.triangle(slot_b), placement);
@@ -243,19 +242,19 @@ fn distance_of_a_pair(n: &mut Numbers, meshes: &MeshPair, pair: &NodePair) -> Op
 
 #[test]
 fn pairs_left_out_in_f32_are_farther_than_the_cutoff() {
-    let mut n = Numbers(2);
+    let mut n = Random(2);
     let (mut boxes, mut triangles) = (0, 0);
     while boxes < cases(400_000) || triangles < cases(100_000) {
-        let (size_a, size_b) = (1 + n.below(3_000), 1 + n.below(3_000));
+        let (size_a, size_b) = (1 + n.index(3_000), 1 + n.index(3_000));
         let (a, b) = (n.strip(size_a), n.strip(size_b));
         for _ in 0..20 {
-            let here = Pose { rotation: Rotation::from_rpy(n.next(), n.next(), n.next()), translation: n.vector() };
+            let here = Pose { rotation: Rotation::from_rpy(n.unit(), n.unit(), n.unit()), translation: n.vector() };
             let there = n.pose(&a, &here, &b);
             let placement = RelativePlacement::new(&a.bvh, &here, &b.bvh, &there);
             let meshes = MeshPair { a: &a, b: &b, placement: &placement, simd_level: SimdLevel::new() };
-            let mut radius = if n.next() < 0.3 { placement.f64_error } else { 10f64.powf(-5.0 * n.next()) };
+            let mut radius = if n.unit() < 0.3 { placement.f64_error } else { 10f64.powf(-5.0 * n.unit()) };
             let mut cutoff = Cutoff::new(radius, &placement);
-            if n.next() < 0.7 {
+            if n.unit() < 0.7 {
                 cutoff.align(n.vector(), &placement);
             }
             // Down to the leaves by random children.
@@ -266,7 +265,7 @@ fn pairs_left_out_in_f32_are_farther_than_the_cutoff() {
                 // Half of the radii are the bound of one pair of boxes: there rounding decides.
                 let ends = (child(&a.bvh, next.height_a, next.a), child(&b.bvh, next.height_b, next.b));
                 let exact = bound(&ends.0, &ends.1, &placement, cutoff.witness_frame.as_ref());
-                if n.next() < 0.5 && exact > placement.f64_error {
+                if n.unit() < 0.5 && exact > placement.f64_error {
                     radius = exact * (1.0 + 1e-12);
                     cutoff = cutoff.with_radius(radius, &placement);
                 }
@@ -275,9 +274,9 @@ fn pairs_left_out_in_f32_are_farther_than_the_cutoff() {
                 pair = next;
             }
             for _ in 0..8 {
-                let sibling = |n: &mut Numbers, tree: &Bvh16, leaf: u32| {
+                let sibling = |n: &mut Random, tree: &Bvh16, leaf: u32| {
                     let first = leaf / ARITY as u32 * ARITY as u32;
-                    first + n.below((tree.leaves.len() - first as usize).min(ARITY)) as u32
+                    first + n.index((tree.leaves.len() - first as usize).min(ARITY)) as u32
                 };
                 let pair = NodePair { a: sibling(&mut n, &a.bvh, pair.a), b: sibling(&mut n, &b.bvh, pair.b), ..pair };
                 let radius = distance_of_a_pair(&mut n, &meshes, &pair).unwrap_or(radius);

@@ -9,49 +9,47 @@ use elbowroom_proximity::{
     Capsule, ConvexHull, Cuboid, Cylinder, HalfSpace, Shape, Sphere, TriMesh, tessellate::tessellate,
 };
 use elbowroom_spatial::{Pose, Rotation, Vec3};
-use elbowroom_testkit::random::{split_mix, unit};
+pub use elbowroom_testkit::random::SplitMix;
 
-/// The `SplitMix64` generator.
-pub struct Rng(pub u64);
-
-impl Rng {
-    pub fn bits(&mut self) -> u64 {
-        split_mix(&mut self.0)
-    }
-    pub fn unit(&mut self) -> f64 {
-        unit(self.bits())
-    }
-    pub fn range(&mut self, lo: f64, hi: f64) -> f64 {
-        lo + (hi - lo) * self.unit()
-    }
-    pub fn below(&mut self, n: usize) -> usize {
-        (self.bits() % n as u64) as usize
-    }
-    pub fn vec(&mut self, half: f64) -> Vec3 {
-        Vec3::new(self.range(-half, half), self.range(-half, half), self.range(-half, half))
-    }
+/// Random geometry.
+pub trait RandomGeometry {
+    /// Each coordinate within `half` of 0.
+    fn vec(&mut self, half: f64) -> Vec3;
     /// One pose in four has its axes along the world's, one in eight its origin on a round number.
-    pub fn pose(&mut self, half: f64) -> Pose {
+    fn pose(&mut self, half: f64) -> Pose;
+    /// One dimension in eight is zero or tiny.
+    fn size(&mut self) -> f64;
+    fn shape(&mut self, kind: &str) -> Shape;
+    fn hull(&mut self) -> ConvexHull;
+}
+
+impl RandomGeometry for SplitMix {
+    fn vec(&mut self, half: f64) -> Vec3 {
+        Vec3::from(self.within(half))
+    }
+
+    fn pose(&mut self, half: f64) -> Pose {
         let quarter = std::f64::consts::FRAC_PI_2;
         let rotation = match self.below(8) {
             0 => Rotation::IDENTITY,
             1 => Rotation::from_rpy(quarter * self.below(4) as f64, quarter * self.below(4) as f64, 0.0),
-            2 => Rotation::from_rpy(self.range(-1e-7, 1e-7), self.range(-1e-9, 1e-9), 0.0),
+            2 => Rotation::from_rpy(self.between(-1e-7, 1e-7), self.between(-1e-9, 1e-9), 0.0),
             _ => Rotation::from_rotation_vector(self.vec(3.0)),
         };
         let at = self.vec(half);
         let at = if self.below(8) == 0 { Vec3::new(at.x.round(), at.y.round(), at.z.round()) } else { at };
         Pose::new(rotation, at)
     }
-    /// One dimension in eight is zero or tiny.
-    pub fn size(&mut self) -> f64 {
+
+    fn size(&mut self) -> f64 {
         match self.below(16) {
             0 => 0.0,
             1 => 1e-9,
-            _ => self.range(0.02, 1.0),
+            _ => self.between(0.02, 1.0),
         }
     }
-    pub fn shape(&mut self, kind: &str) -> Shape {
+
+    fn shape(&mut self, kind: &str) -> Shape {
         match kind {
             "sphere" => Shape::Sphere(Sphere { radius: self.size() }),
             "capsule" => Shape::Capsule(Capsule { half_length: self.size(), radius: self.size() }),
@@ -67,9 +65,10 @@ impl Rng {
             _ => unreachable!("{kind}"),
         }
     }
-    pub fn hull(&mut self) -> ConvexHull {
+
+    fn hull(&mut self) -> ConvexHull {
         let n = 4 + self.below(30);
-        let size = self.range(0.1, 1.0);
+        let size = self.between(0.1, 1.0);
         let points: Vec<Vec3> = (0..n).map(|_| self.vec(size)).collect();
         ConvexHull::from_points(&points).unwrap()
     }

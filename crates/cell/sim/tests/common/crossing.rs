@@ -64,12 +64,12 @@ fn crossing(
     random: &mut Random,
 ) -> Result<Option<ObjectPath>, Box<dyn std::error::Error>> {
     let base = cell.robots[0].base_in_world;
-    let speed = random.range(0.1, 1.2);
-    let (turn, climb) = (random.range(-PI, PI), random.range(-0.3, 0.3));
+    let speed = random.between(0.1, 1.2);
+    let (turn, climb) = (random.between(-PI, PI), random.between(-0.3, 0.3));
     let along = Vec3::new(turn.cos() * f64::cos(climb), turn.sin() * f64::cos(climb), f64::sin(climb));
-    let (about, radius) = (random.range(-PI, PI), random.range(PEDESTAL_M, 2.6));
-    let through = Vec3::new(radius * about.cos(), radius * about.sin(), random.range(0.6, 2.2));
-    let when = random.range(0.1, 0.9) * seconds;
+    let (about, radius) = (random.between(-PI, PI), random.between(PEDESTAL_M, 2.6));
+    let through = Vec3::new(radius * about.cos(), radius * about.sin(), random.between(0.6, 2.2));
+    let when = random.between(0.1, 0.9) * seconds;
     let flat = Vec3::new(along.x, along.y, 0.0).try_normalize().ok_or("no direction")?;
     let base_distance = through.cross(flat).z.abs();
     let (from, to) = (through - along * (speed * when), through + along * (speed * seconds));

@@ -1,7 +1,5 @@
 //! Configurations are the same after writing and reading; changed ones never make a monitor panic.
 
-use std::path::Path;
-
 use elbowroom_cell::{Cell, configure};
 use elbowroom_ros2::Message;
 use elbowroom_ros2::msgs::elbowroom_msgs::{MonitorConfiguration, MonitorTick, SourceState};
@@ -11,7 +9,7 @@ use super::{decode, encode};
 use crate::replayed_monitor::ReplayedMonitor;
 
 fn example(name: &str) -> Cell {
-    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../examples");
+    let examples = elbowroom_testkit::folder::examples();
     Cell::load(examples.join(name).join("cell.toml")).unwrap()
 }
 

@@ -2,9 +2,10 @@
 #![allow(dead_code, reason = "every test program uses a part of it")]
 
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
+pub use elbowroom_testkit::folder::{examples, model};
 use serde_json::Value;
 
 /// How a call ended.
@@ -57,11 +58,6 @@ pub fn answer(output: Output) -> Answer {
         stdout: String::from_utf8(output.stdout).expect("UTF-8 on standard output"),
         stderr: String::from_utf8_lossy(&output.stderr).into_owned(),
     }
-}
-
-/// The folder of the examples.
-pub fn examples() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../examples")
 }
 
 /// Keys of an object, in the order of the document.

@@ -3,26 +3,14 @@
 use elbowroom_kinematics::{Chain, ChainState, Joint, JointKind, Limits, LinkId};
 use elbowroom_proximity::{Shape, Sphere};
 use elbowroom_spatial::{Pose, Vec3};
-use elbowroom_testkit::random::{linear_congruential, unit};
+use elbowroom_testkit::random::Random;
 
 use super::{StopPhases, StoppingInput, StoppingLaw};
 use crate::attached_volumes::AttachedVolumes;
 use crate::{Configuration, ConfigurationParts, Laws, Part, Presence, StoppingSettings, Volume};
 
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f64 {
-        unit(linear_congruential(&mut self.0))
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-
-    fn list(&mut self, n: usize, largest: f64) -> Vec<f64> {
-        (0..n).map(|_| self.between(-largest, largest)).collect()
-    }
+fn list(random: &mut Random, n: usize, largest: f64) -> Vec<f64> {
+    (0..n).map(|_| random.between(-largest, largest)).collect()
 }
 
 /// A chain of `kinds`, with perpendicular axes or all axes along z, and a sphere at its end.
@@ -80,7 +68,7 @@ fn fractions(kinds: &[JointKind], flat: bool, r: &mut Random) -> (f64, f64) {
         };
         let config = configuration(kinds, flat, stopping.clone());
         let mut law = StoppingLaw::new(&config, &stopping);
-        let (q, qd) = (r.list(n, 2.0), r.list(n, 2.0));
+        let (q, qd) = (list(r, n, 2.0), list(r, n, 2.0));
         let mut state = ChainState::new(&config.chain);
         state.q.copy_from_slice(&q);
         state.qd.copy_from_slice(&qd);

@@ -5,6 +5,7 @@ use elbowroom_kinematics::{Chain, Joint, JointKind, Limits, LinkId};
 use elbowroom_monitor::{Configuration, ConfigurationParts, Laws, Part, Presence, Region, Volume};
 use elbowroom_proximity::{Capsule, Shape};
 use elbowroom_spatial::{Pose, Vec3};
+pub use elbowroom_testkit::random::XorshiftStar;
 
 pub fn joint(name: &str, kind: JointKind, parent: usize, origin: Vec3, axis: Vec3, range: f64) -> Joint {
     let limits = Limits { velocity: Some(5.0), ..Limits::symmetric(range) };
@@ -84,30 +85,21 @@ pub fn parts(chain: Chain, volumes: Vec<Volume>, regions: Vec<Region>) -> Config
     }
 }
 
-/// xorshift64*: the same sequence on every machine.
-pub struct Random(pub u64);
+/// Random vectors.
+pub trait RandomGeometry {
+    /// Each coordinate within `range` of 0.
+    fn vec3(&mut self, range: f64) -> Vec3;
 
-impl Random {
-    pub fn bits(&mut self) -> u64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        self.0.wrapping_mul(0x2545_F491_4F6C_DD1D)
+    /// Uniform on the unit sphere.
+    fn direction(&mut self) -> Vec3;
+}
+
+impl RandomGeometry for XorshiftStar {
+    fn vec3(&mut self, range: f64) -> Vec3 {
+        Vec3::from(self.within(range))
     }
 
-    pub fn unit(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-
-    pub fn vec3(&mut self, range: f64) -> Vec3 {
-        Vec3::new(self.between(-range, range), self.between(-range, range), self.between(-range, range))
-    }
-
-    pub fn direction(&mut self) -> Vec3 {
+    fn direction(&mut self) -> Vec3 {
         loop {
             let v = self.vec3(1.0);
             if v.length_squared() <= 1.0

@@ -10,7 +10,6 @@ use elbowroom_proximity::{Cuboid, Shape, Sphere};
 use elbowroom_robot::{ObjectId, RobotId, example};
 use elbowroom_scene::{Checker, CheckerOptions, Object, Scene, SceneState, Selection, SweepMove, SweepOptions};
 use elbowroom_spatial::{FrameMotion, Pose, Vec3};
-use elbowroom_testkit::random::{linear_congruential, unit};
 
 pub const DT: f64 = 0.004;
 /// Time between plans, s: while an obstacle is on the way they fail.
@@ -187,14 +186,5 @@ impl<'s> Simulation<'s> {
     pub fn min_reversal_interval(&self) -> f64 {
         let intervals = self.reversals.iter().flat_map(|t| t.windows(2).map(|w| w[1] - w[0]));
         intervals.fold(f64::INFINITY, f64::min)
-    }
-}
-
-/// A pseudo-random sequence.
-pub struct Random(pub u64);
-
-impl Random {
-    pub fn range(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * unit(linear_congruential(&mut self.0))
     }
 }

@@ -20,7 +20,7 @@ use elbowroom_spatial::{Pose, Vec3};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut args = elbowroom_testkit::bench::arguments();
-    let own = || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../examples/models/kr125/kr125.urdf"));
+    let own = || elbowroom_testkit::folder::model("kr125");
     let file = args.next().map_or_else(own, PathBuf::from);
     let step: f64 = args.next().map_or(Ok(2.0), |s| s.parse())?;
     let threads: Option<usize> = args.next().map(|s| s.parse()).transpose()?;

@@ -61,24 +61,12 @@ mod tests {
 
     use super::*;
     use crate::{ConvexObstacle, Grid, GridAxis, Layer, PlanarArm, PlanarMapBuilder};
-    use elbowroom_testkit::random::{unit, xorshift};
+    use elbowroom_testkit::random::Xorshift;
 
     /// Numbers of 0..1 that are the same everywhere.
-    struct Random(u64);
-
-    impl Random {
-        fn within(&mut self, lo: f64, hi: f64) -> f64 {
-            lo + (hi - lo) * unit(xorshift(&mut self.0))
-        }
-
-        fn vector(&mut self, half: f64) -> Vec3 {
-            Vec3::new(self.within(-half, half), self.within(-half, half), self.within(-half, half))
-        }
-    }
-
     #[test]
     fn a_million_rows_are_decided_as_in_double_precision() {
-        let mut random = Random(0x2545_f491_4f6c_dd1d);
+        let mut random = Xorshift(0x2545_f491_4f6c_dd1d);
         let axis = |name: &str, half: f64| GridAxis::from_degrees(name, -half, half, 2.0).unwrap();
         let grid = Grid::new([axis("a", 170.0), axis("b", 90.0), axis("c", 140.0)]).unwrap();
         let arms =
@@ -87,9 +75,9 @@ mod tests {
         let mut layer = Layer::new();
         let start = ROWS.load(Ordering::Relaxed);
         for round in 0.. {
-            let at = Vec3::new(random.within(-2.2, 2.2), random.within(-2.2, 2.2), random.within(-0.5, 2.5));
-            let rpy = random.vector(3.0);
-            let half = random.vector([0.01, 0.3, 0.6, 1.0][round % 4]).abs();
+            let at = Vec3::new(random.between(-2.2, 2.2), random.between(-2.2, 2.2), random.between(-0.5, 2.5));
+            let rpy = Vec3::from(random.within(3.0));
+            let half = Vec3::from(random.within([0.01, 0.3, 0.6, 1.0][round % 4])).abs();
             let pose = Pose::from_xyz_rpy([at.x, at.y, at.z], [rpy.x, rpy.y, rpy.z]);
             builders[round % 2].build_layer(&ConvexObstacle::cuboid(pose, half).unwrap(), &mut layer);
             if ROWS.load(Ordering::Relaxed) - start > 1_000_000 {

@@ -11,40 +11,35 @@ use elbowroom_cspace::{
 };
 use elbowroom_proximity::{Capsule, Shape, Sphere, separation};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
-use elbowroom_testkit::random::{unit, xorshift};
+pub use elbowroom_testkit::random::Xorshift;
 
-/// Reproducible random numbers (xorshift).
-pub struct Random(pub u64);
+/// Random vectors and configurations.
+pub trait RandomGeometry {
+    /// Each coordinate within `half` of 0.
+    fn vector(&mut self, half: f64) -> Vec3;
 
-impl Random {
-    pub fn unit(&mut self) -> f64 {
-        unit(xorshift(&mut self.0))
-    }
-
-    pub fn within(&mut self, lo: f64, hi: f64) -> f64 {
-        lo + (hi - lo) * self.unit()
-    }
-
-    pub fn below(&mut self, n: usize) -> usize {
-        ((self.unit() * n as f64) as usize).min(n - 1)
-    }
-
-    pub fn vector(&mut self, half: f64) -> Vec3 {
-        Vec3::new(self.within(-half, half), self.within(-half, half), self.within(-half, half))
-    }
-
-    pub fn configuration(&mut self, grid: &Grid) -> [f64; 3] {
-        let [a, b, c] = grid.axes();
-        [self.within(a.min(), a.max()), self.within(b.min(), b.max()), self.within(c.min(), c.max())]
-    }
+    fn configuration(&mut self, grid: &Grid) -> [f64; 3];
 
     /// A sample of a cell's box, often on its border.
-    pub fn inside(&mut self, grid: &Grid, cell: CellIndex) -> [f64; 3] {
+    fn inside(&mut self, grid: &Grid, cell: CellIndex) -> [f64; 3];
+}
+
+impl RandomGeometry for Xorshift {
+    fn vector(&mut self, half: f64) -> Vec3 {
+        Vec3::from(self.within(half))
+    }
+
+    fn configuration(&mut self, grid: &Grid) -> [f64; 3] {
+        let [a, b, c] = grid.axes();
+        [self.between(a.min(), a.max()), self.between(b.min(), b.max()), self.between(c.min(), c.max())]
+    }
+
+    fn inside(&mut self, grid: &Grid, cell: CellIndex) -> [f64; 3] {
         let (q, half) = (grid.center(cell), grid.half_widths());
-        let mut offset = || match self.below(4) {
+        let mut offset = || match self.index(4) {
             0 => -1.0,
             1 => 1.0,
-            _ => self.within(-1.0, 1.0),
+            _ => self.between(-1.0, 1.0),
         };
         let o = [offset(), offset(), offset()];
         [q[0] + half[0] * o[0], q[1] + half[1] * o[1], q[2] + half[2] * o[2]]
@@ -174,7 +169,7 @@ pub fn missed_contacts(
     occupancy: &OccupancyBitmap,
     obstacle: &ConvexObstacle,
     samples: SampleCounts,
-    random: &mut Random,
+    random: &mut Xorshift,
 ) -> usize {
     let shape = obstacle.shape();
     let mut missed = 0;
@@ -188,7 +183,7 @@ pub fn missed_contacts(
     let behind = center.y.atan2(center.x) + std::f64::consts::PI;
     for _ in 0..samples.uniform / 3 {
         let mut q = random.configuration(grid);
-        q[0] = (behind + random.within(-0.6, 0.6) + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU)
+        q[0] = (behind + random.between(-0.6, 0.6) + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU)
             - std::f64::consts::PI;
         missed += usize::from(grid.cell(q).is_some_and(|cell| !occupancy.is_blocked(cell)) && touches(arm, q, &shape));
     }
@@ -197,7 +192,7 @@ pub fn missed_contacts(
         if cells.is_empty() {
             break;
         }
-        let cell = cells[random.below(cells.len())];
+        let cell = cells[random.index(cells.len())];
         let q = random.inside(grid, cell);
         missed += usize::from(touches(arm, q, &shape));
     }
@@ -211,13 +206,13 @@ pub fn needless_share(
     occupancy: &OccupancyBitmap,
     obstacle: &ConvexObstacle,
     samples: usize,
-    random: &mut Random,
+    random: &mut Xorshift,
 ) -> f64 {
     let cells: Vec<CellIndex> = occupancy.iter().collect();
     let shape = obstacle.shape();
     let mut free = 0;
     for _ in 0..samples {
-        let cell = cells[random.below(cells.len())];
+        let cell = cells[random.index(cells.len())];
         let answer = box_state(arm, grid.center(cell), grid.half_widths(), &shape, 24);
         free += usize::from(answer == BoxState::Free);
     }

@@ -1,7 +1,6 @@
 //! Real robots with meshes, and obstacles around them.
 #![allow(dead_code, reason = "each test file uses a part")]
 
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use elbowroom_proximity::{Cylinder, Shape, Sphere};
@@ -12,13 +11,6 @@ use crate::common::robots::{box_mesh, cuboid};
 
 /// Folders of the robots.
 pub const ROBOTS: [&str; 4] = ["kuka_kr150_2", "staubli_tx60", "ur5e", "abb_irb2400"];
-
-/// The folder of downloaded robots.
-pub fn data() -> Option<PathBuf> {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../../shared/data");
-    let folder = std::env::var_os("ELBOWROOM_DATA").map_or(beside, PathBuf::from);
-    folder.join("urdf").is_dir().then_some(folder)
-}
 
 /// Length from base to tip along the links, metres.
 pub fn reach(robot: &Robot) -> f64 {

@@ -9,20 +9,7 @@ use elbowroom_proximity::{Cuboid, Cylinder, Shape, TriMesh, collides, separation
 use elbowroom_robot::example;
 use elbowroom_robot::{Collider, Robot};
 use elbowroom_spatial::{Aabb, Pose, Vec3};
-use elbowroom_testkit::random::{linear_congruential, unit};
-
-/// Reproducible random numbers.
-pub struct Random(pub u64);
-
-impl Random {
-    pub fn unit(&mut self) -> f64 {
-        unit(linear_congruential(&mut self.0))
-    }
-
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-}
+pub use elbowroom_testkit::random::Random;
 
 pub fn cuboid(at: [f64; 3], rpy: [f64; 3], size: [f64; 3]) -> (Shape, Pose) {
     (Shape::Cuboid(Cuboid { half_extents: Vec3::from(size) * 0.5 }), Pose::from_xyz_rpy(at, rpy))

@@ -25,7 +25,7 @@ pub fn radians(degrees: [f64; 6]) -> Vec<f64> {
 }
 
 pub fn arm() -> Arc<MappedArm> {
-    let urdf = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../examples/models/kr125/kr125.urdf");
+    let urdf = elbowroom_testkit::folder::model("kr125");
     let options = LoadOptions { srdf: Some(urdf.with_extension("srdf")), ..LoadOptions::default() };
     Arc::new(MappedArm::kr125(load(&urdf, &options).unwrap().robot, Pose::IDENTITY))
 }

@@ -7,19 +7,7 @@ use std::cmp::Reverse;
 use std::collections::{BinaryHeap, VecDeque};
 
 use elbowroom_cspace::{CellIndex, Grid, GridAxis, OccupancyBitmap, RowSpan};
-use elbowroom_testkit::random::{linear_congruential, unit};
-
-pub struct Random(pub u64);
-
-impl Random {
-    pub fn unit(&mut self) -> f64 {
-        unit(linear_congruential(&mut self.0))
-    }
-
-    pub fn below(&mut self, n: usize) -> usize {
-        ((self.unit() * n as f64) as usize).min(n - 1)
-    }
-}
+pub use elbowroom_testkit::random::Random;
 
 /// Cells 0.1 rad wide, from −1 rad up.
 pub fn grid(shape: [usize; 3]) -> Grid {
@@ -36,13 +24,13 @@ pub fn block(occupancy: &mut OccupancyBitmap, [i, j, k]: CellIndex) {
 pub fn random_occupancy(shape: [usize; 3], random: &mut Random) -> OccupancyBitmap {
     let mut occupancy = OccupancyBitmap::new(shape);
     let cells = shape.iter().product::<usize>() as f64;
-    let single = (cells * [0.0, 0.1, 0.3, 0.5][random.below(4)]) as usize;
+    let single = (cells * [0.0, 0.1, 0.3, 0.5][random.index(4)]) as usize;
     for _ in 0..single {
-        block(&mut occupancy, shape.map(|n| random.below(n) as u16));
+        block(&mut occupancy, shape.map(|n| random.index(n) as u16));
     }
-    for _ in 0..random.below(12) {
-        let low = shape.map(|n| random.below(n));
-        let high = [0, 1, 2].map(|i| (low[i] + random.below(shape[i].max(2) - 1)).min(shape[i] - 1));
+    for _ in 0..random.index(12) {
+        let low = shape.map(|n| random.index(n));
+        let high = [0, 1, 2].map(|i| (low[i] + random.index(shape[i].max(2) - 1)).min(shape[i] - 1));
         for i in low[0]..=high[0] {
             for j in low[1]..=high[1] {
                 let row = (i * shape[1] + j) as u32;
@@ -54,14 +42,14 @@ pub fn random_occupancy(shape: [usize; 3], random: &mut Random) -> OccupancyBitm
 }
 
 pub fn free_cell(occupancy: &OccupancyBitmap, random: &mut Random) -> Option<CellIndex> {
-    (0..200).map(|_| occupancy.shape().map(|n| random.below(n) as u16)).find(|&c| !occupancy.is_blocked(c))
+    (0..200).map(|_| occupancy.shape().map(|n| random.index(n) as u16)).find(|&c| !occupancy.is_blocked(c))
 }
 
 /// A random configuration in a cell, sometimes at its centre or on its border.
 pub fn random_configuration(grid: &Grid, cell: CellIndex, random: &mut Random) -> [f64; 3] {
     [0, 1, 2].map(|i| {
         let axis = &grid.axes()[i];
-        let at = match random.below(4) {
+        let at = match random.index(4) {
             0 => 0.5,
             1 => 1e-12,
             _ => random.unit(),

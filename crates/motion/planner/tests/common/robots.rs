@@ -5,26 +5,18 @@ use elbowroom_proximity::{Capsule, Cuboid, Shape};
 use elbowroom_robot::{Collider, Robot, RobotId, example};
 use elbowroom_scene::{Checker, CheckerOptions, Object, Scene, SceneState, Selection};
 use elbowroom_spatial::{Pose, Vec3};
-use elbowroom_testkit::random::{linear_congruential, unit};
+pub use elbowroom_testkit::random::Random;
 
-pub struct Random(pub u64);
-
-impl Random {
-    pub fn unit(&mut self) -> f64 {
-        unit(linear_congruential(&mut self.0))
-    }
-
-    /// Joint values at which the robot is free.
-    pub fn free(&mut self, scene: &Scene, robot: RobotId) -> Option<Vec<f64>> {
-        let chain = &scene.robots()[robot.0].robot.chain;
-        let mut checker = Checker::new(scene, CheckerOptions::default());
-        (0..500).find_map(|_| {
-            let each = chain.lower().into_iter().zip(chain.upper());
-            let q: Vec<f64> = each.map(|(l, u)| l.max(-3.0) + (u.min(3.0) - l.max(-3.0)) * self.unit()).collect();
-            let state = state_at(scene, robot, &q);
-            checker.between(Selection::Robot(robot), Selection::All).within(&state, 1e-3).is_none().then_some(q)
-        })
-    }
+/// Joint values at which the robot is free.
+pub fn free_values(random: &mut Random, scene: &Scene, robot: RobotId) -> Option<Vec<f64>> {
+    let chain = &scene.robots()[robot.0].robot.chain;
+    let mut checker = Checker::new(scene, CheckerOptions::default());
+    (0..500).find_map(|_| {
+        let each = chain.lower().into_iter().zip(chain.upper());
+        let q: Vec<f64> = each.map(|(l, u)| l.max(-3.0) + (u.min(3.0) - l.max(-3.0)) * random.unit()).collect();
+        let state = state_at(scene, robot, &q);
+        checker.between(Selection::Robot(robot), Selection::All).within(&state, 1e-3).is_none().then_some(q)
+    })
 }
 
 /// One robot at a configuration, all others at zero.

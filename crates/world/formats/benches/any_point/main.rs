@@ -14,13 +14,11 @@ mod pinocchio;
 mod problem;
 mod surface;
 
-use std::path::{Path, PathBuf};
-
 use elbowroom_formats::robot::{self, LoadOptions};
 use elbowroom_kinematics::LinkId;
 
 use problem::{IkProblem, SolverResults, measure};
-use surface::{Random, Surface};
+use surface::{SplitMix, Surface};
 
 const ROBOTS: [&str; 4] = ["kuka_kr150_2", "staubli_tx60", "ur5e", "abb_irb2400"];
 
@@ -28,12 +26,7 @@ fn main() {
     let mut arguments = elbowroom_testkit::bench::arguments();
     let mut number = || arguments.next().and_then(|n| n.parse::<usize>().ok());
     let (points, beside) = (number().unwrap_or(100_000), number().unwrap_or(0));
-    let data = std::env::var_os("ELBOWROOM_DATA")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../../shared/data"), PathBuf::from);
-    if !data.is_dir() {
-        println!("skipped: no data at {}", data.display());
-        return;
-    }
+    let Some(data) = elbowroom_testkit::folder::data() else { return };
     println!("{}", SolverResults::HEAD);
     for name in ROBOTS {
         let path = data.join(format!("urdf/{name}/{name}.urdf"));
@@ -48,7 +41,7 @@ fn main() {
         let moved = |l: &LinkId| chain.path(*l).iter().any(|j| chain.joints()[j.0].kind.moves());
         let links: Vec<LinkId> = (0..chain.links().len()).map(LinkId).filter(moved).collect();
         let links: Vec<LinkId> = links.into_iter().filter(|l| !loaded.colliders[l.0].is_empty()).collect();
-        let mut random = Random(2026);
+        let mut random = SplitMix(2026);
         for with_normal in [false, true] {
             let mut whole = SolverResults::default();
             for &link in &links {

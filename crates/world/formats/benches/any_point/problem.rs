@@ -6,7 +6,7 @@ use elbowroom_kinematics::surface_ik::{OrientedPoint, PointChain, SurfaceIkOptio
 use elbowroom_kinematics::{Chain, ChainState, LinkId};
 use elbowroom_spatial::Vec3;
 
-use crate::surface::{Random, Surface};
+use crate::surface::{SplitMix, Surface};
 
 /// Tolerance of a solution, m and rad.
 const TOLERANCE: f64 = 1e-6;
@@ -26,7 +26,7 @@ impl IkProblem {
         link: LinkId,
         surface: &Surface,
         with_normal: bool,
-        random: &mut Random,
+        random: &mut SplitMix,
     ) -> Option<Self> {
         let (point_in_link, normal_in_link) = surface.draw(random)?;
         let mut state = ChainState::new(chain);
@@ -41,8 +41,8 @@ impl IkProblem {
     }
 }
 
-fn random_state(chain: &Chain, random: &mut Random) -> Vec<f64> {
-    chain.lower().iter().zip(chain.upper()).map(|(l, u)| random.range(l.max(-10.0), u.min(10.0))).collect()
+fn random_state(chain: &Chain, random: &mut SplitMix) -> Vec<f64> {
+    chain.lower().iter().zip(chain.upper()).map(|(l, u)| random.between(l.max(-10.0), u.min(10.0))).collect()
 }
 
 /// Results of one solver.

@@ -3,20 +3,7 @@
 use elbowroom_proximity::tessellate::tessellate;
 use elbowroom_robot::Collider;
 use elbowroom_spatial::Vec3;
-use elbowroom_testkit::random::{split_mix, unit};
-
-/// A small reproducible generator (`SplitMix64`).
-pub struct Random(pub u64);
-
-impl Random {
-    pub fn unit(&mut self) -> f64 {
-        unit(split_mix(&mut self.0))
-    }
-
-    pub fn range(&mut self, lower: f64, upper: f64) -> f64 {
-        lower + (upper - lower) * self.unit()
-    }
-}
+pub use elbowroom_testkit::random::SplitMix;
 
 /// The triangles of a link, in its frame, sampled by area.
 pub struct Surface {
@@ -44,7 +31,7 @@ impl Surface {
     }
 
     /// A point, uniform over the surface, and its normal; `None` for a link without colliders.
-    pub fn draw(&self, random: &mut Random) -> Option<(Vec3, Vec3)> {
+    pub fn draw(&self, random: &mut SplitMix) -> Option<(Vec3, Vec3)> {
         let at = random.unit() * self.area_up_to.last()?;
         let index = self.area_up_to.partition_point(|&a| a < at).min(self.triangles.len() - 1);
         let [a, b, c] = self.triangles[index];

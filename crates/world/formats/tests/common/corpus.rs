@@ -11,7 +11,7 @@ use elbowroom_formats::planning_scene::{self, PlanningScene};
 use elbowroom_formats::{FormatError, LoadedMeshes, dae, gltf, obj, off, ply, robot, srdf, stl, tds, urdf};
 use elbowroom_proximity::Shape;
 use elbowroom_spatial::Pose;
-use elbowroom_testkit::random::xorshift;
+pub use elbowroom_testkit::random::Xorshift;
 /// All readers; `mesh` detects the format.
 pub const PARSERS: [&str; 12] =
     ["stl", "obj", "dae", "gltf", "ply", "off", "3ds", "urdf", "srdf", "scene", "yaml", "mesh"];
@@ -200,20 +200,6 @@ robot_state:
   joint_state: {name: [a], position: [0.5]}
 ";
 
-/// Xorshift: the same damage for the same seed.
-pub struct Random(pub u64);
-
-impl Random {
-    pub fn next(&mut self) -> u64 {
-        xorshift(&mut self.0)
-    }
-
-    /// Below `n`; 0 for 0.
-    pub fn below(&mut self, n: usize) -> usize {
-        if n == 0 { 0 } else { (self.next() % n as u64) as usize }
-    }
-}
-
 const EXTREMES: [&str; 16] = [
     "0",
     "-1",
@@ -234,14 +220,14 @@ const EXTREMES: [&str; 16] = [
 ];
 
 /// Damages a file several times: bits, cuts, copies, pieces of another file, extreme numbers.
-pub fn mutate(random: &mut Random, bytes: &mut Vec<u8>, other: &[u8]) {
+pub fn mutate(random: &mut Xorshift, bytes: &mut Vec<u8>, other: &[u8]) {
     for _ in 0..=random.below(6) {
         let n = bytes.len();
         let (at, length) = (random.below(n + 1), random.below(64));
         let end = (at + length).min(n);
         match random.below(9) {
             0 if n > 0 => bytes[at.min(n - 1)] ^= 1 << random.below(8),
-            1 if n > 0 => bytes[at.min(n - 1)] = random.next() as u8,
+            1 if n > 0 => bytes[at.min(n - 1)] = random.bits() as u8,
             2 => bytes.truncate(at),
             3 => drop(bytes.drain(at..end)),
             4 => {
@@ -259,7 +245,7 @@ pub fn mutate(random: &mut Random, bytes: &mut Vec<u8>, other: &[u8]) {
     }
 }
 
-fn extreme_bytes(random: &mut Random, bytes: &mut [u8], at: usize) {
+fn extreme_bytes(random: &mut Xorshift, bytes: &mut [u8], at: usize) {
     let value =
         [0u32, 1, 0x7fff_ffff, 0x8000_0000, 0xffff_ffff, 0x7f80_0000, 0x7fc0_0000, 0x00ff_ffff][random.below(8)];
     for (slot, byte) in bytes.iter_mut().skip(at).zip(value.to_le_bytes()) {
@@ -268,7 +254,7 @@ fn extreme_bytes(random: &mut Random, bytes: &mut [u8], at: usize) {
 }
 
 /// Replaces the next number after an offset.
-fn extreme_number(random: &mut Random, bytes: &mut Vec<u8>, at: usize) {
+fn extreme_number(random: &mut Xorshift, bytes: &mut Vec<u8>, at: usize) {
     let is_part = |b: &u8| b.is_ascii_digit() || b"+-.eE".contains(b);
     let Some(begin) = bytes[at..].iter().position(u8::is_ascii_digit).map(|i| i + at) else { return };
     let end = bytes[begin..].iter().position(|b| !is_part(b)).map_or(bytes.len(), |i| i + begin);

@@ -291,22 +291,14 @@ mod tests {
     use elbowroom_proximity::{Cuboid, Shape};
     use elbowroom_robot::{Collider, Robot};
     use elbowroom_spatial::{Pose, Rotation};
-    use elbowroom_testkit::random::{linear_congruential, unit};
+    use elbowroom_testkit::random::Random;
 
-    struct Random(u64);
+    fn vec3(r: &mut Random, size: f64) -> Vec3 {
+        Vec3::from(r.within(size))
+    }
 
-    impl Random {
-        fn between(&mut self, low: f64, high: f64) -> f64 {
-            low + (high - low) * unit(linear_congruential(&mut self.0))
-        }
-
-        fn vec3(&mut self, size: f64) -> Vec3 {
-            Vec3::new(self.between(-size, size), self.between(-size, size), self.between(-size, size))
-        }
-
-        fn pose(&mut self) -> Pose {
-            Pose::new(Rotation::from_rotation_vector(self.vec3(2.0)), self.vec3(0.3))
-        }
+    fn pose(r: &mut Random) -> Pose {
+        Pose::new(Rotation::from_rotation_vector(vec3(r, 2.0)), vec3(r, 0.3))
     }
 
     /// A robot of revolute, prismatic, fixed and mimic joints at all angles, and two objects.
@@ -318,23 +310,23 @@ mod tests {
             kind,
             parent: LinkId(i),
             child: LinkId(i + 1),
-            origin: r.pose(),
-            axis: r.vec3(1.0),
+            origin: pose(r),
+            axis: vec3(r, 1.0),
             limits: Limits::symmetric(2.0),
             mimic: (i == 5).then(|| Mimic { joint: JointId(0), multiplier: -1.5, offset: 0.2 }),
         };
         let joints = kinds.into_iter().enumerate().map(joint).collect();
         let links = (0..=kinds.len()).map(|i| format!("l{i}")).collect();
         let mut robot = Robot::new(Chain::new("any", links, joints).unwrap());
-        let cuboid = |r: &mut Random| Shape::Cuboid(Cuboid { half_extents: r.vec3(0.1).abs() + Vec3::splat(0.01) });
+        let cuboid = |r: &mut Random| Shape::Cuboid(Cuboid { half_extents: vec3(r, 0.1).abs() + Vec3::splat(0.01) });
         for colliders in &mut robot.colliders {
-            colliders.push(Collider { name: String::new(), shape: cuboid(r), in_link: r.pose() });
+            colliders.push(Collider { name: String::new(), shape: cuboid(r), in_link: pose(r) });
         }
         let mut builder = Scene::builder();
         builder.prove_out_of_reach(false);
-        builder.robot("any", robot, r.pose());
+        builder.robot("any", robot, pose(r));
         for name in ["attached", "free"] {
-            builder.object(Object { name: name.into(), shape: cuboid(r), in_world: r.pose() });
+            builder.object(Object { name: name.into(), shape: cuboid(r), in_world: pose(r) });
         }
         builder.build().unwrap()
     }
@@ -353,8 +345,12 @@ mod tests {
             start.set_q(&scene, robot, &q(2.0)).unwrap();
             let hand = LinkId(scene.robots[0].robot.chain.links().len() - 1);
             start.attach(&scene, ObjectId(0), robot, hand, &[]).unwrap();
-            let path =
-                ConstantTwist { start: r.pose(), pivot: r.vec3(0.5), velocity: r.vec3(1.0), rotation: r.vec3(2.0) };
+            let path = ConstantTwist {
+                start: pose(&mut r),
+                pivot: vec3(&mut r, 0.5),
+                velocity: vec3(&mut r, 1.0),
+                rotation: vec3(&mut r, 2.0),
+            };
             let moves = [SweepMove::Robot { robot, to: &to }, SweepMove::Object { object: ObjectId(1), path: &path }];
             let mut trajectory = SweepTrajectory::new(&scene, Level::L3);
             trajectory.start(&scene, &start, &moves).unwrap();

@@ -13,34 +13,37 @@ use elbowroom_robot::{Collider, GeometryId, Robot, RobotId, collision_pairs};
 
 use elbowroom_scene::{Object, Scene, SceneBuilder, SceneState};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
-use elbowroom_testkit::random::{linear_congruential, unit};
+pub use elbowroom_testkit::random::Random;
 
-pub struct Random(pub u64);
+/// Random geometry of scenes.
+pub trait RandomGeometry {
+    /// Each coordinate within `size` of 0.
+    fn vec3(&mut self, size: f64) -> Vec3;
 
-impl Random {
-    pub fn unit(&mut self) -> f64 {
-        unit(linear_congruential(&mut self.0))
+    fn pose(&mut self, size: f64) -> Pose;
+
+    /// Within the limits of the example arm.
+    fn q(&mut self) -> [f64; 3];
+
+    /// Dimensions up to `size`; the kind is below 6.
+    fn shape(&mut self, kind: usize, size: f64) -> Shape;
+}
+
+impl RandomGeometry for Random {
+    fn vec3(&mut self, size: f64) -> Vec3 {
+        Vec3::from(self.within(size))
     }
 
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-
-    pub fn vec3(&mut self, size: f64) -> Vec3 {
-        Vec3::new(self.between(-size, size), self.between(-size, size), self.between(-size, size))
-    }
-
-    pub fn pose(&mut self, size: f64) -> Pose {
+    fn pose(&mut self, size: f64) -> Pose {
         let axis = self.vec3(1.0).try_normalize().unwrap_or(Vec3::Z);
         Pose::new(Rotation::from_axis_angle(axis, self.between(-3.0, 3.0)), self.vec3(size))
     }
 
-    /// Within the limits of the example arm.
-    pub fn q(&mut self) -> [f64; 3] {
+    fn q(&mut self) -> [f64; 3] {
         [self.between(-3.0, 3.0), self.between(-2.2, 2.2), self.between(-2.5, 2.5)]
     }
 
-    pub fn shape(&mut self, kind: usize, size: f64) -> Shape {
+    fn shape(&mut self, kind: usize, size: f64) -> Shape {
         let mut h = || self.between(0.3 * size, size);
         let (x, y, z) = (h(), h(), h());
         match kind {
@@ -48,10 +51,10 @@ impl Random {
             1 => Shape::Capsule(Capsule { half_length: x, radius: 0.5 * y }),
             2 => Shape::Cylinder(Cylinder { half_length: x, radius: 0.5 * y }),
             3 => Shape::Cuboid(Cuboid { half_extents: Vec3::new(x, y, z) }),
-            4 => Shape::Hull(Arc::new(ConvexHull::from_points(&self.points(size)).unwrap())),
+            4 => Shape::Hull(Arc::new(ConvexHull::from_points(&points(self, size)).unwrap())),
             _ => {
                 // Two convex parts side by side: not convex.
-                let hull = ConvexHull::from_points(&self.points(0.5 * size)).unwrap();
+                let hull = ConvexHull::from_points(&points(self, 0.5 * size)).unwrap();
                 let part = |shift: f64| hull.vertices().iter().map(move |&v| v + Vec3::X * shift);
                 let count = hull.vertices().len() as u32;
                 let triangles = hull.triangles().iter().flat_map(|&t| [t, t.map(|i| i + count)]).collect();
@@ -60,10 +63,10 @@ impl Random {
             }
         }
     }
+}
 
-    fn points(&mut self, size: f64) -> Vec<Vec3> {
-        (0..12).map(|_| self.vec3(size)).collect()
-    }
+fn points(random: &mut Random, size: f64) -> Vec<Vec3> {
+    (0..12).map(|_| random.vec3(size)).collect()
 }
 
 /// The example arm with meshes in place of its capsules.

@@ -37,7 +37,7 @@ pub fn robot() -> Robot {
     let names: Vec<String> = (0..7).map(|i| if i == 0 { "base_link".into() } else { format!("link_{i}") }).collect();
     let mut robot =
         Robot::new(Chain::new("rx60b", names.clone(), JOINTS.into_iter().enumerate().map(joint).collect()).unwrap());
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../examples/models/rx60b/meshes");
+    let folder = elbowroom_testkit::folder::examples().join("models/rx60b/meshes");
     for (colliders, name) in robot.colliders.iter_mut().zip(names) {
         let shape = Shape::Mesh(Arc::new(stl(&folder.join(format!("{name}.stl")))));
         colliders.push(Collider { name, shape, in_link: Pose::IDENTITY });

@@ -4,7 +4,7 @@ use elbowroom_kinematics::{Chain, ChainState, Joint, JointId, JointKind, Limits,
 use elbowroom_proximity::{Shape, Sphere};
 use elbowroom_robot::Robot;
 use elbowroom_spatial::{Pose, Rotation, Vec3};
-use elbowroom_testkit::random::{linear_congruential, unit};
+use elbowroom_testkit::random::Random;
 use fearless_simd::dispatch;
 
 use super::joint_stretch::INTERVALS;
@@ -16,52 +16,57 @@ use crate::model::{CoveredLinkId, CoveredRobot};
 
 const BALL_M: f64 = 0.02;
 
-struct Random(u64);
+/// Random chains.
+trait RandomChain {
+    /// Each coordinate within `size` of 0.
+    fn vec3(&mut self, size: f64) -> Vec3;
 
-impl Random {
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * unit(linear_congruential(&mut self.0))
-    }
+    fn rotation(&mut self) -> Rotation;
 
-    fn below(&mut self, n: usize) -> usize {
-        (self.between(0.0, n as f64) as usize).min(n - 1)
-    }
+    fn axis(&mut self) -> Vec3;
 
+    /// All kinds of joints, branches, joints that follow others.
+    fn chain(&mut self, joints: usize, size: f64) -> Chain;
+
+    /// Within the limits; joints without limits within `unlimited` of 0.
+    fn q(&mut self, chain: &Chain, unlimited: f64) -> Vec<f64>;
+}
+
+impl RandomChain for Random {
     fn vec3(&mut self, size: f64) -> Vec3 {
-        Vec3::new(self.between(-size, size), self.between(-size, size), self.between(-size, size))
+        Vec3::from(self.within(size))
     }
 
     fn rotation(&mut self) -> Rotation {
         let axis = self.vec3(1.0).try_normalize().unwrap_or(Vec3::Z);
-        match self.below(3) {
+        match self.index(3) {
             0 => Rotation::from_axis_angle(Vec3::X, std::f64::consts::FRAC_PI_2),
             _ => Rotation::from_axis_angle(axis, self.between(-3.0, 3.0)),
         }
     }
 
     fn axis(&mut self) -> Vec3 {
-        match self.below(3) {
+        match self.index(3) {
             0 => Vec3::Z,
             1 => -Vec3::Y,
             _ => self.vec3(1.0).try_normalize().unwrap_or(Vec3::X),
         }
     }
 
-    /// All kinds of joints, branches, joints that follow others.
     fn chain(&mut self, joints: usize, size: f64) -> Chain {
         let mut list: Vec<Joint> = Vec::new();
         for i in 0..joints {
             use JointKind::{Continuous, Fixed, Prismatic, Revolute};
-            let kind = [Revolute, Revolute, Continuous, Continuous, Prismatic, Fixed][self.below(6)];
+            let kind = [Revolute, Revolute, Continuous, Continuous, Prismatic, Fixed][self.index(6)];
             let limits =
                 if kind == Prismatic { Limits::range(-0.3 * size, 0.5 * size) } else { Limits::symmetric(3.0) };
             let source = (0..i).find(|&j| matches!(list[j].kind, Revolute | Continuous) && list[j].mimic.is_none());
-            let mimic = source.filter(|_| kind != Fixed && self.below(6) == 0);
+            let mimic = source.filter(|_| kind != Fixed && self.index(6) == 0);
             let multiplier = if kind == Prismatic { 0.1 * size } else { -0.5 };
             // A slide that follows a turning joint needs that joint's limits.
             let mimic = mimic.filter(|&j| kind != Prismatic || list[j].kind == Revolute);
             let mimic = mimic.map(|j| Mimic { joint: JointId(j), multiplier, offset: 0.1 });
-            let parent = if i > 1 && self.below(5) == 0 { i - 2 } else { i };
+            let parent = if i > 1 && self.index(5) == 0 { i - 2 } else { i };
             list.push(Joint {
                 name: format!("joint {i}"),
                 kind,
@@ -161,7 +166,7 @@ fn single_precision_stays_within_its_bound() {
     let mut random = Random(31);
     let (mut worst_state, mut worst_stretch): (f64, f64) = (0.0, 0.0);
     for round in 0..2500 {
-        let joints = 1 + random.below(12);
+        let joints = 1 + random.index(12);
         let size = [0.02, 0.4, 0.4, 3.0][round % 4];
         let mut case = Case::new(&mut random, joints, size);
         let (table, mut workspace) = case.workspace();
@@ -228,7 +233,7 @@ fn compare_motion(case: &mut Case, from: &[f64], to: &[f64], random: &mut Random
         assert!(seen <= bound + 1e-12, "{seen} is beyond {bound}");
         if bound > 1e-6 { seen / bound } else { 0.0 }
     };
-    for interval in [0, random.below(INTERVALS), INTERVALS - 1] {
+    for interval in [0, random.index(INTERVALS), INTERVALS - 1] {
         let mut of_links = vec![Vec::new(); 2 * links];
         let mut of_pairs = vec![Vec::new(); pairs.len()];
         for i in 0..=SAMPLES {
@@ -271,14 +276,14 @@ fn no_point_leaves_its_chord_farther_than_the_bound() {
     let mut random = Random(77);
     let mut most = [0.0_f64; 4];
     for round in 0..700 {
-        let joints = 1 + random.below(9);
+        let joints = 1 + random.index(9);
         let mut case = Case::new(&mut random, joints, [0.3, 1.0][round % 2]);
         for largest in [0.05, 1.0, 4.4] {
             let (from, mut to) = (random.q(&case.chain, 30.0), random.q(&case.chain, 30.0));
             to.iter_mut().zip(&from).for_each(|(to, from)| *to = from + (*to - from).clamp(-largest, largest));
             // Often most joints rest.
             if round % 3 == 0 && !to.is_empty() {
-                let moving = random.below(to.len());
+                let moving = random.index(to.len());
                 (0..to.len()).filter(|&i| i != moving).for_each(|i| to[i] = from[i]);
             }
             let seen = compare_motion(&mut case, &from, &to, &mut random);

@@ -3,7 +3,6 @@
 
 pub mod coal_job;
 
-use std::path::PathBuf;
 use std::sync::Arc;
 
 use elbowroom_kinematics::{Chain, Joint, JointId, JointKind, Limits, LinkId, Mimic};
@@ -11,47 +10,51 @@ use elbowroom_proximity::{Capsule, ConvexHull, Cuboid, Cylinder, HalfSpace, Shap
 use elbowroom_robot::{Collider, Robot, RobotId};
 use elbowroom_scene::{Object, Scene};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
-use elbowroom_testkit::random::{linear_congruential, unit};
+pub use elbowroom_testkit::random::Random;
 use elbowroom_validity::ObstacleSet;
 
-pub struct Random(pub u64);
+/// Random geometry, robots and joint vectors.
+pub trait RandomGeometry {
+    /// Each coordinate within `size` of 0.
+    fn vec3(&mut self, size: f64) -> Vec3;
 
-impl Random {
-    pub fn unit(&mut self) -> f64 {
-        unit(linear_congruential(&mut self.0))
+    /// Half of them are right angles about coordinate axes, which are frequent in real models.
+    fn rotation(&mut self) -> Rotation;
+
+    fn pose(&mut self, size: f64) -> Pose;
+
+    /// Convex shapes of six kinds, a closed mesh, an open one.
+    fn shape(&mut self, size: f64) -> Shape;
+
+    /// Joints that turn or slide, about any axis; a mimic joint; branches.
+    fn robot(&mut self, joints: usize) -> Robot;
+
+    /// Within the limits of a robot.
+    fn q(&mut self, chain: &Chain) -> Vec<f64>;
+}
+
+impl RandomGeometry for Random {
+    fn vec3(&mut self, size: f64) -> Vec3 {
+        Vec3::from(self.within(size))
     }
 
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-
-    pub fn below(&mut self, n: usize) -> usize {
-        ((self.unit() * n as f64) as usize).min(n - 1)
-    }
-
-    pub fn vec3(&mut self, size: f64) -> Vec3 {
-        Vec3::new(self.between(-size, size), self.between(-size, size), self.between(-size, size))
-    }
-
-    pub fn rotation(&mut self) -> Rotation {
+    fn rotation(&mut self) -> Rotation {
         let axis = self.vec3(1.0).try_normalize().unwrap_or(Vec3::Z);
-        // Right angles about coordinate axes are frequent in real models.
-        if self.below(2) == 0 {
-            let quarter = std::f64::consts::FRAC_PI_2 * self.below(4) as f64;
-            return Rotation::from_axis_angle([Vec3::X, Vec3::Y, Vec3::Z][self.below(3)], quarter);
+        if self.index(2) == 0 {
+            let quarter = std::f64::consts::FRAC_PI_2 * self.index(4) as f64;
+            return Rotation::from_axis_angle([Vec3::X, Vec3::Y, Vec3::Z][self.index(3)], quarter);
         }
         Rotation::from_axis_angle(axis, self.between(-3.0, 3.0))
     }
 
-    pub fn pose(&mut self, size: f64) -> Pose {
+    fn pose(&mut self, size: f64) -> Pose {
         Pose::new(self.rotation(), self.vec3(size))
     }
 
-    /// Convex shapes of six kinds, a closed mesh, an open one.
-    pub fn shape(&mut self, size: f64) -> Shape {
+    fn shape(&mut self, size: f64) -> Shape {
         let mut h = || self.between(0.3 * size, size);
         let (x, y, z) = (h(), h(), h());
-        match self.below(8) {
+        match self.index(8) {
             0 => Shape::Sphere(Sphere { radius: x }),
             1 => Shape::Capsule(Capsule { half_length: x, radius: 0.5 * y }),
             2 => Shape::Cylinder(Cylinder { half_length: x, radius: 0.5 * y }),
@@ -65,21 +68,20 @@ impl Random {
         }
     }
 
-    /// Joints that turn or slide, about any axis; a mimic joint; branches.
-    pub fn robot(&mut self, joints: usize) -> Robot {
+    fn robot(&mut self, joints: usize) -> Robot {
         let mut list = Vec::new();
         for i in 0..joints {
             let kind =
-                [JointKind::Revolute, JointKind::Revolute, JointKind::Continuous, JointKind::Prismatic][self.below(4)];
+                [JointKind::Revolute, JointKind::Revolute, JointKind::Continuous, JointKind::Prismatic][self.index(4)];
             let limits = if kind == JointKind::Prismatic { Limits::range(-0.2, 0.3) } else { Limits::symmetric(3.0) };
-            let axis = if self.below(2) == 0 {
-                [Vec3::X, Vec3::Y, -Vec3::Z][self.below(3)]
+            let axis = if self.index(2) == 0 {
+                [Vec3::X, Vec3::Y, -Vec3::Z][self.index(3)]
             } else {
                 self.vec3(1.0).try_normalize().unwrap_or(Vec3::Z)
             };
-            let parent = if i > 1 && self.below(4) == 0 { i - 1 } else { i };
+            let parent = if i > 1 && self.index(4) == 0 { i - 1 } else { i };
             let mimic =
-                (i > 2 && self.below(5) == 0).then(|| Mimic { joint: JointId(0), multiplier: -0.5, offset: 0.1 });
+                (i > 2 && self.index(5) == 0).then(|| Mimic { joint: JointId(0), multiplier: -0.5, offset: 0.1 });
             list.push(Joint {
                 name: format!("joint {i}"),
                 kind,
@@ -94,7 +96,7 @@ impl Random {
         let links = (0..=joints).map(|i| format!("link {i}")).collect();
         let mut robot = Robot::new(Chain::new("random", links, list).unwrap());
         for link in 0..=joints {
-            let count = if link == 0 { 0 } else { 1 + self.below(2) };
+            let count = if link == 0 { 0 } else { 1 + self.index(2) };
             for _ in 0..count {
                 let (shape, in_link) = (self.shape(0.12), self.pose(0.08));
                 robot.colliders[link].push(Collider { name: String::new(), shape, in_link });
@@ -103,8 +105,7 @@ impl Random {
         robot
     }
 
-    /// Within the limits of a robot.
-    pub fn q(&mut self, chain: &Chain) -> Vec<f64> {
+    fn q(&mut self, chain: &Chain) -> Vec<f64> {
         let (lower, upper) = (chain.lower(), chain.upper());
         lower
             .iter()
@@ -207,28 +208,6 @@ pub fn obstacle_set(solids: &[(Shape, Pose)]) -> ObstacleSet {
 }
 
 pub const ROBOT: RobotId = RobotId(0);
-
-/// `$ELBOWROOM_DATA`, or `../shared/data` beside the workspace; `None` and a message where it is missing.
-pub fn data() -> Option<PathBuf> {
-    let beside = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../../shared/data");
-    let data = std::env::var_os("ELBOWROOM_DATA").map_or(beside, PathBuf::from);
-    if data.is_dir() {
-        return Some(data);
-    }
-    println!("skipped: no data at ../shared/data or $ELBOWROOM_DATA");
-    None
-}
-
-/// The robots of the data, a URDF per folder.
-pub fn robots(data: &std::path::Path) -> Vec<PathBuf> {
-    let in_folder =
-        |folder: &std::path::Path| std::fs::read_dir(folder).into_iter().flatten().flatten().map(|e| e.path());
-    let mut folders: Vec<PathBuf> = in_folder(&data.join("urdf")).collect();
-    folders.sort();
-    let is_model =
-        |p: &PathBuf| p.extension().is_some_and(|e| e == "urdf") && !p.to_string_lossy().contains(".package.");
-    folders.iter().filter_map(|folder| in_folder(folder).filter(is_model).min()).collect()
-}
 
 /// Joint number `i` of a serial chain, without limits.
 pub fn single_joint(i: usize, kind: JointKind, origin: Pose, axis: Vec3) -> Joint {

@@ -1,0 +1,55 @@
+//! Counts what a program allocates. Such a test runs without the test harness (`harness = false`), because the harness has
+//! threads that allocate, and the counter is for the whole process. The program installs the allocator:
+//!
+//! ```
+//! use elbowroom_testkit::allocation::{COUNTING_ALLOCATOR, AllocationCounter, CountingAllocator};
+//!
+//! #[global_allocator]
+//! static ALLOCATOR: CountingAllocator = COUNTING_ALLOCATOR;
+//!
+//! fn main() {
+//!     let counter = AllocationCounter::start();
+//!     let sum = 2 + 2;
+//!     assert_eq!((sum, counter.allocations(), counter.changes()), (4, 0, 0));
+//!     drop(std::hint::black_box(vec![sum]));
+//!     assert_eq!((counter.allocations(), counter.changes()), (1, 2));
+//! }
+//! ```
+
+use std::alloc::System;
+use std::hint::black_box;
+
+use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
+
+/// The type of [`COUNTING_ALLOCATOR`].
+pub type CountingAllocator = &'static StatsAlloc<System>;
+
+/// The allocator of the system, with counters.
+pub const COUNTING_ALLOCATOR: CountingAllocator = &INSTRUMENTED_SYSTEM;
+
+/// What was allocated since its start, by all threads.
+pub struct AllocationCounter(Region<'static, System>);
+
+impl AllocationCounter {
+    /// Counts from now on.
+    ///
+    /// # Panics
+    /// If the program has another allocator, so that nothing would be counted.
+    pub fn start() -> Self {
+        let check = Region::new(COUNTING_ALLOCATOR);
+        drop(black_box(Box::new(1_u8)));
+        assert!(check.change().allocations > 0, "`COUNTING_ALLOCATOR` is not the program's `#[global_allocator]`");
+        Self(Region::new(COUNTING_ALLOCATOR))
+    }
+
+    /// New blocks, and blocks that were made larger or smaller.
+    pub fn allocations(&self) -> usize {
+        let change = self.0.change();
+        change.allocations + change.reallocations
+    }
+
+    /// [`Self::allocations`], and blocks that were freed.
+    pub fn changes(&self) -> usize {
+        self.allocations() + self.0.change().deallocations
+    }
+}
