@@ -4,4 +4,5 @@
 pub mod allocation;
 pub mod folder;
 pub mod hash;
+pub mod network;
 pub mod random;

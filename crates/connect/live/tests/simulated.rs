@@ -7,6 +7,7 @@ use elbowroom_cell::Cell;
 use elbowroom_live::network::{Network, Subscription};
 use elbowroom_live::{Keys, Service, ServiceOptions};
 use elbowroom_status::RobotStatus;
+use elbowroom_testkit::network::free_address;
 
 /// A carriage that carries a bar of one metre to where only the bar is near a region, and comes back without it.
 const BAR: &str = r#"
@@ -73,9 +74,7 @@ type Statuses = Arc<Mutex<Vec<RobotStatus>>>;
 fn start(text: &str) -> (Service, Statuses, Subscription) {
     let cell = Cell::parse("carried.toml", text).expect("a cell");
     let key = Keys::new(&cell.name).status("rail");
-    let listener = std::net::TcpListener::bind("127.0.0.1:0").expect("a free port");
-    let listen = Some(listener.local_addr().expect("its address").to_string());
-    drop(listener);
+    let listen = Some(free_address());
     let options = ServiceOptions { listen, simulate: true, ..ServiceOptions::default() };
     let service = Service::start(cell, &options).expect("a service");
     let statuses = Statuses::default();

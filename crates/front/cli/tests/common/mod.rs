@@ -1,6 +1,9 @@
 //! Runs the built command as a shell would.
 #![allow(dead_code, reason = "every test program uses a part of it")]
 
+#[cfg(feature = "live")]
+pub mod live_process;
+
 use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
