@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-use crate::common::control_setup::{ControlSetup, INTEGRATOR, OPERATOR, PROGRAMMER, read};
+use crate::common::control_setup::{ControlSetup, INTEGRATOR, OPERATOR, PROGRAMMER, rails, read};
 use elbowroom_cell::Cell;
 use elbowroom_cell::seal::{AccessTokens, control_history};
 use elbowroom_interlock::wire::{self, Message};
@@ -21,35 +21,7 @@ use elbowroom_testkit::network::eventually;
 use serde_json::{Value, json};
 
 /// Two rails side by side, with a region that both enter, one that is switched, and one that is always there.
-const CELL: &str = r#"
-version = 1
-name = "rails"
-units = { length = "mm", angle = "deg" }
-[robot.left]
-dh = [{ kind = "prismatic", min = 0, max = 2000, speed = 1000 }]
-links = [{ sphere = { radius = 50 } }]
-[robot.right]
-dh = [{ kind = "prismatic", min = 0, max = 2000, speed = 1000 }]
-links = [{ sphere = { radius = 50 } }]
-base = { at = [300, 0, 0] }
-[region.pallet]
-shape = "sphere"
-centre = [150, 0, 1000]
-radius = 200
-kind = "exchange"
-warning = 100
-[region.cart]
-shape = "sphere"
-centre = [0, 0, 1700]
-radius = 100
-life = "temporary"
-warning = 100
-[region.wall]
-shape = "sphere"
-centre = [0, 900, 0]
-radius = 100
-warning = 100
-"#;
+const CELL: &str = rails!("300", "150, 0, 1000");
 
 /// The whole cell, with the switches that the test makes.
 struct Setup(ControlSetup);

@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use crate::common::control_setup::{ControlSetup, INTEGRATOR, OPERATOR, PROGRAMMER, read};
+use crate::common::control_setup::{ControlSetup, INTEGRATOR, OPERATOR, PROGRAMMER, rails, read};
 use elbowroom_cell::Cell;
 use elbowroom_cell::seal::{AccessTokens, control_history};
 use elbowroom_live::messages::OverrideAnswer;
@@ -19,37 +19,7 @@ use elbowroom_monitor::AccessClass;
 use elbowroom_testkit::network::eventually;
 use serde_json::{Value, json};
 
-const CELL: &str = r#"
-version = 1
-name = "rails"
-units = { length = "mm", angle = "deg" }
-[robot.left]
-dh = [{ kind = "prismatic", min = 0, max = 2000, speed = 1000 }]
-links = [{ sphere = { radius = 50 } }]
-[robot.right]
-dh = [{ kind = "prismatic", min = 0, max = 2000, speed = 1000 }]
-links = [{ sphere = { radius = 50 } }]
-base = { at = [900, 0, 0] }
-[region.pallet]
-shape = "sphere"
-centre = [450, 0, 1900]
-radius = 200
-kind = "exchange"
-warning = 100
-[region.cart]
-shape = "sphere"
-centre = [0, 0, 1700]
-radius = 100
-life = "temporary"
-warning = 100
-[region.wall]
-shape = "sphere"
-centre = [0, 900, 0]
-radius = 100
-warning = 100
-[monitor]
-stale_ms = 200
-"#;
+const CELL: &str = concat!(rails!("900", "450, 0, 1900"), "[monitor]\nstale_ms = 200\n");
 const TABLE: &str = "shape = \"sphere\"\ncentre = [0, 0, 1000]\nradius = 100\nwarning = 100\nlife = \"temporary\"\n";
 
 /// The whole cell, or the arbiter alone, with the changes that the test makes.

@@ -13,6 +13,49 @@ use elbowroom_monitor::AccessClass;
 use elbowroom_testkit::network::free_address;
 use serde_json::Value;
 
+/// Two rails side by side, with a region that both enter, one that is switched, and one that is always there: where the second
+/// rail stands along x, and the middle of the region that both enter, mm.
+macro_rules! rails {
+    ($x:literal, $pallet:literal) => {
+        concat!(
+            r#"
+version = 1
+name = "rails"
+units = { length = "mm", angle = "deg" }
+[robot.left]
+dh = [{ kind = "prismatic", min = 0, max = 2000, speed = 1000 }]
+links = [{ sphere = { radius = 50 } }]
+[robot.right]
+dh = [{ kind = "prismatic", min = 0, max = 2000, speed = 1000 }]
+links = [{ sphere = { radius = 50 } }]
+base = { at = ["#,
+            $x,
+            r#", 0, 0] }
+[region.pallet]
+shape = "sphere"
+centre = ["#,
+            $pallet,
+            r#"]
+radius = 200
+kind = "exchange"
+warning = 100
+[region.cart]
+shape = "sphere"
+centre = [0, 0, 1700]
+radius = 100
+life = "temporary"
+warning = 100
+[region.wall]
+shape = "sphere"
+centre = [0, 900, 0]
+radius = 100
+warning = 100
+"#
+        )
+    };
+}
+pub(crate) use rails;
+
 /// Indices of the secrets.
 pub const OPERATOR: usize = 0;
 pub const PROGRAMMER: usize = 1;
