@@ -11,7 +11,7 @@ use elbowroom_robot::collision_pairs;
 use elbowroom_robot::{Collider, GeometryId, Robot};
 use elbowroom_scene::{Object, Scene, SceneState};
 use elbowroom_spatial::{Aabb, Pose, Vec3};
-use elbowroom_testkit::random::{split_mix, unit};
+use elbowroom_testkit::random::SplitMix;
 
 /// A robot's files.
 pub struct Files {
@@ -119,13 +119,12 @@ pub fn link_name(scene: &Scene, id: GeometryId) -> String {
 /// Random joint values within the limits; half a turn either way, or a metre, where there are none.
 pub fn states(robot: &Robot, count: usize) -> Vec<Vec<f64>> {
     let chain = &robot.chain;
-    let mut seed = 20_261_120_u64;
-    let mut random = move || unit(split_mix(&mut seed));
+    let mut random = SplitMix(20_261_120);
     let range = |joint: &elbowroom_kinematics::Joint| {
         let wide = if joint.kind.turns() { std::f64::consts::PI } else { 1.0 };
         let or = |v: f64, other| if v.is_finite() { v } else { other };
         (or(joint.limits.lower, -wide), or(joint.limits.upper, wide))
     };
     let ranges: Vec<(f64, f64)> = chain.active_joints().iter().map(|j| range(&chain.joints()[j.0])).collect();
-    (0..count).map(|_| ranges.iter().map(|(from, to)| from + (to - from) * random()).collect()).collect()
+    (0..count).map(|_| ranges.iter().map(|(from, to)| from + (to - from) * random.unit()).collect()).collect()
 }

@@ -13,14 +13,9 @@ use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 /// A wavy ball, tessellated to a tolerance: closed, oriented outward, not convex.
 fn lump(r: &mut SplitMix, fine: f64) -> Shape {
-    let (mut v, t) = tessellate(&Shape::Sphere(Sphere { radius: 0.3 }), fine);
     let (stretch, wave) =
         (Vec3::new(r.between(0.5, 1.5), r.between(0.5, 1.5), r.between(0.5, 1.5)), r.between(0.0, 0.4));
-    for p in &mut v {
-        let n = *p / 0.3;
-        *p = (*p * (1.0 + wave * (4.0 * n.x).sin() * (3.0 * n.y).cos())).scale(stretch);
-    }
-    Shape::Mesh(Arc::new(TriMesh::new(v, t).unwrap()))
+    Shape::Mesh(Arc::new(crate::common::lump(0.3, fine, stretch, wave)))
 }
 
 fn placed(shape: &Shape, in_world: &Pose, triangle: u32) -> [Vec3; 3] {

@@ -16,14 +16,9 @@ fn motions() -> usize {
 
 /// A wavy ball.
 fn lump(r: &mut SplitMix) -> TriMesh {
-    let (mut v, t) = tessellate(&Shape::Sphere(Sphere { radius: 0.2 }), 0.004);
     let (stretch, wave) =
         (Vec3::new(r.between(0.5, 1.5), r.between(0.5, 1.5), r.between(0.5, 1.5)), r.between(0.2, 0.6));
-    for p in &mut v {
-        let n = *p / 0.2;
-        *p = (*p * (1.0 + wave * (4.0 * n.x).sin() * (3.0 * n.y).cos())).scale(stretch);
-    }
-    TriMesh::new(v, t).unwrap()
+    crate::common::lump(0.2, 0.004, stretch, wave)
 }
 
 /// A motion towards the other mesh, with some rotation.

@@ -12,13 +12,7 @@ use elbowroom_spatial::{Pose, Vec3};
 
 /// A wavy ball: closed, not convex.
 fn lump(r: &mut SplitMix, fine: f64) -> Shape {
-    let (mut v, t) = tessellate(&Shape::Sphere(Sphere { radius: 0.3 }), fine);
-    let wave = r.between(0.0, 0.4);
-    for p in &mut v {
-        let n = *p / 0.3;
-        *p = *p * (1.0 + wave * (4.0 * n.x).sin() * (3.0 * n.y).cos());
-    }
-    Shape::Mesh(Arc::new(TriMesh::new(v, t).unwrap()))
+    Shape::Mesh(Arc::new(crate::common::lump(0.3, fine, Vec3::splat(1.0), r.between(0.0, 0.4))))
 }
 
 /// The largest gap between two triangles over the directions that can separate them, m: negative where they overlap.

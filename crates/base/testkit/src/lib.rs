@@ -18,4 +18,5 @@ pub mod allocation;
 pub mod bench;
 pub mod folder;
 pub mod hash;
+pub mod network;
 pub mod random;

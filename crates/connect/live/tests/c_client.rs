@@ -7,6 +7,7 @@ use std::process::{Child, ChildStdout, Command, Stdio};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
+use crate::common::{rail, start_node};
 use elbowroom_cell::{Cell, configure};
 use elbowroom_interlock::{Boot, Micros};
 use elbowroom_live::messages::{AttachedVolume, JointState, OverrideAnswer};
@@ -21,20 +22,6 @@ use elbowroom_testkit::random::{split_mix, unit};
 /// Of `messages.c`.
 const BOOT: u64 = 7;
 const CONFIGURATION: u64 = 99;
-
-const CELL: &str = r#"
-version = 1
-name = "rail"
-units = { length = "mm", angle = "deg" }
-[robot.rail]
-dh = [{ kind = "prismatic", min = 0, max = 2000, speed = 1000 }]
-links = [{ sphere = { radius = 50 } }]
-[region.end]
-shape = "sphere"
-centre = [0, 0, 2500]
-radius = 200
-warning = 100
-"#;
 
 /// Compiles a program; `None` where there is no compiler.
 fn compile(source: &Path, name: &str) -> Option<PathBuf> {
@@ -263,27 +250,6 @@ fn keys_and_datagrams_are_those_of_docs() {
     assert_eq!(c.ask(&format!("D a/c {}", hex(&framed(2, 1)))), "-");
 }
 
-fn node(network: Arc<dyn Network>) -> Node {
-    let cell = Arc::new(Cell::parse("rail.toml", CELL).expect("a cell"));
-    let (clock, checksum, recorder) = (Clock::start(), configuration_number(&cell), None);
-    let setup = configure::setups(&cell).expect("setups").remove(0);
-    let monitor = NodeMonitor::new(&setup, RobotSlot(0), 0, checksum, Boot(1)).expect("a monitor");
-    let (robot, interlocks) = (RobotId(0), network.clone());
-    Node::start(NodeParts {
-        cell,
-        robot,
-        setup,
-        monitor,
-        checksum,
-        clock,
-        network,
-        interlocks,
-        recorder,
-        versions: None,
-    })
-    .expect("a node")
-}
-
 /// The override and the position of a line that the example prints.
 fn printed(line: &str) -> Option<(f64, f64)> {
     let (_, rest) = line.split_once("override ")?;
@@ -302,7 +268,7 @@ fn the_example_obeys_its_node_and_stops_without_one() {
     let taken = heard.clone();
     let handler = Box::new(move |bytes: &[u8]| taken.lock().unwrap().push(bytes.to_vec()));
     let subscription = network.subscribe(&Keys::new("rail").joint_states("rail"), handler).expect("a key");
-    let node = node(network.clone());
+    let node = start_node(&rail(100, ""), Clock::start(), network.clone());
     let mut command = Command::new(program);
     command.args(["127.0.0.1", &address.port().to_string(), "rail", "rail", "20", "0.2", "1.2"]);
     let mut process = command.stdin(Stdio::null()).stdout(Stdio::piped()).spawn().expect("the example starts");

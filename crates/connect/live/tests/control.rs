@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
+use crate::common::control_setup::{ControlSetup, INTEGRATOR, OPERATOR, PROGRAMMER, rails, read};
 use elbowroom_cell::Cell;
 use elbowroom_cell::seal::{AccessTokens, control_history};
 use elbowroom_interlock::wire::{self, Message};
@@ -16,52 +17,22 @@ use elbowroom_live::{
     boot_number, configuration_number,
 };
 use elbowroom_monitor::{AccessClass, Occupancy, RobotSlot, SlotId};
+use elbowroom_testkit::network::eventually;
 use serde_json::{Value, json};
 
 /// Two rails side by side, with a region that both enter, one that is switched, and one that is always there.
-const CELL: &str = r#"
-version = 1
-name = "rails"
-units = { length = "mm", angle = "deg" }
-[robot.left]
-dh = [{ kind = "prismatic", min = 0, max = 2000, speed = 1000 }]
-links = [{ sphere = { radius = 50 } }]
-[robot.right]
-dh = [{ kind = "prismatic", min = 0, max = 2000, speed = 1000 }]
-links = [{ sphere = { radius = 50 } }]
-base = { at = [300, 0, 0] }
-[region.pallet]
-shape = "sphere"
-centre = [150, 0, 1000]
-radius = 200
-kind = "exchange"
-warning = 100
-[region.cart]
-shape = "sphere"
-centre = [0, 0, 1700]
-radius = 100
-life = "temporary"
-warning = 100
-[region.wall]
-shape = "sphere"
-centre = [0, 900, 0]
-radius = 100
-warning = 100
-"#;
+const CELL: &str = rails!("300", "150, 0, 1000");
 
-/// A service with the whole cell, whose robots are controlled by the test, or silent.
-struct Setup {
-    folder: tempfile::TempDir,
-    address: SocketAddr,
-    secrets: [String; 3],
-    events: Arc<Mutex<Vec<String>>>,
-    cell: Cell,
-    service: Option<Service>,
+/// The whole cell, with the switches that the test makes.
+struct Setup(ControlSetup);
+
+impl std::ops::Deref for Setup {
+    type Target = ControlSetup;
+
+    fn deref(&self) -> &ControlSetup {
+        &self.0
+    }
 }
-
-const OPERATOR: usize = 0;
-const PROGRAMMER: usize = 1;
-const INTEGRATOR: usize = 2;
 
 impl Setup {
     fn new() -> Self {
@@ -69,78 +40,16 @@ impl Setup {
     }
 
     fn with(program_switches: bool) -> Self {
-        let folder = tempfile::tempdir().unwrap();
-        let (file, tokens) = (folder.path().join("cell.toml"), folder.path().join("tokens.toml"));
-        std::fs::write(&file, CELL).unwrap();
-        let classes = [AccessClass::Operator, AccessClass::Programmer, AccessClass::Integrator];
-        let secrets = classes.map(|class| AccessTokens::add(&tokens, class, class.name()).unwrap());
-        let cell = Cell::load(&file).unwrap_or_else(|e| panic!("{e}"));
-        let events: Arc<Mutex<Vec<String>>> = Arc::default();
-        let heard = events.clone();
-        let options = ServiceOptions {
-            listen: Some("127.0.0.1:0".into()),
-            arbiter: true,
-            control: Some(ControlOptions { address: "127.0.0.1:0".into(), tokens, log: None, program_switches }),
-            on_event: Some(Arc::new(move |event: &str| heard.lock().unwrap().push(event.to_owned()))),
-            ..ServiceOptions::default()
-        };
-        let service = Service::start(cell.clone(), &options).unwrap_or_else(|e| panic!("{e}"));
-        let address = service.control_address().unwrap();
-        Self { folder, address, secrets, events, cell, service: Some(service) }
+        let options = ServiceOptions { arbiter: true, ..ServiceOptions::default() };
+        Self(ControlSetup::new(CELL, program_switches, options))
     }
 
     fn log(&self) -> PathBuf {
         self.folder.path().join("cell.control.jsonl")
     }
 
-    fn network(&self) -> Arc<ZenohNetwork> {
-        self.service.as_ref().unwrap().network().clone()
-    }
-
-    fn answer(&self, bytes: &[u8]) -> String {
-        let mut stream = TcpStream::connect(self.address).unwrap();
-        stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
-        // A server that refuses closes before everything is written.
-        let _ = stream.write_all(bytes);
-        let mut answer = Vec::new();
-        let _ = stream.read_to_end(&mut answer);
-        String::from_utf8_lossy(&answer).into_owned()
-    }
-
-    fn request(&self, method: &str, path: &str, headers: &str, body: &str) -> (u16, Value) {
-        let (host, length) = (self.address, body.len());
-        let head = format!("{method} {path} HTTP/1.1\r\nHost: {host}\r\n{headers}Content-Length: {length}\r\n\r\n");
-        read(&self.answer((head + body).as_bytes()))
-    }
-
-    fn bearer(&self, class: usize) -> String {
-        format!("Authorization: Bearer {}\r\n", self.secrets[class])
-    }
-
-    fn regions(&self) -> Value {
-        let (status, document) = self.request("GET", "/regions", &self.bearer(OPERATOR), "");
-        assert_eq!(status, 200, "{document}");
-        document
-    }
-
-    fn revision(&self) -> String {
-        self.regions()["revision"].as_str().unwrap().to_owned()
-    }
-
     fn is_on(&self, region: &str) -> bool {
-        let document = self.regions();
-        let all = document["regions"].as_array().unwrap();
-        all.iter().find(|r| r["name"] == region).unwrap()["active"] == true
-    }
-
-    /// A change at a revision.
-    fn change_at(&self, class: usize, path: &str, revision: &str, body: &Value) -> (u16, Value) {
-        let headers = format!("{}If-Match: \"{revision}\"\r\nContent-Type: application/json\r\n", self.bearer(class));
-        self.request("POST", path, &headers, &body.to_string())
-    }
-
-    fn change(&self, class: usize, path: &str, body: &Value) -> (u16, Value) {
-        self.change_at(class, path, &self.revision(), body)
+        self.region(region).unwrap()["active"] == true
     }
 
     fn switch(&self, class: usize, region: &str, active: bool) -> (u16, Value) {
@@ -153,22 +62,6 @@ impl Setup {
         let (status, document) = self.switch(PROGRAMMER, "cart", !on);
         assert_eq!(status, 200, "{document}");
         assert_eq!(self.is_on("cart"), !on);
-    }
-}
-
-/// Status and document of an answer; status 0 where there is none.
-fn read(answer: &str) -> (u16, Value) {
-    let (head, body) = answer.split_once("\r\n\r\n").unwrap_or((answer, ""));
-    let status = head.split(' ').nth(1).and_then(|word| word.parse().ok()).unwrap_or(0);
-    (status, serde_json::from_str(body).unwrap_or_default())
-}
-
-/// Waits until a condition holds, at most 10 s.
-fn eventually(what: &str, mut holds: impl FnMut() -> bool) {
-    let began = Instant::now();
-    while !holds() {
-        assert!(began.elapsed() < Duration::from_secs(10), "{what}");
-        std::thread::sleep(Duration::from_millis(10));
     }
 }
 
@@ -389,7 +282,7 @@ fn every_change_is_in_the_log_and_follows_the_one_before() {
     let written = std::fs::read_to_string(setup.log()).unwrap();
     assert!(setup.secrets.iter().all(|secret| !written.contains(secret)));
     // One service at a time writes it; the next one goes on where it ended.
-    drop(setup.service.take());
+    drop(setup.0.service.take());
     std::fs::write(setup.log(), written.replacen("cart arrives", "cart departs", 1)).unwrap();
     assert!(control_history(&setup.log()).unwrap_err().to_string().contains("was modified"));
 }

@@ -1,6 +1,7 @@
 //! Integration tests of `elbowroom-live` in one program: a module per subject, whose first line says what belongs there.
 
 mod c_client;
+mod common;
 mod control;
 mod node;
 mod region_changes;

@@ -3,6 +3,7 @@
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
+use crate::common::{rail, start_node};
 use elbowroom_cell::{Cell, configure};
 use elbowroom_interlock::Boot;
 use elbowroom_live::messages::{AttachedVolume, JointState, OverrideAnswer};
@@ -12,23 +13,8 @@ use elbowroom_live::{Clock, ControllerClient, ControllerState, Keys, Node, confi
 use elbowroom_monitor::{RobotSlot, VolumeId};
 use elbowroom_robot::RobotId;
 use elbowroom_spatial::Pose;
+use elbowroom_testkit::network::eventually;
 use elbowroom_testkit::random::{split_mix, unit};
-
-const CELL: &str = r#"
-version = 1
-name = "rail"
-units = { length = "mm", angle = "deg" }
-[robot.rail]
-dh = [{ kind = "prismatic", min = 0, max = 2000, speed = 1000 }]
-links = [{ sphere = { radius = 50 } }]
-[region.end]
-shape = "sphere"
-centre = [0, 0, 2500]
-radius = 200
-kind = "forbidden"
-life = "permanent"
-warning = 100
-"#;
 
 /// A node and the controller's side of its network.
 struct Setup {
@@ -42,25 +28,9 @@ struct Setup {
 }
 
 fn start(of_node: Arc<dyn Network>, of_controller: &dyn Network) -> Setup {
-    let cell = Arc::new(Cell::parse("rail.toml", CELL).expect("a cell"));
-    let (clock, checksum) = (Clock::start(), configuration_number(&cell));
-    let setup = configure::setups(&cell).expect("setups").remove(0);
-    let monitor = NodeMonitor::new(&setup, RobotSlot(0), 0, checksum, Boot(1)).expect("a monitor");
-    let (network, interlocks) = (of_node.clone(), of_node);
-    let (robot, recorder) = (RobotId(0), None);
-    let keys = Keys::new(&cell.name);
-    let node = Node::start(NodeParts {
-        cell,
-        robot,
-        setup,
-        monitor,
-        checksum,
-        clock,
-        network,
-        interlocks,
-        recorder,
-        versions: None,
-    });
+    let cell = rail(100, "");
+    let (clock, checksum, keys) = (Clock::start(), configuration_number(&cell), Keys::new(&cell.name));
+    let node = start_node(&cell, clock, of_node);
     let answers: Arc<Mutex<Vec<OverrideAnswer>>> = Arc::default();
     let taken = answers.clone();
     let handler = Box::new(move |bytes: &[u8]| {
@@ -68,21 +38,12 @@ fn start(of_node: Arc<dyn Network>, of_controller: &dyn Network) -> Setup {
     });
     let subscription = of_controller.subscribe(&keys.speed_override("rail"), handler).expect("a key");
     let joint_states = of_controller.publisher(&keys.joint_states("rail"), Urgency::RealTime).expect("a key");
-    Setup { keys, answers, clock, checksum, joint_states, _node: node.expect("a node"), _subscription: subscription }
+    Setup { keys, answers, clock, checksum, joint_states, _node: node, _subscription: subscription }
 }
 
 fn on_one_network() -> Setup {
     let network = LocalNetwork::default();
     start(Arc::new(network.clone()), &network)
-}
-
-/// Waits until a condition holds, at most 10 s.
-fn eventually(what: &str, mut holds: impl FnMut() -> bool) {
-    let began = Instant::now();
-    while !holds() {
-        assert!(began.elapsed() < Duration::from_secs(10), "{what}");
-        std::thread::sleep(Duration::from_millis(1));
-    }
 }
 
 /// Runs a controller far from the region until it may go, and then falls silent.

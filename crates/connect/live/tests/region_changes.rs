@@ -7,6 +7,7 @@ use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
+use crate::common::control_setup::{ControlSetup, INTEGRATOR, OPERATOR, PROGRAMMER, rails, read};
 use elbowroom_cell::Cell;
 use elbowroom_cell::seal::{AccessTokens, control_history};
 use elbowroom_live::messages::OverrideAnswer;
@@ -15,107 +16,27 @@ use elbowroom_live::{
     Clock, ControlOptions, ControllerClient, ControllerState, Keys, Service, ServiceOptions, boot_number,
 };
 use elbowroom_monitor::AccessClass;
+use elbowroom_testkit::network::eventually;
 use serde_json::{Value, json};
 
-const CELL: &str = r#"
-version = 1
-name = "rails"
-units = { length = "mm", angle = "deg" }
-[robot.left]
-dh = [{ kind = "prismatic", min = 0, max = 2000, speed = 1000 }]
-links = [{ sphere = { radius = 50 } }]
-[robot.right]
-dh = [{ kind = "prismatic", min = 0, max = 2000, speed = 1000 }]
-links = [{ sphere = { radius = 50 } }]
-base = { at = [900, 0, 0] }
-[region.pallet]
-shape = "sphere"
-centre = [450, 0, 1900]
-radius = 200
-kind = "exchange"
-warning = 100
-[region.cart]
-shape = "sphere"
-centre = [0, 0, 1700]
-radius = 100
-life = "temporary"
-warning = 100
-[region.wall]
-shape = "sphere"
-centre = [0, 900, 0]
-radius = 100
-warning = 100
-[monitor]
-stale_ms = 200
-"#;
+const CELL: &str = concat!(rails!("900", "450, 0, 1900"), "[monitor]\nstale_ms = 200\n");
 const TABLE: &str = "shape = \"sphere\"\ncentre = [0, 0, 1000]\nradius = 100\nwarning = 100\nlife = \"temporary\"\n";
 
-const OPERATOR: usize = 0;
-const PROGRAMMER: usize = 1;
-const INTEGRATOR: usize = 2;
+/// The whole cell, or the arbiter alone, with the changes that the test makes.
+struct Setup(ControlSetup);
 
-struct Setup {
-    folder: tempfile::TempDir,
-    address: SocketAddr,
-    listen: String,
-    secrets: [String; 3],
-    cell: Cell,
-    service: Service,
+impl std::ops::Deref for Setup {
+    type Target = ControlSetup;
+
+    fn deref(&self) -> &ControlSetup {
+        &self.0
+    }
 }
 
 impl Setup {
-    /// The whole cell, or the arbiter alone.
     fn new(is_arbiter_alone: bool) -> Self {
-        let folder = tempfile::tempdir().unwrap();
-        let (file, tokens) = (folder.path().join("cell.toml"), folder.path().join("tokens.toml"));
-        std::fs::write(&file, CELL).unwrap();
-        let classes = [AccessClass::Operator, AccessClass::Programmer, AccessClass::Integrator];
-        let secrets = classes.map(|class| AccessTokens::add(&tokens, class, class.name()).unwrap());
-        let cell = Cell::load(&file).unwrap_or_else(|e| panic!("{e}"));
-        let control = ControlOptions { address: "127.0.0.1:0".into(), tokens, log: None, program_switches: false };
-        let free = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
-        let listen = free.local_addr().unwrap().to_string();
-        drop(free);
-        let options = ServiceOptions {
-            listen: Some(listen.clone()),
-            arbiter: is_arbiter_alone,
-            control: Some(control),
-            ..ServiceOptions::default()
-        };
-        let service = Service::start(cell.clone(), &options).unwrap_or_else(|e| panic!("{e}"));
-        let address = service.control_address().unwrap();
-        Self { folder, address, listen, secrets, cell, service }
-    }
-
-    fn request(&self, method: &str, path: &str, headers: &str, body: &str) -> (u16, Value) {
-        let mut stream = TcpStream::connect(self.address).unwrap();
-        stream.set_read_timeout(Some(Duration::from_secs(30))).unwrap();
-        let (host, length) = (self.address, body.len());
-        let head = format!("{method} {path} HTTP/1.1\r\nHost: {host}\r\n{headers}Content-Length: {length}\r\n\r\n");
-        stream.write_all((head + body).as_bytes()).unwrap();
-        let mut answer = Vec::new();
-        let _ = stream.read_to_end(&mut answer);
-        let answer = String::from_utf8_lossy(&answer).into_owned();
-        let (head, body) = answer.split_once("\r\n\r\n").unwrap_or((&answer, ""));
-        let status = head.split(' ').nth(1).and_then(|word| word.parse().ok()).unwrap_or(0);
-        (status, serde_json::from_str(body).unwrap_or_default())
-    }
-
-    fn regions(&self) -> Value {
-        let bearer = format!("Authorization: Bearer {}\r\n", self.secrets[OPERATOR]);
-        self.request("GET", "/regions", &bearer, "").1
-    }
-
-    fn change_at(&self, class: usize, path: &str, revision: &str, body: &Value) -> (u16, Value) {
-        let secret = &self.secrets[class];
-        let headers =
-            format!("Authorization: Bearer {secret}\r\nIf-Match: \"{revision}\"\r\nContent-Type: application/json\r\n");
-        self.request("POST", path, &headers, &body.to_string())
-    }
-
-    fn change(&self, class: usize, path: &str, body: &Value) -> (u16, Value) {
-        let revision = self.regions()["revision"].as_str().unwrap().to_owned();
-        self.change_at(class, path, &revision, body)
+        let options = ServiceOptions { arbiter: is_arbiter_alone, ..ServiceOptions::default() };
+        Self(ControlSetup::new(CELL, false, options))
     }
 
     /// A change that is made.
@@ -123,10 +44,6 @@ impl Setup {
         let (status, document) = self.change(PROGRAMMER, path, body);
         assert_eq!(status, 200, "{path} {body}: {document}");
         document
-    }
-
-    fn region(&self, name: &str) -> Option<Value> {
-        self.regions()["regions"].as_array().unwrap().iter().find(|r| r["name"] == name).cloned()
     }
 }
 
@@ -143,7 +60,7 @@ struct Controller {
 
 impl Controller {
     fn start(setup: &Setup, robot: &str, q_mm: u64) -> Self {
-        let (network, keys) = (setup.service.network().clone(), Keys::new(&setup.cell.name));
+        let (network, keys) = (setup.network(), Keys::new(&setup.cell.name));
         let (last, highest) = (Arc::<Mutex<Option<OverrideAnswer>>>::default(), Arc::new(Mutex::new(0.0)));
         let (heard, most) = (last.clone(), highest.clone());
         let handler = Box::new(move |bytes: &[u8]| {
@@ -179,14 +96,6 @@ impl Drop for Controller {
     fn drop(&mut self) {
         self.is_closed.store(true, SeqCst);
         let _ = self.thread.take().map(JoinHandle::join);
-    }
-}
-
-fn eventually(what: &str, mut holds: impl FnMut() -> bool) {
-    let began = Instant::now();
-    while !holds() {
-        assert!(began.elapsed() < Duration::from_secs(20), "{what}");
-        std::thread::sleep(Duration::from_millis(10));
     }
 }
 

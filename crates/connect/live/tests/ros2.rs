@@ -1,11 +1,12 @@
 //! The service in the layout of `rmw_zenoh`: sessions of Zenoh on the loopback network stand in for nodes of ROS 2. Keys, hashes, tokens
 //! and bytes of the other side are written out, as in `rmw_zenoh`'s design document, or by `natnet_zenoh`.
 
+use crate::common::rail;
 use crate::ros2_peer;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-use crate::ros2_peer::{Controller, Peer, cdr_joint_state, free_address};
+use crate::ros2_peer::{Controller, Peer, cdr_joint_state};
 use elbowroom_cell::Cell;
 use elbowroom_live::ros2::{Ros2Robot, Ros2Settings, Watchdog};
 use elbowroom_live::{Service, ServiceOptions};
@@ -15,24 +16,7 @@ use elbowroom_ros2::msgs::sensor_msgs::JointState;
 use elbowroom_ros2::msgs::std_msgs::Text;
 use elbowroom_ros2::msgs::tf2_msgs::TFMessage;
 use elbowroom_ros2::msgs::visualization_msgs::MarkerArray;
-
-const CELL: &str = r#"
-version = 1
-name = "rail"
-units = { length = "mm", angle = "deg" }
-[robot.rail]
-dh = [{ kind = "prismatic", min = 0, max = 2000, speed = 1000 }]
-links = [{ sphere = { radius = 50 } }]
-[region.end]
-shape = "sphere"
-centre = [0, 0, 2500]
-radius = 200
-kind = "forbidden"
-life = "permanent"
-warning = 400
-[monitor]
-stale_ms = 200
-"#;
+use elbowroom_testkit::network::{eventually, free_address};
 
 /// The name of the only joint of the cell above.
 fn joint() -> String {
@@ -40,7 +24,7 @@ fn joint() -> String {
 }
 
 fn cell() -> Cell {
-    Cell::parse("rail.toml", CELL).expect("a cell")
+    rail(400, "[monitor]\nstale_ms = 200\n")
 }
 
 /// A service that publishes its cell, whose robot is controlled over ROS 2.
@@ -59,15 +43,6 @@ fn start(address: &str) -> (Service, Arc<Mutex<Vec<String>>>) {
         ..ServiceOptions::default()
     };
     (Service::start(cell(), &options).expect("a service"), events)
-}
-
-/// Waits until a condition holds, at most 20 s.
-fn eventually(what: &str, mut holds: impl FnMut() -> bool) {
-    let began = Instant::now();
-    while !holds() {
-        assert!(began.elapsed() < Duration::from_secs(20), "{what}");
-        std::thread::sleep(Duration::from_millis(2));
-    }
 }
 
 /// Sends valid joint states every 5 ms until the robot, far from its region, may go.

@@ -7,20 +7,20 @@ use elbowroom_cell::Cell;
 use elbowroom_live::network::{Network, Subscription};
 use elbowroom_live::{Keys, Service, ServiceOptions};
 use elbowroom_status::RobotStatus;
+use elbowroom_testkit::network::free_address;
 
-/// A carriage that carries a bar of one metre to where only the bar is near a region, and comes back without it.
-const BAR: &str = r#"
+/// A carriage that takes something of one metre to where only that is near a region, and comes back without it.
+fn cell(thing: &str, take: &str, leave: &str) -> String {
+    format!(
+        r#"
 version = 1
-name = "bar"
-units = { length = "mm", angle = "deg" }
+name = "carried"
+units = {{ length = "mm", angle = "deg" }}
 [robot.rail]
-dh = [{ kind = "prismatic", min = 0, max = 2000, speed = 1000 }]
-links = [{ sphere = { radius = 50 } }]
+dh = [{{ kind = "prismatic", min = 0, max = 2000, speed = 1000 }}]
+links = [{{ sphere = {{ radius = 50 }} }}]
 start = [200]
-[object.bar]
-shape = "box"
-at = [0, 0, 700]
-size = [60, 60, 1000]
+{thing}
 [region.end]
 shape = "sphere"
 centre = [0, 0, 2500]
@@ -28,44 +28,16 @@ radius = 200
 warning = 400
 [program.rail]
 steps = [
-  { grip = "bar" },
-  { move = "joint", to = [1050], speed = 80 },
-  { move = "joint", to = [200], speed = 80 },
-  { release = "bar" },
-  { move = "joint", to = [1050], speed = 80 },
-  { move = "joint", to = [200], speed = 80 },
+  {{ {take} }},
+  {{ move = "joint", to = [1050], speed = 80 }},
+  {{ move = "joint", to = [200], speed = 80 }},
+  {{ {leave} }},
+  {{ move = "joint", to = [1050], speed = 80 }},
+  {{ move = "joint", to = [200], speed = 80 }},
 ]
-"#;
-
-/// The same with a long tool in place of the bar.
-const TOOL: &str = r#"
-version = 1
-name = "tool"
-units = { length = "mm", angle = "deg" }
-[robot.rail]
-dh = [{ kind = "prismatic", min = 0, max = 2000, speed = 1000 }]
-links = [{ sphere = { radius = 50 } }]
-start = [200]
-[robot.rail.tools.gripper]
-box = { at = [0, 0, 50], size = [60, 60, 100] }
-[robot.rail.tools.lance]
-box = { at = [0, 0, 500], size = [60, 60, 1000] }
-mounted = false
-[region.end]
-shape = "sphere"
-centre = [0, 0, 2500]
-radius = 200
-warning = 400
-[program.rail]
-steps = [
-  { tool = "lance" },
-  { move = "joint", to = [1050], speed = 80 },
-  { move = "joint", to = [200], speed = 80 },
-  { tool = "gripper" },
-  { move = "joint", to = [1050], speed = 80 },
-  { move = "joint", to = [200], speed = 80 },
-]
-"#;
+"#
+    )
+}
 
 type Statuses = Arc<Mutex<Vec<RobotStatus>>>;
 
@@ -73,9 +45,7 @@ type Statuses = Arc<Mutex<Vec<RobotStatus>>>;
 fn start(text: &str) -> (Service, Statuses, Subscription) {
     let cell = Cell::parse("carried.toml", text).expect("a cell");
     let key = Keys::new(&cell.name).status("rail");
-    let listener = std::net::TcpListener::bind("127.0.0.1:0").expect("a free port");
-    let listen = Some(listener.local_addr().expect("its address").to_string());
-    drop(listener);
+    let listen = Some(free_address());
     let options = ServiceOptions { listen, simulate: true, ..ServiceOptions::default() };
     let service = Service::start(cell, &options).expect("a service");
     let statuses = Statuses::default();
@@ -117,10 +87,13 @@ fn governs_while_carried(text: &str, part: &str) {
 
 #[test]
 fn a_gripped_part_is_guarded_until_it_is_released() {
-    governs_while_carried(BAR, "bar");
+    let bar = "[object.bar]\nshape = \"box\"\nat = [0, 0, 700]\nsize = [60, 60, 1000]";
+    governs_while_carried(&cell(bar, "grip = \"bar\"", "release = \"bar\""), "bar");
 }
 
 #[test]
 fn an_exchanged_tool_is_guarded_until_it_is_taken_off() {
-    governs_while_carried(TOOL, "lance");
+    let tools = "[robot.rail.tools.gripper]\nbox = { at = [0, 0, 50], size = [60, 60, 100] }\n\
+        [robot.rail.tools.lance]\nbox = { at = [0, 0, 500], size = [60, 60, 1000] }\nmounted = false";
+    governs_while_carried(&cell(tools, "tool = \"lance\"", "tool = \"gripper\""), "lance");
 }

@@ -42,6 +42,16 @@ fn tools() -> Option<(PathBuf, PathBuf)> {
 
 /// Opens the page, performs steps, and answers what each saw.
 fn visit(url: &str, options: &Value, steps: &[Value]) -> Option<Vec<Value>> {
+    let mut call = options.clone();
+    call["steps"] = json!(steps);
+    let seen = drive(url, &call)?;
+    assert_eq!(seen["problems"], json!([]), "on the console");
+    assert_eq!(seen["foreign"], json!([]), "requests to others");
+    Some(seen["steps"].as_array().unwrap().clone())
+}
+
+/// What the script answers to a call.
+fn drive(url: &str, call: &Value) -> Option<Value> {
     let (chromium, python) = tools()?;
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/page/visit.py");
     let mut child = Command::new(python)
@@ -52,15 +62,10 @@ fn visit(url: &str, options: &Value, steps: &[Value]) -> Option<Vec<Value>> {
         .stdout(Stdio::piped())
         .spawn()
         .unwrap_or_else(|e| panic!("the Python of Playwright: {e}"));
-    let mut call = options.clone();
-    call["steps"] = json!(steps);
     child.stdin.take().unwrap().write_all(call.to_string().as_bytes()).unwrap();
     let output = child.wait_with_output().unwrap();
     assert!(output.status.success(), "the visit failed");
-    let seen: Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!(seen["problems"], json!([]), "on the console");
-    assert_eq!(seen["foreign"], json!([]), "requests to others");
-    Some(seen["steps"].as_array().unwrap().clone())
+    Some(serde_json::from_slice(&output.stdout).unwrap())
 }
 
 /// Playwright wants a path.
@@ -366,21 +371,9 @@ fn a_running_cell_moves_is_replayed_and_found_again() {
 
 #[test]
 fn a_page_without_its_token_says_what_to_do() {
-    if tools().is_none() {
-        return;
-    }
     let server = Server::jog(&cell(), settings()).unwrap();
-    let (chromium, python) = tools().unwrap();
     let wrong = server.url().replace("#token=", "#token=0");
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/page/visit.py");
-    let mut child = Command::new(python)
-        .args([script, which(&chromium), PathBuf::from(wrong)])
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .spawn()
-        .unwrap();
     let call = json!({ "ready": false, "steps": [{ "do": "text", "at": "#trouble:visible" }] });
-    child.stdin.take().unwrap().write_all(call.to_string().as_bytes()).unwrap();
-    let seen: Value = serde_json::from_slice(&child.wait_with_output().unwrap().stdout).unwrap();
+    let Some(seen) = drive(&wrong, &call) else { return };
     assert!(seen["steps"][0].as_str().unwrap().contains("Open the address that the program has printed"), "{seen}");
 }

@@ -1,15 +1,12 @@
 //! `query --carry` and `plan --carry`: objects in the hand of a robot.
 
-use crate::common::{Answer, elbowroom, with_cell};
+use crate::common::{Answer, elbowroom, slide_arm, with_cell};
 
 /// An arm that grips a bar at 0 degrees, and a post that only the bar reaches.
-const CELL: &str = r#"version = 1
-units = { length = "mm", angle = "deg" }
-[robot.arm]
-dh = [{ a = 400, min = -170, max = 170, speed = 90 }, { a = 300, min = -170, max = 170, speed = 90 }, { kind = "prismatic", min = -400, max = 0, speed = 500 }]
-links = [[], { capsule = { from = [-300, 0, 0], to = [0, 0, 0], radius = 40 } }, { capsule = { from = [0, 0, 0], to = [0, 0, 300], radius = 20 } }]
-base = { at = [0, 0, 600] }
-start = [0, 0, -100]
+const CELL: &str = concat!(
+    "version = 1\nunits = { length = \"mm\", angle = \"deg\" }\n",
+    slide_arm!(),
+    r#"start = [0, 0, -100]
 [object.bar]
 shape = "box"
 at = [700, 0, 250]
@@ -19,7 +16,8 @@ shape = "cylinder"
 at = [866, 500, 500]
 radius = 40
 height = 1000
-"#;
+"#
+);
 const PROGRAM: &str = r#"[program.arm]
 steps = [
   { move = "joint", to = [0, 0, -270] },

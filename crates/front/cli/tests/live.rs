@@ -2,56 +2,19 @@
 #![cfg(feature = "live")]
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
-use std::process::{Child, Command, Output, Stdio};
+use std::process::Stdio;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
+use crate::common::live_process::{LiveProcess, live};
+use crate::common::{answer, elbowroom};
 use elbowroom::live::Keys;
 use elbowroom::live::network::{Network, Subscription, ZenohNetwork, ZenohSettings};
 use elbowroom::status::RobotStatus;
+use elbowroom_testkit::network::free_address;
 
 const CELL_NAME: &str = "two arms, one pallet";
 const ROBOTS: [&str; 2] = ["left", "right"];
-
-fn example() -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../examples/exchange/cell.toml")
-}
-
-fn live(arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_elbowroom"));
-    // However a test ends, its processes end by themselves.
-    command
-        .arg("live")
-        .arg(example())
-        .args(arguments)
-        .args(["--for", "100"])
-        .stderr(Stdio::null())
-        .stdin(Stdio::null());
-    command
-}
-
-/// A process that is killed when it is dropped.
-struct Process(Child);
-
-impl Process {
-    fn start(arguments: &[&str]) -> Self {
-        Self(live(arguments).spawn().expect("elbowroom starts"))
-    }
-}
-
-impl Drop for Process {
-    fn drop(&mut self) {
-        let _ = self.0.kill();
-        let _ = self.0.wait();
-    }
-}
-
-/// An address that nobody listens at.
-fn free_address() -> String {
-    let listener = std::net::TcpListener::bind("127.0.0.1:0").expect("a free port");
-    listener.local_addr().expect("its address").to_string()
-}
 
 /// What was seen of the two robots.
 #[derive(Default)]
@@ -125,7 +88,7 @@ impl Observer {
 #[test]
 fn a_whole_cell_in_one_process_is_published_and_never_shares_its_region() {
     let address = free_address();
-    let _cell = Process::start(&["--simulate", "--listen", &address]);
+    let _cell = LiveProcess::start(&["--simulate", "--listen", &address]);
     let observer = Observer::at(&address);
     observer.wait("no status", 20, |seen| seen.statuses.len() == 2);
     let (before, began) = (observer.seen.lock().unwrap().count, Instant::now());
@@ -138,10 +101,10 @@ fn a_whole_cell_in_one_process_is_published_and_never_shares_its_region() {
 #[test]
 fn processes_that_are_killed_never_make_two_robots_share_a_region() {
     let address = free_address();
-    let start = |robot: &str| Process::start(&["--simulate", "--robots", robot, "--connect", &address]);
+    let start = |robot: &str| LiveProcess::start(&["--simulate", "--robots", robot, "--connect", &address]);
     // Robots may start before their arbiter.
     let mut robots = ROBOTS.map(start);
-    let mut arbiter = Process::start(&["--arbiter", "--listen", &address]);
+    let mut arbiter = LiveProcess::start(&["--arbiter", "--listen", &address]);
     let observer = Observer::at(&address);
     observer.wait("a robot never enters", 60, |seen| ROBOTS.iter().all(|r| seen.entered(r) > 0));
     let is_inside = |seen: &Seen, robot: &str| {
@@ -150,7 +113,7 @@ fn processes_that_are_killed_never_make_two_robots_share_a_region() {
     // A robot whose process dies inside: nobody else enters until it was heard again.
     observer.wait("left is never inside", 60, |seen| is_inside(seen, "left"));
     robots[0] = {
-        let Process(child) = &mut robots[0];
+        let LiveProcess(child) = &mut robots[0];
         child.kill().expect("it is killed");
         let right = observer.seen.lock().unwrap().entered("right");
         std::thread::sleep(Duration::from_secs(3));
@@ -163,7 +126,7 @@ fn processes_that_are_killed_never_make_two_robots_share_a_region() {
     };
     // An arbiter that dies: another one goes on.
     drop(arbiter);
-    arbiter = Process::start(&["--arbiter", "--listen", &address]);
+    arbiter = LiveProcess::start(&["--arbiter", "--listen", &address]);
     let before = ROBOTS.map(|r| observer.seen.lock().unwrap().entered(r));
     observer.wait("robots do not go on with a new arbiter", 60, |seen| {
         ROBOTS.iter().zip(before).all(|(r, before)| seen.entered(r) > before)
@@ -176,18 +139,10 @@ fn processes_that_are_killed_never_make_two_robots_share_a_region() {
 fn a_recording_of_the_service_replays_to_the_bit() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("live.mcap");
-    let mut command = Command::new(env!("CARGO_BIN_EXE_elbowroom"));
-    command.arg("live").arg(example()).args(["--simulate", "--listen", &free_address(), "--for", "4", "--record"]);
-    let output = command.arg(&file).output().expect("elbowroom runs");
-    assert!(output.status.success(), "{}", text(&output.stderr));
-    let replay =
-        Command::new(env!("CARGO_BIN_EXE_elbowroom")).arg("replay").arg(&file).output().expect("elbowroom runs");
-    assert!(replay.status.success(), "{}{}", text(&replay.stdout), text(&replay.stderr));
-    assert!(
-        text(&replay.stdout).contains("the same to the bit") && replay.stderr.is_empty(),
-        "{}",
-        text(&replay.stderr)
-    );
+    let arguments = ["--simulate", "--listen", &free_address(), "--for", "4", "--record"];
+    answer(live(&arguments).arg(&file).stderr(Stdio::piped()).output().unwrap()).expect(0);
+    let replay = elbowroom(folder.path(), &["replay", "live.mcap"]).expect(0);
+    assert!(replay.stdout.contains("the same to the bit") && replay.stderr.is_empty(), "{}", replay.stderr);
 }
 
 #[test]
@@ -206,13 +161,7 @@ fn wrong_calls_say_what_to_write() {
         (vec!["--record", "/nowhere/live.mcap", "--listen", "127.0.0.1:0"], "--record: "),
     ];
     for (arguments, message) in cases {
-        let Output { status, stderr, .. } =
-            live(&[]).args(&arguments).stderr(Stdio::piped()).output().expect("elbowroom runs");
-        let stderr = text(&stderr);
-        assert!(status.code() == Some(2) && stderr.contains(message), "{arguments:?}: {status} {stderr}");
+        let answer = answer(live(&arguments).args(["--for", "100"]).stderr(Stdio::piped()).output().unwrap());
+        assert!(answer.status == 2 && answer.stderr.contains(message), "{arguments:?}: {}", answer.stderr);
     }
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
 }

@@ -1,28 +1,24 @@
 //! `elbowroom control` with a service on the loopback network.
 
 use std::path::Path;
-use std::process::{Command, Output};
 
-fn control(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_elbowroom"));
-    command.current_dir(folder).env_remove("ELBOWROOM_SECRET").arg("control").args(arguments);
-    command.output().expect("elbowroom runs")
-}
+use crate::common::{Answer, answer, command};
 
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
+fn control(folder: &Path, arguments: &[&str]) -> Answer {
+    let mut command = command(folder, &["control"]);
+    answer(command.args(arguments).env_remove("ELBOWROOM_SECRET").output().unwrap())
 }
 
 /// A file of tokens with one of each role, and a file `ROLE.secret` for each.
 fn make_tokens(folder: &Path) {
     for role in ["operator", "programmer", "integrator"] {
         let made = control(folder, &["token", "--role", role, "--name", role, "--file", "tokens.toml"]);
-        assert!(made.status.success(), "{}", text(&made.stderr));
-        let secret = text(&made.stdout);
+        assert!(made.status == 0, "{}", made.stderr);
+        let secret = made.stdout;
         assert_eq!(secret.trim().len(), 64);
         std::fs::write(folder.join(format!("{role}.secret")), &secret).unwrap();
         let kept = std::fs::read_to_string(folder.join("tokens.toml")).unwrap();
-        assert!(!kept.contains(secret.trim()) && !text(&made.stderr).contains(secret.trim()));
+        assert!(!kept.contains(secret.trim()) && !made.stderr.contains(secret.trim()));
     }
 }
 
@@ -44,15 +40,16 @@ fn tokens_are_made_without_a_service_and_wrong_calls_say_what_to_write() {
         (&["regions", "--secret", "operator.secret", "--at", "127.0.0.1:1"], "the service does not answer"),
     ];
     for (arguments, message) in cases {
-        let Output { status, stderr, .. } = control(folder, arguments);
-        assert!(status.code() == Some(2) && text(&stderr).contains(message), "{arguments:?}: {}", text(&stderr));
+        let answer = control(folder, arguments);
+        assert!(answer.status == 2 && answer.stderr.contains(message), "{arguments:?}: {}", answer.stderr);
     }
 }
 
 #[cfg(feature = "live")]
 mod with_a_service {
     use super::*;
-    use std::process::{Child, Stdio};
+    use crate::common::live_process::LiveProcess;
+    use std::process::Stdio;
     use std::time::{Duration, Instant};
 
     const CELL: &str = r#"
@@ -76,23 +73,12 @@ radius = 200
 warning = 100
 "#;
 
-    /// A process that is killed when it is dropped.
-    struct Process(Child);
-
-    impl Drop for Process {
-        fn drop(&mut self) {
-            let _ = self.0.kill();
-            let _ = self.0.wait();
-        }
-    }
-
     /// Starts the whole cell, and returns its control address once it serves.
-    fn start(folder: &Path, arguments: &[&str]) -> (Process, String) {
+    fn start(folder: &Path, arguments: &[&str]) -> (LiveProcess, String) {
         use std::io::{BufRead as _, BufReader};
-        let mut command = Command::new(env!("CARGO_BIN_EXE_elbowroom"));
-        command.current_dir(folder).args(["live", "cell.toml", "--listen", "127.0.0.1:0", "--for", "100"]);
+        let mut command = command(folder, &["live", "cell.toml", "--listen", "127.0.0.1:0", "--for", "100"]);
         command.args(["--control", "127.0.0.1:0", "--tokens", "tokens.toml"]).args(arguments);
-        let mut process = Process(command.stderr(Stdio::piped()).spawn().expect("elbowroom starts"));
+        let mut process = LiveProcess(command.stderr(Stdio::piped()).spawn().expect("elbowroom starts"));
         let mut lines = BufReader::new(process.0.stderr.take().unwrap()).lines().map_while(Result::ok);
         let address = lines.find_map(|line| line.strip_prefix("control: ").map(str::to_owned));
         // What is printed later must not fill the pipe.
@@ -111,46 +97,40 @@ warning = 100
             let secret = format!("{role}.secret");
             control(folder, &[arguments, &["--at", &at, "--secret", &secret]].concat())
         };
-        let listed = text(&run(&["regions"], "operator").stdout);
+        let listed = run(&["regions"], "operator").stdout;
         assert!(listed.contains("cart") && listed.contains("temporary  off"), "{listed}");
         assert!(listed.contains("rail: its controller is not heard"), "{listed}");
         let refused = run(&["switch", "cart", "on"], "operator");
-        assert_eq!(refused.status.code(), Some(2));
-        assert!(text(&refused.stderr).contains("takes the programmer class"), "{}", text(&refused.stderr));
+        assert_eq!(refused.status, 2);
+        assert!(refused.stderr.contains("takes the programmer class"), "{}", refused.stderr);
         let switched = run(&["switch", "cart", "on", "--note", "cart arrives"], "programmer");
-        assert!(switched.status.success(), "{}", text(&switched.stderr));
-        assert!(text(&switched.stdout).contains("programmer (programmer): switch region.cart - cart arrives"));
-        assert!(text(&switched.stderr).contains("rail: is not heard, so it may be inside"));
-        assert!(text(&run(&["regions"], "operator").stdout).contains("temporary  on"));
+        assert!(switched.status == 0, "{}", switched.stderr);
+        assert!(switched.stdout.contains("programmer (programmer): switch region.cart - cart arrives"));
+        assert!(switched.stderr.contains("rail: is not heard, so it may be inside"));
+        assert!(run(&["regions"], "operator").stdout.contains("temporary  on"));
         let refused = run(&["clear", "rail", "--outside", "cart", "--repeat", "rail"], "integrator");
-        assert!(
-            text(&refused.stderr).contains("does not name the exchange regions of `rail`"),
-            "{}",
-            text(&refused.stderr)
-        );
-        let log = text(&control(folder, &["log", "cell.toml"]).stdout);
+        assert!(refused.stderr.contains("does not name the exchange regions of `rail`"), "{}", refused.stderr);
+        let log = control(folder, &["log", "cell.toml"]).stdout;
         assert!(log.contains("region.cart: active false -> true") && log.lines().count() == 2, "{log}");
         let moved = run(&["move", "cart", "centre=[0, 0, 1900]", "--note", "other dock"], "programmer");
-        assert!(moved.status.success(), "{}", text(&moved.stderr));
-        assert!(text(&moved.stdout).contains("region.cart: centre [0, 0, 1000] -> [0, 0, 1900]"));
+        assert!(moved.status == 0, "{}", moved.stderr);
+        assert!(moved.stdout.contains("region.cart: centre [0, 0, 1000] -> [0, 0, 1900]"));
         std::fs::write(folder.join("table.toml"), "[region.table]\nshape = \"sphere\"\ncentre = [0, 900, 0]\nradius = 100\nwarning = 100\nlife = \"temporary\"\n").unwrap();
         let added = run(&["add", "table", "table.toml"], "programmer");
-        assert!(added.status.success() && text(&added.stdout).contains("add region.table"), "{}", text(&added.stderr));
-        assert!(text(&run(&["regions"], "operator").stdout).contains("table                forbidden  temporary  on"));
+        assert!(added.status == 0 && added.stdout.contains("add region.table"), "{}", added.stderr);
+        assert!(run(&["regions"], "operator").stdout.contains("table                forbidden  temporary  on"));
         let refused = run(&["add", "table", "table.toml"], "programmer");
-        assert!(text(&refused.stderr).contains("there is a region `table` already"), "{}", text(&refused.stderr));
+        assert!(refused.stderr.contains("there is a region `table` already"), "{}", refused.stderr);
         let refused = run(&["move", "end", "centre=[0, 0, 2600]"], "integrator");
-        assert!(text(&refused.stderr).contains("is permanent and in the cell file"), "{}", text(&refused.stderr));
-        assert!(text(&run(&["move", "cart", "nowhere"], "programmer").stderr).contains("is no KEY=VALUE"));
-        assert!(run(&["remove", "table"], "programmer").status.success());
-        assert!(!text(&run(&["regions"], "operator").stdout).contains("table "));
+        assert!(refused.stderr.contains("is permanent and in the cell file"), "{}", refused.stderr);
+        assert!(run(&["move", "cart", "nowhere"], "programmer").stderr.contains("is no KEY=VALUE"));
+        assert!(run(&["remove", "table"], "programmer").status == 0);
+        assert!(!run(&["regions"], "operator").stdout.contains("table "));
         let file = folder.join("cell.control.jsonl");
         let written = std::fs::read_to_string(&file).unwrap();
         std::fs::write(&file, written.replace("cart arrives", "cart departs") + &written).unwrap();
         let broken = control(folder, &["log", "cell.toml"]);
-        assert!(
-            broken.status.code() == Some(2) && text(&broken.stderr).contains("does not follow the entry before it")
-        );
+        assert!(broken.status == 2 && broken.stderr.contains("does not follow the entry before it"));
     }
 
     #[test]
@@ -162,12 +142,12 @@ warning = 100
         let (_process, at) = start(folder, &["--simulate"]);
         let began = Instant::now();
         let secret = ["--at", &at, "--secret", "programmer.secret"];
-        while text(&control(folder, &[&["regions"][..], &secret].concat()).stdout).contains("not heard") {
+        while control(folder, &[&["regions"][..], &secret].concat()).stdout.contains("not heard") {
             assert!(began.elapsed() < Duration::from_secs(20), "the simulated controller is not heard");
         }
         let refused = control(folder, &[&["switch", "cart", "on"][..], &secret].concat());
-        assert_eq!(refused.status.code(), Some(2));
-        let message = text(&refused.stderr);
+        assert_eq!(refused.status, 2);
+        let message = refused.stderr;
         assert!(message.contains("robot `rail` is inside region `cart`: its distance is 0 mm"), "{message}");
     }
 }

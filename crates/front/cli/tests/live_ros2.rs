@@ -1,48 +1,18 @@
 //! `elbowroom live --ros2` and its watchdog as processes on the loopback network.
 #![cfg(feature = "live")]
 
-use std::path::PathBuf;
-use std::process::{Child, Command, Stdio};
+use std::process::Stdio;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
+use crate::common::answer;
+use crate::common::live_process::{LiveProcess, live};
 use elbowroom::live::network::{Network, Subscription, ZenohNetwork, ZenohSettings};
+use elbowroom_testkit::network::free_address;
 
 const BOUND: Duration = Duration::from_millis(200);
 /// What a busy machine may add to the bound.
 const BUSY: Duration = Duration::from_millis(800);
-
-fn example() -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../examples/exchange/cell.toml")
-}
-
-fn live(arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_elbowroom"));
-    command.arg("live").arg(example()).args(arguments).env_remove("ROS_DOMAIN_ID").env_remove("ROS_DISTRO");
-    command.stderr(Stdio::null()).stdin(Stdio::null());
-    command
-}
-
-/// A process that is killed when it is dropped; however a test ends, it ends by itself.
-struct Process(Child);
-
-impl Process {
-    fn start(arguments: &[&str]) -> Self {
-        Self(live(arguments).args(["--for", "100"]).spawn().expect("elbowroom starts"))
-    }
-}
-
-impl Drop for Process {
-    fn drop(&mut self) {
-        let _ = self.0.kill();
-        let _ = self.0.wait();
-    }
-}
-
-fn free_address() -> String {
-    let listener = std::net::TcpListener::bind("127.0.0.1:0").expect("a free port");
-    listener.local_addr().expect("its address").to_string()
-}
 
 /// The factors of the left robot, as its controller would get them.
 struct Factors {
@@ -79,12 +49,12 @@ impl Factors {
 #[test]
 fn the_watchdog_sends_zero_when_the_service_was_killed() {
     let router = free_address();
-    let _router = Process::start(&["--arbiter", "--listen", &router]);
+    let _router = LiveProcess::start(&["--arbiter", "--listen", &router]);
     let factors = Factors::at(&router);
     let ros2 = ["--ros2-domain", "3", "--ros2-router", &router];
     let service = || {
         let arguments = ["--robots", "left,right", "--connect", &router, "--simulate", "--ros2"];
-        Process::start(&[&arguments[..], &ros2].concat())
+        LiveProcess::start(&[&arguments[..], &ros2].concat())
     };
     // Without a watchdog the last factor stands: this is what it is for.
     let first = service();
@@ -93,7 +63,7 @@ fn the_watchdog_sends_zero_when_the_service_was_killed() {
     std::thread::sleep(BOUND + BUSY);
     factors.wait("the last factor before the kill was a go", BUSY, |factor| factor > 0.0);
 
-    let _watchdog = Process::start(&[&["--ros2-watchdog", "200"][..], &ros2].concat());
+    let _watchdog = LiveProcess::start(&[&["--ros2-watchdog", "200"][..], &ros2].concat());
     factors.wait("a watchdog that has heard nothing sends no 0", Duration::from_secs(20), |factor| factor == 0.0);
     let second = service();
     factors.wait("the robot does not go on", Duration::from_mins(1), |factor| factor > 0.0);
@@ -124,10 +94,9 @@ fn wrong_calls_say_what_to_write() {
     for (arguments, message) in cases {
         let listen = ["--listen", "127.0.0.1:0", "--for", "1"];
         let listen = if arguments[0] == "--ros2-watchdog" { &listen[2..] } else { &listen[..] };
-        let output = live(&arguments).args(listen).stderr(Stdio::piped()).output().expect("elbowroom runs");
-        let stderr = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.code() == Some(2) && stderr.contains(message), "{arguments:?}: {stderr}");
+        let answer = answer(live(&arguments).args(listen).stderr(Stdio::piped()).output().unwrap());
+        assert!(answer.status == 2 && answer.stderr.contains(message), "{arguments:?}: {}", answer.stderr);
     }
-    let domain = live(&["--ros2", "--for", "1"]).env("ROS_DOMAIN_ID", "x").stderr(Stdio::piped()).output();
-    assert!(String::from_utf8_lossy(&domain.expect("elbowroom runs").stderr).contains("ROS_DOMAIN_ID is x"));
+    let domain = live(&["--ros2", "--for", "1"]).env("ROS_DOMAIN_ID", "x").stderr(Stdio::piped()).output().unwrap();
+    assert!(answer(domain).stderr.contains("ROS_DOMAIN_ID is x"));
 }

@@ -1,29 +1,19 @@
 //! The file of pairs: `pairs` in a cell, `query --pairs`, `inspect --pairs`.
 
-use crate::common::{Answer, elbowroom, with_cell};
+use crate::common::{Answer, elbowroom, part_on_table, slide_arm, with_cell};
 
 /// An arm with a slide at its end, and a part that stands on a table.
-const CELL: &str = r#"version = 1
-units = { length = "mm", angle = "deg" }
-pairs = "pairs.toml"
-[robot.arm]
-dh = [{ a = 400, min = -170, max = 170, speed = 90 }, { a = 300, min = -170, max = 170, speed = 90 }, { kind = "prismatic", min = -400, max = 0, speed = 500 }]
-links = [[], { capsule = { from = [-300, 0, 0], to = [0, 0, 0], radius = 40 } }, { capsule = { from = [0, 0, 0], to = [0, 0, 300], radius = 20 } }]
-base = { at = [0, 0, 600] }
-start = [0, 0, -270]
-[object.part]
-shape = "box"
-at = [700, 0, 250]
-size = [60, 60, 100]
-[object.table]
-shape = "box"
-at = [500, 0, 100]
-size = [1000, 1800, 200]
-[map.arm]
+const CELL: &str = concat!(
+    "version = 1\nunits = { length = \"mm\", angle = \"deg\" }\npairs = \"pairs.toml\"\n",
+    slide_arm!(),
+    "start = [0, 0, -270]\n",
+    part_on_table!(),
+    r#"[map.arm]
 joints = ["joint_1", "joint_3"]
 step = [10, 20]
 others = "start"
-"#;
+"#
+);
 
 const STANDS: &str = "{ a = \"part\", b = \"table\", reason = \"it stands there\" }";
 

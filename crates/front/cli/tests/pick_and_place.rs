@@ -1,24 +1,14 @@
 //! Parts that programs grip, carry and release.
 
-use crate::common::{Answer, elbowroom, with_cell};
+use crate::common::{Answer, elbowroom, part_on_table, slide_arm, with_cell};
 
 /// An arm with a slide at its end, a part on a table, and a post between two places.
-const CELL: &str = r#"version = 1
-units = { length = "mm", angle = "deg" }
-[robot.arm]
-dh = [{ a = 400, min = -170, max = 170, speed = 90 }, { a = 300, min = -170, max = 170, speed = 90 }, { kind = "prismatic", min = -400, max = 0, speed = 500 }]
-links = [[], { capsule = { from = [-300, 0, 0], to = [0, 0, 0], radius = 40 } }, { capsule = { from = [0, 0, 0], to = [0, 0, 300], radius = 20 } }]
-base = { at = [0, 0, 600] }
-start = [0, 0, -100]
-[object.part]
-shape = "box"
-at = [700, 0, 250]
-size = [60, 60, 100]
-[object.table]
-shape = "box"
-at = [500, 0, 100]
-size = [1000, 1800, 200]
-"#;
+const CELL: &str = concat!(
+    "version = 1\nunits = { length = \"mm\", angle = \"deg\" }\n",
+    slide_arm!(),
+    "start = [0, 0, -100]\n",
+    part_on_table!()
+);
 const POST: &str = "[object.post]\nshape = \"cylinder\"\nat = [606, 350, 310]\nradius = 30\nheight = 220\n";
 
 fn joint(q: [f64; 3]) -> String {

@@ -104,7 +104,7 @@ impl JointProfile {
 
 #[cfg(test)]
 mod tests {
-    use elbowroom_testkit::random::{split_mix, unit};
+    use elbowroom_testkit::random::SplitMix;
 
     use super::*;
 
@@ -127,12 +127,11 @@ mod tests {
 
     #[test]
     fn profiles_end_at_rest_at_the_target_within_the_limits_and_none_is_faster() {
-        let mut seed = 3;
-        let mut random = |low: f64, high: f64| low + (high - low) * unit(split_mix(&mut seed));
+        let mut random = SplitMix(3);
         let limit = JointLimit { lower: -9.0, upper: 9.0, speed: 2.0, acceleration: 6.0, stop: 15.0 };
         let mut direct = 0;
         for case in 0..2_000 {
-            let (q, qd, target) = (random(-2.0, 2.0), random(-2.0, 2.0), random(-3.0, 3.0));
+            let (q, qd, target) = (random.between(-2.0, 2.0), random.between(-2.0, 2.0), random.between(-3.0, 3.0));
             let profile = JointProfile::to_rest_at(target, q, qd, &limit, |_| 0.1);
             let duration = profile.duration_s();
             let (end, at_end) = profile.at(duration + 1.0);

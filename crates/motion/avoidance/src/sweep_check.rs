@@ -137,7 +137,7 @@ fn neighbour(obstacles: &DynamicObstacles<'_>, geometry: GeometryId, robot: Robo
 #[cfg(test)]
 mod tests {
     use elbowroom_scene::{Checker, CheckerOptions, SceneState, Selection, example};
-    use elbowroom_testkit::random::{linear_congruential, unit};
+    use elbowroom_testkit::random::Random;
 
     use super::*;
     use crate::Neighbour;
@@ -164,13 +164,14 @@ mod tests {
         let limits = JointLimit::of(&scene.robots()[0].robot.chain, 0.25, 0.1, 1.0);
         let (mut query, mut check) = (ProximityQuery::new(&scene, RobotId(0)), SweepCheck::new(&scene));
         let duration_s = 0.3;
-        let mut seed = 7_u64;
-        let mut random = |low: f64, high: f64| low + (high - low) * unit(linear_congruential(&mut seed));
+        let mut random = Random(7);
         let (mut hits, mut free, mut only_moving) = (0, 0, 0);
         for _ in 0..3_000 {
             // Both arms lean towards each other.
-            let q = [1.0, -1.0].map(|lean| vec![random(-0.6, 0.6), lean * random(0.4, 1.5), lean * random(-0.2, 1.2)]);
-            let qd: [Vec<f64>; 2] = std::array::from_fn(|_| (0..3).map(|_| random(-1.0, 1.0)).collect());
+            let q = [1.0, -1.0].map(|lean| {
+                vec![random.between(-0.6, 0.6), lean * random.between(0.4, 1.5), lean * random.between(-0.2, 1.2)]
+            });
+            let qd: [Vec<f64>; 2] = std::array::from_fn(|_| (0..3).map(|_| random.between(-1.0, 1.0)).collect());
             let robots = [Neighbour { robot: RobotId(1), q: &q[1], qd: &qd[1], known: false }];
             let obstacles = DynamicObstacles { objects: &[], robots: &robots };
             if query.update_scene(&q[0], &obstacles).is_err() {

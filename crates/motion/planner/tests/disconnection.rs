@@ -10,7 +10,7 @@ use elbowroom_proximity::{Cuboid, Shape};
 use elbowroom_robot::{GeometryId, RobotId, example};
 use elbowroom_scene::{Checker, CheckerOptions, Object, Scene, SceneState};
 use elbowroom_spatial::{Pose, Vec3};
-use elbowroom_testkit::random::{split_mix, unit};
+use elbowroom_testkit::random::SplitMix;
 
 const ROBOT: RobotId = RobotId(0);
 
@@ -99,14 +99,13 @@ fn a_goal_that_cannot_be_left_keeps_the_question_open() {
 /// Where the planner in the exact scene has a path, nothing is proven against it, however little the search on covers may do.
 #[test]
 fn no_proof_contradicts_a_path() {
-    let mut seed = 7;
-    let mut within = |low: f64, high: f64| low + (high - low) * unit(split_mix(&mut seed));
+    let mut random = SplitMix(7);
     let (mut paths, mut proofs) = (0, 0);
     for case in 0..60 {
         let boxes: Vec<_> = (0..6)
             .map(|_| {
-                let at = Vec3::new(within(-0.9, 0.9), within(-0.9, 0.9), within(0.0, 1.3));
-                (at, Vec3::new(within(0.02, 0.4), within(0.02, 0.4), within(0.02, 0.4)))
+                let at = Vec3::new(random.between(-0.9, 0.9), random.between(-0.9, 0.9), random.between(0.0, 1.3));
+                (at, Vec3::new(random.between(0.02, 0.4), random.between(0.02, 0.4), random.between(0.02, 0.4)))
             })
             .collect();
         let scene = scene(&boxes);
@@ -114,7 +113,7 @@ fn no_proof_contradicts_a_path() {
         let mut state = SceneState::new(&scene);
         let mut free = Vec::new();
         for _ in 0..400 {
-            let q = [within(-3.0, 3.0), within(-2.2, 2.2), within(-2.5, 2.5)];
+            let q = [random.between(-3.0, 3.0), random.between(-2.2, 2.2), random.between(-2.5, 2.5)];
             state.set_q(&scene, ROBOT, &q).unwrap();
             if exact.within(&state, 1e-3).is_none() {
                 free.push(q);

@@ -56,14 +56,13 @@ fn size(points: &[Vec3]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use elbowroom_testkit::random::{linear_congruential, unit};
+    use elbowroom_testkit::random::Random;
 
     #[test]
     fn all_points_are_contained_in_little_more_than_their_own_volume() {
-        let mut seed = 5_u64;
-        let mut random = || unit(linear_congruential(&mut seed));
+        let mut random = Random(5);
         let turn = Pose::from_xyz_rpy([3.0, -1.0, 0.2], [0.3, 0.7, -1.1]);
-        let mut point = || turn.transform_point(Vec3::new(random(), 0.3 * random(), 0.2 * random()));
+        let mut point = || turn.transform_point(Vec3::new(random.unit(), 0.3 * random.unit(), 0.2 * random.unit()));
         let points: Vec<Vec3> = (0..20_000).map(|_| point()).collect();
         for found in [cuboid(&points), capsule(&points)] {
             let (shape, pose) = found.unwrap();

@@ -1,19 +1,11 @@
 //! The collision point against the shapes themselves and against queries link by link.
 
-use crate::common::{Random, RandomGeometry, apart, link, scene_of, shapes};
+use crate::common::{Random, RandomGeometry, apart, link, random_state, scene_of, shapes};
 
 use elbowroom_proximity::project_point;
 use elbowroom_robot::{GeometryId, ObjectId, RobotId};
 
 use elbowroom_scene::{Checker, CheckerOptions, CollisionPoint, Detail, Scene, SceneState, Selection};
-
-fn random_state(scene: &Scene, r: &mut Random) -> SceneState {
-    let mut state = SceneState::new(scene);
-    for robot in 0..scene.robots().len() {
-        state.set_q(scene, RobotId(robot), &r.q()).unwrap();
-    }
-    state
-}
 
 /// Distance (m) of a point from the surface of a collider.
 fn distance_to_surface(

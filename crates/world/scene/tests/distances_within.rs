@@ -1,7 +1,7 @@
 //! The distances within a margin against each pair measured by itself.
 
 use crate::common;
-use crate::common::{Random, RandomGeometry, all_distances, link, scene_of};
+use crate::common::{Random, RandomGeometry, all_distances, link, random_state, scene_of};
 
 use elbowroom_robot::{GeometryId, RobotId};
 use elbowroom_scene::{Checker, CheckerOptions, Level, PairDistance, Scene, SceneState, Selection};
@@ -9,14 +9,6 @@ use elbowroom_spatial::Pose;
 
 /// Tolerance (m) on distances of two methods.
 const TOLERANCE: f64 = 1e-9;
-
-fn random_state(scene: &Scene, r: &mut Random) -> SceneState {
-    let mut state = SceneState::new(scene);
-    for robot in 0..scene.robots().len() {
-        state.set_q(scene, RobotId(robot), &r.q()).unwrap();
-    }
-    state
-}
 
 fn near(checker: &mut Checker, state: &SceneState, margin: f64) -> Vec<PairDistance> {
     let mut found = Vec::new();

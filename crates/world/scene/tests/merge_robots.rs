@@ -7,7 +7,7 @@ use elbowroom_scene::{
     Attachment, Checker, CheckerOptions, MergedRobots, Object, PairEdit, Scene, SceneError, SceneState,
 };
 use elbowroom_spatial::{Pose, Vec3};
-use elbowroom_testkit::random::{split_mix, unit};
+use elbowroom_testkit::random::SplitMix;
 
 /// Three arms around a table; the part is held by the second, the ball is scaled, one pair is skipped and one has a margin.
 fn scene() -> Scene {
@@ -33,10 +33,10 @@ fn scene() -> Scene {
     builder.build().unwrap()
 }
 
-fn state(scene: &Scene, random: &mut impl FnMut(f64, f64) -> f64) -> SceneState {
+fn state(scene: &Scene, random: &mut SplitMix) -> SceneState {
     let mut state = SceneState::new(scene);
     for robot in 0..3 {
-        let q = [random(-3.0, 3.0), random(-2.2, 2.2), random(-2.5, 2.5)];
+        let q = [random.between(-3.0, 3.0), random.between(-2.2, 2.2), random.between(-2.5, 2.5)];
         state.set_q(scene, RobotId(robot), &q).unwrap();
     }
     let in_link = Pose::from_translation(Vec3::Z * 0.42);
@@ -50,8 +50,7 @@ fn state(scene: &Scene, random: &mut impl FnMut(f64, f64) -> f64) -> SceneState 
 #[test]
 fn contacts_and_distances_stay_as_they_were() {
     let scene = scene();
-    let mut seed = 4;
-    let mut random = |low: f64, high: f64| low + (high - low) * unit(split_mix(&mut seed));
+    let mut random = SplitMix(4);
     for group in [&[RobotId(0), RobotId(1)][..], &[RobotId(2), RobotId(1)], &[RobotId(0), RobotId(1), RobotId(2)]] {
         let merged = MergedRobots::new(&scene, group).unwrap();
         assert_eq!(merged.scene().robots().len(), 4 - group.len());

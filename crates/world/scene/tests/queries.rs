@@ -1,6 +1,6 @@
 //! Every query against a direct test of all pairs.
 
-use crate::common::{Random, RandomGeometry, all_distances, apart, link, scene_of};
+use crate::common::{Random, RandomGeometry, all_distances, apart, link, random_state, scene_of};
 
 use elbowroom_kinematics::LinkId;
 use elbowroom_proximity::{HalfSpace, Shape, Sphere};
@@ -18,14 +18,6 @@ fn options() -> Vec<CheckerOptions> {
     }
     all.push(CheckerOptions { level: Level::L3, ..CheckerOptions::default() });
     all
-}
-
-fn random_state(scene: &Scene, r: &mut Random) -> SceneState {
-    let mut state = SceneState::new(scene);
-    for robot in 0..scene.robots().len() {
-        state.set_q(scene, RobotId(robot), &r.q()).unwrap();
-    }
-    state
 }
 
 const SELECTIONS: [(Selection, Selection); 9] = [

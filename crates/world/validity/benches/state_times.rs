@@ -15,7 +15,7 @@ use elbowroom_formats::robot::{LoadOptions, load};
 use elbowroom_proximity::{Cuboid, Shape, Sphere};
 use elbowroom_robot::Robot;
 use elbowroom_spatial::{Pose, Rotation, Vec3};
-use elbowroom_testkit::random::{linear_congruential, unit};
+use elbowroom_testkit::random::Random;
 use elbowroom_validity::{CoveredRobot, ObstacleSet, Validity, ValidityChecker};
 use serde_json::{Value, json};
 
@@ -62,10 +62,9 @@ fn robot(urdf: &str, srdf: Option<&String>) -> Result<Robot> {
 /// Random obstacles, and random edges of one radian that are free among them.
 fn random_scene(robot: &Robot, count: usize, is_cloud: bool) -> Result<()> {
     let covered = CoveredRobot::new(robot, Pose::IDENTITY)?;
-    let mut seed = 7;
-    let mut random = |low: f64, high: f64| low + (high - low) * unit(linear_congruential(&mut seed));
+    let mut random = Random(7);
     let mut place = || {
-        let (angle, radius, height) = (random(-3.1, 3.1), random(0.45, 1.0), random(0.0, 1.1));
+        let (angle, radius, height) = (random.between(-3.1, 3.1), random.between(0.45, 1.0), random.between(0.0, 1.1));
         Vec3::new(radius * f64::cos(angle), radius * f64::sin(angle), height)
     };
     let places: Vec<Vec3> = (0..count).map(|_| place()).collect();
@@ -98,7 +97,7 @@ fn random_scene(robot: &Robot, count: usize, is_cloud: bool) -> Result<()> {
     let (lower, upper) = (robot.chain.lower(), robot.chain.upper());
     let mut q = || -> Vec<f64> {
         let ends = lower.iter().zip(&upper);
-        ends.map(|(&l, &u)| if l.is_finite() { random(l, u) } else { random(-3.2, 3.2) }).collect()
+        ends.map(|(&l, &u)| if l.is_finite() { random.between(l, u) } else { random.between(-3.2, 3.2) }).collect()
     };
     let mut questions = Questions::default();
     let mut tried = 0;

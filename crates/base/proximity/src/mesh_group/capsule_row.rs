@@ -135,7 +135,7 @@ fn clamped<S: Simd>(x: W16<S>, limit: W16<S>) -> W16<S> {
 #[cfg(test)]
 mod tests {
     use elbowroom_spatial::{Pose, Rotation};
-    use elbowroom_testkit::random::{split_mix, unit};
+    use elbowroom_testkit::random::SplitMix;
     use fearless_simd::dispatch;
 
     use super::*;
@@ -145,18 +145,18 @@ mod tests {
     /// Lanes that are left out are apart by the exact distance; few that are apart by a millimetre are kept.
     #[test]
     fn capsules_that_are_left_out_are_apart() {
-        let mut seed = 8;
-        let mut random = |low: f64, high: f64| low + (high - low) * unit(split_mix(&mut seed));
+        let mut random = SplitMix(8);
         let error = 1e-5;
         let (mut apart, mut kept) = (0, 0);
         for _ in 0..3000 {
             let mut draw = || {
-                let axis = Vec3::new(random(-1.0, 1.0), random(-1.0, 1.0), random(-1.0, 1.0));
+                let axis = Vec3::new(random.between(-1.0, 1.0), random.between(-1.0, 1.0), random.between(-1.0, 1.0));
                 // Some are parallel to an axis, some are balls.
-                let axis = if random(0.0, 1.0) < 0.3 { Vec3::X } else { axis.try_normalize().unwrap_or(Vec3::Y) };
-                let half_length = if random(0.0, 1.0) < 0.2 { 0.0 } else { random(0.0, 0.5) };
-                let middle = Vec3::new(random(-0.5, 0.5), random(-0.5, 0.5), random(-0.5, 0.5));
-                BoundingCapsule { middle, axis, half_length, radius: random(0.01, 0.2), reach: 1.0 }
+                let axis =
+                    if random.between(0.0, 1.0) < 0.3 { Vec3::X } else { axis.try_normalize().unwrap_or(Vec3::Y) };
+                let half_length = if random.between(0.0, 1.0) < 0.2 { 0.0 } else { random.between(0.0, 0.5) };
+                let middle = Vec3::new(random.between(-0.5, 0.5), random.between(-0.5, 0.5), random.between(-0.5, 0.5));
+                BoundingCapsule { middle, axis, half_length, radius: random.between(0.01, 0.2), reach: 1.0 }
             };
             let all: Vec<_> = (0..13).map(|_| draw()).collect();
             let (row, mut placed) = (CapsuleRow::new(&all), PlacedRow::EMPTY);

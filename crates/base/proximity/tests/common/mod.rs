@@ -11,6 +11,16 @@ use elbowroom_proximity::{
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 pub use elbowroom_testkit::random::SplitMix;
 
+/// A sphere that is stretched along the axes and has waves: closed, not convex.
+pub fn lump(radius: f64, fine: f64, stretch: Vec3, wave: f64) -> TriMesh {
+    let (mut v, t) = tessellate(&Shape::Sphere(Sphere { radius }), fine);
+    for p in &mut v {
+        let n = *p / radius;
+        *p = (*p * (1.0 + wave * (4.0 * n.x).sin() * (3.0 * n.y).cos())).scale(stretch);
+    }
+    TriMesh::new(v, t).unwrap()
+}
+
 /// Random geometry.
 pub trait RandomGeometry {
     /// Each coordinate within `half` of 0.

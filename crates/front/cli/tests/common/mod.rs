@@ -1,6 +1,9 @@
 //! Runs the built command as a shell would.
 #![allow(dead_code, reason = "every test program uses a part of it")]
 
+#[cfg(feature = "live")]
+pub mod live_process;
+
 use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
@@ -103,3 +106,31 @@ pub fn solid_swing() -> String {
     let links = "links = [[], { capsule = { from = [0, 0, 0], to = [-300, 0, 0], radius = 40 } }]\n";
     SWING.replacen("\n[region", &format!("{links}\n[region"), 1)
 }
+
+/// An arm with two joints and a slide at its end, in millimetres and degrees, without its start.
+macro_rules! slide_arm {
+    () => {
+        r#"[robot.arm]
+dh = [{ a = 400, min = -170, max = 170, speed = 90 }, { a = 300, min = -170, max = 170, speed = 90 }, { kind = "prismatic", min = -400, max = 0, speed = 500 }]
+links = [[], { capsule = { from = [-300, 0, 0], to = [0, 0, 0], radius = 40 } }, { capsule = { from = [0, 0, 0], to = [0, 0, 300], radius = 20 } }]
+base = { at = [0, 0, 600] }
+"#
+    };
+}
+pub(crate) use slide_arm;
+
+/// A part that stands on a table, within reach of [`slide_arm`].
+macro_rules! part_on_table {
+    () => {
+        r#"[object.part]
+shape = "box"
+at = [700, 0, 250]
+size = [60, 60, 100]
+[object.table]
+shape = "box"
+at = [500, 0, 100]
+size = [1000, 1800, 200]
+"#
+    };
+}
+pub(crate) use part_on_table;

@@ -111,6 +111,15 @@ pub fn scene_of(seed: u64, more: impl FnOnce(&mut SceneBuilder)) -> Scene {
     builder.build().unwrap()
 }
 
+/// A state with both arms anywhere.
+pub fn random_state(scene: &Scene, r: &mut Random) -> SceneState {
+    let mut state = SceneState::new(scene);
+    for robot in 0..scene.robots().len() {
+        state.set_q(scene, RobotId(robot), &r.q()).unwrap();
+    }
+    state
+}
+
 /// All shapes of a link or object with their present poses.
 pub fn shapes(scene: &Scene, state: &SceneState, id: GeometryId) -> Vec<(Shape, Pose)> {
     let in_world = state.pose(scene, id).unwrap();

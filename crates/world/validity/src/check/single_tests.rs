@@ -3,7 +3,7 @@
 use elbowroom_proximity::{Cuboid, Cylinder, Shape, Sphere};
 use elbowroom_robot::example;
 use elbowroom_spatial::{Pose, Rotation, Vec3};
-use elbowroom_testkit::random::{linear_congruential, unit};
+use elbowroom_testkit::random::Random;
 use fearless_simd::dispatch;
 
 use super::ValidityChecker;
@@ -32,8 +32,7 @@ fn touching(robot: &CoveredRobot, obstacles: &ObstacleSet, q: &[Vec<f64>]) -> u3
 
 #[test]
 fn one_configuration_touches_what_it_touches_in_a_block() {
-    let mut seed = 3;
-    let mut random = |low: f64, high: f64| low + (high - low) * unit(linear_congruential(&mut seed));
+    let mut random = Random(3);
     let robot = example::arm().unwrap();
     let covered = CoveredRobot::new(&robot, Pose::IDENTITY).unwrap();
     let (mut free, mut touched) = (0, 0);
@@ -47,14 +46,14 @@ fn one_configuration_touches_what_it_touches_in_a_block() {
                 1 => Shape::Cuboid(Cuboid { half_extents }),
                 _ => Shape::Cylinder(Cylinder { radius: 0.3 * size, half_length: size }),
             };
-            let at = Vec3::new(random(-1.5, 1.5), random(-1.5, 1.5), random(-0.5, 1.5));
-            let rotation = Rotation::from_axis_angle(Vec3::new(0.6, 0.0, 0.8), random(-3.0, 3.0));
+            let at = Vec3::new(random.between(-1.5, 1.5), random.between(-1.5, 1.5), random.between(-0.5, 1.5));
+            let rotation = Rotation::from_axis_angle(Vec3::new(0.6, 0.0, 0.8), random.between(-3.0, 3.0));
             obstacles.add_shape(&shape, &Pose::new(rotation, at), 0.0);
         }
         let mut checker = ValidityChecker::new(&covered, &obstacles);
         for _ in 0..25 {
             let q: Vec<Vec<f64>> =
-                (0..LANES).map(|_| (0..covered.dof()).map(|_| random(-3.0, 3.0)).collect()).collect();
+                (0..LANES).map(|_| (0..covered.dof()).map(|_| random.between(-3.0, 3.0)).collect()).collect();
             let lanes = touching(&covered, &obstacles, &q);
             for (lane, q) in q.iter().enumerate() {
                 let is_free = checker.state(q).unwrap() == Validity::Free;

@@ -66,17 +66,20 @@ pub(super) fn split(balls: &mut [Ball], parts: usize) -> Vec<&mut [Ball]> {
 #[cfg(test)]
 mod tests {
     use elbowroom_spatial::Vec3;
-    use elbowroom_testkit::random::{linear_congruential, unit};
+    use elbowroom_testkit::random::Random;
 
     use super::*;
 
     #[test]
     fn every_ball_is_a_leaf_and_lies_in_those_above() {
-        let mut state = 5;
-        let mut next = || unit(linear_congruential(&mut state));
+        let mut random = Random(5);
         for count in [1, 2, 15, 16, 17, 40, 257, 900] {
-            let balls: Vec<Ball> =
-                (0..count).map(|_| Ball { centre: Vec3::new(next(), next(), next()), radius: 0.1 * next() }).collect();
+            let balls: Vec<Ball> = (0..count)
+                .map(|_| Ball {
+                    centre: Vec3::new(random.unit(), random.unit(), random.unit()),
+                    radius: 0.1 * random.unit(),
+                })
+                .collect();
             let groups = ball_tree(&balls);
             let mut leaves = 0;
             let mut open: Vec<(u32, Vec<Ball>)> = vec![(0, Vec::new())];

@@ -1,0 +1,47 @@
+//! Cells and their parts that several tests start.
+
+pub mod control_setup;
+
+use std::sync::Arc;
+
+use elbowroom_cell::{Cell, configure};
+use elbowroom_interlock::Boot;
+use elbowroom_live::network::Network;
+use elbowroom_live::node::{NodeMonitor, NodeParts};
+use elbowroom_live::{Clock, Node, configuration_number};
+use elbowroom_monitor::RobotSlot;
+use elbowroom_robot::RobotId;
+
+/// A carriage named `rail`, which moves up from 0 to 2 m, and below the forbidden region `end` at 2.3 m a warning zone. `more` is
+/// added to the file.
+pub fn rail(warning_mm: u32, more: &str) -> Cell {
+    let text = format!(
+        r#"
+version = 1
+name = "rail"
+units = {{ length = "mm", angle = "deg" }}
+[robot.rail]
+dh = [{{ kind = "prismatic", min = 0, max = 2000, speed = 1000 }}]
+links = [{{ sphere = {{ radius = 50 }} }}]
+[region.end]
+shape = "sphere"
+centre = [0, 0, 2500]
+radius = 200
+kind = "forbidden"
+life = "permanent"
+warning = {warning_mm}
+{more}"#
+    );
+    Cell::parse("rail.toml", &text).expect("a cell")
+}
+
+/// Starts the node of the only robot of a cell.
+pub fn start_node(cell: &Cell, clock: Clock, network: Arc<dyn Network>) -> Node {
+    let (cell, checksum) = (Arc::new(cell.clone()), configuration_number(cell));
+    let setup = configure::setups(&cell).expect("setups").remove(0);
+    let monitor = NodeMonitor::new(&setup, RobotSlot(0), 0, checksum, Boot(1)).expect("a monitor");
+    let (robot, interlocks) = (RobotId(0), network.clone());
+    let (recorder, versions) = (None, None);
+    let parts = NodeParts { cell, robot, setup, monitor, checksum, clock, network, interlocks, recorder, versions };
+    Node::start(parts).expect("a node")
+}

@@ -1,0 +1,31 @@
+//! `elbowroom live` as a process.
+
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+
+use super::{command, examples};
+
+/// `elbowroom live` with the example of two robots that share a region, without what the environment says of ROS 2.
+pub fn live(arguments: &[&str]) -> Command {
+    let mut command = command(Path::new("."), &["live"]);
+    command.arg(examples().join("exchange/cell.toml")).args(arguments);
+    command.env_remove("ROS_DOMAIN_ID").env_remove("ROS_DISTRO").stderr(Stdio::null()).stdin(Stdio::null());
+    command
+}
+
+/// A process that is killed when it is dropped.
+pub struct LiveProcess(pub Child);
+
+impl LiveProcess {
+    /// Starts [`live`]. However a test ends, the process ends by itself.
+    pub fn start(arguments: &[&str]) -> Self {
+        Self(live(arguments).args(["--for", "100"]).spawn().expect("elbowroom starts"))
+    }
+}
+
+impl Drop for LiveProcess {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
