@@ -1,6 +1,7 @@
 //! Loads a robot, puts it beside a post and asks: how far apart, which parts, where.
 //!
 //! `cargo run --release -p elbowroom --example 1_distance`
+#![allow(clippy::print_stdout, reason = "an example prints")]
 
 use std::error::Error;
 use std::path::Path;

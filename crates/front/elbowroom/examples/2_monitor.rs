@@ -1,6 +1,7 @@
 //! A monitor in a control loop: the arm swings towards a post, slows down, stops before it, and may leave again.
 //!
 //! `cargo run --release -p elbowroom --example 2_monitor`
+#![allow(clippy::print_stdout, reason = "an example prints")]
 
 use std::error::Error;
 use std::path::Path;

@@ -1,6 +1,7 @@
 //! Plans around a post that is in the way, and makes a motion within the limits of the joints of it.
 //!
 //! `cargo run --release -p elbowroom --example 3_plan`
+#![allow(clippy::print_stdout, reason = "an example prints")]
 
 use std::error::Error;
 use std::path::Path;

@@ -1,6 +1,7 @@
 //! A map of joint space and what moves in it: a trolley blocks cells as it passes, and the path is planned again.
 //!
 //! `cargo run --release -p elbowroom --example 4_joint_map`
+#![allow(clippy::print_stdout, reason = "an example prints")]
 
 use std::error::Error;
 use std::path::Path;

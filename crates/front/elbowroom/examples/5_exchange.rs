@@ -1,6 +1,7 @@
 //! Two robots share a pallet: one is granted the exchange region, the other waits at its border and then goes in by itself.
 //!
 //! `cargo run --release -p elbowroom --example 5_exchange`
+#![allow(clippy::print_stdout, reason = "an example prints")]
 
 use std::error::Error;
 use std::f64::consts::FRAC_PI_2;
