@@ -49,7 +49,7 @@ pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
     let faults = chosen(list::read(root)?, &options.only)?;
     if options.list {
         for Fault { name, crate_name, why, .. } in &faults {
-            println!("{name:<28} {crate_name:<11} {why}");
+            println!("{name:<30} {crate_name:<11} {why}");
         }
         return Ok(());
     }

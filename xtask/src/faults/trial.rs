@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use toml::Value;
-use xtask::crates;
+use xtask::crates::{self, GROUPS};
 
 use super::copy::SourceCopy;
 use super::list::Fault;
@@ -103,14 +103,13 @@ impl FaultRunner<'_> {
         Ok(())
     }
 
-    /// The package and all that its change can break, the nearest first.
+    /// The package and all that its change can break, the nearest first, of equally near ones the lower layer.
     fn nearest_first(&self, package: &str) -> Vec<String> {
-        let mut found: Vec<(usize, String)> = dependents(&self.packages, BTreeSet::from([package.to_owned()]))
-            .into_iter()
-            .map(|(package, distance)| (distance, package))
-            .collect();
+        let found = dependents(&self.packages, BTreeSet::from([package.to_owned()]));
+        let mut found: Vec<(usize, usize, String)> =
+            found.into_iter().map(|(package, distance)| (distance, layer(&package), package)).collect();
         found.sort();
-        found.into_iter().map(|(_, package)| package).collect()
+        found.into_iter().map(|(_, _, package)| package).collect()
     }
 
     fn compile(&self, package: &str) -> Result<Vec<test_run::Program>, String> {
@@ -122,6 +121,12 @@ impl FaultRunner<'_> {
     fn variables(&self) -> Vec<(&str, &str)> {
         self.env.iter().map(|(key, value)| (key.as_str(), value.as_str())).collect()
     }
+}
+
+/// The place of a package in the layers; developer tools come last.
+fn layer(package: &str) -> usize {
+    let layers = GROUPS.iter().flat_map(|(_, crates)| *crates);
+    layers.clone().position(|name| crates::package(name) == package).unwrap_or_else(|| layers.count())
 }
 
 /// The words that choose the tests of a package: its library, its programs, its own test programs.
@@ -148,6 +153,12 @@ fn targets(root: &Path, package: &Package) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn lower_layers_come_first_and_tools_last() {
+        let order = ["elbowroom-spatial", "elbowroom-proximity", "elbowroom-monitor", "elbowroom-cli", "xtask"];
+        assert!(order.map(layer).is_sorted());
+    }
 
     #[test]
     fn the_targets_are_those_that_the_package_has() {
