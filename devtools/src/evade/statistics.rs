@@ -9,6 +9,37 @@ use super::comparison::RunComparison;
 /// Below this share of its speed a joint counts as stationary.
 const STATIONARY_SHARE: f64 = 1e-4;
 
+/// Times of a step of avoidance, one entry a run, microseconds.
+#[derive(Default)]
+struct StepTimes {
+    median: Vec<f64>,
+    p99: Vec<f64>,
+    longest: Vec<f64>,
+}
+
+/// Regions that the monitor guarded while the robot evaded.
+#[derive(Default)]
+struct RegionStops {
+    /// Runs in which one was entered.
+    entered: usize,
+    /// Runs in which the monitor stopped the robot off its path at one.
+    stopped: usize,
+    longest_s: f64,
+}
+
+/// How joints moved.
+struct JointMotion {
+    /// Largest excess over a speed (a share of it) and a limit of a joint (rad).
+    over: [f64; 2],
+    least_reversal_s: f64,
+}
+
+impl Default for JointMotion {
+    fn default() -> Self {
+        Self { over: [0.0; 2], least_reversal_s: f64::INFINITY }
+    }
+}
+
 /// Figures of the runs so far.
 #[derive(Default)]
 pub struct Statistics {
@@ -21,20 +52,12 @@ pub struct Statistics {
     extra_s: Vec<f64>,
     travel: Vec<f64>,
     nearest_m: Vec<f64>,
-    step_us: Vec<f64>,
-    /// 99th percentile and largest of each run.
-    step_p99_us: Vec<f64>,
-    step_max_us: Vec<f64>,
+    steps: StepTimes,
     /// Runs in which the robot followed an escape.
     escaped: usize,
-    /// Largest excess over a speed and a limit of a joint.
-    over: [f64; 2],
-    least_reversal_s: f64,
+    joints: JointMotion,
     plans: [usize; 2],
-    /// Runs in which a region was entered, and in which the monitor stopped the robot off its path at one.
-    entered: usize,
-    stopped: usize,
-    longest_stop_s: f64,
+    regions: RegionStops,
     /// Whether to print the states of the robot before a collision.
     show: bool,
 }
@@ -58,7 +81,7 @@ fn longest_stop_s(track: &RobotTrack, tick_s: f64) -> f64 {
 impl Statistics {
     /// Of no runs. `show`: whether to print the states of the robot before a collision.
     pub fn new(show: bool) -> Self {
-        Self { show, least_reversal_s: f64::INFINITY, ..Self::default() }
+        Self { show, ..Self::default() }
     }
 
     /// A line about the runs so far.
@@ -87,9 +110,9 @@ impl Statistics {
             self.unfinished += 1;
         }
         let stop_s = longest_stop_s(with, on.tick_s);
-        self.entered += usize::from(on.regions.iter().any(|region| region.entered));
-        self.stopped += usize::from(stop_s > 0.0);
-        self.longest_stop_s = self.longest_stop_s.max(stop_s);
+        self.regions.entered += usize::from(on.regions.iter().any(|region| region.entered));
+        self.regions.stopped += usize::from(stop_s > 0.0);
+        self.regions.longest_s = self.regions.longest_s.max(stop_s);
         let Some(track) = &with.avoidance else { return };
         if hit_off && !hit_on && with.finished {
             self.resolved += 1;
@@ -100,9 +123,9 @@ impl Statistics {
             self.travel.push(travel(with) / travel(without));
         }
         self.nearest_m.push(track.samples.iter().map(|s| s.nearest_m).fold(f64::INFINITY, f64::min));
-        self.step_us.push(track.step_ns.p50 as f64 / 1e3);
-        self.step_p99_us.push(track.step_ns.p99 as f64 / 1e3);
-        self.step_max_us.push(track.step_ns.max as f64 / 1e3);
+        self.steps.median.push(track.step_ns.p50 as f64 / 1e3);
+        self.steps.p99.push(track.step_ns.p99 as f64 / 1e3);
+        self.steps.longest.push(track.step_ns.max as f64 / 1e3);
         self.escaped += usize::from(track.samples.iter().any(|s| s.escape == EscapeState::Escaping));
         self.plans[0] += track.plans.len();
         self.plans[1] += track.plans.iter().filter(|p| p.search_s.is_some()).count();
@@ -118,14 +141,14 @@ impl Statistics {
             let off_path = track.avoidance.iter().flat_map(|a| &a.samples).map(|a| a.path_deviation_s > 0.0);
             for (w, off_path) in track.samples.windows(2).zip(off_path.skip(1)) {
                 let v = (w[1].q[j] - w[0].q[j]) / tick_s;
-                self.over[0] = self.over[0].max(v.abs() / robot.limits[j].velocity - 1.0);
-                self.over[1] = self.over[1].max(w[1].q[j] - upper[j]).max(lower[j] - w[1].q[j]);
+                self.joints.over[0] = self.joints.over[0].max(v.abs() / robot.limits[j].velocity - 1.0);
+                self.joints.over[1] = self.joints.over[1].max(w[1].q[j] - upper[j]).max(lower[j] - w[1].q[j]);
                 // Reversals of the program itself do not count.
                 if !off_path {
                     (sign, reversed_s) = (0.0, f64::NEG_INFINITY);
                 } else if v.abs() > STATIONARY_SHARE * robot.limits[j].velocity {
                     if sign * v < 0.0 {
-                        self.least_reversal_s = self.least_reversal_s.min(w[1].t_s - reversed_s);
+                        self.joints.least_reversal_s = self.joints.least_reversal_s.min(w[1].t_s - reversed_s);
                         reversed_s = w[1].t_s;
                     }
                     sign = v.signum();
@@ -156,22 +179,25 @@ impl Statistics {
         println!("extra time, s: median {:.2}, 90 % {:.2}, most {:.2}", extra[0], extra[1], extra[2]);
         println!("joint travel, times: median {:.2}, 90 % {:.2}, most {:.2}", travel[0], travel[1], travel[2]);
         println!("nearest, m: least {:.4}, median {:.3}", at(&mut self.nearest_m, 0.0), nearest[0]);
-        println!("over a joint's speed by {:.1e}, over a limit by {:.1e} rad", self.over[0], self.over[1]);
-        println!("shortest time between two reversals of a joint: {:.3} s", self.least_reversal_s);
+        println!(
+            "over a joint's speed by {:.1e}, over a limit by {:.1e} rad",
+            self.joints.over[0], self.joints.over[1]
+        );
+        println!("shortest time between two reversals of a joint: {:.3} s", self.joints.least_reversal_s);
         println!("replanning attempts: {}, found: {}", self.plans[0], self.plans[1]);
         println!(
             "step, us: median of the runs' medians {:.0}, largest median {:.0}; 99th percentile: median {:.0}, largest \
              {:.0}; longest {:.0}",
-            at(&mut self.step_us, 0.5),
-            at(&mut self.step_us, 1.0),
-            at(&mut self.step_p99_us, 0.5),
-            at(&mut self.step_p99_us, 1.0),
-            at(&mut self.step_max_us, 1.0)
+            at(&mut self.steps.median, 0.5),
+            at(&mut self.steps.median, 1.0),
+            at(&mut self.steps.p99, 0.5),
+            at(&mut self.steps.p99, 1.0),
+            at(&mut self.steps.longest, 1.0)
         );
         println!("runs with an escape: {}", self.escaped);
         println!(
             "runs that entered a region: {}; stopped off the path at one: {}, longest {:.2} s",
-            self.entered, self.stopped, self.longest_stop_s
+            self.regions.entered, self.regions.stopped, self.regions.longest_s
         );
     }
 }

@@ -84,10 +84,10 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
 /// A file or folder of the workspace.
 fn is_path(code: &str) -> bool {
     const FOLDERS: [&str; 5] = ["crates/", "devtools/", "docs/", "examples/", "xtask/"];
-    // `NAME` in a path stands for any name.
+    // `NAME` and `GROUP` in a path stand for any name.
     FOLDERS.iter().any(|folder| code.starts_with(folder))
         && !code.contains([' ', '*', '…', '{', '<', ':', '#'])
-        && !code.contains("NAME")
+        && !["NAME", "GROUP"].iter().any(|any| code.contains(any))
 }
 
 /// A path of Rust (`mesh::distance`), or a type with or without what follows it (`Scene`, `Scene.step()`).

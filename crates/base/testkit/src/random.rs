@@ -39,7 +39,7 @@ pub fn unit(bits: u64) -> f64 {
 
 /// Xorshift64* with the shifts 12, 25, 27 (Vigna: *An experimental exploration of Marsaglia's xorshift generators,
 /// scrambled*, 2016). The seed must not be 0, which yields only zeros.
-pub fn xorshift_star(state: &mut u64) -> u64 {
+fn xorshift_star(state: &mut u64) -> u64 {
     *state ^= *state >> 12;
     *state ^= *state << 25;
     *state ^= *state >> 27;
