@@ -6,7 +6,7 @@ use crate::common::{CONVEX, RandomGeometry, SplitMix};
 use elbowroom_proximity::advanced::{MeshFeatures, for_each_contact};
 use elbowroom_proximity::contact::{ContactPoint, ContactSettings, Detail, contact_point};
 use elbowroom_proximity::{
-    Cuboid, HalfSpace, Shape, ShapeKind, Sphere, TriMesh, Workspace, collides, penetration, project_point, separation,
+    Cuboid, HalfSpace, Shape, ShapeKind, TriMesh, Workspace, collides, penetration, project_point, separation,
     tessellate::tessellate,
 };
 use elbowroom_spatial::{Pose, Rotation, Vec3};

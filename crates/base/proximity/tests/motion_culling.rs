@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use crate::common::{RandomGeometry, SplitMix};
 use elbowroom_proximity::ccd::{CcdOptions, ConstantTwist, RigidMotion, TimeOfImpact, time_of_impact};
 use elbowroom_proximity::motion_culling::{FaceCulling, KeptFaces, RelativeTwist};
-use elbowroom_proximity::{Shape, Sphere, TriMesh, separation, tessellate::tessellate};
+use elbowroom_proximity::{Shape, TriMesh, separation};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 fn motions() -> usize {

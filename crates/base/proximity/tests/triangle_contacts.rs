@@ -5,9 +5,7 @@ use std::sync::Arc;
 
 use crate::common::{RandomGeometry, SplitMix};
 use elbowroom_proximity::contact::{for_each_triangle_contact, triangle_surface};
-use elbowroom_proximity::{
-    Capsule, Cuboid, Cylinder, HalfSpace, Shape, Sphere, TriMesh, Workspace, collides, tessellate::tessellate,
-};
+use elbowroom_proximity::{Capsule, Cuboid, Cylinder, HalfSpace, Shape, Sphere, TriMesh, Workspace, collides};
 use elbowroom_spatial::{Pose, Vec3};
 
 /// A wavy ball: closed, not convex.

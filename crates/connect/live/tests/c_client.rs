@@ -8,14 +8,11 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use crate::common::{rail, start_node};
-use elbowroom_cell::{Cell, configure};
-use elbowroom_interlock::{Boot, Micros};
+use elbowroom_interlock::Micros;
 use elbowroom_live::messages::{AttachedVolume, JointState, OverrideAnswer};
 use elbowroom_live::network::{Network, UdpNetwork};
-use elbowroom_live::node::{NodeMonitor, NodeParts};
-use elbowroom_live::{Clock, ControllerClient, ControllerState, Keys, Node, Refused, configuration_number};
-use elbowroom_monitor::{RobotSlot, VolumeId};
-use elbowroom_robot::RobotId;
+use elbowroom_live::{Clock, ControllerClient, ControllerState, Keys, Refused};
+use elbowroom_monitor::VolumeId;
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 use elbowroom_testkit::random::{split_mix, unit};
 

@@ -1,7 +1,7 @@
 //! The control interface of a service under right, wrong and hostile requests.
 
 use std::io::{Read as _, Write as _};
-use std::net::{SocketAddr, TcpStream};
+use std::net::TcpStream;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
@@ -11,7 +11,7 @@ use elbowroom_cell::Cell;
 use elbowroom_cell::seal::{AccessTokens, control_history};
 use elbowroom_interlock::wire::{self, Message};
 use elbowroom_interlock::{Boot, Guard};
-use elbowroom_live::network::{Network, Publisher, Subscription, Urgency, ZenohNetwork};
+use elbowroom_live::network::{Network, Publisher, Subscription, Urgency};
 use elbowroom_live::{
     Clock, ControlOptions, ControllerClient, ControllerState, Keys, RegionTableMessage, Service, ServiceOptions,
     boot_number, configuration_number,

@@ -1,17 +1,13 @@
 //! A node under good, missing and hostile messages: no panic, and no override above 0 without fresh, valid joint values.
 
 use std::sync::{Arc, Mutex};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use crate::common::{rail, start_node};
-use elbowroom_cell::{Cell, configure};
-use elbowroom_interlock::Boot;
 use elbowroom_live::messages::{AttachedVolume, JointState, OverrideAnswer};
 use elbowroom_live::network::{LocalNetwork, Network, Publisher, Subscription, UdpNetwork, Urgency};
-use elbowroom_live::node::{NodeMonitor, NodeParts};
 use elbowroom_live::{Clock, ControllerClient, ControllerState, Keys, Node, configuration_number};
-use elbowroom_monitor::{RobotSlot, VolumeId};
-use elbowroom_robot::RobotId;
+use elbowroom_monitor::VolumeId;
 use elbowroom_spatial::Pose;
 use elbowroom_testkit::network::eventually;
 use elbowroom_testkit::random::{split_mix, unit};

@@ -1,21 +1,17 @@
 //! Regions that are moved, added and removed over the control interface of a service with nodes.
 
-use std::io::{Read as _, Write as _};
-use std::net::{SocketAddr, TcpStream};
+use std::io::Read as _;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::SeqCst};
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use crate::common::control_setup::{ControlSetup, INTEGRATOR, OPERATOR, PROGRAMMER, rails, read};
+use crate::common::control_setup::{ControlSetup, INTEGRATOR, OPERATOR, PROGRAMMER, rails};
 use elbowroom_cell::Cell;
-use elbowroom_cell::seal::{AccessTokens, control_history};
+use elbowroom_cell::seal::control_history;
 use elbowroom_live::messages::OverrideAnswer;
 use elbowroom_live::network::{Network, Urgency};
-use elbowroom_live::{
-    Clock, ControlOptions, ControllerClient, ControllerState, Keys, Service, ServiceOptions, boot_number,
-};
-use elbowroom_monitor::AccessClass;
+use elbowroom_live::{Clock, ControllerClient, ControllerState, Keys, Service, ServiceOptions, boot_number};
 use elbowroom_testkit::network::eventually;
 use serde_json::{Value, json};
 
