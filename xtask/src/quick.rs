@@ -6,6 +6,7 @@ use std::path::Path;
 use xtask::shell;
 
 use crate::dependents::{self, Package, dependents};
+use crate::references::References;
 use crate::{documents, layers, suite, test_run};
 
 /// Checks what differs from `since`, a commit: formats, layers, documents, then lints and tests of the changed crates and of
@@ -28,7 +29,9 @@ pub fn run(root: &Path, since: &str) -> Result<(), String> {
     let chosen: Vec<&str> =
         suite::WORKSPACE.into_iter().chain(excluded.flat_map(|name| ["--exclude", name.as_str()])).collect();
     shell::cargo(root, &[&["clippy"], &chosen[..], &["--all-targets", "--", "-D", "warnings"]].concat(), &[])?;
-    test_run::run(root, &chosen, &[])
+    suite::announce_data(root);
+    let references = References::find(root, true)?;
+    test_run::run(root, &chosen, &references.environment().collect::<Vec<_>>())
 }
 
 /// Files that differ from a commit, and new ones.
@@ -40,8 +43,11 @@ fn changed(root: &Path, since: &str) -> Result<Vec<String>, String> {
 
 /// The packages to check again, sorted.
 fn affected(packages: &BTreeMap<String, Package>, files: &[String]) -> Vec<String> {
-    let concerns_all =
-        |file: &String| ["Cargo.", ".cargo/", "examples/", "clients/"].iter().any(|s| file.starts_with(s));
+    let concerns_all = |file: &String| {
+        ["Cargo.", ".cargo/", "clippy.toml", "rustfmt.toml", "examples/", "clients/"]
+            .iter()
+            .any(|s| file.starts_with(s))
+    };
     if files.iter().any(concerns_all) {
         return packages.keys().cloned().collect();
     }

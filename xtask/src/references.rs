@@ -28,7 +28,7 @@ impl References {
             ("ELBOWROOM_PLAYWRIGHT", text(playwright::ready(root))),
         ];
         for (name, _) in found.iter().filter(|(_, path)| path.is_none()) {
-            println!("--offline: nothing for {name}: the tests that need it are left out");
+            println!("nothing is installed for {name}: the tests that need it are left out");
         }
         Ok(Self { found })
     }

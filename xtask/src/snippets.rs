@@ -10,6 +10,8 @@ use std::path::{Path, PathBuf};
 
 use xtask::shell;
 
+use crate::suite::WORKSPACE;
+
 /// One block to run.
 #[derive(Debug, PartialEq)]
 struct Snippet {
@@ -44,14 +46,13 @@ pub fn run(root: &Path) -> Result<(), String> {
 fn search_path(root: &Path) -> Result<String, String> {
     let folder = shell::target_folder(root).join("snippets");
     shell::make_folder(&folder)?;
+    let build = [&["build", "--quiet"], &WORKSPACE[..], &["--bin", "elbowroom"]].concat();
+    shell::cargo(root, &build, &[])?;
     let program = shell::target_folder(root).join("debug/elbowroom");
-    if !program.is_file() {
-        return Err(format!("{} is missing: run the step `tests` first, which compiles it", program.display()));
-    }
     let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".into());
     let elbowroom = format!("#!/bin/sh\nexec '{}' \"$@\"\n", program.display());
     let stand_in = format!(
-        "#!/bin/sh\ncase \"$1 $2\" in\n    'run -qr' | 'run --release') shift 2; [ \"$1\" = -- ] && shift; exec '{}' \"$@\" ;;\nesac\n\
+        "#!/bin/sh\ncase \"$1 $2 $3\" in\n    'run -qr --' | 'run --release --') shift 3; exec '{}' \"$@\" ;;\nesac\n\
          exec '{cargo}' \"$@\"\n",
         program.display()
     );

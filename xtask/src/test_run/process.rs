@@ -14,8 +14,7 @@ use super::units::Unit;
 pub struct Limit<'a> {
     /// A process that takes longer hangs.
     pub longest: Duration,
-    /// Set by another thread when the result is no longer of interest. The process then leads a group of its own, and the
-    /// whole group is stopped.
+    /// Set by another thread when the result is no longer of interest.
     pub cancelled: Option<&'a AtomicBool>,
 }
 
@@ -30,7 +29,7 @@ pub struct Ended {
 pub fn run_unit(program: &Program, unit: &Unit, env: &[(&str, &str)], limit: Limit) -> Ended {
     let mut command = Command::new(&program.executable);
     if !unit.tests.is_empty() {
-        command.args(["--exact", "--test-threads", "1"]).args(&unit.tests);
+        command.args(["--exact", "--show-output", "--test-threads", "1"]).args(&unit.tests);
     }
     command.current_dir(&program.folder).env("CARGO_MANIFEST_DIR", &program.folder).envs(env.iter().copied());
     start(command, limit)
@@ -38,9 +37,7 @@ pub fn run_unit(program: &Program, unit: &Unit, env: &[(&str, &str)], limit: Lim
 
 fn start(mut command: Command, limit: Limit) -> Ended {
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    if limit.cancelled.is_some() {
-        command.process_group(0);
-    }
+    command.process_group(0);
     match command.spawn() {
         Ok(child) => wait(child, limit),
         Err(e) => {
@@ -62,15 +59,18 @@ fn wait(mut child: Child, limit: Limit) -> Ended {
                 Ok(Some(status)) => break Ok(status.success()),
                 Ok(None) if Instant::now() > deadline => {
                     is_late = true;
-                    stop(&mut child, limit);
+                    stop(&mut child);
                     break Err(format!("stopped after {} s", limit.longest.as_secs()));
                 }
                 Ok(None) if limit.cancelled.is_some_and(|cancelled| cancelled.load(Ordering::Relaxed)) => {
-                    stop(&mut child, limit);
+                    stop(&mut child);
                     break Err("stopped: another unit has failed".into());
                 }
                 Ok(None) => std::thread::sleep(Duration::from_millis(5)),
-                Err(e) => break Err(e.to_string()),
+                Err(e) => {
+                    stop(&mut child);
+                    break Err(e.to_string());
+                }
             }
         };
         let mut output = printed.join().unwrap_or_default() + &complaints.join().unwrap_or_default();
@@ -81,12 +81,10 @@ fn wait(mut child: Child, limit: Limit) -> Ended {
     })
 }
 
-/// Kills the process, and its group where it leads one: what it has started would else hold its output open.
-fn stop(child: &mut Child, limit: Limit) {
-    if limit.cancelled.is_some() {
-        // Without `kill`, the process alone is stopped.
-        let _ = Command::new("kill").args(["-KILL", "--", &format!("-{}", child.id())]).status();
-    }
+/// Kills the process and its group: what it has started would else hold its output open.
+fn stop(child: &mut Child) {
+    // Without `kill`, the process alone is stopped.
+    let _ = Command::new("kill").args(["-KILL", "--", &format!("-{}", child.id())]).status();
     let _ = child.kill();
     let _ = child.wait();
 }
@@ -118,8 +116,7 @@ mod tests {
 
     #[test]
     fn a_program_that_hangs_is_stopped_with_what_it_started() {
-        let cancelled = AtomicBool::new(false);
-        let limit = Limit { longest: Duration::from_millis(300), cancelled: Some(&cancelled) };
+        let limit = Limit { longest: Duration::from_millis(300), cancelled: None };
         let started = Instant::now();
         // The child holds the output open: without it the group would not be needed.
         let ended = run("sleep 60 & wait", limit);

@@ -1,5 +1,5 @@
-//! Generators of pseudo-random numbers for the tests, examples and tools of several crates. No crate that is shipped links
-//! this one: it is a dependency of tests only.
+//! What tests, benches and developers' tools of several crates share: generators of pseudo-random numbers, folders of data, a
+//! counter of allocations, a hash, free addresses, arguments of benches. No crate that is shipped links this one.
 //!
 //! ```
 //! use elbowroom_testkit::random::Random;

@@ -108,7 +108,7 @@ generator! {
 }
 
 generator! {
-    /// Numbers of [`xorshift_star`] from a seed.
+    /// Numbers of Xorshift64* (Vigna 2016) from a seed.
     XorshiftStar, xorshift_star, 0
 }
 

@@ -1,6 +1,6 @@
 //! The control interface of a service under right, wrong and hostile requests.
 
-use std::io::{Read as _, Write as _};
+use std::io::Write as _;
 use std::net::TcpStream;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex};

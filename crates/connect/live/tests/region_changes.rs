@@ -1,6 +1,5 @@
 //! Regions that are moved, added and removed over the control interface of a service with nodes.
 
-use std::io::Read as _;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::SeqCst};
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;

@@ -82,7 +82,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut robots = [Controller::new(&robot, 0, &arbiter, 0.8)?, Controller::new(&robot, 1, &arbiter, 0.7)?];
     let mut both_inside = 0;
     for tick in 0..2000 {
-        robots.iter_mut().for_each(|robot| robot.tick(f64::from(tick) * TICK_S));
+        for robot in &mut robots {
+            robot.tick(f64::from(tick) * TICK_S);
+        }
         both_inside += usize::from(robots.iter().all(|robot| robot.state == ExchangeState::Inside));
     }
     println!("ticks with both inside: {both_inside}");

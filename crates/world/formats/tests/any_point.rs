@@ -1,5 +1,5 @@
 //! Inverse kinematics of random points on the surfaces of real robots; few of them here, 10⁵ for each robot with
-//! `ELBOWROOM_LONG=1`. The example of the same name prints the table.
+//! `ELBOWROOM_LONG=1`. The bench of the same name prints the table.
 #![allow(clippy::print_stdout)]
 
 use elbowroom_formats::robot::{self, LoadOptions};

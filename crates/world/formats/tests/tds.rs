@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::common::waving::waving;
+use crate::common::corpus::waving::waving;
 use elbowroom_formats::nodetree::{Keyframe, Node, NodeTree};
 use elbowroom_formats::{MeshData, mesh, tds};
 use elbowroom_spatial::{Pose, Rotation, Vec3};

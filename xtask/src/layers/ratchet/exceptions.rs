@@ -88,11 +88,11 @@ pub fn lowered(text: &str, sizes: impl Fn(&str, &str) -> Option<usize>) -> Strin
             name.clone_into(&mut section);
         }
         let Some((name, listed)) = entry(trimmed) else {
-            kept += &format!("{line}\n");
+            kept.extend([line, "\n"]);
             continue;
         };
         if let Some(size) = sizes(&section, name) {
-            kept += &format!("\"{name}\" = {}\n", size.min(listed));
+            kept.extend(["\"", name, "\" = ", &size.min(listed).to_string(), "\n"]);
         }
     }
     kept

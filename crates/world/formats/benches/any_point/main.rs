@@ -22,12 +22,15 @@ use surface::{SplitMix, Surface};
 
 const ROBOTS: [&str; 4] = ["kuka_kr150_2", "staubli_tx60", "ur5e", "abb_irb2400"];
 
+/// The first line of the table.
+const HEAD: &str = "robot          link                 task             n  reached %  restarted %  median µs  p99 µs  mean µs  worst m  worst rad  beyond limits";
+
 fn main() {
     let mut arguments = elbowroom_testkit::bench::arguments();
     let mut number = || arguments.next().and_then(|n| n.parse::<usize>().ok());
     let (points, beside) = (number().unwrap_or(100_000), number().unwrap_or(0));
     let Some(data) = elbowroom_testkit::folder::data() else { return };
-    println!("{}", SolverResults::HEAD);
+    println!("{HEAD}");
     for name in ROBOTS {
         let path = data.join(format!("urdf/{name}/{name}.urdf"));
         let loaded = match robot::load(&path, &LoadOptions::default()) {

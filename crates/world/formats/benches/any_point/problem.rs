@@ -58,8 +58,6 @@ pub struct SolverResults {
 }
 
 impl SolverResults {
-    pub const HEAD: &str = "robot          link                 task             n  reached %  restarted %  median µs  p99 µs  mean µs  worst m  worst rad  beyond limits";
-
     pub fn text(&self, robot: &str, link: &str, with_normal: bool) -> String {
         let mut times = self.times_us.clone();
         times.sort_by(f64::total_cmp);

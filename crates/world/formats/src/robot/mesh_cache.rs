@@ -76,7 +76,7 @@ fn key(scale: Vec3) -> Scale {
 
 fn load_files(scales_of: HashMap<PathBuf, Vec<Vec3>>, unit: Option<LengthUnit>) -> HashMap<PathBuf, Loaded> {
     let mut jobs: Vec<_> = scales_of.into_iter().collect();
-    // The largest files first, so that none of them is the last to be started.
+    // A hash map has no order; by their size, large files are spread over the threads.
     jobs.sort_by_cached_key(|(path, _)| std::cmp::Reverse(std::fs::metadata(path).map_or(0, |m| m.len())));
     let load = |(path, scales): (PathBuf, Vec<Vec3>)| {
         let loaded = load_file(&path, &scales, unit);

@@ -1,7 +1,7 @@
 //! Small valid files of every format, damage to them, and one function for all readers.
 
 #[path = "waving.rs"]
-mod waving;
+pub mod waving;
 
 use std::path::Path;
 

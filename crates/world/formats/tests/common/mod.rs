@@ -1,4 +1,3 @@
 //! Random files and robots for the tests of this crate.
 
 pub mod corpus;
-pub mod waving;
