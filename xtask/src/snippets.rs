@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use xtask::shell;
 
-use crate::suite::WORKSPACE;
+use crate::suite;
 
 /// One block to run.
 #[derive(Debug, PartialEq)]
@@ -46,9 +46,7 @@ pub fn run(root: &Path) -> Result<(), String> {
 fn search_path(root: &Path) -> Result<String, String> {
     let folder = shell::target_folder(root).join("snippets");
     shell::make_folder(&folder)?;
-    let build = [&["build", "--quiet"], &WORKSPACE[..], &["--bin", "elbowroom"]].concat();
-    shell::cargo(root, &build, &[])?;
-    let program = shell::target_folder(root).join("debug/elbowroom");
+    let program = suite::program(root, "elbowroom")?;
     let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".into());
     let elbowroom = format!("#!/bin/sh\nexec '{}' \"$@\"\n", program.display());
     let stand_in = format!(

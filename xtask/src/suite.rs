@@ -1,7 +1,7 @@
 //! `cargo xtask test`: every check, timed, with a table at the end.
 
 use std::cell::RefCell;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
@@ -180,11 +180,17 @@ pub fn announce_data(root: &Path) {
     println!("{line} {}", folder.display());
 }
 
+/// A program of the workspace as the tests use it. With `--tests` its libraries have the features that they have for the tests, so
+/// that nothing but the program itself is left to compile.
+pub fn program(root: &Path, name: &str) -> Result<PathBuf, String> {
+    let build = [&["build", "--quiet", "--tests", "--bins"], &WORKSPACE[..]].concat();
+    shell::cargo(root, &build, &[])?;
+    Ok(target_folder(root).join("debug").join(name))
+}
+
 /// Commands of `elbowroom-devtools` in the profile and with the features of the tests: they have compiled it already.
 fn devtools(context: &Context, words: &[&str]) -> Result<(), String> {
-    let build = [&["build", "--quiet"], &WORKSPACE[..], &["--bin", "elbowroom-devtools"]].concat();
-    shell::cargo(context.root, &build, &network(context))?;
-    let program = target_folder(context.root).join("debug/elbowroom-devtools");
+    let program = program(context.root, "elbowroom-devtools")?;
     shell::run(context.root, &program.to_string_lossy(), words, &[])
 }
 

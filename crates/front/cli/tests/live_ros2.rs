@@ -57,11 +57,15 @@ fn the_watchdog_sends_zero_when_the_service_was_killed() {
         LiveProcess::start(&[&arguments[..], &ros2].concat())
     };
     // Without a watchdog the last factor stands: this is what it is for.
-    let first = service();
-    factors.wait("the robot never goes", Duration::from_mins(1), |factor| factor > 0.0);
-    drop(first);
-    std::thread::sleep(BOUND + BUSY);
-    factors.wait("the last factor before the kill was a go", BUSY, |factor| factor > 0.0);
+    let stands = (0..5).any(|_| {
+        let first = service();
+        factors.wait("the robot never goes", Duration::from_mins(1), |factor| factor > 0.0);
+        drop(first);
+        std::thread::sleep(BOUND + BUSY);
+        // A service that was short of time has sent 0 just before its end: once more.
+        factors.heard.lock().unwrap().last().is_some_and(|(factor, _)| *factor > 0.0)
+    });
+    assert!(stands, "no factor stands after a kill");
 
     let _watchdog = LiveProcess::start(&[&["--ros2-watchdog", "200"][..], &ros2].concat());
     factors.wait("a watchdog that has heard nothing sends no 0", Duration::from_secs(20), |factor| factor == 0.0);
