@@ -24,6 +24,7 @@ mod snippets;
 mod soak;
 mod suite;
 mod test_run;
+mod workspace;
 
 use std::path::Path;
 use std::process::ExitCode;

@@ -7,6 +7,7 @@ use xtask::shell;
 
 use crate::dependents::{self, Package, dependents};
 use crate::references::References;
+use crate::workspace::WORKSPACE;
 use crate::{documents, layers, suite, test_run};
 
 /// Checks what differs from `since`, a commit: formats, layers, documents, then lints and tests of the changed crates and of
@@ -27,7 +28,7 @@ pub fn run(root: &Path, since: &str) -> Result<(), String> {
     // With `--workspace` the features are those of the whole suite, so that nothing is compiled for this alone.
     let excluded = all.keys().filter(|name| !packages.contains(name));
     let chosen: Vec<&str> =
-        suite::WORKSPACE.into_iter().chain(excluded.flat_map(|name| ["--exclude", name.as_str()])).collect();
+        WORKSPACE.into_iter().chain(excluded.flat_map(|name| ["--exclude", name.as_str()])).collect();
     shell::cargo(root, &[&["clippy"], &chosen[..], &["--all-targets", "--", "-D", "warnings"]].concat(), &[])?;
     suite::announce_data(root);
     let references = References::find(root, true)?;

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use xtask::shell;
 
-use crate::suite;
+use crate::workspace::program;
 
 /// One block to run.
 #[derive(Debug, PartialEq)]
@@ -46,7 +46,7 @@ pub fn run(root: &Path) -> Result<(), String> {
 fn search_path(root: &Path) -> Result<String, String> {
     let folder = shell::target_folder(root).join("snippets");
     shell::make_folder(&folder)?;
-    let program = suite::program(root, "elbowroom")?;
+    let program = program(root, "elbowroom")?;
     let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".into());
     let elbowroom = format!("#!/bin/sh\nexec '{}' \"$@\"\n", program.display());
     let stand_in = format!(

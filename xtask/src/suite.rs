@@ -1,14 +1,14 @@
 //! `cargo xtask test`: every check, timed, with a table at the end.
 
 use std::cell::RefCell;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use xtask::shell::target_folder;
 use xtask::{Failure, shell};
 
 use crate::references::References;
+use crate::workspace::{WORKSPACE, program};
 use crate::{documents, layers, snippets, test_run};
 
 type Check = fn(&Context) -> Result<(), String>;
@@ -143,9 +143,6 @@ fn print_table(outcomes: &[Outcome], total: Duration) {
     println!("{:<10} {:<7} {:>7.1} s", "all", "", total.as_secs_f64());
 }
 
-/// All tests run with the network in the command. Two sets of features would compile much of the workspace twice.
-pub const WORKSPACE: [&str; 3] = ["--workspace", "--features", "elbowroom-cli/live"];
-
 fn fmt(context: &Context) -> Result<(), String> {
     shell::cargo(context.root, &["fmt", "--all", "--check"], &[])
 }
@@ -178,14 +175,6 @@ pub fn announce_data(root: &Path) {
     let folder = xtask::call::data_folder(root, None);
     let line = if folder.is_dir() { "real data:" } else { "tests on real data are skipped: no data at" };
     println!("{line} {}", folder.display());
-}
-
-/// A program of the workspace as the tests use it. With `--tests` its libraries have the features that they have for the tests, so
-/// that nothing but the program itself is left to compile.
-pub fn program(root: &Path, name: &str) -> Result<PathBuf, String> {
-    let build = [&["build", "--quiet", "--tests", "--bins"], &WORKSPACE[..]].concat();
-    shell::cargo(root, &build, &[])?;
-    Ok(target_folder(root).join("debug").join(name))
 }
 
 /// Commands of `elbowroom-devtools` in the profile and with the features of the tests: they have compiled it already.
