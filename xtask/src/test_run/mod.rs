@@ -33,13 +33,19 @@ pub struct Counts {
     ignored: usize,
 }
 
-/// Compiles and runs the tests that `args` choose of cargo's.
+/// Compiles the tests that `args` choose of cargo's, and runs those of the programs that `is_chosen` takes.
 ///
 /// # Errors
 /// Where something does not compile, a test fails, or none ran.
-pub fn run(root: &Path, args: &[&str], env: &[(&str, &str)]) -> Result<(), String> {
+pub fn run(
+    root: &Path,
+    args: &[&str],
+    env: &[(&str, &str)],
+    is_chosen: impl Fn(&Program) -> bool,
+) -> Result<(), String> {
     let started = Instant::now();
-    let programs = compile(root, args, env)?;
+    let mut programs = compile(root, args, env)?;
+    programs.retain(is_chosen);
     println!("{} programs, compiled in {:.1} s", programs.len(), started.elapsed().as_secs_f64());
     let (counts, failed) = run_units(root, &programs, units::units(&programs)?, env);
     println!("{} passed, {} failed, {} skipped", counts.passed, counts.failed, counts.ignored);
