@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use toml::Table;
+
 /// Lowest layer first: a crate depends only on crates listed before it. Some are planned and not built yet.
 pub const GROUPS: [(&str, &[&str]); 7] = [
     ("base", &["testkit", "spatial", "proximity", "kinematics", "robot"]),
@@ -36,6 +38,15 @@ impl Crate {
 #[must_use]
 pub fn package(name: &str) -> String {
     if name == "elbowroom" { name.to_owned() } else { format!("elbowroom-{name}") }
+}
+
+/// Reads a `Cargo.toml`.
+///
+/// # Errors
+/// Names the file.
+pub fn manifest(path: &Path) -> Result<Table, String> {
+    let text = std::fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))?;
+    text.parse().map_err(|e| format!("{}: {e}", path.display()))
 }
 
 /// Every crate below `crates`, sorted by group and name.

@@ -22,7 +22,7 @@ pub fn packages(root: &Path) -> Result<BTreeMap<String, Package>, String> {
     let tools = [("elbowroom-devtools", "devtools/"), ("xtask", "xtask/")];
     let tools = tools.into_iter().map(|(name, folder)| (name.to_owned(), folder.to_owned()));
     let read = |(name, folder): (String, String)| {
-        let manifest = parse(&root.join(&folder).join("Cargo.toml"))?;
+        let manifest = crates::manifest(&root.join(&folder).join("Cargo.toml"))?;
         Ok((name, Package { folder, manifest }))
     };
     crates.chain(tools).map(read).collect()
@@ -49,11 +49,6 @@ pub fn dependents(packages: &BTreeMap<String, Package>, changed: BTreeSet<String
     let tested: Vec<(String, usize)> = tested.collect();
     linked.extend(tested);
     linked
-}
-
-fn parse(path: &Path) -> Result<Table, String> {
-    let text = std::fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))?;
-    text.parse().map_err(|e| format!("{}: {e}", path.display()))
 }
 
 #[cfg(test)]

@@ -16,13 +16,29 @@ struct Run {
 
 const LONG: (&str, &str) = ("ELBOWROOM_LONG", "1");
 
-/// `docs/measurements/soak.md` has the last result of each.
-const RUNS: [Run; 12] = [
+/// `docs/measurements/soak.md` has what was seen.
+const RUNS: [Run; 14] = [
     Run {
         name: "geometry",
         what: "random pairs of shapes and meshes, motions and sweeps beside their oracles, up to a million each",
         words: &["test", "--release", "-p", "elbowroom-proximity", "-p", "elbowroom-scene"],
         env: &[LONG],
+    },
+    Run {
+        name: "topology",
+        what: "the edges of a mesh of a million triangles, in well under a second",
+        words: &[
+            "test",
+            "--release",
+            "-p",
+            "elbowroom-proximity",
+            "--lib",
+            "--",
+            "--ignored",
+            "million",
+            "--nocapture",
+        ],
+        env: &[],
     },
     Run {
         name: "chains",
@@ -103,6 +119,12 @@ const RUNS: [Run; 12] = [
         name: "robots",
         what: "every robot of the data beside Pinocchio and Coal, 10,000 states each",
         words: &["xtask", "cross-validate"],
+        env: &[LONG],
+    },
+    Run {
+        name: "contacts",
+        what: "the collision point of every robot of the data beside Coal, 2,500 states each",
+        words: &["xtask", "contacts"],
         env: &[LONG],
     },
     Run {

@@ -62,7 +62,7 @@ pub fn run(root: &Path, words: &[&str]) -> Result<(), Failure> {
 fn hash(part: Part, root: &Path, data: &Path, options: &Options) -> Result<Vec<HashedGroup>, String> {
     let mut groups = match part {
         Part::Queries => queries::groups(root, data, options.rows),
-        Part::Overrides => overrides::groups(root, data, options.cells),
+        Part::Overrides => overrides::groups(root, Some(data), options.cells),
         Part::Plans => plans::groups(data, options.seeds),
     }?;
     groups.sort();

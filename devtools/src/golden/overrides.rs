@@ -7,7 +7,7 @@ use elbowroom_sim::{Recording, RunOptions, simulate};
 
 use super::digest::Digest;
 use super::hashed_group::HashedGroup;
-use super::parallel::{cores, in_order};
+use super::parallel::in_order;
 use super::part::Part;
 use super::progress::Progress;
 use super::reason_code;
@@ -19,19 +19,14 @@ use crate::fuzz_cells::write_cell_files;
 const SEED: u64 = 17;
 
 /// Hashes the runs of so many cells, an even share of each kind.
-pub fn groups(root: &Path, data: &Path, cells: usize) -> Result<Vec<HashedGroup>, String> {
-    groups_on(root, Some(data), cells, cores())
-}
-
-/// As [`groups`], on so many threads.
-pub fn groups_on(root: &Path, data: Option<&Path>, cells: usize, threads: usize) -> Result<Vec<HashedGroup>, String> {
+pub fn groups(root: &Path, data: Option<&Path>, cells: usize) -> Result<Vec<HashedGroup>, String> {
     let folder = write_cell_files(root)?;
     let places = Places { cells: &folder, root, data };
     let kinds = Kind::ALL.len();
-    let mut progress = Progress::new(Part::Overrides, cells);
+    let progress = Progress::new(Part::Overrides, cells);
     // Kinds by turns: any number of cells is an even share.
     let job = |i: usize| run(Kind::ALL[i % kinds], (i / kinds) as u64, &places);
-    let hashes = in_order(cells, threads, job, |done| progress.done(done, "cells"));
+    let hashes = in_order(cells, progress, "cells", job);
     let refused = hashes.iter().filter(|hash| hash.is_none()).count();
     eprintln!("overrides: {refused} of {cells} cells refused");
     let of_kind = |(k, kind): (usize, Kind)| {

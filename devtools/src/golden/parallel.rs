@@ -1,42 +1,20 @@
 //! Jobs on all cores, with their results in order.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::mpsc;
+use std::sync::{Mutex, PoisonError};
 
-/// Runs the jobs 0 to `count - 1` on so many threads; the results do not depend on how many. `done` is called with the number of jobs
-/// done so far.
-pub fn in_order<R: Send>(
-    count: usize,
-    threads: usize,
-    job: impl Fn(usize) -> R + Sync,
-    mut done: impl FnMut(usize),
-) -> Vec<R> {
-    let next = AtomicUsize::new(0);
-    let mut results: Vec<(usize, R)> = Vec::with_capacity(count);
-    std::thread::scope(|scope| {
-        let (send, receive) = mpsc::channel();
-        for _ in 0..threads.clamp(1, count.max(1)) {
-            let (send, next, job) = (send.clone(), &next, &job);
-            scope.spawn(move || {
-                loop {
-                    let index = next.fetch_add(1, Ordering::Relaxed);
-                    if index >= count || send.send((index, job(index))).is_err() {
-                        return;
-                    }
-                }
-            });
-        }
-        drop(send);
-        for result in receive {
-            results.push(result);
-            done(results.len());
-        }
-    });
-    results.sort_by_key(|(index, _)| *index);
-    results.into_iter().map(|(_, result)| result).collect()
-}
+use rayon::prelude::*;
 
-/// One thread per core.
-pub fn cores() -> usize {
-    std::thread::available_parallelism().map_or(1, usize::from)
+use super::progress::Progress;
+
+/// Runs the jobs 0 to `count - 1`; the results do not depend on the number of threads. `step` names a job in the progress.
+pub fn in_order<R: Send>(count: usize, progress: Progress, step: &str, job: impl Fn(usize) -> R + Sync) -> Vec<R> {
+    let progress = Mutex::new((progress, 0));
+    let run = |index| {
+        let result = job(index);
+        let (progress, done) = &mut *progress.lock().unwrap_or_else(PoisonError::into_inner);
+        *done += 1;
+        progress.done(*done, step);
+        result
+    };
+    (0..count).into_par_iter().with_max_len(1).map(run).collect()
 }

@@ -8,7 +8,7 @@ use elbowroom_formats::problem_set::PlanningProblem;
 use super::bounded_engine::BoundedEngine;
 use super::digest::Digest;
 use super::hashed_group::HashedGroup;
-use super::parallel::{cores, in_order};
+use super::parallel::in_order;
 use super::part::Part;
 use super::problem_files::{self, ProblemFile};
 use super::progress::Progress;
@@ -17,13 +17,13 @@ use super::progress::Progress;
 pub fn groups(data: &Path, seeds: usize) -> Result<Vec<HashedGroup>, String> {
     let mut groups = Vec::new();
     for file in problem_files::find(data)? {
-        groups.extend(of_file(file, seeds, cores())?);
+        groups.extend(of_file(file, seeds)?);
     }
     Ok(groups)
 }
 
 /// A group for each set of a file.
-fn of_file(file: ProblemFile, seeds: usize, threads: usize) -> Result<Vec<HashedGroup>, String> {
+fn of_file(file: ProblemFile, seeds: usize) -> Result<Vec<HashedGroup>, String> {
     let ProblemFile { name, file, urdf, robot, problems } = file;
     let model = ProblemModel::new(&urdf, robot, &file, &problems).map_err(|e| e.to_string())?;
     let sets: Vec<&[PlanningProblem]> = problems.chunk_by(|a, b| a.set == b.set).collect();
@@ -33,9 +33,9 @@ fn of_file(file: ProblemFile, seeds: usize, threads: usize) -> Result<Vec<Hashed
         let scene = model.problem_scene(first).map_err(|e| e.to_string())?;
         engine.prepare(&scene, ProblemSettings::default().clearance_m)?;
     }
-    let mut progress = Progress::new(Part::Plans, sets.len() * seeds);
+    let progress = Progress::new(Part::Plans, sets.len() * seeds);
     let job = |i: usize| hash(&model, sets[i / seeds], (i % seeds) as u64, engine.clone());
-    let hashes = in_order(sets.len() * seeds, threads, job, |done| progress.done(done, &name));
+    let hashes = in_order(sets.len() * seeds, progress, &name, job);
     let hashes = hashes.into_iter().collect::<Result<Vec<SetHash>, String>>()?;
     let found: usize = hashes.iter().map(|hash| hash.found).sum();
     eprintln!("plans: {found} paths for {} problems of {name}, {}", problems.len(), urdf.display());

@@ -37,11 +37,11 @@ pub fn write(root: &Path) -> Result<(), String> {
 }
 
 fn check(root: &Path, write: bool) -> Result<(), String> {
-    let workspace = parse(&root.join("Cargo.toml"))?;
+    let workspace = crates::manifest(&root.join("Cargo.toml"))?;
     let found = crates::find(root)?;
     let mut manifests = BTreeMap::new();
     for found in &found {
-        manifests.insert(found.name.clone(), parse(&found.folder.join("Cargo.toml"))?);
+        manifests.insert(found.name.clone(), crates::manifest(&found.folder.join("Cargo.toml"))?);
     }
     let mut problems = problems(&workspace, &manifests);
     for found in &found {
@@ -68,11 +68,6 @@ fn check(root: &Path, write: bool) -> Result<(), String> {
 fn circle_problems(name: &str, src: &Path) -> Result<Vec<String>, String> {
     let circles = circles::circles_of(src)?;
     Ok(circles.iter().map(|lines| format!("{name}: a circle of files\n    {}", lines.join("\n    "))).collect())
-}
-
-fn parse(path: &Path) -> Result<Table, String> {
-    let text = std::fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))?;
-    text.parse().map_err(|e| format!("{}: {e}", path.display()))
 }
 
 /// Everything wrong with these manifests (crate name → its `Cargo.toml`), in a fixed order.

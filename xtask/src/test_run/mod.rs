@@ -33,7 +33,7 @@ pub struct Counts {
     ignored: usize,
 }
 
-/// Compiles the tests that `args` choose of cargo's, and runs those of the programs that `is_chosen` takes.
+/// Compiles the tests that cargo selects by `args`, and runs the programs for which `is_chosen` is true.
 ///
 /// # Errors
 /// Where something does not compile, a test fails, or none ran.

@@ -81,7 +81,7 @@ fn wait(mut child: Child, limit: Limit) -> Ended {
     })
 }
 
-/// Kills the process and its group: what it has started would else hold its output open.
+/// Kills the process and its group (each process leads one, so Ctrl-C does not reach it): what it has started would else hold its output open.
 fn stop(child: &mut Child) {
     // Without `kill`, the process alone is stopped.
     let _ = Command::new("kill").args(["-KILL", "--", &format!("-{}", child.id())]).status();

@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use xtask::crates;
+
 use crate::artifacts::{self, Artifact};
 
 /// A compiled program of tests.
@@ -47,8 +49,7 @@ fn programs(artifacts: &[Artifact]) -> Result<Vec<Program>, String> {
 
 /// Whether the test target of the manifest uses the harness of the standard library.
 fn harness(manifest: &Path, target: &str) -> Result<bool, String> {
-    let text = std::fs::read_to_string(manifest).map_err(|e| format!("{}: {e}", manifest.display()))?;
-    let table: toml::Table = text.parse().map_err(|e| format!("{}: {e}", manifest.display()))?;
+    let table = crates::manifest(manifest)?;
     let targets = table.get("test").and_then(toml::Value::as_array).into_iter().flatten();
     let named = |t: &&toml::Value| t.get("name").and_then(toml::Value::as_str) == Some(target);
     let own = targets.into_iter().find(named).and_then(|t| t.get("harness")).and_then(toml::Value::as_bool);

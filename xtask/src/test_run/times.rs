@@ -17,7 +17,7 @@ pub struct Times {
 }
 
 impl Times {
-    /// Reads the times of the last run, and those of the list for units that it did not have.
+    /// Reads the times of the last run; a unit that did not run then has its time from the list.
     pub fn read(root: &Path) -> Self {
         let file = target_folder(root).join("test-times.txt");
         let text = std::fs::read_to_string(&file).unwrap_or_default();
@@ -38,7 +38,7 @@ impl Times {
         self.seconds.insert(unit.to_owned(), time.as_secs_f64());
     }
 
-    /// Writes the file. The times only choose an order: one that cannot be written is no failure.
+    /// Writes the file. The times only choose an order, so a failed write is reported and is not an error.
     pub fn write(&self) {
         let mut lines: Vec<String> = self.seconds.iter().map(|(name, s)| format!("{name} {s:.2}")).collect();
         lines.sort();

@@ -95,7 +95,7 @@ impl EditedRegions {
         file.resolve()
     }
 
-    /// The keys of a region as they are now, a line each; `None` where there is none of this name.
+    /// The present keys of a region, one per line; `None` if the cell has no region of this name.
     pub fn table(&self, edits: &[RegionEdit], name: &str) -> Option<String> {
         if let Some(edit) = edits.iter().find(|e| e.name == name) {
             return edit.table.clone();
@@ -184,7 +184,7 @@ fn regions(entries: &mut Vec<Entry>) -> &mut Vec<Entry> {
     });
     let entry = &mut entries[at];
     if !matches!(entry.node.data, Data::Table(_)) {
-        // Such a file is no cell.
+        // A valid cell has a table here.
         entry.node.data = Data::Table(Vec::new());
     }
     match &mut entry.node.data {

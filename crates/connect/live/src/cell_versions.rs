@@ -8,7 +8,7 @@ use elbowroom_formats::FormatError;
 /// So many cells are kept that were built last: nodes of one process ask for the same ones.
 const KEPT: usize = 4;
 
-/// Why there is no such cell.
+/// Why the changed regions do not make a valid cell.
 #[derive(Debug, thiserror::Error)]
 pub enum NoVersion {
     /// A region is wrong.

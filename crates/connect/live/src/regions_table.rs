@@ -42,7 +42,7 @@ pub struct RegionTableMessage {
     pub revision: u64,
     /// Per region, in the order of the cell file, its name and whether it is on.
     pub regions: Vec<(String, bool)>,
-    /// As `configuration`, with the regions as they are now; empty where they are those of the file.
+    /// Like `configuration`, with the present regions; empty if no region of the file has changed.
     #[serde(default)]
     pub present: String,
     /// The regions that are not as in the cell file.

@@ -165,7 +165,7 @@ fn what_is_not_allowed_is_refused_with_the_reason_and_changes_nothing() {
         (PROGRAMMER, "/add", add("shape = \"cube\""), 400, "line 1: "),
         (PROGRAMMER, "/add", add("shape = \"sphere\"\ncentre = [0, 0"), 400, "not TOML"),
         (PROGRAMMER, "/add", add("shape = \"mesh\"\nmesh = \"/etc/passwd\""), 400, "outside of the cell's folder"),
-        (PROGRAMMER, "/add", json!({ "region": "a\nb", "toml": TABLE }), 400, "no name of a region"),
+        (PROGRAMMER, "/add", json!({ "region": "a\nb", "toml": TABLE }), 400, "not a valid name for a region"),
         (PROGRAMMER, "/add", add(&around), 409, "is inside region `table`"),
     ];
     for (class, path, body, expected, message) in cases {

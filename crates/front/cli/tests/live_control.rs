@@ -123,7 +123,7 @@ warning = 100
         assert!(refused.stderr.contains("there is a region `table` already"), "{}", refused.stderr);
         let refused = run(&["move", "end", "centre=[0, 0, 2600]"], "integrator");
         assert!(refused.stderr.contains("is permanent and in the cell file"), "{}", refused.stderr);
-        assert!(run(&["move", "cart", "nowhere"], "programmer").stderr.contains("is no KEY=VALUE"));
+        assert!(run(&["move", "cart", "nowhere"], "programmer").stderr.contains("is not KEY=VALUE"));
         assert!(run(&["remove", "table"], "programmer").status == 0);
         assert!(!run(&["regions"], "operator").stdout.contains("table "));
         let file = folder.join("cell.control.jsonl");

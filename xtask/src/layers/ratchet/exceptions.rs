@@ -30,7 +30,7 @@ pub fn read(text: &str, rules: &[Rule]) -> Result<BTreeMap<&'static str, Excepti
     let table: Table = text.parse().map_err(|e| format!("{LIST}: {e}"))?;
     if let Some(unknown) = table.keys().find(|key| rules.iter().all(|rule| rule.section != *key)) {
         let known: Vec<&str> = rules.iter().map(|rule| rule.section).collect();
-        return Err(format!("{LIST}: [{unknown}] is no section of the list; write one of {}", known.join(", ")));
+        return Err(format!("{LIST}: [{unknown}] is not a section of the list; write one of {}", known.join(", ")));
     }
     let mut found = BTreeMap::new();
     for rule in rules {

@@ -64,9 +64,8 @@ impl RequestHandler {
             || name.chars().any(char::is_control)
             || name.ends_with(AT_NEW_PLACE)
         {
-            return Err(
-                Refusal::new(400, "that is no name of a region").help(format!("at most {MAX_NAME} bytes, on one line"))
-            );
+            return Err(Refusal::new(400, "this is not a valid name for a region")
+                .help(format!("at most {MAX_NAME} bytes, on one line")));
         }
         let mut log = self.log();
         is_present(&log, at)?;

@@ -64,7 +64,7 @@ pub struct NodeParts {
     /// Records every tick.
     pub recorder: Option<TickRecorder>,
     /// For regions that are moved, added and removed while the node runs; then its robot stops until a table of regions was heard.
-    /// `None` where the regions stay those of the cell.
+    /// `None` if the regions cannot change while the cell runs.
     pub versions: Option<Arc<CellVersions>>,
 }
 

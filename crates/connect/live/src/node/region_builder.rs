@@ -37,7 +37,7 @@ impl RegionBuilder {
         Self { inbox, versions, robot, interlock, kept: vec![version] }
     }
 
-    /// Builds what the table that was heard last asks for, and leaves it for the next tick. False where there is nothing to build.
+    /// Builds the monitor for the last table received, and leaves it for the next tick. Returns false if there is nothing to build.
     ///
     /// # Errors
     /// Why the node cannot have these regions, in words; then it stops once they are due.

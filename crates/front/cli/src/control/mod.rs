@@ -52,7 +52,7 @@ pub(crate) fn control(command: &ControlCommand) -> Result<ExitStatus, Failure> {
 fn keys(written: &[String]) -> Result<String, Failure> {
     let line = |text: &String| match text.split_once('=') {
         Some((key, value)) => Ok(format!("{} = {}\n", key.trim(), value.trim())),
-        None => Err(Failure::Wrong(format!("`{text}` is no KEY=VALUE\n  write: 'centre=[0, 0, 900]'"))),
+        None => Err(Failure::Wrong(format!("`{text}` is not KEY=VALUE\n  write: 'centre=[0, 0, 900]'"))),
     };
     written.iter().map(line).collect()
 }
