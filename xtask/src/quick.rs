@@ -1,4 +1,4 @@
-//! `cargo xtask quick`: the checks of what changed, and of what depends on it.
+//! `cargo xtask quick`: the checks of what changed, and the quick ones of what depends on it.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -11,8 +11,11 @@ use crate::test_run::Program;
 use crate::workspace::WORKSPACE;
 use crate::{documents, layers, suite, test_run};
 
-/// Checks what differs from `since`, a commit: formats, layers, documents, then lints and tests of the changed crates and of
-/// all that depend on them.
+/// Units of tests of the crates that depend on a change run if they took no longer, seconds; those of the changed crates always.
+const LONGEST_BEYOND_S: f64 = 1.0;
+
+/// Checks what differs from `since`, a commit: formats, layers, documents, lints, then the tests of the changed crates and those
+/// that are quick of all that depend on them.
 pub fn run(root: &Path, since: &str) -> Result<(), String> {
     let files = changed(root, since)?;
     println!("{} files differ from {since}", files.len());
@@ -25,14 +28,21 @@ pub fn run(root: &Path, since: &str) -> Result<(), String> {
         println!("no crate is affected");
         return Ok(());
     }
-    println!("affected: {}", packages.join(", "));
+    println!("affected: {}", packages.keys().map(String::as_str).collect::<Vec<_>>().join(", "));
     // The whole workspace: what has not changed costs nothing, and with a part of it libraries would have other features.
     shell::cargo(root, &[&["clippy"], &WORKSPACE[..], &["--all-targets", "--", "-D", "warnings"]].concat(), &[])?;
     suite::announce_data(root);
     let references = References::find(root, true)?;
-    let folders: Vec<_> = packages.iter().map(|name| root.join(&all[name].folder)).collect();
-    let is_chosen = |program: &Program| folders.contains(&program.folder);
-    test_run::run(root, &WORKSPACE, &references.environment().collect::<Vec<_>>(), is_chosen)
+    let distance = |program: &Program| {
+        let package = packages.iter().find(|(name, _)| root.join(&all[*name].folder) == program.folder);
+        package.map(|(_, distance)| *distance)
+    };
+    let longest = |program: &Program| match distance(program) {
+        None => -1.0,
+        Some(0) => f64::INFINITY,
+        Some(_) => LONGEST_BEYOND_S,
+    };
+    test_run::run(root, &WORKSPACE, &references.environment().collect::<Vec<_>>(), longest)
 }
 
 /// Files that differ from a commit, and new ones.
@@ -42,17 +52,17 @@ fn changed(root: &Path, since: &str) -> Result<Vec<String>, String> {
     Ok(differing.lines().chain(new.lines()).map(str::to_owned).collect())
 }
 
-/// The packages to check again, sorted.
-fn affected(packages: &BTreeMap<String, Package>, files: &[String]) -> Vec<String> {
+/// The packages to check again, each with how many steps it is away from a change.
+fn affected(packages: &BTreeMap<String, Package>, files: &[String]) -> BTreeMap<String, usize> {
     let concerns_all = |file: &String| {
         ["Cargo.", ".cargo/", "clippy.toml", "rustfmt.toml", "examples/", "clients/"]
             .iter()
             .any(|s| file.starts_with(s))
     };
     if files.iter().any(concerns_all) {
-        return packages.keys().cloned().collect();
+        return packages.keys().map(|name| (name.clone(), 0)).collect();
     }
     let is_changed = |package: &Package| files.iter().any(|file| file.starts_with(&package.folder));
     let changed = packages.iter().filter(|(_, package)| is_changed(package)).map(|(name, _)| name.clone());
-    dependents(packages, changed.collect()).into_keys().collect()
+    dependents(packages, changed.collect())
 }

@@ -161,7 +161,7 @@ fn tests(context: &Context) -> Result<(), String> {
     // What cannot be installed fails the step, but not before the tests have run.
     let environment = references.iter().flat_map(References::environment);
     let env: Vec<_> = network(context).into_iter().chain(environment).collect();
-    test_run::run(context.root, &WORKSPACE, &env, |_| true)?;
+    test_run::run(context.root, &WORKSPACE, &env, |_| f64::INFINITY)?;
     references.map(|_| ())
 }
 

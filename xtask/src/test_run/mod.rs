@@ -33,21 +33,24 @@ pub struct Counts {
     ignored: usize,
 }
 
-/// Compiles the tests that cargo selects by `args`, and runs the programs for which `is_chosen` is true.
+/// Compiles the tests that cargo selects by `args`, and runs those that took no
+/// longer than `longest`, the seconds that a program's units may take.
 ///
 /// # Errors
 /// Where something does not compile, a test fails, or none ran.
-pub fn run(
-    root: &Path,
-    args: &[&str],
-    env: &[(&str, &str)],
-    is_chosen: impl Fn(&Program) -> bool,
-) -> Result<(), String> {
+pub fn run(root: &Path, args: &[&str], env: &[(&str, &str)], longest: impl Fn(&Program) -> f64) -> Result<(), String> {
     let started = Instant::now();
-    let mut programs = compile(root, args, env)?;
-    programs.retain(is_chosen);
+    let programs = compile(root, args, env)?;
     println!("{} programs, compiled in {:.1} s", programs.len(), started.elapsed().as_secs_f64());
-    let (counts, failed) = run_units(root, &programs, units::units(&programs)?, env);
+    let times = Times::read(root);
+    let all = units::units(&programs)?;
+    let total = all.len();
+    let is_chosen = |unit: &Unit| times.expected(&unit.name) <= longest(&programs[unit.program]);
+    let chosen: Vec<Unit> = all.into_iter().filter(is_chosen).collect();
+    if chosen.len() < total {
+        println!("{} of {total} units of tests are chosen; `cargo xtask test` runs all", chosen.len());
+    }
+    let (counts, failed) = run_units(&programs, chosen, times, env);
     println!("{} passed, {} failed, {} skipped", counts.passed, counts.failed, counts.ignored);
     if counts == Counts::default() {
         return Err("no test ran".into());
@@ -63,8 +66,7 @@ struct Progress {
     times: Times,
 }
 
-fn run_units(root: &Path, programs: &[Program], mut open: Vec<Unit>, env: &[(&str, &str)]) -> (Counts, Vec<String>) {
-    let times = Times::read(root);
+fn run_units(programs: &[Program], mut open: Vec<Unit>, times: Times, env: &[(&str, &str)]) -> (Counts, Vec<String>) {
     open.sort_by(|a, b| {
         let longer = times.expected(&b.name).total_cmp(&times.expected(&a.name));
         longer.then_with(|| b.tests.len().cmp(&a.tests.len())).then_with(|| a.name.cmp(&b.name))
