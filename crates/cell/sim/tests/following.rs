@@ -247,3 +247,35 @@ fn disabled_watchdogs_and_unbounded_zones_are_refused() {
     let e = parse(&cell(&zone("10", "hysteresis = 1e9\n"))).unwrap_err().to_string();
     assert!(e.contains("hysteresis"), "{e}");
 }
+
+/// A ball on a turntable crosses the rail; the carriage needs a second to stop.
+#[test]
+fn a_robot_never_moves_into_a_region_that_turns_at_a_constant_rate() {
+    let (orbit, turn) = (1200.0_f64, 85.0);
+    let mut hits_without = 0;
+    for phase in 0..12 {
+        let (sin, cos) = (PI / 6.0 * f64::from(phase)).sin_cos();
+        let text = format!(
+            "{HEAD}max_s = 5\n{}start = [-1500]\nstop_time = 1.0\n\
+             [object.turntable]\nshape = \"sphere\"\nradius = 10\nat = [0, -900, -1000]\nmotion = {{ turn = [0, 0, {turn}] }}\n\
+             [region.orb]\nshape = \"sphere\"\ncentre = [{}, {}, 1000]\nradius = 100\nwarning = 300\n\
+             follow = {{ object = \"turntable\" }}\n{LAWS}{PROGRAM}",
+            rail("a", 0.0),
+            orbit * cos,
+            orbit * sin,
+        );
+        // The ball may reach a robot that stands: it is the first instant of a contact that counts.
+        let moves_inside = |outcome: &RunOutcome| {
+            let samples = &outcome.recording.robots[0].samples;
+            let touches =
+                |tick: usize| at(outcome, tick).translation.distance(Vec3::new(samples[tick].q[0], 0.0, 0.0)) <= 0.15;
+            let entered = |tick: &usize| touches(*tick) && !touches(tick - 1);
+            (1..samples.len()).filter(entered).find(|tick| samples[*tick].q[0] != samples[tick - 1].q[0])
+        };
+        assert_eq!(moves_inside(&run_at(Path::new("."), &text)), None, "phase {phase}");
+        let cell = Cell::parse("cell.toml", &text).unwrap();
+        let free = simulate(&cell, &RunOptions { apply_override: false, ..RunOptions::default() }).unwrap();
+        hits_without += usize::from(moves_inside(&free).is_some());
+    }
+    assert!(hits_without > 3, "only {hits_without} of 12 would enter");
+}

@@ -65,6 +65,7 @@ mod placement;
 mod point_motion;
 mod recovery;
 mod region;
+mod region_approach;
 mod region_clearance;
 mod region_distance_query;
 mod region_sweep;

@@ -7,6 +7,7 @@ use crate::laws::{speed_zone, warning_factor};
 use crate::placement::{DynamicRegion, Placement};
 use crate::point_motion::max_speed_along;
 use crate::recovery::{RecoverySettings, leads_out};
+use crate::region_approach::{RegionApproach, TurningMotion};
 use crate::stopping::{StoppingLaw, StoppingQuery};
 use crate::tick_context::TickContext;
 use crate::volume_region_pair::{RequestedOverride, VolumeRegionPair};
@@ -130,49 +131,51 @@ impl OverrideLaw<'_> {
         let is_convex = |shape: &Shape| !matches!(shape, Shape::Mesh(_));
         if !(is_convex(&config.volumes[volume].shape) && is_convex(&region.shape)) {
             let approach = law.approach_any_direction(volume);
-            return Some(StoppingQuery { volume, approach, free_m, region_speed: self.max_speed_of_region(pair) });
+            let region = self.region_approach(pair, law, None);
+            return Some(StoppingQuery { volume, approach, free_m, region });
         }
         let towards = (s.on_b - s.on_a).try_normalize()?;
-        let region_speed = self.region_closing_speed(pair, towards);
-        if region_speed == 0.0 && law.is_out_of_reach(volume, free_m - self.settings.stop_margin_m) {
-            return Some(StoppingQuery { volume, approach: law.approach_any_direction(volume), free_m, region_speed });
+        let region = self.region_approach(pair, law, Some(towards));
+        if region.is_still() && law.is_out_of_reach(volume, free_m - self.settings.stop_margin_m) {
+            return Some(StoppingQuery { volume, approach: law.approach_any_direction(volume), free_m, region });
         }
         let closing_speed = |state| max_speed_along(config, self.tick.now, volume, state, towards);
         let program_speed = closing_speed(self.tick.intent?);
         // The actual motion only counts where the program is not known.
         let real_speed = if law.program_is_known() { 0.0 } else { closing_speed(&self.tick.now.chain) };
         let approach = law.approach(volume, towards, program_speed, real_speed);
-        Some(StoppingQuery { volume, approach, free_m, region_speed })
+        Some(StoppingQuery { volume, approach, free_m, region })
     }
 
-    /// Speed (m/s) with which the region approaches against `towards` by its own motion; never negative.
-    fn region_closing_speed(&self, pair: &VolumeRegionPair, towards: Vec3) -> f64 {
+    /// How the region approaches by its own motion: against `towards`, or in any direction.
+    fn region_approach(&self, pair: &VolumeRegionPair, law: &StoppingLaw, towards: Option<Vec3>) -> RegionApproach {
         let region = &self.tick.config.regions[pair.region];
-        let Some(source) = region.source_state(self.tick.snapshot.sources) else { return 0.0 };
-        let angular_velocity = source.motion.angular_velocity;
-        let (at, in_world) = (pair.separation.on_b, &self.tick.now.region_in_world[pair.region]);
-        if matches!(region.shape, Shape::HalfSpace(_)) {
-            // Of a half-space only the part opposite the volume counts.
-            let across = self.tick.now.volume_box[pair.volume].extent().length() + pair.separation.distance;
-            let speed = source.motion.velocity_at(at - source.pose.translation).dot(-towards);
-            return (speed + angular_velocity.length() * across).max(0.0);
-        }
-        let lever = (-towards).cross(angular_velocity);
-        let farthest = in_world.transform_point(region.shape.support(in_world.inverse_transform_vector(lever)));
-        source.motion.velocity_at(farthest - source.pose.translation).dot(-towards).max(0.0)
-    }
-
-    /// Upper bound of the speed of the points of the region, m/s.
-    fn max_speed_of_region(&self, pair: &VolumeRegionPair) -> f64 {
-        let region = &self.tick.config.regions[pair.region];
-        let Some(source) = region.source_state(self.tick.snapshot.sources) else { return 0.0 };
+        let Some(source) = region.source_state(self.tick.snapshot.sources) else { return RegionApproach::default() };
+        let origin = source.pose.translation;
         let bounds = &self.tick.now.region_box[pair.region];
-        if !bounds.extent().is_finite() {
-            let towards = (pair.separation.on_b - pair.separation.on_a).try_normalize();
-            return towards.map_or(f64::INFINITY, |towards| self.region_closing_speed(pair, towards));
+        if bounds.extent().is_finite() {
+            let motion = TurningMotion::new(&source.motion, bounds.max_distance(origin));
+            return match towards {
+                Some(towards) => motion.approach(self.closing_speed(pair, source, towards)),
+                None => motion.approach_any_direction(),
+            };
         }
-        let center = source.motion.velocity_at(bounds.center() - source.pose.translation);
-        center.length() + source.motion.angular_velocity.length() * 0.5 * bounds.extent().length()
+        // Of a half-space only the points that come to where the volume may be count.
+        let volume = &self.tick.now.volume_box[pair.volume];
+        let drift = source.motion.velocity.length() * law.rest_after_s();
+        let motion = TurningMotion::new(&source.motion, volume.max_distance(origin) + law.reach_m(pair.volume) + drift);
+        let towards = towards.or_else(|| (pair.separation.on_b - pair.separation.on_a).try_normalize());
+        let fastest = |towards| motion.swinging_speed() - source.motion.velocity.dot(towards);
+        towards.map_or_else(|| motion.approach_any_direction(), |towards| motion.approach(fastest(towards)))
+    }
+
+    /// Largest speed (m/s) of the points of a bounded region against `towards`.
+    fn closing_speed(&self, pair: &VolumeRegionPair, source: &SourceState, towards: Vec3) -> f64 {
+        let region = &self.tick.config.regions[pair.region];
+        let in_world = &self.tick.now.region_in_world[pair.region];
+        let lever = (-towards).cross(source.motion.angular_velocity);
+        let farthest = in_world.transform_point(region.shape.support(in_world.inverse_transform_vector(lever)));
+        source.motion.velocity_at(farthest - source.pose.translation).dot(-towards)
     }
 
     /// True where joints and region are at rest, and no commanded override will move the joints.

@@ -15,6 +15,7 @@ use crate::braking_check::BrakingCheck;
 use crate::carried_volume::{Approach, CarriedVolume, VolumeMotion, WorldAxis};
 use crate::laws::{stop_time, stopping_program_time};
 use crate::override_history::{OverrideHistory, OverrideRange, PendingMotion, StopTime};
+use crate::region_approach::RegionApproach;
 use crate::{Configuration, StoppingSettings, VolumeId};
 
 /// Safety factor of the reaction time. While it slows down, a robot still executes earlier, higher overrides; without this
@@ -96,8 +97,8 @@ pub(crate) struct StoppingQuery {
     pub(crate) approach: Approach,
     /// Distance that the volume may still travel, m.
     pub(crate) free_m: f64,
-    /// Speed with which the region approaches by itself, m/s.
-    pub(crate) region_speed: f64,
+    /// How the region approaches by itself.
+    pub(crate) region: RegionApproach,
 }
 
 impl StoppingQuery {
@@ -300,12 +301,12 @@ impl StoppingLaw {
         }
         let phases = self.real_phases();
         let approach = Approach { program_speed: query.approach.real_speed, ..query.approach };
-        let region_travel = query.region_speed * (self.horizon_s + phases.stop);
+        let region_travel = query.region.travel_m(self.horizon_s + phases.stop);
         self.travel(query.volume, &approach, &phases, &self.real) + region_travel <= query.free_m
     }
 
     fn fits(&self, query: &StoppingQuery, phases: &StopPhases) -> bool {
-        let region_travel = query.region_speed * (self.horizon_s + phases.stop);
+        let region_travel = query.region.travel_m(self.horizon_s + phases.stop);
         // A travel of NaN does not fit.
         self.travel(query.volume, &query.approach, phases, &self.program) + region_travel <= query.free_m
     }

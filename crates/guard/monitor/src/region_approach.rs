@@ -1,0 +1,118 @@
+//! How far a region that moves and turns at a constant rate comes towards a volume.
+
+use elbowroom_spatial::FrameMotion;
+
+/// The approach of a region by its own motion; `docs/laws.md`, section 7.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct RegionApproach {
+    /// Largest closing speed of its points now, m/s; negative where all recede.
+    speed: f64,
+    /// Largest acceleration of its points, m/s²: what turns keeps its speed and changes its direction.
+    acceleration: f64,
+    /// Largest speed of its points in any direction, m/s.
+    max_speed: f64,
+}
+
+impl RegionApproach {
+    /// The distance (m) by which it has come closer at any moment of the next `time_s`, at most.
+    pub(crate) fn travel_m(&self, time_s: f64) -> f64 {
+        // The sum is convex in time: it is largest at the beginning or at the end.
+        let turning = self.speed * time_s + 0.5 * self.acceleration * time_s * time_s;
+        // NaN stays: it never fits.
+        if turning < 0.0 {
+            0.0
+        } else if turning > self.max_speed * time_s {
+            self.max_speed * time_s
+        } else {
+            turning
+        }
+    }
+
+    /// True where no point of it moves.
+    pub(crate) fn is_still(&self) -> bool {
+        self.max_speed == 0.0
+    }
+}
+
+/// A body that moves and turns at a constant rate, with the radius of its points.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct TurningMotion {
+    /// rad/s.
+    turns: f64,
+    /// Largest speed of its points by turning, m/s.
+    swings: f64,
+    /// Largest speed of its points, m/s.
+    fastest: f64,
+}
+
+impl TurningMotion {
+    /// The motion of all points within `radius_m` of the frame's origin; the frame keeps its velocity, or turns it as it
+    /// turns itself (an object beside its axis, the hand of a robot).
+    pub(crate) fn new(motion: &FrameMotion, radius_m: f64) -> Self {
+        let turns = motion.angular_velocity.length();
+        // Of what does not turn the radius does not count, even if it is infinite.
+        let swings = if turns > 0.0 { turns * radius_m } else { 0.0 };
+        Self { turns, swings, fastest: motion.velocity.length() + swings }
+    }
+
+    /// Largest speed (m/s) that its points have from turning.
+    pub(crate) fn swinging_speed(&self) -> f64 {
+        self.swings
+    }
+
+    /// The approach in a direction in which no point is faster than `closing_speed` (m/s) now. Both kinds of motion bend the
+    /// path of a point by no more than its angular speed times its largest speed.
+    pub(crate) fn approach(&self, closing_speed: f64) -> RegionApproach {
+        let acceleration = if self.turns > 0.0 { self.turns * self.fastest } else { 0.0 };
+        RegionApproach { speed: closing_speed, acceleration, max_speed: self.fastest }
+    }
+
+    /// The approach where it may come from any side.
+    pub(crate) fn approach_any_direction(&self) -> RegionApproach {
+        RegionApproach { speed: self.fastest, acceleration: 0.0, max_speed: self.fastest }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use elbowroom_spatial::{Pose, Rotation, Vec3};
+    use elbowroom_testkit::random::{Random, SplitMix};
+
+    use super::*;
+
+    #[test]
+    fn no_point_of_a_body_that_turns_comes_closer_than_its_travel() {
+        let mut random = SplitMix(5);
+        let mut vector = |length: f64| Vec3::from(random.within(length));
+        for _ in 0..2000 {
+            let (turn, velocity, point) = (vector(3.0), vector(1.0), vector(1.0));
+            let towards = vector(1.0).try_normalize().unwrap();
+            let motion = FrameMotion { velocity, angular_velocity: turn, ..FrameMotion::default() };
+            let approach = TurningMotion::new(&motion, point.length()).approach(motion.velocity_at(point).dot(towards));
+            for step in 1..=40 {
+                let t = 0.05 * f64::from(step);
+                let turned = |t: f64| Rotation::from_rotation_vector(turn * t);
+                // The origin keeps its velocity.
+                let straight = velocity * t + turned(t) * point - point;
+                assert!(straight.dot(towards) <= approach.travel_m(t) + 1e-9);
+                // The origin turns its velocity: summed over short steps.
+                let arc = (0..200).fold(Pose::IDENTITY, |at, i| {
+                    let s = t / 200.0;
+                    let rotation = turned((f64::from(i) + 1.0) * s);
+                    Pose { translation: at.translation + turned((f64::from(i) + 0.5) * s) * velocity * s, rotation }
+                });
+                let curved = arc.transform_point(point) - point;
+                assert!(curved.dot(towards) <= approach.travel_m(t) + 1e-4);
+            }
+        }
+    }
+
+    #[test]
+    fn what_does_not_turn_approaches_at_its_speed_and_what_recedes_does_not() {
+        let motion = FrameMotion { velocity: Vec3::new(0.0, 0.5, 0.0), ..FrameMotion::default() };
+        let approach = |speed: f64| TurningMotion::new(&motion, f64::INFINITY).approach(speed);
+        assert_eq!((approach(0.25).travel_m(2.0), approach(-0.25).travel_m(2.0)), (0.5, 0.0));
+        assert!(RegionApproach::default().is_still() && !approach(-0.25).is_still());
+        assert!(approach(f64::NAN).travel_m(1.0).is_nan());
+    }
+}
