@@ -153,8 +153,9 @@ fn collisions_are_reported_once_per_pair_with_names() {
 #[test]
 fn recordings_play_back_on_their_rows_and_obey_the_override() {
     let dir = tempfile::tempdir().unwrap();
-    let rows: Vec<String> =
-        (0..=500).map(|i| format!("{},{}\n", f64::from(i) * 0.004, 0.5 * (f64::from(i) * 0.006).sin())).collect();
+    let rows: Vec<String> = (0..=500)
+        .map(|i| format!("{},{}\n", f64::from(i) * 0.004, 0.25 * (1.0 - (f64::from(i) * 0.012).cos())))
+        .collect();
     std::fs::write(dir.path().join("t.csv"), format!("t_s,joint_1\n{}", rows.concat())).unwrap();
     let text = format!(
         "{HEAD}{}[region.z]\nshape = \"sphere\"\ncentre = [700, 0, 0]\nradius = 150\nwarning = 400\nguards = [\"tcp\"]\n[program.r]\ntrajectory = \"t.csv\"\n",
@@ -164,7 +165,7 @@ fn recordings_play_back_on_their_rows_and_obey_the_override() {
     let free = simulate(&cell, &RunOptions { apply_override: false, ..RunOptions::default() }).unwrap().recording;
     assert!(free.robots[0].finished && (free.duration_s - 2.0).abs() < 0.005);
     for s in &free.robots[0].samples {
-        assert!((s.q[0] - 0.5 * (s.t_s * 1.5).sin()).abs() < 1e-9);
+        assert!((s.q[0] - 0.25 * (1.0 - (s.t_s * 3.0).cos())).abs() < 1e-9);
     }
     let slow = simulate(&cell, &RunOptions::default()).unwrap().recording;
     assert!(slow.robots[0].finished && slow.duration_s > 3.0);

@@ -27,6 +27,25 @@ fn hard_runs_do_not_hit() {
         cell.moving_objects.iter_mut().find(|m| m.object == object).unwrap().drive = Drive::Path(paths[n].clone());
         let recording = simulate(&cell, &RunOptions::default()).unwrap().recording;
         let robot = &recording.robots[0];
+        let s = &robot.avoidance.as_ref().unwrap().samples;
+        let near: Vec<f64> =
+            s.iter().enumerate().filter(|(_, s)| s.nearest_m < 0.3).map(|(i, _)| i as f64 * cell.tick_s).collect();
+        let least = s.iter().enumerate().min_by(|a, b| a.1.nearest_m.total_cmp(&b.1.nearest_m)).unwrap();
+        let off: Vec<f64> = s
+            .iter()
+            .enumerate()
+            .filter(|(_, s)| s.path_deviation_s > 0.0)
+            .map(|(i, _)| i as f64 * cell.tick_s)
+            .collect();
+        println!(
+            "CAL {n}: near {:?}..{:?}, least {} at {}, off {:?}..{:?}",
+            near.first(),
+            near.last(),
+            least.1.nearest_m,
+            least.0 as f64 * cell.tick_s,
+            off.first(),
+            off.last()
+        );
         let steps = robot.avoidance.as_ref().unwrap().step_ns;
         println!(
             "run {n}: {:.2} s, finished {}, hits {}, step p50 {} p99 {} max {} us",

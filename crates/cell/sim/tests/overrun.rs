@@ -13,6 +13,11 @@ use proptest::prelude::*;
 /// The law approaches the border asymptotically: in the end the distance is rounded to 0.
 const ROUNDING_M: f64 = 1e-6;
 
+/// Random settings: a hundred with `ELBOWROOM_LONG=1`.
+fn cases() -> u32 {
+    if std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1") { 100 } else { 50 }
+}
+
 /// A random robot, program and region.
 #[derive(Debug, Clone)]
 struct Setting {
@@ -151,7 +156,7 @@ fn with_named_thickness(setting: &Setting) -> Option<(String, f64)> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 100, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(), ..ProptestConfig::default() })]
 
     #[test]
     fn the_computed_thickness_is_sufficient(setting in settings()) {

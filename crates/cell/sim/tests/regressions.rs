@@ -1,6 +1,9 @@
 //! Regression tests for cells and tables that users reported.
 
-use crate::common::{HEAD, rail, run};
+use crate::common::{HEAD, parse, rail, run};
+use elbowroom_cell::Cell;
+use elbowroom_sim::check::{check, recordings};
+use elbowroom_sim::{RunOptions, simulate};
 
 #[test]
 fn a_stop_is_planned_for_a_path_that_bends_towards_the_region() {
@@ -53,4 +56,90 @@ fn a_robot_that_starts_inside_an_exchange_region_occupies_it_from_the_first_tick
     assert!(!outcome.recording.regions[0].entered && outcome.recording.robots[0].finished);
     let first = outcome.recording.events.iter().find(|e| e.event.name() == "granted").unwrap();
     assert!(first.t_s == 0.0 && first.robot == "a");
+}
+
+const STOPPING: &str = "[monitor]\nstopping_distance = true\ndirection_aware = true\n";
+
+/// What `check` says of the only pair, and whether the region is entered in a run of so many repetitions.
+fn excluded_and_entered(cell: &Cell, repeat: u32) -> (bool, String, bool) {
+    let entry = check(cell).unwrap().remove(0);
+    let options = RunOptions { repeat, ..RunOptions::default() };
+    let outcome = simulate(cell, &options).unwrap();
+    (entry.excluded, entry.reason, outcome.recording.regions[0].entered)
+}
+
+/// A cell whose program is a recording.
+fn recorded(text: &str, csv: &str) -> Cell {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("recording.csv"), csv).unwrap();
+    Cell::parse(dir.path().join("cell.toml"), text).unwrap_or_else(|e| panic!("{e}"))
+}
+
+#[test]
+fn a_recording_that_begins_in_motion_is_joined_from_rest_and_stops_before_a_wall() {
+    // A metre per second from the first row on, 0.3 m before the wall; the stop alone takes 0.5 m.
+    let text = format!(
+        "{HEAD}{}stop_time = 1.0\n[region.wall]\nshape = \"box\"\nbase = [450, 0, -500]\nsize = [200, 1000, 1000]\nwarning = 50\n\
+         {STOPPING}[program.a]\ntrajectory = \"recording.csv\"\n",
+        rail("a", 0.0)
+    );
+    let cell = recorded(&text, "t_s,joint_1\n0,0\n1,1\n2,2\n");
+    let (excluded, _, entered) = excluded_and_entered(&cell, 1);
+    assert!(excluded && !entered);
+    let samples = simulate(&cell, &RunOptions::default()).unwrap().recording.robots.remove(0).samples;
+    let fastest_first = samples.windows(2).take(5).map(|s| (s[1].q[0] - s[0].q[0]) / 0.004).fold(0.0, f64::max);
+    assert!(fastest_first < 5.0 * 0.004 * 4.0 + 1e-9, "it starts from rest: {fastest_first} m/s within five ticks");
+    let warning = recordings(&cell).remove(0).to_string();
+    assert!(warning.contains("moves at 1000 mm/s in its first row: the robot starts from rest"), "{warning}");
+}
+
+#[test]
+fn a_tool_exchanged_into_a_region_is_a_possible_entry() {
+    let tools = "[robot.a.tools.gripper]\ntcp = { at = [0, 0, 100] }\nbox = { at = [0, 0, 50], size = [60, 60, 100] }\n\
+                 [robot.a.tools.torch]\ntcp = { at = [0, 0, 700] }\nbox = { at = [0, 0, 350], size = [60, 60, 700] }\n\
+                 mounted = false\n";
+    for (kind, at, possible) in [("forbidden", 100, true), ("exchange", 100, true), ("forbidden", -200, false)] {
+        let cell = parse(&format!(
+            "{HEAD}{}start = [-1000]\n{tools}\
+             [region.wall]\nkind = \"{kind}\"\nshape = \"box\"\nbase = [600, 0, -500]\nsize = [100, 1000, 1000]\nwarning = 50\n\
+             {STOPPING}[program.a]\nsteps = [{{ move = \"joint\", to = [{at}] }}, {{ tool = \"torch\" }}, {{ wait = 0.1 }}, \
+             {{ move = \"joint\", to = [-1000] }}]\n",
+            rail("a", 0.0)
+        ));
+        let (excluded, reason, entered) = excluded_and_entered(&cell, 1);
+        assert_eq!((!excluded, reason.contains("exchanges its tool for \"torch\" inside")), (possible, possible));
+        // Of an exchange region, a robot alone gets hold.
+        assert_eq!(entered, possible && kind == "forbidden", "{kind} at {at}");
+    }
+}
+
+#[test]
+fn a_region_on_a_robot_that_evades_moves_at_an_unknown_speed() {
+    let cell = parse(&format!(
+        "{HEAD}max_s = 8\n{}{}\
+         [object.cart]\nshape = \"box\"\nat = [0, -3000, 0]\nsize = [300, 300, 300]\n\
+         motion = {{ via = [[0, -900, 0]], speed = 400 }}\n\
+         [region.hand]\nshape = \"sphere\"\ncentre = [0, 0, 0]\nradius = 300\nwarning = 100\nrobots = [\"a\"]\n\
+         follow = {{ robot = \"b\", frame = \"flange\" }}\n\
+         [avoidance.b]\nobjects = [\"cart\"]\n[monitor]\nstopping_distance = true\n[program.a]\nsteps = [{{ wait = 7 }}]\n",
+        rail("a", 0.0),
+        rail("b", -1000.0)
+    ));
+    let (excluded, reason, _) = excluded_and_entered(&cell, 1);
+    assert!(!excluded && reason.starts_with("the region moves"), "{reason}");
+}
+
+#[test]
+fn the_way_back_to_the_start_of_a_repeated_recording_is_checked() {
+    // Around the ball, slowly; a repetition goes back past it, faster than its warning zone allows.
+    let text = format!(
+        "{HEAD}[robot.a]\ndh = [{{ kind = \"prismatic\", min = -3000, max = 3000, speed = 1000, acceleration = 4000, alpha = 90 }}, \
+         {{ kind = \"prismatic\", min = -3000, max = 3000, speed = 1000, acceleration = 4000 }}]\n\
+         links = [[], {{ sphere = {{ radius = 50 }} }}]\nstop_time = 1.0\n\
+         [region.ball]\nshape = \"sphere\"\ncentre = [0, -500, 500]\nradius = 100\nwarning = 20\n\
+         [program.a]\ntrajectory = \"recording.csv\"\n"
+    );
+    let cell = recorded(&text, "t_s,joint_1,joint_2\n0,0,0\n20,1,0\n40,1,1\n");
+    let (excluded, reason, entered) = excluded_and_entered(&cell, 2);
+    assert!(!excluded && entered, "{reason}");
 }

@@ -170,7 +170,7 @@ fn a_recording_above_the_stated_acceleration_is_reported_and_taken_into_account(
         "check and run say the same"
     );
     for joint in ["joint_1", "joint_2"] {
-        let note = notes.iter().find(|n| n.contains(joint)).unwrap();
+        let note = notes.iter().find(|n| n.contains(joint) && n.contains("accelerates")).unwrap();
         for words in ["c.toml:", "program.a", "0.800 s", "8000 mm/s²", "more rows"] {
             assert!(note.contains(words), "{words}: {note}");
         }

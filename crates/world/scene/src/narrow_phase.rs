@@ -14,7 +14,8 @@ use crate::{CheckerStats, Level, Scene, SceneState};
 /// Workspace of the narrow phase, and statistics of its work.
 #[derive(Debug)]
 pub(crate) struct NarrowPhase {
-    workspace: Workspace,
+    /// Boxed: 36 KB would be moved with every checker, and threads of tests have small stacks.
+    workspace: Box<Workspace>,
     /// World boxes of the shapes of the second geometry.
     bounds: Vec<WorldBox>,
     pub stats: CheckerStats,
@@ -48,7 +49,7 @@ pub(crate) struct PairWarmStart {
 impl NarrowPhase {
     pub fn new(scene: &Scene) -> Self {
         let most = scene.models.iter().map(|m| m.exact.len()).max().unwrap_or(0);
-        Self { workspace: Workspace::new(), bounds: Vec::with_capacity(most), stats: CheckerStats::default() }
+        Self { workspace: Box::default(), bounds: Vec::with_capacity(most), stats: CheckerStats::default() }
     }
 
     /// The coarse level whose enclosures are certainly farther apart than `limit` metres; `None` where neither is.

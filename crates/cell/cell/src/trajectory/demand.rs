@@ -17,6 +17,9 @@ const BESIDE_M: f64 = 0.25e-3;
 /// and a half times the actual time, and 4 / (4 · 1.5²) mm is less than 0.5 mm.
 const SHORT_M: f64 = 4e-3;
 
+/// A speed that a joint reaches in so many ticks needs no word.
+const UNSEEN_TICKS: f64 = 5.0;
+
 /// Largest speed and acceleration of a joint in a recording, and their times (s, by the recording's own times).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointDemand {
@@ -29,6 +32,8 @@ pub struct JointDemand {
     pub acceleration: f64,
     /// Time of that acceleration.
     pub acceleration_at_s: f64,
+    /// Speed at the first row, rad/s or m/s.
+    pub first_speed: f64,
 }
 
 /// Per joint the demand of a robot's recording; empty without a recording.
@@ -42,12 +47,13 @@ pub fn demands(cell: &Cell, robot: RobotId) -> Vec<JointDemand> {
     let play = Playback::new(rows.clone(), &motion_bounds);
     let jumps: f64 = motion_bounds.iter().enumerate().map(|(j, bound)| bound * play.largest_jump(j)).sum();
     let least_s = if jumps * cell.tick_s > SHORT_M { SHORT_M / jumps } else { cell.tick_s };
+    let first = play.at(0.0);
     let of = |(j, bound): (usize, &f64)| {
         let stated = ACCELERATION_MARGIN * at.limits[j].acceleration;
         let beside = BESIDE_M / (bound.max(1e-3) * motion_bounds.len() as f64);
         let (acceleration, acceleration_at_s) = play.hardest(j, stated, least_s, beside);
         let (speed, speed_at_s) = play.fastest(j);
-        JointDemand { speed, speed_at_s, acceleration, acceleration_at_s }
+        JointDemand { speed, speed_at_s, acceleration, acceleration_at_s, first_speed: first.dq[j].abs() }
     };
     motion_bounds.iter().enumerate().map(of).collect()
 }
@@ -68,6 +74,7 @@ pub fn recording_warnings(cell: &Cell, robot: RobotId) -> Vec<Warning> {
     for (j, demand) in demands(cell, robot).iter().enumerate() {
         let joint = RecordedJoint { cell, robot: &cell.robots[robot.0], program, j };
         warnings.extend(joint.too_fast(demand));
+        warnings.extend(joint.begins_in_motion(demand));
         if cell.laws.stopping_reaction_s.is_some() {
             warnings.extend(joint.too_hard(demand));
         }
@@ -96,6 +103,19 @@ impl RecordedJoint<'_> {
         );
         let share = (100.0 * stated / demand.speed).floor();
         Some(self.warning(&what, format!("times in the recording that are farther apart, or override = {share}")))
+    }
+
+    fn begins_in_motion(&self, demand: &JointDemand) -> Option<Warning> {
+        let needed_s = demand.first_speed / self.robot.limits[self.j].acceleration;
+        if needed_s <= self.cell.tick_s * UNSEEN_TICKS {
+            return None;
+        }
+        let what = format!(
+            "moves at {}/s in its first row: the robot starts from rest, and is as fast after {:.0} ms",
+            self.show(demand.first_speed),
+            needed_s * 1e3
+        );
+        Some(self.warning(&what, "a recording that begins at rest".into()))
     }
 
     fn too_hard(&self, demand: &JointDemand) -> Option<Warning> {

@@ -6,8 +6,9 @@ use elbowroom_kinematics::JointKind;
 use elbowroom_monitor::{Life, RegionKind};
 use elbowroom_proximity::Shape;
 use elbowroom_robot::RobotId;
+use elbowroom_spatial::Pose;
 
-use super::grip_overlaps::GripOverlap;
+use super::mounted_overlap::{MountedOverlap, PlacedRegion};
 use super::program::RobotProgram;
 use super::stopping_profile::{StoppingProfile, response_delay};
 
@@ -20,8 +21,10 @@ pub(super) struct EntryAnalysis<'a> {
     pub region: CellRegionId,
     pub robot: RobotId,
     pub program: &'a RobotProgram,
-    /// Largest speed of any point of the region, m/s.
+    /// Largest speed of any point of the region, m/s; infinite where it is not known in advance.
     pub region_speed_m_s: f64,
+    /// Where the region is at the start.
+    pub region_in_world: Pose,
     /// True where the robot starts inside.
     pub starts_inside: bool,
     /// True where another robot starts inside a region that shares a slot with this one.
@@ -120,7 +123,7 @@ impl EntryAnalysis<'_> {
             let why = "it starts inside, and so does another robot that shares this exchange region";
             return Some(MissingGuarantee::new(why, format!("another `start` of [robot.{}]", self.robot().name)));
         }
-        if let Some(missing) = self.grips_inside() {
+        if let Some(missing) = self.mounts_inside() {
             return Some(missing);
         }
         if region.life == Life::Temporary {
@@ -144,27 +147,28 @@ impl EntryAnalysis<'_> {
         None
     }
 
-    /// Entry by a part: what the program grips inside the region is a part of the robot from then on.
-    fn grips_inside(&self) -> Option<MissingGuarantee> {
-        let region = self.region();
-        if region.follow.is_some() {
+    /// Entry by what the program grips or exchanges inside the region: it is a part of the robot from then on.
+    fn mounts_inside(&self) -> Option<MissingGuarantee> {
+        if self.region_speed_m_s > 0.0 {
             return None;
         }
-        let GripOverlap { object, is_certain } = GripOverlap::find(self.cell, self.robot, self.program, region)?;
+        let region = PlacedRegion { region: self.region(), in_world: self.region_in_world };
+        let MountedOverlap { step, name, is_certain } =
+            MountedOverlap::find(self.cell, self.robot, self.program, region)?;
         let why = if is_certain {
-            format!("its program grips \"{object}\" inside of it: from then on the part counts as its tool")
+            format!("its program {step} inside of it: from then on \"{name}\" counts as a part of the robot")
         } else {
-            format!("where its program grips \"{object}\" is known in the run only: the part may be inside of it")
+            format!("where its program {step} is known in the run only: the part may be inside of it")
         };
-        let write = "another place of the part or of the region, or robots = […] in the region without this robot";
+        let write = "another place of the step or of the region, or robots = […] in the region without this robot";
         Some(MissingGuarantee::new(why, write))
     }
 
     /// Entry because of speed where it is not known how far a part extends beyond the hand.
     fn unknown_lever(&self) -> Option<MissingGuarantee> {
         let guards = self.region().region.guards;
-        let unknown = self.program.grips.iter().find(|g| g.action.attachment.is_none())?;
-        let part = self.cell.gripped_volume(self.robot, unknown.action.object, unknown.action.link);
+        let unknown = self.program.parts().find(|action| action.attachment.is_none())?;
+        let part = self.cell.gripped_volume(self.robot, unknown.object, unknown.link);
         part.part.counts_for(guards).then(|| {
             let why = format!(
                 "`stopping_distance` is off, and how \"{}\" is in the hand is known in the run only",
@@ -184,6 +188,10 @@ impl EntryAnalysis<'_> {
         }
         if self.is_zone_sufficient() {
             return None;
+        }
+        if self.region_speed_m_s.is_infinite() {
+            let why = "`stopping_distance` is off, and how fast the region moves is known in the run only";
+            return Some(MissingGuarantee::new(why, "stopping_distance = true in [monitor]"));
         }
         let units = self.cell.units;
         let [needed, zone] = [round_up(self.needed_m()), self.region().region.warning_m];

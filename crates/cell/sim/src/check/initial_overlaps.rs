@@ -1,27 +1,40 @@
 //! Robots that overlap regions at their start.
 
-use elbowroom_cell::{Cell, CellRegionId, Frames};
+use elbowroom_cell::{Cell, CellRegion, CellRegionId, Frames};
 use elbowroom_kinematics::ChainState;
 use elbowroom_proximity::within;
 use elbowroom_robot::RobotId;
+use elbowroom_spatial::Pose;
 
 use super::program::RobotProgram;
 
-/// The pairs (region, robot) where a guarded volume overlaps the region at the start.
-pub(super) fn initial_overlaps(cell: &Cell, programs: &[RobotProgram]) -> Vec<(CellRegionId, RobotId)> {
+/// The robots as they are before anything moves.
+pub(super) fn start_states(cell: &Cell, programs: &[RobotProgram]) -> Vec<ChainState> {
     let start_state = |(robot, p): (&elbowroom_cell::CellRobot, &RobotProgram)| {
         let mut state = ChainState::new(&robot.robot.chain);
         state.q.copy_from_slice(&p.profile.start);
         robot.robot.chain.forward_motion(&mut state);
         state
     };
-    let states: Vec<ChainState> = cell.robots.iter().zip(programs).map(start_state).collect();
-    let frames = Frames::new(cell);
+    cell.robots.iter().zip(programs).map(start_state).collect()
+}
+
+/// Where a region is then.
+pub(super) fn region_at_start(cell: &Cell, region: &CellRegion, states: &[ChainState]) -> Pose {
+    let carrier = region.follow.map(|follow| Frames::new(cell).source(&follow, states, 0.0).pose);
+    let anchor = carrier.map_or(region.region.anchor, |c| c * region.region.anchor);
+    anchor * region.region.shape_in_anchor
+}
+
+/// The pairs (region, robot) where a guarded volume overlaps the region at the start.
+pub(super) fn initial_overlaps(
+    cell: &Cell,
+    programs: &[RobotProgram],
+    states: &[ChainState],
+) -> Vec<(CellRegionId, RobotId)> {
     let mut pairs = Vec::new();
     for (index, r) in cell.regions.iter().enumerate() {
-        let carrier = r.follow.map(|follow| frames.source(&follow, &states, 0.0).pose);
-        let anchor = carrier.map_or(r.region.anchor, |c| c * r.region.anchor);
-        let region_in_world = anchor * r.region.shape_in_anchor;
+        let region_in_world = region_at_start(cell, r, states);
         for robot in &r.robots {
             let (state, base) = (&states[robot.0], cell.robots[robot.0].base_in_world);
             let overlaps = |v: &&elbowroom_monitor::Volume| {

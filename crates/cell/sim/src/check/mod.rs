@@ -33,8 +33,8 @@
 
 mod entry_analysis;
 mod entry_check;
-mod grip_overlaps;
 mod initial_overlaps;
+mod mounted_overlap;
 mod program;
 mod region_speed;
 mod sphere_swept_hull;
@@ -48,7 +48,7 @@ use elbowroom_formats::{FormatError, Warning};
 use elbowroom_robot::RobotId;
 
 use entry_analysis::{EntryAnalysis, EntryDecision};
-use initial_overlaps::initial_overlaps;
+use initial_overlaps::{initial_overlaps, region_at_start, start_states};
 use program::programs;
 use region_speed::max_region_speed_m_s;
 
@@ -62,7 +62,8 @@ pub use table::table;
 pub fn check(cell: &Cell) -> Result<Vec<EntryCheck>, FormatError> {
     let programs = programs(cell)?;
     let slots = configure::slots(cell);
-    let overlaps = initial_overlaps(cell, &programs);
+    let states = start_states(cell, &programs);
+    let overlaps = initial_overlaps(cell, &programs, &states);
     let mut checks = Vec::new();
     for (index, region) in cell.regions.iter().enumerate() {
         let region_speed_m_s = max_region_speed_m_s(cell, region)?;
@@ -75,6 +76,7 @@ pub fn check(cell: &Cell) -> Result<Vec<EntryCheck>, FormatError> {
                 robot,
                 program: &programs[robot.0],
                 region_speed_m_s,
+                region_in_world: region_at_start(cell, region, &states),
                 starts_inside: overlaps.contains(&(id, robot)),
                 shared_at_start: overlaps.iter().any(|(r, other)| *other != robot && shares(*r)),
             };

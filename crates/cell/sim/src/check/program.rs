@@ -1,13 +1,13 @@
 //! The guarded volumes of each robot, and their speeds in its program.
 
-use elbowroom_cell::Cell;
+use elbowroom_cell::{Cell, CellRobot};
 use elbowroom_formats::FormatError;
 use elbowroom_monitor::{Guards, Volume};
 use elbowroom_robot::RobotId;
 
 use super::sphere_swept_hull::SphereSweptHull;
 use super::stopping_profile::{LinkSolid, Profile, StoppingProfile};
-use crate::motion::{GripAction, PlanStep, ProgramPlan, plan};
+use crate::motion::{GripAction, PlanStep, ProgramPlan, repeated_plan};
 
 /// The guarded volumes of a robot, and the motion profile of its program.
 pub(super) struct RobotProgram {
@@ -15,30 +15,41 @@ pub(super) struct RobotProgram {
     pub volumes: Vec<Volume>,
     /// What it grips, where it is in the hand then.
     gripped: Vec<Volume>,
-    /// Where it grips.
-    pub grips: Vec<PlannedGrip>,
+    /// What it grips and which tools it exchanges.
+    pub mounts: Vec<PlannedMount>,
     /// Those of `volumes`, then those of `gripped`.
     pub profile: Profile,
 }
 
-/// A step that grips.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct PlannedGrip {
-    pub action: GripAction,
+/// A step after which something counts as a part of the robot.
+#[derive(Debug, Clone)]
+pub(super) struct PlannedMount {
+    pub what: Mount,
     /// Joint values then, rad or m.
     pub q: Vec<f64>,
+    /// The robot with the tools that it has before the step.
+    pub robot: CellRobot,
+}
+
+/// What a step mounts.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Mount {
+    /// It grips an object.
+    Part(GripAction),
+    /// It makes the tool with this index the active one.
+    Tool(usize),
 }
 
 impl RobotProgram {
     fn of(cell: &Cell, robot: RobotId) -> Result<Self, FormatError> {
-        let plan = plan(cell, robot, 1, &mut Vec::new())?;
+        let plan = repeated_plan(cell, robot)?;
         let volumes = cell.robots[robot.0].guarded_volumes();
-        let grips = grips(&plan);
+        let mounts = mounts(&cell.robots[robot.0], &plan);
         let solid =
             |v: &Volume| LinkSolid { link: v.link, hull: SphereSweptHull::new(&v.shape, &v.in_link), grip: None };
         let mut solids: Vec<_> = volumes.iter().map(solid).collect();
         let mut gripped = Vec::new();
-        for PlannedGrip { action, .. } in &grips {
+        for action in parts(&mounts) {
             let Some(attachment) = action.attachment.clone() else { continue };
             // The last one is the object.
             if let Some(volume) = cell.volumes_holding(robot, &[(action.object, attachment)]).pop() {
@@ -46,7 +57,13 @@ impl RobotProgram {
                 gripped.push(volume);
             }
         }
-        Ok(Self { profile: Profile::of(cell, robot, &plan, &solids), volumes, gripped, grips })
+        let profile = Profile::of(cell, robot, &plan, &solids);
+        Ok(Self { profile, volumes, gripped, mounts })
+    }
+
+    /// The steps that grip.
+    pub fn parts(&self) -> impl Iterator<Item = &GripAction> {
+        parts(&self.mounts)
     }
 
     /// The stopping profiles of the volumes that count for these guards.
@@ -60,19 +77,29 @@ impl RobotProgram {
     }
 }
 
-/// The steps of a plan that grip, each once.
-fn grips(plan: &ProgramPlan) -> Vec<PlannedGrip> {
-    let (mut grips, mut q) = (Vec::new(), plan.start.clone());
+fn parts(mounts: &[PlannedMount]) -> impl Iterator<Item = &GripAction> {
+    mounts.iter().filter_map(|mount| if let Mount::Part(action) = &mount.what { Some(action) } else { None })
+}
+
+/// The steps of a plan that grip or exchange tools, each once.
+fn mounts(robot: &CellRobot, plan: &ProgramPlan) -> Vec<PlannedMount> {
+    let (mut mounts, mut q, mut robot) = (Vec::<PlannedMount>::new(), plan.start.clone(), robot.clone());
     for step in &plan.steps {
-        if let PlanStep::Grip(action) = step {
-            let grip = PlannedGrip { action: action.clone(), q: q.clone() };
-            if action.grips && !grips.contains(&grip) {
-                grips.push(grip);
-            }
+        let what = match step {
+            PlanStep::Grip(action) if action.grips => Some(Mount::Part(action.clone())),
+            PlanStep::Tool(tool) => Some(Mount::Tool(*tool)),
+            _ => None,
+        };
+        let is_known = |what: &Mount| mounts.iter().any(|known| known.what == *what && known.q == q);
+        if let Some(what) = what.filter(|what| !is_known(what)) {
+            mounts.push(PlannedMount { what, q: q.clone(), robot: robot.clone() });
+        }
+        if let PlanStep::Tool(tool) = step {
+            robot = robot.with_tool(*tool);
         }
         q = step.end().unwrap_or(q);
     }
-    grips
+    mounts
 }
 
 pub(super) fn programs(cell: &Cell) -> Result<Vec<RobotProgram>, FormatError> {

@@ -2,12 +2,14 @@
 
 use elbowroom_cell::{Cell, CellRegion, Drive, Follow, PoseRate};
 use elbowroom_formats::FormatError;
+use elbowroom_robot::RobotId;
 
 use super::sphere_swept_hull::SphereSweptHull;
 use super::stopping_profile::{LinkSolid, Profile};
-use crate::motion::plan;
+use crate::motion::repeated_plan;
 
-/// Largest speed (m/s) of any point of the region, as its source moves it; 0 for a fixed region.
+/// Largest speed (m/s) of any point of the region, as its source moves it; 0 for a fixed region, infinite for one on a robot
+/// that may leave its program.
 pub(super) fn max_region_speed_m_s(cell: &Cell, region: &CellRegion) -> Result<f64, FormatError> {
     let Some(follow) = region.follow else { return Ok(0.0) };
     let in_source = region.region.anchor * region.region.shape_in_anchor;
@@ -32,15 +34,18 @@ pub(super) fn max_region_speed_m_s(cell: &Cell, region: &CellRegion) -> Result<f
             };
             Ok(rates.map(fastest).fold(0.0, f64::max))
         }
+        Follow::Robot { robot, .. } if leaves_its_program(cell, robot) => Ok(f64::INFINITY),
         Follow::Robot { robot, link, in_link } => {
             let hull = SphereSweptHull::new(&region.region.shape, &(in_link * in_source));
-            let profile = Profile::of(
-                cell,
-                robot,
-                &plan(cell, robot, 1, &mut Vec::new())?,
-                &[LinkSolid { link, hull, grip: None }],
-            );
+            let profile =
+                Profile::of(cell, robot, &repeated_plan(cell, robot)?, &[LinkSolid { link, hull, grip: None }]);
             Ok(profile.stopping_profiles[0].fastest_m_s)
         }
     }
+}
+
+/// Whether a robot evades, or replans around what sensors see: then its motion is known in the run only.
+fn leaves_its_program(cell: &Cell, robot: RobotId) -> bool {
+    let evades = cell.avoidance.get(robot.0).is_some_and(Option::is_some);
+    evades || cell.sensors.iter().any(|sensor| sensor.robots.contains(&robot))
 }

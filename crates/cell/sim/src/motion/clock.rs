@@ -12,6 +12,8 @@ use super::{Geometry, GripAction, PlanStep, ProgramPlan};
 const RESERVE: f64 = 0.1;
 /// Iterations for the state at the end of a braking tick.
 const SAMPLES: u32 = 4;
+/// Below this speed a joint rests, rad/s or m/s.
+const REST_SPEED: f64 = 1e-9;
 /// At the start of a move, from rest, the intended velocity is taken from this time ahead, s.
 const LOOKAHEAD_S: f64 = 0.05;
 
@@ -43,6 +45,8 @@ pub struct ProgramClock {
     grips: Vec<GripAction>,
     tools: Vec<usize>,
     held: bool,
+    /// A recording that begins in motion starts with the next advance.
+    joins: bool,
 }
 
 impl ProgramClock {
@@ -65,11 +69,11 @@ impl ProgramClock {
             grips: Vec::new(),
             tools: Vec::new(),
             held: false,
+            joins: false,
         };
         clock.execute_instant_steps();
-        clock.update_point();
-        // A program starts at full rate: its own time law starts from rest.
         clock.rate = clock.programmed;
+        clock.start_step();
         clock
     }
 
@@ -225,7 +229,9 @@ impl ProgramClock {
         } else {
             target.min(self.rate + self.max_rate_increase() * dt)
         };
-        let mean = f64::midpoint(self.rate, next);
+        // Where the joints are as fast within this tick, the recording is on its rows from the first.
+        let mean = if self.joins && next >= target { next } else { f64::midpoint(self.rate, next) };
+        self.joins = false;
         self.rate_change = (next - self.rate) / dt;
         self.rate = next;
         let duration = match self.plan.steps.get(self.step) {
@@ -265,7 +271,16 @@ impl ProgramClock {
         self.update_point();
         self.step += 1;
         self.time = 0.0;
+        self.start_step();
+    }
+
+    /// Steps start from rest, whatever the rate is. Only a recording that begins in motion does not: it is joined at rate 0.
+    fn start_step(&mut self) {
         self.execute_instant_steps();
+        self.update_point();
+        if self.here.dq.iter().any(|v| v.abs() > REST_SPEED) {
+            (self.rate, self.rate_change, self.joins) = (0.0, 0.0, true);
+        }
     }
 
     /// The rate after braking for `dt` seconds, at least `target`.

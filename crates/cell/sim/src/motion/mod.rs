@@ -19,5 +19,5 @@ pub use clock::{ProgramClock, RegionSwitch};
 pub use geometry::Geometry;
 pub use grip_action::{GripAction, HeldObjects};
 pub use line::TcpLine;
-pub use plan::{PlanStep, ProgramPlan, first_grip, plan};
+pub use plan::{PlanStep, ProgramPlan, first_grip, plan, repeated_plan};
 pub use segment::Segment;

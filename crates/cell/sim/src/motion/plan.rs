@@ -84,17 +84,47 @@ impl PlanStep {
 /// # Errors
 /// [`FormatError`] at the line of an infeasible step: out of reach, through a singularity, beyond limits.
 pub fn plan(cell: &Cell, robot: RobotId, repeat: u32, notes: &mut Vec<Warning>) -> Result<ProgramPlan, FormatError> {
+    let passes = repeat.max(1);
+    plan_passes(cell, robot, Passes { wanted: passes, required: passes }, notes)
+}
+
+/// The program of a robot, and once more as far as it can be repeated: with the way back to its start.
+///
+/// # Errors
+/// As for [`plan`].
+pub fn repeated_plan(cell: &Cell, robot: RobotId) -> Result<ProgramPlan, FormatError> {
+    plan_passes(cell, robot, Passes { wanted: 2, required: 1 }, &mut Vec::new())
+}
+
+/// How often a program runs.
+#[derive(Debug, Clone, Copy)]
+struct Passes {
+    wanted: u32,
+    /// A step of a later pass that is not feasible ends the plan, and is not an error.
+    required: u32,
+}
+
+fn plan_passes(
+    cell: &Cell,
+    robot: RobotId,
+    passes: Passes,
+    notes: &mut Vec<Warning>,
+) -> Result<ProgramPlan, FormatError> {
     let at = &cell.robots[robot.0];
     let Some(program) = &cell.programs[robot.0] else {
         return Ok(ProgramPlan { start: at.start.clone(), speed_override: 1.0, steps: Vec::new() });
     };
-    let passes = u64::from(repeat.max(1)) * u64::from(program.repeat);
+    let of_program = |passes: u32| u64::from(passes) * u64::from(program.repeat);
+    let (wanted, required) = (of_program(passes.wanted), of_program(passes.required));
     let mut planner = ProgramPlanner::new(cell, robot, notes);
     match &program.body {
-        ProgramBody::Steps(steps) => planner.steps(program, steps, passes.min(MAX_STEPS / steps.len().max(1) as u64)),
+        ProgramBody::Steps(steps) => {
+            let most = MAX_STEPS / steps.len().max(1) as u64;
+            planner.steps(program, steps, wanted.min(most), required.min(most))
+        }
         ProgramBody::Trajectory(rows) => {
             planner.notes.extend(recording_warnings(cell, robot));
-            planner.playback(program, rows, passes.min(MAX_STEPS))
+            planner.playback(program, rows, wanted.min(MAX_STEPS))
         }
     }
 }
@@ -109,7 +139,7 @@ pub fn first_grip(cell: &Cell, robot: RobotId, object: ObjectId) -> Result<Optio
     let grips = |s: &ProgramStep| matches!(s.action, StepAction::Grip(o) if o == object);
     let Some(index) = steps.iter().position(grips) else { return Ok(None) };
     let mut notes = Vec::new();
-    let plan = ProgramPlanner::new(cell, robot, &mut notes).steps(program, &steps[..=index], 1)?;
+    let plan = ProgramPlanner::new(cell, robot, &mut notes).steps(program, &steps[..=index], 1, 1)?;
     Ok(plan
         .steps
         .into_iter()
@@ -165,38 +195,52 @@ impl<'a> ProgramPlanner<'a> {
         }
     }
 
-    fn steps(&mut self, program: &Program, steps: &[ProgramStep], passes: u64) -> Result<ProgramPlan, FormatError> {
+    fn steps(
+        &mut self,
+        program: &Program,
+        steps: &[ProgramStep],
+        passes: u64,
+        required: u64,
+    ) -> Result<ProgramPlan, FormatError> {
         let mut plan = ProgramPlan { start: self.q.clone(), speed_override: program.speed_override, steps: Vec::new() };
         for pass in 0..passes {
             if pass > 0 {
                 plan.steps.push(PlanStep::Override(program.speed_override));
             }
             for (i, step) in steps.iter().enumerate() {
-                plan.steps.push(match &step.action {
-                    StepAction::Switch { region, active } => PlanStep::Switch { region: *region, active: *active },
-                    StepAction::Wait(s) => PlanStep::Wait(*s),
-                    StepAction::Override(o) => PlanStep::Override(*o),
-                    StepAction::Joint { .. } | StepAction::Linear { .. } => PlanStep::Move(self.segment(i, step)?),
-                    StepAction::Grip(object) => {
-                        let gripped = self.parts.grip(*object, &self.robot, &self.q);
-                        let attachment = gripped.map_err(|e| self.part_error(i, step, e))?;
-                        PlanStep::Grip(self.grip_action(*object, true, attachment, step))
-                    }
-                    StepAction::Release(object) => {
-                        self.parts.release(*object, &self.q).map_err(|e| self.part_error(i, step, e))?;
-                        PlanStep::Grip(self.grip_action(*object, false, None, step))
-                    }
-                    StepAction::Tool(tool) => {
-                        self.change_tool(i, step, *tool)?;
-                        PlanStep::Tool(*tool)
-                    }
-                    StepAction::Planned { to, speed } => {
-                        PlanStep::Planned { play: self.planned(i, step, to, *speed)?, speed: *speed }
-                    }
-                });
+                match self.step(i, step) {
+                    Ok(planned) => plan.steps.push(planned),
+                    Err(_) if pass >= required => return Ok(plan),
+                    Err(e) => return Err(e),
+                }
             }
         }
         Ok(plan)
+    }
+
+    fn step(&mut self, i: usize, step: &ProgramStep) -> Result<PlanStep, FormatError> {
+        Ok(match &step.action {
+            StepAction::Switch { region, active } => PlanStep::Switch { region: *region, active: *active },
+            StepAction::Wait(s) => PlanStep::Wait(*s),
+            StepAction::Override(o) => PlanStep::Override(*o),
+            StepAction::Joint { .. } | StepAction::Linear { .. } => PlanStep::Move(self.segment(i, step)?),
+            StepAction::Grip(object) => {
+                let gripped = self.parts.grip(*object, &self.robot, &self.q);
+                let attachment = gripped.map_err(|e| self.part_error(i, step, e))?;
+                PlanStep::Grip(self.grip_action(*object, true, attachment, step))
+            }
+            StepAction::Release(object) => {
+                self.parts.release(*object, &self.q).map_err(|e| self.part_error(i, step, e))?;
+                PlanStep::Grip(self.grip_action(*object, false, None, step))
+            }
+            StepAction::Tool(tool) => {
+                self.change_tool(i, step, *tool)?;
+                PlanStep::Tool(*tool)
+            }
+            StepAction::Planned { to, speed } => {
+                PlanStep::Planned { play: self.planned(i, step, to, *speed)?, speed: *speed }
+            }
+        })
     }
 
     fn change_tool(&mut self, index: usize, step: &ProgramStep, tool: usize) -> Result<(), FormatError> {
