@@ -17,7 +17,7 @@ struct Run {
 const LONG: (&str, &str) = ("ELBOWROOM_LONG", "1");
 
 /// `docs/measurements/soak.md` has what was seen.
-const RUNS: [Run; 14] = [
+const RUNS: [Run; 15] = [
     Run {
         name: "geometry",
         what: "random pairs of shapes and meshes, motions and sweeps beside their oracles, up to a million each",
@@ -51,6 +51,12 @@ const RUNS: [Run; 14] = [
         what: "joint-space maps of real robots, cell by cell",
         words: &["test", "--release", "-p", "elbowroom-cspace", "--test", "main", "--", "--ignored", "--nocapture"],
         env: &[],
+    },
+    Run {
+        name: "floors",
+        what: "100,800 pictures of floors with little contrast under a lamp that changes, a crate in every tenth",
+        words: &["test", "--release", "-p", "elbowroom-vision", "--test", "main", "plain_floors::"],
+        env: &[LONG],
     },
     Run {
         name: "schedules",

@@ -17,9 +17,10 @@ use crate::{frame_check, polygon, raster, shadow};
 
 /// One in so many rows adapts in each frame, in turn.
 const ROW_STRIDE: usize = 4;
-/// Frames with a gain or an offset outside these ranges are rejected.
+/// Frames with a gain outside this range are rejected, and those whose floor is brighter or darker by a factor outside it, unless
+/// it is by a few grey levels only.
 const GAINS: std::ops::RangeInclusive<f64> = 0.4..=2.5;
-const MAX_OFFSET: f64 = 60.0;
+const SMALL_CHANGE: f64 = 60.0;
 /// Frames in which a smaller fraction of the samples follows the line of the illumination show something else: rejected.
 const MIN_INLIER_RATIO: f64 = 0.5;
 /// The background does not adapt up to this distance from an obstacle, pixels.
@@ -263,11 +264,14 @@ impl CameraTracker {
         let planes = planes_of(frame, &self.colour_planes).chunks_exact(self.width * self.height);
         for ((plane, pixels), illumination) in self.planes.iter().zip(planes).zip(&mut self.report.illumination) {
             let estimate = self.estimator.estimate(plane, pixels, &self.frozen, self.width, illumination);
-            let estimate = estimate.ok_or(RejectReason::Unrecognized { inlier_ratio: 0.0 })?;
+            let (estimate, learnt_level) = estimate.ok_or(RejectReason::Unrecognized { inlier_ratio: 0.0 })?;
             if estimate.inlier_ratio < MIN_INLIER_RATIO {
                 return Err(RejectReason::Unrecognized { inlier_ratio: estimate.inlier_ratio });
             }
-            if !GAINS.contains(&estimate.gain) || estimate.offset.abs() > MAX_OFFSET {
+            // Gain and offset of a floor without contrast are not determined: what they make of its level is.
+            let level = estimate.gain * learnt_level + estimate.offset;
+            let is_as_bright = (level - learnt_level).abs() <= SMALL_CHANGE || GAINS.contains(&(level / learnt_level));
+            if !GAINS.contains(&estimate.gain) || !is_as_bright {
                 return Err(RejectReason::Illumination(estimate));
             }
             *illumination = estimate;

@@ -2,7 +2,7 @@
 //!
 //! Lamps, sun and the camera's exposure change the whole image at once. A line `observed = gain · learnt + offset` is fitted
 //! to a grid of pixels: of some candidate lines the one with the most inliers is taken and refined by least squares over
-//! its inliers, so that pixels of obstacles have no influence.
+//! its inliers, so that pixels of obstacles have no influence. Where the floor has no contrast, the gain stays at 1.
 
 use crate::background::BackgroundPlane;
 use crate::illumination::Illumination;
@@ -11,7 +11,9 @@ use crate::illumination::Illumination;
 const SAMPLE_STEP_PX: usize = 8;
 /// Largest distance of an inlier from the line, grey levels.
 const INLIER_LEVELS: f32 = 8.0;
-/// Weight of the candidate's gain in the least squares, squared grey levels: a uniform floor does not determine a gain.
+/// Weight of the gain 1 in the least squares, squared grey levels. A uniform floor does not determine a gain: then the offset
+/// alone follows the lamp. Pulled towards the gain of the frame before, it would shrink from frame to frame, as the noise of the
+/// learnt levels lowers each estimate a little.
 const GAIN_PRIOR_WEIGHT: f32 = 25.0;
 
 /// Fewest samples for an estimate, and fewest inliers for a fit: with fewer the noise of the pixels decides.
@@ -37,7 +39,8 @@ pub(crate) struct IlluminationEstimator {
 
 impl IlluminationEstimator {
     /// The illumination of a plane of an image that is `width` wide; `frozen` pixels are left out. The line of the frame
-    /// before, `previous`, is one of the candidates. `None` where there are too few samples.
+    /// before, `previous`, is one of the candidates. `None` where there are too few samples. With it, the mean learnt level (grey
+    /// levels) of the pixels that follow it.
     pub(crate) fn estimate(
         &mut self,
         plane: &BackgroundPlane,
@@ -45,7 +48,7 @@ impl IlluminationEstimator {
         frozen: &[u8],
         width: usize,
         previous: &Illumination,
-    ) -> Option<Illumination> {
+    ) -> Option<(Illumination, f64)> {
         self.sample(plane, pixels, frozen, width);
         if self.samples.len() < MIN_SAMPLES {
             return None;
@@ -63,8 +66,10 @@ impl IlluminationEstimator {
             if inliers > best.0 { (inliers, line) } else { best }
         });
         let line = self.refined(self.refined(best.1));
-        let inlier_ratio = self.inliers(line).count() as f64 / self.samples.len() as f64;
-        Some(Illumination { gain: f64::from(line.gain), offset: f64::from(line.offset), inlier_ratio })
+        let count = self.inliers(line).count();
+        let level = self.inliers(line).map(|(learnt, _)| f64::from(*learnt)).sum::<f64>() / count.max(1) as f64;
+        let inlier_ratio = count as f64 / self.samples.len() as f64;
+        Some((Illumination { gain: f64::from(line.gain), offset: f64::from(line.offset), inlier_ratio }, level))
     }
 
     fn sample(&mut self, plane: &BackgroundPlane, pixels: &[u8], frozen: &[u8], width: usize) {
@@ -102,7 +107,7 @@ impl IlluminationEstimator {
             let (b, f) = (b - mean_b, f - mean_f);
             (s.0 + b * f, s.1 + b * b)
         });
-        let gain = (cross / n + GAIN_PRIOR_WEIGHT * line.gain) / (square / n + GAIN_PRIOR_WEIGHT);
+        let gain = (cross / n + GAIN_PRIOR_WEIGHT) / (square / n + GAIN_PRIOR_WEIGHT);
         Line { gain, offset: mean_f - gain * mean_b }
     }
 }

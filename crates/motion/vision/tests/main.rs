@@ -5,6 +5,7 @@ mod bad_input;
 mod clouds;
 mod geometry;
 mod homography;
+mod plain_floors;
 mod random_scenes;
 mod sequences;
 mod synthetic;
