@@ -14,7 +14,7 @@ pub enum BagError {
         source: std::io::Error,
     },
     /// A record cannot be written.
-    #[error("the recording cannot be written: {0}")]
+    #[error("the recording cannot be written: {0}{help}", help = instead(.0))]
     Write(mcap::McapError),
     /// The file is no MCAP file.
     #[error(
@@ -99,5 +99,15 @@ fn topics(found: &[String]) -> String {
     match found {
         [] => "`ros2 bag record -s mcap /joint_states` records them".into(),
         found => format!("--topic {}", found.join(" or --topic ")),
+    }
+}
+
+/// What to do where a record cannot be written.
+fn instead(e: &mcap::McapError) -> &'static str {
+    match e {
+        mcap::McapError::Io(e) if e.kind() == std::io::ErrorKind::StorageFull => {
+            "\n  help: a path on a disk with space left; what was written before can be replayed"
+        }
+        _ => "",
     }
 }

@@ -1,8 +1,6 @@
 //! `elbowroom inspect`: the contents of a model.
 
 use std::fmt::Write;
-use std::fs::File;
-use std::io::BufWriter;
 use std::path::Path;
 
 use elbowroom::cell::{Cell, PairFile, QueryModel};
@@ -13,7 +11,8 @@ use elbowroom::report::model_picture;
 use elbowroom::spatial::units::LengthUnit;
 
 use crate::args::{Dh, InspectArgs, Unit};
-use crate::output::{ExitStatus, Failure, cannot_write, note, print, print_json};
+use crate::output::{ExitStatus, Failure, cannot_write, note, print, print_json, refuse_existing};
+use crate::output_file::{write_bytes, write_file};
 
 pub(crate) fn inspect(args: &InspectArgs) -> Result<ExitStatus, Failure> {
     if let Some(path) = args.pairs.as_ref().filter(|_| is_cell(&args.model)) {
@@ -49,7 +48,9 @@ pub(crate) fn inspect(args: &InspectArgs) -> Result<ExitStatus, Failure> {
                 args.model.display()
             ))
         };
-        std::fs::write(path, inspection.srdf().ok_or_else(what)?).map_err(cannot_write(path))?;
+        // A file that is there may have pairs and groups that a person has written.
+        refuse_existing(path)?;
+        write_bytes(path, inspection.srdf().ok_or_else(what)?)?;
         note(format_args!("wrote {}", path.display()));
     }
     if let Some(path) = &args.pairs {
@@ -76,7 +77,7 @@ fn is_cell(model: &Path) -> bool {
 fn write_pairs(model: &QueryModel, path: &Path, accept: bool) -> Result<(), Failure> {
     let before = path.exists().then(|| PairFile::read(path)).transpose()?;
     let (file, counts) = PairFile::survey(path, model, before.as_ref(), accept)?;
-    std::fs::write(path, file.to_string()).map_err(cannot_write(path))?;
+    write_bytes(path, file.to_string())?;
     let always = if accept { "skipped" } else { "tested" };
     let counted = [
         (counts.excluded, "never tested (adjacent, no joint between, SRDF)"),
@@ -100,9 +101,9 @@ fn picture(inspection: &Inspection, path: &Path) -> Result<(), Failure> {
         let what = format!("{}: pictures are png or html\n  write: --picture model.png", path.display());
         return Err(Failure::Wrong(what));
     }
-    let file = File::create(path).map(BufWriter::new).map_err(cannot_write(path))?;
-    let write = if ends("png") { model_picture::write_png } else { model_picture::write_page };
-    write(inspection, file).map_err(cannot_write(path))?;
+    write_file(path, |out| {
+        if ends("png") { model_picture::write_png(inspection, out) } else { model_picture::write_page(inspection, out) }
+    })?;
     note(format_args!("wrote {}", path.display()));
     Ok(())
 }
@@ -116,8 +117,7 @@ fn models(inspection: &Inspection, dir: &Path) -> Result<(), Failure> {
             let plain = |c: char| if c.is_alphanumeric() || "-_".contains(c) { c } else { '_' };
             let link: String = levels.link.chars().map(plain).collect();
             let path = dir.join(format!("{index:02}_{link}.{}.stl", mesh.name));
-            let mut out = File::create(&path).map(BufWriter::new).map_err(cannot_write(&path))?;
-            write_binary(&mut out, std::slice::from_ref(mesh)).map_err(cannot_write(&path))?;
+            write_file(&path, |mut out| write_binary(&mut out, std::slice::from_ref(mesh)))?;
             files += 1;
         }
     }

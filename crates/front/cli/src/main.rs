@@ -15,6 +15,7 @@ mod inspect;
 mod live;
 mod map;
 mod output;
+mod output_file;
 mod plan;
 mod plan_problems;
 mod plan_report;

@@ -1,8 +1,6 @@
 //! `elbowroom map`: the joint-space occupancy of a cell's objects.
 
 use std::fmt::Write;
-use std::fs::File;
-use std::io::BufWriter;
 use std::path::Path;
 use std::time::Duration;
 
@@ -14,6 +12,7 @@ use serde::Serialize;
 
 use crate::args::MapArgs;
 use crate::output::{ExitStatus, Failure, cannot_write, note, print, print_json};
+use crate::output_file::{try_write, write_file};
 use crate::progress::Progress;
 
 pub(crate) fn map(args: &MapArgs) -> Result<ExitStatus, Failure> {
@@ -35,8 +34,7 @@ pub(crate) fn map(args: &MapArgs) -> Result<ExitStatus, Failure> {
         None => None,
     };
     if let Some(path) = &args.page {
-        let file = File::create(path).map(BufWriter::new).map_err(cannot_write(path))?;
-        map_page::write(file, &map, cell.units).map_err(|e| cannot_write_page(&map, path, &e))?;
+        try_write(path, |out| map_page::write(out, &map, cell.units)).map_err(|e| cannot_write_page(&map, path, &e))?;
     }
     if args.json {
         print_json(&Document::of(&map))?;
@@ -82,8 +80,7 @@ fn write(map: &CellMap, path: &Path) -> Result<(), Failure> {
         let what = format!("{}: {} cells are too many for a file of one byte each", path.display(), map.cells());
         Failure::Wrong(format!("{what}\n  write: a larger step, or fewer joints, in [map.{}]", map.robot))
     })?;
-    let file = File::create(path).map(BufWriter::new).map_err(cannot_write(path))?;
-    dense.write_npy(file).map_err(cannot_write(path))
+    write_file(path, |out| dense.write_npy(out))
 }
 
 /// The JSON document.

@@ -56,7 +56,14 @@ pub(crate) fn myself() -> &'static str {
 /// The error for a file that could not be written.
 pub(crate) fn cannot_write(path: &Path) -> impl Fn(io::Error) -> Failure + '_ {
     move |e| {
-        Failure::Wrong(format!("{}: cannot be written: {e}\n  write: a folder that you may write to", path.display()))
+        let instead = match e.kind() {
+            io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => "a path on a disk with space left",
+            io::ErrorKind::NotFound => "a folder that is there",
+            io::ErrorKind::NotADirectory | io::ErrorKind::AlreadyExists => "a folder: this is a file",
+            io::ErrorKind::IsADirectory => "the name of a file: this is a folder",
+            _ => "a folder that you may write to",
+        };
+        Failure::Wrong(format!("{}: cannot be written: {e}\n  write: {instead}", path.display()))
     }
 }
 

@@ -1,8 +1,6 @@
 //! `elbowroom plan`: a collision-free, timed path.
 
 use std::fmt::Write;
-use std::fs::File;
-use std::io::BufWriter;
 use std::path::Path;
 
 use elbowroom::analysis::plan::{self, PathAnswer, PathGoal, PathRequest, TimedPath};
@@ -12,7 +10,8 @@ use elbowroom::spatial::{Pose, Rotation, Vec3};
 
 use crate::args::{Configuration, Numbers, PlanArgs};
 use crate::carry;
-use crate::output::{ExitStatus, Failure, cannot_write, note, print, print_json};
+use crate::output::{ExitStatus, Failure, note, print, print_json};
+use crate::output_file::write_file;
 use crate::plan_request::{configuration, settings};
 use crate::{plan_problems, plan_report, plan_several};
 
@@ -41,8 +40,7 @@ pub(crate) fn plan(args: &PlanArgs) -> Result<ExitStatus, Failure> {
     };
     let answer = plan::plan(&cell, &request)?;
     if let (Some(path), Some(motion)) = (&args.out, &answer.motion) {
-        let file = File::create(path).map(BufWriter::new).map_err(cannot_write(path))?;
-        motion.write_csv(&answer.joints, file).map_err(cannot_write(path))?;
+        write_file(path, |out| motion.write_csv(&answer.joints, out))?;
     }
     if let (Some(path), Some(motion)) = (&args.report, &answer.motion) {
         let (id, _) = plan::select_robot(&cell, request.robot.as_deref())?;

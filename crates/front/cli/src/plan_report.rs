@@ -1,7 +1,5 @@
 //! `elbowroom plan --report`: the page of a run in which robots play their paths.
 
-use std::fs::File;
-use std::io::BufWriter;
 use std::path::Path;
 
 use elbowroom::cell::{Cell, Program, ProgramBody, TrajectoryRow, Travel};
@@ -9,7 +7,8 @@ use elbowroom::report::{self, ReportScene};
 use elbowroom::robot::RobotId;
 use elbowroom::sim::RunOptions;
 
-use crate::output::{Failure, cannot_write};
+use crate::output::Failure;
+use crate::output_file::write_file;
 use crate::simulation::with_progress;
 
 /// A robot and the samples of its path: s, and rad or m.
@@ -36,6 +35,5 @@ pub(crate) fn write(path: &Path, cell: &Cell, paths: Vec<PlayedPath>) -> Result<
     }
     let options = RunOptions { apply_override: false, avoidance: false, ..RunOptions::default() };
     let played = with_progress(&cell, &options)?.recording;
-    let file = File::create(path).map(BufWriter::new).map_err(cannot_write(path))?;
-    report::write_html(file, &ReportScene::of_cell(&cell), &[("plan", &played)]).map_err(cannot_write(path))
+    write_file(path, |out| report::write_html(out, &ReportScene::of_cell(&cell), &[("plan", &played)]))
 }

@@ -1,8 +1,6 @@
 //! `elbowroom plan` for several robots that move at the same time.
 
 use std::fmt::Write;
-use std::fs::File;
-use std::io::BufWriter;
 
 use elbowroom::analysis::plan::{
     RobotPath, RobotPathRequest, SeveralPathsAnswer, SeveralPathsRequest, plan_several, select_robot,
@@ -10,7 +8,8 @@ use elbowroom::analysis::plan::{
 use elbowroom::cell::Cell;
 
 use crate::args::PlanArgs;
-use crate::output::{ExitStatus, Failure, cannot_write, print, print_json};
+use crate::output::{ExitStatus, Failure, print, print_json};
+use crate::output_file::write_file;
 use crate::plan_report::{self, PlayedPath};
 use crate::plan_request::{configuration, settings};
 
@@ -18,8 +17,7 @@ pub(crate) fn plan(cell: &Cell, args: &PlanArgs) -> Result<ExitStatus, Failure> 
     let request = SeveralPathsRequest { robots: robots(cell, args)?, options: settings(args), period_s: args.period };
     let answer = plan_several(cell, &request)?;
     if let Some(path) = args.out.as_ref().filter(|_| answer.found) {
-        let file = File::create(path).map(BufWriter::new).map_err(cannot_write(path))?;
-        answer.write_csv(file).map_err(cannot_write(path))?;
+        write_file(path, |out| answer.write_csv(out))?;
     }
     if let Some(path) = args.report.as_ref().filter(|_| answer.found) {
         plan_report::write(path, cell, played(cell, &answer)?)?;

@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use crate::args::RulesArgs;
 use crate::output::{ExitStatus, Failure, cannot_write, print, print_json};
+use crate::output_file::write_bytes;
 
 /// Distances (m) and speeds of approach (m/s) of the table.
 const DISTANCES_M: [f64; 7] = [0.05, 0.1, 0.2, 0.3, 0.4, 0.6, 0.8];
@@ -40,7 +41,7 @@ pub(crate) fn rules(args: &RulesArgs) -> Result<ExitStatus, Failure> {
                 path.display()
             )));
         }
-        std::fs::write(path, DEFAULT_RULES).map_err(cannot_write(path))?;
+        write_bytes(path, DEFAULT_RULES)?;
     }
     let rules = match &args.file {
         None => Rules::default(),
@@ -51,7 +52,7 @@ pub(crate) fn rules(args: &RulesArgs) -> Result<ExitStatus, Failure> {
         std::fs::create_dir_all(dir).map_err(cannot_write(dir))?;
         for (surface, unit) in surfaces.iter().zip(["", "deg"]) {
             let path = dir.join(format!("{}.svg", surface.z_name));
-            std::fs::write(&path, surface.to_svg(["m", "m/s", unit])).map_err(cannot_write(&path))?;
+            write_bytes(&path, surface.to_svg(["m", "m/s", unit]))?;
         }
     }
     if args.json {

@@ -1,7 +1,5 @@
 //! `elbowroom run`: a cell's programs in simulated time.
 
-use std::fs::File;
-use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use elbowroom::cell::Cell;
@@ -13,6 +11,7 @@ use elbowroom::sim::{Recording, RunOptions, RunSummary, SensorTrack, csv};
 use crate::args::RunArgs;
 use crate::live;
 use crate::output::{ExitStatus, Failure, cannot_write, color, note, print, print_json, width};
+use crate::output_file::write_file;
 use crate::simulation::with_progress;
 
 pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
@@ -91,12 +90,8 @@ pub(crate) fn write_files(
     compare: bool,
 ) -> Result<(), Failure> {
     std::fs::create_dir_all(dir).map_err(cannot_write(dir))?;
-    let create = |name: &str| {
-        let path = dir.join(name);
-        File::create(&path).map(BufWriter::new).map_err(cannot_write(&path))
-    };
-    csv::write_trace(run, create("trace.csv")?).map_err(cannot_write(dir))?;
-    csv::write_events(run, create("events.csv")?).map_err(cannot_write(dir))?;
+    write_file(&dir.join("trace.csv"), |out| csv::write_trace(run, out))?;
+    write_file(&dir.join("events.csv"), |out| csv::write_events(run, out))?;
     for sensor in &run.sensors {
         write_records(&dir.join(format!("{}-{}.jsonl", sensor.kind, sensor.name)), sensor)?;
     }
@@ -108,15 +103,12 @@ pub(crate) fn write_files(
     if let Some(without) = without {
         page = page.planned(without);
     }
-    page.write(create("report.html")?).map_err(cannot_write(dir))
+    write_file(&dir.join("report.html"), |out| page.write(out))
 }
 
 /// Writes what a sensor saw: a JSON document per picture or cloud, a line each, as `watch --json` prints it.
 fn write_records(path: &Path, sensor: &SensorTrack) -> Result<(), Failure> {
-    let mut out = File::create(path).map(BufWriter::new).map_err(cannot_write(path))?;
-    for record in &sensor.records {
-        let line = serde_json::to_string(record).map_err(|e| Failure::Wrong(e.to_string()))?;
-        writeln!(out, "{line}").map_err(cannot_write(path))?;
-    }
-    out.flush().map_err(cannot_write(path))
+    write_file(path, |out| {
+        sensor.records.iter().try_for_each(|record| writeln!(out, "{}", serde_json::to_string(record)?))
+    })
 }

@@ -149,6 +149,11 @@ fn an_srdf_is_written_and_silences_what_always_touches() {
     elbowroom(dir.path(), &again).expect(0);
     let text = std::fs::read_to_string(dir.path().join("again.srdf")).unwrap();
     assert!(text.contains("link1=\"f1\" link2=\"f2\" reason=\"User\""), "{text}");
+    // A file that is there stays: a person may have written pairs and groups into it.
+    let before = std::fs::read_to_string(dir.path().join("grip.srdf")).unwrap();
+    let over = elbowroom(dir.path(), &["inspect", "grip.urdf", "--write-srdf", "grip.srdf"]).expect(2).stderr;
+    assert!(over.contains("grip.srdf: is there already") && over.contains("the name of a new file"), "{over}");
+    assert_eq!(std::fs::read_to_string(dir.path().join("grip.srdf")).unwrap(), before);
     std::fs::write(dir.path().join("a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
     std::fs::write(dir.path().join("bare.urdf"), "<robot name=\"bare\"><link name=\"a\"/></robot>").unwrap();
     let cases: &[(&[&str], &str, &str)] = &[
@@ -160,7 +165,9 @@ fn an_srdf_is_written_and_silences_what_always_touches() {
             "bare.urdf: has no pairs of links",
             "a robot with collision geometry",
         ),
-        (&["ball.urdf", "--write-srdf", "nowhere/x.srdf"], "nowhere/x.srdf", "write: "),
+        (&["ball.urdf", "--write-srdf", "nowhere/x.srdf"], "nowhere/x.srdf", "write: a folder that is there"),
+        (&["ball.urdf", "--write-srdf", "/dev/full"], "/dev/full: is there already", "the name of a new file"),
+        (&["ball.urdf", "--pairs", "/dev/full"], "/dev/full", "write: "),
     ];
     for (args, what, hint) in cases {
         let refused = elbowroom(dir.path(), &[&["inspect"], *args].concat()).expect(2).stderr;

@@ -76,7 +76,7 @@ impl TurningMotion {
 #[cfg(test)]
 mod tests {
     use elbowroom_spatial::{Pose, Rotation, Vec3};
-    use elbowroom_testkit::random::{Random, SplitMix};
+    use elbowroom_testkit::random::SplitMix;
 
     use super::*;
 

@@ -138,6 +138,11 @@ impl BackgroundPlane {
         f32::from(self.mean_q7[i]) / 128.0
     }
 
+    /// The mean deviation of pixel `i` from its mean, grey levels.
+    pub(crate) fn deviation(&self, i: usize) -> f32 {
+        f32::from(self.deviation_q9[i]) / 512.0
+    }
+
     /// Learns from an image of the empty cell; all images of a pixel have the same weight. `nth` is the number of images
     /// per pixel, this one included; pixels in `masked` are left out.
     pub(crate) fn learn(&mut self, pixels: &[u8], nth: &[u16], masked: &[u8]) {

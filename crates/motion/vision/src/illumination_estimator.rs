@@ -9,8 +9,11 @@ use crate::illumination::Illumination;
 
 /// Distance of the samples, both ways, pixels.
 const SAMPLE_STEP_PX: usize = 8;
-/// Largest distance of an inlier from the line, grey levels.
+/// Largest distance of an inlier from the line, grey levels: so many, or so many mean deviations of the floor's pixels.
 const INLIER_LEVELS: f32 = 8.0;
+const INLIER_DEVIATIONS: f32 = 2.5;
+/// Deviations above this are no noise, grey levels.
+const MAX_INLIER_LEVELS: f32 = 24.0;
 /// Weight of the gain 1 in the least squares, squared grey levels. A uniform floor does not determine a gain: then the offset
 /// alone follows the lamp. Pulled towards the gain of the frame before, it would shrink from frame to frame, as the noise of the
 /// learnt levels lowers each estimate a little.
@@ -35,6 +38,8 @@ pub(crate) struct IlluminationEstimator {
     /// Learnt and observed grey levels.
     samples: Vec<(f32, f32)>,
     sorted: Vec<f32>,
+    /// Largest distance of an inlier from the line in the present image.
+    inlier_levels: f32,
 }
 
 impl IlluminationEstimator {
@@ -75,23 +80,26 @@ impl IlluminationEstimator {
     fn sample(&mut self, plane: &BackgroundPlane, pixels: &[u8], frozen: &[u8], width: usize) {
         const STEP: usize = SAMPLE_STEP_PX;
         self.samples.clear();
+        self.sorted.clear();
         let starts = (STEP / 2 * width..pixels.len()).step_by(STEP * width);
         for i in starts.flat_map(|start| (start + STEP / 2..(start + width).min(pixels.len())).step_by(STEP)) {
             if frozen[i] == 0 && UNSATURATED.contains(&pixels[i]) {
                 self.samples.push((plane.mean(i), f32::from(pixels[i])));
+                self.sorted.push(plane.deviation(i));
             }
         }
+        let noise = if self.sorted.is_empty() { 0.0 } else { middle(&mut self.sorted) };
+        self.inlier_levels = (INLIER_DEVIATIONS * noise).clamp(INLIER_LEVELS, MAX_INLIER_LEVELS);
     }
 
     fn median(&mut self, value: impl Fn((f32, f32)) -> f32) -> f32 {
         self.sorted.clear();
         self.sorted.extend(self.samples.iter().map(|&s| value(s)));
-        let middle = self.sorted.len() / 2;
-        *self.sorted.select_nth_unstable_by(middle, f32::total_cmp).1
+        middle(&mut self.sorted)
     }
 
     fn inliers(&self, Line { gain, offset }: Line) -> impl Iterator<Item = &(f32, f32)> {
-        self.samples.iter().filter(move |(b, f)| (f - gain * b - offset).abs() < INLIER_LEVELS)
+        self.samples.iter().filter(move |(b, f)| (f - gain * b - offset).abs() < self.inlier_levels)
     }
 
     /// Least squares over the inliers of a line.
@@ -110,4 +118,10 @@ impl IlluminationEstimator {
         let gain = (cross / n + GAIN_PRIOR_WEIGHT) / (square / n + GAIN_PRIOR_WEIGHT);
         Line { gain, offset: mean_f - gain * mean_b }
     }
+}
+
+/// The median; there is at least one value.
+fn middle(values: &mut [f32]) -> f32 {
+    let middle = values.len() / 2;
+    *values.select_nth_unstable_by(middle, f32::total_cmp).1
 }

@@ -10,6 +10,7 @@ use elbowroom::spatial::units::LengthUnit;
 
 use crate::args::{ConvertArgs, Written};
 use crate::output::{ExitStatus, Failure, cannot_write, note};
+use crate::output_file::write_bytes;
 
 /// Writes the robot to the folder `out`.
 pub(super) fn convert(args: &ConvertArgs, out: &Path) -> Result<ExitStatus, Failure> {
@@ -90,9 +91,9 @@ pub(super) fn of_cell(args: &ConvertArgs) -> Result<CellRobot, Failure> {
 /// The 3DS model, and a file with the joints, which 3DS cannot hold.
 fn write_tds(robot: &Robot, path: &Path) -> Result<Vec<PathBuf>, Failure> {
     let bytes = tds::write(&robot::to_tree(robot), path)?;
-    std::fs::write(path, bytes).map_err(cannot_write(path))?;
+    write_bytes(path, bytes)?;
     let beside = joints::default_path(path);
-    std::fs::write(&beside, joints::to_toml(&robot.chain)).map_err(cannot_write(&beside))?;
+    write_bytes(&beside, joints::to_toml(&robot.chain))?;
     Ok(vec![path.to_owned(), beside])
 }
 

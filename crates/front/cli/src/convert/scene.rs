@@ -8,6 +8,7 @@ use elbowroom::formats::stl;
 
 use crate::args::ConvertArgs;
 use crate::output::{ExitStatus, Failure, cannot_write, note, refuse_existing};
+use crate::output_file::write_bytes;
 
 /// Writes the objects of the scene as tables of the cell file `file`, and its meshes to a folder beside it.
 pub(super) fn convert(args: &ConvertArgs, file: &Path) -> Result<ExitStatus, Failure> {
@@ -31,14 +32,14 @@ pub(super) fn convert(args: &ConvertArgs, file: &Path) -> Result<ExitStatus, Fai
         let path = beside.join(name);
         let mut bytes = Vec::new();
         stl::write_binary(&mut bytes, std::slice::from_ref(mesh)).map_err(cannot_write(&path))?;
-        std::fs::write(&path, bytes).map_err(cannot_write(&path))?;
+        write_bytes(&path, bytes)?;
     }
     let pairs = write_pairs(args, file, &cell)?;
     let toml = match &pairs {
         Some(name) => toml.replacen("\n\n", &format!("\npairs = {}\n\n", toml_text(name)), 1),
         None => toml,
     };
-    std::fs::write(file, toml).map_err(cannot_write(file))?;
+    write_bytes(file, toml)?;
     let (objects, meshes) = (cell.objects.len(), meshes.len());
     note(format_args!("wrote {}: {objects} objects, {meshes} mesh files", file.display()));
     Ok(ExitStatus::Success)
@@ -50,7 +51,7 @@ fn write_pairs(args: &ConvertArgs, file: &Path, cell: &Cell) -> Result<Option<St
     let path = file.with_file_name(&name);
     let Some(pairs) = PairFile::of_scene(&path, &planning_scene::read(&args.model)?, cell) else { return Ok(None) };
     refuse_existing(&path)?;
-    std::fs::write(&path, pairs.to_string()).map_err(cannot_write(&path))?;
+    write_bytes(&path, pairs.to_string())?;
     note(format_args!("wrote {}: the pairs that the scene lets touch", path.display()));
     Ok(Some(name))
 }

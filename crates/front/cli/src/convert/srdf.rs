@@ -9,7 +9,8 @@ use elbowroom::robot::Robot;
 
 use super::robot::{has_extension, of_cell, of_model};
 use crate::args::ConvertArgs;
-use crate::output::{ExitStatus, Failure, cannot_write, note, refuse_existing};
+use crate::output::{ExitStatus, Failure, note, refuse_existing};
+use crate::output_file::write_bytes;
 
 /// The group of all moving joints, named as in ROS-Industrial, where no SRDF has groups.
 const GROUP: &str = "manipulator";
@@ -19,7 +20,7 @@ pub(super) fn convert(args: &ConvertArgs, file: &Path) -> Result<ExitStatus, Fai
     refuse_existing(file)?;
     let (robot, given) = if has_extension(&args.model, "toml") { of_cell_file(args)? } else { of_model_file(args)? };
     let text = inspect::srdf(&args.model, &robot, given)?;
-    std::fs::write(file, text).map_err(cannot_write(file))?;
+    write_bytes(file, text)?;
     note(format_args!("wrote {}", file.display()));
     Ok(ExitStatus::Success)
 }

@@ -1,14 +1,13 @@
 //! Files of timed paths: `SET-ID.csv`.
 
 use std::collections::HashSet;
-use std::fs::File;
-use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 use elbowroom::analysis::plan::TimedPath;
 use elbowroom::analysis::problems::ProblemResult;
 
 use crate::output::{Failure, cannot_write};
+use crate::output_file::write_file;
 
 /// Longer names are cut: file systems allow 255 bytes.
 const MAX_CHARS: usize = 100;
@@ -30,8 +29,7 @@ impl PathFiles {
     pub(super) fn write(&mut self, of: &ProblemResult, joints: &[String], motion: &TimedPath) -> Result<(), Failure> {
         let name = self.unused_name(&of.set, &of.id);
         let path = self.dir.join(name);
-        let file = File::create(&path).map(BufWriter::new).map_err(cannot_write(&path))?;
-        motion.write_csv(joints, file).map_err(cannot_write(&path))
+        write_file(&path, |out| motion.write_csv(joints, out))
     }
 
     /// `SET-ID.csv`. Characters that could lead to another folder become `_`; a name that was given gets a number.
