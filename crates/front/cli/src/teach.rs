@@ -56,6 +56,11 @@ fn points(cell: &Cell, robot: &CellRobot, args: &TeachArgs) -> Result<Vec<Vec3>,
     let chain = &robot.robot.chain;
     let mut state = ChainState::new(chain);
     let states = crate::states::read(&args.states, &QueryModel::of_robot_in_cell(cell, robot))?;
+    // No robot was taught beyond its limits: the values are in another unit, or of another robot.
+    if let Some(beyond) = states.warnings.first() {
+        let write = "states in radians, and metres for joints that slide, as the robot has taken them";
+        return Err(Failure::Wrong(format!("{beyond}\n  write: {write}")));
+    }
     let point = |index: usize| {
         states.of(index).for_each(|(_, q)| state.q.copy_from_slice(q));
         chain.forward(&mut state);
