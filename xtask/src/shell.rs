@@ -50,10 +50,18 @@ pub fn status(root: &Path, program: &str, args: &[&str], env: &[(&str, &str)]) -
 /// # Errors
 /// An exit status other than 0, with the standard error of the program.
 pub fn output(root: &Path, program: &str, args: &[&str]) -> Result<String, String> {
-    let output = Command::new(program).args(args).current_dir(root).output();
+    output_with(root, program, args, &[])
+}
+
+/// As [`output`], with more variables.
+///
+/// # Errors
+/// As there.
+pub fn output_with(root: &Path, program: &str, args: &[&str], env: &[(&str, &str)]) -> Result<String, String> {
+    let output = Command::new(program).args(args).envs(env.iter().copied()).current_dir(root).output();
     let output = output.map_err(|e| format!("cannot start `{program}`: {e}"))?;
     if !output.status.success() {
-        return Err(format!("`{}` failed:\n{}", line(program, args, &[]), String::from_utf8_lossy(&output.stderr)));
+        return Err(format!("`{}` failed:\n{}", line(program, args, env), String::from_utf8_lossy(&output.stderr)));
     }
     Ok(String::from_utf8_lossy(&output.stdout).into_owned())
 }

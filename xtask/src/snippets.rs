@@ -4,7 +4,8 @@
 //! `cargo run`, and `elbowroom` is it. A release build would compile the workspace once more.
 //!
 //! A ```` ```sh ```` block that follows the line `<!-- run -->` must end with exit status 0 when bash runs it in the
-//! workspace root; `<!-- run: 1 -->` names another status.
+//! workspace root; `<!-- run: 1 -->` names another status. A ```` ```text ```` block that follows `<!-- shows: COMMAND -->` is what
+//! the command prints, or lines of it in their order; times in µs may differ.
 
 use std::path::{Path, PathBuf};
 
@@ -18,6 +19,8 @@ struct Snippet {
     line: usize,
     expected: i32,
     text: String,
+    /// Lines that it must print.
+    shows: Vec<String>,
 }
 
 /// Runs every marked block of `README.md`, `CONTRIBUTING.md` and `docs/**/*.md`.
@@ -29,17 +32,45 @@ pub fn run(root: &Path) -> Result<(), String> {
         let name = path.strip_prefix(root).unwrap_or(&path).display().to_string();
         for snippet in parse(&text).map_err(|e| format!("{name}:{e}"))? {
             println!("{name}:{}", snippet.line);
-            let status =
-                shell::status(root, "bash", &["-euo", "pipefail", "-c", &snippet.text], &[("PATH", &search_path)])?;
-            if status != snippet.expected {
-                let (line, expected) = (snippet.line, snippet.expected);
-                return Err(format!("{name}:{line}: the commands ended with {status}, the document says {expected}"));
-            }
+            snippet.check(root, &search_path).map_err(|e| format!("{name}:{}: {e}", snippet.line))?;
             ran += 1;
         }
     }
     println!("snippets: {ran} blocks do what the documents say");
     Ok(())
+}
+
+impl Snippet {
+    fn check(&self, root: &Path, search_path: &str) -> Result<(), String> {
+        let words = ["-euo", "pipefail", "-c", &self.text];
+        if !self.shows.is_empty() {
+            let printed = shell::output_with(root, "bash", &words, &[("PATH", search_path)])?;
+            return missing_line(&self.shows, &printed).map_or(Ok(()), |missing| {
+                Err(format!("`{}` does not print, or not in this place:\n{missing}\nIt prints:\n{printed}", self.text))
+            });
+        }
+        let status = shell::status(root, "bash", &words, &[("PATH", search_path)])?;
+        if status == self.expected {
+            return Ok(());
+        }
+        Err(format!("the commands ended with {status}, the document says {}", self.expected))
+    }
+}
+
+/// The first line of the document that is not in what a command prints, in the same order.
+fn missing_line<'a>(shown: &'a [String], printed: &str) -> Option<&'a String> {
+    let mut printed = printed.lines();
+    // `…` stands for lines that are left out.
+    let mut shown = shown.iter().filter(|line| line.trim() != "…");
+    shown.find(|line| !printed.by_ref().any(|found| without_times(found) == without_times(line)))
+}
+
+/// The line without spaces at its end, and without the numbers before `µs`.
+fn without_times(line: &str) -> String {
+    let parts: Vec<&str> = line.trim_end().split(" µs").collect();
+    let (last, times) = parts.split_last().unwrap_or((&"", &[]));
+    let kept = times.iter().map(|part| part.trim_end_matches(|c: char| c.is_ascii_digit() || c == '.'));
+    kept.chain([*last]).collect::<Vec<_>>().join(" µs")
 }
 
 /// The search path with the two programs that stand for the installed command.
@@ -86,12 +117,25 @@ fn parse(text: &str) -> Result<Vec<Snippet>, String> {
     let mut snippets = Vec::new();
     let mut lines = text.lines().enumerate();
     while let Some((index, line)) = lines.next() {
-        let Some(expected) = marker(line).map_err(|e| format!("{}: {e}", index + 1))? else { continue };
-        if lines.next().is_none_or(|(_, next)| next.trim() != "```sh") {
-            return Err(format!("{}: `<!-- run -->` must stand right above a ```sh block", index + 1));
+        let shown = line.trim().strip_prefix("<!-- shows:").and_then(|rest| rest.strip_suffix("-->"));
+        let status = marker(line).map_err(|e| format!("{}: {e}", index + 1))?;
+        let (mark, fence) = match (shown, status) {
+            (Some(_), _) => ("shows: …", "```text"),
+            (None, Some(_)) => ("run", "```sh"),
+            (None, None) => continue,
+        };
+        if lines.next().is_none_or(|(_, next)| next.trim() != fence) {
+            return Err(format!("{}: `<!-- {mark} -->` must stand right above a {fence} block", index + 1));
         }
         let block: Vec<&str> = lines.by_ref().map(|(_, next)| next).take_while(|next| next.trim() != "```").collect();
-        snippets.push(Snippet { line: index + 2, expected, text: block.join("\n") });
+        let (line, expected) = (index + 2, status.unwrap_or(0));
+        snippets.push(match shown {
+            Some(command) => {
+                let shows = block.iter().map(|line| (*line).to_owned()).collect();
+                Snippet { line, expected, text: command.trim().to_owned(), shows }
+            }
+            None => Snippet { line, expected, text: block.join("\n"), shows: Vec::new() },
+        });
     }
     Ok(snippets)
 }
@@ -118,7 +162,7 @@ mod tests {
             "# T\n```sh\nrm x\n```\n<!-- run -->\n```sh\ncargo a\ncargo b\n```\n<!-- run: 1 -->\n```sh\nc\n```\n";
         let found = parse(text).unwrap();
         assert_eq!(found.len(), 2);
-        assert_eq!(found[0], Snippet { line: 6, expected: 0, text: "cargo a\ncargo b".into() });
+        assert_eq!(found[0], Snippet { line: 6, expected: 0, text: "cargo a\ncargo b".into(), shows: vec![] });
         assert_eq!((found[1].expected, found[1].text.as_str()), (1, "c"));
     }
 
@@ -126,5 +170,16 @@ mod tests {
     fn a_marker_without_a_block_is_refused() {
         assert!(parse("<!-- run -->\n\n```sh\nx\n```").unwrap_err().starts_with("1:"));
         assert!(parse("<!-- run one -->\n```sh\nx\n```").is_err());
+        assert!(parse("<!-- shows: ls -->\n```sh\nx\n```").is_err());
+    }
+
+    #[test]
+    fn a_sample_of_output_is_what_the_command_prints_but_for_times() {
+        let found = parse("<!-- shows: elbowroom x -->\n```text\na\ntick 3.6 µs, 1 of 2\n```\n").unwrap();
+        assert_eq!((found[0].text.as_str(), found[0].shows.len()), ("elbowroom x", 2));
+        let missing = |printed: &str| missing_line(&found[0].shows, printed).map(String::as_str);
+        assert_eq!(missing("x\na  \ntick 12.25 µs, 1 of 2\n"), None);
+        assert_eq!(missing("tick 3.6 µs, 1 of 2\na\n"), Some("tick 3.6 µs, 1 of 2"));
+        assert_eq!(missing("a\ntick 3.6 µs, 1 of 3\n"), Some("tick 3.6 µs, 1 of 2"));
     }
 }
