@@ -59,7 +59,7 @@ pub(crate) fn cannot_write(path: &Path) -> impl Fn(io::Error) -> Failure + '_ {
         let instead = match e.kind() {
             io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => "a path on a disk with space left",
             io::ErrorKind::NotFound => "a folder that is there",
-            io::ErrorKind::NotADirectory | io::ErrorKind::AlreadyExists => "a folder: this is a file",
+            io::ErrorKind::NotADirectory | io::ErrorKind::AlreadyExists => "another name: a file of this one is there",
             io::ErrorKind::IsADirectory => "the name of a file: this is a folder",
             _ => "a folder that you may write to",
         };

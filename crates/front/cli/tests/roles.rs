@@ -458,7 +458,8 @@ fn a_private_key_is_its_owners_alone() {
     assert!(message.contains("integrator.key") && message.contains("chmod 600"), "{message}");
     // No key is overwritten, and operators have none.
     let again = ["region", "keygen", "--as", "integrator", "--name", "X", "--out", "integrator.key"];
-    run_in(dir.path(), &again).expect(2);
+    let refused = run_in(dir.path(), &again).expect(2).stderr;
+    assert!(refused.contains("integrator.key") && refused.contains("write: another name"), "{refused}");
     run_in(dir.path(), &["region", "keygen", "--as", "operator", "--name", "X", "--out", "o.key"]).expect(2);
     assert!(!dir.path().join("o.key").exists());
 }

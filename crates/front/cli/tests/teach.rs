@@ -145,7 +145,8 @@ fn states_beyond_the_limits_of_the_joints_are_refused() {
     let (_dir, answer) = teach(SWING, "sphere", "0,90\n0,0\n", &[]);
     let refused = answer.expect(2);
     assert_eq!(refused.stdout, "");
-    for words in ["taught.csv:2: `joint_2` is 90, beyond its limits", "are these degrees?", "write: states in radians"] {
+    for words in ["taught.csv:2: `joint_2` is 90, beyond its limits", "are these degrees?", "write: states in radians"]
+    {
         assert!(refused.stderr.contains(words), "{words}: {}", refused.stderr);
     }
 }

@@ -29,8 +29,7 @@ impl<'a> CsvLines<'a, BufReader<File>> {
     /// The lines of a file of at most `max_bytes`. Pipes, which have no size, are read too.
     pub(crate) fn open(path: &'a Path, max_bytes: u64) -> Result<Self> {
         let unreadable = |e: std::io::Error| {
-            FormatError::new(path, None, format!("cannot be read: {e}"))
-                .hint("a CSV file: a header of column names, then rows of numbers")
+            FormatError::unreadable(path, &e, "a CSV file: a header of column names, then rows of numbers")
         };
         let file = File::open(path).map_err(unreadable)?;
         let metadata = file.metadata().map_err(unreadable)?;

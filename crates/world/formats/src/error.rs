@@ -51,6 +51,15 @@ impl FormatError {
         self.write_instead = Some(write_instead.into());
         self
     }
+
+    /// The error for a file that the system does not let read, where `wanted` says what belongs there.
+    pub fn unreadable(file: impl AsRef<Path>, e: &std::io::Error, wanted: &str) -> Self {
+        let instead = match e.kind() {
+            std::io::ErrorKind::PermissionDenied => "a file that you may read, or `chmod u+r` on this one",
+            _ => wanted,
+        };
+        Self::new(file, None, format!("cannot be read: {e}")).hint(instead)
+    }
 }
 
 impl Warning {

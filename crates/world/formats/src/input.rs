@@ -20,7 +20,7 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>, FormatError> {
 /// # Errors
 /// A file that cannot be read, is no regular file, or has more than `max_bytes` bytes; `smaller` is then the hint.
 pub fn read_file(path: &Path, max_bytes: u64, smaller: &str) -> Result<Vec<u8>, FormatError> {
-    let cannot = |e: std::io::Error| FormatError::new(path, None, format!("cannot be read: {e}"));
+    let cannot = |e: std::io::Error| FormatError::unreadable(path, &e, "the path of a file that is there");
     let meta = std::fs::metadata(path).map_err(cannot)?;
     if !meta.is_file() {
         return Err(FormatError::new(path, None, "is not a file").hint("the path of a file, not of a directory"));

@@ -27,10 +27,8 @@ impl CellFile {
     /// [`FormatError`] where it cannot be read or is not TOML.
     pub fn read(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
-        let unreadable = |e: std::io::Error| {
-            FormatError::new(path, None, format!("cannot be read: {e}"))
-                .hint("the path of a cell file (see docs/cell-file.md)")
-        };
+        let unreadable =
+            |e: std::io::Error| FormatError::unreadable(path, &e, "the path of a cell file (see docs/cell-file.md)");
         if std::fs::metadata(path).map_err(unreadable)?.len() > MAX_BYTES {
             return Err(FormatError::new(path, None, format!("is larger than {MAX_BYTES} bytes")));
         }

@@ -66,7 +66,9 @@ pub(crate) fn parse(file: &Path, text: &str) -> Result<Vec<Entry>, FormatError> 
         Ok(table) => Ok(entries(&lines, table.get_ref())),
         Err(e) => {
             let line = e.span().map(|span| lines.at(span.start));
-            let what = format!("this is not TOML: {}", e.message().trim().replace('\n', ", "));
+            let named = e.span().and_then(|span| text.get(span)).filter(|key| key.len() < 60 && !key.contains('\n'));
+            let named = named.map_or_else(String::new, |key| format!(" `{key}`"));
+            let what = format!("this is not TOML: {}{named}", e.message().trim().replace('\n', ", "));
             let hint = planning_scene_hint(file).unwrap_or_else(|| syntax_hint(e.message()).to_owned());
             Err(FormatError::new(file, line, what).hint(hint))
         }

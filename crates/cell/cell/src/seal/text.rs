@@ -11,7 +11,7 @@ use super::result::Result;
 const MAX_BYTES: u64 = 64 << 20;
 
 pub(super) fn read(path: &Path) -> Result<String> {
-    let unreadable = |e: std::io::Error| FormatError::new(path, None, format!("cannot be read: {e}"));
+    let unreadable = |e: std::io::Error| FormatError::unreadable(path, &e, "the path of a file that is there");
     if fs::metadata(path).map_err(unreadable)?.len() > MAX_BYTES {
         return Err(FormatError::new(path, None, format!("is larger than {MAX_BYTES} bytes")));
     }
@@ -21,8 +21,12 @@ pub(super) fn read(path: &Path) -> Result<String> {
 /// The error for a file that cannot be written.
 pub(super) fn unwritable(path: &Path) -> impl Fn(std::io::Error) -> FormatError + '_ {
     move |e| {
-        FormatError::new(path, None, format!("cannot be written: {e}"))
-            .hint("a file and a folder that you may write to")
+        let instead = match e.kind() {
+            std::io::ErrorKind::AlreadyExists => "the name of a new file",
+            std::io::ErrorKind::StorageFull => "a path on a disk with space left",
+            _ => "a file and a folder that you may write to",
+        };
+        FormatError::new(path, None, format!("cannot be written: {e}")).hint(instead)
     }
 }
 

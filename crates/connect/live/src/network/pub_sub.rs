@@ -64,6 +64,12 @@ pub enum NetworkError {
         /// What is wrong.
         why: String,
     },
+    /// An address at which another program listens.
+    #[error("{address}: another program listens there\n  help: another port, or end that program")]
+    InUse {
+        /// As it was given.
+        address: String,
+    },
     /// A key that cannot be used.
     #[error("the key {key}: {why}")]
     Key {

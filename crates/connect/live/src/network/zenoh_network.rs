@@ -80,7 +80,11 @@ pub(crate) fn open_session(settings: &ZenohSettings, further: &[(&str, &str)]) -
     for (key, value) in entries.into_iter().chain(further) {
         config.insert_json5(key, &value).map_err(|e| wrong(format!("{key}: {e}")))?;
     }
-    zenoh::open(config).wait().map_err(|e| wrong(e.to_string()))
+    zenoh::open(config).wait().map_err(|e| match e.to_string() {
+        // Zenoh's errors are texts, with the places in its sources.
+        why if why.contains("Address already in use") => NetworkError::InUse { address: address() },
+        why => wrong(why),
+    })
 }
 
 /// `tcp/HOST:PORT` of an address with or without `tcp/`.

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use elbowroom::cell::seal::{self, CellEdit, LogEntry, PrivateKey, Signer};
 use elbowroom::monitor::AccessClass;
 
-use crate::output::{ExitStatus, Failure, note, print};
+use crate::output::{ExitStatus, Failure, cannot_write, note, print};
 use args::{AddArgs, KeygenArgs, RegionCommand, SignArgs};
 
 pub(crate) fn region(command: &RegionCommand) -> Result<ExitStatus, Failure> {
@@ -83,9 +83,9 @@ fn keygen(args: &KeygenArgs) -> Result<ExitStatus, Failure> {
         let what = "operators change nothing, so there is no key for them";
         return Err(Failure::Wrong(format!("{what}\n  write: --as programmer or --as integrator")));
     }
-    let wrong = |e: std::io::Error| Failure::Wrong(format!("{}: cannot be written: {e}", args.out.display()));
-    let key = PrivateKey::generate(class, &args.name).map_err(wrong)?;
-    key.write(&args.out).map_err(wrong)?;
+    let wrong = cannot_write(&args.out);
+    let key = PrivateKey::generate(class, &args.name).map_err(&wrong)?;
+    key.write(&args.out).map_err(&wrong)?;
     note(format_args!(
         "{}: the private key; keep it to yourself. The public one, for trusted-keys.toml, is on standard output.",
         args.out.display()

@@ -394,7 +394,9 @@ impl Header {
         let no_column = |of: &str| {
             let similar = names.iter().find(|name| name.eq_ignore_ascii_case(of.split('`').next().unwrap_or(of)));
             let similar = similar.map_or_else(String::new, |name| format!("; `{name}` differs in capitals"));
-            wrong(format!("has no column `{of}`; its columns are {}{similar}", names.join(", ")))
+            let split =
+                if names.len() == 1 && names[0].contains([';', '\t']) { "; commas separate columns" } else { "" };
+            wrong(format!("has no column `{of}`; its columns are {}{similar}{split}", names.join(", ")))
         };
         for (robot, missing) in joints.options.robots.iter().zip(&missing) {
             if missing.len() == robot.chain.dof() && robot.default_q.is_some() {
