@@ -4,7 +4,7 @@ use elbowroom_cell::Cell;
 use elbowroom_sim::{InputFault, RunOptions, simulate};
 
 use super::generate::Places;
-use super::oracle::{self, Findings};
+use super::oracle::{self, Findings, Promises};
 use super::spec::CellSpec;
 
 /// A run and what the oracle found in it.
@@ -17,13 +17,13 @@ pub struct CheckedRun {
     pub simulated_s: f64,
 }
 
-/// Runs a cell with these faults of its input.
-pub fn run(cell: &Cell, faults: Vec<InputFault>) -> Result<CheckedRun, String> {
-    let options = RunOptions { faults, ..RunOptions::default() };
+/// Runs a cell with these faults of its input, its programs as often as `run --repeat` says.
+pub fn run(cell: &Cell, faults: Vec<InputFault>, repeat: u32) -> Result<CheckedRun, String> {
+    let options = RunOptions { faults, repeat: repeat.max(1), ..RunOptions::default() };
     let outcome = simulate(cell, &options).map_err(|e| e.to_string())?;
     let robots = &outcome.recording.robots;
     Ok(CheckedRun {
-        findings: oracle::check(cell, &outcome.recording, outcome.has_violation())?,
+        findings: oracle::check(cell, &outcome.recording, &Promises::new(cell), outcome.has_violation())?,
         finished: robots.iter().filter(|r| r.finished).count(),
         slowed: robots.iter().filter(|r| r.min_override < 0.2).count(),
         stopped: robots.iter().filter(|r| r.stopped_s > 0.0).count(),
@@ -34,6 +34,5 @@ pub fn run(cell: &Cell, faults: Vec<InputFault>) -> Result<CheckedRun, String> {
 
 /// As [`run`], of a cell that is not written yet.
 pub fn run_spec(spec: &CellSpec, places: &Places<'_>) -> Result<CheckedRun, String> {
-    let cell = Cell::parse(places.cells.join("fuzz.toml"), &spec.to_toml()).map_err(|e| e.to_string())?;
-    run(&cell, spec.faults.clone())
+    run(&spec.parse(places.cells)?, spec.faults.clone(), spec.repeat)
 }

@@ -26,14 +26,17 @@ const CORNER: &str = include_str!("corner.obj");
 /// Failing cells that are written as files, per kind; more teach nothing new.
 const WRITTEN: usize = 20;
 
-/// Cells per kind in the test suite, and their seed.
-const SUITE_CELLS: usize = 150;
+/// Stack of a thread that runs cells.
+const STACK_BYTES: usize = 8 << 20;
+
+/// Seed of the cells in the test suite; how many there are depends on their kind.
 const SUITE_SEED: u64 = 13;
 
 /// What to do.
 #[derive(Debug, PartialEq)]
 pub struct Options {
-    count: usize,
+    /// Cells per kind; without it as many as in the test suite.
+    count: Option<usize>,
     seed: u64,
     kinds: Vec<Kind>,
     json: bool,
@@ -45,7 +48,15 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { count: 1000, seed: 1, kinds: Kind::ALL.to_vec(), json: false, case: None, replay: None, shrinks: true }
+        Self {
+            count: Some(1000),
+            seed: 1,
+            kinds: Kind::ALL.to_vec(),
+            json: false,
+            case: None,
+            replay: None,
+            shrinks: true,
+        }
     }
 }
 
@@ -57,7 +68,7 @@ impl Options {
         while let Some(word) = words.next() {
             let mut value = || words.next().copied().ok_or_else(|| format!("`{word}` needs a value"));
             match *word {
-                "--count" => options.count = xtask::call::count(word, value()?)?,
+                "--count" => options.count = Some(xtask::call::count(word, value()?)?),
                 "--seed" => options.seed = number(word, value()?)?,
                 "--case" => options.case = Some(number(word, value()?)?),
                 "--kind" => options.kinds = kinds(value()?)?,
@@ -80,7 +91,8 @@ fn kinds(word: &str) -> Result<Vec<Kind>, String> {
         return Ok(Kind::ALL.to_vec());
     }
     let kind = Kind::ALL.into_iter().find(|k| k.name() == word);
-    kind.map(|k| vec![k]).ok_or_else(|| format!("`--kind {word}`: write stop, exchange, faults or all"))
+    let names = Kind::ALL.map(Kind::name).join(", ");
+    kind.map(|k| vec![k]).ok_or_else(|| format!("`--kind {word}`: write {names} or all"))
 }
 
 /// Runs the cells, or one file, and prints what was found; fails where anything was.
@@ -111,7 +123,7 @@ pub fn write_cell_files(root: &Path) -> Result<PathBuf, String> {
 
 /// The cells of every kind that the test suite runs, always the same ones.
 pub fn check(root: &Path) -> Result<(), String> {
-    let options = Options { count: SUITE_CELLS, seed: SUITE_SEED, ..Options::default() };
+    let options = Options { count: None, seed: SUITE_SEED, ..Options::default() };
     run(root, &options).map_err(|failure| match failure {
         Failure::Check(message) | Failure::Usage(message) => message,
     })
@@ -122,7 +134,9 @@ fn replay(file: &Path) -> Result<(), Failure> {
     let text = std::fs::read_to_string(file).map_err(|e| format!("{}: {e}", file.display()))?;
     let faults = spec::read_faults(&text)?;
     let cell = Cell::parse(file, &text).map_err(|e| e.to_string())?;
-    let findings = checked_run::run(&cell, faults).map_err(|e| format!("{}: {e}", file.display()))?.findings.list;
+    let repeat = spec::read_repeat(&text)?;
+    let findings =
+        checked_run::run(&cell, faults, repeat).map_err(|e| format!("{}: {e}", file.display()))?.findings.list;
     for finding in &findings {
         println!("{}", summary::in_words(finding, &cell));
     }
@@ -137,21 +151,25 @@ fn replay(file: &Path) -> Result<(), Failure> {
 fn fuzz(kind: Kind, options: &Options, places: &Places<'_>) -> Summary {
     let mut summary = Summary::new(kind.name());
     let begin = Instant::now();
-    let (first, end) = options.case.map_or((0, options.count as u64), |case| (case, case + 1));
+    let count = options.count.unwrap_or(kind.suite_cells());
+    let (first, end) = options.case.map_or((0, count as u64), |case| (case, case + 1));
     let spec = |case| generate::cell(kind, &mut kind.random(options.seed, case), places);
     let next = AtomicU64::new(first);
     std::thread::scope(|threads| {
         let (send, results) = mpsc::channel();
         for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
             let (send, spec, next) = (send.clone(), &spec, &next);
-            threads.spawn(move || {
+            let work = move || {
                 loop {
                     let case = next.fetch_add(1, Ordering::Relaxed);
                     if case >= end || send.send((case, checked_run::run_spec(&spec(case), places))).is_err() {
                         return;
                     }
                 }
-            });
+            };
+            // As large as that of a main thread: a robot with avoidance is built on the stack.
+            let worker = std::thread::Builder::new().stack_size(STACK_BYTES).spawn_scoped(threads, work);
+            worker.expect("the system has no more threads");
         }
         drop(send);
         let mut printed = Instant::now();
@@ -199,14 +217,14 @@ fn report(
         if options.shrinks { shrink::smallest(spec, finding, &fails) } else { (spec.clone(), finding.clone()) };
     let text = small.to_toml();
     let file = places.cells.join(format!("{}-{}-{case}.toml", kind.name(), options.seed));
-    let Ok(cell) = Cell::parse(&file, &text) else { return };
+    let Ok(cell) = small.parse(places.cells) else { return };
     let words = summary::in_words(&finding, &cell);
     let head = format!(
         "# {words}\n# Found by: cargo xtask fuzz cells --kind {} --seed {} --case {case}\n# Again: cargo xtask fuzz cells --replay FILE, or elbowroom run FILE\n",
         kind.name(),
         options.seed
     );
-    if std::fs::write(&file, head + &text).is_ok() {
+    if std::fs::write(&file, head + &text).and_then(|()| small.write_recordings(places.cells)).is_ok() {
         summary.files.push((file, words));
     }
 }
@@ -218,9 +236,9 @@ mod tests {
     #[test]
     fn options_are_read_and_nonsense_is_refused() {
         let options = Options::parse(&["--count", "7", "--seed", "3", "--kind", "exchange", "--json"]).unwrap();
-        assert_eq!((options.count, options.seed, options.json), (7, 3, true));
+        assert_eq!((options.count, options.seed, options.json), (Some(7), 3, true));
         assert_eq!(options.kinds, [Kind::Exchange]);
-        assert!(Options::parse(&["--kind", "all"]).unwrap().kinds.len() == 3);
+        assert!(Options::parse(&["--kind", "all"]).unwrap().kinds.len() == Kind::ALL.len());
         assert!(Options::parse(&["--kind", "nothing"]).is_err());
         assert!(Options::parse(&["--count"]).is_err());
         assert!(Options::parse(&["--fast"]).is_err());

@@ -26,15 +26,33 @@ pub struct Summary {
     deadlocks: usize,
     unforeseen: usize,
     simulated_s: f64,
-    /// Cells with at least one, by what was found.
-    entries: usize,
-    two_inside: usize,
-    silent: usize,
-    too_hard: usize,
-    failed: usize,
+    failing: FailingCells,
     pub took: Duration,
     /// Failing cells as files, and what is wrong there.
     pub files: Vec<(PathBuf, String)>,
+}
+
+/// Cells with at least one finding, by what was found.
+#[derive(Debug, Default)]
+struct FailingCells {
+    entries: usize,
+    broken_promises: usize,
+    two_inside: usize,
+    silent: usize,
+    too_hard: usize,
+    any: usize,
+}
+
+impl FailingCells {
+    fn add(&mut self, findings: &[Finding]) {
+        let has = |test: fn(&Finding) -> bool| usize::from(findings.iter().any(test));
+        self.entries += has(|f| matches!(f, Finding::Entry { .. }));
+        self.broken_promises += has(|f| matches!(f, Finding::Excluded { .. }));
+        self.two_inside += has(|f| matches!(f, Finding::TwoInside { .. }));
+        self.silent += has(|f| matches!(f, Finding::SilentDeadlock { .. }));
+        self.too_hard += has(|f| matches!(f, Finding::TooHard { .. }));
+        self.any += usize::from(!findings.is_empty());
+    }
 }
 
 impl Summary {
@@ -44,12 +62,11 @@ impl Summary {
 
     /// Cells in which something was found.
     pub fn failed(&self) -> usize {
-        self.failed
+        self.failing.any
     }
 
     pub(super) fn add(&mut self, run: &CheckedRun) {
         let o = &run.findings;
-        let has = |test: fn(&Finding) -> bool| usize::from(o.list.iter().any(test));
         self.cells += 1;
         self.robots += run.robots;
         self.finished += run.finished;
@@ -59,11 +76,7 @@ impl Summary {
         self.deadlocks += o.deadlocks;
         self.unforeseen += o.unforeseen_entries;
         self.simulated_s += run.simulated_s;
-        self.entries += has(|f| matches!(f, Finding::Entry { .. }));
-        self.two_inside += has(|f| matches!(f, Finding::TwoInside { .. }));
-        self.silent += has(|f| matches!(f, Finding::SilentDeadlock { .. }));
-        self.too_hard += has(|f| matches!(f, Finding::TooHard { .. }));
-        self.failed += usize::from(!o.list.is_empty());
+        self.failing.add(&o.list);
     }
 
     pub fn refuse(&mut self, why: &str) {
@@ -74,18 +87,19 @@ impl Summary {
 
     pub fn progress(&self) -> String {
         format!(
-            "{}: {} cells, {} refused, {} entries, {} two inside, {} silent deadlocks, {} too hard",
+            "{}: {} cells, {} refused, {} entries, {} broken promises, {} two inside, {} silent deadlocks, {} too hard",
             self.kind,
             self.cells,
             self.refused.values().sum::<usize>(),
-            self.entries,
-            self.two_inside,
-            self.silent,
-            self.too_hard
+            self.failing.entries,
+            self.failing.broken_promises,
+            self.failing.two_inside,
+            self.failing.silent,
+            self.failing.too_hard
         )
     }
 
-    fn rows(&self) -> [(&'static str, String); 14] {
+    fn rows(&self) -> [(&'static str, String); 15] {
         let share = |n: usize| format!("{:.1} %", 100.0 * n as f64 / self.robots.max(1) as f64);
         [
             ("cells", self.cells.to_string()),
@@ -95,11 +109,12 @@ impl Summary {
             ("robots slowed", share(self.slowed)),
             ("robots stopped", share(self.stopped)),
             ("robots finished", share(self.finished)),
-            ("entries", self.entries.to_string()),
-            ("two inside", self.two_inside.to_string()),
+            ("entries", self.failing.entries.to_string()),
+            ("broken promises", self.failing.broken_promises.to_string()),
+            ("two inside", self.failing.two_inside.to_string()),
             ("deadlocks", self.deadlocks.to_string()),
-            ("silent deadlocks", self.silent.to_string()),
-            ("braked too hard", self.too_hard.to_string()),
+            ("silent deadlocks", self.failing.silent.to_string()),
+            ("braked too hard", self.failing.too_hard.to_string()),
             ("unforeseen", self.unforeseen.to_string()),
             ("took s", format!("{:.1}", self.took.as_secs_f64())),
         ]
@@ -133,7 +148,7 @@ pub fn json(seed: u64, summaries: &[Summary]) -> String {
         let _ = write!(
             text,
             "{comma}{{\"kind\":\"{}\",\"cells\":{},\"refused\":{},\"robots\":{},\"finished\":{},\"slowed\":{},\"stopped\":{},\
-             \"entries\":{},\"two_inside\":{},\"deadlocks\":{},\"silent_deadlocks\":{},\"too_hard\":{},\"unforeseen_entries\":{},\
+             \"entries\":{},\"broken_promises\":{},\"two_inside\":{},\"deadlocks\":{},\"silent_deadlocks\":{},\"too_hard\":{},\"unforeseen_entries\":{},\
              \"failed\":{},\"simulated_s\":{:.3},\"took_s\":{:.3}}}",
             s.kind,
             s.cells,
@@ -142,13 +157,14 @@ pub fn json(seed: u64, summaries: &[Summary]) -> String {
             s.finished,
             s.slowed,
             s.stopped,
-            s.entries,
-            s.two_inside,
+            s.failing.entries,
+            s.failing.broken_promises,
+            s.failing.two_inside,
             s.deadlocks,
-            s.silent,
-            s.too_hard,
+            s.failing.silent,
+            s.failing.too_hard,
             s.unforeseen,
-            s.failed,
+            s.failing.any,
             s.simulated_s,
             s.took.as_secs_f64()
         );
@@ -164,6 +180,13 @@ pub fn in_words(finding: &Finding, cell: &Cell) -> String {
         Finding::Entry { robot: r, region: g, t_s, speed } => {
             format!(
                 "robot {} entered the forbidden region {} at {t_s:.4} s, at up to {speed:.3} m/s",
+                robot(r),
+                region(g)
+            )
+        }
+        Finding::Excluded { robot: r, region: g, t_s, speed } => {
+            format!(
+                "`check` says that robot {} cannot enter {}; it was inside at {t_s:.4} s, moving at up to {speed:.3} m/s",
                 robot(r),
                 region(g)
             )

@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use elbowroom_cell::Cell;
 use elbowroom_sim::{Recording, RunOptions, simulate};
 
 use super::digest::Digest;
@@ -49,7 +48,7 @@ fn run(kind: Kind, case: u64, places: &Places<'_>) -> Option<String> {
 }
 
 fn recording(spec: &CellSpec, places: &Places<'_>) -> Option<Recording> {
-    let cell = Cell::parse(places.cells.join("fuzz.toml"), &spec.to_toml()).ok()?;
+    let cell = spec.parse(places.cells).ok()?;
     let options = RunOptions { faults: spec.faults.clone(), ..RunOptions::default() };
     simulate(&cell, &options).ok().map(|outcome| outcome.recording)
 }

@@ -5,6 +5,7 @@ use elbowroom_cell::QueryModel;
 use super::overrides;
 use super::queries;
 use crate::cross_validation::world::{self, Files};
+use crate::fuzz_cells::generate::Kind;
 
 #[test]
 fn hashes_of_queries_repeat_and_depend_on_each_state() {
@@ -27,8 +28,10 @@ fn hashes_of_overrides_do_not_depend_on_the_number_of_threads() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| overrides::groups(&root, None, cells).unwrap())
     };
-    let three = groups(3, 1);
-    assert_eq!(groups(3, 2), three);
-    assert_eq!(three.iter().map(|group| group.count).collect::<Vec<_>>(), [1, 1, 1]);
-    assert_ne!(groups(6, 2), three);
+    // One of each kind.
+    let kinds = Kind::ALL.len();
+    let once = groups(kinds, 1);
+    assert_eq!(groups(kinds, 2), once);
+    assert!(once.iter().all(|group| group.count == 1));
+    assert_ne!(groups(2 * kinds, 2), once);
 }

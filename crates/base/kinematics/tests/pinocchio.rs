@@ -1,19 +1,24 @@
-//! Every robot of the data against Pinocchio: poses, velocities and accelerations of all links at 1,000 random states.
+//! Every robot of the data against Pinocchio: poses, velocities and accelerations of all links at 100 random states, 1,000 with
+//! `ELBOWROOM_LONG=1`.
 //!
 //! Needs a Python with `pin` and `numpy`, named by `ELBOWROOM_PYTHON` (default `python3`); without it the test passes with a message.
 #![allow(clippy::print_stdout)]
 
 use crate::common;
 use std::fmt::Write as _;
-use std::io::Write as _;
+use std::io::{BufRead as _, BufReader, Write as _};
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
 use crate::common::{RandomGeometry, SplitMix, robots};
 use elbowroom_kinematics::{Chain, ChainState, LinkId};
 
-const STATES: usize = 1000;
 const TOLERANCE: f64 = 1e-9;
+
+/// Random states of each robot.
+fn states() -> usize {
+    if std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1") { 1000 } else { 100 }
+}
 
 fn python() -> Option<String> {
     let python = std::env::var("ELBOWROOM_PYTHON").unwrap_or_else(|_| "python3".into());
@@ -25,29 +30,50 @@ fn python() -> Option<String> {
     None
 }
 
-fn reference(python: &str, urdf: &Path, chain: &Chain, states: &str) -> Vec<f64> {
-    let names: Vec<&str> = chain.active_joints().iter().map(|j| chain.joints()[j.0].name.as_str()).collect();
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/python/pin_reference.py");
-    let mut child = Command::new(python)
-        .arg(script)
-        .arg(urdf)
-        .args([names.join(","), chain.links().join(",")])
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let mut input = child.stdin.take().unwrap();
-    let states = states.to_owned();
-    let writer = std::thread::spawn(move || input.write_all(states.as_bytes()));
-    let output = child.wait_with_output().unwrap();
-    writer.join().unwrap().unwrap();
-    assert!(output.status.success(), "{}", urdf.display());
-    String::from_utf8(output.stdout).unwrap().split_whitespace().map(|w| w.parse().unwrap()).collect()
+/// A Python with Pinocchio that answers for one robot after another: to start it takes longer than its answers.
+struct Reference {
+    process: Child,
+    input: ChildStdin,
+    output: BufReader<ChildStdout>,
+}
+
+impl Reference {
+    fn start(python: &str) -> Self {
+        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/python/pin_reference.py");
+        let mut process =
+            Command::new(python).arg(script).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+        let (input, output) = (process.stdin.take().unwrap(), BufReader::new(process.stdout.take().unwrap()));
+        Self { process, input, output }
+    }
+
+    /// Poses, velocities and accelerations of all links at each of the states, which are a line each.
+    fn motions(&mut self, urdf: &Path, chain: &Chain, states: &str) -> Vec<f64> {
+        let names: Vec<&str> = chain.active_joints().iter().map(|j| chain.joints()[j.0].name.as_str()).collect();
+        let (count, file) = (states.lines().count(), urdf.display());
+        let header = format!("{file}\t{}\t{}\t{count}\n", names.join(","), chain.links().join(","));
+        let (input, output) = (&mut self.input, &mut self.output);
+        std::thread::scope(|scope| {
+            let writer =
+                scope.spawn(move || input.write_all((header + states).as_bytes()).and_then(|()| input.flush()));
+            let lines = output.lines().take(count * chain.links().len());
+            let numbers = lines
+                .flat_map(|line| line.unwrap().split_whitespace().map(|w| w.parse().unwrap()).collect::<Vec<f64>>());
+            let numbers = numbers.collect();
+            writer.join().unwrap().unwrap_or_else(|e| panic!("{file}: {e}"));
+            numbers
+        })
+    }
+
+    fn end(mut self) {
+        drop(self.input);
+        assert!(self.process.wait().unwrap().success());
+    }
 }
 
 #[test]
 fn poses_velocities_and_accelerations_match_pinocchio() {
     let Some(python) = python() else { return };
+    let mut reference = Reference::start(&python);
     let mut worst = [0.0_f64; 3];
     for (name, path) in robots() {
         let chain = common::load(&path);
@@ -55,7 +81,7 @@ fn poses_velocities_and_accelerations_match_pinocchio() {
         let mut state = ChainState::new(&chain);
         let mut ours = Vec::new();
         let mut text = String::new();
-        for _ in 0..STATES {
+        for _ in 0..states() {
             random.state(&chain, &mut state.q);
             state.qd.iter_mut().for_each(|v| *v = random.between(-2.0, 2.0));
             state.qdd.iter_mut().for_each(|v| *v = random.between(-5.0, 5.0));
@@ -72,7 +98,7 @@ fn poses_velocities_and_accelerations_match_pinocchio() {
                 }
             }
         }
-        let theirs = reference(&python, &path, &chain, &text);
+        let theirs = reference.motions(&path, &chain, &text);
         assert_eq!(ours.len(), theirs.len(), "{name}");
         let mut of_robot = [0.0_f64; 3];
         for (i, (a, b)) in ours.iter().zip(&theirs).enumerate() {
@@ -86,5 +112,6 @@ fn poses_velocities_and_accelerations_match_pinocchio() {
             *w = w.max(r);
         }
     }
+    reference.end();
     println!("worst: pose {:.1e}, velocity {:.1e}, acceleration {:.1e}", worst[0], worst[1], worst[2]);
 }

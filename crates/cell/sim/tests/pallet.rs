@@ -1,11 +1,10 @@
 //! The example `pallet`: its program is valid, the cart crosses its path, and the arm evades it.
 
 use std::path::PathBuf;
-use std::sync::LazyLock;
 
 use elbowroom_avoidance::AvoiderState;
 use elbowroom_cell::Cell;
-use elbowroom_sim::{RunOptions, RunOutcome, RunSummary, simulate};
+use elbowroom_sim::{AvoidanceSample, RunOptions, RunOutcome, RunSummary, simulate};
 
 fn file() -> PathBuf {
     elbowroom_testkit::folder::examples().join("pallet/cell.toml")
@@ -17,8 +16,14 @@ fn run(text: &str, avoidance: bool) -> RunOutcome {
     simulate(&cell, &RunOptions { avoidance, ..RunOptions::default() }).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// The cell as it is, without avoidance: two tests compare with it.
-static UNEVADED: LazyLock<RunOutcome> = LazyLock::new(|| run(&std::fs::read_to_string(file()).unwrap(), false));
+/// The whole program at its own ticks with `ELBOWROOM_LONG=1`, as the guide to avoidance runs it. Else the first carton only, up
+/// to its place on the pallet, at ticks of 10 ms: the arm evades without and with a load, and each tick of it is costly.
+fn evading() -> String {
+    if std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1") {
+        return std::fs::read_to_string(file()).unwrap();
+    }
+    until("release = \"carton_5\"").replace("tick_ms = 4", "tick_ms = 10")
+}
 
 /// The cell with the steps of its program before the one that contains `end`.
 fn until(end: &str) -> String {
@@ -36,7 +41,7 @@ fn the_program_succeeds_without_the_cart_and_collides_with_it() {
     let robot = &alone.recording.robots[0];
     assert!(robot.finished && !alone.has_violation(), "{:?}", robot.collisions);
 
-    let met = &*UNEVADED;
+    let met = run(&text, false);
     let robot = &met.recording.robots[0];
     assert!(robot.finished && met.has_violation() && robot.avoidance.is_none());
     assert!(robot.collisions.iter().all(|c| c.b == "cart"), "{:?}", robot.collisions);
@@ -44,7 +49,7 @@ fn the_program_succeeds_without_the_cart_and_collides_with_it() {
 
 #[test]
 fn the_arm_evades_the_cart_and_completes_its_program() {
-    let text = std::fs::read_to_string(file()).unwrap();
+    let text = evading();
     let outcome = run(&text, true);
     let robot = &outcome.recording.robots[0];
     assert!(robot.finished && !outcome.has_violation(), "{:?}", robot.collisions);
@@ -57,23 +62,29 @@ fn the_arm_evades_the_cart_and_completes_its_program() {
     let occurred = |what: &str| outcome.recording.events.iter().any(|e| e.event.name() == what);
     assert!(occurred("evade") && occurred("on_path"));
     // Without an obstacle nearby the robot is exactly on its program: both runs end at the same configuration.
-    assert_eq!(robot.samples.last().unwrap().q, UNEVADED.recording.robots[0].samples.last().unwrap().q);
-    // The run is deterministic: a program that ends earlier begins in the same way.
-    let shorter = run(&until("carton_6\" }"), true);
+    let unevaded = run(&text, false);
+    assert!(unevaded.has_violation(), "nothing had to be evaded");
+    assert_eq!(robot.samples.last().unwrap().q, unevaded.recording.robots[0].samples.last().unwrap().q);
+    // The run is deterministic: a run that ends earlier begins in the same way.
+    let shorter = run(&text.replacen("tick_ms", "max_s = 3\ntick_ms", 1), true);
     let q = |o: &RunOutcome| o.recording.robots[0].samples.iter().map(|s| s.q.clone()).collect::<Vec<_>>();
     let (all, begun) = (q(&outcome), q(&shorter));
     let evading = shorter.recording.robots[0].avoidance.as_ref().unwrap();
-    assert!(evading.samples.iter().any(|s| s.state == AvoiderState::Evading), "nothing was evaded in the first half");
+    assert!(evading.samples.iter().any(|s| s.state == AvoiderState::Evading), "nothing was evaded in the first 3 s");
+    assert!(begun.len() < all.len());
     assert_eq!(all[..begun.len()], begun[..]);
 }
 
 #[test]
 fn an_override_of_zero_stops_the_evasion_too() {
-    // The run lasts for the longest time that one may, so its ticks are long.
-    let text = until("grip = ").replace("tick_ms = 4", "tick_ms = 40");
+    // The run lasts for the longest time that it may, in which the cart comes to the arm twice.
+    let text = until("grip = ").replace("tick_ms = 4", "tick_ms = 40\nmax_s = 12");
     let region = "[region.everything]\nshape = \"sphere\"\ncentre = [0, 0, 0]\nradius = 9000\nwarning = 100\n";
     let outcome = run(&format!("{text}\n{region}"), true);
     let robot = &outcome.recording.robots[0];
+    // Free to move, it would evade.
+    let is_near = |s: &AvoidanceSample| s.nearest_m < 0.2;
+    assert!(robot.avoidance.as_ref().unwrap().samples.iter().any(is_near), "the cart does not come near");
     // The program starts and is stopped; nothing moves after that.
     let stopped = &robot.samples[robot.samples.len() / 4].q;
     let first = &robot.samples[0].q;

@@ -24,11 +24,20 @@ fn joint() -> String {
 }
 
 fn cell() -> Cell {
-    rail(400, "[monitor]\nstale_ms = 200\n")
+    stale_after(200)
+}
+
+/// The cell, in which joint values are too old after this time.
+fn stale_after(ms: u32) -> Cell {
+    rail(400, &format!("[monitor]\nstale_ms = {ms}\n"))
 }
 
 /// A service that publishes its cell, whose robot is controlled over ROS 2.
 fn start(address: &str) -> (Service, Arc<Mutex<Vec<String>>>) {
+    start_cell(cell(), address)
+}
+
+fn start_cell(cell: Cell, address: &str) -> (Service, Arc<Mutex<Vec<String>>>) {
     let events: Arc<Mutex<Vec<String>>> = Arc::default();
     let reported = events.clone();
     let options = ServiceOptions {
@@ -42,14 +51,18 @@ fn start(address: &str) -> (Service, Arc<Mutex<Vec<String>>>) {
         on_event: Some(Arc::new(move |event: &str| reported.lock().unwrap().push(event.to_owned()))),
         ..ServiceOptions::default()
     };
-    (Service::start(cell(), &options).expect("a service"), events)
+    (Service::start(cell, &options).expect("a service"), events)
 }
 
 /// Sends valid joint states every 5 ms until the robot, far from its region, may go.
 fn go(controller: &mut Controller) {
+    go_at(controller, 0.2);
+}
+
+fn go_at(controller: &mut Controller, q: f64) {
     let joint = joint();
     eventually("no factor 1 for a robot far from its region", || {
-        controller.send(&cdr_joint_state(&[&joint], &[0.2], &[0.0]));
+        controller.send(&cdr_joint_state(&[&joint], &[q], &[0.0]));
         std::thread::sleep(Duration::from_millis(5));
         controller.last_factor() == Some(1.0)
     });
@@ -64,15 +77,15 @@ fn joint_states_are_answered_by_factors_and_silence_by_zero() {
     let address = free_address();
     let (service, _) = start(&address);
     let mut controller = Peer::at(&address).controller("rail");
-    go(&mut controller);
+    go_at(&mut controller, 1.5);
     let silent = Instant::now();
     stop(&controller);
     // `stale_ms` is 200; the rest is for a busy machine.
     assert!(silent.elapsed() < Duration::from_millis(1200), "{:?}", silent.elapsed());
     // Near the region the factor is between the two, and moving towards it less than at rest far away.
     let joint = joint();
-    for step in 0..350 {
-        let q = 0.2 + 0.005 * f64::from(step);
+    for step in 0..90 {
+        let q = 1.5 + 0.005 * f64::from(step);
         controller.send(&cdr_joint_state(&[&joint], &[q], &[0.9]));
         std::thread::sleep(Duration::from_millis(6));
     }
@@ -84,20 +97,22 @@ fn joint_states_are_answered_by_factors_and_silence_by_zero() {
     assert!(sequences.windows(2).all(|pair| pair[1] > pair[0]), "numbers rise");
     assert!(attachments.iter().all(|a| a[17..] == attachments[0][17..]), "one publisher");
     // A service that is stopped says so.
-    go(&mut controller);
+    go_at(&mut controller, 1.5);
     drop(service);
     stop(&controller);
 }
 
-/// Hostile messages of one kind, for a robot that is at rest: none is a go.
-fn never_a_go(controller: &mut Controller, kind: &str, mut send: impl FnMut(&mut Controller, u32)) {
+/// So many hostile messages of one kind, for a robot that is at rest: none is a go.
+fn never_a_go(controller: &mut Controller, kind: &str, count: u32, mut send: impl FnMut(&mut Controller, u32)) {
     go(controller);
     stop(controller);
     controller.clear();
-    for n in 0..60 {
+    for n in 0..count {
         send(controller, n);
-        std::thread::sleep(Duration::from_millis(5));
+        std::thread::sleep(Duration::from_millis(1));
     }
+    // Factors are repeated every 20 ms: the answer to the last message is among them.
+    std::thread::sleep(Duration::from_millis(40));
     let factors = controller.factors();
     assert!(!factors.is_empty() && factors.iter().all(|f| *f == 0.0), "{kind}: {factors:?}");
 }
@@ -105,7 +120,8 @@ fn never_a_go(controller: &mut Controller, kind: &str, mut send: impl FnMut(&mut
 #[test]
 fn hostile_joint_states_are_no_go() {
     let address = free_address();
-    let (_service, events) = start(&address);
+    // The robot stops before each kind: soon.
+    let (_service, events) = start_cell(stale_after(40), &address);
     let peer = Peer::at(&address);
     let (mut controller, joint) = (peer.controller("rail"), joint());
     let valid = cdr_joint_state(&[&joint], &[0.2], &[0.0]);
@@ -126,29 +142,29 @@ fn hostile_joint_states_are_no_go() {
         ("too large", [valid.clone(), vec![0; 70_000]].concat()),
     ];
     for (kind, message) in &wrong {
-        never_a_go(&mut controller, kind, |controller, _| controller.send(message));
+        never_a_go(&mut controller, kind, 10, |controller, _| controller.send(message));
     }
-    never_a_go(&mut controller, "cut off", |controller, n| {
-        controller.send(&valid[..n as usize % valid.len()]);
+    never_a_go(&mut controller, "cut off", valid.len() as u32, |controller, n| {
+        controller.send(&valid[..n as usize]);
     });
     let word = |at: usize| u32::from_le_bytes(valid[at..at + 4].try_into().unwrap());
     let counts: Vec<usize> = (4..valid.len()).step_by(4).filter(|at| (1..64).contains(&word(*at))).collect();
     assert_eq!(counts.len(), 5, "of the frame, the names, the name, the positions, the velocities");
-    never_a_go(&mut controller, "a claimed length", |controller, n| {
+    never_a_go(&mut controller, "a claimed length", 20, |controller, n| {
         let (mut message, at) = (valid.clone(), counts[n as usize % counts.len()]);
         message[at..at + 4].copy_from_slice(&[u32::MAX, 1 << 31, 1 << 16, 100][n as usize / 5 % 4].to_le_bytes());
         controller.send(&message);
     });
-    never_a_go(&mut controller, "no attachment", |controller, _| controller.send_with(&valid, None));
-    never_a_go(&mut controller, "an attachment of an old release", |controller, _| {
+    never_a_go(&mut controller, "no attachment", 10, |controller, _| controller.send_with(&valid, None));
+    never_a_go(&mut controller, "an attachment of an old release", 10, |controller, _| {
         controller.send_with(&valid, Some(b"\x0fsequence_number"));
     });
-    never_a_go(&mut controller, "replayed", |controller, _| {
+    never_a_go(&mut controller, "replayed", 10, |controller, _| {
         let attachment = controller.last_attachment();
         controller.send_with(&valid, Some(&attachment));
     });
     let mut other = peer.controller_of_hash("rail", &format!("RIHS01_{}", "0".repeat(64)));
-    never_a_go(&mut controller, "another hash of the type", |_, _| other.send(&valid));
+    never_a_go(&mut controller, "another hash of the type", 10, |_, _| other.send(&valid));
     // The service is well, and has said why.
     go(&mut controller);
     let events = events.lock().unwrap();

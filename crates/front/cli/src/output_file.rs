@@ -3,6 +3,7 @@
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU32, Ordering};
 
 use crate::output::{Failure, cannot_write};
 
@@ -33,10 +34,29 @@ pub(crate) fn try_write(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::R
     if !is_file {
         return write_through(File::create(&path)?, write).map(drop);
     }
-    let beside =
-        tempfile::Builder::new().prefix(".elbowroom-").permissions(permissions(&path)).tempfile_in(folder(&path))?;
-    let beside = write_through(beside, write)?;
-    beside.persist(&path).map(drop).map_err(|e| e.error)
+    let beside = Beside::of(&path);
+    let permissions = fs::metadata(&path).map(|replaced| replaced.permissions());
+    let file = write_through(File::options().write(true).create_new(true).open(&beside.0)?, write)?;
+    permissions.map_or(Ok(()), |permissions| file.set_permissions(permissions))?;
+    fs::rename(&beside.0, &path)
+}
+
+/// The file of the new content, in the same folder; what is left of it is removed.
+struct Beside(PathBuf);
+
+impl Beside {
+    fn of(path: &Path) -> Self {
+        static WRITTEN: AtomicU32 = AtomicU32::new(0);
+        let number = WRITTEN.fetch_add(1, Ordering::Relaxed);
+        Self(path.with_file_name(format!(".elbowroom-{}-{number}.part", std::process::id())))
+    }
+}
+
+impl Drop for Beside {
+    fn drop(&mut self) {
+        // It is not there any more where all went well.
+        let _ = fs::remove_file(&self.0);
+    }
 }
 
 /// Writes all, or says why not: what a buffer still holds when it is dropped would be lost without a word.
@@ -44,17 +64,6 @@ fn write_through<W: Write>(to: W, write: impl FnOnce(&mut dyn Write) -> io::Resu
     let mut out = BufWriter::new(to);
     write(&mut out)?;
     out.into_inner().map_err(io::IntoInnerError::into_error)
-}
-
-fn folder(path: &Path) -> PathBuf {
-    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_path_buf()
-}
-
-/// Those of the file that is replaced, else what the user's mask leaves of reading and writing.
-#[cfg(unix)]
-fn permissions(path: &Path) -> fs::Permissions {
-    use std::os::unix::fs::PermissionsExt;
-    fs::metadata(path).map_or_else(|_| fs::Permissions::from_mode(0o666), |found| found.permissions())
 }
 
 #[cfg(test)]

@@ -111,12 +111,14 @@ fn processes_that_are_killed_never_make_two_robots_share_a_region() {
         seen.statuses.get(robot).is_some_and(|(s, _)| s.exchange.values().any(|state| state == "inside"))
     };
     // A robot whose process dies inside: nobody else enters until it was heard again.
+    observer.wait("left never leaves", 60, |seen| !is_inside(seen, "left"));
     observer.wait("left is never inside", 60, |seen| is_inside(seen, "left"));
     robots[0] = {
         let LiveProcess(child) = &mut robots[0];
         child.kill().expect("it is killed");
         let right = observer.seen.lock().unwrap().entered("right");
-        std::thread::sleep(Duration::from_secs(3));
+        // More than a round of right, and than the time after which a silent process is given up.
+        std::thread::sleep(Duration::from_secs(2));
         assert_eq!(
             observer.seen.lock().unwrap().entered("right"),
             right,
@@ -139,7 +141,7 @@ fn processes_that_are_killed_never_make_two_robots_share_a_region() {
 fn a_recording_of_the_service_replays_to_the_bit() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("live.mcap");
-    let arguments = ["--simulate", "--listen", &free_address(), "--for", "4", "--record"];
+    let arguments = ["--simulate", "--listen", &free_address(), "--for", "1.5", "--record"];
     answer(live(&arguments).arg(&file).stderr(Stdio::piped()).output().unwrap()).expect(0);
     let replay = elbowroom(folder.path(), &["replay", "live.mcap"]).expect(0);
     assert!(replay.stdout.contains("the same to the bit") && replay.stderr.is_empty(), "{}", replay.stderr);
@@ -156,7 +158,7 @@ fn wrong_calls_say_what_to_write() {
         ),
         (vec!["--connect", "nowhere"], "nowhere: not HOST:PORT\n  help: write HOST:PORT, such as 127.0.0.1:7447"),
         (vec!["--listen", "udp/127.0.0.1:7447"], "only tcp is supported"),
-        (vec!["--listen", &taken], &taken),
+        (vec!["--listen", &taken], "another program listens there\n  help: another port"),
         (vec!["--web", "0.0.0.0:8080", "--listen", "127.0.0.1:0"], "--web: "),
         (vec!["--record", "/nowhere/live.mcap", "--listen", "127.0.0.1:0"], "--record: "),
     ];

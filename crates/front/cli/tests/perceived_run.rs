@@ -89,7 +89,7 @@ fn camera() -> Camera {
 
 fn cell(sensor: &str, kind: &str) -> String {
     let head = format!(
-        "version = 1\nunits = {{ length = \"mm\", angle = \"deg\" }}\n[robot.kr]\nmodel = {:?}\nsrdf = {:?}\n\
+        "version = 1\nunits = {{ length = \"mm\", angle = \"deg\" }}\ntick_ms = 8\n[robot.kr]\nmodel = {:?}\nsrdf = {:?}\n\
          start = [60, -31.1, 76.6, 0, 44.5, 0]\n",
         elbowroom_testkit::folder::model("kr125").display().to_string(),
         elbowroom_testkit::folder::model("kr125").with_extension("srdf").display().to_string()
@@ -249,12 +249,12 @@ fn surface_points(robot: &Robot) -> Vec<(LinkId, Vec3)> {
     points
 }
 
-/// Smallest distance (m) of the arm to the crate over a run, and when: at every fourth tick, at every point of its surface.
+/// Smallest distance (m) of the arm to the crate over a run, and when: at every tick, at every point of its surface.
 fn clearance(trace: &str, robot: &Robot, leaves_s: f64) -> (f64, f64) {
     let points = surface_points(robot);
     let mut state = ChainState::new(&robot.chain);
     let (mut least, mut when) = (f64::INFINITY, 0.0);
-    for row in trace.lines().skip(1).step_by(4) {
+    for row in trace.lines().skip(1) {
         let cells: Vec<f64> = row.split(',').map(|c| c.parse().unwrap_or(f64::NAN)).collect();
         let (t_s, q) = (cells[0], &cells[2..8]);
         state.q.copy_from_slice(q);

@@ -89,17 +89,17 @@ fn distances_between_arm_and_belt() {
     let Some(data) = folder::data() else { return };
     let dir = with_cell(&format!(
         "{HEAD}[robot.arm]\nmodel = \"{}\"\n[object.belt]\nshape = \"box\"\nat = [1800, 0, 350]\nsize = [600, 4000, 700]\n",
-        urdf(&data, "kuka_kr150_2")
+        urdf(&data, "kuka_kr150r3100_2")
     ));
     let mut states = "joint_a1,joint_a2,joint_a3,joint_a4,joint_a5,joint_a6\n".to_owned();
-    for i in 0..2_000 {
-        let swing = f64::from(i) / 2_000.0;
+    for i in 0..500 {
+        let swing = f64::from(i) / 500.0;
         writeln!(states, "{},{},{},0,{swing},0", 3.0 * swing - 1.5, swing - 1.8, 1.0 - swing).unwrap();
     }
     std::fs::write(dir.path().join("states.csv"), states).unwrap();
     let answer = type_command(&dir, "query cell.toml --ask distance --between arm,belt --states states.csv", 0);
     let rows = rows(&answer.stdout);
-    assert_eq!(rows.len(), 2_000);
+    assert_eq!(rows.len(), 500);
     assert!(rows.iter().all(|r| r[3].starts_with("arm/") && r[4] == "belt"), "the arm's own wrist is not asked for");
 }
 
@@ -108,41 +108,41 @@ fn distances_between_arm_and_belt() {
 fn plan_to_a_pose_and_play_it() {
     let Some(data) = folder::data() else { return };
     let cell = format!(
-        r#"{HEAD}[robot.ur]
+        r#"{HEAD}[robot.kr]
 model = "{}"
-states = {{ home = [0, -90, 90, -90, -90, 0] }}
+states = {{ home = [60, -90, 90, 0, 90, 0] }}
 start = "home"
 [object.post]
 shape = "box"
-at = [500, 450, 300]
-size = [60, 60, 600]
+at = [950, 450, 500]
+size = [60, 60, 1000]
 [object.floor]
 shape = "box"
 at = [0, 0, -110]
-size = [3000, 3000, 200]
+size = [5000, 5000, 200]
 "#,
-        urdf(&data, "ur5e")
+        urdf(&data, "kuka_kr16_2")
     );
     let dir = with_cell(&cell);
-    type_command(&dir, "plan cell.toml --to-pose 100,600,300,180,0,0 --out path.csv", 0);
+    type_command(&dir, "plan cell.toml --to-pose 1000,-200,600,180,0,0 --out path.csv", 0);
     let played = dir.path().join("played.toml");
-    std::fs::write(&played, format!("{cell}[program.ur]\ntrajectory = \"path.csv\"\n")).unwrap();
+    std::fs::write(&played, format!("{cell}[program.kr]\ntrajectory = \"path.csv\"\n")).unwrap();
     let json = type_command(&dir, "run played.toml --json", 0).json();
     assert_eq!(json["robots"][0]["finished"], true);
     assert_eq!(json["robots"][0]["collisions"].as_array().unwrap().len(), 0);
     let steps = r#"steps = [
-  { move = "planned", to = { at = [100, 600, 300], rpy = [180, 0, 0] } },
+  { move = "planned", to = { at = [1000, -200, 600], rpy = [180, 0, 0] } },
   { move = "planned", to = "home" },
 ]
 "#;
-    std::fs::write(&played, format!("{cell}[program.ur]\n{steps}")).unwrap();
+    std::fs::write(&played, format!("{cell}[program.kr]\n{steps}")).unwrap();
     let json = type_command(&dir, "run played.toml --json --out out", 0).json();
     assert_eq!(json["robots"][0]["outcome"], "finished");
     let trace = std::fs::read_to_string(dir.path().join("out/trace.csv")).unwrap();
     // t_s, robot, six joints, then the TCP.
     let near = |row: &[String]| {
         let at = |i: usize| row[8 + i].parse::<f64>().unwrap();
-        (at(0) - 0.1).hypot(at(1) - 0.6).hypot(at(2) - 0.3) < 1e-4
+        (at(0) - 1.0).hypot(at(1) + 0.2).hypot(at(2) - 0.6) < 1e-4
     };
     assert!(rows(&trace).iter().any(|row| near(row)), "the TCP comes to the pose");
 }
@@ -191,10 +191,10 @@ fn replay_a_recording_in_degrees() {
     let Some(data) = folder::data() else { return };
     let recording = data.join("trajectories/staubli_tx40_real/pos_read_data.csv");
     let dir = tempfile::tempdir().unwrap();
-    // The first 20 s, as another program would have written them.
+    // The first 5 s, as another program would have written them.
     let text = std::fs::read_to_string(recording).unwrap();
-    let rows_of_20_s: Vec<String> = text.lines().take(5_000).map(|row| row.replace(',', ";")).collect();
-    std::fs::write(dir.path().join("recorded.csv"), rows_of_20_s.join("\n")).unwrap();
+    let rows_of_5_s: Vec<String> = text.lines().take(1_250).map(|row| row.replace(',', ";")).collect();
+    std::fs::write(dir.path().join("recorded.csv"), rows_of_5_s.join("\n")).unwrap();
     let cell = format!(
         r#"{HEAD}[robot.tx40]
 model = "{}"
@@ -214,14 +214,14 @@ trajectory = {{ file = "recorded.csv", angle = "deg", period_ms = 4 }}
     let trace = std::fs::read_to_string(dir.path().join("out/trace.csv")).unwrap();
     let first: Vec<f64> = rows(&trace)[0][2..8].iter().map(|v| v.parse().unwrap()).collect();
     assert!((first[1] - 50.265_f64.to_radians()).abs() < 1e-9 && (first[2] + 70.685_f64.to_radians()).abs() < 1e-9);
-    assert!(json["duration_s"].as_f64().unwrap() >= 19.9 || json["robots"][0]["finished"] == false);
+    assert!(json["duration_s"].as_f64().unwrap() >= 4.9 || json["robots"][0]["finished"] == false);
 }
 
 /// 9: the allowed collision matrix of an unseen arm; 10: what is near at the start.
 #[test]
 fn write_and_use_an_srdf() {
     let Some(data) = folder::data() else { return };
-    let arm = urdf(&data, "fanuc_m10ia");
+    let arm = urdf(&data, "fanuc_r1000ia80f");
     let dir = with_cell(&format!(
         "{HEAD}[robot.arm]\nmodel = \"{arm}\"\nsrdf = \"arm.srdf\"\n[object.rack]\nshape = \"box\"\nat = [1500, 0, 500]\nsize = [200, 800, 1000]\n"
     ));
@@ -275,8 +275,8 @@ start = [60, -90, 90, 0, 30, 0]
 stop_time = 0.3
 [robot.right]
 model = "{}"
-base = {{ at = [2000, 0, 0], rpy = [0, 0, 180] }}
-start = [90, -90, 90, 0, 30, 0]
+base = {{ at = [3200, 0, 0], rpy = [0, 0, 180] }}
+start = [60, 0, 0, 0, 30, 0]
 stop_time = 0.3
 [region.shared]
 shape = "box"
@@ -291,12 +291,12 @@ steps = [
 ]
 [program.right]
 steps = [
-  {{ move = "joint", to = [0, -50, 60, 0, 30, 0], speed = 50 }},
-  {{ move = "joint", to = [90, -90, 90, 0, 30, 0], speed = 50 }},
+  {{ move = "joint", to = [0, 40, 0, 0, 30, 0], speed = 30 }},
+  {{ move = "joint", to = [60, 0, 0, 0, 30, 0], speed = 30 }},
 ]
 "#,
         urdf(&data, "kuka_kr16_2"),
-        urdf(&data, "kuka_kr6r700sixx")
+        urdf(&data, "abb_irb4400l_30_243")
     ));
     let json = type_command(&dir, "run cell.toml --json --out out", 0).json();
     assert!(json["robots"].as_array().unwrap().iter().all(|r| r["outcome"] == "finished"));
@@ -310,7 +310,7 @@ steps = [
         }
         assert!(inside.len() <= 1, "two robots inside at {} s", row[0]);
     }
-    assert!(events.contains("left,shared,waiting") && events.contains("left,shared,granted"));
+    assert!(events.contains("right,shared,waiting") && events.contains("right,shared,granted"));
 }
 
 /// 15: a region from taught points.
@@ -373,7 +373,7 @@ fn the_map_of_an_arm_as_a_page() {
     let dir = with_cell(&format!(
         "{HEAD}[robot.kr]\nmodel = \"{}\"\nstart = [0, -90, 90, 0, 0, 0]\n\
          [object.post]\nshape = \"box\"\nat = [1800, 300, 700]\nsize = [300, 300, 1400]\n",
-        urdf(&data, "kuka_kr150_2")
+        urdf(&data, "kuka_kr150r3100_2")
     ));
     let slices = type_command(&dir, "map cell.toml --model slices --page map.html --json", 0).json();
     let exact = type_command(&dir, "map cell.toml --json", 0).json();
@@ -394,12 +394,12 @@ states = {{ home = [60, -90, 90, 0, 30, 0], across = [-60, -60, 80, 0, 30, 0] }}
 start = "home"
 [robot.right]
 model = "{}"
-base = {{ at = [1600, 0, 0], rpy = [0, 0, 180] }}
-states = {{ home = [90, -90, 90, 0, 30, 0], across = [-90, -60, 60, 0, 30, 0] }}
+base = {{ at = [2200, 0, 0], rpy = [0, 0, 180] }}
+states = {{ home = [60, -90, 90, 0, 30, 0], across = [-60, -60, 80, 0, 30, 0] }}
 start = "home"
 "#,
         urdf(&data, "kuka_kr16_2"),
-        urdf(&data, "kuka_kr6r700sixx")
+        urdf(&data, "kuka_kr16_2")
     ));
     let line = "plan cell.toml --robot left --to across --robot right --to across --out both.csv --report plan.html";
     type_command(&dir, line, 0);
@@ -419,7 +419,7 @@ fn contacts_of_an_arm_and_a_file_of_pairs() {
         format!(
             "{HEAD}{pairs}[robot.arm]\nmodel = \"{}\"\nstart = [0, 0, 0, 0, 0, 0]\n\
              [object.rack]\nshape = \"box\"\nat = [1000, 0, 1500]\nsize = [500, 400, 500]\n",
-            urdf(&data, "fanuc_m10ia")
+            urdf(&data, "fanuc_r1000ia80f")
         )
     };
     let dir = with_cell(&cell(""));
@@ -429,7 +429,7 @@ fn contacts_of_an_arm_and_a_file_of_pairs() {
     let triangles = type_command(&dir, "query cell.toml --ask contacts --between arm,rack", 0);
     assert!(rows(&triangles.stdout).iter().all(|row| row[1].starts_with("arm/") && row[2] == "rack"));
     type_command(&dir, "query cell.toml --ask point --between arm,rack", 0);
-    let arm = urdf(&data, "fanuc_m10ia");
+    let arm = urdf(&data, "fanuc_r1000ia80f");
     type_command(&dir, &format!("inspect {arm} --pairs found.toml"), 0);
     let rule = "version = 1\npairs = [{ a = \"arm\", b = \"rack\", reason = \"a soft cover\" }]\n";
     std::fs::write(dir.path().join("pairs.toml"), rule).unwrap();
@@ -467,7 +467,7 @@ warning = 150
 guards = ["tool"]
 [program.kr]
 steps = [
-  {{ move = "planned", to = {{ at = [1000, 0, 531], rpy = [180, 0, 0] }} }},
+  {{ move = "joint", to = {{ at = [1000, 0, 531], rpy = [180, 0, 0] }} }},
   {program}
 ]
 "#,

@@ -3,6 +3,8 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use crate::common::covers::KeptCovers;
+use crate::common::long_run;
 use crate::common::occupancy::{compare, occupancy};
 use crate::common::robots::{Case, Random, axes, box_mesh, cuboid, six_joints};
 use elbowroom_cspace::{
@@ -20,7 +22,8 @@ fn grid(case: &Case) -> Grid {
 fn builder(case: &Case) -> CoverMapBuilder {
     let joints = case.joints.clone().try_into().unwrap();
     let remaining = case.fixed.as_deref().map_or(RemainingJoints::Swept, RemainingJoints::Fixed);
-    CoverMapBuilder::new(&case.robot, case.base, &grid(case), joints, remaining, CoverMapSettings::default()).unwrap()
+    let settings = CoverMapSettings::default();
+    CoverMapBuilder::with_covers(&case.robot, case.base, &grid(case), joints, remaining, settings, &KeptCovers).unwrap()
 }
 
 fn slices(case: &Case) -> OccupancyBitmap {
@@ -112,7 +115,7 @@ fn slices_of_arms_that_are_not_in_a_plane() {
 #[test]
 fn slices_of_random_robots() {
     let mut random = Random(41);
-    for _ in 0..12 {
+    for _ in 0..long_run(12, 4) {
         let at = [0; 3].map(|_| random.between(-0.8, 0.8));
         let rpy = [0; 3].map(|_| random.between(-1.5, 1.5));
         let mut case = Case::new(vec![cuboid(at, rpy, [0.3, 0.1, 0.2])]);

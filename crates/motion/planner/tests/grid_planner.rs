@@ -52,7 +52,9 @@ fn paths_are_hardly_longer_than_the_grid_optimum() {
     let mut random = Random(5);
     let (mut sum, mut worst, mut count) = (0.0, 0.0_f64, 0);
     let weights = [[1.0; 3], [2.0, 1.0, 0.5]];
-    for round in 0..150 {
+    // Nearly all of the time is the exhaustive search.
+    let rounds: u32 = if std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1") { 150 } else { 30 };
+    for round in 0..rounds as usize {
         let shape = [14 + random.index(20), 14 + random.index(20), 14 + random.index(60)];
         let (grid, occupancy) = (grid(shape), random_occupancy(shape, &mut random));
         let mut planner = GridPlanner::new(&grid, &occupancy).unwrap();
@@ -72,7 +74,7 @@ fn paths_are_hardly_longer_than_the_grid_optimum() {
     }
     let mean = sum / f64::from(count);
     println!("{count} paths: {mean:.4} of the grid optimum in the mean, {worst:.3} at worst");
-    assert!(count > 300 && mean < 1.03 && worst < 2.5, "{mean} {worst}");
+    assert!(count > 2 * rounds && mean < 1.03 && worst < 2.5, "{mean} {worst}");
 }
 
 /// A wall across axis 1 with a hole of one cell.

@@ -47,7 +47,7 @@ impl PlainFloor {
         self.pictures += 1;
         frame.stamp_s = f64::from(self.pictures) * 0.04;
         let report = self.tracker.process(frame, None).unwrap();
-        (report.status.clone(), !report.obstacles.is_empty())
+        (report.status, !report.obstacles.is_empty())
     }
 }
 

@@ -114,3 +114,16 @@ fn shortened(cell: &str) -> String {
 pub(crate) fn not_rising(t_s: f64, last_s: f64, at: Location<'_>) -> FormatError {
     at.error(format!("t_s is {t_s} after {last_s}")).hint("times that rise from row to row")
 }
+
+/// What is wrong with a header of these names that lacks the column `of`.
+pub(crate) fn missing_column(of: &str, names: &[String]) -> String {
+    let first = of.split('`').next().unwrap_or(of);
+    let why = match names {
+        [only] if only.contains([';', '\t']) => "; commas separate columns".to_owned(),
+        _ => match names.iter().find(|name| name.eq_ignore_ascii_case(first)) {
+            Some(similar) => format!("; `{similar}` differs in capitals"),
+            None => String::new(),
+        },
+    };
+    format!("has no column `{of}`; its columns are {}{why}", names.join(", "))
+}

@@ -4,7 +4,7 @@ use std::io::BufRead;
 use std::path::{Path, PathBuf};
 
 use crate::FormatError;
-use crate::csv::{self, CsvLines};
+use crate::csv::{self, CsvLines, missing_column};
 use crate::error::Location;
 
 type Result<T> = std::result::Result<T, FormatError>;
@@ -83,7 +83,7 @@ impl NumberTable {
     /// [`FormatError`] that lists the columns.
     pub fn column(&self, name: &str) -> Result<usize> {
         self.columns.iter().position(|c| c == name).ok_or_else(|| {
-            let what = format!("has no column `{name}`; its columns are {}", self.columns.join(", "));
+            let what = missing_column(name, &self.columns);
             FormatError::new(&self.file, 1, what).hint(name)
         })
     }

@@ -4,7 +4,9 @@ use std::f64::consts::TAU;
 
 use super::settings::{settings, stop_time};
 use crate::fuzz_cells::random::{Random, rounded};
-use crate::fuzz_cells::spec::{CellSpec, DhRow, Model, RegionSpec, RobotSpec, SolidSpec, StepSpec, Vector};
+use crate::fuzz_cells::spec::{
+    CellSpec, DhRow, HandSpec, Model, ProgramSpec, RegionSpec, RobotSpec, SolidSpec, StepSpec, Vector,
+};
 
 /// Carriages through one to four crossings, each with solids that reach some of them.
 pub fn cell(random: &mut Random) -> CellSpec {
@@ -98,13 +100,11 @@ fn carriage(random: &mut Random, centers: &[Vector]) -> RobotSpec {
         at,
         rpy: [0.0, rounded(TAU / 4.0), rounded(along)],
         start: vec![from],
-        tcp: None,
-        tool_box: None,
-        load: None,
+        hand: HandSpec::default(),
         volumes: "auto",
         stop_time: stop_time(random),
         acceleration: None,
-        override_percent: 100.0,
-        steps,
+        program: ProgramSpec::of_steps(100.0, steps),
+        evades: Vec::new(),
     }
 }

@@ -1,13 +1,16 @@
 //! Random cells.
 
+mod carried;
+mod encounter;
 mod exchange;
 mod faults;
 mod moving;
+mod rail;
+mod recordings;
 mod region;
 mod robot;
 mod settings;
-
-use elbowroom_cell::Cell;
+mod tools;
 
 use super::random::Random;
 use super::spec::CellSpec;
@@ -24,16 +27,34 @@ pub enum Kind {
     Exchange,
     /// As `Stop`, with faults in the monitors' input.
     Faults,
+    /// Regions on objects and robots that move and turn.
+    Moving,
+    /// Robots that exchange their tools.
+    Tools,
+    /// Robots that play recordings, or repeat their programs.
+    Recordings,
 }
 
 impl Kind {
-    pub const ALL: [Self; 3] = [Self::Stop, Self::Exchange, Self::Faults];
+    pub const ALL: [Self; 6] = [Self::Stop, Self::Exchange, Self::Faults, Self::Moving, Self::Tools, Self::Recordings];
 
     pub fn name(self) -> &'static str {
         match self {
             Self::Stop => "stop",
             Self::Exchange => "exchange",
             Self::Faults => "faults",
+            Self::Moving => "moving",
+            Self::Tools => "tools",
+            Self::Recordings => "recordings",
+        }
+    }
+
+    /// How many of them the test suite runs: each kind takes a few seconds.
+    pub fn suite_cells(self) -> usize {
+        match self {
+            Self::Stop => 80,
+            Self::Faults | Self::Moving | Self::Recordings => 35,
+            Self::Exchange | Self::Tools => 20,
         }
     }
 
@@ -53,6 +74,9 @@ pub fn cell(kind: Kind, random: &mut Random, places: &Places<'_>) -> CellSpec {
             faults::add(&mut spec, random);
             spec
         }
+        Kind::Moving => carried::cell(random, places),
+        Kind::Tools => tools::cell(random, places),
+        Kind::Recordings => recordings::cell(random, places),
     }
 }
 
@@ -65,7 +89,7 @@ fn stop(random: &mut Random, places: &Places<'_>) -> CellSpec {
         spec.robots.push(second);
     }
     // Without regions first: they are put where the robot will come.
-    let Ok(cell) = Cell::parse(places.cells.join("fuzz.toml"), &spec.to_toml()) else { return spec };
+    let Ok(cell) = spec.parse(places.cells) else { return spec };
     for i in 0..random.whole(1, 3) {
         if let Some(region) = region::on_the_path(&spec, &cell, &format!("g{i}"), random) {
             spec.regions.push(region);

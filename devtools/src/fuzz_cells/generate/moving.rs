@@ -15,7 +15,7 @@ pub fn some(spec: &mut CellSpec, random: &mut Random) {
         }
     } else if random.percent(10) && spec.robots.len() > 1 {
         // Its coordinates are then in the flange's frame.
-        spec.regions[last].follow = Some(FollowSpec::Robot(1));
+        spec.regions[last].follow = Some(FollowSpec::Robot { robot: 1, frame: "flange" });
         spec.regions[last].robots = vec![0];
         spec.regions[last].shape =
             format!("shape = \"sphere\"\ncentre = [0, 0, 0]\nradius = {}\n", random.scaled(0.05, 0.4));
@@ -23,7 +23,7 @@ pub fn some(spec: &mut CellSpec, random: &mut Random) {
     if random.percent(15) {
         spec.regions[0].temporary = true;
         let robot = random.whole(0, spec.robots.len() - 1);
-        let steps = &mut spec.robots[robot].steps;
+        let steps = &mut spec.robots[robot].program.steps;
         let at = if random.percent(60) { 0 } else { random.whole(0, steps.len()) };
         steps.insert(at, StepSpec::Switch { region: spec.regions[0].name.clone(), active: true });
     }

@@ -1,5 +1,7 @@
 //! Random regions where a robot will come.
 
+use std::path::Path;
+
 use elbowroom_cell::Cell;
 use elbowroom_spatial::Vec3;
 
@@ -17,36 +19,43 @@ pub fn on_the_path(spec: &CellSpec, cell: &Cell, name: &str, random: &mut Random
     let robot = random.whole(0, spec.robots.len() - 1);
     for _ in 0..TRIES {
         let at = point_on_the_path(spec, cell, robot, random)?;
-        let region = RegionSpec {
-            name: name.to_owned(),
-            shape: shape(random, at),
-            kind: "forbidden",
-            warning: warning(random),
-            guards: guards(spec, robot, random),
-            robots: if random.percent(50) { vec![robot] } else { Vec::new() },
-            temporary: false,
-            follow: None,
-        };
-        if starts_outside(spec, &region, cell) {
+        let region = self::at(spec, robot, at, name, random);
+        let with = CellSpec { regions: vec![region.clone()], ..spec.clone() };
+        if starts_outside(&with, cell.file.parent().unwrap_or(Path::new(""))) {
             return Some(region);
         }
     }
     None
 }
 
+/// A forbidden region of any shape at a place.
+pub fn at(spec: &CellSpec, robot: usize, at: Vector, name: &str, random: &mut Random) -> RegionSpec {
+    RegionSpec {
+        name: name.to_owned(),
+        shape: shape(random, at),
+        kind: "forbidden",
+        warning: warning(random),
+        guards: guards(spec, robot, random),
+        robots: if random.percent(50) { vec![robot] } else { Vec::new() },
+        temporary: false,
+        follow: None,
+    }
+}
+
 /// A point on or near a guarded solid, somewhere on the program's path.
-fn point_on_the_path(spec: &CellSpec, cell: &Cell, robot: usize, random: &mut Random) -> Option<Vector> {
+pub fn point_on_the_path(spec: &CellSpec, cell: &Cell, robot: usize, random: &mut Random) -> Option<Vector> {
     let r = &spec.robots[robot];
-    let ends: Vec<&Vec<f64>> = std::iter::once(&r.start)
-        .chain(r.steps.iter().filter_map(|s| match s {
-            StepSpec::Joint { to, .. } | StepSpec::Linear { to, .. } => Some(to),
-            _ => None,
-        }))
-        .collect();
+    let ends = match &r.program.recording {
+        Some(recording) => some_rows(&recording.rows),
+        None => ends(&r.start, &r.program.steps),
+    };
     if ends.len() < 2 {
         return None;
     }
-    let leg = random.whole(0, ends.len() - 2);
+    let last = ends.len() - 2;
+    // The last leg of a recording is the way back.
+    let is_repeated = r.program.recording.is_some() && spec.repeat.max(r.program.repeat) > 1;
+    let leg = if is_repeated && random.percent(80) { last } else { random.whole(0, last) };
     let u = random.between(0.2, 1.1);
     let q: Vec<f64> = ends[leg].iter().zip(ends[leg + 1]).map(|(a, b)| a + (b - a) * u).collect();
     let guarded = Guarded::all(&cell.robots[robot]);
@@ -55,14 +64,29 @@ fn point_on_the_path(spec: &CellSpec, cell: &Cell, robot: usize, random: &mut Ra
     Some([at.x, at.y, at.z].map(rounded))
 }
 
+/// Start and targets of steps.
+fn ends<'s>(start: &'s Vec<f64>, steps: &'s [StepSpec]) -> Vec<&'s Vec<f64>> {
+    let target = |s: &'s StepSpec| match s {
+        StepSpec::Joint { to, .. } | StepSpec::Linear { to, .. } => Some(to),
+        _ => None,
+    };
+    std::iter::once(start).chain(steps.iter().filter_map(target)).collect()
+}
+
+/// Up to a dozen rows of a recording, and once more the first: a robot that repeats it drives back.
+fn some_rows(rows: &[(f64, Vec<f64>)]) -> Vec<&Vec<f64>> {
+    let step = rows.len().div_ceil(10);
+    rows.iter().step_by(step).chain(rows.last()).chain(rows.first()).map(|(_, q)| q).collect()
+}
+
 fn vector(v: Vector) -> Vec3 {
     Vec3::new(v[0], v[1], v[2])
 }
 
-fn starts_outside(spec: &CellSpec, region: &RegionSpec, cell: &Cell) -> bool {
-    let with = CellSpec { regions: vec![region.clone()], ..spec.clone() };
-    let Ok(with) = Cell::parse(&cell.file, &with.to_toml()) else { return true };
-    oracle::start_distance(&with, 0) > START_M
+/// True where the robots start outside of the last region; also where the cell is refused.
+pub fn starts_outside(spec: &CellSpec, folder: &Path) -> bool {
+    let Ok(cell) = spec.parse(folder) else { return true };
+    oracle::start_distance(&cell, cell.regions.len() - 1) > START_M
 }
 
 /// None, thin and thick.
@@ -75,7 +99,11 @@ fn warning(random: &mut Random) -> f64 {
 }
 
 fn guards(spec: &CellSpec, robot: usize, random: &mut Random) -> Vec<&'static str> {
-    let carries = |i: usize| spec.robots[i].tool_box.is_some() || spec.robots[i].load.is_some();
+    let carries = |i: usize| {
+        let hand = &spec.robots[i].hand;
+        let has_tools = !hand.tools.is_empty() && hand.tools.iter().all(|t| t.solid.is_some());
+        hand.tool_box.is_some() || hand.load.is_some() || has_tools
+    };
     match random.whole(0, 9) {
         0..=1 => vec!["tcp"],
         2 if (0..spec.robots.len()).all(carries) => vec!["tool"],

@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::settings::{Places, program, stop_time};
 use crate::fuzz_cells::random::{Random, rounded};
-use crate::fuzz_cells::spec::{DhRow, Model, RobotSpec, SolidSpec};
+use crate::fuzz_cells::spec::{DhRow, HandSpec, Model, ProgramSpec, RobotSpec, SolidSpec};
 
 /// Robots of `examples/models` with the joint ranges that they may be sent through, rad.
 const EXAMPLES: [(&str, [f64; 6]); 3] = [
@@ -40,35 +40,43 @@ pub fn small(random: &mut Random) -> RobotSpec {
     gantry(random)
 }
 
+/// A gantry or an arm of sliding and turning joints, with what is in its hand.
+pub fn jointed(random: &mut Random) -> RobotSpec {
+    let mut robot = if random.percent(40) { gantry(random) } else { arm(random) };
+    equip(&mut robot, random);
+    robot
+}
+
 fn bare(model: Model, start: Vec<f64>, random: &mut Random) -> RobotSpec {
     RobotSpec {
         model,
         at: [0.0; 3],
         rpy: [0.0; 3],
         start,
-        tcp: None,
-        tool_box: None,
-        load: None,
+        hand: HandSpec::default(),
         volumes: "auto",
         stop_time: stop_time(random),
         acceleration: None,
-        override_percent: if random.percent(80) { 100.0 } else { random.whole(20, 100) as f64 },
-        steps: Vec::new(),
+        program: ProgramSpec::of_steps(
+            if random.percent(80) { 100.0 } else { random.whole(20, 100) as f64 },
+            Vec::new(),
+        ),
+        evades: Vec::new(),
     }
 }
 
 fn equip(robot: &mut RobotSpec, random: &mut Random) {
     if random.percent(40) {
-        robot.tcp = Some([random.between(-0.1, 0.1), 0.0, random.between(0.0, 0.4)]);
+        robot.hand.tcp = Some([random.between(-0.1, 0.1), 0.0, random.between(0.0, 0.4)]);
     }
     if random.percent(30) {
-        robot.tool_box = Some((
+        robot.hand.tool_box = Some((
             random.vector(0.1),
             [random.between(0.02, 0.2), random.between(0.02, 0.2), random.between(0.05, 0.4)],
         ));
     }
     if random.percent(20) {
-        robot.load = Some(solid(random, [0.0; 3], 0.3));
+        robot.hand.load = Some(solid(random, [0.0; 3], 0.3));
     }
 }
 
@@ -128,7 +136,7 @@ fn finish(rows: Vec<DhRow>, linear: Option<(f64, f64)>, random: &mut Random) -> 
     let (start, targets) = (place(), [place(), place(), place()]);
     let mut robot = bare(Model::Dh { rows, links }, start, random);
     let count = random.whole(1, 3);
-    robot.steps = program(targets[..count].to_vec(), linear, random);
+    robot.program.steps = program(targets[..count].to_vec(), linear, random);
     robot
 }
 
@@ -171,6 +179,6 @@ fn from_file(random: &mut Random, places: &Places<'_>) -> RobotSpec {
     robot.volumes = random.one(&["auto", "capsule", "box", "hull"]);
     robot.acceleration = Some(random.scaled(2.0, 60.0));
     let linear = random.percent(30).then_some((0.1, 1.5));
-    robot.steps = program(targets, linear, random);
+    robot.program.steps = program(targets, linear, random);
     robot
 }

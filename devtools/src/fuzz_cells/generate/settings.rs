@@ -29,6 +29,13 @@ pub fn settings(random: &mut Random) -> CellSpec {
     }
 }
 
+/// Lets some cells do without the stopping distance: `check` says where their warning zones are thick enough.
+pub fn laws(spec: &mut CellSpec, random: &mut Random) {
+    if random.percent(35) {
+        (spec.stopping_distance, spec.direction_aware) = (false, random.percent(30));
+    }
+}
+
 /// Full speed to rest: hard category-1 stops to the slow ones of big robots.
 pub fn stop_time(random: &mut Random) -> f64 {
     random.scaled(0.05, 1.5)

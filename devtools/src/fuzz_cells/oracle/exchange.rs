@@ -6,6 +6,7 @@ use elbowroom_spatial::Vec3;
 use super::findings::{Finding, Findings};
 use super::guarded::Guarded;
 use super::motion::OracleMotion;
+use super::promises::Promises;
 use super::sweep::SweptPair;
 
 /// A tick in which both of two robots are inside at some time is divided into so many parts.
@@ -23,7 +24,13 @@ const PARKED_M: f64 = 0.1;
 type ZoneVisit<'a> = (usize, Vec<SweptPair<'a>>, Vec<bool>);
 
 /// `has_violation`: the run said that something went wrong.
-pub fn check(motion: &OracleMotion<'_>, guarded: &[Vec<Guarded>], has_violation: bool, findings: &mut Findings) {
+pub fn check(
+    motion: &OracleMotion<'_>,
+    guarded: &[Vec<Guarded>],
+    promises: &Promises<'_>,
+    has_violation: bool,
+    findings: &mut Findings,
+) {
     let mut in_zone = vec![vec![false; motion.places.len()]; guarded.len()];
     for (region, place) in motion.places.iter().enumerate() {
         if !matches!(place.kind, RegionKind::Exchange { .. }) {
@@ -44,14 +51,15 @@ pub fn check(motion: &OracleMotion<'_>, guarded: &[Vec<Guarded>], has_violation:
             .collect();
         for (i, a) in visits.iter().enumerate() {
             for b in &visits[i + 1..] {
-                two_inside(motion, region, a, b, findings);
+                two_inside(motion, region, [a, b], promises, findings);
             }
         }
         let last = motion.ticks().saturating_sub(1);
         let zone = motion.cell.regions[region].region.warning_m;
         for (robot, pairs, _) in &visits {
             let more = if motion.recording.robots[*robot].finished { PARKED_M + spread_m(motion, pairs) } else { 0.0 };
-            in_zone[*robot][region] = pairs.iter().any(|p| p.distance(last, 0.0).lower < zone + more);
+            in_zone[*robot][region] =
+                pairs.iter().any(|p| p.is_there(last) && p.distance(last, 0.0).lower < zone + more);
         }
     }
     deadlock(motion, &in_zone, has_violation, findings);
@@ -65,23 +73,49 @@ fn spread_m(motion: &OracleMotion<'_>, pairs: &[SweptPair<'_>]) -> f64 {
     middles.iter().map(from).fold(0.0, f64::max)
 }
 
-/// Marks the ticks from which to the next the solid touches the region at some time.
+/// Marks the ticks from which to the next the solid touches the region at some time, while it is on the robot.
 fn mark_inside(pair: &SweptPair<'_>, during: &mut [bool]) {
-    let mut k = 0;
-    while let Some((at, _)) = pair.first_touch(k, pair.motion.ticks()) {
-        during[at] = true;
-        k = at + 1;
+    let spans = pair.motion.tool_spans(pair.robot).into_iter();
+    for (from, to) in spans.filter(|(from, _)| pair.is_there(*from)) {
+        let mut k = from;
+        while let Some((at, _)) = pair.first_touch(k, to) {
+            during[at] = true;
+            k = at + 1;
+        }
     }
 }
 
-fn two_inside(motion: &OracleMotion<'_>, region: usize, a: &ZoneVisit<'_>, b: &ZoneVisit<'_>, findings: &mut Findings) {
+/// True where a robot has exchanged a tool into the region by tick `k`, and `check` says that this is not excluded.
+fn is_exchanged_inside(
+    motion: &OracleMotion<'_>,
+    region: usize,
+    visit: &ZoneVisit<'_>,
+    promises: &Promises<'_>,
+    k: usize,
+) -> bool {
+    let into = |tick: &usize| *tick > 0 && *tick <= k && visit.2[*tick] && !visit.2[tick - 1];
+    !promises.exclude(region, visit.0) && motion.tools[visit.0].changes().any(|tick| into(&tick))
+}
+
+fn two_inside(
+    motion: &OracleMotion<'_>,
+    region: usize,
+    [a, b]: [&ZoneVisit<'_>; 2],
+    promises: &Promises<'_>,
+    findings: &mut Findings,
+) {
     let both = |k: &usize| motion.is_active(region, *k) && a.2[*k] && b.2[*k];
     // Whoever starts inside is not brought there by the protocol: counted once one of the two has been out.
     let apart = (0..motion.ticks()).find(|k| !(a.2[*k] && b.2[*k])).unwrap_or(motion.ticks());
-    let inside = |s: &ZoneVisit<'_>, k: usize, u: f64| s.1.iter().any(|p| p.distance(k, u).upper <= 0.0);
+    let inside =
+        |s: &ZoneVisit<'_>, k: usize, u: f64| s.1.iter().any(|p| p.is_there(k) && p.distance(k, u).upper <= 0.0);
     for k in (apart..motion.ticks()).filter(both) {
         let at_once = (0..PARTS).map(|i| i as f64 / PARTS as f64).find(|u| inside(a, k, *u) && inside(b, k, *u));
         if let Some(u) = at_once {
+            if [a, b].iter().any(|visit| is_exchanged_inside(motion, region, visit, promises, k)) {
+                findings.unforeseen_entries += 1;
+                return;
+            }
             let t_s = motion.times[k] + u * motion.recording.tick_s;
             findings.list.push(Finding::TwoInside { region, robots: [a.0, b.0], t_s });
             return;

@@ -8,6 +8,8 @@ pub const TOLERANCE_M: f64 = 1e-6;
 pub enum Finding {
     /// A robot drove into a forbidden region that it was outside of.
     Entry { robot: usize, region: usize, t_s: f64, speed: f64 },
+    /// A robot was in a forbidden region although `check` says that entry is excluded.
+    Excluded { robot: usize, region: usize, t_s: f64, speed: f64 },
     /// Two robots were inside one exchange region.
     TwoInside { region: usize, robots: [usize; 2], t_s: f64 },
     /// Robots wait for one another for ever, and the recording does not report it.
@@ -20,7 +22,8 @@ pub enum Finding {
 #[derive(Debug, Clone, Default)]
 pub struct Findings {
     pub list: Vec<Finding>,
-    /// Entries into regions carried by another robot, or on a belt that just changed its speed: nobody can foresee that.
+    /// Entries into regions that accelerated just before, and tools that were exchanged into an exchange region where `check` says
+    /// that this is not excluded: nobody can foresee that.
     pub unforeseen_entries: usize,
     /// Sets of robots that wait for one another for ever.
     pub deadlocks: usize,

@@ -60,4 +60,25 @@ impl Frame {
         let v = |v: Vec3| other.vector_back(v);
         Self { x: v(self.x), y: v(self.y), z: v(self.z), at: v(self.at - other.at) }
     }
+
+    /// The rotation from this frame's axes to another's, as a vector along its axis, rad; less than half a turn.
+    pub fn turn_to(&self, other: &Self) -> Vec3 {
+        // Entry (i, j) of `other · selfᵀ` is the sum over the columns.
+        let entry = |row: Vec3, column: Vec3| {
+            other.x.dot(row) * self.x.dot(column)
+                + other.y.dot(row) * self.y.dot(column)
+                + other.z.dot(row) * self.z.dot(column)
+        };
+        let (x, y, z) = (Vec3::X, Vec3::Y, Vec3::Z);
+        let sine = Vec3::new(entry(z, y) - entry(y, z), entry(x, z) - entry(z, x), entry(y, x) - entry(x, y)) * 0.5;
+        let cosine = (entry(x, x) + entry(y, y) + entry(z, z) - 1.0) * 0.5;
+        sine.try_normalize().map_or(Vec3::ZERO, |axis| axis * sine.length().atan2(cosine))
+    }
+
+    /// A share of the way to another frame: the origin goes straight, the axes turn about one axis.
+    pub fn moved_towards(&self, other: &Self, share: f64) -> Self {
+        let turn = self.turn_to(other);
+        let turned = turn.try_normalize().map_or(*self, |axis| Self::turn(axis, turn.length() * share).then(self));
+        Self { at: self.at + (other.at - self.at) * share, ..turned }
+    }
 }

@@ -1,7 +1,9 @@
 //! What a region can guard: solids of the robot as they are, not the volumes that enclose them.
 
 use elbowroom_cell::CellRobot;
+use elbowroom_kinematics::LinkId;
 use elbowroom_monitor::Guards;
+use elbowroom_robot::Collider;
 use elbowroom_spatial::{Pose, Vec3};
 
 use super::frame::Frame;
@@ -15,6 +17,8 @@ pub struct Guarded {
     in_link: Frame,
     solid: OracleSolid,
     part: GuardedPart,
+    /// Index of the named tool that it belongs to, which may be off its flange.
+    pub tool: Option<usize>,
     /// Farthest of its points from the link's origin, m.
     pub radius_m: f64,
 }
@@ -27,28 +31,48 @@ enum GuardedPart {
 }
 
 impl Guarded {
-    /// All that can count of a robot: the tool centre point first.
+    /// All that can count of a robot: the tool centre points first.
     pub fn all(robot: &CellRobot) -> Vec<Self> {
-        let flange = robot.flange.0;
-        let mut all = vec![Self::new(flange, &robot.tcp_in_flange, OracleSolid::point(), GuardedPart::Tcp)];
-        let carried = [&robot.tool, &robot.load].into_iter().flatten();
-        all.extend(
-            carried.map(|b| Self::new(flange, &b.in_link, OracleSolid::eroded(&b.shape, 0.0), GuardedPart::Tool)),
-        );
+        let mut all = Self::hand(robot);
         for (link, colliders) in robot.without_payload().colliders.iter().enumerate() {
-            all.extend(
-                colliders
-                    .iter()
-                    .map(|b| Self::new(link, &b.in_link, OracleSolid::eroded(&b.shape, 0.0), GuardedPart::Arm)),
-            );
+            if robot.tools.iter().any(|t| t.link.0 == link) {
+                continue;
+            }
+            all.extend(colliders.iter().map(|b| Self::of_collider(link, b, GuardedPart::Arm)));
         }
         all
+    }
+
+    /// Tool centre points, tools and load.
+    fn hand(robot: &CellRobot) -> Vec<Self> {
+        let tcp = |link: LinkId, at: &Pose| Self::new(link.0, at, OracleSolid::point(), GuardedPart::Tcp);
+        if robot.tools.is_empty() {
+            let carried = [&robot.tool, &robot.load].into_iter().flatten();
+            let solids = carried.map(|c| Self::of_collider(robot.flange.0, c, GuardedPart::Tool));
+            return std::iter::once(tcp(robot.flange, &robot.tcp_in_flange)).chain(solids).collect();
+        }
+        let mut all = Vec::new();
+        for (index, t) in robot.tools.iter().enumerate() {
+            let solid = t.collider.iter().map(|c| Self::of_collider(t.link.0, c, GuardedPart::Tool));
+            let parts = std::iter::once(tcp(t.link, &t.tcp_in_link)).chain(solid);
+            all.extend(parts.map(|part| Self { tool: Some(index), ..part }));
+        }
+        all
+    }
+
+    fn of_collider(link: usize, collider: &Collider, part: GuardedPart) -> Self {
+        Self::new(link, &collider.in_link, OracleSolid::eroded(&collider.shape, 0.0), part)
     }
 
     fn new(link: usize, in_link: &Pose, solid: OracleSolid, part: GuardedPart) -> Self {
         let in_link = Frame::of(in_link);
         let radius_m = in_link.at.length() + solid.reach_from(Vec3::ZERO);
-        Self { link, in_link, solid, part, radius_m }
+        Self { link, in_link, solid, part, tool: None, radius_m }
+    }
+
+    /// True where it is on the robot before anything moves.
+    pub fn is_there_at_start(&self, robot: &CellRobot) -> bool {
+        self.tool.is_none_or(|tool| robot.tools[tool].mounted)
     }
 
     pub fn counts_for(&self, guards: Guards) -> bool {

@@ -5,6 +5,8 @@ use elbowroom_sim::Recording;
 
 use super::arm::Arm;
 use super::frame::Frame;
+use super::guarded::Guarded;
+use super::mounted::MountedTools;
 use super::place::Place;
 
 /// Positions of all robots at all ticks, and the regions.
@@ -16,6 +18,8 @@ pub struct OracleMotion<'a> {
     pub times: Vec<f64>,
     /// Per tick, per robot.
     pub q: Vec<Vec<Vec<f64>>>,
+    /// Per robot.
+    pub tools: Vec<MountedTools>,
 }
 
 impl<'a> OracleMotion<'a> {
@@ -23,8 +27,9 @@ impl<'a> OracleMotion<'a> {
         let ticks = recording.robots.iter().map(|r| r.samples.len()).min().unwrap_or(0);
         let at = |k: usize| recording.robots.iter().map(|r| r.samples[k].q.clone()).collect();
         let times = recording.robots.first().map_or(Vec::new(), |r| r.samples.iter().map(|s| s.t_s).collect());
-        let places = (0..cell.regions.len()).map(|r| Place::new(cell, r, arms)).collect::<Result<_, _>>()?;
-        Ok(Self { cell, recording, arms, places, times, q: (0..ticks).map(at).collect() })
+        let places = (0..cell.regions.len()).map(|r| Place::new(cell, r, Some(recording))).collect::<Result<_, _>>()?;
+        let tools = cell.robots.iter().map(|robot| MountedTools::new(robot, recording)).collect();
+        Ok(Self { cell, recording, arms, places, times, q: (0..ticks).map(at).collect(), tools })
     }
 
     pub fn ticks(&self) -> usize {
@@ -35,6 +40,40 @@ impl<'a> OracleMotion<'a> {
     pub fn is_active(&self, region: usize, k: usize) -> bool {
         let list = &self.recording.regions[region].active;
         list.iter().rev().find(|(t_s, _)| *t_s <= self.times[k] + 1e-9).is_some_and(|(_, on)| *on)
+    }
+
+    /// The times, as ticks from and up to, in which a robot has the same tools.
+    pub fn tool_spans(&self, robot: usize) -> Vec<(usize, usize)> {
+        let changes: Vec<usize> = self.tools[robot].changes().filter(|k| *k < self.ticks()).collect();
+        let begins = std::iter::once(0).chain(changes.clone());
+        begins.zip(changes.into_iter().chain([self.ticks()])).filter(|(from, to)| from < to).collect()
+    }
+
+    /// The times, as ticks from and up to, in which a region is active and a robot has the same tools.
+    pub fn spans(&self, region: usize, robot: usize) -> Vec<(usize, usize)> {
+        let mut spans = Vec::new();
+        let changes: Vec<usize> = self.tools[robot].changes().collect();
+        let mut from = None;
+        for k in 0..=self.ticks() {
+            let is_active = k < self.ticks() && self.is_active(region, k);
+            if !is_active || changes.contains(&k) {
+                spans.extend(from.take().map(|from| (from, k)));
+            }
+            if is_active {
+                from = from.or(Some(k));
+            }
+        }
+        spans
+    }
+
+    /// True where a solid is on its robot at a tick: a tool may be off its flange.
+    pub fn has(&self, robot: usize, guarded: &Guarded, k: usize) -> bool {
+        guarded.tool.is_none_or(|tool| self.tools[robot].has(tool, k))
+    }
+
+    /// Where a region is at a tick.
+    pub fn region_at(&self, region: usize, k: usize) -> Frame {
+        self.places[region].at(self.times[k], &self.frames(&self.q[k]))
     }
 
     /// True where a robot moves from tick `k` to the next.

@@ -1,6 +1,6 @@
 //! Whether the simulation keeps to the joints' limits: a run in which robots brake harder than they can proves nothing.
 
-use elbowroom_cell::Cell;
+use elbowroom_cell::{Cell, ProgramBody, TrajectoryRow};
 use elbowroom_sim::Recording;
 
 use super::findings::{Finding, Findings};
@@ -10,12 +10,14 @@ const SHARE: f64 = 0.12;
 /// And by what the rounding of positions can make of a second difference, in units of position.
 const ROUNDING: f64 = 2e-9;
 
-/// Looks for joints that slow down harder than the larger of their stopping deceleration and programmed acceleration.
+/// Looks for joints that slow down harder than the larger of their stopping deceleration and programmed acceleration, and what
+/// their recording does by itself.
 pub fn check(cell: &Cell, recording: &Recording, findings: &mut Findings) {
     let dt = recording.tick_s;
     for (robot, track) in recording.robots.iter().enumerate() {
         for (joint, l) in cell.robots[robot].limits.iter().enumerate() {
-            let limit = l.stop.max(l.acceleration) * (1.0 + SHARE) + ROUNDING / (dt * dt);
+            let played = played(cell, robot).map_or(0.0, |rows| largest_change(rows, joint, dt) / dt);
+            let limit = (l.stop.max(l.acceleration) + played) * (1.0 + SHARE) + ROUNDING / (dt * dt);
             let found = track.samples.windows(3).find_map(|w| {
                 let (before, after) = (w[1].q[joint] - w[0].q[joint], w[2].q[joint] - w[1].q[joint]);
                 let slower = before.abs() - after.abs();
@@ -28,4 +30,27 @@ pub fn check(cell: &Cell, recording: &Recording, findings: &mut Findings) {
             }
         }
     }
+}
+
+/// The recording that a robot plays.
+fn played(cell: &Cell, robot: usize) -> Option<&[TrajectoryRow]> {
+    match &cell.programs[robot].as_ref()?.body {
+        ProgramBody::Trajectory(rows) => Some(rows),
+        ProgramBody::Steps(_) => None,
+    }
+}
+
+/// By how much the velocity of a joint changes within two ticks, at most; it is 0 before and after the recording.
+fn largest_change(rows: &[TrajectoryRow], joint: usize, tick_s: f64) -> f64 {
+    let rate = |w: &[TrajectoryRow]| (w[1].q[joint] - w[0].q[joint]) / (w[1].t_s - w[0].t_s);
+    let moving = rows.windows(2).map(|w| (w[0].t_s, w[1].t_s, rate(w)));
+    let at_rest = |t_s: f64| (t_s, t_s, 0.0);
+    let mut pieces: Vec<(f64, f64, f64)> = rows.first().map(|r| at_rest(r.t_s)).into_iter().chain(moving).collect();
+    pieces.extend(rows.last().map(|r| at_rest(r.t_s)));
+    let mut largest: f64 = 0.0;
+    for (i, (_, end_s, before)) in pieces.iter().enumerate() {
+        let near = pieces[i + 1..].iter().take_while(|(begin_s, _, _)| begin_s - end_s <= 2.0 * tick_s);
+        largest = near.map(|(_, _, after)| (after - before).abs()).fold(largest, f64::max);
+    }
+    largest
 }

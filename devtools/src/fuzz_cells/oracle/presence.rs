@@ -5,11 +5,22 @@ use elbowroom_monitor::RegionKind;
 use super::findings::{Finding, Findings, TOLERANCE_M};
 use super::guarded::Guarded;
 use super::motion::OracleMotion;
+use super::promises::Promises;
 use super::sweep::SweptPair;
+use super::track::is_steady;
 
-/// Looks for entries into forbidden regions: of robots that were outside when the region became active and, where it was
-/// switched on beside a robot that moved, have been at rest outside since.
-pub fn entries(motion: &OracleMotion<'_>, guarded: &[Vec<Guarded>], findings: &mut Findings) {
+/// Below this speed (m/s) a robot rests: overrides come to 0 without end.
+const REST_SPEED: f64 = 1e-4;
+/// After a region has touched a robot at rest, ticks until it is looked at again.
+const LATER_TICKS: usize = 8;
+
+/// A touch: the tick before it, and the share of the way to the next.
+type Touch<'p, 'a> = (usize, f64, &'p SweptPair<'a>);
+
+/// Looks for entries into forbidden regions: any where they are excluded; otherwise, with the stopping distance, of robots
+/// that were outside when the region became active and, where it was switched on or a tool was exchanged beside a robot that
+/// moved, have been at rest outside since.
+pub fn entries(motion: &OracleMotion<'_>, guarded: &[Vec<Guarded>], promises: &Promises<'_>, findings: &mut Findings) {
     for (region, place) in motion.places.iter().enumerate() {
         if !matches!(place.kind, RegionKind::Forbidden) {
             continue;
@@ -22,85 +33,136 @@ pub fn entries(motion: &OracleMotion<'_>, guarded: &[Vec<Guarded>], findings: &m
                 .filter(SweptPair::is_moved)
                 .collect();
             findings.watched += usize::from(!pairs.is_empty());
-            let Some((k, u, pair)) = first_entry(motion, &pairs, robot, region) else { continue };
-            if !drove_in(pair, k, u) {
-                continue;
+            let watch = Watch { motion, pairs, robot, region };
+            // Whoever is nowhere inside breaks no promise.
+            let Some((k, u, pair)) = watch.any_touch() else { continue };
+            if promises.exclude(region, robot) {
+                let (t_s, speed) = (watch.time_s(k, u), watch.speed(pair, k));
+                findings.list.push(Finding::Excluded { robot, region, t_s, speed });
+            } else if motion.cell.laws.stopping_reaction_s.is_some() {
+                watch.driven(findings);
             }
-            let t_s = motion.times[k] + u * motion.recording.tick_s;
-            if place.is_carried() || place.changes_speed(t_s - stop_s(motion, robot), t_s) {
-                findings.unforeseen_entries += 1;
-                continue;
-            }
-            let speed = if k + 1 < motion.ticks() { pair.own_travel(k) / motion.recording.tick_s } else { 0.0 };
-            findings.list.push(Finding::Entry { robot, region, t_s, speed });
         }
     }
 }
 
-/// How long (s) the robot may take to stop from full speed, and to obey.
-fn stop_s(motion: &OracleMotion<'_>, robot: usize) -> f64 {
-    let slowest = motion.cell.robots[robot].limits.iter().map(|l| l.velocity / l.stop).fold(0.0, f64::max);
-    slowest + motion.cell.laws.stopping_reaction_s.unwrap_or(0.0) + 2.0 * motion.recording.tick_s
-}
-
-/// The first touch within the times in which the robot may be held responsible.
-fn first_entry<'p, 'a>(
-    motion: &OracleMotion<'_>,
-    pairs: &'p [SweptPair<'a>],
+/// One robot and one region.
+struct Watch<'a> {
+    motion: &'a OracleMotion<'a>,
+    pairs: Vec<SweptPair<'a>>,
     robot: usize,
     region: usize,
-) -> Option<(usize, f64, &'p SweptPair<'a>)> {
-    let mut k = 0;
-    while k < motion.ticks() {
-        if !motion.is_active(region, k) {
-            k += 1;
-            continue;
-        }
-        let end = (k..motion.ticks()).find(|i| !motion.is_active(region, *i)).unwrap_or(motion.ticks());
-        // The start counts as rest: nothing has moved before it.
-        let at_rest = |i: &usize| *i == 0 || (!motion.moves(robot, *i) && !motion.moves(robot, i - 1));
-        if let Some(from) = (k..end).find(at_rest)
-            && is_outside(motion, pairs, region, from)
-        {
-            let to = jump(pairs, from, end);
-            let touches = pairs.iter().filter_map(|p| p.first_touch(from, to).map(|(k, u)| (k, u, p)));
-            let first = touches.min_by(|a, b| (a.0, a.1).partial_cmp(&(b.0, b.1)).unwrap_or(std::cmp::Ordering::Equal));
-            if first.is_some() {
-                return first;
+}
+
+impl<'a> Watch<'a> {
+    /// The first time that any of the robot is inside, whoever moved.
+    fn any_touch(&self) -> Option<Touch<'_, 'a>> {
+        self.motion.spans(self.region, self.robot).into_iter().find_map(|(from, to)| {
+            let there = || self.pairs.iter().filter(|p| p.is_there(from));
+            let inside = there().find(|p| p.is_inside(from)).map(|p| (from, 0.0, p));
+            inside.or_else(|| self.first_touch(from, to))
+        })
+    }
+
+    /// Adds the first entry by the robot's own motion.
+    fn driven(&self, findings: &mut Findings) {
+        for (begin, end) in self.motion.spans(self.region, self.robot) {
+            let mut k = begin;
+            while let Some((touch, u, pair)) = self.responsible(k, end) {
+                k = touch + LATER_TICKS;
+                if !self.drove_in(pair, touch, u) {
+                    continue;
+                }
+                if self.is_foreseen(touch, u) {
+                    let (t_s, speed) = (self.time_s(touch, u), self.speed(pair, touch));
+                    findings.list.push(Finding::Entry { robot: self.robot, region: self.region, t_s, speed });
+                    return;
+                }
+                findings.unforeseen_entries += 1;
             }
         }
-        k = end;
     }
-    None
-}
 
-fn is_outside(motion: &OracleMotion<'_>, pairs: &[SweptPair<'_>], region: usize, k: usize) -> bool {
-    let frames = motion.frames(&motion.q[k]);
-    let place = &motion.places[region];
-    let at = place.at(place.travel_at(motion.times[k]).0, &frames);
-    pairs.iter().all(|p| {
-        p.distance(k, 0.0).lower > 10.0 * TOLERANCE_M && !place.contains(&at, p.guarded.center(&frames[p.robot]))
-    })
-}
-
-/// Until a belt begins again, where it does.
-fn jump(pairs: &[SweptPair<'_>], from: usize, end: usize) -> usize {
-    let Some(pair) = pairs.first() else { return end };
-    let last = end.min(pair.motion.ticks().saturating_sub(1));
-    (from..last).find(|k| pair.region_jumps(*k)).unwrap_or(end)
-}
-
-/// True where the robot itself came nearer by more than the tolerance within the last tick: a region that runs into a
-/// robot at rest, or into one that moves away, was not entered by it.
-fn drove_in(pair: &SweptPair<'_>, k: usize, u: f64) -> bool {
-    if k == 0 {
-        return true;
+    /// The first touch after the robot is at rest and outside.
+    fn responsible(&self, begin: usize, end: usize) -> Option<Touch<'_, 'a>> {
+        // The start counts as rest: nothing has moved before it.
+        let moves = |k: usize| self.motion.moves(self.robot, k);
+        let at_rest = |k: &usize| *k == 0 || (!moves(*k) && !moves(k - 1));
+        let first = (begin..end).find(at_rest)?;
+        let mut rests = (first..end).step_by(LATER_TICKS).filter(at_rest);
+        // In a region that does not move nobody gets out at rest.
+        let from = if self.place_is_fixed() {
+            Some(first).filter(|k| self.is_outside(*k))
+        } else {
+            rests.find(|k| self.is_outside(*k))
+        }?;
+        self.first_touch(from, self.until_jump(from, end))
     }
-    let moves = |k: usize| k + 1 < pair.motion.ticks() && pair.own_travel(k) > 0.0;
-    let moved = moves(k) || (u <= 0.0 && moves(k - 1));
-    if !moved {
-        return false;
+
+    fn place_is_fixed(&self) -> bool {
+        self.motion.places[self.region].is_fixed()
     }
-    let before = (k - 1, u);
-    pair.distance_between(before, (k, u)).lower > TOLERANCE_M
+
+    fn first_touch(&self, from: usize, to: usize) -> Option<Touch<'_, 'a>> {
+        let there = self.pairs.iter().filter(|p| p.is_there(from));
+        let touches = there.filter_map(|p| p.first_touch(from, to).map(|(k, u)| (k, u, p)));
+        touches.min_by(|a, b| (a.0, a.1).partial_cmp(&(b.0, b.1)).unwrap_or(std::cmp::Ordering::Equal))
+    }
+
+    fn is_outside(&self, k: usize) -> bool {
+        let mut there = self.pairs.iter().filter(|p| p.is_there(k));
+        there.all(|p| p.distance(k, 0.0).lower > 10.0 * TOLERANCE_M && !p.is_inside(k))
+    }
+
+    /// Until a belt begins again, where it does.
+    fn until_jump(&self, from: usize, end: usize) -> usize {
+        let Some(pair) = self.pairs.first() else { return end };
+        let last = end.min(self.motion.ticks().saturating_sub(1));
+        (from..last).find(|k| pair.region_jumps(*k)).unwrap_or(end)
+    }
+
+    fn time_s(&self, k: usize, u: f64) -> f64 {
+        self.motion.times[k] + u * self.motion.recording.tick_s
+    }
+
+    /// How fast the robot moves the solid from tick `k` to the next, at most, m/s.
+    fn speed(&self, pair: &SweptPair<'_>, k: usize) -> f64 {
+        if k + 1 < self.motion.ticks() { pair.own_travel(k) / self.motion.recording.tick_s } else { 0.0 }
+    }
+
+    /// False where the region ran into a robot at rest. Before a region that moves the robot has to rest; into one that does
+    /// not it must have come by more than the tolerance within the last tick.
+    fn drove_in(&self, pair: &SweptPair<'_>, k: usize, u: f64) -> bool {
+        if k == 0 {
+            return true;
+        }
+        if !self.place_is_fixed() {
+            // Whoever comes to rest within the tick may have come to rest before the touch.
+            let before = if u <= 0.0 { self.speed(pair, k - 1) } else { f64::INFINITY };
+            return before.min(self.speed(pair, k)).min(self.speed(pair, k + 1)) > REST_SPEED;
+        }
+        let moved = self.speed(pair, k) > 0.0 || (u <= 0.0 && self.speed(pair, k - 1) > 0.0);
+        moved && pair.distance_between((k - 1, u), (k, u)).lower > TOLERANCE_M
+    }
+
+    /// False where the region accelerates, or its belt changes its speed, while the robot could not have stopped.
+    fn is_foreseen(&self, k: usize, u: f64) -> bool {
+        let place = &self.motion.places[self.region];
+        let (stop_s, tick_s) = (self.stop_s(), self.motion.recording.tick_s);
+        let t_s = self.time_s(k, u);
+        if place.carrier.changes_speed(t_s - stop_s, t_s) {
+            return false;
+        }
+        let first = k.saturating_sub((stop_s / tick_s).ceil() as usize + 1);
+        let last = (k + 1).min(self.motion.ticks() - 1);
+        let frames: Vec<_> = (first..=last).map(|k| self.motion.region_at(self.region, k)).collect();
+        place.is_fixed() || place.carrier.is_belt() || is_steady(&frames, tick_s)
+    }
+
+    /// How long (s) the robot may take to stop from full speed, and to obey.
+    fn stop_s(&self) -> f64 {
+        let limits = &self.motion.cell.robots[self.robot].limits;
+        let slowest = limits.iter().map(|l| l.velocity / l.stop).fold(0.0, f64::max);
+        slowest + self.motion.cell.laws.stopping_reaction_s.unwrap_or(0.0) + 2.0 * self.motion.recording.tick_s
+    }
 }

@@ -41,15 +41,25 @@ impl<'a> SweptPair<'a> {
     }
 
     fn region_travel(&self, k: usize) -> f64 {
-        let place = &self.motion.places[self.region];
-        let travelled = place.travel_at(self.motion.times[k + 1]).0 - place.travel_at(self.motion.times[k]).0;
-        place.carried(&self.motion.q[k], &self.motion.q[k + 1]) + travelled.abs()
+        let (motion, place) = (self.motion, &self.motion.places[self.region]);
+        if place.is_fixed() {
+            return 0.0;
+        }
+        let (from, to) = ((motion.times[k], &motion.q[k][..]), (motion.times[k + 1], &motion.q[k + 1][..]));
+        let travel = |radius| place.carrier.travel_m(motion.arms, radius, from, to);
+        if place.radius_m.is_finite() {
+            return travel(place.radius_m);
+        }
+        // Of a half-space the points where the solid may be count.
+        let frames = motion.frames(&motion.q[k]);
+        let away = frames[self.robot][self.guarded.link].at.distance(place.carrier.at(from.0, &frames).at);
+        travel(away + self.guarded.radius_m + self.own_travel(k) + travel(0.0))
     }
 
     /// True where the region's belt begins again between tick `k` and the next: it does not come from there to here.
     pub fn region_jumps(&self, k: usize) -> bool {
-        let place = &self.motion.places[self.region];
-        place.travel_at(self.motion.times[k]).1 != place.travel_at(self.motion.times[k + 1]).1
+        let carrier = &self.motion.places[self.region].carrier;
+        carrier.rounds(self.motion.times[k]) != carrier.rounds(self.motion.times[k + 1])
     }
 
     /// Distance at a share `u` of the way from tick `k` to the next, to half a metre.
@@ -65,7 +75,7 @@ impl<'a> SweptPair<'a> {
         let times = &self.motion.times;
         let next = times.get(region_k + 1).unwrap_or(&times[region_k]);
         let t_s = times[region_k] + (next - times[region_k]) * region_u;
-        let at = place.at(place.travel_at(t_s).0, &later);
+        let at = place.at(t_s, &later);
         self.guarded.distance(&frames[self.robot], &place.solid, &at, FAR_M)
     }
 
@@ -87,6 +97,19 @@ impl<'a> SweptPair<'a> {
             }
             gap_m = found.lower;
         }
+    }
+
+    /// True where it is on its robot at a tick.
+    pub fn is_there(&self, k: usize) -> bool {
+        self.motion.has(self.robot, self.guarded, k)
+    }
+
+    /// True where it touches the region, or lies in it, at a tick.
+    pub fn is_inside(&self, k: usize) -> bool {
+        let frames = self.motion.frames(&self.motion.q[k]);
+        let place = &self.motion.places[self.region];
+        let at = place.at(self.motion.times[k], &frames);
+        self.distance(k, 0.0).upper <= 0.0 || place.contains(&at, self.guarded.center(&frames[self.robot]))
     }
 
     /// The first touch from tick `from` on before tick `to`: the tick before it, and the share of the path to the next.

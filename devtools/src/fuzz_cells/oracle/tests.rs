@@ -8,10 +8,11 @@ use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 use super::frame::Frame;
 use super::solid::OracleSolid;
-use super::{Arm, Finding, check};
+use super::{Arm, Finding, Promises, check};
 use crate::fuzz_cells::random::Random;
 
-const HEAD: &str = "version = 1\nunits = { length = \"m\", angle = \"rad\" }\ntick_ms = 4\n";
+const HEAD: &str =
+    "version = 1\nunits = { length = \"m\", angle = \"rad\" }\ntick_ms = 4\n[monitor]\nstopping_distance = true\n";
 
 fn rail(name: &str, y: f64, from: f64, to: f64) -> String {
     format!(
@@ -35,7 +36,7 @@ fn run(text: &str, monitored: bool) -> (Cell, RunOutcome) {
 
 fn findings(text: &str, monitored: bool) -> Vec<Finding> {
     let (cell, outcome) = run(text, monitored);
-    check(&cell, &outcome.recording, outcome.has_violation()).unwrap().list
+    check(&cell, &outcome.recording, &Promises::none(&cell), outcome.has_violation()).unwrap().list
 }
 
 fn vector(random: &mut Random, most: f64) -> Vec3 {
@@ -129,7 +130,7 @@ fn a_plate_that_is_jumped_between_two_samples_is_entered() {
     let (cell, outcome) = run(&text, false);
     let inside = |x: f64| x.abs() < 0.0006;
     assert!(!outcome.recording.robots[0].samples.iter().any(|s| inside(s.q[0])), "a sample fell into the plate");
-    let found = check(&cell, &outcome.recording, true).unwrap().list;
+    let found = check(&cell, &outcome.recording, &Promises::none(&cell), true).unwrap().list;
     assert!(matches!(found.as_slice(), [Finding::Entry { .. }]), "{found:?}");
 }
 
@@ -148,7 +149,7 @@ fn a_region_that_runs_into_a_robot_that_stands_was_not_entered() {
     let text = text.replace("steps = [{ move = \"joint\", to = [0] }]", "steps = [{ wait = 3 }]");
     let (cell, outcome) = run(&text, true);
     assert!(outcome.recording.regions[0].entered, "it never came there");
-    assert_eq!(check(&cell, &outcome.recording, true).unwrap().list, []);
+    assert_eq!(check(&cell, &outcome.recording, &Promises::none(&cell), true).unwrap().list, []);
 }
 
 #[test]
@@ -166,7 +167,7 @@ fn a_deadlock_must_be_reported() {
     let (cell, mut outcome) = run(&text, true);
     assert!(outcome.recording.robots.iter().all(|r| !r.finished), "no deadlock");
     let reported = |outcome: &RunOutcome, has_violation| {
-        let findings = check(&cell, &outcome.recording, has_violation).unwrap();
+        let findings = check(&cell, &outcome.recording, &Promises::none(&cell), has_violation).unwrap();
         assert_eq!(findings.deadlocks, 1);
         findings.list.is_empty()
     };
@@ -183,6 +184,98 @@ fn who_stops_harder_than_it_can_is_seen() {
     let fast = samples.iter().position(|s| s.q[0] > -1.0).unwrap();
     let there = samples[fast].q.clone();
     samples[fast..].iter_mut().for_each(|s| s.q.clone_from(&there));
-    let found = check(&cell, &outcome.recording, true).unwrap().list;
+    let found = check(&cell, &outcome.recording, &Promises::none(&cell), true).unwrap().list;
     assert!(matches!(found.as_slice(), [Finding::TooHard { robot: 0, joint: 0, .. }]), "{found:?}");
+}
+
+/// A carriage that drives along x at up to 2 m/s, and a region 1 m from an object's axis at (0, 0.8, 0).
+fn turning(turn: f64, steps: &str) -> String {
+    let moves = "steps = [{ move = \"joint\", to = [2.5] }]";
+    rail("a", 0.0, -2.5, 2.5).replace(moves, &format!("steps = [{steps}]"))
+        + &format!(
+            "[object.table]\nshape = \"sphere\"\nradius = 0.01\nat = [0, 0.8, 0]\nmotion = {{ turn = [0, 0, {turn}] }}\n\
+             [region.orb]\nshape = \"sphere\"\ncentre = [1, 0, 0]\nradius = 0.3\nwarning = 0.05\nfollow = {{ object = \"table\" }}\n"
+        )
+}
+
+#[test]
+fn whoever_drives_into_a_region_that_turns_has_entered_and_whoever_stands_has_not() {
+    let drives = turning(-0.4, "{ move = \"joint\", to = [2.5] }");
+    assert_eq!(findings(&drives, true), []);
+    let found = findings(&drives, false);
+    assert!(matches!(found.as_slice(), [Finding::Entry { robot: 0, region: 0, .. }]), "{found:?}");
+    // It stands on the way of the region.
+    let stands = turning(1.5, "{ wait = 8 }").replace("start = [-2.5]", "start = [0]");
+    let (cell, outcome) = run(&stands, true);
+    assert!(outcome.recording.regions[0].entered, "it never came there");
+    assert_eq!(check(&cell, &outcome.recording, &Promises::none(&cell), true).unwrap().list, []);
+}
+
+#[test]
+fn a_region_on_a_hand_that_turns_is_entered_too() {
+    let carrier = "[robot.b]\nbase = { at = [0, 0.8, 0] }\nstart = [0]\n\
+        dh = [{ a = 1, speed = 0.6, acceleration = 20, min = -7, max = 7 }]\nlinks = [{ sphere = { radius = 0.02 } }]\n\
+        [program.b]\nsteps = [{ move = \"joint\", to = [-6.5] }]\n\
+        [region.orb]\nshape = \"sphere\"\ncentre = [0, 0, 0]\nradius = 0.3\nwarning = 0.05\nrobots = [\"a\"]\nfollow = { robot = \"b\" }\n";
+    let text = rail("a", 0.0, -2.5, 2.5).replace("steps = [{ move", "steps = [{ wait = 1.5 }, { move") + carrier;
+    assert_eq!(findings(&text, true), []);
+    let found = findings(&text, false);
+    assert!(matches!(found.as_slice(), [Finding::Entry { robot: 0, region: 0, .. }]), "{found:?}");
+}
+
+#[test]
+fn what_check_excludes_must_not_happen_whoever_moves() {
+    let text = rail("a", 0.0, -2.0, 2.0) + &plate(0.0, 0.5, "forbidden");
+    let (cell, outcome) = run(&text, false);
+    let found = check(&cell, &outcome.recording, &Promises::new(&cell), true).unwrap().list;
+    assert!(matches!(found.as_slice(), [Finding::Excluded { robot: 0, region: 0, .. }]), "{found:?}");
+}
+
+/// A carriage that stops before the plate, and whose second tool reaches into it.
+fn exchange_of_tools(kind: &str) -> String {
+    let robot = rail("a", 0.0, -2.0, -0.75).replace(
+        "to = [-0.75] }",
+        "to = [-0.75] }, { wait = 0.5 }, { tool = \"torch\" }, { wait = 0.5 }, { tool = \"gripper\" }, { move = \"joint\", to = [-2] }",
+    );
+    let tools = "[robot.a.tools.gripper]\ntcp = { at = [0, 0, 0.1] }\n[robot.a.tools.torch]\ntcp = { at = [0, 0, 0.7] }\n\
+        box = { at = [0, 0, 0.35], size = [0.1, 0.1, 0.7] }\nmounted = false\n";
+    robot + tools + &plate(0.0, 0.5, kind)
+}
+
+#[test]
+fn a_tool_that_is_not_mounted_is_not_inside_and_one_that_is_exchanged_is() {
+    let (cell, outcome) = run(&exchange_of_tools("forbidden"), true);
+    let promised = || Promises::promised(&cell, vec![(0, 0)]);
+    let found = check(&cell, &outcome.recording, &promised(), true).unwrap().list;
+    let [Finding::Excluded { t_s, .. }] = found.as_slice() else { panic!("{found:?}") };
+    let exchanged = outcome.recording.events.iter().find(|e| e.region == "torch").unwrap().t_s;
+    assert_eq!(*t_s, exchanged);
+    let short = exchange_of_tools("forbidden").replace("{ tool = \"torch\" }, ", "");
+    let (cell, outcome) = run(&short, true);
+    assert_eq!(check(&cell, &outcome.recording, &Promises::promised(&cell, vec![(0, 0)]), true).unwrap().list, []);
+}
+
+#[test]
+fn a_tool_that_is_exchanged_into_an_occupied_region_is_seen() {
+    let other = rail("b", 0.5, 2.0, 0.0).replace("to = [0] }", "to = [0] }, { wait = 4 }");
+    let (cell, outcome) = run(&(exchange_of_tools("exchange") + &other), true);
+    let promised = Promises::promised(&cell, vec![(0, 0), (0, 1)]);
+    let found = check(&cell, &outcome.recording, &promised, true).unwrap().list;
+    assert!(matches!(found.as_slice(), [Finding::TwoInside { region: 0, robots: [0, 1], .. }]), "{found:?}");
+    // `check` does not exclude it, so it can be foreseen.
+    let findings = check(&cell, &outcome.recording, &Promises::none(&cell), true).unwrap();
+    assert_eq!((findings.list.len(), findings.unforeseen_entries), (0, 1));
+}
+
+#[test]
+fn objects_are_where_their_motion_says_between_ticks_too() {
+    let text = turning(1.3, "{ wait = 2 }");
+    let (cell, outcome) = run(&text, true);
+    let place = super::place::Place::new(&cell, 0, Some(&outcome.recording)).unwrap();
+    for i in 0..1000 {
+        let t_s = 0.00173 * f64::from(i);
+        let center = place.at(t_s, &[]).at;
+        let by_hand = Vec3::new((1.3 * t_s).cos(), 0.8 + (1.3 * t_s).sin(), 0.0);
+        assert!((center - by_hand).length() < 1e-9, "{t_s} {center:?} {by_hand:?}");
+    }
 }

@@ -1,11 +1,11 @@
 """Poses, velocities and accelerations of all links by Pinocchio, for tests/pinocchio.rs.
 
-usage: pin_reference.py ROBOT.urdf < states
+usage: pin_reference.py < robots
 
-Each line of standard input holds q, then qd, then qdd of the independent joints, in the order of the second argument
-(comma-separated joint names). For each state and each link (order of the third argument) one line is printed: the 3x4
-pose by rows, then linear and angular velocity, then linear and angular acceleration of the link frame's origin, all in
-the root link's frame.
+Of each robot standard input has a line with the file, the names of the independent joints, the names of the links and the
+number of states, between tabulators; names between commas. A line for each state follows: q, then qd, then qdd of the
+joints. For each state and each link one line is printed: the 3x4 pose by rows, then linear and angular velocity, then
+linear and angular acceleration of the link frame's origin, all in the root link's frame.
 
 The URDF is read by Pinocchio's own reader. Mimic joints are free there; their values are set here from the file.
 """
@@ -32,14 +32,13 @@ def joint_values(name, mimics, free):
     return factor * joint_values(mimic.get("joint"), mimics, free) + np.array([offset, 0.0, 0.0])
 
 
-def main():
-    path, names, links = sys.argv[1], sys.argv[2].split(","), sys.argv[3].split(",")
+def print_states(path, names, links, lines):
     model, mimics = build(path)
     data = model.createData()
     frames = [model.getFrameId(link, pin.FrameType.BODY) for link in links]
-    assert all(frame < model.nframes for frame in frames), "a link that Pinocchio does not know"
+    assert all(frame < model.nframes for frame in frames), f"{path}: a link that Pinocchio does not know"
     around_link = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
-    for line in sys.stdin:
+    for line in lines:
         values = np.array([float(word) for word in line.split()]).reshape(3, -1)
         free = {name: values[:, i] for i, name in enumerate(names)}
         q, qd, qdd = np.zeros(model.nq), np.zeros(model.nv), np.zeros(model.nv)
@@ -56,6 +55,14 @@ def main():
             a = pin.getFrameClassicalAcceleration(model, data, frame, around_link)
             row = np.concatenate([pose, v.linear, v.angular, a.linear, a.angular])
             print(" ".join(repr(float(x)) for x in row))
+
+
+def main():
+    for header in sys.stdin:
+        path, names, links, states = header.rstrip("\n").split("\t")
+        print_states(path, names.split(","), links.split(","), [next(sys.stdin) for _ in range(int(states))])
+        # The other side waits for the answer before it sends the next robot.
+        sys.stdout.flush()
 
 
 main()

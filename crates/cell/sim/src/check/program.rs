@@ -58,7 +58,7 @@ impl RobotProgram {
             }
         }
         let profile = Profile::of(cell, robot, &plan, &solids);
-        Ok(Self { profile, volumes, gripped, mounts })
+        Ok(Self { volumes, gripped, mounts, profile })
     }
 
     /// The steps that grip.

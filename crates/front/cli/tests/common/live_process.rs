@@ -3,12 +3,12 @@
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 
-use super::{command, examples};
+use super::command;
 
-/// `elbowroom live` with the example of two robots that share a region, without what the environment says of ROS 2.
+/// `elbowroom live` with two robots that share a region, without what the environment says of ROS 2.
 pub fn live(arguments: &[&str]) -> Command {
     let mut command = command(Path::new("."), &["live"]);
-    command.arg(examples().join("exchange/cell.toml")).args(arguments);
+    command.arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/live_cell.toml")).args(arguments);
     command.env_remove("ROS_DOMAIN_ID").env_remove("ROS_DISTRO").stderr(Stdio::null()).stdin(Stdio::null());
     command
 }

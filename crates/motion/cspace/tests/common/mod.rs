@@ -2,6 +2,7 @@
 //! `elbowroom-proximity`, and boxes of joint space by subdivision.
 #![allow(dead_code, reason = "each test file uses a part")]
 
+pub mod covers;
 pub mod occupancy;
 pub mod real;
 pub mod robots;
@@ -12,6 +13,11 @@ use elbowroom_cspace::{
 use elbowroom_proximity::{Capsule, Shape, Sphere, separation};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 pub use elbowroom_testkit::random::Xorshift;
+
+/// So many random cases of a long run, `ELBOWROOM_LONG=1`; else a part of them, one of so many.
+pub fn long_run(cases: usize, one_of: usize) -> usize {
+    if std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1") { cases } else { cases / one_of }
+}
 
 /// Random vectors and configurations.
 pub trait RandomGeometry {

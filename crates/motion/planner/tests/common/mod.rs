@@ -1,6 +1,8 @@
 //! Random maps, and exhaustive search for paths on them.
 #![allow(dead_code, reason = "each test file uses a part")]
 
+#[path = "../../../cspace/tests/common/covers.rs"]
+pub mod covers;
 pub mod robots;
 
 use std::cmp::Reverse;

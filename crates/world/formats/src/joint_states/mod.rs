@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use elbowroom_kinematics::{Chain, JointKind};
 
-use crate::csv::{self, CsvLines};
+use crate::csv::{self, CsvLines, missing_column};
 use crate::error::Location;
 use crate::{FormatError, Warning};
 
@@ -391,13 +391,7 @@ impl Header {
                 None => missing[joint.robot].push(joints.shown(joint)),
             }
         }
-        let no_column = |of: &str| {
-            let similar = names.iter().find(|name| name.eq_ignore_ascii_case(of.split('`').next().unwrap_or(of)));
-            let similar = similar.map_or_else(String::new, |name| format!("; `{name}` differs in capitals"));
-            let split =
-                if names.len() == 1 && names[0].contains([';', '\t']) { "; commas separate columns" } else { "" };
-            wrong(format!("has no column `{of}`; its columns are {}{similar}{split}", names.join(", ")))
-        };
+        let no_column = |of: &str| wrong(missing_column(of, &names));
         for (robot, missing) in joints.options.robots.iter().zip(&missing) {
             if missing.len() == robot.chain.dof() && robot.default_q.is_some() {
                 let what = format!("has no column for robot `{}`, which stays at its start", robot.name);

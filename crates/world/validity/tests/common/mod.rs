@@ -189,14 +189,20 @@ impl Surroundings {
     }
 }
 
-/// The exact scene.
+/// The exact scene: every pair is asked, no answer rests on a proof that links are out of reach.
 pub fn scene(robot: &Robot, base: Pose, solids: &[(Shape, Pose)]) -> Scene {
     let mut builder = Scene::builder();
     builder.robot("robot", robot.clone(), base);
     for (i, (shape, in_world)) in solids.iter().enumerate() {
         builder.object(Object { name: format!("object {i}"), shape: shape.clone(), in_world: *in_world });
     }
+    builder.prove_out_of_reach(false);
     builder.build().unwrap()
+}
+
+/// Whether the random tests have all their rounds: `ELBOWROOM_LONG=1`.
+pub fn is_long_run() -> bool {
+    std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1")
 }
 
 pub fn obstacle_set(solids: &[(Shape, Pose)]) -> ObstacleSet {

@@ -1,0 +1,180 @@
+//! Random cells with regions that move and turn: on objects, on the links of other robots, and on a robot that evades.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+use std::path::Path;
+
+use elbowroom_cell::Cell;
+use elbowroom_spatial::Vec3;
+
+use super::encounter::Encounter;
+use super::settings::{Places, settings};
+use super::{rail, region, robot};
+use crate::fuzz_cells::oracle::{Arm, Frame};
+use crate::fuzz_cells::random::{Random, rounded};
+use crate::fuzz_cells::spec::{CellSpec, FollowSpec, MotionSpec, ObjectSpec, RegionSpec, StepSpec, Vector};
+
+/// Tries to find a region that the robot's start is outside of.
+const TRIES: usize = 4;
+
+/// A robot whose path regions cross.
+pub fn cell(random: &mut Random, places: &Places<'_>) -> CellSpec {
+    let mut spec = CellSpec { max_s: 5.0, ..settings(random) };
+    spec.robots.push(if random.percent(75) { rail::slide(random) } else { robot::any(random, places) });
+    match random.whole(0, 9) {
+        0..=5 => {
+            for index in 0..if random.percent(80) { 1 } else { 2 } {
+                on_an_object(&mut spec, places.cells, index, random);
+            }
+        }
+        6..=8 => on_a_link(&mut spec, places.cells, random),
+        _ => on_an_evading_robot(&mut spec, places.cells, random),
+    }
+    if random.percent(25)
+        && let Ok(cell) = spec.parse(places.cells)
+    {
+        spec.regions.extend(region::on_the_path(&spec, &cell, "g", random));
+    }
+    if random.percent(15) {
+        spec.repeat = 2;
+    }
+    spec
+}
+
+/// Adds an object that moves or turns, with a region that would meet the robot if it did not stop.
+fn on_an_object(spec: &mut CellSpec, folder: &Path, index: usize, random: &mut Random) {
+    for _ in 0..TRIES {
+        let Some(Encounter { t_s, place, .. }) = Encounter::new(spec, folder, random) else { return };
+        let object = object(random, format!("o{index}"), place, t_s);
+        let local = local(&object_frame(&object, t_s), place);
+        let follow = Some(FollowSpec::Object(object.name.clone()));
+        let mut with = spec.clone();
+        with.objects.push(object);
+        let region = region::at(&with, 0, local, &format!("m{index}"), random);
+        with.regions.push(RegionSpec { follow, ..region });
+        if region::starts_outside(&with, folder) {
+            *spec = with;
+            return;
+        }
+    }
+}
+
+/// An object beside or at a place; most of them only turn.
+fn object(random: &mut Random, name: String, place: Vec3, meets_s: f64) -> ObjectSpec {
+    let near = random.scaled(0.05, 1.5);
+    let away = vector(random.vector(1.0)) * if random.percent(60) { random.between(0.5, 1.5) } else { near };
+    let turns = random.percent(85);
+    let axis = if random.percent(60) { Vec3::Z } else { vector(random.vector(1.0)) };
+    let rate = random.scaled(0.2, 5.0) * if random.percent(50) { 1.0 } else { -1.0 };
+    let turn = axis.try_normalize().filter(|_| turns).map_or([0.0; 3], |axis| text(axis * rate));
+    let start = if random.percent(85) { 0.0 } else { random.between(0.1, 1.5) };
+    let origin = place + away;
+    let (mut at, mut via, mut repeat) = (origin, Vec::new(), "no");
+    let speed = random.scaled(0.05, 1.0);
+    if turn == [0.0; 3] || random.percent(35) {
+        let direction = vector(random.vector(1.0)).try_normalize().unwrap_or(Vec3::X);
+        at = origin - direction * speed * (meets_s - start).max(0.0);
+        let long = random.percent(75);
+        via.push(text(at + direction * speed * if long { 20.0 } else { random.between(0.3, 3.0) }));
+        if !long {
+            repeat = random.one(&["no", "loop", "ping-pong"]);
+        }
+        if repeat == "loop" {
+            via.push(text(at + vector(random.vector(1.0))));
+        }
+    }
+    let shape = match random.whole(0, 5) {
+        0 => "shape = \"mesh\"\nmesh = \"corner.obj\"\n".to_owned(),
+        1 => "shape = \"box\"\nsize = [0.1, 0.2, 0.05]\n".to_owned(),
+        _ => "shape = \"sphere\"\nradius = 0.01\n".to_owned(),
+    };
+    let rpy = if random.percent(50) { random.vector(3.0) } else { [0.0; 3] };
+    ObjectSpec { name, shape, at: text(at), rpy, motion: Some(MotionSpec { via, speed, start, repeat, turn }) }
+}
+
+/// Where the object is while it moves straight.
+fn object_frame(object: &ObjectSpec, t_s: f64) -> Frame {
+    let rest = rpy_frame(object.rpy);
+    let Some(motion) = &object.motion else { return Frame::shift(vector(object.at)).then(&rest) };
+    let moving_s = (t_s - motion.start).max(0.0);
+    let turn = vector(motion.turn);
+    let turned = turn.try_normalize().map_or(rest, |axis| Frame::turn(axis, turn.length() * moving_s).then(&rest));
+    let ahead = motion.via.first().and_then(|via| (vector(*via) - vector(object.at)).try_normalize());
+    let moved = ahead.unwrap_or(Vec3::ZERO) * motion.speed * moving_s;
+    Frame::shift(vector(object.at) + moved).then(&turned)
+}
+
+fn rpy_frame([roll, pitch, yaw]: Vector) -> Frame {
+    Frame::turn(Vec3::Z, yaw).then(&Frame::turn(Vec3::Y, pitch)).then(&Frame::turn(Vec3::X, roll))
+}
+
+/// Adds a robot that turns or slides, with a region on one of its links that would meet the first robot if it did not stop.
+fn on_a_link(spec: &mut CellSpec, folder: &Path, random: &mut Random) {
+    for _ in 0..TRIES {
+        let Some(Encounter { place, .. }) = Encounter::new(spec, folder, random) else { return };
+        let mut carrier = if random.percent(70) { rail::turner(random) } else { robot::small(random) };
+        carrier.at = text(place + vector(random.vector(1.0)));
+        if random.percent(40) {
+            carrier.rpy = [random.between(-PI, PI), random.between(-FRAC_PI_2, FRAC_PI_2), random.between(-PI, PI)];
+        }
+        let mut with = spec.clone();
+        with.robots.push(carrier);
+        let Some(Encounter { cell, q, place, .. }) = Encounter::new(&with, folder, random) else { continue };
+        let frame = random.one(&["flange", "flange", "tcp", "link_1"]);
+        let robot = &cell.robots[1];
+        let link = if frame == "link_1" { link_named(&cell, frame) } else { Some(robot.flange.0) };
+        let Some(link) = link else { continue };
+        let local = local(&Arm::new(robot).frames(&q[1])[link], place);
+        let region = region::at(&with, 0, local, "m0", random);
+        let follow = Some(FollowSpec::Robot { robot: 1, frame });
+        with.regions.push(RegionSpec { follow, robots: vec![0], ..region });
+        if region::starts_outside(&with, folder) {
+            *spec = with;
+            return;
+        }
+    }
+}
+
+fn link_named(cell: &Cell, name: &str) -> Option<usize> {
+    cell.robots[1].robot.chain.links().iter().position(|link| link == name)
+}
+
+/// Adds a robot on a rail that a cart drives towards the first one, with a region on its hand.
+fn on_an_evading_robot(spec: &mut CellSpec, folder: &Path, random: &mut Random) {
+    let Ok(cell) = spec.parse(folder) else { return };
+    let Some(place) = region::point_on_the_path(spec, &cell, 0, random) else { return };
+    let yaw = random.between(-PI, PI);
+    let ahead = Vec3::new(yaw.cos(), yaw.sin(), 0.0);
+    let radius = random.between(0.05, 0.3);
+    let behind = radius + random.between(0.1, 0.8);
+    let mut carrier = rail::plain(random);
+    carrier.rpy = [0.0, rounded(FRAC_PI_2), yaw];
+    carrier.at = text(vector(place) - ahead * behind);
+    carrier.evades = vec!["cart".into()];
+    spec.robots.push(carrier);
+    let at = text(vector(place) - ahead * (behind + random.between(0.8, 2.0)));
+    let via = vec![text(vector(place) - ahead * random.between(0.0, behind))];
+    let motion = MotionSpec { via, speed: random.scaled(0.2, 1.0), start: 0.0, repeat: "no", turn: [0.0; 3] };
+    let shape = "shape = \"box\"\nsize = [0.3, 0.3, 0.3]\n".to_owned();
+    spec.objects.push(ObjectSpec { name: "cart".into(), shape, at, rpy: [0.0; 3], motion: Some(motion) });
+    let mut region = region::at(spec, 0, [0.0; 3], "m0", random);
+    region.shape = format!("shape = \"sphere\"\ncentre = [0, 0, 0]\nradius = {radius}\n");
+    (region.robots, region.follow) = (vec![0], Some(FollowSpec::Robot { robot: 1, frame: "flange" }));
+    spec.regions.push(region);
+    if random.percent(60) {
+        // A robot at rest: it is still there when the other one comes.
+        spec.robots[0].program.steps.truncate(1);
+        spec.robots[0].program.steps.insert(0, StepSpec::Wait(random.between(1.0, 5.0)));
+    }
+}
+
+fn local(frame: &Frame, place: Vec3) -> Vector {
+    text(frame.vector_back(place - frame.at))
+}
+
+fn vector([x, y, z]: Vector) -> Vec3 {
+    Vec3::new(x, y, z)
+}
+
+fn text(v: Vec3) -> Vector {
+    [v.x, v.y, v.z].map(rounded)
+}

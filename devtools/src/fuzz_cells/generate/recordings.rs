@@ -1,0 +1,120 @@
+//! Random cells with robots that play recordings, or repeat their programs.
+
+use super::settings::{Places, laws, settings};
+use super::{rail, region, robot};
+use crate::fuzz_cells::random::{Random, rounded};
+use crate::fuzz_cells::spec::{CellSpec, DhRow, Model, RecordingSpec, RegionSpec, RobotSpec, StepSpec};
+
+/// More rows than this are not written.
+const MOST_ROWS: usize = 3000;
+
+/// Forbidden regions near a recording, or near a program that runs several times.
+pub fn cell(random: &mut Random, places: &Places<'_>) -> CellSpec {
+    let mut spec = CellSpec { max_s: 12.0, ..settings(random) };
+    laws(&mut spec, random);
+    let mut one = if random.percent(30) { rail::slide(random) } else { robot::jointed(random) };
+    if random.percent(70)
+        && let Model::Dh { rows, .. } = &one.model
+    {
+        let harder = if random.percent(50) { 0.8 } else { random.scaled(0.3, 4.0) };
+        let recorded = recording(&one, rows, harder, random);
+        play(&mut one, recorded);
+    }
+    match random.whole(0, 3) {
+        0 => one.program.repeat = 2,
+        1 => spec.repeat = random.whole(2, 3) as u32,
+        _ => {}
+    }
+    if random.percent(25) {
+        return way_back(spec, random, places);
+    }
+    spec.robots.push(one);
+    let regions = random.whole(1, 3);
+    with_regions(spec, places, regions, |_, _| {}, random)
+}
+
+/// A slow recording, and on the way back from its end to its start, which is faster, a zone that is thick enough for the
+/// recording alone.
+fn way_back(spec: CellSpec, random: &mut Random, places: &Places<'_>) -> CellSpec {
+    let mut spec = CellSpec { max_s: 40.0, stopping_distance: false, direction_aware: false, repeat: 2, ..spec };
+    // With one move the way back is the way there.
+    let moves = |r: &RobotSpec| r.program.steps.iter().filter(|s| matches!(s, StepSpec::Joint { .. })).count();
+    let mut one = robot::jointed(random);
+    while moves(&one) < 2 {
+        one = robot::jointed(random);
+    }
+    let share = random.scaled(0.08, 0.5);
+    if let Model::Dh { rows, .. } = &one.model {
+        let slow = recording(&one, rows, share, random);
+        play(&mut one, slow);
+    }
+    spec.robots.push(one);
+    with_regions(spec, places, 1, |region, random| region.warning = random.scaled(0.01, 0.15), random)
+}
+
+fn play(robot: &mut RobotSpec, recording: RecordingSpec) {
+    robot.start.clone_from(&recording.rows[0].1);
+    (robot.program.steps, robot.program.recording) = (Vec::new(), Some(recording));
+}
+
+fn with_regions(
+    mut spec: CellSpec,
+    places: &Places<'_>,
+    count: usize,
+    change: impl Fn(&mut RegionSpec, &mut Random),
+    random: &mut Random,
+) -> CellSpec {
+    let Ok(cell) = spec.parse(places.cells) else { return spec };
+    for i in 0..count {
+        let mut region = region::on_the_path(&spec, &cell, &format!("g{i}"), random);
+        if let Some(region) = &mut region {
+            change(region, random);
+        }
+        spec.regions.extend(region);
+    }
+    spec
+}
+
+/// The robot's moves as a recording; it may be harder than the joints are stated to be, and begin or end in motion.
+fn recording(robot: &RobotSpec, joints: &[DhRow], harder: f64, random: &mut Random) -> RecordingSpec {
+    let period_s = random.one(&[0.002, 0.004, 0.01, 0.02, 0.05]);
+    let is_smooth = random.percent(75);
+    let mut rows = vec![(0.0, robot.start.clone())];
+    for step in &robot.program.steps {
+        let (StepSpec::Joint { to, .. } | StepSpec::Linear { to, .. }) = step else { continue };
+        let (begin_s, from) = rows[rows.len() - 1].clone();
+        let duration_s =
+            from.iter().zip(to).zip(joints).map(|((a, b), j)| duration(b - a, j)).fold(0.02, f64::max) / harder;
+        // Rows in which the joints go straight, or a polynomial without jumps of the acceleration.
+        let count =
+            if is_smooth { ((duration_s / period_s) as usize).clamp(4, MOST_ROWS / 4) } else { random.whole(1, 4) };
+        for i in 1..=count {
+            let share = i as f64 / count as f64;
+            let s = if is_smooth { share.powi(3) * (10.0 - 15.0 * share + 6.0 * share * share) } else { share };
+            let q = from.iter().zip(to).map(|(a, b)| a + (b - a) * s).collect();
+            rows.push((rounded_time(begin_s + duration_s * share), q));
+        }
+    }
+    if random.percent(35) {
+        let first = rows.len() * random.whole(5, 45) / 100;
+        rows.drain(..first.min(rows.len().saturating_sub(2)));
+    }
+    if random.percent(25) {
+        rows.truncate((rows.len() * random.whole(50, 95) / 100).max(2));
+    }
+    let begin_s = rows[0].0;
+    for (t_s, _) in &mut rows {
+        *t_s = rounded_time(*t_s - begin_s);
+    }
+    RecordingSpec { rows }
+}
+
+/// How long (s) a joint needs for the polynomial by its speed and acceleration.
+fn duration(way: f64, joint: &DhRow) -> f64 {
+    (1.875 * way.abs() / joint.speed).max((5.78 * way.abs() / joint.acceleration).sqrt())
+}
+
+/// To a microsecond.
+fn rounded_time(t_s: f64) -> f64 {
+    rounded(t_s * 100.0) / 100.0
+}

@@ -1,0 +1,71 @@
+//! Random cells with robots that exchange their tools.
+
+use super::settings::{Places, laws, settings};
+use super::{exchange, region, robot};
+use crate::fuzz_cells::random::Random;
+use crate::fuzz_cells::spec::{CellSpec, HandSpec, RobotSpec, StepSpec, ToolSpec};
+
+/// Forbidden regions, or exchange regions of several robots.
+pub fn cell(random: &mut Random, places: &Places<'_>) -> CellSpec {
+    if random.percent(40) {
+        let mut spec = CellSpec { max_s: 60.0, ..exchange::cell(random) };
+        spec.robots.truncate(3);
+        let last = spec.robots.len() - 1;
+        for robot in &mut spec.robots[..=random.whole(0, last)] {
+            equip(robot, random, 1.5);
+        }
+        return spec;
+    }
+    let mut spec = settings(random);
+    laws(&mut spec, random);
+    let mut one = robot::any(random, places);
+    equip(&mut one, random, 0.8);
+    if random.percent(30) {
+        one.program.repeat = 2;
+    }
+    spec.robots.push(one);
+    let Ok(cell) = spec.parse(places.cells) else { return spec };
+    for i in 0..random.whole(1, 3) {
+        spec.regions.extend(region::on_the_path(&spec, &cell, &format!("g{i}"), random));
+    }
+    spec
+}
+
+/// Two or three tools in place of what is in the hand, the first one mounted, and steps that exchange them.
+fn equip(robot: &mut RobotSpec, random: &mut Random, reach: f64) {
+    let names = ["gripper", "torch", "probe"];
+    let tool = |(i, name): (usize, &&str)| {
+        // The second one is long: it may reach where the first one did not.
+        let length = if i == 1 { random.between(0.2, reach) } else { random.between(0.02, 0.3) };
+        let size = [random.between(0.02, 0.1), random.between(0.02, 0.1), length];
+        let solid = random.percent(85).then_some(([0.0, 0.0, length / 2.0], size));
+        ToolSpec { name: (*name).to_owned(), tcp: [0.0, 0.0, length], solid, mounted: i == 0 }
+    };
+    let tools: Vec<ToolSpec> = names.iter().take(2).enumerate().map(tool).collect();
+    let count = random.whole(1, 3);
+    for i in 0..count {
+        let name = if i == 0 { "torch".to_owned() } else { tools[random.whole(0, 1)].name.clone() };
+        let steps = &mut robot.program.steps;
+        let at = random.whole(0, steps.len());
+        steps.insert(at, StepSpec::Tool(name));
+        if random.percent(50) {
+            steps.insert(at, StepSpec::Wait(random.between(0.01, 0.3)));
+        }
+    }
+    // Where it is exchanged it has come by a part of its first move.
+    if random.percent(50) {
+        part_of_the_first_move(robot, random);
+    }
+    robot.hand = HandSpec { tools, ..HandSpec::default() };
+}
+
+/// A stop on the way of the first move, with an exchange.
+fn part_of_the_first_move(robot: &mut RobotSpec, random: &mut Random) {
+    let is_move = |s: &StepSpec| matches!(s, StepSpec::Joint { .. });
+    let Some(index) = robot.program.steps.iter().position(is_move) else { return };
+    let StepSpec::Joint { to, percent } = robot.program.steps[index].clone() else { return };
+    let share = random.between(0.1, 0.9);
+    let part = robot.start.iter().zip(&to).map(|(a, b)| a + (b - a) * share).collect();
+    let on_the_way = [StepSpec::Joint { to: part, percent }, StepSpec::Tool("torch".into())];
+    robot.program.steps.splice(index..index, on_the_way);
+}

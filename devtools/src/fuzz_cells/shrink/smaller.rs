@@ -1,0 +1,174 @@
+//! Cells with one thing less.
+
+use elbowroom_robot::RobotId;
+
+use crate::fuzz_cells::spec::{
+    CellSpec, FollowSpec, Model, MotionSpec, ObjectSpec, ProgramSpec, RecordingSpec, RobotSpec, StepSpec,
+};
+
+/// Fewer rows than this are no recording.
+const LEAST_ROWS: usize = 2;
+
+/// Collects candidates: the cell with one change each.
+struct Candidates<'s> {
+    spec: &'s CellSpec,
+    list: Vec<CellSpec>,
+}
+
+impl Candidates<'_> {
+    fn push(&mut self, change: impl Fn(&mut CellSpec)) {
+        let mut changed = self.spec.clone();
+        change(&mut changed);
+        self.list.push(changed);
+    }
+}
+
+/// Every cell that has one thing less, the largest things first.
+pub fn candidates(spec: &CellSpec) -> Vec<CellSpec> {
+    let mut list = Candidates { spec, list: Vec::new() };
+    for i in (0..spec.robots.len()).rev().filter(|_| spec.robots.len() > 1) {
+        list.push(|c| remove_robot(c, i));
+    }
+    for i in 0..spec.regions.len() {
+        list.push(|c| remove_region(c, i));
+    }
+    for (i, object) in spec.objects.iter().enumerate() {
+        without_object(&mut list, i, object);
+    }
+    for i in 0..spec.faults.len() {
+        list.push(|c| c.faults.retain(|f| *f != spec.faults[i]));
+    }
+    if spec.repeat > 1 {
+        list.push(|c| c.repeat = 1);
+    }
+    for (r, robot) in spec.robots.iter().enumerate() {
+        shorter_program(&mut list, r, &robot.program);
+        emptier_robot(&mut list, r, robot);
+    }
+    if spec.direction_aware {
+        list.push(|c| c.direction_aware = false);
+    }
+    if spec.reaction_ms > 0.0 {
+        list.push(|c| c.reaction_ms = 0.0);
+    }
+    list.list
+}
+
+/// Without an object that nothing follows or evades, or with a simpler motion.
+fn without_object(list: &mut Candidates<'_>, i: usize, object: &ObjectSpec) {
+    let follows = |f: &Option<FollowSpec>| matches!(f, Some(FollowSpec::Object(name)) if *name == object.name);
+    let is_needed = list.spec.regions.iter().any(|r| follows(&r.follow))
+        || list.spec.robots.iter().any(|r| r.evades.contains(&object.name));
+    if !is_needed {
+        list.push(|c| drop(c.objects.remove(i)));
+        return;
+    }
+    let Some(motion) = &object.motion else { return };
+    let (turns, travels) = (motion.turn != [0.0; 3], !motion.via.is_empty());
+    let mut simplify = |change: fn(&mut MotionSpec)| list.push(|c| c.objects[i].motion.iter_mut().for_each(change));
+    if turns && travels {
+        simplify(|m| m.via.clear());
+        simplify(|m| m.turn = [0.0; 3]);
+    }
+    if motion.start > 0.0 {
+        simplify(|m| m.start = 0.0);
+    }
+    if object.rpy != [0.0; 3] {
+        list.push(|c| c.objects[i].rpy = [0.0; 3]);
+    }
+    if !object.shape.contains("\"sphere\"") {
+        list.push(|c| c.objects[i].shape = "shape = \"sphere\"\nradius = 0.01\n".into());
+    }
+}
+
+fn shorter_program(list: &mut Candidates<'_>, r: usize, program: &ProgramSpec) {
+    if program.repeat > 1 {
+        list.push(|c| c.robots[r].program.repeat = 1);
+    }
+    for i in (0..program.steps.len()).rev() {
+        list.push(|c| drop(c.robots[r].program.steps.remove(i)));
+    }
+    if let Some(recording) = &program.recording {
+        let rows = recording.rows.len();
+        let changes: [fn(&mut RecordingSpec); 3] = [
+            |recording| recording.rows.truncate(recording.rows.len() / 2),
+            |recording| drop(recording.rows.drain(..recording.rows.len() / 2)),
+            every_other_row,
+        ];
+        for change in changes.into_iter().filter(|_| rows / 2 >= LEAST_ROWS) {
+            list.push(|c| c.robots[r].program.recording.iter_mut().for_each(change));
+        }
+    }
+}
+
+/// The first and last rows stay.
+fn every_other_row(recording: &mut RecordingSpec) {
+    let last = recording.rows.len() - 1;
+    let mut row = 0..;
+    recording.rows.retain(|_| row.next().is_some_and(|i| i % 2 == 0 || i == last));
+}
+
+fn emptier_robot(list: &mut Candidates<'_>, r: usize, robot: &RobotSpec) {
+    if let Model::Dh { links, .. } = &robot.model {
+        for (l, solids) in links.iter().enumerate() {
+            for i in 0..solids.len() {
+                list.push(|c| remove_solid(c, r, l, i));
+            }
+        }
+    }
+    let hand = &robot.hand;
+    if hand.load.is_some() {
+        list.push(|c| c.robots[r].hand.load = None);
+    }
+    if hand.tool_box.is_some() {
+        list.push(|c| c.robots[r].hand.tool_box = None);
+    }
+    if hand.tcp.is_some() {
+        list.push(|c| c.robots[r].hand.tcp = None);
+    }
+    for i in 0..hand.tools.len() {
+        list.push(|c| remove_tool(c, r, i));
+    }
+    if !robot.evades.is_empty() {
+        list.push(|c| c.robots[r].evades.clear());
+    }
+}
+
+fn remove_solid(c: &mut CellSpec, robot: usize, link: usize, solid: usize) {
+    if let Model::Dh { links, .. } = &mut c.robots[robot].model {
+        links[link].remove(solid);
+    }
+}
+
+fn remove_tool(c: &mut CellSpec, robot: usize, tool: usize) {
+    let robot = &mut c.robots[robot];
+    let name = robot.hand.tools.remove(tool).name;
+    robot.program.steps.retain(|s| !matches!(s, StepSpec::Tool(tool) if *tool == name));
+}
+
+fn remove_region(c: &mut CellSpec, i: usize) {
+    let name = c.regions.remove(i).name;
+    for robot in &mut c.robots {
+        robot.program.steps.retain(|s| !matches!(s, StepSpec::Switch { region, .. } if *region == name));
+    }
+}
+
+/// Robots are named by their place, so all that names one moves up.
+fn remove_robot(c: &mut CellSpec, i: usize) {
+    c.robots.remove(i);
+    let moved = |r: usize| if r > i { r - 1 } else { r };
+    c.faults.retain(|f| f.robot != RobotId(i));
+    c.faults.iter_mut().for_each(|f| f.robot.0 = moved(f.robot.0));
+    c.regions.retain(|r| r.robots != [i] && !matches!(r.follow, Some(FollowSpec::Robot { robot, .. }) if robot == i));
+    for region in &mut c.regions {
+        region.robots.retain(|r| *r != i);
+        region.robots.iter_mut().for_each(|r| *r = moved(*r));
+        if let Some(FollowSpec::Robot { robot, .. }) = &mut region.follow {
+            *robot = moved(*robot);
+        }
+    }
+    let names: Vec<String> = c.regions.iter().map(|r| r.name.clone()).collect();
+    for robot in &mut c.robots {
+        robot.program.steps.retain(|s| !matches!(s, StepSpec::Switch { region, .. } if !names.contains(region)));
+    }
+}

@@ -1,0 +1,87 @@
+//! A cell as the fuzzer thinks of it: small enough to be made smaller, written as the TOML that users write.
+
+mod comments;
+mod object;
+mod recording;
+mod region;
+mod robot;
+mod text;
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use elbowroom_cell::Cell;
+use elbowroom_sim::InputFault;
+
+pub use comments::{read_faults, read_repeat};
+pub use object::{MotionSpec, ObjectSpec};
+pub use recording::RecordingSpec;
+pub use region::{BeltSpec, FollowSpec, RegionSpec};
+pub use robot::{DhRow, HandSpec, Model, ProgramSpec, RobotSpec, SolidSpec, StepSpec, ToolSpec};
+pub use text::{Vector, list};
+
+/// A whole cell; metres, radians, seconds.
+#[derive(Debug, Clone, Default)]
+pub struct CellSpec {
+    pub tick_ms: f64,
+    pub max_s: f64,
+    pub stopping_distance: bool,
+    pub reaction_ms: f64,
+    pub direction_aware: bool,
+    pub recovery_percent: f64,
+    pub robots: Vec<RobotSpec>,
+    pub belts: Vec<BeltSpec>,
+    pub objects: Vec<ObjectSpec>,
+    pub regions: Vec<RegionSpec>,
+    pub faults: Vec<InputFault>,
+    /// How often the programs run, beside their own `repeat`; 0 is once.
+    pub repeat: u32,
+}
+
+impl CellSpec {
+    /// The cell file. What no cell file has stands in comments.
+    pub fn to_toml(&self) -> String {
+        let mut t = String::from("version = 1\nunits = { length = \"m\", angle = \"rad\" }\n");
+        let _ = writeln!(t, "tick_ms = {}\nmax_s = {}\n", self.tick_ms, self.max_s);
+        let _ = writeln!(
+            t,
+            "[monitor]\nstopping_distance = {}\nreaction_ms = {}\ndirection_aware = {}\nrecovery = {}\n",
+            self.stopping_distance, self.reaction_ms, self.direction_aware, self.recovery_percent
+        );
+        self.robots.iter().enumerate().for_each(|(i, robot)| robot.write(&mut t, i));
+        self.belts.iter().for_each(|belt| belt.write(&mut t));
+        self.objects.iter().for_each(|object| object.write(&mut t));
+        self.regions.iter().for_each(|region| region.write(&mut t));
+        for (i, robot) in self.robots.iter().enumerate() {
+            robot.program.write(&mut t, i);
+            if !robot.evades.is_empty() {
+                // Without searches for paths: they take most of the time and are not what is tested.
+                let _ = writeln!(t, "[avoidance.r{i}]\nobjects = {:?}\nreplan = false\n", robot.evades);
+            }
+        }
+        comments::write_repeat(&mut t, self.repeat);
+        self.faults.iter().for_each(|f| comments::write_fault(&mut t, f));
+        t
+    }
+
+    /// The cell as it is read from its file in this folder.
+    ///
+    /// # Errors
+    /// What the cell file refuses.
+    pub fn parse(&self, folder: &Path) -> Result<Cell, String> {
+        self.write_recordings(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+        let cell = Cell::parse(folder.join("fuzz.toml"), &self.to_toml()).map_err(|e| e.to_string());
+        // A cell has read all of its files.
+        self.recordings().for_each(|recording| drop(std::fs::remove_file(folder.join(recording.file_name()))));
+        cell
+    }
+
+    /// Writes the recordings that the cell file names into its folder.
+    pub fn write_recordings(&self, folder: &Path) -> std::io::Result<()> {
+        self.recordings().try_for_each(|recording| recording.write_file(folder))
+    }
+
+    fn recordings(&self) -> impl Iterator<Item = &RecordingSpec> {
+        self.robots.iter().filter_map(|r| r.program.recording.as_ref())
+    }
+}

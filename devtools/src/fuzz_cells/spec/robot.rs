@@ -1,0 +1,217 @@
+//! Robots, their hands and programs.
+
+use std::fmt::Write as _;
+
+use super::recording::RecordingSpec;
+use super::text::{Vector, list};
+
+#[derive(Debug, Clone)]
+pub struct RobotSpec {
+    pub model: Model,
+    pub at: Vector,
+    pub rpy: Vector,
+    pub start: Vec<f64>,
+    pub hand: HandSpec,
+    pub volumes: &'static str,
+    pub stop_time: f64,
+    /// Of all joints alike; for models without their own.
+    pub acceleration: Option<f64>,
+    pub program: ProgramSpec,
+    /// Names of the objects that it evades; without any it has no avoidance.
+    pub evades: Vec<String>,
+}
+
+/// What the flange carries: one tool and a load, or several tools.
+#[derive(Debug, Clone, Default)]
+pub struct HandSpec {
+    pub tcp: Option<Vector>,
+    /// Centre and size.
+    pub tool_box: Option<(Vector, Vector)>,
+    pub load: Option<SolidSpec>,
+    pub tools: Vec<ToolSpec>,
+}
+
+/// A named tool.
+#[derive(Debug, Clone)]
+pub struct ToolSpec {
+    pub name: String,
+    pub tcp: Vector,
+    /// Centre and size.
+    pub solid: Option<(Vector, Vector)>,
+    pub mounted: bool,
+}
+
+/// Steps, or a recording.
+#[derive(Debug, Clone)]
+pub struct ProgramSpec {
+    pub override_percent: f64,
+    pub repeat: u32,
+    pub steps: Vec<StepSpec>,
+    /// Instead of the steps.
+    pub recording: Option<RecordingSpec>,
+}
+
+#[derive(Debug, Clone)]
+pub enum Model {
+    Dh {
+        rows: Vec<DhRow>,
+        links: Vec<Vec<SolidSpec>>,
+    },
+    /// Lines of the robot's table that name the model.
+    File(String),
+}
+
+#[derive(Debug, Clone, Copy)]
+pub struct DhRow {
+    pub slides: bool,
+    pub a: f64,
+    pub alpha: f64,
+    pub d: f64,
+    pub theta: f64,
+    pub min: f64,
+    pub max: f64,
+    pub speed: f64,
+    pub acceleration: f64,
+}
+
+#[derive(Debug, Clone, Copy)]
+pub enum SolidSpec {
+    Sphere { at: Vector, radius: f64 },
+    Box { at: Vector, rpy: Vector, size: Vector },
+    Capsule { from: Vector, to: Vector, radius: f64 },
+    Cylinder { from: Vector, to: Vector, radius: f64 },
+}
+
+#[derive(Debug, Clone)]
+pub enum StepSpec {
+    Joint { to: Vec<f64>, percent: f64 },
+    Linear { to: Vec<f64>, speed: f64 },
+    Wait(f64),
+    Override(f64),
+    Switch { region: String, active: bool },
+    Tool(String),
+}
+
+impl RobotSpec {
+    pub(super) fn write(&self, t: &mut String, index: usize) {
+        let _ = writeln!(t, "[robot.r{index}]\nbase = {{ at = {}, rpy = {} }}", list(&self.at), list(&self.rpy));
+        match &self.model {
+            Model::File(lines) => t.push_str(lines),
+            Model::Dh { rows, links } => {
+                t.push_str("dh = [\n");
+                for r in rows {
+                    r.write(t);
+                }
+                t.push_str("]\nlinks = [\n");
+                for solids in links {
+                    let solids: Vec<String> = solids.iter().map(SolidSpec::text).collect();
+                    let _ = writeln!(t, "  [{}],", solids.join(", "));
+                }
+                t.push_str("]\n");
+            }
+        }
+        // A recording begins at its first row.
+        if self.program.recording.is_none() {
+            let _ = writeln!(t, "start = {}", list(&self.start));
+        }
+        let _ = writeln!(t, "stop_time = {}\nvolumes = \"{}\"", self.stop_time, self.volumes);
+        if let Some(a) = self.acceleration {
+            let _ = writeln!(t, "acceleration = {a}");
+        }
+        self.hand.write(t, index);
+        t.push('\n');
+    }
+}
+
+impl HandSpec {
+    fn write(&self, t: &mut String, index: usize) {
+        if let Some(load) = &self.load {
+            let _ = writeln!(t, "load = {}", load.text());
+        }
+        if self.tcp.is_some() || self.tool_box.is_some() {
+            let _ = writeln!(t, "[robot.r{index}.tool]");
+        }
+        if let Some(tcp) = &self.tcp {
+            let _ = writeln!(t, "tcp = {{ at = {}, rpy = [0, 0, 0] }}", list(tcp));
+        }
+        if let Some((at, size)) = &self.tool_box {
+            let _ = writeln!(t, "box = {{ at = {}, size = {} }}", list(at), list(size));
+        }
+        for tool in &self.tools {
+            let _ = writeln!(t, "[robot.r{index}.tools.{}]\ntcp = {{ at = {} }}", tool.name, list(&tool.tcp));
+            if let Some((at, size)) = &tool.solid {
+                let _ = writeln!(t, "box = {{ at = {}, size = {} }}", list(at), list(size));
+            }
+            if !tool.mounted {
+                t.push_str("mounted = false\n");
+            }
+        }
+    }
+}
+
+impl ProgramSpec {
+    /// Steps that run once.
+    pub fn of_steps(override_percent: f64, steps: Vec<StepSpec>) -> Self {
+        Self { override_percent, repeat: 1, steps, recording: None }
+    }
+
+    pub(super) fn write(&self, t: &mut String, index: usize) {
+        if self.steps.is_empty() && self.recording.is_none() {
+            return;
+        }
+        let _ = writeln!(t, "[program.r{index}]\noverride = {}", self.override_percent);
+        if self.repeat > 1 {
+            let _ = writeln!(t, "repeat = {}", self.repeat);
+        }
+        if let Some(recording) = &self.recording {
+            let _ = writeln!(t, "trajectory = \"{}\"\n", recording.file_name());
+            return;
+        }
+        t.push_str("steps = [\n");
+        self.steps.iter().for_each(|s| s.write(t));
+        t.push_str("]\n\n");
+    }
+}
+
+impl DhRow {
+    fn write(&self, t: &mut String) {
+        let kind = if self.slides { "prismatic" } else { "revolute" };
+        let _ = writeln!(
+            t,
+            "  {{ kind = \"{kind}\", a = {}, alpha = {}, d = {}, theta = {}, min = {}, max = {}, speed = {}, acceleration = {} }},",
+            self.a, self.alpha, self.d, self.theta, self.min, self.max, self.speed, self.acceleration
+        );
+    }
+}
+
+impl SolidSpec {
+    fn text(&self) -> String {
+        match self {
+            Self::Sphere { at, radius } => format!("{{ sphere = {{ at = {}, radius = {radius} }} }}", list(at)),
+            Self::Box { at, rpy, size } => {
+                format!("{{ box = {{ at = {}, rpy = {}, size = {} }} }}", list(at), list(rpy), list(size))
+            }
+            Self::Capsule { from, to, radius } => {
+                format!("{{ capsule = {{ from = {}, to = {}, radius = {radius} }} }}", list(from), list(to))
+            }
+            Self::Cylinder { from, to, radius } => {
+                format!("{{ cylinder = {{ from = {}, to = {}, radius = {radius} }} }}", list(from), list(to))
+            }
+        }
+    }
+}
+
+impl StepSpec {
+    fn write(&self, t: &mut String) {
+        let _ = match self {
+            Self::Joint { to, percent } => {
+                writeln!(t, "  {{ move = \"joint\", to = {}, speed = {percent} }},", list(to))
+            }
+            Self::Linear { to, speed } => writeln!(t, "  {{ move = \"linear\", to = {}, speed = {speed} }},", list(to)),
+            Self::Wait(s) => writeln!(t, "  {{ wait = {s} }},"),
+            Self::Override(percent) => writeln!(t, "  {{ override = {percent} }},"),
+            Self::Tool(name) => writeln!(t, "  {{ tool = \"{name}\" }},"),
+            Self::Switch { region, active } => writeln!(t, "  {{ region = \"{region}\", active = {active} }},"),
+        };
+    }
+}
