@@ -1,5 +1,4 @@
-//! What the model check explores. The suite explores the first states of most cells, `ELBOWROOM_LONG=1` twice as many.
-//! `ELBOWROOM_MODEL_STATES` sets another number,
+//! What the model check explores. The suite explores the first states of most cells. `ELBOWROOM_MODEL_STATES` sets another number,
 //! `ELBOWROOM_MODEL_SECONDS` a time, `ELBOWROOM_MODEL_CELL` the only cell.
 
 use std::time::{Duration, Instant};
@@ -55,10 +54,6 @@ fn explore(name: &str, model: CellModel, states: usize) -> Explored {
     explored
 }
 
-fn is_long_run() -> bool {
-    std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1")
-}
-
 /// A cell, and how many states the suite explores of it.
 struct Check {
     name: &'static str,
@@ -70,7 +65,7 @@ struct Check {
 
 /// The first states, of which there are more.
 fn first(name: &'static str, model: CellModel) -> Check {
-    Check { name, model, states: if is_long_run() { 30_000 } else { 15_000 }, is_complete: false }
+    Check { name, model, states: 30_000, is_complete: false }
 }
 
 fn with(guard_crashes: u8, arbiter_crashes: u8, clears: u8, programs: &[&[&str]]) -> CellModel {
