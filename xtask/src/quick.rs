@@ -11,7 +11,7 @@ use crate::test_run::Program;
 use crate::workspace::WORKSPACE;
 use crate::{documents, layers, suite, test_run};
 
-/// Units of tests of the crates that depend on a change run if they took no longer, seconds; those of the changed crates always.
+/// Longest last time, in seconds, of the units of tests that run in crates which only depend on a change.
 const LONGEST_BEYOND_S: f64 = 1.0;
 
 /// Checks what differs from `since`, a commit: formats, layers, documents, lints, then the tests of the changed crates and those

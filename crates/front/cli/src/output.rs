@@ -61,7 +61,7 @@ pub(crate) fn cannot_write(path: &Path) -> impl Fn(io::Error) -> Failure + '_ {
             io::ErrorKind::NotFound => "a folder that is there",
             io::ErrorKind::NotADirectory | io::ErrorKind::AlreadyExists => "another name: a file of this one is there",
             io::ErrorKind::IsADirectory => "the name of a file: this is a folder",
-            _ => "a folder that you may write to",
+            _ => "a file and a folder that you may write to",
         };
         Failure::Wrong(format!("{}: cannot be written: {e}\n  write: {instead}", path.display()))
     }

@@ -31,13 +31,17 @@ pub(crate) fn try_write(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::R
         Ok(found) => (fs::canonicalize(path)?, found.is_file()),
         Err(_) => (path.to_path_buf(), true),
     };
+    let replaced = fs::metadata(&path).ok().map(|found| found.permissions());
+    // To rename onto a file needs no right to write it: one that its owner protects would be lost.
+    if replaced.as_ref().is_some_and(fs::Permissions::readonly) {
+        return Err(io::ErrorKind::PermissionDenied.into());
+    }
     if !is_file {
         return write_through(File::create(&path)?, write).map(drop);
     }
     let beside = Beside::of(&path);
-    let permissions = fs::metadata(&path).map(|replaced| replaced.permissions());
     let file = write_through(File::options().write(true).create_new(true).open(&beside.0)?, write)?;
-    permissions.map_or(Ok(()), |permissions| file.set_permissions(permissions))?;
+    replaced.map_or(Ok(()), |permissions| file.set_permissions(permissions))?;
     fs::rename(&beside.0, &path)
 }
 
@@ -101,6 +105,10 @@ mod tests {
         assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
         assert_eq!(fs::read_to_string(&path).unwrap(), "new");
         assert_eq!(fs::metadata(&path).unwrap().permissions().mode() & 0o777, 0o640);
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o440)).unwrap();
+        let Err(Failure::Wrong(message)) = write_bytes(&link, "newer") else { panic!("it was written") };
+        assert!(message.contains("write: a file and a folder that you may write to"), "{message}");
+        assert_eq!(fs::read_to_string(&path).unwrap(), "new", "a protected file stays");
         write_bytes(Path::new("/dev/null"), "gone").unwrap();
         let Err(Failure::Wrong(message)) = write_bytes(Path::new("/dev/full"), "x") else { panic!("it was written") };
         assert!(message.contains("a disk with space left"), "{message}");

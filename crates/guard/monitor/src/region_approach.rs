@@ -28,7 +28,7 @@ impl RegionApproach {
         }
     }
 
-    /// True where no point of it moves.
+    /// Whether no point of it moves.
     pub(crate) fn is_still(&self) -> bool {
         self.max_speed == 0.0
     }

@@ -83,7 +83,7 @@ fn vector(v: Vector) -> Vec3 {
     Vec3::new(v[0], v[1], v[2])
 }
 
-/// True where the robots start outside of the last region; also where the cell is refused.
+/// Whether the robots start outside of the last region; also where the cell is refused.
 pub fn starts_outside(spec: &CellSpec, folder: &Path) -> bool {
     let Ok(cell) = spec.parse(folder) else { return true };
     oracle::start_distance(&cell, cell.regions.len() - 1) > START_M

@@ -70,7 +70,7 @@ impl Carrier {
         }
     }
 
-    /// True where its belt starts, stops or changes its speed between two times.
+    /// Whether its belt starts, stops or changes its speed between two times.
     pub fn changes_speed(&self, from_s: f64, to_s: f64) -> bool {
         let Self::Belt(encoder) = self else { return false };
         let within = |t: f64| from_s <= t && t <= to_s;

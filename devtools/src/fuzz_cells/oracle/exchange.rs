@@ -85,7 +85,7 @@ fn mark_inside(pair: &SweptPair<'_>, during: &mut [bool]) {
     }
 }
 
-/// True where a robot has exchanged a tool into the region by tick `k`, and `check` says that this is not excluded.
+/// Whether a robot has exchanged a tool into the region by tick `k`, and `check` says that this is not excluded.
 fn is_exchanged_inside(
     motion: &OracleMotion<'_>,
     region: usize,

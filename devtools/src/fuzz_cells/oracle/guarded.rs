@@ -70,7 +70,7 @@ impl Guarded {
         Self { link, in_link, solid, part, tool: None, radius_m }
     }
 
-    /// True where it is on the robot before anything moves.
+    /// Whether it is on the robot before anything moves.
     pub fn is_there_at_start(&self, robot: &CellRobot) -> bool {
         self.tool.is_none_or(|tool| robot.tools[tool].mounted)
     }

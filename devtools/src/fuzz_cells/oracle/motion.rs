@@ -66,7 +66,7 @@ impl<'a> OracleMotion<'a> {
         spans
     }
 
-    /// True where a solid is on its robot at a tick: a tool may be off its flange.
+    /// Whether a solid is on its robot at a tick: a tool may be off its flange.
     pub fn has(&self, robot: usize, guarded: &Guarded, k: usize) -> bool {
         guarded.tool.is_none_or(|tool| self.tools[robot].has(tool, k))
     }

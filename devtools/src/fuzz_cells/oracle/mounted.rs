@@ -32,7 +32,7 @@ impl MountedTools {
         self.0.iter().skip(1).map(|(tick, _)| *tick)
     }
 
-    /// True where the tool with this index is on its flange at a tick.
+    /// Whether the tool with this index is on its flange at a tick.
     pub fn has(&self, tool: usize, tick: usize) -> bool {
         self.0.iter().rev().find(|(from, _)| *from <= tick).is_some_and(|(_, mounted)| mounted[tool])
     }

@@ -99,12 +99,12 @@ impl<'a> SweptPair<'a> {
         }
     }
 
-    /// True where it is on its robot at a tick.
+    /// Whether it is on its robot at a tick.
     pub fn is_there(&self, k: usize) -> bool {
         self.motion.has(self.robot, self.guarded, k)
     }
 
-    /// True where it touches the region, or lies in it, at a tick.
+    /// Whether it touches the region, or lies in it, at a tick.
     pub fn is_inside(&self, k: usize) -> bool {
         let frames = self.motion.frames(&self.motion.q[k]);
         let place = &self.motion.places[self.region];

@@ -36,7 +36,7 @@ impl Track {
     }
 }
 
-/// True where a body at these ticks turns at a constant rate, and keeps its velocity or turns it as it turns itself: what
+/// Whether a body at these ticks turns at a constant rate, and keeps its velocity or turns it as it turns itself: what
 /// can be foreseen.
 pub fn is_steady(frames: &[Frame], tick_s: f64) -> bool {
     let small = |change: Vec3| change.length() <= ACCELERATION * tick_s * tick_s;
