@@ -152,7 +152,7 @@ static inline double elbowroom_get_double(const uint8_t *bytes)
 /* ---- The client ---- */
 
 /* `boot` must be higher than at former starts of this controller: the time of day in nanoseconds will do. `configuration` is
-   the number of the cell file, or 0 to obey any. `stale_us` is stale_ms of the cell file (20 ms without one), in µs. */
+   the number of the cell file, or 0 to obey any: a node with exchange regions refuses 0. `stale_us` is stale_ms of the cell file (20 ms without one), in µs. */
 static inline void elbowroom_client_init(elbowroom_client *client, uint64_t boot, uint64_t configuration, uint64_t stale_us)
 {
     memset(client, 0, sizeof *client);
@@ -161,12 +161,16 @@ static inline void elbowroom_client_init(elbowroom_client *client, uint64_t boot
     client->stale_us = stale_us;
 }
 
-/* The bytes of the next message to the node, in every tick. Returns their number; 0, and nothing is sent, where `capacity` is too
+static inline const elbowroom_answer *elbowroom_answer_at(const elbowroom_client *client, uint64_t now_us);
+
+/* The bytes of the next message to the node, in every tick. While no answer counts it says that the program stands, at override 0: the
+   node must not take a robot that stops by itself for one whose joint values are frozen. Returns their number; 0, and nothing is sent, where `capacity` is too
    small, or there are more joints or attached volumes than a message has. */
 static inline size_t elbowroom_joint_state(elbowroom_client *client, uint64_t now_us, const elbowroom_state *state,
                                            uint8_t *out, size_t capacity)
 {
     const size_t blocks = 1u + (state->qd != NULL) + (state->intent != NULL);
+    const double programmed_override = elbowroom_answer_at(client, now_us) != NULL ? state->programmed_override : 0.0;
     uint8_t *at = out;
     size_t length, i;
     if (state->joints > ELBOWROOM_MAX_JOINTS || state->attached_count > ELBOWROOM_MAX_ATTACHED)
@@ -189,7 +193,7 @@ static inline size_t elbowroom_joint_state(elbowroom_client *client, uint64_t no
     at = elbowroom_put(at, client->boot, 8);
     at = elbowroom_put(at, client->sequence, 8);
     at = elbowroom_put(at, state->stamp_us, 8);
-    at = elbowroom_put_doubles(at, &state->programmed_override, 1);
+    at = elbowroom_put_doubles(at, &programmed_override, 1);
     at = elbowroom_put_doubles(at, state->q, state->joints);
     if (state->qd != NULL)
         at = elbowroom_put_doubles(at, state->qd, state->joints);
@@ -253,7 +257,8 @@ static inline const elbowroom_answer *elbowroom_answer_at(const elbowroom_client
     if (!client->has_answer || client->sequence - client->answer.echo >= ELBOWROOM_REMEMBERED)
         return NULL;
     sent_us = client->sent_us[client->answer.echo % ELBOWROOM_REMEMBERED];
-    if (now_us > sent_us && now_us - sent_us > client->stale_us)
+    /* On a clock that was set back nothing is fresh. */
+    if (now_us < sent_us || now_us - sent_us > client->stale_us)
         return NULL;
     return &client->answer;
 }

@@ -2,10 +2,11 @@
  * A controller: moves a robot to and fro between two configurations at 250 Hz, as fast as its node permits, over UDP.
  *
  *     cc -std=c99 -O2 -o example example.c -lm
- *     ./example 127.0.0.1 7448 rail rail 10 0.2 1.0
+ *     ./example 127.0.0.1 7448 rail rail 10 0.2 1.0 [6f1c...]
  *
- * HOST and PORT of the node, CELL, ROBOT, SECONDS, and the two configurations: one value per joint, rad or m, with commas between
- * them. Its joints are moved here by arithmetic; a real controller reads them from its encoders, and hands the override to its
+ * HOST and PORT of the node, CELL, ROBOT, SECONDS, the two configurations: one value per joint, rad or m, with commas between
+ * them; and the 16 digits of the cell file's checksum, which every process of the service prints at its start. A node with exchange
+ * regions obeys no controller without them. Its joints are moved here by arithmetic; a real controller reads them from its encoders, and hands the override to its
  * interpolator.
  *
  * SPDX-License-Identifier: MIT OR Apache-2.0
@@ -99,6 +100,13 @@ static size_t parse_joints(const char *text, double *values)
     return 0;
 }
 
+/* The number of 16 hexadecimal digits; 0 where the text is none. */
+static uint64_t parse_checksum(const char *text)
+{
+    const int is_one = strlen(text) == 16 && strspn(text, "0123456789abcdef") == 16;
+    return is_one ? strtoull(text, NULL, 16) : 0;
+}
+
 static int open_connection(connection *c, const char *host, const char *port, const char *cell, const char *robot)
 {
     struct addrinfo hints, *found = NULL;
@@ -156,14 +164,14 @@ static void print_state(const elbowroom_client *client, const motion *m, uint64_
 }
 
 /* The control loop. */
-static void drive(const connection *c, motion *m, double seconds)
+static void drive(const connection *c, motion *m, double seconds, uint64_t configuration)
 {
     elbowroom_client client;
     const uint64_t began = now_us();
     const uint64_t ticks = (uint64_t)(seconds * 1e6) / TICK_US;
     uint64_t tick;
     unsigned refused = 0;
-    elbowroom_client_init(&client, clock_ns(CLOCK_REALTIME), 0, STALE_US);
+    elbowroom_client_init(&client, clock_ns(CLOCK_REALTIME), configuration, STALE_US);
     for (tick = 0; tick < ticks; tick++) {
         uint8_t bytes[ELBOWROOM_JOINT_STATE_BYTES];
         elbowroom_state state;
@@ -194,10 +202,16 @@ int main(int count, char **arguments)
 {
     connection c;
     motion m;
+    uint64_t configuration;
     memset(&c, 0, sizeof c);
     memset(&m, 0, sizeof m);
-    if (count != 8) {
-        fprintf(stderr, "usage: %s HOST PORT CELL ROBOT SECONDS FROM TO\n", arguments[0]);
+    if (count != 8 && count != 9) {
+        fprintf(stderr, "usage: %s HOST PORT CELL ROBOT SECONDS FROM TO [CHECKSUM]\n", arguments[0]);
+        return 2;
+    }
+    configuration = count == 9 ? parse_checksum(arguments[8]) : 0;
+    if (count == 9 && configuration == 0) {
+        fprintf(stderr, "CHECKSUM: the 16 digits that the service prints at its start\n");
         return 2;
     }
     m.joints = parse_joints(arguments[6], m.from);
@@ -209,7 +223,7 @@ int main(int count, char **arguments)
         fprintf(stderr, "%s:%s is no address of a node, or the names are too long\n", arguments[1], arguments[2]);
         return 1;
     }
-    drive(&c, &m, atof(arguments[5]));
+    drive(&c, &m, atof(arguments[5]), configuration);
     close(c.socket);
     return 0;
 }

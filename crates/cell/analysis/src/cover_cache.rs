@@ -2,9 +2,9 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant};
 
+use elbowroom_formats::WholeFile;
 use elbowroom_proximity::Shape;
 use elbowroom_spatial::{Pose, Vec3};
 use elbowroom_validity::{Ball, CoverSource, SphereCover, describe_cover};
@@ -46,18 +46,12 @@ impl CoverCache {
         decode(&fs::read(self.file(hash)?).ok()?, hash)
     }
 
-    /// Writes a file of another name first, so that no other run reads half of it.
     fn save(&self, hash: [u8; HASH_BYTES], cover: &SphereCover) {
-        static WRITTEN: AtomicU32 = AtomicU32::new(0);
         let Some(file) = self.file(hash) else { return };
         let Some(directory) = file.parent() else { return };
-        let number = WRITTEN.fetch_add(1, Ordering::Relaxed);
-        let unfinished = file.with_extension(format!("{}-{number}.part", std::process::id()));
-        let is_written = fs::create_dir_all(directory).is_ok() && fs::write(&unfinished, encode(cover, hash)).is_ok();
-        if !is_written || fs::rename(&unfinished, &file).is_err() {
-            // Nothing is lost but time: the next run builds the cover again.
-            let _ = fs::remove_file(&unfinished);
-        }
+        // Where it cannot be written nothing is lost but time: the next run builds the cover again.
+        let _ = fs::create_dir_all(directory)
+            .and_then(|()| WholeFile::write(&file, |out| out.write_all(&encode(cover, hash))));
     }
 
     fn file(&self, hash: [u8; HASH_BYTES]) -> Option<PathBuf> {

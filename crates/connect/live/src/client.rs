@@ -106,11 +106,15 @@ impl ControllerClient {
     }
 
     /// The bytes of the next message to the node. Call it in every tick.
+    ///
+    /// While no answer counts the message says that the program stands, at override 0: the node must not take a robot that stops by
+    /// itself for one whose joint values are frozen.
     pub fn joint_state(&mut self, now: Micros, state: &ControllerState<'_>) -> &[u8] {
+        let programmed_override = if self.answer(now).is_some() { state.programmed_override } else { 0.0 };
         let message = &mut self.state;
         message.sequence += 1;
         message.stamp_us = state.stamp.unwrap_or(now).0;
-        message.programmed_override = state.programmed_override;
+        message.programmed_override = programmed_override;
         for (to, from) in [(&mut message.q, state.q), (&mut message.qd, state.qd), (&mut message.intent, state.intent)]
         {
             to.clear();
@@ -156,7 +160,9 @@ impl ControllerClient {
     pub fn answer(&self, now: Micros) -> Option<&OverrideAnswer> {
         self.answer.as_ref().filter(|answer| {
             let age = self.state.sequence - answer.echo;
-            age < REMEMBERED as u64 && now - self.sent[answer.echo as usize % REMEMBERED] <= self.watchdog
+            let sent = self.sent[answer.echo as usize % REMEMBERED];
+            // On a clock that was set back nothing is fresh.
+            age < REMEMBERED as u64 && now >= sent && now - sent <= self.watchdog
         })
     }
 

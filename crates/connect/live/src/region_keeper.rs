@@ -10,11 +10,13 @@ use elbowroom_cell::{Cell, RegionEdit};
 use elbowroom_monitor::Life;
 use serde::{Deserialize, Serialize};
 
+use crate::cell_versions::CellVersions;
 use crate::configuration_number::configuration_digits;
 use crate::event_handler::EventHandler;
 use crate::keys::Keys;
 use crate::network::{Network, NetworkError, Subscription, Urgency};
-use crate::regions_table::RegionTable;
+use crate::region_journal::RegionJournal;
+use crate::regions_table::{RegionTable, RegionTableMessage};
 
 /// How often the table is repeated; a change is published at once.
 const PERIOD: Duration = Duration::from_millis(100);
@@ -39,10 +41,86 @@ pub enum ProgramSwitches {
     Ignored(Option<EventHandler>),
 }
 
-/// A table, and the cell that has these regions.
+/// A table, the cell that has these regions, and where they are written.
 struct Kept {
     table: RegionTable,
     cell: Arc<Cell>,
+    journal: Option<RegionJournal>,
+    on_event: Option<EventHandler>,
+}
+
+impl Kept {
+    /// Permanent regions are on, as temporary ones are until it is known better: from the journal, where it is of this cell file.
+    fn begin(
+        versions: &CellVersions,
+        boot: u64,
+        journal: Option<RegionJournal>,
+        on_event: Option<EventHandler>,
+    ) -> (Self, String) {
+        let base = versions.base();
+        let fresh = RegionTable { revision: (boot, 0), ..RegionTable::initial(base).all_on() };
+        let continued = match &journal {
+            None => Err("no journal is kept".to_owned()),
+            Some(journal) => journal.read().and_then(|written| continued(versions, &fresh, &written, journal)),
+        };
+        let (table, cell, how) = match continued {
+            Ok((table, cell)) => (table, cell, "the regions are as they were when this process ended".to_owned()),
+            Err(why) => (fresh, base.clone(), format!("all temporary regions are on until they are switched: {why}")),
+        };
+        let kept = Self { table, cell, journal, on_event };
+        kept.record();
+        (kept, how)
+    }
+
+    fn switches_regions(&self) -> bool {
+        self.cell.regions.iter().any(|r| r.region.life == Life::Temporary)
+    }
+
+    /// Writes the table before anybody hears of it.
+    fn record(&self) {
+        let Some(journal) = &self.journal else { return };
+        if !self.switches_regions() && self.table.edits.is_empty() {
+            return;
+        }
+        if let (Err(e), Some(on_event)) = (journal.write(&self.table.message(&self.cell)), &self.on_event) {
+            on_event(&format!(
+                "{}: cannot be written: {e}. If this process starts again all temporary regions of the file are on, and those that were added are gone",
+                journal.path().display()
+            ));
+        }
+    }
+
+    /// True where a switch changes something.
+    fn switch(&mut self, region: usize, active: bool) -> bool {
+        let has_changed = self.table.switch(region, active);
+        if has_changed {
+            self.record();
+        }
+        has_changed
+    }
+}
+
+/// The table that goes on with one that a former start has written, and the cell with these regions; or why not.
+fn continued(
+    versions: &CellVersions,
+    fresh: &RegionTable,
+    written: &RegionTableMessage,
+    journal: &RegionJournal,
+) -> Result<(RegionTable, Arc<Cell>), String> {
+    let name = journal.path().display();
+    if written.configuration != fresh.configuration {
+        return Err(format!("{name} is of another cell file"));
+    }
+    let cell = versions.cell(&written.edits).map_err(|e| format!("{name}: {e}"))?;
+    let mut table = fresh.clone();
+    table.active = vec![true; cell.regions.len()];
+    table.take(
+        &RegionTableMessage { revision: 0, boot: fresh.revision.0.max(written.boot + 1), ..written.clone() },
+        &cell,
+    );
+    (table.edits, table.present) = (written.edits.clone(), configuration_digits(&cell));
+    (table.former, table.is_editable) = (String::new(), false);
+    Ok((table, cell))
 }
 
 /// The regions of a cell at one instant.
@@ -56,6 +134,7 @@ pub(crate) struct PresentRegions {
 /// Keeps which regions a cell has and which are switched on; one process of a cell has it. It ends when it is dropped.
 pub struct RegionKeeper {
     kept: Arc<Mutex<Kept>>,
+    at_start: String,
     subscription: Option<Subscription>,
     wake: Option<Sender<()>>,
     thread: Option<JoinHandle<()>>,
@@ -64,18 +143,25 @@ pub struct RegionKeeper {
 }
 
 impl RegionKeeper {
-    /// Starts with the regions as the cell file has them. `boot` is higher than at former starts.
+    /// Starts with the regions as they were when a former start ended, if that is known from the journal; else all are on. `boot` is
+    /// higher than at former starts.
     ///
     /// # Errors
     /// [`NetworkError`] where the keys cannot be used.
-    pub fn start(
-        cell: &Arc<Cell>,
+    pub(crate) fn start(
+        versions: &CellVersions,
         network: &Arc<dyn Network>,
         boot: u64,
         programs: ProgramSwitches,
+        journal: Option<RegionJournal>,
+        on_event: Option<EventHandler>,
     ) -> Result<Self, NetworkError> {
-        let table = RegionTable { revision: (boot, 0), ..RegionTable::initial(cell) };
-        let kept = Arc::new(Mutex::new(Kept { table, cell: cell.clone() }));
+        let cell = versions.base();
+        let (kept, at_start) = Kept::begin(versions, boot, journal, on_event);
+        if let (true, Some(on_event)) = (kept.switches_regions(), &kept.on_event) {
+            on_event(&at_start);
+        }
+        let kept = Arc::new(Mutex::new(kept));
         let (wake, woken) = mpsc::channel();
         let keys = Keys::new(&cell.name);
         let handler = {
@@ -88,7 +174,7 @@ impl RegionKeeper {
                 match &programs {
                     ProgramSwitches::Ignored(on_event) => ignored.report(&request, on_event.as_ref()),
                     ProgramSwitches::Obeyed => {
-                        if kept.table.switch(region, request.active) {
+                        if kept.switch(region, request.active) {
                             // The other side is gone only when the keeper ends.
                             let _ = wake.send(());
                         }
@@ -117,11 +203,17 @@ impl RegionKeeper {
         let thread = std::thread::Builder::new().name("regions".into()).spawn(publish);
         Ok(Self {
             kept,
+            at_start,
             subscription: Some(subscription),
             wake: Some(wake),
             thread: thread.ok(),
             _network: network.clone(),
         })
+    }
+
+    /// How the regions were found at the start, in words.
+    pub(crate) fn at_start(&self) -> &str {
+        &self.at_start
     }
 
     /// Per region of the cell as it is now whether it is on.
@@ -137,7 +229,7 @@ impl RegionKeeper {
 
     /// Switches a temporary region, by its index in the cell as it is now; the nodes hear of it at once. Permanent regions stay on.
     pub fn switch(&self, region: usize, active: bool) {
-        if lock(&self.kept).table.switch(region, active) {
+        if lock(&self.kept).switch(region, active) {
             self.publish();
         }
     }
@@ -167,6 +259,7 @@ impl RegionKeeper {
         table.former = if is_due { String::new() } else { former };
         table.revision.1 += 1;
         kept.cell = cell.clone();
+        kept.record();
         drop(kept);
         self.publish();
     }

@@ -57,7 +57,7 @@ pub struct RegionTableMessage {
 }
 
 impl RegionTable {
-    /// As a cell begins: permanent regions are on, temporary ones off.
+    /// Until it is known what is on: permanent regions are on, temporary ones off. Whoever uses it guards against all of them then.
     pub fn initial(cell: &Cell) -> Self {
         Self {
             active: cell.regions.iter().map(|r| r.region.life == Life::Permanent).collect(),
@@ -65,6 +65,13 @@ impl RegionTable {
             present: configuration_digits(cell),
             ..Self::default()
         }
+    }
+
+    /// With all regions on.
+    #[must_use]
+    pub fn all_on(mut self) -> Self {
+        self.active.fill(true);
+        self
     }
 
     /// Switches a region, by its index in the cell; false where that changes nothing. Only for temporary regions.

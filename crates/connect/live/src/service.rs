@@ -39,6 +39,7 @@ impl Service {
     /// [`ServiceError`]; then nothing runs.
     pub fn start(cell: Cell, options: &ServiceOptions) -> Result<Self, ServiceError> {
         let begin = ServiceStart::new(cell, options)?;
+        begin.refuse_second_nodes()?;
         let keeper = begin.keeper()?;
         let arbiter = begin.arbiter()?;
         let control = begin.control(keeper.as_ref(), arbiter.as_ref())?;

@@ -35,6 +35,14 @@ pub enum ServiceError {
     /// ROS 2 cannot be spoken as asked.
     #[error(transparent)]
     Ros2(#[from] Ros2Error),
+    /// Another process guards the robot.
+    #[error(
+        "robot {name}: another process guards it already\n  help: end that one before; two of them would answer its controller, and ask for its exchange regions, one against the other"
+    )]
+    GuardedAlready {
+        /// The robot.
+        name: String,
+    },
     /// A robot that the cell does not have.
     #[error("--robots {name}: no robot of the cell has this name\n  help: one of {}", known.join(", "))]
     Robot {

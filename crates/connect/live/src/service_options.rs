@@ -22,6 +22,9 @@ pub struct ServiceOptions {
     pub udp: Option<String>,
     /// Grants exchange regions, and keeps which regions are switched on.
     pub arbiter: bool,
+    /// Where it keeps which regions there are and which are on, so that they are the same when it starts again
+    /// ([`region_journal_of`](crate::region_journal_of)). Without it all temporary regions are on at a start.
+    pub journal: Option<PathBuf>,
     /// Runs the programs of the cell file in place of the controllers.
     pub simulate: bool,
     /// Shows the cell in a browser at this address.

@@ -1,6 +1,7 @@
 //! The parts of a process of a live cell, in the order in which they start.
 
-use std::sync::Arc;
+use std::sync::{Arc, mpsc};
+use std::time::Duration;
 
 use elbowroom_cell::configure::MonitorSetup;
 use elbowroom_cell::{Cell, EditedRegions, configure};
@@ -17,13 +18,18 @@ use crate::cell_versions::CellVersions;
 use crate::clock::{Clock, boot_number};
 use crate::configuration_number::configuration_number;
 use crate::control::{ControlParts, ControlServer, JointsHeard, NodesHeard};
+use crate::keys::Keys;
 use crate::network::{JoinedNetworks, Network, NetworkError, UdpNetwork, ZenohNetwork, ZenohSettings};
 use crate::node::{Node, NodeMonitor, NodeParts};
+use crate::region_journal::RegionJournal;
 use crate::region_keeper::{ProgramSwitches, RegionKeeper};
 use crate::ros2::{CellFeed, Participant};
 use crate::service_error::ServiceError;
 use crate::service_options::{DEFAULT_ADDRESS, ServiceOptions};
 use crate::simulated_controllers::SimulatedControllers;
+
+/// How long a process listens whether another one guards its robots already.
+const LISTENS: Duration = Duration::from_millis(300);
 
 /// What all parts share.
 pub(crate) struct ServiceStart<'o> {
@@ -67,7 +73,10 @@ impl<'o> ServiceStart<'o> {
             return Ok(None);
         }
         let programs = program_switches(self.options);
-        Ok(Some(Arc::new(RegionKeeper::start(&self.cell, &self.shared, boot_number(), programs)?)))
+        let journal = self.options.journal.as_deref().map(RegionJournal::new);
+        let on_event = self.options.on_event.clone();
+        let keeper = RegionKeeper::start(&self.versions, &self.shared, boot_number(), programs, journal, on_event)?;
+        Ok(Some(Arc::new(keeper)))
     }
 
     pub(crate) fn arbiter(&self) -> Result<Option<Arc<ArbiterService>>, ServiceError> {
@@ -101,6 +110,25 @@ impl<'o> ServiceStart<'o> {
     pub(crate) fn recorder(&self) -> Result<Option<Recorder>, ServiceError> {
         let Some(file) = &self.options.record else { return Ok(None) };
         Ok(Some(Recorder::start(CellWriter::create(file, &self.cell, boot_number())?)?))
+    }
+
+    /// An error where another process guards a robot of this one: a node says fifty times a second how it is.
+    pub(crate) fn refuse_second_nodes(&self) -> Result<(), ServiceError> {
+        let keys = Keys::new(&self.cell.name);
+        let listen = |robot: &RobotId| {
+            let (name, (heard, is_heard)) = (&self.cell.robots[robot.0].name, mpsc::channel());
+            // The other side is gone once it was heard.
+            let handler = Box::new(move |_: &[u8]| {
+                let _ = heard.send(());
+            });
+            Ok((name, self.shared.subscribe(&keys.status(name), handler)?, is_heard))
+        };
+        let listening: Vec<_> = self.robots.iter().map(listen).collect::<Result<_, NetworkError>>()?;
+        std::thread::sleep(if listening.is_empty() { Duration::ZERO } else { LISTENS });
+        match listening.iter().find(|(_, _, is_heard)| is_heard.try_recv().is_ok()) {
+            Some((name, ..)) => Err(ServiceError::GuardedAlready { name: (*name).clone() }),
+            None => Ok(()),
+        }
     }
 
     pub(crate) fn nodes(&self, recorder: Option<&Recorder>) -> Result<Vec<Node>, ServiceError> {

@@ -17,8 +17,8 @@ use crate::clock::{Clock, boot_number};
 use crate::configuration_number::configuration_number;
 use crate::keys::Keys;
 use crate::network::{Network, Publisher, Subscription, Urgency};
-use crate::region_keeper::SwitchRequest;
 use crate::service_error::ServiceError;
+use crate::switch_requests::SwitchRequests;
 
 /// A thread that was late by more than this many ticks does not catch up: its robots have stood still meanwhile.
 const MOST_LATE_TICKS: u32 = 5;
@@ -118,7 +118,6 @@ fn controllers(
 
 /// The controller of one robot.
 struct SimulatedController {
-    robot: String,
     program: ProgramClock,
     /// The program once more, from its end.
     again: Option<ProgramPlan>,
@@ -126,8 +125,7 @@ struct SimulatedController {
     carried: CarriedVolumes,
     client: Arc<Mutex<ControllerClient>>,
     joint_states: Box<dyn Publisher>,
-    switches: Box<dyn Publisher>,
-    cell: Arc<Cell>,
+    switches: SwitchRequests,
     velocity: Vec<f64>,
     bytes: Vec<u8>,
     _answers: Subscription,
@@ -156,15 +154,13 @@ impl SimulatedController {
             network.subscribe(&keys.speed_override(&at.name), handler)?
         };
         Ok(Self {
-            robot: at.name.clone(),
             program: ProgramClock::new(once, at.limits.clone()),
             again,
             limits: at.limits.clone(),
             carried,
             client,
             joint_states: network.publisher(&keys.joint_states(&at.name), Urgency::RealTime)?,
-            switches: network.publisher(&keys.switch(), Urgency::RealTime)?,
-            cell: cell.clone(),
+            switches: SwitchRequests::new(cell, robot, network)?,
             velocity: Vec::new(),
             bytes: Vec::new(),
             _answers: answers,
@@ -177,12 +173,9 @@ impl SimulatedController {
         let speed_override = self.client.lock().unwrap_or_else(PoisonError::into_inner).speed_override(now);
         self.program.advance(dt_s, speed_override);
         for switch in self.program.take_switches() {
-            let region = self.cell.regions[switch.region.0].region.name.clone();
-            let request = SwitchRequest { robot: self.robot.clone(), region, active: switch.active };
-            if let Ok(json) = serde_json::to_vec(&request) {
-                self.switches.publish(&json);
-            }
+            self.switches.want(switch.region, switch.active);
         }
+        self.switches.send();
         self.carried.follow(&mut self.program, clock.seconds());
         if self.program.finished()
             && let Some(again) = &self.again

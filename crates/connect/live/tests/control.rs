@@ -245,7 +245,7 @@ fn a_request_that_is_sent_again_has_no_effect() {
     assert_eq!(status, 412);
     assert!(document["error"].as_str().unwrap().contains(&setup.revision()));
     assert!(!setup.is_on("cart"));
-    assert_eq!(control_history(&setup.log()).unwrap().len(), 2);
+    assert_eq!(setup.changes().len(), 2);
     setup.assert_alive();
 }
 
@@ -256,7 +256,7 @@ fn every_change_is_in_the_log_and_follows_the_one_before() {
     assert_eq!(setup.change(PROGRAMMER, "/switch", &noted).0, 200);
     assert_eq!(setup.switch(OPERATOR, "cart", false).0, 403);
     let (_, done) = setup.switch(INTEGRATOR, "cart", false);
-    let entries = control_history(&setup.log()).unwrap();
+    let entries = setup.changes();
     let said = |i: usize| {
         let e = &entries[i];
         let change = &e.changes[0];
@@ -272,8 +272,8 @@ fn every_change_is_in_the_log_and_follows_the_one_before() {
         )
     };
     assert_eq!(entries.len(), 2);
-    assert_eq!(said(0), "1 programmer switch region.cart region.cart active false true");
-    assert_eq!(said(1), "2 integrator switch region.cart region.cart active true false");
+    assert_eq!(said(0), "2 programmer switch region.cart region.cart active false true");
+    assert_eq!(said(1), "3 integrator switch region.cart region.cart active true false");
     assert_eq!((entries[0].note.as_deref(), entries[0].name.as_str()), (Some("cart arrives"), "programmer"));
     for entry in &entries {
         assert_eq!((&entry.checksum_before, &entry.checksum), (&setup.cell.checksum, &setup.cell.checksum));
@@ -351,7 +351,7 @@ fn a_region_is_not_switched_on_around_a_robot() {
     assert!(status == 409 && (distance_m - 0.25).abs() < 1e-6, "{status} {document}");
     assert!(document["error"].as_str().unwrap().starts_with("robot `left` is 250 mm from region `cart` and may need"));
     assert!(!setup.is_on("cart"));
-    assert_eq!(control_history(&setup.log()).unwrap(), [], "what was refused is no change");
+    assert_eq!(setup.changes(), [], "what was refused is no change");
     let (status, document) = switched(&mut left, &mut right, 1.3, 0.0);
     assert_eq!((status, &document["not_heard"]), (200, &json!([])), "{document}");
     assert!(setup.is_on("cart"));
@@ -433,7 +433,7 @@ fn a_robot_is_cleared_by_name_by_an_integrator_and_only_in_silence() {
     left.say(Occupancy::Inside);
     let (status, document) = setup.change(INTEGRATOR, "/clear", &right_request);
     assert!(status == 409 && document["wait_s"].as_f64().unwrap() > 0.1, "{document}");
-    assert_eq!(control_history(&setup.log()).unwrap(), [], "what was refused is no change");
+    assert_eq!(setup.changes(), [], "what was refused is no change");
     // It is silent from here on; right goes on waiting, and gets the region only after the clear.
     let silent = Instant::now();
     let mut refused = 0;
@@ -450,7 +450,7 @@ fn a_robot_is_cleared_by_name_by_an_integrator_and_only_in_silence() {
         right.say(Occupancy::Warning);
         holder() == json!("right")
     });
-    let entries = control_history(&setup.log()).unwrap();
+    let entries = setup.changes();
     assert_eq!(
         (entries.len(), entries[0].action.as_str(), entries[0].class.as_str()),
         (1, "clear robot.left", "integrator")

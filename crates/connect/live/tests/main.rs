@@ -6,6 +6,7 @@ mod control;
 mod node;
 mod region_changes;
 mod region_table;
+mod restarts;
 mod ros2;
 mod ros2_peer;
 mod simulated;

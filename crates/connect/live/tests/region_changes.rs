@@ -7,10 +7,11 @@ use std::time::Duration;
 
 use crate::common::control_setup::{ControlSetup, INTEGRATOR, OPERATOR, PROGRAMMER, rails};
 use elbowroom_cell::Cell;
-use elbowroom_cell::seal::control_history;
 use elbowroom_live::messages::OverrideAnswer;
 use elbowroom_live::network::{Network, Urgency};
-use elbowroom_live::{Clock, ControllerClient, ControllerState, Keys, Service, ServiceOptions, boot_number};
+use elbowroom_live::{
+    Clock, ControllerClient, ControllerState, Keys, Service, ServiceOptions, boot_number, configuration_number,
+};
 use elbowroom_testkit::network::eventually;
 use serde_json::{Value, json};
 
@@ -58,8 +59,13 @@ impl Controller {
         let (network, keys) = (setup.network(), Keys::new(&setup.cell.name));
         let (last, highest) = (Arc::<Mutex<Option<OverrideAnswer>>>::default(), Arc::new(Mutex::new(0.0)));
         let (heard, most) = (last.clone(), highest.clone());
+        let client = ControllerClient::new(boot_number(), configuration_number(&setup.cell));
+        let client = Arc::new(Mutex::new(client));
+        let obeying = client.clone();
         let handler = Box::new(move |bytes: &[u8]| {
             let answer = OverrideAnswer::decode(bytes).unwrap();
+            // One that is late is not obeyed.
+            let _ = obeying.lock().unwrap().receive(bytes);
             let mut most = most.lock().unwrap();
             *most = f64::max(*most, answer.speed_override);
             *heard.lock().unwrap() = Some(answer);
@@ -69,12 +75,12 @@ impl Controller {
         let (q, is_closed) = (Arc::new(AtomicU64::new(q_mm)), Arc::<AtomicBool>::default());
         let (at, closed) = (q.clone(), is_closed.clone());
         let run = move || {
-            let (clock, mut client) = (Clock::start(), ControllerClient::new(boot_number(), 0));
+            let clock = Clock::start();
             while !closed.load(SeqCst) {
                 let q = [at.load(SeqCst) as f64 * 1e-3];
                 let state =
                     ControllerState { q: &q, qd: &[0.0], programmed_override: 1.0, ..ControllerState::default() };
-                joint_states.publish(client.joint_state(clock.micros(), &state));
+                joint_states.publish(client.lock().unwrap().joint_state(clock.micros(), &state));
                 std::thread::sleep(Duration::from_millis(10));
             }
         };
@@ -130,7 +136,7 @@ fn a_region_is_added_moved_and_removed_and_the_robot_obeys_at_once() {
     assert_eq!(controller.speed_override(), 1.0);
     setup.make("/switch", &json!({ "region": "cart", "active": true }));
     eventually("the moved region limits", || (0.0..1.0).contains(&controller.speed_override()));
-    let entries = control_history(&setup.folder.path().join("cell.control.jsonl")).unwrap();
+    let entries = setup.changes();
     assert_eq!(entries.len(), 6);
     for pair in entries.windows(2) {
         assert_eq!(pair[1].checksum_before, pair[0].checksum);

@@ -105,12 +105,23 @@ impl Rig {
         self.node.regions(&message, self.now);
     }
 
-    /// The override and its reason at these joint values.
+    /// The override and its reason at these joint values. A controller that has heard no answer yet has sent them once before, as a
+    /// program that stands.
     fn tick(&mut self, q: f64, qd: f64) -> (f64, OverrideReason) {
+        if self.client.answer(self.now + Micros(TICK_US)).is_none() {
+            self.exchange(q, qd);
+        }
+        self.exchange(q, qd)
+    }
+
+    fn exchange(&mut self, q: f64, qd: f64) -> (f64, OverrideReason) {
         self.now = self.now + Micros(TICK_US);
         let state = ControllerState { q: &[q], qd: &[qd], programmed_override: 1.0, ..ControllerState::default() };
         self.node.joint_state(self.client.joint_state(self.now, &state), self.now);
         let report = self.node.tick(self.now).expect("joint values are answered");
+        let mut answer = Vec::new();
+        self.node.take_answer().expect("an answer").encode(&mut answer);
+        self.client.receive(&answer).expect("it is obeyed");
         (report.speed_override, report.reason)
     }
 }

@@ -7,12 +7,13 @@ use std::time::Duration;
 use elbowroom::analysis::map::{self, CellMap, MapObstacle, MapProgress, MapRequest};
 use elbowroom::cell::Cell;
 use elbowroom::cspace::{GridAxis, ObstacleModel};
+use elbowroom::formats::WholeFile;
 use elbowroom::report::{map_page, map_pictures};
 use serde::Serialize;
 
 use crate::args::MapArgs;
 use crate::output::{ExitStatus, Failure, cannot_write, note, print, print_json};
-use crate::output_file::{try_write, write_file};
+use crate::output_file::write_file;
 use crate::progress::Progress;
 
 pub(crate) fn map(args: &MapArgs) -> Result<ExitStatus, Failure> {
@@ -34,7 +35,8 @@ pub(crate) fn map(args: &MapArgs) -> Result<ExitStatus, Failure> {
         None => None,
     };
     if let Some(path) = &args.page {
-        try_write(path, |out| map_page::write(out, &map, cell.units)).map_err(|e| cannot_write_page(&map, path, &e))?;
+        WholeFile::write(path, |out| map_page::write(out, &map, cell.units))
+            .map_err(|e| cannot_write_page(&map, path, &e))?;
     }
     if args.json {
         print_json(&Document::of(&map))?;

@@ -97,6 +97,9 @@ warning = 100
             let secret = format!("{role}.secret");
             control(folder, &[arguments, &["--at", &at, "--secret", &secret]].concat())
         };
+        // Nobody has said that it is off.
+        assert!(run(&["regions"], "operator").stdout.contains("temporary  on"));
+        assert_eq!(run(&["switch", "cart", "off"], "programmer").status, 0);
         let listed = run(&["regions"], "operator").stdout;
         assert!(listed.contains("cart") && listed.contains("temporary  off"), "{listed}");
         assert!(listed.contains("rail: its controller is not heard"), "{listed}");
@@ -111,7 +114,7 @@ warning = 100
         let refused = run(&["clear", "rail", "--outside", "cart", "--repeat", "rail"], "integrator");
         assert!(refused.stderr.contains("does not name the exchange regions of `rail`"), "{}", refused.stderr);
         let log = control(folder, &["log", "cell.toml"]).stdout;
-        assert!(log.contains("region.cart: active false -> true") && log.lines().count() == 2, "{log}");
+        assert!(log.contains("region.cart: active false -> true") && log.lines().count() == 6, "{log}");
         let moved = run(&["move", "cart", "centre=[0, 0, 1900]", "--note", "other dock"], "programmer");
         assert!(moved.status == 0, "{}", moved.stderr);
         assert!(moved.stdout.contains("region.cart: centre [0, 0, 1000] -> [0, 0, 1900]"));
@@ -145,6 +148,8 @@ warning = 100
         while control(folder, &[&["regions"][..], &secret].concat()).stdout.contains("not heard") {
             assert!(began.elapsed() < Duration::from_secs(20), "the simulated controller is not heard");
         }
+        let off = control(folder, &[&["switch", "cart", "off"][..], &secret].concat());
+        assert!(off.status == 0, "{}", off.stderr);
         let refused = control(folder, &[&["switch", "cart", "on"][..], &secret].concat());
         assert_eq!(refused.status, 2);
         let message = refused.stderr;

@@ -111,6 +111,53 @@ fn a_robot_that_reacts_late_is_not_frozen() {
     assert!((ticks(0.3)..ticks(1.5)).any(|tick| reason(tick) == OverrideReason::Fault(Fault::Frozen)));
 }
 
+/// A robot whose brakes open later than its reaction time is frozen, rests for a second, and tries again: that time it moves.
+#[test]
+fn a_robot_that_was_frozen_tries_again_after_a_rest() {
+    let (mut m, mut robot) = (monitor(), PointRobot { x: -20.0, speed: 0.0 });
+    let intent = [2.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    let mut first_go = None;
+    let mut faults = Vec::new();
+    for tick in 0..2000 {
+        let (q, qd) = ([robot.x, 0.0, 0.0, 0.0, 0.0, 0.0], [robot.speed, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        let stationary = Snapshot::stationary(TICK_S * f64::from(tick), &q);
+        let report = m.tick(&Snapshot { qd: &qd, intent: Some(&intent), ..stationary });
+        if report.speed_override > 0.0 {
+            first_go.get_or_insert(tick);
+        }
+        if first_go.is_some_and(|go| tick > go + 75) {
+            robot.apply(report.speed_override, BRAKES);
+        }
+        if report.reason == OverrideReason::Fault(Fault::Frozen) {
+            faults.push(tick);
+        }
+    }
+    let rested = (1.0 / TICK_S) as usize;
+    assert!((rested..rested + 20).contains(&faults.len()), "{} ticks of the fault, {faults:?}", faults.len());
+    assert!(robot.x > -18.0, "it stands at {}", robot.x);
+}
+
+/// A controller that hears no override stops by itself, and says so by an override of 0 of its program: however long that is, its
+/// robot is not frozen, and is known to be where it is.
+#[test]
+fn a_robot_whose_controller_stops_it_is_not_frozen() {
+    let mut m = monitor();
+    let intent = [2.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    let mut tick = |tick: u32, programmed_override: f64| {
+        // 100 mm before the wall.
+        let stationary = Snapshot::stationary(TICK_S * f64::from(tick), &[1.9, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        m.tick(&Snapshot { qd: &[0.0; 6], intent: Some(&intent), programmed_override, ..stationary })
+    };
+    let at_first = tick(0, 1.0).speed_override;
+    assert!(at_first > 0.0);
+    for i in 1..5000 {
+        let report = tick(i, 0.0);
+        assert_eq!((report.speed_override, report.reason), (0.0, OverrideReason::Free), "tick {i}");
+    }
+    let again = tick(5000, 1.0).speed_override;
+    assert!(again > 0.9 * at_first, "{again}, at first {at_first}");
+}
+
 /// A robot that its host stops is at rest although its program would move it; it goes on when the host lets it.
 #[test]
 fn a_robot_that_its_host_stops_is_not_frozen() {

@@ -86,6 +86,7 @@ pub mod stl;
 pub mod tds;
 mod tokens;
 pub mod urdf;
+mod whole_file;
 mod xml;
 mod yaml;
 
@@ -97,3 +98,4 @@ pub use nodetree::NodeTree;
 pub use number_table::{NumberTable, TimedRow};
 pub use png_stream::PngStream;
 pub use robot::{LoadOptions, LoadedRobot};
+pub use whole_file::WholeFile;

@@ -67,6 +67,8 @@ pub struct Controlled<'a> {
 pub struct ControlLog {
     path: PathBuf,
     file: File,
+    /// Bytes of its entries.
+    length: u64,
     entries: u64,
     head: String,
 }
@@ -81,8 +83,11 @@ impl ControlLog {
         file.try_lock().map_err(|_| {
             FormatError::new(path, None, "is written by another process").hint("one service with --control per cell")
         })?;
-        let (entries, head) = verified(path)?;
-        Ok(Self { path: path.to_owned(), file, entries: entries.len() as u64, head })
+        let text = without_half_a_line(text::read(path)?);
+        // What was cut off while it was written was not carried out.
+        file.set_len(text.len() as u64).map_err(text::unwritable(path))?;
+        let (entries, head) = verified(path, &text)?;
+        Ok(Self { path: path.to_owned(), length: text.len() as u64, file, entries: entries.len() as u64, head })
     }
 
     /// Appends a change, and returns once it is on the disk.
@@ -105,8 +110,13 @@ impl ControlLog {
             previous: self.head.clone(),
         };
         let line = line(&entry);
-        let written = self.file.write_all((line.clone() + "\n").as_bytes()).and_then(|()| self.file.sync_all());
-        written.map_err(text::unwritable(&self.path))?;
+        let bytes = line.clone() + "\n";
+        if let Err(e) = self.file.write_all(bytes.as_bytes()).and_then(|()| self.file.sync_all()) {
+            // Of a full disk: half a line is not left for whoever reads on. Where that fails, too, the next start removes it.
+            let _ = self.file.set_len(self.length);
+            return Err(text::unwritable(&self.path)(e));
+        }
+        self.length += bytes.len() as u64;
         self.entries += 1;
         self.head = hex::hash(line.as_bytes());
         Ok(entry)
@@ -123,7 +133,13 @@ impl ControlLog {
 /// # Errors
 /// [`FormatError`] at the first line that does not follow the one before it.
 pub fn control_history(path: &Path) -> Result<Vec<ControlEntry>> {
-    Ok(verified(path)?.0)
+    Ok(verified(path, &without_half_a_line(text::read(path)?))?.0)
+}
+
+/// The whole lines. A line without an end was being written when the disk was full or the power went: its change was not made.
+fn without_half_a_line(mut text: String) -> String {
+    text.truncate(text.rfind('\n').map_or(0, |end| end + 1));
+    text
 }
 
 fn line(entry: &ControlEntry) -> String {
@@ -132,8 +148,7 @@ fn line(entry: &ControlEntry) -> String {
 }
 
 /// The entries, and the hash of the last line.
-fn verified(path: &Path) -> Result<(Vec<ControlEntry>, String)> {
-    let text = text::read(path)?;
+fn verified(path: &Path, text: &str) -> Result<(Vec<ControlEntry>, String)> {
     let (mut entries, mut head) = (Vec::new(), "0".repeat(64));
     for (number, written) in (1..).zip(text.lines()) {
         let wrong = |what: &str| {
@@ -148,10 +163,6 @@ fn verified(path: &Path) -> Result<(Vec<ControlEntry>, String)> {
         }
         head = hex::hash(written.as_bytes());
         entries.push(entry);
-    }
-    if !text.is_empty() && !text.ends_with('\n') {
-        return Err(FormatError::new(path, entries.len(), "ends within a line: writing was interrupted")
-            .hint("remove that line: its change was not made"));
     }
     Ok((entries, head))
 }
@@ -196,10 +207,24 @@ mod tests {
             lines(&text.lines().skip(1).collect::<Vec<_>>()),
             lines(&text.lines().rev().collect::<Vec<_>>()),
             text.replacen(":1,", ": 1,", 1),
-            text.trim_end().to_owned(),
         ] {
             std::fs::write(&path, wrong).unwrap();
             assert!(ControlLog::open(&path).is_err());
+        }
+    }
+
+    #[test]
+    fn half_a_line_is_removed_and_the_log_goes_on() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = control_log_of(&folder.path().join("cell.toml"));
+        ControlLog::open(&path).unwrap().append(switched(true)).unwrap();
+        let whole = std::fs::read_to_string(&path).unwrap();
+        for half in ["{", &whole[..whole.len() / 2], whole.trim_end()] {
+            std::fs::write(&path, format!("{whole}{half}")).unwrap();
+            assert_eq!(control_history(&path).unwrap().len(), 1);
+            let mut log = ControlLog::open(&path).unwrap();
+            assert_eq!(log.append(switched(false)).unwrap().sequence, 2);
+            assert_eq!(control_history(&path).unwrap().len(), 2);
         }
     }
 }

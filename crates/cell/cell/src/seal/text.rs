@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use elbowroom_formats::FormatError;
+use elbowroom_formats::{FormatError, WholeFile};
 
 use super::result::Result;
 
@@ -30,21 +30,9 @@ pub(super) fn unwritable(path: &Path) -> impl Fn(std::io::Error) -> FormatError 
     }
 }
 
-/// Replaces the text of a file atomically: writes a new file beside it, with its permissions, then calls
-/// `before_last_step`, then renames the new file.
+/// Replaces the text of a file: it is written beside it, then `before_last_step` is called, then it is put in its place.
 pub(super) fn replace(path: &Path, text: &str, before_last_step: impl FnOnce() -> Result<()>) -> Result<()> {
-    let path = &path.canonicalize().map_err(unwritable(path))?;
-    let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(".new");
-    let new = path.with_file_name(name);
-    let written = fs::write(&new, text)
-        .and_then(|()| fs::set_permissions(&new, fs::metadata(path)?.permissions()))
-        .map_err(unwritable(&new))
-        .and_then(|()| before_last_step())
-        .and_then(|()| fs::rename(&new, path).map_err(unwritable(path)));
-    if written.is_err() {
-        // The first error is returned.
-        let _ = fs::remove_file(&new);
-    }
-    written
+    let new = WholeFile::begin(path, |out| out.write_all(text.as_bytes())).map_err(unwritable(path))?;
+    before_last_step()?;
+    new.put_durably().map_err(unwritable(path))
 }

@@ -24,7 +24,7 @@ pub(crate) struct JointsHeard {
 
 impl JointsHeard {
     pub(crate) fn start(cell: &Cell, network: &Arc<dyn Network>, clock: Clock) -> Result<Self, NetworkError> {
-        let none = Heard::new(configuration_number(cell));
+        let none = Heard::new(configuration_number(cell), cell);
         let heard = Arc::new(Mutex::new(vec![none; cell.robots.len()]));
         let keys = Keys::new(&cell.name);
         let subscribe = |(i, robot): (usize, &elbowroom_cell::CellRobot)| {

@@ -4,6 +4,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use elbowroom_cell::seal::{AccessToken, Change, ControlEntry, ControlLog, Controlled};
 use elbowroom_cell::{Cell, CellRegion};
+use elbowroom_formats::FormatError;
 use elbowroom_monitor::{AccessClass, Life, RegionKind};
 use elbowroom_robot::RobotId;
 use serde::Serialize;
@@ -90,6 +91,32 @@ pub(crate) struct RobotOverview {
 impl RequestHandler {
     pub(crate) fn new(parts: ControlParts, log: ControlLog) -> Self {
         Self { parts, log: Mutex::new(log) }
+    }
+
+    /// Logs that the service has started, and with which temporary regions on.
+    ///
+    /// # Errors
+    /// [`FormatError`] where the log cannot be written.
+    pub(crate) fn log_start(&self) -> Result<(), FormatError> {
+        let (keeper, mut log) = (&self.parts.keeper, self.log());
+        let (cell, active) = (keeper.present().cell, keeper.active());
+        let temporary = cell.regions.iter().zip(active).filter(|(r, _)| r.region.life == Life::Temporary);
+        let change = |(r, active): (&CellRegion, bool)| Change {
+            item: format!("region.{}", r.region.name),
+            field: "active".into(),
+            before: None,
+            after: Some(active.to_string()),
+        };
+        log.append(Controlled {
+            // Nobody has asked for it.
+            class: AccessClass::Operator,
+            name: "the service",
+            action: "start".into(),
+            note: Some(keeper.at_start()),
+            changes: temporary.map(change).collect(),
+            checksums: [&self.parts.versions.base().checksum, &cell.checksum],
+        })?;
+        Ok(())
     }
 
     pub(super) fn log(&self) -> MutexGuard<'_, ControlLog> {

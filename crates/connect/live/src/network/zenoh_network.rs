@@ -69,6 +69,8 @@ pub(crate) fn open_session(settings: &ZenohSettings, further: &[(&str, &str)]) -
         ("connect/exit_on_failure", "false".to_owned()),
         ("connect/retry", r#"{"period_init_ms":50,"period_max_ms":200,"period_increase_factor":1.5}"#.to_owned()),
         ("scouting/multicast/enabled", "false".to_owned()),
+        // A router waits so long for others to be found, which are never looked for here.
+        ("scouting/delay", "0".to_owned()),
         ("scouting/gossip/enabled", "false".to_owned()),
         // A process that is cut off without closing its connection is given up after this time.
         ("transport/link/tx/lease", "1000".to_owned()),

@@ -14,14 +14,28 @@ use elbowroom_rosbag::TickRecorder;
 use elbowroom_spatial::{FrameMotion, Pose};
 use elbowroom_status::StatusSample;
 
+use super::doubt::Doubt;
 use super::inbox::{Contents, Heard};
+use super::input_gate::Rejected;
 use super::next_configuration::{NextConfiguration, NodeVersion};
 use super::node_monitor::NodeMonitor;
-use crate::messages::{AttachedVolume, JointState, MAX_ATTACHED, OverrideAnswer};
+use super::standstill::Standstill;
+use crate::messages::{AttachedVolume, JointState, MAX_ATTACHED, MAX_JOINTS, OverrideAnswer};
 use crate::regions_table::{RegionTable, TABLE_VALIDITY};
 
-/// How long a robot that has jumped must be at rest.
-const STANDSTILL: Micros = Micros(1_000_000);
+/// What a node knows of the regions of its cell now.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+enum TableState {
+    /// The monitor has them.
+    #[default]
+    Followed,
+    /// The monitor is not built for them yet.
+    NotBuilt,
+    /// Nobody has said which there are, and they may have changed.
+    Missing,
+    /// The process that keeps them has another cell file.
+    OfOtherCell,
+}
 
 /// One guarded robot. Its memory is allocated when it is made, so that [`Self::tick`] needs no more.
 pub(super) struct GuardedRobot {
@@ -41,14 +55,14 @@ pub(super) struct GuardedRobot {
     attached: Vec<AttachedVolume>,
     /// The controller has named an attached volume once: from then on it is known to name them all.
     names_attached: bool,
-    /// Since when the robot is at rest where it cannot have moved to.
-    jumped: Option<Micros>,
+    standstill: Standstill,
     /// Per region of the cell whether it is on.
     active: Vec<bool>,
     /// Without a table of regions the robot stops.
     pub(super) awaits_regions: bool,
-    /// It is not known which regions there are now, or the monitor is not built for them yet.
-    has_other_regions: bool,
+    table: TableState,
+    /// Why the last message of the controller did not count, if it did not.
+    refused: Option<Rejected>,
     /// The configuration of the monitor, for whoever shows what it finds.
     pub(super) version: Arc<NodeVersion>,
     answers: u64,
@@ -79,10 +93,11 @@ impl GuardedRobot {
             state: JointState::with_capacity(),
             stamp: None,
             now: Micros(0),
-            jumped: None,
+            standstill: Standstill::new(MAX_JOINTS),
+            refused: None,
+            table: TableState::default(),
             active: RegionTable::initial(&cell).active,
             awaits_regions: false,
-            has_other_regions: false,
             version: Arc::new(NodeVersion { number: String::new(), configuration: setup.configuration.clone() }),
             answers: 0,
             checksum,
@@ -99,7 +114,9 @@ impl GuardedRobot {
         if std::mem::take(&mut inbox.own.is_new) {
             std::mem::swap(&mut self.state, &mut inbox.own.state);
             self.stamp = inbox.own.stamp;
+            self.standstill.hear(self.state.boot);
         }
+        self.refused = inbox.own.refused;
         self.now = inbox.own.now(now);
         for (robot, heard) in inbox.followed.iter_mut().enumerate() {
             let Some(heard) = heard else { continue };
@@ -128,7 +145,13 @@ impl GuardedRobot {
         }
         let table = &inbox.regions;
         let may_have_changed = table.is_editable && !is_known || self.awaits_regions && inbox.regions_heard.is_none();
-        self.has_other_regions = may_have_changed || !table.permits(&inbox.number);
+        let is_recent = |heard: Option<Micros>| heard.is_some_and(|heard| now - heard <= TABLE_VALIDITY);
+        self.table = match () {
+            () if is_recent(inbox.other_cell_heard) => TableState::OfOtherCell,
+            () if may_have_changed => TableState::Missing,
+            () if !table.permits(&inbox.number) => TableState::NotBuilt,
+            () => TableState::Followed,
+        };
     }
 
     /// Goes on with other regions. Nothing is allocated or freed: `next` holds what this had before.
@@ -149,6 +172,15 @@ impl GuardedRobot {
         self.sample.renumber(|old| same.iter().position(|s| *s == Some(old)).map(RegionId));
         // A recording is compared up to here: its monitor would not know what this one goes on with.
         next.recorder = self.recorder.take();
+    }
+
+    /// What is wrong with what this robot's node hears.
+    pub(super) fn doubt(&self) -> Option<Doubt> {
+        match self.table {
+            TableState::OfOtherCell => Some(Doubt::OtherCell),
+            TableState::Missing => Some(Doubt::NoTable),
+            TableState::NotBuilt | TableState::Followed => self.refused.map(Doubt::Refused),
+        }
     }
 
     pub(super) fn interlock(&self) -> Option<Interlock> {
@@ -180,11 +212,11 @@ impl GuardedRobot {
             intent: (!self.state.intent.is_empty()).then_some(&self.state.intent),
             sources: &self.sources,
         };
-        let fault = match (self.has_other_regions, is_attached) {
-            (true, _) => Some(Fault::Regions),
+        let fault = match (self.table, is_attached) {
             // The robot carries what its monitor cannot know.
-            (false, false) => Some(Fault::WrongLength),
-            (false, true) => None,
+            (TableState::Followed, false) => Some(Fault::WrongLength),
+            (TableState::Followed, true) => None,
+            _ => Some(Fault::Regions),
         };
         self.monitor.monitor_mut().set_external_fault(fault);
         let report = self.monitor.tick(&snapshot, now);
@@ -199,20 +231,14 @@ impl GuardedRobot {
     }
 
     /// A robot that is at rest at another place than before was moved while nobody looked: by hand, or with its controller off.
-    /// After a second of rest its new place counts.
+    /// After a second of rest its new place counts; as does that of a robot whose controller has started again.
     fn notice_standstill(&mut self, has_jumped: bool, now: Micros) {
-        let is_at_rest = self.state.qd.iter().all(|v| *v == 0.0);
-        match self.jumped {
-            _ if !has_jumped || !is_at_rest => self.jumped = None,
-            None => self.jumped = Some(now),
-            Some(since) if now - since > STANDSTILL => {
-                self.monitor.monitor_mut().forget_position();
-                if let Some(recorder) = &mut self.recorder {
-                    recorder.forgot_position();
-                }
-                self.jumped = None;
+        let state = &self.state;
+        if self.standstill.ends(has_jumped, &state.q, &state.qd, now) {
+            self.monitor.monitor_mut().forget_position();
+            if let Some(recorder) = &mut self.recorder {
+                recorder.forgot_position();
             }
-            Some(_) => {}
         }
     }
 

@@ -3,11 +3,11 @@
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use elbowroom_cell::{Cell, RegionEdit};
+use elbowroom_cell::{Cell, RegionEdit, configure};
 use elbowroom_interlock::Micros;
 use elbowroom_interlock::wire::MAX_BYTES;
 
-use super::input_gate::InputGate;
+use super::input_gate::{InputGate, Rejected};
 use super::next_configuration::NextConfiguration;
 use crate::configuration_number::configuration_digits;
 use crate::messages::JointState;
@@ -34,6 +34,8 @@ pub(super) struct Contents {
     /// Which regions are on, and when that was heard last.
     pub(super) regions: RegionTable,
     pub(super) regions_heard: Option<Micros>,
+    /// When somebody was heard last who keeps the regions of another cell file.
+    pub(super) other_cell_heard: Option<Micros>,
     /// The cell with the regions that the tick has, and the first digits of its checksum.
     pub(super) cell: Arc<Cell>,
     pub(super) number: String,
@@ -72,16 +74,21 @@ pub(crate) struct Heard {
     pub(crate) stamp: Option<Micros>,
     /// It has arrived since the last tick.
     pub(crate) is_new: bool,
+    /// Why the last message did not count; `None` where it did, or could not be read.
+    pub(crate) refused: Option<Rejected>,
 }
 
 impl Heard {
-    pub(crate) fn new(checksum: u64) -> Self {
+    /// From controllers of this configuration; also from those that expect any, where the cell has no exchange regions.
+    pub(crate) fn new(checksum: u64, cell: &Cell) -> Self {
+        let has_exchange = configure::slots(cell).iter().any(Option::is_some);
         Self {
-            gate: InputGate::new(checksum),
+            gate: InputGate::new(checksum).needs_configuration(has_exchange),
             scratch: JointState::with_capacity(),
             state: JointState::with_capacity(),
             stamp: None,
             is_new: false,
+            refused: None,
         }
     }
 
@@ -101,7 +108,14 @@ impl Heard {
             self.gate.rejected += 1;
             return false;
         }
-        let Ok(stamp) = self.gate.pass(&self.scratch, arrived) else { return false };
+        let stamp = match self.gate.pass(&self.scratch, arrived) {
+            Ok(stamp) => stamp,
+            Err(why) => {
+                self.refused = Some(why);
+                return false;
+            }
+        };
+        self.refused = None;
         std::mem::swap(&mut self.scratch, &mut self.state);
         (self.stamp, self.is_new) = (Some(stamp), true);
         true
@@ -111,12 +125,13 @@ impl Heard {
 impl Inbox {
     pub(super) fn new(checksum: u64, followed: Vec<bool>, cell: &Arc<Cell>) -> Self {
         let contents = Contents {
-            own: Heard::new(checksum),
-            followed: followed.into_iter().map(|is| is.then(|| Heard::new(checksum))).collect(),
+            own: Heard::new(checksum, cell),
+            followed: followed.into_iter().map(|is| is.then(|| Heard::new(checksum, cell))).collect(),
             grants: Vec::with_capacity(MAX_BYTES),
             has_grants: false,
             regions: RegionTable::initial(cell),
             regions_heard: None,
+            other_cell_heard: None,
             cell: cell.clone(),
             number: configuration_digits(cell),
             wanted: None,
@@ -159,6 +174,10 @@ impl Inbox {
     pub(super) fn take_regions(&self, message: &RegionTableMessage, arrived: Micros) {
         let mut contents = self.lock();
         let cell = contents.cell.clone();
+        if message.configuration != contents.regions.configuration {
+            contents.other_cell_heard = Some(arrived);
+            return;
+        }
         if !contents.regions.take(message, &cell) {
             return;
         }

@@ -9,8 +9,8 @@ use crate::messages::JointState;
 const FORGOTTEN: Micros = Micros(1_000_000);
 /// A stamp farther ahead than this is no stamp of a clock.
 const MOST_AHEAD: Micros = Micros(1_000_000);
-/// The least delay of messages is that of the last two such spans, so that clocks of different rates do not drift apart.
-const SPAN: Micros = Micros(2_000_000);
+/// Clocks drift apart by less than a microsecond in so many: a least delay that was seen counts as this much longer as time passes.
+const DRIFT_ONE_IN: u64 = 1_000;
 
 /// Why a joint state does not count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
@@ -24,6 +24,11 @@ pub enum Rejected {
     /// The controller expects another configuration.
     #[error("the controller expects another configuration: load the same cell file on both sides")]
     OtherConfiguration,
+    /// The controller expects any configuration, in a cell with exchange regions: an old cell file could lead it into an occupied one.
+    #[error(
+        "the controller does not say which configuration it expects, in a cell with exchange regions: give it the number that the service prints at its start"
+    )]
+    NoConfiguration,
     /// Its stamp is far ahead of the controller's clock.
     #[error("the stamp is more than a second ahead of the controller's clock, which must not jump")]
     Stamp,
@@ -32,22 +37,36 @@ pub enum Rejected {
 /// Passes the joint states of one controller in order, and tells how old they are.
 ///
 /// Stamps stay on the controller's clock, so that their differences are exact whatever the network does. Where that clock stands
-/// now is known from the message with the least delay: a constant delay is not noticed (the controller's watchdog bounds the way
-/// there and back), every further one makes a message that much older. A controller that starts again goes on with the time of
-/// the former one.
+/// now is known from the message with the least delay: a delay that was there from the start is not noticed (the controller's watchdog
+/// bounds the way there and back), every further one makes a message that much older. As the clocks may drift apart, a further delay
+/// is forgotten by a millisecond per second. A controller that starts again goes on with the time of the former one.
 #[derive(Debug, Clone, Default)]
 pub struct InputGate {
     checksum: u64,
+    /// Controllers that expect any configuration are refused.
+    needs_configuration: bool,
     last: Option<Last>,
     /// Added to stamps: continues the time of a former start of the controller.
     base_us: i64,
-    /// The least difference of arrival and stamp in this span and the one before, µs.
-    least: [Option<i64>; 2],
-    span_began: Micros,
+    /// The least difference of arrival and stamp, and when it was seen.
+    least: Option<Delay>,
     /// The latest time that was shown: it never goes back.
     shown: Micros,
     /// Messages that did not count.
     pub rejected: u64,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Delay {
+    us: i64,
+    seen: Micros,
+}
+
+impl Delay {
+    /// What it may be later, as the clocks have drifted apart, µs.
+    fn at(self, local: Micros) -> i64 {
+        self.us.saturating_add(signed_us(Micros((local - self.seen).0 / DRIFT_ONE_IN)))
+    }
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -61,6 +80,12 @@ impl InputGate {
     /// For controllers that expect this configuration, or say 0.
     pub fn new(checksum: u64) -> Self {
         Self { checksum, ..Self::default() }
+    }
+
+    /// For controllers that expect this configuration only, where that matters.
+    #[must_use]
+    pub fn needs_configuration(self, needs: bool) -> Self {
+        Self { needs_configuration: needs, ..self }
     }
 
     /// The time of the joint values on the controller's clock.
@@ -82,25 +107,22 @@ impl InputGate {
             // The first one starts where this process's clock stands.
             let from = if self.last.is_none() { arrived } else { now };
             self.base_us = signed_us(from).saturating_sub(raw_us);
-            self.least = [None, None];
-            self.span_began = arrived;
+            self.least = None;
         }
         let stamp = based(self.base_us);
         self.last = Some(Last { boot: state.boot, sequence: state.sequence, arrived });
-        if arrived - self.span_began > SPAN {
-            self.least = [None, self.least[0]];
-            self.span_began = arrived;
+        let delay = Delay { us: signed_us(arrived).saturating_sub(signed_us(stamp)), seen: arrived };
+        if self.least.is_none_or(|least| delay.us <= least.at(arrived)) {
+            self.least = Some(delay);
         }
-        let delay_us = signed_us(arrived).saturating_sub(signed_us(stamp));
-        self.least[0] = Some(self.least[0].map_or(delay_us, |least| least.min(delay_us)));
         Ok(stamp)
     }
 
     /// Where the controller's clock stands when this process's clock shows `local`. It never goes back, and is never before the
     /// last stamp.
     pub fn now(&mut self, local: Micros) -> Micros {
-        if let Some(least) = self.least.iter().flatten().min() {
-            self.shown = self.shown.max(Micros(signed_us(local).saturating_sub(*least).max(0) as u64));
+        if let Some(least) = self.least {
+            self.shown = self.shown.max(Micros(signed_us(local).saturating_sub(least.at(local)).max(0) as u64));
         }
         self.shown
     }
@@ -108,6 +130,9 @@ impl InputGate {
     fn check(&self, state: &JointState, arrived: Micros) -> Result<(), Rejected> {
         if state.checksum != 0 && state.checksum != self.checksum {
             return Err(Rejected::OtherConfiguration);
+        }
+        if state.checksum == 0 && self.needs_configuration {
+            return Err(Rejected::NoConfiguration);
         }
         match self.last {
             Some(last) if state.boot == last.boot && state.sequence <= last.sequence => Err(Rejected::Late),
@@ -150,6 +175,10 @@ mod tests {
         let other = JointState { checksum: 6, ..state(11, 2, 0) };
         assert_eq!(gate.pass(&other, Micros(400)), Err(Rejected::OtherConfiguration));
         assert_eq!(gate.rejected, 5);
+        let mut strict = InputGate::new(5).needs_configuration(true);
+        let of = |checksum| JointState { checksum, ..state(1, 1, 0) };
+        assert_eq!(strict.pass(&of(0), Micros(100)), Err(Rejected::NoConfiguration));
+        assert!(strict.pass(&of(5), Micros(100)).is_ok());
         assert!(gate.pass(&state(3, 1, 0), Micros(2_000_000)).is_ok(), "the clock of the controller was set back");
     }
 
@@ -168,7 +197,22 @@ mod tests {
         }
         let (state, arrived) = sent(50, 30_000);
         let stamp = gate.pass(&state, arrived).unwrap();
-        assert_eq!(gate.now(arrived) - stamp, Micros(29_900));
+        // Less what the clocks may have drifted apart since the message before, 32 ms ago.
+        assert_eq!(gate.now(arrived) - stamp, Micros(29_900 - 31));
+    }
+
+    /// Values that were on the way for 300 ms are not fresh because all of them are by now.
+    #[test]
+    fn a_delay_that_stays_is_not_forgotten() {
+        let mut gate = InputGate::new(0);
+        let delay = |n: u64| if n < 500 { 100 } else { 300_000 };
+        for n in 1..30_000 {
+            let (state, arrived) = sent(n, delay(n));
+            let stamp = gate.pass(&state, arrived).unwrap();
+            let age = gate.now(arrived) - stamp;
+            // A minute later, at a millisecond per second.
+            assert!(n < 500 || age > Micros(230_000), "message {n}: {age:?}");
+        }
     }
 
     #[test]
@@ -190,7 +234,8 @@ mod tests {
         let mut gate = InputGate::new(0);
         let before = gate.pass(&state(1, 1, 50_000_000), Micros(0)).unwrap();
         let after = gate.pass(&state(2, 1, 3), Micros(400_000)).unwrap();
-        assert_eq!(after - before, Micros(400_000));
+        // Less what the clocks may have drifted apart.
+        assert_eq!(after - before, Micros(400_000 - 400));
     }
 
     #[test]

@@ -4,6 +4,7 @@
 //! allocation, when joint values arrive; another one sends; the last one builds monitors for regions that are moved, added and
 //! removed. So nothing that a network does delays a tick.
 
+mod doubt;
 mod guarded_robot;
 mod inbox;
 mod input_gate;
@@ -12,6 +13,7 @@ mod node_monitor;
 mod node_tick;
 mod outbox;
 mod region_builder;
+mod standstill;
 
 use std::sync::Arc;
 use std::thread::JoinHandle;
@@ -32,6 +34,7 @@ use crate::clock::Clock;
 use crate::keys::Keys;
 use crate::network::{Network, NetworkError, Publisher, Subscription, Urgency};
 use crate::regions_table::RegionTableMessage;
+use doubt::Doubt;
 use inbox::Inbox;
 use next_configuration::NodeVersion;
 use node_tick::follows;
@@ -188,7 +191,8 @@ impl Sender {
                 }
                 std::mem::swap(&mut state, &mut outgoing.state);
                 let sample = outgoing.take_sample(&mut self.sample);
-                (outgoing.answer.take(), sample.map(|sample| (sample, outgoing.version.clone())))
+                let doubt = outgoing.doubt;
+                (outgoing.answer.take(), sample.map(|sample| (sample, outgoing.version.clone(), doubt)))
             };
             if let Some(answer) = answer {
                 answer.encode(&mut bytes);
@@ -197,19 +201,29 @@ impl Sender {
             if !state.is_empty() {
                 self.states.publish(&state);
             }
-            if let Some(((t_s, sequence, health), version)) = status {
-                self.publish_status(t_s, sequence, health, &version);
+            if let Some(((t_s, sequence, health), version, doubt)) = status {
+                self.publish_status(t_s, sequence, health, &version, doubt);
             }
         }
     }
 
-    fn publish_status(&mut self, t_s: f64, sequence: u64, health: HealthStatus, version: &NodeVersion) {
+    fn publish_status(
+        &mut self,
+        t_s: f64,
+        sequence: u64,
+        health: HealthStatus,
+        version: &NodeVersion,
+        doubt: Option<Doubt>,
+    ) {
         let tcp = self.tcp(&version.configuration);
         let mut status = RobotStatus::of_sample(t_s, &version.configuration, &self.sample, tcp.as_ref());
         (status.sequence, status.health) = (sequence, health);
         status.configuration.clone_from(&version.number);
         if self.sample.joint_positions().is_empty() {
             "no joint values from the controller yet".clone_into(&mut status.reason);
+        }
+        if let Some(doubt) = doubt {
+            status.reason = format!("{}: {doubt}", status.reason);
         }
         status.events = self.events(t_s, &version.configuration);
         if let Ok(json) = serde_json::to_vec(&status) {

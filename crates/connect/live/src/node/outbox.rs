@@ -6,6 +6,7 @@ use elbowroom_interlock::wire::MAX_BYTES;
 use elbowroom_monitor::Monitor;
 use elbowroom_status::{HealthStatus, StatusSample};
 
+use super::doubt::Doubt;
 use super::next_configuration::NodeVersion;
 use crate::messages::OverrideAnswer;
 
@@ -29,6 +30,8 @@ pub(super) struct Outgoing {
     pub(super) t_s: f64,
     pub(super) sequence: u64,
     pub(super) health: HealthStatus,
+    /// What is wrong with what the node hears.
+    pub(super) doubt: Option<Doubt>,
     pub(super) is_closed: bool,
 }
 
@@ -58,6 +61,7 @@ impl Outbox {
             t_s: 0.0,
             sequence: 0,
             health: HealthStatus::default(),
+            doubt: None,
             is_closed: false,
         };
         Self { contents: Mutex::new(contents), news: Condvar::new() }

@@ -6,9 +6,9 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use elbowroom_cell::Cell;
-use elbowroom_cell::seal::AccessTokens;
+use elbowroom_cell::seal::{AccessTokens, ControlEntry, control_history, control_log_of};
 use elbowroom_live::network::ZenohNetwork;
-use elbowroom_live::{ControlOptions, Service, ServiceOptions};
+use elbowroom_live::{ControlOptions, RegionTable, Service, ServiceOptions, region_journal_of};
 use elbowroom_monitor::AccessClass;
 use elbowroom_testkit::network::free_address;
 use serde_json::Value;
@@ -71,6 +71,7 @@ pub struct ControlSetup {
     pub secrets: [String; 3],
     pub events: Arc<Mutex<Vec<String>>>,
     pub cell: Cell,
+    options: ServiceOptions,
     /// `None` once it was stopped.
     pub service: Option<Service>,
 }
@@ -86,7 +87,12 @@ impl ControlSetup {
         let cell = Cell::load(&file).unwrap_or_else(|e| panic!("{e}"));
         let events: Arc<Mutex<Vec<String>>> = Arc::default();
         let (heard, listen) = (events.clone(), free_address());
+        // As a service that ended with all temporary regions off.
+        let journal = region_journal_of(&file);
+        let table = RegionTable::initial(&cell).message(&cell);
+        std::fs::write(&journal, serde_json::to_vec(&table).unwrap()).unwrap();
         let options = ServiceOptions {
+            journal: Some(journal),
             listen: Some(listen.clone()),
             control: Some(ControlOptions { address: "127.0.0.1:0".into(), tokens, log: None, program_switches }),
             on_event: Some(Arc::new(move |event: &str| heard.lock().unwrap().push(event.to_owned()))),
@@ -94,7 +100,28 @@ impl ControlSetup {
         };
         let service = Service::start(cell.clone(), &options).unwrap_or_else(|e| panic!("{e}"));
         let address = service.control_address().unwrap();
-        Self { folder, address, listen, secrets, events, cell, service: Some(service) }
+        Self { folder, address, listen, secrets, events, cell, options, service: Some(service) }
+    }
+
+    /// Ends the service and starts it again.
+    pub fn restart(&mut self) {
+        drop(self.service.take());
+        let service = Service::start(self.cell.clone(), &self.options).unwrap_or_else(|e| panic!("{e}"));
+        self.address = service.control_address().unwrap();
+        self.service = Some(service);
+    }
+
+    /// What was changed since the start, as logged.
+    pub fn changes(&self) -> Vec<ControlEntry> {
+        let mut entries = self.logged();
+        let start = entries.remove(0);
+        assert_eq!((start.sequence, start.action.as_str(), start.name.as_str()), (1, "start", "the service"));
+        entries
+    }
+
+    /// All that was logged.
+    pub fn logged(&self) -> Vec<ControlEntry> {
+        control_history(&control_log_of(&self.cell.file)).unwrap()
     }
 
     pub fn network(&self) -> Arc<ZenohNetwork> {

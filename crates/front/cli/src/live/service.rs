@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use elbowroom::cell::Cell;
 use elbowroom::live::network::ZENOH_RUNTIME;
 use elbowroom::live::ros2::Ros2Settings;
-use elbowroom::live::{ControlOptions, DEFAULT_ADDRESS, Keys, Service, ServiceOptions};
+use elbowroom::live::{ControlOptions, DEFAULT_ADDRESS, Keys, Service, ServiceOptions, region_journal_of};
 
 use super::LiveArgs;
 use super::ros2::{ros2_settings, run_watchdog};
@@ -32,6 +32,7 @@ pub(crate) fn live(args: &LiveArgs) -> Result<ExitStatus, Failure> {
         connect: args.connect.clone(),
         udp: args.udp.clone(),
         arbiter: args.arbiter,
+        journal: Some(region_journal_of(&args.cell)),
         simulate: args.simulate,
         web: args.web.clone(),
         record: args.record.clone(),

@@ -1,0 +1,92 @@
+//! What a simulated program wants to be switched on and off, until it is.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use elbowroom_cell::{Cell, CellRegionId, Program, ProgramBody, StepAction};
+use elbowroom_robot::RobotId;
+
+use crate::keys::Keys;
+use crate::network::{Network, NetworkError, Publisher, Subscription, Urgency};
+use crate::region_keeper::SwitchRequest;
+use crate::regions_table::RegionTableMessage;
+
+/// A request is repeated this often until the table of regions shows that it was obeyed.
+const REPEATED: Duration = Duration::from_millis(250);
+
+/// The requests of one program. As a message may be lost, and the process that keeps the regions may be starting, each is repeated.
+///
+/// A program begins with the temporary regions that it switches off, as in `run`: where several programs switch a region, the first
+/// one in the cell file asks for that.
+pub(crate) struct SwitchRequests {
+    robot: String,
+    cell: Arc<Cell>,
+    publisher: Box<dyn Publisher>,
+    /// Per region whether it is on, as heard last.
+    heard: Arc<Mutex<BTreeMap<String, bool>>>,
+    wanted: BTreeMap<String, bool>,
+    sent: Option<Instant>,
+    _table: Subscription,
+}
+
+impl SwitchRequests {
+    /// Those of a robot's program, which is about to start.
+    ///
+    /// # Errors
+    /// [`NetworkError`] where the keys cannot be used.
+    pub(crate) fn new(cell: &Arc<Cell>, robot: RobotId, network: &Arc<dyn Network>) -> Result<Self, NetworkError> {
+        let keys = Keys::new(&cell.name);
+        let heard: Arc<Mutex<BTreeMap<String, bool>>> = Arc::default();
+        let handler = {
+            let heard = heard.clone();
+            Box::new(move |bytes: &[u8]| {
+                let Ok(message) = serde_json::from_slice::<RegionTableMessage>(bytes) else { return };
+                *heard.lock().unwrap_or_else(PoisonError::into_inner) = message.regions.into_iter().collect();
+            })
+        };
+        let first = |region: CellRegionId| cell.programs.iter().position(|program| switches(program.as_ref(), region));
+        let off = (0..cell.regions.len()).filter(|region| first(CellRegionId(*region)) == Some(robot.0));
+        Ok(Self {
+            robot: cell.robots[robot.0].name.clone(),
+            publisher: network.publisher(&keys.switch(), Urgency::RealTime)?,
+            _table: network.subscribe(&keys.regions(), handler)?,
+            heard,
+            wanted: off.map(|region| (cell.regions[region].region.name.clone(), false)).collect(),
+            sent: None,
+            cell: cell.clone(),
+        })
+    }
+
+    /// The program switches a region.
+    pub(crate) fn want(&mut self, region: CellRegionId, active: bool) {
+        self.wanted.insert(self.cell.regions[region.0].region.name.clone(), active);
+        self.sent = None;
+    }
+
+    /// Sends what is not obeyed yet.
+    pub(crate) fn send(&mut self) {
+        if self.wanted.is_empty() {
+            return;
+        }
+        if self.sent.is_some() {
+            let heard = self.heard.lock().unwrap_or_else(PoisonError::into_inner);
+            self.wanted.retain(|region, active| heard.get(region) != Some(active));
+        }
+        if self.sent.is_some_and(|sent| sent.elapsed() < REPEATED) {
+            return;
+        }
+        self.sent = Some(Instant::now());
+        for (region, active) in &self.wanted {
+            let request = SwitchRequest { robot: self.robot.clone(), region: region.clone(), active: *active };
+            if let Ok(json) = serde_json::to_vec(&request) {
+                self.publisher.publish(&json);
+            }
+        }
+    }
+}
+
+fn switches(program: Option<&Program>, region: CellRegionId) -> bool {
+    let Some(Program { body: ProgramBody::Steps(steps), .. }) = program else { return false };
+    steps.iter().any(|step| matches!(step.action, StepAction::Switch { region: switched, .. } if switched == region))
+}

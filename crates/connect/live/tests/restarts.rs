@@ -1,0 +1,97 @@
+//! Processes of a live cell that start again, or twice.
+
+use crate::common::control_setup::{ControlSetup, PROGRAMMER, rails};
+use elbowroom_live::{Service, ServiceOptions, region_journal_of};
+use elbowroom_testkit::network::eventually;
+use serde_json::json;
+
+const CELL: &str = concat!(rails!("900", "450, 0, 1900"), "[monitor]\nstale_ms = 200\n");
+const TABLE: &str = "shape = \"sphere\"\ncentre = [0, 0, 1000]\nradius = 100\nwarning = 100\nlife = \"temporary\"\n";
+
+fn setup() -> ControlSetup {
+    ControlSetup::new(CELL, false, ServiceOptions { arbiter: true, ..ServiceOptions::default() })
+}
+
+fn is_on(setup: &ControlSetup, region: &str) -> Option<bool> {
+    setup.region(region).map(|r| r["active"] == true)
+}
+
+#[test]
+fn the_regions_are_the_same_after_a_restart_and_the_log_says_so() {
+    let mut setup = setup();
+    assert_eq!(is_on(&setup, "cart"), Some(false));
+    for (path, body) in [
+        ("/switch", json!({ "region": "cart", "active": true })),
+        ("/move", json!({ "region": "cart", "toml": "centre = [0, 0, 1800]" })),
+        ("/add", json!({ "region": "table", "toml": TABLE })),
+        ("/add", json!({ "region": "spare", "toml": TABLE, "active": false })),
+    ] {
+        let (status, document) = setup.change(PROGRAMMER, path, &body);
+        assert_eq!(status, 200, "{document}");
+    }
+    let before = setup.regions();
+    setup.restart();
+    let after = setup.regions();
+    assert_eq!((&after["regions"], &after["checksum"]), (&before["regions"], &before["checksum"]));
+    assert_eq!(
+        [is_on(&setup, "cart"), is_on(&setup, "table"), is_on(&setup, "spare")],
+        [Some(true), Some(true), Some(false)]
+    );
+    let start = setup.logged().pop().unwrap();
+    assert_eq!((start.action.as_str(), start.name.as_str()), ("start", "the service"));
+    assert!(start.note.as_ref().is_some_and(|note| note.contains("as they were")), "{start:?}");
+    assert_eq!(start.changes.len(), 3);
+    // It goes on from there.
+    assert_eq!(setup.change(PROGRAMMER, "/remove", &json!({ "region": "table" })).0, 200);
+    setup.restart();
+    assert_eq!([is_on(&setup, "table"), is_on(&setup, "spare")], [None, Some(false)]);
+}
+
+#[test]
+fn without_a_journal_that_can_be_trusted_all_regions_are_on() {
+    let mut setup = setup();
+    let journal = region_journal_of(&setup.cell.file);
+    let off = std::fs::read_to_string(&journal).unwrap();
+    let wrong = [
+        None,
+        Some(String::new()),
+        Some(off.chars().take(off.len() / 2).collect()),
+        Some(off.replace(&setup.cell.checksum[..16], &"0".repeat(16))),
+        Some(off.replace("\"edits\":[]", "\"edits\":[{\"name\":\"table\",\"table\":\"shape = 3\"}]")),
+    ];
+    for (case, text) in wrong.into_iter().enumerate() {
+        match text {
+            None => std::fs::remove_file(&journal).unwrap(),
+            Some(text) => {
+                assert_ne!(text, off);
+                std::fs::write(&journal, text).unwrap();
+            }
+        }
+        setup.restart();
+        assert_eq!([is_on(&setup, "cart"), is_on(&setup, "wall")], [Some(true); 2], "case {case}");
+        let start = setup.logged().pop().unwrap();
+        assert!(start.note.as_ref().is_some_and(|n| n.contains("are on until they are switched")), "{start:?}");
+        assert_eq!(setup.change(PROGRAMMER, "/switch", &json!({ "region": "cart", "active": false })).0, 200);
+    }
+    setup.restart();
+    assert_eq!(is_on(&setup, "cart"), Some(false));
+}
+
+#[test]
+fn a_second_node_for_a_robot_does_not_start() {
+    let setup = setup();
+    let left = || {
+        let connect = Some(setup.listen.clone());
+        let options = ServiceOptions { robots: vec!["left".into()], connect, ..ServiceOptions::default() };
+        Service::start(setup.cell.clone(), &options)
+    };
+    let first = left().unwrap_or_else(|e| panic!("{e}"));
+    let Err(error) = left() else { panic!("it started") };
+    assert!(error.to_string().contains("robot left: another process guards it already"), "{error}");
+    drop(first);
+    let mut again = None;
+    eventually("the first one has ended", || {
+        again = left().ok();
+        again.is_some()
+    });
+}
