@@ -1,7 +1,7 @@
 //! Keeps which regions a cell has now and which are switched on, and says so to all nodes.
 
 use std::collections::BTreeSet;
-use std::sync::mpsc::{self, RecvTimeoutError, Sender};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
@@ -14,7 +14,7 @@ use crate::cell_versions::CellVersions;
 use crate::configuration_number::configuration_digits;
 use crate::event_handler::EventHandler;
 use crate::keys::Keys;
-use crate::network::{Network, NetworkError, Subscription, Urgency};
+use crate::network::{Network, NetworkError, Publisher, Subscription, Urgency};
 use crate::region_journal::RegionJournal;
 use crate::regions_table::{RegionTable, RegionTableMessage};
 
@@ -164,42 +164,11 @@ impl RegionKeeper {
         let kept = Arc::new(Mutex::new(kept));
         let (wake, woken) = mpsc::channel();
         let keys = Keys::new(&cell.name);
-        let handler = {
-            let (kept, wake) = (kept.clone(), wake.clone());
-            let ignored = Ignored::default();
-            Box::new(move |bytes: &[u8]| {
-                let Ok(request) = serde_json::from_slice::<SwitchRequest>(bytes) else { return };
-                let mut kept = lock(&kept);
-                let Some(region) = find(&request.region, &kept.cell) else { return };
-                match &programs {
-                    ProgramSwitches::Ignored(on_event) => ignored.report(&request, on_event.as_ref()),
-                    ProgramSwitches::Obeyed => {
-                        if kept.switch(region, request.active) {
-                            // The other side is gone only when the keeper ends.
-                            let _ = wake.send(());
-                        }
-                    }
-                }
-            })
-        };
+        let handler = Box::new(obey(kept.clone(), wake.clone(), programs));
         let subscription = network.subscribe(&keys.switch(), handler)?;
-        let mut publisher = network.publisher(&keys.regions(), Urgency::RealTime)?;
+        let publisher = network.publisher(&keys.regions(), Urgency::RealTime)?;
         let published = kept.clone();
-        let publish = move || {
-            loop {
-                let message = {
-                    let kept = lock(&published);
-                    kept.table.message(&kept.cell)
-                };
-                if let Ok(json) = serde_json::to_vec(&message) {
-                    publisher.publish(&json);
-                }
-                match woken.recv_timeout(PERIOD) {
-                    Ok(()) | Err(RecvTimeoutError::Timeout) => {}
-                    Err(RecvTimeoutError::Disconnected) => return,
-                }
-            }
-        };
+        let publish = move || publish(&published, publisher, &woken);
         let thread = std::thread::Builder::new().name("regions".into()).spawn(publish);
         Ok(Self {
             kept,
@@ -273,6 +242,42 @@ impl RegionKeeper {
 
 fn lock(kept: &Mutex<Kept>) -> MutexGuard<'_, Kept> {
     kept.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Obeys what programs ask for, or reports it.
+fn obey(kept: Arc<Mutex<Kept>>, wake: Sender<()>, programs: ProgramSwitches) -> impl Fn(&[u8]) + Send + Sync {
+    let ignored = Ignored::default();
+    move |bytes| {
+        let Ok(request) = serde_json::from_slice::<SwitchRequest>(bytes) else { return };
+        let mut kept = lock(&kept);
+        let Some(region) = find(&request.region, &kept.cell) else { return };
+        match &programs {
+            ProgramSwitches::Ignored(on_event) => ignored.report(&request, on_event.as_ref()),
+            ProgramSwitches::Obeyed => {
+                if kept.switch(region, request.active) {
+                    // The other side is gone only when the keeper ends.
+                    let _ = wake.send(());
+                }
+            }
+        }
+    }
+}
+
+/// Repeats the table until the keeper ends.
+fn publish(kept: &Mutex<Kept>, mut publisher: Box<dyn Publisher>, woken: &Receiver<()>) {
+    loop {
+        let message = {
+            let kept = lock(kept);
+            kept.table.message(&kept.cell)
+        };
+        if let Ok(json) = serde_json::to_vec(&message) {
+            publisher.publish(&json);
+        }
+        match woken.recv_timeout(PERIOD) {
+            Ok(()) | Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => return,
+        }
+    }
 }
 
 /// The temporary region of this name. A permanent one is never switched.

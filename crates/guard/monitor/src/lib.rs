@@ -78,6 +78,7 @@ mod stopping;
 mod taught_points;
 pub mod teach;
 mod tick_context;
+mod unchanged_reading;
 mod volume;
 mod volume_region_pair;
 mod warm_start_cache;

@@ -4,8 +4,8 @@ use std::f64::consts::{PI, TAU};
 
 use elbowroom_kinematics::{Chain, JointId, JointKind};
 
-use crate::laws::{stop_time, stopping_program_time};
 use crate::override_history::OverrideRange;
+use crate::unchanged_reading::UnchangedReading;
 use crate::{Fault, Laws, Snapshot};
 
 /// Settings of the plausibility check.
@@ -23,10 +23,6 @@ pub(crate) struct WatchdogSettings {
     pub(crate) velocity_factor: f64,
     /// Time (s) between two readings beyond which velocities do not explain the travel.
     pub(crate) silence_s: f64,
-    /// Program time (s) after which a bitwise constant reading is frozen.
-    pub(crate) frozen_s: f64,
-    /// Time (s) at override 0 after which a robot whose reading was frozen may try to move again.
-    pub(crate) rest_s: f64,
 }
 
 impl Default for WatchdogSettings {
@@ -38,8 +34,6 @@ impl Default for WatchdogSettings {
             jitter: 1e-3,
             velocity_factor: 1.25,
             silence_s: 0.1,
-            frozen_s: 0.1,
-            rest_s: 1.0,
         }
     }
 }
@@ -63,18 +57,7 @@ pub(crate) struct Watchdog {
     velocity: Vec<f64>,
     /// Time over which they were derived, s.
     derived_over_s: f64,
-    /// Largest program time since the reading last changed, s.
-    max_unchanged_s: f64,
-    /// Smallest program time since then, s. Begins again where the robot has been at rest for long enough.
-    min_unchanged_s: f64,
-    /// Time at override 0 since the reading is frozen, s.
-    rest_s: f64,
-    /// How the joints brake; empty where nobody asks.
-    deceleration: Vec<f64>,
-    /// Bound of the rate of change of the stop time by program time.
-    growth: f64,
-    /// Override of the program at the last valid snapshot.
-    programmed_override: f64,
+    unchanged: UnchangedReading,
 }
 
 /// Times of a snapshot, s.
@@ -114,9 +97,7 @@ impl Watchdog {
         };
         let zeros = vec![0.0; chain.dof()];
         let joints: Vec<JointBound> = chain.active_joints().iter().map(bound).collect();
-        let stopping = laws.stopping_distance.as_ref();
-        let growth = stopping.map_or(0.0, |s| stop_time(&s.joint_acceleration, &s.joint_deceleration));
-        let deceleration = stopping.map_or_else(Vec::new, |s| s.joint_deceleration.clone());
+        let unchanged = UnchangedReading::new(laws, joints.iter().map(|j| j.max_speed).collect());
         Self {
             settings,
             joints,
@@ -129,12 +110,7 @@ impl Watchdog {
             explained_travel: zeros.clone(),
             velocity: zeros,
             derived_over_s: 0.0,
-            max_unchanged_s: 0.0,
-            min_unchanged_s: 0.0,
-            rest_s: 0.0,
-            deceleration,
-            growth,
-            programmed_override: 0.0,
+            unchanged,
         }
     }
 
@@ -147,7 +123,7 @@ impl Watchdog {
         let motion = if self.needs_motion { self.check_motion(s, overrides) } else { Ok(()) };
         self.last_valid = Some(SnapshotTimes { now_s: s.now_s, stamp_s: s.stamp_s });
         self.last_q.copy_from_slice(s.q);
-        self.programmed_override = s.programmed_override;
+        self.unchanged.take_program(s);
         self.explained_travel.fill(0.0);
         motion
     }
@@ -156,11 +132,7 @@ impl Watchdog {
     pub(crate) fn forget_position(&mut self) {
         self.last_valid = None;
         self.explained_travel.fill(0.0);
-        self.forget_unchanged();
-    }
-
-    fn forget_unchanged(&mut self) {
-        (self.max_unchanged_s, self.min_unchanged_s, self.rest_s) = (0.0, 0.0, 0.0);
+        self.unchanged.forget();
     }
 
     /// Seconds since the last valid snapshot.
@@ -181,7 +153,7 @@ impl Watchdog {
 
     /// Largest program time (s) since the reading last changed.
     pub(crate) fn max_unchanged_s(&self) -> f64 {
-        self.max_unchanged_s
+        self.unchanged.max_s()
     }
 
     fn check_form(&self, s: &Snapshot, sources: usize) -> Result<(), Fault> {
@@ -255,47 +227,13 @@ impl Watchdog {
         let passed_s = s.stamp_s - last.stamp_s;
         self.derive_velocity(s, passed_s);
         if s.q.iter().zip(&self.last_q).any(|(a, b)| a.to_bits() != b.to_bits()) {
-            self.forget_unchanged();
+            self.unchanged.forget();
             return Ok(());
         }
         if passed_s <= self.settings.silence_s {
-            self.count_unchanged(s, passed_s, overrides);
+            self.unchanged.count(s, passed_s, overrides);
         }
-        if self.min_unchanged_s > self.settings.frozen_s { Err(Fault::Frozen) } else { Ok(()) }
-    }
-
-    /// Adds the program time that may have passed while the reading did not change. A program at override 0 stands still, whatever
-    /// was commanded: a controller that hears no override says so by it.
-    ///
-    /// A frozen robot may try to move again after a rest: an answer was lost, or its brakes were slow. What it may have travelled
-    /// unseen still counts, the way in which it came to rest included, so that it stops before every region all the same.
-    fn count_unchanged(&mut self, s: &Snapshot, passed_s: f64, overrides: OverrideRange) {
-        let (before, after) = (self.programmed_override, s.programmed_override);
-        let max = overrides.max.min(before.max(after));
-        let min = overrides.min.min(before.min(after));
-        let was_frozen = self.min_unchanged_s > self.settings.frozen_s;
-        if s.intent.unwrap_or(s.qd).iter().any(|v| *v != 0.0) {
-            self.max_unchanged_s += max * passed_s;
-            self.min_unchanged_s += min * passed_s;
-        }
-        if !was_frozen && self.min_unchanged_s > self.settings.frozen_s {
-            self.max_unchanged_s += self.stop_of_program_s(s, max);
-            self.rest_s = 0.0;
-        } else if was_frozen {
-            self.rest_s = if max > 0.0 { 0.0 } else { self.rest_s + passed_s };
-            if self.rest_s >= self.settings.rest_s {
-                self.min_unchanged_s = 0.0;
-            }
-        }
-    }
-
-    /// Program time in which a robot stops from this override.
-    fn stop_of_program_s(&self, s: &Snapshot, speed_override: f64) -> f64 {
-        let full_stop_s = match s.intent {
-            Some(intent) => stop_time(intent, &self.deceleration),
-            None => self.joints.iter().zip(&self.deceleration).map(|(j, a)| j.max_speed / a).fold(0.0, f64::max),
-        };
-        stopping_program_time(speed_override, full_stop_s, self.growth)
+        if self.unchanged.is_frozen() { Err(Fault::Frozen) } else { Ok(()) }
     }
 
     fn derive_velocity(&mut self, s: &Snapshot, passed_s: f64) {

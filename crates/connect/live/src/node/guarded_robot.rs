@@ -16,26 +16,11 @@ use elbowroom_status::StatusSample;
 
 use super::doubt::Doubt;
 use super::inbox::{Contents, Heard};
-use super::input_gate::Rejected;
 use super::next_configuration::{NextConfiguration, NodeVersion};
 use super::node_monitor::NodeMonitor;
 use super::standstill::Standstill;
 use crate::messages::{AttachedVolume, JointState, MAX_ATTACHED, MAX_JOINTS, OverrideAnswer};
 use crate::regions_table::{RegionTable, TABLE_VALIDITY};
-
-/// What a node knows of the regions of its cell now.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-enum TableState {
-    /// The monitor has them.
-    #[default]
-    Followed,
-    /// The monitor is not built for them yet.
-    NotBuilt,
-    /// Nobody has said which there are, and they may have changed.
-    Missing,
-    /// The process that keeps them has another cell file.
-    OfOtherCell,
-}
 
 /// One guarded robot. Its memory is allocated when it is made, so that [`Self::tick`] needs no more.
 pub(super) struct GuardedRobot {
@@ -60,9 +45,8 @@ pub(super) struct GuardedRobot {
     active: Vec<bool>,
     /// Without a table of regions the robot stops.
     pub(super) awaits_regions: bool,
-    table: TableState,
-    /// Why the last message of the controller did not count, if it did not.
-    refused: Option<Rejected>,
+    /// What is wrong with what is heard.
+    pub(super) doubt: Option<Doubt>,
     /// The configuration of the monitor, for whoever shows what it finds.
     pub(super) version: Arc<NodeVersion>,
     answers: u64,
@@ -94,8 +78,7 @@ impl GuardedRobot {
             stamp: None,
             now: Micros(0),
             standstill: Standstill::new(MAX_JOINTS),
-            refused: None,
-            table: TableState::default(),
+            doubt: None,
             active: RegionTable::initial(&cell).active,
             awaits_regions: false,
             version: Arc::new(NodeVersion { number: String::new(), configuration: setup.configuration.clone() }),
@@ -116,7 +99,6 @@ impl GuardedRobot {
             self.stamp = inbox.own.stamp;
             self.standstill.hear(self.state.boot);
         }
-        self.refused = inbox.own.refused;
         self.now = inbox.own.now(now);
         for (robot, heard) in inbox.followed.iter_mut().enumerate() {
             let Some(heard) = heard else { continue };
@@ -146,11 +128,11 @@ impl GuardedRobot {
         let table = &inbox.regions;
         let may_have_changed = table.is_editable && !is_known || self.awaits_regions && inbox.regions_heard.is_none();
         let is_recent = |heard: Option<Micros>| heard.is_some_and(|heard| now - heard <= TABLE_VALIDITY);
-        self.table = match () {
-            () if is_recent(inbox.other_cell_heard) => TableState::OfOtherCell,
-            () if may_have_changed => TableState::Missing,
-            () if !table.permits(&inbox.number) => TableState::NotBuilt,
-            () => TableState::Followed,
+        self.doubt = match () {
+            () if is_recent(inbox.other_cell_heard) => Some(Doubt::OtherCell),
+            () if may_have_changed => Some(Doubt::NoTable),
+            () if !table.permits(&inbox.number) => Some(Doubt::NotBuilt),
+            () => inbox.own.refused.map(Doubt::Refused),
         };
     }
 
@@ -172,15 +154,6 @@ impl GuardedRobot {
         self.sample.renumber(|old| same.iter().position(|s| *s == Some(old)).map(RegionId));
         // A recording is compared up to here: its monitor would not know what this one goes on with.
         next.recorder = self.recorder.take();
-    }
-
-    /// What is wrong with what this robot's node hears.
-    pub(super) fn doubt(&self) -> Option<Doubt> {
-        match self.table {
-            TableState::OfOtherCell => Some(Doubt::OtherCell),
-            TableState::Missing => Some(Doubt::NoTable),
-            TableState::NotBuilt | TableState::Followed => self.refused.map(Doubt::Refused),
-        }
     }
 
     pub(super) fn interlock(&self) -> Option<Interlock> {
@@ -212,11 +185,11 @@ impl GuardedRobot {
             intent: (!self.state.intent.is_empty()).then_some(&self.state.intent),
             sources: &self.sources,
         };
-        let fault = match (self.table, is_attached) {
+        let fault = match (self.doubt.is_some_and(Doubt::is_of_regions), is_attached) {
+            (true, _) => Some(Fault::Regions),
             // The robot carries what its monitor cannot know.
-            (TableState::Followed, false) => Some(Fault::WrongLength),
-            (TableState::Followed, true) => None,
-            _ => Some(Fault::Regions),
+            (false, false) => Some(Fault::WrongLength),
+            (false, true) => None,
         };
         self.monitor.monitor_mut().set_external_fault(fault);
         let report = self.monitor.tick(&snapshot, now);

@@ -190,7 +190,7 @@ impl NodeTick {
                     outgoing.version = guarded.version.clone();
                 }
                 (outgoing.t_s, outgoing.sequence) = (now.0 as f64 * 1e-6, guarded.sequence());
-                outgoing.doubt = guarded.doubt();
+                outgoing.doubt = guarded.doubt;
                 outgoing.health = std::mem::replace(health, HealthStatus { tick_max_us: 0, ..*health });
                 *published = Some(now);
             }
