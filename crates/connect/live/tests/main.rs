@@ -3,6 +3,7 @@
 mod c_client;
 mod common;
 mod control;
+mod doubtful_input;
 mod node;
 mod region_changes;
 mod region_table;
