@@ -136,3 +136,29 @@ impl Aabb {
         !(self.min.x <= self.max.x && self.min.y <= self.max.y && self.min.z <= self.max.z)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Obb, Rotation};
+    use elbowroom_testkit::random::{split_mix, unit};
+
+    /// The box of a turned box has its eight corners, and none of its sides can be moved inwards.
+    #[test]
+    fn the_box_of_a_turned_box_is_the_smallest_one_around_its_corners() {
+        let mut state = 5;
+        let mut random = |scale: f64| scale * (2.0 * unit(split_mix(&mut state)) - 1.0);
+        for _ in 0..2_000 {
+            let mut vec3 = |scale: f64| Vec3::new(random(scale), random(scale), random(scale));
+            let (a, b, translation, turn) = (vec3(2.0), vec3(2.0), vec3(5.0), vec3(3.0));
+            let pose = Pose { rotation: Rotation::from_rotation_vector(turn), translation };
+            let boxed = Aabb { min: a.min(b), max: a.max(b) };
+            let middle = pose * Pose::from_translation(boxed.center());
+            let corners = Obb { pose: middle, half_extents: boxed.extent() * 0.5 }.corners();
+            let around = Aabb::from_points(corners);
+            let turned = boxed.transformed(&pose);
+            let off = (turned.min - around.min).length().max((turned.max - around.max).length());
+            assert!(off < 1e-12, "{off}: {turned:?}, {around:?}");
+        }
+    }
+}

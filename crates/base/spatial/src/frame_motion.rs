@@ -61,3 +61,39 @@ impl FrameMotion {
             && self.angular_acceleration.is_finite()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Rotation;
+    use elbowroom_testkit::random::{split_mix, unit};
+
+    /// Against differences of the position of a point on a frame that travels and turns with constant accelerations.
+    #[test]
+    fn velocity_and_acceleration_are_the_derivatives_of_the_position() {
+        let mut state = 6;
+        let mut random = || 2.0 * unit(split_mix(&mut state)) - 1.0;
+        let mut vec3 = || Vec3::new(random(), random(), random());
+        for _ in 0..200 {
+            let motion = FrameMotion {
+                velocity: vec3(),
+                angular_velocity: vec3(),
+                acceleration: vec3(),
+                angular_acceleration: vec3(),
+            };
+            let offset = vec3();
+            let at = |t: f64| {
+                // To the second order in time.
+                let turn = motion.angular_velocity * t + motion.angular_acceleration * (0.5 * t * t);
+                let travel = motion.velocity * t + motion.acceleration * (0.5 * t * t);
+                Rotation::from_rotation_vector(turn) * offset + travel
+            };
+            let h = 1e-4;
+            let velocity = (at(h) - at(-h)) * (0.5 / h);
+            let acceleration = (at(h) + at(-h) - at(0.0) * 2.0) * (1.0 / (h * h));
+            assert!((motion.velocity_at(offset) - velocity).length() < 1e-6);
+            assert!((motion.acceleration_at(offset) - acceleration).length() < 1e-5, "{motion:?} {offset:?}");
+            assert_eq!(motion.shifted(offset).velocity_at(Vec3::ZERO), motion.velocity_at(offset));
+        }
+    }
+}

@@ -9,7 +9,7 @@ use elbowroom_formats::FormatError;
 use elbowroom_interlock::Boot;
 use elbowroom_monitor::{RegionKind, RobotSlot};
 use elbowroom_robot::RobotId;
-use elbowroom_rosbag::{CellWriter, Recorder};
+use elbowroom_rosbag::{BagError, CellWriter, Recorder};
 use elbowroom_view::{Server, ServerSettings, StatusFeed};
 
 use crate::arbiter_service::ArbiterService;
@@ -109,7 +109,15 @@ impl<'o> ServiceStart<'o> {
 
     pub(crate) fn recorder(&self) -> Result<Option<Recorder>, ServiceError> {
         let Some(file) = &self.options.record else { return Ok(None) };
-        Ok(Some(Recorder::start(CellWriter::create(file, &self.cell, boot_number())?)?))
+        let on_event = self.options.on_event.clone();
+        let on_error = move |e: &BagError| {
+            if let Some(on_event) = on_event {
+                on_event(&format!(
+                    "--record: {e}\n  nothing is recorded from here on; the robots are guarded as before"
+                ));
+            }
+        };
+        Ok(Some(Recorder::start(CellWriter::create(file, &self.cell, boot_number())?, on_error)?))
     }
 
     /// An error where another process guards a robot of this one: a node says fifty times a second how it is.

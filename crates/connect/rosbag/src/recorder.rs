@@ -60,17 +60,21 @@ pub struct TickRecorder {
 }
 
 impl Recorder {
-    /// Begins a recording.
+    /// Begins a recording. `on_error` is called once, at the first error, from which on nothing is recorded: whoever waits for
+    /// [`Self::finish`] would hear of it days later.
     ///
     /// # Errors
     /// [`BagError::Io`] where the thread cannot be started.
-    pub fn start<W: Write + Seek + Send + 'static>(writer: CellWriter<W>) -> Result<Self, BagError> {
+    pub fn start<W: Write + Seek + Send + 'static>(
+        writer: CellWriter<W>,
+        on_error: impl FnOnce(&BagError) + Send + 'static,
+    ) -> Result<Self, BagError> {
         let (queue, items) = sync_channel(QUEUE);
         let shared = Arc::new(Shared::default());
         let of_thread = shared.clone();
         let thread = std::thread::Builder::new()
             .name("recorder".into())
-            .spawn(move || write_all(writer, &items, &of_thread))
+            .spawn(move || write_all(writer, &items, &of_thread).inspect_err(on_error))
             .map_err(|source| BagError::Io { file: "the recorder's thread".into(), source })?;
         Ok(Self { queue, shared, thread })
     }

@@ -18,7 +18,7 @@ static ALLOCATOR: CountingAllocator = COUNTING_ALLOCATOR;
 fn main() {
     let (cell, mut monitor) = rail();
     let file = SlowFile::default();
-    let recorder = Recorder::start(CellWriter::new(file.clone(), &cell, 0).unwrap()).unwrap();
+    let recorder = Recorder::start(CellWriter::new(file.clone(), &cell, 0).unwrap(), |_| ()).unwrap();
     let mut ticks = recorder.robot(0, &monitor, 0.0);
     let gate = monitor.region("gate").unwrap();
     // The first switch makes room for all others.

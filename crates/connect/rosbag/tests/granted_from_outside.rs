@@ -43,7 +43,7 @@ fn grants_and_halts_replay_to_the_bit() {
     let interlock = Some(Interlock::Granted(grants.clone()));
     let mut monitor = Monitor::new(setups[0].configuration.clone(), interlock).unwrap();
     let file = SlowFile::default();
-    let recorder = Recorder::start(CellWriter::new(file.clone(), &cell, 0).unwrap()).unwrap();
+    let recorder = Recorder::start(CellWriter::new(file.clone(), &cell, 0).unwrap(), |_| ()).unwrap();
     let mut ticks = recorder.robot(0, &monitor, 0.0);
     let (mut waiting, mut halted, mut free) = (0, 0, 0);
     for i in 0..20_000_u32 {

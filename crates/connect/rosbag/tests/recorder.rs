@@ -27,7 +27,8 @@ fn tick(monitor: &mut Monitor, recorder: &mut TickRecorder, t_s: f64) -> CellSta
 fn what_a_service_records_replays_to_the_bit() {
     let (cell, mut monitor) = rail();
     let file = SlowFile::default();
-    let recorder = Recorder::start(CellWriter::new(file.clone(), &cell, 1_700_000_000_000_000_000).unwrap()).unwrap();
+    let recorder =
+        Recorder::start(CellWriter::new(file.clone(), &cell, 1_700_000_000_000_000_000).unwrap(), |_| ()).unwrap();
     let mut ticks = recorder.robot(0, &monitor, 0.0);
     let gate = monitor.region("gate").unwrap();
     for i in 0..5000_u32 {
@@ -58,7 +59,7 @@ fn what_a_service_records_replays_to_the_bit() {
 fn a_file_that_does_not_answer_costs_ticks_and_no_time() {
     let (cell, mut monitor) = rail();
     let file = SlowFile::default();
-    let recorder = Recorder::start(CellWriter::new(file.clone(), &cell, 0).unwrap()).unwrap();
+    let recorder = Recorder::start(CellWriter::new(file.clone(), &cell, 0).unwrap(), |_| ()).unwrap();
     let mut ticks = recorder.robot(0, &monitor, 0.0);
     for i in 0..100_u32 {
         tick(&mut monitor, &mut ticks, 0.002 * f64::from(i));
@@ -91,7 +92,7 @@ fn a_file_that_does_not_answer_costs_ticks_and_no_time() {
 fn records_until_it_is_killed() {
     let Some(path) = std::env::var_os(FILE) else { return };
     let (cell, mut monitor) = rail();
-    let recorder = Recorder::start(CellWriter::create(path.as_ref(), &cell, 0).unwrap()).unwrap();
+    let recorder = Recorder::start(CellWriter::create(path.as_ref(), &cell, 0).unwrap(), |_| ()).unwrap();
     let mut ticks = recorder.robot(0, &monitor, 0.0);
     let begin = Instant::now();
     while begin.elapsed() < Duration::from_mins(1) {
