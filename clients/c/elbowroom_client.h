@@ -152,7 +152,8 @@ static inline double elbowroom_get_double(const uint8_t *bytes)
 /* ---- The client ---- */
 
 /* `boot` must be higher than at former starts of this controller: the time of day in nanoseconds will do. `configuration` is
-   the number of the cell file, or 0 to obey any: a node with exchange regions refuses 0. `stale_us` is stale_ms of the cell file (20 ms without one), in µs. */
+   the number of the cell file, or 0 to obey any: a node with exchange regions refuses 0. `stale_us` is stale_ms of the cell file
+   (20 ms without one), in µs. */
 static inline void elbowroom_client_init(elbowroom_client *client, uint64_t boot, uint64_t configuration, uint64_t stale_us)
 {
     memset(client, 0, sizeof *client);
@@ -164,8 +165,8 @@ static inline void elbowroom_client_init(elbowroom_client *client, uint64_t boot
 static inline const elbowroom_answer *elbowroom_answer_at(const elbowroom_client *client, uint64_t now_us);
 
 /* The bytes of the next message to the node, in every tick. While no answer counts it says that the program stands, at override 0: the
-   node must not take a robot that stops by itself for one whose joint values are frozen. Returns their number; 0, and nothing is sent, where `capacity` is too
-   small, or there are more joints or attached volumes than a message has. */
+   node must not take a robot that stops by itself for one whose joint values are frozen. Returns their number; 0, and nothing is sent,
+   where `capacity` is too small, or there are more joints or attached volumes than a message has. */
 static inline size_t elbowroom_joint_state(elbowroom_client *client, uint64_t now_us, const elbowroom_state *state,
                                            uint8_t *out, size_t capacity)
 {

@@ -6,8 +6,8 @@
  *
  * HOST and PORT of the node, CELL, ROBOT, SECONDS, the two configurations: one value per joint, rad or m, with commas between
  * them; and the 16 digits of the cell file's checksum, which every process of the service prints at its start. A node with exchange
- * regions obeys no controller without them. Its joints are moved here by arithmetic; a real controller reads them from its encoders, and hands the override to its
- * interpolator.
+ * regions obeys no controller without them. Its joints are moved here by arithmetic; a real controller reads them from its encoders,
+ * and hands the override to its interpolator.
  *
  * SPDX-License-Identifier: MIT OR Apache-2.0
  */

@@ -1,7 +1,7 @@
 //! Keeps which regions a cell has now and which are switched on, and says so to all nodes.
 
 use std::collections::BTreeSet;
-use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, SyncSender};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
@@ -18,6 +18,8 @@ use crate::network::{Network, NetworkError, Publisher, Subscription, Urgency};
 use crate::region_journal::RegionJournal;
 use crate::regions_table::{RegionTable, RegionTableMessage};
 
+/// Requests that wait; further ones are dropped.
+const WAITING: usize = 1024;
 /// How often the table is repeated; a change is published at once.
 const PERIOD: Duration = Duration::from_millis(100);
 
@@ -68,7 +70,9 @@ impl Kept {
             Err(why) => (fresh, base.clone(), format!("all temporary regions are on until they are switched: {why}")),
         };
         let kept = Self { table, cell, journal, on_event };
-        kept.record();
+        if kept.switches_regions() || !kept.table.edits.is_empty() {
+            kept.record();
+        }
         (kept, how)
     }
 
@@ -79,9 +83,6 @@ impl Kept {
     /// Writes the table before anybody hears of it.
     fn record(&self) {
         let Some(journal) = &self.journal else { return };
-        if !self.switches_regions() && self.table.edits.is_empty() {
-            return;
-        }
         if let (Err(e), Some(on_event)) = (journal.write(&self.table.message(&self.cell)), &self.on_event) {
             on_event(&format!(
                 "{}: cannot be written: {e}. If this process starts again all temporary regions of the file are on, and those that were added are gone",
@@ -90,7 +91,7 @@ impl Kept {
         }
     }
 
-    /// True where a switch changes something.
+    /// Switches a temporary region; false if it was so already.
     fn switch(&mut self, region: usize, active: bool) -> bool {
         let has_changed = self.table.switch(region, active);
         if has_changed {
@@ -115,7 +116,11 @@ fn continued(
     let mut table = fresh.clone();
     table.active = vec![true; cell.regions.len()];
     table.take(
-        &RegionTableMessage { revision: 0, boot: fresh.revision.0.max(written.boot + 1), ..written.clone() },
+        &RegionTableMessage {
+            revision: 0,
+            boot: fresh.revision.0.max(written.boot.saturating_add(1)),
+            ..written.clone()
+        },
         &cell,
     );
     (table.edits, table.present) = (written.edits.clone(), configuration_digits(&cell));
@@ -136,7 +141,7 @@ pub struct RegionKeeper {
     kept: Arc<Mutex<Kept>>,
     at_start: String,
     subscription: Option<Subscription>,
-    wake: Option<Sender<()>>,
+    inbox: Option<SyncSender<Incoming>>,
     thread: Option<JoinHandle<()>>,
     // A network may end with its last owner.
     _network: Arc<dyn Network>,
@@ -162,19 +167,23 @@ impl RegionKeeper {
             on_event(&at_start);
         }
         let kept = Arc::new(Mutex::new(kept));
-        let (wake, woken) = mpsc::channel();
+        let (inbox, waiting) = mpsc::sync_channel(WAITING);
         let keys = Keys::new(&cell.name);
-        let handler = Box::new(obey(kept.clone(), wake.clone(), programs));
+        let requests = inbox.clone();
+        let handler = Box::new(move |bytes: &[u8]| {
+            let Ok(request) = serde_json::from_slice::<SwitchRequest>(bytes) else { return };
+            // A full queue is a lost message.
+            let _ = requests.try_send(Incoming::Request(request));
+        });
         let subscription = network.subscribe(&keys.switch(), handler)?;
         let publisher = network.publisher(&keys.regions(), Urgency::RealTime)?;
-        let published = kept.clone();
-        let publish = move || publish(&published, publisher, &woken);
-        let thread = std::thread::Builder::new().name("regions".into()).spawn(publish);
+        let running = Running { kept: kept.clone(), publisher, programs, ignored: Ignored::default() };
+        let thread = std::thread::Builder::new().name("regions".into()).spawn(move || running.run(&waiting));
         Ok(Self {
             kept,
             at_start,
             subscription: Some(subscription),
-            wake: Some(wake),
+            inbox: Some(inbox),
             thread: thread.ok(),
             _network: network.clone(),
         })
@@ -234,8 +243,9 @@ impl RegionKeeper {
     }
 
     fn publish(&self) {
-        if let Some(wake) = &self.wake {
-            let _ = wake.send(());
+        if let Some(inbox) = &self.inbox {
+            // A full queue wakes the thread, too.
+            let _ = inbox.try_send(Incoming::Change);
         }
     }
 }
@@ -244,38 +254,54 @@ fn lock(kept: &Mutex<Kept>) -> MutexGuard<'_, Kept> {
     kept.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Obeys what programs ask for, or reports it.
-fn obey(kept: Arc<Mutex<Kept>>, wake: Sender<()>, programs: ProgramSwitches) -> impl Fn(&[u8]) + Send + Sync {
-    let ignored = Ignored::default();
-    move |bytes| {
-        let Ok(request) = serde_json::from_slice::<SwitchRequest>(bytes) else { return };
-        let mut kept = lock(&kept);
-        let Some(region) = find(&request.region, &kept.cell) else { return };
-        match &programs {
-            ProgramSwitches::Ignored(on_event) => ignored.report(&request, on_event.as_ref()),
-            ProgramSwitches::Obeyed => {
-                if kept.switch(region, request.active) {
-                    // The other side is gone only when the keeper ends.
-                    let _ = wake.send(());
-                }
+/// What the thread of the keeper receives.
+enum Incoming {
+    /// A program asks for a switch.
+    Request(SwitchRequest),
+    /// The table has changed.
+    Change,
+}
+
+/// The thread of the keeper: repeats the table, and obeys what programs ask for. It writes the journal, for which a thread of the
+/// network must not wait.
+struct Running {
+    kept: Arc<Mutex<Kept>>,
+    publisher: Box<dyn Publisher>,
+    programs: ProgramSwitches,
+    ignored: Ignored,
+}
+
+impl Running {
+    fn run(mut self, waiting: &Receiver<Incoming>) {
+        loop {
+            self.publish();
+            match waiting.recv_timeout(PERIOD) {
+                Ok(Incoming::Request(request)) => self.obey(&request),
+                Ok(Incoming::Change) | Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => return,
             }
         }
     }
-}
 
-/// Repeats the table until the keeper ends.
-fn publish(kept: &Mutex<Kept>, mut publisher: Box<dyn Publisher>, woken: &Receiver<()>) {
-    loop {
+    fn publish(&mut self) {
         let message = {
-            let kept = lock(kept);
+            let kept = lock(&self.kept);
             kept.table.message(&kept.cell)
         };
         if let Ok(json) = serde_json::to_vec(&message) {
-            publisher.publish(&json);
+            self.publisher.publish(&json);
         }
-        match woken.recv_timeout(PERIOD) {
-            Ok(()) | Err(RecvTimeoutError::Timeout) => {}
-            Err(RecvTimeoutError::Disconnected) => return,
+    }
+
+    /// Switches, or reports that it does not.
+    fn obey(&self, request: &SwitchRequest) {
+        let mut kept = lock(&self.kept);
+        let Some(region) = find(&request.region, &kept.cell) else { return };
+        match &self.programs {
+            ProgramSwitches::Ignored(on_event) => self.ignored.report(request, on_event.as_ref()),
+            ProgramSwitches::Obeyed => {
+                kept.switch(region, request.active);
+            }
         }
     }
 }
@@ -306,7 +332,7 @@ impl Drop for RegionKeeper {
     fn drop(&mut self) {
         // The subscription's handler holds the other sender.
         self.subscription = None;
-        self.wake = None;
+        self.inbox = None;
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
         }

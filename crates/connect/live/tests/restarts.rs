@@ -47,6 +47,21 @@ fn the_regions_are_the_same_after_a_restart_and_the_log_says_so() {
     assert_eq!([is_on(&setup, "table"), is_on(&setup, "spare")], [None, Some(false)]);
 }
 
+/// Also in a cell whose file has no region that can be switched.
+#[test]
+fn a_region_that_was_removed_does_not_return() {
+    let text = CELL.replace("life = \"temporary\"\n", "");
+    let mut setup = ControlSetup::new(&text, false, ServiceOptions { arbiter: true, ..ServiceOptions::default() });
+    for (path, body) in
+        [("/add", json!({ "region": "table", "toml": TABLE })), ("/remove", json!({ "region": "table" }))]
+    {
+        let (status, document) = setup.change(PROGRAMMER, path, &body);
+        assert_eq!(status, 200, "{document}");
+    }
+    setup.restart();
+    assert_eq!(is_on(&setup, "table"), None);
+}
+
 #[test]
 fn without_a_journal_that_can_be_trusted_all_regions_are_on() {
     let mut setup = setup();

@@ -96,3 +96,18 @@ fn a_gripped_part_and_an_exchanged_tool_are_guarded_until_they_are_gone() {
         scope.spawn(|| governs_while_carried(&cell(tools, "tool = \"lance\"", "tool = \"gripper\""), "lance"));
     });
 }
+
+/// Nobody has said that the gate is off when the service starts, so that it is on. The program begins without it, as in `run`, and a
+/// switch in it lasts.
+#[test]
+fn a_program_switches_off_what_it_begins_without() {
+    let gate =
+        "[region.gate]\nshape = \"sphere\"\ncentre = [0, 0, 1200]\nradius = 50\nwarning = 100\nlife = \"temporary\"";
+    let text = cell(gate, "wait = 0.1", "region = \"gate\", active = true");
+    let (_service, statuses, _subscription) = start(&text);
+    let is_on = |status: &RobotStatus| status.regions.iter().find(|r| r.name == "gate").map(|r| r.active);
+    wait_for(&statuses, "the gate is off", |status| is_on(status) == Some(false));
+    // Inside of the gate's warning zone, which would have slowed it down.
+    wait_for(&statuses, "it has passed", |status| status.q.first().is_some_and(|q| *q > 1.04));
+    wait_for(&statuses, "the gate is on", |status| is_on(status) == Some(true));
+}

@@ -1,14 +1,14 @@
 //! The recorder of a service: it never waits, counts what it loses, and leaves a file that can be read when it is killed.
 #![allow(clippy::print_stdout)]
 
-use std::io::{BufRead, BufReader};
+use std::io::{self, BufRead, BufReader, Cursor, Seek, SeekFrom, Write};
 use std::process::{Command, Stdio};
 use std::sync::atomic::Ordering::SeqCst;
 use std::time::{Duration, Instant};
 
 use crate::common::{SlowFile, position, rail, velocity};
 use elbowroom_monitor::{AccessClass, Fault, Monitor, Snapshot};
-use elbowroom_rosbag::{CellWriter, Recorder, TickRecorder, replay};
+use elbowroom_rosbag::{BagError, CellWriter, Recorder, TickRecorder, replay};
 use elbowroom_status::{CellStatus, RobotStatus};
 
 /// Names the file that the second process of the test records into.
@@ -85,6 +85,51 @@ fn a_file_that_does_not_answer_costs_ticks_and_no_time() {
     // What was recorded behind the first hole is not compared.
     assert!(robot.ticks >= 100 && robot.skipped >= 1);
     assert_eq!(robot.ticks + lost + robot.skipped, 100_001);
+}
+
+/// A file on a disk with room for so many bytes.
+struct SmallDisk {
+    file: Cursor<Vec<u8>>,
+    room: usize,
+}
+
+impl Write for SmallDisk {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if self.file.get_ref().len() + bytes.len() > self.room {
+            return Err(io::ErrorKind::StorageFull.into());
+        }
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+impl Seek for SmallDisk {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.file.seek(to)
+    }
+}
+
+#[test]
+fn a_full_disk_is_said_once_and_at_once() {
+    let (cell, mut monitor) = rail();
+    let disk = SmallDisk { file: Cursor::default(), room: 200_000 };
+    let (said, hears) = std::sync::mpsc::channel();
+    let on_error = move |e: &BagError| said.send(e.to_string()).unwrap();
+    let recorder = Recorder::start(CellWriter::new(disk, &cell, 0).unwrap(), on_error).unwrap();
+    let mut ticks = recorder.robot(0, &monitor, 0.0);
+    let began = Instant::now();
+    let message = (0..).find_map(|i| {
+        assert!(began.elapsed() < Duration::from_secs(30), "nothing was said");
+        recorder.status(tick(&mut monitor, &mut ticks, 0.002 * f64::from(i)));
+        std::thread::sleep(Duration::from_micros(200));
+        hears.try_recv().ok()
+    });
+    assert!(message.as_ref().is_some_and(|m| m.contains("the recording cannot be written")), "{message:?}");
+    assert!(recorder.finish().is_err());
+    assert!(hears.try_recv().is_err(), "it was said twice");
 }
 
 /// Not a test of its own: the process that [`a_killed_process_leaves_a_file_up_to_its_last_second`] starts.

@@ -83,10 +83,12 @@ impl ControlLog {
         file.try_lock().map_err(|_| {
             FormatError::new(path, None, "is written by another process").hint("one service with --control per cell")
         })?;
-        let text = without_half_a_line(text::read(path)?);
-        // What was cut off while it was written was not carried out.
-        file.set_len(text.len() as u64).map_err(text::unwritable(path))?;
-        let (entries, head) = verified(path, &text)?;
+        let written = text::read(path)?;
+        let text = without_half_a_line(&written);
+        if text.len() < written.len() {
+            file.set_len(text.len() as u64).map_err(text::unwritable(path))?;
+        }
+        let (entries, head) = verified(path, text)?;
         Ok(Self { path: path.to_owned(), length: text.len() as u64, file, entries: entries.len() as u64, head })
     }
 
@@ -133,13 +135,12 @@ impl ControlLog {
 /// # Errors
 /// [`FormatError`] at the first line that does not follow the one before it.
 pub fn control_history(path: &Path) -> Result<Vec<ControlEntry>> {
-    Ok(verified(path, &without_half_a_line(text::read(path)?))?.0)
+    Ok(verified(path, without_half_a_line(&text::read(path)?))?.0)
 }
 
 /// The whole lines. A line without an end was being written when the disk was full or the power went: its change was not made.
-fn without_half_a_line(mut text: String) -> String {
-    text.truncate(text.rfind('\n').map_or(0, |end| end + 1));
-    text
+fn without_half_a_line(text: &str) -> &str {
+    &text[..text.rfind('\n').map_or(0, |end| end + 1)]
 }
 
 fn line(entry: &ControlEntry) -> String {

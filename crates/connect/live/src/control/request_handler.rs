@@ -4,7 +4,6 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use elbowroom_cell::seal::{AccessToken, Change, ControlEntry, ControlLog, Controlled};
 use elbowroom_cell::{Cell, CellRegion};
-use elbowroom_formats::FormatError;
 use elbowroom_monitor::{AccessClass, Life, RegionKind};
 use elbowroom_robot::RobotId;
 use serde::Serialize;
@@ -93,11 +92,9 @@ impl RequestHandler {
         Self { parts, log: Mutex::new(log) }
     }
 
-    /// Logs that the service has started, and with which temporary regions on.
-    ///
-    /// # Errors
-    /// [`FormatError`] where the log cannot be written.
-    pub(crate) fn log_start(&self) -> Result<(), FormatError> {
+    /// Logs that the service has started, and with which temporary regions on. Where the disk is full it starts all the same: every
+    /// change is refused until its entry can be written.
+    pub(crate) fn log_start(&self) {
         let (keeper, mut log) = (&self.parts.keeper, self.log());
         let (cell, active) = (keeper.present().cell, keeper.active());
         let temporary = cell.regions.iter().zip(active).filter(|(r, _)| r.region.life == Life::Temporary);
@@ -107,7 +104,7 @@ impl RequestHandler {
             before: None,
             after: Some(active.to_string()),
         };
-        log.append(Controlled {
+        let logged = log.append(Controlled {
             // Nobody has asked for it.
             class: AccessClass::Operator,
             name: "the service",
@@ -115,8 +112,10 @@ impl RequestHandler {
             note: Some(keeper.at_start()),
             changes: temporary.map(change).collect(),
             checksums: [&self.parts.versions.base().checksum, &cell.checksum],
-        })?;
-        Ok(())
+        });
+        if let Err(e) = logged {
+            self.report(&format!("the start is not logged: {e}"));
+        }
     }
 
     pub(super) fn log(&self) -> MutexGuard<'_, ControlLog> {

@@ -47,7 +47,7 @@ impl ControlServer {
         let log =
             ControlLog::open(&options.log.clone().unwrap_or_else(|| control_log_of(&parts.versions.base().file)))?;
         let handler = RequestHandler::new(parts, log);
-        handler.log_start()?;
+        handler.log_start();
         let limits = ConnectionLimits {
             connections: 32,
             head: Duration::from_secs(5),

@@ -132,7 +132,8 @@ impl GuardedRobot {
             () if is_recent(inbox.other_cell_heard) => Some(Doubt::OtherCell),
             () if may_have_changed => Some(Doubt::NoTable),
             () if !table.permits(&inbox.number) => Some(Doubt::NotBuilt),
-            () => inbox.own.refused.map(Doubt::Refused),
+            // One that is late is refused now and then; it matters where no other one arrives.
+            () => inbox.own.refused.filter(|_| self.is_stale()).map(Doubt::Refused),
         };
     }
 
@@ -165,8 +166,13 @@ impl GuardedRobot {
     }
 
     /// How old the joint values are; `None` before the first.
-    pub(super) fn age(&self) -> Option<Micros> {
+    fn age(&self) -> Option<Micros> {
         self.stamp.map(|stamp| self.now - stamp)
+    }
+
+    /// True if the joint values are too old, or there were none yet.
+    pub(super) fn is_stale(&self) -> bool {
+        self.age().is_none_or(|age| age > Micros::from_seconds(self.cell.laws.laws.stale_s))
     }
 
     /// The override for the joint values that arrived last. `now` is on this process's clock.

@@ -157,7 +157,7 @@ impl NodeTick {
         self.guarded.take(&mut contents, now);
         // What arrives during the tick is for the next one.
         drop(contents);
-        let is_stale = self.guarded.age().is_none_or(|age| age > self.stale);
+        let is_stale = self.guarded.is_stale();
         if !has_joints && !is_stale {
             return None;
         }
