@@ -85,3 +85,21 @@ fn mistakes_are_named_with_their_line() {
         assert_eq!(e.line, Some(line), "{e}");
     }
 }
+
+/// The only tool of a robot and its load are guarded as named tools are.
+#[test]
+fn one_tool_and_its_load_are_guarded() {
+    let cell = parse(&format!(
+        "{HEAD}[robot.c]\n{ARM}\nload = {{ box = {{ at = [0, 0, 260], size = [100, 60, 120] }} }}\n\
+         [robot.c.tool]\ntcp = {{ at = [0, 0, 200] }}\nbox = {{ at = [0, 0, 100], size = [80, 80, 200] }}\n"
+    ));
+    let robot = &cell.robots[0];
+    let volumes = robot.guarded_volumes();
+    for (name, part, half_z, at_z) in [("tool", Part::Tool, 0.1, 0.1), ("load", Part::Load, 0.06, 0.26)] {
+        let volume = volumes.iter().find(|v| v.name == name).unwrap_or_else(|| panic!("no {name}"));
+        let bounds = volume.shape.aabb(&volume.in_link);
+        assert_eq!((volume.part, volume.link, volume.presence), (part, robot.flange, Presence::Always));
+        assert!((bounds.extent().z * 0.5 - half_z).abs() < 1e-9, "{name}: {bounds:?}");
+        assert!(((bounds.min.z + bounds.max.z) * 0.5 - at_z).abs() < 1e-9, "{name}: {bounds:?}");
+    }
+}

@@ -229,7 +229,11 @@ fn the_result_comes_first_and_names_what_governs() {
     // Slowed down, and not at all.
     run.robots[0].stops.clear();
     run.robots[0].samples.truncate(1400);
-    assert!(result(&page(&run, &run)).contains(" % at 2."), "{}", result(&page(&run, &run)));
+    let governed = run.robots[0].samples.iter().filter(|s| s.region.is_some());
+    let least = governed.map(|s| s.speed_override).fold(1.0, f64::min);
+    assert!(least > 0.011 && least < 0.9, "{least}");
+    let slowed = format!("slowed down to {:.1} % at 2.", 1e2 * least);
+    assert!(result(&page(&run, &run)).contains(&slowed), "{slowed}: {}", result(&page(&run, &run)));
     for sample in &mut run.robots[0].samples {
         (sample.region, sample.speed_override) = (None, 1.0);
     }

@@ -3,3 +3,4 @@
 mod hashes;
 mod hostile_bytes;
 mod natnet_zenoh;
+mod nearest_points;

@@ -85,8 +85,11 @@ fn messages(recording: &[u8]) -> Vec<(String, Vec<u8>)> {
 }
 
 fn written(messages: &[(String, Vec<u8>)]) -> Vec<u8> {
+    with_options(messages, mcap::WriteOptions::new().compression(None).calculate_chunk_crcs(false))
+}
+
+fn with_options(messages: &[(String, Vec<u8>)], options: mcap::WriteOptions) -> Vec<u8> {
     let mut file = Cursor::new(Vec::new());
-    let options = mcap::WriteOptions::new().compression(None).calculate_chunk_crcs(false);
     let mut writer = options.create(&mut file).unwrap();
     for (topic, payload) in messages {
         let channel = writer.add_channel(0, topic, "cdr", &BTreeMap::new()).unwrap();
@@ -159,4 +162,20 @@ fn changed_files_are_refused_or_replayed() {
     }
     println!("{read} read, {refused} refused");
     assert!(read > CHANGES / 20 && refused > CHANGES / 20);
+}
+
+/// A chunk is not compressed and says its checksum: a number in it that changed would be replayed as a measured one.
+#[test]
+fn a_chunk_that_changed_is_refused() {
+    let messages = messages(&recording());
+    let whole = with_options(&messages, mcap::WriteOptions::new().compression(None));
+    let marker = &messages.last().unwrap().1;
+    let at = whole.windows(marker.len()).position(|bytes| bytes == marker).unwrap();
+    assert_eq!(replay(&whole[..]).unwrap().differences, 0);
+    for offset in [0, marker.len() / 2, marker.len() - 1] {
+        let mut changed = whole.clone();
+        changed[at + offset] ^= 1;
+        let error = replay(&changed[..]).expect_err("a changed chunk").to_string();
+        assert!(error.contains("checksum"), "{error}");
+    }
 }

@@ -178,3 +178,52 @@ impl RegionStatus {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use elbowroom_kinematics::{Chain, Joint, JointKind, Limits, LinkId};
+    use elbowroom_monitor::{ConfigurationParts, Guards, Laws, Region, Volume};
+    use elbowroom_spatial::Vec3;
+
+    /// A carriage on a rail, before a ball.
+    fn monitor() -> Result<Monitor, Box<dyn std::error::Error>> {
+        let joint = Joint {
+            name: "slide".into(),
+            kind: JointKind::Prismatic,
+            parent: LinkId(0),
+            child: LinkId(1),
+            origin: Pose::IDENTITY,
+            axis: Vec3::X,
+            limits: Limits { velocity: Some(1.0), ..Limits::symmetric(5.0) },
+            mimic: None,
+        };
+        let chain = Chain::new("rail", vec!["bed".into(), "carriage".into()], vec![joint])?;
+        let configuration = Configuration::new(ConfigurationParts {
+            robot: "rail".into(),
+            base_in_world: Pose::IDENTITY,
+            chain,
+            volumes: vec![Volume::tcp(LinkId(1), Vec3::ZERO)],
+            regions: vec![Region::sphere("ball", Vec3::X * 2.0, 0.5).warning(1.0).guards(Guards::TCP)],
+            sources: vec![],
+            laws: Laws::default(),
+        })?;
+        Ok(Monitor::new(configuration, None)?)
+    }
+
+    #[test]
+    fn a_point_of_the_robot_is_told_from_the_point_of_the_region() -> Result<(), Box<dyn std::error::Error>> {
+        let mut monitor = monitor()?;
+        let snapshot = Snapshot::stationary(0.0, &[0.75]);
+        let report = monitor.tick(&snapshot);
+        let status = RobotStatus::of_tick(0.0, &monitor, &snapshot, &report, None);
+        let governing = status.governing.as_ref().ok_or("nothing governs")?;
+        assert_eq!((governing.part.as_str(), governing.region.as_str()), ("tcp", "ball"));
+        assert!((governing.distance_m - 0.75).abs() < 1e-9);
+        assert_eq!((governing.point_m, governing.on_region_m), ([0.75, 0.0, 0.0], [1.5, 0.0, 0.0]));
+        assert_eq!(status.virtual_tcps, std::slice::from_ref(governing));
+        assert!(status.regions[0].warned && !status.regions[0].inside);
+        assert_eq!(status.regions[0].pose.position_m, [2.0, 0.0, 0.0]);
+        Ok(())
+    }
+}

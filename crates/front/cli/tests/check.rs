@@ -191,3 +191,19 @@ fn a_region_that_guards_nothing_is_no_cell() {
         assert!(answer.stderr.contains("write: guards = [\"arm\"]"), "{}", answer.stderr);
     }
 }
+
+/// One region that cannot be kept is enough, first or last; a cell without regions has none.
+#[test]
+fn one_bad_region_among_good_ones_fails_the_check() {
+    let good = |name: &str| {
+        format!("[region.{name}]\nshape = \"sphere\"\ncentre = [0, 9000, 0]\nradius = 100\nwarning = 300\n")
+    };
+    for more in [good("aaa"), good("zzz"), good("aaa") + &good("zzz")] {
+        let rows = check(&format!("{OVERRUN}{more}")).expect(1).json()["regions"].clone();
+        let excluded = rows.as_array().unwrap().iter().filter(|row| row["excluded"] == true).count();
+        assert_eq!(excluded + 1, rows.as_array().unwrap().len(), "{rows}");
+    }
+    let (robot, rest) = OVERRUN.split_once("[region.wall]").unwrap();
+    let program = &rest[rest.find("[program").unwrap()..];
+    check(&format!("{robot}{program}")).expect(0);
+}

@@ -3,11 +3,13 @@
 use std::sync::Arc;
 
 use crate::common::{arm_volumes, gantry, parts};
+use elbowroom_kinematics::LinkId;
 use elbowroom_monitor::{
     AccessClass, ConfigError, Configuration, ConfigurationParts, EventKind, ExchangeState, Interlock, Laws, Life,
-    Monitor, Occupancy, OverrideReason, Region, RegionId, RegionKind, RobotSlot, SlotGrants, SlotId, Snapshot,
-    SourceId, SourceState, StoppingSettings, TickReport, ZoneArbiter,
+    Monitor, Occupancy, OverrideReason, Part, Presence, Region, RegionId, RegionKind, RobotSlot, SlotGrants, SlotId,
+    Snapshot, SourceId, SourceState, StoppingSettings, TickReport, Volume, ZoneArbiter,
 };
+use elbowroom_proximity::{Shape, Sphere};
 use elbowroom_spatial::{FrameMotion, Pose, Vec3};
 
 const TICK_S: f64 = 0.002;
@@ -41,8 +43,12 @@ struct Robot {
 
 impl Robot {
     fn new(region: Region, interlock: impl Into<Interlock>) -> Self {
+        Self::of(arm_volumes(), region, interlock)
+    }
+
+    fn of(volumes: Vec<Volume>, region: Region, interlock: impl Into<Interlock>) -> Self {
         let sources = if region.follow.is_some() { vec!["belt".into()] } else { vec![] };
-        let parts = ConfigurationParts { laws: laws(), sources, ..parts(gantry(), arm_volumes(), vec![region]) };
+        let parts = ConfigurationParts { laws: laws(), sources, ..parts(gantry(), volumes, vec![region]) };
         let mut monitor = Monitor::new(Configuration::new(parts).unwrap(), Some(interlock.into())).unwrap();
         monitor.switch(REGION, true, AccessClass::Programmer).unwrap();
         Self { monitor, ticks: 0, x: 0.0, sources: vec![] }
@@ -207,4 +213,26 @@ fn grants_from_outside_need_the_stopping_distance_and_the_slot() {
     };
     assert_eq!(new(Laws::default(), 1), ConfigError::NoStoppingDistance("table".into()));
     assert_eq!(new(laws(), 0), ConfigError::NoArbiter("table".into()));
+}
+
+/// Where the volume that cannot stop is measured first, the others do not undo what it showed.
+#[test]
+fn a_robot_is_committed_by_any_of_its_volumes() {
+    let ball = |name: &str, x: f64| Volume {
+        name: name.into(),
+        part: Part::Arm,
+        link: LinkId(6),
+        shape: Shape::Sphere(Sphere { radius: 0.05 }),
+        in_link: Pose::from_translation(Vec3::X * x),
+        presence: Presence::Always,
+    };
+    for offsets in [[0.0, -0.5], [-0.5, 0.0]] {
+        let volumes = vec![ball("a", offsets[0]), ball("b", offsets[1])];
+        let grants = Arc::new(SlotGrants::new(1));
+        let mut robot = Robot::of(volumes, table(), Interlock::Granted(grants.clone()));
+        grants.write(SLOT, true, false);
+        robot.seek(ExchangeState::Committed);
+        // The other ball is half a metre behind, and could stop.
+        assert!(robot.x > 3.3 && robot.x < 3.65, "{offsets:?}: {}", robot.x);
+    }
 }

@@ -260,3 +260,23 @@ fn invalid_settings_and_goals_are_refused() {
     let mut executor = ReplanningExecutor::new(arm(), map.grid(), map.reader(), None, settings, &q).unwrap();
     assert!(executor.set_goal(&outside).is_err() && executor.set_goal(&[]).is_err());
 }
+
+#[test]
+fn a_clock_that_is_no_number_makes_every_image_stale() {
+    let map = map();
+    for at_rest in [true, false] {
+        let mut executor = executor(&map, ExecutorSettings::new(limits()));
+        executor.set_goal(&radians(B)).unwrap();
+        executor.update(&update(0.0));
+        if !at_rest {
+            (0..20).for_each(|_| _ = executor.tick(0.0, TICK_S));
+        }
+        let steps: Vec<ExecutorStep> = (0..250).map(|_| executor.tick(f64::NAN, TICK_S)).collect();
+        assert!(
+            steps.iter().all(|step| matches!(step.state.reason(), Some(HoldReason::NoRecentImage { .. }))),
+            "{:?}",
+            steps[0]
+        );
+        assert_eq!(steps[249].qd, [0.0; 3]);
+    }
+}

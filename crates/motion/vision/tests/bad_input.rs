@@ -112,6 +112,9 @@ fn frames_of_the_wrong_size_channels_or_time_are_refused_and_obstacles_stay() {
     assert!(refuse(tracker, Frame::default()).contains("empty"));
     assert!(refuse(tracker, grey(64, 48, 0.0)).contains("send frames in order"));
     assert!(refuse(tracker, grey(64, 48, f64::NAN)).contains("in order"));
+    // A camera that repeats its last picture does not see.
+    let last_s = scene.frame.stamp_s;
+    assert!(refuse(tracker, grey(64, 48, last_s)).contains("in order"));
     let rgb = Frame::new("f.png", 64, 48, Channels::Rgb, vec![9; 3 * 64 * 48]).unwrap().with_stamp(9.0);
     assert!(refuse(tracker, rgb).contains("the frame is RGB, but those before it were grey"));
     let mask = PixelMask::new(64, 40);

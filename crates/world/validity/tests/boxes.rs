@@ -1,9 +1,11 @@
 //! Boxes in joint space proven in collision: so is every configuration in them, by the exact scene.
 
-use crate::common::{ROBOT, Random, RandomGeometry, is_long_run, obstacle_set, obstacles, scene};
-use elbowroom_robot::example;
+use crate::common::{ROBOT, Random, RandomGeometry, is_long_run, obstacle_set, obstacles, scene, single_joint};
+use elbowroom_kinematics::{Chain, JointKind, Limits};
+use elbowroom_proximity::{Shape, Sphere};
+use elbowroom_robot::{Collider, Robot, example};
 use elbowroom_scene::{Checker, CheckerOptions, SceneState};
-use elbowroom_spatial::Pose;
+use elbowroom_spatial::{Pose, Vec3};
 use elbowroom_validity::{CoveredRobot, ObstacleSet, ValidityChecker, ValidityError};
 
 #[test]
@@ -85,4 +87,27 @@ fn numbers_that_are_none_prove_nothing_and_wrong_counts_are_errors() {
     let mut alone = ValidityChecker::new(&arm, &nothing);
     alone.boxes_are_in_collision(&[], &[0.0; 3], &mut answers).unwrap();
     assert!(answers.is_empty());
+}
+
+/// The bounds of motion hold within the limits of slides: whichever joint is beyond them, nothing is proven.
+#[test]
+fn a_box_around_a_joint_beyond_its_limits_proves_nothing() {
+    let joints = [Vec3::X, Vec3::Y, Vec3::Z].into_iter().enumerate().map(|(i, axis)| {
+        let limits = Limits::symmetric(0.5);
+        elbowroom_kinematics::Joint { limits, ..single_joint(i, JointKind::Prismatic, Pose::IDENTITY, axis) }
+    });
+    let links = (0..4).map(|i| format!("l{i}")).collect();
+    let mut robot = Robot::new(Chain::new("gantry", links, joints.collect()).unwrap());
+    let ball = |radius| Shape::Sphere(Sphere { radius });
+    robot.colliders[3].push(Collider { name: String::new(), shape: ball(0.2), in_link: Pose::IDENTITY });
+    let covered = CoveredRobot::new(&robot, Pose::IDENTITY).unwrap();
+    let set = obstacle_set(&[(ball(1.0), Pose::IDENTITY)]);
+    let mut checker = ValidityChecker::new(&covered, &set);
+    let mut answers = Vec::new();
+    for joint in 0..3 {
+        let mut centres = vec![0.0; 6];
+        centres[3 + joint] = 0.6;
+        checker.boxes_are_in_collision(&centres, &[0.01; 3], &mut answers).unwrap();
+        assert_eq!(answers, [true, false], "joint {joint}");
+    }
 }

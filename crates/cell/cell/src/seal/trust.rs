@@ -147,6 +147,22 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_key_signs_for_its_class_and_below_until_it_is_retired() {
+        let dir = tempfile::tempdir().unwrap();
+        let key = |class: &str, public: char, retired: bool| {
+            let public = public.to_string().repeat(64);
+            format!("[[key]]\nclass = \"{class}\"\nname = \"x\"\npublic = \"{public}\"\nretired = {retired}\n")
+        };
+        let keys = [("integrator", '1', false), ("integrator", '2', true), ("programmer", '3', false)];
+        let text: String = keys.iter().map(|(class, public, retired)| key(class, *public, *retired)).collect();
+        std::fs::write(dir.path().join(FILE), text).unwrap();
+        let sealed = beside(&dir.path().join("cell.toml")).unwrap();
+        let may = |who| sealed.iter().map(|(_, entry)| may_sign(entry, who)).collect::<Vec<_>>();
+        assert_eq!(may(AccessClass::Integrator), [true, false, false]);
+        assert_eq!(may(AccessClass::Programmer), [true, false, true]);
+    }
+
+    #[test]
     fn the_keys_of_the_machine_have_precedence_over_those_beside_the_cell() {
         let dir = tempfile::tempdir().unwrap();
         let [machine, named, beside] = ["machine", "named", "beside"].map(|n| dir.path().join(n));

@@ -53,3 +53,29 @@ fn suspect(joint: Option<String>, what: &str) -> SuspectUnit {
         reason,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use elbowroom_kinematics::{Limits, LinkId};
+    use elbowroom_spatial::{Pose, Vec3};
+
+    /// What the file says, divided by the factor, is what was meant.
+    #[test]
+    fn the_factor_leads_from_degrees_to_radians() {
+        let joint = Joint {
+            name: "j".into(),
+            kind: JointKind::Revolute,
+            parent: LinkId(0),
+            child: LinkId(1),
+            origin: Pose::IDENTITY,
+            axis: Vec3::Z,
+            limits: Limits::symmetric(180.0),
+            mimic: None,
+        };
+        let chain = Chain::new("arm", vec!["a".into(), "b".into()], vec![joint]).unwrap();
+        let [suspect] = &suspects(&chain)[..] else { panic!("one joint") };
+        assert!((180.0 / suspect.factor - std::f64::consts::PI).abs() < 1e-12, "{}", suspect.factor);
+        assert!(suspect.reason.contains("times 0.0174533"), "{}", suspect.reason);
+    }
+}

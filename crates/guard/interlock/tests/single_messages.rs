@@ -1,0 +1,78 @@
+//! One guard and one arbiter, message by message: what each of them must not believe.
+
+use elbowroom_interlock::{Arbiter, ArbiterEvent, ArbiterSettings, Boot, Guard, Micros, RobotSettings, StateMessage};
+use elbowroom_monitor::{Occupancy, RobotSlot, SlotId};
+
+const SLOT: SlotId = SlotId(0);
+const CHECKSUM: u64 = 7;
+
+fn ms(milliseconds: u64) -> Micros {
+    Micros(1000 * milliseconds)
+}
+
+fn arbiter() -> Arbiter {
+    let robots = ["a", "b"].map(|name| RobotSettings::new(name, [SLOT])).to_vec();
+    Arbiter::new(ArbiterSettings { checksum: CHECKSUM, ..ArbiterSettings::new(robots, 1) }, Boot(1))
+}
+
+/// The guard of the cell's robot of this number, with this checksum of the cell file.
+fn guard(robot: usize, checksum: u64) -> Guard {
+    Guard::new(RobotSlot(robot), 1, checksum, Boot(1))
+}
+
+/// A message to the arbiter, and all its answers to this guard. Returns the events. Robot 0 is in its warning zone, the
+/// other outside.
+fn exchange(guard: &mut Guard, arbiter: &mut Arbiter, now: Micros) -> Vec<ArbiterEvent> {
+    guard.observe(SLOT, if guard.robot() == RobotSlot(0) { Occupancy::Warning } else { Occupancy::Outside });
+    let outputs = arbiter.receive(&guard.state(now), now);
+    let robot = guard.robot();
+    for reply in outputs.replies.iter().filter(|reply| reply.robot == robot) {
+        guard.receive(reply).unwrap();
+    }
+    outputs.events
+}
+
+/// A guard learns of the arbiter with the first answer, is trusted with the second message.
+fn until_heard(guards: &mut [Guard], arbiter: &mut Arbiter, from: u64, to: u64) -> Vec<ArbiterEvent> {
+    let times = (from..to).step_by(10).map(ms);
+    times.flat_map(|now| guards.iter_mut().flat_map(|g| exchange(g, arbiter, now)).collect::<Vec<_>>()).collect()
+}
+
+/// A robot with another cell file says nothing about the regions of this one: not that it is outside of them, and it is
+/// granted none.
+#[test]
+fn a_robot_with_another_configuration_is_neither_granted_nor_believed() {
+    for (checksums, expected) in [([CHECKSUM, CHECKSUM], true), ([CHECKSUM, 8], false), ([8, CHECKSUM], false)] {
+        let mut arbiter = arbiter();
+        let mut guards = [guard(0, checksums[0]), guard(1, checksums[1])];
+        let events = until_heard(&mut guards, &mut arbiter, 0, 2000);
+        let other = (0..2).find(|r| checksums[*r] != CHECKSUM).map(RobotSlot);
+        let said = |e: &ArbiterEvent| matches!(e, ArbiterEvent::OtherConfiguration(r) if Some(*r) == other);
+        assert_eq!(events.iter().filter(|e| said(e)).count(), usize::from(other.is_some()), "said once: {events:?}");
+        assert_eq!(guards[0].may_enter(SLOT, ms(2000)), expected, "{checksums:?}");
+        assert_eq!(arbiter.holder(SLOT).is_some(), expected, "{checksums:?}");
+        assert!(!guards[1].may_enter(SLOT, ms(2000)));
+        for robot in [0, 1] {
+            assert_eq!(arbiter.is_known(RobotSlot(robot), ms(2000)), checksums[robot] == CHECKSUM);
+        }
+    }
+}
+
+/// An answer is as old as the message that it answers, not as the last one that was sent.
+#[test]
+fn a_late_answer_confirms_a_grant_for_the_rest_of_its_validity_only() {
+    let mut arbiter = arbiter();
+    let mut guards = [guard(0, CHECKSUM), guard(1, CHECKSUM)];
+    until_heard(&mut guards, &mut arbiter, 0, 200);
+    let [guard, _] = &mut guards;
+    assert!(guard.may_enter(SLOT, ms(200)) && !guard.may_enter(SLOT, ms(260)));
+    let question: StateMessage = guard.state(ms(300));
+    let answer = arbiter.receive(&question, ms(330)).replies.into_iter().find(|r| r.robot == RobotSlot(0)).unwrap();
+    // Later messages are on their way when the answer comes.
+    for now in [310, 320, 330, 340] {
+        guard.state(ms(now));
+    }
+    guard.receive(&answer).unwrap();
+    assert!(guard.may_enter(SLOT, ms(345)) && guard.may_enter(SLOT, ms(350)));
+    assert!(!guard.may_enter(SLOT, ms(351)), "50 ms after the message that was answered, not after the last one");
+}
