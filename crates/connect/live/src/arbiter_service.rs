@@ -28,8 +28,8 @@ const ANSWER: Duration = Duration::from_secs(2);
 
 /// What the thread of the arbiter receives.
 enum Incoming {
-    /// Bytes of a guard.
-    Message(Vec<u8>),
+    /// Bytes under the key of a robot.
+    Message { robot: RobotSlot, bytes: Vec<u8> },
     /// A robot is to be cleared, or only asked for whether it may be.
     Clear { robot: RobotSlot, is_question: bool, answer: SyncSender<Result<(), Micros>> },
 }
@@ -70,12 +70,12 @@ impl ArbiterService {
         let keys = Keys::new(&cell.name);
         let (inbox, waiting) = mpsc::sync_channel::<Incoming>(WAITING);
         let (mut subscriptions, mut grants) = (Vec::new(), Vec::new());
-        for robot in &cell.robots {
-            let inbox = inbox.clone();
+        for (slot, robot) in cell.robots.iter().enumerate() {
+            let (inbox, slot) = (inbox.clone(), RobotSlot(slot));
             let handler = Box::new(move |bytes: &[u8]| {
                 if bytes.len() <= wire::MAX_BYTES {
                     // A full queue is a lost message, which the guard repeats.
-                    let _ = inbox.try_send(Incoming::Message(bytes.to_vec()));
+                    let _ = inbox.try_send(Incoming::Message { robot: slot, bytes: bytes.to_vec() });
                 }
             });
             subscriptions.push(network.subscribe(&keys.interlock_state(&robot.name), handler)?);
@@ -188,7 +188,7 @@ impl Running {
         let mut published: Option<Instant> = None;
         loop {
             let has_changed = match waiting.recv_timeout(PERIOD) {
-                Ok(Incoming::Message(bytes)) => self.take(&bytes),
+                Ok(Incoming::Message { robot, bytes }) => self.take(robot, &bytes),
                 Ok(Incoming::Clear { robot, is_question, answer }) => {
                     let cleared = self.clear(robot, is_question);
                     // Whoever asked may have stopped waiting.
@@ -206,8 +206,12 @@ impl Running {
     }
 
     /// Takes a guard's message, and answers. True where something has changed.
-    fn take(&mut self, bytes: &[u8]) -> bool {
+    /// Takes a message of a guard, if it speaks for the robot under whose key it has come.
+    fn take(&mut self, robot: RobotSlot, bytes: &[u8]) -> bool {
         let Ok(Message::State(state)) = wire::decode(bytes) else { return false };
+        if state.robot != robot {
+            return false;
+        }
         let outputs = self.arbiter.receive(&state, self.clock.micros());
         self.send(outputs)
     }

@@ -43,6 +43,11 @@ impl Keys {
         self.of(robot, "interlock/grants")
     }
 
+    /// With what all keys of the cell begin.
+    pub fn prefix(&self) -> String {
+        format!("elbowroom/{}", self.cell)
+    }
+
     /// Which regions are switched on, from the arbiter's process: JSON.
     pub fn regions(&self) -> String {
         format!("elbowroom/{}/regions", self.cell)

@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use elbowroom_cell::seal::NetworkKey;
+
 use crate::control::ControlOptions;
 use crate::event_handler::EventHandler;
 use crate::ros2::Ros2Settings;
@@ -18,7 +20,9 @@ pub struct ServiceOptions {
     pub listen: Option<String>,
     /// Connects here.
     pub connect: Option<String>,
-    /// Takes controllers by UDP datagrams at this address, too.
+    /// Hears only those who have this key; all processes of the cell need the same.
+    pub network_key: Option<NetworkKey>,
+    /// Takes controllers by UDP datagrams at this address, too. They are heard without the key.
     pub udp: Option<String>,
     /// Grants exchange regions, and keeps which regions are switched on.
     pub arbiter: bool,

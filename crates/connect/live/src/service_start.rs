@@ -19,7 +19,9 @@ use crate::clock::{Clock, boot_number};
 use crate::configuration_number::configuration_number;
 use crate::control::{ControlParts, ControlServer, JointsHeard, NodesHeard};
 use crate::keys::Keys;
-use crate::network::{JoinedNetworks, Network, NetworkError, UdpNetwork, ZenohNetwork, ZenohSettings};
+use crate::network::{
+    AuthenticatedNetwork, JoinedNetworks, Network, NetworkError, UdpNetwork, ZenohNetwork, ZenohSettings,
+};
 use crate::node::{Node, NodeMonitor, NodeParts};
 use crate::region_journal::RegionJournal;
 use crate::region_keeper::{ProgramSwitches, RegionKeeper};
@@ -58,7 +60,7 @@ impl<'o> ServiceStart<'o> {
             (listen, _) => listen.clone(),
         };
         let zenoh = Arc::new(ZenohNetwork::open(&ZenohSettings { listen, connect: options.connect.clone() })?);
-        let shared: Arc<dyn Network> = zenoh.clone();
+        let shared = shared_network(&zenoh, &cell, options)?;
         let of_controllers = with_udp(&shared, options.udp.as_deref())?;
         Ok(Self { options, cell, versions, robots, zenoh, shared, of_controllers, clock: Clock::start() })
     }
@@ -194,6 +196,17 @@ impl<'o> ServiceStart<'o> {
         }
         Ok(Some(CellObserver::start(&self.cell, &self.shared, self.clock, page, recorder, ros2)?))
     }
+}
+
+/// What all processes of the cell share: where there is a key, for those only who have it.
+fn shared_network(
+    zenoh: &Arc<ZenohNetwork>,
+    cell: &Cell,
+    options: &ServiceOptions,
+) -> Result<Arc<dyn Network>, NetworkError> {
+    let Some(key) = &options.network_key else { return Ok(zenoh.clone()) };
+    let (prefix, on_event) = (Keys::new(&cell.name).prefix(), options.on_event.clone());
+    Ok(Arc::new(AuthenticatedNetwork::new(zenoh.clone(), key, &prefix, on_event)?))
 }
 
 /// With tokens nobody switches without one, unless that is allowed.

@@ -1,5 +1,6 @@
 //! Integration tests of `elbowroom-live` in one program: a module per subject, whose first line says what belongs there.
 
+mod authenticated;
 mod c_client;
 mod common;
 mod control;

@@ -134,7 +134,7 @@ impl Arbiter {
     /// How long it must be silent still.
     pub fn may_clear(&mut self, robot: RobotSlot, now: Micros) -> Result<(), Micros> {
         let settings = &self.settings.robots[robot.0];
-        let needed = with_drift(self.settings.validity + settings.stop_time);
+        let needed = (self.settings.validity + settings.stop_time).with_drift();
         let since = self.robots[robot.0].heard.or(self.started);
         let silent = since.map_or(Micros(0), |since| now - since);
         self.started.get_or_insert(now);
@@ -181,7 +181,7 @@ impl Arbiter {
     /// Whether the guard that was heard last may still obey a grant. Another guard of its robot is not heard until then: of two
     /// that run at once the first one counts, and what the second one reports is never older than the last use of a grant.
     fn may_obey_a_grant(&self, robot: RobotSlot, now: Micros) -> bool {
-        let longest = with_drift(self.settings.validity);
+        let longest = self.settings.validity.with_drift();
         self.robots[robot.0].heard.is_some_and(|heard| now - heard <= longest)
     }
 
@@ -369,6 +369,7 @@ impl Arbiter {
             }
         };
         GrantsMessage {
+            checksum: self.settings.checksum,
             arbiter: self.boot,
             serial: self.serial,
             robot,
@@ -383,11 +384,6 @@ impl Arbiter {
         let slot = &self.slots[slot.0];
         !slot.intruders.is_empty() && (slot.is_held_by(robot) || slot.intruders.contains(&robot))
     }
-}
-
-/// A length of time on the clock of another process. Clocks may differ by one percent in rate; twice that is waited.
-fn with_drift(time: Micros) -> Micros {
-    time + Micros(time.0 / 50 + 1)
 }
 
 /// What the model check needs to see and to rewrite.

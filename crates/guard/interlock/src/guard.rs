@@ -11,6 +11,9 @@ pub enum Ignored {
     /// It is for another robot, or another cell.
     #[error("the message is for another robot or another cell")]
     OtherRobot,
+    /// The arbiter has another cell file.
+    #[error("the arbiter has another configuration: load the same cell file on both sides")]
+    OtherConfiguration,
     /// It answers another start of this robot's guard.
     #[error("the message answers another start of this guard")]
     OtherStart,
@@ -192,6 +195,9 @@ impl Guard {
     pub fn receive(&mut self, message: &GrantsMessage) -> Result<(), Ignored> {
         if message.robot != self.robot || message.slots.len() != self.slots.len() {
             return Err(Ignored::OtherRobot);
+        }
+        if message.checksum != self.checksum {
+            return Err(Ignored::OtherConfiguration);
         }
         if message.robot_boot != self.boot {
             self.take_next_boot(message.robot_boot);

@@ -7,7 +7,8 @@ use elbowroom_monitor::{
 };
 use thiserror::Error;
 
-use crate::wire::{self, WireError};
+use crate::frame::MessageError;
+use crate::wire;
 use crate::{GrantsMessage, Guard, Ignored, Micros, StateMessage};
 
 /// Without a valid tick for this long it is not known where the robot is: somebody may move it by hand.
@@ -18,7 +19,7 @@ const UNSEEN: Micros = Micros(100_000);
 pub enum NotObeyed {
     /// They are no message of an arbiter.
     #[error(transparent)]
-    Wire(#[from] WireError),
+    Wire(#[from] MessageError),
     /// The guard does not obey the message.
     #[error(transparent)]
     Ignored(#[from] Ignored),

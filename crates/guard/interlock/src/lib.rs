@@ -40,6 +40,7 @@
 
 mod arbiter;
 mod event;
+pub mod frame;
 mod guard;
 mod guarded_monitor;
 mod message;

@@ -56,6 +56,8 @@ impl SlotReport {
 /// From the arbiter to a guard: an answer to its last message.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct GrantsMessage {
+    /// Of the configuration of the arbiter's cell: a guard of another one does not obey.
+    pub checksum: u64,
     /// Start of the arbiter.
     pub arbiter: Boot,
     /// Rises with each message of this start.
@@ -74,6 +76,7 @@ impl GrantsMessage {
     /// A message of no arbiter, with memory for this number of slots, to be written into.
     pub fn with_slots(slots: usize) -> Self {
         Self {
+            checksum: 0,
             arbiter: Boot::NONE,
             serial: 0,
             robot: RobotSlot(0),

@@ -12,6 +12,11 @@ impl Micros {
     pub fn from_seconds(seconds: f64) -> Self {
         Self((seconds * 1e6).ceil().max(0.0) as u64)
     }
+
+    /// This length of time on the clock of another process. Clocks may differ by one percent in rate; twice that is waited.
+    pub(crate) fn with_drift(self) -> Self {
+        self + Self(self.0 / 50 + 1)
+    }
 }
 
 impl Add for Micros {

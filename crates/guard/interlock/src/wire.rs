@@ -3,28 +3,28 @@
 //! | bytes | state | grants |
 //! | --- | --- | --- |
 //! | 2 | `ER` | the same |
-//! | 1 | version, 1 | the same |
+//! | 1 | version, 2 | the same |
 //! | 1 | kind, 1 | kind, 2 |
 //! | 2 | robot | robot |
 //! | 2 | number of slots | the same |
-//! | 8 × 4 | boot, sequence, configuration, arbiter | arbiter, serial, robot's boot, echo |
+//! | 8 × 5 | configuration, boot, sequence, arbiter, 0 | configuration, arbiter, serial, robot's boot, echo |
 //! | per slot | 1 occupancy, 1 wants, 16 token, 16 released | 16 granted, 1 release requested, 1 halt |
 //! | 4 | CRC-32 of all before | the same |
 //!
 //! No token is 16 zero bytes, as the start 0 is none.
 
 use elbowroom_monitor::{Occupancy, RobotSlot};
-use thiserror::Error;
 
+use crate::frame::{FRAME_BYTES, MessageError, Protocol, Reader};
 use crate::{Boot, GrantsMessage, SlotAnswer, SlotReport, StateMessage, Token};
 
 /// More slots than this are not written.
 pub const MAX_SLOTS: usize = 256;
 /// Length of the longest message.
-pub const MAX_BYTES: usize = 8 + 32 + MAX_SLOTS * 34 + 4;
+pub const MAX_BYTES: usize = FRAME_BYTES + 4 + WORDS * 8 + MAX_SLOTS * 34;
 
-const MAGIC: [u8; 2] = *b"ER";
-const VERSION: u8 = 1;
+const PROTOCOL: Protocol = Protocol { letters: *b"ER", version: 2 };
+const WORDS: usize = 5;
 const STATE: u8 = 1;
 const GRANTS: u8 = 2;
 
@@ -35,31 +35,6 @@ pub enum Message {
     State(StateMessage),
     /// From the arbiter.
     Grants(GrantsMessage),
-}
-
-/// Why bytes are no message.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
-pub enum WireError {
-    /// Not as long as it says, or longer than any message.
-    #[error("the message has {0} bytes, which its number of slots does not explain")]
-    Length(usize),
-    /// Of something else.
-    #[error("the bytes are no message of an interlock")]
-    Magic,
-    /// Of another version of the protocol.
-    #[error(
-        "the message is of version {0} of the protocol, this is version {VERSION}: run the same release on all controllers"
-    )]
-    Version(u8),
-    /// Damaged.
-    #[error("the checksum of the message is wrong")]
-    Checksum,
-    /// A message of the other kind: sent to the wrong port.
-    #[error("the message is not from the side that it was expected from: guards send states, the arbiter sends grants")]
-    Kind,
-    /// A value that no guard and no arbiter writes.
-    #[error("the message has a value that means nothing")]
-    Value,
 }
 
 /// The bytes of a message; `None` where it has more than [`MAX_SLOTS`] slots or its robot's index does not fit in two bytes.
@@ -75,22 +50,22 @@ pub fn encode(message: &Message) -> Option<Vec<u8>> {
 /// Replaces `bytes` by those of a guard's message; false as [`encode`] gives `None`. Does not allocate where `bytes` has the
 /// capacity [`MAX_BYTES`].
 pub fn encode_state(m: &StateMessage, bytes: &mut Vec<u8>) -> bool {
-    let words = [m.boot.0, m.sequence, m.checksum, m.arbiter.0];
+    let words = [m.checksum, m.boot.0, m.sequence, m.arbiter.0, 0];
     let fits = write_header(STATE, m.robot, m.slots.len(), words, bytes);
     if fits {
         m.slots.iter().for_each(|slot| write_report(slot, bytes));
-        write_checksum(bytes);
+        PROTOCOL.end(bytes);
     }
     fits
 }
 
 /// Replaces `bytes` by those of the arbiter's message; otherwise as [`encode_state`].
 pub fn encode_grants(m: &GrantsMessage, bytes: &mut Vec<u8>) -> bool {
-    let words = [m.arbiter.0, m.serial, m.robot_boot.0, m.echo];
+    let words = [m.checksum, m.arbiter.0, m.serial, m.robot_boot.0, m.echo];
     let fits = write_header(GRANTS, m.robot, m.slots.len(), words, bytes);
     if fits {
         m.slots.iter().for_each(|slot| write_answer(slot, bytes));
-        write_checksum(bytes);
+        PROTOCOL.end(bytes);
     }
     fits
 }
@@ -99,7 +74,7 @@ pub fn encode_grants(m: &GrantsMessage, bytes: &mut Vec<u8>) -> bool {
 ///
 /// # Errors
 /// Why they are none. No bytes panic.
-pub fn decode(bytes: &[u8]) -> Result<Message, WireError> {
+pub fn decode(bytes: &[u8]) -> Result<Message, MessageError> {
     let (header, reader) = read_header(bytes)?;
     match header.kind {
         STATE => {
@@ -112,7 +87,7 @@ pub fn decode(bytes: &[u8]) -> Result<Message, WireError> {
             read_grants(&header, reader, bytes, &mut message)?;
             Ok(Message::Grants(message))
         }
-        _ => Err(WireError::Value),
+        _ => Err(MessageError::Value),
     }
 }
 
@@ -120,18 +95,18 @@ pub fn decode(bytes: &[u8]) -> Result<Message, WireError> {
 ///
 /// # Errors
 /// Why the bytes are no such message; `message` means nothing then.
-pub fn decode_state(bytes: &[u8], message: &mut StateMessage) -> Result<(), WireError> {
+pub fn decode_state(bytes: &[u8], message: &mut StateMessage) -> Result<(), MessageError> {
     let (header, reader) = read_header(bytes)?;
-    if header.kind == STATE { read_state(&header, reader, bytes, message) } else { Err(WireError::Kind) }
+    if header.kind == STATE { read_state(&header, reader, bytes, message) } else { Err(MessageError::Kind) }
 }
 
 /// Reads the arbiter's message into `message`; otherwise as [`decode_state`].
 ///
 /// # Errors
 /// As for [`decode_state`].
-pub fn decode_grants(bytes: &[u8], message: &mut GrantsMessage) -> Result<(), WireError> {
+pub fn decode_grants(bytes: &[u8], message: &mut GrantsMessage) -> Result<(), MessageError> {
     let (header, reader) = read_header(bytes)?;
-    if header.kind == GRANTS { read_grants(&header, reader, bytes, message) } else { Err(WireError::Kind) }
+    if header.kind == GRANTS { read_grants(&header, reader, bytes, message) } else { Err(MessageError::Kind) }
 }
 
 /// What both kinds begin with.
@@ -139,18 +114,16 @@ struct Header {
     kind: u8,
     robot: RobotSlot,
     slots: usize,
-    words: [u64; 4],
+    words: [u64; WORDS],
 }
 
 /// False where the message cannot be written.
-fn write_header(kind: u8, robot: RobotSlot, slots: usize, words: [u64; 4], bytes: &mut Vec<u8>) -> bool {
-    bytes.clear();
+fn write_header(kind: u8, robot: RobotSlot, slots: usize, words: [u64; WORDS], bytes: &mut Vec<u8>) -> bool {
+    PROTOCOL.begin(kind, bytes);
     let (Ok(robot), Ok(count)) = (u16::try_from(robot.0), u16::try_from(slots)) else { return false };
     if slots > MAX_SLOTS {
         return false;
     }
-    bytes.extend_from_slice(&MAGIC);
-    bytes.extend_from_slice(&[VERSION, kind]);
     bytes.extend_from_slice(&robot.to_le_bytes());
     bytes.extend_from_slice(&count.to_le_bytes());
     for word in words {
@@ -159,44 +132,28 @@ fn write_header(kind: u8, robot: RobotSlot, slots: usize, words: [u64; 4], bytes
     true
 }
 
-fn write_checksum(bytes: &mut Vec<u8>) {
-    let crc = crc32fast::hash(bytes);
-    bytes.extend_from_slice(&crc.to_le_bytes());
-}
-
-fn read_header(bytes: &[u8]) -> Result<(Header, Reader<'_>), WireError> {
-    let length = WireError::Length(bytes.len());
+fn read_header(bytes: &[u8]) -> Result<(Header, Reader<'_>), MessageError> {
+    let length = MessageError::Length(bytes.len());
     if bytes.len() > MAX_BYTES {
         return Err(length);
     }
-    let (content, crc) = bytes.split_last_chunk::<4>().ok_or(length)?;
-    let mut reader = Reader { rest: content };
-    if reader.take::<2>().ok_or(length)? != MAGIC {
-        return Err(WireError::Magic);
-    }
-    let [version, kind] = reader.take().ok_or(length)?;
-    if version != VERSION {
-        return Err(WireError::Version(version));
-    }
-    if crc32fast::hash(content).to_le_bytes() != *crc {
-        return Err(WireError::Checksum);
-    }
-    let header = reader.header(kind).ok_or(length)?;
-    if header.slots > MAX_SLOTS { Err(WireError::Value) } else { Ok((header, reader)) }
+    let (kind, mut reader) = PROTOCOL.contents(bytes)?;
+    let header = header(&mut reader, kind).ok_or(length)?;
+    if header.slots > MAX_SLOTS { Err(MessageError::Value) } else { Ok((header, reader)) }
 }
 
-fn read_state(header: &Header, reader: Reader<'_>, bytes: &[u8], m: &mut StateMessage) -> Result<(), WireError> {
-    let [boot, sequence, checksum, arbiter] = header.words;
+fn read_state(header: &Header, reader: Reader<'_>, bytes: &[u8], m: &mut StateMessage) -> Result<(), MessageError> {
+    let [checksum, boot, sequence, arbiter, _] = header.words;
     (m.robot, m.boot, m.arbiter) = (header.robot, Boot(boot), Boot(arbiter));
     (m.sequence, m.checksum) = (sequence, checksum);
-    read_slots(header, reader, bytes, &mut m.slots, Reader::report)
+    read_slots(header, reader, bytes, &mut m.slots, report)
 }
 
-fn read_grants(header: &Header, reader: Reader<'_>, bytes: &[u8], m: &mut GrantsMessage) -> Result<(), WireError> {
-    let [arbiter, serial, robot_boot, echo] = header.words;
+fn read_grants(header: &Header, reader: Reader<'_>, bytes: &[u8], m: &mut GrantsMessage) -> Result<(), MessageError> {
+    let [checksum, arbiter, serial, robot_boot, echo] = header.words;
     (m.robot, m.arbiter, m.robot_boot) = (header.robot, Boot(arbiter), Boot(robot_boot));
-    (m.serial, m.echo) = (serial, echo);
-    read_slots(header, reader, bytes, &mut m.slots, Reader::answer)
+    (m.checksum, m.serial, m.echo) = (checksum, serial, echo);
+    read_slots(header, reader, bytes, &mut m.slots, answer)
 }
 
 fn read_slots<'a, T>(
@@ -205,12 +162,12 @@ fn read_slots<'a, T>(
     bytes: &[u8],
     slots: &mut Vec<T>,
     read: impl Fn(&mut Reader<'a>) -> Option<T>,
-) -> Result<(), WireError> {
+) -> Result<(), MessageError> {
     slots.clear();
     for _ in 0..header.slots {
-        slots.push(read(&mut reader).ok_or(WireError::Value)?);
+        slots.push(read(&mut reader).ok_or(MessageError::Value)?);
     }
-    if reader.rest.is_empty() { Ok(()) } else { Err(WireError::Length(bytes.len())) }
+    if reader.remaining() == 0 { Ok(()) } else { Err(MessageError::Length(bytes.len())) }
 }
 
 fn write_token(token: Option<Token>, bytes: &mut Vec<u8>) {
@@ -233,58 +190,45 @@ fn write_answer(answer: &SlotAnswer, bytes: &mut Vec<u8>) {
 /// Bytes that no guard and no arbiter writes.
 struct Meaningless;
 
-/// The bytes that are not read yet.
-struct Reader<'a> {
-    rest: &'a [u8],
+fn header(reader: &mut Reader<'_>, kind: u8) -> Option<Header> {
+    let (robot, slots) = (RobotSlot(usize::from(reader.u16()?)), usize::from(reader.u16()?));
+    let mut words = [0; WORDS];
+    for word in &mut words {
+        *word = reader.u64()?;
+    }
+    Some(Header { kind, robot, slots, words })
 }
 
-impl Reader<'_> {
-    fn take<const N: usize>(&mut self) -> Option<[u8; N]> {
-        let (first, rest) = self.rest.split_first_chunk::<N>()?;
-        self.rest = rest;
-        Some(*first)
+fn flag(reader: &mut Reader<'_>) -> Option<bool> {
+    match reader.u8()? {
+        0 => Some(false),
+        1 => Some(true),
+        _ => None,
     }
+}
 
-    fn header(&mut self, kind: u8) -> Option<Header> {
-        let robot = RobotSlot(usize::from(u16::from_le_bytes(self.take()?)));
-        let slots = usize::from(u16::from_le_bytes(self.take()?));
-        Some(Header { kind, robot, slots, words: [self.word()?, self.word()?, self.word()?, self.word()?] })
+/// A token that may be none.
+fn token(reader: &mut Reader<'_>) -> Result<Option<Token>, Meaningless> {
+    match (reader.u64().ok_or(Meaningless)?, reader.u64().ok_or(Meaningless)?) {
+        (0, 0) => Ok(None),
+        (0, _) => Err(Meaningless),
+        (boot, number) => Ok(Some(Token { boot: Boot(boot), number })),
     }
+}
 
-    fn word(&mut self) -> Option<u64> {
-        self.take().map(u64::from_le_bytes)
-    }
+fn report(reader: &mut Reader<'_>) -> Option<SlotReport> {
+    let occupancy = match reader.u8()? {
+        0 => Occupancy::Unknown,
+        1 => Occupancy::Outside,
+        2 => Occupancy::Warning,
+        3 => Occupancy::Committed,
+        4 => Occupancy::Inside,
+        _ => return None,
+    };
+    let wants = flag(reader)?;
+    Some(SlotReport { occupancy, wants, token: token(reader).ok()?, released: token(reader).ok()? })
+}
 
-    fn flag(&mut self) -> Option<bool> {
-        match self.take()? {
-            [0] => Some(false),
-            [1] => Some(true),
-            _ => None,
-        }
-    }
-
-    /// A token that may be none.
-    fn token(&mut self) -> Result<Option<Token>, Meaningless> {
-        match (self.word().ok_or(Meaningless)?, self.word().ok_or(Meaningless)?) {
-            (0, 0) => Ok(None),
-            (0, _) => Err(Meaningless),
-            (boot, number) => Ok(Some(Token { boot: Boot(boot), number })),
-        }
-    }
-
-    fn report(&mut self) -> Option<SlotReport> {
-        let occupancy = match self.take()? {
-            [0] => Occupancy::Unknown,
-            [1] => Occupancy::Outside,
-            [2] => Occupancy::Warning,
-            [3] => Occupancy::Committed,
-            [4] => Occupancy::Inside,
-            _ => return None,
-        };
-        Some(SlotReport { occupancy, wants: self.flag()?, token: self.token().ok()?, released: self.token().ok()? })
-    }
-
-    fn answer(&mut self) -> Option<SlotAnswer> {
-        Some(SlotAnswer { granted: self.token().ok()?, release_requested: self.flag()?, halt: self.flag()? })
-    }
+fn answer(reader: &mut Reader<'_>) -> Option<SlotAnswer> {
+    Some(SlotAnswer { granted: token(reader).ok()?, release_requested: flag(reader)?, halt: flag(reader)? })
 }

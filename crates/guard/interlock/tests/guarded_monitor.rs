@@ -150,6 +150,6 @@ fn bytes_for_others_are_not_obeyed() {
     elbowroom_interlock::wire::encode_grants(&reply, &mut bytes);
     let other = &mut cell.carriages[1].robot;
     assert_eq!(other.receive(&bytes), Err(NotObeyed::Ignored(Ignored::OtherRobot)));
-    assert_eq!(other.receive(&state), Err(NotObeyed::Wire(elbowroom_interlock::wire::WireError::Kind)));
+    assert_eq!(other.receive(&state), Err(NotObeyed::Wire(elbowroom_interlock::frame::MessageError::Kind)));
     assert!(!other.guard().may_enter(SlotId(0), now));
 }

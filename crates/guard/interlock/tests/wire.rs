@@ -1,6 +1,7 @@
 //! Messages to bytes and back; bytes that are no messages.
 
-use elbowroom_interlock::wire::{Message, WireError, decode, encode};
+use elbowroom_interlock::frame::MessageError;
+use elbowroom_interlock::wire::{Message, decode, encode};
 use elbowroom_interlock::{Boot, GrantsMessage, SlotAnswer, SlotReport, StateMessage, Token};
 use elbowroom_monitor::{Occupancy, RobotSlot};
 use proptest::prelude::*;
@@ -29,14 +30,15 @@ fn answer() -> impl Strategy<Value = SlotAnswer> {
 }
 
 fn message() -> impl Strategy<Value = Message> {
-    let words = || any::<[u64; 4]>();
+    let words = || any::<[u64; 5]>();
     let robot = || (0_usize..65_536).prop_map(RobotSlot);
     prop_oneof![
-        (robot(), words(), proptest::collection::vec(report(), 0..20)).prop_map(|(robot, [a, b, c, d], slots)| {
+        (robot(), words(), proptest::collection::vec(report(), 0..20)).prop_map(|(robot, [a, b, c, d, _], slots)| {
             Message::State(StateMessage { robot, boot: Boot(a), sequence: b, checksum: c, arbiter: Boot(d), slots })
         }),
-        (robot(), words(), proptest::collection::vec(answer(), 0..20)).prop_map(|(robot, [a, b, c, d], slots)| {
-            Message::Grants(GrantsMessage { arbiter: Boot(a), serial: b, robot, robot_boot: Boot(c), echo: d, slots })
+        (robot(), words(), proptest::collection::vec(answer(), 0..20)).prop_map(|(robot, [a, b, c, d, e], slots)| {
+            let (arbiter, robot_boot) = (Boot(b), Boot(d));
+            Message::Grants(GrantsMessage { checksum: a, arbiter, serial: c, robot, robot_boot, echo: e, slots })
         }),
     ]
 }
@@ -75,7 +77,7 @@ fn other_versions_are_named() {
     };
     let mut bytes = encode(&Message::State(state)).unwrap();
     bytes[2] = 9;
-    assert_eq!(decode(&bytes), Err(WireError::Version(9)));
+    assert_eq!(decode(&bytes), Err(MessageError::Version { found: 9, here: 2 }));
     bytes[0] = b'X';
-    assert_eq!(decode(&bytes), Err(WireError::Magic));
+    assert_eq!(decode(&bytes), Err(MessageError::Protocol));
 }

@@ -125,30 +125,30 @@ pub(super) fn class(value: &Value<'_>) -> Result<AccessClass> {
 }
 
 #[cfg(unix)]
-fn create(path: &Path) -> io::Result<File> {
+pub(super) fn create(path: &Path) -> io::Result<File> {
     use std::os::unix::fs::OpenOptionsExt;
     File::options().write(true).create_new(true).mode(0o600).open(path)
 }
 
 #[cfg(not(unix))]
-fn create(path: &Path) -> io::Result<File> {
+pub(super) fn create(path: &Path) -> io::Result<File> {
     File::options().write(true).create_new(true).open(path)
 }
 
 #[cfg(unix)]
-fn check_private_permissions(path: &Path) -> Result<()> {
+pub(super) fn check_private_permissions(path: &Path) -> Result<()> {
     use std::os::unix::fs::PermissionsExt;
     let Ok(about) = std::fs::metadata(path) else { return Ok(()) };
     let mode = about.permissions().mode() & 0o777;
     if mode.trailing_zeros() >= 6 {
         return Ok(());
     }
-    let what = format!("is a private key that others may read or write (mode {mode:03o})");
+    let what = format!("is a secret key that others may read or write (mode {mode:03o})");
     Err(FormatError::new(path, None, what).hint(format!("chmod 600 {}", path.display())))
 }
 
 #[cfg(not(unix))]
-fn check_private_permissions(_: &Path) -> Result<()> {
+pub(super) fn check_private_permissions(_: &Path) -> Result<()> {
     Ok(())
 }
 

@@ -19,6 +19,7 @@ mod hex;
 mod keys;
 mod last_seal;
 mod log;
+mod network_key;
 mod result;
 mod source;
 mod state;
@@ -40,6 +41,7 @@ pub use entry::LogEntry;
 pub use keys::{PrivateKey, PublicKey};
 pub use last_seal::Seal;
 pub use log::log_of;
+pub use network_key::NetworkKey;
 pub use trust::{TrustedKey, TrustedKeys};
 
 use crate::{Cell, CellFile};

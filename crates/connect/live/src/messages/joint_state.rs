@@ -1,9 +1,10 @@
 //! Joint values of a robot, from its controller.
 
+use elbowroom_interlock::frame::{FRAME_BYTES, MessageError, Reader};
 use elbowroom_monitor::VolumeId;
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
-use super::bytes::{FRAME_BYTES, MessageError, Reader, begin, contents, end};
+use super::protocol::{PROTOCOL, contents};
 
 /// Most joints of a message.
 pub const MAX_JOINTS: usize = 32;
@@ -74,7 +75,7 @@ impl JointState {
     /// Writes the bytes into `out`, which is emptied. More than [`MAX_JOINTS`] joints or [`MAX_ATTACHED`] volumes are no message:
     /// the other side refuses them by their number, so that no volume is left out silently.
     pub fn encode(&self, out: &mut Vec<u8>) {
-        begin(KIND, out);
+        PROTOCOL.begin(KIND, out);
         let flag = |is_set: bool, flag: u8| if is_set { flag } else { 0 };
         let flags =
             flag(self.qd.len() == self.q.len(), HAS_VELOCITY) | flag(self.intent.len() == self.q.len(), HAS_INTENT);
@@ -93,7 +94,7 @@ impl JointState {
             let rotation = attached.in_link.rotation.to_quaternion_xyzw();
             at.iter().chain(&rotation).for_each(|value| out.extend_from_slice(&value.to_le_bytes()));
         }
-        end(out);
+        PROTOCOL.end(out);
     }
 
     /// Reads the message of these bytes. After an error the contents are of no use.

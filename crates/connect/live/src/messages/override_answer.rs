@@ -1,6 +1,8 @@
 //! The speed override of a robot, to its controller.
 
-use super::bytes::{FRAME_BYTES, MessageError, begin, contents, end};
+use elbowroom_interlock::frame::{FRAME_BYTES, MessageError};
+
+use super::protocol::{PROTOCOL, contents};
 
 /// Length of the message.
 pub const OVERRIDE_ANSWER_BYTES: usize = FRAME_BYTES + 6 * 8 + 4;
@@ -32,7 +34,7 @@ pub struct OverrideAnswer {
 impl OverrideAnswer {
     /// Writes the bytes into `out`, which is emptied.
     pub fn encode(&self, out: &mut Vec<u8>) {
-        begin(KIND, out);
+        PROTOCOL.begin(KIND, out);
         for word in [self.checksum, self.boot, self.echo, self.sequence] {
             out.extend_from_slice(&word.to_le_bytes());
         }
@@ -40,7 +42,7 @@ impl OverrideAnswer {
         out.extend_from_slice(&self.outputs.to_le_bytes());
         out.extend_from_slice(&[self.reason, 0]);
         out.extend_from_slice(&self.region.to_le_bytes());
-        end(out);
+        PROTOCOL.end(out);
     }
 
     /// The answer of these bytes.

@@ -11,6 +11,8 @@ use crate::region::args::Class;
 pub(crate) enum ControlCommand {
     /// Make a token: its hash goes to a file of the service, its secret to standard output, once
     Token(TokenArgs),
+    /// Make the key with which the processes of a cell recognize each other
+    NetworkKey(NetworkKeyArgs),
     /// List regions, whether they are on, and who holds exchange regions
     Regions(RegionsArgs),
     /// Switch a temporary region on or off
@@ -41,6 +43,16 @@ pub(crate) struct TokenArgs {
     /// The file of tokens; it is made where it is missing
     #[arg(long, value_name = "FILE")]
     pub(crate) file: PathBuf,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  elbowroom control network-key --out cell.key
+  elbowroom live cell.toml --network-key cell.key")]
+pub(crate) struct NetworkKeyArgs {
+    /// The new file; only its owner may read it
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: PathBuf,
 }
 
 /// The service, and the holder of a token.

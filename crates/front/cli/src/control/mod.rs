@@ -6,16 +6,17 @@ mod client;
 use std::fmt::Write as _;
 use std::path::Path;
 
-use elbowroom::cell::seal::{AccessTokens, ControlEntry, control_history, control_log_of};
+use elbowroom::cell::seal::{AccessTokens, ControlEntry, NetworkKey, control_history, control_log_of};
 use serde_json::{Value, json};
 
-use crate::output::{ExitStatus, Failure, note, print, print_json};
-use args::{ControlCommand, State, TokenArgs};
+use crate::output::{ExitStatus, Failure, cannot_write, note, print, print_json};
+use args::{ControlCommand, NetworkKeyArgs, State, TokenArgs};
 use client::Client;
 
 pub(crate) fn control(command: &ControlCommand) -> Result<ExitStatus, Failure> {
     match command {
         ControlCommand::Token(args) => return token(args),
+        ControlCommand::NetworkKey(args) => return network_key(args),
         ControlCommand::Log(args) => return log(&args.cell, args.json),
         ControlCommand::Regions(args) => {
             let document = Client::new(&args.service)?.regions()?;
@@ -73,6 +74,16 @@ fn token(args: &TokenArgs) -> Result<ExitStatus, Failure> {
         args.name
     ));
     print(&format!("{secret}\n"))?;
+    Ok(ExitStatus::Success)
+}
+
+fn network_key(args: &NetworkKeyArgs) -> Result<ExitStatus, Failure> {
+    let wrong = cannot_write(&args.out);
+    NetworkKey::generate().and_then(|key| key.write(&args.out)).map_err(wrong)?;
+    note(format_args!(
+        "{}: the key of the cell's network; copy it to the computer of each process, and to nobody else",
+        args.out.display()
+    ));
     Ok(ExitStatus::Success)
 }
 

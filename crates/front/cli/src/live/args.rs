@@ -26,15 +26,8 @@ pub(crate) struct LiveArgs {
     /// Guard only these robots in this process
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub(crate) robots: Vec<String>,
-    /// Accept connections at this address
-    #[arg(long, value_name = "ADDR")]
-    pub(crate) listen: Option<String>,
-    /// Connect to the process at this address
-    #[arg(long, value_name = "ADDR")]
-    pub(crate) connect: Option<String>,
-    /// Take controllers by UDP datagrams at this address, too (clients/c)
-    #[arg(long, value_name = "ADDR")]
-    pub(crate) udp: Option<String>,
+    #[command(flatten)]
+    pub(crate) network: NetworkArgs,
     /// Grant exchange regions in this process; without --robots, nothing else
     #[arg(long)]
     pub(crate) arbiter: bool,
@@ -106,4 +99,23 @@ pub(crate) struct ReplayArgs {
 fn seconds(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| "not a number of seconds".to_owned())?;
     if value.is_finite() && value > 0.0 { Ok(value) } else { Err("must be more than 0".to_owned()) }
+}
+
+/// Where the processes of the cell meet, and who is heard there.
+#[derive(Debug, Args)]
+#[allow(clippy::doc_markdown)] // help texts are printed as they are
+#[cfg_attr(not(feature = "live"), allow(dead_code))]
+pub(crate) struct NetworkArgs {
+    /// Accept connections at this address
+    #[arg(long, value_name = "ADDR")]
+    pub(crate) listen: Option<String>,
+    /// Connect to the process at this address
+    #[arg(long, value_name = "ADDR")]
+    pub(crate) connect: Option<String>,
+    /// Hear only processes that have this key, made by `elbowroom control network-key` (docs/security.md)
+    #[arg(long, value_name = "FILE")]
+    pub(crate) network_key: Option<PathBuf>,
+    /// Take controllers by UDP datagrams at this address, too (clients/c)
+    #[arg(long, value_name = "ADDR")]
+    pub(crate) udp: Option<String>,
 }

@@ -5,6 +5,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
 use elbowroom::cell::Cell;
+use elbowroom::cell::seal::NetworkKey;
 use elbowroom::live::network::ZENOH_RUNTIME;
 use elbowroom::live::ros2::Ros2Settings;
 use elbowroom::live::{ControlOptions, DEFAULT_ADDRESS, Keys, Service, ServiceOptions, region_journal_of};
@@ -28,9 +29,10 @@ pub(crate) fn live(args: &LiveArgs) -> Result<ExitStatus, Failure> {
     let keys = Keys::new(&cell.name);
     let options = ServiceOptions {
         robots: args.robots.clone(),
-        listen: args.listen.clone(),
-        connect: args.connect.clone(),
-        udp: args.udp.clone(),
+        listen: args.network.listen.clone(),
+        connect: args.network.connect.clone(),
+        network_key: args.network.network_key.as_deref().map(NetworkKey::read).transpose()?,
+        udp: args.network.udp.clone(),
         arbiter: args.arbiter,
         journal: Some(region_journal_of(&args.cell)),
         simulate: args.simulate,
@@ -43,7 +45,7 @@ pub(crate) fn live(args: &LiveArgs) -> Result<ExitStatus, Failure> {
     let stop = stop_signal()?;
     let checksum = cell.checksum.clone();
     let service = Service::start(cell, &options).map_err(|e| Failure::Wrong(e.to_string()))?;
-    let address = args.listen.as_deref().or(args.connect.as_deref()).unwrap_or(DEFAULT_ADDRESS);
+    let address = args.network.listen.as_deref().or(args.network.connect.as_deref()).unwrap_or(DEFAULT_ADDRESS);
     note(format_args!(
         "{} robot(s) guarded{}, {address}, configuration {}\nstatus: {}",
         service.guarded(),

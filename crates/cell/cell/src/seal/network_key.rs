@@ -1,0 +1,99 @@
+//! The secret that the processes of a running cell share.
+
+use std::fmt;
+use std::io::{self, Write as _};
+use std::path::Path;
+
+use super::keys::{check_private_permissions, create};
+use super::result::Result;
+use super::{hex, text};
+use crate::file::node;
+use crate::file::read::Table;
+
+const WRITES: &str = "what `elbowroom control network-key` writes";
+
+/// The secret that the processes of a running cell share: whoever has it may speak for each of them.
+#[derive(Clone, PartialEq, Eq)]
+pub struct NetworkKey([u8; 32]);
+
+impl fmt::Debug for NetworkKey {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("NetworkKey")
+    }
+}
+
+impl NetworkKey {
+    /// A new key from random numbers of the operating system.
+    ///
+    /// # Errors
+    /// [`io::Error`] where the system provides none.
+    pub fn generate() -> io::Result<Self> {
+        let mut secret = [0; 32];
+        getrandom::fill(&mut secret).map_err(|e| io::Error::other(e.to_string()))?;
+        Ok(Self(secret))
+    }
+
+    /// Writes the key to a new file that only its owner may read (mode 0600).
+    ///
+    /// # Errors
+    /// [`io::Error`] where the file exists already or cannot be written.
+    pub fn write(&self, path: &Path) -> io::Result<()> {
+        let mut file = create(path)?;
+        write!(
+            file,
+            "# The network key of an elbowroom cell, the same for all of its processes. Whoever has it can speak for each of \
+             them: keep it secret.\nnetwork = \"{}\"\n",
+            hex::encode(&self.0)
+        )?;
+        file.sync_all()
+    }
+
+    /// Reads the format of [`write`](Self::write).
+    ///
+    /// # Errors
+    /// [`FormatError`](elbowroom_formats::FormatError) where it cannot be read, is no key, or others than its owner may read it.
+    pub fn read(path: &Path) -> Result<Self> {
+        check_private_permissions(path)?;
+        let text = text::read(path)?;
+        let entries = node::parse(path, &text)?;
+        let table = Table { file: path, name: String::new(), line: 1, entries: &entries };
+        table.only(&["network"])?;
+        let secret = table.need("network", WRITES)?;
+        let bytes = hex::decode(secret.text()?);
+        Ok(Self(bytes.ok_or_else(|| secret.error("is no key").hint(format!("64 hexadecimal digits, {WRITES}")))?))
+    }
+
+    /// The secret.
+    pub fn as_bytes(&self) -> &[u8; 32] {
+        &self.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_key_is_read_as_written_and_others_must_not_read_it() -> std::result::Result<(), Box<dyn std::error::Error>> {
+        let folder = tempfile::tempdir()?;
+        let file = folder.path().join("cell.key");
+        let key = NetworkKey::generate()?;
+        key.write(&file)?;
+        assert_eq!(NetworkKey::read(&file)?, key);
+        assert_ne!(NetworkKey::generate()?, key);
+        assert_eq!(key.write(&file).map_err(|e| e.kind()), Err(io::ErrorKind::AlreadyExists));
+        assert_eq!(format!("{key:?}"), "NetworkKey", "a log must not have the secret");
+        let error = |text: &str| {
+            std::fs::write(&file, text).map(|()| NetworkKey::read(&file).map_err(|e| e.to_string()).unwrap_err())
+        };
+        assert!(error("network = \"12\"")?.contains("64 hexadecimal digits"));
+        assert!(error("private = \"12\"")?.contains("private"));
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::PermissionsExt as _;
+            std::fs::set_permissions(&file, std::fs::Permissions::from_mode(0o640))?;
+            assert!(NetworkKey::read(&file).map_err(|e| e.to_string()).unwrap_err().contains("chmod 600"));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,265 @@
+//! Strangers on the network of a cell: without its key they are not heard, with their own words or with recorded ones.
+
+use std::sync::{Arc, Mutex};
+
+use elbowroom_cell::seal::NetworkKey;
+use elbowroom_live::network::{
+    AuthenticatedNetwork, LocalNetwork, Network, Publisher, Subscription, Urgency, ZenohNetwork, ZenohSettings,
+};
+use elbowroom_live::{
+    Clock, ControllerClient, ControllerState, Keys, RegionTable, ServiceOptions, SwitchRequest, boot_number,
+    configuration_number,
+};
+use elbowroom_status::RobotStatus;
+use elbowroom_testkit::network::eventually;
+use elbowroom_testkit::random::split_mix;
+
+use crate::common::control_setup::{ControlSetup, rails};
+
+const CELL: &str = concat!(rails!("900", "450, 0, 1900"), "[monitor]\nstale_ms = 200\n");
+const PREFIX: &str = "elbowroom/cell";
+const KEYS: [&str; 2] = ["elbowroom/cell/a/joint_states", "elbowroom/cell/regions"];
+/// All that a stranger hears.
+const CABLE: [&str; 4] = [KEYS[0], KEYS[1], "elbowroom/cell/proof/question", "elbowroom/cell/proof/answer"];
+
+type Log = Arc<Mutex<Vec<Vec<u8>>>>;
+
+/// Keeps all that is published under a key.
+fn log(network: &dyn Network, key: &str) -> (Log, Subscription) {
+    let log = Log::default();
+    let entries = log.clone();
+    let keep = move |bytes: &[u8]| entries.lock().unwrap().push(bytes.to_vec());
+    (log, network.subscribe(key, Box::new(keep)).unwrap())
+}
+
+/// A process that sends under both keys and one that listens to both; each may start again.
+struct Rig {
+    cable: LocalNetwork,
+    key: NetworkKey,
+    sender: Option<(AuthenticatedNetwork, Vec<Box<dyn Publisher>>)>,
+    receiver: Option<(AuthenticatedNetwork, Vec<(Log, Subscription)>)>,
+    /// Number of the next message: no two have the same contents.
+    next: u64,
+    /// Messages before this one were sent before the receiver or the sender started.
+    since: u64,
+    state: u64,
+}
+
+impl Rig {
+    fn process(&self) -> AuthenticatedNetwork {
+        AuthenticatedNetwork::new(Arc::new(self.cable.clone()), &self.key, PREFIX, None).unwrap()
+    }
+
+    fn below(&mut self, bound: usize) -> usize {
+        self.state = split_mix(&mut self.state);
+        self.state as usize % bound
+    }
+
+    fn start_sender(&mut self) {
+        self.sender = None;
+        let network = self.process();
+        let publishers = KEYS.map(|key| network.publisher(key, Urgency::RealTime).unwrap()).into();
+        (self.sender, self.since) = (Some((network, publishers)), self.next);
+    }
+
+    /// The receiver starts again, or only its subscriptions.
+    fn start_receiver(&mut self) {
+        let network = self.receiver.take().map(|(network, _)| network).filter(|_| self.below(2) == 0);
+        let network = network.unwrap_or_else(|| self.process());
+        let logs = KEYS.map(|key| log(&network, key)).into();
+        (self.receiver, self.since) = (Some((network, logs)), self.next);
+    }
+
+    /// Sends a message; returns its number.
+    fn send(&mut self, key: usize) -> u64 {
+        let number = self.next;
+        self.next += 1;
+        if let Some((_, publishers)) = &mut self.sender {
+            publishers[key].publish(&contents(key, number));
+        }
+        number
+    }
+
+    fn heard(&self, key: usize) -> Vec<Vec<u8>> {
+        self.receiver.as_ref().unwrap().1[key].0.lock().unwrap().clone()
+    }
+
+    /// What a stranger can make of what is recorded.
+    fn attack(&mut self, recorded: &[Log], strange: &AuthenticatedNetwork) {
+        let (of, under) = (self.below(CABLE.len()), self.below(CABLE.len()));
+        let recorded = recorded[of].lock().unwrap().clone();
+        let whole: Vec<&Vec<u8>> = recorded.iter().filter(|bytes| !bytes.is_empty()).collect();
+        if whole.is_empty() {
+            return;
+        }
+        let mut bytes = whole[self.below(whole.len())].clone();
+        match self.below(5) {
+            0 => return self.cable.publisher(CABLE[of], Urgency::RealTime).unwrap().publish(&bytes),
+            1 => {
+                let (at, bit) = (self.below(bytes.len()), self.below(8));
+                bytes[at] ^= 1 << bit;
+            }
+            2 => bytes.truncate(self.below(bytes.len() + 1)),
+            3 => bytes = contents(under, self.next),
+            _ => return strange.publisher(CABLE[under], Urgency::RealTime).unwrap().publish(&bytes),
+        }
+        self.cable.publisher(CABLE[under], Urgency::RealTime).unwrap().publish(&bytes);
+    }
+
+    /// Nothing is heard under another key, twice, out of order, or of before a start.
+    fn check(&self) {
+        for key in 0..KEYS.len() {
+            let heard = self.heard(key);
+            let numbers: Vec<u64> = heard.iter().map(|b| u64::from_le_bytes(b[1..].try_into().unwrap())).collect();
+            assert!(
+                heard.iter().all(|b| usize::from(b[0]) == key) && numbers.is_sorted_by(|a, b| a < b),
+                "{numbers:?}"
+            );
+        }
+    }
+}
+
+fn contents(key: usize, number: u64) -> Vec<u8> {
+    [&[key as u8][..], &number.to_le_bytes()].concat()
+}
+
+#[test]
+fn nothing_is_heard_that_a_stranger_sends_changes_moves_or_repeats() {
+    for seed in 0..200_u64 {
+        let key = NetworkKey::generate().unwrap();
+        let cable = LocalNetwork::default();
+        let (logs, _recording): (Vec<Log>, Vec<Subscription>) = CABLE.map(|key| log(&cable, key)).into_iter().unzip();
+        let mut rig = Rig { cable, key, sender: None, receiver: None, next: 1, since: 1, state: seed };
+        let other = NetworkKey::generate().unwrap();
+        let strange = AuthenticatedNetwork::new(Arc::new(rig.cable.clone()), &other, PREFIX, None).unwrap();
+        rig.start_sender();
+        rig.start_receiver();
+        for _ in 0..200 {
+            match rig.below(40) {
+                0 => rig.start_sender(),
+                1 => rig.start_receiver(),
+                2 => {
+                    // The sender has ended: its recordings are all that there is.
+                    rig.sender = None;
+                    rig.start_receiver();
+                    (0..40).for_each(|_| rig.attack(&logs, &strange));
+                    assert!((0..2).all(|key| rig.heard(key).is_empty()), "seed {seed}");
+                    rig.start_sender();
+                }
+                3..20 => rig.attack(&logs, &strange),
+                _ => {
+                    let key = rig.below(2);
+                    let is_first = rig.next == rig.since;
+                    let number = rig.send(key);
+                    // With its first message a process is asked to prove itself.
+                    let is_heard = rig.heard(key).last() == Some(&contents(key, number));
+                    assert!(is_heard || is_first, "seed {seed}: {number} is not heard");
+                }
+            }
+            rig.check();
+        }
+    }
+}
+
+/// The last status of the left robot that this process hears.
+fn active(statuses: &Log, region: &str) -> Option<bool> {
+    let last = statuses.lock().unwrap().last().cloned()?;
+    let status: RobotStatus = serde_json::from_slice(&last).ok()?;
+    status.regions.iter().find(|r| r.name == region).map(|r| r.active)
+}
+
+/// A service in which programs may switch regions, and a connection to its network.
+fn service(network_key: Option<NetworkKey>) -> (ControlSetup, Arc<ZenohNetwork>) {
+    let setup = ControlSetup::new(CELL, true, ServiceOptions { network_key, ..ServiceOptions::default() });
+    let connect = Some(setup.listen.clone());
+    let cable = ZenohNetwork::open(&ZenohSettings { listen: None, connect }).unwrap();
+    (setup, Arc::new(cable))
+}
+
+/// A controller of the left robot, which stands.
+struct Controller {
+    client: ControllerClient,
+    clock: Clock,
+    publisher: Box<dyn Publisher>,
+}
+
+impl Controller {
+    fn new(network: &dyn Network, setup: &ControlSetup) -> Self {
+        let publisher = network.publisher(&Keys::new("rails").joint_states("left"), Urgency::RealTime).unwrap();
+        let client = ControllerClient::new(boot_number(), configuration_number(&setup.cell));
+        Self { client, clock: Clock::start(), publisher }
+    }
+
+    /// Says where the robot is, and waits for 20 ms.
+    fn step(&mut self) {
+        let state = ControllerState { q: &[0.1], qd: &[0.0], programmed_override: 1.0, ..ControllerState::default() };
+        self.publisher.publish(self.client.joint_state(self.clock.micros(), &state));
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+}
+
+fn publish(network: &dyn Network, key: &str, message: &impl serde::Serialize) {
+    network.publisher(key, Urgency::RealTime).unwrap().publish(&serde_json::to_vec(message).unwrap());
+}
+
+fn is_on(setup: &ControlSetup) -> bool {
+    setup.region("cart").unwrap()["active"] == true
+}
+
+/// Docs: `docs/security.md`, a hostile process on the cell's network.
+#[test]
+fn a_stranger_on_the_network_switches_no_region() {
+    let key = NetworkKey::generate().unwrap();
+    let keys = Keys::new("rails");
+    let on = SwitchRequest { robot: "left".into(), region: "cart".into(), active: true };
+    // A table that claims to be the newest: without the key it is believed by every node.
+    let newest = |setup: &ControlSetup| {
+        let table = RegionTable { revision: (u64::MAX / 2, 1), ..RegionTable::initial(&setup.cell).all_on() };
+        table.message(&setup.cell)
+    };
+    for network_key in [None, Some(key)] {
+        let is_open = network_key.is_none();
+        let (setup, stranger) = service(network_key.clone());
+        let friend: Arc<dyn Network> = match &network_key {
+            None => stranger.clone(),
+            Some(key) => Arc::new(AuthenticatedNetwork::new(stranger.clone(), key, &keys.prefix(), None).unwrap()),
+        };
+        let (statuses, _subscription) = log(&*friend, &keys.status("left"));
+        let mut controller = Controller::new(&*friend, &setup);
+        eventually("the node hears the table", || {
+            controller.step();
+            active(&statuses, "cart") == Some(false)
+        });
+        for _ in 0..20 {
+            publish(&*stranger, &keys.switch(), &on);
+            publish(&*stranger, &keys.regions(), &newest(&setup));
+            controller.step();
+        }
+        assert_eq!(is_on(&setup), is_open);
+        assert_eq!(active(&statuses, "cart"), Some(is_open));
+        let is_reported = || setup.events.lock().unwrap().iter().any(|e| e.contains("a stranger is on its network"));
+        assert_eq!(is_reported(), !is_open);
+        if is_open {
+            continue;
+        }
+        // Who has the key is heard; what was recorded of that is of no use.
+        let (recorded, _subscription) = log(&*stranger, &keys.switch());
+        eventually("a program with the key switches", || {
+            publish(&*friend, &keys.switch(), &on);
+            std::thread::sleep(std::time::Duration::from_millis(20));
+            is_on(&setup)
+        });
+        assert_eq!(switch_off(&setup), 200);
+        let recorded = recorded.lock().unwrap().clone();
+        assert!(!recorded.is_empty());
+        let mut publisher = stranger.publisher(&keys.switch(), Urgency::RealTime).unwrap();
+        recorded.iter().cycle().take(20).for_each(|bytes| publisher.publish(bytes));
+        std::thread::sleep(std::time::Duration::from_millis(300));
+        assert!(!is_on(&setup), "a recording was obeyed");
+    }
+}
+
+fn switch_off(setup: &ControlSetup) -> u16 {
+    let request = serde_json::json!({ "region": "cart", "active": false });
+    setup.change(crate::common::control_setup::PROGRAMMER, "/switch", &request).0
+}
