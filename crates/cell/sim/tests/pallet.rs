@@ -133,7 +133,7 @@ fn errors_in_the_table_name_the_line() {
     let cell = Cell::parse(file(), &sound).unwrap();
     let settings = cell.avoidance[0].as_ref().unwrap().settings;
     assert_eq!((settings.reactive.speed_m_s, settings.reactive.clearance_m), (20.0, 1e-4));
-    assert_eq!((settings.return_speed_fraction, settings.stall_timeout_s), (0.01, 60.0));
+    assert_eq!((settings.return_speed_fraction, settings.stall_timeout_s), (Some(0.01), 60.0));
     let unknown = text.replace("objects = [\"cart\"]", "objects = [\"card\"]");
     assert!(Cell::parse(file(), &unknown).unwrap_err().to_string().contains("cart"));
     let unknown_robot = text.replace("[avoidance.kr150]", "[avoidance.kr15]");

@@ -331,7 +331,7 @@ impl<'s> Avoider<'s> {
         }
         let joints = self.command.q.len();
         let is_valid = |v: &[f64]| v.len() == joints && v.iter().all(|v| v.is_finite());
-        if is_valid(reference.q) && is_valid(reference.qd) {
+        if is_valid(reference.q) && is_valid(reference.qd) && reference.speed_share.is_finite() {
             return Ok(());
         }
         Err(AvoidanceError::Reference { given: reference.q.len().min(reference.qd.len()), joints })
@@ -441,6 +441,7 @@ impl<'s> Avoider<'s> {
     /// Writes the velocity towards the objective, at override 1, to `desired`.
     fn update_desired(&mut self, dt: f64, reference: &Reference<'_>, allowed: f64, objective: Objective) {
         let scale = allowed.max(MIN_OVERRIDE);
+        let most = self.settings.return_speed(reference.speed_share);
         let desired = &mut self.workspace.desired;
         match objective {
             Objective::Path => {
@@ -450,10 +451,9 @@ impl<'s> Avoider<'s> {
             }
             Objective::Rest => desired.fill(0.0),
             Objective::Detour => {
-                let max_speed = self.settings.return_speed_fraction * allowed;
                 let now = JointState { q: &self.command.q, qd: &self.command.qd, limits: &self.limits };
                 if let Some(detour) = self.machine.detour_mut() {
-                    detour.follow(dt, max_speed, &now, &self.reversals, desired);
+                    detour.follow(dt, most * allowed, &now, &self.reversals, desired);
                 }
                 for v in desired.iter_mut() {
                     *v /= scale;
@@ -463,7 +463,7 @@ impl<'s> Avoider<'s> {
                 let remaining_s = distance_s(reference.q, &self.command.q, &self.limits);
                 let rise_s = self.limits.iter().map(|l| l.speed / l.acceleration).fold(0.0, f64::max);
                 let gentle = if gently { remaining_s / GENTLE_RETURN_S } else { f64::INFINITY };
-                let speed = arrival_speed(remaining_s, rise_s).min(self.settings.return_speed_fraction).min(gentle);
+                let speed = arrival_speed(remaining_s, rise_s).min(most).min(gentle);
                 let rate = if remaining_s > 0.0 { (speed / remaining_s).min(1.0 / dt) } else { 0.0 };
                 for ((v, to), from) in desired.iter_mut().zip(reference.q).zip(&self.command.q) {
                     *v = (to - from) * rate;

@@ -7,6 +7,9 @@ pub struct Reference<'a> {
     pub q: &'a [f64],
     /// Joint velocities at the full rate of the path (override 1), rad/s or m/s.
     pub qd: &'a [f64],
+    /// The largest share of a joint's top speed that the path uses, 0..1: detours and returns are not faster, unless
+    /// [`return_speed_fraction`](crate::AvoiderSettings::return_speed_fraction) asks for it.
+    pub speed_share: f64,
     /// The purpose of the path.
     pub path: PathKind,
 }

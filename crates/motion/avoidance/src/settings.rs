@@ -9,8 +9,9 @@ pub struct AvoiderSettings {
     pub reactive: ReactiveSettings,
     /// Settings of the search for escapes.
     pub escape: EscapeSettings,
-    /// Speed of detours and of the return to the path, as a fraction of the joints' top speeds.
-    pub return_speed_fraction: f64,
+    /// Speed of detours and of the return to the path, as a fraction of the joints' top speeds. `None`: half, and never faster than
+    /// the path ([`speed_share`](crate::Reference::speed_share)).
+    pub return_speed_fraction: Option<f64>,
     /// Deviation at which a path that may be left stops, in seconds of joint motion at full speed.
     pub max_deviation_s: f64,
     /// Shortest time between two reversals of a joint, s.
@@ -19,13 +20,25 @@ pub struct AvoiderSettings {
     pub stall_timeout_s: f64,
 }
 
+/// Unless the path is slower, detours and returns have this fraction of the joints' top speeds.
+const RETURN_SPEED: f64 = 0.5;
+/// However slow the path is, a robot that has left it returns with this fraction.
+const LEAST_RETURN_SPEED: f64 = 0.01;
+
+impl AvoiderSettings {
+    /// Speed of detours and returns to a path, as a fraction of the joints' top speeds.
+    pub(crate) fn return_speed(&self, path_share: f64) -> f64 {
+        self.return_speed_fraction.unwrap_or(path_share.clamp(LEAST_RETURN_SPEED, RETURN_SPEED))
+    }
+}
+
 impl Default for AvoiderSettings {
-    /// Half the speed; 0.4 s of deviation; 0.25 s between reversals; a stall timeout of 0.6 s.
+    /// Half the speed, or that of the path; 0.4 s of deviation; 0.25 s between reversals; a stall timeout of 0.6 s.
     fn default() -> Self {
         Self {
             reactive: ReactiveSettings::default(),
             escape: EscapeSettings::default(),
-            return_speed_fraction: 0.5,
+            return_speed_fraction: None,
             max_deviation_s: 0.4,
             min_reversal_interval_s: 0.25,
             stall_timeout_s: 0.6,

@@ -16,7 +16,7 @@ fn main() {
     let scene = scene();
     let lean = [0.0, 0.9, 0.6];
     let mut avoider = avoider(&scene, &lean);
-    let reference = Reference { q: &lean, qd: &[0.0; 3], path: PathKind::PointToPoint };
+    let reference = Reference { q: &lean, qd: &[0.0; 3], speed_share: 1.0, path: PathKind::PointToPoint };
     let from = Vec3::new(0.62, -1.5, 0.5);
     let ball = Ball { object: ObjectId(1), from, velocity: Vec3::new(0.0, 0.9, 0.0), stops_s: f64::INFINITY };
     let mut pass = || {

@@ -1,7 +1,7 @@
 //! The control loop on a small arm: it evades, returns to its path, and does not oscillate.
 
 use crate::common;
-use crate::common::{Ball, DT, Simulation, avoider, scene};
+use crate::common::{Ball, DT, Simulation, avoider, limits, scene};
 use elbowroom_avoidance::{
     Avoider, AvoiderSettings, AvoiderState, DynamicObstacles, ObservedObject, PathKind, Reference, Rules,
 };
@@ -210,6 +210,32 @@ fn a_detour_leads_around_a_stationary_obstacle() {
 }
 
 #[test]
+fn a_detour_is_not_faster_than_the_path_unless_that_is_asked_for() {
+    let scene = scene();
+    let ball = Ball { object: ObjectId(1), from: at(0.74, 0.0, 0.53), velocity: Vec3::ZERO, stops_s: 0.0 };
+    for (speed_share, asked, most) in [(1.0, None, 0.5), (0.2, None, 0.2), (0.2, Some(0.4), 0.4), (0.0, None, 0.01)] {
+        let settings = AvoiderSettings { return_speed_fraction: asked, ..AvoiderSettings::default() };
+        let (q, limits) = (sweeping(0.0).0, limits(&scene));
+        let avoider = Avoider::new(&scene, RobotId(0), &q, &limits, Rules::default(), settings).unwrap();
+        let mut simulation = Simulation::with(&scene, &q, avoider);
+        simulation.speed_share = speed_share;
+        let mut fastest = 0.0;
+        while simulation.t < 20.0 && simulation.avoider.q() != sweeping(2.0).0 {
+            let on_detour = simulation.avoider.has_detour();
+            simulation.step(&sweeping, PathKind::PointToPoint, &[ball], 1.0);
+            let speeds = simulation.avoider.qd().iter().zip(&limits);
+            let speed = speeds.fold(0.0_f64, |most, (v, limit)| most.max(v.abs() / limit.speed));
+            fastest = if on_detour { f64::max(fastest, speed) } else { fastest };
+            if simulation.plan(&sweeping(2.0).0) {
+                simulation.tau = 2.0;
+            }
+        }
+        assert!(fastest > 0.9 * most && fastest <= most * (1.0 + 1e-9), "{speed_share}, {asked:?}: {fastest}");
+        assert!(simulation.hits.is_empty() && simulation.planned > 0);
+    }
+}
+
+#[test]
 fn the_override_scales_everything_and_zero_stops_it() {
     let scene = scene();
     let ball =
@@ -232,7 +258,7 @@ fn the_override_scales_everything_and_zero_stops_it() {
 fn invalid_input_is_refused_and_commands_nothing() {
     let scene = scene();
     let mut avoider = avoider(&scene, &LEAN);
-    let reference = Reference { q: &LEAN, qd: &[0.0; 3], path: PathKind::PointToPoint };
+    let reference = Reference { q: &LEAN, qd: &[0.0; 3], speed_share: 1.0, path: PathKind::PointToPoint };
     let nan = Pose::from_translation(at(f64::NAN, 0.0, 0.0));
     let invalid = [
         ObservedObject { object: ObjectId(1), in_world: nan, motion: FrameMotion::REST, known: false },
@@ -248,7 +274,7 @@ fn invalid_input_is_refused_and_commands_nothing() {
         assert!(avoider.tick(DT, &reference, &DynamicObstacles { objects: &[observed], robots: &[] }, 1.0).is_err());
         assert_eq!(avoider.q(), LEAN);
     }
-    let not_finite = Reference { q: &[f64::NAN; 3], qd: &[0.0; 3], path: PathKind::PointToPoint };
+    let not_finite = Reference { q: &[f64::NAN; 3], qd: &[0.0; 3], speed_share: 1.0, path: PathKind::PointToPoint };
     assert!(avoider.tick(DT, &not_finite, &DynamicObstacles::default(), 1.0).is_err());
     for dt in [0.0, -1.0, f64::NAN] {
         assert!(avoider.tick(dt, &reference, &DynamicObstacles::default(), 1.0).is_err());

@@ -193,7 +193,7 @@ fn excursion(horizon_s: f64, normal: Vec3, wall_m: Option<f64>) -> f64 {
     let mut farthest = 0.0_f64;
     for tick in 0..700 {
         let objects = [ball.observed(f64::from(tick) * DT)];
-        let reference = Reference { q: &LEAN, qd: &[0.0; 3], path: PathKind::PointToPoint };
+        let reference = Reference { q: &LEAN, qd: &[0.0; 3], speed_share: 1.0, path: PathKind::PointToPoint };
         let obstacles = DynamicObstacles { objects: &objects, robots: &[] };
         let constraint = wall.as_mut().map(|w| w as &mut dyn PathConstraint);
         avoider.tick_constrained(DT, &reference, &obstacles, 1.0, constraint).unwrap();

@@ -25,7 +25,7 @@ fn ball(place: Vec3, known: bool) -> ObservedObject {
 }
 
 fn resting_at(q: &[f64]) -> Reference<'_> {
-    Reference { q, qd: &[0.0; 3], path: PathKind::PointToPoint }
+    Reference { q, qd: &[0.0; 3], speed_share: 1.0, path: PathKind::PointToPoint }
 }
 
 fn clearance(clearance_m: f64) -> RrtConnectSettings {
@@ -52,7 +52,7 @@ fn min_distance(
     known: bool,
     observed: impl Fn(usize) -> bool,
 ) -> f64 {
-    let settings = AvoiderSettings { return_speed_fraction: 1.0, ..AvoiderSettings::default() };
+    let settings = AvoiderSettings { return_speed_fraction: Some(1.0), ..AvoiderSettings::default() };
     let mut avoider = Avoider::new(scene, RobotId(0), &HERE, limits, rules, settings).unwrap();
     let far = ball(at(3.0, 3.0, 3.0), known);
     avoider.tick(DT, &resting_at(&HERE), &DynamicObstacles { objects: &[far], robots: &[] }, 1.0).unwrap();

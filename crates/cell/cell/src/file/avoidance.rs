@@ -70,13 +70,7 @@ fn spec(t: &Table<'_>, cell: &Cell, own: RobotId) -> Result<AvoidanceSpec> {
     if let Some(v) = t.get("clearance") {
         settings.reactive.clearance_m = length(&v, units, CLEARANCES_M, "")?;
     }
-    if let Some(v) = t.get("return_speed") {
-        settings.return_speed_fraction = v.percent()?;
-        if settings.return_speed_fraction < MIN_RETURN {
-            let what = "is less than 1 percent: the robot would hardly return";
-            return Err(v.error(what).hint("return_speed = 50   (percent)"));
-        }
-    }
+    settings.return_speed_fraction = t.get("return_speed").map(|v| return_speed(&v)).transpose()?;
     if let Some(v) = t.get("stall_timeout") {
         settings.stall_timeout_s = v.positive()?;
         if !within(STALL_TIMEOUTS_S, settings.stall_timeout_s) {
@@ -122,6 +116,16 @@ fn spec(t: &Table<'_>, cell: &Cell, own: RobotId) -> Result<AvoidanceSpec> {
     };
     let replan = t.flag_or("replan", true)?;
     Ok(AvoidanceSpec { rules, settings, objects, robots, replan, noise_m, delay_s, plan_s: 1e-3 * plan_ms })
+}
+
+/// The speed of detours and returns, as a fraction of the joints' speeds.
+fn return_speed(v: &Value<'_>) -> Result<f64> {
+    let fraction = v.percent()?;
+    if fraction < MIN_RETURN {
+        let what = "is less than 1 percent: the robot would hardly return";
+        return Err(v.error(what).hint("return_speed = 50   (percent)"));
+    }
+    Ok(fraction)
 }
 
 /// A length (m), or with `per` a speed, within its range.

@@ -41,6 +41,8 @@ pub struct ProgramClock {
     programmed: f64,
     here: PathPoint,
     intent: Vec<f64>,
+    /// The largest share of a joint's top speed of the last step with motion.
+    speed_share: f64,
     switches: Vec<RegionSwitch>,
     grips: Vec<GripAction>,
     tools: Vec<usize>,
@@ -65,6 +67,7 @@ impl ProgramClock {
             programmed,
             intent: here.dq.clone(),
             here,
+            speed_share: 1.0,
             switches: Vec::new(),
             grips: Vec::new(),
             tools: Vec::new(),
@@ -86,6 +89,11 @@ impl ProgramClock {
     /// start: a direction-aware monitor needs the direction of the motion.
     pub fn intent(&self) -> &[f64] {
         &self.intent
+    }
+
+    /// The largest share of a joint's top speed that the present move uses, or, between moves, the last one.
+    pub fn speed_share(&self) -> f64 {
+        self.speed_share
     }
 
     /// Current joint velocities, rad/s or m/s.
@@ -278,6 +286,14 @@ impl ProgramClock {
     fn start_step(&mut self) {
         self.execute_instant_steps();
         self.update_point();
+        self.speed_share = match self.plan.steps.get(self.step) {
+            Some(PlanStep::Move(m)) => m.joint_share,
+            Some(PlanStep::Play(play) | PlanStep::Planned { play, .. }) => {
+                let share = |(joint, limit): (usize, &JointLimits)| play.fastest(joint).0 / limit.velocity;
+                self.limits.iter().enumerate().map(share).fold(0.0, f64::max)
+            }
+            _ => self.speed_share,
+        };
         if self.here.dq.iter().any(|v| v.abs() > REST_SPEED) {
             (self.rate, self.rate_change, self.joins) = (0.0, 0.0, true);
         }

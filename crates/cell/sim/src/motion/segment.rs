@@ -13,6 +13,8 @@ pub struct Segment {
     law: TimeLaw,
     /// Share of the programmed speed that the joint limits permit, 0..1.
     pub speed_share: f64,
+    /// The largest share of a joint's top speed that the time law may use, 0..1.
+    pub joint_share: f64,
 }
 
 #[derive(Debug)]
@@ -41,7 +43,7 @@ impl Segment {
     pub fn new(geometry: Geometry, limits: &[JointLimits], speed: f64, path_rate: f64) -> Result<Self, String> {
         let samples = geometry.samples();
         let Some((bounds, share)) = bounds(&samples, limits, speed, path_rate) else {
-            return Ok(Self { geometry, law: TimeLaw::Rest, speed_share: 1.0 });
+            return Ok(Self { geometry, law: TimeLaw::Rest, speed_share: 1.0, joint_share: 0.0 });
         };
         let mut otg = Ruckig::<1, ThrowErrorHandler>::new(None, 0.001);
         let mut input = InputParameter::new(None);
@@ -51,7 +53,12 @@ impl Segment {
         input.max_jerk[0] = bounds.jerk;
         let mut trajectory = Trajectory::new(None);
         otg.calculate(&input, &mut trajectory).map_err(|e| e.to_string())?;
-        Ok(Self { geometry, law: TimeLaw::Ruckig(Box::new(trajectory)), speed_share: share })
+        let shares = |point: &PathPoint| {
+            let share = point.dq.iter().zip(limits).map(|(dq, limit)| dq.abs() * bounds.velocity / limit.velocity);
+            share.fold(0.0, f64::max)
+        };
+        let joint_share = samples.iter().map(shares).fold(0.0, f64::max);
+        Ok(Self { geometry, law: TimeLaw::Ruckig(Box::new(trajectory)), speed_share: share, joint_share })
     }
 
     /// Duration at override 1, s.

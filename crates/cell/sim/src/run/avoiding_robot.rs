@@ -280,7 +280,8 @@ impl<'s> AvoidingRobot<'s> {
         let robots: Vec<Neighbour<'_>> =
             others.map(|(robot, s)| Neighbour { robot, q: &s.q, qd: &s.qd, known: known(robot) }).collect();
         let path = if clock.end_of_joint_move().is_some() { PathKind::PointToPoint } else { PathKind::Continuous };
-        let reference = Reference { q: &clock.point().q, qd: &clock.point().dq, path };
+        let (here, speed_share) = (clock.point(), clock.speed_share());
+        let reference = Reference { q: &here.q, qd: &here.dq, speed_share, path };
         let obstacles = DynamicObstacles { objects: &objects, robots: &robots };
         match self.avoider.tick_constrained(cell.tick_s, &reference, &obstacles, allowed, constraint) {
             Ok(output) => {

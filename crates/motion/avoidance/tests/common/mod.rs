@@ -91,6 +91,8 @@ pub struct Simulation<'s> {
     pub planned: usize,
     /// Time of the next plan, s.
     not_before_s: f64,
+    /// [`Reference::speed_share`] of the path.
+    pub speed_share: f64,
 }
 
 impl<'s> Simulation<'s> {
@@ -115,6 +117,7 @@ impl<'s> Simulation<'s> {
             output: AvoiderOutput::default(),
             planned: 0,
             not_before_s: 0.0,
+            speed_share: 1.0,
         }
     }
 
@@ -124,7 +127,8 @@ impl<'s> Simulation<'s> {
         self.tau += self.rate * DT * speed_override;
         let (q, qd) = reference_at(self.tau);
         let obstacles = DynamicObstacles { objects: &observed, robots: &[] };
-        let output = self.avoider.tick(DT, &Reference { q: &q, qd: &qd, path }, &obstacles, speed_override).unwrap();
+        let reference = Reference { q: &q, qd: &qd, speed_share: self.speed_share, path };
+        let output = self.avoider.tick(DT, &reference, &obstacles, speed_override).unwrap();
         self.rate = output.rate.clamp(self.rate - DT / 0.1, self.rate + DT / 0.25).clamp(0.0, 1.0);
         self.record_hits(&before, &observed);
         self.record_command();
