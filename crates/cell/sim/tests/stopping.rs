@@ -3,9 +3,9 @@
 
 use crate::common::{ARM, HEAD, run};
 use elbowroom_cell::Cell;
-use elbowroom_monitor::OverrideReason;
+use elbowroom_monitor::{EventKind, OverrideReason};
 use elbowroom_sim::check::{check, recordings};
-use elbowroom_sim::{RunOptions, simulate};
+use elbowroom_sim::{RunEvent, RunOptions, simulate};
 use elbowroom_testkit::random;
 
 fn carriage(stop_time: f64, reaction_ms: f64, to: f64) -> String {
@@ -31,6 +31,31 @@ fn a_carriage_stops_before_a_wall_at_any_deceleration_and_delay() {
                 let what = format!("stop time {stop_time} s, reaction {reaction_ms} ms, wall at {to} mm: {least} m");
                 assert!(!region.entered && least > 0.0, "{what}");
                 assert!(least < 0.002, "it stops close to the border, {what}");
+            }
+        }
+    }
+}
+
+/// The reaction time is no multiple of the tick: within a tick the robot still goes on as it was commanded before.
+#[test]
+fn a_robot_that_brakes_as_stated_is_not_taken_for_one_that_brakes_less() {
+    for tick_ms in [4.0, 12.0, 40.0] {
+        for reaction_ms in [5.0, 13.0, 30.0, 47.0] {
+            for stop_time in [0.25, 0.5, 1.0] {
+                let cell = carriage(stop_time, reaction_ms, 1750.0)
+                    .replace("tick_ms = 2\n", &format!("tick_ms = {tick_ms}\n"))
+                    .replace("warning = 1\n", "warning = 1\nlife = \"temporary\"\nrobots = [\"a\"]\n");
+                // The wall is there all of a sudden, while the carriage has its full speed.
+                let switch = "[robot.b]\nbase = { at = [0, 5000, 0] }\n\
+                              dh = [{ kind = \"prismatic\", min = 0, max = 100, speed = 100 }]\n\
+                              [program.b]\nsteps = [{ wait = 0.9 }, { region = \"wall\", active = true }]\n";
+                let recording = run(&format!("{cell}{switch}")).recording;
+                let failed =
+                    recording.events.iter().find(|e| e.event == RunEvent::Monitor(EventKind::Fault)).map(|e| e.t_s);
+                let what = format!("tick {tick_ms} ms, reaction {reaction_ms} ms, stop time {stop_time} s");
+                assert_eq!(failed, None, "{what}");
+                let stopped = recording.robots[0].samples.iter().any(|s| s.speed_override == 0.0);
+                assert!(stopped, "{what}");
             }
         }
     }

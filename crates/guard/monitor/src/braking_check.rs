@@ -9,21 +9,39 @@ const TOLERANCE_FRACTION: f64 = 0.05;
 /// time of the commanded override.
 #[derive(Debug, Default)]
 pub(crate) struct BrakingCheck {
-    /// Time stamp and stop time of the last update, s.
-    last: Option<(f64, f64)>,
+    last: Option<Braking>,
     allowed_s: f64,
     failed: bool,
 }
 
+/// How fast a robot is, and what it was commanded.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Braking {
+    /// Time stamp of the joint values, s.
+    pub(crate) stamp_s: f64,
+    /// The robot's stop time, s.
+    pub(crate) stop_s: f64,
+    /// The largest override that may be in effect.
+    pub(crate) commanded: f64,
+    /// Since when no larger one may, s.
+    pub(crate) commanded_since_s: f64,
+    /// Stop time of the program at override 1, s; infinite where it is not known.
+    pub(crate) full_stop_s: f64,
+}
+
 impl BrakingCheck {
-    /// At `stamp_s` the robot has the stop time `stop_s`; `commanded_s` is the largest stop time at the commanded overrides.
-    pub(crate) fn update(&mut self, stamp_s: f64, stop_s: f64, commanded_s: f64) {
-        let reduced_s = self
-            .last
-            .map_or(stop_s, |(last_stamp_s, last_stop_s)| last_stop_s.min(self.allowed_s) - (stamp_s - last_stamp_s));
-        self.allowed_s = reduced_s.max(commanded_s).max(0.0);
-        self.failed = stop_s > self.allowed_s * (1.0 + TOLERANCE_FRACTION) + TOLERANCE_S;
-        self.last = Some((stamp_s, stop_s));
+    pub(crate) fn update(&mut self, now: Braking) {
+        let allowed_s = |last: &Braking| {
+            let braked_s = last.stop_s.min(self.allowed_s) - (now.stamp_s - last.stamp_s);
+            // Between two ticks the robot went on as it was commanded before, and brakes only since then.
+            let since_s = now.commanded_since_s.clamp(last.stamp_s, now.stamp_s.max(last.stamp_s));
+            let went_on_s = stop_at(last.commanded, last.full_stop_s.max(now.full_stop_s)) - (now.stamp_s - since_s);
+            braked_s.max(went_on_s)
+        };
+        let reduced_s = self.last.as_ref().map_or(now.stop_s, allowed_s);
+        self.allowed_s = reduced_s.max(stop_at(now.commanded, now.full_stop_s)).max(0.0);
+        self.failed = now.stop_s > self.allowed_s * (1.0 + TOLERANCE_FRACTION) + TOLERANCE_S;
+        self.last = Some(now);
     }
 
     pub(crate) fn failed(&self) -> bool {
@@ -31,25 +49,37 @@ impl BrakingCheck {
     }
 }
 
+/// The stop time at an override, s.
+fn stop_at(speed_override: f64, full_stop_s: f64) -> f64 {
+    if speed_override > 0.0 { speed_override * full_stop_s } else { 0.0 }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// A stop commanded at 0.1 s: the stop time of 0.5 s falls at `rate`.
-    fn failed(rate: f64) -> bool {
+    /// Ticks of `tick_s` of a robot whose stop time is 0.5 s until a stop takes effect at `since_s`; then it falls at `rate`.
+    fn failed(rate: f64, tick_s: f64, since_s: f64) -> bool {
         let mut check = BrakingCheck::default();
-        (0..300).any(|i| {
-            let t = 0.002 * f64::from(i);
-            let braking = t - 0.1;
-            let commanded = if braking < 0.0 { 0.5 } else { 0.0 };
-            check.update(t, (0.5 - rate * braking.max(0.0)).max(0.0), commanded);
+        (0..(0.7 / tick_s) as u32).any(|i| {
+            let stamp_s = tick_s * f64::from(i);
+            let braking_s = stamp_s - since_s;
+            let commanded = if braking_s < 0.0 { 1.0 } else { 0.0 };
+            let commanded_since_s = if braking_s < 0.0 { 0.0 } else { since_s };
+            let stop_s = (0.5 - rate * braking_s.max(0.0)).max(0.0);
+            check.update(Braking { stamp_s, stop_s, commanded, commanded_since_s, full_stop_s: 0.5 });
             check.failed()
         })
     }
 
     #[test]
     fn braking_a_tenth_below_the_stated_rate_is_detected() {
-        assert!(!failed(1.0) && !failed(3.0));
-        assert!(failed(0.9) && failed(0.0));
+        for tick_s in [0.002, 0.008, 0.04] {
+            for since_s in [0.1, 0.101, 0.119, 0.1199] {
+                assert!(!failed(1.0, tick_s, since_s) && !failed(3.0, tick_s, since_s), "{tick_s}, {since_s}");
+                assert!(failed(0.85, tick_s, since_s) && failed(0.0, tick_s, since_s), "{tick_s}, {since_s}");
+            }
+        }
+        assert!(failed(0.9, 0.002, 0.1));
     }
 }

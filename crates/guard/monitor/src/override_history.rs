@@ -80,9 +80,9 @@ impl OverrideHistory {
         }
     }
 
-    /// The largest override that may be in effect.
-    pub(crate) fn max(&self) -> f64 {
-        self.commanded.front().map_or(0.0, |c| c.max)
+    /// The largest override that may be in effect, and since when no larger one may, s.
+    pub(crate) fn largest(&self) -> (f64, f64) {
+        self.commanded.front().map_or((0.0, f64::NEG_INFINITY), |c| (c.max, c.at_s + self.reaction_s))
     }
 
     /// The overrides that may be in effect at `now_s`. Before the first override the robot is at rest.
@@ -160,7 +160,7 @@ mod tests {
         for i in 1..1000 {
             history.push(1e-3 * f64::from(i), 0.0);
         }
-        assert_eq!(history.max(), 1.0);
+        assert_eq!(history.largest().0, 1.0);
         let pending = history.pending_motion(0.5, 0.999, 1.0, stop_time(1e-6));
         assert!(pending.program_s > 0.5, "the first override is still in effect: {}", pending.program_s);
     }

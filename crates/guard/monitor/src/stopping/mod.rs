@@ -11,7 +11,7 @@ use elbowroom_kinematics::ChainState;
 use elbowroom_spatial::{Pose, Vec3};
 
 use crate::attached_volumes::AttachedVolumes;
-use crate::braking_check::BrakingCheck;
+use crate::braking_check::{Braking, BrakingCheck};
 use crate::carried_volume::{Approach, CarriedVolume, VolumeMotion, WorldAxis};
 use crate::laws::{stop_time, stopping_program_time};
 use crate::override_history::{OverrideHistory, OverrideRange, PendingMotion, StopTime};
@@ -151,15 +151,6 @@ impl StoppingLaw {
         self.braking.failed()
     }
 
-    /// The largest stop time at the commanded overrides, s; infinite where it is not known.
-    fn commanded_stop_s(&self) -> f64 {
-        match self.history.max() {
-            0.0 => 0.0,
-            commanded if self.program_is_known => commanded * self.program.stop_s,
-            _ => f64::INFINITY,
-        }
-    }
-
     /// Begins a tick.
     pub(crate) fn begin(&mut self, config: &Configuration, tick: &StoppingInput<'_>) {
         let StoppingInput { now, intent, .. } = *tick;
@@ -186,7 +177,14 @@ impl StoppingLaw {
         };
         let stop_time_after = |run_s: f64| StopTime { full_stop_s: full_stop_s + growth * run_s, growth };
         self.pending = self.history.pending_motion(tick.stamp_s, tick.now_s, running, stop_time_after);
-        self.braking.update(tick.stamp_s, stop_time(&now.qd, decelerations), self.commanded_stop_s());
+        let (commanded, commanded_since_s) = self.history.largest();
+        self.braking.update(Braking {
+            stamp_s: tick.stamp_s,
+            stop_s: stop_time(&now.qd, decelerations),
+            commanded,
+            commanded_since_s,
+            full_stop_s: if self.program_is_known { full_stop_s } else { f64::INFINITY },
+        });
         for axis in &mut self.axes {
             axis.place(config, now);
         }
