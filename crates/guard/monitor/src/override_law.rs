@@ -13,6 +13,9 @@ use crate::tick_context::TickContext;
 use crate::volume_region_pair::{RequestedOverride, VolumeRegionPair};
 use crate::{RegionKind, SourceState};
 
+/// Margin (m) of rounding errors before a border.
+const ROUNDING_M: f64 = 1e-6;
+
 /// Settings of the override law.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct OverrideLawSettings {
@@ -94,11 +97,11 @@ impl OverrideLaw<'_> {
         // An override that changes at a limited rate may exceed the request of the zone: then the limit itself is needed.
         let max = if config.laws.override_rate > 0.0 { v0 } else { warned.min(so_far) };
         let law = self.stopping_law.map(|law| (law, self.stopping_query(pair, law)));
-        let limit = |margin_m: f64, max: f64| match &law {
+        let limit = |margin_m: &dyn Fn(f64) -> f64, max: f64| match &law {
             None => max,
-            Some((law, query)) => query.map_or(0.0, |query| law.limit(&query.with_margin(margin_m), max)),
+            Some((law, query)) => query.map_or(0.0, |q| law.limit(&q.with_margin(margin_m(q.free_m)), max)),
         };
-        let held = match limit(self.settings.stop_margin_m, max) {
+        let held = match limit(&|_| self.settings.stop_margin_m, max) {
             stopping if stopping < max => {
                 RequestedOverride { speed_override: stopping.min(warned), immediate_limit: stopping }
             }
@@ -111,7 +114,8 @@ impl OverrideLaw<'_> {
             Direction::Approaching => held,
             Direction::Leaving => {
                 let max = v0.min(so_far);
-                let stopping = limit(0.0, max);
+                // What leaves keeps no margin but that of rounding, however close it is.
+                let stopping = limit(&|free_m| ROUNDING_M.min(0.5 * free_m), max);
                 RequestedOverride::immediate(if stopping < max { stopping } else { v0 })
             }
             Direction::Recovering => RequestedOverride::immediate(v0 * config.laws.recovery),

@@ -23,6 +23,11 @@ pub(crate) struct WatchdogSettings {
     pub(crate) velocity_factor: f64,
     /// Time (s) between two readings beyond which velocities do not explain the travel.
     pub(crate) silence_s: f64,
+    /// Largest plausible demand of a program as a multiple of a joint's largest speed. At override 1 it may exceed what the joint
+    /// can, but not what arithmetic survives.
+    pub(crate) demand_factor: f64,
+    /// No joint reaches its largest demand in less time, s.
+    pub(crate) least_rise_s: f64,
 }
 
 impl Default for WatchdogSettings {
@@ -34,6 +39,8 @@ impl Default for WatchdogSettings {
             jitter: 1e-3,
             velocity_factor: 1.25,
             silence_s: 0.1,
+            demand_factor: 100.0,
+            least_rise_s: 1e-3,
         }
     }
 }
@@ -205,11 +212,18 @@ impl Watchdog {
             if !(bound.lower <= q && q <= bound.upper) {
                 return Err(Fault::BeyondLimits { joint });
             }
-            if s.qd.get(joint).is_some_and(|v| v.abs() > bound.max_speed) || self.jumped(s, joint, bound) {
+            let is_fast = s.qd.get(joint).is_some_and(|v| v.abs() > bound.max_speed);
+            if is_fast || self.demands_too_much(s, joint, bound) || self.jumped(s, joint, bound) {
                 return Err(Fault::TooFast { joint });
             }
         }
         Ok(())
+    }
+
+    fn demands_too_much(&self, s: &Snapshot, joint: usize, bound: &JointBound) -> bool {
+        let rise = s.qdd.get(joint).map(|a| a * self.settings.least_rise_s);
+        let most = self.settings.demand_factor * bound.max_speed.max(0.01);
+        [s.intent.map(|intent| intent[joint]), rise].into_iter().flatten().any(|v| v.abs() > most)
     }
 
     fn jumped(&self, s: &Snapshot, joint: usize, bound: &JointBound) -> bool {

@@ -16,7 +16,7 @@ fn monitor() -> Monitor {
 const Q: [f64; 6] = [0.1, -0.3, 0.2, 0.0, 0.5, 0.0];
 
 /// The fault of the second of two snapshots.
-fn fault_of(change: impl Fn(&mut Snapshot)) -> Option<Fault> {
+fn fault_of<'a>(change: impl Fn(&mut Snapshot<'a>)) -> Option<Fault> {
     let mut m = monitor();
     assert!(m.tick(&Snapshot::stationary(1.0, &Q)).speed_override > 0.0);
     let mut s = Snapshot::stationary(1.01, &Q);
@@ -50,6 +50,24 @@ fn every_fault_is_named() {
     assert_eq!(fault_of(|s| s.qd = &FAST), Some(Fault::TooFast { joint: 5 }));
     assert_eq!(fault_of(|s| s.programmed_override = f64::NAN), Some(Fault::ProgrammedOverride));
     assert_eq!(fault_of(|s| s.programmed_override = 1.01), Some(Fault::ProgrammedOverride));
+}
+
+#[test]
+fn numbers_that_no_program_demands_stop_the_robot() {
+    for size in [1e5, 1e12, 1e18, 1e100, 1e154, 1e200, 1e308, f64::MAX] {
+        for joint in 0..6 {
+            for sign in [-1.0, 1.0] {
+                let (mut demand, mut rise) = ([0.0; 6], [0.0; 6]);
+                demand[joint] = sign * size;
+                rise[joint] = sign * size * 1e3_f64.min(f64::MAX / size);
+                assert_eq!(fault_of(|s| s.intent = Some(&demand)), Some(Fault::TooFast { joint }), "{demand:?}");
+                assert_eq!(fault_of(|s| s.qdd = &rise), Some(Fault::TooFast { joint }), "{rise:?}");
+            }
+        }
+    }
+    // What a program may demand that is slowed down.
+    assert_eq!(fault_of(|s| s.intent = Some(&[30.0; 6])), None);
+    assert_eq!(fault_of(|s| s.qdd = &[500.0; 6]), None);
 }
 
 #[test]
