@@ -40,13 +40,14 @@ pub struct TextSummary<'a> {
     recording: &'a Recording,
     width: usize,
     color: bool,
+    is_whole: bool,
     files: Vec<(String, String)>,
 }
 
 impl<'a> TextSummary<'a> {
     /// 80 columns, no colour, no files.
     pub fn new(recording: &'a Recording) -> Self {
-        Self { recording, width: 80, color: false, files: Vec::new() }
+        Self { recording, width: 80, color: false, is_whole: false, files: Vec::new() }
     }
 
     /// Largest line length, in characters; at least 40.
@@ -54,6 +55,12 @@ impl<'a> TextSummary<'a> {
     pub fn width(mut self, columns: usize) -> Self {
         self.width = columns.max(40);
         self
+    }
+
+    /// For a file or another program: what is longer than the width is not cut.
+    #[must_use]
+    pub fn whole(self, is_whole: bool) -> Self {
+        Self { is_whole, ..self }
     }
 
     /// With ANSI colours.
@@ -100,11 +107,12 @@ impl fmt::Display for TextSummary<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let rec = self.recording;
         let mut lines = vec![heading(rec), Line::new()];
-        let names = rec.robots.iter().map(|r| r.name.chars().count()).max().unwrap_or(0).clamp(5, 14);
+        let longest = rec.robots.iter().map(|r| r.name.chars().count()).max().unwrap_or(0);
+        let names = longest.clamp(5, if self.is_whole { usize::MAX } else { 14 });
         lines.extend(rec.robots.iter().flat_map(|robot| robot_lines(robot, rec, names, self.width)));
         if !rec.regions.is_empty() {
             lines.push(Line::new());
-            lines.extend(region_lines(rec, self.width));
+            lines.extend(region_lines(rec, if self.is_whole { usize::MAX } else { self.width }));
         }
         if !rec.deadlocks.is_empty() {
             lines.push(Line::new());
@@ -129,7 +137,7 @@ impl fmt::Display for TextSummary<'_> {
 
 impl TextSummary<'_> {
     fn write_line(&self, f: &mut fmt::Formatter<'_>, line: &Line) -> fmt::Result {
-        let mut left = self.width;
+        let mut left = if self.is_whole { usize::MAX } else { self.width };
         for (text, style) in line {
             let text = clip(text, left);
             left -= text.chars().count();
@@ -146,7 +154,7 @@ impl TextSummary<'_> {
 fn heading(rec: &Recording) -> Line {
     let (monitor, style) = if rec.monitored { ("monitor on", Style::Good) } else { ("monitor off", Style::Warn) };
     vec![
-        (clip(&rec.cell, 32), Style::Bold),
+        (clean(&rec.cell), Style::Bold),
         (format!(" · {:.2} s · ", rec.duration_s), Style::Plain),
         (monitor.into(), style),
         (format!(" · checksum {}", rec.checksum.chars().take(12).collect::<String>()), Style::Dim),
@@ -162,6 +170,7 @@ fn robot_lines(robot: &RobotTrack, rec: &Recording, names: usize, width: usize) 
         _ => Style::Warn,
     };
     let mut lines = vec![vec![(format!("  {}  ", pad(&robot.name, names)), Style::Bold), (outcome(robot, rec), style)]];
+    lines.extend(collision_lines(robot, &indent));
     let values: Vec<f64> = robot.samples.iter().map(|s| s.speed_override).collect();
     let numbers = format!("  smallest {:.1} %, stopped {:.2} s", 100.0 * robot.min_override, robot.stopped_s);
     let available = width.saturating_sub(indent.len() + "override ".len() + numbers.len());
@@ -172,13 +181,20 @@ fn robot_lines(robot: &RobotTrack, rec: &Recording, names: usize, width: usize) 
         (curve, Style::Plain),
         (numbers, Style::Dim),
     ]);
-    lines.extend(detail_texts(robot).into_iter().map(|text| vec![(format!("{indent}{text}"), Style::Dim)]));
+    let details = detail_texts(robot).into_iter().flat_map(|text| wrap(&text, width.saturating_sub(indent.len())));
+    lines.extend(details.map(|text| vec![(format!("{indent}{text}"), Style::Dim)]));
     if let Some(track) = &robot.avoidance {
         lines.push(vec![(format!("{indent}{}", evaded(track, rec.tick_s)), Style::Dim)]);
     }
     if let Some(track) = &robot.perception {
         lines.extend(kept_clear(track).into_iter().map(|text| vec![(format!("{indent}{text}"), Style::Dim)]));
     }
+    lines
+}
+
+/// The first collisions: they matter more than whatever stopped the robot later.
+fn collision_lines(robot: &RobotTrack, indent: &str) -> Vec<Line> {
+    let mut lines = Vec::new();
     for c in robot.collisions.iter().take(3) {
         lines.push(vec![(format!("{indent}collision at {:.3} s: {} with {}", c.t_s, c.a, c.b), Style::Bad)]);
         lines.extend(key_to_ignore(robot, c).map(|key| vec![(format!("{indent}  {key}"), Style::Dim)]));
@@ -217,7 +233,7 @@ fn detail_texts(robot: &RobotTrack) -> Vec<String> {
 /// A stop after which the robot went on.
 fn stop_text(stop: &Stop) -> String {
     let by = stop.by.as_ref();
-    let place = by.map_or_else(String::new, |by| format!(", {} before {}", millimetres(stop.distance_m), clip(by, 20)));
+    let place = by.map_or_else(String::new, |by| format!(", {} before {}", millimetres(stop.distance_m), clean(by)));
     let part = stop.part.as_ref().map_or_else(String::new, |part| format!(", closest {part}"));
     format!("stood {:.2} to {:.2} s{place}{part}", stop.from_s, stop.to_s)
 }
@@ -269,15 +285,15 @@ pub fn outcome(robot: &RobotTrack, rec: &Recording) -> String {
     let since = robot.ending.stopped_at_s.unwrap_or(last.t_s);
     if robot.ending.outcome == Outcome::Deadlock {
         let at = robot.ending.by.as_deref().unwrap_or("an exchange region");
-        return format!("deadlock: stopped since {since:.2} s, waiting for {}", clip(at, 20));
+        return format!("deadlock: stopped since {since:.2} s, waiting for {}", clean(at));
     }
     let p = last.tcp;
     let place = format!("at {since:.2} s, TCP ({:.3}, {:.3}, {:.3}) m", p.x, p.y, p.z);
     match (last.region.and_then(|i| rec.regions.get(i.0)), last.distance_m) {
         (Some(region), Some(d)) if d > 0.0 => {
-            format!("stopped {} before {}, {place}", millimetres(Some(d)), clip(&region.name, 20))
+            format!("stopped {} before {}, {place}", millimetres(Some(d)), clean(&region.name))
         }
-        (Some(region), _) => format!("stopped at {}, {place}", clip(&region.name, 20)),
+        (Some(region), _) => format!("stopped at {}, {place}", clean(&region.name)),
         _ if last.tcp_speed > STATIONARY_M_S => format!("still moving at {:.2} s", last.t_s),
         _ => format!("stopped {place}: {}", explanation(robot, robot.samples.len() - 1, rec)),
     }
@@ -297,7 +313,8 @@ fn deadlock_lines(deadlock: &Deadlock) -> [Line; 2] {
 
 fn region_lines(rec: &Recording, width: usize) -> Vec<Line> {
     // 2 + name + the columns below make 80.
-    let names = width.saturating_sub(56).clamp(8, 32);
+    let (most, longest) = (width.saturating_sub(56).max(8), rec.regions.iter().map(|r| r.name.chars().count()).max());
+    let names = longest.unwrap_or(0).clamp(most.min(24), most);
     let head = format!(
         "  {} {:<10}{:>11}  {:<8}{:>9}  {:<11}",
         pad("region", names),
@@ -364,14 +381,32 @@ pub fn millimetres(metres: Option<f64>) -> String {
     }
 }
 
-/// At most `width` characters of one line; control characters become spaces, so that names cannot control the terminal.
+/// Control characters become spaces, so that names cannot control the terminal.
+fn clean(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
+}
+
+/// At most `width` characters of one line, without control characters.
 fn clip(text: &str, width: usize) -> String {
-    let clean = |c: char| if c.is_control() { ' ' } else { c };
+    let text = clean(text);
     if text.chars().count() <= width {
-        return text.chars().map(clean).collect();
+        return text;
     }
-    let kept = text.chars().map(clean).take(width.saturating_sub(1));
+    let kept = text.chars().take(width.saturating_sub(1));
     if width == 0 { String::new() } else { kept.chain(['…']).collect() }
+}
+
+/// The words of a text in lines of at most `width` characters, all but the first indented by two; a longer word has its own line.
+fn wrap(text: &str, width: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split(' ') {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + 1 + word.chars().count() <= width => *line = format!("{line} {word}"),
+            Some(_) => lines.push(format!("  {word}")),
+            None => lines.push(word.to_owned()),
+        }
+    }
+    lines
 }
 
 fn pad(text: &str, width: usize) -> String {

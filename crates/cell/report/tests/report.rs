@@ -2,7 +2,7 @@
 
 use crate::report_demo;
 use elbowroom_report::{HtmlReport, TextSummary, summary, write_html};
-use elbowroom_sim::Recording;
+use elbowroom_sim::{Collision, Recording};
 use serde_json::Value;
 
 use crate::page_data::block;
@@ -125,6 +125,24 @@ fn the_summary_fits_its_columns() {
             assert!(!text.contains('\u{1b}') && text.lines().count() < 24);
         }
     }
+}
+
+/// What a robot waits for is never cut, and for a file nothing is. A collision comes before what happened later.
+#[test]
+fn the_summary_of_a_file_is_whole_and_tells_collisions_first() {
+    let mut run = report_demo::recording(true, 2000, &"a very long name ".repeat(8));
+    let why = "the holder leaves it: its program is over in the region or its warning zone, and must end beyond it";
+    run.robots[0].ending.release = Some(why.to_owned());
+    run.robots[0].collisions.push(Collision { t_s: 0.5, a: "fore".into(), b: "table".into() });
+    for width in [60, 80, 120] {
+        let narrow = summary(&run, width, false);
+        let words = narrow.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(words.contains(&format!("continues when {why}")), "{narrow}");
+        assert!(narrow.find("collision at").unwrap() < narrow.find("continues when").unwrap(), "{narrow}");
+        assert!(narrow.lines().all(|line| line.chars().count() <= width));
+    }
+    let cut = |text: &str| text.lines().filter(|line| line.ends_with('…')).count();
+    assert_eq!(cut(&TextSummary::new(&run).whole(true).to_string()), 0);
 }
 
 #[test]

@@ -3,12 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use elbowroom::cell::Cell;
-use elbowroom::report;
 use elbowroom::sim::RunOptions;
 use include_dir::{Dir, include_dir};
 
 use crate::args::ExampleArgs;
-use crate::output::{ExitStatus, Failure, cannot_write, color, myself, note, print, width};
+use crate::output::{ExitStatus, Failure, cannot_write, myself, note, print, summary};
 use crate::run::{warn_of_overruns, write_files};
 use crate::simulation::with_progress;
 
@@ -28,7 +27,7 @@ pub(crate) fn figure_12() -> Result<ExitStatus, Failure> {
     let off = with_progress(&cell, &RunOptions { apply_override: false, ..RunOptions::default() })?;
     on.notes.iter().for_each(note);
     write_files(&dir, &cell, &on.recording, Some(&off.recording), true)?;
-    print(&report::summary(&on.recording, width(), color()))?;
+    print(&summary(&on.recording))?;
     let passes =
         if off.recording.regions.iter().any(|r| r.entered) { "passes through it" } else { "stays out as well" };
     let report = dir.join("report.html");

@@ -4,6 +4,9 @@ use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
 
+use elbowroom::report::TextSummary;
+use elbowroom::sim::Recording;
+
 /// The exit status of a command that gave an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ExitStatus {
@@ -70,6 +73,12 @@ pub(crate) fn cannot_write(path: &Path) -> impl Fn(io::Error) -> Failure + '_ {
 /// Columns of the terminal; 80 where unknown.
 pub(crate) fn width() -> usize {
     std::env::var("COLUMNS").ok().and_then(|c| c.parse().ok()).filter(|c| *c >= 60).unwrap_or(80)
+}
+
+/// The text of a run: as wide as the terminal, and whole for everything else.
+pub(crate) fn summary(recording: &Recording) -> String {
+    let text = TextSummary::new(recording).width(width()).color(color());
+    text.whole(!io::stdout().is_terminal()).to_string()
 }
 
 /// True where standard output is a terminal that accepts colours.

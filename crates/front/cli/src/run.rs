@@ -4,13 +4,13 @@ use std::path::Path;
 
 use elbowroom::cell::Cell;
 use elbowroom::cell::seal::Seal;
-use elbowroom::report::{self, HtmlReport, ReportScene};
+use elbowroom::report::{HtmlReport, ReportScene};
 use elbowroom::sim::check::overruns;
 use elbowroom::sim::{Recording, RunOptions, RunSummary, SensorTrack, csv};
 
 use crate::args::RunArgs;
 use crate::live;
-use crate::output::{ExitStatus, Failure, cannot_write, color, note, print, print_json, width};
+use crate::output::{ExitStatus, Failure, cannot_write, note, print, print_json, summary};
 use crate::output_file::write_file;
 use crate::simulation::with_progress;
 
@@ -38,7 +38,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
     if args.json {
         print_json(&Document { summary: RunSummary::from(&outcome.recording), seal: cell.seal.as_ref() })?;
     } else {
-        print(&report::summary(&outcome.recording, width(), color()))?;
+        print(&summary(&outcome.recording))?;
         if let Some(seal) = &cell.seal {
             print(&format!("\nSealed by {} ({}, key {}), {}\n", seal.name, seal.class, seal.key, seal.time))?;
         }

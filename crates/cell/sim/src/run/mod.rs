@@ -910,17 +910,17 @@ impl<'a> Simulation<'a> {
 
     fn finish(mut self, t_s: f64, end: RunEnd) -> Recording {
         let mut robots = std::mem::take(&mut self.tracks);
-        for (i, track) in robots.iter_mut().enumerate() {
-            track.finished = self.finished(i);
+        let finished: Vec<bool> = (0..robots.len()).map(|i| self.finished(i)).collect();
+        for (track, is_over) in robots.iter_mut().zip(&finished) {
+            track.finished = *is_over;
             track.stops.iter_mut().for_each(|stop| stop.to_s = stop.to_s.min(t_s));
         }
         let mut deadlocks = self.arbiter.as_ref().map_or_else(Vec::new, |arbiter| {
             self.deadlocks.finish(t_s, arbiter, self.cell, self.setups, &self.monitors)
         });
-        deadlocks.extend(
-            WaitForGraph::new(self.cell, self.setups, self.arbiter.as_deref(), &self.stop_states, &robots)
-                .cycles(&deadlocks),
-        );
+        let arbiter = self.arbiter.as_deref();
+        let waits = WaitForGraph::new(self.cell, self.setups, arbiter, &self.stop_states, &robots);
+        deadlocks.extend(waits.cycles(&deadlocks));
         for (track, avoiding) in robots.iter_mut().zip(self.avoiding) {
             track.avoidance = avoiding.map(AvoidingRobot::finish);
         }
@@ -933,7 +933,7 @@ impl<'a> Simulation<'a> {
             track.perception = self.guards.get_mut(i).and_then(Option::take).map(|g| g.finish(t_s));
             let governing = self.governing[i].as_ref();
             track.ending = outcome::ending(track, deadlocked, region, governing, &self.setups[i].configuration);
-            track.ending.release = release::release(self.cell, &self.setups[i], self.arbiter.as_deref(), i, track);
+            track.ending.release = release::release(self.cell, &self.setups[i], arbiter, i, track, &finished);
         }
         Recording {
             cell: self.cell.name.clone(),

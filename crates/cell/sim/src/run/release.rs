@@ -7,13 +7,15 @@ use elbowroom_monitor::{Life, OverrideReason, ZoneArbiter};
 use super::wait_for_graph::blockers;
 use crate::recording::{HoldReason, Outcome, RobotTrack};
 
-/// What would release the robot with this index, in words; `None` for one that moves, or where nothing is known to.
+/// What would release the robot with this index, in words; `None` for one that moves, or where nothing is known to. `finished`
+/// says which robots' programs are over.
 pub(super) fn release(
     cell: &Cell,
     setup: &MonitorSetup,
     arbiter: Option<&ZoneArbiter>,
     robot: usize,
     track: &RobotTrack,
+    finished: &[bool],
 ) -> Option<String> {
     let last = track.samples.last()?;
     track.ending.stopped_at_s?;
@@ -26,7 +28,7 @@ pub(super) fn release(
     match track.ending.outcome {
         Outcome::Finished | Outcome::Collided => None,
         Outcome::Deadlock => Some("one of the robots is moved out by hand".to_owned()),
-        Outcome::Held => Some(holders_leave(&blockers(cell, setup, arbiter, robot, last.region?), cell)),
+        Outcome::Held => Some(holders_leave(&blockers(cell, setup, arbiter, robot, last.region?), cell, finished)),
         Outcome::Stopped => match (last.region, last.reason) {
             (Some(region), _) => Some(from_region(cell, setup, region)),
             (None, OverrideReason::Fault(_)) => Some("the input of the monitor is valid again".to_owned()),
@@ -36,13 +38,22 @@ pub(super) fn release(
     }
 }
 
-fn holders_leave(holders: &[usize], cell: &Cell) -> String {
-    let names: Vec<&str> = holders.iter().map(|r| cell.robots[*r].name.as_str()).collect();
-    match names[..] {
-        [] => "the regions that are granted with it become free".to_owned(),
+fn holders_leave(holders: &[usize], cell: &Cell, finished: &[bool]) -> String {
+    let name = |robot: &usize| cell.robots[*robot].name.as_str();
+    let names: Vec<&str> = holders.iter().map(name).collect();
+    let leave = match names[..] {
+        [] => return "the regions that are granted with it become free".to_owned(),
         [one] => format!("{one} leaves it"),
         _ => format!("{} leave it", names.join(", ")),
+    };
+    let resting: Vec<&str> = holders.iter().filter(|robot| finished[**robot]).map(name).collect();
+    if resting.is_empty() {
+        return leave;
     }
+    format!(
+        "{leave}: the program of {} is over in the region or its warning zone, and must end beyond it; or `warning` is made smaller",
+        resting.join(", ")
+    )
 }
 
 fn from_region(cell: &Cell, setup: &MonitorSetup, region: CellRegionId) -> String {
