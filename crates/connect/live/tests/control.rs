@@ -1,8 +1,10 @@
 //! The control interface of a service under right, wrong and hostile requests.
 
+use std::collections::VecDeque;
 use std::io::Write as _;
 use std::net::TcpStream;
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
@@ -488,6 +490,46 @@ fn hanging_connections_keep_nobody_out() {
     }
     eprintln!("{} connections, the slowest of four requests in a row took {slowest:?}", WAVES * WAVE);
     assert!(slowest < Duration::from_secs(10), "{slowest:?}");
+}
+
+/// Docs: `docs/security.md`, somebody without a token at the control address.
+#[test]
+fn a_flood_of_connections_keeps_nobody_out() {
+    let setup = Setup::new();
+    let (address, is_over) = (setup.address, AtomicBool::new(false));
+    let flood = || {
+        let (mut hanging, mut count) = (VecDeque::new(), 0_u64);
+        while !is_over.load(Ordering::SeqCst) {
+            let Ok(mut stream) = TcpStream::connect(address) else { continue };
+            let _ = stream.write_all(b"GET /r");
+            hanging.push_back(stream);
+            count += 1;
+            // Those before are closed, so that the flood does not end for want of open files.
+            if hanging.len() > 150 {
+                hanging.pop_front();
+            }
+        }
+        count
+    };
+    let (mut answered, mut slowest) = (0, Duration::ZERO);
+    let connections = std::thread::scope(|scope| {
+        let floods = [scope.spawn(flood), scope.spawn(flood)];
+        std::thread::sleep(Duration::from_millis(200));
+        for _ in 0..40 {
+            let asked = Instant::now();
+            let request = format!(
+                "GET /regions HTTP/1.1\r\nHost: {address}\r\nAuthorization: Bearer {}\r\nConnection: close\r\n\r\n",
+                setup.secrets[OPERATOR]
+            );
+            answered += usize::from(setup.answer(request.as_bytes()).starts_with("HTTP/1.1 200"));
+            slowest = slowest.max(asked.elapsed());
+        }
+        is_over.store(true, Ordering::SeqCst);
+        floods.map(|flood| flood.join().unwrap_or(0)).iter().sum::<u64>()
+    });
+    eprintln!("{connections} connections, {answered} of 40 requests answered, the slowest took {slowest:?}");
+    assert!(answered >= 38 && slowest < Duration::from_secs(10), "{answered} of 40, {slowest:?}");
+    assert!(connections > 400, "no flood: {connections}");
 }
 
 #[test]

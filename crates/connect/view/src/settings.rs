@@ -43,7 +43,7 @@ pub struct Limits {
 impl Default for Limits {
     fn default() -> Self {
         Self {
-            connections: 128,
+            connections: 256,
             browsers: 16,
             head: Duration::from_secs(5),
             request: Duration::from_secs(30),

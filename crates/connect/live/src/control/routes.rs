@@ -11,7 +11,7 @@ use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use elbowroom_cell::seal::{AccessToken, AccessTokens};
-use elbowroom_view::http::Hosts;
+use elbowroom_view::http::{Hosts, Place};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -32,6 +32,7 @@ struct Shared {
 pub(crate) fn routes(handler: RequestHandler, tokens: AccessTokens, hosts: Hosts) -> Router {
     let only =
         |method: &'static str| move || async move { answer(&Refusal::new(405, format!("this path takes {method}"))) };
+    let shared = Arc::new(Shared { handler, tokens, hosts });
     Router::new()
         .route("/regions", get(regions).fallback(only("GET")))
         .route("/switch", post(switch).fallback(only("POST")))
@@ -47,7 +48,18 @@ pub(crate) fn routes(handler: RequestHandler, tokens: AccessTokens, hosts: Hosts
         })
         .layer(DefaultBodyLimit::max(MAX_BODY))
         .layer(middleware::from_fn(short))
-        .with_state(Arc::new(Shared { handler, tokens, hosts }))
+        .layer(middleware::from_fn_with_state(shared.clone(), keep_place))
+        .with_state(shared)
+}
+
+/// No crowd of strangers takes the place of somebody with a token.
+async fn keep_place(State(shared): State<Arc<Shared>>, request: Request, next: Next) -> Response {
+    if let Some(place) = request.extensions().get::<Place>()
+        && holder(&shared, request.headers()).is_ok()
+    {
+        place.keep();
+    }
+    next.run(request).await
 }
 
 /// Refuses a body that announces that it is too long, before it arrives.

@@ -49,7 +49,7 @@ impl ControlServer {
         let handler = RequestHandler::new(parts, log);
         handler.log_start();
         let limits = ConnectionLimits {
-            connections: 32,
+            connections: 256,
             head: Duration::from_secs(5),
             request: Duration::from_secs(15),
             head_bytes: 16 * 1024,

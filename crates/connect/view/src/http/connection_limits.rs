@@ -5,7 +5,7 @@ use std::time::Duration;
 /// What connections may use.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ConnectionLimits {
-    /// Open connections. One more closes the oldest of them.
+    /// Open connections of those who have shown no token. One more closes the oldest of them.
     pub connections: usize,
     /// Longest time for the head of a request.
     pub head: Duration,

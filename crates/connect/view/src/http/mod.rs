@@ -9,9 +9,9 @@ mod places;
 mod server;
 
 pub(crate) use guard::read_only;
-pub(crate) use places::Place;
 
 pub use connection_limits::ConnectionLimits;
 pub use guard::Hosts;
 pub use loopback::loopback_address;
+pub use places::Place;
 pub use server::HttpServer;

@@ -1,4 +1,4 @@
-//! A limited number of places, of which the oldest is vacated for a newcomer.
+//! A limited number of places for those who are not known, of which the oldest is vacated for a newcomer.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -20,13 +20,15 @@ struct Taken {
 
 /// A place, until its last clone is dropped, or it is vacated. Its age is that of the connection that entered, whoever holds it later.
 #[derive(Debug, Clone)]
-pub(crate) struct Place(Arc<Held>);
+pub struct Place(Arc<Held>);
 
 #[derive(Debug)]
 struct Held {
     id: u64,
     taken: Arc<Mutex<Taken>>,
     vacated: watch::Receiver<()>,
+    /// Of a place that is kept.
+    kept: Mutex<Option<watch::Sender<()>>>,
 }
 
 impl Places {
@@ -44,11 +46,19 @@ impl Places {
         let id = taken.next;
         taken.next += 1;
         taken.by_age.insert(id, vacate);
-        Place(Arc::new(Held { id, taken: self.taken.clone(), vacated }))
+        Place(Arc::new(Held { id, taken: self.taken.clone(), vacated, kept: Mutex::default() }))
     }
 }
 
 impl Place {
+    /// Its holder has a token: no newcomer takes the place any more, and somebody else may have it as well.
+    pub fn keep(&self) {
+        let sender = self.0.taken.lock().unwrap_or_else(PoisonError::into_inner).by_age.remove(&self.0.id);
+        if sender.is_some() {
+            *self.0.kept.lock().unwrap_or_else(PoisonError::into_inner) = sender;
+        }
+    }
+
     /// Ends when a newcomer needs the place.
     pub(crate) async fn vacated(&self) {
         let mut vacated = self.0.vacated.clone();
@@ -80,6 +90,20 @@ mod tests {
         drop(second);
         let _fourth = places.enter();
         assert_eq!(ages(&places), [2, 3]);
+    }
+
+    #[tokio::test]
+    async fn whoever_has_a_token_keeps_the_place() {
+        let places = Places::new(2);
+        let known = places.enter();
+        known.keep();
+        let strangers: Vec<Place> = (0..10).map(|_| places.enter()).collect();
+        assert_eq!(ages(&places), [9, 10]);
+        assert!(known.0.vacated.has_changed().is_ok() && strangers[9].0.vacated.has_changed().is_ok());
+        strangers[7].vacated().await;
+        // Too late: its place is somebody else's.
+        strangers[0].keep();
+        strangers[0].vacated().await;
     }
 
     #[tokio::test]
