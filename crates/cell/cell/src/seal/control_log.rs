@@ -9,6 +9,7 @@ use elbowroom_monitor::AccessClass;
 use serde::{Deserialize, Serialize};
 
 use super::change::Change;
+use super::log_head::{LogHead, LogSigner};
 use super::result::Result;
 use super::{hex, text, time};
 
@@ -62,11 +63,13 @@ pub struct Controlled<'a> {
     pub checksums: [&'a str; 2],
 }
 
-/// The open log of a running cell: one process writes it at a time, and each line has the hash of the one before it.
+/// The open log of a running cell: one process writes it at a time, each line has the hash of the one before it, and the last one
+/// is signed (`cell.control.head`) with a key that is made with the log (`cell.control.key`).
 #[derive(Debug)]
 pub struct ControlLog {
     path: PathBuf,
     file: File,
+    signer: LogSigner,
     /// Bytes of its entries.
     length: u64,
     entries: u64,
@@ -74,22 +77,26 @@ pub struct ControlLog {
 }
 
 impl ControlLog {
-    /// Opens the log, or begins it, and verifies that its lines follow each other.
+    /// Opens the log, or begins it, and verifies that its lines follow each other up to the one that is signed. A line behind it
+    /// is removed: it was being written when the power went, and its change was not made.
     ///
     /// # Errors
-    /// [`FormatError`] at the line that was changed, or where another process writes the log.
+    /// [`FormatError`] at the line that was changed, where lines are missing, or where another process writes the log.
     pub fn open(path: &Path) -> Result<Self> {
         let file = File::options().append(true).create(true).open(path).map_err(text::unwritable(path))?;
         file.try_lock().map_err(|_| {
             FormatError::new(path, None, "is written by another process").hint("one service with --control per cell")
         })?;
         let written = text::read(path)?;
-        let text = without_half_a_line(&written);
+        let signed = LogHead::read(path)?;
+        let (entries, text) = signed_entries(path, &written, signed.as_ref())?;
+        let signer = LogSigner::open(path, signed.as_ref())?;
         if text.len() < written.len() {
             file.set_len(text.len() as u64).map_err(text::unwritable(path))?;
         }
-        let (entries, head) = verified(path, text)?;
-        Ok(Self { path: path.to_owned(), length: text.len() as u64, file, entries: entries.len() as u64, head })
+        let head = signed.map_or_else(|| "0".repeat(64), |head| head.hash);
+        let (length, entries) = (text.len() as u64, entries.len() as u64);
+        Ok(Self { path: path.to_owned(), file, signer, length, entries, head })
     }
 
     /// Appends a change, and returns once it is on the disk.
@@ -112,15 +119,17 @@ impl ControlLog {
             previous: self.head.clone(),
         };
         let line = line(&entry);
-        let bytes = line.clone() + "\n";
-        if let Err(e) = self.file.write_all(bytes.as_bytes()).and_then(|()| self.file.sync_all()) {
+        let (bytes, head) = (line.clone() + "\n", hex::hash(line.as_bytes()));
+        let written = self.file.write_all(bytes.as_bytes()).and_then(|()| self.file.sync_all());
+        let written = written.map_err(text::unwritable(&self.path));
+        if let Err(e) = written.and_then(|()| self.signer.sign(self.entries + 1, &head)) {
             // Of a full disk: half a line is not left for whoever reads on. Where that fails, too, the next start removes it.
             let _ = self.file.set_len(self.length);
-            return Err(text::unwritable(&self.path)(e));
+            return Err(e);
         }
         self.length += bytes.len() as u64;
         self.entries += 1;
-        self.head = hex::hash(line.as_bytes());
+        self.head = head;
         Ok(entry)
     }
 
@@ -130,17 +139,53 @@ impl ControlLog {
     }
 }
 
+/// A control log that was verified.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ControlHistory {
+    /// In the order in which the changes were made.
+    pub entries: Vec<ControlEntry>,
+    /// The short id of the key that has signed them; empty for a log without entries.
+    pub signed_by: String,
+}
+
 /// Reads a log and verifies it.
 ///
 /// # Errors
-/// [`FormatError`] at the first line that does not follow the one before it.
-pub fn control_history(path: &Path) -> Result<Vec<ControlEntry>> {
-    Ok(verified(path, without_half_a_line(&text::read(path)?))?.0)
+/// [`FormatError`] at the first line that does not follow the one before it, or where lines are missing or not signed.
+pub fn control_history(path: &Path) -> Result<ControlHistory> {
+    let read = || {
+        let head = LogHead::read(path)?;
+        let entries = signed_entries(path, &text::read(path)?, head.as_ref())?.0;
+        Ok(ControlHistory { entries, signed_by: head.and_then(|head| head.key_id()).unwrap_or_default() })
+    };
+    // The service may write between the two files.
+    read().or_else(|_: FormatError| read())
 }
 
-/// The whole lines. A line without an end was being written when the disk was full or the power went: its change was not made.
-fn without_half_a_line(text: &str) -> &str {
-    &text[..text.rfind('\n').map_or(0, |end| end + 1)]
+/// The entries that are signed, and their lines. At most one line more may be there, or a half one, which was being written.
+fn signed_entries<'t>(path: &Path, text: &'t str, head: Option<&LogHead>) -> Result<(Vec<ControlEntry>, &'t str)> {
+    let wrong = |line: Option<usize>, what: &str| {
+        let hint =
+            "the log and its head from a backup; or keep both as evidence under other names, and begin a new log";
+        FormatError::new(path, line, what).hint(hint)
+    };
+    let (count, hash) = head.map_or((0, "0".repeat(64)), |head| (head.entries as usize, head.hash.clone()));
+    let lines: Vec<&str> = text.split_inclusive('\n').collect();
+    let whole = lines.iter().filter(|line| line.ends_with('\n')).count();
+    if whole < count {
+        return Err(wrong(None, &format!("has {whole} lines, of the {count} that were signed: its end was cut off")));
+    }
+    let signed = &text[..lines[..count].iter().map(|line| line.len()).sum()];
+    let (entries, last) = verified(path, signed)?;
+    if last != hash {
+        return Err(wrong(None, "is not the log that was signed"));
+    }
+    // The service makes its key before the first line, and signs each line after it was written.
+    let unsigned = usize::from(head.is_some() || LogSigner::file_of(path).exists());
+    if lines.len() > count + unsigned {
+        return Err(wrong(Some(count + 1), "is not signed"));
+    }
+    Ok((entries, signed))
 }
 
 fn line(entry: &ControlEntry) -> String {
@@ -200,7 +245,10 @@ mod tests {
         let text = std::fs::read_to_string(&path).unwrap();
         assert_eq!(second.previous, hex::hash(text.lines().next().unwrap().as_bytes()));
         drop(log);
-        assert_eq!(control_history(&path).unwrap(), [first, second]);
+        let history = control_history(&path).unwrap();
+        assert_eq!(history.entries, [first, second]);
+        let head = path.with_extension("head");
+        let signed = std::fs::read_to_string(&head).unwrap();
         let lines = |lines: &[&str]| lines.join("\n") + "\n";
         for wrong in [
             text.replacen("true", "false", 1),
@@ -210,8 +258,31 @@ mod tests {
             text.replacen(":1,", ": 1,", 1),
         ] {
             std::fs::write(&path, wrong).unwrap();
-            assert!(ControlLog::open(&path).is_err());
+            assert!(ControlLog::open(&path).is_err() && control_history(&path).is_err());
         }
+        // Its end is cut off; so it is in a head that somebody else has signed.
+        let first_line = text.split_inclusive('\n').next().unwrap();
+        let message = |text: &str| {
+            std::fs::write(&path, text).unwrap();
+            let [open, read] = [ControlLog::open(&path).map(|_| ()), control_history(&path).map(|_| ())];
+            assert_eq!(open.is_ok(), read.is_ok());
+            read.err().map_or_else(String::new, |e| e.to_string())
+        };
+        assert!(message(first_line).contains("has 1 lines, of the 2 that were signed"));
+        std::fs::write(&head, signed.replace("\"entries\":2", "\"entries\":1")).unwrap();
+        assert!(message(first_line).contains("is not signed, or was modified"));
+        std::fs::remove_file(&head).unwrap();
+        assert!(message(&text).contains("is not signed"));
+        std::fs::write(&head, &signed).unwrap();
+        assert_eq!(message(&text), "");
+        // Hashed anew, and signed with another key.
+        let other = control_log_of(&folder.path().join("other.toml"));
+        let mut forged = ControlLog::open(&other).unwrap();
+        forged.append(switched(false)).unwrap();
+        std::fs::copy(&other, &path).unwrap();
+        std::fs::copy(other.with_extension("head"), &head).unwrap();
+        assert!(ControlLog::open(&path).unwrap_err().to_string().contains("is not the key that has signed the log"));
+        assert_ne!(control_history(&path).unwrap().signed_by, history.signed_by, "who has noted the id sees it");
     }
 
     #[test]
@@ -219,13 +290,15 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = control_log_of(&folder.path().join("cell.toml"));
         ControlLog::open(&path).unwrap().append(switched(true)).unwrap();
-        let whole = std::fs::read_to_string(&path).unwrap();
+        let (whole, head) = (std::fs::read_to_string(&path).unwrap(), path.with_extension("head"));
+        let signed = std::fs::read_to_string(&head).unwrap();
         for half in ["{", &whole[..whole.len() / 2], whole.trim_end()] {
             std::fs::write(&path, format!("{whole}{half}")).unwrap();
-            assert_eq!(control_history(&path).unwrap().len(), 1);
+            std::fs::write(&head, &signed).unwrap();
+            assert_eq!(control_history(&path).unwrap().entries.len(), 1);
             let mut log = ControlLog::open(&path).unwrap();
             assert_eq!(log.append(switched(false)).unwrap().sequence, 2);
-            assert_eq!(control_history(&path).unwrap().len(), 2);
+            assert_eq!(control_history(&path).unwrap().entries.len(), 2);
         }
     }
 }

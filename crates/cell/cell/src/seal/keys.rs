@@ -1,14 +1,13 @@
 //! Private keys for signing, public keys for verification.
 
-use std::fs::File;
 use std::io::{self, Write};
 use std::path::Path;
 
 use ed25519_dalek::{Signature, Signer as _, SigningKey, VerifyingKey};
-use elbowroom_formats::FormatError;
 use elbowroom_monitor::AccessClass;
 
 use super::result::Result;
+use super::secret_file::{self, check_private_permissions, create};
 use super::{hex, text};
 use crate::file::node;
 use crate::file::read::{Table, Value};
@@ -34,9 +33,7 @@ impl PrivateKey {
     /// # Errors
     /// [`io::Error`] where the system provides none.
     pub fn generate(class: AccessClass, name: &str) -> io::Result<Self> {
-        let mut secret = [0; 32];
-        getrandom::fill(&mut secret).map_err(|e| io::Error::other(e.to_string()))?;
-        Ok(Self { class, name: name.into(), key: SigningKey::from_bytes(&secret) })
+        Ok(Self { class, name: name.into(), key: SigningKey::from_bytes(&secret_file::random()?) })
     }
 
     /// Writes the key to a new file that only its owner may read (mode 0600).
@@ -115,41 +112,18 @@ impl PublicKey {
 
     pub(super) fn has_signed(&self, message: &[u8], signature: &str) -> bool {
         let Some(bytes) = hex::decode(signature) else { return false };
-        self.0.verify_strict(&[CONTEXT, message].concat(), &Signature::from_bytes(&bytes)).is_ok()
+        self.has_signed_text(&[CONTEXT, message].concat(), &Signature::from_bytes(&bytes))
+    }
+
+    /// Without the context of edits.
+    pub(super) fn has_signed_text(&self, text: &[u8], signature: &Signature) -> bool {
+        self.0.verify_strict(text, signature).is_ok()
     }
 }
 
 /// The class of a signing key.
 pub(super) fn class(value: &Value<'_>) -> Result<AccessClass> {
     value.word(&[("programmer", AccessClass::Programmer), ("integrator", AccessClass::Integrator)])
-}
-
-#[cfg(unix)]
-pub(super) fn create(path: &Path) -> io::Result<File> {
-    use std::os::unix::fs::OpenOptionsExt;
-    File::options().write(true).create_new(true).mode(0o600).open(path)
-}
-
-#[cfg(not(unix))]
-pub(super) fn create(path: &Path) -> io::Result<File> {
-    File::options().write(true).create_new(true).open(path)
-}
-
-#[cfg(unix)]
-pub(super) fn check_private_permissions(path: &Path) -> Result<()> {
-    use std::os::unix::fs::PermissionsExt;
-    let Ok(about) = std::fs::metadata(path) else { return Ok(()) };
-    let mode = about.permissions().mode() & 0o777;
-    if mode.trailing_zeros() >= 6 {
-        return Ok(());
-    }
-    let what = format!("is a secret key that others may read or write (mode {mode:03o})");
-    Err(FormatError::new(path, None, what).hint(format!("chmod 600 {}", path.display())))
-}
-
-#[cfg(not(unix))]
-pub(super) fn check_private_permissions(_: &Path) -> Result<()> {
-    Ok(())
 }
 
 #[cfg(test)]

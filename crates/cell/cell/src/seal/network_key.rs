@@ -1,16 +1,14 @@
 //! The secret that the processes of a running cell share.
 
 use std::fmt;
-use std::io::{self, Write as _};
+use std::io;
 use std::path::Path;
 
-use super::keys::{check_private_permissions, create};
 use super::result::Result;
-use super::{hex, text};
-use crate::file::node;
-use crate::file::read::Table;
+use super::secret_file;
 
-const WRITES: &str = "what `elbowroom control network-key` writes";
+const NAME: &str = "network";
+const COMMENT: &str = "The network key of an elbowroom cell, the same for all of its processes. Whoever has it can speak for each of them: keep it secret.";
 
 /// The secret that the processes of a running cell share: whoever has it may speak for each of them.
 #[derive(Clone, PartialEq, Eq)]
@@ -28,9 +26,7 @@ impl NetworkKey {
     /// # Errors
     /// [`io::Error`] where the system provides none.
     pub fn generate() -> io::Result<Self> {
-        let mut secret = [0; 32];
-        getrandom::fill(&mut secret).map_err(|e| io::Error::other(e.to_string()))?;
-        Ok(Self(secret))
+        Ok(Self(secret_file::random()?))
     }
 
     /// Writes the key to a new file that only its owner may read (mode 0600).
@@ -38,14 +34,7 @@ impl NetworkKey {
     /// # Errors
     /// [`io::Error`] where the file exists already or cannot be written.
     pub fn write(&self, path: &Path) -> io::Result<()> {
-        let mut file = create(path)?;
-        write!(
-            file,
-            "# The network key of an elbowroom cell, the same for all of its processes. Whoever has it can speak for each of \
-             them: keep it secret.\nnetwork = \"{}\"\n",
-            hex::encode(&self.0)
-        )?;
-        file.sync_all()
+        secret_file::write(path, COMMENT, NAME, &self.0)
     }
 
     /// Reads the format of [`write`](Self::write).
@@ -53,14 +42,7 @@ impl NetworkKey {
     /// # Errors
     /// [`FormatError`](elbowroom_formats::FormatError) where it cannot be read, is no key, or others than its owner may read it.
     pub fn read(path: &Path) -> Result<Self> {
-        check_private_permissions(path)?;
-        let text = text::read(path)?;
-        let entries = node::parse(path, &text)?;
-        let table = Table { file: path, name: String::new(), line: 1, entries: &entries };
-        table.only(&["network"])?;
-        let secret = table.need("network", WRITES)?;
-        let bytes = hex::decode(secret.text()?);
-        Ok(Self(bytes.ok_or_else(|| secret.error("is no key").hint(format!("64 hexadecimal digits, {WRITES}")))?))
+        Ok(Self(secret_file::read(path, NAME, "what `elbowroom control network-key` writes")?))
     }
 
     /// The secret.

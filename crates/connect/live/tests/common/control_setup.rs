@@ -121,7 +121,7 @@ impl ControlSetup {
 
     /// All that was logged.
     pub fn logged(&self) -> Vec<ControlEntry> {
-        control_history(&control_log_of(&self.cell.file)).unwrap()
+        control_history(&control_log_of(&self.cell.file)).unwrap().entries
     }
 
     pub fn network(&self) -> Arc<ZenohNetwork> {

@@ -6,7 +6,7 @@ mod client;
 use std::fmt::Write as _;
 use std::path::Path;
 
-use elbowroom::cell::seal::{AccessTokens, ControlEntry, NetworkKey, control_history, control_log_of};
+use elbowroom::cell::seal::{AccessTokens, ControlEntry, ControlHistory, NetworkKey, control_history, control_log_of};
 use serde_json::{Value, json};
 
 use crate::output::{ExitStatus, Failure, cannot_write, note, print, print_json};
@@ -147,7 +147,8 @@ fn entry(e: &ControlEntry) -> String {
 }
 
 fn log(cell: &Path, as_json: bool) -> Result<ExitStatus, Failure> {
-    let entries = control_history(&control_log_of(cell))?;
+    let ControlHistory { entries, signed_by } = control_history(&control_log_of(cell))?;
+    note(format_args!("{} entries, signed by the key {signed_by}", entries.len()));
     if as_json {
         print_json(&entries)?;
     } else {

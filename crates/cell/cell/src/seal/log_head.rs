@@ -1,0 +1,109 @@
+//! How far a control log goes, signed: lines that were cut off at its end or hashed anew are found.
+
+use std::path::{Path, PathBuf};
+
+use ed25519_dalek::{Signature, Signer as _, SigningKey};
+use elbowroom_formats::FormatError;
+use serde::{Deserialize, Serialize};
+
+use super::keys::PublicKey;
+use super::result::Result;
+use super::{hex, secret_file, text};
+
+const NAME: &str = "control_log";
+const COMMENT: &str =
+    "The key that signs the control log of an elbowroom cell: keep it where the service runs, and nowhere else.";
+/// What a signature is for: it is not valid for anything else.
+const CONTEXT: &[u8] = b"elbowroom control log 1\n";
+
+/// The number of entries of a log and the hash of the last, signed by the service: `cell.control.head` beside `cell.control.jsonl`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct LogHead {
+    pub(super) entries: u64,
+    /// SHA-256 of the last line; 64 zeros where there is none.
+    pub(super) hash: String,
+    /// The public key of the service.
+    key: String,
+    signature: String,
+}
+
+impl LogHead {
+    /// The head of a log, `None` where it was never signed.
+    pub(super) fn read(log: &Path) -> Result<Option<Self>> {
+        let path = path_of(log);
+        if !path.exists() {
+            return Ok(None);
+        }
+        let head: Option<Self> = serde_json::from_str(&text::read(&path)?).ok();
+        let head = head.filter(Self::is_signed);
+        let hint =
+            "the log and its head from a backup; or keep both as evidence under other names, and begin a new log";
+        head.map(Some).ok_or_else(|| FormatError::new(&path, None, "is not signed, or was modified").hint(hint))
+    }
+
+    fn is_signed(&self) -> bool {
+        let (Some(key), Some(signature)) = (PublicKey::from_hex(&self.key), hex::decode(&self.signature)) else {
+            return false;
+        };
+        key.has_signed_text(&message(self.entries, &self.hash), &Signature::from_bytes(&signature))
+    }
+
+    /// The short id of the service's key: whoever has noted it sees whether the log was signed by another one.
+    pub(super) fn key_id(&self) -> Option<String> {
+        PublicKey::from_hex(&self.key).map(|key| key.id())
+    }
+}
+
+fn path_of(log: &Path) -> PathBuf {
+    log.with_extension("head")
+}
+
+fn message(entries: u64, hash: &str) -> Vec<u8> {
+    [CONTEXT, entries.to_string().as_bytes(), b"\n", hash.as_bytes()].concat()
+}
+
+/// Signs the head of a log with a key that only the service may read.
+#[derive(Debug)]
+pub(super) struct LogSigner {
+    path: PathBuf,
+    key: SigningKey,
+}
+
+impl LogSigner {
+    /// With the key of a log (`cell.control.key`), which is made with the log. `head` is that of the log.
+    pub(super) fn open(log: &Path, head: Option<&LogHead>) -> Result<Self> {
+        let file = Self::file_of(log);
+        if head.is_none() && !file.exists() {
+            let secret = secret_file::random();
+            let made = secret.and_then(|secret| secret_file::write(&file, COMMENT, NAME, &secret));
+            made.map_err(text::unwritable(&file))?;
+        }
+        let secret = secret_file::read(&file, NAME, "the file that the service has made with its log")?;
+        let signer = Self { path: path_of(log), key: SigningKey::from_bytes(&secret) };
+        match head {
+            Some(head) if head.key != hex::encode(signer.key.verifying_key().as_bytes()) => {
+                let hint = "the key and the log from a backup; or keep both as evidence under other names, and begin a new log";
+                Err(FormatError::new(&file, None, "is not the key that has signed the log").hint(hint))
+            }
+            _ => Ok(signer),
+        }
+    }
+
+    /// The key of a log.
+    pub(super) fn file_of(log: &Path) -> PathBuf {
+        log.with_extension("key")
+    }
+
+    /// Puts a new head in the place of the old one, and returns once it is on the disk.
+    pub(super) fn sign(&self, entries: u64, hash: &str) -> Result<()> {
+        let head = LogHead {
+            entries,
+            hash: hash.to_owned(),
+            key: hex::encode(self.key.verifying_key().as_bytes()),
+            signature: hex::encode(&self.key.sign(&message(entries, hash)).to_bytes()),
+        };
+        let text = serde_json::to_string(&head).unwrap_or_default();
+        text::replace(&self.path, &(text + "\n"), || Ok(()))
+    }
+}

@@ -1,0 +1,66 @@
+//! Files with one secret, which only their owner may read.
+
+use std::fs::File;
+use std::io::{self, Write as _};
+use std::path::Path;
+
+use elbowroom_formats::FormatError;
+
+use super::result::Result;
+use super::{hex, text};
+use crate::file::node;
+use crate::file::read::Table;
+
+/// 256 bits from the operating system.
+pub(super) fn random() -> io::Result<[u8; 32]> {
+    let mut secret = [0; 32];
+    getrandom::fill(&mut secret).map_err(|e| io::Error::other(e.to_string()))?;
+    Ok(secret)
+}
+
+/// Writes `name = "…"` below a comment to a new file (mode 0600).
+pub(super) fn write(path: &Path, comment: &str, name: &str, secret: &[u8; 32]) -> io::Result<()> {
+    let mut file = create(path)?;
+    write!(file, "# {comment}\n{name} = \"{}\"\n", hex::encode(secret))?;
+    file.sync_all()
+}
+
+/// Reads what [`write`] has written; `origin` says what writes such a file.
+pub(super) fn read(path: &Path, name: &str, origin: &str) -> Result<[u8; 32]> {
+    check_private_permissions(path)?;
+    let text = text::read(path)?;
+    let entries = node::parse(path, &text)?;
+    let table = Table { file: path, name: String::new(), line: 1, entries: &entries };
+    table.only(&[name])?;
+    let secret = table.need(name, origin)?;
+    let bytes = hex::decode(secret.text()?);
+    bytes.ok_or_else(|| secret.error("is no key").hint(format!("64 hexadecimal digits, {origin}")))
+}
+
+#[cfg(unix)]
+pub(super) fn create(path: &Path) -> io::Result<File> {
+    use std::os::unix::fs::OpenOptionsExt;
+    File::options().write(true).create_new(true).mode(0o600).open(path)
+}
+
+#[cfg(not(unix))]
+pub(super) fn create(path: &Path) -> io::Result<File> {
+    File::options().write(true).create_new(true).open(path)
+}
+
+#[cfg(unix)]
+pub(super) fn check_private_permissions(path: &Path) -> Result<()> {
+    use std::os::unix::fs::PermissionsExt;
+    let Ok(about) = std::fs::metadata(path) else { return Ok(()) };
+    let mode = about.permissions().mode() & 0o777;
+    if mode.trailing_zeros() >= 6 {
+        return Ok(());
+    }
+    let what = format!("is a secret key that others may read or write (mode {mode:03o})");
+    Err(FormatError::new(path, None, what).hint(format!("chmod 600 {}", path.display())))
+}
+
+#[cfg(not(unix))]
+pub(super) fn check_private_permissions(_: &Path) -> Result<()> {
+    Ok(())
+}
