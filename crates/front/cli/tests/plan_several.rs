@@ -71,6 +71,32 @@ fn a_report_plays_the_paths() {
     assert!(message.contains("--report"), "{message}");
 }
 
+/// On one rail neither gets past the other, whichever goes first: that is said, and no number of states that nobody checked.
+#[test]
+fn robots_that_would_have_to_make_way_are_told_so() {
+    let carriage = |name: &str, start: f64| {
+        format!(
+            "[robot.{name}]\nbase = {{ at = [0, 0, 0], rpy = [0, 90, 0] }}\n\
+             dh = [{{ kind = \"prismatic\", min = 0, max = 2000, speed = 1000 }}]\n\
+             links = [{{ sphere = {{ radius = 50 }} }}]\nstart = [{start}]\n"
+        )
+    };
+    let text = format!(
+        "version = 1\nunits = {{ length = \"mm\", angle = \"deg\" }}\n{}{}",
+        carriage("left", 200.0),
+        carriage("right", 1800.0)
+    );
+    let dir = with_cell(&text);
+    let args = "plan cell.toml --cell-units --robot left --to 1000 --robot right --to 500 --time-limit 4 --json";
+    let answer = elbowroom(dir.path(), &args.split(' ').collect::<Vec<_>>()).expect(1).json();
+    let reason = answer["reason"].as_str().unwrap();
+    assert!(
+        reason.contains("no path in 2 orders of the robots") && reason.contains("make way for each other"),
+        "{reason}"
+    );
+    assert!(reason.starts_with("robot \"") && !reason.contains("states checked"), "{reason}");
+}
+
 #[test]
 fn no_path_is_an_answer() {
     let answer =

@@ -42,6 +42,20 @@ pub enum PrioritizedPlannerError {
         /// Why.
         error: RrtConnectError,
     },
+    /// Whichever robot goes first, one of them has no path around the others at their starts or goals. That proves nothing of
+    /// motions in which they make way for each other.
+    #[error(
+        "no path in {orders} orders of the robots, after {seconds:.1} s: whichever goes first, one of them has none around the others \
+         at their starts or goals. They may have to make way for each other: plan one of them to a place aside before"
+    )]
+    NoPriority {
+        /// The robot without a path in the first order.
+        robot: RobotId,
+        /// Number of orders that were tried.
+        orders: usize,
+        /// Duration of the search, s.
+        seconds: f64,
+    },
 }
 
 /// Where one of several robots goes.
@@ -156,7 +170,7 @@ impl<'s> PrioritizedPlanner<'s> {
     ) -> Result<Vec<PrioritizedMotion>, PrioritizedPlannerError> {
         let begin = Instant::now();
         let mut first_error = None;
-        for order in orders(goals.len()) {
+        for (before, order) in orders(goals.len()).into_iter().enumerate() {
             let planned = self.plan_in_order(start, goals, &order, period_s, settings);
             match planned {
                 Ok(mut motions) => {
@@ -164,7 +178,7 @@ impl<'s> PrioritizedPlanner<'s> {
                     return Ok(motions);
                 }
                 Err(error) => {
-                    first_error = first_error.or_else(|| Some(of_one_order(error, goals.len(), begin.elapsed())));
+                    first_error = Some(of_orders(first_error, error, goals.len(), before + 1, begin.elapsed()));
                 }
             }
             if begin.elapsed() >= settings.time_limit {
@@ -273,13 +287,21 @@ impl<'s> PrioritizedPlanner<'s> {
     }
 }
 
-/// What is proven of one robot while the others rest somewhere is not proven of all together.
-fn of_one_order(error: PrioritizedPlannerError, robots: usize, after: Duration) -> PrioritizedPlannerError {
-    match error {
-        PrioritizedPlannerError::Robot { robot, error: RrtConnectError::Disconnected { nearer, .. } } if robots > 1 => {
-            let seconds = after.as_secs_f64();
-            let error = RrtConnectError::NotFound { seconds, states_checked: 0, nodes: 0, nearer };
-            PrioritizedPlannerError::Robot { robot, error }
+/// The error of so many orders. What is proven of one robot while the others rest somewhere is not proven of all together.
+fn of_orders(
+    first: Option<PrioritizedPlannerError>,
+    error: PrioritizedPlannerError,
+    robots: usize,
+    orders: usize,
+    after: Duration,
+) -> PrioritizedPlannerError {
+    let seconds = after.as_secs_f64();
+    match first.unwrap_or(error) {
+        PrioritizedPlannerError::NoPriority { robot, .. }
+        | PrioritizedPlannerError::Robot { robot, error: RrtConnectError::Disconnected { .. } }
+            if robots > 1 =>
+        {
+            PrioritizedPlannerError::NoPriority { robot, orders, seconds }
         }
         other => other,
     }

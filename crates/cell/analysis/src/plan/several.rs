@@ -185,8 +185,14 @@ fn found(
 
 /// Why none was found; the error where the request is wrong.
 fn not_found(cell: &Cell, goals: &[RobotGoal], error: &PrioritizedPlannerError) -> Result<String, FormatError> {
-    let PrioritizedPlannerError::Robot { robot, error } = error else {
-        return Err(FormatError::new(&cell.file, None, error.to_string()).hint("--robot NAME --to q,…"));
+    let (robot, error) = match error {
+        PrioritizedPlannerError::Robot { robot, error } => (robot, error),
+        PrioritizedPlannerError::NoPriority { robot, .. } => {
+            return Ok(format!("robot \"{}\": {error}", cell.robots[robot.0].name));
+        }
+        PrioritizedPlannerError::NoGoal => {
+            return Err(FormatError::new(&cell.file, None, error.to_string()).hint("--robot NAME --to q,…"));
+        }
     };
     let of_robot = &cell.robots[robot.0];
     let others = || goals.iter().filter(|goal| goal.robot != *robot).map(|goal| &cell.robots[goal.robot.0].name);
