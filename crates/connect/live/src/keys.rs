@@ -43,6 +43,21 @@ impl Keys {
         self.of(robot, "interlock/grants")
     }
 
+    /// That a process guards a robot: a token of Zenoh's liveliness, without messages.
+    pub fn presence(&self, robot: &str) -> String {
+        format!("elbowroom/{}/present/robots/{}", self.cell, chunk(robot))
+    }
+
+    /// That the arbiter is there.
+    pub fn presence_of_arbiter(&self) -> String {
+        format!("elbowroom/{}/present/arbiter", self.cell)
+    }
+
+    /// Everybody who is there.
+    pub fn presences(&self) -> String {
+        format!("elbowroom/{}/present/**", self.cell)
+    }
+
     /// With what all keys of the cell begin.
     pub fn prefix(&self) -> String {
         format!("elbowroom/{}", self.cell)

@@ -52,6 +52,7 @@ mod keys;
 pub mod messages;
 pub mod network;
 pub mod node;
+mod peer_watch;
 mod region_journal;
 mod region_keeper;
 mod regions_table;

@@ -11,6 +11,7 @@ use crate::cell_observer::CellObserver;
 use crate::control::ControlServer;
 use crate::network::ZenohNetwork;
 use crate::node::Node;
+use crate::peer_watch::PeerWatch;
 use crate::region_keeper::RegionKeeper;
 use crate::ros2::Participant;
 use crate::service_error::ServiceError;
@@ -28,6 +29,7 @@ pub struct Service {
     arbiter: Option<Arc<ArbiterService>>,
     keeper: Option<Arc<RegionKeeper>>,
     observer: Option<CellObserver>,
+    peers: PeerWatch,
     server: Option<Server>,
     network: Arc<ZenohNetwork>,
 }
@@ -47,9 +49,10 @@ impl Service {
         let nodes = begin.nodes(recorder.as_ref())?;
         let ros2 = begin.ros2()?;
         let controllers = begin.simulated_controllers()?;
+        let peers = begin.peers()?;
         let (server, feed) = begin.web()?.unzip();
         let observer = begin.observer(feed, recorder, ros2.as_ref().and_then(Participant::feed))?;
-        Ok(Self { controllers, ros2, nodes, control, arbiter, keeper, observer, server, network: begin.zenoh })
+        Ok(Self { controllers, ros2, nodes, control, arbiter, keeper, observer, peers, server, network: begin.zenoh })
     }
 
     /// Number of robots that this process guards.
@@ -82,8 +85,8 @@ impl Service {
     /// # Errors
     /// [`ServiceError::Recording`] where it could not be written.
     pub fn stop(self) -> Result<(), ServiceError> {
-        let Self { controllers, ros2, nodes, control, arbiter, keeper, observer, server, network } = self;
-        drop((controllers, ros2, nodes, control, arbiter, keeper));
+        let Self { controllers, ros2, nodes, control, arbiter, keeper, observer, peers, server, network } = self;
+        drop((peers, controllers, ros2, nodes, control, arbiter, keeper));
         let recorder = observer.and_then(CellObserver::stop);
         if let Some(server) = server {
             server.stop();

@@ -18,11 +18,13 @@ use crate::cell_versions::CellVersions;
 use crate::clock::{Clock, boot_number};
 use crate::configuration_number::configuration_number;
 use crate::control::{ControlParts, ControlServer, JointsHeard, NodesHeard};
+use crate::event_handler::EventHandler;
 use crate::keys::Keys;
 use crate::network::{
     AuthenticatedNetwork, JoinedNetworks, Network, NetworkError, UdpNetwork, ZenohNetwork, ZenohSettings,
 };
 use crate::node::{Node, NodeMonitor, NodeParts};
+use crate::peer_watch::PeerWatch;
 use crate::region_journal::RegionJournal;
 use crate::region_keeper::{ProgramSwitches, RegionKeeper};
 use crate::ros2::{CellFeed, Participant};
@@ -32,6 +34,9 @@ use crate::simulated_controllers::SimulatedControllers;
 
 /// How long a process listens whether another one guards its robots already.
 const LISTENS: Duration = Duration::from_millis(300);
+
+/// After this time it is said that nobody answers.
+const NOBODY: Duration = Duration::from_secs(2);
 
 /// What all parts share.
 pub(crate) struct ServiceStart<'o> {
@@ -59,7 +64,8 @@ impl<'o> ServiceStart<'o> {
             (None, None) => Some(DEFAULT_ADDRESS.to_owned()),
             (listen, _) => listen.clone(),
         };
-        let zenoh = Arc::new(ZenohNetwork::open(&ZenohSettings { listen, connect: options.connect.clone() })?);
+        let settings = ZenohSettings { listen, connect: options.connect.clone() };
+        let zenoh = Arc::new(patiently(&settings, options.on_event.as_ref(), || ZenohNetwork::open(&settings))?);
         let shared = shared_network(&zenoh, &cell, options)?;
         let of_controllers = with_udp(&shared, options.udp.as_deref())?;
         Ok(Self { options, cell, versions, robots, zenoh, shared, of_controllers, clock: Clock::start() })
@@ -177,6 +183,12 @@ impl<'o> ServiceStart<'o> {
         Ok(Some(SimulatedControllers::start(&self.cell, &robots, &self.shared, self.clock)?))
     }
 
+    /// Who else of the cell comes and goes.
+    pub(crate) fn peers(&self) -> Result<PeerWatch, NetworkError> {
+        let on_event = self.options.on_event.clone();
+        PeerWatch::start(&self.cell, &self.robots, self.keeps_regions(), &self.zenoh, on_event)
+    }
+
     /// The page in a browser, and what feeds it.
     pub(crate) fn web(&self) -> Result<Option<(Server, StatusFeed)>, ServiceError> {
         let Some(address) = &self.options.web else { return Ok(None) };
@@ -207,6 +219,23 @@ fn shared_network(
     let Some(key) = &options.network_key else { return Ok(zenoh.clone()) };
     let (prefix, on_event) = (Keys::new(&cell.name).prefix(), options.on_event.clone());
     Ok(Arc::new(AuthenticatedNetwork::new(zenoh.clone(), key, &prefix, on_event)?))
+}
+
+/// Opens a network, and says after a while that nobody answers.
+fn patiently<T>(settings: &ZenohSettings, on_event: Option<&EventHandler>, open: impl FnOnce() -> T) -> T {
+    let (Some(address), Some(on_event)) = (settings.connect.clone(), on_event.cloned()) else { return open() };
+    let (opened, is_open) = mpsc::channel::<()>();
+    let remind = move || {
+        if is_open.recv_timeout(NOBODY) == Err(mpsc::RecvTimeoutError::Timeout) {
+            on_event(&format!(
+                "nobody answers at {address} yet\n  help: start the process that listens there, as `live CELL --arbiter --listen {address}`"
+            ));
+        }
+    };
+    let _ = std::thread::Builder::new().name("connects".into()).spawn(remind);
+    let result = open();
+    drop(opened);
+    result
 }
 
 /// With tokens nobody switches without one, unless that is allowed.

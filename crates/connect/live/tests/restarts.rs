@@ -1,9 +1,10 @@
 //! Processes of a live cell that start again, or twice.
 
 use crate::common::control_setup::{ControlSetup, PROGRAMMER, rails};
-use elbowroom_live::{Service, ServiceOptions, region_journal_of};
+use elbowroom_live::{EventHandler, Service, ServiceOptions, region_journal_of};
 use elbowroom_testkit::network::eventually;
 use serde_json::json;
+use std::sync::{Arc, Mutex};
 
 const CELL: &str = concat!(rails!("900", "450, 0, 1900"), "[monitor]\nstale_ms = 200\n");
 const TABLE: &str = "shape = \"sphere\"\ncentre = [0, 0, 1000]\nradius = 100\nwarning = 100\nlife = \"temporary\"\n";
@@ -109,4 +110,49 @@ fn a_second_node_for_a_robot_does_not_start() {
         again = left().ok();
         again.is_some()
     });
+}
+
+/// Each process says who else of the cell comes and goes, and that nobody answers where it connects to.
+#[test]
+fn whoever_comes_and_goes_is_named() {
+    let mut setup = setup();
+    let heard: Arc<Mutex<Vec<String>>> = Arc::default();
+    let robot = |name: &str, listen: &str| {
+        let (heard, connect) = (heard.clone(), Some(listen.to_owned()));
+        let on_event: EventHandler = Arc::new(move |event: &str| heard.lock().unwrap().push(event.to_owned()));
+        let options = ServiceOptions {
+            robots: vec![name.into()],
+            connect,
+            on_event: Some(on_event),
+            ..ServiceOptions::default()
+        };
+        Service::start(setup.cell.clone(), &options).unwrap_or_else(|e| panic!("{e}"))
+    };
+    let says = |what: &str, times: usize| {
+        eventually(what, || heard.lock().unwrap().iter().filter(|event| event.contains(what)).count() == times);
+    };
+    let left = robot("left", &setup.listen);
+    says("the arbiter's process is there", 1);
+    // Nobody guards the other one yet.
+    says("robot right: no process guards it yet", 1);
+    let right = robot("right", &setup.listen);
+    says("robot right: its process is there", 1);
+    let arbiter_says = |what: &str| eventually(what, || setup.events.lock().unwrap().iter().any(|e| e.contains(what)));
+    drop(right);
+    says("robot right: its process is gone", 1);
+    arbiter_says("robot right: its process is gone");
+    // Where nobody listens yet, it waits, and says so.
+    drop(setup.service.take());
+    says("the arbiter's process is gone", 1);
+    let waits = std::thread::scope(|scope| {
+        let waits = scope.spawn(|| robot("right", &setup.listen));
+        says("nobody answers at", 1);
+        drop(left);
+        let options = ServiceOptions { arbiter: true, listen: Some(setup.listen.clone()), ..ServiceOptions::default() };
+        let arbiter = Service::start(setup.cell.clone(), &options).unwrap_or_else(|e| panic!("{e}"));
+        let right = waits.join();
+        drop(arbiter);
+        right
+    });
+    assert!(waits.is_ok());
 }
