@@ -127,7 +127,9 @@ fn watch(
         std::thread::sleep(PATIENCE);
         let Some(missing) = remind.0.upgrade() else { return };
         let missing = missing.lock().unwrap_or_else(PoisonError::into_inner).clone();
-        missing.iter().for_each(|part| remind.1(&part.missing()));
+        for part in &missing {
+            remind.1(&part.missing());
+        }
     });
     Ok(Subscription::new(subscriber))
 }

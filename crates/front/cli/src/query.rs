@@ -17,6 +17,9 @@ use crate::output::{ExitStatus, Failure, note, print};
 use crate::progress::Progress;
 use crate::states;
 
+/// A tolerance (m) beyond this one is more likely in another unit.
+const DOUBTFUL_TOLERANCE_M: f64 = 2.0;
+
 /// From this number of states on, pairs out of reach of each other are excluded first.
 const MANY: usize = 1000;
 
@@ -40,6 +43,7 @@ pub(crate) fn query(args: &QueryArgs) -> Result<ExitStatus, Failure> {
     if model.is_single_robot {
         model.touching_at_rest().iter().for_each(|w| note(format_args!("warning: {w}")));
     }
+    doubt(args.ask);
     let pairs = query_pairs(args, &mut model, cell.as_ref())?;
     let states = match &args.states {
         Some(path) => states::read(path, &model)?,
@@ -74,6 +78,18 @@ pub(crate) fn query(args: &QueryArgs) -> Result<ExitStatus, Failure> {
     } else {
         ExitStatus::Success
     })
+}
+
+/// Says that a tolerance may be in another unit.
+fn doubt(ask: QueryKind) {
+    if let QueryKind::Tolerance(metres) = ask
+        && metres > DOUBTFUL_TOLERANCE_M
+    {
+        let meant = metres * 1e-3;
+        note(format_args!(
+            "warning: tolerance={metres} is {metres} m, more than robots keep: tolerance={meant} is {metres} mm"
+        ));
+    }
 }
 
 fn query_pairs(args: &QueryArgs, model: &mut QueryModel, cell: Option<&Cell>) -> Result<QueryPairs, Failure> {

@@ -71,6 +71,7 @@ fn wrong_goals_are_refused_with_what_to_write() {
         (&["--to-pose", "1,2,3,0,0,1,1"][..], "length 1.41"),
         (&["--to-pose", "1,2,3,4,5,6,7,8"][..], "x,y,z,qx,qy,qz,qw"),
         (&["--to-pose", "5000,0,0,0,0,0"][..], "the goal of robot \"arm\""),
+        (&["--to-pose", "0.4,0.6928,0,0,0,60"][..], "400,692.8,0,…   (in mm, the cell's unit; m seem to be meant)"),
         (&["--to-pose", "1,2,x,0,0,0"][..], "no finite number"),
         (&["--to", "60,0", "--cell-units"][..], "2 values for 3 joints"),
         (&["--to", "200,0,0", "--cell-units"][..], "joint_1"),

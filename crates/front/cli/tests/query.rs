@@ -101,6 +101,9 @@ fn tolerance_names_the_nearest_pair_within_it() {
     let far = query(CELL, None, &["--ask", "tolerance=0.1"]).expect(0);
     assert!(far.stdout.lines().nth(1).unwrap().starts_with("0,0,,,,"), "{}", far.stdout);
     let near = query(CELL, None, &["--ask", "tolerance=2"]).expect(0);
+    assert!(!near.stderr.contains("warning"), "{}", near.stderr);
+    let doubtful = query(CELL, None, &["--ask", "tolerance=20"]).expect(0).stderr;
+    assert!(doubtful.contains("tolerance=20 is 20 m") && doubtful.contains("tolerance=0.02 is 20 mm"), "{doubtful}");
     let distance = query(CELL, None, &["--ask", "distance"]).expect(0);
     let (near, distance) = (near.stdout.lines().nth(1).unwrap(), distance.stdout.lines().nth(1).unwrap());
     assert_eq!(cells(near)[1], "1");

@@ -19,6 +19,7 @@ use elbowroom_planner::{
 use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_scene::{Attachment, Scene, SceneState};
 use elbowroom_spatial::Pose;
+use elbowroom_spatial::units::LengthUnit;
 
 use crate::cover_cache::CoverCache;
 
@@ -214,8 +215,26 @@ fn goals(
     let found = region.configurations(scene, state, id, 0, seed);
     target.choose(robot, cell.units, state.q(id), found).map_err(|why| {
         let what = format!("the goal of robot \"{}\": {why}", robot.name);
-        FormatError::new(&cell.file, robot.line, what).hint("a pose within reach, or joint values")
+        let is_reached = |pose: Pose| {
+            let region = TaskSpaceRegion::at_pose(robot.flange, robot.tcp_in_flange, pose);
+            !region.configurations(scene, state, id, 0, seed).is_empty()
+        };
+        let hint = other_unit(cell, &target.in_world, is_reached);
+        let hint = hint.unwrap_or_else(|| "a pose within reach, or joint values".to_owned());
+        FormatError::new(&cell.file, robot.line, what).hint(hint)
     })
+}
+
+/// The pose in the cell's unit of length, where the same numbers are within reach in another unit and were meant in that one.
+fn other_unit(cell: &Cell, in_world: &Pose, is_reached: impl Fn(Pose) -> bool) -> Option<String> {
+    let factor = |unit: LengthUnit| unit.to_metres(1.0) / cell.units.length.to_metres(1.0);
+    let meant = [LengthUnit::Metre, LengthUnit::Millimetre]
+        .into_iter()
+        .filter(|unit| *unit != cell.units.length)
+        .find(|unit| is_reached(Pose { translation: in_world.translation * factor(*unit), ..*in_world }))?;
+    let numbers = (in_world.translation * factor(meant)).to_array().map(|metres| cell.units.in_file_units(metres));
+    let (meant, unit) = (meant.symbol(), cell.units.length.symbol());
+    Some(format!("{},…   (in {unit}, the cell's unit; {meant} seem to be meant)", numbers.join(",")))
 }
 
 /// The state with all robots at their start, except one.
