@@ -186,6 +186,8 @@ struct Running {
 impl Running {
     fn run(mut self, waiting: &Receiver<Incoming>) {
         let mut published: Option<Instant> = None;
+        // Robots that never speak are silent from now on: the arbiter counts from the first time that it is asked.
+        let _ = self.clear(RobotSlot(0), true);
         loop {
             let has_changed = match waiting.recv_timeout(PERIOD) {
                 Ok(Incoming::Message { robot, bytes }) => self.take(robot, &bytes),

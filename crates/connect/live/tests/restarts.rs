@@ -1,10 +1,11 @@
 //! Processes of a live cell that start again, or twice.
 
-use crate::common::control_setup::{ControlSetup, PROGRAMMER, rails};
+use crate::common::control_setup::{ControlSetup, INTEGRATOR, PROGRAMMER, rails};
 use elbowroom_live::{EventHandler, Service, ServiceOptions, region_journal_of};
 use elbowroom_testkit::network::eventually;
 use serde_json::json;
 use std::sync::{Arc, Mutex};
+use std::time::Duration;
 
 const CELL: &str = concat!(rails!("900", "450, 0, 1900"), "[monitor]\nstale_ms = 200\n");
 const TABLE: &str = "shape = \"sphere\"\ncentre = [0, 0, 1000]\nradius = 100\nwarning = 100\nlife = \"temporary\"\n";
@@ -91,6 +92,16 @@ fn without_a_journal_that_can_be_trusted_all_regions_are_on() {
     }
     setup.restart();
     assert_eq!(is_on(&setup, "cart"), Some(false));
+}
+
+/// The arbiter counts the silence of a robot that was never there from its own start, not from the first question.
+#[test]
+fn a_robot_that_never_spoke_is_cleared_at_the_first_request() {
+    let setup = setup();
+    std::thread::sleep(Duration::from_millis(1500));
+    let request = json!({ "robot": "left", "regions": ["pallet"], "repeat_robot": "left" });
+    let (status, document) = setup.change(INTEGRATOR, "/clear", &request);
+    assert_eq!(status, 200, "{document}");
 }
 
 #[test]
