@@ -4,7 +4,8 @@
 //! `cargo run`, and `elbowroom` is it. A release build would compile the workspace once more.
 //!
 //! A ```` ```sh ```` block that follows the line `<!-- run -->` must end with exit status 0 when bash runs it in the
-//! workspace root; `<!-- run: 1 -->` names another status. A ```` ```text ```` block that follows `<!-- shows: COMMAND -->` is what
+//! workspace root; `<!-- run: 1 -->` names another status. One that is not run says why: `<!-- not run: it never ends -->`.
+//! A ```` ```text ```` block that follows `<!-- shows: COMMAND -->` is what
 //! the command prints, or lines of it in their order; times in µs may differ.
 
 use std::path::{Path, PathBuf};
@@ -122,6 +123,16 @@ fn parse(text: &str) -> Result<Vec<Snippet>, String> {
         let (mark, fence) = match (shown, status) {
             (Some(_), _) => ("shows: …", "```text"),
             (None, Some(_)) => ("run", "```sh"),
+            (None, None) if line.trim() == "```sh" => {
+                let what =
+                    "a block of commands that is not run: write `<!-- run -->` above it, or `<!-- not run: WHY -->`";
+                return Err(format!("{}: {what}", index + 1));
+            }
+            (None, None) if is_reason(line) => {
+                // The block itself.
+                let _ = lines.by_ref().take_while(|(_, next)| next.trim() != "```").count();
+                continue;
+            }
             (None, None) => continue,
         };
         if lines.next().is_none_or(|(_, next)| next.trim() != fence) {
@@ -138,6 +149,12 @@ fn parse(text: &str) -> Result<Vec<Snippet>, String> {
         });
     }
     Ok(snippets)
+}
+
+/// Whether the line says why the block below it is not run.
+fn is_reason(line: &str) -> bool {
+    let reason = line.trim().strip_prefix("<!-- not run:").and_then(|rest| rest.strip_suffix("-->"));
+    reason.is_some_and(|reason| !reason.trim().is_empty())
 }
 
 /// The expected exit status, where the line is a marker.
@@ -158,12 +175,21 @@ mod tests {
 
     #[test]
     fn only_marked_blocks_are_taken() {
-        let text =
-            "# T\n```sh\nrm x\n```\n<!-- run -->\n```sh\ncargo a\ncargo b\n```\n<!-- run: 1 -->\n```sh\nc\n```\n";
+        let text = "# T\n<!-- not run: it never ends -->\n```sh\nrm x\n```\n<!-- run -->\n```sh\ncargo a\ncargo b\n```\n<!-- run: 1 -->\n```sh\nc\n```\n";
         let found = parse(text).unwrap();
         assert_eq!(found.len(), 2);
-        assert_eq!(found[0], Snippet { line: 6, expected: 0, text: "cargo a\ncargo b".into(), shows: vec![] });
+        assert_eq!(found[0], Snippet { line: 7, expected: 0, text: "cargo a\ncargo b".into(), shows: vec![] });
         assert_eq!((found[1].expected, found[1].text.as_str()), (1, "c"));
+    }
+
+    #[test]
+    fn a_block_that_is_not_run_says_why() {
+        for unmarked in
+            ["```sh\nx\n```", "<!-- not run: -->\n```sh\nx\n```", "<!-- not run: why -->\n```sh\nx\n```\n```sh\ny\n```"]
+        {
+            assert!(parse(unmarked).unwrap_err().contains("write `<!-- run -->` above it"), "{unmarked}");
+        }
+        assert_eq!(parse("<!-- not run: why -->\n```sh\nx\n```\n```text\ny\n```"), Ok(vec![]));
     }
 
     #[test]
