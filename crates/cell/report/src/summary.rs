@@ -4,7 +4,7 @@ use std::fmt;
 
 use elbowroom_sim::{
     AvoidanceSummary, AvoidanceTrack, Collision, Deadlock, Outcome, PartKind, PerceptionSummary, PerceptionTrack,
-    Recording, RegionTrack, RobotEnding, RobotTrack, RunEnd, SensorSummary, SensorTrack, Stop,
+    RecordedRegionKind, Recording, RegionTrack, RobotEnding, RobotTrack, RunEnd, SensorSummary, SensorTrack, Stop,
 };
 
 use crate::explanation::explanation;
@@ -334,6 +334,16 @@ fn region_lines(rec: &Recording, width: usize) -> Vec<Line> {
     lines
 }
 
+/// Whether a region was entered: `yes`, `no`, or `granted` where only a robot that held it was inside.
+pub fn entry(region: &RegionTrack) -> &'static str {
+    let is_inside = region.min_distance_m.is_some_and(|distance| distance <= 0.0);
+    match region.entered {
+        true => "yes",
+        false if is_inside && matches!(region.kind, RecordedRegionKind::Exchange) => "granted",
+        false => "no",
+    }
+}
+
 fn region_line(region: &RegionTrack, rec: &Recording, names: usize) -> Line {
     let bad = region.is_violated();
     let rises = rec.events.iter().filter(|e| e.region == region.name && e.event.name() == "output_on").count();
@@ -343,11 +353,7 @@ fn region_line(region: &RegionTrack, rec: &Recording, names: usize) -> Line {
         (false, true) => Style::Warn,
         (false, false) => Style::Plain,
     };
-    let entered = match (region.entered, bad) {
-        (true, true) => "YES",
-        (true, false) => "yes",
-        (false, _) => "no",
-    };
+    let entered = if bad { "YES" } else { entry(region) };
     vec![
         (format!("  {} ", pad(&region.name, names)), Style::Bold),
         (format!("{:<10}{:>11}  ", region.kind.name(), millimetres(region.min_distance_m)), Style::Plain),

@@ -6,7 +6,7 @@ use elbowroom_monitor::Life;
 use elbowroom_sim::{Recording, Stop};
 
 use crate::palette;
-use crate::summary::millimetres;
+use crate::summary::{entry, millimetres};
 
 /// Rows of the event table; `events.csv` has all events.
 const MAX_EVENTS: usize = 500;
@@ -63,20 +63,20 @@ pub fn regions(recording: &Recording, planned: Option<&Recording>) -> String {
             escape(&format!("{}{life}", region.kind.name())),
             format!("{:.0} mm", 1e3 * region.warning_m),
             millimetres(region.min_distance_m),
-            yes_or_no(region.entered).into(),
+            entry(region).into(),
             format!("{:.2} s", region.warned_s),
         ];
         if let Some(other) = planned.map(|p| &p.regions[index]) {
-            let entered = if other.entered { "entered" } else { "not entered" };
+            let entered = match entry(other) {
+                "no" => "not entered",
+                "yes" => "entered",
+                other => other,
+            };
             cells.push(format!("{}, {entered}", millimetres(other.min_distance_m)));
         }
         row_of_html(&mut out, &cells, if region.is_violated() { "bad" } else { "" });
     }
     out + "</tbody></table>"
-}
-
-fn yes_or_no(yes: bool) -> &'static str {
-    if yes { "yes" } else { "no" }
 }
 
 /// A name with its colour.

@@ -2,7 +2,7 @@
 
 use crate::report_demo;
 use elbowroom_report::{HtmlReport, TextSummary, summary, write_html};
-use elbowroom_sim::{Collision, Recording};
+use elbowroom_sim::{Collision, RecordedRegionKind, Recording};
 use serde_json::Value;
 
 use crate::page_data::block;
@@ -125,6 +125,25 @@ fn the_summary_fits_its_columns() {
             assert!(!text.contains('\u{1b}') && text.lines().count() < 24);
         }
     }
+}
+
+/// A holder that was inside has not entered where it must not: 0 mm and "no" would be a contradiction.
+#[test]
+fn a_region_whose_holder_was_inside_is_granted() {
+    let mut run = report_demo::recording(true, 2000, "column");
+    let region = &mut run.regions[0];
+    (region.kind, region.entered, region.min_distance_m) = (RecordedRegionKind::Exchange, false, Some(0.0));
+    let line = |run: &Recording| {
+        let text = summary(run, 80, false);
+        text.lines()
+            .find(|line| line.contains("exchange"))
+            .map(|line| line.split_whitespace().nth(4).unwrap().to_owned())
+    };
+    assert_eq!(line(&run).as_deref(), Some("granted"), "{}", summary(&run, 80, false));
+    run.regions[0].min_distance_m = Some(0.01);
+    assert_eq!(line(&run).as_deref(), Some("no"));
+    run.regions[0].entered = true;
+    assert_eq!(line(&run).as_deref(), Some("YES"));
 }
 
 /// What a robot waits for is never cut, and for a file nothing is. A collision comes before what happened later.
