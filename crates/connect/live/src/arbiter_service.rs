@@ -207,8 +207,8 @@ impl Running {
         }
     }
 
-    /// Takes a guard's message, and answers. True where something has changed.
-    /// Takes a message of a guard, if it speaks for the robot under whose key it has come.
+    /// Takes a guard's message, if it speaks for the robot under whose key it has come, and answers. True where something has
+    /// changed.
     fn take(&mut self, robot: RobotSlot, bytes: &[u8]) -> bool {
         let Ok(Message::State(state)) = wire::decode(bytes) else { return false };
         if state.robot != robot {

@@ -259,6 +259,34 @@ fn a_stranger_on_the_network_switches_no_region() {
     }
 }
 
+/// A datagram may be of anybody: joint values come so, which regions there are does not.
+#[test]
+fn no_datagram_says_which_regions_there_are() {
+    let udp = elbowroom_testkit::network::free_address();
+    let key = NetworkKey::generate().unwrap();
+    let options =
+        ServiceOptions { network_key: Some(key.clone()), udp: Some(udp.clone()), ..ServiceOptions::default() };
+    let setup = ControlSetup::new(CELL, false, options);
+    let (keys, connect) = (Keys::new("rails"), Some(setup.listen.clone()));
+    let cable = Arc::new(ZenohNetwork::open(&ZenohSettings { listen: None, connect }).unwrap());
+    let friend = AuthenticatedNetwork::new(cable, &key, &keys.prefix(), None).unwrap();
+    let (statuses, _subscription) = log(&friend, &keys.status("left"));
+    let mut controller = Controller::new(&friend, &setup);
+    eventually("the node hears the table", || {
+        controller.step();
+        active(&statuses, "cart") == Some(false)
+    });
+    let table = RegionTable { revision: (u64::MAX / 2, 1), ..RegionTable::initial(&setup.cell).all_on() };
+    let (key, table) = (keys.regions(), serde_json::to_vec(&table.message(&setup.cell)).unwrap());
+    let datagram = [&b"EU\x01\x02"[..], &[key.len() as u8], key.as_bytes(), &table].concat();
+    let stranger = std::net::UdpSocket::bind("127.0.0.1:0").unwrap();
+    for _ in 0..20 {
+        stranger.send_to(&datagram, &udp).unwrap();
+        controller.step();
+        assert_eq!(active(&statuses, "cart"), Some(false), "a datagram was believed");
+    }
+}
+
 fn switch_off(setup: &ControlSetup) -> u16 {
     let request = serde_json::json!({ "region": "cart", "active": false });
     setup.change(crate::common::control_setup::PROGRAMMER, "/switch", &request).0

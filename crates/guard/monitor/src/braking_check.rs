@@ -27,6 +27,8 @@ pub(crate) struct Braking {
     pub(crate) commanded_since_s: f64,
     /// Stop time of the program at override 1, s; infinite where it is not known.
     pub(crate) full_stop_s: f64,
+    /// Time over which the velocities were derived from positions, s; 0 where they were given.
+    pub(crate) uncertain_s: f64,
 }
 
 impl BrakingCheck {
@@ -40,7 +42,7 @@ impl BrakingCheck {
         };
         let reduced_s = self.last.as_ref().map_or(now.stop_s, allowed_s);
         self.allowed_s = reduced_s.max(stop_at(now.commanded, now.full_stop_s)).max(0.0);
-        self.failed = now.stop_s > self.allowed_s * (1.0 + TOLERANCE_FRACTION) + TOLERANCE_S;
+        self.failed = now.stop_s > self.allowed_s * (1.0 + TOLERANCE_FRACTION) + TOLERANCE_S + now.uncertain_s;
         self.last = Some(now);
     }
 
@@ -67,9 +69,24 @@ mod tests {
             let commanded = if braking_s < 0.0 { 1.0 } else { 0.0 };
             let commanded_since_s = if braking_s < 0.0 { 0.0 } else { since_s };
             let stop_s = (0.5 - rate * braking_s.max(0.0)).max(0.0);
-            check.update(Braking { stamp_s, stop_s, commanded, commanded_since_s, full_stop_s: 0.5 });
+            check.update(Braking { stamp_s, stop_s, commanded, commanded_since_s, full_stop_s: 0.5, uncertain_s: 0.0 });
             check.failed()
         })
+    }
+
+    /// Velocities derived from positions are those of the middle of a tick: the robot seems to brake late.
+    #[test]
+    fn derived_velocities_are_no_weaker_brakes() {
+        let (tick_s, full_stop_s) = (0.04, 0.1);
+        let mut check = BrakingCheck::default();
+        for i in 0..20 {
+            let stamp_s = tick_s * f64::from(i);
+            let stop_s = (full_stop_s - (stamp_s - 0.2 - 0.5 * tick_s).max(0.0)).max(0.0);
+            let commanded = if stamp_s < 0.2 { 1.0 } else { 0.0 };
+            let commanded_since_s = if stamp_s < 0.2 { 0.0 } else { 0.2 };
+            check.update(Braking { stamp_s, stop_s, commanded, commanded_since_s, full_stop_s, uncertain_s: tick_s });
+            assert!(!check.failed(), "at {stamp_s} s");
+        }
     }
 
     #[test]

@@ -74,6 +74,8 @@ pub struct ControlLog {
     length: u64,
     entries: u64,
     head: String,
+    /// A line that was not signed could not be removed yet.
+    has_rest: bool,
 }
 
 impl ControlLog {
@@ -96,7 +98,7 @@ impl ControlLog {
         }
         let head = signed.map_or_else(|| "0".repeat(64), |head| head.hash);
         let (length, entries) = (text.len() as u64, entries.len() as u64);
-        Ok(Self { path: path.to_owned(), file, signer, length, entries, head })
+        Ok(Self { path: path.to_owned(), file, signer, length, entries, head, has_rest: false })
     }
 
     /// Appends a change, and returns once it is on the disk.
@@ -104,6 +106,10 @@ impl ControlLog {
     /// # Errors
     /// [`FormatError`] where it cannot be written; then the change must not be made.
     pub fn append(&mut self, controlled: Controlled<'_>) -> Result<ControlEntry> {
+        if self.has_rest {
+            self.file.set_len(self.length).map_err(text::unwritable(&self.path))?;
+            self.has_rest = false;
+        }
         let Controlled { class, name, action, note, changes, checksums: [before, after] } = controlled;
         let entry = ControlEntry {
             sequence: self.entries + 1,
@@ -123,8 +129,8 @@ impl ControlLog {
         let written = self.file.write_all(bytes.as_bytes()).and_then(|()| self.file.sync_all());
         let written = written.map_err(text::unwritable(&self.path));
         if let Err(e) = written.and_then(|()| self.signer.sign(self.entries + 1, &head)) {
-            // Of a full disk: half a line is not left for whoever reads on. Where that fails, too, the next start removes it.
-            let _ = self.file.set_len(self.length);
+            // Of a full disk: half a line is not left for whoever reads on. Where that fails, too, the next line or start removes it.
+            self.has_rest = self.file.set_len(self.length).is_err();
             return Err(e);
         }
         self.length += bytes.len() as u64;

@@ -100,7 +100,8 @@ impl Node {
             tick.region_builder(robot, versions)
         });
         let (inbox, outbox) = (tick.inbox().clone(), tick.outbox().clone());
-        let mut subscriptions = subscribe(&*network, &keys, &cell, robot, &followed, &inbox, clock)?;
+        let networks = [&*network, &*interlocks];
+        let mut subscriptions = subscribe(networks, &keys, &cell, robot, &followed, &inbox, clock)?;
         let grants = inbox.clone();
         let handler = Box::new(move |bytes: &[u8]| grants.take_grants(bytes));
         subscriptions.push(interlocks.subscribe(&keys.interlock_grants(&name), handler)?);
@@ -140,8 +141,9 @@ impl Drop for Node {
     }
 }
 
+/// Joint values come by the network of the controllers. Which regions there are never does: anybody may send a datagram.
 fn subscribe(
-    network: &dyn Network,
+    [network, shared]: [&dyn Network; 2],
     keys: &Keys,
     cell: &Arc<Cell>,
     robot: RobotId,
@@ -162,7 +164,7 @@ fn subscribe(
         let Ok(message) = serde_json::from_slice::<RegionTableMessage>(bytes) else { return };
         inbox.take_regions(&message, clock.micros());
     });
-    subscriptions.push(network.subscribe(&keys.regions(), handler)?);
+    subscriptions.push(shared.subscribe(&keys.regions(), handler)?);
     Ok(subscriptions)
 }
 

@@ -184,6 +184,7 @@ impl StoppingLaw {
             commanded,
             commanded_since_s,
             full_stop_s: if self.program_is_known { full_stop_s } else { f64::INFINITY },
+            uncertain_s: tick.uncertain_s,
         });
         for axis in &mut self.axes {
             axis.place(config, now);

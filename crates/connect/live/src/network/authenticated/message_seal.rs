@@ -1,7 +1,6 @@
 //! What stands behind each message: session, number, keyed hash.
 
 use std::fmt;
-use std::hash::{BuildHasher as _, RandomState};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use elbowroom_cell::seal::NetworkKey;
@@ -12,9 +11,12 @@ const CONTEXT: &str = "elbowroom 2026 messages of a cell";
 /// Closes the messages of this process, and opens those of all others.
 pub(super) struct MessageSeal {
     key: [u8; blake3::KEY_LEN],
+    /// Known to nobody else, not even to those with the key.
+    seed: [u8; blake3::KEY_LEN],
     session: u64,
     /// The number of the last message.
     number: AtomicU64,
+    nonces: AtomicU64,
 }
 
 impl fmt::Debug for MessageSeal {
@@ -32,9 +34,19 @@ pub(super) struct Opened<'b> {
 }
 
 impl MessageSeal {
-    pub(super) fn new(key: &NetworkKey) -> Self {
+    /// A start of a process with this key.
+    pub(super) fn new(key: &NetworkKey) -> std::io::Result<Self> {
         let key = blake3::derive_key(CONTEXT, key.as_bytes());
-        Self { key, session: random_number(), number: AtomicU64::new(0) }
+        let seed = *NetworkKey::generate()?.as_bytes();
+        let seal = Self { key, seed, session: 0, number: AtomicU64::new(0), nonces: AtomicU64::new(0) };
+        Ok(Self { session: seal.nonce(), ..seal })
+    }
+
+    /// A number that was not there before and that nobody can know.
+    pub(super) fn nonce(&self) -> u64 {
+        let count = self.nonces.fetch_add(1, Ordering::SeqCst);
+        let hash = blake3::keyed_hash(&self.seed, &count.to_le_bytes());
+        hash.as_bytes().first_chunk().map_or(count, |bytes| u64::from_le_bytes(*bytes))
     }
 
     /// The start of this process.
@@ -74,9 +86,4 @@ impl MessageSeal {
         hasher.update(&(key.len() as u64).to_le_bytes()).update(key.as_bytes()).update(closed);
         hasher.finalize()
     }
-}
-
-/// A number that was not there before and that nobody can know: from the keys that the operating system gives to hash tables.
-pub(super) fn random_number() -> u64 {
-    RandomState::new().hash_one(std::process::id())
 }

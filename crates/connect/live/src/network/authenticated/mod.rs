@@ -12,6 +12,7 @@ mod sessions;
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
 
 use elbowroom_cell::seal::NetworkKey;
 
@@ -70,7 +71,8 @@ impl AuthenticatedNetwork {
         on_event: Option<EventHandler>,
     ) -> Result<Self, NetworkError> {
         let process = Arc::new(Process {
-            seal: MessageSeal::new(key),
+            seal: MessageSeal::new(key)
+                .map_err(|e| NetworkError::Key { key: prefix.to_owned(), why: e.to_string() })?,
             sessions: Mutex::default(),
             proofs: Proofs::new(&*inner, prefix)?,
             refusals: Refusals::new(on_event),
@@ -87,7 +89,7 @@ impl AuthenticatedNetwork {
 impl Process {
     fn take_proof(&self, bytes: &[u8]) {
         if let Some(proof) = self.proofs.open(&self.seal, bytes) {
-            self.sessions.lock().unwrap_or_else(PoisonError::into_inner).prove(&proof);
+            self.sessions.lock().unwrap_or_else(PoisonError::into_inner).prove(&proof, Instant::now());
         }
     }
 
@@ -98,24 +100,20 @@ impl Process {
             return None;
         };
         let standing = if message.session == self.seal.session() {
-            Standing::Proved { after: 0 }
+            Standing { heard_after: Some(0), ask: None }
         } else {
-            self.sessions.lock().unwrap_or_else(PoisonError::into_inner).standing(message.session)
+            let mut sessions = self.sessions.lock().unwrap_or_else(PoisonError::into_inner);
+            sessions.standing(message.session, Instant::now(), || self.seal.nonce())
         };
-        match standing {
-            Standing::Proved { after } => {
-                let mut heard = heard.lock().unwrap_or_else(PoisonError::into_inner);
-                let last = heard.entry(message.session).or_insert(0);
-                let is_new = message.number > after.max(*last);
-                *last = message.number.max(*last);
-                is_new.then_some(message.contents)
-            }
-            Standing::Ask { nonce } => {
-                self.proofs.ask(&self.seal, message.session, nonce);
-                None
-            }
-            Standing::Unknown => None,
+        if let Some(nonce) = standing.ask {
+            self.proofs.ask(&self.seal, message.session, nonce);
         }
+        let after = standing.heard_after?;
+        let mut heard = heard.lock().unwrap_or_else(PoisonError::into_inner);
+        let last = heard.entry(message.session).or_insert(0);
+        let is_new = message.number > after.max(*last);
+        *last = message.number.max(*last);
+        is_new.then_some(message.contents)
     }
 }
 
@@ -130,13 +128,15 @@ impl Network for AuthenticatedNetwork {
         let (process, own_key) = (self.process.clone(), key.to_owned());
         // What was sent before is not heard: this process goes on from its last number, and the others prove themselves anew.
         let heard = Mutex::new(HashMap::from([(process.seal.session(), process.seal.last_number())]));
-        process.sessions.lock().unwrap_or_else(PoisonError::into_inner).forget();
+        let others = self.process.clone();
         let handler = move |bytes: &[u8]| {
             if let Some(contents) = process.admit(&own_key, bytes, &heard) {
                 handler(contents);
             }
         };
-        self.inner.subscribe(key, Box::new(handler))
+        let subscription = self.inner.subscribe(key, Box::new(handler))?;
+        others.sessions.lock().unwrap_or_else(PoisonError::into_inner).forget();
+        Ok(subscription)
     }
 }
 

@@ -3,12 +3,15 @@
 use std::collections::HashMap;
 use std::time::{Duration, Instant};
 
-use super::message_seal::random_number;
 use super::proofs::Proof;
 
-/// A session that has not answered is asked again after this time.
+/// A session that has not answered is asked again after this time, for the same number: its answer may be on its way.
 const ASK_AGAIN: Duration = Duration::from_millis(50);
-/// A session of which nothing was heard for this long must prove itself anew.
+/// A session proves itself again and again after this time, so that nothing is heard that was held back for long.
+const RENEW: Duration = Duration::from_millis(400);
+/// One that has not proved itself for this long is not heard.
+const EXPIRES: Duration = Duration::from_millis(1500);
+/// A session of which nothing was heard for this long is forgotten where there are many.
 const FORGOTTEN: Duration = Duration::from_secs(3);
 /// More sessions than this are not remembered: recordings of many starts cannot fill the memory.
 const MAX_SESSIONS: usize = 256;
@@ -20,69 +23,115 @@ pub(super) struct Sessions {
 }
 
 #[derive(Debug, Clone, Copy)]
-enum Session {
-    /// It was asked to repeat this number.
-    Asked { nonce: u64, at: Instant },
-    /// It has proved itself with its message of this number.
-    Proved { after: u64, heard: Instant },
+struct Session {
+    /// The number that it is to repeat, and when it was asked.
+    asked: Option<(u64, Instant)>,
+    proved: Option<Proved>,
+    heard: Instant,
+}
+
+/// A session has proved itself.
+#[derive(Debug, Clone, Copy)]
+struct Proved {
+    at: Instant,
+    /// The number of its message then.
+    number: u64,
+    /// The same of the proof before: what was sent after that one may still be on its way.
+    number_before: u64,
 }
 
 /// How a session stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Standing {
+pub(super) struct Standing {
     /// It runs: its messages with higher numbers are heard.
-    Proved { after: u64 },
+    pub(super) heard_after: Option<u64>,
     /// It is to be asked to repeat this number.
-    Ask { nonce: u64 },
-    /// It was asked, or there are too many.
-    Unknown,
-}
-
-impl Session {
-    fn is_over(&self, now: Instant) -> bool {
-        let (Self::Asked { at: last, .. } | Self::Proved { heard: last, .. }) = self;
-        now.duration_since(*last) > FORGOTTEN
-    }
+    pub(super) ask: Option<u64>,
 }
 
 impl Sessions {
-    /// How a session stands of which a message has come.
-    pub(super) fn standing(&mut self, session: u64) -> Standing {
-        let now = Instant::now();
-        match self.known.get_mut(&session) {
-            Some(known) if known.is_over(now) => self.ask(session, now),
-            Some(Session::Proved { after, heard }) => {
-                *heard = now;
-                Standing::Proved { after: *after }
-            }
-            Some(Session::Asked { at, .. }) if now.duration_since(*at) < ASK_AGAIN => Standing::Unknown,
-            _ => self.ask(session, now),
+    /// How a session stands of which a message has come. `nonce` gives a number that nobody knows.
+    pub(super) fn standing(&mut self, session: u64, now: Instant, nonce: impl FnOnce() -> u64) -> Standing {
+        let Some(known) = self.entry(session, now) else { return Standing { heard_after: None, ask: None } };
+        known.heard = now;
+        let since = |at: Instant| now.duration_since(at);
+        known.proved = known.proved.filter(|proved| since(proved.at) < EXPIRES);
+        let must_prove = known.proved.is_none_or(|proved| since(proved.at) > RENEW);
+        let ask = match known.asked {
+            Some((_, at)) if !must_prove || since(at) < ASK_AGAIN => None,
+            Some((number, _)) => Some(number),
+            None => must_prove.then(nonce),
+        };
+        if let Some(number) = ask {
+            known.asked = Some((number, now));
         }
+        Standing { heard_after: known.proved.map(|proved| proved.number_before), ask }
     }
 
-    fn ask(&mut self, session: u64, now: Instant) -> Standing {
+    fn entry(&mut self, session: u64, now: Instant) -> Option<&mut Session> {
         if self.known.len() >= MAX_SESSIONS {
-            self.known.retain(|_, known| !known.is_over(now));
+            self.known.retain(|_, known| now.duration_since(known.heard) <= FORGOTTEN);
         }
-        if self.known.len() >= MAX_SESSIONS && !self.known.contains_key(&session) {
-            return Standing::Unknown;
-        }
-        let nonce = random_number();
-        self.known.insert(session, Session::Asked { nonce, at: now });
-        Standing::Ask { nonce }
+        let has_room = self.known.len() < MAX_SESSIONS || self.known.contains_key(&session);
+        has_room.then(|| self.known.entry(session).or_insert(Session { asked: None, proved: None, heard: now }))
     }
 
     /// A session has answered.
-    pub(super) fn prove(&mut self, proof: &Proof) {
-        if let Some(known) = self.known.get_mut(&proof.session)
-            && matches!(known, Session::Asked { nonce, .. } if *nonce == proof.nonce)
-        {
-            *known = Session::Proved { after: proof.after, heard: Instant::now() };
+    pub(super) fn prove(&mut self, proof: &Proof, now: Instant) {
+        let Some(known) = self.known.get_mut(&proof.session) else { return };
+        if known.asked.is_some_and(|(nonce, _)| nonce == proof.nonce) {
+            let number_before = known.proved.map_or(proof.after, |before| before.number);
+            known.proved = Some(Proved { at: now, number: proof.after, number_before });
+            known.asked = None;
         }
     }
 
     /// All must prove themselves anew.
     pub(super) fn forget(&mut self) {
         self.known.clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const OTHER: u64 = 7;
+
+    #[test]
+    fn what_is_held_back_is_not_heard_and_a_slow_answer_counts() {
+        let (mut sessions, start) = (Sessions::default(), Instant::now());
+        let at = |ms: u64| start + Duration::from_millis(ms);
+        let proof = |nonce: u64, after: u64| Proof { session: OTHER, nonce, after };
+        assert_eq!(sessions.standing(OTHER, at(0), || 41), Standing { heard_after: None, ask: Some(41) });
+        // Asked again for the same number: the answer takes longer than the time until then.
+        assert_eq!(sessions.standing(OTHER, at(10), || 42), Standing { heard_after: None, ask: None });
+        assert_eq!(sessions.standing(OTHER, at(60), || 42), Standing { heard_after: None, ask: Some(41) });
+        sessions.prove(&proof(40, 100), at(70));
+        assert_eq!(sessions.standing(OTHER, at(80), || 42).heard_after, None, "another number");
+        sessions.prove(&proof(41, 100), at(100));
+        assert_eq!(sessions.standing(OTHER, at(110), || 43), Standing { heard_after: Some(100), ask: None });
+        // It proves itself again; what was sent between the last two proofs may be on its way, what was before is refused.
+        for round in 0..10_u64 {
+            let now = 600 + 500 * round;
+            let expected = Standing { heard_after: Some(100 + 50 * round.saturating_sub(1)), ask: Some(50 + round) };
+            assert_eq!(sessions.standing(OTHER, at(now), || 50 + round), expected, "round {round}");
+            sessions.prove(&proof(50 + round, 150 + 50 * round), at(now + 1));
+        }
+        // No proof any more, though old messages come: they count no longer than that.
+        let last = 600 + 500 * 9;
+        assert!(sessions.standing(OTHER, at(last + 1400), || 99).heard_after.is_some());
+        assert_eq!(sessions.standing(OTHER, at(last + 1600), || 99).heard_after, None);
+    }
+
+    #[test]
+    fn recordings_of_many_starts_do_not_fill_the_memory() {
+        let (mut sessions, start) = (Sessions::default(), Instant::now());
+        for session in 0..10_000 {
+            sessions.standing(session, start, || session);
+        }
+        assert_eq!(sessions.known.len(), MAX_SESSIONS);
+        let later = start + Duration::from_secs(4);
+        assert_eq!(sessions.standing(20_000, later, || 1).ask, Some(1), "there is room again");
     }
 }
