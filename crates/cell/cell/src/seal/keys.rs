@@ -56,7 +56,7 @@ impl PrivateKey {
     /// Reads the format of [`write`](Self::write).
     ///
     /// # Errors
-    /// [`FormatError`] where it cannot be read, is not a key, or others than its owner may read it.
+    /// [`FormatError`](elbowroom_formats::FormatError) where it cannot be read, is not a key, or others than its owner may read it.
     pub fn read(path: &Path) -> Result<Self> {
         check_private_permissions(path)?;
         let text = text::read(path)?;

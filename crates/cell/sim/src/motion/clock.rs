@@ -26,6 +26,18 @@ pub struct RegionSwitch {
     pub active: bool,
 }
 
+/// The largest share of a joint's top speed that a step uses.
+fn joint_share(step: &PlanStep, limits: &[JointLimits]) -> f64 {
+    match step {
+        PlanStep::Move(m) => m.joint_share,
+        PlanStep::Play(play) | PlanStep::Planned { play, .. } => {
+            let share = |(joint, limit): (usize, &JointLimits)| play.fastest(joint).0 / limit.velocity;
+            limits.iter().enumerate().map(share).fold(0.0, f64::max)
+        }
+        _ => 0.0,
+    }
+}
+
 /// Position of a robot in its program.
 #[derive(Debug)]
 pub struct ProgramClock {
@@ -41,7 +53,7 @@ pub struct ProgramClock {
     programmed: f64,
     here: PathPoint,
     intent: Vec<f64>,
-    /// The largest share of a joint's top speed of the last step with motion.
+    /// The largest share of a joint's top speed of all steps.
     speed_share: f64,
     switches: Vec<RegionSwitch>,
     grips: Vec<GripAction>,
@@ -57,6 +69,7 @@ impl ProgramClock {
         let programmed = plan.speed_override;
         let here =
             PathPoint { dq: vec![0.0; plan.start.len()], ddq: vec![0.0; plan.start.len()], q: plan.start.clone() };
+        let speed_share = plan.steps.iter().map(|step| joint_share(step, &limits)).fold(0.0, f64::max);
         let mut clock = Self {
             plan,
             limits,
@@ -67,7 +80,7 @@ impl ProgramClock {
             programmed,
             intent: here.dq.clone(),
             here,
-            speed_share: 1.0,
+            speed_share,
             switches: Vec::new(),
             grips: Vec::new(),
             tools: Vec::new(),
@@ -91,7 +104,7 @@ impl ProgramClock {
         &self.intent
     }
 
-    /// The largest share of a joint's top speed that the present move uses, or, between moves, the last one.
+    /// The largest share of a joint's top speed that the program uses.
     pub fn speed_share(&self) -> f64 {
         self.speed_share
     }
@@ -286,14 +299,6 @@ impl ProgramClock {
     fn start_step(&mut self) {
         self.execute_instant_steps();
         self.update_point();
-        self.speed_share = match self.plan.steps.get(self.step) {
-            Some(PlanStep::Move(m)) => m.joint_share,
-            Some(PlanStep::Play(play) | PlanStep::Planned { play, .. }) => {
-                let share = |(joint, limit): (usize, &JointLimits)| play.fastest(joint).0 / limit.velocity;
-                self.limits.iter().enumerate().map(share).fold(0.0, f64::max)
-            }
-            _ => self.speed_share,
-        };
         if self.here.dq.iter().any(|v| v.abs() > REST_SPEED) {
             (self.rate, self.rate_change, self.joins) = (0.0, 0.0, true);
         }
