@@ -112,7 +112,7 @@ impl fmt::Display for TextSummary<'_> {
         lines.extend(rec.robots.iter().flat_map(|robot| robot_lines(robot, rec, names, self.width)));
         if !rec.regions.is_empty() {
             lines.push(Line::new());
-            lines.extend(region_lines(rec, if self.is_whole { usize::MAX } else { self.width }));
+            lines.extend(region_lines(rec, self.longest_line()));
         }
         if !rec.deadlocks.is_empty() {
             lines.push(Line::new());
@@ -136,8 +136,12 @@ impl fmt::Display for TextSummary<'_> {
 }
 
 impl TextSummary<'_> {
+    fn longest_line(&self) -> usize {
+        if self.is_whole { usize::MAX } else { self.width }
+    }
+
     fn write_line(&self, f: &mut fmt::Formatter<'_>, line: &Line) -> fmt::Result {
-        let mut left = if self.is_whole { usize::MAX } else { self.width };
+        let mut left = self.longest_line();
         for (text, style) in line {
             let text = clip(text, left);
             left -= text.chars().count();

@@ -9,7 +9,7 @@ use elbowroom_monitor::AccessClass;
 use serde::{Deserialize, Serialize};
 
 use super::change::Change;
-use super::log_head::{LogHead, LogSigner};
+use super::log_head::{LogHead, LogSigner, RESTORE};
 use super::result::Result;
 use super::{hex, text, time};
 
@@ -170,11 +170,7 @@ pub fn control_history(path: &Path) -> Result<ControlHistory> {
 
 /// The entries that are signed, and their lines. At most one line more may be there, or a half one, which was being written.
 fn signed_entries<'t>(path: &Path, text: &'t str, head: Option<&LogHead>) -> Result<(Vec<ControlEntry>, &'t str)> {
-    let wrong = |line: Option<usize>, what: &str| {
-        let hint =
-            "the log and its head from a backup; or keep both as evidence under other names, and begin a new log";
-        FormatError::new(path, line, what).hint(hint)
-    };
+    let wrong = |line: Option<usize>, what: &str| FormatError::new(path, line, what).hint(RESTORE);
     let (count, hash) = head.map_or((0, "0".repeat(64)), |head| (head.entries as usize, head.hash.clone()));
     let lines: Vec<&str> = text.split_inclusive('\n').collect();
     let whole = lines.iter().filter(|line| line.ends_with('\n')).count();
@@ -203,10 +199,7 @@ fn line(entry: &ControlEntry) -> String {
 fn verified(path: &Path, text: &str) -> Result<(Vec<ControlEntry>, String)> {
     let (mut entries, mut head) = (Vec::new(), "0".repeat(64));
     for (number, written) in (1..).zip(text.lines()) {
-        let wrong = |what: &str| {
-            let hint = "the log from a backup; or keep this one as evidence under another name, and begin a new one";
-            FormatError::new(path, number, what).hint(hint)
-        };
+        let wrong = |what: &str| FormatError::new(path, number, what).hint(RESTORE);
         let entry: ControlEntry =
             serde_json::from_str(written).map_err(|_| wrong("is not an entry of a control log, or was modified"))?;
         // Only the form that is written here: otherwise spaces or repeated keys would go unnoticed.

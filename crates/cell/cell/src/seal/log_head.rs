@@ -13,6 +13,9 @@ use super::{hex, secret_file, text};
 const NAME: &str = "control_log";
 const COMMENT: &str =
     "The key that signs the control log of an elbowroom cell: keep it where the service runs, and nowhere else.";
+/// What to do about a log that is not as it was signed.
+pub(super) const RESTORE: &str =
+    "the log and its head from a backup; or keep both as evidence under other names, and begin a new log";
 /// What a signature is for: it is not valid for anything else.
 const CONTEXT: &[u8] = b"elbowroom control log 1\n";
 
@@ -37,9 +40,7 @@ impl LogHead {
         }
         let head: Option<Self> = serde_json::from_str(&text::read(&path)?).ok();
         let head = head.filter(Self::is_signed);
-        let hint =
-            "the log and its head from a backup; or keep both as evidence under other names, and begin a new log";
-        head.map(Some).ok_or_else(|| FormatError::new(&path, None, "is not signed, or was modified").hint(hint))
+        head.map(Some).ok_or_else(|| FormatError::new(&path, None, "is not signed, or was modified").hint(RESTORE))
     }
 
     fn is_signed(&self) -> bool {

@@ -69,7 +69,9 @@ impl ProgramClock {
         let programmed = plan.speed_override;
         let here =
             PathPoint { dq: vec![0.0; plan.start.len()], ddq: vec![0.0; plan.start.len()], q: plan.start.clone() };
-        let speed_share = plan.steps.iter().map(|step| joint_share(step, &limits)).fold(0.0, f64::max);
+        let fastest = plan.steps.iter().map(|step| joint_share(step, &limits)).fold(0.0, f64::max);
+        // A program without moves says nothing of how fast its robot may return.
+        let speed_share = if fastest > 0.0 { fastest } else { 1.0 };
         let mut clock = Self {
             plan,
             limits,
@@ -104,7 +106,7 @@ impl ProgramClock {
         &self.intent
     }
 
-    /// The largest share of a joint's top speed that the program uses.
+    /// The largest share of a joint's top speed that the program uses; 1 for one without moves.
     pub fn speed_share(&self) -> f64 {
         self.speed_share
     }
@@ -394,5 +396,30 @@ impl ProgramClock {
         if moves && self.time < ahead {
             self.intent = self.point_at(ahead).map_or_else(Vec::new, |p| p.dq);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motion::plan;
+    use elbowroom_robot::RobotId;
+
+    /// Detours are no faster than the fastest move of the program that the cell file has.
+    #[test]
+    fn the_share_of_a_program_is_that_of_its_fastest_move() {
+        let share = |steps: &str| {
+            let text = format!(
+                "version = 1\nunits = {{ length = \"mm\", angle = \"deg\" }}\n[robot.rail]\n\
+                 dh = [{{ kind = \"prismatic\", min = 0, max = 2000, speed = 1000 }}]\n[program.rail]\nsteps = [{steps}]\n"
+            );
+            let cell = elbowroom_cell::Cell::parse("rail.toml", &text).unwrap();
+            let plan = plan(&cell, RobotId(0), 1, &mut Vec::new()).unwrap();
+            ProgramClock::new(plan, cell.robots[0].limits.clone()).speed_share()
+        };
+        let [slow, fast] = [10, 30].map(|speed| format!("{{ move = \"joint\", to = [{speed}], speed = {speed} }},"));
+        assert!((share(&format!("{slow}{fast}{slow}")) - 0.3).abs() < 1e-9);
+        assert!((share(&slow) - 0.1).abs() < 1e-9);
+        assert_eq!(share("{ wait = 1 }"), 1.0);
     }
 }

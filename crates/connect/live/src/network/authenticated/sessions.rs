@@ -7,6 +7,8 @@ use super::proofs::Proof;
 
 /// A session that has not answered is asked again after this time, for the same number: its answer may be on its way.
 const ASK_AGAIN: Duration = Duration::from_millis(50);
+/// An answer counts for so long after the number was first asked for: one that is held back proves nothing of now.
+const ANSWERS: Duration = Duration::from_millis(500);
 /// A session proves itself again and again after this time, so that nothing is heard that was held back for long.
 const RENEW: Duration = Duration::from_millis(400);
 /// One that has not proved itself for this long is not heard.
@@ -24,10 +26,17 @@ pub(super) struct Sessions {
 
 #[derive(Debug, Clone, Copy)]
 struct Session {
-    /// The number that it is to repeat, and when it was asked.
-    asked: Option<(u64, Instant)>,
+    asked: Option<Asked>,
     proved: Option<Proved>,
     heard: Instant,
+}
+
+/// A session was asked to repeat a number.
+#[derive(Debug, Clone, Copy)]
+struct Asked {
+    nonce: u64,
+    first: Instant,
+    last: Instant,
 }
 
 /// A session has proved itself.
@@ -57,15 +66,14 @@ impl Sessions {
         let since = |at: Instant| now.duration_since(at);
         known.proved = known.proved.filter(|proved| since(proved.at) < EXPIRES);
         let must_prove = known.proved.is_none_or(|proved| since(proved.at) > RENEW);
-        let ask = match known.asked {
-            Some((_, at)) if !must_prove || since(at) < ASK_AGAIN => None,
-            Some((number, _)) => Some(number),
-            None => must_prove.then(nonce),
-        };
-        if let Some(number) = ask {
-            known.asked = Some((number, now));
+        let heard_after = known.proved.map(|proved| proved.number_before);
+        let waiting = known.asked.filter(|asked| since(asked.first) < ANSWERS);
+        if !must_prove || waiting.is_some_and(|asked| since(asked.last) < ASK_AGAIN) {
+            return Standing { heard_after, ask: None };
         }
-        Standing { heard_after: known.proved.map(|proved| proved.number_before), ask }
+        let asked = waiting.unwrap_or_else(|| Asked { nonce: nonce(), first: now, last: now });
+        known.asked = Some(Asked { last: now, ..asked });
+        Standing { heard_after, ask: Some(asked.nonce) }
     }
 
     fn entry(&mut self, session: u64, now: Instant) -> Option<&mut Session> {
@@ -79,7 +87,8 @@ impl Sessions {
     /// A session has answered.
     pub(super) fn prove(&mut self, proof: &Proof, now: Instant) {
         let Some(known) = self.known.get_mut(&proof.session) else { return };
-        if known.asked.is_some_and(|(nonce, _)| nonce == proof.nonce) {
+        let is_answer = |asked: Asked| asked.nonce == proof.nonce && now.duration_since(asked.first) < ANSWERS;
+        if known.asked.is_some_and(is_answer) {
             let number_before = known.proved.map_or(proof.after, |before| before.number);
             known.proved = Some(Proved { at: now, number: proof.after, number_before });
             known.asked = None;
@@ -122,6 +131,13 @@ mod tests {
         let last = 600 + 500 * 9;
         assert!(sessions.standing(OTHER, at(last + 1400), || 99).heard_after.is_some());
         assert_eq!(sessions.standing(OTHER, at(last + 1600), || 99).heard_after, None);
+        // An answer that was held back comes too late, and later questions ask for another number.
+        sessions.prove(&proof(99, 900), at(last + 2000));
+        assert_eq!(sessions.standing(OTHER, at(last + 2000), || 100), Standing { heard_after: None, ask: Some(100) });
+        sessions.prove(&proof(99, 900), at(last + 2010));
+        assert_eq!(sessions.standing(OTHER, at(last + 2020), || 101).heard_after, None);
+        sessions.prove(&proof(100, 901), at(last + 2030));
+        assert_eq!(sessions.standing(OTHER, at(last + 2040), || 101).heard_after, Some(901));
     }
 
     #[test]
