@@ -23,8 +23,10 @@ pub struct CellSensor {
     pub folder: Option<PathBuf>,
     /// The joint values at their times.
     pub joints: Option<PathBuf>,
-    /// Time (s) from a stamp until its obstacles count in a run: transmission, perception, planning.
+    /// Time (s) from a stamp until its obstacles count in a run: transmission and perception.
     pub latency_s: f64,
+    /// Time (s) that a search for a path around its obstacles may take in a run, and takes.
+    pub search_s: f64,
     /// Time (s) after the last stamp from which nothing is known any more in a run.
     pub stale_s: f64,
     /// The robots that keep clear of its obstacles in a run.

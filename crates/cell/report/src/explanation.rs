@@ -17,7 +17,7 @@ pub fn explanation(robot: &RobotTrack, index: usize, recording: &Recording) -> S
     let hold = holds.rfind(|h| h.from_s <= sample.t_s && sample.t_s <= h.to_s);
     parts.extend(hold.map(|h| match h.reason {
         HoldReason::Obstacle => format!("{} blocks its path", h.by),
-        HoldReason::Stale => format!("{} sees nothing", h.by),
+        HoldReason::Stale => format!("{} has sent nothing usable for too long", h.by),
     }));
     if sample.reason != OverrideReason::Free || parts.is_empty() {
         parts.push(reason_text(sample.reason, recording));

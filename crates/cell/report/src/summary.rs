@@ -263,7 +263,9 @@ fn kept_clear(track: &PerceptionTrack) -> Vec<String> {
     let [in_motion, from_rest] = [p.replans_in_motion, p.replans_from_rest];
     let blind = (p.stale_s > 0.0).then(|| format!("waited {:.2} s for pictures", p.stale_s));
     let paths = format!("new paths: {in_motion} in motion, {from_rest} from rest; waited {:.2} s", p.waited_s);
-    std::iter::once(paths).chain(blind).collect()
+    let searches = (p.replans_failed > 0).then(|| format!("searches without a path: {}", p.replans_failed));
+    let longest = (!track.replans.is_empty()).then(|| format!("longest search {:.0} ms", 1e3 * p.longest_search_s));
+    [Some(paths), searches, longest, blind].into_iter().flatten().collect()
 }
 
 /// What a sensor sent and saw.
@@ -277,7 +279,7 @@ fn sensor_line(track: &SensorTrack) -> Line {
     };
     let time = duration(s.processing_ns.p50);
     let text = format!("  {} {}: {} {what}{rejected}, {obstacles}", pad(track.kind, 7), s.name, s.frames);
-    vec![(text, Style::Plain), (format!(", {time} to motion"), Style::Dim)]
+    vec![(text, Style::Plain), (format!(", {time} each"), Style::Dim)]
 }
 
 /// Description of the outcome of a robot's program.

@@ -125,6 +125,8 @@ pub struct PerceptionSummary {
     pub replans_from_rest: usize,
     /// Searches that found no path.
     pub replans_failed: usize,
+    /// Wall-clock time of the longest search, s; 0 without searches.
+    pub longest_search_s: f64,
     /// Time in which it braked or stood because of an obstacle, s.
     pub waited_s: f64,
     /// Time in which it braked or stood because a sensor had sent nothing for too long, s.
@@ -156,6 +158,7 @@ impl From<&PerceptionTrack> for PerceptionSummary {
             replans_in_motion: count(Some(true)),
             replans_from_rest: count(Some(false)),
             replans_failed: count(None),
+            longest_search_s: track.replans.iter().map(|r| r.search_s).fold(0.0, f64::max),
             waited_s: time(HoldReason::Obstacle),
             stale_s: time(HoldReason::Stale),
             holds: track.holds.iter().map(hold).collect(),

@@ -24,17 +24,22 @@ pub(crate) fn watch(args: &WatchArgs) -> Result<ExitStatus, Failure> {
     };
     let request = WatchRequest { sensor: args.camera.clone(), input, joints: args.joints.clone() };
     let mut watch = SensorWatch::new(&cell, &request)?;
-    watch.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
+    note_warnings(&mut watch);
     let mut output = WatchOutput::begin(args.json)?;
     if is_stream {
         watch_stream(&mut watch, period_s, &mut output)?;
     } else {
         for index in 0..watch.files().len() {
             output.add(&watch.record(index))?;
+            note_warnings(&mut watch);
         }
     }
     output.end()?;
     Ok(ExitStatus::Success)
+}
+
+fn note_warnings(watch: &mut SensorWatch) {
+    watch.warnings.drain(..).for_each(|w| note(format_args!("warning: {w}")));
 }
 
 /// The period of `--fps`, s.
@@ -63,6 +68,7 @@ fn watch_stream(watch: &mut SensorWatch, period_s: Option<f64>, output: &mut Wat
         let Some(picture) = picture else { break };
         let t_s = period_s.map_or_else(|| begin.elapsed().as_secs_f64(), |period_s| index as f64 * period_s);
         output.add(&watch.record_bytes(&picture, Path::new(&format!("picture {index}")), t_s))?;
+        note_warnings(watch);
     }
     Ok(())
 }

@@ -21,6 +21,10 @@ use serde_json::Value;
 
 const PERIOD_S: f64 = 0.04;
 const FRAMES: usize = 170;
+/// From a picture to its use, s.
+const LATENCY_S: f64 = 0.06;
+/// What a search takes where nothing else is stated, s.
+const SEARCH_S: f64 = 0.2;
 /// Pictures before the start of the run, of the empty cell.
 const LEARNING: usize = 30;
 /// Length, width and height of the crate, m.
@@ -353,7 +357,7 @@ fn check_run(dir: &Path, answer: &Answer, sensors: &str, records_name: &str) {
     let worst_unknown_m = unknown.iter().copied().fold(0.0, f64::max);
     println!("{sensors}: before the height is known: {} frames, worst {:.0} mm", unknown.len(), worst_unknown_m * 1e3);
     let ms = |key: &str| sensor["processing_ns"][key].as_f64().unwrap() / 1e6;
-    println!("{sensors}: frame to motion median {:.1} ms, worst {:.1} ms", ms("p50"), ms("max"));
+    println!("{sensors}: frame to checked path median {:.1} ms, worst {:.1} ms", ms("p50"), ms("max"));
     println!(
         "{sensors}: new paths {} in motion, {} from rest, {} searches without one; waited {} s",
         p["replans_in_motion"], p["replans_from_rest"], p["replans_failed"], p["waited_s"]
@@ -367,7 +371,14 @@ fn check_run(dir: &Path, answer: &Answer, sensors: &str, records_name: &str) {
     // Twelve pictures, 0.5 s, at most; each contains the crate.
     assert!(unknown.len() <= 12 && worst_unknown_m < 0.25, "{unknown:?}");
     assert!(p["replans_in_motion"].as_u64().unwrap() + p["replans_from_rest"].as_u64().unwrap() > 0, "{p}");
-    assert!(events(dir).contains(",kr,,replan"), "{}", events(dir));
+    let events = events(dir);
+    let replan = events.lines().find(|l| l.ends_with(",kr,,replan")).unwrap_or_else(|| panic!("{events}"));
+    // A search takes its time, from when the first picture that shows the crate counts.
+    let replan_s: f64 = replan.split(',').next().unwrap().parse().unwrap();
+    let shows = |r: &&Value| r["status"] == "accepted" && !r["obstacles"].as_array().unwrap().is_empty();
+    let shown_s = records(dir, records_name).iter().find(shows).unwrap()["t_s"].as_f64().unwrap();
+    assert!(replan_s >= shown_s + LATENCY_S + SEARCH_S - 1e-9, "{replan_s} s after {shown_s} s");
+    assert!(p["longest_search_s"].as_f64().unwrap() < 2.0 * SEARCH_S, "{p}");
     // The points are 20 mm apart: no point of the surface is farther from one of them than 15 mm.
     assert!(least_m > 0.03, "{least_m} m at {when_s} s");
     assert!(hoist["entered"] == false, "{hoist}");
@@ -485,6 +496,43 @@ fn a_joint_move_waits_until_the_crate_has_left() {
     assert!(least_m > 0.03, "{least_m} m at {when_s} s");
 }
 
+/// The crate stands where the arm must end: no search can find a path, and nothing changes.
+#[test]
+fn an_unchanged_crate_is_not_searched_around_for_ever() {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("cell.toml"), cell(CAMERA, "planned").replace("to = [-60,", "to = [0,")).unwrap();
+    write_pictures(dir.path(), FRAMES, f64::INFINITY);
+    let answer = run(dir.path()).expect(0);
+    let robot = &answer.json()["robots"][0];
+    let p = &robot["perception"];
+    println!("{} searches without a path, the longest {} s", p["replans_failed"], p["longest_search_s"]);
+    // It stands from 2 s on for 4 s: four searches, each longer than the one before. Searches before that are in motion.
+    assert!((1..=12).contains(&p["replans_failed"].as_u64().unwrap()), "{p}");
+    assert!(p["longest_search_s"].as_f64().unwrap() < 10.0 * SEARCH_S, "{p}");
+    // The pictures end, but what stands in the way is the crate.
+    assert!(robot["outcome"] == "stopped" && robot["by"] == "above#1", "{robot}");
+}
+
+/// An arm that stands while the empty cell is learnt hides floor, which is said at once; one that moves hides none.
+#[test]
+fn floor_that_the_arm_hid_from_the_first_pictures_is_reported() {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("cell.toml"), cell(CAMERA, "planned")).unwrap();
+    write_pictures(dir.path(), LEARNING + 2, f64::INFINITY);
+    let watched = |command: &[&str]| elbowroom(dir.path(), command).expect(0);
+    let moving = watched(&["watch", "cell.toml", "--json"]);
+    assert!(!moving.stderr.contains("hidden") && !moving.stdout.contains("hidden_floor"), "{}", moving.stderr);
+    let joints = "t_s,joint_1,joint_2,joint_3,joint_4,joint_5,joint_6\n";
+    let q = learning_joints(0.0).map(|v| format!("{v:.9}")).join(",");
+    std::fs::write(dir.path().join("learning.csv"), format!("{joints}-2,{q}\n0,{q}\n")).unwrap();
+    let standing = watched(&["watch", "cell.toml", "--json"]);
+    let (before, said) = standing.stdout.split_once("\"hidden_floor\":").expect("the record that ends learning");
+    assert_eq!(before.lines().count(), LEARNING, "{said}");
+    for answer in [standing.stderr, watched(&["run", "cell.toml"]).stderr] {
+        assert!(answer.contains("m² of the floor") && answer.contains("cell.toml:"), "{answer}");
+    }
+}
+
 #[test]
 fn a_camera_that_sees_no_more_stops_the_arm() {
     let dir = tempfile::tempdir().unwrap();
@@ -502,7 +550,7 @@ fn a_camera_that_sees_no_more_stops_the_arm() {
     let stale_s: f64 = stale.split(',').next().unwrap().parse().unwrap();
     assert!((stale_s - 0.86).abs() < 0.01, "{stale}");
     let text = elbowroom(dir.path(), &["run", "cell.toml"]).expect(0).stdout;
-    assert!(text.contains("above sees nothing") && text.contains("40 pictures"), "{text}");
+    assert!(text.contains("above has sent nothing usable for too long") && text.contains("40 pictures"), "{text}");
 }
 
 #[test]
@@ -520,6 +568,7 @@ fn keys_of_sensors_are_checked() {
         (&camera, "latency_ms = 60", "latency_ms = -1", "must be 0 or more"),
         (&camera, "latency_ms = 60", "latency_ms = 60\nstale_ms = 50", "longer than the latency"),
         (&camera, "latency_ms = 60", "latency_ms = 60\nstale_ms = 0", "above 0"),
+        (&camera, "latency_ms = 60", "search_ms = 0", "above 0"),
         (&camera, "latency_ms = 60", "robots = [\"kuka\"]", "kuka"),
         (&camera, "latency_ms = 60", "robots = [\"kr\", \"kr\"]", "second time"),
         (&camera, "latency_ms = 60", "robots = \"kr\"", "a list"),

@@ -10,8 +10,8 @@ use crate::object_tracker::ObjectTracker;
 use crate::report::{FrameReport, FrameStatus, RejectReason, StageTimings};
 use crate::stopwatch::Stopwatch;
 use crate::{
-    Calibration, CameraTrackerSettings, Channels, ConnectedComponents, Frame, Illumination, PixelMask, Point2,
-    VisionError,
+    Calibration, CameraTrackerSettings, Channels, ConnectedComponents, Frame, HiddenFloor, Illumination, PixelMask,
+    Point2, VisionError,
 };
 use crate::{frame_check, polygon, raster, shadow};
 
@@ -156,6 +156,11 @@ impl CameraTracker {
     /// The foreground of the last frame, one byte per pixel: 1 where there is an object.
     pub fn foreground(&self) -> &[u8] {
         &self.foreground
+    }
+
+    /// The floor of the area that was masked in every picture of the empty cell so far; `None` where all of it was seen.
+    pub fn hidden_floor(&self) -> Option<HiddenFloor> {
+        HiddenFloor::of(&self.learning_counts, self.width, &self.calibration, &self.settings)
     }
 
     /// Discards the background model: the next frames must show the empty cell. Obstacles are kept meanwhile.

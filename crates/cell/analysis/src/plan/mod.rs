@@ -126,8 +126,10 @@ pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, FormatErro
     let goals = goals(cell, &scene, &state, id, &request.to, request.options.seed)?;
     let clearance_m = if request.options.clearance_m.is_finite() { request.options.clearance_m } else { 0.0 };
     // A link without bounds cannot be covered; the exact scene plans for it.
-    let model = CoverModel::with_covers(&scene, &state, id, clearance_m, &CoverCache::of_user()).ok();
-    let obstacles = model.as_ref().map(|model| CoverObstacles::new(model, &scene, &state, clearance_m));
+    let covers = CoverCache::of_user();
+    let model = CoverModel::with_covers(&scene, &state, id, clearance_m, &covers).ok();
+    let obstacles =
+        model.as_ref().map(|model| CoverObstacles::with_covers(model, &scene, &state, clearance_m, &covers));
     let period_s = request.period_s.unwrap_or(cell.tick_s);
     region_constraint::at_start(cell, id, from, &request.carried, clearance_m, |constraint| {
         let regions = constraint.as_ref().map(RegionConstraint::names).unwrap_or_default();

@@ -20,7 +20,7 @@ use crate::map::{axes, select_map};
 use joint_track::JointTrack;
 use sensor::Sensor;
 
-pub use record::{WatchRecord, WatchStatus, WatchedObstacle};
+pub use record::{HiddenFloorRecord, WatchRecord, WatchStatus, WatchedObstacle};
 
 /// Largest picture or cloud, bytes.
 const MAX_BYTES: u64 = 1 << 30;
@@ -55,8 +55,10 @@ pub enum WatchInput {
 /// A sensor of a cell, its pictures or clouds, and the map of a robot.
 #[derive(Debug)]
 pub struct SensorWatch {
-    /// What the user should know.
+    /// What the user should know; records can add to it.
     pub warnings: Vec<Warning>,
+    /// A warning about the sensor, still without text.
+    about: Warning,
     files: Vec<FrameFile>,
     joints: JointTrack,
     sensor: Sensor,
@@ -119,8 +121,9 @@ impl SensorWatch {
             .map(|r| WatchedRobot { robot: r.robot.clone(), base_in_world: r.base_in_world })
             .collect();
         let refuse = |what: String| refusal(cell, sensor, &what);
+        let about = Warning::new(&cell.file, sensor.line, format!("{} \"{}\": ", sensor.table(), sensor.name));
         let sensor = Sensor::new(sensor, robots, fixed_objects(cell), builder).map_err(|e| refuse(e.to_string()))?;
-        Ok(Self { warnings, files, joints, sensor, mapped })
+        Ok(Self { warnings, about, files, joints, sensor, mapped })
     }
 
     /// The pictures or clouds of the folder, in the order of time; empty for a stream.
@@ -197,7 +200,13 @@ impl SensorWatch {
     fn process(&mut self, bytes: &[u8], name: &Path, t_s: f64, q: Option<&[Vec<f64>]>) -> WatchRecord {
         let q = q.map_or_else(|| self.joints.at(t_s), |q| Ok(q.to_vec()));
         let result = q.and_then(|q| self.sensor.process(bytes, name, t_s, &q).map_err(|e| e.to_string()));
-        WatchRecord::of(name, t_s, result, &self.sensor)
+        let record = WatchRecord::of(name, t_s, result, &self.sensor);
+        if let Some(hidden) = &record.hidden_floor {
+            let about = self.about.clone();
+            self.warnings
+                .push(Warning { what: format!("{}{hidden}", about.what), ..about }.hint(record::SHOW_THE_FLOOR));
+        }
+        record
     }
 }
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use elbowroom_perception::{ObstacleUpdate, Prism};
-use elbowroom_vision::{FrameStatus, RejectReason};
+use elbowroom_vision::{FrameStatus, HiddenFloor, RejectReason};
 use serde::Serialize;
 
 use super::sensor::Sensor;
@@ -41,6 +41,40 @@ pub struct WatchedObstacle {
     pub seen: bool,
 }
 
+/// Floor that was hidden in all pictures of the empty cell.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct HiddenFloorRecord {
+    /// Smallest world x and y, m.
+    pub from_m: [f64; 2],
+    /// Largest world x and y, m.
+    pub to_m: [f64; 2],
+    /// Its area, m².
+    pub area_m2: f64,
+}
+
+impl HiddenFloorRecord {
+    fn of(hidden: &HiddenFloor) -> Self {
+        let HiddenFloor { min_m, max_m, area_m2 } = *hidden;
+        Self { from_m: [min_m.x, min_m.y], to_m: [max_m.x, max_m.y], area_m2 }
+    }
+}
+
+impl std::fmt::Display for HiddenFloorRecord {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let ([x0, y0], [x1, y1]) = (self.from_m, self.to_m);
+        write!(
+            f,
+            "{:.2} m² of the floor, within x {x0:.2} to {x1:.2} m and y {y0:.2} to {y1:.2} m, were hidden by robots in all \
+             pictures of the empty cell: unknown, they count as an obstacle wherever they can be seen later",
+            self.area_m2
+        )
+    }
+}
+
+/// How floor is shown that was hidden.
+pub(crate) const SHOW_THE_FLOOR: &str =
+    "robots that move while the empty cell is learnt, or an `area` without the floor that they always hide";
+
 /// What one picture shows.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct WatchRecord {
@@ -52,6 +86,9 @@ pub struct WatchRecord {
     pub status: WatchStatus,
     /// Why it was rejected; null otherwise.
     pub reason: Option<String>,
+    /// In the last picture of the empty cell: the floor that none of them showed, and that counts as an obstacle.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hidden_floor: Option<HiddenFloorRecord>,
     /// All obstacles.
     pub obstacles: Vec<WatchedObstacle>,
     /// Obstacles that entered.
@@ -71,11 +108,14 @@ impl WatchRecord {
         match result {
             Ok(update) => {
                 let (status, reason) = status(&update.status);
+                let has_learnt = update.status == FrameStatus::Learning { frames_left: 0 };
+                let hidden = sensor.hidden_floor().filter(|_| has_learnt);
                 Self {
                     t_s,
                     frame,
                     status,
                     reason,
+                    hidden_floor: hidden.as_ref().map(HiddenFloorRecord::of),
                     obstacles: update.prisms.iter().map(WatchedObstacle::of).collect(),
                     entered: update.entered.iter().map(|id| id.0).collect(),
                     left: update.left.iter().map(|id| id.0).collect(),
@@ -88,6 +128,7 @@ impl WatchRecord {
                 frame,
                 status: WatchStatus::Rejected,
                 reason: Some(reason),
+                hidden_floor: None,
                 obstacles: sensor.prisms().iter().map(WatchedObstacle::of).collect(),
                 entered: Vec::new(),
                 left: Vec::new(),

@@ -8,7 +8,7 @@ use elbowroom_perception::{
     CloudWatcher, ObstacleUpdate, ObstacleWatcher, PerceptionError, PerceptionSettings, Prism, WatchedRobot,
 };
 use elbowroom_vision::cloud::PointCloud;
-use elbowroom_vision::{ArmPart, Camera, Frame, decode, decode_grey16};
+use elbowroom_vision::{ArmPart, Camera, Frame, HiddenFloor, decode, decode_grey16};
 
 /// Decodes what a sensor sends, and tracks what it sees.
 #[derive(Debug)]
@@ -52,6 +52,14 @@ impl Sensor {
         match self {
             Self::Camera { watcher, .. } => watcher.prisms(),
             Self::Cloud { watcher, .. } => watcher.prisms(),
+        }
+    }
+
+    /// The floor that was hidden while the empty cell was learnt; of a camera.
+    pub fn hidden_floor(&self) -> Option<HiddenFloor> {
+        match self {
+            Self::Camera { watcher, .. } => watcher.tracker().hidden_floor(),
+            Self::Cloud { .. } => None,
         }
     }
 

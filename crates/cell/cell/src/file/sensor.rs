@@ -13,13 +13,15 @@ use crate::{Cell, CellSensor, SensorKind, Units};
 type Result<T> = std::result::Result<T, FormatError>;
 
 /// Keys of every sensor, beside the one of its folder.
-pub(super) const KEYS: [&str; 9] =
-    ["pose", "area", "floor", "robot", "prediction", "joints", "latency_ms", "stale_ms", "robots"];
+pub(super) const KEYS: [&str; 10] =
+    ["pose", "area", "floor", "robot", "prediction", "joints", "latency_ms", "search_ms", "stale_ms", "robots"];
 const AREA: &str = "area = [[-1500, -1000], [1500, -1000], [1500, 1000], [-1500, 1000]]";
 /// Largest picture, pixels along a side.
 const MOST_PIXELS: u32 = 16_384;
 /// Latency of a picture where none is stated, s.
 const LATENCY_S: f64 = 0.1;
+/// Time that a search for a path takes where none is stated, s.
+const SEARCH_S: f64 = 0.2;
 /// Age at which the last picture is stale where none is stated, s.
 const STALE_S: f64 = 0.5;
 
@@ -42,6 +44,7 @@ pub(super) fn sensor(name: &str, t: &Table<'_>, cell: &Cell, folder_key: &str, k
         folder: t.get(folder_key).map(|v| folder(&v, folder_key)).transpose()?,
         joints: t.get("joints").map(|v| super::models::path(&v)).transpose()?,
         latency_s,
+        search_s: milliseconds("search_ms", SEARCH_S)?,
         stale_s,
         robots: robots(t, cell)?,
     })

@@ -12,9 +12,11 @@ mod outcome;
 mod override_delay;
 mod path_ahead;
 mod path_replanner;
+mod path_search;
 mod perceived_obstacles;
 mod region_recorder;
 mod release;
+mod sensor_guards;
 mod stop_state;
 mod surroundings;
 mod wait_for_graph;
@@ -33,7 +35,7 @@ use elbowroom_monitor::{
     ZoneArbiter,
 };
 use elbowroom_robot::{GeometryId, ObjectId, Robot, RobotId};
-use elbowroom_scene::{FirstContact, FirstContacts, MovedObject, Object};
+use elbowroom_scene::{FirstContact, FirstContacts, MovedObject};
 use elbowroom_spatial::Pose;
 
 use crate::motion::{GripAction, ProgramClock, RegionSwitch, plan};
@@ -48,12 +50,11 @@ use deadlock_detector::DeadlockDetector;
 pub use fault_injection::{InputFault, InputFaultKind};
 use idle_detector::{IDLE_TIMEOUT_S, IdleDetector, STANDSTILL_TIMEOUT_S};
 pub use observer::{ObservedInstant, ObservedTick, RunObserver};
-use obstacle_guard::ObstacleGuard;
+use obstacle_guard::{ObstacleGuard, obstacle_guards};
 use override_delay::OverrideDelay;
 use perceived_obstacles::PerceivedObstacles;
 use region_recorder::RegionRecorder;
 use stop_state::StopState;
-use surroundings::Surroundings;
 use wait_for_graph::WaitForGraph;
 use zone_claims::ZoneClaims;
 
@@ -157,7 +158,7 @@ pub fn simulate_observed(
         let plan = plan(cell, RobotId(i), options.repeat, &mut notes)?;
         // A robot with avoidance or with planned moves around obstacles leaves its program: its claims are not known.
         let avoids = options.avoidance && cell.avoidance.get(i).is_some_and(Option::is_some);
-        let replans = plan.has_planned_moves() && perceived.guards(RobotId(i));
+        let replans = plan.has_planned_moves() && perceived.search_s(RobotId(i)).is_some();
         let keeps_to_plan = options.apply_override && !avoids && !replans;
         let arbiter = arbiter.as_deref().filter(|_| keeps_to_plan);
         claims.push(arbiter.and_then(|arbiter| ZoneClaims::of_plan(cell, RobotId(i), &setups[i], &plan, arbiter)));
@@ -171,7 +172,7 @@ pub fn simulate_observed(
     if let Some(observer) = observer {
         run.observer = Some(observer);
     }
-    run.guards = obstacle_guards(cell, &perceived, &run.avoiding, &mut notes)?;
+    run.guards = obstacle_guards(cell, &perceived, (&run.avoiding, &run.states), &mut notes)?;
     run.perceived = Some(perceived);
     let mut tick = 0_u64;
     loop {
@@ -186,36 +187,12 @@ pub fn simulate_observed(
         run.tick(t_s)?;
         if let Some(end) = run.end(t_s) {
             notes.extend(run.avoiding.iter().flatten().filter_map(|a| a.fault_warning(cell)));
+            run.perceived.iter_mut().for_each(|p| p.take_warnings(&mut notes));
             return Ok(RunOutcome { recording: run.finish(t_s, end), notes });
         }
         run.advance();
         tick += 1;
     }
-}
-
-/// Per robot its guard against what sensors see; `None` for one that no sensor guards.
-fn obstacle_guards<'a>(
-    cell: &'a Cell,
-    perceived: &PerceivedObstacles<'_>,
-    avoiding: &[Option<AvoidingRobot<'_>>],
-    notes: &mut Vec<Warning>,
-) -> Result<Vec<Option<ObstacleGuard<'a>>>, FormatError> {
-    let mut guards = Vec::new();
-    for (i, robot) in cell.robots.iter().enumerate() {
-        let is_guarded = perceived.guards(RobotId(i));
-        if is_guarded && avoiding[i].is_some() {
-            let what = format!(
-                "robot \"{}\" has [avoidance.{}], which does not know what sensors see: it does not keep clear of that",
-                robot.name, robot.name
-            );
-            notes.push(
-                Warning::new(&cell.file, robot.line, what).hint("run --no-avoidance, or robots = [...] of the sensor"),
-            );
-        }
-        let guard = is_guarded && avoiding[i].is_none();
-        guards.push(guard.then(|| ObstacleGuard::new(cell, RobotId(i))).transpose()?);
-    }
-    Ok(guards)
 }
 
 struct Simulation<'a> {
@@ -479,75 +456,6 @@ impl<'a> Simulation<'a> {
             }
         }
         Ok(())
-    }
-
-    /// Takes in the pictures that are due; guarded robots replan, or are held.
-    fn perceive(&mut self, t_s: f64) {
-        let Some(mut perceived) = self.perceived.take() else { return };
-        let begin = Instant::now();
-        let has_news = perceived.take_in(t_s, &|stamp_s| self.joint_values_at(stamp_s));
-        for i in 0..self.guards.len() {
-            if self.is_silent(i, t_s) {
-                continue;
-            }
-            let Some(mut guard) = self.guards[i].take() else { continue };
-            self.keep_clear(i, &mut guard, &perceived, has_news, t_s);
-            self.guards[i] = Some(guard);
-        }
-        if has_news {
-            perceived.add_processing_time(begin.elapsed().as_nanos() as u64);
-        }
-        self.perceived = Some(perceived);
-    }
-
-    /// Replans or holds a robot, so that it keeps clear of what sensors see.
-    fn keep_clear(
-        &mut self,
-        i: usize,
-        guard: &mut ObstacleGuard<'_>,
-        perceived: &PerceivedObstacles<'_>,
-        has_news: bool,
-        t_s: f64,
-    ) {
-        let (cell, setups, states, monitors) = (self.cell, self.setups, &self.states[..], &self.monitors);
-        let (frames, checker, parts) = (&self.frames, &self.checker, &self.parts);
-        let clock = &mut self.clocks[i];
-        let surroundings = || Surroundings {
-            states,
-            objects: (0..cell.objects.len())
-                .map(|o| Object { in_world: checker.object_in_world(ObjectId(o)), ..cell.objects[o].clone() })
-                .collect(),
-            attachments: parts.attachments().to_vec(),
-            perceived: perceived.obstacles(RobotId(i)).cloned().collect(),
-        };
-        let regions = |share: f64| {
-            let sources = frames.sources(&setups[i].sources, states, t_s);
-            RegionConstraint::new(&monitors[i], &sources, share, 0.0)
-        };
-        let has_new_path = guard.observe(t_s, clock, perceived, has_news, surroundings, regions);
-        let stale = if clock.moving() { perceived.stale(RobotId(i), t_s) } else { None };
-        let held = guard.hold(t_s, clock, stale, cell.laws.reaction_delay_s, cell.tick_s).cloned();
-        if has_new_path {
-            self.event(t_s, i, "", RunEvent::Replan);
-        }
-        if let Some((reason, by)) = held.as_ref().filter(|_| held != self.holds[i]) {
-            let event = if *reason == HoldReason::Stale { RunEvent::Stale } else { RunEvent::Wait };
-            self.event(t_s, i, by, event);
-        }
-        self.holds[i] = held;
-    }
-
-    /// The joint values of all robots at a time up to now: those of the last tick before it.
-    fn joint_values_at(&self, t_s: f64) -> Vec<Vec<f64>> {
-        let of_robot = |(track, state): (&RobotTrack, &ChainState)| {
-            let next = track.samples.partition_point(|s| s.t_s <= t_s);
-            match (next.checked_sub(1).and_then(|i| track.samples.get(i)), track.samples.get(next)) {
-                (Some(before), Some(_)) => before.q.clone(),
-                (None, Some(first)) => first.q.clone(),
-                (_, None) => state.q.clone(),
-            }
-        };
-        self.tracks.iter().zip(&self.states).map(of_robot).collect()
     }
 
     /// In the order of each program. A robot that grips what another one holds waits for the other's steps of this

@@ -1,15 +1,19 @@
 //! Keeps a robot clear of what sensors see: its path is checked against the obstacles of each picture, replanned where that is
 //! possible, and the robot stops in time where it is not.
 
-use elbowroom_cell::region_constraint::RegionConstraint;
+use std::time::{Duration, Instant};
+
 use elbowroom_cell::{Cell, OutOfReachProofs, QueryModel};
-use elbowroom_formats::FormatError;
+use elbowroom_formats::{FormatError, Warning};
+use elbowroom_kinematics::ChainState;
 use elbowroom_proximity::Shape;
 use elbowroom_robot::{GeometryId, RobotId};
 use elbowroom_scene::{Checker, CheckerOptions, Scene, SceneError, Selection, SweepOptions};
 
+use super::avoiding_robot::AvoidingRobot;
 use super::path_ahead::PathAhead;
 use super::path_replanner::{self, PathReplanner};
+use super::path_search::{ClosedRegions, FutileSearch, PathSearch, SearchScene};
 use super::perceived_obstacles::PerceivedObstacles;
 use super::surroundings::Surroundings;
 use crate::motion::ProgramClock;
@@ -17,7 +21,7 @@ use crate::recording::{Hold, HoldReason, PathReplan, PerceptionTrack};
 
 /// A path nearer to an obstacle than this is blocked, m: more than the motion deviates from the polyline that is checked.
 const CLEARANCE_M: f64 = 5e-3;
-/// Time (s) after a search without a path until the next one.
+/// Time (s) after a search in motion without a path until the next one.
 const RETRY_S: f64 = 0.2;
 /// A robot that stands goes on towards a blocked configuration only where it is farther away than this (s, at override 1).
 const RESUME_S: f64 = 0.2;
@@ -31,6 +35,31 @@ struct BlockedPath {
     by: String,
 }
 
+/// Per robot its guard against what sensors see; `None` for one that no sensor guards.
+pub(super) fn obstacle_guards<'a>(
+    cell: &'a Cell,
+    perceived: &PerceivedObstacles<'_>,
+    (avoiding, states): (&[Option<AvoidingRobot<'_>>], &[ChainState]),
+    notes: &mut Vec<Warning>,
+) -> Result<Vec<Option<ObstacleGuard<'a>>>, FormatError> {
+    let mut guards = Vec::new();
+    for (i, robot) in cell.robots.iter().enumerate() {
+        let search_s = perceived.search_s(RobotId(i));
+        if search_s.is_some() && avoiding[i].is_some() {
+            let what = format!(
+                "robot \"{}\" has [avoidance.{}], which does not know what sensors see: it does not keep clear of that",
+                robot.name, robot.name
+            );
+            notes.push(
+                Warning::new(&cell.file, robot.line, what).hint("run --no-avoidance, or robots = [...] of the sensor"),
+            );
+        }
+        let search_s = search_s.filter(|_| avoiding[i].is_none());
+        guards.push(search_s.map(|s| ObstacleGuard::new(cell, RobotId(i), s, states)).transpose()?);
+    }
+    Ok(guards)
+}
+
 /// One robot that keeps clear of what sensors see.
 #[derive(Debug)]
 pub(super) struct ObstacleGuard<'a> {
@@ -38,9 +67,14 @@ pub(super) struct ObstacleGuard<'a> {
     /// The robots of the cell alone.
     base: Scene,
     replanner: PathReplanner<'a>,
+    /// How long a search may take, and takes in the time of the run, s.
+    search_s: f64,
     /// The step whose path was checked last.
     step: Option<usize>,
     blocked: Option<BlockedPath>,
+    search: Option<PathSearch>,
+    /// The last search from rest, if it found no path.
+    without_path: Option<FutileSearch>,
     /// The robot is held now: the reason, and by what.
     held: Option<(HoldReason, String)>,
     not_before_s: f64,
@@ -50,79 +84,115 @@ pub(super) struct ObstacleGuard<'a> {
 impl<'a> ObstacleGuard<'a> {
     /// # Errors
     /// [`FormatError`] where the scene refuses the cell.
-    pub fn new(cell: &'a Cell, robot: RobotId) -> Result<Self, FormatError> {
+    pub fn new(cell: &'a Cell, robot: RobotId, search_s: f64, states: &[ChainState]) -> Result<Self, FormatError> {
         let model = QueryModel { objects: Vec::new(), ..QueryModel::for_motion(cell) };
+        let base = model.scene(OutOfReachProofs::Omit)?;
+        let mut replanner = PathReplanner::new(robot, &cell.robots[robot.0], cell.tick_s);
+        replanner.prepare(&base, states);
         Ok(Self {
             robot,
-            base: model.scene(OutOfReachProofs::Omit)?,
-            replanner: PathReplanner::new(robot, &cell.robots[robot.0], cell.tick_s),
+            base,
+            replanner,
+            search_s,
             step: None,
             blocked: None,
+            search: None,
+            without_path: None,
             held: None,
             not_before_s: 0.0,
             track: PerceptionTrack::default(),
         })
     }
 
-    /// Checks the path of the present step where that is due: after a picture, and when a step begins. Replans a planned move
-    /// whose path is blocked; true where it has a new path.
-    pub fn observe<'w, 'c>(
+    /// Checks the path of the present step where that is due: after a picture, when a step begins, and when it has a new path.
+    /// Where a planned move is blocked, a search for another path begins.
+    pub fn observe<'c>(
+        &mut self,
+        t_s: f64,
+        clock: &ProgramClock,
+        perceived: &PerceivedObstacles<'_>,
+        has_news: bool,
+        surroundings: impl FnOnce() -> Surroundings,
+        regions: impl FnOnce() -> ClosedRegions<'c>,
+    ) {
+        let step = clock.position().0;
+        let is_new_step = self.step != Some(step);
+        if is_new_step {
+            (self.step, self.search, self.without_path) = (Some(step), None, None);
+        }
+        if !(has_news || is_new_step) {
+            return;
+        }
+        let Some(known) = self.check_ahead(clock, perceived, surroundings) else {
+            self.search = None;
+            return;
+        };
+        if clock.planned_move().is_some() && t_s >= self.not_before_s && self.search.is_none() {
+            let again = self.without_path.as_ref().map(|w| w.longer_search(&SearchScene::of(&known, &regions())));
+            let takes_s = again.unwrap_or(Some(1.0)).map(|factor| factor * self.search_s);
+            self.search = takes_s.map(|takes_s| PathSearch { due_s: t_s + takes_s, takes_s, surroundings: known });
+        }
+    }
+
+    /// Checks the rest of the step against what is seen now. Where it is blocked: what another path must be clear of.
+    fn check_ahead(
+        &mut self,
+        clock: &ProgramClock,
+        perceived: &PerceivedObstacles<'_>,
+        surroundings: impl FnOnce() -> Surroundings,
+    ) -> Option<Surroundings> {
+        self.blocked = None;
+        let ahead = PathAhead::of(clock)?;
+        let known = surroundings();
+        let carries = known.attachments.iter().flatten().any(|a| a.robot == self.robot);
+        if known.perceived.is_empty() || (!carries && perceived.prove_free(self.robot, &ahead.samples)) {
+            return None;
+        }
+        let checked = self.solids(&known).and_then(|solids| self.check(&ahead, &known, &solids));
+        // What cannot be checked is blocked.
+        self.blocked =
+            checked.unwrap_or_else(|e| Some(BlockedPath { free_until_s: ahead.samples[0].0, by: e.to_string() }));
+        self.blocked.is_some().then_some(known)
+    }
+
+    /// Ends a search whose time is over. It began with what was known then; the robot goes on from where it is by now. True where
+    /// it has a new path.
+    pub fn end_search<'c>(
         &mut self,
         t_s: f64,
         clock: &mut ProgramClock,
-        perceived: &PerceivedObstacles<'_>,
-        has_news: bool,
-        surroundings: impl FnOnce() -> Surroundings<'w>,
-        regions: impl FnMut(f64) -> Option<RegionConstraint<'c>>,
+        regions: impl FnOnce() -> ClosedRegions<'c>,
     ) -> bool {
-        let step = clock.position().0;
-        if !has_news && self.step == Some(step) {
+        let Some(search) = self.search.take_if(|s| t_s >= s.due_s && self.step == Some(clock.position().0)) else {
             return false;
-        }
-        self.step = Some(step);
-        self.blocked = None;
-        let Some(ahead) = PathAhead::of(clock) else { return false };
-        let surroundings = surroundings();
-        let carries = surroundings.attachments.iter().flatten().any(|a| a.robot == self.robot);
-        if surroundings.perceived.is_empty() || (!carries && perceived.prove_free(self.robot, &ahead.samples)) {
-            return false;
-        }
-        let solids = match self.solids(&surroundings) {
-            Ok(solids) => solids,
-            Err(e) => return self.block_here(&ahead, &e),
         };
-        match self.check(&ahead, &surroundings, &solids) {
-            Ok(None) => return false,
-            Ok(blocked) => self.blocked = blocked,
-            Err(e) => return self.block_here(&ahead, &e),
-        }
-        let free_until_s = self.blocked.as_ref().map_or(0.0, |b| b.free_until_s);
-        if clock.planned_move().is_none() || t_s < self.not_before_s {
-            return false;
-        }
-        let begin = std::time::Instant::now();
-        let scene = (&self.base, &solids[..]);
-        let found = self.replanner.replan(clock, &ahead, free_until_s, &surroundings, scene, regions);
+        let (mut known, regions) = (search.surroundings, regions());
+        let (Some(ahead), Some(blocked)) = (PathAhead::of(clock), &self.blocked) else { return false };
+        known.states[self.robot.0].q.clone_from(&clock.point().q);
+        let Ok(solids) = self.solids(&known) else { return false };
+        let begin = Instant::now();
+        let (path, scene) = ((&ahead, blocked.free_until_s), (&self.base, &solids[..]));
+        let deadline = begin + Duration::from_secs_f64(search.takes_s);
+        let found = self.replanner.replan(clock, path, &known, scene, &regions, deadline);
         let in_motion = found.as_ref().map(|f| f.in_motion);
         self.track.replans.push(PathReplan { t_s, search_s: begin.elapsed().as_secs_f64(), in_motion });
         let Some(found) = found else {
             self.not_before_s = t_s + RETRY_S;
+            self.without_path = (clock.rate() <= 0.0).then(|| FutileSearch {
+                scene: SearchScene::of(&known, &regions),
+                factor: search.takes_s / self.search_s,
+            });
             return false;
         };
         clock.replace_planned_move(found.play, found.entry_s, found.rate);
-        self.blocked = None;
+        // The new path is checked at once against what is seen by now.
+        self.step = None;
         true
-    }
-
-    /// What cannot be checked is blocked.
-    fn block_here(&mut self, ahead: &PathAhead, why: &SceneError) -> bool {
-        self.blocked = Some(BlockedPath { free_until_s: ahead.samples[0].0, by: why.to_string() });
-        false
     }
 
     /// The solid of each obstacle: where it is and will be. One whose predicted positions the robot is at already counts where
     /// it was seen: the prediction must not trap the robot.
-    fn solids(&self, surroundings: &Surroundings<'_>) -> Result<Vec<Shape>, SceneError> {
+    fn solids(&self, surroundings: &Surroundings) -> Result<Vec<Shape>, SceneError> {
         let mut solids: Vec<Shape> = surroundings.perceived.iter().map(|o| o.predicted.clone()).collect();
         let placed = surroundings.obstacles_only(&self.base, self.robot, &solids)?;
         let mut checker = Checker::new(&placed.scene, CheckerOptions::default());
@@ -144,7 +214,7 @@ impl<'a> ObstacleGuard<'a> {
     fn check(
         &self,
         ahead: &PathAhead,
-        surroundings: &Surroundings<'_>,
+        surroundings: &Surroundings,
         solids: &[Shape],
     ) -> Result<Option<BlockedPath>, SceneError> {
         let placed = surroundings.obstacles_only(&self.base, self.robot, solids)?;
@@ -166,8 +236,8 @@ impl<'a> ObstacleGuard<'a> {
         }))
     }
 
-    /// Whether the robot must brake or stand now, and by what. It goes on as long as it can still stop in time, after `coast_s`
-    /// (s) until a command takes effect.
+    /// Whether the robot must brake or stand now, and by what: an obstacle in its way says more than a sensor without news. It goes
+    /// on as long as it can still stop in time, after `coast_s` (s) until a command takes effect.
     pub fn hold(
         &mut self,
         t_s: f64,
@@ -176,14 +246,10 @@ impl<'a> ObstacleGuard<'a> {
         coast_s: f64,
         dt: f64,
     ) -> Option<&(HoldReason, String)> {
-        let held = match stale {
-            Some(sensor) => Some((HoldReason::Stale, sensor.to_owned())),
-            None => self
-                .blocked
-                .as_ref()
-                .filter(|b| self.must_brake(b, clock, coast_s, dt))
-                .map(|b| (HoldReason::Obstacle, b.by.clone())),
-        };
+        let in_the_way = self.blocked.as_ref().filter(|b| self.must_brake(b, clock, coast_s, dt));
+        let held = in_the_way
+            .map(|b| (HoldReason::Obstacle, b.by.clone()))
+            .or_else(|| stale.map(|sensor| (HoldReason::Stale, sensor.to_owned())));
         if held != self.held {
             if let Some(open) = self.track.holds.last_mut().filter(|_| self.held.is_some()) {
                 open.to_s = t_s;

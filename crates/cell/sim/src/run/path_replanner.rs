@@ -1,12 +1,13 @@
 //! Replanning of a planned move around obstacles that sensors see: in motion without a stop, or from rest.
 
 use std::rc::Rc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use elbowroom_analysis::CoverCache;
 use elbowroom_cell::region_constraint::RegionConstraint;
 use elbowroom_cell::trajectory::{Playback, motion_bounds};
 use elbowroom_cell::{CellRobot, TrajectoryRow};
+use elbowroom_kinematics::ChainState;
 use elbowroom_perception::motion_entry::{acceleration_distance, first_root};
 use elbowroom_planner::{
     CoverModel, CoverObstacles, CoverRrtConnect, KinematicLimits, PlannedPath, RrtConnect, RrtConnectSettings,
@@ -17,19 +18,18 @@ use elbowroom_robot::RobotId;
 use elbowroom_scene::{Scene, SceneState};
 
 use super::path_ahead::PathAhead;
+use super::path_search::ClosedRegions;
 use super::surroundings::{PlacedScene, Surroundings};
 use crate::motion::ProgramClock;
 
-/// Largest number of validated states per search: it bounds the planning time independently of the machine.
+/// Largest number of validated states per attempt.
 const MAX_STATES: u64 = 1_000_000;
-/// Wall-clock limit per search, s; rarely reached.
-const TIME_LIMIT_S: u64 = 1;
 /// Paths keep this distance from everything, m: more than the check of paths asks for, so that noise of the outlines does not
 /// block them at once.
 pub(super) const CLEARANCE_M: f64 = 0.02;
-/// A robot that rests nearer to something than that, because it could not stop earlier, leaves with this distance, m: more than
-/// the check of paths asks for.
-const CLEARANCE_AT_REST_M: f64 = 6e-3;
+/// That, and what a robot leaves with that rests nearer to something because it could not stop earlier, m: more than the check of
+/// paths asks for.
+const CLEARANCES_M: [f64; 2] = [CLEARANCE_M, 6e-3];
 /// Shares of each warning zone that paths keep from a region, in the order in which they are tried: so much of the override
 /// remains.
 const WARNING_SHARES: [f64; 2] = [0.25, 0.0];
@@ -55,6 +55,26 @@ pub(super) struct ReplannedMove {
     pub in_motion: bool,
 }
 
+/// What one attempt asks for.
+struct Attempt {
+    settings: RrtConnectSettings,
+    warning_share: f64,
+}
+
+/// The attempts of a search, each in its share of the time that is left: with the largest distances first.
+fn attempts(is_moving: bool, without_regions: bool, deadline: Instant) -> impl Iterator<Item = Attempt> {
+    let clearances = if is_moving { &CLEARANCES_M[..1] } else { &CLEARANCES_M };
+    let shares = if without_regions { &WARNING_SHARES[..1] } else { &WARNING_SHARES };
+    let all = clearances.iter().flat_map(move |clearance_m| shares.iter().map(move |share| (*clearance_m, *share)));
+    let count = (clearances.len() * shares.len()) as u32;
+    all.zip((1..=count).rev()).filter_map(move |((clearance_m, warning_share), left)| {
+        let time_limit = deadline.saturating_duration_since(Instant::now()) / left;
+        let settings =
+            RrtConnectSettings { time_limit, max_states: MAX_STATES, clearance_m, ..RrtConnectSettings::default() };
+        (time_limit > Duration::ZERO).then_some(Attempt { settings, warning_share })
+    })
+}
+
 /// Where a new path begins.
 struct Departure {
     /// Waypoints before the start of the search.
@@ -70,25 +90,36 @@ pub(super) struct PathReplanner<'a> {
     at: &'a CellRobot,
     tick_s: f64,
     motion_bounds: Vec<f64>,
-    /// For scenes in which the robot carries nothing.
-    model: Option<CoverModel>,
+    /// By clearance and by what the robot carries; made when they are first needed.
+    models: Vec<CoverModel>,
 }
 
 impl<'a> PathReplanner<'a> {
     pub fn new(robot: RobotId, at: &'a CellRobot, tick_s: f64) -> Self {
-        Self { robot, at, tick_s, motion_bounds: motion_bounds(at), model: None }
+        Self { robot, at, tick_s, motion_bounds: motion_bounds(at), models: Vec::new() }
     }
 
-    /// A new path to the end of the planned move. In motion the robot must be able to leave the present path before
-    /// `free_until_s` (time in the step).
-    pub fn replan<'c>(
+    /// Makes what searches need of the robot itself, so that the first one does not take that time.
+    pub fn prepare(&mut self, scene: &Scene, states: &[ChainState]) {
+        let mut state = SceneState::new(scene);
+        let placed = states.iter().enumerate().all(|(i, robot)| state.set_q(scene, RobotId(i), &robot.q).is_ok());
+        if placed {
+            for clearance_m in CLEARANCES_M {
+                self.add_model(scene, &state, clearance_m);
+            }
+        }
+    }
+
+    /// A new path to the end of the planned move, found until a deadline. In motion the robot must be able to leave the present
+    /// path before `free_until_s` (time in the step).
+    pub fn replan(
         &mut self,
         clock: &ProgramClock,
-        ahead: &PathAhead,
-        free_until_s: f64,
-        surroundings: &Surroundings<'_>,
+        (ahead, free_until_s): (&PathAhead, f64),
+        surroundings: &Surroundings,
         (base, solids): (&Scene, &[Shape]),
-        mut regions: impl FnMut(f64) -> Option<RegionConstraint<'c>>,
+        regions: &ClosedRegions<'_>,
+        deadline: Instant,
     ) -> Option<ReplannedMove> {
         let (play, speed) = clock.planned_move()?;
         let goal = play.q(play.duration());
@@ -111,11 +142,13 @@ impl<'a> PathReplanner<'a> {
         };
         let mut placed = surroundings.everything(base, solids).ok()?;
         placed.state.set_q(&placed.scene, self.robot, &departure.from).ok()?;
-        let clearances = if is_moving { &[CLEARANCE_M][..] } else { &[CLEARANCE_M, CLEARANCE_AT_REST_M] };
-        let tried = clearances.iter().flat_map(|clearance_m| WARNING_SHARES.map(|share| (*clearance_m, share)));
-        let motion = tried.into_iter().find_map(|(clearance_m, share)| {
-            self.search(&placed, &departure, &goal, &limits, (clearance_m, regions(share)))
+        let motion = attempts(is_moving, regions.are_none(), deadline).find_map(|attempt| {
+            let constraint = regions.constraint(attempt.warning_share);
+            self.search(&placed, &departure, &goal, &limits, (&attempt.settings, constraint))
         })?;
+        if Instant::now() > deadline {
+            return None;
+        }
         let rows = motion.rows.into_iter().map(|(t_s, q)| TrajectoryRow { t_s, q }).collect();
         let play = Rc::new(Playback::new(rows, &self.motion_bounds));
         if !is_moving {
@@ -141,40 +174,39 @@ impl<'a> PathReplanner<'a> {
         departure: &Departure,
         goal: &[f64],
         limits: &KinematicLimits,
-        (clearance_m, constraint): (f64, Option<RegionConstraint<'_>>),
+        (settings, constraint): (&RrtConnectSettings, Option<RegionConstraint<'_>>),
     ) -> Option<TimedMotion> {
         let PlacedScene { scene, state, .. } = placed;
         let mut exact = RrtConnect::new(scene, self.robot).ok()?;
         if let Some(constraint) = constraint {
             exact = exact.with_constraint(constraint);
         }
-        let settings = RrtConnectSettings {
-            time_limit: Duration::from_secs(TIME_LIMIT_S),
-            max_states: MAX_STATES,
-            clearance_m,
-            ..RrtConnectSettings::default()
-        };
-        let tick_s = self.tick_s;
+        let (tick_s, clearance_m) = (self.tick_s, settings.clearance_m);
         let Some(model) = self.cover_model(scene, state, clearance_m) else {
             // A link without bounds cannot be covered; the exact scene plans for it.
-            let path = exact.plan(state, goal, &settings).ok()?;
+            let path = exact.plan(state, goal, settings).ok()?;
             let path = with_departure(path, departure);
-            let motion = exact.time_parametrize(state, &path, limits, tick_s, &settings).ok()?;
+            let motion = exact.time_parametrize(state, &path, limits, tick_s, settings).ok()?;
             return TimedMotion::of(&motion, tick_s).ok();
         };
-        let obstacles = CoverObstacles::new(model, scene, state, clearance_m);
+        let obstacles = CoverObstacles::with_covers(model, scene, state, clearance_m, &CoverCache::of_user());
         let mut planner = CoverRrtConnect::new(exact, model, &obstacles);
-        let path = planner.plan(state, goal, &settings).ok()?;
+        let path = planner.plan(state, goal, settings).ok()?;
         let path = with_departure(path, departure);
-        planner.time_parametrize(state, &path, limits, tick_s, &settings).ok()
+        planner.time_parametrize(state, &path, limits, tick_s, settings).ok()
     }
 
     fn cover_model(&mut self, scene: &Scene, state: &SceneState, clearance_m: f64) -> Option<&CoverModel> {
-        if !self.model.as_ref().is_some_and(|m| m.serves(scene, state, clearance_m)) {
-            let covers = CoverCache::of_user();
-            self.model = CoverModel::with_covers(scene, state, self.robot, clearance_m, &covers).ok();
+        let serves = |m: &CoverModel| m.serves(scene, state, clearance_m);
+        if !self.models.iter().any(serves) {
+            self.add_model(scene, state, clearance_m);
         }
-        self.model.as_ref()
+        self.models.iter().find(|m| serves(m))
+    }
+
+    fn add_model(&mut self, scene: &Scene, state: &SceneState, clearance_m: f64) {
+        let model = CoverModel::with_covers(scene, state, self.robot, clearance_m, &CoverCache::of_user());
+        self.models.extend(model);
     }
 }
 

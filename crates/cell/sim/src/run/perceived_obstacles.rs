@@ -100,9 +100,9 @@ impl<'a> PerceivedObstacles<'a> {
         Ok(Self { sensors })
     }
 
-    /// True where a robot keeps clear of what a sensor sees.
-    pub fn guards(&self, robot: RobotId) -> bool {
-        self.of_robot(robot).next().is_some()
+    /// Time (s) that a search for a path of a robot takes, the longest of its sensors; `None` for a robot that no sensor guards.
+    pub fn search_s(&self, robot: RobotId) -> Option<f64> {
+        self.of_robot(robot).map(|s| s.spec.search_s).reduce(f64::max)
     }
 
     fn of_robot(&self, robot: RobotId) -> impl Iterator<Item = &RunSensor<'a>> {
@@ -119,7 +119,7 @@ impl<'a> PerceivedObstacles<'a> {
         is_accepted
     }
 
-    /// Adds the wall-clock time (ns) from the pictures that were taken in last to the reaction of all robots.
+    /// Adds the wall-clock time (ns) from the pictures that were taken in last until the paths of all robots were checked.
     pub fn add_processing_time(&mut self, ns: u64) {
         for sensor in &mut self.sensors {
             sensor.processing_ns.push(ns);
@@ -145,6 +145,11 @@ impl<'a> PerceivedObstacles<'a> {
     /// True where pictures or clouds are still to come.
     pub fn has_more(&self) -> bool {
         self.sensors.iter().any(|s| s.next < s.watch.files().len())
+    }
+
+    /// What the sensors found that the user should know.
+    pub fn take_warnings(&mut self, notes: &mut Vec<Warning>) {
+        self.sensors.iter_mut().for_each(|s| notes.append(&mut s.watch.warnings));
     }
 
     /// The recording.

@@ -9,9 +9,9 @@ use elbowroom_spatial::Pose;
 use super::perceived_obstacles::PerceivedObstacle;
 
 /// Robots, objects and obstacles at one instant.
-#[derive(Debug)]
-pub(super) struct Surroundings<'w> {
-    pub states: &'w [ChainState],
+#[derive(Debug, Clone)]
+pub(super) struct Surroundings {
+    pub states: Vec<ChainState>,
     /// The objects of the cell, where they are.
     pub objects: Vec<Object>,
     /// Per object: how a robot carries it.
@@ -34,7 +34,7 @@ impl PlacedScene {
     }
 }
 
-impl Surroundings<'_> {
+impl Surroundings {
     /// A robot with what it carries, the other robots, and the perceived obstacles as these solids.
     ///
     /// # Errors

@@ -128,6 +128,17 @@ impl CoverObstacles {
     /// The obstacles of a model in a state, each with the largest margin that the scene has for a pair of it, and the clearance
     /// (m).
     pub fn new(model: &CoverModel, scene: &Scene, state: &SceneState, clearance_m: f64) -> Self {
+        Self::with_covers(model, scene, state, clearance_m, &BuiltCovers)
+    }
+
+    /// As [`new`](Self::new), with the covers of meshes and hulls from a source.
+    pub fn with_covers(
+        model: &CoverModel,
+        scene: &Scene,
+        state: &SceneState,
+        clearance_m: f64,
+        source: &dyn CoverSource,
+    ) -> Self {
         let mut obstacles = Self { set: ObstacleSet::default(), sources: Vec::new(), skipped: Vec::new() };
         for i in 0..scene.objects().len() {
             let id = GeometryId::Object(ObjectId(i));
@@ -136,14 +147,14 @@ impl CoverObstacles {
             }
             let Some(in_world) = state.pose(scene, id) else { continue };
             let shapes: Vec<_> = scene.shapes(id).map(|(s, at)| (s, in_world * at)).collect();
-            obstacles.add(model, scene, state, id, &shapes, clearance_m);
+            obstacles.add((model, scene, state), id, &shapes, clearance_m, source);
         }
         for (r, other) in scene.robots().iter().enumerate().filter(|(r, _)| *r != model.index.0) {
             for link in other.robot.links_with_colliders() {
                 let id = GeometryId::Link { robot: RobotId(r), link };
                 let Some(link_in_world) = state.pose(scene, id) else { continue };
                 let shapes: Vec<_> = scene.shapes(id).map(|(s, at)| (s, link_in_world * at)).collect();
-                obstacles.add(model, scene, state, id, &shapes, clearance_m);
+                obstacles.add((model, scene, state), id, &shapes, clearance_m, source);
             }
         }
         obstacles
@@ -151,18 +162,17 @@ impl CoverObstacles {
 
     fn add(
         &mut self,
-        model: &CoverModel,
-        scene: &Scene,
-        state: &SceneState,
+        (model, scene, state): (&CoverModel, &Scene, &SceneState),
         id: GeometryId,
         shapes: &[(&Shape, Pose)],
         clearance_m: f64,
+        source: &dyn CoverSource,
     ) {
         let margin = |&link: &GeometryId| tested_margin(scene, state, link, id, clearance_m);
         let margins: Vec<_> = model.covered_links.iter().map(margin).collect();
         let Some(largest) = margins.iter().flatten().copied().reduce(f64::max) else { return };
         for (shape, in_world) in shapes {
-            let number = self.set.add_shape(shape, in_world, largest + clearance_m);
+            let number = self.set.add_shape_with(shape, in_world, largest + clearance_m, source);
             self.sources.push(id);
             let untested = margins.iter().enumerate().filter(|(_, m)| m.is_none());
             self.skipped.extend(untested.map(|(body, _)| (CoveredLinkId(body), number)));

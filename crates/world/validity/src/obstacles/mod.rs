@@ -2,6 +2,7 @@
 
 mod box_tree;
 mod broad_phase;
+mod prism;
 mod slab_index;
 mod solid;
 
@@ -11,9 +12,10 @@ use elbowroom_spatial::{Pose, Vec3};
 pub(crate) use broad_phase::BroadPhase;
 pub(crate) use solid::RoundedSolid;
 
-use crate::cover::SphereCover;
+use crate::cover_source::{BuiltCovers, CoverSource};
+use prism::PrismBoxes;
 
-/// Largest protrusion of the cover of a mesh obstacle, m.
+/// Largest protrusion of the cover of a mesh or hull, m.
 const MESH_SLACK_M: f64 = 0.005;
 /// Rounding errors of coordinates and distances in single precision, per metre of coordinates and extents.
 const ROUNDING_SHARE: f64 = 2e-6;
@@ -50,6 +52,11 @@ impl ObstacleSet {
     /// Adds a shape that counts up to `margin_m` beyond its surface; returns its number. A shape with NaN or infinite numbers,
     /// or a coordinate beyond 10⁸ m, makes every answer uncertain.
     pub fn add_shape(&mut self, shape: &Shape, in_world: &Pose, margin_m: f64) -> usize {
+        self.add_shape_with(shape, in_world, margin_m, &BuiltCovers)
+    }
+
+    /// As [`add_shape`](Self::add_shape), with the covers of meshes and hulls from a source.
+    pub fn add_shape_with(&mut self, shape: &Shape, in_world: &Pose, margin_m: f64, covers: &dyn CoverSource) -> usize {
         let id = self.next();
         if shape.validate().is_err() || !in_world.is_finite() || !margin_m.is_finite() {
             self.has_unknown = true;
@@ -78,14 +85,32 @@ impl ObstacleSet {
             Shape::HalfSpace(_) => Some(RoundedSolid::half_space(in_world, radius as f32)),
             Shape::Hull(_) | Shape::Mesh(_) => None,
         };
-        match (solid(core_radius + margin_m.max(0.0) + rounding_m), solid(core_radius - rounding_m)) {
-            (Some(outer), Some(inner)) => {
-                self.push_outer(outer, id);
-                self.push_inner(inner, id);
-            }
-            _ => self.add_covered(shape, in_world, margin_m.max(0.0) + rounding_m, rounding_m, id),
+        if let (Some(outer), Some(inner)) =
+            (solid(core_radius + margin_m.max(0.0) + rounding_m), solid(core_radius - rounding_m))
+        {
+            self.push_outer(outer, id);
+            self.push_inner(inner, id);
+            return id;
+        }
+        let margins = [margin_m.max(0.0) + rounding_m, rounding_m];
+        if !self.add_prism(shape, in_world, margins, id) {
+            self.add_covered(shape, in_world, margins, id, covers);
         }
         id
+    }
+
+    /// True for a hull that is a prism: its boxes are added, the outer ones enlarged by the first margin (m), the inner ones made
+    /// smaller by the second.
+    fn add_prism(&mut self, shape: &Shape, in_world: &Pose, [outside_m, rounding_m]: [f64; 2], id: usize) -> bool {
+        let Shape::Hull(hull) = shape else { return false };
+        let Some(boxes) = PrismBoxes::of(hull, MESH_SLACK_M) else { return false };
+        for b in boxes.outer {
+            self.push_outer(RoundedSolid::cuboid(b.half_extents, &(*in_world * b.in_prism), outside_m as f32), id);
+        }
+        for b in boxes.inner {
+            self.push_inner(RoundedSolid::cuboid(b.half_extents, &(*in_world * b.in_prism), -rounding_m as f32), id);
+        }
+        true
     }
 
     /// Adds the points of a cloud as balls of one radius; returns the number that they share. Points that are not finite, or
@@ -120,8 +145,15 @@ impl ObstacleSet {
         self.count - 1
     }
 
-    fn add_covered(&mut self, shape: &Shape, in_world: &Pose, outside_m: f64, rounding_m: f64, id: usize) {
-        let Some(cover) = SphereCover::new(&[(shape, Pose::IDENTITY)], MESH_SLACK_M) else {
+    fn add_covered(
+        &mut self,
+        shape: &Shape,
+        in_world: &Pose,
+        [outside_m, rounding_m]: [f64; 2],
+        id: usize,
+        covers: &dyn CoverSource,
+    ) {
+        let Some(cover) = covers.cover(&[(shape, Pose::IDENTITY)], MESH_SLACK_M) else {
             self.has_unknown = true;
             return;
         };

@@ -1,0 +1,95 @@
+//! When a robot searches for another path, with what it knew then, and whether another search could find more.
+
+use elbowroom_cell::region_constraint::RegionConstraint;
+use elbowroom_monitor::{Monitor, SourceState};
+use elbowroom_spatial::{Aabb, Pose};
+
+use super::surroundings::Surroundings;
+
+/// Obstacles whose bounding boxes changed by less (m) are where they were: noise of the outlines.
+const NOISE_M: f64 = 0.01;
+/// The longest search from rest takes so many times the time of one in motion.
+const MAX_FACTOR: f64 = 8.0;
+/// A robot whose joint values changed by less (rad or m) is where it was.
+const SAME_Q: f64 = 1e-3;
+
+/// The regions closed to a robot at one instant.
+#[derive(Debug)]
+pub(super) struct ClosedRegions<'c> {
+    pub monitor: &'c Monitor,
+    pub sources: Vec<SourceState>,
+}
+
+impl<'c> ClosedRegions<'c> {
+    /// As a constraint of paths that keep this share of each warning zone.
+    pub fn constraint(&self, warning_share: f64) -> Option<RegionConstraint<'c>> {
+        RegionConstraint::new(self.monitor, &self.sources, warning_share, 0.0)
+    }
+
+    /// True where no region is closed.
+    pub fn are_none(&self) -> bool {
+        self.constraint(0.0).is_none()
+    }
+}
+
+/// A search that was asked for. It takes its time: the result counts from `due_s` on, and knows what was known when it began.
+#[derive(Debug)]
+pub(super) struct PathSearch {
+    /// End of the search, s.
+    pub due_s: f64,
+    /// How long it takes, and may take, s.
+    pub takes_s: f64,
+    /// What was known at its beginning.
+    pub surroundings: Surroundings,
+}
+
+/// A search from rest that found no path.
+#[derive(Debug)]
+pub(super) struct FutileSearch {
+    pub scene: SearchScene,
+    /// So many times the time that a search takes.
+    pub factor: f64,
+}
+
+impl FutileSearch {
+    /// So many times that time the next search takes: twice as many in the same scene, as a robot that rests has time; `None` where
+    /// that would be too long.
+    pub fn longer_search(&self, now: &SearchScene) -> Option<f64> {
+        if self.scene.is_like(now) { Some(2.0 * self.factor).filter(|f| *f <= MAX_FACTOR) } else { Some(1.0) }
+    }
+}
+
+/// What the result of a search from rest depends on: without a change of these, an equal one finds no more.
+#[derive(Debug, Clone)]
+pub(super) struct SearchScene {
+    q: Vec<Vec<f64>>,
+    objects: Vec<Pose>,
+    obstacles: Vec<Aabb>,
+    regions: Vec<String>,
+    sources: Vec<Pose>,
+}
+
+impl SearchScene {
+    pub fn of(surroundings: &Surroundings, regions: &ClosedRegions<'_>) -> Self {
+        let solids = surroundings.perceived.iter().flat_map(|o| [&o.observed, &o.predicted]);
+        Self {
+            q: surroundings.states.iter().map(|s| s.q.clone()).collect(),
+            objects: surroundings.objects.iter().map(|o| o.in_world).collect(),
+            obstacles: solids.map(|solid| solid.aabb(&Pose::IDENTITY)).collect(),
+            regions: regions.constraint(0.0).map_or_else(Vec::new, |c| c.names()),
+            sources: regions.sources.iter().map(|s| s.pose).collect(),
+        }
+    }
+
+    /// True where nothing changed but for noise.
+    fn is_like(&self, other: &Self) -> bool {
+        let q = self.q.iter().flatten().zip(other.q.iter().flatten()).all(|(a, b)| (a - b).abs() <= SAME_Q);
+        let is_near = |(a, b): (&Aabb, &Aabb)| {
+            (a.min - b.min).abs().max_element() <= NOISE_M && (a.max - b.max).abs().max_element() <= NOISE_M
+        };
+        let obstacles = self.obstacles.len() == other.obstacles.len();
+        let obstacles = obstacles && self.obstacles.iter().zip(&other.obstacles).all(is_near);
+        let regions = self.regions == other.regions && self.sources == other.sources;
+        q && obstacles && regions && self.objects == other.objects
+    }
+}

@@ -1,0 +1,251 @@
+//! Upright convex prisms as a few boxes: what a sensor sees, without the time that a cover of spheres takes.
+
+use elbowroom_proximity::ConvexHull;
+use elbowroom_spatial::{Pose, Rotation, Vec3};
+
+/// Vertices so near to each other are the same, m.
+const SAME_M: f64 = 1e-9;
+/// A prism has at most so many sides: each may need a box.
+const MAX_SIDES: usize = 64;
+/// Largest number of boxes.
+const MAX_BOXES: usize = 64;
+
+/// A box in the frame of the prism.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct PlacedBox {
+    pub half_extents: Vec3,
+    pub in_prism: Pose,
+}
+
+/// Boxes whose union encloses a prism, and boxes that lie in it.
+#[derive(Debug, Default)]
+pub(super) struct PrismBoxes {
+    pub outer: Vec<PlacedBox>,
+    pub inner: Vec<PlacedBox>,
+}
+
+/// A convex polygon whose longest side is along x of its frame, counter-clockwise, and heights.
+struct Prism {
+    corners: Vec<[f64; 2]>,
+    heights: [f64; 2],
+    /// Rotation about z of the polygon's frame.
+    frame: Rotation,
+}
+
+impl PrismBoxes {
+    /// Of a hull that is a prism along its z; the boxes protrude by `slack_m`, or more if they would be many. `None` for any other hull.
+    pub fn of(hull: &ConvexHull, slack_m: f64) -> Option<Self> {
+        let prism = Prism::of(hull)?;
+        let (cuts, _) = prism.cuts(slack_m);
+        let mut boxes = Self::default();
+        for x in cuts.windows(2).map(|pair| [pair[0], pair[1]]) {
+            let [[low0, high0], [low1, high1]] = x.map(|x| prism.range(x));
+            boxes.outer.push(prism.placed(x, [low0.min(low1), high0.max(high1)]));
+            // The upper side of a convex polygon is above its chord, the lower one below.
+            let within = [low0.max(low1), high0.min(high1)];
+            if within[0] < within[1] {
+                boxes.inner.push(prism.placed(x, within));
+            }
+        }
+        Some(boxes)
+    }
+}
+
+impl Prism {
+    fn of(hull: &ConvexHull) -> Option<Self> {
+        let vertices = hull.vertices();
+        let heights = vertices.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v.z), h.max(v.z)]);
+        let at = |z: f64| vertices.iter().filter(move |v| (v.z - z).abs() <= SAME_M);
+        let [lower, upper]: [Vec<&Vec3>; 2] = heights.map(|z| at(z).collect());
+        let is_same = |a: &Vec3, b: &Vec3| (a.x - b.x).hypot(a.y - b.y) <= SAME_M;
+        let has_twin = |v: &&Vec3, of: &[&Vec3]| of.iter().any(|o| is_same(v, o));
+        let is_prism = heights[1] - heights[0] > 2.0 * SAME_M
+            && (3..=MAX_SIDES).contains(&lower.len())
+            && lower.len() == upper.len()
+            && lower.len() + upper.len() == vertices.len()
+            && lower.iter().all(|v| has_twin(v, &upper))
+            && upper.iter().all(|v| has_twin(v, &lower));
+        is_prism.then(|| Self::over(&lower, heights))
+    }
+
+    fn over(lower: &[&Vec3], heights: [f64; 2]) -> Self {
+        let middle = lower.iter().fold(Vec3::ZERO, |sum, v| sum + **v) / lower.len() as f64;
+        let mut corners: Vec<Vec3> = lower.iter().map(|v| **v).collect();
+        corners.sort_by(|a, b| {
+            let angle = |v: &Vec3| (v.y - middle.y).atan2(v.x - middle.x);
+            angle(a).total_cmp(&angle(b))
+        });
+        let sides = corners.iter().zip(corners.iter().cycle().skip(1)).map(|(a, b)| *b - *a);
+        let longest = sides.max_by(|a, b| a.length_squared().total_cmp(&b.length_squared())).unwrap_or(Vec3::X);
+        let frame = Rotation::from_axis_angle(Vec3::Z, longest.y.atan2(longest.x));
+        let back = frame.inverse();
+        let turned = |v: &Vec3| {
+            let v = back * *v;
+            [v.x, v.y]
+        };
+        Self { corners: corners.iter().map(turned).collect(), heights, frame }
+    }
+
+    /// Values of x between which one box each encloses the polygon, and by how much (m) such boxes protrude: the slack, or more
+    /// where that would be too many boxes.
+    fn cuts(&self, slack_m: f64) -> (Vec<f64>, f64) {
+        let mut at: Vec<f64> = self.corners.iter().map(|c| c[0]).collect();
+        at.sort_by(f64::total_cmp);
+        at.dedup_by(|a, b| (*a - *b).abs() <= SAME_M);
+        let mut slack_m = slack_m;
+        loop {
+            let cuts = self.cuts_at(&at, slack_m);
+            if cuts.len() <= MAX_BOXES.max(at.len()) {
+                return (cuts, slack_m);
+            }
+            slack_m *= 1.5;
+        }
+    }
+
+    /// At the corners, and more where sides slope.
+    fn cuts_at(&self, at: &[f64], slack_m: f64) -> Vec<f64> {
+        let mut cuts = at[..1].to_vec();
+        for x in at.windows(2) {
+            let [[low0, high0], [low1, high1]] = [self.range(x[0]), self.range(x[1])];
+            // A step beside a slope protrudes by less than its height, and by less than its width.
+            let rise = (low1 - low0).abs().max((high1 - high0).abs());
+            let count = (rise.min(x[1] - x[0]) / slack_m).ceil().max(1.0) as usize;
+            cuts.extend((1..=count).map(|i| x[0] + (x[1] - x[0]) * i as f64 / count as f64));
+        }
+        cuts
+    }
+
+    /// Least and largest y of the polygon at x.
+    fn range(&self, x: f64) -> [f64; 2] {
+        let sides = self.corners.iter().zip(self.corners.iter().cycle().skip(1));
+        let mut range = [f64::INFINITY, f64::NEG_INFINITY];
+        for (a, b) in sides {
+            let (left, right) = if a[0] <= b[0] { (a, b) } else { (b, a) };
+            if x < left[0] - SAME_M || x > right[0] + SAME_M {
+                continue;
+            }
+            let width = right[0] - left[0];
+            let ys = if width <= 2.0 * SAME_M {
+                [left[1], right[1]]
+            } else {
+                let share = ((x - left[0]) / width).clamp(0.0, 1.0);
+                [left[1] + share * (right[1] - left[1]); 2]
+            };
+            for y in ys {
+                range = [range[0].min(y), range[1].max(y)];
+            }
+        }
+        range
+    }
+
+    fn placed(&self, x: [f64; 2], y: [f64; 2]) -> PlacedBox {
+        let [low, high] = [0, 1].map(|i| Vec3::new(x[i], y[i], self.heights[i]));
+        PlacedBox {
+            half_extents: (high - low) * 0.5,
+            in_prism: Pose::new(self.frame, self.frame * ((low + high) * 0.5)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use elbowroom_proximity::ConvexHull;
+    use elbowroom_testkit::random::SplitMix;
+
+    use super::*;
+
+    fn prism(corners: &[[f64; 2]], heights: [f64; 2]) -> ConvexHull {
+        let points: Vec<Vec3> =
+            heights.iter().flat_map(|z| corners.iter().map(|c| Vec3::new(c[0], c[1], *z))).collect();
+        ConvexHull::from_points(&points).unwrap()
+    }
+
+    fn protrusion(b: &PlacedBox, p: Vec3) -> f64 {
+        let local = b.in_prism.inverse().transform_point(p).abs() - b.half_extents;
+        local.max_element()
+    }
+
+    /// Random convex polygons, rectangles at angles among them: every point of the prism is in an outer box, every point of an
+    /// inner box in the prism, and no outer box protrudes by more than the slack.
+    #[test]
+    fn boxes_enclose_a_prism_closely() {
+        let (mut random, slack_m) = (SplitMix(7), 0.005);
+        for round in 0..300 {
+            let [at_x, at_y] = [random.between(-3.0, 3.0), random.between(-3.0, 3.0)];
+            let turn = random.between(0.0, 6.3);
+            let corner =
+                |x: f64, y: f64| [at_x + x * turn.cos() - y * turn.sin(), at_y + x * turn.sin() + y * turn.cos()];
+            let (a, b) = (random.between(0.02, 1.0), random.between(0.02, 1.0));
+            let corners: Vec<[f64; 2]> = match round % 3 {
+                0 => [(a, b), (-a, b), (-a, -b), (a, -b)].map(|(x, y)| corner(x, y)).to_vec(),
+                1 => {
+                    let c = 0.3 * a.min(b);
+                    let eight = [
+                        (a, b - c),
+                        (a - c, b),
+                        (c - a, b),
+                        (-a, b - c),
+                        (-a, c - b),
+                        (c - a, -b),
+                        (a - c, -b),
+                        (a, c - b),
+                    ];
+                    eight.map(|(x, y)| corner(x, y)).to_vec()
+                }
+                _ => {
+                    let sides = 3 + random.index(9);
+                    let angles = (0..sides)
+                        .map(|i| std::f64::consts::TAU * (i as f64 + 0.7 * random.between(0.0, 1.0)) / sides as f64);
+                    angles.collect::<Vec<f64>>().into_iter().map(|t| corner(a * t.cos(), b * t.sin())).collect()
+                }
+            };
+            let heights = [random.between(-1.0, 0.0), random.between(0.1, 2.0)];
+            let hull = prism(&corners, heights);
+            let boxes = PrismBoxes::of(&hull, slack_m).expect("a prism");
+            assert!(!boxes.inner.is_empty() && boxes.outer.len() < MAX_BOXES);
+            let (_, protrudes_m) = Prism::of(&hull).unwrap().cuts(slack_m);
+            assert!(protrudes_m < 0.1, "{protrudes_m}");
+            for _ in 0..200 {
+                // A point of the prism: a mixture of its vertices.
+                let weights: Vec<f64> = hull.vertices().iter().map(|_| random.between(0.0, 1.0).powi(6)).collect();
+                let total: f64 = weights.iter().sum();
+                let inside = hull.vertices().iter().zip(&weights).fold(Vec3::ZERO, |p, (v, w)| p + *v * (w / total));
+                assert!(boxes.outer.iter().any(|b| protrusion(b, inside) <= 1e-8), "{corners:?} {inside:?}");
+            }
+            for (boxes, most_m) in [(&boxes.outer, protrudes_m + 1e-8), (&boxes.inner, 1e-8)] {
+                for b in boxes {
+                    for k in 0..8 {
+                        let sign = |bit: usize| if k >> bit & 1 == 0 { -1.0 } else { 1.0 };
+                        let h = b.half_extents;
+                        let local = Vec3::new(sign(0) * h.x, sign(1) * h.y, sign(2) * h.z);
+                        let p = b.in_prism.transform_point(local);
+                        let beyond = beyond(&hull, p);
+                        assert!(beyond <= most_m, "{beyond} m, round {round}: {corners:?}");
+                    }
+                }
+            }
+        }
+    }
+
+    /// How far a point is beyond the faces of a hull, m.
+    fn beyond(hull: &ConvexHull, p: Vec3) -> f64 {
+        let v = hull.vertices();
+        let beyond = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|i| v[i as usize]);
+            let normal = (b - a).cross(c - a);
+            normal.dot(p - a) / normal.length()
+        };
+        hull.triangles().iter().map(beyond).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    #[test]
+    fn other_hulls_are_no_prisms() {
+        let tip = [Vec3::X, Vec3::Y, -Vec3::X - Vec3::Y, Vec3::Z];
+        assert!(PrismBoxes::of(&ConvexHull::from_points(&tip).unwrap(), 0.005).is_none());
+        let frustum = [(1.0, 0.0), (0.5, 1.0)]
+            .into_iter()
+            .flat_map(|(s, z)| [(s, s), (-s, s), (-s, -s), (s, -s)].map(|(x, y)| Vec3::new(x, y, z)))
+            .collect::<Vec<_>>();
+        assert!(PrismBoxes::of(&ConvexHull::from_points(&frustum).unwrap(), 0.005).is_none());
+    }
+}
