@@ -11,7 +11,7 @@ use super::node_pair::NodePair;
 use super::triangle_batch::{corners_in_a, robust_closest_points};
 use super::workspace::Workspace;
 use crate::TriMesh;
-use crate::bvh::LEAF_SIZE;
+use crate::bvh::{ARITY, LEAF_SIZE};
 use crate::shape::hull::farthest;
 use crate::triangle::{ClosestPoints, nearest_on_triangle};
 use crate::witness_patch::{
@@ -86,18 +86,24 @@ struct TiedPairs<'a> {
 impl TiedPairs<'_> {
     fn run(&mut self, workspace: &mut Workspace) {
         let meshes = self.meshes;
-        let cutoff = Cutoff::new(self.radius, meshes.placement);
+        let mut cutoff = Cutoff::new(self.radius, meshes.placement);
+        // Without it a hundred times as many pairs of large triangles are left to the exact test.
+        cutoff.align(self.choice.query.direction, meshes.placement);
         let Workspace { stack, batch, stats, .. } = workspace;
         batch.clear();
         stack.clear();
         stack.push(NodePair::root(&meshes.a.bvh, &meshes.b.bvh));
         while let Some(pair) = stack.pop() {
-            if pair.key > cutoff.squared {
+            // Parallel faces have as many tied pairs as the product of their triangles: those near the anchor decide.
+            if self.choice.is_beaten(|anchor| self.nearest_in_box(&pair, anchor)) {
                 continue;
             }
             if !pair.is_leaves() {
                 stats.nodes += 1;
+                let first = stack.len();
                 stats.boxes += expand::<DISTANCE>(meshes, &pair, &cutoff, stack);
+                let anchor = self.choice.query.anchor;
+                stack.sort_from(first, |pair| self.nearest_in_box(pair, anchor).distance(anchor));
                 continue;
             }
             stats.leaves += 1;
@@ -109,6 +115,14 @@ impl TiedPairs<'_> {
                 self.visit(pair.a * LEAF_SIZE as u32 + i, pair.b * LEAF_SIZE as u32 + j);
             }
         }
+    }
+
+    /// The point of the box of a pair's first node nearest to a point.
+    fn nearest_in_box(&self, pair: &NodePair, p: Vec3) -> Vec3 {
+        let (parent, lane) = self.meshes.a.bvh.parent(pair.height_a.into(), pair.a as usize);
+        let at = |rows: &[[f32; ARITY]; 3]| Vec3::new(rows[0][lane].into(), rows[1][lane].into(), rows[2][lane].into());
+        let (center, half) = (at(&parent.center), at(&parent.half));
+        p.max(center - half).min(center + half)
     }
 
     /// Offers the witness points of a pair of slots.

@@ -103,6 +103,13 @@ impl NodePairStack {
         self.entries.get(self.len).copied()
     }
 
+    /// Sorts the entries from this one on: the one of the least key is the next.
+    pub fn sort_from(&mut self, first: usize, key: impl Fn(&NodePair) -> f64) {
+        if let Some(entries) = self.entries.get_mut(first..self.len) {
+            entries.sort_unstable_by(|a, b| key(b).total_cmp(&key(a)));
+        }
+    }
+
     /// Makes this entry the next.
     #[inline(always)]
     pub fn bring_to_top(&mut self, number: usize) {
