@@ -152,10 +152,9 @@ impl<'s> EscapeCheck<'s> {
         self.work() >= self.deadline
     }
 
-    /// A sweep that ends, at the latest, when the work is used up: what it has not proven by then counts as a hit.
+    /// A sweep that ends, at the latest, when the work is used up.
     fn sweep_options(&self, clearance_m: f64) -> SweepOptions {
-        let options = SweepOptions { clearance_m, ..SweepOptions::default() };
-        SweepOptions { max_steps: options.max_steps.min((self.deadline - self.work()).exact_tests()), ..options }
+        (self.deadline - self.work()).sweep_options(clearance_m)
     }
 
     /// Attaches an object to a link of any robot.
@@ -190,14 +189,18 @@ impl<'s> EscapeCheck<'s> {
                 + object.motion.angular_velocity.length() * self.object_radii[object.object.0];
             let mut t = 0.0;
             while t < until_s {
-                if self.is_overdue() {
-                    return Ok(MotionCheck { is_complete: false, ..first });
-                }
                 let resting = self.set_time(motion, t)?;
-                self.state.place(self.scene, object.object, pose_after(object, motion.begins_s + t))?;
+                let place = pose_after(object, motion.begins_s + t);
+                self.state.place(self.scene, object.object, place)?;
                 let distance = self.checker.between(own, Selection::Object(object.object)).distance(&self.state);
                 let Some(distance) = distance else { break };
                 first.gap_m = first.gap_m.min(distance.metres);
+                if self.is_overdue() {
+                    // What is not proven counts as a hit.
+                    let sides = [(distance.a, distance.on_a), (distance.b, distance.on_b)];
+                    let hit = self.object_hit(object, place.translation, sides, t);
+                    return Ok(MotionCheck { hit: first.hit.or(Some(hit)), is_complete: false, ..first });
+                }
                 let by_robot = if resting { 0.0 } else { self.bounds.max_travel(&motion.trajectory.max_speeds, 1.0) };
                 let free_s = (distance.lower_bound - clearance_m) / (speed + by_robot);
                 let stretch_s = if resting { REST_STRETCH_S } else { self.stretch_s(motion, t, clearance_m) };
@@ -215,13 +218,9 @@ impl<'s> EscapeCheck<'s> {
                 let options = self.sweep_options(clearance_m);
                 let mut pair = self.checker.between(own, Selection::Object(object.object));
                 if let Some(hit) = pair.sweep(&self.state, &moved, &options)? {
-                    let (id, point) =
-                        if hit.a == GeometryId::Object(object.object) { (hit.b, hit.on_b) } else { (hit.a, hit.on_a) };
-                    // A carried object is moved by the last link.
-                    let link = if let GeometryId::Link { link, .. } = id { link } else { self.tip };
                     until_s = t + hit.time * (end - t);
-                    let velocity = object.motion.velocity_at(point - path.start.translation);
-                    first.hit = Some(PredictedHit { time_s: until_s, link, point, velocity });
+                    let sides = [(hit.a, hit.on_a), (hit.b, hit.on_b)];
+                    first.hit = Some(self.object_hit(object, place.translation, sides, until_s));
                     first.gap_m = first.gap_m.min(hit.metres);
                     break;
                 }
@@ -240,7 +239,29 @@ impl<'s> EscapeCheck<'s> {
         Ok(first)
     }
 
-    /// Where a motion first comes nearer than `clearance_m` to another robot.
+    /// A hit between an object whose origin is at `place` then and another geometry; both have their points.
+    fn object_hit(
+        &self,
+        object: &ObservedObject,
+        place: Vec3,
+        [a, b]: [(GeometryId, Vec3); 2],
+        time_s: f64,
+    ) -> PredictedHit {
+        let (id, point) = if a.0 == GeometryId::Object(object.object) { b } else { a };
+        // A carried object is moved by the last link.
+        let link = if let GeometryId::Link { link, .. } = id { link } else { self.tip };
+        PredictedHit { time_s, link, point, velocity: object.motion.velocity_at(point - place) }
+    }
+
+    /// A hit with another robot; both sides have their points. The direction from which it comes is from its point to ours.
+    fn robot_hit(&self, [a, b]: [(GeometryId, Vec3); 2], time_s: f64) -> PredictedHit {
+        let is_own = |id: GeometryId| matches!(id, GeometryId::Link { robot, .. } if robot == self.robot);
+        let ((id, point), (_, from)) = if is_own(a.0) { (a, b) } else { (b, a) };
+        let link = if let GeometryId::Link { link, .. } = id { link } else { self.tip };
+        PredictedHit { time_s, link, point, velocity: point - from }
+    }
+
+    /// Where a motion first comes nearer than `clearance_m` to another robot; what is not proven counts as a hit.
     fn meets_robot(
         &mut self,
         motion: &TimedMotion<'_>,
@@ -249,7 +270,7 @@ impl<'s> EscapeCheck<'s> {
         until_s: f64,
     ) -> Result<Option<PredictedHit>, SceneError> {
         let (own, mut t) = (self.robot, 0.0);
-        while t < until_s && !self.is_overdue() {
+        while t < until_s {
             let resting = self.set_time(motion, t)?;
             let stretch_s = if resting { REST_STRETCH_S } else { self.stretch_s(motion, t, clearance_m) };
             let end = (t + stretch_s).min(until_s);
@@ -259,20 +280,15 @@ impl<'s> EscapeCheck<'s> {
             q_after(other, motion.begins_s + t, to);
             self.state.set_q(self.scene, other.robot, to)?;
             q_after(other, motion.begins_s + end, to);
-            let moved = [SweepMove::Robot { robot: own, to: &self.to }, SweepMove::Robot { robot: other.robot, to }];
             let mut pair = self.checker.between(Selection::Robot(own), Selection::Robot(other.robot));
+            if options.max_steps == 0 {
+                let Some(d) = pair.distance(&self.state) else { return Ok(None) };
+                return Ok(Some(self.robot_hit([(d.a, d.on_a), (d.b, d.on_b)], t)));
+            }
+            let moved = [SweepMove::Robot { robot: own, to: &self.to }, SweepMove::Robot { robot: other.robot, to }];
             if let Some(hit) = pair.sweep(&self.state, &moved, &options)? {
-                let is_own = |id: GeometryId| matches!(id, GeometryId::Link { robot, .. } if robot == own);
-                let (id, point) = if is_own(hit.a) { (hit.a, hit.on_a) } else { (hit.b, hit.on_b) };
-                let link = if let GeometryId::Link { link, .. } = id { link } else { self.tip };
-                // The direction from which it comes: from its point to ours.
-                let from = if is_own(hit.a) { hit.on_b } else { hit.on_a };
-                return Ok(Some(PredictedHit {
-                    time_s: t + hit.time * (end - t),
-                    link,
-                    point,
-                    velocity: point - from,
-                }));
+                let sides = [(hit.a, hit.on_a), (hit.b, hit.on_b)];
+                return Ok(Some(self.robot_hit(sides, t + hit.time * (end - t))));
             }
             t = end;
         }

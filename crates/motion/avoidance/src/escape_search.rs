@@ -40,10 +40,12 @@ const PAUSE_TICKS: usize = 3;
 /// A better escape than the known one is looked for in every so many examined ticks.
 const IMPROVE_TICKS: usize = 4;
 /// Share of the work of a tick in which it is decided what passes; what is not proven to pass by then counts as on a collision
-/// course.
-const COURSE_SHARE_OF_WORK: f64 = 0.5;
-/// Share of the work of a tick that may be spent before the escape that is known is proven again, where that is needed.
-const FIND_SHARE: f64 = 0.5;
+/// course …
+const COURSE_SHARE_OF_WORK: f64 = 0.4;
+/// … in which it is decided what a stop meets; where that is not proven to be nothing by then, it counts as met …
+const STOP_SHARE_OF_WORK: f64 = 0.7;
+/// … and that may be spent before the escape that is known is proven again, where that is needed.
+const FIND_SHARE: f64 = 0.85;
 /// Deviation of the robot from the escape that it follows, in rad or m, from which it no longer does.
 const OFF_ESCAPE: f64 = 1e-3;
 
@@ -55,8 +57,7 @@ pub struct EscapeSettings {
     /// Largest number of escapes that are examined in one tick.
     pub per_tick: usize,
     /// Largest computing time of a tick, µs, counted in elementary tests times their measured costs: the same on every machine and
-    /// in every run. What is not proven by then is examined in later ticks. The check of a stop comes before, and is
-    /// made in any case.
+    /// in every run. What is not proven by then is examined in later ticks; a stop that is not proven to be free counts as hit.
     pub work_us: u32,
     /// Clearance of an escape from what moves, m.
     pub clearance_m: f64,
@@ -350,7 +351,7 @@ impl<'s> EscapeSearch<'s> {
             // Before something comes as near as that, nothing comes nearer than the clearance.
             from_s = passing.hit.filter(|_| passing.is_complete).map_or(0.0, |hit| hit.time_s);
         }
-        self.check.set_deadline(EscapeWork::UNLIMITED);
+        self.set_deadline(STOP_SHARE_OF_WORK);
         let stop = self.check_stop(tick, from_s, clearance_m)?;
         Ok(stop.hit.map(|hit| PredictedHit { time_s: from_s + hit.time_s, ..hit }))
     }

@@ -1,8 +1,8 @@
-//! Computing time of the search for escapes, counted in elementary tests.
+//! Computing time of sweeps and of the search for escapes, counted in elementary tests.
 
 use std::ops::Sub;
 
-use elbowroom_scene::CheckerStats;
+use elbowroom_scene::{CheckerStats, SweepOptions};
 
 /// Measured costs, ns: an upper estimate on the machine of `docs/measurements/avoidance.md` with other work on it.
 const QUERY_NS: u64 = 8_000;
@@ -20,8 +20,8 @@ pub(crate) struct EscapeWork(u64);
 impl EscapeWork {
     pub(crate) const UNLIMITED: Self = Self(u64::MAX);
 
-    pub(crate) fn from_us(us: u32) -> Self {
-        Self(u64::from(us) * 1000)
+    pub(crate) const fn from_us(us: u32) -> Self {
+        Self(us as u64 * 1000)
     }
 
     /// All that a checker did so far, and so many evaluations of a constraint.
@@ -39,9 +39,11 @@ impl EscapeWork {
         )
     }
 
-    /// How many exact tests of pairs this is.
-    pub(crate) fn exact_tests(self) -> u32 {
-        u32::try_from(self.0 / EXACT_PAIR_NS).unwrap_or(u32::MAX)
+    /// A sweep that ends, at the latest, when it has cost so much: what it has not proven by then counts as a hit.
+    pub(crate) fn sweep_options(self, clearance_m: f64) -> SweepOptions {
+        let options = SweepOptions { clearance_m, ..SweepOptions::default() };
+        let exact_tests = u32::try_from(self.0 / EXACT_PAIR_NS).unwrap_or(u32::MAX);
+        SweepOptions { max_steps: options.max_steps.min(exact_tests), ..options }
     }
 
     /// A share of it.

@@ -3,8 +3,9 @@
 use elbowroom_kinematics::LinkId;
 use elbowroom_proximity::ccd::ConstantTwist;
 use elbowroom_robot::{GeometryId, RobotId};
-use elbowroom_scene::{Scene, SweepMove, SweepOptions};
+use elbowroom_scene::{Scene, SweepMove};
 
+use crate::escape_work::EscapeWork;
 use crate::joint_limit::JointLimit;
 use crate::proximity_query::ProximityQuery;
 use crate::reactive_controller::MAX_PAIRS;
@@ -35,12 +36,15 @@ pub(crate) struct SweepCheck {
     near: Vec<usize>,
     /// Per pair what its geometries move with: themselves, or the links that attached objects are attached to.
     carriers: Vec<[GeometryId; 2]>,
+    /// What one sweep may cost.
+    work: EscapeWork,
 }
 
 impl SweepCheck {
-    pub(crate) fn new(scene: &Scene) -> Self {
+    /// What a sweep has not proven with so much work counts as a hit.
+    pub(crate) fn new(scene: &Scene, work: EscapeWork) -> Self {
         let to = scene.robots().iter().map(|r| vec![0.0; r.robot.chain.dof()]).collect();
-        Self { to, near: Vec::with_capacity(MAX_PAIRS), carriers: Vec::with_capacity(MAX_PAIRS) }
+        Self { to, near: Vec::with_capacity(MAX_PAIRS), carriers: Vec::with_capacity(MAX_PAIRS), work }
     }
 
     /// The time at which the segment first hits one of the pairs accepted by `filter`, as a fraction of its duration. All
@@ -71,11 +75,13 @@ impl SweepCheck {
         self.carriers.extend(query.scene_pairs.iter().map(|p| [p.a, p.b].map(|m| query.carrier(m))));
         let ProximityQuery { robot, checker, state, scene_pairs, .. } = query;
         let own = SweepMove::Robot { robot: *robot, to: &self.to[robot.0] };
+        let deadline = EscapeWork::of(&checker.stats(), 0).plus(self.work);
         for &n in &self.near {
             let near = &scene_pairs[n];
             let geometries = self.carriers[n];
             let clearance_m = SECURITY_MARGIN_M.min(0.5 * near.pair.distance_m);
-            let options = SweepOptions { clearance_m, ..SweepOptions::default() };
+            let left = deadline - EscapeWork::of(&checker.stats(), 0);
+            let options = left.sweep_options(clearance_m);
             let mut pair = checker.between(near.a.into(), near.b.into());
             let object = geometries.into_iter().find_map(|m| observed(obstacles, m));
             let path =
@@ -162,7 +168,8 @@ mod tests {
     fn the_sweep_includes_the_motion_of_a_neighbour() {
         let scene = example::two_arms();
         let limits = JointLimit::of(&scene.robots()[0].robot.chain, 0.25, 0.1, 1.0);
-        let (mut query, mut check) = (ProximityQuery::new(&scene, RobotId(0)), SweepCheck::new(&scene));
+        let (mut query, mut check) =
+            (ProximityQuery::new(&scene, RobotId(0)), SweepCheck::new(&scene, EscapeWork::UNLIMITED));
         let duration_s = 0.3;
         let mut random = Random(7);
         let (mut hits, mut free, mut only_moving) = (0, 0, 0);
