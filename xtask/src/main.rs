@@ -82,7 +82,8 @@ cargo xtask COMMAND
   evade [RUNS] [CELL] [--noise-mm N] [--delay-ms N] [--add FILE] [--csv FILE]
         RUNS runs (default 100) of a palletizer whose path a cart crosses at random, without and with avoidance; --add
         adds the tables of FILE to the cell. EVADE_ONLY: numbers of runs to make and show, as 135,160; EVADE_EXPLAIN:
-        how many motions to search for an escape before each hit
+        how many motions to search for an escape before each hit. evade --robots: the time of a step for every robot of
+        the data (../shared/data)
   cross-validate [--data DIR] [--states N] [--only NAME] [--json]
         every robot and cell of DIR (default ../shared/data) beside Pinocchio and Coal: distances and contacts on N random
         states (default 200; 10000 with ELBOWROOM_LONG=1), and the allowed collision matrix beside the SRDF

@@ -3,6 +3,8 @@
 //!
 //! `cargo xtask evade [RUNS] [CELL] [--noise-mm N] [--delay-ms N] [--csv FILE] [--add FILE]`
 //!
+//! `cargo xtask evade --robots` prints the time of a step for every robot of the data instead.
+//!
 //! `--add` adds the tables of a file to the cell, such as the regions of `devtools/src/evade/regions.toml`. `--csv` writes a
 //! row per run: whether it hits without and with avoidance, its extra time, and the time in each state.
 //!
@@ -14,6 +16,7 @@ mod comparison;
 #[path = "../../../crates/cell/sim/tests/common/crossing.rs"]
 mod crossing;
 mod explain;
+mod robot_steps;
 mod statistics;
 mod table;
 
@@ -70,6 +73,9 @@ fn number(option: &str, value: &str) -> Result<f64, String> {
 
 /// Makes the runs and prints their statistics.
 pub fn run(root: &Path, words: &[&str]) -> Result<(), Failure> {
+    if words == ["--robots"] {
+        return robot_steps::run().map_err(|e| Failure::Check(e.to_string()));
+    }
     let options = Options::parse(words).map_err(Failure::Usage)?;
     compare(root, &options).map_err(|e| Failure::Check(e.to_string()))
 }

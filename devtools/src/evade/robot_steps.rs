@@ -1,0 +1,117 @@
+//! `cargo xtask evade --robots`: the time of a step of avoidance for every robot of the data, joint by joint as its file has them.
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+use elbowroom_cell::Cell;
+use elbowroom_formats::robot::{LoadOptions, load};
+use elbowroom_kinematics::{ChainState, JointKind};
+use elbowroom_robot::Robot;
+use elbowroom_sim::run::simulate;
+use elbowroom_sim::{RobotTrack, RunOptions};
+use elbowroom_testkit::random::SplitMix;
+
+/// Runs of each robot.
+const RUNS: u64 = 3;
+/// Random programs that are tried for them: some collide with the robot itself, or are beyond its limits.
+const TRIED: u64 = 12;
+/// Joints without limits, and wide ones, turn within this much, rad.
+const RANGE: f64 = 3.0;
+
+/// Prints a line a robot.
+pub fn run() -> Result<(), Box<dyn Error>> {
+    let Some(data) = elbowroom_testkit::folder::data() else { return Ok(()) };
+    println!("robot                      runs  hits  evading, s   step, us: median, 99 %, longest of the runs");
+    for file in urdf_files(&data.join("urdf"))? {
+        let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let tracks = runs(&file)?;
+        let hits = tracks.iter().filter(|t| !t.collisions.is_empty()).count();
+        let steps = tracks.iter().filter_map(|t| t.avoidance.as_ref()).map(|a| a.step_ns);
+        let [mut p50, mut p99, mut longest] = [0; 3];
+        for s in steps {
+            (p50, p99, longest) = (p50.max(s.p50), p99.max(s.p99), longest.max(s.max));
+        }
+        let evading: f64 = tracks.iter().map(evading_s).sum();
+        println!(
+            "{name:26} {:4}  {hits:4}  {evading:10.1}  {:8} {:7} {:7}",
+            tracks.len(),
+            p50 / 1000,
+            p99 / 1000,
+            longest / 1000
+        );
+    }
+    Ok(())
+}
+
+fn urdf_files(folder: &Path) -> Result<Vec<PathBuf>, Box<dyn Error>> {
+    let mut files = Vec::new();
+    for robot in std::fs::read_dir(folder).map_err(|e| format!("{}: {e}", folder.display()))? {
+        for file in std::fs::read_dir(robot?.path())? {
+            let name = file?.path();
+            // Beside each there is the same robot with the paths of its package.
+            let is_of_package = name.file_stem().is_some_and(|stem| Path::new(stem).extension().is_some());
+            if name.extension().is_some_and(|kind| kind == "urdf") && !is_of_package {
+                files.push(name);
+            }
+        }
+    }
+    files.sort();
+    Ok(files)
+}
+
+fn evading_s(track: &RobotTrack) -> f64 {
+    let Some(avoidance) = &track.avoidance else { return 0.0 };
+    let pairs = track.samples.windows(2).zip(&avoidance.samples);
+    pairs.filter(|(_, s)| s.state == elbowroom_avoidance::AvoiderState::Evading).map(|(p, _)| p[1].t_s - p[0].t_s).sum()
+}
+
+fn runs(file: &Path) -> Result<Vec<RobotTrack>, Box<dyn Error>> {
+    let robot = load(file, &LoadOptions::default())?.robot;
+    let mut tracks = Vec::new();
+    for seed in 0..TRIED {
+        let text = cell(file, &robot, &mut SplitMix(seed));
+        let Ok(cell) = Cell::parse(PathBuf::from("steps.toml"), &text) else { continue };
+        let alone = simulate(&cell, &RunOptions { avoidance: false, ..RunOptions::default() });
+        // A program that hits the robot itself says nothing of the obstacle.
+        let hits_itself = |t: &RobotTrack| t.collisions.iter().any(|c| c.a != "crate" && c.b != "crate");
+        if alone.map_or(true, |o| hits_itself(&o.recording.robots[0])) {
+            continue;
+        }
+        let mut recording = simulate(&cell, &RunOptions::default())?.recording;
+        tracks.push(recording.robots.remove(0));
+        if tracks.len() as u64 == RUNS {
+            break;
+        }
+    }
+    Ok(tracks)
+}
+
+/// The robot goes to and fro; a crate crosses where its tip is in between.
+fn cell(file: &Path, robot: &Robot, random: &mut SplitMix) -> String {
+    let limits = robot.chain.joints().iter().filter(|j| j.kind != JointKind::Fixed && j.mimic.is_none());
+    let limits: Vec<[f64; 2]> = limits.map(|j| [j.limits.lower.max(-RANGE), j.limits.upper.min(RANGE)]).collect();
+    let mut between = |share: [f64; 2]| -> Vec<f64> {
+        limits.iter().map(|[low, high]| low + (high - low) * random.between(share[0], share[1])).collect()
+    };
+    let (from, mut to) = (between([0.3, 0.7]), between([0.4, 0.6]));
+    to[0] = limits[0][0] + 0.9 * (limits[0][1] - limits[0][0]);
+    let mut state = ChainState::new(&robot.chain);
+    state.q = from.iter().zip(&to).map(|(a, b)| 0.5 * (a + b)).collect();
+    robot.chain.forward(&mut state);
+    let tip = state.link_in_root(robot.chain.tip()).translation;
+    let size = 0.2 * tip.length().max(0.3);
+    format!(
+        "version = 1\nunits = {{ length = \"m\", angle = \"rad\" }}\ntick_ms = 2\nmax_s = 12\n\
+         [robot.arm]\nmodel = {:?}\nstart = {from:?}\n\
+         [encoder.belt]\ndirection = [0, 1, 0]\nspeed = 0.4\n\
+         [object.crate]\nshape = \"box\"\nat = [{:.4}, {:.4}, {:.4}]\nsize = [{size:.4}, {size:.4}, {size:.4}]\n\
+         follow = {{ encoder = \"belt\" }}\n\
+         [avoidance.arm]\nobjects = [\"crate\"]\n\
+         [program.arm]\nrepeat = 3\n\
+         steps = [{{ move = \"joint\", to = {to:?}, speed = 40 }}, {{ move = \"joint\", to = {from:?}, speed = 40 }}]\n",
+        file.display().to_string(),
+        tip.x,
+        tip.y - 1.6,
+        tip.z
+    )
+}
