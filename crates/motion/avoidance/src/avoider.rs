@@ -11,7 +11,6 @@ use crate::detour::{Detour, JointState, SAME_CONFIGURATION_S};
 use crate::escape_check::EscapeClearance;
 use crate::escape_search::{EscapeSearch, EscapeTick};
 use crate::escape_trajectory::EscapeStart;
-use crate::escape_work::EscapeWork;
 use crate::joint_command::JointCommand;
 use crate::joint_limit::{
     JointLimit, arrival_speed, brake, distance_s, progress, speed_fraction, stop_s, update_bounds,
@@ -46,10 +45,6 @@ const STATIONARY_OBSTACLE_M_S: f64 = 0.01;
 /// Fixed obstacles are found within this many times the distance in which they limit an evasion (its speed times the time
 /// constant of the controller): a reserve for the next ticks.
 const FIXED_RANGE_FACTOR: f64 = 1.5;
-/// A sweep of the command may cost as much as this share of the work of the escapes of a tick …
-const SWEEP_SHARE_OF_WORK: f64 = 0.5;
-/// … but so much in any case: without it the robot would brake on every way off its path.
-const LEAST_SWEEP_WORK: EscapeWork = EscapeWork::from_us(500);
 
 /// Keeps one robot of a scene clear of dynamic obstacles, and returns it to its path.
 ///
@@ -132,10 +127,9 @@ impl<'s> Avoider<'s> {
         let mut settings = settings;
         settings.reactive.closing_s = settings.reactive.closing_s.max(stop_s(&limits, &speeds));
         let zeros = || vec![0.0; n];
-        let sweep_work = EscapeWork::from_us(settings.escape.work_us).share(SWEEP_SHARE_OF_WORK).max(LEAST_SWEEP_WORK);
         Ok(Self {
             controller: ReactiveController::new(chain, &speeds, rules, settings.reactive),
-            sweep: SweepCheck::new(scene, sweep_work),
+            sweep: SweepCheck::new(scene, settings.escape.work_us),
             escapes: EscapeSearch::new(scene, robot, q, settings.escape),
             border: BorderQuery::new(n),
             query,

@@ -39,8 +39,7 @@ const UNHURRIED_S: f64 = 1.5;
 const PAUSE_TICKS: usize = 3;
 /// A better escape than the known one is looked for in every so many examined ticks.
 const IMPROVE_TICKS: usize = 4;
-/// Share of the work of a tick in which it is decided what passes; what is not proven to pass by then counts as on a collision
-/// course …
+/// Share of the work of a tick in which it is decided what passes: what is not proven to is on a collision course …
 const COURSE_SHARE_OF_WORK: f64 = 0.4;
 /// … in which it is decided what a stop meets; where that is not proven to be nothing by then, it counts as met …
 const STOP_SHARE_OF_WORK: f64 = 0.7;

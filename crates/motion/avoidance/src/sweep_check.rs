@@ -13,6 +13,10 @@ use crate::{DynamicObstacles, ObservedObject, ProximityPair};
 
 /// Security margin of the sweep, m.
 const SECURITY_MARGIN_M: f64 = 1e-3;
+/// A sweep may cost as much as this share of the work of the escapes of a tick …
+const SHARE_OF_WORK: f64 = 0.5;
+/// … but so much in any case: without it the robot would brake on every way off its path.
+const LEAST_WORK: EscapeWork = EscapeWork::from_us(500);
 
 /// A motion at constant joint velocities.
 #[derive(Debug, Clone, Copy)]
@@ -41,8 +45,9 @@ pub(crate) struct SweepCheck {
 }
 
 impl SweepCheck {
-    /// What a sweep has not proven with so much work counts as a hit.
-    pub(crate) fn new(scene: &Scene, work: EscapeWork) -> Self {
+    /// For a search for escapes of so much work a tick (µs); what a sweep has not proven within its share counts as a hit.
+    pub(crate) fn new(scene: &Scene, work_us: u32) -> Self {
+        let work = EscapeWork::from_us(work_us).share(SHARE_OF_WORK).max(LEAST_WORK);
         let to = scene.robots().iter().map(|r| vec![0.0; r.robot.chain.dof()]).collect();
         Self { to, near: Vec::with_capacity(MAX_PAIRS), carriers: Vec::with_capacity(MAX_PAIRS), work }
     }
@@ -168,8 +173,7 @@ mod tests {
     fn the_sweep_includes_the_motion_of_a_neighbour() {
         let scene = example::two_arms();
         let limits = JointLimit::of(&scene.robots()[0].robot.chain, 0.25, 0.1, 1.0);
-        let (mut query, mut check) =
-            (ProximityQuery::new(&scene, RobotId(0)), SweepCheck::new(&scene, EscapeWork::UNLIMITED));
+        let (mut query, mut check) = (ProximityQuery::new(&scene, RobotId(0)), SweepCheck::new(&scene, u32::MAX));
         let duration_s = 0.3;
         let mut random = Random(7);
         let (mut hits, mut free, mut only_moving) = (0, 0, 0);
