@@ -22,6 +22,8 @@ const MOST_PIXELS: u32 = 16_384;
 const LATENCY_S: f64 = 0.1;
 /// Time that a search for a path takes where none is stated, s.
 const SEARCH_S: f64 = 0.2;
+/// Longest time that it may be stated to take, s.
+const LONGEST_SEARCH_S: f64 = 60.0;
 /// Age at which the last picture is stale where none is stated, s.
 const STALE_S: f64 = 0.5;
 
@@ -44,10 +46,18 @@ pub(super) fn sensor(name: &str, t: &Table<'_>, cell: &Cell, folder_key: &str, k
         folder: t.get(folder_key).map(|v| folder(&v, folder_key)).transpose()?,
         joints: t.get("joints").map(|v| super::models::path(&v)).transpose()?,
         latency_s,
-        search_s: milliseconds("search_ms", SEARCH_S)?,
+        search_s: t.get("search_ms").map_or(Ok(SEARCH_S), |v| search_s(&v))?,
         stale_s,
         robots: robots(t, cell)?,
     })
+}
+
+fn search_s(v: &Value<'_>) -> Result<f64> {
+    let seconds = v.positive()? / 1e3;
+    if seconds <= LONGEST_SEARCH_S {
+        return Ok(seconds);
+    }
+    Err(v.error(format!("is {seconds} s: a robot would stand for a path")).hint("search_ms = 200   (up to 60000)"))
 }
 
 /// The robot in whose map the obstacles are: the one named, or the only one.
