@@ -46,7 +46,8 @@ pub fn run() -> Result<(), Box<dyn Error>> {
 fn urdf_files(folder: &Path) -> Result<Vec<PathBuf>, Box<dyn Error>> {
     let mut files = Vec::new();
     for robot in std::fs::read_dir(folder).map_err(|e| format!("{}: {e}", folder.display()))? {
-        for file in std::fs::read_dir(robot?.path())? {
+        let Ok(of_robot) = std::fs::read_dir(robot?.path()) else { continue };
+        for file in of_robot {
             let name = file?.path();
             // Beside each there is the same robot with the paths of its package.
             let is_of_package = name.file_stem().is_some_and(|stem| Path::new(stem).extension().is_some());
@@ -68,6 +69,9 @@ fn evading_s(track: &RobotTrack) -> f64 {
 fn runs(file: &Path) -> Result<Vec<RobotTrack>, Box<dyn Error>> {
     let robot = load(file, &LoadOptions::default())?.robot;
     let mut tracks = Vec::new();
+    if robot.chain.dof() == 0 {
+        return Ok(tracks);
+    }
     for seed in 0..TRIED {
         let text = cell(file, &robot, &mut SplitMix(seed));
         let Ok(cell) = Cell::parse(PathBuf::from("steps.toml"), &text) else { continue };

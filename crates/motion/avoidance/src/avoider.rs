@@ -552,7 +552,7 @@ impl<'s> Avoider<'s> {
         self.sweep.first_hit(&mut self.query, &segment, obstacles, filter).is_none()
     }
 
-    /// Replaces the next command by braking where that hits a dynamic obstacle later; true where it was replaced.
+    /// Replaces the next command by braking where that hits a dynamic obstacle later, or nobody knows; true where it was replaced.
     fn brake_before_hit(&mut self, dt: f64, obstacles: &DynamicObstacles<'_>) -> bool {
         let Self { sweep, query, limits, command, workspace, .. } = self;
         let Workspace { bounds, next, braked, .. } = workspace;
@@ -562,11 +562,11 @@ impl<'s> Avoider<'s> {
         };
         let Some(hit) = first_hit(next) else { return false };
         brake(limits, &bounds.stoppable, &command.qd, dt, braked);
-        let is_later = first_hit(braked).unwrap_or(f64::INFINITY) > hit;
-        if is_later {
+        let is_better = !hit.is_proven || first_hit(braked).map_or(f64::INFINITY, |b| b.time) > hit.time;
+        if is_better {
             next.copy_from_slice(braked);
         }
-        is_later
+        is_better
     }
 
     /// Ends the tick: updates the state machine and completes the output.

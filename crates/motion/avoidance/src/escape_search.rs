@@ -56,7 +56,7 @@ pub struct EscapeSettings {
     /// Largest number of escapes that are examined in one tick.
     pub per_tick: usize,
     /// Largest computing time of a tick, µs, counted in elementary tests times their measured costs: the same on every machine and
-    /// in every run. What is not proven by then is examined in later ticks; a stop that is not proven to be free counts as hit.
+    /// in every run. What is not proven then is examined in later ticks; a stop not proven to be free counts as hit.
     pub work_us: u32,
     /// Clearance of an escape from what moves, m.
     pub clearance_m: f64,
@@ -332,7 +332,7 @@ impl<'s> EscapeSearch<'s> {
         }
     }
 
-    /// Where a stop after the command meets what moves, and whether anything is on a collision course at all.
+    /// Where a stop meets what moves (at once, where not all was examined), and whether anything is on a collision course at all.
     fn stop_hit(&mut self, tick: &EscapeTick<'_>, clearance_m: f64) -> Result<Option<PredictedHit>, SceneError> {
         let clearances = match std::mem::replace(&mut self.course, ObstacleCourse::Collision) {
             ObstacleCourse::Collision => PASSING_CLEARANCES,
@@ -352,7 +352,7 @@ impl<'s> EscapeSearch<'s> {
         }
         self.set_deadline(STOP_SHARE_OF_WORK);
         let stop = self.check_stop(tick, from_s, clearance_m)?;
-        Ok(stop.hit.map(|hit| PredictedHit { time_s: from_s + hit.time_s, ..hit }))
+        Ok(stop.hit.map(|hit| PredictedHit { time_s: if stop.is_complete { from_s + hit.time_s } else { 0.0 }, ..hit }))
     }
 
     /// Checks a stop after the command from `from_s` on.

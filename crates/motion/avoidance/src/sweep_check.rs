@@ -31,6 +31,15 @@ pub(crate) struct VelocitySegment<'a> {
     pub(crate) duration_s: f64,
 }
 
+/// The first hit of a command.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct CommandHit {
+    /// As a fraction of the duration.
+    pub(crate) time: f64,
+    /// False where the work was used up first: then nothing is known of what comes after.
+    pub(crate) is_proven: bool,
+}
+
 /// Sweeps of a robot among neighbours and dynamic obstacles.
 #[derive(Debug)]
 pub(crate) struct SweepCheck {
@@ -52,22 +61,22 @@ impl SweepCheck {
         Self { to, near: Vec::with_capacity(MAX_PAIRS), carriers: Vec::with_capacity(MAX_PAIRS), work }
     }
 
-    /// The time at which the segment first hits one of the pairs accepted by `filter`, as a fraction of its duration. All
-    /// dynamic obstacles continue their present motion. Only pairs that can close within the duration are swept.
+    /// Where the segment first hits one of the pairs accepted by `filter`. All dynamic obstacles continue their present motion.
+    /// Only pairs that can close within the duration are swept.
     pub(crate) fn first_hit(
         &mut self,
         query: &mut ProximityQuery<'_>,
         segment: &VelocitySegment<'_>,
         obstacles: &DynamicObstacles<'_>,
         filter: impl Fn(&ProximityPair) -> bool,
-    ) -> Option<f64> {
+    ) -> Option<CommandHit> {
         self.update_ends(query.robot, segment, obstacles);
         let excluded_may_close = query
             .excluded
             .iter()
             .flatten()
             .any(|p| filter(p) && p.distance_m <= max_closing_of_any(query, segment, obstacles));
-        let mut first = excluded_may_close.then_some(0.0);
+        let (mut first, mut is_proven) = (excluded_may_close.then_some(0.0), true);
         let max_closing = |p: &ProximityPair, a: GeometryId, b: GeometryId| {
             let by_obstacle = [a, b].map(|m| query.max_approach(m, obstacles, segment.duration_s));
             query.own_motion_bounds().max_closing(p, segment.qd, segment.duration_s) + by_obstacle[0] + by_obstacle[1]
@@ -102,10 +111,11 @@ impl SweepCheck {
                 _ => pair.sweep(state, &[own], &options),
             };
             // A motion that cannot be checked counts as a hit.
+            is_proven &= !matches!(result, Ok(Some(hit)) if !hit.certain);
             let time = result.map_or(Some(0.0), |hit| hit.map(|h| h.time));
             first = [first, time].into_iter().flatten().reduce(f64::min);
         }
-        first
+        first.map(|time| CommandHit { time, is_proven })
     }
 
     /// Updates the configurations of all robots at the end.

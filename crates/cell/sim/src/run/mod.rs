@@ -770,8 +770,8 @@ impl<'a> Simulation<'a> {
         }
         let on_path = |i: usize| self.avoiding[i].as_ref().is_none_or(AvoidingRobot::is_on_path);
         let waiting = present.iter().any(|i| self.clocks[*i].waiting() && on_path(*i));
-        // A robot that is held may go on after the next picture.
-        let waiting = waiting || self.perceived.as_ref().is_some_and(PerceivedObstacles::has_more);
+        // A robot that is held may go on after the next picture, or when its search ends.
+        let waiting = waiting || self.expects_news();
         let in_motion = self.frames.is_any_moving(t_s);
         let can_continue = waiting
             || self.frames.is_any_moving_but_endless_belts(t_s)

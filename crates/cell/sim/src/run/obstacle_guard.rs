@@ -14,14 +14,14 @@ use super::avoiding_robot::AvoidingRobot;
 use super::path_ahead::PathAhead;
 use super::path_replanner::{self, PathReplanner};
 use super::path_search::{ClosedRegions, FutileSearch, PathSearch, SearchScene};
-use super::perceived_obstacles::PerceivedObstacles;
+use super::perceived_obstacles::{PerceivedObstacle, PerceivedObstacles};
 use super::surroundings::Surroundings;
 use crate::motion::ProgramClock;
 use crate::recording::{Hold, HoldReason, PathReplan, PerceptionTrack};
 
 /// A path nearer to an obstacle than this is blocked, m: more than the motion deviates from the polyline that is checked.
 const CLEARANCE_M: f64 = 5e-3;
-/// Time (s) after a search in motion without a path until the next one.
+/// Time (s) after a search without a path until the next one of the step.
 const RETRY_S: f64 = 0.2;
 /// A robot that stands goes on towards a blocked configuration only where it is farther away than this (s, at override 1).
 const RESUME_S: f64 = 0.2;
@@ -118,7 +118,7 @@ impl<'a> ObstacleGuard<'a> {
         let step = clock.position().0;
         let is_new_step = self.step != Some(step);
         if is_new_step {
-            (self.step, self.search, self.without_path) = (Some(step), None, None);
+            (self.step, self.search, self.without_path, self.not_before_s) = (Some(step), None, None, 0.0);
         }
         if !(has_news || is_new_step) {
             return;
@@ -130,7 +130,8 @@ impl<'a> ObstacleGuard<'a> {
         if clock.planned_move().is_some() && t_s >= self.not_before_s && self.search.is_none() {
             let again = self.without_path.as_ref().map(|w| w.longer_search(&SearchScene::of(&known, &regions())));
             let takes_s = again.unwrap_or(Some(1.0)).map(|factor| factor * self.search_s);
-            self.search = takes_s.map(|takes_s| PathSearch { due_s: t_s + takes_s, takes_s, surroundings: known });
+            self.search =
+                takes_s.map(|takes_s| PathSearch { due_s: t_s + takes_s, takes_s, perceived: known.perceived });
         }
     }
 
@@ -155,18 +156,19 @@ impl<'a> ObstacleGuard<'a> {
         self.blocked.is_some().then_some(known)
     }
 
-    /// Ends a search whose time is over. It began with what was known then; the robot goes on from where it is by now. True where
-    /// it has a new path.
+    /// Ends a search whose time is over. It knows what sensors had seen at its beginning, and where everything else is by now. True
+    /// where the robot has a new path.
     pub fn end_search<'c>(
         &mut self,
         t_s: f64,
         clock: &mut ProgramClock,
+        surroundings: impl FnOnce(Vec<PerceivedObstacle>) -> Surroundings,
         regions: impl FnOnce() -> ClosedRegions<'c>,
     ) -> bool {
         let Some(search) = self.search.take_if(|s| t_s >= s.due_s && self.step == Some(clock.position().0)) else {
             return false;
         };
-        let (mut known, regions) = (search.surroundings, regions());
+        let (mut known, regions) = (surroundings(search.perceived), regions());
         let (Some(ahead), Some(blocked)) = (PathAhead::of(clock), &self.blocked) else { return false };
         known.states[self.robot.0].q.clone_from(&clock.point().q);
         let Ok(solids) = self.solids(&known) else { return false };
@@ -234,6 +236,11 @@ impl<'a> ObstacleGuard<'a> {
             let by = object.map_or_else(String::new, |i| surroundings.perceived[i].name.clone());
             BlockedPath { free_until_s: ahead.time_before(corner, near.time), by }
         }))
+    }
+
+    /// True while a search is under way.
+    pub fn is_searching(&self) -> bool {
+        self.search.is_some()
     }
 
     /// Whether the robot must brake or stand now, and by what: an obstacle in its way says more than a sensor without news. It goes

@@ -90,13 +90,15 @@ pub(super) struct PathReplanner<'a> {
     at: &'a CellRobot,
     tick_s: f64,
     motion_bounds: Vec<f64>,
-    /// By clearance and by what the robot carries; made when they are first needed.
+    /// By clearance, for scenes in which nothing is carried.
     models: Vec<CoverModel>,
+    /// For the last scene in which something is.
+    carrying: Option<CoverModel>,
 }
 
 impl<'a> PathReplanner<'a> {
     pub fn new(robot: RobotId, at: &'a CellRobot, tick_s: f64) -> Self {
-        Self { robot, at, tick_s, motion_bounds: motion_bounds(at), models: Vec::new() }
+        Self { robot, at, tick_s, motion_bounds: motion_bounds(at), models: Vec::new(), carrying: None }
     }
 
     /// Makes what searches need of the robot itself, so that the first one does not take that time.
@@ -105,7 +107,7 @@ impl<'a> PathReplanner<'a> {
         let placed = states.iter().enumerate().all(|(i, robot)| state.set_q(scene, RobotId(i), &robot.q).is_ok());
         if placed {
             for clearance_m in CLEARANCES_M {
-                self.add_model(scene, &state, clearance_m);
+                let _ = self.cover_model(scene, &state, clearance_m);
             }
         }
     }
@@ -198,15 +200,15 @@ impl<'a> PathReplanner<'a> {
 
     fn cover_model(&mut self, scene: &Scene, state: &SceneState, clearance_m: f64) -> Option<&CoverModel> {
         let serves = |m: &CoverModel| m.serves(scene, state, clearance_m);
-        if !self.models.iter().any(serves) {
-            self.add_model(scene, state, clearance_m);
+        if let Some(known) = self.models.iter().position(serves) {
+            return self.models.get(known);
         }
-        self.models.iter().find(|m| serves(m))
-    }
-
-    fn add_model(&mut self, scene: &Scene, state: &SceneState, clearance_m: f64) {
-        let model = CoverModel::with_covers(scene, state, self.robot, clearance_m, &CoverCache::of_user());
-        self.models.extend(model);
+        let model = CoverModel::with_covers(scene, state, self.robot, clearance_m, &CoverCache::of_user()).ok()?;
+        if serves(&model) {
+            self.models.push(model);
+            return self.models.last();
+        }
+        Some(self.carrying.insert(model))
     }
 }
 

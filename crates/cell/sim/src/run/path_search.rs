@@ -4,6 +4,7 @@ use elbowroom_cell::region_constraint::RegionConstraint;
 use elbowroom_monitor::{Monitor, SourceState};
 use elbowroom_spatial::{Aabb, Pose};
 
+use super::perceived_obstacles::PerceivedObstacle;
 use super::surroundings::Surroundings;
 
 /// Obstacles whose bounding boxes changed by less (m) are where they were: noise of the outlines.
@@ -32,15 +33,15 @@ impl<'c> ClosedRegions<'c> {
     }
 }
 
-/// A search that was asked for. It takes its time: the result counts from `due_s` on, and knows what was known when it began.
+/// A search that was asked for. It takes its time: the result counts from `due_s` on, and knows what had been seen when it began.
 #[derive(Debug)]
 pub(super) struct PathSearch {
     /// End of the search, s.
     pub due_s: f64,
     /// How long it takes, and may take, s.
     pub takes_s: f64,
-    /// What was known at its beginning.
-    pub surroundings: Surroundings,
+    /// What sensors had seen at its beginning.
+    pub perceived: Vec<PerceivedObstacle>,
 }
 
 /// A search from rest that found no path.

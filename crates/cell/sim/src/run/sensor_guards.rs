@@ -2,16 +2,34 @@
 
 use std::time::Instant;
 
+use elbowroom_cell::Cell;
 use elbowroom_kinematics::ChainState;
 use elbowroom_robot::{ObjectId, RobotId};
-use elbowroom_scene::Object;
+use elbowroom_scene::{FirstContacts, Object};
 
 use super::Simulation;
+use super::carried_parts::CarriedParts;
 use super::obstacle_guard::ObstacleGuard;
 use super::path_search::ClosedRegions;
-use super::perceived_obstacles::PerceivedObstacles;
+use super::perceived_obstacles::{PerceivedObstacle, PerceivedObstacles};
 use super::surroundings::Surroundings;
 use crate::recording::{HoldReason, RobotTrack, RunEvent};
+
+/// Everything around the robots now, with obstacles that sensors saw.
+fn surroundings(
+    cell: &Cell,
+    states: &[ChainState],
+    (checker, parts): (&FirstContacts, &CarriedParts),
+    perceived: Vec<PerceivedObstacle>,
+) -> Surroundings {
+    let object = |o| Object { in_world: checker.object_in_world(ObjectId(o)), ..cell.objects[o].clone() };
+    Surroundings {
+        states: states.to_vec(),
+        objects: (0..cell.objects.len()).map(object).collect(),
+        attachments: parts.attachments().to_vec(),
+        perceived,
+    }
+}
 
 impl Simulation<'_> {
     /// Takes in the pictures that are due; guarded robots replan, or are held.
@@ -34,14 +52,23 @@ impl Simulation<'_> {
         self.perceived = Some(perceived);
     }
 
+    /// True where pictures are still to come, or a search is under way.
+    pub(super) fn expects_news(&self) -> bool {
+        self.perceived.as_ref().is_some_and(PerceivedObstacles::has_more)
+            || self.guards.iter().flatten().any(ObstacleGuard::is_searching)
+    }
+
     /// Robots whose search for another path has taken its time go on along that path.
     fn end_path_searches(&mut self, t_s: f64) {
-        let (setups, states, monitors, frames) = (self.setups, &self.states[..], &self.monitors, &self.frames);
+        let (cell, setups, states, monitors) = (self.cell, self.setups, &self.states[..], &self.monitors);
+        let (frames, checker, parts) = (&self.frames, &self.checker, &self.parts);
         let mut replanned = Vec::new();
         for (i, guard) in self.guards.iter_mut().enumerate() {
+            let Some(guard) = guard.as_mut().filter(|_| !self.options.is_silent(RobotId(i), t_s)) else { continue };
             let regions =
                 || ClosedRegions { monitor: &monitors[i], sources: frames.sources(&setups[i].sources, states, t_s) };
-            if guard.as_mut().is_some_and(|g| g.end_search(t_s, &mut self.clocks[i], regions)) {
+            let surroundings = |perceived| surroundings(cell, states, (checker, parts), perceived);
+            if guard.end_search(t_s, &mut self.clocks[i], surroundings, regions) {
                 replanned.push(i);
             }
         }
@@ -62,14 +89,8 @@ impl Simulation<'_> {
         let (cell, setups, states, monitors) = (self.cell, self.setups, &self.states[..], &self.monitors);
         let (frames, checker, parts) = (&self.frames, &self.checker, &self.parts);
         let clock = &self.clocks[i];
-        let surroundings = || Surroundings {
-            states: states.to_vec(),
-            objects: (0..cell.objects.len())
-                .map(|o| Object { in_world: checker.object_in_world(ObjectId(o)), ..cell.objects[o].clone() })
-                .collect(),
-            attachments: parts.attachments().to_vec(),
-            perceived: perceived.obstacles(RobotId(i)).cloned().collect(),
-        };
+        let seen = || perceived.obstacles(RobotId(i)).cloned().collect();
+        let surroundings = || surroundings(cell, states, (checker, parts), seen());
         let regions =
             || ClosedRegions { monitor: &monitors[i], sources: frames.sources(&setups[i].sources, states, t_s) };
         guard.observe(t_s, clock, perceived, has_news, surroundings, regions);

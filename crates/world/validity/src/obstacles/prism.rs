@@ -65,10 +65,11 @@ impl Prism {
             && lower.len() + upper.len() == vertices.len()
             && lower.iter().all(|v| has_twin(v, &upper))
             && upper.iter().all(|v| has_twin(v, &lower));
-        is_prism.then(|| Self::over(&lower, heights))
+        if is_prism { Self::over(&lower, heights) } else { None }
     }
 
-    fn over(lower: &[&Vec3], heights: [f64; 2]) -> Self {
+    /// `None` where a vertex is no corner: a hull may have some within its faces.
+    fn over(lower: &[&Vec3], heights: [f64; 2]) -> Option<Self> {
         let middle = lower.iter().fold(Vec3::ZERO, |sum, v| sum + **v) / lower.len() as f64;
         let mut corners: Vec<Vec3> = lower.iter().map(|v| **v).collect();
         corners.sort_by(|a, b| {
@@ -83,7 +84,14 @@ impl Prism {
             let v = back * *v;
             [v.x, v.y]
         };
-        Self { corners: corners.iter().map(turned).collect(), heights, frame }
+        let corners: Vec<[f64; 2]> = corners.iter().map(turned).collect();
+        let next = |by: usize| corners.iter().cycle().skip(by);
+        let mut turns = corners.iter().zip(next(1)).zip(next(2));
+        let is_left = |((a, b), c): ((&[f64; 2], &[f64; 2]), &[f64; 2])| {
+            let [ab, bc] = [[b[0] - a[0], b[1] - a[1]], [c[0] - b[0], c[1] - b[1]]];
+            ab[0] * bc[1] - ab[1] * bc[0] >= -SAME_M * (ab[0].hypot(ab[1]) + bc[0].hypot(bc[1]))
+        };
+        turns.all(is_left).then_some(Self { corners, heights, frame })
     }
 
     /// Values of x between which one box each encloses the polygon, and by how much (m) such boxes protrude: the slack, or more
@@ -92,27 +100,24 @@ impl Prism {
         let mut at: Vec<f64> = self.corners.iter().map(|c| c[0]).collect();
         at.sort_by(f64::total_cmp);
         at.dedup_by(|a, b| (*a - *b).abs() <= SAME_M);
+        // A step beside a slope protrudes by less than its height, and by less than its width.
+        let slope = |x: &[f64]| {
+            let [[low0, high0], [low1, high1]] = [self.range(x[0]), self.range(x[1])];
+            (low1 - low0).abs().max((high1 - high0).abs()).min(x[1] - x[0])
+        };
+        let slopes: Vec<f64> = at.windows(2).map(slope).collect();
+        let count = |slope: f64, slack_m: f64| (slope / slack_m).ceil().max(1.0);
         let mut slack_m = slack_m;
-        loop {
-            let cuts = self.cuts_at(&at, slack_m);
-            if cuts.len() <= MAX_BOXES.max(at.len()) {
-                return (cuts, slack_m);
-            }
+        while slopes.iter().map(|s| count(*s, slack_m)).sum::<f64>() >= MAX_BOXES.max(at.len()) as f64 {
             slack_m *= 1.5;
         }
-    }
-
-    /// At the corners, and more where sides slope.
-    fn cuts_at(&self, at: &[f64], slack_m: f64) -> Vec<f64> {
         let mut cuts = at[..1].to_vec();
-        for x in at.windows(2) {
-            let [[low0, high0], [low1, high1]] = [self.range(x[0]), self.range(x[1])];
-            // A step beside a slope protrudes by less than its height, and by less than its width.
-            let rise = (low1 - low0).abs().max((high1 - high0).abs());
-            let count = (rise.min(x[1] - x[0]) / slack_m).ceil().max(1.0) as usize;
-            cuts.extend((1..=count).map(|i| x[0] + (x[1] - x[0]) * i as f64 / count as f64));
+        for (x, slope) in at.windows(2).zip(slopes) {
+            let count = count(slope, slack_m) as usize;
+            cuts.extend((1..count).map(|i| x[0] + (x[1] - x[0]) * i as f64 / count as f64));
+            cuts.push(x[1]);
         }
-        cuts
+        (cuts, slack_m)
     }
 
     /// Least and largest y of the polygon at x.
@@ -236,6 +241,31 @@ mod tests {
             normal.dot(p - a) / normal.length()
         };
         hull.triangles().iter().map(beyond).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// A corner in the middle of each cap would hide a wedge.
+    #[test]
+    fn a_prism_with_corners_in_its_caps_is_none() {
+        let ring: Vec<[f64; 2]> =
+            (0..6).map(|i| f64::from(i) * std::f64::consts::FRAC_PI_3).map(|t| [t.cos(), t.sin()]).collect();
+        let with = |middle: [f64; 2]| -> Vec<Vec3> {
+            let corners: Vec<[f64; 2]> = ring.iter().copied().chain([middle]).collect();
+            [0.0, 1.0]
+                .iter()
+                .flat_map(|z| corners.iter().map(|c| Vec3::new(c[0], c[1], *z)).collect::<Vec<_>>())
+                .collect()
+        };
+        let vertices = with([0.01, -0.02]);
+        let mut faces = Vec::new();
+        for i in 0..6_u32 {
+            let j = (i + 1) % 6;
+            faces.extend([[6, j, i], [13, 7 + i, 7 + j], [i, j, 7 + j], [i, 7 + j, 7 + i]]);
+        }
+        let hull = ConvexHull::from_faces(vertices, faces).unwrap();
+        assert!(PrismBoxes::of(&hull, 0.005).is_none());
+        // Of a size that only a mistaken unit has: few boxes, and no memory for more.
+        let huge = prism(&[[0.0, 0.0], [1e7, 0.0], [3e6, 2e6]], [0.0, 1.0]);
+        assert!(PrismBoxes::of(&huge, 0.005).unwrap().outer.len() <= MAX_BOXES);
     }
 
     #[test]
