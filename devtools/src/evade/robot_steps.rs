@@ -8,7 +8,7 @@ use elbowroom_formats::robot::{LoadOptions, load};
 use elbowroom_kinematics::{ChainState, JointKind};
 use elbowroom_robot::Robot;
 use elbowroom_sim::run::simulate;
-use elbowroom_sim::{RobotTrack, RunOptions};
+use elbowroom_sim::{AvoidanceSummary, RobotTrack, RunOptions};
 use elbowroom_testkit::random::SplitMix;
 
 /// Runs of each robot.
@@ -17,6 +17,8 @@ const RUNS: u64 = 3;
 const TRIED: u64 = 12;
 /// Joints without limits, and wide ones, turn within this much, rad.
 const RANGE: f64 = 3.0;
+/// Of the cells, s.
+const TICK_S: f64 = 0.002;
 
 /// Prints a line a robot.
 pub fn run() -> Result<(), Box<dyn Error>> {
@@ -26,12 +28,12 @@ pub fn run() -> Result<(), Box<dyn Error>> {
         let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let tracks = runs(&file)?;
         let hits = tracks.iter().filter(|t| !t.collisions.is_empty()).count();
-        let steps = tracks.iter().filter_map(|t| t.avoidance.as_ref()).map(|a| a.step_ns);
-        let [mut p50, mut p99, mut longest] = [0; 3];
-        for s in steps {
+        let runs = tracks.iter().filter_map(|t| t.avoidance.as_ref()).map(|a| AvoidanceSummary::new(a, TICK_S));
+        let ([mut p50, mut p99, mut longest], mut evading) = ([0; 3], 0.0);
+        for AvoidanceSummary { step_ns: s, evading_s, .. } in runs {
             (p50, p99, longest) = (p50.max(s.p50), p99.max(s.p99), longest.max(s.max));
+            evading += evading_s;
         }
-        let evading: f64 = tracks.iter().map(evading_s).sum();
         println!(
             "{name:26} {:4}  {hits:4}  {evading:10.1}  {:8} {:7} {:7}",
             tracks.len(),
@@ -58,12 +60,6 @@ fn urdf_files(folder: &Path) -> Result<Vec<PathBuf>, Box<dyn Error>> {
     }
     files.sort();
     Ok(files)
-}
-
-fn evading_s(track: &RobotTrack) -> f64 {
-    let Some(avoidance) = &track.avoidance else { return 0.0 };
-    let pairs = track.samples.windows(2).zip(&avoidance.samples);
-    pairs.filter(|(_, s)| s.state == elbowroom_avoidance::AvoiderState::Evading).map(|(p, _)| p[1].t_s - p[0].t_s).sum()
 }
 
 fn runs(file: &Path) -> Result<Vec<RobotTrack>, Box<dyn Error>> {
@@ -105,7 +101,7 @@ fn cell(file: &Path, robot: &Robot, random: &mut SplitMix) -> String {
     let tip = state.link_in_root(robot.chain.tip()).translation;
     let size = 0.2 * tip.length().max(0.3);
     format!(
-        "version = 1\nunits = {{ length = \"m\", angle = \"rad\" }}\ntick_ms = 2\nmax_s = 12\n\
+        "version = 1\nunits = {{ length = \"m\", angle = \"rad\" }}\ntick_ms = {}\nmax_s = 12\n\
          [robot.arm]\nmodel = {:?}\nstart = {from:?}\n\
          [encoder.belt]\ndirection = [0, 1, 0]\nspeed = 0.4\n\
          [object.crate]\nshape = \"box\"\nat = [{:.4}, {:.4}, {:.4}]\nsize = [{size:.4}, {size:.4}, {size:.4}]\n\
@@ -113,6 +109,7 @@ fn cell(file: &Path, robot: &Robot, random: &mut SplitMix) -> String {
          [avoidance.arm]\nobjects = [\"crate\"]\n\
          [program.arm]\nrepeat = 3\n\
          steps = [{{ move = \"joint\", to = {to:?}, speed = 40 }}, {{ move = \"joint\", to = {from:?}, speed = 40 }}]\n",
+        1e3 * TICK_S,
         file.display().to_string(),
         tip.x,
         tip.y - 1.6,

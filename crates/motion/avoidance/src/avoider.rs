@@ -552,7 +552,7 @@ impl<'s> Avoider<'s> {
         self.sweep.first_hit(&mut self.query, &segment, obstacles, filter).is_none()
     }
 
-    /// Replaces the next command by braking where that hits a dynamic obstacle later, or nobody knows; true where it was replaced.
+    /// Replaces the next command by braking where that hits a dynamic obstacle later, or nobody knows; says whether it did.
     fn brake_before_hit(&mut self, dt: f64, obstacles: &DynamicObstacles<'_>) -> bool {
         let Self { sweep, query, limits, command, workspace, .. } = self;
         let Workspace { bounds, next, braked, .. } = workspace;

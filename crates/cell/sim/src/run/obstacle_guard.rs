@@ -238,7 +238,7 @@ impl<'a> ObstacleGuard<'a> {
         }))
     }
 
-    /// True while a search is under way.
+    /// Whether a search is under way.
     pub fn is_searching(&self) -> bool {
         self.search.is_some()
     }

@@ -27,7 +27,7 @@ impl<'c> ClosedRegions<'c> {
         RegionConstraint::new(self.monitor, &self.sources, warning_share, 0.0)
     }
 
-    /// True where no region is closed.
+    /// Whether all regions are open.
     pub fn are_none(&self) -> bool {
         self.constraint(0.0).is_none()
     }
@@ -61,7 +61,7 @@ impl FutileSearch {
 }
 
 /// What the result of a search from rest depends on: without a change of these, an equal one finds no more.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(super) struct SearchScene {
     q: Vec<Vec<f64>>,
     objects: Vec<Pose>,
@@ -82,7 +82,7 @@ impl SearchScene {
         }
     }
 
-    /// True where nothing changed but for noise.
+    /// Whether only noise has changed.
     fn is_like(&self, other: &Self) -> bool {
         let q = self.q.iter().flatten().zip(other.q.iter().flatten()).all(|(a, b)| (a - b).abs() <= SAME_Q);
         let is_near = |(a, b): (&Aabb, &Aabb)| {

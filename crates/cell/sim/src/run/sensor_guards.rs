@@ -52,7 +52,7 @@ impl Simulation<'_> {
         self.perceived = Some(perceived);
     }
 
-    /// True where pictures are still to come, or a search is under way.
+    /// Whether pictures are still to come, or a search is under way.
     pub(super) fn expects_news(&self) -> bool {
         self.perceived.as_ref().is_some_and(PerceivedObstacles::has_more)
             || self.guards.iter().flatten().any(ObstacleGuard::is_searching)
@@ -103,7 +103,7 @@ impl Simulation<'_> {
         self.holds[i] = held;
     }
 
-    /// The joint values of all robots at a time up to now: those of the last tick before it.
+    /// The joint values of all robots at a time up to now: from the last tick before it.
     fn joint_values_at(&self, t_s: f64) -> Vec<Vec<f64>> {
         let of_robot = |(track, state): (&RobotTrack, &ChainState)| {
             let next = track.samples.partition_point(|s| s.t_s <= t_s);

@@ -9,7 +9,7 @@ use elbowroom_spatial::Pose;
 use super::perceived_obstacles::PerceivedObstacle;
 
 /// Robots, objects and obstacles at one instant.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(super) struct Surroundings {
     pub states: Vec<ChainState>,
     /// The objects of the cell, where they are.

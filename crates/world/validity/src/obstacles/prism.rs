@@ -68,7 +68,7 @@ impl Prism {
         if is_prism { Self::over(&lower, heights) } else { None }
     }
 
-    /// `None` where a vertex is no corner: a hull may have some within its faces.
+    /// `None` if a vertex lies within a face: a hull may have such vertices.
     fn over(lower: &[&Vec3], heights: [f64; 2]) -> Option<Self> {
         let middle = lower.iter().fold(Vec3::ZERO, |sum, v| sum + **v) / lower.len() as f64;
         let mut corners: Vec<Vec3> = lower.iter().map(|v| **v).collect();
