@@ -24,16 +24,8 @@ impl PathAhead {
         let samples = clock.path_ahead(SAMPLE_S);
         let last = samples.len().checked_sub(1)?;
         let mut corners = vec![0];
-        let mut start = 0;
-        for end in 2..=last {
-            let on_chord = |s: &(f64, Vec<f64>)| distance_to_segment(&s.1, &samples[start].1, &samples[end].1) <= CHORD;
-            if !samples[start + 1..end].iter().all(on_chord) {
-                start = end - 1;
-                corners.push(start);
-            }
-        }
-        if last > 0 {
-            corners.push(last);
+        while let Some(&start) = corners.last().filter(|&&start| start < last) {
+            corners.push(end_of_chord(&samples, start));
         }
         Some(Self { samples, corners })
     }
@@ -78,8 +70,64 @@ fn share_along(q: &[f64], a: &[f64], b: &[f64]) -> f64 {
     if square > 0.0 { (along / square).clamp(0.0, 1.0) } else { 0.0 }
 }
 
+/// A sample as far from `start` as doubling and halving find, with all samples between near the line to it. The next one always is.
+fn end_of_chord(samples: &[(f64, Vec<f64>)], start: usize) -> usize {
+    let from = &samples[start].1;
+    let is_chord = |end: usize| {
+        samples[start + 1..end].iter().all(|(_, q)| distance_to_segment(q, from, &samples[end].1) <= CHORD)
+    };
+    let last = samples.len() - 1;
+    let (mut good, mut bad) = (start + 1, last + 1);
+    let mut length = 2;
+    while good < last && bad > last {
+        let end = (start + length).min(last);
+        if is_chord(end) {
+            good = end;
+        } else {
+            bad = end;
+        }
+        length *= 2;
+    }
+    while bad - good > 1 {
+        let end = good.midpoint(bad);
+        if is_chord(end) {
+            good = end;
+        } else {
+            bad = end;
+        }
+    }
+    good
+}
+
 fn distance_to_segment(q: &[f64], a: &[f64], b: &[f64]) -> f64 {
     let share = share_along(q, a, b);
-    let nearest: Vec<f64> = a.iter().zip(b).map(|(a, b)| a + (b - a) * share).collect();
-    distance(q, &nearest)
+    let square = |((q, a), b): ((&f64, &f64), &f64)| (a + (b - a) * share - q).powi(2);
+    q.iter().zip(a).zip(b).map(square).sum::<f64>().sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_are_near_the_chords_and_straight_stretches_are_one() {
+        // A straight line, a curve, and a line that stands still at its end.
+        let straight = (0..=300).map(|i| vec![f64::from(i) * 0.01, 0.0]);
+        let curve = (1..=200).map(|i| f64::from(i) * 0.01).map(|a| vec![3.0 + a.sin(), 1.0 - a.cos()]);
+        let end = vec![3.0 + 2.0_f64.sin(), 1.0 - 2.0_f64.cos()];
+        let rest = std::iter::repeat_n(end, 20);
+        let samples: Vec<_> =
+            straight.chain(curve).chain(rest).enumerate().map(|(i, q)| (i as f64 * SAMPLE_S, q)).collect();
+        let mut corners = vec![0];
+        while corners[corners.len() - 1] < samples.len() - 1 {
+            corners.push(end_of_chord(&samples, corners[corners.len() - 1]));
+        }
+        for pair in corners.windows(2) {
+            let between = &samples[pair[0]..=pair[1]];
+            let (from, to) = (&samples[pair[0]].1, &samples[pair[1]].1);
+            assert!(pair[0] < pair[1] && between.iter().all(|(_, q)| distance_to_segment(q, from, to) <= CHORD));
+        }
+        // An arc of radius 1 leaves its chord of angle a by a²/8: at least 32 chords of 0.063 for 2 rad.
+        assert!((300..=304).contains(&corners[1]) && (33..=45).contains(&corners.len()), "{corners:?}");
+    }
 }

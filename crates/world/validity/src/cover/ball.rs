@@ -51,17 +51,27 @@ pub(crate) fn enclosing(balls: &[Ball]) -> Ball {
         centre = first.centre;
     }
     let reach = |c: Vec3, b: &Ball| c.distance(b.centre) + b.radius;
-    let farthest = |c: Vec3| balls.iter().fold(first, |far, b| if reach(c, b) > reach(c, far) { b } else { far });
-    let mut best = (reach(centre, farthest(centre)), centre);
+    let farthest = |c: Vec3| {
+        let mut far = (reach(c, first), first);
+        for ball in balls {
+            let reached = reach(c, ball);
+            if reached > far.0 {
+                far = (reached, ball);
+            }
+        }
+        far
+    };
+    let mut far = farthest(centre);
+    let mut best = (far.0, centre);
     for step in 1..=64 {
-        let far = farthest(centre);
-        let toward = (far.centre - centre).try_normalize().unwrap_or(Vec3::ZERO);
+        let (_, ball) = far;
+        let toward = (ball.centre - centre).try_normalize().unwrap_or(Vec3::ZERO);
         // The farthest point of the farthest ball pulls the centre.
-        let pull = far.centre + toward * far.radius - centre;
+        let pull = ball.centre + toward * ball.radius - centre;
         centre += pull * (1.0 / f64::from(step + 1));
-        let radius = reach(centre, farthest(centre));
-        if radius < best.0 {
-            best = (radius, centre);
+        far = farthest(centre);
+        if far.0 < best.0 {
+            best = (far.0, centre);
         }
     }
     let ball = Ball { centre: best.1, radius: best.0 }.rounded_up();

@@ -3,9 +3,9 @@
 use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_proximity::separation;
 use elbowroom_robot::{GeometryId, Robot, collision_pairs};
-use elbowroom_spatial::Pose;
+use elbowroom_spatial::{Pose, Vec3};
 
-use crate::cover::{Ball, SphereCover};
+use crate::cover::{Ball, ROUNDING_M, SphereCover};
 
 /// Configurations at which the covers of a pair are compared.
 const SAMPLES: usize = 24;
@@ -57,12 +57,28 @@ fn samples(robot: &Robot) -> Vec<ChainState> {
     (0..SAMPLES).map(at).collect()
 }
 
-/// True where a ball of one cover touches one of the other, which is placed in the frame of the first.
+/// Whether a ball of one cover touches one of the other, which is placed in the frame of the first.
 fn overlap(of_a: &[Ball], of_b: &[Ball], b_in_a: &Pose) -> bool {
-    of_b.iter().any(|ball| {
-        let centre = b_in_a.transform_point(ball.centre);
-        of_a.iter().any(|other| (other.centre - centre).length_squared() < (other.radius + ball.radius).powi(2))
-    })
+    let of_b: Vec<Ball> = of_b.iter().map(|b| Ball { centre: b_in_a.transform_point(b.centre), ..*b }).collect();
+    // Most balls of most pairs are far from the whole of the other cover.
+    let near_a = touching(&of_b, &around(of_a));
+    let near_b = touching(of_a, &around(&near_a));
+    near_a.iter().any(|ball| near_b.iter().any(|other| touch(other, ball)))
+}
+
+fn touch(a: &Ball, b: &Ball) -> bool {
+    (a.centre - b.centre).length_squared() < (a.radius + b.radius).powi(2)
+}
+
+fn touching(balls: &[Ball], whole: &Ball) -> Vec<Ball> {
+    balls.iter().filter(|ball| touch(ball, whole)).copied().collect()
+}
+
+/// A ball that contains others, with room for rounding errors.
+fn around(balls: &[Ball]) -> Ball {
+    let centre = balls.iter().fold(Vec3::ZERO, |sum, b| sum + b.centre) * (1.0 / balls.len().max(1) as f64);
+    let reach = balls.iter().map(|b| centre.distance(b.centre) + b.radius).fold(0.0, f64::max);
+    Ball { centre, radius: reach + ROUNDING_M }
 }
 
 /// Distance of the shapes of two links, m.
@@ -71,4 +87,33 @@ fn gap_m(robot: &Robot, a: LinkId, b: LinkId, b_in_a: &Pose) -> f64 {
     let pairs = robot.colliders[a.0].iter().flat_map(|x| of_b.iter().map(move |y| (x, y)));
     let gaps = pairs.map(|(x, y)| separation(&x.shape, &x.in_link, &y.shape, &(*b_in_a * y.in_link)).distance);
     gaps.fold(f64::INFINITY, f64::min)
+}
+
+#[cfg(test)]
+mod tests {
+    use elbowroom_testkit::random::SplitMix;
+
+    use super::*;
+
+    #[test]
+    fn covers_overlap_if_any_two_of_their_balls_do() {
+        let mut random = SplitMix(3);
+        let mut balls = || {
+            let count = 1 + random.below(11);
+            let ball = |_| Ball { centre: Vec3::from(random.within(1.0)), radius: random.between(0.01, 0.3) };
+            (0..count).map(ball).collect::<Vec<_>>()
+        };
+        let mut counts = [0; 2];
+        for i in 0..2000 {
+            let (of_a, of_b) = (balls(), balls());
+            let b_in_a = Pose::from_translation(Vec3::X * 0.002 * f64::from(i % 1000));
+            let naive = of_b.iter().any(|b| {
+                let placed = Ball { centre: b_in_a.transform_point(b.centre), ..*b };
+                of_a.iter().any(|a| touch(a, &placed))
+            });
+            assert_eq!(overlap(&of_a, &of_b, &b_in_a), naive, "{of_a:?} {of_b:?}");
+            counts[usize::from(naive)] += 1;
+        }
+        assert!(counts.iter().all(|&count| count > 200), "{counts:?}");
+    }
 }
