@@ -2,7 +2,7 @@
 
 use elbowroom_spatial::Pose;
 
-use crate::{ConvexHull, Shape, fit};
+use crate::{Shape, fit};
 
 /// The kind of volume that replaces a solid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -28,21 +28,20 @@ impl VolumeModel {
 
     /// The volume of one solid; every model encloses the solid.
     pub fn of(self, shape: &Shape, in_frame: Pose) -> (Shape, Pose) {
-        let points = match shape {
-            Shape::Mesh(mesh) if self != Self::Exact => mesh.vertices(),
-            Shape::Hull(hull) if !matches!(self, Self::Exact | Self::Hull) => hull.vertices(),
-            _ => return (shape.clone(), in_frame),
-        };
-        let fitted = match self {
-            Self::Capsule => fit::capsule(points),
-            Self::Box => fit::cuboid(points),
-            Self::Hull => {
-                if let Ok(hull) = ConvexHull::from_points(points) {
-                    return (Shape::Hull(hull.into()), in_frame);
+        let fitted = match (self, shape) {
+            (Self::Capsule, Shape::Mesh(mesh)) => fit::capsule_of_mesh(mesh),
+            (Self::Capsule, Shape::Hull(hull)) => fit::capsule(hull.vertices()),
+            (Self::Box, Shape::Mesh(mesh)) => fit::cuboid_of_mesh(mesh),
+            (Self::Box, Shape::Hull(hull)) => fit::cuboid(hull.vertices()),
+            (Self::Hull, Shape::Mesh(mesh)) => {
+                if let Some(hull) = mesh.hull() {
+                    return (Shape::Hull(hull.clone().into()), in_frame);
                 }
-                fit::tightest(points)
+                fit::tightest_of_mesh(mesh)
             }
-            Self::Tightest | Self::Exact => fit::tightest(points),
+            (Self::Tightest, Shape::Mesh(mesh)) => fit::tightest_of_mesh(mesh),
+            (Self::Tightest, Shape::Hull(hull)) => fit::tightest(hull.vertices()),
+            _ => None,
         };
         // A solid that cannot be fitted, as all its points coincide, is used as it is.
         fitted.map_or_else(|| (shape.clone(), in_frame), |f| (f.shape, in_frame * f.in_frame))

@@ -6,12 +6,14 @@
 mod bounding_sphere;
 mod capsule;
 mod cuboid;
+mod extreme_points;
 mod margin;
 mod principal_axes;
 
 use elbowroom_spatial::{Pose, Vec3};
 
-use crate::{ConvexHull, Shape, Sphere};
+use crate::{Capsule, Cuboid, Shape, Sphere, TriMesh};
+pub use extreme_points::ExtremePoints;
 use margin::{MARGIN, scale};
 
 /// A shape that encloses given points.
@@ -61,11 +63,12 @@ pub fn cuboid(points: &[Vec3]) -> Option<Fit> {
 /// assert!(matches!(fit.shape, Shape::Sphere(s) if (s.radius - 1.0).abs() < 1e-12));
 /// ```
 pub fn sphere(points: &[Vec3]) -> Option<Fit> {
-    let ExtremePoints { points, .. } = ExtremePoints::of(points)?;
-    let (center, _) = bounding_sphere::smallest(&points);
+    let extreme = ExtremePoints::of(points)?;
+    let points = extreme.points();
+    let (center, _) = bounding_sphere::smallest(points);
     let in_frame = Pose::from_translation(center);
     let reach = points.iter().fold(0.0, |r: f64, p| r.max(p.distance(center)));
-    let sphere = Sphere { radius: reach + MARGIN * scale(&points) };
+    let sphere = Sphere { radius: reach + MARGIN * scale(points) };
     Some(Fit { shape: Shape::Sphere(sphere), in_frame, volume: sphere.volume() })
 }
 
@@ -79,64 +82,49 @@ pub fn sphere(points: &[Vec3]) -> Option<Fit> {
 /// ```
 pub fn tightest(points: &[Vec3]) -> Option<Fit> {
     let extreme = ExtremePoints::of(points)?;
-    let (capsule, cuboid) = (extreme.capsule()?, extreme.cuboid()?);
+    smaller(extreme.capsule(), extreme.cuboid())
+}
+
+/// As [`capsule`] of the vertices, kept with the mesh.
+pub(crate) fn capsule_of_mesh(mesh: &TriMesh) -> Option<Fit> {
+    mesh.enclosing_capsule().map(Fit::from)
+}
+
+/// As [`cuboid`] of the vertices, kept with the mesh.
+pub(crate) fn cuboid_of_mesh(mesh: &TriMesh) -> Option<Fit> {
+    mesh.enclosing_cuboid().map(Fit::from)
+}
+
+/// As [`tightest`] of the vertices, kept with the mesh.
+pub(crate) fn tightest_of_mesh(mesh: &TriMesh) -> Option<Fit> {
+    smaller(capsule_of_mesh(mesh), cuboid_of_mesh(mesh))
+}
+
+fn smaller(capsule: Option<Fit>, cuboid: Option<Fit>) -> Option<Fit> {
+    let (capsule, cuboid) = (capsule?, cuboid?);
     Some(if capsule.volume < cuboid.volume { capsule } else { cuboid })
 }
 
-/// The extreme points of a set and their convex hull, computed once for several fits.
-///
-/// ```
-/// use elbowroom_proximity::fit::ExtremePoints;
-/// use elbowroom_spatial::Vec3;
-/// let points = ExtremePoints::of(&[Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z, Vec3::splat(0.1)]).unwrap();
-/// assert_eq!(points.hull().unwrap().vertices().len(), 4);
-/// assert!(points.capsule().is_some() && points.cuboid().is_some());
-/// ```
-#[derive(Debug, Clone)]
-pub struct ExtremePoints {
-    /// Those of the hull, or all where there is no hull. A hull may exclude points by its tolerance, so those that are not
-    /// exactly inside are kept.
-    points: Vec<Vec3>,
-    hull: Option<ConvexHull>,
+impl From<(Capsule, Pose)> for Fit {
+    fn from((capsule, in_frame): (Capsule, Pose)) -> Self {
+        Self { shape: Shape::Capsule(capsule), in_frame, volume: capsule.volume() }
+    }
+}
+
+impl From<(Cuboid, Pose)> for Fit {
+    fn from((cuboid, in_frame): (Cuboid, Pose)) -> Self {
+        Self { shape: Shape::Cuboid(cuboid), in_frame, volume: cuboid.volume() }
+    }
 }
 
 impl ExtremePoints {
-    /// `None` without points or where one is not finite.
-    pub fn of(points: &[Vec3]) -> Option<Self> {
-        if points.is_empty() || !points.iter().all(|p| p.is_finite()) {
-            return None;
-        }
-        let hull = ConvexHull::from_points(points).ok();
-        let points = hull.as_ref().and_then(|hull| points_on_surface(points, hull)).unwrap_or_else(|| points.to_vec());
-        Some(Self { points, hull })
-    }
-
-    /// The convex hull; `None` where the points are flat.
-    pub fn hull(&self) -> Option<&ConvexHull> {
-        self.hull.as_ref()
-    }
-
     /// [`capsule`] of all points.
     pub fn capsule(&self) -> Option<Fit> {
-        let (capsule, in_frame) = capsule::fit(&self.points)?;
-        Some(Fit { shape: Shape::Capsule(capsule), in_frame, volume: capsule.volume() })
+        self.enclosing_capsule().map(Fit::from)
     }
 
     /// [`cuboid`] of all points.
     pub fn cuboid(&self) -> Option<Fit> {
-        let (cuboid, in_frame) = cuboid::fit(&self.points, self.hull.as_ref())?;
-        Some(Fit { shape: Shape::Cuboid(cuboid), in_frame, volume: cuboid.volume() })
+        self.enclosing_cuboid().map(Fit::from)
     }
-}
-
-/// The hull's vertices and the points on or outside of its surface; `None` where finding them would take too long.
-fn points_on_surface(points: &[Vec3], hull: &ConvexHull) -> Option<Vec<Vec3>> {
-    let mut kept = hull.vertices().to_vec();
-    let margin = 1e-13 * scale(points);
-    let near_surface = |p: Vec3| hull.planes().iter().any(|(n, offset)| n.dot(p) > offset - margin);
-    if points.len() > 4096 && points.len() * hull.planes().len() >= 50_000_000 {
-        return None;
-    }
-    kept.extend(points.iter().copied().filter(|&p| near_surface(p)));
-    Some(kept)
 }

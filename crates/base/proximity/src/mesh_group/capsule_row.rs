@@ -4,8 +4,8 @@ use elbowroom_spatial::Vec3;
 use fearless_simd::{Simd, prelude::*};
 
 use super::sphere_row::LANES;
+use crate::TriMesh;
 use crate::lanes::{V3, W16, load16, splat16};
-use crate::{Shape, TriMesh, fit};
 
 /// Below this, squared sine of the angle of two axes, they count as parallel.
 const PARALLEL: f32 = 1e-5;
@@ -50,8 +50,7 @@ pub(super) struct PlacedCapsule {
 impl BoundingCapsule {
     pub fn of(mesh: &TriMesh) -> Self {
         let reach = mesh.aabb().max_distance(Vec3::ZERO);
-        let fit = fit::capsule(mesh.vertices());
-        if let Some((Shape::Capsule(capsule), in_mesh)) = fit.map(|fit| (fit.shape, fit.in_frame)) {
+        if let Some((capsule, in_mesh)) = mesh.enclosing_capsule() {
             let (middle, axis) = (in_mesh.translation, in_mesh.rotation * Vec3::Z);
             return Self { middle, axis, half_length: capsule.half_length, radius: capsule.radius, reach };
         }
@@ -139,6 +138,7 @@ mod tests {
     use fearless_simd::dispatch;
 
     use super::*;
+    use crate::Shape;
     use crate::lanes::{detected_simd_level, narrow};
     use crate::{Capsule, separation};
 

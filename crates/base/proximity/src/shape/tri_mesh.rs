@@ -2,12 +2,13 @@
 
 use std::sync::OnceLock;
 
-use elbowroom_spatial::{Aabb, Vec3};
+use elbowroom_spatial::{Aabb, Pose, Vec3};
 
-use super::ConvexHull;
 use super::mesh_report::MeshReport;
 use super::topology::{self, Topology};
+use super::{Capsule, ConvexHull, Cuboid};
 use crate::bvh::Bvh16;
+use crate::fit::ExtremePoints;
 
 /// A surface of triangles. Where it is closed it bounds a solid.
 ///
@@ -37,6 +38,8 @@ pub struct TriMesh {
     /// The representative of each vertex, where seams had to be closed by a tolerance.
     welded_vertices: Option<Vec<u32>>,
     hull: OnceLock<Option<ConvexHull>>,
+    capsule: OnceLock<Option<(Capsule, Pose)>>,
+    cuboid: OnceLock<Option<(Cuboid, Pose)>>,
 }
 
 /// Why triangles were refused.
@@ -87,6 +90,8 @@ impl TriMesh {
             in_oriented_component: topology.in_oriented_component,
             welded_vertices: topology.welded_vertices,
             hull: OnceLock::new(),
+            capsule: OnceLock::new(),
+            cuboid: OnceLock::new(),
             vertices,
             triangles,
         })
@@ -115,6 +120,20 @@ impl TriMesh {
     /// The convex hull, computed on the first call; `None` where the mesh is flat.
     pub fn hull(&self) -> Option<&ConvexHull> {
         self.hull.get_or_init(|| ConvexHull::from_points(&self.vertices).ok()).as_ref()
+    }
+
+    /// A small capsule around all vertices and its frame in that of the mesh, computed on the first call.
+    pub(crate) fn enclosing_capsule(&self) -> Option<(Capsule, Pose)> {
+        *self.capsule.get_or_init(|| self.extreme_points().enclosing_capsule())
+    }
+
+    /// A small box around all vertices and its frame in that of the mesh, computed on the first call.
+    pub(crate) fn enclosing_cuboid(&self) -> Option<(Cuboid, Pose)> {
+        *self.cuboid.get_or_init(|| self.extreme_points().enclosing_cuboid())
+    }
+
+    fn extreme_points(&self) -> ExtremePoints {
+        ExtremePoints::with_hull(&self.vertices, self.hull().cloned())
     }
 
     /// Bytes of the BVH, in addition to vertices and triangles.

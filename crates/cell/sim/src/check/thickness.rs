@@ -62,11 +62,20 @@ pub(super) fn thickness(least_m: f64, braking: &Braking, fastest_m_s: f64, respo
 fn is_sufficient(zone: f64, braking: &Braking, fastest_m_s: f64, response_delay: ResponseDelay) -> bool {
     let headway_s = response_delay.headway_s();
     let fraction = |i: u32| f64::from(i) / f64::from(FRACTIONS);
-    let fits = |x: f64| {
-        remaining_distance(x * zone, fastest_m_s * response_delay.delay_s) * (1.0 + ROUNDING)
-            >= needed(braking, fastest_m_s, headway_s, x)
-    };
-    zone * (1.0 + ROUNDING) >= E * fastest_m_s * headway_s && (1..=FRACTIONS).map(fraction).all(fits)
+    let remaining = |i: u32| remaining_distance(fraction(i) * zone, fastest_m_s * response_delay.delay_s);
+    let needed = |i: u32| needed(braking, fastest_m_s, headway_s, fraction(i));
+    // Both grow with the fraction: a stretch fits where its first has what its last needs.
+    let mut open = vec![(1, FRACTIONS)];
+    let mut all_fit = zone * (1.0 + ROUNDING) >= E * fastest_m_s * headway_s;
+    while all_fit && let Some((first, last)) = open.pop() {
+        if first == last {
+            all_fit = remaining(first) * (1.0 + ROUNDING) >= needed(first);
+        } else if !(remaining(first) >= needed(last)) {
+            let middle = first.midpoint(last);
+            open.extend([(first, middle), (middle + 1, last)]);
+        }
+    }
+    all_fit
 }
 
 /// The remaining distance (m) after the delay, in which the robot moves at most `delay_m` and its speed is at most its
@@ -102,6 +111,8 @@ fn needed(braking: &Braking, fastest_m_s: f64, headway_s: f64, x: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use elbowroom_testkit::random::SplitMix;
+
     use super::*;
 
     /// At constant speed, with a stopping distance of `distance_m`.
@@ -130,5 +141,32 @@ mod tests {
     fn a_stationary_robot_needs_no_thickness() {
         let response_delay = ResponseDelay { delay_s: 0.002, tick_s: 0.002 };
         assert_eq!(steady(0.0, 0.0, response_delay), 0.0);
+    }
+
+    #[test]
+    fn a_zone_is_sufficient_if_every_fraction_fits() {
+        let mut random = SplitMix(5);
+        let mut counts = [0; 2];
+        for _ in 0..4000 {
+            let delay_s = random.between(0.001, 0.3);
+            let response_delay = ResponseDelay { delay_s, tick_s: random.between(0.0005, 0.02) };
+            let (distance_m, fastest_m_s) = (random.between(-0.05, 1.0).max(0.0), random.between(0.0, 3.0));
+            let braking = Braking {
+                distance_m,
+                speed_m_s: fastest_m_s * random.between(0.2, 3.0),
+                peak_m: distance_m * random.between(1.0, 3.0) + random.between(0.0, 0.5),
+            };
+            let least_m = E * fastest_m_s * response_delay.headway_s();
+            let zone = least_m * random.between(0.98, 1.2) + random.between(0.0, 2.0 * distance_m);
+            let fits = |i: u32| {
+                let x = f64::from(i) / f64::from(FRACTIONS);
+                let remaining = remaining_distance(x * zone, fastest_m_s * delay_s);
+                remaining * (1.0 + ROUNDING) >= needed(&braking, fastest_m_s, response_delay.headway_s(), x)
+            };
+            let naive = zone * (1.0 + ROUNDING) >= least_m && (1..=FRACTIONS).all(fits);
+            assert_eq!(is_sufficient(zone, &braking, fastest_m_s, response_delay), naive, "{zone} {braking:?}");
+            counts[usize::from(naive)] += 1;
+        }
+        assert!(counts.iter().all(|&count| count > 500), "{counts:?}");
     }
 }
