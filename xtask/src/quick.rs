@@ -42,7 +42,7 @@ pub fn run(root: &Path, since: &str) -> Result<(), String> {
         Some(0) => f64::INFINITY,
         Some(_) => LONGEST_BEYOND_S,
     };
-    test_run::run(root, &WORKSPACE, &references.environment().collect::<Vec<_>>(), longest)
+    test_run::run(root, &WORKSPACE, &references.environment().collect::<Vec<_>>(), longest, || ())
 }
 
 /// Files that differ from a commit, and new ones.

@@ -1,7 +1,7 @@
 //! `cargo xtask test`: every check, timed, with a table at the end.
 
-use std::cell::RefCell;
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
@@ -25,7 +25,10 @@ struct Context<'a> {
     root: &'a Path,
     offline: bool,
     /// What the tests compare with and open pages in, while it is being installed.
-    references: RefCell<Option<JoinHandle<Result<References, String>>>>,
+    references: Mutex<Option<JoinHandle<Result<References, String>>>>,
+    /// Steps that run beside the tests, and how they ended.
+    beside: Vec<&'static Step>,
+    ended: Mutex<Vec<Outcome>>,
 }
 
 struct Step {
@@ -35,7 +38,7 @@ struct Step {
 }
 
 /// Cheap checks first: what fails fast should fail first. The workspace is compiled twice: checked by `clippy` (and `docs`), built by `tests`.
-const STEPS: [Step; 10] = [
+static STEPS: [Step; 10] = [
     Step { name: "fmt", what: "cargo fmt --check", check: fmt },
     Step {
         name: "layers",
@@ -48,12 +51,12 @@ const STEPS: [Step; 10] = [
         check: |c| documents::run(c.root),
     },
     Step { name: "clippy", what: "lints of all targets, warnings are errors", check: clippy },
-    Step { name: "docs", what: "cargo doc, warnings are errors", check: docs },
     Step {
         name: "tests",
         what: "unit and integration tests, with the references in Python and a browser",
         check: tests,
     },
+    Step { name: "docs", what: "cargo doc, warnings are errors", check: docs },
     Step { name: "doctests", what: "the examples of the documentation", check: doctests },
     Step {
         name: "generated",
@@ -94,7 +97,7 @@ impl Options {
 }
 
 fn step_name(word: Option<&str>) -> Result<String, String> {
-    let names = || STEPS.map(|step| step.name).join(", ");
+    let names = || STEPS.each_ref().map(|step| step.name).join(", ");
     let word = word.ok_or_else(|| format!("`--only` needs one of {}", names()))?;
     if STEPS.iter().any(|step| step.name == word) {
         return Ok(word.to_owned());
@@ -111,18 +114,33 @@ pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
         return Ok(());
     }
     let is_chosen = |step: &&Step| options.only.is_empty() || options.only.iter().any(|name| name == step.name);
-    let chosen: Vec<&Step> = STEPS.iter().filter(is_chosen).collect();
-    let context = Context { root, offline: options.offline, references: RefCell::new(None) };
-    if chosen.iter().any(|step| step.name == "tests") {
+    let mut chosen: Vec<&Step> = STEPS.iter().filter(is_chosen).collect();
+    let (mut references, mut beside) = (None, Vec::new());
+    if let Some(tests) = chosen.iter().position(|step| step.name == "tests") {
         // Downloads wait for the network, so they go on beside the first steps.
         let (folder, offline) = (root.to_path_buf(), options.offline);
-        *context.references.borrow_mut() = Some(std::thread::spawn(move || References::find(&folder, offline)));
+        references = Some(std::thread::spawn(move || References::find(&folder, offline)));
+        beside = chosen.split_off(tests + 1);
     }
+    let (references, ended) = (Mutex::new(references), Mutex::default());
+    let context = Context { root, offline: options.offline, references, beside, ended };
     let started = Instant::now();
-    let outcomes: Vec<Outcome> = chosen.into_iter().map(|step| timed(step, &context)).collect();
+    let mut outcomes: Vec<Outcome> = chosen.into_iter().map(|step| timed(step, &context)).collect();
+    // Where the tests do not compile, nothing has run beside them.
+    run_beside(&context);
+    outcomes.extend(context.ended.into_inner().unwrap_or_else(PoisonError::into_inner));
     print_table(&outcomes, started.elapsed());
     let failed: Vec<&str> = outcomes.iter().filter(|outcome| !outcome.ok).map(|outcome| outcome.name).collect();
     if failed.is_empty() { Ok(()) } else { Err(Failure::Check(format!("failed: {}", failed.join(", ")))) }
+}
+
+/// Runs the steps beside the tests that have not run yet, one after another.
+fn run_beside(context: &Context) {
+    let mut ended = context.ended.lock().unwrap_or_else(PoisonError::into_inner);
+    while let Some(step) = context.beside.get(ended.len()) {
+        let outcome = timed(step, context);
+        ended.push(outcome);
+    }
 }
 
 fn timed(step: &Step, context: &Context) -> Outcome {
@@ -136,6 +154,7 @@ fn timed(step: &Step, context: &Context) -> Outcome {
 }
 
 fn print_table(outcomes: &[Outcome], total: Duration) {
+    // The steps after `tests` run beside them: the times do not add up.
     println!("\nstep       result       time");
     for Outcome { name, ok, time } in outcomes {
         println!("{name:<10} {:<7} {:>7.1} s", if *ok { "ok" } else { "FAILED" }, time.as_secs_f64());
@@ -155,13 +174,14 @@ fn clippy(context: &Context) -> Result<(), String> {
 }
 
 fn tests(context: &Context) -> Result<(), String> {
-    let references = context.references.borrow_mut().take().and_then(|found| found.join().ok());
+    let references =
+        context.references.lock().unwrap_or_else(PoisonError::into_inner).take().and_then(|found| found.join().ok());
     let references = references.unwrap_or_else(|| Err("the installation of the references panicked".into()));
     announce_data(context.root);
     // What cannot be installed fails the step, but not before the tests have run.
     let environment = references.iter().flat_map(References::environment);
     let env: Vec<_> = network(context).into_iter().chain(environment).collect();
-    test_run::run(context.root, &WORKSPACE, &env, |_| f64::INFINITY)?;
+    test_run::run(context.root, &WORKSPACE, &env, |_| f64::INFINITY, || run_beside(context))?;
     references.map(|_| ())
 }
 
@@ -190,7 +210,8 @@ fn generated(context: &Context) -> Result<(), String> {
 
 fn docs(context: &Context) -> Result<(), String> {
     let mut env = network(context);
-    env.push(("RUSTDOCFLAGS", "-D warnings"));
+    // One job: the tests run beside it.
+    env.extend([("RUSTDOCFLAGS", "-D warnings"), ("CARGO_BUILD_JOBS", "1")]);
     shell::cargo(context.root, &[&["doc", "--no-deps"], &WORKSPACE[..]].concat(), &env)
 }
 

@@ -34,11 +34,18 @@ pub struct Counts {
 }
 
 /// Compiles the tests that cargo selects by `args`, and runs those that took no
-/// longer than `longest`, the seconds that a program's units may take.
+/// longer than `longest`, the seconds that a program's units may take. One of the workers does what is to be done `beside` them
+/// first, once all is compiled.
 ///
 /// # Errors
 /// Where something does not compile, a test fails, or none ran.
-pub fn run(root: &Path, args: &[&str], env: &[(&str, &str)], longest: impl Fn(&Program) -> f64) -> Result<(), String> {
+pub fn run(
+    root: &Path,
+    args: &[&str],
+    env: &[(&str, &str)],
+    longest: impl Fn(&Program) -> f64,
+    beside: impl FnOnce() + Send,
+) -> Result<(), String> {
     let started = Instant::now();
     let programs = compile(root, args, env)?;
     println!("{} programs, compiled in {:.1} s", programs.len(), started.elapsed().as_secs_f64());
@@ -50,7 +57,7 @@ pub fn run(root: &Path, args: &[&str], env: &[(&str, &str)], longest: impl Fn(&P
     if chosen.len() < total {
         println!("{} of {total} units of tests are chosen; `cargo xtask test` runs all", chosen.len());
     }
-    let (counts, failed) = run_units(&programs, chosen, times, env);
+    let (counts, failed) = run_units(&programs, chosen, times, env, beside);
     println!("{} passed, {} failed, {} skipped", counts.passed, counts.failed, counts.ignored);
     if counts == Counts::default() {
         return Err("no test ran".into());
@@ -66,26 +73,35 @@ struct Progress {
     times: Times,
 }
 
-fn run_units(programs: &[Program], mut open: Vec<Unit>, times: Times, env: &[(&str, &str)]) -> (Counts, Vec<String>) {
+fn run_units(
+    programs: &[Program],
+    mut open: Vec<Unit>,
+    times: Times,
+    env: &[(&str, &str)],
+    beside: impl FnOnce() + Send,
+) -> (Counts, Vec<String>) {
     open.sort_by(|a, b| {
         let longer = times.expected(&b.name).total_cmp(&times.expected(&a.name));
         longer.then_with(|| b.tests.len().cmp(&a.tests.len())).then_with(|| a.name.cmp(&b.name))
     });
     let progress = Mutex::new(Progress { open: open.into(), counts: Counts::default(), failed: Vec::new(), times });
     let workers = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-    std::thread::scope(|scope| {
-        for _ in 0..workers {
-            scope.spawn(|| {
-                loop {
-                    // A statement of its own: the lock must not last while the unit runs.
-                    let next = locked(&progress).open.pop_front();
-                    let Some(unit) = next else { break };
-                    let started = Instant::now();
-                    let ended = run_unit(&programs[unit.program], &unit, env, LIMIT);
-                    report(&mut locked(&progress), &unit, &ended, started.elapsed());
-                }
-            });
+    let work = || {
+        loop {
+            // A statement of its own: the lock must not last while the unit runs.
+            let next = locked(&progress).open.pop_front();
+            let Some(unit) = next else { break };
+            let started = Instant::now();
+            let ended = run_unit(&programs[unit.program], &unit, env, LIMIT);
+            report(&mut locked(&progress), &unit, &ended, started.elapsed());
         }
+    };
+    std::thread::scope(|scope| {
+        for _ in 1..workers {
+            scope.spawn(work);
+        }
+        beside();
+        work();
     });
     let progress = progress.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
     progress.times.write();

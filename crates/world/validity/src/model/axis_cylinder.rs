@@ -1,11 +1,22 @@
 //! A cylinder about a joint's axis: encloses what the joint turns.
 
+use std::sync::LazyLock;
+
 use elbowroom_spatial::{Pose, Vec3};
 
 use crate::cover::Ball;
 
 /// Points of a circle that are measured; the largest distance lies between two of them.
 const CIRCLE_POINTS: u32 = 64;
+/// The angle from one of them to the next, rad.
+const CIRCLE_STEP: f64 = std::f64::consts::TAU / CIRCLE_POINTS as f64;
+/// Cosine and sine of each.
+static CIRCLE: LazyLock<[[f64; 2]; CIRCLE_POINTS as usize]> = LazyLock::new(|| {
+    std::array::from_fn(|i| {
+        let (sin, cos) = (i as f64 * CIRCLE_STEP).sin_cos();
+        [cos, sin]
+    })
+});
 
 /// A cylinder about the z axis of a joint's frame.
 #[derive(Debug, Clone, Copy)]
@@ -46,15 +57,16 @@ impl AxisCylinder {
 
     /// Largest distance of a circle about this axis from the other axis.
     fn farthest_from_axis(self, pose: &Pose, centre: Vec3) -> f64 {
+        if self.radius == 0.0 {
+            return centre.x.hypot(centre.y);
+        }
         let (x, y) = (pose.rotation.x_axis() * self.radius, pose.rotation.y_axis() * self.radius);
-        let step = std::f64::consts::TAU / f64::from(CIRCLE_POINTS);
-        let distance = |i: u32| {
-            let (sin, cos) = (f64::from(i) * step).sin_cos();
+        let squared = |&[cos, sin]: &[f64; 2]| {
             let p = centre + x * cos + y * sin;
-            p.x.hypot(p.y)
+            p.x * p.x + p.y * p.y
         };
         // Between two points the circle is nowhere farther from their chord than this.
-        let between = self.radius * (1.0 - (0.5 * step).cos());
-        (0..CIRCLE_POINTS).map(distance).fold(0.0, f64::max) + between
+        let between = self.radius * (1.0 - (0.5 * CIRCLE_STEP).cos());
+        CIRCLE.iter().map(squared).fold(0.0, f64::max).sqrt() + between
     }
 }
