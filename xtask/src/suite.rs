@@ -1,13 +1,14 @@
 //! `cargo xtask test`: every check, timed, with a table at the end.
 
 use std::path::Path;
-use std::sync::{Mutex, PoisonError};
+use std::sync::Mutex;
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use xtask::{Failure, shell};
 
 use crate::references::References;
+use crate::test_run::locked;
 use crate::workspace::{WORKSPACE, program};
 use crate::{documents, layers, snippets, test_run};
 
@@ -38,6 +39,7 @@ struct Step {
 }
 
 /// Cheap checks first: what fails fast should fail first. The workspace is compiled twice: checked by `clippy` (and `docs`), built by `tests`.
+/// What comes after `tests` runs beside them.
 static STEPS: [Step; 10] = [
     Step { name: "fmt", what: "cargo fmt --check", check: fmt },
     Step {
@@ -128,7 +130,7 @@ pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
     let mut outcomes: Vec<Outcome> = chosen.into_iter().map(|step| timed(step, &context)).collect();
     // Where the tests do not compile, nothing has run beside them.
     run_beside(&context);
-    outcomes.extend(context.ended.into_inner().unwrap_or_else(PoisonError::into_inner));
+    outcomes.append(&mut locked(&context.ended));
     print_table(&outcomes, started.elapsed());
     let failed: Vec<&str> = outcomes.iter().filter(|outcome| !outcome.ok).map(|outcome| outcome.name).collect();
     if failed.is_empty() { Ok(()) } else { Err(Failure::Check(format!("failed: {}", failed.join(", ")))) }
@@ -136,7 +138,7 @@ pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
 
 /// Runs the steps beside the tests that have not run yet, one after another.
 fn run_beside(context: &Context) {
-    let mut ended = context.ended.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut ended = locked(&context.ended);
     while let Some(step) = context.beside.get(ended.len()) {
         let outcome = timed(step, context);
         ended.push(outcome);
@@ -154,7 +156,6 @@ fn timed(step: &Step, context: &Context) -> Outcome {
 }
 
 fn print_table(outcomes: &[Outcome], total: Duration) {
-    // The steps after `tests` run beside them: the times do not add up.
     println!("\nstep       result       time");
     for Outcome { name, ok, time } in outcomes {
         println!("{name:<10} {:<7} {:>7.1} s", if *ok { "ok" } else { "FAILED" }, time.as_secs_f64());
@@ -174,8 +175,7 @@ fn clippy(context: &Context) -> Result<(), String> {
 }
 
 fn tests(context: &Context) -> Result<(), String> {
-    let references =
-        context.references.lock().unwrap_or_else(PoisonError::into_inner).take().and_then(|found| found.join().ok());
+    let references = locked(&context.references).take().and_then(|found| found.join().ok());
     let references = references.unwrap_or_else(|| Err("the installation of the references panicked".into()));
     announce_data(context.root);
     // What cannot be installed fails the step, but not before the tests have run.
@@ -186,8 +186,8 @@ fn tests(context: &Context) -> Result<(), String> {
 }
 
 fn doctests(context: &Context) -> Result<(), String> {
-    let args = [&["test", "--quiet", "--doc"], &WORKSPACE[..]].concat();
-    shell::cargo(context.root, &args, &network(context))
+    let args = [&["test", "--quiet", "--doc"], &WORKSPACE[..], &["--", "--test-threads=1"]].concat();
+    shell::cargo(context.root, &args, &beside_tests(context))
 }
 
 /// Tests on real robots pass where their data are missing: the log must show which run it was.
@@ -209,12 +209,16 @@ fn generated(context: &Context) -> Result<(), String> {
 }
 
 fn docs(context: &Context) -> Result<(), String> {
-    let mut env = network(context);
+    let mut env = beside_tests(context);
     // Each crate merges itself into the index of the search, 3 s each. For pages with a search: remove `target/doc`, run `cargo doc`.
     let _ = std::fs::remove_dir_all(shell::target_folder(context.root).join("doc/search.index"));
-    // One job: the tests run beside it.
-    env.extend([("RUSTDOCFLAGS", "-D warnings"), ("CARGO_BUILD_JOBS", "1")]);
+    env.push(("RUSTDOCFLAGS", "-D warnings"));
     shell::cargo(context.root, &[&["doc", "--no-deps"], &WORKSPACE[..]].concat(), &env)
+}
+
+/// One job: other processors run tests.
+fn beside_tests<'a>(context: &Context) -> Vec<(&'static str, &'a str)> {
+    [network(context), vec![("CARGO_BUILD_JOBS", "1")]].concat()
 }
 
 fn network<'a>(context: &Context) -> Vec<(&'static str, &'a str)> {

@@ -17,7 +17,7 @@ use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 pub use first_failure::{FirstFailure, first_failure, passes};
-use lock::locked;
+pub use lock::locked;
 use process::{Ended, Limit, run_unit};
 use processors::idle_share;
 pub use programs::{Program, compile};

@@ -25,7 +25,7 @@ fn share(before: Times, after: Times) -> Option<f64> {
 /// The line `cpu user nice system idle iowait …`.
 fn parse(text: &str) -> Option<Times> {
     let line = text.lines().find_map(|line| line.strip_prefix("cpu "))?;
-    // Times of guests are counted among those of the user.
+    // The user's time contains the guests'.
     let times: Vec<u64> = line.split_whitespace().take(8).map(str::parse).collect::<Result<_, _>>().ok()?;
     Some(Times { all: times.iter().sum(), idle: times.get(3)? + times.get(4)? })
 }

@@ -17,8 +17,8 @@ use crate::{Capsule, ConvexHull, Cuboid};
 /// ```
 #[derive(Debug, Clone)]
 pub struct ExtremePoints {
-    /// Those of the hull, or all where there is no hull. A hull may exclude points by its tolerance, so those that are not
-    /// exactly inside are kept.
+    /// The corners of the hull, or all points if they are flat. A hull may exclude points by its tolerance, so what is not exactly
+    /// inside is kept.
     points: Vec<Vec3>,
     hull: Option<ConvexHull>,
 }

@@ -60,6 +60,10 @@ impl AxisCylinder {
         if self.radius == 0.0 {
             return centre.x.hypot(centre.y);
         }
+        // `max` would drop a NaN, and with it the bound.
+        if !centre.is_finite() {
+            return f64::INFINITY;
+        }
         let (x, y) = (pose.rotation.x_axis() * self.radius, pose.rotation.y_axis() * self.radius);
         let squared = |&[cos, sin]: &[f64; 2]| {
             let p = centre + x * cos + y * sin;
