@@ -42,7 +42,7 @@ fn explored(model: &ProtocolModel) -> StateGraph {
 /// Checks all properties of a model in which every robot declares its needs.
 fn holds_for(name: &str, model: &ProtocolModel) {
     let graph = explored(model);
-    println!("{name}: {} states, {} steps", graph.states.len(), graph.steps());
+    println!("{name}: {} states, {} steps", graph.states(), graph.steps());
     let (stuck, first) = graph.stuck_states(model);
     assert_eq!(stuck, 0, "{name}: not all robots can finish from {first}");
 }
@@ -65,7 +65,7 @@ fn three_robots_that_declare_are_never_two_inside_and_always_able_to_finish() {
 fn no_robot_enters_while_a_silent_robot_may_be_moved_by_hand() {
     for (name, programs) in [("shared", &SHARED[..]), ("ring", &RING)] {
         let graph = explored(&model(programs).declared().faults(Faults::First).joggable());
-        println!("{name}, moved by hand: {} states, {} steps", graph.states.len(), graph.steps());
+        println!("{name}, moved by hand: {} states, {} steps", graph.states(), graph.steps());
     }
 }
 
@@ -91,12 +91,12 @@ fn every_deadlock_of_robots_without_declarations_is_detected() {
     {
         let graph = explored(&model);
         let (dead, unreported) = graph.deadlocks(&model);
-        println!("{name}, undeclared: {} states, {dead} deadlocked", graph.states.len());
+        println!("{name}, undeclared: {} states, {dead} deadlocked", graph.states());
         assert_eq!(unreported, 0, "{name}: deadlocks without a reported cycle");
     }
     // A region that is switched on over two robots: no other robot enters, and the deadlock is reported.
     let switched = model(&SWITCHED).switchable().faults(Faults::First);
-    println!("switched: {} states", explored(&switched).states.len());
+    println!("switched: {} states", explored(&switched).states());
     assert_eq!(explored(&model(&SWITCHED).switchable()).deadlocks(&switched).1, 0, "two inside, not reported");
     let ring = model(&RING);
     assert!(explored(&ring).deadlocks(&ring).0 > 0, "the ring has no deadlock: the safe order is not tested");
@@ -108,7 +108,7 @@ fn no_robot_waits_for_ever() {
     {
         let model = model(programs).declared().repeating();
         let graph = explored(&model);
-        println!("{name}, repeating: {} states", graph.states.len());
+        println!("{name}, repeating: {} states", graph.states());
         assert_eq!(graph.starving(&model), None, "{name}: a robot can wait for ever while all others proceed");
     }
 }
