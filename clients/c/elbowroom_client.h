@@ -14,7 +14,8 @@
  *         elbowroom_receive(&client, bytes, length);
  *
  * It stops by itself: an answer counts for stale_us from the moment at which the joint values that it answers were sent, on the
- * controller's own monotonic clock. So the override is 0 at most that long after the last joint values that a living node has seen.
+ * controller's own clock. So the override is 0 at most that long after the last joint values that a living node has seen. The clock
+ * must never go back, nor stand still while the computer is suspended: CLOCK_BOOTTIME on Linux.
  *
  * Not a certified safety device: use it beside the safety functions of the controller, never in their place.
  *

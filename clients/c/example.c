@@ -47,6 +47,13 @@ typedef struct {
     char joint_states[256], speed_override[256];
 } connection;
 
+/* Goes on while the computer is suspended: an answer from before the sleep is old after it. */
+#ifdef CLOCK_BOOTTIME
+#define STEADY_CLOCK CLOCK_BOOTTIME
+#else
+#define STEADY_CLOCK CLOCK_MONOTONIC
+#endif
+
 static uint64_t clock_ns(clockid_t clock)
 {
     struct timespec t;
@@ -56,7 +63,7 @@ static uint64_t clock_ns(clockid_t clock)
 
 static uint64_t now_us(void)
 {
-    return clock_ns(CLOCK_MONOTONIC) / 1000u;
+    return clock_ns(STEADY_CLOCK) / 1000u;
 }
 
 static void sleep_until_us(uint64_t due_us)
@@ -64,7 +71,7 @@ static void sleep_until_us(uint64_t due_us)
     struct timespec t;
     t.tv_sec = (time_t)(due_us / 1000000u);
     t.tv_nsec = (long)(due_us % 1000000u) * 1000;
-    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, NULL) != 0) {
+    while (clock_nanosleep(STEADY_CLOCK, TIMER_ABSTIME, &t, NULL) != 0) {
     }
 }
 

@@ -39,6 +39,7 @@
 //! inside.
 
 mod arbiter;
+mod clock;
 mod event;
 pub mod frame;
 mod guard;
@@ -54,6 +55,7 @@ mod wait_for;
 pub mod wire;
 
 pub use arbiter::{Arbiter, Outputs};
+pub use clock::Clock;
 pub use event::ArbiterEvent;
 pub use guard::{Guard, Ignored};
 pub use guarded_monitor::{GuardedMonitor, NotObeyed};

@@ -229,6 +229,26 @@ mod tests {
         }
     }
 
+    /// The clock of a virtual machine that its host halts stands still. What the node believes to hold has ended long ago.
+    #[test]
+    fn a_node_that_stood_still_hears_nothing_from_after_the_halt_at_first() {
+        let mut gate = InputGate::new(0);
+        for n in 1..50 {
+            let (state, arrived) = sent(n, 100);
+            gate.pass(&state, arrived).unwrap();
+        }
+        let after = |n: u64| {
+            let (state, arrived) = sent(n, 100);
+            (JointState { stamp_us: state.stamp_us + 10_000_000, ..state }, arrived)
+        };
+        let accepted = (50..2_000).find(|n| {
+            let (state, arrived) = after(*n);
+            gate.pass(&state, arrived).is_ok()
+        });
+        // A second after the last one that counted: by then grants have ended on this clock as well.
+        assert_eq!(accepted, Some(49 + 500));
+    }
+
     #[test]
     fn a_controller_that_starts_again_goes_on_with_the_time_of_the_former_one() {
         let mut gate = InputGate::new(0);
