@@ -250,6 +250,7 @@ impl Running {
             regions: regions.clone(),
             holder: self.arbiter.holder(SlotId(i)).map(name),
             queue: self.arbiter.queue(SlotId(i)).iter().map(|r| name(*r)).collect(),
+            age_s: 0.0,
         };
         let slots: Vec<SlotStatus> = self.slots.iter().enumerate().map(slot).collect();
         if let Ok(json) = serde_json::to_vec(&slots) {

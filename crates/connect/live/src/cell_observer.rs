@@ -8,7 +8,7 @@ use std::time::Duration;
 use elbowroom_cell::Cell;
 use elbowroom_interlock::Micros;
 use elbowroom_rosbag::Recorder;
-use elbowroom_status::{CellStatus, EventStatus, RobotStatus, SlotStatus};
+use elbowroom_status::{CellStatus, EventStatus, HealthStatus, RobotStatus, SlotStatus};
 use elbowroom_view::StatusFeed;
 
 use crate::clock::Clock;
@@ -34,7 +34,8 @@ pub(crate) struct CellObserver {
 struct Heard {
     /// Per robot its last status, and when it was heard.
     robots: Vec<Option<(RobotStatus, Micros)>>,
-    slots: Vec<SlotStatus>,
+    /// What the arbiter said last, and when.
+    slots: (Vec<SlotStatus>, Micros),
     events: Vec<EventStatus>,
 }
 
@@ -121,22 +122,28 @@ fn subscribe(
     let shared = shared.clone();
     let handler = Box::new(move |bytes: &[u8]| {
         if let Ok(slots) = serde_json::from_slice(bytes) {
-            lock(&shared).slots = slots;
+            lock(&shared).slots = (slots, clock.micros());
         }
     });
     subscriptions.push(network.subscribe(&keys.interlocks(), handler)?);
     Ok(subscriptions)
 }
 
+/// A status that was heard some time ago.
+fn aged(status: &RobotStatus, age_s: f64) -> RobotStatus {
+    RobotStatus { health: HealthStatus { age_s, ..status.health }, ..status.clone() }
+}
+
 fn together(cell: &Cell, clock: Clock, shared: &Shared) -> CellStatus {
     let mut heard = lock(shared);
     let now = clock.micros();
+    let age_s = |at: Micros| (now - at).0 as f64 * 1e-6;
     let robot = |(heard, robot): (&Option<(RobotStatus, Micros)>, &elbowroom_cell::CellRobot)| match heard {
-        Some((status, at)) if now - *at <= SILENT => status.clone(),
+        Some((status, at)) if now - *at <= SILENT => aged(status, age_s(*at)),
         Some((status, at)) => {
-            let silent_s = (now - *at).0 as f64 * 1e-6;
-            let reason = format!("no status for {silent_s:.1} s");
-            RobotStatus { speed_override: 0.0, reason, region: None, ..status.clone() }
+            let age_s = age_s(*at);
+            let reason = format!("no status for {age_s:.1} s");
+            RobotStatus { speed_override: 0.0, reason, region: None, ..aged(status, age_s) }
         }
         None => RobotStatus {
             robot: robot.name.clone(),
@@ -145,13 +152,15 @@ fn together(cell: &Cell, clock: Clock, shared: &Shared) -> CellStatus {
             ..RobotStatus::default()
         },
     };
+    let (slots, said_at) = &heard.slots;
+    let slots = slots.iter().map(|slot| SlotStatus { age_s: age_s(*said_at), ..slot.clone() }).collect();
     CellStatus {
         t_s: clock.seconds(),
         cell: cell.name.clone(),
         checksum: cell.checksum.clone(),
         robots: heard.robots.iter().zip(&cell.robots).map(robot).collect(),
         objects: Vec::new(),
-        slots: heard.slots.clone(),
+        slots,
         events: std::mem::take(&mut heard.events),
     }
 }

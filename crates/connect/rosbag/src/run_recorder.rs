@@ -113,7 +113,7 @@ fn slots(arbiter: &ZoneArbiter, status: &CellStatus) -> Vec<SlotStatus> {
             |robot: &&RobotStatus| regions.iter().any(|r| robot.exchange.get(r).is_some_and(|s| s == "waiting"));
         let queue = status.robots.iter().filter(waits).map(|robot| robot.robot.clone()).collect();
         let holder = arbiter.holder(slot).map(|robot: RobotSlot| arbiter.robot_name(robot).to_owned());
-        SlotStatus { regions, holder, queue }
+        SlotStatus { regions, holder, queue, age_s: 0.0 }
     };
     (0..arbiter.slots()).map(SlotId).map(of_slot).collect()
 }

@@ -61,6 +61,9 @@ pub struct HealthStatus {
     pub rejected: u64,
     /// Ticks without fresh joint values.
     pub stale: u64,
+    /// How long ago the node said so, s; 0 where this is put together in its process.
+    #[serde(default)]
+    pub age_s: f64,
 }
 
 /// A pose in the world.

@@ -1,6 +1,10 @@
 // Robots, distances, regions, interlocks and events as text.
 const Tables = (() => {
   const MAX_EVENTS = 200;
+  // What is older than this may be wrong by now, s.
+  const SILENT_S = 0.5;
+  // Faults of a robot that follow each other faster than this are one line, s.
+  const REPEATED_S = 2;
   const text = (node, value) => { if (node.textContent !== value) node.textContent = value; };
   const pairText = (pair) => (pair ? `${pair.a} – ${pair.b}` : '–');
   const distanceClass = (metres) => (metres === 0 ? 'number state-contact' : 'number');
@@ -28,11 +32,12 @@ const Tables = (() => {
     const chip = element('i', { className: 'chip' });
     if (robot.solids.length) chip.style.background = robot.solids[0].color;
     byId('robots').append(element('div', { className: 'robot' }, element('div', { className: 'head' }, element('b', {}, chip, robot.name), bar, percent), reason, numbers));
-    return { percent, reason, numbers, fill, bar };
+    return { card: byId('robots').lastElementChild, percent, reason, numbers, fill, bar };
   });
 
   function showRobot(robot, i, drawn) {
-    const { percent, reason, numbers, fill, bar } = cards[i], v = robot.override;
+    const { card, percent, reason, numbers, fill, bar } = cards[i], v = robot.override;
+    card.classList.toggle('silent', robot.health.age_s > SILENT_S);
     fill.style.width = `${100 * v}%`;
     fill.style.background = `hsl(${120 * v} 75% 42%)`;
     bar.setAttribute('aria-valuenow', (100 * v).toFixed(1));
@@ -89,6 +94,10 @@ const Tables = (() => {
   const slots = table(byId('slots'), 'interlocks', ['regions', 'holder', 'waiting']);
   function showSlots(list) {
     byId('slots-card').hidden = !list.length;
+    const age = Math.max(0, ...list.map((slot) => slot.age_s)), silent = age > SILENT_S;
+    byId('arbiter-silent').hidden = !silent;
+    if (silent) text(byId('arbiter-silent'), `The arbiter was heard ${age.toFixed(1)} s ago: no region is granted until it is back.`);
+    byId('slots').classList.toggle('silent', silent);
     rows(slots, list.length, 3).forEach((row, i) => {
       const { regions: names, holder, queue } = list[i];
       [names.join(', '), holder || 'nobody', queue.join(', ') || 'nobody'].forEach((value, k) => text(row.cells[k], value));
@@ -96,6 +105,30 @@ const Tables = (() => {
   }
 
   let events = [];
+  const words = (event) => [event.robot, event.event.replaceAll('_', ' '), event.region].filter(Boolean).join(' · ');
+  const line = (event) => element('li', {}, element('time', { textContent: Units.seconds(event.t_s) }), words(event));
+  // Per robot its last series of faults: the line that shows it, how many, and when the first and the last one were.
+  const faults = new Map();
+
+  // Whether an event belongs to the series of faults that is shown already. A robot whose news comes and goes is lost and
+  // recovered many times a second: that is one line, not thousands.
+  function repeats(event) {
+    const series = faults.get(event.robot);
+    const goesOn = series && event.t_s >= series.last && event.t_s - series.last < REPEATED_S && series.item.isConnected;
+    if (event.event === 'recovered') return goesOn;
+    if (event.event !== 'fault') return false;
+    if (!goesOn) {
+      const item = line(event);
+      list.prepend(item);
+      faults.set(event.robot, { item, count: 1, first: event.t_s, last: event.t_s });
+      return true;
+    }
+    series.count += 1;
+    series.last = event.t_s;
+    series.item.lastChild.textContent = `${words(event)} ${series.count} times in ${(series.last - series.first).toFixed(1)} s`;
+    return true;
+  }
+
   const list = element('ol');
   byId('events').append(list);
   function addEvents(added) {
@@ -104,7 +137,7 @@ const Tables = (() => {
     if (added.length && added[added.length - 1].number < newest) { events = []; list.replaceChildren(); }
     for (const event of added.filter((e) => !events.length || e.number > events[0].number)) {
       events.unshift(event);
-      list.prepend(element('li', {}, element('time', { textContent: Units.seconds(event.t_s) }), [event.robot, event.event.replaceAll('_', ' '), event.region].filter(Boolean).join(' · ')));
+      if (!repeats(event)) list.prepend(line(event));
     }
     events.length = Math.min(events.length, MAX_EVENTS);
     while (list.children.length > MAX_EVENTS) list.lastChild.remove();

@@ -275,7 +275,14 @@ fn running(cell: &Cell, t_s: f64) -> CellStatus {
         exchange: [("pallet".to_owned(), if i == 1 { "waiting" } else { "outside" }.to_owned())].into(),
         ..RobotStatus::default()
     };
-    let event = EventStatus { t_s, robot: "east".into(), region: "pallet".into(), event: "waiting".into() };
+    let tick = (100.0 * t_s) as u64;
+    let event = |robot: &str, region: &str, event: &str| {
+        let [robot, region, event] = [robot, region, event].map(str::to_owned);
+        EventStatus { t_s, robot, region, event }
+    };
+    // One per second, at 100 statuses per second; and a robot whose joint values come and go.
+    let waiting = tick.is_multiple_of(100).then(|| event("east", "pallet", "waiting"));
+    let flapping = event("south", "", if tick.is_multiple_of(2) { "fault" } else { "recovered" });
     CellStatus {
         t_s,
         cell: cell.name.clone(),
@@ -284,9 +291,10 @@ fn running(cell: &Cell, t_s: f64) -> CellStatus {
             regions: vec!["pallet".into()],
             holder: Some("north".into()),
             queue: vec!["east".into()],
+            // The arbiter is silent.
+            age_s: 2.0,
         }],
-        // One per second, at 100 statuses per second.
-        events: if ((100.0 * t_s) as u64).is_multiple_of(100) { vec![event] } else { Vec::new() },
+        events: waiting.into_iter().chain([flapping]).collect(),
         ..CellStatus::default()
     }
 }
@@ -318,6 +326,7 @@ fn a_running_cell_moves_is_replayed_and_found_again() {
         json!({ "do": "press", "key": "l", "until": "s.live" }),
         json!({ "do": "text", "at": "#slots" }),
         json!({ "do": "text", "at": "#events" }),
+        json!({ "do": "text", "at": "#arbiter-silent" }),
         json!({ "do": "audit" }),
     ];
     steps.extend(screenshots("running"));
@@ -366,7 +375,12 @@ fn a_running_cell_moves_is_replayed_and_found_again() {
     assert!(
         seen[7].as_str().unwrap().contains("north") && seen[8].as_str().unwrap().contains("east · waiting · pallet")
     );
-    assert_eq!(seen[9]["unnamed"], json!([]));
+    // Faults that follow each other are one line.
+    let events = seen[8].as_str().unwrap();
+    assert_eq!((events.matches("south · fault ").count(), events.matches("recovered").count()), (1, 0), "{events}");
+    assert!(events.contains(" times in "), "{events}");
+    assert!(seen[9].as_str().unwrap().contains("2.0 s ago"), "{}", seen[9]);
+    assert_eq!(seen[10]["unnamed"], json!([]));
 }
 
 #[test]

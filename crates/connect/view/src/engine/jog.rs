@@ -157,6 +157,7 @@ impl JogCell {
                 regions: regions.map(|(_, r)| r.region.name.clone()).collect(),
                 holder: arbiter.holder(slot).map(|RobotSlot(r)| name(r)),
                 queue: (0..self.monitors.len()).filter(waits).map(name).collect(),
+                age_s: 0.0,
             }
         };
         (0..arbiter.slots()).map(slot).collect()
