@@ -42,6 +42,7 @@ pub mod run;
 mod summary;
 
 pub use held_object::held_object;
+pub use motion::{PathSearch, PlannedPaths};
 pub use recording::{
     AvoidanceSample, AvoidanceTrack, Collision, Deadlock, EventRow, GoverningPoint, Hold, HoldReason, ObjectTrack,
     Outcome, PartKind, PathReplan, PerceptionTrack, RecordedRegionKind, Recording, RegionPoses, RegionTrack,

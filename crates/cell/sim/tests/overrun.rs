@@ -7,7 +7,7 @@ use elbowroom_cell::Cell;
 use elbowroom_kinematics::ChainState;
 use elbowroom_proximity::{penetration, within};
 use elbowroom_sim::check::{check, overruns};
-use elbowroom_sim::{Recording, RunOptions, simulate};
+use elbowroom_sim::{PlannedPaths, Recording, RunOptions, simulate};
 use proptest::prelude::*;
 
 /// The law approaches the border asymptotically: in the end the distance is rounded to 0.
@@ -170,7 +170,7 @@ proptest! {
             prop_assert!(answer.write_instead.as_ref().unwrap().contains("stopping_distance = true"));
             return Ok(());
         }
-        prop_assert!(overruns(&cell).unwrap().is_empty(), "{text}");
+        prop_assert!(overruns(&PlannedPaths::new(&cell)).unwrap().is_empty(), "{text}");
         let run = simulate(&cell, &RunOptions::default()).unwrap().recording;
         let deep = deepest(&cell, &run);
         prop_assert!(deep < ROUNDING_M, "needed {needed} m, but it was entered by {deep} m:\n{text}");

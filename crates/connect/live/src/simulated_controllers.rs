@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use elbowroom_cell::{Cell, configure};
 use elbowroom_interlock::Micros;
 use elbowroom_robot::RobotId;
-use elbowroom_sim::motion::{PlanStep, ProgramClock, ProgramPlan, plan};
+use elbowroom_sim::motion::{PlanStep, PlannedPaths, ProgramClock, ProgramPlan, plan};
 
 use crate::carried_volumes::{CarriedVolumes, SimulatedObjects};
 use crate::client::{ControllerClient, ControllerState};
@@ -140,8 +140,9 @@ impl SimulatedController {
     ) -> Result<Self, ServiceError> {
         let at = &cell.robots[robot.0];
         let keys = Keys::new(&cell.name);
-        let once = plan(cell, robot, 1, &mut Vec::new())?;
-        let again = repetition(cell, robot, &once);
+        let paths = PlannedPaths::new(cell);
+        let once = plan(&paths, robot, 1, &mut Vec::new())?;
+        let again = repetition(&paths, robot, &once);
         let watchdog = Micros::from_seconds(cell.laws.laws.stale_s);
         let client = ControllerClient::new(boot_number(), configuration_number(cell)).with_watchdog(watchdog);
         let client = Arc::new(Mutex::new(client));
@@ -202,8 +203,8 @@ impl SimulatedController {
 
 /// The program once more, from where it ends: the steps of a second pass. `None` for a robot without one, or where a third pass
 /// would not begin where the second one did.
-fn repetition(cell: &Cell, robot: RobotId, once: &ProgramPlan) -> Option<ProgramPlan> {
-    let twice = plan(cell, robot, 2, &mut Vec::new()).ok()?;
+fn repetition(paths: &PlannedPaths<'_>, robot: RobotId, once: &ProgramPlan) -> Option<ProgramPlan> {
+    let twice = plan(paths, robot, 2, &mut Vec::new()).ok()?;
     let steps = twice.steps.get(once.steps.len()..).filter(|steps| !steps.is_empty())?;
     let end = |plan: &ProgramPlan| plan.steps.iter().rev().find_map(PlanStep::end);
     let (first, second) = (end(once)?, end(&twice)?);

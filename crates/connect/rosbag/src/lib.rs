@@ -7,7 +7,7 @@
 //! ```
 //! use elbowroom_cell::Cell;
 //! use elbowroom_rosbag::{CellWriter, RunRecorder, replay};
-//! use elbowroom_sim::{RunOptions, run::simulate_observed};
+//! use elbowroom_sim::{PlannedPaths, RunOptions, run::simulate_observed};
 //! let cell = Cell::parse("rail.toml", r#"
 //! version = 1
 //! units = { length = "mm", angle = "deg" }
@@ -18,7 +18,7 @@
 //! "#)?;
 //! let mut file = std::io::Cursor::new(Vec::new());
 //! let mut recorder = RunRecorder::new(CellWriter::new(&mut file, &cell, 0)?, &cell);
-//! simulate_observed(&cell, &RunOptions::default(), &mut |_| {}, Some(&mut recorder))?;
+//! simulate_observed(&PlannedPaths::new(&cell), &RunOptions::default(), &mut |_| {}, Some(&mut recorder))?;
 //! recorder.finish()?;
 //! let found = replay(&file.into_inner()[..])?;
 //! assert!(found.ticks > 1000 && found.differences == 0);

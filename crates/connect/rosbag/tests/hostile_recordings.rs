@@ -7,8 +7,8 @@ use std::time::{Duration, Instant};
 
 use elbowroom_cell::Cell;
 use elbowroom_rosbag::{CellWriter, RunRecorder, replay};
-use elbowroom_sim::RunOptions;
 use elbowroom_sim::run::simulate_observed;
+use elbowroom_sim::{PlannedPaths, RunOptions};
 use elbowroom_testkit::random::SplitMix;
 
 const CHANGES: usize = 20_000;
@@ -68,7 +68,7 @@ fn recording() -> Vec<u8> {
     let cell = Cell::parse("small.toml", CELL).unwrap();
     let mut file = Cursor::new(Vec::new());
     let mut recorder = RunRecorder::new(CellWriter::new(&mut file, &cell, 0).unwrap(), &cell);
-    simulate_observed(&cell, &RunOptions::default(), &mut |_| {}, Some(&mut recorder)).unwrap();
+    simulate_observed(&PlannedPaths::new(&cell), &RunOptions::default(), &mut |_| {}, Some(&mut recorder)).unwrap();
     recorder.finish().unwrap();
     file.into_inner()
 }

@@ -14,8 +14,8 @@ use elbowroom_ros2::msgs::std_msgs::Text;
 use elbowroom_ros2::msgs::tf2_msgs::TFMessage;
 use elbowroom_ros2::msgs::visualization_msgs::MarkerArray;
 use elbowroom_rosbag::{BagReader, CellWriter, RunRecorder};
-use elbowroom_sim::RunOptions;
 use elbowroom_sim::run::simulate_observed;
+use elbowroom_sim::{PlannedPaths, RunOptions};
 use serde_json::Value;
 
 fn python() -> Option<String> {
@@ -60,7 +60,9 @@ fn recordings_are_read_by_three_other_readers() {
         let cell = cell(example);
         let file = dir.path().join(format!("{example}.mcap"));
         let mut recorder = RunRecorder::new(CellWriter::create(&file, &cell, 0).unwrap(), &cell);
-        let outcome = simulate_observed(&cell, &RunOptions::default(), &mut |_| {}, Some(&mut recorder)).unwrap();
+        let outcome =
+            simulate_observed(&PlannedPaths::new(&cell), &RunOptions::default(), &mut |_| {}, Some(&mut recorder))
+                .unwrap();
         recorder.finish().unwrap();
         let found: Value = serde_json::from_str(&script(&python, &[&file.to_string_lossy()])).unwrap();
         println!("{example}: {found:#}");

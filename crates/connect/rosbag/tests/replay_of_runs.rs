@@ -8,13 +8,13 @@ use elbowroom_cell::Cell;
 use elbowroom_robot::RobotId;
 use elbowroom_rosbag::{CellWriter, Replay, RunRecorder, replay};
 use elbowroom_sim::run::simulate_observed;
-use elbowroom_sim::{InputFault, InputFaultKind, Recording, RunOptions};
+use elbowroom_sim::{InputFault, InputFaultKind, PlannedPaths, Recording, RunOptions};
 use elbowroom_testkit::folder::examples;
 
 fn recorded(cell: &Cell, options: &RunOptions) -> (Vec<u8>, Recording) {
     let mut file = Cursor::new(Vec::new());
     let mut recorder = RunRecorder::new(CellWriter::new(&mut file, cell, 0).unwrap(), cell);
-    let outcome = simulate_observed(cell, options, &mut |_| {}, Some(&mut recorder)).unwrap();
+    let outcome = simulate_observed(&PlannedPaths::new(cell), options, &mut |_| {}, Some(&mut recorder)).unwrap();
     recorder.finish().unwrap();
     (file.into_inner(), outcome.recording)
 }

@@ -1,11 +1,12 @@
 //! `elbowroom check`: whether the laws exclude entry, and what is missing.
 
 use elbowroom::cell::Cell;
-use elbowroom::sim::check::{self, EntryCheck, recordings, table};
+use elbowroom::sim::check::{EntryCheck, recordings, table};
 use serde::Serialize;
 
 use crate::args::CheckArgs;
 use crate::output::{ExitStatus, Failure, note, print, print_json};
+use crate::simulation::Simulation;
 
 #[derive(Serialize)]
 struct Document<'a> {
@@ -31,7 +32,7 @@ struct Row<'a> {
 pub(crate) fn check(args: &CheckArgs) -> Result<ExitStatus, Failure> {
     let cell = Cell::load(&args.cell)?;
     cell.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
-    let checks = check::check(&cell)?;
+    let checks = Simulation::of(&cell).check()?;
     for w in recordings(&cell) {
         note(format_args!("warning: {w}"));
     }

@@ -8,8 +8,8 @@ use include_dir::{Dir, include_dir};
 
 use crate::args::ExampleArgs;
 use crate::output::{ExitStatus, Failure, cannot_write, myself, note, print, summary};
-use crate::run::{warn_of_overruns, write_files};
-use crate::simulation::with_progress;
+use crate::run::write_files;
+use crate::simulation::Simulation;
 
 static EXAMPLES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../../examples");
 /// Default output folder.
@@ -22,9 +22,10 @@ pub(crate) fn figure_12() -> Result<ExitStatus, Failure> {
     let dir = out.join("figure12");
     let file = dir.join("cell.toml");
     let cell = Cell::load(&file)?;
-    warn_of_overruns(&cell)?;
-    let on = with_progress(&cell, &RunOptions::default())?;
-    let off = with_progress(&cell, &RunOptions { apply_override: false, ..RunOptions::default() })?;
+    let simulation = Simulation::of(&cell);
+    simulation.warn_of_overruns()?;
+    let on = simulation.run(&RunOptions::default())?;
+    let off = simulation.run(&RunOptions { apply_override: false, ..RunOptions::default() })?;
     on.notes.iter().for_each(note);
     write_files(&dir, &cell, &on.recording, Some(&off.recording), true)?;
     print(&summary(&on.recording))?;

@@ -9,7 +9,7 @@ use elbowroom::sim::RunOptions;
 
 use crate::output::Failure;
 use crate::output_file::write_file;
-use crate::simulation::with_progress;
+use crate::simulation::Simulation;
 
 /// A robot and the samples of its path: s, and rad or m.
 pub(crate) type PlayedPath = (RobotId, Vec<(f64, Vec<f64>)>);
@@ -34,6 +34,6 @@ pub(crate) fn write(path: &Path, cell: &Cell, paths: Vec<PlayedPath>) -> Result<
         cell.programs[robot.0] = Some(Program { speed_override: 1.0, repeat: 1, body, line });
     }
     let options = RunOptions { apply_override: false, avoidance: false, ..RunOptions::default() };
-    let played = with_progress(&cell, &options)?.recording;
+    let played = Simulation::of(&cell).run(&options)?.recording;
     write_file(path, |out| report::write_html(out, &ReportScene::of_cell(&cell), &[("plan", &played)]))
 }

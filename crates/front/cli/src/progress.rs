@@ -30,9 +30,20 @@ impl Progress {
         Self::new(Some(STEPS), Duration::from_secs(2), "{bar:30} {percent} %, {msg}")
     }
 
-    /// Of a length that nobody knows.
+    /// Of a length that nobody knows; it turns also while nothing is told.
     pub(crate) fn unknown() -> Self {
-        Self::new(None, Duration::from_millis(700), "{spinner} {msg} [{elapsed_precise}]")
+        let progress = Self::new(None, Duration::from_millis(700), "{spinner} {msg} [{elapsed_precise}]");
+        if std::io::stderr().is_terminal() {
+            let (bar, appears_after) = (progress.bar.clone(), progress.appears_after);
+            std::thread::spawn(move || {
+                std::thread::sleep(appears_after);
+                if !bar.is_finished() {
+                    bar.set_draw_target(ProgressDrawTarget::stderr());
+                    bar.enable_steady_tick(Duration::from_millis(100));
+                }
+            });
+        }
+        progress
     }
 
     fn new(total: Option<u64>, appears_after: Duration, template: &str) -> Self {
@@ -55,10 +66,7 @@ impl Progress {
 
     /// That it goes on.
     pub(crate) fn go_on(&self, message: String) {
-        if self.is_shown() {
-            self.bar.set_message(message);
-            self.bar.tick();
-        }
+        self.bar.set_message(message);
     }
 
     fn show(&self, done: u64, message: &str) {

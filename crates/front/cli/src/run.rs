@@ -5,14 +5,13 @@ use std::path::Path;
 use elbowroom::cell::Cell;
 use elbowroom::cell::seal::Seal;
 use elbowroom::report::{HtmlReport, ReportScene};
-use elbowroom::sim::check::overruns;
 use elbowroom::sim::{Recording, RunOptions, RunSummary, SensorTrack, csv};
 
 use crate::args::RunArgs;
 use crate::live;
 use crate::output::{ExitStatus, Failure, cannot_write, note, print, print_json, summary};
 use crate::output_file::write_file;
-use crate::simulation::with_progress;
+use crate::simulation::Simulation;
 
 pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
     let cell = Cell::load(&args.cell)?;
@@ -23,16 +22,17 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
         repeat: args.repeat,
         ..RunOptions::default()
     };
+    let simulation = Simulation::of(&cell);
     if options.apply_override {
-        warn_of_overruns(&cell)?;
+        simulation.warn_of_overruns()?;
     }
     let outcome = match &args.mcap {
-        Some(file) => live::run_recorded(&cell, &options, file)?,
-        None => with_progress(&cell, &options)?,
+        Some(file) => live::run_recorded(&simulation, &options, file)?,
+        None => simulation.run(&options)?,
     };
     outcome.notes.iter().for_each(|w| note(format_args!("warning: {w}")));
     if let Some(dir) = &args.out {
-        let without = if options.apply_override { planned(&cell, &options)? } else { None };
+        let without = if options.apply_override { planned(&simulation, &options)? } else { None };
         write_files(dir, &cell, &outcome.recording, without.as_ref(), args.compare)?;
     }
     if args.json {
@@ -54,8 +54,8 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
 
 /// The run without the monitor, whose distances the report shows beside those of the run with it. Its robots may meet where
 /// the monitor keeps them apart: where a program cannot continue then, there is nothing to compare with.
-fn planned(cell: &Cell, options: &RunOptions) -> Result<Option<Recording>, Failure> {
-    match with_progress(cell, &RunOptions { apply_override: false, ..options.clone() }) {
+fn planned(simulation: &Simulation<'_>, options: &RunOptions) -> Result<Option<Recording>, Failure> {
+    match simulation.run(&RunOptions { apply_override: false, ..options.clone() }) {
         Ok(outcome) => Ok(Some(outcome.recording)),
         Err(Failure::Wrong(why)) => {
             note(format_args!("warning: no comparison with the run without the monitor: {why}"));
@@ -63,12 +63,6 @@ fn planned(cell: &Cell, options: &RunOptions) -> Result<Option<Recording>, Failu
         }
         Err(closed) => Err(closed),
     }
-}
-
-/// Warns before a run of borders that a robot can reach faster than it can stop.
-pub(crate) fn warn_of_overruns(cell: &Cell) -> Result<(), Failure> {
-    overruns(cell)?.iter().for_each(|w| note(format_args!("warning: {w}")));
-    Ok(())
 }
 
 /// The summary of a run, and the seal of a sealed cell.

@@ -1,28 +1,68 @@
-//! A simulated run with a progress bar.
+//! Checks and runs of a cell, with progress.
+
+use std::cell::RefCell;
+use std::rc::Rc;
 
 use elbowroom::cell::Cell;
+use elbowroom::sim::check::{EntryCheck, check_planned, overruns};
 use elbowroom::sim::run::{RunObserver, RunProgress, simulate_observed};
-use elbowroom::sim::{RunOptions, RunOutcome};
+use elbowroom::sim::{PathSearch, PlannedPaths, RunOptions, RunOutcome};
 
-use crate::output::Failure;
+use crate::output::{Failure, note};
 use crate::progress::Progress;
 
-/// Runs the cell with a progress bar that appears after 0.7 s.
-pub(crate) fn with_progress(cell: &Cell, options: &RunOptions) -> Result<RunOutcome, Failure> {
-    with_observer(cell, options, None)
+/// A cell to be checked and run, several times as well: the paths of its planned moves are searched once.
+pub(crate) struct Simulation<'a> {
+    pub(crate) paths: PlannedPaths<'a>,
+    /// Of what is computed now.
+    progress: Rc<RefCell<Progress>>,
 }
 
-/// [`with_progress`] with an observer of the monitors.
-pub(crate) fn with_observer(
-    cell: &Cell,
-    options: &RunOptions,
-    observer: Option<&mut dyn RunObserver>,
-) -> Result<RunOutcome, Failure> {
-    let progress = Progress::unknown();
-    let mut show = |p: RunProgress| {
-        progress.go_on(format!("{:.1} s simulated, {} of {} programs finished", p.t_s, p.finished, p.robots));
-    };
-    let outcome = simulate_observed(cell, options, &mut show, observer);
-    progress.end();
-    Ok(outcome?)
+impl<'a> Simulation<'a> {
+    pub(crate) fn of(cell: &'a Cell) -> Self {
+        let progress = Rc::new(RefCell::new(Progress::unknown()));
+        let shown = progress.clone();
+        let paths = PlannedPaths::new(cell).with_progress(move |PathSearch { number, of }| {
+            shown.borrow().go_on(format!("planning move {number} of {of}"));
+        });
+        Self { paths, progress }
+    }
+
+    /// What the laws exclude.
+    pub(crate) fn check(&self) -> Result<Vec<EntryCheck>, Failure> {
+        Ok(self.with_progress(|| check_planned(&self.paths))?)
+    }
+
+    /// Warns before a run of borders that a robot can reach faster than it can stop.
+    pub(crate) fn warn_of_overruns(&self) -> Result<(), Failure> {
+        let overruns = self.with_progress(|| overruns(&self.paths))?;
+        for w in overruns {
+            note(format_args!("warning: {w}"));
+        }
+        Ok(())
+    }
+
+    pub(crate) fn run(&self, options: &RunOptions) -> Result<RunOutcome, Failure> {
+        self.observed(options, None)
+    }
+
+    /// A run with an observer of the monitors.
+    pub(crate) fn observed(
+        &self,
+        options: &RunOptions,
+        observer: Option<&mut dyn RunObserver>,
+    ) -> Result<RunOutcome, Failure> {
+        let mut show = |p: RunProgress| {
+            let RunProgress { t_s, finished, robots } = p;
+            self.progress.borrow().go_on(format!("{t_s:.1} s simulated, {finished} of {robots} programs finished"));
+        };
+        Ok(self.with_progress(|| simulate_observed(&self.paths, options, &mut show, observer))?)
+    }
+
+    fn with_progress<T>(&self, compute: impl FnOnce() -> T) -> T {
+        self.progress.replace(Progress::unknown());
+        let result = compute();
+        self.progress.borrow().end();
+        result
+    }
 }

@@ -52,6 +52,8 @@ use initial_overlaps::{initial_overlaps, region_at_start, start_states};
 use program::programs;
 use region_speed::max_region_speed_m_s;
 
+use crate::motion::PlannedPaths;
+
 pub use entry_check::EntryCheck;
 pub use table::table;
 
@@ -60,13 +62,21 @@ pub use table::table;
 /// # Errors
 /// [`FormatError`] at the line of an infeasible step of a program.
 pub fn check(cell: &Cell) -> Result<Vec<EntryCheck>, FormatError> {
-    let programs = programs(cell)?;
+    check_planned(&PlannedPaths::new(cell))
+}
+
+/// [`check`] with paths that may be known.
+///
+/// # Errors
+/// As for [`check`].
+pub fn check_planned(paths: &PlannedPaths<'_>) -> Result<Vec<EntryCheck>, FormatError> {
+    let (cell, programs) = (paths.cell(), programs(paths)?);
     let slots = configure::slots(cell);
     let states = start_states(cell, &programs);
     let overlaps = initial_overlaps(cell, &programs, &states);
     let mut checks = Vec::new();
     for (index, region) in cell.regions.iter().enumerate() {
-        let region_speed_m_s = max_region_speed_m_s(cell, region)?;
+        let region_speed_m_s = max_region_speed_m_s(paths, region)?;
         let id = CellRegionId(index);
         for &robot in &region.robots {
             let shares = |other: CellRegionId| slots[other.0].is_some() && slots[other.0] == slots[index];
@@ -93,8 +103,8 @@ pub fn check(cell: &Cell) -> Result<Vec<EntryCheck>, FormatError> {
 ///
 /// # Errors
 /// As for [`check`].
-pub fn overruns(cell: &Cell) -> Result<Vec<Warning>, FormatError> {
-    Ok(check(cell)?.into_iter().filter_map(|c| c.overrun).collect())
+pub fn overruns(paths: &PlannedPaths<'_>) -> Result<Vec<Warning>, FormatError> {
+    Ok(check_planned(paths)?.into_iter().filter_map(|c| c.overrun).collect())
 }
 
 /// Warnings for recordings that exceed the joint limits of the cell; a run repeats them in its notes.

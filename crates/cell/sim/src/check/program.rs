@@ -1,13 +1,13 @@
 //! The guarded volumes of each robot, and their speeds in its program.
 
-use elbowroom_cell::{Cell, CellRobot};
+use elbowroom_cell::CellRobot;
 use elbowroom_formats::FormatError;
 use elbowroom_monitor::{Guards, Volume};
 use elbowroom_robot::RobotId;
 
 use super::sphere_swept_hull::SphereSweptHull;
 use super::stopping_profile::{LinkSolid, Profile, StoppingProfile};
-use crate::motion::{GripAction, PlanStep, ProgramPlan, repeated_plan};
+use crate::motion::{GripAction, PlanStep, PlannedPaths, ProgramPlan, repeated_plan};
 
 /// The guarded volumes of a robot, and the motion profile of its program.
 pub(super) struct RobotProgram {
@@ -41,8 +41,8 @@ pub(super) enum Mount {
 }
 
 impl RobotProgram {
-    fn of(cell: &Cell, robot: RobotId) -> Result<Self, FormatError> {
-        let plan = repeated_plan(cell, robot)?;
+    fn of(paths: &PlannedPaths<'_>, robot: RobotId) -> Result<Self, FormatError> {
+        let (cell, plan) = (paths.cell(), repeated_plan(paths, robot)?);
         let volumes = cell.robots[robot.0].guarded_volumes();
         let mounts = mounts(&cell.robots[robot.0], &plan);
         let solid =
@@ -102,6 +102,6 @@ fn mounts(robot: &CellRobot, plan: &ProgramPlan) -> Vec<PlannedMount> {
     mounts
 }
 
-pub(super) fn programs(cell: &Cell) -> Result<Vec<RobotProgram>, FormatError> {
-    (0..cell.robots.len()).map(|robot| RobotProgram::of(cell, RobotId(robot))).collect()
+pub(super) fn programs(paths: &PlannedPaths<'_>) -> Result<Vec<RobotProgram>, FormatError> {
+    (0..paths.cell().robots.len()).map(|robot| RobotProgram::of(paths, RobotId(robot))).collect()
 }

@@ -6,12 +6,13 @@ use elbowroom_robot::RobotId;
 
 use super::sphere_swept_hull::SphereSweptHull;
 use super::stopping_profile::{LinkSolid, Profile};
-use crate::motion::repeated_plan;
+use crate::motion::{PlannedPaths, repeated_plan};
 
 /// Largest speed (m/s) of any point of the region, as its source moves it; 0 for a fixed region, infinite for one on a robot
 /// that may leave its program.
-pub(super) fn max_region_speed_m_s(cell: &Cell, region: &CellRegion) -> Result<f64, FormatError> {
+pub(super) fn max_region_speed_m_s(paths: &PlannedPaths<'_>, region: &CellRegion) -> Result<f64, FormatError> {
     let Some(follow) = region.follow else { return Ok(0.0) };
+    let cell = paths.cell();
     let in_source = region.region.anchor * region.region.shape_in_anchor;
     match follow {
         Follow::Encoder(e) => Ok(cell.encoders[e].fastest(0.0, cell.max_s)),
@@ -37,8 +38,8 @@ pub(super) fn max_region_speed_m_s(cell: &Cell, region: &CellRegion) -> Result<f
         Follow::Robot { robot, .. } if leaves_its_program(cell, robot) => Ok(f64::INFINITY),
         Follow::Robot { robot, link, in_link } => {
             let hull = SphereSweptHull::new(&region.region.shape, &(in_link * in_source));
-            let profile =
-                Profile::of(cell, robot, &repeated_plan(cell, robot)?, &[LinkSolid { link, hull, grip: None }]);
+            let plan = repeated_plan(paths, robot)?;
+            let profile = Profile::of(cell, robot, &plan, &[LinkSolid { link, hull, grip: None }]);
             Ok(profile.stopping_profiles[0].fastest_m_s)
         }
     }

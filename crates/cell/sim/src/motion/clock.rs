@@ -402,7 +402,7 @@ impl ProgramClock {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::motion::plan;
+    use crate::motion::{PlannedPaths, plan};
     use elbowroom_robot::RobotId;
 
     /// Detours are no faster than the fastest move of the program that the cell file has.
@@ -414,7 +414,7 @@ mod tests {
                  dh = [{{ kind = \"prismatic\", min = 0, max = 2000, speed = 1000 }}]\n[program.rail]\nsteps = [{steps}]\n"
             );
             let cell = elbowroom_cell::Cell::parse("rail.toml", &text).unwrap();
-            let plan = plan(&cell, RobotId(0), 1, &mut Vec::new()).unwrap();
+            let plan = plan(&PlannedPaths::new(&cell), RobotId(0), 1, &mut Vec::new()).unwrap();
             ProgramClock::new(plan, cell.robots[0].limits.clone()).speed_share()
         };
         let [slow, fast] = [10, 30].map(|speed| format!("{{ move = \"joint\", to = [{speed}], speed = {speed} }},"));

@@ -13,6 +13,7 @@ mod grip_action;
 mod line;
 mod plan;
 mod planned_parts;
+mod planned_paths;
 mod segment;
 
 pub use clock::{ProgramClock, RegionSwitch};
@@ -20,4 +21,5 @@ pub use geometry::Geometry;
 pub use grip_action::{GripAction, HeldObjects};
 pub use line::TcpLine;
 pub use plan::{PlanStep, ProgramPlan, first_grip, plan, repeated_plan};
+pub use planned_paths::{PathSearch, PlannedPaths};
 pub use segment::Segment;

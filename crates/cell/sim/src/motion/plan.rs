@@ -14,6 +14,7 @@ use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_scene::Attachment;
 
 use super::planned_parts::{PartError, PlannedParts};
+use super::planned_paths::{PathOrigin, PlannedPaths};
 use super::{Geometry, GripAction, Segment, TcpLine};
 
 /// Largest number of steps of a plan, including repetitions.
@@ -79,21 +80,26 @@ impl PlanStep {
     }
 }
 
-/// Plans the program of one robot, run `repeat` times (times the program's own `repeat`).
+/// Plans the program of one robot of the cell of `paths`, run `repeat` times (times the program's own `repeat`).
 ///
 /// # Errors
 /// [`FormatError`] at the line of an infeasible step: out of reach, through a singularity, beyond limits.
-pub fn plan(cell: &Cell, robot: RobotId, repeat: u32, notes: &mut Vec<Warning>) -> Result<ProgramPlan, FormatError> {
+pub fn plan(
+    paths: &PlannedPaths<'_>,
+    robot: RobotId,
+    repeat: u32,
+    notes: &mut Vec<Warning>,
+) -> Result<ProgramPlan, FormatError> {
     let passes = repeat.max(1);
-    plan_passes(cell, robot, Passes { wanted: passes, required: passes }, notes)
+    plan_passes(paths, robot, Passes { wanted: passes, required: passes }, notes)
 }
 
 /// The program of a robot, and once more as far as it can be repeated: with the way back to its start.
 ///
 /// # Errors
 /// As for [`plan`].
-pub fn repeated_plan(cell: &Cell, robot: RobotId) -> Result<ProgramPlan, FormatError> {
-    plan_passes(cell, robot, Passes { wanted: 2, required: 1 }, &mut Vec::new())
+pub fn repeated_plan(paths: &PlannedPaths<'_>, robot: RobotId) -> Result<ProgramPlan, FormatError> {
+    plan_passes(paths, robot, Passes { wanted: 2, required: 1 }, &mut Vec::new())
 }
 
 /// How often a program runs.
@@ -105,18 +111,19 @@ struct Passes {
 }
 
 fn plan_passes(
-    cell: &Cell,
+    paths: &PlannedPaths<'_>,
     robot: RobotId,
     passes: Passes,
     notes: &mut Vec<Warning>,
 ) -> Result<ProgramPlan, FormatError> {
+    let cell = paths.cell();
     let at = &cell.robots[robot.0];
     let Some(program) = &cell.programs[robot.0] else {
         return Ok(ProgramPlan { start: at.start.clone(), speed_override: 1.0, steps: Vec::new() });
     };
     let of_program = |passes: u32| u64::from(passes) * u64::from(program.repeat);
     let (wanted, required) = (of_program(passes.wanted), of_program(passes.required));
-    let mut planner = ProgramPlanner::new(cell, robot, notes);
+    let mut planner = ProgramPlanner::new(paths, robot, notes);
     match &program.body {
         ProgramBody::Steps(steps) => {
             let most = MAX_STEPS / steps.len().max(1) as u64;
@@ -138,8 +145,8 @@ pub fn first_grip(cell: &Cell, robot: RobotId, object: ObjectId) -> Result<Optio
     let ProgramBody::Steps(steps) = &program.body else { return Ok(None) };
     let grips = |s: &ProgramStep| matches!(s.action, StepAction::Grip(o) if o == object);
     let Some(index) = steps.iter().position(grips) else { return Ok(None) };
-    let mut notes = Vec::new();
-    let plan = ProgramPlanner::new(cell, robot, &mut notes).steps(program, &steps[..=index], 1, 1)?;
+    let (paths, mut notes) = (PlannedPaths::new(cell), Vec::new());
+    let plan = ProgramPlanner::new(&paths, robot, &mut notes).steps(program, &steps[..=index], 1, 1)?;
     Ok(plan
         .steps
         .into_iter()
@@ -147,18 +154,17 @@ pub fn first_grip(cell: &Cell, robot: RobotId, object: ObjectId) -> Result<Optio
         .and_then(|s| if let PlanStep::Grip(action) = s { Some(action) } else { None }))
 }
 
-struct ProgramPlanner<'a> {
+struct ProgramPlanner<'p, 'a> {
     cell: &'a Cell,
+    paths: &'p PlannedPaths<'a>,
     id: RobotId,
     /// With the tools as they are after the steps so far.
     robot: CellRobot,
     /// Joint values after the steps so far.
     q: Vec<f64>,
-    notes: &'a mut Vec<Warning>,
+    notes: &'p mut Vec<Warning>,
     /// Moves of earlier passes.
     planned_moves: Vec<PlannedMoveEntry>,
-    /// Paths of earlier passes.
-    planned_paths: Vec<PlannedPathEntry<'a>>,
     /// The objects after the steps so far.
     parts: PlannedParts<'a>,
 }
@@ -171,26 +177,18 @@ struct PlannedMoveEntry {
     segment: Rc<Segment>,
 }
 
-/// The path of a planned step from some joint values, with the objects at some places.
-struct PlannedPathEntry<'a> {
-    step: usize,
-    from: Vec<f64>,
-    flange: LinkId,
-    parts: PlannedParts<'a>,
-    play: Rc<Playback>,
-}
-
-impl<'a> ProgramPlanner<'a> {
-    fn new(cell: &'a Cell, id: RobotId, notes: &'a mut Vec<Warning>) -> Self {
+impl<'p, 'a> ProgramPlanner<'p, 'a> {
+    fn new(paths: &'p PlannedPaths<'a>, id: RobotId, notes: &'p mut Vec<Warning>) -> Self {
+        let cell = paths.cell();
         let robot = cell.robots[id.0].clone();
         Self {
             cell,
+            paths,
             id,
             q: robot.start.clone(),
             robot,
             notes,
             planned_moves: Vec::new(),
-            planned_paths: Vec::new(),
             parts: PlannedParts::new(cell, id),
         }
     }
@@ -288,43 +286,42 @@ impl<'a> ProgramPlanner<'a> {
         to: &MoveTarget,
         speed: f64,
     ) -> Result<Rc<Playback>, FormatError> {
-        let is_known = |k: &&PlannedPathEntry<'_>| {
-            k.step == index && k.from == self.q && k.flange == self.robot.flange && k.parts == self.parts
+        let origin = PathOrigin {
+            robot: self.id,
+            step: index,
+            from: self.q.clone(),
+            flange: self.robot.flange,
+            parts: self.parts.clone(),
         };
-        let known = self.planned_paths.iter().find(is_known).map(|k| k.play.clone());
-        let play = if let Some(play) = known {
-            play
-        } else {
-            let carried = self.parts.carried().map_err(|e| self.part_error(index, step, e))?;
-            let cell = self.cell_now();
-            let volumes = cell.volumes_holding(self.id, &carried);
-            let request = PathRequest {
-                robot: Some(self.robot.name.clone()),
-                from: Some(self.q.clone()),
-                to: match to {
-                    MoveTarget::Joints(q) => PathGoal::Joints(q.clone()),
-                    MoveTarget::Tcp(target) => PathGoal::Tcp(target.clone()),
-                },
-                speed,
-                placed: self.parts.placed(),
-                carried,
-                ..PathRequest::default()
-            };
-            let answer = elbowroom_analysis::plan::plan(&cell, &request)
-                .map_err(|e| self.error(index, step, &e.what).hint(e.write_instead.unwrap_or_default()))?;
-            let Some(motion) = answer.motion else {
-                let why = answer.reason.unwrap_or_default();
-                return Err(self.error(index, step, &why).hint("another target, or a joint move over a free point"));
-            };
-            let rows = motion.rows.into_iter().map(|(t_s, q)| TrajectoryRow { t_s, q }).collect();
-            let bounds = volume_motion_bounds(&self.robot.robot.chain, &volumes);
-            let play = Rc::new(Playback::new(rows, &bounds));
-            let (from, flange, parts) = (self.q.clone(), self.robot.flange, self.parts.clone());
-            self.planned_paths.push(PlannedPathEntry { step: index, from, flange, parts, play: play.clone() });
-            play
-        };
+        let play = self.paths.known_or(origin, || self.path(index, step, to, speed))?;
         self.q = play.q(play.duration());
         Ok(play)
+    }
+
+    fn path(&self, index: usize, step: &ProgramStep, to: &MoveTarget, speed: f64) -> Result<Playback, FormatError> {
+        let carried = self.parts.carried().map_err(|e| self.part_error(index, step, e))?;
+        let cell = self.cell_now();
+        let volumes = cell.volumes_holding(self.id, &carried);
+        let request = PathRequest {
+            robot: Some(self.robot.name.clone()),
+            from: Some(self.q.clone()),
+            to: match to {
+                MoveTarget::Joints(q) => PathGoal::Joints(q.clone()),
+                MoveTarget::Tcp(target) => PathGoal::Tcp(target.clone()),
+            },
+            speed,
+            placed: self.parts.placed(),
+            carried,
+            ..PathRequest::default()
+        };
+        let answer = elbowroom_analysis::plan::plan(&cell, &request)
+            .map_err(|e| self.error(index, step, &e.what).hint(e.write_instead.unwrap_or_default()))?;
+        let Some(motion) = answer.motion else {
+            let why = answer.reason.unwrap_or_default();
+            return Err(self.error(index, step, &why).hint("another target, or a joint move over a free point"));
+        };
+        let rows = motion.rows.into_iter().map(|(t_s, q)| TrajectoryRow { t_s, q }).collect();
+        Ok(Playback::new(rows, &volume_motion_bounds(&self.robot.robot.chain, &volumes)))
     }
 
     /// The cell with the tools as they are now.

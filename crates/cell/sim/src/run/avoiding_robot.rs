@@ -1,6 +1,5 @@
 //! A robot with `[avoidance]` in a run: it follows its path as far as dynamic obstacles permit.
 
-use elbowroom_avoidance::fuzzy::Surface;
 use elbowroom_avoidance::{
     AvoidanceError, Avoider, AvoiderOutput, AvoiderState, DynamicObstacles, EscapeState, JointLimit, Neighbour,
     ObservedObject, PathKind, PlannedDetour, Reference,
@@ -129,7 +128,11 @@ impl<'s> AvoidingRobot<'s> {
             failed: 0,
             taken: Vec::new(),
             step_ns: Vec::new(),
-            track: AvoidanceTrack { surfaces: surfaces(spec), obstacles: obstacles(cell), ..AvoidanceTrack::default() },
+            track: AvoidanceTrack {
+                surfaces: spec.rules.surfaces(SURFACE_SAMPLES),
+                obstacles: obstacles(cell),
+                ..AvoidanceTrack::default()
+            },
             fault: None,
         })
     }
@@ -354,10 +357,6 @@ fn obstacles(cell: &Cell) -> Vec<String> {
     let objects = cell.objects.iter().map(|o| o.name.clone());
     let links = cell.robots.iter().flat_map(|r| r.robot.chain.links().iter().map(|link| format!("{}/{link}", r.name)));
     objects.chain(links).collect()
-}
-
-fn surfaces(spec: &AvoidanceSpec) -> Vec<Surface> {
-    (0..2).filter_map(|output| Surface::of(spec.rules.controller(), output, SURFACE_SAMPLES)).collect()
 }
 
 /// The limits of the joints within which a robot evades.

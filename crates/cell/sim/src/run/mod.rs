@@ -38,7 +38,7 @@ use elbowroom_robot::{GeometryId, ObjectId, Robot, RobotId};
 use elbowroom_scene::{FirstContact, FirstContacts, MovedObject};
 use elbowroom_spatial::Pose;
 
-use crate::motion::{GripAction, ProgramClock, RegionSwitch, plan};
+use crate::motion::{GripAction, PlannedPaths, ProgramClock, RegionSwitch, plan};
 use crate::recording::{
     Collision, EventRow, GoverningPoint, HoldReason, ObjectTrack, Recording, RegionTrack, RobotEnding, RobotTrack,
     RunEnd, RunEvent, Sample, Stop, TickTimes,
@@ -134,28 +134,27 @@ pub struct RunProgress {
 /// [`FormatError`] at the line of an infeasible step. Nothing has moved then, except where a part that another robot
 /// moves cannot be gripped.
 pub fn simulate(cell: &Cell, options: &RunOptions) -> Result<RunOutcome, FormatError> {
-    simulate_observed(cell, options, &mut |_| {}, None)
+    simulate_observed(&PlannedPaths::new(cell), options, &mut |_| {}, None)
 }
 
-/// [`simulate`] with a progress callback and an observer of the monitors' ticks, such as one that records them.
+/// [`simulate`] with paths that may be known, a progress callback, and an observer of the monitors' ticks, such as one that records them.
 ///
 /// # Errors
 /// As for [`simulate`].
 pub fn simulate_observed(
-    cell: &Cell,
+    paths: &PlannedPaths<'_>,
     options: &RunOptions,
     progress: &mut dyn FnMut(RunProgress),
     observer: Option<&mut dyn RunObserver>,
 ) -> Result<RunOutcome, FormatError> {
-    let mut notes = Vec::new();
-    let mut clocks = Vec::new();
+    let (cell, mut notes) = (paths.cell(), Vec::new());
+    let (mut clocks, mut claims) = (Vec::new(), Vec::new());
     let setups = configure::setups(cell)?;
     let arbiter = configure::zone_arbiter(cell);
     let monitors = configure::monitors_with(cell, &setups, arbiter.as_ref())?;
     let perceived = PerceivedObstacles::of_cell(cell, &mut notes)?;
-    let mut claims = Vec::new();
     for (i, robot) in cell.robots.iter().enumerate() {
-        let plan = plan(cell, RobotId(i), options.repeat, &mut notes)?;
+        let plan = plan(paths, RobotId(i), options.repeat, &mut notes)?;
         // A robot with avoidance or with planned moves around obstacles leaves its program: its claims are not known.
         let avoids = options.avoidance && cell.avoidance.get(i).is_some_and(Option::is_some);
         let replans = plan.has_planned_moves() && perceived.search_s(RobotId(i)).is_some();

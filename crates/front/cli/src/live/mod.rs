@@ -28,11 +28,11 @@ pub(crate) use missing::{convert_recording, live, replay, run_recorded, view};
 mod missing {
     use std::path::Path;
 
-    use elbowroom::cell::Cell;
     use elbowroom::sim::{RunOptions, RunOutcome};
 
     use super::{LiveArgs, ReplayArgs, ViewArgs};
     use crate::output::{ExitStatus, Failure};
+    use crate::simulation::Simulation;
 
     pub(crate) fn live(_: &LiveArgs) -> Result<ExitStatus, Failure> {
         not_built("live")
@@ -46,7 +46,7 @@ mod missing {
         not_built("replay")
     }
 
-    pub(crate) fn run_recorded(_: &Cell, _: &RunOptions, _: &Path) -> Result<RunOutcome, Failure> {
+    pub(crate) fn run_recorded(_: &Simulation<'_>, _: &RunOptions, _: &Path) -> Result<RunOutcome, Failure> {
         not_built("run --mcap")
     }
 
