@@ -81,6 +81,27 @@ fn two_arms_move_at_the_same_time_and_stay_out_of_regions() {
     );
 }
 
+/// A wrist ball overlaps the forearm in every state: links that always touch where they are joined stop no motion, as in `plan` of
+/// one robot and in `run`.
+#[test]
+fn links_that_always_touch_at_a_joint_do_not_stop_the_robots() {
+    let ball = "{ min = -170, max = 170, speed = 90 }";
+    let wrist = |s: &str| {
+        s.replace("speed = 90 }]", &format!("speed = 90 }}, {ball}, {ball}]"))
+            .replace("radius = 40 } }]", "radius = 40 } }, { sphere = { radius = 45 } }, { sphere = { radius = 50 } }]")
+            .replace("start = [-60, 0]", "start = [-60, 0, 0, 0]")
+    };
+    let cell = parse(&format!("{HEAD}{}", wrist(ARMS)));
+    let scene = QueryModel::of_cell(&cell).scene(OutOfReachProofs::Omit).unwrap();
+    let start = SceneState::new(&scene);
+    assert!(Checker::new(&scene, CheckerOptions::default()).collides(&start).is_some(), "for a query they are a pair");
+    let one = |robot: &str| RobotPathRequest { robot: robot.into(), from: None, to: vec![1.047, 0.0, 0.5, -0.5] };
+    let options = RrtConnectSettings { time_limit: Duration::from_secs(20), ..RrtConnectSettings::default() };
+    let request = SeveralPathsRequest { robots: vec![one("left"), one("right")], options, period_s: Some(0.01) };
+    let answer = plan_several(&cell, &request).unwrap();
+    assert!(answer.found, "{:?}", answer.reason);
+}
+
 #[test]
 fn the_oracle_detects_motions_that_meet() {
     let cell = parse(&format!("{HEAD}{ARMS}"));
