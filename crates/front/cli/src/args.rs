@@ -6,6 +6,8 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use elbowroom::analysis::map::MapModel;
 use elbowroom::analysis::query::{Level, QueryKind};
 
+use crate::model_args::{JointArgs, Unit};
+
 /// Collision awareness for industrial robot cells.
 ///
 /// Without a command, the example cell of the interference-region paper's figure 12 runs and its report is written to
@@ -29,7 +31,7 @@ pub(crate) enum Command {
     /// Compute collisions, distances or tolerances of a cell or a robot, one row per joint state
     Query(QueryArgs),
     /// Report the contents of a robot or mesh file
-    Inspect(InspectArgs),
+    Inspect(crate::inspect::args::InspectArgs),
     /// Write a robot as a URDF with STL meshes, as 3DS or SRDF; a planning scene as a cell file
     Convert(ConvertArgs),
     /// Compute the joint-space occupancy of a cell's objects for one robot
@@ -194,17 +196,6 @@ pub(crate) struct QueryArgs {
     pub(crate) json: bool,
 }
 
-/// The joints of a 3DS, GLB or glTF model.
-#[derive(Debug, Args)]
-pub(crate) struct JointArgs {
-    /// The file with the joints of a 3DS, GLB or glTF model (docs/models.md); default: MODEL.joints.toml beside it
-    #[arg(long, value_name = "FILE.toml")]
-    pub(crate) joints: Option<PathBuf>,
-    /// One joint, in metres and degrees, such as `link_2: axis=y, min=-150, max=20, speed=110`; may be repeated
-    #[arg(long, value_name = "NODE: axis=…")]
-    pub(crate) joint: Vec<String>,
-}
-
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   elbowroom convert arm.3ds --out arm                  arm/arm.urdf and arm/meshes/*.stl
@@ -295,79 +286,6 @@ pub(crate) struct MapArgs {
     /// Print one JSON document instead of the table
     #[arg(long)]
     pub(crate) json: bool,
-}
-
-#[derive(Debug, Args)]
-#[command(after_help = "Examples:
-  elbowroom inspect arm.urdf                     joints, meshes, Denavit-Hartenberg table, warnings
-  elbowroom inspect arm.urdf --dh modified       the table in Craig's convention
-  elbowroom inspect arm.urdf --write-srdf arm.srdf   the pairs that need not be tested
-  elbowroom inspect cell.toml --pairs pairs.toml     all pairs of a cell, to decide on
-  elbowroom inspect arm.urdf --states q.csv      the pose of every link in the root link, as CSV
-  elbowroom inspect table.stl --unit mm --json")]
-pub(crate) struct InspectArgs {
-    /// A robot (URDF, 3DS, GLB, glTF) or a mesh (STL, OBJ, DAE, PLY, OFF); with --pairs also a cell file
-    pub(crate) model: PathBuf,
-    /// The SRDF of the URDF
-    #[arg(long, value_name = "FILE")]
-    pub(crate) srdf: Option<PathBuf>,
-    /// Unit of a 3DS model, or of meshes whose format states none
-    #[arg(long, value_enum)]
-    pub(crate) unit: Option<Unit>,
-    #[command(flatten)]
-    pub(crate) joints: JointArgs,
-    /// The last link of the Denavit-Hartenberg table
-    #[arg(long, value_name = "LINK")]
-    pub(crate) tip: Option<String>,
-    /// The Denavit-Hartenberg tables to print, comma-separated; --json has all of them
-    #[arg(long, value_enum, value_delimiter = ',', value_name = "TABLE,…", conflicts_with = "states")]
-    pub(crate) dh: Vec<Dh>,
-    /// Joint states (a header of joint names, then a row of radians or metres per state; - is standard input):
-    /// print link poses instead
-    #[arg(long, value_name = "FILE.csv")]
-    pub(crate) states: Option<PathBuf>,
-    /// Skip the slow parts: resolution levels, the allowed collision matrix, visual meshes
-    #[arg(long, conflicts_with = "models")]
-    pub(crate) brief: bool,
-    /// Also write a picture of the model with its joint axes: a PNG, or an HTML page with four views
-    #[arg(long, value_name = "FILE.png|.html", conflicts_with = "states")]
-    pub(crate) picture: Option<PathBuf>,
-    /// Also write hull, middle and coarse triangles of each link as STL (metres, link frame) to this folder
-    #[arg(long, value_name = "DIR", conflicts_with = "states")]
-    pub(crate) models: Option<PathBuf>,
-    /// Write what sampling and geometry tell of all pairs to this file (docs/query.md); rows with a `reason` stay in it. MODEL may
-    /// be a cell file then
-    #[arg(long, value_name = "FILE.toml", conflicts_with_all = ["states", "brief"])]
-    pub(crate) pairs: Option<PathBuf>,
-    /// With --pairs: skip the pairs that are in contact in all samples
-    #[arg(long, requires = "pairs")]
-    pub(crate) accept: bool,
-    /// Write an SRDF for the robot to this file: pairs of links that need not be tested, each with its reason
-    #[arg(long, value_name = "FILE.srdf", conflicts_with_all = ["states", "brief"])]
-    pub(crate) write_srdf: Option<PathBuf>,
-    /// Print one JSON document instead of tables
-    #[arg(long)]
-    pub(crate) json: bool,
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub(crate) enum Dh {
-    /// Rz(theta) Tz(d) Tx(a) Ty(b) Rx(alpha) along the axes; the default
-    Generalized,
-    /// Rz(theta) Tz(d) Tx(a) Rx(alpha); exists if no row needs b
-    Classical,
-    /// Rx(alpha) Tx(a) Rz(theta) Tz(d), Craig's
-    Modified,
-    /// Generalized, one row per frame of the model
-    Direct,
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub(crate) enum Unit {
-    M,
-    Cm,
-    Mm,
-    In,
 }
 
 #[derive(Debug, Args)]

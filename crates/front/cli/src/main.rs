@@ -14,6 +14,7 @@ mod example;
 mod inspect;
 mod live;
 mod map;
+mod model_args;
 mod output;
 mod output_file;
 mod plan;

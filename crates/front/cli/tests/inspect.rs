@@ -56,6 +56,25 @@ fn states_give_a_row_per_state_and_link() {
 }
 
 #[test]
+fn a_table_of_states_is_in_millimetres_and_degrees() {
+    let dir = tempfile::tempdir().unwrap();
+    let states = "joint_6,joint_5,joint_4,joint_3,joint_2,joint_1\n0,0,0,0,0,0\n0,0,0,0,0,1.5707963267948966\n";
+    std::fs::write(dir.path().join("q.csv"), states).unwrap();
+    let table = elbowroom(dir.path(), &["inspect", &ns16(), "--states", "q.csv", "--table"]).expect(0).stdout;
+    assert!(table.lines().all(|line| line.chars().count() <= 100), "{table}");
+    let lines: Vec<Vec<&str>> = table.lines().map(|line| line.split_whitespace().collect()).collect();
+    let head = "state link x (mm) y (mm) z (mm) roll (deg) pitch (deg) yaw (deg)";
+    assert_eq!(lines[0], head.split_whitespace().collect::<Vec<_>>());
+    assert_eq!(lines.len(), 1 + 2 * 8);
+    let tools: Vec<&Vec<&str>> = lines.iter().filter(|line| line[1] == "tool0").collect();
+    assert_eq!((tools[0][0], &tools[0][2..5]), ("0", &["1044.00", "0.00", "1485.00"][..]), "{table}");
+    assert_eq!((tools[1][0], &tools[1][2..5]), ("1", &["0.00", "1044.00", "1485.00"][..]), "{table}");
+    // The link that the first joint turns.
+    let turned = lines.iter().rfind(|line| line[1] == "link_1").unwrap();
+    assert_eq!(turned[7], "90.00", "{table}");
+}
+
+#[test]
 fn states_with_a_wrong_column_or_number_name_the_line() {
     let dir = tempfile::tempdir().unwrap();
     for (states, part) in [
