@@ -50,6 +50,7 @@ pub mod seal;
 mod sensor;
 pub mod suggest;
 mod tcp_target;
+mod title;
 mod tool;
 mod tool_change;
 pub mod trajectory;

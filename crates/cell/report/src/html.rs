@@ -7,6 +7,7 @@ use elbowroom_sim::Recording;
 use serde_json::{Value, json};
 
 use crate::packing::deflated;
+use crate::plots::Drawing;
 use crate::results::{Grade, ResultLine, results};
 use crate::scene::ReportScene;
 use crate::scene_data::PageData;
@@ -14,7 +15,7 @@ use crate::summary::duration;
 use crate::tables::{self, escape};
 use crate::{plots, scene_data, shared_assets};
 
-const PLOTLY: &str = include_str!("../assets/plotly/plotly-gl3d.min.js");
+const PLOTLY: &str = include_str!("../assets/plotly/plotly-basic.min.js");
 const STYLE: &str = include_str!("../assets/report/report.css");
 const PAGE: &str = include_str!("../assets/report/page.html");
 /// In order: each uses those before it.
@@ -37,8 +38,10 @@ const SCRIPTS: [&str; 12] = [
 pub(super) struct PageContent<'a> {
     /// Title, plain text.
     pub title: &'a str,
-    /// What became of the run, and its regions: above the scene, HTML.
+    /// What became of the run: above the scene, HTML.
     pub result: String,
+    /// How close the robots came to the regions: below the scene, HTML.
+    pub regions: String,
     /// Below the tables, HTML.
     pub facts: String,
     /// Options of the run selector, HTML.
@@ -79,8 +82,13 @@ impl<'a> HtmlReport<'a> {
     pub fn write(&self, out: impl Write) -> io::Result<()> {
         let Self { scene, runs, planned } = *self;
         let content = PageContent {
-            title: runs.first().map_or("no run", |(_, r)| &r.cell),
-            result: result_section(runs, planned),
+            title: match runs.first() {
+                Some((_, recording)) if scene.title.is_empty() => &recording.cell,
+                Some(_) => &scene.title,
+                None => "no run",
+            },
+            result: result_section(runs),
+            regions: region_section(runs, planned),
             facts: facts(runs),
             options: options(runs),
             figures: &plots::all(scene, runs, planned),
@@ -110,6 +118,7 @@ pub(super) fn write_page(mut out: impl Write, content: &PageContent<'_>) -> io::
             "title" => out.write_all(escape(content.title).as_bytes())?,
             "style" => out.write_all(STYLE.as_bytes())?,
             "result" => out.write_all(content.result.as_bytes())?,
+            "regions" => out.write_all(content.regions.as_bytes())?,
             "facts" => out.write_all(content.facts.as_bytes())?,
             "options" => out.write_all(content.options.as_bytes())?,
             "figures" => out.write_all(placeholders(content.figures).as_bytes())?,
@@ -127,8 +136,8 @@ pub(super) fn write_page(mut out: impl Write, content: &PageContent<'_>) -> io::
     out.flush()
 }
 
-/// A sentence per robot and per region that was entered, then the table of the regions; for each run.
-fn result_section(runs: &[(&str, &Recording)], planned: Option<&Recording>) -> String {
+/// A sentence per robot and per region that was entered, for each run.
+fn result_section(runs: &[(&str, &Recording)]) -> String {
     let mut out = String::new();
     for (i, (label, rec)) in runs.iter().enumerate() {
         let mut sentences = String::new();
@@ -147,35 +156,52 @@ fn result_section(runs: &[(&str, &Recording)], planned: Option<&Recording>) -> S
             let _ = write!(sentences, "<p class=\"result bad\"><span>{}</span></p>", escape(&line));
         }
         let heading = if runs.len() > 1 { format!("Result, {label}") } else { "Result".to_owned() };
-        let table = if rec.regions.is_empty() {
-            String::new()
-        } else {
-            format!("<div class=\"scroll\" tabindex=\"0\">{}</div>", tables::regions(rec, planned))
-        };
         let _ = writeln!(
             out,
-            "<section class=\"card wide\" data-run=\"{i}\" aria-label=\"{0}\"><h2>{0}</h2>{sentences}{table}</section>",
+            "<section class=\"card wide\" data-run=\"{i}\" aria-label=\"{0}\"><h2>{0}</h2>\
+             <div class=\"results\" tabindex=\"0\">{sentences}</div></section>",
             escape(&heading)
         );
     }
     out
 }
 
+/// The table of the regions, for each run.
+fn region_section(runs: &[(&str, &Recording)], planned: Option<&Recording>) -> String {
+    let with_regions = runs.iter().enumerate().filter(|(_, (_, rec))| !rec.regions.is_empty());
+    let tables = with_regions.map(|(i, (label, rec))| {
+        let heading = if runs.len() > 1 { format!("Regions, {label}") } else { "Regions".to_owned() };
+        format!(
+            "<section class=\"card wide\" data-run=\"{i}\"><h2>{}</h2>\
+             <div class=\"scroll\" tabindex=\"0\">{}</div></section>\n",
+            escape(&heading),
+            tables::regions(rec, planned)
+        )
+    });
+    tables.collect()
+}
+
+/// What the page draws; nothing for a picture.
 fn figure_data(figure: &plots::Figure) -> Value {
-    json!({ "data": figure.plot.traces, "layout": figure.plot.layout, "time": figure.over_time })
+    match &figure.drawing {
+        Drawing::Plot(plot) => json!({ "data": plot.traces, "layout": plot.layout, "time": figure.over_time }),
+        Drawing::Picture(_) => Value::Null,
+    }
 }
 
 fn placeholders(figures: &[plots::Figure]) -> String {
     let one = |(i, f): (usize, &plots::Figure)| {
         let run = f.run.map_or(String::new(), |r| format!(" data-run=\"{r}\""));
         let class = if f.wide { "card wide" } else { "card" };
-        format!(
-            "<section class=\"{class}\"{run}><h2>{0}</h2><p class=\"note\">{1}</p>\
-             <div class=\"plot\" role=\"img\" aria-label=\"{0}\" data-figure=\"{i}\" style=\"height:{2}px\"></div></section>\n",
-            escape(&f.title),
-            escape(&f.note),
-            f.height
-        )
+        let (title, note) = (escape(&f.title), escape(&f.note));
+        let label = format!("role=\"img\" aria-label=\"{title}\"");
+        let content = match &f.drawing {
+            Drawing::Plot(_) => {
+                format!("<div class=\"plot\" {label} data-figure=\"{i}\" style=\"height:{}px\"></div>", f.height)
+            }
+            Drawing::Picture(svg) => format!("<div class=\"picture\" {label}>{svg}</div>"),
+        };
+        format!("<section class=\"{class}\"{run}><h2>{title}</h2><p class=\"note\">{note}</p>{content}</section>\n")
     };
     figures.iter().enumerate().map(one).collect()
 }

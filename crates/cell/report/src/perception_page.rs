@@ -31,6 +31,7 @@ pub fn write_perception_html(out: impl Write, arm: &MappedArm, log: &PerceptionL
     let content = PageContent {
         title: &log.title,
         result: facts(log),
+        regions: String::new(),
         facts: String::new(),
         options: "<option value=\"0\">run</option>".into(),
         figures: &plots::perception(&scene, log, &recording),

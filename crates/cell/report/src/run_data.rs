@@ -75,9 +75,16 @@ pub fn run(scene: &ReportScene, label: &str, rec: &Recording, packer: &mut Array
         rec.robots.iter().enumerate().map(|(i, track)| robot(scene, i, track, rec, &frames, packer)).collect();
     json!({
         "label": label, "monitored": rec.monitored, "duration_s": rec.duration_s, "frames": frames.len(),
-        "t": packer.add(&times, 1, TIME_STEP_S), "robots": robots, "regions": regions, "objects": objects,
+        "opens_s": opens_s(rec), "t": packer.add(&times, 1, TIME_STEP_S), "robots": robots, "regions": regions, "objects": objects,
         "sensors": rec.sensors.iter().map(sensor).collect::<Vec<_>>(),
     })
+}
+
+/// When the first robot stopped or collided, s: what a person looks for first. 0 where none did.
+fn opens_s(rec: &Recording) -> f64 {
+    let stops = rec.robots.iter().flat_map(|r| r.stops.iter().map(|s| s.from_s).chain(r.ending.stopped_at_s));
+    let collisions = rec.robots.iter().flat_map(|r| r.collisions.iter().map(|c| c.t_s));
+    stops.chain(collisions).min_by(f64::total_cmp).unwrap_or(0.0)
 }
 
 /// What a sensor saw: for each accepted picture or cloud the time from which on it was used, and its obstacles.

@@ -16,6 +16,8 @@ pub(crate) const CHORD_ERROR_M: f64 = 1e-3;
 /// Geometry of a cell, as triangles.
 #[derive(Debug, Clone, Default)]
 pub struct ReportScene {
+    /// What the page calls the cell; empty: as the recording does.
+    pub title: String,
     /// In the order of the recording.
     pub robots: Vec<ReportRobot>,
     /// Objects at their initial poses.
@@ -91,6 +93,7 @@ impl ReportScene {
             let volume = |(object, link)| (object, cell.gripped_volume(RobotId(r), object, link));
             robot.gripped = cell.grips(RobotId(r)).into_iter().map(volume).collect();
         }
+        scene.title = cell.title();
         cell.objects.iter().fold(scene, Self::object)
     }
 

@@ -29,7 +29,8 @@ pub fn escape(text: &str) -> String {
 
 /// One row per robot: its outcome and the effect of the monitor.
 pub fn robots(recording: &Recording) -> String {
-    let mut out = header("Robots", &["robot", "outcome", "time stopped", "smallest override", "collisions"]);
+    let names = ["robot", "outcome", "time stopped", "smallest override", "collisions"];
+    let mut table = Table::new("How the programs ended", &names);
     for robot in &recording.robots {
         let outcome = crate::summary::outcome(robot, recording);
         let hits = match robot.collisions.first() {
@@ -43,9 +44,9 @@ pub fn robots(recording: &Recording) -> String {
             format!("{:.1} %", 100.0 * robot.min_override),
             hits,
         ];
-        row(&mut out, &cells, if robot.collisions.is_empty() { "" } else { "bad" });
+        table.row(&cells, if robot.collisions.is_empty() { "" } else { "bad" });
     }
-    out + "</tbody></table>"
+    table.end()
 }
 
 /// One row per region: its colour, distance and times; with what it would be without the monitor, where that is known.
@@ -55,7 +56,7 @@ pub fn regions(recording: &Recording, planned: Option<&Recording>) -> String {
     if planned.is_some() {
         names.push("without monitor");
     }
-    let mut out = header("Regions: how close the robots came", &names);
+    let mut table = Table::new("How close the robots came", &names);
     for (index, region) in recording.regions.iter().enumerate() {
         let life = if region.life == Life::Temporary { ", temporary" } else { "" };
         let mut cells = vec![
@@ -74,9 +75,9 @@ pub fn regions(recording: &Recording, planned: Option<&Recording>) -> String {
             };
             cells.push(format!("{}, {entered}", millimetres(other.min_distance_m)));
         }
-        row_of_html(&mut out, &cells, if region.is_violated() { "bad" } else { "" });
+        table.row_of_html(&cells, if region.is_violated() { "bad" } else { "" });
     }
-    out + "</tbody></table>"
+    table.end()
 }
 
 /// A name with its colour.
@@ -86,10 +87,8 @@ fn chip(color: &str, name: &str) -> String {
 
 /// One row per stop of any robot.
 pub fn stops(recording: &Recording) -> Option<String> {
-    let mut out = header(
-        "Stops by the monitor",
-        &["robot", "from", "to", "stood", "before", "distance", "closest part", "its point (m)"],
-    );
+    let names = ["robot", "from", "to", "stood", "before", "distance", "closest part", "its point (m)"];
+    let mut table = Table::new("Where the monitor held a robot", &names);
     let all: Vec<(&str, &Stop)> =
         recording.robots.iter().flat_map(|r| r.stops.iter().map(|s| (r.name.as_str(), s))).collect();
     for (robot, stop) in all.iter().take(MAX_EVENTS) {
@@ -105,18 +104,18 @@ pub fn stops(recording: &Recording) -> Option<String> {
             text(&stop.part),
             point,
         ];
-        row(&mut out, &cells, "");
+        table.row(&cells, "");
     }
-    (!all.is_empty()).then(|| out + "</tbody></table>")
+    (!all.is_empty()).then(|| table.end())
 }
 
 /// One row per event, the first [`MAX_EVENTS`].
 pub fn events(recording: &Recording) -> String {
-    let mut out = header("Events", &["time", "robot", "region", "event"]);
+    let mut table = Table::new("In order of time", &["time", "robot", "region", "event"]);
     for e in recording.events.iter().take(MAX_EVENTS) {
-        row(&mut out, &[format!("{:.3} s", e.t_s), e.robot.clone(), e.region.clone(), e.event.name().into()], "");
+        table.row(&[format!("{:.3} s", e.t_s), e.robot.clone(), e.region.clone(), e.event.name().into()], "");
     }
-    out.push_str("</tbody></table>");
+    let mut out = table.end();
     if recording.events.len() > MAX_EVENTS {
         let _ = write!(
             out,
@@ -127,16 +126,34 @@ pub fn events(recording: &Recording) -> String {
     out
 }
 
-fn header(caption: &str, names: &[&str]) -> String {
-    let names = names.join("</th><th scope=\"col\">");
-    format!("<table><caption>{caption}</caption><thead><tr><th scope=\"col\">{names}</th></tr></thead><tbody>")
+/// A table in HTML. Each cell has the name of its column: on a telephone a row is a list.
+struct Table<'a> {
+    names: &'a [&'a str],
+    html: String,
 }
 
-fn row(out: &mut String, cells: &[String], class: &str) {
-    let cells: Vec<String> = cells.iter().map(|c| escape(c)).collect();
-    row_of_html(out, &cells, class);
-}
+impl<'a> Table<'a> {
+    fn new(caption: &str, names: &'a [&'a str]) -> Self {
+        let heads = names.join("</th><th scope=\"col\">");
+        let html =
+            format!("<table><caption>{caption}</caption><thead><tr><th scope=\"col\">{heads}</th></tr></thead><tbody>");
+        Self { names, html }
+    }
 
-fn row_of_html(out: &mut String, cells: &[String], class: &str) {
-    let _ = writeln!(out, "<tr class=\"{class}\"><td>{}</td></tr>", cells.join("</td><td>"));
+    fn row(&mut self, cells: &[String], class: &str) {
+        let cells: Vec<String> = cells.iter().map(|c| escape(c)).collect();
+        self.row_of_html(&cells, class);
+    }
+
+    fn row_of_html(&mut self, cells: &[String], class: &str) {
+        let _ = write!(self.html, "<tr class=\"{class}\">");
+        for (name, cell) in self.names.iter().zip(cells) {
+            let _ = write!(self.html, "<td data-name=\"{name}\">{cell}</td>");
+        }
+        self.html.push_str("</tr>\n");
+    }
+
+    fn end(self) -> String {
+        self.html + "</tbody></table>"
+    }
 }

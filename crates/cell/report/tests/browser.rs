@@ -119,6 +119,9 @@ const PERSON: &str = "<script>
   const pause = (ms) => new Promise((done) => setTimeout(done, ms));
   for (let k = 0; k < 400 && !document.documentElement.dataset.ready; k++) await pause(25);
   const seen = { problems, width: innerWidth, scroll: document.documentElement.scrollWidth, steps: [] };
+  seen.opens_s = elbowroom.state().t_s;
+  seen.play_ends_px = document.getElementById('play').getBoundingClientRect().bottom + scrollY;
+  seen.cut = [...document.querySelectorAll('.scroll')].filter((box) => box.scrollWidth > box.clientWidth + 1).map((box) => box.textContent.slice(0, 60));
   const note = () => {
     const rows = [...document.querySelectorAll('#distances tbody tr')].map((row) => ({
       name: row.dataset.name, metres: Number(row.dataset.metres), shown: row.querySelector('.number').textContent,
@@ -334,6 +337,10 @@ fn moved_joints_show_the_distances_of_the_engine() {
     assert!(contacts > 0, "some configuration touches something");
     assert_eq!(seen["unnamed"], json!([]), "controls without a name");
     assert_eq!(seen["play"], json!("play"));
+    // It opens where the robot stopped, and what plays it is seen without scrolling on a screen of 1280 by 800.
+    let [opens_s, stopped_s] = [seen["opens_s"].as_f64().unwrap(), run.robots[0].stops[0].from_s];
+    assert!((opens_s - stopped_s).abs() < 1e-6, "{opens_s} {stopped_s}");
+    assert!(seen["play_ends_px"].as_f64().unwrap() < 650.0, "{}", seen["play_ends_px"]);
 }
 
 #[test]
@@ -346,6 +353,7 @@ fn a_narrow_screen_does_not_scroll_sideways() {
     let seen = visit(&chromium, &folder, &Visit { scene: &scene, run: &run, planned: &planned, q: &[], width: 390 });
     assert_eq!(seen["width"], json!(390));
     assert_eq!(seen["wide"], json!([]), "reaches beyond {} px", seen["width"]);
+    assert_eq!(seen["cut"], json!([]), "a part of these tables is out of sight");
     assert!(seen["scroll"].as_u64() <= seen["width"].as_u64(), "{} > {}", seen["scroll"], seen["width"]);
 }
 

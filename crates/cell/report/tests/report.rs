@@ -15,6 +15,11 @@ fn page(on: &Recording, off: &Recording) -> String {
     String::from_utf8(out).unwrap()
 }
 
+/// What stands below the scene: regions, plots, tables.
+fn below_scene(html: &str) -> &str {
+    html.split_once("id=\"distances\"").unwrap().1
+}
+
 /// What is written above the scene.
 fn result(html: &str) -> &str {
     let to = html.find("id=\"stage\"").unwrap();
@@ -65,10 +70,10 @@ fn names_are_text_and_data_is_json() {
 /// plotly.js ignores attributes that it does not know.
 #[test]
 fn plots_use_attributes_of_plotly_alone() {
-    const KNOWN: &str = "anchor autorange automargin b cliponaxis color colorscale connectgaps dash data domain fill fillcolor \
+    const KNOWN: &str = "anchor autorange automargin b cliponaxis color connectgaps dash data domain fill fillcolor \
         hoverinfo hovermode hovertemplate hovertext l layout legend legendgroup line margin marker mode name opacity \
-        orientation r range rangemode scaleanchor scaleratio scene shapes showgrid showlegend showscale showticklabels size \
-        symbol t text textposition ticktext tickvals time title type width x xaxis y yanchor yaxis yaxis2 yaxis3 z zaxis \
+        orientation r range rangemode scaleanchor scaleratio shapes showgrid showlegend showticklabels size \
+        symbol t text textposition ticktext tickvals time title type width x xaxis y yanchor yaxis yaxis2 yaxis3 \
         x0 x1 xref y0 y1 yref zeroline";
     fn check(value: &Value) {
         match value {
@@ -253,8 +258,9 @@ fn the_result_comes_first_and_names_what_governs() {
     let collided = "ns16 collided: fore hit table at 3.100 s";
     assert!(first.contains(collided) && first.contains("The forbidden region column was entered: ns16 at "), "{first}");
     // The table of the regions: colour, kind, least distance, entered, and what it would be without the monitor.
-    assert!(first.contains("<i class=\"chip\" style=\"background:#9a4fd6\"></i>column"), "{first}");
-    assert!(first.contains("without monitor") && first.contains("0.00 mm, entered"), "{first}");
+    let regions = below_scene(&html);
+    assert!(regions.contains("<i class=\"chip\" style=\"background:#9a4fd6\"></i>column"), "{regions}");
+    assert!(regions.contains("without monitor") && regions.contains("0.00 mm, entered"), "{regions}");
 
     // A robot that went on: what had stopped it.
     run.robots[0].finished = true;
@@ -286,7 +292,7 @@ fn a_region_has_one_colour_everywhere() {
     for (name, color) in [("column", "#9a4fd6"), ("drone", "#1f9d55")] {
         let of_scene = regions.as_array().unwrap().iter().find(|r| r["name"] == name).unwrap();
         assert_eq!(of_scene["color"], color);
-        assert!(result(&html).contains(&format!("background:{color}\"></i>{name}")));
+        assert!(below_scene(&html).contains(&format!("background:{color}\"></i>{name}")));
         let mut curves = 0;
         for figure in block(&html, "plot-data").as_array().unwrap() {
             for trace in figure["data"].as_array().unwrap() {

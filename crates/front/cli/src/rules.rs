@@ -47,23 +47,23 @@ pub(crate) fn rules(args: &RulesArgs) -> Result<ExitStatus, Failure> {
         None => Rules::default(),
         Some(path) => read(path)?,
     };
-    let surfaces: Vec<Surface> = (0..2).filter_map(|o| Surface::of(rules.controller(), o, STEPS)).collect();
+    let surfaces = rules.surfaces(STEPS);
     if let Some(dir) = &args.picture {
         std::fs::create_dir_all(dir).map_err(cannot_write(dir))?;
-        for (surface, unit) in surfaces.iter().zip(["", "deg"]) {
+        for surface in &surfaces {
             let path = dir.join(format!("{}.svg", surface.z_name));
-            write_bytes(&path, surface.to_svg(["m", "m/s", unit]))?;
+            write_bytes(&path, surface.to_svg())?;
         }
     }
     if args.json {
-        let answer = |(s, unit): (Surface, &'static str)| SurfaceAnswer {
+        let answer = |s: Surface| SurfaceAnswer {
+            unit: if s.units[2].is_empty() { "1" } else { s.units[2] },
             output: s.z_name,
-            unit,
             proximity_m: s.x,
             speed_m_s: s.y,
             values: s.z,
         };
-        let surfaces = surfaces.into_iter().zip(["1", "deg"]).map(answer).collect();
+        let surfaces = surfaces.into_iter().map(answer).collect();
         print_json(&Answer { rules: rules.controller().rules().len(), surfaces })?;
     } else {
         print(&table(&rules))?;

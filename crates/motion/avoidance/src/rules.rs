@@ -1,6 +1,6 @@
 //! The rules of avoidance: from distance and approach speed to the size and direction of a correction.
 
-use crate::fuzzy::{Controller, FuzzyError};
+use crate::fuzzy::{Controller, FuzzyError, Surface};
 
 /// The default rules, as text to copy and change.
 pub const DEFAULT_RULES: &str = include_str!("default.toml");
@@ -63,6 +63,13 @@ impl Rules {
     /// The fuzzy controller.
     pub fn controller(&self) -> &Controller {
         &self.controller
+    }
+
+    /// The size and the direction of the correction as surfaces, with `steps` values of each input, at least 2.
+    pub fn surfaces(&self, steps: usize) -> Vec<Surface> {
+        let surface =
+            |(output, unit)| Surface::of(&self.controller, output, steps).map(|s| s.with_units(["m", "m/s", unit]));
+        [(0, ""), (1, "deg")].into_iter().filter_map(surface).collect()
     }
 
     /// Distance (m) beyond which proximity has no effect.

@@ -134,10 +134,10 @@
   });
 
   if (Data.runs.length) {
-    // #t=1.5&run=1 opens the page at this time and run.
+    // #t=1.5&run=1 opens the page at this time and run; without a time at the first stop or collision.
     const wanted = new URLSearchParams(location.hash.slice(1));
-    t = Number(wanted.get('t')) || 0;
     const first = Math.min(Data.runs.length - 1, Math.max(0, Number(wanted.get('run')) || 0));
+    t = wanted.has('t') ? Number(wanted.get('t')) || 0 : Data.runs[first].opens_s;
     runSelect.value = String(first);
     selectRun(first);
     if (wanted.has('move')) moveJoints(true);

@@ -4,7 +4,7 @@ use elbowroom_avoidance::{AvoiderState, fuzzy};
 use elbowroom_sim::{AvoidanceTrack, Recording, RobotTrack};
 use serde_json::json;
 
-use super::figure::{Figure, bars, curve_name, plain, round};
+use super::figure::{Drawing, Figure, bars, curve_name, round};
 use super::plot::{Plot, axis, layout, line, stroke, with};
 use crate::downsample::{MAX_POINTS, pick};
 use crate::spans::runs as equal_runs;
@@ -72,20 +72,11 @@ fn curves(robot: &RobotTrack, track: &AvoidanceTrack, recording: &Recording, nam
         run: Some(run),
         height: 460,
         wide: true,
-        plot,
+        drawing: plot.into(),
     }
 }
 
 fn surface(s: &fuzzy::Surface, name: &str, run: usize) -> Figure {
-    let scene = json!({
-        "xaxis": axis(&plain(&format!("{} (m)", s.x_name))),
-        "yaxis": axis(&plain(&format!("{} (m/s)", s.y_name))),
-        "zaxis": with(axis(&plain(&s.z_name)), json!({ "range": s.z_range })),
-    });
-    let mut plot = Plot::new(json!({ "margin": { "l": 60, "r": 16, "t": 40, "b": 48 }, "scene": scene }));
-    plot.add(json!({
-        "type": "surface", "x": s.x, "y": s.y, "z": s.z, "colorscale": "Viridis", "showscale": false,
-    }));
     Figure {
         title: format!("Rules of {name}: {}", s.z_name),
         note: "Control surface: output of the rules over proximity and approach speed.".into(),
@@ -93,6 +84,6 @@ fn surface(s: &fuzzy::Surface, name: &str, run: usize) -> Figure {
         run: Some(run),
         height: 420,
         wide: false,
-        plot,
+        drawing: Drawing::Picture(s.to_svg()),
     }
 }

@@ -40,7 +40,7 @@ pub fn chart(scene: &ReportScene, run: &Recording, planned: Option<&Recording>, 
         run: None,
         height: 380,
         wide: true,
-        plot,
+        drawing: plot.into(),
     })
 }
 

@@ -16,12 +16,25 @@ pub struct Figure {
     pub over_time: bool,
     /// Visible only while this run is selected.
     pub run: Option<usize>,
-    /// Height in CSS pixels.
+    /// Height of a plot in CSS pixels.
     pub height: usize,
     /// True where it has the full width of the page.
     pub wide: bool,
-    /// Traces and layout.
-    pub plot: Plot,
+    pub drawing: Drawing,
+}
+
+/// What a figure shows.
+pub enum Drawing {
+    /// Drawn by the page.
+    Plot(Plot),
+    /// An SVG document.
+    Picture(String),
+}
+
+impl From<Plot> for Drawing {
+    fn from(plot: Plot) -> Self {
+        Self::Plot(plot)
+    }
 }
 
 /// Rounded to a micrometre (or a millionth), which is finer than a pixel: shorter numbers make a smaller file.

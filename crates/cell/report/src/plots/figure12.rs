@@ -13,15 +13,11 @@ use crate::{palette, region_surface};
 pub fn all(scene: &ReportScene, runs: &[(&str, &Recording)]) -> Vec<Figure> {
     let mut figures = vec![path(runs)];
     let base = |robot: usize| scene.robots.get(robot).map_or(Vec3::ZERO, |r| r.base_in_world.translation);
-    figures.push(over_time(
-        "Norm of position over time",
-        "Distance of the tool centre point from the robot's base.",
-        "‖p‖ (m)",
-        460,
-        runs,
-        |robot, s| s.tcp.distance(base(robot)),
-    ));
-    figures.push(over_time("Y over time", "Tool centre point in the world.", "y (m)", 320, runs, |_, s| s.tcp.y));
+    let norm = over_time("‖p‖ (m)", runs, |robot, s| s.tcp.distance(base(robot)));
+    let note = "Distance of the tool centre point from the robot's base.";
+    figures.push(figure("Norm of position over time", note, 460, norm));
+    let y = over_time("y (m)", runs, |_, s| s.tcp.y);
+    figures.push(figure("Y over time", "Tool centre point in the world.", 320, y));
     figures.push(speed(runs));
     figures
 }
@@ -53,7 +49,8 @@ fn path(runs: &[(&str, &Recording)]) -> Figure {
         let name = curve_name(label, recording, track);
         add_path(&mut plot, &name, palette::of_run(robot, recording.monitored), track);
     }
-    Figure { title: "Path in the X-Y plane".into(), note, over_time: false, run: None, height: 460, wide: false, plot }
+    let (title, drawing) = ("Path in the X-Y plane".into(), plot.into());
+    Figure { title, note, over_time: false, run: None, height: 460, wide: false, drawing }
 }
 
 fn add_region(plot: &mut Plot, region: &RegionTrack, color: &str, tick: usize, height: f64) {
@@ -102,14 +99,12 @@ fn add_path(plot: &mut Plot, name: &str, color: &str, track: &RobotTrack) {
     }
 }
 
-fn over_time(
-    title: &str,
-    note: &str,
-    unit: &str,
-    height: usize,
-    runs: &[(&str, &Recording)],
-    value: impl Fn(usize, &Sample) -> f64,
-) -> Figure {
+fn figure(title: &str, note: &str, height: usize, plot: Plot) -> Figure {
+    let drawing = plot.into();
+    Figure { title: title.into(), note: note.into(), over_time: true, run: None, height, wide: false, drawing }
+}
+
+fn over_time(unit: &str, runs: &[(&str, &Recording)], value: impl Fn(usize, &Sample) -> f64) -> Plot {
     let mut plot = Plot::new(with(layout(axis("time (s)"), axis(unit)), json!({ "hovermode": "x" })));
     for (label, recording, robot, track) in tracks(runs) {
         let at = |i: usize| value(robot, &track.samples[i]);
@@ -119,12 +114,11 @@ fn over_time(
         let style = stroke(palette::of_run(robot, recording.monitored), 2.0);
         plot.add(line(t, y, &curve_name(label, recording, track), style));
     }
-    Figure { title: title.into(), note: note.into(), over_time: true, run: None, height, wide: false, plot }
+    plot
 }
 
 fn speed(runs: &[(&str, &Recording)]) -> Figure {
-    let note = "Tool centre point. Dashed: programmed speed times the override.";
-    let mut figure = over_time("Norm of speed over time", note, "‖v‖ (m/s)", 320, runs, |_, s| s.tcp_speed);
+    let mut plot = over_time("‖v‖ (m/s)", runs, |_, s| s.tcp_speed);
     for (label, recording, robot, track) in tracks(runs).filter(|(_, rec, ..)| rec.monitored) {
         let at = |i: usize| track.samples[i].programmed_speed * track.samples[i].speed_override;
         let kept = pick(track.samples.len(), MAX_POINTS, &[&at]);
@@ -132,7 +126,8 @@ fn speed(runs: &[(&str, &Recording)]) -> Figure {
         let y = kept.iter().map(|&i| round(at(i))).collect();
         let style = with(stroke(palette::of_run(robot, recording.monitored), 1.2), json!({ "dash": "dash" }));
         let name = format!("{}: programmed × override", curve_name(label, recording, track));
-        figure.plot.add(line(t, y, &name, style));
+        plot.add(line(t, y, &name, style));
     }
-    figure
+    let note = "Tool centre point. Dashed: programmed speed times the override.";
+    figure("Norm of speed over time", note, 320, plot)
 }

@@ -40,7 +40,7 @@ pub fn chart(scene: &ReportScene, runs: &[(&str, &Recording)], run: usize) -> Op
         run: Some(run),
         height: 340,
         wide: true,
-        plot,
+        drawing: plot.into(),
     })
 }
 

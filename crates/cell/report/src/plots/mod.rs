@@ -14,7 +14,7 @@ use elbowroom_sim::Recording;
 
 use crate::scene::ReportScene;
 
-pub use figure::Figure;
+pub use figure::{Drawing, Figure};
 pub use perception::all as perception;
 
 /// All plots, in the order of the page; `planned` is the run without the monitor, for comparison.

@@ -56,7 +56,7 @@ fn overrides(runs: &[(&str, &Recording)]) -> Figure {
         run: None,
         height: 360,
         wide: true,
-        plot,
+        drawing: plot.into(),
     }
 }
 

@@ -20,7 +20,7 @@ pub fn all(scene: &ReportScene, log: &PerceptionLog, recording: &Recording) -> V
 }
 
 fn figure(title: &str, note: &str, over_time: bool, wide: bool, height: usize, plot: Plot) -> Figure {
-    Figure { title: title.into(), note: note.into(), over_time, run: None, height, wide, plot }
+    Figure { title: title.into(), note: note.into(), over_time, run: None, height, wide, drawing: plot.into() }
 }
 
 fn from_above(log: &PerceptionLog, recording: &Recording) -> Figure {

@@ -53,7 +53,7 @@ pub fn chart(runs: &[(&str, &Recording)], run: usize) -> Option<Figure> {
         run: Some(run),
         height: 110 + 24 * rows.len(),
         wide: true,
-        plot,
+        drawing: plot.into(),
     })
 }
 

@@ -19,6 +19,8 @@ pub struct Surface {
     pub z: Vec<Vec<f64>>,
     /// Range of the output.
     pub z_range: [f64; 2],
+    /// Units of the inputs and of the output, for drawings; empty where there is none.
+    pub units: [&'static str; 3],
 }
 
 impl Surface {
@@ -54,6 +56,12 @@ impl Surface {
             })
             .collect();
         let (x_name, y_name, z_name) = (a.name.clone(), b.name.clone(), out.name.clone());
-        Some(Self { x_name, y_name, z_name, x, y, z, z_range: out.range })
+        Some(Self { x_name, y_name, z_name, x, y, z, z_range: out.range, units: [""; 3] })
+    }
+
+    /// The same with units for drawings.
+    #[must_use]
+    pub fn with_units(self, units: [&'static str; 3]) -> Self {
+        Self { units, ..self }
     }
 }

@@ -25,10 +25,10 @@ impl Surface {
     /// ```
     /// use elbowroom_avoidance::{Rules, fuzzy::Surface};
     /// let size = Surface::of(Rules::default().controller(), 0, 25).unwrap();
-    /// let svg = size.to_svg(["m", "m/s", ""]);
+    /// let svg = size.with_units(["m", "m/s", ""]).to_svg();
     /// assert!(svg.starts_with("<svg") && svg.matches("<polygon").count() == 24 * 24);
     /// ```
-    pub fn to_svg(&self, units: [&str; 3]) -> String {
+    pub fn to_svg(&self) -> String {
         let mut svg = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" width=\"{WIDTH}\" height=\"{HEIGHT}\" \
              font-family=\"sans-serif\" font-size=\"13\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
@@ -40,7 +40,7 @@ impl Surface {
                 self.patch(&mut svg, i, j);
             }
         }
-        self.labels(&mut svg, units);
+        self.labels(&mut svg);
         svg + "</svg>\n"
     }
 
@@ -80,8 +80,12 @@ impl Surface {
         );
     }
 
-    fn labels(&self, svg: &mut String, [x, y, z]: [&str; 3]) {
-        let unit = |u: &str| if u.is_empty() { String::new() } else { format!(" ({u})") };
+    fn labels(&self, svg: &mut String) {
+        let [x, y, z] = self.units;
+        let title = |name: &str, unit: &str| {
+            let name = escaped(name);
+            if unit.is_empty() { name } else { format!("{name} ({unit})") }
+        };
         let ends = |v: &[f64]| [v.first().copied().unwrap_or(0.0), v.last().copied().unwrap_or(0.0)];
         let mut text = |[px, py]: [f64; 2], anchor: &str, what: &str| {
             _ = writeln!(svg, "<text x=\"{px:.1}\" y=\"{py:.1}\" text-anchor=\"{anchor}\">{what}</text>");
@@ -93,14 +97,19 @@ impl Surface {
         for (fraction, value) in [0.0, 1.0].into_iter().zip(ends(&self.y)) {
             text(below(Self::project(1.04, fraction, 0.0)), "start", &format!("{value}"));
         }
-        text(below(Self::project(0.5, -0.12, 0.0)), "end", &format!("{}{}", self.x_name, unit(x)));
-        text(below(Self::project(1.12, 0.5, 0.0)), "start", &format!("{}{}", self.y_name, unit(y)));
+        text(below(Self::project(0.5, -0.12, 0.0)), "end", &title(&self.x_name, x));
+        text(below(Self::project(1.12, 0.5, 0.0)), "start", &title(&self.y_name, y));
         for (fraction, value) in [0.0, 1.0].into_iter().zip(self.z_range) {
             let [px, py] = Self::project(0.0, 0.0, fraction);
             text([px - 8.0, py + 4.0], "end", &format!("{value}"));
         }
-        text([24.0, 28.0], "start", &format!("{}{}", self.z_name, unit(z)));
+        text([24.0, 28.0], "start", &title(&self.z_name, z));
     }
+}
+
+/// A name as text of an XML document.
+fn escaped(name: &str) -> String {
+    name.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 fn colour(fraction: f64) -> String {
