@@ -1,5 +1,6 @@
 //! What tests, benches and developers' tools of several crates share: generators of pseudo-random numbers, folders of data, a
-//! counter of allocations, a hash, free addresses, arguments of benches. No crate that is shipped links this one.
+//! counter of allocations, a hash, free addresses, certificates,
+//! arguments of benches. No crate that is shipped links this one.
 //!
 //! ```
 //! use elbowroom_testkit::random::Random;
@@ -16,6 +17,7 @@
 
 pub mod allocation;
 pub mod bench;
+pub mod certificate;
 pub mod folder;
 pub mod hash;
 pub mod network;

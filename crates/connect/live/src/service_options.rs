@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use elbowroom_cell::seal::NetworkKey;
+use elbowroom_view::http::Endpoint;
 
 use crate::control::ControlOptions;
 use crate::event_handler::EventHandler;
@@ -31,8 +32,8 @@ pub struct ServiceOptions {
     pub journal: Option<PathBuf>,
     /// Runs the programs of the cell file in place of the controllers.
     pub simulate: bool,
-    /// Shows the cell in a browser at this address.
-    pub web: Option<String>,
+    /// Shows the cell in a browser there.
+    pub web: Option<Endpoint>,
     /// Records everything that this process guards into this file.
     pub record: Option<PathBuf>,
     /// Serves the control interface; only beside the arbiter.

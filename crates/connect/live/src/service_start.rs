@@ -191,9 +191,9 @@ impl<'o> ServiceStart<'o> {
 
     /// The page in a browser, and what feeds it.
     pub(crate) fn web(&self) -> Result<Option<(Server, StatusFeed)>, ServiceError> {
-        let Some(address) = &self.options.web else { return Ok(None) };
+        let Some(endpoint) = &self.options.web else { return Ok(None) };
         let feed = StatusFeed::new();
-        Ok(Some((Server::watch(&self.cell, &feed, ServerSettings::at(address)?)?, feed)))
+        Ok(Some((Server::watch(&self.cell, &feed, ServerSettings::new(endpoint.clone()))?, feed)))
     }
 
     /// What sees the whole cell, where anybody wants to know.

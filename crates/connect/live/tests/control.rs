@@ -20,6 +20,7 @@ use elbowroom_live::{
 };
 use elbowroom_monitor::{AccessClass, Occupancy, RobotSlot, SlotId};
 use elbowroom_testkit::network::eventually;
+use elbowroom_view::http::Endpoint;
 use serde_json::{Value, json};
 
 /// Two rails side by side, with a region that both enter, one that is switched, and one that is always there.
@@ -536,8 +537,8 @@ fn a_service_that_cannot_be_protected_does_not_start() {
     let (file, tokens) = (folder.path().join("cell.toml"), folder.path().join("tokens.toml"));
     std::fs::write(&file, CELL).unwrap();
     let start = |address: &str, arbiter: bool| {
-        let control =
-            ControlOptions { address: address.into(), tokens: tokens.clone(), log: None, program_switches: false };
+        let endpoint = Endpoint::new(address, None).map_err(|e| e.to_string())?;
+        let control = ControlOptions { endpoint, tokens: tokens.clone(), log: None, program_switches: false };
         let robots = if arbiter { Vec::new() } else { vec!["left".into()] };
         let listen = Some("127.0.0.1:0".into());
         let options = ServiceOptions { listen, arbiter, robots, control: Some(control), ..ServiceOptions::default() };

@@ -14,7 +14,7 @@ const Link = (() => {
   }
 
   function connect() {
-    const url = `ws://${location.host}/socket`;
+    const url = `${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/socket`;
     socket = new WebSocket(url);
     let isRefused = false;
     socket.addEventListener('open', () => socket.send(JSON.stringify({ token })));

@@ -2,6 +2,7 @@
 
 use std::io;
 use std::net::SocketAddr;
+use std::path::PathBuf;
 
 use elbowroom_formats::FormatError;
 
@@ -12,12 +13,23 @@ pub enum ViewError {
     /// Not an address.
     #[error("`{0}` is no address\n  write: 127.0.0.1:0 for any free port, or 127.0.0.1:8080")]
     NoAddress(String),
-    /// An address that other computers reach.
+    /// An address that other computers reach, without a certificate.
     #[error(
-        "{0} can be reached from other computers, and what is sent is not encrypted: TLS is not built in\n  \
-         write: 127.0.0.1:{port}, and on the other computer open a tunnel: ssh -L {port}:127.0.0.1:{port} HOST", port = .0.port()
+        "{0} can be reached from other computers, and without a certificate what is sent is not encrypted\n  \
+         write: --certificate FILE.pem --certificate-key FILE.pem beside it; or 127.0.0.1:{port}, and on the other computer a tunnel: \
+         ssh -L {port}:127.0.0.1:{port} HOST", port = .0.port()
     )]
-    NotLoopback(SocketAddr),
+    NotEncrypted(SocketAddr),
+    /// A certificate or its key.
+    #[error("{}: {why}\n  write: {instead}", file.display())]
+    Certificate {
+        /// The file.
+        file: PathBuf,
+        /// What is wrong.
+        why: String,
+        /// What to write instead.
+        instead: &'static str,
+    },
     /// The address cannot be served at.
     #[error("{address} cannot be served at: {source}\n  write: another port, or 0 for any free one")]
     Bind {

@@ -1,16 +1,15 @@
 //! Settings of the server.
 
-use std::net::SocketAddr;
 use std::time::Duration;
 
 use crate::ViewError;
-use crate::http::{ConnectionLimits, loopback_address};
+use crate::http::{ConnectionLimits, Endpoint};
 
 /// Where a [`Server`](crate::Server) serves, and what it grants its clients.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct ServerSettings {
-    /// A loopback address; port 0 takes any free one.
-    pub address: SocketAddr,
+    /// Where it serves.
+    pub endpoint: Endpoint,
     /// What clients may use.
     pub limits: Limits,
 }
@@ -66,22 +65,16 @@ impl Limits {
 }
 
 impl ServerSettings {
-    /// For the text of an option: `127.0.0.1:8080`, `localhost:8080`, `[::1]:8080`, or a port alone.
-    ///
-    /// ```
-    /// use elbowroom_view::{ServerSettings, ViewError};
-    /// assert_eq!(ServerSettings::at("localhost:8080")?.address, "127.0.0.1:8080".parse().unwrap());
-    /// assert_eq!(ServerSettings::at("8080")?, ServerSettings::at("127.0.0.1:8080")?);
-    /// let error = ServerSettings::at("0.0.0.0:8080").unwrap_err();
-    /// assert!(matches!(error, ViewError::NotLoopback(_)) && error.to_string().contains("ssh -L 8080"));
-    /// assert!(matches!(ServerSettings::at("cell.local"), Err(ViewError::NoAddress(_))));
-    /// # Ok::<(), ViewError>(())
-    /// ```
+    /// With the usual limits.
+    pub fn new(endpoint: Endpoint) -> Self {
+        Self { endpoint, limits: Limits::default() }
+    }
+
+    /// Not encrypted, for the text of an option: `127.0.0.1:8080`, `localhost:8080`, `[::1]:8080`, or a port alone.
     ///
     /// # Errors
-    /// [`ViewError::NoAddress`], or [`ViewError::NotLoopback`] for an address that other computers reach.
+    /// As [`Endpoint::new`] without a certificate.
     pub fn at(text: &str) -> Result<Self, ViewError> {
-        let address = loopback_address(text)?;
-        Ok(Self { address, limits: Limits::default() })
+        Endpoint::new(text, None).map(Self::new)
     }
 }

@@ -2,13 +2,18 @@
 
 use std::io::{Read as _, Write as _};
 use std::net::TcpStream;
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use crate::common::{Page, answer, cell, get, limits, open, settings, status, token};
+use elbowroom_testkit::certificate::write_certificate;
 use elbowroom_testkit::random::split_mix;
+use elbowroom_view::http::{Endpoint, TlsClient, TlsIdentity};
 use elbowroom_view::{Limits, Server, ServerSettings};
 use serde_json::json;
 use tungstenite::Message;
+use tungstenite::client::IntoClientRequest as _;
+use tungstenite::http::HeaderValue;
 
 fn server() -> Server {
     Server::jog(&cell(), settings()).unwrap()
@@ -275,4 +280,66 @@ fn a_stopped_server_is_gone() {
     server.stop();
     while page.next().is_ok() {}
     assert!(TcpStream::connect_timeout(&address, Duration::from_millis(500)).is_err());
+}
+
+/// With a certificate a page is served to other computers, and nobody between reads it.
+#[test]
+fn with_a_certificate_everything_is_encrypted() {
+    let folder = tempfile::tempdir().unwrap();
+    let (certificate, key) = write_certificate(folder.path(), "cell", &["127.0.0.1", "cell.local"]);
+    let (other, other_key) = write_certificate(folder.path(), "other", &["127.0.0.1"]);
+    let refused = TlsIdentity::read(&certificate, &other_key).unwrap_err().to_string();
+    assert!(refused.contains("other.key.pem") && refused.contains("the private key of the certificate"), "{refused}");
+    for (certificate, key) in [(&certificate, &certificate), (&key, &key), (&folder.path().join("none.pem"), &key)] {
+        let refused = TlsIdentity::read(certificate, key).unwrap_err().to_string();
+        assert!(refused.contains(".pem: ") && refused.contains("write: "), "{refused}");
+    }
+    let identity = TlsIdentity::read(&certificate, &key).unwrap();
+    assert!(Endpoint::new("0.0.0.0:0", Some(identity.clone())).is_ok(), "other computers are served");
+    let endpoint = Endpoint::new("127.0.0.1:0", Some(identity)).unwrap();
+    let server = Server::jog(&cell(), ServerSettings { limits: limits(), ..ServerSettings::new(endpoint) }).unwrap();
+    let address = server.address();
+    assert!(server.url().starts_with("https://"), "{}", server.url());
+
+    let connect = |trusted: &Path, name: &str| {
+        let stream = TcpStream::connect(address).unwrap();
+        stream.set_read_timeout(Some(Duration::from_secs(10))).unwrap();
+        TlsClient::trusting(trusted).unwrap().connect(name, stream)
+    };
+    let ask = |trusted: &Path, name: &str| -> std::io::Result<String> {
+        let (mut stream, mut answer) = (connect(trusted, name)?, Vec::new());
+        stream.write_all(format!("GET / HTTP/1.1\r\nHost: {name}\r\n\r\n").as_bytes())?;
+        stream.read_to_end(&mut answer)?;
+        Ok(String::from_utf8_lossy(&answer).into_owned())
+    };
+    for name in ["127.0.0.1", "cell.local"] {
+        assert_eq!(status(&ask(&certificate, name).unwrap()), 200, "{name}");
+    }
+    // The server is not the one of another certificate, nor of another name.
+    assert!(ask(&other, "127.0.0.1").is_err() && ask(&certificate, "evil.example").is_err());
+    // Nothing is said in the clear, and the frames of the cell come encrypted as well.
+    assert!(!get(address, "/", "").contains("200 OK"));
+    let request = |origin: &str| {
+        let mut request = format!("wss://cell.local:{}/socket", address.port()).into_client_request().unwrap();
+        request.headers_mut().insert("origin", HeaderValue::from_str(origin).unwrap());
+        request
+    };
+    let own = format!("https://cell.local:{}", address.port());
+    let open = |origin: &str| tungstenite::client(request(origin), connect(&certificate, "cell.local").unwrap());
+    let (mut socket, _) = open(&own).unwrap();
+    socket.send(Message::text(json!({ "token": token(&server) }).to_string())).unwrap();
+    let frame = (0..5).find_map(|_| socket.read().ok()?.into_text().ok().filter(|text| text.contains("\"robots\"")));
+    assert!(frame.is_some_and(|frame| frame.contains("left")), "frames come");
+    assert!(open(&own.replace("https", "http")).is_err() && open("https://evil.example").is_err());
+    // Handshakes that hang are closed in the time of a head, and others go on.
+    let hanging: Vec<TcpStream> = (0..8).map(|_| TcpStream::connect(address).unwrap()).collect();
+    let begun = Instant::now();
+    for mut stream in hanging {
+        stream.set_read_timeout(Some(Duration::from_secs(10))).unwrap();
+        let _ = stream.write_all(&[22, 3, 1, 2, 0, 1]);
+        let mut byte = [0];
+        assert!(!matches!(stream.read(&mut byte), Ok(1)), "nothing is answered");
+    }
+    assert!(begun.elapsed() < Duration::from_secs(5), "{:?}", begun.elapsed());
+    assert_eq!(status(&ask(&certificate, "cell.local").unwrap()), 200);
 }

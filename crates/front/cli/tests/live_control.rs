@@ -49,6 +49,7 @@ fn tokens_are_made_without_a_service_and_wrong_calls_say_what_to_write() {
 mod with_a_service {
     use super::*;
     use crate::common::live_process::LiveProcess;
+    use elbowroom_testkit::certificate::write_certificate;
     use std::process::Stdio;
     use std::time::{Duration, Instant};
 
@@ -134,6 +135,36 @@ warning = 100
         std::fs::write(&file, written.replace("cart arrives", "cart departs") + &written).unwrap();
         let broken = control(folder, &["log", "cell.toml"]);
         assert!(broken.status == 2 && broken.stderr.contains("does not follow the entry before it"));
+    }
+
+    /// A panel on another computer: encrypted, or not at all.
+    #[test]
+    fn a_service_with_a_certificate_is_controlled_from_any_address() {
+        let folder = tempfile::tempdir().unwrap();
+        let folder = folder.path();
+        make_tokens(folder);
+        std::fs::write(folder.join("cell.toml"), CELL).unwrap();
+        let listen =
+            ["live", "cell.toml", "--listen", "127.0.0.1:0", "--tokens", "tokens.toml", "--control", "0.0.0.0:0"];
+        let open = answer(command(folder, &listen).output().unwrap());
+        assert!(open.status == 2 && open.stderr.contains("--certificate FILE.pem"), "{}", open.stderr);
+        write_certificate(folder, "cell", &["localhost"]);
+        write_certificate(folder, "other", &["localhost"]);
+        let (_process, at) = start(folder, &["--certificate", "cell.pem", "--certificate-key", "cell.key.pem"]);
+        let at = at.replace("127.0.0.1", "localhost");
+        let ask =
+            |more: &[&str]| control(folder, &[&["regions", "--at", &at, "--secret", "operator.secret"], more].concat());
+        let listed = ask(&["--certificate", "cell.pem"]);
+        assert!(listed.status == 0 && listed.stdout.contains("cart"), "{}", listed.stderr);
+        for (more, message) in [
+            (&[][..], "--certificate FILE.pem as the service has it"),
+            (&["--certificate", "other.pem"][..], "the service is not trusted: "),
+            (&["--certificate", "missing.pem"][..], "missing.pem: "),
+            (&["--certificate", "tokens.toml"][..], "tokens.toml: "),
+        ] {
+            let refused = ask(more);
+            assert!(refused.status == 2 && refused.stderr.contains(message), "{more:?}: {}", refused.stderr);
+        }
     }
 
     #[test]

@@ -7,7 +7,7 @@ use std::time::Duration;
 use elbowroom_cell::seal::{AccessTokens, ControlLog, control_log_of};
 use elbowroom_formats::FormatError;
 use elbowroom_view::ViewError;
-use elbowroom_view::http::{ConnectionLimits, Hosts, HttpServer, loopback_address};
+use elbowroom_view::http::{ConnectionLimits, Endpoint, Hosts, HttpServer};
 
 use super::request_handler::{ControlParts, RequestHandler};
 use super::routes::routes;
@@ -15,8 +15,8 @@ use super::routes::routes;
 /// The control interface of a service.
 #[derive(Debug, Clone)]
 pub struct ControlOptions {
-    /// The loopback address to serve at: `127.0.0.1:7448`.
-    pub address: String,
+    /// Where to serve.
+    pub endpoint: Endpoint,
     /// The file of tokens ([`AccessTokens`]).
     pub tokens: PathBuf,
     /// The log of changes; by default `cell.control.jsonl` beside the cell file.
@@ -42,7 +42,6 @@ pub(crate) struct ControlServer(HttpServer);
 
 impl ControlServer {
     pub(crate) fn start(parts: ControlParts, options: &ControlOptions) -> Result<Self, ControlError> {
-        let address = loopback_address(&options.address)?;
         let tokens = AccessTokens::read(&options.tokens)?;
         let log =
             ControlLog::open(&options.log.clone().unwrap_or_else(|| control_log_of(&parts.versions.base().file)))?;
@@ -55,7 +54,7 @@ impl ControlServer {
             head_bytes: 16 * 1024,
         };
         let make = move |_, hosts: &Hosts| Ok(routes(handler, tokens, hosts.clone()));
-        Ok(Self(HttpServer::start("control", address, limits, make)?))
+        Ok(Self(HttpServer::start("control", &options.endpoint, limits, make)?))
     }
 
     pub(crate) fn address(&self) -> SocketAddr {

@@ -11,6 +11,7 @@ use elbowroom_live::network::ZenohNetwork;
 use elbowroom_live::{ControlOptions, RegionTable, Service, ServiceOptions, region_journal_of};
 use elbowroom_monitor::AccessClass;
 use elbowroom_testkit::network::free_address;
+use elbowroom_view::http::Endpoint;
 use serde_json::Value;
 
 /// Two rails side by side, with a region that both enter, one that is switched, and one that is always there: where the second
@@ -87,6 +88,7 @@ impl ControlSetup {
         let cell = Cell::load(&file).unwrap_or_else(|e| panic!("{e}"));
         let events: Arc<Mutex<Vec<String>>> = Arc::default();
         let (heard, listen) = (events.clone(), free_address());
+        let endpoint = Endpoint::new("127.0.0.1:0", None).unwrap();
         // As a service that ended with all temporary regions off.
         let journal = region_journal_of(&file);
         let table = RegionTable::initial(&cell).message(&cell);
@@ -94,7 +96,7 @@ impl ControlSetup {
         let options = ServiceOptions {
             journal: Some(journal),
             listen: Some(listen.clone()),
-            control: Some(ControlOptions { address: "127.0.0.1:0".into(), tokens, log: None, program_switches }),
+            control: Some(ControlOptions { endpoint, tokens, log: None, program_switches }),
             on_event: Some(Arc::new(move |event: &str| heard.lock().unwrap().push(event.to_owned()))),
             ..options
         };

@@ -9,8 +9,10 @@ use hyper::server::conn::http1;
 use hyper::service::{Service as _, service_fn};
 use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::service::TowerToHyperService;
+use tokio::io::{AsyncRead, AsyncWrite};
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::watch;
+use tokio_rustls::TlsAcceptor;
 
 use super::connection_limits::ConnectionLimits;
 use super::places::{Place, Places};
@@ -18,14 +20,17 @@ use super::places::{Place, Places};
 /// After an error of the listener, such as too many open files.
 const RETRY: Duration = Duration::from_millis(20);
 
+/// What all connections share.
+#[derive(Clone)]
+pub(crate) struct Served {
+    pub(crate) router: Router,
+    pub(crate) limits: ConnectionLimits,
+    /// `None`: not encrypted.
+    pub(crate) tls: Option<TlsAcceptor>,
+}
+
 /// Accepts connections until it is stopped.
-pub(crate) async fn accept(
-    listener: TcpListener,
-    router: Router,
-    limits: ConnectionLimits,
-    places: Places,
-    mut stopped: watch::Receiver<bool>,
-) {
+pub(crate) async fn accept(listener: TcpListener, served: Served, places: Places, mut stopped: watch::Receiver<bool>) {
     loop {
         let accepted = tokio::select! {
             accepted = listener.accept() => accepted,
@@ -34,32 +39,43 @@ pub(crate) async fn accept(
         match accepted {
             Ok((stream, _)) => {
                 // Here, as tasks run in any order: a connection is as old as its acceptance.
-                let place = places.enter();
-                _ = tokio::spawn(serve(stream, place, router.clone(), limits));
+                let (place, served) = (places.enter(), served.clone());
+                _ = tokio::spawn(async move {
+                    tokio::select! {
+                        () = converse(stream, &place, &served) => {}
+                        () = place.vacated() => {}
+                    }
+                });
             }
             Err(_) => tokio::time::sleep(RETRY).await,
         }
     }
 }
 
+async fn converse(stream: TcpStream, place: &Place, served: &Served) {
+    // Frames are small and must not wait for more.
+    let _ = stream.set_nodelay(true);
+    let Some(tls) = &served.tls else { return serve(stream, place, served).await };
+    // Whoever does not finish the handshake gets no more time than for the head of a request.
+    if let Ok(Ok(stream)) = tokio::time::timeout(served.limits.head, tls.accept(stream)).await {
+        serve(stream, place, served).await;
+    }
+}
+
 /// One request, or a WebSocket, which goes on by itself.
-async fn serve(stream: TcpStream, place: Place, router: Router, limits: ConnectionLimits) {
-    let (router, held) = (TowerToHyperService::new(router), place.clone());
+async fn serve(stream: impl AsyncRead + AsyncWrite + Unpin + Send + 'static, place: &Place, served: &Served) {
+    let Served { router, limits, .. } = served;
+    let (router, held) = (TowerToHyperService::new(router.clone()), place.clone());
     // A WebSocket keeps the place of its connection.
     let service = service_fn(move |mut request: Request<Incoming>| {
         request.extensions_mut().insert(held.clone());
         router.call(request)
     });
-    // Frames are small and must not wait for more.
-    let _ = stream.set_nodelay(true);
     let connection = http1::Builder::new()
         .timer(TokioTimer::new())
         .header_read_timeout(limits.head)
         .max_buf_size(limits.head_bytes)
         .serve_connection(TokioIo::new(stream), service)
         .with_upgrades();
-    tokio::select! {
-        _ = tokio::time::timeout(limits.request, connection) => {}
-        () = place.vacated() => {}
-    }
+    let _ = tokio::time::timeout(limits.request, connection).await;
 }

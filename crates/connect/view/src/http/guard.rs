@@ -8,7 +8,9 @@ use axum::response::{IntoResponse, Response};
 /// The names under which the server is reached.
 #[derive(Debug, Clone)]
 pub struct Hosts {
-    hosts: Vec<String>,
+    /// `None`: any, as browsers compare the name with the certificate.
+    names: Option<Vec<String>>,
+    scheme: &'static str,
     policy: HeaderValue,
 }
 
@@ -22,19 +24,24 @@ impl Hosts {
              base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
         );
         let policy = HeaderValue::from_str(&policy).unwrap_or(HeaderValue::from_static("default-src 'none'"));
-        Self { hosts, policy }
+        Self { names: Some(hosts), scheme: "http://", policy }
+    }
+
+    /// The names in the server's certificate: whoever makes another name resolve to this computer has no certificate for it.
+    pub(crate) fn certified() -> Self {
+        Self { names: None, scheme: "https://", ..Self::new(Vec::new()) }
     }
 
     /// The one `Host` of a request, where it is one of this server: another one is a name that somebody made resolve to this
     /// computer (DNS rebinding).
     fn host<'h>(&self, headers: &'h HeaderMap) -> Option<&'h str> {
         let host = only(headers, &header::HOST)?;
-        self.hosts.iter().any(|known| known == host).then_some(host)
+        self.names.as_ref().is_none_or(|names| names.iter().any(|known| known == host)).then_some(host)
     }
 
     /// True where a page of this server asks: browsers let any page ask any server, and say which one it is.
     pub fn is_own_page(&self, headers: &HeaderMap) -> bool {
-        let origin = only(headers, &header::ORIGIN).and_then(|origin| origin.strip_prefix("http://"));
+        let origin = only(headers, &header::ORIGIN).and_then(|origin| origin.strip_prefix(self.scheme));
         origin.is_some() && origin == self.host(headers)
     }
 }
@@ -95,6 +102,18 @@ mod tests {
             headers.append(*name, HeaderValue::from_static(value));
         }
         headers
+    }
+
+    #[test]
+    fn of_a_server_with_a_certificate_only_encrypted_pages_are_own() {
+        let hosts = Hosts::certified();
+        let is_own = |host: &'static str, origin: &'static str| {
+            hosts.is_own_page(&headers(&[("host", host), ("origin", origin)]))
+        };
+        assert!(is_own("cell.local:8443", "https://cell.local:8443"));
+        assert!(!is_own("cell.local:8443", "http://cell.local:8443"));
+        assert!(!is_own("cell.local:8443", "https://evil.example"));
+        assert!(!hosts.is_own_page(&headers(&[("origin", "https://cell.local:8443")])));
     }
 
     #[test]

@@ -9,14 +9,16 @@ use tokio::net::TcpListener;
 use tokio::runtime::{Builder, Runtime};
 use tokio::sync::watch;
 
-use super::connection;
+use super::connection::{self, Served};
 use super::connection_limits::ConnectionLimits;
+use super::endpoint::Endpoint;
 use super::guard::{Hosts, guard};
 use super::loopback::hosts;
 use super::places::Places;
+use super::tls::TlsIdentity;
 use crate::ViewError;
 
-/// Serves at a loopback address. Its caller is not async; it ends when it is dropped.
+/// Serves at an endpoint. Its caller is not async; it ends when it is dropped.
 #[derive(Debug)]
 pub struct HttpServer {
     address: SocketAddr,
@@ -28,24 +30,23 @@ impl HttpServer {
     /// Serves what `routes` makes of the names of the server: requests for other hosts never reach it.
     ///
     /// # Errors
-    /// [`ViewError`] where the address is no loopback address, is taken, or the routes cannot be made.
+    /// [`ViewError`] where the address is taken, or the routes cannot be made.
     pub fn start(
         name: &str,
-        address: SocketAddr,
+        endpoint: &Endpoint,
         limits: ConnectionLimits,
         routes: impl FnOnce(SocketAddr, &Hosts) -> Result<Router, ViewError>,
     ) -> Result<Self, ViewError> {
-        if !address.ip().is_loopback() {
-            return Err(ViewError::NotLoopback(address));
-        }
+        let address = endpoint.address();
         let runtime = Builder::new_multi_thread().worker_threads(2).thread_name(name).enable_all().build()?;
         let bind = |source: io::Error| ViewError::Bind { address, source };
         let listener = runtime.block_on(TcpListener::bind(address)).map_err(bind)?;
         let address = listener.local_addr()?;
-        let hosts = Hosts::new(hosts(address));
+        let hosts = if endpoint.identity().is_some() { Hosts::certified() } else { Hosts::new(hosts(address)) };
         let router = routes(address, &hosts)?.layer(middleware::from_fn_with_state(hosts, guard));
         let (stop, stopped) = watch::channel(false);
-        runtime.spawn(connection::accept(listener, router, limits, Places::new(limits.connections), stopped));
+        let service = Served { router, limits, tls: endpoint.identity().map(TlsIdentity::acceptor) };
+        runtime.spawn(connection::accept(listener, service, Places::new(limits.connections), stopped));
         Ok(Self { address, stop, runtime: Some(runtime) })
     }
 

@@ -27,6 +27,7 @@ pub struct Server {
     inbox: Arc<Inbox>,
     engine: Option<JoinHandle<()>>,
     http: HttpServer,
+    scheme: &'static str,
 }
 
 impl Server {
@@ -54,7 +55,7 @@ impl Server {
         inbox: Arc<Inbox>,
         settings: ServerSettings,
     ) -> Result<Self, ViewError> {
-        let ServerSettings { address, limits } = settings;
+        let ServerSettings { endpoint, limits } = settings;
         let token = Token::random()?;
         let (frame_sender, frames) = watch::channel(SentFrame::default());
         let history = Arc::new(History::default());
@@ -71,14 +72,14 @@ impl Server {
                 mode: source.mode(),
             })
         };
-        let http = HttpServer::start("view", address, limits.of_connections(), |_, hosts| {
+        let http = HttpServer::start("view", &endpoint, limits.of_connections(), |_, hosts| {
             Ok(routes(Arc::new(shared(hosts)?), assets::assets()?))
         })?;
         let (to_engine, kept) = (inbox.clone(), history);
         let engine = std::thread::Builder::new().name("view engine".into()).spawn(move || {
             engine::run(&model, &mut source, &to_engine, &kept, &frame_sender, limits.frame_period);
         })?;
-        Ok(Self { token, inbox, engine: Some(engine), http })
+        Ok(Self { token, inbox, engine: Some(engine), http, scheme: endpoint.scheme() })
     }
 
     /// Where it serves.
@@ -88,7 +89,7 @@ impl Server {
 
     /// What to open in a browser, with the token: whoever has it sees the cell.
     pub fn url(&self) -> String {
-        format!("http://{}/#token={}", self.address(), self.token.text())
+        format!("{}://{}/#token={}", self.scheme, self.address(), self.token.text())
     }
 
     /// Returns when the program is asked to end: by Ctrl-C, or by SIGTERM where there is one.

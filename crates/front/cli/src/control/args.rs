@@ -64,6 +64,9 @@ pub(crate) struct ServiceArgs {
     /// The file with the secret of a token; default: the file named by the environment variable `ELBOWROOM_SECRET`
     #[arg(long, value_name = "FILE")]
     pub(crate) secret: Option<PathBuf>,
+    /// The certificate of a service on another computer (PEM), as `live --certificate` has it
+    #[arg(long, value_name = "FILE.pem")]
+    pub(crate) certificate: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -8,6 +8,7 @@ use std::time::Duration;
 use serde_json::Value;
 
 use super::args::ServiceArgs;
+use super::transport::Transport;
 use crate::output::Failure;
 
 /// Longest wait for the service.
@@ -19,6 +20,7 @@ const MAX_ANSWER: u64 = 16 << 20;
 pub(crate) struct Client {
     address: String,
     secret: String,
+    transport: Transport,
 }
 
 impl Client {
@@ -34,7 +36,7 @@ impl Client {
             let what = format!("{}: is no secret: 64 hexadecimal digits on one line", file.display());
             return Err(Failure::Wrong(what));
         }
-        Ok(Self { address: args.at.clone(), secret })
+        Ok(Self { address: args.at.clone(), secret, transport: Transport::of(args.certificate.as_deref())? })
     }
 
     /// What there is, and its revision.
@@ -58,22 +60,31 @@ impl Client {
             body.len()
         );
         let answer = self.exchange(&request).map_err(|e| {
+            if e.to_string().contains("certificate") {
+                let help = "the service's own certificate, made for this name and CA:FALSE, as docs/security.md shows";
+                return Failure::Wrong(format!("{address}: the service is not trusted: {e}\n  write: {help}"));
+            }
             let help = format!("elbowroom live CELL --arbiter --control {address} --tokens FILE, or --at ADDR here");
             Failure::Wrong(format!("{address}: the service does not answer: {e}\n  write: {help}"))
         })?;
         let (head, document) = answer.split_once("\r\n\r\n").unwrap_or((&answer, ""));
         let document: Value = serde_json::from_str(document).unwrap_or_default();
         match head.split(' ').nth(1) {
-            Some("200") => Ok(document),
-            status => Err(refusal(status.unwrap_or("no status"), &document)),
+            Some("200") if head.starts_with("HTTP/") => Ok(document),
+            Some(status) if head.starts_with("HTTP/") => Err(refusal(status, &document)),
+            _ => Err(Failure::Wrong(format!(
+                "{address}: no control interface answers there, or one that is encrypted\n  write: --certificate FILE.pem as the service has it, or --at ADDR"
+            ))),
         }
     }
 
     fn exchange(&self, request: &str) -> std::io::Result<String> {
         let none = || std::io::Error::other("no such address");
         let address = self.address.to_socket_addrs()?.next().ok_or_else(none)?;
-        let mut stream = TcpStream::connect_timeout(&address, WAIT)?;
+        let stream = TcpStream::connect_timeout(&address, WAIT)?;
         stream.set_read_timeout(Some(WAIT))?;
+        let host = self.address.rsplit_once(':').map_or(&*self.address, |(host, _)| host);
+        let mut stream = self.transport.over(host, stream)?;
         stream.write_all(request.as_bytes())?;
         let mut answer = Vec::new();
         // One request per connection: the service closes it.

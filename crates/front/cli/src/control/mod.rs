@@ -2,6 +2,7 @@
 
 pub(crate) mod args;
 mod client;
+mod transport;
 
 use std::fmt::Write as _;
 use std::path::Path;

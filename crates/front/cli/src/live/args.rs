@@ -31,10 +31,9 @@ pub(crate) struct LiveArgs {
     /// Grant exchange regions in this process; without --robots, nothing else
     #[arg(long)]
     pub(crate) arbiter: bool,
-    /// Show the cell in a browser at this address
-    #[arg(long, value_name = "ADDR")]
-    pub(crate) web: Option<String>,
-    /// Serve the control interface at this loopback address, beside the arbiter (docs/control.md)
+    #[command(flatten)]
+    pub(crate) page: PageArgs,
+    /// Serve the control interface at this address, beside the arbiter (docs/control.md)
     #[arg(long, value_name = "ADDR", requires = "tokens")]
     pub(crate) control: Option<String>,
     /// The tokens of those who may use the control interface
@@ -79,9 +78,8 @@ pub(crate) struct LiveArgs {
 pub(crate) struct ViewArgs {
     /// The cell file
     pub(crate) cell: PathBuf,
-    /// The address to serve at; port 0 takes any free one
-    #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:0")]
-    pub(crate) web: String,
+    #[command(flatten)]
+    pub(crate) page: PageArgs,
 }
 
 #[derive(Debug, Args)]
@@ -99,6 +97,21 @@ pub(crate) struct ReplayArgs {
 fn seconds(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| "not a number of seconds".to_owned())?;
     if value.is_finite() && value > 0.0 { Ok(value) } else { Err("must be more than 0".to_owned()) }
+}
+
+/// Where the cell is shown, and how other computers reach that.
+#[derive(Debug, Args)]
+#[cfg_attr(not(feature = "live"), allow(dead_code))]
+pub(crate) struct PageArgs {
+    /// Show the cell in a browser at this address; port 0 takes any free one (`view`: 127.0.0.1:0 without it)
+    #[arg(long, value_name = "ADDR")]
+    pub(crate) web: Option<String>,
+    /// The certificate of this computer (PEM): with it the page and the control interface are encrypted, and may be at any address
+    #[arg(long, value_name = "FILE.pem", requires = "certificate_key")]
+    pub(crate) certificate: Option<PathBuf>,
+    /// The private key of the certificate (PEM)
+    #[arg(long, value_name = "FILE.pem", requires = "certificate")]
+    pub(crate) certificate_key: Option<PathBuf>,
 }
 
 /// Where the processes of the cell meet, and who is heard there.

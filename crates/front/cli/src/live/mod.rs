@@ -2,6 +2,8 @@
 
 mod args;
 #[cfg(feature = "live")]
+mod endpoints;
+#[cfg(feature = "live")]
 mod joint_recording;
 #[cfg(feature = "live")]
 mod record;

@@ -11,6 +11,7 @@ use elbowroom::live::ros2::Ros2Settings;
 use elbowroom::live::{ControlOptions, DEFAULT_ADDRESS, Keys, Service, ServiceOptions, region_journal_of};
 
 use super::LiveArgs;
+use super::endpoints::endpoint;
 use super::ros2::{ros2_settings, run_watchdog};
 use super::stop_signal::stop_signal;
 use crate::output::{ExitStatus, Failure, note};
@@ -36,9 +37,9 @@ pub(crate) fn live(args: &LiveArgs) -> Result<ExitStatus, Failure> {
         arbiter: args.arbiter,
         journal: Some(region_journal_of(&args.cell)),
         simulate: args.simulate,
-        web: args.web.clone(),
+        web: args.page.web.as_deref().map(|text| endpoint("--web", text, &args.page)).transpose()?,
         record: args.record.clone(),
-        control: control(args),
+        control: control(args)?,
         ros2,
         on_event: Some(Arc::new(|event: &str| note(event))),
     };
@@ -65,9 +66,10 @@ pub(crate) fn live(args: &LiveArgs) -> Result<ExitStatus, Failure> {
     Ok(status)
 }
 
-fn control(args: &LiveArgs) -> Option<ControlOptions> {
-    let (address, tokens) = (args.control.clone()?, args.tokens.clone()?);
-    Some(ControlOptions { address, tokens, log: None, program_switches: args.program_switches })
+fn control(args: &LiveArgs) -> Result<Option<ControlOptions>, Failure> {
+    let Some((address, tokens)) = args.control.as_deref().zip(args.tokens.clone()) else { return Ok(None) };
+    let endpoint = endpoint("--control", address, &args.page)?;
+    Ok(Some(ControlOptions { endpoint, tokens, log: None, program_switches: args.program_switches }))
 }
 
 /// Starts this program again in its place, with the threads of Zenoh that wake the fewest for a message. Zenoh reads the variable

@@ -1,0 +1,17 @@
+//! Certificates of servers of tests.
+
+use std::path::{Path, PathBuf};
+
+/// Writes a certificate that a server of these names (or IP addresses) has made for itself, and its private key, both in PEM, to
+/// `NAME.pem` and `NAME.key.pem` in a folder.
+///
+/// # Panics
+/// Where a name is none, or the folder cannot be written to.
+pub fn write_certificate(folder: &Path, name: &str, hosts: &[&str]) -> (PathBuf, PathBuf) {
+    let hosts = hosts.iter().map(|host| (*host).to_owned()).collect::<Vec<_>>();
+    let made = rcgen::generate_simple_self_signed(hosts).expect("names of hosts");
+    let (certificate, key) = (folder.join(format!("{name}.pem")), folder.join(format!("{name}.key.pem")));
+    std::fs::write(&certificate, made.cert.pem()).expect("the folder can be written to");
+    std::fs::write(&key, made.signing_key.serialize_pem()).expect("the folder can be written to");
+    (certificate, key)
+}

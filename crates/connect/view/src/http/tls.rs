@@ -1,0 +1,89 @@
+//! Encrypted connections: what a server proves to be, and whom a client trusts.
+
+use std::fmt;
+use std::io::{self, Read, Write};
+use std::net::TcpStream;
+use std::path::Path;
+use std::sync::Arc;
+
+use tokio_rustls::TlsAcceptor;
+use tokio_rustls::rustls::crypto::ring::default_provider;
+use tokio_rustls::rustls::pki_types::pem::PemObject as _;
+use tokio_rustls::rustls::pki_types::{CertificateDer, PrivateKeyDer, ServerName};
+use tokio_rustls::rustls::version::TLS13;
+use tokio_rustls::rustls::{ClientConfig, ClientConnection, RootCertStore, ServerConfig, StreamOwned};
+
+use crate::ViewError;
+
+/// The certificate and the private key of a server: with them, other computers may be served, by TLS 1.3.
+#[derive(Clone)]
+pub struct TlsIdentity(Arc<ServerConfig>);
+
+impl fmt::Debug for TlsIdentity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // Nothing of the key.
+        f.write_str("TlsIdentity")
+    }
+}
+
+impl TlsIdentity {
+    /// Reads both from PEM files; the certificate may be followed by those of its issuers.
+    ///
+    /// # Errors
+    /// [`ViewError::Certificate`]: a file cannot be read or has none, or the two do not belong together.
+    pub fn read(certificate: &Path, key: &Path) -> Result<Self, ViewError> {
+        let chain = certificates(certificate)?;
+        let private = PrivateKeyDer::from_pem_file(key).map_err(|e| wrong(key, &e, "its private key in PEM"))?;
+        let config = ServerConfig::builder_with_provider(Arc::new(default_provider()))
+            .with_protocol_versions(&[&TLS13])
+            .and_then(|config| config.with_no_client_auth().with_single_cert(chain, private));
+        let config = config.map_err(|e| wrong(key, &e, "the private key of the certificate"))?;
+        Ok(Self(Arc::new(config)))
+    }
+
+    pub(crate) fn acceptor(&self) -> TlsAcceptor {
+        TlsAcceptor::from(self.0.clone())
+    }
+}
+
+/// A client that trusts the servers of some certificates and no others.
+#[derive(Debug, Clone)]
+pub struct TlsClient(Arc<ClientConfig>);
+
+impl TlsClient {
+    /// Trusts the certificates of a PEM file, and those that they have issued.
+    ///
+    /// # Errors
+    /// [`ViewError::Certificate`]: the file cannot be read, or has none that can be trusted.
+    pub fn trusting(certificate: &Path) -> Result<Self, ViewError> {
+        let mut roots = RootCertStore::empty();
+        for one in certificates(certificate)? {
+            roots.add(one).map_err(|e| wrong(certificate, &e, "the certificate of the service in PEM"))?;
+        }
+        let config = ClientConfig::builder_with_provider(Arc::new(default_provider()))
+            .with_protocol_versions(&[&TLS13])
+            .map_err(|e| wrong(certificate, &e, "the certificate of the service in PEM"))?;
+        Ok(Self(Arc::new(config.with_root_certificates(roots).with_no_client_auth())))
+    }
+
+    /// Speaks to the server of a name or an IP address over a connection.
+    ///
+    /// # Errors
+    /// The name is none, or the server cannot prove that it is the one. A wrong certificate is noticed at the first write or read.
+    pub fn connect(&self, name: &str, stream: TcpStream) -> io::Result<impl Read + Write + use<>> {
+        let name = ServerName::try_from(name.trim_matches(['[', ']']).to_owned()).map_err(io::Error::other)?;
+        let connection = ClientConnection::new(self.0.clone(), name).map_err(io::Error::other)?;
+        Ok(StreamOwned::new(connection, stream))
+    }
+}
+
+fn certificates(file: &Path) -> Result<Vec<CertificateDer<'static>>, ViewError> {
+    let instead = "a certificate in PEM: -----BEGIN CERTIFICATE-----";
+    let read = CertificateDer::pem_file_iter(file).and_then(Iterator::collect::<Result<Vec<_>, _>>);
+    let all = read.map_err(|e| wrong(file, &e, instead))?;
+    if all.is_empty() { Err(wrong(file, &"no certificate is in it", instead)) } else { Ok(all) }
+}
+
+fn wrong(file: &Path, why: &dyn fmt::Display, instead: &'static str) -> ViewError {
+    ViewError::Certificate { file: file.to_owned(), why: why.to_string(), instead }
+}
