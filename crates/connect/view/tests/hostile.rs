@@ -325,8 +325,11 @@ fn with_a_certificate_everything_is_encrypted() {
         request
     };
     let own = format!("https://cell.local:{}", address.port());
-    let open = |origin: &str| tungstenite::client(request(origin), connect(&certificate, "cell.local").unwrap());
-    let (mut socket, _) = open(&own).unwrap();
+    let open = |origin: &str| {
+        let stream = connect(&certificate, "cell.local").unwrap();
+        tungstenite::client(request(origin), stream).map(|(socket, _)| socket).map_err(|e| e.to_string())
+    };
+    let mut socket = open(&own).unwrap();
     socket.send(Message::text(json!({ "token": token(&server) }).to_string())).unwrap();
     let frame = (0..5).find_map(|_| socket.read().ok()?.into_text().ok().filter(|text| text.contains("\"robots\"")));
     assert!(frame.is_some_and(|frame| frame.contains("left")), "frames come");
