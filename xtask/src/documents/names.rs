@@ -65,7 +65,7 @@ impl KnownNames {
         if is_path(code) {
             return (!root.join(code).exists()).then(|| format!("there is no file `{code}`"));
         }
-        if !is_rust(code) {
+        if !is_rust(code) && !is_sentence(code) {
             return None;
         }
         let is_known = |word: &&str| self.words.contains(*word) || FOREIGN.contains(word);
@@ -79,6 +79,11 @@ impl KnownNames {
 /// Runs of letters, digits and underscores.
 fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|word| !word.is_empty())
+}
+
+/// The name of a test: words of a sentence.
+fn is_sentence(code: &str) -> bool {
+    code.matches('_').count() >= 4 && code.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
 }
 
 /// A file or folder of the workspace.
@@ -116,6 +121,10 @@ mod tests {
         assert!(problems("cargo test -p elbowroom-scene --test main walks:: -- --nocapture").is_empty());
         assert_eq!(problems("cargo test --test main runs::all"), ["a.md:1: there is no module runs of tests"]);
         assert_eq!(problems("text\n`Scenery`"), ["a.md:2: `Scenery`: no source has the name Scenery"]);
+        assert_eq!(
+            problems("`it_was_here_once_and_is_gone`"),
+            ["a.md:1: `it_was_here_once_and_is_gone`: no source has the name it_was_here_once_and_is_gone"]
+        );
         assert_eq!(problems("cargo test -p elbowroom-plan"), ["a.md:1: there is no crate plan"]);
         assert_eq!(
             problems("see `crates/world/scene/src/gone.rs`"),

@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, Mutex};
 
+use elbowroom_cell::RegionEdit;
 use elbowroom_cell::seal::NetworkKey;
 use elbowroom_live::network::{
     AuthenticatedNetwork, LocalNetwork, Network, Publisher, Subscription, Urgency, ZenohNetwork, ZenohSettings,
@@ -258,6 +259,43 @@ fn a_stranger_on_the_network_switches_no_region() {
         assert!(!is_on(&setup), "a recording was obeyed");
     }
 }
+
+/// Without a key a stranger is believed in many things; that a permanent region is off, elsewhere or gone is none of them.
+#[test]
+fn a_permanent_region_stays_whatever_anybody_says() {
+    let (setup, stranger) = service(None);
+    let keys = Keys::new("rails");
+    let (statuses, _subscription) = log(&*stranger, &keys.status("left"));
+    let mut controller = Controller::new(&*stranger, &setup);
+    eventually("the node hears the table", || {
+        controller.step();
+        active(&statuses, "cart") == Some(false)
+    });
+    let off = SwitchRequest { robot: "left".into(), region: "wall".into(), active: false };
+    let table = |revision: u64, edits: Vec<RegionEdit>| {
+        let mut table =
+            RegionTable { revision: (u64::MAX / 2, revision), ..RegionTable::initial(&setup.cell).all_on() };
+        table.is_editable = !edits.is_empty();
+        table.edits = edits;
+        let mut message = table.message(&setup.cell);
+        message.regions.iter_mut().filter(|(name, _)| name == "wall").for_each(|(_, on)| *on = false);
+        message
+    };
+    let removed = RegionEdit { name: "wall".into(), table: None };
+    let moved = RegionEdit { name: "wall".into(), table: Some(FAR.into()) };
+    for (revision, edits) in [Vec::new(), vec![removed], vec![moved]].into_iter().enumerate() {
+        for _ in 0..20 {
+            publish(&*stranger, &keys.switch(), &off);
+            publish(&*stranger, &keys.regions(), &table(revision as u64, edits.clone()));
+            controller.step();
+            assert_eq!(active(&statuses, "wall"), Some(true), "{edits:?}");
+        }
+    }
+    assert_eq!(setup.region("wall").unwrap()["active"], true);
+}
+
+/// The keys of a region far from all robots.
+const FAR: &str = "shape = \"sphere\"\ncentre = [0, 9000, 9000]\nradius = 100\nwarning = 100\n";
 
 /// A datagram may be of anybody: joint values come so, which regions there are does not.
 #[test]

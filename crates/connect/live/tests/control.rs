@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 use std::io::Write as _;
-use std::net::TcpStream;
+use std::net::{SocketAddr, TcpStream};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
@@ -15,8 +15,8 @@ use elbowroom_interlock::wire::{self, Message};
 use elbowroom_interlock::{Boot, Guard};
 use elbowroom_live::network::{Network, Publisher, Subscription, Urgency};
 use elbowroom_live::{
-    Clock, ControlOptions, ControllerClient, ControllerState, Keys, RegionTableMessage, Service, ServiceOptions,
-    boot_number, configuration_number,
+    Clock, ControlOptions, ControllerClient, ControllerState, DEFAULT_ADDRESS, Keys, RegionTableMessage, Service,
+    ServiceOptions, boot_number, configuration_number,
 };
 use elbowroom_monitor::{AccessClass, Occupancy, RobotSlot, SlotId};
 use elbowroom_testkit::network::eventually;
@@ -544,6 +544,8 @@ fn a_service_that_cannot_be_protected_does_not_start() {
         let options = ServiceOptions { listen, arbiter, robots, control: Some(control), ..ServiceOptions::default() };
         Service::start(Cell::load(&file).unwrap(), &options).map(drop).map_err(|e| e.to_string())
     };
+    // Nobody else reaches what is served without an address.
+    assert!(DEFAULT_ADDRESS.parse::<SocketAddr>().unwrap().ip().is_loopback());
     assert!(start("127.0.0.1:0", true).unwrap_err().contains("tokens.toml"));
     AccessTokens::add(&tokens, AccessClass::Operator, "panel").unwrap();
     assert!(start("0.0.0.0:7448", true).unwrap_err().contains("ssh -L 7448"));
