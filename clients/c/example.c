@@ -15,6 +15,7 @@
 
 #include "elbowroom_client.h"
 
+#include <errno.h>
 #include <fcntl.h>
 #include <math.h>
 #include <netdb.h>
@@ -26,6 +27,7 @@
 #include <unistd.h>
 
 #define TICK_US 4000u
+#define MOST_LATE_US (5u * TICK_US)
 #define STALE_US 20000u       /* stale_ms of the cell file */
 #define SUBSCRIBE_US 1000000u /* how often the subscription is repeated */
 #define PRINT_US 100000u
@@ -71,7 +73,7 @@ static void sleep_until_us(uint64_t due_us)
     struct timespec t;
     t.tv_sec = (time_t)(due_us / 1000000u);
     t.tv_nsec = (long)(due_us % 1000000u) * 1000;
-    while (clock_nanosleep(STEADY_CLOCK, TIMER_ABSTIME, &t, NULL) != 0) {
+    while (clock_nanosleep(STEADY_CLOCK, TIMER_ABSTIME, &t, NULL) == EINTR) {
     }
 }
 
@@ -175,6 +177,7 @@ static void drive(const connection *c, motion *m, double seconds, uint64_t confi
 {
     elbowroom_client client;
     const uint64_t began = now_us();
+    uint64_t due = began;
     const uint64_t ticks = (uint64_t)(seconds * 1e6) / TICK_US;
     uint64_t tick;
     unsigned refused = 0;
@@ -184,8 +187,12 @@ static void drive(const connection *c, motion *m, double seconds, uint64_t confi
         elbowroom_state state;
         uint64_t now;
         size_t length;
-        sleep_until_us(began + tick * TICK_US);
+        sleep_until_us(due);
         now = now_us();
+        /* Held up, or the computer has slept: what was missed is not made up for. */
+        if (now > due + MOST_LATE_US)
+            due = now;
+        due += TICK_US;
         refused += receive_answers(c, &client);
         advance(m, elbowroom_speed_override(&client, now), TICK_US * 1e-6);
         memset(&state, 0, sizeof state);

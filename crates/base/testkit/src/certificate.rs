@@ -13,5 +13,10 @@ pub fn write_certificate(folder: &Path, name: &str, hosts: &[&str]) -> (PathBuf,
     let (certificate, key) = (folder.join(format!("{name}.pem")), folder.join(format!("{name}.key.pem")));
     std::fs::write(&certificate, made.cert.pem()).expect("the folder can be written to");
     std::fs::write(&key, made.signing_key.serialize_pem()).expect("the folder can be written to");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt as _;
+        std::fs::set_permissions(&key, std::fs::Permissions::from_mode(0o600)).expect("the file is there");
+    }
     (certificate, key)
 }

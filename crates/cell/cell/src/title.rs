@@ -1,24 +1,30 @@
 //! What people call a cell.
 
+use std::path::PathBuf;
+
 use crate::Cell;
 
 impl Cell {
-    /// What people call the cell: its name, or the folder's where the file has no `name` and is called `cell.toml`.
+    /// What people call the cell: its name, or the folder's where the file is called `cell.toml` and says nothing better.
     ///
     /// ```
     /// use elbowroom_cell::Cell;
-    /// let cell = |file: &str| Cell::parse(file, "version = 1\n[robot.a]\ndh = [{ a = 0.4 }]\nlinks = [{ sphere = { radius = 0.1 } }]");
-    /// assert_eq!(cell("line3/cell.toml")?.title(), "line3");
-    /// assert_eq!(cell("line3/left.toml")?.title(), "left");
+    /// let robot = "version = 1\nunits = { length = \"mm\", angle = \"deg\" }\n[robot.a]\n\
+    ///     dh = [{ kind = \"prismatic\", min = 0, max = 900, speed = 100 }]\nlinks = [{ sphere = { radius = 50 } }]\n";
+    /// assert_eq!(Cell::parse("line3/cell.toml", robot)?.title(), "line3");
+    /// assert_eq!(Cell::parse("line3/left.toml", robot)?.title(), "left");
     /// # Ok::<(), elbowroom_formats::FormatError>(())
     /// ```
     pub fn title(&self) -> String {
-        if self.name != "cell" {
-            return self.name.clone();
-        }
-        let folder = self.file.parent().filter(|folder| !folder.as_os_str().is_empty());
-        let folder = folder.map_or_else(std::env::current_dir, |folder| Ok(folder.to_path_buf()));
-        let title = folder.ok().and_then(|folder| Some(folder.file_name()?.to_string_lossy().into_owned()));
+        let says_nothing = self.name == "cell" && self.file.file_stem().is_some_and(|stem| stem == "cell");
+        let folder = says_nothing.then(|| self.folder()).flatten();
+        let title = folder.and_then(|folder| Some(folder.file_name()?.to_string_lossy().into_owned()));
         title.unwrap_or_else(|| self.name.clone())
+    }
+
+    /// The folder of the file: without `.` and `..` where it is there.
+    fn folder(&self) -> Option<PathBuf> {
+        let file = std::fs::canonicalize(&self.file).or_else(|_| std::path::absolute(&self.file)).ok()?;
+        file.parent().map(PathBuf::from)
     }
 }

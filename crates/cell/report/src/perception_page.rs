@@ -15,7 +15,7 @@ use elbowroom_sim::{RecordedRegionKind, Recording, RegionPoses, RegionTrack, Rob
 use elbowroom_spatial::Vec3;
 
 use crate::html::{PageContent, write_page};
-use crate::tables::escape;
+use crate::tables::{Table, escape};
 use crate::{ReportScene, plots, scene_data};
 
 /// Writes the page as one self-contained file.
@@ -153,35 +153,24 @@ fn card(heading: &str, body: &str) -> String {
 }
 
 fn stage_times(log: &PerceptionLog) -> String {
-    let mut rows = String::new();
+    let names = ["stage", "median (ms)", "p99 (ms)", "max (ms)", "frames"];
+    let mut table = Table::new("Of each picture", &names);
     for (name, times) in log.stages_ms() {
         let at = |share| quantile(&times, share).map_or_else(|| "–".into(), |ms| format!("{ms:.3}"));
-        let _ = write!(
-            rows,
-            "<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>",
-            escape(name),
-            at(0.5),
-            at(0.99),
-            at(1.0),
-            times.len()
-        );
+        table.row(&[name.to_owned(), at(0.5), at(0.99), at(1.0), times.len().to_string()], "");
     }
-    let head =
-        "<thead><tr><th>stage</th><th>median (ms)</th><th>p99 (ms)</th><th>max (ms)</th><th>frames</th></tr></thead>";
-    card("Time per stage", &format!("<div class=\"scroll\"><table>{head}<tbody>{rows}</tbody></table></div>"))
+    card("Time per stage", &format!("<div class=\"scroll\">{}</div>", table.end()))
 }
 
 /// Table of rejected frames.
 fn rejected_frames(log: &PerceptionLog) -> String {
-    let mut rows = String::new();
-    for (t, why) in log.frames.iter().filter_map(|f| Some((f.t_s, f.result.as_ref().err()?))) {
-        let _ = write!(rows, "<tr class=\"bad\"><td>{t:.3}</td><td>{}</td></tr>", escape(why));
-    }
-    if rows.is_empty() {
+    let mut rejected = log.frames.iter().filter_map(|f| Some((f.t_s, f.result.as_ref().err()?))).peekable();
+    if rejected.peek().is_none() {
         return String::new();
     }
-    let head = "<thead><tr><th>frame at (s)</th><th>reason</th></tr></thead>";
-    card("Rejected frames", &format!("<div class=\"scroll\"><table>{head}<tbody>{rows}</tbody></table></div>"))
+    let mut table = Table::new("What was not used, and why", &["frame at (s)", "reason"]);
+    rejected.for_each(|(t, why)| table.row(&[format!("{t:.3}"), why.to_string()], "bad"));
+    card("Rejected frames", &format!("<div class=\"scroll\">{}</div>", table.end()))
 }
 
 fn images(log: &PerceptionLog) -> String {

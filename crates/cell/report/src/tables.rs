@@ -127,20 +127,22 @@ pub fn events(recording: &Recording) -> String {
 }
 
 /// A table in HTML. Each cell has the name of its column: on a telephone a row is a list.
-struct Table<'a> {
+pub struct Table<'a> {
     names: &'a [&'a str],
     html: String,
 }
 
 impl<'a> Table<'a> {
-    fn new(caption: &str, names: &'a [&'a str]) -> Self {
+    /// With a caption and the names of its columns.
+    pub fn new(caption: &str, names: &'a [&'a str]) -> Self {
         let heads = names.join("</th><th scope=\"col\">");
         let html =
             format!("<table><caption>{caption}</caption><thead><tr><th scope=\"col\">{heads}</th></tr></thead><tbody>");
         Self { names, html }
     }
 
-    fn row(&mut self, cells: &[String], class: &str) {
+    /// A row of plain texts, with a class.
+    pub fn row(&mut self, cells: &[String], class: &str) {
         let cells: Vec<String> = cells.iter().map(|c| escape(c)).collect();
         self.row_of_html(&cells, class);
     }
@@ -148,12 +150,13 @@ impl<'a> Table<'a> {
     fn row_of_html(&mut self, cells: &[String], class: &str) {
         let _ = write!(self.html, "<tr class=\"{class}\">");
         for (name, cell) in self.names.iter().zip(cells) {
-            let _ = write!(self.html, "<td data-name=\"{name}\">{cell}</td>");
+            let _ = write!(self.html, "<td data-name=\"{name}\"><div>{cell}</div></td>");
         }
         self.html.push_str("</tr>\n");
     }
 
-    fn end(self) -> String {
+    /// The whole table.
+    pub fn end(self) -> String {
         self.html + "</tbody></table>"
     }
 }

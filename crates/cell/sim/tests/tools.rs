@@ -119,6 +119,20 @@ fn planned_moves_know_the_tools_of_their_time() {
     );
 }
 
+/// The same step from the same place with the same active tool, while another flange carries another tool than before.
+#[test]
+fn a_planned_move_is_searched_again_for_other_tools() {
+    let wire = "[robot.arm.tools.wire]\ntcp = { at = [50, 0, 0] }\nbox = { at = [-150, 0, 60], size = [20, 20, 20] }\nflange = \"link_2\"\n";
+    let tools = format!("{SHORT}{LONG}mounted = false\n{wire}");
+    let steps = format!(
+        "{{ tool = \"wire\" }},\n{{ move = \"planned\", to = [60, 0, -100] }},\n{USE_LONG}\n{{ move = \"planned\", to = [0, 0, -100] }},"
+    );
+    let twice = cell(&tools, &object(), &steps) + "repeat = 2\n";
+    let outcome = run_free(&twice);
+    let robot = &outcome.recording.robots[0];
+    assert!(robot.finished && robot.collisions.is_empty(), "{:?} {:?}", robot.ending, robot.collisions);
+}
+
 #[test]
 fn a_tool_grips_with_its_own_link() {
     let part = "[object.part]\nshape = \"box\"\nat = [1135, 0, 500]\nsize = [60, 60, 60]\n";

@@ -149,6 +149,7 @@ fn together(cell: &Cell, clock: Clock, shared: &Shared) -> CellStatus {
             robot: robot.name.clone(),
             q: robot.start.clone(),
             reason: "no status yet; shown at its start".to_owned(),
+            health: HealthStatus { age_s: clock.seconds(), ..HealthStatus::default() },
             ..RobotStatus::default()
         },
     };

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, SyncSender};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use elbowroom_cell::{Cell, configure};
 use elbowroom_interlock::Micros;
@@ -89,20 +89,20 @@ fn run(
     };
     let _ = started.send(Ok(()));
     let period = Duration::from_secs_f64(cell.tick_s);
-    let mut due = Instant::now();
-    // The joints of a simulated robot are those of the nominal time of its tick, however late the thread is.
-    let (began, begin) = (clock.micros(), due);
+    // The joints of a simulated robot are those of the nominal time of its tick, however late the thread is. That time is the clock's,
+    // which goes on while the computer sleeps.
+    let period_us = period.as_micros() as u64;
+    let mut due = clock.micros();
     while !is_closed.load(Ordering::SeqCst) {
         for controller in &mut controllers {
-            let nominal = began + Micros((due - begin).as_micros() as u64);
-            controller.tick(cell.tick_s, nominal, clock);
+            controller.tick(cell.tick_s, due, clock);
         }
-        due += period;
-        let now = Instant::now();
-        if now > due + period * MOST_LATE_TICKS {
+        due = due + Micros(period_us);
+        let now = clock.micros();
+        if now > due + Micros(period_us * u64::from(MOST_LATE_TICKS)) {
             due = now;
         }
-        std::thread::sleep(due.saturating_duration_since(now));
+        std::thread::sleep(Duration::from_micros((due - now).0));
     }
 }
 

@@ -115,7 +115,10 @@ const Tables = (() => {
   function repeats(event) {
     const series = faults.get(event.robot);
     const goesOn = series && event.t_s >= series.last && event.t_s - series.last < REPEATED_S && series.item.isConnected;
-    if (event.event === 'recovered') return goesOn;
+    if (event.event === 'recovered') {
+      if (goesOn) series.item.lastChild.textContent += ' · recovered';
+      return goesOn;
+    }
     if (event.event !== 'fault') return false;
     if (!goesOn) {
       const item = line(event);
@@ -125,7 +128,9 @@ const Tables = (() => {
     }
     series.count += 1;
     series.last = event.t_s;
+    series.item.firstChild.textContent = Units.seconds(event.t_s);
     series.item.lastChild.textContent = `${words(event)} ${series.count} times in ${(series.last - series.first).toFixed(1)} s`;
+    list.prepend(series.item);
     return true;
   }
 

@@ -280,9 +280,9 @@ fn running(cell: &Cell, t_s: f64) -> CellStatus {
         let [robot, region, event] = [robot, region, event].map(str::to_owned);
         EventStatus { t_s, robot, region, event }
     };
-    // One per second, at 100 statuses per second; and a robot whose joint values come and go.
+    // One per second, at 100 statuses per second; and a robot whose joint values come and go all the time.
     let waiting = tick.is_multiple_of(100).then(|| event("east", "pallet", "waiting"));
-    let flapping = event("south", "", if tick.is_multiple_of(2) { "fault" } else { "recovered" });
+    let flapping = ["fault", "recovered"].map(|what| event("south", "", what));
     CellStatus {
         t_s,
         cell: cell.name.clone(),
@@ -294,7 +294,7 @@ fn running(cell: &Cell, t_s: f64) -> CellStatus {
             // The arbiter is silent.
             age_s: 2.0,
         }],
-        events: waiting.into_iter().chain([flapping]).collect(),
+        events: waiting.into_iter().chain(flapping).collect(),
         ..CellStatus::default()
     }
 }
@@ -377,8 +377,10 @@ fn a_running_cell_moves_is_replayed_and_found_again() {
     );
     // Faults that follow each other are one line.
     let events = seen[8].as_str().unwrap();
-    assert_eq!((events.matches("south · fault ").count(), events.matches("recovered").count()), (1, 0), "{events}");
-    assert!(events.contains(" times in "), "{events}");
+    assert_eq!(events.matches("south · fault").count(), 1, "{events}");
+    // The oldest event that the page got may be the second half of a pair.
+    assert!(events.matches("recovered").count() <= 2, "{events}");
+    assert!(events.contains(" times in ") && events.contains(" · recovered"), "{events}");
     assert!(seen[9].as_str().unwrap().contains("2.0 s ago"), "{}", seen[9]);
     assert_eq!(seen[10]["unnamed"], json!([]));
 }

@@ -294,6 +294,21 @@ fn with_a_certificate_everything_is_encrypted() {
         let refused = TlsIdentity::read(certificate, key).unwrap_err().to_string();
         assert!(refused.contains(".pem: ") && refused.contains("write: "), "{refused}");
     }
+    let pem = |name: &str, text: &str| {
+        let file = folder.path().join(name);
+        std::fs::write(&file, text).unwrap();
+        file
+    };
+    let garbage = pem("garbage.pem", "-----BEGIN CERTIFICATE-----\nAAAA\n-----END CERTIFICATE-----\n");
+    let refused = TlsIdentity::read(&garbage, &key).unwrap_err().to_string();
+    assert!(refused.contains("garbage.pem: "), "the certificate is named: {refused}");
+    let open = pem("open.pem", &std::fs::read_to_string(&key).unwrap());
+    let refused = TlsIdentity::read(&certificate, &open).unwrap_err().to_string();
+    assert!(cfg!(not(unix)) || refused.contains("others may read"), "{refused}");
+    let locked = std::fs::read_to_string(&key).unwrap().replace("PRIVATE KEY", "ENCRYPTED PRIVATE KEY");
+    std::fs::write(&other_key, locked).unwrap();
+    let refused = TlsIdentity::read(&other, &other_key).unwrap_err().to_string();
+    assert!(refused.contains("encrypted with a password"), "{refused}");
     let identity = TlsIdentity::read(&certificate, &key).unwrap();
     assert!(Endpoint::new("0.0.0.0:0", Some(identity.clone())).is_ok(), "other computers are served");
     let endpoint = Endpoint::new("127.0.0.1:0", Some(identity)).unwrap();

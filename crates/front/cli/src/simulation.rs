@@ -15,15 +15,15 @@ use crate::progress::Progress;
 pub(crate) struct Simulation<'a> {
     pub(crate) paths: PlannedPaths<'a>,
     /// Of what is computed now.
-    progress: Rc<RefCell<Progress>>,
+    progress: Rc<RefCell<Option<Progress>>>,
 }
 
 impl<'a> Simulation<'a> {
     pub(crate) fn of(cell: &'a Cell) -> Self {
-        let progress = Rc::new(RefCell::new(Progress::unknown()));
+        let progress = Rc::<RefCell<Option<Progress>>>::default();
         let shown = progress.clone();
         let paths = PlannedPaths::new(cell).with_progress(move |PathSearch { number, of }| {
-            shown.borrow().go_on(format!("planning move {number} of {of}"));
+            shown.borrow().iter().for_each(|progress| progress.go_on(format!("planning move {number} of {of}")));
         });
         Self { paths, progress }
     }
@@ -54,15 +54,16 @@ impl<'a> Simulation<'a> {
     ) -> Result<RunOutcome, Failure> {
         let mut show = |p: RunProgress| {
             let RunProgress { t_s, finished, robots } = p;
-            self.progress.borrow().go_on(format!("{t_s:.1} s simulated, {finished} of {robots} programs finished"));
+            let done = format!("{t_s:.1} s simulated, {finished} of {robots} programs finished");
+            self.progress.borrow().iter().for_each(|progress| progress.go_on(done.clone()));
         };
         Ok(self.with_progress(|| simulate_observed(&self.paths, options, &mut show, observer))?)
     }
 
     fn with_progress<T>(&self, compute: impl FnOnce() -> T) -> T {
-        self.progress.replace(Progress::unknown());
+        self.progress.replace(Some(Progress::unknown()));
         let result = compute();
-        self.progress.borrow().end();
+        self.progress.take().iter().for_each(Progress::end);
         result
     }
 }

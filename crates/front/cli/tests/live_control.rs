@@ -76,9 +76,13 @@ warning = 100
 
     /// Starts the whole cell, and returns its control address once it serves.
     fn start(folder: &Path, arguments: &[&str]) -> (LiveProcess, String) {
+        start_at(folder, "127.0.0.1:0", arguments)
+    }
+
+    fn start_at(folder: &Path, address: &str, arguments: &[&str]) -> (LiveProcess, String) {
         use std::io::{BufRead as _, BufReader};
         let mut command = command(folder, &["live", "cell.toml", "--listen", "127.0.0.1:0", "--for", "100"]);
-        command.args(["--control", "127.0.0.1:0", "--tokens", "tokens.toml"]).args(arguments);
+        command.args(["--control", address, "--tokens", "tokens.toml"]).args(arguments);
         let mut process = LiveProcess(command.stderr(Stdio::piped()).spawn().expect("elbowroom starts"));
         let mut lines = BufReader::new(process.0.stderr.take().unwrap()).lines().map_while(Result::ok);
         let address = lines.find_map(|line| line.strip_prefix("control: ").map(str::to_owned));
@@ -150,8 +154,10 @@ warning = 100
         assert!(open.status == 2 && open.stderr.contains("--certificate FILE.pem"), "{}", open.stderr);
         write_certificate(folder, "cell", &["localhost"]);
         write_certificate(folder, "other", &["localhost"]);
-        let (_process, at) = start(folder, &["--certificate", "cell.pem", "--certificate-key", "cell.key.pem"]);
-        let at = at.replace("127.0.0.1", "localhost");
+        let certificate = ["--certificate", "cell.pem", "--certificate-key", "cell.key.pem"];
+        let (_process, at) = start_at(folder, "0.0.0.0:0", &certificate);
+        let port = at.rsplit_once(':').unwrap().1;
+        let at = format!("localhost:{port}");
         let ask =
             |more: &[&str]| control(folder, &[&["regions", "--at", &at, "--secret", "operator.secret"], more].concat());
         let listed = ask(&["--certificate", "cell.pem"]);
@@ -165,6 +171,20 @@ warning = 100
             let refused = ask(more);
             assert!(refused.status == 2 && refused.stderr.contains(message), "{more:?}: {}", refused.stderr);
         }
+        // A secret never leaves this computer in the clear, whether anybody listens or not: this address is nobody's.
+        let far = control(folder, &["regions", "--at", "192.0.2.1:7448", "--secret", "operator.secret"]);
+        assert!(far.status == 2 && far.stderr.contains("would travel in the clear"), "{}", far.stderr);
+        let other = tempfile::tempdir().unwrap();
+        make_tokens(other.path());
+        std::fs::write(other.path().join("cell.toml"), CELL).unwrap();
+        let (_plain, at) = start(other.path(), &[]);
+        let certificate_of_another = folder.join("cell.pem");
+        let words = ["regions", "--at", &at, "--secret", "operator.secret", "--certificate"];
+        let plain = control(other.path(), &[&words[..], &[certificate_of_another.to_str().unwrap()]].concat());
+        assert!(plain.status == 2 && plain.stderr.contains("no encrypted service answers"), "{}", plain.stderr);
+        let unused = [&["live", "cell.toml", "--listen", "127.0.0.1:0"][..], &certificate].concat();
+        let unused = answer(command(folder, &unused).output().unwrap());
+        assert!(unused.status == 2 && unused.stderr.contains("neither a page nor a control"), "{}", unused.stderr);
     }
 
     #[test]

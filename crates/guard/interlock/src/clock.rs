@@ -34,7 +34,8 @@ impl Clock {
         self.elapsed().as_secs_f64()
     }
 
-    fn elapsed(&self) -> Duration {
+    /// The time since the start.
+    pub fn elapsed(&self) -> Duration {
         now().saturating_sub(self.start)
     }
 }

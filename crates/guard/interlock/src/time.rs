@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Sub};
 
-/// A time on the monotonic clock of one process, or a length of time, in microseconds. Times of different processes are never
+/// A time on the [`Clock`](crate::Clock) of one process, or a length of time, in microseconds. Times of different processes are never
 /// compared.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Micros(pub u64);

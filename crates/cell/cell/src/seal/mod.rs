@@ -44,6 +44,7 @@ pub use keys::{PrivateKey, PublicKey};
 pub use last_seal::Seal;
 pub use log::log_of;
 pub use network_key::NetworkKey;
+pub use secret_file::check_private_permissions;
 pub use trust::{TrustedKey, TrustedKeys};
 
 use crate::{Cell, CellFile};

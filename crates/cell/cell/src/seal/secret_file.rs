@@ -48,8 +48,12 @@ pub(super) fn create(path: &Path) -> io::Result<File> {
     File::options().write(true).create_new(true).open(path)
 }
 
+/// Whether a file with a secret is its owner's alone; a file that is not there is for its reader to name.
+///
+/// # Errors
+/// Others may read or write it.
 #[cfg(unix)]
-pub(super) fn check_private_permissions(path: &Path) -> Result<()> {
+pub fn check_private_permissions(path: &Path) -> Result<()> {
     use std::os::unix::fs::PermissionsExt;
     let Ok(about) = std::fs::metadata(path) else { return Ok(()) };
     let mode = about.permissions().mode() & 0o777;
@@ -61,6 +65,6 @@ pub(super) fn check_private_permissions(path: &Path) -> Result<()> {
 }
 
 #[cfg(not(unix))]
-pub(super) fn check_private_permissions(_: &Path) -> Result<()> {
+pub fn check_private_permissions(_: &Path) -> Result<()> {
     Ok(())
 }

@@ -291,6 +291,7 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
             step: index,
             from: self.q.clone(),
             flange: self.robot.flange,
+            mounted: self.robot.tools.iter().map(|tool| tool.mounted).collect(),
             parts: self.parts.clone(),
         };
         let play = self.paths.known_or(origin, || self.path(index, step, to, speed))?;

@@ -25,7 +25,7 @@ use super::planned_parts::PlannedParts;
 /// dh = [{ a = 400, min = -170, max = 170, speed = 90 }]
 /// links = [{ capsule = { from = [-400, 0, 0], to = [0, 0, 0], radius = 40 } }]
 /// [program.arm]
-/// steps = [{ plan = [90] }]
+/// steps = [{ move = "planned", to = [90] }]
 /// "#)?;
 /// let searches = std::cell::Cell::new(0);
 /// let paths = PlannedPaths::new(&cell).with_progress(|search| {
@@ -39,9 +39,12 @@ use super::planned_parts::PlannedParts;
 /// ```
 pub struct PlannedPaths<'a> {
     cell: &'a Cell,
-    known: RefCell<Vec<(PathOrigin<'a>, Rc<Playback>)>>,
+    known: RefCell<Vec<(PathOrigin<'a>, SearchedPath)>>,
     progress: Box<dyn Fn(PathSearch) + 'a>,
 }
+
+/// A path, or why there is none.
+type SearchedPath = Result<Rc<Playback>, FormatError>;
 
 /// A search that begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,13 +56,15 @@ pub struct PathSearch {
     pub of: usize,
 }
 
-/// All that a path depends on in a cell: the step, joint values at its begin, the active tool, and where parts are.
+/// All that a path depends on in a cell: the step, joint values at its begin, the tools, and where parts are.
 #[derive(PartialEq)]
 pub(super) struct PathOrigin<'a> {
     pub robot: RobotId,
     pub step: usize,
     pub from: Vec<f64>,
     pub flange: LinkId,
+    /// Per tool of the robot whether it is mounted.
+    pub mounted: Vec<bool>,
     pub parts: PlannedParts<'a>,
 }
 
@@ -80,21 +85,21 @@ impl<'a> PlannedPaths<'a> {
         self.cell
     }
 
-    /// The path from an origin; searched where it is not known.
+    /// The path from an origin, or why there is none; searched where that is not known.
     pub(super) fn known_or(
         &self,
         origin: PathOrigin<'a>,
         search: impl FnOnce() -> Result<Playback, FormatError>,
-    ) -> Result<Rc<Playback>, FormatError> {
+    ) -> SearchedPath {
         let known = self.known.borrow().iter().find(|(known, _)| *known == origin).map(|(_, path)| path.clone());
         if let Some(path) = known {
-            return Ok(path);
+            return path;
         }
         let number = self.known.borrow().len() + 1;
         (self.progress)(PathSearch { number, of: planned_moves(self.cell).max(number) });
-        let path = Rc::new(search()?);
+        let path = search().map(Rc::new);
         self.known.borrow_mut().push((origin, path.clone()));
-        Ok(path)
+        path
     }
 }
 

@@ -434,25 +434,36 @@ impl<'a> Simulation<'a> {
 
     /// Attaches and detaches the tools that were exchanged, in collisions and in regions.
     fn exchange_volumes(&mut self, robot: usize, before: &CellRobot) -> Result<(), FormatError> {
-        let Self { cell, setups, present, monitors, regions, checker, released, states, observer, .. } = self;
-        let states: Vec<&ChainState> = states.iter().collect();
-        let line = present[robot].line;
-        for (tool, _) in present[robot].tools.iter().zip(&before.tools).filter(|(now, old)| now.mounted != old.mounted)
-        {
-            checker.set_present(RobotId(robot), tool.link, tool.mounted, &states);
-            for (id, volume) in setups[robot].tool_volumes(tool.link) {
-                released.retain(|r| *r != (robot, id));
-                if !tool.mounted {
-                    released.push((robot, id));
-                    continue;
-                }
-                let attached = monitors[robot].attach(id, &volume.in_link);
-                let attached = attached.and_then(|()| regions.attach(robot, id, &volume.in_link));
-                attached.map_err(|e| FormatError::new(&cell.file, line, e.to_string()))?;
-                if let Some(observer) = observer {
-                    observer.attached(RobotId(robot), id, &volume.in_link);
-                }
+        let (setup, line) = (&self.setups[robot], self.present[robot].line);
+        let tools = self.present[robot].tools.iter().zip(&before.tools);
+        let changed = tools.filter(|(now, old)| now.mounted != old.mounted).map(|(now, _)| (now.link, now.mounted));
+        for (link, is_mounted) in changed.collect::<Vec<_>>() {
+            self.checker.set_present(RobotId(robot), link, is_mounted, &self.states.iter().collect::<Vec<_>>());
+            for (volume, tool) in setup.tool_volumes(link) {
+                self.carry(robot, volume, is_mounted.then_some(&tool.in_link), line)?;
             }
+        }
+        Ok(())
+    }
+
+    /// Guards what a robot carries from now on, a part or a tool, at its pose in the link; or notes that it is to be detached.
+    fn carry(
+        &mut self,
+        robot: usize,
+        volume: VolumeId,
+        in_link: Option<&Pose>,
+        line: usize,
+    ) -> Result<(), FormatError> {
+        self.released.retain(|released| *released != (robot, volume));
+        let Some(in_link) = in_link else {
+            self.released.push((robot, volume));
+            return Ok(());
+        };
+        let attached = self.monitors[robot].attach(volume, in_link);
+        let attached = attached.and_then(|()| self.regions.attach(robot, volume, in_link));
+        attached.map_err(|e| FormatError::new(&self.cell.file, line, e.to_string()))?;
+        if let Some(observer) = &mut self.observer {
+            observer.attached(RobotId(robot), volume, in_link);
         }
         Ok(())
     }
@@ -495,20 +506,10 @@ impl<'a> Simulation<'a> {
             };
             applied.map_err(|e| FormatError::new(&self.cell.file, action.line, e.to_string()))?;
         }
-        let error = |what: String| FormatError::new(&self.cell.file, action.line, what);
         let slot = self.setups[robot].gripped_volume(action.object, action.link, &in_link);
-        let (volume, in_link) = slot.ok_or_else(|| error("grips what its monitor has no volume for".into()))?;
-        if !action.grips {
-            self.released.push((robot, volume));
-            return Ok(());
-        }
-        self.released.retain(|released| *released != (robot, volume));
-        let attached = self.monitors[robot].attach(volume, &in_link);
-        attached.and_then(|()| self.regions.attach(robot, volume, &in_link)).map_err(|e| error(e.to_string()))?;
-        if let Some(observer) = &mut self.observer {
-            observer.attached(RobotId(robot), volume, &in_link);
-        }
-        Ok(())
+        let none = || FormatError::new(&self.cell.file, action.line, "grips what its monitor has no volume for");
+        let (volume, in_link) = slot.ok_or_else(none)?;
+        self.carry(robot, volume, action.grips.then_some(&in_link), action.line)
     }
 
     fn declare_claims(&mut self) {

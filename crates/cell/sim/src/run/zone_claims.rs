@@ -7,7 +7,7 @@ use std::rc::Rc;
 use elbowroom_cell::Cell;
 use elbowroom_cell::configure::MonitorSetup;
 use elbowroom_cell::trajectory::{Playback, volume_motion_bounds};
-use elbowroom_kinematics::{ChainState, LinkId};
+use elbowroom_kinematics::ChainState;
 use elbowroom_monitor::{Region, RegionKind, RobotSlot, SlotId, Volume, ZoneArbiter};
 use elbowroom_proximity::within;
 use elbowroom_robot::RobotId;
@@ -67,7 +67,8 @@ impl ZoneClaims {
         }
         let mut held = HeldObjects::default();
         let mut now = Cow::Borrowed(cell);
-        let mut flange = cell.robots[robot.0].flange;
+        let mounted_in = |cell: &Cell| cell.robots[robot.0].tools.iter().map(|tool| tool.mounted).collect::<Vec<_>>();
+        let mut mounted = mounted_in(cell);
         let mut zones = ZoneTester::new(setup, cell.volumes_holding(robot, &[]));
         let mut here = plan.start.clone();
         let mut occupied: Vec<ClaimStage> = Vec::new();
@@ -82,7 +83,7 @@ impl ZoneClaims {
                         PlanStep::Grip(action) => held.apply(action),
                         PlanStep::Tool(tool) => {
                             now = Cow::Owned(now.with_tool(robot, *tool));
-                            flange = now.robots[robot.0].flange;
+                            mounted = mounted_in(&now);
                         }
                         _ => {}
                     }
@@ -94,10 +95,12 @@ impl ZoneClaims {
                     continue;
                 }
             };
-            let is_same = |k: &EvaluatedMove| k.key == key && k.before == slots && k.held == held && k.flange == flange;
+            let is_same =
+                |k: &EvaluatedMove| k.key == key && k.before == slots && k.held == held && k.mounted == mounted;
             let index = evaluated.iter().position(is_same).unwrap_or_else(|| {
                 let (occupations, after) = zones.occupations(duration, slots, &|t| at(what, t));
-                evaluated.push(EvaluatedMove { key, before: slots, held: held.clone(), flange, occupations, after });
+                let (held, mounted) = (held.clone(), mounted.clone());
+                evaluated.push(EvaluatedMove { key, before: slots, held, mounted, occupations, after });
                 evaluated.len() - 1
             });
             let EvaluatedMove { occupations, after, .. } = &evaluated[index];
@@ -155,8 +158,8 @@ struct EvaluatedMove {
     /// Slots at its start.
     before: u64,
     held: HeldObjects,
-    /// Link of the active tool.
-    flange: LinkId,
+    /// Per tool of the robot whether it is mounted.
+    mounted: Vec<bool>,
     occupations: Vec<Occupation>,
     /// Slots at its end.
     after: u64,

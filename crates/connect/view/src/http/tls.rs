@@ -6,12 +6,13 @@ use std::net::TcpStream;
 use std::path::Path;
 use std::sync::Arc;
 
+use elbowroom_cell::seal::check_private_permissions;
 use tokio_rustls::TlsAcceptor;
 use tokio_rustls::rustls::crypto::ring::default_provider;
 use tokio_rustls::rustls::pki_types::pem::PemObject as _;
 use tokio_rustls::rustls::pki_types::{CertificateDer, PrivateKeyDer, ServerName};
 use tokio_rustls::rustls::version::TLS13;
-use tokio_rustls::rustls::{ClientConfig, ClientConnection, RootCertStore, ServerConfig, StreamOwned};
+use tokio_rustls::rustls::{ClientConfig, ClientConnection, Error, RootCertStore, ServerConfig, StreamOwned};
 
 use crate::ViewError;
 
@@ -30,15 +31,20 @@ impl TlsIdentity {
     /// Reads both from PEM files; the certificate may be followed by those of its issuers.
     ///
     /// # Errors
-    /// [`ViewError::Certificate`]: a file cannot be read or has none, or the two do not belong together.
+    /// [`ViewError::Certificate`]: a file cannot be read or has none, or the two do not belong together. [`ViewError::Cell`]: others may
+    /// read the key.
     pub fn read(certificate: &Path, key: &Path) -> Result<Self, ViewError> {
-        let chain = certificates(certificate)?;
-        let private = PrivateKeyDer::from_pem_file(key).map_err(|e| wrong(key, &e, "its private key in PEM"))?;
+        let (chain, private) = (certificates(certificate)?, private_key(key)?);
         let config = ServerConfig::builder_with_provider(Arc::new(default_provider()))
             .with_protocol_versions(&[&TLS13])
             .and_then(|config| config.with_no_client_auth().with_single_cert(chain, private));
-        let config = config.map_err(|e| wrong(key, &e, "the private key of the certificate"))?;
-        Ok(Self(Arc::new(config)))
+        let config = config.map_err(|e| match e {
+            Error::InvalidCertificate(_) => {
+                wrong(certificate, &e, "a certificate of version 3, as docs/security.md makes it")
+            }
+            _ => wrong(key, &e, "the private key of the certificate"),
+        });
+        Ok(Self(Arc::new(config?)))
     }
 
     pub(crate) fn acceptor(&self) -> TlsAcceptor {
@@ -75,6 +81,16 @@ impl TlsClient {
         let connection = ClientConnection::new(self.0.clone(), name).map_err(io::Error::other)?;
         Ok(StreamOwned::new(connection, stream))
     }
+}
+
+/// A key that is its owner's alone.
+fn private_key(file: &Path) -> Result<PrivateKeyDer<'static>, ViewError> {
+    let text = std::fs::read_to_string(file).map_err(|e| wrong(file, &e, "its private key in PEM"))?;
+    check_private_permissions(file)?;
+    if text.contains("ENCRYPTED") {
+        return Err(wrong(file, &"is encrypted with a password", "a key without one: openssl … -nodes"));
+    }
+    PrivateKeyDer::from_pem_slice(text.as_bytes()).map_err(|e| wrong(file, &e, "its private key in PEM"))
 }
 
 fn certificates(file: &Path) -> Result<Vec<CertificateDer<'static>>, ViewError> {

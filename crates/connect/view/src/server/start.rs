@@ -88,8 +88,11 @@ impl Server {
     }
 
     /// What to open in a browser, with the token: whoever has it sees the cell.
+    /// Where it serves at all addresses, `HOST` stands for a name of its certificate.
     pub fn url(&self) -> String {
-        format!("{}://{}/#token={}", self.scheme, self.address(), self.token.text())
+        let address = self.address();
+        let host = if address.ip().is_unspecified() { format!("HOST:{}", address.port()) } else { address.to_string() };
+        format!("{}://{host}/#token={}", self.scheme, self.token.text())
     }
 
     /// Returns when the program is asked to end: by Ctrl-C, or by SIGTERM where there is one.

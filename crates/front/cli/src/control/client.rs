@@ -59,15 +59,14 @@ impl Client {
             "{method} {path} HTTP/1.1\r\nHost: {address}\r\nAuthorization: Bearer {secret}\r\n{headers}Content-Length: {}\r\n\r\n{body}",
             body.len()
         );
-        let answer = self.exchange(&request).map_err(|e| {
-            if e.to_string().contains("certificate") {
-                let help = "the service's own certificate, made for this name and CA:FALSE, as docs/security.md shows";
-                return Failure::Wrong(format!("{address}: the service is not trusted: {e}\n  write: {help}"));
-            }
-            let help = format!("elbowroom live CELL --arbiter --control {address} --tokens FILE, or --at ADDR here");
-            Failure::Wrong(format!("{address}: the service does not answer: {e}\n  write: {help}"))
-        })?;
+        let answer = self.exchange(&request)?;
         let (head, document) = answer.split_once("\r\n\r\n").unwrap_or((&answer, ""));
+        let lengths = head
+            .lines()
+            .filter_map(|line| line.to_ascii_lowercase().strip_prefix("content-length:")?.trim().parse().ok());
+        if lengths.into_iter().any(|length: usize| length != document.len()) {
+            return Err(Failure::Wrong(format!("{address}: the answer was cut off\n  write: the same command again")));
+        }
         let document: Value = serde_json::from_str(document).unwrap_or_default();
         match head.split(' ').nth(1) {
             Some("200") if head.starts_with("HTTP/") => Ok(document),
@@ -78,10 +77,25 @@ impl Client {
         }
     }
 
-    fn exchange(&self, request: &str) -> std::io::Result<String> {
-        let none = || std::io::Error::other("no such address");
-        let address = self.address.to_socket_addrs()?.next().ok_or_else(none)?;
-        let stream = TcpStream::connect_timeout(&address, WAIT)?;
+    fn exchange(&self, request: &str) -> Result<String, Failure> {
+        let none = |e: std::io::Error| self.silent(&e);
+        let addresses = self.address.to_socket_addrs().map_err(none)?;
+        let mut last = std::io::Error::other("no such address");
+        for address in addresses {
+            if !(address.ip().is_loopback() || self.transport.is_encrypted()) {
+                let help = "--certificate FILE.pem as the service has it (docs/security.md), or a tunnel to a loopback address";
+                let what = format!("{address}: is another computer, and the secret would travel in the clear");
+                return Err(Failure::Wrong(format!("{what}\n  write: {help}")));
+            }
+            match TcpStream::connect_timeout(&address, WAIT) {
+                Ok(stream) => return self.converse(stream, request).map_err(|e| self.misunderstood(&e)),
+                Err(e) => last = e,
+            }
+        }
+        Err(self.silent(&last))
+    }
+
+    fn converse(&self, stream: TcpStream, request: &str) -> std::io::Result<String> {
         stream.set_read_timeout(Some(WAIT))?;
         let host = self.address.rsplit_once(':').map_or(&*self.address, |(host, _)| host);
         let mut stream = self.transport.over(host, stream)?;
@@ -90,6 +104,27 @@ impl Client {
         // One request per connection: the service closes it.
         stream.take(MAX_ANSWER).read_to_end(&mut answer)?;
         String::from_utf8(answer).map_err(std::io::Error::other)
+    }
+
+    /// Nobody is there.
+    fn silent(&self, error: &std::io::Error) -> Failure {
+        let address = &self.address;
+        let help = format!("elbowroom live CELL --arbiter --control {address} --tokens FILE, or --at ADDR here");
+        Failure::Wrong(format!("{address}: the service does not answer: {error}\n  write: {help}"))
+    }
+
+    /// Somebody is there, and is no service that can be trusted.
+    fn misunderstood(&self, error: &std::io::Error) -> Failure {
+        let (address, why) = (&self.address, error.to_string());
+        if !self.transport.is_encrypted() {
+            return self.silent(error);
+        }
+        if why.contains("certificate") {
+            let help = "the service's own certificate, which holds today, for this name, and is CA:FALSE, as docs/security.md shows";
+            return Failure::Wrong(format!("{address}: the service is not trusted: {why}\n  write: {help}"));
+        }
+        let help = "no --certificate here if the service has none, or `live --certificate FILE.pem --certificate-key FILE.pem` there";
+        Failure::Wrong(format!("{address}: no encrypted service answers: {why}\n  write: {help}"))
     }
 }
 

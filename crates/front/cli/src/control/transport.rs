@@ -27,6 +27,10 @@ impl Transport {
         Ok(Self { tls: tls.map_err(|e| Failure::Wrong(format!("--certificate: {e}")))? })
     }
 
+    pub(super) fn is_encrypted(&self) -> bool {
+        self.tls.is_some()
+    }
+
     /// To the service of this name, over a connection.
     pub(super) fn over(&self, host: &str, stream: TcpStream) -> io::Result<Box<dyn Connection>> {
         match &self.tls {
@@ -39,7 +43,9 @@ impl Transport {
 /// The default build has no TLS, and says how to get it.
 #[cfg(not(feature = "live"))]
 mod missing {
-    use super::{Path, TcpStream, io};
+    use std::io;
+    use std::net::TcpStream;
+    use std::path::Path;
 
     pub(super) enum TlsClient {}
 

@@ -38,7 +38,7 @@ pub(crate) struct InspectArgs {
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) states: Option<PathBuf>,
     /// With --states: print link poses in mm and degrees wherever they go
-    #[arg(long, requires = "states")]
+    #[arg(long, requires = "states", conflicts_with = "json")]
     pub(crate) table: bool,
     /// Skip the slow parts: resolution levels, the allowed collision matrix, visual meshes
     #[arg(long, conflicts_with = "models")]

@@ -36,7 +36,7 @@ pub(crate) fn inspect(args: &InspectArgs) -> Result<ExitStatus, Failure> {
     let inspection = Inspection::of(&args.model, &options)?;
     if let Some(states) = &args.states {
         inspection.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
-        return link_poses(&inspection, states, args.table || std::io::stdout().is_terminal());
+        return link_poses(&inspection, states, args.table || std::io::stdout().is_terminal() && !args.json);
     }
     if let Some(path) = &args.picture {
         picture(&inspection, path)?;

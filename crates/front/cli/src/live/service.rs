@@ -27,6 +27,10 @@ pub(crate) fn live(args: &LiveArgs) -> Result<ExitStatus, Failure> {
     if let Some(bound_ms) = args.ros2_watchdog {
         return run_watchdog(&cell, &ros2, bound_ms, args);
     }
+    if args.page.certificate.is_some() && args.page.web.is_none() && args.control.is_none() {
+        let what = "--certificate: neither a page nor a control interface is served";
+        return Err(Failure::Wrong(format!("{what}\n  write: --web ADDR or --control ADDR beside it")));
+    }
     let keys = Keys::new(&cell.name);
     let options = ServiceOptions {
         robots: args.robots.clone(),

@@ -12,11 +12,11 @@ mod sessions;
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Instant;
 
 use elbowroom_cell::seal::NetworkKey;
 
 use super::pub_sub::{Handler, Network, NetworkError, Publisher, Subscription, Urgency};
+use crate::clock::Clock;
 use crate::event_handler::EventHandler;
 use message_seal::MessageSeal;
 use proofs::Proofs;
@@ -54,6 +54,7 @@ pub struct AuthenticatedNetwork {
 struct Process {
     seal: MessageSeal,
     sessions: Mutex<Sessions>,
+    clock: Clock,
     proofs: Proofs,
     refusals: Refusals,
 }
@@ -74,6 +75,7 @@ impl AuthenticatedNetwork {
             seal: MessageSeal::new(key)
                 .map_err(|e| NetworkError::Key { key: prefix.to_owned(), why: e.to_string() })?,
             sessions: Mutex::default(),
+            clock: Clock::start(),
             proofs: Proofs::new(&*inner, prefix)?,
             refusals: Refusals::new(on_event),
         });
@@ -89,7 +91,7 @@ impl AuthenticatedNetwork {
 impl Process {
     fn take_proof(&self, bytes: &[u8]) {
         if let Some(proof) = self.proofs.open(&self.seal, bytes) {
-            self.sessions.lock().unwrap_or_else(PoisonError::into_inner).prove(&proof, Instant::now());
+            self.sessions.lock().unwrap_or_else(PoisonError::into_inner).prove(&proof, self.clock.elapsed());
         }
     }
 
@@ -103,7 +105,7 @@ impl Process {
             Standing { heard_after: Some(0), ask: None }
         } else {
             let mut sessions = self.sessions.lock().unwrap_or_else(PoisonError::into_inner);
-            sessions.standing(message.session, Instant::now(), || self.seal.nonce())
+            sessions.standing(message.session, self.clock.elapsed(), || self.seal.nonce())
         };
         if let Some(nonce) = standing.ask {
             self.proofs.ask(&self.seal, message.session, nonce);

@@ -1,7 +1,7 @@
 //! The starts of other processes, and which of them have proved that they run now.
 
 use std::collections::HashMap;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use super::proofs::Proof;
 
@@ -18,7 +18,7 @@ const FORGOTTEN: Duration = Duration::from_secs(3);
 /// More sessions than this are not remembered: recordings of many starts cannot fill the memory.
 const MAX_SESSIONS: usize = 256;
 
-/// What is known of other processes.
+/// What is known of other processes. Times are those of one clock that goes on while the computer sleeps.
 #[derive(Debug, Default)]
 pub(super) struct Sessions {
     known: HashMap<u64, Session>,
@@ -28,21 +28,21 @@ pub(super) struct Sessions {
 struct Session {
     asked: Option<Asked>,
     proved: Option<Proved>,
-    heard: Instant,
+    heard: Duration,
 }
 
 /// A session was asked to repeat a number.
 #[derive(Debug, Clone, Copy)]
 struct Asked {
     nonce: u64,
-    first: Instant,
-    last: Instant,
+    first: Duration,
+    last: Duration,
 }
 
 /// A session has proved itself.
 #[derive(Debug, Clone, Copy)]
 struct Proved {
-    at: Instant,
+    at: Duration,
     /// The number of its message then.
     number: u64,
     /// The same of the proof before: what was sent after that one may still be on its way.
@@ -60,10 +60,10 @@ pub(super) struct Standing {
 
 impl Sessions {
     /// How a session stands of which a message has come. `nonce` gives a number that nobody knows.
-    pub(super) fn standing(&mut self, session: u64, now: Instant, nonce: impl FnOnce() -> u64) -> Standing {
+    pub(super) fn standing(&mut self, session: u64, now: Duration, nonce: impl FnOnce() -> u64) -> Standing {
         let Some(known) = self.entry(session, now) else { return Standing { heard_after: None, ask: None } };
         known.heard = now;
-        let since = |at: Instant| now.duration_since(at);
+        let since = |at: Duration| now.saturating_sub(at);
         known.proved = known.proved.filter(|proved| since(proved.at) < EXPIRES);
         let must_prove = known.proved.is_none_or(|proved| since(proved.at) > RENEW);
         let heard_after = known.proved.map(|proved| proved.number_before);
@@ -76,18 +76,18 @@ impl Sessions {
         Standing { heard_after, ask: Some(asked.nonce) }
     }
 
-    fn entry(&mut self, session: u64, now: Instant) -> Option<&mut Session> {
+    fn entry(&mut self, session: u64, now: Duration) -> Option<&mut Session> {
         if self.known.len() >= MAX_SESSIONS {
-            self.known.retain(|_, known| now.duration_since(known.heard) <= FORGOTTEN);
+            self.known.retain(|_, known| now.saturating_sub(known.heard) <= FORGOTTEN);
         }
         let has_room = self.known.len() < MAX_SESSIONS || self.known.contains_key(&session);
         has_room.then(|| self.known.entry(session).or_insert(Session { asked: None, proved: None, heard: now }))
     }
 
     /// A session has answered.
-    pub(super) fn prove(&mut self, proof: &Proof, now: Instant) {
+    pub(super) fn prove(&mut self, proof: &Proof, now: Duration) {
         let Some(known) = self.known.get_mut(&proof.session) else { return };
-        let is_answer = |asked: Asked| asked.nonce == proof.nonce && now.duration_since(asked.first) < ANSWERS;
+        let is_answer = |asked: Asked| asked.nonce == proof.nonce && now.saturating_sub(asked.first) < ANSWERS;
         if known.asked.is_some_and(is_answer) {
             let number_before = known.proved.map_or(proof.after, |before| before.number);
             known.proved = Some(Proved { at: now, number: proof.after, number_before });
@@ -109,7 +109,7 @@ mod tests {
 
     #[test]
     fn what_is_held_back_is_not_heard_and_a_slow_answer_counts() {
-        let (mut sessions, start) = (Sessions::default(), Instant::now());
+        let (mut sessions, start) = (Sessions::default(), Duration::ZERO);
         let at = |ms: u64| start + Duration::from_millis(ms);
         let proof = |nonce: u64, after: u64| Proof { session: OTHER, nonce, after };
         assert_eq!(sessions.standing(OTHER, at(0), || 41), Standing { heard_after: None, ask: Some(41) });
@@ -142,7 +142,7 @@ mod tests {
 
     #[test]
     fn recordings_of_many_starts_do_not_fill_the_memory() {
-        let (mut sessions, start) = (Sessions::default(), Instant::now());
+        let (mut sessions, start) = (Sessions::default(), Duration::ZERO);
         for session in 0..10_000 {
             sessions.standing(session, start, || session);
         }
