@@ -169,7 +169,7 @@ fn rejected_frames(log: &PerceptionLog) -> String {
         return String::new();
     }
     let mut table = Table::new("What was not used, and why", &["frame at (s)", "reason"]);
-    rejected.for_each(|(t, why)| table.row(&[format!("{t:.3}"), why.to_string()], "bad"));
+    rejected.for_each(|(t, why)| table.row(&[format!("{t:.3}"), why.clone()], "bad"));
     card("Rejected frames", &format!("<div class=\"scroll\">{}</div>", table.end()))
 }
 

@@ -494,8 +494,7 @@ impl<'a> Simulation<'a> {
         self.guard(robot, action)
     }
 
-    /// Attaches what a robot grips to its volumes and in the avoidance of all robots, and notes which volumes are to be
-    /// detached.
+    /// Guards what a robot grips or no longer has, in the avoidance of all robots, too.
     fn guard(&mut self, robot: usize, action: &GripAction) -> Result<(), FormatError> {
         let attachment = self.checker.attachment(action.object).cloned();
         let in_link = attachment.as_ref().map_or(Pose::IDENTITY, |a| a.in_link);
