@@ -1,6 +1,5 @@
 //! What tests, benches and developers' tools of several crates share: generators of pseudo-random numbers, folders of data, a
-//! counter of allocations, a hash, free addresses, certificates,
-//! arguments of benches. No crate that is shipped links this one.
+//! counter of allocations, a hash, free addresses, certificates, arguments of benches. No crate that is shipped links this one.
 //!
 //! ```
 //! use elbowroom_testkit::random::Random;
