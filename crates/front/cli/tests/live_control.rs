@@ -74,6 +74,14 @@ radius = 200
 warning = 100
 "#;
 
+    /// A folder with the cell file, tokens, and their secrets.
+    fn cell_and_tokens() -> tempfile::TempDir {
+        let folder = tempfile::tempdir().unwrap();
+        make_tokens(folder.path());
+        std::fs::write(folder.path().join("cell.toml"), CELL).unwrap();
+        folder
+    }
+
     /// Starts the whole cell, and returns its control address once it serves.
     fn start(folder: &Path, arguments: &[&str]) -> (LiveProcess, String) {
         start_at(folder, "127.0.0.1:0", arguments)
@@ -93,10 +101,8 @@ warning = 100
 
     #[test]
     fn a_running_cell_is_listed_switched_and_logged() {
-        let folder = tempfile::tempdir().unwrap();
+        let folder = cell_and_tokens();
         let folder = folder.path();
-        make_tokens(folder);
-        std::fs::write(folder.join("cell.toml"), CELL).unwrap();
         let (_process, at) = start(folder, &[]);
         let run = |arguments: &[&str], role: &str| {
             let secret = format!("{role}.secret");
@@ -144,10 +150,8 @@ warning = 100
     /// A panel on another computer: encrypted, or not at all.
     #[test]
     fn a_service_with_a_certificate_is_controlled_from_any_address() {
-        let folder = tempfile::tempdir().unwrap();
+        let folder = cell_and_tokens();
         let folder = folder.path();
-        make_tokens(folder);
-        std::fs::write(folder.join("cell.toml"), CELL).unwrap();
         let listen =
             ["live", "cell.toml", "--listen", "127.0.0.1:0", "--tokens", "tokens.toml", "--control", "0.0.0.0:0"];
         let open = answer(command(folder, &listen).output().unwrap());
@@ -174,9 +178,7 @@ warning = 100
         // A secret never leaves this computer in the clear, whether anybody listens or not: this address is nobody's.
         let far = control(folder, &["regions", "--at", "192.0.2.1:7448", "--secret", "operator.secret"]);
         assert!(far.status == 2 && far.stderr.contains("would travel in the clear"), "{}", far.stderr);
-        let other = tempfile::tempdir().unwrap();
-        make_tokens(other.path());
-        std::fs::write(other.path().join("cell.toml"), CELL).unwrap();
+        let other = cell_and_tokens();
         let (_plain, at) = start(other.path(), &[]);
         let certificate_of_another = folder.join("cell.pem");
         let words = ["regions", "--at", &at, "--secret", "operator.secret", "--certificate"];
@@ -189,10 +191,8 @@ warning = 100
 
     #[test]
     fn a_region_is_not_switched_on_around_a_simulated_robot() {
-        let folder = tempfile::tempdir().unwrap();
+        let folder = cell_and_tokens();
         let folder = folder.path();
-        make_tokens(folder);
-        std::fs::write(folder.join("cell.toml"), CELL).unwrap();
         let (_process, at) = start(folder, &["--simulate"]);
         let began = Instant::now();
         let secret = ["--at", &at, "--secret", "programmer.secret"];

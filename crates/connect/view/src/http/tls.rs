@@ -28,7 +28,7 @@ impl fmt::Debug for TlsIdentity {
 }
 
 impl TlsIdentity {
-    /// Reads both from PEM files; the certificate may be followed by those of its issuers.
+    /// Reads both from PEM files; the certificate may be followed by the certificates of its issuers.
     ///
     /// # Errors
     /// [`ViewError::Certificate`]: a file cannot be read or has none, or the two do not belong together. [`ViewError::Cell`]: others may

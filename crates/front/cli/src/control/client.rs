@@ -113,7 +113,7 @@ impl Client {
         Failure::Wrong(format!("{address}: the service does not answer: {error}\n  write: {help}"))
     }
 
-    /// Somebody is there, and is no service that can be trusted.
+    /// Somebody is there who cannot be trusted, or speaks otherwise.
     fn misunderstood(&self, error: &std::io::Error) -> Failure {
         let (address, why) = (&self.address, error.to_string());
         if !self.transport.is_encrypted() {

@@ -18,7 +18,7 @@ const FORGOTTEN: Duration = Duration::from_secs(3);
 /// More sessions than this are not remembered: recordings of many starts cannot fill the memory.
 const MAX_SESSIONS: usize = 256;
 
-/// What is known of other processes. Times are those of one clock that goes on while the computer sleeps.
+/// What is known of other processes. All times are by one clock, which goes on while the computer sleeps.
 #[derive(Debug, Default)]
 pub(super) struct Sessions {
     known: HashMap<u64, Session>,
