@@ -197,3 +197,20 @@ fn any_witness_points_have_the_same_distance() {
         }
     }
 }
+
+#[test]
+fn triangles_beside_solids_are_counted() {
+    let mut workspace = Workspace::new();
+    let mut measured = |above: &Shape, limit: f64| {
+        let (mesh, there) = (plate("mesh", Vec3::new(0.4, 0.3, 0.01)), Pose::from_translation(Vec3::Z * 0.1));
+        let settings = DistanceSettings { limit, ..Default::default() };
+        workspace.separation(above, &there, &mesh, &Pose::IDENTITY, settings);
+        workspace.stats().triangles_beside_solids
+    };
+    let ball = Shape::Sphere(elbowroom_proximity::Sphere { radius: 0.02 });
+    let (of_ball, of_plate) =
+        (measured(&ball, f64::INFINITY), measured(&plate("box", Vec3::new(0.4, 0.3, 0.02)), f64::INFINITY));
+    // The plate has twelve triangles; parallel faces are looked at once more for their witness points.
+    assert!((1..=12).contains(&of_ball) && of_plate > of_ball, "{of_ball} {of_plate}");
+    assert_eq!((measured(&ball, 0.01), measured(&plate("mesh", Vec3::splat(0.02)), f64::INFINITY)), (0, 0));
+}

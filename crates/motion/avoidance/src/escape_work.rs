@@ -11,6 +11,7 @@ const COARSE_PAIR_NS: u64 = 200;
 const CLEARED_PAIR_NS: u64 = 150;
 const BOXES_NS: u64 = 1_000;
 const TRIANGLES_NS: u64 = 1_000;
+const SOLID_TRIANGLES_NS: u64 = 300;
 const MARGIN_NS: u64 = 8_000;
 
 /// An amount of work, ns. Equal on every machine, because tests are counted and not time.
@@ -35,6 +36,7 @@ impl EscapeWork {
                 + CLEARED_PAIR_NS * stats.pairs_cleared.total()
                 + BOXES_NS * stats.mesh_boxes
                 + TRIANGLES_NS * stats.mesh_triangles
+                + SOLID_TRIANGLES_NS * stats.triangles_beside_solids
                 + MARGIN_NS * margins,
         )
     }

@@ -126,7 +126,7 @@ impl NarrowPhase {
 
     /// Adds the statistics of the last query, which was about these shapes.
     fn count_mesh_query(&mut self, x: &LocalShape, y: &LocalShape) {
-        if let (Shape::Mesh(_), Shape::Mesh(_)) = (&x.shape, &y.shape) {
+        if matches!(x.shape, Shape::Mesh(_)) || matches!(y.shape, Shape::Mesh(_)) {
             self.stats.add_mesh_query(self.workspace.stats());
         }
     }
@@ -195,7 +195,9 @@ impl NarrowPhase {
         let beyond = (limit + 1e-9 * (1.0 + limit), [x_in_world.translation, y_in_world.translation]);
         let coarse = match (&x.shape, &y.shape) {
             (Shape::Mesh(m), Shape::Mesh(n)) => {
-                bvh_lower_bound(m, &x_in_world, n, &y_in_world, depth, limit, &mut self.workspace)
+                let coarse = bvh_lower_bound(m, &x_in_world, n, &y_in_world, depth, limit, &mut self.workspace);
+                self.count_mesh_query(x, y);
+                coarse
             }
             (Shape::Mesh(m), other) => Some(bvh_lower_bound_to_shape(m, &x_in_world, other, &y_in_world, depth)?),
             (other, Shape::Mesh(m)) => {
@@ -204,7 +206,6 @@ impl NarrowPhase {
             }
             _ => return None,
         };
-        self.count_mesh_query(x, y);
         Some(coarse.map_or(beyond, |c| (c.lower_bound, [c.on_a, c.on_b])))
     }
 

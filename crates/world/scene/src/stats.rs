@@ -71,12 +71,15 @@ pub struct CheckerStats {
     pub mesh_boxes: u64,
     /// Pairs of triangles left undecided by boxes and single precision, in pairs of meshes.
     pub mesh_triangles: u64,
+    /// Triangles of a mesh that were measured against a shape that is no mesh; for witness points once more for each of its faces.
+    pub triangles_beside_solids: u64,
 }
 
 impl CheckerStats {
     pub(crate) fn add_mesh_query(&mut self, visits: elbowroom_proximity::QueryStats) {
         self.mesh_boxes += u64::from(visits.boxes);
         self.mesh_triangles += u64::from(visits.triangles);
+        self.triangles_beside_solids += u64::from(visits.triangles_beside_solids);
     }
 }
 
@@ -88,5 +91,6 @@ impl std::ops::AddAssign for CheckerStats {
         self.pairs_skipped += other.pairs_skipped;
         self.mesh_boxes += other.mesh_boxes;
         self.mesh_triangles += other.mesh_triangles;
+        self.triangles_beside_solids += other.triangles_beside_solids;
     }
 }

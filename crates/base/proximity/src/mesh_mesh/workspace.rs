@@ -9,7 +9,7 @@ use super::node_pair::NodePairStack;
 use super::triangle_batch::TriangleBatch;
 use crate::lanes::detected_simd_level;
 
-/// Work done by one query on two meshes.
+/// Work done by one query with a mesh: the first five are of two meshes.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct QueryStats {
     /// Pairs of nodes expanded.
@@ -22,6 +22,8 @@ pub struct QueryStats {
     pub triangles: u32,
     /// Batches of up to eight such pairs measured in f64.
     pub batches: u32,
+    /// Triangles measured against a shape that is no mesh; for witness points once more for each of its faces.
+    pub triangles_beside_solids: u32,
 }
 
 /// Memory that queries reuse: one per thread. It never allocates, and no answer depends on earlier queries.
@@ -58,7 +60,7 @@ impl Workspace {
         Self { simd_level: Some(simd_level), ..Self::new() }
     }
 
-    /// Work done by the last query on two meshes.
+    /// Work done by the last query with a mesh.
     pub fn stats(&self) -> QueryStats {
         self.stats
     }
@@ -66,6 +68,11 @@ impl Workspace {
     /// The closest features of the last distance query on two meshes: `None` where they were beyond the limit.
     pub fn closest_features(&self) -> Option<MeshFeatures> {
         self.closest_features
+    }
+
+    /// A query of another method did so much.
+    pub(crate) fn count(&mut self, stats: QueryStats) {
+        self.stats = stats;
     }
 
     pub(super) fn begin_query(&mut self) {
@@ -86,5 +93,5 @@ pub(crate) fn with_thread_workspace<T>(query: impl FnOnce(&mut Workspace) -> T) 
 }
 
 impl QueryStats {
-    const ZERO: Self = Self { nodes: 0, boxes: 0, leaves: 0, triangles: 0, batches: 0 };
+    const ZERO: Self = Self { nodes: 0, boxes: 0, leaves: 0, triangles: 0, batches: 0, triangles_beside_solids: 0 };
 }

@@ -8,6 +8,7 @@ use super::gap::Gap;
 use super::support_features::{bounding_sphere, for_each_face, nearest, normal, support_feature};
 use crate::TriMesh;
 use crate::bvh::BoxDistance;
+use crate::mesh_mesh::QueryStats;
 use crate::shape::hull::farthest;
 use crate::triangle::nearest_on_triangle;
 use crate::witness_patch::{
@@ -29,6 +30,7 @@ pub(super) fn mesh_continuous_witness(
     gap: Gap,
     nearest_triangle: usize,
     spread: f64,
+    stats: &mut QueryStats,
 ) -> Gap {
     let Some((core_radius, core_center)) = bounding_sphere(core) else { return gap };
     let Some(toward_core) = (gap.on_b - gap.on_a).try_normalize() else { return gap };
@@ -65,6 +67,7 @@ pub(super) fn mesh_continuous_witness(
         }
         let of_mesh = Polygon::new(corners);
         for_each_face(core, to_core(-direction), &mut |of_core| {
+            stats.triangles_beside_solids += 1;
             let of_core = Polygon::new(of_core.iter().map(|p| core_in_mesh.transform_point(*p)));
             let Some(found) = choice.query.closest_points(&of_mesh, &of_core) else { return };
             let onto_mesh = |q| nearest_on_triangle(q, corners);

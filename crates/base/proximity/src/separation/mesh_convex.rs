@@ -12,6 +12,7 @@ use super::segment::Segment;
 use super::support_features::bounding_sphere;
 use crate::TriMesh;
 use crate::bvh::{BoxDistance, LeastHeight};
+use crate::mesh_mesh::QueryStats;
 use crate::triangle::{nearest_on_triangle, segment_triangle};
 
 /// The best answer so far.
@@ -29,12 +30,14 @@ struct Best {
     sufficient: f64,
     /// Smallest proven bound of all triangles.
     lower: f64,
+    /// Triangles measured.
+    measured: u32,
 }
 
 impl Best {
     fn new(limit: f64, sufficient: f64, tie_tolerance: f64) -> Self {
         let lower = f64::INFINITY;
-        Self { gap: None, triangle: 0, limit, tie_tolerance, spread: 0.0, sufficient, lower }
+        Self { gap: None, triangle: 0, limit, tie_tolerance, spread: 0.0, sufficient, lower, measured: 0 }
     }
 
     fn offer(&mut self, triangle: usize, gap: Gap) {
@@ -64,6 +67,7 @@ impl Best {
     /// Offers the gap that `leaf` computes for every triangle that may be within the limit of the core's box.
     fn search(&mut self, mesh: &TriMesh, query: &BoxDistance, leaf: &dyn Fn(usize, f64) -> Option<Gap>) {
         mesh.bvh.traverse(query, BoxDistance::limit(&mesh.bvh, self.limit), &mut |triangle| {
+            self.measured += 1;
             if let Some(gap) = leaf(triangle, self.limit + self.tie_tolerance) {
                 self.offer(triangle, gap);
             }
@@ -84,6 +88,7 @@ pub(super) fn mesh_core(
     limit: f64,
     radius: f64,
     goal: Goal,
+    stats: &mut QueryStats,
 ) -> Option<Gap> {
     // The bound in `Gap::separation` decides; this one must not pass the limit before it.
     let (limit, sufficient) = (limit + radius + 2.0 * rounding(radius), radius);
@@ -121,6 +126,7 @@ pub(super) fn mesh_core(
             });
         }
     }
+    stats.triangles_beside_solids += best.measured;
     // The centre of a hull's bounds may be outside of it.
     let own = if let Core::Hull(hull) = core { hull.vertices()[0] } else { core.middle() };
     let inside = core_in_mesh.transform_point(own);
@@ -132,7 +138,7 @@ pub(super) fn mesh_core(
     if !(tie_tolerance > 0.0 && gap.is_beyond(radius)) {
         return Some(gap);
     }
-    Some(mesh_continuous_witness(mesh, core, core_in_mesh, gap, triangle, spread))
+    Some(mesh_continuous_witness(mesh, core, core_in_mesh, gap, triangle, spread, stats))
 }
 
 /// The mesh's lowest point over a half-space, in the half-space's frame.

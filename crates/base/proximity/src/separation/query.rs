@@ -12,7 +12,7 @@ use super::settings::DistanceSettings;
 use super::sphere::sphere;
 use super::{half_space, mesh_convex};
 use crate::mesh_mesh::{
-    EXPECT_FAR, EXPECT_NEAR, FirstBound, WarmStart, Workspace, distance_upper_bound, features_within,
+    EXPECT_FAR, EXPECT_NEAR, FirstBound, QueryStats, WarmStart, Workspace, distance_upper_bound, features_within,
     mesh_separation_with, with_thread_workspace,
 };
 use crate::shape::is_usable_pose;
@@ -164,19 +164,35 @@ fn dispatch_meshes(
 ) -> Option<Separation> {
     match (a, b) {
         (Shape::Mesh(m), Shape::Mesh(n)) => mesh_mesh(m, a_in_world, n, b_in_world, limit, goal, options),
-        _ => validated(a, a_in_world, b, b_in_world, limit, goal),
+        (Shape::Mesh(_), _) | (_, Shape::Mesh(_)) => {
+            let mut stats = QueryStats::default();
+            let found = validated(a, a_in_world, b, b_in_world, limit, goal, &mut stats);
+            if let Some(workspace) = options.workspace {
+                workspace.count(stats);
+            }
+            found
+        }
+        _ => validated(a, a_in_world, b, b_in_world, limit, goal, &mut QueryStats::default()),
     }
 }
 
 /// All pairs but two meshes: validity of the input, the order of the pair, its method, and the limit.
-fn validated(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: f64, goal: Goal) -> Option<Separation> {
+fn validated(
+    a: &Shape,
+    a_in_world: &Pose,
+    b: &Shape,
+    b_in_world: &Pose,
+    limit: f64,
+    goal: Goal,
+    stats: &mut QueryStats,
+) -> Option<Separation> {
     if !(a.is_usable(a_in_world) && b.is_usable(b_in_world)) {
         return Some(Separation::unknown(a_in_world, b_in_world));
     }
     let found = if comes_first(a, a_in_world, b, b_in_world) {
-        by_first_shape(a, a_in_world, b, b_in_world, limit, goal)?
+        by_first_shape(a, a_in_world, b, b_in_world, limit, goal, stats)?
     } else {
-        by_first_shape(b, b_in_world, a, a_in_world, limit, goal)?.swapped()
+        by_first_shape(b, b_in_world, a, a_in_world, limit, goal, stats)?.swapped()
     };
     // Products of large numbers may have overflowed.
     let (p, q) = (found.on_a, found.on_b);
@@ -224,10 +240,11 @@ fn by_first_shape(
     b_in_world: &Pose,
     limit: f64,
     goal: Goal,
+    stats: &mut QueryStats,
 ) -> Option<Separation> {
     match a {
-        Shape::Sphere(s) => sphere(*s, a_in_world, b, b_in_world, limit),
-        _ => all_but_spheres(a, a_in_world, b, b_in_world, limit, goal),
+        Shape::Sphere(s) => sphere(*s, a_in_world, b, b_in_world, limit, stats),
+        _ => all_but_spheres(a, a_in_world, b, b_in_world, limit, goal, stats),
     }
 }
 
@@ -240,6 +257,7 @@ fn all_but_spheres(
     b_in_world: &Pose,
     limit: f64,
     goal: Goal,
+    stats: &mut QueryStats,
 ) -> Option<Separation> {
     match (a, b) {
         (Shape::Capsule(c), Shape::Capsule(_) | Shape::Cylinder(_) | Shape::Cuboid(_)) => {
@@ -260,7 +278,8 @@ fn all_but_spheres(
         }
         (_, Shape::Mesh(m)) => {
             let (core, radius) = rounded(a)?;
-            let gap = mesh_convex::mesh_core(m, &core, &b_in_world.inverse_mul(a_in_world), limit, radius, goal)?;
+            let core_in_mesh = b_in_world.inverse_mul(a_in_world);
+            let gap = mesh_convex::mesh_core(m, &core, &core_in_mesh, limit, radius, goal, stats)?;
             Some(gap.separation([0.0, radius], b_in_world).swapped())
         }
         _ => {

@@ -8,11 +8,19 @@ use super::goal::Goal;
 use super::mesh_convex::mesh_core;
 use super::result::Separation;
 use super::settings::WitnessPoints;
+use crate::mesh_mesh::QueryStats;
 use crate::{Shape, Sphere};
 
 /// A sphere is its centre with a radius, and the distance of the centre has a closed form.
 #[inline]
-pub(super) fn sphere(s: Sphere, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, limit: f64) -> Option<Separation> {
+pub(super) fn sphere(
+    s: Sphere,
+    a_in_world: &Pose,
+    b: &Shape,
+    b_in_world: &Pose,
+    limit: f64,
+    stats: &mut QueryStats,
+) -> Option<Separation> {
     let p = b_in_world.inverse_transform_point(a_in_world.translation);
     let size = (a_in_world.translation.abs() + b_in_world.translation.abs()).max_element();
     let (q, radius) = match b {
@@ -25,7 +33,7 @@ pub(super) fn sphere(s: Sphere, a_in_world: &Pose, b: &Shape, b_in_world: &Pose,
         Shape::Mesh(m) => {
             // The nearest point to a centre is unique but for coincidence.
             let goal = Goal::Separation(WitnessPoints::Any);
-            let gap = mesh_core(m, &Core::Point, &Pose::from_translation(p), limit, s.radius, goal)?;
+            let gap = mesh_core(m, &Core::Point, &Pose::from_translation(p), limit, s.radius, goal, stats)?;
             return Some(gap.separation([0.0, s.radius], b_in_world).swapped());
         }
     };

@@ -6,44 +6,17 @@ use std::path::{Path, PathBuf};
 
 use elbowroom_formats::FormatError;
 use elbowroom_monitor::AccessClass;
-use serde::{Deserialize, Serialize};
 
 use super::change::Change;
-use super::log_head::{LogHead, LogSigner, RESTORE};
+use super::control_entry::ControlEntry;
+use super::control_history::{SignedPart, verify};
+use super::log_head::{LogHead, LogSigner};
 use super::result::Result;
 use super::{hex, text, time};
 
 /// The log of the changes of a running cell: `cell.control.jsonl` beside `cell.toml`.
 pub fn control_log_of(cell: &Path) -> PathBuf {
     cell.with_extension("control.jsonl")
-}
-
-/// A change of a running cell, and who asked for it.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ControlEntry {
-    /// Counted from 1.
-    pub sequence: u64,
-    /// Time in UTC, by the clock of the service's computer.
-    pub time: String,
-    /// The access class of the token.
-    pub class: String,
-    /// The name of the token.
-    pub name: String,
-    /// The program that wrote the entry, with its version.
-    pub program: String,
-    /// The action: `switch region.cart`, `clear robot.left`.
-    pub action: String,
-    /// The note of the request.
-    pub note: Option<String>,
-    /// What differs.
-    pub changes: Vec<Change>,
-    /// The cell's checksum before.
-    pub checksum_before: String,
-    /// The cell's checksum after: the same where no region was edited.
-    pub checksum: String,
-    /// SHA-256 (hex) of the previous line; 64 zeros in the first entry.
-    pub previous: String,
 }
 
 /// A change that is to be logged.
@@ -89,16 +62,11 @@ impl ControlLog {
         file.try_lock().map_err(|_| {
             FormatError::new(path, None, "is written by another process").hint("one service with --control per cell")
         })?;
-        let written = text::read(path)?;
-        let signed = LogHead::read(path)?;
-        let (entries, text) = signed_entries(path, &written, signed.as_ref())?;
-        let signer = LogSigner::open(path, signed.as_ref())?;
-        if text.len() < written.len() {
-            file.set_len(text.len() as u64).map_err(text::unwritable(path))?;
-        }
-        let head = signed.map_or_else(|| "0".repeat(64), |head| head.hash);
-        let (length, entries) = (text.len() as u64, entries.len() as u64);
-        Ok(Self { path: path.to_owned(), file, signer, length, entries, head, has_rest: false })
+        let head = LogHead::read(path)?;
+        let SignedPart { length, entries, hash } = verify(path, head.as_ref(), |_| ())?;
+        let signer = LogSigner::open(path, head.as_ref())?;
+        file.set_len(length).map_err(text::unwritable(path))?;
+        Ok(Self { path: path.to_owned(), file, signer, length, entries, head: hash, has_rest: false })
     }
 
     /// Appends a change, and returns once it is on the disk.
@@ -124,7 +92,7 @@ impl ControlLog {
             checksum: after.into(),
             previous: self.head.clone(),
         };
-        let line = line(&entry);
+        let line = entry.line();
         let (bytes, head) = (line.clone() + "\n", hex::hash(line.as_bytes()));
         let written = self.file.write_all(bytes.as_bytes()).and_then(|()| self.file.sync_all());
         let written = written.map_err(text::unwritable(&self.path));
@@ -145,75 +113,9 @@ impl ControlLog {
     }
 }
 
-/// A control log that was verified.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct ControlHistory {
-    /// In the order in which the changes were made.
-    pub entries: Vec<ControlEntry>,
-    /// The short id of the key that has signed them; empty for a log without entries.
-    pub signed_by: String,
-}
-
-/// Reads a log and verifies it.
-///
-/// # Errors
-/// [`FormatError`] at the first line that does not follow the one before it, or where lines are missing or not signed.
-pub fn control_history(path: &Path) -> Result<ControlHistory> {
-    let read = || {
-        let head = LogHead::read(path)?;
-        let entries = signed_entries(path, &text::read(path)?, head.as_ref())?.0;
-        Ok(ControlHistory { entries, signed_by: head.and_then(|head| head.key_id()).unwrap_or_default() })
-    };
-    // The service may write between the two files.
-    read().or_else(|_: FormatError| read())
-}
-
-/// The entries that are signed, and their lines. At most one line more may be there, or a half one, which was being written.
-fn signed_entries<'t>(path: &Path, text: &'t str, head: Option<&LogHead>) -> Result<(Vec<ControlEntry>, &'t str)> {
-    let wrong = |line: Option<usize>, what: &str| FormatError::new(path, line, what).hint(RESTORE);
-    let (count, hash) = head.map_or((0, "0".repeat(64)), |head| (head.entries as usize, head.hash.clone()));
-    let lines: Vec<&str> = text.split_inclusive('\n').collect();
-    let whole = lines.iter().filter(|line| line.ends_with('\n')).count();
-    if whole < count {
-        return Err(wrong(None, &format!("has {whole} lines, of the {count} that were signed: its end was cut off")));
-    }
-    let signed = &text[..lines[..count].iter().map(|line| line.len()).sum()];
-    let (entries, last) = verified(path, signed)?;
-    if last != hash {
-        return Err(wrong(None, "is not the log that was signed"));
-    }
-    // The service makes its key before the first line, and signs each line after it was written.
-    let unsigned = usize::from(head.is_some() || LogSigner::file_of(path).exists());
-    if lines.len() > count + unsigned {
-        return Err(wrong(Some(count + 1), "is not signed"));
-    }
-    Ok((entries, signed))
-}
-
-fn line(entry: &ControlEntry) -> String {
-    // Serialization of texts and numbers cannot fail; an empty line would not be accepted again.
-    serde_json::to_string(entry).unwrap_or_default()
-}
-
-/// The entries, and the hash of the last line.
-fn verified(path: &Path, text: &str) -> Result<(Vec<ControlEntry>, String)> {
-    let (mut entries, mut head) = (Vec::new(), "0".repeat(64));
-    for (number, written) in (1..).zip(text.lines()) {
-        let wrong = |what: &str| FormatError::new(path, number, what).hint(RESTORE);
-        let entry: ControlEntry =
-            serde_json::from_str(written).map_err(|_| wrong("is not an entry of a control log, or was modified"))?;
-        // Only the form that is written here: otherwise spaces or repeated keys would go unnoticed.
-        if entry.sequence != number as u64 || entry.previous != head || line(&entry) != written {
-            return Err(wrong("does not follow the entry before it, or was modified"));
-        }
-        head = hex::hash(written.as_bytes());
-        entries.push(entry);
-    }
-    Ok((entries, head))
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::control_history::control_history;
     use super::*;
 
     fn switched(on: bool) -> Controlled<'static> {
@@ -267,7 +169,7 @@ mod tests {
             assert_eq!(open.is_ok(), read.is_ok());
             read.err().map_or_else(String::new, |e| e.to_string())
         };
-        assert!(message(first_line).contains("has 1 lines, of the 2 that were signed"));
+        assert!(message(first_line).contains("has 1 of the 2 lines that were signed"));
         std::fs::write(&head, signed.replace("\"entries\":2", "\"entries\":1")).unwrap();
         assert!(message(first_line).contains("is not signed, or was modified"));
         std::fs::remove_file(&head).unwrap();
@@ -299,5 +201,41 @@ mod tests {
             assert_eq!(log.append(switched(false)).unwrap().sequence, 2);
             assert_eq!(control_history(&path).unwrap().entries.len(), 2);
         }
+    }
+
+    /// Written as the service writes it, but signed once: 1,130 lines of 60 kB.
+    #[test]
+    fn a_log_of_more_than_64_mebibytes_is_opened() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = control_log_of(&folder.path().join("cell.toml"));
+        let entry = ControlEntry {
+            sequence: 1,
+            time: "2026-11-26T12:00:00Z".into(),
+            class: "programmer".into(),
+            name: "panel".into(),
+            program: "elbowroom".into(),
+            action: "switch region.cart".into(),
+            note: Some("n".repeat(60_000)),
+            changes: Vec::new(),
+            checksum_before: "abc".into(),
+            checksum: "abc".into(),
+            previous: "0".repeat(64),
+        };
+        let (first, mut previous, mut text) = (entry.line(), entry.previous.clone(), String::new());
+        for sequence in 1..=1_130 {
+            let line = first.replacen(":1,", &format!(":{sequence},"), 1).replacen(&entry.previous, &previous, 1);
+            previous = hex::hash(line.as_bytes());
+            text = text + &line + "\n";
+        }
+        assert!(text.len() > 64 << 20);
+        std::fs::write(&path, &text).unwrap();
+        LogSigner::open(&path, None).unwrap().sign(1_130, &previous).unwrap();
+        assert_eq!(ControlLog::open(&path).unwrap().head(), previous);
+        std::fs::write(&path, text.replacen("panel", "other", 1)).unwrap();
+        let error = ControlLog::open(&path).unwrap_err();
+        assert_eq!(
+            (error.line, error.what.as_str()),
+            (Some(2), "does not follow the entry before it, or was modified")
+        );
     }
 }

@@ -12,6 +12,8 @@
 mod access_tokens;
 mod authorize;
 mod change;
+mod control_entry;
+mod control_history;
 mod control_log;
 mod edit;
 mod entry;
@@ -37,7 +39,9 @@ use elbowroom_monitor::AccessClass;
 
 pub use access_tokens::{AccessToken, AccessTokens};
 pub use change::Change;
-pub use control_log::{ControlEntry, ControlHistory, ControlLog, Controlled, control_history, control_log_of};
+pub use control_entry::ControlEntry;
+pub use control_history::{ControlHistory, control_history};
+pub use control_log::{ControlLog, Controlled, control_log_of};
 pub use edit::{CellEdit, Signer, edit, seal};
 pub use entry::LogEntry;
 pub use keys::{PrivateKey, PublicKey};

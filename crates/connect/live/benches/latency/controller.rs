@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use elbowroom_cell::Cell;
 use elbowroom_interlock::Micros;
 use elbowroom_live::messages::OverrideAnswer;
-use elbowroom_live::network::{Network, Urgency, ZenohNetwork, ZenohSettings};
+use elbowroom_live::network::{Network, Urgency};
 use elbowroom_live::{Clock, ControllerClient, ControllerState, Keys, boot_number, configuration_number};
 
 use crate::cell::{MIDDLE, SWINGS};
@@ -51,16 +51,14 @@ impl Shared {
     }
 }
 
-/// Measures for `seconds` at `rate_hz`, connected to `address`.
+/// Measures for `seconds` at `rate_hz`, over a network to the node.
 pub fn measure(
     cell: &Cell,
     robot: &str,
-    address: &str,
+    network: &dyn Network,
     seconds: u64,
     rate_hz: u64,
 ) -> Result<Measured, Box<dyn Error>> {
-    let settings = ZenohSettings { connect: Some(address.to_owned()), ..ZenohSettings::default() };
-    let network = ZenohNetwork::open(&settings)?;
     let (keys, clock) = (Keys::new(&cell.name), Clock::start());
     let watchdog = Micros::from_seconds(cell.laws.laws.stale_s);
     let shared = Arc::new(Mutex::new(Shared {

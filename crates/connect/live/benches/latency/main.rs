@@ -1,7 +1,7 @@
-//! Time from a joint state to its override, over Zenoh on the loopback network, with a process per node and per controller.
+//! Time from a joint state to its override, over Zenoh or by UDP datagrams on the loopback network, with a process per node and per controller.
 //!
 //! ```sh
-//! cargo bench -p elbowroom-live --bench latency -- --robots 8 --seconds 60 [--rate 500] [--through-arbiter] [--json]
+//! cargo bench -p elbowroom-live --bench latency -- --robots 8 --seconds 60 [--rate 500] [--udp | --through-arbiter] [--json]
 //! ```
 //!
 //! Each node's process accepts its controller's connection; `--through-arbiter` sends both ways through the arbiter's process
@@ -18,7 +18,7 @@ use std::io::Read;
 use std::process::{Child, Command, ExitCode, Stdio};
 use std::time::Duration;
 
-use elbowroom_live::network::ZENOH_RUNTIME;
+use elbowroom_live::network::{Network, UdpNetwork, ZENOH_RUNTIME, ZenohNetwork, ZenohSettings};
 use elbowroom_live::{Service, ServiceOptions};
 use measured::Measured;
 
@@ -32,6 +32,8 @@ struct Options {
     seconds: u64,
     rate_hz: u64,
     through_arbiter: bool,
+    /// Controllers speak UDP.
+    udp: bool,
     json: bool,
     /// What a process is that this one has started: its part, the robot, its address, the arbiter's address.
     part: Option<(String, usize, String, String)>,
@@ -53,7 +55,8 @@ fn main() -> ExitCode {
 }
 
 fn options() -> Result<Options, Box<dyn Error>> {
-    let mut options = Options { robots: 1, seconds: 60, rate_hz: 500, through_arbiter: false, json: false, part: None };
+    let mut options =
+        Options { robots: 1, seconds: 60, rate_hz: 500, through_arbiter: false, udp: false, json: false, part: None };
     let mut arguments = elbowroom_testkit::bench::arguments();
     while let Some(argument) = arguments.next() {
         let mut value = || arguments.next().ok_or_else(|| format!("{argument} needs a value"));
@@ -62,18 +65,22 @@ fn options() -> Result<Options, Box<dyn Error>> {
             "--seconds" => options.seconds = value()?.parse()?,
             "--rate" => options.rate_hz = value()?.parse()?,
             "--through-arbiter" => options.through_arbiter = true,
+            "--udp" => options.udp = true,
             "--json" => options.json = true,
             "--part" => options.part = Some((value()?, value()?.parse()?, value()?, value()?)),
             _ => {
-                let known = "--robots N, --seconds S, --rate HZ, --through-arbiter, --json";
+                let known = "--robots N, --seconds S, --rate HZ, --udp, --through-arbiter, --json";
                 return Err(format!("{argument} is unknown\n  help: {known}").into());
             }
         }
     }
     let is_allowed = (1..=MOST_ROBOTS).contains(&options.robots)
         && (1..=MOST_SECONDS).contains(&options.seconds)
-        && (1..=1000).contains(&options.rate_hz);
-    let limits = format!("1 to {MOST_ROBOTS} robots, 1 to {MOST_SECONDS} seconds, 1 to 1000 Hz");
+        && (1..=1000).contains(&options.rate_hz)
+        && !(options.udp && options.through_arbiter);
+    let limits = format!(
+        "1 to {MOST_ROBOTS} robots, 1 to {MOST_SECONDS} seconds, 1 to 1000 Hz, one of --udp and --through-arbiter"
+    );
     if is_allowed { Ok(options) } else { Err(limits.into()) }
 }
 
@@ -97,6 +104,9 @@ fn start(options: &Options, part: &str, robot: usize, address: &str, arbiter: &s
     }
     if options.through_arbiter {
         command.arg("--through-arbiter");
+    }
+    if options.udp {
+        command.arg("--udp");
     }
     command.args(["--part", part, &robot.to_string(), address, arbiter]);
     // As a service should be started; another value is kept, to compare.
@@ -143,7 +153,7 @@ fn print(options: &Options, each: &[Measured], all: &Measured) {
         let robots: Vec<_> = each.iter().map(Measured::json).collect();
         let report = serde_json::json!({
             "robots": options.robots, "seconds": options.seconds, "rate_hz": options.rate_hz,
-            "through_arbiter": options.through_arbiter, "each": robots, "all": all.json(),
+            "through_arbiter": options.through_arbiter, "udp": options.udp, "each": robots, "all": all.json(),
         });
         println!("{report}");
         return;
@@ -154,9 +164,10 @@ fn print(options: &Options, each: &[Measured], all: &Measured) {
 
 /// Guards one robot until its standard input ends, or well after all is measured.
 fn node(options: &Options, robot: usize, address: String, arbiter: String) -> Result<(), Box<dyn Error>> {
-    let listen = (!options.through_arbiter).then_some(address);
-    let service =
-        ServiceOptions { robots: vec![cell::name(robot)], listen, connect: Some(arbiter), ..Default::default() };
+    let robots = vec![cell::name(robot)];
+    let of_controller = (!options.through_arbiter).then_some(address);
+    let (listen, udp) = if options.udp { (None, of_controller) } else { (of_controller, None) };
+    let service = ServiceOptions { robots, listen, udp, connect: Some(arbiter), ..Default::default() };
     let service = Service::start(cell::cell(options.robots)?, &service)?;
     let longest = Duration::from_secs(options.seconds + 120);
     std::thread::spawn(move || {
@@ -171,7 +182,12 @@ fn node(options: &Options, robot: usize, address: String, arbiter: String) -> Re
 
 fn controller(options: &Options, robot: usize, address: &str) -> Result<(), Box<dyn Error>> {
     let cell = cell::cell(options.robots)?;
-    let measured = controller::measure(&cell, &cell::name(robot), address, options.seconds, options.rate_hz)?;
+    let network: Box<dyn Network> = if options.udp {
+        Box::new(UdpNetwork::bind("127.0.0.1:0", &[address])?)
+    } else {
+        Box::new(ZenohNetwork::open(&ZenohSettings { connect: Some(address.to_owned()), ..ZenohSettings::default() })?)
+    };
+    let measured = controller::measure(&cell, &cell::name(robot), &*network, options.seconds, options.rate_hz)?;
     println!("{}", serde_json::to_string(&measured)?);
     Ok(())
 }

@@ -1,8 +1,8 @@
 //! A network of UDP datagrams, for controllers without Zenoh: `docs/live.md` has the layout.
 //!
-//! A subscriber tells every process that it knows which key it wants, each second; a publisher sends to those who did so
-//! within the last three seconds. A datagram is `EU`, version 1, kind (1 subscribe, 2 publish), length of the key (one byte), key,
-//! contents.
+//! A process that knows others tells them each second which keys it wants, and sends them what it publishes: a controller knows
+//! its node, which need not know it. What anybody publishes is also sent to those who wanted it within the last three seconds.
+//! A datagram is `EU`, version 1, kind (1 subscribe, 2 publish), length of the key (one byte), key, contents.
 
 use std::collections::HashMap;
 use std::fmt;
@@ -35,7 +35,7 @@ pub struct UdpNetwork {
 
 struct Shared {
     socket: UdpSocket,
-    /// Who hears what this process wants.
+    /// Who hears what this process wants, and what it publishes.
     peers: Vec<SocketAddr>,
     state: Mutex<State>,
     is_closed: AtomicBool,
@@ -55,7 +55,8 @@ impl fmt::Debug for UdpNetwork {
 }
 
 impl UdpNetwork {
-    /// Listens at an address (`HOST:PORT`; port 0 for any), and knows the processes at `peers`.
+    /// Listens at an address (`HOST:PORT`; port 0 for any), and knows the processes at `peers`: they hear what this one wants and
+    /// publishes.
     ///
     /// # Errors
     /// [`NetworkError::Address`] where an address cannot be used.
@@ -198,7 +199,8 @@ impl Network for UdpNetwork {
     fn publisher(&self, key: &str, _: Urgency) -> Result<Box<dyn Publisher>, NetworkError> {
         check_key(key)?;
         self.shared.lock().subscribers.entry(key.to_owned()).or_default();
-        let (datagram, to) = (Vec::with_capacity(MAX_BYTES), Vec::with_capacity(MAX_SUBSCRIBERS));
+        let to = Vec::with_capacity(MAX_SUBSCRIBERS + self.shared.peers.len());
+        let datagram = Vec::with_capacity(MAX_BYTES);
         Ok(Box::new(UdpPublisher { shared: self.shared.clone(), key: key.to_owned(), datagram, to }))
     }
 
@@ -213,9 +215,11 @@ impl Network for UdpNetwork {
 
 impl Publisher for UdpPublisher {
     fn publish(&mut self, bytes: &[u8]) {
+        let peers = &self.shared.peers;
         self.to.clear();
+        self.to.extend(peers);
         if let Some(subscribers) = self.shared.lock().subscribers.get(&self.key) {
-            let present = subscribers.iter().filter(|(_, at)| at.elapsed() < LEASE);
+            let present = subscribers.iter().filter(|(address, at)| at.elapsed() < LEASE && !peers.contains(address));
             self.to.extend(present.map(|(address, _)| *address));
         }
         if self.to.is_empty() || bytes.len() > MAX_BYTES - 300 {

@@ -1,0 +1,106 @@
+//! A control log is verified line by line: one of any length takes the memory of its longest line.
+
+use std::fs::File;
+use std::io::{BufRead as _, BufReader, Read as _};
+use std::path::Path;
+
+use elbowroom_formats::FormatError;
+
+use super::control_entry::ControlEntry;
+use super::hex;
+use super::log_head::{LogHead, LogSigner, RESTORE};
+use super::result::Result;
+
+/// Longest line, bytes: requests have at most a few of this.
+const MAX_LINE: u64 = 16 << 20;
+
+/// A control log that was verified.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ControlHistory {
+    /// In the order in which the changes were made.
+    pub entries: Vec<ControlEntry>,
+    /// The short id of the key that has signed them; empty for a log without entries.
+    pub signed_by: String,
+}
+
+/// Reads a log and verifies it.
+///
+/// # Errors
+/// [`FormatError`] at the first line that does not follow the one before it, or where lines are missing or not signed.
+pub fn control_history(path: &Path) -> Result<ControlHistory> {
+    let read = || {
+        let (head, mut entries) = (LogHead::read(path)?, Vec::new());
+        verify(path, head.as_ref(), |entry| entries.push(entry))?;
+        Ok(ControlHistory { entries, signed_by: head.and_then(|head| head.key_id()).unwrap_or_default() })
+    };
+    // The service may write between the two files.
+    read().or_else(|_: FormatError| read())
+}
+
+/// The part of a log that is signed.
+pub(super) struct SignedPart {
+    /// Bytes of its lines.
+    pub(super) length: u64,
+    pub(super) entries: u64,
+    /// SHA-256 (hex) of the last line; 64 zeros where there is none.
+    pub(super) hash: String,
+}
+
+/// Hands over the entries that are signed. At most one line more may be there, or a half one, which was being written.
+pub(super) fn verify(path: &Path, head: Option<&LogHead>, mut take: impl FnMut(ControlEntry)) -> Result<SignedPart> {
+    let wrong = |line: Option<u64>, what: &str| FormatError::new(path, line.map(|n| n as usize), what).hint(RESTORE);
+    let count = head.map_or(0, |head| head.entries);
+    let mut lines = Lines::open(path)?;
+    let mut part = SignedPart { length: 0, entries: 0, hash: "0".repeat(64) };
+    while part.entries < count {
+        let Some(line) = lines.next()?.strip_suffix(b"\n") else {
+            let what = format!("has {} of the {count} lines that were signed: its end was cut off", part.entries);
+            return Err(wrong(None, &what));
+        };
+        let number = part.entries + 1;
+        let entry: ControlEntry = serde_json::from_slice(line)
+            .map_err(|_| wrong(Some(number), "is not an entry of a control log, or was modified"))?;
+        // Only the form that is written here: otherwise spaces or repeated keys would go unnoticed.
+        if entry.sequence != number || entry.previous != part.hash || entry.line().as_bytes() != line {
+            return Err(wrong(Some(number), "does not follow the entry before it, or was modified"));
+        }
+        part = SignedPart { length: part.length + line.len() as u64 + 1, entries: number, hash: hex::hash(line) };
+        take(entry);
+    }
+    if head.is_some_and(|head| head.hash != part.hash) {
+        return Err(wrong(None, "is not the log that was signed"));
+    }
+    // The service makes its key before the first line, and signs each line after it was written.
+    let may_have_more = head.is_some() || LogSigner::file_of(path).exists();
+    let has_more = !lines.next()?.is_empty();
+    if has_more && !(may_have_more && lines.next()?.is_empty()) {
+        return Err(wrong(Some(count + 1), "is not signed"));
+    }
+    Ok(part)
+}
+
+/// The lines of a file.
+struct Lines<'p> {
+    path: &'p Path,
+    reader: BufReader<File>,
+    line: Vec<u8>,
+}
+
+impl<'p> Lines<'p> {
+    fn open(path: &'p Path) -> Result<Self> {
+        let file = File::open(path).map_err(unreadable(path))?;
+        Ok(Self { path, reader: BufReader::new(file), line: Vec::new() })
+    }
+
+    /// The next one with its end: without one where it was not written to its end, or is too long; empty behind the last.
+    fn next(&mut self) -> Result<&[u8]> {
+        self.line.clear();
+        let mut bounded = self.reader.by_ref().take(MAX_LINE);
+        bounded.read_until(b'\n', &mut self.line).map_err(unreadable(self.path))?;
+        Ok(&self.line)
+    }
+}
+
+fn unreadable(path: &Path) -> impl Fn(std::io::Error) -> FormatError + '_ {
+    move |e| FormatError::unreadable(path, &e, "the path of a file that is there")
+}
