@@ -17,6 +17,7 @@ use crate::configuration_number::configuration_number;
 use crate::event_handler::EventHandler;
 use crate::keys::Keys;
 use crate::network::{Network, NetworkError, Publisher, Subscription, Urgency};
+use crate::silence_watch::SilenceWatch;
 
 /// Messages that wait for the arbiter; further ones are dropped, and the guards send again.
 const WAITING: usize = 1024;
@@ -82,14 +83,17 @@ impl ArbiterService {
             grants.push(network.publisher(&keys.interlock_grants(&robot.name), Urgency::RealTime)?);
         }
         let published: Arc<Mutex<Vec<SlotStatus>>> = Arc::default();
+        let robots: Vec<String> = cell.robots.iter().map(|r| r.name.clone()).collect();
+        let clock = Clock::start();
         let running = Running {
             slots: slot_regions(cell, settings.slots),
-            robots: cell.robots.iter().map(|r| r.name.clone()).collect(),
+            silence: SilenceWatch::new(&robots, clock.micros()),
+            robots,
             arbiter: Arbiter::new(settings, Boot(boot)),
             grants,
             status: network.publisher(&keys.interlocks(), Urgency::Display)?,
             published: published.clone(),
-            clock: Clock::start(),
+            clock,
             on_event,
         };
         let thread = std::thread::Builder::new().name("arbiter".into()).spawn(move || running.run(&waiting));
@@ -176,6 +180,7 @@ struct Running {
     /// Per slot the names of its regions.
     slots: Vec<Vec<String>>,
     robots: Vec<String>,
+    silence: SilenceWatch,
     grants: Vec<Box<dyn Publisher>>,
     status: Box<dyn Publisher>,
     published: Arc<Mutex<Vec<SlotStatus>>>,
@@ -203,6 +208,9 @@ impl Running {
             if has_changed || published.is_none_or(|at| at.elapsed() >= PERIOD) {
                 published = Some(Instant::now());
                 self.publish();
+                for line in self.silence.look(self.clock.micros()) {
+                    self.say(&line);
+                }
             }
         }
     }
@@ -214,7 +222,11 @@ impl Running {
         if state.robot != robot {
             return false;
         }
-        let outputs = self.arbiter.receive(&state, self.clock.micros());
+        let now = self.clock.micros();
+        if let Some(line) = self.silence.heard(robot, now) {
+            self.say(&line);
+        }
+        let outputs = self.arbiter.receive(&state, now);
         self.send(outputs)
     }
 
@@ -237,11 +249,15 @@ impl Running {
             }
         }
         for event in &outputs.events {
-            if let Some(on_event) = &self.on_event {
-                on_event(&self.words(event));
-            }
+            self.say(&self.words(event));
         }
         !outputs.events.is_empty()
+    }
+
+    fn say(&self, line: &str) {
+        if let Some(on_event) = &self.on_event {
+            on_event(line);
+        }
     }
 
     fn publish(&mut self) {

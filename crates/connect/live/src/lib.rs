@@ -61,6 +61,7 @@ mod service;
 mod service_error;
 mod service_options;
 mod service_start;
+mod silence_watch;
 mod simulated_controllers;
 mod switch_requests;
 

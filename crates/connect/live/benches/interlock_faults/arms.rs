@@ -9,7 +9,8 @@ use elbowroom_interlock::Micros;
 use elbowroom_live::network::{Network, Publisher, Subscription, Urgency};
 use elbowroom_live::{Clock, ControllerClient, ControllerState, Keys, boot_number, configuration_number};
 
-use crate::cell::{AMPLITUDE, STOP_TIME_S, TICK_MS, name, occupied};
+use crate::cell::{AMPLITUDE, STOP_TIME_S, TICK_MS, is_in_cart, name, occupied};
+use crate::switches::Switches;
 
 /// An arm that swings.
 struct Arm {
@@ -90,13 +91,19 @@ pub struct Seen {
     pub longest_s: Vec<f64>,
     /// In how many ticks two robots were in one region, for each two.
     pub shared: u64,
+    /// How often a robot has entered its temporary region while that was surely on.
+    pub entered: u64,
     inside: Vec<Option<usize>>,
+    in_cart: Vec<bool>,
 }
 
 impl Seen {
-    fn observe(&mut self, arms: &[Arm], now_s: f64) {
+    fn observe(&mut self, arms: &[Arm], switches: &Switches, now_s: f64) {
         let robots = arms.len();
         for (robot, arm) in arms.iter().enumerate() {
+            let is_in_cart = is_in_cart(arm.q());
+            let was_in_cart = std::mem::replace(&mut self.in_cart[robot], is_in_cart);
+            self.entered += u64::from(is_in_cart && !was_in_cart && switches.is_surely_on(robot));
             let is_in = occupied(robot, robots, arm.q());
             let before = std::mem::replace(&mut self.inside[robot], is_in);
             if is_in.is_some() && is_in != before {
@@ -113,7 +120,7 @@ impl Seen {
 }
 
 /// Runs the arms for this time.
-pub fn run(cell: &Cell, network: &dyn Network, time: Duration) -> Result<Seen, Box<dyn Error>> {
+pub fn run(cell: &Cell, network: &dyn Network, switches: &Switches, time: Duration) -> Result<Seen, Box<dyn Error>> {
     let robots = cell.robots.len();
     let mut arms = (0..robots).map(|robot| Arm::new(cell, robot, network)).collect::<Result<Vec<_>, _>>()?;
     let mut seen = Seen {
@@ -121,6 +128,7 @@ pub fn run(cell: &Cell, network: &dyn Network, time: Duration) -> Result<Seen, B
         last_entry_s: vec![0.0; robots],
         longest_s: vec![0.0; robots],
         inside: vec![None; robots],
+        in_cart: vec![true; robots],
         ..Seen::default()
     };
     let (clock, period, began) = (Clock::start(), Duration::from_millis(TICK_MS), Instant::now());
@@ -129,7 +137,7 @@ pub fn run(cell: &Cell, network: &dyn Network, time: Duration) -> Result<Seen, B
         for arm in &mut arms {
             arm.tick(clock.micros(), period.as_secs_f64());
         }
-        seen.observe(&arms, began.elapsed().as_secs_f64());
+        seen.observe(&arms, switches, began.elapsed().as_secs_f64());
         seen.ticks += 1;
         due += period;
         let now = Instant::now();
@@ -138,6 +146,10 @@ pub fn run(cell: &Cell, network: &dyn Network, time: Duration) -> Result<Seen, B
             due = now;
         }
         std::thread::sleep(due.saturating_duration_since(now));
+    }
+    // Nobody may stand at the end.
+    for (longest_s, last_s) in seen.longest_s.iter_mut().zip(&seen.last_entry_s) {
+        *longest_s = longest_s.max(began.elapsed().as_secs_f64() - last_s);
     }
     Ok(seen)
 }

@@ -1,4 +1,5 @@
-//! The cell: arms with one joint in a row, and an exchange region between neighbours, where their tips meet.
+//! The cell: arms with one joint in a row, an exchange region between neighbours, where their tips meet, and a temporary region
+//! in the middle of each swing.
 
 use std::f64::consts::FRAC_PI_2;
 use std::fmt::Write as _;
@@ -21,6 +22,16 @@ pub fn name(robot: usize) -> String {
     format!("robot_{}", robot + 1)
 }
 
+/// Name of the exchange region of a robot and the one before it.
+pub fn between(left: usize) -> String {
+    format!("between_{}_{}", name(left - 1), name(left))
+}
+
+/// Name of the temporary region of a robot.
+pub fn cart(robot: usize) -> String {
+    format!("cart_{}", name(robot))
+}
+
 /// A cell of this many robots.
 pub fn cell(robots: usize) -> Result<Cell, Box<dyn std::error::Error>> {
     let mut text = format!(
@@ -29,14 +40,20 @@ pub fn cell(robots: usize) -> Result<Cell, Box<dyn std::error::Error>> {
     for robot in 0..robots {
         let (name, y) = (name(robot), SPACING_M * robot as f64);
         let joint = "{ a = 1, min = -170, max = 170, speed = 170 }";
+        let (cart, edge) = (cart(robot), 2.0 * HALF_REGION_M);
         writeln!(text, "[robot.{name}]\nbase = {{ at = [0, {y}, 0] }}\nstop_time = {STOP_TIME_S}\ndh = [{joint}]")?;
+        writeln!(
+            text,
+            "[region.{cart}]\nshape = \"box\"\nlife = \"temporary\"\nbase = [1, {y}, -{HALF_REGION_M}]\n\
+             size = [{edge}, {edge}, {edge}]\nwarning = 0.3\nguards = [\"tcp\"]\nrobots = [\"{name}\"]"
+        )?;
     }
     for left in 1..robots {
-        let (a, b, y) = (name(left - 1), name(left), SPACING_M * (left as f64 - 0.5));
+        let (a, b, region, y) = (name(left - 1), name(left), between(left), SPACING_M * (left as f64 - 0.5));
         let edge = 2.0 * HALF_REGION_M;
         writeln!(
             text,
-            "[region.between_{a}_{b}]\nshape = \"box\"\nkind = \"exchange\"\nbase = [0, {y}, -{HALF_REGION_M}]\n\
+            "[region.{region}]\nshape = \"box\"\nkind = \"exchange\"\nbase = [0, {y}, -{HALF_REGION_M}]\n\
              size = [{edge}, {edge}, {edge}]\nwarning = 0.3\nguards = [\"tcp\"]\nrobots = [\"{a}\", \"{b}\"]"
         )?;
     }
@@ -52,4 +69,9 @@ pub fn occupied(robot: usize, robots: usize, q: f64) -> Option<usize> {
         let middle = SPACING_M * (*left as f64 - 0.5);
         x.abs() < HALF_REGION_M && (y - middle).abs() < HALF_REGION_M
     })
+}
+
+/// Whether the tip of a robot is in its temporary region. From the geometry alone.
+pub fn is_in_cart(q: f64) -> bool {
+    (q.cos() - 1.0).abs() < HALF_REGION_M && q.sin().abs() < HALF_REGION_M
 }

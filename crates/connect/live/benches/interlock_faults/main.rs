@@ -5,7 +5,8 @@
 //! ```
 //!
 //! Arms in a row swing through a region with each neighbour. Their controllers run in this process, which knows the true poses;
-//! nodes and arbiter are processes of their own, connected through relays that can be cut.
+//! nodes and arbiter are processes of their own, connected through relays that can be cut. A temporary region in the middle of each
+//! swing is switched at random. Whoever waits for a free region longer than two seconds must find the reason in what the processes say.
 #![allow(clippy::print_stdout, reason = "a program")]
 
 mod arms;
@@ -13,27 +14,34 @@ mod cell;
 mod faults;
 #[path = "../latency/latencies.rs"]
 mod latencies;
+mod log;
 mod processes;
 mod relay;
 mod requests;
+mod switches;
 
 use std::collections::BTreeMap;
 use std::error::Error;
 use std::io::Read;
 use std::process::ExitCode;
-use std::time::Duration;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 use arms::Seen;
 use elbowroom_live::network::{ZenohNetwork, ZenohSettings};
 use elbowroom_live::{Keys, Service, ServiceOptions};
 use faults::Faults;
 use latencies::Latencies;
+use log::{Log, Wait};
 use processes::Process;
 use requests::{Measured, Requests};
+use switches::Switches;
 
 const MOST_ROBOTS: usize = 64;
 const MOST_SECONDS: u64 = 86_400;
 const ARBITER: &str = "arbiter";
+/// A robot enters its next region sooner than this, whatever fails.
+const MOST_STANDING_S: f64 = 120.0;
 
 /// The arguments.
 #[derive(Debug, Clone)]
@@ -91,7 +99,9 @@ fn options() -> Result<Options, Box<dyn Error>> {
 fn serve(options: &Options, part: &str, hub: String) -> Result<(), Box<dyn Error>> {
     let is_arbiter = part == ARBITER;
     let robots = if is_arbiter { vec![] } else { vec![cell::name(part.parse()?)] };
+    let on_event = Arc::new(|line: &str| println!("{line}"));
     let service = ServiceOptions { robots, connect: Some(hub), arbiter: is_arbiter, ..ServiceOptions::default() };
+    let service = ServiceOptions { on_event: Some(on_event), ..service };
     let service = Service::start(cell::cell(options.robots)?, &service)?;
     // Nothing is ever sent: it ends with its writer.
     std::io::stdin().read_to_end(&mut Vec::new())?;
@@ -99,31 +109,62 @@ fn serve(options: &Options, part: &str, hub: String) -> Result<(), Box<dyn Error
     Ok(())
 }
 
-/// Runs the cell under faults; false where two robots were in one region, or one has never entered any.
+/// What a run gave.
+struct Outcome {
+    seen: Seen,
+    faults: BTreeMap<String, u64>,
+    /// How often temporary regions were switched on.
+    switched: u64,
+    measured: Measured,
+    unexplained: Vec<Wait>,
+    lines: usize,
+}
+
+impl Outcome {
+    fn longest_s(&self) -> f64 {
+        self.seen.longest_s.iter().copied().fold(0.0, f64::max)
+    }
+
+    fn is_good(&self) -> bool {
+        let Seen { shared, entered, .. } = self.seen;
+        shared == 0 && entered == 0 && self.unexplained.is_empty() && self.longest_s() < MOST_STANDING_S
+    }
+}
+
+/// Runs the cell under faults; false where two robots were in one region, one was in a region that was switched on, one stood for
+/// minutes, or one has waited without a reason that somebody said.
 fn inject(options: &Options) -> Result<bool, Box<dyn Error>> {
     let cell = cell::cell(options.robots)?;
     let hub = std::net::TcpListener::bind("127.0.0.1:0")?.local_addr()?.to_string();
     let network = ZenohNetwork::open(&ZenohSettings { listen: Some(hub.clone()), ..ZenohSettings::default() })?;
-    let requests = Requests::listen(&Keys::new(&cell.name), options.robots, &network)?;
+    let (keys, log) = (Keys::new(&cell.name), Log::default());
+    let requests = Requests::listen(&keys, options.robots, &network)?;
+    let switches = Switches::listen(&keys, options.robots, &network)?;
     let parts = (0..options.robots).map(|robot| robot.to_string()).chain([ARBITER.to_owned()]);
-    let processes = parts.map(|part| Process::start(&part, options.robots, &hub)).collect::<Result<Vec<_>, _>>()?;
-    let faults = Faults::new(processes, options.seed);
+    let processes = parts.map(|part| Process::start(&part, options.robots, &hub, &log));
+    let faults = Faults::new(processes.collect::<Result<Vec<_>, _>>()?, options.seed);
     let (time, every) = (Duration::from_secs(options.seconds), Duration::from_secs_f64(options.every_s));
-    let (seen, counts) = std::thread::scope(|scope| {
-        let requests = &requests;
+    let (seen, faults, switched) = std::thread::scope(|scope| {
+        let (requests, switches) = (&requests, &switches);
         let injected = scope.spawn(move || faults.run(every, time, requests).map_err(|e| e.to_string()));
-        let seen = arms::run(&cell, &network, time).map_err(|e| e.to_string());
-        let counts = injected.join().unwrap_or_else(|_| Err("the faults have ended early".to_owned()));
-        Ok::<_, String>((seen?, counts?))
+        let switching = scope.spawn(move || switches.run(time, options.seed));
+        let seen = arms::run(&cell, &network, switches, time).map_err(|e| e.to_string());
+        let faults = injected.join().unwrap_or_else(|_| Err("the faults have ended early".to_owned()));
+        let switched = switching.join().map_err(|_| "the switches have ended early".to_owned());
+        Ok::<_, String>((seen?, faults?, switched?))
     })?;
-    print(options, &seen, &counts, &requests.measured());
-    Ok(seen.shared == 0 && seen.entries.iter().all(|count| *count > 0))
+    let (measured, end) = (requests.measured(), Instant::now());
+    let (unexplained, lines) = (log.unexplained(&measured.waits, end), log.count());
+    let outcome = Outcome { seen, faults, switched, measured, unexplained, lines };
+    print(options, &outcome);
+    Ok(outcome.is_good())
 }
 
-fn print(options: &Options, seen: &Seen, counts: &BTreeMap<String, u64>, measured: &Measured) {
+fn print(options: &Options, outcome: &Outcome) {
+    let Outcome { seen, faults, switched, measured, unexplained, lines } = outcome;
     let entries: u64 = seen.entries.iter().sum();
     let fewest = seen.entries.iter().min().copied().unwrap_or(0);
-    let longest_s = seen.longest_s.iter().copied().fold(0.0, f64::max);
+    let longest_s = outcome.longest_s();
     if options.json {
         let latencies = |l: &Latencies| {
             let ms = |share| l.quantile_us(share) as f64 / 1e3;
@@ -131,8 +172,10 @@ fn print(options: &Options, seen: &Seen, counts: &BTreeMap<String, u64>, measure
         };
         let report = serde_json::json!({
             "robots": options.robots, "seconds": options.seconds, "seed": options.seed,
-            "faults": counts, "ticks": seen.ticks, "late_ticks": seen.late_ticks,
+            "faults": faults, "ticks": seen.ticks, "late_ticks": seen.late_ticks,
             "entries": entries, "fewest_entries": fewest, "longest_between_entries_s": longest_s, "shared": seen.shared,
+            "switched_on": switched, "entered_while_on": seen.entered,
+            "waits": measured.waits.len(), "unexplained_waits": unexplained.len(),
             "grant_undisturbed": latencies(&measured.undisturbed), "grant_other": latencies(&measured.others),
             "arbiter_restart": latencies(&measured.restarts),
         });
@@ -140,12 +183,21 @@ fn print(options: &Options, seen: &Seen, counts: &BTreeMap<String, u64>, measure
         return;
     }
     println!("{} robots, {} s, seed {}", options.robots, options.seconds, options.seed);
-    for (fault, count) in counts {
+    for (fault, count) in faults {
         println!("{count:>8}  {fault}");
     }
     println!("{:>8}  ticks of the controllers, {} late", seen.ticks, seen.late_ticks);
     println!("{entries:>8}  entries, at least {fewest} of each robot, longest wait for the next {longest_s:.1} s");
     println!("{:>8}  ticks with two robots in one region", seen.shared);
+    println!("{switched:>8}  temporary regions switched on, {} entered while they were on", seen.entered);
+    let (waits, unexplained_waits) = (measured.waits.len(), unexplained.len());
+    println!(
+        "{waits:>8}  waits of more than a second, {unexplained_waits} not explained by the {lines} lines that were said"
+    );
+    for Wait { robot, slot, from, to } in unexplained {
+        let (region, wait_s) = (cell::between(slot + 1), (*to - *from).as_secs_f64());
+        println!("          {} waited {wait_s:.1} s for {region}", cell::name(*robot));
+    }
     println!("                                    count   median ms      p99 ms    worst ms");
     let row = |what: &str, l: &Latencies| {
         let ms = |share| l.quantile_us(share) as f64 / 1e3;

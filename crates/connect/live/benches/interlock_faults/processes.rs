@@ -5,6 +5,7 @@ use std::process::{Child, Command, Stdio};
 
 use elbowroom_live::network::ZENOH_RUNTIME;
 
+use crate::log::Log;
 use crate::relay::Relay;
 
 /// A process, which is killed when it is dropped, and its connection.
@@ -12,14 +13,15 @@ pub struct Process {
     arguments: Vec<String>,
     child: Child,
     relay: Relay,
+    log: Log,
 }
 
 impl Process {
     /// Starts a part of the cell: `arbiter`, or the index of a robot.
-    pub fn start(part: &str, robots: usize, hub: &str) -> Result<Self, Box<dyn Error>> {
+    pub fn start(part: &str, robots: usize, hub: &str, log: &Log) -> Result<Self, Box<dyn Error>> {
         let relay = Relay::to(hub)?;
         let arguments = ["--robots", &robots.to_string(), "--part", part, relay.address()].map(str::to_owned).to_vec();
-        Ok(Self { child: spawn(&arguments)?, arguments, relay })
+        Ok(Self { child: spawn(&arguments, log)?, arguments, relay, log: log.clone() })
     }
 
     pub fn kill(&mut self) {
@@ -30,7 +32,7 @@ impl Process {
 
     pub fn restart(&mut self) -> Result<(), Box<dyn Error>> {
         self.kill();
-        self.child = spawn(&self.arguments)?;
+        self.child = spawn(&self.arguments, &self.log)?;
         Ok(())
     }
 
@@ -51,9 +53,13 @@ impl Drop for Process {
     }
 }
 
-fn spawn(arguments: &[String]) -> std::io::Result<Child> {
+fn spawn(arguments: &[String], log: &Log) -> std::io::Result<Child> {
     let mut command = Command::new(std::env::current_exe()?);
     command.args(arguments).env("ZENOH_RUNTIME", ZENOH_RUNTIME);
     // A part ends with its standard input, and so with this process.
-    command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::null()).spawn()
+    let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null()).spawn()?;
+    if let Some(output) = child.stdout.take() {
+        log.follow(output);
+    }
+    Ok(child)
 }

@@ -11,6 +11,7 @@ use elbowroom_monitor::Occupancy;
 
 use crate::cell::name;
 use crate::latencies::Latencies;
+use crate::log::Wait;
 
 /// This long after its fault a process counts as disturbed: it starts, or connects again.
 const RECOVERY: Duration = Duration::from_secs(3);
@@ -32,6 +33,8 @@ pub struct Measured {
     pub others: Latencies,
     /// From the start of an arbiter's process to its first grant.
     pub restarts: Latencies,
+    /// Waits of more than a second, and those that are not over.
+    pub waits: Vec<Wait>,
 }
 
 struct Heard {
@@ -96,7 +99,13 @@ impl Requests {
     }
 
     pub fn measured(&self) -> Measured {
-        lock(&self.heard).measured.clone()
+        let heard = lock(&self.heard);
+        let mut measured = heard.measured.clone();
+        for (robot, requests) in heard.requests.iter().enumerate() {
+            let open = requests.iter().enumerate().filter_map(|(slot, request)| Some((slot, (*request)?.at)));
+            measured.waits.extend(open.map(|(slot, from)| Wait { robot, slot, from, to: Instant::now() }));
+        }
+        measured
     }
 }
 
@@ -142,6 +151,9 @@ impl Heard {
                 let Measured { undisturbed, others, .. } = &mut self.measured;
                 let latencies = if request.is_free { undisturbed } else { others };
                 latencies.add_us((now - request.at).as_micros() as u64);
+                if now - request.at > Duration::from_secs(1) {
+                    self.measured.waits.push(Wait { robot, slot, from: request.at, to: now });
+                }
             }
         }
     }

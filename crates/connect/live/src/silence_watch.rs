@@ -1,0 +1,113 @@
+//! Says which robots the arbiter does not hear, and when it did not run itself: why grants pause.
+
+use elbowroom_interlock::Micros;
+use elbowroom_monitor::RobotSlot;
+
+/// Whoever is not heard for this long is named.
+const SILENT: Micros = Micros(1_000_000);
+/// Whoever was never heard is named later: the processes of a cell start one after another.
+const NEVER_HEARD: Micros = Micros(5_000_000);
+
+/// When each robot was heard last, and who was named.
+pub(crate) struct SilenceWatch {
+    robots: Vec<Heard>,
+    looked: Micros,
+}
+
+struct Heard {
+    name: String,
+    /// The last message; before the first, the start of this watch.
+    at: Micros,
+    has_spoken: bool,
+    is_named: bool,
+}
+
+impl SilenceWatch {
+    /// Nobody was heard yet.
+    pub(crate) fn new(names: &[String], now: Micros) -> Self {
+        let heard = |name: &String| Heard { name: name.clone(), at: now, has_spoken: false, is_named: false };
+        Self { robots: names.iter().map(heard).collect(), looked: now }
+    }
+
+    /// A message of a robot has come; says so where it was named as silent.
+    pub(crate) fn heard(&mut self, robot: RobotSlot, now: Micros) -> Option<String> {
+        let robot = self.robots.get_mut(robot.0)?;
+        let silence = now - robot.at;
+        (robot.at, robot.has_spoken) = (now, true);
+        let was_named = std::mem::take(&mut robot.is_named);
+        was_named.then(|| format!("robot {}: heard again, after {:.1} s", robot.name, seconds(silence)))
+    }
+
+    /// What is to be said now. It is asked several times a second.
+    pub(crate) fn look(&mut self, now: Micros) -> Vec<String> {
+        let gap = now - std::mem::replace(&mut self.looked, now);
+        if gap >= SILENT {
+            // What was sent meanwhile waits to be read: nobody has been silent because of that.
+            self.robots.iter_mut().filter(|robot| !robot.is_named).for_each(|robot| robot.at = now);
+            let gap_s = seconds(gap);
+            return vec![format!("the arbiter did not run for {gap_s:.1} s, and granted nothing meanwhile")];
+        }
+        let is_silent = |robot: &&mut Heard| {
+            let longest = if robot.has_spoken { SILENT } else { NEVER_HEARD };
+            !robot.is_named && now - robot.at >= longest
+        };
+        self.robots.iter_mut().filter(is_silent).map(|robot| robot.name_silent(now)).collect()
+    }
+}
+
+impl Heard {
+    fn name_silent(&mut self, now: Micros) -> String {
+        self.is_named = true;
+        let since = if self.has_spoken { "" } else { ", since this arbiter has started" };
+        format!(
+            "robot {}: not heard for {:.1} s{since}: no region that it may be in is granted to another one",
+            self.name,
+            seconds(now - self.at)
+        )
+    }
+}
+
+fn seconds(micros: Micros) -> f64 {
+    micros.0 as f64 * 1e-6
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TICK: u64 = 100_000;
+
+    /// Looks every 0.1 s, and hears the robots of `speaks`; the lines with their times, s.
+    fn told(seconds: u64, speaks: impl Fn(usize, u64) -> bool, runs: impl Fn(u64) -> bool) -> Vec<(u64, String)> {
+        let names = ["left", "right"].map(str::to_owned);
+        let (mut watch, mut lines) = (SilenceWatch::new(&names, Micros(0)), Vec::new());
+        for tick in (1..=seconds * 10).filter(|tick| runs(*tick)) {
+            let now = Micros(tick * TICK);
+            let mut say = |line: String| lines.push((tick, line));
+            watch.look(now).into_iter().for_each(&mut say);
+            let heard = (0..names.len()).filter(|robot| speaks(*robot, tick));
+            heard.filter_map(|robot| watch.heard(RobotSlot(robot), now)).for_each(&mut say);
+        }
+        lines
+    }
+
+    #[test]
+    fn silence_is_said_once_and_its_end_too() {
+        let lines = told(20, |robot, tick| robot == 0 || !(50..90).contains(&tick), |_| true);
+        let [silent, again] = &lines[..] else { panic!("{lines:?}") };
+        let text = "robot right: not heard for 1.0 s: no region that it may be in is granted to another one";
+        assert_eq!((silent.0, silent.1.as_str()), (59, text));
+        assert_eq!((again.0, again.1.as_str()), (90, "robot right: heard again, after 4.1 s"));
+    }
+
+    #[test]
+    fn who_was_never_heard_has_more_time_and_nobody_is_silent_because_the_arbiter_stood() {
+        let lines = told(20, |robot, _| robot == 0, |_| true);
+        assert!(
+            matches!(&lines[..], [(50, line)] if line.contains("5.0 s, since this arbiter has started")),
+            "{lines:?}"
+        );
+        let lines = told(20, |_, _| true, |tick| !(50..112).contains(&tick));
+        assert_eq!(lines, [(112, "the arbiter did not run for 6.3 s, and granted nothing meanwhile".to_owned())]);
+    }
+}
