@@ -201,16 +201,23 @@ fn any_witness_points_have_the_same_distance() {
 #[test]
 fn triangles_beside_solids_are_counted() {
     let mut workspace = Workspace::new();
-    let mut measured = |above: &Shape, limit: f64| {
-        let (mesh, there) = (plate("mesh", Vec3::new(0.4, 0.3, 0.01)), Pose::from_translation(Vec3::Z * 0.1));
-        let settings = DistanceSettings { limit, ..Default::default() };
+    let mesh = plate("mesh", Vec3::new(0.4, 0.3, 0.01));
+    let mut measured = |above: &Shape, limit: f64, witness_points: WitnessPoints| {
+        let there = Pose::from_translation(Vec3::Z * 0.1);
+        let settings = DistanceSettings { limit, witness_points, ..Default::default() };
         workspace.separation(above, &there, &mesh, &Pose::IDENTITY, settings);
         workspace.stats().triangles_beside_solids
     };
+    let (any, continuous, far) = (WitnessPoints::Any, WitnessPoints::Continuous, f64::INFINITY);
     let ball = Shape::Sphere(elbowroom_proximity::Sphere { radius: 0.02 });
-    let (of_ball, of_plate) =
-        (measured(&ball, f64::INFINITY), measured(&plate("box", Vec3::new(0.4, 0.3, 0.02)), f64::INFINITY));
-    // The plate has twelve triangles; parallel faces are looked at once more for their witness points.
-    assert!((1..=12).contains(&of_ball) && of_plate > of_ball, "{of_ball} {of_plate}");
-    assert_eq!((measured(&ball, 0.01), measured(&plate("mesh", Vec3::splat(0.02)), f64::INFINITY)), (0, 0));
+    let of_ball = measured(&ball, far, any);
+    assert!((1..=12).contains(&of_ball), "a plate has twelve triangles: {of_ball}");
+    assert_eq!(measured(&ball, 0.01, any), 0, "beyond the limit nothing is measured");
+    let parallel = plate("box", Vec3::new(0.4, 0.3, 0.02));
+    let [first, both] = [any, continuous].map(|points| measured(&parallel, far, points));
+    assert!(0 < first && first < both, "parallel faces are compared once more for their points: {first} {both}");
+    assert_eq!(measured(&plate("mesh", Vec3::splat(0.02)), far, any), 0, "of two meshes");
+    let table = Pose::from_translation(Vec3::Z * -0.1);
+    workspace.within(&mesh, &Pose::IDENTITY, &Shape::HalfSpace(elbowroom_proximity::HalfSpace), &table, 1.0);
+    assert!((1..=12).contains(&workspace.stats().triangles_beside_solids));
 }

@@ -78,6 +78,26 @@ fn udp_carries_what_zenoh_does_to_a_node_that_does_not_know_its_controller() {
     go_and_stop(start(Arc::new(node), &controller));
 }
 
+#[test]
+fn two_that_know_each_other_hear_each_datagram_once() {
+    let first = UdpNetwork::bind("127.0.0.1:0", &[]).unwrap();
+    let address = first.local_address().unwrap().to_string();
+    let second = UdpNetwork::bind("127.0.0.1:0", &[&address]).unwrap();
+    let of_second = second.local_address().unwrap().to_string();
+    drop(first);
+    let first = UdpNetwork::bind(&address, &[&of_second]).unwrap();
+    let (mut publisher, heard) = (first.publisher("k", Urgency::RealTime).unwrap(), Arc::new(Mutex::new(Vec::new())));
+    let to = heard.clone();
+    let _subscription = second.subscribe("k", Box::new(move |bytes| to.lock().unwrap().push(bytes[0]))).unwrap();
+    // Until its subscription has arrived it hears as one that is known, then as one that is both.
+    for n in 0..100 {
+        publisher.publish(&[n]);
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    eventually("the last datagram does not arrive", || heard.lock().unwrap().last() == Some(&99));
+    assert_eq!(*heard.lock().unwrap(), (0..100).collect::<Vec<u8>>());
+}
+
 /// The `n`-th message of a hostile controller; `old` are messages that were valid once.
 fn hostile(n: u64, s: &Setup, random: &mut u64, old: &mut Vec<Vec<u8>>) -> Vec<u8> {
     let mut state = JointState {

@@ -41,7 +41,8 @@ impl EscapeWork {
         )
     }
 
-    /// A sweep that ends, at the latest, when it has cost so much: what it has not proven by then counts as a hit.
+    /// A sweep that ends when its exact tests alone have cost so much: what it has not proven by then counts as a hit. Its boxes and
+    /// triangles are counted once it has ended, so that the next one is shorter.
     pub(crate) fn sweep_options(self, clearance_m: f64) -> SweepOptions {
         let options = SweepOptions { clearance_m, ..SweepOptions::default() };
         let exact_tests = u32::try_from(self.0 / EXACT_PAIR_NS).unwrap_or(u32::MAX);
@@ -68,5 +69,30 @@ impl Sub for EscapeWork {
     /// What is left; none where the other is more.
     fn sub(self, other: Self) -> Self {
         Self(self.0.saturating_sub(other.0))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn everything_that_a_checker_counts_costs_something() {
+        let free = EscapeWork::of(&CheckerStats::default(), 0);
+        let counted: [fn(&mut CheckerStats); 7] = [
+            |s| s.answered.l3 = 1,
+            |s| s.pairs_tested.l3 = 1,
+            |s| s.pairs_tested.hull = 1,
+            |s| s.pairs_cleared.l1 = 1,
+            |s| s.mesh_boxes = 1,
+            |s| s.mesh_triangles = 1,
+            |s| s.triangles_beside_solids = 1,
+        ];
+        for (i, count) in counted.iter().enumerate() {
+            let mut stats = CheckerStats::default();
+            count(&mut stats);
+            assert!(EscapeWork::of(&stats, 0) > free, "{i}");
+        }
+        assert!(EscapeWork::of(&CheckerStats::default(), 1) > free);
     }
 }

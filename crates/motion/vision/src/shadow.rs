@@ -5,7 +5,7 @@
 //! differ, the pixel is foreground.
 
 use crate::ShadowSettings;
-use crate::background::{BackgroundPlane, FOREGROUND, SHADOW};
+use crate::background::{BackgroundPlane, SHADOW};
 use crate::illumination::Illumination;
 
 /// Samples around a pixel: a cross.
@@ -47,7 +47,6 @@ fn for_each_candidate(row: &[u8], mut found: impl FnMut(usize)) {
 }
 
 fn is_shadow(input: &ShadowInput<'_>, class: &[u8], settings: &ShadowSettings, x: usize, y: usize) -> bool {
-    debug_assert_ne!(class[y * input.width + x], FOREGROUND);
     let mut samples = [0; CROSS.len()];
     let mut n = 0;
     for (dx, dy) in CROSS {

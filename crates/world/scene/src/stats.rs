@@ -71,7 +71,8 @@ pub struct CheckerStats {
     pub mesh_boxes: u64,
     /// Pairs of triangles left undecided by boxes and single precision, in pairs of meshes.
     pub mesh_triangles: u64,
-    /// Triangles of a mesh that were measured against a shape that is no mesh; for witness points once more for each of its faces.
+    /// Triangles of meshes whose distance to a shape that is no mesh was computed; for continuous witness points, once more per
+    /// face of that shape.
     pub triangles_beside_solids: u64,
 }
 

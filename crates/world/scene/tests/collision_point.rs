@@ -126,3 +126,29 @@ fn attached_objects_collide_as_their_link_and_nan_is_not_free() {
     state.set_q(&scene, RobotId(0), &[1e300, -1e300, 1e18]).unwrap();
     let _ = checker.collision_point(&state, Detail::Exact);
 }
+
+#[test]
+fn work_with_meshes_is_that_of_the_query_itself() {
+    let scene = scene_of(32, |_| {});
+    let mut checker = Checker::new(&scene, CheckerOptions::default());
+    let mut r = Random(33);
+    let mut beside_solids = 0;
+    for _ in 0..100 {
+        let state = random_state(&scene, &mut r);
+        // What another query has done before must not be counted again.
+        let mut by_boxes = |before: fn(&mut Checker<'_>, &SceneState)| {
+            before(&mut checker, &state);
+            beside_solids += checker.stats().triangles_beside_solids;
+            checker.reset_stats();
+            checker.collision_point(&state, Detail::Boxes(0));
+            let stats = checker.stats();
+            checker.reset_stats();
+            (stats.mesh_boxes, stats.mesh_triangles, stats.triangles_beside_solids)
+        };
+        let after_distance = by_boxes(|checker, state| {
+            checker.distance(state);
+        });
+        assert_eq!(after_distance, by_boxes(|checker, state| drop(checker.collides(state))));
+    }
+    assert!(beside_solids > 0);
+}

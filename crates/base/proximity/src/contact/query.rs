@@ -10,7 +10,7 @@ use super::mesh_smooth::mesh_smooth;
 use super::placed::PlacedShape;
 use super::surface::{contained, nearest_points};
 use crate::advanced::{BvhBound, bvh_lower_bound, bvh_lower_bound_to_shape};
-use crate::{Shape, TriMesh, Workspace};
+use crate::{QueryStats, Shape, TriMesh, Workspace};
 
 /// The point where two shapes touch, or where they are nearest; `None` where they are certainly farther apart than the limit.
 /// A pose or a dimension that is not a number touches everything: the points are then the origins.
@@ -62,6 +62,7 @@ pub fn contact_point(
     settings: ContactSettings,
     workspace: &mut Workspace,
 ) -> Option<ContactPoint> {
+    workspace.set_stats(QueryStats::default());
     let limit = settings.usable_limit();
     let (a, b) = (PlacedShape { shape: a, in_world: a_in_world }, PlacedShape { shape: b, in_world: b_in_world });
     match settings.detail {

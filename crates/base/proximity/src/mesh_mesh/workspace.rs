@@ -22,7 +22,8 @@ pub struct QueryStats {
     pub triangles: u32,
     /// Batches of up to eight such pairs measured in f64.
     pub batches: u32,
-    /// Triangles measured against a shape that is no mesh; for witness points once more for each of its faces.
+    /// Triangles whose distance to a shape that is no mesh was computed; for continuous witness points, once more per face of that
+    /// shape. Points of contact are not in it.
     pub triangles_beside_solids: u32,
 }
 
@@ -60,7 +61,7 @@ impl Workspace {
         Self { simd_level: Some(simd_level), ..Self::new() }
     }
 
-    /// Work done by the last query with a mesh.
+    /// Work done by the last query with a mesh (distance, tolerance, collision).
     pub fn stats(&self) -> QueryStats {
         self.stats
     }
@@ -70,8 +71,8 @@ impl Workspace {
         self.closest_features
     }
 
-    /// A query of another method did so much.
-    pub(crate) fn count(&mut self, stats: QueryStats) {
+    /// The work of a query that has not counted here.
+    pub(crate) fn set_stats(&mut self, stats: QueryStats) {
         self.stats = stats;
     }
 

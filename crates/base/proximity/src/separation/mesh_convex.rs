@@ -142,10 +142,11 @@ pub(super) fn mesh_core(
 }
 
 /// The mesh's lowest point over a half-space, in the half-space's frame.
-pub(super) fn mesh_half_space(mesh: &TriMesh, mesh_in_b: &Pose) -> Gap {
+pub(super) fn mesh_half_space(mesh: &TriMesh, mesh_in_b: &Pose, stats: &mut QueryStats) -> Gap {
     let up = mesh_in_b.inverse_transform_vector(Vec3::Z);
     let mut lowest = mesh.corners(0)[0];
     mesh.bvh.traverse(&LeastHeight::new(up), LeastHeight::limit(&mesh.bvh, up, lowest), &mut |triangle| {
+        stats.triangles_beside_solids += 1;
         for p in mesh.corners(triangle) {
             if p.dot(up) < lowest.dot(up) {
                 lowest = p;

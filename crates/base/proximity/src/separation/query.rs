@@ -168,7 +168,7 @@ fn dispatch_meshes(
             let mut stats = QueryStats::default();
             let found = validated(a, a_in_world, b, b_in_world, limit, goal, &mut stats);
             if let Some(workspace) = options.workspace {
-                workspace.count(stats);
+                workspace.set_stats(stats);
             }
             found
         }
@@ -216,6 +216,7 @@ fn mesh_mesh(
     let MeshOptions { workspace, warm_start, first_bound } = options;
     let run = |workspace: &mut Workspace| match goal {
         Goal::Separation(_) if !(is_usable_pose(a_in_world) && is_usable_pose(b_in_world)) => {
+            workspace.set_stats(QueryStats::default());
             Some(Separation::unknown(a_in_world, b_in_world))
         }
         Goal::Separation(witness_points) => {
@@ -273,7 +274,7 @@ fn all_but_spheres(
             Some(gap.separation([radius, 0.0], b_in_world))
         }
         (Shape::Mesh(m), Shape::HalfSpace(_)) => {
-            let gap = mesh_convex::mesh_half_space(m, &b_in_world.inverse_mul(a_in_world));
+            let gap = mesh_convex::mesh_half_space(m, &b_in_world.inverse_mul(a_in_world), stats);
             Some(gap.separation([0.0; 2], b_in_world))
         }
         (_, Shape::Mesh(m)) => {

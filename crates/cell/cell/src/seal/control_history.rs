@@ -1,7 +1,7 @@
-//! A control log is verified line by line: one of any length takes the memory of its longest line.
+//! A control log is verified line by line: it may be of any length, and opening it takes the memory of its longest line.
 
 use std::fs::File;
-use std::io::{BufRead as _, BufReader, Read as _};
+use std::io::{BufRead as _, BufReader, Read as _, Take};
 use std::path::Path;
 
 use elbowroom_formats::FormatError;
@@ -11,8 +11,8 @@ use super::hex;
 use super::log_head::{LogHead, LogSigner, RESTORE};
 use super::result::Result;
 
-/// Longest line, bytes: requests have at most a few of this.
-const MAX_LINE: u64 = 16 << 20;
+/// Longest line with its end, bytes; a request has at most 64 KiB.
+pub(super) const MAX_LINE: u64 = 16 << 20;
 
 /// A control log that was verified.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -44,16 +44,22 @@ pub(super) struct SignedPart {
     pub(super) entries: u64,
     /// SHA-256 (hex) of the last line; 64 zeros where there is none.
     pub(super) hash: String,
+    /// More follows, which was being written.
+    pub(super) has_rest: bool,
 }
 
-/// Hands over the entries that are signed. At most one line more may be there, or a half one, which was being written.
+/// Hands over the entries that are signed, each before the rest of the log is proven. At most one line more may be there, or a half
+/// one, which was being written.
 pub(super) fn verify(path: &Path, head: Option<&LogHead>, mut take: impl FnMut(ControlEntry)) -> Result<SignedPart> {
     let wrong = |line: Option<u64>, what: &str| FormatError::new(path, line.map(|n| n as usize), what).hint(RESTORE);
     let count = head.map_or(0, |head| head.entries);
     let mut lines = Lines::open(path)?;
-    let mut part = SignedPart { length: 0, entries: 0, hash: "0".repeat(64) };
+    let mut part = SignedPart { length: 0, entries: 0, hash: "0".repeat(64), has_rest: false };
     while part.entries < count {
         let Some(line) = lines.next()?.strip_suffix(b"\n") else {
+            if lines.line.len() as u64 == MAX_LINE {
+                return Err(wrong(Some(part.entries + 1), "is longer than any line that is written here"));
+            }
             let what = format!("has {} of the {count} lines that were signed: its end was cut off", part.entries);
             return Err(wrong(None, &what));
         };
@@ -64,7 +70,8 @@ pub(super) fn verify(path: &Path, head: Option<&LogHead>, mut take: impl FnMut(C
         if entry.sequence != number || entry.previous != part.hash || entry.line().as_bytes() != line {
             return Err(wrong(Some(number), "does not follow the entry before it, or was modified"));
         }
-        part = SignedPart { length: part.length + line.len() as u64 + 1, entries: number, hash: hex::hash(line) };
+        let length = part.length + line.len() as u64 + 1;
+        part = SignedPart { length, entries: number, hash: hex::hash(line), ..part };
         take(entry);
     }
     if head.is_some_and(|head| head.hash != part.hash) {
@@ -72,27 +79,28 @@ pub(super) fn verify(path: &Path, head: Option<&LogHead>, mut take: impl FnMut(C
     }
     // The service makes its key before the first line, and signs each line after it was written.
     let may_have_more = head.is_some() || LogSigner::file_of(path).exists();
-    let has_more = !lines.next()?.is_empty();
-    if has_more && !(may_have_more && lines.next()?.is_empty()) {
+    part.has_rest = !lines.next()?.is_empty();
+    if part.has_rest && !(may_have_more && lines.next()?.is_empty()) {
         return Err(wrong(Some(count + 1), "is not signed"));
     }
     Ok(part)
 }
 
-/// The lines of a file.
+/// The lines of a file as it was when it was opened: the service may go on writing.
 struct Lines<'p> {
     path: &'p Path,
-    reader: BufReader<File>,
+    reader: BufReader<Take<File>>,
     line: Vec<u8>,
 }
 
 impl<'p> Lines<'p> {
     fn open(path: &'p Path) -> Result<Self> {
         let file = File::open(path).map_err(unreadable(path))?;
-        Ok(Self { path, reader: BufReader::new(file), line: Vec::new() })
+        let length = file.metadata().map_err(unreadable(path))?.len();
+        Ok(Self { path, reader: BufReader::new(file.take(length)), line: Vec::new() })
     }
 
-    /// The next one with its end: without one where it was not written to its end, or is too long; empty behind the last.
+    /// The next line with its `\n`, which is missing where the line is unfinished or too long; empty at the end of the file.
     fn next(&mut self) -> Result<&[u8]> {
         self.line.clear();
         let mut bounded = self.reader.by_ref().take(MAX_LINE);

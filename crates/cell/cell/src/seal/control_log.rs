@@ -9,7 +9,7 @@ use elbowroom_monitor::AccessClass;
 
 use super::change::Change;
 use super::control_entry::ControlEntry;
-use super::control_history::{SignedPart, verify};
+use super::control_history::{MAX_LINE, SignedPart, verify};
 use super::log_head::{LogHead, LogSigner};
 use super::result::Result;
 use super::{hex, text, time};
@@ -63,9 +63,11 @@ impl ControlLog {
             FormatError::new(path, None, "is written by another process").hint("one service with --control per cell")
         })?;
         let head = LogHead::read(path)?;
-        let SignedPart { length, entries, hash } = verify(path, head.as_ref(), |_| ())?;
+        let SignedPart { length, entries, hash, has_rest } = verify(path, head.as_ref(), |_| ())?;
         let signer = LogSigner::open(path, head.as_ref())?;
-        file.set_len(length).map_err(text::unwritable(path))?;
+        if has_rest {
+            file.set_len(length).map_err(text::unwritable(path))?;
+        }
         Ok(Self { path: path.to_owned(), file, signer, length, entries, head: hash, has_rest: false })
     }
 
@@ -94,6 +96,10 @@ impl ControlLog {
         };
         let line = entry.line();
         let (bytes, head) = (line.clone() + "\n", hex::hash(line.as_bytes()));
+        if bytes.len() as u64 >= MAX_LINE {
+            let what = format!("an entry of {} bytes is too long", bytes.len());
+            return Err(FormatError::new(&self.path, None, what).hint("a shorter note, or fewer changes at once"));
+        }
         let written = self.file.write_all(bytes.as_bytes()).and_then(|()| self.file.sync_all());
         let written = written.map_err(text::unwritable(&self.path));
         if let Err(e) = written.and_then(|()| self.signer.sign(self.entries + 1, &head)) {
@@ -201,6 +207,32 @@ mod tests {
             assert_eq!(log.append(switched(false)).unwrap().sequence, 2);
             assert_eq!(control_history(&path).unwrap().entries.len(), 2);
         }
+        // Half a character is half a line. Two lines are not what a service leaves, nor are ends of lines of another system.
+        std::fs::write(&head, &signed).unwrap();
+        let refused = |text: Vec<u8>| {
+            std::fs::write(&path, text).unwrap();
+            let [open, read] = [ControlLog::open(&path).map(|_| ()), control_history(&path).map(|_| ())];
+            assert_eq!(open.is_err(), read.is_err());
+            open.is_err()
+        };
+        assert!(!refused([whole.as_bytes(), b"{\xc3"].concat()));
+        assert!(refused([whole.as_bytes(), b"{\n{"].concat()));
+        assert!(refused(whole.replace('\n', "\r\n").into_bytes()));
+    }
+
+    #[test]
+    fn an_entry_that_could_not_be_read_again_is_not_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = control_log_of(&folder.path().join("cell.toml"));
+        let mut log = ControlLog::open(&path).unwrap();
+        let note = "n".repeat(MAX_LINE as usize);
+        let error = log.append(Controlled { note: Some(&note), ..switched(true) }).unwrap_err();
+        assert!(error.what.contains("is too long"), "{error}");
+        assert_eq!(log.append(switched(true)).unwrap().sequence, 1);
+        drop(log);
+        let line = std::fs::read_to_string(&path).unwrap();
+        std::fs::write(&path, note + &line).unwrap();
+        assert!(ControlLog::open(&path).unwrap_err().what.contains("longer than any line"));
     }
 
     /// Written as the service writes it, but signed once: 1,130 lines of 60 kB.

@@ -35,7 +35,8 @@ impl LogHead {
     /// The head of a log, `None` where it was never signed.
     pub(super) fn read(log: &Path) -> Result<Option<Self>> {
         let path = path_of(log);
-        if !path.exists() {
+        let unreadable = |e: std::io::Error| FormatError::unreadable(&path, &e, "the path of a file that is there");
+        if !path.try_exists().map_err(unreadable)? {
             return Ok(None);
         }
         let head: Option<Self> = serde_json::from_str(&text::read(&path)?).ok();

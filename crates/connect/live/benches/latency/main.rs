@@ -1,10 +1,12 @@
-//! Time from a joint state to its override, over Zenoh or by UDP datagrams on the loopback network, with a process per node and per controller.
+//! Time from a joint state to its override, over Zenoh or by UDP datagrams on the loopback network, with a process per node and
+//! per controller.
 //!
 //! ```sh
 //! cargo bench -p elbowroom-live --bench latency -- --robots 8 --seconds 60 [--rate 500] [--udp | --through-arbiter] [--json]
 //! ```
 //!
-//! Each node's process accepts its controller's connection; `--through-arbiter` sends both ways through the arbiter's process
+//! Each node's process accepts its controller's connection, or hears its datagrams; a node answers by Zenoh first, then by UDP.
+//! `--through-arbiter` sends both ways through the arbiter's process
 //! instead, as in a cell of which only that one listens. `ZENOH_RUNTIME='()'` measures with Zenoh's own threads.
 #![allow(clippy::print_stdout, reason = "a program")]
 
@@ -79,7 +81,7 @@ fn options() -> Result<Options, Box<dyn Error>> {
         && (1..=1000).contains(&options.rate_hz)
         && !(options.udp && options.through_arbiter);
     let limits = format!(
-        "1 to {MOST_ROBOTS} robots, 1 to {MOST_SECONDS} seconds, 1 to 1000 Hz, one of --udp and --through-arbiter"
+        "1 to {MOST_ROBOTS} robots, 1 to {MOST_SECONDS} seconds, 1 to 1000 Hz, not both of --udp and --through-arbiter"
     );
     if is_allowed { Ok(options) } else { Err(limits.into()) }
 }
@@ -117,17 +119,24 @@ fn start(options: &Options, part: &str, robot: usize, address: &str, arbiter: &s
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().map(Process)
 }
 
-fn free_address() -> std::io::Result<String> {
-    Ok(std::net::TcpListener::bind("127.0.0.1:0")?.local_addr()?.to_string())
+/// Of a port that nobody has: each transport has its own.
+fn free_address(udp: bool) -> std::io::Result<String> {
+    let any = "127.0.0.1:0";
+    let address = if udp {
+        std::net::UdpSocket::bind(any)?.local_addr()?
+    } else {
+        std::net::TcpListener::bind(any)?.local_addr()?
+    };
+    Ok(address.to_string())
 }
 
 fn measure_all(options: &Options) -> Result<(), Box<dyn Error>> {
-    let arbiter = free_address()?;
+    let arbiter = free_address(false)?;
     let service = ServiceOptions { arbiter: true, listen: Some(arbiter.clone()), ..ServiceOptions::default() };
     let service = Service::start(cell::cell(options.robots)?, &service)?;
     let (mut nodes, mut controllers) = (Vec::new(), Vec::new());
     for robot in 0..options.robots {
-        let address = if options.through_arbiter { arbiter.clone() } else { free_address()? };
+        let address = if options.through_arbiter { arbiter.clone() } else { free_address(options.udp)? };
         nodes.push(start(options, "node", robot, &address, &arbiter)?);
         controllers.push(start(options, "controller", robot, &address, &arbiter)?);
     }

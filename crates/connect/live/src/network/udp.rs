@@ -222,7 +222,8 @@ impl Publisher for UdpPublisher {
             let present = subscribers.iter().filter(|(address, at)| at.elapsed() < LEASE && !peers.contains(address));
             self.to.extend(present.map(|(address, _)| *address));
         }
-        if self.to.is_empty() || bytes.len() > MAX_BYTES - 300 {
+        let is_closed = self.shared.is_closed.load(Ordering::SeqCst);
+        if is_closed || self.to.is_empty() || bytes.len() > MAX_BYTES - 300 {
             return;
         }
         frame(PUBLISH, &self.key, bytes, &mut self.datagram);
