@@ -1,9 +1,11 @@
 //! Programs that cargo has compiled, as its messages report them.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 
 use serde_json::Value;
+
+use crate::shell::command;
 
 /// A compiled program.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -29,7 +31,7 @@ pub fn compile(root: &Path, args: &[&str], env: &[(&str, &str)]) -> Result<Vec<A
     let args: Vec<&str> = args.iter().copied().chain(["--message-format", "json-render-diagnostics"]).collect();
     let line = args.join(" ");
     eprintln!("$ cargo {line}");
-    let mut command = Command::new(cargo);
+    let mut command = command(&cargo);
     command.args(&args).envs(env.iter().copied()).current_dir(root).stderr(Stdio::inherit());
     let output = command.output().map_err(|e| format!("cannot start cargo: {e}"))?;
     if !output.status.success() {

@@ -3,6 +3,17 @@
 use std::path::Path;
 use std::process::Command;
 
+/// A program to run, without what cargo tells about our own package: build scripts that read it (of `ring`) would run anew at each
+/// change between `cargo test` and `cargo xtask`, and everything above them would be compiled again.
+pub fn command(program: &str) -> Command {
+    let mut command = Command::new(program);
+    let of_package = |name: &str| name.starts_with("CARGO_PKG_") || name.starts_with("CARGO_MANIFEST_");
+    for (name, _) in std::env::vars_os().filter(|(name, _)| name.to_str().is_some_and(of_package)) {
+        command.env_remove(name);
+    }
+    command
+}
+
 /// Runs `program args…` in `root` with extra environment.
 ///
 /// # Errors
@@ -58,7 +69,7 @@ pub fn output(root: &Path, program: &str, args: &[&str]) -> Result<String, Strin
 /// # Errors
 /// As there.
 pub fn output_with(root: &Path, program: &str, args: &[&str], env: &[(&str, &str)]) -> Result<String, String> {
-    let output = Command::new(program).args(args).envs(env.iter().copied()).current_dir(root).output();
+    let output = command(program).args(args).envs(env.iter().copied()).current_dir(root).output();
     let output = output.map_err(|e| format!("cannot start `{program}`: {e}"))?;
     if !output.status.success() {
         return Err(format!("`{}` failed:\n{}", line(program, args, env), String::from_utf8_lossy(&output.stderr)));
@@ -68,12 +79,12 @@ pub fn output_with(root: &Path, program: &str, args: &[&str], env: &[(&str, &str
 
 /// Whether `program args…` runs and ends well; prints nothing.
 pub fn succeeds(root: &Path, program: &str, args: &[&str]) -> bool {
-    let output = Command::new(program).args(args).current_dir(root).output();
+    let output = command(program).args(args).current_dir(root).output();
     output.is_ok_and(|output| output.status.success())
 }
 
 fn wait(root: &Path, program: &str, args: &[&str], env: &[(&str, &str)]) -> Result<i32, String> {
-    let mut command = Command::new(program);
+    let mut command = command(program);
     command.args(args).current_dir(root).envs(env.iter().copied());
     let status = command.status().map_err(|e| format!("cannot start `{program}`: {e}"))?;
     Ok(status.code().unwrap_or(-1))
