@@ -84,10 +84,12 @@ impl ArbiterService {
         }
         let published: Arc<Mutex<Vec<SlotStatus>>> = Arc::default();
         let robots: Vec<String> = cell.robots.iter().map(|r| r.name.clone()).collect();
+        let in_regions = robots.iter().zip(&settings.robots);
+        let watched: Vec<_> = in_regions.map(|(name, robot)| (!robot.slots.is_empty()).then(|| name.clone())).collect();
         let clock = Clock::start();
         let running = Running {
             slots: slot_regions(cell, settings.slots),
-            silence: SilenceWatch::new(&robots, clock.micros()),
+            silence: SilenceWatch::new(watched.into_iter(), clock.micros()),
             robots,
             arbiter: Arbiter::new(settings, Boot(boot)),
             grants,
@@ -236,6 +238,7 @@ impl Running {
             return self.arbiter.may_clear(robot, now);
         }
         let outputs = self.arbiter.clear(robot, now)?;
+        self.silence.cleared(robot);
         self.send(outputs);
         Ok(())
     }

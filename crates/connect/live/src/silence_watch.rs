@@ -5,12 +5,15 @@ use elbowroom_monitor::RobotSlot;
 
 /// Whoever is not heard for this long is named.
 const SILENT: Micros = Micros(1_000_000);
+/// Whoever looks this late was held up.
+const HELD_UP: Micros = Micros(300_000);
 /// Whoever was never heard is named later: the processes of a cell start one after another.
 const NEVER_HEARD: Micros = Micros(5_000_000);
 
-/// When each robot was heard last, and who was named.
+/// When each robot that can be in an exchange region was heard last, and who was named.
 pub(crate) struct SilenceWatch {
-    robots: Vec<Heard>,
+    /// Per robot of the cell; `None` for one that no region waits for.
+    robots: Vec<Option<Heard>>,
     looked: Micros,
 }
 
@@ -23,35 +26,43 @@ struct Heard {
 }
 
 impl SilenceWatch {
-    /// Nobody was heard yet.
-    pub(crate) fn new(names: &[String], now: Micros) -> Self {
-        let heard = |name: &String| Heard { name: name.clone(), at: now, has_spoken: false, is_named: false };
-        Self { robots: names.iter().map(heard).collect(), looked: now }
+    /// Nobody was heard yet. Robots without exchange regions have no name here: their guards have nothing to say to an arbiter.
+    pub(crate) fn new(names: impl Iterator<Item = Option<String>>, now: Micros) -> Self {
+        let heard = |name: String| Heard { name, at: now, has_spoken: false, is_named: false };
+        Self { robots: names.map(|name| name.map(heard)).collect(), looked: now }
     }
 
     /// A message of a robot has come; says so where it was named as silent.
     pub(crate) fn heard(&mut self, robot: RobotSlot, now: Micros) -> Option<String> {
-        let robot = self.robots.get_mut(robot.0)?;
-        let silence = now - robot.at;
-        (robot.at, robot.has_spoken) = (now, true);
+        let robot = self.robots.get_mut(robot.0)?.as_mut()?;
+        let silence = now - std::mem::replace(&mut robot.at, now);
+        let again = if std::mem::replace(&mut robot.has_spoken, true) { "again, " } else { "" };
         let was_named = std::mem::take(&mut robot.is_named);
-        was_named.then(|| format!("robot {}: heard again, after {:.1} s", robot.name, seconds(silence)))
+        was_named.then(|| format!("robot {}: heard {again}after {:.1} s", robot.name, seconds(silence)))
+    }
+
+    /// Somebody has seen a silent robot at rest outside of all regions: they are granted without it.
+    pub(crate) fn cleared(&mut self, robot: RobotSlot) {
+        if let Some(Some(robot)) = self.robots.get_mut(robot.0) {
+            robot.is_named = true;
+        }
     }
 
     /// What is to be said now. It is asked several times a second.
     pub(crate) fn look(&mut self, now: Micros) -> Vec<String> {
         let gap = now - std::mem::replace(&mut self.looked, now);
-        if gap >= SILENT {
+        let robots = self.robots.iter_mut().flatten();
+        if gap >= HELD_UP {
             // What was sent meanwhile waits to be read: nobody has been silent because of that.
-            self.robots.iter_mut().filter(|robot| !robot.is_named).for_each(|robot| robot.at = now);
-            let gap_s = seconds(gap);
-            return vec![format!("the arbiter did not run for {gap_s:.1} s, and granted nothing meanwhile")];
+            robots.filter(|robot| !robot.is_named).for_each(|robot| robot.at = now);
+            let line = || format!("the arbiter did not run for {:.1} s, and granted nothing meanwhile", seconds(gap));
+            return (gap >= SILENT).then(line).into_iter().collect();
         }
         let is_silent = |robot: &&mut Heard| {
             let longest = if robot.has_spoken { SILENT } else { NEVER_HEARD };
             !robot.is_named && now - robot.at >= longest
         };
-        self.robots.iter_mut().filter(is_silent).map(|robot| robot.name_silent(now)).collect()
+        robots.filter(is_silent).map(|robot| robot.name_silent(now)).collect()
     }
 }
 
@@ -79,13 +90,13 @@ mod tests {
 
     /// Looks every 0.1 s, and hears the robots of `speaks`; the lines with their times, s.
     fn told(seconds: u64, speaks: impl Fn(usize, u64) -> bool, runs: impl Fn(u64) -> bool) -> Vec<(u64, String)> {
-        let names = ["left", "right"].map(str::to_owned);
-        let (mut watch, mut lines) = (SilenceWatch::new(&names, Micros(0)), Vec::new());
+        let names = [Some("left"), Some("right"), None].map(|name| name.map(str::to_owned));
+        let (mut watch, mut lines) = (SilenceWatch::new(names.into_iter(), Micros(0)), Vec::new());
         for tick in (1..=seconds * 10).filter(|tick| runs(*tick)) {
             let now = Micros(tick * TICK);
             let mut say = |line: String| lines.push((tick, line));
             watch.look(now).into_iter().for_each(&mut say);
-            let heard = (0..names.len()).filter(|robot| speaks(*robot, tick));
+            let heard = (0..2).filter(|robot| speaks(*robot, tick));
             heard.filter_map(|robot| watch.heard(RobotSlot(robot), now)).for_each(&mut say);
         }
         lines
@@ -107,7 +118,18 @@ mod tests {
             matches!(&lines[..], [(50, line)] if line.contains("5.0 s, since this arbiter has started")),
             "{lines:?}"
         );
+        let lines = told(20, |robot, tick| robot == 0 || tick >= 150, |_| true);
+        assert!(matches!(&lines[..], [_, (150, line)] if line == "robot right: heard after 15.0 s"), "{lines:?}");
+        assert!(told(20, |_, _| true, |tick| tick % 10 < 3).is_empty(), "held up for 0.8 s again and again");
         let lines = told(20, |_, _| true, |tick| !(50..112).contains(&tick));
         assert_eq!(lines, [(112, "the arbiter did not run for 6.3 s, and granted nothing meanwhile".to_owned())]);
+    }
+
+    #[test]
+    fn who_was_cleared_is_not_in_the_way() {
+        let mut watch = SilenceWatch::new([Some("left".to_owned())].into_iter(), Micros(0));
+        watch.cleared(RobotSlot(0));
+        assert!((1..100).all(|tick| watch.look(Micros(tick * TICK)).is_empty()));
+        assert_eq!(watch.heard(RobotSlot(0), Micros(100 * TICK)).as_deref(), Some("robot left: heard after 10.0 s"));
     }
 }

@@ -152,6 +152,7 @@ fn whoever_comes_and_goes_is_named() {
     drop(right);
     says("robot right: its process is gone", 1);
     arbiter_says("robot right: its process is gone");
+    arbiter_says("robot right: not heard for");
     // Where nobody listens yet, it waits, and says so.
     drop(setup.service.take());
     says("the arbiter's process is gone", 1);

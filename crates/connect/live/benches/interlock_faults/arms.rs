@@ -93,6 +93,8 @@ pub struct Seen {
     pub shared: u64,
     /// How often a robot has entered its temporary region while that was surely on.
     pub entered: u64,
+    /// In how many ticks a robot stood before its temporary region, which was surely on.
+    pub held: u64,
     inside: Vec<Option<usize>>,
     in_cart: Vec<bool>,
 }
@@ -103,7 +105,9 @@ impl Seen {
         for (robot, arm) in arms.iter().enumerate() {
             let is_in_cart = is_in_cart(arm.q());
             let was_in_cart = std::mem::replace(&mut self.in_cart[robot], is_in_cart);
-            self.entered += u64::from(is_in_cart && !was_in_cart && switches.is_surely_on(robot));
+            let is_on = switches.is_surely_on(robot);
+            self.entered += u64::from(is_on && is_in_cart && !was_in_cart);
+            self.held += u64::from(is_on && !is_in_cart && arm.running == 0.0);
             let is_in = occupied(robot, robots, arm.q());
             let before = std::mem::replace(&mut self.inside[robot], is_in);
             if is_in.is_some() && is_in != before {

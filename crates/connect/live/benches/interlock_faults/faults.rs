@@ -57,6 +57,7 @@ impl Faults {
             let now = Instant::now();
             self.end_those_over(now, requests)?;
             if now >= next {
+                self.check_that_all_run()?;
                 self.begin_one(now, requests)?;
                 next += every;
             }
@@ -74,6 +75,19 @@ impl Faults {
                 Fault::CutOff => self.processes[process].cut(false),
             }
             requests.fault_ended(process, matches!(fault, Fault::Killed | Fault::Restarted));
+        }
+        Ok(())
+    }
+
+    /// An error where a process has ended that nobody has killed.
+    fn check_that_all_run(&mut self) -> Result<(), Box<dyn Error>> {
+        let is_killed =
+            |present: &Option<(Fault, Instant)>| matches!(present, Some((Fault::Killed | Fault::Restarted, _)));
+        let running = self.processes.iter_mut().zip(&self.present).enumerate().filter(|(_, (_, p))| !is_killed(p));
+        for (i, (process, _)) in running {
+            if let Some(how) = process.has_ended() {
+                return Err(format!("process {} has ended by itself: {how}", i + 1).into());
+            }
         }
         Ok(())
     }

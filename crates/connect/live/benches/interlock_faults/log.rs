@@ -12,6 +12,10 @@ const PAUSE: Duration = Duration::from_secs(2);
 const BEFORE: Duration = Duration::from_millis(1500);
 /// Processes connect and report for this long after they are there again.
 const AFTER: Duration = Duration::from_secs(3);
+/// With what nodes begin to speak of the arbiter.
+const ARBITER: &str = "the arbiter's process is ";
+/// What the arbiter says first.
+const STARTED: &str = "all temporary regions are on";
 
 /// A wait of a robot for a region.
 #[derive(Debug, Clone, Copy)]
@@ -22,24 +26,38 @@ pub struct Wait {
     pub to: Instant,
 }
 
-/// The lines of all processes, with the times at which they came.
+/// Who says something: a node, by its robot, or the arbiter.
+pub type Speaker = Option<usize>;
+
+/// A line, with the time at which it came.
+#[derive(Debug, Clone)]
+struct Line {
+    at: Instant,
+    speaker: Speaker,
+    text: String,
+}
+
+/// The lines that are believed: what the arbiter says, and what nodes say of the arbiter. A node that is cut off takes everybody else
+/// for gone.
 #[derive(Debug, Clone, Default)]
-pub struct Log(Arc<Mutex<Vec<(Instant, String)>>>);
+pub struct Log(Arc<Mutex<Vec<Line>>>);
 
 /// From, to.
 type Span = (Instant, Instant);
 
 impl Log {
-    fn lines(&self) -> MutexGuard<'_, Vec<(Instant, String)>> {
+    fn lines(&self) -> MutexGuard<'_, Vec<Line>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Reads what a process says, until it ends.
-    pub fn follow(&self, output: impl Read + Send + 'static) {
+    pub fn follow(&self, speaker: Speaker, output: impl Read + Send + 'static) {
         let log = self.clone();
         std::thread::spawn(move || {
-            for line in BufReader::new(output).lines().map_while(Result::ok) {
-                log.lines().push((Instant::now(), line));
+            for text in BufReader::new(output).lines().map_while(Result::ok) {
+                if speaker.is_none() || text.starts_with(ARBITER) {
+                    log.lines().push(Line { at: Instant::now(), speaker, text });
+                }
             }
         });
     }
@@ -57,68 +75,71 @@ impl Log {
 }
 
 /// What the lines explain, for a wait.
-fn explained(lines: &[(Instant, String)], wait: &Wait, end: Instant) -> Vec<Span> {
+fn explained(lines: &[Line], wait: &Wait, end: Instant) -> Vec<Span> {
+    let (of_arbiter, of_nodes): (Vec<_>, Vec<_>) = lines.iter().partition(|line| line.speaker.is_none());
     let region = between(wait.slot + 1);
-    let mut spans = held(lines, &region, &name(wait.robot), end);
-    for robot in [wait.slot, wait.slot + 1].map(name) {
-        let (gone, here) =
-            (format!("robot {robot}: its process is gone"), format!("robot {robot}: its process is there"));
-        spans.extend(lasting(lines, &gone, &here, end));
-        let (silent, again) = (format!("robot {robot}: not heard"), format!("robot {robot}: heard again"));
-        spans.extend(lasting(lines, &silent, &again, end));
-        spans.extend(at_once(lines, &format!("{robot}: its guard has started")));
+    let mut spans = held(&of_arbiter, &region, &name(wait.robot), end);
+    for robot in [wait.slot, wait.slot + 1] {
+        let own: Vec<_> = of_nodes.iter().copied().filter(|line| line.speaker == Some(robot)).collect();
+        spans.extend(lasting(&own, &format!("{ARBITER}gone"), &[&format!("{ARBITER}there")], end));
+        let robot = name(robot);
+        let about = |what: &str| format!("robot {robot}: {what}");
+        spans.extend(lasting(
+            &of_arbiter,
+            &about("its process is gone"),
+            &[&about("its process is there"), STARTED],
+            end,
+        ));
+        spans.extend(lasting(&of_arbiter, &about("not heard"), &[&about("heard"), STARTED], end));
+        spans.extend(at_once(&of_arbiter, &format!("{robot}: its guard has started")));
     }
-    spans.extend(lasting(lines, "the arbiter's process is gone", "the arbiter's process is there", end));
-    spans.extend(at_once(lines, "all temporary regions are on"));
-    spans.extend(lines.iter().filter_map(|(at, line)| {
-        let gap_s: f64 = line.strip_prefix("the arbiter did not run for ")?.split(' ').next()?.parse().ok()?;
-        Some((earlier(*at, BEFORE + Duration::from_secs_f64(gap_s)), *at + AFTER))
+    spans.extend(at_once(&of_arbiter, STARTED));
+    spans.extend(of_arbiter.iter().filter_map(|line| {
+        let gap = line.text.strip_prefix("the arbiter did not run for ")?.split(' ').next()?;
+        Some((earlier(line.at, BEFORE + Duration::from_secs_f64(gap.parse().ok()?)), line.at + AFTER))
     }));
     spans
 }
 
 /// Between lines that begin so, and a while before and after.
-fn lasting(lines: &[(Instant, String)], begin: &str, over: &str, end: Instant) -> Vec<Span> {
+fn lasting(lines: &[&Line], begin: &str, over: &[&str], end: Instant) -> Vec<Span> {
     let mut spans = Vec::new();
     let mut since: Option<Instant> = None;
-    for (at, line) in lines {
-        if line.starts_with(begin) {
-            since = since.or(Some(*at));
-        } else if line.starts_with(over)
+    for line in lines {
+        if line.text.starts_with(begin) {
+            since = since.or(Some(line.at));
+        } else if over.iter().any(|over| line.text.starts_with(over))
             && let Some(since) = since.take()
         {
-            spans.push((earlier(since, BEFORE), *at + AFTER));
+            spans.push((earlier(since, BEFORE), line.at + AFTER));
         }
     }
     spans.extend(since.map(|since| (earlier(since, BEFORE), end)));
     spans
 }
 
-fn at_once(lines: &[(Instant, String)], begin: &str) -> Vec<Span> {
-    lines
-        .iter()
-        .filter(|(_, line)| line.starts_with(begin))
-        .map(|(at, _)| (earlier(*at, BEFORE), *at + AFTER))
-        .collect()
+fn at_once(lines: &[&Line], begin: &str) -> Vec<Span> {
+    let begun = lines.iter().filter(|line| line.text.starts_with(begin));
+    begun.map(|line| (earlier(line.at, BEFORE), line.at + AFTER)).collect()
 }
 
 /// When another robot had the region.
-fn held(lines: &[(Instant, String)], region: &str, robot: &str, end: Instant) -> Vec<Span> {
+fn held(lines: &[&Line], region: &str, robot: &str, end: Instant) -> Vec<Span> {
     let mut spans = Vec::new();
     let mut since: Option<Instant> = None;
-    for (at, line) in lines {
-        let what = line.strip_prefix(region).and_then(|rest| rest.strip_prefix(": "));
+    for line in lines {
+        let what = line.text.strip_prefix(region).and_then(|rest| rest.strip_prefix(": "));
         let is_taken = what.is_some_and(|what| {
             what.strip_prefix("granted to ").is_some_and(|who| who != robot)
                 || what.split_once(" was found inside").is_some_and(|(who, _)| who != robot)
         });
         let is_over = what.is_some_and(|what| what.starts_with("released by ") || what.starts_with("granted to "))
-            || line.starts_with("all temporary regions are on");
+            || line.text.starts_with(STARTED);
         if is_over && let Some(since) = since.take() {
-            spans.push((since, *at));
+            spans.push((since, line.at));
         }
         if is_taken {
-            since = since.or(Some(*at));
+            since = since.or(Some(line.at));
         }
     }
     spans.extend(since.map(|since| (since, end)));

@@ -5,7 +5,7 @@ use std::process::{Child, Command, Stdio};
 
 use elbowroom_live::network::ZENOH_RUNTIME;
 
-use crate::log::Log;
+use crate::log::{Log, Speaker};
 use crate::relay::Relay;
 
 /// A process, which is killed when it is dropped, and its connection.
@@ -14,6 +14,7 @@ pub struct Process {
     child: Child,
     relay: Relay,
     log: Log,
+    speaker: Speaker,
 }
 
 impl Process {
@@ -21,7 +22,8 @@ impl Process {
     pub fn start(part: &str, robots: usize, hub: &str, log: &Log) -> Result<Self, Box<dyn Error>> {
         let relay = Relay::to(hub)?;
         let arguments = ["--robots", &robots.to_string(), "--part", part, relay.address()].map(str::to_owned).to_vec();
-        Ok(Self { child: spawn(&arguments, log)?, arguments, relay, log: log.clone() })
+        let speaker = part.parse().ok();
+        Ok(Self { child: spawn(&arguments, log, speaker)?, arguments, relay, log: log.clone(), speaker })
     }
 
     pub fn kill(&mut self) {
@@ -30,9 +32,14 @@ impl Process {
         let _ = self.child.wait();
     }
 
+    /// How it has ended by itself, if it has.
+    pub fn has_ended(&mut self) -> Option<String> {
+        self.child.try_wait().ok()?.map(|status| status.to_string())
+    }
+
     pub fn restart(&mut self) -> Result<(), Box<dyn Error>> {
         self.kill();
-        self.child = spawn(&self.arguments, &self.log)?;
+        self.child = spawn(&self.arguments, &self.log, self.speaker)?;
         Ok(())
     }
 
@@ -53,13 +60,13 @@ impl Drop for Process {
     }
 }
 
-fn spawn(arguments: &[String], log: &Log) -> std::io::Result<Child> {
+fn spawn(arguments: &[String], log: &Log, speaker: Speaker) -> std::io::Result<Child> {
     let mut command = Command::new(std::env::current_exe()?);
     command.args(arguments).env("ZENOH_RUNTIME", ZENOH_RUNTIME);
     // A part ends with its standard input, and so with this process.
-    let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null()).spawn()?;
+    let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn()?;
     if let Some(output) = child.stdout.take() {
-        log.follow(output);
+        log.follow(speaker, output);
     }
     Ok(child)
 }

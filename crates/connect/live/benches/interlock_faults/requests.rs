@@ -16,12 +16,13 @@ use crate::log::Wait;
 /// This long after its fault a process counts as disturbed: it starts, or connects again.
 const RECOVERY: Duration = Duration::from_secs(3);
 
-/// A request that has not been granted.
+/// A request, until its robot has the region or does not want it any more.
 #[derive(Debug, Clone, Copy)]
 struct Request {
     at: Instant,
     /// No other robot had, wanted or might be in the region.
     is_free: bool,
+    is_granted: bool,
 }
 
 /// What was measured.
@@ -103,7 +104,7 @@ impl Requests {
         let mut measured = heard.measured.clone();
         for (robot, requests) in heard.requests.iter().enumerate() {
             let open = requests.iter().enumerate().filter_map(|(slot, request)| Some((slot, (*request)?.at)));
-            measured.waits.extend(open.map(|(slot, from)| Wait { robot, slot, from, to: Instant::now() }));
+            measured.waits.extend(open.filter_map(|(slot, from)| wait(robot, slot, from, Instant::now())));
         }
         measured
     }
@@ -123,12 +124,12 @@ impl Heard {
         let robot = state.robot.0;
         for (slot, report) in state.slots.iter().enumerate() {
             let has_asked = report.wants && report.token.is_none();
-            if !has_asked && !report.wants {
-                self.requests[robot][slot] = None;
+            if !has_asked && let Some(Request { at, .. }) = self.requests[robot][slot].take() {
+                self.measured.waits.extend(wait(robot, slot, at, now));
             } else if has_asked && self.requests[robot][slot].is_none() {
                 let is_free = neighbours(robot, slot).all(|other| self.is_away(other, slot))
                     && self.processes_of(robot, slot).all(|process| self.is_undisturbed(process, now));
-                self.requests[robot][slot] = Some(Request { at: now, is_free });
+                self.requests[robot][slot] = Some(Request { at: now, is_free, is_granted: false });
             }
             self.reports[robot][slot] = *report;
         }
@@ -147,13 +148,11 @@ impl Heard {
             if answer.granted == self.reports[robot][slot].token {
                 continue;
             }
-            if let Some(request) = self.requests[robot][slot].take() {
+            if let Some(request) = self.requests[robot][slot].as_mut().filter(|request| !request.is_granted) {
+                request.is_granted = true;
                 let Measured { undisturbed, others, .. } = &mut self.measured;
                 let latencies = if request.is_free { undisturbed } else { others };
                 latencies.add_us((now - request.at).as_micros() as u64);
-                if now - request.at > Duration::from_secs(1) {
-                    self.measured.waits.push(Wait { robot, slot, from: request.at, to: now });
-                }
             }
         }
     }
@@ -188,4 +187,9 @@ impl Heard {
 /// The other robots that share a region.
 fn neighbours(robot: usize, slot: usize) -> impl Iterator<Item = usize> {
     [slot, slot + 1].into_iter().filter(move |other| *other != robot)
+}
+
+/// A wait that has lasted for more than a second.
+fn wait(robot: usize, slot: usize, from: Instant, to: Instant) -> Option<Wait> {
+    (to - from > Duration::from_secs(1)).then_some(Wait { robot, slot, from, to })
 }
