@@ -13,6 +13,9 @@ fn cell(gripper: &str, welder: &str, more: &str) -> String {
     )
 }
 
+const CLOUD: &str = "[cloud.mast]\npose = { at = [1700, 0, 6500], rpy = [180, 0, 0] }\n\
+                     area = [[750, -3000], [4800, -3000], [4800, 3000]]\nfloor = 0";
+
 #[test]
 fn each_tool_has_a_link_a_tcp_and_a_volume() {
     let cell = parse(&cell("", "flange = \"link_3\"", ""));
@@ -77,6 +80,7 @@ fn mistakes_are_named_with_their_line() {
         (cell("", "mounted = false", &steps("{ tool = \"welder\", wait = 1 }")), "{ tool =", "several steps in one"),
         (cell("", "mounted = false", &steps("{ tool = \"welder\", speed = 1 }")), "{ tool =", "speed"),
         (cell("", "mounted = false", "[avoidance.c]"), "[avoidance.c]", "does not see tools that are changed"),
+        (cell("", "mounted = false", CLOUD), "[cloud.mast]", "cannot change tools"),
         (format!("{HEAD}[robot.c]\n{ARM}\n{}", steps("{ tool = \"welder\" }")), "{ tool =", "[robot.c.tools.welder]"),
     ] {
         let line = 1 + text.lines().position(|l| l.starts_with(at)).unwrap();

@@ -279,3 +279,42 @@ fn a_robot_never_moves_into_a_region_that_turns_at_a_constant_rate() {
     }
     assert!(hits_without > 3, "only {hits_without} of 12 would enter");
 }
+
+/// A ball on the hand of an arm crosses a rail; with a second joint, which turns back what the first one turns, it circles without
+/// turning itself.
+#[test]
+fn a_robot_never_moves_into_a_region_on_a_hand_that_circles_at_a_constant_rate() {
+    for second in [false, true] {
+        let mut hits_without = 0;
+        for phase in 0..14 {
+            let rate = "speed = 1.8, acceleration = 20";
+            let (joint, link, back) =
+                if second { (format!(", {{ {rate} }}"), ", []", ", -6.3") } else { (String::new(), "", "") };
+            let text = format!(
+                "version = 1\nunits = {{ length = \"m\", angle = \"rad\" }}\ntick_ms = 4\nmax_s = 5\n\
+                 [robot.a]\nbase = {{ at = [-0.1, 0, 0], rpy = [-1.5707963267948966, 0, 0] }}\n\
+                 dh = [{{ kind = \"prismatic\", min = -5, max = 5, speed = 1.7, acceleration = 6.8 }}]\n\
+                 links = [{{ sphere = {{ radius = 0.05 }} }}]\nstop_time = 0.8\nstart = [{}]\n\
+                 [robot.b]\ndh = [{{ a = 0.7, {rate} }}{joint}]\nlinks = [{{ sphere = {{ radius = 0.02 }} }}{link}]\n\
+                 [region.hand]\nshape = \"sphere\"\ncentre = [0, 0, 0]\nradius = 0.1\nwarning = 0.1\nrobots = [\"a\"]\n\
+                 follow = {{ robot = \"b\", frame = \"flange\" }}\n{LAWS}\
+                 [program.a]\nsteps = [{{ move = \"joint\", to = [-4.5] }}]\n\
+                 [program.b]\nsteps = [{{ move = \"joint\", to = [6.3{back}] }}]\n",
+                2.0 + 0.2 * f64::from(phase),
+            );
+            // The hand may reach a robot that stands: it is the first instant of a contact that counts.
+            let moves_inside = |outcome: &RunOutcome| {
+                let samples = &outcome.recording.robots[0].samples;
+                let ball = |tick: usize| Vec3::new(-0.1, samples[tick].q[0], 0.0);
+                let touches = |tick: usize| at(outcome, tick).translation.distance(ball(tick)) <= 0.15;
+                let entered = |tick: &usize| touches(*tick) && !touches(tick - 1);
+                (1..samples.len()).filter(entered).find(|tick| samples[*tick].q[0] != samples[tick - 1].q[0])
+            };
+            assert_eq!(moves_inside(&run_at(Path::new("."), &text)), None, "second {second}, phase {phase}");
+            let cell = Cell::parse("cell.toml", &text).unwrap();
+            let free = simulate(&cell, &RunOptions { apply_override: false, ..RunOptions::default() }).unwrap();
+            hits_without += usize::from(moves_inside(&free).is_some());
+        }
+        assert!(hits_without > 3, "only {hits_without} of 14 would enter");
+    }
+}

@@ -52,24 +52,25 @@ struct Kept {
 }
 
 impl Kept {
-    /// Permanent regions are on, as temporary ones are until it is known better: from the journal, where it is of this cell file.
+    /// Permanent regions are on, as temporary ones are until it is known better: from the journal, if it is of this cell file and of no
+    /// other process.
     fn begin(
         versions: &CellVersions,
         boot: u64,
-        journal: Option<RegionJournal>,
+        journal: Result<RegionJournal, String>,
         on_event: Option<EventHandler>,
     ) -> (Self, String) {
         let base = versions.base();
         let fresh = RegionTable { revision: (boot, 0), ..RegionTable::initial(base).all_on() };
-        let continued = match &journal {
-            None => Err("no journal is kept".to_owned()),
-            Some(journal) => journal.read().and_then(|written| continued(versions, &fresh, &written, journal)),
-        };
+        let continued = journal
+            .as_ref()
+            .map_err(Clone::clone)
+            .and_then(|journal| journal.read().and_then(|written| continued(versions, &fresh, &written, journal)));
         let (table, cell, how) = match continued {
             Ok((table, cell)) => (table, cell, "the regions are as they were when this process ended".to_owned()),
             Err(why) => (fresh, base.clone(), format!("all temporary regions are on until they are switched: {why}")),
         };
-        let kept = Self { table, cell, journal, on_event };
+        let kept = Self { table, cell, journal: journal.ok(), on_event };
         if kept.switches_regions() || !kept.table.edits.is_empty() {
             kept.record();
         }
@@ -158,7 +159,7 @@ impl RegionKeeper {
         network: &Arc<dyn Network>,
         boot: u64,
         programs: ProgramSwitches,
-        journal: Option<RegionJournal>,
+        journal: Result<RegionJournal, String>,
         on_event: Option<EventHandler>,
     ) -> Result<Self, NetworkError> {
         let cell = versions.base();

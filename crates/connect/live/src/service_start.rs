@@ -81,7 +81,8 @@ impl<'o> ServiceStart<'o> {
             return Ok(None);
         }
         let programs = program_switches(self.options);
-        let journal = self.options.journal.as_deref().map(RegionJournal::new);
+        let journal = self.options.journal.as_deref().map(RegionJournal::open);
+        let journal = journal.unwrap_or_else(|| Err("no journal is kept".to_owned()));
         let on_event = self.options.on_event.clone();
         let keeper = RegionKeeper::start(&self.versions, &self.shared, boot_number(), programs, journal, on_event)?;
         Ok(Some(Arc::new(keeper)))
@@ -117,6 +118,10 @@ impl<'o> ServiceStart<'o> {
 
     pub(crate) fn recorder(&self) -> Result<Option<Recorder>, ServiceError> {
         let Some(file) = &self.options.record else { return Ok(None) };
+        if file.exists() {
+            // What a cell has done is not seen a second time.
+            return Err(BagError::Exists(file.clone()).into());
+        }
         let on_event = self.options.on_event.clone();
         let on_error = move |e: &BagError| {
             if let Some(on_event) = on_event {

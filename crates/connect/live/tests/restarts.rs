@@ -2,7 +2,7 @@
 
 use crate::common::control_setup::{ControlSetup, INTEGRATOR, PROGRAMMER, rails};
 use elbowroom_live::{EventHandler, Service, ServiceOptions, region_journal_of};
-use elbowroom_testkit::network::eventually;
+use elbowroom_testkit::network::{eventually, free_address};
 use serde_json::json;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -90,6 +90,31 @@ fn without_a_journal_that_can_be_trusted_all_regions_are_on() {
         assert!(start.note.as_ref().is_some_and(|n| n.contains("are on until they are switched")), "{start:?}");
         assert_eq!(setup.change(PROGRAMMER, "/switch", &json!({ "region": "cart", "active": false })).0, 200);
     }
+    setup.restart();
+    assert_eq!(is_on(&setup, "cart"), Some(false));
+}
+
+/// A second service with the same cell file, as somebody starts to try something, does not write what the first one reads.
+#[test]
+fn a_journal_has_one_keeper() {
+    let mut setup = setup();
+    let journal = region_journal_of(&setup.cell.file);
+    let off = std::fs::read_to_string(&journal).unwrap();
+    let heard: Arc<Mutex<Vec<String>>> = Arc::default();
+    let events = heard.clone();
+    let on_event: EventHandler = Arc::new(move |event: &str| events.lock().unwrap().push(event.to_owned()));
+    let options = ServiceOptions {
+        arbiter: true,
+        listen: Some(free_address()),
+        journal: Some(journal.clone()),
+        on_event: Some(on_event),
+        ..ServiceOptions::default()
+    };
+    let second = Service::start(setup.cell.clone(), &options).unwrap_or_else(|e| panic!("{e}"));
+    let is_said = |e: &String| e.contains("are on until they are switched") && e.contains("is kept by another process");
+    assert!(heard.lock().unwrap().iter().any(is_said), "{heard:?}");
+    drop(second);
+    assert_eq!(std::fs::read_to_string(&journal).unwrap(), off);
     setup.restart();
     assert_eq!(is_on(&setup, "cart"), Some(false));
 }

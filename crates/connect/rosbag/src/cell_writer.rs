@@ -71,18 +71,23 @@ impl Due {
 }
 
 impl CellWriter<File> {
-    /// Begins a recording in a new file, and writes the URDF of the whole cell beside it, with the extension `urdf`.
+    /// Begins a recording in a file, in the place of one that is there, and writes the URDF of the whole cell beside it, with the
+    /// extension `urdf`.
     ///
     /// # Errors
-    /// [`BagError::Io`] and [`BagError::Write`].
+    /// [`BagError::Io`] and [`BagError::Write`]; [`BagError::Exists`] for a URDF that is there without a recording.
     pub fn create(path: &Path, cell: &Cell, epoch_ns: u64) -> Result<Self, BagError> {
         let io = |file: &Path| {
             let file = file.to_owned();
             move |source| BagError::Io { file, source }
         };
+        let urdf = path.with_extension("urdf");
+        // One beside a recording was written with it.
+        if !path.exists() && urdf.exists() {
+            return Err(BagError::Exists(urdf));
+        }
         let file = File::create(path).map_err(io(path))?;
         let writer = Self::new(file, cell, epoch_ns)?;
-        let urdf = path.with_extension("urdf");
         std::fs::write(&urdf, writer.messages.urdf().text()).map_err(io(&urdf))?;
         for mesh in writer.messages.urdf().meshes() {
             let file = urdf.with_file_name(&mesh.file);

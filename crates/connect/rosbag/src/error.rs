@@ -13,6 +13,9 @@ pub enum BagError {
         /// Why.
         source: std::io::Error,
     },
+    /// A file that somebody else has made would be lost.
+    #[error("{}: is there already\n  write: the name of a recording that is not there yet, beside which there is no URDF of that name", .0.display())]
+    Exists(PathBuf),
     /// A record cannot be written.
     #[error("the recording cannot be written: {0}{help}", help = instead(.0))]
     Write(mcap::McapError),

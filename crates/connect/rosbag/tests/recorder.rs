@@ -180,3 +180,21 @@ fn killed_after(lifetime_s: f64) {
     // A second, and what a busy machine adds.
     assert!(last - found.robots[0].until_s < 1.5, "{} of {last}", found.robots[0].until_s);
 }
+
+#[test]
+fn a_urdf_that_lies_there_without_a_recording_is_not_overwritten() {
+    let dir = tempfile::tempdir().unwrap();
+    let (recording, urdf) = (dir.path().join("arm.mcap"), dir.path().join("arm.urdf"));
+    let (cell, _) = rail();
+    std::fs::write(&urdf, "made by hand").unwrap();
+    let error = CellWriter::create(&recording, &cell, 0).map(|_| ()).unwrap_err().to_string();
+    assert!(error.contains("arm.urdf: is there already\n  write: "), "{error}");
+    assert_eq!(std::fs::read_to_string(&urdf).unwrap(), "made by hand");
+    assert!(!recording.exists());
+    // One that was written with a recording is written anew with it.
+    std::fs::remove_file(&urdf).unwrap();
+    for _ in 0..2 {
+        CellWriter::create(&recording, &cell, 0).map(|_| ()).unwrap();
+        assert!(std::fs::read_to_string(&urdf).unwrap().contains("<robot"));
+    }
+}

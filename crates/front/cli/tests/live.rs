@@ -151,6 +151,9 @@ fn a_recording_of_the_service_replays_to_the_bit() {
 fn wrong_calls_say_what_to_write() {
     let taken = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
     let taken = taken.local_addr().expect("its address").to_string();
+    let folder = tempfile::tempdir().expect("a folder");
+    let recorded = folder.path().join("shift.mcap").display().to_string();
+    std::fs::write(&recorded, "a former recording").expect("a file");
     let cases = [
         (
             vec!["--robots", "middle", "--listen", "127.0.0.1:0"],
@@ -161,9 +164,11 @@ fn wrong_calls_say_what_to_write() {
         (vec!["--listen", &taken], "another program listens there\n  help: another port"),
         (vec!["--web", "0.0.0.0:8080", "--listen", "127.0.0.1:0"], "--web: "),
         (vec!["--record", "/nowhere/live.mcap", "--listen", "127.0.0.1:0"], "--record: "),
+        (vec!["--record", &recorded, "--listen", "127.0.0.1:0"], "is there already\n  write: the name of a recording"),
     ];
     for (arguments, message) in cases {
         let answer = answer(live(&arguments).args(["--for", "100"]).stderr(Stdio::piped()).output().unwrap());
         assert!(answer.status == 2 && answer.stderr.contains(message), "{arguments:?}: {}", answer.stderr);
     }
+    assert_eq!(std::fs::read_to_string(&recorded).expect("a file"), "a former recording");
 }

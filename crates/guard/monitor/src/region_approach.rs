@@ -34,15 +34,15 @@ impl RegionApproach {
     }
 }
 
-/// A body that moves and turns at a constant rate, with the radius of its points.
+/// A body that moves and turns at a constant rate, or that an arm carries whose joints do, with the radius of its points.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct TurningMotion {
-    /// rad/s.
-    turns: f64,
     /// Largest speed of its points by turning, m/s.
     swings: f64,
     /// Largest speed of its points, m/s.
     fastest: f64,
+    /// Largest acceleration of its points, m/s².
+    bends: f64,
 }
 
 impl TurningMotion {
@@ -51,8 +51,15 @@ impl TurningMotion {
     pub(crate) fn new(motion: &FrameMotion, radius_m: f64) -> Self {
         let turns = motion.angular_velocity.length();
         // Of what does not turn the radius does not count, even if it is infinite.
-        let swings = if turns > 0.0 { turns * radius_m } else { 0.0 };
-        Self { turns, swings, fastest: motion.velocity.length() + swings }
+        let times_radius = |rate: f64| if rate > 0.0 { rate * radius_m } else { 0.0 };
+        let (swings, fastest) = (times_radius(turns), motion.velocity.length() + times_radius(turns));
+        // Both kinds of motion bend the path of a point by no more than its angular speed times its largest speed. A hand of an arm with
+        // several joints circles without turning: its path bends as it does now.
+        let turning = if turns > 0.0 { turns * fastest } else { 0.0 };
+        let now = motion.acceleration.length()
+            + times_radius(motion.angular_acceleration.length())
+            + turns * times_radius(turns);
+        Self { swings, fastest, bends: turning.max(now) }
     }
 
     /// Largest speed (m/s) that its points have from turning.
@@ -60,11 +67,9 @@ impl TurningMotion {
         self.swings
     }
 
-    /// The approach in a direction in which no point is faster than `closing_speed` (m/s) now. Both kinds of motion bend the
-    /// path of a point by no more than its angular speed times its largest speed.
+    /// The approach in a direction in which no point is faster than `closing_speed` (m/s) now.
     pub(crate) fn approach(&self, closing_speed: f64) -> RegionApproach {
-        let acceleration = if self.turns > 0.0 { self.turns * self.fastest } else { 0.0 };
-        RegionApproach { speed: closing_speed, acceleration, max_speed: self.fastest }
+        RegionApproach { speed: closing_speed, acceleration: self.bends, max_speed: self.fastest }
     }
 
     /// The approach where it may come from any side.
@@ -103,6 +108,24 @@ mod tests {
                 });
                 let curved = arc.transform_point(point) - point;
                 assert!(curved.dot(towards) <= approach.travel_m(t) + 1e-4);
+            }
+        }
+    }
+
+    /// The hand of an arm whose joints turn against each other.
+    #[test]
+    fn what_circles_without_turning_comes_no_closer_than_its_travel() {
+        let mut random = SplitMix(6);
+        for _ in 0..2000 {
+            let (rate, radius) = (random.between(0.1, 3.0), random.between(0.1, 2.0));
+            let at = |t: f64| Vec3::new((rate * t).cos(), (rate * t).sin(), 0.0) * radius;
+            let velocity = Vec3::new(0.0, rate * radius, 0.0);
+            let motion = FrameMotion { velocity, acceleration: at(0.0) * (-rate * rate), ..FrameMotion::default() };
+            let towards = Vec3::from(random.within(1.0)).try_normalize().unwrap();
+            let approach = TurningMotion::new(&motion, 0.3).approach(velocity.dot(towards));
+            for step in 1..=40 {
+                let t = 0.05 * f64::from(step);
+                assert!((at(t) - at(0.0)).dot(towards) <= approach.travel_m(t) + 1e-9);
             }
         }
     }

@@ -6,6 +6,7 @@ use elbowroom_robot::{ObjectId, RobotId};
 
 use super::read::{Table, Value};
 use super::robot::robot_of;
+use super::tools::with_exchanged_tools;
 use crate::{AvoidanceSpec, Cell, Units, suggest};
 
 type Result<T> = std::result::Result<T, FormatError>;
@@ -56,7 +57,7 @@ pub(super) fn read(root: &Table<'_>, cell: &Cell) -> Result<Vec<Option<Avoidance
 
 fn spec(t: &Table<'_>, cell: &Cell, own: RobotId) -> Result<AvoidanceSpec> {
     let units = cell.units;
-    if let Some(robot) = cell.robots.iter().find(|r| r.tools.iter().any(|t| !t.mounted)) {
+    if let Some(robot) = with_exchanged_tools(&cell.robots) {
         let what = format!(
             "`{}`: avoidance does not see tools that are changed, as those of robot \"{}\"",
             t.name, robot.name

@@ -8,6 +8,7 @@ use elbowroom_vision::{Intrinsics, Point2};
 
 use super::read::{Table, Value};
 use super::robot::robot_of;
+use super::tools::with_exchanged_tools;
 use crate::{Cell, CellSensor, SensorKind, Units};
 
 type Result<T> = std::result::Result<T, FormatError>;
@@ -77,6 +78,18 @@ fn robot(t: &Table<'_>, cell: &Cell) -> Result<RobotId> {
 
 /// The robots that keep clear of the obstacles: those named, or all.
 fn robots(t: &Table<'_>, cell: &Cell) -> Result<Vec<RobotId>> {
+    let found = named_robots(t, cell)?;
+    if let Some(robot) = with_exchanged_tools(found.iter().map(|id| &cell.robots[id.0])) {
+        let what = format!(
+            "`{}`: who keeps clear of what a sensor sees cannot change tools, as robot \"{}\" does",
+            t.name, robot.name
+        );
+        return Err(t.error(what).hint("mounted tools only, or `robots` without this one"));
+    }
+    Ok(found)
+}
+
+fn named_robots(t: &Table<'_>, cell: &Cell) -> Result<Vec<RobotId>> {
     let Some(v) = t.get("robots") else { return Ok((0..cell.robots.len()).map(RobotId).collect()) };
     let mut found = Vec::new();
     for name in v.list("robots = [\"arm\"]   (those that keep clear of its obstacles)")? {

@@ -7,7 +7,7 @@ use elbowroom_spatial::{Pose, Vec3};
 
 use super::flange::unknown_link;
 use super::read::{Table, Value};
-use crate::{CellTool, Units};
+use crate::{CellRobot, CellTool, Units};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
@@ -86,6 +86,11 @@ fn tool(
     let link = add_link(robot, name, flange).map_err(|why| v.error(why))?;
     let mounted = t.flag_or("mounted", true)?;
     Ok(CellTool { name: name.to_owned(), flange, link, tcp_in_link, collider, mounted })
+}
+
+/// A robot whose program changes tools: what plans and evades knows those that are mounted at the start alone.
+pub(super) fn with_exchanged_tools<'c>(robots: impl IntoIterator<Item = &'c CellRobot>) -> Option<&'c CellRobot> {
+    robots.into_iter().find(|robot| robot.tools.iter().any(|tool| !tool.mounted))
 }
 
 /// Adds a link that is fixed to another one, at its frame.
