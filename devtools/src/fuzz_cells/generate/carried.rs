@@ -111,7 +111,9 @@ fn rpy_frame([roll, pitch, yaw]: Vector) -> Frame {
 fn on_a_link(spec: &mut CellSpec, folder: &Path, random: &mut Random) {
     for _ in 0..TRIES {
         let Some(Encounter { place, .. }) = Encounter::new(spec, folder, random) else { return };
-        let mut carrier = if random.percent(70) { rail::turner(random) } else { robot::small(random) };
+        let kinds: [fn(&mut Random) -> RobotSpec; 4] =
+            [rail::turner, rail::turner, rail::counter_turner, robot::small];
+        let mut carrier = random.one(&kinds)(random);
         carrier.at = text(place + vector(random.vector(1.0)));
         if random.percent(40) {
             carrier.rpy = [random.between(-PI, PI), random.between(-FRAC_PI_2, FRAC_PI_2), random.between(-PI, PI)];

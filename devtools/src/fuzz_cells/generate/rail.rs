@@ -28,6 +28,21 @@ pub fn turner(random: &mut Random) -> RobotSpec {
     one_joint(row(false, a, random), from, steps, random)
 }
 
+/// A [`turner`] with a second joint that turns back what the first one turns: its hand goes round without turning.
+pub fn counter_turner(random: &mut Random) -> RobotSpec {
+    let mut robot = turner(random);
+    let Model::Dh { rows, links } = &mut robot.model else { return robot };
+    rows.push(DhRow { a: 0.0, ..rows[0] });
+    links.push(Vec::new());
+    robot.start.push(-robot.start[0]);
+    for step in &mut robot.program.steps {
+        if let StepSpec::Joint { to, .. } = step {
+            to.push(-to[0]);
+        }
+    }
+    robot
+}
+
 fn row(slides: bool, a: f64, random: &mut Random) -> DhRow {
     let speed = random.scaled(0.3, 3.0);
     let acceleration = rounded(speed / random.scaled(0.05, 0.5));

@@ -36,14 +36,59 @@ impl Track {
     }
 }
 
-/// Whether a body at these ticks turns at a constant rate, and keeps its velocity or turns it as it turns itself: what
-/// can be foreseen.
+/// Whether a body at these ticks turns at a constant rate, and keeps its velocity, turns it as it turns itself, or goes round a
+/// circle at a constant speed: what can be foreseen.
 pub fn is_steady(frames: &[Frame], tick_s: f64) -> bool {
-    let small = |change: Vec3| change.length() <= ACCELERATION * tick_s * tick_s;
-    frames.windows(3).all(|f| {
-        let (before, after) = (f[0].turn_to(&f[1]), f[1].turn_to(&f[2]));
-        let (step, next) = (f[1].at - f[0].at, f[2].at - f[1].at);
-        let turned = before.try_normalize().map_or(step, |axis| Frame::turn(axis, before.length()).vector(step));
-        small(after - before) && (small(next - step) || small(next - turned))
-    })
+    let most = ACCELERATION * tick_s * tick_s;
+    let small = |change: Vec3| change.length() <= most;
+    let step = |f: &[Frame]| f[1].at - f[0].at;
+    let is_turning_steadily = frames.windows(3).all(|f| small(f[1].turn_to(&f[2]) - f[0].turn_to(&f[1])));
+    let is_straight_or_its_own_arc = || {
+        frames.windows(3).all(|f| {
+            let turned = f[0].turn_to(&f[1]);
+            let (before, after) = (step(f), step(&f[1..]));
+            let on_arc =
+                turned.try_normalize().map_or(before, |axis| Frame::turn(axis, turned.length()).vector(before));
+            small(after - before) || small(after - on_arc)
+        })
+    };
+    let is_circle = || {
+        frames.windows(4).all(|f| {
+            let [a, b, c] = [step(f), step(&f[1..]), step(&f[2..])];
+            let same = |x: f64, y: f64| (x - y).abs() <= most;
+            let [bend, next_bend] = [b - a, c - b];
+            // In one plane: three steps of equal length, with equal bends between them.
+            let is_flat = a.cross(b).dot(c).abs() <= most * a.length() * b.length();
+            same(a.length(), b.length())
+                && same(b.length(), c.length())
+                && same(bend.length(), next_bend.length())
+                && is_flat
+        })
+    };
+    is_turning_steadily && (is_straight_or_its_own_arc() || is_circle())
+}
+
+#[cfg(test)]
+mod tests {
+    use elbowroom_spatial::Rotation;
+
+    use super::*;
+
+    #[test]
+    fn straight_lines_arcs_and_circles_are_steady_and_nothing_else() {
+        let steady = |pose: &dyn Fn(f64) -> Pose| {
+            let frames: Vec<Frame> = (0..50).map(|k| Frame::of(&pose(0.004 * f64::from(k)))).collect();
+            is_steady(&frames, 0.004)
+        };
+        let turned = |t: f64| Rotation::from_rotation_vector(Vec3::Z * (1.3 * t));
+        let circle = |t: f64| Vec3::new((2.0 * t).cos(), (2.0 * t).sin(), 0.3);
+        assert!(steady(&|t| Pose { rotation: turned(t), translation: Vec3::X * t }));
+        assert!(steady(&|t| Pose { rotation: turned(t), translation: turned(t) * Vec3::X }));
+        assert!(steady(&|t| Pose::from_translation(circle(t))));
+        assert!(steady(&|t| Pose { rotation: turned(t), translation: circle(t) }));
+        assert!(!steady(&|t| Pose::from_translation(Vec3::X * (t * t))));
+        assert!(!steady(&|t| Pose::from_translation(circle(t * t))));
+        assert!(!steady(&|t| Pose::from_translation(circle(t) + Vec3::Z * (0.2 * t * t))));
+        assert!(!steady(&|t| Pose { rotation: turned(t * t), translation: Vec3::X * t }));
+    }
 }
