@@ -11,7 +11,7 @@ use super::settings::{Places, settings};
 use super::{rail, region, robot};
 use crate::fuzz_cells::oracle::{Arm, Frame};
 use crate::fuzz_cells::random::{Random, rounded};
-use crate::fuzz_cells::spec::{CellSpec, FollowSpec, MotionSpec, ObjectSpec, RegionSpec, StepSpec, Vector};
+use crate::fuzz_cells::spec::{CellSpec, FollowSpec, MotionSpec, ObjectSpec, RegionSpec, RobotSpec, StepSpec, Vector};
 
 /// Tries to find a region that the robot's start is outside of.
 const TRIES: usize = 4;
@@ -111,8 +111,7 @@ fn rpy_frame([roll, pitch, yaw]: Vector) -> Frame {
 fn on_a_link(spec: &mut CellSpec, folder: &Path, random: &mut Random) {
     for _ in 0..TRIES {
         let Some(Encounter { place, .. }) = Encounter::new(spec, folder, random) else { return };
-        let kinds: [fn(&mut Random) -> RobotSpec; 4] =
-            [rail::turner, rail::turner, rail::counter_turner, robot::small];
+        let kinds: [fn(&mut Random) -> RobotSpec; 4] = [rail::turner, rail::turner, rail::counter_turner, robot::small];
         let mut carrier = random.one(&kinds)(random);
         carrier.at = text(place + vector(random.vector(1.0)));
         if random.percent(40) {
