@@ -1,7 +1,9 @@
 //! Other programs, their output on standard error: standard output is for the table or the JSON lines alone.
 
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Stdio;
+
+use crate::shell::command;
 
 /// Prints and runs; anything but success is an error that names the call.
 pub fn run(folder: &Path, words: &[&str], env: &[(&str, &str)]) -> Result<(), String> {
@@ -9,7 +11,7 @@ pub fn run(folder: &Path, words: &[&str], env: &[(&str, &str)]) -> Result<(), St
     let shown = if call.len() > 160 { format!("{}…", call.chars().take(160).collect::<String>()) } else { call };
     eprintln!("$ {shown}");
     let (program, args) = words.split_first().ok_or("nothing to run")?;
-    let mut command = Command::new(program);
+    let mut command = command(program);
     command.args(args).envs(env.iter().copied()).current_dir(folder);
     command.stdin(Stdio::null()).stdout(Stdio::from(std::io::stderr()));
     let status = command.status().map_err(|e| format!("cannot start `{program}`: {e}"))?;
@@ -19,7 +21,7 @@ pub fn run(folder: &Path, words: &[&str], env: &[(&str, &str)]) -> Result<(), St
 /// As [`run`], its standard output being ours.
 pub fn show(folder: &Path, words: &[&str]) -> Result<(), String> {
     let (program, args) = words.split_first().ok_or("nothing to run")?;
-    let mut command = Command::new(program);
+    let mut command = command(program);
     command.args(args).current_dir(folder).stdin(Stdio::null());
     let status = command.status().map_err(|e| format!("cannot start `{program}`: {e}"))?;
     if status.success() { Ok(()) } else { Err(format!("`{program}` failed ({status})")) }
@@ -27,7 +29,7 @@ pub fn show(folder: &Path, words: &[&str]) -> Result<(), String> {
 
 /// Whether a program is there at all.
 pub fn exists(program: &str) -> bool {
-    let mut command = Command::new(program);
+    let mut command = command(program);
     command.arg("--version").stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     command.status().is_ok()
 }

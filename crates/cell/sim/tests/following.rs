@@ -248,6 +248,15 @@ fn disabled_watchdogs_and_unbounded_zones_are_refused() {
     assert!(e.contains("hysteresis"), "{e}");
 }
 
+/// The first tick in which the ball of a slide moves and touches a ball that is the only region, both together of this radius (m). The
+/// region may reach a robot that stands: it is the first instant of a contact that counts.
+fn moves_into(outcome: &RunOutcome, place: impl Fn(f64) -> Vec3, reach_m: f64) -> Option<usize> {
+    let samples = &outcome.recording.robots[0].samples;
+    let touches = |tick: usize| at(outcome, tick).translation.distance(place(samples[tick].q[0])) <= reach_m;
+    let entered = |tick: &usize| touches(*tick) && !touches(tick - 1);
+    (1..samples.len()).filter(entered).find(|tick| samples[*tick].q[0] != samples[tick - 1].q[0])
+}
+
 /// A ball on a turntable crosses the rail; the carriage needs a second to stop.
 #[test]
 fn a_robot_never_moves_into_a_region_that_turns_at_a_constant_rate() {
@@ -264,14 +273,7 @@ fn a_robot_never_moves_into_a_region_that_turns_at_a_constant_rate() {
             orbit * cos,
             orbit * sin,
         );
-        // The ball may reach a robot that stands: it is the first instant of a contact that counts.
-        let moves_inside = |outcome: &RunOutcome| {
-            let samples = &outcome.recording.robots[0].samples;
-            let touches =
-                |tick: usize| at(outcome, tick).translation.distance(Vec3::new(samples[tick].q[0], 0.0, 0.0)) <= 0.15;
-            let entered = |tick: &usize| touches(*tick) && !touches(tick - 1);
-            (1..samples.len()).filter(entered).find(|tick| samples[*tick].q[0] != samples[tick - 1].q[0])
-        };
+        let moves_inside = |outcome: &RunOutcome| moves_into(outcome, |q| Vec3::new(q, 0.0, 0.0), 0.15);
         assert_eq!(moves_inside(&run_at(Path::new("."), &text)), None, "phase {phase}");
         let cell = Cell::parse("cell.toml", &text).unwrap();
         let free = simulate(&cell, &RunOptions { apply_override: false, ..RunOptions::default() }).unwrap();
@@ -302,14 +304,7 @@ fn a_robot_never_moves_into_a_region_on_a_hand_that_circles_at_a_constant_rate()
                  [program.b]\nsteps = [{{ move = \"joint\", to = [6.3{back}] }}]\n",
                 2.0 + 0.2 * f64::from(phase),
             );
-            // The hand may reach a robot that stands: it is the first instant of a contact that counts.
-            let moves_inside = |outcome: &RunOutcome| {
-                let samples = &outcome.recording.robots[0].samples;
-                let ball = |tick: usize| Vec3::new(-0.1, samples[tick].q[0], 0.0);
-                let touches = |tick: usize| at(outcome, tick).translation.distance(ball(tick)) <= 0.15;
-                let entered = |tick: &usize| touches(*tick) && !touches(tick - 1);
-                (1..samples.len()).filter(entered).find(|tick| samples[*tick].q[0] != samples[tick - 1].q[0])
-            };
+            let moves_inside = |outcome: &RunOutcome| moves_into(outcome, |q| Vec3::new(-0.1, q, 0.0), 0.15);
             assert_eq!(moves_inside(&run_at(Path::new("."), &text)), None, "second {second}, phase {phase}");
             let cell = Cell::parse("cell.toml", &text).unwrap();
             let free = simulate(&cell, &RunOptions { apply_override: false, ..RunOptions::default() }).unwrap();

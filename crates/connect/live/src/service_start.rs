@@ -7,7 +7,7 @@ use elbowroom_cell::configure::MonitorSetup;
 use elbowroom_cell::{Cell, EditedRegions, configure};
 use elbowroom_formats::FormatError;
 use elbowroom_interlock::Boot;
-use elbowroom_monitor::{RegionKind, RobotSlot};
+use elbowroom_monitor::{Life, RegionKind, RobotSlot};
 use elbowroom_robot::RobotId;
 use elbowroom_rosbag::{BagError, CellWriter, Recorder};
 use elbowroom_view::{Server, ServerSettings, StatusFeed};
@@ -81,8 +81,11 @@ impl<'o> ServiceStart<'o> {
             return Ok(None);
         }
         let programs = program_switches(self.options);
-        let journal = self.options.journal.as_deref().map(RegionJournal::open);
-        let journal = journal.unwrap_or_else(|| Err("no journal is kept".to_owned()));
+        // Of regions that nobody can switch or edit there is nothing to remember, and no file to lock.
+        let can_change =
+            self.options.control.is_some() || self.cell.regions.iter().any(|r| r.region.life == Life::Temporary);
+        let journal = self.options.journal.as_deref().filter(|journal| can_change || journal.exists());
+        let journal = journal.map_or_else(|| Err("no journal is kept".to_owned()), RegionJournal::open);
         let on_event = self.options.on_event.clone();
         let keeper = RegionKeeper::start(&self.versions, &self.shared, boot_number(), programs, journal, on_event)?;
         Ok(Some(Arc::new(keeper)))
