@@ -56,7 +56,7 @@ pub struct Cell {
     pub maps: Vec<MapSpec>,
     /// What the file of pairs says. [`Self::robots`] are as in their models.
     pub pair_rules: PairRules,
-    /// Links that always touch where they are joined: see [`Self::motion_pair_rules`].
+    /// Links that always touch where they are joined: see [`Self::all_pair_rules`].
     pub joint_contacts: PairRules,
     /// SHA-256 of the monitors' configurations, hex.
     pub checksum: String,
@@ -67,9 +67,9 @@ pub struct Cell {
 }
 
 impl Cell {
-    /// The rules for what moves robots: those of the file of pairs, and before them
+    /// The rules of all verbs: those of the file of pairs, and before them
     /// [links that always touch where they are joined](elbowroom_robot::joint_contacts).
-    pub fn motion_pair_rules(&self) -> PairRules {
+    pub fn all_pair_rules(&self) -> PairRules {
         let mut rules = self.joint_contacts.clone();
         rules.extend(self.pair_rules.clone());
         rules

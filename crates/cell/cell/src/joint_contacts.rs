@@ -1,4 +1,4 @@
-//! Links that touch where they are joined: `run` and `plan` leave them out, with a warning.
+//! Links that touch where they are joined: cells leave them out, with a warning.
 
 use elbowroom_formats::Warning;
 use elbowroom_robot::{GeometryId, JointContact, JointContactKind, Robot, RobotId, joint_contacts};
@@ -39,11 +39,13 @@ fn of_robot(r: &CellRobot) -> Vec<JointContact> {
 fn warning(cell: &Cell, robot: &CellRobot, found: &JointContact) -> Warning {
     let [a, b] = names(&robot.robot, found);
     let what = format!(
-        "robot \"{}\": links `{a}` and `{b}` touch {}: `run` and `plan` do not test this pair, `query` does",
+        "robot \"{}\": links `{a}` and `{b}` touch {}: this pair is not tested",
         robot.name,
         reason(&robot.robot, found)
     );
-    let hint = format!("ignore = [[\"{a}\", \"{b}\"]] in its table, if they are built so; then no verb tests them");
+    let hint = format!(
+        "ignore = [[\"{a}\", \"{b}\"]] in its table, if they are built so; a row `state = \"tested\"` of `pairs = FILE`, if not"
+    );
     Warning::new(&cell.file, robot.line, what).hint(hint)
 }
 

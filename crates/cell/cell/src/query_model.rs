@@ -52,14 +52,15 @@ pub enum OutOfReachProofs {
 }
 
 impl QueryModel {
-    /// The model of a cell, with the rules of its file of pairs; tools and loads are colliders of the links that carry them.
+    /// The model of a cell, with its rules of pairs ([`Cell::all_pair_rules`]); tools and loads are colliders of the links that carry
+    /// them.
     pub fn of_cell(cell: &Cell) -> Self {
         let mut model = Self::without_rules(cell);
-        model.add_rules(cell.pair_rules.clone());
+        model.add_rules(cell.all_pair_rules());
         model
     }
 
-    /// The model of a cell without its file of pairs.
+    /// The model of a cell without its rules of pairs.
     pub fn without_rules(cell: &Cell) -> Self {
         let robot = |r: &crate::CellRobot| QueryRobot {
             name: r.name.clone(),
@@ -75,14 +76,6 @@ impl QueryModel {
             rules: PairRules::default(),
             is_single_robot: false,
         }
-    }
-
-    /// As [`Self::of_cell`], for what moves robots: without links that always touch where they are joined
-    /// ([`Cell::motion_pair_rules`]).
-    pub fn for_motion(cell: &Cell) -> Self {
-        let mut model = Self::without_rules(cell);
-        model.add_rules(cell.motion_pair_rules());
-        model
     }
 
     /// A single robot whose root link is the world frame. Its default state is zero, or the limits nearest to zero.

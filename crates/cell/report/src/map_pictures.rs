@@ -6,6 +6,7 @@ use std::{fs, io};
 
 use elbowroom_analysis::map::CellMap;
 use elbowroom_cspace::GridAxis;
+use elbowroom_formats::WholeFile;
 
 use crate::tables::escape;
 use crate::{palette, png};
@@ -39,13 +40,13 @@ pub fn write(map: &CellMap, folder: &Path) -> io::Result<usize> {
         let scale = SMALLEST.div_ceil(width.min(height.max(width / 8))).clamp(1, 16);
         let rgb = draw(map, &mut cell, [right, up.unwrap_or(right)], width, height, scale);
         let name = format!("slice_{plane:03}.png");
-        png::write(io::BufWriter::new(fs::File::create(folder.join(&name))?), width * scale, height * scale, &rgb)?;
+        WholeFile::write(&folder.join(&name), |out| png::write(out, width * scale, height * scale, &rgb))?;
         let title = if axes.len() > 2 { value(map, 0, axes[0].center(plane)) } else { String::new() };
         let image = format!("<img src=\"{name}\" alt=\"{title}\">");
         let _ = writeln!(figures, "<figure>{image}<figcaption>{title}</figcaption></figure>");
         count += 1;
     }
-    fs::write(folder.join("index.html"), page(map, &figures))?;
+    WholeFile::write(&folder.join("index.html"), |out| out.write_all(page(map, &figures).as_bytes()))?;
     Ok(count)
 }
 

@@ -313,3 +313,33 @@ fn a_robot_never_moves_into_a_region_on_a_hand_that_circles_at_a_constant_rate()
         assert!(hits_without > 3, "only {hits_without} of 14 would enter");
     }
 }
+
+/// A plate turns about an object, passes a carriage that stands, is gone for some ticks and returns. The carriage obeys 44 ms late: it
+/// must not have begun to leave.
+#[test]
+fn a_robot_does_not_move_while_a_region_passes_over_it() {
+    let text = "version = 1\nunits = { length = \"m\", angle = \"rad\" }\ntick_ms = 2\nmax_s = 5\n\
+                [monitor]\nstopping_distance = true\nreaction_ms = 44\ndirection_aware = true\n\
+                [robot.a]\nbase = { at = [0, 0, 0], rpy = [0, 1.5707963267948966, 2.5713] }\n\
+                dh = [{ kind = \"prismatic\", min = -7, max = 7, speed = 1.5175, acceleration = 7.668 }]\nlinks = [[]]\n\
+                start = [-1.3179]\nstop_time = 1.1288\n\
+                [object.hub]\nshape = \"sphere\"\nradius = 0.01\nat = [-0.2415, 0.0214, -0.0656]\n\
+                rpy = [-2.5355, -0.4067, 1.4461]\nmotion = { turn = [-2.4928, 3.0122, -0.3624] }\n\
+                [region.plate]\nshape = \"box\"\nbase = [-0.1492, 0.15, 0.0036]\nrpy = [-0.3186, 2.1615, 1.7732]\n\
+                size = [0.0084, 0.5944, 0.8225]\nwarning = 0.1527\nguards = [\"tcp\"]\nfollow = { object = \"hub\" }\n\
+                [program.a]\nsteps = [{ move = \"joint\", to = [1.3179], speed = 100 }]\n";
+    let outcome = run_at(Path::new("."), text);
+    let samples = &outcome.recording.robots[0].samples;
+    let (sin, cos) = 2.5713_f64.sin_cos();
+    let is_inside = |tick: usize| {
+        let tcp = Vec3::new(cos, sin, 0.0) * samples[tick].q[0];
+        let from_middle = at(&outcome, tick).inverse_transform_point(tcp).abs();
+        let half = Vec3::new(0.0084, 0.5944, 0.8225) * 0.5;
+        (half - from_middle).min_element() >= 0.0
+    };
+    let moves = |tick: usize| samples[tick].q[0] != samples[tick - 1].q[0];
+    let inside = (1..samples.len()).filter(|tick| is_inside(*tick)).count();
+    assert!(inside > 10, "the plate passes: {inside} ticks");
+    let driven = (1..samples.len()).find(|tick| is_inside(*tick) && !is_inside(tick - 1) && moves(*tick));
+    assert_eq!(driven, None, "entered at {} s", driven.unwrap_or(0) as f64 * 0.002);
+}

@@ -27,6 +27,7 @@ const Jog = (() => {
       Link.send({ type: 'jog', robot: own.index, q: own.q });
     };
     input.addEventListener('input', () => set_(Number(input.value)));
+    noteTyping(number);
     number.addEventListener('change', () => { if (number.value !== '') set_(Number(number.value) * unit); });
     set.append(element('div', { className: 'joint' }, element('label', { htmlFor: id, textContent: slider.name }), input, number));
     return { input, number, unit, slides: slider.slides, lower: slider.lower, upper: slider.upper };
@@ -41,6 +42,7 @@ const Jog = (() => {
     const inputs = ['x mm', 'y mm', 'z mm', 'roll °', 'pitch °', 'yaw °'].map((name, k) => {
       const input = element('input', { type: 'number', step: 'any', id: `tcp-${own.index}-${k}` });
       holder.append(element('label', { htmlFor: input.id }, name, input));
+      noteTyping(input);
       input.addEventListener('change', () => {
         const values = inputs.map((i) => Number(i.value));
         moveTcp(own.index, values.slice(0, 3).map((x) => x / 1000), Units.quaternion(values.slice(3)));
@@ -50,11 +52,18 @@ const Jog = (() => {
     return inputs;
   }
 
-  const moveTcp = (robot, position_m, quaternion_xyzw) => Link.send({ type: 'tcp', robot, position_m, quaternion_xyzw });
-  const isEdited = (input) => document.activeElement === input;
+  // What a person types stands until it is sent: then the program says what became of it.
+  const isTyped = (input) => input.dataset.typed === 'true';
+  function noteTyping(input) {
+    input.addEventListener('input', () => { input.dataset.typed = 'true'; });
+    for (const done of ['change', 'blur']) input.addEventListener(done, () => { input.dataset.typed = 'false'; });
+  }
 
-  function showOwn(own, robot) {
-    if (performance.now() - own.touched > OWN_MS) own.q = [...robot.q];
+  const moveTcp = (robot, position_m, quaternion_xyzw) => Link.send({ type: 'tcp', robot, position_m, quaternion_xyzw });
+
+  function showOwn(own, robot, isRefused) {
+    // A refused value does not stay.
+    if (isRefused || performance.now() - own.touched > OWN_MS) own.q = [...robot.q];
     own.joints.forEach(({ input, number, unit, slides, lower, upper }, k) => {
       // A start may lie beyond the limits of the slider.
       input.min = Math.min(lower, own.q[k]);
@@ -62,17 +71,17 @@ const Jog = (() => {
       const shown = Units.rounded(own.q[k] / unit, slides ? 1 : 2);
       if (Number(input.value) !== own.q[k]) input.value = own.q[k];
       input.setAttribute('aria-valuetext', slides ? `${shown} mm` : `${shown}°`);
-      if (!isEdited(number)) number.value = shown;
+      if (!isTyped(number)) number.value = shown;
     });
     if (!robot.tcp) return;
     own.tcp = robot.tcp;
     const values = [...robot.tcp.position_m.map((x) => 1000 * x), ...Units.angles(robot.tcp.quaternion_xyzw)];
-    own.pose.forEach((input, k) => { if (!isEdited(input)) input.value = Units.rounded(values[k], 2); });
+    own.pose.forEach((input, k) => { if (!isTyped(input)) input.value = Units.rounded(values[k], 2); });
   }
 
   function show(frame) {
     if (message.textContent !== frame.message) message.textContent = frame.message;
-    robots.forEach((own, i) => showOwn(own, frame.robots[i]));
+    robots.forEach((own, i) => showOwn(own, frame.robots[i], frame.message !== ''));
   }
 
   const home = () => { robots.forEach((own) => { own.touched = -Infinity; }); Link.send({ type: 'home' }); };

@@ -138,6 +138,9 @@ fn sliders_and_dragging_move_the_robot_and_the_distances() {
         json!({ "do": "set", "id": "tcp-0-0", "value": 9000, "kind": "change", "until": "s.message" }),
         json!({ "do": "text", "at": "#message" }),
         json!({ "do": "press", "key": "h", "until": AT_START }),
+        json!({ "do": "enter", "at": "#joint-0-0-number", "value": "500", "until": "s.message" }),
+        json!({ "do": "text", "at": "#message" }),
+        json!({ "do": "enter", "at": "#joint-0-0-number", "value": "-20", "until": "Math.abs(s.robots[0].q[0] + Math.PI / 9) < 1e-12" }),
     ];
     steps.extend(screenshots("jog"));
     let seen = visit(&server.url(), &json!({}), &steps).unwrap();
@@ -165,6 +168,13 @@ fn sliders_and_dragging_move_the_robot_and_the_distances() {
     assert_eq!(tcp(7), tcp(8));
     assert!(seen[9].as_str().unwrap().contains("out of reach"), "{}", seen[9]);
     assert!(near(&q(10), &start));
+    // What is refused does not stay in its field, and the message speaks the field's unit.
+    let start_deg = start[0][0].to_degrees();
+    let shown: f64 = seen[11].as_str().unwrap().parse().unwrap();
+    assert!((shown - start_deg).abs() < 0.01, "{shown} instead of {start_deg}");
+    let message = seen[12].as_str().unwrap();
+    assert!(message.contains("degrees, not at 500.00"), "{message}");
+    assert_eq!(seen[13], "-20.00");
     // The drawn tool centre point is that of the program.
     let drawn: [f64; 3] = serde_json::from_value(seen[5]["robots"][0]["tcp_drawn_m"].clone()).unwrap();
     assert!(moved(drawn, tcp(5)).iter().all(|v| v.abs() < 1e-9));

@@ -121,7 +121,7 @@ fn the_tool_centre_point_follows_and_what_cannot_be_is_refused_with_a_reason() {
 
     for (command, reason) in [
         (json!({ "type": "tcp", "robot": 0, "position_m": [5.0, 0.0, 0.0] }), "out of reach"),
-        (json!({ "type": "jog", "robot": 0, "q": [9.0, 0.0, 0.0, 0.0, 0.0, 0.0] }), "joint `joint_1` may be at"),
+        (json!({ "type": "jog", "robot": 0, "q": [9.0, 0.0, 0.0, 0.0, 0.0, 0.0] }), "degrees, not at 515.66"),
         (json!({ "type": "jog", "robot": 0, "q": [0.0] }), "has 6 joints, not 1"),
         (json!({ "type": "jog", "robot": 7, "q": [0.0] }), "there is no robot 7"),
         (json!({ "type": "tcp", "robot": 7, "position_m": [0.0, 0.0, 0.0] }), "there is no robot 7"),

@@ -8,6 +8,7 @@ use include_dir::{Dir, include_dir};
 
 use crate::args::ExampleArgs;
 use crate::output::{ExitStatus, Failure, cannot_write, myself, note, print, summary};
+use crate::output_file::write_bytes;
 use crate::run::write_files;
 use crate::simulation::Simulation;
 
@@ -83,7 +84,7 @@ fn extract(to: &Path) -> Result<(), Failure> {
             match std::fs::read(&path) {
                 Ok(there) if there == file.contents() => {}
                 Ok(_) => note(format!("{}: kept, it is not the example's any more", path.display())),
-                Err(_) => std::fs::write(&path, file.contents()).map_err(cannot_write(&path))?,
+                Err(_) => write_bytes(&path, file.contents())?,
             }
         }
         dirs.extend(dir.dirs());

@@ -8,7 +8,7 @@ use crate::distance_to_guarded::distance_to_guarded;
 use crate::event::EventLog;
 use crate::laws::rate_limited;
 use crate::override_history::OverrideRange;
-use crate::override_law::{OverrideLaw, OverrideLawSettings, max_region_speed};
+use crate::override_law::{OverrideLaw, OverrideLawSettings, max_region_travel_m};
 use crate::placement::{DynamicRegion, Placement};
 use crate::point_motion::{LinkPoint, region_point_motion};
 use crate::region_clearance::{RegionClearance, RegionClearances};
@@ -502,7 +502,7 @@ impl Monitor {
         let override_law = OverrideLaw {
             tick,
             stopping_law: stopping_law.as_ref(),
-            max_region_speed: max_region_speed(now, s.sources),
+            max_region_travel_m: max_region_travel_m(now, s, stopping_law.as_ref()),
             settings: OverrideLawSettings::default(),
         };
         clearances.measure(config, measured, now, &override_law, sweep.extra_reach_for_travel());

@@ -11,7 +11,7 @@ use crate::region_approach::{RegionApproach, TurningMotion};
 use crate::stopping::{StoppingLaw, StoppingQuery};
 use crate::tick_context::TickContext;
 use crate::volume_region_pair::{RequestedOverride, VolumeRegionPair};
-use crate::{RegionKind, SourceState};
+use crate::{RegionKind, Snapshot, SourceState};
 
 /// Margin (m) of rounding errors before a border.
 const ROUNDING_M: f64 = 1e-6;
@@ -37,8 +37,8 @@ pub(crate) struct OverrideLaw<'a> {
     pub(crate) tick: TickContext<'a>,
     /// The stopping-distance law, where it is on.
     pub(crate) stopping_law: Option<&'a StoppingLaw>,
-    /// Upper bound of the speed of all points of all regions, m/s.
-    pub(crate) max_region_speed: f64,
+    /// Upper bound of the travel of all points of all regions until the robot is at rest, m.
+    pub(crate) max_region_travel_m: f64,
     pub(crate) settings: OverrideLawSettings,
 }
 
@@ -49,7 +49,7 @@ enum Direction {
     Approaching,
     /// It increases.
     Leaving,
-    /// The volume is inside and the program leads out.
+    /// The volume is inside a region at rest and the program leads out.
     Recovering,
 }
 
@@ -81,7 +81,7 @@ impl OverrideLaw<'_> {
     /// Distance (m) beyond the warning zone within which a region can affect this volume.
     pub(crate) fn extra_reach(&self, volume: usize) -> f64 {
         let Some(law) = self.stopping_law else { return 0.0 };
-        law.reach_m(volume) + self.settings.stop_margin_m + self.max_region_speed * law.rest_after_s()
+        law.reach_m(volume) + self.settings.stop_margin_m + self.max_region_travel_m
     }
 
     /// True where farther pairs never request less than closer ones.
@@ -155,22 +155,25 @@ impl OverrideLaw<'_> {
     fn region_approach(&self, pair: &VolumeRegionPair, law: &StoppingLaw, towards: Option<Vec3>) -> RegionApproach {
         let region = &self.tick.config.regions[pair.region];
         let Some(source) = region.source_state(self.tick.snapshot.sources) else { return RegionApproach::default() };
+        let older_s = older_s(self.tick.snapshot, source);
         let origin = source.pose.translation;
         let bounds = &self.tick.now.region_box[pair.region];
         if bounds.extent().is_finite() {
             let motion = TurningMotion::new(&source.motion, bounds.max_distance(origin));
-            return match towards {
+            let approach = match towards {
                 Some(towards) => motion.approach(self.closing_speed(pair, source, towards)),
                 None => motion.approach_any_direction(),
             };
+            return approach.older_by(older_s);
         }
         // Of a half-space only the points that come to where the volume may be count.
         let volume = &self.tick.now.volume_box[pair.volume];
-        let drift = source.motion.velocity.length() * law.rest_after_s();
+        let drift = source.motion.velocity.length() * (law.rest_after_s() + older_s);
         let motion = TurningMotion::new(&source.motion, volume.max_distance(origin) + law.reach_m(pair.volume) + drift);
         let towards = towards.or_else(|| (pair.separation.on_b - pair.separation.on_a).try_normalize());
         let fastest = |towards| motion.swinging_speed() - source.motion.velocity.dot(towards);
-        towards.map_or_else(|| motion.approach_any_direction(), |towards| motion.approach(fastest(towards)))
+        let approach = towards.map(|towards| motion.approach(fastest(towards)));
+        approach.unwrap_or_else(|| motion.approach_any_direction()).older_by(older_s)
     }
 
     /// Largest speed (m/s) of the points of a bounded region against `towards`.
@@ -199,8 +202,10 @@ impl OverrideLaw<'_> {
         let (v, r) = (pair.volume, pair.region);
         let away = (pair.separation.on_a - pair.separation.on_b).try_normalize();
         let Some(away) = away.filter(|_| pair.separation.distance > 0.0) else {
-            let leads_out = leads_out(tick, &self.settings.recovery, pair, intent, predicted);
-            return if leads_out { Direction::Recovering } else { Direction::Approaching };
+            // Where a region that moves will be when the robot rests is not known well enough to move inside of it.
+            let recovers = region_speed(tick.now, tick.snapshot.sources, r) <= self.settings.recovery.region_rest_speed
+                && leads_out(tick, &self.settings.recovery, pair, intent, predicted);
+            return if recovers { Direction::Recovering } else { Direction::Approaching };
         };
         let grown = pair.separation.distance + tick.direction.leaving_speed * tick.direction.lookahead_s;
         let (volume, region) = (&tick.config.volumes[v].shape, &tick.config.regions[r].shape);
@@ -211,13 +216,31 @@ impl OverrideLaw<'_> {
     }
 }
 
-/// Upper bound of the speed of all points of all dynamic regions, m/s.
-pub(crate) fn max_region_speed(now: &Placement, sources: &[SourceState]) -> f64 {
-    let max_speed = |dynamic: &DynamicRegion| {
-        let SourceState { pose, motion, .. } = &sources[dynamic.source.0];
-        let angular_speed = motion.angular_velocity.length();
-        let lever = || now.region_box[dynamic.region].max_distance(pose.translation);
-        motion.velocity.length() + if angular_speed > 0.0 { angular_speed * lever() } else { 0.0 }
+/// Upper bound of the travel (m) of all points of all dynamic regions from their readings until the robot is at rest; 0 without the
+/// stopping-distance law.
+pub(crate) fn max_region_travel_m(now: &Placement, snapshot: &Snapshot<'_>, law: Option<&StoppingLaw>) -> f64 {
+    let Some(law) = law else { return 0.0 };
+    let travel_m = |dynamic: &DynamicRegion| {
+        let source = &snapshot.sources[dynamic.source.0];
+        dynamic_region_speed(now, source, dynamic) * (law.rest_after_s() + older_s(snapshot, source))
     };
-    now.dynamic_regions.iter().map(max_speed).fold(0.0, f64::max)
+    now.dynamic_regions.iter().map(travel_m).fold(0.0, f64::max)
+}
+
+/// By how long (s) the reading of a source is older than that of the robot.
+fn older_s(snapshot: &Snapshot<'_>, source: &SourceState) -> f64 {
+    (snapshot.stamp_s - source.stamp_s).max(0.0)
+}
+
+/// Upper bound of the speed of all points of a region, m/s.
+fn region_speed(now: &Placement, sources: &[SourceState], region: usize) -> f64 {
+    let dynamic = now.dynamic_regions.iter().find(|dynamic| dynamic.region == region);
+    dynamic.map_or(0.0, |dynamic| dynamic_region_speed(now, &sources[dynamic.source.0], dynamic))
+}
+
+fn dynamic_region_speed(now: &Placement, source: &SourceState, dynamic: &DynamicRegion) -> f64 {
+    let SourceState { pose, motion, .. } = source;
+    let angular_speed = motion.angular_velocity.length();
+    let lever = || now.region_box[dynamic.region].max_distance(pose.translation);
+    motion.velocity.length() + if angular_speed > 0.0 { angular_speed * lever() } else { 0.0 }
 }

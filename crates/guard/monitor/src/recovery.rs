@@ -22,11 +22,20 @@ pub(crate) struct RecoverySettings {
     near_s: f64,
     /// Number of samples along the predicted motion.
     samples: u32,
+    /// Speed (m/s) of its fastest point up to which a region is at rest: joint values of a robot at rest tremble.
+    pub(crate) region_rest_speed: f64,
 }
 
 impl Default for RecoverySettings {
     fn default() -> Self {
-        Self { min_decrease_m: 5e-6, slope: 2e-3, max_increase_m: 5e-4, near_s: 1e-3, samples: 16 }
+        Self {
+            min_decrease_m: 5e-6,
+            slope: 2e-3,
+            max_increase_m: 5e-4,
+            near_s: 1e-3,
+            samples: 16,
+            region_rest_speed: 5e-3,
+        }
     }
 }
 

@@ -11,11 +11,23 @@ pub(crate) struct RegionApproach {
     acceleration: f64,
     /// Largest speed of its points in any direction, m/s.
     max_speed: f64,
+    /// By how long (s) the reading of its motion is older than that of the robot.
+    older_s: f64,
 }
 
 impl RegionApproach {
-    /// The distance (m) by which it has come closer at any moment of the next `time_s`, at most.
+    /// The approach as it was read so long (s) before the robot's joint values.
+    pub(crate) fn older_by(self, older_s: f64) -> Self {
+        Self { older_s, ..self }
+    }
+
+    /// The distance (m) by which it has come closer since its reading at any moment until `time_s` after that of the robot, at most.
     pub(crate) fn travel_m(&self, time_s: f64) -> f64 {
+        // Of what stands still the age does not count, even if it is infinite.
+        if self.is_still() {
+            return 0.0;
+        }
+        let time_s = time_s + self.older_s;
         // The sum is convex in time: it is largest at the beginning or at the end.
         let turning = self.speed * time_s + 0.5 * self.acceleration * time_s * time_s;
         // NaN stays: it never fits.
@@ -69,12 +81,12 @@ impl TurningMotion {
 
     /// The approach in a direction in which no point is faster than `closing_speed` (m/s) now.
     pub(crate) fn approach(&self, closing_speed: f64) -> RegionApproach {
-        RegionApproach { speed: closing_speed, acceleration: self.bends, max_speed: self.fastest }
+        RegionApproach { speed: closing_speed, acceleration: self.bends, max_speed: self.fastest, older_s: 0.0 }
     }
 
     /// The approach where it may come from any side.
     pub(crate) fn approach_any_direction(&self) -> RegionApproach {
-        RegionApproach { speed: self.fastest, acceleration: 0.0, max_speed: self.fastest }
+        RegionApproach { speed: self.fastest, acceleration: 0.0, max_speed: self.fastest, older_s: 0.0 }
     }
 }
 
@@ -137,5 +149,6 @@ mod tests {
         assert_eq!((approach(0.25).travel_m(2.0), approach(-0.25).travel_m(2.0)), (0.5, 0.0));
         assert!(RegionApproach::default().is_still() && !approach(-0.25).is_still());
         assert!(approach(f64::NAN).travel_m(1.0).is_nan());
+        assert_eq!(approach(0.25).older_by(0.5).travel_m(2.0), 0.625);
     }
 }

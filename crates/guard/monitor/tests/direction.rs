@@ -190,6 +190,55 @@ fn a_dynamic_region_follows_its_source_and_its_motion_counts() {
     assert!((tcp.velocity + Vec3::Y * 0.4).length() < 1e-12 && (tcp.acceleration - Vec3::Y).length() < 1e-12);
 }
 
+/// The override beside a ball of 0.5 m that moves along x: read at x, so long (s) before the joint values of a robot whose program moves
+/// it along x at `program` (m/s).
+fn override_beside_a_ball((x, speed, age_s): (f64, f64, f64), robot_x: f64, program: f64) -> f64 {
+    let volumes = vec![Volume::tcp(LinkId(6), Vec3::ZERO)];
+    let region = ball().follow(SourceId(0)).guards(Guards::TCP);
+    let stopping = StoppingSettings {
+        reaction_s: 0.01,
+        period_s: 0.002,
+        joint_deceleration: vec![2.0; 6],
+        joint_acceleration: vec![1.0; 6],
+    };
+    let laws = Laws { stopping_distance: Some(stopping), stale_s: 0.1, ..direction_aware() };
+    let parts = ConfigurationParts { laws, sources: vec!["cart".into()], ..parts(gantry(), volumes, vec![region]) };
+    let mut m = Monitor::new(Configuration::new(parts).unwrap(), None).unwrap();
+    let (q, still) = ([robot_x, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0; 6]);
+    let intent = [program, 0.0, 0.0, 0.0, 0.0, 0.0];
+    let motion = FrameMotion { velocity: Vec3::X * speed, ..FrameMotion::REST };
+    let source = SourceState { pose: Pose::from_translation(Vec3::X * x), motion, stamp_s: 1.0 - age_s };
+    let snapshot = Snapshot { qd: &still, intent: Some(&intent), sources: &[source], ..Snapshot::stationary(1.0, &q) };
+    m.tick(&snapshot).speed_override
+}
+
+#[test]
+fn the_age_of_a_source_counts_as_travel_of_its_region() {
+    let mut slowed = 0;
+    for i in 0..200 {
+        let robot_x = 0.5 + 1e-3 * f64::from(i);
+        let old = override_beside_a_ball((0.0, 1.0, 0.04), robot_x, -0.1);
+        let new = override_beside_a_ball((0.04, 1.0, 0.0), robot_x, -0.1);
+        let as_if_new = override_beside_a_ball((0.0, 1.0, 0.0), robot_x, -0.1);
+        // The warning zone sees the region where it was read.
+        assert!(old <= new + 0.2 + 1e-9 && old <= as_if_new, "{robot_x}: {old}, {new}, {as_if_new}");
+        assert!(old == 0.0 || new > 0.0, "{robot_x}: {old}, {new}");
+        slowed += i32::from(old < as_if_new);
+    }
+    assert!(slowed > 20, "{slowed}");
+    // A ball at rest is where it was.
+    assert_eq!(override_beside_a_ball((0.0, 0.0, 0.04), 0.6, -0.1), override_beside_a_ball((0.0, 0.0, 0.0), 0.6, -0.1));
+}
+
+#[test]
+fn a_robot_in_a_region_that_moves_waits_until_it_stands() {
+    assert!((override_beside_a_ball((0.0, 0.0, 0.0), 0.4, 0.1) - 0.1).abs() < 1e-12, "out of a ball at rest");
+    assert!((override_beside_a_ball((0.0, 0.004, 0.0), 0.4, 0.1) - 0.1).abs() < 1e-12, "that trembles");
+    for speed in [0.1, -0.1] {
+        assert_eq!(override_beside_a_ball((0.0, speed, 0.0), 0.4, 0.1), 0.0, "{speed} m/s");
+    }
+}
+
 /// The virtual TCP is the closest point of the whole volume, with that point's velocity and acceleration.
 #[test]
 fn virtual_tcps_have_the_position_velocity_and_acceleration_of_the_closest_point() {

@@ -120,7 +120,7 @@ pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, FormatErro
     limits.velocity.iter_mut().for_each(|v| *v *= request.speed);
     let from = request.from.as_ref().unwrap_or(&robot.start);
     request_validation::check_joint_values(cell, robot, "start", from)?;
-    let scene = QueryModel::for_motion(cell).scene(OutOfReachProofs::Omit)?;
+    let scene = QueryModel::of_cell(cell).scene(OutOfReachProofs::Omit)?;
     let refused = |e: RrtConnectError| request_validation::planner_error(cell, robot, &e);
     let state = start_state(cell, &scene, id, from, request).map_err(|e| refused(e.into()))?;
     let goals = goals(cell, &scene, &state, id, &request.to, request.options.seed)?;

@@ -84,7 +84,7 @@ pub struct RobotPath {
 /// As [`plan`](super::plan), for any of the robots; a robot that is named twice; a region that one of the robots must stay out of
 /// and another one carries.
 pub fn plan_several(cell: &Cell, request: &SeveralPathsRequest) -> Result<SeveralPathsAnswer, FormatError> {
-    let scene = QueryModel::for_motion(cell).scene(OutOfReachProofs::Omit)?;
+    let scene = QueryModel::of_cell(cell).scene(OutOfReachProofs::Omit)?;
     let (mut goals, mut starts) = (Vec::new(), cell.robots.iter().map(|r| r.start.clone()).collect::<Vec<_>>());
     for one in &request.robots {
         let (id, robot) = select_robot(cell, Some(&one.robot))?;

@@ -191,7 +191,7 @@ fn pairs(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
 fn contacts_at_start(cell: &Cell) -> Vec<Warning> {
     let of_robot = |(i, r): (usize, &CellRobot)| {
         let link = |link| GeometryId::Link { robot: RobotId(i), link };
-        let rules = cell.motion_pair_rules();
+        let rules = cell.all_pair_rules();
         let is_new = move |a, b| rules.skipped(link(a), link(b)).is_none();
         let warnings = rest_pose_contacts::warnings(&r.robot, &r.start, Some(&r.name), is_new);
         warnings.map(|(what, hint)| Warning::new(&cell.file, r.line, what).hint(hint)).collect::<Vec<_>>()

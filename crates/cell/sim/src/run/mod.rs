@@ -163,7 +163,7 @@ pub fn simulate_observed(
         claims.push(arbiter.and_then(|arbiter| ZoneClaims::of_plan(cell, RobotId(i), &setups[i], &plan, arbiter)));
         clocks.push(ProgramClock::new(plan, robot.limits.clone()));
     }
-    let scene = QueryModel::for_motion(cell).scene(OutOfReachProofs::Omit)?;
+    let scene = QueryModel::of_cell(cell).scene(OutOfReachProofs::Omit)?;
     let avoiding = if options.avoidance { AvoidingRobot::of_cell(cell, &scene, &clocks)? } else { Vec::new() };
     let models: Vec<Robot> = cell.robots.iter().map(CellRobot::with_all_tools).collect();
     let mut run = Simulation::new(cell, options, &setups, &models, monitors, clocks, avoiding);
@@ -280,7 +280,7 @@ impl<'a> Simulation<'a> {
             models.iter().zip(&cell.robots).map(|(model, r)| (model, r.base_in_world)).collect(),
             &cell.objects,
         )
-        .skipping(cell.motion_pair_rules())
+        .skipping(cell.all_pair_rules())
         .moving(&cell.moving_objects.iter().map(|m| m.object).collect::<Vec<_>>());
         for (robot, r) in cell.robots.iter().enumerate() {
             let absent = r.tools.iter().filter(|t| !t.mounted);

@@ -85,7 +85,7 @@ impl<'a> ObstacleGuard<'a> {
     /// # Errors
     /// [`FormatError`] where the scene refuses the cell.
     pub fn new(cell: &'a Cell, robot: RobotId, search_s: f64, states: &[ChainState]) -> Result<Self, FormatError> {
-        let model = QueryModel { objects: Vec::new(), ..QueryModel::for_motion(cell) };
+        let model = QueryModel { objects: Vec::new(), ..QueryModel::of_cell(cell) };
         let base = model.scene(OutOfReachProofs::Omit)?;
         let mut replanner = PathReplanner::new(robot, &cell.robots[robot.0], cell.tick_s);
         replanner.prepare(&base, states);

@@ -6,8 +6,8 @@ use std::time::Instant;
 use elbowroom_cell::configure::{self, MonitorSetup};
 use elbowroom_cell::{Cell, CellRobot, Frames};
 use elbowroom_formats::FormatError;
-use elbowroom_kinematics::ChainState;
 use elbowroom_kinematics::inverse::{IkOptions, IkSolver, IkTask};
+use elbowroom_kinematics::{ChainState, Joint, JointKind};
 use elbowroom_monitor::{EventKind, Monitor, RobotSlot, SlotId, Snapshot, SourceState, TickReport, ZoneArbiter};
 use elbowroom_spatial::{FrameMotion, Pose};
 use elbowroom_status::{CellStatus, EventStatus, PoseStatus, RobotStatus, SlotStatus};
@@ -25,6 +25,13 @@ const MAX_TICKS: usize = 400;
 const LIMIT_TOLERANCE: f64 = 1e-9;
 /// Independent joints that a pose needs.
 const POSE_JOINTS: usize = 6;
+
+/// The message for a value beyond the limits, in the units of the page: millimetres and degrees.
+fn beyond_limits(joint: &Joint, value: f64) -> String {
+    let (unit, one) = if joint.kind == JointKind::Prismatic { ("mm", 1e-3) } else { ("degrees", 1_f64.to_radians()) };
+    let [lower, upper, value] = [joint.limits.lower, joint.limits.upper, value].map(|v| v / one);
+    format!("joint `{}` may be at {lower:.2} to {upper:.2} {unit}, not at {value:.2}", joint.name)
+}
 
 /// A cell at rest under its monitors. Belts, objects and pose files stay where they are at the start.
 pub(crate) struct JogCell {
@@ -69,8 +76,7 @@ impl JogCell {
         for (value, id) in q.iter().zip(chain.active_joints()) {
             let joint = &chain.joints()[id.0];
             if !value.is_finite() || !joint.limits.contains(*value, LIMIT_TOLERANCE) {
-                let (lower, upper) = (joint.limits.lower, joint.limits.upper);
-                return Err(format!("joint `{}` may be at {lower:.4} to {upper:.4}, not at {value:.4}", joint.name));
+                return Err(beyond_limits(joint, *value));
             }
         }
         self.q[robot] = q;

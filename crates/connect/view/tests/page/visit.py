@@ -97,6 +97,12 @@ def perform(page, step):
         case "set":
             page.evaluate(SET, [step["id"], str(step["value"]), step.get("kind", "input")])
             return wait_for(page, step["until"]) if "until" in step else state(page)
+        case "enter":
+            # As a person types: the field keeps the focus.
+            page.locator(step["at"]).fill(step["value"])
+            page.keyboard.press("Enter")
+            wait_for(page, step["until"])
+            return page.locator(step["at"]).input_value()
         case "slide":
             return slide(page, step)
         case "drag":

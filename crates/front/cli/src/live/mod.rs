@@ -6,6 +6,8 @@ mod endpoints;
 #[cfg(feature = "live")]
 mod joint_recording;
 #[cfg(feature = "live")]
+mod open_addresses;
+#[cfg(feature = "live")]
 mod record;
 #[cfg(feature = "live")]
 mod replay;

@@ -12,6 +12,7 @@ use elbowroom::live::{ControlOptions, DEFAULT_ADDRESS, Keys, Service, ServiceOpt
 
 use super::LiveArgs;
 use super::endpoints::endpoint;
+use super::open_addresses::open_addresses;
 use super::ros2::{ros2_settings, run_watchdog};
 use super::stop_signal::stop_signal;
 use crate::output::{ExitStatus, Failure, note};
@@ -31,6 +32,7 @@ pub(crate) fn live(args: &LiveArgs) -> Result<ExitStatus, Failure> {
         let what = "--certificate: neither a page nor a control interface is served";
         return Err(Failure::Wrong(format!("{what}\n  write: --web ADDR or --control ADDR beside it")));
     }
+    open_addresses(&args.network).iter().for_each(|warning| note(warning));
     let keys = Keys::new(&cell.name);
     let options = ServiceOptions {
         robots: args.robots.clone(),

@@ -11,7 +11,7 @@ use elbowroom_spatial::{Pose, Vec3};
 use crate::mesh_data::MeshData;
 use crate::srdf::{DisabledPair, Srdf};
 use crate::xml::escaped;
-use crate::{FormatError, stl};
+use crate::{FormatError, WholeFile, stl};
 
 /// Replaces the limit of an unlimited prismatic joint (m), which a URDF requires.
 const UNLIMITED_M: f64 = 1e6;
@@ -68,17 +68,16 @@ pub fn write_urdf(robot: &Robot, dir: &Path, name: &str) -> Result<Vec<PathBuf>,
     };
     std::fs::create_dir_all(dir.join("meshes").join(plain_name(name))).map_err(cannot(dir))?;
     let mut files = vec![dir.join(format!("{name}.urdf"))];
-    std::fs::write(&files[0], &export.urdf).map_err(cannot(&files[0]))?;
+    WholeFile::write(&files[0], |out| out.write_all(export.urdf.as_bytes())).map_err(cannot(&files[0]))?;
     if let Some(srdf) = &export.srdf {
         let path = dir.join(format!("{name}.srdf"));
-        std::fs::write(&path, srdf).map_err(cannot(&path))?;
+        WholeFile::write(&path, |out| out.write_all(srdf.as_bytes())).map_err(cannot(&path))?;
         files.push(path);
     }
     for (file, mesh) in &export.meshes {
         let path = dir.join(file);
-        let mut bytes = Vec::with_capacity(84 + 50 * mesh.triangles.len());
-        stl::write_binary(&mut bytes, std::slice::from_ref(mesh)).map_err(cannot(&path))?;
-        std::fs::write(&path, bytes).map_err(cannot(&path))?;
+        WholeFile::write(&path, |mut out| stl::write_binary(&mut out, std::slice::from_ref(mesh)))
+            .map_err(cannot(&path))?;
         files.push(path);
     }
     Ok(files)

@@ -67,7 +67,9 @@ impl fmt::Display for Reason {
             Self::Adjacent => write!(f, "adjacent"),
             Self::NoJointBetween => write!(f, "no joint between"),
             Self::Srdf(why) => write!(f, "SRDF: {why}"),
-            Self::OutOfReach { least_m } => write!(f, "out of reach: never closer than {least_m:.4} m"),
+            Self::OutOfReach { least_m } => {
+                write!(f, "out of reach: never closer than {least_m:.4} m; distances count it")
+            }
             Self::NeverInSamples { samples, confidence } => write!(
                 f,
                 "never in {samples} samples: P(contact) < {:.1e} at {:.0} % confidence",
