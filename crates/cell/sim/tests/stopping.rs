@@ -253,3 +253,30 @@ fn a_robot_inside_is_stopped_where_its_program_leads_deeper() {
     let last = outcome.recording.robots[0].samples.last().unwrap();
     assert!(last.q[0].abs() < 1e-6, "it moved {} m deeper", last.q[0]);
 }
+
+/// A point on a circle leaves a ball that it all but touches, more or less steeply: the rounding of distances enters nothing, and holds
+/// nobody.
+#[test]
+fn a_robot_that_leaves_a_border_that_it_all_but_touches_does_not_enter_it() {
+    for apart in [1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13] {
+        for (degrees, behind) in [(-70_i32, 15_i32), (-20, 40), (0, 60), (35, 90), (80, 30), (10, 5)] {
+            let angle = f64::from(degrees).to_radians();
+            // Outwards, and back from where it goes.
+            let towards = angle - f64::from(behind).to_radians();
+            let (x, y) =
+                (0.6 * angle.cos() + (0.2 + apart) * towards.cos(), 0.6 * angle.sin() + (0.2 + apart) * towards.sin());
+            let text = format!(
+                "version = 1\nunits = {{ length = \"m\", angle = \"rad\" }}\ntick_ms = 4\nmax_s = 20\n[robot.a]\n\
+                 dh = [{{ a = 0.6, min = -3, max = 3, speed = 2, acceleration = 8 }}]\nlinks = [[]]\nstart = [{angle:?}]\n\
+                 [region.ball]\nshape = \"sphere\"\ncentre = [{x:?}, {y:?}, 0]\nradius = 0.2\nwarning = 0.1\nguards = [\"tcp\"]\n\
+                 [monitor]\nstopping_distance = true\ndirection_aware = true\nreaction_ms = 20\n\
+                 [program.a]\nsteps = [{{ move = \"joint\", to = [{:?}] }}]\n",
+                angle + 1.0
+            );
+            let recording = run(&text).recording;
+            let region = &recording.regions[0];
+            assert!(!region.entered, "{apart} m, {degrees} degrees: {:?}", region.min_distance_m);
+            assert!(recording.robots[0].finished, "{apart} m, {degrees} degrees, {behind} behind: held");
+        }
+    }
+}

@@ -10,6 +10,7 @@ use elbowroom_spatial::Pose;
 
 use super::mounted_overlap::{MountedOverlap, PlacedRegion};
 use super::program::RobotProgram;
+use super::region_speed::replans;
 use super::stopping_profile::{StoppingProfile, response_delay};
 
 /// Rounding of speeds, m.
@@ -185,6 +186,10 @@ impl EntryAnalysis<'_> {
         }
         if let Some(missing) = self.unknown_lever() {
             return Some(missing);
+        }
+        if replans(self.cell, self.robot) {
+            let why = "`stopping_distance` is off, and paths that the robot plans around what sensors see are known in the run only";
+            return Some(MissingGuarantee::new(why, "stopping_distance = true in [monitor]"));
         }
         if self.is_zone_sufficient() {
             return None;

@@ -48,5 +48,10 @@ pub(super) fn max_region_speed_m_s(paths: &PlannedPaths<'_>, region: &CellRegion
 /// Whether a robot evades, or replans around what sensors see: then its motion is known in the run only.
 fn leaves_its_program(cell: &Cell, robot: RobotId) -> bool {
     let evades = cell.avoidance.get(robot.0).is_some_and(Option::is_some);
-    evades || cell.sensors.iter().any(|sensor| sensor.robots.contains(&robot))
+    evades || replans(cell, robot)
+}
+
+/// Whether a robot plans around what sensors see.
+pub(super) fn replans(cell: &Cell, robot: RobotId) -> bool {
+    cell.sensors.iter().any(|sensor| sensor.robots.contains(&robot))
 }
