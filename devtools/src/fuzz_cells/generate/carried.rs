@@ -7,11 +7,12 @@ use elbowroom_cell::Cell;
 use elbowroom_spatial::Vec3;
 
 use super::encounter::Encounter;
+use super::moving_object::{local, moving_object, object_frame, text, vector};
 use super::settings::{Places, settings};
 use super::{rail, region, robot};
-use crate::fuzz_cells::oracle::{Arm, Frame};
+use crate::fuzz_cells::oracle::Arm;
 use crate::fuzz_cells::random::{Random, rounded};
-use crate::fuzz_cells::spec::{CellSpec, FollowSpec, MotionSpec, ObjectSpec, RegionSpec, RobotSpec, StepSpec, Vector};
+use crate::fuzz_cells::spec::{CellSpec, FollowSpec, MotionSpec, ObjectSpec, RegionSpec, RobotSpec, StepSpec};
 
 /// Tries to find a region that the robot's start is outside of.
 const TRIES: usize = 4;
@@ -44,7 +45,7 @@ pub fn cell(random: &mut Random, places: &Places<'_>) -> CellSpec {
 fn on_an_object(spec: &mut CellSpec, folder: &Path, index: usize, random: &mut Random) {
     for _ in 0..TRIES {
         let Some(Encounter { t_s, place, .. }) = Encounter::new(spec, folder, random) else { return };
-        let object = object(random, format!("o{index}"), place, t_s);
+        let object = moving_object(random, format!("o{index}"), place, t_s);
         let local = local(&object_frame(&object, t_s), place);
         let follow = Some(FollowSpec::Object(object.name.clone()));
         let mut with = spec.clone();
@@ -56,55 +57,6 @@ fn on_an_object(spec: &mut CellSpec, folder: &Path, index: usize, random: &mut R
             return;
         }
     }
-}
-
-/// An object beside or at a place; most of them only turn.
-fn object(random: &mut Random, name: String, place: Vec3, meets_s: f64) -> ObjectSpec {
-    let near = random.scaled(0.05, 1.5);
-    let away = vector(random.vector(1.0)) * if random.percent(60) { random.between(0.5, 1.5) } else { near };
-    let turns = random.percent(85);
-    let axis = if random.percent(60) { Vec3::Z } else { vector(random.vector(1.0)) };
-    let rate = random.scaled(0.2, 5.0) * if random.percent(50) { 1.0 } else { -1.0 };
-    let turn = axis.try_normalize().filter(|_| turns).map_or([0.0; 3], |axis| text(axis * rate));
-    let start = if random.percent(85) { 0.0 } else { random.between(0.1, 1.5) };
-    let origin = place + away;
-    let (mut at, mut via, mut repeat) = (origin, Vec::new(), "no");
-    let speed = random.scaled(0.05, 1.0);
-    if turn == [0.0; 3] || random.percent(35) {
-        let direction = vector(random.vector(1.0)).try_normalize().unwrap_or(Vec3::X);
-        at = origin - direction * speed * (meets_s - start).max(0.0);
-        let long = random.percent(75);
-        via.push(text(at + direction * speed * if long { 20.0 } else { random.between(0.3, 3.0) }));
-        if !long {
-            repeat = random.one(&["no", "loop", "ping-pong"]);
-        }
-        if repeat == "loop" {
-            via.push(text(at + vector(random.vector(1.0))));
-        }
-    }
-    let shape = match random.whole(0, 5) {
-        0 => "shape = \"mesh\"\nmesh = \"corner.obj\"\n".to_owned(),
-        1 => "shape = \"box\"\nsize = [0.1, 0.2, 0.05]\n".to_owned(),
-        _ => "shape = \"sphere\"\nradius = 0.01\n".to_owned(),
-    };
-    let rpy = if random.percent(50) { random.vector(3.0) } else { [0.0; 3] };
-    ObjectSpec { name, shape, at: text(at), rpy, motion: Some(MotionSpec { via, speed, start, repeat, turn }) }
-}
-
-/// Where the object is while it moves straight.
-fn object_frame(object: &ObjectSpec, t_s: f64) -> Frame {
-    let rest = rpy_frame(object.rpy);
-    let Some(motion) = &object.motion else { return Frame::shift(vector(object.at)).then(&rest) };
-    let moving_s = (t_s - motion.start).max(0.0);
-    let turn = vector(motion.turn);
-    let turned = turn.try_normalize().map_or(rest, |axis| Frame::turn(axis, turn.length() * moving_s).then(&rest));
-    let ahead = motion.via.first().and_then(|via| (vector(*via) - vector(object.at)).try_normalize());
-    let moved = ahead.unwrap_or(Vec3::ZERO) * motion.speed * moving_s;
-    Frame::shift(vector(object.at) + moved).then(&turned)
-}
-
-fn rpy_frame([roll, pitch, yaw]: Vector) -> Frame {
-    Frame::turn(Vec3::Z, yaw).then(&Frame::turn(Vec3::Y, pitch)).then(&Frame::turn(Vec3::X, roll))
 }
 
 /// Adds a robot that turns or slides, with a region on one of its links that would meet the first robot if it did not stop.
@@ -166,16 +118,4 @@ fn on_an_evading_robot(spec: &mut CellSpec, folder: &Path, random: &mut Random) 
         spec.robots[0].program.steps.truncate(1);
         spec.robots[0].program.steps.insert(0, StepSpec::Wait(random.between(1.0, 5.0)));
     }
-}
-
-fn local(frame: &Frame, place: Vec3) -> Vector {
-    text(frame.vector_back(place - frame.at))
-}
-
-fn vector([x, y, z]: Vector) -> Vec3 {
-    Vec3::new(x, y, z)
-}
-
-fn text(v: Vec3) -> Vector {
-    [v.x, v.y, v.z].map(rounded)
 }

@@ -1,11 +1,12 @@
-//! Random cells of two to six robots that share exchange regions.
+//! Random cells of two to six robots that share exchange regions, some of which move.
 
 use std::f64::consts::TAU;
 
+use super::moving_object::{local, moving_object, object_frame, vector};
 use super::settings::{settings, stop_time};
 use crate::fuzz_cells::random::{Random, rounded};
 use crate::fuzz_cells::spec::{
-    CellSpec, DhRow, HandSpec, Model, ProgramSpec, RegionSpec, RobotSpec, SolidSpec, StepSpec, Vector,
+    CellSpec, DhRow, FollowSpec, HandSpec, Model, ProgramSpec, RegionSpec, RobotSpec, SolidSpec, StepSpec, Vector,
 };
 
 /// Carriages through one to four crossings, each with solids that reach some of them.
@@ -19,10 +20,22 @@ pub fn cell(random: &mut Random) -> CellSpec {
     for (i, center) in centers.iter().enumerate() {
         spec.regions.push(region(random, i, *center));
     }
+    if random.percent(30) {
+        on_an_object(&mut spec, centers[0], random);
+    }
     for _ in 0..random.whole(2, 6) {
         spec.robots.push(carriage(random, &centers));
     }
     spec
+}
+
+/// Puts the first region on an object that moves or turns, and brings it to the crossing at some time.
+fn on_an_object(spec: &mut CellSpec, center: Vector, random: &mut Random) {
+    let meets_s = random.between(0.5, 8.0);
+    let object = moving_object(random, "carrier".to_owned(), vector(center), meets_s);
+    let there = local(&object_frame(&object, meets_s), vector(center));
+    spec.regions[0] = RegionSpec { follow: Some(FollowSpec::Object(object.name.clone())), ..region(random, 0, there) };
+    spec.objects.push(object);
 }
 
 fn region(random: &mut Random, index: usize, center: Vector) -> RegionSpec {

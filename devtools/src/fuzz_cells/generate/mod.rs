@@ -5,6 +5,7 @@ mod encounter;
 mod exchange;
 mod faults;
 mod moving;
+mod moving_object;
 mod rail;
 mod recordings;
 mod region;
@@ -23,7 +24,7 @@ use settings::settings;
 pub enum Kind {
     /// Forbidden regions, with the stopping distance on.
     Stop,
-    /// Exchange regions of 2 to 6 robots.
+    /// Exchange regions of 2 to 6 robots, some of them on objects that move and turn.
     Exchange,
     /// As `Stop`, with faults in the monitors' input.
     Faults,

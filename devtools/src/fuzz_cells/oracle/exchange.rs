@@ -20,6 +20,10 @@ const NO_MOTION: f64 = 1e-4;
 /// (hysteresis), and monitors measure volumes that enclose a link's solids, which may lie apart.
 const PARKED_M: f64 = 0.1;
 
+/// No robot is on its way into a region without being able to stop for longer, s: one whose program accelerates harder than it brakes cannot be
+/// proven to stop long before.
+const COMMITTED_S: f64 = 5.0;
+
 /// A robot, what of it counts, and the ticks from which to the next it is inside at some time.
 type ZoneVisit<'a> = (usize, Vec<SweptPair<'a>>, Vec<bool>);
 
@@ -109,18 +113,49 @@ fn two_inside(
     let apart = (0..motion.ticks()).find(|k| !(a.2[*k] && b.2[*k])).unwrap_or(motion.ticks());
     let inside =
         |s: &ZoneVisit<'_>, k: usize, u: f64| s.1.iter().any(|p| p.is_there(k) && p.distance(k, u).upper <= 0.0);
+    let mut excused = None;
     for k in (apart..motion.ticks()).filter(both) {
-        let at_once = (0..PARTS).map(|i| i as f64 / PARTS as f64).find(|u| inside(a, k, *u) && inside(b, k, *u));
-        if let Some(u) = at_once {
-            if [a, b].iter().any(|visit| is_exchanged_inside(motion, region, visit, promises, k)) {
-                findings.unforeseen_entries += 1;
-                return;
-            }
-            let t_s = motion.times[k] + u * motion.recording.tick_s;
-            findings.list.push(Finding::TwoInside { region, robots: [a.0, b.0], t_s });
-            return;
+        let entered = [a, b].map(|visit| entered_at(visit, k));
+        if excused == Some(entered) {
+            continue;
         }
+        let at_once = (0..PARTS).map(|i| i as f64 / PARTS as f64).find(|u| inside(a, k, *u) && inside(b, k, *u));
+        let Some(u) = at_once else { continue };
+        let mounted = [a, b].iter().any(|visit| is_exchanged_inside(motion, region, visit, promises, k));
+        if mounted || !is_driven_in(motion, region, [(a, entered[0]), (b, entered[1])]) {
+            findings.unforeseen_entries += 1;
+            excused = Some(entered);
+            continue;
+        }
+        findings.list.push(Finding::TwoInside { region, robots: [a.0, b.0], t_s: motion.time_s(k, u) });
+        return;
     }
+}
+
+/// The tick from which on it has been inside until tick `k`.
+fn entered_at(visit: &ZoneVisit<'_>, k: usize) -> usize {
+    (0..k).rev().find(|before| !visit.2[*before]).map_or(0, |before| before + 1)
+}
+
+/// Whether one of two robots drove in, since these ticks, while the other one was inside. A region that moves may come over a robot at rest,
+/// and another one then go on that cannot stop outside any more.
+fn is_driven_in(motion: &OracleMotion<'_>, region: usize, visits: [(&ZoneVisit<'_>, usize); 2]) -> bool {
+    if motion.places[region].is_fixed() {
+        return true;
+    }
+    let [first, last] = if visits[0].1 <= visits[1].1 { visits } else { [visits[1], visits[0]] };
+    let drove = |(visit, entered): (&ZoneVisit<'_>, usize)| drove_in(motion, region, visit, entered);
+    let could_stop = motion.times[last.1] - motion.times[first.1] > COMMITTED_S;
+    drove(last) && (could_stop || drove(first))
+}
+
+/// Whether the robot that is inside since a tick came in by its own motion, as one that keeps away from a steady region does not.
+fn drove_in(motion: &OracleMotion<'_>, region: usize, visit: &ZoneVisit<'_>, entered: usize) -> bool {
+    let touch = |pair: &SweptPair<'_>| pair.first_touch(entered, entered + 1).map(|(k, u)| (k, u, pair.moves_at(k, u)));
+    let touches = visit.1.iter().filter(|pair| pair.is_there(entered)).filter_map(touch);
+    let first = touches.min_by(|a, b| (a.0, a.1).partial_cmp(&(b.0, b.1)).unwrap_or(std::cmp::Ordering::Equal));
+    let keeps_away = motion.cell.laws.stopping_reaction_s.is_some();
+    first.is_some_and(|(k, u, moves)| keeps_away && moves && motion.is_foreseen(region, visit.0, (k, u)))
 }
 
 /// Robots at rest at the end that have not finished, each in a zone of which another of them is, in a circle. A robot that
@@ -138,6 +173,10 @@ fn deadlock(motion: &OracleMotion<'_>, in_zone: &[Vec<bool>], has_violation: boo
     };
     // While anybody moves, as in a run that was cut off, robots at rest may still be let in.
     if (0..in_zone.len()).any(|r| !motion.recording.robots[r].finished && !at_rest(r)) {
+        return;
+    }
+    // A region that moves on may free whoever waits, and come over whoever rests.
+    if motion.places.iter().any(|place| matches!(place.kind, RegionKind::Exchange { .. }) && !place.is_fixed()) {
         return;
     }
     // A crossing of several regions is one: whoever is in one of their zones is in all.

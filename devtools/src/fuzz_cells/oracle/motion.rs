@@ -8,6 +8,7 @@ use super::frame::Frame;
 use super::guarded::Guarded;
 use super::mounted::MountedTools;
 use super::place::Place;
+use super::track::is_steady;
 
 /// Positions of all robots at all ticks, and the regions.
 pub struct OracleMotion<'a> {
@@ -74,6 +75,33 @@ impl<'a> OracleMotion<'a> {
     /// Where a region is at a tick.
     pub fn region_at(&self, region: usize, k: usize) -> Frame {
         self.places[region].at(self.times[k], &self.frames(&self.q[k]))
+    }
+
+    /// The time (s) at a share `u` of the way from tick `k` to the next.
+    pub fn time_s(&self, k: usize, u: f64) -> f64 {
+        self.times[k] + u * self.recording.tick_s
+    }
+
+    /// False where a region accelerates, or its belt changes its speed, while the robot could not have stopped before a share `u` of the
+    /// way from tick `k` to the next.
+    pub fn is_foreseen(&self, region: usize, robot: usize, (k, u): (usize, f64)) -> bool {
+        let place = &self.places[region];
+        let (stop_s, tick_s) = (self.stop_s(robot), self.recording.tick_s);
+        let t_s = self.time_s(k, u);
+        if place.carrier.changes_speed(t_s - stop_s, t_s) {
+            return false;
+        }
+        let first = k.saturating_sub((stop_s / tick_s).ceil() as usize + 1);
+        let last = (k + 1).min(self.ticks() - 1);
+        let frames: Vec<_> = (first..=last).map(|k| self.region_at(region, k)).collect();
+        place.is_fixed() || place.carrier.is_belt() || is_steady(&frames, tick_s)
+    }
+
+    /// How long (s) a robot may take to stop from full speed, and to obey.
+    fn stop_s(&self, robot: usize) -> f64 {
+        let limits = &self.cell.robots[robot].limits;
+        let slowest = limits.iter().map(|l| l.velocity / l.stop).fold(0.0, f64::max);
+        slowest + self.cell.laws.stopping_reaction_s.unwrap_or(0.0) + 2.0 * self.recording.tick_s
     }
 
     /// True where a robot moves from tick `k` to the next.

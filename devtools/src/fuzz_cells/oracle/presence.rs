@@ -7,10 +7,7 @@ use super::guarded::Guarded;
 use super::motion::OracleMotion;
 use super::promises::Promises;
 use super::sweep::SweptPair;
-use super::track::is_steady;
 
-/// Below this speed (m/s) a robot rests: overrides come to 0 without end.
-const REST_SPEED: f64 = 1e-4;
 /// After a region has touched a robot at rest, ticks until it is looked at again.
 const LATER_TICKS: usize = 8;
 
@@ -37,7 +34,7 @@ pub fn entries(motion: &OracleMotion<'_>, guarded: &[Vec<Guarded>], promises: &P
             // Whoever is nowhere inside breaks no promise.
             let Some((k, u, pair)) = watch.any_touch() else { continue };
             if promises.exclude(region, robot) {
-                let (t_s, speed) = (watch.time_s(k, u), watch.speed(pair, k));
+                let (t_s, speed) = (motion.time_s(k, u), pair.own_speed(k));
                 findings.list.push(Finding::Excluded { robot, region, t_s, speed });
             } else if motion.cell.laws.stopping_reaction_s.is_some() {
                 watch.driven(findings);
@@ -73,8 +70,8 @@ impl<'a> Watch<'a> {
                 if !self.drove_in(pair, touch, u) {
                     continue;
                 }
-                if self.is_foreseen(touch, u) {
-                    let (t_s, speed) = (self.time_s(touch, u), self.speed(pair, touch));
+                if self.motion.is_foreseen(self.region, self.robot, (touch, u)) {
+                    let (t_s, speed) = (self.motion.time_s(touch, u), pair.own_speed(touch));
                     findings.list.push(Finding::Entry { robot: self.robot, region: self.region, t_s, speed });
                     return;
                 }
@@ -121,15 +118,6 @@ impl<'a> Watch<'a> {
         (from..last).find(|k| pair.region_jumps(*k)).unwrap_or(end)
     }
 
-    fn time_s(&self, k: usize, u: f64) -> f64 {
-        self.motion.times[k] + u * self.motion.recording.tick_s
-    }
-
-    /// How fast the robot moves the solid from tick `k` to the next, at most, m/s.
-    fn speed(&self, pair: &SweptPair<'_>, k: usize) -> f64 {
-        if k + 1 < self.motion.ticks() { pair.own_travel(k) / self.motion.recording.tick_s } else { 0.0 }
-    }
-
     /// False where the region ran into a robot at rest. Before a region that moves the robot has to rest; into one that does
     /// not it must have come by more than the tolerance within the last tick.
     fn drove_in(&self, pair: &SweptPair<'_>, k: usize, u: f64) -> bool {
@@ -137,32 +125,9 @@ impl<'a> Watch<'a> {
             return true;
         }
         if !self.place_is_fixed() {
-            // Whoever comes to rest within the tick may have come to rest before the touch.
-            let before = if u <= 0.0 { self.speed(pair, k - 1) } else { f64::INFINITY };
-            return before.min(self.speed(pair, k)).min(self.speed(pair, k + 1)) > REST_SPEED;
+            return pair.moves_at(k, u);
         }
-        let moved = self.speed(pair, k) > 0.0 || (u <= 0.0 && self.speed(pair, k - 1) > 0.0);
+        let moved = pair.own_speed(k) > 0.0 || (u <= 0.0 && pair.own_speed(k - 1) > 0.0);
         moved && pair.distance_between((k - 1, u), (k, u)).lower > TOLERANCE_M
-    }
-
-    /// False where the region accelerates, or its belt changes its speed, while the robot could not have stopped.
-    fn is_foreseen(&self, k: usize, u: f64) -> bool {
-        let place = &self.motion.places[self.region];
-        let (stop_s, tick_s) = (self.stop_s(), self.motion.recording.tick_s);
-        let t_s = self.time_s(k, u);
-        if place.carrier.changes_speed(t_s - stop_s, t_s) {
-            return false;
-        }
-        let first = k.saturating_sub((stop_s / tick_s).ceil() as usize + 1);
-        let last = (k + 1).min(self.motion.ticks() - 1);
-        let frames: Vec<_> = (first..=last).map(|k| self.motion.region_at(self.region, k)).collect();
-        place.is_fixed() || place.carrier.is_belt() || is_steady(&frames, tick_s)
-    }
-
-    /// How long (s) the robot may take to stop from full speed, and to obey.
-    fn stop_s(&self) -> f64 {
-        let limits = &self.motion.cell.robots[self.robot].limits;
-        let slowest = limits.iter().map(|l| l.velocity / l.stop).fold(0.0, f64::max);
-        slowest + self.motion.cell.laws.stopping_reaction_s.unwrap_or(0.0) + 2.0 * self.motion.recording.tick_s
     }
 }

@@ -9,6 +9,9 @@ const FAR_M: f64 = 0.5;
 /// The smallest step within a tick moves nothing by more than this, m: a tenth of the tolerance.
 const STEP_M: f64 = 1e-7;
 
+/// Below this speed (m/s) a robot rests: overrides come to 0 without end.
+const REST_SPEED: f64 = 1e-4;
+
 /// A pair under watch.
 pub struct SweptPair<'a> {
     pub motion: &'a OracleMotion<'a>,
@@ -35,9 +38,21 @@ impl<'a> SweptPair<'a> {
     }
 
     /// The robot's share of it.
-    pub fn own_travel(&self, k: usize) -> f64 {
+    fn own_travel(&self, k: usize) -> f64 {
         let (from, to) = (&self.motion.q[k][self.robot], &self.motion.q[k + 1][self.robot]);
         self.lever_arms.iter().zip(from).zip(to).map(|((l, a), b)| l * (b - a).abs()).sum()
+    }
+
+    /// How fast the robot moves it from tick `k` to the next, at most, m/s; 0 after the end.
+    pub fn own_speed(&self, k: usize) -> f64 {
+        if k + 1 < self.motion.ticks() { self.own_travel(k) / self.motion.recording.tick_s } else { 0.0 }
+    }
+
+    /// Whether the robot moves it at a share `u` of the way from tick `k` to the next, and not only until or from there.
+    pub fn moves_at(&self, k: usize, u: f64) -> bool {
+        // Whoever comes to rest within the tick may have come to rest before a touch.
+        let before = if u <= 0.0 && k > 0 { self.own_speed(k - 1) } else { f64::INFINITY };
+        before.min(self.own_speed(k)).min(self.own_speed(k + 1)) > REST_SPEED
     }
 
     fn region_travel(&self, k: usize) -> f64 {

@@ -160,6 +160,28 @@ fn two_in_one_exchange_region_are_seen() {
     assert!(matches!(found.as_slice(), [Finding::TwoInside { region: 0, robots: [0, 1], .. }]), "{found:?}");
 }
 
+/// The region of `plate` as one that a cart carries along the rails, from behind the first robot.
+fn carried_plate(speed: f64) -> String {
+    let cart = format!(
+        "[object.cart]\nshape = \"sphere\"\nradius = 0.01\nat = [-2.6, 0, 0]\nmotion = {{ via = [[9, 0, 0]], speed = {speed} }}\n"
+    );
+    cart + &plate(0.0, 0.5, "exchange") + "follow = { object = \"cart\" }\n"
+}
+
+#[test]
+fn two_that_drive_into_a_region_that_moves_are_seen_and_two_that_it_runs_over_are_not() {
+    // Both cross the plate, which goes slowly.
+    let text = rail("a", 0.0, -1.0, -3.0) + &rail("b", 0.5, -1.2, -2.9) + &carried_plate(0.1);
+    let found = findings(&text, false);
+    assert!(matches!(found.as_slice(), [Finding::TwoInside { region: 0, robots: [0, 1], .. }]), "{found:?}");
+    assert_eq!(findings(&text, true), []);
+    // Neither moves.
+    let still = |name: &str, y: f64| rail(name, y, 0.0, 0.0).replace("{ move", "{ wait = 6 }, { move");
+    let (cell, outcome) = run(&(still("a", 0.0) + &still("b", 0.5) + &carried_plate(0.6)), false);
+    let findings = check(&cell, &outcome.recording, &Promises::none(&cell), outcome.has_violation()).unwrap();
+    assert_eq!((findings.list.len(), findings.unforeseen_entries), (0, 1));
+}
+
 #[test]
 fn a_deadlock_must_be_reported() {
     // Both start in the region and want to go on in it: nobody can be granted it.
