@@ -10,6 +10,7 @@ mod live;
 mod live_control;
 mod live_ros2;
 mod map;
+mod messages;
 mod models;
 mod pair_file;
 mod pairs;

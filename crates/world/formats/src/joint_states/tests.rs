@@ -97,6 +97,8 @@ fn several_robots_need_their_prefixes_and_may_stay_at_their_defaults() {
     let states = parse(text, &both).unwrap();
     assert_eq!((states.q(0, 0), states.q(0, 1)), (&[2.0, 0.1][..], &[1.0, 0.2][..]));
     let message = |text: &str, options: &JointStateOptions<'_>| parse(text, options).unwrap_err().to_string();
+    let semicolons = message("right.turn;left.turn\n0;0\n", &both);
+    assert!(semicolons.contains("; commas separate columns"), "{semicolons}");
     let only_left = "left.turn,left.slide\n2,0.1\n";
     assert!(message(only_left, &both).contains("has no column `right.turn`, `right.slide`"));
     assert!(
