@@ -33,6 +33,11 @@ impl Keys {
         self.of(robot, "status")
     }
 
+    /// That a process is about to guard a robot: when it started, nanoseconds since 1970 as eight bytes, the least first.
+    pub fn claim(&self, robot: &str) -> String {
+        self.of(robot, "claim")
+    }
+
     /// From the guard of a robot to the arbiter.
     pub fn interlock_state(&self, robot: &str) -> String {
         self.of(robot, "interlock/state")

@@ -56,6 +56,7 @@ mod peer_watch;
 mod region_journal;
 mod region_keeper;
 mod regions_table;
+mod robot_claims;
 pub mod ros2;
 mod service;
 mod service_error;

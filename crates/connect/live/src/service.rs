@@ -41,12 +41,13 @@ impl Service {
     /// [`ServiceError`]; then nothing runs.
     pub fn start(cell: Cell, options: &ServiceOptions) -> Result<Self, ServiceError> {
         let begin = ServiceStart::new(cell, options)?;
-        begin.refuse_second_nodes()?;
+        let claims = begin.claims()?;
         let keeper = begin.keeper()?;
         let arbiter = begin.arbiter()?;
         let control = begin.control(keeper.as_ref(), arbiter.as_ref())?;
         let recorder = begin.recorder()?;
         let nodes = begin.nodes(recorder.as_ref())?;
+        drop(claims);
         let ros2 = begin.ros2()?;
         let controllers = begin.simulated_controllers()?;
         let peers = begin.peers()?;

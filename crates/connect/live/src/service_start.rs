@@ -27,13 +27,11 @@ use crate::node::{Node, NodeMonitor, NodeParts};
 use crate::peer_watch::PeerWatch;
 use crate::region_journal::RegionJournal;
 use crate::region_keeper::{ProgramSwitches, RegionKeeper};
+use crate::robot_claims::RobotClaims;
 use crate::ros2::{CellFeed, Participant};
 use crate::service_error::ServiceError;
 use crate::service_options::{DEFAULT_ADDRESS, ServiceOptions};
 use crate::simulated_controllers::SimulatedControllers;
-
-/// How long a process listens whether another one guards its robots already.
-const LISTENS: Duration = Duration::from_millis(300);
 
 /// After this time it is said that nobody answers.
 const NOBODY: Duration = Duration::from_secs(2);
@@ -136,23 +134,13 @@ impl<'o> ServiceStart<'o> {
         Ok(Some(Recorder::start(CellWriter::create(file, &self.cell, boot_number())?, on_error)?))
     }
 
-    /// An error where another process guards a robot of this one: a node says fifty times a second how it is.
-    pub(crate) fn refuse_second_nodes(&self) -> Result<(), ServiceError> {
-        let keys = Keys::new(&self.cell.name);
-        let listen = |robot: &RobotId| {
-            let (name, (heard, is_heard)) = (&self.cell.robots[robot.0].name, mpsc::channel());
-            // The other side is gone once it was heard.
-            let handler = Box::new(move |_: &[u8]| {
-                let _ = heard.send(());
-            });
-            Ok((name, self.shared.subscribe(&keys.status(name), handler)?, is_heard))
-        };
-        let listening: Vec<_> = self.robots.iter().map(listen).collect::<Result<_, NetworkError>>()?;
-        std::thread::sleep(if listening.is_empty() { Duration::ZERO } else { LISTENS });
-        match listening.iter().find(|(_, _, is_heard)| is_heard.try_recv().is_ok()) {
-            Some((name, ..)) => Err(ServiceError::GuardedAlready { name: (*name).clone() }),
-            None => Ok(()),
-        }
+    /// The robots of this process are its own until its nodes say so themselves.
+    ///
+    /// # Errors
+    /// Another process guards one of them.
+    pub(crate) fn claims(&self) -> Result<RobotClaims, ServiceError> {
+        let names: Vec<&str> = self.robots.iter().map(|robot| &self.cell.robots[robot.0].name[..]).collect();
+        RobotClaims::new(&self.shared, &Keys::new(&self.cell.name), &names, boot_number())
     }
 
     pub(crate) fn nodes(&self, recorder: Option<&Recorder>) -> Result<Vec<Node>, ServiceError> {

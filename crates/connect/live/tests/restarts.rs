@@ -130,6 +130,26 @@ fn a_robot_that_never_spoke_is_cleared_at_the_first_request() {
 }
 
 #[test]
+fn of_two_nodes_that_start_at_once_one_goes_on() {
+    let setup = setup();
+    let starts = std::sync::Barrier::new(2);
+    let start = || {
+        let connect = Some(setup.listen.clone());
+        let options = ServiceOptions { robots: vec!["left".into()], connect, ..ServiceOptions::default() };
+        starts.wait();
+        Service::start(setup.cell.clone(), &options)
+    };
+    let both =
+        std::thread::scope(|scope| [scope.spawn(start), scope.spawn(start)].map(|thread| thread.join().unwrap()));
+    let refused: Vec<String> =
+        both.iter().filter_map(|service| service.as_ref().err().map(ToString::to_string)).collect();
+    assert!(
+        matches!(&refused[..], [why] if why.contains("robot left: another process guards it already")),
+        "{refused:?}"
+    );
+}
+
+#[test]
 fn a_second_node_for_a_robot_does_not_start() {
     let setup = setup();
     let left = || {
