@@ -352,7 +352,7 @@ impl<'a> Joints<'a> {
             }
             return format!("must name the robot: `{}.{name}`", r.name);
         }
-        "is not a joint".into()
+        if name.contains([';', '\t']) { "is several: commas separate columns" } else { "is not a joint" }.into()
     }
 }
 
@@ -415,12 +415,6 @@ impl Header {
         let is_extra = |c: Column, name: &str| c == Column::Skipped && !["t_s", "index"].contains(&name);
         let mut extra = self.columns.iter().zip(&self.names).filter(|(c, name)| is_extra(**c, name)).map(|(_, n)| n);
         let Some(name) = extra.next() else { return Ok(()) };
-        let is_one_column = self.names.len() == 1 && name.contains([';', '\t']);
-        if is_one_column {
-            return Err(at
-                .error("has one column; commas separate columns")
-                .hint("commas in place of semicolons or tabs"));
-        }
         let hint = format!("the header {}", joints.header());
         match joints.options.extra_columns {
             ExtraColumns::Refused => {
