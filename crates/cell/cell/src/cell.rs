@@ -67,7 +67,7 @@ pub struct Cell {
 }
 
 impl Cell {
-    /// The rules of all verbs: those of the file of pairs, and before them
+    /// The rules of all verbs: what the file of pairs says, and before it
     /// [links that always touch where they are joined](elbowroom_robot::joint_contacts).
     pub fn all_pair_rules(&self) -> PairRules {
         let mut rules = self.joint_contacts.clone();

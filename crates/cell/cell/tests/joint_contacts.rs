@@ -64,17 +64,17 @@ fn no_robot_starts_in_contact_because_of_links_that_always_touch_at_a_joint() {
         let pairs: Vec<String> = found.iter().map(pair_name).collect();
         let always: Vec<&String> =
             pairs.iter().zip(&found).filter(|(_, c)| c.contacts == c.samples).map(|(n, _)| n).collect();
-        let motion = QueryModel::of_cell(&cell).scene(OutOfReachProofs::Omit).unwrap();
+        let of_cell = QueryModel::of_cell(&cell).scene(OutOfReachProofs::Omit).unwrap();
         let every = QueryModel::without_rules(&cell).scene(OutOfReachProofs::Omit).unwrap();
         let name = urdf.file_stem().unwrap().to_str().unwrap().to_owned();
         println!(
             "{name}: {:?}; else at zero {:?}, in the middle {:?}",
             found.iter().map(|c| format!("{} {:?} {}", pair_name(c), c.kind, c.contacts)).collect::<Vec<_>>(),
-            contacts(&motion, zero),
-            contacts(&motion, &middle)
+            contacts(&of_cell, zero),
+            contacts(&of_cell, &middle)
         );
         for q in [zero, &middle] {
-            let (left, all) = (contacts(&motion, q), contacts(&every, q));
+            let (left, all) = (contacts(&of_cell, q), contacts(&every, q));
             // What is recognised is gone, and nothing else changes.
             assert!(always.iter().all(|pair| all.contains(pair)), "{name}: {all:?}");
             let others: Vec<&String> = all.iter().filter(|pair| !pairs.contains(pair)).collect();

@@ -343,3 +343,25 @@ fn a_robot_does_not_move_while_a_region_passes_over_it() {
     let driven = (1..samples.len()).find(|tick| is_inside(*tick) && !is_inside(tick - 1) && moves(*tick));
     assert_eq!(driven, None, "entered at {} s", driven.unwrap_or(0) as f64 * 0.002);
 }
+
+/// Each robot stands in a region that the other one carries: both leave, in turns.
+#[test]
+fn two_robots_that_are_each_in_the_region_of_the_other_get_out() {
+    let zone = |of: &str, other: &str| {
+        format!(
+            "[region.of_{of}]\nshape = \"sphere\"\ncentre = [0, 0, 0]\nradius = 500\nwarning = 100\nrobots = [\"{other}\"]\n\
+             follow = {{ robot = \"{of}\", frame = \"flange\" }}\n"
+        )
+    };
+    let text = format!(
+        "{HEAD}max_s = 300\n{}start = [0]\n{}start = [0]\n{}{}{LAWS}recovery = 10\n\
+         [program.a]\nsteps = [{{ move = \"joint\", to = [1500] }}]\n[program.b]\nsteps = [{{ move = \"joint\", to = [-1500] }}]\n",
+        rail("a", 0.0),
+        rail("b", 400.0),
+        zone("a", "b"),
+        zone("b", "a"),
+    );
+    let outcome = run_at(Path::new("."), &text);
+    let ends: Vec<f64> = outcome.recording.robots.iter().map(|robot| robot.samples.last().unwrap().q[0]).collect();
+    assert!(outcome.recording.robots.iter().all(|robot| robot.finished), "{ends:?}");
+}

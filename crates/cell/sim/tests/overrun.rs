@@ -185,20 +185,22 @@ fn the_zone_of_a_robot_that_plans_around_obstacles_is_never_thick_enough() {
     std::fs::create_dir(dir.path().join("clouds")).unwrap();
     let cloud = "[cloud.mast]\npose = { at = [0, 0, 3000], rpy = [180, 0, 0] }\narea = [[-900, -900], [900, -900], [0, 900]]\n\
                  clouds = \"clouds\"\nrobots = [\"a\"]\n";
-    let of = |cloud: &str, laws: &str| {
+    let of = |cloud: &str, laws: &str, to: i32| {
         let text = format!(
             "{HEAD}{}start = [-1500]\n[region.ball]\nshape = \"sphere\"\ncentre = [0, 400, 0]\nradius = 100\nwarning = 3000\n\
              robots = [\"a\"]\n[monitor]\nstopping_distance = {laws}\n{cloud}\
-             [program.a]\nsteps = [{{ move = \"joint\", to = [1500] }}]\n",
+             [program.a]\nsteps = [{{ move = \"joint\", to = [{to}] }}]\n",
             rail("a", 0.0)
         );
         let cell = Cell::parse(dir.path().join("cell.toml"), &text).unwrap_or_else(|e| panic!("{e}"));
         (check(&cell).unwrap()[0].clone(), overruns(&PlannedPaths::new(&cell)).unwrap())
     };
-    assert!(of("", "false").0.excluded);
-    let (answer, warnings) = of(cloud, "false");
+    assert!(of("", "false", 1500).0.excluded);
+    let (answer, warnings) = of(cloud, "false", 1500);
     assert!(!answer.excluded && answer.reason.contains("around what sensors see"), "{}", answer.reason);
     assert!(answer.write_instead.unwrap().contains("stopping_distance = true") && warnings.len() == 1);
-    let (answer, warnings) = of(cloud, "true");
+    // A program that does not move the part says nothing of another path.
+    assert!(of("", "false", -1500).0.excluded && !of(cloud, "false", -1500).0.excluded);
+    let (answer, warnings) = of(cloud, "true", 1500);
     assert!(answer.excluded && warnings.is_empty(), "{}", answer.reason);
 }

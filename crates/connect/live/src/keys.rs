@@ -33,7 +33,7 @@ impl Keys {
         self.of(robot, "status")
     }
 
-    /// That a process is about to guard a robot: when it started, nanoseconds since 1970 as eight bytes, the least first.
+    /// That a process is about to guard a robot: when it started, nanoseconds since 1970 as eight bytes, the least first, and whether it has the robot by now.
     pub fn claim(&self, robot: &str) -> String {
         self.of(robot, "claim")
     }

@@ -46,8 +46,7 @@ impl Service {
         let arbiter = begin.arbiter()?;
         let control = begin.control(keeper.as_ref(), arbiter.as_ref())?;
         let recorder = begin.recorder()?;
-        let nodes = begin.nodes(recorder.as_ref())?;
-        drop(claims);
+        let nodes = begin.nodes(recorder.as_ref(), claims)?;
         let ros2 = begin.ros2()?;
         let controllers = begin.simulated_controllers()?;
         let peers = begin.peers()?;

@@ -143,8 +143,10 @@ impl<'o> ServiceStart<'o> {
         RobotClaims::new(&self.shared, &Keys::new(&self.cell.name), &names, boot_number())
     }
 
-    pub(crate) fn nodes(&self, recorder: Option<&Recorder>) -> Result<Vec<Node>, ServiceError> {
+    /// Starts the nodes, where nobody else has claimed their robots meanwhile.
+    pub(crate) fn nodes(&self, recorder: Option<&Recorder>, claims: RobotClaims) -> Result<Vec<Node>, ServiceError> {
         let setups = configure::setups(&self.cell)?.into_iter().enumerate();
+        claims.end()?;
         let guarded = setups.filter(|(i, _)| self.robots.contains(&RobotId(*i)));
         guarded.map(|(i, setup)| self.node(RobotId(i), setup, recorder)).collect()
     }

@@ -5,6 +5,7 @@ mod c_client;
 mod common;
 mod control;
 mod doubtful_input;
+mod followed;
 mod node;
 mod region_changes;
 mod region_table;

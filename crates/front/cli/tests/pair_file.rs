@@ -232,7 +232,7 @@ fn links_that_always_touch_at_their_joint_stop_no_run_and_no_plan() {
     assert!(ran.stderr.contains(said) && ran.stderr.contains("ignore = [[\"forearm\", \"hand\"]]"), "{}", ran.stderr);
     assert_eq!(ran.json()["robots"][0]["collisions"].as_array().map(Vec::len), Some(0));
     assert!(call(&plan).expect(0).stderr.contains(said));
-    // One rule for all verbs of a cell; that of a model alone has no rules but its SRDF.
+    // One rule for all verbs of a cell; a model alone has its SRDF only.
     assert!(call(&query).expect(0).stderr.contains(said));
     let distance = call(&["query", "cell.toml", "--ask", "distance"]).expect(0).stdout;
     assert!(distance.contains("index,collides") && !distance.contains("r/hand"), "{distance}");

@@ -6,7 +6,7 @@ use elbowroom_spatial::Vec3;
 use crate::laws::{speed_zone, warning_factor};
 use crate::placement::{DynamicRegion, Placement};
 use crate::point_motion::max_speed_along;
-use crate::recovery::{RecoverySettings, leads_out};
+use crate::recovery::{RecoverySettings, border_speed, leads_out};
 use crate::region_approach::{RegionApproach, TurningMotion};
 use crate::stopping::{StoppingLaw, StoppingQuery};
 use crate::tick_context::TickContext;
@@ -203,7 +203,7 @@ impl OverrideLaw<'_> {
         let away = (pair.separation.on_a - pair.separation.on_b).try_normalize();
         let Some(away) = away.filter(|_| pair.separation.distance > 0.0) else {
             // Where a region that moves will be when the robot rests is not known well enough to move inside of it.
-            let recovers = region_speed(tick.now, tick.snapshot.sources, r) <= self.settings.recovery.region_rest_speed
+            let recovers = border_speed(tick, pair) <= self.settings.recovery.region_rest_speed
                 && leads_out(tick, &self.settings.recovery, pair, intent, predicted);
             return if recovers { Direction::Recovering } else { Direction::Approaching };
         };
@@ -233,11 +233,6 @@ fn older_s(snapshot: &Snapshot<'_>, source: &SourceState) -> f64 {
 }
 
 /// Upper bound of the speed of all points of a region, m/s.
-fn region_speed(now: &Placement, sources: &[SourceState], region: usize) -> f64 {
-    let dynamic = now.dynamic_regions.iter().find(|dynamic| dynamic.region == region);
-    dynamic.map_or(0.0, |dynamic| dynamic_region_speed(now, &sources[dynamic.source.0], dynamic))
-}
-
 fn dynamic_region_speed(now: &Placement, source: &SourceState, dynamic: &DynamicRegion) -> f64 {
     let SourceState { pose, motion, .. } = source;
     let angular_speed = motion.angular_velocity.length();

@@ -1,7 +1,7 @@
 //! Recovery: whether the program of a robot inside a region leads out of it.
 
 use elbowroom_kinematics::ChainState;
-use elbowroom_proximity::{Penetration, penetration};
+use elbowroom_proximity::{Penetration, Shape, penetration};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 use crate::placement::Placement;
@@ -22,7 +22,7 @@ pub(crate) struct RecoverySettings {
     near_s: f64,
     /// Number of samples along the predicted motion.
     samples: u32,
-    /// Speed (m/s) of its fastest point up to which a region is at rest: joint values of a robot at rest tremble.
+    /// Speed (m/s) of its border up to which a region is at rest: joint values of a robot at rest tremble.
     pub(crate) region_rest_speed: f64,
 }
 
@@ -65,6 +65,32 @@ pub(crate) fn leads_out(
             tick.leaves_along(pair, intent, now.direction)
                 && !elbowroom_proximity::within(volume, volume_predicted, region, region_predicted, margin_m)
         }
+    }
+}
+
+/// Upper bound of the speed (m/s) at which the border of a region moves beside a volume. A ball that turns about its centre, or a cylinder
+/// about its axis, stays where it is.
+pub(crate) fn border_speed(tick: &TickContext<'_>, pair: &VolumeRegionPair) -> f64 {
+    let region = &tick.config.regions[pair.region];
+    let Some(source) = region.source_state(tick.snapshot.sources) else { return 0.0 };
+    let in_world = &tick.now.region_in_world[pair.region];
+    let (turn, axis) = (source.motion.angular_velocity, in_world.transform_vector(Vec3::Z));
+    let across = (turn - axis * turn.dot(axis)).length();
+    let velocity = |at: Vec3| source.motion.velocity_at(at - source.pose.translation);
+    let of_center = velocity(in_world.translation).length();
+    let turning = |rate: f64| {
+        let radius = || tick.now.region_box[pair.region].max_distance(in_world.translation);
+        if rate > 0.0 { rate * radius() } else { 0.0 }
+    };
+    match &region.shape {
+        Shape::Sphere(_) => of_center,
+        Shape::Cylinder(_) | Shape::Capsule(_) => of_center + turning(across),
+        // Of a plane only motion across it counts, where the volume is.
+        Shape::HalfSpace(_) => {
+            let volume = &tick.now.volume_box[pair.volume];
+            velocity(volume.center()).dot(axis).abs() + 0.5 * across * volume.extent().length()
+        }
+        Shape::Cuboid(_) | Shape::Hull(_) | Shape::Mesh(_) => of_center + turning(turn.length()),
     }
 }
 

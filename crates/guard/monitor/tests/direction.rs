@@ -190,11 +190,10 @@ fn a_dynamic_region_follows_its_source_and_its_motion_counts() {
     assert!((tcp.velocity + Vec3::Y * 0.4).length() < 1e-12 && (tcp.acceleration - Vec3::Y).length() < 1e-12);
 }
 
-/// The override beside a ball of 0.5 m that moves along x: read at x, so long (s) before the joint values of a robot whose program moves
-/// it along x at `program` (m/s).
-fn override_beside_a_ball((x, speed, age_s): (f64, f64, f64), robot_x: f64, program: f64) -> f64 {
+/// The override of a robot at x that stands beside a region and whose program moves it along x at `program` (m/s).
+fn override_beside(region: Region, source: SourceState, x: f64, program: f64) -> f64 {
     let volumes = vec![Volume::tcp(LinkId(6), Vec3::ZERO)];
-    let region = ball().follow(SourceId(0)).guards(Guards::TCP);
+    let region = region.follow(SourceId(0)).guards(Guards::TCP);
     let stopping = StoppingSettings {
         reaction_s: 0.01,
         period_s: 0.002,
@@ -204,12 +203,17 @@ fn override_beside_a_ball((x, speed, age_s): (f64, f64, f64), robot_x: f64, prog
     let laws = Laws { stopping_distance: Some(stopping), stale_s: 0.1, ..direction_aware() };
     let parts = ConfigurationParts { laws, sources: vec!["cart".into()], ..parts(gantry(), volumes, vec![region]) };
     let mut m = Monitor::new(Configuration::new(parts).unwrap(), None).unwrap();
-    let (q, still) = ([robot_x, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0; 6]);
-    let intent = [program, 0.0, 0.0, 0.0, 0.0, 0.0];
+    let (q, intent) = ([x, 0.0, 0.0, 0.0, 0.0, 0.0], [program, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    let snapshot =
+        Snapshot { qd: &[0.0; 6], intent: Some(&intent), sources: &[source], ..Snapshot::stationary(1.0, &q) };
+    m.tick(&snapshot).speed_override
+}
+
+/// Beside a ball of 0.5 m that moves along x: read at x, so long (s) before the robot's joint values.
+fn override_beside_a_ball((x, speed, age_s): (f64, f64, f64), robot_x: f64, program: f64) -> f64 {
     let motion = FrameMotion { velocity: Vec3::X * speed, ..FrameMotion::REST };
     let source = SourceState { pose: Pose::from_translation(Vec3::X * x), motion, stamp_s: 1.0 - age_s };
-    let snapshot = Snapshot { qd: &still, intent: Some(&intent), sources: &[source], ..Snapshot::stationary(1.0, &q) };
-    m.tick(&snapshot).speed_override
+    override_beside(ball(), source, robot_x, program)
 }
 
 #[test]
@@ -237,6 +241,32 @@ fn a_robot_in_a_region_that_moves_waits_until_it_stands() {
     for speed in [0.1, -0.1] {
         assert_eq!(override_beside_a_ball((0.0, speed, 0.0), 0.4, 0.1), 0.0, "{speed} m/s");
     }
+}
+
+/// What turns in itself stays where it is; a plane on a hand whose joint values tremble is no faster where the robot is.
+#[test]
+fn a_robot_leaves_a_region_that_turns_in_itself() {
+    let turning = |about: Vec3, at: Vec3| SourceState {
+        pose: Pose::from_translation(at),
+        motion: FrameMotion { angular_velocity: about, ..FrameMotion::REST },
+        stamp_s: 1.0,
+    };
+    let is_let_out = |region: Region, source: SourceState| override_beside(region, source, 0.4, 0.1) > 0.0;
+    let ball_at = |center: Vec3| Region::sphere("ball", center, 0.5).warning(0.2);
+    let disc = || Region::cylinder("disc", Vec3::Z * -0.5, 0.5, 1.0, Rotation::IDENTITY).warning(0.2);
+    let block = Region::cuboid("block", Vec3::Z * -0.5, Vec3::splat(1.0), Rotation::IDENTITY).warning(0.2);
+    // All that is behind x = 0.5 in the world, with its source there.
+    let wall = |source: Vec3| {
+        let at = |y: f64, z: f64| Vec3::new(0.5, y, z) - source;
+        Region::plane("wall", at(0.0, 0.0), at(1.0, 0.0), at(0.0, 1.0)).unwrap().warning(0.2)
+    };
+    assert!(is_let_out(ball_at(Vec3::ZERO), turning(Vec3::splat(2.0), Vec3::ZERO)));
+    assert!(!is_let_out(ball_at(-Vec3::Y), turning(Vec3::Z * 2.0, Vec3::Y)), "a ball that circles");
+    assert!(is_let_out(disc(), turning(Vec3::Z * 2.0, Vec3::ZERO)));
+    assert!(!is_let_out(disc(), turning(Vec3::X * 2.0, Vec3::ZERO)), "a disc that tumbles");
+    assert!(!is_let_out(block, turning(Vec3::Z * 2.0, Vec3::ZERO)), "a block");
+    assert!(is_let_out(wall(Vec3::ZERO), turning(Vec3::splat(1e-6), Vec3::ZERO)), "a wall that trembles");
+    assert!(!is_let_out(wall(Vec3::Y), turning(Vec3::Z, Vec3::Y)), "a wall that turns over the robot");
 }
 
 /// The virtual TCP is the closest point of the whole volume, with that point's velocity and acceleration.

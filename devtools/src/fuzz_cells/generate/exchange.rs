@@ -17,11 +17,13 @@ pub fn cell(random: &mut Random) -> CellSpec {
     let centers: Vec<Vector> = (0..crossings)
         .map(|i| [0.0, rounded(i as f64 * apart), if random.percent(80) { 0.0 } else { random.between(-0.5, 0.5) }])
         .collect();
+    let carried = random.percent(30);
     for (i, center) in centers.iter().enumerate() {
-        spec.regions.push(region(random, i, *center));
-    }
-    if random.percent(30) {
-        on_an_object(&mut spec, centers[0], random);
+        if carried && i == 0 {
+            on_an_object(&mut spec, *center, random);
+        } else {
+            spec.regions.push(region(random, i, *center));
+        }
     }
     for _ in 0..random.whole(2, 6) {
         spec.robots.push(carriage(random, &centers));
@@ -29,12 +31,13 @@ pub fn cell(random: &mut Random) -> CellSpec {
     spec
 }
 
-/// Puts the first region on an object that moves or turns, and brings it to the crossing at some time.
+/// Adds a region on an object that moves or turns, which comes to the crossing at some time.
 fn on_an_object(spec: &mut CellSpec, center: Vector, random: &mut Random) {
     let meets_s = random.between(0.5, 8.0);
     let object = moving_object(random, "carrier".to_owned(), vector(center), meets_s);
     let there = local(&object_frame(&object, meets_s), vector(center));
-    spec.regions[0] = RegionSpec { follow: Some(FollowSpec::Object(object.name.clone())), ..region(random, 0, there) };
+    let follow = Some(FollowSpec::Object(object.name.clone()));
+    spec.regions.push(RegionSpec { follow, ..region(random, 0, there) });
     spec.objects.push(object);
 }
 

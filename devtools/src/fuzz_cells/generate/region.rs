@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use elbowroom_cell::Cell;
-use elbowroom_spatial::Vec3;
 
+use super::moving_object::vector;
 use crate::fuzz_cells::oracle::{self, Guarded};
 use crate::fuzz_cells::random::{Random, rounded};
 use crate::fuzz_cells::spec::{CellSpec, RegionSpec, StepSpec, Vector, list};
@@ -77,10 +77,6 @@ fn ends<'s>(start: &'s Vec<f64>, steps: &'s [StepSpec]) -> Vec<&'s Vec<f64>> {
 fn some_rows(rows: &[(f64, Vec<f64>)]) -> Vec<&Vec<f64>> {
     let step = rows.len().div_ceil(10);
     rows.iter().step_by(step).chain(rows.last()).chain(rows.first()).map(|(_, q)| q).collect()
-}
-
-fn vector(v: Vector) -> Vec3 {
-    Vec3::new(v[0], v[1], v[2])
 }
 
 /// Whether the robots start outside of the last region; also where the cell is refused.

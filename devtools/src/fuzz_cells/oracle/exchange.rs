@@ -145,7 +145,8 @@ fn is_driven_in(motion: &OracleMotion<'_>, region: usize, visits: [(&ZoneVisit<'
     }
     let [first, last] = if visits[0].1 <= visits[1].1 { visits } else { [visits[1], visits[0]] };
     let drove = |(visit, entered): (&ZoneVisit<'_>, usize)| drove_in(motion, region, visit, entered);
-    let could_stop = motion.times[last.1] - motion.times[first.1] > COMMITTED_S;
+    // At the start nobody is on the way.
+    let could_stop = first.1 == 0 || motion.times[last.1] - motion.times[first.1] > COMMITTED_S;
     drove(last) && (could_stop || drove(first))
 }
 
@@ -175,8 +176,14 @@ fn deadlock(motion: &OracleMotion<'_>, in_zone: &[Vec<bool>], has_violation: boo
     if (0..in_zone.len()).any(|r| !motion.recording.robots[r].finished && !at_rest(r)) {
         return;
     }
-    // A region that moves on may free whoever waits, and come over whoever rests.
-    if motion.places.iter().any(|place| matches!(place.kind, RegionKind::Exchange { .. }) && !place.is_fixed()) {
+    // A region that moves on may free whoever waits, and come over whoever rests; with one that can move all are one crossing.
+    let moves_on = |region: &usize| {
+        let [then, now] = [ticks - 1 - held, ticks - 1].map(|k| motion.region_at(*region, k));
+        then.at.distance(now.at) + then.turn_to(&now).length() > NO_MOTION
+    };
+    let mut exchanges =
+        (0..motion.places.len()).filter(|r| matches!(motion.places[*r].kind, RegionKind::Exchange { .. }));
+    if exchanges.any(|region| moves_on(&region)) {
         return;
     }
     // A crossing of several regions is one: whoever is in one of their zones is in all.

@@ -51,7 +51,7 @@ fn leaves_its_program(cell: &Cell, robot: RobotId) -> bool {
     evades || replans(cell, robot)
 }
 
-/// Whether a robot plans around what sensors see.
+/// Whether a robot with a program plans around what sensors see.
 pub(super) fn replans(cell: &Cell, robot: RobotId) -> bool {
-    cell.sensors.iter().any(|sensor| sensor.robots.contains(&robot))
+    cell.programs[robot.0].is_some() && cell.sensors.iter().any(|sensor| sensor.robots.contains(&robot))
 }

@@ -15,7 +15,8 @@ use elbowroom_spatial::{FrameMotion, Pose};
 use elbowroom_status::StatusSample;
 
 use super::doubt::Doubt;
-use super::inbox::{Contents, Heard};
+use super::followed_robot::FollowedRobot;
+use super::inbox::Contents;
 use super::next_configuration::{NextConfiguration, NodeVersion};
 use super::node_monitor::NodeMonitor;
 use super::standstill::Standstill;
@@ -33,8 +34,8 @@ pub(super) struct GuardedRobot {
     now: Micros,
     /// Chains of the robots of the cell; only those that are followed are up to date.
     chains: Vec<ChainState>,
-    /// How old the joint values of the others are.
-    ages: Vec<Option<Micros>>,
+    /// The others; only the followed ones are up to date.
+    followed: Vec<FollowedRobot>,
     sources: Vec<SourceState>,
     /// What the monitor has attached.
     attached: Vec<AttachedVolume>,
@@ -70,7 +71,7 @@ impl GuardedRobot {
         attached.extend(mounted.map(|(i, v)| AttachedVolume { volume: VolumeId(i), in_link: v.in_link }));
         Self {
             chains: cell.robots.iter().map(|r| ChainState::new(&r.robot.chain)).collect(),
-            ages: vec![None; cell.robots.len()],
+            followed: vec![FollowedRobot::default(); cell.robots.len()],
             sources: Vec::with_capacity(setup.sources.len()),
             attached,
             names_attached: false,
@@ -102,10 +103,7 @@ impl GuardedRobot {
         self.now = inbox.own.now(now);
         for (robot, heard) in inbox.followed.iter_mut().enumerate() {
             let Some(heard) = heard else { continue };
-            if std::mem::take(&mut heard.is_new) {
-                follow(&self.cell, robot, heard, &mut self.chains[robot]);
-            }
-            self.ages[robot] = heard.stamp.map(|stamp| heard.now(now) - stamp);
+            self.followed[robot].take(heard, &self.cell.robots[robot].robot.chain, &mut self.chains[robot], now);
         }
         if std::mem::take(&mut inbox.has_grants) {
             self.monitor.receive(&inbox.grants);
@@ -311,13 +309,13 @@ impl GuardedRobot {
     }
 
     fn place_sources(&mut self, now: Micros) {
-        let Self { cell, setup, chains, ages, sources, .. } = self;
+        let Self { cell, setup, chains, followed, sources, .. } = self;
         let frames = Frames::new(cell);
         sources.clear();
         for follow in &setup.sources {
             // Stamps are on the clock of the own controller, as those of the joint values.
             let age = match follow {
-                Follow::Robot { robot, .. } => ages[robot.0],
+                Follow::Robot { robot, .. } => followed[robot.0].age,
                 _ => Some(Micros(0)),
             };
             sources.push(match age {
@@ -333,20 +331,4 @@ impl GuardedRobot {
 
 fn seconds(time: Micros) -> f64 {
     time.0 as f64 * 1e-6
-}
-
-/// Moves the chain of a followed robot to where it was heard to be.
-fn follow(cell: &Cell, robot: usize, heard: &Heard, chain: &mut ChainState) {
-    let state = &heard.state;
-    if state.q.len() != chain.q.len() {
-        return;
-    }
-    chain.q.copy_from_slice(&state.q);
-    if state.qd.len() == chain.qd.len() {
-        chain.qd.copy_from_slice(&state.qd);
-    } else {
-        chain.qd.fill(0.0);
-    }
-    chain.qdd.fill(0.0);
-    cell.robots[robot].robot.chain.forward_motion(chain);
 }

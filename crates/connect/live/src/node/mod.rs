@@ -5,6 +5,7 @@
 //! removed. So nothing that a network does delays a tick.
 
 mod doubt;
+mod followed_robot;
 mod guarded_robot;
 mod inbox;
 mod input_gate;
