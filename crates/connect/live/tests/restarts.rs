@@ -1,6 +1,7 @@
 //! Processes of a live cell that start again, or twice.
 
 use crate::common::control_setup::{ControlSetup, INTEGRATOR, PROGRAMMER, rails};
+use elbowroom_cell::seal::NetworkKey;
 use elbowroom_live::{EventHandler, Service, ServiceOptions, region_journal_of};
 use elbowroom_testkit::network::{eventually, free_address};
 use serde_json::json;
@@ -131,22 +132,25 @@ fn a_robot_that_never_spoke_is_cleared_at_the_first_request() {
 
 #[test]
 fn of_two_nodes_that_start_at_once_one_goes_on() {
-    let setup = setup();
-    let starts = std::sync::Barrier::new(2);
-    let start = || {
-        let connect = Some(setup.listen.clone());
-        let options = ServiceOptions { robots: vec!["left".into()], connect, ..ServiceOptions::default() };
-        starts.wait();
-        Service::start(setup.cell.clone(), &options)
-    };
-    let both =
-        std::thread::scope(|scope| [scope.spawn(start), scope.spawn(start)].map(|thread| thread.join().unwrap()));
-    let refused: Vec<String> =
-        both.iter().filter_map(|service| service.as_ref().err().map(ToString::to_string)).collect();
-    assert!(
-        matches!(&refused[..], [why] if why.contains("robot left: another process guards it already")),
-        "{refused:?}"
-    );
+    // Processes with a key prove their starts before they are heard.
+    for network_key in [None, Some(NetworkKey::generate().unwrap())] {
+        let options = ServiceOptions { arbiter: true, network_key: network_key.clone(), ..ServiceOptions::default() };
+        let setup = ControlSetup::new(CELL, false, options);
+        let starts = std::sync::Barrier::new(2);
+        let start = || {
+            let (connect, network_key) = (Some(setup.listen.clone()), network_key.clone());
+            let robots = vec!["left".into()];
+            let options = ServiceOptions { robots, connect, network_key, ..ServiceOptions::default() };
+            starts.wait();
+            Service::start(setup.cell.clone(), &options)
+        };
+        let both = std::thread::scope(|scope| [scope.spawn(start), scope.spawn(start)].map(|t| t.join().unwrap()));
+        let refused: Vec<String> = both.iter().filter_map(|s| s.as_ref().err().map(ToString::to_string)).collect();
+        assert!(
+            matches!(&refused[..], [why] if why.contains("left: another process guards it already")),
+            "{refused:?}"
+        );
+    }
 }
 
 #[test]

@@ -172,3 +172,14 @@ fn wrong_calls_say_what_to_write() {
     }
     assert_eq!(std::fs::read_to_string(&recorded).expect("a file"), "a former recording");
 }
+
+#[test]
+fn a_network_that_others_reach_without_a_key_is_warned_of() {
+    let says = |address: &str| {
+        let arguments = ["--simulate", "--for", "0.2", "--listen", address];
+        answer(live(&arguments).stderr(Stdio::piped()).output().unwrap()).expect(0).stderr
+    };
+    let warning = "warning: --listen 0.0.0.0:0: whoever reaches this network can send joint values";
+    assert!(says("0.0.0.0:0").contains(warning));
+    assert!(!says(&free_address()).contains("warning: --listen"));
+}
