@@ -107,7 +107,9 @@ impl Publishing {
         let publish = move || {
             while ends.recv_timeout(EVERY) == Err(RecvTimeoutError::Timeout) {
                 let claim = Claim { boot, is_taken: begin.elapsed() >= LISTENS }.encode();
-                publishers.iter_mut().for_each(|publisher| publisher.publish(&claim));
+                for publisher in &mut publishers {
+                    publisher.publish(&claim);
+                }
             }
         };
         // Without threads the nodes do not start either.

@@ -32,7 +32,7 @@ pub(crate) fn live(args: &LiveArgs) -> Result<ExitStatus, Failure> {
         let what = "--certificate: neither a page nor a control interface is served";
         return Err(Failure::Wrong(format!("{what}\n  write: --web ADDR or --control ADDR beside it")));
     }
-    open_addresses(&args.network).iter().for_each(|warning| note(warning));
+    open_addresses(&args.network).iter().for_each(note);
     let keys = Keys::new(&cell.name);
     let options = ServiceOptions {
         robots: args.robots.clone(),
