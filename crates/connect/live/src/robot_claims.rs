@@ -42,7 +42,7 @@ impl Claim {
     }
 }
 
-/// Claims robots until it ends.
+/// Claims robots until it is dropped.
 pub(crate) struct RobotClaims {
     /// Names of robots of which a node, or a claim that goes before, was heard.
     heard: Receiver<String>,
@@ -85,12 +85,12 @@ impl RobotClaims {
         Ok(claims)
     }
 
-    /// Ends before the nodes of this process say how they are.
+    /// Listens no longer: from here on the nodes of this process are heard. It claims on until they run.
     ///
     /// # Errors
     /// As [`Self::new`], for what was heard in the meantime.
-    pub(crate) fn end(self) -> Result<(), ServiceError> {
-        drop(self.listening);
+    pub(crate) fn settle(&mut self) -> Result<(), ServiceError> {
+        self.listening.clear();
         self.heard.try_recv().map_or(Ok(()), |name| Err(ServiceError::GuardedAlready { name }))
     }
 }

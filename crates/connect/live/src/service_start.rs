@@ -144,9 +144,13 @@ impl<'o> ServiceStart<'o> {
     }
 
     /// Starts the nodes, where nobody else has claimed their robots meanwhile.
-    pub(crate) fn nodes(&self, recorder: Option<&Recorder>, claims: RobotClaims) -> Result<Vec<Node>, ServiceError> {
+    pub(crate) fn nodes(
+        &self,
+        recorder: Option<&Recorder>,
+        mut claims: RobotClaims,
+    ) -> Result<Vec<Node>, ServiceError> {
         let setups = configure::setups(&self.cell)?.into_iter().enumerate();
-        claims.end()?;
+        claims.settle()?;
         let guarded = setups.filter(|(i, _)| self.robots.contains(&RobotId(*i)));
         guarded.map(|(i, setup)| self.node(RobotId(i), setup, recorder)).collect()
     }

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::common::two_rails;
 use elbowroom_cell::{Cell, configure};
 use elbowroom_interlock::wire::{self, Message};
 use elbowroom_interlock::{Boot, Micros};
@@ -11,24 +12,10 @@ use elbowroom_live::{ControllerClient, ControllerState, RegionTable, RegionTable
 use elbowroom_monitor::{Fault, Occupancy, OverrideReason, RobotSlot};
 
 const TICK: Micros = Micros(4_000);
-/// Two rails that end in a region which both enter: the left one reaches it at 1.65 m.
-const CELL: &str = r#"
-version = 1
-name = "rails"
-units = { length = "mm", angle = "deg" }
-tick_ms = 4
-[monitor]
+/// The rails end in a region which both enter: the left one reaches it at 1.65 m.
+const MORE: &str = r#"[monitor]
 stopping_distance = true
 direction_aware = true
-[robot.left]
-dh = [{ kind = "prismatic", min = 0, max = 2000, speed = 1000, acceleration = 4000 }]
-links = [{ sphere = { radius = 50 } }]
-stop_time = 0.25
-[robot.right]
-dh = [{ kind = "prismatic", min = 0, max = 2000, speed = 1000, acceleration = 4000 }]
-links = [{ sphere = { radius = 50 } }]
-stop_time = 0.25
-base = { at = [900, 0, 0] }
 [region.pallet]
 shape = "sphere"
 centre = [0, 0, 1900]
@@ -48,7 +35,7 @@ struct Rig {
 impl Rig {
     /// With a controller that says this number.
     fn new(configuration: impl FnOnce(u64) -> u64) -> Self {
-        let cell = Arc::new(Cell::parse("rails.toml", CELL).expect("a cell"));
+        let cell = Arc::new(two_rails(MORE));
         let checksum = configuration_number(&cell);
         let setup = configure::setups(&cell).expect("setups").remove(0);
         let monitor = NodeMonitor::new(&setup, RobotSlot(0), 1, checksum, Boot(1)).expect("a monitor");

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use elbowroom_cell::{Cell, configure};
+use crate::common::two_rails;
+use elbowroom_cell::configure;
 use elbowroom_interlock::{Boot, Micros};
-
 use elbowroom_live::node::{NodeMonitor, NodeTick};
 use elbowroom_live::{ControllerClient, ControllerState, configuration_number};
 use elbowroom_monitor::RobotSlot;
@@ -16,24 +16,11 @@ const TICKS: usize = 18;
 /// The speed of the carrier towards the other robot, m/s.
 const SPEED: f64 = 0.5;
 
-const CELL: &str = r#"
-version = 1
-units = { length = "mm", angle = "deg" }
-tick_ms = 4
-[monitor]
+/// A region on the right hand, where the left one moves.
+const MORE: &str = r#"[monitor]
 stopping_distance = true
 direction_aware = true
-recovery = 10
 stale_ms = 100
-[robot.left]
-dh = [{ kind = "prismatic", min = 0, max = 3000, speed = 1000, acceleration = 4000 }]
-links = [{ sphere = { radius = 50 } }]
-stop_time = 0.25
-[robot.right]
-dh = [{ kind = "prismatic", min = 0, max = 3000, speed = 1000, acceleration = 4000 }]
-links = [{ sphere = { radius = 50 } }]
-stop_time = 0.25
-base = { at = [900, 0, 0] }
 [region.hand]
 shape = "sphere"
 centre = [-900, 0, 0]
@@ -46,7 +33,7 @@ follow = { robot = "right", frame = "flange" }
 /// The override of the left robot, which stands at 0.5 m, while the region on the other one comes down and is `gap_m` away from it in
 /// truth. What is heard is `delay` ticks old, but at the beginning.
 fn override_at(gap_m: f64, delay: usize, with_velocities: bool, program: f64) -> f64 {
-    let cell = Arc::new(Cell::parse("rails.toml", CELL).expect("a cell"));
+    let cell = Arc::new(two_rails(MORE));
     let checksum = configuration_number(&cell);
     let setup = configure::setups(&cell).expect("setups").remove(0);
     let monitor = NodeMonitor::new(&setup, RobotSlot(0), 0, checksum, Boot(1)).expect("a monitor");

@@ -131,7 +131,7 @@ fn a_robot_that_never_spoke_is_cleared_at_the_first_request() {
 }
 
 #[test]
-fn of_two_nodes_that_start_at_once_one_goes_on() {
+fn two_nodes_that_start_at_once_never_both_go_on() {
     // Processes with a key prove their starts before they are heard.
     for network_key in [None, Some(NetworkKey::generate().unwrap())] {
         let options = ServiceOptions { arbiter: true, network_key: network_key.clone(), ..ServiceOptions::default() };

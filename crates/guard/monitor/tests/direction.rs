@@ -243,7 +243,7 @@ fn a_robot_in_a_region_that_moves_waits_until_it_stands() {
     }
 }
 
-/// What turns in itself stays where it is; a plane on a hand whose joint values tremble is no faster where the robot is.
+/// What turns in itself stays where it is; a plane on a hand whose joint values tremble does not move faster where the robot is.
 #[test]
 fn a_robot_leaves_a_region_that_turns_in_itself() {
     let turning = |about: Vec3, at: Vec3| SourceState {

@@ -7,7 +7,7 @@ use super::findings::{Finding, Findings};
 use super::guarded::Guarded;
 use super::motion::OracleMotion;
 use super::promises::Promises;
-use super::sweep::SweptPair;
+use super::sweep::{SweptPair, first_touch};
 
 /// A tick in which both of two robots are inside at some time is divided into so many parts.
 const PARTS: usize = 64;
@@ -152,11 +152,9 @@ fn is_driven_in(motion: &OracleMotion<'_>, region: usize, visits: [(&ZoneVisit<'
 
 /// Whether the robot that is inside since a tick came in by its own motion, as one that keeps away from a steady region does not.
 fn drove_in(motion: &OracleMotion<'_>, region: usize, visit: &ZoneVisit<'_>, entered: usize) -> bool {
-    let touch = |pair: &SweptPair<'_>| pair.first_touch(entered, entered + 1).map(|(k, u)| (k, u, pair.moves_at(k, u)));
-    let touches = visit.1.iter().filter(|pair| pair.is_there(entered)).filter_map(touch);
-    let first = touches.min_by(|a, b| (a.0, a.1).partial_cmp(&(b.0, b.1)).unwrap_or(std::cmp::Ordering::Equal));
     let keeps_away = motion.cell.laws.stopping_reaction_s.is_some();
-    first.is_some_and(|(k, u, moves)| keeps_away && moves && motion.is_foreseen(region, visit.0, (k, u)))
+    first_touch(&visit.1, entered, entered + 1)
+        .is_some_and(|(k, u, pair)| keeps_away && pair.moves_at(k, u) && motion.is_foreseen(region, visit.0, (k, u)))
 }
 
 /// Robots at rest at the end that have not finished, each in a zone of which another of them is, in a circle. A robot that

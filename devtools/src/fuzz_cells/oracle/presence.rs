@@ -6,13 +6,10 @@ use super::findings::{Finding, Findings, TOLERANCE_M};
 use super::guarded::Guarded;
 use super::motion::OracleMotion;
 use super::promises::Promises;
-use super::sweep::SweptPair;
+use super::sweep::{SweptPair, Touch, first_touch};
 
 /// After a region has touched a robot at rest, ticks until it is looked at again.
 const LATER_TICKS: usize = 8;
-
-/// A touch: the tick before it, and the share of the way to the next.
-type Touch<'p, 'a> = (usize, f64, &'p SweptPair<'a>);
 
 /// Looks for entries into forbidden regions: any where they are excluded; otherwise, with the stopping distance, of robots
 /// that were outside when the region became active and, where it was switched on or a tool was exchanged beside a robot that
@@ -57,7 +54,7 @@ impl<'a> Watch<'a> {
         self.motion.spans(self.region, self.robot).into_iter().find_map(|(from, to)| {
             let there = || self.pairs.iter().filter(|p| p.is_there(from));
             let inside = there().find(|p| p.is_inside(from)).map(|p| (from, 0.0, p));
-            inside.or_else(|| self.first_touch(from, to))
+            inside.or_else(|| first_touch(&self.pairs, from, to))
         })
     }
 
@@ -93,17 +90,11 @@ impl<'a> Watch<'a> {
         } else {
             rests.find(|k| self.is_outside(*k))
         }?;
-        self.first_touch(from, self.until_jump(from, end))
+        first_touch(&self.pairs, from, self.until_jump(from, end))
     }
 
     fn place_is_fixed(&self) -> bool {
         self.motion.places[self.region].is_fixed()
-    }
-
-    fn first_touch(&self, from: usize, to: usize) -> Option<Touch<'_, 'a>> {
-        let there = self.pairs.iter().filter(|p| p.is_there(from));
-        let touches = there.filter_map(|p| p.first_touch(from, to).map(|(k, u)| (k, u, p)));
-        touches.min_by(|a, b| (a.0, a.1).partial_cmp(&(b.0, b.1)).unwrap_or(std::cmp::Ordering::Equal))
     }
 
     fn is_outside(&self, k: usize) -> bool {

@@ -12,6 +12,16 @@ const STEP_M: f64 = 1e-7;
 /// Below this speed (m/s) a robot rests: overrides come to 0 without end.
 const REST_SPEED: f64 = 1e-4;
 
+/// A touch: the tick before it, the share of the way to the next, and who touches.
+pub type Touch<'p, 'a> = (usize, f64, &'p SweptPair<'a>);
+
+/// The first touch of the solids that are on their robot at tick `from`, from then on before tick `to`.
+pub fn first_touch<'p, 'a>(pairs: &'p [SweptPair<'a>], from: usize, to: usize) -> Option<Touch<'p, 'a>> {
+    let there = pairs.iter().filter(|p| p.is_there(from));
+    let touches = there.filter_map(|p| p.first_touch(from, to).map(|(k, u)| (k, u, p)));
+    touches.min_by(|a, b| (a.0, a.1).partial_cmp(&(b.0, b.1)).unwrap_or(std::cmp::Ordering::Equal))
+}
+
 /// A pair under watch.
 pub struct SweptPair<'a> {
     pub motion: &'a OracleMotion<'a>,

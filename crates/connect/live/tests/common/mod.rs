@@ -12,6 +12,28 @@ use elbowroom_live::{Clock, Node, configuration_number};
 use elbowroom_monitor::RobotSlot;
 use elbowroom_robot::RobotId;
 
+/// Carriages named `left` and `right`, 0.9 m apart, that move up from 0 to 2 m. `more` is added to the file.
+pub fn two_rails(more: &str) -> Cell {
+    let text = format!(
+        r#"
+version = 1
+name = "rails"
+units = {{ length = "mm", angle = "deg" }}
+tick_ms = 4
+[robot.left]
+dh = [{{ kind = "prismatic", min = 0, max = 2000, speed = 1000, acceleration = 4000 }}]
+links = [{{ sphere = {{ radius = 50 }} }}]
+stop_time = 0.25
+[robot.right]
+dh = [{{ kind = "prismatic", min = 0, max = 2000, speed = 1000, acceleration = 4000 }}]
+links = [{{ sphere = {{ radius = 50 }} }}]
+stop_time = 0.25
+base = {{ at = [900, 0, 0] }}
+{more}"#
+    );
+    Cell::parse("rails.toml", &text).unwrap_or_else(|e| panic!("{e}"))
+}
+
 /// A carriage named `rail`, which moves up from 0 to 2 m, and below the forbidden region `end` at 2.3 m a warning zone. `more` is
 /// added to the file.
 pub fn rail(warning_mm: u32, more: &str) -> Cell {
