@@ -35,8 +35,9 @@ use xtask::shell;
 const HELP: &str = "\
 cargo xtask COMMAND
 
-  test [--only STEP]… [--list] [--offline]
+  test [--only STEP]… [--list] [--offline] [--again]
         installs what the tests need and runs every check; --list names the steps.
+        Tests that passed do not run again before their program or a file that they may read changes; with --again they do.
         --offline installs nothing and says what it therefore leaves out
   quick [--since COMMIT]
         formats, layers, documents; lints and tests of the crates that differ from COMMIT (default HEAD) and of all that

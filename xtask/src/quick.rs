@@ -7,7 +7,7 @@ use xtask::shell;
 
 use crate::dependents::{self, Package, dependents};
 use crate::references::References;
-use crate::test_run::Program;
+use crate::test_run::{Choice, Program};
 use crate::workspace::WORKSPACE;
 use crate::{documents, layers, suite, test_run};
 
@@ -42,7 +42,8 @@ pub fn run(root: &Path, since: &str) -> Result<(), String> {
         Some(0) => f64::INFINITY,
         Some(_) => LONGEST_BEYOND_S,
     };
-    test_run::run(root, &WORKSPACE, &references.environment().collect::<Vec<_>>(), longest, || ())
+    let choice = Choice { longest: &longest, again: false };
+    test_run::run(root, &WORKSPACE, &references.environment().collect::<Vec<_>>(), &choice, || ())
 }
 
 /// Files that differ from a commit, and new ones.

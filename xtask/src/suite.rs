@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use xtask::{Failure, shell};
 
 use crate::references::References;
-use crate::test_run::locked;
+use crate::test_run::{Choice, locked};
 use crate::workspace::{WORKSPACE, program};
 use crate::{documents, layers, snippets, test_run};
 
@@ -25,6 +25,7 @@ struct Outcome {
 struct Context<'a> {
     root: &'a Path,
     offline: bool,
+    again: bool,
     /// What the tests compare with and open pages in, while it is being installed.
     references: Mutex<Option<JoinHandle<Result<References, String>>>>,
     /// Steps that run beside the tests, and how they ended.
@@ -79,6 +80,7 @@ pub struct Options {
     only: Vec<String>,
     list: bool,
     offline: bool,
+    again: bool,
 }
 
 impl Options {
@@ -90,6 +92,7 @@ impl Options {
             match *word {
                 "--list" => options.list = true,
                 "--offline" => options.offline = true,
+                "--again" => options.again = true,
                 "--only" => options.only.push(step_name(words.next().copied())?),
                 other => return Err(format!("`test` does not know `{other}`")),
             }
@@ -125,7 +128,7 @@ pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
         beside = chosen.split_off(tests + 1);
     }
     let (references, ended) = (Mutex::new(references), Mutex::default());
-    let context = Context { root, offline: options.offline, references, beside, ended };
+    let context = Context { root, offline: options.offline, again: options.again, references, beside, ended };
     let started = Instant::now();
     let mut outcomes: Vec<Outcome> = chosen.into_iter().map(|step| timed(step, &context)).collect();
     // Where the tests do not compile, nothing has run beside them.
@@ -181,7 +184,8 @@ fn tests(context: &Context) -> Result<(), String> {
     // What cannot be installed fails the step, but not before the tests have run.
     let environment = references.iter().flat_map(References::environment);
     let env: Vec<_> = network(context).into_iter().chain(environment).collect();
-    test_run::run(context.root, &WORKSPACE, &env, |_| f64::INFINITY, || run_beside(context))?;
+    let choice = Choice { longest: &|_| f64::INFINITY, again: context.again };
+    test_run::run(context.root, &WORKSPACE, &env, &choice, || run_beside(context))?;
     references.map(|_| ())
 }
 
@@ -232,7 +236,8 @@ mod tests {
     #[test]
     fn options_are_read_and_nonsense_is_refused() {
         let options = Options::parse(&["--only", "fmt", "--only", "docs", "--offline"]).unwrap();
-        assert_eq!(options, Options { only: vec!["fmt".into(), "docs".into()], list: false, offline: true });
+        assert_eq!(options, Options { only: vec!["fmt".into(), "docs".into()], offline: true, ..Options::default() });
+        assert!(Options::parse(&["--again"]).unwrap().again);
         assert!(Options::parse(&["--only"]).unwrap_err().contains("layers"));
         assert!(Options::parse(&["--only", "nothing"]).is_err());
         assert!(Options::parse(&["--fast"]).is_err());

@@ -5,6 +5,7 @@
 
 mod first_failure;
 mod lock;
+mod passes;
 mod process;
 mod processors;
 mod programs;
@@ -18,6 +19,7 @@ use std::time::{Duration, Instant};
 
 pub use first_failure::{FirstFailure, first_failure, passes};
 pub use lock::locked;
+use passes::Passes;
 use process::{Ended, Limit, run_unit};
 use processors::idle_share;
 pub use programs::{Program, compile};
@@ -30,6 +32,14 @@ const LIMIT: Limit = Limit { longest: Duration::from_mins(10), cancelled: None }
 /// Processors that rest before one unit more is run than there are processors.
 const RESTING: f64 = 0.5;
 
+/// Which units of tests run.
+pub struct Choice<'a> {
+    /// The seconds that units of a program may take, by the last run.
+    pub longest: &'a dyn Fn(&Program) -> f64,
+    /// Whether those run too that passed before and could not fail now.
+    pub again: bool,
+}
+
 /// How many tests passed, failed, and were left out.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
 pub struct Counts {
@@ -38,8 +48,7 @@ pub struct Counts {
     ignored: usize,
 }
 
-/// Compiles the tests that cargo selects by `args`, and runs those that took no
-/// longer than `longest`, the seconds that a program's units may take. One of the workers does what is to be done `beside` them
+/// Compiles the tests that cargo selects by `args`, and runs the chosen ones. One of the workers does what is to be done `beside` them
 /// first, once all is compiled.
 ///
 /// # Errors
@@ -48,48 +57,56 @@ pub fn run(
     root: &Path,
     args: &[&str],
     env: &[(&str, &str)],
-    longest: impl Fn(&Program) -> f64,
+    choice: &Choice,
     beside: impl FnOnce() + Send,
 ) -> Result<(), String> {
     let started = Instant::now();
     let programs = compile(root, args, env)?;
     println!("{} programs, compiled in {:.1} s", programs.len(), started.elapsed().as_secs_f64());
-    let times = Times::read(root);
+    let (times, passes) = (Times::read(root), Passes::read(root, &programs, env));
     let all = units::units(&programs)?;
     let total = all.len();
-    let is_chosen = |unit: &Unit| times.expected(&unit.name) <= longest(&programs[unit.program]);
-    let chosen: Vec<Unit> = all.into_iter().filter(is_chosen).collect();
-    if chosen.len() < total {
-        println!("{} of {total} units of tests are chosen; `cargo xtask test` runs all", chosen.len());
+    let is_chosen = |unit: &Unit| times.expected(&unit.name) <= (choice.longest)(&programs[unit.program]);
+    let (mut chosen, mut unchanged) = (Vec::new(), 0);
+    for unit in all.into_iter().filter(is_chosen) {
+        match passes.of(&unit).filter(|_| !choice.again) {
+            Some(tests) => unchanged += tests,
+            None => chosen.push(unit),
+        }
     }
-    let (counts, failed) = run_units(&programs, chosen, times, env, beside);
-    println!("{} passed, {} failed, {} skipped", counts.passed, counts.failed, counts.ignored);
-    if counts == Counts::default() {
+    if chosen.len() < total {
+        println!("{} of {total} units of tests run; `cargo xtask test --again` runs all", chosen.len());
+    }
+    let progress = Progress { open: longest_first(chosen, &times), times, passes, ..Progress::default() };
+    let Progress { counts, failed, .. } = run_units(&programs, progress, env, beside);
+    let known = if unchanged > 0 { format!(" ({unchanged} before, unchanged since)") } else { String::new() };
+    println!("{} passed{known}, {} failed, {} skipped", counts.passed + unchanged, counts.failed, counts.ignored);
+    if counts == Counts::default() && unchanged == 0 {
         return Err("no test ran".into());
     }
     if failed.is_empty() { Ok(()) } else { Err(format!("failed: {}", failed.join(", "))) }
 }
 
 /// What the workers share.
+#[derive(Default)]
 struct Progress {
     open: VecDeque<Unit>,
     counts: Counts,
     failed: Vec<String>,
     times: Times,
+    passes: Passes,
 }
 
-fn run_units(
-    programs: &[Program],
-    mut open: Vec<Unit>,
-    times: Times,
-    env: &[(&str, &str)],
-    beside: impl FnOnce() + Send,
-) -> (Counts, Vec<String>) {
-    open.sort_by(|a, b| {
+fn longest_first(mut units: Vec<Unit>, times: &Times) -> VecDeque<Unit> {
+    units.sort_by(|a, b| {
         let longer = times.expected(&b.name).total_cmp(&times.expected(&a.name));
         longer.then_with(|| b.tests.len().cmp(&a.tests.len())).then_with(|| a.name.cmp(&b.name))
     });
-    let progress = Mutex::new(Progress { open: open.into(), counts: Counts::default(), failed: Vec::new(), times });
+    units.into()
+}
+
+fn run_units(programs: &[Program], progress: Progress, env: &[(&str, &str)], beside: impl FnOnce() + Send) -> Progress {
+    let progress = Mutex::new(progress);
     let workers = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     let run_one = |unit: &Unit| {
         let started = Instant::now();
@@ -126,7 +143,8 @@ fn run_units(
     });
     let progress = progress.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
     progress.times.write();
-    (progress.counts, progress.failed)
+    progress.passes.write();
+    progress
 }
 
 fn report(progress: &mut Progress, unit: &Unit, ended: &Ended, time: Duration) {
@@ -147,14 +165,15 @@ fn report(progress: &mut Progress, unit: &Unit, ended: &Ended, time: Duration) {
         unit.tests.len().max(1),
         unit.name
     );
+    // A test without its data or its reference passes, and says so.
+    let left_out: Vec<&str> = ended.output.lines().filter(|line| line.contains("skipped:")).map(str::trim).collect();
+    let all_ran = ok && counts.ignored == 0 && left_out.is_empty();
+    progress.passes.keep(unit, all_ran.then_some(counts.passed));
     if ok {
         progress.times.keep(&unit.name, time);
-        // A test without its data or its reference passes, and says so.
-        ended
-            .output
-            .lines()
-            .filter(|line| line.contains("skipped:"))
-            .for_each(|line| println!("        {}", line.trim()));
+        for line in left_out {
+            println!("        {line}");
+        }
     } else {
         println!("{}", ended.output);
         progress.failed.push(unit.name.clone());
@@ -184,8 +203,7 @@ mod tests {
 
     #[test]
     fn a_program_that_dies_fails_with_all_its_tests() {
-        let mut progress =
-            Progress { open: VecDeque::new(), counts: Counts::default(), failed: Vec::new(), times: Times::default() };
+        let mut progress = Progress::default();
         let unit = Unit { name: "a/main".into(), program: 0, tests: vec!["x".into(), "y".into()] };
         report(&mut progress, &unit, &Ended { ok: false, is_late: false, output: String::new() }, Duration::ZERO);
         assert_eq!((progress.counts.failed, progress.failed), (2, vec!["a/main".to_owned()]));
