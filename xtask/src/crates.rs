@@ -8,7 +8,7 @@ use toml::Table;
 pub const GROUPS: [(&str, &[&str]); 7] = [
     ("base", &["testkit", "spatial", "proximity", "kinematics", "robot"]),
     ("world", &["scene", "formats", "validity", "inspect"]),
-    ("guard", &["monitor", "interlock"]),
+    ("guard", &["interlock", "monitor"]),
     ("motion", &["cspace", "planner", "avoidance", "shared_control", "cooperation", "vision", "perception"]),
     ("cell", &["cell", "analysis", "sim", "report"]),
     ("connect", &["status", "ros2", "rosbag", "view", "live"]),

@@ -11,7 +11,7 @@ use elbowroom_interlock::{Arbiter, ArbiterSettings, Boot, Micros, RobotSettings,
 use elbowroom_live::messages::{AttachedVolume, MAX_JOINT_STATE_BYTES, OVERRIDE_ANSWER_BYTES};
 use elbowroom_live::node::{NodeMonitor, NodeTick, RegionBuilder};
 use elbowroom_live::{CellVersions, ControllerClient, ControllerState, RegionTable, configuration_number};
-use elbowroom_monitor::{EventKind, Fault, OverrideReason, Presence, RobotSlot, TickReport, VolumeId};
+use elbowroom_monitor::{EventKind, Fault, OverrideReason, Presence, RobotSlot, SlotId, TickReport, VolumeId};
 use elbowroom_robot::RobotId;
 use elbowroom_status::StatusSample;
 use elbowroom_testkit::allocation::{AllocationCounter, COUNTING_ALLOCATOR, CountingAllocator};
@@ -112,7 +112,7 @@ impl Setup {
         let cell = Arc::new(Cell::parse("swing.toml", CELL).expect("a cell"));
         let checksum = configuration_number(&cell);
         let setup = configure::setups(&cell).expect("setups").remove(0);
-        let settings = ArbiterSettings::new(vec![RobotSettings::of(&setup.configuration)], 1);
+        let settings = ArbiterSettings::new(vec![RobotSettings::new("arm", [SlotId(0)])], 1);
         let monitor = NodeMonitor::new(&setup, RobotSlot(0), 1, checksum, Boot(1)).expect("a monitor");
         let edited = EditedRegions::parse("swing.toml", CELL).expect("a file");
         let versions = Arc::new(CellVersions::new(&cell, Some(edited), |cell| cell));

@@ -1,13 +1,13 @@
-//! Interlocks between robot controllers on a network: regions that at most one robot is in at any time, whatever happens
-//! to processes and messages. `docs/interlocks.md` has the protocol, its invariants and a table of faults.
+//! Interlocks between robots: exchange regions that at most one of them is in at any time, whatever happens to processes and
+//! messages. Exchange regions that are granted together are a **slot** ([`SlotId`]).
 //!
-//! Each robot has a [`Guard`], which reports where the robot is and learns which slots it holds. One [`Arbiter`] grants slots. Both
-//! are state machines without input or output: time and messages go in, messages come out, so that the same code is
-//! model-checked, simulated and run. [`wire`] has the bytes of the messages.
+//! Controllers that share memory use a [`ZoneArbiter`], which each of them calls in its tick. Between processes each robot has a
+//! [`Guard`], which reports where the robot is and learns which slots it holds, and one [`Arbiter`] grants slots. Both are state
+//! machines without input or output: time and messages go in, messages come out, so that the same code is model-checked, simulated
+//! and run. [`wire`] has the bytes of the messages; `docs/interlocks.md` has the protocol, its invariants and a table of faults.
 //!
 //! ```
-//! use elbowroom_interlock::{Arbiter, ArbiterSettings, Boot, Guard, Micros, RobotSettings};
-//! use elbowroom_monitor::{Occupancy, RobotSlot, SlotId};
+//! use elbowroom_interlock::{Arbiter, ArbiterSettings, Boot, Guard, Micros, Occupancy, RobotSettings, RobotSlot, SlotId};
 //!
 //! let robot = |name: &str| RobotSettings::new(name, [SlotId(0)]);
 //! let settings = ArbiterSettings::new(vec![robot("left"), robot("right")], 1);
@@ -38,28 +38,27 @@
 //! times), no robot ever becomes committed to the active regions of a slot while another one is committed to them or
 //! inside.
 
-mod arbiter;
-mod clock;
-mod event;
-pub mod frame;
-mod guard;
-mod guarded_monitor;
-mod message;
-#[cfg(test)]
-mod model;
-mod settings;
-mod slot_record;
-mod time;
-mod token;
-mod wait_for;
-pub mod wire;
+mod access_class;
+mod connection;
+mod exchange_state;
+mod network;
+mod occupancy;
+mod robot_set;
+mod shared;
+mod slot;
+mod slot_grants;
+mod wait_for_graph;
 
-pub use arbiter::{Arbiter, Outputs};
-pub use clock::Clock;
-pub use event::ArbiterEvent;
-pub use guard::{Guard, Ignored};
-pub use guarded_monitor::{GuardedMonitor, NotObeyed};
-pub use message::{GrantsMessage, SlotAnswer, SlotReport, StateMessage};
-pub use settings::{ArbiterSettings, RobotSettings};
-pub use time::Micros;
-pub use token::{Boot, Token};
+pub use access_class::AccessClass;
+pub use connection::Interlock;
+pub use exchange_state::ExchangeState;
+pub use network::{
+    Arbiter, ArbiterEvent, ArbiterSettings, Boot, Clock, GrantsMessage, Guard, Ignored, Micros, Outputs, RobotSettings,
+    SlotAnswer, SlotReport, StateMessage, Token, frame, wire,
+};
+pub use occupancy::{Grant, Occupancy};
+pub use robot_set::RobotSet;
+pub use shared::ZoneArbiter;
+pub use slot::{RobotSlot, SlotId};
+pub use slot_grants::SlotGrants;
+pub use wait_for_graph::WaitForGraph;

@@ -2,7 +2,5 @@
 
 mod common;
 mod fault_schedules;
-mod guarded_monitor;
-mod rail;
 mod single_messages;
 mod wire;

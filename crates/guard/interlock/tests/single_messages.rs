@@ -1,9 +1,9 @@
 //! One guard and one arbiter, message by message: what each of them must not believe.
 
 use elbowroom_interlock::{
-    Arbiter, ArbiterEvent, ArbiterSettings, Boot, Guard, Ignored, Micros, RobotSettings, StateMessage,
+    Arbiter, ArbiterEvent, ArbiterSettings, Boot, Guard, Ignored, Micros, Occupancy, RobotSettings, RobotSlot, SlotId,
+    StateMessage,
 };
-use elbowroom_monitor::{Occupancy, RobotSlot, SlotId};
 
 const SLOT: SlotId = SlotId(0);
 const CHECKSUM: u64 = 7;

@@ -2,8 +2,7 @@
 
 use elbowroom_interlock::frame::MessageError;
 use elbowroom_interlock::wire::{Message, decode, encode};
-use elbowroom_interlock::{Boot, GrantsMessage, SlotAnswer, SlotReport, StateMessage, Token};
-use elbowroom_monitor::{Occupancy, RobotSlot};
+use elbowroom_interlock::{Boot, GrantsMessage, Occupancy, RobotSlot, SlotAnswer, SlotReport, StateMessage, Token};
 use proptest::prelude::*;
 
 fn token() -> impl Strategy<Value = Option<Token>> {

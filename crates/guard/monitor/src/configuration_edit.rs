@@ -50,7 +50,7 @@ impl Configuration {
             ConfigurationEdit::Add(region) => {
                 require(
                     who,
-                    AccessClass::needed_for(region.life),
+                    region.life.needed_class(),
                     format!("adding {} region `{}`", region.life.name(), region.name),
                 )?;
                 if changed.region(&region.name).is_some() {
@@ -66,13 +66,13 @@ impl Configuration {
                 } else {
                     format!("making {} region `{}` {}", from.name(), region.name, to.name())
                 };
-                require(who, AccessClass::needed_for(from).max(AccessClass::needed_for(to)), what)?;
+                require(who, from.needed_class().max(to.needed_class()), what)?;
                 changed.regions[at] = *region;
             }
             ConfigurationEdit::Remove(name) => {
                 let at = changed.index_of(&name)?;
                 let life = changed.regions[at].life;
-                require(who, AccessClass::needed_for(life), format!("removing {} region `{name}`", life.name()))?;
+                require(who, life.needed_class(), format!("removing {} region `{name}`", life.name()))?;
                 changed.regions.remove(at);
             }
             ConfigurationEdit::Laws(laws) => {

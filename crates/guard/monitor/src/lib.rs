@@ -45,7 +45,6 @@
 //! **Invariant.** Whatever a snapshot holds, a tick never allocates, locks or panics; input that is stale, out of
 //! order, not finite or implausible is always override 0, with an [`OverrideReason`].
 
-mod access;
 mod attached_volumes;
 mod braking_check;
 mod broad_phase;
@@ -56,7 +55,7 @@ mod configuration_edit;
 mod continued_monitor;
 mod distance_to_guarded;
 mod event;
-mod interlock;
+mod guarded_monitor;
 pub mod laws;
 mod monitor;
 mod override_history;
@@ -68,6 +67,7 @@ mod region;
 mod region_approach;
 mod region_clearance;
 mod region_distance_query;
+mod region_groups;
 mod region_sweep;
 mod report;
 mod rounded_box;
@@ -75,6 +75,7 @@ mod snapshot;
 mod source_check;
 mod source_limits;
 mod stopping;
+mod switch_error;
 mod taught_points;
 pub mod teach;
 mod tick_context;
@@ -86,22 +87,25 @@ mod watchdog;
 mod zone_client;
 mod zone_state;
 
-pub use access::{AccessClass, SwitchError};
 pub use attached_volumes::AttachError;
 pub use configuration::{ConfigError, Configuration, ConfigurationParts};
 pub use configuration_edit::{ConfigurationEdit, EditError};
 pub use continued_monitor::same_regions;
+pub use elbowroom_interlock::{
+    AccessClass, ExchangeState, Grant, Interlock, Occupancy, RobotSet, RobotSlot, SlotGrants, SlotId, WaitForGraph,
+    ZoneArbiter,
+};
 pub use elbowroom_proximity::VolumeModel;
 pub use event::{Event, EventKind};
-pub use interlock::{
-    ExchangeState, Grant, Interlock, Occupancy, RobotSlot, SlotGrants, SlotId, ZoneArbiter, group_overlapping,
-};
+pub use guarded_monitor::{GuardedMonitor, NotObeyed};
 pub use laws::{Laws, StoppingSettings};
 pub use monitor::Monitor;
 pub use region::{Guards, Life, Region, RegionId, RegionKind, SourceId, VolumeId};
 pub use region_distance_query::RegionDistanceQuery;
+pub use region_groups::group_overlapping;
 pub use region_sweep::{ClosestApproach, RegionSweep};
 pub use report::{Fault, NamedReason, OverrideReason, TickReport, VirtualTcp};
 pub use snapshot::{Snapshot, SourceState};
 pub use source_limits::{SourceLimits, SourceSpec};
+pub use switch_error::SwitchError;
 pub use volume::{Part, Presence, Volume, arm_volumes};

@@ -164,7 +164,7 @@ impl Monitor {
         if r.life == Life::Permanent {
             return Err(SwitchError::Permanent(r.name.clone()));
         }
-        let needed = AccessClass::needed_for(r.life);
+        let needed = r.life.needed_class();
         if who < needed {
             return Err(SwitchError::Class { region: r.name.clone(), who, needed });
         }

@@ -4,7 +4,7 @@ use elbowroom_proximity::{Cuboid, Cylinder, HalfSpace, Shape, Sphere};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 use crate::taught_points::{TeachError, plane_rotation};
-use crate::{SlotId, SourceState};
+use crate::{AccessClass, SlotId, SourceState};
 
 /// Index of a region in its [`Configuration`](crate::Configuration).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -61,6 +61,14 @@ impl Life {
         match self {
             Self::Permanent => "permanent",
             Self::Temporary => "temporary",
+        }
+    }
+
+    /// The lowest class that may edit or switch a region of this life.
+    pub fn needed_class(self) -> AccessClass {
+        match self {
+            Self::Permanent => AccessClass::Integrator,
+            Self::Temporary => AccessClass::Programmer,
         }
     }
 }

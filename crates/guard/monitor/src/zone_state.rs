@@ -1,7 +1,7 @@
 //! State of a robot with respect to a region, with hysteresis, and the digital outputs derived from it.
 
+use crate::Occupancy;
 use crate::event::EventLog;
-use crate::interlock::Occupancy;
 use crate::{EventKind, Region, RegionId};
 
 /// Whether a guarded volume is inside a region or its warning zone.

@@ -174,7 +174,7 @@ pub(super) fn least_class(before: &SealedState, after: &SealedState, changes: &[
             return AccessClass::Integrator;
         }
         let lives = [before.life(&change.item), after.life(&change.item)];
-        lives.into_iter().flatten().map(AccessClass::needed_for).max().unwrap_or(AccessClass::Integrator)
+        lives.into_iter().flatten().map(Life::needed_class).max().unwrap_or(AccessClass::Integrator)
     };
     changes.iter().map(of).max().unwrap_or(AccessClass::Programmer)
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use elbowroom_cell::seal::{AccessToken, Change, ControlLog, Controlled};
 use elbowroom_cell::{RegionEdit, table_changes};
 use elbowroom_formats::FormatError;
-use elbowroom_monitor::{AccessClass, Life, RegionKind};
+use elbowroom_monitor::{Life, RegionKind};
 use elbowroom_status::SPARE_REGIONS;
 
 use super::refusal::Refusal;
@@ -58,7 +58,7 @@ impl RequestHandler {
     /// Adds a region.
     pub(crate) fn add(&self, who: &AccessToken, at: &str, request: &Add) -> Result<Done, Refusal> {
         let name = request.region.as_str();
-        self.require(who, AccessClass::needed_for(Life::Temporary), &format!("add region `{name}`"))?;
+        self.require(who, Life::Temporary.needed_class(), &format!("add region `{name}`"))?;
         if name.is_empty()
             || name.len() > MAX_NAME
             || name.chars().any(char::is_control)
@@ -78,7 +78,7 @@ impl RequestHandler {
         let table = edited.table_of(name, &request.toml).map_err(wrong)?;
         let after = self.with(&before, name, Some(&table))?;
         let (_, added) = find(&after.cell, name)?;
-        self.require(who, AccessClass::needed_for(added.region.life), &format!("add permanent region `{name}`"))?;
+        self.require(who, added.region.life.needed_class(), &format!("add permanent region `{name}`"))?;
         let is_on = added.region.life == Life::Permanent || request.active.unwrap_or(true);
         let (action, note, tables) = ("add", note(request.note.as_deref())?, [None, Some(table)]);
         self.carry_out(
@@ -106,7 +106,7 @@ impl RequestHandler {
     fn changeable(&self, who: &AccessToken, present: &PresentRegions, name: &str, what: &str) -> Result<bool, Refusal> {
         let (index, region) = find(&present.cell, name)?;
         let life = region.region.life;
-        self.require(who, AccessClass::needed_for(life), &format!("{what} {} region `{name}`", life.name()))?;
+        self.require(who, life.needed_class(), &format!("{what} {} region `{name}`", life.name()))?;
         let in_the_file = "elbowroom region change, or an editor (docs/roles.md), and start the processes again";
         if matches!(region.region.kind, RegionKind::Exchange { .. }) {
             let error = format!(

@@ -160,7 +160,7 @@ impl RequestHandler {
         let mut log = self.log();
         let cell = keeper.present().cell;
         let (index, region) = find(&cell, &request.region)?;
-        self.require(who, AccessClass::needed_for(Life::Temporary), &format!("switch region `{}`", request.region))?;
+        self.require(who, Life::Temporary.needed_class(), &format!("switch region `{}`", request.region))?;
         if region.region.life == Life::Permanent {
             let error = format!("region `{}` is permanent: it is always on", request.region);
             return Err(

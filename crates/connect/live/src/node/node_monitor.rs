@@ -1,9 +1,10 @@
 //! The monitor of a node, with or without exchange regions.
 
 use elbowroom_cell::configure::MonitorSetup;
-use elbowroom_interlock::{Boot, Guard, GuardedMonitor, Micros};
+use elbowroom_interlock::{Boot, Guard, Micros};
 use elbowroom_monitor::{
-    ConfigError, Interlock, Monitor, Occupancy, RegionId, RegionKind, RobotSlot, SlotId, Snapshot, TickReport,
+    ConfigError, GuardedMonitor, Interlock, Monitor, Occupancy, RegionId, RegionKind, RobotSlot, SlotId, Snapshot,
+    TickReport,
 };
 
 /// The monitor of a robot, with a guard where it has exchange regions.

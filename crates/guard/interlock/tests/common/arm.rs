@@ -1,6 +1,6 @@
 //! An arm with brakes on a path through the regions.
 
-use elbowroom_monitor::{Occupancy, SlotId};
+use elbowroom_interlock::{Occupancy, SlotId};
 use elbowroom_testkit::random::{split_mix, unit};
 
 /// Number of regions on a path, and of slots of the cell.

@@ -1,7 +1,6 @@
 //! Deadlocks that could be resolved: robots wait for each other in a circle, and one of them can stop outside of what it holds.
 
-use elbowroom_interlock::Arbiter;
-use elbowroom_monitor::{RobotSlot, SlotId};
+use elbowroom_interlock::{Arbiter, RobotSlot, SlotId};
 
 use super::arm::{Arm, REGIONS};
 

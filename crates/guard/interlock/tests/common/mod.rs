@@ -7,9 +7,9 @@ mod deadlocks;
 mod process;
 
 use elbowroom_interlock::{
-    Arbiter, ArbiterEvent, ArbiterSettings, Boot, GrantsMessage, Guard, Micros, Outputs, RobotSettings, StateMessage,
+    Arbiter, ArbiterEvent, ArbiterSettings, Boot, GrantsMessage, Guard, Micros, Occupancy, Outputs, RobotSettings,
+    RobotSlot, SlotId, StateMessage,
 };
-use elbowroom_monitor::{Occupancy, RobotSlot, SlotId};
 use elbowroom_testkit::random::{split_mix, unit};
 
 use arm::{Arm, Progress, REGIONS, STEP_MS, TICK_MS};

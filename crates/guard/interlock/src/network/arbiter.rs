@@ -1,0 +1,459 @@
+//! The arbiter: grants slots to robots.
+
+use super::slot_record::{Holder, SlotRecord, wait_for_graph};
+use crate::{
+    ArbiterEvent, ArbiterSettings, Boot, GrantsMessage, Micros, Occupancy, RobotSet, RobotSlot, SlotAnswer, SlotId,
+    SlotReport, StateMessage, Token,
+};
+
+/// What a step of the arbiter gives.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Outputs {
+    /// Messages to guards.
+    pub replies: Vec<GrantsMessage>,
+    /// What has changed.
+    pub events: Vec<ArbiterEvent>,
+}
+
+/// The arbiter of a cell. It never takes a slot back: its holder gives it up, or the integrator clears a silent one.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub struct Arbiter {
+    settings: ArbiterSettings,
+    boot: Boot,
+    started: Option<Micros>,
+    serial: u64,
+    tokens: u64,
+    robots: Vec<RobotRecord>,
+    slots: Vec<SlotRecord>,
+    /// The deadlocks that were reported and are still there.
+    deadlocks: Vec<Vec<RobotSlot>>,
+}
+
+/// What the arbiter knows of a robot.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+struct RobotRecord {
+    boot: Boot,
+    sequence: u64,
+    heard: Option<Micros>,
+    /// The last message was of this configuration, by a guard that obeys this start of the arbiter.
+    is_trusted: bool,
+    /// Declared to be outside by the integrator, and silent since.
+    is_cleared: bool,
+    reports: Vec<SlotReport>,
+}
+
+impl RobotRecord {
+    fn new(slots: usize) -> Self {
+        Self {
+            boot: Boot::NONE,
+            sequence: 0,
+            heard: None,
+            is_trusted: false,
+            is_cleared: false,
+            reports: vec![SlotReport::UNKNOWN; slots],
+        }
+    }
+
+    /// The occupancy of a slot, as far as it can be trusted.
+    fn occupancy(&self, slot: SlotId) -> Occupancy {
+        if self.is_trusted { self.reports[slot.0].occupancy } else { Occupancy::Unknown }
+    }
+}
+
+impl Arbiter {
+    /// An arbiter that knows nothing of its robots yet. `boot` should be higher than that of former arbiters: the time of day
+    /// will do, as one that learns of a higher one before it is in service takes the next.
+    pub fn new(settings: ArbiterSettings, boot: Boot) -> Self {
+        let robots = vec![RobotRecord::new(settings.slots); settings.robots.len()];
+        let slots = vec![SlotRecord::default(); settings.slots];
+        Self { settings, boot, started: None, serial: 0, tokens: 0, robots, slots, deadlocks: Vec::new() }
+    }
+
+    /// Start of this arbiter.
+    pub fn boot(&self) -> Boot {
+        self.boot
+    }
+
+    /// The robot that holds a slot.
+    pub fn holder(&self, slot: SlotId) -> Option<RobotSlot> {
+        self.slots[slot.0].holder.map(|holder| holder.robot)
+    }
+
+    /// The robots that wait for a slot, in the order of their requests.
+    pub fn queue(&self, slot: SlotId) -> &[RobotSlot] {
+        &self.slots[slot.0].queue
+    }
+
+    /// True where a robot's last message is not older than the silence of the settings, and can be trusted.
+    pub fn is_known(&self, robot: RobotSlot, now: Micros) -> bool {
+        let record = &self.robots[robot.0];
+        record.is_trusted && record.heard.is_some_and(|heard| now - heard <= self.settings.silence)
+    }
+
+    /// Takes a message of a guard. Messages that are late, twice there, or of no robot of the cell change nothing.
+    pub fn receive(&mut self, message: &StateMessage, now: Micros) -> Outputs {
+        let mut outputs = Outputs::default();
+        self.started.get_or_insert(now);
+        let robot = message.robot;
+        if robot.0 >= self.robots.len() || message.slots.len() != self.slots.len() {
+            return outputs;
+        }
+        if message.arbiter > self.boot {
+            self.take_next_boot(message.arbiter, now, &mut outputs);
+        }
+        if message.boot < self.robots[robot.0].boot {
+            outputs.replies.push(self.answer(robot));
+            return outputs;
+        }
+        if message.boot > self.robots[robot.0].boot {
+            if self.may_obey_a_grant(robot, now) {
+                return outputs;
+            }
+            self.start_guard(robot, message.boot, &mut outputs);
+        }
+        if message.sequence <= self.robots[robot.0].sequence {
+            return outputs;
+        }
+        self.record(message, now, &mut outputs);
+        if self.robots[robot.0].is_trusted {
+            self.settle(robot, &mut outputs);
+        }
+        let granted = self.grant_free_slots(now, &mut outputs);
+        self.resolve_cycles(now, &mut outputs);
+        outputs.replies.push(self.answer(robot));
+        for other in granted.into_iter().filter(|other| *other != robot) {
+            let answer = self.answer(other);
+            outputs.replies.push(answer);
+        }
+        outputs
+    }
+
+    /// Whether a robot has been silent for long enough to be cleared: until its last grant has expired and it has come to rest.
+    ///
+    /// # Errors
+    /// How long it must be silent still.
+    pub fn may_clear(&mut self, robot: RobotSlot, now: Micros) -> Result<(), Micros> {
+        let settings = &self.settings.robots[robot.0];
+        let needed = (self.settings.validity + settings.stop_time).with_drift();
+        let since = self.robots[robot.0].heard.or(self.started);
+        let silent = since.map_or(Micros(0), |since| now - since);
+        self.started.get_or_insert(now);
+        if silent < needed { Err(needed - silent) } else { Ok(()) }
+    }
+
+    /// Declares that a silent robot is at rest outside of all regions, as seen by the integrator. Its slots are free, and others are
+    /// granted slots without it until it speaks again.
+    ///
+    /// # Errors
+    /// As [`Self::may_clear`].
+    pub fn clear(&mut self, robot: RobotSlot, now: Micros) -> Result<Outputs, Micros> {
+        self.may_clear(robot, now)?;
+        Ok(self.clear_at_once(robot, now))
+    }
+
+    /// [`Arbiter::clear`] without the test, which is what makes it safe.
+    pub(crate) fn clear_at_once(&mut self, robot: RobotSlot, now: Micros) -> Outputs {
+        let mut outputs = Outputs::default();
+        let record = &mut self.robots[robot.0];
+        (record.is_cleared, record.is_trusted) = (true, false);
+        record.reports.fill(SlotReport::UNKNOWN);
+        outputs.events.push(ArbiterEvent::Cleared(robot));
+        for s in 0..self.slots.len() {
+            self.slots[s].queue.retain(|other| *other != robot);
+            self.slots[s].intruders.retain(|other| *other != robot);
+            if self.slots[s].is_held_by(robot) {
+                self.free(SlotId(s));
+            }
+        }
+        for other in self.grant_free_slots(now, &mut outputs) {
+            let answer = self.answer(other);
+            outputs.replies.push(answer);
+        }
+        outputs
+    }
+
+    /// A guard obeys a later start of an arbiter: this one begins again with the next number, and knows nothing.
+    fn take_next_boot(&mut self, other: Boot, now: Micros, outputs: &mut Outputs) {
+        *self = Self { started: Some(now), ..Self::new(self.settings.clone(), other.next()) };
+        outputs.events.push(ArbiterEvent::StartedAgain(self.boot));
+    }
+
+    /// Whether the guard that was heard last may still obey a grant. Another guard of its robot is not heard until then: of two
+    /// that run at once the first one counts, and what the second one reports is never older than the last use of a grant.
+    fn may_obey_a_grant(&self, robot: RobotSlot, now: Micros) -> bool {
+        let longest = self.settings.validity.with_drift();
+        self.robots[robot.0].heard.is_some_and(|heard| now - heard <= longest)
+    }
+
+    /// A guard has started again: what it held is neither confirmed nor given to others until it reports where its robot is.
+    fn start_guard(&mut self, robot: RobotSlot, boot: Boot, outputs: &mut Outputs) {
+        let is_first = self.robots[robot.0].boot == Boot::NONE;
+        self.robots[robot.0] = RobotRecord { boot, ..RobotRecord::new(self.slots.len()) };
+        for slot in &mut self.slots {
+            slot.queue.retain(|other| *other != robot);
+            if let Some(holder) = slot.holder.as_mut().filter(|holder| holder.robot == robot) {
+                holder.token = None;
+            }
+        }
+        if !is_first {
+            outputs.events.push(ArbiterEvent::GuardStarted(robot, boot));
+        }
+    }
+
+    fn record(&mut self, message: &StateMessage, now: Micros, outputs: &mut Outputs) {
+        let same_configuration = message.checksum == self.settings.checksum;
+        let record = &mut self.robots[message.robot.0];
+        if !same_configuration && (record.is_trusted || record.heard.is_none()) {
+            outputs.events.push(ArbiterEvent::OtherConfiguration(message.robot));
+        }
+        record.sequence = message.sequence;
+        record.heard = Some(now);
+        record.is_cleared = false;
+        record.is_trusted = same_configuration && message.arbiter == self.boot;
+        record.reports.clone_from(&message.slots);
+    }
+
+    /// Applies a robot's report: what it gave up is free, what it was found in is its own.
+    fn settle(&mut self, robot: RobotSlot, outputs: &mut Outputs) {
+        for slot in self.settings.robots[robot.0].slots.clone() {
+            let report = self.robots[robot.0].reports[slot.0];
+            if self.slots[slot.0].is_held_by(robot) && self.gives_up(slot, robot, report) {
+                self.free(slot);
+                outputs.events.push(ArbiterEvent::Released(slot, robot));
+            }
+            let waits = report.wants && !self.slots[slot.0].is_held_by(robot);
+            let queue = &mut self.slots[slot.0].queue;
+            match (waits, queue.contains(&robot)) {
+                (true, false) => queue.push(robot),
+                (false, true) => queue.retain(|other| *other != robot),
+                _ => {}
+            }
+            match report.occupancy {
+                Occupancy::Committed | Occupancy::Inside => self.found_inside(slot, robot, outputs),
+                Occupancy::Outside | Occupancy::Warning => self.slots[slot.0].intruders.retain(|r| *r != robot),
+                Occupancy::Unknown => {}
+            }
+        }
+    }
+
+    /// Whether the holder's report gives its slot up.
+    fn gives_up(&self, slot: SlotId, robot: RobotSlot, report: SlotReport) -> bool {
+        match self.slots[slot.0].token_of(robot) {
+            Some(token) => report.released >= Some(token),
+            // Of a guard that started again: the grant was for the former one.
+            None => matches!(report.occupancy, Occupancy::Outside | Occupancy::Warning),
+        }
+    }
+
+    /// A robot that may be inside holds the slot, if no other one does.
+    fn found_inside(&mut self, slot: SlotId, robot: RobotSlot, outputs: &mut Outputs) {
+        match self.slots[slot.0].holder {
+            None => {
+                self.hold(slot, robot);
+                outputs.events.push(ArbiterEvent::FoundInside(slot, robot));
+            }
+            Some(holder) if holder.robot == robot => {
+                if holder.token.is_none() {
+                    self.hold(slot, robot);
+                }
+            }
+            Some(holder) if !self.slots[slot.0].intruders.contains(&robot) => {
+                self.slots[slot.0].intruders.push(robot);
+                outputs.events.push(ArbiterEvent::Conflict(slot, holder.robot, robot));
+            }
+            Some(_) => {}
+        }
+    }
+
+    fn free(&mut self, slot: SlotId) {
+        let slot = &mut self.slots[slot.0];
+        (slot.holder, slot.release_requested) = (None, false);
+    }
+
+    fn hold(&mut self, slot: SlotId, robot: RobotSlot) {
+        self.tokens += 1;
+        let token = Some(Token { boot: self.boot, number: self.tokens });
+        let record = &mut self.slots[slot.0];
+        record.holder = Some(Holder { robot, token });
+        record.queue.retain(|other| *other != robot);
+        record.intruders.retain(|other| *other != robot);
+    }
+
+    /// Grants each free slot to the first robot that waits for it, if all others are known to be outside. Returns the robots.
+    fn grant_free_slots(&mut self, now: Micros, outputs: &mut Outputs) -> Vec<RobotSlot> {
+        let mut granted = Vec::new();
+        for slot in (0..self.slots.len()).map(SlotId) {
+            if self.slots[slot.0].holder.is_some() || self.slots[slot.0].queue.is_empty() {
+                continue;
+            }
+            let Some(robot) = self.first_waiting(slot).filter(|robot| self.may_grant(slot, *robot, now)) else {
+                continue;
+            };
+            self.hold(slot, robot);
+            outputs.events.push(ArbiterEvent::Granted(slot, robot));
+            granted.push(robot);
+        }
+        granted
+    }
+
+    /// The robot with the highest priority, of equals the one that has waited longest. One that could not use the slot before
+    /// another one of the queue has had it comes after that: otherwise what was given up to resolve a cycle would close it
+    /// again.
+    fn first_waiting(&self, slot: SlotId) -> Option<RobotSlot> {
+        let slot = &self.slots[slot.0];
+        let graph = wait_for_graph(&self.slots);
+        let able = slot.queue.iter().enumerate().filter(|(_, robot)| !slot.would_close_cycle(&graph, **robot));
+        let rank =
+            |(place, robot): &(usize, &RobotSlot)| (std::cmp::Reverse(self.settings.robots[robot.0].priority), *place);
+        able.min_by_key(rank).map(|(_, robot)| *robot)
+    }
+
+    /// Whether the slot may be granted: the robot itself is known, and every other one that can ever be in it is known to be
+    /// outside without a grant, or was cleared.
+    fn may_grant(&self, slot: SlotId, robot: RobotSlot, now: Micros) -> bool {
+        let others = (0..self.robots.len()).map(RobotSlot).filter(|other| *other != robot);
+        let mut expected = others.filter(|other| self.settings.robots[other.0].slots.contains(&slot));
+        self.is_known(robot, now)
+            && expected.all(|other| {
+                let record = &self.robots[other.0];
+                let is_outside = matches!(record.occupancy(slot), Occupancy::Outside | Occupancy::Warning);
+                record.is_cleared || self.is_known(other, now) && is_outside && record.reports[slot.0].token.is_none()
+            })
+    }
+
+    /// Asks one robot of each cycle to give up what another one of it waits for, or reports the deadlock.
+    fn resolve_cycles(&mut self, now: Micros, outputs: &mut Outputs) {
+        for slot in &mut self.slots {
+            slot.release_requested = false;
+        }
+        let mut deadlocks = Vec::new();
+        for cycle in wait_for_graph(&self.slots).cycles() {
+            match self.least_important(cycle, now) {
+                Some(slot) => self.slots[slot].release_requested = true,
+                None => deadlocks.push(cycle.iter().collect()),
+            }
+        }
+        let unreported = deadlocks.iter().filter(|cycle| !self.deadlocks.contains(cycle));
+        outputs.events.extend(unreported.cloned().map(ArbiterEvent::Deadlock));
+        self.deadlocks = deadlocks;
+    }
+
+    /// Of the slots that robots of a cycle hold and others of it wait for, and that their holders can give up, that of the robot
+    /// with the lowest priority, of equals the one that was granted last.
+    fn least_important(&self, cycle: RobotSet, now: Micros) -> Option<usize> {
+        let holder = |slot: usize| self.slots[slot].holder.map(|h| h.robot).filter(|robot| cycle.contains(*robot));
+        let is_waited_for = |slot: usize| self.slots[slot].queue.iter().any(|robot| cycle.contains(*robot));
+        let held = (0..self.slots.len()).filter_map(|slot| Some((slot, holder(slot)?)));
+        let able = held.filter(|(slot, robot)| is_waited_for(*slot) && self.can_give_up(SlotId(*slot), *robot, now));
+        let rank = |(slot, robot): &(usize, RobotSlot)| {
+            (self.settings.robots[robot.0].priority, std::cmp::Reverse(self.slots[*slot].token_of(*robot)))
+        };
+        able.min_by_key(rank).map(|(slot, _)| slot)
+    }
+
+    fn can_give_up(&self, slot: SlotId, robot: RobotSlot, now: Micros) -> bool {
+        let occupancy = self.robots[robot.0].occupancy(slot);
+        self.is_known(robot, now) && matches!(occupancy, Occupancy::Outside | Occupancy::Warning)
+    }
+
+    /// The message to a guard.
+    fn answer(&mut self, robot: RobotSlot) -> GrantsMessage {
+        self.serial += 1;
+        let record = &self.robots[robot.0];
+        let answer = |slot: usize| {
+            let is_held = record.is_trusted && self.slots[slot].is_held_by(robot);
+            SlotAnswer {
+                granted: self.slots[slot].token_of(robot).filter(|_| is_held),
+                release_requested: is_held && self.slots[slot].release_requested,
+                halt: self.must_halt(SlotId(slot), robot),
+            }
+        };
+        GrantsMessage {
+            checksum: self.settings.checksum,
+            arbiter: self.boot,
+            serial: self.serial,
+            robot,
+            robot_boot: record.boot,
+            echo: record.sequence,
+            slots: (0..self.slots.len()).map(answer).collect(),
+        }
+    }
+
+    /// Whether two robots claim the slot and this is one of them.
+    fn must_halt(&self, slot: SlotId, robot: RobotSlot) -> bool {
+        let slot = &self.slots[slot.0];
+        !slot.intruders.is_empty() && (slot.is_held_by(robot) || slot.intruders.contains(&robot))
+    }
+}
+
+/// What the model check needs to see and to rewrite.
+#[cfg(test)]
+impl Arbiter {
+    pub(crate) fn each_time(&mut self, f: &mut impl FnMut(&mut Micros)) {
+        self.started.iter_mut().for_each(&mut *f);
+        self.robots.iter_mut().filter_map(|robot| robot.heard.as_mut()).for_each(f);
+    }
+
+    /// Forgets what no later step reads: of reports all but whether the robot occupies the slot and obeys a grant, of messages
+    /// that cannot be trusted everything, and which deadlock was reported.
+    pub(crate) fn forget_unread(&mut self) {
+        let any = Some(Token { boot: Boot(1), number: 1 });
+        self.deadlocks.clear();
+        if self.robots.iter().all(|robot| robot.heard.is_some()) {
+            self.started = None;
+        }
+        for robot in &mut self.robots {
+            let is_trusted = robot.is_trusted;
+            for report in &mut robot.reports {
+                let occupancy = super::model::renaming::what_counts(report.occupancy);
+                let seen = SlotReport { occupancy, token: report.token.and(any), ..SlotReport::UNKNOWN };
+                *report = if is_trusted { seen } else { SlotReport::UNKNOWN };
+            }
+        }
+    }
+
+    pub(crate) fn holder_token_mut(&mut self, slot: usize) -> Option<(RobotSlot, &mut Token)> {
+        let holder = self.slots[slot].holder.as_mut()?;
+        Some((holder.robot, holder.token.as_mut()?))
+    }
+
+    pub(crate) fn sequence_mut(&mut self, robot: usize) -> &mut u64 {
+        &mut self.robots[robot].sequence
+    }
+
+    /// Sets the counters of messages and grants, above all that were given.
+    pub(crate) fn set_counters(&mut self, serial: u64, tokens: u64) {
+        (self.serial, self.tokens) = (serial, tokens);
+    }
+
+    /// Whether a message would change nothing, now and as long as this arbiter runs.
+    pub(crate) fn is_past(&self, message: &StateMessage) -> bool {
+        let record = &self.robots[message.robot.0];
+        message.arbiter <= self.boot && message.boot == record.boot && message.sequence <= record.sequence
+    }
+
+    /// Gives robot `r` the index `to[r]`.
+    pub(crate) fn reindex(&mut self, to: &[usize]) {
+        super::model::renaming::permute(&mut self.robots, to);
+        let map = |robot: &mut RobotSlot| *robot = RobotSlot(to[robot.0]);
+        for slot in &mut self.slots {
+            slot.holder.iter_mut().for_each(|holder| map(&mut holder.robot));
+            slot.queue.iter_mut().chain(&mut slot.intruders).for_each(map);
+        }
+    }
+
+    /// Everything about a robot, without its index.
+    pub(crate) fn hash_robot(&self, robot: RobotSlot, hasher: &mut impl std::hash::Hasher) {
+        use std::hash::Hash;
+        self.robots[robot.0].hash(hasher);
+        for slot in &self.slots {
+            let place = |robots: &[RobotSlot]| robots.iter().position(|other| *other == robot);
+            (slot.is_held_by(robot), place(&slot.queue), place(&slot.intruders)).hash(hasher);
+        }
+    }
+
+    /// A fault for the model check to find.
+    pub(crate) fn take_back(&mut self, slot: SlotId) {
+        self.free(slot);
+    }
+}

@@ -1,0 +1,325 @@
+//! The robot's side of the protocol.
+
+use thiserror::Error;
+
+use crate::{Boot, GrantsMessage, Micros, Occupancy, RobotSlot, SlotAnswer, SlotId, SlotReport, StateMessage, Token};
+
+/// Why a message of an arbiter was not obeyed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+pub enum Ignored {
+    /// It is for another robot, or another cell.
+    #[error("the message is for another robot or another cell")]
+    OtherRobot,
+    /// The arbiter has another cell file.
+    #[error("the arbiter has another configuration: load the same cell file on both sides")]
+    OtherConfiguration,
+    /// It answers another start of this robot's guard.
+    #[error("the message answers another start of this guard")]
+    OtherStart,
+    /// A later message was obeyed before.
+    #[error("a later message was obeyed before")]
+    Late,
+}
+
+/// The times at which this many messages were sent are remembered; an answer to an older one confirms nothing.
+const REMEMBERED: usize = if cfg!(test) { 8 } else { 64 };
+
+/// The guard of one robot: reports where it is, and knows which slots it may enter.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub struct Guard {
+    robot: RobotSlot,
+    checksum: u64,
+    validity: Micros,
+    boot: Boot,
+    sequence: u64,
+    /// Times at which the last messages were sent, at the index of their sequence number.
+    sent: Vec<Micros>,
+    arbiter: Boot,
+    serial: u64,
+    slots: Vec<GuardedSlot>,
+}
+
+/// One slot, as the guard knows it.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+struct GuardedSlot {
+    occupancy: Occupancy,
+    /// The robot needs the slot where it is near. Near a region that is switched off it does not.
+    is_needed: bool,
+    token: Option<Token>,
+    released: Option<Token>,
+    /// When the message was sent whose answer last confirmed the token.
+    confirmed: Option<Micros>,
+    orders: Orders,
+    /// The grant is not obeyed any more. It is given up once the robot is then observed to be able to stop outside.
+    is_closing: bool,
+}
+
+/// What the arbiter asked for last.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+struct Orders {
+    release_requested: bool,
+    halt: bool,
+}
+
+impl GuardedSlot {
+    const NEW: Self = Self {
+        occupancy: Occupancy::Unknown,
+        is_needed: true,
+        token: None,
+        released: None,
+        confirmed: None,
+        orders: Orders { release_requested: false, halt: false },
+        is_closing: false,
+    };
+
+    /// Forgets a grant that the arbiter does not know. The occupancy counts as unknown until it is observed again, as the
+    /// robot may have entered since it was last observed.
+    fn forget(&mut self) {
+        *self = Self { released: self.released, ..Self::NEW };
+    }
+}
+
+impl Guard {
+    /// The guard of a robot in a cell with this number of slots and this configuration. `boot` must be higher than that of the
+    /// robot's former guards; the time of day will do, as a guard that learns of a higher one takes the next.
+    pub fn new(robot: RobotSlot, slots: usize, checksum: u64, boot: Boot) -> Self {
+        Self {
+            robot,
+            checksum,
+            validity: Micros(50_000),
+            boot,
+            sequence: 0,
+            sent: vec![Micros(0); REMEMBERED],
+            arbiter: Boot::NONE,
+            serial: 0,
+            slots: vec![GuardedSlot::NEW; slots],
+        }
+    }
+
+    /// With another time for which a grant may be obeyed after its request was sent; the default is 50 ms. It must not be
+    /// longer than that of the arbiter.
+    #[must_use]
+    pub fn validity(self, validity: Micros) -> Self {
+        Self { validity, ..self }
+    }
+
+    /// The robot.
+    pub fn robot(&self) -> RobotSlot {
+        self.robot
+    }
+
+    /// Start of this guard.
+    pub fn boot(&self) -> Boot {
+        self.boot
+    }
+
+    /// The start of the arbiter that is obeyed.
+    pub fn arbiter(&self) -> Boot {
+        self.arbiter
+    }
+
+    /// The grant of a slot, usable or not.
+    pub fn token(&self, slot: SlotId) -> Option<Token> {
+        self.slots[slot.0].token
+    }
+
+    /// True where the robot must stop because another one was found inside.
+    pub fn must_halt(&self, slot: SlotId) -> bool {
+        self.slots[slot.0].orders.halt
+    }
+
+    /// Takes what the monitor found at a slot in a tick, after it has decided with [`Guard::may_enter`].
+    pub fn observe(&mut self, slot: SlotId, occupancy: Occupancy) {
+        let slot = &mut self.slots[slot.0];
+        slot.occupancy = occupancy;
+        if slot.is_closing && occupancy != Occupancy::Unknown {
+            if !occupancy.occupies() {
+                slot.released = slot.token.or(slot.released);
+                slot.token = None;
+                slot.confirmed = None;
+            }
+            slot.is_closing = false;
+        }
+    }
+
+    /// Takes whether the robot needs a slot in whose warning zone it is; it does until this says otherwise. It does not where
+    /// all its regions there are switched off. A slot that it has it keeps until it is outside.
+    pub fn need(&mut self, slot: SlotId, is_needed: bool) {
+        self.slots[slot.0].is_needed = is_needed;
+    }
+
+    /// Takes that it is not known any more where the robot is: nobody else is granted a slot that it can be in.
+    pub fn lose_sight(&mut self) {
+        self.slots.iter_mut().for_each(|slot| slot.occupancy = Occupancy::Unknown);
+    }
+
+    /// Number of slots of the cell.
+    pub fn slots(&self) -> usize {
+        self.slots.len()
+    }
+
+    /// True where the robot may enter the regions of a slot now: it has a grant that is confirmed and not older than its validity.
+    pub fn may_enter(&self, slot: SlotId, now: Micros) -> bool {
+        let slot = &self.slots[slot.0];
+        let is_fresh = slot.confirmed.is_some_and(|sent| sent <= now && now - sent <= self.validity);
+        slot.token.is_some() && is_fresh && !slot.is_closing && !slot.orders.halt
+    }
+
+    /// The next message to the arbiter.
+    pub fn state(&mut self, now: Micros) -> StateMessage {
+        let mut message = StateMessage::with_slots(self.slots.len());
+        self.state_into(now, &mut message);
+        message
+    }
+
+    /// Writes the next message to the arbiter. Does not allocate where `message` has as many slots as the cell.
+    pub fn state_into(&mut self, now: Micros, message: &mut StateMessage) {
+        for slot in &mut self.slots {
+            let is_asked = slot.orders.release_requested || slot.orders.halt;
+            let may_release = slot.occupancy == Occupancy::Outside || slot.occupancy == Occupancy::Warning && is_asked;
+            slot.is_closing |= slot.token.is_some() && may_release;
+        }
+        self.sequence += 1;
+        self.sent[self.sequence as usize % REMEMBERED] = now;
+        (message.robot, message.boot, message.sequence) = (self.robot, self.boot, self.sequence);
+        (message.checksum, message.arbiter) = (self.checksum, self.arbiter);
+        message.slots.clear();
+        message.slots.extend(self.slots.iter().map(GuardedSlot::report));
+    }
+
+    /// Takes a message of an arbiter.
+    ///
+    /// # Errors
+    /// Why it is not obeyed.
+    pub fn receive(&mut self, message: &GrantsMessage) -> Result<(), Ignored> {
+        if message.robot != self.robot || message.slots.len() != self.slots.len() {
+            return Err(Ignored::OtherRobot);
+        }
+        if message.checksum != self.checksum {
+            return Err(Ignored::OtherConfiguration);
+        }
+        if message.robot_boot != self.boot {
+            self.take_next_boot(message.robot_boot);
+            return Err(Ignored::OtherStart);
+        }
+        if message.arbiter < self.arbiter || message.arbiter == self.arbiter && message.serial <= self.serial {
+            return Err(Ignored::Late);
+        }
+        if message.arbiter > self.arbiter {
+            self.arbiter = message.arbiter;
+            self.slots.iter_mut().for_each(GuardedSlot::forget);
+        }
+        self.serial = message.serial;
+        let sent = self.sent_at(message.echo);
+        for (slot, answer) in self.slots.iter_mut().zip(&message.slots) {
+            slot.take(*answer, sent);
+        }
+        Ok(())
+    }
+
+    /// The arbiter knows a later start of this robot's guard: this one begins again with the next number.
+    fn take_next_boot(&mut self, known: Boot) {
+        if known > self.boot {
+            self.boot = known.next();
+            self.sequence = 0;
+            self.slots.fill(GuardedSlot::NEW);
+        }
+    }
+
+    /// When the message with this sequence number was sent.
+    pub(crate) fn sent_at(&self, sequence: u64) -> Option<Micros> {
+        let age = self.sequence.checked_sub(sequence)?;
+        (sequence > 0 && age < REMEMBERED as u64).then(|| self.sent[sequence as usize % REMEMBERED])
+    }
+}
+
+impl GuardedSlot {
+    fn report(&self) -> SlotReport {
+        SlotReport {
+            occupancy: self.occupancy,
+            wants: self.occupancy > Occupancy::Outside && self.is_needed,
+            token: self.token,
+            released: self.released,
+        }
+    }
+
+    fn take(&mut self, answer: SlotAnswer, sent: Option<Micros>) {
+        self.orders = Orders { release_requested: answer.release_requested, halt: answer.halt };
+        match answer.granted {
+            Some(token) if self.released >= Some(token) => {}
+            Some(token) => {
+                if self.token != Some(token) {
+                    (self.token, self.confirmed, self.is_closing) = (Some(token), None, false);
+                }
+                self.confirmed = self.confirmed.max(sent);
+            }
+            None if self.token.is_some() => self.forget(),
+            None => {}
+        }
+    }
+}
+
+/// What the model check needs to see and to rewrite.
+#[cfg(test)]
+impl Guard {
+    pub(crate) fn each_time(&mut self, f: &mut impl FnMut(&mut Micros)) {
+        self.sent.iter_mut().for_each(&mut *f);
+        self.slots.iter_mut().filter_map(|slot| slot.confirmed.as_mut()).for_each(f);
+    }
+
+    /// The grant that is obeyed and the last one given up, per slot.
+    pub(crate) fn each_token(&mut self, f: &mut impl FnMut(usize, &mut Option<Token>)) {
+        for (s, slot) in self.slots.iter_mut().enumerate() {
+            f(s, &mut slot.token);
+            f(s, &mut slot.released);
+        }
+    }
+
+    pub(crate) fn released_mut(&mut self, slot: usize) -> &mut Option<Token> {
+        &mut self.slots[slot].released
+    }
+
+    pub(crate) fn serial_mut(&mut self) -> &mut u64 {
+        &mut self.serial
+    }
+
+    pub(crate) fn set_robot(&mut self, robot: RobotSlot) {
+        self.robot = robot;
+    }
+
+    /// Whether an answer to this message may still confirm a grant.
+    pub(crate) fn confirms(&self, sequence: u64, now: Micros) -> bool {
+        self.sent_at(sequence).is_some_and(|sent| now - sent <= self.validity)
+    }
+
+    /// A confirmation that is too old to be obeyed is none.
+    pub(crate) fn forget_expired(&mut self, now: Micros) {
+        let validity = self.validity;
+        for slot in &mut self.slots {
+            slot.confirmed = slot.confirmed.filter(|sent| now - *sent <= validity);
+        }
+    }
+
+    /// Whether a message would change nothing, now and ever after.
+    pub(crate) fn is_past(&self, message: &GrantsMessage) -> bool {
+        let late = message.arbiter < self.arbiter || message.arbiter == self.arbiter && message.serial <= self.serial;
+        message.robot_boot < self.boot || message.robot_boot == self.boot && late
+    }
+
+    /// Sets when the messages up to the last one were sent.
+    pub(crate) fn set_sent(&mut self, times: &[Option<Micros>]) {
+        self.sent.fill(Micros(0));
+        for (sequence, time) in times.iter().enumerate() {
+            self.sent[sequence] = time.unwrap_or(Micros(0));
+        }
+        self.sequence = times.len() as u64 - 1;
+    }
+
+    /// A fault for the model check to find: a grant is given up as soon as that is decided.
+    pub(crate) fn give_up_at_once(&mut self) {
+        for slot in self.slots.iter_mut().filter(|slot| slot.is_closing) {
+            slot.released = slot.token.or(slot.released);
+            (slot.token, slot.confirmed, slot.is_closing) = (None, None, false);
+        }
+    }
+}

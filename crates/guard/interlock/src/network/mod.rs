@@ -1,0 +1,24 @@
+//! Robots whose controllers are different processes: an arbiter, a guard per robot, and the messages between them.
+
+mod arbiter;
+mod clock;
+mod event;
+pub mod frame;
+mod guard;
+mod message;
+#[cfg(test)]
+mod model;
+mod settings;
+mod slot_record;
+mod time;
+mod token;
+pub mod wire;
+
+pub use arbiter::{Arbiter, Outputs};
+pub use clock::Clock;
+pub use event::ArbiterEvent;
+pub use guard::{Guard, Ignored};
+pub use message::{GrantsMessage, SlotAnswer, SlotReport, StateMessage};
+pub use settings::{ArbiterSettings, RobotSettings};
+pub use time::Micros;
+pub use token::{Boot, Token};

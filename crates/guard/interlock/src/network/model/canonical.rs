@@ -1,0 +1,178 @@
+//! States that behave the same from now on are one state: of numbers only their order counts, of times only whether they are
+//! past a limit, and of robots with the same program not which is which.
+
+use std::collections::BTreeSet;
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+use super::renaming::what_counts;
+use super::state::{CellState, NOW};
+use crate::{Boot, Micros, RobotSlot, SlotReport, Token};
+
+/// Counters of the arbiter are above all ranks.
+const SERIAL: u64 = 100;
+const TOKENS: u64 = 100;
+/// Numbers of the grants that are held are above all others.
+const HELD: u64 = 50;
+
+/// Lets time pass: everything that happened is older.
+pub(super) fn pass(state: &mut CellState, step: Micros) {
+    each_time(state, |time| *time = *time - step);
+}
+
+/// Rewrites a state to the one that stands for all that behave the same. Older than `oldest` is no different from that;
+/// robots of the same class have the same program.
+pub(super) fn canonicalize(state: &mut CellState, oldest: Micros, classes: &[usize]) {
+    each_time(state, |time| *time = (*time).max(NOW - oldest));
+    state.arbiter.forget_unread();
+    for robot in 0..state.guards.len() {
+        state.guards[robot].forget_expired(NOW);
+        drop_past_messages(state, robot);
+        forget_past_releases(state, robot);
+        rank_sequences(state, robot);
+        rank_serials(state, robot);
+    }
+    let mut held: Vec<Token> = (0..state.slots()).filter_map(|slot| held_token(state, slot)).collect();
+    held.sort_unstable();
+    for slot in 0..state.slots() {
+        rank_tokens(state, slot, &held);
+    }
+    state.arbiter.set_counters(SERIAL, TOKENS);
+    sort_robots(state, classes);
+}
+
+/// Robots of the same class are in an order that their states give them. Those with equal keys do not differ.
+fn sort_robots(state: &mut CellState, classes: &[usize]) {
+    state.set_indices(|_| 0);
+    let key = |r: usize| {
+        let mut hasher = DefaultHasher::new();
+        state.robots[r].hash(&mut hasher);
+        state.guards[r].hash(&mut hasher);
+        state.to_arbiter[r].hash(&mut hasher);
+        state.to_guard[r].hash(&mut hasher);
+        state.arbiter.hash_robot(RobotSlot(r), &mut hasher);
+        (classes[r], hasher.finish())
+    };
+    let keys: Vec<_> = (0..classes.len()).map(key).collect();
+    let mut order: Vec<usize> = (0..classes.len()).collect();
+    // Robots keep the indices that robots of their class have.
+    order.sort_by_key(|r| keys[*r]);
+    let mut indices: Vec<usize> = (0..classes.len()).collect();
+    indices.sort_by_key(|r| classes[*r]);
+    let mut to = vec![0; classes.len()];
+    for (robot, index) in order.into_iter().zip(indices) {
+        to[robot] = index;
+    }
+    state.reindex(&to);
+    state.set_indices(|r| r);
+}
+
+fn each_time(state: &mut CellState, mut f: impl FnMut(&mut Micros)) {
+    state.arbiter.each_time(&mut f);
+    state.guards.iter_mut().for_each(|guard| guard.each_time(&mut f));
+}
+
+/// Messages that change nothing are as good as lost, except for an arbiter that starts again. Of the others only what is read.
+fn drop_past_messages(state: &mut CellState, robot: usize) {
+    let CellState { arbiter, guards, to_arbiter, to_guard, faults, .. } = state;
+    let any = Some(Token { boot: Boot(1), number: 1 });
+    let guard = &guards[robot];
+    to_guard[robot].retain(|m| !guard.is_past(m));
+    for message in to_guard[robot].iter_mut().filter(|m| !guard.confirms(m.echo, NOW)) {
+        message.echo = 0;
+    }
+    if faults.arbiter_crashes == 0 {
+        to_arbiter[robot].retain(|m| !arbiter.is_past(m));
+    }
+    // Only an arbiter that starts again would take it, and not trust it; nor does this one trust what was for a former one.
+    for message in to_arbiter[robot].iter_mut().filter(|m| arbiter.is_past(m) || m.arbiter < arbiter.boot()) {
+        message.slots.fill(SlotReport::UNKNOWN);
+        message.arbiter = Boot::NONE;
+    }
+    for report in to_arbiter[robot].iter_mut().flat_map(|m| &mut m.slots) {
+        report.occupancy = what_counts(report.occupancy);
+        report.token = report.token.and(any);
+    }
+}
+
+/// A grant that was given up counts only as long as the robot may be granted it again, by a message that is late, or holds it
+/// still for the arbiter.
+fn forget_past_releases(state: &mut CellState, robot: usize) {
+    for slot in 0..state.slots() {
+        let held =
+            state.arbiter.holder_token_mut(slot).filter(|(holder, _)| holder.0 == robot).map(|(_, token)| *token);
+        let granted = state.to_guard[robot].iter().filter_map(|m| m.slots[slot].granted);
+        let least = granted.chain(held).min();
+        let forget = |released: &mut Option<Token>, least: Option<Token>| {
+            *released = released.filter(|r| least.is_some_and(|least| *r >= least));
+        };
+        forget(state.guards[robot].released_mut(slot), least);
+        state.to_arbiter[robot].iter_mut().for_each(|m| forget(&mut m.slots[slot].released, held));
+    }
+}
+
+/// Of the sequence numbers of messages under way to the arbiter and the last that it has heard only the order counts, of those
+/// that are answered only when they were sent: the guard has sent them all, and sends higher ones from now on.
+fn rank_sequences(state: &mut CellState, robot: usize) {
+    let CellState { arbiter, guards, to_arbiter, to_guard, .. } = state;
+    let guard = &mut guards[robot];
+    let heard = arbiter.sequence_mut(robot);
+    let mut seen: Vec<u64> = to_arbiter[robot].iter().map(|m| m.sequence).chain([0, *heard]).collect();
+    seen.sort_unstable();
+    seen.dedup();
+    let mut sent: Vec<Option<Micros>> = seen.iter().map(|sequence| guard.sent_at(*sequence)).collect();
+    let rank = |n: &mut u64| *n = seen.binary_search(n).unwrap_or(0) as u64;
+    rank(heard);
+    to_arbiter[robot].iter_mut().for_each(|m| rank(&mut m.sequence));
+    let mut times: Vec<Micros> = to_guard[robot].iter().filter_map(|m| guard.sent_at(m.echo)).collect();
+    times.sort_unstable();
+    times.dedup();
+    for message in &mut to_guard[robot] {
+        let time = guard.sent_at(message.echo).and_then(|sent| times.iter().position(|time| *time == sent));
+        message.echo = time.map_or(0, |i| (seen.len() + i) as u64);
+    }
+    sent.extend(times.into_iter().map(Some));
+    guard.set_sent(&sent);
+}
+
+/// Serial numbers are compared by each guard within one start of the arbiter.
+fn rank_serials(state: &mut CellState, robot: usize) {
+    let (guard, messages) = (&mut state.guards[robot], &mut state.to_guard[robot]);
+    let obeyed = (guard.arbiter(), *guard.serial_mut());
+    let mut seen: Vec<(Boot, u64)> = messages.iter().map(|m| (m.arbiter, m.serial)).chain([obeyed]).collect();
+    seen.sort_unstable();
+    seen.dedup();
+    let rank = |of: (Boot, u64)| seen.iter().filter(|other| other.0 == of.0 && **other < of).count() as u64 + 1;
+    *guard.serial_mut() = rank(obeyed);
+    for message in messages {
+        message.serial = rank((message.arbiter, message.serial));
+    }
+}
+
+/// The grant of a slot that the arbiter has given last.
+fn held_token(state: &mut CellState, slot: usize) -> Option<Token> {
+    state.arbiter.holder_token_mut(slot).map(|(_, token)| *token)
+}
+
+/// Grants are compared within one slot; those that are held, `held` in their order, over all slots, too.
+fn rank_tokens(state: &mut CellState, slot: usize, held: &[Token]) {
+    let mut seen = BTreeSet::new();
+    each_token(state, slot, &mut |token| _ = seen.insert(*token));
+    let of_slot = held_token(state, slot);
+    let rank = |t: Token| match held.iter().position(|other| Some(*other) == of_slot).filter(|_| Some(t) == of_slot) {
+        Some(order) => HELD + order as u64,
+        None => seen.iter().filter(|other| other.boot == t.boot && **other < t).count() as u64 + 1,
+    };
+    each_token(state, slot, &mut |token| token.number = rank(*token));
+}
+
+fn each_token(state: &mut CellState, slot: usize, f: &mut impl FnMut(&mut Token)) {
+    if let Some((_, token)) = state.arbiter.holder_token_mut(slot) {
+        f(token);
+    }
+    for guard in &mut state.guards {
+        guard.each_token(&mut |s, token| token.iter_mut().filter(|_| s == slot).for_each(&mut *f));
+    }
+    let released = state.to_arbiter.iter_mut().flatten().filter_map(|m| m.slots[slot].released.as_mut());
+    released.for_each(&mut *f);
+    state.to_guard.iter_mut().flatten().filter_map(|m| m.slots[slot].granted.as_mut()).for_each(f);
+}

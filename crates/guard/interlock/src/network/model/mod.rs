@@ -1,0 +1,321 @@
+//! Model check: every interleaving of guards, arbiter, messages, crashes and clears of a small cell, on the code that runs.
+//!
+//! Robots go round programs of a few places. What a tick lets a robot do the next tick finds: between the two, messages pass.
+//! Messages are delivered in any order, any number of times, or never: of each direction a few are under way per robot, and one more
+//! replaces the oldest. Time goes on in steps. States that behave the same are one state ([`canonical`]), so that there are
+//! finitely many, and small cells can be explored completely.
+
+mod canonical;
+mod checks;
+mod programs;
+pub(crate) mod renaming;
+mod state;
+
+use stateright::{Model, Property};
+
+use crate::{
+    Arbiter, ArbiterSettings, Boot, GrantsMessage, Guard, Micros, RobotSettings, RobotSlot, SlotId, StateMessage, Token,
+};
+use programs::Program;
+use state::{CellState, FaultBudget, NOW, RobotState};
+
+/// The property that is checked.
+const EXCLUSION: &str = "at most one robot is in a slot or may enter it";
+
+/// A step of time.
+const STEP: Micros = Micros(100);
+
+/// Whether ages between a request and the end of its grant are distinguished.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Clock {
+    /// Once time passes, grants have ended and robots are silent.
+    Coarse,
+    /// Grants are obeyed for one step, and robots are silent after two.
+    Fine,
+}
+
+impl Clock {
+    fn validity(self) -> Micros {
+        Micros(if self == Self::Coarse { 50 } else { 100 })
+    }
+
+    fn silence(self) -> Micros {
+        Micros(if self == Self::Coarse { 50 } else { 200 })
+    }
+
+    fn stop_time(self) -> Micros {
+        Micros(if self == Self::Coarse { 0 } else { 100 })
+    }
+
+    /// Nothing changes any more at this age.
+    fn oldest(self) -> Micros {
+        Micros(if self == Self::Coarse { 100 } else { 300 })
+    }
+}
+
+/// Faults that are built in to see whether the model check finds them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum PlantedFault {
+    None,
+    /// A person clears a robot that is not silent long enough, and grants never expire.
+    HastyClear,
+    /// A report without the grant counts as one that gives it up.
+    TokensUnchecked,
+    /// A grant is taken back without the consent of its holder.
+    UnilateralRelease,
+    /// A guard gives a grant up before it has seen that its robot can still stop outside.
+    UnseenRelease,
+}
+
+/// A small cell.
+struct CellModel {
+    programs: Vec<Program>,
+    slots: usize,
+    /// Messages under way per robot and direction.
+    under_way: usize,
+    clock: Clock,
+    faults: FaultBudget,
+    planted: PlantedFault,
+    /// Robots of the same class have the same program.
+    classes: Vec<usize>,
+}
+
+/// What a robot does in a tick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Step {
+    /// It ends what the last tick let it do.
+    Remain,
+    /// The tick finds it at the next place, for which it needs no grant.
+    Advance,
+    /// The tick lets it enter the next place, where the next tick will find it.
+    Enter,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Action {
+    Tick(usize, Step),
+    /// The guard sends a message.
+    Send(usize),
+    /// The arbiter takes a message, which may come again.
+    ToArbiter(usize, usize),
+    ToGuard(usize, usize),
+    TimePasses,
+    CrashGuard(usize),
+    CrashArbiter,
+    Clear(usize),
+    TakeBack(usize),
+}
+
+impl CellModel {
+    fn new(programs: &[&[&str]]) -> Self {
+        let class = |program| programs.iter().position(|other| other == program).unwrap_or(0);
+        let classes = programs.iter().map(class).collect();
+        let programs: Vec<_> = programs.iter().map(|words| Program::new(words)).collect();
+        let slots = programs[0].slots();
+        let (clock, faults, planted) = (Clock::Coarse, FaultBudget::default(), PlantedFault::None);
+        Self { programs, slots, under_way: 1, clock, faults, planted, classes }
+    }
+
+    fn settings(&self) -> ArbiterSettings {
+        let (validity, silence, stop_time) = (self.clock.validity(), self.clock.silence(), self.clock.stop_time());
+        let robot = |r: usize| {
+            let slots = (0..self.slots).map(SlotId).filter(|s| self.programs[r].uses(*s));
+            RobotSettings { stop_time, ..RobotSettings::new("robot", slots) }
+        };
+        let robots = (0..self.programs.len()).map(robot).collect();
+        ArbiterSettings { silence, validity, ..ArbiterSettings::new(robots, self.slots) }
+    }
+
+    fn guard(&self, robot: usize, boot: Boot) -> Guard {
+        let endless = self.planted == PlantedFault::HastyClear;
+        let validity = if endless { Micros(u64::MAX) } else { self.clock.validity() };
+        Guard::new(RobotSlot(robot), self.slots, 0, boot).validity(validity)
+    }
+
+    fn occupies(&self, robot: usize, place: usize, slot: SlotId) -> bool {
+        self.programs[robot].occupancy(place, slot).occupies()
+    }
+
+    /// Whether the robot is in a slot, or will be whatever is decided now.
+    fn is_in(&self, state: &CellState, robot: usize, slot: SlotId) -> bool {
+        let RobotState { place, enters } = state.robots[robot];
+        self.occupies(robot, place, slot) || enters && self.occupies(robot, self.programs[robot].next(place), slot)
+    }
+
+    /// Whether the robot needs grants to go on from a place, and which.
+    fn needed(&self, robot: usize, place: usize) -> impl Iterator<Item = SlotId> + '_ {
+        let next = self.programs[robot].next(place);
+        let enters = move |s: &SlotId| self.occupies(robot, next, *s) && !self.occupies(robot, place, *s);
+        (0..self.slots).map(SlotId).filter(enters)
+    }
+
+    /// One tick; `None` where that step is impossible.
+    fn tick(&self, state: &mut CellState, r: usize, step: Step) -> Option<()> {
+        let RobotState { place, enters } = state.robots[r];
+        let is_advance = step == Step::Advance;
+        if is_advance && (enters || self.needed(r, place).next().is_some()) {
+            return None;
+        }
+        let found = if enters || is_advance { self.programs[r].next(place) } else { place };
+        if step == Step::Enter {
+            let guard = &state.guards[r];
+            let mut needed = self.needed(r, found).peekable();
+            needed.peek()?;
+            if !needed.all(|slot| guard.may_enter(slot, NOW)) {
+                return None;
+            }
+        }
+        state.robots[r] = RobotState { place: found, enters: step == Step::Enter };
+        for slot in (0..self.slots).map(SlotId) {
+            state.guards[r].observe(slot, self.programs[r].occupancy(found, slot));
+        }
+        Some(())
+    }
+
+    fn send(&self, state: &mut CellState, r: usize) {
+        let message = state.guards[r].state(NOW);
+        if self.planted == PlantedFault::UnseenRelease {
+            state.guards[r].give_up_at_once();
+        }
+        self.push(&mut state.to_arbiter[r], message);
+    }
+
+    fn reply(&self, state: &mut CellState, replies: Vec<GrantsMessage>) {
+        for reply in replies {
+            self.push(&mut state.to_guard[reply.robot.0], reply);
+        }
+    }
+
+    fn push<T>(&self, under_way: &mut Vec<T>, message: T) {
+        if under_way.len() == self.under_way {
+            under_way.remove(0);
+        }
+        under_way.push(message);
+    }
+
+    /// All robots are outside, and the arbiter knows them.
+    fn know_each_other(&self, state: &mut CellState) {
+        for r in (0..2).flat_map(|_| 0..self.programs.len()) {
+            self.tick(state, r, Step::Remain);
+            let message = state.guards[r].state(NOW);
+            for reply in state.arbiter.receive(&message, NOW).replies {
+                let _ = state.guards[reply.robot.0].receive(&reply);
+            }
+        }
+    }
+
+    /// An integrator clears a robot that is at rest outside; `None` where that is refused.
+    fn clear(&self, state: &mut CellState, robot: usize) -> Option<()> {
+        if (0..self.slots).any(|s| self.is_in(state, robot, SlotId(s))) {
+            return None;
+        }
+        state.faults.clears -= 1;
+        let outputs = if self.planted == PlantedFault::HastyClear {
+            state.arbiter.clear_at_once(RobotSlot(robot), NOW)
+        } else {
+            state.arbiter.clear(RobotSlot(robot), NOW).ok()?
+        };
+        self.reply(state, outputs.replies);
+        Some(())
+    }
+
+    fn to_arbiter(&self, state: &mut CellState, robot: usize, index: usize) {
+        let mut message = state.to_arbiter[robot][index].clone();
+        if self.planted == PlantedFault::TokensUnchecked {
+            give_up_all(&mut message);
+        }
+        let outputs = state.arbiter.receive(&message, NOW);
+        self.reply(state, outputs.replies);
+    }
+
+    /// What an action changes; `None` where it is impossible.
+    fn act(&self, state: &mut CellState, action: Action) -> Option<()> {
+        match action {
+            Action::Tick(r, step) => self.tick(state, r, step)?,
+            Action::Send(r) => self.send(state, r),
+            Action::ToArbiter(r, i) => self.to_arbiter(state, r, i),
+            Action::ToGuard(r, i) => {
+                let message = state.to_guard[r][i].clone();
+                let _ = state.guards[r].receive(&message);
+            }
+            Action::TimePasses => canonical::pass(state, STEP),
+            Action::CrashGuard(r) => {
+                state.faults.guard_crashes -= 1;
+                state.guards[r] = self.guard(r, state.guards[r].boot().next());
+            }
+            Action::CrashArbiter => {
+                state.faults.arbiter_crashes -= 1;
+                state.arbiter = Arbiter::new(self.settings(), state.arbiter.boot().next());
+            }
+            Action::Clear(r) => self.clear(state, r)?,
+            Action::TakeBack(s) => state.arbiter.take_back(SlotId(s)),
+        }
+        Some(())
+    }
+}
+
+impl Model for CellModel {
+    type State = CellState;
+    type Action = Action;
+
+    fn init_states(&self) -> Vec<CellState> {
+        let robots = self.programs.len();
+        let mut state = CellState {
+            arbiter: Arbiter::new(self.settings(), Boot(1)),
+            guards: (0..robots).map(|r| self.guard(r, Boot(1))).collect(),
+            robots: vec![RobotState { place: 0, enters: false }; robots],
+            to_arbiter: vec![Vec::new(); robots],
+            to_guard: vec![Vec::new(); robots],
+            faults: self.faults,
+        };
+        self.know_each_other(&mut state);
+        canonical::canonicalize(&mut state, self.clock.oldest(), &self.classes);
+        vec![state]
+    }
+
+    fn actions(&self, state: &CellState, actions: &mut Vec<Action>) {
+        for r in 0..self.programs.len() {
+            actions.extend([Step::Remain, Step::Advance, Step::Enter].map(|step| Action::Tick(r, step)));
+            actions.push(Action::Send(r));
+            actions.extend((0..state.to_arbiter[r].len()).map(|i| Action::ToArbiter(r, i)));
+            actions.extend((0..state.to_guard[r].len()).map(|i| Action::ToGuard(r, i)));
+            if state.faults.guard_crashes > 0 {
+                actions.push(Action::CrashGuard(r));
+            }
+            if state.faults.clears > 0 {
+                actions.push(Action::Clear(r));
+            }
+        }
+        actions.push(Action::TimePasses);
+        if state.faults.arbiter_crashes > 0 {
+            actions.push(Action::CrashArbiter);
+        }
+        if self.planted == PlantedFault::UnilateralRelease {
+            actions.extend((0..self.slots).map(Action::TakeBack));
+        }
+    }
+
+    fn next_state(&self, before: &CellState, action: Action) -> Option<CellState> {
+        let mut state = before.clone();
+        self.act(&mut state, action)?;
+        canonical::canonicalize(&mut state, self.clock.oldest(), &self.classes);
+        (state != *before).then_some(state)
+    }
+
+    fn properties(&self) -> Vec<Property<Self>> {
+        vec![Property::always(EXCLUSION, |model: &Self, state: &CellState| {
+            (0..model.slots).map(SlotId).all(|slot| {
+                let claims = |r: &usize| model.is_in(state, *r, slot) || state.guards[*r].may_enter(slot, NOW);
+                (0..model.programs.len()).filter(claims).count() <= 1
+            })
+        })]
+    }
+}
+
+/// A message that gives up every grant that it does not name.
+fn give_up_all(message: &mut StateMessage) {
+    let every = Token { boot: Boot(u64::MAX), number: u64::MAX };
+    for slot in message.slots.iter_mut().filter(|slot| slot.token.is_none()) {
+        slot.released = Some(every);
+    }
+}

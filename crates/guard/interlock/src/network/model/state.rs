@@ -1,0 +1,60 @@
+//! State of a model.
+
+use super::renaming::permute;
+use crate::{Arbiter, GrantsMessage, Guard, Micros, RobotSlot, StateMessage};
+
+/// Time of every state.
+pub(super) const NOW: Micros = Micros(1_000);
+
+/// Arbiter, guards, robots, and the messages under way between them.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub(super) struct CellState {
+    pub(super) arbiter: Arbiter,
+    pub(super) guards: Vec<Guard>,
+    pub(super) robots: Vec<RobotState>,
+    pub(super) to_arbiter: Vec<Vec<StateMessage>>,
+    pub(super) to_guard: Vec<Vec<GrantsMessage>>,
+    pub(super) faults: FaultBudget,
+}
+
+/// Where a robot is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) struct RobotState {
+    /// Index into its program.
+    pub(super) place: usize,
+    /// The last tick let it enter the next place, where the next tick will find it.
+    pub(super) enters: bool,
+}
+
+/// Faults that may still happen.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
+pub(super) struct FaultBudget {
+    pub(super) guard_crashes: u8,
+    pub(super) arbiter_crashes: u8,
+    pub(super) clears: u8,
+}
+
+impl CellState {
+    pub(super) fn slots(&self) -> usize {
+        self.guards[0].slots()
+    }
+
+    /// Gives robot `r` the index `to[r]`.
+    pub(super) fn reindex(&mut self, to: &[usize]) {
+        self.arbiter.reindex(to);
+        permute(&mut self.robots, to);
+        permute(&mut self.guards, to);
+        permute(&mut self.to_arbiter, to);
+        permute(&mut self.to_guard, to);
+    }
+
+    /// Sets the index that guards and messages have of their robots.
+    pub(super) fn set_indices(&mut self, index: impl Fn(usize) -> usize) {
+        for r in 0..self.guards.len() {
+            let robot = RobotSlot(index(r));
+            self.guards[r].set_robot(robot);
+            self.to_arbiter[r].iter_mut().for_each(|m| m.robot = robot);
+            self.to_guard[r].iter_mut().for_each(|m| m.robot = robot);
+        }
+    }
+}
