@@ -47,6 +47,23 @@ slow_to = 40
 life = "temporary"
 "#;
 
+#[test]
+fn a_permanent_region_stays_on_whatever_a_message_says() {
+    let cell = Cell::parse("rail.toml", CELL).unwrap();
+    let mut table = RegionTable::initial(&cell);
+    assert_eq!(table.active, [true, false, false]);
+    let mut message = table.message(&cell);
+    message.revision = 1;
+    message.regions.iter_mut().for_each(|(_, on)| *on = !*on);
+    assert!(table.take(&message, &cell));
+    assert_eq!(table.active, [true, true, true]);
+    // What a message does not have stays as it is, but a message of other regions switches it off neither.
+    (message.revision, message.regions[0].0) = (2, "other".into());
+    message.regions[2].1 = false;
+    assert!(table.take(&message, &cell));
+    assert_eq!(table.active, [true, true, false]);
+}
+
 /// A node, who builds its regions, and its controller. Its clock goes on with each tick.
 struct Rig {
     cell: Arc<Cell>,
