@@ -96,15 +96,15 @@ pub(super) struct AvoidingRobot<'s> {
 }
 
 impl<'s> AvoidingRobot<'s> {
-    /// One entry per robot of the cell; `None` for a robot without avoidance.
-    pub fn of_cell(
+    /// The avoidance of a robot; `None` for one without.
+    pub fn of_robot(
         cell: &'s Cell,
         scene: &'s Scene,
-        clocks: &[ProgramClock],
-    ) -> Result<Vec<Option<Self>>, FormatError> {
-        let each = cell.avoidance.iter().enumerate();
-        each.map(|(i, spec)| spec.as_ref().map(|s| Self::new(cell, scene, RobotId(i), s, &clocks[i])).transpose())
-            .collect()
+        robot: RobotId,
+        clock: &ProgramClock,
+    ) -> Result<Option<Self>, FormatError> {
+        let spec = cell.avoidance.get(robot.0).and_then(Option::as_ref);
+        spec.map(|spec| Self::new(cell, scene, robot, spec, clock)).transpose()
     }
 
     fn new(

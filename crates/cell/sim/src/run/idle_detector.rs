@@ -5,10 +5,6 @@ use elbowroom_kinematics::ChainState;
 
 /// Joints that moved less than this (rad, m) count as stationary: the override law approaches a border asymptotically.
 const STATIONARY: f64 = 1e-5;
-/// A run ends after this time without motion, s.
-pub(super) const IDLE_TIMEOUT_S: f64 = 1.0;
-/// A run ends after this time in which the robots stand at override 0 and only endless belts move, s.
-pub(super) const STANDSTILL_TIMEOUT_S: f64 = 10.0;
 
 /// Detects the end of all motion.
 #[derive(Debug)]

@@ -10,7 +10,6 @@ use elbowroom_proximity::Shape;
 use elbowroom_robot::{GeometryId, RobotId};
 use elbowroom_scene::{Checker, CheckerOptions, Scene, SceneError, Selection, SweepOptions};
 
-use super::avoiding_robot::AvoidingRobot;
 use super::path_ahead::PathAhead;
 use super::path_replanner::{self, PathReplanner};
 use super::path_search::{ClosedRegions, FutileSearch, PathSearch, SearchScene};
@@ -35,29 +34,26 @@ struct BlockedPath {
     by: String,
 }
 
-/// Per robot its guard against what sensors see; `None` for one that no sensor guards.
-pub(super) fn obstacle_guards<'a>(
+/// The guard of a robot against what sensors see; `None` for one that no sensor guards.
+pub(super) fn obstacle_guard<'a>(
     cell: &'a Cell,
+    id: RobotId,
+    avoids: bool,
     perceived: &PerceivedObstacles<'_>,
-    (avoiding, states): (&[Option<AvoidingRobot<'_>>], &[ChainState]),
+    states: &[ChainState],
     notes: &mut Vec<Warning>,
-) -> Result<Vec<Option<ObstacleGuard<'a>>>, FormatError> {
-    let mut guards = Vec::new();
-    for (i, robot) in cell.robots.iter().enumerate() {
-        let search_s = perceived.search_s(RobotId(i));
-        if search_s.is_some() && avoiding[i].is_some() {
-            let what = format!(
-                "robot \"{}\" has [avoidance.{}], which does not know what sensors see: it does not keep clear of that",
-                robot.name, robot.name
-            );
-            notes.push(
-                Warning::new(&cell.file, robot.line, what).hint("run --no-avoidance, or robots = [...] of the sensor"),
-            );
-        }
-        let search_s = search_s.filter(|_| avoiding[i].is_none());
-        guards.push(search_s.map(|s| ObstacleGuard::new(cell, RobotId(i), s, states)).transpose()?);
+) -> Result<Option<ObstacleGuard<'a>>, FormatError> {
+    let Some(search_s) = perceived.search_s(id) else { return Ok(None) };
+    if !avoids {
+        return ObstacleGuard::new(cell, id, search_s, states).map(Some);
     }
-    Ok(guards)
+    let robot = &cell.robots[id.0];
+    let what = format!(
+        "robot \"{}\" has [avoidance.{}], which does not know what sensors see: it does not keep clear of that",
+        robot.name, robot.name
+    );
+    notes.push(Warning::new(&cell.file, robot.line, what).hint("run --no-avoidance, or robots = [...] of the sensor"));
+    Ok(None)
 }
 
 /// One robot that keeps clear of what sensors see.

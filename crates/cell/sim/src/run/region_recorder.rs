@@ -3,10 +3,11 @@
 use elbowroom_cell::configure::MonitorSetup;
 use elbowroom_cell::{Cell, CellRegion, CellRegionId, Frames};
 use elbowroom_kinematics::ChainState;
-use elbowroom_monitor::{AttachError, Configuration, Life, Monitor, RegionId, RegionKind, RegionSweep, VolumeId};
+use elbowroom_monitor::{AttachError, Configuration, Life, RegionId, RegionKind, RegionSweep, VolumeId};
 use elbowroom_robot::RobotId;
 use elbowroom_spatial::Pose;
 
+use super::simulated_robot::SimulatedRobot;
 use crate::recording::{RegionPoses, RegionTrack, Span};
 
 /// Distances are measured up to this (m) beyond the needed limit, so that the next measurements can be skipped.
@@ -110,7 +111,7 @@ impl<'a> RegionRecorder<'a> {
     }
 
     /// Observes one tick and the motion to it, after the monitors' ticks.
-    pub fn observe(&mut self, t_s: f64, monitors: &[Monitor], states: &[ChainState], frames: &Frames<'_>) {
+    pub fn observe(&mut self, t_s: f64, robots: &[SimulatedRobot<'_>], states: &[ChainState], frames: &Frames<'_>) {
         for (r, track) in self.cell.regions.iter().zip(&mut self.tracks) {
             if let (RegionPoses::Moving(poses), Some(follow)) = (&mut track.poses, &r.follow) {
                 let anchor = frames.source(follow, states, t_s).pose * r.region.anchor;
@@ -127,7 +128,7 @@ impl<'a> RegionRecorder<'a> {
             let region = &self.cell.regions[observer.region.0];
             let robot = observer.robot.0;
             let (sweep, config) = (&mut self.sweeps[robot], &self.setups[robot].configuration);
-            let distances = if monitors[robot].is_active(observer.local) {
+            let distances = if robots[robot].monitor.is_active(observer.local) {
                 observer.measure(sweep, config, track, region.follow.is_some())
             } else {
                 observer.before_m = None;
@@ -140,7 +141,7 @@ impl<'a> RegionRecorder<'a> {
                 track.min_distance_m = Some(track.min_distance_m.map_or(d, |m| m.min(d)));
             }
             let exchange = matches!(region.region.kind, RegionKind::Exchange { .. });
-            track.entered |= (inside || passed) && !(exchange && monitors[robot].holds(observer.local));
+            track.entered |= (inside || passed) && !(exchange && robots[robot].monitor.holds(observer.local));
             self.warned[observer.region.0] |= warned || distances.passed_m.is_some();
             // A region that was passed through was occupied for a part of the tick; the recording has the whole tick.
             let tick_span = Span { robot: observer.robot, from_s: before_s, to_s: t_s };

@@ -4,7 +4,7 @@ use elbowroom_cell::configure::MonitorSetup;
 use elbowroom_cell::{Cell, CellRegionId, Follow};
 use elbowroom_monitor::{Life, OverrideReason, ZoneArbiter};
 
-use super::wait_for_graph::blockers;
+use super::final_waits::blockers;
 use crate::recording::{HoldReason, Outcome, RobotTrack};
 
 /// What would release the robot with this index, in words; `None` for one that moves, or where nothing is known to. `finished`

@@ -1,0 +1,115 @@
+//! What robots carry: tools that are exchanged, and parts that are gripped and released.
+
+use elbowroom_cell::CellRobot;
+use elbowroom_formats::FormatError;
+use elbowroom_kinematics::ChainState;
+use elbowroom_monitor::VolumeId;
+use elbowroom_spatial::Pose;
+
+use super::simulated_robot::absent_links;
+use super::simulation::Simulation;
+use crate::motion::GripAction;
+use crate::recording::RunEvent;
+
+impl Simulation<'_> {
+    /// Makes tools active, and exchanges those that are not mounted.
+    pub(super) fn apply_tools(&mut self, t_s: f64) -> Result<(), FormatError> {
+        for i in 0..self.robots.len() {
+            for tool in self.robots[i].clock.take_tools() {
+                let robot = &mut self.robots[i];
+                let present = robot.present.with_tool(tool);
+                let before = std::mem::replace(&mut robot.present, present);
+                self.exchange_volumes(i, &before)?;
+                let robot = &mut self.robots[i];
+                robot.track.absent_links.extend(absent_links(&robot.present).map(|links| (t_s, links)));
+                self.journal.event(t_s, robot.id, &robot.present.tools[tool].name, RunEvent::Tool);
+            }
+        }
+        Ok(())
+    }
+
+    /// Attaches and detaches the tools that were exchanged, in collisions and in regions.
+    fn exchange_volumes(&mut self, i: usize, before: &CellRobot) -> Result<(), FormatError> {
+        let robot = &self.robots[i];
+        let (id, setup, line) = (robot.id, robot.setup, robot.present.line);
+        let tools = robot.present.tools.iter().zip(&before.tools);
+        let changed = tools.filter(|(now, old)| now.mounted != old.mounted).map(|(now, _)| (now.link, now.mounted));
+        for (link, is_mounted) in changed.collect::<Vec<_>>() {
+            self.contacts.checker.set_present(id, link, is_mounted, &self.states.iter().collect::<Vec<_>>());
+            for (volume, tool) in setup.tool_volumes(link) {
+                self.carry(i, volume, is_mounted.then_some(&tool.in_link), line)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Guards what a robot carries from now on, a part or a tool, at its pose in the link; or notes that it is to be detached.
+    fn carry(&mut self, i: usize, volume: VolumeId, in_link: Option<&Pose>, line: usize) -> Result<(), FormatError> {
+        self.released.retain(|released| *released != (i, volume));
+        let Some(in_link) = in_link else {
+            self.released.push((i, volume));
+            return Ok(());
+        };
+        let robot = &mut self.robots[i];
+        let attached = robot.monitor.attach(volume, in_link);
+        let attached = attached.and_then(|()| self.regions.attach(i, volume, in_link));
+        attached.map_err(|e| FormatError::new(&self.cell.file, line, e.to_string()))?;
+        self.journal.attached(robot.id, volume, in_link);
+        Ok(())
+    }
+
+    /// What a robot releases counts up to the instant of the release.
+    pub(super) fn detach_released(&mut self) -> Result<(), FormatError> {
+        for (i, volume) in std::mem::take(&mut self.released) {
+            let robot = &mut self.robots[i];
+            let detached = robot.monitor.detach(volume).and_then(|()| self.regions.detach(i, volume));
+            detached.map_err(|e| FormatError::new(&self.cell.file, self.cell.robots[i].line, e.to_string()))?;
+            self.journal.detached(robot.id, volume);
+        }
+        Ok(())
+    }
+
+    /// In the order of each program. A robot that grips what another one holds waits for the other's steps of this
+    /// instant, so that it can take a part over.
+    pub(super) fn apply_grips(&mut self, t_s: f64) -> Result<(), FormatError> {
+        let mut late = Vec::new();
+        for i in 0..self.robots.len() {
+            let mut actions = self.robots[i].clock.take_grips().into_iter();
+            while let Some(action) = actions.next() {
+                let holder = self.contacts.parts.carrier(action.object);
+                if action.grips && holder.is_some_and(|r| r.0 != i) {
+                    late.extend(std::iter::once(action).chain(actions).map(|a| (i, a)));
+                    break;
+                }
+                self.apply_grip(i, &action, t_s)?;
+            }
+        }
+        late.into_iter().try_for_each(|(i, action)| self.apply_grip(i, &action, t_s))
+    }
+
+    fn apply_grip(&mut self, i: usize, action: &GripAction, t_s: f64) -> Result<(), FormatError> {
+        let states: Vec<&ChainState> = self.states.iter().collect();
+        let (robot, contacts) = (&self.robots[i], &mut self.contacts);
+        contacts.parts.apply(robot.id, action, t_s, &robot.present, &mut contacts.checker, &states)?;
+        let event = if action.grips { RunEvent::Grip } else { RunEvent::Release };
+        self.journal.event(t_s, robot.id, &self.cell.objects[action.object.0].name, event);
+        self.guard_part(i, action)
+    }
+
+    /// Guards what a robot grips or no longer has, in the avoidance of all robots, too.
+    fn guard_part(&mut self, i: usize, action: &GripAction) -> Result<(), FormatError> {
+        let attachment = self.contacts.checker.attachment(action.object).cloned();
+        let in_link = attachment.as_ref().map_or(Pose::IDENTITY, |a| a.in_link);
+        for avoiding in self.robots.iter_mut().filter_map(|robot| robot.avoiding.as_mut()) {
+            let applied = match &attachment {
+                Some(attachment) => avoiding.attach(action.object, attachment.clone()),
+                None => avoiding.detach(action.object),
+            };
+            applied.map_err(|e| FormatError::new(&self.cell.file, action.line, e.to_string()))?;
+        }
+        let slot = self.robots[i].setup.gripped_volume(action.object, action.link, &in_link);
+        let none = || FormatError::new(&self.cell.file, action.line, "grips what its monitor has no volume for");
+        let (volume, in_link) = slot.ok_or_else(none)?;
+        self.carry(i, volume, action.grips.then_some(&in_link), action.line)
+    }
+}
