@@ -49,26 +49,14 @@ impl Monitor {
         self.attach_as(former);
         std::mem::swap(&mut self.watchdog, &mut former.watchdog);
         std::mem::swap(&mut self.stopping_law, &mut former.stopping_law);
-        (self.last_override, self.fault) = (former.last_override, former.fault);
-        self.external_fault = former.external_fault;
+        (self.last_override, self.faults) = (former.last_override, former.faults);
         self.just_attached |= former.just_attached;
         self.sweep.reset();
         if let (Some(client), Some(before)) = (&mut self.zone_client, &former.zone_client) {
             client.continue_from(before);
         }
-        self.warned.clear();
-        for (r, before) in same.iter().enumerate() {
-            let Some(before) = before else { continue };
-            self.active[r] = former.active[before.0];
-            let (zone, presence) = (former.zones[before.0], former.presence[before.0]);
-            // The events of this are those of the former monitor; the next tick clears them.
-            let region = &self.config.regions[r];
-            self.outputs.change(RegionId(r), region, self.zones[r], zone, &mut self.log);
-            (self.zones[r], self.presence[r]) = (zone, presence);
-            if presence.warned {
-                self.warned.push(r as u32);
-            }
-        }
+        // The events of this are those of the former monitor; the next tick clears them.
+        self.regions.continue_from(&self.config, &former.regions, same, &mut self.log);
     }
 
     /// Attaches and detaches until the same volumes are parts of the robot.

@@ -1,0 +1,148 @@
+//! What may be asked of a monitor between its ticks.
+
+use elbowroom_kinematics::ChainState;
+use elbowroom_spatial::Pose;
+
+use crate::attached_volumes::AttachedVolumes;
+use crate::distance_to_guarded::distance_to_guarded;
+use crate::point_motion::{LinkPoint, region_point_motion};
+use crate::region_clearance::RegionClearance;
+use crate::zone_client::ZoneClient;
+use crate::{
+    Configuration, Event, ExchangeState, Fault, Monitor, RegionId, RegionKind, SlotGrants, SlotId, Snapshot,
+    VirtualTcp, VolumeId,
+};
+
+impl Monitor {
+    /// The fault of [`Monitor::set_external_fault`].
+    pub fn external_fault(&self) -> Option<Fault> {
+        self.faults.external
+    }
+
+    /// What is wrong with the input of the last tick. `None` where it was valid and the robot was measured.
+    pub fn input_fault(&self) -> Option<Fault> {
+        self.faults.input
+    }
+
+    /// True where a volume is a part of the robot at present.
+    pub fn is_attached(&self, volume: VolumeId) -> bool {
+        volume.0 < self.config.volumes.len() && self.now.attached.contains(volume.0)
+    }
+
+    pub(crate) fn attached(&self) -> &AttachedVolumes {
+        &self.now.attached
+    }
+
+    /// True where the region is active.
+    pub fn is_active(&self, region: RegionId) -> bool {
+        self.regions.is_active(region.0)
+    }
+
+    /// The region of this name.
+    pub fn region(&self, name: &str) -> Option<RegionId> {
+        self.config.region(name)
+    }
+
+    /// The configuration.
+    pub fn configuration(&self) -> &Configuration {
+        &self.config
+    }
+
+    /// The events of the last tick.
+    pub fn events(&self) -> &[Event] {
+        self.log.as_slice()
+    }
+
+    /// The virtual TCPs of the last tick: for every region near the robot the point that requests the smallest override.
+    pub fn virtual_tcps<'a>(&'a self, s: &'a Snapshot<'a>) -> impl Iterator<Item = VirtualTcp> + 'a {
+        let active = self.clearances.near().iter().map(|r| *r as usize).filter(|r| self.regions.is_active(*r));
+        active.filter_map(|r| self.clearances.get(r)).map(|c| self.virtual_tcp(c, s))
+    }
+
+    /// Distance (m) of the region to the closest volume that it guards against, at the state of the last tick; `None` where
+    /// it exceeds `limit` or the region is inactive. Not part of the tick: for reports.
+    pub fn distance(&self, region: RegionId, limit: f64) -> Option<f64> {
+        let found =
+            self.is_active(region).then(|| distance_to_guarded(&self.config, &self.now, region, limit)).flatten();
+        found.map(|d| d.distance)
+    }
+
+    /// True where a guarded volume is inside the region (with hysteresis).
+    pub fn is_inside(&self, region: RegionId) -> bool {
+        self.regions.get(region).zone.inside
+    }
+
+    /// True where a guarded volume is inside the region or its warning zone (with hysteresis).
+    pub fn is_warned(&self, region: RegionId) -> bool {
+        self.regions.get(region).zone.warned
+    }
+
+    /// True where this robot holds the exchange region.
+    pub fn holds(&self, region: RegionId) -> bool {
+        self.exchange(region).is_some_and(|(client, slot)| client.holds(slot))
+    }
+
+    /// The grants that come from outside of the process: those of [`Interlock::Granted`]. `None` where the robots share an
+    /// arbiter, and without exchange regions.
+    pub fn slot_grants(&self) -> Option<&SlotGrants> {
+        self.zone_client.as_ref()?.slot_grants()
+    }
+
+    /// State of the robot with respect to an exchange region in the last tick; `None` for any other region.
+    pub fn exchange_state(&self, region: RegionId) -> Option<ExchangeState> {
+        self.exchange(region).map(|(client, slot)| client.state(slot))
+    }
+
+    /// The client and the slot of an exchange region; `None` for any other region.
+    fn exchange(&self, region: RegionId) -> Option<(&ZoneClient, SlotId)> {
+        match (self.config.regions[region.0].kind, &self.zone_client) {
+            (RegionKind::Exchange { slot }, Some(client)) => Some((client, slot)),
+            _ => None,
+        }
+    }
+
+    /// True where the region stops this robot now: it is active, and forbidden or taken by another robot. An exchange region
+    /// without a holder is not closed: it is granted on approach.
+    pub fn is_closed(&self, region: RegionId) -> bool {
+        self.is_active(region)
+            && match self.config.regions[region.0].kind {
+                RegionKind::Forbidden => true,
+                RegionKind::Monitored { .. } => false,
+                RegionKind::Exchange { .. } => {
+                    self.exchange(region).is_some_and(|(client, slot)| client.is_taken(slot))
+                }
+            }
+    }
+
+    /// Pose of the region's shape in the last tick.
+    pub fn region_in_world(&self, region: RegionId) -> Pose {
+        self.now.region_in_world[region.0]
+    }
+
+    /// Pose of a volume's shape in the last tick; of a detached volume, where it was attached last.
+    pub fn volume_in_world(&self, volume: VolumeId) -> Pose {
+        self.now.volume_in_world[volume.0]
+    }
+
+    /// State of the chain in the last tick.
+    pub fn state(&self) -> &ChainState {
+        &self.now.chain
+    }
+
+    pub(crate) fn virtual_tcp(&self, clearance: &RegionClearance, s: &Snapshot) -> VirtualTcp {
+        let pair = &clearance.governing;
+        let (position, on_region) = (pair.separation.on_a, pair.separation.on_b);
+        let link = self.config.volumes[pair.volume].link;
+        let point = LinkPoint::new(&self.config, &self.now.chain, link, position);
+        let region_motion = region_point_motion(&self.config.regions[pair.region], s.sources, on_region);
+        VirtualTcp {
+            region: RegionId(pair.region),
+            volume: VolumeId(pair.volume),
+            distance_m: pair.separation.distance,
+            position,
+            on_region,
+            velocity: point.velocity() - region_motion.velocity,
+            acceleration: point.acceleration() - region_motion.acceleration,
+        }
+    }
+}

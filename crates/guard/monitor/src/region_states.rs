@@ -1,0 +1,147 @@
+//! What a monitor knows of each of its regions: whether it is on, and whether the robot is in it.
+
+use crate::event::EventLog;
+use crate::region_clearance::RegionClearances;
+use crate::region_sweep::RegionSweep;
+use crate::zone_state::{DigitalOutputs, ZoneState};
+use crate::{Configuration, EventKind, Life, RegionId, RegionKind};
+
+/// One region.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RegionState {
+    /// It is switched on.
+    pub(crate) active: bool,
+    /// Where the robot is; outside where the region is inactive.
+    pub(crate) zone: ZoneState,
+    /// The same, whether or not the region is active.
+    pub(crate) presence: ZoneState,
+}
+
+/// The regions of a monitor, by their indices, and the digital outputs that they request.
+#[derive(Debug)]
+pub(crate) struct RegionStates {
+    states: Vec<RegionState>,
+    /// Regions that are measured in this tick: the active ones, and all exchange regions of which it is known where they are.
+    pub(crate) measured: Vec<bool>,
+    /// Regions in whose warning zone the robot is, in this tick and in the previous one.
+    warned: Vec<u32>,
+    previously_warned: Vec<u32>,
+    /// Regions switched since the last tick.
+    switched: Vec<(RegionId, bool)>,
+    /// Regions switched for this tick: the motion since the previous tick does not count for them.
+    just_switched: Vec<RegionId>,
+    outputs: DigitalOutputs,
+}
+
+impl RegionStates {
+    /// Permanent regions are on, temporary ones off.
+    pub(crate) fn new(config: &Configuration) -> Self {
+        let count = config.regions.len();
+        let outside = ZoneState::default();
+        let state = |life: Life| RegionState { active: life == Life::Permanent, zone: outside, presence: outside };
+        Self {
+            states: config.regions.iter().map(|r| state(r.life)).collect(),
+            measured: vec![false; count],
+            warned: Vec::with_capacity(count),
+            previously_warned: Vec::with_capacity(count),
+            switched: Vec::with_capacity(2 * count + 16),
+            just_switched: Vec::with_capacity(2 * count + 16),
+            outputs: DigitalOutputs::new(),
+        }
+    }
+
+    pub(crate) fn get(&self, region: RegionId) -> &RegionState {
+        &self.states[region.0]
+    }
+
+    pub(crate) fn is_active(&self, region: usize) -> bool {
+        self.states[region].active
+    }
+
+    /// The digital outputs, a bit each.
+    pub(crate) fn output_bits(&self) -> u64 {
+        self.outputs.bits
+    }
+
+    /// Switches a region; false where it is so already.
+    pub(crate) fn switch(&mut self, region: RegionId, on: bool) -> bool {
+        let is_change = self.states[region.0].active != on;
+        self.states[region.0].active = on;
+        if is_change && self.switched.len() < self.switched.capacity() {
+            self.switched.push((region, on));
+        }
+        is_change
+    }
+
+    /// Begins a tick: what was switched since the last one takes effect.
+    pub(crate) fn begin(&mut self, log: &mut EventLog) {
+        self.just_switched.clear();
+        for (region, on) in self.switched.drain(..) {
+            self.just_switched.push(region);
+            log.push(Some(region), if on { EventKind::On } else { EventKind::Off });
+        }
+    }
+
+    /// Chooses what is measured: all that is active, and exchange regions.
+    pub(crate) fn choose_measured(&mut self, config: &Configuration) {
+        for ((measured, state), region) in self.measured.iter_mut().zip(&self.states).zip(&config.regions) {
+            *measured = state.active || matches!(region.kind, RegionKind::Exchange { .. });
+        }
+    }
+
+    /// Finds out where the robot is now, and logs what has changed.
+    pub(crate) fn update(
+        &mut self,
+        config: &Configuration,
+        clearances: &RegionClearances,
+        sweep: &mut RegionSweep,
+        log: &mut EventLog,
+    ) {
+        std::mem::swap(&mut self.warned, &mut self.previously_warned);
+        self.warned.clear();
+        let Self { states, warned, previously_warned, just_switched, outputs, .. } = self;
+        let left = previously_warned.iter().filter(|r| clearances.get(**r as usize).is_none());
+        for r in clearances.near().iter().chain(left) {
+            let (id, region) = (RegionId(*r as usize), &config.regions[*r as usize]);
+            let state = &mut states[id.0];
+            let from = state.presence;
+            let mut to = from.next(clearances.get(id.0).map_or(f64::INFINITY, |c| c.distance), region);
+            if let Some(clearance) = clearances.get(id.0).filter(|_| !to.inside && !just_switched.contains(&id))
+                && let Some(passed_m) =
+                    sweep.passed(config, id, [clearance.previous_distance, clearance.distance], to.warned)
+            {
+                // A region that was passed is reported for one tick.
+                to = from.next(passed_m, region);
+            }
+            state.presence = to;
+            let reported = if state.active { to } else { ZoneState::default() };
+            if reported != state.zone {
+                outputs.change(id, region, state.zone, reported, log);
+                state.zone = reported;
+            }
+            if to.warned {
+                warned.push(*r);
+            }
+        }
+    }
+
+    /// Takes over the state of each region that is the same as a former one; those without one are as they are.
+    pub(crate) fn continue_from(
+        &mut self,
+        config: &Configuration,
+        former: &Self,
+        same: &[Option<RegionId>],
+        log: &mut EventLog,
+    ) {
+        self.warned.clear();
+        for (r, before) in same.iter().enumerate() {
+            let Some(before) = before else { continue };
+            let (state, before) = (&mut self.states[r], *former.get(*before));
+            self.outputs.change(RegionId(r), &config.regions[r], state.zone, before.zone, log);
+            *state = before;
+            if before.presence.warned {
+                self.warned.push(r as u32);
+            }
+        }
+    }
+}
