@@ -82,7 +82,7 @@ impl Monitor {
         self.exchange(region).is_some_and(|(client, slot)| client.holds(slot))
     }
 
-    /// The grants that come from outside of the process: those of [`Interlock::Granted`]. `None` where the robots share an
+    /// The grants that come from outside of the process: those of [`Granted`](crate::Interlock::Granted). `None` where the robots share an
     /// arbiter, and without exchange regions.
     pub fn slot_grants(&self) -> Option<&SlotGrants> {
         self.zone_client.as_ref()?.slot_grants()
