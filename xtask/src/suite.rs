@@ -39,8 +39,8 @@ struct Step {
     check: Check,
 }
 
-/// Cheap checks first: what fails fast should fail first. The workspace is compiled twice: checked by `clippy` (and `docs`), built by `tests`.
-/// What comes after `tests` runs beside them.
+/// Cheap checks first: what fails fast should fail first. The workspace is compiled twice: built by `tests`, checked by `clippy` (and `docs`).
+/// What comes after `tests` runs beside them, so that no processor rests while crates are compiled one after another.
 static STEPS: [Step; 10] = [
     Step { name: "fmt", what: "cargo fmt --check", check: fmt },
     Step {
@@ -53,12 +53,12 @@ static STEPS: [Step; 10] = [
         what: "no long lines, broken links or unknown names in documents",
         check: |c| documents::run(c.root),
     },
-    Step { name: "clippy", what: "lints of all targets, warnings are errors", check: clippy },
     Step {
         name: "tests",
         what: "unit and integration tests, with the references in Python and a browser",
         check: tests,
     },
+    Step { name: "clippy", what: "lints of all targets, warnings are errors", check: clippy },
     Step { name: "docs", what: "cargo doc, warnings are errors", check: docs },
     Step { name: "doctests", what: "the examples of the documentation", check: doctests },
     Step {
@@ -172,9 +172,10 @@ fn fmt(context: &Context) -> Result<(), String> {
 
 fn clippy(context: &Context) -> Result<(), String> {
     let args = [&["clippy"], &WORKSPACE[..], &["--all-targets", "--", "-D", "warnings"]].concat();
-    shell::cargo(context.root, &args, &network(context))?;
+    shell::cargo(context.root, &args, &beside_tests(context))?;
     // What differs without the feature is the command and the façade.
-    shell::cargo(context.root, &["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"], &network(context))
+    let without = ["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"];
+    shell::cargo(context.root, &without, &beside_tests(context))
 }
 
 fn tests(context: &Context) -> Result<(), String> {
