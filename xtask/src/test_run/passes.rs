@@ -1,7 +1,7 @@
 //! Which units passed with the very program and files that are here now: they need not run again, as in `go test`.
 //!
-//! A test may read any file of the repository and of the real data, so a change in one of them, but for the sources that are
-//! compiled, makes every unit run. Python, the browser and the C compiler are not looked at.
+//! A test may read any file of the repository and of the real data, so a change in one of them, but for documents and for the sources
+//! that are compiled, makes every unit run. Python, the browser and the C compiler are not looked at.
 
 use std::collections::HashMap;
 use std::collections::hash_map::DefaultHasher;
@@ -89,9 +89,12 @@ fn surroundings(root: &Path, env: &[(&str, &str)]) -> Option<u64> {
     settings.sort();
     settings.hash(&mut hasher);
     let files = shell::output(root, "git", &["ls-files", "-z", "--cached", "--others", "--exclude-standard"]).ok()?;
-    let is_source =
-        |file: &&str| file.starts_with("crates/") && Path::new(file).extension().is_some_and(|end| end == "rs");
-    files.split_terminator('\0').filter(|file| !is_source(file)).for_each(|file| look(&root.join(file), &mut hasher));
+    let is_read = |file: &&str| match Path::new(file).extension().and_then(OsStr::to_str) {
+        Some("rs") => !file.starts_with("crates/"),
+        Some("md") => false,
+        _ => true,
+    };
+    files.split_terminator('\0').filter(is_read).for_each(|file| look(&root.join(file), &mut hasher));
     look_into(&call::data_folder(root, None), &mut hasher);
     Some(hasher.finish())
 }
