@@ -5,6 +5,7 @@ mod cover_cache;
 mod inspected_robots;
 mod map;
 mod plan;
+mod plan_on_map;
 mod problems;
 mod query;
 mod region_constraint;

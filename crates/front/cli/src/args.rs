@@ -6,6 +6,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use elbowroom::analysis::map::MapModel;
 use elbowroom::analysis::query::{Level, QueryKind};
 
+use crate::arg_values::{margin, milliseconds};
 use crate::model_args::{JointArgs, Unit};
 
 /// Collision awareness for industrial robot cells.
@@ -37,7 +38,7 @@ pub(crate) enum Command {
     /// Compute the joint-space occupancy of a cell's objects for one robot
     Map(MapArgs),
     /// Find a collision-free, timed path of a robot from one joint state to another, or solve a file of planning problems
-    Plan(PlanArgs),
+    Plan(crate::plan_args::PlanArgs),
     /// Print the fuzzy rules of obstacle avoidance, or write them to a file for editing
     Rules(RulesArgs),
     /// Build a region for the cell file from taught points
@@ -286,137 +287,6 @@ pub(crate) struct MapArgs {
     /// Print one JSON document instead of the table
     #[arg(long)]
     pub(crate) json: bool,
-}
-
-#[derive(Debug, Args)]
-#[command(after_help = "Examples:
-  elbowroom plan cell.toml --robot arm --to 0.5,-0.3,1.2,0,0,0     from the robot's start
-  elbowroom plan cell.toml --robot arm --from -0.5,0,0,0,0,0 --to 0.5,0,0,0,0,0 --json
-  elbowroom plan cell.toml --robot arm --to 0.5,-0.3,1.2,0,0,0 --out path.csv
-  elbowroom plan cell.toml --robot arm --from home --to-pose 900,200,700,180,0,0   millimetres and degrees, as in the cell
-  elbowroom plan cell.toml --robot arm --to 0.5,-0.3,1.2,0,0,0 --clearance 0.02 --time-limit 20
-  elbowroom plan cell.toml --robot left --to reach --robot right --to home --out both.csv   both at the same time
-  elbowroom plan --urdf arm.urdf --srdf arm.srdf --problems problems.json
-  elbowroom plan --urdf arm.urdf --problems problems.json --only shelf --limit 10 --paths paths
-
---out writes timed samples for the controller.
-Obstacles are the objects, the other robots at their start, and the robot itself with tool and
-load, by the allowed collision matrix of the cell; the volumes that the monitor guards stay out of
-permanent forbidden regions.
-Exit status: 1 if no path was found; a path may exist nevertheless (docs/plan.md). With --problems:
-1 if a problem with a free start and a free goal was not solved.")]
-pub(crate) struct PlanArgs {
-    /// The cell file; or --urdf with --problems
-    #[arg(required_unless_present = "urdf", conflicts_with = "urdf")]
-    pub(crate) cell: Option<PathBuf>,
-    /// Name of the robot; optional if there is only one. Several robots move at the same time: --robot, --from and --to for
-    /// each, in the same order
-    #[arg(long, value_name = "NAME")]
-    pub(crate) robot: Vec<String>,
-    /// Start configuration: a comma-separated value per joint in chain order, rad (m for prismatic joints), or the name
-    /// of one of the robot's `states`, or `start`; default: its `start`
-    #[arg(long, value_name = "q,…|NAME", allow_hyphen_values = true)]
-    pub(crate) from: Vec<Configuration>,
-    /// Goal configuration, likewise
-    #[arg(long, value_name = "q,…|NAME", allow_hyphen_values = true, required_unless_present_any = ["urdf", "to_pose"])]
-    pub(crate) to: Vec<Configuration>,
-    /// Goal as a pose of the TCP in the world, in the cell file's units: x,y,z,roll,pitch,yaw or x,y,z,qx,qy,qz,qw
-    #[arg(long, value_name = "x,y,z,r,p,y", allow_hyphen_values = true, conflicts_with_all = ["to", "urdf"])]
-    pub(crate) to_pose: Option<Numbers>,
-    /// Configuration at --to-pose, of six axes with a spherical wrist: front or back, up or down, `no_flip` or flip, or
-    /// some of them
-    #[arg(long, value_name = "WORD,…", value_delimiter = ',', requires = "to_pose", conflicts_with = "to")]
-    pub(crate) configuration: Vec<String>,
-    /// Of the solutions for --to-pose only the one nearest to these joint values, as --from
-    #[arg(long, value_name = "q,…|NAME", allow_hyphen_values = true, requires = "to_pose", conflicts_with = "to")]
-    pub(crate) near: Option<Configuration>,
-    /// --from and --to are in the cell file's units, as in a program
-    #[arg(long, conflicts_with = "urdf")]
-    pub(crate) cell_units: bool,
-    /// The robot holds this object, as its program grips it, else where both are at the start; may be repeated
-    #[arg(long, value_name = "ROBOT=OBJECT", conflicts_with = "urdf")]
-    pub(crate) carry: Vec<String>,
-    /// Write the timed trajectory to this file: `t_s` and a column per joint, linear between rows
-    #[arg(long, value_name = "FILE.csv")]
-    pub(crate) out: Option<PathBuf>,
-    /// Write a page that plays the path in the 3-D scene, with the distances from regions, and opens offline
-    #[arg(long, value_name = "FILE.html", conflicts_with = "urdf")]
-    pub(crate) report: Option<PathBuf>,
-    /// Sampling period in seconds; default: the cell's control period, 0.002 with --problems
-    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
-    pub(crate) period: Option<f64>,
-    /// Time limit of the search in seconds; with --problems, of each problem
-    #[arg(long, value_name = "SECONDS", default_value = "5", value_parser = seconds, allow_negative_numbers = true)]
-    pub(crate) time_limit: f64,
-    /// Go on until the time limit, with shorter and shorter paths
-    #[arg(long)]
-    pub(crate) optimize: bool,
-    /// Security margin to all obstacles, in metres
-    #[arg(long, value_name = "METRES", default_value_t = 0.0, allow_negative_numbers = true)]
-    pub(crate) clearance: f64,
-    /// Seed of the random sampling; the same seed gives the same path
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    pub(crate) seed: u64,
-    #[command(flatten)]
-    pub(crate) problems: crate::plan_problems::args::ProblemArgs,
-    /// Print one JSON document instead of a table
-    #[arg(long)]
-    pub(crate) json: bool,
-}
-
-/// Numbers with commas or spaces between them.
-#[derive(Debug, Clone)]
-pub(crate) struct Numbers(pub(crate) Vec<f64>);
-
-impl std::str::FromStr for Numbers {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let number = |(i, word): (usize, &str)| {
-            let value = word.trim().parse::<f64>().ok().filter(|v| v.is_finite());
-            value.ok_or_else(|| format!("value {} is \"{}\", no finite number: write 0.5,-1.2,0", i + 1, word.trim()))
-        };
-        let has_commas = text.contains(',');
-        let words: Vec<&str> = if has_commas { text.split(',').collect() } else { text.split_whitespace().collect() };
-        words.into_iter().enumerate().map(number).collect::<Result<_, _>>().map(Self)
-    }
-}
-
-/// A configuration: joint values, or the name of a state.
-#[derive(Debug, Clone)]
-pub(crate) enum Configuration {
-    Values(Vec<f64>),
-    Named(String),
-}
-
-impl std::str::FromStr for Configuration {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let is_word = |text: &str| text.parse::<f64>().is_err() && !text.contains([',', ' ']);
-        if is_word(text.trim()) {
-            return Ok(Self::Named(text.trim().to_owned()));
-        }
-        text.parse().map(|Numbers(values)| Self::Values(values))
-    }
-}
-
-/// A distance in metres.
-fn margin(text: &str) -> Result<f64, String> {
-    let value = text.trim().parse::<f64>().ok().filter(|v| *v >= 0.0 && v.is_finite());
-    value.ok_or_else(|| "write a number of metres, 0 or more, as 0.1".into())
-}
-
-/// A duration in seconds.
-fn seconds(text: &str) -> Result<f64, String> {
-    let value = text.trim().parse::<f64>().ok().filter(|v| *v >= 1e-5 && *v <= 1e6);
-    value.ok_or_else(|| "write a number of seconds from 0.00001 to 1000000, as 2.5".into())
-}
-
-/// A duration in milliseconds.
-fn milliseconds(text: &str) -> Result<f64, String> {
-    let value = text.trim().parse::<f64>().ok().filter(|v| *v > 0.0 && *v <= 1e9);
-    value.ok_or_else(|| "write a number of milliseconds above 0, as 5".into())
 }
 
 #[derive(Debug, Args)]

@@ -5,6 +5,7 @@
 //! **Invariant.** Unless its reader closes the output early, a negative result or an invalid input or call never ends
 //! with status 0.
 
+mod arg_values;
 mod args;
 mod carry;
 mod check;
@@ -18,6 +19,7 @@ mod model_args;
 mod output;
 mod output_file;
 mod plan;
+mod plan_args;
 mod plan_problems;
 mod plan_report;
 mod plan_request;

@@ -3,15 +3,16 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use elbowroom::analysis::plan::{self, PathAnswer, PathGoal, PathRequest, TimedPath};
+use elbowroom::analysis::plan::{self, PathAnswer, PathGoal, PathPlanner, PathRequest, TimedPath};
 use elbowroom::cell::{Cell, QUATERNION_TOLERANCE, TcpTarget};
 use elbowroom::kinematics::inverse::ConfigurationChoice;
 use elbowroom::spatial::{Pose, Rotation, Vec3};
 
-use crate::args::{Configuration, Numbers, PlanArgs};
+use crate::arg_values::{Configuration, Numbers};
 use crate::carry;
 use crate::output::{ExitStatus, Failure, note, print, print_json};
 use crate::output_file::write_file;
+use crate::plan_args::{PlanArgs, Planner};
 use crate::plan_request::{configuration, settings};
 use crate::{plan_problems, plan_report, plan_several};
 
@@ -26,6 +27,7 @@ pub(crate) fn plan(args: &PlanArgs) -> Result<ExitStatus, Failure> {
         return plan_several::plan(&cell, args);
     }
     let request = PathRequest {
+        planner: planner(args)?,
         robot: args.robot.first().cloned(),
         from: at_most_one(args, "--from", &args.from)?
             .map(|from| configuration(args, &cell, None, from))
@@ -34,7 +36,7 @@ pub(crate) fn plan(args: &PlanArgs) -> Result<ExitStatus, Failure> {
         speed: 1.0,
         options: settings(args),
         period_s: args.period,
-        optimize: args.optimize,
+        optimize: args.search.optimize,
         carried: carry::attachments(&cell, &args.carry)?,
         ..PathRequest::default()
     };
@@ -55,6 +57,17 @@ pub(crate) fn plan(args: &PlanArgs) -> Result<ExitStatus, Failure> {
         }
     }
     Ok(if answer.found { ExitStatus::Success } else { ExitStatus::NegativeResult })
+}
+
+fn planner(args: &PlanArgs) -> Result<PathPlanner, Failure> {
+    match args.search.planner {
+        Planner::RrtConnect => Ok(PathPlanner::RrtConnect),
+        Planner::Grid if args.search.optimize => {
+            let what = "--optimize is for --planner rrt-connect: a path on a map is made short at once";
+            Err(Failure::Wrong(format!("{what}\n  write: --planner rrt-connect --optimize")))
+        }
+        Planner::Grid => Ok(PathPlanner::Grid),
+    }
 }
 
 /// The only value of an option that has one per robot.
@@ -152,7 +165,11 @@ fn text(answer: &PathAnswer) -> String {
     if !answer.regions.is_empty() {
         let _ = writeln!(out, "stays out of {}", answer.regions.join(", "));
     }
-    let _ = write!(out, "searched for {searched:.1} ms, made short in {shortened:.1} ms\n\n     ");
+    let _ = match answer.map_time {
+        Some(map) => write!(out, "made the map in {:.1} ms, searched it for {searched:.1} ms", 1e3 * map.as_secs_f64()),
+        None => write!(out, "searched for {searched:.1} ms, made short in {shortened:.1} ms"),
+    };
+    out += "\n\n     ";
     let width = |joint: &str| joint.chars().count().max(9) + 2;
     for joint in &answer.joints {
         let _ = write!(out, "{joint:>0$}", width(joint));

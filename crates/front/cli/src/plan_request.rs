@@ -6,15 +6,16 @@ use elbowroom::analysis::plan;
 use elbowroom::cell::{Cell, suggest};
 use elbowroom::planner::RrtConnectSettings;
 
-use crate::args::{Configuration, PlanArgs};
+use crate::arg_values::Configuration;
 use crate::output::Failure;
+use crate::plan_args::PlanArgs;
 
 /// Time limit, clearance and seed.
 pub(crate) fn settings(args: &PlanArgs) -> RrtConnectSettings {
     RrtConnectSettings {
-        time_limit: Duration::from_secs_f64(args.time_limit),
-        clearance_m: args.clearance,
-        seed: args.seed,
+        time_limit: Duration::from_secs_f64(args.search.time_limit),
+        clearance_m: args.search.clearance,
+        seed: args.search.seed,
         ..RrtConnectSettings::default()
     }
 }

@@ -7,9 +7,9 @@ use elbowroom::analysis::plan::{
 };
 use elbowroom::cell::Cell;
 
-use crate::args::PlanArgs;
 use crate::output::{ExitStatus, Failure, print, print_json};
 use crate::output_file::write_file;
+use crate::plan_args::{PlanArgs, Planner};
 use crate::plan_report::{self, PlayedPath};
 use crate::plan_request::{configuration, settings};
 
@@ -53,8 +53,12 @@ fn robots(cell: &Cell, args: &PlanArgs) -> Result<Vec<RobotPathRequest>, Failure
         let example = "--robot a --from start --to q,… --robot b --from q,… --to NAME";
         Err(Failure::Wrong(format!("{what}\n  write: {example}")))
     };
-    if args.to_pose.is_some() || args.optimize {
-        let option = if args.optimize { "--optimize" } else { "--to-pose" };
+    let for_one = [
+        (args.to_pose.is_some(), "--to-pose"),
+        (args.search.optimize, "--optimize"),
+        (args.search.planner == Planner::Grid, "--planner grid"),
+    ];
+    if let Some((_, option)) = for_one.iter().find(|(is_given, _)| *is_given) {
         return wrong(format!("{option} is for one robot, and there are {count}"));
     }
     if args.to.len() != count {

@@ -92,7 +92,7 @@ fn no_path_has_exit_status_1_and_a_reason() {
 
 #[test]
 fn invalid_requests_are_refused_with_a_hint() {
-    let cases: [(&[&str], &[&str]); 13] = [
+    let cases: [(&[&str], &[&str]); 15] = [
         (&["--robot", "arm", "--to", "0,0"], &["goal", "arm/link_2", "`ball`", "collision"]),
         (&["--robot", "arm", "--from", "0,0", "--to", "1,0"], &["start", "arm/link_2", "`ball`"]),
         (&["--robot", "arm", "--to", "3.5,0"], &["joint_1", "3.5", "2.96"]),
@@ -106,6 +106,8 @@ fn invalid_requests_are_refused_with_a_hint() {
         (&["--robot", "other", "--to", "1"], &["other", "largest speed", "joint_1", "speed = [180]", "[robot.other]"]),
         (&["--robot", "arm", "--to", "1,0", "--time-limit", "-1"], &["--time-limit"]),
         (&["--robot", "arm", "--to", "1,0", "--clearance", "nan"], &["clearance", "NaN"]),
+        (&["--robot", "arm", "--to", "1,0", "--planner", "grid"], &["has 2 joints", "need 3", "--planner rrt-connect"]),
+        (&["--robot", "arm", "--to", "1,0", "--planner", "grid", "--optimize"], &["--optimize", "rrt-connect"]),
     ];
     for (args, words) in cases {
         let answer = plan(CELL, args).expect(2);
@@ -119,6 +121,39 @@ fn invalid_requests_are_refused_with_a_hint() {
     let args = ["plan", "cell.toml", "--robot", "arm", "--to", "-1,0.2", "--out", "no/such/folder.csv"];
     assert!(elbowroom(dir.path(), &args).expect(2).stderr.contains("cannot be written"));
     elbowroom(dir.path(), &["plan", "missing.toml", "--to", "0"]).expect(2);
+}
+
+#[test]
+fn a_path_on_the_map_is_the_same_in_every_run() {
+    let dir = with_cell(&CELL.replace(
+        "{ a = 300, min = -170, max = 170, speed = 90 }]\nlinks = [[],",
+        "{ a = 300, min = -170, max = 170, speed = 90 }, { a = 100, min = -90, max = 90, speed = 90 }]\nlinks = [[],",
+    )
+    .replace("radius = 40 } }]\nstart = [-60, 0]", "radius = 40 } }, []]\nstart = [-60, 0, 0]"));
+    let plan = |more: &[&str], status| {
+        let args =
+            ["plan", "cell.toml", "--robot", "arm", "--from", "-1,0.1,0", "--to", "1,-.1,0", "--planner", "grid"];
+        elbowroom(dir.path(), &[&args[..], more].concat()).expect(status)
+    };
+    let answers = [1, 2].map(|_| plan(&["--json"], 0).json());
+    assert_eq!(answers[0]["waypoints"], answers[1]["waypoints"]);
+    assert!(answers[0]["waypoints"].as_array().unwrap().len() > 2 && answers[0]["map_us"].as_u64() > Some(0));
+    assert!(plan(&[], 0).stdout.contains("made the map in"));
+    let two = [
+        "plan",
+        "cell.toml",
+        "--robot",
+        "arm",
+        "--robot",
+        "other",
+        "--to",
+        "1,0,0",
+        "--to",
+        "0.1",
+        "--planner",
+        "grid",
+    ];
+    assert!(elbowroom(dir.path(), &two).expect(2).stderr.contains("--planner grid is for one robot"));
 }
 
 /// Our own arm with six joints, a mesh on each link, a gripper and a pallet, and another arm beside it.

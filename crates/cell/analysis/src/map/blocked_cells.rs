@@ -1,6 +1,6 @@
 //! The cells that an object blocks, as a table or as a tree of boxes.
 
-use elbowroom_cspace::{BoxTree, Grid, GridAxis, OccupancyArray, OccupancyBitmap};
+use elbowroom_cspace::{BoxTree, Grid, GridAxis, OccupancyArray, OccupancyBitmap, RowSpan};
 
 /// The cells that an object blocks.
 #[derive(Debug, Clone)]
@@ -52,6 +52,27 @@ impl BlockedCells {
             Self::Tree(tree) => tree.bytes(),
         }
     }
+}
+
+/// The cells of three axes that any of some objects blocks.
+pub(crate) fn table<'b>(axes: &[GridAxis; 3], all: impl IntoIterator<Item = &'b BlockedCells>) -> OccupancyBitmap {
+    let shape = axes.each_ref().map(GridAxis::count);
+    let mut union = OccupancyBitmap::new(shape);
+    let mut block = |[i, j, k]: [u16; 3]| {
+        let row = usize::from(i) * shape[1] + usize::from(j);
+        union.block(RowSpan { row: row as u32, first: k, last: k });
+    };
+    for cells in all {
+        match cells {
+            BlockedCells::Table { table, .. } => table.iter().for_each(&mut block),
+            BlockedCells::Tree(tree) => {
+                let [planes, rows, cells] = shape.map(|n| n as u16);
+                let each = (0..planes).flat_map(|i| (0..rows).flat_map(move |j| (0..cells).map(move |k| [i, j, k])));
+                each.filter(|cell| tree.is_blocked_cell(cell)).for_each(&mut block);
+            }
+        }
+    }
+    union
 }
 
 /// The cells that any of some objects blocks; `None` where there are too many.

@@ -20,7 +20,7 @@ pub use self::model::MapModel;
 use self::solids_map::{FilledCells, SolidsMap};
 use crate::plan::request_validation::select_robot;
 
-mod blocked_cells;
+pub(crate) mod blocked_cells;
 mod link_maps;
 mod model;
 mod solids_map;

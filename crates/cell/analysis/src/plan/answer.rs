@@ -25,6 +25,8 @@ pub struct PathAnswer {
     pub configuration: Option<ArmConfiguration>,
     /// Why no path was found.
     pub reason: Option<String>,
+    /// Time of making the map on which the path was planned; `None` without one.
+    pub map_time: Option<Duration>,
     /// Time of the search, µs.
     pub planning_us: u64,
     /// Time of shortcutting, µs.
@@ -57,6 +59,7 @@ impl PathAnswer {
             regions: Vec::new(),
             configuration: None,
             reason: Some(reason),
+            map_time: None,
             planning_us: micros(took),
             simplify_us: 0,
             motion: None,
@@ -73,6 +76,7 @@ impl PathAnswer {
             regions: Vec::new(),
             configuration: end.and_then(|q| robot.ik_solver().configuration(q)),
             reason: None,
+            map_time: None,
             planning_us: micros(path.planning_time),
             simplify_us: micros(path.simplification_time),
             motion: Some(TimedPath { waypoints: path.waypoints, cost_rad: path.length_rad, duration_s, stops, rows }),
@@ -94,6 +98,7 @@ impl Serialize for PathAnswer {
             cost_rad: Option<f64>,
             duration_s: Option<f64>,
             stops: Option<usize>,
+            map_us: Option<u64>,
             planning_us: u64,
             simplify_us: u64,
         }
@@ -109,6 +114,7 @@ impl Serialize for PathAnswer {
             cost_rad: motion.map(|m| m.cost_rad),
             duration_s: motion.map(|m| m.duration_s),
             stops: motion.map(|m| m.stops),
+            map_us: self.map_time.map(micros),
             planning_us: self.planning_us,
             simplify_us: self.simplify_us,
         };

@@ -4,6 +4,8 @@
 //! the allowed collision matrix. Permanent forbidden regions of the robot are path constraints on its guarded volumes.
 
 mod answer;
+mod on_map;
+mod path_query;
 pub(crate) mod request_validation;
 mod several;
 
@@ -13,8 +15,7 @@ use elbowroom_cell::region_constraint::RegionConstraint;
 use elbowroom_cell::{Cell, CellRobot, OutOfReachProofs, QueryModel, TcpTarget, region_constraint};
 use elbowroom_formats::FormatError;
 use elbowroom_planner::{
-    CoverModel, CoverObstacles, CoverRrtConnect, KinematicLimits, PlannedPath, RrtConnect, RrtConnectError,
-    RrtConnectSettings, TaskSpaceRegion, TimedMotion,
+    CoverModel, CoverObstacles, CoverRrtConnect, RrtConnect, RrtConnectError, RrtConnectSettings, TaskSpaceRegion,
 };
 use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_scene::{Attachment, Scene, SceneState};
@@ -22,6 +23,8 @@ use elbowroom_spatial::Pose;
 use elbowroom_spatial::units::LengthUnit;
 
 use crate::cover_cache::CoverCache;
+use on_map::MapQuery;
+use path_query::Query;
 
 pub use answer::{PathAnswer, TimedPath};
 pub use request_validation::select_robot;
@@ -48,6 +51,16 @@ impl<Q: Into<Vec<f64>>> From<Q> for PathGoal {
     }
 }
 
+/// How a path is searched for.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum PathPlanner {
+    /// Two trees of random samples, proven on sphere covers and in the exact scene: any number of joints.
+    #[default]
+    RrtConnect,
+    /// Through the free cells of the robot's joint-space map of three joints.
+    Grid,
+}
+
 /// A request for a path.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PathRequest {
@@ -57,6 +70,8 @@ pub struct PathRequest {
     pub from: Option<Vec<f64>>,
     /// The goal.
     pub to: PathGoal,
+    /// How it is searched for.
+    pub planner: PathPlanner,
     /// Share of the joints' speeds that the motion uses, above 0 and at most 1.
     pub speed: f64,
     /// Time limit, clearance and seed.
@@ -78,6 +93,7 @@ impl Default for PathRequest {
             robot: None,
             from: None,
             to: PathGoal::default(),
+            planner: PathPlanner::default(),
             speed: 1.0,
             options,
             period_s: None,
@@ -113,7 +129,8 @@ impl Default for PathRequest {
 ///
 /// # Errors
 /// An unknown robot; a robot without speed limits; an invalid start or goal: beyond limits, in collision, with a wrong
-/// number of values; a goal in a region; a start in a region that no straight path leaves.
+/// number of values; a goal in a region; a start in a region that no straight path leaves. With [`PathPlanner::Grid`] also a map
+/// that is not of three joints, and a request that moves others, carries objects or places them.
 pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, FormatError> {
     let (id, robot) = request_validation::select_robot(cell, request.robot.as_deref())?;
     let mut limits = request_validation::kinematic_limits(cell, robot)?;
@@ -127,7 +144,16 @@ pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, FormatErro
     let clearance_m = if request.options.clearance_m.is_finite() { request.options.clearance_m } else { 0.0 };
     // A link without bounds cannot be covered; the exact scene plans for it.
     let covers = CoverCache::of_user();
-    let model = CoverModel::with_covers(&scene, &state, id, clearance_m, &covers).ok();
+    let is_on_map = request.planner == PathPlanner::Grid;
+    if is_on_map && !(request.carried.is_empty() && request.placed.is_empty()) {
+        let what = format!(
+            "robot \"{}\": a map has objects where the cell file has them, and no robot carries any",
+            robot.name
+        );
+        return Err(FormatError::new(&cell.file, robot.line, what).hint("--planner rrt-connect"));
+    }
+    let with_covers = || CoverModel::with_covers(&scene, &state, id, clearance_m, &covers).ok();
+    let model = if is_on_map { None } else { with_covers() };
     let obstacles =
         model.as_ref().map(|model| CoverObstacles::with_covers(model, &scene, &state, clearance_m, &covers));
     let period_s = request.period_s.unwrap_or(cell.tick_s);
@@ -138,7 +164,11 @@ pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, FormatErro
             exact = exact.with_constraint(constraint);
         }
         let (settings, optimize) = (&request.options, request.optimize);
-        let query = Query { state: &state, goals: &goals, settings, limits: &limits, period_s, optimize };
+        let query =
+            Query { scene: &scene, state: &state, goals: &goals, settings, limits: &limits, period_s, optimize };
+        if is_on_map {
+            return Ok(PathAnswer { regions, ..MapQuery { cell, id, query }.plan(exact)? });
+        }
         let begin = Instant::now();
         let found = match (&model, &obstacles) {
             (Some(model), Some(obstacles)) => query.on_covers(CoverRrtConnect::new(exact, model, obstacles)),
@@ -153,47 +183,6 @@ pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, FormatErro
         };
         Ok(PathAnswer { regions, ..answer })
     })
-}
-
-/// What a planner is asked.
-struct Query<'q> {
-    state: &'q SceneState,
-    goals: &'q [Vec<f64>],
-    settings: &'q RrtConnectSettings,
-    limits: &'q KinematicLimits,
-    period_s: f64,
-    optimize: bool,
-}
-
-impl Query<'_> {
-    fn on_covers(&self, mut planner: CoverRrtConnect) -> Result<(PlannedPath, TimedMotion), RrtConnectError> {
-        let path = if self.optimize {
-            planner.plan_anytime(self.state, self.goals, self.settings)?.path
-        } else {
-            planner.plan_to_any(self.state, self.goals, self.settings)?
-        };
-        let motion = planner.time_parametrize(self.state, &path, self.limits, self.period_s, self.settings)?;
-        Ok((path, motion))
-    }
-
-    fn exactly(&self, mut planner: RrtConnect) -> Result<(PlannedPath, TimedMotion), RrtConnectError> {
-        // Each goal in its share of the time; what is wrong with the first one is said.
-        let share = u32::try_from(self.goals.len()).unwrap_or(u32::MAX).max(1);
-        let settings = RrtConnectSettings { time_limit: self.settings.time_limit / share, ..*self.settings };
-        let mut path = Err(RrtConnectError::NoGoal);
-        for (i, goal) in self.goals.iter().enumerate() {
-            let found = planner.plan(self.state, goal, &settings);
-            if i == 0 || found.is_ok() {
-                path = found;
-            }
-            if path.is_ok() {
-                break;
-            }
-        }
-        let path = path?;
-        let motion = planner.time_parametrize(self.state, &path, self.limits, self.period_s, self.settings)?;
-        Ok((path, TimedMotion::of(&motion, self.period_s)?))
-    }
 }
 
 /// The configurations at which a path may end.

@@ -15,8 +15,8 @@ use elbowroom::formats::problem_set;
 use elbowroom::formats::robot::{self, LoadOptions};
 use serde::Serialize;
 
-use crate::args::PlanArgs;
 use crate::output::{ExitStatus, Failure, note, print, print_json, width};
+use crate::plan_args::PlanArgs;
 use crate::progress::Progress;
 use path_files::PathFiles;
 
@@ -55,17 +55,17 @@ pub(crate) fn run(urdf: &Path, file: &Path, args: &PlanArgs) -> Result<ExitStatu
 }
 
 fn settings(args: &PlanArgs) -> Result<ProblemSettings, Failure> {
-    if !(args.clearance >= 0.0 && args.clearance.is_finite()) {
-        let what = format!("--clearance is {}\n  write: a finite number of metres, 0 or more", args.clearance);
+    if !(args.search.clearance >= 0.0 && args.search.clearance.is_finite()) {
+        let what = format!("--clearance is {}\n  write: a finite number of metres, 0 or more", args.search.clearance);
         return Err(Failure::Wrong(what));
     }
     let defaults = ProblemSettings::default();
     Ok(ProblemSettings {
-        time_limit: Duration::from_secs_f64(args.time_limit),
-        clearance_m: args.clearance,
-        seed: args.seed,
+        time_limit: Duration::from_secs_f64(args.search.time_limit),
+        clearance_m: args.search.clearance,
+        seed: args.search.seed,
         period_s: args.period.unwrap_or(defaults.period_s),
-        optimize: args.optimize,
+        optimize: args.search.optimize,
     })
 }
 

@@ -128,6 +128,38 @@ impl<'s> RrtConnect<'s> {
         Ok(self.connect(begin, exits, &mut random, settings)?.with_ends(ends))
     }
 
+    /// The first of these straight segments, by the number of the waypoint at its end, that a sweep of the exact scene does not
+    /// prove free or that the constraint does not allow; `None` if all of them are proven. The first waypoint is where the robot is
+    /// in `start`. Serves paths that were planned otherwise, such as on a map.
+    ///
+    /// ```
+    /// use elbowroom_planner::{RrtConnect, RrtConnectSettings};
+    /// use elbowroom_robot::RobotId;
+    /// use elbowroom_scene::{SceneState, example};
+    /// let scene = example::two_arms();
+    /// let mut state = SceneState::new(&scene);
+    /// state.set_q(&scene, RobotId(0), &[-0.9, 1.3, 0.6])?;
+    /// let (mut planner, settings) = (RrtConnect::new(&scene, RobotId(0))?, RrtConnectSettings::default());
+    /// let [left, up, over, right] = [[-0.9, 1.3, 0.6], [-0.9, 0.2, 0.6], [0.9, 0.2, 0.6], [0.9, 1.3, 0.6]].map(Vec::from);
+    /// let through = [left.clone(), right.clone()];
+    /// assert_eq!(planner.first_unproven_segment(&state, &through, &settings)?, Some(1));
+    /// assert_eq!(planner.first_unproven_segment(&state, &[left, up, over, right], &settings)?, None);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`plan`](Self::plan) for the ends and the settings.
+    pub fn first_unproven_segment(
+        &mut self,
+        start: &SceneState,
+        waypoints: &[Vec<f64>],
+        settings: &RrtConnectSettings,
+    ) -> Result<Option<usize>, RrtConnectError> {
+        self.prepare(start, waypoints.last().map_or(&[], |q| q), settings)?;
+        let unproven = waypoints.windows(2).position(|pair| !self.validator.proves_motion(&pair[0], &pair[1]));
+        Ok(unproven.map(|before| before + 1))
+    }
+
     fn connect(
         &mut self,
         begin: Instant,

@@ -1,0 +1,56 @@
+//! Values of arguments: numbers, configurations, lengths of time.
+
+/// Numbers with commas or spaces between them.
+#[derive(Debug, Clone)]
+pub(crate) struct Numbers(pub(crate) Vec<f64>);
+
+impl std::str::FromStr for Numbers {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let number = |(i, word): (usize, &str)| {
+            let value = word.trim().parse::<f64>().ok().filter(|v| v.is_finite());
+            value.ok_or_else(|| format!("value {} is \"{}\", no finite number: write 0.5,-1.2,0", i + 1, word.trim()))
+        };
+        let has_commas = text.contains(',');
+        let words: Vec<&str> = if has_commas { text.split(',').collect() } else { text.split_whitespace().collect() };
+        words.into_iter().enumerate().map(number).collect::<Result<_, _>>().map(Self)
+    }
+}
+
+/// A configuration: joint values, or the name of a state.
+#[derive(Debug, Clone)]
+pub(crate) enum Configuration {
+    Values(Vec<f64>),
+    Named(String),
+}
+
+impl std::str::FromStr for Configuration {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let is_word = |text: &str| text.parse::<f64>().is_err() && !text.contains([',', ' ']);
+        if is_word(text.trim()) {
+            return Ok(Self::Named(text.trim().to_owned()));
+        }
+        text.parse().map(|Numbers(values)| Self::Values(values))
+    }
+}
+
+/// A distance in metres.
+pub(crate) fn margin(text: &str) -> Result<f64, String> {
+    let value = text.trim().parse::<f64>().ok().filter(|v| *v >= 0.0 && v.is_finite());
+    value.ok_or_else(|| "write a number of metres, 0 or more, as 0.1".into())
+}
+
+/// A duration in seconds.
+pub(crate) fn seconds(text: &str) -> Result<f64, String> {
+    let value = text.trim().parse::<f64>().ok().filter(|v| *v >= 1e-5 && *v <= 1e6);
+    value.ok_or_else(|| "write a number of seconds from 0.00001 to 1000000, as 2.5".into())
+}
+
+/// A duration in milliseconds.
+pub(crate) fn milliseconds(text: &str) -> Result<f64, String> {
+    let value = text.trim().parse::<f64>().ok().filter(|v| *v > 0.0 && *v <= 1e9);
+    value.ok_or_else(|| "write a number of milliseconds above 0, as 5".into())
+}
