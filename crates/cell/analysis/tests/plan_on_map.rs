@@ -1,9 +1,10 @@
 //! Paths through the free cells of a map: what they are, and why there is none.
 
 use elbowroom_analysis::map::{MapRequest, map};
-use elbowroom_analysis::plan::{PathAnswer, PathPlanner, PathRequest, plan};
-use elbowroom_cell::Cell;
+use elbowroom_analysis::plan::{PathAnswer, PathGoal, PathPlanner, PathRequest, plan};
+use elbowroom_cell::{Cell, TcpTarget};
 use elbowroom_formats::FormatError;
+use elbowroom_kinematics::ChainState;
 use elbowroom_robot::ObjectId;
 use elbowroom_spatial::Pose;
 
@@ -113,12 +114,41 @@ fn what_a_map_does_not_know_is_tested_afterwards() {
     };
     let region = "[region.press]\nshape = \"box\"\nfrom = [700, -100, 0]\nto = [900, 100, 800]\n";
     let closed = refused(region);
-    assert!(closed.contains("regions") && closed.contains("--planner rrt-connect"), "{closed}");
+    assert!(closed.contains("near to a region") && closed.contains("--planner rrt-connect"), "{closed}");
     let other = "[robot.post]\ndh = [{ kind = \"prismatic\", min = 0, max = 100, speed = 100 }]\n\
                  links = [{ sphere = { radius = 300 } }]\nbase = { at = [800, 0, 400], rpy = [0, 0, 0] }\n";
     let hit = refused(other);
     assert!(hit.contains("post/") && hit.contains("arm/"), "{hit}");
+    // What concerns others does not concern the path: a robot that stands in an object.
+    let apart = "[robot.post]\ndh = [{ kind = \"prismatic\", min = 0, max = 100, speed = 100 }]\n\
+                 links = [{ sphere = { radius = 300 } }]\nbase = { at = [5000, 0, 400], rpy = [0, 0, 0] }\n\
+                 [object.bench]\nshape = \"box\"\nat = [5000, 0, 400]\nsize = [100, 100, 100]\n";
+    let cell = parse(&format!("{free}{apart}"));
+    let request = PathRequest {
+        robot: Some("arm".into()),
+        from: Some(START.into()),
+        to: GOAL[..].into(),
+        ..PathRequest::default()
+    };
+    assert!(plan(&cell, &PathRequest { planner: PathPlanner::Grid, ..request }).unwrap().found);
     assert!(asked(&parse(free), &START, &GOAL).unwrap().motion.is_some_and(|m| m.waypoints.len() == 2));
+}
+
+#[test]
+fn of_the_solutions_for_a_pose_one_that_is_reached_is_taken() {
+    let cell = parse(ARM);
+    let at = |q: &[f64]| {
+        let robot = &cell.robots[0];
+        let mut state = ChainState::new(&robot.robot.chain);
+        state.q.copy_from_slice(q);
+        robot.robot.chain.forward(&mut state);
+        robot.base_in_world * state.link_in_root(robot.flange) * robot.tcp_in_flange
+    };
+    let to = PathGoal::Tcp(TcpTarget::from(at(&GOAL)));
+    let request = PathRequest { planner: PathPlanner::Grid, from: Some(START.into()), to, ..PathRequest::default() };
+    let motion = plan(&cell, &request).unwrap().motion.expect("a path");
+    let end = at(&motion.rows[motion.rows.len() - 1].1);
+    assert!((end.translation - at(&GOAL).translation).length() < 1e-5);
 }
 
 #[test]

@@ -24,7 +24,7 @@ impl Monitor {
         self.faults.input
     }
 
-    /// True where a volume is a part of the robot at present.
+    /// Whether a volume is a part of the robot at present.
     pub fn is_attached(&self, volume: VolumeId) -> bool {
         volume.0 < self.config.volumes.len() && self.now.attached.contains(volume.0)
     }
@@ -33,7 +33,7 @@ impl Monitor {
         &self.now.attached
     }
 
-    /// True where the region is active.
+    /// Whether the region is active.
     pub fn is_active(&self, region: RegionId) -> bool {
         self.regions.is_active(region.0)
     }
@@ -67,22 +67,22 @@ impl Monitor {
         found.map(|d| d.distance)
     }
 
-    /// True where a guarded volume is inside the region (with hysteresis).
+    /// Whether a guarded volume is inside the region (with hysteresis).
     pub fn is_inside(&self, region: RegionId) -> bool {
         self.regions.get(region).zone.inside
     }
 
-    /// True where a guarded volume is inside the region or its warning zone (with hysteresis).
+    /// Whether a guarded volume is inside the region or its warning zone (with hysteresis).
     pub fn is_warned(&self, region: RegionId) -> bool {
         self.regions.get(region).zone.warned
     }
 
-    /// True where this robot holds the exchange region.
+    /// Whether this robot holds the exchange region.
     pub fn holds(&self, region: RegionId) -> bool {
         self.exchange(region).is_some_and(|(client, slot)| client.holds(slot))
     }
 
-    /// The grants that come from outside of the process: those of [`Granted`](crate::Interlock::Granted). `None` where the robots share an
+    /// The grants that come from outside of the process ([`Granted`](crate::Interlock::Granted)). `None` where the robots share an
     /// arbiter, and without exchange regions.
     pub fn slot_grants(&self) -> Option<&SlotGrants> {
         self.zone_client.as_ref()?.slot_grants()
@@ -101,7 +101,7 @@ impl Monitor {
         }
     }
 
-    /// True where the region stops this robot now: it is active, and forbidden or taken by another robot. An exchange region
+    /// Whether the region stops this robot now: it is active, and forbidden or taken by another robot. An exchange region
     /// without a holder is not closed: it is granted on approach.
     pub fn is_closed(&self, region: RegionId) -> bool {
         self.is_active(region)

@@ -8,16 +8,15 @@ use elbowroom_cell::{Cell, CellRobot};
 use elbowroom_cspace::{Grid, GridAxis};
 use elbowroom_formats::FormatError;
 use elbowroom_planner::{
-    GridPlanner, GridPlannerError, GridPlannerSettings, MappedJoints, Path, PlannedPath, RrtConnect, RrtConnectError,
-    TimedMotion,
+    GridPlanner, GridPlannerError, GridPlannerSettings, Path, PlannedPath, RrtConnect, RrtConnectError, TimedMotion,
 };
 use elbowroom_robot::RobotId;
-use elbowroom_scene::{Checker, CheckerOptions, SweepOptions};
+use elbowroom_scene::{Checker, CheckerOptions, Selection, SweepOptions};
 
 use super::answer::PathAnswer;
 use super::path_query::Query;
 use super::request_validation::planner_error;
-use crate::map::{CellMap, MapRequest, blocked_cells, map, select_map};
+use crate::map::{MapRequest, axes, blocked_cells, map, select_map};
 
 /// Joints that are not in the map stay within this of the start, rad or m.
 const HELD: f64 = 1e-9;
@@ -30,50 +29,61 @@ pub(super) struct MapQuery<'q> {
 }
 
 impl MapQuery<'_> {
-    /// The path, or why there is none.
+    /// The path to the first goal that is reached, or why there is none to the first one.
     ///
     /// # Errors
-    /// [`FormatError`] where the map has not three joints, or the request moves others; where start or goal are in collision
-    /// or beyond limits.
+    /// [`FormatError`] where the map has not three joints, or too many cells, or the request moves other joints; where the start or
+    /// all goals are in collision or beyond limits.
     pub fn plan(&self, mut exact: RrtConnect<'_>) -> Result<PathAnswer, FormatError> {
         let robot = &self.cell.robots[self.id.0];
-        let joints = self.mapped_joints(robot)?;
-        let goal = self.goal(robot, joints)?;
-        let Query { state, settings, limits, period_s, .. } = &self.query;
-        let refused = |e: RrtConnectError| planner_error(self.cell, robot, &e);
-        // Of the ends alone: a contact is no matter of the map.
-        exact.first_unproven_segment(state, std::slice::from_ref(&goal), settings).map_err(refused)?;
+        let (joints, grid) = self.mapped_joints(robot)?;
+        let goals = self.free_goals(self.goals(robot, joints)?, &mut exact)?;
         let begin = Instant::now();
         let map = map(self.cell, &MapRequest { robot: Some(robot.name.clone()), ..MapRequest::default() })?;
+        let occupancy = blocked_cells::table(grid.axes(), map.obstacles.iter().map(|o| &o.blocks));
         let map_time = begin.elapsed();
-        let searched = Instant::now();
-        let none = |reason: String| PathAnswer {
-            map_time: Some(map_time),
-            ..PathAnswer::none(robot, begin.elapsed(), reason)
-        };
-        let found = match self.search(&map, joints, &goal) {
-            Ok(path) => path,
-            Err(e) => return Ok(none(in_words(&e, robot))),
-        };
-        let planning_time = searched.elapsed();
-        if let Some(reason) = self.touches(&found, joints) {
-            return Ok(none(reason));
+        let wrong = |e: GridPlannerError| FormatError::new(&self.cell.file, robot.line, e.to_string());
+        let mut planner = GridPlanner::new(&grid, &occupancy).map_err(wrong)?;
+        let mut reasons = Vec::new();
+        for goal in &goals {
+            match self.plan_to(goal, joints, &mut planner, &mut exact)? {
+                Ok((path, motion)) => {
+                    return Ok(PathAnswer { map_time: Some(map_time), ..PathAnswer::found(robot, path, motion) });
+                }
+                Err(reason) => reasons.push(reason),
+            }
         }
-        let path = self.planned(&found, joints, planning_time);
-        if let Some(segment) = exact.first_unproven_segment(state, &path.waypoints, settings).map_err(refused)? {
-            let reason = format!(
-                "the path through free cells is not proven clear of regions and other robots before waypoint {segment}: \
-                 a map does not know them; --planner rrt-connect goes around"
-            );
-            return Ok(none(reason));
-        }
-        let motion = exact.time_parametrize(state, &path, limits, *period_s, settings).map_err(refused)?;
-        let motion = TimedMotion::of(&motion, *period_s).map_err(refused)?;
-        Ok(PathAnswer { map_time: Some(map_time), ..PathAnswer::found(robot, path, motion) })
+        let reason = reasons.into_iter().next().unwrap_or_default();
+        Ok(PathAnswer { map_time: Some(map_time), ..PathAnswer::none(robot, begin.elapsed(), reason) })
     }
 
-    /// The three joints of the robot's map.
-    fn mapped_joints(&self, robot: &CellRobot) -> Result<[usize; 3], FormatError> {
+    /// The path to one goal with its motion, or why there is none.
+    fn plan_to(
+        &self,
+        goal: &[f64],
+        joints: [usize; 3],
+        planner: &mut GridPlanner,
+        exact: &mut RrtConnect<'_>,
+    ) -> Result<Result<(PlannedPath, TimedMotion), String>, FormatError> {
+        let robot = &self.cell.robots[self.id.0];
+        let Query { state, settings, limits, period_s, .. } = &self.query;
+        let refused = |e: RrtConnectError| planner_error(self.cell, robot, &e);
+        let of = |q: &[f64]| joints.map(|j| q[j]);
+        let searched = Instant::now();
+        let found = match planner.plan(of(state.q(self.id)), of(goal), &GridPlannerSettings::default()) {
+            Ok(path) => path,
+            Err(e) => return Ok(Err(in_words(&e, robot))),
+        };
+        let path = self.planned(&found, joints, searched.elapsed());
+        if let Some(segment) = exact.first_unproven_segment(state, &path.waypoints, settings).map_err(refused)? {
+            return Ok(Err(self.unproven(&path, segment)));
+        }
+        let motion = exact.time_parametrize(state, &path, limits, *period_s, settings).map_err(refused)?;
+        Ok(Ok((path, TimedMotion::of(&motion, *period_s).map_err(refused)?)))
+    }
+
+    /// The three joints of the robot's map, and its cells.
+    fn mapped_joints(&self, robot: &CellRobot) -> Result<([usize; 3], Grid), FormatError> {
         let (_, spec) = select_map(self.cell, Some(&robot.name))?;
         let wrong = |what: String, hint: String| FormatError::new(&self.cell.file, spec.line, what).hint(hint);
         let names = robot.joint_names();
@@ -99,44 +109,67 @@ impl MapQuery<'_> {
             let hint = format!("others = \"any\"   (in [map.{}]), or --planner rrt-connect", robot.name);
             return Err(wrong(what, hint));
         }
-        Ok(joints)
+        // The map itself repeats the warnings.
+        let (axes, _) = axes(self.cell, robot, &spec, &mut Vec::new())?;
+        let axes =
+            <[GridAxis; 3]>::try_from(axes).map_err(|axes| wrong(format!("{} axes", axes.len()), String::new()))?;
+        let grid = Grid::new(axes).map_err(|e| wrong(e.to_string(), "step = 2   (larger)".into()))?;
+        Ok((joints, grid))
     }
 
-    /// The first goal at which the other joints are as at the start.
-    fn goal(&self, robot: &CellRobot, joints: [usize; 3]) -> Result<Vec<f64>, FormatError> {
+    /// The goals at which the other joints are as at the start.
+    fn goals(&self, robot: &CellRobot, joints: [usize; 3]) -> Result<Vec<&Vec<f64>>, FormatError> {
         let from = self.query.state.q(self.id);
         let moved = |goal: &[f64]| (0..goal.len()).find(|j| !joints.contains(j) && (goal[*j] - from[*j]).abs() > HELD);
-        if let Some(goal) = self.query.goals.iter().find(|goal| moved(goal).is_none()) {
-            return Ok(goal.clone());
-        }
+        let goals: Vec<&Vec<f64>> = self.query.goals.iter().filter(|goal| moved(goal).is_none()).collect();
+        let Some(other) = self.query.goals.first().and_then(|goal| moved(goal)).filter(|_| goals.is_empty()) else {
+            return Ok(goals);
+        };
         let names = robot.joint_names();
         let mapped = joints.map(|j| names[j].as_str()).join(", ");
-        let other =
-            self.query.goals.first().and_then(|goal| moved(goal)).map_or("another joint", |j| names[j].as_str());
-        let what = format!("the map of robot \"{}\" is of {mapped}, and the goal moves `{other}`", robot.name);
+        let what = format!("the map of robot \"{}\" is of {mapped}, and the goal moves `{}`", robot.name, names[other]);
         let hint = "a goal with the other joints as at the start, or --planner rrt-connect";
         Err(FormatError::new(&self.cell.file, robot.line, what).hint(hint))
     }
 
-    fn search(&self, map: &CellMap, joints: [usize; 3], goal: &[f64]) -> Result<Path, GridPlannerError> {
-        let axes = <[GridAxis; 3]>::try_from(map.axes.clone()).map_err(|_| GridPlannerError::NoPath)?;
-        let occupancy = blocked_cells::table(&axes, map.obstacles.iter().map(|o| &o.blocks));
-        // A map that was made has no more cells than a grid may have.
-        let grid = Grid::new(axes).map_err(|_| GridPlannerError::NoPath)?;
-        let of = |q: &[f64]| joints.map(|j| q[j]);
-        let mut planner = GridPlanner::new(&grid, &occupancy)?;
-        planner.plan(of(self.query.state.q(self.id)), of(goal), &GridPlannerSettings::default())
+    /// Those that are free and within limits, as the start must be: a contact would show as a blocked cell only.
+    fn free_goals<'g>(
+        &self,
+        goals: Vec<&'g Vec<f64>>,
+        exact: &mut RrtConnect<'_>,
+    ) -> Result<Vec<&'g Vec<f64>>, FormatError> {
+        let mut free = Vec::new();
+        let mut refused = None;
+        for goal in goals {
+            // Of one waypoint, only the ends are tested.
+            match exact.first_unproven_segment(self.query.state, std::slice::from_ref(goal), self.query.settings) {
+                Ok(_) => free.push(goal),
+                Err(e) => refused = refused.or(Some(e)),
+            }
+        }
+        match refused.filter(|_| free.is_empty()) {
+            Some(e) => Err(planner_error(self.cell, &self.cell.robots[self.id.0], &e)),
+            None => Ok(free),
+        }
     }
 
-    /// What the path touches or comes too near to in the exact scene, in words.
-    fn touches(&self, path: &Path, joints: [usize; 3]) -> Option<String> {
-        let mut checker = Checker::new(self.query.scene, CheckerOptions::default());
-        let options = SweepOptions { clearance_m: self.query.settings.clearance_m, ..SweepOptions::default() };
-        let arm = MappedJoints { robot: self.id, joints };
-        let refused = path.check(&mut checker, self.query.state, arm, &options).err()?;
-        Some(format!(
-            "{refused} (a map knows neither other robots nor the robot itself); --planner rrt-connect goes around"
-        ))
+    /// Why a segment of a path through free cells is not proven: what it touches in the scene, else a region.
+    fn unproven(&self, path: &PlannedPath, segment: usize) -> String {
+        let Query { scene, state, settings, .. } = &self.query;
+        let mut checker = Checker::new(scene, CheckerOptions::default());
+        let options = SweepOptions { clearance_m: settings.clearance_m, ..SweepOptions::default() };
+        let mut pairs = checker.between(Selection::Robot(self.id), Selection::All);
+        let hit = pairs.sweep_path(state, self.id, &path.waypoints, &options).ok().flatten();
+        let what = match hit {
+            Some((_, hit)) => {
+                format!("`{}` and `{}` come too near to each other", scene.name(hit.a), scene.name(hit.b))
+            }
+            None => "it comes too near to a region".to_owned(),
+        };
+        format!(
+            "the path through free cells is not proven free before waypoint {segment}: {what}; a map knows neither the robot \
+             itself nor other robots nor regions: --planner rrt-connect goes around"
+        )
     }
 
     fn planned(&self, path: &Path, joints: [usize; 3], planning_time: Duration) -> PlannedPath {
