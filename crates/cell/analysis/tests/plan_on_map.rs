@@ -2,10 +2,12 @@
 
 use elbowroom_analysis::map::{MapRequest, map};
 use elbowroom_analysis::plan::{PathAnswer, PathGoal, PathPlanner, PathRequest, plan};
-use elbowroom_cell::{Cell, TcpTarget};
+use elbowroom_cell::{Cell, OutOfReachProofs, QueryModel, TcpTarget};
 use elbowroom_formats::FormatError;
 use elbowroom_kinematics::ChainState;
-use elbowroom_robot::ObjectId;
+use elbowroom_planner::RrtConnectSettings;
+use elbowroom_robot::{ObjectId, RobotId};
+use elbowroom_scene::{Checker, CheckerOptions, SceneState, Selection};
 use elbowroom_spatial::Pose;
 
 use crate::common::parse;
@@ -64,12 +66,15 @@ fn joints_that_are_not_in_the_map_stay_where_they_are() {
     let answer = asked(&cell, &with(START, 0.4), &with(GOAL, 0.4)).unwrap();
     assert!(answer.motion.expect("a path").rows.iter().all(|(_, q)| q[3] == 0.4));
     let moved = asked(&cell, &with(START, 0.4), &with(GOAL, 0.0)).unwrap_err().to_string();
-    assert!(moved.contains("`joint_4`") && moved.contains("--planner rrt-connect"), "{moved}");
-    // A map with the wrist at its start says nothing of others.
-    let held = parse(&format!("{}\n[map.arm]\nothers = \"start\"\n", wrist.replace("-40]", "-40, 0]")));
-    let elsewhere = asked(&held, &with(START, 0.4), &with(GOAL, 0.4)).unwrap_err().to_string();
-    assert!(elsewhere.contains("others = \"any\""), "{elsewhere}");
-    assert!(asked(&held, &with(START, 0.0), &with(GOAL, 0.0)).unwrap().found);
+    assert!(moved.contains("`joint_4`") && moved.contains("planner rrt-connect"), "{moved}");
+    // The map is that of the wrist as it is: a finger that would touch the shelf, turned down, is held level.
+    let finger =
+        wrist.replace("sphere = { radius = 30 }", "capsule = { from = [0, 0, 0], to = [200, 0, 0], radius = 20 }");
+    let shelf = "[object.shelf]\nshape = \"box\"\nat = [0, 0, 200]\nsize = [3000, 3000, 20]\n";
+    let cell = parse(&format!("{}{shelf}", finger.replace("-40]", "-40, 0]")));
+    let swept = map(&cell, &MapRequest::default()).unwrap();
+    assert!(swept.obstacles[1].blocks.is_blocked(&START));
+    assert!(asked(&cell, &with(START, 0.3), &with(GOAL, 0.3)).unwrap().found);
 }
 
 #[test]
@@ -79,16 +84,20 @@ fn why_there_is_no_path_is_said() {
         assert!(!answer.found && answer.motion.is_none());
         answer.reason.expect("a reason")
     };
-    // From beside the post towards it: first free, then near it in a blocked cell, then in it.
-    let coarse = parse(&format!("{ARM}[map.arm]\nstep = 10\n"));
-    let goals = (0..100).map(|n| [1.0 - 0.01 * f64::from(n), 0.3, -0.6]);
-    let answers: Vec<_> = goals.map(|goal| asked(&coarse, &START, &goal)).collect();
-    let near = answers.iter().position(|a| a.as_ref().is_ok_and(|a| !a.found)).expect("a blocked cell");
+    // From beside the post towards it: first in free cells, then near it in a blocked one that is left for a free one, then in it.
+    let cell = parse(&format!("{ARM}[map.arm]\nstep = 10\n"));
+    let map = map(&cell, &MapRequest::default()).unwrap();
+    let goals: Vec<_> = (0..100).map(|n| [1.0 - 0.01 * f64::from(n), 0.3, -0.6]).collect();
+    let answers: Vec<_> = goals.iter().map(|goal| asked(&cell, &START, goal)).collect();
     let hit = answers.iter().position(Result::is_err).expect("a contact");
-    assert!(answers[..near].iter().all(|a| a.as_ref().is_ok_and(|a| a.found)) && near < hit);
-    let reason = answers[near].as_ref().ok().and_then(|a| a.reason.clone()).unwrap();
-    assert!(reason.contains("goal is in a blocked cell") && reason.contains("[map.arm]"), "{reason}");
+    let near = answers[..hit].iter().filter(|a| a.as_ref().is_ok_and(|a| !a.found)).count();
+    let is_blocked = |goal: &&[f64; 3]| map.obstacles[0].blocks.is_blocked(&goal[..]);
+    assert!(goals[..hit].iter().filter(is_blocked).count() > 0 && near == 0, "{near} of {hit}");
     assert!(answers[hit].as_ref().unwrap_err().to_string().contains("`post` are in collision"));
+    // Where no free cell is near.
+    let coarse = parse(&format!("{ARM}[map.arm]\nstep = 45\n"));
+    let reason = asked(&coarse, &START, &goals[hit - 1]).unwrap().reason.expect("no path");
+    assert!(reason.contains("is in a blocked cell") && reason.contains("[map.arm]"), "{reason}");
     // Right before the column; the upper arm does not come over it.
     let wall = "[object.wall]\nshape = \"box\"\nat = [1650, 0, 900]\nsize = [2900, 20, 3000]\n";
     let stiff = ARM.replace("min = -170, max = 170", "min = -80, max = 80").replace("max = 150", "max = 60");
@@ -114,7 +123,7 @@ fn what_a_map_does_not_know_is_tested_afterwards() {
     };
     let region = "[region.press]\nshape = \"box\"\nfrom = [700, -100, 0]\nto = [900, 100, 800]\n";
     let closed = refused(region);
-    assert!(closed.contains("near to a region") && closed.contains("--planner rrt-connect"), "{closed}");
+    assert!(closed.contains("near to a region") && closed.contains("planner rrt-connect"), "{closed}");
     let other = "[robot.post]\ndh = [{ kind = \"prismatic\", min = 0, max = 100, speed = 100 }]\n\
                  links = [{ sphere = { radius = 300 } }]\nbase = { at = [800, 0, 400], rpy = [0, 0, 0] }\n";
     let hit = refused(other);
@@ -152,11 +161,37 @@ fn of_the_solutions_for_a_pose_one_that_is_reached_is_taken() {
 }
 
 #[test]
-fn objects_that_are_elsewhere_are_refused() {
-    let (cell, planner) = (parse(ARM), PathPlanner::Grid);
-    let placed = vec![(ObjectId(0), Pose::IDENTITY)];
-    let request = PathRequest { planner, placed, to: GOAL[..].into(), ..PathRequest::default() };
-    assert!(plan(&cell, &request).unwrap_err().to_string().contains("--planner rrt-connect"));
+fn objects_count_where_they_are_at_the_time() {
+    let waypoints = |cell: &Cell, placed: Vec<(ObjectId, Pose)>| {
+        let planner = PathPlanner::Grid;
+        let from = Some(START.into());
+        let request = PathRequest { planner, placed, from, to: GOAL[..].into(), ..PathRequest::default() };
+        plan(cell, &request).unwrap().motion.expect("a path").waypoints
+    };
+    let cell = parse(ARM);
+    let at = |x, y| vec![(ObjectId(0), Pose::from_xyz_rpy([x, y, 0.4], [0.0; 3]))];
+    assert_eq!(waypoints(&cell, at(5.0, 0.0)).len(), 2);
+    let elsewhere = parse(&ARM.replace("at = [700, 0, 400]", "at = [650, 150, 400]"));
+    assert_eq!(waypoints(&cell, at(0.65, 0.15)), waypoints(&elsewhere, Vec::new()));
+    assert_ne!(waypoints(&cell, at(0.65, 0.15)), waypoints(&cell, Vec::new()));
+}
+
+#[test]
+fn a_path_keeps_its_distance_through_cells_that_are_blocked_up_to_it() {
+    let cell = parse(ARM);
+    let planner = PathPlanner::Grid;
+    let options = RrtConnectSettings { clearance_m: 0.08, ..RrtConnectSettings::default() };
+    let request =
+        PathRequest { planner, options, from: Some(START.into()), to: GOAL[..].into(), ..PathRequest::default() };
+    let motion = plan(&cell, &request).unwrap().motion.expect("the arm can fold");
+    let scene = QueryModel::of_cell(&cell).scene(OutOfReachProofs::Omit).unwrap();
+    let mut state = SceneState::new(&scene);
+    let mut checker = Checker::new(&scene, CheckerOptions::default());
+    for (_, q) in &motion.rows {
+        state.set_q(&scene, RobotId(0), q).unwrap();
+        let least = checker.between(Selection::Robot(RobotId(0)), Selection::Objects).distance(&state);
+        assert!(least.is_none_or(|d| d.metres >= 0.08 - 1e-9), "{q:?}: {least:?}");
+    }
 }
 
 #[test]

@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use elbowroom_avoidance::{AvoiderSettings, Rules};
 use elbowroom_formats::Warning;
-use elbowroom_kinematics::inverse::ConfigurationChoice;
 use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_monitor::{Laws, Part, Presence, Region, SourceLimits, Volume, VolumeModel, arm_volumes};
 use elbowroom_robot::{Collider, ObjectId, Robot, RobotId};
@@ -13,7 +12,7 @@ use elbowroom_spatial::Pose;
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 
 use crate::seal::Seal;
-use crate::{CellSensor, CellTool, Encoder, MovingObject, PoseTrack};
+use crate::{CellSensor, CellTool, Encoder, MovingObject, PoseTrack, Program};
 
 /// A tool centre point within this distance (m) of a collider counts as on its surface, such as a flange frame on the
 /// flange's face.
@@ -153,11 +152,6 @@ pub struct JointLimits {
     pub stop: f64,
 }
 
-/// Index of a region in [`Cell::regions`]. A monitor's [`RegionId`](elbowroom_monitor::RegionId) is another:
-/// [`MonitorSetup::regions`](crate::configure::MonitorSetup::regions) maps it to this one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct CellRegionId(pub usize);
-
 /// A region and the robots it guards against.
 #[derive(Debug, Clone)]
 pub struct CellRegion {
@@ -204,109 +198,6 @@ pub struct CellLaws {
     pub stopping_reaction_s: Option<f64>,
     /// Reaction time (s) of robots in the simulation: the one in the file, 0 where it gives none.
     pub reaction_delay_s: f64,
-}
-
-/// Program of a robot.
-#[derive(Debug, Clone)]
-pub struct Program {
-    /// Programmed override at the start, 0..1.
-    pub speed_override: f64,
-    /// Number of repetitions.
-    pub repeat: u32,
-    /// Its contents.
-    pub body: ProgramBody,
-    /// Line of its table.
-    pub line: usize,
-}
-
-/// Steps, or a recorded trajectory.
-#[derive(Debug, Clone)]
-pub enum ProgramBody {
-    /// Executed in order, at rest in between.
-    Steps(Vec<ProgramStep>),
-    /// Joint values over time.
-    Trajectory(Vec<TrajectoryRow>),
-}
-
-/// A row of a recorded trajectory.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TrajectoryRow {
-    /// Time, s.
-    pub t_s: f64,
-    /// Joint values, rad or m.
-    pub q: Vec<f64>,
-}
-
-/// One step of a program.
-#[derive(Debug, Clone)]
-pub struct ProgramStep {
-    /// Its line in the cell file.
-    pub line: usize,
-    /// Its action.
-    pub action: StepAction,
-}
-
-/// Action of a step.
-#[derive(Debug, Clone)]
-pub enum StepAction {
-    /// Joint move: straight in joint space.
-    Joint {
-        /// Target.
-        to: MoveTarget,
-        /// Share of each joint's speed, 0..1.
-        speed: f64,
-    },
-    /// Linear move: the TCP on a straight line.
-    Linear {
-        /// Target.
-        to: MoveTarget,
-        /// TCP speed, m/s.
-        speed: f64,
-    },
-    /// Planned move: a path around everything that is where it is at the start of the run.
-    Planned {
-        /// Target.
-        to: MoveTarget,
-        /// Share of each joint's speed, 0..1.
-        speed: f64,
-    },
-    /// Switches a temporary region.
-    Switch {
-        /// The region.
-        region: CellRegionId,
-        /// On or off.
-        active: bool,
-    },
-    /// Attaches an object to the flange, where it is.
-    Grip(ObjectId),
-    /// Detaches an object from the flange: it stays where it is.
-    Release(ObjectId),
-    /// Makes one of the robot's [tools](CellRobot::tools) the active one.
-    Tool(usize),
-    /// Waits, s.
-    Wait(f64),
-    /// Sets the programmed override, 0..1.
-    Override(f64),
-}
-
-/// Target of a move.
-#[derive(Debug, Clone)]
-pub enum MoveTarget {
-    /// Joint values, rad or m.
-    Joints(Vec<f64>),
-    /// A pose of the TCP.
-    Tcp(TcpTarget),
-}
-
-/// The TCP at a pose. Where several joint values bring it there, `configuration` and `near` choose.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TcpTarget {
-    /// The TCP in the world.
-    pub in_world: Pose,
-    /// Shoulder, elbow and wrist; for six axes with a spherical wrist only.
-    pub configuration: ConfigurationChoice,
-    /// Only the solution nearest to these values of all joints (rad or m), which also chooses whole turns.
-    pub near: Option<Vec<f64>>,
 }
 
 /// Settings of the joint-space map of a robot.

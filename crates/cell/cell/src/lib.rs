@@ -41,9 +41,11 @@ mod moving_object;
 mod object_tables;
 mod pair_file;
 mod poses;
+mod program;
 mod query_model;
 pub mod region_constraint;
 mod region_edits;
+mod region_id;
 mod rest_pose_contacts;
 mod scene_pairs;
 pub mod seal;
@@ -55,17 +57,16 @@ mod tool;
 mod tool_change;
 pub mod trajectory;
 
-pub use cell::{
-    AvoidanceSpec, Cell, CellLaws, CellRegion, CellRegionId, CellRobot, Follow, JointLimits, MapSpec, MoveTarget,
-    Program, ProgramBody, ProgramStep, StepAction, TcpTarget, TrajectoryRow, Units,
-};
+pub use cell::{AvoidanceSpec, Cell, CellLaws, CellRegion, CellRobot, Follow, JointLimits, MapSpec, Units};
 pub use file::{CellFile, QUATERNION_TOLERANCE};
 pub use frames::Frames;
 pub use moving_object::{Drive, Encoder, MovingObject, ObjectMotion, ObjectPath, PathRepeat, Travel};
 pub use object_tables::{ObjectTables, object_tables};
 pub use pair_file::{PairCounts, PairFile};
 pub use poses::{PoseRate, PoseTrack};
+pub use program::{MoveTarget, PathPlanner, Program, ProgramBody, ProgramStep, StepAction, TcpTarget, TrajectoryRow};
 pub use query_model::{OutOfReachProofs, QueryModel, QueryRobot};
 pub use region_edits::{EditedRegions, RegionEdit, table_changes, why_not_continued};
+pub use region_id::CellRegionId;
 pub use sensor::{CellSensor, SensorKind};
 pub use tool::CellTool;

@@ -415,6 +415,23 @@ fn the_arm_goes_around_a_crate_that_only_point_clouds_know() {
     assert!(lines.len() == FRAMES && score.seen == score.due && score.false_alarms == 0, "{score:?}");
 }
 
+#[test]
+fn a_path_on_the_map_goes_around_the_crate_too() {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("cell.toml"), cell(CLOUD, "planned\", planner = \"grid")).unwrap();
+    write_clouds(dir.path(), FRAMES, f64::INFINITY);
+    let answer = run(dir.path()).expect(0);
+    check_run(dir.path(), &answer, "clouds", "cloud-mast.jsonl");
+    // The wrist is not in the map: it stays as it is.
+    let trace = std::fs::read_to_string(dir.path().join("out/trace.csv")).unwrap();
+    let mut rows = trace.lines();
+    let columns: Vec<&str> = rows.next().unwrap().split(',').collect();
+    let wrist: Vec<usize> = (0..columns.len()).filter(|i| columns[*i] == "q5").collect();
+    let bent = 44.5_f64.to_radians();
+    let is_held = |row: &str| row.split(',').nth(wrist[0]).unwrap().parse().is_ok_and(|q: f64| (q - bent).abs() < 1e-6);
+    assert!(wrist.len() == 1 && rows.all(is_held), "{columns:?}");
+}
+
 /// Pictures of depths of the crate before a wall that is learnt, 1 mm per step.
 #[test]
 fn pictures_of_depths_are_clouds() {

@@ -106,7 +106,7 @@ fn invalid_requests_are_refused_with_a_hint() {
         (&["--robot", "other", "--to", "1"], &["other", "largest speed", "joint_1", "speed = [180]", "[robot.other]"]),
         (&["--robot", "arm", "--to", "1,0", "--time-limit", "-1"], &["--time-limit"]),
         (&["--robot", "arm", "--to", "1,0", "--clearance", "nan"], &["clearance", "NaN"]),
-        (&["--robot", "arm", "--to", "1,0", "--planner", "grid"], &["has 2 joints", "need 3", "--planner rrt-connect"]),
+        (&["--robot", "arm", "--to", "1,0", "--planner", "grid"], &["has 2 joints", "need 3", "planner rrt-connect"]),
         (&["--robot", "arm", "--to", "1,0", "--planner", "grid", "--optimize"], &["--optimize", "rrt-connect"]),
     ];
     for (args, words) in cases {

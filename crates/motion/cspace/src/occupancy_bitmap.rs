@@ -102,6 +102,20 @@ impl OccupancyBitmap {
         self.mark(layer.spans());
     }
 
+    /// Blocks the cells that are blocked in another table of this shape.
+    ///
+    /// # Panics
+    /// Where the other one has another shape.
+    pub fn add_table(&mut self, other: &Self) {
+        assert_eq!(self.shape, other.shape, "tables of one shape");
+        for (plane, added) in self.planes.iter_mut().zip(&other.planes) {
+            if Arc::ptr_eq(added, &other.free) || Arc::ptr_eq(plane, added) {
+                continue;
+            }
+            Arc::make_mut(plane).iter_mut().zip(&**added).for_each(|(word, more)| *word |= more);
+        }
+    }
+
     fn mark(&mut self, spans: &[RowSpan]) {
         let (rows, width) = (self.shape[1], self.words_per_row);
         let mut rest = spans;

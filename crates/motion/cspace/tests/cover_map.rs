@@ -62,6 +62,21 @@ fn collisions_are_blocked_and_hardly_more() {
 }
 
 #[test]
+fn a_clearance_blocks_what_a_larger_ball_would() {
+    let ball = |radius| {
+        let place = |x, y, z| (Shape::Sphere(Sphere { radius }), Pose::from_translation(Vec3::new(x, y, z)));
+        let mut case = Case::new(vec![place(0.6, 0.2, 0.5), place(-0.4, 0.5, 0.9)]);
+        case.step = 3.0;
+        case
+    };
+    let (small, large) = (ball(0.12), ball(0.17));
+    let with_clearance = map(&small, CoverMapSettings { clearance_m: 0.05, ..CoverMapSettings::default() });
+    assert!(compare(&large, &grid(&large), &with_clearance, 20_000) > 0);
+    let of_large = map(&large, CoverMapSettings::default());
+    assert!(with_clearance.blocked() as f64 <= 1.02 * of_large.blocked() as f64);
+}
+
+#[test]
 fn the_oracle_detects_a_smaller_obstacle() {
     let mut case = Case::new(vec![cuboid([0.6, 0.2, 0.5], [0.3, 0.2, 0.8], [0.16, 0.06, 0.26])]);
     let small = map(&case, CoverMapSettings::default());
@@ -408,9 +423,15 @@ fn invalid_input_is_rejected() {
     let new = |joints| CoverMapBuilder::new(&robot, Pose::IDENTITY, &grid, joints, RemainingJoints::Swept, settings);
     assert!(new([0, 1, 1]).is_err() && new([0, 1, 7]).is_err());
     for slack_m in [0.0, -0.001, f64::NAN, f64::INFINITY] {
-        let settings = CoverMapSettings { slack_m: Some(slack_m) };
+        let settings = CoverMapSettings { slack_m: Some(slack_m), ..CoverMapSettings::default() };
         let remaining = RemainingJoints::Swept;
         let refused = CoverMapBuilder::new(&robot, Pose::IDENTITY, &grid, [0, 1, 2], remaining, settings);
         assert!(matches!(refused, Err(RobotMapError::Slack(_))), "{slack_m}");
+    }
+    for clearance_m in [-0.001, f64::NAN, f64::INFINITY] {
+        let settings = CoverMapSettings { clearance_m, ..CoverMapSettings::default() };
+        let remaining = RemainingJoints::Swept;
+        let refused = CoverMapBuilder::new(&robot, Pose::IDENTITY, &grid, [0, 1, 2], remaining, settings);
+        assert!(matches!(refused, Err(RobotMapError::Clearance(_))), "{clearance_m}");
     }
 }

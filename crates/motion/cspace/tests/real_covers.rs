@@ -45,7 +45,7 @@ fn measure(name: &str, others: &str, case: &Case, samples: usize) {
     let grid = Grid::new(axes(&case.robot, &case.joints, case.step).try_into().unwrap()).unwrap();
     let remaining = case.fixed.as_deref().map_or(RemainingJoints::Swept, RemainingJoints::Fixed);
     let slack_m = std::env::var("SLACK").ok().map(|s| s.parse().unwrap());
-    let settings = CoverMapSettings { slack_m };
+    let settings = CoverMapSettings { slack_m, ..CoverMapSettings::default() };
     let begin = processor_ms();
     let builder = CoverMapBuilder::new(&case.robot, case.base, &grid, [0, 1, 2], remaining, settings).unwrap();
     let build_ms = processor_ms() - begin;

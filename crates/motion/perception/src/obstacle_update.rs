@@ -1,9 +1,10 @@
 //! Obstacle update: the result of one frame.
 
-use elbowroom_proximity::{ConvexHull, HullError};
-use elbowroom_spatial::Vec3;
+use elbowroom_proximity::{ConvexHull, HullError, Shape};
+use elbowroom_spatial::{Pose, Vec3};
 use elbowroom_vision::{FrameStatus, ObstacleId, Point2, polygon};
 
+use crate::prism_boxes::prism_boxes;
 use crate::times::PerceptionTimes;
 
 /// One observed obstacle, as it is in the map.
@@ -45,6 +46,17 @@ impl Prism {
     /// A prism without a volume.
     pub fn predicted_solid(&self) -> Result<ConvexHull, HullError> {
         prism_hull(&self.swept_m, [self.z_from_m, self.z_to_m])
+    }
+
+    /// Boxes that together contain the [observed solid](Self::observed_solid), each with its pose in the world: a joint-space map of
+    /// boxes takes a hundredth of the time of one of other hulls.
+    pub fn observed_boxes(&self) -> Vec<(Shape, Pose)> {
+        prism_boxes(&self.footprint_m, [self.z_from_m, self.z_to_m])
+    }
+
+    /// The same of the [predicted solid](Self::predicted_solid).
+    pub fn predicted_boxes(&self) -> Vec<(Shape, Pose)> {
+        prism_boxes(&self.swept_m, [self.z_from_m, self.z_to_m])
     }
 
     /// True where a convex footprint (world x and y, metres) lies within the observed one.

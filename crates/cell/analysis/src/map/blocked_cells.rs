@@ -58,17 +58,16 @@ impl BlockedCells {
 pub(crate) fn table<'b>(axes: &[GridAxis; 3], all: impl IntoIterator<Item = &'b BlockedCells>) -> OccupancyBitmap {
     let shape = axes.each_ref().map(GridAxis::count);
     let mut union = OccupancyBitmap::new(shape);
-    let mut block = |[i, j, k]: [u16; 3]| {
-        let row = usize::from(i) * shape[1] + usize::from(j);
-        union.block(RowSpan { row: row as u32, first: k, last: k });
-    };
     for cells in all {
         match cells {
-            BlockedCells::Table { table, .. } => table.iter().for_each(&mut block),
+            BlockedCells::Table { table, .. } => union.add_table(table),
             BlockedCells::Tree(tree) => {
                 let [planes, rows, cells] = shape.map(|n| n as u16);
                 let each = (0..planes).flat_map(|i| (0..rows).flat_map(move |j| (0..cells).map(move |k| [i, j, k])));
-                each.filter(|cell| tree.is_blocked_cell(cell)).for_each(&mut block);
+                for [i, j, k] in each.filter(|cell| tree.is_blocked_cell(cell)) {
+                    let row = usize::from(i) * shape[1] + usize::from(j);
+                    union.block(RowSpan { row: row as u32, first: k, last: k });
+                }
             }
         }
     }

@@ -7,7 +7,8 @@ use elbowroom_robot::{GeometryId, ObjectId, RobotId};
 use super::solids_map::SolidsMap;
 
 /// What fills the maps of a robot: one of all its links, and one for each set of links that may not touch an object.
-pub(super) struct LinkMaps {
+#[derive(Debug)]
+pub(crate) struct LinkMaps {
     /// Of all links.
     first: SolidsMap,
     /// Others, without the colliders of some links.
@@ -17,11 +18,7 @@ pub(super) struct LinkMaps {
 }
 
 impl LinkMaps {
-    pub(super) fn new<E>(
-        cell: &Cell,
-        robot: RobotId,
-        build: impl Fn(&CellRobot) -> Result<SolidsMap, E>,
-    ) -> Result<Self, E> {
+    pub fn new<E>(cell: &Cell, robot: RobotId, build: impl Fn(&CellRobot) -> Result<SolidsMap, E>) -> Result<Self, E> {
         let at = &cell.robots[robot.0];
         let mut maps = Self { first: build(at)?, others: Vec::new(), of_object: Vec::new() };
         for object in (0..cell.objects.len()).map(ObjectId) {
@@ -43,22 +40,22 @@ impl LinkMaps {
     }
 
     /// The map of all links.
-    pub(super) fn first(&self) -> &SolidsMap {
+    pub fn first(&self) -> &SolidsMap {
         &self.first
     }
 
     /// The map of all links, where it is that of every object.
-    pub(super) fn of_every_link(&self) -> Option<&SolidsMap> {
+    pub fn of_every_link(&self) -> Option<&SolidsMap> {
         self.of_object.iter().all(|map| *map == Some(0)).then_some(&self.first)
     }
 
     /// The map of an object; `None` where all links may touch it, so that it blocks nothing.
-    pub(super) fn of(&self, object: ObjectId) -> Option<&SolidsMap> {
+    pub fn of(&self, object: ObjectId) -> Option<&SolidsMap> {
         self.of_object[object.0].map(|map| self.map(map))
     }
 
     /// Every map with its objects.
-    pub(super) fn each(&self) -> impl Iterator<Item = (&SolidsMap, Vec<ObjectId>)> {
+    pub fn each(&self) -> impl Iterator<Item = (&SolidsMap, Vec<ObjectId>)> {
         (0..=self.others.len()).map(move |map| {
             let objects = (0..self.of_object.len()).filter(move |o| self.of_object[*o] == Some(map));
             (self.map(map), objects.map(ObjectId).collect())

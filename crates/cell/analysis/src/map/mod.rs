@@ -15,9 +15,10 @@ use elbowroom_scene::Object;
 use elbowroom_spatial::Pose;
 
 pub use self::blocked_cells::BlockedCells;
-use self::link_maps::LinkMaps;
+pub(crate) use self::link_maps::LinkMaps;
 pub use self::model::MapModel;
-use self::solids_map::{FilledCells, SolidsMap};
+use self::solids_map::FilledCells;
+pub(crate) use self::solids_map::SolidsMap;
 use crate::plan::request_validation::select_robot;
 
 pub(crate) mod blocked_cells;
@@ -140,7 +141,7 @@ pub fn map_with(
     };
     progress(MapProgress { share: 0.0, what: &robot.name });
     let maps = LinkMaps::new(cell, spec.robot, |robot| {
-        SolidsMap::new(robot, &axes, &spec.joints, others, request.exact).map_err(refuse)
+        SolidsMap::new(robot, &axes, &spec.joints, others, (!request.exact).then_some(0.0)).map_err(refuse)
     })?;
     let every_link = || {
         maps.of_every_link().ok_or_else(|| {

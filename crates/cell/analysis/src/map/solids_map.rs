@@ -14,7 +14,8 @@ use super::BlockedCells;
 use crate::cover_cache::CoverCache;
 
 /// Computes the cells that obstacles block.
-pub(super) enum SolidsMap {
+#[derive(Debug)]
+pub(crate) enum SolidsMap {
     /// On sphere covers of the links: three joints that hang on one of them.
     Covers(Box<CoverMapBuilder>),
     /// With the robot's own solids.
@@ -22,7 +23,7 @@ pub(super) enum SolidsMap {
 }
 
 /// The cells of an obstacle, and the time without preparing its shape.
-pub(super) struct FilledCells {
+pub(crate) struct FilledCells {
     pub blocks: BlockedCells,
     pub time: Duration,
     /// Spheres in place of the obstacle, where it was refined until a deadline.
@@ -30,19 +31,20 @@ pub(super) struct FilledCells {
 }
 
 impl SolidsMap {
+    /// On sphere covers with this clearance (m) if there is one and if they can, else with the solids, without one.
     pub fn new(
         robot: &CellRobot,
         axes: &[GridAxis],
         joints: &[usize],
         others: RemainingJoints<'_>,
-        exact: bool,
+        on_covers: Option<f64>,
     ) -> Result<Self, RobotMapError> {
         let (model, base) = (&robot.robot, robot.base_in_world);
         let three = <[GridAxis; 3]>::try_from(axes.to_vec()).ok().zip(<[usize; 3]>::try_from(joints).ok());
-        if let Some((axes, joints)) = three.filter(|_| !exact)
+        if let (Some((axes, joints)), Some(clearance_m)) = (three, on_covers)
             && let Ok(grid) = Grid::new(axes)
         {
-            let settings = CoverMapSettings::default();
+            let settings = CoverMapSettings { clearance_m, ..CoverMapSettings::default() };
             let covers = CoverCache::of_user();
             match CoverMapBuilder::with_covers(model, base, &grid, joints, others, settings, &covers) {
                 Ok(builder) => return Ok(Self::Covers(Box::new(builder))),

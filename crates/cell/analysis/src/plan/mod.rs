@@ -4,6 +4,7 @@
 //! the allowed collision matrix. Permanent forbidden regions of the robot are path constraints on its guarded volumes.
 
 mod answer;
+mod map_planner;
 mod on_map;
 mod path_query;
 pub(crate) mod request_validation;
@@ -27,6 +28,8 @@ use on_map::MapQuery;
 use path_query::Query;
 
 pub use answer::{PathAnswer, TimedPath};
+pub use elbowroom_cell::PathPlanner;
+pub use map_planner::{MapPlanner, MapPlannerError};
 pub use request_validation::select_robot;
 pub use several::{RobotPath, RobotPathRequest, SeveralPathsAnswer, SeveralPathsRequest, plan_several};
 
@@ -49,16 +52,6 @@ impl<Q: Into<Vec<f64>>> From<Q> for PathGoal {
     fn from(q: Q) -> Self {
         Self::Joints(q.into())
     }
-}
-
-/// How a path is searched for.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum PathPlanner {
-    /// Two trees of random samples, proven on sphere covers and in the exact scene: any number of joints.
-    #[default]
-    RrtConnect,
-    /// Through the free cells of the robot's joint-space map of three joints.
-    Grid,
 }
 
 /// A request for a path.
@@ -130,7 +123,7 @@ impl Default for PathRequest {
 /// # Errors
 /// An unknown robot; a robot without speed limits; an invalid start or goal: beyond limits, in collision, with a wrong
 /// number of values; a goal in a region; a start in a region that no straight path leaves. With [`PathPlanner::Grid`] also a map
-/// that is not of three joints, and a request that moves others, carries objects or places them.
+/// that is not of three joints, and a request that moves others.
 pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, FormatError> {
     let (id, robot) = request_validation::select_robot(cell, request.robot.as_deref())?;
     let mut limits = request_validation::kinematic_limits(cell, robot)?;
@@ -145,13 +138,6 @@ pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, FormatErro
     // A link without bounds cannot be covered; the exact scene plans for it.
     let covers = CoverCache::of_user();
     let is_on_map = request.planner == PathPlanner::Grid;
-    if is_on_map && !(request.carried.is_empty() && request.placed.is_empty()) {
-        let what = format!(
-            "robot \"{}\": a map has objects where the cell file has them, and no robot carries any",
-            robot.name
-        );
-        return Err(FormatError::new(&cell.file, robot.line, what).hint("--planner rrt-connect"));
-    }
     let with_covers = || CoverModel::with_covers(&scene, &state, id, clearance_m, &covers).ok();
     let model = if is_on_map { None } else { with_covers() };
     let obstacles =

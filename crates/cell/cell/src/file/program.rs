@@ -10,8 +10,8 @@ use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 use super::read::{Table, Value};
 use super::{goal, models};
 use crate::{
-    Cell, CellRegion, CellRegionId, CellRobot, Program, ProgramBody, ProgramStep, StepAction, TrajectoryRow, Units,
-    suggest,
+    Cell, CellRegion, CellRegionId, CellRobot, PathPlanner, Program, ProgramBody, ProgramStep, StepAction,
+    TrajectoryRow, Units, suggest,
 };
 
 type Result<T> = std::result::Result<T, FormatError>;
@@ -112,7 +112,7 @@ enum Movement {
 }
 
 fn movement(t: &Table<'_>, units: Units, robot: &CellRobot) -> Result<StepAction> {
-    t.only(&["move", "to", "speed"])?;
+    t.only(&["move", "to", "speed", "planner"])?;
     let kinds = [("joint", Movement::Joint), ("linear", Movement::Linear), ("planned", Movement::Planned)];
     let kind = t.need("move", "move = \"joint\"")?.word(&kinds)?;
     let example = if kind == Movement::Linear {
@@ -121,6 +121,10 @@ fn movement(t: &Table<'_>, units: Units, robot: &CellRobot) -> Result<StepAction
         "to = [0, -20, 90, 0, 40, 0]"
     };
     let to = goal::read(&t.need("to", example)?, example, units, robot, kind == Movement::Linear)?;
+    let planner = t.get("planner");
+    if let Some(v) = planner.as_ref().filter(|_| kind != Movement::Planned) {
+        return Err(v.error("is of planned moves only").hint("move = \"planned\", or no `planner`"));
+    }
     let speed = t.get("speed");
     if kind == Movement::Linear {
         let speed = speed.map_or(Ok(LINEAR_SPEED), |v| units.positive_length(&v))?;
@@ -130,7 +134,12 @@ fn movement(t: &Table<'_>, units: Units, robot: &CellRobot) -> Result<StepAction
         v.positive()?;
         v.percent()
     })?;
-    Ok(if kind == Movement::Planned { StepAction::Planned { to, speed } } else { StepAction::Joint { to, speed } })
+    if kind != Movement::Planned {
+        return Ok(StepAction::Joint { to, speed });
+    }
+    let planners = [("rrt-connect", PathPlanner::RrtConnect), ("grid", PathPlanner::Grid)];
+    let planner = planner.map_or(Ok(PathPlanner::default()), |v| v.word(&planners))?;
+    Ok(StepAction::Planned { to, speed, planner })
 }
 
 fn switch(t: &Table<'_>, regions: &[CellRegion]) -> Result<StepAction> {

@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use elbowroom_cell::trajectory::{PathPoint, Playback};
-use elbowroom_cell::{CellRegionId, JointLimits};
+use elbowroom_cell::{CellRegionId, JointLimits, PathPlanner};
 use elbowroom_robot::ObjectId;
 
 use super::{Geometry, GripAction, PlanStep, ProgramPlan};
@@ -193,12 +193,20 @@ impl ProgramClock {
         time
     }
 
-    /// The planned move of this step, and the share of the joints' speeds that it uses.
-    pub fn planned_move(&self) -> Option<(&Rc<Playback>, f64)> {
+    /// The planned move of this step, the share of the joints' speeds that it uses, and how its path is searched for.
+    pub fn planned_move(&self) -> Option<(&Rc<Playback>, f64, PathPlanner)> {
         match self.plan.steps.get(self.step) {
-            Some(PlanStep::Planned { play, speed }) => Some((play, *speed)),
+            Some(PlanStep::Planned { play, speed, planner }) => Some((play, *speed, *planner)),
             _ => None,
         }
+    }
+
+    /// Joint values at the ends of the moves that are planned on the robot's joint-space map, rad or m.
+    pub fn moves_on_map(&self) -> impl Iterator<Item = Vec<f64>> {
+        self.plan.steps.iter().filter_map(|step| match step {
+            PlanStep::Planned { play, planner: PathPlanner::Grid, .. } => Some(play.q(play.duration())),
+            _ => None,
+        })
     }
 
     /// Replaces the planned move of this step by another one with the same end, from the time `entry_s` (s, at override 1) in

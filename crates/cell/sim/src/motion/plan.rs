@@ -6,7 +6,8 @@ use std::rc::Rc;
 use elbowroom_analysis::plan::{PathGoal, PathRequest};
 use elbowroom_cell::trajectory::{Playback, motion_bounds, recording_warnings, volume_motion_bounds};
 use elbowroom_cell::{
-    Cell, CellRegionId, CellRobot, MoveTarget, Program, ProgramBody, ProgramStep, StepAction, TrajectoryRow,
+    Cell, CellRegionId, CellRobot, MoveTarget, PathPlanner, Program, ProgramBody, ProgramStep, StepAction,
+    TrajectoryRow,
 };
 use elbowroom_formats::{FormatError, Warning};
 use elbowroom_kinematics::{ChainState, LinkId};
@@ -44,6 +45,8 @@ pub enum PlanStep {
         play: Rc<Playback>,
         /// Share of the joints' speeds that it uses.
         speed: f64,
+        /// How its path was searched for, and is again where it is blocked.
+        planner: PathPlanner,
     },
     /// Switches a region.
     Switch {
@@ -63,7 +66,7 @@ pub enum PlanStep {
 }
 
 impl ProgramPlan {
-    /// True where it has a planned move.
+    /// Whether it has a planned move.
     pub fn has_planned_moves(&self) -> bool {
         self.steps.iter().any(|s| matches!(s, PlanStep::Planned { .. }))
     }
@@ -235,8 +238,9 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
                 self.change_tool(i, step, *tool)?;
                 PlanStep::Tool(*tool)
             }
-            StepAction::Planned { to, speed } => {
-                PlanStep::Planned { play: self.planned(i, step, to, *speed)?, speed: *speed }
+            StepAction::Planned { to, speed, planner } => {
+                let play = self.planned(i, step, (to, *speed, *planner))?;
+                PlanStep::Planned { play, speed: *speed, planner: *planner }
             }
         })
     }
@@ -283,8 +287,7 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
         &mut self,
         index: usize,
         step: &ProgramStep,
-        to: &MoveTarget,
-        speed: f64,
+        planned: (&MoveTarget, f64, PathPlanner),
     ) -> Result<Rc<Playback>, FormatError> {
         let origin = PathOrigin {
             robot: self.id,
@@ -294,12 +297,17 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
             mounted: self.robot.tools.iter().map(|tool| tool.mounted).collect(),
             parts: self.parts.clone(),
         };
-        let play = self.paths.known_or(origin, || self.path(index, step, to, speed))?;
+        let play = self.paths.known_or(origin, || self.path(index, step, planned))?;
         self.q = play.q(play.duration());
         Ok(play)
     }
 
-    fn path(&self, index: usize, step: &ProgramStep, to: &MoveTarget, speed: f64) -> Result<Playback, FormatError> {
+    fn path(
+        &self,
+        index: usize,
+        step: &ProgramStep,
+        (to, speed, planner): (&MoveTarget, f64, PathPlanner),
+    ) -> Result<Playback, FormatError> {
         let carried = self.parts.carried().map_err(|e| self.part_error(index, step, e))?;
         let cell = self.cell_now();
         let volumes = cell.volumes_holding(self.id, &carried);
@@ -310,6 +318,7 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
                 MoveTarget::Joints(q) => PathGoal::Joints(q.clone()),
                 MoveTarget::Tcp(target) => PathGoal::Tcp(target.clone()),
             },
+            planner,
             speed,
             placed: self.parts.placed(),
             carried,

@@ -120,7 +120,7 @@ pub fn simulate_observed(
     let states: Vec<ChainState> = cell.robots.iter().map(|r| ChainState::new(&r.robot.chain)).collect();
     for robot in &mut robots {
         let avoids = robot.avoiding.is_some();
-        robot.guard = obstacle_guard(cell, robot.id, avoids, &perceived, &states, &mut notes)?;
+        robot.guard = obstacle_guard(cell, (robot.id, &robot.clock), avoids, &perceived, &states, &mut notes)?;
     }
     let journal = Journal::new(cell, observer.map(|observer| observer as &mut dyn RunObserver));
     let mut run = Simulation {

@@ -6,14 +6,13 @@ use std::time::{Duration, Instant};
 use elbowroom_cell::{Cell, OutOfReachProofs, QueryModel};
 use elbowroom_formats::{FormatError, Warning};
 use elbowroom_kinematics::ChainState;
-use elbowroom_proximity::Shape;
 use elbowroom_robot::{GeometryId, RobotId};
 use elbowroom_scene::{Checker, CheckerOptions, Scene, SceneError, Selection, SweepOptions};
 
 use super::path_ahead::PathAhead;
 use super::path_replanner::{self, PathReplanner};
 use super::path_search::{ClosedRegions, FutileSearch, PathSearch, SearchScene};
-use super::perceived_obstacles::{PerceivedObstacle, PerceivedObstacles};
+use super::perceived_obstacles::{PerceivedObstacle, PerceivedObstacles, PerceivedSolid};
 use super::surroundings::Surroundings;
 use crate::motion::ProgramClock;
 use crate::recording::{Hold, HoldReason, PathReplan, PerceptionTrack};
@@ -37,7 +36,7 @@ struct BlockedPath {
 /// The guard of a robot against what sensors see; `None` for one that no sensor guards.
 pub(super) fn obstacle_guard<'a>(
     cell: &'a Cell,
-    id: RobotId,
+    (id, clock): (RobotId, &ProgramClock),
     avoids: bool,
     perceived: &PerceivedObstacles<'_>,
     states: &[ChainState],
@@ -45,7 +44,7 @@ pub(super) fn obstacle_guard<'a>(
 ) -> Result<Option<ObstacleGuard<'a>>, FormatError> {
     let Some(search_s) = perceived.search_s(id) else { return Ok(None) };
     if !avoids {
-        return ObstacleGuard::new(cell, id, search_s, states).map(Some);
+        return ObstacleGuard::new(cell, (id, clock), search_s, states).map(Some);
     }
     let robot = &cell.robots[id.0];
     let what = format!(
@@ -79,11 +78,16 @@ pub(super) struct ObstacleGuard<'a> {
 
 impl<'a> ObstacleGuard<'a> {
     /// # Errors
-    /// [`FormatError`] where the scene refuses the cell.
-    pub fn new(cell: &'a Cell, robot: RobotId, search_s: f64, states: &[ChainState]) -> Result<Self, FormatError> {
+    /// [`FormatError`] where the scene refuses the cell, or a move is planned on a map that the robot does not have.
+    fn new(
+        cell: &'a Cell,
+        (robot, clock): (RobotId, &ProgramClock),
+        search_s: f64,
+        states: &[ChainState],
+    ) -> Result<Self, FormatError> {
         let model = QueryModel { objects: Vec::new(), ..QueryModel::of_cell(cell) };
         let base = model.scene(OutOfReachProofs::Omit)?;
-        let mut replanner = PathReplanner::new(robot, &cell.robots[robot.0], cell.tick_s);
+        let mut replanner = PathReplanner::new(robot, &cell.robots[robot.0], cell.tick_s).with_maps(cell, clock)?;
         replanner.prepare(&base, states);
         Ok(Self {
             robot,
@@ -190,8 +194,8 @@ impl<'a> ObstacleGuard<'a> {
 
     /// The solid of each obstacle: where it is and will be. One whose predicted positions the robot is at already counts where
     /// it was seen: the prediction must not trap the robot.
-    fn solids(&self, surroundings: &Surroundings) -> Result<Vec<Shape>, SceneError> {
-        let mut solids: Vec<Shape> = surroundings.perceived.iter().map(|o| o.predicted.clone()).collect();
+    fn solids(&self, surroundings: &Surroundings) -> Result<Vec<PerceivedSolid>, SceneError> {
+        let mut solids: Vec<PerceivedSolid> = surroundings.perceived.iter().map(|o| o.predicted.clone()).collect();
         let placed = surroundings.obstacles_only(&self.base, self.robot, &solids)?;
         let mut checker = Checker::new(&placed.scene, CheckerOptions::default());
         let mut pairs = checker.between(Selection::Robot(self.robot), Selection::Objects);
@@ -213,7 +217,7 @@ impl<'a> ObstacleGuard<'a> {
         &self,
         ahead: &PathAhead,
         surroundings: &Surroundings,
-        solids: &[Shape],
+        solids: &[PerceivedSolid],
     ) -> Result<Option<BlockedPath>, SceneError> {
         let placed = surroundings.obstacles_only(&self.base, self.robot, solids)?;
         let mut checker = Checker::new(&placed.scene, CheckerOptions::default());

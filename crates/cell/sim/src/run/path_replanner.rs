@@ -4,9 +4,11 @@ use std::rc::Rc;
 use std::time::{Duration, Instant};
 
 use elbowroom_analysis::CoverCache;
+use elbowroom_analysis::plan::{MapPlanner, PathPlanner};
 use elbowroom_cell::region_constraint::RegionConstraint;
 use elbowroom_cell::trajectory::{Playback, motion_bounds};
-use elbowroom_cell::{CellRobot, TrajectoryRow};
+use elbowroom_cell::{Cell, CellRobot, TrajectoryRow};
+use elbowroom_formats::FormatError;
 use elbowroom_kinematics::ChainState;
 use elbowroom_perception::motion_entry::{acceleration_distance, first_root};
 use elbowroom_planner::{
@@ -16,9 +18,11 @@ use elbowroom_planner::{
 use elbowroom_proximity::Shape;
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{Scene, SceneState};
+use elbowroom_spatial::Pose;
 
 use super::path_ahead::PathAhead;
 use super::path_search::ClosedRegions;
+use super::perceived_obstacles::PerceivedSolid;
 use super::surroundings::{PlacedScene, Surroundings};
 use crate::motion::ProgramClock;
 
@@ -94,11 +98,37 @@ pub(super) struct PathReplanner<'a> {
     models: Vec<CoverModel>,
     /// For the last scene in which something is.
     carrying: Option<CoverModel>,
+    /// With their clearances (m); none where no move of the program is planned on the map.
+    maps: Vec<(f64, MapPlanner)>,
 }
 
 impl<'a> PathReplanner<'a> {
     pub fn new(robot: RobotId, at: &'a CellRobot, tick_s: f64) -> Self {
-        Self { robot, at, tick_s, motion_bounds: motion_bounds(at), models: Vec::new(), carrying: None }
+        Self {
+            robot,
+            at,
+            tick_s,
+            motion_bounds: motion_bounds(at),
+            models: Vec::new(),
+            carrying: None,
+            maps: Vec::new(),
+        }
+    }
+
+    /// With the maps of moves that are planned on them.
+    ///
+    /// # Errors
+    /// [`FormatError`] where the robot has no map of three joints.
+    pub fn with_maps(mut self, cell: &Cell, clock: &ProgramClock) -> Result<Self, FormatError> {
+        for q in clock.moves_on_map() {
+            if self.maps.iter().any(|(_, map)| map.serves(&q)) {
+                continue;
+            }
+            for clearance_m in CLEARANCES_M {
+                self.maps.push((clearance_m, MapPlanner::new(cell, self.robot, &q, clearance_m)?));
+            }
+        }
+        Ok(self)
     }
 
     /// Makes what searches need of the robot itself, so that the first one does not take that time.
@@ -119,11 +149,11 @@ impl<'a> PathReplanner<'a> {
         clock: &ProgramClock,
         (ahead, free_until_s): (&PathAhead, f64),
         surroundings: &Surroundings,
-        (base, solids): (&Scene, &[Shape]),
+        (base, solids): (&Scene, &[PerceivedSolid]),
         regions: &ClosedRegions<'_>,
         deadline: Instant,
     ) -> Option<ReplannedMove> {
-        let (play, speed) = clock.planned_move()?;
+        let (play, speed, planner) = clock.planned_move()?;
         let goal = play.q(play.duration());
         let limits = self.limits(speed);
         let velocity: Vec<f64> = clock.velocity().collect();
@@ -144,9 +174,10 @@ impl<'a> PathReplanner<'a> {
         };
         let mut placed = surroundings.everything(base, solids).ok()?;
         placed.state.set_q(&placed.scene, self.robot, &departure.from).ok()?;
+        let boxes: Vec<_> = solids.iter().flat_map(|solid| solid.boxes.iter().cloned()).collect();
         let motion = attempts(is_moving, regions.are_none(), deadline).find_map(|attempt| {
             let constraint = regions.constraint(attempt.warning_share);
-            self.search(&placed, &departure, &goal, &limits, (&attempt.settings, constraint))
+            self.search((&placed, &boxes), &departure, &goal, (planner, &limits), (&attempt.settings, constraint))
         })?;
         if Instant::now() > deadline {
             return None;
@@ -172,10 +203,10 @@ impl<'a> PathReplanner<'a> {
 
     fn search(
         &mut self,
-        placed: &PlacedScene,
+        (placed, others): (&PlacedScene, &[(Shape, Pose)]),
         departure: &Departure,
         goal: &[f64],
-        limits: &KinematicLimits,
+        (planner, limits): (PathPlanner, &KinematicLimits),
         (settings, constraint): (&RrtConnectSettings, Option<RegionConstraint<'_>>),
     ) -> Option<TimedMotion> {
         let PlacedScene { scene, state, .. } = placed;
@@ -184,12 +215,21 @@ impl<'a> PathReplanner<'a> {
             exact = exact.with_constraint(constraint);
         }
         let (tick_s, clearance_m) = (self.tick_s, settings.clearance_m);
+        let timed = |exact: &mut RrtConnect<'_>, path| {
+            let path = with_departure(path, departure);
+            let motion = exact.time_parametrize(state, &path, limits, tick_s, settings).ok()?;
+            TimedMotion::of(&motion, tick_s).ok()
+        };
+        if planner == PathPlanner::Grid {
+            let (_, map) = self.maps.iter_mut().find(|(of, map)| *of == clearance_m && map.serves(goal))?;
+            map.update(scene, state, others).ok()?;
+            let path = map.plan(&mut exact, state, goal, settings).ok()?;
+            return timed(&mut exact, path);
+        }
         let Some(model) = self.cover_model(scene, state, clearance_m) else {
             // A link without bounds cannot be covered; the exact scene plans for it.
             let path = exact.plan(state, goal, settings).ok()?;
-            let path = with_departure(path, departure);
-            let motion = exact.time_parametrize(state, &path, limits, tick_s, settings).ok()?;
-            return TimedMotion::of(&motion, tick_s).ok();
+            return timed(&mut exact, path);
         };
         let obstacles = CoverObstacles::with_covers(model, scene, state, clearance_m, &CoverCache::of_user());
         let mut planner = CoverRrtConnect::new(exact, model, &obstacles);

@@ -76,7 +76,7 @@ impl SearchScene {
         Self {
             q: surroundings.states.iter().map(|s| s.q.clone()).collect(),
             objects: surroundings.objects.iter().map(|o| o.in_world).collect(),
-            obstacles: solids.map(|solid| solid.aabb(&Pose::IDENTITY)).collect(),
+            obstacles: solids.map(|solid| solid.shape.aabb(&Pose::IDENTITY)).collect(),
             regions: regions.constraint(0.0).map_or_else(Vec::new, |c| c.names()),
             sources: regions.sources.iter().map(|s| s.pose).collect(),
         }

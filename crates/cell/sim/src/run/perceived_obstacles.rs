@@ -8,6 +8,7 @@ use elbowroom_formats::{FormatError, Warning};
 use elbowroom_perception::Prism;
 use elbowroom_proximity::{HullError, Shape};
 use elbowroom_robot::RobotId;
+use elbowroom_spatial::Pose;
 
 use crate::recording::{SensorTrack, TickTimes};
 
@@ -17,17 +18,31 @@ pub(super) struct PerceivedObstacle {
     /// `sensor#number`.
     pub name: String,
     /// Where it was seen, with the uncertainty.
-    pub observed: Shape,
+    pub observed: PerceivedSolid,
     /// That, and where it will be.
-    pub predicted: Shape,
+    pub predicted: PerceivedSolid,
+}
+
+/// A solid in the world.
+#[derive(Debug, Clone)]
+pub(super) struct PerceivedSolid {
+    pub shape: Shape,
+    /// Boxes that together contain it, for joint-space maps.
+    pub boxes: Vec<(Shape, Pose)>,
 }
 
 impl PerceivedObstacle {
     fn of(sensor: &str, prism: &Prism) -> Result<Self, HullError> {
         Ok(Self {
             name: format!("{sensor}{}", prism.id),
-            observed: Shape::Hull(Arc::new(prism.observed_solid()?)),
-            predicted: Shape::Hull(Arc::new(prism.predicted_solid()?)),
+            observed: PerceivedSolid {
+                shape: Shape::Hull(Arc::new(prism.observed_solid()?)),
+                boxes: prism.observed_boxes(),
+            },
+            predicted: PerceivedSolid {
+                shape: Shape::Hull(Arc::new(prism.predicted_solid()?)),
+                boxes: prism.predicted_boxes(),
+            },
         })
     }
 }

@@ -1,12 +1,11 @@
 //! Everything around a robot at one instant of a run, as scenes.
 
 use elbowroom_kinematics::ChainState;
-use elbowroom_proximity::Shape;
 use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_scene::{Attachment, Object, Scene, SceneError, SceneState};
 use elbowroom_spatial::Pose;
 
-use super::perceived_obstacles::PerceivedObstacle;
+use super::perceived_obstacles::{PerceivedObstacle, PerceivedSolid};
 
 /// Robots, objects and obstacles at one instant.
 #[derive(Debug)]
@@ -39,7 +38,12 @@ impl Surroundings {
     ///
     /// # Errors
     /// Solids or joint values that the scene refuses.
-    pub fn obstacles_only(&self, base: &Scene, robot: RobotId, solids: &[Shape]) -> Result<PlacedScene, SceneError> {
+    pub fn obstacles_only(
+        &self,
+        base: &Scene,
+        robot: RobotId,
+        solids: &[PerceivedSolid],
+    ) -> Result<PlacedScene, SceneError> {
         self.scene(base, |attachment| attachment.is_some_and(|a| a.robot == robot), solids)
     }
 
@@ -47,7 +51,7 @@ impl Surroundings {
     ///
     /// # Errors
     /// As [`obstacles_only`](Self::obstacles_only).
-    pub fn everything(&self, base: &Scene, solids: &[Shape]) -> Result<PlacedScene, SceneError> {
+    pub fn everything(&self, base: &Scene, solids: &[PerceivedSolid]) -> Result<PlacedScene, SceneError> {
         self.scene(base, |_| true, solids)
     }
 
@@ -55,16 +59,16 @@ impl Surroundings {
         &self,
         base: &Scene,
         keeps: impl Fn(Option<&Attachment>) -> bool,
-        solids: &[Shape],
+        solids: &[PerceivedSolid],
     ) -> Result<PlacedScene, SceneError> {
         let kept: Vec<(&Object, &Option<Attachment>)> =
             self.objects.iter().zip(&self.attachments).filter(|(_, a)| keeps(a.as_ref())).collect();
         let mut objects: Vec<Object> = kept.iter().map(|(o, _)| (*o).clone()).collect();
         let first_perceived = objects.len();
         let solids = self.perceived.iter().zip(solids);
-        objects.extend(solids.map(|(obstacle, shape)| Object {
+        objects.extend(solids.map(|(obstacle, solid)| Object {
             name: obstacle.name.clone(),
-            shape: shape.clone(),
+            shape: solid.shape.clone(),
             in_world: Pose::IDENTITY,
         }));
         let scene = base.with_objects(objects)?;

@@ -37,6 +37,9 @@ pub enum RobotMapError {
     /// A slack of covers that is no length.
     #[error("the slack of covers is {0} m: give a finite length above 0, such as 0.004")]
     Slack(f64),
+    /// A clearance that is no length.
+    #[error("the clearance of a map is {0} m: give a finite length, 0 or more, such as 0.02")]
+    Clearance(f64),
     /// The map would exceed the memory limit.
     #[error("the map needs more than {mib} MiB: make the steps larger, or allow more memory")]
     Memory {

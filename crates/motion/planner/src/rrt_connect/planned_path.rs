@@ -22,8 +22,25 @@ pub struct PlannedPath {
 }
 
 impl PlannedPath {
-    /// Adds segments to other ends.
-    pub(crate) fn with_ends(mut self, [from, to]: [Vec<f64>; 2]) -> Self {
+    /// Of waypoints, at least one, that took a time to find: a copy of a single one is added.
+    pub fn of(mut waypoints: Vec<Vec<f64>>, planning_time: Duration) -> Self {
+        if let [only] = &waypoints[..] {
+            waypoints.push(only.clone());
+        }
+        let length_rad = path_length(&waypoints);
+        Self {
+            waypoints,
+            length_rad,
+            raw_length_rad: length_rad,
+            planning_time,
+            simplification_time: Duration::ZERO,
+            states_checked: 0,
+        }
+    }
+
+    /// Adds straight segments to other ends.
+    #[must_use]
+    pub fn with_ends(mut self, [from, to]: [Vec<f64>; 2]) -> Self {
         let before = path_length(&self.waypoints);
         self.waypoints.insert(0, from);
         self.waypoints.push(to);

@@ -38,6 +38,8 @@ const MOST_ROWS: usize = 1 << 20;
 pub struct CoverMapSettings {
     /// Largest protrusion of a cover from its link, m; `None`: by the size of the robot, 1 to 4.5 mm.
     pub slack_m: Option<f64>,
+    /// Cells count as blocked from this distance on, m: a cover so much larger than the robot.
+    pub clearance_m: f64,
 }
 
 /// Builds maps of one robot on sphere covers of its links, in milliseconds: a [`Layer`] per obstacle, over three axes.
@@ -114,9 +116,16 @@ impl CoverMapBuilder {
         }
         let reach = reach_m(robot);
         let slack_m = settings.slack_m.unwrap_or_else(|| (SLACK_SHARE * reach).clamp(LEAST_SLACK_M, MOST_SLACK_M));
-        let planar = PlanarArmMap::new(&exact.chain, &groups, grid, slack_m);
+        if !(settings.clearance_m >= 0.0 && settings.clearance_m.is_finite()) {
+            return Err(RobotMapError::Clearance(settings.clearance_m));
+        }
+        // The capsules of an arm in a plane are those of its links.
+        let has_clearance = settings.clearance_m > 0.0;
+        let planar = if has_clearance { None } else { PlanarArmMap::new(&exact.chain, &groups, grid, slack_m) };
         let mut steps = StepChain::default();
-        let covers = covers_of(&groups, slack_m, source)?;
+        let mut covers = covers_of(&groups, slack_m, source)?;
+        let outer = covers.iter_mut().flat_map(|cover| &mut cover.outer);
+        outer.for_each(|ball| ball.radius += settings.clearance_m);
         let covered: Vec<CoveredGroup<'_>> = groups
             .iter()
             .zip(covers)

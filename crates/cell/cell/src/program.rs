@@ -1,0 +1,122 @@
+//! Programs of robots: steps, or a recorded trajectory.
+
+use elbowroom_kinematics::inverse::ConfigurationChoice;
+use elbowroom_robot::ObjectId;
+use elbowroom_spatial::Pose;
+
+use crate::CellRegionId;
+
+/// Program of a robot.
+#[derive(Debug, Clone)]
+pub struct Program {
+    /// Programmed override at the start, 0..1.
+    pub speed_override: f64,
+    /// Number of repetitions.
+    pub repeat: u32,
+    /// Its contents.
+    pub body: ProgramBody,
+    /// Line of its table.
+    pub line: usize,
+}
+
+/// Steps, or a recorded trajectory.
+#[derive(Debug, Clone)]
+pub enum ProgramBody {
+    /// Executed in order, at rest in between.
+    Steps(Vec<ProgramStep>),
+    /// Joint values over time.
+    Trajectory(Vec<TrajectoryRow>),
+}
+
+/// A row of a recorded trajectory.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TrajectoryRow {
+    /// Time, s.
+    pub t_s: f64,
+    /// Joint values, rad or m.
+    pub q: Vec<f64>,
+}
+
+/// One step of a program.
+#[derive(Debug, Clone)]
+pub struct ProgramStep {
+    /// Its line in the cell file.
+    pub line: usize,
+    /// Its action.
+    pub action: StepAction,
+}
+
+/// Action of a step.
+#[derive(Debug, Clone)]
+pub enum StepAction {
+    /// Joint move: straight in joint space.
+    Joint {
+        /// Target.
+        to: MoveTarget,
+        /// Share of each joint's speed, 0..1.
+        speed: f64,
+    },
+    /// Linear move: the TCP on a straight line.
+    Linear {
+        /// Target.
+        to: MoveTarget,
+        /// TCP speed, m/s.
+        speed: f64,
+    },
+    /// Planned move: a path around everything that is where it is at the start of the run.
+    Planned {
+        /// Target.
+        to: MoveTarget,
+        /// Share of each joint's speed, 0..1.
+        speed: f64,
+        /// How the path is searched for.
+        planner: PathPlanner,
+    },
+    /// Switches a temporary region.
+    Switch {
+        /// The region.
+        region: CellRegionId,
+        /// On or off.
+        active: bool,
+    },
+    /// Attaches an object to the flange, where it is.
+    Grip(ObjectId),
+    /// Detaches an object from the flange: it stays where it is.
+    Release(ObjectId),
+    /// Makes one of the robot's [tools](CellRobot::tools) the active one.
+    Tool(usize),
+    /// Waits, s.
+    Wait(f64),
+    /// Sets the programmed override, 0..1.
+    Override(f64),
+}
+
+/// How a path is searched for.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum PathPlanner {
+    /// Two trees of random samples, proven on sphere covers and in the exact scene: any number of joints.
+    #[default]
+    RrtConnect,
+    /// Through the free cells of the robot's joint-space map of three joints.
+    Grid,
+}
+
+/// Target of a move.
+#[derive(Debug, Clone)]
+pub enum MoveTarget {
+    /// Joint values, rad or m.
+    Joints(Vec<f64>),
+    /// A pose of the TCP.
+    Tcp(TcpTarget),
+}
+
+/// The TCP at a pose. Where several joint values bring it there, `configuration` and `near` choose.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TcpTarget {
+    /// The TCP in the world.
+    pub in_world: Pose,
+    /// Shoulder, elbow and wrist; for six axes with a spherical wrist only.
+    pub configuration: ConfigurationChoice,
+    /// Only the solution nearest to these values of all joints (rad or m), which also chooses whole turns.
+    pub near: Option<Vec<f64>>,
+}
