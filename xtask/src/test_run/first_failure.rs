@@ -116,6 +116,7 @@ mod tests {
         let program = Program {
             name: "robot/main".into(),
             executable: "/t/robot".into(),
+            started: Vec::new(),
             folder: "/w".into(),
             has_harness: true,
         };

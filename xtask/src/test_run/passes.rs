@@ -31,10 +31,15 @@ pub struct Passes {
 }
 
 impl Passes {
-    /// Reads what passed in this target folder, and looks at what there is now.
+    /// Reads what passed in this target folder, and looks at what there is now. The file is gone until it is written again: a run that
+    /// is cut off leaves nothing behind of which it may have shown the contrary.
     pub fn read(root: &Path, programs: &[Program], env: &[(&str, &str)]) -> Self {
-        let file = shell::target_folder(root).join("test-passes.txt");
+        Self::of_file(shell::target_folder(root).join("test-passes.txt"), root, programs, env)
+    }
+
+    fn of_file(file: PathBuf, root: &Path, programs: &[Program], env: &[(&str, &str)]) -> Self {
         let text = std::fs::read_to_string(&file).unwrap_or_default();
+        let _ = std::fs::remove_file(&file);
         let surroundings = surroundings(root, env);
         let crates = root.join("crates");
         let stamp = |program: &Program| {
@@ -43,6 +48,7 @@ impl Passes {
             let mut hasher = DefaultHasher::new();
             surroundings.hash(&mut hasher);
             look(&program.executable, &mut hasher);
+            program.started.iter().for_each(|started| look(started, &mut hasher));
             Some(hasher.finish())
         };
         Self { file, stamps: programs.iter().map(stamp).collect(), known: text.lines().filter_map(entry).collect() }
@@ -122,36 +128,67 @@ mod tests {
     use super::*;
 
     fn program(executable: &Path, folder: &str) -> Program {
-        Program { name: "a/lib".into(), executable: executable.into(), folder: folder.into(), has_harness: true }
+        let started = vec![executable.with_extension("started")];
+        Program {
+            name: "a/main".into(),
+            executable: executable.into(),
+            started,
+            folder: folder.into(),
+            has_harness: true,
+        }
+    }
+
+    /// A repository of its own, with a file that tests read.
+    fn repository() -> tempfile::TempDir {
+        let root = tempfile::tempdir().unwrap();
+        std::fs::create_dir_all(root.path().join("crates/a")).unwrap();
+        std::fs::create_dir(root.path().join("target")).unwrap();
+        std::fs::write(root.path().join(".gitignore"), "target\n").unwrap();
+        std::fs::write(root.path().join("cell.toml"), "version = 1").unwrap();
+        shell::output(root.path(), "git", &["init", "-q"]).unwrap();
+        root
     }
 
     #[test]
-    fn a_unit_that_passed_runs_again_once_its_program_or_a_setting_changes() {
-        let root = xtask::call::workspace_root().unwrap();
-        let executable = std::env::temp_dir().join(format!("passes-{}", std::process::id()));
-        let unit = Unit { name: "a/lib".into(), program: 0, tests: Vec::new() };
-        let here = [program(&executable, &root.join("crates/base/robot").to_string_lossy())];
-        let look_again = |kept: &Passes, env| {
-            let now = Passes::read(&root, &here, env);
-            Passes { stamps: now.stamps, known: kept.known.clone(), ..Passes::default() }.of(&unit)
+    fn a_unit_that_passed_runs_again_once_its_program_or_what_it_starts_or_reads_changes() {
+        let root = repository();
+        let (root, executable) = (root.path(), root.path().join("target/main"));
+        let unit = Unit { name: "a/main/b".into(), program: 0, tests: Vec::new() };
+        let here = [program(&executable, &root.join("crates/a").to_string_lossy())];
+        let passed_with = |env: &[(&str, &str)]| {
+            let mut passes = Passes::of_file(root.join("target/passes"), root, &here, env);
+            let before = passes.of(&unit);
+            passes.keep(&unit, Some(3));
+            passes.write();
+            before
         };
         std::fs::write(&executable, "one").unwrap();
-        let mut passes = Passes::read(&root, &here, &[]);
-        passes.keep(&unit, Some(3));
-        assert_eq!((look_again(&passes, &[]), look_again(&passes, &[("A", "b")])), (Some(3), None));
-        std::fs::write(&executable, "other").unwrap();
-        assert_eq!(look_again(&passes, &[]), None);
-        std::fs::remove_file(&executable).unwrap();
+        assert_eq!((passed_with(&[]), passed_with(&[])), (None, Some(3)));
+        assert_eq!((passed_with(&[("A", "b")]), passed_with(&[])), (None, None));
+        for file in ["target/main", "target/main.started", "cell.toml"] {
+            std::fs::write(root.join(file), "another text").unwrap();
+            assert_eq!((passed_with(&[]), passed_with(&[])), (None, Some(3)), "{file}");
+        }
+        // Sources are compiled into the program, and nobody tests documents.
+        for file in ["crates/a/lib.rs", "README.md"] {
+            std::fs::write(root.join(file), "text").unwrap();
+            assert_eq!(passed_with(&[]), Some(3), "{file}");
+        }
+        // It fails now.
+        let mut passes = Passes::of_file(root.join("target/passes"), root, &here, &[]);
         passes.keep(&unit, None);
-        assert_eq!(passes.of(&unit), None);
+        passes.write();
+        assert_eq!(passed_with(&[]), None);
+        // A run that is cut off keeps nothing.
+        drop(Passes::of_file(root.join("target/passes"), root, &here, &[]));
+        assert_eq!(passed_with(&[]), None);
     }
 
     #[test]
     fn programs_that_read_the_sources_always_run() {
-        let root = xtask::call::workspace_root().unwrap();
-        let passes =
-            Passes::read(&root, &[program(&root.join("Cargo.toml"), &root.join("xtask").to_string_lossy())], &[]);
-        assert_eq!(passes.stamps, [None]);
+        let root = repository();
+        let here = [program(&root.path().join("cell.toml"), &root.path().join("xtask").to_string_lossy())];
+        assert_eq!(Passes::of_file(root.path().join("target/passes"), root.path(), &here, &[]).stamps, [None]);
     }
 
     #[test]

@@ -13,6 +13,8 @@ pub struct Program {
     pub name: String,
     /// The file to start.
     pub executable: PathBuf,
+    /// Programs of its package, which its tests start.
+    pub started: Vec<PathBuf>,
     /// The folder of its package, in which it is started.
     pub folder: PathBuf,
     /// Whether it understands `--list` and names of tests.
@@ -36,9 +38,11 @@ fn programs(artifacts: &[Artifact]) -> Result<Vec<Program>, String> {
         let is_integration = kind == "test";
         let short = if is_integration { name } else { kind };
         let has_harness = !is_integration || harness(manifest, name)?;
+        let of_package = artifacts.iter().filter(|other| !other.is_test && other.manifest == *manifest);
         found.push(Program {
             name: format!("{crate_name}/{short}"),
             executable: executable.clone(),
+            started: of_package.map(|other| other.executable.clone()).collect(),
             folder,
             has_harness,
         });
@@ -73,6 +77,7 @@ mod tests {
         let expected = Program {
             name: "robot/lib".into(),
             executable: "/t/robot-1".into(),
+            started: vec!["/t/elbowroom".into()],
             folder: "/w/crates/base/robot".into(),
             has_harness: true,
         };

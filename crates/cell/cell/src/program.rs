@@ -83,7 +83,7 @@ pub enum StepAction {
     Grip(ObjectId),
     /// Detaches an object from the flange: it stays where it is.
     Release(ObjectId),
-    /// Makes one of the robot's [tools](CellRobot::tools) the active one.
+    /// Makes one of the robot's [tools](crate::CellRobot::tools) the active one.
     Tool(usize),
     /// Waits, s.
     Wait(f64),

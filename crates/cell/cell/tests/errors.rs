@@ -568,3 +568,16 @@ fn states_steps_quaternions_and_ignored_pairs_are_refused_at_their_line() {
     ];
     refused("test.toml".as_ref(), &text, &cases);
 }
+
+#[test]
+fn a_cell_has_at_most_as_many_robots_as_deadlocks_are_found_among() {
+    let robot = |i: usize| format!("[robot.r{i}]\ndh = [{{ a = 1, min = -1, max = 1, speed = 1 }}]\n");
+    let with = |count: usize| {
+        let robots: String = (0..count).map(robot).collect();
+        Cell::parse("many.toml", &format!("version = 1\nunits = {{ length = \"m\", angle = \"rad\" }}\n{robots}"))
+    };
+    assert_eq!(with(128).unwrap().robots.len(), 128);
+    let refused = with(129).unwrap_err();
+    assert_eq!(refused.line, Some(259));
+    assert!(refused.to_string().contains("more than 128 robots"), "{refused}");
+}

@@ -10,8 +10,7 @@
 //! it is; meshes add about 8 bytes per triangle, equal ones once. The page needs a browser with `DecompressionStream`
 //! (all since 2023); result and tables need no script.
 //!
-//! [`write_perception_html`] writes the page of a run with a camera, [`map_pictures`] images of slices of a joint-space
-//! map, [`map_page`] one page with a slider over them, [`model_picture`] an image of a robot model with its joint axes.
+//! [`map_pictures`] writes images of slices of a joint-space map, [`map_page`] one page with a slider over them, [`model_picture`] an image of a robot model with its joint axes.
 //! [`cell_data`] and [`shared_assets`] are for other pages with the 3-D scene of a cell.
 //!
 //! ```
@@ -47,7 +46,6 @@ pub mod model_picture;
 mod packing;
 mod page_meshes;
 mod palette;
-mod perception_page;
 mod plots;
 mod png;
 mod region_distances;
@@ -63,7 +61,6 @@ mod summary;
 mod tables;
 
 pub use html::{HtmlReport, write_html};
-pub use perception_page::{stage_table, write_perception_html};
 pub use scene::{ReportMesh, ReportObject, ReportRobot, ReportScene};
 pub use scene_data::{PageData, cell_data};
 pub use summary::{TextSummary, summary};

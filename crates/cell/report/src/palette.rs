@@ -8,12 +8,6 @@ pub fn of_region(index: usize) -> &'static str {
     COLORS[index % COLORS.len()]
 }
 
-/// Colour of obstacles in plots of perception.
-pub const OBSTACLE: &str = "#d62728";
-
-/// Colour of slowed motion in plots of perception.
-pub const WARNING: &str = "#f2c230";
-
 /// Colour of a curve: red with control, blue without, as in the paper's figure 12; each further robot has its own pair.
 pub fn of_run(robot: usize, monitored: bool) -> &'static str {
     const PAIRS: [(&str, &str); 4] =

@@ -11,7 +11,7 @@ use elbowroom::formats::image::{ImageHeader, PixelFormat};
 use elbowroom::formats::png;
 use elbowroom::formats::robot::{LoadOptions, load};
 use elbowroom::kinematics::{ChainState, LinkId};
-use elbowroom::perception::MappedArm;
+use elbowroom::perception::WatchedRobot;
 use elbowroom::proximity::Shape;
 use elbowroom::robot::Robot;
 use elbowroom::spatial::{Pose, Vec3};
@@ -123,11 +123,8 @@ fn learning_joints(t_s: f64) -> [f64; 6] {
 fn write_pictures(dir: &Path, frames: usize, leaves_s: f64) {
     let folder = dir.join("pictures");
     std::fs::create_dir(&folder).unwrap();
-    let arm = MappedArm::kr125(
-        load(&elbowroom_testkit::folder::model("kr125"), &LoadOptions::default()).unwrap().robot,
-        Pose::IDENTITY,
-    );
-    let (mut state, mut parts) = (ChainState::new(&arm.robot.chain), Vec::new());
+    let robot = load(&elbowroom_testkit::folder::model("kr125"), &LoadOptions::default()).unwrap().robot;
+    let arm = WatchedRobot { robot, base_in_world: Pose::IDENTITY };
     let mut joints = "t_s,joint_1,joint_2,joint_3,joint_4,joint_5,joint_6\n".to_owned();
     for i in 0..=136 {
         let t_s = stamp_s(0) - 0.2 + 0.01 * f64::from(i);
@@ -144,11 +141,8 @@ fn write_pictures(dir: &Path, frames: usize, leaves_s: f64) {
         let solids: Vec<_> =
             (t_s >= 0.0).then(|| RenderedSolid::cuboid(at, Vec3::new(x, y, z), 0.0, 40)).into_iter().collect();
         let conditions = RenderConditions { seed: i as u64, ..RenderConditions::default() };
-        parts.clear();
-        if t_s < 0.0 {
-            arm.parts_in_world(&mut state, &learning_joints(t_s), &mut parts);
-        }
-        let drawn: Vec<_> = parts.iter().map(|part| (part.clone(), 200)).collect();
+        let parts = if t_s < 0.0 { arm.parts(&learning_joints(t_s)) } else { Vec::new() };
+        let drawn: Vec<_> = parts.into_iter().map(|part| (part, 200)).collect();
         renderer.render(&solids, &drawn, &conditions, &mut frame).unwrap();
         let name = format!("frame_{i:04}.png");
         std::fs::write(folder.join(&name), encode_png(&frame).unwrap()).unwrap();

@@ -8,8 +8,7 @@ use std::process::Stdio;
 
 use crate::common::{Answer, elbowroom};
 use elbowroom::formats::robot::{LoadOptions, load};
-use elbowroom::kinematics::ChainState;
-use elbowroom::perception::MappedArm;
+use elbowroom::perception::WatchedRobot;
 use elbowroom::spatial::{Pose, Vec3};
 use elbowroom::vision::render::{RenderConditions, RenderedSolid, Renderer};
 use elbowroom::vision::{Camera, Channels, Frame, Intrinsics, Point2, encode_png, polygon};
@@ -66,14 +65,13 @@ fn write_pictures(dir: &Path) {
     std::fs::create_dir(&folder).unwrap();
     let camera = Camera::look_at(lens(), Vec3::new(1.7, 0.0, 6.5), Vec3::new(1.7, 0.0, 0.0), Vec3::Y).unwrap();
     let model = elbowroom_testkit::folder::model("kr125");
-    let arm = MappedArm::kr125(load(&model, &LoadOptions::default()).unwrap().robot, Pose::IDENTITY);
+    let robot = load(&model, &LoadOptions::default()).unwrap().robot;
+    let arm = WatchedRobot { robot, base_in_world: Pose::IDENTITY };
     let mut renderer = Renderer::new(camera, Channels::Grey, 5);
-    let (mut state, mut parts) = (ChainState::new(&arm.robot.chain), Vec::new());
     let (mut frame, mut times) = (Frame::default(), "file,t_s\n".to_owned());
     for i in 0..FRAMES {
         let t_s = i as f64 * PERIOD_S;
-        arm.parts_in_world(&mut state, &joints_at(t_s), &mut parts);
-        let drawn: Vec<_> = parts.iter().map(|part| (part.clone(), 200)).collect();
+        let drawn: Vec<_> = arm.parts(&joints_at(t_s)).into_iter().map(|part| (part, 200)).collect();
         let solids: Vec<_> = crate_at(t_s)
             .map(|at| RenderedSolid::cuboid(at, Vec3::new(SIZE[0], SIZE[1], 0.3), 0.0, 40))
             .into_iter()

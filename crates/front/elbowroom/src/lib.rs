@@ -129,8 +129,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The folder `examples` of the crate has whole programs: `1_distance`, `2_monitor`, `3_plan`, `4_joint_map`, `5_exchange`
-//! (`cargo run --release -p elbowroom --example 1_distance`), and `around`, a robot under a camera with a report.
+//! The folder `examples` of the crate has whole programs: `1_distance`, `2_monitor`, `3_plan`, `4_joint_map`, `5_exchange`,
+//! `6_camera`
+//! (`cargo run --release -p elbowroom --example 1_distance`).
 //!
 //! This is not a certified safety device.
 //!

@@ -114,24 +114,6 @@ impl PlanarArm {
         wrist_radius_m: 0.22,
     };
 
-    /// The KUKA KR125 (the robot named in that paper), without a tool: published dimensions, radii that enclose the
-    /// solids of `examples/models/kr125` at any values of the wrist's joints. The 45 mm between elbow and forearm are in the
-    /// forearm's length, √(1² + 0.045²) m, and in [`JointConvention::KR125`](crate::JointConvention::KR125). The part of the
-    /// column outside of the upper arm's capsule is left out: it is rotationally symmetric about axis 1.
-    ///
-    /// With a tool or a workpiece, `wrist_radius_m` is the largest distance of its points from the intersection of axes 4
-    /// and 5 (the flange is 0.21 m away).
-    pub const KR125: Self = Self {
-        offset_m: 0.41,
-        height_m: 0.865,
-        upper_length_m: 1.0,
-        upper_radius_m: 0.2,
-        // √(1² + 0.045²)
-        fore_length_m: 1.001_011_987_940_204,
-        fore_radius_m: 0.2,
-        wrist_radius_m: 0.23,
-    };
-
     /// The small arm of the joint-space paper: links of 225 mm and 165 mm, radius of the upper arm 85 mm. Its limits are
     /// θ2 ≥ −30° above the horizontal and 90° ≤ the angle between the links, which [`PlanarArm::from_paper`] translates.
     pub const PAPER: Self = Self {

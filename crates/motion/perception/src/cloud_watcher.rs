@@ -7,8 +7,8 @@ use elbowroom_vision::{ArmPart, FrameStatus, RejectReason};
 use crate::error::PerceptionError;
 use crate::map_updater::PrismSettings;
 use crate::obstacle_update::{ObstacleUpdate, Prism};
-use crate::pipeline::PerceptionSettings;
 use crate::robot_map::RobotMap;
+use crate::settings::PerceptionSettings;
 use crate::times::PerceptionTimes;
 use crate::watched_robots::{WatchedRobot, WatchedRobots};
 

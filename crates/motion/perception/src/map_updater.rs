@@ -1,63 +1,10 @@
-//! Updates the obstacles of the joint-space map from the reports of the camera tracker.
+//! Updates the obstacles of the joint-space map from the reports of a tracker.
 
-use std::ops::AddAssign;
-use std::sync::Arc;
-
-use elbowroom_cspace::{CellChanges, ConvexObstacle, JointMap};
-use elbowroom_spatial::Pose;
 use elbowroom_vision::{self as vision, ObstacleChange, ObstacleId, Point2, polygon};
 
 use crate::error::PerceptionError;
-use crate::obstacle_update::{ObstacleUpdate, Prism, prism_hull};
-
-/// A joint-space map in which observed obstacles are layers.
-pub(super) trait PrismMap {
-    /// Blocks the cells of an upright prism in place of those of the obstacle's former one.
-    ///
-    /// # Errors
-    /// A prism without a volume, or too far away; the map is unchanged.
-    fn set(&mut self, id: ObstacleId, footprint_m: &[Point2], heights_m: [f64; 2]) -> Result<Changed, PerceptionError>;
-    /// Frees the cells of an obstacle; `None` where it has none.
-    fn remove(&mut self, id: ObstacleId) -> Option<Changed>;
-}
-
-/// Numbers of cells that changed.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Changed {
-    pub blocked: usize,
-    pub freed: usize,
-}
-
-impl Changed {
-    pub fn of(changes: &CellChanges) -> Self {
-        Self { blocked: changes.blocked(), freed: changes.freed() }
-    }
-}
-
-impl AddAssign for Changed {
-    fn add_assign(&mut self, other: Self) {
-        self.blocked += other.blocked;
-        self.freed += other.freed;
-    }
-}
-
-/// The map of an arm in a plane.
-pub(super) struct PlanarPrisms<'m> {
-    pub map: &'m mut JointMap,
-    pub world_in_base: Pose,
-}
-
-impl PrismMap for PlanarPrisms<'_> {
-    fn set(&mut self, id: ObstacleId, footprint_m: &[Point2], heights_m: [f64; 2]) -> Result<Changed, PerceptionError> {
-        let hull = prism_hull(footprint_m, heights_m)?;
-        let obstacle = ConvexObstacle::hull(self.world_in_base, Arc::new(hull))?;
-        Ok(Changed::of(self.map.set_obstacle(&id.to_string(), &obstacle)))
-    }
-
-    fn remove(&mut self, id: ObstacleId) -> Option<Changed> {
-        self.map.remove_obstacle(&id.to_string()).map(Changed::of)
-    }
-}
+use crate::obstacle_update::{ObstacleUpdate, Prism};
+use crate::robot_prisms::RobotPrisms;
 
 /// Settings of the conversion of a reported obstacle to a prism.
 #[derive(Debug, Clone, Copy)]
@@ -88,7 +35,7 @@ impl MapUpdater {
         &mut self,
         reported: &[vision::Obstacle],
         settings: &PrismSettings,
-        map: &mut impl PrismMap,
+        map: &mut RobotPrisms,
         update: &mut ObstacleUpdate,
     ) -> Result<(), PerceptionError> {
         let mut result = Ok(());
@@ -104,7 +51,7 @@ impl MapUpdater {
         result
     }
 
-    fn remove(&mut self, id: ObstacleId, map: &mut impl PrismMap, update: &mut ObstacleUpdate) {
+    fn remove(&mut self, id: ObstacleId, map: &mut RobotPrisms, update: &mut ObstacleUpdate) {
         self.prisms.retain(|p| p.id != id);
         update.left.push(id);
         if let Some(changed) = map.remove(id) {
@@ -116,7 +63,7 @@ impl MapUpdater {
         &mut self,
         observed: &vision::Obstacle,
         settings: &PrismSettings,
-        map: &mut impl PrismMap,
+        map: &mut RobotPrisms,
         update: &mut ObstacleUpdate,
     ) -> Result<(), PerceptionError> {
         let index = self.prisms.iter().position(|p| p.id == observed.id);
@@ -170,7 +117,9 @@ fn prism(observed: &vision::Obstacle, prediction_s: f64) -> Prism {
 
 #[cfg(test)]
 mod tests {
-    use elbowroom_cspace::{Grid, GridAxis, PlanarArm};
+    use elbowroom_cspace::{CoverMapBuilder, CoverMapSettings, Grid, GridAxis, RemainingJoints};
+    use elbowroom_robot::example;
+    use elbowroom_spatial::Pose;
     use elbowroom_vision::FrameStatus;
 
     use super::*;
@@ -178,10 +127,13 @@ mod tests {
 
     const SETTINGS: PrismSettings = PrismSettings { prediction_s: 0.5, slack_m: 0.02 };
 
-    fn map() -> JointMap {
-        let axis = |min: f64, max: f64| GridAxis::new("joint", min, max, 0.1).unwrap();
-        let grid = Grid::new([axis(-3.0, 3.0), axis(-2.0, 0.2), axis(-1.0, 2.5)]).unwrap();
-        JointMap::new(PlanarArm::KR125, &grid).unwrap()
+    fn map() -> RobotPrisms {
+        let grid =
+            Grid::new(["a", "b", "c"].map(|name| GridAxis::from_degrees(name, -90.0, 90.0, 6.0).unwrap())).unwrap();
+        let (robot, settings) = (example::arm().unwrap(), CoverMapSettings::default());
+        let builder =
+            CoverMapBuilder::new(&robot, Pose::IDENTITY, &grid, [0, 1, 2], RemainingJoints::Swept, settings).unwrap();
+        RobotPrisms::new(builder)
     }
 
     fn obstacle(id: u64, change: ObstacleChange, at: [f64; 2]) -> vision::Obstacle {
@@ -197,7 +149,7 @@ mod tests {
 
     fn apply(
         updater: &mut MapUpdater,
-        map: &mut JointMap,
+        map: &mut RobotPrisms,
         reported: &[vision::Obstacle],
     ) -> Result<(), PerceptionError> {
         let mut update = ObstacleUpdate {
@@ -210,41 +162,39 @@ mod tests {
             freed: 0,
             times: PerceptionTimes::default(),
         };
-        let mut prisms = PlanarPrisms { map, world_in_base: Pose::IDENTITY };
-        updater.update(reported, &SETTINGS, &mut prisms, &mut update)
+        updater.update(reported, &SETTINGS, map, &mut update)
     }
 
     /// A map with exactly these obstacles.
-    fn map_of(reported: &[vision::Obstacle]) -> JointMap {
+    fn map_of(reported: &[vision::Obstacle]) -> RobotPrisms {
         let mut map = map();
         apply(&mut MapUpdater::default(), &mut map, reported).unwrap();
         map
     }
 
-    fn is_equal(a: &JointMap, b: &JointMap) -> bool {
-        let planes = a.grid().shape()[0];
-        (0..planes).all(|n| a.occupancy().plane(n) == b.occupancy().plane(n))
+    fn is_equal(a: &RobotPrisms, b: &RobotPrisms) -> bool {
+        a.map().occupancy().iter().eq(b.map().occupancy().iter())
     }
 
     #[test]
     fn an_obstacle_without_a_valid_hull_does_not_prevent_updates_of_the_others() {
         let (mut map, mut updater) = (map(), MapUpdater::default());
-        let first = [1, 2, 3].map(|id| obstacle(id, ObstacleChange::Entered, [1.8, id as f64 - 2.0]));
+        let first = [1, 2, 3].map(|id| obstacle(id, ObstacleChange::Entered, [0.8, id as f64 - 2.0]));
         apply(&mut updater, &mut map, &first).unwrap();
-        let flat = vision::Obstacle { z_to_m: 0.0, ..obstacle(1, ObstacleChange::Moved, [1.8, -1.0]) };
+        let flat = vision::Obstacle { z_to_m: 0.0, ..obstacle(1, ObstacleChange::Moved, [0.8, -1.0]) };
         let also_flat = vision::Obstacle { footprint_m: Vec::new(), ..obstacle(5, ObstacleChange::Entered, [0.0; 2]) };
         let second = [
             flat,
-            obstacle(2, ObstacleChange::Moved, [1.4, 0.3]),
-            obstacle(3, ObstacleChange::Left, [1.8, 1.0]),
+            obstacle(2, ObstacleChange::Moved, [0.6, 0.3]),
+            obstacle(3, ObstacleChange::Left, [0.8, 1.0]),
             also_flat,
         ];
         let error = apply(&mut updater, &mut map, &second).unwrap_err();
-        assert!(error.to_string().contains("plane"), "the first error is returned: {error}");
+        assert!(error.to_string().contains("volume"), "the first error is returned: {error}");
         // The cells of the rejected obstacle are unchanged.
         let expected = map_of(&[
-            obstacle(1, ObstacleChange::Entered, [1.8, -1.0]),
-            obstacle(2, ObstacleChange::Entered, [1.4, 0.3]),
+            obstacle(1, ObstacleChange::Entered, [0.8, -1.0]),
+            obstacle(2, ObstacleChange::Entered, [0.6, 0.3]),
         ]);
         assert!(is_equal(&map, &expected));
         assert_eq!(updater.prisms().iter().map(|p| p.id.0).collect::<Vec<_>>(), [1, 2]);
@@ -253,19 +203,19 @@ mod tests {
     #[test]
     fn an_obstacle_reported_as_stationary_is_compared_with_the_map() {
         let (mut map, mut updater) = (map(), MapUpdater::default());
-        apply(&mut updater, &mut map, &[obstacle(1, ObstacleChange::Entered, [1.8, 0.0])]).unwrap();
+        apply(&mut updater, &mut map, &[obstacle(1, ObstacleChange::Entered, [0.8, 0.0])]).unwrap();
         // It moved in a frame that was rejected, and is stationary since.
-        let flat = vision::Obstacle { z_to_m: 0.0, ..obstacle(1, ObstacleChange::Moved, [1.4, 0.6]) };
+        let flat = vision::Obstacle { z_to_m: 0.0, ..obstacle(1, ObstacleChange::Moved, [0.6, 0.6]) };
         apply(&mut updater, &mut map, std::slice::from_ref(&flat)).unwrap_err();
         apply(&mut updater, &mut map, &[vision::Obstacle { change: ObstacleChange::Unchanged, ..flat }]).unwrap_err();
-        assert!(is_equal(&map, &map_of(&[obstacle(1, ObstacleChange::Entered, [1.8, 0.0])])));
-        for position in [[1.4, 0.6], [1.8, -0.4]] {
+        assert!(is_equal(&map, &map_of(&[obstacle(1, ObstacleChange::Entered, [0.8, 0.0])])));
+        for position in [[0.6, 0.6], [0.8, -0.4]] {
             apply(&mut updater, &mut map, &[obstacle(1, ObstacleChange::Unchanged, position)]).unwrap();
             let expected = map_of(&[obstacle(1, ObstacleChange::Entered, position)]);
-            assert!(expected.occupancy().blocked() > 0 && is_equal(&map, &expected));
+            assert!(expected.map().occupancy().blocked() > 0 && is_equal(&map, &expected));
         }
         // A different height is a change, too.
-        let high = vision::Obstacle { z_to_m: 2.5, ..obstacle(1, ObstacleChange::Unchanged, [1.8, -0.4]) };
+        let high = vision::Obstacle { z_to_m: 2.5, ..obstacle(1, ObstacleChange::Unchanged, [0.8, -0.4]) };
         apply(&mut updater, &mut map, std::slice::from_ref(&high)).unwrap();
         assert!(is_equal(&map, &map_of(&[high])));
     }

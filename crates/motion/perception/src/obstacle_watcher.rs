@@ -7,12 +7,12 @@ use crate::error::PerceptionError;
 use crate::map_updater::PrismSettings;
 use crate::observation::observe;
 use crate::obstacle_update::{ObstacleUpdate, Prism};
-use crate::pipeline::PerceptionSettings;
 use crate::robot_map::RobotMap;
+use crate::settings::PerceptionSettings;
 use crate::watched_robots::{WatchedRobot, WatchedRobots};
 
 /// Turns camera frames into obstacles and keeps the joint-space map of a robot up to date: of any robot, on sphere covers of its
-/// links. ([`PerceptionPipeline`](crate::PerceptionPipeline) is for arms in a plane, and faster.)
+/// links.
 ///
 /// ```
 /// use elbowroom_cspace::{CoverMapBuilder, CoverMapSettings, Grid, GridAxis, RemainingJoints};

@@ -1,12 +1,11 @@
 //! The robots that a sensor sees.
 
-use elbowroom_kinematics::ChainState;
+use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_robot::Robot;
 use elbowroom_spatial::Pose;
 use elbowroom_vision::ArmPart;
 
 use crate::error::PerceptionError;
-use crate::mapped_arm::append_parts;
 
 /// A robot that a sensor sees.
 #[derive(Debug, Clone)]
@@ -15,6 +14,25 @@ pub struct WatchedRobot {
     pub robot: Robot,
     /// Pose of the root link in the world.
     pub base_in_world: Pose,
+}
+
+impl WatchedRobot {
+    /// The colliders of all links but the root link, in the world, at these joint values (rad or m).
+    pub fn parts(&self, q: &[f64]) -> Vec<ArmPart> {
+        let mut parts = Vec::new();
+        self.append_parts(&mut ChainState::new(&self.robot.chain), q, &mut parts);
+        parts
+    }
+
+    fn append_parts(&self, state: &mut ChainState, q: &[f64], parts: &mut Vec<ArmPart>) {
+        let known = q.len().min(state.q.len());
+        state.q[..known].copy_from_slice(&q[..known]);
+        self.robot.chain.forward(state);
+        for (link, colliders) in self.robot.colliders.iter().enumerate().filter(|(link, _)| *link != 0) {
+            let link_in_world = self.base_in_world * state.link_in_root(LinkId(link));
+            parts.extend(colliders.iter().filter_map(|c| ArmPart::from_shape(&c.shape, &(link_in_world * c.in_link))));
+        }
+    }
 }
 
 /// All robots that a sensor sees.
@@ -37,7 +55,7 @@ impl WatchedRobots {
         self.validate(q)?;
         let mut parts = Vec::new();
         for ((robot, state), q) in self.robots.iter().zip(&mut self.states).zip(q) {
-            append_parts(&robot.robot, robot.base_in_world, state, q, &mut parts);
+            robot.append_parts(state, q, &mut parts);
         }
         Ok(parts)
     }

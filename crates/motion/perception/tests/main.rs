@@ -1,6 +1,3 @@
 //! Integration tests of `elbowroom-perception` in one program: a module per subject, whose first line says what belongs there.
 
-mod executor;
-mod kr125;
-mod pipeline;
-mod simulated_cell;
+mod watcher;

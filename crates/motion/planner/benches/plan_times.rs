@@ -10,11 +10,7 @@ use std::time::{Duration, Instant};
 
 use common::{Random, blocked_point, connected, free_cell, grid_optimum};
 use elbowroom_cspace::{CellIndex, ConvexObstacle, Grid, JointMap};
-use elbowroom_planner::{
-    GridPlanner, GridPlannerSettings, KinematicLimits, MappedJoints, Path, PathProgress, ReplanKind, example,
-};
-use elbowroom_robot::RobotId;
-use elbowroom_scene::{Checker, CheckerOptions, SceneState, SweepOptions};
+use elbowroom_planner::{GridPlanner, GridPlannerSettings, KinematicLimits, Path, example};
 
 type Error = Box<dyn std::error::Error>;
 
@@ -29,7 +25,7 @@ fn main() -> Result<(), Error> {
         map.set_fixed(&obstacles);
         println!("{name}: {} cells, {} blocked", grid.cells(), map.occupancy().blocked());
         let paths = planning(&grid, &map)?;
-        exact(&grid, &map, &obstacles, &paths)?;
+        timing(&grid, &map, &paths)?;
         replanning(&grid, &mut map, &paths)?;
     }
     Ok(())
@@ -79,91 +75,45 @@ fn planning(grid: &Grid, map: &JointMap) -> Result<Vec<Path>, Error> {
     Ok(paths)
 }
 
-/// Checks every path in the exact scene, and times its time parametrization.
-fn exact(grid: &Grid, map: &JointMap, obstacles: &[ConvexObstacle], paths: &[Path]) -> Result<(), Error> {
-    let scene = example::scene(grid, obstacles)?;
-    let (mut checker, state) = (Checker::new(&scene, CheckerOptions::default()), SceneState::new(&scene));
+/// Times the time parametrization of every path.
+fn timing(grid: &Grid, map: &JointMap, paths: &[Path]) -> Result<(), Error> {
     let planner = GridPlanner::new(grid, map.occupancy())?;
-    let joints = MappedJoints { robot: RobotId(0), joints: [0, 1, 2] };
     let [velocity, acceleration, jerk] = [[1.5, 1.5, 2.0], [3.0, 3.0, 5.0], [30.0, 30.0, 50.0]].map(Vec::from);
     let limits = KinematicLimits { velocity, acceleration, jerk };
-    let (mut rejected, mut stops, mut checks, mut timings) = (0, 0, Vec::new(), Vec::new());
+    let (mut stops, mut timings) = (0, Vec::new());
     for path in paths {
-        let clock = Instant::now();
-        rejected += usize::from(path.check(&mut checker, &state, joints, &SweepOptions::default()).is_err());
-        checks.push(clock.elapsed());
         let clock = Instant::now();
         stops += planner.time_parametrize(path, &limits)?.stops();
         timings.push(clock.elapsed());
     }
-    println!("  exact check, {rejected} of {} rejected: {}", paths.len(), spread(&mut checks));
     println!("  time parametrization, {stops} stops: {}", spread(&mut timings));
     Ok(())
 }
 
-/// A sphere is added at the wrist's position on the path; the path is replanned, and planned from the start for comparison.
+/// A sphere is added at the wrist's position on the path, and the path is planned again.
 fn replanning(grid: &Grid, map: &mut JointMap, paths: &[Path]) -> Result<(), Error> {
     let settings = GridPlannerSettings::default();
     for radius in [0.05, 0.15] {
         let mut planner = GridPlanner::new(grid, map.occupancy())?;
-        let (mut updates, mut replan_times, mut plan_times) = (Vec::new(), Vec::new(), Vec::new());
-        let (mut shares, mut lengths, mut kinds, mut lost, mut unequal) = (Vec::new(), Vec::new(), [0; 3], 0, 0);
+        let (mut updates, mut plan_times, mut lost) = (Vec::new(), Vec::new(), 0);
         for path in paths.iter().filter(|path| path.length_rad > 1.0).take(300) {
-            let middle = halfway(path);
-            let wrist = example::ARM.joints_in_base(middle)[2];
+            let wrist = example::ARM.joints_in_base(halfway(path))[2];
             map.set_obstacle("intruder", &ConvexObstacle::sphere(wrist, radius)?);
-            let here = PathProgress { segment: 0, q: path.waypoints[0] };
             let clock = Instant::now();
             planner.update(map.occupancy())?;
             updates.push(clock.elapsed());
-            let goal = path.waypoints[path.waypoints.len() - 1];
-            // The first finds the caches cold: they alternate.
-            let (replanned, replan_time, planned, plan_time);
-            if kinds.iter().sum::<usize>() % 2 == 0 {
-                (replanned, replan_time) = timed(|| planner.replan(path, here, &settings));
-                (planned, plan_time) = timed(|| planner.plan(here.q, goal, &settings));
-            } else {
-                (planned, plan_time) = timed(|| planner.plan(here.q, goal, &settings));
-                (replanned, replan_time) = timed(|| planner.replan(path, here, &settings));
-            }
-            unequal += usize::from(replanned.is_ok() != planned.is_ok());
-            if let (Ok((replanned, kind)), Ok(planned)) = (replanned, planned) {
-                kinds[kind as usize] += 1;
-                if kind != ReplanKind::Kept {
-                    shares.push(replan_time.as_secs_f64() / plan_time.as_secs_f64());
-                    lengths.push(replanned.length_rad / planned.length_rad);
-                    replan_times.push(replan_time);
-                    plan_times.push(plan_time);
-                }
-            } else {
-                lost += 1;
-            }
+            let [from, goal] = [path.waypoints[0], path.waypoints[path.waypoints.len() - 1]];
+            let clock = Instant::now();
+            lost += usize::from(planner.plan(from, goal, &settings).is_err());
+            plan_times.push(clock.elapsed());
             map.remove_obstacle("intruder");
             planner.update(map.occupancy())?;
         }
-        println!(
-            "  a sphere of {radius} m: kept, repaired, replanned {kinds:?}; {lost} without a path, {unequal} unequal"
-        );
+        println!("  a sphere of {radius} m: {lost} without a path");
         println!("    update {}", spread(&mut updates));
-        println!("    replan {}", spread(&mut replan_times));
         println!("    plan   {}", spread(&mut plan_times));
-        let sum = |times: &[Duration]| times.iter().sum::<Duration>().as_secs_f64();
-        shares.sort_by(f64::total_cmp);
-        let median = shares.get(shares.len() / 2).copied().unwrap_or_default();
-        let mean = lengths.iter().sum::<f64>() / lengths.len().max(1) as f64;
-        let worst = lengths.iter().copied().fold(0.0, f64::max);
-        println!(
-            "    replan over plan: sum {:.3}, median {median:.3}; length over plan: mean {mean:.3}, worst {worst:.3}",
-            sum(&replan_times) / sum(&plan_times)
-        );
     }
     Ok(())
-}
-
-fn timed<T>(run: impl FnOnce() -> T) -> (T, Duration) {
-    let clock = Instant::now();
-    let result = run();
-    (result, clock.elapsed())
 }
 
 /// The configuration at half of the length.

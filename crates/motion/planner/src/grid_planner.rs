@@ -22,16 +22,11 @@ pub struct GridPlannerSettings {
     pub weights: [f64; 3],
     /// An end in a blocked cell may be moved to a free cell within this distance, weighted radians; 0: not at all.
     pub max_end_shift_rad: f64,
-    /// Expansion limit of a repair; beyond it, the whole path is replanned.
-    pub max_repair_nodes: usize,
-    /// A repair begins and ends at this distance from the blocked part, in cell widths (the mean of the joints).
-    pub repair_margin_cells: f64,
 }
 
 impl GridPlannerSettings {
     /// Unit weights, so that weighted lengths are lengths in joint space; ends are not moved.
-    pub const DEFAULT: Self =
-        Self { weights: [1.0; 3], max_end_shift_rad: 0.0, max_repair_nodes: 1500, repair_margin_cells: 8.0 };
+    pub const DEFAULT: Self = Self { weights: [1.0; 3], max_end_shift_rad: 0.0 };
 }
 
 impl Default for GridPlannerSettings {
@@ -60,11 +55,11 @@ impl Default for GridPlannerSettings {
 pub struct GridPlanner {
     pub(crate) space: GridSpace,
     pub(crate) occupancy: OccupancyBitmap,
-    pub(crate) graph: CellGroupGraph,
+    graph: CellGroupGraph,
     components: GraphComponents,
     search: ThetaStarSearch,
     cell_path: CellPathSearch,
-    pub(crate) shortcutting: GridShortcutting,
+    shortcutting: GridShortcutting,
     links: Vec<PathLink>,
     cells: Vec<CellIndex>,
 }
@@ -152,7 +147,7 @@ impl GridPlanner {
         let scale = self.scale(settings)?;
         let ends = self.ends([start, goal], scale, settings.max_end_shift_rad)?;
         let mut points = Vec::new();
-        if !self.connect(scale, ends.map(|end| end.at), usize::MAX, &mut points) {
+        if !self.connect(scale, ends.map(|end| end.at), &mut points) {
             return Err(GridPlannerError::NoPath);
         }
         let context = PathContext { occupancy: &self.occupancy, space: &self.space, scale };
@@ -175,7 +170,7 @@ impl GridPlanner {
         self.search.expanded_nodes
     }
 
-    pub(crate) fn scale(&self, settings: &GridPlannerSettings) -> Result<CellScale, GridPlannerError> {
+    fn scale(&self, settings: &GridPlannerSettings) -> Result<CellScale, GridPlannerError> {
         let bad = settings.weights.into_iter().find(|w| !(w.is_finite() && *w > 0.0));
         if let Some(value) = bad {
             return Err(GridPlannerError::InvalidSetting { setting: GridPlannerSetting::Weight, value });
@@ -213,7 +208,7 @@ impl GridPlanner {
         Ok([from, to])
     }
 
-    pub(crate) fn cell(&self, end: PathEnd, q: [f64; 3]) -> Result<CellIndex, GridPlannerError> {
+    fn cell(&self, end: PathEnd, q: [f64; 3]) -> Result<CellIndex, GridPlannerError> {
         self.space.grid().cell(q).ok_or_else(|| {
             let axes = self.space.grid().axes();
             let joint = (0..3).find(|&i| axes[i].cell(q[i]).is_none()).unwrap_or(0);
@@ -221,7 +216,7 @@ impl GridPlanner {
         })
     }
 
-    pub(crate) fn exact_end(&self, q: [f64; 3], cell: CellIndex) -> FreeEnd {
+    fn exact_end(&self, q: [f64; 3], cell: CellIndex) -> FreeEnd {
         FreeEnd { at: CellPoint { cell, point: self.space.point_within(q, cell) }, q, moved: 0.0 }
     }
 
@@ -246,15 +241,8 @@ impl GridPlanner {
         Ok(FreeEnd { at: CellPoint { cell, point }, q: space.q(point), moved })
     }
 
-    /// Points from one free cell to another, without shortcutting; false where they are not connected or the search reached
-    /// its limit.
-    pub(crate) fn connect(
-        &mut self,
-        scale: CellScale,
-        [from, to]: [CellPoint; 2],
-        max_nodes: usize,
-        points: &mut Vec<GridPoint>,
-    ) -> bool {
+    /// Points from one free cell to another, without shortcutting; false where they are not connected.
+    fn connect(&mut self, scale: CellScale, [from, to]: [CellPoint; 2], points: &mut Vec<GridPoint>) -> bool {
         points.clear();
         points.push(from.point);
         self.search.expanded_nodes = 0;
@@ -269,7 +257,7 @@ impl GridPlanner {
             return true;
         }
         let terminals = [(start, from), (goal, to)].map(|(node, at)| Terminal { node, point: at.point });
-        if !self.find_links(scale, terminals, max_nodes) {
+        if !self.find_links(scale, terminals) {
             return false;
         }
         self.append_links([(start, from.cell), (goal, to.cell)], points);
@@ -277,13 +265,10 @@ impl GridPlanner {
         true
     }
 
-    /// The links from one node to another; false where they are not connected or the search reached its limit.
-    fn find_links(&mut self, scale: CellScale, [start, goal]: [Terminal; 2], max_nodes: usize) -> bool {
+    /// The links from one node to another; false where they are not connected.
+    fn find_links(&mut self, scale: CellScale, [start, goal]: [Terminal; 2]) -> bool {
         let Self { occupancy, graph, space, search, links, components, .. } = self;
-        let mut query = ThetaStarQuery { occupancy, graph, space, scale, start, goal, max_nodes };
-        if max_nodes != usize::MAX {
-            return search.run(&query, links) == SearchOutcome::Found;
-        }
+        let mut query = ThetaStarQuery { occupancy, graph, space, scale, start, goal, max_nodes: usize::MAX };
         if components.are_valid() {
             let is_connected = components.connected(graph, start.node, goal.node);
             return is_connected && search.run(&query, links) == SearchOutcome::Found;
@@ -294,7 +279,7 @@ impl GridPlanner {
             SearchOutcome::Found => true,
             SearchOutcome::NotConnected => false,
             SearchOutcome::LimitReached => {
-                query.max_nodes = max_nodes;
+                query.max_nodes = usize::MAX;
                 let is_connected = components.connected(graph, start.node, goal.node);
                 is_connected && search.resume(&query, links) == SearchOutcome::Found
             }
@@ -325,7 +310,7 @@ impl GridPlanner {
         points.extend(self.cells.iter().map(|&cell| self.space.center(cell)));
     }
 
-    pub(crate) fn path(&self, points: &[GridPoint], scale: CellScale, ends: &[FreeEnd; 2]) -> Path {
+    fn path(&self, points: &[GridPoint], scale: CellScale, ends: &[FreeEnd; 2]) -> Path {
         let mut waypoints: Vec<[f64; 3]> = points.iter().map(|&p| self.space.q(p)).collect();
         // Points at the ends are less than a billionth of a cell away from the requested ones.
         if let Some(first) = waypoints.first_mut() {
@@ -346,7 +331,7 @@ impl GridPlanner {
 
 /// An end of a path in a free cell.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct FreeEnd {
+struct FreeEnd {
     pub at: CellPoint,
     pub q: [f64; 3],
     /// Weighted distance from the requested end, radians.

@@ -109,7 +109,7 @@ impl GridShortcutting {
 }
 
 /// Moves a corner to shorten the path.
-pub(crate) fn pull_corner(context: PathContext, points: &mut [GridPoint], i: usize, steps: &[i32]) {
+fn pull_corner(context: PathContext, points: &mut [GridPoint], i: usize, steps: &[i32]) {
     let (before, after) = (points[i - 1], points[i + 1]);
     let over = |p: GridPoint| context.scale.distance(before, p) + context.scale.distance(p, after);
     for &step in steps {
@@ -146,12 +146,12 @@ fn best_move(
 }
 
 /// Shifts to the 26 neighbours of a cell.
-pub(crate) fn neighbour_shifts() -> impl Iterator<Item = [i32; 3]> {
+fn neighbour_shifts() -> impl Iterator<Item = [i32; 3]> {
     (0..27).filter(|&n| n != 13).map(|n| [n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1])
 }
 
 /// The cell of a point, shifted; `None` outside the grid.
-pub(crate) fn shifted_cell(context: PathContext, from: GridPoint, shift: [i32; 3]) -> Option<CellIndex> {
+fn shifted_cell(context: PathContext, from: GridPoint, shift: [i32; 3]) -> Option<CellIndex> {
     let shape = context.occupancy.shape();
     let along = |i: usize| {
         let k = from[i].floor() as i64 + i64::from(shift[i]);

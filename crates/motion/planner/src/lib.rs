@@ -1,5 +1,4 @@
-//! Path planning: paths through the free cells of a joint-space map, repaired when cells change, and RRT-Connect in the exact
-//! scene; time parametrization of both.
+//! Path planning: paths through the free cells of a joint-space map, and RRT-Connect in the exact scene; time parametrization of both.
 //!
 //! On the grid, two free cells are connected where they share a *face*; a straight segment is free where all cells that it
 //! touches are free. So a path exists if and only if start and goal are connected, and it never passes between blocked cells
@@ -35,7 +34,6 @@ mod cell_blocks;
 mod cell_group_graph;
 mod cell_path;
 mod cover_rrt_connect;
-mod exact_check;
 pub mod example;
 mod graph_components;
 mod grid_planner;
@@ -43,26 +41,22 @@ mod grid_shortcutting;
 mod grid_space;
 mod grid_time_parametrization;
 mod line_of_sight;
-mod local_detour;
 mod nearest_free_cell;
 mod orientation_constraint;
 mod path;
 mod prioritized_planner;
-mod replan;
 mod rrt_connect;
 mod task_space_region;
 mod theta_star;
 mod time_parametrization;
 
 pub use cover_rrt_connect::{AnytimePath, CoverModel, CoverObstacles, CoverRrtConnect, LinearMove, TimedMotion};
-pub use exact_check::{CheckError, MappedJoints};
 pub use grid_planner::{GridPlanner, GridPlannerSettings};
 pub use orientation_constraint::OrientationConstraint;
 pub use path::{GridPlannerError, GridPlannerSetting, Path, PathEnd};
 pub use prioritized_planner::{
     PathConstraintSource, PrioritizedMotion, PrioritizedPlanner, PrioritizedPlannerError, RobotGoal,
 };
-pub use replan::{PathProgress, PathStatus, ReplanKind};
 pub use rrt_connect::{
     JointUnit, LinearMoveEnd, PathConstraint, PlannedPath, Random, RrtConnect, RrtConnectError, RrtConnectSetting,
     RrtConnectSettings, ShortcuttingSettings,

@@ -6,6 +6,7 @@ mod common;
 mod data;
 mod dh_of_models;
 mod hostile;
+mod kr125;
 mod meshes;
 mod messages;
 mod model_robots;

@@ -123,7 +123,8 @@ impl Default for PathRequest {
 /// # Errors
 /// An unknown robot; a robot without speed limits; an invalid start or goal: beyond limits, in collision, with a wrong
 /// number of values; a goal in a region; a start in a region that no straight path leaves. With [`PathPlanner::Grid`] also a map
-/// that is not of three joints, and a request that moves others.
+/// that is not of three joints, and a request that moves others; from a start in a region, or nearer to it than the clearance, it
+/// finds no path.
 pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, FormatError> {
     let (id, robot) = request_validation::select_robot(cell, request.robot.as_deref())?;
     let mut limits = request_validation::kinematic_limits(cell, robot)?;
@@ -153,7 +154,8 @@ pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, FormatErro
         let query =
             Query { scene: &scene, state: &state, goals: &goals, settings, limits: &limits, period_s, optimize };
         if is_on_map {
-            return Ok(PathAnswer { regions, ..MapQuery { cell, id, query }.plan(exact)? });
+            let answer = MapQuery { cell, id, query, regions: &regions }.plan(exact)?;
+            return Ok(PathAnswer { regions, ..answer });
         }
         let begin = Instant::now();
         let found = match (&model, &obstacles) {

@@ -19,6 +19,8 @@ pub(super) struct MapQuery<'q> {
     pub cell: &'q Cell,
     pub id: RobotId,
     pub query: Query<'q>,
+    /// Names of the regions that the path avoids.
+    pub regions: &'q [String],
 }
 
 impl MapQuery<'_> {
@@ -106,14 +108,15 @@ impl MapQuery<'_> {
                 format!("no path: the free cells of the start and those of the goal are not joined: {finer}")
             }
             MapPlannerError::Unproven { waypoints, .. } => format!(
-                "{e}: {}; a map knows neither the robot itself nor other robots nor regions: the planner rrt-connect goes around",
+                "{e}: {}; a map knows neither the robot itself nor other robots nor regions, and on solids no clearance: the planner \
+                 rrt-connect goes around",
                 self.what_is_near(waypoints)
             ),
             other => other.to_string(),
         }
     }
 
-    /// What a path comes too near to: something in the scene, else a region.
+    /// What a path comes too near to: something in the scene, else perhaps a region.
     fn what_is_near(&self, waypoints: &[Vec<f64>]) -> String {
         let Query { scene, state, settings, .. } = &self.query;
         let mut checker = Checker::new(scene, CheckerOptions::default());
@@ -123,7 +126,8 @@ impl MapQuery<'_> {
             Some((_, hit)) => {
                 format!("`{}` and `{}` come too near to each other", scene.name(hit.a), scene.name(hit.b))
             }
-            None => "it comes too near to a region".to_owned(),
+            None if self.regions.is_empty() => "a sweep could not prove it".to_owned(),
+            None => format!("it comes too near to one of the regions {}", self.regions.join(", ")),
         }
     }
 }

@@ -28,8 +28,7 @@ impl Sensor {
         let prediction_s = sensor.prediction_s;
         Ok(match &sensor.kind {
             SensorKind::Camera { camera, settings, mask_margin_m } => {
-                let of_mask =
-                    PerceptionSettings { prediction_s, mask_margin_m: *mask_margin_m, ..PerceptionSettings::default() };
+                let of_mask = PerceptionSettings { prediction_s, mask_margin_m: *mask_margin_m };
                 let watcher = ObstacleWatcher::new(robots, builder, camera.clone().into(), settings.clone(), of_mask)?;
                 Self::Camera { watcher: Box::new(watcher), frame: Frame::default() }
             }

@@ -26,7 +26,7 @@ mod units;
 use std::path::Path;
 
 use elbowroom_formats::{FormatError, Warning};
-use elbowroom_monitor::Laws;
+use elbowroom_monitor::{Laws, RobotSet};
 use elbowroom_robot::{GeometryId, RobotId};
 use elbowroom_scene::PairRules;
 
@@ -98,9 +98,7 @@ impl CellFile {
             seal: None,
             warnings: Vec::new(),
         };
-        for (name, t) in root.named("robot")? {
-            cell.robots.push(robot::read(name, &t, units, &mut warnings)?);
-        }
+        read_robots(&root, &mut cell, &mut warnings)?;
         for (name, t) in root.named("encoder")? {
             cell.encoders.push(region::encoder(name, &t, units)?);
         }
@@ -341,4 +339,17 @@ fn map_steps(v: &Value<'_>, joints: &[usize], convert: impl Fn(usize, f64) -> f6
         return Err(v.error(what).hint("one number, or one per joint"));
     }
     list.iter().zip(joints).map(|(v, j)| v.positive().map(|x| convert(*j, x))).collect()
+}
+
+/// The tables `[robot.NAME]`.
+fn read_robots(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Warning>) -> Result<()> {
+    for (name, t) in root.named("robot")? {
+        if cell.robots.len() == RobotSet::CAPACITY {
+            let what =
+                format!("has more than {} robots: deadlocks among others would not be found", RobotSet::CAPACITY);
+            return Err(t.error(what).hint("two cells, each with the robots that share regions"));
+        }
+        cell.robots.push(robot::read(name, &t, cell.units, warnings)?);
+    }
+    Ok(())
 }

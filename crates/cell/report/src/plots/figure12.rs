@@ -31,7 +31,7 @@ fn closest_moment(runs: &[(&str, &Recording)]) -> Option<(usize, f64)> {
 }
 
 /// Seen from above, with one scale for both axes.
-pub fn top_view() -> Value {
+fn top_view() -> Value {
     layout(axis("x (m)"), with(axis("y (m)"), json!({ "scaleanchor": "x", "scaleratio": 1.0 })))
 }
 

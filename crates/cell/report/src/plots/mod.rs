@@ -6,7 +6,6 @@ mod figure;
 mod figure12;
 mod joints;
 mod overrides;
-mod perception;
 mod plot;
 mod timing;
 
@@ -15,7 +14,6 @@ use elbowroom_sim::Recording;
 use crate::scene::ReportScene;
 
 pub use figure::{Drawing, Figure};
-pub use perception::all as perception;
 
 /// All plots, in the order of the page; `planned` is the run without the monitor, for comparison.
 pub fn all(scene: &ReportScene, runs: &[(&str, &Recording)], planned: Option<&Recording>) -> Vec<Figure> {

@@ -38,7 +38,7 @@ impl ArbiterSettings {
 }
 
 impl RobotSettings {
-    /// A stop time of 1 s, priority 0.
+    /// A stop time of 1 s, priority 0. A robot that may take longer needs its own: after that time somebody may clear it.
     pub fn new(name: &str, slots: impl IntoIterator<Item = SlotId>) -> Self {
         let slots = slots.into_iter().collect();
         Self { name: name.to_owned(), slots, stop_time: Micros(1_000_000), priority: 0 }
