@@ -25,7 +25,7 @@ pub fn ready(root: &Path) -> Option<PathBuf> {
     shell::succeeds(root, &python.to_string_lossy(), &["-c", PROBE]).then_some(python)
 }
 
-/// Makes `target/venv` ready: nothing where it already is, else a fresh environment from PyPI.
+/// Makes `target/venv` ready: nothing if it already is, else a fresh environment from PyPI.
 ///
 /// # Errors
 /// Where Python, `venv` or the packages cannot be had; the message says what to do.

@@ -116,7 +116,7 @@ fn timed<'s, T>(
     Ok((answers, least * 1e6 / states.len().max(1) as f64))
 }
 
-/// True where no surface of the pair touches the other, but a solid lies inside another.
+/// True if no surface of the pair touches the other, but a solid lies inside another.
 fn is_contained(scene: &Scene, state: &SceneState, found: &PairDistance) -> bool {
     let mut workspace = Workspace::new();
     let mut inside = false;
@@ -145,7 +145,7 @@ fn placed(scene: &Scene, state: &SceneState, id: GeometryId) -> Option<elbowroom
     state.pose(scene, id)
 }
 
-/// True where a primitive is nearest. Where it is a box, its twelve triangles must be as far away as we say: triangles
+/// True if a primitive is nearest. Where it is a box, its twelve triangles must be as far away as we say: triangles
 /// against triangles is where both agree to the last digits, so that what is left is Coal's iteration.
 fn iterated(scene: &Scene, state: &SceneState, found: &PairDistance) -> bool {
     let [a, b] = [found.a, found.b].map(|m| world::colliders(scene, m));

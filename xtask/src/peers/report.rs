@@ -68,7 +68,7 @@ pub fn table(lines: &[Line], peers: &[Ready], notes: &[String], missing: &[Strin
     out
 }
 
-/// A row; true where the ratio is reached.
+/// A row; true if the ratio is reached.
 fn compare(out: &mut String, line: &Line, best: Option<&Line>, target: Option<f64>) -> bool {
     let query = format!("{}{}", line.query, if line.is_warm() { " warm" } else { "" });
     let ratio = best.map_or(f64::NAN, |best| best.mean_ns / line.mean_ns);

@@ -122,7 +122,7 @@ impl Chain {
         a[common..].iter().chain(&b[common..]).copied().collect()
     }
 
-    /// True where a joint between the root and the link moves it.
+    /// True if a joint between the root and the link moves it.
     pub fn is_movable(&self, link: LinkId) -> bool {
         let mut at = link;
         while let Some(id) = self.parent_joint(at) {

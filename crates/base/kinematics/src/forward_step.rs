@@ -11,7 +11,7 @@ pub(crate) struct ForwardStep {
     pub parent: usize,
     pub child: usize,
     pub origin: Pose,
-    /// False where the origin is a translation, as for most joints in files: no rotation to multiply.
+    /// False if the origin is a translation, as for most joints in files: no rotation to multiply.
     pub origin_rotates: bool,
     pub axis: Vec3,
     /// Index and sign where the axis is a coordinate axis, as for most joints.

@@ -65,7 +65,7 @@ impl Limits {
         Self::range(-bound, bound)
     }
 
-    /// True where `value` (rad or m) is within the limits, or beyond them by at most `tolerance`. False for NaN.
+    /// True if `value` (rad or m) is within the limits, or beyond them by at most `tolerance`. False for NaN.
     pub fn contains(&self, value: f64, tolerance: f64) -> bool {
         value >= self.lower - tolerance && value <= self.upper + tolerance
     }

@@ -154,7 +154,7 @@ pub struct KeptFaces {
 }
 
 impl KeptFaces {
-    /// True where the triangle is in the set; false beyond the mesh's last.
+    /// True if the triangle is in the set; false beyond the mesh's last.
     pub fn contains(&self, triangle: usize) -> bool {
         self.bits.get(triangle / 64).is_some_and(|word| word >> (triangle % 64) & 1 == 1)
     }

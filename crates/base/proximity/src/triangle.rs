@@ -116,7 +116,7 @@ pub(crate) fn segment_segment(a0: Vec3, a1: Vec3, b0: Vec3, b1: Vec3) -> Closest
 /// Squared ratio of height to longest edge up to which a triangle is slender.
 const SLENDER: f64 = 1e-4;
 
-/// True where the plane of the triangle is too inaccurate in f64; `normal` is the cross product of two edges.
+/// True if the plane of the triangle is too inaccurate in f64; `normal` is the cross product of two edges.
 #[inline]
 fn is_slender([a, b, c]: &[Vec3; 3], normal: Vec3) -> bool {
     let longest = (*b - *a).length_squared().max((*c - *b).length_squared()).max((*a - *c).length_squared());
@@ -177,14 +177,14 @@ fn intersection_point(p: Vec3, q: Vec3, t: &[Vec3; 3]) -> Vec3 {
     candidates.into_iter().min_by(|x, y| error(x).total_cmp(&error(y))).unwrap_or(p)
 }
 
-/// True where an edge of one intersects the other: up to rounding. Where one is slender, true is exact, and false may be wrong.
+/// True if an edge of one intersects the other: up to rounding. Where one is slender, true is exact, and false may be wrong.
 pub(crate) fn triangles_cross(s: [Vec3; 3], t: [Vec3; 3]) -> bool {
     // Each must have corners on both sides of the other's plane.
     let (Some(of_s), Some(of_t)) = (sides(&s, &t), sides(&t, &s)) else { return false };
     (edges_cross(&s, of_s, &t) || edges_cross(&t, of_t, &s)) && confirmed(&s, &t)
 }
 
-/// False where inaccurate signs made slender triangles cross that do not.
+/// False if inaccurate signs made slender triangles cross that do not.
 fn confirmed(s: &[Vec3; 3], t: &[Vec3; 3]) -> bool {
     let slender = is_slender(s, normal(s)) || is_slender(t, normal(t));
     let passes = |s: &[Vec3; 3], t: &[Vec3; 3]| (0..3).any(|k| crosses_exactly(s[k], s[(k + 1) % 3], t).is_some());

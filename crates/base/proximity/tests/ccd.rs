@@ -128,7 +128,7 @@ fn golden(f: &dyn Fn(f64) -> f64, mut lo: f64, mut hi: f64) -> f64 {
     fx.min(fy)
 }
 
-/// Checks one answer; true where it was a contact after the start.
+/// Checks one answer; true if it was a contact after the start.
 fn check(
     a: &Shape,
     pa: &dyn RigidMotion,

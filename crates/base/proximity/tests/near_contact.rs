@@ -71,7 +71,7 @@ impl Placed {
         s
     }
 
-    /// True where a millimetre along the normal stays inside, other than beyond the edge of a thin disc or a sharp corner of a
+    /// True if a millimetre along the normal stays inside, other than beyond the edge of a thin disc or a sharp corner of a
     /// hull.
     fn blunt(&self) -> bool {
         let least = |shape: &Shape| match shape {

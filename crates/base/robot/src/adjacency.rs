@@ -16,7 +16,7 @@ pub enum Exclusion {
 }
 
 impl Robot {
-    /// True where two links are a collision pair: no [`Robot::exclusion`] applies.
+    /// True if two links are a collision pair: no [`Robot::exclusion`] applies.
     pub fn links_can_meet(&self, a: LinkId, b: LinkId) -> bool {
         self.exclusion(a, b).is_none()
     }
@@ -33,13 +33,13 @@ impl Robot {
         self.disabled_pairs.iter().find(same).map(|p| Exclusion::Srdf(p.2.clone()))
     }
 
-    /// True where no link with colliders lies between two links, however many joints do. Such links may be designed to
+    /// True if no link with colliders lies between two links, however many joints do. Such links may be designed to
     /// overlap.
     pub fn joined_without_colliders(&self, a: LinkId, b: LinkId) -> bool {
         self.no_collider_between(a, b, &self.chain.joints_between(a, b))
     }
 
-    /// True where no link with colliders lies between two links that the joints `between` connect.
+    /// True if no link with colliders lies between two links that the joints `between` connect.
     fn no_collider_between(&self, a: LinkId, b: LinkId, between: &[JointId]) -> bool {
         let joints = between.iter().map(|j| &self.chain.joints()[j.0]);
         let links = joints.flat_map(|j| [j.parent, j.child]);

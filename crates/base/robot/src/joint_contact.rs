@@ -71,7 +71,7 @@ pub enum JointContactKind {
 
 /// The pairs of links that touch where they are joined, such as a flange that is drawn into the wrist, a piston in its
 /// cylinder or a lever at its pin: not by the robot's motion but by its model. `start` are joint values in rad or m, one per
-/// [active joint](elbowroom_kinematics::Chain::active_joints); empty where their number does not match the chain or a value is
+/// [active joint](elbowroom_kinematics::Chain::active_joints); empty if their number does not match the chain or a value is
 /// not finite.
 ///
 /// A pair is found where it is tested ([`Robot::links_can_meet`]), and one of this holds in 1000 configurations over the joint
@@ -139,7 +139,7 @@ fn moving_joints(robot: &Robot, a: LinkId, b: LinkId) -> Vec<JointId> {
     joints
 }
 
-/// True where one joint value alone moves the joints.
+/// True if one joint value alone moves the joints.
 fn follow_one_value(robot: &Robot, joints: &[JointId]) -> bool {
     let value = |j: &JointId| robot.chain.mimic_source(*j).map_or(*j, |mimic| mimic.joint);
     joints.iter().map(value).all(|v| joints.first().map(value) == Some(v))
@@ -149,12 +149,12 @@ fn has_mimic(robot: &Robot, joints: &[JointId]) -> bool {
     joints.iter().any(|j| robot.chain.mimic_source(*j).is_some())
 }
 
-/// True where the links at the ends of the joints may meet at the pivot that closes a linkage.
+/// True if the links at the ends of the joints may meet at the pivot that closes a linkage.
 fn closes_linkage(robot: &Robot, joints: &[JointId]) -> bool {
     joints.len() > 1 && has_mimic(robot, joints) && follow_one_value(robot, joints)
 }
 
-/// True where all joints turn about one axis: in all configurations, if in one.
+/// True if all joints turn about one axis: in all configurations, if in one.
 fn share_axis(robot: &Robot, joints: &[JointId], state: &ChainState) -> bool {
     let axis = |j: &JointId| {
         let joint = &robot.chain.joints()[j.0];
@@ -254,7 +254,7 @@ impl<'r> Candidate<'r> {
         })
     }
 
-    /// Takes the contacts of a configuration; false where the pair is of no kind.
+    /// Takes the contacts of a configuration; false if the pair is of no kind.
     fn measure(&mut self, state: &ChainState, workspace: &mut Workspace) -> bool {
         if !self.links.iter().all(|l| state.link_in_root(*l).translation.length() <= LARGEST_M) {
             return false;
@@ -284,7 +284,7 @@ impl<'r> Candidate<'r> {
         self.may_be_at_joint || self.may_be_linkage || self.may_be_pivot
     }
 
-    /// Adds contacts to the boxes of the links; true where both remain small.
+    /// Adds contacts to the boxes of the links; true if both remain small.
     fn are_at_one_place(&mut self, state: &ChainState, contacts: &[Vec3]) -> bool {
         self.links.iter().zip(&mut self.boxes).all(|(link, bounds)| {
             let to_link = state.link_in_root(*link).inverse();

@@ -26,14 +26,14 @@ pub struct RestPoseContact {
 }
 
 impl RestPoseContact {
-    /// True where the links touch in every sampled configuration.
+    /// True if the links touch in every sampled configuration.
     pub fn always(&self) -> bool {
         self.contacts == self.samples
     }
 }
 
 /// The pairs that touch in the rest pose: joint values in rad or m, one per [active
-/// joint](elbowroom_kinematics::Chain::active_joints). Empty where the number of values does not match the chain or a value is
+/// joint](elbowroom_kinematics::Chain::active_joints). Empty if the number of values does not match the chain or a value is
 /// not finite.
 ///
 /// ```
@@ -94,7 +94,7 @@ fn candidates(robot: &Robot) -> impl Iterator<Item = (LinkId, LinkId)> + '_ {
     pairs.into_iter().filter(|(a, b)| robot.joined_without_colliders(*a, *b) && robot.links_can_meet(*a, *b))
 }
 
-/// True where any colliders of two links touch.
+/// True if any colliders of two links touch.
 pub(crate) fn touch(robot: &Robot, state: &ChainState, a: LinkId, b: LinkId) -> bool {
     let in_root = |l: LinkId| state.link_in_root(l);
     robot.colliders[a.0].iter().any(|x| {

@@ -66,7 +66,7 @@ impl Aabb {
         Self::from_center(pose.transform_point(self.center()), pose.rotation.abs_mul(self.extent() * 0.5))
     }
 
-    /// True where the boxes share a point (touching counts).
+    /// True if the boxes share a point (touching counts).
     #[allow(clippy::needless_bitwise_bool, reason = "without branches: which comparison fails is not predictable")]
     #[inline]
     pub fn overlaps(&self, o: &Self) -> bool {
@@ -78,7 +78,7 @@ impl Aabb {
             & (o.min.z <= self.max.z)
     }
 
-    /// True where the point is in the box or on it.
+    /// True if the point is in the box or on it.
     #[inline]
     pub fn contains(&self, p: Vec3) -> bool {
         self.min.x <= p.x
@@ -130,7 +130,7 @@ impl Aabb {
         self.max - self.min
     }
 
-    /// True where the box contains no point.
+    /// True if the box contains no point.
     #[inline]
     pub fn is_empty(&self) -> bool {
         !(self.min.x <= self.max.x && self.min.y <= self.max.y && self.min.z <= self.max.z)

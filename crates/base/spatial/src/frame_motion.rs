@@ -53,7 +53,7 @@ impl FrameMotion {
         Self { velocity: self.velocity_at(offset), acceleration: self.acceleration_at(offset), ..*self }
     }
 
-    /// True where no component is NaN or infinite.
+    /// True if no component is NaN or infinite.
     pub fn is_finite(&self) -> bool {
         self.velocity.is_finite()
             && self.angular_velocity.is_finite()

@@ -19,7 +19,7 @@ pub fn solve_spd<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N], n: usize
 
 /// Solves `a·x = b` for a symmetric positive definite `a` by Cholesky decomposition: as many equations as `b` has entries. Row
 /// `i` of `a` begins at `i·stride`; only its lower triangle is read. On return `a` holds the factor and `b` the solution.
-/// False where a pivot is not positive; `a` and `b` are then undefined.
+/// False if a pivot is not positive; `a` and `b` are then undefined.
 ///
 /// # Panics
 /// Where `a` is too short.

@@ -38,7 +38,7 @@ impl Obb {
         Aabb::from_center(self.pose.translation, self.pose.rotation.abs_mul(self.half_extents))
     }
 
-    /// True where the point is in the box or on it.
+    /// True if the point is in the box or on it.
     pub fn contains(&self, p: Vec3) -> bool {
         let q = self.pose.inverse_transform_point(p).abs();
         q.x <= self.half_extents.x && q.y <= self.half_extents.y && q.z <= self.half_extents.z

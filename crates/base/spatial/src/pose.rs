@@ -99,7 +99,7 @@ impl Pose {
         std::array::from_fn(|i| [r[i][0], r[i][1], r[i][2], t[i]])
     }
 
-    /// True where no entry is NaN or infinite.
+    /// True if no entry is NaN or infinite.
     #[inline]
     pub fn is_finite(&self) -> bool {
         self.rotation.is_finite() && self.translation.is_finite()

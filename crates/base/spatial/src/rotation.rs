@@ -205,7 +205,7 @@ impl Rotation {
         self.x_axis().abs() * v.x + self.y_axis().abs() * v.y + self.z_axis().abs() * v.z
     }
 
-    /// True where no entry is NaN or infinite.
+    /// True if no entry is NaN or infinite.
     #[inline]
     pub fn is_finite(self) -> bool {
         self.0.is_finite()

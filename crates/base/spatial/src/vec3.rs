@@ -140,7 +140,7 @@ impl Vec3 {
         self.x.min(self.y).min(self.z)
     }
 
-    /// True where no component is NaN or infinite.
+    /// True if no component is NaN or infinite.
     #[inline]
     pub fn is_finite(self) -> bool {
         self.x.is_finite() && self.y.is_finite() && self.z.is_finite()

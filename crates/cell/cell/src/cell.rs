@@ -129,7 +129,7 @@ pub struct CellRobot {
     pub load: Option<Collider>,
     /// Joint values at the start, rad or m.
     pub start: Vec<f64>,
-    /// True where the file gives `start`.
+    /// True if the file gives `start`.
     pub start_given: bool,
     /// Named configurations, rad or m, in file order.
     pub states: Vec<(String, Vec<f64>)>,
@@ -211,7 +211,7 @@ pub struct MapSpec {
     pub joints: Vec<usize>,
     /// Width of a cell per joint, rad or m.
     pub step: Vec<f64>,
-    /// True where the remaining joints are held at the start.
+    /// True if the remaining joints are held at the start.
     pub others_at_start: bool,
 }
 
@@ -303,7 +303,7 @@ impl CellRobot {
         tcps.into_iter().chain(self.tools.iter().filter_map(tool)).chain(links.iter().cloned()).collect()
     }
 
-    /// True where a solid that is fixed relative to the flange contains the point.
+    /// True if a solid that is fixed relative to the flange contains the point.
     fn encloses(&self, solids: &[Volume], point: &Volume) -> bool {
         let chain = &self.robot.chain;
         let moving = |link: LinkId| {

@@ -65,7 +65,7 @@ impl<'a> Frames<'a> {
         self.cell.robots[robot.0].tcp(state)
     }
 
-    /// True where an encoder or a pose file that a region follows moves, or an object moves.
+    /// True if an encoder or a pose file that a region follows moves, or an object moves.
     pub fn is_any_moving(&self, t_s: f64) -> bool {
         self.cell.regions.iter().any(|r| r.follow.is_some_and(|f| !is_object(&f) && self.travels(&f, t_s)))
             || self.cell.moving_objects.iter().any(|m| m.is_moving(t_s))
@@ -80,7 +80,7 @@ impl<'a> Frames<'a> {
             || self.cell.moving_objects.iter().any(|m| !is_carried(&m.drive) && m.is_moving(t_s))
     }
 
-    /// True where a followed frame moves by itself; frames of robots do not.
+    /// True if a followed frame moves by itself; frames of robots do not.
     pub fn travels(&self, follow: &Follow, t_s: f64) -> bool {
         match follow {
             Follow::Encoder(e) => self.cell.encoders[*e].at(t_s).1 != 0.0,

@@ -119,7 +119,7 @@ impl QueryModel {
         self.rules.extend(rules);
     }
 
-    /// Adds a region of the cell as an object, where it is at the start; one that follows a robot is carried by it. False where
+    /// Adds a region of the cell as an object, where it is at the start; one that follows a robot is carried by it. False if
     /// the cell has no such region.
     pub fn add_region(&mut self, cell: &Cell, name: &str) -> bool {
         let Some(region) = cell.regions.iter().find(|r| r.region.name == name) else { return false };

@@ -18,7 +18,7 @@ pub struct DistanceCurve {
     pub metres: Vec<f64>,
 }
 
-/// The curves of one robot at these ticks: one per region that applies to it. None where the scene has no guarded volumes.
+/// The curves of one robot at these ticks: one per region that applies to it. None if the scene has no guarded volumes.
 pub fn curves(scene: &ReportScene, rec: &Recording, robot: usize, ticks: &[usize]) -> Vec<DistanceCurve> {
     let (Some(model), Some(track)) = (scene.robots.get(robot), rec.robots.get(robot)) else { return Vec::new() };
     let applies = |r: &RegionTrack| {

@@ -61,7 +61,7 @@ pub fn cell_data(cell: &Cell) -> PageData {
 struct Pack<'a> {
     packer: &'a mut ArrayPacker,
     meshes: &'a mut PageMeshes,
-    /// True where the page computes distances: it needs the shapes.
+    /// True if the page computes distances: it needs the shapes.
     measured: bool,
 }
 

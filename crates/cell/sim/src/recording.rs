@@ -24,7 +24,7 @@ pub struct Recording {
     pub duration_s: f64,
     /// Why it ended.
     pub end: RunEnd,
-    /// False where the override of the monitor was not applied.
+    /// False if the override of the monitor was not applied.
     pub monitored: bool,
     /// One per robot, in the order of the cell file.
     pub robots: Vec<RobotTrack>,
@@ -74,7 +74,7 @@ pub struct RobotTrack {
     pub samples: Vec<Sample>,
     /// When the monitor stopped it although its program was not complete, in order of time.
     pub stops: Vec<Stop>,
-    /// True where the program was completed.
+    /// True if the program was completed.
     pub finished: bool,
     /// Time (s) in which the robot was stopped although its program was not.
     pub stopped_s: f64,
@@ -372,7 +372,7 @@ pub struct RegionTrack {
     pub active: Vec<(f64, bool)>,
     /// Smallest distance (m) of any guarded volume while active.
     pub min_distance_m: Option<f64>,
-    /// True where a guarded volume touched or entered it while active (for an exchange region: without holding it).
+    /// True if a guarded volume touched or entered it while active (for an exchange region: without holding it).
     pub entered: bool,
     /// Time (s) during which any robot was in its warning zone.
     pub warned_s: f64,
@@ -409,7 +409,7 @@ pub struct EventRow {
     pub t_s: f64,
     /// The robot concerned.
     pub robot: String,
-    /// The region concerned, the object gripped or released, or the perceived obstacle; empty where none is.
+    /// The region concerned, the object gripped or released, or the perceived obstacle; empty if none is.
     pub region: String,
     /// The event.
     pub event: RunEvent,
@@ -518,7 +518,7 @@ impl RobotTrack {
 }
 
 impl RegionTrack {
-    /// True where a robot entered it and must not.
+    /// True if a robot entered it and must not.
     pub fn is_violated(&self) -> bool {
         self.entered && matches!(self.kind, RecordedRegionKind::Forbidden | RecordedRegionKind::Exchange)
     }

@@ -84,7 +84,7 @@ pub struct RobotSummary {
     pub name: String,
     /// The link that carries the tool centre point.
     pub flange: String,
-    /// True where its program was completed.
+    /// True if its program was completed.
     pub finished: bool,
     /// `finished`, `stopped`, `held` (waiting for an exchange region), `collided` or `deadlock`.
     pub outcome: Outcome,
@@ -328,7 +328,7 @@ pub struct RegionSummary {
     pub kind: RecordedRegionKind,
     /// Smallest distance while active, m; null where it never was.
     pub min_distance_m: Option<f64>,
-    /// True where a guarded volume touched it (for an exchange region: without holding it).
+    /// True if a guarded volume touched it (for an exchange region: without holding it).
     pub entered: bool,
     /// Time in which any robot was in its warning zone, s.
     pub warned_s: f64,

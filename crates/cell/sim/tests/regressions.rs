@@ -2,7 +2,9 @@
 
 use crate::common::{HEAD, parse, rail, run};
 use elbowroom_cell::Cell;
+use elbowroom_robot::RobotId;
 use elbowroom_sim::check::{check, recordings};
+use elbowroom_sim::motion::{PlanStep, PlannedPaths, plan};
 use elbowroom_sim::{RunOptions, simulate};
 
 #[test]
@@ -142,4 +144,23 @@ fn the_way_back_to_the_start_of_a_repeated_recording_is_checked() {
     let cell = recorded(&text, "t_s,joint_1,joint_2\n0,0,0\n20,1,0\n40,1,1\n");
     let (excluded, reason, entered) = excluded_and_entered(&cell, 2);
     assert!(!excluded && entered, "{reason}");
+}
+
+#[test]
+fn every_kind_of_move_ends_where_the_next_one_begins() {
+    let text = format!(
+        "{HEAD}[robot.r]\ndh = [{{ a = 900, min = -170, max = 170, speed = 180 }}, {{ a = 600, min = -170, max = 170, speed = 180 }}]\n\
+         links = [[], {{ sphere = {{ radius = 30 }} }}]\nstart = [0, 30]\n[program.r]\nsteps = [\n\
+         {{ move = \"joint\", to = [20, 60] }},\n{{ wait = 0.1 }},\n{{ move = \"planned\", to = [-40, 50] }},\n{{ override = 50 }},\n\
+         {{ move = \"linear\", to = [-45, 55] }},\n{{ move = \"planned\", to = [0, 30] }},\n]\n"
+    );
+    let cell = Cell::parse("moves.toml", &text).unwrap();
+    let plan = plan(&PlannedPaths::new(&cell), RobotId(0), 1, &mut Vec::new()).unwrap();
+    let ends: Vec<[i64; 2]> = plan
+        .steps
+        .iter()
+        .filter_map(PlanStep::end)
+        .map(|q| [0, 1].map(|joint: usize| q[joint].to_degrees().round() as i64))
+        .collect();
+    assert_eq!(ends, [[20, 60], [-40, 50], [-45, 55], [0, 30]]);
 }

@@ -217,7 +217,7 @@ impl Running {
         }
     }
 
-    /// Takes a guard's message, if it speaks for the robot under whose key it has come, and answers. True where something has
+    /// Takes a guard's message, if it speaks for the robot under whose key it has come, and answers. True if something has
     /// changed.
     fn take(&mut self, robot: RobotSlot, bytes: &[u8]) -> bool {
         let Ok(Message::State(state)) = wire::decode(bytes) else { return false };
@@ -243,7 +243,7 @@ impl Running {
         Ok(())
     }
 
-    /// Sends what the arbiter says. True where something has changed.
+    /// Sends what the arbiter says. True if something has changed.
     fn send(&mut self, outputs: Outputs) -> bool {
         for reply in outputs.replies {
             let robot = reply.robot;

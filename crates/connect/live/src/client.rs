@@ -13,9 +13,9 @@ const REMEMBERED: usize = 256;
 pub struct ControllerState<'a> {
     /// Joint positions, rad or m.
     pub q: &'a [f64],
-    /// Joint velocities; empty where they are not known.
+    /// Joint velocities; empty if they are not known.
     pub qd: &'a [f64],
-    /// Velocities of the program at override 1; empty where they are not known.
+    /// Velocities of the program at override 1; empty if they are not known.
     pub intent: &'a [f64],
     /// The override set by the program or the operator, 0..1.
     pub programmed_override: f64,

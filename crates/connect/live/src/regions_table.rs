@@ -48,7 +48,7 @@ pub struct RegionTableMessage {
     /// The regions that are not as in the cell file.
     #[serde(default)]
     pub edits: Vec<RegionEdit>,
-    /// Whoever runs neither with `present` nor with this one must stop; empty where only `present` counts.
+    /// Whoever runs neither with `present` nor with this one must stop; empty if only `present` counts.
     #[serde(default)]
     pub former: String,
     /// Regions may be moved, added and removed: whoever does not hear this any more must stop.
@@ -74,7 +74,7 @@ impl RegionTable {
         self
     }
 
-    /// Switches a region, by its index in the cell; false where that changes nothing. Only for temporary regions.
+    /// Switches a region, by its index in the cell; false if that changes nothing. Only for temporary regions.
     pub fn switch(&mut self, region: usize, active: bool) -> bool {
         if self.active[region] == active {
             return false;

@@ -60,12 +60,12 @@ impl Service {
         self.nodes.len()
     }
 
-    /// True where this process keeps the regions and grants them.
+    /// True if this process keeps the regions and grants them.
     pub fn is_arbiter(&self) -> bool {
         self.keeper.is_some()
     }
 
-    /// Whether the simulated controllers still run; true where there are none.
+    /// Whether the simulated controllers still run; true if there are none.
     pub fn is_running(&self) -> bool {
         self.controllers.as_ref().is_none_or(SimulatedControllers::is_running)
     }

@@ -69,7 +69,7 @@ impl<'o> ServiceStart<'o> {
         Ok(Self { options, cell, versions, robots, zenoh, shared, of_controllers, clock: Clock::start() })
     }
 
-    /// True where this process keeps the regions: as the arbiter, or as the only process.
+    /// True if this process keeps the regions: as the arbiter, or as the only process.
     fn keeps_regions(&self) -> bool {
         self.options.arbiter || self.options.robots.is_empty()
     }

@@ -56,7 +56,7 @@ impl SimulatedControllers {
         }
     }
 
-    /// False where the thread has ended.
+    /// False if the thread has ended.
     pub fn is_running(&self) -> bool {
         self.thread.as_ref().is_some_and(|thread| !thread.is_finished())
     }

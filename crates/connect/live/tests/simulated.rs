@@ -94,6 +94,9 @@ fn a_gripped_part_and_an_exchanged_tool_are_guarded_until_they_are_gone() {
     std::thread::scope(|scope| {
         scope.spawn(|| governs_while_carried(&cell(bar, "grip = \"bar\"", "release = \"bar\""), "bar"));
         scope.spawn(|| governs_while_carried(&cell(tools, "tool = \"lance\"", "tool = \"gripper\""), "lance"));
+        // A program of planned moves begins again where the last one ends, too.
+        let planned = cell(tools, "tool = \"lance\"", "tool = \"gripper\"").replace("\"joint\", to", "\"planned\", to");
+        scope.spawn(move || governs_while_carried(&planned, "lance"));
     });
 }
 

@@ -97,7 +97,7 @@ pub struct TypeSet {
 }
 
 impl TypeSet {
-    /// Adds a type; false where it is there already, and so is what it contains.
+    /// Adds a type; false if it is there already, and so is what it contains.
     pub fn add(&mut self, name: &'static str, fields: &[(&'static str, FieldType)]) -> bool {
         let plain = |field: &'static str| field.strip_prefix("r#").unwrap_or(field);
         let fields = fields.iter().map(|(field, kind)| (plain(field), *kind)).collect();

@@ -13,7 +13,7 @@ pub struct BagMessage {
     pub index: u64,
     /// Its topic.
     pub topic: String,
-    /// The name of its type, such as `sensor_msgs/msg/JointState`; empty where the file does not say.
+    /// The name of its type, such as `sensor_msgs/msg/JointState`; empty if the file does not say.
     pub message_type: String,
     /// When it was recorded, ns.
     pub time_ns: u64,
@@ -157,7 +157,7 @@ impl<R: Read> BagReader<R> {
         &self.attachments
     }
 
-    /// True where the file ended before the end of its data was written.
+    /// True if the file ended before the end of its data was written.
     pub fn is_cut_off(&self) -> bool {
         self.state == State::CutOff
     }

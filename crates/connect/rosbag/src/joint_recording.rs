@@ -16,7 +16,7 @@ pub struct JointRecording {
     pub joints: Vec<String>,
     /// Time since the first row (s), and a value per joint (rad or m). The times rise.
     pub rows: Vec<(f64, Vec<f64>)>,
-    /// True where the file ended before the end of its data was written.
+    /// True if the file ended before the end of its data was written.
     pub cut_off: bool,
 }
 

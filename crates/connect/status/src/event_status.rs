@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 pub struct EventStatus {
     /// Time since the service started, s.
     pub t_s: f64,
-    /// The robot; empty where it is none.
+    /// The robot; empty if it is none.
     pub robot: String,
-    /// The region; empty where it is none.
+    /// The region; empty if it is none.
     pub region: String,
     /// What happened.
     pub event: String,

@@ -39,7 +39,7 @@ pub struct RobotStatus {
     pub virtual_tcps: Vec<PointStatus>,
     /// Every region of the robot.
     pub regions: Vec<RegionStatus>,
-    /// The first 16 hexadecimal digits of the checksum of the configuration with which the tick ran; empty where that is the cell
+    /// The first 16 hexadecimal digits of the checksum of the configuration with which the tick ran; empty if that is the cell
     /// file's.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub configuration: String,

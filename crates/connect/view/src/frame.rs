@@ -18,7 +18,7 @@ pub struct Frame {
     pub objects: Vec<PlacedStatus>,
     /// The exchange regions and who holds them.
     pub slots: Vec<SlotStatus>,
-    /// What the last command of a page led to; empty where it was carried out.
+    /// What the last command of a page led to; empty if it was carried out.
     pub message: String,
     /// Time that the distances took, s.
     pub measured_in_s: f64,

@@ -29,7 +29,7 @@ pub(crate) enum Command {
 }
 
 impl Command {
-    /// True where it makes an earlier command pointless.
+    /// True if it makes an earlier command pointless.
     pub(crate) fn replaces(&self, other: &Self) -> bool {
         match (self, other) {
             (

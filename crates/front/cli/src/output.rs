@@ -81,7 +81,7 @@ pub(crate) fn summary(recording: &Recording) -> String {
     text.whole(!io::stdout().is_terminal()).to_string()
 }
 
-/// True where standard output is a terminal that accepts colours.
+/// True if standard output is a terminal that accepts colours.
 pub(crate) fn color() -> bool {
     io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none()
 }

@@ -143,7 +143,7 @@ struct Summary {
 }
 
 impl Summary {
-    /// True where an obstacle enters or leaves, and where pictures begin or cease to be accepted.
+    /// True if an obstacle enters or leaves, and where pictures begin or cease to be accepted.
     fn is_news(&self, record: &WatchRecord) -> bool {
         !record.entered.is_empty() || !record.left.is_empty() || self.last != Some(record.status)
     }

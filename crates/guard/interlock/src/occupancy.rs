@@ -28,7 +28,7 @@ impl Occupancy {
         }
     }
 
-    /// True where the robot is in the slot's regions or may enter them whatever is commanded now: [`Occupancy::Committed`]
+    /// True if the robot is in the slot's regions or may enter them whatever is commanded now: [`Occupancy::Committed`]
     /// and [`Occupancy::Inside`]. No other robot is granted the slot then, and the robot does not release it.
     pub fn occupies(self) -> bool {
         self >= Self::Committed

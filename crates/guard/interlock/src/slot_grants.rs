@@ -60,7 +60,7 @@ impl SlotGrants {
         ExchangeState::from_u8(self.slots[slot.0].state.load(SeqCst))
     }
 
-    /// True where the robot needs the slot: in the last valid tick it was in or near a region of it that is switched on.
+    /// True if the robot needs the slot: in the last valid tick it was in or near a region of it that is switched on.
     pub fn is_needed(&self, slot: SlotId) -> bool {
         self.slots[slot.0].is_near_active_region.load(SeqCst)
     }

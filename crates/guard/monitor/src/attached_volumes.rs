@@ -37,7 +37,7 @@ impl AttachedVolumes {
         self.in_link[volume].as_ref()
     }
 
-    /// True where a volume is a part of the robot at present.
+    /// True if a volume is a part of the robot at present.
     #[inline]
     pub(crate) fn contains(&self, volume: usize) -> bool {
         self.in_link[volume].is_some()

@@ -44,7 +44,7 @@ pub struct Monitor {
     source_check: SourceCheck,
     pub(crate) zone_client: Option<ZoneClient>,
     pub(crate) last_override: Option<f64>,
-    /// True where a volume was attached since the last tick: then the override does not fall at a limited rate.
+    /// True if a volume was attached since the last tick: then the override does not fall at a limited rate.
     pub(crate) just_attached: bool,
     pub(crate) faults: Faults,
 }

@@ -68,7 +68,7 @@ impl OverrideLaw<'_> {
         }
     }
 
-    /// True where the robot, commanded to stop in this tick, ends outside the region: by the stopping-distance law or,
+    /// True if the robot, commanded to stop in this tick, ends outside the region: by the stopping-distance law or,
     /// where no deceleration is stated, because it is at rest.
     pub(crate) fn stops_outside(&self, pair: &VolumeRegionPair) -> bool {
         if pair.separation.distance <= 0.0 {
@@ -84,7 +84,7 @@ impl OverrideLaw<'_> {
         law.reach_m(volume) + self.settings.stop_margin_m + self.max_region_travel_m
     }
 
-    /// True where farther pairs never request less than closer ones.
+    /// True if farther pairs never request less than closer ones.
     pub(crate) fn only_closest_matters(&self) -> bool {
         self.tick.predicted.is_none() && self.tick.intent.is_none()
     }
@@ -185,7 +185,7 @@ impl OverrideLaw<'_> {
         source.motion.velocity_at(farthest - source.pose.translation).dot(-towards)
     }
 
-    /// True where joints and region are at rest, and no commanded override will move the joints.
+    /// True if joints and region are at rest, and no commanded override will move the joints.
     fn is_at_rest(&self, pair: &VolumeRegionPair) -> bool {
         let rest_speed = self.settings.rest_speed;
         let commanded = |v: &f64| (v * self.tick.last_override).abs() <= rest_speed;

@@ -39,7 +39,7 @@ impl Default for RecoverySettings {
     }
 }
 
-/// True where the program leads out of the region without going deeper: by the nearest side within the lookahead time, or
+/// True if the program leads out of the region without going deeper: by the nearest side within the lookahead time, or
 /// by another side farther on.
 pub(crate) fn leads_out(
     tick: &TickContext<'_>,
@@ -94,7 +94,7 @@ pub(crate) fn border_speed(tick: &TickContext<'_>, pair: &VolumeRegionPair) -> f
     }
 }
 
-/// True where the volume, continuing its present motion, leaves the region without going deeper than it is.
+/// True if the volume, continuing its present motion, leaves the region without going deeper than it is.
 fn leads_out_ahead(
     tick: &TickContext<'_>,
     settings: &RecoverySettings,

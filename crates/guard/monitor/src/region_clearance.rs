@@ -26,7 +26,7 @@ pub(crate) struct RegionClearance {
     pub(crate) immediate_limit: f64,
     /// The pair that requests the smallest override.
     pub(crate) governing: VolumeRegionPair,
-    /// False where a volume may not be able to stop outside. Evaluated for exchange regions only; true for others.
+    /// False if a volume may not be able to stop outside. Evaluated for exchange regions only; true for others.
     pub(crate) stops_outside: bool,
 }
 
@@ -186,7 +186,7 @@ impl Measurement<'_> {
         self.record(VolumeRegionPair { region: r, volume: v, separation }, is_first);
     }
 
-    /// True where cheap bounds prove that the distance of the pair exceeds `limit`.
+    /// True if cheap bounds prove that the distance of the pair exceeds `limit`.
     #[inline]
     fn is_beyond(&self, r: usize, v: usize, limit: f64) -> bool {
         let now = self.now;

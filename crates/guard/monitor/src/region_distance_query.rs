@@ -51,9 +51,9 @@ pub struct RegionDistanceQuery<'m> {
     now: Placement,
     regions: Vec<RegionId>,
     links: Vec<GuardedLink>,
-    /// True where the poses of the regions are known.
+    /// True if the poses of the regions are known.
     regions_placed: bool,
-    /// True where the joint values are known.
+    /// True if the joint values are known.
     robot_placed: bool,
 }
 

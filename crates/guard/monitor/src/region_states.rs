@@ -63,7 +63,7 @@ impl RegionStates {
         self.outputs.bits
     }
 
-    /// Switches a region; false where it is so already.
+    /// Switches a region; false if it is so already.
     pub(crate) fn switch(&mut self, region: RegionId, on: bool) -> bool {
         let is_change = self.states[region.0].active != on;
         self.states[region.0].active = on;

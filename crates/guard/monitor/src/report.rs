@@ -203,7 +203,7 @@ pub enum Fault {
 }
 
 impl Fault {
-    /// True where the time stamps of the snapshot are valid.
+    /// True if the time stamps of the snapshot are valid.
     pub(crate) fn has_valid_time(self) -> bool {
         use Fault::{BeyondLimits, Braking, Frozen, NoVelocity, Source, SourceJump, TooFast};
         matches!(

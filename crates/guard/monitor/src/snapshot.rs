@@ -13,10 +13,10 @@ pub struct Snapshot<'a> {
     pub stamp_s: f64,
     /// Joint positions.
     pub q: &'a [f64],
-    /// Joint velocities; empty where they are not known. The stopping-distance law then derives them from successive
+    /// Joint velocities; empty if they are not known. The stopping-distance law then derives them from successive
     /// positions and requests override 0 on the first; the other laws assume that the robot is at rest.
     pub qd: &'a [f64],
-    /// Joint accelerations; empty where they are not known.
+    /// Joint accelerations; empty if they are not known.
     pub qdd: &'a [f64],
     /// The override set by the program or the operator, 0..1: v₀ of the laws.
     pub programmed_override: f64,

@@ -73,7 +73,7 @@ impl SourceLimits {
         wrap.map(|_| "the travel after which it begins again is not finite".into())
     }
 
-    /// True where the motion from one reading to the next is plausible.
+    /// True if the motion from one reading to the next is plausible.
     pub(crate) fn allow(&self, from: &SourceState, to: &SourceState) -> bool {
         let elapsed_s = to.stamp_s - from.stamp_s;
         if elapsed_s < 0.0 || !self.allow_motion(to) {
@@ -94,7 +94,7 @@ impl SourceLimits {
             && turned <= reported(a.angular_velocity.length(), b.angular_velocity.length())
     }
 
-    /// True where the reported velocities are within the limits.
+    /// True if the reported velocities are within the limits.
     pub(crate) fn allow_motion(&self, s: &SourceState) -> bool {
         s.motion.velocity.length() <= self.speed_m_s && s.motion.angular_velocity.length() <= self.turn_rad_s
     }

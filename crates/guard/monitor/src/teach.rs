@@ -136,7 +136,7 @@ pub fn cuboid_from_base(
 pub struct HeightDirection {
     /// Unit vector in the world, from the taught base into the box, perpendicular to the base.
     pub direction: Vec3,
-    /// True where the base is upright within 5°: it has no upper side, and the order of the corners decides.
+    /// True if the base is upright within 5°: it has no upper side, and the order of the corners decides.
     pub upright_base: bool,
 }
 

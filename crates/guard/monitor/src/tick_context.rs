@@ -49,7 +49,7 @@ impl TickContext<'_> {
         region_point_motion(&self.config.regions[region], self.snapshot.sources, point).velocity
     }
 
-    /// True where the program leaves the region along `away`, and the robot does not actually move against it.
+    /// True if the program leaves the region along `away`, and the robot does not actually move against it.
     pub(crate) fn leaves_along(&self, pair: &VolumeRegionPair, intent: &ChainState, away: Vec3) -> bool {
         let region_velocity = self.region_point_velocity(pair.region, pair.separation.on_b);
         let velocity = |state| self.volume_point_velocity(state, pair.volume, pair.separation.on_a) - region_velocity;

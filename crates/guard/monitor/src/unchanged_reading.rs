@@ -25,7 +25,7 @@ pub(crate) struct UnchangedReading {
     rest_s: f64,
     /// Override of the program at the last valid snapshot.
     programmed_override: f64,
-    /// How the joints brake, and their largest plausible speeds; empty where nobody asks.
+    /// How the joints brake, and their largest plausible speeds; empty if nobody asks.
     deceleration: Vec<f64>,
     max_speed: Vec<f64>,
     /// Bound of the rate of change of the stop time by program time.
@@ -55,7 +55,7 @@ impl UnchangedReading {
         self.max_s
     }
 
-    /// True where the robot must have moved, and its reading has not.
+    /// True if the robot must have moved, and its reading has not.
     pub(crate) fn is_frozen(&self) -> bool {
         self.min_s > FROZEN_S
     }

@@ -23,7 +23,7 @@ pub enum Part {
 }
 
 impl Part {
-    /// True where a region with these guards includes this part: `arm` is the links with tool and load; a tool centre point
+    /// True if a region with these guards includes this part: `arm` is the links with tool and load; a tool centre point
     /// outside of all solids counts for every guard.
     pub fn counts_for(self, guards: Guards) -> bool {
         match self {

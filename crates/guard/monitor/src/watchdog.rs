@@ -147,7 +147,7 @@ impl Watchdog {
         self.last_valid.map_or(0.0, |last| (s.now_s - last.now_s).max(0.0))
     }
 
-    /// Joint velocities derived from successive positions; empty where none are needed.
+    /// Joint velocities derived from successive positions; empty if none are needed.
     pub(crate) fn velocity(&self) -> &[f64] {
         if self.needs_motion { &self.velocity } else { &[] }
     }

@@ -12,7 +12,7 @@ use crate::{
 pub(crate) struct RegionStatus {
     /// The region is active. One that is switched off limits nothing, but the robot that is in it keeps its slot.
     pub(crate) is_active: bool,
-    /// False where the source that it follows is lost: then it is not known where it is.
+    /// False if the source that it follows is lost: then it is not known where it is.
     pub(crate) is_measured: bool,
     pub(crate) zone: ZoneState,
     /// The robot can stop outside the region.
@@ -24,7 +24,7 @@ pub(crate) struct RegionStatus {
 pub(crate) struct ZoneClient {
     interlock: Interlock,
     slots: Vec<SlotSession>,
-    /// True where the deceleration is stated, so that a moving robot can be proven to stop outside.
+    /// True if the deceleration is stated, so that a moving robot can be proven to stop outside.
     proves_stops: bool,
 }
 
@@ -133,7 +133,7 @@ impl ZoneClient {
         }
     }
 
-    /// True where another robot holds the slot, or occupies it; of a robot in another process, as far as this one is refused
+    /// True if another robot holds the slot, or occupies it; of a robot in another process, as far as this one is refused
     /// or halted because of it.
     pub(crate) fn is_taken(&self, slot: SlotId) -> bool {
         match &self.interlock {
@@ -166,7 +166,7 @@ impl ZoneClient {
         self.slots.iter().any(|s| s.slot == slot && s.state == SlotState::Held)
     }
 
-    /// True where the slot's regions do not limit this robot: it holds the slot and has not left for longer than
+    /// True if the slot's regions do not limit this robot: it holds the slot and has not left for longer than
     /// [`LEAVING_S`].
     pub(crate) fn may_enter(&self, slot: SlotId, now_s: f64) -> bool {
         let has_left = |s: &SlotSession| s.left_s.is_some_and(|left_s| now_s - left_s > LEAVING_S);

@@ -188,7 +188,7 @@ impl<'s> Avoider<'s> {
         &self.command.intent
     }
 
-    /// True where the robot is slow enough to start a detour.
+    /// True if the robot is slow enough to start a detour.
     pub fn is_stationary(&self) -> bool {
         speed_fraction(&self.command.qd, &self.limits) < STATIONARY_FRACTION
     }
@@ -533,7 +533,7 @@ impl<'s> Avoider<'s> {
         state
     }
 
-    /// True where the command, and a stop after it, hit no fixed or known obstacle. While every command satisfies this, a
+    /// True if the command, and a stop after it, hit no fixed or known obstacle. While every command satisfies this, a
     /// collision-free stop exists: that of the previous command. A detour was checked with all fixed obstacles: while it is
     /// followed, the obstacles that may have moved since count instead.
     fn can_stop(&mut self, dt: f64, obstacles: &DynamicObstacles<'_>, is_detour: bool) -> bool {
@@ -613,7 +613,7 @@ impl<'s> Avoider<'s> {
         output
     }
 
-    /// True where the tick evaded something that will move on. Off a path that is held, waiting beside an obstacle at rest
+    /// True if the tick evaded something that will move on. Off a path that is held, waiting beside an obstacle at rest
     /// would not end: a detour leads past it.
     fn is_corrected(&self, output: &AvoiderOutput, path: PathKind) -> bool {
         let is_held = is_path_held(path, output.path_deviation_s, self.settings.max_deviation_s);
@@ -622,13 +622,13 @@ impl<'s> Avoider<'s> {
         output.reaction.size > MIN_CORRECTION && will_move_on
     }
 
-    /// True where the obstacle that governs a reaction is at rest.
+    /// True if the obstacle that governs a reaction is at rest.
     fn is_by_obstacle_at_rest(&self, reaction: &Reaction) -> bool {
         let governing = reaction.governing.and_then(|g| self.query.pairs.get(g));
         governing.is_some_and(|p| p.obstacle_velocity().length() <= STATIONARY_OBSTACLE_M_S)
     }
 
-    /// True where the robot makes no progress for the stall timeout, and no obstacle moves.
+    /// True if the robot makes no progress for the stall timeout, and no obstacle moves.
     fn is_stalled(&self) -> bool {
         let moves = |p: &ProximityPair| p.obstacle_velocity().length() > STATIONARY_OBSTACLE_M_S;
         self.machine.is_stalled() && !self.query.pairs.iter().any(moves)

@@ -35,7 +35,7 @@ impl Detour {
         Self { waypoints, speed: 0.0 }
     }
 
-    /// True where no waypoint remains.
+    /// True if no waypoint remains.
     pub(crate) fn is_finished(&self) -> bool {
         self.waypoints.is_empty()
     }

@@ -12,7 +12,7 @@ pub struct ObservedObject {
     pub in_world: Pose,
     /// Motion of the object; [`FrameMotion::REST`] where it is stationary.
     pub motion: FrameMotion,
-    /// True where the path was planned with it: it is kept clear of and not evaded.
+    /// True if the path was planned with it: it is kept clear of and not evaded.
     pub known: bool,
 }
 
@@ -25,7 +25,7 @@ pub struct Neighbour<'a> {
     pub q: &'a [f64],
     /// Its joint velocities, rad/s or m/s.
     pub qd: &'a [f64],
-    /// True where the path was planned with it: it is kept clear of and not evaded.
+    /// True if the path was planned with it: it is kept clear of and not evaded.
     pub known: bool,
 }
 

@@ -147,7 +147,7 @@ impl<'s> EscapeCheck<'s> {
         self.deadline = deadline;
     }
 
-    /// True where no more may be checked now.
+    /// True if no more may be checked now.
     pub(crate) fn is_overdue(&self) -> bool {
         self.work() >= self.deadline
     }
@@ -295,8 +295,8 @@ impl<'s> EscapeCheck<'s> {
         Ok(None)
     }
 
-    /// True where the motion keeps `clearance_m` to all that is fixed and between own links; what moves counts at its
-    /// predicted pose at the beginning of each stretch. False where the work is used up.
+    /// True if the motion keeps `clearance_m` to all that is fixed and between own links; what moves counts at its
+    /// predicted pose at the beginning of each stretch. False if the work is used up.
     pub(crate) fn keeps_clear_of_fixed(
         &mut self,
         motion: &TimedMotion<'_>,
@@ -324,7 +324,7 @@ impl<'s> EscapeCheck<'s> {
         Ok(true)
     }
 
-    /// True where the motion keeps a constraint, such as regions that are closed to the robot.
+    /// True if the motion keeps a constraint, such as regions that are closed to the robot.
     pub(crate) fn keeps_constraint(&mut self, motion: &TimedMotion<'_>, constraint: &mut dyn PathConstraint) -> bool {
         let end_s = (motion.trajectory.duration_s - motion.elapsed_s).min(motion.horizon_s);
         let (mut t, mut step_s) = (0.0, STRETCH_S);
@@ -366,7 +366,7 @@ impl<'s> EscapeCheck<'s> {
         stretch_s.max(MIN_STRETCH_S)
     }
 
-    /// Moves the robot to its configuration after `t_s` seconds; true where it rests from then on.
+    /// Moves the robot to its configuration after `t_s` seconds; true if it rests from then on.
     fn set_time(&mut self, motion: &TimedMotion<'_>, t_s: f64) -> Result<bool, SceneError> {
         let at = motion.elapsed_s + t_s;
         motion.trajectory.q_at(at, &mut self.from);

@@ -225,7 +225,7 @@ impl<'s> EscapeSearch<'s> {
         (self.is_known, self.followed_s) = (false, None);
     }
 
-    /// False where all that moves and is evaded is predicted to pass a robot that stops.
+    /// False if all that moves and is evaded is predicted to pass a robot that stops.
     pub(crate) fn is_on_collision_course(&self) -> bool {
         self.course == ObstacleCourse::Collision
     }
@@ -309,7 +309,7 @@ impl<'s> EscapeSearch<'s> {
         self.check.set_deadline(self.begin.plus(work));
     }
 
-    /// Moves the beginning of the known escape to the present state; true where it is still free.
+    /// Moves the beginning of the known escape to the present state; true if it is still free.
     fn is_free_from_now(
         &mut self,
         tick: &EscapeTick<'_>,
@@ -396,7 +396,7 @@ impl<'s> EscapeSearch<'s> {
         Ok(EscapeState::Escaping)
     }
 
-    /// True where an escape from the robot after the command is known: to the known target, or to a new one.
+    /// True if an escape from the robot after the command is known: to the known target, or to a new one.
     fn find(
         &mut self,
         tick: &EscapeTick<'_>,

@@ -57,7 +57,7 @@ impl EscapeTrajectory {
         self.max_speeds.iter_mut().zip(&self.profiles).for_each(|(max, p)| *max = p.max_speed);
     }
 
-    /// True where all joints are within `tolerance` of their values after `t_s` seconds.
+    /// True if all joints are within `tolerance` of their values after `t_s` seconds.
     pub(crate) fn is_near(&self, t_s: f64, q: &[f64], tolerance: f64) -> bool {
         q.iter().zip(&self.profiles).all(|(q, p)| (p.at(t_s).0 - q).abs() <= tolerance)
     }

@@ -42,7 +42,7 @@ impl SoftConstraint {
         if self.at_least { residual.min(0.0) } else { residual }
     }
 
-    /// True where the constraint adds to the cost at `x`.
+    /// True if the constraint adds to the cost at `x`.
     fn is_active(&self, x: &[f64]) -> bool {
         !self.at_least || dot(&self.a, x) < self.b
     }
@@ -231,7 +231,7 @@ impl LeastSquares {
         }
     }
 
-    /// Newton step of the free unknowns from the target, by Cholesky decomposition; false where it does not exist.
+    /// Newton step of the free unknowns from the target, by Cholesky decomposition; false if it does not exist.
     fn newton(&mut self) -> bool {
         let (n, m) = (self.n, self.free.len());
         self.step.fill(0.0);

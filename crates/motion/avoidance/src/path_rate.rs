@@ -20,7 +20,7 @@ pub(crate) struct PathState<'a> {
     pub(crate) max_deviation_s: f64,
 }
 
-/// True where the robot is so far off its path that the path does not advance.
+/// True if the robot is so far off its path that the path does not advance.
 pub(crate) fn is_path_held(path: PathKind, deviation_s: f64, max_deviation_s: f64) -> bool {
     match path {
         PathKind::Continuous => deviation_s > SAME_CONFIGURATION_S,

@@ -78,7 +78,7 @@ pub struct VelocityTask<'a> {
     pub bounds: &'a VelocityBounds,
     /// The purpose of the desired velocity.
     pub mode: Mode,
-    /// False where all dynamic obstacles that move are predicted to pass: the rules then count only those at rest. Distances
+    /// False if all dynamic obstacles that move are predicted to pass: the rules then count only those at rest. Distances
     /// are kept in any case.
     pub is_on_collision_course: bool,
 }
@@ -92,7 +92,7 @@ pub struct Reaction {
     pub governing: Option<usize>,
     /// Largest violation of keeping clear, m/s: above 0 an obstacle approaches faster than the robot can leave.
     pub overrun_m_s: f64,
-    /// True where the desired velocity violates a constraint of an obstacle that may move.
+    /// True if the desired velocity violates a constraint of an obstacle that may move.
     pub is_active: bool,
 }
 

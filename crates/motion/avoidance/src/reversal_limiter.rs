@@ -44,7 +44,7 @@ impl ReversalLimiter {
         if sign * direction < 0.0 { (self.min_interval_s - since_s).max(0.0) } else { 0.0 }
     }
 
-    /// True where a motion from rest reverses no joint that reversed recently.
+    /// True if a motion from rest reverses no joint that reversed recently.
     pub(crate) fn allows(&self, velocity: impl Iterator<Item = f64>) -> bool {
         let mut joints = velocity.zip(&self.sign).zip(&self.since_s);
         joints.all(|((v, sign), since)| v * sign >= 0.0 || *since >= self.min_interval_s)

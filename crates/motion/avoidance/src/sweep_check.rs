@@ -36,7 +36,7 @@ pub(crate) struct VelocitySegment<'a> {
 pub(crate) struct CommandHit {
     /// As a fraction of the duration.
     pub(crate) time: f64,
-    /// False where the work was used up first: then nothing is known of what comes after.
+    /// False if the work was used up first: then nothing is known of what comes after.
     pub(crate) is_proven: bool,
 }
 
@@ -164,7 +164,7 @@ mod tests {
     use crate::Neighbour;
     use crate::proximity_query::ProximityRange;
 
-    /// True where a sample of the motion of both arms collides.
+    /// True if a sample of the motion of both arms collides.
     fn collides(scene: &Scene, q: [&[f64]; 2], qd: [&[f64]; 2], duration_s: f64) -> bool {
         let mut checker = Checker::new(scene, CheckerOptions::default());
         let mut state = SceneState::new(scene);

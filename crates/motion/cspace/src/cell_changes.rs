@@ -59,7 +59,7 @@ impl CellChanges {
         changes
     }
 
-    /// True where nothing changed.
+    /// True if nothing changed.
     pub fn is_empty(&self) -> bool {
         self.words.is_empty()
     }

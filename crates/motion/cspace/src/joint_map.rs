@@ -57,7 +57,7 @@ impl JointMap {
         self.map.layers()
     }
 
-    /// True where a configuration (radians) lies in a blocked cell, and where it lies outside the limits.
+    /// True if a configuration (radians) lies in a blocked cell, and where it lies outside the limits.
     pub fn is_blocked(&self, q: [f64; 3]) -> bool {
         self.map.is_blocked(q)
     }

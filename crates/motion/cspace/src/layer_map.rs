@@ -83,7 +83,7 @@ impl LayerMap {
         self.layers.iter().map(|(name, layer)| (name.as_str(), layer))
     }
 
-    /// True where a configuration (radians) lies in a blocked cell, and where it lies outside the limits.
+    /// True if a configuration (radians) lies in a blocked cell, and where it lies outside the limits.
     pub fn is_blocked(&self, q: [f64; 3]) -> bool {
         self.grid.cell(q).is_none_or(|cell: CellIndex| self.occupancy.is_blocked(cell))
     }

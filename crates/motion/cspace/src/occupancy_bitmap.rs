@@ -23,7 +23,7 @@ pub struct OccupancyBitmap {
     words_per_row: usize,
     planes: Vec<Arc<[u64]>>,
     free: Arc<[u64]>,
-    /// Mask `n` has the first `n` cells of a row set; empty where rows are long.
+    /// Mask `n` has the first `n` cells of a row set; empty if rows are long.
     below: Arc<[u64]>,
 }
 
@@ -64,7 +64,7 @@ impl OccupancyBitmap {
         self.plane(row / self.shape[1]).get(start..start + self.words_per_row).unwrap_or(&[])
     }
 
-    /// True where the cell is blocked, and for a cell outside the grid: unknown is not free.
+    /// True if the cell is blocked, and for a cell outside the grid: unknown is not free.
     pub fn is_blocked(&self, cell: CellIndex) -> bool {
         let [i, j, k] = cell.map(usize::from);
         if i >= self.shape[0] || j >= self.shape[1] || k >= self.shape[2] {
@@ -157,7 +157,7 @@ impl OccupancyBitmap {
         self.planes.get_mut(plane).map_or(&mut [], |words| Arc::make_mut(words))
     }
 
-    /// True where both have the same plane in memory.
+    /// True if both have the same plane in memory.
     pub(crate) fn shares(&self, other: &Self, plane: usize) -> bool {
         match (self.planes.get(plane), other.planes.get(plane)) {
             (Some(a), Some(b)) => Arc::ptr_eq(a, b),

@@ -27,7 +27,7 @@ pub struct Prism {
     pub centre_m: Point2,
     /// Velocity of the centre, metres per second.
     pub velocity_mps: Point2,
-    /// True where it was not visible in this frame and keeps its last position.
+    /// True if it was not visible in this frame and keeps its last position.
     pub is_unobserved: bool,
 }
 
@@ -59,7 +59,7 @@ impl Prism {
         prism_boxes(&self.swept_m, [self.z_from_m, self.z_to_m])
     }
 
-    /// True where a convex footprint (world x and y, metres) lies within the observed one.
+    /// True if a convex footprint (world x and y, metres) lies within the observed one.
     pub fn contains(&self, footprint_m: &[Point2]) -> bool {
         footprint_m.iter().all(|&p| polygon::convex_contains(&self.footprint_m, p))
     }
@@ -87,7 +87,7 @@ pub struct ObstacleUpdate {
 }
 
 impl ObstacleUpdate {
-    /// True where the frame was accepted and the map is up to date.
+    /// True if the frame was accepted and the map is up to date.
     pub fn is_accepted(&self) -> bool {
         self.status == FrameStatus::Accepted
     }

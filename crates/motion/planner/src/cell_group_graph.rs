@@ -121,12 +121,12 @@ impl CellGroupGraph {
         self.representative[node as usize]
     }
 
-    /// True where all cells of the node's block are free.
+    /// True if all cells of the node's block are free.
     pub fn is_all_free(&self, node: Node) -> bool {
         self.cells[node as usize] == ALL_FREE
     }
 
-    /// True where the cell belongs to the node.
+    /// True if the cell belongs to the node.
     pub fn has(&self, node: Node, cell: CellIndex) -> bool {
         let there = cell.map(|c| usize::from(c) / EDGE) == self.representative(node).map(|c| usize::from(c) / EDGE);
         there && self.cells[node as usize] >> bit_of(cell) & 1 == 1

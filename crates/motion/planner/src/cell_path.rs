@@ -25,7 +25,7 @@ impl Default for CellPathSearch {
 
 impl CellPathSearch {
     /// The shortest sequence of cells with common faces from `from` in one component to `to` in the other, or in the same,
-    /// ends included. Empty where there is none.
+    /// ends included. Empty if there is none.
     pub fn shortest_path(
         &mut self,
         graph: &CellGroupGraph,

@@ -16,7 +16,7 @@ impl GraphComponents {
         self.valid = false;
     }
 
-    /// True where no cell has changed since the components were computed.
+    /// True if no cell has changed since the components were computed.
     pub fn are_valid(&self) -> bool {
         self.valid
     }
@@ -29,7 +29,7 @@ impl GraphComponents {
         self.root(node)
     }
 
-    /// True where two nodes are connected.
+    /// True if two nodes are connected.
     pub fn connected(&mut self, graph: &CellGroupGraph, a: Node, b: Node) -> bool {
         self.component_of(graph, a) == self.component_of(graph, b)
     }

@@ -241,7 +241,7 @@ impl GridPlanner {
         Ok(FreeEnd { at: CellPoint { cell, point }, q: space.q(point), moved })
     }
 
-    /// Points from one free cell to another, without shortcutting; false where they are not connected.
+    /// Points from one free cell to another, without shortcutting; false if they are not connected.
     fn connect(&mut self, scale: CellScale, [from, to]: [CellPoint; 2], points: &mut Vec<GridPoint>) -> bool {
         points.clear();
         points.push(from.point);
@@ -265,7 +265,7 @@ impl GridPlanner {
         true
     }
 
-    /// The links from one node to another; false where they are not connected.
+    /// The links from one node to another; false if they are not connected.
     fn find_links(&mut self, scale: CellScale, [start, goal]: [Terminal; 2]) -> bool {
         let Self { occupancy, graph, space, search, links, components, .. } = self;
         let mut query = ThetaStarQuery { occupancy, graph, space, scale, start, goal, max_nodes: usize::MAX };

@@ -13,7 +13,7 @@ const MAX_HALVINGS: i32 = 6;
 /// A triangle is bisected this often before it counts as blocked.
 const MAX_DEPTH: u32 = 7;
 
-/// True where all cells that the triangle touches are free; may be false where only their neighbours are blocked.
+/// True if all cells that the triangle touches are free; may be false if only their neighbours are blocked.
 fn triangle_is_free(occupancy: &OccupancyBitmap, corners: [GridPoint; 3]) -> bool {
     halves_are_free(occupancy, corners, MAX_DEPTH)
 }

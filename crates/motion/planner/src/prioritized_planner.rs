@@ -261,7 +261,7 @@ impl<'s> PrioritizedPlanner<'s> {
         Ok(next)
     }
 
-    /// True where two motions are proven free while the second one moves and the first one has not ended: the second path is
+    /// True if two motions are proven free while the second one moves and the first one has not ended: the second path is
     /// free beside the end of the first, and the first beside the start of the second.
     fn are_free_together(
         &self,

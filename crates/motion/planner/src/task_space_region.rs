@@ -64,7 +64,7 @@ impl TaskSpaceRegion {
 
     /// Configurations of a robot (rad, m for prismatic joints) within its limits with the tip in the region: all that inverse
     /// kinematics finds for the centre and for `samples` more poses, the nearest to the robot's configuration in `start` first.
-    /// Other solutions that a joint reaches by whole turns within its limits are among them. Empty where none is found, which proves
+    /// Other solutions that a joint reaches by whole turns within its limits are among them. Empty if none is found, which proves
     /// nothing for more than six joints. They may be in collision.
     ///
     /// # Panics

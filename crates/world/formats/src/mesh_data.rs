@@ -24,7 +24,7 @@ pub struct MeshData {
 }
 
 impl MeshData {
-    /// The bounding box of all vertices; empty where there are none.
+    /// The bounding box of all vertices; empty if there are none.
     pub fn aabb(&self) -> Aabb {
         Aabb::from_points(self.vertices.iter().copied())
     }

@@ -39,7 +39,7 @@ pub struct Node {
     pub in_parent: Pose,
     /// Meshes in its frame (m), with the scale of the file applied.
     pub meshes: Vec<MeshData>,
-    /// Its animation in order of time; empty where it does not move. In a 3DS file the first key is the rest frame.
+    /// Its animation in order of time; empty if it does not move. In a 3DS file the first key is the rest frame.
     pub track: Vec<Keyframe>,
 }
 

@@ -68,7 +68,7 @@ pub struct DirectRow {
 /// The classical table, or the reason for its absence.
 #[derive(Debug, Clone, Serialize)]
 pub struct ClassicalDh {
-    /// `Rz(θ)·Tz(d)·Tx(a)·Rx(α)`, joint axes along z of the previous frame; empty where the table does not exist.
+    /// `Rz(θ)·Tz(d)·Tx(a)·Rx(α)`, joint axes along z of the previous frame; empty if the table does not exist.
     pub rows: Vec<DhRow4>,
     /// Largest difference between the product of the rows and forward kinematics; null where the table does not exist.
     pub residual: Option<f64>,

@@ -82,7 +82,7 @@ pub struct Inspection {
     pub dh_direct: Option<DirectDh>,
     /// Resolution level L2: the enclosing volume of each solid for whole-arm guarding.
     pub levels: Vec<EnclosingVolume>,
-    /// The levels per link, including coarse, middle and fine triangles. Empty where omitted.
+    /// The levels per link, including coarse, middle and fine triangles. Empty if omitted.
     pub resolution: Vec<LinkLevels>,
     /// The allowed collision matrix, one entry per pair of links with colliders. Empty for a mesh, and where omitted.
     pub pairs: Vec<PairRow>,

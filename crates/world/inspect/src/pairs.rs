@@ -29,7 +29,7 @@ pub struct PairRow {
     /// Reason without details, by which rows are counted.
     #[serde(skip)]
     pub kind: ReasonKind,
-    /// True where all samples are in contact.
+    /// True if all samples are in contact.
     #[serde(skip)]
     pub always: bool,
     /// True for a contact at rest without a collider in between.

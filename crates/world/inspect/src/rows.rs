@@ -47,7 +47,7 @@ pub struct MeshRow {
     pub triangles: usize,
     /// Number of distinct vertices.
     pub vertices: usize,
-    /// True where every edge is shared by two faces of opposite direction, after closing hairline seams.
+    /// True if every edge is shared by two faces of opposite direction, after closing hairline seams.
     pub closed: bool,
     /// Vertices on hairline seams that are merged within `weld_tolerance_m`; distances refer to the original faces.
     pub welded_vertices: usize,
@@ -61,7 +61,7 @@ pub struct MeshRow {
     pub open_edges: usize,
     /// Edges with more than two faces.
     pub non_manifold_edges: usize,
-    /// True where the faces of a closed mesh are oriented inwards.
+    /// True if the faces of a closed mesh are oriented inwards.
     pub inside_out: bool,
     /// Edge lengths of its axis-aligned box, in its own frame.
     pub extent_m: [f64; 3],

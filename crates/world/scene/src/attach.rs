@@ -115,7 +115,7 @@ impl SceneState {
         Some((PairState::Tested, Reason::Default))
     }
 
-    /// True where a joint moves one against the other.
+    /// True if a joint moves one against the other.
     fn joint_between(&self, scene: &Scene, a: GeometryId, b: GeometryId) -> bool {
         let chain = |r: RobotId| &scene.robots[r.0].robot.chain;
         match (self.carrier(a), self.carrier(b)) {

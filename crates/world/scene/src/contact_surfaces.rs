@@ -59,7 +59,7 @@ impl<'s> ContactSurfaces<'s> {
     }
 
     /// Calls `found` for each pair of triangles of two links or objects that touch, ordered by collider and triangle; once without
-    /// triangles for colliders in contact of which none touch. Does nothing where the two are apart.
+    /// triangles for colliders in contact of which none touch. Does nothing if the two are apart.
     pub fn contacts(
         &mut self,
         state: &SceneState,

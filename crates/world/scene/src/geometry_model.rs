@@ -21,9 +21,9 @@ pub(crate) struct GeometryModel {
     pub cuboid: Vec<LocalShape>,
     /// `cuboid` as an oriented box; `None` where the geometry is unbounded.
     pub obb: Option<Obb>,
-    /// True where a coarse model is much cheaper than the exact one.
+    /// True if a coarse model is much cheaper than the exact one.
     pub complex: bool,
-    /// True where the capsule has the smaller volume of the two enclosures, so that it can separate what the box cannot.
+    /// True if the capsule has the smaller volume of the two enclosures, so that it can separate what the box cannot.
     pub slim: bool,
     pub padding_m: f64,
     /// Metres by which a hull may fail to enclose its mesh.

@@ -85,7 +85,7 @@ impl NarrowPhase {
         }
     }
 
-    /// True where the models of a level are not certainly farther apart than `limit` metres.
+    /// True if the models of a level are not certainly farther apart than `limit` metres.
     pub fn within(&mut self, a: &PlacedModel, b: &PlacedModel, level: Level, limit: f64) -> bool {
         self.stats.pairs_tested.add(level, 1);
         let (of_a, of_b) = (a.model.at(level), b.model.at(level));

@@ -59,7 +59,7 @@ impl PairRule {
 }
 
 impl PairRules {
-    /// True where nothing is changed.
+    /// True if nothing is changed.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
@@ -72,7 +72,7 @@ impl PairRules {
         }
     }
 
-    /// True where a rule skips or tests the pair.
+    /// True if a rule skips or tests the pair.
     pub fn decide(&self, a: GeometryId, b: GeometryId) -> bool {
         self.last_state(a, b).is_some()
     }

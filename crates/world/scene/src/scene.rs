@@ -123,13 +123,13 @@ impl Scene {
         self.models.iter().map(|m| m.id)
     }
 
-    /// True where the link or object has a shape.
+    /// True if the link or object has a shape.
     pub fn has_shape(&self, id: GeometryId) -> bool {
         self.model_of(id).is_some()
     }
 
     /// The shapes of a link or object as they are checked, scaled where the scene scales them, each with its pose in the frame of
-    /// the link or object. None where it has no shape.
+    /// the link or object. None if it has no shape.
     pub fn shapes(&self, id: GeometryId) -> impl Iterator<Item = (&Shape, Pose)> + '_ {
         let model = self.model_of(id).map(|m| &self.models[m]);
         model.into_iter().flat_map(|m| m.exact.iter().map(|s| (&s.shape, s.in_geometry)))
@@ -152,7 +152,7 @@ impl Scene {
         self.first_object + object.0
     }
 
-    /// True where all joint values are certainly within the limits; NaN is not.
+    /// True if all joint values are certainly within the limits; NaN is not.
     pub(crate) fn within_limits(&self, robot: RobotId, q: &[f64]) -> bool {
         let chain = &self.robots[robot.0].robot.chain;
         let within = |(i, q): (usize, &f64)| {

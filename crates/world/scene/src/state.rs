@@ -22,11 +22,11 @@ pub struct SceneState {
     pub(crate) boxes: Vec<WorldBox>,
     /// Per object.
     pub(crate) attached: Vec<Option<Attachment>>,
-    /// Per object: true where its pose is not that of the scene.
+    /// Per object: true if its pose is not that of the scene.
     pub(crate) displaced: Vec<bool>,
-    /// Per robot: true where a joint is beyond its limits.
+    /// Per robot: true if a joint is beyond its limits.
     pub(crate) beyond_limits: Vec<bool>,
-    /// True where the out-of-reach proofs of the scene hold for every pair.
+    /// True if the out-of-reach proofs of the scene hold for every pair.
     pub(crate) all_proofs_hold: bool,
     /// Identifies the set of attachments: states of equal number have equal pairs. 0: nothing is attached.
     pub(crate) arrangement: u64,
@@ -119,7 +119,7 @@ impl SceneState {
         Ok(())
     }
 
-    /// Joint values of a robot, rad or m; empty where there is no such robot.
+    /// Joint values of a robot, rad or m; empty if there is no such robot.
     pub fn q(&self, robot: RobotId) -> &[f64] {
         self.chains.get(robot.0).map_or(&[], |c| &c.q)
     }
@@ -259,7 +259,7 @@ impl SceneState {
         self.boxes[scene.models.len() + robot.0] = all;
     }
 
-    /// True where the out-of-reach proofs of the scene hold for the geometry: joints within limits, object in place.
+    /// True if the out-of-reach proofs of the scene hold for the geometry: joints within limits, object in place.
     pub(crate) fn proofs_hold(&self, id: GeometryId) -> bool {
         match id {
             GeometryId::Link { robot, .. } => !self.beyond_limits[robot.0],

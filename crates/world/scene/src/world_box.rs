@@ -74,7 +74,7 @@ impl WorldBox {
     /// The empty box: the neutral element of [`WorldBox::union`].
     pub const EMPTY: Self = Self::from_corners([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
 
-    /// True where the boxes are certainly farther apart than `margin` (m) along some axis.
+    /// True if the boxes are certainly farther apart than `margin` (m) along some axis.
     #[inline]
     pub fn separated(&self, o: &Self, margin: f32) -> bool {
         // Rounding is monotonic: a rounded difference above the margin is one above the margin.

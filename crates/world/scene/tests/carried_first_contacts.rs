@@ -50,7 +50,7 @@ struct Setup {
 }
 
 impl Setup {
-    /// True where the part, at `in_hand` in the hand of the first robot, touches the other geometry.
+    /// True if the part, at `in_hand` in the hand of the first robot, touches the other geometry.
     fn touches(&self, other: GeometryId, states: &[ChainState], in_hand: Pose) -> bool {
         let part = self.bases[0] * states[0].link_in_root(HAND) * in_hand;
         let (shape, pose) = match other {

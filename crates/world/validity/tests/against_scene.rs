@@ -332,7 +332,7 @@ fn surroundings(robot: &Robot, covered: &CoveredRobot, random: &mut Random, kind
     drawn
 }
 
-/// True where of twenty configurations more than two are not proven to collide.
+/// True if of twenty configurations more than two are not proven to collide.
 fn is_open(robot: &Robot, covered: &CoveredRobot, among: &Surroundings, random: &mut Random) -> bool {
     let mut checker = ValidityChecker::new(covered, among.obstacle_set());
     let mut is_hit = || checker.state(&random.q(&robot.chain)).unwrap() == Validity::Hit;

@@ -37,7 +37,7 @@ impl<'a> OracleMotion<'a> {
         self.q.len()
     }
 
-    /// True where a region was active from tick `k` to the next.
+    /// True if a region was active from tick `k` to the next.
     pub fn is_active(&self, region: usize, k: usize) -> bool {
         let list = &self.recording.regions[region].active;
         list.iter().rev().find(|(t_s, _)| *t_s <= self.times[k] + 1e-9).is_some_and(|(_, on)| *on)
@@ -82,7 +82,7 @@ impl<'a> OracleMotion<'a> {
         self.times[k] + u * self.recording.tick_s
     }
 
-    /// False where a region accelerates, or its belt changes its speed, while the robot could not have stopped before a share `u` of the
+    /// False if a region accelerates, or its belt changes its speed, while the robot could not have stopped before a share `u` of the
     /// way from tick `k` to the next.
     pub fn is_foreseen(&self, region: usize, robot: usize, (k, u): (usize, f64)) -> bool {
         let place = &self.places[region];
@@ -104,7 +104,7 @@ impl<'a> OracleMotion<'a> {
         slowest + self.cell.laws.stopping_reaction_s.unwrap_or(0.0) + 2.0 * self.recording.tick_s
     }
 
-    /// True where a robot moves from tick `k` to the next.
+    /// True if a robot moves from tick `k` to the next.
     pub fn moves(&self, robot: usize, k: usize) -> bool {
         k + 1 < self.ticks() && self.q[k][robot].iter().zip(&self.q[k + 1][robot]).any(|(a, b)| (a - b).abs() > 1e-9)
     }

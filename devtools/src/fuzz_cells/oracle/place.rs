@@ -67,7 +67,7 @@ impl Place {
         self.carrier.at(t_s, frames).then(&self.at)
     }
 
-    /// True where a point is inside; for meshes by the winding number.
+    /// True if a point is inside; for meshes by the winding number.
     pub fn contains(&self, at: &Frame, point: Vec3) -> bool {
         let p = at.vector_back(point - at.at);
         match &self.shape {

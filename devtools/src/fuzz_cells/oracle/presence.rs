@@ -109,7 +109,7 @@ impl<'a> Watch<'a> {
         (from..last).find(|k| pair.region_jumps(*k)).unwrap_or(end)
     }
 
-    /// False where the region ran into a robot at rest. Before a region that moves the robot has to rest; into one that does
+    /// False if the region ran into a robot at rest. Before a region that moves the robot has to rest; into one that does
     /// not it must have come by more than the tolerance within the last tick.
     fn drove_in(&self, pair: &SweptPair<'_>, k: usize, u: f64) -> bool {
         if k == 0 {

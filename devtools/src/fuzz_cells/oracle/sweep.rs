@@ -37,7 +37,7 @@ impl<'a> SweptPair<'a> {
         Self { motion, guarded, robot, region, lever_arms }
     }
 
-    /// False where no joint moves it.
+    /// False if no joint moves it.
     pub fn is_moved(&self) -> bool {
         self.lever_arms.iter().any(|l| *l > 0.0)
     }
@@ -81,7 +81,7 @@ impl<'a> SweptPair<'a> {
         travel(away + self.guarded.radius_m + self.own_travel(k) + travel(0.0))
     }
 
-    /// True where the region's belt begins again between tick `k` and the next: it does not come from there to here.
+    /// True if the region's belt begins again between tick `k` and the next: it does not come from there to here.
     pub fn region_jumps(&self, k: usize) -> bool {
         let carrier = &self.motion.places[self.region].carrier;
         carrier.rounds(self.motion.times[k]) != carrier.rounds(self.motion.times[k + 1])

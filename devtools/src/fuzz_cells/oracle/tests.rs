@@ -1,4 +1,4 @@
-//! The oracle itself: it must see what is planted, and nothing where nothing is.
+//! The oracle itself: it must see what is planted, and nothing if nothing is.
 
 use elbowroom_cell::Cell;
 use elbowroom_kinematics::ChainState;

@@ -84,7 +84,7 @@ pub fn along_z(rest: &Pose) -> GeneralizedRow {
     GeneralizedRow { theta: clean_angle(x.y.atan2(x.x)), d: clean(rest.translation.z), ..GeneralizedRow::IDENTITY }
 }
 
-/// True where the row is only a rotation about and a translation along z.
+/// True if the row is only a rotation about and a translation along z.
 pub fn is_along_z(row: &GeneralizedRow) -> bool {
     row.a == 0.0 && row.b == 0.0 && row.alpha == 0.0
 }

@@ -24,7 +24,7 @@ pub struct JointMotion {
     pub kind: JointKind,
     /// About or along which axis of the frame.
     pub along: FrameAxis,
-    /// True where the displacement is minus the joint's value.
+    /// True if the displacement is minus the joint's value.
     pub reversed: bool,
     /// Limits of the joint, rad or m.
     pub limits: Limits,

@@ -38,7 +38,7 @@ pub struct ArmVariable {
     pub lower: f64,
     pub upper: f64,
     pub turns: bool,
-    /// True where a full turn leaves the tip in place.
+    /// True if a full turn leaves the tip in place.
     pub wraps: bool,
 }
 

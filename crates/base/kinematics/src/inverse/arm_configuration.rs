@@ -125,12 +125,12 @@ impl ConfigurationChoice {
         Ok(choice)
     }
 
-    /// True where nothing is chosen.
+    /// True if nothing is chosen.
     pub fn is_open(&self) -> bool {
         *self == Self::default()
     }
 
-    /// True where the configuration has everything that is chosen.
+    /// True if the configuration has everything that is chosen.
     pub fn admits(&self, configuration: &ArmConfiguration) -> bool {
         self.shoulder.is_none_or(|s| s == configuration.shoulder)
             && self.elbow.is_none_or(|e| e == configuration.elbow)

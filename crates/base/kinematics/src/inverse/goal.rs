@@ -16,6 +16,6 @@ pub trait Goal<const R: usize> {
     /// Decrease of the error per unit of a motion of the tip: `linear` (m) and `angular` (rad), in the root.
     fn jacobian_column(&self, at: &Self::Linearization, linear: Vec3, angular: Vec3) -> [f64; R];
 
-    /// True where the error is within the tolerances.
+    /// True if the error is within the tolerances.
     fn is_met(&self, error: &[f64; R]) -> bool;
 }

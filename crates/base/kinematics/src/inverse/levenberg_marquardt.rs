@@ -131,7 +131,7 @@ impl<const R: usize, G: Goal<R>> LevenbergMarquardt<'_, R, G> {
         }
     }
 
-    /// Computes the step's result in `trial`, without the joints that it would move beyond their limits; false where there is no
+    /// Computes the step's result in `trial`, without the joints that it would move beyond their limits; false if there is no
     /// step.
     fn step(&mut self, x: &[f64], e: &[f64; R], lambda: f64) -> bool {
         // Each round but the last fixes a joint, so there are no more rounds than joints.
@@ -194,7 +194,7 @@ impl<const R: usize, G: Goal<R>> LevenbergMarquardt<'_, R, G> {
         true
     }
 
-    /// Fixes the joints at a bound that the step would move beyond it; true where there was one.
+    /// Fixes the joints at a bound that the step would move beyond it; true if there was one.
     fn fix_joints_at_bounds(&mut self, x: &[f64]) -> bool {
         let mut any = false;
         for (i, variable) in self.arm.variables.iter().enumerate() {

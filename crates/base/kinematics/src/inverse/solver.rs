@@ -113,7 +113,7 @@ impl IkSolver {
         self.search(target_in_root, seed, &start, outside)
     }
 
-    /// All solutions found within the limits, nearest to the seed first; empty where there is none or the input is invalid.
+    /// All solutions found within the limits, nearest to the seed first; empty if there is none or the input is invalid.
     ///
     /// In closed form these are all branches (up to eight), each with the turns nearest to the seed. Numerically they are the
     /// distinct ones that the configured starts converge to, at most 16: for more than six axes a sample of infinitely many.
@@ -142,7 +142,7 @@ impl IkSolver {
         all.iter().map(|found| self.solution(found, seed, 0).q).collect()
     }
 
-    /// Refines a nearby `q` (all of the chain's values, within the limits) by a few steps, in place; true where the target is met
+    /// Refines a nearby `q` (all of the chain's values, within the limits) by a few steps, in place; true if the target is met
     /// within the tolerances. Does not allocate. Where false, `q` is the best result of the steps.
     pub fn refine(&mut self, target_in_root: &Pose, q: &mut [f64]) -> bool {
         if self.check(target_in_root, q).is_err() {
@@ -354,7 +354,7 @@ impl IkSolver {
         r.position_m() / self.scale + if self.options.task == IkTask::Pose { r.angle_rad() } else { 0.0 }
     }
 
-    /// True where two solutions differ by more than full turns.
+    /// True if two solutions differ by more than full turns.
     fn differ(&self, a: &[f64], b: &[f64]) -> bool {
         self.arm.variables.iter().enumerate().any(|(i, v)| {
             let delta = a[i] - b[i];

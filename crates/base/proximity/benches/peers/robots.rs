@@ -58,13 +58,13 @@ impl Arms {
         self.links.iter().map(|link| link.aabb().extent().max_element()).fold(0.0, f64::max)
     }
 
-    /// True where a link of one arm touches one of the other.
+    /// True if a link of one arm touches one of the other.
     pub fn collides(&mut self, poses: &[Pose]) -> bool {
         let (one, other) = poses.split_at(self.links.len());
         self.group.collides(one, &self.group, other, &mut self.group_workspace)
     }
 
-    /// True where two links are within `tolerance` metres.
+    /// True if two links are within `tolerance` metres.
     pub fn within(&mut self, poses: &[Pose], tolerance: f64) -> bool {
         self.any(poses, tolerance, |links, a, b, poses, workspace| {
             !is_farther_than(&links[a], &poses[a], &links[b], &poses[links.len() + b], tolerance, workspace)

@@ -60,7 +60,7 @@ impl ConstantTwist {
         }
     }
 
-    /// True where no number is NaN or infinite.
+    /// True if no number is NaN or infinite.
     pub fn is_finite(&self) -> bool {
         self.start.is_finite() && self.pivot.is_finite() && self.velocity.is_finite() && self.rotation.is_finite()
     }

@@ -18,13 +18,13 @@ pub struct TimeOfImpact {
     pub separation: f64,
     /// Number of distance queries.
     pub steps: u32,
-    /// False where the proof ended here without a contact: the steps were used up, a number is not finite, or a bound of the
+    /// False if the proof ended here without a contact: the steps were used up, a number is not finite, or a bound of the
     /// speed is infinite. The motion is free before `time` and unknown after it.
     pub certain: bool,
 }
 
 impl TimeOfImpact {
-    /// True where the shapes were within the tolerance from the start.
+    /// True if the shapes were within the tolerance from the start.
     pub fn at_start(&self) -> bool {
         self.time == 0.0
     }

@@ -51,7 +51,7 @@ pub struct ContactPoint {
     pub triangle_a: Option<u32>,
     /// The triangle of the second.
     pub triangle_b: Option<u32>,
-    /// False where the shapes are apart, and the points are the nearest ones.
+    /// False if the shapes are apart, and the points are the nearest ones.
     pub touching: bool,
 }
 

@@ -44,7 +44,7 @@ pub fn triangle_surface(shape: &Shape, chord_error_m: f64) -> Option<Arc<TriMesh
 }
 
 /// Calls `found` for each pair of triangles that touch, or that are closer than f64 can separate, each once and in no particular
-/// order. Returns true where the meshes are in contact without touching triangles: one is inside the other, or a pose is not
+/// order. Returns true if the meshes are in contact without touching triangles: one is inside the other, or a pose is not
 /// usable.
 ///
 /// ```

@@ -43,7 +43,7 @@ pub struct MeshGroup {
 struct GroupMesh {
     mesh: Arc<TriMesh>,
     capsule: BoundingCapsule,
-    /// Spheres inside the solid; empty where it has no interior.
+    /// Spheres inside the solid; empty if it has no interior.
     interior: SphereRow,
 }
 
@@ -91,7 +91,7 @@ impl MeshGroup {
         Self { meshes, rows: capsules.chunks(LANES).map(CapsuleRow::new).collect(), middles, reach }
     }
 
-    /// True where a mesh of this group touches one of another, as [`colliding_triangles`] of each
+    /// True if a mesh of this group touches one of another, as [`colliding_triangles`] of each
     /// pair says. `poses` has one for each mesh of this group, `other_poses` for each of the other; where one is missing the
     /// answer is true.
     pub fn collides(&self, poses: &[Pose], other: &Self, other_poses: &[Pose], workspace: &mut GroupWorkspace) -> bool {
@@ -122,7 +122,7 @@ struct GroupQuery<'a> {
 }
 
 impl GroupQuery<'_> {
-    /// Bounding volumes of all pairs, then spheres of the pairs that are left. True where a collision is proven; `unsettled` has
+    /// Bounding volumes of all pairs, then spheres of the pairs that are left. True if a collision is proven; `unsettled` has
     /// the pairs of which nothing is.
     #[inline(always)]
     fn settle<S: Simd>(&self, simd: S, workspace: &mut GroupWorkspace) -> bool {

@@ -24,7 +24,7 @@ pub(super) fn tolerances(a: &TriMesh, b: &TriMesh) -> PatchTolerances {
     PatchTolerances::of((a.bvh.radius + b.bvh.radius) * a.bvh.frame.inverse)
 }
 
-/// True where the closest points lie on faces or edges that are so nearly parallel that other points are tied.
+/// True if the closest points lie on faces or edges that are so nearly parallel that other points are tied.
 pub(super) fn has_parallel_features(meshes: &MeshPair, nearest: &NearestPair, tolerances: PatchTolerances) -> bool {
     let Some(along) = (nearest.points.on_b - nearest.points.on_a).try_normalize() else { return false };
     let (s, t) = corners(meshes, nearest.triangles);

@@ -190,7 +190,7 @@ pub fn triangles_within(
     features_within(a, a_in_world, b, b_in_world, tolerance, EXPECT_NEAR, workspace)
 }
 
-/// True where two meshes are certainly farther apart than `tolerance` metres: the negation of [`triangles_within`], faster
+/// True if two meshes are certainly farther apart than `tolerance` metres: the negation of [`triangles_within`], faster
 /// where that is the usual answer.
 ///
 /// ```

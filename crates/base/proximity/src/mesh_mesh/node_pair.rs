@@ -84,7 +84,7 @@ impl NodePairStack {
         self.len
     }
 
-    /// True where a pair was lost: then nothing is proven to be apart.
+    /// True if a pair was lost: then nothing is proven to be apart.
     pub fn overflowed(&self) -> bool {
         self.overflowed
     }

@@ -57,7 +57,7 @@ impl RelativePlacement {
         }
     }
 
-    /// False where numbers are NaN, infinite, or so large compared with the meshes that f64 has no digits left for them.
+    /// False if numbers are NaN, infinite, or so large compared with the meshes that f64 has no digits left for them.
     #[inline]
     pub fn is_usable(&self) -> bool {
         self.f64_error.is_finite() && self.f32_error < F32_ERROR * 1e15
@@ -88,7 +88,7 @@ fn world_rounding(a: &UnitFrame, a_in_world: &Pose, b: &UnitFrame, b_in_world: &
     16.0 * f64::EPSILON * (reach(a_in_world, a) + reach(b_in_world, b))
 }
 
-/// True where the bounding spheres of two meshes are so much farther apart than `limit` metres that triangles would be, too,
+/// True if the bounding spheres of two meshes are so much farther apart than `limit` metres that triangles would be, too,
 /// however they are rounded: by at least twice [`RelativePlacement::f64_error`].
 #[inline]
 pub(super) fn spheres_farther_than(a: &Bvh16, a_in_world: &Pose, b: &Bvh16, b_in_world: &Pose, limit: f64) -> bool {

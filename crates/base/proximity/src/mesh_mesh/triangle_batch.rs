@@ -33,7 +33,7 @@ impl TriangleBatch {
         self.len == 0
     }
 
-    /// Adds a pair of slots; true where the batch is full.
+    /// Adds a pair of slots; true if the batch is full.
     #[inline(always)]
     pub fn push(&mut self, a: &TriMesh, slot_a: u32, b: &TriMesh, slot_b: u32) -> bool {
         let (ta, tb) = (a.bvh.triangle(slot_a), b.bvh.triangle(slot_b));

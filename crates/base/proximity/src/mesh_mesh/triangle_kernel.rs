@@ -35,7 +35,7 @@ pub(super) struct Distances {
 }
 
 impl Distances {
-    /// True where the distance and the closest points of one pair are certain.
+    /// True if the distance and the closest points of one pair are certain.
     #[inline(always)]
     pub fn is_certain(&self, lane: usize) -> bool {
         self.at_least[lane] >= self.distance[lane]

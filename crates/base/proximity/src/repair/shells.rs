@@ -105,7 +105,7 @@ impl BreadthFirst<'_> {
     }
 }
 
-/// True where the face has the directed edge from `a` to `b`.
+/// True if the face has the directed edge from `a` to `b`.
 fn has_directed(f: [u32; 3], a: u32, b: u32) -> bool {
     (0..3).any(|k| f[k] == a && f[(k + 1) % 3] == b)
 }
@@ -138,7 +138,7 @@ fn measure(shell: &mut Shell, vertices: &[Vec3], triangles: &[[u32; 3]], reverse
 }
 
 impl Shells {
-    /// True where all closed shells are consistent and have the same sign: the solid is then their union, and the sign gives
+    /// True if all closed shells are consistent and have the same sign: the solid is then their union, and the sign gives
     /// the orientation of each.
     pub fn agree(&self) -> bool {
         let mut signs = self.closed().map(|s| s.volume.filter(|_| s.consistent).map(f64::signum));
@@ -146,7 +146,7 @@ impl Shells {
         first.is_some() && signs.all(|sign| sign == first)
     }
 
-    /// True where the bounds of no other closed shell overlap this one's: it is a separate solid, not a cavity.
+    /// True if the bounds of no other closed shell overlap this one's: it is a separate solid, not a cavity.
     pub fn is_alone(&self, number: usize) -> bool {
         let bounds = &self.list[number].bounds;
         let mut others = self.list.iter().enumerate().filter(|&(n, s)| n != number && s.closed);

@@ -59,7 +59,7 @@ pub(super) fn continuous_witness(a: &Core, b: &Core, a_in_b: &Pose, gap: Gap) ->
     with_points(gap, on_a, on_b, tolerances.tie)
 }
 
-/// False where the closest point of a line along the unit vector `direction` and `b` is certainly unique; `to_b` leads from the
+/// False if the closest point of a line along the unit vector `direction` and `b` is certainly unique; `to_b` leads from the
 /// closest point of the line to that of `b`. All in the frame of `b`, and without a root.
 #[inline]
 pub(super) fn is_line_ambiguous(direction: Vec3, b: &Shape, to_b: Vec3) -> bool {

@@ -34,7 +34,7 @@ impl Gap {
         Self { distance: 0.0, apart: 0.0, lower: 0.0, on_a, on_b }
     }
 
-    /// True where cores are proven to be farther apart than their radii, added: the shapes do not touch.
+    /// True if cores are proven to be farther apart than their radii, added: the shapes do not touch.
     #[inline]
     pub fn is_beyond(&self, radii: f64) -> bool {
         self.lower - radii - rounding(radii) > 0.0

@@ -20,7 +20,7 @@ fn rank(s: &Shape) -> u8 {
     }
 }
 
-/// True where `a` is computed as the first shape. Both orders of the arguments give the same answer that way.
+/// True if `a` is computed as the first shape. Both orders of the arguments give the same answer that way.
 #[inline]
 pub(super) fn comes_first(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose) -> bool {
     let (of_a, of_b) = (rank(a), rank(b));

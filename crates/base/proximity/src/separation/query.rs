@@ -51,7 +51,7 @@ pub fn separation_within(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &P
     dispatch_meshes(a, a_in_world, b, b_in_world, limit, Goal::CONTINUOUS, MeshOptions::DEFAULT)
 }
 
-/// True where the shapes touch or overlap, or are too close for f64 to separate: exactly where the distance of [`separation`]
+/// True if the shapes touch or overlap, or are too close for f64 to separate: exactly where the distance of [`separation`]
 /// is 0, in either order of the shapes.
 ///
 /// ```
@@ -65,7 +65,7 @@ pub fn collides(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose) -> b
     within(a, a_in_world, b, b_in_world, 0.0)
 }
 
-/// True where the shapes are not proven to be farther apart than `tolerance` metres.
+/// True if the shapes are not proven to be farther apart than `tolerance` metres.
 ///
 /// ```
 /// use elbowroom_proximity::{Shape, Sphere, within};

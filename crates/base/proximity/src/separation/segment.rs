@@ -31,7 +31,7 @@ impl Segment {
         }
     }
 
-    /// True where a box around the frame's origin is farther than `reach` along one of its axes.
+    /// True if a box around the frame's origin is farther than `reach` along one of its axes.
     #[inline]
     pub fn misses(&self, half_extents: Vec3, reach: f64) -> bool {
         self.box_gap(half_extents) > reach

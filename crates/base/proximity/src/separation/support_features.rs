@@ -19,7 +19,7 @@ pub(super) fn bounding_sphere(core: &Core) -> Option<(f64, Vec3)> {
     }
 }
 
-/// True where only the neighbourhood of one point of the core is within `depth` (m) of the height of `top`, the support point
+/// True if only the neighbourhood of one point of the core is within `depth` (m) of the height of `top`, the support point
 /// along a unit vector. Much faster than [`support_feature`].
 #[inline]
 pub(super) fn is_corner(core: &Core, along: Vec3, top: Vec3, depth: f64) -> bool {
@@ -123,7 +123,7 @@ pub(super) fn nearest(core: &Core, p: Vec3) -> Vec3 {
     }
 }
 
-/// True where the face of a cylinder is an end rather than its lateral surface.
+/// True if the face of a cylinder is an end rather than its lateral surface.
 fn faces_end(along: Vec3) -> bool {
     along.z.abs() > along.x.hypot(along.y)
 }

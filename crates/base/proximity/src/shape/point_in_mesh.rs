@@ -33,7 +33,7 @@ impl Crossings {
 }
 
 impl TriMesh {
-    /// True where the point (local frame) is inside a closed component of the surface; always false for an open mesh. Hairline
+    /// True if the point (local frame) is inside a closed component of the surface; always false for an open mesh. Hairline
     /// seams count as closed ([`MeshReport::welded`](super::MeshReport::welded)).
     ///
     /// A winding number other than zero counts as inside: components that overlap stay solid, a cavity of the opposite

@@ -192,7 +192,7 @@ impl TriMesh {
         &self.component_vertices
     }
 
-    /// True where some component of the surface is closed, so that points can be inside.
+    /// True if some component of the surface is closed, so that points can be inside.
     pub fn has_interior(&self) -> bool {
         self.in_closed_component.iter().any(|&c| c)
     }

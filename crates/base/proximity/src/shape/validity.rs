@@ -8,7 +8,7 @@ use super::{Capsule, Shape};
 const TOO_LARGE: f64 = 1e150;
 
 impl Shape {
-    /// True where no number of the shape or its pose is NaN, infinite or too large, and no dimension is negative.
+    /// True if no number of the shape or its pose is NaN, infinite or too large, and no dimension is negative.
     #[inline]
     pub(crate) fn is_usable(&self, in_world: &Pose) -> bool {
         let dimensions = match self {
@@ -25,7 +25,7 @@ impl Shape {
     }
 }
 
-/// True where no number of the pose is NaN, infinite or too large.
+/// True if no number of the pose is NaN, infinite or too large.
 #[inline]
 pub(crate) fn is_usable_pose(pose: &Pose) -> bool {
     let (t, r) = (pose.translation.abs(), pose.rotation);

@@ -35,7 +35,7 @@ impl<Key: Copy + PartialOrd> WitnessChoice<Key> {
         Self { query, min_size, first, ambiguous: false, step: 1e-3 * min_size, best: None }
     }
 
-    /// True where a feature cannot change the choice; `nearest` gives its point nearest to the anchor.
+    /// True if a feature cannot change the choice; `nearest` gives its point nearest to the anchor.
     pub fn is_beaten(&self, nearest: impl FnOnce(Vec3) -> Vec3) -> bool {
         let Some(best) = self.best.filter(|_| self.ambiguous) else { return false };
         nearest(self.query.anchor).distance(self.query.anchor) > (best.score + 1.0) * self.step

@@ -37,7 +37,7 @@ impl SupportFeature {
         if let Self::Edge(u, _) = found { Self::Edge(u, width) } else { found }
     }
 
-    /// False where the features of two shapes certainly overlap in no more than a point.
+    /// False if the features of two shapes certainly overlap in no more than a point.
     pub fn may_overlap(self, other: Self, tolerances: PatchTolerances) -> bool {
         match (self, other) {
             (Self::Point, _) | (_, Self::Point) => false,

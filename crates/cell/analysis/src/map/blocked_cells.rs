@@ -17,7 +17,7 @@ pub enum BlockedCells {
 }
 
 impl BlockedCells {
-    /// True where a configuration (rad or m, one value per axis) lies in a blocked cell, where it lies outside the limits,
+    /// True if a configuration (rad or m, one value per axis) lies in a blocked cell, where it lies outside the limits,
     /// and where the number of values is wrong.
     pub fn is_blocked(&self, q: &[f64]) -> bool {
         match self {

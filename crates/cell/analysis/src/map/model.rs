@@ -14,7 +14,7 @@ pub enum MapModel {
 }
 
 impl MapModel {
-    /// True where every cell in which the robot can touch the object is blocked.
+    /// True if every cell in which the robot can touch the object is blocked.
     pub fn is_conservative(self) -> bool {
         self != Self::Seeds
     }

@@ -12,7 +12,7 @@ use serde::{Serialize, Serializer};
 /// `waypoints` is empty, and the other properties of a path are null.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PathAnswer {
-    /// True where a path was found.
+    /// True if a path was found.
     pub found: bool,
     /// Name of the robot.
     pub robot: String,

@@ -41,11 +41,11 @@ pub struct SeveralPathsRequest {
 /// Result of planning for several robots. Serialized in SI units, without the rows.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SeveralPathsAnswer {
-    /// True where all robots have a path.
+    /// True if all robots have a path.
     pub found: bool,
     /// Why none was found.
     pub reason: Option<String>,
-    /// In the order of the request; empty where none was found.
+    /// In the order of the request; empty if none was found.
     pub robots: Vec<RobotPath>,
     /// When the last one ends, s.
     pub duration_s: Option<f64>,

@@ -49,9 +49,9 @@ impl Default for ProblemSettings {
 /// The answer of a planner to one problem.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Solution {
-    /// True where a path was found.
+    /// True if a path was found.
     pub found: bool,
-    /// True where every stretch of the path is proven free, not sampled.
+    /// True if every stretch of the path is proven free, not sampled.
     pub proven: bool,
     /// Time of the search.
     pub planning: Duration,
@@ -61,7 +61,7 @@ pub struct Solution {
     pub cost_raw_rad: f64,
     /// Length of the path, rad (and m).
     pub cost_rad: f64,
-    /// All values of the robot at each waypoint, straight in joint space in between; empty where none was found.
+    /// All values of the robot at each waypoint, straight in joint space in between; empty if none was found.
     pub waypoints: Vec<Vec<f64>>,
     /// Why no path was found.
     pub reason: Option<String>,

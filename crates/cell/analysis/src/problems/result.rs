@@ -13,11 +13,11 @@ pub struct ProblemResult {
     pub set: String,
     /// Key in the set.
     pub id: String,
-    /// True where the start and at least one goal are free.
+    /// True if the start and at least one goal are free.
     pub valid: bool,
-    /// True where a path was found.
+    /// True if a path was found.
     pub found: bool,
-    /// True where every stretch of the path is proven free.
+    /// True if every stretch of the path is proven free.
     pub proven: bool,
     /// Why the problem is invalid, why no path was found, or why the path is not timed.
     pub reason: Option<String>,

@@ -141,7 +141,7 @@ impl SensorWatch {
         self.sensor.map()
     }
 
-    /// True where the map proves a path of a robot free: all cells are free that a polyline through these joint values (rad or m)
+    /// True if the map proves a path of a robot free: all cells are free that a polyline through these joint values (rad or m)
     /// crosses or comes near. What the robot carries is not in the map.
     pub fn proves_free<'q>(&self, robot: RobotId, path: impl IntoIterator<Item = &'q [f64]>) -> bool {
         let MappedJoints { robot: mapped, joints, others_are_any } = self.mapped;
@@ -157,7 +157,7 @@ impl SensorWatch {
         segments.chain(ends.into_iter().flatten()).all(|segment| self.is_free_around(segment))
     }
 
-    /// True where all cells around a segment of the map's joints are free.
+    /// True if all cells around a segment of the map's joints are free.
     fn is_free_around(&self, [a, b]: [[f64; 3]; 2]) -> bool {
         let (grid, occupancy) = (self.map().grid(), self.map().occupancy());
         let cell =

@@ -37,7 +37,7 @@ pub struct WatchedObstacle {
     pub centre_m: [f64; 2],
     /// Velocity of the centre, m/s.
     pub velocity_m_s: [f64; 2],
-    /// False where it was hidden in this picture and is kept at its last position.
+    /// False if it was hidden in this picture and is kept at its last position.
     pub seen: bool,
 }
 

@@ -16,7 +16,7 @@ const MAX_BYTES: u64 = 64 << 20;
 pub struct CellFile {
     pub(crate) file: std::path::PathBuf,
     pub(crate) entries: Vec<node::Entry>,
-    /// True where it was read from disk; then its seal is verified.
+    /// True if it was read from disk; then its seal is verified.
     pub(super) on_disk: bool,
 }
 

@@ -51,7 +51,7 @@ fn carrier_of_fingers(chain: &Chain, leaf: LinkId) -> Option<LinkId> {
     (0..chain.joints().len()).map(JointId).any(is_other).then_some(palm)
 }
 
-/// True where a link hangs on another.
+/// True if a link hangs on another.
 fn is_below(chain: &Chain, link: LinkId, above: LinkId) -> bool {
     chain.path(link).iter().any(|joint| chain.joints()[joint.0].parent == above)
 }

@@ -132,7 +132,7 @@ pub(super) fn intrinsics(t: &Table<'_>) -> Result<Intrinsics> {
     Ok(Intrinsics { width, height, fx, fy, cx, cy, radial })
 }
 
-/// The polygon of the floor that is watched, world x and y; empty where none is given.
+/// The polygon of the floor that is watched, world x and y; empty if none is given.
 pub(super) fn area(t: &Table<'_>, units: Units) -> Result<Vec<Point2>> {
     let Some(v) = t.get("area") else { return Ok(Vec::new()) };
     let corners = v.list(AREA)?;

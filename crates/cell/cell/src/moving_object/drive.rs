@@ -67,7 +67,7 @@ impl MovingObject {
         }
     }
 
-    /// True where its velocity is not zero.
+    /// True if its velocity is not zero.
     pub fn is_moving(&self, t_s: f64) -> bool {
         self.motion(t_s) != FrameMotion::REST
     }

@@ -57,7 +57,7 @@ impl Encoder {
         }
     }
 
-    /// True where the travel wraps between two times.
+    /// True if the travel wraps between two times.
     pub(super) fn wraps(&self, from_s: f64, to_s: f64) -> bool {
         let round = |t_s| self.wrap_m.map(|wrap| (self.travelled(t_s).0 / wrap).floor());
         round(from_s) != round(to_s)
@@ -80,7 +80,7 @@ impl Encoder {
         }
     }
 
-    /// True where the speed changes between two times.
+    /// True if the speed changes between two times.
     pub(super) fn changes(&self, from_s: f64, to_s: f64) -> bool {
         let within = |t: f64| t > from_s && t < to_s;
         match &self.travel {

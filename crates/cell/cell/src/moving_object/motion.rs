@@ -32,7 +32,7 @@ impl<'m> ObjectMotion<'m> {
         Self { moving_object, from_s, to_s, constant_twist: (!changes).then(constant_twist) }
     }
 
-    /// True where the motion is not continuous: the belt wraps in between.
+    /// True if the motion is not continuous: the belt wraps in between.
     pub fn jumps(&self) -> bool {
         match &self.moving_object.drive {
             Drive::Belt(encoder) => encoder.wraps(self.from_s, self.to_s),

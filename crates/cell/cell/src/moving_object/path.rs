@@ -104,7 +104,7 @@ impl ObjectPath {
         }
     }
 
-    /// True where the velocity changes between two times.
+    /// True if the velocity changes between two times.
     pub(super) fn changes(&self, from_s: f64, to_s: f64) -> bool {
         let within = |t: f64| t > from_s && t < to_s;
         // Not on one segment all of the time: another segment, another round, a start or an end.

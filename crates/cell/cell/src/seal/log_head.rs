@@ -76,7 +76,7 @@ impl LogSigner {
     /// With the key of a log (`cell.control.key`), which is made with the log. `head` is that of the log.
     pub(super) fn open(log: &Path, head: Option<&LogHead>) -> Result<Self> {
         let file = Self::file_of(log);
-        // Empty where the power went while it was made.
+        // Empty if the power went while it was made.
         let is_empty = std::fs::metadata(&file).is_ok_and(|about| about.len() == 0);
         if head.is_none() && is_empty {
             std::fs::remove_file(&file).map_err(text::unwritable(&file))?;

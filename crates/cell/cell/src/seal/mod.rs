@@ -61,7 +61,7 @@ use state::SealedState;
 pub struct History {
     /// From the first seal to the last edit.
     pub entries: Vec<LogEntry>,
-    /// Unsealed changes; empty where the seal is valid.
+    /// Unsealed changes; empty if the seal is valid.
     pub unsealed: Vec<Change>,
     /// The accepted keys.
     pub trusted: TrustedKeys,

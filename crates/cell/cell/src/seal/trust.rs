@@ -34,7 +34,7 @@ pub struct TrustedKeys {
     pub file: PathBuf,
     /// In file order.
     pub keys: Vec<TrustedKey>,
-    /// True where the file is beside the cell: anybody who may write there could add a key. Then only keys that were
+    /// True if the file is beside the cell: anybody who may write there could add a key. Then only keys that were
     /// sealed with the cell count.
     pub beside: bool,
 }
@@ -48,7 +48,7 @@ pub struct TrustedKey {
     pub name: String,
     /// The key.
     pub public: PublicKey,
-    /// True where it no longer signs. Its entries count where an entry of another integrator follows.
+    /// True if it no longer signs. Its entries count where an entry of another integrator follows.
     pub retired: bool,
 }
 
@@ -128,7 +128,7 @@ pub(super) fn beside(cell: &Path) -> Result<Vec<(String, String)>> {
     Ok(TrustedKeys::read(&file)?.keys.into_iter().map(value).collect())
 }
 
-/// True where the sealed entry of a key permits it to sign on behalf of a class.
+/// True if the sealed entry of a key permits it to sign on behalf of a class.
 pub(super) fn may_sign(sealed: &str, who: AccessClass) -> bool {
     let class = sealed.split(' ').next().and_then(AccessClass::parse);
     class.is_some_and(|c| c >= who) && !sealed.ends_with(RETIRED)

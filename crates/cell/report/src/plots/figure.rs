@@ -12,13 +12,13 @@ pub struct Figure {
     pub title: String,
     /// One line under the heading; plain text.
     pub note: String,
-    /// True where the x axis is time: hovering moves the animation.
+    /// True if the x axis is time: hovering moves the animation.
     pub over_time: bool,
     /// Visible only while this run is selected.
     pub run: Option<usize>,
     /// Height of a plot in CSS pixels.
     pub height: usize,
-    /// True where it has the full width of the page.
+    /// True if it has the full width of the page.
     pub wide: bool,
     pub drawing: Drawing,
 }

@@ -26,9 +26,9 @@ pub(super) struct EntryAnalysis<'a> {
     pub region_speed_m_s: f64,
     /// Where the region is at the start.
     pub region_in_world: Pose,
-    /// True where the robot starts inside.
+    /// True if the robot starts inside.
     pub starts_inside: bool,
-    /// True where another robot starts inside a region that shares a slot with this one.
+    /// True if another robot starts inside a region that shares a slot with this one.
     pub shared_at_start: bool,
 }
 
@@ -239,17 +239,17 @@ impl EntryAnalysis<'_> {
         format!("(braking {deceleration}/s², with a delay of {} ms)", round(self.delay_s() * 1e3))
     }
 
-    /// True where the stopping-distance law is on. `override_rate` does not delay it.
+    /// True if the stopping-distance law is on. `override_rate` does not delay it.
     fn has_stopping_law(&self) -> bool {
         self.cell.laws.stopping_reaction_s.is_some()
     }
 
-    /// True where the warning zone alone is sufficient.
+    /// True if the warning zone alone is sufficient.
     fn is_zone_sufficient(&self) -> bool {
         self.has_needed_thickness() && !self.releases_leaving_robot()
     }
 
-    /// True where `direction_aware` may permit full speed within the zone.
+    /// True if `direction_aware` may permit full speed within the zone.
     fn releases_leaving_robot(&self) -> bool {
         self.cell.laws.laws.direction_aware && !self.never_reverses()
     }
@@ -258,7 +258,7 @@ impl EntryAnalysis<'_> {
         self.region().region.warning_m + ROUNDING_M >= self.needed_m()
     }
 
-    /// True where a guarded point that moves away from the region never returns: the program is a single straight move
+    /// True if a guarded point that moves away from the region never returns: the program is a single straight move
     /// of prismatic joints, and the region is convex. With two moves it may return after a rest, while the override for
     /// leaving still applies.
     fn never_reverses(&self) -> bool {

@@ -12,7 +12,7 @@ pub struct EntryCheck {
     pub region: CellRegionId,
     /// The robot.
     pub robot: RobotId,
-    /// True where the active laws keep the robot out, under the assumptions in `reason`. False for a monitored region,
+    /// True if the active laws keep the robot out, under the assumptions in `reason`. False for a monitored region,
     /// which does not exclude entry.
     pub excluded: bool,
     /// Why, in words.
@@ -27,7 +27,7 @@ pub struct EntryCheck {
 }
 
 impl EntryCheck {
-    /// True where a robot can enter a region that forbids it.
+    /// True if a robot can enter a region that forbids it.
     pub fn is_bad(&self, cell: &Cell) -> bool {
         !self.excluded && !matches!(cell.regions[self.region.0].region.kind, RegionKind::Monitored { .. })
     }

@@ -24,7 +24,7 @@ pub(super) struct MountedOverlap<'a> {
     pub step: String,
     /// Its name.
     pub name: &'a str,
-    /// False where its place is known in the run only.
+    /// False if its place is known in the run only.
     pub is_certain: bool,
 }
 

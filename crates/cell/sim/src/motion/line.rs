@@ -35,7 +35,7 @@ pub struct TcpLine {
     solver: RefCell<IkSolver>,
     /// Of messages.
     units: Units,
-    /// False where the chain has too few joints to keep the orientation.
+    /// False if the chain has too few joints to keep the orientation.
     pub keeps_orientation: bool,
 }
 

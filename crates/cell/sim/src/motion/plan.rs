@@ -77,7 +77,7 @@ impl PlanStep {
     pub fn end(&self) -> Option<Vec<f64>> {
         match self {
             Self::Move(segment) => Some(segment.end()),
-            Self::Play(play) => Some(play.q(play.duration())),
+            Self::Play(play) | Self::Planned { play, .. } => Some(play.q(play.duration())),
             _ => None,
         }
     }

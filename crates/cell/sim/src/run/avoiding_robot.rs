@@ -153,7 +153,7 @@ impl<'s> AvoidingRobot<'s> {
         }
     }
 
-    /// True where the robot is on its programmed path.
+    /// True if the robot is on its programmed path.
     pub fn is_on_path(&self) -> bool {
         self.output.path_deviation_s == 0.0
     }
@@ -241,7 +241,7 @@ impl<'s> AvoidingRobot<'s> {
         (now != before).then_some(RunEvent::Avoidance(now))
     }
 
-    /// True where the monitor almost stops the robot off its path: evasion has moved it to the border of a region. A
+    /// True if the monitor almost stops the robot off its path: evasion has moved it to the border of a region. A
     /// planned path leads away; after repeated failures to find one, the avoider returns the robot to its path.
     fn at_border(&self, clock: &ProgramClock, allowed: f64) -> bool {
         let free = self.is_on_path()

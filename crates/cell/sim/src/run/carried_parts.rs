@@ -25,7 +25,7 @@ impl<'a> CarriedParts<'a> {
         Self { cell, attachments: vec![None; count], taken: vec![false; count] }
     }
 
-    /// True where the object no longer moves by itself.
+    /// True if the object no longer moves by itself.
     pub fn is_taken(&self, object: ObjectId) -> bool {
         self.taken[object.0]
     }

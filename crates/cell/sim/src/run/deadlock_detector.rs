@@ -27,7 +27,7 @@ impl DeadlockDetector {
         }
     }
 
-    /// True where the robot is in a deadlock now.
+    /// True if the robot is in a deadlock now.
     pub fn holds(&self, robot: usize) -> bool {
         self.since_s[robot].is_some()
     }

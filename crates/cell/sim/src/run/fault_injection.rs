@@ -59,7 +59,7 @@ impl InputFault {
 /// Replaces the snapshots of robots with faults; the others pass unchanged.
 pub(super) struct FaultInjector<'a> {
     faults: &'a [InputFault],
-    /// Per robot its past snapshots, oldest first; empty where no fault needs them.
+    /// Per robot its past snapshots, oldest first; empty if no fault needs them.
     past: Vec<VecDeque<StoredSnapshot>>,
     /// The faulty snapshot.
     faulty: StoredSnapshot,
@@ -108,7 +108,7 @@ impl<'a> FaultInjector<'a> {
         Some(self.faulty.snapshot(actual))
     }
 
-    /// True where the controller, without an answer from its monitor, still applies the last override.
+    /// True if the controller, without an answer from its monitor, still applies the last override.
     pub fn keeps_last_override(&self, robot: RobotId, t_s: f64) -> bool {
         let lost = self.active_fault(robot, t_s);
         lost.is_some_and(|f| matches!(f.kind, InputFaultKind::Lost { timeout_s } if t_s < f.from_s + timeout_s - 1e-9))

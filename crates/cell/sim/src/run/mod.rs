@@ -66,7 +66,7 @@ pub struct RunOutcome {
 }
 
 impl RunOutcome {
-    /// True where a collision occurred, a forbidden region was entered, or robots are in a deadlock: exit status 1.
+    /// True if a collision occurred, a forbidden region was entered, or robots are in a deadlock: exit status 1.
     pub fn has_violation(&self) -> bool {
         let r = &self.recording;
         r.robots.iter().any(|r| !r.collisions.is_empty())

@@ -55,7 +55,7 @@ pub(super) struct ReplannedMove {
     pub entry_s: f64,
     /// Rate at the entry.
     pub rate: f64,
-    /// True where the robot does not stop in between.
+    /// True if the robot does not stop in between.
     pub in_motion: bool,
 }
 

@@ -62,7 +62,7 @@ struct RunSensor<'a> {
 }
 
 impl RunSensor<'_> {
-    /// Takes in all pictures that are due; true where one was accepted.
+    /// Takes in all pictures that are due; true if one was accepted.
     fn take_in(&mut self, t_s: f64, q_at: &dyn Fn(f64) -> Vec<Vec<f64>>) -> bool {
         let mut is_accepted = false;
         while let Some(stamp_s) = self.watch.files().get(self.next).map(|f| f.t_s) {
@@ -124,7 +124,7 @@ impl<'a> PerceivedObstacles<'a> {
         self.sensors.iter().filter(move |s| s.spec.robots.contains(&robot))
     }
 
-    /// Takes in what is due at a time (s); `q_at` are the joint values of all robots at an earlier time. True where
+    /// Takes in what is due at a time (s); `q_at` are the joint values of all robots at an earlier time. True if
     /// something was accepted.
     pub fn take_in(&mut self, t_s: f64, q_at: &dyn Fn(f64) -> Vec<Vec<f64>>) -> bool {
         let mut is_accepted = false;
@@ -146,7 +146,7 @@ impl<'a> PerceivedObstacles<'a> {
         self.of_robot(robot).flat_map(|s| &s.obstacles)
     }
 
-    /// True where the joint-space maps prove a path of a robot free (rad or m).
+    /// True if the joint-space maps prove a path of a robot free (rad or m).
     pub fn prove_free(&self, robot: RobotId, path: &[(f64, Vec<f64>)]) -> bool {
         self.of_robot(robot).all(|s| s.watch.proves_free(robot, path.iter().map(|(_, q)| &q[..])))
     }
@@ -157,7 +157,7 @@ impl<'a> PerceivedObstacles<'a> {
         self.of_robot(robot).find(is_stale).map(|s| s.spec.name.as_str())
     }
 
-    /// True where pictures or clouds are still to come.
+    /// True if pictures or clouds are still to come.
     pub fn has_more(&self) -> bool {
         self.sensors.iter().any(|s| s.next < s.watch.files().len())
     }

@@ -22,7 +22,7 @@ pub(super) struct RegionRecorder<'a> {
     /// Per robot its sweep from the last tick: the true one, not that of the monitor's input.
     sweeps: Vec<RegionSweep>,
     observers: Vec<RegionObserver>,
-    /// Per region of the current tick: true where any robot is in its warning zone.
+    /// Per region of the current tick: true if any robot is in its warning zone.
     warned: Vec<bool>,
     /// Time of the last tick, s.
     before_s: f64,
@@ -81,7 +81,7 @@ impl<'a> RegionRecorder<'a> {
         Self { cell, setups, tracks, sweeps, observers, warned: vec![false; cell.regions.len()], before_s: 0.0 }
     }
 
-    /// Switches a region; false where it had this state already.
+    /// Switches a region; false if it had this state already.
     pub fn switch(&mut self, region: CellRegionId, t_s: f64, active: bool) -> bool {
         let list = &mut self.tracks[region.0].active;
         if list.last().is_some_and(|last| last.1 == active) {

@@ -24,7 +24,7 @@ impl Simulation<'_> {
         self.ends.end(t_s, &self.states, moves, can_continue)
     }
 
-    /// True where the monitor has stopped a robot, and not at a region that moves on by itself.
+    /// True if the monitor has stopped a robot, and not at a region that moves on by itself.
     fn is_held_for_good(&self, robot: &SimulatedRobot<'_>, t_s: f64) -> bool {
         let region = robot.track.samples.last().and_then(|s| s.region);
         let follow = region.and_then(|r| self.cell.regions[r.0].follow);

@@ -133,7 +133,7 @@ impl Outcome {
     }
 }
 
-/// Runs the cell under faults; false where two robots were in one region, one was in a region that was switched on, one stood for
+/// Runs the cell under faults; false if two robots were in one region, one was in a region that was switched on, one stood for
 /// minutes, or one has waited without a reason that somebody said.
 fn inject(options: &Options) -> Result<bool, Box<dyn Error>> {
     let cell = cell::cell(options.robots)?;

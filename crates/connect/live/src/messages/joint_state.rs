@@ -42,9 +42,9 @@ pub struct JointState {
     pub programmed_override: f64,
     /// Joint positions in the order of the chain, rad or m.
     pub q: Vec<f64>,
-    /// Joint velocities; empty where they are not known.
+    /// Joint velocities; empty if they are not known.
     pub qd: Vec<f64>,
-    /// Velocities of the program at override 1; empty where they are not known.
+    /// Velocities of the program at override 1; empty if they are not known.
     pub intent: Vec<f64>,
     /// The optional volumes of the monitor that are on the robot now: gripped parts and exchanged tools.
     pub attached: Vec<AttachedVolume>,

@@ -24,7 +24,7 @@ pub(super) enum Doubt {
 }
 
 impl Doubt {
-    /// True where it is not known which regions the robot must not enter.
+    /// True if it is not known which regions the robot must not enter.
     pub(super) fn is_of_regions(self) -> bool {
         !matches!(self, Self::Refused(_))
     }

@@ -47,7 +47,7 @@ impl FollowedRobot {
         state.qdd.fill(0.0);
     }
 
-    /// The mean velocities since the positions before; false where these do not tell.
+    /// The mean velocities since the positions before; false if these do not tell.
     fn derive_velocities(&self, q: &[f64], passed: Option<Micros>, state: &mut ChainState) -> bool {
         let Some(passed) = passed.filter(|passed| *passed <= SAME_MOTION) else { return false };
         if passed == Micros(0) {

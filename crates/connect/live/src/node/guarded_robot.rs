@@ -251,12 +251,12 @@ impl GuardedRobot {
         }
     }
 
-    /// The bytes of the next message to the arbiter; empty where no region needs one.
+    /// The bytes of the next message to the arbiter; empty if no region needs one.
     pub(super) fn interlock_state(&mut self, now: Micros) -> &[u8] {
         self.monitor.state(now)
     }
 
-    /// True where the last tick changed what the arbiter has to know.
+    /// True if the last tick changed what the arbiter has to know.
     pub(super) fn interlock_has_news(&mut self) -> bool {
         self.monitor.has_news()
     }
@@ -280,7 +280,7 @@ impl GuardedRobot {
         }
     }
 
-    /// Attaches and detaches the optional volumes as the controller says. False where it names one that there is not.
+    /// Attaches and detaches the optional volumes as the controller says. False if it names one that there is not.
     fn attach(&mut self) -> bool {
         let Self { monitor, attached, names_attached, state, recorder, .. } = self;
         *names_attached |= !state.attached.is_empty();

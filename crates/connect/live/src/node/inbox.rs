@@ -102,7 +102,7 @@ impl Heard {
         self.gate.now(local)
     }
 
-    /// Takes a message; false where it cannot be read or does not count.
+    /// Takes a message; false if it cannot be read or does not count.
     pub(crate) fn take(&mut self, bytes: &[u8], arrived: Micros) -> bool {
         if self.scratch.decode(bytes).is_err() {
             self.gate.rejected += 1;

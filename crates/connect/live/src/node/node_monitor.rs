@@ -102,7 +102,7 @@ impl NodeMonitor {
         }
     }
 
-    /// True where the robot's occupancy of a slot is another one than at the last call.
+    /// True if the robot's occupancy of a slot is another one than at the last call.
     pub(super) fn has_news(&mut self) -> bool {
         let Inner::Guarded(guarded) = &self.monitor else { return false };
         let mut has_news = false;

@@ -122,14 +122,14 @@ impl NodeTick {
         self.outbox.lock().answer.take()
     }
 
-    /// Exchanges the message to the arbiter with `bytes`; false where there is no new one.
+    /// Exchanges the message to the arbiter with `bytes`; false if there is no new one.
     pub fn take_interlock_state(&self, bytes: &mut Vec<u8>) -> bool {
         bytes.clear();
         std::mem::swap(bytes, &mut self.outbox.lock().state);
         !bytes.is_empty()
     }
 
-    /// Exchanges what a status is made of with `sample`; false where there is no new one. Fifty per second are left.
+    /// Exchanges what a status is made of with `sample`; false if there is no new one. Fifty per second are left.
     pub fn take_sample(&self, sample: &mut StatusSample) -> bool {
         self.outbox.lock().take_sample(sample).is_some()
     }

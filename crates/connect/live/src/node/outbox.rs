@@ -20,7 +20,7 @@ pub(super) struct Outbox {
 #[derive(Debug)]
 pub(super) struct Outgoing {
     pub(super) answer: Option<OverrideAnswer>,
-    /// The guard's message to the arbiter; empty where there is none.
+    /// The guard's message to the arbiter; empty if there is none.
     pub(super) state: Vec<u8>,
     /// The last tick, valid where `has_sample`.
     pub(super) sample: StatusSample,

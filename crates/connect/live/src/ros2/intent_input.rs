@@ -43,7 +43,7 @@ impl IntentInput {
         Ok(())
     }
 
-    /// The velocities of the program in the order of the chain; empty where none are known that are at most this old.
+    /// The velocities of the program in the order of the chain; empty if none are known that are at most this old.
     pub(super) fn velocities(&mut self, now: Micros, oldest: Micros) -> &[f64] {
         match self.stamp {
             Some(stamp) if self.gate.now(now) - stamp <= oldest => &self.velocities,

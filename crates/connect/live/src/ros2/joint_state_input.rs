@@ -18,7 +18,7 @@ pub(super) struct JointStateInput {
     places: Vec<Option<usize>>,
     /// Positions in the order of the chain.
     pub(super) q: Vec<f64>,
-    /// Velocities; empty where they are not known.
+    /// Velocities; empty if they are not known.
     pub(super) qd: Vec<f64>,
     /// On the clock of the publisher.
     pub(super) stamp: Micros,

@@ -129,7 +129,7 @@ fn check_topic(topic: &str) -> Result<(), String> {
 }
 
 impl Ros2Settings {
-    /// True where the process has anything to do with ROS 2.
+    /// True if the process has anything to do with ROS 2.
     pub fn is_used(&self) -> bool {
         self.publish || !self.robots.is_empty()
     }

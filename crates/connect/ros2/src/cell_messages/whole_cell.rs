@@ -27,7 +27,7 @@ pub struct UrdfMesh {
 }
 
 impl CellUrdf {
-    /// The URDF of a cell. The text is empty where names of robots and links clash so that no tree can be made.
+    /// The URDF of a cell. The text is empty if names of robots and links clash so that no tree can be made.
     pub fn of_cell(cell: &Cell) -> Self {
         let Some(robot) = whole_cell(cell) else { return Self { text: String::new(), meshes: Vec::new() } };
         let export = robot::to_urdf(&robot, &cell.name);

@@ -42,11 +42,11 @@ message! {
         lower: f64,
         /// Largest position, rad or m.
         upper: f64,
-        /// Largest speed; empty where it is not known.
+        /// Largest speed; empty if it is not known.
         velocity: Vec<f64>,
-        /// Largest acceleration; empty where it is not known.
+        /// Largest acceleration; empty if it is not known.
         acceleration: Vec<f64>,
-        /// Largest effort; empty where it is not known.
+        /// Largest effort; empty if it is not known.
         effort: Vec<f64>,
         /// Index of the joint that it follows; empty for one that moves by itself.
         mimic_joint: Vec<u32>,
@@ -230,9 +230,9 @@ message! {
         stamp_s: f64,
         /// Positions, rad or m.
         q: Vec<f64>,
-        /// Velocities; empty where they are not known.
+        /// Velocities; empty if they are not known.
         qd: Vec<f64>,
-        /// Accelerations; empty where they are not known.
+        /// Accelerations; empty if they are not known.
         qdd: Vec<f64>,
         /// The override of the program, 0..1.
         programmed_override: f64,

@@ -4,7 +4,7 @@ use super::std_msgs::Header;
 use crate::message::message;
 
 message! {
-    /// The state of joints; a sequence is empty where it is not known.
+    /// The state of joints; a sequence is empty if it is not known.
     JointState = "sensor_msgs/msg/JointState" {
         /// Time of the measurement.
         header: Header,

@@ -50,7 +50,7 @@ impl Qos {
         Self { reliability: Reliability::BestEffort, ..Self::keep_last(5) }
     }
 
-    /// The last part of a token: `reliability:durability:history,depth:deadline:lifespan:liveliness`, empty where as the default
+    /// The last part of a token: `reliability:durability:history,depth:deadline:lifespan:liveliness`, empty if as the default
     /// (reliable, volatile, keep the last 42, no times, automatic).
     pub fn token(self) -> String {
         let reliability = if self.reliability == Reliability::BestEffort { "2" } else { "" };

@@ -72,7 +72,7 @@ impl<'s> Distances<'s> {
         self.cell.robots.iter().map(|r| r.name.as_str()).map(of).collect()
     }
 
-    /// False where the joint values are unknown or do not fit.
+    /// False if the joint values are unknown or do not fit.
     fn place_robot(&mut self, robot: usize, q: &[f64]) -> bool {
         let chain = &self.cell.robots[robot].robot.chain;
         let fits = q.len() == chain.dof() && q.iter().all(|v| v.is_finite());

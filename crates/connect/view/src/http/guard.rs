@@ -39,7 +39,7 @@ impl Hosts {
         self.names.as_ref().is_none_or(|names| names.iter().any(|known| known == host)).then_some(host)
     }
 
-    /// True where a page of this server asks: browsers let any page ask any server, and say which one it is.
+    /// True if a page of this server asks: browsers let any page ask any server, and say which one it is.
     pub fn is_own_page(&self, headers: &HeaderMap) -> bool {
         let origin = only(headers, &header::ORIGIN).and_then(|origin| origin.strip_prefix(self.scheme));
         origin.is_some() && origin == self.host(headers)

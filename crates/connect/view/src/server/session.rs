@@ -155,7 +155,7 @@ impl Session<'_> {
         }
     }
 
-    /// False where the page does not take it in time.
+    /// False if the page does not take it in time.
     async fn send(&mut self, message: Message) -> bool {
         matches!(timeout(self.shared.limits.send, self.socket.send(message)).await, Ok(Ok(())))
     }

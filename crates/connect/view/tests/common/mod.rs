@@ -107,7 +107,7 @@ pub fn token(server: &Server) -> String {
     server.url().split_once("#token=").unwrap().1.to_owned()
 }
 
-/// What a server answers to these bytes, until it closes; empty where it answers nothing.
+/// What a server answers to these bytes, until it closes; empty if it answers nothing.
 pub fn answer(server: SocketAddr, request: &[u8]) -> String {
     let mut stream = TcpStream::connect(server).unwrap();
     stream.set_read_timeout(Some(Duration::from_secs(10))).unwrap();

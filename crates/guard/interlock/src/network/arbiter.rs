@@ -84,7 +84,7 @@ impl Arbiter {
         &self.slots[slot.0].queue
     }
 
-    /// True where a robot's last message is not older than the silence of the settings, and can be trusted.
+    /// True if a robot's last message is not older than the silence of the settings, and can be trusted.
     pub fn is_known(&self, robot: RobotSlot, now: Micros) -> bool {
         let record = &self.robots[robot.0];
         record.is_trusted && record.heard.is_some_and(|heard| now - heard <= self.settings.silence)

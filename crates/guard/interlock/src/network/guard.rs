@@ -123,7 +123,7 @@ impl Guard {
         self.slots[slot.0].token
     }
 
-    /// True where the robot must stop because another one was found inside.
+    /// True if the robot must stop because another one was found inside.
     pub fn must_halt(&self, slot: SlotId) -> bool {
         self.slots[slot.0].orders.halt
     }
@@ -158,7 +158,7 @@ impl Guard {
         self.slots.len()
     }
 
-    /// True where the robot may enter the regions of a slot now: it has a grant that is confirmed and not older than its validity.
+    /// True if the robot may enter the regions of a slot now: it has a grant that is confirmed and not older than its validity.
     pub fn may_enter(&self, slot: SlotId, now: Micros) -> bool {
         let slot = &self.slots[slot.0];
         let is_fresh = slot.confirmed.is_some_and(|sent| sent <= now && now - sent <= self.validity);

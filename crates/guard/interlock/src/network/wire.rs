@@ -115,7 +115,7 @@ struct Header {
     words: [u64; WORDS],
 }
 
-/// False where the message cannot be written.
+/// False if the message cannot be written.
 fn write_header(kind: u8, robot: RobotSlot, slots: usize, words: [u64; WORDS], bytes: &mut Vec<u8>) -> bool {
     PROTOCOL.begin(kind, bytes);
     let (Ok(robot), Ok(count)) = (u16::try_from(robot.0), u16::try_from(slots)) else { return false };

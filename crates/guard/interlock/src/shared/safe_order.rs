@@ -81,7 +81,7 @@ impl<'a> SafeOrder<'a> {
         }
     }
 
-    /// True where every robot that can finish now still can after the slot is granted to `robot`.
+    /// True if every robot that can finish now still can after the slot is granted to `robot`.
     pub(super) fn allows(&self, slot: SlotId, robot: RobotSlot) -> bool {
         let before = self.finishing(robot, 0);
         let holds_any = self.held[robot.0] != 0;

@@ -115,7 +115,7 @@ impl SharedState {
         Occupancy::from_u8(self.entry(slot, robot).occupancy.load(SeqCst))
     }
 
-    /// True where the robot has not published within the silence timeout.
+    /// True if the robot has not published within the silence timeout.
     pub(super) fn is_silent(&self, slot: SlotId, robot: RobotSlot, now_s: f64) -> bool {
         let age_s = now_s - f64::from_bits(self.entry(slot, robot).published_s.load(SeqCst));
         age_s.is_nan() || age_s > self.silence_timeout_s

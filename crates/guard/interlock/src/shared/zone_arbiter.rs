@@ -121,7 +121,7 @@ impl ZoneArbiter {
     }
 
     /// Declares that a silent robot is at rest outside the regions, as seen by the integrator. It does not block the slot
-    /// until it publishes again. Returns false where the access class is too low, and where the robot is not silent.
+    /// until it publishes again. Returns false if the access class is too low, and where the robot is not silent.
     pub fn clear(&self, slot: SlotId, robot: RobotSlot, who: AccessClass, now_s: f64) -> bool {
         let is_silent = self.occupancy(slot, robot) == Occupancy::Unknown || self.state.is_silent(slot, robot, now_s);
         let allowed = who >= AccessClass::Integrator && is_silent;
@@ -159,7 +159,7 @@ impl ZoneArbiter {
         self.state.robots[robot.0].claims.store(if fits { bits | DECLARED } else { 0 }, SeqCst);
     }
 
-    /// The robots that wait for each other in a cycle with this one, each with a slot that it waits for; empty where it is in
+    /// The robots that wait for each other in a cycle with this one, each with a slot that it waits for; empty if it is in
     /// no cycle. A silent robot is in no cycle: it may publish again, or be cleared. Not part of the tick: it allocates.
     pub fn wait_cycle(&self, robot: RobotSlot, now_s: f64) -> Vec<(RobotSlot, SlotId)> {
         let cycle = self.wait_for_graph(now_s).cycle(robot);

@@ -30,7 +30,7 @@ impl DeadlockWatch {
     }
 }
 
-/// The robots of circles in which one can stop outside of what the others need; empty where there are none.
+/// The robots of circles in which one can stop outside of what the others need; empty if there are none.
 fn resolvable_circle(arbiter: &Arbiter, arms: &[Arm]) -> Vec<usize> {
     let waits = |robot: usize, slot: usize| arbiter.queue(SlotId(slot)).contains(&RobotSlot(robot));
     let holder = |slot: usize| arbiter.holder(SlotId(slot)).map(|robot| robot.0);

@@ -38,7 +38,7 @@ pub(crate) struct StoppingLaw {
     program: JointSpeeds,
     /// Actual joint speeds.
     real: JointSpeeds,
-    /// False where the program's speeds are only inferred from the actual ones.
+    /// False if the program's speeds are only inferred from the actual ones.
     program_is_known: bool,
     history: OverrideHistory,
     /// From the snapshot to the start of a stop that is requested in the next tick, s.
@@ -146,7 +146,7 @@ impl StoppingLaw {
         self.history.range(now_s)
     }
 
-    /// True where the robot brakes less than stated.
+    /// True if the robot brakes less than stated.
     pub(crate) fn brakes_too_little(&self) -> bool {
         self.braking.failed()
     }
@@ -223,7 +223,7 @@ impl StoppingLaw {
         if self.is_safe(query, limit) { limit } else { 0.0 }
     }
 
-    /// True where a stop that is requested in this tick ends outside.
+    /// True if a stop that is requested in this tick ends outside.
     pub(crate) fn stops_outside(&self, query: &StoppingQuery) -> bool {
         self.is_safe(query, 0.0)
     }
@@ -238,12 +238,12 @@ impl StoppingLaw {
         self.rest_after_s
     }
 
-    /// True where the volume cannot travel so far (m) in any direction.
+    /// True if the volume cannot travel so far (m) in any direction.
     pub(crate) fn is_out_of_reach(&self, volume: usize, distance_m: f64) -> bool {
         self.reach_m[volume] < distance_m
     }
 
-    /// True where the program's speeds are known and not only inferred.
+    /// True if the program's speeds are known and not only inferred.
     pub(crate) fn program_is_known(&self) -> bool {
         self.program_is_known
     }
@@ -293,7 +293,7 @@ impl StoppingLaw {
         StopPhases { run: run_s, stop: stop_s, total: run_s + stop_s }
     }
 
-    /// True where the pending motion, followed by the override `c` and a stop, ends within the free distance.
+    /// True if the pending motion, followed by the override `c` and a stop, ends within the free distance.
     fn is_safe(&self, query: &StoppingQuery, c: f64) -> bool {
         if self.program_is_known {
             return self.fits(query, &self.pending_phases(c));

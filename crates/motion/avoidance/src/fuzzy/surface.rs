@@ -19,7 +19,7 @@ pub struct Surface {
     pub z: Vec<Vec<f64>>,
     /// Range of the output.
     pub z_range: [f64; 2],
-    /// Units of the inputs and of the output, for drawings; empty where there is none.
+    /// Units of the inputs and of the output, for drawings; empty if there is none.
     pub units: [&'static str; 3],
 }
 

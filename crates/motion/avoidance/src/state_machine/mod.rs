@@ -136,7 +136,7 @@ impl StateMachine {
         }
     }
 
-    /// True where the robot is on a detour with waypoints left.
+    /// True if the robot is on a detour with waypoints left.
     pub(crate) fn has_detour(&self) -> bool {
         matches!(&self.state, ControlState::Detouring(detour) if !detour.is_finished())
     }
@@ -147,12 +147,12 @@ impl StateMachine {
         }
     }
 
-    /// True where the robot has made no progress for the stall timeout.
+    /// True if the robot has made no progress for the stall timeout.
     pub(crate) fn is_stalled(&self) -> bool {
         self.stalled_s >= self.stall_timeout_s
     }
 
-    /// True where a detour is being planned in this tick.
+    /// True if a detour is being planned in this tick.
     pub(crate) fn awaits_detour(&self) -> bool {
         self.awaits_detour
     }

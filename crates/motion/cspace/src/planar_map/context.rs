@@ -88,7 +88,7 @@ impl ConvexContext {
         self
     }
 
-    /// False where not even the enclosing sphere, grown by the largest radius of the arm, intersects the wedge.
+    /// False if not even the enclosing sphere, grown by the largest radius of the arm, intersects the wedge.
     pub fn may_reach(&self, [cos, sin]: [f64; 2], side: f64) -> bool {
         let x = (self.center.x * cos + self.center.y * sin) * side;
         let y = (self.center.y * cos - self.center.x * sin).abs();

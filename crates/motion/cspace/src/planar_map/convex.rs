@@ -60,7 +60,7 @@ pub(super) fn build<B: PlaneSolid>(
 }
 
 impl Outlines {
-    /// Which links reach the solid in one plane, and the normals of its outline; false where none does.
+    /// Which links reach the solid in one plane, and the normals of its outline; false if none does.
     fn set_normals<B: PlaneSolid>(&mut self, context: &ConvexContext, solid: &B, side: f64) -> bool {
         let lean = (context.tangent * side) as f32;
         let gap = reaching_radius(context, solid, lean, side as f32) - context.margin;
@@ -86,7 +86,7 @@ impl Outlines {
         self.upper.complete_within(context.simd_level, &self.normals, context.upper_reach)
     }
 
-    /// Adds the spans of one plane; false where their rows do not ascend.
+    /// Adds the spans of one plane; false if their rows do not ascend.
     ///
     /// Rotating a solid about the shoulder and taking the convex hull adds little to a solid that is seen within a narrow
     /// angle, and much to one around the shoulder: such a solid is cut into sectors.

@@ -2,7 +2,7 @@
 
 use super::normals::{MAX_NORMALS, OutlineNormals};
 
-/// Moves every line that does not touch the outline inward until it does; false where the outline is empty.
+/// Moves every line that does not touch the outline inward until it does; false if the outline is empty.
 ///
 /// Lines are sorted by direction, so one pass with a double-ended queue finds the corners in order.
 pub(super) fn tighten(normals: &OutlineNormals, far: &mut [f32]) -> bool {

@@ -24,7 +24,7 @@ pub(super) struct Outline {
     /// Corner `k`, between lines `k − 1` and `k`.
     pub corner_x: [f32; PADDED_NORMALS],
     pub corner_y: [f32; PADDED_NORMALS],
-    /// False where the outline is empty.
+    /// False if the outline is empty.
     pub exists: bool,
 }
 
@@ -38,7 +38,7 @@ impl Outline {
         exists: false,
     };
 
-    /// Computes corners and stretches from the lines' distances, after moving lines inward that do not touch; false where
+    /// Computes corners and stretches from the lines' distances, after moving lines inward that do not touch; false if
     /// the outline is empty.
     #[inline(always)]
     fn complete<S: Simd>(&mut self, simd: S, normals: &OutlineNormals) -> bool {
@@ -55,7 +55,7 @@ impl Outline {
         }
     }
 
-    /// True where some line does not touch the outline.
+    /// True if some line does not touch the outline.
     #[inline(always)]
     fn is_slack<S: Simd>(&self, simd: S, normals: &OutlineNormals) -> bool {
         let mut slack = false;

@@ -150,7 +150,7 @@ impl RowCulling {
         culling
     }
 
-    /// True where neither forearm nor wrist can block any of the rows.
+    /// True if neither forearm nor wrist can block any of the rows.
     pub fn is_free(&self) -> bool {
         self.may_reach.bits == 0 && self.double_entry == 0 && self.wrist_front != 0
     }

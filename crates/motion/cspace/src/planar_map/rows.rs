@@ -12,7 +12,7 @@ use super::span_writer::RowBatch;
 use super::wrist::WristCrossings;
 use crate::Layer;
 
-/// Adds the spans of all rows of one plane, those of full rows only with `write_full`; false where rows do not ascend.
+/// Adds the spans of all rows of one plane, those of full rows only with `write_full`; false if rows do not ascend.
 pub(super) fn write_plane(
     context: &ConvexContext,
     outlines: &Outlines,

@@ -100,7 +100,7 @@ impl SpanWriter {
         }));
     }
 
-    /// True where the cell of an angle, radians, is off the axis or in one of the spans; `base` is the cell coordinate of
+    /// True if the cell of an angle, radians, is off the axis or in one of the spans; `base` is the cell coordinate of
     /// angle 0.
     #[cfg(test)]
     pub fn contains(&self, spans: &[&RowSpan], angle: f64, base: f64) -> bool {

@@ -181,12 +181,12 @@ impl RobotMapBuilder {
         out
     }
 
-    /// True where swept volumes are moved by no axis of the map.
+    /// True if swept volumes are moved by no axis of the map.
     pub(super) fn has_static_solids(&self) -> bool {
         !self.pieces.static_solids.is_empty()
     }
 
-    /// True where an obstacle touches a swept volume that no axis of the map moves.
+    /// True if an obstacle touches a swept volume that no axis of the map moves.
     pub(super) fn is_blocked_throughout(&self, obstacles: &[PlacedObstacle]) -> bool {
         let touches = |(shape, in_world): &(Shape, Pose), obstacle: &PlacedObstacle| {
             collides(shape, in_world, &obstacle.shape, &obstacle.in_world)

@@ -10,7 +10,7 @@ use super::settings::MAX_JOINTS;
 const CORNER_GAIN: f64 = 0.8;
 
 impl PairEvaluator<'_> {
-    /// True where a piece that `depth` axes move may touch in a cell, out of some pairs.
+    /// True if a piece that `depth` axes move may touch in a cell, out of some pairs.
     pub fn may_touch_in_cell(&mut self, cell: &JointBox, pairs: &[PieceObstaclePair], depth: usize) -> bool {
         if self.contains_obstacle(depth, None) {
             return true;
@@ -26,7 +26,7 @@ impl PairEvaluator<'_> {
         touches
     }
 
-    /// True where a pair may touch in a box: checks the centre, then the corner that is nearer to first order, then both
+    /// True if a pair may touch in a box: checks the centre, then the corner that is nearer to first order, then both
     /// halves.
     fn may_touch(
         &mut self,
@@ -98,7 +98,7 @@ impl PairEvaluator<'_> {
     }
 }
 
-/// True where two configurations are the same but for rounding.
+/// True if two configurations are the same but for rounding.
 fn is_same_configuration(a: &[f64; MAX_JOINTS], b: &[f64; MAX_JOINTS]) -> bool {
     a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 1e-9)
 }

@@ -106,7 +106,7 @@ impl<'a> PairEvaluator<'a> {
         self.task.chain.link_in_world(&self.state, piece.link) * piece.in_link
     }
 
-    /// True where a pair is proven apart in the whole box, in which the piece moves no farther than `displacement`; what is
+    /// True if a pair is proven apart in the whole box, in which the piece moves no farther than `displacement`; what is
     /// learnt of the pair is kept.
     pub fn is_apart(&mut self, pair: &mut PieceObstaclePair, bound: &MotionBound, displacement: f64) -> bool {
         let piece = &self.task.pieces.pieces[pair.piece as usize];
@@ -130,7 +130,7 @@ impl<'a> PairEvaluator<'a> {
         found.is_none()
     }
 
-    /// True where the nearest of some pairs is in contact in the whole box, as one solid is so deep inside the other.
+    /// True if the nearest of some pairs is in contact in the whole box, as one solid is so deep inside the other.
     pub fn is_in_contact_throughout(&mut self, joint_box: &JointBox, pairs: &[PieceObstaclePair]) -> bool {
         let Some(&nearest) = pairs.iter().min_by(|a, b| a.distance.total_cmp(&b.distance)) else { return false };
         let piece = &self.task.pieces.pieces[nearest.piece as usize];
@@ -148,7 +148,7 @@ impl<'a> PairEvaluator<'a> {
             || obstacle.points.iter().any(|&p| stays(depth_inside(&piece.shape, &in_world, p), p))
     }
 
-    /// True where an obstacle is inside a link that no more than `depth` axes move, at the current configuration, without
+    /// True if an obstacle is inside a link that no more than `depth` axes move, at the current configuration, without
     /// touching its surface. With a box, only where it is so deep inside that it stays there in the whole box.
     pub fn contains_obstacle(&self, depth: usize, throughout: Option<&JointBox>) -> bool {
         self.task.containment_candidates.iter().any(|candidate| {

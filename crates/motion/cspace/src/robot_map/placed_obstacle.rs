@@ -59,7 +59,7 @@ impl PlacedObstacle {
         depth_inside(&self.original, &self.in_world, p)
     }
 
-    /// True where a component of it may fit inside a ball of this radius.
+    /// True if a component of it may fit inside a ball of this radius.
     pub fn fits_inside(&self, radius: f64) -> bool {
         match self.points.len() {
             0 => false,

@@ -65,7 +65,7 @@ impl<'b> SphereRefinement<'b> {
     }
 
     /// Twice as many spheres, unless there would be too many or the deadline passes. The time is
-    /// checked between two spheres only: one that is begun is finished. False where nothing changed.
+    /// checked between two spheres only: one that is begun is finished. False if nothing changed.
     ///
     /// # Errors
     /// As [`CoverMapBuilder::layer`].

@@ -177,7 +177,7 @@ impl<'a> Subdivision<'a> {
     }
 }
 
-/// True where the axes beyond `depth` move a piece more than those before.
+/// True if the axes beyond `depth` move a piece more than those before.
 fn moves_more_by_later_axes(piece: &RobotPiece, joint_box: &JointBox, depth: usize) -> bool {
     let (mut before, mut beyond) = (0.0, 0.0);
     for (joint, lever_arm) in piece.joints.iter().zip(&piece.lever_arms) {

@@ -110,7 +110,7 @@ impl Case {
         .unwrap()
     }
 
-    /// True where a link that the map's joints move is in collision.
+    /// True if a link that the map's joints move is in collision.
     pub fn collides(&self, state: &mut ChainState, q: &[f64], links: &[usize], around: &[Aabb]) -> bool {
         state.q.copy_from_slice(q);
         self.robot.chain.forward(state);
@@ -216,7 +216,7 @@ impl Case {
         f64::from(needless) / samples as f64
     }
 
-    /// True where a local search for the least distance, from the nearest of the cell's corners and centre with decreasing
+    /// True if a local search for the least distance, from the nearest of the cell's corners and centre with decreasing
     /// steps, finds a collision.
     pub fn collides_in(&self, state: &mut ChainState, axes: &[GridAxis], cell: &[u16]) -> bool {
         let n = axes.len();

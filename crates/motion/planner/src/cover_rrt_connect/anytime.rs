@@ -22,7 +22,7 @@ pub struct AnytimePath {
     pub path: PlannedPath,
     /// Time since the beginning and length (rad, and m) of each path that was the shortest so far; the first is the first found.
     pub improvements: Vec<(Duration, f64)>,
-    /// True where no path can be shorter by more than 0.1 %: it is as long as the straight segment.
+    /// True if no path can be shorter by more than 0.1 %: it is as long as the straight segment.
     pub is_shortest: bool,
 }
 
@@ -63,7 +63,7 @@ impl CoverRrtConnect<'_> {
         Ok(AnytimePath { path: best, improvements, is_shortest })
     }
 
-    /// True where a path is hardly longer than the segment to the nearest goal.
+    /// True if a path is hardly longer than the segment to the nearest goal.
     fn is_straight(ends: &QueryEnds, path: &PlannedPath) -> bool {
         !ends.misses_goals() && path.length_rad * (1.0 - LEAST_GAIN) <= ends.straight_length()
     }

@@ -72,7 +72,7 @@ impl CoverModel {
         Ok(Self { robot: covered, covered_links, pairs, index: robot, base_in_world, clearance_m })
     }
 
-    /// True where the model was made for the same pairs, base and clearance (m), and nothing is held: then it serves another
+    /// True if the model was made for the same pairs, base and clearance (m), and nothing is held: then it serves another
     /// scene with the same robot.
     pub fn serves(&self, scene: &Scene, state: &SceneState, clearance_m: f64) -> bool {
         let holds = (0..scene.objects().len()).any(|i| state.attachment(ObjectId(i)).is_some());

@@ -32,7 +32,7 @@ struct Axis {
     min: f64,
     step: f64,
     count: usize,
-    /// True where the last cell is next to the first.
+    /// True if the last cell is next to the first.
     wraps: bool,
 }
 
@@ -89,7 +89,7 @@ struct Flood<'c, 'm> {
     half_widths: Vec<f64>,
 }
 
-/// True where it is proven that no path within the ranges joins two configurations. False proves nothing.
+/// True if it is proven that no path within the ranges joins two configurations. False proves nothing.
 pub(super) fn are_disconnected(
     checker: &mut ValidityChecker,
     ranges: &[JointRange],
@@ -133,7 +133,7 @@ impl Flood<'_, '_> {
         false
     }
 
-    /// Reaches the cells beside some of a front. False where the other end is reached.
+    /// Reaches the cells beside some of a front. False if the other end is reached.
     fn extend(&mut self, side: u8, front: &mut Vec<usize>, candidates: &mut Vec<usize>) -> bool {
         candidates.clear();
         while let Some(cell) = front.pop() {

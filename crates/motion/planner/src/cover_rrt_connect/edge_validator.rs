@@ -20,9 +20,9 @@ const EDGE_LENGTH: f64 = 1.0;
 
 /// What a tree search asks.
 pub(super) trait EdgeValidator {
-    /// True where the straight segment between two configurations is proven free.
+    /// True if the straight segment between two configurations is proven free.
     fn edge_is_free(&mut self, from: &[f64], to: &[f64]) -> bool;
-    /// True where the search must end.
+    /// True if the search must end.
     fn is_exhausted(&mut self) -> bool;
 
     /// Longest edge of a tree, rad (and m).
@@ -30,7 +30,7 @@ pub(super) trait EdgeValidator {
         EDGE_LENGTH
     }
 
-    /// Moves a configuration to where a constraint is satisfied. False where that fails.
+    /// Moves a configuration to where a constraint is satisfied. False if that fails.
     fn project(&mut self, q: &mut [f64]) -> bool {
         let _ = q;
         true
@@ -72,7 +72,7 @@ impl<'m> CoverValidator<'m> {
         self.deadline = deadline;
     }
 
-    /// True where it is proven that no path within the ranges joins two configurations; what that tests is not counted.
+    /// True if it is proven that no path within the ranges joins two configurations; what that tests is not counted.
     pub fn are_disconnected(
         &mut self,
         ranges: &[JointRange],
@@ -102,7 +102,7 @@ impl<'m> CoverValidator<'m> {
         self.checker.state(q).unwrap_or(Validity::Uncertain)
     }
 
-    /// True where an edge is proven free: what the covers leave open is swept exactly.
+    /// True if an edge is proven free: what the covers leave open is swept exactly.
     pub fn is_free_exactly(
         &mut self,
         exact: &mut MotionValidator,

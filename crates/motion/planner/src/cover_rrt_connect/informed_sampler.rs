@@ -23,7 +23,7 @@ impl<'r> InformedSampler<'r> {
         self.random.between(low, high)
     }
 
-    /// A configuration through which a path shorter than `bound` may lead. False where no path can be shorter.
+    /// A configuration through which a path shorter than `bound` may lead. False if no path can be shorter.
     pub fn sample(&mut self, bound: f64, out: &mut [f64]) -> bool {
         let open: Vec<&Vec<f64>> = self.goals.iter().filter(|goal| length(&self.start, goal) < bound).collect();
         if open.is_empty() {

@@ -144,7 +144,7 @@ impl<'c> LineFollower<'c> {
         None
     }
 
-    /// True where the tip is within the tolerance of the line at the quarters of a segment.
+    /// True if the tip is within the tolerance of the line at the quarters of a segment.
     fn stays_near(&mut self, from: &[f64], to: &[f64], to_share: f64) -> bool {
         let mut q = from.to_vec();
         [0.25, 0.5, 0.75].iter().all(|&part| {

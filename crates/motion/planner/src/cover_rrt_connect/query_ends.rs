@@ -35,7 +35,7 @@ impl QueryEnd {
 pub(super) struct QueryEnds {
     start: QueryEnd,
     goals: Vec<QueryEnd>,
-    /// True where a goal was left out that may be valid: no exit from it was found.
+    /// True if a goal was left out that may be valid: no exit from it was found.
     misses_goals: bool,
 }
 
@@ -65,7 +65,7 @@ impl QueryEnds {
         self.start.exit_length() + self.goals.iter().map(QueryEnd::exit_length).fold(f64::INFINITY, f64::min)
     }
 
-    /// True where there may be other goals: what is proven of these is not proven of all.
+    /// True if there may be other goals: what is proven of these is not proven of all.
     pub fn misses_goals(&self) -> bool {
         self.misses_goals
     }

@@ -113,7 +113,7 @@ impl<'s> SeparatingValue<'s> {
         })
     }
 
-    /// True where it is proven that every configuration with a value of a joint is in collision.
+    /// True if it is proven that every configuration with a value of a joint is in collision.
     fn separates(&mut self, others: &[f64], joint: usize, value: f64, deadline: Instant) -> bool {
         let mut q = others.to_vec();
         q[joint] = value;

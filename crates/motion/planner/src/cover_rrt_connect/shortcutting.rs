@@ -63,7 +63,7 @@ impl<'v, V: EdgeValidator> Shortcutting<'v, V> {
         }
     }
 
-    /// True where an edge is proven free. What was rejected once is not tested again: rounds repeat most of their questions.
+    /// True if an edge is proven free. What was rejected once is not tested again: rounds repeat most of their questions.
     fn is_joined(&mut self, from: &[f64], to: &[f64]) -> bool {
         let key = edge_key(from, to);
         if self.rejected.contains(&key) {

@@ -59,7 +59,7 @@ impl CoverRrtConnect<'_> {
         TimedMotion::of(&self.exact.time_parametrize(start, path, limits, period, settings)?, period)
     }
 
-    /// True where the polyline through the rows is proven free.
+    /// True if the polyline through the rows is proven free.
     fn are_proven(&mut self, rows: &[(f64, Vec<f64>)]) -> bool {
         let sweep = self.exact.validator.sweep;
         rows.windows(2).all(|pair| {

@@ -22,7 +22,7 @@ pub(super) trait ConfigurationSampler {
 pub(super) struct TreeSearch<'v, V> {
     pub validator: &'v mut V,
     trees: [Tree; 2],
-    /// True where the first tree is that of the goal.
+    /// True if the first tree is that of the goal.
     is_swapped: bool,
 }
 

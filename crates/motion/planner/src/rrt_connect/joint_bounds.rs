@@ -18,7 +18,7 @@ pub(crate) struct JointBounds {
     upper: Vec<f64>,
     names: Vec<String>,
     prismatic: Vec<bool>,
-    /// True where a full turn of the joint changes no posture.
+    /// True if a full turn of the joint changes no posture.
     repeats: Vec<bool>,
 }
 
@@ -30,11 +30,11 @@ pub(crate) struct JointRange {
     /// Upper limit, or +∞.
     pub upper: f64,
     pub is_prismatic: bool,
-    /// True where a full turn of the joint changes no posture.
+    /// True if a full turn of the joint changes no posture.
     pub repeats: bool,
 }
 
-/// True where what follows a joint turns by whole turns with it.
+/// True if what follows a joint turns by whole turns with it.
 fn repeats(chain: &Chain, index: usize) -> bool {
     let follows = |id: usize| chain.coupling(JointId(id)).filter(|c| c.index == index);
     (0..chain.joints().len())
@@ -94,7 +94,7 @@ impl JointBounds {
         Ok(q)
     }
 
-    /// True where all values are within the limits.
+    /// True if all values are within the limits.
     pub fn contains(&self, q: &[f64]) -> bool {
         q.iter().enumerate().all(|(i, v)| *v >= self.lower[i] && *v <= self.upper[i])
     }

@@ -50,7 +50,7 @@ impl<'s> MotionValidator<'s> {
         }
     }
 
-    /// True where the limit of time or configurations is reached.
+    /// True if the limit of time or configurations is reached.
     pub fn is_exhausted(&self) -> bool {
         self.states_checked >= self.max_states || Instant::now() >= self.deadline
     }
@@ -77,7 +77,7 @@ impl<'s> MotionValidator<'s> {
         self.scene.name(geometry)
     }
 
-    /// False where the scene rejects the values: they count as not free.
+    /// False if the scene rejects the values: they count as not free.
     fn set_robot(&mut self, q: &[f64]) -> bool {
         self.state.set_q(self.scene, self.robot, q).is_ok()
     }
@@ -105,12 +105,12 @@ impl<'s> MotionValidator<'s> {
         found.map_or(0.0, |d| d.metres)
     }
 
-    /// True where the constraint, if any, is satisfied with a margin for a proof.
+    /// True if the constraint, if any, is satisfied with a margin for a proof.
     pub fn satisfies_constraint(&mut self, q: &[f64]) -> bool {
         self.constraint.as_mut().is_none_or(|constraint| constraint.is_free(q))
     }
 
-    /// True where a configuration is free with a margin for a proof.
+    /// True if a configuration is free with a margin for a proof.
     pub fn is_free(&mut self, q: &[f64]) -> bool {
         self.states_checked += 1;
         let margin = self.sweep.clearance_m + self.sweep.tolerance_m;
@@ -162,12 +162,12 @@ impl<'s> MotionValidator<'s> {
         constrained && self.sweep_is_free(a, b)
     }
 
-    /// True where the constraint, if any, is proven to be satisfied on the straight segment from `a` to `b`.
+    /// True if the constraint, if any, is proven to be satisfied on the straight segment from `a` to `b`.
     pub fn constraint_allows(&mut self, a: &[f64], b: &[f64]) -> bool {
         self.constraint.as_mut().is_none_or(|constraint| constraint.proves_motion(a, b))
     }
 
-    /// True where one pair is proven to stay apart while the robot moves straight from a configuration.
+    /// True if one pair is proven to stay apart while the robot moves straight from a configuration.
     pub fn pair_sweep_is_free(
         &mut self,
         a: GeometryId,
@@ -181,7 +181,7 @@ impl<'s> MotionValidator<'s> {
             && matches!(pair.sweep(&self.state, &[to], options), Ok(None))
     }
 
-    /// True where the scene has more than its robot.
+    /// True if the scene has more than its robot.
     pub fn has_other_robots(&self) -> bool {
         self.scene.robots().len() > 1
     }

@@ -38,7 +38,7 @@ pub trait PathConstraint: Debug {
         None
     }
 
-    /// Moves a configuration by little to one that satisfies the constraint; leaves it where it does. False where that fails.
+    /// Moves a configuration by little to one that satisfies the constraint; leaves it where it does. False if that fails.
     fn project(&mut self, q: &mut [f64]) -> bool {
         let _ = q;
         true
@@ -125,7 +125,7 @@ impl<'c> ConstraintChecker<'c> {
         self.constraint.project(q)
     }
 
-    /// True where the margin of paths is kept, with the margin of a proof.
+    /// True if the margin of paths is kept, with the margin of a proof.
     pub fn is_free(&mut self, q: &[f64]) -> bool {
         self.constraint.margin_m(q, TOLERANCE_M) > TOLERANCE_M
     }

@@ -285,7 +285,7 @@ impl<'s> RrtConnect<'s> {
         self.clearance_exits(ends, random, settings)
     }
 
-    /// True where the scene has more than its robot.
+    /// True if the scene has more than its robot.
     pub(crate) fn has_other_robots(&self) -> bool {
         self.validator.has_other_robots()
     }

@@ -60,7 +60,7 @@ pub fn random_configuration(grid: &Grid, cell: CellIndex, random: &mut Random) -
     })
 }
 
-/// True where two cells are connected through free cells with common faces.
+/// True if two cells are connected through free cells with common faces.
 pub fn connected(occupancy: &OccupancyBitmap, from: CellIndex, to: CellIndex) -> bool {
     let shape = occupancy.shape();
     let index = |c: CellIndex| (usize::from(c[0]) * shape[1] + usize::from(c[1])) * shape[2] + usize::from(c[2]);

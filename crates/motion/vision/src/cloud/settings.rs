@@ -98,7 +98,7 @@ impl CloudTrackerSettings {
         Ok(())
     }
 
-    /// True where a point (world) is above the floor, below the ceiling and over the monitored area.
+    /// True if a point (world) is above the floor, below the ceiling and over the monitored area.
     pub(super) fn is_watched(&self, p: Vec3) -> bool {
         let heights = self.floor_z_m + self.floor_thickness_m..=self.floor_z_m + self.ceiling_m;
         heights.contains(&p.z) && (self.area_m.is_empty() || polygon::contains(&self.area_m, Point2::new(p.x, p.y)))

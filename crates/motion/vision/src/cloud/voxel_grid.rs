@@ -35,7 +35,7 @@ impl VoxelGrid {
         }
     }
 
-    /// Counts a point; false where it is outside the range of the indices (30 km at 3 cm).
+    /// Counts a point; false if it is outside the range of the indices (30 km at 3 cm).
     pub(super) fn add(&mut self, p: Vec3, voxel_m: f64) -> bool {
         let Some(key) = key(p, voxel_m) else { return false };
         let at = p.to_array().map(|x| x as f32);
@@ -67,7 +67,7 @@ impl VoxelGrid {
         }
     }
 
-    /// True where the voxel of a point contains points.
+    /// True if the voxel of a point contains points.
     pub(super) fn contains(&self, p: Vec3, voxel_m: f64) -> bool {
         !self.list.is_empty() && key(p, voxel_m).is_some_and(|key| self.table[self.slot(key)] != 0)
     }

@@ -19,7 +19,7 @@ type Result<T> = std::result::Result<T, FormatError>;
 /// A robot whose joint values a file gives.
 #[derive(Debug, Clone, Copy)]
 pub struct JointStateRobot<'a> {
-    /// The prefix of its columns; empty where there is only one robot without a name.
+    /// The prefix of its columns; empty if there is only one robot without a name.
     pub name: &'a str,
     /// Its joints.
     pub chain: &'a Chain,

@@ -103,7 +103,7 @@ impl<'a> Field<'a> {
         self.value.as_str().ok_or_else(|| self.error(format!("is {}", kind(self.value)), "a text: \"…\""))
     }
 
-    /// The text of a field of an object; empty where it is missing.
+    /// The text of a field of an object; empty if it is missing.
     pub(crate) fn text_of(&self, key: &str) -> Result<&'a str, FormatError> {
         self.get(key)?.map_or(Ok(""), |field| field.text())
     }

@@ -38,7 +38,7 @@ pub(crate) fn point(field: &Field<'_>) -> Result<Vec3, FormatError> {
     }
 }
 
-/// True where squares of the coordinates stay finite.
+/// True if squares of the coordinates stay finite.
 pub(crate) fn is_position(point: Vec3) -> bool {
     point.abs().max_element() <= MAX_COORDINATE_M
 }
@@ -66,7 +66,7 @@ pub(crate) fn fixed_frames(scene: &Field<'_>) -> Result<Vec<FixedFrame>, FormatE
     scene.list("fixed_frame_transforms")?.iter().map(frame).collect()
 }
 
-/// The frame in the header of a message; empty where it has none.
+/// The frame in the header of a message; empty if it has none.
 pub(crate) fn frame_id(field: &Field<'_>) -> Result<String, FormatError> {
     let id = field.get("header")?.map_or(Ok(""), |header| header.text_of("frame_id"))?;
     Ok(id.strip_prefix('/').unwrap_or(id).to_owned())

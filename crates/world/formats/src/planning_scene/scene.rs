@@ -12,7 +12,7 @@ use crate::moveit_msgs::types::{AllowedCollisions, AttachedObject, CollisionObje
 pub struct PlanningScene {
     /// The file, for messages.
     pub file: PathBuf,
-    /// Its name; empty where it has none.
+    /// Its name; empty if it has none.
     pub name: String,
     /// Objects of the world; no name twice.
     pub objects: Vec<CollisionObject>,

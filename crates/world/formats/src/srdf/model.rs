@@ -82,7 +82,7 @@ pub struct DisabledPair {
     pub link1: String,
     /// The second link.
     pub link2: String,
-    /// The reason as written; empty where none is stated.
+    /// The reason as written; empty if none is stated.
     pub reason: String,
     /// Its line in the file; 0 for one that is written.
     pub line: usize,

@@ -39,7 +39,7 @@ struct LinkSize {
     link: LinkId,
     /// Largest edge of the box around its solids, m.
     extent_m: f64,
-    /// True where a joint moves the link.
+    /// True if a joint moves the link.
     is_moved: bool,
 }
 
@@ -99,12 +99,12 @@ impl<'r> Sizes<'r> {
         self.moved().filter(|e| *e <= LARGE_IN_ARM * self.arm).collect()
     }
 
-    /// True where links are as long as the distances between joints. Those of a gantry are as long as its strokes.
+    /// True if links are as long as the distances between joints. Those of a gantry are as long as its strokes.
     fn is_arm(&self) -> bool {
         self.arm > 0.0 && self.arm.is_finite() && self.reference <= 3.0 * self.arm && self.moved().count() >= ARM
     }
 
-    /// True where the moved links are those of an arm, except for some that are far too large.
+    /// True if the moved links are those of an arm, except for some that are far too large.
     fn is_arm_with_outliers(&self) -> bool {
         let (ordinary, moved) = (self.ordinary(), self.moved().count());
         self.is_arm() && 2 * ordinary.len() >= moved && factor::nearest(self.times(&ordinary, moved)).is_none()

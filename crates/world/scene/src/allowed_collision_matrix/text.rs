@@ -121,7 +121,7 @@ fn apply(entry: &mut PairEntry, row: EntryRow) -> Result<(), MatrixError> {
     Ok(())
 }
 
-/// True where the model allows the state and the reason of the text.
+/// True if the model allows the state and the reason of the text.
 fn agrees(model: &PairEntry, state: PairState, reason: &Reason, margin_m: f64) -> bool {
     let tested = state == PairState::Tested;
     let free = matches!(model.reason, Reason::Default | Reason::OutOfReach { .. });

@@ -131,7 +131,7 @@ impl<'s> CheckerCore<'s> {
         (!out).then_some(ApproachBound { metres: metres.max(proven), ..bound })
     }
 
-    /// True where a pair is neither near nor soon to meet.
+    /// True if a pair is neither near nor soon to meet.
     fn out_of_range(&mut self, bound: &ApproachBound, level: Level, limits: &ApproachLimits) -> bool {
         let policy = limits.policy;
         let out = bound.lower_bound > nan_is_infinite(policy.within_m) && bound.earliest_s >= policy.exact_s;
@@ -158,7 +158,7 @@ impl ApproachBound {
     }
 }
 
-/// True where the policy allows to stay at this level of detail.
+/// True if the policy allows to stay at this level of detail.
 fn suffices(bound: &ApproachBound, policy: &LevelOfDetail) -> bool {
     bound.lower_bound > policy.exact_m && bound.earliest_s >= policy.exact_s
 }

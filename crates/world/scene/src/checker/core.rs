@@ -77,7 +77,7 @@ impl<'s> CheckerCore<'s> {
         if holds { pair.proven_least_m } else { 0.0 }
     }
 
-    /// True where coarse models prove a pair farther apart than `limit` metres, at [`Level::Auto`].
+    /// True if coarse models prove a pair farther apart than `limit` metres, at [`Level::Auto`].
     pub fn cleared_coarsely(&mut self, [a, b]: &[PlacedModel<'s>; 2], limit: f64) -> bool {
         if self.options.level == Level::Auto
             && self.options.uses_boxes()

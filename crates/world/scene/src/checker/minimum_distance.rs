@@ -40,12 +40,12 @@ impl CheckerCore<'_> {
         best
     }
 
-    /// True where a pair at least so far apart cannot be the nearest.
+    /// True if a pair at least so far apart cannot be the nearest.
     pub(super) fn exceeds_best(&self, metres: f64, best: Option<&PairDistance>) -> bool {
         metres > self.upper_bound || best.is_some_and(|b| metres >= b.metres)
     }
 
-    /// Tightens the upper bound by that of one pair; false where it has none that is cheap.
+    /// Tightens the upper bound by that of one pair; false if it has none that is cheap.
     fn tighten_upper_bound(&mut self, list: &mut PairList, index: usize, state: &SceneState) -> bool {
         if !matches!(self.options.level, Level::Auto | Level::L3) {
             return false;

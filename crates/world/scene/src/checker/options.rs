@@ -34,7 +34,7 @@ impl CheckerOptions {
         }
     }
 
-    /// True where the boxes of a pair may decide that it is clear: the answer is the same.
+    /// True if the boxes of a pair may decide that it is clear: the answer is the same.
     pub(crate) fn uses_boxes(self) -> bool {
         match self.level {
             Level::Auto => self.start <= Level::L2,
@@ -44,7 +44,7 @@ impl CheckerOptions {
         }
     }
 
-    /// True where the boxes around whole robots may decide that all their pairs are clear.
+    /// True if the boxes around whole robots may decide that all their pairs are clear.
     pub(crate) fn uses_robot_boxes(self) -> bool {
         match self.level {
             Level::Auto => self.start <= Level::L1,

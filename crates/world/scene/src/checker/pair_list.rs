@@ -41,7 +41,7 @@ pub(crate) struct PackedPair {
     pub b: u32,
     /// Metres, rounded up.
     pub margin: f32,
-    /// True where there is a proof of the least distance.
+    /// True if there is a proof of the least distance.
     pub proven: bool,
 }
 

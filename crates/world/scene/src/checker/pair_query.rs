@@ -39,7 +39,7 @@ impl<'s> PairQuery<'_, 's> {
         self.updated(state).1.pairs.len()
     }
 
-    /// True where there is no pair.
+    /// True if there is no pair.
     pub fn is_empty(&mut self, state: &SceneState) -> bool {
         self.len(state) == 0
     }

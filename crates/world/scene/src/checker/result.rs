@@ -63,7 +63,7 @@ pub struct CollisionPoint {
     pub other_normal: Vec3,
     /// The level of detail of the answer: only [`Detail::Exact`] is certain.
     pub detail: Detail,
-    /// False where the surfaces (or boxes) do not touch, but are not farther apart than the pair's margin.
+    /// False if the surfaces (or boxes) do not touch, but are not farther apart than the pair's margin.
     pub touching: bool,
 }
 

@@ -60,7 +60,7 @@ pub struct MovedObject<'m> {
     pub object: ObjectId,
     /// Its path; `t = 1` is now.
     pub path: &'m dyn RigidMotion,
-    /// True where the object jumps to the path without motion in between (a conveyor that begins again): only its present pose
+    /// True if the object jumps to the path without motion in between (a conveyor that begins again): only its present pose
     /// is tested.
     pub jumps: bool,
 }
@@ -181,7 +181,7 @@ impl<'a> FirstContacts<'a> {
         self.pairs.len()
     }
 
-    /// True where there is no pair.
+    /// True if there is no pair.
     pub fn is_empty(&self) -> bool {
         self.pairs.is_empty()
     }
@@ -291,12 +291,12 @@ impl TrackedPair {
         self.measured(now.states, gap);
     }
 
-    /// True where a resting pair is deeper in contact than is permitted.
+    /// True if a resting pair is deeper in contact than is permitted.
     fn is_too_deep(&self, now: &PlacedGeometry<'_, '_>) -> bool {
         self.allowed_depth.is_some_and(|allowed| !(now.depth(self.a, self.b) <= allowed))
     }
 
-    /// True where the contact is that of a part with what it is set down on; the pair rests from then on.
+    /// True if the contact is that of a part with what it is set down on; the pair rests from then on.
     fn is_set_down(&mut self, held: &[Option<HeldObject>], now: &PlacedGeometry<'_, '_>) -> bool {
         let (GeometryId::Object(a), GeometryId::Object(b)) = (self.a, self.b) else { return false };
         let is_set_down = [a, b].iter().any(|o| held[o.0].as_ref().is_some_and(|h| h.set_down));

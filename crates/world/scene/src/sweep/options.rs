@@ -44,13 +44,13 @@ pub struct SweepHit {
     pub level: Level,
     /// Number of distances measured, over all pairs and times.
     pub steps: u32,
-    /// False where the proof ended here without a contact: steps used up, a number that is not finite, an infinite speed bound.
+    /// False if the proof ended here without a contact: steps used up, a number that is not finite, an infinite speed bound.
     /// The motion is free before `time` and unknown after, and unknown is not free.
     pub certain: bool,
 }
 
 impl SweepHit {
-    /// True where the pair was too near from the start.
+    /// True if the pair was too near from the start.
     pub fn at_start(&self) -> bool {
         self.time == 0.0
     }

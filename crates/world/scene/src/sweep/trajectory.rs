@@ -25,7 +25,7 @@ pub(super) struct SweepTrajectory {
     bounds: Vec<SpeedBound>,
     /// Per model: sum of the lengths that its pose is computed from, metres.
     sizes: Vec<f64>,
-    /// True where the velocities of the links are those of the time set last.
+    /// True if the velocities of the links are those of the time set last.
     velocities_known: bool,
     now: f64,
 }
@@ -36,7 +36,7 @@ struct JointSegment {
     moves: bool,
     from: Vec<f64>,
     rate: Vec<f64>,
-    /// True where both ends are within the joint limits.
+    /// True if both ends are within the joint limits.
     within_limits: bool,
 }
 
@@ -203,7 +203,7 @@ impl SweepTrajectory {
         64.0 * f64::EPSILON * (self.sizes[a] + self.sizes[b])
     }
 
-    /// True where the out-of-reach proofs of the scene hold throughout the motion.
+    /// True if the out-of-reach proofs of the scene hold throughout the motion.
     pub fn proofs_hold(&self, id: GeometryId) -> bool {
         match id {
             GeometryId::Link { robot, .. } => self.segments[robot.0].within_limits,
@@ -211,7 +211,7 @@ impl SweepTrajectory {
         }
     }
 
-    /// True where the object moves on a path of its own.
+    /// True if the object moves on a path of its own.
     pub fn is_free(&self, object: ObjectId) -> bool {
         self.free_objects[object.0].is_some()
     }

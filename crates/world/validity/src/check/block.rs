@@ -13,7 +13,7 @@ use crate::obstacles::{BroadPhase, ObstacleSet, RoundedSolid};
 /// What a block is tested for.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct BlockRequest {
-    /// True where neighbouring lanes are configurations on one straight segment, and the motion between them counts, too.
+    /// True if neighbouring lanes are configurations on one straight segment, and the motion between them counts, too.
     pub chords: bool,
     /// One bit per lane that counts.
     pub active: u32,
@@ -29,7 +29,7 @@ pub(crate) struct BlockResult {
 }
 
 impl BlockResult {
-    /// True where all that counts is proven free.
+    /// True if all that counts is proven free.
     pub fn is_free(self) -> bool {
         self.touching == 0 && self.unproven == 0
     }
@@ -51,7 +51,7 @@ pub(crate) struct BlockModel<'m> {
     pub obstacles: &'m ObstacleSet,
     pub tree: &'m BroadPhase,
     pub motion: &'m MotionTable,
-    /// Per body and obstacle, true where the pair is not checked; empty where every pair is.
+    /// Per body and obstacle, true if the pair is not checked; empty if every pair is.
     pub skipped: &'m [bool],
 }
 
@@ -168,7 +168,7 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         self.workspace.node_obstacles = open;
     }
 
-    /// The roots of all links. True where a sphere touches.
+    /// The roots of all links. True if a sphere touches.
     #[inline(always)]
     fn any_root_touches(&mut self, open: &mut Vec<NodeObstacle>) -> bool {
         let robot = self.model.robot;
@@ -186,7 +186,7 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         false
     }
 
-    /// The children of a node. True where a sphere touches.
+    /// The children of a node. True if a sphere touches.
     #[inline(always)]
     fn any_child_touches(&mut self, parent: NodeObstacle, open: &mut Vec<NodeObstacle>) -> bool {
         let robot = self.model.robot;
@@ -201,7 +201,7 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         false
     }
 
-    /// The broad phase of a node, and the node against what is found. True where a sphere touches.
+    /// The broad phase of a node, and the node against what is found. True if a sphere touches.
     #[inline(always)]
     fn root_touches(&mut self, body: usize, root: u32, open: &mut Vec<NodeObstacle>) -> bool {
         let node = &self.model.robot.nodes[root as usize];
@@ -225,7 +225,7 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         is_touching
     }
 
-    /// A node against an obstacle. True where a sphere touches; the node is listed in `open` where its children decide.
+    /// A node against an obstacle. True if a sphere touches; the node is listed in `open` where its children decide.
     #[inline(always)]
     fn node_touches(&mut self, pair: NodeObstacle, open: &mut Vec<NodeObstacle>) -> bool {
         let (simd, robot) = (self.simd, self.model.robot);
@@ -437,7 +437,7 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         }
     }
 
-    /// Descends in the trees of two links. True where they are not proven apart.
+    /// Descends in the trees of two links. True if they are not proven apart.
     #[inline(always)]
     fn bodies_near(&mut self, index: usize, pair: &LinkPair, more_m: f32) -> bool {
         let (simd, robot) = (self.simd, self.model.robot);

@@ -53,7 +53,7 @@ pub struct ValidityChecker<'m> {
     obstacles: &'m ObstacleSet,
     outer: BroadPhase,
     inner: BroadPhase,
-    /// Per body and obstacle, true where the pair is not checked; empty where all are.
+    /// Per body and obstacle, true if the pair is not checked; empty if all are.
     skipped: Vec<bool>,
     motion: MotionTable,
     pub(super) workspace: Workspace,
@@ -146,7 +146,7 @@ impl<'m> ValidityChecker<'m> {
         Ok(())
     }
 
-    /// True where the straight segment in joint space between two configurations is proven free. False proves nothing.
+    /// True if the straight segment in joint space between two configurations is proven free. False proves nothing.
     ///
     /// # Errors
     /// Too few or too many values. Values that are NaN or infinite are not free.
@@ -156,7 +156,7 @@ impl<'m> ValidityChecker<'m> {
         Ok(self.segment(from, to))
     }
 
-    /// The pairs that are not proven apart on a segment, each once; empty where it is proven free. The answer is complete: the
+    /// The pairs that are not proven apart on a segment, each once; empty if it is proven free. The answer is complete: the
     /// segment is free where these pairs are.
     ///
     /// # Errors

@@ -24,7 +24,7 @@ struct Group {
 }
 
 impl Group {
-    /// True where one joint alone moves the pairs.
+    /// True if one joint alone moves the pairs.
     fn is_single(&self) -> bool {
         self.steps[0] == self.steps[1]
     }
@@ -178,7 +178,7 @@ impl<'r> Prober<'r> {
     }
 }
 
-/// True where some value within the joint's limits is in the cell or near it.
+/// True if some value within the joint's limits is in the cell or near it.
 fn is_reachable(robot: &CoveredRobot, step: usize, cell: usize, per_turn: usize) -> bool {
     let step = &robot.chain.steps[step];
     let width = step.upper - step.lower;

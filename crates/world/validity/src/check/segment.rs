@@ -37,7 +37,7 @@ pub(crate) struct Stretch<'q> {
 }
 
 impl Workspace {
-    /// Prepares a block of evenly spaced configurations of a stretch. False where values change too much or no bounds hold for
+    /// Prepares a block of evenly spaced configurations of a stretch. False if values change too much or no bounds hold for
     /// them.
     pub fn set_stretch(&mut self, robot: &CoveredRobot, stretch: &Stretch) -> bool {
         let mut is_valid = true;
@@ -99,7 +99,7 @@ impl Workspace {
         (half_chord, (sag * ROUNDED_UP - common).max(0.0))
     }
 
-    /// Sets the joint values of one lane. False where no bounds hold for them.
+    /// Sets the joint values of one lane. False if no bounds hold for them.
     pub fn set_lane(&mut self, robot: &CoveredRobot, lane: usize, q: &[f64]) -> bool {
         let mut is_valid = true;
         for (i, step) in robot.chain.steps.iter().enumerate() {
@@ -111,7 +111,7 @@ impl Workspace {
     }
 }
 
-/// The value of a joint in single precision, an angle less whole turns; false where no bounds hold for it.
+/// The value of a joint in single precision, an angle less whole turns; false if no bounds hold for it.
 #[inline(always)]
 pub(crate) fn joint_value(step: &JointStep, q: &[f64]) -> (f32, bool) {
     let value = step.multiplier * q[step.index] + step.offset;

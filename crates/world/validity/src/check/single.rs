@@ -22,7 +22,7 @@ pub(crate) struct SingleKernel<'k, 'm, S: Simd> {
     pub inner: &'m BroadPhase,
     pub matrix: &'m LinkMatrix,
     pub workspace: &'k mut SingleWorkspace,
-    /// True where spheres touch and no collision is proven so far.
+    /// True if spheres touch and no collision is proven so far.
     pub is_touching: bool,
 }
 
@@ -45,7 +45,7 @@ impl<S: Simd> SingleKernel<'_, '_, S> {
         }
     }
 
-    /// True where a collision with an obstacle is proven.
+    /// True if a collision with an obstacle is proven.
     #[inline(always)]
     fn obstacles_hit(&mut self) -> bool {
         self.workspace.place_roots(self.simd, &self.model.robot.packs);
@@ -104,7 +104,7 @@ impl<S: Simd> SingleKernel<'_, '_, S> {
         false
     }
 
-    /// A node of the broad phase against a solid. True where a collision is proven.
+    /// A node of the broad phase against a solid. True if a collision is proven.
     #[inline(always)]
     fn solid_hit(&mut self, root: &RootSphere, solid: usize) -> bool {
         let (skipped, obstacles) = (self.model.skipped, self.model.obstacles);
@@ -124,7 +124,7 @@ impl<S: Simd> SingleKernel<'_, '_, S> {
         is_hit
     }
 
-    /// True where a leaf below touches a solid.
+    /// True if a leaf below touches a solid.
     #[inline(always)]
     fn touches(&mut self, pack: u32, solid: &RoundedSolid) -> bool {
         let (simd, packs) = (self.simd, &self.model.robot.packs.packs);
@@ -151,7 +151,7 @@ impl<S: Simd> SingleKernel<'_, '_, S> {
         is_touching
     }
 
-    /// True where an inner sphere of a body overlaps a solid that lies in an obstacle.
+    /// True if an inner sphere of a body overlaps a solid that lies in an obstacle.
     #[inline(always)]
     fn is_proven_hit(&mut self, body: usize, obstacle: u32) -> bool {
         let (simd, robot, obstacles) = (self.simd, self.model.robot, self.model.obstacles);
@@ -178,7 +178,7 @@ impl<S: Simd> SingleKernel<'_, '_, S> {
         is_hit
     }
 
-    /// True where a vector is certainly shorter than the radius of its sphere and another one. NaN is not.
+    /// True if a vector is certainly shorter than the radius of its sphere and another one. NaN is not.
     #[inline(always)]
     fn shorter(&self, vector: V3<S>, pack: &SpherePack, radius: f32) -> bool {
         let simd = self.simd;
@@ -187,7 +187,7 @@ impl<S: Simd> SingleKernel<'_, '_, S> {
         is_shorter.to_bitmask() as u32 & pack.used != 0
     }
 
-    /// True where a collision of two links is proven.
+    /// True if a collision of two links is proven.
     #[inline(always)]
     fn links_hit(&mut self) -> bool {
         let (simd, robot) = (self.simd, self.model.robot);
@@ -217,7 +217,7 @@ impl<S: Simd> SingleKernel<'_, '_, S> {
         false
     }
 
-    /// True where a collision of a pair is proven. `links` are its links, the one with the sphere first.
+    /// True if a collision of a pair is proven. `links` are its links, the one with the sphere first.
     #[inline(always)]
     fn pair_hit(&mut self, root: &RootSphere, pair: &LinkPair, links: [usize; 2]) -> bool {
         let centre = self.workspace.link_centre(links[0]);
@@ -231,7 +231,7 @@ impl<S: Simd> SingleKernel<'_, '_, S> {
         self.are_inside(links)
     }
 
-    /// Descends from a sphere of one tree and a pack of the other. True where two leaves are nearer than a margin.
+    /// Descends from a sphere of one tree and a pack of the other. True if two leaves are nearer than a margin.
     #[inline(always)]
     fn trees_touch(&mut self, sphere: WorldSphere, pack: u32, margin_m: f32) -> bool {
         let (simd, packs) = (self.simd, &self.model.robot.packs.packs);
@@ -268,7 +268,7 @@ impl<S: Simd> SingleKernel<'_, '_, S> {
         is_touching
     }
 
-    /// True where inner spheres of two links overlap.
+    /// True if inner spheres of two links overlap.
     #[inline(always)]
     fn are_inside(&mut self, links: [usize; 2]) -> bool {
         let (simd, packs) = (self.simd, &self.model.robot.packs);

@@ -88,7 +88,7 @@ pub(crate) struct SingleWorkspace {
     pub root_radii: Vec<Row>,
     /// Centres of the links' bounding spheres.
     pub links: Vec<PointRow>,
-    /// Per pair of links, true where a table says that they are apart.
+    /// Per pair of links, true if a table says that they are apart.
     pub is_excluded: Vec<bool>,
     /// Per step, its cell in the tables.
     cells: Vec<[i32; LANES]>,
@@ -134,7 +134,7 @@ impl SingleWorkspace {
         }
     }
 
-    /// Sets the values of the joints and forgets the last configuration. False where no bounds hold for the values.
+    /// Sets the values of the joints and forgets the last configuration. False if no bounds hold for the values.
     #[inline(always)]
     pub fn begin(&mut self, robot: &CoveredRobot, q: &[f64]) -> bool {
         if self.stamp == u32::MAX {

@@ -37,7 +37,7 @@ pub(crate) struct Workspace {
     pub turned: Vec<f32>,
     /// Per step, how much its joint changes between lanes, rad or m.
     pub deltas: Vec<f32>,
-    /// Per pair of links, true where it must be checked in this block.
+    /// Per pair of links, true if it must be checked in this block.
     pub near_pairs: Vec<bool>,
     /// Packs still to visit.
     pub open: Vec<(u32, u32)>,

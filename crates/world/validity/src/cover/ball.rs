@@ -15,7 +15,7 @@ pub struct Ball {
 pub(crate) const ROUNDING_M: f64 = 1e-9;
 
 impl Ball {
-    /// True where the point lies in the ball.
+    /// True if the point lies in the ball.
     pub fn contains(&self, p: Vec3) -> bool {
         self.centre.distance(p) <= self.radius
     }
@@ -25,7 +25,7 @@ impl Ball {
         enclosing(balls)
     }
 
-    /// True where the ball contains an axis-aligned box, with room for rounding errors.
+    /// True if the ball contains an axis-aligned box, with room for rounding errors.
     pub(crate) fn contains_box(&self, centre: Vec3, half: Vec3) -> bool {
         farthest_squared(self.centre, centre, half) <= (self.radius - ROUNDING_M).powi(2) && self.radius > ROUNDING_M
     }

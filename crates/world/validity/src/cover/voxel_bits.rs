@@ -48,7 +48,7 @@ impl VoxelBits {
         })
     }
 
-    /// True where some voxel of a cube is in the set. The cube may reach beyond the grid.
+    /// True if some voxel of a cube is in the set. The cube may reach beyond the grid.
     pub fn any_in_cube(&self, [x, y, z]: [usize; 3], size: usize) -> bool {
         let end = |axis: usize, from: usize| (from + size).min(self.counts[axis]);
         let (first, last) = (x / WORD, (end(0, x).max(1) - 1) / WORD);
@@ -119,7 +119,7 @@ impl VoxelBits {
         }
     }
 
-    /// Takes what was reached in a row to the row beside it; true where that is new there.
+    /// Takes what was reached in a row to the row beside it; true if that is new there.
     fn step_to_row(&self, reached: &mut Self, row: usize, other: usize) -> bool {
         let mut is_new = false;
         for i in 0..self.row_words {

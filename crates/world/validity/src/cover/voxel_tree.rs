@@ -59,7 +59,7 @@ impl VoxelTree {
     }
 }
 
-/// True where a ball contains what lies in a voxel, with room for rounding errors.
+/// True if a ball contains what lies in a voxel, with room for rounding errors.
 pub(super) fn contains_all(ball: &Ball, surface: &SurfaceVoxels, voxel: usize) -> bool {
     let square = (ball.radius - ROUNDING_M).powi(2);
     ball.radius > ROUNDING_M && surface.points(voxel).iter().all(|&p| (p - ball.centre).length_squared() <= square)

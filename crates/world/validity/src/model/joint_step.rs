@@ -100,7 +100,7 @@ pub(crate) struct LinkFrame {
     pub in_frame: Pose,
 }
 
-/// True where the kind has a step of its own.
+/// True if the kind has a step of its own.
 pub(crate) fn moves(kind: JointKind) -> bool {
     kind != JointKind::Fixed
 }

@@ -46,7 +46,7 @@ impl Simplex {
         (0..self.len).fold(Vec3::ZERO, |sum, i| sum + of(&self.vertices[i]) * self.weights[i])
     }
 
-    /// Keeps the smallest face that contains the point nearest to the origin. False where a tetrahedron contains the origin;
+    /// Keeps the smallest face that contains the point nearest to the origin. False if a tetrahedron contains the origin;
     /// where the origin is known to be `apart`, all faces are tested instead of relying on the signs of flat tetrahedra.
     pub fn reduce(&mut self, apart: bool) -> bool {
         let best = match self.len {
@@ -67,7 +67,7 @@ impl Simplex {
         true
     }
 
-    /// Sets the weights to the barycentric coordinates of the origin in a tetrahedron; false where it is flat.
+    /// Sets the weights to the barycentric coordinates of the origin in a tetrahedron; false if it is flat.
     pub fn set_weights_of_origin(&mut self) -> bool {
         let [a, b, c, d] = self.vertices.map(|v| v.w);
         let product = |p: Vec3, q: Vec3, r: Vec3| p.dot(q.cross(r));

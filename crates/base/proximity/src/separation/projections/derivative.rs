@@ -25,7 +25,7 @@ fn free(inside: bool) -> f64 {
 }
 
 impl Core<'_> {
-    /// True where [`Core::project`] is a closed form.
+    /// True if [`Core::project`] is a closed form.
     #[inline]
     pub fn has_closed_projection(&self) -> bool {
         !matches!(self, Self::Points(_) | Self::Hull(_))

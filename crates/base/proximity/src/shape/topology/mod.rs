@@ -78,10 +78,10 @@ impl Surface {
 }
 
 struct EdgeReport {
-    /// Per component: true where some edge is used by an odd number of triangles, or where no triangle has three different
+    /// Per component: true if some edge is used by an odd number of triangles, or where no triangle has three different
     /// corners. A component whose edges are used two or four times still has an interior.
     open: Vec<bool>,
-    /// Per component: true where some edge is not used in both directions equally often.
+    /// Per component: true if some edge is not used in both directions equally often.
     unoriented: Vec<bool>,
     /// Edges used by an odd number of triangles.
     odd: usize,
@@ -150,7 +150,7 @@ fn representatives(vertices: &[Vec3], faces: &[[u32; 3]], component_of: &[u32]) 
     found
 }
 
-/// True where the height of the triangle over its longest edge is below rounding.
+/// True if the height of the triangle over its longest edge is below rounding.
 pub(crate) fn is_degenerate([a, b, c]: [Vec3; 3]) -> bool {
     let longest2 = (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared());
     let area2 = (b - a).cross(c - a).length_squared();

@@ -390,7 +390,7 @@ impl ProtocolModel {
         Ok(())
     }
 
-    /// True where the arbiter reports robots that wait for each other in a cycle.
+    /// True if the arbiter reports robots that wait for each other in a cycle.
     pub(super) fn reports_cycle(&self, state: &ModelState) -> bool {
         self.restore(state);
         (0..self.robots()).any(|r| !self.arbiter.wait_cycle(RobotSlot(r), NOW_S).is_empty())

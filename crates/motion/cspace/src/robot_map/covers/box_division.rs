@@ -78,7 +78,7 @@ impl<'a> BoxDivision<'a> {
         }
     }
 
-    /// True where a cell, by its number on each axis, is not proven free.
+    /// True if a cell, by its number on each axis, is not proven free.
     pub fn may_touch(&mut self, cell: [usize; 3]) -> bool {
         let (lane, others) = (cell[self.roles.lanes], self.roles.others.map(|axis| cell[axis]));
         (0..self.classes.len()).any(|number| {

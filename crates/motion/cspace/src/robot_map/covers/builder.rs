@@ -145,7 +145,7 @@ impl CoverMapBuilder {
         &self.grid
     }
 
-    /// True where the robot is an arm in a plane with round links: convex obstacles then take hundredths of a millisecond, as
+    /// True if the robot is an arm in a plane with round links: convex obstacles then take hundredths of a millisecond, as
     /// with a [`PlanarMapBuilder`](crate::PlanarMapBuilder).
     pub fn is_planar(&self) -> bool {
         self.planar.is_some()

@@ -12,7 +12,7 @@ impl BandedMatrix {
         self.rows.resize(order, [0.0; 3]);
     }
 
-    /// Solves for a right-hand side in place by `LDLᵀ`, which overwrites the matrix. False where it is not positive
+    /// Solves for a right-hand side in place by `LDLᵀ`, which overwrites the matrix. False if it is not positive
     /// definite.
     pub fn solve(&mut self, x: &mut [f64]) -> bool {
         let rows = &mut self.rows;
