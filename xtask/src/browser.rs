@@ -17,7 +17,7 @@ pub fn find(root: &Path) -> Option<PathBuf> {
 /// The browser, from Debian where there is none.
 ///
 /// # Errors
-/// Where it cannot be had; the message says what to do.
+/// If it cannot be had; the message says what to do.
 pub fn install(root: &Path) -> Result<PathBuf, String> {
     if let Some(browser) = find(root) {
         println!("the browser is {}", browser.display());

@@ -11,7 +11,7 @@ pub const GROUPS: [(&str, &[&str]); 7] = [
     ("guard", &["interlock", "monitor"]),
     ("motion", &["cspace", "planner", "avoidance", "shared_control", "cooperation", "vision", "perception"]),
     ("cell", &["cell", "analysis", "sim", "report"]),
-    ("connect", &["status", "ros2", "rosbag", "view", "live"]),
+    ("connect", &["status", "ros2", "recording", "view", "live"]),
     ("front", &["elbowroom", "cli", "python"]),
 ];
 

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-/// The last core this process may run on: the first is where interrupts go. `None` where the system does not say.
+/// The last core this process may run on: the first is where interrupts go. `None` if the system does not say.
 pub fn core() -> Option<usize> {
     let status = fs::read_to_string("/proc/self/status").ok()?;
     last_of(status.lines().find_map(|line| line.strip_prefix("Cpus_allowed_list:"))?)

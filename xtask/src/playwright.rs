@@ -16,10 +16,10 @@ pub fn ready(root: &Path) -> Option<PathBuf> {
     shell::succeeds(root, &python.to_string_lossy(), &["-c", PROBE]).then_some(python)
 }
 
-/// The Python that has it, from PyPI where it is not there.
+/// The Python that has it, from PyPI if it is not there.
 ///
 /// # Errors
-/// Where it cannot be had; the message says what to do.
+/// If it cannot be had; the message says what to do.
 pub fn install(root: &Path) -> Result<PathBuf, String> {
     if let Some(python) = ready(root) {
         println!("{FOLDER} has {PACKAGE}");

@@ -47,7 +47,7 @@ pub fn cargo_status(root: &Path, args: &[&str]) -> Result<i32, String> {
     wait(root, &cargo, args, &[])
 }
 
-/// Prints and runs; gives the exit status, -1 where a signal ended the program.
+/// Prints and runs; gives the exit status, -1 if a signal ended the program.
 ///
 /// # Errors
 /// Where the program does not start.

@@ -61,7 +61,7 @@ pub fn run(root: &Path, words: &[&str]) -> Result<(), Failure> {
     }
 }
 
-/// A Python with Pinocchio and Coal; installed where it is not there.
+/// A Python with Pinocchio and Coal; installed if it is not there.
 pub fn interpreter(root: &Path) -> Result<PathBuf, String> {
     if let Some(named) = std::env::var_os("ELBOWROOM_PYTHON") {
         return Ok(named.into());

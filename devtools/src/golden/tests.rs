@@ -2,10 +2,9 @@
 
 use elbowroom_cell::QueryModel;
 
-use super::overrides;
+use super::overrides::{self, KINDS};
 use super::queries;
 use crate::cross_validation::world::{self, Files};
-use crate::fuzz_cells::generate::Kind;
 
 #[test]
 fn hashes_of_queries_repeat_and_depend_on_each_state() {
@@ -29,7 +28,7 @@ fn hashes_of_overrides_do_not_depend_on_the_number_of_threads() {
         pool.install(|| overrides::groups(&root, None, cells).unwrap())
     };
     // One of each kind.
-    let kinds = Kind::ALL.len();
+    let kinds = KINDS.len();
     let once = groups(kinds, 1);
     assert_eq!(groups(kinds, 2), once);
     assert!(once.iter().all(|group| group.count == 1));

@@ -122,7 +122,7 @@ fn free(scene: &Scene, count: usize) -> Result<Vec<Vec<f64>>, String> {
     Ok(free)
 }
 
-/// Half a turn either way where there is no limit.
+/// Half a turn either way if there is no limit.
 fn within(low: f64, high: f64, random: &mut SplitMix) -> f64 {
     let turn = std::f64::consts::PI;
     let (low, high) = (if low.is_finite() { low } else { -turn }, if high.is_finite() { high } else { turn });

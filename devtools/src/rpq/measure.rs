@@ -145,7 +145,7 @@ fn ask(checker: &mut Checker<'_>, state: &SceneState, query: Query) -> f64 {
 /// each other.
 pub fn disagreements(runs: &[Run]) -> usize {
     let first = |query| runs.iter().find(|run| run.query == query);
-    // Neither equal nor both NaN: NaN is no answer and agrees with nothing.
+    // Neither equal nor both NaN: NaN is not an answer and agrees with nothing.
     let differ = |a: &[f64], b: &[f64]| a.iter().zip(b).filter(|(x, y)| x != y).count();
     let between = runs.iter().filter_map(|run| Some(differ(&first(run.query)?.answers, &run.answers))).sum::<usize>();
     let [Some(hit), Some(near), Some(far)] = Query::ALL.map(first) else { return between };

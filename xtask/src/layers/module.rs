@@ -92,7 +92,7 @@ fn defined(tokens: &[Token]) -> BTreeSet<String> {
     names
 }
 
-/// The module in whose file the item at this absolute path is defined; `None` where the path is a module itself or does
+/// The module in whose file the item at this absolute path is defined; `None` if the path is a module itself or does
 /// not belong to the crate.
 pub fn definer(modules: &Modules, path: &[String]) -> Option<Vec<String>> {
     resolve(modules, path, &mut BTreeSet::new())

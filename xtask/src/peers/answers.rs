@@ -63,7 +63,7 @@ pub fn check(group: &Group, all: &[Group], times: &[Option<Time>], runners: &mut
 }
 
 /// The answers to compare with: the reference's, but where elbowroom's differs and the distances of both settle it,
-/// what these say. `None` where both answers are right.
+/// what these say. `None` if both answers are right.
 fn settle(
     group: &Group,
     given: &[Vec<f64>],

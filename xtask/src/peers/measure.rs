@@ -23,7 +23,7 @@ pub fn budget_ns() -> f64 {
     seconds.filter(|s| *s > 0.0).unwrap_or(0.5) * 1e9
 }
 
-/// Figures in the order of the entries; `None` where not wanted, or where the runner has failed.
+/// Figures in the order of the entries; `None` if not wanted, or where the runner has failed.
 pub fn group(group: &Group, runners: &mut [Runner]) -> Vec<Option<Time>> {
     let budget = budget_ns();
     let costs: Vec<Option<f64>> = group

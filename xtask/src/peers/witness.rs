@@ -52,7 +52,7 @@ impl<'a> Witnesses<'a> {
 }
 
 fn classification(ours: f64, theirs: f64, border: f64, size: f64) -> Classification {
-    // Without a tolerance every overlap, however deep, measures 0: that is no border.
+    // Without a tolerance every overlap, however deep, measures 0: that is not a border.
     if border == 0.0 && ours <= 0.0 && theirs <= 0.0 {
         return Classification::Is(1.0);
     }

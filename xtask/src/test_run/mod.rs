@@ -52,7 +52,7 @@ pub struct Counts {
 /// first, once all is compiled.
 ///
 /// # Errors
-/// Where something does not compile, a test fails, or none ran.
+/// If something does not compile, a test fails, or none ran.
 pub fn run(
     root: &Path,
     args: &[&str],

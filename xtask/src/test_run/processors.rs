@@ -9,7 +9,7 @@ struct Times {
     idle: u64,
 }
 
-/// The share of their time that the processors rest during `period`; `None` where the system does not say.
+/// The share of their time that the processors rest during `period`; `None` if the system does not say.
 pub fn idle_share(period: Duration) -> Option<f64> {
     let read = || std::fs::read_to_string("/proc/stat").ok().as_deref().and_then(parse);
     let before = read()?;

@@ -24,7 +24,7 @@ pub struct Program {
 /// Compiles the tests that `args` choose, and answers their programs.
 ///
 /// # Errors
-/// Where something does not compile; cargo has printed why.
+/// If something does not compile; cargo has printed why.
 pub fn compile(root: &Path, args: &[&str], env: &[(&str, &str)]) -> Result<Vec<Program>, String> {
     programs(&artifacts::compile(root, &[&["test", "--no-run"], args].concat(), env)?)
 }

@@ -151,14 +151,14 @@ impl Chain {
     }
 
     /// The independent joint that a mimic joint follows, through mimics of mimics, with the total multiplier and offset (rad or m);
-    /// `None` where the joint is independent or fixed.
+    /// `None` if the joint is independent or fixed.
     pub fn mimic_source(&self, joint: JointId) -> Option<crate::Mimic> {
         self.joints.get(joint.0)?.mimic?;
         let c = self.couplings[joint.0]?;
         Some(crate::Mimic { joint: self.active[c.index], multiplier: c.multiplier, offset: c.offset })
     }
 
-    /// The joint's value as a function of `q`, through mimics of mimics; `None` where the joint is fixed or not of this chain.
+    /// The joint's value as a function of `q`, through mimics of mimics; `None` if the joint is fixed or not of this chain.
     pub fn coupling(&self, joint: JointId) -> Option<JointCoupling> {
         self.couplings.get(joint.0).copied().flatten()
     }

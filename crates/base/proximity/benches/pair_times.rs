@@ -37,7 +37,7 @@ fn gather(first: &str, second: &str, wanted: impl Fn(Option<f64>) -> bool) -> Ve
     found
 }
 
-/// Nanoseconds per case; a NaN where there is none.
+/// Nanoseconds per case; a NaN if there is none.
 fn time<T>(cases: &[Case], query: impl Fn(&Shape, &Pose, &Shape, &Pose) -> T) -> f64 {
     if cases.is_empty() {
         return f64::NAN;

@@ -47,7 +47,7 @@ pub fn project_point(shape: &Shape, shape_in_world: &Pose, p: Vec3) -> PointProj
 }
 
 impl TriMesh {
-    /// The point of the surface nearest to a point, both in the local frame; `None` where it is farther away than a limit, m.
+    /// The point of the surface nearest to a point, both in the local frame; `None` if it is farther away than a limit, m.
     ///
     /// ```
     /// use elbowroom_proximity::TriMesh;

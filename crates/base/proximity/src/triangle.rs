@@ -191,7 +191,7 @@ fn confirmed(s: &[Vec3; 3], t: &[Vec3; 3]) -> bool {
     !slender || passes(s, t) || passes(t, s)
 }
 
-/// Which corners of `s` are above `t`'s plane; `None` where all are on one side.
+/// Which corners of `s` are above `t`'s plane; `None` if all are on one side.
 #[inline]
 fn sides(s: &[Vec3; 3], t: &[Vec3; 3]) -> Option<[bool; 3]> {
     let n = (t[1] - t[0]).cross(t[2] - t[0]);

@@ -13,7 +13,7 @@ fn lump(r: &mut SplitMix, fine: f64) -> Shape {
     Shape::Mesh(Arc::new(crate::common::lump(0.3, fine, Vec3::splat(1.0), r.between(0.0, 0.4))))
 }
 
-/// The largest gap between two triangles over the directions that can separate them, m: negative where they overlap.
+/// The largest gap between two triangles over the directions that can separate them, m: negative if they overlap.
 fn gap(s: [Vec3; 3], t: [Vec3; 3]) -> f64 {
     let edges = |s: [Vec3; 3]| [s[1] - s[0], s[2] - s[1], s[0] - s[2]];
     let (e, f) = (edges(s), edges(t));

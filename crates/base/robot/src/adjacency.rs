@@ -21,7 +21,7 @@ impl Robot {
         self.exclusion(a, b).is_none()
     }
 
-    /// Why two links are no collision pair; `None` where they are one.
+    /// Why two links are no collision pair; `None` if they are one.
     pub fn exclusion(&self, a: LinkId, b: LinkId) -> Option<Exclusion> {
         let between = self.chain.joints_between(a, b);
         match between.iter().filter(|j| self.chain.joints()[j.0].kind.moves()).count() {

@@ -221,7 +221,7 @@ impl JointRegion {
 }
 
 impl<'r> Candidate<'r> {
-    /// `None` where a link has a surface without triangles, or is too large.
+    /// `None` if a link has a surface without triangles, or is too large.
     fn new(robot: &'r Robot, a: LinkId, b: LinkId, state: &ChainState) -> Option<Self> {
         if ![a, b].iter().all(|l| robot.link_radius(*l) <= LARGEST_M) {
             return None;

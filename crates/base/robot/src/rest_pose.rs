@@ -12,7 +12,7 @@ const SAMPLES: u32 = 200;
 ///
 /// The model does not tell whether this is an error. The links of a wrist whose axes intersect, or fingers drawn closed, may
 /// be designed to overlap; an SRDF should then disable the pair. The share of configurations in which they touch is a hint: it
-/// is 1 where they overlap by design.
+/// is 1 if they overlap by design.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RestPoseContact {
     /// One link.

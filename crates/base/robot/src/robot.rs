@@ -43,7 +43,7 @@ impl Robot {
     }
 
     /// Upper bound (m) of the distance between the link's origin and any point of its colliders; 0 without colliders.
-    /// Infinite or NaN where a collider is unbounded.
+    /// Infinite or NaN if a collider is unbounded.
     pub fn link_radius(&self, link: LinkId) -> f64 {
         self.colliders[link.0].iter().map(|c| c.shape.aabb(&c.in_link).max_distance(Vec3::ZERO)).fold(0.0, f64::max)
     }

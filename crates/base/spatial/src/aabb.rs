@@ -26,7 +26,7 @@ impl Aabb {
     /// All of space.
     pub const EVERYTHING: Self = Self { min: Vec3::splat(f64::NEG_INFINITY), max: Vec3::splat(f64::INFINITY) };
 
-    /// The smallest box around the points; [`Aabb::EMPTY`] where there are none.
+    /// The smallest box around the points; [`Aabb::EMPTY`] if there are none.
     #[inline]
     pub fn from_points(points: impl IntoIterator<Item = Vec3>) -> Self {
         points.into_iter().fold(Self::EMPTY, |b, p| Self { min: b.min.min(p), max: b.max.max(p) })
@@ -89,7 +89,7 @@ impl Aabb {
             && p.z <= self.max.z
     }
 
-    /// Distance between the boxes, 0 where they overlap (metres).
+    /// Distance between the boxes, 0 if they overlap (metres).
     #[inline]
     pub fn distance(&self, o: &Self) -> f64 {
         self.gap(o).length()
@@ -101,7 +101,7 @@ impl Aabb {
         self.gap(o).length_squared()
     }
 
-    /// Distance (m) between a point and the farthest point of the box; infinite or NaN where the box is unbounded or empty.
+    /// Distance (m) between a point and the farthest point of the box; infinite or NaN if the box is unbounded or empty.
     ///
     /// ```
     /// use elbowroom_spatial::{Aabb, Vec3};

@@ -1,7 +1,7 @@
 //! Small dense linear algebra: Cholesky decomposition and eigenvalues of symmetric matrices.
 
 /// Solves the leading `n` equations of `a·x = b` for a symmetric positive definite `a` by Cholesky decomposition. Reads the
-/// lower triangle only; entries of `b` beyond `n` are returned unchanged. `None` where a pivot is not positive.
+/// lower triangle only; entries of `b` beyond `n` are returned unchanged. `None` if a pivot is not positive.
 ///
 /// # Panics
 /// Where `n` is larger than `N`.

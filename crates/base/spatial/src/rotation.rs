@@ -46,7 +46,7 @@ impl Rotation {
     }
 
     /// The frame whose axes are the given orthonormal right-handed columns.
-    /// `None` where they are not orthonormal within `1e-6`, or left-handed.
+    /// `None` if they are not orthonormal within `1e-6`, or left-handed.
     pub fn from_columns(x: Vec3, y: Vec3, z: Vec3) -> Option<Self> {
         let unit = |v: Vec3| (v.length() - 1.0).abs() < 1e-6;
         let orthonormal = unit(x) && unit(y) && unit(z) && x.dot(y).abs() < 1e-6 && (x.cross(y) - z).length() < 1e-6;
@@ -54,7 +54,7 @@ impl Rotation {
     }
 
     /// The frame whose x axis points along `x` and whose xy plane holds `xy`.
-    /// `None` where the two are parallel or one of them is zero.
+    /// `None` if the two are parallel or one of them is zero.
     pub fn from_x_and_xy(x: Vec3, xy: Vec3) -> Option<Self> {
         let ex = x.try_normalize()?;
         let ez = ex.cross(xy.try_normalize()?);
@@ -71,7 +71,7 @@ impl Rotation {
         Self(DMat3::from_cols(x.into(), z.cross(x).into(), z.into()))
     }
 
-    /// From a quaternion, normalized first. `None` where it is zero or not finite.
+    /// From a quaternion, normalized first. `None` if it is zero or not finite.
     pub fn from_quaternion_xyzw(q: [f64; 4]) -> Option<Self> {
         let q = DQuat::from_array(q);
         let n = q.length();

@@ -77,7 +77,7 @@ impl Vec3 {
         (self - o).length()
     }
 
-    /// The unit vector of the same direction, or `None` where the length is zero or not finite.
+    /// The unit vector of the same direction, or `None` if the length is zero or not finite.
     #[inline]
     pub fn try_normalize(self) -> Option<Self> {
         let length = self.length();

@@ -49,7 +49,7 @@ impl CoverCache {
     fn save(&self, hash: [u8; HASH_BYTES], cover: &SphereCover) {
         let Some(file) = self.file(hash) else { return };
         let Some(directory) = file.parent() else { return };
-        // Where it cannot be written nothing is lost but time: the next run builds the cover again.
+        // If it cannot be written nothing is lost but time: the next run builds the cover again.
         let _ = fs::create_dir_all(directory)
             .and_then(|()| WholeFile::write(&file, |out| out.write_all(&encode(cover, hash))));
     }

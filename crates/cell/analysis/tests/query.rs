@@ -38,7 +38,7 @@ at = [350, 350, 500]
 radius = 90
 "#;
 
-/// Per pair the smallest distance of its solids; 0 where two of them collide.
+/// Per pair the smallest distance of its solids; 0 if two of them collide.
 fn naive(model: &QueryModel, q: &[Vec<f64>]) -> Vec<(GeometryId, GeometryId, f64)> {
     let robots: Vec<_> = model.robots.iter().map(|r| &r.robot).collect();
     let mut states: Vec<ChainState> = robots.iter().map(|r| ChainState::new(&r.chain)).collect();

@@ -59,7 +59,7 @@ pub struct Cell {
     pub joint_contacts: PairRules,
     /// SHA-256 of the monitors' configurations, hex.
     pub checksum: String,
-    /// The last seal; `None` where the cell is not sealed.
+    /// The last seal; `None` if the cell is not sealed.
     pub seal: Option<Seal>,
     /// Warnings about the file, none of them fatal.
     pub warnings: Vec<Warning>,
@@ -196,7 +196,7 @@ pub struct CellLaws {
     pub reaction_s: f64,
     /// Reaction time (s) of the stopping-distance law, where that is on.
     pub stopping_reaction_s: Option<f64>,
-    /// Reaction time (s) of robots in the simulation: the one in the file, 0 where it gives none.
+    /// Reaction time (s) of robots in the simulation: the one in the file, 0 if it gives none.
     pub reaction_delay_s: f64,
 }
 

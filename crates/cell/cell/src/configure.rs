@@ -41,7 +41,7 @@ impl MonitorSetup {
     }
 
     /// The volume of an object that this link grips, and the pose in the link at which a monitor attaches it where the object is
-    /// at `object_in_link`. `None` where the program does not grip it with this link.
+    /// at `object_in_link`. `None` if the program does not grip it with this link.
     pub fn gripped_volume(&self, object: ObjectId, link: LinkId, object_in_link: &Pose) -> Option<(VolumeId, Pose)> {
         let volumes = self.configuration.volumes();
         let of_link = |(o, v): &&(ObjectId, VolumeId)| *o == object && volumes[v.0].link == link;
@@ -94,7 +94,7 @@ pub fn monitors_with(
     setups.iter().enumerate().map(monitor).collect()
 }
 
-/// The arbiter of the cell's exchange regions, its robots in the order of the cell; `None` where there is no such
+/// The arbiter of the cell's exchange regions, its robots in the order of the cell; `None` if there is no such
 /// region. Regions whose warning zones overlap, or that move, share a slot, whose name lists theirs.
 pub fn zone_arbiter(cell: &Cell) -> Option<Arc<ZoneArbiter>> {
     let slots = slots(cell);

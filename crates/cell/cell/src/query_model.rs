@@ -145,7 +145,7 @@ impl QueryModel {
     /// The state in which queries begin: what a link carries is attached to it.
     ///
     /// # Errors
-    /// [`FormatError`] where the scene is one of another model.
+    /// [`FormatError`] if the scene is one of another model.
     pub fn start_state(&self, scene: &Scene) -> Result<SceneState, FormatError> {
         let mut state = SceneState::new(scene);
         for (object, attachment) in &self.carried {
@@ -159,7 +159,7 @@ impl QueryModel {
     /// Builds the scene.
     ///
     /// # Errors
-    /// [`FormatError`] where the scene refuses the model.
+    /// [`FormatError`] if the scene refuses the model.
     pub fn scene(&self, proofs: OutOfReachProofs) -> Result<Scene, FormatError> {
         let mut builder = Scene::builder();
         builder.prove_out_of_reach(proofs == OutOfReachProofs::Compute);

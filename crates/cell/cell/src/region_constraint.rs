@@ -33,7 +33,7 @@ pub struct RegionConstraint<'m> {
 }
 
 impl<'m> RegionConstraint<'m> {
-    /// The regions that the monitor closes to its robot; `None` where there is none. Paths keep the share `share` of
+    /// The regions that the monitor closes to its robot; `None` if there is none. Paths keep the share `share` of
     /// each warning zone, which bounds the override from below, at least `least_m`, and never less than 5 mm.
     pub fn new(monitor: &'m Monitor, sources: &[SourceState], share: f64, least_m: f64) -> Option<Self> {
         let region_distance = monitor.region_distance(sources);
@@ -114,7 +114,7 @@ impl<'c> RegionConstraints<'c> {
         Ok(Self { cell, setups, monitors, states, least_m })
     }
 
-    /// The regions closed to a robot; `None` where there is none.
+    /// The regions closed to a robot; `None` if there is none.
     pub fn of_robot(&self, robot: RobotId) -> Option<RegionConstraint<'_>> {
         let sources = Frames::new(self.cell).sources(&self.setups[robot.0].sources, &self.states, 0.0);
         RegionConstraint::new(&self.monitors[robot.0], &sources, 0.0, self.least_m)

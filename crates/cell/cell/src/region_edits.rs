@@ -24,7 +24,7 @@ const FILES: [&str; 3] = ["mesh", "poses", "file"];
 pub struct RegionEdit {
     /// Its name.
     pub name: String,
-    /// Its keys as TOML, a line each; `None` where it is removed.
+    /// Its keys as TOML, a line each; `None` if it is removed.
     pub table: Option<String>,
 }
 
@@ -55,7 +55,7 @@ impl EditedRegions {
     /// Of the file that a cell was read from.
     ///
     /// # Errors
-    /// [`FormatError`] where it cannot be read.
+    /// [`FormatError`] if it cannot be read.
     pub fn read(cell: &Cell) -> Result<Self> {
         Ok(Self { file: CellFile::read(&cell.file)?.unsealed() })
     }
@@ -63,7 +63,7 @@ impl EditedRegions {
     /// Of this text, as the file `path`.
     ///
     /// # Errors
-    /// [`FormatError`] where it is not TOML.
+    /// [`FormatError`] if it is not TOML.
     pub fn parse(path: impl AsRef<Path>, text: &str) -> Result<Self> {
         Ok(Self { file: CellFile::parse(path, text)? })
     }
@@ -118,7 +118,7 @@ impl EditedRegions {
     /// The keys of a new region: those of `[region.NAME]`, or that table itself.
     ///
     /// # Errors
-    /// [`FormatError`] where it is not TOML, another region's table, or names a file outside of the cell's folder.
+    /// [`FormatError`] if it is not TOML, another region's table, or names a file outside of the cell's folder.
     pub fn table_of(&self, name: &str, toml: &str) -> Result<String> {
         let path = &self.file.file;
         let mut entries = node::parse(path, toml)?;
@@ -230,11 +230,11 @@ pub fn table_changes(before: Option<&str>, after: Option<&str>) -> Vec<(String, 
     all.into_iter().map(change).filter(|(_, before, after)| before != after).collect()
 }
 
-/// Why a process that guards the cell file `now` cannot go on with `next`; `None` where it can: the robots, the exchange regions, the
+/// Why a process that guards the cell file `now` cannot go on with `next`; `None` if it can: the robots, the exchange regions, the
 /// permanent regions and the robots that are followed must stay the same.
 ///
 /// # Errors
-/// [`FormatError`] where no monitor accepts a region.
+/// [`FormatError`] if no monitor accepts a region.
 pub fn why_not_continued(now: &Cell, next: &Cell) -> Result<Option<String>> {
     let (before, after) = (configure::setups(now)?, configure::setups(next)?);
     let robots = |setups: &[configure::MonitorSetup]| -> Vec<String> {

@@ -80,7 +80,7 @@ pub fn run(scene: &ReportScene, label: &str, rec: &Recording, packer: &mut Array
     })
 }
 
-/// When the first robot stopped or collided, s: what a person looks for first. 0 where none did.
+/// When the first robot stopped or collided, s: what a person looks for first. 0 if none did.
 fn opens_s(rec: &Recording) -> f64 {
     let stops = rec.robots.iter().flat_map(|r| r.stops.iter().map(|s| s.from_s).chain(r.ending.stopped_at_s));
     let collisions = rec.robots.iter().flat_map(|r| r.collisions.iter().map(|c| c.t_s));

@@ -305,7 +305,7 @@ pub fn outcome(robot: &RobotTrack, rec: &Recording) -> String {
     }
 }
 
-/// When the TCP moved last, s; `None` where it never did.
+/// When the TCP moved last, s; `None` if it never did.
 pub fn last_motion_s(robot: &RobotTrack) -> Option<f64> {
     robot.samples.iter().rfind(|s| s.tcp_speed > STATIONARY_M_S).map(|s| s.t_s)
 }

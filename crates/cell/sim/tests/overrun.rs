@@ -118,7 +118,7 @@ impl Setting {
         )
     }
 
-    /// The TCP at the share `met_at` of its unmonitored path; `None` where the program is infeasible.
+    /// The TCP at the share `met_at` of its unmonitored path; `None` if the program is infeasible.
     fn place(&self) -> Option<[f64; 3]> {
         let cell = Cell::parse("c.toml", &self.text([90.0, 0.0, 0.0], 0.001)).ok()?;
         let run = simulate(&cell, &RunOptions { apply_override: false, ..RunOptions::default() }).ok()?.recording;
@@ -148,7 +148,7 @@ fn deepest(cell: &Cell, run: &Recording) -> f64 {
     deepest
 }
 
-/// The cell with exactly the given thickness; `None` where the program is infeasible.
+/// The cell with exactly the given thickness; `None` if the program is infeasible.
 fn with_named_thickness(setting: &Setting) -> Option<(String, f64)> {
     let centre = setting.place()?;
     let cell = Cell::parse("c.toml", &setting.text(centre, 0.001)).unwrap();

@@ -36,7 +36,7 @@ fn a_carriage_stops_before_a_wall_at_any_deceleration_and_delay() {
     }
 }
 
-/// The reaction time is no multiple of the tick: within a tick the robot still goes on as it was commanded before.
+/// The reaction time is not a multiple of the tick: within a tick the robot still goes on as it was commanded before.
 #[test]
 fn a_robot_that_brakes_as_stated_is_not_taken_for_one_that_brakes_less() {
     for tick_ms in [4.0, 12.0, 40.0] {

@@ -60,7 +60,7 @@ impl ArbiterService {
     /// Starts the arbiter of a cell; `None` for a cell without exchange regions. `boot` should be higher than at former starts.
     ///
     /// # Errors
-    /// [`NetworkError`] where the keys cannot be used.
+    /// [`NetworkError`] if the keys cannot be used.
     pub fn start(
         cell: &Arc<Cell>,
         network: &Arc<dyn Network>,

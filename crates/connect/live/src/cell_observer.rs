@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use elbowroom_cell::Cell;
 use elbowroom_interlock::Micros;
-use elbowroom_rosbag::Recorder;
+use elbowroom_recording::Recorder;
 use elbowroom_status::{CellStatus, EventStatus, HealthStatus, RobotStatus, SlotStatus};
 use elbowroom_view::StatusFeed;
 

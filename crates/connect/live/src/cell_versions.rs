@@ -44,7 +44,7 @@ impl CellVersions {
     /// The cell file's regions in memory.
     ///
     /// # Errors
-    /// [`NoVersion`] where the cell was not read from a file.
+    /// [`NoVersion`] if the cell was not read from a file.
     pub fn edited(&self) -> Result<&EditedRegions, NoVersion> {
         let no_file = || NoVersion::NotContinued("the cell was not read from a file".into());
         self.edited.as_ref().ok_or_else(no_file)

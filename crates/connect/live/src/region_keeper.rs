@@ -153,7 +153,7 @@ impl RegionKeeper {
     /// higher than at former starts.
     ///
     /// # Errors
-    /// [`NetworkError`] where the keys cannot be used.
+    /// [`NetworkError`] if the keys cannot be used.
     pub(crate) fn start(
         versions: &CellVersions,
         network: &Arc<dyn Network>,

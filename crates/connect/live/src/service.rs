@@ -83,7 +83,7 @@ impl Service {
     /// Ends everything, and completes the recording.
     ///
     /// # Errors
-    /// [`ServiceError::Recording`] where it could not be written.
+    /// [`ServiceError::Recording`] if it could not be written.
     pub fn stop(self) -> Result<(), ServiceError> {
         let Self { controllers, ros2, nodes, control, arbiter, keeper, observer, peers, server, network } = self;
         drop((peers, controllers, ros2, nodes, control, arbiter, keeper));

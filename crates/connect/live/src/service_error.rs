@@ -1,7 +1,7 @@
 //! Why a service does not start or end.
 
 use elbowroom_formats::FormatError;
-use elbowroom_rosbag::BagError;
+use elbowroom_recording::BagError;
 use elbowroom_view::ViewError;
 use thiserror::Error;
 

@@ -8,8 +8,8 @@ use elbowroom_cell::{Cell, EditedRegions, configure};
 use elbowroom_formats::FormatError;
 use elbowroom_interlock::Boot;
 use elbowroom_monitor::{Life, RegionKind, RobotSlot};
+use elbowroom_recording::{BagError, CellWriter, Recorder};
 use elbowroom_robot::RobotId;
-use elbowroom_rosbag::{BagError, CellWriter, Recorder};
 use elbowroom_view::{Server, ServerSettings, StatusFeed};
 
 use crate::arbiter_service::ArbiterService;

@@ -33,7 +33,7 @@ impl SimulatedControllers {
     /// Starts the programs of these robots. When a program has finished it begins again, from where it ended.
     ///
     /// # Errors
-    /// [`ServiceError`] where a program cannot be planned.
+    /// [`ServiceError`] if a program cannot be planned.
     pub(crate) fn start(
         cell: &Arc<Cell>,
         robots: &[RobotId],

@@ -34,7 +34,7 @@ impl SwitchRequests {
     /// Those of a robot's program, which is about to start.
     ///
     /// # Errors
-    /// [`NetworkError`] where the keys cannot be used.
+    /// [`NetworkError`] if the keys cannot be used.
     pub(crate) fn new(cell: &Arc<Cell>, robot: RobotId, network: &Arc<dyn Network>) -> Result<Self, NetworkError> {
         let keys = Keys::new(&cell.name);
         let heard: Arc<Mutex<BTreeMap<String, bool>>> = Arc::default();

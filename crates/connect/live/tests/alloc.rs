@@ -316,7 +316,7 @@ fn send_hostile(node: &NodeTick, n: u64, now: Micros, sent: &[u8], old: &mut Vec
     }
 }
 
-/// Passes a message to the arbiter, which allocates and is no part of the node, and its answer to the node. Returns what the node
+/// Passes a message to the arbiter, which allocates and is not part of the node, and its answer to the node. Returns what the node
 /// allocated.
 fn answer_interlock(s: &mut Setup, bytes: &[u8], now: Micros) -> usize {
     let mut message = StateMessage::with_slots(1);

@@ -20,7 +20,7 @@ use elbowroom_testkit::random::{split_mix, unit};
 const BOOT: u64 = 7;
 const CONFIGURATION: u64 = 99;
 
-/// Compiles a program; `None` where there is no compiler.
+/// Compiles a program; `None` if there is no compiler.
 fn compile(source: &Path, name: &str) -> Option<PathBuf> {
     let compiler = std::env::var("CC").unwrap_or_else(|_| "cc".to_owned());
     let is_there = Command::new(&compiler).arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status();

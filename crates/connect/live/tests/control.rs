@@ -142,7 +142,7 @@ fn nobody_without_a_token_sees_or_changes_anything() {
             assert_eq!(setup.request("POST", path, &headers, &body.to_string()).0, 401, "{path} {headers}");
         }
     }
-    // A secret in the address is no token: addresses end up in logs.
+    // A secret in the address is not a token: addresses end up in logs.
     assert_eq!(setup.request("GET", &format!("/regions?token={secret}"), "", "").0, 401);
     assert!(!setup.is_on("cart"));
     assert_eq!(setup.revision(), revision, "nothing was logged");

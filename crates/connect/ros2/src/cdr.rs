@@ -154,7 +154,7 @@ impl<'a> Reader<'a> {
     /// The length of a sequence whose elements have at least `least` bytes each.
     ///
     /// # Errors
-    /// [`CdrError::Count`] where there are not enough bytes for that many.
+    /// [`CdrError::Count`] if there are not enough bytes for that many.
     pub fn count(&mut self, least: usize) -> Result<usize, CdrError> {
         let at = self.at;
         let count = u32::from_le_bytes(self.number()?);

@@ -20,7 +20,7 @@ pub trait Field: Sized + Default {
     /// The next value.
     ///
     /// # Errors
-    /// [`CdrError`] where the bytes are no such value.
+    /// [`CdrError`] if the bytes are no such value.
     fn read(from: &mut Reader<'_>) -> Result<Self, CdrError>;
 }
 
@@ -55,7 +55,7 @@ pub trait Message: Field {
     /// The message of a payload.
     ///
     /// # Errors
-    /// [`CdrError`] where the payload is not exactly one such message.
+    /// [`CdrError`] if the payload is not exactly one such message.
     fn decode(payload: &[u8]) -> Result<Self, CdrError> {
         let mut reader = Reader::new(payload)?;
         let message = Self::read(&mut reader)?;

@@ -42,7 +42,7 @@ pub struct SlotStatus {
     pub holder: Option<String>,
     /// The robots that wait, first come first.
     pub queue: Vec<String>,
-    /// How long ago the arbiter said so, s; 0 where this is put together in its process.
+    /// How long ago the arbiter said so, s; 0 if this is put together in its process.
     #[serde(default)]
     pub age_s: f64,
 }

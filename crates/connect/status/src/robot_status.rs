@@ -61,7 +61,7 @@ pub struct HealthStatus {
     pub rejected: u64,
     /// Ticks without fresh joint values.
     pub stale: u64,
-    /// How long ago the node said so, s; 0 where this is put together in its process.
+    /// How long ago the node said so, s; 0 if this is put together in its process.
     #[serde(default)]
     pub age_s: f64,
 }

@@ -53,7 +53,7 @@ pub(crate) trait ViewSource {
     /// Why not, for the person at the page.
     fn command(&mut self, command: Command) -> Result<(), String>;
 
-    /// The status after commands, with what happened; `None` where it does not come from here.
+    /// The status after commands, with what happened; `None` if it does not come from here.
     fn status(&mut self) -> Option<(CellStatus, Vec<EventStatus>)>;
 }
 

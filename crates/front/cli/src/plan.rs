@@ -20,7 +20,7 @@ pub(crate) fn plan(args: &PlanArgs) -> Result<ExitStatus, Failure> {
     if let (Some(urdf), Some(file)) = (&args.problems.urdf, &args.problems.problems) {
         return plan_problems::run(urdf, file, args);
     }
-    // clap requires a cell and a goal where there are no problems.
+    // clap requires a cell and a goal if there are no problems.
     let cell = Cell::load(args.cell.as_deref().unwrap_or(Path::new("")))?;
     cell.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
     if args.robot.len() > 1 {

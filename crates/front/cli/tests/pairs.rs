@@ -126,7 +126,7 @@ fn the_tcp_is_on_no_finger() {
     std::fs::write(dir.path().join("tool0.urdf"), tool0).unwrap();
     let tool0 = check(cell("tool0.urdf", "srdf = \"grip.srdf\"\n", "[0.1, 0, 0]")).expect(0);
     assert!(!tool0.stderr.contains("TCP"), "{}", tool0.stderr);
-    // One leaf alone is no finger.
+    // One leaf alone is not a finger.
     assert!(!check(cell("ball.urdf", "", "[0.1, 0, 0]")).expect(0).stderr.contains("TCP"));
 }
 

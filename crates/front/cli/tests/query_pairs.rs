@@ -81,7 +81,7 @@ fn regions_are_partners_and_those_that_follow_a_robot_move_with_it() {
     let moved = rows(&elbowroom(dir.path(), &args).expect(0));
     let expected = (1100.0_f64.hypot(400.0) - 140.0) / 1e3;
     assert!((moved[0].0 - 0.56).abs() < 1e-9 && (moved[1].0 - expected).abs() < 1e-9, "{moved:?}");
-    // Without its name a region is no solid.
+    // Without its name a region is not a solid.
     assert!(!query(&["--ask", "distance", "--all-pairs", "10"]).expect(0).stdout.contains("corner"));
 }
 

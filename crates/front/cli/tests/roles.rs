@@ -430,7 +430,7 @@ fn the_wrong_key_and_no_key() {
     write(dir.path(), "trusted-keys.toml", &before);
     write(dir.path(), "cell.toml", &text());
     run_in(dir.path(), &["run", "cell.toml"]).expect(0);
-    // What is no key.
+    // What is not a key.
     write(dir.path(), "bad.key", "class = \"integrator\"\nname = \"X\"\nprivate = \"12\"\n");
     private(&dir.path().join("bad.key"));
     let message = with(&["--as", "integrator", "--key", "bad.key"]);

@@ -219,7 +219,7 @@ fn a_stream_of_pictures_gives_what_the_folder_gives() {
     let arrived = parse(&stream(&["--json"], &all[..]).expect(0));
     let times: Vec<f64> = arrived.iter().map(|r| r["t_s"].as_f64().unwrap()).collect();
     assert!(times.len() == DAMAGED && times.windows(2).all(|w| w[0] < w[1]), "{times:?}");
-    // What is no stream of pictures is reported, with the number of the picture.
+    // What is not a stream of pictures is reported, with the number of the picture.
     let cut = &all[..picture(0).len() + 100];
     let message = stream(&["--json"], cut).expect(2).stderr;
     assert!(message.contains("picture 1: the stream ends within a picture") && message.contains("ffmpeg"), "{message}");

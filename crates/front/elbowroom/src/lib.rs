@@ -23,7 +23,7 @@
 //! | [`inspect`] | the contents of a robot model or mesh file |
 //! | [`report`] | HTML reports, plots, images, and the text summary of a run |
 //!
-//! With the feature `live`: `live` (the service on a network), `view` (the cell in a browser), `rosbag` (MCAP recordings),
+//! With the feature `live`: `live` (the service on a network), `view` (the cell in a browser), `recording` (MCAP recordings),
 //! `ros2` (messages and keys of ROS 2), `status` (what a monitored robot publishes).
 //!
 //! # A guarded controller
@@ -158,12 +158,12 @@ pub use elbowroom_monitor as monitor;
 pub use elbowroom_perception as perception;
 pub use elbowroom_planner as planner;
 pub use elbowroom_proximity as proximity;
+#[cfg(feature = "live")]
+pub use elbowroom_recording as recording;
 pub use elbowroom_report as report;
 pub use elbowroom_robot as robot;
 #[cfg(feature = "live")]
 pub use elbowroom_ros2 as ros2;
-#[cfg(feature = "live")]
-pub use elbowroom_rosbag as rosbag;
 pub use elbowroom_scene as scene;
 pub use elbowroom_sim as sim;
 pub use elbowroom_spatial as spatial;

@@ -31,7 +31,7 @@ impl AttachedVolumes {
         Self { in_link: config.volumes.iter().map(in_link).collect() }
     }
 
-    /// Pose of a volume in its link; `None` where it is detached.
+    /// Pose of a volume in its link; `None` if it is detached.
     #[inline]
     pub(crate) fn in_link(&self, volume: usize) -> Option<&Pose> {
         self.in_link[volume].as_ref()

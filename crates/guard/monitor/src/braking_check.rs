@@ -25,9 +25,9 @@ pub(crate) struct Braking {
     pub(crate) commanded: f64,
     /// Since when no larger one may, s.
     pub(crate) commanded_since_s: f64,
-    /// Stop time of the program at override 1, s; infinite where it is not known.
+    /// Stop time of the program at override 1, s; infinite if it is not known.
     pub(crate) full_stop_s: f64,
-    /// Time over which the velocities were derived from positions, s; 0 where they were given.
+    /// Time over which the velocities were derived from positions, s; 0 if they were given.
     pub(crate) uncertain_s: f64,
 }
 

@@ -32,7 +32,7 @@ impl WorldAxis {
 /// Speed and acceleration with which a volume approaches along a direction, at override 1.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Approach {
-    /// Speed of the program, m/s; negative where it leaves.
+    /// Speed of the program, m/s; negative if it leaves.
     pub(crate) program_speed: f64,
     /// Actual speed of the robot, m/s.
     pub(crate) real_speed: f64,
@@ -159,7 +159,7 @@ pub(crate) struct VolumeMotion<'a> {
     pub(crate) intent: &'a ChainState,
     /// At the actual velocities.
     pub(crate) now: &'a ChainState,
-    /// Time over which the actual velocities were derived from positions, s; 0 where they were given.
+    /// Time over which the actual velocities were derived from positions, s; 0 if they were given.
     pub(crate) uncertain_s: f64,
 }
 

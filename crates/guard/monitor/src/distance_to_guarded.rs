@@ -14,7 +14,7 @@ pub(crate) struct BoundedDistance {
     pub(crate) lower_bound: f64,
 }
 
-/// Distance of a region from the closest guarded volume; `None` where it exceeds `limit` (m).
+/// Distance of a region from the closest guarded volume; `None` if it exceeds `limit` (m).
 pub(crate) fn distance_to_guarded(
     config: &Configuration,
     now: &Placement,

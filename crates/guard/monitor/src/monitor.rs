@@ -62,8 +62,8 @@ impl Monitor {
     /// A monitor that is ready to tick: everything is allocated here. Exchange regions need the interlock that grants them.
     ///
     /// # Errors
-    /// [`ConfigError::NoArbiter`] where there are exchange regions, but nothing that grants their slots;
-    /// [`ConfigError::NoStoppingDistance`] where they are shared with other processes without the stopping-distance law.
+    /// [`ConfigError::NoArbiter`] if there are exchange regions, but nothing that grants their slots;
+    /// [`ConfigError::NoStoppingDistance`] if they are shared with other processes without the stopping-distance law.
     pub fn new(config: Configuration, interlock: Option<Interlock>) -> Result<Self, ConfigError> {
         let zone_client = interlock.map(|interlock| ZoneClient::new(interlock, &config)).transpose()?;
         if let (None, Some(region)) = (&zone_client, config.first_exchange()) {
@@ -132,7 +132,7 @@ impl Monitor {
     /// Switches a temporary region; takes effect with the next tick.
     ///
     /// # Errors
-    /// [`SwitchError`] where the region is permanent or the access class is too low.
+    /// [`SwitchError`] if the region is permanent or the access class is too low.
     pub fn switch(&mut self, region: RegionId, on: bool, who: AccessClass) -> Result<(), SwitchError> {
         let r = &self.config.regions[region.0];
         if r.life == Life::Permanent {
@@ -177,7 +177,7 @@ impl Monitor {
     /// ```
     ///
     /// # Errors
-    /// [`AttachError`] where the volume is always there or unknown, or the pose is not finite; then nothing changes, and the
+    /// [`AttachError`] if the volume is always there or unknown, or the pose is not finite; then nothing changes, and the
     /// robot must not move with the object.
     pub fn attach(&mut self, volume: VolumeId, in_link: &Pose) -> Result<(), AttachError> {
         self.now.attached.attach(&self.config, volume, in_link)?;
@@ -195,7 +195,7 @@ impl Monitor {
     /// Detaches a volume: it does not count from the next tick on. Call it when the robot has let go. Never allocates.
     ///
     /// # Errors
-    /// [`AttachError`] where the volume is always there or unknown; then nothing changes.
+    /// [`AttachError`] if the volume is always there or unknown; then nothing changes.
     pub fn detach(&mut self, volume: VolumeId) -> Result<(), AttachError> {
         self.now.attached.detach(&self.config, volume)?;
         if let Some(predicted) = &mut self.predicted {

@@ -19,7 +19,7 @@ impl Monitor {
         self.faults.external
     }
 
-    /// What is wrong with the input of the last tick. `None` where it was valid and the robot was measured.
+    /// What is wrong with the input of the last tick. `None` if it was valid and the robot was measured.
     pub fn input_fault(&self) -> Option<Fault> {
         self.faults.input
     }
@@ -82,7 +82,7 @@ impl Monitor {
         self.exchange(region).is_some_and(|(client, slot)| client.holds(slot))
     }
 
-    /// The grants that come from outside of the process ([`Granted`](crate::Interlock::Granted)). `None` where the robots share an
+    /// The grants that come from outside of the process ([`Granted`](crate::Interlock::Granted)). `None` if the robots share an
     /// arbiter, and without exchange regions.
     pub fn slot_grants(&self) -> Option<&SlotGrants> {
         self.zone_client.as_ref()?.slot_grants()

@@ -168,7 +168,7 @@ impl Region {
     /// The half-space below the plane through `origin`, `on_x` and `in_xy` (m); its z axis is the normal.
     ///
     /// # Errors
-    /// [`TeachError`] where the three points lie on a line.
+    /// [`TeachError`] if the three points lie on a line.
     pub fn plane(name: impl Into<String>, origin: Vec3, on_x: Vec3, in_xy: Vec3) -> Result<Self, TeachError> {
         let rotation = plane_rotation(origin, on_x, in_xy)?;
         Ok(Self::solid(name, Shape::HalfSpace(HalfSpace), Pose::new(rotation, origin)))

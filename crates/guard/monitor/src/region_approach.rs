@@ -5,7 +5,7 @@ use elbowroom_spatial::FrameMotion;
 /// The approach of a region by its own motion; `docs/laws.md`, section 7.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct RegionApproach {
-    /// Largest closing speed of its points now, m/s; negative where all recede.
+    /// Largest closing speed of its points now, m/s; negative if all recede.
     speed: f64,
     /// Largest acceleration of its points, m/s²: what turns keeps its speed and changes its direction.
     acceleration: f64,

@@ -2,7 +2,7 @@
 //!
 //! Joints and regions are assumed to move straight from one snapshot to the next. No point of a volume then travels farther
 //! than `T`, the sum over the joints of motion bound times change; so while the distances at two instants sum to more than the
-//! travel between them, the volume cannot have touched in between. Where they do not, the interval is halved.
+//! travel between them, the volume cannot have touched in between. If they do not, the interval is halved.
 
 use elbowroom_kinematics::motion_bound::update_max_motion_bounds;
 use elbowroom_spatial::{Pose, Vec3};
@@ -192,7 +192,7 @@ impl RegionSweep {
         self.known = 0;
     }
 
-    /// Upper bound of the travel (m) of a volume and a region towards each other since the last snapshot; infinite where it
+    /// Upper bound of the travel (m) of a volume and a region towards each other since the last snapshot; infinite if it
     /// is not known.
     pub fn travel_bound_of(&self, region: RegionId) -> f64 {
         if self.known < 2 {
@@ -202,7 +202,7 @@ impl RegionSweep {
     }
 
     /// How much farther than the laws require pairs are measured, because of the travel since the last snapshot; 0 (nothing to
-    /// search) where it is not known.
+    /// search) if it is not known.
     pub(crate) fn extra_reach_for_travel(&self) -> TravelBound {
         if self.known < 2 {
             return TravelBound { volumes_m: 0.0, relative_m: 0.0 };
@@ -211,14 +211,14 @@ impl RegionSweep {
         TravelBound { volumes_m: self.travel_m, relative_m: self.travel_m + finite.fold(0.0, f64::max) }
     }
 
-    /// Distance (m) of the region from the guarded volumes at the last snapshot; `None` where it exceeds `limit`.
+    /// Distance (m) of the region from the guarded volumes at the last snapshot; `None` if it exceeds `limit`.
     pub fn distance(&mut self, config: &Configuration, region: RegionId, limit: f64) -> Option<f64> {
         self.place(config, region, 1.0);
         distance_to_guarded(config, &self.at, region, limit).map(|d| d.distance)
     }
 
     /// The closest approach of the region and the guarded volumes between the last two snapshots, to within `resolution_m`
-    /// (m). `None` where it is not below `below_m` and below the distances at both ends, or the motion is not known.
+    /// (m). `None` if it is not below `below_m` and below the distances at both ends, or the motion is not known.
     pub fn closest_approach(
         &mut self,
         config: &Configuration,

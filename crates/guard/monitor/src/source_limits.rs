@@ -49,7 +49,7 @@ pub struct SourceLimits {
     pub speed_m_s: f64,
     /// Largest turning rate, rad/s. By default 20: about three turns per second.
     pub turn_rad_s: f64,
-    /// Travel (m, in the world) after which the reading wraps around, as that of an encoder: a step back by it is no jump.
+    /// Travel (m, in the world) after which the reading wraps around, as that of an encoder: a step back by it is not a jump.
     pub wrap_m: Option<Vec3>,
 }
 

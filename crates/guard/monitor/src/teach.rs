@@ -15,7 +15,7 @@ const UPRIGHT_SINE: f64 = 0.087;
 /// A sphere from its centre and one point of its surface (m).
 ///
 /// # Errors
-/// [`TeachError`] where the two coincide.
+/// [`TeachError`] if the two coincide.
 ///
 /// ```
 /// use elbowroom_monitor::teach;
@@ -75,7 +75,7 @@ pub fn plane(name: &str, origin: Vec3, on_x: Vec3, in_xy: Vec3) -> Result<Region
 /// A box parallel to the world's axes from two opposite corners (m).
 ///
 /// # Errors
-/// [`TeachError`] where an edge has no length.
+/// [`TeachError`] if an edge has no length.
 pub fn cuboid_from_corners(name: &str, from: Vec3, to: Vec3) -> Result<Region, TeachError> {
     require_distinct([(TaughtPoint::FirstCorner, from), (TaughtPoint::SecondCorner, to)])?;
     let size = (to - from).abs();
@@ -90,7 +90,7 @@ pub fn cuboid_from_corners(name: &str, from: Vec3, to: Vec3) -> Result<Region, T
 /// the corners ([`height_direction`]).
 ///
 /// # Errors
-/// [`TeachError`] where the corners lie on a line or the height is zero.
+/// [`TeachError`] if the corners lie on a line or the height is zero.
 ///
 /// ```
 /// use elbowroom_monitor::teach;
@@ -145,7 +145,7 @@ pub struct HeightDirection {
 /// the first edge (corner to `along`) × the second (corner to `across`), a negative one against it.
 ///
 /// # Errors
-/// [`TeachError`] where the corners coincide or lie on a line.
+/// [`TeachError`] if the corners coincide or lie on a line.
 pub fn height_direction(corner: Vec3, along: Vec3, across: Vec3, height: f64) -> Result<HeightDirection, TeachError> {
     require_distinct([
         (TaughtPoint::FirstCorner, corner),

@@ -152,7 +152,7 @@ impl Watchdog {
         if self.needs_motion { &self.velocity } else { &[] }
     }
 
-    /// The velocities of the last valid snapshot are those of some instant within this time (s) before it; 0 where they were
+    /// The velocities of the last valid snapshot are those of some instant within this time (s) before it; 0 if they were
     /// given.
     pub(crate) fn velocity_uncertain_s(&self) -> f64 {
         self.derived_over_s

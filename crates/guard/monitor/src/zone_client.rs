@@ -121,7 +121,7 @@ impl ZoneClient {
         }
     }
 
-    /// The grants that the caller writes; `None` where the robots share an arbiter.
+    /// The grants that the caller writes; `None` if the robots share an arbiter.
     pub(crate) fn slot_grants(&self) -> Option<&SlotGrants> {
         if let Interlock::Granted(grants) = &self.interlock { Some(grants) } else { None }
     }

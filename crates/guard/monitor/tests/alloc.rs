@@ -146,7 +146,7 @@ fn guarded() {
         let state = robot.state(now);
         decode_state(state, &mut message).expect("a state");
         allocations += counter.changes();
-        // The arbiter allocates: it is no part of the tick of a robot.
+        // The arbiter allocates: it is not part of the tick of a robot.
         let replies = arbiter.receive(&message, now).replies;
         let counter = AllocationCounter::start();
         for reply in &replies {

@@ -8,7 +8,7 @@ const STEP: f64 = 1e-4;
 /// The margin to the nearest border, and how the joints change it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Border<'a> {
-    /// Distance to the border less what is kept from it, m; negative where it is less.
+    /// Distance to the border less what is kept from it, m; negative if it is less.
     pub margin_m: f64,
     /// Its gradient, m per rad (or m) of each joint.
     pub gradient: &'a [f64],
@@ -26,7 +26,7 @@ impl BorderQuery {
         Self { q: vec![0.0; joints], gradient: vec![0.0; joints] }
     }
 
-    /// The border at `q`; `None` where it is farther than `reach_m`, or where its distance is not a number.
+    /// The border at `q`; `None` if it is farther than `reach_m`, or where its distance is not a number.
     pub(crate) fn near(&mut self, constraint: &mut dyn PathConstraint, q: &[f64], reach_m: f64) -> Option<Border<'_>> {
         let margin_m = constraint.margin_m(q, reach_m);
         if !(margin_m <= reach_m) {

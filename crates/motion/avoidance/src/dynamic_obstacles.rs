@@ -10,7 +10,7 @@ pub struct ObservedObject {
     pub object: ObjectId,
     /// Pose of the object.
     pub in_world: Pose,
-    /// Motion of the object; [`FrameMotion::REST`] where it is stationary.
+    /// Motion of the object; [`FrameMotion::REST`] if it is stationary.
     pub motion: FrameMotion,
     /// True if the path was planned with it: it is kept clear of and not evaded.
     pub known: bool,

@@ -67,7 +67,7 @@ pub(crate) struct MotionCheck {
     pub(crate) hit: Option<PredictedHit>,
     /// All of the motion was checked, up to the hit.
     pub(crate) is_complete: bool,
-    /// Smallest distance at the instants that were measured, m; infinite where nothing comes near.
+    /// Smallest distance at the instants that were measured, m; infinite if nothing comes near.
     pub(crate) gap_m: f64,
 }
 

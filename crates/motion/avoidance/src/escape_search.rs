@@ -7,7 +7,6 @@
 //!
 //! [`escape_targets`]: crate::escape_targets
 
-use elbowroom_kinematics::ChainState;
 use elbowroom_planner::PathConstraint;
 use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_scene::{Attachment, Scene, SceneError};
@@ -17,14 +16,11 @@ use crate::DynamicObstacles;
 use crate::escape_check::{EscapeCheck, EscapeClearance, MotionCheck, PredictedHit, TimedMotion, moves, robot_moves};
 use crate::escape_targets::{EscapeDirections, target};
 use crate::escape_trajectory::{EscapeStart, EscapeTrajectory};
+use crate::escape_trial::{EscapeCandidate, EscapeTrial};
 use crate::escape_work::EscapeWork;
+use crate::hit_point::HitPoint;
+use crate::known_escape::KnownEscape;
 
-/// Gap beyond which escapes are equally good, m.
-const ENOUGH_GAP_M: f64 = 0.15;
-/// Difference of gaps by which another escape is better, m.
-const BETTER_GAP_M: f64 = 0.02;
-/// Difference of durations by which another escape is better at the same gap, s.
-const BETTER_DURATION_S: f64 = 0.2;
 /// Moving obstacles are on a collision course where they come nearer to a robot that stops now than this many clearances …
 const COURSE_CLEARANCES: f64 = 3.0;
 /// … and remain so until they keep this many, so that the decision does not change with every tick.
@@ -110,36 +106,25 @@ pub(crate) struct EscapeSearch<'s> {
     /// Configuration at the start of the robot's program.
     home_q: Vec<f64>,
     /// The robot after the command.
-    next_q: Vec<f64>,
-    next_qd: Vec<f64>,
+    next: NextState,
     stop: EscapeTrajectory,
-    trial: EscapeTrajectory,
-    best: Option<EscapeCandidate>,
-    trial_target: Vec<f64>,
-    /// The escape that is known: it begins after the last command.
-    known: EscapeTrajectory,
-    known_target: Vec<f64>,
-    is_known: bool,
-    /// The known escape begins at the present state.
-    is_fresh: bool,
+    trial: EscapeTrial,
+    known: KnownEscape,
     /// What the last examined tick found, and the ticks until the next one.
     state: EscapeState,
     pause: usize,
     course: ObstacleCourse,
-    /// Time since the robot follows it, s; `None` where it does not.
-    followed_s: Option<f64>,
-    /// Number of the next target.
-    index: usize,
-    /// The next target was begun before.
-    is_repeated: bool,
     /// Work at the beginning of the tick.
     begin: EscapeWork,
-    /// Number of ticks in which the known escape was examined.
-    examined: usize,
-    chain: ChainState,
-    columns: Vec<[f64; 6]>,
-    point: Vec<Vec3>,
+    point: HitPoint,
     rest_q: Vec<f64>,
+}
+
+/// Positions (rad or m) and velocities.
+#[derive(Debug)]
+struct NextState {
+    q: Vec<f64>,
+    qd: Vec<f64>,
 }
 
 /// What the last examined tick found of all that moves and is evaded.
@@ -151,53 +136,24 @@ enum ObstacleCourse {
     Passing,
 }
 
-/// Quality of an escape.
-#[derive(Debug, Clone, Copy)]
-struct EscapeCandidate {
-    gap_m: f64,
-    duration_s: f64,
-}
-
-impl EscapeCandidate {
-    /// Largest gap first, as far as it matters, then the least time.
-    fn is_better_than(&self, other: &Self) -> bool {
-        let [own, others] = [self, other].map(|e| e.gap_m.min(ENOUGH_GAP_M));
-        own > others + BETTER_GAP_M
-            || (own > others - BETTER_GAP_M && self.duration_s < other.duration_s - BETTER_DURATION_S)
-    }
-}
-
 impl<'s> EscapeSearch<'s> {
     pub(crate) fn new(scene: &'s Scene, robot: RobotId, q: &[f64], settings: EscapeSettings) -> Self {
         let n = q.len();
-        let trajectory = || EscapeTrajectory::new(n);
         Self {
             scene,
             robot,
             settings,
             check: EscapeCheck::new(scene, robot),
             home_q: q.to_vec(),
-            next_q: q.to_vec(),
-            next_qd: vec![0.0; n],
-            stop: trajectory(),
-            trial: trajectory(),
-            best: None,
-            trial_target: q.to_vec(),
-            known: trajectory(),
-            known_target: q.to_vec(),
-            is_known: false,
-            is_fresh: false,
+            next: NextState { q: q.to_vec(), qd: vec![0.0; n] },
+            stop: EscapeTrajectory::new(n),
+            trial: EscapeTrial::new(q),
+            known: KnownEscape::new(q),
             state: EscapeState::Free,
             pause: 0,
             course: ObstacleCourse::Collision,
-            followed_s: None,
-            index: 0,
-            is_repeated: false,
             begin: EscapeWork::default(),
-            examined: 0,
-            chain: ChainState::new(&scene.robots()[robot.0].robot.chain),
-            columns: vec![[0.0; 6]; n],
-            point: vec![Vec3::ZERO; n],
+            point: HitPoint::new(&scene.robots()[robot.0].robot.chain),
             rest_q: q.to_vec(),
         }
     }
@@ -216,13 +172,9 @@ impl<'s> EscapeSearch<'s> {
 
     /// Forgets all that was found.
     pub(crate) fn reset(&mut self) {
-        self.forget_escape();
+        self.known.forget();
         (self.state, self.pause) = (EscapeState::Free, 0);
         self.course = ObstacleCourse::Collision;
-    }
-
-    fn forget_escape(&mut self) {
-        (self.is_known, self.followed_s) = (false, None);
     }
 
     /// False if all that moves and is evaded is predicted to pass a robot that stops.
@@ -240,20 +192,20 @@ impl<'s> EscapeSearch<'s> {
         self.begin = self.check.work();
         let evaded_moves = tick.obstacles.objects.iter().any(|o| !o.known && moves(o))
             || tick.obstacles.robots.iter().any(|n| !n.known && n.robot != self.robot && robot_moves(n));
-        let is_needed = evaded_moves || self.followed_s.is_some();
+        let is_needed = evaded_moves || self.known.followed_s.is_some();
         if self.settings.horizon_s <= 0.0 || !is_needed || tick.start.speed_share <= 0.0 {
             self.reset();
             return EscapeState::Free;
         }
-        if self.pause > 0 && self.followed_s.is_none() {
+        if self.pause > 0 && self.known.followed_s.is_none() {
             self.pause -= 1;
-            self.is_fresh = false;
+            self.known.is_fresh = false;
             return self.state;
         }
         // A scene that cannot be checked has no escape: the rules remain.
         let state = self.examine(tick, &mut constraint, next).unwrap_or(EscapeState::Unknown);
         if state == EscapeState::Free {
-            self.forget_escape();
+            self.known.forget();
         }
         self.state = state;
         // An error was reported above: poses that can be placed can be placed again.
@@ -275,24 +227,25 @@ impl<'s> EscapeSearch<'s> {
         let hit = self.stop_hit(tick, clearance.moving_m)?;
         let is_unhurried = hit.is_none_or(|hit| hit.time_s > UNHURRIED_S);
         self.pause = if is_unhurried { PAUSE_TICKS } else { 0 };
-        self.followed_s = self.followed_s.filter(|s| self.is_known && self.is_on_escape(tick, *s));
+        self.known.followed_s = self.known.followed_s.filter(|s| self.known.is_proven && self.is_on_escape(tick, *s));
         self.set_deadline(1.0);
-        if let Some(followed_s) = self.followed_s
+        if let Some(followed_s) = self.known.followed_s
             && (hit.is_some() || !tick.can_stop)
         {
             return self.follow(tick, followed_s, hit, clearance, constraint, next);
         }
         let Some(hit) = hit else { return Ok(EscapeState::Free) };
         // What has to be proven again if nothing is found needs its part of the work.
-        let has_to_be_proven = self.is_known && !self.is_fresh;
+        let has_to_be_proven = self.known.is_proven && !self.known.is_fresh;
         self.set_deadline(if has_to_be_proven { FIND_SHARE } else { 1.0 });
         if self.find(tick, &hit, clearance, constraint)? {
             return Ok(EscapeState::Known);
         }
         self.set_deadline(1.0);
         // The command would lose the last escape: the robot takes it.
-        self.is_known = self.is_known && (self.is_fresh || self.is_free_from_now(tick, clearance, constraint)?);
-        if self.is_known {
+        self.known.is_proven =
+            self.known.is_proven && (self.known.is_fresh || self.is_free_from_now(tick, clearance, constraint)?);
+        if self.known.is_proven {
             return self.follow(tick, 0.0, Some(hit), clearance, constraint, next);
         }
         Ok(EscapeState::Unknown)
@@ -316,9 +269,9 @@ impl<'s> EscapeSearch<'s> {
         clearance: EscapeClearance,
         constraint: &mut Option<&mut dyn PathConstraint>,
     ) -> Result<bool, SceneError> {
-        self.known.set_target(&self.known_target, &tick.start);
+        self.known.trajectory.set_target(&self.known.target, &tick.start);
         let horizon_s = self.settings.horizon_s;
-        let motion = TimedMotion { trajectory: &self.known, elapsed_s: 0.0, begins_s: 0.0, horizon_s };
+        let motion = TimedMotion { trajectory: &self.known.trajectory, elapsed_s: 0.0, begins_s: 0.0, horizon_s };
         Ok(self.check.meets_moving(&motion, tick.obstacles, clearance.moving_m, |_| true)?.is_free()
             && self.check.keeps_clear_of_fixed(&motion, tick.obstacles, clearance.fixed_m)?
             && constraint.as_deref_mut().is_none_or(|c| self.check.keeps_constraint(&motion, c)))
@@ -327,8 +280,8 @@ impl<'s> EscapeSearch<'s> {
     /// The robot after a command.
     fn set_next(&mut self, tick: &EscapeTick<'_>, next: &[f64]) {
         for (j, limit) in tick.start.limits.iter().enumerate() {
-            self.next_q[j] = (tick.start.q[j] + next[j] * tick.dt).clamp(limit.lower, limit.upper);
-            self.next_qd[j] = next[j];
+            self.next.q[j] = (tick.start.q[j] + next[j] * tick.dt).clamp(limit.lower, limit.upper);
+            self.next.qd[j] = next[j];
         }
     }
 
@@ -357,7 +310,7 @@ impl<'s> EscapeSearch<'s> {
 
     /// Checks a stop after the command from `from_s` on.
     fn check_stop(&mut self, tick: &EscapeTick<'_>, from_s: f64, clearance_m: f64) -> Result<MotionCheck, SceneError> {
-        let start = EscapeStart { q: &self.next_q, qd: &self.next_qd, ..tick.start };
+        let start = EscapeStart { q: &self.next.q, qd: &self.next.qd, ..tick.start };
         self.stop.set_stop(&start);
         let horizon_s = self.settings.horizon_s - from_s;
         let motion = TimedMotion { trajectory: &self.stop, elapsed_s: from_s, begins_s: tick.dt + from_s, horizon_s };
@@ -365,7 +318,7 @@ impl<'s> EscapeSearch<'s> {
     }
 
     fn is_on_escape(&self, tick: &EscapeTick<'_>, followed_s: f64) -> bool {
-        self.known.is_near(followed_s, tick.start.q, OFF_ESCAPE)
+        self.known.trajectory.is_near(followed_s, tick.start.q, OFF_ESCAPE)
     }
 
     /// Moves on along the known escape; another one is looked for where the prediction has changed so that it is hit.
@@ -379,19 +332,20 @@ impl<'s> EscapeSearch<'s> {
         next: &mut [f64],
     ) -> Result<EscapeState, SceneError> {
         let after_s = followed_s + tick.dt;
-        self.known.q_at(after_s, &mut self.next_q);
+        self.known.trajectory.q_at(after_s, &mut self.next.q);
         for (j, v) in next.iter_mut().enumerate() {
-            *v = (self.next_q[j] - tick.start.q[j]) / tick.dt;
-            self.next_qd[j] = *v;
+            *v = (self.next.q[j] - tick.start.q[j]) / tick.dt;
+            self.next.qd[j] = *v;
         }
-        self.followed_s = Some(after_s);
+        self.known.followed_s = Some(after_s);
         let horizon_s = self.settings.horizon_s;
-        let motion = TimedMotion { trajectory: &self.known, elapsed_s: after_s, begins_s: tick.dt, horizon_s };
+        let motion =
+            TimedMotion { trajectory: &self.known.trajectory, elapsed_s: after_s, begins_s: tick.dt, horizon_s };
         let remains = self.check.meets_moving(&motion, tick.obstacles, clearance.moving_m, |_| true)?;
         if let Some(hit) = remains.hit
             && self.find(tick, &stop_hit.unwrap_or(hit), clearance, constraint)?
         {
-            self.followed_s = Some(0.0);
+            self.known.followed_s = Some(0.0);
         }
         Ok(EscapeState::Escaping)
     }
@@ -404,16 +358,16 @@ impl<'s> EscapeSearch<'s> {
         clearance: EscapeClearance,
         constraint: &mut Option<&mut dyn PathConstraint>,
     ) -> Result<bool, SceneError> {
-        self.best = None;
+        self.trial.best = None;
         let mut attempts = self.settings.per_tick;
-        if self.is_known {
-            self.trial_target.copy_from_slice(&self.known_target);
+        if self.known.is_proven {
+            self.trial.target.copy_from_slice(&self.known.target);
             self.examine_trial(tick, clearance, constraint)?;
             // One other, in case it is better.
-            if self.best.is_some() {
-                self.examined += 1;
-                let may_improve = self.best.is_some_and(|b| b.gap_m < ENOUGH_GAP_M);
-                attempts = usize::from(may_improve && self.examined.is_multiple_of(IMPROVE_TICKS));
+            if self.trial.best.is_some() {
+                self.known.examined += 1;
+                let may_improve = self.trial.best.is_some_and(|best| best.may_improve());
+                attempts = usize::from(may_improve && self.known.examined.is_multiple_of(IMPROVE_TICKS));
             }
         }
         if attempts > 0 {
@@ -426,10 +380,10 @@ impl<'s> EscapeSearch<'s> {
             self.set_trial_target(tick, hit);
             self.examine_trial(tick, clearance, constraint)?;
             // One that was not examined to its end is examined once more, in a later tick, with more of the tick's work.
-            self.is_repeated = self.check.is_overdue() && !self.is_repeated;
-            self.index -= usize::from(self.is_repeated);
+            self.trial.is_repeated = self.check.is_overdue() && !self.trial.is_repeated;
+            self.trial.index -= usize::from(self.trial.is_repeated);
         }
-        Ok(self.best.is_some())
+        Ok(self.trial.best.is_some())
     }
 
     /// Examines the trial target; the best one becomes the known escape.
@@ -439,13 +393,13 @@ impl<'s> EscapeSearch<'s> {
         clearance: EscapeClearance,
         constraint: &mut Option<&mut dyn PathConstraint>,
     ) -> Result<(), SceneError> {
-        let start = EscapeStart { q: &self.next_q, qd: &self.next_qd, ..tick.start };
-        self.trial.set_target(&self.trial_target, &start);
+        let start = EscapeStart { q: &self.next.q, qd: &self.next.qd, ..tick.start };
+        self.trial.trajectory.set_target(&self.trial.target, &start);
         let horizon_s = self.settings.horizon_s;
-        let motion = TimedMotion { trajectory: &self.trial, elapsed_s: 0.0, begins_s: tick.dt, horizon_s };
+        let motion = TimedMotion { trajectory: &self.trial.trajectory, elapsed_s: 0.0, begins_s: tick.dt, horizon_s };
         let moving = self.check.meets_moving(&motion, tick.obstacles, clearance.moving_m, |_| true)?;
-        let escape = EscapeCandidate { gap_m: moving.gap_m, duration_s: self.trial.duration_s };
-        let is_worse = self.best.is_some_and(|best| !escape.is_better_than(&best));
+        let escape = EscapeCandidate { gap_m: moving.gap_m, duration_s: self.trial.trajectory.duration_s };
+        let is_worse = self.trial.best.is_some_and(|best| !escape.is_better_than(&best));
         if !moving.is_free()
             || is_worse
             || !self.check.keeps_clear_of_fixed(&motion, tick.obstacles, clearance.fixed_m)?
@@ -453,38 +407,31 @@ impl<'s> EscapeSearch<'s> {
         {
             return Ok(());
         }
-        self.best = Some(escape);
-        (self.is_known, self.is_fresh) = (true, true);
-        std::mem::swap(&mut self.known, &mut self.trial);
-        self.known_target.copy_from_slice(&self.trial_target);
+        self.trial.best = Some(escape);
+        (self.known.is_proven, self.known.is_fresh) = (true, true);
+        std::mem::swap(&mut self.known.trajectory, &mut self.trial.trajectory);
+        self.known.target.copy_from_slice(&self.trial.target);
         Ok(())
     }
 
     /// Updates the velocity of the point that is hit, per joint at its top speed.
     fn update_point(&mut self, tick: &EscapeTick<'_>, hit: &PredictedHit) {
         let robot = &self.scene.robots()[self.robot.0];
-        let chain = &robot.robot.chain;
-        self.stop.q_at(hit.time_s, &mut self.chain.q);
-        chain.forward(&mut self.chain);
         let in_root = robot.base_in_world.inverse_transform_point(hit.point);
-        let in_link = self.chain.link_in_root(hit.link).inverse().transform_point(in_root);
-        chain.jacobian(&self.chain, hit.link, in_link, &mut self.columns);
-        for (j, point) in self.point.iter_mut().enumerate() {
-            let c = &self.columns[j];
-            *point = Vec3::new(c[0], c[1], c[2]) * tick.start.limits[j].speed;
-        }
+        let speeds = tick.start.limits.iter().map(|limit| limit.speed);
+        self.point.update(&robot.robot.chain, |q| self.stop.q_at(hit.time_s, q), (hit.link, in_root), speeds);
     }
 
     fn set_trial_target(&mut self, tick: &EscapeTick<'_>, hit: &PredictedHit) {
         let base = self.scene.robots()[self.robot.0].base_in_world;
         let directions = EscapeDirections {
-            point: &self.point,
+            point: &self.point.velocity,
             at: base.inverse_transform_point(hit.point),
             along: base.inverse_transform_vector(hit.velocity).try_normalize().unwrap_or(Vec3::X),
         };
         self.stop.q_at(self.stop.duration_s, &mut self.rest_q);
         let homes = [tick.reference_q, &self.home_q];
-        target(self.index, &self.rest_q, &tick.start, &directions, homes, &mut self.trial_target);
-        self.index += 1;
+        target(self.trial.index, &self.rest_q, &tick.start, &directions, homes, &mut self.trial.target);
+        self.trial.index += 1;
     }
 }

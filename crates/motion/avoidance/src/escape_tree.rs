@@ -28,7 +28,7 @@ const UNLIMITED: f64 = 6.3;
 pub struct EscapeTreeReport {
     /// Number of motions that were tried.
     pub tries: usize,
-    /// Smallest distance on the escape, m; `None` where none was found.
+    /// Smallest distance on the escape, m; `None` if none was found.
     pub gap_m: Option<f64>,
     /// The longest time without a hit, s: the horizon where an escape was found.
     pub longest_s: f64,

@@ -147,7 +147,7 @@ pub(crate) fn distance_s(to: &[f64], from: &[f64], limits: &[JointLimit]) -> f64
     to.iter().zip(from).zip(limits).map(|((a, b), l)| (a - b).abs() / l.speed).fold(0.0, f64::max)
 }
 
-/// Component of a velocity along the desired velocity, as a fraction of it, in the norm of the joints' speeds; 1 where the
+/// Component of a velocity along the desired velocity, as a fraction of it, in the norm of the joints' speeds; 1 if the
 /// desired velocity is 0.
 pub(crate) fn progress(velocity: &[f64], desired: &[f64], limits: &[JointLimit]) -> f64 {
     let along =

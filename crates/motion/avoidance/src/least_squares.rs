@@ -36,7 +36,7 @@ pub struct SoftConstraint {
 }
 
 impl SoftConstraint {
-    /// The residual at `x`; 0 where an inequality is satisfied.
+    /// The residual at `x`; 0 if an inequality is satisfied.
     pub fn residual(&self, x: &[f64]) -> f64 {
         let residual = dot(&self.a, x) - self.b;
         if self.at_least { residual.min(0.0) } else { residual }
@@ -105,7 +105,7 @@ impl LeastSquares {
         self.used = 0;
     }
 
-    /// Adds a constraint for the caller to fill in; `None` where the capacity is exhausted.
+    /// Adds a constraint for the caller to fill in; `None` if the capacity is exhausted.
     pub fn add_constraint(&mut self) -> Option<&mut SoftConstraint> {
         let constraint = self.constraints.get_mut(self.used)?;
         self.used += 1;

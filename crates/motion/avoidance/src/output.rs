@@ -34,7 +34,7 @@ pub struct AvoiderOutput {
     pub state: AvoiderState,
     /// The reaction of the reactive controller.
     pub reaction: Reaction,
-    /// Distance to the nearest dynamic obstacle, m; infinite where none is near.
+    /// Distance to the nearest dynamic obstacle, m; infinite if none is near.
     pub nearest_m: f64,
     /// The key of the dynamic obstacle that requested the largest correction.
     pub governed_by: Option<usize>,

@@ -61,7 +61,7 @@ impl Grid {
         self.axes[0].count() * self.axes[1].count()
     }
 
-    /// The cell of a configuration (radians), `None` where a joint is outside its limits or NaN.
+    /// The cell of a configuration (radians), `None` if a joint is outside its limits or NaN.
     pub fn cell(&self, q: [f64; 3]) -> Option<CellIndex> {
         let cell = |i: usize| self.axes[i].cell(q[i]).map(|c| c as u16);
         Some([cell(0)?, cell(1)?, cell(2)?])

@@ -74,7 +74,7 @@ impl JointMap {
         self.map.set_layer(name, layer)
     }
 
-    /// Removes an obstacle; `None` where there is none of this name.
+    /// Removes an obstacle; `None` if there is none of this name.
     pub fn remove_obstacle(&mut self, name: &str) -> Option<&CellChanges> {
         self.map.remove(name)
     }

@@ -101,7 +101,7 @@ impl LayerMap {
         &self.changes
     }
 
-    /// Removes an obstacle; `None` where there is none of this name.
+    /// Removes an obstacle; `None` if there is none of this name.
     pub fn remove(&mut self, name: &str) -> Option<&CellChanges> {
         let index = self.layers.iter().position(|(other, _)| other == name)?;
         let old = std::mem::take(&mut self.layers[index].1);

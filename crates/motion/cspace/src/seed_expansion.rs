@@ -28,7 +28,7 @@ pub struct SeedExpansion {
 ///
 /// A cell is tested by comparing the distance at its centre with a bound of the displacement of each link within its half
 /// widths. The result is conservative *around a seed*; components of the blocked region without a seed are missed (joint
-/// limits can separate them), which is why the result is no [`Layer`](crate::Layer): no map that guards takes it.
+/// limits can separate them), which is why the result is not a [`Layer`](crate::Layer): no map that guards takes it.
 /// [`CoverMapBuilder::expand_from_seeds`](crate::CoverMapBuilder::expand_from_seeds) does the same for any robot.
 ///
 /// ```

@@ -6,7 +6,7 @@ use elbowroom_vision::Point2;
 
 /// A rectangle around the footprint is enough where it is larger by no more than this share.
 const LARGER_SHARE: f64 = 0.1;
-/// Slabs of a footprint that is no rectangle.
+/// Slabs of a footprint that is not a rectangle.
 const SLABS: usize = 4;
 /// Boxes are larger by this, m: for rounding.
 const ROUNDING_M: f64 = 1e-9;

@@ -63,7 +63,7 @@ impl RobotPrisms {
         Ok(changed)
     }
 
-    /// Frees the cells of an obstacle; `None` where it has none.
+    /// Frees the cells of an obstacle; `None` if it has none.
     pub fn remove(&mut self, id: ObstacleId) -> Option<Changed> {
         let at = self.parts.iter().position(|(known, _)| *known == id)?;
         let mut changed = Changed::default();

@@ -107,7 +107,7 @@ fn rejected_frames_have_a_reason_and_free_no_cells() {
     assert!(refuse(&stamped(f64::NAN), &q).contains("NaN"));
     assert!(refuse(&empty, &q[..5]).contains("5 joint values"));
     assert!(refuse(&empty, &[f64::NAN; 6]).contains("finite"));
-    // A white picture is no view of the cell: it is rejected, and its status says why.
+    // A white picture is not a view of the cell: it is rejected, and its status says why.
     let mut white = stamped(empty.stamp_s);
     white.pixels_mut().fill(255);
     let update = cell.watcher.process_frame(&white, &[&q]).unwrap();

@@ -165,7 +165,7 @@ impl GridPlanner {
             + self.cells.capacity() * size_of::<CellIndex>()
     }
 
-    /// Nodes that the last search expanded; 0 where there was line of sight.
+    /// Nodes that the last search expanded; 0 if there was line of sight.
     pub fn expanded_nodes(&self) -> usize {
         self.search.expanded_nodes
     }

@@ -41,7 +41,7 @@ fn halves_are_free(occupancy: &OccupancyBitmap, [a, b, c]: [GridPoint; 3], depth
     halves_are_free(occupancy, [p, middle, tip], depth - 1) && halves_are_free(occupancy, [middle, q, tip], depth - 1)
 }
 
-/// Halves a blend distance until its triangle is free; 0 where none is.
+/// Halves a blend distance until its triangle is free; 0 if none is.
 fn free_blend_distance(from: f64, mut is_free: impl FnMut(f64) -> bool) -> f64 {
     let halves = (0..MAX_HALVINGS).map(|n| from * 0.5_f64.powi(n));
     halves.into_iter().find(|&blend_distance| is_free(blend_distance)).unwrap_or(0.0)

@@ -50,7 +50,7 @@ pub struct OrientationConstraint {
 
 impl OrientationConstraint {
     /// Keeps `axis_in_link` within `tolerance_rad` of `direction_in_world`. Directions need not have length 1; one without length, or
-    /// a tolerance that is no number above 0, is violated everywhere.
+    /// a tolerance that is not a number above 0, is violated everywhere.
     ///
     /// # Panics
     /// The scene has no such robot, or the robot no such link.

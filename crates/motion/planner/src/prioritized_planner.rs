@@ -24,7 +24,7 @@ const DELAY_STEP_S: f64 = 0.05;
 
 /// Gives each of several robots the constraint on its paths.
 pub trait PathConstraintSource {
-    /// The constraint of a robot; `None` where its paths have none.
+    /// The constraint of a robot; `None` if its paths have none.
     fn constraint_of(&self, robot: RobotId) -> Option<Box<dyn PathConstraint + '_>>;
 }
 

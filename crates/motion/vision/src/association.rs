@@ -226,7 +226,7 @@ impl Association {
     }
 }
 
-/// Sum of the differences in position, area and brightness, each scaled to about 1 where the match is doubtful.
+/// Sum of the differences in position, area and brightness, each scaled to about 1 if the match is doubtful.
 fn cost(track: &TrackPrediction, detection: &Detection, distance: f64) -> f64 {
     let area = (track.area.max(MIN_AREA_M2) / detection.area.max(MIN_AREA_M2)).ln().abs();
     let brightness = (track.brightness - detection.brightness).abs();

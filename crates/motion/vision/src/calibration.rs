@@ -29,7 +29,7 @@ impl Calibration {
         }
     }
 
-    /// The point of the floor (at height `floor_z_m`) that a pixel shows; `None` where it shows no floor, or without
+    /// The point of the floor (at height `floor_z_m`) that a pixel shows; `None` if it shows no floor, or without
     /// calibration.
     pub fn pixel_to_floor(&self, point_px: Point2, floor_z_m: f64) -> Option<Point2> {
         match self {

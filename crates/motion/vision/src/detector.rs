@@ -9,7 +9,7 @@ const MAX_PIECE_PX: f64 = 12.0;
 /// Samples of the brightness along each side of a blob; the outer quarters, which may show floor, are left out.
 const BRIGHTNESS_SAMPLES: usize = 16;
 
-/// Pixels that the arm occludes: all 0 where there are none.
+/// Pixels that the arm occludes: all 0 if there are none.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct OcclusionMask<'a> {
     pub(crate) plane: &'a [u8],

@@ -44,7 +44,7 @@ pub(crate) struct IlluminationEstimator {
 
 impl IlluminationEstimator {
     /// The illumination of a plane of an image that is `width` wide; `frozen` pixels are left out. The line of the frame
-    /// before, `previous`, is one of the candidates. `None` where there are too few samples. With it, the mean learnt level (grey
+    /// before, `previous`, is one of the candidates. `None` if there are too few samples. With it, the mean learnt level (grey
     /// levels) of the pixels that follow it.
     pub(crate) fn estimate(
         &mut self,

@@ -67,7 +67,7 @@
 //! - *Camouflage.* What differs from the floor by less than [`CameraTrackerSettings::min_difference`] (or than its noise)
 //!   is not detected; with [`CameraTrackerSettings::shadows`], neither is an evenly coloured object on an evenly coloured
 //!   floor that is as dark as a shadow. The gain of the whole image is estimated in each frame, so a change of
-//!   illumination common to all pixels is no foreground.
+//!   illumination common to all pixels is not foreground.
 //! - *Touching objects* are divided along an estimated line; together they cover all of the foreground, and each is as
 //!   high as the highest of them.
 //!
@@ -80,6 +80,7 @@
 
 mod association;
 mod background;
+mod background_subtractor;
 mod calibration;
 mod camera;
 mod camera_tracker;

@@ -66,7 +66,7 @@ fn push_left_turn(hull: &mut Vec<Point2>, base: usize, p: Point2) {
     hull.push(p);
 }
 
-/// Area of a polygon; negative where it runs clockwise.
+/// Area of a polygon; negative if it runs clockwise.
 pub fn area(polygon: &[Point2]) -> f64 {
     let Some(&o) = polygon.first() else { return 0.0 };
     polygon.windows(2).map(|w| (w[0] - o).cross(w[1] - o)).sum::<f64>() / 2.0

@@ -1,7 +1,7 @@
 //! Shadow detection: a shadow dims the floor by one ratio and keeps its texture and its colour.
 //!
 //! The ratio alone would accept every grey object. Around each candidate pixel nine samples are compared with the
-//! background times their common ratio, in each plane: where they do not follow the texture, or where the planes' ratios
+//! background times their common ratio, in each plane: if they do not follow the texture, or where the planes' ratios
 //! differ, the pixel is foreground.
 
 use crate::ShadowSettings;
@@ -65,7 +65,7 @@ fn is_shadow(input: &ShadowInput<'_>, class: &[u8], settings: &ShadowSettings, x
     most - least <= settings.max_tint as f32
 }
 
-/// The ratio of the image to the background at the samples; `None` where the texture differs.
+/// The ratio of the image to the background at the samples; `None` if the texture differs.
 fn common_ratio(input: &ShadowInput<'_>, plane: usize, samples: &[usize], max_error: f32) -> Option<f32> {
     let pixels = &input.pixels[plane * input.width * input.height..];
     let (gain, offset) = (input.illumination[plane].gain as f32, input.illumination[plane].offset as f32);

@@ -52,7 +52,7 @@ impl Affine {
         Vec3::from(self.0.map(|row| row[c]))
     }
 
-    /// The inverse; `None` where the linear part is singular, or nearly: where the volume of its axes is at most 1e-9 of the
+    /// The inverse; `None` if the linear part is singular, or nearly: where the volume of its axes is at most 1e-9 of the
     /// product of their lengths.
     pub(crate) fn inverse(&self) -> Option<Self> {
         let (x, y, z) = (self.column(0), self.column(1), self.column(2));

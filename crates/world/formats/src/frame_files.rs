@@ -69,7 +69,7 @@ pub struct FrameFile {
 /// ```
 ///
 /// # Errors
-/// [`FormatError`] where the folder has no picture, or the times are missing, incomplete or do not rise.
+/// [`FormatError`] if the folder has no picture, or the times are missing, incomplete or do not rise.
 pub fn read(folder: &Path, kind: FrameKind) -> Result<(Vec<FrameFile>, Vec<Warning>)> {
     let pictures = files(folder, kind)?;
     let file = folder.join(TIMES);

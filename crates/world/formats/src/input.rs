@@ -18,7 +18,7 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>, FormatError> {
 /// Reads a regular file whole; refuses directories, devices and pipes, which may never end.
 ///
 /// # Errors
-/// A file that cannot be read, is no regular file, or has more than `max_bytes` bytes; `smaller` is then the hint.
+/// A file that cannot be read, is not a regular file, or has more than `max_bytes` bytes; `smaller` is then the hint.
 pub fn read_file(path: &Path, max_bytes: u64, smaller: &str) -> Result<Vec<u8>, FormatError> {
     let cannot = |e: std::io::Error| FormatError::unreadable(path, &e, "the path of a file that is there");
     let meta = std::fs::metadata(path).map_err(cannot)?;
@@ -84,7 +84,7 @@ pub fn planning_scene_hint(file: &Path) -> Option<String> {
     })
 }
 
-/// The text of a file: UTF-8; UTF-16 with a byte order mark or as XML; Latin-1 where the XML declaration states it.
+/// The text of a file: UTF-8; UTF-16 with a byte order mark or as XML; Latin-1 if the XML declaration states it.
 pub(crate) fn text<'a>(bytes: &'a [u8], file: &Path) -> Result<Cow<'a, str>, FormatError> {
     if let Some(rest) = bytes.strip_prefix(b"\xef\xbb\xbf") {
         return utf8(rest, file);

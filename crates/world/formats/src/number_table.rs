@@ -91,7 +91,7 @@ impl NumberTable {
     /// The rows as times (column `t_s`) and values of some columns.
     ///
     /// # Errors
-    /// [`FormatError`] where there is no column `t_s` or no row, or where the time does not rise.
+    /// [`FormatError`] if there is no column `t_s` or no row, or where the time does not rise.
     pub fn timed(&self, columns: &[usize]) -> Result<Vec<TimedRow>> {
         let time = self.column("t_s")?;
         let mut last_s = f64::NEG_INFINITY;

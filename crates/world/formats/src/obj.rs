@@ -287,7 +287,7 @@ mod tests {
         let skipped = |line, word| (Some(line), format!("`{word}` is no OBJ statement: such lines are skipped"));
         let expected = [skipped(1, "exported"), skipped(5, "tag")];
         assert_eq!(warned, expected.each_ref().map(|(line, what)| (*line, what.as_str())));
-        // Without a vertex it is no OBJ file.
+        // Without a vertex it is not an OBJ file.
         let error = parse(b"\nhello world\n", Path::new("a.obj")).unwrap_err();
         assert!(error.line == Some(2) && error.what.contains("is this an OBJ file?"), "{error}");
     }

@@ -23,7 +23,7 @@ pub struct RecordingLayout {
     pub time: Option<String>,
     /// Unit of the time, s: 0.001 for milliseconds; `None`: seconds.
     pub time_unit_s: Option<f64>,
-    /// Time from row to row, s, where there is no column of the time.
+    /// Time from row to row, s, if there is no column of the time.
     pub period_s: Option<f64>,
     /// Joints and their columns, where these have other names. Names that differ in capitals alone are the same.
     pub columns: Vec<(String, String)>,
@@ -173,7 +173,7 @@ impl<'t> Translation<'t> {
         out
     }
 
-    /// A cell of a row; what is no number stays as it is and is refused later, with its line.
+    /// A cell of a row; what is not a number stays as it is and is refused later, with its line.
     fn cell<'c>(&self, column: usize, cell: &'c str) -> Cow<'c, str> {
         let cell = unquoted(cell);
         let cell = if self.separator == ',' { Cow::Borrowed(cell) } else { Cow::Owned(cell.replace(',', ".")) };

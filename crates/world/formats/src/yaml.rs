@@ -20,7 +20,7 @@ const MIN_COPIED: usize = 1000;
 /// The first document of a text.
 ///
 /// # Errors
-/// Text that is no YAML, keys that are no text or occur twice, merge keys, aliases that repeat more than the file has.
+/// Text that is not YAML, keys that are no text or occur twice, merge keys, aliases that repeat more than the file has.
 pub(crate) fn parse(text: &str, file: &Path) -> Result<Value, FormatError> {
     Builder::new(text, file).build(&mut |_, _| {})
 }

@@ -14,7 +14,7 @@ fn parse(name: &str, bytes: &[u8], up: UpAxis) -> LoadedMeshes {
     mesh::parse(bytes, Path::new(name), None, up).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Volume by the divergence theorem: negative where a closed mesh is inside out.
+/// Volume by the divergence theorem: negative if a closed mesh is inside out.
 fn volume(mesh: &MeshData) -> f64 {
     let v = |i: u32| mesh.vertices[i as usize];
     mesh.triangles.iter().map(|t| v(t[0]).dot(v(t[1]).cross(v(t[2]))) / 6.0).sum()
@@ -65,7 +65,7 @@ fn binary_stl_may_begin_with_solid() {
     let mut bytes = brick_stl();
     bytes[..6].copy_from_slice(b"solid ");
     assert_eq!(parse("a.stl", &bytes, UpAxis::ToZ).meshes[0].triangles.len(), 12);
-    // With bytes after its end it has not the exact size, but is no text either.
+    // With bytes after its end it has not the exact size, but is not text either.
     bytes.extend([0; 7]);
     bytes[10] = 0;
     let loaded = parse("a.stl", &bytes, UpAxis::ToZ);

@@ -106,7 +106,7 @@ impl Inspection {
     /// Inspects a URDF, a 3DS or glTF model, or a mesh file; the format is detected by content.
     ///
     /// # Errors
-    /// [`FormatError`] where the file, or a collision mesh it names, cannot be read; or where the link `tip` does not
+    /// [`FormatError`] if the file, or a collision mesh it names, cannot be read; or where the link `tip` does not
     /// exist.
     pub fn of(path: &Path, options: &InspectOptions) -> Result<Self, FormatError> {
         if is_mesh(path) { Self::of_mesh(path, options) } else { Self::of_robot(path, options) }

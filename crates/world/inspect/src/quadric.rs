@@ -41,7 +41,7 @@ impl Quadric {
         x.dot(self.times(x)) + 2.0 * self.b.dot(x) + self.c
     }
 
-    /// The minimum point; `None` where the minimum is a line or a plane, or nearly so.
+    /// The minimum point; `None` if the minimum is a line or a plane, or nearly so.
     pub fn lowest(&self) -> Option<Vec3> {
         let [xx, xy, xz, yy, yz, zz] = self.a;
         let (u, v, w) = (Vec3::new(xx, xy, xz), Vec3::new(xy, yy, yz), Vec3::new(xz, yz, zz));

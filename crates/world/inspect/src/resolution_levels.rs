@@ -84,7 +84,7 @@ pub struct HullRow {
 pub struct TrianglesRow {
     /// Number of triangles.
     pub triangles: usize,
-    /// Proven upper bound of the distance of any point of the exact surface from this mesh. Null where it is not known.
+    /// Proven upper bound of the distance of any point of the exact surface from this mesh. Null if it is not known.
     pub deviation_m: Option<f64>,
 }
 

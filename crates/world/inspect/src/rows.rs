@@ -51,7 +51,7 @@ pub struct MeshRow {
     pub closed: bool,
     /// Vertices on hairline seams that are merged within `weld_tolerance_m`; distances refer to the original faces.
     pub welded_vertices: usize,
-    /// 0 where nothing was welded.
+    /// 0 if nothing was welded.
     pub weld_tolerance_m: f64,
     /// Faces without area.
     pub degenerate: usize,

@@ -80,7 +80,7 @@ impl SceneState {
     }
 
     /// Whether a pair is tested now, and why: the [allowed collision matrix](Scene::allowed_collision_matrix), as attachments
-    /// change it. `None` where there is no such pair, as for two objects of which none is
+    /// change it. `None` if there is no such pair, as for two objects of which none is
     /// attached and that nobody edited.
     pub fn pair(&self, scene: &Scene, a: GeometryId, b: GeometryId) -> Option<(PairState, Reason)> {
         if a == b || !scene.has_shape(a) || !scene.has_shape(b) {

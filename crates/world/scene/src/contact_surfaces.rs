@@ -18,7 +18,7 @@ const CHORD_ERROR_M: f64 = 1e-4;
 pub struct SurfaceContact {
     /// Indices of the colliders of the first and the second; 0 for an object.
     pub colliders: [usize; 2],
-    /// Indices of their triangles. `None` where one collider is inside the other, where a round shape is touched outside of the
+    /// Indices of their triangles. `None` if one collider is inside the other, where a round shape is touched outside of the
     /// triangles inscribed in it, and for half-spaces.
     pub triangles: Option<[u32; 2]>,
     /// The ends of the segment in which the triangles cross, in the world, m. Where they only touch, and without triangles: a point

@@ -19,7 +19,7 @@ pub(crate) struct GeometryModel {
     hull: OnceLock<Vec<LocalShape>>,
     pub capsule: Vec<LocalShape>,
     pub cuboid: Vec<LocalShape>,
-    /// `cuboid` as an oriented box; `None` where the geometry is unbounded.
+    /// `cuboid` as an oriented box; `None` if the geometry is unbounded.
     pub obb: Option<Obb>,
     /// True if a coarse model is much cheaper than the exact one.
     pub complex: bool,
@@ -75,7 +75,7 @@ impl GeometryModel {
         }
     }
 
-    /// Upper bound (m) on the distance of any point from the origin; infinite or NaN where the geometry is unbounded.
+    /// Upper bound (m) on the distance of any point from the origin; infinite or NaN if the geometry is unbounded.
     pub fn radius(&self) -> f64 {
         self.exact.iter().map(|s| s.bounds.max_distance(Vec3::ZERO)).fold(0.0, f64::max)
     }

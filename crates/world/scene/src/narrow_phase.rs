@@ -33,7 +33,7 @@ impl<'s> PlacedModel<'s> {
         Self { model: &scene.models[model], in_world: state.in_world[model] }
     }
 
-    /// The oriented box in the world; `None` where the geometry is unbounded.
+    /// The oriented box in the world; `None` if the geometry is unbounded.
     pub fn obb(&self) -> Option<Obb> {
         self.model.obb.map(|o| Obb { pose: self.in_world * o.pose, ..o })
     }
@@ -52,7 +52,7 @@ impl NarrowPhase {
         Self { workspace: Box::default(), bounds: Vec::with_capacity(most), stats: CheckerStats::default() }
     }
 
-    /// The coarse level whose enclosures are certainly farther apart than `limit` metres; `None` where neither is.
+    /// The coarse level whose enclosures are certainly farther apart than `limit` metres; `None` if neither is.
     pub fn separated_coarsely(&mut self, a: &PlacedModel, b: &PlacedModel, limit: f64) -> Option<Level> {
         if !(a.model.complex || b.model.complex) {
             return None;
@@ -74,7 +74,7 @@ impl NarrowPhase {
         None
     }
 
-    /// Lower bound (m) on the distance by the oriented boxes; -∞ where they are no cheaper than the exact shapes.
+    /// Lower bound (m) on the distance by the oriented boxes; -∞ if they are no cheaper than the exact shapes.
     pub fn obb_distance(&mut self, a: &PlacedModel, b: &PlacedModel) -> f64 {
         match (a.obb(), b.obb()) {
             (Some(x), Some(y)) if a.model.complex || b.model.complex => {
@@ -131,7 +131,7 @@ impl NarrowPhase {
         }
     }
 
-    /// Separation of the models of a level, or `None` where it is certainly above `limit` metres.
+    /// Separation of the models of a level, or `None` if it is certainly above `limit` metres.
     pub fn separation(
         &mut self,
         a: &PlacedModel,
@@ -182,7 +182,7 @@ impl NarrowPhase {
     }
 
     /// Lower bound (m) on the distance by the box trees of the meshes down to a depth, with points of the nearest boxes; a
-    /// little more than `limit` where the bound is certainly above it. `None` where there are no such trees.
+    /// little more than `limit` where the bound is certainly above it. `None` if there are no such trees.
     pub fn box_tree_bound(
         &mut self,
         a: &PlacedModel,
@@ -241,7 +241,7 @@ impl NarrowPhase {
         near
     }
 
-    /// An upper bound (m) on the distance of the exact models; `None` where it is not cheap.
+    /// An upper bound (m) on the distance of the exact models; `None` if it is not cheap.
     pub fn upper_bound(&mut self, a: &PlacedModel, b: &PlacedModel, warm_start: &mut PairWarmStart) -> Option<f64> {
         let ([x], [y]) = (&a.model.exact[..], &b.model.exact[..]) else { return None };
         let (x_in_world, y_in_world) = (a.in_world * x.in_geometry, b.in_world * y.in_geometry);

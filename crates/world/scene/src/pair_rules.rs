@@ -64,7 +64,7 @@ impl PairRules {
         self.0.is_empty()
     }
 
-    /// The reason why the pair is skipped; `None` where the last rule for it tests it, or none names it.
+    /// The reason why the pair is skipped; `None` if the last rule for it tests it, or none names it.
     pub fn skipped(&self, a: GeometryId, b: GeometryId) -> Option<&str> {
         match self.last_state(a, b) {
             Some(PairEdit::Skip(reason)) => Some(reason),

@@ -78,7 +78,7 @@ impl Scene {
     /// [`AllowedCollisionMatrix::from_text`].
     ///
     /// # Errors
-    /// [`MatrixError::NoSuchPair`] where the matrix is one of another scene.
+    /// [`MatrixError::NoSuchPair`] if the matrix is one of another scene.
     pub fn with_allowed_collision_matrix(mut self, matrix: AllowedCollisionMatrix) -> Result<Self, MatrixError> {
         let (ours, theirs) = (self.model_matrix.entries(), matrix.entries());
         let unknown_name = |id: GeometryId| match id {
@@ -135,7 +135,7 @@ impl Scene {
         model.into_iter().flat_map(|m| m.exact.iter().map(|s| (&s.shape, s.in_geometry)))
     }
 
-    /// Padding of a link or object, m; 0 where it has no shape.
+    /// Padding of a link or object, m; 0 if it has no shape.
     pub fn padding_m(&self, id: GeometryId) -> f64 {
         self.model_of(id).map_or(0.0, |m| self.models[m].padding_m)
     }

@@ -25,7 +25,7 @@ use crate::{Scene, SceneError, SceneState};
 #[derive(Debug, Clone)]
 pub struct SceneMotion {
     chains: Vec<ChainState>,
-    /// Per object, where it is not attached.
+    /// Per object, if it is not attached.
     objects: Vec<FrameMotion>,
 }
 
@@ -67,7 +67,7 @@ impl SceneMotion {
         Ok(())
     }
 
-    /// The motion of the frame of a link or object in the world; an attached object moves with its link. `None` where the scene
+    /// The motion of the frame of a link or object in the world; an attached object moves with its link. `None` if the scene
     /// has no such link or object.
     pub fn of(&self, scene: &Scene, state: &SceneState, id: GeometryId) -> Option<FrameMotion> {
         let (robot, link) = match id {

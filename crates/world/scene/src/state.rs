@@ -169,7 +169,7 @@ impl SceneState {
         self.arrangement = other.arrangement;
     }
 
-    /// Pose of a link or object in the world; `None` where the scene has no such link or object.
+    /// Pose of a link or object in the world; `None` if the scene has no such link or object.
     pub fn pose(&self, scene: &Scene, id: GeometryId) -> Option<Pose> {
         match id {
             GeometryId::Link { robot, link } => {
@@ -184,7 +184,7 @@ impl SceneState {
         scene.robots[robot.0].base_in_world * self.chains[robot.0].link_in_root(link)
     }
 
-    /// How an object is attached; `None` where it is not.
+    /// How an object is attached; `None` if it is not.
     pub fn attachment(&self, object: ObjectId) -> Option<&Attachment> {
         self.attached.get(object.0)?.as_ref()
     }

@@ -18,7 +18,7 @@ pub struct PerLevel {
 }
 
 impl PerLevel {
-    /// The number of one level; 0 for [`Level::Auto`], which is no model of its own.
+    /// The number of one level; 0 for [`Level::Auto`], which is not a model of its own.
     pub fn get(&self, level: Level) -> u64 {
         match level {
             Level::Auto => 0,
@@ -71,7 +71,7 @@ pub struct CheckerStats {
     pub mesh_boxes: u64,
     /// Pairs of triangles left undecided by boxes and single precision, in pairs of meshes.
     pub mesh_triangles: u64,
-    /// Triangles of meshes whose distance to a shape that is no mesh was computed; for continuous witness points, once more per
+    /// Triangles of meshes whose distance to a shape that is not a mesh was computed; for continuous witness points, once more per
     /// face of that shape.
     pub triangles_beside_solids: u64,
 }

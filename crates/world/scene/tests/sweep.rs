@@ -270,7 +270,7 @@ fn objects_on_paths_meet_arms_that_move_and_links_that_do_not() {
         hits += usize::from(hit.is_some_and(|h| !h.at_start()));
     }
     assert!((8..100).contains(&hits), "{hits}");
-    // The base is stationary and is no pair with other stationary geometry.
+    // The base is stationary and is not a pair with other stationary geometry.
     let scene = past(Shape::Cuboid(Cuboid { half_extents: Vec3::splat(0.02) }), Pose::from_translation(Vec3::Y));
     let mut checker = Checker::new(&scene, CheckerOptions::default());
     let path = ConstantTwist::linear(Pose::from_translation(Vec3::new(0.0, 1.0, 0.1)), Vec3::Y * -2.0);

@@ -173,7 +173,7 @@ fn median_s(mut task: impl FnMut() -> Result<()>) -> Result<f64> {
     Ok(seconds[ROUNDS / 2])
 }
 
-/// Processor time of this thread so far, s; `None` where the system does not tell.
+/// Processor time of this thread so far, s; `None` if the system does not tell.
 fn processor_s() -> Option<f64> {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
     text.split_whitespace().next()?.parse::<f64>().ok().map(|ns| ns * 1e-9)

@@ -24,7 +24,7 @@ pub struct Encounter {
 }
 
 impl Encounter {
-    /// `None` where the cell is refused or its first robot does not move.
+    /// `None` if the cell is refused or its first robot does not move.
     pub fn new(spec: &CellSpec, folder: &Path, random: &mut Random) -> Option<Self> {
         let alone = CellSpec { tick_ms: TICK_MS, regions: Vec::new(), ..spec.clone() };
         let cell = alone.parse(folder).ok()?;

@@ -6,6 +6,7 @@ mod exchange;
 mod faults;
 mod moving;
 mod moving_object;
+mod planned;
 mod rail;
 mod recordings;
 mod region;
@@ -34,10 +35,13 @@ pub enum Kind {
     Tools,
     /// Robots that play recordings, or repeat their programs.
     Recordings,
+    /// As `Stop`, with moves that are planned.
+    Planned,
 }
 
 impl Kind {
-    pub const ALL: [Self; 6] = [Self::Stop, Self::Exchange, Self::Faults, Self::Moving, Self::Tools, Self::Recordings];
+    pub const ALL: [Self; 7] =
+        [Self::Stop, Self::Exchange, Self::Faults, Self::Moving, Self::Tools, Self::Recordings, Self::Planned];
 
     pub fn name(self) -> &'static str {
         match self {
@@ -47,6 +51,7 @@ impl Kind {
             Self::Moving => "moving",
             Self::Tools => "tools",
             Self::Recordings => "recordings",
+            Self::Planned => "planned",
         }
     }
 
@@ -56,6 +61,7 @@ impl Kind {
             Self::Stop => 80,
             Self::Faults | Self::Moving | Self::Recordings => 35,
             Self::Exchange | Self::Tools => 20,
+            Self::Planned => 8,
         }
     }
 
@@ -78,6 +84,11 @@ pub fn cell(kind: Kind, random: &mut Random, places: &Places<'_>) -> CellSpec {
         Kind::Moving => carried::cell(random, places),
         Kind::Tools => tools::cell(random, places),
         Kind::Recordings => recordings::cell(random, places),
+        Kind::Planned => {
+            let mut spec = stop(random, places);
+            planned::plan(&mut spec, random);
+            spec
+        }
     }
 }
 

@@ -14,7 +14,7 @@ const TRIES: usize = 6;
 /// What the start must be away from a region, m.
 const START_M: f64 = 0.005;
 
-/// A forbidden region on the path of one of the robots; `None` where none was found that its start is outside of.
+/// A forbidden region on the path of one of the robots; `None` if none was found that its start is outside of.
 pub fn on_the_path(spec: &CellSpec, cell: &Cell, name: &str, random: &mut Random) -> Option<RegionSpec> {
     let robot = random.whole(0, spec.robots.len() - 1);
     for _ in 0..TRIES {
@@ -67,7 +67,7 @@ pub fn point_on_the_path(spec: &CellSpec, cell: &Cell, robot: usize, random: &mu
 /// Start and targets of steps.
 fn ends<'s>(start: &'s Vec<f64>, steps: &'s [StepSpec]) -> Vec<&'s Vec<f64>> {
     let target = |s: &'s StepSpec| match s {
-        StepSpec::Joint { to, .. } | StepSpec::Linear { to, .. } => Some(to),
+        StepSpec::Joint { to, .. } | StepSpec::Linear { to, .. } | StepSpec::Planned { to, .. } => Some(to),
         _ => None,
     };
     std::iter::once(start).chain(steps.iter().filter_map(target)).collect()

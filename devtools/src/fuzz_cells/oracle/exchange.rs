@@ -13,7 +13,7 @@ use super::sweep::{SweptPair, first_touch};
 const PARTS: usize = 64;
 /// A robot that has not moved for so long (s) at the end is at rest for ever: a run goes on for a second without motion.
 const AT_REST_S: f64 = 0.5;
-/// Less than this (rad, m) in that time is no motion: the override law comes to a border without end.
+/// Less than this (rad, m) in that time is not a motion: the override law comes to a border without end.
 const NO_MOTION: f64 = 1e-4;
 
 /// A robot that has finished so little (m) beyond a zone may still hold the region: zones end later than they begin

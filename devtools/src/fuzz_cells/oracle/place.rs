@@ -49,7 +49,7 @@ impl Place {
         })
     }
 
-    /// Distance (m) from another region, neither of which moves; 0 where one does.
+    /// Distance (m) from another region, neither of which moves; 0 if one does.
     pub fn distance(&self, other: &Self) -> f64 {
         if self.is_fixed() && other.is_fixed() {
             self.solid.distance(&self.at, &other.solid, &other.at, f64::INFINITY).lower

@@ -87,7 +87,7 @@ impl OracleSolid {
         Self::Pieces(Tree::new(vec![Piece { core: Core::Points(vec![Vec3::ZERO]), radius: 0.0 }]))
     }
 
-    /// Farthest of its points from a point, m; infinite where it has no end.
+    /// Farthest of its points from a point, m; infinite if it has no end.
     pub fn reach_from(&self, point: Vec3) -> f64 {
         let Self::Pieces(tree) = self else { return f64::INFINITY };
         let root = &tree.nodes[0];

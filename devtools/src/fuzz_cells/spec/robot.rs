@@ -86,6 +86,7 @@ pub enum SolidSpec {
 pub enum StepSpec {
     Joint { to: Vec<f64>, percent: f64 },
     Linear { to: Vec<f64>, speed: f64 },
+    Planned { to: Vec<f64>, percent: f64, on_map: bool },
     Wait(f64),
     Override(f64),
     Switch { region: String, active: bool },
@@ -208,6 +209,11 @@ impl StepSpec {
                 writeln!(t, "  {{ move = \"joint\", to = {}, speed = {percent} }},", list(to))
             }
             Self::Linear { to, speed } => writeln!(t, "  {{ move = \"linear\", to = {}, speed = {speed} }},", list(to)),
+            Self::Planned { to, percent, on_map } => {
+                let planner = if *on_map { "grid" } else { "rrt-connect" };
+                let to = list(to);
+                writeln!(t, "  {{ move = \"planned\", to = {to}, speed = {percent}, planner = \"{planner}\" }},")
+            }
             Self::Wait(s) => writeln!(t, "  {{ wait = {s} }},"),
             Self::Override(percent) => writeln!(t, "  {{ override = {percent} }},"),
             Self::Tool(name) => writeln!(t, "  {{ tool = \"{name}\" }},"),

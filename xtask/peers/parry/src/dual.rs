@@ -28,7 +28,7 @@ impl Turned {
         (self.rotation * middle + self.translation, x * half.x + y * half.y + z * half.z)
     }
 
-    /// The gap between the boxes of two nodes along each axis; negative where they overlap.
+    /// The gap between the boxes of two nodes along each axis; negative if they overlap.
     fn gaps(&self, a: &BvhNode, b: &BvhNode) -> Vector {
         let (middle, half) = self.around(b.mins(), b.maxs());
         (a.mins() - (middle + half)).max((middle - half) - a.maxs())

@@ -39,7 +39,7 @@ impl GeneralizedTable {
     }
 }
 
-/// A rotation that takes z onto the axis; the identity where the axis is z.
+/// A rotation that takes z onto the axis; the identity if the axis is z.
 pub fn z_onto(axis: Vec3) -> Rotation {
     // Adding 0 removes the sign of zeros, which would choose another rotation about the axis.
     if axis == Vec3::Z { Rotation::IDENTITY } else { Rotation::from_z(axis + Vec3::ZERO) }

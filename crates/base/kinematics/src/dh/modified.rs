@@ -13,7 +13,7 @@ pub struct ModifiedRow {
     /// The joint whose value is added to θ (revolute) or d (prismatic); `None` in fixed and auxiliary rows.
     /// A mimic joint has its own name: its value is `multiplier · q(source) + offset`.
     pub joint: Option<String>,
-    /// The joint's kind; [`JointKind::Fixed`] where there is none.
+    /// The joint's kind; [`JointKind::Fixed`] if there is none.
     pub kind: JointKind,
     /// Rotation about the x axis of the frame before, rad.
     pub alpha: f64,

@@ -11,7 +11,7 @@ const CONFIGURATIONS: usize = 32;
 /// A joint's value by its name.
 pub type JointValues<'a> = &'a dyn Fn(&str) -> f64;
 
-/// Largest difference of an entry between `product` and forward kinematics over a fixed set of configurations; NaN where an
+/// Largest difference of an entry between `product` and forward kinematics over a fixed set of configurations; NaN if an
 /// entry is NaN.
 pub fn residual(chain: &Chain, tip: LinkId, tool_in_tip: Pose, product: impl Fn(JointValues<'_>) -> Pose) -> f64 {
     let mut state = ChainState::new(chain);

@@ -47,7 +47,7 @@ fn skew(t: &Pose, z: Vec3, sine: f64) -> GeneralizedRow {
     GeneralizedRow { theta, a: foot.dot(x_new), b, d: foot.z, alpha: sine.atan2(z.z), ..GeneralizedRow::IDENTITY }
 }
 
-/// The row of a transform whose entry (3,1) is zero; `None` where it is not.
+/// The row of a transform whose entry (3,1) is zero; `None` if it is not.
 pub fn exact_row(t: &Pose) -> Option<GeneralizedRow> {
     let [r1, r2, r3] = t.rotation.rows();
     if r3[0].abs() > ROUNDING {

@@ -31,7 +31,7 @@ impl FrameChain {
     /// become independent ones.
     ///
     /// # Errors
-    /// [`ChainError::BadAxis`] where a frame is rotated about a vector without direction; else as [`Chain::new`].
+    /// [`ChainError::BadAxis`] if a frame is rotated about a vector without direction; else as [`Chain::new`].
     pub fn to_chain(&self, name: impl Into<String>) -> Result<Chain, ChainError> {
         let mut links = Vec::new();
         let mut joints = Vec::new();

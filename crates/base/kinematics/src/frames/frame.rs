@@ -98,7 +98,7 @@ impl LocalFrame {
         Self { name: name.into(), centre, axis: Vec3::Z, angle: 0.0, motion: None }
     }
 
-    /// `T_center · T_rotation`, the constant part. NaN where the axis has no direction, unless the angle is 0.
+    /// `T_center · T_rotation`, the constant part. NaN if the axis has no direction, unless the angle is 0.
     pub fn fixed_pose(&self) -> Pose {
         let rotation = match self.axis.try_normalize() {
             _ if self.angle == 0.0 => Rotation::IDENTITY,

@@ -9,7 +9,7 @@
 //! | --- | --- | --- |
 //! | six axes, spherical wrist | closed form, refined on the exact chain | all solutions, singular poses included |
 //! | six or more axes otherwise (UR, iiwa, rails, positioners) | numeric | one solution, near the seed where possible |
-//! | fewer than six | numeric | [`IkTask::Pose`] where the target lies within the chain's freedom, else [`IkTask::Position`] |
+//! | fewer than six | numeric | [`IkTask::Pose`] if the target lies within the chain's freedom, else [`IkTask::Position`] |
 //!
 //! The up to eight solutions of a spherical wrist have names: shoulder front or back, elbow up or down, wrist flipped or not
 //! ([`ArmConfiguration`]).

@@ -83,7 +83,7 @@ impl IkSolver {
         if self.wrist.is_some() { IkMethod::SphericalWrist } else { IkMethod::Numeric }
     }
 
-    /// The branch that `q` (all of the chain's values) belongs to; `None` where the arm has no spherical wrist, or where `q` has
+    /// The branch that `q` (all of the chain's values) belongs to; `None` if the arm has no spherical wrist, or where `q` has
     /// another length or is not finite.
     pub fn configuration(&self, q: &[f64]) -> Option<ArmConfiguration> {
         if q.len() != self.dof || !q.iter().all(|v| v.is_finite()) {

@@ -41,7 +41,7 @@ struct Branches {
 }
 
 impl SphericalWrist {
-    /// `None` where the arm has another structure, or where the model does not reproduce it.
+    /// `None` if the arm has another structure, or where the model does not reproduce it.
     pub fn detect(arm: &Arm) -> Option<Self> {
         if arm.joints.len() != 6 || arm.variables.len() != 6 {
             return None;
@@ -193,7 +193,7 @@ fn straight(aligned: f64, arm: &Arm) -> f64 {
 
 type OpwRotation = rs_opw_kinematics::glam::DQuat;
 
-/// The point where the three axes of the wrist intersect; `None` where they do not.
+/// The point where the three axes of the wrist intersect; `None` if they do not.
 fn wrist_center(a4: &AxisInRoot, a5: &AxisInRoot, a6: &AxisInRoot) -> Option<Vec3> {
     let distance = |at: &AxisInRoot, p: Vec3| at.axis.cross(p - at.origin).length();
     // Axes 4 and 5 are perpendicular, so their common point is well defined; axes 4 and 6 may be parallel.

@@ -40,7 +40,7 @@ pub struct JointReach {
     pub joint: JointId,
     /// How it moves.
     pub kind: JointKind,
-    /// Its value as a function of `q`; `None` where it is fixed.
+    /// Its value as a function of `q`; `None` if it is fixed.
     pub coupling: Option<JointCoupling>,
     /// No point of the geometry is farther from the origin of the joint's child frame, m.
     pub reach_m: f64,
@@ -75,7 +75,7 @@ pub fn joint_reaches<'c>(
     })
 }
 
-/// Largest distance (m) of a slide from its zero within the limits; infinite where a limit is.
+/// Largest distance (m) of a slide from its zero within the limits; infinite if a limit is.
 pub fn max_stroke_m(chain: &Chain, joint: JointId) -> f64 {
     let Some(c) = chain.coupling(joint) else { return 0.0 };
     let limits = chain.joints()[chain.active_joints()[c.index].0].limits;
@@ -124,7 +124,7 @@ pub fn update_max_motion_bounds(
 
 /// Largest distance (m) that any point within `radius_m` of the link's origin travels while all joints move together along the
 /// straight segment between two configurations; along a fraction of the segment at most the same fraction of it. As
-/// [`motion_bound`], but slides count with their largest distance from zero on the segment. NaN where a value is.
+/// [`motion_bound`], but slides count with their largest distance from zero on the segment. NaN if a value is.
 pub fn displacement_bound(chain: &Chain, link: LinkId, radius_m: f64, from: &[f64], to: &[f64]) -> f64 {
     let ends = |coupling: Option<JointCoupling>| {
         let ends = coupling.and_then(|c| Some((c, [*from.get(c.index)?, *to.get(c.index)?])));

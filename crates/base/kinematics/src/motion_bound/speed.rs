@@ -95,7 +95,7 @@ impl SpeedBound {
         if quadratic < linear { quadratic } else { linear }
     }
 
-    /// A time in which no point travels `distance_m` metres; infinite where nothing moves, 0 where `distance_m` is NaN.
+    /// A time in which no point travels `distance_m` metres; infinite if nothing moves, 0 where `distance_m` is NaN.
     pub fn time_for(self, speed_now: f64, distance_m: f64) -> f64 {
         if !(distance_m > 0.0) {
             return 0.0;

@@ -2,7 +2,7 @@
 
 /// Settings of a [`PointChain`](super::PointChain).
 ///
-/// A search goes on to 1e-9 m and 1e-9 rad where it can; the tolerances decide what is accepted where it cannot: rotating a
+/// A search goes on to 1e-9 m and 1e-9 rad where it can; the tolerances decide what is accepted if it cannot: rotating a
 /// normal that is almost parallel to an axis takes very large joint motions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SurfaceIkOptions {
@@ -27,7 +27,7 @@ impl Default for SurfaceIkOptions {
 pub struct SurfaceIkSolution {
     /// Distance from the target, m.
     pub position_error_m: f64,
-    /// Angle between the normal and the required one, rad; 0 where none was required.
+    /// Angle between the normal and the required one, rad; 0 if none was required.
     pub angle_error_rad: f64,
     /// Starting points tried beyond the given `q`.
     pub restarts: usize,

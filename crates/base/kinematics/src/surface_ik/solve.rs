@@ -43,7 +43,7 @@ impl PointChain {
     /// their values, full turns are subtracted or added where that is nearer to the start. Does not allocate.
     ///
     /// # Errors
-    /// [`PointError::NotReached`] with the remaining error; another [`PointError`] where a number is not finite, `q` has the wrong
+    /// [`PointError::NotReached`] with the remaining error; another [`PointError`] if a number is not finite, `q` has the wrong
     /// length, or the target has a normal and the point has none (`q` is unchanged then).
     pub fn solve(&mut self, target: &OrientedPoint, q: &mut [f64]) -> Result<SurfaceIkSolution, PointError> {
         let goal = self.goal(target, q)?;

@@ -126,7 +126,7 @@ impl Arms {
         best
     }
 
-    /// Lower bound of the distance of two links, by the capsules around them; `None` where it exceeds `limit`.
+    /// Lower bound of the distance of two links, by the capsules around them; `None` if it exceeds `limit`.
     fn capsules_gap(&self, poses: &[Pose], a: usize, b: usize, limit: f64) -> Option<f64> {
         let (Some((x, x_in_a)), Some((y, y_in_b))) = (&self.capsules[a], &self.capsules[b]) else { return Some(0.0) };
         let (in_a, in_b) = (poses[a] * *x_in_a, poses[self.links.len() + b] * *y_in_b);

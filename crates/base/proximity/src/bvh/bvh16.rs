@@ -54,7 +54,7 @@ impl Bvh16 {
         Self { frame, radius, order, leaves, levels }
     }
 
-    /// Height of the root: 0 where it is a leaf.
+    /// Height of the root: 0 if it is a leaf.
     #[inline]
     pub fn height(&self) -> usize {
         self.levels.len() - 1

@@ -62,7 +62,7 @@ impl Bvh16 {
     }
 }
 
-/// Removes the lane of the smallest bound from `left`; `None` where all remaining bounds are above the limit.
+/// Removes the lane of the smallest bound from `left`; `None` if all remaining bounds are above the limit.
 #[inline(always)]
 fn take_smallest(bounds: &[f32; ARITY], left: &mut u32, limit: f32) -> Option<usize> {
     let mut best: Option<usize> = None;

@@ -25,7 +25,7 @@ impl ClosingBound {
         least(curved, self.cap * dt)
     }
 
-    /// A time during which it cannot decrease by `distance`; 0 where nothing is known.
+    /// A time during which it cannot decrease by `distance`; 0 if nothing is known.
     pub fn time_for(&self, distance: f64) -> f64 {
         if !(distance > 0.0) {
             return 0.0;
@@ -41,7 +41,7 @@ impl ClosingBound {
     }
 }
 
-/// The smaller number; NaN counts as infinite, because an unknown bound is no bound.
+/// The smaller number; NaN counts as infinite, because an unknown bound is not a bound.
 fn least(a: f64, b: f64) -> f64 {
     let known = |x: f64| if x.is_nan() { f64::INFINITY } else { x };
     known(a).min(known(b))

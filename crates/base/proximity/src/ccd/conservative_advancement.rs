@@ -12,7 +12,7 @@ use crate::{DistanceSettings, Separation, Shape, WarmStart, Workspace};
 /// The relative resolution of positions.
 const RESOLUTION: f64 = 64.0 * f64::EPSILON;
 
-/// The first time at which two moving shapes are within the tolerance of contact; `None` where they are apart all along.
+/// The first time at which two moving shapes are within the tolerance of contact; `None` if they are apart all along.
 ///
 /// A NaN or an infinity in a pose, a dimension or a motion counts as a contact that is not certain: unknown does not count as free.
 pub fn time_of_impact(

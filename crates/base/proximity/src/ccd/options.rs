@@ -9,7 +9,7 @@ pub struct CcdOptions {
     /// After so many distance queries the result is a contact that is not [`certain`](super::TimeOfImpact::certain). A mesh that
     /// slides along another just outside the tolerance advances by about the distance per step.
     pub max_steps: u32,
-    /// For shapes that start nearer than the tolerance without touching: the start is no contact, but coming nearer than
+    /// For shapes that start nearer than the tolerance without touching: the start is not a contact, but coming nearer than
     /// half the initial distance is. Shapes that touch at the start are reported at time 0 all the same.
     pub allow_initial_proximity: bool,
 }

@@ -36,7 +36,7 @@ pub trait RigidMotion {
     /// and `to`: metres per unit of `t`. Must not grow when the interval shrinks.
     fn speed(&self, radius: f64, from: f64, to: f64) -> f64;
 
-    /// The same for the component of the velocity along a unit vector of the world; may be negative where all those points
+    /// The same for the component of the velocity along a unit vector of the world; may be negative if all those points
     /// move the other way. By default the speed.
     fn speed_along(&self, direction: Vec3, radius: f64, from: f64, to: f64) -> f64 {
         let _ = direction;

@@ -18,7 +18,7 @@ pub(super) struct SeparatingSlab {
     pub thickness: f64,
 }
 
-/// The slab perpendicular to the witness points; `None` where none is proven.
+/// The slab perpendicular to the witness points; `None` if none is proven.
 pub(super) fn separating_slab(
     a: &Shape,
     a_in_world: &Pose,

@@ -5,13 +5,13 @@ use elbowroom_spatial::Vec3;
 /// The first contact of two moving shapes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TimeOfImpact {
-    /// Fraction of the motion in `[0, 1]` before which there is no contact. 0 where the shapes touch at the start.
+    /// Fraction of the motion in `[0, 1]` before which there is no contact. 0 if the shapes touch at the start.
     pub time: f64,
     /// Nearest point of the first shape at that time, in the world.
     pub on_a: Vec3,
     /// Nearest point of the second shape at that time, in the world.
     pub on_b: Vec3,
-    /// Unit vector from the second shape to the first; `None` where the distance is 0: they overlap, which is possible at
+    /// Unit vector from the second shape to the first; `None` if the distance is 0: they overlap, which is possible at
     /// the start only, or are too close for f64 to separate.
     pub normal: Option<Vec3>,
     /// Distance at that time, metres: at most the tolerance where certain.

@@ -25,7 +25,7 @@ use crate::{Separation, Shape};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TimeToCollision {
     /// Distance over closing speed of the nearest points, seconds: correct if these points meet and keep their velocities.
-    /// Infinite where they do not approach each other. 0 on contact and where a number is not finite.
+    /// Infinite if they do not approach each other. 0 on contact and where a number is not finite.
     pub estimate_s: f64,
     /// Lower bound of the time, seconds, while velocity and angular velocity are constant: proven. At most the horizon; the
     /// horizon itself means that there is no contact within it.

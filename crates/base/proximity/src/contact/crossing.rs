@@ -15,7 +15,7 @@ pub(super) struct LongestCrossing {
 /// Where two triangles meet.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Crossing {
-    /// Length of the segment in units of the resolution; 0 where the triangles only touch.
+    /// Length of the segment in units of the resolution; 0 if the triangles only touch.
     length: f64,
     /// The two indices, smaller first, to break ties independently of the order of the shapes.
     order: (u32, u32),
@@ -51,7 +51,7 @@ impl LongestCrossing {
     }
 }
 
-/// The ends of the segment in which two triangles that touch cross; their nearest points where they do not cross.
+/// The ends of the segment in which two triangles that touch cross; their nearest points if they do not cross.
 pub(super) fn triangles_meet(s: &[Vec3; 3], t: &[Vec3; 3]) -> (Vec3, Vec3) {
     crossing(s, t).unwrap_or_else(|| {
         let near = triangle_triangle(*s, *t);
@@ -59,7 +59,7 @@ pub(super) fn triangles_meet(s: &[Vec3; 3], t: &[Vec3; 3]) -> (Vec3, Vec3) {
     })
 }
 
-/// The segment that two triangles have in common; `None` where no edge of one passes through the other.
+/// The segment that two triangles have in common; `None` if no edge of one passes through the other.
 fn crossing(s: &[Vec3; 3], t: &[Vec3; 3]) -> Option<(Vec3, Vec3)> {
     let edges = |s: &[Vec3; 3], k: usize| (s[k], s[(k + 1) % 3]);
     let mut points = [Vec3::ZERO; 6];

@@ -18,7 +18,7 @@ pub(super) enum MeshContact {
     Unknown,
 }
 
-/// The contact of two meshes; `None` where they are apart.
+/// The contact of two meshes; `None` if they are apart.
 pub(super) fn mesh_mesh(
     a: &TriMesh,
     a_in_world: &Pose,

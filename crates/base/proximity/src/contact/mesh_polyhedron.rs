@@ -35,7 +35,7 @@ const FACES: [[u32; 3]; 12] = [
     [4, 7, 6],
 ];
 
-/// Where the surfaces meet; `None` where they do not.
+/// Where the surfaces meet; `None` if they do not.
 pub(super) fn mesh_polyhedron(
     mesh: &TriMesh,
     in_world: &Pose,

@@ -29,7 +29,7 @@ impl Deepest {
     }
 }
 
-/// Where the surfaces meet; `None` where the other is wholly inside the mesh.
+/// Where the surfaces meet; `None` if the other is wholly inside the mesh.
 pub(super) fn mesh_smooth(
     mesh: &TriMesh,
     in_world: &Pose,

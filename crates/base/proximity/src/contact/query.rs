@@ -12,7 +12,7 @@ use super::surface::{contained, nearest_points};
 use crate::advanced::{BvhBound, bvh_lower_bound, bvh_lower_bound_to_shape};
 use crate::{QueryStats, Shape, TriMesh, Workspace};
 
-/// The point where two shapes touch, or where they are nearest; `None` where they are certainly farther apart than the limit.
+/// The point where two shapes touch, or where they are nearest; `None` if they are certainly farther apart than the limit.
 /// A pose or a dimension that is not a number touches everything: the points are then the origins.
 ///
 /// Allocates only for hulls (not for boxes, cylinders and hulls against each other). All pairs of triangles that touch are

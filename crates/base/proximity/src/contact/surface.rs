@@ -14,7 +14,7 @@ pub(super) struct SurfaceElement {
     pub triangle: Option<u32>,
 }
 
-/// The nearest points of shapes that are apart; `None` where they are farther apart than the limit.
+/// The nearest points of shapes that are apart; `None` if they are farther apart than the limit.
 pub(super) fn nearest_points(a: PlacedShape, b: PlacedShape, limit: f64) -> Option<ContactPoint> {
     if limit == 0.0 {
         // They do not touch.

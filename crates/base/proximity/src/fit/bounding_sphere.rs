@@ -42,7 +42,7 @@ fn of_few(points: &[Vec3]) -> Option<((Vec3, f64), Vec<Vec3>)> {
     best
 }
 
-/// Sphere through one to four points with its centre in their affine hull; `None` where they are dependent.
+/// Sphere through one to four points with its centre in their affine hull; `None` if they are dependent.
 fn circumscribed(points: &[Vec3]) -> Option<(Vec3, f64)> {
     let o = points[0];
     let e: Vec<Vec3> = points[1..].iter().map(|&p| p - o).collect();

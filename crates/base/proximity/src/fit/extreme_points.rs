@@ -38,7 +38,7 @@ impl ExtremePoints {
         Self { points, hull }
     }
 
-    /// The convex hull; `None` where the points are flat.
+    /// The convex hull; `None` if the points are flat.
     pub fn hull(&self) -> Option<&ConvexHull> {
         self.hull.as_ref()
     }

@@ -138,7 +138,7 @@ impl GroupQuery<'_> {
         !workspace.near.is_empty() && self.settle_near(simd, error, workspace)
     }
 
-    /// The middles of the capsules; returns the sum of their coordinates' magnitudes, m, which is no number where one is none.
+    /// The middles of the capsules; returns the sum of their coordinates' magnitudes, m, which is not a number where one is none.
     #[inline(always)]
     fn place_middles(&self, side: usize, rows: &mut Vec<PlacedRow>) -> f32 {
         let group = self.groups[side];

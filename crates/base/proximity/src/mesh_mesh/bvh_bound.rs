@@ -28,7 +28,7 @@ pub struct BvhBound {
 }
 
 /// A lower bound of the distance of two meshes by their boxes down to a depth (0: the box around all of a mesh;
-/// [`TriMesh::bvh_depth`] and beyond: boxes of up to eight triangles); `None` where they are certainly farther apart than
+/// [`TriMesh::bvh_depth`] and beyond: boxes of up to eight triangles); `None` if they are certainly farther apart than
 /// `limit` metres, which may end the query at a smaller depth.
 ///
 /// The boxes are aligned with the axes of each mesh's own frame, and have a slab along the mean normal of what they hold.

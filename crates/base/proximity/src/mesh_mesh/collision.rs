@@ -16,7 +16,7 @@ use crate::TriMesh;
 use crate::bvh::LEAF_SIZE;
 use crate::triangle::triangles_cross;
 
-/// A pair of triangles that touch, or `None` where the meshes are certainly apart.
+/// A pair of triangles that touch, or `None` if the meshes are certainly apart.
 ///
 /// Triangles closer than f64 can separate count as touching: 2⁻⁴⁰ of the sizes and distance of the meshes. A mesh wholly
 /// inside a closed one is in contact. Which of several pairs is found is unspecified.
@@ -49,7 +49,7 @@ pub fn colliding_triangles(
 }
 
 /// Calls `found` with every pair of triangles that touch, or that are closer than f64 can separate, each once and in no
-/// particular order; with [`MeshFeatures::Containment`] where none touch and one mesh is inside the other.
+/// particular order; with [`MeshFeatures::Containment`] if none touch and one mesh is inside the other.
 ///
 /// ```
 /// use elbowroom_proximity::advanced::{MeshFeatures, for_each_contact};

@@ -49,7 +49,7 @@ pub fn mesh_separation(
     found.unwrap_or_else(|| Separation::unknown(a_in_world, b_in_world))
 }
 
-/// Like [`mesh_separation`], with settings; `None` where the meshes are certainly farther apart than the limit.
+/// Like [`mesh_separation`], with settings; `None` if the meshes are certainly farther apart than the limit.
 ///
 /// [`Workspace::closest_features`] are the nearest triangles, [`Workspace::stats`] the work that was done.
 pub fn mesh_separation_with(
@@ -164,7 +164,7 @@ pub fn distance_upper_bound(
     (found.distance + placement.f64_error) * a.bvh.frame.unit
 }
 
-/// A pair of triangles no farther apart than `tolerance` metres, or `None` where the meshes certainly are.
+/// A pair of triangles no farther apart than `tolerance` metres, or `None` if the meshes certainly are.
 ///
 /// A NaN or negative tolerance counts as 0; a mesh inside a closed one is near. Which pair is found is unspecified. The query
 /// begins where the surfaces are likely nearest; where most meshes are beyond the tolerance, [`is_farther_than`] is faster.

@@ -62,7 +62,7 @@ impl Landmarks {
 }
 
 impl PlacedLandmarks {
-    /// Squared distance of the nearest two, m², in single precision; infinite where that is NaN.
+    /// Squared distance of the nearest two, m², in single precision; infinite if that is NaN.
     pub fn distance_squared(&self, other: &Self) -> f32 {
         dispatch!(detected_simd_level(), simd => least(simd, &load16(simd, &self.points), &other.points))
     }

@@ -219,7 +219,7 @@ impl<'a> NearestPairSearch<'a> {
         }
     }
 
-    /// Aligns the witness frame with the nearest pair measured, also where it is not within the radius.
+    /// Aligns the witness frame with the nearest pair measured, also if it is not within the radius.
     fn align_witness_frame(&mut self, found: &Distances, len: usize) {
         if let Some(lane) = least(&found.distance, len, self.aligned_at) {
             let points = found.closest_points(lane);

@@ -63,7 +63,7 @@ struct Prepared<S: Simd> {
     inverse: [W<S>; 3],
     normal: V3<W<S>>,
     normal_square: W<S>,
-    /// 1 over the square of the normal, 0 where it has no length.
+    /// 1 over the square of the normal, 0 if it has no length.
     normal_inverse: W<S>,
     longest: W<S>,
 }
@@ -200,7 +200,7 @@ fn slender<S: Simd>(simd: S, t: &Prepared<S>) -> <W<S> as SimdBase<S>>::Mask {
 }
 
 /// Closest points of the nine pairs of edges (Ericson, 2005, 5.1.9). Returns the largest squared sine among pairs that
-/// are nearly parallel, whose parameters are ill-conditioned; 0 where there are none.
+/// are nearly parallel, whose parameters are ill-conditioned; 0 if there are none.
 #[inline(always)]
 fn edges<S: Simd>(simd: S, a: &Prepared<S>, b: &Prepared<S>, best: &mut Best<S>) -> W<S> {
     let (zero, one) = (W::splat(simd, 0.0), W::splat(simd, 1.0));

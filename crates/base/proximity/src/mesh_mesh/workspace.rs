@@ -22,7 +22,7 @@ pub struct QueryStats {
     pub triangles: u32,
     /// Batches of up to eight such pairs measured in f64.
     pub batches: u32,
-    /// Triangles whose distance to a shape that is no mesh was computed; for continuous witness points, once more per face of that
+    /// Triangles whose distance to a shape that is not a mesh was computed; for continuous witness points, once more per face of that
     /// shape. Points of contact are not in it.
     pub triangles_beside_solids: u32,
 }
@@ -66,7 +66,7 @@ impl Workspace {
         self.stats
     }
 
-    /// The closest features of the last distance query on two meshes: `None` where they were beyond the limit.
+    /// The closest features of the last distance query on two meshes: `None` if they were beyond the limit.
     pub fn closest_features(&self) -> Option<MeshFeatures> {
         self.closest_features
     }

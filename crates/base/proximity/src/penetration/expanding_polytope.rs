@@ -11,7 +11,7 @@ use crate::separation::core::Core;
 
 const MAX_ITERATIONS: usize = 64;
 
-/// Depth, and unit direction (frame of b) in which to move a. The depth is negative where they are apart.
+/// Depth, and unit direction (frame of b) in which to move a. The depth is negative if they are apart.
 pub(super) fn expanding_polytope(a: &Core, b: &Core, a_in_b: &Pose) -> (f64, Vec3) {
     let difference = |d: Vec3| a_in_b.transform_point(a.support(a_in_b.inverse_transform_vector(d))) - b.support(-d);
     let mut best = (f64::INFINITY, Vec3::Z);

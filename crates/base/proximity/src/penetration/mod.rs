@@ -14,14 +14,14 @@ use crate::{Shape, TriMesh, collides, project_point};
 /// The penetration of two shapes: a translation that separates them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Penetration {
-    /// Penetration depth: how far to move the first shape, metres. 0 where the shapes just touch; infinite where no translation
+    /// Penetration depth: how far to move the first shape, metres. 0 if the shapes just touch; infinite if no translation
     /// separates them.
     pub depth: f64,
     /// Direction in which to move it, unit vector in the world.
     pub direction: Vec3,
 }
 
-/// The shortest translation of `a` that separates it from `b`; `None` where they are apart.
+/// The shortest translation of `a` that separates it from `b`; `None` if they are apart.
 ///
 /// A translation by `depth * direction` always separates (up to rounding). It is the shortest one
 /// - exactly, for spheres against all convex shapes, for half-spaces, for boxes (15 axes) and for capsules against

@@ -12,7 +12,7 @@ use crate::witness_patch::{
     alternating_projections, anchor_between, widest_gap,
 };
 
-/// The gap with continuous witness points; unchanged where the witness points are unique.
+/// The gap with continuous witness points; unchanged if the witness points are unique.
 pub(super) fn continuous_witness(a: &Core, b: &Core, a_in_b: &Pose, gap: Gap) -> Gap {
     let Some((radius_a, center_a)) = bounding_sphere(a) else { return gap };
     let Some((radius_b, center_b)) = bounding_sphere(b) else { return gap };

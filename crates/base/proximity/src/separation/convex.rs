@@ -43,7 +43,7 @@ pub(crate) fn convex(a: &Shape, b: &Shape, a_in_b: &Pose, limit: f64) -> Option<
     Some((gap, [ra, rb]))
 }
 
-/// Gap of bounding boxes along the axes of the second's frame: never above the exact distance. 0 where nothing is known.
+/// Gap of bounding boxes along the axes of the second's frame: never above the exact distance. 0 if nothing is known.
 #[allow(clippy::inline_always, reason = "for two boxes it is most of the time")]
 #[inline(always)]
 fn bounds_gap(a: &Core, b: &Core, a_in_b: &Pose) -> f64 {

@@ -79,7 +79,7 @@ impl Best {
     }
 }
 
-/// Gap of a mesh and a convex core in the mesh's frame; `None` where it exceeds the limit by more than the core's radius. Gaps
+/// Gap of a mesh and a convex core in the mesh's frame; `None` if it exceeds the limit by more than the core's radius. Gaps
 /// below the radius are contact, and are not minimized further.
 pub(super) fn mesh_core(
     mesh: &TriMesh,
@@ -164,7 +164,7 @@ pub(crate) fn nearest_on_mesh(mesh: &TriMesh, p: Vec3) -> (Vec3, usize) {
     nearest_on_mesh_within(mesh, p, f64::INFINITY).unwrap_or((mesh.corners(0)[0], 0))
 }
 
-/// As [`nearest_on_mesh`]; `None` where it is farther away than a limit.
+/// As [`nearest_on_mesh`]; `None` if it is farther away than a limit.
 pub(crate) fn nearest_on_mesh_within(mesh: &TriMesh, p: Vec3, limit: f64) -> Option<(Vec3, usize)> {
     let mut best = (limit, Vec3::ZERO, usize::MAX);
     mesh.bvh.traverse(&BoxDistance::from_point(&mesh.bvh, p), BoxDistance::limit(&mesh.bvh, limit), &mut |triangle| {

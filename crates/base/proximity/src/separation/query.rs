@@ -37,7 +37,7 @@ pub fn separation(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose) ->
         .unwrap_or_else(|| Separation::unknown(a_in_world, b_in_world))
 }
 
-/// Like [`separation`], or `None` where the shapes are certainly farther apart than `limit` metres: much faster for
+/// Like [`separation`], or `None` if the shapes are certainly farther apart than `limit` metres: much faster for
 /// far pairs of boxes, cylinders, hulls and meshes.
 ///
 /// ```
@@ -80,7 +80,7 @@ pub fn within(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, tolera
 
 /// The distance query with reused memory and all its settings.
 impl Workspace {
-    /// Distance and witness points, or `None` where the shapes are certainly farther apart than the limit.
+    /// Distance and witness points, or `None` if the shapes are certainly farther apart than the limit.
     ///
     /// ```
     /// use elbowroom_proximity::{DistanceSettings, Shape, TriMesh, WarmStart, Workspace};
@@ -122,7 +122,7 @@ impl Workspace {
     }
 
     /// An upper bound of the distance of two meshes, metres, at a small part of the cost of the distance
-    /// ([`distance_upper_bound`](crate::advanced::distance_upper_bound)); `None` where one is no mesh or a pose is not finite.
+    /// ([`distance_upper_bound`](crate::advanced::distance_upper_bound)); `None` if one is not a mesh or a pose is not finite.
     /// `warm_start` as in [`DistanceSettings`].
     pub fn distance_upper_bound(
         &mut self,

@@ -49,7 +49,7 @@ impl ConvexHull {
     /// is kept, so that every query gives the same bits.
     ///
     /// # Errors
-    /// [`HullError::Faces`] where a face names no corner or has no area, or a corner is outside of a face.
+    /// [`HullError::Faces`] if a face names no corner or has no area, or a corner is outside of a face.
     ///
     /// ```
     /// use elbowroom_proximity::ConvexHull;

@@ -13,7 +13,7 @@ pub struct MeshReport {
     /// Vertices on open boundaries that were identified with another one within [`weld_tolerance`](Self::weld_tolerance), which
     /// closes hairline seams. Point containment uses the closed surface; distances are to the triangles as given.
     pub welded: usize,
-    /// Metres: a millionth of the largest extent where seams were closed; 0 where none were.
+    /// Metres: a millionth of the largest extent where seams were closed; 0 if none were.
     pub weld_tolerance: f64,
     /// Triangles without area.
     pub degenerate: usize,

@@ -117,7 +117,7 @@ impl TriMesh {
         &self.report
     }
 
-    /// The convex hull, computed on the first call; `None` where the mesh is flat.
+    /// The convex hull, computed on the first call; `None` if the mesh is flat.
     pub fn hull(&self) -> Option<&ConvexHull> {
         self.hull.get_or_init(|| ConvexHull::from_points(&self.vertices).ok()).as_ref()
     }

@@ -58,7 +58,7 @@ impl<Key: Copy + PartialOrd> WitnessChoice<Key> {
         }
     }
 
-    /// Key and points; `None` where the witness points are unique.
+    /// Key and points; `None` if the witness points are unique.
     pub fn chosen(&self) -> Option<(Key, Vec3, Vec3)> {
         self.best.filter(|_| self.ambiguous).map(|b| (b.key, b.on_a, b.on_b))
     }

@@ -74,7 +74,7 @@ pub(crate) fn table<'b>(axes: &[GridAxis; 3], all: impl IntoIterator<Item = &'b 
     union
 }
 
-/// The cells that any of some objects blocks; `None` where there are too many.
+/// The cells that any of some objects blocks; `None` if there are too many.
 pub(super) fn union<'b>(axes: &[GridAxis], all: impl IntoIterator<Item = &'b BlockedCells>) -> Option<OccupancyArray> {
     let mut union = OccupancyArray::new(axes, [])?;
     for cells in all {

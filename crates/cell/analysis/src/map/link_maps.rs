@@ -13,7 +13,7 @@ pub(crate) struct LinkMaps {
     first: SolidsMap,
     /// Others, without the colliders of some links.
     others: Vec<(Vec<LinkId>, SolidsMap)>,
-    /// Per object: index of its map, where 0 is the first; `None` where all links may touch it.
+    /// Per object: index of its map, where 0 is the first; `None` if all links may touch it.
     of_object: Vec<Option<usize>>,
 }
 
@@ -49,7 +49,7 @@ impl LinkMaps {
         self.of_object.iter().all(|map| *map == Some(0)).then_some(&self.first)
     }
 
-    /// The map of an object; `None` where all links may touch it, so that it blocks nothing.
+    /// The map of an object; `None` if all links may touch it, so that it blocks nothing.
     pub fn of(&self, object: ObjectId) -> Option<&SolidsMap> {
         self.of_object[object.0].map(|map| self.map(map))
     }
@@ -67,7 +67,7 @@ impl LinkMaps {
     }
 }
 
-/// The links that may touch an object by the cell's file of pairs; `None` where all of them may.
+/// The links that may touch an object by the cell's file of pairs; `None` if all of them may.
 fn links_that_may_touch(cell: &Cell, robot: RobotId, object: ObjectId) -> Option<Vec<LinkId>> {
     let may_touch = |link: &LinkId| {
         let link = GeometryId::Link { robot, link: *link };

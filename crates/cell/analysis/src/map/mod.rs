@@ -65,7 +65,7 @@ pub struct CellMap {
     pub blocked: u64,
     /// Number of cells blocked by fixed objects.
     pub static_blocked: u64,
-    /// The union of all obstacles, cell by cell; `None` where there are too many cells.
+    /// The union of all obstacles, cell by cell; `None` if there are too many cells.
     pub dense: Option<OccupancyArray>,
     /// Warnings.
     pub warnings: Vec<Warning>,
@@ -143,17 +143,7 @@ pub fn map_with(
     let maps = LinkMaps::new(cell, spec.robot, |robot| {
         SolidsMap::new(robot, &axes, &spec.joints, others, (!request.exact).then_some(0.0)).map_err(refuse)
     })?;
-    let every_link = || {
-        maps.of_every_link().ok_or_else(|| {
-            let what = "the file of pairs lets links touch objects: such maps have neither a deadline nor seeds";
-            wrong(what.into(), "--model exact, without --deadline")
-        })
-    };
-    let filled = match (request.model, request.deadline) {
-        (MapModel::Solids(model), None) => fill_each(cell, &maps, model, progress).map_err(refuse)?,
-        (MapModel::Seeds, None) => expand_each(cell, every_link()?, progress, &wrong)?.map_err(refuse)?,
-        (model, Some(limit)) => fill_until(cell, every_link()?, model, limit, &wrong)?.map_err(refuse)?,
-    };
+    let filled = fill(cell, request, &maps, progress, &wrong)?.map_err(refuse)?;
     let obstacle = |(object, filled): (&Object, FilledCells)| {
         let FilledCells { blocks, time, spheres } = filled;
         MapObstacle { name: object.name.clone(), model: request.model, spheres, blocks, time }
@@ -183,23 +173,51 @@ pub fn map_with(
         let fixed = obstacles.iter().enumerate().filter(|o| !moves(ObjectId(o.0))).map(|o| &o.1.blocks);
         count(blocked_cells::union(&axes, fixed).as_ref(), &|o| !moves(o))?
     };
+    warnings.extend(notes(cell, robot, spec.line, request.model));
+    Ok(CellMap { robot: robot.name.clone(), axes, is_angle, obstacles, blocked, static_blocked, dense, warnings })
+}
+
+/// What a map leaves out, and what it must not be used for.
+fn notes(cell: &Cell, robot: &CellRobot, line: usize, model: MapModel) -> Vec<Warning> {
+    let mut notes = Vec::new();
     for m in &cell.moving_objects {
         let what = format!("object \"{}\" moves: the map has it at its initial pose", cell.objects[m.object.0].name);
-        warnings.push(Warning::new(&cell.file, spec.line, what));
+        notes.push(Warning::new(&cell.file, line, what));
     }
-    if !request.model.is_conservative() {
+    if !model.is_conservative() {
         let what = "the model `seeds` misses blocked cells that no seed leads to: for comparison only, no robot may rely on it";
-        warnings.push(Warning::new(&cell.file, spec.line, what));
+        notes.push(Warning::new(&cell.file, line, what));
     }
     if cell.robots.len() > 1 {
         let what = format!("the map of \"{}\" leaves the other robots out: they move", robot.name);
-        warnings.push(Warning::new(&cell.file, spec.line, what));
+        notes.push(Warning::new(&cell.file, line, what));
     }
-    Ok(CellMap { robot: robot.name.clone(), axes, is_angle, obstacles, blocked, static_blocked, dense, warnings })
+    notes
 }
 
 fn placed(object: &Object) -> (&Shape, Pose) {
     (&object.shape, object.in_world)
+}
+
+/// The cells that each object blocks; the outer error is that this map or this model is not for the request.
+fn fill(
+    cell: &Cell,
+    request: &MapRequest,
+    maps: &LinkMaps,
+    progress: &(dyn Fn(MapProgress<'_>) + Sync),
+    wrong: &dyn Fn(String, &str) -> FormatError,
+) -> Result<Result<Vec<FilledCells>, RobotMapError>, FormatError> {
+    let every_link = || {
+        maps.of_every_link().ok_or_else(|| {
+            let what = "the file of pairs lets links touch objects: such maps have neither a deadline nor seeds";
+            wrong(what.into(), "--model exact, without --deadline")
+        })
+    };
+    match (request.model, request.deadline) {
+        (MapModel::Solids(model), None) => Ok(fill_each(cell, maps, model, progress)),
+        (MapModel::Seeds, None) => expand_each(cell, every_link()?, progress, wrong),
+        (model, Some(limit)) => fill_until(cell, every_link()?, model, limit, wrong),
+    }
 }
 
 /// The cells that each object blocks.

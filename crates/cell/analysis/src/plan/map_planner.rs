@@ -119,7 +119,7 @@ impl MapPlanner {
     /// blocked from this distance to an object on, m, where the map is on sphere covers. No obstacles yet.
     ///
     /// # Errors
-    /// [`FormatError`] where the robot's map has not three joints, or has too many cells.
+    /// [`FormatError`] if the robot's map has not three joints, or has too many cells.
     pub fn new(cell: &Cell, id: RobotId, held: &[f64], clearance_m: f64) -> Result<Self, FormatError> {
         let robot = &cell.robots[id.0];
         let mapped = MappedJoints::of(cell, robot)?;

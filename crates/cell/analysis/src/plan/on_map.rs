@@ -27,7 +27,7 @@ impl MapQuery<'_> {
     /// The path to the first goal that is reached, or why there is none to the first one.
     ///
     /// # Errors
-    /// [`FormatError`] where the map has not three joints, or too many cells, or the request moves other joints; where the start or
+    /// [`FormatError`] if the map has not three joints, or too many cells, or the request moves other joints; where the start or
     /// all goals are in collision or beyond limits.
     pub fn plan(&self, mut exact: RrtConnect<'_>) -> Result<PathAnswer, FormatError> {
         let robot = &self.cell.robots[self.id.0];

@@ -55,7 +55,7 @@ pub fn evaluate(
 /// [`QueryKind::Point`]: [`evaluate_contacts`] has its rows.
 ///
 /// # Errors
-/// [`FormatError`] where a state does not fit the scene; states that were read for its model do.
+/// [`FormatError`] if a state does not fit the scene; states that were read for its model do.
 pub fn evaluate_query(
     scene: &Scene,
     states: &QueryStates,

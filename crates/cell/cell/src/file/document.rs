@@ -24,7 +24,7 @@ impl CellFile {
     /// Reads a file.
     ///
     /// # Errors
-    /// [`FormatError`] where it cannot be read or is not TOML.
+    /// [`FormatError`] if it cannot be read or is not TOML.
     pub fn read(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
         let unreadable =
@@ -44,7 +44,7 @@ impl CellFile {
     /// text, so no seal is verified.
     ///
     /// # Errors
-    /// [`FormatError`] where it is not TOML.
+    /// [`FormatError`] if it is not TOML.
     pub fn parse(path: impl AsRef<Path>, text: &str) -> Result<Self> {
         let file = path.as_ref().to_owned();
         let entries = node::parse(&file, text)?;

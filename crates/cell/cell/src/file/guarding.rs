@@ -10,7 +10,7 @@ use crate::{Cell, CellRegionId, CellRobot};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
-/// Refuses a region that guards nothing of a robot, and warns where it does not guard the links.
+/// Refuses a region that guards nothing of a robot, and warns if it does not guard the links.
 ///
 /// A monitored region without slow-down is only warned about: its output never rises.
 pub(super) fn check(t: &Table<'_>, cell: &Cell, region: CellRegionId, warnings: &mut Vec<Warning>) -> Result<()> {

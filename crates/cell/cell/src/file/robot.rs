@@ -54,7 +54,7 @@ const REVOLUTE_SPEED: f64 = std::f64::consts::PI;
 const PRISMATIC_SPEED: f64 = 1.0;
 
 impl JointLimits {
-    /// Those of a model, with the defaults of a cell file for what it does not state. `None` where it states no speed.
+    /// Those of a model, with the defaults of a cell file for what it does not state. `None` if it states no speed.
     pub fn of_joint(joint: &Joint) -> Option<Self> {
         let sane = |v: Option<f64>| v.filter(|v| *v > 0.0 && v.is_finite());
         let velocity = sane(joint.limits.velocity)?;

@@ -93,7 +93,7 @@ impl ObjectPath {
         (if moves { self.speed } else { 0.0 }) + self.angular_velocity.length() * radius
     }
 
-    /// When it stops, s; `None` where it never does.
+    /// When it stops, s; `None` if it never does.
     pub(super) fn end_s(&self) -> Option<f64> {
         if self.length() > 0.0 {
             (self.repeat == PathRepeat::Once).then(|| self.start_s + self.length() / self.speed)

@@ -22,7 +22,7 @@ impl PairFile {
     /// Reads a file. Names are resolved by [`PairFile::rules`].
     ///
     /// # Errors
-    /// [`FormatError`] with the line where it cannot be read or is no file of pairs.
+    /// [`FormatError`] with the line if it cannot be read or is not a file of pairs.
     pub fn read(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
         let bytes = read_file(path, MAX_BYTES, "a file of pairs, as `elbowroom inspect MODEL --pairs FILE` writes it")?;

@@ -11,7 +11,7 @@ use crate::scene_pairs::ScenePairs;
 
 impl PairFile {
     /// The pairs that the allowed collision matrix of a scene lets touch, for the file `path` of a cell that has the objects of the
-    /// scene and nothing else. Pairs with links are comments: the robot has no name there. `None` where nothing is allowed.
+    /// scene and nothing else. Pairs with links are comments: the robot has no name there. `None` if nothing is allowed.
     pub fn of_scene(path: &Path, scene: &PlanningScene, cell: &Cell) -> Option<Self> {
         let pairs = ScenePairs::of(scene, &(0..cell.objects.len()), cell);
         let reason = format!("allowed in {}", scene.file.file_name().unwrap_or_default().to_string_lossy());

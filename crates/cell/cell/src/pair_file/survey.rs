@@ -21,7 +21,7 @@ impl PairFile {
     /// the same.
     ///
     /// # Errors
-    /// [`FormatError`] where a scene refuses the model, or a row of the file before does not fit it.
+    /// [`FormatError`] if a scene refuses the model, or a row of the file before does not fit it.
     pub fn survey(
         path: &Path,
         model: &QueryModel,

@@ -71,7 +71,7 @@ impl AccessTokens {
     /// the secret: it is not kept anywhere.
     ///
     /// # Errors
-    /// [`FormatError`] where the file has this name already, is no file of tokens, or cannot be written.
+    /// [`FormatError`] if the file has this name already, is not a file of tokens, or cannot be written.
     ///
     /// ```
     /// use elbowroom_cell::seal::AccessTokens;

@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-/// A key of the cell file and its values before and after, as TOML; `None` where it was missing before or is missing
+/// A key of the cell file and its values before and after, as TOML; `None` if it was missing before or is missing
 /// now.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

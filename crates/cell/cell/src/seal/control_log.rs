@@ -74,7 +74,7 @@ impl ControlLog {
     /// Appends a change, and returns once it is on the disk.
     ///
     /// # Errors
-    /// [`FormatError`] where it cannot be written; then the change must not be made.
+    /// [`FormatError`] if it cannot be written; then the change must not be made.
     pub fn append(&mut self, controlled: Controlled<'_>) -> Result<ControlEntry> {
         if self.has_rest {
             self.file.set_len(self.length).map_err(text::unwritable(&self.path))?;

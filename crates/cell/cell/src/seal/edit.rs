@@ -66,7 +66,7 @@ pub struct Signer<'a> {
 /// Edits a sealed cell file and logs the edit.
 ///
 /// # Errors
-/// [`FormatError`] where the cell differs from its seal, the class or the key is not permitted, or the result is not a
+/// [`FormatError`] if the cell differs from its seal, the class or the key is not permitted, or the result is not a
 /// valid cell. Then nothing is changed.
 pub fn edit(cell: &Path, signer: &Signer<'_>, edit: &CellEdit) -> Result<LogEntry> {
     let trusted = trusted(cell)?;
@@ -95,7 +95,7 @@ pub fn edit(cell: &Path, signer: &Signer<'_>, edit: &CellEdit) -> Result<LogEntr
 /// Seals a cell file in its present state and logs all changes since the last seal.
 ///
 /// # Errors
-/// [`FormatError`] where the class or the key is not permitted, the cell is not valid, or the log was modified.
+/// [`FormatError`] if the class or the key is not permitted, the cell is not valid, or the log was modified.
 pub fn seal(cell: &Path, signer: &Signer<'_>) -> Result<LogEntry> {
     let trusted = trusted(cell)?;
     signer.check(cell, &trusted)?;

@@ -31,7 +31,7 @@ impl PrivateKey {
     /// A new key from random numbers of the operating system.
     ///
     /// # Errors
-    /// [`io::Error`] where the system provides none.
+    /// [`io::Error`] if the system provides none.
     pub fn generate(class: AccessClass, name: &str) -> io::Result<Self> {
         Ok(Self { class, name: name.into(), key: SigningKey::from_bytes(&secret_file::random()?) })
     }
@@ -39,7 +39,7 @@ impl PrivateKey {
     /// Writes the key to a new file that only its owner may read (mode 0600).
     ///
     /// # Errors
-    /// [`io::Error`] where the file exists already or cannot be written.
+    /// [`io::Error`] if the file exists already or cannot be written.
     pub fn write(&self, path: &Path) -> io::Result<()> {
         let mut file = create(path)?;
         write!(
@@ -56,7 +56,7 @@ impl PrivateKey {
     /// Reads the format of [`write`](Self::write).
     ///
     /// # Errors
-    /// [`FormatError`](elbowroom_formats::FormatError) where it cannot be read, is not a key, or others than its owner may read it.
+    /// [`FormatError`](elbowroom_formats::FormatError) if it cannot be read, is not a key, or others than its owner may read it.
     pub fn read(path: &Path) -> Result<Self> {
         check_private_permissions(path)?;
         let text = text::read(path)?;

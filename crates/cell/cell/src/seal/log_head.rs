@@ -32,7 +32,7 @@ pub(super) struct LogHead {
 }
 
 impl LogHead {
-    /// The head of a log, `None` where it was never signed.
+    /// The head of a log, `None` if it was never signed.
     pub(super) fn read(log: &Path) -> Result<Option<Self>> {
         let path = path_of(log);
         let unreadable = |e: std::io::Error| FormatError::unreadable(&path, &e, "the path of a file that is there");

@@ -67,7 +67,7 @@ pub struct History {
     pub trusted: TrustedKeys,
 }
 
-/// Verifies the seal of a cell. `None` where it has none and needs none.
+/// Verifies the seal of a cell. `None` if it has none and needs none.
 pub(crate) fn verify(file: &CellFile, cell: &Cell) -> Result<Option<Seal>> {
     let path = log_of(&file.file);
     let trusted = TrustedKeys::find(&file.file)?;
@@ -87,7 +87,7 @@ pub(crate) fn verify(file: &CellFile, cell: &Cell) -> Result<Option<Seal>> {
 /// Reads and verifies the log of a cell file, whether or not the cell matches its seal.
 ///
 /// # Errors
-/// [`FormatError`] where the cell cannot be read or is not sealed, or at the line of the log that is not valid.
+/// [`FormatError`] if the cell cannot be read or is not sealed, or at the line of the log that is not valid.
 pub fn history(cell: &Path) -> Result<History> {
     let path = log_of(cell);
     let Some(trusted) = TrustedKeys::find(cell)? else { return Err(trust::missing(cell, &path)) };

@@ -24,7 +24,7 @@ impl NetworkKey {
     /// A new key from random numbers of the operating system.
     ///
     /// # Errors
-    /// [`io::Error`] where the system provides none.
+    /// [`io::Error`] if the system provides none.
     pub fn generate() -> io::Result<Self> {
         Ok(Self(secret_file::random()?))
     }
@@ -32,7 +32,7 @@ impl NetworkKey {
     /// Writes the key to a new file that only its owner may read (mode 0600).
     ///
     /// # Errors
-    /// [`io::Error`] where the file exists already or cannot be written.
+    /// [`io::Error`] if the file exists already or cannot be written.
     pub fn write(&self, path: &Path) -> io::Result<()> {
         secret_file::write(path, COMMENT, NAME, &self.0)
     }
@@ -40,7 +40,7 @@ impl NetworkKey {
     /// Reads the format of [`write`](Self::write).
     ///
     /// # Errors
-    /// [`FormatError`](elbowroom_formats::FormatError) where it cannot be read, is no key, or others than its owner may read it.
+    /// [`FormatError`](elbowroom_formats::FormatError) if it cannot be read, is not a key, or others than its owner may read it.
     pub fn read(path: &Path) -> Result<Self> {
         Ok(Self(secret_file::read(path, NAME, "what `elbowroom control network-key` writes")?))
     }

@@ -125,7 +125,7 @@ impl SealedState {
         all.into_iter().filter(|at| self.values.get(at) != after.values.get(at)).map(change).collect()
     }
 
-    /// This state with the changes applied; `None` where they do not fit.
+    /// This state with the changes applied; `None` if they do not fit.
     pub fn with(&self, changes: &[Change]) -> Option<Self> {
         let mut state = Self { values: self.values.clone(), lines: BTreeMap::new() };
         for c in changes {

@@ -54,11 +54,11 @@ pub struct TrustedKey {
 
 impl TrustedKeys {
     /// The keys for a cell file: `/etc/elbowroom/trusted-keys.toml`; otherwise the file named by the environment
-    /// variable `ELBOWROOM_TRUSTED_KEYS`; otherwise `trusted-keys.toml` beside the cell file. `None` where none of them
+    /// variable `ELBOWROOM_TRUSTED_KEYS`; otherwise `trusted-keys.toml` beside the cell file. `None` if none of them
     /// exists: then cells need no seal.
     ///
     /// # Errors
-    /// [`FormatError`] where the file cannot be read, or at the wrong line.
+    /// [`FormatError`] if the file cannot be read, or at the wrong line.
     pub fn find(cell: &Path) -> Result<Option<Self>> {
         let named = std::env::var_os(VARIABLE).filter(|v| !v.is_empty()).map(PathBuf::from);
         let beside = cell.with_file_name(FILE);

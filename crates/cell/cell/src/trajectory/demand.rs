@@ -28,7 +28,7 @@ pub struct JointDemand {
     /// Time of that speed.
     pub speed_at_s: f64,
     /// Bound of the acceleration, rad/s² or m/s²: no course leaves the straight one by more than half of it times u²; 0
-    /// where it does not exceed the stated one.
+    /// if it does not exceed the stated one.
     pub acceleration: f64,
     /// Time of that acceleration.
     pub acceleration_at_s: f64,

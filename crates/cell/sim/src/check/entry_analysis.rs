@@ -1,4 +1,4 @@
-//! Decides whether a robot is kept out of a region, by which law, and what is missing where it is not.
+//! Decides whether a robot is kept out of a region, by which law, and what is missing if it is not.
 
 use elbowroom_cell::{Cell, CellRegion, CellRegionId, CellRobot, StepAction};
 use elbowroom_formats::Warning;
@@ -22,7 +22,7 @@ pub(super) struct EntryAnalysis<'a> {
     pub region: CellRegionId,
     pub robot: RobotId,
     pub program: &'a RobotProgram,
-    /// Largest speed of any point of the region, m/s; infinite where it is not known in advance.
+    /// Largest speed of any point of the region, m/s; infinite if it is not known in advance.
     pub region_speed_m_s: f64,
     /// Where the region is at the start.
     pub region_in_world: Pose,
@@ -165,7 +165,7 @@ impl EntryAnalysis<'_> {
         Some(MissingGuarantee::new(why, write))
     }
 
-    /// Entry because of speed where it is not known how far a part extends beyond the hand.
+    /// Entry because of speed if it is not known how far a part extends beyond the hand.
     fn unknown_lever(&self) -> Option<MissingGuarantee> {
         let guards = self.region().region.guards;
         let unknown = self.program.parts().find(|action| action.attachment.is_none())?;

@@ -1,4 +1,4 @@
-//! Decides which regions the active laws keep robots out of, and what is missing where they do not (`elbowroom check`).
+//! Decides which regions the active laws keep robots out of, and what is missing if they do not (`elbowroom check`).
 //!
 //! For each region and each robot that it guards, [`check`] decides whether entry is excluded, and why. The thickness
 //! that the warning zone needs without the stopping-distance law is computed from the cell: v²/2a + v·t

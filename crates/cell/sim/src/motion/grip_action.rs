@@ -40,7 +40,7 @@ impl HeldObjects {
         &self.actions
     }
 
-    /// How they are attached; `None` where that is not known of all.
+    /// How they are attached; `None` if that is not known of all.
     pub fn attachments(&self) -> Option<Vec<(ObjectId, Attachment)>> {
         self.actions.iter().map(|a| Some((a.object, a.attachment.clone()?))).collect()
     }

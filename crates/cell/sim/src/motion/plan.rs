@@ -73,7 +73,7 @@ impl ProgramPlan {
 }
 
 impl PlanStep {
-    /// Joint values at its end; `None` where it is no move.
+    /// Joint values at its end; `None` if it is not a move.
     pub fn end(&self) -> Option<Vec<f64>> {
         match self {
             Self::Move(segment) => Some(segment.end()),
@@ -139,7 +139,7 @@ fn plan_passes(
     }
 }
 
-/// The step in which the program of a robot first grips an object, planned; `None` where it never does.
+/// The step in which the program of a robot first grips an object, planned; `None` if it never does.
 ///
 /// # Errors
 /// [`FormatError`] at the line of an infeasible step before it, or of the grip.

@@ -183,7 +183,7 @@ impl<'s> AvoidingRobot<'s> {
         });
     }
 
-    /// A warning where a tick failed and the robot was stopped; `None` where all succeeded.
+    /// A warning where a tick failed and the robot was stopped; `None` if all succeeded.
     pub fn fault_warning(&self, cell: &Cell) -> Option<Warning> {
         let (t_s, why) = self.fault.as_ref()?;
         let robot = &cell.robots[self.robot.0];

@@ -81,7 +81,7 @@ impl<'a> FaultInjector<'a> {
         Self { faults, past: vec![VecDeque::new(); robots], faulty: StoredSnapshot::default() }
     }
 
-    /// The snapshot for the robot's monitor at this instant; `None` where none arrives.
+    /// The snapshot for the robot's monitor at this instant; `None` if none arrives.
     pub fn apply<'s>(&'s mut self, robot: RobotId, actual: &Snapshot<'s>) -> Option<Snapshot<'s>> {
         if !self.faults.iter().any(|f| f.robot == robot) {
             return Some(*actual);

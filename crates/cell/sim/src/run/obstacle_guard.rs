@@ -1,5 +1,5 @@
 //! Keeps a robot clear of what sensors see: its path is checked against the obstacles of each picture, replanned where that is
-//! possible, and the robot stops in time where it is not.
+//! possible, and the robot stops in time if it is not.
 
 use std::time::{Duration, Instant};
 
@@ -78,7 +78,7 @@ pub(super) struct ObstacleGuard<'a> {
 
 impl<'a> ObstacleGuard<'a> {
     /// # Errors
-    /// [`FormatError`] where the scene refuses the cell, or a move is planned on a map that the robot does not have.
+    /// [`FormatError`] if the scene refuses the cell, or a move is planned on a map that the robot does not have.
     fn new(
         cell: &'a Cell,
         (robot, clock): (RobotId, &ProgramClock),
@@ -212,7 +212,7 @@ impl<'a> ObstacleGuard<'a> {
         Ok(solids)
     }
 
-    /// Where the path is blocked; `None` where it is free to the end of the step.
+    /// Where the path is blocked; `None` if it is free to the end of the step.
     fn check(
         &self,
         ahead: &PathAhead,

@@ -61,7 +61,7 @@ pub(super) fn part_name(configuration: &Configuration, volume: VolumeId) -> Opti
     configuration.volumes().get(volume.0).map(|v| v.name.clone())
 }
 
-/// Since when the robot is at its final configuration, s; `None` where it was still moving.
+/// Since when the robot is at its final configuration, s; `None` if it was still moving.
 pub(super) fn stopped_at(track: &RobotTrack) -> Option<f64> {
     let last = track.samples.last()?;
     let is_elsewhere = |q: &[f64]| q.iter().zip(&last.q).any(|(a, b)| (a - b).abs() > SETTLED);

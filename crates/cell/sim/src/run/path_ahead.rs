@@ -19,7 +19,7 @@ pub(super) struct PathAhead {
 }
 
 impl PathAhead {
-    /// Of the present step; `None` where it has no motion.
+    /// Of the present step; `None` if it has no motion.
     pub fn of(clock: &ProgramClock) -> Option<Self> {
         let samples = clock.path_ahead(SAMPLE_S);
         let last = samples.len().checked_sub(1)?;

@@ -118,7 +118,7 @@ impl<'a> PathReplanner<'a> {
     /// With the maps of moves that are planned on them.
     ///
     /// # Errors
-    /// [`FormatError`] where the robot has no map of three joints.
+    /// [`FormatError`] if the robot has no map of three joints.
     pub fn with_maps(mut self, cell: &Cell, clock: &ProgramClock) -> Result<Self, FormatError> {
         for q in clock.moves_on_map() {
             if self.maps.iter().any(|(_, map)| map.serves(&q)) {
@@ -257,7 +257,7 @@ fn with_departure(path: PlannedPath, departure: &Departure) -> PlannedPath {
 }
 
 /// Where a new path passes a configuration in the direction of a velocity: its time (s), and the rate at which its speed is that
-/// of the robot. `None` where it does not.
+/// of the robot. `None` if it does not.
 fn entry(play: &Playback, here: &[f64], velocity: &[f64]) -> Option<(f64, f64)> {
     let speed = norm(velocity);
     let passed = |t_s: f64| {

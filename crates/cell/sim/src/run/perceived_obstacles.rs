@@ -96,7 +96,7 @@ impl<'a> PerceivedObstacles<'a> {
     /// Opens the folders of the sensors.
     ///
     /// # Errors
-    /// [`FormatError`] where a folder cannot be read, or the robot of a sensor has no map of three joints.
+    /// [`FormatError`] if a folder cannot be read, or the robot of a sensor has no map of three joints.
     pub fn of_cell(cell: &'a Cell, notes: &mut Vec<Warning>) -> Result<Self, FormatError> {
         let mut sensors = Vec::new();
         for spec in cell.sensors.iter().filter(|s| s.folder.is_some() && !s.robots.is_empty()) {

@@ -33,9 +33,9 @@ struct RegionObserver {
     robot: RobotId,
     local: RegionId,
     region: CellRegionId,
-    /// The last measured distance; `None` where there is none.
+    /// The last measured distance; `None` if there is none.
     measured: Option<MeasuredDistance>,
-    /// A proven distance at the last tick, m; `None` where the region was inactive or there was no tick.
+    /// A proven distance at the last tick, m; `None` if the region was inactive or there was no tick.
     before_m: Option<f64>,
     warned_since: Option<f64>,
     inside_since: Option<f64>,

@@ -5,7 +5,7 @@ use super::simulation::Simulation;
 use crate::recording::RunEnd;
 
 impl Simulation<'_> {
-    /// Why the run ends now; `None` where it goes on.
+    /// Why the run ends now; `None` if it goes on.
     pub(super) fn end(&mut self, t_s: f64) -> Option<RunEnd> {
         let present = || self.robots.iter().filter(|robot| !self.options.is_silent(robot.id, t_s));
         if present().all(SimulatedRobot::is_finished) {

@@ -31,7 +31,7 @@ pub(super) struct SimulatedRobot<'a> {
     pub claims: Option<ZoneClaims>,
     /// `None` without avoidance.
     pub avoiding: Option<AvoidingRobot<'a>>,
-    /// `None` where no sensor guards it.
+    /// `None` if no sensor guards it.
     pub guard: Option<ObstacleGuard<'a>>,
     /// The obstacle or sensor that holds it in this tick.
     pub hold: Option<(HoldReason, String)>,
@@ -120,7 +120,7 @@ impl<'a> SimulatedRobot<'a> {
         if self.hold.is_some() { 0.0 } else { self.clock.programmed_override() }
     }
 
-    /// One tick of its monitor, with this state and these sources; `None` where a fault withholds the input.
+    /// One tick of its monitor, with this state and these sources; `None` if a fault withholds the input.
     pub fn tick_monitor(
         &mut self,
         t_s: f64,
@@ -241,7 +241,7 @@ fn new_track(robot: &CellRobot, setup: &MonitorSetup) -> RobotTrack {
     }
 }
 
-/// The links of the tools that are not mounted; `None` where no tool is changed.
+/// The links of the tools that are not mounted; `None` if no tool is changed.
 pub(super) fn absent_links(robot: &CellRobot) -> Option<Vec<LinkId>> {
     let absent: Vec<LinkId> = robot.tools.iter().filter(|t| !t.mounted).map(|t| t.link).collect();
     (!absent.is_empty()).then_some(absent)

@@ -46,7 +46,7 @@ impl Simulation<'_> {
     /// Runs to the end: when, and why it ends.
     ///
     /// # Errors
-    /// [`FormatError`] where a part cannot be gripped or a volume not attached.
+    /// [`FormatError`] if a part cannot be gripped or a volume not attached.
     pub fn run(&mut self, progress: &mut dyn FnMut(RunProgress)) -> Result<(f64, RunEnd), FormatError> {
         self.publish_initial_occupancy();
         let mut tick = 0_u64;

@@ -232,7 +232,7 @@ impl<'a> ZoneTester<'a> {
     }
 
     /// Upper bound of the distance (m) to a stop from these joint speeds (rad/s, m/s; none: at rest) at override 1, by
-    /// the assumptions of the stopping law. 0 where the law is off.
+    /// the assumptions of the stopping law. 0 if the law is off.
     fn stopping_distance_m(&self, speed: &[f64]) -> f64 {
         let Some(law) = &self.setup.configuration.laws().stopping_distance else { return 0.0 };
         // Twice the time until braking begins: the law keeps the same reserve.

@@ -56,7 +56,7 @@ fn obstacle_scene(cell: &Cell, object: ObjectId) -> Result<Scene, Box<dyn std::e
     Ok(builder.build()?)
 }
 
-/// A straight path through the workspace of the arm; `None` where it would start in the arm or cross the pedestal.
+/// A straight path through the workspace of the arm; `None` if it would start in the arm or cross the pedestal.
 fn crossing(
     cell: &Cell,
     scene: &Scene,

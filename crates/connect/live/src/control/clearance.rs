@@ -13,7 +13,7 @@ use crate::messages::JointState;
 pub(crate) struct Clearance {
     /// The robot.
     pub(crate) robot: RobotId,
-    /// A proven lower bound of the distance, 0 inside, m; `None` where it is not known where the robot is.
+    /// A proven lower bound of the distance, 0 inside, m; `None` if it is not known where the robot is.
     pub(crate) distance_m: Option<f64>,
     /// How far any point of it may move until it stands, at most, if the region counts within [`UNTIL_IT_COUNTS_S`], m.
     pub(crate) stopping_m: f64,
@@ -27,7 +27,7 @@ const UNTIL_IT_COUNTS_S: f64 = 0.2;
 /// `t_s` after the start of this process.
 ///
 /// # Errors
-/// [`FormatError`] where no monitor accepts the region.
+/// [`FormatError`] if no monitor accepts the region.
 pub(crate) fn clearances(
     cell: &Cell,
     region: &CellRegion,
@@ -88,7 +88,7 @@ fn placed(robot: &elbowroom_cell::CellRobot, state: Option<&JointState>) -> Opti
     Some(placed)
 }
 
-/// What the region follows; `None` where that is a robot that is not heard.
+/// What the region follows; `None` if that is a robot that is not heard.
 fn sources(
     cell: &Cell,
     follows: &[elbowroom_cell::Follow],

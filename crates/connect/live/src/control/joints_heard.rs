@@ -38,7 +38,7 @@ impl JointsHeard {
         Ok(Self { heard, clock, _subscriptions: subscriptions })
     }
 
-    /// Per robot its joint values; `None` where they are not heard.
+    /// Per robot its joint values; `None` if they are not heard.
     pub(crate) fn states(&self) -> Vec<Option<JointState>> {
         let now = self.clock.micros();
         let mut heard = self.heard.lock().unwrap_or_else(PoisonError::into_inner);

@@ -30,7 +30,7 @@ const HAS_INTENT: u8 = 2;
 /// ```
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct JointState {
-    /// The first 8 bytes of the checksum of the cell that the controller expects; 0 where it does not care.
+    /// The first 8 bytes of the checksum of the cell that the controller expects; 0 if it does not care.
     pub checksum: u64,
     /// A number that rises with every start of the controller: the time of day in nanoseconds.
     pub boot: u64,

@@ -59,7 +59,7 @@ impl UdpNetwork {
     /// publishes.
     ///
     /// # Errors
-    /// [`NetworkError::Address`] where an address cannot be used.
+    /// [`NetworkError::Address`] if an address cannot be used.
     pub fn bind(listen: &str, peers: &[&str]) -> Result<Self, NetworkError> {
         let wrong = |address: &str| {
             let address = address.to_owned();
@@ -81,7 +81,7 @@ impl UdpNetwork {
     /// The address of the socket.
     ///
     /// # Errors
-    /// [`NetworkError::Address`] where the system does not tell it.
+    /// [`NetworkError::Address`] if the system does not tell it.
     pub fn local_address(&self) -> Result<SocketAddr, NetworkError> {
         let address = self.shared.socket.local_addr();
         address.map_err(|e| NetworkError::Address { address: String::new(), why: e.to_string() })

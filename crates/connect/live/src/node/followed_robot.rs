@@ -15,7 +15,7 @@ pub(super) struct FollowedRobot {
     stamp: Option<Micros>,
     /// They were given, or follow from the last two positions. A robot whose speed is not known is not taken to stand.
     knows_velocities: bool,
-    /// How old its values are; `None` where it is not known where it is, or how it moves.
+    /// How old its values are; `None` if it is not known where it is, or how it moves.
     pub(super) age: Option<Micros>,
 }
 

@@ -10,7 +10,7 @@ use elbowroom_monitor::{
     AccessClass, Fault, Interlock, Monitor, OverrideReason, Presence, RegionId, Snapshot, SourceState, TickReport,
     VolumeId,
 };
-use elbowroom_rosbag::TickRecorder;
+use elbowroom_recording::TickRecorder;
 use elbowroom_spatial::{FrameMotion, Pose};
 use elbowroom_status::StatusSample;
 

@@ -74,7 +74,7 @@ pub(crate) struct Heard {
     pub(crate) stamp: Option<Micros>,
     /// It has arrived since the last tick.
     pub(crate) is_new: bool,
-    /// Why the last message did not count; `None` where it did, or could not be read.
+    /// Why the last message did not count; `None` if it did, or could not be read.
     pub(crate) refused: Option<Rejected>,
 }
 

@@ -7,7 +7,7 @@ use crate::messages::JointState;
 
 /// A controller that was silent for this long may have started again with a lower number: its clock was set back.
 const FORGOTTEN: Micros = Micros(1_000_000);
-/// A stamp farther ahead than this is no stamp of a clock.
+/// A stamp farther ahead than this is not a stamp of a clock.
 const MOST_AHEAD: Micros = Micros(1_000_000);
 /// Clocks drift apart by less than a microsecond in so many: a least delay that was seen counts as this much longer as time passes.
 const DRIFT_ONE_IN: u64 = 1_000;

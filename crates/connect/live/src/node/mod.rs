@@ -28,7 +28,7 @@ use elbowroom_robot::RobotId;
 use elbowroom_spatial::Pose;
 use elbowroom_status::{EventStatus, HealthStatus, RobotStatus, StatusSample};
 
-use elbowroom_rosbag::TickRecorder;
+use elbowroom_recording::TickRecorder;
 
 use crate::cell_versions::CellVersions;
 use crate::clock::Clock;
@@ -86,7 +86,7 @@ impl Node {
     /// Starts to guard a robot.
     ///
     /// # Errors
-    /// [`NetworkError`] where a key cannot be used.
+    /// [`NetworkError`] if a key cannot be used.
     ///
     /// # Panics
     /// Where the system gives no thread.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use elbowroom_cell::Cell;
 use elbowroom_cell::configure::MonitorSetup;
 use elbowroom_monitor::{Configuration, Monitor, RegionId, SourceState};
-use elbowroom_rosbag::TickRecorder;
+use elbowroom_recording::TickRecorder;
 
 /// The configuration of a tick, for whoever shows what it has found.
 #[derive(Debug)]

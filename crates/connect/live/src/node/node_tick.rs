@@ -7,8 +7,8 @@ use elbowroom_cell::configure::MonitorSetup;
 use elbowroom_cell::{Cell, Follow};
 use elbowroom_interlock::Micros;
 use elbowroom_monitor::TickReport;
+use elbowroom_recording::TickRecorder;
 use elbowroom_robot::RobotId;
-use elbowroom_rosbag::TickRecorder;
 use elbowroom_status::{HealthStatus, StatusSample};
 
 use super::guarded_robot::GuardedRobot;

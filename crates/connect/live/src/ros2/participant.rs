@@ -42,7 +42,7 @@ struct Parts {
 }
 
 impl Participant {
-    /// Takes part when the router of ROS 2 is there; `None` where the settings ask for nothing. `guarded` are the robots of this
+    /// Takes part when the router of ROS 2 is there; `None` if the settings ask for nothing. `guarded` are the robots of this
     /// process.
     pub(crate) fn start(
         cell: &Arc<Cell>,

@@ -54,7 +54,7 @@ impl RosSession {
     /// Opens a session at a router, with a node of this name. Waits until the router is there.
     ///
     /// # Errors
-    /// [`NetworkError`] where the address cannot be used.
+    /// [`NetworkError`] if the address cannot be used.
     pub fn open(router: &str, domain: u32, name: &str) -> Result<Self, NetworkError> {
         let settings = ZenohSettings { listen: None, connect: Some(router.to_owned()) };
         // As in the sessions of ROS 2: caches order their samples by time.

@@ -161,7 +161,7 @@ fn by_distance(a: &PairDistance, b: &PairDistance) -> std::cmp::Ordering {
     order(a).total_cmp(&order(b))
 }
 
-/// `None` where a number is not finite or the quaternion has no direction.
+/// `None` if a number is not finite or the quaternion has no direction.
 pub(super) fn pose_of(status: &PoseStatus) -> Option<Pose> {
     let [x, y, z] = status.position_m;
     let pose = Pose::new(Rotation::from_quaternion_xyzw(status.quaternion_xyzw)?, Vec3::new(x, y, z));

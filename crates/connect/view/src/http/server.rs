@@ -30,7 +30,7 @@ impl HttpServer {
     /// Serves what `routes` makes of the names of the server: requests for other hosts never reach it.
     ///
     /// # Errors
-    /// [`ViewError`] where the address is taken, or the routes cannot be made.
+    /// [`ViewError`] if the address is taken, or the routes cannot be made.
     pub fn start(
         name: &str,
         endpoint: &Endpoint,

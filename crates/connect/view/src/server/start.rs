@@ -34,7 +34,7 @@ impl Server {
     /// Shows a running cell: what is published through the feed.
     ///
     /// # Errors
-    /// [`ViewError`] where the address cannot be served at or the cell has no model.
+    /// [`ViewError`] if the address cannot be served at or the cell has no model.
     pub fn watch(cell: &Cell, feed: &StatusFeed, settings: ServerSettings) -> Result<Self, ViewError> {
         Self::start(Model::of(cell)?, RunningCell, feed.inbox.clone(), settings)
     }

@@ -123,7 +123,7 @@ pub fn get(server: SocketAddr, path: &str, headers: &str) -> String {
     answer(server, format!("GET {path} HTTP/1.1\r\nHost: {server}\r\n{headers}\r\n").as_bytes())
 }
 
-/// The status of an answer; 0 where there is none.
+/// The status of an answer; 0 if there is none.
 pub fn status(answer: &str) -> u16 {
     answer.split(' ').nth(1).and_then(|word| word.parse().ok()).unwrap_or(0)
 }

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{BufReader, BufWriter};
 use std::path::Path;
 
-use elbowroom::rosbag::JointRecording;
+use elbowroom::recording::JointRecording;
 
 use crate::output::{ExitStatus, Failure, cannot_write, note, print};
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use elbowroom::rosbag::{BagError, CellWriter, RunRecorder};
+use elbowroom::recording::{BagError, CellWriter, RunRecorder};
 use elbowroom::sim::{RunOptions, RunOutcome};
 
 use crate::output::Failure;

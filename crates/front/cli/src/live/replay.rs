@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::fs::File;
 use std::io::BufReader;
 
-use elbowroom::rosbag::{self, Replay, RobotReplay};
+use elbowroom::recording::{self, Replay, RobotReplay};
 
 use super::ReplayArgs;
 use crate::output::{ExitStatus, Failure, note, print, print_json};
@@ -12,7 +12,7 @@ use crate::output::{ExitStatus, Failure, note, print, print_json};
 pub(crate) fn replay(args: &ReplayArgs) -> Result<ExitStatus, Failure> {
     let file = args.recording.display();
     let bytes = File::open(&args.recording).map_err(|e| Failure::Wrong(format!("{file}: cannot be read: {e}")))?;
-    let replay = rosbag::replay(BufReader::new(bytes)).map_err(|e| Failure::Wrong(format!("{file}: {e}")))?;
+    let replay = recording::replay(BufReader::new(bytes)).map_err(|e| Failure::Wrong(format!("{file}: {e}")))?;
     warn(&replay);
     if args.json {
         print_json(&replay)?;

@@ -91,7 +91,7 @@ impl Protocol {
     }
 }
 
-/// The bytes that are not read yet. All numbers are little-endian; `None` where the bytes are over.
+/// The bytes that are not read yet. All numbers are little-endian; `None` if the bytes are over.
 #[derive(Debug)]
 pub struct Reader<'a> {
     rest: &'a [u8],

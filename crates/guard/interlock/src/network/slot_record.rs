@@ -18,7 +18,7 @@ pub(super) struct SlotRecord {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) struct Holder {
     pub(super) robot: RobotSlot,
-    /// `None` where its guard has started again and has not reported where the robot is: neither confirmed nor given to others.
+    /// `None` if its guard has started again and has not reported where the robot is: neither confirmed nor given to others.
     pub(super) token: Option<Token>,
 }
 

@@ -8,7 +8,7 @@ use std::ops::{Add, Sub};
 pub struct Micros(pub u64);
 
 impl Micros {
-    /// Whole microseconds of a length of time in seconds, rounded up; 0 for what is no length of time.
+    /// Whole microseconds of a length of time in seconds, rounded up; 0 for what is not a length of time.
     pub fn from_seconds(seconds: f64) -> Self {
         Self((seconds * 1e6).ceil().max(0.0) as u64)
     }
@@ -27,7 +27,7 @@ impl Add for Micros {
     }
 }
 
-/// 0 where the difference would be negative.
+/// 0 if the difference would be negative.
 impl Sub for Micros {
     type Output = Self;
 

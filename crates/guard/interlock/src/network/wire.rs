@@ -35,7 +35,7 @@ pub enum Message {
     Grants(GrantsMessage),
 }
 
-/// The bytes of a message; `None` where it has more than [`MAX_SLOTS`] slots or its robot's index does not fit in two bytes.
+/// The bytes of a message; `None` if it has more than [`MAX_SLOTS`] slots or its robot's index does not fit in two bytes.
 pub fn encode(message: &Message) -> Option<Vec<u8>> {
     let mut bytes = Vec::with_capacity(MAX_BYTES);
     match message {

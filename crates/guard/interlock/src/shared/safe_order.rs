@@ -33,7 +33,7 @@ pub(super) struct SafeOrder<'a> {
 }
 
 impl<'a> SafeOrder<'a> {
-    /// `None` where no robot declared anything.
+    /// `None` if no robot declared anything.
     pub(super) fn of(state: &'a SharedState, now_s: f64) -> Option<Self> {
         if state.robots.iter().all(|r| r.claims.load(SeqCst) == 0) || state.has(InjectedFault::NoSafeOrder) {
             return None;

@@ -35,7 +35,7 @@ pub(super) enum InjectedFault {
 #[derive(Debug)]
 pub(super) struct RobotEntry {
     pub(super) name: String,
-    /// Bits of the slots that it declared, and [`DECLARED`](super::safe_order::DECLARED); 0 where it declared nothing.
+    /// Bits of the slots that it declared, and [`DECLARED`](super::safe_order::DECLARED); 0 if it declared nothing.
     pub(super) claims: AtomicU64,
 }
 

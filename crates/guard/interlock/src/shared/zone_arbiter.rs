@@ -81,7 +81,7 @@ impl ZoneArbiter {
         self.check(slot, robot, now_s).unwrap_or_else(|| self.acquire(slot, robot, now_s))
     }
 
-    /// The answer to a request, or `None` where the slot may be acquired.
+    /// The answer to a request, or `None` if the slot may be acquired.
     pub(super) fn check(&self, slot: SlotId, robot: RobotSlot, now_s: f64) -> Option<Grant> {
         if self.holder(slot) == Some(robot) {
             return Some(self.confirm(slot, robot, now_s));

@@ -82,7 +82,7 @@ pub(crate) struct StoppingInput<'a> {
     pub(crate) now_s: f64,
     pub(crate) stamp_s: f64,
     pub(crate) programmed_override: f64,
-    /// Time over which the actual velocities were derived from positions, s; 0 where they were given.
+    /// Time over which the actual velocities were derived from positions, s; 0 if they were given.
     pub(crate) uncertain_s: f64,
     /// Program time since the joint values last changed, at most, s.
     pub(crate) unchanged_s: f64,

@@ -25,7 +25,7 @@ pub struct Surface {
 
 impl Surface {
     /// Output `output` of a controller over its first two inputs, with `steps` values of each; the other inputs are at the
-    /// lower end of their ranges. `None` where there are fewer inputs or outputs, or fewer than two steps.
+    /// lower end of their ranges. `None` if there are fewer inputs or outputs, or fewer than two steps.
     ///
     /// ```
     /// use elbowroom_avoidance::{Rules, fuzzy::Surface};

@@ -53,7 +53,7 @@ pub fn spheres_until(
     count
 }
 
-/// The cells that all spheres block; `None` where the deadline passes.
+/// The cells that all spheres block; `None` if the deadline passes.
 fn union_of_spheres(builder: &mut PlanarMapBuilder, parts: &[BoxPart], deadline: Option<Instant>) -> Option<Layer> {
     let (mut whole, mut one) = (Layer::new(), Layer::new());
     for part in parts {

@@ -51,7 +51,7 @@ pub(super) fn for_each_inside(
 }
 
 /// Directions from `at`, which is outside, in which a link of length `reach` meets the outline: lowest and highest angle,
-/// radians; `None` where it never does.
+/// radians; `None` if it never does.
 pub(super) fn visible_interval(
     outline: &Outline,
     normals: &OutlineNormals,

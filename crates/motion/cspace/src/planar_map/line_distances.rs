@@ -8,7 +8,7 @@ use super::plane_solid::{PlaneSolid, TiltedDirections};
 use super::simd_math::{WIDTH, load, mad, splat};
 use super::wedge_support::support_distance;
 
-/// Radius from which on the grown solid intersects the wedge, metres; negative where the solid itself does.
+/// Radius from which on the grown solid intersects the wedge, metres; negative if the solid itself does.
 pub(super) fn reaching_radius<B: PlaneSolid>(context: &ConvexContext, solid: &B, lean: f32, side: f32) -> f32 {
     let offset = context.arm.offset_m as f32;
     dispatch!(context.simd_level, simd => reaching_radius_lanes(simd, solid, lean, side, offset))

@@ -215,7 +215,7 @@ struct ShoulderView {
 }
 
 impl ShoulderView {
-    /// `None` where the shoulder is inside.
+    /// `None` if the shoulder is inside.
     #[inline(always)]
     fn new(normals: &OutlineNormals, outline: &Outline) -> Option<Self> {
         let (mut k, mut least) = (0, f32::INFINITY);
@@ -252,7 +252,7 @@ impl<S: Simd> TangentRange<S> {
         self.hi = lanes.select(self.hi.max(tangent), self.hi);
     }
 
-    /// `None` where the range is empty.
+    /// `None` if the range is empty.
     #[inline(always)]
     fn directions(&self, simd: S) -> Option<Directions> {
         let (lo, hi) = (self.lo.min(self.lo.slide::<8>(self.lo)), self.hi.max(self.hi.slide::<8>(self.hi)));

@@ -156,7 +156,7 @@ struct WedgeCut {
 }
 
 impl WedgeCut {
-    /// Radius of the disk for a link; below 0 where there is none.
+    /// Radius of the disk for a link; below 0 if there is none.
     fn disk_radius(&self, link: f64) -> f64 {
         let whole = self.radius + link;
         if self.distance > whole {

@@ -31,7 +31,7 @@ pub(super) struct DrivingJoint {
     pub multiplier: f64,
 }
 
-/// A joint that is no axis of the map and may have any value.
+/// A joint that is not an axis of the map and may have any value.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SweptJoint {
     pub child: LinkId,

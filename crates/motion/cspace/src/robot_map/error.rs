@@ -34,10 +34,10 @@ pub enum RobotMapError {
     /// The links of the map do not hang on one joint, or its axis moves another joint, too.
     #[error("the links do not all hang on one joint of the map that moves alone: use RobotMapBuilder")]
     NoCommonJoint,
-    /// A slack of covers that is no length.
+    /// A slack of covers that is not a length.
     #[error("the slack of covers is {0} m: give a finite length above 0, such as 0.004")]
     Slack(f64),
-    /// A clearance that is no length.
+    /// A clearance that is not a length.
     #[error("the clearance of a map is {0} m: give a finite length, 0 or more, such as 0.02")]
     Clearance(f64),
     /// The map would exceed the memory limit.

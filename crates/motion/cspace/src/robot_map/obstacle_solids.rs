@@ -94,7 +94,7 @@ fn halves((center, half): (Vec3, Vec3)) -> [(Vec3, Vec3); 2] {
     [1.0, -1.0].map(|side| (center + offset * side, half))
 }
 
-/// Bounds of angle, radius and height about the base frame's z, as convex wedges; `None` where one has no volume.
+/// Bounds of angle, radius and height about the base frame's z, as convex wedges; `None` if one has no volume.
 fn wedges(shape: &Shape, in_base: &Pose) -> Option<Vec<Shape>> {
     let SectorBounds { first, width, near, far, low, high } = SectorBounds::new(shape, in_base)?;
     let count = (width / MAX_WEDGE_RAD).ceil().max(1.0);

@@ -26,7 +26,7 @@ impl OccupancyArray {
     /// Most cells: 1 GiB.
     pub const MAX_CELLS: usize = 1 << 30;
 
-    /// The cells that any of some maps blocks; `None` where there are more than [`OccupancyArray::MAX_CELLS`], no memory
+    /// The cells that any of some maps blocks; `None` if there are more than [`OccupancyArray::MAX_CELLS`], no memory
     /// for them, or a map has other axes.
     pub fn new<'b>(axes: &[GridAxis], maps: impl IntoIterator<Item = &'b BoxTree>) -> Option<Self> {
         let shape: Vec<usize> = axes.iter().map(GridAxis::count).collect();

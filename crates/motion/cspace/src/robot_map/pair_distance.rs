@@ -6,7 +6,7 @@ use elbowroom_spatial::Pose;
 
 use super::placed_obstacle::PlacedObstacle;
 
-/// `None` where a piece is certainly farther from an obstacle than `threshold_m`, else an estimate of the distance. Between
+/// `None` if a piece is certainly farther from an obstacle than `threshold_m`, else an estimate of the distance. Between
 /// meshes the cheapest test comes first: one pair of triangles that is near enough decides.
 pub(super) fn distance_within(
     workspace: &mut Workspace,

@@ -41,7 +41,7 @@ pub(super) struct RobotPiece {
 }
 
 impl RobotPiece {
-    /// A piece that some joints move, placed in the frame of the last one's child; `None` where it is too far away.
+    /// A piece that some joints move, placed in the frame of the last one's child; `None` if it is too far away.
     fn new(chain: &DrivenChain, piece: SolidPiece, joints: &[DrivingJoint]) -> Option<Self> {
         let reach = piece.center.length() + piece.radius;
         if !(reach <= ConvexObstacle::MAX_COORDINATE_M) {

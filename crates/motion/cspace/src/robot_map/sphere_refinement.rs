@@ -89,7 +89,7 @@ impl<'b> SphereRefinement<'b> {
         self.layer
     }
 
-    /// The cells of so many spheres; `None` where the deadline passes.
+    /// The cells of so many spheres; `None` if the deadline passes.
     fn layer_of(&self, count: u32, deadline: Option<Instant>) -> Result<Option<Layer>, RobotMapError> {
         let base = self.builder.base_in_world();
         let mut whole = Layer::new();

@@ -30,7 +30,7 @@ impl TriangleSoup {
         self.vertices.iter().map(|v| v.length()).fold(0.0, f64::max)
     }
 
-    /// In pieces of about this radius; `None` where a coordinate is not finite.
+    /// In pieces of about this radius; `None` if a coordinate is not finite.
     pub fn split(mut self, size: f64) -> Option<Vec<SolidPiece>> {
         if self.triangles.is_empty() {
             return Some(Vec::new());
@@ -88,7 +88,7 @@ impl TriangleGroup {
         Self { triangles, size: bounds.extent().length(), bounds }
     }
 
-    /// Bisected across the longest side of the bounds; unchanged where all triangles are on one side.
+    /// Bisected across the longest side of the bounds; unchanged if all triangles are on one side.
     fn halves(self, soup: &TriangleSoup) -> Result<[Self; 2], Self> {
         let extent = self.bounds.extent().to_array();
         let axis = (0..3).max_by(|&a, &b| extent[a].total_cmp(&extent[b])).unwrap_or(0);

@@ -25,7 +25,7 @@ impl<'v, V: EdgeValidator> CostBoundedSearch<'v, V> {
         Self { validator, trees: [tree(&roots[0]), tree(&roots[1])], roots, bound }
     }
 
-    /// Waypoints of a path below the bound; `None` where a limit is reached.
+    /// Waypoints of a path below the bound; `None` if a limit is reached.
     pub fn run(&mut self, sampler: &mut InformedSampler) -> Option<Vec<Vec<f64>>> {
         let mut sample = self.roots[0][0].clone();
         while !self.validator.is_exhausted() {

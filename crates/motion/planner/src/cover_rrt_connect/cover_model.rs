@@ -197,7 +197,7 @@ impl CoverObstacles {
     }
 }
 
-/// The margin of a pair in metres; `None` where the scene does not test it with a clearance (m).
+/// The margin of a pair in metres; `None` if the scene does not test it with a clearance (m).
 fn tested_margin(scene: &Scene, state: &SceneState, a: GeometryId, b: GeometryId, clearance_m: f64) -> Option<f64> {
     let (pair_state, reason) = state.pair(scene, a, b)?;
     let entry = scene.allowed_collision_matrix().get(a, b);

@@ -38,7 +38,7 @@ impl NodePacks {
         self.len += 1;
     }
 
-    /// The nearest node; 0 where there is none. The answer is the same on every instruction set.
+    /// The nearest node; 0 if there is none. The answer is the same on every instruction set.
     pub fn nearest(&self, q: &[f64]) -> usize {
         dispatch!(self.simd_level, simd => self.nearest_in_lanes(simd, q))
     }

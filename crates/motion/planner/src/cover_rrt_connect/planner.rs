@@ -60,7 +60,7 @@ impl<'m> CoverRrtConnect<'m> {
     /// be where it was when the obstacles were made, and the clearance the same.
     ///
     /// # Errors
-    /// As [`RrtConnect::plan`]; and [`RrtConnectError::Disconnected`] where it is proven that there is no path.
+    /// As [`RrtConnect::plan`]; and [`RrtConnectError::Disconnected`] if it is proven that there is no path.
     pub fn plan(
         &mut self,
         start: &SceneState,

@@ -45,7 +45,7 @@ impl<'s> Solids<'s> {
         Self { id, shapes, bounds, balls }
     }
 
-    /// How deep a ball (in the frame of these solids) overlaps one of them, m; 0 where it does not.
+    /// How deep a ball (in the frame of these solids) overlaps one of them, m; 0 if it does not.
     fn depth(&self, centre: Vec3, radius_m: f64) -> f64 {
         let of_shape = |(&(shape, pose), bounds): (&(&Shape, Pose), &Aabb)| {
             let is_near = bounds.inflated(radius_m).contains(pose.inverse_transform_point(centre));

@@ -38,7 +38,7 @@ impl<'v, V: EdgeValidator> TreeSearch<'v, V> {
         self.trees.iter().map(Tree::len).sum()
     }
 
-    /// Waypoints of a path; `None` where a limit is reached.
+    /// Waypoints of a path; `None` if a limit is reached.
     pub fn run(&mut self, sampler: &mut impl ConfigurationSampler) -> Option<Vec<Vec<f64>>> {
         let mut sample = self.trees[0].q(0).to_vec();
         let mut round = 0;

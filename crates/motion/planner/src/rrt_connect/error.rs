@@ -87,7 +87,7 @@ pub enum RrtConnectError {
         end: PathEnd,
         /// The violation in words.
         what: String,
-        /// Distance from it in metres: 0 or less, or NaN where it is not known.
+        /// Distance from it in metres: 0 or less, or NaN if it is not known.
         metres: f64,
     },
     /// No path was found within the limits. That proves nothing.

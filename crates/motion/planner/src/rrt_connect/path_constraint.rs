@@ -108,7 +108,7 @@ impl<'c> ConstraintChecker<'c> {
         Self { constraint: Box::new(constraint) }
     }
 
-    /// The violation at a configuration in words, and its distance; `None` where the constraint is satisfied.
+    /// The violation at a configuration in words, and its distance; `None` if the constraint is satisfied.
     pub fn violation(&mut self, q: &[f64]) -> Option<(String, f64)> {
         let distance = self.constraint.distance_m(q, 0.0);
         // Comparisons with NaN are false.

@@ -44,7 +44,7 @@ impl<'w, 's> BidirectionalSearch<'w, 's> {
         self.trees.iter().map(Tree::len).sum()
     }
 
-    /// Waypoints of a proven path; `None` where a limit is reached.
+    /// Waypoints of a proven path; `None` if a limit is reached.
     pub fn run(&mut self) -> Option<Vec<Vec<f64>>> {
         let mut sample = self.trees[0].q(0).to_vec();
         for round in 0_u32.. {
@@ -72,7 +72,7 @@ impl<'w, 's> BidirectionalSearch<'w, 's> {
     }
 
     /// Extends a tree towards a target, edge by edge until one is not free; returns the last node added and whether it is the
-    /// target, `None` where no edge was added.
+    /// target, `None` if no edge was added.
     fn extend(&mut self, tree: usize, from: usize, target: &[f64]) -> Option<(usize, bool)> {
         let (mut last, mut added) = (from, None);
         let mut next = target.to_vec();
@@ -100,7 +100,7 @@ impl<'w, 's> BidirectionalSearch<'w, 's> {
         added
     }
 
-    /// Both branches as one path, each edge proven; `None` where one is not, which is then pruned.
+    /// Both branches as one path, each edge proven; `None` if one is not, which is then pruned.
     fn proven_path(&mut self, node: usize, other: usize) -> Option<Vec<Vec<f64>>> {
         let mut path = Vec::new();
         for (tree, end) in [(0, node), (1, other)] {

@@ -83,7 +83,7 @@ pub fn connected(occupancy: &OccupancyBitmap, from: CellIndex, to: CellIndex) ->
     false
 }
 
-/// Length (cell widths) of the shortest path over centres of cells, 26 neighbours, no corner cut; `None` where there is none.
+/// Length (cell widths) of the shortest path over centres of cells, 26 neighbours, no corner cut; `None` if there is none.
 pub fn grid_optimum(occupancy: &OccupancyBitmap, scale: [f64; 3], from: CellIndex, to: CellIndex) -> Option<f64> {
     let shape = occupancy.shape();
     let index = |c: CellIndex| (usize::from(c[0]) * shape[1] + usize::from(c[1])) * shape[2] + usize::from(c[2]);

@@ -58,7 +58,7 @@ pub struct CloudReport {
     pub stamp_s: f64,
     /// Whether the obstacles can be used.
     pub status: CloudStatus,
-    /// Seconds since the last valid cloud, 0 for a valid one; infinite where there was none.
+    /// Seconds since the last valid cloud, 0 for a valid one; infinite if there was none.
     pub age_s: f64,
     /// All obstacles in the order of their identities; those that left are reported once.
     pub obstacles: Vec<Obstacle>,

@@ -291,7 +291,7 @@ impl<'a> Joints<'a> {
         (0..self.options.robots.len()).map(count).collect()
     }
 
-    /// Values of a row where the file has no columns; 0 where it must have them.
+    /// Values of a row where the file has no columns; 0 if it must have them.
     fn defaults(&self) -> Vec<f64> {
         let dof = |robot: usize| self.list.iter().filter(|j| j.robot == robot).count();
         let of_robot = |(robot, r): (usize, &JointStateRobot<'_>)| {

@@ -56,7 +56,7 @@ impl<'a> Field<'a> {
         format!("{}{path}{what}", self.location.part)
     }
 
-    /// The field of an object; `None` where it is missing or null.
+    /// The field of an object; `None` if it is missing or null.
     pub(crate) fn get(&self, key: &str) -> Result<Option<Self>, FormatError> {
         let Value::Object(fields) = self.value else {
             return Err(self.error(format!("is {}", kind(self.value)), "an object: {\"NAME\": …}"));

@@ -49,7 +49,7 @@ fn quaternion(field: &Field<'_>) -> Result<Rotation, FormatError> {
     })
 }
 
-/// The rotation of a quaternion x, y, z, w, normalized; `None` where it has no direction.
+/// The rotation of a quaternion x, y, z, w, normalized; `None` if it has no direction.
 pub(crate) fn rotation(q: [f64; 4]) -> Option<Rotation> {
     let length = q.iter().map(|v| v * v).sum::<f64>().sqrt();
     let rotation = (length >= MIN_QUATERNION).then(|| Rotation::from_quaternion_xyzw(q)).flatten();

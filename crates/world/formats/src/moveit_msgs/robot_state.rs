@@ -57,7 +57,7 @@ fn joint_values(field: &Field<'_>, keys: [&str; 2]) -> Result<Vec<JointValue>, F
     Ok(values)
 }
 
-/// The pose of the base: that of the joint which moves it. `None` where all are at rest.
+/// The pose of the base: that of the joint which moves it. `None` if all are at rest.
 fn base(field: &Field<'_>) -> Result<Option<Pose>, FormatError> {
     let mut moved = None;
     for (_, transform) in field.paired_lists(["joint_names", "transforms"])? {

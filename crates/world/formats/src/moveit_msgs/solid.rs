@@ -112,7 +112,7 @@ pub(crate) fn plane(field: &Field<'_>) -> Result<(Shape, Pose), FormatError> {
     half_space([a, b, c, d]).ok_or_else(|| field.error("is a plane without a direction", hint))
 }
 
-/// The half-space below the plane `a x + b y + c z + d = 0`, and its pose; `None` where it has no direction.
+/// The half-space below the plane `a x + b y + c z + d = 0`, and its pose; `None` if it has no direction.
 pub(crate) fn half_space([a, b, c, d]: [f64; 4]) -> Option<(Shape, Pose)> {
     let length = (a * a + b * b + c * c).sqrt();
     let normal = Vec3::new(a, b, c).try_normalize().filter(|n| n.is_finite())?;

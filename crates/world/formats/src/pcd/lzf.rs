@@ -1,6 +1,6 @@
 //! LZF, the compression of PCD files: literal runs and back references.
 
-/// Decompresses to exactly `length` bytes; `None` where the data is damaged.
+/// Decompresses to exactly `length` bytes; `None` if the data is damaged.
 pub(super) fn decompress(input: &[u8], length: usize) -> Option<Vec<u8>> {
     // Three bytes decompress to at most 264: the announced length is checked before memory is reserved.
     if length > input.len().saturating_mul(88) + 32 {

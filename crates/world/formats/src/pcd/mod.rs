@@ -43,7 +43,7 @@ struct Header {
     line: usize,
 }
 
-/// Parses the points of a PCD file as they are written: sensors write NaN where they measured nothing. Numbers are taken
+/// Parses the points of a PCD file as they are written: sensors write NaN if they measured nothing. Numbers are taken
 /// as metres.
 ///
 /// # Errors

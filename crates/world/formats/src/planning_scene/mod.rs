@@ -45,7 +45,7 @@ pub fn read(path: &Path) -> Result<PlanningScene, FormatError> {
 /// ```
 ///
 /// # Errors
-/// Text that is no planning scene, with the line.
+/// Text that is not a planning scene, with the line.
 pub fn parse(file: &Path, bytes: &[u8]) -> Result<PlanningScene, FormatError> {
     input::check_content(bytes, file)?;
     let text = input::text(bytes, file)?;

@@ -41,7 +41,7 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> {
     Ok(LoadedMeshes { meshes: vec![mesh], warnings: Vec::new() })
 }
 
-/// Parses the vertices of a PLY file as they are written, with or without faces: sensors write NaN where they measured
+/// Parses the vertices of a PLY file as they are written, with or without faces: sensors write NaN if they measured
 /// nothing. Numbers are taken as metres.
 ///
 /// ```

@@ -48,7 +48,7 @@ impl<'de, T: Deserialize<'de>> Visitor<'de> for EntriesVisitor<T> {
 /// Parses the text.
 ///
 /// # Errors
-/// [`FormatError`] with the line where it is no JSON, or of another layout.
+/// [`FormatError`] with the line where it is not JSON, or of another layout.
 pub(super) fn parse<'de, T: Deserialize<'de>>(text: &'de str, file: &Path) -> Result<T, FormatError> {
     serde_json::from_str(text).map_err(|e| {
         let line = (e.line() > 0).then_some(e.line());

@@ -73,7 +73,7 @@ pub fn read(path: &Path) -> Result<ProblemFile, FormatError> {
 /// ```
 ///
 /// # Errors
-/// Text that is no JSON of this layout: the message has the line, or set, problem and field.
+/// Text that is not JSON of this layout: the message has the line, or set, problem and field.
 pub fn parse(file: &Path, bytes: &[u8]) -> Result<ProblemFile, FormatError> {
     input::check_content(bytes, file)?;
     let text = input::text(bytes, file)?;

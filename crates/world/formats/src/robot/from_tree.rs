@@ -74,7 +74,7 @@ impl<'a> RobotBuilder<'a> {
         Self { tree, names, own_root, frames, file }
     }
 
-    /// The joint of each node; `None` where it is fixed.
+    /// The joint of each node; `None` if it is fixed.
     fn node_joints(
         &self,
         specs: &[JointSpec],

@@ -101,7 +101,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<LoadedRobot, FormatErr
 /// Adds the disabled pairs of an SRDF to a robot. Returns warnings.
 ///
 /// # Errors
-/// A file that cannot be read or is no SRDF.
+/// A file that cannot be read or is not an SRDF.
 pub fn apply_srdf(robot: &mut Robot, path: &Path) -> Result<Vec<Warning>, FormatError> {
     let mut warnings = WarningList::default();
     disable_pairs(robot, path, &mut warnings)?;

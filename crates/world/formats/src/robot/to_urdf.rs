@@ -21,7 +21,7 @@ const UNLIMITED_M: f64 = 1e6;
 pub struct UrdfExport {
     /// The text of the URDF.
     pub urdf: String,
-    /// The text of an SRDF with the disabled pairs; `None` where there are none.
+    /// The text of an SRDF with the disabled pairs; `None` if there are none.
     pub srdf: Option<String>,
     /// Mesh files, by their names relative to the URDF.
     pub meshes: Vec<(String, MeshData)>,

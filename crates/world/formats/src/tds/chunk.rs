@@ -18,7 +18,7 @@ pub(super) struct Chunk<'a> {
     at: usize,
 }
 
-/// The chunk of the whole file. Its length is ignored where it does not fit: some writers leave it at 0.
+/// The chunk of the whole file. Its length is ignored if it does not fit: some writers leave it at 0.
 pub(super) fn main<'a>(bytes: &'a [u8], file: &Path) -> Result<Chunk<'a>, FormatError> {
     if bytes.len() < HEAD || !bytes.starts_with(&[0x4d, 0x4d]) {
         return Err(FormatError::new(file, None, "is no 3DS file: it does not begin with the bytes 4D 4D")

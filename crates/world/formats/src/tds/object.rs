@@ -14,7 +14,7 @@ pub(super) struct Object {
     /// In world coordinates, or in the object's frame: see [`super::assemble`].
     pub(super) vertices: Vec<Vec3>,
     pub(super) triangles: Vec<[u32; 3]>,
-    /// The object's frame in the world, which may scale and mirror; `None` where the file has none.
+    /// The object's frame in the world, which may scale and mirror; `None` if the file has none.
     pub(super) axes: Option<Affine>,
 }
 

@@ -23,7 +23,7 @@ pub(crate) const SDF_HINT: &str = "the URDF that the SDF was made from, or the o
 /// Parses a URDF; meshes are named, not opened. `file` is named in messages.
 ///
 /// # Errors
-/// Whatever is no tree of links with finite numbers; unexpanded xacro; files of other formats.
+/// Whatever is not a tree of links with finite numbers; unexpanded xacro; files of other formats.
 ///
 /// ```
 /// use elbowroom_formats::urdf;

@@ -75,7 +75,7 @@ pub struct SuspectUnit {
     pub looks_like: UnitLabel,
     /// The unit that they were read as: `m`, `mm`, `cm`, `in` or `rad`.
     pub read_as: UnitLabel,
-    /// The factor by which it is too large, approximately; below 1 where it is too small.
+    /// The factor by which it is too large, approximately; below 1 if it is too small.
     pub factor: f64,
     /// The message.
     pub reason: String,

@@ -25,7 +25,7 @@ impl AllowedCollisionMatrix {
     /// robot, and in queries that name both.
     ///
     /// # Errors
-    /// [`MatrixError`] where there is no such pair or the number is invalid.
+    /// [`MatrixError`] if there is no such pair or the number is invalid.
     pub fn edit(&mut self, scene: &Scene, a: GeometryId, b: GeometryId, edit: PairEdit) -> Result<(), MatrixError> {
         let no_such_pair = || MatrixError::NoSuchPair { a: scene.name(a), b: scene.name(b) };
         if !(scene.has_shape(a) && scene.has_shape(b)) {

@@ -51,7 +51,7 @@ pub struct PairEntry {
     pub b: GeometryId,
     /// Whether the pair is tested.
     pub state: PairState,
-    /// Security margin, metres: the pair collides where it is not farther apart. The sum of both paddings, unless set by hand.
+    /// Security margin, metres: the pair collides if it is not farther apart. The sum of both paddings, unless set by hand.
     pub margin_m: f64,
     /// Pairs of larger weight are tested first. Dimensionless.
     pub weight: f64,

@@ -97,7 +97,7 @@ fn reach_volume(scene: &Scene, id: GeometryId, other: GeometryId) -> Option<Reac
             radius += max_stroke_m(chain, *j);
         }
     }
-    // Slightly enlarged for the rounding of the sum. An infinite or NaN radius is no sphere.
+    // Slightly enlarged for the rounding of the sum. An infinite or NaN radius is not a sphere.
     radius.is_finite().then_some(ReachVolume::Sphere(in_frame.translation, radius * (1.0 + 1e-12)))
 }
 
@@ -174,7 +174,7 @@ impl BranchAndBound<'_> {
         Some(required)
     }
 
-    /// All joints that move the pair; `None` where they are too many or unbounded.
+    /// All joints that move the pair; `None` if they are too many or unbounded.
     fn joints(&self, a: GeometryId, b: GeometryId) -> Option<Vec<PairJoint>> {
         let mut joints: Vec<PairJoint> = Vec::new();
         for (id, other) in [(a, b), (b, a)] {

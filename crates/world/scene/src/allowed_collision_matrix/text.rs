@@ -66,7 +66,7 @@ impl AllowedCollisionMatrix {
     /// the model: a matrix of another model is refused.
     ///
     /// # Errors
-    /// [`MatrixError`] where the text is no allowed collision matrix, or not one of this scene.
+    /// [`MatrixError`] if the text is not an allowed collision matrix, or not one of this scene.
     pub fn from_text(scene: &Scene, text: &str) -> Result<Self, MatrixError> {
         let file: MatrixFile = toml::from_str(text).map_err(|e| MatrixError::Syntax(e.to_string().trim().into()))?;
         if file.version != 1 {

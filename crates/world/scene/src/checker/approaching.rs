@@ -187,7 +187,7 @@ fn approaching_pair([a, b]: &[MovingModel; 2], bound: &ApproachBound, horizon_s:
     }
 }
 
-/// A limit in metres; NaN is no limit.
+/// A limit in metres; NaN is not a limit.
 fn nan_is_infinite(metres: f64) -> f64 {
     if metres.is_nan() { f64::INFINITY } else { metres.max(0.0) }
 }

@@ -14,7 +14,7 @@ impl CheckerCore<'_> {
         within: f64,
         mut found: impl FnMut(PairDistance),
     ) {
-        // A robot as a whole is no pair: L1 is answered at L2.
+        // A robot as a whole is not a pair: L1 is answered at L2.
         self.broad_phase(list, state, within, false);
         self.sort_candidates();
         let level = self.options.pair_level();

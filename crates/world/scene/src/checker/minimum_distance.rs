@@ -9,7 +9,7 @@ use crate::{Level, SceneState};
 const UPPER_BOUNDS: usize = 2;
 
 impl CheckerCore<'_> {
-    /// The nearest pair; `None` where there is none.
+    /// The nearest pair; `None` if there is none.
     pub(super) fn minimum_distance(&mut self, list: &mut PairList, state: &SceneState) -> Option<PairDistance> {
         self.finest = Level::L1;
         self.upper_bound = f64::INFINITY;

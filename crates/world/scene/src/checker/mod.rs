@@ -123,7 +123,7 @@ impl<'s> Checker<'s> {
         self.between(Selection::All, Selection::All)
     }
 
-    /// A pair in contact (not farther apart than its margin), or `None` where there is none.
+    /// A pair in contact (not farther apart than its margin), or `None` if there is none.
     pub fn collides(&mut self, state: &SceneState) -> Option<PairContact> {
         self.all().collides(state)
     }
@@ -138,13 +138,13 @@ impl<'s> Checker<'s> {
         self.all().within(state, tolerance_m)
     }
 
-    /// The nearest pair with its distance and witness points; `None` where there is no pair at all.
+    /// The nearest pair with its distance and witness points; `None` if there is no pair at all.
     pub fn distance(&mut self, state: &SceneState) -> Option<PairDistance> {
         self.all().distance(state)
     }
 
     /// The collision point: the point, the link, the collider and its triangle, and the normals. Of several collisions it
-    /// is that of the pair first in the order of the hierarchy: the link nearest to a base. `None` where nothing collides,
+    /// is that of the pair first in the order of the hierarchy: the link nearest to a base. `None` if nothing collides,
     /// margins included.
     ///
     /// [`Detail::Boxes`] stops at a depth of the box trees of the meshes: "nothing collides" is certain then, a collision may be

@@ -7,7 +7,7 @@ use crate::SceneState;
 use crate::narrow_phase::PlacedModel;
 
 impl<'s> CheckerCore<'s> {
-    /// Measures one pair, from coarse to fine; `None` where the models are certainly farther apart than `limit` metres.
+    /// Measures one pair, from coarse to fine; `None` if the models are certainly farther apart than `limit` metres.
     /// `margin` is the pair's margin and what the models may fail to enclose.
     pub(super) fn pair_distance(
         &mut self,

@@ -27,7 +27,7 @@ pub(crate) struct GeometryPair {
 }
 
 impl GeometryPair {
-    /// A pair without a proof; `None` where one has no shape.
+    /// A pair without a proof; `None` if one has no shape.
     pub fn of(scene: &Scene, a: GeometryId, b: GeometryId, margin: f64) -> Option<Self> {
         let (a, b) = (scene.model_of(a)? as u32, scene.model_of(b)? as u32);
         Some(Self { a, b, margin, proven_least_m: 0.0, rank: 0, weight: 1.0, warm_start: PairWarmStart::default() })

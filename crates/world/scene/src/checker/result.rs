@@ -127,7 +127,7 @@ pub struct ApproachingPair {
     pub on_a: Vec3,
     /// Witness point on `b`.
     pub on_b: Vec3,
-    /// Approach speed of the two points, m/s; negative where they separate.
+    /// Approach speed of the two points, m/s; negative if they separate.
     pub closing_m_s: f64,
     /// Metres over that speed, seconds: the time to collision if these points meet and keep their velocities. Infinite where
     /// they separate.

@@ -26,7 +26,7 @@ impl FirstContacts<'_> {
         self.renew_pairs(object, states);
     }
 
-    /// How an object is attached; `None` where it is not.
+    /// How an object is attached; `None` if it is not.
     pub fn attachment(&self, object: ObjectId) -> Option<&Attachment> {
         self.held[object.0].as_ref().map(|h| &h.attachment)
     }

@@ -14,7 +14,7 @@ pub(super) struct LinkBounds {
     joints: Vec<Vec<JointGeometry>>,
     /// Per robot and link: the joints from the root to it.
     paths: Vec<Vec<Vec<JointId>>>,
-    /// Per model: the corners of its bounding box in its own frame; `None` where it is unbounded.
+    /// Per model: the corners of its bounding box in its own frame; `None` if it is unbounded.
     corners: Vec<Option<[Vec3; 8]>>,
 }
 
@@ -71,7 +71,7 @@ impl LinkBounds {
         self.corners[model].as_ref()
     }
 
-    /// Distance (m) of the farthest corner from the model's origin; infinite where it is unbounded.
+    /// Distance (m) of the farthest corner from the model's origin; infinite if it is unbounded.
     pub fn radius(&self, model: usize) -> f64 {
         self.corners(model).map_or(f64::INFINITY, |c| c.iter().map(|p| p.length()).fold(0.0, f64::max))
     }
@@ -141,7 +141,7 @@ impl LinkBounds {
         if size.is_finite() { size } else { 0.0 }
     }
 
-    /// The largest of a length over the corners, in the link's frame; infinite where the model is unbounded.
+    /// The largest of a length over the corners, in the link's frame; infinite if the model is unbounded.
     fn farthest_corner(&self, model: usize, in_link: Option<Pose>, length: impl Fn(Vec3) -> f64) -> f64 {
         let Some(corners) = self.corners(model) else { return f64::INFINITY };
         let place = |p: &Vec3| in_link.map_or(*p, |c| c.transform_point(*p));
@@ -150,7 +150,7 @@ impl LinkBounds {
 }
 
 impl JointGeometry {
-    /// Absolute rate of the joint, and its values at both ends of the motion; 0 where it is fixed.
+    /// Absolute rate of the joint, and its values at both ends of the motion; 0 if it is fixed.
     fn rate_and_ends(&self, rates: JointRates) -> (f64, [f64; 2]) {
         let Some(c) = self.coupling else { return (0.0, [0.0; 2]) };
         match (rates.rate.get(c.index), rates.from.get(c.index)) {

@@ -28,7 +28,7 @@ impl Default for SweepOptions {
 /// The first time at which a pair is too near during a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SweepHit {
-    /// Time as a fraction of the motion in `[0, 1]`: no pair was too near before. 0 where one is at the start.
+    /// Time as a fraction of the motion in `[0, 1]`: no pair was too near before. 0 if one is at the start.
     pub time: f64,
     /// The first of the pair, in the order of the allowed collision matrix.
     pub a: GeometryId,

@@ -82,7 +82,7 @@ struct Context<'r, 'c, 's, 'm> {
 }
 
 impl SweepSearch {
-    /// The first hit along the trajectory, `None` where all of it is free.
+    /// The first hit along the trajectory, `None` if all of it is free.
     pub fn run(
         &mut self,
         core: &mut CheckerCore,

@@ -296,7 +296,7 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         }
     }
 
-    /// Descends from a node to the spheres near an obstacle, for some lanes. `None` where all are proven apart; else the lanes
+    /// Descends from a node to the spheres near an obstacle, for some lanes. `None` if all are proven apart; else the lanes
     /// for which nothing else of this pair matters.
     #[inline(always)]
     fn tree_against(&mut self, body: usize, root: u32, obstacle: &RoundedSolid, mut open: u32) -> Option<u32> {

@@ -10,7 +10,7 @@ const ROUNDED_UP: f64 = 1.0 + 1e-6;
 
 impl ValidityChecker<'_> {
     /// Whether *every* configuration of a box in joint space is proven in collision, for several boxes of the same size: those
-    /// within `half_widths` (rad, m for prismatic joints, within their limits; infinite where a joint may be anywhere) of a centre. `centres` has the
+    /// within `half_widths` (rad, m for prismatic joints, within their limits; infinite if a joint may be anywhere) of a centre. `centres` has the
     /// values of all centres one after the other. False proves nothing.
     ///
     /// Proven by depth: at the centre an inner sphere of a link overlaps an obstacle or another link deeper than either moves
@@ -33,7 +33,7 @@ impl ValidityChecker<'_> {
     /// ```
     ///
     /// # Errors
-    /// A number of values that is no multiple of the robot's, or another number of half widths.
+    /// A number of values that is not a multiple of the robot's, or another number of half widths.
     pub fn boxes_are_in_collision(
         &mut self,
         centres: &[f64],

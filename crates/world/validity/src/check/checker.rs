@@ -135,7 +135,7 @@ impl<'m> ValidityChecker<'m> {
     /// Whether each of several configurations is free; `q` has their values one after the other.
     ///
     /// # Errors
-    /// A number of values that is no multiple of the robot's.
+    /// A number of values that is not a multiple of the robot's.
     pub fn states(&mut self, q: &[f64], answers: &mut Vec<Validity>) -> Result<(), ValidityError> {
         let dof = self.robot.dof();
         if dof == 0 || !q.len().is_multiple_of(dof) {

@@ -27,7 +27,7 @@ pub(super) struct MedialBalls<'g, 's> {
 }
 
 impl<'g, 's> MedialBalls<'g, 's> {
-    /// `None` where no triangle is visible.
+    /// `None` if no triangle is visible.
     pub fn new(placed: &'g PlacedShapes<'s>, grid: &'g VoxelGrid, slack_m: f64) -> Option<Self> {
         let vertices = grid.surface.visible.concat();
         let triangles = (0..vertices.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();

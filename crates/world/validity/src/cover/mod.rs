@@ -56,7 +56,7 @@ impl SphereCover {
     /// more than `slack_m`, but for gaps narrower than two voxels, cavities that the surface encloses, and solids of more
     /// voxels than fit.
     ///
-    /// `None` where a shape is unbounded, has NaN or infinite numbers or reaches beyond 10 km: no spheres enclose it. No shapes: an empty cover.
+    /// `None` if a shape is unbounded, has NaN or infinite numbers or reaches beyond 10 km: no spheres enclose it. No shapes: an empty cover.
     pub fn new(shapes: &[(&Shape, Pose)], slack_m: f64) -> Option<Self> {
         let mut cover = Self::default();
         let mut others = Vec::new();

@@ -11,7 +11,7 @@ pub(super) struct PlacedShapes<'s> {
     shapes: Vec<(&'s Shape, Pose)>,
     /// Corners of the triangles of all surfaces.
     pub triangles: Vec<[Vec3; 3]>,
-    /// No point of a surface is farther from the triangles, m; larger than 0 where a shape is curved.
+    /// No point of a surface is farther from the triangles, m; larger than 0 if a shape is curved.
     pub chord_error_m: f64,
 }
 

@@ -97,7 +97,7 @@ impl CoverSelection<'_, '_> {
         self.balls.retain(|b| b.radius > 0.0);
     }
 
-    /// Radius that a ball needs for those of the voxels found which it alone contains; 0 where there are none.
+    /// Radius that a ball needs for those of the voxels found which it alone contains; 0 if there are none.
     fn needed_radius(&self, centre: Vec3) -> f64 {
         let alone = self.found.iter().filter(|&&voxel| self.counts[voxel as usize] == 1);
         let points = alone.flat_map(|&voxel| self.surface.points(voxel as usize));

@@ -33,7 +33,7 @@ pub(super) struct VoxelGrid {
 }
 
 impl VoxelGrid {
-    /// `None` where there are no triangles.
+    /// `None` if there are no triangles.
     pub fn new(triangles: &[[Vec3; 3]], slack_m: f64) -> Option<Self> {
         if triangles.is_empty() {
             return None;

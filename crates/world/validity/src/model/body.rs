@@ -20,7 +20,7 @@ pub(crate) struct SphereNode {
     pub centre: [f32; 3],
     /// m, rounding errors included.
     pub radius: f32,
-    /// What is nearer to the centre touches a leaf below; negative where the centre is in none, m.
+    /// What is nearer to the centre touches a leaf below; negative if the centre is in none, m.
     pub touching_m: f32,
     /// The frame that moves it.
     pub frame: u32,
@@ -39,7 +39,7 @@ pub(crate) struct InnerSphere {
 #[derive(Debug, Clone)]
 pub(crate) struct CoveredLink {
     pub link: LinkId,
-    /// Frame of its joint; 0 where none moves it.
+    /// Frame of its joint; 0 if none moves it.
     pub frame: usize,
     /// Its tree in the list of all nodes; the first is the root.
     pub nodes: std::ops::Range<u32>,
@@ -47,7 +47,7 @@ pub(crate) struct CoveredLink {
     pub broad_phase: Vec<u32>,
     /// Its inner spheres in the list of all.
     pub inner: std::ops::Range<u32>,
-    /// Per step of the chain: no point of the body moves farther per rad, or per m; 0 where the joint does not move it.
+    /// Per step of the chain: no point of the body moves farther per rad, or per m; 0 if the joint does not move it.
     pub lever_m: Vec<f32>,
 }
 

@@ -210,7 +210,7 @@ impl CoveredRobot {
         let joints = joints.collect();
         self.tables = OnceLock::new();
         let common_frame = common.checked_sub(1).map_or(0, |last| of_a[last] + 1);
-        // Of a margin that is no number nothing is known: no pair keeps it.
+        // Of a margin that is not a number nothing is known: no pair keeps it.
         let margin_m = if margin_m.is_nan() { f64::INFINITY } else { margin_m };
         let margin_m = ((margin_m.max(0.0) * (1.0 + MARGIN_SHARE)) as f32).next_up();
         self.pairs.push(LinkPair { a, b, margin_m, common_frame, joints });
@@ -226,7 +226,7 @@ impl CoveredRobot {
         self.covered_links.iter().map(|b| b.link)
     }
 
-    /// Radius of the sphere around a body; 0 where it has no spheres.
+    /// Radius of the sphere around a body; 0 if it has no spheres.
     pub(crate) fn bounding_radius_m(&self, body: CoveredLinkId) -> f32 {
         let nodes = &self.covered_links[body.0].nodes;
         if nodes.is_empty() { 0.0 } else { self.nodes[nodes.start as usize].radius }

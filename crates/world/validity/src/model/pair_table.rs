@@ -22,7 +22,7 @@ pub(crate) struct PairTable {
     pub steps: [usize; 2],
     /// The pairs, by their numbers.
     pub pairs: Vec<usize>,
-    /// Cells from one cell of the first joint to the next; 0 where both joints are the same.
+    /// Cells from one cell of the first joint to the next; 0 if both joints are the same.
     pub row: usize,
     /// Per level, per cell of the first joint and cell of the second, a bit per pair that may touch.
     pub levels: [Vec<u8>; LEVELS],

@@ -37,7 +37,7 @@ pub(crate) struct RootSphere {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct SpherePacks {
     pub packs: Vec<SpherePack>,
-    /// Per covered link its root; `None` where it has no spheres.
+    /// Per covered link its root; `None` if it has no spheres.
     pub links: Vec<Option<RootSphere>>,
     /// The nodes of the broad phase of links that joints move, the farthest from the base first.
     pub broad_phase: Vec<RootSphere>,

@@ -17,7 +17,7 @@ const FAR: f32 = 1e30;
 pub(crate) struct RoundedSolid {
     /// Origin of its frame in the world, m.
     origin: [f32; 3],
-    /// Columns of its rotation; `None` where its axes are those of the world.
+    /// Columns of its rotation; `None` if its axes are those of the world.
     columns: Option<[[f32; 3]; 3]>,
     core: Core,
     /// m.

@@ -114,7 +114,7 @@ impl Simplex {
         if edges[2].squared < first.squared { edges[2] } else { first }
     }
 
-    /// The nearest of the faces that have the origin on their outer side; `None` where none has.
+    /// The nearest of the faces that have the origin on their outer side; `None` if none has.
     fn tetrahedron(&self, apart: bool) -> Option<Face> {
         let mut best: Option<Face> = None;
         for [i, j, k, opposite] in [[0, 1, 2, 3], [0, 1, 3, 2], [0, 2, 3, 1], [1, 2, 3, 0]] {

@@ -22,7 +22,7 @@ pub(super) struct Seams {
     pub tolerance: f64,
 }
 
-/// Merges boundary vertices; `None` where that shortens no boundary. `first` is the first of equal coordinates.
+/// Merges boundary vertices; `None` if that shortens no boundary. `first` is the first of equal coordinates.
 pub(super) fn close(vertices: &[Vec3], triangles: &[[u32; 3]], first: &[u32]) -> Option<Seams> {
     let (on_boundary, open) = boundary(vertices.len(), &faces(triangles, first));
     let extent = Aabb::from_points(triangles.iter().flatten().map(|&i| vertices[i as usize])).extent();

@@ -149,7 +149,7 @@ impl CellModel {
         (0..self.slots).map(SlotId).filter(enters)
     }
 
-    /// One tick; `None` where that step is impossible.
+    /// One tick; `None` if that step is impossible.
     fn tick(&self, state: &mut CellState, r: usize, step: Step) -> Option<()> {
         let RobotState { place, enters } = state.robots[r];
         let is_advance = step == Step::Advance;
@@ -204,7 +204,7 @@ impl CellModel {
         }
     }
 
-    /// An integrator clears a robot that is at rest outside; `None` where that is refused.
+    /// An integrator clears a robot that is at rest outside; `None` if that is refused.
     fn clear(&self, state: &mut CellState, robot: usize) -> Option<()> {
         if (0..self.slots).any(|s| self.is_in(state, robot, SlotId(s))) {
             return None;
@@ -228,7 +228,7 @@ impl CellModel {
         self.reply(state, outputs.replies);
     }
 
-    /// What an action changes; `None` where it is impossible.
+    /// What an action changes; `None` if it is impossible.
     fn act(&self, state: &mut CellState, action: Action) -> Option<()> {
         match action {
             Action::Tick(r, step) => self.tick(state, r, step)?,

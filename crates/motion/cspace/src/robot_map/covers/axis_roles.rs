@@ -17,7 +17,7 @@ pub(super) struct AxisRoles {
 }
 
 impl AxisRoles {
-    /// `None` where the links have not all the same first joint, or its axis moves another joint, too.
+    /// `None` if the links have not all the same first joint, or its axis moves another joint, too.
     pub fn new(grid: &Grid, groups: &[RigidGroup]) -> Option<Self> {
         let Some(first) = groups.first().and_then(|group| group.joints.first()) else {
             return Some(Self { lanes: 0, others: [1, 2], counts: grid.shape() });

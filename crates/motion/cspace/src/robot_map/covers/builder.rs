@@ -219,7 +219,7 @@ impl CoverMapBuilder {
     /// cells between two blocked neighbours on opposite sides are blocked without a test.
     ///
     /// **Not conservative.** No cell beside a blocked one is missed, but parts of the blocked cells in which there is no seed are:
-    /// an arm that reaches the obstacle with two links, or over its back, has several. The result is no [`Layer`], so that no map
+    /// an arm that reaches the obstacle with two links, or over its back, has several. The result is not a [`Layer`], so that no map
     /// that guards takes it.
     ///
     /// # Errors

@@ -102,7 +102,7 @@ pub(super) fn near_balls<S: Simd>(
     near & !(squared.simd_gt(needed).to_bitmask() as u32)
 }
 
-/// Distances of a group's balls from a solid at the centre of the box, less the sums of the radii: at most 0 where they touch.
+/// Distances of a group's balls from a solid at the centre of the box, less the sums of the radii: at most 0 if they touch.
 /// `reach` of the target is its radius less rounding errors.
 #[inline(always)]
 pub(super) fn gaps<S: Simd>(

@@ -35,7 +35,7 @@ struct PlacedSolid {
 }
 
 impl PlanarArmMap {
-    /// `None` where the joints or the links are others, or where capsules would protrude from the links by more than
+    /// `None` if the joints or the links are others, or where capsules would protrude from the links by more than
     /// `tolerance_m`.
     pub fn new(chain: &DrivenChain, groups: &[RigidGroup], grid: &Grid, tolerance_m: f64) -> Option<Self> {
         let moved: Vec<&RigidGroup> = groups.iter().filter(|group| !group.solids.is_empty()).collect();

@@ -19,7 +19,7 @@ pub(super) enum SolidCore {
 }
 
 impl SolidCore {
-    /// From the nearest point of the core; a normal of the core where it is not 0.
+    /// From the nearest point of the core; a normal of the core if it is not 0.
     #[inline(always)]
     pub fn vector_to<S: Simd>(self, simd: S, p: V3<S>) -> V3<S> {
         let zero = splat(simd, 0.0);

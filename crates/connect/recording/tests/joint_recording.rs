@@ -1,8 +1,8 @@
 //! Joint states of recordings that other programs wrote.
 
+use elbowroom_recording::{BagError, JointRecording};
 use elbowroom_ros2::Message;
 use elbowroom_ros2::msgs::sensor_msgs::JointState;
-use elbowroom_rosbag::{BagError, JointRecording};
 use ruzstd::encoding::{CompressionLevel, compress_to_vec};
 
 const MAGIC: &[u8] = b"\x89MCAP0\r\n";
@@ -29,7 +29,7 @@ fn message(channel: u16, time_ns: u64, payload: &[u8]) -> Vec<u8> {
     record(5, &[&channel.to_le_bytes(), &0_u32.to_le_bytes(), &time, &time, payload])
 }
 
-/// A chunk of records, compressed as rosbag2 does it in its fast setting.
+/// A chunk of records, compressed as recording2 does it in its fast setting.
 fn chunk(records: &[Vec<u8>]) -> Vec<u8> {
     let plain = records.concat();
     let compressed = compress_to_vec(&plain[..], CompressionLevel::Fastest);

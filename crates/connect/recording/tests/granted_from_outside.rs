@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::common::{SlowFile, position, velocity};
 use elbowroom_cell::{Cell, configure};
 use elbowroom_monitor::{Interlock, Monitor, OverrideReason, SlotGrants, SlotId, Snapshot};
-use elbowroom_rosbag::{CellWriter, Recorder, replay};
+use elbowroom_recording::{CellWriter, Recorder, replay};
 
 const CELL: &str = r#"
 version = 1

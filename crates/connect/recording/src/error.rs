@@ -19,7 +19,7 @@ pub enum BagError {
     /// A record cannot be written.
     #[error("the recording cannot be written: {0}{help}", help = instead(.0))]
     Write(mcap::McapError),
-    /// The file is no MCAP file.
+    /// The file is not an MCAP file.
     #[error(
         "is not an MCAP file: it does not begin with the bytes 89 M C A P 30\n  help: a file that `elbowroom run --mcap`, `elbowroom live --record` or `ros2 bag record -s mcap` wrote"
     )]

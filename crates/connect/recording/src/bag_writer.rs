@@ -60,7 +60,7 @@ impl<W: Write + Seek> BagWriter<W> {
     fn add_channel<M: Message>(&mut self, topic: &str) -> Result<u16, BagError> {
         let schema = self.writer.add_schema(M::NAME, "ros2msg", M::schema().as_bytes()).map_err(BagError::Write)?;
         let latched = ["/robot_description", "/tf_static", "/elbowroom/configuration"].contains(&topic);
-        // As rosbag2 writes it, so that it plays the last message to those who come later.
+        // As recording2 writes it, so that it plays the last message to those who come later.
         let durability = if latched { "transient_local" } else { "volatile" };
         let qos = format!(
             "- history: keep_last\n  depth: 1\n  reliability: reliable\n  durability: {durability}\n  deadline:\n    sec: 0\n    \

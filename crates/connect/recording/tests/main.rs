@@ -1,4 +1,4 @@
-//! Integration tests of `elbowroom-rosbag` in one program: a module per subject, whose first line says what belongs there.
+//! Integration tests of `elbowroom-recording` in one program: a module per subject, whose first line says what belongs there.
 
 mod common;
 mod granted_from_outside;

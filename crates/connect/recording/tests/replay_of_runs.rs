@@ -5,8 +5,8 @@
 use std::io::Cursor;
 
 use elbowroom_cell::Cell;
+use elbowroom_recording::{CellWriter, Replay, RunRecorder, replay};
 use elbowroom_robot::RobotId;
-use elbowroom_rosbag::{CellWriter, Replay, RunRecorder, replay};
 use elbowroom_sim::run::simulate_observed;
 use elbowroom_sim::{InputFault, InputFaultKind, PlannedPaths, Recording, RunOptions};
 use elbowroom_testkit::folder::examples;

@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use common::{SlowFile, position, rail, velocity};
 use elbowroom_monitor::{AccessClass, Snapshot};
-use elbowroom_rosbag::{CellWriter, Recorder};
+use elbowroom_recording::{CellWriter, Recorder};
 use elbowroom_testkit::allocation::{AllocationCounter, COUNTING_ALLOCATOR, CountingAllocator};
 
 #[global_allocator]

@@ -7,13 +7,13 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use elbowroom_cell::Cell;
+use elbowroom_recording::{BagReader, CellWriter, RunRecorder};
 use elbowroom_ros2::Message;
 use elbowroom_ros2::msgs::diagnostic_msgs::DiagnosticArray;
 use elbowroom_ros2::msgs::sensor_msgs::JointState;
 use elbowroom_ros2::msgs::std_msgs::Text;
 use elbowroom_ros2::msgs::tf2_msgs::TFMessage;
 use elbowroom_ros2::msgs::visualization_msgs::MarkerArray;
-use elbowroom_rosbag::{BagReader, CellWriter, RunRecorder};
 use elbowroom_sim::run::simulate_observed;
 use elbowroom_sim::{PlannedPaths, RunOptions};
 use serde_json::Value;

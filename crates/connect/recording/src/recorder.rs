@@ -64,7 +64,7 @@ impl Recorder {
     /// [`Self::finish`] would hear of it days later.
     ///
     /// # Errors
-    /// [`BagError::Io`] where the thread cannot be started.
+    /// [`BagError::Io`] if the thread cannot be started.
     pub fn start<W: Write + Seek + Send + 'static>(
         writer: CellWriter<W>,
         on_error: impl FnOnce(&BagError) + Send + 'static,

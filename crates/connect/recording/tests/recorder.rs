@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use crate::common::{SlowFile, position, rail, velocity};
 use elbowroom_monitor::{AccessClass, Fault, Monitor, Snapshot};
-use elbowroom_rosbag::{BagError, CellWriter, Recorder, TickRecorder, replay};
+use elbowroom_recording::{BagError, CellWriter, Recorder, TickRecorder, replay};
 use elbowroom_status::{CellStatus, RobotStatus};
 
 /// Names the file that the second process of the test records into.

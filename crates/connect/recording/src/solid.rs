@@ -63,7 +63,7 @@ pub(crate) fn pose_values(pose: &Pose) -> [f64; 12] {
     values
 }
 
-/// The pose of twelve numbers; `None` where they are no rotation. The numbers stay as they are.
+/// The pose of twelve numbers; `None` if they are no rotation. The numbers stay as they are.
 pub(crate) fn pose_of(values: &[f64; 12]) -> Option<Pose> {
     let column = |i: usize| Vec3::new(values[i], values[4 + i], values[8 + i]);
     Some(Pose::new(Rotation::from_columns(column(0), column(1), column(2))?, column(3)))

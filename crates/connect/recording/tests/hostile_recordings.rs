@@ -6,7 +6,7 @@ use std::io::Cursor;
 use std::time::{Duration, Instant};
 
 use elbowroom_cell::Cell;
-use elbowroom_rosbag::{CellWriter, RunRecorder, replay};
+use elbowroom_recording::{CellWriter, RunRecorder, replay};
 use elbowroom_sim::run::simulate_observed;
 use elbowroom_sim::{PlannedPaths, RunOptions};
 use elbowroom_testkit::random::SplitMix;

@@ -241,7 +241,7 @@ impl<W: Write + Seek> CellWriter<W> {
     }
 
     fn time_ns(&self, t_s: f64) -> u64 {
-        // A monitor may have ticked before the zero of a run; what is no number becomes the zero.
+        // A monitor may have ticked before the zero of a run; what is not a number becomes the zero.
         self.epoch_ns.saturating_add((t_s * 1e9).round() as u64)
     }
 }

@@ -28,7 +28,7 @@ impl JointRecording {
     /// message that is not later than the one before it replaces its row.
     ///
     /// # Errors
-    /// [`BagError::NoJointStates`], [`BagError::SeveralTopics`]; a file that is no MCAP file, or damaged.
+    /// [`BagError::NoJointStates`], [`BagError::SeveralTopics`]; a file that is not an MCAP file, or damaged.
     pub fn read(file: impl Read, topic: Option<&str>) -> Result<Self, BagError> {
         let mut reader = BagReader::new(file);
         let (mut topics, mut states): (Vec<String>, Vec<(i64, JointState)>) = (Vec::new(), Vec::new());

@@ -6,7 +6,7 @@
 //!
 //! ```
 //! use elbowroom_cell::Cell;
-//! use elbowroom_rosbag::{CellWriter, RunRecorder, replay};
+//! use elbowroom_recording::{CellWriter, RunRecorder, replay};
 //! use elbowroom_sim::{PlannedPaths, RunOptions, run::simulate_observed};
 //! let cell = Cell::parse("rail.toml", r#"
 //! version = 1

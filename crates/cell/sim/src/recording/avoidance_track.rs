@@ -1,0 +1,49 @@
+//! How a robot evaded in a run.
+
+use elbowroom_avoidance::fuzzy::Surface;
+use elbowroom_avoidance::{AvoiderState, EscapeState};
+
+use super::tick_times::TickTimes;
+
+/// Evasion of one robot.
+#[derive(Debug, Clone, Default)]
+pub struct AvoidanceTrack {
+    /// One per tick, as the samples are.
+    pub samples: Vec<AvoidanceSample>,
+    /// Names of what may be in the way: objects, then `robot/link`.
+    pub obstacles: Vec<String>,
+    /// Wall-clock time of its steps: sensing, correction, check, command.
+    pub step_ns: TickTimes,
+    /// Replanning attempts, in order of time.
+    pub plans: Vec<ReplanRecord>,
+    /// Its rules: one control surface per output.
+    pub surfaces: Vec<Surface>,
+}
+
+/// One replanning attempt.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ReplanRecord {
+    /// Simulated time of the attempt, s.
+    pub t_s: f64,
+    /// Wall-clock time of the search, s; `None` if no path was found.
+    pub search_s: Option<f64>,
+}
+
+/// Evasion at one tick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AvoidanceSample {
+    /// State of the avoider.
+    pub state: AvoiderState,
+    /// Smallest separation distance to any obstacle, m; infinite if none is near.
+    pub nearest_m: f64,
+    /// Size of the correction, 0..1.
+    pub size: f64,
+    /// Path deviation: seconds of joint motion at full speed back to the path.
+    pub path_deviation_s: f64,
+    /// How fast the path may advance, 0..1.
+    pub rate: f64,
+    /// The dynamic obstacle that requested the largest correction, an index in [`AvoidanceTrack::obstacles`].
+    pub governed_by: Option<usize>,
+    /// What the search for escapes did.
+    pub escape: EscapeState,
+}

@@ -1,0 +1,66 @@
+//! What sensors saw in a run, and what it made a robot do.
+
+use elbowroom_analysis::watch::WatchRecord;
+use serde::Serialize;
+
+use super::tick_times::TickTimes;
+
+/// What one robot did about the obstacles that sensors see.
+#[derive(Debug, Clone, Default)]
+pub struct PerceptionTrack {
+    /// Searches for a new path, in order of time.
+    pub replans: Vec<PathReplan>,
+    /// Times in which it was held, in order.
+    pub holds: Vec<Hold>,
+    /// It was held at the end of the run: why, and by what.
+    pub ends_held: Option<(HoldReason, String)>,
+}
+
+/// A search for a new path of a planned move.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PathReplan {
+    /// Simulated time, s.
+    pub t_s: f64,
+    /// Wall-clock time of the search, s.
+    pub search_s: f64,
+    /// Whether the robot entered the new path in motion; `None` if none was found.
+    pub in_motion: Option<bool>,
+}
+
+/// A time in which a robot is held: it brakes or stands.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Hold {
+    /// Start, s.
+    pub from_s: f64,
+    /// End, s.
+    pub to_s: f64,
+    /// Why.
+    pub reason: HoldReason,
+    /// The obstacle (`sensor#number`) or the sensor.
+    pub by: String,
+}
+
+/// Why a robot is held because of what sensors see.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum HoldReason {
+    /// An obstacle blocks its path.
+    Obstacle,
+    /// A sensor has sent nothing that can be used for too long, or nothing yet.
+    Stale,
+}
+
+/// What one sensor sent and saw.
+#[derive(Debug, Clone)]
+pub struct SensorTrack {
+    /// Its name.
+    pub name: String,
+    /// `camera` or `cloud`.
+    pub kind: &'static str,
+    /// Time from a picture or cloud to its use, s.
+    pub latency_s: f64,
+    /// One per picture or cloud that was taken in.
+    pub records: Vec<WatchRecord>,
+    /// Wall-clock time from the picture in the file to the reaction of the robots.
+    pub processing_ns: TickTimes,
+}

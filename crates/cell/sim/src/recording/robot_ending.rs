@@ -1,0 +1,107 @@
+//! Stops of a robot, and how its run ended.
+
+use elbowroom_monitor::Part;
+use elbowroom_spatial::Vec3;
+use serde::Serialize;
+
+/// A time during which the monitor stopped a robot.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stop {
+    /// Start, s.
+    pub from_s: f64,
+    /// When it moved on, or the end of the run, s.
+    pub to_s: f64,
+    /// The region that governed at the start; `None` for a stop by invalid input.
+    pub by: Option<String>,
+    /// The link, tool or load that was closest to that region.
+    pub part: Option<String>,
+    /// The point of that part closest to the region, in the world, m.
+    pub point: Option<Vec3>,
+    /// Its distance to the region, m.
+    pub distance_m: Option<f64>,
+}
+
+/// How a robot's run ended.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct RobotEnding {
+    /// The outcome.
+    pub outcome: Outcome,
+    /// Since when (s) it is stopped at its final configuration; `None` for one that finished or was still moving.
+    pub stopped_at_s: Option<f64>,
+    /// The region or obstacle that stopped it, or what it collided with first: an object, or `robot/link`.
+    pub by: Option<String>,
+    /// The link, tool or load that was closest to the region, or collided first.
+    pub part: Option<String>,
+    /// What that part is.
+    pub part_kind: Option<PartKind>,
+    /// The point of that part closest to the region, in the world, m.
+    pub point: Option<Vec3>,
+    /// What would let a stopped robot continue, in words; `None` if nothing is known to.
+    pub release: Option<String>,
+}
+
+/// What a part of a robot is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum PartKind {
+    /// The tool centre point.
+    Tcp,
+    /// The tool.
+    Tool,
+    /// The load, or an object that it has gripped.
+    Load,
+    /// A link.
+    Link,
+}
+
+impl From<Part> for PartKind {
+    fn from(part: Part) -> Self {
+        match part {
+            Part::Tcp | Part::TcpOutside => Self::Tcp,
+            Part::Tool => Self::Tool,
+            Part::Load => Self::Load,
+            Part::Arm => Self::Link,
+        }
+    }
+}
+
+/// Outcome of a robot's run.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Outcome {
+    /// Its program was completed.
+    #[default]
+    Finished,
+    /// It was stopped, or still moving at the end of the run.
+    Stopped,
+    /// It waits for an exchange region.
+    Held,
+    /// It collided.
+    Collided,
+    /// It waits for robots that wait for it.
+    Deadlock,
+}
+
+impl Outcome {
+    /// The word in JSON and CSV.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Finished => "finished",
+            Self::Stopped => "stopped",
+            Self::Held => "held",
+            Self::Collided => "collided",
+            Self::Deadlock => "deadlock",
+        }
+    }
+}
+
+/// Robots that wait for each other, for exchange regions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Deadlock {
+    /// Since when all of them are stopped, s.
+    pub t_s: f64,
+    /// The robots, in the order of the cell file.
+    pub robots: Vec<String>,
+    /// The regions they wait for.
+    pub regions: Vec<String>,
+}

@@ -1,0 +1,70 @@
+//! Events of a run.
+
+use elbowroom_avoidance::AvoiderState;
+use elbowroom_monitor::EventKind;
+
+/// A line of `events.csv`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EventRow {
+    /// Seconds since the run began.
+    pub t_s: f64,
+    /// The robot concerned.
+    pub robot: String,
+    /// The region concerned, the object gripped or released, or the perceived obstacle; empty if none is.
+    pub region: String,
+    /// The event.
+    pub event: RunEvent,
+}
+
+/// An event of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RunEvent {
+    /// An event of a robot's monitor.
+    Monitor(EventKind),
+    /// A program switched a region on.
+    On,
+    /// A program switched a region off.
+    Off,
+    /// The monitor stopped a robot.
+    Stop,
+    /// A stopped robot moves again.
+    Resume,
+    /// A robot gripped an object, which is named in place of the region.
+    Grip,
+    /// A robot released an object, which is named in place of the region.
+    Release,
+    /// A robot has another path, around what sensors see.
+    Replan,
+    /// A robot brakes or stands: an obstacle that a sensor sees, which is named in place of the region, blocks its path.
+    Wait,
+    /// A robot brakes or stands: a sensor, which is named in place of the region, has sent nothing for too long.
+    Stale,
+    /// A robot made a tool active, which is named in place of the region.
+    Tool,
+    /// The avoidance of a robot changed to this state.
+    Avoidance(AvoiderState),
+}
+
+impl RunEvent {
+    /// Its name in `events.csv`: `warn_in`, `stop`, …
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Monitor(kind) => kind.name(),
+            Self::On => "on",
+            Self::Off => "off",
+            Self::Stop => "stop",
+            Self::Resume => "resume",
+            Self::Grip => "grip",
+            Self::Release => "release",
+            Self::Replan => "replan",
+            Self::Stale => "stale",
+            Self::Tool => "tool",
+            Self::Avoidance(AvoiderState::Following) => "on_path",
+            Self::Avoidance(AvoiderState::Evading) => "evade",
+            Self::Avoidance(AvoiderState::Returning) => "return",
+            Self::Avoidance(AvoiderState::Detouring) => "go_around",
+            Self::Wait | Self::Avoidance(AvoiderState::Waiting) => "wait",
+            Self::Avoidance(AvoiderState::Halted) => "halt",
+        }
+    }
+}
