@@ -42,7 +42,7 @@ pub struct RegionTrack {
 /// An interval of one robot in a region or its warning zone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Span {
-    /// The robot; an index in [`Recording::robots`] too.
+    /// The robot; an index in [`Recording::robots`](crate::Recording::robots) too.
     pub robot: RobotId,
     /// Start, s.
     pub from_s: f64,
