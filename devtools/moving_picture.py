@@ -1,7 +1,7 @@
 """A moving picture (APNG) of the scene of a report, for documents.
 
     elbowroom run examples/exchange/cell.toml --out out
-    target/playwright/bin/python devtools/moving_picture.py out/report.html docs/pictures/exchange-moving.png --seconds 0 9
+    target/playwright/bin/python devtools/moving_picture.py out/report.html docs/pictures/exchange-moving.png --seconds 0 10 --pictures 19
 
 Chromium plays the report; its pictures are put into one file as they are.
 """
@@ -14,6 +14,9 @@ import zlib
 
 from playwright.sync_api import sync_playwright
 
+# A picture of this size has no scene in it.
+BLANK_BYTES = 20_000
+TRIES = 6
 SIGNATURE = b"\x89PNG\r\n\x1a\n"
 ARGUMENTS = ["--no-sandbox", "--use-gl=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking"]
 
@@ -23,25 +26,32 @@ def pictures(report, seconds, count, width, height):
     chromium = os.environ.get("ELBOWROOM_CHROMIUM", "/usr/bin/chromium")
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=chromium, args=ARGUMENTS)
-        page = browser.new_page(viewport={"width": width + 60, "height": height + 400})
+        page = browser.new_page(viewport={"width": width, "height": height + 900})
         page.goto(report.resolve().as_uri())
         page.wait_for_selector("#scrub")
         page.wait_for_timeout(2000)
-        scene = page.locator("canvas").first
-        box = scene.bounding_box()
-        bars = page.locator("#status").first.bounding_box() if page.locator("#status").count() else None
-        bottom = bars["y"] + bars["height"] if bars else box["y"] + box["height"]
-        clip = {"x": box["x"], "y": box["y"], "width": box["width"], "height": bottom - box["y"]}
+        style = f"#labels {{ display: none }} .canvas-box {{ height: {height}px !important; aspect-ratio: auto !important }}"
+        page.add_style_tag(content=style)
+        page.evaluate("() => window.dispatchEvent(new Event('resize'))")
+        page.wait_for_timeout(4000)
+        scene, readout = (page.locator(which).bounding_box() for which in ("#canvas", "#readout"))
+        tall = readout["y"] + readout["height"] - scene["y"]
+        clip = {"x": scene["x"], "y": scene["y"], "width": scene["width"], "height": tall}
         first, last = seconds
         for i in range(count):
             time = first + (last - first) * i / (count - 1)
-            page.evaluate(
-                "t => { const e = document.querySelector('#scrub'); e.value = t;"
-                " e.dispatchEvent(new Event('input', {bubbles: true})); }",
-                time,
-            )
-            page.wait_for_timeout(250)
-            yield page.screenshot(clip=clip)
+            for _ in range(TRIES):
+                page.evaluate(
+                    "t => { const e = document.querySelector('#scrub'); e.value = t;"
+                    " e.dispatchEvent(new Event('input', {bubbles: true})); }",
+                    time,
+                )
+                page.wait_for_timeout(400)
+                picture = page.screenshot(clip=clip)
+                # Now and then the scene is not drawn yet.
+                if len(picture) > BLANK_BYTES:
+                    break
+            yield picture
         browser.close()
 
 
@@ -84,9 +94,9 @@ def main():
     parser.add_argument("report", type=pathlib.Path)
     parser.add_argument("out", type=pathlib.Path)
     parser.add_argument("--seconds", nargs=2, type=float, required=True, metavar=("FROM", "TO"))
-    parser.add_argument("--pictures", type=int, default=32)
-    parser.add_argument("--size", nargs=2, type=int, default=(760, 420), metavar=("WIDTH", "HEIGHT"))
-    parser.add_argument("--delay-ms", type=int, default=200)
+    parser.add_argument("--pictures", type=int, default=20)
+    parser.add_argument("--size", nargs=2, type=int, default=(760, 400), metavar=("WIDTH", "HEIGHT"))
+    parser.add_argument("--delay-ms", type=int, default=300)
     options = parser.parse_args()
     frames = list(pictures(options.report, options.seconds, options.pictures, *options.size))
     options.out.write_bytes(animation(frames, options.delay_ms))
