@@ -565,6 +565,20 @@ fn a_camera_that_sees_no_more_stops_the_arm() {
 }
 
 #[test]
+fn an_arm_does_not_move_before_its_camera_has_seen_anything() {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("cell.toml"), cell(CAMERA, "planned")).unwrap();
+    // The empty cell is learnt, and nothing comes after it.
+    write_pictures(dir.path(), LEARNING, f64::INFINITY);
+    let answer = run(dir.path()).expect(0);
+    let robot = &answer.json()["robots"][0];
+    assert!(robot["outcome"] == "stopped" && robot["by"] == "above", "{robot}");
+    let trace = std::fs::read_to_string(dir.path().join("out/trace.csv")).unwrap();
+    let first_joint: Vec<&str> = trace.lines().skip(1).filter_map(|row| row.split(',').nth(2)).collect();
+    assert!(first_joint.len() > 100 && first_joint.iter().all(|q| *q == first_joint[0]), "it moved");
+}
+
+#[test]
 fn keys_of_sensors_are_checked() {
     let dir = tempfile::tempdir().unwrap();
     let of = |cell: &str| {
