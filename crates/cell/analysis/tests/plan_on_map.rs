@@ -102,7 +102,7 @@ fn why_there_is_no_path_is_said() {
     let wall = "[object.wall]\nshape = \"box\"\nat = [1650, 0, 900]\nsize = [2900, 20, 3000]\n";
     let stiff = ARM.replace("min = -170, max = 170", "min = -80, max = 80").replace("max = 150", "max = 60");
     let apart = no_path(&format!("{stiff}{wall}"), &START, &GOAL);
-    assert!(apart.contains("are not joined"), "{apart}");
+    assert!(apart.contains("do not connect"), "{apart}");
 }
 
 #[test]

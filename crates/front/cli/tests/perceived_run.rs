@@ -579,6 +579,16 @@ fn an_arm_does_not_move_before_its_camera_has_seen_anything() {
 }
 
 #[test]
+fn the_map_of_a_sensor_has_three_joints() {
+    let dir = tempfile::tempdir().unwrap();
+    write_pictures(dir.path(), 1, f64::INFINITY);
+    let two = cell(CAMERA, "planned").replace("[map.kr]\n", "[map.kr]\njoints = [\"joint_1\", \"joint_2\"]\n");
+    std::fs::write(dir.path().join("cell.toml"), two).unwrap();
+    let said = run(dir.path()).expect(2).stderr;
+    assert!(said.contains("has 2 joints: obstacles of a camera need 3") && said.contains("\"joint_3\"]"), "{said}");
+}
+
+#[test]
 fn keys_of_sensors_are_checked() {
     let dir = tempfile::tempdir().unwrap();
     let of = |cell: &str| {

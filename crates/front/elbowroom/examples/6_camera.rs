@@ -37,7 +37,7 @@ size = [320, 240]
 focal_px = FOCAL
 pose = { at = [1700, 0, 6500], rpy = [180, 0, 0] }
 area = [[750, -3000], [4800, -3000], [4800, 3000], [750, 3000]]
-uncertainty = 60
+uncertainty = 135      # 15 of the outline, and 1.2 m/s until the next picture has been processed: 40 ms and 60 ms
 templates = [{ name = "trolley", size = [600, 400], height = 900 }]
 frames = "pictures"
 joints = "learning.csv"

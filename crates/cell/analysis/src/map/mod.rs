@@ -23,6 +23,7 @@ use crate::plan::request_validation::select_robot;
 
 pub(crate) mod blocked_cells;
 mod link_maps;
+pub(crate) mod mapped_joints;
 mod model;
 mod solids_map;
 

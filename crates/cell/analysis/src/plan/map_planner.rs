@@ -3,8 +3,8 @@
 use std::fmt;
 use std::time::Instant;
 
-use elbowroom_cell::{Cell, CellRobot};
-use elbowroom_cspace::{Grid, GridAxis, ObstacleModel, OccupancyBitmap, RemainingJoints, RobotMapError};
+use elbowroom_cell::Cell;
+use elbowroom_cspace::{ObstacleModel, OccupancyBitmap, RemainingJoints, RobotMapError};
 use elbowroom_formats::FormatError;
 use elbowroom_planner::{
     GridPlanner, GridPlannerError, GridPlannerSettings, PlannedPath, RrtConnect, RrtConnectError, RrtConnectSettings,
@@ -14,10 +14,11 @@ use elbowroom_robot::{GeometryId, ObjectId, RobotId};
 use elbowroom_scene::{Scene, SceneState};
 use elbowroom_spatial::Pose;
 
-use crate::map::{BlockedCells, LinkMaps, SolidsMap, axes, blocked_cells, select_map};
+use crate::map::mapped_joints::MappedJoints;
+use crate::map::{BlockedCells, LinkMaps, SolidsMap, blocked_cells};
 
-/// Joints that are not in the map stay within this of the start, rad or m.
-const HELD: f64 = 1e-9;
+/// What a map of three joints is for here, and what else plans paths.
+pub(super) const PURPOSE: (&str, Option<&str>) = ("paths through free cells", Some("the planner rrt-connect"));
 /// An end in a blocked cell, because a whole cell counts, is left for a free one (or reached from it) within this distance, rad.
 const EXIT_RAD: f64 = 0.35;
 
@@ -36,14 +37,6 @@ pub struct MapPlanner {
     /// Per object of the cell: where it was seen last, and the cells that it blocks there.
     known: Vec<Option<(Pose, BlockedCells)>>,
     planner: GridPlanner,
-}
-
-/// The joints of a map.
-#[derive(Debug, Clone)]
-pub(super) struct MappedJoints {
-    /// Indices among the robot's joint values.
-    pub joints: [usize; 3],
-    pub grid: Grid,
 }
 
 /// Why a [`MapPlanner`] has no path.
@@ -79,41 +72,6 @@ impl fmt::Display for MapPlannerError {
 
 impl std::error::Error for MapPlannerError {}
 
-impl MappedJoints {
-    /// Of a robot of a cell.
-    ///
-    /// # Errors
-    /// A map of other than three joints, too many cells.
-    pub fn of(cell: &Cell, robot: &CellRobot) -> Result<Self, FormatError> {
-        let (_, spec) = select_map(cell, Some(&robot.name))?;
-        let wrong = |what: String, hint: String| FormatError::new(&cell.file, spec.line, what).hint(hint);
-        let names = robot.joint_names();
-        let joints = <[usize; 3]>::try_from(&spec.joints[..]).map_err(|_| {
-            let what = format!("the map of robot \"{}\" has {} joints", robot.name, spec.joints.len());
-            if names.len() < 3 {
-                return wrong(format!("{what}, and paths through free cells need 3"), "the planner rrt-connect".into());
-            }
-            let three = names[..3].join("\", \"");
-            let hint = format!("joints = [\"{three}\"]   (in [map.{}]), or the planner rrt-connect", robot.name);
-            wrong(format!("{what}: paths through free cells need 3"), hint)
-        })?;
-        let (axes, _) = axes(cell, robot, &spec, &mut Vec::new())?;
-        let axes =
-            <[GridAxis; 3]>::try_from(axes).map_err(|axes| wrong(format!("{} axes", axes.len()), String::new()))?;
-        let grid = Grid::new(axes).map_err(|e| wrong(e.to_string(), "step = 2   (larger)".into()))?;
-        Ok(Self { joints, grid })
-    }
-
-    /// The first joint that is not in the map and that a goal moves.
-    pub fn moved_otherwise(&self, from: &[f64], goal: &[f64]) -> Option<usize> {
-        (0..goal.len()).find(|j| !self.joints.contains(j) && (goal[*j] - from[*j]).abs() > HELD)
-    }
-
-    fn of_whole(&self, q: &[f64]) -> [f64; 3] {
-        self.joints.map(|j| q[j])
-    }
-}
-
 impl MapPlanner {
     /// For a robot of a cell whose joints that are not in the map are as in `held` (values of all joints, rad or m); cells count as
     /// blocked from this distance to an object on, m, where the map is on sphere covers. No obstacles yet.
@@ -122,7 +80,8 @@ impl MapPlanner {
     /// [`FormatError`] if the robot's map has not three joints, or has too many cells.
     pub fn new(cell: &Cell, id: RobotId, held: &[f64], clearance_m: f64) -> Result<Self, FormatError> {
         let robot = &cell.robots[id.0];
-        let mapped = MappedJoints::of(cell, robot)?;
+        // `elbowroom map` gives the warnings.
+        let mapped = MappedJoints::of(cell, robot, PURPOSE, &mut Vec::new())?;
         let wrong =
             |what: String| FormatError::new(&cell.file, robot.line, format!("robot \"{}\": {what}", robot.name));
         let axes = mapped.grid.axes();

@@ -10,9 +10,10 @@ use elbowroom_robot::RobotId;
 use elbowroom_scene::{Checker, CheckerOptions, Selection, SweepOptions};
 
 use super::answer::PathAnswer;
-use super::map_planner::{MapPlanner, MapPlannerError, MappedJoints};
+use super::map_planner::{MapPlanner, MapPlannerError, PURPOSE};
 use super::path_query::Query;
 use super::request_validation::planner_error;
+use crate::map::mapped_joints::MappedJoints;
 
 /// A path for one robot on its map.
 pub(super) struct MapQuery<'q> {
@@ -32,7 +33,7 @@ impl MapQuery<'_> {
     pub fn plan(&self, mut exact: RrtConnect<'_>) -> Result<PathAnswer, FormatError> {
         let robot = &self.cell.robots[self.id.0];
         let Query { scene, state, settings, .. } = &self.query;
-        let goals = self.goals(robot, &MappedJoints::of(self.cell, robot)?)?;
+        let goals = self.goals(robot, &MappedJoints::of(self.cell, robot, PURPOSE, &mut Vec::new())?)?;
         let goals = self.free_goals(goals, &mut exact)?;
         let begin = Instant::now();
         let mut planner = MapPlanner::new(self.cell, self.id, state.q(self.id), settings.clearance_m)?;
@@ -105,7 +106,7 @@ impl MapQuery<'_> {
                 format!("the {end} is in a blocked cell of the map, because a whole cell counts: {finer}")
             }
             MapPlannerError::Grid(GridPlannerError::NoPath) => {
-                format!("no path: the free cells of the start and those of the goal are not joined: {finer}")
+                format!("no path: the free cells of the start do not connect to the free cells of the goal: {finer}")
             }
             MapPlannerError::Unproven { waypoints, .. } => format!(
                 "{e}: {}; a map knows neither the robot itself nor other robots nor regions, and on solids no clearance: the planner \

@@ -8,7 +8,7 @@ mod sensor;
 use std::path::{Path, PathBuf};
 
 use elbowroom_cell::{Cell, CellSensor, SensorKind};
-use elbowroom_cspace::{CoverMapBuilder, CoverMapSettings, Grid, GridAxis, LayerMap, RemainingJoints};
+use elbowroom_cspace::{CoverMapBuilder, CoverMapSettings, LayerMap, RemainingJoints};
 use elbowroom_formats::frame_files::{self, FrameFile, FrameKind};
 use elbowroom_formats::{FormatError, Warning, read_file};
 use elbowroom_perception::{Prism, WatchedRobot};
@@ -16,7 +16,8 @@ use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_vision::ArmPart;
 
 use crate::cover_cache::CoverCache;
-use crate::map::{axes, select_map};
+use crate::map::mapped_joints::MappedJoints;
+use crate::map::select_map;
 use joint_track::JointTrack;
 use sensor::Sensor;
 
@@ -62,12 +63,12 @@ pub struct SensorWatch {
     files: Vec<FrameFile>,
     joints: JointTrack,
     sensor: Sensor,
-    mapped: MappedJoints,
+    mapped: MapScope,
 }
 
-/// The joints of the map.
+/// Of which robot and joints the map proves paths free.
 #[derive(Debug, Clone)]
-struct MappedJoints {
+struct MapScope {
     robot: RobotId,
     /// Indices among the robot's joint values.
     joints: [usize; 3],
@@ -144,7 +145,7 @@ impl SensorWatch {
     /// True if the map proves a path of a robot free: all cells are free that a polyline through these joint values (rad or m)
     /// crosses or comes near. What the robot carries is not in the map.
     pub fn proves_free<'q>(&self, robot: RobotId, path: impl IntoIterator<Item = &'q [f64]>) -> bool {
-        let MappedJoints { robot: mapped, joints, others_are_any } = self.mapped;
+        let MapScope { robot: mapped, joints, others_are_any } = self.mapped;
         if self.prisms().is_empty() {
             return true;
         }
@@ -268,23 +269,17 @@ fn map_builder(
     cell: &Cell,
     sensor: &CellSensor,
     warnings: &mut Vec<Warning>,
-) -> Result<(CoverMapBuilder, MappedJoints), FormatError> {
+) -> Result<(CoverMapBuilder, MapScope), FormatError> {
     let (robot, spec) = select_map(cell, Some(&cell.robots[sensor.robot.0].name))?;
     let refuse = |what: String, hint: &str| {
         FormatError::new(&cell.file, spec.line, format!("robot \"{}\": {what}", robot.name)).hint(hint)
     };
-    let (all, _) = axes(cell, robot, &spec, warnings)?;
-    let count = all.len();
-    let three = <[GridAxis; 3]>::try_from(all).ok().zip(<[usize; 3]>::try_from(&spec.joints[..]).ok());
-    let Some((axes, joints)) = three else {
-        let what = format!("the map of a {} has three joints, not {count}", sensor.table());
-        return Err(refuse(what, "joints = [\"joint_1\", \"joint_2\", \"joint_3\"]"));
-    };
-    let grid = Grid::new(axes).map_err(|e| refuse(e.to_string(), "step = 5   (larger)"))?;
+    let purpose = format!("obstacles of a {}", sensor.table());
+    let MappedJoints { joints, grid } = MappedJoints::of(cell, robot, (&purpose, None), warnings)?;
     let others = if spec.others_at_start { RemainingJoints::Fixed(&robot.start) } else { RemainingJoints::Swept };
     let (settings, covers) = (CoverMapSettings::default(), CoverCache::of_user());
     let builder =
         CoverMapBuilder::with_covers(&robot.robot, robot.base_in_world, &grid, joints, others, settings, &covers)
             .map_err(|e| refuse(e.to_string(), "joints = [\"joint_1\", \"joint_2\", \"joint_3\"]"))?;
-    Ok((builder, MappedJoints { robot: sensor.robot, joints, others_are_any: !spec.others_at_start }))
+    Ok((builder, MapScope { robot: sensor.robot, joints, others_are_any: !spec.others_at_start }))
 }

@@ -57,7 +57,7 @@ fn write_pairs(args: &ConvertArgs, file: &Path, cell: &Cell) -> Result<Option<St
 }
 
 /// A cell that has only the scene. Where its objects are in one frame that the scene does not define, that frame is placed: there
-/// is not a robot to which it could belong.
+/// is no robot to which it could belong.
 fn cell_text(file: &Path) -> Result<String, Failure> {
     let scene = planning_scene::read(file)?;
     // The frame that each object is in the end placed by.
