@@ -38,6 +38,7 @@ mod hand;
 mod held_object;
 pub mod motion;
 mod recording;
+pub mod replanning;
 pub mod run;
 mod summary;
 

@@ -68,6 +68,11 @@ impl Keys {
         format!("elbowroom/{}", self.cell)
     }
 
+    /// Pictures or clouds of a sensor: each message is one, as in a file.
+    pub fn frames(&self, sensor: &str) -> String {
+        format!("elbowroom/{}/sensor/{}/frames", self.cell, chunk(sensor))
+    }
+
     /// Which regions are switched on, from the arbiter's process: JSON.
     pub fn regions(&self) -> String {
         format!("elbowroom/{}/regions", self.cell)

@@ -51,4 +51,14 @@ pub enum ServiceError {
         /// Those that there are.
         known: Vec<String>,
     },
+    /// Pictures for what is no sensor, or cannot be sent.
+    #[error(
+        "--frames {sensor}: no camera of this name guards a robot\n  help: one of {}; clouds are sent on the sensor's key: --frames NAME=key", known.join(", ")
+    )]
+    Frames {
+        /// The name.
+        sensor: String,
+        /// The sensors that guard robots.
+        known: Vec<String>,
+    },
 }

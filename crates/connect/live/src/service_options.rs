@@ -8,6 +8,7 @@ use elbowroom_view::http::Endpoint;
 use crate::control::ControlOptions;
 use crate::event_handler::EventHandler;
 use crate::ros2::Ros2Settings;
+use crate::sensors::FrameSource;
 
 /// The address of a service without another one.
 pub const DEFAULT_ADDRESS: &str = "127.0.0.1:7447";
@@ -32,6 +33,8 @@ pub struct ServiceOptions {
     pub journal: Option<PathBuf>,
     /// Runs the programs of the cell file in place of the controllers.
     pub simulate: bool,
+    /// Sensors whose pictures do not come from the folder of the cell file, and where they come from instead.
+    pub frames: Vec<(String, FrameSource)>,
     /// Shows the cell in a browser there.
     pub web: Option<Endpoint>,
     /// Records everything that this process guards into this file.

@@ -4,7 +4,7 @@ use std::sync::{Arc, mpsc};
 use std::time::Duration;
 
 use elbowroom_cell::configure::MonitorSetup;
-use elbowroom_cell::{Cell, EditedRegions, configure};
+use elbowroom_cell::{Cell, CellSensor, EditedRegions, SensorKind, configure};
 use elbowroom_formats::FormatError;
 use elbowroom_interlock::Boot;
 use elbowroom_monitor::{Life, RegionKind, RobotSlot};
@@ -29,6 +29,7 @@ use crate::region_journal::RegionJournal;
 use crate::region_keeper::{ProgramSwitches, RegionKeeper};
 use crate::robot_claims::RobotClaims;
 use crate::ros2::{CellFeed, Participant};
+use crate::sensors::FrameSource;
 use crate::service_error::ServiceError;
 use crate::service_options::{DEFAULT_ADDRESS, ServiceOptions};
 use crate::simulated_controllers::SimulatedControllers;
@@ -182,7 +183,9 @@ impl<'o> ServiceStart<'o> {
         }
         let is_real = |robot: &RobotId| self.options.ros2.robot(&self.cell.robots[robot.0].name).is_some();
         let robots: Vec<RobotId> = self.robots.iter().copied().filter(|robot| !is_real(robot)).collect();
-        Ok(Some(SimulatedControllers::start(&self.cell, &robots, &self.shared, self.clock)?))
+        let frames = check_frames(&self.cell, &self.options.frames)?;
+        let on_event = self.options.on_event.clone();
+        Ok(Some(SimulatedControllers::start(&self.cell, &robots, frames, &self.shared, (self.clock, on_event))?))
     }
 
     /// Who else of the cell comes and goes.
@@ -278,4 +281,24 @@ fn guarded_robots(cell: &Cell, options: &ServiceOptions) -> Result<Vec<RobotId>,
         })
     };
     options.robots.iter().map(find).collect()
+}
+
+/// The sources of pictures, each of a camera of the cell that guards a robot.
+fn check_frames<'o>(
+    cell: &Cell,
+    frames: &'o [(String, FrameSource)],
+) -> Result<&'o [(String, FrameSource)], ServiceError> {
+    for (name, source) in frames {
+        let sensor = cell.sensors.iter().find(|sensor| sensor.name == *name);
+        let is_usable = sensor.is_some_and(|sensor| {
+            let is_camera = matches!(sensor.kind, SensorKind::Camera { .. });
+            !sensor.robots.is_empty() && (is_camera || *source == FrameSource::Key)
+        });
+        if !is_usable {
+            let guards = |s: &&CellSensor| !s.robots.is_empty();
+            let known = cell.sensors.iter().filter(guards).map(|s| s.name.clone()).collect();
+            return Err(ServiceError::Frames { sensor: name.clone(), known });
+        }
+    }
+    Ok(frames)
 }

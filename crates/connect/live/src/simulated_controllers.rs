@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, SyncSender};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
@@ -10,13 +10,16 @@ use elbowroom_cell::{Cell, configure};
 use elbowroom_interlock::Micros;
 use elbowroom_robot::RobotId;
 use elbowroom_sim::motion::{PlanStep, PlannedPaths, ProgramClock, ProgramPlan, plan};
+use elbowroom_sim::replanning::ObjectPlaces;
 
-use crate::carried_volumes::{CarriedVolumes, SimulatedObjects};
+use crate::carried_volumes::CarriedVolumes;
 use crate::client::{ControllerClient, ControllerState};
 use crate::clock::{Clock, boot_number};
 use crate::configuration_number::configuration_number;
+use crate::event_handler::EventHandler;
 use crate::keys::Keys;
 use crate::network::{Network, Publisher, Subscription, Urgency};
+use crate::sensors::{FrameSource, GuardedProgram, GuardedPrograms, SensorGuards};
 use crate::service_error::ServiceError;
 use crate::switch_requests::SwitchRequests;
 
@@ -30,23 +33,24 @@ pub struct SimulatedControllers {
 }
 
 impl SimulatedControllers {
-    /// Starts the programs of these robots. When a program has finished it begins again, from where it ended.
+    /// Starts the programs of these robots. When a program has finished it begins again, from where it ended. `frames` are the sensors
+    /// whose pictures do not come from the folder of the cell file.
     ///
     /// # Errors
-    /// [`ServiceError`] if a program cannot be planned.
+    /// [`ServiceError`] if a program cannot be planned, or a sensor not be used.
     pub(crate) fn start(
         cell: &Arc<Cell>,
         robots: &[RobotId],
+        frames: &[(String, FrameSource)],
         network: &Arc<dyn Network>,
-        clock: Clock,
+        (clock, on_event): (Clock, Option<EventHandler>),
     ) -> Result<Self, ServiceError> {
         let is_closed = Arc::new(AtomicBool::new(false));
         let (started, is_started) = mpsc::sync_channel(1);
         let thread = {
-            let (cell, robots, network, is_closed) =
-                (cell.clone(), robots.to_vec(), network.clone(), is_closed.clone());
-            // Plans are made on the thread that follows them.
-            move || run(&cell, &robots, &network, clock, &started, &is_closed)
+            let (robots, network, is_closed) = (robots.to_vec(), network.clone(), is_closed.clone());
+            let start = Start { cell: cell.clone(), frames: frames.to_vec(), network, clock, on_event };
+            move || run(&start, &robots, &started, &is_closed)
         };
         let thread = std::thread::Builder::new().name("controllers".into()).spawn(thread);
         let controllers = Self { is_closed, thread: thread.ok() };
@@ -71,15 +75,18 @@ impl Drop for SimulatedControllers {
     }
 }
 
-fn run(
-    cell: &Arc<Cell>,
-    robots: &[RobotId],
-    network: &Arc<dyn Network>,
+/// What the controllers start with.
+struct Start {
+    cell: Arc<Cell>,
+    frames: Vec<(String, FrameSource)>,
+    network: Arc<dyn Network>,
     clock: Clock,
-    started: &SyncSender<Result<(), ServiceError>>,
-    is_closed: &AtomicBool,
-) {
-    let mut controllers = match controllers(cell, robots, network) {
+    on_event: Option<EventHandler>,
+}
+
+fn run(start: &Start, robots: &[RobotId], started: &SyncSender<Result<(), ServiceError>>, is_closed: &AtomicBool) {
+    let Start { cell, clock, .. } = start;
+    let (mut controllers, _sensors) = match controllers(start, robots) {
         Ok(controllers) => controllers,
         Err(error) => {
             // Nobody waits for an error after the service was dropped.
@@ -95,7 +102,7 @@ fn run(
     let mut due = clock.micros();
     while !is_closed.load(Ordering::SeqCst) {
         for controller in &mut controllers {
-            controller.tick(cell.tick_s, due, clock);
+            controller.tick(due, *clock);
         }
         due = due + Micros(period_us);
         let now = clock.micros();
@@ -106,38 +113,44 @@ fn run(
     }
 }
 
+/// The controllers, and what guards their programs by sensors.
 fn controllers(
-    cell: &Arc<Cell>,
+    start: &Start,
     robots: &[RobotId],
-    network: &Arc<dyn Network>,
-) -> Result<Vec<SimulatedController>, ServiceError> {
-    let (objects, setups) = (SimulatedObjects::new(cell), configure::setups(cell)?);
+) -> Result<(Vec<SimulatedController>, Option<SensorGuards>), ServiceError> {
+    let Start { cell, frames, network, clock, on_event } = start;
+    let (objects, setups) = (Arc::new(Mutex::new(ObjectPlaces::new(cell))), configure::setups(cell)?);
     let carried = |robot: RobotId| CarriedVolumes::new(cell, robot, setups[robot.0].clone(), objects.clone());
-    robots.iter().map(|robot| SimulatedController::new(cell, *robot, network, carried(*robot))).collect()
+    let controller = |robot: &RobotId| SimulatedController::new(start, *robot, carried(*robot));
+    let controllers = robots.iter().map(controller).collect::<Result<Vec<_>, _>>()?;
+    let programs = robots.iter().zip(&controllers).map(|(robot, c)| (*robot, c.program.clone())).collect();
+    let programs = GuardedPrograms { cell: cell.clone(), programs, objects };
+    let sensors = SensorGuards::start(programs, frames, network, *clock, on_event.clone())?;
+    Ok((controllers, sensors))
 }
 
 /// The controller of one robot.
 struct SimulatedController {
-    program: ProgramClock,
+    name: String,
+    program: Arc<Mutex<GuardedProgram>>,
     /// The program once more, from its end.
     again: Option<ProgramPlan>,
-    limits: Vec<elbowroom_cell::JointLimits>,
+    tick_s: f64,
+    /// Time until a command takes effect, s.
+    reaction_s: f64,
     carried: CarriedVolumes,
     client: Arc<Mutex<ControllerClient>>,
     joint_states: Box<dyn Publisher>,
     switches: SwitchRequests,
     velocity: Vec<f64>,
     bytes: Vec<u8>,
+    on_event: Option<EventHandler>,
     _answers: Subscription,
 }
 
 impl SimulatedController {
-    fn new(
-        cell: &Arc<Cell>,
-        robot: RobotId,
-        network: &Arc<dyn Network>,
-        carried: CarriedVolumes,
-    ) -> Result<Self, ServiceError> {
+    fn new(start: &Start, robot: RobotId, carried: CarriedVolumes) -> Result<Self, ServiceError> {
+        let Start { cell, network, on_event, .. } = start;
         let at = &cell.robots[robot.0];
         let keys = Keys::new(&cell.name);
         let paths = PlannedPaths::new(cell);
@@ -150,55 +163,67 @@ impl SimulatedController {
             let client = client.clone();
             let handler = Box::new(move |bytes: &[u8]| {
                 // An answer that is refused is of another start, or late: the watchdog sees to it.
-                let _ = client.lock().unwrap_or_else(PoisonError::into_inner).receive(bytes);
+                let _ = locked(&client).receive(bytes);
             });
             network.subscribe(&keys.speed_override(&at.name), handler)?
         };
         Ok(Self {
-            program: ProgramClock::new(once, at.limits.clone()),
+            name: at.name.clone(),
+            program: Arc::new(Mutex::new(GuardedProgram::new(ProgramClock::new(once, at.limits.clone())))),
             again,
-            limits: at.limits.clone(),
+            tick_s: cell.tick_s,
+            reaction_s: cell.laws.reaction_delay_s,
             carried,
             client,
             joint_states: network.publisher(&keys.joint_states(&at.name), Urgency::RealTime)?,
             switches: SwitchRequests::new(cell, robot, network)?,
             velocity: Vec::new(),
             bytes: Vec::new(),
+            on_event: on_event.clone(),
             _answers: answers,
         })
     }
 
     /// Moves on by a tick under the override that counts now, and tells the node where the robot is.
-    fn tick(&mut self, dt_s: f64, nominal: Micros, clock: Clock) {
+    fn tick(&mut self, nominal: Micros, clock: Clock) {
         let now = clock.micros();
-        let speed_override = self.client.lock().unwrap_or_else(PoisonError::into_inner).speed_override(now);
-        self.program.advance(dt_s, speed_override);
-        for switch in self.program.take_switches() {
+        let speed_override = locked(&self.client).speed_override(now);
+        let mut program = locked(&self.program);
+        let (is_held, news) = program.must_hold(clock.seconds(), self.reaction_s, self.tick_s);
+        if let (Some(news), Some(on_event)) = (news, &self.on_event) {
+            on_event(&format!("{}: {news}", self.name));
+        }
+        let program = &mut program.clock;
+        program.advance(self.tick_s, if is_held { 0.0 } else { speed_override });
+        for switch in program.take_switches() {
             self.switches.want(switch.region, switch.active);
         }
         self.switches.send();
-        self.carried.follow(&mut self.program, clock.seconds());
-        if self.program.finished()
+        self.carried.follow(program, clock.seconds());
+        if program.finished()
             && let Some(again) = &self.again
         {
-            self.program = ProgramClock::new(again.clone(), self.limits.clone());
+            program.restart(again.clone());
         }
         self.velocity.clear();
-        self.velocity.extend(self.program.velocity());
+        self.velocity.extend(program.velocity());
         let state = ControllerState {
-            q: &self.program.point().q,
+            q: &program.point().q,
             qd: &self.velocity,
-            intent: self.program.intent(),
-            programmed_override: self.program.programmed_override(),
+            intent: program.intent(),
+            // A robot that is held is not commanded to move: its constant joint values are no frozen reading.
+            programmed_override: if is_held { 0.0 } else { program.programmed_override() },
             attached: self.carried.volumes(),
             stamp: Some(nominal),
         };
         self.bytes.clear();
-        let mut client = self.client.lock().unwrap_or_else(PoisonError::into_inner);
-        self.bytes.extend_from_slice(client.joint_state(now, &state));
-        drop(client);
+        self.bytes.extend_from_slice(locked(&self.client).joint_state(now, &state));
         self.joint_states.publish(&self.bytes);
     }
+}
+
+fn locked<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// The program once more, from where it ends: the steps of a second pass. `None` for a robot without one, or where a third pass

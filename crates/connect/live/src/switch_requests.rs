@@ -23,11 +23,45 @@ pub(crate) struct SwitchRequests {
     robot: String,
     cell: Arc<Cell>,
     publisher: Box<dyn Publisher>,
-    /// Per region whether it is on, as heard last.
-    heard: Arc<Mutex<BTreeMap<String, bool>>>,
+    switches: RegionSwitches,
     wanted: BTreeMap<String, bool>,
     sent: Option<Instant>,
+}
+
+/// Which regions are switched on, as heard last.
+pub(crate) struct RegionSwitches {
+    cell: Arc<Cell>,
+    heard: Arc<Mutex<BTreeMap<String, bool>>>,
     _table: Subscription,
+}
+
+impl RegionSwitches {
+    /// Listens to the table of regions.
+    ///
+    /// # Errors
+    /// [`NetworkError`] if its key cannot be used.
+    pub(crate) fn start(cell: &Arc<Cell>, network: &Arc<dyn Network>) -> Result<Self, NetworkError> {
+        let heard: Arc<Mutex<BTreeMap<String, bool>>> = Arc::default();
+        let handler = {
+            let heard = heard.clone();
+            Box::new(move |bytes: &[u8]| {
+                let Ok(message) = serde_json::from_slice::<RegionTableMessage>(bytes) else { return };
+                *heard.lock().unwrap_or_else(PoisonError::into_inner) = message.regions.into_iter().collect();
+            })
+        };
+        let table = network.subscribe(&Keys::new(&cell.name).regions(), handler)?;
+        Ok(Self { cell: cell.clone(), heard, _table: table })
+    }
+
+    /// Whether a region is on; a region that is not heard of is.
+    pub(crate) fn is_on(&self, region: CellRegionId) -> bool {
+        self.heard(&self.cell.regions[region.0].region.name).unwrap_or(true)
+    }
+
+    /// Whether the region of this name is on; `None` if that was not heard.
+    fn heard(&self, region: &str) -> Option<bool> {
+        self.heard.lock().unwrap_or_else(PoisonError::into_inner).get(region).copied()
+    }
 }
 
 impl SwitchRequests {
@@ -37,21 +71,12 @@ impl SwitchRequests {
     /// [`NetworkError`] if the keys cannot be used.
     pub(crate) fn new(cell: &Arc<Cell>, robot: RobotId, network: &Arc<dyn Network>) -> Result<Self, NetworkError> {
         let keys = Keys::new(&cell.name);
-        let heard: Arc<Mutex<BTreeMap<String, bool>>> = Arc::default();
-        let handler = {
-            let heard = heard.clone();
-            Box::new(move |bytes: &[u8]| {
-                let Ok(message) = serde_json::from_slice::<RegionTableMessage>(bytes) else { return };
-                *heard.lock().unwrap_or_else(PoisonError::into_inner) = message.regions.into_iter().collect();
-            })
-        };
         let first = |region: CellRegionId| cell.programs.iter().position(|program| switches(program.as_ref(), region));
         let off = (0..cell.regions.len()).filter(|region| first(CellRegionId(*region)) == Some(robot.0));
         Ok(Self {
             robot: cell.robots[robot.0].name.clone(),
             publisher: network.publisher(&keys.switch(), Urgency::RealTime)?,
-            _table: network.subscribe(&keys.regions(), handler)?,
-            heard,
+            switches: RegionSwitches::start(cell, network)?,
             wanted: off.map(|region| (cell.regions[region].region.name.clone(), false)).collect(),
             sent: None,
             cell: cell.clone(),
@@ -70,8 +95,8 @@ impl SwitchRequests {
             return;
         }
         if self.sent.is_some() {
-            let heard = self.heard.lock().unwrap_or_else(PoisonError::into_inner);
-            self.wanted.retain(|region, active| heard.get(region) != Some(active));
+            let switches = &self.switches;
+            self.wanted.retain(|region, active| switches.heard(region) != Some(*active));
         }
         if self.sent.is_some_and(|sent| sent.elapsed() < REPEATED) {
             return;

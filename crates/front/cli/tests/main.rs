@@ -14,6 +14,7 @@ mod messages;
 mod models;
 mod pair_file;
 mod pairs;
+mod perceived_live;
 mod perceived_run;
 mod pick_and_place;
 mod plan;

@@ -20,13 +20,13 @@ use elbowroom::vision::{Camera, Channels, Frame, Intrinsics, Point2, encode_png,
 use serde_json::Value;
 
 const PERIOD_S: f64 = 0.04;
-const FRAMES: usize = 170;
+pub(crate) const FRAMES: usize = 170;
 /// From a picture to its use, s.
-const LATENCY_S: f64 = 0.06;
+pub(crate) const LATENCY_S: f64 = 0.06;
 /// What a search takes where nothing else is stated, s.
 const SEARCH_S: f64 = 0.2;
 /// Pictures before the start of the run, of the empty cell.
-const LEARNING: usize = 30;
+pub(crate) const LEARNING: usize = 30;
 /// Length, width and height of the crate, m.
 const SIZE: [f64; 3] = [0.6, 0.4, 0.9];
 /// Radius of the noise of points of a cloud, m.
@@ -34,7 +34,7 @@ const NOISE_M: f64 = 0.004;
 /// Distance between the points at which the test measures the clearance, m.
 const SURFACE_STEP_M: f64 = 0.02;
 
-const CAMERA: &str = r#"
+pub(crate) const CAMERA: &str = r#"
 [camera.above]
 size = [320, 240]
 focal_px = FOCAL
@@ -47,7 +47,7 @@ joints = "learning.csv"
 latency_ms = 60
 "#;
 
-const CLOUD: &str = r#"
+pub(crate) const CLOUD: &str = r#"
 [cloud.mast]
 pose = { at = [1700, 0, 6500], rpy = [180, 0, 0] }
 area = [[750, -3000], [4800, -3000], [4800, 3000], [750, 3000]]
@@ -91,7 +91,7 @@ fn camera() -> Camera {
     Camera::look_at(lens(), Vec3::new(1.7, 0.0, 6.5), Vec3::new(1.7, 0.0, 0.0), Vec3::Y).unwrap()
 }
 
-fn cell(sensor: &str, kind: &str) -> String {
+pub(crate) fn cell(sensor: &str, kind: &str) -> String {
     let head = format!(
         "version = 1\nunits = {{ length = \"mm\", angle = \"deg\" }}\ntick_ms = 8\n[robot.kr]\nmodel = {:?}\nsrdf = {:?}\n\
          start = [60, -31.1, 76.6, 0, 44.5, 0]\n",
@@ -109,7 +109,7 @@ fn crate_at(t_s: f64, leaves_s: f64) -> Point2 {
 }
 
 /// When each picture is taken: those of the empty cell before the run.
-fn stamp_s(i: usize) -> f64 {
+pub(crate) fn stamp_s(i: usize) -> f64 {
     (i as f64 - LEARNING as f64) * PERIOD_S
 }
 
@@ -120,7 +120,7 @@ fn learning_joints(t_s: f64) -> [f64; 6] {
 
 /// Pictures of the crate and their times, as files. In those of the empty cell the arm is seen, and its joint values are known;
 /// later it goes where it wants, and the pictures do not show it.
-fn write_pictures(dir: &Path, frames: usize, leaves_s: f64) {
+pub(crate) fn write_pictures(dir: &Path, frames: usize, leaves_s: f64) {
     let folder = dir.join("pictures");
     std::fs::create_dir(&folder).unwrap();
     let robot = load(&elbowroom_testkit::folder::model("kr125"), &LoadOptions::default()).unwrap().robot;
@@ -153,7 +153,7 @@ fn write_pictures(dir: &Path, frames: usize, leaves_s: f64) {
 
 /// Clouds of the crate, the floor, a known pillar and an unknown rack that stands there from the beginning, as PCD files in the
 /// frame of the sensor.
-fn write_clouds(dir: &Path, frames: usize, leaves_s: f64) {
+pub(crate) fn write_clouds(dir: &Path, frames: usize, leaves_s: f64) {
     let folder = dir.join("clouds");
     std::fs::create_dir(&folder).unwrap();
     let (mut times, mut seed) = ("file,t_s\n".to_owned(), 1_u64);
@@ -248,7 +248,7 @@ fn surface_points(robot: &Robot) -> Vec<(LinkId, Vec3)> {
 }
 
 /// Smallest distance (m) of the arm to the crate over a run, and when: at every fourth tick, at every point of its surface.
-fn clearance(trace: &str, robot: &Robot, leaves_s: f64) -> (f64, f64) {
+pub(crate) fn clearance(trace: &str, robot: &Robot, leaves_s: f64) -> (f64, f64) {
     let points = surface_points(robot);
     let mut state = ChainState::new(&robot.chain);
     let (mut least, mut when) = (f64::INFINITY, 0.0);

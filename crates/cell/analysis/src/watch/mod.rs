@@ -107,6 +107,14 @@ impl SensorWatch {
         Ok(watch)
     }
 
+    /// A sensor of a live cell: what it sees is sent, one by one ([`record_sent`](Self::record_sent)).
+    ///
+    /// # Errors
+    /// [`FormatError`] if its robot has no map of three joints.
+    pub fn sent(cell: &Cell, sensor: &CellSensor) -> Result<Self, FormatError> {
+        Self::of_sensor(cell, sensor, Vec::new(), None)
+    }
+
     fn of_sensor(
         cell: &Cell,
         sensor: &CellSensor,
@@ -196,6 +204,12 @@ impl SensorWatch {
     /// The record of a picture of a stream: its bytes, a name for messages, and when it was taken (s).
     pub fn record_bytes(&mut self, bytes: &[u8], name: &Path, t_s: f64) -> WatchRecord {
         self.process(bytes, name, t_s, None)
+    }
+
+    /// The record of a picture or cloud that was sent: its bytes, a name for messages, when it was taken (s), and where the robots
+    /// were then (rad or m).
+    pub fn record_sent(&mut self, bytes: &[u8], name: &Path, t_s: f64, q: &[Vec<f64>]) -> WatchRecord {
+        self.process(bytes, name, t_s, Some(q))
     }
 
     fn process(&mut self, bytes: &[u8], name: &Path, t_s: f64, q: Option<&[Vec<f64>]>) -> WatchRecord {

@@ -1,7 +1,7 @@
 //! Speeds of the guarded volumes of a robot during its program, and their stopping distances.
 
 use std::collections::HashSet;
-use std::rc::Rc;
+use std::sync::Arc;
 
 use elbowroom_cell::trajectory::PathPoint;
 use elbowroom_cell::{Cell, JointLimits};
@@ -214,8 +214,8 @@ fn for_each_move(plan: &ProgramPlan, delay_s: f64, mut visit: impl FnMut(f64, f6
                 visited.clear();
                 continue;
             }
-            PlanStep::Move(m) => (Rc::as_ptr(m).cast(), m.duration()),
-            PlanStep::Play(p) | PlanStep::Planned { play: p, .. } => (Rc::as_ptr(p).cast(), p.duration()),
+            PlanStep::Move(m) => (Arc::as_ptr(m).cast(), m.duration()),
+            PlanStep::Play(p) | PlanStep::Planned { play: p, .. } => (Arc::as_ptr(p).cast(), p.duration()),
             _ => continue,
         };
         before = programmed;

@@ -1,12 +1,13 @@
 //! Execution of a program in time: scaled by the override, within the joints' decelerations, never backwards.
 
-use std::rc::Rc;
+use std::sync::Arc;
 
 use elbowroom_cell::trajectory::{PathPoint, Playback};
 use elbowroom_cell::{CellRegionId, JointLimits, PathPlanner};
 use elbowroom_robot::ObjectId;
 
 use super::{Geometry, GripAction, PlanStep, ProgramPlan};
+use crate::replanning::{ExecutedMotion, PathAhead, PlannedGoal, SAMPLE_S};
 
 /// Smallest share of the acceleration that remains for speeding up along a curve.
 const RESERVE: f64 = 0.1;
@@ -24,6 +25,14 @@ pub struct RegionSwitch {
     pub region: CellRegionId,
     /// On or off.
     pub active: bool,
+}
+
+/// Steps without duration that were executed and not taken yet.
+#[derive(Debug, Default)]
+struct InstantSteps {
+    switches: Vec<RegionSwitch>,
+    grips: Vec<GripAction>,
+    tools: Vec<usize>,
 }
 
 /// The largest share of a joint's top speed that a step uses.
@@ -44,6 +53,7 @@ pub struct ProgramClock {
     plan: ProgramPlan,
     limits: Vec<JointLimits>,
     step: usize,
+    path_number: u64,
     /// Time in the step at override 1, s; in a wait, time waited.
     time: f64,
     /// dτ/dt: rate of the program's time, 0..1.
@@ -55,9 +65,7 @@ pub struct ProgramClock {
     intent: Vec<f64>,
     /// The largest share of a joint's top speed of all steps.
     speed_share: f64,
-    switches: Vec<RegionSwitch>,
-    grips: Vec<GripAction>,
-    tools: Vec<usize>,
+    executed: InstantSteps,
     held: bool,
     /// A recording that begins in motion starts with the next advance.
     joins: bool,
@@ -76,6 +84,7 @@ impl ProgramClock {
             plan,
             limits,
             step: 0,
+            path_number: 0,
             time: 0.0,
             rate: 0.0,
             rate_change: 0.0,
@@ -83,9 +92,7 @@ impl ProgramClock {
             intent: here.dq.clone(),
             here,
             speed_share,
-            switches: Vec::new(),
-            grips: Vec::new(),
-            tools: Vec::new(),
+            executed: InstantSteps::default(),
             held: false,
             joins: false,
         };
@@ -93,6 +100,13 @@ impl ProgramClock {
         clock.rate = clock.programmed;
         clock.start_step();
         clock
+    }
+
+    /// Starts another program, once this one is over.
+    pub fn restart(&mut self, plan: ProgramPlan) {
+        let paths = self.path_number;
+        *self = Self::new(plan, std::mem::take(&mut self.limits));
+        self.path_number += paths;
     }
 
     /// Current joint values, with derivatives by the program's time (that is, at override 1).
@@ -170,7 +184,7 @@ impl ProgramClock {
 
     /// The path from now to the end of the step: times in the step (s, at override 1), at most `step_s` apart, and joint
     /// values; empty for a step without motion.
-    pub fn path_ahead(&self, step_s: f64) -> Vec<(f64, Vec<f64>)> {
+    fn path_ahead(&self, step_s: f64) -> Vec<(f64, Vec<f64>)> {
         let end_s = self.duration();
         let count = ((end_s - self.time).max(0.0) / step_s).ceil() as usize;
         let times = (0..=count).map(|n| (self.time + step_s * n as f64).min(end_s));
@@ -193,11 +207,26 @@ impl ProgramClock {
         time
     }
 
-    /// The planned move of this step, the share of the joints' speeds that it uses, and how its path is searched for.
-    pub fn planned_move(&self) -> Option<(&Rc<Playback>, f64, PathPlanner)> {
-        match self.plan.steps.get(self.step) {
-            Some(PlanStep::Planned { play, speed, planner }) => Some((play, *speed, *planner)),
+    /// The number of the present path: a step, and a path that replaces another, begin a new one.
+    pub fn path_number(&self) -> u64 {
+        self.path_number
+    }
+
+    /// The motion that is executed now.
+    pub fn executed_motion(&self) -> ExecutedMotion {
+        let planned = match self.plan.steps.get(self.step) {
+            Some(PlanStep::Planned { play, speed, planner }) => {
+                Some(PlannedGoal { q: play.q(play.duration()), speed: *speed, planner: *planner })
+            }
             _ => None,
+        };
+        ExecutedMotion {
+            path: self.path_number,
+            ahead: PathAhead::of(self.path_ahead(SAMPLE_S)),
+            planned,
+            q: self.here.q.clone(),
+            qd: self.velocity().collect(),
+            rate: self.rate,
         }
     }
 
@@ -211,9 +240,10 @@ impl ProgramClock {
 
     /// Replaces the planned move of this step by another one with the same end, from the time `entry_s` (s, at override 1) in
     /// it on, at a rate.
-    pub fn replace_planned_move(&mut self, play: Rc<Playback>, entry_s: f64, rate: f64) {
+    pub fn replace_planned_move(&mut self, play: Arc<Playback>, entry_s: f64, rate: f64) {
         let Some(PlanStep::Planned { play: old, .. }) = self.plan.steps.get_mut(self.step) else { return };
         *old = play;
+        self.path_number += 1;
         (self.time, self.rate, self.rate_change) = (entry_s, rate, 0.0);
         self.update_point();
     }
@@ -229,17 +259,17 @@ impl ProgramClock {
 
     /// Region switches since the last call.
     pub fn take_switches(&mut self) -> Vec<RegionSwitch> {
-        std::mem::take(&mut self.switches)
+        std::mem::take(&mut self.executed.switches)
     }
 
     /// Objects gripped and released since the last call.
     pub fn take_grips(&mut self) -> Vec<GripAction> {
-        std::mem::take(&mut self.grips)
+        std::mem::take(&mut self.executed.grips)
     }
 
     /// Tools made active since the last call, in order.
     pub fn take_tools(&mut self) -> Vec<usize> {
-        std::mem::take(&mut self.tools)
+        std::mem::take(&mut self.executed.tools)
     }
 
     /// The objects that are released before the next move: the present move sets them down.
@@ -249,7 +279,7 @@ impl ProgramClock {
             next.take_while(|s| !matches!(s, PlanStep::Move(_) | PlanStep::Play(_) | PlanStep::Planned { .. }));
         let next = until_move.filter_map(|s| if let PlanStep::Grip(action) = s { Some(action) } else { None });
         // The releases that this instant executes, too: the move before them ends now.
-        self.grips.iter().chain(next).filter(|a| !a.grips).map(|a| a.object)
+        self.executed.grips.iter().chain(next).filter(|a| !a.grips).map(|a| a.object)
     }
 
     /// Advances by `dt` seconds under the override `target`.
@@ -307,6 +337,7 @@ impl ProgramClock {
 
     /// Steps start from rest, whatever the rate is. Only a recording that begins in motion does not: it is joined at rate 0.
     fn start_step(&mut self) {
+        self.path_number += 1;
         self.execute_instant_steps();
         self.update_point();
         if self.here.dq.iter().any(|v| v.abs() > REST_SPEED) {
@@ -377,11 +408,11 @@ impl ProgramClock {
         loop {
             match self.plan.steps.get(self.step) {
                 Some(PlanStep::Switch { region, active }) => {
-                    self.switches.push(RegionSwitch { region: *region, active: *active });
+                    self.executed.switches.push(RegionSwitch { region: *region, active: *active });
                 }
                 Some(PlanStep::Override(o)) => self.programmed = *o,
-                Some(PlanStep::Tool(tool)) => self.tools.push(*tool),
-                Some(PlanStep::Grip(action)) => self.grips.push(action.clone()),
+                Some(PlanStep::Tool(tool)) => self.executed.tools.push(*tool),
+                Some(PlanStep::Grip(action)) => self.executed.grips.push(action.clone()),
                 Some(PlanStep::Move(m)) if m.duration() <= 0.0 => {}
                 Some(PlanStep::Wait(s)) if *s <= 0.0 => {}
                 _ => return,

@@ -1,6 +1,6 @@
 //! A straight line of the TCP: joint values by inverse kinematics, continuous from end to end.
 
-use std::cell::RefCell;
+use std::sync::{Mutex, PoisonError};
 
 use elbowroom_cell::trajectory::PathPoint;
 use elbowroom_cell::{CellRobot, Units};
@@ -32,7 +32,7 @@ pub struct TcpLine {
     to: Pose,
     /// Joint values at equal steps of s.
     knots: Vec<Vec<f64>>,
-    solver: RefCell<IkSolver>,
+    solver: Mutex<IkSolver>,
     /// Of messages.
     units: Units,
     /// False if the chain has too few joints to keep the orientation.
@@ -77,7 +77,7 @@ impl TcpLine {
             from,
             to,
             knots: vec![q.to_vec()],
-            solver: RefCell::new(solver),
+            solver: Mutex::new(solver),
             units,
             keeps_orientation: task == IkTask::Pose,
         };
@@ -122,7 +122,7 @@ impl TcpLine {
             Some(before) => last.iter().zip(before).map(|(a, b)| 2.0 * a - b).collect(),
             None => last.clone(),
         };
-        let mut solver = self.solver.borrow_mut();
+        let mut solver = self.solver.lock().unwrap_or_else(PoisonError::into_inner);
         let target = self.pose(s);
         if !solver.refine(&target, &mut q) {
             q = solver.solve(&target, last).map_err(|e| self.units.describe_ik_error(&e, chain))?.q;
@@ -194,7 +194,7 @@ impl TcpLine {
             })
             .collect();
         let guess = q.clone();
-        let mut solver = self.solver.borrow_mut();
+        let mut solver = self.solver.lock().unwrap_or_else(PoisonError::into_inner);
         let solved = solver.refine(&self.pose(s), &mut q);
         let near = q.iter().zip(&guess).all(|(a, b)| (a - b).abs() < JUMP);
         if solved && near { q } else { guess }

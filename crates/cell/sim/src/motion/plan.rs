@@ -1,7 +1,7 @@
 //! Planning of a program: every move is computed before the simulation starts.
 
 use std::borrow::Cow;
-use std::rc::Rc;
+use std::sync::Arc;
 
 use elbowroom_analysis::plan::{PathGoal, PathRequest};
 use elbowroom_cell::trajectory::{Playback, motion_bounds, recording_warnings, volume_motion_bounds};
@@ -36,13 +36,13 @@ pub struct ProgramPlan {
 #[derive(Debug, Clone)]
 pub enum PlanStep {
     /// A timed move.
-    Move(Rc<Segment>),
+    Move(Arc<Segment>),
     /// A recording.
-    Play(Rc<Playback>),
+    Play(Arc<Playback>),
     /// A planned move, which may be replaced by another one with the same end.
     Planned {
         /// The path in time.
-        play: Rc<Playback>,
+        play: Arc<Playback>,
         /// Share of the joints' speeds that it uses.
         speed: f64,
         /// How its path was searched for, and is again where it is blocked.
@@ -177,7 +177,7 @@ struct PlannedMoveEntry {
     step: usize,
     from: Vec<f64>,
     flange: LinkId,
-    segment: Rc<Segment>,
+    segment: Arc<Segment>,
 }
 
 impl<'p, 'a> ProgramPlanner<'p, 'a> {
@@ -266,14 +266,14 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
         GripAction { object, grips, link: self.robot.flange, attachment, line: step.line }
     }
 
-    fn segment(&mut self, index: usize, step: &ProgramStep) -> Result<Rc<Segment>, FormatError> {
+    fn segment(&mut self, index: usize, step: &ProgramStep) -> Result<Arc<Segment>, FormatError> {
         let flange = self.robot.flange;
         let is_known = |k: &&PlannedMoveEntry| k.step == index && k.from == self.q && k.flange == flange;
         let planned = self.planned_moves.iter().find(is_known).map(|k| k.segment.clone());
         let segment = if let Some(segment) = planned {
             segment
         } else {
-            let segment = Rc::new(self.timed(index, step)?);
+            let segment = Arc::new(self.timed(index, step)?);
             let from = self.q.clone();
             self.planned_moves.push(PlannedMoveEntry { step: index, from, flange, segment: segment.clone() });
             segment
@@ -288,7 +288,7 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
         index: usize,
         step: &ProgramStep,
         planned: (&MoveTarget, f64, PathPlanner),
-    ) -> Result<Rc<Playback>, FormatError> {
+    ) -> Result<Arc<Playback>, FormatError> {
         let origin = PathOrigin {
             robot: self.id,
             step: index,
@@ -432,11 +432,11 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
         }
         let mut plan =
             ProgramPlan { start: first.q.clone(), speed_override: program.speed_override, steps: Vec::new() };
-        let play = Rc::new(Playback::new(rows.to_vec(), &motion_bounds(&self.robot)));
+        let play = Arc::new(Playback::new(rows.to_vec(), &motion_bounds(&self.robot)));
         let back = Geometry::Joint { from: last.q.clone(), to: first.q.clone() };
         let back = Segment::new(back, &self.robot.limits, 0.5, f64::INFINITY)
             .map_err(|e| FormatError::new(&self.cell.file, program.line, e))?;
-        let back = Rc::new(back);
+        let back = Arc::new(back);
         for pass in 0..passes {
             if pass > 0 {
                 plan.steps.push(PlanStep::Move(back.clone()));

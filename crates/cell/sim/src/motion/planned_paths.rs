@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 use std::fmt;
-use std::rc::Rc;
+use std::sync::Arc;
 
 use elbowroom_cell::trajectory::Playback;
 use elbowroom_cell::{Cell, ProgramBody, StepAction};
@@ -42,7 +42,7 @@ pub struct PlannedPaths<'a> {
 }
 
 /// A path, or why there is none.
-type SearchedPath = Result<Rc<Playback>, FormatError>;
+type SearchedPath = Result<Arc<Playback>, FormatError>;
 
 /// A search that begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -95,7 +95,7 @@ impl<'a> PlannedPaths<'a> {
         }
         let number = self.known.borrow().len() + 1;
         (self.progress)(PathSearch { number, of: planned_moves(self.cell).max(number) });
-        let path = search().map(Rc::new);
+        let path = search().map(Arc::new);
         self.known.borrow_mut().push((origin, path.clone()));
         path
     }

@@ -6,11 +6,10 @@ use elbowroom_robot::{GeometryId, ObjectId, Robot, RobotId};
 use elbowroom_scene::{FirstContact, FirstContacts, MovedObject, Object};
 
 use super::carried_parts::CarriedParts;
-use super::perceived_obstacles::PerceivedObstacle;
 use super::simulated_robot::SimulatedRobot;
-use super::surroundings::Surroundings;
 use crate::motion::ProgramClock;
 use crate::recording::{Collision, ObjectTrack};
+use crate::replanning::{PerceivedObstacle, Surroundings};
 
 /// Finds what touches between two instants, and follows the objects.
 pub(super) struct ContactRecorder<'a> {

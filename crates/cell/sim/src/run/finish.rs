@@ -5,12 +5,11 @@ use elbowroom_monitor::ZoneArbiter;
 
 use super::avoiding_robot::AvoidingRobot;
 use super::final_waits::FinalWaits;
-use super::obstacle_guard::ObstacleGuard;
-use super::perceived_obstacles::PerceivedObstacles;
 use super::simulated_robot::SimulatedRobot;
 use super::simulation::Simulation;
 use super::{outcome, release};
-use crate::recording::{Deadlock, Recording, RobotTrack, RunEnd, TickTimes};
+use crate::recording::{Deadlock, PerceptionTrack, Recording, RobotTrack, RunEnd, TickTimes};
+use crate::replanning::{PathGuard, PerceivedObstacles};
 
 impl Simulation<'_> {
     /// The recording of a run that has ended at `t_s`.
@@ -57,9 +56,12 @@ struct Ended<'a> {
 impl Ended<'_> {
     /// The recording of a robot, with how it ended.
     fn track(&self, robot: SimulatedRobot<'_>) -> RobotTrack {
-        let SimulatedRobot { id, setup, mut track, avoiding, guard, governing, .. } = robot;
+        let SimulatedRobot { id, setup, mut track, avoiding, guard, hold, governing, .. } = robot;
         track.avoidance = avoiding.map(AvoidingRobot::finish);
-        track.perception = guard.map(|guard: ObstacleGuard<'_>| guard.finish(self.t_s));
+        track.perception = guard.map(PathGuard::into_replans).map(|replans| {
+            let (holds, ends_held) = hold.finish(self.t_s);
+            PerceptionTrack { replans, holds, ends_held }
+        });
         // Collisions within one tick are found in the order of the pairs.
         track.collisions.sort_by(|a, b| a.t_s.total_cmp(&b.t_s));
         let region = track.samples.last().and_then(|s| s.region).map(|r| &*self.cell.regions[r.0].region.name);

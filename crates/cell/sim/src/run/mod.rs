@@ -13,14 +13,9 @@ mod idle_detector;
 mod journal;
 mod observation;
 mod observer;
-mod obstacle_guard;
 mod options;
 mod outcome;
 mod override_delay;
-mod path_ahead;
-mod path_replanner;
-mod path_search;
-mod perceived_obstacles;
 mod region_recorder;
 mod release;
 mod run_end;
@@ -28,7 +23,6 @@ mod sensor_guards;
 mod simulated_robot;
 mod simulation;
 mod stop_state;
-mod surroundings;
 mod zone_claims;
 
 use elbowroom_cell::configure;
@@ -39,6 +33,7 @@ use elbowroom_robot::{Robot, RobotId};
 
 use crate::motion::{PlannedPaths, ProgramClock, ProgramPlan, plan};
 use crate::recording::{Recording, RegionTrack};
+use crate::replanning::{PathGuard, PerceivedObstacles, SearchTiming};
 use avoiding_robot::AvoidingRobot;
 pub use avoiding_robot::evasion_limits;
 use contact_recorder::ContactRecorder;
@@ -48,9 +43,7 @@ use fault_injection::FaultInjector;
 pub use fault_injection::{InputFault, InputFaultKind};
 use journal::Journal;
 pub use observer::{ObservedInstant, ObservedTick, RunObserver};
-use obstacle_guard::obstacle_guard;
 pub use options::{RunOptions, RunProgress, SilentFrom};
-use perceived_obstacles::PerceivedObstacles;
 use region_recorder::RegionRecorder;
 use simulated_robot::SimulatedRobot;
 use simulation::Simulation;
@@ -120,7 +113,7 @@ pub fn simulate_observed(
     let states: Vec<ChainState> = cell.robots.iter().map(|r| ChainState::new(&r.robot.chain)).collect();
     for robot in &mut robots {
         let avoids = robot.avoiding.is_some();
-        robot.guard = obstacle_guard(cell, (robot.id, &robot.clock), avoids, &perceived, &states, &mut notes)?;
+        robot.guard = path_guard(cell, (robot.id, &robot.clock), avoids, &perceived, &states, &mut notes)?;
     }
     let journal = Journal::new(cell, observer.map(|observer| observer as &mut dyn RunObserver));
     let mut run = Simulation {
@@ -156,4 +149,26 @@ fn keeps_to_plan(
     let avoids = options.avoidance && cell.avoidance.get(robot.0).is_some_and(Option::is_some);
     let replans = plan.has_planned_moves() && perceived.search_s(robot).is_some();
     options.apply_override && !avoids && !replans
+}
+
+/// The guard of a robot against what sensors see; `None` for one that no sensor guards.
+fn path_guard<'a>(
+    cell: &'a Cell,
+    (id, clock): (RobotId, &ProgramClock),
+    avoids: bool,
+    perceived: &PerceivedObstacles<'_>,
+    states: &[ChainState],
+    notes: &mut Vec<Warning>,
+) -> Result<Option<PathGuard<'a>>, FormatError> {
+    let Some(search_s) = perceived.search_s(id) else { return Ok(None) };
+    if !avoids {
+        return PathGuard::new(cell, (id, clock), (search_s, SearchTiming::Simulated), states).map(Some);
+    }
+    let robot = &cell.robots[id.0];
+    let what = format!(
+        "robot \"{}\" has [avoidance.{}], which does not know what sensors see: it does not keep clear of that",
+        robot.name, robot.name
+    );
+    notes.push(Warning::new(&cell.file, robot.line, what).hint("run --no-avoidance, or robots = [...] of the sensor"));
+    Ok(None)
 }

@@ -4,12 +4,10 @@ use std::time::Instant;
 
 use elbowroom_kinematics::ChainState;
 
-use super::obstacle_guard::ObstacleGuard;
-use super::path_search::ClosedRegions;
-use super::perceived_obstacles::PerceivedObstacles;
 use super::simulated_robot::SimulatedRobot;
 use super::simulation::Simulation;
 use crate::recording::{HoldReason, RunEvent};
+use crate::replanning::{ClosedRegions, PathGuard, PerceivedObstacles};
 
 impl Simulation<'_> {
     /// Takes in the pictures that are due; guarded robots replan, or are held.
@@ -17,7 +15,7 @@ impl Simulation<'_> {
         let Some(mut perceived) = self.perceived.take() else { return };
         self.end_path_searches(t_s);
         let begin = Instant::now();
-        let has_news = perceived.take_in(t_s, &|stamp_s| self.joint_values_at(stamp_s));
+        let has_news = perceived.process_due(t_s, &|stamp_s| self.joint_values_at(stamp_s));
         for i in 0..self.robots.len() {
             if !self.options.is_silent(self.robots[i].id, t_s) {
                 self.keep_clear(i, &perceived, has_news, t_s);
@@ -31,7 +29,7 @@ impl Simulation<'_> {
 
     /// Whether pictures are still to come, or a search is under way.
     pub(super) fn expects_news(&self) -> bool {
-        let is_searching = |robot: &SimulatedRobot<'_>| robot.guard.as_ref().is_some_and(ObstacleGuard::is_searching);
+        let is_searching = |robot: &SimulatedRobot<'_>| robot.guard.as_ref().is_some_and(PathGuard::is_searching);
         self.perceived.as_ref().is_some_and(PerceivedObstacles::has_more) || self.robots.iter().any(is_searching)
     }
 
@@ -40,9 +38,13 @@ impl Simulation<'_> {
         let Self { options, robots, states, frames, contacts, journal, .. } = self;
         for robot in robots.iter_mut().filter(|robot| !options.is_silent(robot.id, t_s)) {
             let SimulatedRobot { id, setup, monitor, clock, guard: Some(guard), .. } = robot else { continue };
+            if !guard.is_search_due(t_s, clock.path_number()) {
+                continue;
+            }
             let regions = || ClosedRegions { monitor, sources: frames.sources(&setup.sources, states, t_s) };
             let surroundings = |perceived| contacts.surroundings(states, perceived);
-            if guard.end_search(t_s, clock, surroundings, regions) {
+            let motion = clock.executed_motion();
+            if guard.end_search(t_s, &motion, surroundings, regions, |new| new.enter(clock)) {
                 journal.event(t_s, *id, "", RunEvent::Replan);
             }
         }
@@ -52,17 +54,21 @@ impl Simulation<'_> {
     fn keep_clear(&mut self, i: usize, perceived: &PerceivedObstacles<'_>, has_news: bool, t_s: f64) {
         let Self { cell, robots, states, frames, contacts, journal, .. } = self;
         let SimulatedRobot { id, setup, monitor, clock, guard: Some(guard), hold, .. } = &mut robots[i] else { return };
-        let seen = || perceived.obstacles(*id).cloned().collect();
-        let surroundings = || contacts.surroundings(states, seen());
-        let regions = || ClosedRegions { monitor, sources: frames.sources(&setup.sources, states, t_s) };
-        guard.observe(t_s, clock, perceived, has_news, surroundings, regions);
-        let stale = if clock.moving() { perceived.stale(*id, t_s) } else { None };
-        let held = guard.hold(t_s, clock, stale, cell.laws.reaction_delay_s, cell.tick_s).cloned();
-        if let Some((reason, by)) = held.as_ref().filter(|_| held != *hold) {
+        if guard.is_due(clock.path_number(), has_news) {
+            let seen = || perceived.obstacles(*id).cloned().collect();
+            let surroundings = || contacts.surroundings(states, seen());
+            let regions = || ClosedRegions { monitor, sources: frames.sources(&setup.sources, states, t_s) };
+            guard.observe(t_s, &clock.executed_motion(), perceived, surroundings, regions);
+        }
+        let silent = perceived.last_sights(*id).find(|last| clock.moving() && last.is_stale(t_s));
+        let stale = silent.map(|last| last.sensor.as_str());
+        let (_, blocked) = guard.checked();
+        let before = hold.reason().cloned();
+        let held = hold.update(t_s, clock, (blocked, stale), (cell.laws.reaction_delay_s, cell.tick_s));
+        if let Some((reason, by)) = held.filter(|_| held != before.as_ref()) {
             let event = if *reason == HoldReason::Stale { RunEvent::Stale } else { RunEvent::Wait };
             journal.event(t_s, *id, by, event);
         }
-        *hold = held;
     }
 
     /// The joint values of all robots at a time up to now: from the last tick before it.

@@ -12,13 +12,13 @@ use super::avoiding_robot::AvoidingRobot;
 use super::fault_injection::FaultInjector;
 use super::journal::Journal;
 use super::observer::ObservedTick;
-use super::obstacle_guard::ObstacleGuard;
 use super::outcome::part_name;
 use super::override_delay::OverrideDelay;
 use super::stop_state::StopState;
 use super::zone_claims::ZoneClaims;
 use crate::motion::ProgramClock;
-use crate::recording::{GoverningPoint, HoldReason, RobotEnding, RobotTrack, Sample, Stop};
+use crate::recording::{GoverningPoint, RobotEnding, RobotTrack, Sample, Stop};
+use crate::replanning::{PathGuard, ProgramHold};
 
 /// A robot with its program, its monitor, what keeps it clear of obstacles, and its recording.
 pub(super) struct SimulatedRobot<'a> {
@@ -32,9 +32,9 @@ pub(super) struct SimulatedRobot<'a> {
     /// `None` without avoidance.
     pub avoiding: Option<AvoidingRobot<'a>>,
     /// `None` if no sensor guards it.
-    pub guard: Option<ObstacleGuard<'a>>,
-    /// The obstacle or sensor that holds it in this tick.
-    pub hold: Option<(HoldReason, String)>,
+    pub guard: Option<PathGuard<'a>>,
+    /// Whether an obstacle or a sensor holds it in this tick.
+    pub hold: ProgramHold,
     /// With its tools as they are now.
     pub present: CellRobot,
     /// The point with the smallest requested override in the last tick.
@@ -80,7 +80,7 @@ impl<'a> SimulatedRobot<'a> {
             claims,
             avoiding: None,
             guard: None,
-            hold: None,
+            hold: ProgramHold::default(),
             present: robot.clone(),
             governing: None,
             stop_state: StopState::default(),
@@ -117,7 +117,7 @@ impl<'a> SimulatedRobot<'a> {
     /// The override that its program asks for. A robot that is held is not commanded to move: its constant joint values are no
     /// frozen reading.
     pub fn programmed_override(&self) -> f64 {
-        if self.hold.is_some() { 0.0 } else { self.clock.programmed_override() }
+        if self.hold.reason().is_some() { 0.0 } else { self.clock.programmed_override() }
     }
 
     /// One tick of its monitor, with this state and these sources; `None` if a fault withholds the input.

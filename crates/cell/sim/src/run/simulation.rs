@@ -14,11 +14,11 @@ use super::end_detector::EndDetector;
 use super::fault_injection::FaultInjector;
 use super::journal::Journal;
 use super::options::{RunOptions, RunProgress};
-use super::perceived_obstacles::PerceivedObstacles;
 use super::region_recorder::RegionRecorder;
 use super::simulated_robot::{Governed, SimulatedRobot};
 use crate::motion::RegionSwitch;
 use crate::recording::{RunEnd, RunEvent};
+use crate::replanning::PerceivedObstacles;
 
 /// A run: robots on one clock, and what is around them.
 pub(super) struct Simulation<'a> {
@@ -155,7 +155,7 @@ impl Simulation<'_> {
         robot.governing = report.governing;
         journal.monitor_events(t_s, robot.id, &robot.monitor, robot.setup);
         // A region governs where it makes the robot slower than programmed.
-        let is_governed = options.apply_override && robot.hold.is_none();
+        let is_governed = options.apply_override && robot.hold.reason().is_none();
         let regions = &robot.setup.regions;
         let region = is_governed.then(|| report.reason.region()).flatten().map(|r| regions[r.0]);
         // The monitor counts its own regions, a recording those of the cell.
@@ -165,7 +165,7 @@ impl Simulation<'_> {
         robot.record(cell, t_s, state, &Governed { region, point, reason });
         if let Some(event) = robot.stop_state.update(&robot.clock, robot.applied) {
             let region = region.map_or("", |r| cell.regions[r.0].region.name.as_str());
-            let by = robot.hold.as_ref().map_or(region, |(_, by)| by).to_owned();
+            let by = robot.hold.reason().map_or(region, |(_, by)| by).to_owned();
             robot.record_stop(t_s, &by, point, event == RunEvent::Stop);
             journal.event(t_s, robot.id, &by, event);
         }

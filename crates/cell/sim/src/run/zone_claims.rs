@@ -2,7 +2,7 @@
 //! computed before the run and declared to the zone arbiter during it, so that it grants in an order without deadlocks.
 
 use std::borrow::Cow;
-use std::rc::Rc;
+use std::sync::Arc;
 
 use elbowroom_cell::Cell;
 use elbowroom_cell::configure::MonitorSetup;
@@ -76,8 +76,8 @@ impl ZoneClaims {
         let mut evaluated: Vec<EvaluatedMove> = Vec::new();
         for (step, what) in plan.steps.iter().enumerate() {
             let (key, duration): (*const (), f64) = match what {
-                PlanStep::Move(m) => (Rc::as_ptr(m).cast(), m.duration()),
-                PlanStep::Play(p) | PlanStep::Planned { play: p, .. } => (Rc::as_ptr(p).cast(), p.duration()),
+                PlanStep::Move(m) => (Arc::as_ptr(m).cast(), m.duration()),
+                PlanStep::Play(p) | PlanStep::Planned { play: p, .. } => (Arc::as_ptr(p).cast(), p.duration()),
                 _ => {
                     match what {
                         PlanStep::Grip(action) => held.apply(action),

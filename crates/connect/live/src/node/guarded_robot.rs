@@ -7,20 +7,20 @@ use elbowroom_cell::{Cell, Follow, Frames};
 use elbowroom_interlock::Micros;
 use elbowroom_kinematics::ChainState;
 use elbowroom_monitor::{
-    AccessClass, Fault, Interlock, Monitor, OverrideReason, Presence, RegionId, Snapshot, SourceState, TickReport,
-    VolumeId,
+    AccessClass, Fault, Interlock, Monitor, OverrideReason, RegionId, Snapshot, SourceState, TickReport,
 };
 use elbowroom_recording::TickRecorder;
 use elbowroom_spatial::{FrameMotion, Pose};
 use elbowroom_status::StatusSample;
 
+use super::attached_volumes::AttachedVolumes;
 use super::doubt::Doubt;
 use super::followed_robot::FollowedRobot;
 use super::inbox::Contents;
 use super::next_configuration::{NextConfiguration, NodeVersion};
 use super::node_monitor::NodeMonitor;
 use super::standstill::Standstill;
-use crate::messages::{AttachedVolume, JointState, MAX_ATTACHED, MAX_JOINTS, OverrideAnswer};
+use crate::messages::{JointState, MAX_JOINTS, OverrideAnswer};
 use crate::regions_table::{RegionTable, TABLE_VALIDITY};
 
 /// One guarded robot. Its memory is allocated when it is made, so that [`Self::tick`] needs no more.
@@ -37,10 +37,7 @@ pub(super) struct GuardedRobot {
     /// The others; only the followed ones are up to date.
     followed: Vec<FollowedRobot>,
     sources: Vec<SourceState>,
-    /// What the monitor has attached.
-    attached: Vec<AttachedVolume>,
-    /// The controller has named an attached volume once: from then on it is known to name them all.
-    names_attached: bool,
+    attached: AttachedVolumes,
     standstill: Standstill,
     /// Per region of the cell whether it is on.
     active: Vec<bool>,
@@ -64,17 +61,11 @@ impl GuardedRobot {
         checksum: u64,
         recorder: Option<TickRecorder>,
     ) -> Self {
-        // What is mounted at the start, until the controller names what is attached.
-        let volumes = setup.configuration.volumes().iter().enumerate();
-        let mounted = volumes.filter(|(_, v)| v.presence == Presence::Attached);
-        let mut attached = Vec::with_capacity(MAX_ATTACHED);
-        attached.extend(mounted.map(|(i, v)| AttachedVolume { volume: VolumeId(i), in_link: v.in_link }));
         Self {
             chains: cell.robots.iter().map(|r| ChainState::new(&r.robot.chain)).collect(),
             followed: vec![FollowedRobot::default(); cell.robots.len()],
             sources: Vec::with_capacity(setup.sources.len()),
-            attached,
-            names_attached: false,
+            attached: AttachedVolumes::new(&setup.configuration),
             state: JointState::with_capacity(),
             stamp: None,
             now: Micros(0),
@@ -282,30 +273,14 @@ impl GuardedRobot {
 
     /// Attaches and detaches the optional volumes as the controller says. False if it names one that there is not.
     fn attach(&mut self) -> bool {
-        let Self { monitor, attached, names_attached, state, recorder, .. } = self;
-        *names_attached |= !state.attached.is_empty();
-        if !*names_attached || *attached == state.attached {
-            return true;
-        }
-        let monitor = monitor.monitor_mut();
-        let wanted = |volume: VolumeId| state.attached.iter().any(|a| a.volume == volume);
-        for gone in attached.iter().filter(|a| !wanted(a.volume)) {
-            // It was attached before, so that it can be detached.
-            let _ = monitor.detach(gone.volume);
-            if let Some(recorder) = recorder {
-                recorder.detached(gone.volume);
+        let Self { monitor, attached, state, recorder, .. } = self;
+        attached.apply(&state.attached, monitor.monitor_mut(), |volume, in_link| {
+            let Some(recorder) = recorder else { return };
+            match in_link {
+                Some(in_link) => recorder.attached(volume, in_link),
+                None => recorder.detached(volume),
             }
-        }
-        attached.clear();
-        for volume in &state.attached {
-            if monitor.attach(volume.volume, &volume.in_link).is_ok() {
-                attached.push(*volume);
-                if let Some(recorder) = recorder {
-                    recorder.attached(volume.volume, &volume.in_link);
-                }
-            }
-        }
-        attached.len() == state.attached.len()
+        })
     }
 
     fn place_sources(&mut self, now: Micros) {

@@ -4,6 +4,7 @@
 //! allocation, when joint values arrive; another one sends; the last one builds monitors for regions that are moved, added and
 //! removed. So nothing that a network does delays a tick.
 
+mod attached_volumes;
 mod doubt;
 mod followed_robot;
 mod guarded_robot;
@@ -41,6 +42,7 @@ use next_configuration::NodeVersion;
 use node_tick::follows;
 use outbox::Outbox;
 
+pub(crate) use attached_volumes::AttachedVolumes;
 pub(crate) use inbox::Heard;
 pub use input_gate::{InputGate, Rejected};
 pub use node_monitor::NodeMonitor;

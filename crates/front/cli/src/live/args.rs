@@ -48,24 +48,12 @@ pub(crate) struct LiveArgs {
     /// Run the programs of the cell file in place of the controllers
     #[arg(long)]
     pub(crate) simulate: bool,
-    /// Publish the cell in ROS 2, for RMW_IMPLEMENTATION=rmw_zenoh_cpp
-    #[arg(long)]
-    pub(crate) ros2: bool,
-    /// A robot whose controller speaks ROS 2, and its topics: `ROBOT[=JOINT_STATES,SPEED_SCALING[,CONTROLLER_STATE]]`; repeatable
-    #[arg(long, value_name = "ROBOT=TOPICS")]
-    pub(crate) ros2_robot: Vec<String>,
-    /// Only publish speed scaling 0 for each robot of whose service nothing was heard for this long
-    #[arg(long, value_name = "MS", value_parser = clap::value_parser!(u64).range(10..=60_000), conflicts_with_all = ["arbiter", "simulate", "web", "record", "ros2"])]
-    pub(crate) ros2_watchdog: Option<u64>,
-    /// The router of ROS 2 (rmw_zenohd, or this service itself); default: 127.0.0.1:7447
-    #[arg(long, value_name = "ADDR", requires = "with_ros2")]
-    pub(crate) ros2_router: Option<String>,
-    /// The domain; default: ROS_DOMAIN_ID, or 0
-    #[arg(long, value_name = "N", requires = "with_ros2")]
-    pub(crate) ros2_domain: Option<u32>,
-    /// The release of ROS 2: humble, jazzy, kilted or rolling; default: ROS_DISTRO, or jazzy
-    #[arg(long, value_name = "NAME", requires = "with_ros2", value_parser = ["humble", "jazzy", "kilted", "rolling"])]
-    pub(crate) ros2_distro: Option<String>,
+    /// Where a camera's pictures come from, `NAME=SOURCE`: `-` (standard input) or a named pipe, PNG pictures one after another, or
+    /// `key`, messages under elbowroom/CELL/sensor/NAME/frames; default: the folder of the cell file, without one `key`; repeatable
+    #[arg(long, value_name = "NAME=SOURCE", requires = "simulate", value_parser = frame_source)]
+    pub(crate) frames: Vec<(String, String)>,
+    #[command(flatten)]
+    pub(crate) ros2: Ros2Args,
     /// End after this time; default: at Ctrl-C
     #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
     pub(crate) duration: Option<f64>,
@@ -92,6 +80,37 @@ pub(crate) struct ReplayArgs {
     /// Print one JSON document
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// What the service has to do with ROS 2.
+#[derive(Debug, Args)]
+#[allow(clippy::doc_markdown)] // help texts are printed as they are
+#[cfg_attr(not(feature = "live"), allow(dead_code))]
+pub(crate) struct Ros2Args {
+    /// Publish the cell in ROS 2, for RMW_IMPLEMENTATION=rmw_zenoh_cpp
+    #[arg(long = "ros2", id = "ros2")]
+    pub(crate) publish: bool,
+    /// A robot whose controller speaks ROS 2, and its topics: `ROBOT[=JOINT_STATES,SPEED_SCALING[,CONTROLLER_STATE]]`; repeatable
+    #[arg(long = "ros2-robot", id = "ros2_robot", value_name = "ROBOT=TOPICS")]
+    pub(crate) robot: Vec<String>,
+    /// Only publish speed scaling 0 for each robot of whose service nothing was heard for this long
+    #[arg(long = "ros2-watchdog", id = "ros2_watchdog", value_name = "MS", value_parser = clap::value_parser!(u64).range(10..=60_000), conflicts_with_all = ["arbiter", "simulate", "web", "record", "ros2"])]
+    pub(crate) watchdog: Option<u64>,
+    /// The router of ROS 2 (rmw_zenohd, or this service itself); default: 127.0.0.1:7447
+    #[arg(long = "ros2-router", id = "ros2_router", value_name = "ADDR", requires = "with_ros2")]
+    pub(crate) router: Option<String>,
+    /// The domain; default: ROS_DOMAIN_ID, or 0
+    #[arg(long = "ros2-domain", id = "ros2_domain", value_name = "N", requires = "with_ros2")]
+    pub(crate) domain: Option<u32>,
+    /// The release of ROS 2: humble, jazzy, kilted or rolling; default: ROS_DISTRO, or jazzy
+    #[arg(long = "ros2-distro", id = "ros2_distro", value_name = "NAME", requires = "with_ros2", value_parser = ["humble", "jazzy", "kilted", "rolling"])]
+    pub(crate) distro: Option<String>,
+}
+
+/// A sensor and where its pictures come from.
+fn frame_source(text: &str) -> Result<(String, String), String> {
+    let (name, source) = text.split_once('=').ok_or("write NAME=SOURCE, such as above=- or above=/tmp/pictures")?;
+    Ok((name.to_owned(), source.to_owned()))
 }
 
 fn seconds(text: &str) -> Result<f64, String> {

@@ -14,21 +14,21 @@ use crate::output::{ExitStatus, Failure, note};
 
 /// The settings of a call; where it has none, those of the environment count, as for every program of ROS 2.
 pub(super) fn ros2_settings(args: &LiveArgs) -> Result<Ros2Settings, Failure> {
-    if !(args.ros2 || !args.ros2_robot.is_empty() || args.ros2_watchdog.is_some()) {
+    if !(args.ros2.publish || !args.ros2.robot.is_empty() || args.ros2.watchdog.is_some()) {
         return Ok(Ros2Settings::default());
     }
-    let robots: Result<Vec<Ros2Robot>, _> = args.ros2_robot.iter().map(|robot| robot.parse()).collect();
+    let robots: Result<Vec<Ros2Robot>, _> = args.ros2.robot.iter().map(|robot| robot.parse()).collect();
     let environment = |name: &str| std::env::var(name).ok().filter(|value| !value.is_empty());
-    let domain = match (args.ros2_domain, environment("ROS_DOMAIN_ID")) {
+    let domain = match (args.ros2.domain, environment("ROS_DOMAIN_ID")) {
         (Some(domain), _) => domain,
         (None, None) => 0,
         (None, Some(text)) => text
             .parse()
             .map_err(|_| Failure::Wrong(format!("ROS_DOMAIN_ID is {text}: not a number\n  help: --ros2-domain N")))?,
     };
-    let distribution = args.ros2_distro.clone().or_else(|| environment("ROS_DISTRO"));
+    let distribution = args.ros2.distro.clone().or_else(|| environment("ROS_DISTRO"));
     Ok(Ros2Settings {
-        publish: args.ros2,
+        publish: args.ros2.publish,
         robots: robots.map_err(|e| Failure::Wrong(e.to_string()))?,
         domain,
         distribution: if distribution.as_deref() == Some("humble") {
@@ -36,7 +36,7 @@ pub(super) fn ros2_settings(args: &LiveArgs) -> Result<Ros2Settings, Failure> {
         } else {
             Distribution::Jazzy
         },
-        router: args.ros2_router.clone(),
+        router: args.ros2.router.clone(),
     })
 }
 

@@ -1,5 +1,6 @@
 //! `elbowroom live`: guards real controllers over a network.
 
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant};
@@ -8,7 +9,7 @@ use elbowroom::cell::Cell;
 use elbowroom::cell::seal::NetworkKey;
 use elbowroom::live::network::ZENOH_RUNTIME;
 use elbowroom::live::ros2::Ros2Settings;
-use elbowroom::live::{ControlOptions, DEFAULT_ADDRESS, Keys, Service, ServiceOptions, region_journal_of};
+use elbowroom::live::{ControlOptions, DEFAULT_ADDRESS, FrameSource, Keys, Service, ServiceOptions, region_journal_of};
 
 use super::LiveArgs;
 use super::endpoints::endpoint;
@@ -25,7 +26,7 @@ pub(crate) fn live(args: &LiveArgs) -> Result<ExitStatus, Failure> {
     let cell = Cell::load(&args.cell)?;
     cell.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
     let ros2 = ros2_settings(args)?;
-    if let Some(bound_ms) = args.ros2_watchdog {
+    if let Some(bound_ms) = args.ros2.watchdog {
         return run_watchdog(&cell, &ros2, bound_ms, args);
     }
     if args.page.certificate.is_some() && args.page.web.is_none() && args.control.is_none() {
@@ -43,6 +44,7 @@ pub(crate) fn live(args: &LiveArgs) -> Result<ExitStatus, Failure> {
         arbiter: args.arbiter,
         journal: Some(region_journal_of(&args.cell)),
         simulate: args.simulate,
+        frames: args.frames.iter().map(frame_source).collect::<Result<_, _>>()?,
         web: args.page.web.as_deref().map(|text| endpoint("--web", text, &args.page)).transpose()?,
         record: args.record.clone(),
         control: control(args)?,
@@ -72,6 +74,21 @@ pub(crate) fn live(args: &LiveArgs) -> Result<ExitStatus, Failure> {
     Ok(status)
 }
 
+/// A sensor, and where its pictures come from.
+fn frame_source((sensor, source): &(String, String)) -> Result<(String, FrameSource), Failure> {
+    let source = match source.as_str() {
+        "-" => FrameSource::StandardInput,
+        "key" => FrameSource::Key,
+        path if Path::new(path).is_dir() || !Path::new(path).exists() => {
+            let what = format!("--frames {sensor}={path}: no named pipe is there");
+            let instead = format!("mkfifo {path} before it; a folder belongs into the cell file: frames = \"DIR\"");
+            return Err(Failure::Wrong(format!("{what}\n  write: {instead}")));
+        }
+        path => FrameSource::Pipe(path.into()),
+    };
+    Ok((sensor.clone(), source))
+}
+
 fn control(args: &LiveArgs) -> Result<Option<ControlOptions>, Failure> {
     let Some((address, tokens)) = args.control.as_deref().zip(args.tokens.clone()) else { return Ok(None) };
     let endpoint = endpoint("--control", address, &args.page)?;
@@ -97,7 +114,7 @@ fn with_few_threads() {}
 
 fn note_of_ros2(args: &LiveArgs, ros2: &Ros2Settings) {
     if ros2.is_used() {
-        let what = if args.ros2 { "the cell is published, " } else { "" };
+        let what = if args.ros2.publish { "the cell is published, " } else { "" };
         note(format_args!(
             "ROS 2: {what}{} robot(s), domain {}, router {}",
             ros2.robots.len(),

@@ -16,19 +16,21 @@ const SAME_Q: f64 = 1e-3;
 
 /// The regions closed to a robot at one instant.
 #[derive(Debug)]
-pub(super) struct ClosedRegions<'c> {
+pub struct ClosedRegions<'c> {
+    /// The monitor of the robot.
     pub monitor: &'c Monitor,
+    /// The sources that its regions follow, at that instant.
     pub sources: Vec<SourceState>,
 }
 
 impl<'c> ClosedRegions<'c> {
     /// As a constraint of paths that keep this share of each warning zone.
-    pub fn constraint(&self, warning_share: f64) -> Option<RegionConstraint<'c>> {
+    pub(super) fn constraint(&self, warning_share: f64) -> Option<RegionConstraint<'c>> {
         RegionConstraint::new(self.monitor, &self.sources, warning_share, 0.0)
     }
 
     /// Whether all regions are open.
-    pub fn are_none(&self) -> bool {
+    pub(super) fn are_none(&self) -> bool {
         self.constraint(0.0).is_none()
     }
 }
@@ -38,8 +40,10 @@ impl<'c> ClosedRegions<'c> {
 pub(super) struct PathSearch {
     /// End of the search, s.
     pub due_s: f64,
-    /// How long it takes, and may take, s.
+    /// How long it may take, s.
     pub takes_s: f64,
+    /// How long the robot goes on meanwhile, s.
+    pub lead_s: f64,
     /// What sensors had seen at its beginning.
     pub perceived: Vec<PerceivedObstacle>,
 }

@@ -1,6 +1,6 @@
 //! Replanning of a planned move around obstacles that sensors see: in motion without a stop, or from rest.
 
-use std::rc::Rc;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use elbowroom_analysis::CoverCache;
@@ -20,7 +20,7 @@ use elbowroom_robot::RobotId;
 use elbowroom_scene::{Scene, SceneState};
 use elbowroom_spatial::Pose;
 
-use super::path_ahead::PathAhead;
+use super::executed_motion::ExecutedMotion;
 use super::path_search::ClosedRegions;
 use super::perceived_obstacles::PerceivedSolid;
 use super::surroundings::{PlacedScene, Surroundings};
@@ -47,16 +47,36 @@ const ENTRY_DISTANCE: f64 = 1e-6;
 /// The rate at the entry may exceed the programmed override by this much, which is rounding.
 const RATE_ROUNDING: f64 = 1e-3;
 
-/// A new path for the present step, and where the robot enters it.
+/// A new path to the end of a planned move.
 #[derive(Debug)]
-pub(super) struct ReplannedMove {
-    pub play: Rc<Playback>,
-    /// Time of the new path at the entry, s.
-    pub entry_s: f64,
-    /// Rate at the entry.
-    pub rate: f64,
-    /// True if the robot does not stop in between.
-    pub in_motion: bool,
+pub struct NewPath {
+    /// The number of the path that it replaces.
+    replaces: u64,
+    play: Arc<Playback>,
+    /// Whether the robot enters it in motion: without a stop in between.
+    pub(super) in_motion: bool,
+}
+
+impl NewPath {
+    /// Puts a program onto this path. False, and the program stays on its own, if it has begun another one meanwhile, or if its robot
+    /// is not where the new path passes in the direction of its motion, at a rate that the program allows.
+    pub fn enter(&self, clock: &mut ProgramClock) -> bool {
+        if clock.path_number() != self.replaces {
+            return false;
+        }
+        let most = clock.programmed_override();
+        let (here, velocity) = (&clock.point().q, clock.velocity().collect::<Vec<f64>>());
+        let entered = if self.in_motion {
+            entry(&self.play, here, &velocity).filter(|(_, rate)| *rate <= most + RATE_ROUNDING)
+        } else {
+            let is_at_start = norm(&velocity) <= MIN_SPEED && is_near(&self.play.q(0.0), here);
+            is_at_start.then_some((0.0, most))
+        };
+        if let Some((entry_s, rate)) = entered {
+            clock.replace_planned_move(self.play.clone(), entry_s, rate.min(most));
+        }
+        entered.is_some()
+    }
 }
 
 /// What one attempt asks for.
@@ -142,54 +162,44 @@ impl<'a> PathReplanner<'a> {
         }
     }
 
-    /// A new path to the end of the planned move, found until a deadline. In motion the robot must be able to leave the present
-    /// path before `free_until_s` (time in the step).
+    /// A new path to the end of the planned move, found until a deadline. A moving robot continues for `lead_s` (s) meanwhile, and
+    /// must be able to leave the present path before `free_until_s` (time in the step).
     pub fn replan(
         &mut self,
-        clock: &ProgramClock,
-        (ahead, free_until_s): (&PathAhead, f64),
+        motion: &ExecutedMotion,
+        (free_until_s, lead_s): (f64, f64),
         surroundings: &Surroundings,
         (base, solids): (&Scene, &[PerceivedSolid]),
         regions: &ClosedRegions<'_>,
         deadline: Instant,
-    ) -> Option<ReplannedMove> {
-        let (play, speed, planner) = clock.planned_move()?;
-        let goal = play.q(play.duration());
-        let limits = self.limits(speed);
-        let velocity: Vec<f64> = clock.velocity().collect();
-        let speed = norm(&velocity);
-        let is_moving = speed > MIN_SPEED;
-        let here = clock.point().q.clone();
-        let departure = if is_moving {
-            let along: Vec<f64> = velocity.iter().map(|v| v / speed).collect();
+    ) -> Option<NewPath> {
+        let (ahead, goal) = (motion.ahead.as_ref()?, motion.planned.as_ref()?);
+        let limits = self.limits(goal.speed);
+        let speed = norm(&motion.qd);
+        let in_motion = speed > MIN_SPEED;
+        let departure = if in_motion {
+            let along: Vec<f64> = motion.qd.iter().map(|v| v / speed).collect();
             let length = acceleration_distance(speed, &along, &limits);
-            let (passed_s, from) = ahead.straight_ahead(&along, LEAVE_AFTER * length)?;
+            let (passed_s, from) = ahead.straight_ahead(&along, LEAVE_AFTER * length + lead_s * speed)?;
             if passed_s >= free_until_s {
                 return None;
             }
-            let behind = here.iter().zip(&along).map(|(q, a)| q - a * length).collect();
+            let behind = motion.q.iter().zip(&along).map(|(q, a)| q - a * length).collect();
             Departure { before: vec![behind], from }
         } else {
-            Departure { before: Vec::new(), from: here.clone() }
+            Departure { before: Vec::new(), from: motion.q.clone() }
         };
         let mut placed = surroundings.everything(base, solids).ok()?;
         placed.state.set_q(&placed.scene, self.robot, &departure.from).ok()?;
         let boxes: Vec<_> = solids.iter().flat_map(|solid| solid.boxes.iter().cloned()).collect();
-        let motion = attempts(is_moving, regions.are_none(), deadline).find_map(|attempt| {
+        let found = attempts(in_motion, regions.are_none(), deadline).find_map(|attempt| {
             let constraint = regions.constraint(attempt.warning_share);
-            self.search((&placed, &boxes), &departure, &goal, (planner, &limits), (&attempt.settings, constraint))
+            let by = (goal.planner, &limits);
+            self.search((&placed, &boxes), &departure, &goal.q, by, (&attempt.settings, constraint))
         })?;
-        if Instant::now() > deadline {
-            return None;
-        }
-        let rows = motion.rows.into_iter().map(|(t_s, q)| TrajectoryRow { t_s, q }).collect();
-        let play = Rc::new(Playback::new(rows, &self.motion_bounds));
-        if !is_moving {
-            return Some(ReplannedMove { play, entry_s: 0.0, rate: clock.programmed_override(), in_motion: false });
-        }
-        let (entry_s, rate) = entry(&play, &here, &velocity)?;
-        let most = clock.programmed_override();
-        (rate <= most + RATE_ROUNDING).then(|| ReplannedMove { play, entry_s, rate: rate.min(most), in_motion: true })
+        let rows = found.rows.into_iter().map(|(t_s, q)| TrajectoryRow { t_s, q }).collect();
+        let play = Arc::new(Playback::new(rows, &self.motion_bounds));
+        (Instant::now() <= deadline).then_some(NewPath { replaces: motion.path, play, in_motion })
     }
 
     fn limits(&self, speed: f64) -> KinematicLimits {
@@ -266,10 +276,13 @@ fn entry(play: &Playback, here: &[f64], velocity: &[f64]) -> Option<(f64, f64)> 
     };
     let entry_s = first_root(passed, play.duration())?;
     let point = play.at(entry_s);
-    let is_near = point.q.iter().zip(here).all(|(a, b)| (a - b).abs() <= ENTRY_DISTANCE);
     let there = norm(&point.dq);
     let ahead: f64 = point.dq.iter().zip(velocity).map(|(a, b)| a * b).sum();
-    (is_near && there > 0.0 && ahead > 0.0).then(|| (entry_s, speed / there))
+    (is_near(&point.q, here) && there > 0.0 && ahead > 0.0).then(|| (entry_s, speed / there))
+}
+
+fn is_near(a: &[f64], b: &[f64]) -> bool {
+    a.iter().zip(b).all(|(a, b)| (a - b).abs() <= ENTRY_DISTANCE)
 }
 
 fn norm(v: &[f64]) -> f64 {

@@ -9,12 +9,14 @@ use super::perceived_obstacles::{PerceivedObstacle, PerceivedSolid};
 
 /// Robots, objects and obstacles at one instant.
 #[derive(Debug)]
-pub(super) struct Surroundings {
+pub struct Surroundings {
+    /// The robots.
     pub states: Vec<ChainState>,
     /// The objects of the cell, where they are.
     pub objects: Vec<Object>,
     /// Per object: how a robot carries it.
     pub attachments: Vec<Option<Attachment>>,
+    /// What sensors saw.
     pub perceived: Vec<PerceivedObstacle>,
 }
 
@@ -38,7 +40,7 @@ impl Surroundings {
     ///
     /// # Errors
     /// Solids or joint values that the scene refuses.
-    pub fn obstacles_only(
+    pub(super) fn obstacles_only(
         &self,
         base: &Scene,
         robot: RobotId,
@@ -51,7 +53,7 @@ impl Surroundings {
     ///
     /// # Errors
     /// As [`obstacles_only`](Self::obstacles_only).
-    pub fn everything(&self, base: &Scene, solids: &[PerceivedSolid]) -> Result<PlacedScene, SceneError> {
+    pub(super) fn everything(&self, base: &Scene, solids: &[PerceivedSolid]) -> Result<PlacedScene, SceneError> {
         self.scene(base, |_| true, solids)
     }
 

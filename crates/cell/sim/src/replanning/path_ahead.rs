@@ -1,27 +1,25 @@
 //! The rest of a robot's step as a polyline in joint space.
 
-use crate::motion::ProgramClock;
-
-/// Time (s) between samples of the path.
-const SAMPLE_S: f64 = 0.01;
+/// Time (s) between samples of a path.
+pub(crate) const SAMPLE_S: f64 = 0.01;
 /// Largest distance (rad or m, Euclidean) from a sample to the polyline.
 const CHORD: f64 = 5e-4;
 /// Samples within this distance (rad or m) of a line are on it: above rounding, below the deviation of a rounded corner.
 const ON_LINE: f64 = 1e-7;
 
 /// The path from the present to the end of a step.
-#[derive(Debug)]
-pub(super) struct PathAhead {
+#[derive(Debug, Clone)]
+pub struct PathAhead {
     /// Times in the step (s, at override 1) and joint values.
-    pub samples: Vec<(f64, Vec<f64>)>,
+    pub(super) samples: Vec<(f64, Vec<f64>)>,
     /// Indices of the samples that are corners of the polyline; the first and the last are.
     corners: Vec<usize>,
 }
 
 impl PathAhead {
-    /// Of the present step; `None` if it has no motion.
-    pub fn of(clock: &ProgramClock) -> Option<Self> {
-        let samples = clock.path_ahead(SAMPLE_S);
+    /// Of samples that are [`SAMPLE_S`] apart, from the present on: times in the step (s, at override 1) and joint values (rad or
+    /// m); `None` without any.
+    pub(crate) fn of(samples: Vec<(f64, Vec<f64>)>) -> Option<Self> {
         let last = samples.len().checked_sub(1)?;
         let mut corners = vec![0];
         while let Some(&start) = corners.last().filter(|&&start| start < last) {
@@ -31,12 +29,12 @@ impl PathAhead {
     }
 
     /// The corners of the polyline.
-    pub fn polyline(&self) -> Vec<&[f64]> {
+    pub(super) fn polyline(&self) -> Vec<&[f64]> {
         self.corners.iter().map(|i| &self.samples[*i].1[..]).collect()
     }
 
     /// The time in the step (s) of the last sample before a share of the segment that ends at a corner.
-    pub fn time_before(&self, corner: usize, share: f64) -> f64 {
+    pub(super) fn time_before(&self, corner: usize, share: f64) -> f64 {
         let Some(first) = corner.checked_sub(1).map(|c| self.corners[c]) else { return self.samples[0].0 };
         let last = self.corners[corner];
         let (from, to) = (&self.samples[first].1, &self.samples[last].1);
@@ -45,7 +43,7 @@ impl PathAhead {
     }
 
     /// The time in the step (s) and the joint values `length` (rad or m) ahead, where the path is straight up to there.
-    pub fn straight_ahead(&self, along: &[f64], length: f64) -> Option<(f64, Vec<f64>)> {
+    pub(super) fn straight_ahead(&self, along: &[f64], length: f64) -> Option<(f64, Vec<f64>)> {
         let here = &self.samples.first()?.1;
         let beyond = self.samples.iter().find(|(_, q)| distance(q, here) >= length)?;
         let is_on_line = |q: &[f64]| {
