@@ -25,12 +25,14 @@ use elbowroom_testkit::network::free_address;
 /// The first joint at the end of the move, rad.
 const GOAL: f64 = -60.0 * std::f64::consts::PI / 180.0;
 
+/// Joint values and when they arrived.
+type HeardJoints = Arc<Mutex<Vec<(Instant, Vec<f64>)>>>;
+
 /// A live cell in a process, and what its robot does.
 struct LiveCell {
     process: LiveProcess,
     events: Arc<Mutex<Vec<String>>>,
-    /// Joint values and when they arrived.
-    joints: Arc<Mutex<Vec<(Instant, Vec<f64>)>>>,
+    joints: HeardJoints,
     network: ZenohNetwork,
     keys: Keys,
     _subscription: Subscription,
@@ -49,7 +51,7 @@ impl LiveCell {
         let settings = ZenohSettings { connect: Some(address), ..ZenohSettings::default() };
         let network = ZenohNetwork::open(&settings).unwrap();
         let keys = Keys::new(&Cell::load(dir.join("cell.toml")).unwrap().name);
-        let joints: Arc<Mutex<Vec<(Instant, Vec<f64>)>>> = Arc::default();
+        let joints = HeardJoints::default();
         let heard = joints.clone();
         let handler = Box::new(move |bytes: &[u8]| {
             let mut state = JointState::default();
