@@ -206,9 +206,9 @@ fn hysteresis() -> Result<Plot, String> {
         }
         points
     };
-    let coming = sweep(speed, &|d| d < 0.242);
-    let going = sweep(-speed, &|d| d > 0.26);
-    let curves = vec![curve("coming", 0, Dash::Solid, coming), curve("going", 1, Dash::Dashed, going)];
+    let approaching = sweep(speed, &|d| d < 0.242);
+    let leaving = sweep(-speed, &|d| d > 0.26);
+    let curves = vec![curve("approaching", 0, Dash::Solid, approaching), curve("leaving", 1, Dash::Dashed, leaving)];
     let y = Axis { title: "warning output (0 or 1)", from: 0.0, to: 1.0, step: 1.0 };
     Ok(Plot { title: "Hysteresis of outputs: δ = 250 mm, h = 5 mm", x: distance(240.0, 262.0, 5.0), y, curves })
 }
