@@ -1,4 +1,4 @@
-//! Sphere covers of links, kept in files from one run to the next.
+//! A cache of sphere covers of links, in files.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,34 +10,38 @@ use elbowroom_spatial::{Pose, Vec3};
 use elbowroom_validity::{Ball, CoverSource, SphereCover, describe_cover};
 use sha2::{Digest, Sha256};
 
-/// Names the directory, or switches the cache off.
+/// Environment variable that names the directory, or switches the cache off.
 const VARIABLE: &str = "ELBOWROOM_CACHE";
 /// First bytes of a file.
 const FORMAT: &[u8; 16] = b"elbowroom cover\x01";
-/// Covers that are built faster than this are not kept.
+/// Build time below which a cover is not kept.
 const WORTH_KEEPING: Duration = Duration::from_millis(10);
 const HASH_BYTES: usize = 32;
-/// Centre and radius.
+/// Size of a sphere, bytes: centre and radius.
 const BALL_BYTES: usize = 32;
 
-/// Covers in files named by the hash of what they depend on. A file that is damaged, foreign or missing is written again, and one
-/// that cannot be written is done without: the covers are the same with and without the cache, and deleting it is safe.
+/// Cache of sphere covers in files, each named by the hash of the cover's input.
 ///
-/// A file has the name and version of the format, the hash of the shapes, the numbers of outer and inner spheres, the spheres, and a hash of all before.
+/// A damaged, foreign or missing file is written again; a file that cannot be written is omitted. The covers are the
+/// same with and without the cache, and deleting it is safe.
+///
+/// A file contains the name and version of the format, the hash of the shapes, the numbers of outer and inner spheres,
+/// the spheres, and a hash of everything before.
 #[derive(Debug, Clone)]
 pub struct CoverCache {
-    /// `None`: every cover is built.
+    /// Directory of the files; `None`: every cover is built.
     directory: Option<PathBuf>,
 }
 
 impl CoverCache {
-    /// A cache in a directory, which is made when the first cover is kept.
+    /// Creates a cache in a directory, which is created when the first cover is kept.
     pub fn in_directory(directory: &Path) -> Self {
         Self { directory: Some(directory.to_owned()) }
     }
 
     /// The cache of the user: `$ELBOWROOM_CACHE`, or `elbowroom` in `$XDG_CACHE_HOME`, `~/.cache` or `%LOCALAPPDATA%`.
-    /// `ELBOWROOM_CACHE=off` switches it off; so does a user without any of these directories.
+    ///
+    /// It is off if `ELBOWROOM_CACHE=off`, or if the user has none of these directories.
     pub fn of_user() -> Self {
         Self { directory: user_directory(|name| std::env::var_os(name)).map(|directory| directory.join("covers")) }
     }
@@ -49,7 +53,7 @@ impl CoverCache {
     fn save(&self, hash: [u8; HASH_BYTES], cover: &SphereCover) {
         let Some(file) = self.file(hash) else { return };
         let Some(directory) = file.parent() else { return };
-        // If it cannot be written nothing is lost but time: the next run builds the cover again.
+        // A failed write costs only time: the next run builds the cover again.
         let _ = fs::create_dir_all(directory)
             .and_then(|()| WholeFile::write(&file, |out| out.write_all(&encode(cover, hash))));
     }
@@ -81,8 +85,9 @@ impl CoverSource for CoverCache {
     }
 }
 
-/// The directory for all caches, by the variables of the environment. Relative paths do not count (XDG Base Directory
-/// Specification).
+/// The directory for all caches, from the environment variables.
+///
+/// Relative paths count only in `ELBOWROOM_CACHE` (XDG Base Directory Specification).
 fn user_directory(variable: impl Fn(&str) -> Option<std::ffi::OsString>) -> Option<PathBuf> {
     let path = |name: &str| variable(name).map(PathBuf::from).filter(|path| path.is_absolute());
     match variable(VARIABLE) {
@@ -108,7 +113,7 @@ fn encode(cover: &SphereCover, hash: [u8; HASH_BYTES]) -> Vec<u8> {
     bytes
 }
 
-/// `None` for bytes that [`encode`] did not give for these shapes.
+/// Decodes the bytes of [`encode`] for these shapes; `None` for other bytes.
 fn decode(bytes: &[u8], hash: [u8; HASH_BYTES]) -> Option<SphereCover> {
     let (content, of_content) = bytes.split_last_chunk::<HASH_BYTES>()?;
     if Sha256::digest(content).as_slice() != of_content {

@@ -1,8 +1,9 @@
 //! Analysis of a cell without a run: `query`, `map` and `plan`; sets of planning problems.
 //!
 //! [`query`] evaluates collision, distance and tolerance for many joint states, [`map`] computes the blocked cells of a
-//! robot's joint space, [`plan`] finds a collision-free path and times it. All use the cell in its initial state. [`problems`]
-//! solves the planning problems of a file; [`watch`] says what a camera sees.
+//! robot's joint space, [`plan`] finds a collision-free path and times it. All use the cell in its initial state.
+//! [`problems`] solves the planning problems of a file; [`watch`] detects the obstacles that a camera or a source of
+//! point clouds sees.
 //!
 //! ```
 //! use elbowroom_analysis::query::{QueryStates, Level, QueryKind, evaluate};

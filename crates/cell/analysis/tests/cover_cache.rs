@@ -1,4 +1,4 @@
-//! The cache of covers: the same covers with and without it, whatever is in its files.
+//! The cache of covers: the same covers with and without it, for any contents of its files.
 
 use elbowroom_analysis::CoverCache;
 use elbowroom_proximity::{Cuboid, Cylinder, Shape};
@@ -27,7 +27,7 @@ fn covers_come_back_and_damaged_files_are_written_again() {
         assert_eq!(std::fs::read(file).unwrap(), bytes, "written again");
     }
     assert_eq!(cache.cover(&shapes, 0.003).as_ref(), Some(&built), "from the file");
-    // Another slack, another shape, another pose: other covers.
+    // Another slack, shape or pose gives other covers.
     let other = Shape::Cylinder(Cylinder { half_length: 0.2, radius: 0.1 });
     assert_eq!(cache.cover(&shapes, 0.004), SphereCover::new(&shapes, 0.004));
     let moved = [(&shape, Pose::from_translation(Vec3::X))];

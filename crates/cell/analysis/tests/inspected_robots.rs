@@ -1,4 +1,4 @@
-//! All published robots, where the data is available: they load, have no suspect units, and exact and automatic levels
+//! All published robots, if the data is available: they load, have no suspect units, and exact and automatic levels
 //! agree.
 
 use std::path::PathBuf;

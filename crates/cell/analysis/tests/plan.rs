@@ -1,4 +1,4 @@
-//! Paths in cells: obstacles, and what belongs to the robot.
+//! Paths in cells: obstacles, and the parts that belong to the robot.
 
 use std::time::Duration;
 
@@ -18,7 +18,7 @@ fn request(robot: &str, from: &[f64], to: &[f64]) -> PathRequest {
     PathRequest { robot: Some(robot.into()), from: Some(from.into()), to: to.into(), options, ..PathRequest::default() }
 }
 
-/// Checks every row and some points in between by exact geometry; and the speeds between rows.
+/// Checks every row and some points in between by exact geometry, and the speeds between rows.
 fn check(cell: &Cell, answer: &PathAnswer, request: &PathRequest) {
     let robot = cell.robots.iter().position(|r| Some(&r.name) == request.robot.as_ref()).unwrap();
     let scene = QueryModel::of_cell(cell).scene(OutOfReachProofs::Omit).unwrap();

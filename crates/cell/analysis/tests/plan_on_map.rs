@@ -1,4 +1,4 @@
-//! Paths through the free cells of a map: what they are, and why there is none.
+//! Paths through the free cells of a map, and the reasons if no path is found.
 
 use elbowroom_analysis::map::{MapRequest, map};
 use elbowroom_analysis::plan::{PathAnswer, PathGoal, PathPlanner, PathRequest, plan};
@@ -67,7 +67,7 @@ fn joints_that_are_not_in_the_map_stay_where_they_are() {
     assert!(answer.motion.expect("a path").rows.iter().all(|(_, q)| q[3] == 0.4));
     let moved = asked(&cell, &with(START, 0.4), &with(GOAL, 0.0)).unwrap_err().to_string();
     assert!(moved.contains("`joint_4`") && moved.contains("planner rrt-connect"), "{moved}");
-    // The map is that of the wrist as it is: a finger that would touch the shelf, turned down, is held level.
+    // The map is valid for the present wrist: a finger that would touch the shelf if it were turned down is held level.
     let finger =
         wrist.replace("sphere = { radius = 30 }", "capsule = { from = [0, 0, 0], to = [200, 0, 0], radius = 20 }");
     let shelf = "[object.shelf]\nshape = \"box\"\nat = [0, 0, 200]\nsize = [3000, 3000, 20]\n";
@@ -84,7 +84,8 @@ fn why_there_is_no_path_is_said() {
         assert!(!answer.found && answer.motion.is_none());
         answer.reason.expect("a reason")
     };
-    // From beside the post towards it: first in free cells, then near it in a blocked one that is left for a free one, then in it.
+    // From beside the post towards it: first in free cells, then near it in a blocked cell that is left for a free one,
+    // then in it.
     let cell = parse(&format!("{ARM}[map.arm]\nstep = 10\n"));
     let map = map(&cell, &MapRequest::default()).unwrap();
     let goals: Vec<_> = (0..100).map(|n| [1.0 - 0.01 * f64::from(n), 0.3, -0.6]).collect();
@@ -94,7 +95,7 @@ fn why_there_is_no_path_is_said() {
     let is_blocked = |goal: &&[f64; 3]| map.obstacles[0].blocks.is_blocked(&goal[..]);
     assert!(goals[..hit].iter().filter(is_blocked).count() > 0 && near == 0, "{near} of {hit}");
     assert!(answers[hit].as_ref().unwrap_err().to_string().contains("`post` are in collision"));
-    // Where no free cell is near.
+    // Without a free cell near the end.
     let coarse = parse(&format!("{ARM}[map.arm]\nstep = 45\n"));
     let reason = asked(&coarse, &START, &goals[hit - 1]).unwrap().reason.expect("no path");
     assert!(reason.contains("is in a blocked cell") && reason.contains("[map.arm]"), "{reason}");
@@ -128,7 +129,7 @@ fn what_a_map_does_not_know_is_tested_afterwards() {
                  links = [{ sphere = { radius = 300 } }]\nbase = { at = [800, 0, 400], rpy = [0, 0, 0] }\n";
     let hit = refused(other);
     assert!(hit.contains("post/") && hit.contains("arm/"), "{hit}");
-    // What concerns others does not concern the path: a robot that stands in an object.
+    // A robot inside an object does not affect the path of another robot.
     let apart = "[robot.post]\ndh = [{ kind = \"prismatic\", min = 0, max = 100, speed = 100 }]\n\
                  links = [{ sphere = { radius = 300 } }]\nbase = { at = [5000, 0, 400], rpy = [0, 0, 0] }\n\
                  [object.bench]\nshape = \"box\"\nat = [5000, 0, 400]\nsize = [100, 100, 100]\n";

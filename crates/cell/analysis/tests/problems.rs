@@ -1,4 +1,4 @@
-//! Sets of planning problems: what a problem becomes in the scene, and its solution.
+//! Sets of planning problems: their scenes, and their solutions.
 
 use std::path::Path;
 
@@ -56,7 +56,7 @@ fn model_of(urdf: &str, problems: &[PlanningProblem]) -> Result<ProblemModel, Fo
     ProblemModel::new(&path, robot, Path::new("p.json"), problems)
 }
 
-/// Results with the last waypoint's values, of which there are none without a path.
+/// Results with the values of the last waypoint; empty without a path.
 fn solve(problems: &[Value]) -> (Vec<(ProblemResult, Vec<f64>)>, Vec<Warning>) {
     let problems = parse(problems);
     let model = model_of(URDF, &problems).unwrap_or_else(|e| panic!("{e}"));
@@ -190,7 +190,7 @@ fn joints_that_are_not_planned_are_held_even_beyond_their_limits() {
     for (warning, expected) in warnings.iter().zip(["`wheel`", "`lift` is held at 0.15", "no value for `lift`"]) {
         assert!(warning.contains(expected), "{warnings:?}");
     }
-    // A joint that another problem plans has its limits there.
+    // A joint that another problem plans has the limits of that problem there.
     let mut planned = problem(&json!([]), -1.0, 1.0);
     planned["request"]["goal_constraints"][0]["joint_constraints"]
         .as_array_mut()
@@ -235,7 +235,7 @@ fn goals_of_other_robots_are_refused() {
     );
 }
 
-/// The first problems of each set are solved; a checker of its own finds the rows of the paths free.
+/// Solves the first problems of each set; a separate checker finds the rows of the paths free.
 fn first_of_each_set(urdf: &Path, srdf: &Path, file: &Path, per_set: usize, seed: u64) {
     let all = problem_set::read(file).unwrap_or_else(|e| panic!("{e}")).problems;
     let mut problems: Vec<PlanningProblem> = Vec::new();

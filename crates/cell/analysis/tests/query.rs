@@ -1,4 +1,4 @@
-//! Results of `query` against brute force: every pair, every solid, at its pose.
+//! Results of `query` against brute force: every pair and every solid, at its pose.
 
 use std::fmt::Write as _;
 

@@ -36,7 +36,7 @@ fn paths_lead_around_permanent_forbidden_regions_and_through_others() {
     let cell = parse(&format!("{HEAD}{GANTRY}{WALL}"));
     let wide = plan(&cell, &PathRequest { options: wide, ..request.clone() }).unwrap().motion.unwrap();
     assert!(nearest(&wide.rows) > 0.1);
-    // Temporary regions are not active yet; monitored ones forbid nothing.
+    // Temporary regions are not active yet; monitored regions do not forbid entry.
     for line in ["life = \"temporary\"", "kind = \"monitored\""] {
         let answer = planned(&format!("{WALL}{line}\n"));
         assert!(answer.motion.unwrap().waypoints.len() == 2 && answer.regions.is_empty(), "{line}");

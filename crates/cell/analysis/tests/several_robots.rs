@@ -50,7 +50,7 @@ fn assert_free_together(cell: &Cell, answer: &SeveralPathsAnswer, robots: [Robot
     }
 }
 
-/// The least distance of a robot from its regions at the rows, m.
+/// The smallest distance of a robot from its regions at the rows, m.
 fn least_distance(cell: &Cell, answer: &SeveralPathsAnswer) -> f64 {
     let constraints = RegionConstraints::new(cell, cell.robots.iter().map(|r| &r.start[..]), 0.0).unwrap();
     let mut constraint = constraints.of_robot(RobotId(0)).expect("a region is closed to the left arm");
@@ -81,8 +81,8 @@ fn two_arms_move_at_the_same_time_and_stay_out_of_regions() {
     );
 }
 
-/// A wrist ball overlaps the forearm in every state: links that always touch where they are joined stop no motion, as in all
-/// verbs.
+/// A wrist ball overlaps the forearm in every state. Links that always touch where they are joined stop no motion, as
+/// in all commands.
 #[test]
 fn links_that_always_touch_at_a_joint_do_not_stop_the_robots() {
     let ball = "{ min = -170, max = 170, speed = 90 }";
@@ -135,7 +135,7 @@ fn columns_have_the_names_of_robots_and_joints() {
 #[test]
 fn a_goal_that_another_robot_does_not_leave_is_no_path() {
     let cell = parse(&format!("{HEAD}{ARMS}"));
-    // Both stretched to the middle.
+    // Both arms stretched to the middle.
     let answer = plan_several(&cell, &request(&[("left", [0.0, 0.0]), ("right", [0.0, 0.0])])).unwrap();
     assert!(!answer.found && answer.rows.is_empty() && answer.robots.is_empty());
     let reason = answer.reason.unwrap();

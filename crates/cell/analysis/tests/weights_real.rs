@@ -1,5 +1,7 @@
-//! Default weights, from size and reach alone, on real robots where the data is available: fewer pairs are tested until the first
-//! contact than in the order of the file, with the same answers. Weights of a file of pairs override them.
+//! Default weights, from size and reach alone, on real robots, if the data is available.
+//!
+//! Fewer pairs are tested until the first contact than in the order of the file, with the same answers. Weights of a
+//! file of pairs override the default weights.
 
 use elbowroom_cell::{Cell, OutOfReachProofs, PairFile, QueryModel};
 use elbowroom_robot::RobotId;
@@ -28,7 +30,7 @@ fn cell() -> Option<Cell> {
     Some(Cell::parse(data.join("cell.toml"), &text.concat()).unwrap())
 }
 
-/// The first contact of a state, and how many pairs were tested exactly until then; without anything learned before.
+/// The first contact of a state, and the number of pairs that were tested exactly until then, without learned weights.
 fn first_contact(scene: &Scene, state: &SceneState) -> (Option<PairContact>, u64) {
     let options = CheckerOptions { level: Level::L3, ..CheckerOptions::default() };
     let mut checker = Checker::new(scene, options);

@@ -18,7 +18,7 @@ use crate::{CellSensor, CellTool, Encoder, MovingObject, PoseTrack, Program};
 /// flange's face.
 const ON_SURFACE_M: f64 = 1e-6;
 
-/// The contents of a cell file. Read by [`Cell::load`].
+/// The contents of a cell file, read by [`Cell::load`].
 #[derive(Debug, Clone)]
 pub struct Cell {
     /// The file.
@@ -31,15 +31,15 @@ pub struct Cell {
     pub tick_s: f64,
     /// Longest simulated time of a run, s.
     pub max_s: f64,
-    /// In file order.
+    /// Robots, in file order.
     pub robots: Vec<CellRobot>,
-    /// In file order, at their initial poses.
+    /// Objects in file order, at their initial poses.
     pub objects: Vec<Object>,
     /// The moving objects, in the same order.
     pub moving_objects: Vec<MovingObject>,
-    /// In file order.
+    /// Regions, in file order.
     pub regions: Vec<CellRegion>,
-    /// In file order.
+    /// Encoders, in file order.
     pub encoders: Vec<Encoder>,
     /// Pose files that regions follow.
     pub pose_tracks: Vec<PoseTrack>,
@@ -53,21 +53,21 @@ pub struct Cell {
     pub sensors: Vec<CellSensor>,
     /// Joint-space maps.
     pub maps: Vec<MapSpec>,
-    /// What the file of pairs says. [`Self::robots`] are as in their models.
+    /// Rules of the file of pairs. [`Self::robots`] are as in their models.
     pub pair_rules: PairRules,
-    /// Links that always touch where they are joined: see [`Self::all_pair_rules`].
+    /// Rules for links that always touch where they are joined; see [`Self::all_pair_rules`].
     pub joint_contacts: PairRules,
     /// SHA-256 of the monitors' configurations, hex.
     pub checksum: String,
     /// The last seal; `None` if the cell is not sealed.
     pub seal: Option<Seal>,
-    /// Warnings about the file, none of them fatal.
+    /// Non-fatal warnings about the file.
     pub warnings: Vec<Warning>,
 }
 
 impl Cell {
-    /// The rules of all verbs: what the file of pairs says, and before it
-    /// [links that always touch where they are joined](elbowroom_robot::joint_contacts).
+    /// Pair rules of all commands: [links that always touch where they are joined](elbowroom_robot::joint_contacts),
+    /// then the rules of the file of pairs, which take precedence.
     pub fn all_pair_rules(&self) -> PairRules {
         let mut rules = self.joint_contacts.clone();
         rules.extend(self.pair_rules.clone());
@@ -86,22 +86,22 @@ pub struct AvoidanceSpec {
     pub objects: Vec<ObjectId>,
     /// The evaded robots; the motion of all others is known to its program.
     pub robots: Vec<RobotId>,
-    /// Whether another path is planned where an obstacle blocks the path.
+    /// Whether another path is planned if an obstacle blocks the path.
     pub replan: bool,
     /// Standard deviation of each coordinate of an observed position, m.
     pub noise_m: f64,
     /// Age of an observation when it arrives, s.
     pub delay_s: f64,
-    /// Time from the beginning of a plan until its path can be followed, s.
+    /// Time from the start of planning until the path can be followed, s.
     pub plan_s: f64,
 }
 
 /// The units of a cell file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Units {
-    /// Of lengths.
+    /// Unit of lengths.
     pub length: LengthUnit,
-    /// Of angles.
+    /// Unit of angles.
     pub angle: AngleUnit,
 }
 
@@ -122,8 +122,10 @@ pub struct CellRobot {
     pub tcp_in_flange: Pose,
     /// The tool's collider, in the flange link.
     pub tool: Option<Collider>,
-    /// The named tools, in file order; empty for a robot with one `tool`. Where there are any, `flange` is the link of the
-    /// active one and `tool` is empty. The colliders of mounted tools are in `robot`.
+    /// The named tools, in file order; empty for a robot with one `tool`.
+    ///
+    /// With named tools, `flange` is the link of the active one and `tool` is empty. The colliders of mounted tools are
+    /// in `robot`.
     pub tools: Vec<CellTool>,
     /// The load's collider, in the flange link.
     pub load: Option<Collider>,
@@ -135,11 +137,11 @@ pub struct CellRobot {
     pub states: Vec<(String, Vec<f64>)>,
     /// How links become guarded volumes.
     pub volumes: VolumeModel,
-    /// Per value of `q`.
+    /// Motion limits per value of `q`.
     pub limits: Vec<JointLimits>,
 }
 
-/// Motion limits of a joint. Per second, per second² and per second³, in rad or m.
+/// Motion limits of a joint, in rad or m per s, s² and s³.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointLimits {
     /// Largest speed.
@@ -194,9 +196,9 @@ pub struct CellLaws {
     pub laws: Laws,
     /// Time from the monitor's answer to the first deceleration, s: `reaction_ms`, or one tick.
     pub reaction_s: f64,
-    /// Reaction time (s) of the stopping-distance law, where that is on.
+    /// Reaction time (s) of the stopping-distance law; `None` if the law is off.
     pub stopping_reaction_s: Option<f64>,
-    /// Reaction time (s) of robots in the simulation: the one in the file, 0 if it gives none.
+    /// Reaction time (s) of robots in the simulation, from the file; 0 if the file states none.
     pub reaction_delay_s: f64,
 }
 
@@ -205,9 +207,9 @@ pub struct CellLaws {
 pub struct MapSpec {
     /// The robot.
     pub robot: RobotId,
-    /// Line of its table; that of the robot where there is none.
+    /// Line of its table, or of the robot if the map has no table.
     pub line: usize,
-    /// Indices in `q`.
+    /// Indices of its joints in `q`.
     pub joints: Vec<usize>,
     /// Width of a cell per joint, rad or m.
     pub step: Vec<f64>,
@@ -216,8 +218,8 @@ pub struct MapSpec {
 }
 
 impl MapSpec {
-    /// Defaults for a robot: its first three joints, 2 degrees (0.02 m for prismatic joints), all values of the other
-    /// joints.
+    /// Default settings for a robot: its first three joints, cells of 2 degrees (0.02 m for prismatic joints), all
+    /// values of the other joints.
     pub fn of(id: RobotId, robot: &CellRobot) -> Self {
         let joints: Vec<usize> = (0..robot.robot.chain.dof().min(3)).collect();
         let step = joints.iter().map(|&j| Self::default_step(robot, j)).collect();
@@ -237,7 +239,7 @@ impl CellRobot {
         chain.joints()[chain.active_joints()[joint].0].kind == elbowroom_kinematics::JointKind::Prismatic
     }
 
-    /// The configuration of a name, rad or m.
+    /// The configuration of this name, rad or m.
     pub fn state(&self, name: &str) -> Option<&[f64]> {
         self.states.iter().find(|(known, _)| known == name).map(|(_, q)| &q[..])
     }
@@ -254,8 +256,9 @@ impl CellRobot {
         chain.active_joints().iter().map(|j| chain.joints()[j.0].name.clone()).collect()
     }
 
-    /// Guarded volumes: the TCP, tool and load, and the links. The TCP is the first. Of a robot with named tools: their TCPs, the
-    /// tools, and the links.
+    /// Guarded volumes: the TCP first, then tool and load, then the links.
+    ///
+    /// For a robot with named tools: their TCPs, the tools, and the links.
     pub fn guarded_volumes(&self) -> Vec<Volume> {
         if !self.tools.is_empty() {
             return self.volumes_of_tools();
@@ -292,7 +295,7 @@ impl CellRobot {
         let tcp = |t: &CellTool| {
             let name = format!("{} tcp", t.name);
             let mut tcp = Volume { name, presence: self.presence(t), ..Volume::tcp(t.link, t.tcp_in_link.translation) };
-            // Another tool may not be there.
+            // Another tool may be unmounted.
             let solids: Vec<Volume> = tool(t).into_iter().chain(links.iter().cloned()).collect();
             if !self.encloses(&solids, &tcp) {
                 tcp.part = Part::TcpOutside;

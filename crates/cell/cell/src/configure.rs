@@ -19,29 +19,30 @@ use crate::{Cell, CellRegionId, CellRobot, Follow};
 /// Ticks without an answer after which a controller stops by itself.
 const MISSED_ANSWERS: f64 = 2.0;
 
-/// Configuration of one robot's monitor, and how its indices relate to the cell's.
+/// Configuration of one robot's monitor, with the mapping of its indices to the cell's indices.
 #[derive(Debug, Clone)]
 pub struct MonitorSetup {
-    /// For [`Monitor::new`].
+    /// Configuration for [`Monitor::new`].
     pub configuration: Configuration,
-    /// Per region of the configuration, that of the cell.
+    /// Region of the cell, per region of the configuration.
     pub regions: Vec<CellRegionId>,
-    /// Per source of the configuration, what it follows.
+    /// Followed source, per source of the configuration.
     pub sources: Vec<Follow>,
     /// The objects that the robot's program grips, and their volumes.
     pub gripped: Vec<(ObjectId, VolumeId)>,
 }
 
 impl MonitorSetup {
-    /// The volumes of a changed tool: those that are attached and detached with its link.
+    /// Volumes of an exchanged tool, which are attached and detached with its link.
     pub fn tool_volumes(&self, link: LinkId) -> impl Iterator<Item = (VolumeId, &Volume)> {
         let volumes = self.configuration.volumes().iter().enumerate();
         let is_of_tool = move |v: &Volume| v.link == link && v.presence != Presence::Always && v.part != Part::Load;
         volumes.filter(move |(_, v)| is_of_tool(v)).map(|(i, v)| (VolumeId(i), v))
     }
 
-    /// The volume of an object that this link grips, and the pose in the link at which a monitor attaches it where the object is
-    /// at `object_in_link`. `None` if the program does not grip it with this link.
+    /// The volume of an object that this link grips, and the pose in the link at which a monitor attaches it.
+    ///
+    /// `object_in_link` is the pose of the object. `None` if the program does not grip the object with this link.
     pub fn gripped_volume(&self, object: ObjectId, link: LinkId, object_in_link: &Pose) -> Option<(VolumeId, Pose)> {
         let volumes = self.configuration.volumes();
         let of_link = |(o, v): &&(ObjectId, VolumeId)| *o == object && volumes[v.0].link == link;
@@ -60,7 +61,7 @@ pub fn setups(cell: &Cell) -> Result<Vec<MonitorSetup>, FormatError> {
     (0..cell.robots.len()).map(setup).collect()
 }
 
-/// As [`setups`], where objects are attached to robots all the time: for planning.
+/// Like [`setups`], with objects permanently attached to robots, for planning.
 ///
 /// # Errors
 /// As for [`setups`].
@@ -70,7 +71,7 @@ pub fn setups_holding(cell: &Cell, held: &[(ObjectId, Attachment)]) -> Result<Ve
     (0..cell.robots.len()).map(setup).collect()
 }
 
-/// The monitors, connected by a zone arbiter where there are exchange regions.
+/// The monitors, connected by a zone arbiter if the cell has exchange regions.
 ///
 /// # Errors
 /// As for [`setups`].
@@ -94,8 +95,11 @@ pub fn monitors_with(
     setups.iter().enumerate().map(monitor).collect()
 }
 
-/// The arbiter of the cell's exchange regions, its robots in the order of the cell; `None` if there is no such
-/// region. Regions whose warning zones overlap, or that move, share a slot, whose name lists theirs.
+/// The arbiter of the cell's exchange regions, with its robots in the order of the cell; `None` without exchange
+/// regions.
+///
+/// Regions whose warning zones overlap, or that move, share a slot. The name of the slot lists the names of its
+/// regions.
 pub fn zone_arbiter(cell: &Cell) -> Option<Arc<ZoneArbiter>> {
     let slots = slots(cell);
     let count = slots.iter().flatten().map(|s| s.0 + 1).max()?;
@@ -122,7 +126,8 @@ pub(crate) fn checksum(cell: &Cell) -> Result<String, FormatError> {
     }))
 }
 
-/// Per region of the cell its slot, where it is an exchange region; overlapping zones share one, which avoids deadlocks.
+/// Slot of each region of the cell; `None` if it is not an exchange region. Overlapping zones share a slot, which
+/// avoids deadlocks.
 pub fn slots(cell: &Cell) -> Vec<Option<SlotId>> {
     let exchange: Vec<usize> = (0..cell.regions.len())
         .filter(|i| matches!(cell.regions[*i].region.kind, RegionKind::Exchange { .. }))
@@ -174,7 +179,7 @@ fn setup(
     }
     let stopping_distance = cell.laws.stopping_reaction_s.map(|reaction_s| StoppingSettings {
         reaction_s,
-        // A simulated controller stops by itself where an answer is missing for longer.
+        // A simulated controller stops by itself if an answer is missing for longer.
         period_s: MISSED_ANSWERS * cell.tick_s,
         joint_deceleration: robot.limits.iter().map(|l| l.stop).collect(),
         joint_acceleration: crate::trajectory::accelerations(cell, id),

@@ -71,7 +71,7 @@ impl<'a> Frames<'a> {
             || self.cell.moving_objects.iter().any(|m| m.is_moving(t_s))
     }
 
-    /// As [`Frames::is_any_moving`], without the belts that never stop and what they carry.
+    /// Like [`Frames::is_any_moving`], without the belts that never stop and the objects on them.
     pub fn is_any_moving_but_endless_belts(&self, t_s: f64) -> bool {
         let is_endless = |f: &Follow| matches!(f, Follow::Encoder(e) if self.cell.encoders[*e].is_endless());
         let is_carried = |drive: &Drive| matches!(drive, Drive::Belt(encoder) if encoder.is_endless());

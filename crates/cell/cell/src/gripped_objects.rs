@@ -20,7 +20,7 @@ impl Cell {
         let Some(ProgramBody::Steps(steps)) = program.map(|p| &p.body) else { return Vec::new() };
         let at = &self.robots[robot.0];
         let (mut grips, mut link) = (Vec::new(), at.flange);
-        // Where a program repeats, it begins with the tool that it ended with.
+        // A repeated program begins with the tool that it ended with.
         for step in steps.iter().chain(steps) {
             match step.action {
                 StepAction::Tool(tool) => link = at.tools.get(tool).map_or(link, |t| t.link),
@@ -31,15 +31,16 @@ impl Cell {
         grips
     }
 
-    /// An object as a guarded volume that a link of the robot will grip: its shape, or the volume that replaces its mesh, at its
-    /// pose in the object's frame.
+    /// Guarded volume of an object that a link of the robot will grip.
+    ///
+    /// The volume is the shape of the object, or the volume that replaces its mesh, at its pose in the object's frame.
     pub fn gripped_volume(&self, robot: RobotId, object: ObjectId, link: LinkId) -> Volume {
         let (model, o) = (self.robots[robot.0].volumes, &self.objects[object.0]);
         let (shape, in_link) = model.of_solid(&o.shape, Pose::IDENTITY);
         Volume { in_link, ..Volume::gripped(o.name.clone(), link, shape) }
     }
 
-    /// The guarded volumes of a robot, with the objects that are attached to its links: where these are known in advance.
+    /// The guarded volumes of a robot with the objects that it holds, if their attachments are known in advance.
     pub fn volumes_holding<'a>(
         &self,
         robot: RobotId,

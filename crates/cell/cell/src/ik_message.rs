@@ -7,7 +7,7 @@ use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 use crate::Units;
 
 impl Units {
-    /// Why inverse kinematics of `chain` has no solution, with lengths and angles in these units.
+    /// Describes why inverse kinematics of `chain` has no solution, with lengths and angles in these units.
     ///
     /// ```
     /// use elbowroom_cell::Units;

@@ -1,4 +1,4 @@
-//! Links that touch where they are joined: cells leave them out, with a warning.
+//! Links that touch where they are joined, which cells do not test, with a warning.
 
 use elbowroom_formats::Warning;
 use elbowroom_robot::{GeometryId, JointContact, JointContactKind, Robot, RobotId, joint_contacts};
@@ -6,14 +6,14 @@ use elbowroom_scene::{PairEdit, PairRule, PairRules, Selection};
 
 use crate::{Cell, CellRobot};
 
-/// What is found in a cell, with the warnings that say so.
+/// The rules for such links in a cell, with one warning per pair.
 pub(crate) fn of_cell(cell: &Cell) -> (PairRules, Vec<Warning>) {
     let (mut rules, mut warnings) = (PairRules::default(), Vec::new());
     for (i, r) in cell.robots.iter().enumerate() {
         let robot = RobotId(i);
         for found in of_robot(r) {
             let [one, other] = [found.a, found.b].map(|link| GeometryId::Link { robot, link });
-            // The file of pairs says whether they are tested.
+            // The file of pairs decides whether they are tested.
             if cell.pair_rules.decide(one, other) {
                 continue;
             }
@@ -25,8 +25,10 @@ pub(crate) fn of_cell(cell: &Cell) -> (PairRules, Vec<Warning>) {
     (rules, warnings)
 }
 
-/// Those of a robot. Tool and load are part of the link that carries them: where they touch another link in any sample, that
-/// pair is not found.
+/// Joint contacts of a robot.
+///
+/// Tool and load are part of the link that carries them. A pair is omitted if tool or load touch the other link in any
+/// sample.
 fn of_robot(r: &CellRobot) -> Vec<JointContact> {
     let mut found = joint_contacts(&r.robot, &r.start);
     if !found.is_empty() && r.payload().next().is_some() {
@@ -49,7 +51,7 @@ fn warning(cell: &Cell, robot: &CellRobot, found: &JointContact) -> Warning {
     Warning::new(&cell.file, robot.line, what).hint(hint)
 }
 
-/// Where and how often two links touch.
+/// Place and frequency of the contact of two links.
 pub(crate) fn reason(robot: &Robot, found: &JointContact) -> String {
     let joint = &robot.chain.joints()[found.joint.0].name;
     let JointContact { contacts, samples, .. } = found;

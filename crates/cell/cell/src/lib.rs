@@ -3,8 +3,8 @@
 //! A cell file names robots, tools, objects, regions and programs ([`Cell::load`]; every key is in
 //! `docs/cell-file.md`). In a [`Cell`] all names are resolved and all numbers are in metres, radians and seconds.
 //! [`configure`] builds the configuration of each robot's monitor from it, [`QueryModel`] the scene,
-//! [`region_constraint`] the constraint that keeps planned paths out of regions; [`seal`] controls who may change what
-//! in the file. There is no simulation here: `elbowroom_sim` runs the programs.
+//! [`region_constraint`] the constraint that keeps planned paths out of regions. [`seal`] controls who may change what
+//! in the file. `elbowroom_sim` runs the programs.
 //!
 //! ```
 //! use elbowroom_cell::{Cell, configure};

@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use elbowroom_spatial::{FrameMotion, Pose};
 
-/// Poses over time, linear and by the shortest rotation in between; constant before the first row and after the last
-/// one.
+/// Poses over time, interpolated linearly and by the shortest rotation.
+///
+/// Constant before the first row and after the last one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PoseTrack {
     /// The file.

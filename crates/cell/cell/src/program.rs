@@ -53,7 +53,7 @@ pub enum StepAction {
     Joint {
         /// Target.
         to: MoveTarget,
-        /// Share of each joint's speed, 0..1.
+        /// Fraction of each joint's speed, 0..1.
         speed: f64,
     },
     /// Linear move: the TCP on a straight line.
@@ -63,13 +63,14 @@ pub enum StepAction {
         /// TCP speed, m/s.
         speed: f64,
     },
-    /// Planned move: a path around everything that is where it is at the start of the run.
+    /// Planned move: a path around everything at its place at the start of the run, or at the place where this program
+    /// has put it.
     Planned {
         /// Target.
         to: MoveTarget,
-        /// Share of each joint's speed, 0..1.
+        /// Fraction of each joint's speed, 0..1.
         speed: f64,
-        /// How the path is searched for.
+        /// Planner that searches the path.
         planner: PathPlanner,
     },
     /// Switches a temporary region.
@@ -79,9 +80,9 @@ pub enum StepAction {
         /// On or off.
         active: bool,
     },
-    /// Attaches an object to the flange, where it is.
+    /// Attaches an object to the flange, at its present pose.
     Grip(ObjectId),
-    /// Detaches an object from the flange: it stays where it is.
+    /// Detaches an object from the flange; its pose stays.
     Release(ObjectId),
     /// Makes one of the robot's [tools](crate::CellRobot::tools) the active one.
     Tool(usize),
@@ -91,13 +92,13 @@ pub enum StepAction {
     Override(f64),
 }
 
-/// How a path is searched for.
+/// A method of path search.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum PathPlanner {
-    /// Two trees of random samples, proven on sphere covers and in the exact scene: any number of joints.
+    /// Two trees of random samples, proven on sphere covers and in the exact scene; for any number of joints.
     #[default]
     RrtConnect,
-    /// Through the free cells of the robot's joint-space map of three joints.
+    /// A search through the free cells of the robot's joint-space map of three joints.
     Grid,
 }
 
@@ -110,13 +111,13 @@ pub enum MoveTarget {
     Tcp(TcpTarget),
 }
 
-/// The TCP at a pose. Where several joint values bring it there, `configuration` and `near` choose.
+/// A pose of the TCP. If several joint values reach it, `configuration` and `near` choose.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TcpTarget {
     /// The TCP in the world.
     pub in_world: Pose,
-    /// Shoulder, elbow and wrist; for six axes with a spherical wrist only.
+    /// Shoulder, elbow and wrist, only for six axes with a spherical wrist.
     pub configuration: ConfigurationChoice,
-    /// Only the solution nearest to these values of all joints (rad or m), which also chooses whole turns.
+    /// Chooses the solution nearest to these values of all joints (rad or m), and so also whole turns.
     pub near: Option<Vec<f64>>,
 }

@@ -16,13 +16,13 @@ use crate::{Cell, Follow, Frames, rest_pose_contacts};
 pub struct QueryModel {
     /// The file, for messages.
     pub file: PathBuf,
-    /// In the order of the file.
+    /// Robots, in file order.
     pub robots: Vec<QueryRobot>,
     /// Objects.
     pub objects: Vec<Object>,
     /// Objects that a link carries: regions that follow a robot.
     pub carried: Vec<(ObjectId, Attachment)>,
-    /// What the files of pairs say.
+    /// Rules of the files of pairs.
     pub rules: PairRules,
     /// True for a single robot: its links are named without prefix, and its states must have all joints.
     pub is_single_robot: bool,
@@ -41,8 +41,9 @@ pub struct QueryRobot {
     pub start: Vec<f64>,
 }
 
-/// Whether a scene is built with proofs of which pairs no joint values bring into contact. They take a moment and make
-/// queries faster, with the same results.
+/// Whether a scene is built with proofs that pairs are out of reach at all joint values.
+///
+/// The proofs take a moment and make queries faster, with the same results.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum OutOfReachProofs {
     /// Computes them: for many queries.
@@ -52,8 +53,9 @@ pub enum OutOfReachProofs {
 }
 
 impl QueryModel {
-    /// The model of a cell, with its rules of pairs ([`Cell::all_pair_rules`]); tools and loads are colliders of the links that carry
-    /// them.
+    /// The model of a cell, with its rules of pairs ([`Cell::all_pair_rules`]).
+    ///
+    /// Tools and loads are colliders of the links that carry them.
     pub fn of_cell(cell: &Cell) -> Self {
         let mut model = Self::without_rules(cell);
         model.add_rules(cell.all_pair_rules());
@@ -93,7 +95,7 @@ impl QueryModel {
         }
     }
 
-    /// A single robot of a cell, at its pose; its states may name it.
+    /// A single robot of a cell, at its pose. States may contain its name.
     pub fn of_robot_in_cell(cell: &Cell, robot: &crate::CellRobot) -> Self {
         let only = QueryRobot {
             name: robot.name.clone(),
@@ -111,7 +113,7 @@ impl QueryModel {
         }
     }
 
-    /// Adds the rules of a file of pairs, which override those before.
+    /// Adds the rules of a file of pairs, which override earlier rules.
     pub fn add_rules(&mut self, rules: PairRules) {
         for (i, r) in self.robots.iter_mut().enumerate() {
             rules.edit_robot(RobotId(i), &mut r.robot);
@@ -119,8 +121,9 @@ impl QueryModel {
         self.rules.extend(rules);
     }
 
-    /// Adds a region of the cell as an object, where it is at the start; one that follows a robot is carried by it. False if
-    /// the cell has no such region.
+    /// Adds a region of the cell as an object, at its pose at the start. Returns false if the cell has no such region.
+    ///
+    /// A region that follows a robot is carried by the robot.
     pub fn add_region(&mut self, cell: &Cell, name: &str) -> bool {
         let Some(region) = cell.regions.iter().find(|r| r.region.name == name) else { return false };
         let state = |r: &crate::CellRobot| {
@@ -142,10 +145,10 @@ impl QueryModel {
         true
     }
 
-    /// The state in which queries begin: what a link carries is attached to it.
+    /// The initial state of queries, with carried objects attached to their links.
     ///
     /// # Errors
-    /// [`FormatError`] if the scene is one of another model.
+    /// [`FormatError`] if the scene belongs to another model.
     pub fn start_state(&self, scene: &Scene) -> Result<SceneState, FormatError> {
         let mut state = SceneState::new(scene);
         for (object, attachment) in &self.carried {
@@ -173,8 +176,10 @@ impl QueryModel {
         builder.build().map_err(|e| FormatError::new(&self.file, None, e.to_string()))
     }
 
-    /// Warnings for links that always touch where they are joined, and for links that touch in the default state without a collider in between, with the SRDF entry for robots
-    /// that are built so. Reading a cell gives the same warnings.
+    /// Warnings for links that always touch where they are joined, and for links that touch in the default state.
+    ///
+    /// Links that touch in the default state count only if no collider is in between. The warnings contain the SRDF
+    /// entry for robots that are built so. Reading a cell gives the same warnings.
     ///
     /// ```
     /// # use elbowroom_cell::QueryModel;
@@ -217,7 +222,8 @@ impl QueryModel {
         }
     }
 
-    /// What a name selects: a robot, a link (`robot/link`; of a single robot its name alone, and `robot` for all), or an object.
+    /// Selection by a name: a robot, a link (`robot/link`; in a single robot only the link's name, and `robot` for
+    /// all), or an object.
     pub fn selection(&self, name: &str) -> Option<Selection> {
         let link = |robot: usize, link: &str| {
             let link = self.robots.get(robot)?.robot.chain.link(link)?;

@@ -1,4 +1,4 @@
-//! Interference regions as constraints of path planning, not only as a limit of the monitor.
+//! Interference regions as constraints of path planning.
 
 use elbowroom_formats::FormatError;
 use elbowroom_kinematics::ChainState;
@@ -11,8 +11,10 @@ use crate::Cell;
 use crate::configure::{self, MonitorSetup};
 use crate::frames::Frames;
 
-/// Smallest distance (m) that paths keep from the border of a region: at the border the override is 0 and the robot
-/// would stop there. At 5 mm the override is 5 % where the warning zone is 100 mm thick.
+/// Smallest distance (m) of paths from the border of a region: at the border the override is 0 and the robot would
+/// stop.
+///
+/// At 5 mm the override is 5 % if the warning zone is 100 mm thick.
 const BORDER_M: f64 = 0.005;
 
 /// A region, and the distance that paths keep from it.
@@ -22,7 +24,7 @@ struct ClosedRegion<'m> {
     clearance_m: f64,
 }
 
-/// The regions closed to one robot, at their poses of one instant.
+/// The regions closed to one robot, at their poses at one instant.
 #[derive(Debug)]
 pub struct RegionConstraint<'m> {
     region_distance: RegionDistanceQuery<'m>,
@@ -33,8 +35,10 @@ pub struct RegionConstraint<'m> {
 }
 
 impl<'m> RegionConstraint<'m> {
-    /// The regions that the monitor closes to its robot; `None` if there is none. Paths keep the share `share` of
-    /// each warning zone, which bounds the override from below, at least `least_m`, and never less than 5 mm.
+    /// The regions that the monitor closes to its robot; `None` if it closes no region.
+    ///
+    /// Paths keep the fraction `share` of each warning zone, which bounds the override from below, at least `least_m`
+    /// (m), and never less than 5 mm.
     pub fn new(monitor: &'m Monitor, sources: &[SourceState], share: f64, least_m: f64) -> Option<Self> {
         let region_distance = monitor.region_distance(sources);
         let closed = |r: &'m elbowroom_monitor::Region| ClosedRegion {
@@ -76,8 +80,7 @@ impl PathConstraint for RegionConstraint<'_> {
     }
 }
 
-/// The regions closed to each robot before a run: permanent forbidden regions, at their poses with all robots at some
-/// configurations.
+/// The regions closed to each robot before a run: permanent forbidden regions, with all robots at given joint values.
 #[derive(Debug)]
 pub struct RegionConstraints<'c> {
     cell: &'c Cell,
@@ -88,8 +91,9 @@ pub struct RegionConstraints<'c> {
 }
 
 impl<'c> RegionConstraints<'c> {
-    /// With the robots at these joint values (rad or m), in the order of the cell. Paths keep `least_m` from regions, and never
-    /// less than 5 mm.
+    /// Computes the closed regions with the robots at these joint values (rad or m), in the order of the cell.
+    ///
+    /// Paths keep `least_m` (m) from regions, and never less than 5 mm.
     ///
     /// # Errors
     /// Errors of the monitors' configurations.
@@ -114,7 +118,7 @@ impl<'c> RegionConstraints<'c> {
         Ok(Self { cell, setups, monitors, states, least_m })
     }
 
-    /// The regions closed to a robot; `None` if there is none.
+    /// The regions closed to a robot; `None` if no region is closed.
     pub fn of_robot(&self, robot: RobotId) -> Option<RegionConstraint<'_>> {
         let sources = Frames::new(self.cell).sources(&self.setups[robot.0].sources, &self.states, 0.0);
         RegionConstraint::new(&self.monitors[robot.0], &sources, 0.0, self.least_m)
@@ -127,11 +131,12 @@ impl PathConstraintSource for RegionConstraints<'_> {
     }
 }
 
-/// Calls `plan` with the regions closed to a robot before a run: permanent forbidden regions. All robots are at their
-/// start, this one at `q`; the objects that it holds count as its tool.
+/// Calls `plan` with the regions closed to a robot before a run: permanent forbidden regions.
+///
+/// All other robots are at their start, this robot is at `q` (rad or m). The objects that it holds count as its tool.
 ///
 /// # Errors
-/// Errors of the monitors' configurations, and those of `plan`.
+/// Errors of the monitors' configurations and of `plan`.
 pub fn at_start<T>(
     cell: &Cell,
     robot: RobotId,
@@ -147,7 +152,7 @@ pub fn at_start<T>(
     plan(constraints.of_robot(robot))
 }
 
-/// The smaller value; NaN counts as smaller than any.
+/// The smaller value; NaN counts as smaller than any number.
 fn least(a: f64, b: f64) -> f64 {
     if a < b || a.is_nan() { a } else { b }
 }

@@ -1,4 +1,4 @@
-//! Regions that are moved, added and removed while a cell runs: its file, changed in memory.
+//! Edits of regions while a cell runs, applied to its file in memory.
 
 use std::collections::BTreeMap;
 use std::path::{Component, Path};
@@ -13,23 +13,24 @@ use crate::{Cell, CellFile, CellRegion, Follow, configure};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
-/// The keys that say where a region is; all others say what it is.
+/// Keys for the place of a region; all other keys define what it is.
 const PLACE: [&str; 11] = ["centre", "center", "base", "at", "origin", "x", "y", "from", "to", "rpy", "quaternion"];
 /// The keys, at any depth, whose values are paths of files.
 const FILES: [&str; 3] = ["mesh", "poses", "file"];
 
-/// A region that is not as in the cell file.
+/// A region that differs from the cell file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RegionEdit {
     /// Its name.
     pub name: String,
-    /// Its keys as TOML, a line each; `None` if it is removed.
+    /// Its keys as TOML, one per line; `None` if it is removed.
     pub table: Option<String>,
 }
 
-/// The file of a running cell, to which regions are added in memory, and from which they are taken out. The file on the disk
-/// stays as it is.
+/// The file of a running cell, in which regions are added and removed in memory.
+///
+/// The file on disk stays unchanged.
 ///
 /// ```
 /// use elbowroom_cell::{EditedRegions, RegionEdit};
@@ -52,7 +53,7 @@ pub struct EditedRegions {
 }
 
 impl EditedRegions {
-    /// Of the file that a cell was read from.
+    /// Reads the file of a cell.
     ///
     /// # Errors
     /// [`FormatError`] if it cannot be read.
@@ -60,7 +61,7 @@ impl EditedRegions {
         Ok(Self { file: CellFile::read(&cell.file)?.unsealed() })
     }
 
-    /// Of this text, as the file `path`.
+    /// Parses text as the file `path`.
     ///
     /// # Errors
     /// [`FormatError`] if it is not TOML.
@@ -68,13 +69,13 @@ impl EditedRegions {
         Ok(Self { file: CellFile::parse(path, text)? })
     }
 
-    /// The cell with these regions in place of those of the same names.
+    /// The cell with these edits of its regions.
     ///
     /// # Errors
-    /// [`FormatError`] as for a cell file; lines are those of the region's own keys.
+    /// [`FormatError`] as for a cell file; lines are counted in the region's own keys.
     pub fn cell(&self, edits: &[RegionEdit]) -> Result<Cell> {
         let mut file = self.file.clone();
-        // It is that of the file without edits.
+        // The checksum is valid for the file without edits.
         file.entries.retain(|e| e.key != "checksum");
         for edit in edits {
             let keys = edit.table.as_ref().map(|table| node::parse(&file.file, table)).transpose()?;
@@ -105,7 +106,9 @@ impl EditedRegions {
         Some(lines(keys_of(found)))
     }
 
-    /// The edits with one more: one of the same region is replaced, and one that removes what the file does not have is left out.
+    /// Returns the edits with one more, which replaces an edit of the same region.
+    ///
+    /// The removal of a region that the file does not have is omitted.
     #[must_use]
     pub fn with(&self, edits: &[RegionEdit], edit: RegionEdit) -> Vec<RegionEdit> {
         let mut all: Vec<RegionEdit> = edits.iter().filter(|e| e.name != edit.name).cloned().collect();
@@ -115,7 +118,7 @@ impl EditedRegions {
         all
     }
 
-    /// The keys of a new region: those of `[region.NAME]`, or that table itself.
+    /// Parses the keys of a new region: the keys of `[region.NAME]`, or that table itself.
     ///
     /// # Errors
     /// [`FormatError`] if it is not TOML, another region's table, or names a file outside of the cell's folder.
@@ -140,10 +143,10 @@ impl EditedRegions {
         Ok(lines(&entries))
     }
 
-    /// The keys of a region that is put elsewhere.
+    /// The keys of a region after a move.
     ///
     /// # Errors
-    /// [`FormatError`] where `to` is not TOML, or has a key that does not say where a region is.
+    /// [`FormatError`] if `to` is empty, is not TOML, or has a key that does not define a place.
     pub fn moved(&self, name: &str, table: &str, to: &str) -> Result<String> {
         let path = &self.file.file;
         let mut keys = node::parse(path, table)?;
@@ -167,7 +170,7 @@ impl EditedRegions {
     }
 }
 
-/// What a move of this region may name.
+/// Hint with the keys that a move of this region may have.
 fn hint_for(keys: &[Entry]) -> String {
     let place: Vec<String> = keys
         .iter()
@@ -202,7 +205,7 @@ fn lines(keys: &[Entry]) -> String {
     lines.join("\n") + "\n"
 }
 
-/// Whoever may change regions may not make the service read any file: only those of the cell's folder.
+/// Refuses files outside of the cell's folder: an edit of a region must not make the service read other files.
 fn check_files(path: &Path, entries: &[Entry]) -> Result<()> {
     for entry in entries {
         if let (true, Data::Text(file)) = (FILES.contains(&entry.key.as_str()), &entry.node.data)
@@ -216,7 +219,7 @@ fn check_files(path: &Path, entries: &[Entry]) -> Result<()> {
     Ok(())
 }
 
-/// What differs between two tables of a region, key by key: before and after.
+/// Differences between two tables of a region: key, value before, value after.
 pub fn table_changes(before: Option<&str>, after: Option<&str>) -> Vec<(String, Option<String>, Option<String>)> {
     let keys = |table: Option<&str>| -> BTreeMap<String, String> {
         let entries = table.and_then(|table| node::parse(Path::new(""), table).ok()).unwrap_or_default();
@@ -230,8 +233,9 @@ pub fn table_changes(before: Option<&str>, after: Option<&str>) -> Vec<(String, 
     all.into_iter().map(change).filter(|(_, before, after)| before != after).collect()
 }
 
-/// Why a process that guards the cell file `now` cannot go on with `next`; `None` if it can: the robots, the exchange regions, the
-/// permanent regions and the robots that are followed must stay the same.
+/// Reason why a process that guards the cell file `now` cannot continue with `next`; `None` if it can.
+///
+/// Robots, laws, exchange regions and permanent regions must stay the same, and no further robot may be followed.
 ///
 /// # Errors
 /// [`FormatError`] if no monitor accepts a region.
@@ -271,7 +275,9 @@ pub fn why_not_continued(now: &Cell, next: &Cell) -> Result<Option<String>> {
     Ok(None)
 }
 
-/// A permanent region of `now` that `next` does not have, or has elsewhere: its seal says where it is, a message does not.
+/// Name of a permanent region of `now` that is missing or different in `next`.
+///
+/// The seal defines a permanent region; a message cannot change it.
 fn permanent_that_differs<'a>(now: &'a Cell, next: &Cell) -> Option<&'a str> {
     let permanent = now.regions.iter().filter(|r| r.region.life == Life::Permanent);
     let is_kept = |r: &&CellRegion| {
@@ -342,7 +348,7 @@ kind = "exchange"
         assert!((cell.regions[0].region.anchor.translation.z - 2.6).abs() < 1e-12);
         let changes = table_changes(file.table(&[], "end").as_deref(), Some(&moved));
         assert_eq!(changes, [("centre".into(), Some("[0, 0, 2500]".into()), Some("[0, 0, 2600]".into()))]);
-        // What is removed again leaves nothing.
+        // A region that was added and removed again leaves no edit.
         let edits = file.with(&file.with(&edits, edit("cart", None)), edit("end", None));
         assert_eq!(edits, [edit("end", None)]);
         assert_eq!(names(&file.cell(&edits).unwrap()), ["wall", "table"]);

@@ -5,8 +5,9 @@ use elbowroom_kinematics::LinkId;
 use elbowroom_robot::Robot;
 use elbowroom_robot::rest_pose_contacts;
 
-/// The warning and the hint for each such pair at the joint values `rest` (rad or m). `name` is the robot's name in its
-/// cell; `None` for a single model. Only pairs that are new.
+/// The warning and the hint for each new pair of this kind at the joint values `rest` (rad or m).
+///
+/// `name` is the robot's name in its cell; `None` for a single model.
 pub(crate) fn warnings(
     robot: &Robot,
     rest: &[f64],

@@ -15,14 +15,14 @@ pub(crate) struct ScenePairs {
     pub rules: Vec<PairRule>,
     /// Names of the first pair that counts, as in the scene.
     pub example: Option<[String; 2]>,
-    /// Pairs that count: the others are not tested anyway.
+    /// Number of pairs that count. Other pairs are not tested anyway.
     pub count: usize,
-    /// The first pair with a link that several robots have.
+    /// The first pair with a link name that several robots have.
     pub ambiguous: Option<[String; 2]>,
 }
 
 impl ScenePairs {
-    /// The pairs of a scene whose objects are `objects` of the cell. Names that the cell does not have are passed over.
+    /// The pairs of a scene whose objects are `objects` of the cell. Names that the cell does not have are ignored.
     pub(crate) fn of(scene: &PlanningScene, objects: &Range<usize>, cell: &Cell) -> Self {
         let names = SceneNames { objects: object_ids(scene, objects), cell };
         let mut pairs = Self::default();
@@ -31,7 +31,7 @@ impl ScenePairs {
         for &(a, b) in &allowed.allowed {
             pairs.add([&allowed.names[a], &allowed.names[b]], &names, &reason);
         }
-        // By default: what the matrix does not name.
+        // Default entries apply to names that the matrix does not contain.
         let others: Vec<&str> = names.all().filter(|name| !allowed.names.iter().any(|n| n == name)).collect();
         for name in &allowed.allowed_by_default {
             for other in others.iter().filter(|other| *other != name) {
@@ -44,7 +44,7 @@ impl ScenePairs {
     fn add(&mut self, pair: [&str; 2], names: &SceneNames<'_>, reason: &str) {
         let [a, b] = pair.map(|name| names.geometries(name));
         let robots = |side: &[GeometryId]| side.iter().filter(|id| matches!(id, GeometryId::Link { .. })).count();
-        // Two links of one robot are a pair; a link of several robots and an object are not clear.
+        // Two link names are a pair in each robot. A link name of several robots is ambiguous with an object.
         if (robots(&a) > 1 && robots(&b) == 0) || (robots(&b) > 1 && robots(&a) == 0) {
             let is_one = !a.is_empty() && !b.is_empty();
             self.ambiguous = self.ambiguous.take().or_else(|| is_one.then(|| pair.map(str::to_owned)));
@@ -76,7 +76,7 @@ struct SceneNames<'a> {
 }
 
 impl SceneNames<'_> {
-    /// What a name means: all solids of an object, or the link of each robot that has one of this name.
+    /// The geometries of a name: all solids of an object, or the link of this name of each robot.
     fn geometries(&self, name: &str) -> Vec<GeometryId> {
         let objects = self.objects.iter().filter(|(n, _)| *n == name).map(|(_, o)| GeometryId::Object(*o));
         let links = self.cell.robots.iter().enumerate().filter_map(|(i, r)| {
@@ -95,7 +95,8 @@ impl SceneNames<'_> {
         names.into_iter()
     }
 
-    /// False for links of two robots, of which a scene does not speak, and for links that are not tested anyway.
+    /// False for links of different robots, which planning scenes do not cover, and for links that are not tested
+    /// anyway.
     fn are_tested(&self, a: GeometryId, b: GeometryId) -> bool {
         match (a, b) {
             (GeometryId::Link { robot: r, link: a }, GeometryId::Link { robot: s, link: b }) => {

@@ -13,41 +13,41 @@ pub struct CellSensor {
     pub name: String,
     /// Line of its table.
     pub line: usize,
-    /// What it measures, and how.
+    /// Kind of the sensor, with its settings.
     pub kind: SensorKind,
-    /// The robot in whose map its obstacles are.
+    /// The robot whose map contains its obstacles.
     pub robot: RobotId,
-    /// How long a moving obstacle also blocks where it will be, s.
+    /// Time for which a moving obstacle also blocks its predicted positions, s.
     pub prediction_s: f64,
     /// The folder of its pictures or clouds.
     pub folder: Option<PathBuf>,
-    /// The joint values at their times.
+    /// The file of joint values at the times of the pictures or clouds.
     pub joints: Option<PathBuf>,
     /// Time (s) from a stamp until its obstacles count in a run: transmission and perception.
     pub latency_s: f64,
-    /// Time (s) that a search for a path around its obstacles may take in a run, and takes.
+    /// Time (s) that a search for a path around its obstacles takes in a run, which is also its limit.
     pub search_s: f64,
-    /// Time (s) after the last stamp from which nothing is known any more in a run.
+    /// Age (s) of the last stamp from which the sensor is stale in a run.
     pub stale_s: f64,
-    /// The robots that keep clear of its obstacles in a run.
+    /// The robots that avoid its obstacles in a run.
     pub robots: Vec<RobotId>,
 }
 
-/// What a sensor measures.
+/// Kind of a sensor, with its settings.
 #[derive(Debug, Clone)]
 pub enum SensorKind {
     /// Pictures of a calibrated camera above the floor.
     Camera {
         /// Lens and pose in the world.
         camera: Camera,
-        /// How obstacles are detected and tracked.
+        /// Settings of the detection and tracking of obstacles.
         settings: CameraTrackerSettings,
-        /// By how much the silhouette of the robots is dilated, m.
+        /// Width by which the silhouette of the robots is dilated, m.
         mask_margin_m: f64,
     },
     /// Point clouds.
     Cloud {
-        /// Pose, and how obstacles are detected and tracked.
+        /// Pose, and settings of the detection and tracking of obstacles.
         settings: CloudTrackerSettings,
         /// For depth pictures: lens and pose, and metres per step of depth; `None` for files of points.
         depth: Option<(Camera, f64)>,

@@ -16,7 +16,7 @@ fn edit_distance(a: &str, b: &str) -> usize {
     row[b.len()]
 }
 
-/// The nearest known word, where it is close enough.
+/// The nearest known word, if it is close enough.
 pub fn nearest<'a>(word: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let length = word.chars().count();
     // Two swapped letters count as two replacements.

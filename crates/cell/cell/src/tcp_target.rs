@@ -1,4 +1,4 @@
-//! Joint values for a pose of the TCP: the solutions of inverse kinematics that are wanted.
+//! Joint values for a pose of the TCP, selected from the solutions of inverse kinematics.
 
 use elbowroom_kinematics::inverse::{ConfigurationChoice, IkOptions, IkSolver};
 use elbowroom_spatial::Pose;
@@ -6,17 +6,17 @@ use elbowroom_spatial::Pose;
 use crate::{CellRobot, TcpTarget, Units};
 
 impl From<Pose> for TcpTarget {
-    /// Any solution.
+    /// A target that accepts any solution.
     fn from(in_world: Pose) -> Self {
         Self { in_world, configuration: ConfigurationChoice::default(), near: None }
     }
 }
 
 impl TcpTarget {
-    /// Joint values for the TCP of a robot, nearest to `near` or else to `from`.
+    /// Joint values for the TCP of a robot: the solution nearest to `near`, or else to `from`.
     ///
     /// # Errors
-    /// Why there are none, in the units of the cell.
+    /// The reason if no joint values are found, in the units of the cell.
     pub fn joint_values(&self, robot: &CellRobot, units: Units, from: &[f64]) -> Result<Vec<f64>, String> {
         let mut solver = robot.ik_solver();
         let seed = self.near.as_deref().unwrap_or(from);
@@ -29,10 +29,10 @@ impl TcpTarget {
         Ok(chosen.into_iter().next().unwrap_or_default())
     }
 
-    /// Of the solutions found, those that are wanted, in their order; never empty.
+    /// Selects the solutions that match the target, in their order; never empty.
     ///
     /// # Errors
-    /// Why none is left, in the units of the cell.
+    /// The reason if no solution matches, in the units of the cell.
     pub fn choose(
         &self,
         robot: &CellRobot,

@@ -1,11 +1,12 @@
-//! What people call a cell.
+//! The title of a cell.
 
 use std::path::PathBuf;
 
 use crate::Cell;
 
 impl Cell {
-    /// What people call the cell: its name, or the folder's where the file is called `cell.toml` and says nothing better.
+    /// The title of the cell: its name, or the name of the folder if the file is called `cell.toml` and states no other
+    /// name.
     ///
     /// ```
     /// use elbowroom_cell::Cell;
@@ -22,7 +23,7 @@ impl Cell {
         title.unwrap_or_else(|| self.name.clone())
     }
 
-    /// The folder of the file: without `.` and `..` where it is there.
+    /// The folder of the file, without `.` and `..` if the file exists.
     fn folder(&self) -> Option<PathBuf> {
         let file = std::fs::canonicalize(&self.file).or_else(|_| std::path::absolute(&self.file)).ok()?;
         file.parent().map(PathBuf::from)

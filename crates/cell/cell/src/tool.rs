@@ -17,6 +17,6 @@ pub struct CellTool {
     pub tcp_in_link: Pose,
     /// Its collider in its link.
     pub collider: Option<Collider>,
-    /// True if it is on its flange at present.
+    /// Whether it is mounted on its flange at present.
     pub mounted: bool,
 }

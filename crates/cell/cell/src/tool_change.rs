@@ -8,8 +8,9 @@ use elbowroom_spatial::Vec3;
 use crate::{Cell, CellRobot, CellTool};
 
 impl CellRobot {
-    /// The robot after the step `{ tool = … }`: this tool is active. One that is not mounted takes the place of the tool on its
-    /// flange. The same robot for an index that it does not have.
+    /// The robot after the step `{ tool = … }`, with this tool active.
+    ///
+    /// A tool that is not mounted replaces the tools on its flange. An unknown index leaves the robot unchanged.
     #[must_use]
     pub fn with_tool(&self, index: usize) -> Self {
         let mut robot = self.clone();
@@ -34,7 +35,7 @@ impl CellRobot {
         robot
     }
 
-    /// Whether a tool is always there: where the tools of its flange are all mounted, none is changed.
+    /// Presence of a tool: always, if all tools of its flange are mounted; otherwise attached or detached.
     pub(crate) fn presence(&self, tool: &CellTool) -> Presence {
         let is_changed = self.tools.iter().any(|t| t.flange == tool.flange && !t.mounted);
         match (is_changed, tool.mounted) {
@@ -55,7 +56,7 @@ impl CellRobot {
 }
 
 impl Cell {
-    /// The cell after the step `{ tool = … }` of a robot: [`CellRobot::with_tool`].
+    /// The cell after the step `{ tool = … }` of a robot; see [`CellRobot::with_tool`].
     #[must_use]
     pub fn with_tool(&self, robot: RobotId, index: usize) -> Self {
         let mut cell = self.clone();

@@ -1,4 +1,4 @@
-//! Numbers in another unit than the stated one are detected.
+//! Detection of numbers in another unit than the stated one.
 
 use crate::common::{ARM, parse};
 use elbowroom_cell::Cell;
@@ -28,7 +28,7 @@ fn cell(length: &str, k: f64) -> String {
     )
 }
 
-/// As [`cell`] in metres, with the robot's own numbers converted from millimetres.
+/// Like [`cell`] in metres, with the robot's own numbers converted from millimetres.
 fn in_metres(k: f64) -> String {
     let metres = |text: &str| {
         // The rows of ARM in metres: `a`, `d`, the points and radii of capsules.

@@ -16,7 +16,7 @@ fn the_valid_cell_is_valid() {
     );
 }
 
-/// (line to replace, replacement, words of the message, words of the hint)
+/// Line to replace, replacement, words of the message, words of the hint.
 const CASES: &[(&str, &str, &str, &str)] = &[
     ("version = 1", "version = 2", "reads version 1", "version = 1"),
     ("volumes = \"capsule\"", "stop_time = 1e300", "no robot brakes for that long", "at most 60"),
@@ -225,8 +225,8 @@ fn every_error_names_its_line_and_a_correction() {
         assert!(e.what.contains(what), "`{by}`: {text}");
         let write = e.write_instead.clone().unwrap_or_default();
         assert!(write.contains(hint) && !write.is_empty(), "`{by}`: {text}");
-        // Missing keys are reported at the table's line, all else at its own; text before a match on the same line
-        // counts.
+        // Missing keys are reported at the table's line, other errors at their own line. Text before a match on the
+        // same line counts.
         let near = e.line.unwrap().abs_diff(at + 1);
         assert!(
             near <= if what.contains("needs") || what.contains("no volume") { 6 } else { 1 },
@@ -331,8 +331,9 @@ fn errors_of_trajectories_name_the_line() {
     }
 }
 
-/// Replaces line `number` (from 1) of `text` and expects an error there: number, replacement, line, message, hint. All cases are
-/// tried before failures are reported.
+/// Replaces line `number` (from 1) of `text` and expects an error there: number, replacement, line, message, hint.
+///
+/// All cases are tried before failures are reported.
 fn refused(file: &std::path::Path, text: &str, cases: &[(usize, &str, usize, &str, &str)]) {
     assert!(Cell::parse(file, text).is_ok(), "{}", Cell::parse(file, text).unwrap_err());
     let mut wrong = Vec::new();

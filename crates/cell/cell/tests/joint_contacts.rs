@@ -1,5 +1,7 @@
-//! Published robots, where the data is available: none begins to collide because of links that always touch at a joint. Some that
-//! differ in kind; all with `ELBOWROOM_LONG=1`.
+//! Published robots, if the data is available: no robot collides at its start because of links that always touch at a
+//! joint.
+//!
+//! Some robots that differ in kind; all robots with `ELBOWROOM_LONG=1`.
 
 use std::path::PathBuf;
 
@@ -8,11 +10,11 @@ use elbowroom_robot::{GeometryId, JointContact, JointContactKind, RobotId, joint
 use elbowroom_scene::{Checker, CheckerOptions, Scene, SceneState};
 use elbowroom_testkit::folder;
 
-/// With a pair at the wrist, with pairs between every second link, with loops, with a contact that is none of a joint, with fingers,
-/// and two without any contact.
+/// With a pair at the wrist, with pairs between every second link, with loops, with a contact that does not belong to a
+/// joint, with fingers, and two without any contact.
 const SOME: [&str; 7] =
     ["abb_irb2400", "motoman_motomini", "abb_irb6600_225_255", "fanuc_m900ia260l", "panda", "kuka_kr16_2", "ur5e"];
-/// More of those with pairs, and of those without.
+/// Further robots with pairs and without.
 const MORE: [&str; 2] = ["abb_irb4400l_30_243", "staubli_tx60"];
 
 fn is_long_run() -> bool {
@@ -75,7 +77,7 @@ fn no_robot_starts_in_contact_because_of_links_that_always_touch_at_a_joint() {
         );
         for q in [zero, &middle] {
             let (left, all) = (contacts(&of_cell, q), contacts(&every, q));
-            // What is recognised is gone, and nothing else changes.
+            // The recognised pairs are gone; the other pairs do not change.
             assert!(always.iter().all(|pair| all.contains(pair)), "{name}: {all:?}");
             let others: Vec<&String> = all.iter().filter(|pair| !pairs.contains(pair)).collect();
             assert_eq!(left.iter().collect::<Vec<_>>(), others, "{name}: {all:?}");

@@ -1,4 +1,4 @@
-//! Keys of the cell file that other tests leave out: a good case and three bad ones each, with message and line.
+//! Keys of the cell file that other tests omit: a good case and three bad ones each, with message and line.
 
 use crate::common::{HEAD, rail};
 use elbowroom_cell::Cell;

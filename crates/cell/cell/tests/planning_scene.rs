@@ -119,7 +119,7 @@ fn pairs_that_a_scene_allows_are_not_tested() {
         |robot, link| GeometryId::Link { robot: RobotId(robot), link: cell.robots[0].robot.chain.link(link).unwrap() };
     assert_eq!(skipped(&cell, link(0, "base")), Some("allowed in desk.yaml"));
     assert_eq!(skipped(&cell, link(0, "link_1")), None);
-    // Not where the cell says so, in the table or in the file of pairs.
+    // The pair is tested if the cell says so, in the table or in the file of pairs.
     let cell_2 = parse(dir.path(), &format!("{scene}allowed_collisions = false\n")).unwrap();
     assert!(cell_2.pair_rules.is_empty() && !cell_2.warnings.iter().any(|w| w.what.contains("allowed_collision")));
     std::fs::write(
@@ -130,12 +130,12 @@ fn pairs_that_a_scene_allows_are_not_tested() {
     let text = format!("{HEAD}pairs = \"pairs.toml\"\n{}{scene}", rail("r", 0.0));
     let cell_3 = Cell::parse(dir.path().join("cell.toml"), &text).unwrap();
     assert_eq!(skipped(&cell_3, link(0, "base")), None);
-    // By default: with all that the matrix does not name, such as a link.
+    // A default entry applies to all names that the matrix does not contain, such as a link.
     let by_default = "allowed_collision_matrix:\n  entry_names: [can]\n  entry_values: [[true]]\n  default_entry_names: [can]\n  default_entry_values: [true]\n";
     std::fs::write(dir.path().join("desk.yaml"), format!("{YAML}{by_default}")).unwrap();
     let cell_4 = parse(dir.path(), scene).unwrap();
     assert!(skipped(&cell_4, link(0, "link_1")).is_some() && skipped(&cell_4, link(0, "base")).is_some());
-    // A link of two robots is not clear.
+    // A link name of two robots is ambiguous.
     std::fs::write(dir.path().join("desk.yaml"), format!("{YAML}{matrix}")).unwrap();
     let two = format!("{}[scene.desk]\nfile = \"desk.yaml\"\nframe = \"desk\"\n", rail("r2", 1000.0));
     let cell_5 = parse(dir.path(), &two).unwrap();
@@ -154,7 +154,7 @@ fn wrong_scenes_are_refused_with_line_and_remedy() {
     std::fs::write(dir.path().join("held.yaml"), format!("{YAML}{held}")).unwrap();
     std::fs::write(dir.path().join("half.scene"), &SCENE[..60]).unwrap();
     let two = format!("{}[scene.desk]\nfile = \"desk.yaml\"\n", rail("r2", 1000.0));
-    // Tables, file of the error, line (0: none), message, hint. The tables begin at line 8.
+    // Tables, file of the error, line (0 for none), message, hint. The tables begin at line 8.
     let cases: &[(&str, &str, usize, &str, &str)] = &[
         ("[scene.s]\n", "cell.toml", 8, "`scene.s` needs the key `file`", "file = \"workshop.scene\""),
         ("[scene.s]\nfile = \"none.scene\"\n", "cell.toml", 9, "does not exist", "relative to"),

@@ -91,7 +91,7 @@ fn text_that_is_no_file_needs_no_seal() {
     assert!(Cell::parse(&file, &text().replace("radius = 150", "radius = 140")).unwrap().seal.is_none());
 }
 
-/// An object with a path of its own.
+/// An object with its own path.
 const OBJECTS: &str = "[object.NAME]\nshape = \"box\"\nsize = [400, 300, 200]\nat = [3000, 1000, 100]\nrpy = [1, 2, 30]\n\
      motion = { via = [[5000, 1000, 100], [5000, 2000, 100]], speed = 500, start = 3, turn = [1, 2, 90], repeat = \"loop\" }\n";
 
@@ -126,7 +126,8 @@ fn every_number_of_an_object_that_a_region_follows_breaks_the_seal() {
     assert!(noticed > 15 && of_no_concern > 15, "{noticed} detected, {of_no_concern} without effect");
 }
 
-/// A file, its contents, and the words of the error when it differs: none where no region follows what is read from it.
+/// A file, its contents, and the words of the error if it differs: empty if no region follows what is read from the
+/// file.
 const FILES: &[(&str, &str, &[&str])] = &[
     (
         "poses.csv",

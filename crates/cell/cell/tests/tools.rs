@@ -28,7 +28,7 @@ fn each_tool_has_a_link_a_tcp_and_a_volume() {
     assert_eq!((of("gripper").part, of("gripper").link), (Part::Tool, link("gripper")));
     assert_eq!((of("welder tcp").part, of("welder tcp").link), (Part::Tcp, link("welder")));
     assert!(volumes.iter().all(|v| v.presence == Presence::Always));
-    // As many solids as with one tool: each once.
+    // As many solids as with one tool, each once.
     assert_eq!(volumes.iter().filter(|v| v.part == Part::Arm).count(), 5);
     let active = robot.with_tool(1);
     assert_eq!((active.flange, active.tcp_in_flange.translation.z), (link("welder"), 0.3));
@@ -90,7 +90,7 @@ fn mistakes_are_named_with_their_line() {
     }
 }
 
-/// The only tool of a robot and its load are guarded as named tools are.
+/// The only tool of a robot and its load are guarded like named tools.
 #[test]
 fn one_tool_and_its_load_are_guarded() {
     let cell = parse(&format!(

@@ -18,7 +18,7 @@ use crate::{plots, scene_data, shared_assets};
 const PLOTLY: &str = include_str!("../assets/plotly/plotly-basic.min.js");
 const STYLE: &str = include_str!("../assets/report/report.css");
 const PAGE: &str = include_str!("../assets/report/page.html");
-/// In order: each uses those before it.
+/// Scripts in order: each uses earlier ones.
 const SCRIPTS: [&str; 12] = [
     shared_assets::DOM,
     shared_assets::PACKING,
@@ -38,9 +38,9 @@ const SCRIPTS: [&str; 12] = [
 pub(super) struct PageContent<'a> {
     /// Title, plain text.
     pub title: &'a str,
-    /// What became of the run: above the scene, HTML.
+    /// Results of the run: above the scene, HTML.
     pub result: String,
-    /// How close the robots came to the regions: below the scene, HTML.
+    /// Distances of the robots to the regions: below the scene, HTML.
     pub regions: String,
     /// Below the tables, HTML.
     pub facts: String,
@@ -61,13 +61,16 @@ pub struct HtmlReport<'a> {
 }
 
 impl<'a> HtmlReport<'a> {
-    /// The curves of all runs share their plots; the 3-D scene shows the selected run, at first the first one. The
-    /// outlines of the regions are those of the first run. A run without the monitor serves as the planned one.
+    /// Creates a page of these runs.
+    ///
+    /// The curves of all runs share their plots. The 3-D scene shows the selected run, initially the first one, and the
+    /// outlines of the regions of the first run. A run without the monitor serves as the planned one.
     pub fn new(scene: &'a ReportScene, runs: &'a [(&'a str, &'a Recording)]) -> Self {
         Self { scene, runs, planned: runs.iter().map(|(_, rec)| *rec).find(|rec| !rec.monitored) }
     }
 
-    /// The planned motion, a run without the monitor: its distances are shown beside those of the first run, nothing else of it.
+    /// Adds the planned motion, a run without the monitor. Only its distances are shown, beside the distances of the
+    /// first run.
     #[must_use]
     pub fn planned(mut self, run: &'a Recording) -> Self {
         self.planned = Some(run);
@@ -181,7 +184,7 @@ fn region_section(runs: &[(&str, &Recording)], planned: Option<&Recording>) -> S
     tables.collect()
 }
 
-/// What the page draws; nothing for a picture.
+/// Data that the page draws; null for a picture.
 fn figure_data(figure: &plots::Figure) -> Value {
     match &figure.drawing {
         Drawing::Plot(plot) => json!({ "data": plot.traces, "layout": plot.layout, "time": figure.over_time }),
@@ -210,7 +213,7 @@ fn facts(runs: &[(&str, &Recording)]) -> String {
     let mut out = String::new();
     for (label, rec) in runs {
         let monitor = if rec.monitored { "monitor on" } else { "monitor off" };
-        // A label that says the same is not repeated.
+        // A label with the same meaning is not repeated.
         let state = if *label == monitor { monitor.to_owned() } else { format!("{label}: {monitor}") };
         let t = rec.tick_ns;
         let line = format!(

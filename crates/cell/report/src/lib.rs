@@ -1,17 +1,24 @@
 //! Report of a run: one HTML file that opens offline, and a text summary for the terminal; images of maps and models.
 //!
-//! [`HtmlReport`] puts everything into one file: the result on each robot, the regions, an animated 3-D scene in which the
-//! joints can be moved, with the distances of the guarded volumes to every region and object; plots of the distances over time,
-//! of the override with the governing region, after figure 12 of Romanelli 2011, and timing; the
-//! events. Nothing is loaded from a network: plotly.js and three.js are embedded. [`summary`] is the text summary.
+//! [`HtmlReport`] writes one file with
+//!
+//! - the result of each robot, and the regions;
+//! - an animated 3-D scene in which the joints can be moved, with the distances of the guarded volumes to every region
+//!   and object;
+//! - plots of the distances over time, of the override with the governing region, after figure 12 of Romanelli 2011,
+//!   and timing;
+//! - the events.
+//!
+//! Nothing is loaded from a network: plotly.js and three.js are embedded. [`summary`] is the text summary.
 //!
 //! **Size.** Scripts and data are deflated; the scripts are 0.95 MB. Plots have at most 2,000 points per trace and the 3-D
 //! scene at most 1,700 frames of joint values, so a run adds at most about 20 kB per trace and 8 kB per joint, however long
 //! it is; meshes add about 8 bytes per triangle, equal ones once. The page needs a browser with `DecompressionStream`
 //! (all since 2023); result and tables need no script.
 //!
-//! [`map_pictures`] writes images of slices of a joint-space map, [`map_page`] one page with a slider over them, [`model_picture`] an image of a robot model with its joint axes.
-//! [`cell_data`] and [`shared_assets`] are for other pages with the 3-D scene of a cell.
+//! [`map_pictures`] writes images of slices of a joint-space map, [`map_page`] one page with a slider over them,
+//! [`model_picture`] an image of a robot model with its joint axes. [`cell_data`] and [`shared_assets`] are for other
+//! pages with the 3-D scene of a cell.
 //!
 //! ```
 //! use elbowroom_cell::Cell;
@@ -34,8 +41,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! **Invariant.** Whatever cell and recording it is made of, a page never loads anything from a network, and a name in
-//! it is always text, never markup.
+//! **Invariant.** For any cell and recording, a page never loads anything from a network, and a name in it is always
+//! text, never markup.
 
 mod downsample;
 mod explanation;

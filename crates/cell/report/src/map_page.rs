@@ -14,13 +14,16 @@ use crate::tables::escape;
 
 const PAGE: &str = include_str!("../assets/map/page.html");
 
-/// Most cells of a page: a browser holds one byte per cell.
+/// Largest number of cells of a page: a browser holds one byte per cell.
 const MAX_PAGE_CELLS: usize = 1 << 26;
-/// Most objects that have a number of their own.
+/// Largest number of objects: each has a separate number.
 const MAX_OBJECTS: usize = 255;
 
-/// Writes one page that opens offline: slices across any of three joints, chosen by a slider, with the axes in the units of the
-/// cell. Of more than three joints the first and the last two are shown, the others at the middle of their ranges.
+/// Writes one page that opens offline: slices across any of three joints, chosen by a slider, with axes in the units of
+/// the cell.
+///
+/// With more than three joints, the page shows the first and the last two; the others are at the middle of their
+/// ranges.
 ///
 /// # Errors
 /// More than 2²⁶ cells on the three axes, more than 255 objects, and errors of `out`.
@@ -53,7 +56,7 @@ pub fn write(mut out: impl Write, map: &CellMap, units: Units) -> io::Result<()>
     out.flush()
 }
 
-/// The first axis and the last two, as far as there are so many.
+/// The first axis and the last two, if there are that many.
 fn shown_axes(count: usize) -> [Option<usize>; 3] {
     match count {
         0 => [None; 3],
@@ -93,8 +96,9 @@ fn summary(map: &CellMap, shown: [Option<usize>; 3]) -> String {
     format!("{} cells, {share:.2} % of them blocked: in these the robot can touch an object{held}.", map.cells())
 }
 
-/// The number of the first object that blocks each cell, 0 for none, as runs: each a number of object + (objects + 1) · length,
-/// in groups of seven bits, the lowest first.
+/// Run-length code of the number of the first object that blocks each cell, 0 for none.
+///
+/// Each run is the number object + (objects + 1) · length, in groups of seven bits, lowest first.
 fn packed_cells(map: &CellMap, shown: [Option<usize>; 3], counts: [usize; 3]) -> Vec<u8> {
     let mut cell: Vec<u16> = map.axes.iter().map(|a| (a.count() / 2) as u16).collect();
     let kinds = map.obstacles.len() as u64 + 1;

@@ -14,12 +14,13 @@ use crate::{palette, png};
 /// Smallest number of pixels along the shorter side.
 const SMALLEST: usize = 180;
 const FREE: [u8; 3] = [246, 246, 242];
-/// Largest number of images; more slices are thinned out.
+/// Largest number of images; of more slices, only some get an image.
 const MAX_IMAGES: usize = 200;
 
-/// Writes images of slices and a page with them, `index.html`, to a folder; returns the number of images. One image per
-/// cell of the first axis: the last axis to the right, the one before it upwards, any others at the middle of their
-/// range.
+/// Writes images of slices and a page with them, `index.html`, to a folder; returns the number of images.
+///
+/// There is one image per cell of the first axis. The last axis points to the right, the one before it upwards; any
+/// others are at the middle of their ranges.
 ///
 /// # Errors
 /// Errors of the file system.

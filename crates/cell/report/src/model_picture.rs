@@ -27,9 +27,11 @@ struct ColoredTriangle {
     layer: u8,
 }
 
-/// Writes a PNG of the model, seen from the front left and above, with every joint at zero or at the limit nearest to
-/// it and each link in a colour of its own. The axis of a joint is drawn in front of everything, in the colour of the
-/// link that it moves, with a black edge; the arrow points in its positive direction.
+/// Writes a PNG of the model, seen from the front left and above.
+///
+/// Every joint is at zero or at the limit nearest to it, and each link has a different colour. The axis of a joint is
+/// drawn in front of everything, in the colour of the link that it moves, with a black edge; the arrow points in its
+/// positive direction.
 ///
 /// # Errors
 /// Errors of the writer.
@@ -37,7 +39,7 @@ pub fn write_png(inspection: &Inspection, out: impl Write) -> io::Result<()> {
     png::write(out, WIDTH, HEIGHT, &render(&colored_triangles(inspection), -35.0, 25.0))
 }
 
-/// Writes a page with four such images: oblique, from the front, from the side, from above.
+/// Writes a page with four images of the model: oblique, from the front, from the side, from above.
 ///
 /// # Errors
 /// Errors of the writer.
@@ -137,7 +139,7 @@ fn at_rest(robot: &Robot) -> ChainState {
     state
 }
 
-/// The visual meshes of a link, or its collision geometry where it has none.
+/// The visual meshes of a link, or its collision geometry if it has none.
 fn visuals_or_colliders(robot: &Robot, link: usize) -> &[Collider] {
     if robot.visuals[link].is_empty() { &robot.colliders[link] } else { &robot.visuals[link] }
 }

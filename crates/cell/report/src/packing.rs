@@ -25,8 +25,8 @@ pub fn deflated(bytes: &[u8]) -> io::Result<String> {
 
 /// Collects arrays of numbers in one buffer.
 ///
-/// An array is quantised with a step, then coded as differences to the value one row before, of which all low bytes come
-/// first, then all second ones, and so on: smooth curves and neighbouring vertices become bytes that deflate well.
+/// An array is quantised with a step, then coded as differences to the value one row before. All low bytes come first,
+/// then all second bytes, and so on. Smooth curves and neighbouring vertices become bytes that deflate well.
 #[derive(Debug, Default)]
 pub struct ArrayPacker {
     bytes: Vec<u8>,
@@ -38,8 +38,10 @@ impl ArrayPacker {
         &self.bytes
     }
 
-    /// Adds rows of `width` numbers, exact to half of `step`; the step is larger where the range needs more than 32 bits.
-    /// The answer tells the page where the array is, and how to read it.
+    /// Adds rows of `width` numbers, exact to half of `step`. Returns the place and the coding of the array, for the
+    /// page.
+    ///
+    /// The step is larger if the range needs more than 32 bits.
     pub fn add(&mut self, values: &[f64], width: usize, step: f64) -> Value {
         let finite = || values.iter().copied().filter(|v| v.is_finite());
         let (low, high) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
@@ -73,7 +75,7 @@ fn zigzag(difference: u32) -> u32 {
 mod tests {
     use super::*;
 
-    /// As the page reads it.
+    /// Reads an array like the page.
     fn read(bytes: &[u8], entry: &Value) -> Vec<f64> {
         let number = |key: &str| entry[key].as_f64().unwrap();
         let (at, n, width) = (number("at") as usize, number("n") as usize, number("width") as usize);

@@ -11,10 +11,10 @@ use crate::region_surface::Surface;
 
 /// Levels along the longest side of a mesh that is only drawn.
 const DRAWN_LEVELS: f64 = 16_384.0;
-/// Step of coordinates from which the page computes distances, m.
+/// Step of the coordinates from which the page computes distances, m.
 const EXACT_STEP_M: f64 = 1e-8;
 
-/// What a mesh is used for.
+/// Use of a mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum MeshUse {
     /// Drawn only: coordinates to a sixteen-thousandth of the mesh.
@@ -57,8 +57,9 @@ impl PageMeshes {
     }
 }
 
-/// Merges coincident vertices, so that the page can smooth normals; triangles without area, or with an index beyond the
-/// vertices, are left out.
+/// Merges coincident vertices, so that the page can smooth normals.
+///
+/// Omits triangles without area, and triangles with an index beyond the vertices.
 fn welded(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (Vec<Vec3>, Vec<u32>) {
     let target = merge_targets(vertices, 0.0);
     let mut place = vec![None; vertices.len()];

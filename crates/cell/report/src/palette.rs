@@ -1,7 +1,8 @@
 //! Colours of plots and of the 3-D scene.
 
-/// Colour of the region with this index: in tables, plots and the 3-D scene. Distinct on white and on black, the first ones
-/// from those of runs and robots, too.
+/// Colour of the region with this index: in tables, plots and the 3-D scene.
+///
+/// The colours are distinct on white and on black. The first ones also differ from the colours of runs and robots.
 pub fn of_region(index: usize) -> &'static str {
     const COLORS: [&str; 10] =
         ["#9a4fd6", "#1f9d55", "#d9488b", "#b58900", "#0f9fb5", "#a5673f", "#6a67e0", "#7c8a12", "#e5484d", "#2f7ed8"];

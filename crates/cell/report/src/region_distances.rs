@@ -14,11 +14,12 @@ use crate::scene::{ReportRobot, ReportScene};
 pub struct DistanceCurve {
     /// Index of the region.
     pub region: usize,
-    /// Per tick asked for, m; NaN while the region is inactive.
+    /// Distance per requested tick, m; NaN while the region is inactive.
     pub metres: Vec<f64>,
 }
 
-/// The curves of one robot at these ticks: one per region that applies to it. None if the scene has no guarded volumes.
+/// The curves of one robot at these ticks: one per region that applies to it. Empty if the scene has no guarded
+/// volumes.
 pub fn curves(scene: &ReportScene, rec: &Recording, robot: usize, ticks: &[usize]) -> Vec<DistanceCurve> {
     let (Some(model), Some(track)) = (scene.robots.get(robot), rec.robots.get(robot)) else { return Vec::new() };
     let applies = |r: &RegionTrack| {
@@ -45,7 +46,7 @@ fn placed<'m>(model: &'m ReportRobot, state: &ChainState) -> Vec<(&'m Volume, Po
     model.volumes.iter().map(|v| (v, in_world(v))).collect()
 }
 
-/// NaN while the region is inactive.
+/// Distance at one tick, m; NaN while the region is inactive.
 fn distance(volumes: &[(&Volume, Pose)], region: &RegionTrack, tick: usize, t_s: f64) -> f64 {
     let is_active = region.active.iter().rev().find(|(since, _)| *since <= t_s).is_some_and(|(_, on)| *on);
     let pose = match &region.poses {

@@ -14,7 +14,7 @@ type Edge = (u32, u32);
 pub type Surface = (Vec<Vec3>, Vec<[u32; 3]>);
 
 const CHORD_ERROR_M: f64 = 1e-3;
-/// Vertices within this distance are one, m.
+/// Distance within which vertices are merged, m.
 const SAME_VERTEX_M: f64 = 1e-9;
 /// Half the side (m) of the patch drawn for a plane.
 const PATCH_M: f64 = 2.0;

@@ -1,5 +1,6 @@
-//! What became of a robot's program, in one sentence: where and when it stopped, what governed, how long, what would
-//! release it.
+//! The result of a robot's program in one sentence.
+//!
+//! It contains place and time of a stop, what governed, the duration, and what would release the robot.
 
 use elbowroom_monitor::OverrideReason;
 use elbowroom_sim::{AvoidanceSummary, Outcome, Recording, RegionTrack, RobotTrack, Stop};
@@ -8,18 +9,18 @@ use elbowroom_spatial::Vec3;
 use crate::explanation::{collision_text, reason_text};
 use crate::summary::{last_motion_s, millimetres};
 
-/// Overrides below this share of the programmed one count as slowed down.
+/// Fraction of the programmed override below which a robot counts as slowed down.
 const SLOWED: f64 = 0.995;
 
-/// Below this override the time is given for which a robot was so slow.
+/// Override below which the duration of the slow motion is stated.
 const CRAWLING: f64 = 0.05;
 
-/// How good the news is.
+/// Grade of a result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Grade {
     /// The program was completed.
     Good,
-    /// It was not, and nothing was hit.
+    /// The program was not completed, without a collision.
     Stopped,
     /// A collision or a deadlock, or the entry of a region.
     Bad,
@@ -32,7 +33,7 @@ pub struct ResultLine {
     pub text: String,
 }
 
-/// One per robot, then one per region that was entered and must not be.
+/// One line per robot, then one per region that was entered although it must not be.
 pub fn results(rec: &Recording) -> Vec<ResultLine> {
     let robots = rec.robots.iter().map(|robot| of_robot(robot, rec));
     let entries = rec.regions.iter().filter(|r| r.is_violated()).map(|r| entry(r, rec));
@@ -49,7 +50,7 @@ fn of_robot(robot: &RobotTrack, rec: &Recording) -> ResultLine {
     ResultLine { grade, text: format!("{} {what}.", robot.name) }
 }
 
-/// Who entered a region, and when first.
+/// The robots that entered a region, and the time of the first entry.
 fn entry(region: &RegionTrack, rec: &Recording) -> ResultLine {
     let mut who: Vec<String> = Vec::new();
     for (i, robot) in rec.robots.iter().enumerate() {
@@ -89,7 +90,7 @@ fn finished(robot: &RobotTrack, rec: &Recording) -> String {
     }
 }
 
-/// What avoidance did.
+/// Description of the evasion.
 fn evaded(robot: &RobotTrack, rec: &Recording) -> String {
     let Some(track) = &robot.avoidance else { return String::new() };
     let summary = AvoidanceSummary::new(track, rec.tick_s);
@@ -111,7 +112,7 @@ fn at_region(stop: &Stop, rec: &Recording) -> String {
     stop.part.as_ref().map_or(place.clone(), |part| format!("{place} (closest: {part})"))
 }
 
-/// The smallest override, and what governed then.
+/// The smallest override, and what governed at that time.
 fn slowed(robot: &RobotTrack, rec: &Recording) -> String {
     let governed = robot.samples.iter().filter(|s| s.region.is_some());
     let least = governed.min_by(|a, b| a.speed_override.total_cmp(&b.speed_override));
@@ -125,7 +126,7 @@ fn slowed(robot: &RobotTrack, rec: &Recording) -> String {
     format!("slowed down to {percent:.1} % at {t:.2} s near {}{part}{long}", described(region, rec))
 }
 
-/// From "stopped" on: since when, where, what governs, how long, what releases.
+/// Text from "stopped" on: time, place, what governs, duration, what releases.
 fn stopped(robot: &RobotTrack, rec: &Recording) -> String {
     let ending = &robot.ending;
     let Some(since) = ending.stopped_at_s else {
@@ -151,7 +152,7 @@ fn place(p: Vec3) -> String {
     format!("({:.3}, {:.3}, {:.3}) m", p.x, p.y, p.z)
 }
 
-/// How far from what: `0.50 mm before the forbidden region post`.
+/// Distance and its reference: `0.50 mm before the forbidden region post`.
 fn before(by: &str, distance_m: Option<f64>, rec: &Recording) -> String {
     let what = described(by, rec);
     match distance_m {

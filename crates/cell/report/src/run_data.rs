@@ -21,10 +21,10 @@ const MAX_EVENT_FRAMES: usize = 200;
 const EXACT: f64 = 1e-8;
 const TIME_STEP_S: f64 = 1e-6;
 const SHOWN_STEP: f64 = 1e-6;
-/// Of outlines that sensors see, m.
+/// Step of outlines that sensors see, m.
 const SEEN_STEP_M: f64 = 1e-3;
 
-/// The ticks that the page has: evenly spaced, with every stop and its end.
+/// The ticks that the page contains: evenly spaced, with the start and end of every stop.
 pub fn frames(rec: &Recording) -> Vec<usize> {
     let ticks = rec.robots.iter().map(|r| r.samples.len()).min().unwrap_or(0);
     let stops = rec.events.iter().filter(|e| matches!(e.event, RunEvent::Stop | RunEvent::Resume));
@@ -36,7 +36,7 @@ pub fn frames(rec: &Recording) -> Vec<usize> {
     frames
 }
 
-/// One run.
+/// Data of one run.
 pub fn run(scene: &ReportScene, label: &str, rec: &Recording, packer: &mut ArrayPacker) -> Value {
     let frames = frames(rec);
     let first = rec.robots.first();
@@ -80,14 +80,14 @@ pub fn run(scene: &ReportScene, label: &str, rec: &Recording, packer: &mut Array
     })
 }
 
-/// When the first robot stopped or collided, s: what a person looks for first. 0 if none did.
+/// Time at which the page opens, s: when the first robot stopped or collided; 0 if none did.
 fn opens_s(rec: &Recording) -> f64 {
     let stops = rec.robots.iter().flat_map(|r| r.stops.iter().map(|s| s.from_s).chain(r.ending.stopped_at_s));
     let collisions = rec.robots.iter().flat_map(|r| r.collisions.iter().map(|c| c.t_s));
     stops.chain(collisions).min_by(f64::total_cmp).unwrap_or(0.0)
 }
 
-/// What a sensor saw: for each accepted picture or cloud the time from which on it was used, and its obstacles.
+/// Observations of a sensor: per accepted picture or cloud, the time from which it was used, and its obstacles.
 fn sensor(track: &SensorTrack) -> Value {
     let rounded = |v: f64| (v / SEEN_STEP_M).round() * SEEN_STEP_M;
     let obstacle = |o: &WatchedObstacle| {
@@ -101,7 +101,7 @@ fn sensor(track: &SensorTrack) -> Value {
     json!({ "name": track.name, "records": records.collect::<Vec<_>>() })
 }
 
-/// When which robot holds the object: (robot, start, end), the times in seconds.
+/// Periods in which robots hold the object: (robot, start, end), times in seconds.
 fn held(rec: &Recording, object: &str) -> Vec<(usize, f64, f64)> {
     let by = |(r, robot): (usize, &RobotTrack)| {
         let grips = rec.events.iter().filter(|e| e.region == object && e.robot == robot.name);
@@ -115,7 +115,7 @@ fn held(rec: &Recording, object: &str) -> Vec<(usize, f64, f64)> {
     rec.robots.iter().enumerate().flat_map(by).collect()
 }
 
-/// From when on which link carries the tool centre point, and where: (time in seconds, link, pose in the link).
+/// Tool centre points over time: (time in seconds from which it applies, link, pose in the link).
 fn tool_centre_points(robot: &ReportRobot, track: &RobotTrack, rec: &Recording) -> Vec<Value> {
     let value = |t_s: f64, link: LinkId, tcp: &Pose| json!([t_s, link.0, pose_values(tcp)]);
     let changes = rec.events.iter().filter(|e| e.event == RunEvent::Tool && e.robot == track.name).filter_map(|e| {

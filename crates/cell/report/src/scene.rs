@@ -16,9 +16,9 @@ pub(crate) const CHORD_ERROR_M: f64 = 1e-3;
 /// Geometry of a cell, as triangles.
 #[derive(Debug, Clone, Default)]
 pub struct ReportScene {
-    /// What the page calls the cell; empty: as the recording does.
+    /// Title of the page; if empty, the name of the cell in the recording.
     pub title: String,
-    /// In the order of the recording.
+    /// Robots, in the order of the recording.
     pub robots: Vec<ReportRobot>,
     /// Objects at their initial poses.
     pub objects: Vec<ReportObject>,
@@ -33,9 +33,9 @@ pub struct ReportRobot {
     pub base_in_world: Pose,
     /// Maps the joint positions of samples to link poses.
     pub chain: Chain,
-    /// Per link of the chain, in the link's frame.
+    /// Meshes per link of the chain, in the link's frame.
     pub link_meshes: Vec<Vec<ReportMesh>>,
-    /// In the flange's frame.
+    /// Meshes of the tool, in the flange's frame.
     pub tool: Vec<ReportMesh>,
     /// Tool centre point in the flange's frame.
     pub tcp_in_flange: Pose,
@@ -97,8 +97,9 @@ impl ReportScene {
         cell.objects.iter().fold(scene, Self::object)
     }
 
-    /// Adds a robot, coloured by its index. Its visual meshes are drawn; links without any show their collision
-    /// geometry.
+    /// Adds a robot, coloured by its index.
+    ///
+    /// Its visual meshes are drawn. A link without visual meshes shows its collision geometry.
     #[must_use]
     pub fn robot(
         mut self,

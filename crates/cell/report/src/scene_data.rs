@@ -16,7 +16,7 @@ use crate::{palette, region_surface, run_data};
 /// A mesh with more triangles than this is drawn, but the page computes no distances to it.
 const MAX_MEASURED_TRIANGLES: usize = 200_000;
 
-/// What the scripts of the page read.
+/// Data for the scripts of the page.
 #[derive(Debug, Default)]
 pub struct PageData {
     /// A document that refers to arrays.
@@ -25,7 +25,7 @@ pub struct PageData {
     pub arrays: Vec<u8>,
 }
 
-/// Data of a scene and of runs in it. The regions are those of the first run.
+/// Data of a scene and of runs in it. The regions come from the first run.
 pub fn data(scene: &ReportScene, runs: &[(&str, &Recording)]) -> PageData {
     let regions = runs.first().map_or(&[][..], |(_, rec)| &rec.regions[..]);
     let (mut packer, mut meshes) = (ArrayPacker::default(), PageMeshes::default());
@@ -61,7 +61,7 @@ pub fn cell_data(cell: &Cell) -> PageData {
 struct Pack<'a> {
     packer: &'a mut ArrayPacker,
     meshes: &'a mut PageMeshes,
-    /// True if the page computes distances: it needs the shapes.
+    /// True if the page computes distances, for which it needs the shapes.
     measured: bool,
 }
 
@@ -95,7 +95,7 @@ impl Pack<'_> {
         self.meshes.add(self.packer, surface, used)
     }
 
-    /// A solid as the page measures it; null where its mesh is too large for that.
+    /// A solid as the page measures it; null if its mesh is too large for that.
     fn shape(&mut self, shape: &Shape) -> Value {
         if !self.measured {
             return Value::Null;
@@ -128,7 +128,7 @@ fn robot(robot: &ReportRobot, pack: &mut Pack<'_>) -> Value {
     let volume = |v: &Volume, pack: &mut Pack<'_>| {
         json!({
             "name": v.name, "link": v.link.0, "pose": pose_values(&v.in_link), "shape": pack.shape(&v.shape),
-            // Of a tool that is exchanged: there while its link is.
+            // Whether the volume belongs to an exchanged tool, and so is present while its link is.
             "exchanged": v.presence != Presence::Always,
         })
     };
@@ -136,9 +136,9 @@ fn robot(robot: &ReportRobot, pack: &mut Pack<'_>) -> Value {
         "name": robot.name, "base": pose_values(&robot.base_in_world), "links": robot.chain.links().len(),
         "joints": joints(&robot.chain), "sliders": sliders(&robot.chain), "solids": solids,
         "volumes": robot.volumes.iter().map(|v| volume(v, pack)).collect::<Vec<_>>(),
-        // The volumes of objects while it holds them, at their poses in the objects.
+        // Volumes of objects while the robot holds them, at their poses in the objects.
         "gripped": robot.gripped.iter().map(|(o, v)| json!({ "object": o.0, "volume": volume(v, pack) })).collect::<Vec<_>>(),
-        // What counts for an object: the links with tool and load, as for a region with default guards.
+        // Volumes that count for an object: the links with tool and load, as for a region with default guards.
         "measured": volumes_for(robot, Guards::default()),
     })
 }
@@ -149,7 +149,7 @@ fn solid(link: usize, m: &ReportMesh, pack: &mut Pack<'_>) -> Value {
     json!({ "link": link, "mesh": mesh, "pose": pose_values(&m.in_link), "color": format!("#{r:02x}{g:02x}{b:02x}") })
 }
 
-/// The joints from the root outwards; `index` is that of the value in q, null for a fixed joint.
+/// The joints from the root outwards; `index` is the index of the value in q, null for a fixed joint.
 fn joints(chain: &Chain) -> Vec<Value> {
     let joint = |id: &elbowroom_kinematics::JointId| {
         let joint = &chain.joints()[id.0];
@@ -163,7 +163,7 @@ fn joints(chain: &Chain) -> Vec<Value> {
     chain.topological_order().iter().map(joint).collect()
 }
 
-/// The joints that a person can move, in the order of q; without limits a turn to either side, or 2 m.
+/// The joints that a user can move, in the order of q; without limits by half a turn, or 2 m, to either side.
 fn sliders(chain: &Chain) -> Vec<Value> {
     let slider = |id: &elbowroom_kinematics::JointId| {
         let joint = &chain.joints()[id.0];

@@ -1,5 +1,7 @@
-//! Scripts that the report and other pages with the 3-D scene share. Each is a part of one function body, after those that it
-//! uses: [`DOM`], [`PACKING`], a script of the page that defines `Data`, [`KINEMATICS`], [`STAGE`]; [`THREE`] before all of them.
+//! Scripts that the report and other pages with the 3-D scene share.
+//!
+//! Each is a part of one function body, after the scripts that it uses: [`DOM`], [`PACKING`], a script of the page that
+//! defines `Data`, [`KINEMATICS`], [`STAGE`]; [`THREE`] before all of them.
 
 /// three.js as a classic script, which defines the global `THREE`.
 pub const THREE: &str = include_str!("../assets/three/three.bundle.min.js");

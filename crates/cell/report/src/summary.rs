@@ -17,8 +17,10 @@ const MAX_STOPS: usize = 3;
 /// Below this speed (m/s) a TCP counts as stationary.
 const STATIONARY_M_S: f64 = 1e-4;
 
-/// Text summary of a run: robots, regions, tick times. No line is longer than `width` (at least 40) characters; colour
-/// codes only where `color` is true (a terminal). To list written files, use [`TextSummary`].
+/// Text summary of a run: robots, regions, tick times.
+///
+/// No line is longer than `width` (at least 40) characters. Colour codes appear only if `color` is true (a terminal).
+/// To list written files, use [`TextSummary`].
 ///
 /// ```
 /// use elbowroom_sim::{Recording, RunEnd, TickTimes};
@@ -45,25 +47,25 @@ pub struct TextSummary<'a> {
 }
 
 impl<'a> TextSummary<'a> {
-    /// 80 columns, no colour, no files.
+    /// Creates a summary with 80 columns, no colour, no files.
     pub fn new(recording: &'a Recording) -> Self {
         Self { recording, width: 80, color: false, is_whole: false, files: Vec::new() }
     }
 
-    /// Largest line length, in characters; at least 40.
+    /// Sets the largest line length, in characters; at least 40.
     #[must_use]
     pub fn width(mut self, columns: usize) -> Self {
         self.width = columns.max(40);
         self
     }
 
-    /// For a file or another program: what is longer than the width is not cut.
+    /// Sets whether texts longer than the width are kept whole, for a file or another program.
     #[must_use]
     pub fn whole(self, is_whole: bool) -> Self {
         Self { is_whole, ..self }
     }
 
-    /// With ANSI colours.
+    /// Sets whether ANSI colours are used.
     #[must_use]
     pub fn color(mut self, color: bool) -> Self {
         self.color = color;
@@ -196,7 +198,7 @@ fn robot_lines(robot: &RobotTrack, rec: &Recording, names: usize, width: usize) 
     lines
 }
 
-/// The first collisions: they matter more than whatever stopped the robot later.
+/// The first collisions, which matter more than a later stop.
 fn collision_lines(robot: &RobotTrack, indent: &str) -> Vec<Line> {
     let mut lines = Vec::new();
     for c in robot.collisions.iter().take(3) {
@@ -206,7 +208,7 @@ fn collision_lines(robot: &RobotTrack, indent: &str) -> Vec<Line> {
     lines
 }
 
-/// What to write where links that are in contact at the start always are.
+/// What to write if links that touch at the start always touch.
 fn key_to_ignore(robot: &RobotTrack, collision: &Collision) -> Option<String> {
     let link = |name: &str| Some(name.strip_prefix(&robot.name)?.strip_prefix('/')?.to_owned());
     let (a, b) = (link(&collision.a)?, link(&collision.b)?);
@@ -214,27 +216,27 @@ fn key_to_ignore(robot: &RobotTrack, collision: &Collision) -> Option<String> {
     at_start.then(|| format!("if they always touch: ignore = [[\"{a}\", \"{b}\"]] in [robot.{}]", robot.name))
 }
 
-/// Where the TCP is, the part that was closest to the region that stopped the robot, and what would release it.
+/// Link of the TCP, the part that was closest to the region that stopped the robot, and what would release the robot.
 fn detail_texts(robot: &RobotTrack) -> Vec<String> {
     let RobotEnding { part, part_kind, point, release, .. } = &robot.ending;
     let mut parts = Vec::new();
     if !robot.flange.is_empty() {
         parts.push(format!("TCP on {}", robot.flange));
     }
-    // Where the TCP itself is guarded, the line above has its place.
+    // If that part is the TCP itself, the line above has its place.
     if let (Some(part), Some(p)) = (part.as_ref().filter(|part| *part != "tcp"), point) {
         let load = if *part_kind == Some(PartKind::Load) && part != "load" { " (load)" } else { "" };
         parts.push(format!("closest {part}{load} at ({:.3}, {:.3}, {:.3}) m", p.x, p.y, p.z));
     }
     let place = (!parts.is_empty()).then(|| parts.join(", "));
-    // A line for each way, so that none is cut.
+    // One line per way, so that none is cut.
     let ways = release.iter().flat_map(|ways| ways.split(", or ")).enumerate();
     let ways = ways.map(|(i, way)| format!("{} when {way}", if i == 0 { "continues" } else { "or" }));
     let stops = robot.stops.iter().filter(|_| robot.finished).take(MAX_STOPS).map(stop_text);
     place.into_iter().chain(ways).chain(stops).collect()
 }
 
-/// A stop after which the robot went on.
+/// A stop after which the robot continued.
 fn stop_text(stop: &Stop) -> String {
     let by = stop.by.as_ref();
     let place = by.map_or_else(String::new, |by| format!(", {} before {}", millimetres(stop.distance_m), clean(by)));
@@ -257,7 +259,7 @@ fn evaded(track: &AvoidanceTrack, tick_s: f64) -> String {
     format!("evaded {evading:.2} s, off its path {off_path:.2} s, waited {waiting:.2} s, {nearest}{plans}; step {step}")
 }
 
-/// Summary of what a robot did about the obstacles that sensors see.
+/// Summary of a robot's reactions to the obstacles that sensors see.
 fn kept_clear(track: &PerceptionTrack) -> Vec<String> {
     let p = PerceptionSummary::from(track);
     let [in_motion, from_rest] = [p.replans_in_motion, p.replans_from_rest];
@@ -268,7 +270,7 @@ fn kept_clear(track: &PerceptionTrack) -> Vec<String> {
     [Some(paths), searches, longest, blind].into_iter().flatten().collect()
 }
 
-/// What a sensor sent and saw.
+/// Summary of a sensor's input and obstacles.
 fn sensor_line(track: &SensorTrack) -> Line {
     let s = SensorSummary::from(track);
     let what = if track.kind == "cloud" { "clouds" } else { "pictures" };
@@ -305,7 +307,7 @@ pub fn outcome(robot: &RobotTrack, rec: &Recording) -> String {
     }
 }
 
-/// When the TCP moved last, s; `None` if it never did.
+/// Time of the last motion of the TCP, s; `None` if it never moved.
 pub fn last_motion_s(robot: &RobotTrack) -> Option<f64> {
     robot.samples.iter().rfind(|s| s.tcp_speed > STATIONARY_M_S).map(|s| s.t_s)
 }
@@ -340,7 +342,7 @@ fn region_lines(rec: &Recording, width: usize) -> Vec<Line> {
     lines
 }
 
-/// Whether a region was entered: `yes`, `no`, or `granted` where only a robot that held it was inside.
+/// Whether a region was entered: `yes`, `no`, or `granted` if only a robot that held it was inside.
 pub fn entry(region: &RegionTrack) -> &'static str {
     let is_inside = region.min_distance_m.is_some_and(|distance| distance <= 0.0);
     match region.entered {

@@ -49,7 +49,7 @@ pub fn robots(recording: &Recording) -> String {
     table.end()
 }
 
-/// One row per region: its colour, distance and times; with what it would be without the monitor, where that is known.
+/// One row per region: its colour, distance and times, with the values without the monitor if they are known.
 pub fn regions(recording: &Recording, planned: Option<&Recording>) -> String {
     let planned = planned.filter(|p| recording.monitored && p.regions.len() == recording.regions.len());
     let mut names = vec!["region", "kind", "warning zone", "least distance", "entered", "in warning zone"];
@@ -126,14 +126,14 @@ pub fn events(recording: &Recording) -> String {
     out
 }
 
-/// A table in HTML. Each cell has the name of its column: on a telephone a row is a list.
+/// A table in HTML. Each cell has the name of its column, because narrow screens show a row as a list.
 pub struct Table<'a> {
     names: &'a [&'a str],
     html: String,
 }
 
 impl<'a> Table<'a> {
-    /// With a caption and the names of its columns.
+    /// Creates a table with a caption and the names of its columns.
     pub fn new(caption: &str, names: &'a [&'a str]) -> Self {
         let heads = names.join("</th><th scope=\"col\">");
         let html =
@@ -141,7 +141,7 @@ impl<'a> Table<'a> {
         Self { names, html }
     }
 
-    /// A row of plain texts, with a class.
+    /// Adds a row of plain texts, with a class.
     pub fn row(&mut self, cells: &[String], class: &str) {
         let cells: Vec<String> = cells.iter().map(|c| escape(c)).collect();
         self.row_of_html(&cells, class);
@@ -155,7 +155,7 @@ impl<'a> Table<'a> {
         self.html.push_str("</tr>\n");
     }
 
-    /// The whole table.
+    /// Completes the table and returns it.
     pub fn end(self) -> String {
         self.html + "</tbody></table>"
     }

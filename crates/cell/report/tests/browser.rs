@@ -1,5 +1,6 @@
-//! The page in headless Chromium: its distances are the engine's, its controls work, it fits a narrow screen, and no error
-//! reaches the console.
+//! The page in headless Chromium.
+//!
+//! Its distances are the engine's, its controls work, it fits a narrow screen, and no error reaches the console.
 //!
 //! Needs Chromium, named by `ELBOWROOM_CHROMIUM`; without it the tests pass with a message.
 #![allow(clippy::print_stdout, reason = "a skipped test says so")]
@@ -19,9 +20,9 @@ use elbowroom_sim::{Recording, RunOptions, simulate};
 use elbowroom_testkit::random::{split_mix, unit};
 use serde_json::{Value, json};
 
-/// What the page may differ by from the engine, m.
+/// Tolerance between the page and the engine, m.
 const AGREED_M: f64 = 1e-7;
-/// What a shown number may differ by, m: it has three decimals of a millimetre.
+/// Tolerance of a shown number, m: it has three decimals of a millimetre.
 const SHOWN_M: f64 = 0.51e-6;
 const TIMEOUT: Duration = Duration::from_secs(100);
 /// Configurations to which the sliders are set.
@@ -104,7 +105,7 @@ facet normal 0 0 0 outer loop vertex 0.6 0 0 vertex 0 0.5 0 vertex 0.1 0.1 0.7 e
 endsolid wedge
 ";
 
-/// Before all other scripts: notes what goes wrong.
+/// Before all other scripts: records errors.
 const WATCH: &str = "<script>
 window.problems = [];
 addEventListener('error', (event) => problems.push(event.message));
@@ -113,7 +114,7 @@ const log = console.error;
 console.error = (...words) => { problems.push(words.join(' ')); log(...words); };
 </script>";
 
-/// After all other scripts: plays a person, and leaves what was seen in the document.
+/// After all other scripts: acts as a user, and writes what it saw into the document.
 const PERSON: &str = "<script>
 (async () => {
   const pause = (ms) => new Promise((done) => setTimeout(done, ms));
@@ -172,7 +173,7 @@ fn chromium() -> Option<PathBuf> {
     named
 }
 
-/// A folder of its own for each test.
+/// A separate folder for each test.
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("browser-{name}"));
     std::fs::create_dir_all(&folder).unwrap();
@@ -192,18 +193,18 @@ fn recording(cell: &Cell, monitored: bool) -> Recording {
     simulate(cell, &options).unwrap_or_else(|e| panic!("{e}")).recording
 }
 
-/// A report to open, and what the person does in it.
+/// A report to open, and the actions of the user in it.
 struct Visit<'a> {
     scene: &'a ReportScene,
     run: &'a Recording,
     planned: &'a Recording,
     /// Joint values to which the sliders are set.
     q: &'a [Vec<f64>],
-    /// Width of the screen, px; headless Chromium has windows of 500 px and more, so a narrow one is a frame.
+    /// Width of the screen, px. Headless Chromium has windows of 500 px and more, so a narrow screen is a frame.
     width: u32,
 }
 
-/// Opens the report, plays the person, and answers what was seen.
+/// Opens the report, acts as a user, and returns what was seen.
 fn visit(chromium: &Path, folder: &Path, visit: &Visit<'_>) -> Value {
     let Visit { scene, run, planned, q, width } = *visit;
     let mut page = Vec::new();
@@ -247,7 +248,7 @@ fn visit(chromium: &Path, folder: &Path, visit: &Visit<'_>) -> Value {
     seen
 }
 
-/// A page with the report in a frame of this width, as on a telephone.
+/// A page with the report in a frame of this width, as on a phone.
 fn framed(page: &str, width: u32) -> String {
     let page = STANDARD.encode(page);
     format!(
@@ -285,7 +286,7 @@ fn engine(cell: &Cell, q: &[f64]) -> Vec<(String, f64)> {
     all
 }
 
-/// Compares a step of the person with the engine; answers the number of contacts.
+/// Compares a step of the user with the engine; returns the number of contacts.
 fn compare(step: &Value, expected: &[(String, f64)]) -> usize {
     let rows = step["rows"].as_array().unwrap();
     assert_eq!(rows.len(), expected.len());
@@ -337,7 +338,7 @@ fn moved_joints_show_the_distances_of_the_engine() {
     assert!(contacts > 0, "some configuration touches something");
     assert_eq!(seen["unnamed"], json!([]), "controls without a name");
     assert_eq!(seen["play"], json!("play"));
-    // It opens where the robot stopped, and what plays it is seen without scrolling on a screen of 1280 by 800.
+    // It opens at the stop of the robot, and the play control is visible without scrolling on a screen of 1280 by 800.
     let [opens_s, stopped_s] = [seen["opens_s"].as_f64().unwrap(), run.robots[0].stops[0].from_s];
     assert!((opens_s - stopped_s).abs() < 1e-6, "{opens_s} {stopped_s}");
     assert!(seen["play_ends_px"].as_f64().unwrap() < 650.0, "{}", seen["play_ends_px"]);
@@ -357,7 +358,7 @@ fn a_narrow_screen_does_not_scroll_sideways() {
     assert!(seen["scroll"].as_u64() <= seen["width"].as_u64(), "{} > {}", seen["scroll"], seen["width"]);
 }
 
-/// An arm that takes a part and comes to rest with it near a wall.
+/// An arm that grips a part and comes to rest with it near a wall.
 const CARRY: &str = r#"
 version = 1
 units = { length = "mm", angle = "deg" }

@@ -15,12 +15,12 @@ fn page(on: &Recording, off: &Recording) -> String {
     String::from_utf8(out).unwrap()
 }
 
-/// What stands below the scene: regions, plots, tables.
+/// The part of the page below the scene: regions, plots, tables.
 fn below_scene(html: &str) -> &str {
     html.split_once("id=\"distances\"").unwrap().1
 }
 
-/// What is written above the scene.
+/// The result above the scene.
 fn result(html: &str) -> &str {
     let to = html.find("id=\"stage\"").unwrap();
     &html[html.find("<main>").unwrap()..to]
@@ -132,7 +132,7 @@ fn the_summary_fits_its_columns() {
     }
 }
 
-/// A holder that was inside has not entered where it must not: 0 mm and "no" would be a contradiction.
+/// A holder that was inside has not entered a forbidden place: 0 mm and "no" would be a contradiction.
 #[test]
 fn a_region_whose_holder_was_inside_is_granted() {
     let mut run = report_demo::recording(true, 2000, "column");
@@ -151,7 +151,8 @@ fn a_region_whose_holder_was_inside_is_granted() {
     assert_eq!(line(&run).as_deref(), Some("YES"));
 }
 
-/// What a robot waits for is never cut, and for a file nothing is. A collision comes before what happened later.
+/// The text for what a robot waits for is never cut, and a file contains no cut text. A collision comes before later
+/// events.
 #[test]
 fn the_summary_of_a_file_is_whole_and_tells_collisions_first() {
     let mut run = report_demo::recording(true, 2000, &"a very long name ".repeat(8));
@@ -179,7 +180,7 @@ fn the_summary_names_place_and_cause_and_colours_only_terminals() {
     assert!(summary(&run, 80, true).contains("\u{1b}["));
 }
 
-/// Without the monitor nothing holds a robot back, and "free" alone would hide a collision.
+/// Without the monitor the robots are not held back, and "free" alone would hide a collision.
 #[test]
 fn after_a_collision_the_report_shows_it_instead_of_free() {
     let mut run = report_demo::recording(false, 3000, "column");
@@ -234,7 +235,7 @@ fn the_summary_names_a_deadlock() {
     assert!(text.contains("deadlock since") && text.contains("a, b wait for each other"), "{text}");
 }
 
-/// The first words of the page: what became of the robot, where, by what, how long, and what would release it.
+/// The first words of the page: the result of the robot, with place, cause, duration, and what would release it.
 #[test]
 fn the_result_comes_first_and_names_what_governs() {
     let mut run = report_demo::recording(true, 3000, "column");
@@ -257,19 +258,19 @@ fn the_result_comes_first_and_names_what_governs() {
     assert!(first.contains("continues when the program moves away."), "{first}");
     let collided = "ns16 collided: fore hit table at 3.100 s";
     assert!(first.contains(collided) && first.contains("The forbidden region column was entered: ns16 at "), "{first}");
-    // The table of the regions: colour, kind, least distance, entered, and what it would be without the monitor.
+    // The table of the regions: colour, kind, smallest distance, entered, and the values without the monitor.
     let regions = below_scene(&html);
     assert!(regions.contains("<i class=\"chip\" style=\"background:#9a4fd6\"></i>column"), "{regions}");
     assert!(regions.contains("without monitor") && regions.contains("0.00 mm, entered"), "{regions}");
 
-    // A robot that went on: what had stopped it.
+    // A robot that continued: what had stopped it.
     run.robots[0].finished = true;
     run.robots[0].stops[0].to_s = stop.from_s + 0.5;
     let html = page(&run, &run);
     let text = "before, the monitor had stopped it for 0.50 s at";
     assert!(result(&html).contains(text) && result(&html).contains("(closest: tcp)"), "{}", result(&html));
     assert!(summary(&run, 120, false).contains("before column, closest tcp"), "{}", summary(&run, 120, false));
-    // Slowed down, and not at all.
+    // A robot that was slowed down, and a robot that was not.
     run.robots[0].stops.clear();
     run.robots[0].samples.truncate(1400);
     let governed = run.robots[0].samples.iter().filter(|s| s.region.is_some());
@@ -283,7 +284,7 @@ fn the_result_comes_first_and_names_what_governs() {
     assert!(result(&page(&run, &run)).contains("no region slowed it down"));
 }
 
-/// One colour per region: in the table, in every plot, in the scene.
+/// One colour per region: in the table, in every plot, and in the scene.
 #[test]
 fn a_region_has_one_colour_everywhere() {
     let (on, off) = (report_demo::recording(true, 3000, "column"), report_demo::recording(false, 3000, "column"));
@@ -307,8 +308,9 @@ fn a_region_has_one_colour_everywhere() {
     }
 }
 
-/// The distances of every region over time: at a stop that of the monitor; dotted, those of the planned motion, which may be
-/// given without a second run in the page.
+/// The distances of every region over time: at a stop the monitor's distance.
+///
+/// Dotted curves show the planned motion, which may be given without a second run in the page.
 #[test]
 fn distances_of_regions_are_drawn_with_and_without_the_monitor() {
     let (on, off) = (report_demo::recording(true, 3000, "column"), report_demo::recording(false, 3000, "column"));

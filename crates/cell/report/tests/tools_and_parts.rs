@@ -1,4 +1,4 @@
-//! What a robot holds, and its tools, in the data of the page.
+//! Held parts and tools of a robot in the data of the page.
 
 use crate::page_data;
 use elbowroom_cell::Cell;

@@ -1,15 +1,17 @@
-//! `trace.csv` and `events.csv`. Numbers are written such that they read back to the same bits.
+//! Writers of `trace.csv` and `events.csv`. Every number reads back to the same bits.
 
 use std::io::{self, Write};
 
 use crate::recording::Recording;
 
-/// Columns of what governs.
+/// Columns that describe the governing point and obstacle.
 const GOVERNING: &str = "part,object,point_x_m,point_y_m,point_z_m";
 
 /// Writes `t_s,robot,q1..qn,tcp_x_m,tcp_y_m,tcp_z_m,tcp_speed_m_s,override,region,distance_m,part,object,point_x_m,
-/// point_y_m,point_z_m`: one row per robot and tick, ordered by time, then robot. `part` is the link, tool or load
-/// closest to the governing region, the point is its closest one; `object` is what avoidance evades.
+/// point_y_m,point_z_m`: one row per robot and tick, ordered by time, then robot.
+///
+/// `part` is the link, tool or load closest to the governing region; `point_…` is the point of that part closest to the
+/// region; `object` is the obstacle that the robot evades or waits for.
 ///
 /// # Errors
 /// Errors of the writer.

@@ -1,4 +1,4 @@
-//! The hand of a robot: its flange and tool, as far as they grip.
+//! The hand of a robot, and how it grips parts.
 
 use elbowroom_cell::{Cell, CellRobot};
 use elbowroom_kinematics::{ChainState, JointId, LinkId};
@@ -7,10 +7,10 @@ use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_scene::Attachment;
 use elbowroom_spatial::Pose;
 
-/// Parts that are farther from the hand than this cannot be gripped, m.
+/// Largest distance from the hand at which a part can be gripped, m.
 pub(crate) const MAX_GRIP_DISTANCE_M: f64 = 0.05;
 
-/// The hand of a robot: the flange link, what is fixed to it, and the fingers that it carries.
+/// The hand of a robot: the flange link, the links fixed to it, and the fingers that it carries.
 pub(crate) struct Hand<'a> {
     robot: &'a CellRobot,
     links: Vec<LinkId>,
@@ -28,7 +28,7 @@ impl<'a> Hand<'a> {
         Self { robot, links }
     }
 
-    /// Distance (m) from a part to the nearest solid of the hand, or to the TCP where that is nearer.
+    /// Distance (m) from a part to the nearest solid of the hand, or to the TCP if that is nearer.
     pub(crate) fn distance_m(&self, state: &ChainState, part: &Shape, part_in_world: &Pose) -> f64 {
         let tcp = self.link_in_world(state, self.robot.flange) * self.robot.tcp_in_flange;
         let point = Shape::Sphere(Sphere { radius: 0.0 });
@@ -41,7 +41,7 @@ impl<'a> Hand<'a> {
         solids.map(to_solid).fold(to_tcp, f64::min)
     }
 
-    /// How a part is attached where it is: the hand, and the links that touch it now, may touch it.
+    /// Attachment of a part at its present pose. The hand, and the links that touch the part now, may touch it.
     pub(crate) fn attachment(&self, id: RobotId, state: &ChainState, part: &Shape, part_in_world: &Pose) -> Attachment {
         let robot = &self.robot.robot;
         let touches = |link: LinkId| {
@@ -59,10 +59,10 @@ impl<'a> Hand<'a> {
     }
 }
 
-/// How a robot, with its present tool, grips a part that is at `part_in_world`.
+/// Attachment of a part at `part_in_world` that a robot grips with its present tool.
 ///
 /// # Errors
-/// What is wrong, with the distance: the part is too far from the hand.
+/// A message with the distance if the part is too far from the hand.
 pub(crate) fn grip(
     cell: &Cell,
     id: RobotId,

@@ -1,4 +1,4 @@
-//! How a robot holds an object, for questions about states in which it does.
+//! The attachment of an object to the robot that holds it, for queries about states.
 
 use elbowroom_cell::Cell;
 use elbowroom_formats::FormatError;
@@ -9,7 +9,10 @@ use elbowroom_scene::Attachment;
 use crate::hand::grip;
 use crate::motion::first_grip;
 
-/// How a robot holds an object: as its program grips it first, else where both are at the start.
+/// Returns how a robot holds an object.
+///
+/// This is the first grip of the robot's program. If the program never grips the object, it is a grip with robot and
+/// object at their start.
 ///
 /// ```
 /// use elbowroom_cell::Cell;
@@ -34,8 +37,8 @@ use crate::motion::first_grip;
 /// ```
 ///
 /// # Errors
-/// [`FormatError`]: a step before the grip is infeasible, the place of the object is known in the run only, or no program grips
-/// it and it is too far from the hand at the start.
+/// [`FormatError`] if a step before the grip is infeasible, if the place of the object is known only during the run, or
+/// if the robot's program never grips the object and the object is too far from the hand at the start.
 pub fn held_object(cell: &Cell, robot: RobotId, object: ObjectId) -> Result<Attachment, FormatError> {
     let (at, name) = (&cell.robots[robot.0], &cell.objects[object.0].name);
     if let Some(action) = first_grip(cell, robot, object)? {

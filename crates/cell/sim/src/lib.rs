@@ -1,9 +1,9 @@
 //! Simulation of the programs of a cell under the interference-region monitors.
 //!
-//! [`simulate`] runs the programs of a [`Cell`](elbowroom_cell::Cell) on one clock and returns a [`Recording`], which
-//! [`RunSummary`] and [`csv`] turn into what scripts read and `elbowroom_report` into what people read. [`check`](check::check)
-//! decides, without a run, which regions the active laws keep the robots out of; [`motion`] times the programs for
-//! both.
+//! [`simulate`] runs the programs of a [`Cell`](elbowroom_cell::Cell) on one clock and returns a [`Recording`].
+//! [`RunSummary`] and [`csv`] write the recording for scripts, `elbowroom_report` writes it for people.
+//! [`check`](check::check) decides, without a run, which regions the active laws keep the robots out of; [`motion`]
+//! times the programs for the run and the check.
 //!
 //! ```
 //! use elbowroom_cell::Cell;

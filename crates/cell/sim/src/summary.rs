@@ -18,7 +18,7 @@ pub struct RunSummary {
     pub checksum: String,
     /// Simulated time, s.
     pub duration_s: f64,
-    /// `finished`, `rest` (nothing moved any more), `standstill` (only endless belts did) or `time_limit`.
+    /// `finished`, `rest` (all motion had ended), `standstill` (only endless belts moved) or `time_limit`.
     pub end: RunEnd,
     /// Number of ticks.
     pub ticks: usize,
@@ -30,13 +30,13 @@ pub struct RunSummary {
     pub regions: Vec<RegionSummary>,
     /// Deadlocks at the end of the run.
     pub deadlocks: Vec<DeadlockSummary>,
-    /// Per camera whose pictures were taken in; left out where there is none.
+    /// Per camera with loaded pictures; omitted if empty.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub cameras: Vec<SensorSummary>,
-    /// Per source of point clouds that were taken in; left out where there is none.
+    /// Per source of point clouds with loaded clouds; omitted if empty.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub clouds: Vec<SensorSummary>,
-    /// Where the objects that move or are gripped are at the end; left out where there are none.
+    /// Final poses of the objects that move or are gripped; omitted if empty.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub objects: Vec<ObjectSummary>,
 }
@@ -88,35 +88,35 @@ pub struct RobotSummary {
     pub finished: bool,
     /// `finished`, `stopped`, `held` (waiting for an exchange region), `collided` or `deadlock`.
     pub outcome: Outcome,
-    /// Since when it is stopped at its final configuration, s; null for one that finished or was still moving.
+    /// Time at which it stopped at its final configuration, s; null if it finished or was still moving.
     pub stopped_at_s: Option<f64>,
-    /// The region or obstacle that stopped it, or what it collided with first; null where there is none.
+    /// The region or obstacle that stopped it, or what it collided with first; null if unknown.
     pub by: Option<String>,
-    /// The link, tool or load concerned.
+    /// The link, tool or load that was closest to the region, or collided first.
     pub part: Option<String>,
-    /// What that part is: `tcp`, `tool`, `load` or `link`.
+    /// Kind of that part: `tcp`, `tool`, `load` or `link`.
     pub part_kind: Option<PartKind>,
     /// The point of that part closest to the region, in the world, m.
     pub point_m: Option<[f64; 3]>,
-    /// What would let it continue, in words; null where nothing is known to.
+    /// Condition under which it would continue, in words; null if none is known.
     pub release: Option<String>,
     /// Time stopped by the monitor, s.
     pub stopped_s: f64,
-    /// Each time that the monitor stopped it, in order of time.
+    /// Stops by the monitor, in order of time.
     pub stops: Vec<StopSummary>,
     /// Smallest override, 0..1.
     pub min_override: f64,
     /// First contact of each pair.
     pub collisions: Vec<CollisionSummary>,
-    /// Evasion; left out for a robot without avoidance.
+    /// Evasion; omitted for a robot without avoidance.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub avoidance: Option<AvoidanceSummary>,
-    /// What it did about the obstacles that sensors see; left out for a robot that no sensor guards.
+    /// Reactions to the obstacles that sensors see; omitted for a robot that no sensor guards.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub perception: Option<PerceptionSummary>,
 }
 
-/// What a robot did about the obstacles that sensors see.
+/// Reactions of one robot to the obstacles that sensors see.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PerceptionSummary {
     /// New paths that it entered in motion.
@@ -127,15 +127,15 @@ pub struct PerceptionSummary {
     pub replans_failed: usize,
     /// Wall-clock time of the longest search, s; 0 without searches.
     pub longest_search_s: f64,
-    /// Time in which it braked or stood because of an obstacle, s.
+    /// Time during which it braked or waited because of an obstacle, s.
     pub waited_s: f64,
-    /// Time in which it braked or stood because a sensor had sent nothing for too long, s.
+    /// Time during which it braked or waited because a sensor had sent nothing for too long, s.
     pub stale_s: f64,
-    /// Each of these times.
+    /// Periods in which it was held.
     pub holds: Vec<HoldSummary>,
 }
 
-/// A time in which a robot was held.
+/// A period in which a robot was held.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct HoldSummary {
     /// Start, s.
@@ -166,24 +166,24 @@ impl From<&PerceptionTrack> for PerceptionSummary {
     }
 }
 
-/// What one sensor sent and saw.
+/// Input and observations of one sensor.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SensorSummary {
     /// Its name.
     pub name: String,
-    /// Pictures or clouds taken in.
+    /// Number of loaded pictures or clouds.
     pub frames: usize,
-    /// Of these: learnt as the empty cell.
+    /// Number of these that were learnt as the empty cell.
     pub learned: usize,
-    /// Of these: evaluated.
+    /// Number of these that were evaluated.
     pub accepted: usize,
-    /// Of these: not usable.
+    /// Number of these that were not usable.
     pub rejected: usize,
-    /// Every obstacle seen, in the order in which they entered.
+    /// All obstacles seen, in the order in which they entered.
     pub obstacles: Vec<SeenObstacle>,
-    /// Most cells of the joint-space map that obstacles blocked at once.
+    /// Largest number of cells of the joint-space map that obstacles blocked at once.
     pub most_blocked: u64,
-    /// Wall-clock time from a picture in its file to the reaction of the robots, new paths included, ns.
+    /// Wall-clock time from the picture in its file to the reaction of the robots, new paths included, ns.
     pub processing_ns: TickNs,
 }
 
@@ -192,15 +192,15 @@ pub struct SensorSummary {
 pub struct SeenObstacle {
     /// Its identity.
     pub id: u64,
-    /// The template that it matched last; null for none.
+    /// The template that it matched last; null if it matched none.
     pub kind: Option<String>,
-    /// When it was seen first, s.
+    /// Time of its first observation, s.
     pub first_s: f64,
-    /// When it was seen last, s.
+    /// Time of its last observation, s.
     pub last_s: f64,
-    /// Its estimated centre then, world x and y, m.
+    /// Its estimated centre at that time, world x and y, m.
     pub centre_m: [f64; 2],
-    /// Its height then, m.
+    /// Its height at that time, m.
     pub height_m: f64,
 }
 
@@ -236,12 +236,12 @@ impl From<&SensorTrack> for SensorSummary {
     }
 }
 
-/// A time during which the monitor stopped a robot.
+/// A period in which the monitor stopped a robot.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StopSummary {
     /// Start, s.
     pub from_s: f64,
-    /// When it moved on, or the end of the run, s.
+    /// Time at which it moved on, or the end of the run, s.
     pub to_s: f64,
     /// The region that governed; null for a stop by invalid input.
     pub by: Option<String>,
@@ -264,13 +264,13 @@ impl From<&Stop> for StopSummary {
 /// Evasion of a robot.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct AvoidanceSummary {
-    /// Time in which the rules corrected its motion, s.
+    /// Time during which the rules corrected its motion, s.
     pub evading_s: f64,
     /// Time off its path, s.
     pub off_path_s: f64,
-    /// Time in which it was stopped by an obstacle, s.
+    /// Time during which an obstacle stopped it, s.
     pub waiting_s: f64,
-    /// Smallest separation distance to any obstacle, m; null where none was near.
+    /// Smallest separation distance to any obstacle, m; null if no obstacle was near.
     pub min_distance_m: Option<f64>,
     /// Number of replanning attempts.
     pub plans: usize,
@@ -297,10 +297,10 @@ impl AvoidanceSummary {
     }
 }
 
-/// Robots that wait for each other.
+/// A cycle of robots that wait for each other.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DeadlockSummary {
-    /// Since when all of them are stopped, s.
+    /// Time since which all of them are stopped, s.
     pub t_s: f64,
     /// The robots.
     pub robots: Vec<String>,
@@ -311,7 +311,7 @@ pub struct DeadlockSummary {
 /// A contact.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CollisionSummary {
-    /// When, s.
+    /// Time, s.
     pub t_s: f64,
     /// `robot/link`.
     pub a: String,
@@ -326,11 +326,11 @@ pub struct RegionSummary {
     pub name: String,
     /// `forbidden`, `monitored`, `exchange`.
     pub kind: RecordedRegionKind,
-    /// Smallest distance while active, m; null where it never was.
+    /// Smallest distance while active, m; null if it was never active.
     pub min_distance_m: Option<f64>,
     /// True if a guarded volume touched it (for an exchange region: without holding it).
     pub entered: bool,
-    /// Time in which any robot was in its warning zone, s.
+    /// Time during which any robot was in its warning zone, s.
     pub warned_s: f64,
 }
 

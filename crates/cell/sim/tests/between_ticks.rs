@@ -104,7 +104,7 @@ fn a_belt_that_restarts_passes_no_robot() {
          [region.blade]\nshape = \"box\"\nbase = [-700, 0, -500]\nsize = [2, 1000, 1000]\nkind = \"monitored\"\n\
          guards = [\"tcp\"]\nfollow = {{ encoder = \"belt\" }}\n[encoder.back]\nspeed = 1\n"
     );
-    // The region moves from x = -700 to -100 and jumps back: it never passes a TCP at 0, and passes one at -300 only
+    // The region moves from x = -700 to -100 and jumps back. It never passes a TCP at 0, and passes one at -300 only
     // while it moves forward, not when it jumps back.
     assert_eq!(events(&run(&text).recording, "blade"), []);
     let shifted = text.replace("[robot.a]\n", "[robot.a]\nbase = { at = [-300, 0, 0], rpy = [0, 0, 0] }\n");

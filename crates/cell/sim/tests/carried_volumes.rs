@@ -1,4 +1,4 @@
-//! Regions count what a robot has gripped, from the grip to the release.
+//! Regions count gripped parts, from the grip to the release.
 
 use crate::common::{HEAD, parse, run, run_free};
 use elbowroom_cell::Cell;
@@ -38,8 +38,10 @@ fn post(more: &str) -> String {
 
 const STOPPING: &str = "[monitor]\nstopping_distance = true\n";
 
-/// Smallest distance (m) of any solid of the robot from the first region over all ticks of a run, the bar being one from its
-/// grip to its release: from the recorded joint values and the recorded poses of the bar, with no monitor.
+/// Smallest distance (m) of any solid of the robot from the first region over all ticks of a run.
+///
+/// The bar is such a solid from its grip to its release. Computed from the recorded joint values and the recorded poses
+/// of the bar, without a monitor.
 fn brute_force_m(cell: &Cell, r: &Recording) -> f64 {
     let at = |name: &str| r.events.iter().find(|e| e.event.name() == name).map(|e| e.t_s);
     let (grip, release) = (at("grip").unwrap_or(f64::INFINITY), at("release").unwrap_or(f64::INFINITY));
@@ -68,7 +70,7 @@ fn brute_force_m(cell: &Cell, r: &Recording) -> f64 {
 fn assert_distance(cell: &str, outcome: &RunOutcome) -> f64 {
     let expected = brute_force_m(&parse(cell), &outcome.recording);
     let found = outcome.recording.regions[0].min_distance_m.unwrap();
-    // Between two ticks the run measures too.
+    // The run also measures between two ticks.
     assert!(found <= expected + 1e-9 && found > expected - 0.01, "{found} m, by brute force {expected} m");
     found
 }
@@ -97,7 +99,7 @@ fn the_monitor_stops_the_bar_before_the_border_and_names_it() {
         assert_eq!((e.outcome, e.by.as_deref(), e.part.as_deref()), (Outcome::Stopped, Some("post"), Some("bar")));
         assert_eq!(e.part_kind, Some(PartKind::Load));
         assert!(e.point.unwrap().length() > 0.9, "the end of the bar: {:?}", e.point);
-        // The empty hand is not held at all.
+        // The empty hand is not held back.
         assert!(run(&cell(700.0, &post(laws), false)).recording.robots[0].finished);
     }
 }
@@ -108,7 +110,7 @@ fn it_counts_for_tool_and_arm_and_not_for_the_tcp() {
         let outcome = run_free(&cell(700.0, &post(&format!("guards = [{guards}]")), true));
         assert_eq!(outcome.recording.regions[0].entered, counts, "{guards}");
     }
-    // A robot without a tool: what it grips is one.
+    // For a robot without a tool, the gripped part is the tool.
     let refused = Cell::parse("c.toml", &cell(700.0, &post("guards = [\"tool\"]"), false)).unwrap_err();
     assert!(refused.to_string().contains("no tool and no load"), "{refused}");
 }

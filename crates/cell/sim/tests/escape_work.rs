@@ -1,4 +1,4 @@
-//! The hardest of the runs of `cargo xtask evade`: no hit, and no step longer than a tick in counted work.
+//! The hardest runs of `cargo xtask evade`: without a contact, and without a step that exceeds a tick in counted work.
 #![allow(clippy::print_stdout)]
 
 use crate::common::crossing;
@@ -9,7 +9,8 @@ use elbowroom_robot::ObjectId;
 use elbowroom_sim::RunOptions;
 use elbowroom_sim::run::simulate;
 
-/// Runs that hit before escapes were kept known, or that need most of them, and when the arm is back on its path, s.
+/// Runs that hit before escapes were kept known, or that need most of them, and the time at which the arm is back on
+/// its path, s.
 const HARD: [(usize, f64); 2] = [(135, 9.4), (160, 4.4)];
 
 #[test]
@@ -26,7 +27,7 @@ fn hard_runs_do_not_hit() {
     let paths = crossing::paths(&cell, object, seconds, runs.iter().max().unwrap() + 1).unwrap();
     for n in runs {
         let mut cell = cell.clone();
-        // What follows in these runs is an arm on its path.
+        // After that time, the arm of these runs is on its path.
         if let Some((_, back_s)) = HARD.iter().find(|(hard, _)| *hard == n && !long) {
             cell.max_s = back_s + 0.5;
         }

@@ -30,8 +30,9 @@ fn opposite(laws: &str, start_b: f64) -> String {
     )
 }
 
-/// Number of ticks with two robots inside one region, from the recorded joint values alone: a ball is inside where its
-/// centre is within its radius of the box, along x.
+/// Number of ticks with two robots inside one region, from the recorded joint values alone.
+///
+/// A ball is inside if its centre is within its radius of the box, along x.
 fn both_inside(outcome: &RunOutcome, offsets_m: [[f64; 2]; 2]) -> usize {
     let robots = &outcome.recording.robots;
     let ticks = robots[0].samples.len();
@@ -86,7 +87,7 @@ fn ring(laws: &str) -> String {
     text
 }
 
-/// Two robots start inside one region each, and need the other's.
+/// Two robots that start inside one region each, and need the other region.
 fn inside_each_other(laws: &str) -> String {
     format!(
         "version = 1\nunits = {{ length = \"mm\", angle = \"deg\" }}\ntick_ms = 2\n{laws}{}{}{}{}",
@@ -140,7 +141,7 @@ fn two_robots_that_start_inside_one_region_are_a_deadlock() {
     assert_eq!((&deadlock.robots[..], &deadlock.regions[..]), (&["a".into(), "b".into()][..], &["shared".into()][..]));
 }
 
-/// With the recovery law each leaves slowly along its program: the same cell has no deadlock.
+/// With the recovery law each robot leaves slowly along its program: the same cell has no deadlock.
 #[test]
 fn two_robots_that_start_inside_one_region_leave_it_where_their_programs_lead_out() {
     let text = format!(
@@ -151,13 +152,14 @@ fn two_robots_that_start_inside_one_region_leave_it_where_their_programs_lead_ou
     );
     let r = run(&text).recording;
     assert!(r.deadlocks.is_empty() && r.robots.iter().all(|r| r.finished), "{:?}", r.deadlocks);
-    // Slowly, as long as the other one may be inside.
+    // Slowly, as long as the other robot may be inside.
     let fast = |robot: usize| r.robots[robot].samples.iter().any(|s| s.q[0] < 0.4 && s.speed_override > 0.11);
     assert!(!(fast(0) && fast(1)), "both at speed inside");
 }
 
-/// Between the two regions the robots cannot stop: a robot in the first one keeps it until it is in the second one. So
-/// both are granted to one robot before the other.
+/// Between the two regions the robots cannot stop: a robot in the first region keeps it until it is in the second one.
+///
+/// So one robot gets both regions before the other robot.
 #[test]
 fn a_gap_too_short_to_stop_in_joins_two_claims() {
     let robot = |name: &str, y: f64, other: f64, start: f64| {
@@ -182,7 +184,7 @@ fn a_gap_too_short_to_stop_in_joins_two_claims() {
     assert!(r.deadlocks.is_empty() && r.robots.iter().all(|r| r.finished), "{:?}", r.deadlocks);
 }
 
-/// One robot holds the region, and is blocked by the region that the other one carries.
+/// One robot holds the region, and is blocked by the region that the other robot carries.
 #[test]
 fn a_cycle_through_a_region_that_a_robot_carries_is_a_deadlock_too() {
     let text = format!(
@@ -199,8 +201,8 @@ fn a_cycle_through_a_region_that_a_robot_carries_is_a_deadlock_too() {
     assert!(outcome.has_violation() && outcome.recording.robots.iter().all(|r| r.ending.outcome == Outcome::Deadlock));
 }
 
-/// A robot that accelerates harder than it brakes cannot be proven to stop outside, at rest just beyond the warning
-/// zone and at full override. It returns the grant nevertheless.
+/// A robot that accelerates harder than it brakes, at rest just beyond the warning zone and at full override, cannot be
+/// proven to stop outside. It returns the grant nevertheless.
 #[test]
 fn a_robot_that_ends_beyond_the_warning_zone_releases_the_region() {
     let quick = carriage("first", [0.0, 0.0, 0.0], 0.0, 0.0, -1500.0, 400.0)

@@ -156,7 +156,7 @@ fn a_source_that_jumps_stops_the_robot() {
     let cell = Cell::parse(dir.path().join("cell.toml"), &text).unwrap();
     let warning = cell.warnings.iter().find(|w| w.what.contains("takes that for a jump")).unwrap();
     assert!(warning.what.contains("390000 mm/s") && warning.write_instead.as_ref().unwrap().contains("max_speed"));
-    // Accepted where the file permits the speed.
+    // Accepted if the file permits the speed.
     let (dir, text) = poses(csv, ", max_speed = 400000");
     assert!(!fault(&run_at(dir.path(), &text)));
 }
@@ -248,8 +248,10 @@ fn disabled_watchdogs_and_unbounded_zones_are_refused() {
     assert!(e.contains("hysteresis"), "{e}");
 }
 
-/// The first tick in which the ball of a slide moves and touches a ball that is the only region, both together of this radius (m). The
-/// region may reach a robot that stands: it is the first instant of a contact that counts.
+/// The first tick in which the ball of a slide moves and touches a ball that is the only region; `reach_m` is the sum
+/// of both radii (m).
+///
+/// The region may reach a robot that is stopped: only the first instant of a contact counts.
 fn moves_into(outcome: &RunOutcome, place: impl Fn(f64) -> Vec3, reach_m: f64) -> Option<usize> {
     let samples = &outcome.recording.robots[0].samples;
     let touches = |tick: usize| at(outcome, tick).translation.distance(place(samples[tick].q[0])) <= reach_m;
@@ -282,8 +284,9 @@ fn a_robot_never_moves_into_a_region_that_turns_at_a_constant_rate() {
     assert!(hits_without > 3, "only {hits_without} of 12 would enter");
 }
 
-/// A ball on the hand of an arm crosses a rail; with a second joint, which turns back what the first one turns, it circles without
-/// turning itself.
+/// A ball on the hand of an arm crosses a rail.
+///
+/// With a second joint, which turns back what the first one turns, the ball circles without turning itself.
 #[test]
 fn a_robot_never_moves_into_a_region_on_a_hand_that_circles_at_a_constant_rate() {
     for second in [false, true] {
@@ -314,8 +317,9 @@ fn a_robot_never_moves_into_a_region_on_a_hand_that_circles_at_a_constant_rate()
     }
 }
 
-/// A plate turns about an object, passes a carriage that stands, is gone for some ticks and returns. The carriage obeys 44 ms late: it
-/// must not have begun to leave.
+/// A plate turns about an object, passes a stopped carriage, disappears for some ticks and returns.
+///
+/// The carriage obeys 44 ms late: it must not have started to leave.
 #[test]
 fn a_robot_does_not_move_while_a_region_passes_over_it() {
     let text = "version = 1\nunits = { length = \"m\", angle = \"rad\" }\ntick_ms = 2\nmax_s = 5\n\
@@ -344,7 +348,7 @@ fn a_robot_does_not_move_while_a_region_passes_over_it() {
     assert_eq!(driven, None, "entered at {} s", driven.unwrap_or(0) as f64 * 0.002);
 }
 
-/// Each robot stands in a region that the other one carries: both leave, in turns.
+/// Each robot is inside a region that the other robot carries: both leave, in turns.
 #[test]
 fn two_robots_that_are_each_in_the_region_of_the_other_get_out() {
     let zone = |of: &str, other: &str| {

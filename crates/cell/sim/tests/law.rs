@@ -15,7 +15,7 @@ fn figure_12(extra: &str) -> String {
     )
 }
 
-/// Distance to the vertical cylinder of [`figure_12`], by its own formula.
+/// Distance to the vertical cylinder of [`figure_12`], by a separate formula.
 fn to_column(p: Vec3) -> f64 {
     let out = (p.x - 1.2).hypot(p.y) - 0.15;
     let up = (p.z - 2.0).max(-p.z);

@@ -82,7 +82,7 @@ proptest! {
             let turned = Rotation::from_rotation_vector(angular_velocity * turning)
                 * Rotation::from_rpy(0.0, 0.0, 90_f64.to_radians());
             prop_assert!((turned * Vec3::X).distance(pose.rotation * Vec3::X) < 1e-9);
-            // The velocity is that of the next instant, and the bound of the motion holds.
+            // The velocity is the velocity of the next instant, and the bound of the motion holds.
             let (m, dt) = (moving_object.motion(t), 1e-7);
             let ahead = moving_object.pose(t + dt);
             let corner_near = (moving_object.motion(t + dt).velocity - m.velocity).length() > 1e-12;

@@ -45,7 +45,7 @@ fn another_robot_is_evaded_unless_it_is_listed_as_known() {
     let same = named.recording.robots[0].samples.iter().zip(&robots[0].samples).all(|(a, b)| a.q == b.q);
     assert!(same && named.recording.robots[0].samples.len() == robots[0].samples.len());
 
-    // Robots with known motion are not evaded: the programs must avoid them, and these do not.
+    // Robots with known motion are not evaded: the programs must avoid them, and these programs do not.
     let known = run(&cell("robots = []"));
     let robot = &known.recording.robots[0];
     assert!(known.has_violation() && robot.samples.iter().all(|s| s.q == [0.0, 0.0]), "{:?}", robot.collisions);

@@ -11,10 +11,10 @@ use elbowroom_sim::check::{check, overruns};
 use elbowroom_sim::{PlannedPaths, Recording, RunOptions, simulate};
 use proptest::prelude::*;
 
-/// The law approaches the border asymptotically: in the end the distance is rounded to 0.
+/// The law approaches the border asymptotically, so the distance is rounded to 0 in the end.
 const ROUNDING_M: f64 = 1e-6;
 
-/// Random settings: a hundred with `ELBOWROOM_LONG=1`.
+/// Number of random settings: a hundred with `ELBOWROOM_LONG=1`.
 fn cases() -> u32 {
     if std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1") { 100 } else { 50 }
 }
@@ -22,22 +22,22 @@ fn cases() -> u32 {
 /// A random robot, program and region.
 #[derive(Debug, Clone)]
 struct Setting {
-    /// Joints: prismatic or not, offset (mm), target (share of the range, -1..1).
+    /// Joints: prismatic or not, offset (mm), target (fraction of the range, -1..1).
     joints: Vec<(bool, f64, f64)>,
     acceleration_s: f64,
     stop_s: f64,
     tick_ms: u32,
     programmed: u32,
-    /// Position of the region on the path of the tip (share), and its radius (mm).
+    /// Position of the region on the path of the tip (fraction), and its radius (mm).
     met_at: f64,
     radius: f64,
     linear: bool,
-    /// 0 for none in the file.
+    /// Reaction time, ms; 0 if the file states none.
     reaction_ms: u32,
     /// 1/s; 0 for no limit.
     override_rate: f64,
     direction_aware: bool,
-    /// Moves before the last one: share of its travel, speed (%), programmed override (%).
+    /// Moves before the last one: fraction of its travel, speed (%), programmed override (%).
     before: Vec<(f64, u32, u32)>,
 }
 
@@ -118,7 +118,7 @@ impl Setting {
         )
     }
 
-    /// The TCP at the share `met_at` of its unmonitored path; `None` if the program is infeasible.
+    /// The TCP at the fraction `met_at` of its unmonitored path; `None` if the program is infeasible.
     fn place(&self) -> Option<[f64; 3]> {
         let cell = Cell::parse("c.toml", &self.text([90.0, 0.0, 0.0], 0.001)).ok()?;
         let run = simulate(&cell, &RunOptions { apply_override: false, ..RunOptions::default() }).ok()?.recording;
@@ -178,7 +178,8 @@ proptest! {
     }
 }
 
-/// A thick warning zone excludes the program's path, not one that the robot plans around what a sensor sees.
+/// A thick warning zone excludes entry along the program's path, not along a path that the robot plans around what a
+/// sensor sees.
 #[test]
 fn the_zone_of_a_robot_that_plans_around_obstacles_is_never_thick_enough() {
     let dir = tempfile::tempdir().unwrap();
@@ -199,7 +200,7 @@ fn the_zone_of_a_robot_that_plans_around_obstacles_is_never_thick_enough() {
     let (answer, warnings) = of(cloud, "false", 1500);
     assert!(!answer.excluded && answer.reason.contains("around what sensors see"), "{}", answer.reason);
     assert!(answer.write_instead.unwrap().contains("stopping_distance = true") && warnings.len() == 1);
-    // A program that does not move the part says nothing of another path.
+    // A program that does not move the part does not determine another path.
     assert!(of("", "false", -1500).0.excluded && !of(cloud, "false", -1500).0.excluded);
     let (answer, warnings) = of(cloud, "true", 1500);
     assert!(answer.excluded && warnings.is_empty(), "{}", answer.reason);

@@ -16,8 +16,10 @@ fn run(text: &str, avoidance: bool) -> RunOutcome {
     simulate(&cell, &RunOptions { avoidance, ..RunOptions::default() }).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// The whole program at its own ticks with `ELBOWROOM_LONG=1`, as the guide to avoidance runs it. Else the first carton only, up
-/// to its place on the pallet, at ticks of 10 ms: the arm evades without and with a load, and each tick of it is costly.
+/// The whole program at its own ticks with `ELBOWROOM_LONG=1`, as the guide to avoidance runs it.
+///
+/// Otherwise only the first carton, up to its place on the pallet, at ticks of 10 ms: the arm evades without and with a
+/// load, and each tick of evasion is costly.
 fn evading() -> String {
     if std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1") {
         return std::fs::read_to_string(file()).unwrap();
@@ -61,11 +63,11 @@ fn the_arm_evades_the_cart_and_completes_its_program() {
     assert!(summary.evading_s > 0.1 && summary.off_path_s > 0.1 && summary.min_distance_m.is_some_and(|m| m > 0.04));
     let occurred = |what: &str| outcome.recording.events.iter().any(|e| e.event.name() == what);
     assert!(occurred("evade") && occurred("on_path"));
-    // Without an obstacle nearby the robot is exactly on its program: both runs end at the same configuration.
+    // Without an obstacle nearby the robot is exactly on its program, so both runs end at the same configuration.
     let unevaded = run(&text, false);
     assert!(unevaded.has_violation(), "nothing had to be evaded");
     assert_eq!(robot.samples.last().unwrap().q, unevaded.recording.robots[0].samples.last().unwrap().q);
-    // The run is deterministic: a run that ends earlier, shortly after the first evasion, begins in the same way.
+    // The run is deterministic: a run that ends earlier, shortly after the first evasion, has the same start.
     let first = track.samples.iter().position(|s| s.state == AvoiderState::Evading).unwrap();
     let end_s = (robot.samples[first].t_s + 1.0).ceil();
     let shorter = run(&text.replacen("tick_ms", &format!("max_s = {end_s}\ntick_ms"), 1), true);
@@ -82,12 +84,12 @@ fn the_arm_evades_the_cart_and_completes_its_program() {
 
 #[test]
 fn an_override_of_zero_stops_the_evasion_too() {
-    // The run lasts for the longest time that it may, in which the cart comes to the arm twice.
+    // The run lasts up to its time limit, in which the cart comes to the arm twice.
     let text = until("grip = ").replace("tick_ms = 4", "tick_ms = 40\nmax_s = 12");
     let region = "[region.everything]\nshape = \"sphere\"\ncentre = [0, 0, 0]\nradius = 9000\nwarning = 100\n";
     let outcome = run(&format!("{text}\n{region}"), true);
     let robot = &outcome.recording.robots[0];
-    // Free to move, it would evade.
+    // If it were free to move, it would evade.
     let is_near = |s: &AvoidanceSample| s.nearest_m < 0.2;
     assert!(robot.avoidance.as_ref().unwrap().samples.iter().any(is_near), "the cart does not come near");
     // The program starts and is stopped; nothing moves after that.

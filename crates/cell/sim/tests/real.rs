@@ -1,4 +1,4 @@
-//! Published robots and a recording, where the data is available.
+//! Published robots and a recording, if the data is available.
 
 use std::fmt::Write as _;
 use std::time::Instant;

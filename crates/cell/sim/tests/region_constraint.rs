@@ -1,4 +1,5 @@
-//! Regions as path constraints in a run: a robot that evaded returns to its path around a region, not up to its border.
+//! Regions as path constraints in a run: after an evasion, a robot returns to its path around a region, not up to its
+//! border.
 
 use crate::common::{GANTRY, HEAD, WALL, run};
 use elbowroom_avoidance::AvoiderState;

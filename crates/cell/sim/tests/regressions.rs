@@ -22,7 +22,7 @@ fn a_stop_is_planned_for_a_path_that_bends_towards_the_region() {
     }
 }
 
-/// A monitor has the regions of its robot alone and counts them by itself.
+/// A monitor has only the regions of its robot, with its own indices.
 #[test]
 fn the_reason_of_an_override_names_the_region_of_the_cell() {
     let sphere = |name: &str, x: f64, robot: &str| {
@@ -62,7 +62,7 @@ fn a_robot_that_starts_inside_an_exchange_region_occupies_it_from_the_first_tick
 
 const STOPPING: &str = "[monitor]\nstopping_distance = true\ndirection_aware = true\n";
 
-/// What `check` says of the only pair, and whether the region is entered in a run of so many repetitions.
+/// The answer of `check` for the only pair, and whether a run with this many repetitions enters the region.
 fn excluded_and_entered(cell: &Cell, repeat: u32) -> (bool, String, bool) {
     let entry = check(cell).unwrap().remove(0);
     let options = RunOptions { repeat, ..RunOptions::default() };
@@ -110,7 +110,7 @@ fn a_tool_exchanged_into_a_region_is_a_possible_entry() {
         ));
         let (excluded, reason, entered) = excluded_and_entered(&cell, 1);
         assert_eq!((!excluded, reason.contains("exchanges its tool for \"torch\" inside")), (possible, possible));
-        // Of an exchange region, a robot alone gets hold.
+        // A single robot gets the grant of an exchange region.
         assert_eq!(entered, possible && kind == "forbidden", "{kind} at {at}");
     }
 }

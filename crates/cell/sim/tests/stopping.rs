@@ -24,7 +24,7 @@ fn carriage(stop_time: f64, reaction_ms: f64, to: f64) -> String {
 fn a_carriage_stops_before_a_wall_at_any_deceleration_and_delay() {
     for stop_time in [0.05, 0.1, 0.25, 0.5, 1.0, 1.5] {
         for reaction_ms in [2.0, 20.0, 60.0] {
-            // 300 mm from the wall at the start, while it still accelerates; and far away.
+            // 300 mm from the wall at the start, while the carriage still accelerates; and far away.
             for to in [850.0, 2550.0] {
                 let region = &run(&carriage(stop_time, reaction_ms, to)).recording.regions[0];
                 let least = region.min_distance_m.unwrap();
@@ -36,7 +36,7 @@ fn a_carriage_stops_before_a_wall_at_any_deceleration_and_delay() {
     }
 }
 
-/// The reaction time is not a multiple of the tick: within a tick the robot still goes on as it was commanded before.
+/// The reaction time is not a multiple of the tick: within a tick the robot first continues as commanded before.
 #[test]
 fn a_robot_that_brakes_as_stated_is_not_taken_for_one_that_brakes_less() {
     for tick_ms in [4.0, 12.0, 40.0] {
@@ -45,7 +45,7 @@ fn a_robot_that_brakes_as_stated_is_not_taken_for_one_that_brakes_less() {
                 let cell = carriage(stop_time, reaction_ms, 1750.0)
                     .replace("tick_ms = 2\n", &format!("tick_ms = {tick_ms}\n"))
                     .replace("warning = 1\n", "warning = 1\nlife = \"temporary\"\nrobots = [\"a\"]\n");
-                // The wall is there all of a sudden, while the carriage has its full speed.
+                // The wall appears suddenly, while the carriage has its full speed.
                 let switch = "[robot.b]\nbase = { at = [0, 5000, 0] }\n\
                               dh = [{ kind = \"prismatic\", min = 0, max = 100, speed = 100 }]\n\
                               [program.b]\nsteps = [{ wait = 0.9 }, { region = \"wall\", active = true }]\n";
@@ -61,8 +61,10 @@ fn a_robot_that_brakes_as_stated_is_not_taken_for_one_that_brakes_less() {
     }
 }
 
-/// The simulation satisfies the assumptions of the law: after a slow-down the stop time falls by at least one second
-/// per second, also while the program accelerates; and the deceleration does not exceed the stated one.
+/// The simulation satisfies the assumptions of the law.
+///
+/// After a slow-down the stop time falls by at least one second per second, also while the program accelerates; and the
+/// deceleration does not exceed the stated one.
 #[test]
 fn an_accelerating_program_is_braked_no_less() {
     // Without the law and with a thin zone: it is commanded to stop while its program still accelerates.
@@ -75,7 +77,7 @@ fn an_accelerating_program_is_braked_no_less() {
     for i in 1..samples.len() - 2 {
         let change = (speed(i + 1) - speed(i)) / tick_s;
         assert!(change > -deceleration * 1.02 || speed(i + 1) < 0.02, "{change} m/s² at {} s", samples[i].t_s);
-        // Where it is faster than commanded, it brakes. An answer counts one tick later.
+        // If it is faster than commanded, it brakes. An answer counts one tick later.
         let commanded = |i: usize| samples[i.saturating_sub(1)].speed_override * samples[i].programmed_speed;
         if (i - 1..=i + 1).all(|k| speed(k) > commanded(k) + 0.02 && samples[k].programmed_speed > 0.1) {
             braked += 1;
@@ -254,8 +256,9 @@ fn a_robot_inside_is_stopped_where_its_program_leads_deeper() {
     assert!(last.q[0].abs() < 1e-6, "it moved {} m deeper", last.q[0]);
 }
 
-/// A point on a circle leaves a ball that it all but touches, more or less steeply: the rounding of distances enters nothing, and holds
-/// nobody.
+/// A point on a circle leaves a ball that it almost touches, more or less steeply.
+///
+/// The rounding of distances causes neither an entry nor a hold.
 #[test]
 fn a_robot_that_leaves_a_border_that_it_all_but_touches_does_not_enter_it() {
     for apart in [1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13] {

@@ -19,11 +19,11 @@ fn cell(tools: &str, more: &str, steps: &str) -> String {
 
 const SHORT: &str =
     "[robot.arm.tools.short]\ntcp = { at = [0, 0, -20] }\nbox = { at = [0, 0, -10], size = [40, 40, 20] }\n";
-/// It reaches 400 mm outwards.
+/// A tool that reaches 400 mm outwards.
 const LONG: &str =
     "[robot.arm.tools.long]\ntcp = { at = [400, 0, 0] }\nbox = { at = [250, 0, 0], size = [300, 30, 30] }\n";
 
-/// What only the long tool reaches, at 30 degrees.
+/// A post that only the long tool reaches, at 30 degrees.
 fn post(what: &str) -> String {
     let (y, x) = 30.0_f64.to_radians().sin_cos();
     format!("{what}\nbase = [{:.3}, {:.3}, 0]\nradius = 60\nheight = 1000\n", 1000.0 * x, 1000.0 * y)
@@ -42,7 +42,7 @@ const USE_LONG: &str = "{ tool = \"long\" },";
 
 #[test]
 fn linear_moves_lead_the_tcp_of_the_active_tool() {
-    // The long one on the forearm: a second flange.
+    // The long tool on the forearm, which is a second flange.
     let tools = format!("{SHORT}{LONG}flange = \"link_2\"\n");
     let line = "{ move = \"linear\", to = { at = [450, 300, 500], rpy = [0, 0, 60] }, speed = 200 },";
     let text = cell(&tools, "", &format!("{{ move = \"joint\", to = [20, 40, -80] }},\n{line}\n{USE_LONG}\n{SWING}"));
@@ -99,7 +99,7 @@ fn a_tool_that_is_not_mounted_counts_from_its_change_on() {
     assert!(run_free(&cell(&tools, &region(), &with)).recording.regions[0].entered);
     let hit = run_free(&cell(&tools, &object, &with));
     assert_eq!(hit.recording.robots[0].collisions[0].a, "arm/long");
-    // The picture has the long tool from the change on.
+    // The recording shows the long tool from the change on.
     let changed = hit.recording.events.iter().find(|e| e.event.name() == "tool").unwrap().t_s;
     let chain = parse(&cell(&tools, "", SWING)).robots[0].robot.chain.clone();
     let [long, short] = ["long", "short"].map(|name| chain.link(name).unwrap());
@@ -119,7 +119,7 @@ fn planned_moves_know_the_tools_of_their_time() {
     );
 }
 
-/// The same step from the same place with the same active tool, while another flange carries another tool than before.
+/// The same step from the same place with the same active tool, while another flange carries a different tool.
 #[test]
 fn a_planned_move_is_searched_again_for_other_tools() {
     let wire = "[robot.arm.tools.wire]\ntcp = { at = [50, 0, 0] }\nbox = { at = [-150, 0, 60], size = [20, 20, 20] }\nflange = \"link_2\"\n";

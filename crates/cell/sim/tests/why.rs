@@ -1,4 +1,4 @@
-//! A recording says why a robot stood still: part, point, region or obstacle, since when, how long, what releases it.
+//! A recording states why a robot was stopped: part, point, region or obstacle, start, duration, and what releases it.
 
 use crate::common::{HEAD, rail, run};
 use elbowroom_sim::{Outcome, RunSummary, csv};

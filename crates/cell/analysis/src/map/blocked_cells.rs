@@ -12,13 +12,13 @@ pub enum BlockedCells {
         /// The cells.
         table: OccupancyBitmap,
     },
-    /// Any number of axes.
+    /// A tree of boxes, for any number of axes.
     Tree(BoxTree),
 }
 
 impl BlockedCells {
-    /// True if a configuration (rad or m, one value per axis) lies in a blocked cell, where it lies outside the limits,
-    /// and where the number of values is wrong.
+    /// True if a configuration (rad or m, one value per axis) lies in a blocked cell, lies outside the limits, or has a
+    /// wrong number of values.
     pub fn is_blocked(&self, q: &[f64]) -> bool {
         match self {
             Self::Table { grid, table } => {
@@ -29,7 +29,7 @@ impl BlockedCells {
         }
     }
 
-    /// The same for a cell, by its number on each axis.
+    /// True if a cell is blocked, or has a wrong number of indices. `cell` has one index per axis.
     pub fn is_blocked_cell(&self, cell: &[u16]) -> bool {
         match self {
             Self::Table { table, .. } => <[u16; 3]>::try_from(cell).map_or(true, |cell| table.is_blocked(cell)),
@@ -54,7 +54,7 @@ impl BlockedCells {
     }
 }
 
-/// The cells of three axes that any of some objects blocks.
+/// Union of the cells that some objects block, on three axes.
 pub(crate) fn table<'b>(axes: &[GridAxis; 3], all: impl IntoIterator<Item = &'b BlockedCells>) -> OccupancyBitmap {
     let shape = axes.each_ref().map(GridAxis::count);
     let mut union = OccupancyBitmap::new(shape);
@@ -74,7 +74,7 @@ pub(crate) fn table<'b>(axes: &[GridAxis; 3], all: impl IntoIterator<Item = &'b 
     union
 }
 
-/// The cells that any of some objects blocks; `None` if there are too many.
+/// Union of the cells that some objects block; `None` if there are too many cells.
 pub(super) fn union<'b>(axes: &[GridAxis], all: impl IntoIterator<Item = &'b BlockedCells>) -> Option<OccupancyArray> {
     let mut union = OccupancyArray::new(axes, [])?;
     for cells in all {

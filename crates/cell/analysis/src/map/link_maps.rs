@@ -6,12 +6,13 @@ use elbowroom_robot::{GeometryId, ObjectId, RobotId};
 
 use super::solids_map::SolidsMap;
 
-/// What fills the maps of a robot: one of all its links, and one for each set of links that may not touch an object.
+/// The solids of a robot's maps: one map with all its links, and one for each set of links that must not touch an
+/// object.
 #[derive(Debug)]
 pub(crate) struct LinkMaps {
-    /// Of all links.
+    /// Map of all links.
     first: SolidsMap,
-    /// Others, without the colliders of some links.
+    /// Other maps, without the colliders of some links.
     others: Vec<(Vec<LinkId>, SolidsMap)>,
     /// Per object: index of its map, where 0 is the first; `None` if all links may touch it.
     of_object: Vec<Option<usize>>,
@@ -44,7 +45,7 @@ impl LinkMaps {
         &self.first
     }
 
-    /// The map of all links, where it is that of every object.
+    /// The map of all links, if every object uses it.
     pub fn of_every_link(&self) -> Option<&SolidsMap> {
         self.of_object.iter().all(|map| *map == Some(0)).then_some(&self.first)
     }

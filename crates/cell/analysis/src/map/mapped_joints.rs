@@ -6,10 +6,10 @@ use elbowroom_formats::{FormatError, Warning};
 
 use super::{axes, select_map};
 
-/// Joints that are not in the map stay within this of the start, rad or m.
+/// Largest difference to the start of a joint that is not in the map, rad or m.
 const HELD: f64 = 1e-9;
 
-/// The joints of a map of three.
+/// The joints of a map of three joints.
 #[derive(Debug, Clone)]
 pub(crate) struct MappedJoints {
     /// Indices among the robot's joint values.
@@ -18,10 +18,10 @@ pub(crate) struct MappedJoints {
 }
 
 impl MappedJoints {
-    /// Of a robot of a cell, for a purpose that needs three joints; `otherwise` is what else to write, if anything.
+    /// Finds the three map joints of a robot of a cell. `otherwise` names an alternative to write, if there is one.
     ///
     /// # Errors
-    /// A map of other than three joints, too many cells.
+    /// An error if the map does not have three joints, or has too many cells.
     pub fn of(
         cell: &Cell,
         robot: &CellRobot,

@@ -1,7 +1,7 @@
 //! The joint-space map of a robot of a cell (`elbowroom map`).
 //!
-//! Every object is an obstacle, moving ones at their initial poses. Self-collisions, other robots, and links that none
-//! of the map's joints moves are left out.
+//! Every object is an obstacle, moving ones at their initial poses. Self-collisions, other robots, and links that the
+//! map's joints do not move are omitted.
 
 use std::time::{Duration, Instant};
 
@@ -30,24 +30,27 @@ mod solids_map;
 /// A request for the map of a robot.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct MapRequest {
-    /// Name of the robot; optional where there is only one, or only one map.
+    /// Name of the robot; optional if there is only one robot, or only one map.
     pub robot: Option<String>,
     /// Obstacle model of the objects.
     pub model: MapModel,
-    /// True: the robot's own solids decide at the border, which takes tenths of a second per object. False: sphere covers
-    /// of its links, in milliseconds, for maps of three joints that hang on one of them; others are exact.
+    /// Whether the robot's own solids decide at the border, which takes tenths of a second per object.
+    ///
+    /// Otherwise sphere covers of its links decide, in milliseconds, for maps of three joints, if one of these joints
+    /// carries all links of the map. Other maps always use the solids.
     pub exact: bool,
-    /// With the model of spheres: one sphere around each object first, then more and smaller ones until so much time has passed
-    /// since the robot was prepared, at most as many as the model says.
+    /// With the model of spheres, the time since the preparation of the robot until which spheres are added.
+    ///
+    /// One sphere around each object comes first, then more and smaller ones, at most as many as the model states.
     pub deadline: Option<Duration>,
 }
 
-/// How far a map is.
+/// Progress of a map.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MapProgress<'a> {
-    /// From 0 to 1.
+    /// Finished fraction, 0..1.
     pub share: f64,
-    /// What is in work: the robot, or the name of an object.
+    /// The present work: the robot, or the name of an object.
     pub what: &'a str,
 }
 
@@ -60,7 +63,7 @@ pub struct CellMap {
     pub axes: Vec<GridAxis>,
     /// Per axis: true for an angle.
     pub is_angle: Vec<bool>,
-    /// Per object of the cell, in its order.
+    /// One per object of the cell, in its order.
     pub obstacles: Vec<MapObstacle>,
     /// Number of cells that any object blocks.
     pub blocked: u64,
@@ -79,11 +82,11 @@ pub struct MapObstacle {
     pub name: String,
     /// Its obstacle model.
     pub model: MapModel,
-    /// The number of spheres that was reached by the deadline.
+    /// Number of spheres reached at the deadline, if there is one.
     pub spheres: Option<u32>,
     /// The blocked cells.
     pub blocks: BlockedCells,
-    /// Time of the computation, without what is done once for the robot or the object's shape.
+    /// Time of the computation, without the preparation of the robot and of the object's shape.
     pub time: Duration,
 }
 
@@ -118,10 +121,10 @@ pub fn map(cell: &Cell, request: &MapRequest) -> Result<CellMap, FormatError> {
     map_with(cell, request, &|_| ())
 }
 
-/// The same; `progress` is called from any thread.
+/// Like [`map`]; `progress` is called from any thread.
 ///
 /// # Errors
-/// As [`map`].
+/// As for [`map`].
 pub fn map_with(
     cell: &Cell,
     request: &MapRequest,
@@ -156,13 +159,13 @@ pub fn map_with(
             return Ok(dense.blocked());
         }
         let report = |share: f64| progress(MapProgress { share, what: "all objects together" });
-        // Only maps with the robot's own solids have so many cells, and these know no other models.
+        // Only maps with the robot's own solids have so many cells, and these maps support no other models.
         let MapModel::Solids(model) = request.model else { return Ok(0) };
         let of_map = |(map, objects): (&SolidsMap, Vec<ObjectId>)| {
             let solids: Vec<_> = objects.iter().filter(|o| which(**o)).map(|o| placed(&cell.objects[o.0])).collect();
             map.fill(model, &solids, &report).map(|all| all.blocks.blocked()).map_err(refuse)
         };
-        // Where links may touch only some objects, cells that several maps block count several times.
+        // If links may touch only some objects, cells that several maps block count several times.
         let counts = maps.each().map(of_map).collect::<Result<Vec<u64>, FormatError>>()?;
         Ok(counts.into_iter().fold(0, u64::saturating_add))
     };
@@ -178,7 +181,7 @@ pub fn map_with(
     Ok(CellMap { robot: robot.name.clone(), axes, is_angle, obstacles, blocked, static_blocked, dense, warnings })
 }
 
-/// What a map leaves out, and what it must not be used for.
+/// Notes on what a map omits, and on what it must not be used for.
 fn notes(cell: &Cell, robot: &CellRobot, line: usize, model: MapModel) -> Vec<Warning> {
     let mut notes = Vec::new();
     for m in &cell.moving_objects {
@@ -200,7 +203,7 @@ fn placed(object: &Object) -> (&Shape, Pose) {
     (&object.shape, object.in_world)
 }
 
-/// The cells that each object blocks; the outer error is that this map or this model is not for the request.
+/// The cells that each object blocks. The outer error means that this map or model does not suit the request.
 fn fill(
     cell: &Cell,
     request: &MapRequest,
@@ -240,7 +243,7 @@ fn fill_each(
     cell.objects.iter().enumerate().map(fill).collect()
 }
 
-/// The same around seeds; the outer error is that this map is not on sphere covers.
+/// The cells around seeds of each object. The outer error means that this map is not on sphere covers.
 fn expand_each(
     cell: &Cell,
     solids_map: &SolidsMap,
@@ -263,7 +266,8 @@ fn expand_each(
     Ok(Ok(filled))
 }
 
-/// The same, refined until a deadline; the outer error is that this model, or this map, is not.
+/// The cells that each object blocks, refined until a deadline. The outer error means that this model or map does not
+/// support it.
 fn fill_until(
     cell: &Cell,
     solids_map: &SolidsMap,
@@ -294,7 +298,7 @@ impl CellMap {
     }
 }
 
-/// The requested robot, the only one with a map, or the only one.
+/// The requested robot, otherwise the only one with a map, otherwise the only one.
 pub(crate) fn select_map<'c>(cell: &'c Cell, name: Option<&str>) -> Result<(&'c CellRobot, MapSpec), FormatError> {
     let robot = match (name, &cell.maps[..]) {
         (None, [only]) => only.robot,

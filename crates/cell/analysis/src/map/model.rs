@@ -1,15 +1,15 @@
-//! What a map takes for an object.
+//! The obstacle model of a map.
 
 use std::str::FromStr;
 
 use elbowroom_cspace::ObstacleModel;
 
-/// What a map takes for an object (the joint-space paper, sections II to V).
+/// Obstacle model of a map: what represents an object (the joint-space paper, sections II to V).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MapModel {
-    /// Solids that enclose it: no cell is missed.
+    /// Solids that enclose the object: no cell is missed.
     Solids(ObstacleModel),
-    /// The object itself, its cells by expansion from seeds: parts of them are missed.
+    /// The object itself, with its cells by expansion from seeds: parts of the cells are missed.
     Seeds,
 }
 

@@ -1,4 +1,4 @@
-//! What computes the blocked cells: sphere covers where they can, else the robot's own solids.
+//! Computation of the blocked cells, on sphere covers if possible, otherwise with the robot's own solids.
 
 use std::time::{Duration, Instant};
 
@@ -16,7 +16,7 @@ use crate::cover_cache::CoverCache;
 /// Computes the cells that obstacles block.
 #[derive(Debug)]
 pub(crate) enum SolidsMap {
-    /// On sphere covers of the links: three joints that hang on one of them.
+    /// On sphere covers of the links: for three joints, if one of these joints carries all links.
     Covers(Box<CoverMapBuilder>),
     /// With the robot's own solids.
     Exact(Box<RobotMapBuilder>),
@@ -26,12 +26,13 @@ pub(crate) enum SolidsMap {
 pub(crate) struct FilledCells {
     pub blocks: BlockedCells,
     pub time: Duration,
-    /// Spheres in place of the obstacle, where it was refined until a deadline.
+    /// Number of spheres in place of the obstacle, if it was refined until a deadline.
     pub spheres: Option<u32>,
 }
 
 impl SolidsMap {
-    /// On sphere covers with this clearance (m) if there is one and if they can, else with the solids, without one.
+    /// Uses sphere covers with this clearance (m), if one is given and covers are possible, otherwise the solids,
+    /// without a clearance.
     pub fn new(
         robot: &CellRobot,
         axes: &[GridAxis],
@@ -55,7 +56,7 @@ impl SolidsMap {
         RobotMapBuilder::new(model, base, axes, joints, others).map(|builder| Self::Exact(Box::new(builder)))
     }
 
-    /// The cells that a model of some obstacles blocks; `progress` is given the share that is done.
+    /// The cells that a model of some obstacles blocks; `progress` receives the finished fraction.
     pub fn fill(
         &self,
         model: ObstacleModel,
@@ -93,8 +94,10 @@ impl SolidsMap {
         Some(expand())
     }
 
-    /// The cells of one sphere around each obstacle, and of more and smaller ones around its parts, up to `most`, for all
-    /// obstacles in turn until the deadline; `None` without covers.
+    /// The cells of one sphere around each obstacle, then of more and smaller ones around its parts, up to `most`
+    /// spheres.
+    ///
+    /// Obstacles are refined in turn until the deadline. `None` without covers.
     pub fn fill_until(
         &self,
         deadline: Instant,

@@ -8,8 +8,10 @@ use elbowroom_kinematics::inverse::ArmConfiguration;
 use elbowroom_planner::{PlannedPath, TimedMotion};
 use serde::{Serialize, Serializer};
 
-/// Result of planning. Serialized as one flat document in SI units, without the rows. Where no path was found,
-/// `waypoints` is empty, and the other properties of a path are null.
+/// Result of planning.
+///
+/// Serialized as one flat document in SI units, without the rows. Without a path, `waypoints` is empty, and the other
+/// properties of a path are null.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PathAnswer {
     /// True if a path was found.
@@ -23,9 +25,9 @@ pub struct PathAnswer {
     /// Shoulder, elbow and wrist at the end of the path; `None` without a path, and for other arms than six axes with a
     /// spherical wrist.
     pub configuration: Option<ArmConfiguration>,
-    /// Why no path was found.
+    /// Reason if no path was found.
     pub reason: Option<String>,
-    /// Time of making the map on which the path was planned; `None` without one.
+    /// Time for building the map on which the path was planned; `None` without a map.
     pub map_time: Option<Duration>,
     /// Time of the search, µs.
     pub planning_us: u64,

@@ -17,29 +17,32 @@ use elbowroom_spatial::Pose;
 use crate::map::mapped_joints::MappedJoints;
 use crate::map::{BlockedCells, LinkMaps, SolidsMap, blocked_cells};
 
-/// What a map of three joints is for here, and what else plans paths.
+/// Purpose of a map of three joints in this module, and the alternative to it.
 pub(super) const PURPOSE: (&str, Option<&str>) = ("paths through free cells", Some("the planner rrt-connect"));
-/// An end in a blocked cell, because a whole cell counts, is left for a free one (or reached from it) within this distance, rad.
+/// Distance (rad) within which an end in a blocked cell is connected to a free cell. Such ends exist because a whole
+/// cell counts.
 const EXIT_RAD: f64 = 0.35;
 
-/// Plans paths of one robot through the free cells of its joint-space map of three joints, and again when obstacles have moved.
-/// The other joints stay where they are: the map is one for these values of them.
+/// Plans paths of one robot through the free cells of its joint-space map of three joints, also after obstacles have
+/// moved.
 ///
-/// The cells of an object are computed when it is seen for the first time and where it has moved. What the robot carries,
-/// the robot itself, other robots and regions are not in the map: each path is proven in the exact scene.
+/// The other joints keep their values: the map is valid for these values only.
+///
+/// The cells of an object are computed when it is first seen, and when it has moved. The map does not contain what the
+/// robot carries, the robot itself, other robots and regions, so each path is proven in the exact scene.
 #[derive(Debug)]
 pub struct MapPlanner {
     robot: RobotId,
     mapped: MappedJoints,
-    /// Values of all joints; those that are not in the map stay so.
+    /// Values of all joints. Joints that are not in the map keep their values.
     held: Vec<f64>,
     maps: LinkMaps,
-    /// Per object of the cell: where it was seen last, and the cells that it blocks there.
+    /// Per object of the cell: its last pose, and the cells that it blocks there.
     known: Vec<Option<(Pose, BlockedCells)>>,
     planner: GridPlanner,
 }
 
-/// Why a [`MapPlanner`] has no path.
+/// Reason why a [`MapPlanner`] has no path.
 #[derive(Debug)]
 pub enum MapPlannerError {
     /// An end has another value of a joint that is not in the map.
@@ -73,11 +76,13 @@ impl fmt::Display for MapPlannerError {
 impl std::error::Error for MapPlannerError {}
 
 impl MapPlanner {
-    /// For a robot of a cell whose joints that are not in the map are as in `held` (values of all joints, rad or m); cells count as
-    /// blocked from this distance to an object on, m, where the map is on sphere covers. No obstacles yet.
+    /// Creates a planner for a robot of a cell, without obstacles.
+    ///
+    /// Joints that are not in the map have their values in `held` (values of all joints, rad or m). If the map is on
+    /// sphere covers, cells count as blocked up to the distance `clearance_m` (m) from an object.
     ///
     /// # Errors
-    /// [`FormatError`] if the robot's map has not three joints, or has too many cells.
+    /// [`FormatError`] if the robot's map does not have three joints, or has too many cells.
     pub fn new(cell: &Cell, id: RobotId, held: &[f64], clearance_m: f64) -> Result<Self, FormatError> {
         let robot = &cell.robots[id.0];
         // `elbowroom map` gives the warnings.
@@ -94,13 +99,13 @@ impl MapPlanner {
         Ok(Self { robot: id, mapped, held: held.to_vec(), maps, known: vec![None; cell.objects.len()], planner })
     }
 
-    /// Whether joints that are not in the map are as in these values of all joints.
+    /// Whether the joints that are not in the map have their held values in `q` (values of all joints).
     pub fn serves(&self, q: &[f64]) -> bool {
         self.mapped.moved_otherwise(&self.held, q).is_none()
     }
 
-    /// Takes over where obstacles are: the objects of the cell, which are the first ones of the scene, and `others`, each with its
-    /// pose in the world.
+    /// Updates the obstacles: the objects of the cell, which come first in the scene, and `others`, each with its pose
+    /// in the world.
     ///
     /// # Errors
     /// A solid whose pose or size is not finite, or a map above the memory limit.
@@ -127,10 +132,12 @@ impl MapPlanner {
         Ok(())
     }
 
-    /// A path from where the robot is in `start` to a goal, proven in the scene of `exact`. The map must [serve](Self::serves) both.
+    /// Plans a path from the robot's position in `start` to a goal, and proves it in the scene of `exact`.
+    ///
+    /// The map must [serve](Self::serves) both ends.
     ///
     /// # Errors
-    /// [`MapPlannerError`] says why there is none.
+    /// [`MapPlannerError`] with the reason why no path was found.
     pub fn plan(
         &mut self,
         exact: &mut RrtConnect<'_>,

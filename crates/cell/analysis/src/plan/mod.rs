@@ -1,7 +1,8 @@
 //! Planning of a timed path for one robot of a cell (`elbowroom plan`).
 //!
-//! The scene is that of [`query`](crate::query): objects, other robots at their `start`, the robot with tool and load,
-//! the allowed collision matrix. Permanent forbidden regions of the robot are path constraints on its guarded volumes.
+//! Planning uses the scene of [`query`](crate::query): objects, other robots at their `start`, the robot with tool and
+//! load, the allowed collision matrix. Permanent forbidden regions of the robot are path constraints on its guarded
+//! volumes.
 
 mod answer;
 mod map_planner;
@@ -33,12 +34,12 @@ pub use map_planner::{MapPlanner, MapPlannerError};
 pub use request_validation::select_robot;
 pub use several::{RobotPath, RobotPathRequest, SeveralPathsAnswer, SeveralPathsRequest, plan_several};
 
-/// Where a path ends.
+/// Goal of a path.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PathGoal {
     /// Values of all joints in the order of the chain, rad or m.
     Joints(Vec<f64>),
-    /// A pose of the TCP; of the solutions of inverse kinematics that are wanted, whichever is reached first.
+    /// A pose of the TCP: the first solution of inverse kinematics that the target accepts and that is reached.
     Tcp(TcpTarget),
 }
 
@@ -57,23 +58,23 @@ impl<Q: Into<Vec<f64>>> From<Q> for PathGoal {
 /// A request for a path.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PathRequest {
-    /// Name of the robot; optional where there is only one.
+    /// Name of the robot; optional if there is only one.
     pub robot: Option<String>,
     /// Values of all joints in the order of the chain, rad or m; `None`: the robot's `start`.
     pub from: Option<Vec<f64>>,
     /// The goal.
     pub to: PathGoal,
-    /// How it is searched for.
+    /// The planner.
     pub planner: PathPlanner,
-    /// Share of the joints' speeds that the motion uses, above 0 and at most 1.
+    /// Fraction of the joints' speeds that the motion uses, above 0 and at most 1.
     pub speed: f64,
     /// Time limit, clearance and seed.
     pub options: RrtConnectSettings,
     /// Period of the samples, s; `None`: the cell's tick.
     pub period_s: Option<f64>,
-    /// Goes on until the time limit, with shorter and shorter paths.
+    /// Whether the search continues until the time limit, with shorter and shorter paths.
     pub optimize: bool,
-    /// Objects that are elsewhere than at the start of the cell's programs, in the world.
+    /// Objects at other poses than at the start of the cell's programs, with their pose in the world.
     pub placed: Vec<(ObjectId, Pose)>,
     /// Objects that a robot carries.
     pub carried: Vec<(ObjectId, Attachment)>,
@@ -122,9 +123,10 @@ impl Default for PathRequest {
 ///
 /// # Errors
 /// An unknown robot; a robot without speed limits; an invalid start or goal: beyond limits, in collision, with a wrong
-/// number of values; a goal in a region; a start in a region that no straight path leaves. With [`PathPlanner::Grid`] also a map
-/// that is not of three joints, and a request that moves others; from a start in a region, or nearer to it than the clearance, it
-/// finds no path.
+/// number of values; a goal in a region; a start in a region that no straight path leaves.
+///
+/// With [`PathPlanner::Grid`] also a map that does not have three joints, and a request that moves other joints. From a
+/// start in a region, or nearer to it than the clearance, this planner finds no path.
 pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, FormatError> {
     let (id, robot) = request_validation::select_robot(cell, request.robot.as_deref())?;
     let mut limits = request_validation::kinematic_limits(cell, robot)?;
@@ -204,7 +206,7 @@ fn goals(
     })
 }
 
-/// The pose in the cell's unit of length, where the same numbers are within reach in another unit and were meant in that one.
+/// The pose in the cell's unit of length, if its numbers are within reach in another unit, which was probably meant.
 fn other_unit(cell: &Cell, in_world: &Pose, is_reached: impl Fn(Pose) -> bool) -> Option<String> {
     let factor = |unit: LengthUnit| unit.to_metres(1.0) / cell.units.length.to_metres(1.0);
     let meant = [LengthUnit::Metre, LengthUnit::Millimetre]

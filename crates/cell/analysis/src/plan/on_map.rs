@@ -1,5 +1,5 @@
-//! A path through the free cells of the robot's joint-space map, proven in the exact scene: what `elbowroom plan --planner grid`
-//! answers.
+//! A path through the free cells of the robot's joint-space map, proven in the exact scene (`elbowroom plan --planner
+//! grid`).
 
 use std::time::Instant;
 
@@ -25,11 +25,11 @@ pub(super) struct MapQuery<'q> {
 }
 
 impl MapQuery<'_> {
-    /// The path to the first goal that is reached, or why there is none to the first one.
+    /// Plans a path to the first goal that is reached, or states why the first goal is not reached.
     ///
     /// # Errors
-    /// [`FormatError`] if the map has not three joints, or too many cells, or the request moves other joints; where the start or
-    /// all goals are in collision or beyond limits.
+    /// [`FormatError`] if the map does not have three joints or has too many cells, if the request moves other joints,
+    /// or if the start or all goals are in collision or beyond limits.
     pub fn plan(&self, mut exact: RrtConnect<'_>) -> Result<PathAnswer, FormatError> {
         let robot = &self.cell.robots[self.id.0];
         let Query { scene, state, settings, .. } = &self.query;
@@ -62,7 +62,7 @@ impl MapQuery<'_> {
         TimedMotion::of(&motion, *period_s)
     }
 
-    /// The goals at which the other joints are as at the start.
+    /// The goals at which the other joints have their start values.
     fn goals(&self, robot: &CellRobot, mapped: &MappedJoints) -> Result<Vec<&Vec<f64>>, FormatError> {
         let moved = |goal: &[f64]| mapped.moved_otherwise(self.query.state.q(self.id), goal);
         let goals: Vec<&Vec<f64>> = self.query.goals.iter().filter(|goal| moved(goal).is_none()).collect();
@@ -76,7 +76,7 @@ impl MapQuery<'_> {
         Err(FormatError::new(&self.cell.file, robot.line, what).hint(hint))
     }
 
-    /// Those that are free and within limits, as the start must be: a contact would show as a blocked cell only.
+    /// The goals that are free and within limits, as the start must be: a contact would appear only as a blocked cell.
     fn free_goals<'g>(
         &self,
         goals: Vec<&'g Vec<f64>>,
@@ -85,7 +85,7 @@ impl MapQuery<'_> {
         let mut free = Vec::new();
         let mut refused = None;
         for goal in goals {
-            // Of one waypoint, only the ends are tested.
+            // With a single waypoint, only the ends are tested.
             match exact.first_unproven_segment(self.query.state, std::slice::from_ref(goal), self.query.settings) {
                 Ok(_) => free.push(goal),
                 Err(e) => refused = refused.or(Some(e)),
@@ -97,7 +97,7 @@ impl MapQuery<'_> {
         }
     }
 
-    /// Why there is no path through free cells, and what would help.
+    /// Reason why no path leads through free cells, with a remedy.
     fn in_words(&self, e: &MapPlannerError) -> String {
         let finer =
             format!("a smaller `step` in [map.{}], or the planner rrt-connect", self.cell.robots[self.id.0].name);
@@ -117,7 +117,7 @@ impl MapQuery<'_> {
         }
     }
 
-    /// What a path comes too near to: something in the scene, else perhaps a region.
+    /// The obstacle that a path comes too near to: something in the scene, otherwise perhaps a region.
     fn what_is_near(&self, waypoints: &[Vec<f64>]) -> String {
         let Query { scene, state, settings, .. } = &self.query;
         let mut checker = Checker::new(scene, CheckerOptions::default());

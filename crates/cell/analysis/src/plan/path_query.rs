@@ -5,7 +5,7 @@ use elbowroom_planner::{
 };
 use elbowroom_scene::{Scene, SceneState};
 
-/// What a planner is asked.
+/// Input of a planner.
 pub(super) struct Query<'q> {
     pub scene: &'q Scene,
     pub state: &'q SceneState,
@@ -28,7 +28,7 @@ impl Query<'_> {
     }
 
     pub fn exactly(&self, mut planner: RrtConnect) -> Result<(PlannedPath, TimedMotion), RrtConnectError> {
-        // Each goal in its share of the time; what is wrong with the first one is said.
+        // Each goal has an equal part of the time. The error is the one of the first goal.
         let share = u32::try_from(self.goals.len()).unwrap_or(u32::MAX).max(1);
         let settings = RrtConnectSettings { time_limit: self.settings.time_limit / share, ..*self.settings };
         let mut path = Err(RrtConnectError::NoGoal);

@@ -6,10 +6,10 @@ use elbowroom_kinematics::JointKind;
 use elbowroom_planner::{KinematicLimits, PathEnd, RrtConnectError};
 use elbowroom_robot::RobotId;
 
-/// The robot of this name; the only one where none is named.
+/// The robot of this name; without a name, the only robot.
 ///
 /// # Errors
-/// No such robot, or several and no name.
+/// An error if the robot does not exist, or if there are several robots and no name.
 pub fn select_robot<'c>(cell: &'c Cell, name: Option<&str>) -> Result<(RobotId, &'c CellRobot), FormatError> {
     let names = || cell.robots.iter().map(|r| r.name.as_str());
     let wrong = |what: String, hint: String| Err(FormatError::new(&cell.file, None, what).hint(hint));
@@ -79,7 +79,7 @@ pub(super) fn check_joint_values(cell: &Cell, robot: &CellRobot, end: &str, q: &
     }
 }
 
-/// The error where the planner rejects the request.
+/// The error if the planner rejects the request.
 pub(super) fn planner_error(cell: &Cell, robot: &CellRobot, e: &RrtConnectError) -> FormatError {
     let error = |what: String| FormatError::new(&cell.file, robot.line, what);
     let of = |end: &PathEnd| format!("the {end} of robot \"{}\"", robot.name);

@@ -16,23 +16,23 @@ use serde::Serialize;
 use super::request_validation::{check_joint_values, kinematic_limits, planner_error, select_robot};
 use crate::cover_cache::CoverCache;
 
-/// Where one of the robots goes.
+/// Request for the path of one of the robots.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RobotPathRequest {
     /// Name of the robot.
     pub robot: String,
     /// Values of all joints in the order of the chain, rad or m; `None`: the robot's `start`.
     pub from: Option<Vec<f64>>,
-    /// Likewise, the goal.
+    /// Goal: values of all joints in the order of the chain, rad or m.
     pub to: Vec<f64>,
 }
 
 /// A request for paths of several robots.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SeveralPathsRequest {
-    /// The robots, each once. The first have priority, if that leaves a path for all.
+    /// The robots, each once. Earlier ones have priority, if that leaves a path for all.
     pub robots: Vec<RobotPathRequest>,
-    /// Time limit of all together, clearance and seed.
+    /// Time limit for all robots together, clearance and seed.
     pub options: RrtConnectSettings,
     /// Period of the samples, s; `None`: the cell's tick.
     pub period_s: Option<f64>,
@@ -43,11 +43,11 @@ pub struct SeveralPathsRequest {
 pub struct SeveralPathsAnswer {
     /// True if all robots have a path.
     pub found: bool,
-    /// Why none was found.
+    /// Reason if no paths were found.
     pub reason: Option<String>,
-    /// In the order of the request; empty if none was found.
+    /// Paths in the order of the request; empty if none were found.
     pub robots: Vec<RobotPath>,
-    /// When the last one ends, s.
+    /// End of the last motion, s.
     pub duration_s: Option<f64>,
     /// Time of the search, of shortcutting, and of the proof that the motions are free together, µs.
     pub planning_us: u64,
@@ -69,9 +69,9 @@ pub struct RobotPath {
     pub waypoints: Vec<Vec<f64>>,
     /// Euclidean length in joint space, rad (and m).
     pub cost_rad: f64,
-    /// When it starts and ends, s.
+    /// Start of its motion, s.
     pub start_s: f64,
-    /// When it ends, s.
+    /// End of its motion, s.
     pub end_s: f64,
     /// Number of corners with a stop.
     pub stops: usize,
@@ -81,8 +81,8 @@ pub struct RobotPath {
 /// All other robots stay at their start.
 ///
 /// # Errors
-/// As [`plan`](super::plan), for any of the robots; a robot that is named twice; a region that one of the robots must stay out of
-/// and another one carries.
+/// As for [`plan`](super::plan), for each robot; also a robot that is named twice, and a region that one of the robots
+/// must avoid and another one carries.
 pub fn plan_several(cell: &Cell, request: &SeveralPathsRequest) -> Result<SeveralPathsAnswer, FormatError> {
     let scene = QueryModel::of_cell(cell).scene(OutOfReachProofs::Omit)?;
     let (mut goals, mut starts) = (Vec::new(), cell.robots.iter().map(|r| r.start.clone()).collect::<Vec<_>>());
@@ -126,7 +126,7 @@ pub fn plan_several(cell: &Cell, request: &SeveralPathsRequest) -> Result<Severa
     }
 }
 
-/// A region that moves with a robot is not where it was at the start while that robot moves.
+/// Refuses a region that moves with a robot: while that robot moves, the region is not where it was at the start.
 fn refuse_carried_regions(cell: &Cell, goals: &[RobotGoal], regions: &[Vec<String>]) -> Result<(), FormatError> {
     for (goal, names) in goals.iter().zip(regions) {
         for region in cell.regions.iter().filter(|r| names.contains(&r.region.name)) {
@@ -183,7 +183,7 @@ fn found(
     }
 }
 
-/// Why none was found; the error where the request is wrong.
+/// Reason why no paths were found; an error if the request is wrong.
 fn not_found(cell: &Cell, goals: &[RobotGoal], error: &PrioritizedPlannerError) -> Result<String, FormatError> {
     let (robot, error) = match error {
         PrioritizedPlannerError::Robot { robot, error } => (robot, error),
@@ -202,7 +202,7 @@ fn not_found(cell: &Cell, goals: &[RobotGoal], error: &PrioritizedPlannerError) 
         RrtConnectError::NotFound { .. } | RrtConnectError::Disconnected { .. } => {
             Ok(format!("robot \"{}\": {error}", of_robot.name))
         }
-        // It is where another one is at its start or at its goal, in every order.
+        // In every order, the goal is where another robot is at its start or at its goal.
         RrtConnectError::InCollision { end: elbowroom_planner::PathEnd::Goal, a, b, .. }
             if is_other(a) || is_other(b) =>
         {

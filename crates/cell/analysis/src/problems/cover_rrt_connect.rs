@@ -1,4 +1,4 @@
-//! RRT-Connect on sphere covers as the planner of problem sets; what it does not find, RRT-Connect in the exact scene may.
+//! RRT-Connect on sphere covers as the planner of problem sets, followed by RRT-Connect in the exact scene.
 
 use std::time::{Duration, Instant};
 
@@ -11,15 +11,16 @@ use super::rrt_connect::{found, reason, rrt_settings};
 use super::{PlanningEngine, ProblemScene, ProblemSettings, RrtConnectEngine, Solution};
 use crate::cover_cache::CoverCache;
 
-/// [`CoverRrtConnect`], then [`RrtConnect`](elbowroom_planner::RrtConnect). All paths are proven free. The covers of the robot are
-/// built at the first problem and again where its pairs change.
+/// [`CoverRrtConnect`], then [`RrtConnect`](elbowroom_planner::RrtConnect). All paths are proven free.
+///
+/// The covers of the robot are built at the first problem, and again if its pairs change.
 #[derive(Debug, Clone, Default)]
 pub struct CoverRrtConnectEngine {
     model: Option<CoverModel>,
 }
 
 impl PlanningEngine for CoverRrtConnectEngine {
-    /// To whichever goal is found first.
+    /// Plans to the goal that is found first.
     fn solve(&mut self, problem: &ProblemScene, settings: &ProblemSettings) -> Solution {
         let (scene, start) = (problem.scene(), problem.start());
         if !self.model.as_ref().is_some_and(|m| m.serves(scene, start, settings.clearance_m)) {

@@ -1,4 +1,4 @@
-//! Whether start and goals of a problem are free.
+//! Check that the start and goals of a problem are free.
 
 use elbowroom_scene::{Checker, CheckerOptions, SceneState, Selection};
 
@@ -7,8 +7,8 @@ use super::problem_scene::{ProblemScene, ROBOT};
 /// Removes the goals that are not free.
 ///
 /// # Errors
-/// Why there is nothing to plan: the start, or every goal, is in collision or beyond the limits. The reason is that of the
-/// start, or of the last goal.
+/// The reason if the start, or every goal, is in collision or beyond the limits. It is the reason of the start, or of
+/// the last goal.
 pub(super) fn keep_free_goals(problem: &mut ProblemScene) -> Result<(), String> {
     why_invalid(problem, problem.start.q(ROBOT)).map_or(Ok(()), |why| Err(format!("start: {why}")))?;
     let mut reason = String::new();

@@ -1,4 +1,4 @@
-//! What a planner has to offer to solve a set of problems.
+//! Interface of the planners that solve a set of problems.
 
 use std::time::Duration;
 
@@ -6,7 +6,7 @@ use elbowroom_planner::{KinematicLimits, PlannedPath, RrtConnectError, TimedMoti
 
 use super::ProblemScene;
 
-/// A planner that solves problems one after the other. It may keep what it computes for the robot from one to the next.
+/// A planner that solves problems one after the other. It may reuse what it computes for the robot.
 pub trait PlanningEngine {
     /// Plans from the start to one of the goals, all of which are free.
     fn solve(&mut self, problem: &ProblemScene, settings: &ProblemSettings) -> Solution;
@@ -14,7 +14,7 @@ pub trait PlanningEngine {
     /// Times a path that it found, within limits.
     ///
     /// # Errors
-    /// As [`RrtConnect::time_parametrize`](elbowroom_planner::RrtConnect::time_parametrize).
+    /// As for [`RrtConnect::time_parametrize`](elbowroom_planner::RrtConnect::time_parametrize).
     fn time(
         &mut self,
         problem: &ProblemScene,
@@ -35,7 +35,7 @@ pub struct ProblemSettings {
     pub seed: u64,
     /// Period of the samples of timed paths, s.
     pub period_s: f64,
-    /// Goes on until the time limit, with shorter and shorter paths.
+    /// Whether the search continues until the time limit, with shorter and shorter paths.
     pub optimize: bool,
 }
 
@@ -63,6 +63,6 @@ pub struct Solution {
     pub cost_rad: f64,
     /// All values of the robot at each waypoint, straight in joint space in between; empty if none was found.
     pub waypoints: Vec<Vec<f64>>,
-    /// Why no path was found.
+    /// Reason if no path was found.
     pub reason: Option<String>,
 }

@@ -6,9 +6,9 @@ use elbowroom_kinematics::{Chain, JointId, JointKind};
 
 use super::messages::{Notes, ProblemKey, Result};
 
-/// Values of a mimic joint farther from those that follow from its source are reported, rad or m.
+/// Difference of a mimic joint from the value that follows from its source above which it is reported, rad or m.
 const MIMIC_TOLERANCE: f64 = 1e-6;
-/// A value beyond a limit by no more than this is on it, rad or m: models round π to 3.14159.
+/// Tolerance for a value beyond a limit, which then counts as on it, rad or m: models round π to 3.14159.
 const LIMIT_ROUNDING: f64 = 1e-5;
 
 /// Start and goals of a problem, in the order of the chain.
@@ -56,7 +56,7 @@ fn with_rounding((lower, upper): (f64, f64), value: f64) -> (f64, f64) {
     if is_near { (lower.min(value), upper.max(value)) } else { (lower, upper) }
 }
 
-/// The start: zero, or the limit nearest to it, where the problem has no value.
+/// The start values; zero, or the limit nearest to it, if the problem states no value.
 fn start(
     chain: &Chain,
     limits: &[(f64, f64)],

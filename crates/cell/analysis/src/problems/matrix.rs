@@ -6,10 +6,10 @@ use elbowroom_formats::problem_set::AllowedCollisions;
 use elbowroom_robot::{GeometryId, ObjectId, RobotId};
 use elbowroom_scene::{AllowedCollisionMatrix, PairEdit, Scene};
 
-/// Why a pair is skipped, for reports.
+/// Reason for skipping a pair, for reports.
 const REASON: &str = "allowed collision matrix of the problem";
 
-/// Skips the pairs that may touch. Names of neither links nor objects have no effect.
+/// Skips the pairs that may touch. Names that are neither links nor objects have no effect.
 pub(super) fn skip_allowed(
     scene: &Scene,
     matrix: &AllowedCollisions,

@@ -8,7 +8,7 @@ use elbowroom_formats::{FormatError, Warning};
 
 pub(super) type Result<T> = std::result::Result<T, FormatError>;
 
-/// Different warnings that are kept.
+/// Largest number of different warnings.
 const MAX_WARNINGS: usize = 50;
 
 /// A problem, for messages.

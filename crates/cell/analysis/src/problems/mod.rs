@@ -1,7 +1,7 @@
 //! Planning of whole sets of problems for one robot (`elbowroom plan --problems`).
 //!
-//! [`ProblemModel`] is made once per file: the robot with its meshes and the proofs of which links never meet. Each problem
-//! then becomes a [`ProblemScene`], which a [`PlanningEngine`] solves.
+//! [`ProblemModel`] is created once per file: the robot with its meshes and the proofs of which links never meet. Each
+//! problem then becomes a [`ProblemScene`], which a [`PlanningEngine`] solves.
 //!
 //! ```
 //! use elbowroom_analysis::problems::{ProblemModel, ProblemSettings, RrtConnectEngine, run};

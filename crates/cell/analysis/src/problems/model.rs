@@ -13,27 +13,27 @@ use super::joint_values::{self, JointValues};
 use super::messages::{Notes, ProblemKey, Result};
 use super::problem_scene::{self, BaseScene, ProblemScene};
 
-/// The robot of a set of problems, with what is the same for all of them. Its root link is the world frame.
+/// The robot of a set of problems, with the data that all problems share. Its root link is the world frame.
 #[derive(Debug)]
 pub struct ProblemModel {
     base: BaseScene,
     /// Names of the joints in the order of `q`.
     pub joints: Vec<String>,
-    /// Joints that a problem plans and that have no largest speed: their paths cannot be timed.
+    /// Planned joints without a largest speed, whose paths cannot be timed.
     pub joints_without_speed: Vec<String>,
-    /// What the user should know; each warning once.
+    /// Warnings for the user, each once.
     pub warnings: Vec<Warning>,
 }
 
 impl ProblemModel {
-    /// Prepares a robot for problems. All of them are checked, so that none is refused when others have been solved.
+    /// Prepares a robot for problems. All problems are checked, so that none is refused after others have been solved.
     ///
     /// A joint that a problem does not plan stays at its start, even beyond its limits, such as the fingers of a gripper in
     /// a model with other fingers.
     ///
     /// # Errors
-    /// A goal that names no joint of the robot, an object in an unknown frame or attached to an unknown link, and what a
-    /// scene refuses.
+    /// A goal that names no joint of the robot, an object in an unknown frame or attached to an unknown link, and
+    /// anything that a scene refuses.
     pub fn new(urdf: &Path, mut robot: Robot, problem_file: &Path, problems: &[PlanningProblem]) -> Result<Self> {
         let limits: Vec<(f64, f64)> = robot.chain.lower().into_iter().zip(robot.chain.upper()).collect();
         let mut notes = Notes::default();
@@ -58,8 +58,10 @@ impl ProblemModel {
         Ok(Self { base, joints, joints_without_speed, warnings: notes.warnings })
     }
 
-    /// The robot alone, for what a planner prepares once. Limits of joints that some problem holds beyond them are wider than
-    /// in the model; [`ProblemScene::limits`] has those of a problem.
+    /// The robot alone, for data that a planner prepares once.
+    ///
+    /// Limits of joints that some problem holds beyond them are wider than in the model; [`ProblemScene::limits`] has
+    /// the limits of one problem.
     pub fn scene(&self) -> &Scene {
         &self.base.scene
     }
@@ -67,7 +69,7 @@ impl ProblemModel {
     /// The scene of a problem, with its start and goals.
     ///
     /// # Errors
-    /// As [`Self::new`], for problems that were not checked there.
+    /// As for [`Self::new`], for problems that were not checked there.
     pub fn problem_scene(&self, problem: &PlanningProblem) -> Result<ProblemScene> {
         problem_scene::build(&self.base, problem, &mut Notes::default())
     }

@@ -19,10 +19,10 @@ use super::messages::{Notes, ProblemKey, Result};
 /// The only robot.
 pub(super) const ROBOT: RobotId = RobotId(0);
 
-/// The robot alone, with what is the same for all problems of a file.
+/// The robot alone, with the data that all problems of a file share.
 #[derive(Debug)]
 pub(super) struct BaseScene {
-    /// Limits of joints that some problem holds beyond them are wider than in the base.
+    /// Scene of the robot. Limits of joints that some problem holds beyond them are wider than in the model.
     pub scene: Scene,
     /// Position limits of the robot's joints in the model, rad or m.
     pub limits: Vec<(f64, f64)>,
@@ -30,7 +30,7 @@ pub(super) struct BaseScene {
     pub problem_file: PathBuf,
 }
 
-/// A problem as a scene: the robot among the objects, its start and goals. Coordinates are those of the root link.
+/// A problem as a scene: the robot among the objects, its start and goals. Coordinates are in the root link.
 #[derive(Debug, Clone)]
 pub struct ProblemScene {
     pub(super) scene: Scene,
@@ -41,7 +41,7 @@ pub struct ProblemScene {
 }
 
 impl ProblemScene {
-    /// The robot, which is the only one, and the objects, with the pairs that may touch.
+    /// The only robot and the objects, with the pairs that may touch.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
@@ -61,7 +61,7 @@ impl ProblemScene {
         &self.limits
     }
 
-    /// A planner that holds the joints which the goals do not name.
+    /// A planner that holds the joints that the goals do not name.
     pub(super) fn planner(&self) -> std::result::Result<RrtConnect<'_>, SceneError> {
         Ok(RrtConnect::new(&self.scene, ROBOT)?.with_limits(self.limits.iter().copied()))
     }

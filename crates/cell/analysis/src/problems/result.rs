@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::Solution;
 
-/// Result of one problem. What does not exist is null: times of an invalid problem, lengths where no path was found.
+/// Result of one problem. Missing values are null: times of an invalid problem, lengths without a path.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ProblemResult {
     /// Name of the set.
@@ -19,7 +19,7 @@ pub struct ProblemResult {
     pub found: bool,
     /// True if every stretch of the path is proven free.
     pub proven: bool,
-    /// Why the problem is invalid, why no path was found, or why the path is not timed.
+    /// Reason why the problem is invalid, why no path was found, or why the path is not timed.
     pub reason: Option<String>,
     /// Time of the search, µs.
     pub planning_us: Option<f64>,

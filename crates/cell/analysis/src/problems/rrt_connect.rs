@@ -11,7 +11,7 @@ use super::{PlanningEngine, ProblemScene, ProblemSettings, Solution};
 pub struct RrtConnectEngine;
 
 impl PlanningEngine for RrtConnectEngine {
-    /// Tries the goals one after the other, each within its share of the remaining time.
+    /// Tries the goals one after the other, each within its part of the remaining time.
     fn solve(&mut self, problem: &ProblemScene, settings: &ProblemSettings) -> Solution {
         let mut planner = match problem.planner() {
             Ok(planner) => planner,

@@ -9,11 +9,13 @@ use super::problem_scene::ProblemScene;
 use super::{PlanningEngine, ProblemResult, ProblemSettings, Solution, end_validity, motion_limits};
 use crate::plan::TimedPath;
 
-/// Solves problems one after the other and times the paths. Building the scenes and timing are in no time of a result.
-/// `each` is called after each problem, with the timed path where there is one; `false` ends the run.
+/// Solves problems one after the other, and times the paths.
+///
+/// The times in a result include neither the building of the scenes nor the timing of paths. `each` is called after
+/// each problem, with the timed path if there is one; `false` ends the run.
 ///
 /// # Errors
-/// As [`ProblemModel::problem_scene`].
+/// As for [`ProblemModel::problem_scene`].
 pub fn run(
     model: &ProblemModel,
     problems: &[PlanningProblem],
@@ -42,7 +44,7 @@ pub fn run(
     Ok(results)
 }
 
-/// The timed path; `None`, with the reason in the result, where there is none.
+/// The timed path. If there is none, the result has the reason.
 fn timed(
     engine: &mut dyn PlanningEngine,
     problem: &ProblemScene,

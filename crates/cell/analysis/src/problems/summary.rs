@@ -7,13 +7,13 @@ use super::ProblemResult;
 /// Counts and figures of each set, and of all sets together.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ProblemSummary {
-    /// In the order in which they come first.
+    /// Sets in the order of their first appearance.
     pub sets: Vec<SetSummary>,
     /// All problems; its name is `all`.
     pub all: SetSummary,
 }
 
-/// Counts and figures of a set. Times and means are those of the solved problems; null where none is.
+/// Counts and figures of a set. Times and means cover the solved problems; null if no problem is solved.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SetSummary {
     /// Name of the set.
@@ -50,7 +50,8 @@ pub struct Statistics {
 }
 
 impl Statistics {
-    /// Those of some values; `None` without any. Percentiles are linear between two values of the sorted sample.
+    /// Computes the figures of some values; `None` without values. Percentiles are linear between two values of the
+    /// sorted sample.
     ///
     /// ```
     /// use elbowroom_analysis::problems::Statistics;

@@ -14,13 +14,13 @@ use elbowroom_spatial::Vec3;
 
 use super::{ContactRow, QueryKind, QueryPairs, QueryRow, QueryStates};
 
-/// States per checker: its learned weights must not depend on the number of threads.
+/// Number of states per checker. Its learned weights must not depend on the number of threads.
 pub const BLOCK: usize = 256;
 
 /// Largest number of finished blocks per thread that wait for an earlier one.
 const WAITING: usize = 8;
 
-/// What is queried of every state.
+/// A query, which is evaluated for every state.
 #[derive(Debug, Clone, Copy)]
 pub struct Query<'q> {
     /// Collision, distance or tolerance.
@@ -31,14 +31,14 @@ pub struct Query<'q> {
     pub pairs: &'q QueryPairs,
     /// A row for each pair no farther apart than this, m, the nearest first; `None`: a row for each state.
     pub all_pairs_m: Option<f64>,
-    /// The state before joint values are set: what links carry.
+    /// The state before joint values are set, with carried objects.
     pub start: &'q SceneState,
 }
 
-/// [`evaluate_query`] of all pairs.
+/// Like [`evaluate_query`], for all pairs.
 ///
 /// # Errors
-/// As there.
+/// As for [`evaluate_query`].
 pub fn evaluate(
     scene: &Scene,
     states: &QueryStates,
@@ -50,12 +50,13 @@ pub fn evaluate(
     evaluate_query(scene, states, &Query { kind, level, pairs: &pairs, all_pairs_m: None, start: &start }, take)
 }
 
-/// Evaluates a query for every state. `take` is called with the rows, in order and block by block; it returns whether
-/// to continue. Returns the counters of the work for the rows taken. [`QueryKind::Contacts`] is answered as
-/// [`QueryKind::Point`]: [`evaluate_contacts`] has its rows.
+/// Evaluates a query for every state, and returns the counters of the work for the rows taken.
+///
+/// `take` is called with the rows, in order and block by block; it returns whether to continue. [`QueryKind::Contacts`]
+/// is answered like [`QueryKind::Point`]: [`evaluate_contacts`] has its rows.
 ///
 /// # Errors
-/// [`FormatError`] if a state does not fit the scene; states that were read for its model do.
+/// [`FormatError`] if a state does not fit the scene. States that were read for the scene's model always fit.
 pub fn evaluate_query(
     scene: &Scene,
     states: &QueryStates,
@@ -65,10 +66,10 @@ pub fn evaluate_query(
     evaluate_blocks(states, &|block| rows_of_block(scene, states, query, block), take)
 }
 
-/// The triangles that touch in every state, of all pairs of the query that are in contact; as [`evaluate_query`].
+/// Like [`evaluate_query`], with the touching triangles of all pairs in contact as rows.
 ///
 /// # Errors
-/// As [`evaluate_query`].
+/// As for [`evaluate_query`].
 pub fn evaluate_contacts(
     scene: &Scene,
     states: &QueryStates,
@@ -81,7 +82,7 @@ pub fn evaluate_contacts(
 /// The rows of a block, and the counters of the work.
 type BlockRows<R> = Result<(Vec<R>, CheckerStats), SceneError>;
 
-/// Evaluates blocks on all cores; `take` gets them in order.
+/// Evaluates blocks on all cores; `take` receives them in order.
 fn evaluate_blocks<R: Send>(
     states: &QueryStates,
     rows_of_block: &(dyn Fn(usize) -> BlockRows<R> + Sync),
@@ -182,7 +183,7 @@ fn rows_of_block(scene: &Scene, states: &QueryStates, query: &Query<'_>, block: 
     Ok((rows, pairs.checker.stats()))
 }
 
-/// The pairs between some sides, as one.
+/// The pairs between all sides, treated as one set.
 struct CheckedPairs<'c, 's> {
     checker: Checker<'s>,
     sides: &'c [[Selection; 2]],
@@ -253,7 +254,7 @@ impl CheckedPairs<'_, '_> {
         if row.collides || d.lower_bound > 0.0 {
             return Some(row);
         }
-        // Below the accuracy of the distance the collision test decides, so that all kinds of queries agree.
+        // Below the accuracy of the distance, the collision test decides, so that all kinds of queries agree.
         let Some(contact) = self.within(state, 0.0) else { return Some(row) };
         let pair = Some((contact.a, contact.b));
         let witness = if row.pair == pair { row.witness } else { self.witness_of_contact(state, contact) };

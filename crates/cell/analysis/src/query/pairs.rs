@@ -4,7 +4,7 @@ use elbowroom_cell::{Cell, QueryModel, suggest};
 use elbowroom_robot::{GeometryId, ObjectId, RobotId};
 use elbowroom_scene::Selection;
 
-/// The pairs that a query tests: all of the scene, or those between named sides.
+/// The pairs that a query tests: all pairs of the scene, or the pairs between named sides.
 ///
 /// ```
 /// use elbowroom_analysis::query::QueryPairs;
@@ -60,7 +60,7 @@ impl QueryPairs {
         Self { sides: vec![[Selection::All; 2]] }
     }
 
-    /// All but those within one robot; what a robot holds is a part of it.
+    /// All pairs except pairs within one robot, which includes what it holds.
     pub fn without_self(model: &QueryModel) -> Self {
         let robots = model.robots.len();
         let of_robots =
@@ -73,12 +73,14 @@ impl QueryPairs {
         Self { sides: of_robots.chain(free.map(|o| [Selection::Robots, Selection::Object(o)])).collect() }
     }
 
-    /// The pairs of a text: `A,B;C,D`. Each side is a robot (with tool and load), a link (`robot/link`; for a single robot its
-    /// name alone), an object or a region of the cell. Regions become objects of the model, where they are at the start; one that
-    /// follows a robot moves with it.
+    /// Parses pairs: `A,B;C,D`.
+    ///
+    /// Each side is a robot (with tool and load), a link (`robot/link`; for a single robot its name alone), an object
+    /// or a region of the cell. Regions become objects of the model, at their poses at the start; a region that follows
+    /// a robot moves with it.
     ///
     /// # Errors
-    /// Names that are not there, and what to write instead.
+    /// Unknown names, with what to write instead.
     pub fn between(text: &str, model: &mut QueryModel, cell: Option<&Cell>) -> Result<Self, QueryPairsError> {
         let mut sides = Vec::new();
         for pair in text.split(';').filter(|pair| !pair.trim().is_empty()) {
@@ -92,10 +94,10 @@ impl QueryPairs {
         Ok(Self { sides })
     }
 
-    /// The same, of which none is within one robot.
+    /// Returns these pairs if no pair is within one robot.
     ///
     /// # Errors
-    /// A pair of which both sides are parts of one robot.
+    /// A pair with both sides in one robot.
     pub fn expect_without_self(self, model: &QueryModel) -> Result<Self, QueryPairsError> {
         let robot = |side: Selection| match side {
             Selection::Robot(robot) | Selection::Link { robot, .. } => Some(robot),
@@ -107,7 +109,7 @@ impl QueryPairs {
         }
     }
 
-    /// Both sides of each.
+    /// Both sides of each pair.
     pub fn sides(&self) -> &[[Selection; 2]] {
         &self.sides
     }
@@ -127,7 +129,7 @@ fn side(name: &str, model: &mut QueryModel, cell: Option<&Cell>) -> Result<Selec
         return Ok(Selection::Object(ObjectId(model.objects.len() - 1)));
     }
     let regions = cell.into_iter().flat_map(|cell| cell.regions.iter().map(|r| r.region.name.clone()));
-    // A region that was named before is an object of the model by now.
+    // A region that was named before is already an object of the model.
     let regions = regions.filter(|name| model.selection(name).is_none());
     let known: Vec<String> = regions.chain(model.names()).collect();
     let hint = suggest::hint(name, known.iter().map(String::as_str));

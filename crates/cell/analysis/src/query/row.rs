@@ -11,9 +11,9 @@ use serde::Serialize;
 pub struct QueryRow {
     /// Index of the state, from 0.
     pub index: usize,
-    /// True on contact; with a tolerance, at a distance of at most that.
+    /// True on contact; with a tolerance, if the distance is at most the tolerance.
     pub collides: bool,
-    /// Distance in metres, where it was queried or is known: 0 on contact.
+    /// Distance in metres, if it was queried or is known; 0 on contact.
     pub distance_m: Option<f64>,
     /// The pair in contact, or the nearest pair.
     pub pair: Option<(GeometryId, GeometryId)>,
@@ -114,7 +114,8 @@ pub struct ContactRecord {
     pub collider_a: usize,
     /// Index of the collider of `b`.
     pub collider_b: usize,
-    /// Index of the triangle of that collider, from 0; none where the colliders are in contact without touching triangles.
+    /// Index of the triangle of that collider, from 0; `None` if the colliders are in contact without touching
+    /// triangles.
     pub triangle_a: Option<u32>,
     /// Index of the triangle of the other collider.
     pub triangle_b: Option<u32>,

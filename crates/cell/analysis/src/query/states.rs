@@ -27,8 +27,10 @@ impl QueryStates {
     }
 
     /// Reads a file of states: a header of joint names in any order, then a row of radians (metres for prismatic
-    /// joints) per state. Mimic joints have no column. With several robots the names are prefixed, `robot.joint`; with
-    /// one they may be. A robot of a cell without any column stays at its start. The columns `index` and `t_s` are
+    /// joints) per state.
+    ///
+    /// Mimic joints have no column. With several robots the names have a prefix, `robot.joint`; with one robot the
+    /// prefix is optional. A robot of a cell without any column stays at its start. The columns `index` and `t_s` are
     /// ignored.
     ///
     /// # Errors
@@ -37,18 +39,18 @@ impl QueryStates {
         joint_states::JointStates::read(path, &options(model)).map(Self::new)
     }
 
-    /// As [`QueryStates::read`], from a source such as standard input; `path` is named in messages.
+    /// Like [`QueryStates::read`], from a source such as standard input; messages name `path`.
     ///
     /// # Errors
-    /// As there.
+    /// As for [`QueryStates::read`].
     pub fn read_from(path: &Path, source: impl BufRead, model: &QueryModel) -> Result<Self> {
         joint_states::JointStates::read_from(path, source, &options(model)).map(Self::new)
     }
 
-    /// As [`QueryStates::read`], for text in place of the file `path`.
+    /// Like [`QueryStates::read`], for text in place of the file `path`.
     ///
     /// # Errors
-    /// As there.
+    /// As for [`QueryStates::read`].
     pub fn parse(path: &Path, text: &str, model: &QueryModel) -> Result<Self> {
         joint_states::JointStates::parse(path, text, &options(model)).map(Self::new)
     }
@@ -68,14 +70,14 @@ impl QueryStates {
         self.states.is_empty()
     }
 
-    /// The joint values of each robot in one state; nothing beyond the last state.
+    /// The joint values of each robot in one state; empty beyond the last state.
     pub fn of(&self, index: usize) -> impl Iterator<Item = (usize, &[f64])> {
         let robots = if index < self.len() { self.states.robots() } else { 0 };
         (0..robots).map(move |robot| (robot, self.states.q(index, robot)))
     }
 }
 
-/// Values beyond limits are answered, with a warning. Only a robot of several in a cell may have no column.
+/// Values beyond limits are accepted, with a warning. Only in a cell with several robots may a robot have no column.
 fn options(model: &QueryModel) -> JointStateOptions<'_> {
     let may_stay = !model.is_single_robot && model.robots.len() > 1;
     let robots = model.robots.iter().map(|r| robot(r, may_stay)).collect();

@@ -1,4 +1,4 @@
-//! Joint values over time: where the robots were when a picture was taken.
+//! Joint values over time, for the robots' positions at the time of each picture.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use elbowroom_cell::{Cell, CellRobot};
 use elbowroom_formats::joint_states::{ExtraColumns, JointStateOptions, JointStateRobot, LimitCheck, TimeColumn};
 use elbowroom_formats::{FormatError, JointStates, Warning};
 
-/// Pictures this long before the first or after the last row have no joint values, s.
+/// Time before the first row, or after the last one, beyond which pictures have no joint values, s.
 const MARGIN_S: f64 = 0.1;
 
 /// Joint values of all robots over time, linear between rows; or their start.
@@ -17,8 +17,9 @@ pub(super) struct JointTrack {
 }
 
 impl JointTrack {
-    /// Reads a file with `t_s` and a column per joint (`robot.joint` where there are several robots). Without a file all robots
-    /// stay at their start.
+    /// Reads a file with `t_s` and a column per joint (`robot.joint` if there are several robots).
+    ///
+    /// Without a file all robots stay at their start.
     pub fn read(cell: &Cell, file: Option<&Path>, warnings: &mut Vec<Warning>) -> Result<Self, FormatError> {
         let start = cell.robots.iter().map(|r| r.start.clone()).collect();
         let Some(file) = file else { return Ok(Self { start, states: None }) };
@@ -41,7 +42,7 @@ impl JointTrack {
         self.at(t_s).ok()
     }
 
-    /// The values of each robot at a time; an error where they are not known.
+    /// The values of each robot at a time; an error if they are not known.
     pub fn at(&self, t_s: f64) -> Result<Vec<Vec<f64>>, String> {
         let Some(states) = &self.states else { return Ok(self.start.clone()) };
         let times = states.times_s();
@@ -61,7 +62,7 @@ impl JointTrack {
     }
 }
 
-/// Only a robot of several may have no column: it stays at its start.
+/// With several robots, a robot without a column stays at its start.
 fn robot(robot: &CellRobot, may_stay: bool) -> JointStateRobot<'_> {
     let default_q = may_stay.then_some(&robot.start[..]);
     JointStateRobot { name: &robot.name, chain: &robot.robot.chain, default_q }

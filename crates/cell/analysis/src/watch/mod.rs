@@ -1,5 +1,5 @@
-//! What a camera or a source of point clouds of a cell sees: obstacles with an identity, and the cells of joint space that they
-//! block (`elbowroom watch`).
+//! Obstacles that a camera or a source of point clouds of a cell sees, and the cells of joint space that they block
+//! (`elbowroom watch`).
 
 mod joint_track;
 mod record;
@@ -25,21 +25,22 @@ pub use record::{HiddenFloorRecord, WatchRecord, WatchStatus, WatchedObstacle};
 
 /// Largest picture or cloud, bytes.
 const MAX_BYTES: u64 = 1 << 30;
-/// A motion may be so far (rad or m) from the polyline through its samples.
+/// Largest deviation (rad or m) of a motion from the polyline through its samples.
 const CURVE_MARGIN: f64 = 1e-3;
 
-/// What is watched.
+/// A request to watch a sensor.
 #[derive(Debug, Clone, Default)]
 pub struct WatchRequest {
     /// The sensor; optional if there is only one that fits.
     pub sensor: Option<String>,
-    /// Where its pictures or clouds come from.
+    /// Source of its pictures or clouds.
     pub input: WatchInput,
-    /// Joint values over time; `None`: those of the cell file. Without either all robots stay at their start.
+    /// Joint values over time; `None`: the file that the cell file names. Without either all robots stay at their
+    /// start.
     pub joints: Option<PathBuf>,
 }
 
-/// Where pictures or clouds come from.
+/// Source of pictures or clouds.
 #[derive(Debug, Clone, Default)]
 pub enum WatchInput {
     /// The folder that the cell file names.
@@ -56,7 +57,7 @@ pub enum WatchInput {
 /// A sensor of a cell, its pictures or clouds, and the map of a robot.
 #[derive(Debug)]
 pub struct SensorWatch {
-    /// What the user should know; records can add to it.
+    /// Warnings for the user; records can add to them.
     pub warnings: Vec<Warning>,
     /// A warning about the sensor, still without text.
     about: Warning,
@@ -66,7 +67,7 @@ pub struct SensorWatch {
     mapped: MapScope,
 }
 
-/// Of which robot and joints the map proves paths free.
+/// The robot and the joints for which the map proves paths free.
 #[derive(Debug, Clone)]
 struct MapScope {
     robot: RobotId,
@@ -77,7 +78,7 @@ struct MapScope {
 }
 
 impl SensorWatch {
-    /// Reads what a request names.
+    /// Opens the sensor and the files of a request.
     ///
     /// # Errors
     /// [`FormatError`] names the file and the line, or the key that is missing.
@@ -95,10 +96,10 @@ impl SensorWatch {
         Ok(watch)
     }
 
-    /// A sensor with the folder that the cell file names, for a run.
+    /// Opens a sensor with the folder that the cell file names, for a run.
     ///
     /// # Errors
-    /// As [`SensorWatch::new`].
+    /// As for [`SensorWatch::new`].
     pub fn in_run(cell: &Cell, sensor: &CellSensor) -> Result<Self, FormatError> {
         let folder = sensor.folder.as_ref().ok_or_else(|| without_folder(cell, sensor))?;
         let (files, warnings) = read_folder(sensor, folder, &WatchInput::CellFile)?;
@@ -150,8 +151,10 @@ impl SensorWatch {
         self.sensor.map()
     }
 
-    /// True if the map proves a path of a robot free: all cells are free that a polyline through these joint values (rad or m)
-    /// crosses or comes near. What the robot carries is not in the map.
+    /// True if the map proves that a path of a robot is free.
+    ///
+    /// This needs free cells everywhere on and near the polyline through these joint values (rad or m). The map does
+    /// not contain what the robot carries.
     pub fn proves_free<'q>(&self, robot: RobotId, path: impl IntoIterator<Item = &'q [f64]>) -> bool {
         let MapScope { robot: mapped, joints, others_are_any } = self.mapped;
         if self.prisms().is_empty() {
@@ -179,14 +182,17 @@ impl SensorWatch {
         first.into_iter().all(|i| second.clone().all(|j| third.clone().all(|k| !occupancy.is_blocked([i, j, k]))))
     }
 
-    /// The record of a picture or cloud of the folder, by its number; they must be taken in order. One that cannot be used
-    /// gives a record that says why: obstacles and map stay as they were.
+    /// The record of a picture or cloud of the folder, by its number. The numbers must come in order.
+    ///
+    /// A picture that cannot be used gives a record with the reason; obstacles and map stay as they were.
     pub fn record(&mut self, index: usize) -> WatchRecord {
         self.record_with(index, None)
     }
 
-    /// As [`record`](Self::record); at times that the file of joint values does not cover, and without one, each robot is where
-    /// it was in a run (rad or m).
+    /// Like [`record`](Self::record), for a run.
+    ///
+    /// At times that the file of joint values does not cover, and without such a file, the robots are at `q` (rad or
+    /// m).
     pub fn record_in_run(&mut self, index: usize, q: &[Vec<f64>]) -> WatchRecord {
         let recorded = self.joints.recorded_at(self.files[index].t_s);
         self.record_with(index, Some(recorded.as_deref().unwrap_or(q)))
@@ -201,7 +207,7 @@ impl SensorWatch {
         }
     }
 
-    /// The record of a picture of a stream: its bytes, a name for messages, and when it was taken (s).
+    /// The record of a picture of a stream: its bytes, a name for messages, and its time (s).
     pub fn record_bytes(&mut self, bytes: &[u8], name: &Path, t_s: f64) -> WatchRecord {
         self.process(bytes, name, t_s, None)
     }
@@ -237,7 +243,7 @@ fn without_folder(cell: &Cell, sensor: &CellSensor) -> FormatError {
     refusal(cell, sensor, what).hint(hint)
 }
 
-/// The files of a sensor: pictures for a camera or for depths, else clouds.
+/// The files of a sensor: pictures for a camera or for depths, otherwise clouds.
 fn read_folder(
     sensor: &CellSensor,
     folder: &Path,

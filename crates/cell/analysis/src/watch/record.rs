@@ -1,4 +1,4 @@
-//! One picture's result, as JSON.
+//! Result of one picture, as JSON.
 
 use std::path::Path;
 
@@ -12,20 +12,20 @@ use super::sensor::Sensor;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum WatchStatus {
-    /// The empty cell is being learnt; nothing is known yet.
+    /// The empty cell is being learnt; obstacles are not known yet.
     Learning,
     /// It was evaluated.
     Accepted,
-    /// It was not evaluated: obstacles and map are those of the last accepted one. Unknown is not free.
+    /// It was not evaluated. Obstacles and map stay as after the last accepted one: unknown is not free.
     Rejected,
 }
 
 /// An obstacle that the camera sees.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct WatchedObstacle {
-    /// Its identity, the same as long as it is seen.
+    /// Its identity, which does not change while it is seen.
     pub id: u64,
-    /// The template that it matches; null for none.
+    /// The template that it matches; null if it matches none.
     pub kind: Option<String>,
     /// Corners of its footprint, with the uncertainty, world x and y, m.
     pub outline_m: Vec<[f64; 2]>,
@@ -71,22 +71,22 @@ impl std::fmt::Display for HiddenFloorRecord {
     }
 }
 
-/// How floor is shown that was hidden.
+/// Hint on how to show hidden floor.
 pub(crate) const SHOW_THE_FLOOR: &str =
     "robots that move while the empty cell is learnt, or an `area` without the floor that they always hide";
 
-/// What one picture shows.
+/// Result of one picture.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct WatchRecord {
-    /// When it was taken, s.
+    /// Time at which it was taken, s.
     pub t_s: f64,
     /// The name of its file.
     pub frame: String,
     /// Whether it was evaluated.
     pub status: WatchStatus,
-    /// Why it was rejected; null otherwise.
+    /// Reason if it was rejected; null otherwise.
     pub reason: Option<String>,
-    /// In the last picture of the empty cell: the floor that none of them showed, and that counts as an obstacle.
+    /// In the last picture of the empty cell: floor that no picture showed, which counts as an obstacle.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hidden_floor: Option<HiddenFloorRecord>,
     /// All obstacles.

@@ -18,7 +18,7 @@ pub(super) enum Sensor {
 }
 
 impl Sensor {
-    /// Of a sensor of a cell; `known` are the objects that do not move.
+    /// Opens a sensor of a cell; `known` are the objects that do not move.
     pub fn new(
         sensor: &CellSensor,
         robots: Vec<WatchedRobot>,
@@ -54,7 +54,7 @@ impl Sensor {
         }
     }
 
-    /// The floor that was hidden while the empty cell was learnt; of a camera.
+    /// The floor that was hidden while the empty cell was learnt; only for a camera.
     pub fn hidden_floor(&self) -> Option<HiddenFloor> {
         match self {
             Self::Camera { watcher, .. } => watcher.tracker().hidden_floor(),
@@ -62,7 +62,8 @@ impl Sensor {
         }
     }
 
-    /// Takes in a picture or cloud: the bytes of its file, its name, when it was taken, and where the robots were then.
+    /// Processes a picture or cloud: the bytes of its file, its name, its time (s), and the robots' joint values at
+    /// that time.
     pub fn process(
         &mut self,
         bytes: &[u8],

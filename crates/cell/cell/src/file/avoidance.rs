@@ -1,4 +1,4 @@
-//! `[avoidance.ROBOT]`: how a robot avoids dynamic obstacles.
+//! `[avoidance.ROBOT]`: avoidance of dynamic obstacles by a robot.
 
 use elbowroom_avoidance::{AvoiderSettings, Rules};
 use elbowroom_formats::FormatError;
@@ -30,7 +30,7 @@ const KEYS: &[&str] = &[
 const SPEEDS_M_S: (f64, f64) = (0.01, 20.0);
 /// Range of the clearance, m; rules limit it further.
 const CLEARANCES_M: (f64, f64) = (1e-4, 5.0);
-/// Smallest return speed, as a share of the joints' speeds.
+/// Smallest return speed, as a fraction of the joints' speeds.
 const MIN_RETURN: f64 = 0.01;
 /// Range of the stall timeout, s.
 const STALL_TIMEOUTS_S: (f64, f64) = (0.01, 60.0);
@@ -41,7 +41,7 @@ const MAX_HORIZON_S: f64 = 10.0;
 const MAX_NOISE_M: f64 = 0.5;
 /// Longest delay of an observation, ms.
 const MAX_DELAY_MS: f64 = 2000.0;
-/// Longest time of a plan, and the one without the key, ms: a little more than plans took in the runs of the documents.
+/// Longest time of a plan, and its default, ms. The default is a little more than plans took in the documented runs.
 const MAX_PLAN_MS: f64 = 10_000.0;
 const PLAN_MS: f64 = 70.0;
 
@@ -139,7 +139,7 @@ fn length(v: &Value<'_>, units: Units, bounds: (f64, f64), per: &str) -> Result<
     let (least, most) = (show(bounds.0), show(bounds.1));
     let sense = if metres < bounds.0 { bounds.0 } else { bounds.1 };
     let number = (sense / units.length.to_metres(1.0) * 1e6).round() / 1e6;
-    // As it was written: a tiny number must not be rounded to 0.
+    // The number as written: a tiny number must not be rounded to 0.
     let what = format!("is {}, and can be {least} to {most}", v.number()?);
     Err(v
         .error(what)

@@ -1,4 +1,4 @@
-//! `[camera.NAME]`: a calibrated camera above the floor of the cell, and what is known of what it sees.
+//! `[camera.NAME]`: a calibrated camera above the floor of the cell.
 
 use elbowroom_formats::FormatError;
 use elbowroom_vision::{Camera, CameraTracker, CameraTrackerSettings, ShadowSettings, Template, VisionError};

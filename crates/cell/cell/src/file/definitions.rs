@@ -16,7 +16,7 @@ pub(super) struct Definitions<'a> {
     pub encoders: &'a [Encoder],
     pub objects: &'a [Object],
     pub moving_objects: &'a [MovingObject],
-    /// Read with the regions that follow them.
+    /// Pose files, read with the regions that follow them.
     pub pose_tracks: Vec<PoseTrack>,
 }
 

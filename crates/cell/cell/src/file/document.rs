@@ -51,7 +51,7 @@ impl CellFile {
         Ok(Self { file, entries, on_disk: false })
     }
 
-    /// For changes in memory, of which no seal says anything.
+    /// Marks the file as not read from disk, so that no seal is verified: for changes in memory.
     pub(crate) fn unsealed(self) -> Self {
         Self { on_disk: false, ..self }
     }

@@ -6,11 +6,12 @@ use elbowroom_kinematics::{Chain, JointId, LinkId};
 use super::read::{Table, Value};
 use crate::suggest;
 
-/// Names of tool frames (ROS-Industrial), the best first.
+/// Names of tool frames (ROS-Industrial), in order of preference.
 const NAMES: [&str; 2] = ["tool0", "flange"];
 
-/// The link that the key `flange` names; else `tool0`, `flange`, or the leaf with the most joints above it. Where that is one of
-/// several fingers, the link that carries them, with a warning.
+/// The link that the key `flange` names; otherwise `tool0`, `flange`, or the leaf with the most joints above it.
+///
+/// If that leaf is one of several fingers, the link that carries the fingers, with a warning.
 pub(super) fn read(
     robot: &str,
     t: &Table<'_>,
@@ -38,7 +39,7 @@ pub(super) fn read(
     Ok(palm)
 }
 
-/// The link from which a leaf and others hang on moving joints of their own.
+/// The link that carries a leaf and other links on separate moving joints.
 fn carrier_of_fingers(chain: &Chain, leaf: LinkId) -> Option<LinkId> {
     let moves = |joint: JointId| chain.joints()[joint.0].kind.moves();
     // Fixed joints may follow the joint of the finger.
@@ -51,7 +52,7 @@ fn carrier_of_fingers(chain: &Chain, leaf: LinkId) -> Option<LinkId> {
     (0..chain.joints().len()).map(JointId).any(is_other).then_some(palm)
 }
 
-/// True if a link hangs on another.
+/// True if a link is below another one in the chain.
 fn is_below(chain: &Chain, link: LinkId, above: LinkId) -> bool {
     chain.path(link).iter().any(|joint| chain.joints()[joint.0].parent == above)
 }

@@ -85,11 +85,11 @@ pub(super) fn read(
     Ok((follow, limits))
 }
 
-/// Larger limits of a source would permit every jump, m/s and rad/s.
+/// Largest limits of a source, m/s and rad/s: larger ones would permit every jump.
 const MAX_SPEED_M_S: f64 = 1000.0;
 const MAX_TURN_RAD_S: f64 = 500.0;
 
-/// `max_speed` and `max_turn`, where given.
+/// Reads `max_speed` and `max_turn`, if given.
 fn given(t: &Table<'_>, units: Units, limits: &mut SourceLimits) -> Result<()> {
     if let Some(v) = t.get("max_speed") {
         limits.speed_m_s = units.positive_length(&v)?;
@@ -114,12 +114,13 @@ fn given(t: &Table<'_>, units: Units, limits: &mut SourceLimits) -> Result<()> {
     Ok(())
 }
 
-/// Upper bound of the motion of a frame on a link, from the speeds of the independent joints (rad/s or m/s, as in `q`); at
-/// least the default.
+/// Upper bound of the motion of a frame on a link, from the speeds of the independent joints; at least the default.
+///
+/// `speeds` are in rad/s or m/s, in the order of `q`.
 fn fastest(chain: &Chain, speeds: &[f64], link: LinkId, in_link: Pose) -> SourceLimits {
     let bound = motion_bound(chain, link, in_link.translation.length(), &chain.path(link));
-    // Joints that follow another turn by a multiple of it, whatever the kind of the other. Reaches, and so strokes, do not
-    // count: a rotation has no lever.
+    // A joint that follows another one turns by a multiple of its motion, whatever the kind of the other joint.
+    // Reaches, and so strokes, do not count: a rotation has no lever.
     let turning = joint_reaches(chain, link, 0.0, |_| 0.0)
         .filter(|reach| reach.kind.turns())
         .filter_map(|reach| reach.coupling)
@@ -153,7 +154,7 @@ fn frame(v: Option<&Value<'_>>, robot: &CellRobot) -> Result<(LinkId, Pose)> {
     }
 }
 
-/// Warns before a run where the monitors will take a motion in the file for a jump.
+/// Warns before a run if the monitors will treat a motion in the file as a jump.
 fn warn_of_jumps(t: &Table<'_>, track: &PoseTrack, limits: &SourceLimits, units: Units, warnings: &mut Vec<Warning>) {
     let too_fast = |rate: &PoseRate| rate.speed_m_s > limits.speed_m_s || rate.turn_rad_s > limits.turn_rad_s;
     let Some(PoseRate { from_s, speed_m_s, turn_rad_s }) = track.rates().find(too_fast) else { return };

@@ -9,7 +9,7 @@ use crate::{CellRobot, MoveTarget, TcpTarget, Units, suggest};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
-/// A pose, joint values, or the name of a state of the robot. `along_a_line`: for a linear move.
+/// Reads a pose, joint values, or the name of a state of the robot. `along_a_line` is true for a linear move.
 pub(super) fn read(
     to: &Value<'_>,
     example: &str,

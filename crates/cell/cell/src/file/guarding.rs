@@ -1,4 +1,4 @@
-//! Checks that a region guards something of each robot it applies to.
+//! Check that a region guards a part of each robot that it applies to.
 
 use elbowroom_formats::{FormatError, Warning};
 use elbowroom_kinematics::LinkId;
@@ -10,9 +10,9 @@ use crate::{Cell, CellRegionId, CellRobot};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
-/// Refuses a region that guards nothing of a robot, and warns if it does not guard the links.
+/// Refuses a region that guards no part of a robot, and warns if it does not guard the links.
 ///
-/// A monitored region without slow-down is only warned about: its output never rises.
+/// A monitored region without slow-down causes only a warning: its output never rises.
 pub(super) fn check(t: &Table<'_>, cell: &Cell, region: CellRegionId, warnings: &mut Vec<Warning>) -> Result<()> {
     let (robots, region) = (&cell.robots, &cell.regions[region.0]);
     if region.robots.is_empty() && !robots.is_empty() {
@@ -44,7 +44,7 @@ pub(super) fn check(t: &Table<'_>, cell: &Cell, region: CellRegionId, warnings: 
     Ok(())
 }
 
-/// What a region guards and the robot does not have.
+/// The part that a region guards and the robot does not have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum MissingPart {
     /// The guarded part is fixed: no joint moves it.
@@ -58,7 +58,7 @@ enum MissingPart {
 }
 
 impl MissingPart {
-    /// `grips`: its program grips objects.
+    /// Finds the missing part. `grips` states that the robot's program grips objects.
     fn of(robot: &CellRobot, grips: bool, guards: Guards) -> Option<Self> {
         let moves = |link: LinkId| {
             let chain = &robot.robot.chain;
@@ -72,7 +72,7 @@ impl MissingPart {
             robot.without_payload().colliders.iter().enumerate().any(|(i, b)| !b.is_empty() && moves(LinkId(i)));
         let has_tool = robot.payload().next().is_some() || robot.tools.iter().any(|t| t.collider.is_some());
         let carried = flange_moves && (grips || has_tool);
-        // A point is guarded in place of a tool's solid only where the file defines a tool.
+        // A point is guarded in place of a tool's solid only if the file defines a tool.
         let point_tool = || {
             let tool = robot.tcp_in_flange.translation != Vec3::ZERO;
             flange_moves && tool && robot.guarded_volumes().iter().any(|v| v.part == Part::TcpOutside)

@@ -64,8 +64,9 @@ const KEYS: &[&str] = &[
 ];
 
 impl CellFile {
-    /// Resolves all names, reads the files it names, converts to SI units. A file from disk must match its seal, where
-    /// it has one or needs one: see [`seal`](crate::seal).
+    /// Resolves all names, reads the named files, and converts to SI units.
+    ///
+    /// A file from disk must match its seal, if it has one or needs one: see [`seal`](crate::seal).
     ///
     /// # Errors
     /// [`FormatError`] at the first wrong line, or the first line that differs from the seal.
@@ -111,7 +112,7 @@ impl CellFile {
         warnings.extend(contacts_at_start(&cell));
         regions(&root, &mut cell, &mut warnings)?;
         programs(&root, &mut cell, &mut warnings)?;
-        // Programs grip what regions guard.
+        // After the programs: regions guard the objects that programs grip.
         for ((_, t), index) in root.named("region")?.into_iter().zip(0..) {
             guarding::check(&t, &cell, CellRegionId(index), &mut warnings)?;
         }
@@ -121,7 +122,7 @@ impl CellFile {
         // Builds the monitors' configurations, so that anything they refuse is refused here, with its line.
         cell.checksum = configure::checksum(&cell)?;
         if self.on_disk {
-            // Before the checksum: the seal names what differs.
+            // Before the checksum, because the seal names the differences.
             cell.seal = seal::verify(self, &cell)?;
         }
         check(&root, &cell)?;
@@ -131,7 +132,7 @@ impl CellFile {
     }
 }
 
-/// Compares the checksum with the approved one, where the file gives it.
+/// Compares the checksum with the approved one, if the file states one.
 fn check(root: &Table<'_>, cell: &Cell) -> Result<()> {
     let Some(v) = root.get("checksum") else { return Ok(()) };
     let expected = v.text()?;
@@ -176,16 +177,16 @@ impl Cell {
     }
 }
 
-/// The file of pairs that the cell names.
+/// Reads the file of pairs that the cell names.
 fn pairs(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
     let Some(v) = root.get("pairs") else { return Ok(()) };
-    // After those of planning scenes: the file decides.
+    // After the rules of planning scenes, because the file takes precedence.
     let rules = PairFile::read(models::path(&v)?)?.rules(&QueryModel::without_rules(cell))?;
     cell.pair_rules.extend(rules);
     Ok(())
 }
 
-/// Warnings of links that touch at the start, with no link with collision geometry between them.
+/// Warnings for links that touch at the start, without a link with collision geometry between them.
 fn contacts_at_start(cell: &Cell) -> Vec<Warning> {
     let of_robot = |(i, r): (usize, &CellRobot)| {
         let link = |link| GeometryId::Link { robot: RobotId(i), link };
@@ -221,7 +222,7 @@ fn tick_ms(v: &Value<'_>) -> Result<f64> {
     Err(v.error(format!("is {ms} ms")).hint("tick_ms = 2   (0.01 to 1000)"))
 }
 
-/// Age from which input is not trusted; a large value would disable the watchdog.
+/// Age above which input is not trusted; a large value would disable the watchdog.
 fn stale_ms(v: &Value<'_>, warnings: &mut Vec<Warning>) -> Result<f64> {
     let ms = v.positive()?;
     if ms > 1000.0 {

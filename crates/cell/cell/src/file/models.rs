@@ -63,8 +63,10 @@ pub(super) fn srdf(v: &Value<'_>, robot: &mut Robot, warnings: &mut Vec<Warning>
     Ok(())
 }
 
-/// The named states of the file of `srdf`; joints that a state does not mention are where the robot starts. Of states of one name
-/// the one with the most joints counts.
+/// The named states of the file of `srdf`.
+///
+/// A joint that a state does not mention has its start value. Of several states of one name, the one with the most
+/// joints counts.
 pub(super) fn srdf_states(v: &Value<'_>, chain: &Chain, start: &[f64]) -> Result<Vec<(String, Vec<f64>)>> {
     let file = path(v)?;
     let parsed = srdf_file::parse(&read_file(&file, MAX_SRDF_BYTES, "an SRDF of one robot")?, &file)?;

@@ -61,7 +61,7 @@ fn plane(t: &Table<'_>, units: Units) -> Result<(Shape, Pose)> {
     Ok((Shape::HalfSpace(HalfSpace), units.place(t)?))
 }
 
-/// What moves the object; `None` for a fixed one.
+/// The drive of the object; `None` for a fixed object.
 fn drive(t: &Table<'_>, cell: &Cell, rest_in_world: Pose) -> Result<Option<Drive>> {
     match (t.get("follow"), t.get("motion")) {
         (None, None) => Ok(None),

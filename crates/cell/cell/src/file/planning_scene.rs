@@ -16,12 +16,12 @@ use crate::{Cell, CellRobot, suggest};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
-/// Keys that place the scene are those of `Units::place`.
+/// Keys of a scene. The keys that place it are those of `Units::place`.
 const KEYS: &[&str] = &["file", "frame", "at", "rpy", "quaternion", "allowed_collisions"];
 /// The frame that a scene is placed by, unless `frame` names another.
 const WORLD: &str = "world";
 
-/// Adds the objects of all scenes to the cell, behind its own. Returns which are those of each table.
+/// Adds the objects of all scenes to the cell, after its own objects. Returns the range of objects of each table.
 pub(super) fn read(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Warning>) -> Result<Vec<Range<usize>>> {
     let mut ranges = Vec::new();
     for (_, t) in root.named("scene")? {
@@ -36,7 +36,7 @@ pub(super) fn read(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Warning
     Ok(ranges)
 }
 
-/// The pairs that the scene allows are not tested, unless the cell's file of pairs says otherwise.
+/// Exempts the pairs that the scene allows from tests, unless the cell's file of pairs states otherwise.
 fn allow(scene: &PlanningScene, objects: &Range<usize>, cell: &mut Cell, warnings: &mut Vec<Warning>) {
     let pairs = ScenePairs::of(scene, objects, cell);
     let mut warn = |what: String, hint: &str| warnings.push(Warning::new(&scene.file, None, what).hint(hint));
@@ -79,7 +79,7 @@ fn add(t: &Table<'_>, cell: &mut Cell) -> Result<(PlanningScene, Range<usize>)> 
     Ok((scene, first..cell.objects.len()))
 }
 
-/// An object that a robot holds would be left out.
+/// Refuses a scene with an object that a robot holds, which would be left out.
 fn refuse_attached(scene: &PlanningScene) -> Result<()> {
     let Some(attached) = scene.attached.first() else { return Ok(()) };
     let what =
@@ -88,7 +88,7 @@ fn refuse_attached(scene: &PlanningScene) -> Result<()> {
     Err(FormatError::new(&scene.file, None, what).hint(hint))
 }
 
-/// The frame that `at` and `rpy` place: one of the file.
+/// The frame of the file that `at` and `rpy` place.
 fn placed_frame<'v>(v: &Value<'v>, scene: &PlanningScene) -> Result<&'v str> {
     let name = v.text()?;
     let fixed = scene.frames.iter().flat_map(|f| [&f.name, &f.parent]);
@@ -132,7 +132,7 @@ impl SceneFrames<'_> {
         }
     }
 
-    /// The poses, at the start, of the links of this name.
+    /// Start poses of the links of this name.
     fn links<'s>(&'s self, name: &'s str) -> impl Iterator<Item = Pose> + 's {
         self.robots.iter().filter_map(move |r| {
             let chain = &r.robot.chain;
@@ -153,7 +153,7 @@ fn refuse_known_names(objects: &[Object], cell: &Cell, file: &Value<'_>) -> Resu
     Err(file.error(what).hint("another name in one of the two files"))
 }
 
-/// Warns of what a cell does not take from a scene.
+/// Warns of contents of a scene that a cell does not use.
 fn report_unused(scene: &PlanningScene, warnings: &mut Vec<Warning>) {
     if !scene.joints.is_empty() || scene.base_in_world.is_some() {
         let what = "`robot_state` is not applied: robots are where the cell file has them".to_owned();

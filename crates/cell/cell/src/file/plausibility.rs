@@ -19,14 +19,17 @@ type Result<T> = std::result::Result<T, elbowroom_formats::FormatError>;
 const THIN_M: f64 = 1e-3;
 /// Objects larger than this (m) are implausible.
 const LARGE_M: f64 = 100.0;
-/// An object out of reach may be a wall or a fence; beyond this multiple of the reach it is implausible.
+/// Multiple of the reach beyond which an object is implausible. A nearer object that is out of reach may be a wall or a
+/// fence.
 const FAR_OBJECT: f64 = 5.0;
 /// Moving objects are sampled over this time (s), at this number of instants.
 const SAMPLED_S: f64 = 120.0;
 const SAMPLES: usize = 240;
 
-/// Warns of every region, object and tool that no robot can reach, or that is thinner than 1 mm or larger than 100 m,
-/// with the unit in which it would be plausible; of the objects of a planning scene (`scenes`, per table), of the first.
+/// Warns of every region, object and tool that no robot can reach, or that is thinner than 1 mm or larger than 100 m.
+///
+/// The warning contains the unit in which it would be plausible. Per planning scene (`scenes`, per table), only the
+/// first implausible object is reported.
 pub(super) fn check(root: &Table<'_>, cell: &Cell, scenes: &[Range<usize>], warnings: &mut Vec<Warning>) -> Result<()> {
     let plausible = PlausibilityCheck { cell, reaches: cell.robots.iter().map(|r| Reach::of(r, true)).collect() };
     for (robot, (_, t)) in cell.robots.iter().zip(root.named("robot")?) {
@@ -220,7 +223,7 @@ impl PlausibilityCheck<'_> {
     }
 }
 
-/// The table at the line of a key; at its own line where the key is missing.
+/// The table at the line of a key, or at its own line if the key is missing.
 fn at<'a>(t: &Table<'a>, key: &str) -> Table<'a> {
     let line = t.get(key).map_or(t.line, |v| v.line);
     t.clone().at_line(line)
@@ -231,7 +234,7 @@ fn sample_times(cell: &Cell) -> impl Iterator<Item = f64> {
     (0..=SAMPLES).map(move |i| end_s * i as f64 / SAMPLES as f64)
 }
 
-/// `Far`, where the solid is out of reach of all robots at all poses; never without robots.
+/// `Far` if the solid is out of reach of all robots at all poses; never without robots.
 fn beyond(reaches: &[Reach], shape: &Shape, poses: &[Pose], more_m: f64) -> Option<Implausibility> {
     if reaches.iter().any(|r| poses.iter().any(|p| r.meets(shape, p, more_m))) {
         return None;

@@ -16,7 +16,7 @@ use crate::{
 
 type Result<T> = std::result::Result<T, FormatError>;
 
-/// TCP speed (m/s) of a linear move that gives none: the reduced speed of ISO 10218-1.
+/// Default TCP speed (m/s) of a linear move: the reduced speed of ISO 10218-1.
 const LINEAR_SPEED: f64 = 0.25;
 
 pub(super) fn read(t: &Table<'_>, cell: &Cell, robot: &CellRobot, warnings: &mut Vec<Warning>) -> Result<Program> {
@@ -178,7 +178,7 @@ fn trajectory(v: &Value<'_>, robot: &CellRobot, warnings: &mut Vec<Warning>) -> 
     let row = |(i, t_s): (usize, &f64)| TrajectoryRow { t_s: *t_s, q: states.q(i, 0).to_vec() };
     let mut rows: Vec<TrajectoryRow> = states.times_s().iter().enumerate().map(row).collect();
     if offset_s > 0.0 {
-        // It rests at its first row for that long.
+        // The robot rests at its first row for that long.
         rows.insert(0, TrajectoryRow { t_s: first_s - offset_s, q: states.q(0, 0).to_vec() });
     }
     warnings.extend(states.warnings);
@@ -187,7 +187,7 @@ fn trajectory(v: &Value<'_>, robot: &CellRobot, warnings: &mut Vec<Warning>) -> 
 
 const RECORDING: &str = "trajectory = { file = \"log.csv\", angle = \"deg\", period_ms = 4 }";
 
-/// How the file of a recording is written.
+/// Layout of the file of a recording.
 fn recording_layout(t: &Table<'_>, robot: &CellRobot) -> Result<RecordingLayout> {
     let angle = t
         .get("angle")

@@ -32,11 +32,11 @@ const COMMON: &[&str] = &[
 
 /// Largest warning zone and hysteresis, m.
 const MAX_M: f64 = 10_000.0;
-/// Thicker warning zones cause a warning, m.
+/// Thickness above which a warning zone causes a warning, m.
 const LARGE_WARNING_M: f64 = 10.0;
 /// The thinnest warning zone of an exchange region, m.
 const MIN_EXCHANGE_WARNING_M: f64 = 1e-3;
-/// A larger hysteresis causes a warning, m.
+/// Hysteresis above which a warning is issued, m.
 const LARGE_HYSTERESIS_M: f64 = 1.0;
 
 pub(super) fn read(
@@ -89,7 +89,8 @@ fn thickness(v: &Value<'_>, units: Units, plausible: f64, warnings: &mut Vec<War
 
 fn check_warning(name: &str, t: &Table<'_>, region: &Region, warnings: &mut Vec<Warning>) -> Result<()> {
     match region.kind {
-        // A robot without the grant stops half a millimetre before the border: there it must already have requested it.
+        // A robot without the grant stops half a millimetre before the border, and must have requested the grant by
+        // then.
         RegionKind::Exchange { .. } if region.warning_m < MIN_EXCHANGE_WARNING_M => Err(t
             .error(format!(
                 "region \"{name}\" is an exchange region: robots request it in its warning zone, so it needs one of 1 mm \

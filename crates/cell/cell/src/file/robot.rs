@@ -44,7 +44,7 @@ const MAX_RATE: f64 = 1e9;
 
 /// Default time from full speed to rest.
 pub(crate) const STOP_TIME_S: f64 = 0.1;
-/// Default time from rest to full speed, where neither the model nor `acceleration` gives one.
+/// Default time from rest to full speed, if neither the model nor `acceleration` states one.
 pub(crate) const ACCELERATION_TIME_S: f64 = 0.25;
 /// Default time to full acceleration.
 pub(crate) const JERK_TIME_S: f64 = 0.1;
@@ -54,7 +54,8 @@ const REVOLUTE_SPEED: f64 = std::f64::consts::PI;
 const PRISMATIC_SPEED: f64 = 1.0;
 
 impl JointLimits {
-    /// Those of a model, with the defaults of a cell file for what it does not state. `None` if it states no speed.
+    /// Limits of a joint of a model, with the defaults of a cell file for missing values. `None` if the model states no
+    /// speed.
     pub fn of_joint(joint: &Joint) -> Option<Self> {
         let sane = |v: Option<f64>| v.filter(|v| *v > 0.0 && v.is_finite());
         let velocity = sane(joint.limits.velocity)?;
@@ -280,7 +281,7 @@ fn tool(t: &Table<'_>, units: Units) -> Result<(Pose, Option<Collider>)> {
     }
 }
 
-/// Named configurations: `home = [0, -20, 90, 0, 40, 0]`, and those of the SRDF that have other names.
+/// Named configurations: `home = [0, -20, 90, 0, 40, 0]`, and states of the SRDF with other names.
 fn states(t: &Table<'_>, chain: &Chain, start: &[f64], units: Units) -> Result<Vec<(String, Vec<f64>)>> {
     let mut states: Vec<(String, Vec<f64>)> = Vec::new();
     if let Some(v) = t.get("states") {

@@ -1,4 +1,4 @@
-//! What `[camera.NAME]` and `[cloud.NAME]` have in common: files, times, robots.
+//! Keys that `[camera.NAME]` and `[cloud.NAME]` share: files, times, robots.
 
 use std::path::{Path, PathBuf};
 
@@ -13,19 +13,19 @@ use crate::{Cell, CellSensor, SensorKind, Units};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
-/// Keys of every sensor, beside the one of its folder.
+/// Keys of every sensor, except the key of its folder.
 pub(super) const KEYS: [&str; 10] =
     ["pose", "area", "floor", "robot", "prediction", "joints", "latency_ms", "search_ms", "stale_ms", "robots"];
 const AREA: &str = "area = [[-1500, -1000], [1500, -1000], [1500, 1000], [-1500, 1000]]";
 /// Largest picture, pixels along a side.
 const MOST_PIXELS: u32 = 16_384;
-/// Latency of a picture where none is stated, s.
+/// Default latency of a picture, s.
 const LATENCY_S: f64 = 0.1;
-/// Time that a search for a path takes where none is stated, s.
+/// Default time of a path search, s.
 const SEARCH_S: f64 = 0.2;
-/// Longest time that it may be stated to take, s.
+/// Longest time of a path search, s.
 const LONGEST_SEARCH_S: f64 = 60.0;
-/// Age at which the last picture is stale where none is stated, s.
+/// Default age at which the last picture is stale, s.
 const STALE_S: f64 = 0.5;
 
 /// A sensor whose files are in the folder of the key `folder_key`.
@@ -61,7 +61,7 @@ fn search_s(v: &Value<'_>) -> Result<f64> {
     Err(v.error(format!("is {seconds} s: a robot would stand for a path")).hint("search_ms = 200   (up to 60000)"))
 }
 
-/// The robot in whose map the obstacles are: the one named, or the only one.
+/// The robot whose map contains the obstacles: the named one, or the only one.
 fn robot(t: &Table<'_>, cell: &Cell) -> Result<RobotId> {
     match t.get("robot") {
         Some(v) => {
@@ -76,7 +76,7 @@ fn robot(t: &Table<'_>, cell: &Cell) -> Result<RobotId> {
     }
 }
 
-/// The robots that keep clear of the obstacles: those named, or all.
+/// The robots that avoid the obstacles: the named ones, or all.
 fn robots(t: &Table<'_>, cell: &Cell) -> Result<Vec<RobotId>> {
     let found = named_robots(t, cell)?;
     if let Some(robot) = with_exchanged_tools(found.iter().map(|id| &cell.robots[id.0])) {

@@ -16,7 +16,7 @@ const EXAMPLE: &str = "[robot.NAME.tools.gripper]   (tcp, box or mesh, flange, m
 /// A tool's solid and TCP, as `[robot.NAME.tool]` has them.
 pub(super) type ReadTool = fn(&Table<'_>, Units) -> Result<(Pose, Option<Collider>)>;
 
-/// Reads the tools, and adds a link for each to the robot. `flange` carries those that name none.
+/// Reads the tools, and adds a link for each to the robot. `flange` carries the tools that name no flange.
 pub(super) fn read(
     t: &Table<'_>,
     robot: &mut Robot,
@@ -88,7 +88,8 @@ fn tool(
     Ok(CellTool { name: name.to_owned(), flange, link, tcp_in_link, collider, mounted })
 }
 
-/// A robot whose program changes tools: what plans and evades knows those that are mounted at the start alone.
+/// Finds a robot whose program exchanges tools. Planning and avoidance know only the tools that are mounted at the
+/// start.
 pub(super) fn with_exchanged_tools<'c>(robots: impl IntoIterator<Item = &'c CellRobot>) -> Option<&'c CellRobot> {
     robots.into_iter().find(|robot| robot.tools.iter().any(|tool| !tool.mounted))
 }

@@ -12,7 +12,7 @@ use crate::Units;
 type Result<T> = std::result::Result<T, FormatError>;
 
 impl Units {
-    /// From the required key `units`.
+    /// Reads the required key `units`.
     pub(super) fn read(root: &Table<'_>) -> Result<Self> {
         const EXAMPLE: &str = "units = { length = \"mm\", angle = \"deg\" }";
         let table = root.need("units", EXAMPLE)?.table(EXAMPLE)?;
@@ -75,7 +75,7 @@ impl Units {
         Err(v.error("must be three lengths above 0").hint("size = [600, 400, 700]"))
     }
 
-    /// From `rpy`, or from the quaternion x, y, z, w of `quaternion`; no rotation where both are missing.
+    /// Rotation from `rpy`, or from the quaternion x, y, z, w of `quaternion`; no rotation if both are missing.
     pub(super) fn rotation(self, t: &Table<'_>) -> Result<Rotation> {
         const EXAMPLE: &str = "quaternion = [0, 0, 0, 1]   (x, y, z, w)";
         match (t.get("rpy"), t.get("quaternion")) {
@@ -100,7 +100,7 @@ impl Units {
         }
     }
 
-    /// From the keys `at` and `rpy` (or `quaternion`), zero where missing.
+    /// Pose from the keys `at` and `rpy` (or `quaternion`), zero if missing.
     pub(super) fn place(self, t: &Table<'_>) -> Result<Pose> {
         let at = t.get("at").map_or(Ok(Vec3::ZERO), |v| self.point(&v))?;
         Ok(Pose::new(self.rotation(t)?, at))
@@ -167,7 +167,7 @@ impl Units {
     }
 }
 
-/// By how much the length of a quaternion may differ from 1: in files they have few decimals.
+/// Tolerance for the length of a quaternion, which may differ from 1 because files contain few decimals.
 pub const QUATERNION_TOLERANCE: f64 = 1e-3;
 
 /// Up to six decimals, without trailing zeros.

@@ -34,16 +34,16 @@ pub struct MovingObject {
     pub object: ObjectId,
     /// Pose from the cell file: at travel 0, or before the path begins.
     pub rest_in_world: Pose,
-    /// What moves it.
+    /// Its drive.
     pub drive: Drive,
 }
 
-/// What moves an object.
+/// The drive of an object.
 #[derive(Debug, Clone)]
 pub enum Drive {
     /// A conveyor or rail that carries it.
     Belt(Encoder),
-    /// A path of its own.
+    /// A path that it follows by itself.
     Path(ObjectPath),
 }
 
@@ -56,8 +56,9 @@ impl MovingObject {
         }
     }
 
-    /// Velocity of the object's frame in the world at a time (s); at a corner the velocity after it. Accelerations are
-    /// left out: between corners there are none except those of the rotation.
+    /// Velocity of the object's frame in the world at a time (s); at a corner the velocity after it.
+    ///
+    /// Accelerations are omitted: between corners only the rotation has one.
     pub fn motion(&self, t_s: f64) -> FrameMotion {
         match &self.drive {
             Drive::Belt(encoder) => {

@@ -26,7 +26,7 @@ pub enum Travel {
         speed: f64,
         /// Start, s.
         start_s: f64,
-        /// End, s; infinite for never.
+        /// End, s; infinite if it never ends.
         end_s: f64,
     },
     /// Times (s, increasing) and travels (m), linear in between.
@@ -94,7 +94,7 @@ impl Encoder {
         matches!(self.travel, Travel::Constant { end_s, .. } if end_s == f64::INFINITY)
     }
 
-    /// As [`Self::at`], without wrapping.
+    /// Like [`Self::at`], without wrapping.
     fn travelled(&self, t_s: f64) -> (f64, f64) {
         match &self.travel {
             Travel::Constant { at_m, speed, start_s, end_s } => {

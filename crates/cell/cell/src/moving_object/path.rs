@@ -7,9 +7,9 @@ use elbowroom_spatial::{FrameMotion, Pose, Rotation, Vec3};
 pub enum PathRepeat {
     /// It stops at the last point.
     Once,
-    /// From the last point straight to the first, repeatedly.
+    /// It moves from the last point straight to the first, repeatedly.
     Loop,
-    /// Back along the path and forward again, repeatedly (ping-pong).
+    /// It moves back along the path and forward again, repeatedly (ping-pong).
     PingPong,
 }
 
@@ -36,9 +36,10 @@ struct Moment {
 }
 
 impl ObjectPath {
-    /// A path through `corners` (m, in the world; the first is the initial position), at `speed` (m/s) from `start_s`
-    /// on, rotating at `angular_velocity` (rad/s, about world axes through the origin) while it moves. With one corner
-    /// it stays there and rotates forever.
+    /// Creates a path through `corners` (m, in the world; the first is the initial position).
+    ///
+    /// The object moves at `speed` (m/s) from `start_s` (s) on, and rotates at `angular_velocity` (rad/s, about world
+    /// axes through the origin) while it moves. With one corner it stays there and rotates forever.
     pub fn new(mut corners: Vec<Vec3>, speed: f64, start_s: f64, repeat: PathRepeat, angular_velocity: Vec3) -> Self {
         if repeat == PathRepeat::Loop {
             corners.extend(corners.first().copied());
@@ -93,7 +94,7 @@ impl ObjectPath {
         (if moves { self.speed } else { 0.0 }) + self.angular_velocity.length() * radius
     }
 
-    /// When it stops, s; `None` if it never does.
+    /// Time at which it stops, s; `None` if it never stops.
     pub(super) fn end_s(&self) -> Option<f64> {
         if self.length() > 0.0 {
             (self.repeat == PathRepeat::Once).then(|| self.start_s + self.length() / self.speed)
@@ -115,7 +116,7 @@ impl ObjectPath {
         self.lengths.last().copied().unwrap_or(0.0)
     }
 
-    /// The segment that it is on: round, number and direction.
+    /// The present segment: round, number and direction.
     fn leg(&self, t_s: f64) -> (f64, usize, bool) {
         let (round, along, back) = self.along((t_s - self.start_s).max(0.0));
         (round, self.lengths.partition_point(|l| *l <= along), back)

@@ -1,6 +1,6 @@
-//! The result of a survey of pairs in numbers.
+//! Counts of a survey of pairs.
 
-/// How many pairs of each kind a survey found.
+/// Number of pairs of each kind that a survey found.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct PairCounts {
     /// Adjacent, without a joint between, or disabled in the SRDF: never tested.
@@ -13,8 +13,8 @@ pub struct PairCounts {
     pub never: usize,
     /// In contact at rest, and apart in some samples.
     pub at_rest: usize,
-    /// Decided by rows of the file before.
+    /// Decided by rows of the previous file.
     pub by_hand: usize,
-    /// All others.
+    /// All other pairs.
     pub others: usize,
 }

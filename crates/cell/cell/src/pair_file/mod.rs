@@ -1,4 +1,4 @@
-//! The file of pairs: what may touch, and which pairs are likely to (`pairs = "FILE"` in a cell, `--pairs FILE`).
+//! The file of pairs: pairs that may touch, and pairs that are likely to (`pairs = "FILE"` in a cell, `--pairs FILE`).
 
 mod counts;
 mod read;
@@ -16,7 +16,7 @@ use crate::{QueryModel, suggest};
 
 pub use counts::PairCounts;
 
-/// The side of a pair that is anything.
+/// Name of a side that stands for anything.
 const ANYTHING: &str = "*";
 
 /// A file of pairs.
@@ -50,7 +50,7 @@ const ANYTHING: &str = "*";
 pub struct PairFile {
     file: PathBuf,
     rows: Vec<PairRow>,
-    /// What the file says besides, a line each.
+    /// Comments of the file, one per line.
     comments: Vec<String>,
 }
 
@@ -64,22 +64,22 @@ struct PairRow {
     note: Note,
 }
 
-/// Who says so, and why.
+/// Origin and reason of a row.
 #[derive(Debug, Clone)]
 enum Note {
-    /// A person.
+    /// Written by a person.
     Reason(String),
-    /// [`PairFile::survey`]; replaced when the file is written again.
+    /// Found by [`PairFile::survey`]; replaced when the file is written again.
     Found(String),
-    /// Nobody: a weight without a reason.
+    /// A weight without a reason.
     None,
 }
 
 impl PairFile {
-    /// What the rows change in a model.
+    /// Resolves the rows to rules for a model.
     ///
     /// # Errors
-    /// At the line of the row: a name that the model does not have, or links that are never tested.
+    /// An error at the line of a row that has a name that the model does not have, or links that are never tested.
     pub fn rules(&self, model: &QueryModel) -> Result<PairRules, FormatError> {
         let mut rules = PairRules::default();
         for row in &self.rows {
@@ -139,7 +139,7 @@ impl PairFile {
     }
 }
 
-/// The text of the file, which [`PairFile::parse`] reads.
+/// Writes the text of the file, which [`PairFile::parse`] reads.
 impl fmt::Display for PairFile {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "# Pairs of links and objects; docs/query.md describes this file.\nversion = 1\npairs = [")?;

@@ -34,7 +34,7 @@ impl PairFile {
     /// Reads text as the file `path`.
     ///
     /// # Errors
-    /// As [`PairFile::read`].
+    /// As for [`PairFile::read`].
     pub fn parse(path: impl AsRef<Path>, text: &str) -> Result<Self> {
         let file = path.as_ref();
         let entries = node::parse(file, text)?;

@@ -1,4 +1,4 @@
-//! The pairs that a planning scene lets touch, as a file of pairs.
+//! Pairs that a planning scene allows to touch, as a file of pairs.
 
 use std::path::Path;
 
@@ -10,8 +10,11 @@ use crate::Cell;
 use crate::scene_pairs::ScenePairs;
 
 impl PairFile {
-    /// The pairs that the allowed collision matrix of a scene lets touch, for the file `path` of a cell that has the objects of the
-    /// scene and nothing else. Pairs with links are comments: the robot has no name there. `None` if nothing is allowed.
+    /// The pairs that the allowed collision matrix of a scene allows to touch, as the file `path`; `None` if it allows
+    /// none.
+    ///
+    /// `cell` has the objects of the scene and nothing else. Pairs with links are comments, because the robot has no
+    /// name there.
     pub fn of_scene(path: &Path, scene: &PlanningScene, cell: &Cell) -> Option<Self> {
         let pairs = ScenePairs::of(scene, &(0..cell.objects.len()), cell);
         let reason = format!("allowed in {}", scene.file.file_name().unwrap_or_default().to_string_lossy());
@@ -33,7 +36,7 @@ impl PairFile {
     }
 }
 
-/// The pairs with names that are no objects of the scene, each as a row.
+/// Pairs with a name that is not an object of the scene, each as a row.
 fn comments(scene: &PlanningScene, row: impl Fn([String; 2]) -> String) -> Vec<String> {
     let is_object = |name: &str| scene.objects.iter().any(|o| o.id == name);
     let side = |name: &str| if is_object(name) { name.to_owned() } else { format!("ROBOT/{name}") };

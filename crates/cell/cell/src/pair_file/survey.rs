@@ -1,4 +1,4 @@
-//! The pairs of a model as sampling and geometry find them, as a file to decide on.
+//! Survey of a model's pairs by sampling and geometry, as a file to decide on.
 
 use std::path::Path;
 
@@ -9,19 +9,21 @@ use super::counts::PairCounts;
 use super::{Note, PairFile, PairRow};
 use crate::{OutOfReachProofs, QueryModel};
 
-/// Configurations that are sampled: as many as the default of `MoveIt`'s Setup Assistant.
+/// Number of sampled configurations, equal to the default of `MoveIt`'s Setup Assistant.
 const SAMPLES: u64 = 10_000;
 
 impl PairFile {
-    /// The pairs of a model, with what 10,000 configurations of its joint space and its geometry tell of each; for the file
-    /// `path`. Rows that a person has written in the file before stay, and decide.
+    /// Surveys the pairs of a model by 10,000 configurations of its joint space and by its geometry, for the file
+    /// `path`.
     ///
-    /// With `accept`, pairs that are in contact in all samples are skipped; otherwise they are tested, and the row says what was
-    /// found. Pairs in contact in no sample are tested after all others (weight 0): samples are no proof, and the answers stay
-    /// the same.
+    /// Rows that a person has written in the previous file stay, and take precedence.
+    ///
+    /// With `accept`, pairs that are in contact in all samples are skipped; otherwise they are tested, and their row
+    /// states the finding. Pairs in contact in no sample are tested after all others (weight 0). Samples are no proof,
+    /// so the answers stay the same.
     ///
     /// # Errors
-    /// [`FormatError`] if a scene refuses the model, or a row of the file before does not fit it.
+    /// [`FormatError`] if a scene refuses the model, or a row of the previous file does not fit the model.
     pub fn survey(
         path: &Path,
         model: &QueryModel,
@@ -58,7 +60,8 @@ impl PairFile {
                 found(PairState::Skipped, None, entry.reason.to_string());
                 counts.excluded += 1;
             }
-            // No rows: an object that is attached to a robot later meets the robot's base, and every scene makes its own proofs.
+            // These pairs get no rows: an object that is attached to a robot later meets the robot's base, and every
+            // scene makes its own proofs.
             (reason @ Reason::NoJointBetween, _) => {
                 self.comment(&sides, reason);
                 counts.excluded += 1;

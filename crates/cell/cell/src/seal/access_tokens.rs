@@ -27,17 +27,17 @@ const EXAMPLE: &str = "what `elbowroom control token --role ROLE --name NAME --f
 /// ```
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct AccessTokens {
-    /// In file order.
+    /// Tokens, in file order.
     pub tokens: Vec<AccessToken>,
 }
 
 /// Recognizes a secret without containing it.
 ///
-/// A secret has 256 random bits: nobody finds it by trying, however fast the hash is. So SHA-256 suffices; slow hashes are for
-/// passwords, of which people choose few.
+/// A secret has 256 random bits, so nobody finds it by trial, however fast the hash is. SHA-256 is therefore
+/// sufficient; slow hashes are for passwords, which are easier to guess.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AccessToken {
-    /// The class on whose behalf its holder acts.
+    /// The access class for which its holder acts.
     pub class: AccessClass,
     /// Its holder: a place or a role, for the log.
     pub name: String,
@@ -49,7 +49,8 @@ impl AccessTokens {
     /// Reads a file of tokens.
     ///
     /// # Errors
-    /// [`FormatError`] at the wrong line, or where others than its owner may write it: they could add tokens of their own.
+    /// [`FormatError`] at the wrong line, or if others than its owner may write the file: they could add their own
+    /// tokens.
     pub fn read(file: &Path) -> Result<Self> {
         check_permissions(file)?;
         let text = text::read(file)?;
@@ -67,8 +68,10 @@ impl AccessTokens {
         Ok(Self { tokens })
     }
 
-    /// Makes a token with a new secret, appends its hash to a file, which is created where it is missing (mode 0600), and returns
-    /// the secret: it is not kept anywhere.
+    /// Creates a token with a new secret, appends its hash to a file, and returns the secret, which is not stored
+    /// anywhere.
+    ///
+    /// The file is created if it is missing (mode 0600).
     ///
     /// # Errors
     /// [`FormatError`] if the file has this name already, is not a file of tokens, or cannot be written.
@@ -101,7 +104,7 @@ impl AccessTokens {
         Ok(secret)
     }
 
-    /// The token of a secret. Takes as long whichever it is, and wherever a wrong one differs.
+    /// The token of a secret. The time depends neither on the token nor on where a wrong secret differs.
     pub fn find(&self, secret: &str) -> Option<&AccessToken> {
         self.tokens.iter().fold(None, |found, token| if token.is_of(secret) { Some(token) } else { found })
     }
@@ -197,7 +200,7 @@ mod tests {
         }
         let again = AccessTokens::add(&file, AccessClass::Integrator, "a").unwrap_err().to_string();
         assert!(again.contains("has a token \"a\" already"), "{again}");
-        // Of equal secrets the salts make different hashes.
+        // Salts make the hashes of equal secrets different.
         assert_ne!(hash(&[0; 16], "s"), hash(&[1; 16], "s"));
     }
 

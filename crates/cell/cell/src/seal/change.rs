@@ -27,7 +27,7 @@ pub(super) const RESOLVED: &str = "resolved";
 pub(super) const FOLLOWS: &str = "follows ";
 
 impl Change {
-    /// The source of the region, where the field is about that.
+    /// The source of the region, if the field is about the source.
     fn followed(&self) -> Option<&str> {
         self.field.strip_prefix(FOLLOWS)
     }

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::change::Change;
 
-/// A change of a running cell, and who asked for it.
+/// A change of a running cell, and its requester.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ControlEntry {
@@ -22,11 +22,11 @@ pub struct ControlEntry {
     pub action: String,
     /// The note of the request.
     pub note: Option<String>,
-    /// What differs.
+    /// The changes.
     pub changes: Vec<Change>,
     /// The cell's checksum before.
     pub checksum_before: String,
-    /// The cell's checksum after: the same where no region was edited.
+    /// The cell's checksum after; equal to `checksum_before` if no region was edited.
     pub checksum: String,
     /// SHA-256 (hex) of the previous line; 64 zeros in the first entry.
     pub previous: String,

@@ -1,4 +1,4 @@
-//! A control log is verified line by line: it may be of any length, and opening it takes the memory of its longest line.
+//! Verification of a control log, line by line. Memory use is bounded by the longest line, at any length of the log.
 
 use std::fs::File;
 use std::io::{BufRead as _, BufReader, Read as _, Take};
@@ -17,7 +17,7 @@ pub(super) const MAX_LINE: u64 = 16 << 20;
 /// A control log that was verified.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ControlHistory {
-    /// In the order in which the changes were made.
+    /// Entries in the order in which the changes were made.
     pub entries: Vec<ControlEntry>,
     /// The short id of the key that has signed them; empty for a log without entries.
     pub signed_by: String,
@@ -26,30 +26,31 @@ pub struct ControlHistory {
 /// Reads a log and verifies it.
 ///
 /// # Errors
-/// [`FormatError`] at the first line that does not follow the one before it, or where lines are missing or not signed.
+/// [`FormatError`] at the first line that does not follow the one before it, or if lines are missing or not signed.
 pub fn control_history(path: &Path) -> Result<ControlHistory> {
     let read = || {
         let (head, mut entries) = (LogHead::read(path)?, Vec::new());
         verify(path, head.as_ref(), |entry| entries.push(entry))?;
         Ok(ControlHistory { entries, signed_by: head.and_then(|head| head.key_id()).unwrap_or_default() })
     };
-    // The service may write between the two files.
+    // The service may write between the reads of the two files.
     read().or_else(|_: FormatError| read())
 }
 
 /// The part of a log that is signed.
 pub(super) struct SignedPart {
-    /// Bytes of its lines.
+    /// Length of its lines, bytes.
     pub(super) length: u64,
     pub(super) entries: u64,
-    /// SHA-256 (hex) of the last line; 64 zeros where there is none.
+    /// SHA-256 (hex) of the last line; 64 zeros if it has no line.
     pub(super) hash: String,
-    /// More follows, which was being written.
+    /// Whether an unsigned rest follows, which was being written.
     pub(super) has_rest: bool,
 }
 
-/// Hands over the entries that are signed, each before the rest of the log is proven. At most one line more may be there, or a half
-/// one, which was being written.
+/// Verifies the signed part of a log, and passes each entry to `take` before the rest of the log is verified.
+///
+/// At most one more line may follow, complete or partial, which was being written.
 pub(super) fn verify(path: &Path, head: Option<&LogHead>, mut take: impl FnMut(ControlEntry)) -> Result<SignedPart> {
     let wrong = |line: Option<u64>, what: &str| FormatError::new(path, line.map(|n| n as usize), what).hint(RESTORE);
     let count = head.map_or(0, |head| head.entries);
@@ -66,7 +67,7 @@ pub(super) fn verify(path: &Path, head: Option<&LogHead>, mut take: impl FnMut(C
         let number = part.entries + 1;
         let entry: ControlEntry = serde_json::from_slice(line)
             .map_err(|_| wrong(Some(number), "is not an entry of a control log, or was modified"))?;
-        // Only the form that is written here: otherwise spaces or repeated keys would go unnoticed.
+        // Only the canonical form is accepted: otherwise spaces or repeated keys would go unnoticed.
         if entry.sequence != number || entry.previous != part.hash || entry.line().as_bytes() != line {
             return Err(wrong(Some(number), "does not follow the entry before it, or was modified"));
         }
@@ -86,7 +87,7 @@ pub(super) fn verify(path: &Path, head: Option<&LogHead>, mut take: impl FnMut(C
     Ok(part)
 }
 
-/// The lines of a file as it was when it was opened: the service may go on writing.
+/// The lines of a file up to its length when it was opened: the service may continue to write.
 struct Lines<'p> {
     path: &'p Path,
     reader: BufReader<Take<File>>,
@@ -100,7 +101,8 @@ impl<'p> Lines<'p> {
         Ok(Self { path, reader: BufReader::new(file.take(length)), line: Vec::new() })
     }
 
-    /// The next line with its `\n`, which is missing where the line is unfinished or too long; empty at the end of the file.
+    /// The next line with its `\n`, which is missing if the line is unfinished or too long; empty at the end of the
+    /// file.
     fn next(&mut self) -> Result<&[u8]> {
         self.line.clear();
         let mut bounded = self.reader.by_ref().take(MAX_LINE);

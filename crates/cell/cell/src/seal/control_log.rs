@@ -1,4 +1,4 @@
-//! What was changed in a running cell: an append-only log beside its file.
+//! Append-only log of the changes of a running cell, beside its file.
 
 use std::fs::File;
 use std::io::Write as _;
@@ -19,7 +19,7 @@ pub fn control_log_of(cell: &Path) -> PathBuf {
     cell.with_extension("control.jsonl")
 }
 
-/// A change that is to be logged.
+/// A change to log.
 #[derive(Debug, Clone)]
 pub struct Controlled<'a> {
     /// The access class of the token.
@@ -30,33 +30,36 @@ pub struct Controlled<'a> {
     pub action: String,
     /// The note of the request.
     pub note: Option<&'a str>,
-    /// What differs.
+    /// The changes.
     pub changes: Vec<Change>,
     /// The cell's checksum before and after.
     pub checksums: [&'a str; 2],
 }
 
-/// The open log of a running cell: one process writes it at a time, each line has the hash of the one before it, and the last one
-/// is signed (`cell.control.head`) with a key that is made with the log (`cell.control.key`).
+/// The open log of a running cell.
+///
+/// One process writes it at a time. Each line contains the hash of the line before it. The last line is signed
+/// (`cell.control.head`) with a key that is created with the log (`cell.control.key`).
 #[derive(Debug)]
 pub struct ControlLog {
     path: PathBuf,
     file: File,
     signer: LogSigner,
-    /// Bytes of its entries.
+    /// Length of its entries, bytes.
     length: u64,
     entries: u64,
     head: String,
-    /// A line that was not signed could not be removed yet.
+    /// True if an unsigned line could not be removed yet.
     has_rest: bool,
 }
 
 impl ControlLog {
-    /// Opens the log, or begins it, and verifies that its lines follow each other up to the one that is signed. A line behind it
-    /// is removed: it was being written when the power went, and its change was not made.
+    /// Opens or creates the log, and verifies that its lines follow each other up to the signed one.
+    ///
+    /// A line after the signed one is removed: it was being written when the power failed, and its change was not made.
     ///
     /// # Errors
-    /// [`FormatError`] at the line that was changed, where lines are missing, or where another process writes the log.
+    /// [`FormatError`] at the line that was changed, if lines are missing, or if another process writes the log.
     pub fn open(path: &Path) -> Result<Self> {
         let file = File::options().append(true).create(true).open(path).map_err(text::unwritable(path))?;
         file.try_lock().map_err(|_| {
@@ -103,7 +106,8 @@ impl ControlLog {
         let written = self.file.write_all(bytes.as_bytes()).and_then(|()| self.file.sync_all());
         let written = written.map_err(text::unwritable(&self.path));
         if let Err(e) = written.and_then(|()| self.signer.sign(self.entries + 1, &head)) {
-            // Of a full disk: half a line is not left for whoever reads on. Where that fails, too, the next line or start removes it.
+            // After an error, such as a full disk, readers must not find a partial line. If its removal fails, too, the
+            // next line or start removes it.
             self.has_rest = self.file.set_len(self.length).is_err();
             return Err(e);
         }
@@ -113,7 +117,7 @@ impl ControlLog {
         Ok(entry)
     }
 
-    /// Names all that was logged so far: the hash of the last line. A request that names it cannot be repeated.
+    /// The hash of the last line, which identifies the whole log so far. A request that names it cannot be repeated.
     pub fn head(&self) -> &str {
         &self.head
     }
@@ -167,7 +171,7 @@ mod tests {
             std::fs::write(&path, wrong).unwrap();
             assert!(ControlLog::open(&path).is_err() && control_history(&path).is_err());
         }
-        // Its end is cut off; so it is in a head that somebody else has signed.
+        // The end of the log is cut off, and then also in a head that somebody else has signed.
         let first_line = text.split_inclusive('\n').next().unwrap();
         let message = |text: &str| {
             std::fs::write(&path, text).unwrap();
@@ -182,7 +186,7 @@ mod tests {
         assert!(message(&text).contains("is not signed"));
         std::fs::write(&head, &signed).unwrap();
         assert_eq!(message(&text), "");
-        // Hashed anew, and signed with another key.
+        // The log is hashed anew, and signed with another key.
         let other = control_log_of(&folder.path().join("other.toml"));
         let mut forged = ControlLog::open(&other).unwrap();
         forged.append(switched(false)).unwrap();
@@ -207,7 +211,8 @@ mod tests {
             assert_eq!(log.append(switched(false)).unwrap().sequence, 2);
             assert_eq!(control_history(&path).unwrap().entries.len(), 2);
         }
-        // Half a character is half a line. Two lines are not what a service leaves, nor are ends of lines of another system.
+        // A partial character is a partial line. A service leaves neither two lines nor the line ends of another
+        // system.
         std::fs::write(&head, &signed).unwrap();
         let refused = |text: Vec<u8>| {
             std::fs::write(&path, text).unwrap();

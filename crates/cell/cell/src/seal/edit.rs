@@ -19,7 +19,7 @@ use super::trust::{self, TrustedKeys};
 use super::{text, time};
 use crate::{Cell, CellFile};
 
-/// An edit. Values are TOML: `150`, `[900, 0, 0]`, `"temporary"`; anything that is not TOML is taken as text.
+/// An edit. Values are TOML: `150`, `[900, 0, 0]`, `"temporary"`. Anything that is not TOML is treated as text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum CellEdit {
     /// Adds regions: tables `[region.NAME]` of a cell file.
@@ -133,7 +133,7 @@ fn trusted(cell: &Path) -> Result<TrustedKeys> {
     })
 }
 
-/// Locks the log against concurrent edits; creates it where it is missing.
+/// Locks the log against concurrent edits; creates it if it is missing.
 fn hold(log: &Path) -> Result<File> {
     let file = File::options().append(true).create(true).open(log).map_err(text::unwritable(log))?;
     file.lock().map_err(text::unwritable(log))?;
@@ -141,7 +141,7 @@ fn hold(log: &Path) -> Result<File> {
 }
 
 impl Signer<'_> {
-    /// The key must be trusted for this class.
+    /// Checks that the key is trusted for this class.
     fn check(&self, cell: &Path, trusted: &TrustedKeys) -> Result<()> {
         let class = self.class.name();
         let wrong = |what: String, hint: &str| Err(FormatError::new(cell, None, what).hint(hint));
@@ -169,7 +169,7 @@ impl Signer<'_> {
         }
     }
 
-    /// Keys beside the cell count only if they were sealed with it.
+    /// Checks that a key beside the cell was sealed with it; other keys beside the cell do not count.
     fn check_sealed(&self, cell: &Path, trusted: &TrustedKeys, log: &Log) -> Result<()> {
         let id = self.key.public().id();
         let sealed = log.state.sealed_key(&id).is_some_and(|k| trust::may_sign(k, self.class));
@@ -220,7 +220,7 @@ struct Draft {
 }
 
 impl Draft {
-    /// A checksum in the file is updated.
+    /// Creates a draft. A checksum in the file is updated.
     fn new(path: &Path, text: String) -> Result<Self> {
         let mut file = CellFile::parse(path, &text)?;
         let mut text = text;

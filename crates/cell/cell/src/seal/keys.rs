@@ -93,7 +93,7 @@ impl PrivateKey {
 }
 
 impl PublicKey {
-    /// From the 64 hexadecimal digits of [`to_hex`](Self::to_hex); `None` for an invalid key.
+    /// Reads the 64 hexadecimal digits of [`to_hex`](Self::to_hex); `None` for an invalid key.
     pub fn from_hex(digits: &str) -> Option<Self> {
         let key = VerifyingKey::from_bytes(&hex::decode(digits)?).ok()?;
         // Weak keys accept forged signatures.
@@ -115,7 +115,7 @@ impl PublicKey {
         self.has_signed_text(&[CONTEXT, message].concat(), &Signature::from_bytes(&bytes))
     }
 
-    /// Without the context of edits.
+    /// Verifies a signature without the context of edits.
     pub(super) fn has_signed_text(&self, text: &[u8], signature: &Signature) -> bool {
         self.0.verify_strict(text, signature).is_ok()
     }

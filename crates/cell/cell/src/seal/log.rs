@@ -40,7 +40,7 @@ impl Log {
         Ok(log)
     }
 
-    /// As [`read`](Self::read), but permits entries of retired keys, for an entry that approves them.
+    /// Like [`read`](Self::read), but permits entries of retired keys, for an entry that approves them.
     pub fn read_to_continue(file: &Path, trusted: &TrustedKeys) -> Result<Self> {
         let text = text::read(file)?;
         let mut log = Self::new(file);

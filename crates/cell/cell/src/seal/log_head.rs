@@ -1,4 +1,4 @@
-//! How far a control log goes, signed: lines that were cut off at its end or hashed anew are found.
+//! Signed head of a control log, which reveals lines that were cut off at its end or hashed anew.
 
 use std::path::{Path, PathBuf};
 
@@ -13,18 +13,19 @@ use super::{hex, secret_file, text};
 const NAME: &str = "control_log";
 const COMMENT: &str =
     "The key that signs the control log of an elbowroom cell: keep it where the service runs, and nowhere else.";
-/// What to do about a log that is not as it was signed.
+/// Remedy for a log that is not as it was signed.
 pub(super) const RESTORE: &str =
     "the log and its head from a backup; or keep both as evidence under other names, and begin a new log";
-/// What a signature is for: it is not valid for anything else.
+/// Context of signatures: they are not valid for anything else.
 const CONTEXT: &[u8] = b"elbowroom control log 1\n";
 
-/// The number of entries of a log and the hash of the last, signed by the service: `cell.control.head` beside `cell.control.jsonl`.
+/// Number of entries of a log and hash of its last line, signed by the service: `cell.control.head` beside
+/// `cell.control.jsonl`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct LogHead {
     pub(super) entries: u64,
-    /// SHA-256 of the last line; 64 zeros where there is none.
+    /// SHA-256 of the last line; 64 zeros if the log has no line.
     pub(super) hash: String,
     /// The public key of the service.
     key: String,
@@ -51,7 +52,7 @@ impl LogHead {
         key.has_signed_text(&message(self.entries, &self.hash), &Signature::from_bytes(&signature))
     }
 
-    /// The short id of the service's key: whoever has noted it sees whether the log was signed by another one.
+    /// The short id of the service's key. Comparison with a noted id shows whether another key has signed the log.
     pub(super) fn key_id(&self) -> Option<String> {
         PublicKey::from_hex(&self.key).map(|key| key.id())
     }
@@ -73,10 +74,10 @@ pub(super) struct LogSigner {
 }
 
 impl LogSigner {
-    /// With the key of a log (`cell.control.key`), which is made with the log. `head` is that of the log.
+    /// Opens the key of a log (`cell.control.key`), which is created with the log. `head` is the head of this log.
     pub(super) fn open(log: &Path, head: Option<&LogHead>) -> Result<Self> {
         let file = Self::file_of(log);
-        // Empty if the power went while it was made.
+        // The file is empty if the power failed while it was created.
         let is_empty = std::fs::metadata(&file).is_ok_and(|about| about.len() == 0);
         if head.is_none() && is_empty {
             std::fs::remove_file(&file).map_err(text::unwritable(&file))?;
@@ -102,7 +103,7 @@ impl LogSigner {
         log.with_extension("key")
     }
 
-    /// Puts a new head in the place of the old one, and returns once it is on the disk.
+    /// Replaces the head, and returns once the new one is on the disk.
     pub(super) fn sign(&self, entries: u64, hash: &str) -> Result<()> {
         let head = LogHead {
             entries,

@@ -6,8 +6,8 @@
 //! these name. [`Cell::load`](crate::Cell::load) refuses a cell that differs from its seal, and names the differences.
 //!
 //! [`TrustedKeys`] lists the accepted keys. [`edit()`] and [`seal()`] change a sealed cell on behalf of a class;
-//! [`history`] reads the log. A running cell is changed on behalf of the holders of [`AccessTokens`]; [`ControlLog`] keeps who
-//! changed what. `docs/roles.md` states what this protects against, and what it does not.
+//! [`history`] reads the log. A running cell is changed on behalf of the holders of [`AccessTokens`]; [`ControlLog`]
+//! records who changed what. `docs/roles.md` states what this protects against, and what it does not.
 
 mod access_tokens;
 mod authorize;
@@ -97,7 +97,7 @@ pub fn history(cell: &Path) -> Result<History> {
     let log = Log::read(&path, &trusted)?;
     let text = text::read(cell)?;
     let mut file = CellFile::parse(cell, &text)?;
-    // The history is shown even where the `checksum` key is wrong.
+    // The history is shown even if the `checksum` key is wrong.
     file.entries.retain(|e| e.key != "checksum");
     let now = SealedState::of(&file, &file.resolve()?)?;
     let unsealed = log.state.changes_to(&now);

@@ -10,7 +10,7 @@ use super::secret_file;
 const NAME: &str = "network";
 const COMMENT: &str = "The network key of an elbowroom cell, the same for all of its processes. Whoever has it can speak for each of them: keep it secret.";
 
-/// The secret that the processes of a running cell share: whoever has it may speak for each of them.
+/// The secret that the processes of a running cell share. Its holder may act for each of them.
 #[derive(Clone, PartialEq, Eq)]
 pub struct NetworkKey([u8; 32]);
 

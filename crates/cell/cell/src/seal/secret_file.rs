@@ -48,10 +48,12 @@ pub(super) fn create(path: &Path) -> io::Result<File> {
     File::options().write(true).create_new(true).open(path)
 }
 
-/// Whether a file with a secret is its owner's alone; a file that is not there is for its reader to name.
+/// Checks that only its owner may read or write a file with a secret.
+///
+/// A missing file passes; the function that reads it reports the error.
 ///
 /// # Errors
-/// Others may read or write it.
+/// An error if others may read or write the file.
 #[cfg(unix)]
 pub fn check_private_permissions(path: &Path) -> Result<()> {
     use std::os::unix::fs::PermissionsExt;

@@ -1,4 +1,4 @@
-//! The source that moves a region: it determines the region's pose, and so is sealed with it.
+//! The source that moves a region. It determines the region's pose, so it is sealed with the region.
 
 use elbowroom_monitor::{Region, SourceLimits};
 use elbowroom_robot::ObjectId;
@@ -13,7 +13,7 @@ use crate::{Cell, CellFile, CellRegion, Drive, Follow, MovingObject};
 pub(super) struct SealedSource<'a> {
     /// Its kind and name: `encoder belt`.
     name: String,
-    /// Its table, for an object: objects that no region follows are not sealed.
+    /// Its table, if it is an object. Objects that no region follows are not sealed.
     pub object: Option<&'a Entry>,
     /// Names of its files, as in the cell file.
     pub files: Vec<&'a Node>,
@@ -22,7 +22,7 @@ pub(super) struct SealedSource<'a> {
 }
 
 impl<'a> SealedSource<'a> {
-    /// `None` for a fixed region.
+    /// The source of a region; `None` for a fixed region.
     pub fn of(file: &'a CellFile, cell: &Cell, region: &CellRegion) -> Option<Self> {
         let follow = region.follow?;
         let find = |path: &[&str]| find(&file.entries, path);
@@ -74,8 +74,9 @@ fn moving_object(cell: &Cell, object: ObjectId) -> Option<&MovingObject> {
     cell.moving_objects.iter().find(|m| m.object == object)
 }
 
-/// Checksum of the source as it was read, not of the text of its files. Every variant and every field is named, so that
-/// a new one cannot be forgotten.
+/// Checksum of the source as it was read, not of the text of its files.
+///
+/// Every variant and every field is named, so that a new one cannot be forgotten.
 fn checksum(cell: &Cell, follow: Follow, limits: &SourceLimits) -> String {
     let mut hash = Sha256::new();
     // -0 and 0 have the same checksum.

@@ -66,7 +66,7 @@ impl SealedState {
         self.values.insert(at, checksum);
     }
 
-    /// The source of a region is part of the region: the same class may change both.
+    /// Adds the source of a region as a part of the region, so that the same class may change both.
     fn add_source(&mut self, region: &str, line: usize, source: &SealedSource<'_>) {
         if let Some(object) = source.object {
             self.add(region, &format!("{OBJECT}{}", key(&object.key)), &object.node);
@@ -89,7 +89,7 @@ impl SealedState {
         }
     }
 
-    /// A nested table adds one value per key.
+    /// Adds a value. A nested table adds one value per key.
     fn add(&mut self, item: &str, field: &str, node: &Node) {
         match &node.data {
             Data::Table(entries) if !entries.is_empty() => {
@@ -105,7 +105,7 @@ impl SealedState {
         }
     }
 
-    /// The line of a change in the cell file; for a removed key, that of its table.
+    /// The line of a change in the cell file; for a removed key, the line of its table.
     pub fn line(&self, change: &Change) -> Option<usize> {
         let at = |field: &str| self.lines.get(&(change.item.clone(), field.to_owned())).copied();
         at(&change.field).or_else(|| at(RESOLVED))
@@ -166,7 +166,7 @@ impl SealedState {
     }
 }
 
-/// The lowest class that may make these changes: the programmer where all of them concern regions that are temporary
+/// The lowest class that may make these changes: the programmer if all of them concern regions that are temporary
 /// before and after.
 pub(super) fn least_class(before: &SealedState, after: &SealedState, changes: &[Change]) -> AccessClass {
     let of = |change: &Change| {

@@ -30,7 +30,8 @@ pub(super) fn unwritable(path: &Path) -> impl Fn(std::io::Error) -> FormatError 
     }
 }
 
-/// Replaces the text of a file: it is written beside it, then `before_last_step` is called, then it is put in its place.
+/// Replaces the text of a file: writes the new file beside it, calls `before_last_step`, then moves the new file into
+/// its place.
 pub(super) fn replace(path: &Path, text: &str, before_last_step: impl FnOnce() -> Result<()>) -> Result<()> {
     let new = WholeFile::begin(path, |out| out.write_all(text.as_bytes())).map_err(unwritable(path))?;
     before_last_step()?;

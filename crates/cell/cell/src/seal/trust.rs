@@ -13,11 +13,11 @@ use crate::file::read::{Table, Value};
 
 /// Name of the file, and of its entry in the sealed state.
 pub(super) const FILE: &str = "trusted-keys.toml";
-/// The keys of the machine: they apply to every cell there, and users cannot name others.
+/// Key file of the machine. It applies to every cell there, and users cannot name another one.
 const MACHINE: &str = "/etc/elbowroom/trusted-keys.toml";
 /// Suffix after the quoted name.
 const RETIRED: &str = ", retired";
-/// Names a key file where the machine has none.
+/// Environment variable that names a key file if the machine has none.
 const VARIABLE: &str = "ELBOWROOM_TRUSTED_KEYS";
 
 /// The accepted public keys, as listed in a file:
@@ -32,10 +32,11 @@ const VARIABLE: &str = "ELBOWROOM_TRUSTED_KEYS";
 pub struct TrustedKeys {
     /// The file.
     pub file: PathBuf,
-    /// In file order.
+    /// Keys, in file order.
     pub keys: Vec<TrustedKey>,
-    /// True if the file is beside the cell: anybody who may write there could add a key. Then only keys that were
-    /// sealed with the cell count.
+    /// True if the file is beside the cell.
+    ///
+    /// Anybody who may write there could add a key, so only keys that were sealed with the cell count.
     pub beside: bool,
 }
 
@@ -48,14 +49,15 @@ pub struct TrustedKey {
     pub name: String,
     /// The key.
     pub public: PublicKey,
-    /// True if it no longer signs. Its entries count where an entry of another integrator follows.
+    /// True if it no longer signs. Its entries count if an entry of another integrator follows.
     pub retired: bool,
 }
 
 impl TrustedKeys {
-    /// The keys for a cell file: `/etc/elbowroom/trusted-keys.toml`; otherwise the file named by the environment
-    /// variable `ELBOWROOM_TRUSTED_KEYS`; otherwise `trusted-keys.toml` beside the cell file. `None` if none of them
-    /// exists: then cells need no seal.
+    /// The keys for a cell file; `None` if no key file exists, so that cells need no seal.
+    ///
+    /// The file is `/etc/elbowroom/trusted-keys.toml`; otherwise the file named by the environment variable
+    /// `ELBOWROOM_TRUSTED_KEYS`; otherwise `trusted-keys.toml` beside the cell file.
     ///
     /// # Errors
     /// [`FormatError`] if the file cannot be read, or at the wrong line.

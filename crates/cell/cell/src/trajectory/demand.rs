@@ -13,22 +13,23 @@ use crate::{Cell, CellRobot, Program, ProgramBody};
 const ACCELERATION_MARGIN: f64 = 1.1;
 /// Tolerance (m) for rows beside a smooth path: half of the 0.5 mm that the stopping-distance law keeps in reserve.
 const BESIDE_M: f64 = 0.25e-3;
-/// Where a change of velocity moves a robot by less than this (m) per tick, the reserve covers it: the law assumes one
-/// and a half times the actual time, and 4 / (4 · 1.5²) mm is less than 0.5 mm.
+/// Motion per tick (m) below which the reserve covers a change of velocity: the law assumes one and a half times the
+/// actual time, and 4 / (4 · 1.5²) mm is less than 0.5 mm.
 const SHORT_M: f64 = 4e-3;
 
-/// A speed that a joint reaches in so many ticks needs no word.
+/// Number of ticks. A speed that a joint reaches within them causes no warning.
 const UNSEEN_TICKS: f64 = 5.0;
 
-/// Largest speed and acceleration of a joint in a recording, and their times (s, by the recording's own times).
+/// Largest speed and acceleration of a joint in a recording, and their times (s, on the recording's own time axis).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointDemand {
     /// Largest speed, rad/s or m/s.
     pub speed: f64,
     /// Time of that speed.
     pub speed_at_s: f64,
-    /// Bound of the acceleration, rad/s² or m/s²: no course leaves the straight one by more than half of it times u²; 0
-    /// if it does not exceed the stated one.
+    /// Bound A of the acceleration, rad/s² or m/s²; 0 if it does not exceed the stated one.
+    ///
+    /// Within a time u, the joint leaves its straight course by at most A·u²/2.
     pub acceleration: f64,
     /// Time of that acceleration.
     pub acceleration_at_s: f64,
@@ -36,7 +37,7 @@ pub struct JointDemand {
     pub first_speed: f64,
 }
 
-/// Per joint the demand of a robot's recording; empty without a recording.
+/// Demand of a robot's recording per joint; empty without a recording.
 pub fn demands(cell: &Cell, robot: RobotId) -> Vec<JointDemand> {
     let Some(ProgramBody::Trajectory(rows)) = cell.programs.get(robot.0).and_then(Option::as_ref).map(|p| &p.body)
     else {
@@ -66,8 +67,8 @@ pub fn accelerations(cell: &Cell, robot: RobotId) -> Vec<f64> {
     limits.map(|(j, l)| ACCELERATION_MARGIN * l.acceleration.max(demanded(j))).collect()
 }
 
-/// Warns of joints whose speed in a recording exceeds their limit, or, with the stopping-distance law, whose
-/// acceleration exceeds the stated one.
+/// Warns of joints whose speed in a recording exceeds their limit, that begin in motion, or, with the stopping-distance
+/// law, whose acceleration exceeds the stated one.
 pub fn recording_warnings(cell: &Cell, robot: RobotId) -> Vec<Warning> {
     let Some(program) = cell.programs.get(robot.0).and_then(Option::as_ref) else { return Vec::new() };
     let mut warnings = Vec::new();

@@ -3,7 +3,7 @@
 use super::point::PathPoint;
 use crate::TrajectoryRow;
 
-/// Half widths (s) of the averaging of speeds, in order of preference: readings are quantized.
+/// Half widths (s) for averaging speeds, in order of preference. Averaging is needed because readings are quantized.
 const HALF_WIDTHS: [f64; 4] = [0.02, 0.01, 0.005, 0.0025];
 /// Largest deviation (m) of the averaged path from the recorded one: stopping distances depend on speeds.
 const NEAR_M: f64 = 1e-4;
@@ -46,7 +46,7 @@ impl Playback {
         self.rows.first().map_or(0.0, |r| r.t_s)
     }
 
-    /// From first to last row, s.
+    /// Time from the first to the last row, s.
     pub fn duration(&self) -> f64 {
         self.rows.last().map_or(0.0, |last| last.t_s - self.start_s())
     }
@@ -68,7 +68,7 @@ impl Playback {
         }
     }
 
-    /// Joint values with derivatives by time.
+    /// Joint values with time derivatives.
     pub fn at(&self, t: f64) -> PathPoint {
         let q = self.q(t);
         let h = self.half_width.min(self.duration() / 2.0);
@@ -91,7 +91,7 @@ impl Playback {
         (self.value(joint, to) - self.value(joint, from)) / (to - from).max(h)
     }
 
-    /// Slope of the interval that ends with this row; of the last one beyond the last row.
+    /// Slope of the interval that ends at this row; beyond the last row, the slope of the last interval.
     fn slope(&self, end: usize, joint: usize) -> f64 {
         let end = end.clamp(1, self.rows.len().saturating_sub(1).max(1));
         match (self.rows.get(end - 1), self.rows.get(end)) {
@@ -100,7 +100,7 @@ impl Playback {
         }
     }
 
-    /// The largest averaged speed (rad/s or m/s) of a joint, and its time, s by the times of the rows.
+    /// The largest averaged speed (rad/s or m/s) of a joint, and its time (s, on the time axis of the rows).
     pub fn fastest(&self, joint: usize) -> (f64, f64) {
         let speeds = self.times().map(|t| (self.speed(joint, t).abs(), t + self.start_s()));
         speeds.fold((0.0, 0.0), |most, now| if now.0 > most.0 { now } else { most })
@@ -112,12 +112,14 @@ impl Playback {
         (1..self.rows.len().saturating_sub(1)).map(jump).fold(0.0, f64::max)
     }
 
-    /// The least acceleration A (rad/s² or m/s²) above `stated` for which the joint leaves its straight course `q′·u`
-    /// by at most `A·u²/2` and `beside` (rad or m), for every u from `least_s` on; and its time, s by the times of the
-    /// rows. 0 where `stated` is sufficient.
+    /// Smallest acceleration A (rad/s² or m/s²) above `stated` that covers the motion of a joint, and its time (s, on
+    /// the time axis of the rows); 0 if `stated` is sufficient.
     ///
-    /// A change dv of the velocity at a row needs `2·dv / least_s`: it begins there, and the deviation grows with u
-    /// only.
+    /// For every u from `least_s` (s) on, the joint leaves its straight course `q′·u` by at most `A·u²/2` and `beside`
+    /// (rad or m).
+    ///
+    /// A change dv of the velocity at a row needs `2·dv / least_s`: the deviation begins at the row and only grows with
+    /// u.
     pub fn hardest(&self, joint: usize, stated: f64, least_s: f64, beside: f64) -> (f64, f64) {
         let most = (1..self.rows.len()).map(|end| self.slope(end, joint).abs()).fold(0.0, f64::max);
         let mut hardest = (0.0, 0.0);

@@ -23,7 +23,7 @@ pub struct Figure {
     pub drawing: Drawing,
 }
 
-/// What a figure shows.
+/// Contents of a figure.
 pub enum Drawing {
     /// Drawn by the page.
     Plot(Plot),
@@ -37,7 +37,7 @@ impl From<Plot> for Drawing {
     }
 }
 
-/// Rounded to a micrometre (or a millionth), which is finer than a pixel: shorter numbers make a smaller file.
+/// Rounds to a micrometre (or a millionth), which is finer than a pixel: shorter numbers make a smaller file.
 pub fn round(v: f64) -> Option<f64> {
     v.is_finite().then(|| (v * 1e6).round() / 1e6)
 }
@@ -50,8 +50,9 @@ pub fn bars(spans: &[(f64, f64)], row: f64, width: f64, name: &str, color: &str,
     with(line(x, y, name, stroke(color, width)), json!({ "hoverinfo": "all", "hovertemplate": hover }))
 }
 
-/// Each robot of each run: label, recording, index of the robot, robot. Runs with control come last, so that their
-/// curves are on top.
+/// Each robot of each run: label, recording, index of the robot, robot.
+///
+/// Runs with control come last, so that their curves are on top.
 pub fn tracks<'a>(
     runs: &'a [(&'a str, &'a Recording)],
 ) -> impl Iterator<Item = (&'a str, &'a Recording, usize, &'a RobotTrack)> + 'a {
@@ -70,7 +71,7 @@ pub fn curve_name(label: &str, recording: &Recording, robot: &RobotTrack) -> Str
     plain(&name)
 }
 
-/// Escaped: Plotly interprets some HTML in texts.
+/// Escapes a text, because Plotly interprets some HTML in texts.
 pub fn plain(text: &str) -> String {
     let short: String =
         if text.chars().count() > 60 { text.chars().take(59).chain(['…']).collect() } else { text.into() };

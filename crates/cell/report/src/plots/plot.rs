@@ -23,7 +23,7 @@ impl Plot {
     }
 }
 
-/// Sets attributes: those of `more` replace those of `base`, object by object.
+/// Sets attributes: attributes of `more` replace attributes of `base`, object by object.
 pub fn with(base: Value, more: Value) -> Value {
     match (base, more) {
         (Value::Object(mut fields), Value::Object(more)) => {

@@ -57,7 +57,7 @@ pub fn chart(runs: &[(&str, &Recording)], run: usize) -> Option<Figure> {
     })
 }
 
-/// A title, with the run's label where there are several.
+/// A title, with the run's label if there are several runs.
 pub fn title(what: &str, label: &str, runs: usize) -> String {
     if runs > 1 { format!("{what}: {label}") } else { what.into() }
 }

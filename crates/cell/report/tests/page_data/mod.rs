@@ -1,4 +1,4 @@
-//! What a page of the report carries.
+//! Data blocks of a page of the report.
 #![allow(dead_code, reason = "every test program uses a part of it")]
 
 use std::io::Read as _;

@@ -1,4 +1,4 @@
-//! A synthetic run after the paper's figure 12, without simulation, to test the report on its own.
+//! A synthetic run after the paper's figure 12, without simulation, to test the report alone.
 
 use elbowroom_cell::CellRegionId;
 use elbowroom_kinematics::{Chain, Joint, JointKind, Limits, LinkId};
@@ -86,7 +86,7 @@ fn column() -> (Shape, Pose) {
     (Shape::Cylinder(Cylinder { half_length: 0.5, radius: 0.15 }), pose)
 }
 
-/// The stop at the column, where the run is long enough for it.
+/// The stop at the column, if the run is long enough for it.
 fn stops(samples: &[Sample], name: &str, monitored: bool, end_s: f64) -> Vec<Stop> {
     let stopped = samples.iter().find(|s| monitored && s.speed_override < 1e-3);
     let stop = stopped.map(|s| Stop {

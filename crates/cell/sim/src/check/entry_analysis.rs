@@ -13,7 +13,7 @@ use super::program::RobotProgram;
 use super::region_speed::replans;
 use super::stopping_profile::{StoppingProfile, response_delay};
 
-/// Rounding of speeds, m.
+/// Tolerance for the rounding of thicknesses, m.
 const ROUNDING_M: f64 = 1e-6;
 
 /// One region and one robot that it guards.
@@ -24,7 +24,7 @@ pub(super) struct EntryAnalysis<'a> {
     pub program: &'a RobotProgram,
     /// Largest speed of any point of the region, m/s; infinite if it is not known in advance.
     pub region_speed_m_s: f64,
-    /// Where the region is at the start.
+    /// Pose of the region in the world at the start.
     pub region_in_world: Pose,
     /// True if the robot starts inside.
     pub starts_inside: bool,
@@ -40,7 +40,7 @@ pub(super) struct EntryDecision {
     pub needed_warning_m: Option<f64>,
 }
 
-/// Why the laws do not exclude entry.
+/// Reason why the laws do not exclude entry.
 struct MissingGuarantee {
     why: String,
     write: String,
@@ -70,7 +70,7 @@ impl EntryAnalysis<'_> {
         }
     }
 
-    /// Warning before a run where the robot can reach the border faster than it can stop.
+    /// Warning before a run if the robot can reach the border faster than it can stop.
     pub fn overrun(&self) -> Option<Warning> {
         if matches!(self.region().region.kind, RegionKind::Monitored { .. }) {
             return None;
@@ -98,7 +98,7 @@ impl EntryAnalysis<'_> {
         self.stopping_profiles().map(|p| p.fastest_m_s).fold(0.0, f64::max)
     }
 
-    /// Warning zone thickness for the most demanding guarded point, plus the motion of the region meanwhile, m.
+    /// Thickness of the warning zone for the most demanding guarded point, plus the motion of the region meanwhile, m.
     fn needed_m(&self) -> f64 {
         let own = self.stopping_profiles().map(|p| p.needed_m).fold(0.0, f64::max);
         own + self.region_speed_m_s * (self.delay_s() + self.program.profile.braking_s)
@@ -148,7 +148,7 @@ impl EntryAnalysis<'_> {
         None
     }
 
-    /// Entry by what the program grips or exchanges inside the region: it is a part of the robot from then on.
+    /// Entry by a part or tool that the program mounts inside the region: it is a part of the robot from then on.
     fn mounts_inside(&self) -> Option<MissingGuarantee> {
         if self.region_speed_m_s > 0.0 {
             return None;
@@ -184,7 +184,7 @@ impl EntryAnalysis<'_> {
         if self.has_stopping_law() {
             return None;
         }
-        // Another path may move what the program does not.
+        // Another path may move volumes that the program does not move.
         if replans(self.cell, self.robot) {
             let why = "`stopping_distance` is off, and paths that the robot plans around what sensors see are known in the run only";
             return Some(MissingGuarantee::new(why, "stopping_distance = true in [monitor]"));
@@ -232,7 +232,7 @@ impl EntryAnalysis<'_> {
         ))
     }
 
-    /// For example `(braking 8000 mm/s², with a delay of 2 ms)`.
+    /// Braking and delay in words, for example `(braking 8000 mm/s², with a delay of 2 ms)`.
     fn braking(&self) -> String {
         let (v, distance) = (self.fastest_m_s(), self.stopping_profiles().map(|p| p.braking_m).fold(0.0, f64::max));
         let deceleration = self.cell.units.show_length(round(v * v / (2.0 * distance)));
@@ -258,9 +258,10 @@ impl EntryAnalysis<'_> {
         self.region().region.warning_m + ROUNDING_M >= self.needed_m()
     }
 
-    /// True if a guarded point that moves away from the region never returns: the program is a single straight move
-    /// of prismatic joints, and the region is convex. With two moves it may return after a rest, while the override for
-    /// leaving still applies.
+    /// True if a guarded point that moves away from the region never returns.
+    ///
+    /// This holds if the program is a single straight move of prismatic joints and the region is convex. With two moves
+    /// the point may return after a rest, while the override for leaving still applies.
     fn never_reverses(&self) -> bool {
         let is_prismatic_or_fixed =
             |j: &elbowroom_kinematics::Joint| matches!(j.kind, JointKind::Prismatic | JointKind::Fixed);
@@ -275,7 +276,7 @@ impl EntryAnalysis<'_> {
         program.is_some_and(|p| matches!(p.body, elbowroom_cell::ProgramBody::Trajectory(_)))
     }
 
-    /// Why entry is excluded, with the assumptions.
+    /// Reason why entry is excluded, with the assumptions.
     fn guarantee(&self) -> String {
         let units = self.cell.units;
         let reacts_within = |seconds: f64| format!("it reacts within {} ms", round(seconds * 1e3));

@@ -15,14 +15,15 @@ pub struct EntryCheck {
     /// True if the active laws keep the robot out, under the assumptions in `reason`. False for a monitored region,
     /// which does not exclude entry.
     pub excluded: bool,
-    /// Why, in words.
+    /// Reason, in words.
     pub reason: String,
-    /// What to write into the cell file instead; `None` where entry is excluded or no remedy is known.
+    /// What to write into the cell file instead; `None` if entry is excluded or no remedy is known.
     pub write_instead: Option<String>,
-    /// Thickness (m) of the warning zone with which the robot stops in time without the stopping-distance law; `None`
-    /// for a monitored region, and where no thickness is enough.
+    /// Thickness (m) of the warning zone with which the robot stops in time without the stopping-distance law.
+    ///
+    /// `None` for a monitored region, and if no thickness is enough.
     pub needed_warning_m: Option<f64>,
-    /// The warning before a run where the robot can overrun the border.
+    /// Warning before a run if the robot can overrun the border.
     pub overrun: Option<Warning>,
 }
 

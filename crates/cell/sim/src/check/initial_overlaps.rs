@@ -8,7 +8,7 @@ use elbowroom_spatial::Pose;
 
 use super::program::RobotProgram;
 
-/// The robots as they are before anything moves.
+/// States of the robots before any motion.
 pub(super) fn start_states(cell: &Cell, programs: &[RobotProgram]) -> Vec<ChainState> {
     let start_state = |(robot, p): (&elbowroom_cell::CellRobot, &RobotProgram)| {
         let mut state = ChainState::new(&robot.robot.chain);
@@ -19,14 +19,14 @@ pub(super) fn start_states(cell: &Cell, programs: &[RobotProgram]) -> Vec<ChainS
     cell.robots.iter().zip(programs).map(start_state).collect()
 }
 
-/// Where a region is then.
+/// Pose of a region in the world before any motion.
 pub(super) fn region_at_start(cell: &Cell, region: &CellRegion, states: &[ChainState]) -> Pose {
     let carrier = region.follow.map(|follow| Frames::new(cell).source(&follow, states, 0.0).pose);
     let anchor = carrier.map_or(region.region.anchor, |c| c * region.region.anchor);
     anchor * region.region.shape_in_anchor
 }
 
-/// The pairs (region, robot) where a guarded volume overlaps the region at the start.
+/// Pairs (region, robot) in which a guarded volume overlaps the region at the start.
 pub(super) fn initial_overlaps(
     cell: &Cell,
     programs: &[RobotProgram],

@@ -65,7 +65,7 @@ pub fn check(cell: &Cell) -> Result<Vec<EntryCheck>, FormatError> {
     check_planned(&PlannedPaths::new(cell))
 }
 
-/// [`check`] with paths that may be known.
+/// Like [`check`], with paths that may be known already.
 ///
 /// # Errors
 /// As for [`check`].

@@ -1,4 +1,4 @@
-//! What programs mount inside regions: objects that they grip, and tools that they exchange.
+//! Parts that programs grip, and tools that they exchange, inside regions.
 
 use elbowroom_cell::{Cell, CellRegion, CellRobot};
 use elbowroom_kinematics::ChainState;
@@ -11,25 +11,26 @@ use super::program::{Mount, PlannedMount, RobotProgram};
 use crate::hand::{Hand, MAX_GRIP_DISTANCE_M};
 use crate::motion::GripAction;
 
-/// A region where it is before anything moves.
+/// A region at its pose before any motion.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PlacedRegion<'a> {
     pub region: &'a CellRegion,
     pub in_world: Pose,
 }
 
-/// Something that is, or may be, inside a region when it is mounted: from then on it counts as a part of the robot.
+/// A part or tool that is, or may be, inside a region when it is mounted. From then on it counts as a part of the
+/// robot.
 pub(super) struct MountedOverlap<'a> {
     /// The step, such as `grips "crate"`.
     pub step: String,
-    /// Its name.
+    /// Name of the part or tool.
     pub name: &'a str,
-    /// False if its place is known in the run only.
+    /// False if its place is known only during the run.
     pub is_certain: bool,
 }
 
 impl<'a> MountedOverlap<'a> {
-    /// The first one of a program in a region that does not move.
+    /// Finds the first overlap of a program with a region that does not move.
     pub fn find(cell: &'a Cell, robot: RobotId, program: &'a RobotProgram, region: PlacedRegion<'_>) -> Option<Self> {
         program.mounts.iter().find_map(|mount| {
             let mut state = ChainState::new(&mount.robot.robot.chain);

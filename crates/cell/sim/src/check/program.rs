@@ -11,13 +11,13 @@ use crate::motion::{GripAction, PlanStep, PlannedPaths, ProgramPlan, repeated_pl
 
 /// The guarded volumes of a robot, and the motion profile of its program.
 pub(super) struct RobotProgram {
-    /// Without what it grips.
+    /// Guarded volumes, without gripped parts.
     pub volumes: Vec<Volume>,
-    /// What it grips, where it is in the hand then.
+    /// Volumes of gripped parts, at their poses in the hand.
     gripped: Vec<Volume>,
-    /// What it grips and which tools it exchanges.
+    /// Grips and tool exchanges.
     pub mounts: Vec<PlannedMount>,
-    /// Those of `volumes`, then those of `gripped`.
+    /// Profile of the program, with stopping profiles of `volumes`, then of `gripped`.
     pub profile: Profile,
 }
 
@@ -25,18 +25,18 @@ pub(super) struct RobotProgram {
 #[derive(Debug, Clone)]
 pub(super) struct PlannedMount {
     pub what: Mount,
-    /// Joint values then, rad or m.
+    /// Joint values at the step, rad or m.
     pub q: Vec<f64>,
     /// The robot with the tools that it has before the step.
     pub robot: CellRobot,
 }
 
-/// What a step mounts.
+/// The part or tool that a step mounts.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Mount {
-    /// It grips an object.
+    /// A gripped object.
     Part(GripAction),
-    /// It makes the tool with this index the active one.
+    /// Index of the tool that becomes active.
     Tool(usize),
 }
 
@@ -51,7 +51,7 @@ impl RobotProgram {
         let mut gripped = Vec::new();
         for action in parts(&mounts) {
             let Some(attachment) = action.attachment.clone() else { continue };
-            // The last one is the object.
+            // The last volume is the object.
             if let Some(volume) = cell.volumes_holding(robot, &[(action.object, attachment)]).pop() {
                 solids.push(LinkSolid { grip: Some(action.clone()), ..solid(&volume) });
                 gripped.push(volume);
@@ -61,7 +61,7 @@ impl RobotProgram {
         Ok(Self { volumes, gripped, mounts, profile })
     }
 
-    /// The steps that grip.
+    /// The grips of the program.
     pub fn parts(&self) -> impl Iterator<Item = &GripAction> {
         parts(&self.mounts)
     }

@@ -8,8 +8,9 @@ use super::sphere_swept_hull::SphereSweptHull;
 use super::stopping_profile::{LinkSolid, Profile};
 use crate::motion::{PlannedPaths, repeated_plan};
 
-/// Largest speed (m/s) of any point of the region, as its source moves it; 0 for a fixed region, infinite for one on a robot
-/// that may leave its program.
+/// Largest speed (m/s) of any point of the region, as its source moves it.
+///
+/// 0 for a fixed region, infinite for a region on a robot that may leave its program.
 pub(super) fn max_region_speed_m_s(paths: &PlannedPaths<'_>, region: &CellRegion) -> Result<f64, FormatError> {
     let Some(follow) = region.follow else { return Ok(0.0) };
     let cell = paths.cell();
@@ -45,13 +46,13 @@ pub(super) fn max_region_speed_m_s(paths: &PlannedPaths<'_>, region: &CellRegion
     }
 }
 
-/// Whether a robot evades, or replans around what sensors see: then its motion is known in the run only.
+/// Whether a robot may leave its program, because it evades, or replans around obstacles that sensors see.
 fn leaves_its_program(cell: &Cell, robot: RobotId) -> bool {
     let evades = cell.avoidance.get(robot.0).is_some_and(Option::is_some);
     evades || replans(cell, robot)
 }
 
-/// Whether a robot with a program plans around what sensors see.
+/// Whether a robot with a program replans around obstacles that sensors see.
 pub(super) fn replans(cell: &Cell, robot: RobotId) -> bool {
     cell.programs[robot.0].is_some() && cell.sensors.iter().any(|sensor| sensor.robots.contains(&robot))
 }

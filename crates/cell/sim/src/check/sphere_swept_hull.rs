@@ -9,9 +9,10 @@ const MAX_VERTICES: usize = 64;
 /// Extent of unbounded shapes, m: larger than any cell.
 const UNBOUNDED_M: f64 = 1e6;
 
-/// The convex hull of balls of one radius around `points`, which contains a solid. The speed of a rigid motion is a
-/// convex function of the position, so the speed at one of the points, plus the angular speed times the radius, bounds
-/// it.
+/// The convex hull of balls of one radius around `points`, which contains a solid.
+///
+/// The speed of a rigid motion is a convex function of the position. So the largest speed at the points, plus the
+/// angular speed times the radius, bounds the speed of the solid.
 #[derive(Debug, Clone)]
 pub(super) struct SphereSweptHull {
     points: Vec<Vec3>,
@@ -36,8 +37,9 @@ impl SphereSweptHull {
         self.points.iter().map(|p| p.length()).fold(0.0, f64::max) + self.radius.min(UNBOUNDED_M)
     }
 
-    /// Upper bound of the speed of any point of the solid, m/s; `motion` is that of the points' frame, expressed in the
-    /// parent of `frame`.
+    /// Upper bound of the speed of any point of the solid, m/s.
+    ///
+    /// `motion` is the motion of the points' frame, expressed in the parent of `frame`.
     pub fn fastest(&self, frame: &Pose, motion: &FrameMotion) -> f64 {
         let of = |p: &Vec3| motion.velocity_at(frame.transform_vector(*p)).length();
         let angular_speed = motion.angular_velocity.length();

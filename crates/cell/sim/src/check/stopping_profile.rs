@@ -23,7 +23,7 @@ pub(super) struct LinkSolid {
     pub link: LinkId,
     /// Its bound in the link's frame.
     pub hull: SphereSweptHull,
-    /// The step that grips it, where it is an object: it counts while it is held.
+    /// The grip, if the solid is an object. The object counts while it is held.
     pub grip: Option<GripAction>,
 }
 
@@ -49,7 +49,7 @@ pub(super) struct Profile {
     pub braking_s: f64,
 }
 
-/// How the override is applied.
+/// Delay and rate limit of the override.
 #[derive(Debug, Clone, Copy)]
 struct OverrideResponse {
     response_delay: ResponseDelay,
@@ -131,8 +131,8 @@ struct SampledMove {
 }
 
 impl SampledMove {
-    /// Braking from a sample at constant joint velocity: the override falls from the programmed one to 0, half of it on
-    /// average.
+    /// Braking from a sample at constant joint velocity: the override falls from the programmed value to 0 and is half
+    /// of that value on average.
     fn braking_at_constant_speed(&self, rate: f64, headway_s: f64, from: usize, solid: usize) -> Braking {
         let now = &self.samples[from];
         let speed_m_s = now.speeds[solid] * self.programmed;
@@ -146,8 +146,8 @@ impl SampledMove {
     /// Distance from a sample to rest along the program, and the braking that it needs.
     ///
     /// The stop time n falls by one second per second (`motion::ProgramClock`), so `∫ m du = n²/2` over the program's
-    /// time u, with the stop time m at override 1. A program that decelerates by itself is followed: the override never
-    /// rises.
+    /// time u, with the stop time m at override 1. If the program decelerates by itself, the robot follows it: the
+    /// override never rises.
     fn braking_along_program(&self, rate: f64, headway_s: f64, from: usize, solid: usize) -> (f64, Braking) {
         let samples = &self.samples[from..];
         let stop_time = self.programmed * samples[0].stop_time;
@@ -189,9 +189,11 @@ fn remaining_half_square(left: f64, a: f64, b: f64, step_s: f64, rate: f64) -> f
     left.min(braked.max(limited))
 }
 
-/// Calls `visit` for every move of a plan, sampled at equal steps of time at override 1, with its override and step
-/// (s) and what the robot holds; once for repeated moves. Where the programmed override falls before a move, the larger one still applies: the
-/// robot reacts `delay_s` later.
+/// Calls `visit` for every move of a plan, with its override, its sampling step (s), its samples and what the robot
+/// holds.
+///
+/// Samples are at equal steps of time at override 1. Repeated moves are visited once. If the programmed override falls
+/// before a move, the larger value still applies, because the robot reacts `delay_s` later.
 fn for_each_move(plan: &ProgramPlan, delay_s: f64, mut visit: impl FnMut(f64, f64, &[PathPoint], &HeldObjects)) {
     let mut programmed = plan.speed_override;
     let mut before = programmed;
@@ -210,7 +212,7 @@ fn for_each_move(plan: &ProgramPlan, delay_s: f64, mut visit: impl FnMut(f64, f6
             }
             PlanStep::Grip(action) => {
                 held.apply(action);
-                // The same moves, with something else in the hand.
+                // The same moves count again, with something else in the hand.
                 visited.clear();
                 continue;
             }
@@ -301,7 +303,7 @@ mod tests {
 
     #[test]
     fn a_point_that_speeds_up_while_braking_needs_more_distance() {
-        // Its speed rises while the slowest joint, which determines the stop time, keeps its own.
+        // The speed rises while the slowest joint, which determines the stop time, keeps its speed.
         let samples: Vec<_> = (0..200).map(|i| if i < 10 { (0.25, 1.0) } else { (0.25, 2.0) }).collect();
         let stopping = profile(1.0, f64::INFINITY, &samples[..30]).stopping_profiles[0];
         assert!(stopping.braking_m > 0.125 && stopping.needed_m > stopping.braking_m, "{stopping:?}");

@@ -1,4 +1,4 @@
-//! The result as text of at most 100 columns.
+//! Results of `check` as text of at most 100 columns.
 
 use std::fmt::Write;
 

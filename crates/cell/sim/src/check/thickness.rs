@@ -23,8 +23,10 @@ pub(super) struct ResponseDelay {
 }
 
 impl ResponseDelay {
-    /// Headway time (s): the distance divided by the speed must not fall below it. A controller changes the override
-    /// linearly between ticks, not on the law's curve: that adds a little to the delay itself.
+    /// Headway time (s): the distance divided by the speed must not fall below it.
+    ///
+    /// A controller changes the override linearly between ticks, not on the law's curve. That adds a little to the
+    /// delay itself.
     pub fn headway_s(self) -> f64 {
         let ticks = self.tick_s / self.delay_s.max(self.tick_s);
         self.delay_s * (ticks * ticks / 8.0).exp()
@@ -34,7 +36,7 @@ impl ResponseDelay {
 /// Braking of one point from the full override, along its program.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Braking {
-    /// From the fraction x of the full override it moves at most x² times this, m.
+    /// Braking distance, m: from the fraction x of the full override the point moves at most x² times this.
     pub distance_m: f64,
     /// While braking, its speed is at most this times the square root of the remaining braking, m/s.
     pub speed_m_s: f64,
@@ -64,7 +66,8 @@ fn is_sufficient(zone: f64, braking: &Braking, fastest_m_s: f64, response_delay:
     let fraction = |i: u32| f64::from(i) / f64::from(FRACTIONS);
     let remaining = |i: u32| remaining_distance(fraction(i) * zone, fastest_m_s * response_delay.delay_s);
     let needed = |i: u32| needed(braking, fastest_m_s, headway_s, fraction(i));
-    // Both grow with the fraction: a stretch fits where its first has what its last needs.
+    // Both values grow with the fraction, so a range fits if what remains at its first fraction covers what its last
+    // one needs.
     let mut open = vec![(1, FRACTIONS)];
     let mut all_fit = zone * (1.0 + ROUNDING) >= E * fastest_m_s * headway_s;
     while all_fit && let Some((first, last)) = open.pop() {
@@ -115,7 +118,7 @@ mod tests {
 
     use super::*;
 
-    /// At constant speed, with a stopping distance of `distance_m`.
+    /// Thickness at constant speed, with a stopping distance of `distance_m`.
     fn steady(distance_m: f64, fastest_m_s: f64, response_delay: ResponseDelay) -> f64 {
         let delay_m = fastest_m_s * response_delay.headway_s();
         let peak_m =

@@ -9,16 +9,16 @@ use elbowroom_robot::ObjectId;
 use super::{Geometry, GripAction, PlanStep, ProgramPlan};
 use crate::replanning::{ExecutedMotion, PathAhead, PlannedGoal, SAMPLE_S};
 
-/// Smallest share of the acceleration that remains for speeding up along a curve.
+/// Smallest fraction of the acceleration that is kept for speeding up along a curve.
 const RESERVE: f64 = 0.1;
 /// Iterations for the state at the end of a braking tick.
 const SAMPLES: u32 = 4;
-/// Below this speed a joint rests, rad/s or m/s.
+/// Speed below which a joint is at rest, rad/s or m/s.
 const REST_SPEED: f64 = 1e-9;
-/// At the start of a move, from rest, the intended velocity is taken from this time ahead, s.
+/// Time ahead from which the intended velocity is taken at the start of a move from rest, s.
 const LOOKAHEAD_S: f64 = 0.05;
 
-/// A program switches a region.
+/// A switch of a region by a program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RegionSwitch {
     /// The region.
@@ -35,7 +35,7 @@ struct InstantSteps {
     tools: Vec<usize>,
 }
 
-/// The largest share of a joint's top speed that a step uses.
+/// Largest fraction of any joint's top speed that a step uses.
 fn joint_share(step: &PlanStep, limits: &[JointLimits]) -> f64 {
     match step {
         PlanStep::Move(m) => m.joint_share,
@@ -63,11 +63,11 @@ pub struct ProgramClock {
     programmed: f64,
     here: PathPoint,
     intent: Vec<f64>,
-    /// The largest share of a joint's top speed of all steps.
+    /// Largest fraction of any joint's top speed over all steps.
     speed_share: f64,
     executed: InstantSteps,
     held: bool,
-    /// A recording that begins in motion starts with the next advance.
+    /// True if a recording that begins in motion starts with the next advance.
     joins: bool,
 }
 
@@ -78,7 +78,7 @@ impl ProgramClock {
         let here =
             PathPoint { dq: vec![0.0; plan.start.len()], ddq: vec![0.0; plan.start.len()], q: plan.start.clone() };
         let fastest = plan.steps.iter().map(|step| joint_share(step, &limits)).fold(0.0, f64::max);
-        // A program without moves says nothing of how fast its robot may return.
+        // A program without moves sets no speed limit for the return of its robot.
         let speed_share = if fastest > 0.0 { fastest } else { 1.0 };
         let mut clock = Self {
             plan,
@@ -109,18 +109,20 @@ impl ProgramClock {
         self.path_number += paths;
     }
 
-    /// Current joint values, with derivatives by the program's time (that is, at override 1).
+    /// Current joint values, with derivatives with respect to program time (that is, at override 1).
     pub fn point(&self) -> &PathPoint {
         &self.here
     }
 
-    /// Intended joint velocities at override 1, rad/s or m/s. At the start of a move from rest, those shortly after the
-    /// start: a direction-aware monitor needs the direction of the motion.
+    /// Intended joint velocities at override 1, rad/s or m/s.
+    ///
+    /// At the start of a move from rest, these are the velocities shortly after the start: a direction-aware monitor
+    /// needs the direction of the motion.
     pub fn intent(&self) -> &[f64] {
         &self.intent
     }
 
-    /// The largest share of a joint's top speed that the program uses; 1 for one without moves.
+    /// Largest fraction of any joint's top speed that the program uses; 1 for a program without moves.
     pub fn speed_share(&self) -> f64 {
         self.speed_share
     }
@@ -130,7 +132,7 @@ impl ProgramClock {
         self.here.dq.iter().map(|v| v * self.rate)
     }
 
-    /// Current joint accelerations.
+    /// Current joint accelerations, rad/s² or m/s².
     pub fn acceleration(&self) -> impl Iterator<Item = f64> + '_ {
         let (square, change) = (self.rate * self.rate, self.rate_change);
         self.here.dq.iter().zip(&self.here.ddq).map(move |(v, a)| a * square + v * change)
@@ -174,16 +176,18 @@ impl ProgramClock {
         }
     }
 
-    /// Jumps to the end of the joint move: the robot is moved there on another path. The next step starts with the next
-    /// [`ProgramClock::advance`] that is not [held](ProgramClock::hold).
+    /// Jumps to the end of the joint move, which the robot reaches on another path.
+    ///
+    /// The next step starts with the next [`ProgramClock::advance`] that is not [held](ProgramClock::hold).
     pub fn skip_move(&mut self) {
         let Some(PlanStep::Move(m)) = self.plan.steps.get(self.step) else { return };
         (self.time, self.rate, self.rate_change) = (m.duration(), 0.0, 0.0);
         self.update_point();
     }
 
-    /// The path from now to the end of the step: times in the step (s, at override 1), at most `step_s` apart, and joint
-    /// values; empty for a step without motion.
+    /// Rest of the step's path: times in the step (s, at override 1), at most `step_s` apart, and joint values.
+    ///
+    /// Empty for a step without motion.
     fn path_ahead(&self, step_s: f64) -> Vec<(f64, Vec<f64>)> {
         let end_s = self.duration();
         let count = ((end_s - self.time).max(0.0) / step_s).ceil() as usize;
@@ -191,8 +195,8 @@ impl ProgramClock {
         times.filter_map(|t| self.point_at(t).map(|p| (t, p.q))).collect()
     }
 
-    /// The time in the step (s, at override 1) at which the robot rests if it goes on for `coast_s` and then brakes, in ticks
-    /// of `dt` (s).
+    /// Time in the step (s, at override 1) at which the robot comes to rest if it continues for `coast_s` (s) and then
+    /// brakes, in ticks of `dt` (s).
     pub fn rests_at(&self, coast_s: f64, dt: f64) -> f64 {
         let (mut time, mut rate) = (self.time, self.rate);
         let speeding = (rate + self.max_rate_increase() * coast_s).min(self.programmed.max(rate));
@@ -238,8 +242,9 @@ impl ProgramClock {
         })
     }
 
-    /// Replaces the planned move of this step by another one with the same end, from the time `entry_s` (s, at override 1) in
-    /// it on, at a rate.
+    /// Replaces the planned move of this step by another one with the same end.
+    ///
+    /// The robot enters the new move at the time `entry_s` (s, at override 1) and at `rate`.
     pub fn replace_planned_move(&mut self, play: Arc<Playback>, entry_s: f64, rate: f64) {
         let Some(PlanStep::Planned { play: old, .. }) = self.plan.steps.get_mut(self.step) else { return };
         *old = play;
@@ -272,13 +277,13 @@ impl ProgramClock {
         std::mem::take(&mut self.executed.tools)
     }
 
-    /// The objects that are released before the next move: the present move sets them down.
+    /// Objects that the present move sets down: the program releases them before the next move.
     pub fn objects_set_down(&self) -> impl Iterator<Item = ObjectId> + '_ {
         let next = self.plan.steps.get(self.step + 1..).unwrap_or_default().iter();
         let until_move =
             next.take_while(|s| !matches!(s, PlanStep::Move(_) | PlanStep::Play(_) | PlanStep::Planned { .. }));
         let next = until_move.filter_map(|s| if let PlanStep::Grip(action) = s { Some(action) } else { None });
-        // The releases that this instant executes, too: the move before them ends now.
+        // Releases of this instant count, too: the move before them ends now.
         self.executed.grips.iter().chain(next).filter(|a| !a.grips).map(|a| a.object)
     }
 
@@ -290,7 +295,7 @@ impl ProgramClock {
         } else {
             target.min(self.rate + self.max_rate_increase() * dt)
         };
-        // Where the joints are as fast within this tick, the recording is on its rows from the first.
+        // If the rate reaches its target within this tick, the recording follows its rows from the first one.
         let mean = if self.joins && next >= target { next } else { f64::midpoint(self.rate, next) };
         self.joins = false;
         self.rate_change = (next - self.rate) / dt;
@@ -321,7 +326,9 @@ impl ProgramClock {
         self.update_point();
     }
 
-    /// While held, no step ends: the robot is off its path, and the next step must not start.
+    /// Sets whether the current step is held. A held step does not end.
+    ///
+    /// A robot off its path holds its step, so that the next step does not start.
     pub fn hold(&mut self, held: bool) {
         self.held = held;
     }
@@ -335,7 +342,8 @@ impl ProgramClock {
         self.start_step();
     }
 
-    /// Steps start from rest, whatever the rate is. Only a recording that begins in motion does not: it is joined at rate 0.
+    /// Starts a step. Steps start from rest at any rate, except a recording that begins in motion, which starts at rate
+    /// 0.
     fn start_step(&mut self) {
         self.path_number += 1;
         self.execute_instant_steps();
@@ -353,8 +361,8 @@ impl ProgramClock {
     /// The rate after braking for `dt` seconds from a time in the step, a rate, and the velocities there at override 1.
     ///
     /// The robot brakes along its path: its stop time, the longest stop time of any joint, falls by one second per
-    /// second. Where the program accelerates meanwhile, the rate falls faster; where it decelerates harder by itself,
-    /// the program is followed.
+    /// second. If the program accelerates meanwhile, the rate falls faster; if the program itself decelerates harder,
+    /// the rate stays.
     fn braked(&self, time: f64, rate: f64, dq: &[f64], dt: f64) -> f64 {
         let left = self.stop_time(dq) * rate - dt;
         if left <= 0.0 {
@@ -444,7 +452,7 @@ mod tests {
     use crate::motion::{PlannedPaths, plan};
     use elbowroom_robot::RobotId;
 
-    /// Detours are no faster than the fastest move of the program that the cell file has.
+    /// Detours are at most as fast as the fastest move of the program in the cell file.
     #[test]
     fn the_share_of_a_program_is_that_of_its_fastest_move() {
         let share = |steps: &str| {

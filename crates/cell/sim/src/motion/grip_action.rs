@@ -1,19 +1,21 @@
-//! What a program does with an object.
+//! Grips and releases by programs, and the objects that a robot holds after them.
 
 use elbowroom_kinematics::LinkId;
 use elbowroom_robot::ObjectId;
 use elbowroom_scene::Attachment;
 
-/// A program grips or releases an object.
+/// A grip or a release of an object by a program.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GripAction {
     /// The object.
     pub object: ObjectId,
-    /// True: grips. False: releases.
+    /// True for a grip, false for a release.
     pub grips: bool,
     /// The link that grips.
     pub link: LinkId,
-    /// How it is attached from now on. `None` for a release, and where that is known in the run only: the object moves, or
+    /// Attachment after a grip.
+    ///
+    /// `None` for a release, and for a grip whose attachment is known only during the run, because the object moves or
     /// another program grips it too.
     pub attachment: Option<Attachment>,
     /// Line of the step in the cell file.
@@ -27,7 +29,7 @@ pub struct HeldObjects {
 }
 
 impl HeldObjects {
-    /// Executes a step.
+    /// Applies a grip or a release.
     pub fn apply(&mut self, action: &GripAction) {
         self.actions.retain(|held| held.object != action.object);
         if action.grips {
@@ -35,12 +37,12 @@ impl HeldObjects {
         }
     }
 
-    /// The steps that gripped them.
+    /// The steps that gripped the held objects.
     pub fn actions(&self) -> &[GripAction] {
         &self.actions
     }
 
-    /// How they are attached; `None` if that is not known of all.
+    /// Attachments of the held objects; `None` unless all of them are known.
     pub fn attachments(&self) -> Option<Vec<(ObjectId, Attachment)>> {
         self.actions.iter().map(|a| Some((a.object, a.attachment.clone()?))).collect()
     }

@@ -14,7 +14,7 @@ const KNOT_M: f64 = 0.01;
 const KNOT_RAD: f64 = 0.03;
 /// Largest number of knots.
 const MAX_KNOTS: f64 = 4000.0;
-/// Half width of the difference stencil, as a share of the line.
+/// Half width of the difference stencil, as a fraction of the line.
 const STENCIL: f64 = 5e-4;
 /// A larger joint motion (rad, m) between two knots means a change of branch.
 const JUMP: f64 = 0.5;
@@ -33,13 +33,13 @@ pub struct TcpLine {
     /// Joint values at equal steps of s.
     knots: Vec<Vec<f64>>,
     solver: Mutex<IkSolver>,
-    /// Of messages.
+    /// Units of messages.
     units: Units,
     /// False if the chain has too few joints to keep the orientation.
     pub keeps_orientation: bool,
 }
 
-/// Why a line cannot be followed.
+/// Reason why a line cannot be followed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LineError {
     /// Position of the failure, m from the start.
@@ -51,8 +51,9 @@ pub struct LineError {
 }
 
 impl TcpLine {
-    /// The line from the TCP's pose at `q` to a pose in the root frame, in the branch of `q`; `units` are those of
-    /// messages.
+    /// Computes the line from the TCP's pose at `q` to a pose in the root frame, in the branch of `q`.
+    ///
+    /// `units` are the units of messages.
     ///
     /// # Errors
     /// `LineError` with the position and the cause of the failure.
@@ -102,8 +103,9 @@ impl TcpLine {
         Ok(line)
     }
 
-    /// A change of branch between two knots, and the joint that shows it: two branches may be so close that the knots
-    /// alone do not reveal it.
+    /// Finds a change of branch between two knots, and the joint that shows it.
+    ///
+    /// Two branches may be so close that the knots alone do not reveal the change.
     fn branch_change(&self, cell: usize) -> Option<(f64, usize)> {
         let s = |k: usize| (cell as f64 + k as f64 / SAMPLES as f64) / self.cells() as f64;
         let samples: Vec<Vec<f64>> = (0..=SAMPLES).map(|k| self.q(s(k))).collect();
@@ -200,7 +202,7 @@ impl TcpLine {
         if solved && near { q } else { guess }
     }
 
-    /// Joint values and their derivatives by s, from differences of refined values.
+    /// Joint values and their derivatives with respect to s, from differences of refined values.
     pub fn at(&self, s: f64) -> PathPoint {
         let h = STENCIL;
         let c = s.clamp(h, 1.0 - h);

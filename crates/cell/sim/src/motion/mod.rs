@@ -4,7 +4,7 @@
 //! joins the steps of a program, and a [`ProgramClock`] advances along it as fast as the monitor's override and the
 //! joint decelerations permit.
 //!
-//! Defaults without values in model and cell file: full speed in 0.25 s, full acceleration in 0.1 s, and a stop from
+//! Defaults if model and cell file state no values: full speed in 0.25 s, full acceleration in 0.1 s, and a stop from
 //! full speed in 0.1 s.
 
 mod clock;

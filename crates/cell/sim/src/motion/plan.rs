@@ -39,13 +39,13 @@ pub enum PlanStep {
     Move(Arc<Segment>),
     /// A recording.
     Play(Arc<Playback>),
-    /// A planned move, which may be replaced by another one with the same end.
+    /// A planned move, which may be replaced by a move with the same end.
     Planned {
         /// The path in time.
         play: Arc<Playback>,
-        /// Share of the joints' speeds that it uses.
+        /// Fraction of the joints' speeds that it uses.
         speed: f64,
-        /// How its path was searched for, and is again where it is blocked.
+        /// Planner that found its path, and that searches for another one if the path is blocked.
         planner: PathPlanner,
     },
     /// Switches a region.
@@ -97,7 +97,7 @@ pub fn plan(
     plan_passes(paths, robot, Passes { wanted: passes, required: passes }, notes)
 }
 
-/// The program of a robot, and once more as far as it can be repeated: with the way back to its start.
+/// Plans the program of a robot, and a second pass as far as it is feasible, which includes the way back to the start.
 ///
 /// # Errors
 /// As for [`plan`].
@@ -109,7 +109,7 @@ pub fn repeated_plan(paths: &PlannedPaths<'_>, robot: RobotId) -> Result<Program
 #[derive(Debug, Clone, Copy)]
 struct Passes {
     wanted: u32,
-    /// A step of a later pass that is not feasible ends the plan, and is not an error.
+    /// Passes that must be feasible. An infeasible step of a later pass ends the plan without an error.
     required: u32,
 }
 
@@ -139,10 +139,10 @@ fn plan_passes(
     }
 }
 
-/// The step in which the program of a robot first grips an object, planned; `None` if it never does.
+/// Plans the step in which the program of a robot first grips an object; `None` if it never does.
 ///
 /// # Errors
-/// [`FormatError`] at the line of an infeasible step before it, or of the grip.
+/// [`FormatError`] at the line of the grip, or of an earlier step, if that step is infeasible.
 pub fn first_grip(cell: &Cell, robot: RobotId, object: ObjectId) -> Result<Option<GripAction>, FormatError> {
     let Some(program) = &cell.programs[robot.0] else { return Ok(None) };
     let ProgramBody::Steps(steps) = &program.body else { return Ok(None) };
@@ -161,7 +161,7 @@ struct ProgramPlanner<'p, 'a> {
     cell: &'a Cell,
     paths: &'p PlannedPaths<'a>,
     id: RobotId,
-    /// With the tools as they are after the steps so far.
+    /// The robot, with its tools after the steps so far.
     robot: CellRobot,
     /// Joint values after the steps so far.
     q: Vec<f64>,
@@ -172,7 +172,7 @@ struct ProgramPlanner<'p, 'a> {
     parts: PlannedParts<'a>,
 }
 
-/// A step from some joint values, with the tool of some flange.
+/// A planned move, identified by its step, its start joint values and the flange.
 struct PlannedMoveEntry {
     step: usize,
     from: Vec<f64>,
@@ -282,7 +282,8 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
         Ok(segment)
     }
 
-    /// A path around everything that is where it is at the start of the run.
+    /// Plans a path around everything at its place at the start of the run, or at the place where this program has put
+    /// it.
     fn planned(
         &mut self,
         index: usize,

@@ -1,4 +1,4 @@
-//! Where the objects of a cell are during the planning of one robot's program.
+//! Places of a cell's objects during the planning of one robot's program.
 
 use elbowroom_cell::{Cell, CellRobot, Follow};
 use elbowroom_kinematics::{ChainState, LinkId};
@@ -8,12 +8,12 @@ use elbowroom_spatial::Pose;
 
 use crate::hand::grip;
 
-/// An object during planning. Poses and attachments are unknown where the object moves or another program grips it.
+/// An object during planning. Poses and attachments are unknown if the object moves or another program grips it.
 #[derive(Debug, Clone, PartialEq)]
 enum PlannedPart {
-    /// In the world.
+    /// At a pose in the world; `None` if the pose is unknown.
     Placed(Option<Pose>),
-    /// Carried by the robot.
+    /// Carried by the robot; `None` if the attachment is unknown.
     Carried(Option<Attachment>),
 }
 
@@ -53,7 +53,7 @@ impl<'a> PlannedParts<'a> {
         Self { cell, id, parts: (0..cell.objects.len()).map(place).collect() }
     }
 
-    /// How the object is attached, as far as that is known.
+    /// Grips an object. Returns its attachment, or `None` if that is unknown.
     pub(super) fn grip(
         &mut self,
         object: ObjectId,
@@ -101,7 +101,7 @@ impl<'a> PlannedParts<'a> {
         held.map(|(_, object)| object.name.as_str())
     }
 
-    /// The objects elsewhere than at the start.
+    /// Objects whose known pose differs from their start, with that pose.
     pub(super) fn placed(&self) -> Vec<(ObjectId, Pose)> {
         let moved =
             self.parts.iter().zip(&self.cell.objects).enumerate().filter_map(|(i, (part, object))| match part {

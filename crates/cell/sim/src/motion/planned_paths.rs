@@ -12,8 +12,9 @@ use elbowroom_robot::RobotId;
 
 use super::planned_parts::PlannedParts;
 
-/// The paths of a cell's planned moves. A search takes seconds: `check`, a run, and the run without the monitor beside it use one
-/// of these, and each path is searched once.
+/// The paths of a cell's planned moves, each searched once.
+///
+/// A search takes seconds. `check`, a run, and the same run without the monitor share one `PlannedPaths`.
 ///
 /// ```
 /// use elbowroom_cell::Cell;
@@ -41,33 +42,35 @@ pub struct PlannedPaths<'a> {
     progress: Box<dyn Fn(PathSearch) + 'a>,
 }
 
-/// A path, or why there is none.
+/// A path, or the error of its search.
 type SearchedPath = Result<Arc<Playback>, FormatError>;
 
-/// A search that begins.
+/// A search that starts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PathSearch {
-    /// Which one, from 1.
+    /// Number of the search, from 1.
     pub number: usize,
-    /// How many moves the programs plan: more than there are searches where moves are equal, fewer where a move begins in several
-    /// ways.
+    /// Estimate of the number of searches: the number of planned moves in the programs.
+    ///
+    /// Equal moves are searched once; a move with several starts is searched several times.
     pub of: usize,
 }
 
-/// All that a path depends on in a cell: the step, joint values at its begin, the tools, and where parts are.
+/// Everything in a cell that a path depends on: the step, the joint values at its start, the tools, and the places of
+/// parts.
 #[derive(PartialEq)]
 pub(super) struct PathOrigin<'a> {
     pub robot: RobotId,
     pub step: usize,
     pub from: Vec<f64>,
     pub flange: LinkId,
-    /// Per tool of the robot whether it is mounted.
+    /// Whether each tool of the robot is mounted.
     pub mounted: Vec<bool>,
     pub parts: PlannedParts<'a>,
 }
 
 impl<'a> PlannedPaths<'a> {
-    /// None yet.
+    /// Creates an empty set of paths.
     pub fn new(cell: &'a Cell) -> Self {
         Self { cell, known: RefCell::default(), progress: Box::new(|_| ()) }
     }
@@ -83,7 +86,7 @@ impl<'a> PlannedPaths<'a> {
         self.cell
     }
 
-    /// The path from an origin, or why there is none; searched where that is not known.
+    /// Returns the path from an origin, or the error of its search. Searches a path that is not yet known.
     pub(super) fn known_or(
         &self,
         origin: PathOrigin<'a>,
@@ -107,7 +110,7 @@ impl fmt::Debug for PlannedPaths<'_> {
     }
 }
 
-/// The planned moves of all programs.
+/// Number of planned moves in all programs.
 fn planned_moves(cell: &Cell) -> usize {
     let steps = cell.programs.iter().flatten().map(|program| match &program.body {
         ProgramBody::Steps(steps) => steps.as_slice(),

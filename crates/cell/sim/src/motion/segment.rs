@@ -11,9 +11,9 @@ use super::Geometry;
 pub struct Segment {
     geometry: Geometry,
     law: TimeLaw,
-    /// Share of the programmed speed that the joint limits permit, 0..1.
+    /// Fraction of the programmed speed that the joint limits permit, 0..1.
     pub speed_share: f64,
-    /// The largest share of a joint's top speed that the time law may use, 0..1.
+    /// Largest fraction of any joint's top speed that the time law may use, 0..1.
     pub joint_share: f64,
 }
 
@@ -23,7 +23,7 @@ enum TimeLaw {
     Ruckig(Box<Trajectory<1>>),
 }
 
-/// Largest first, second and third derivative of s by time.
+/// Largest first, second and third time derivatives of s.
 #[derive(Debug, Clone, Copy)]
 struct PathLimits {
     velocity: f64,
@@ -32,8 +32,10 @@ struct PathLimits {
 }
 
 impl Segment {
-    /// Times a path within all joint limits; `speed` is the share of each joint's speed, `path_rate` the largest
-    /// programmed ds/dt (TCP speed over length; infinite for none).
+    /// Times a path within all joint limits.
+    ///
+    /// `speed` is the fraction of each joint's speed, `path_rate` the largest programmed ds/dt (TCP speed over length;
+    /// infinite for none).
     ///
     /// Joint limits become limits of s by the chain rule, with the largest derivatives on the path:
     /// `|q′|ṡ ≤ v`, `|q′|s̈ + |q″|ṡ² ≤ a`, `|q′|s⃛ + 3|q″|ṡs̈ + |q‴|ṡ³ ≤ j`.
@@ -69,7 +71,7 @@ impl Segment {
         }
     }
 
-    /// Joint values at time `t` (s, at override 1), with derivatives by time.
+    /// Joint values at time `t` (s, at override 1), with time derivatives.
     pub fn at(&self, t: f64) -> PathPoint {
         let (s, v, a) = self.parameter(t);
         let mut point = self.geometry.at(s);
@@ -101,7 +103,7 @@ impl Segment {
     }
 }
 
-/// The limits of s, and the share of the programmed rate that remains; `None` without motion.
+/// The limits of s, and the fraction of the programmed rate that remains; `None` without motion.
 fn bounds(samples: &[PathPoint], limits: &[JointLimits], speed: f64, path_rate: f64) -> Option<(PathLimits, f64)> {
     let joints = limits.len();
     let largest =

@@ -1,4 +1,4 @@
-//! How a robot evaded in a run.
+//! Evasion of a robot in a run.
 
 use elbowroom_avoidance::fuzzy::Surface;
 use elbowroom_avoidance::{AvoiderState, EscapeState};
@@ -8,9 +8,9 @@ use super::tick_times::TickTimes;
 /// Evasion of one robot.
 #[derive(Debug, Clone, Default)]
 pub struct AvoidanceTrack {
-    /// One per tick, as the samples are.
+    /// One per tick, like the samples of the robot.
     pub samples: Vec<AvoidanceSample>,
-    /// Names of what may be in the way: objects, then `robot/link`.
+    /// Names of possible obstacles: objects, then `robot/link`.
     pub obstacles: Vec<String>,
     /// Wall-clock time of its steps: sensing, correction, check, command.
     pub step_ns: TickTimes,
@@ -40,10 +40,10 @@ pub struct AvoidanceSample {
     pub size: f64,
     /// Path deviation: seconds of joint motion at full speed back to the path.
     pub path_deviation_s: f64,
-    /// How fast the path may advance, 0..1.
+    /// Rate at which the path may advance, 0..1.
     pub rate: f64,
     /// The dynamic obstacle that requested the largest correction, an index in [`AvoidanceTrack::obstacles`].
     pub governed_by: Option<usize>,
-    /// What the search for escapes did.
+    /// State of the search for escapes.
     pub escape: EscapeState,
 }

@@ -31,9 +31,9 @@ pub struct Recording {
     pub tick_s: f64,
     /// Simulated time from the first to the last tick, seconds.
     pub duration_s: f64,
-    /// Why it ended.
+    /// Reason for its end.
     pub end: RunEnd,
-    /// False if the override of the monitor was not applied.
+    /// Whether the override of the monitor was applied.
     pub monitored: bool,
     /// One per robot, in the order of the cell file.
     pub robots: Vec<RobotTrack>,
@@ -41,7 +41,7 @@ pub struct Recording {
     pub regions: Vec<RegionTrack>,
     /// One per object that moves or is gripped: the moving ones in the order of the cell file, then the others.
     pub objects: Vec<ObjectTrack>,
-    /// One per sensor whose pictures or clouds were taken in.
+    /// One per sensor with loaded pictures or clouds.
     pub sensors: Vec<SensorTrack>,
     /// Deadlocks at the end of the run.
     pub deadlocks: Vec<Deadlock>,
@@ -51,18 +51,18 @@ pub struct Recording {
     pub tick_ns: TickTimes,
 }
 
-/// Why a run ended.
+/// Reason for the end of a run.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RunEnd {
     /// All programs were completed.
     #[default]
     Finished,
-    /// Nothing moved any more.
+    /// All motion had ended.
     Rest,
-    /// The robots stood at override 0 for ten seconds while only endless belts moved.
+    /// The robots were stopped at override 0 for ten seconds while only endless belts moved.
     Standstill,
-    /// The time limit of the cell.
+    /// The time limit of the cell was reached.
     TimeLimit,
 }
 
@@ -77,15 +77,16 @@ pub struct RobotTrack {
     pub joints: Vec<String>,
     /// Names of the guarded volumes: links, `tool`, `load`, `tcp`. [`GoverningPoint::part`] is an index in this list.
     pub parts: Vec<String>,
-    /// The links of tools that are not mounted, each list from its time (s) on; empty for a robot without such tools.
+    /// Links of tools that are not mounted. Each list applies from its time (s) on; empty for a robot without such
+    /// tools.
     pub absent_links: Vec<(f64, Vec<LinkId>)>,
     /// One per tick, first to last of the run.
     pub samples: Vec<Sample>,
-    /// When the monitor stopped it although its program was not complete, in order of time.
+    /// Stops by the monitor before the program was complete, in order of time.
     pub stops: Vec<Stop>,
     /// True if the program was completed.
     pub finished: bool,
-    /// Time (s) in which the robot was stopped although its program was not.
+    /// Time (s) for which the robot was stopped before its program was complete.
     pub stopped_s: f64,
     /// Smallest override commanded, 0..1.
     pub min_override: f64,
@@ -93,7 +94,7 @@ pub struct RobotTrack {
     pub collisions: Vec<Collision>,
     /// Evasion; `None` for a robot without avoidance.
     pub avoidance: Option<AvoidanceTrack>,
-    /// What it did about the obstacles that sensors see; `None` for a robot that no sensor guards.
+    /// Reactions to the obstacles that sensors see; `None` for a robot that no sensor guards.
     pub perception: Option<PerceptionTrack>,
     /// How its run ended.
     pub ending: RobotEnding,
@@ -114,7 +115,7 @@ pub struct Sample {
     pub programmed_speed: f64,
     /// The override of this tick, 0..1, the programmed override included.
     pub speed_override: f64,
-    /// The governing region, where there is one; an index in [`Recording::regions`] too.
+    /// The governing region, if any; also an index in [`Recording::regions`].
     pub region: Option<CellRegionId>,
     /// Distance (m) from the governing point to its region.
     pub distance_m: Option<f64>,
@@ -124,7 +125,7 @@ pub struct Sample {
     pub reason: OverrideReason,
 }
 
-/// The point of a robot that is closest to the region which governs.
+/// The point of a robot that is closest to the governing region.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GoverningPoint {
     /// The guarded volume, an index in [`RobotTrack::parts`].
@@ -154,12 +155,12 @@ pub struct Collision {
 }
 
 impl RobotTrack {
-    /// The part that governs in a sample: a link, `tool`, `load` or `tcp`.
+    /// The part in the governing point of a sample: a link, `tool`, `load` or `tcp`.
     pub fn governing_part(&self, sample: &Sample) -> Option<&str> {
         self.parts.get(sample.governing?.part).map(String::as_str)
     }
 
-    /// The obstacle that the robot evades, or stands before, at the tick with this index.
+    /// The obstacle that the robot evades or waits for at the tick with this index.
     pub fn governing_obstacle(&self, tick: usize) -> Option<&str> {
         let track = self.avoidance.as_ref()?;
         track.obstacles.get(track.samples.get(tick)?.governed_by?).map(String::as_str)

@@ -1,18 +1,18 @@
-//! What sensors saw in a run, and what it made a robot do.
+//! Observations of the sensors in a run, and the reactions of the robots.
 
 use elbowroom_analysis::watch::WatchRecord;
 use serde::Serialize;
 
 use super::tick_times::TickTimes;
 
-/// What one robot did about the obstacles that sensors see.
+/// Reactions of one robot to the obstacles that sensors see.
 #[derive(Debug, Clone, Default)]
 pub struct PerceptionTrack {
     /// Searches for a new path, in order of time.
     pub replans: Vec<PathReplan>,
-    /// Times in which it was held, in order.
+    /// Periods in which it was held, in order.
     pub holds: Vec<Hold>,
-    /// It was held at the end of the run: why, and by what.
+    /// Reason and cause if it was held at the end of the run.
     pub ends_held: Option<(HoldReason, String)>,
 }
 
@@ -27,7 +27,7 @@ pub struct PathReplan {
     pub in_motion: Option<bool>,
 }
 
-/// A time in which a robot is held: it brakes or stands.
+/// A period in which a robot is held: it brakes or waits.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Hold {
     /// Start, s.
@@ -40,17 +40,17 @@ pub struct Hold {
     pub by: String,
 }
 
-/// Why a robot is held because of what sensors see.
+/// Reason why a robot is held.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum HoldReason {
     /// An obstacle blocks its path.
     Obstacle,
-    /// A sensor has sent nothing that can be used for too long, or nothing yet.
+    /// A sensor has sent no usable data for too long, or none yet.
     Stale,
 }
 
-/// What one sensor sent and saw.
+/// Observations of one sensor.
 #[derive(Debug, Clone)]
 pub struct SensorTrack {
     /// Its name.
@@ -59,7 +59,7 @@ pub struct SensorTrack {
     pub kind: &'static str,
     /// Time from a picture or cloud to its use, s.
     pub latency_s: f64,
-    /// One per picture or cloud that was taken in.
+    /// One per loaded picture or cloud.
     pub records: Vec<WatchRecord>,
     /// Wall-clock time from the picture in the file to the reaction of the robots.
     pub processing_ns: TickTimes,

@@ -13,7 +13,7 @@ pub struct RegionTrack {
     pub name: String,
     /// Its kind.
     pub kind: RecordedRegionKind,
-    /// Its life.
+    /// Whether it is permanent or temporary.
     pub life: Life,
     /// Which parts of the robots it guards.
     pub guards: Guards,
@@ -42,7 +42,7 @@ pub struct RegionTrack {
 /// An interval of one robot in a region or its warning zone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Span {
-    /// The robot; an index in [`Recording::robots`](crate::Recording::robots) too.
+    /// The robot; also an index in [`Recording::robots`](crate::Recording::robots).
     pub robot: RobotId,
     /// Start, s.
     pub from_s: f64,
@@ -96,7 +96,7 @@ impl From<RegionKind> for RecordedRegionKind {
 }
 
 impl RegionTrack {
-    /// True if a robot entered it and must not.
+    /// True if a robot entered it although it must not.
     pub fn is_violated(&self) -> bool {
         self.entered && matches!(self.kind, RecordedRegionKind::Forbidden | RecordedRegionKind::Exchange)
     }

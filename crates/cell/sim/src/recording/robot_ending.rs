@@ -4,12 +4,12 @@ use elbowroom_monitor::Part;
 use elbowroom_spatial::Vec3;
 use serde::Serialize;
 
-/// A time during which the monitor stopped a robot.
+/// A period in which the monitor stopped a robot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stop {
     /// Start, s.
     pub from_s: f64,
-    /// When it moved on, or the end of the run, s.
+    /// Time at which it moved on, or the end of the run, s.
     pub to_s: f64,
     /// The region that governed at the start; `None` for a stop by invalid input.
     pub by: Option<String>,
@@ -26,21 +26,21 @@ pub struct Stop {
 pub struct RobotEnding {
     /// The outcome.
     pub outcome: Outcome,
-    /// Since when (s) it is stopped at its final configuration; `None` for one that finished or was still moving.
+    /// Time (s) at which it stopped at its final configuration; `None` for one that finished or was still moving.
     pub stopped_at_s: Option<f64>,
     /// The region or obstacle that stopped it, or what it collided with first: an object, or `robot/link`.
     pub by: Option<String>,
     /// The link, tool or load that was closest to the region, or collided first.
     pub part: Option<String>,
-    /// What that part is.
+    /// Kind of that part.
     pub part_kind: Option<PartKind>,
     /// The point of that part closest to the region, in the world, m.
     pub point: Option<Vec3>,
-    /// What would let a stopped robot continue, in words; `None` if nothing is known to.
+    /// Condition under which a stopped robot would continue, in words; `None` if none is known.
     pub release: Option<String>,
 }
 
-/// What a part of a robot is.
+/// Kind of a part of a robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum PartKind {
@@ -95,10 +95,10 @@ impl Outcome {
     }
 }
 
-/// Robots that wait for each other, for exchange regions.
+/// A cycle of robots that wait for each other, for exchange regions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Deadlock {
-    /// Since when all of them are stopped, s.
+    /// Time since which all of them are stopped, s.
     pub t_s: f64,
     /// The robots, in the order of the cell file.
     pub robots: Vec<String>,

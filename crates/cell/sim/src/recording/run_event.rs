@@ -10,7 +10,7 @@ pub struct EventRow {
     pub t_s: f64,
     /// The robot concerned.
     pub robot: String,
-    /// The region concerned, the object gripped or released, or the perceived obstacle; empty if none is.
+    /// The region concerned, the object gripped or released, or the perceived obstacle; empty otherwise.
     pub region: String,
     /// The event.
     pub event: RunEvent,
@@ -33,11 +33,11 @@ pub enum RunEvent {
     Grip,
     /// A robot released an object, which is named in place of the region.
     Release,
-    /// A robot has another path, around what sensors see.
+    /// A robot has a new path around obstacles that sensors see.
     Replan,
-    /// A robot brakes or stands: an obstacle that a sensor sees, which is named in place of the region, blocks its path.
+    /// A robot brakes or waits because an obstacle, which is named in place of the region, blocks its path.
     Wait,
-    /// A robot brakes or stands: a sensor, which is named in place of the region, has sent nothing for too long.
+    /// A robot brakes or waits because a sensor, which is named in place of the region, has sent nothing for too long.
     Stale,
     /// A robot made a tool active, which is named in place of the region.
     Tool,

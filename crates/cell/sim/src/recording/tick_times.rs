@@ -14,7 +14,7 @@ pub struct TickTimes {
 }
 
 impl TickTimes {
-    /// Of the times of all ticks, nanoseconds.
+    /// Computes the statistics of the times of all ticks, ns.
     pub fn of(mut ns: Vec<u64>) -> Self {
         ns.sort_unstable();
         let at = |share: f64| {

@@ -1,18 +1,19 @@
-//! The rest of a robot's step as a polyline in joint space.
+//! The rest of a step's path as a polyline in joint space.
 
 /// Time (s) between samples of a path.
 pub(crate) const SAMPLE_S: f64 = 0.01;
 /// Largest distance (rad or m, Euclidean) from a sample to the polyline.
 const CHORD: f64 = 5e-4;
-/// Samples within this distance (rad or m) of a line are on it: above rounding, below the deviation of a rounded corner.
+/// Distance to a line (rad or m) up to which samples are on it: above rounding, below the deviation of a rounded
+/// corner.
 const ON_LINE: f64 = 1e-7;
 
-/// The path from the present to the end of a step.
+/// The path from the present point to the end of a step.
 #[derive(Debug, Clone)]
 pub struct PathAhead {
     /// Times in the step (s, at override 1) and joint values.
     pub(super) samples: Vec<(f64, Vec<f64>)>,
-    /// Indices of the samples that are corners of the polyline; the first and the last are.
+    /// Indices of the samples that are corners of the polyline, including the first and the last.
     corners: Vec<usize>,
 }
 
@@ -33,7 +34,7 @@ impl PathAhead {
         self.corners.iter().map(|i| &self.samples[*i].1[..]).collect()
     }
 
-    /// The time in the step (s) of the last sample before a share of the segment that ends at a corner.
+    /// Time in the step (s) of the last sample before the fraction `share` of the segment that ends at a corner.
     pub(super) fn time_before(&self, corner: usize, share: f64) -> f64 {
         let Some(first) = corner.checked_sub(1).map(|c| self.corners[c]) else { return self.samples[0].0 };
         let last = self.corners[corner];
@@ -42,7 +43,7 @@ impl PathAhead {
         self.samples[first..=last].iter().take_while(is_before).last().map_or(self.samples[first].0, |s| s.0)
     }
 
-    /// The time in the step (s) and the joint values `length` (rad or m) ahead, where the path is straight up to there.
+    /// Time in the step (s) and joint values `length` (rad or m) ahead, if the path is straight up to there.
     pub(super) fn straight_ahead(&self, along: &[f64], length: f64) -> Option<(f64, Vec<f64>)> {
         let here = &self.samples.first()?.1;
         let beyond = self.samples.iter().find(|(_, q)| distance(q, here) >= length)?;
@@ -61,14 +62,16 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
 }
 
-/// Share of the segment from `a` to `b` at the point of it nearest to `q`.
+/// Fraction of the segment from `a` to `b` at its point nearest to `q`.
 fn share_along(q: &[f64], a: &[f64], b: &[f64]) -> f64 {
     let square: f64 = a.iter().zip(b).map(|(a, b)| (b - a).powi(2)).sum();
     let along: f64 = q.iter().zip(a).zip(b).map(|((q, a), b)| (q - a) * (b - a)).sum();
     if square > 0.0 { (along / square).clamp(0.0, 1.0) } else { 0.0 }
 }
 
-/// A sample as far from `start` as doubling and halving find, with all samples between near the line to it. The next one always is.
+/// Finds a far sample, by doubling and halving, whose line to `start` is near all samples between.
+///
+/// The line to the next sample always is.
 fn end_of_chord(samples: &[(f64, Vec<f64>)], start: usize) -> usize {
     let from = &samples[start].1;
     let is_chord = |end: usize| {
@@ -109,7 +112,7 @@ mod tests {
 
     #[test]
     fn samples_are_near_the_chords_and_straight_stretches_are_one() {
-        // A straight line, a curve, and a line that stands still at its end.
+        // A straight line, a curve, and a stop at the end.
         let straight = (0..=300).map(|i| vec![f64::from(i) * 0.01, 0.0]);
         let curve = (1..=200).map(|i| f64::from(i) * 0.01).map(|a| vec![3.0 + a.sin(), 1.0 - a.cos()]);
         let end = vec![3.0 + 2.0_f64.sin(), 1.0 - 2.0_f64.cos()];

@@ -18,9 +18,9 @@ use super::surroundings::Surroundings;
 use crate::motion::ProgramClock;
 use crate::recording::PathReplan;
 
-/// A path nearer to an obstacle than this is blocked, m: more than the motion deviates from the polyline that is checked.
+/// Distance to an obstacle below which a path is blocked, m: more than the motion deviates from the checked polyline.
 const CLEARANCE_M: f64 = 5e-3;
-/// Time (s) after a search without a path until the next one of the step.
+/// Time (s) from a search without a path to the next search in the same step.
 const RETRY_S: f64 = 0.2;
 
 /// When a search has its result.
@@ -37,7 +37,7 @@ pub enum SearchTiming {
 #[derive(Debug)]
 pub struct PathGuard<'a> {
     robot: RobotId,
-    /// The robots of the cell alone.
+    /// Scene with the robots of the cell only.
     base: Scene,
     replanner: PathReplanner<'a>,
     timing: SearchTiming,
@@ -128,7 +128,8 @@ impl<'a> PathGuard<'a> {
         }
     }
 
-    /// Checks the rest of the step against what is seen now. Where it is blocked: what another path must be clear of.
+    /// Checks the rest of the step against what is seen now. If it is blocked, returns the surroundings for the search
+    /// of another path.
     fn check_ahead(
         &mut self,
         motion: &ExecutedMotion,
@@ -143,7 +144,7 @@ impl<'a> PathGuard<'a> {
             return None;
         }
         let checked = self.solids(&known).and_then(|solids| self.check(ahead, &known, &solids));
-        // What cannot be checked is blocked.
+        // A path that cannot be checked counts as blocked.
         self.blocked =
             checked.unwrap_or_else(|e| Some(BlockedPath { free_until_s: ahead.samples[0].0, by: e.to_string() }));
         self.blocked.is_some().then_some(known)
@@ -185,14 +186,16 @@ impl<'a> PathGuard<'a> {
         found.is_some()
     }
 
-    /// The solid of each obstacle: where it is and will be. One whose predicted positions the robot is at already counts where
-    /// it was seen: the prediction must not trap the robot.
+    /// The solid of each obstacle: where it is and will be.
+    ///
+    /// If the robot is already near the predicted positions of an obstacle, the obstacle counts only where it was seen:
+    /// the prediction must not trap the robot.
     fn solids(&self, surroundings: &Surroundings) -> Result<Vec<PerceivedSolid>, SceneError> {
         let mut solids: Vec<PerceivedSolid> = surroundings.perceived.iter().map(|o| o.predicted.clone()).collect();
         let placed = surroundings.obstacles_only(&self.base, self.robot, &solids)?;
         let mut checker = Checker::new(&placed.scene, CheckerOptions::default());
         let mut pairs = checker.between(Selection::Robot(self.robot), Selection::Objects);
-        // The search for a path refuses a start nearer than its clearance.
+        // The path search refuses a start that is nearer than its clearance.
         pairs.distances_within(&placed.state, path_replanner::CLEARANCE_M + CLEARANCE_M, |near| {
             for id in [near.a, near.b] {
                 if let GeometryId::Object(o) = id
@@ -205,7 +208,7 @@ impl<'a> PathGuard<'a> {
         Ok(solids)
     }
 
-    /// Where the path is blocked; `None` if it is free to the end of the step.
+    /// Start of the blocked part of the path; `None` if the path is free to the end of the step.
     fn check(
         &self,
         ahead: &PathAhead,
@@ -218,7 +221,7 @@ impl<'a> PathGuard<'a> {
         let options = SweepOptions { clearance_m: CLEARANCE_M, ..SweepOptions::default() };
         let path = ahead.polyline();
         let Some((_, hit)) = pairs.sweep_path(&placed.state, self.robot, &path, &options)? else { return Ok(None) };
-        // It stops where the search for another path can still start.
+        // The robot stops where the search for another path can still start.
         let options = SweepOptions { clearance_m: path_replanner::CLEARANCE_M + CLEARANCE_M, ..options };
         let near = pairs.sweep_path(&placed.state, self.robot, &path, &options)?;
         Ok(near.map(|(corner, near)| {

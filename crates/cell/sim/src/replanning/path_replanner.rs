@@ -28,23 +28,27 @@ use crate::motion::ProgramClock;
 
 /// Largest number of validated states per attempt.
 const MAX_STATES: u64 = 1_000_000;
-/// Paths keep this distance from everything, m: more than the check of paths asks for, so that noise of the outlines does not
-/// block them at once.
+/// Distance that paths keep from everything, m: more than the path check requires, so that noise of the outlines does
+/// not block them at once.
 pub(super) const CLEARANCE_M: f64 = 0.02;
-/// That, and what a robot leaves with that rests nearer to something because it could not stop earlier, m: more than the check of
-/// paths asks for.
+/// Clearances to try, m: `CLEARANCE_M`, and a smaller one for a robot that rests nearer to something because it could
+/// not stop earlier.
+///
+/// Both are larger than the path check requires.
 const CLEARANCES_M: [f64; 2] = [CLEARANCE_M, 6e-3];
-/// Shares of each warning zone that paths keep from a region, in the order in which they are tried: so much of the override
-/// remains.
+/// Fractions of each warning zone that paths keep from a region, in the order of the attempts. This fraction of the
+/// override remains.
 const WARNING_SHARES: [f64; 2] = [0.25, 0.0];
-/// A new path leaves the present one so many stopping distances ahead: its corner is rounded over at most half of the stretch
-/// from one stopping distance behind the robot, so that the robot could still stop before the rounding.
+/// Number of stopping distances ahead at which a new path leaves the present one.
+///
+/// The corner is rounded over at most half of the stretch that begins one stopping distance behind the robot, so that
+/// the robot could still stop before the rounding.
 const LEAVE_AFTER: f64 = 3.0;
-/// A slower robot has no direction of motion, rad/s or m/s.
+/// Speed below which a robot has no direction of motion, rad/s or m/s.
 const MIN_SPEED: f64 = 1e-6;
-/// The robot enters a new path where that passes its configuration within this distance, rad or m.
+/// Distance to the robot's configuration within which a new path must pass for the robot to enter it, rad or m.
 const ENTRY_DISTANCE: f64 = 1e-6;
-/// The rate at the entry may exceed the programmed override by this much, which is rounding.
+/// Rounding error by which the rate at the entry may exceed the programmed override.
 const RATE_ROUNDING: f64 = 1e-3;
 
 /// A new path to the end of a planned move.
@@ -79,13 +83,13 @@ impl NewPath {
     }
 }
 
-/// What one attempt asks for.
+/// Settings of one attempt.
 struct Attempt {
     settings: RrtConnectSettings,
     warning_share: f64,
 }
 
-/// The attempts of a search, each in its share of the time that is left: with the largest distances first.
+/// The attempts of a search, largest distances first, each with an equal part of the remaining time.
 fn attempts(is_moving: bool, without_regions: bool, deadline: Instant) -> impl Iterator<Item = Attempt> {
     let clearances = if is_moving { &CLEARANCES_M[..1] } else { &CLEARANCES_M };
     let shares = if without_regions { &WARNING_SHARES[..1] } else { &WARNING_SHARES };
@@ -99,7 +103,7 @@ fn attempts(is_moving: bool, without_regions: bool, deadline: Instant) -> impl I
     })
 }
 
-/// Where a new path begins.
+/// Start of a new path.
 struct Departure {
     /// Waypoints before the start of the search.
     before: Vec<Vec<f64>>,
@@ -107,18 +111,18 @@ struct Departure {
     from: Vec<f64>,
 }
 
-/// Plans for one robot.
+/// Replanner of one robot.
 #[derive(Debug)]
 pub(super) struct PathReplanner<'a> {
     robot: RobotId,
     at: &'a CellRobot,
     tick_s: f64,
     motion_bounds: Vec<f64>,
-    /// By clearance, for scenes in which nothing is carried.
+    /// One per clearance, for scenes without carried parts.
     models: Vec<CoverModel>,
-    /// For the last scene in which something is.
+    /// Model of the last scene with carried parts.
     carrying: Option<CoverModel>,
-    /// With their clearances (m); none where no move of the program is planned on the map.
+    /// Maps with their clearances (m); empty if no move of the program is planned on the map.
     maps: Vec<(f64, MapPlanner)>,
 }
 
@@ -135,7 +139,7 @@ impl<'a> PathReplanner<'a> {
         }
     }
 
-    /// With the maps of moves that are planned on them.
+    /// Adds the maps for the moves that are planned on them.
     ///
     /// # Errors
     /// [`FormatError`] if the robot has no map of three joints.
@@ -151,7 +155,7 @@ impl<'a> PathReplanner<'a> {
         Ok(self)
     }
 
-    /// Makes what searches need of the robot itself, so that the first one does not take that time.
+    /// Computes what searches need from the robot itself, so that the first search does not take that time.
     pub fn prepare(&mut self, scene: &Scene, states: &[ChainState]) {
         let mut state = SceneState::new(scene);
         let placed = states.iter().enumerate().all(|(i, robot)| state.set_q(scene, RobotId(i), &robot.q).is_ok());
@@ -237,7 +241,7 @@ impl<'a> PathReplanner<'a> {
             return timed(&mut exact, path);
         }
         let Some(model) = self.cover_model(scene, state, clearance_m) else {
-            // A link without bounds cannot be covered; the exact scene plans for it.
+            // A link without bounds cannot be covered; the planner on the exact scene is used instead.
             let path = exact.plan(state, goal, settings).ok()?;
             return timed(&mut exact, path);
         };
@@ -266,8 +270,10 @@ fn with_departure(path: PlannedPath, departure: &Departure) -> PlannedPath {
     PlannedPath { waypoints: departure.before.iter().cloned().chain(path.waypoints).collect(), ..path }
 }
 
-/// Where a new path passes a configuration in the direction of a velocity: its time (s), and the rate at which its speed is that
-/// of the robot. `None` if it does not.
+/// Point at which a new path passes a configuration in the direction of a velocity: its time (s), and the rate at which
+/// its speed equals the robot's speed.
+///
+/// `None` if the path does not pass.
 fn entry(play: &Playback, here: &[f64], velocity: &[f64]) -> Option<(f64, f64)> {
     let speed = norm(velocity);
     let passed = |t_s: f64| {

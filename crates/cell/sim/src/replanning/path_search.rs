@@ -1,4 +1,4 @@
-//! When a robot searches for another path, with what it knew then, and whether another search could find more.
+//! Searches of a robot for another path: their time, their knowledge, and whether another search could find more.
 
 use elbowroom_cell::region_constraint::RegionConstraint;
 use elbowroom_monitor::{Monitor, SourceState};
@@ -7,11 +7,11 @@ use elbowroom_spatial::{Aabb, Pose};
 use super::perceived_obstacles::PerceivedObstacle;
 use super::surroundings::Surroundings;
 
-/// Obstacles whose bounding boxes changed by less (m) are where they were: noise of the outlines.
+/// Change of a bounding box (m) up to which an obstacle counts as unmoved: noise of the outlines.
 const NOISE_M: f64 = 0.01;
-/// The longest search from rest takes so many times the time of one in motion.
+/// Largest duration of a search from rest, as a multiple of a search in motion.
 const MAX_FACTOR: f64 = 8.0;
-/// A robot whose joint values changed by less (rad or m) is where it was.
+/// Change of the joint values (rad or m) up to which a robot counts as unmoved.
 const SAME_Q: f64 = 1e-3;
 
 /// The regions closed to a robot at one instant.
@@ -24,7 +24,7 @@ pub struct ClosedRegions<'c> {
 }
 
 impl<'c> ClosedRegions<'c> {
-    /// As a constraint of paths that keep this share of each warning zone.
+    /// The constraint of paths that keep this fraction of each warning zone.
     pub(super) fn constraint(&self, warning_share: f64) -> Option<RegionConstraint<'c>> {
         RegionConstraint::new(self.monitor, &self.sources, warning_share, 0.0)
     }
@@ -35,7 +35,7 @@ impl<'c> ClosedRegions<'c> {
     }
 }
 
-/// A search that was asked for. It takes its time: the result counts from `due_s` on, and knows what had been seen when it began.
+/// A requested search. Its result counts from `due_s` on, and is based on what had been seen when the search began.
 #[derive(Debug)]
 pub(super) struct PathSearch {
     /// End of the search, s.
@@ -44,7 +44,7 @@ pub(super) struct PathSearch {
     pub takes_s: f64,
     /// How long the robot goes on meanwhile, s.
     pub lead_s: f64,
-    /// What sensors had seen at its beginning.
+    /// Obstacles that sensors had seen at its start.
     pub perceived: Vec<PerceivedObstacle>,
 }
 
@@ -52,19 +52,21 @@ pub(super) struct PathSearch {
 #[derive(Debug)]
 pub(super) struct FutileSearch {
     pub scene: SearchScene,
-    /// So many times the time that a search takes.
+    /// Duration of the search, as a multiple of the usual one.
     pub factor: f64,
 }
 
 impl FutileSearch {
-    /// So many times that time the next search takes: twice as many in the same scene, as a robot that rests has time; `None` where
-    /// that would be too long.
+    /// Duration of the next search, as a multiple of the usual one: doubled in the same scene, because a robot at rest
+    /// has time.
+    ///
+    /// `None` if that would be too long.
     pub fn longer_search(&self, now: &SearchScene) -> Option<f64> {
         if self.scene.is_like(now) { Some(2.0 * self.factor).filter(|f| *f <= MAX_FACTOR) } else { Some(1.0) }
     }
 }
 
-/// What the result of a search from rest depends on: without a change of these, an equal one finds no more.
+/// Everything that the result of a search from rest depends on: while it is unchanged, an equal search finds no more.
 #[derive(Debug)]
 pub(super) struct SearchScene {
     q: Vec<Vec<f64>>,
@@ -86,7 +88,7 @@ impl SearchScene {
         }
     }
 
-    /// Whether only noise has changed.
+    /// Whether the scenes differ by noise only.
     fn is_like(&self, other: &Self) -> bool {
         let q = self.q.iter().flatten().zip(other.q.iter().flatten()).all(|(a, b)| (a - b).abs() <= SAME_Q);
         let is_near = |(a, b): (&Aabb, &Aabb)| {

@@ -16,11 +16,11 @@ use crate::recording::{SensorTrack, TickTimes};
 /// An obstacle that a sensor sees, as solids in the world.
 #[derive(Debug, Clone)]
 pub struct PerceivedObstacle {
-    /// `sensor#number`.
+    /// Name of the form `sensor#number`.
     pub name: String,
-    /// Where it was seen, with the uncertainty.
+    /// Solid of the observed position, with the uncertainty.
     pub observed: PerceivedSolid,
-    /// That, and where it will be.
+    /// Solid of the observed and the predicted positions.
     pub predicted: PerceivedSolid,
 }
 
@@ -29,7 +29,7 @@ pub struct PerceivedObstacle {
 pub struct PerceivedSolid {
     /// The solid.
     pub shape: Shape,
-    /// Boxes that together contain it, for joint-space maps.
+    /// Boxes that together contain the solid, for joint-space maps.
     pub boxes: Vec<(Shape, Pose)>,
 }
 
@@ -101,7 +101,7 @@ impl<'a> WatchedSensor<'a> {
     fn process_due(&mut self, t_s: f64, q_at: &dyn Fn(f64) -> Vec<Vec<f64>>) -> bool {
         let mut is_accepted = false;
         while let Some(stamp_s) = self.watch.files()[..self.files].get(self.next).map(|f| f.t_s) {
-            // A picture at the time of a tick is due at that tick, whatever the rounding.
+            // A picture at the time of a tick is due at that tick, in spite of rounding.
             if stamp_s + self.spec.latency_s > t_s + 1e-9 {
                 break;
             }
@@ -116,7 +116,7 @@ impl<'a> WatchedSensor<'a> {
     /// Takes over the obstacles of a picture, unless it was rejected; returns whether it did.
     fn accept(&mut self, record: &WatchRecord) -> bool {
         let obstacles = self.watch.prisms().iter().map(|p| PerceivedObstacle::of(&self.spec.name, p));
-        // A prism without a volume says nothing of where the obstacle is: as if the picture were rejected.
+        // A prism without a volume does not state where the obstacle is, so the picture is treated as rejected.
         if record.status == WatchStatus::Accepted
             && let Ok(obstacles) = obstacles.collect::<Result<Vec<_>, _>>()
         {
@@ -183,7 +183,7 @@ impl<'a> PerceivedObstacles<'a> {
         Some((record, is_accepted))
     }
 
-    /// Time (s) that a search for a path of a robot takes, the longest of its sensors; `None` for a robot that no sensor guards.
+    /// Time (s) that a path search of a robot takes: the longest of its sensors; `None` if no sensor guards the robot.
     pub fn search_s(&self, robot: RobotId) -> Option<f64> {
         self.of_robot(robot).map(|s| s.spec.search_s).reduce(f64::max)
     }
@@ -202,19 +202,19 @@ impl<'a> PerceivedObstacles<'a> {
         is_accepted
     }
 
-    /// Adds the wall-clock time (ns) from the pictures that were taken in last until the paths of all robots were checked.
+    /// Adds the wall-clock time (ns) from loading the last pictures to the end of the path checks of all robots.
     pub fn add_processing_time(&mut self, ns: u64) {
         for sensor in &mut self.sensors {
             sensor.processing_ns.push(ns);
         }
     }
 
-    /// What a robot keeps clear of.
+    /// Obstacles that a robot avoids.
     pub fn obstacles(&self, robot: RobotId) -> impl Iterator<Item = &PerceivedObstacle> {
         self.of_robot(robot).flat_map(|s| &s.obstacles)
     }
 
-    /// True if the joint-space maps prove a path of a robot free (rad or m).
+    /// True if the joint-space maps prove that a path (rad or m) of a robot is free.
     pub(super) fn prove_free(&self, robot: RobotId, path: &[(f64, Vec<f64>)]) -> bool {
         self.of_robot(robot).all(|s| s.watch.proves_free(robot, path.iter().map(|(_, q)| &q[..])))
     }
@@ -224,12 +224,12 @@ impl<'a> PerceivedObstacles<'a> {
         self.of_robot(robot).map(|s| &s.last)
     }
 
-    /// True if pictures or clouds are still to come.
+    /// True if pictures or clouds remain.
     pub fn has_more(&self) -> bool {
         self.sensors.iter().any(|s| s.next < s.files)
     }
 
-    /// What the sensors found that the user should know.
+    /// Moves the warnings of the sensors to `notes`.
     pub fn take_warnings(&mut self, notes: &mut Vec<Warning>) {
         self.sensors.iter_mut().for_each(|s| notes.append(&mut s.watch.warnings));
     }

@@ -1,4 +1,4 @@
-//! Everything around a robot at one instant of a run, as scenes.
+//! Surroundings of the robots at one instant of a run, as scenes.
 
 use elbowroom_kinematics::ChainState;
 use elbowroom_robot::{ObjectId, RobotId};
@@ -12,9 +12,9 @@ use super::perceived_obstacles::{PerceivedObstacle, PerceivedSolid};
 pub struct Surroundings {
     /// The robots.
     pub states: Vec<ChainState>,
-    /// The objects of the cell, where they are.
+    /// The objects of the cell at their present poses.
     pub objects: Vec<Object>,
-    /// Per object: how a robot carries it.
+    /// Per object its attachment to the robot that carries it; `None` if it is not carried.
     pub attachments: Vec<Option<Attachment>>,
     /// What sensors saw.
     pub perceived: Vec<PerceivedObstacle>,
@@ -24,22 +24,22 @@ pub struct Surroundings {
 pub(super) struct PlacedScene {
     pub scene: Scene,
     pub state: SceneState,
-    /// The objects from this one on are perceived obstacles.
+    /// Index of the first object that is a perceived obstacle; the objects after it are, too.
     first_perceived: usize,
 }
 
 impl PlacedScene {
-    /// Index of the perceived obstacle that an object is.
+    /// Index of the perceived obstacle that an object is; `None` for other objects.
     pub fn perceived(&self, object: ObjectId) -> Option<usize> {
         object.0.checked_sub(self.first_perceived)
     }
 }
 
 impl Surroundings {
-    /// A robot with what it carries, the other robots, and the perceived obstacles as these solids.
+    /// Scene with a robot and what it carries, the other robots, and the perceived obstacles as these solids.
     ///
     /// # Errors
-    /// Solids or joint values that the scene refuses.
+    /// An error if the scene refuses the solids or the joint values.
     pub(super) fn obstacles_only(
         &self,
         base: &Scene,
@@ -49,10 +49,10 @@ impl Surroundings {
         self.scene(base, |attachment| attachment.is_some_and(|a| a.robot == robot), solids)
     }
 
-    /// All robots and objects, and the perceived obstacles as these solids.
+    /// Scene with all robots and objects, and the perceived obstacles as these solids.
     ///
     /// # Errors
-    /// As [`obstacles_only`](Self::obstacles_only).
+    /// As for [`obstacles_only`](Self::obstacles_only).
     pub(super) fn everything(&self, base: &Scene, solids: &[PerceivedSolid]) -> Result<PlacedScene, SceneError> {
         self.scene(base, |_| true, solids)
     }

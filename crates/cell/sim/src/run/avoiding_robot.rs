@@ -1,4 +1,4 @@
-//! A robot with `[avoidance]` in a run: it follows its path as far as dynamic obstacles permit.
+//! A robot with `[avoidance]` in a run, which follows its path as far as dynamic obstacles permit.
 
 use elbowroom_avoidance::{
     AvoidanceError, Avoider, AvoiderOutput, AvoiderState, DynamicObstacles, EscapeState, JointLimit, Neighbour,
@@ -20,7 +20,7 @@ use crate::recording::{AvoidanceSample, AvoidanceTrack, ReplanRecord, RunEvent, 
 /// Settings of the replanning of a robot that is off its path or blocked.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct ReplanSettings {
-    /// Largest number of validated states per attempt: it bounds the planning time independently of the machine.
+    /// Largest number of validated states per attempt, which bounds the planning time independently of the machine.
     max_states: u64,
     /// Wall-clock limit per attempt; never reached in practice.
     time_limit: std::time::Duration,
@@ -28,14 +28,15 @@ struct ReplanSettings {
     attempts: [ReplanAttempt; 3],
     /// Time between plans, s.
     interval_s: f64,
-    /// After this many failed plans in a row …
+    /// Number of failed plans in a row after which `failed_interval_s` applies.
     max_failures: u64,
-    /// … the time between plans is this, s.
+    /// Time between plans after `max_failures` failed plans in a row, s.
     failed_interval_s: f64,
-    /// A robot off its path with less than this share of the programmed override counts as at the border of a region.
-    /// Any closer, it would take too long to leave.
+    /// Fraction of the programmed override below which a robot off its path counts as at the border of a region.
+    ///
+    /// Any closer, the robot would take too long to leave.
     border_override: f64,
-    /// Share of each warning zone that an escape keeps from a region.
+    /// Fraction of each warning zone that an escape keeps from a region.
     escape_warning_share: f64,
 }
 
@@ -44,7 +45,8 @@ struct ReplanSettings {
 struct ReplanAttempt {
     /// Security margin to obstacles, m.
     clearance_m: f64,
-    /// Share of each warning zone that the path keeps from a region: this much of the override remains.
+    /// Fraction of each warning zone that the path keeps from a region, which is the fraction of the override that
+    /// remains.
     warning_share: f64,
 }
 
@@ -65,7 +67,7 @@ const REPLANNING: ReplanSettings = ReplanSettings {
 /// Samples per input of the recorded control surfaces.
 const SURFACE_SAMPLES: usize = 33;
 
-/// A plan that is known only after its computing time.
+/// A plan, which becomes known only after its computing time.
 #[derive(Debug)]
 struct PendingPlan {
     ready_s: f64,
@@ -87,11 +89,11 @@ pub(super) struct AvoidingRobot<'s> {
     pending: Option<PendingPlan>,
     /// Failed plans in a row.
     failed: u64,
-    /// Objects that a robot has gripped: they no longer move by themselves.
+    /// Objects that a robot has gripped, which no longer move by themselves.
     taken: Vec<ObjectId>,
     step_ns: Vec<u64>,
     track: AvoidanceTrack,
-    /// The first tick that failed, and why.
+    /// Time (s) and cause of the first tick that failed.
     fault: Option<(f64, String)>,
 }
 
@@ -158,13 +160,13 @@ impl<'s> AvoidingRobot<'s> {
         self.output.path_deviation_s == 0.0
     }
 
-    /// A robot, this one or another, has gripped an object.
+    /// Attaches an object that a robot, this one or another, has gripped.
     pub fn attach(&mut self, object: ObjectId, attachment: Attachment) -> Result<(), AvoidanceError> {
         self.taken.push(object);
         self.avoider.attach(object, attachment)
     }
 
-    /// A robot has released an object.
+    /// Detaches an object that a robot has released.
     pub fn detach(&mut self, object: ObjectId) -> Result<(), AvoidanceError> {
         self.avoider.detach(object)
     }
@@ -183,7 +185,7 @@ impl<'s> AvoidingRobot<'s> {
         });
     }
 
-    /// A warning where a tick failed and the robot was stopped; `None` if all succeeded.
+    /// Warning if a tick failed and the robot was stopped; `None` if all ticks succeeded.
     pub fn fault_warning(&self, cell: &Cell) -> Option<Warning> {
         let (t_s, why) = self.fault.as_ref()?;
         let robot = &cell.robots[self.robot.0];
@@ -201,8 +203,7 @@ impl<'s> AvoidingRobot<'s> {
         self.track
     }
 
-    /// Advances from `t_s` to the next tick under the override of the monitor. Returns an event where the state
-    /// changed.
+    /// Advances from `t_s` to the next tick under the override of the monitor. Returns an event if the state changed.
     pub fn advance<'f>(
         &mut self,
         cell: &Cell,
@@ -224,14 +225,14 @@ impl<'s> AvoidingRobot<'s> {
         if self.pending.is_some() {
             self.avoider.await_detour();
         }
-        // No closer to a border than a planned path can leave in time.
+        // The robot stops before it is so close to a border that a planned path cannot leave in time.
         let allowed = if self.at_border(clock, allowed) { 0.0 } else { allowed };
         clock.hold(!self.is_on_path());
-        // Off the path the time of a wait does not run.
+        // The time of a wait stops while the robot is off its path.
         if !(clock.waiting() && self.output.rate == 0.0) {
             clock.advance(cell.tick_s, allowed * self.output.rate);
         }
-        // Only what may leave the path needs the regions.
+        // Only a robot that may leave its path needs the regions.
         let is_near = self.output.nearest_m.is_finite() || self.output.escape != EscapeState::Free;
         let may_leave = allowed > 0.0 && (is_near || !self.is_on_path());
         let mut constraint = may_leave.then(|| regions(REPLANNING.escape_warning_share)).flatten();
@@ -241,8 +242,9 @@ impl<'s> AvoidingRobot<'s> {
         (now != before).then_some(RunEvent::Avoidance(now))
     }
 
-    /// True if the monitor almost stops the robot off its path: evasion has moved it to the border of a region. A
-    /// planned path leads away; after repeated failures to find one, the avoider returns the robot to its path.
+    /// True if the monitor almost stops the robot off its path: evasion has moved it to the border of a region.
+    ///
+    /// A planned path leads away. After repeated failures to find one, the avoider returns the robot to its path.
     fn at_border(&self, clock: &ProgramClock, allowed: f64) -> bool {
         let free = self.is_on_path()
             || self.avoider.has_detour()
@@ -262,7 +264,7 @@ impl<'s> AvoidingRobot<'s> {
         let evaded = |object: ObjectId| self.spec.objects.contains(&object);
         let AvoidanceSpec { noise_m, delay_s, .. } = *self.spec;
         let exact = ObservationModel { noise_m: 0.0, delay_s: 0.0 };
-        // What the program knows is not observed.
+        // Known motions are exact; other motions are observed with noise and delay.
         let model = |known: bool| if known { exact } else { ObservationModel { noise_m, delay_s } };
         let is_taken = |object: &ObjectId| self.taken.contains(object);
         let moving = cell.moving_objects.iter().filter(|m| !is_taken(&m.object)).map(|m| {
@@ -291,7 +293,7 @@ impl<'s> AvoidingRobot<'s> {
                 self.output = output;
                 self.step_ns.push(output.times.total().as_nanos() as u64);
             }
-            // Nothing was commanded: the robot is stopped off its path.
+            // The tick commanded nothing: the robot is stopped off its path.
             Err(why) => {
                 self.output = AvoiderOutput {
                     rate: 0.0,
@@ -304,7 +306,7 @@ impl<'s> AvoidingRobot<'s> {
         }
     }
 
-    /// Replans. The path is proven against what is seen now, and followed after the time of planning.
+    /// Replans. The path is proven against what is seen now, and followed after the planning time.
     fn plan<'f>(
         &mut self,
         clock: &mut ProgramClock,
@@ -315,7 +317,7 @@ impl<'s> AvoidingRobot<'s> {
         let begin = std::time::Instant::now();
         let settings = REPLANNING;
         let detour = settings.attempts.into_iter().find_map(|ReplanAttempt { clearance_m, warning_share }| {
-            // Another seed may find a path where the last one did not.
+            // Another seed may find a path after the last one failed.
             let seed = 1 + self.failed;
             let options = RrtConnectSettings {
                 time_limit: settings.time_limit,
@@ -329,7 +331,7 @@ impl<'s> AvoidingRobot<'s> {
         });
         let found = detour.is_some();
         self.failed = if found { 0 } else { self.failed + 1 };
-        // For a trapped robot, planning is not repeated in every tick.
+        // A trapped robot does not plan in every tick.
         let interval_s =
             if self.failed < settings.max_failures { settings.interval_s } else { settings.failed_interval_s };
         self.not_before_s = t_s + interval_s;
@@ -338,7 +340,7 @@ impl<'s> AvoidingRobot<'s> {
         self.pending = Some(PendingPlan { ready_s: t_s + self.spec.plan_s, detour, goal });
     }
 
-    /// Follows a plan that has become known, if the robot and its goal are still where they were.
+    /// Follows a plan that has become known, if the robot and its goal have not moved since.
     fn use_plan(&mut self, clock: &mut ProgramClock, plan: PendingPlan) {
         let Some(detour) = plan.detour.filter(|_| goal(clock) == plan.goal) else { return };
         if self.avoider.follow_detour(detour).is_ok() && clock.end_of_joint_move().is_some() {
@@ -347,7 +349,7 @@ impl<'s> AvoidingRobot<'s> {
     }
 }
 
-/// Where a plan leads: to the end of a joint move, else back to the path.
+/// Goal of a plan: the end of a joint move, otherwise the present point of the path.
 fn goal(clock: &ProgramClock) -> Vec<f64> {
     clock.end_of_joint_move().unwrap_or_else(|| clock.point().q.clone())
 }
@@ -359,7 +361,7 @@ fn obstacles(cell: &Cell) -> Vec<String> {
     objects.chain(links).collect()
 }
 
-/// The limits of the joints within which a robot evades.
+/// Joint limits for evasion.
 pub fn evasion_limits(cell: &Cell, robot: RobotId) -> Vec<JointLimit> {
     let robot = &cell.robots[robot.0];
     let chain = &robot.robot.chain;

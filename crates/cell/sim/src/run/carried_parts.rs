@@ -9,13 +9,13 @@ use elbowroom_scene::{Attachment, FirstContacts};
 use crate::hand;
 use crate::motion::GripAction;
 
-/// Whose hand each object is in.
+/// The robots that carry the objects.
 #[derive(Debug)]
 pub(super) struct CarriedParts<'a> {
     cell: &'a Cell,
-    /// Per object: how a robot carries it.
+    /// Per object its attachment to the robot that carries it; `None` if it is not carried.
     attachments: Vec<Option<Attachment>>,
-    /// Per object: it was gripped once, and no longer moves by itself.
+    /// Per object whether it was ever gripped. A gripped object no longer moves by itself.
     taken: Vec<bool>,
 }
 
@@ -30,7 +30,7 @@ impl<'a> CarriedParts<'a> {
         self.taken[object.0]
     }
 
-    /// The objects in the programs' hands: those without a source of motion that a program grips.
+    /// Objects without a source of motion that a program grips.
     pub fn gripped_by_programs(cell: &Cell) -> impl Iterator<Item = ObjectId> + '_ {
         let robots = || (0..cell.robots.len()).map(RobotId);
         let is_gripped = move |o: &ObjectId| robots().any(|r| cell.gripped_objects(r).contains(o));
@@ -38,18 +38,18 @@ impl<'a> CarriedParts<'a> {
         (0..cell.objects.len()).map(ObjectId).filter(is_gripped).filter(move |o| !moves(o))
     }
 
-    /// Name of an object: `robot/part` in a hand.
+    /// Name of an object; `robot/part` if a robot carries it.
     pub fn name(&self, object: ObjectId) -> String {
         let name = &self.cell.objects[object.0].name;
         self.carrier(object).map_or_else(|| name.clone(), |r| format!("{}/{name}", self.cell.robots[r.0].name))
     }
 
-    /// The robot that carries an object.
+    /// The robot that carries an object; `None` if it is not carried.
     pub fn carrier(&self, object: ObjectId) -> Option<RobotId> {
         self.attachments[object.0].as_ref().map(|a| a.robot)
     }
 
-    /// Per object: how a robot carries it.
+    /// Per object its attachment to the robot that carries it; `None` if it is not carried.
     pub fn attachments(&self) -> &[Option<Attachment>] {
         &self.attachments
     }
@@ -57,7 +57,7 @@ impl<'a> CarriedParts<'a> {
     /// Grips or releases an object; `at` is the robot with its present tool.
     ///
     /// # Errors
-    /// At the line of the step: another robot holds the object, it moves, or it is too far away.
+    /// An error at the line of the step if another robot holds the object, the object moves, or it is too far away.
     pub fn apply(
         &mut self,
         robot: RobotId,

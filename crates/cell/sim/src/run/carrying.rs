@@ -1,4 +1,4 @@
-//! What robots carry: tools that are exchanged, and parts that are gripped and released.
+//! Carried volumes of robots: exchanged tools, and parts that are gripped and released.
 
 use elbowroom_cell::CellRobot;
 use elbowroom_formats::FormatError;
@@ -12,7 +12,7 @@ use crate::motion::GripAction;
 use crate::recording::RunEvent;
 
 impl Simulation<'_> {
-    /// Makes tools active, and exchanges those that are not mounted.
+    /// Makes tools active, and exchanges tools that are not mounted.
     pub(super) fn apply_tools(&mut self, t_s: f64) -> Result<(), FormatError> {
         for i in 0..self.robots.len() {
             for tool in self.robots[i].clock.take_tools() {
@@ -28,7 +28,7 @@ impl Simulation<'_> {
         Ok(())
     }
 
-    /// Attaches and detaches the tools that were exchanged, in collisions and in regions.
+    /// Attaches and detaches the exchanged tools, for collisions and for regions.
     fn exchange_volumes(&mut self, i: usize, before: &CellRobot) -> Result<(), FormatError> {
         let robot = &self.robots[i];
         let (id, setup, line) = (robot.id, robot.setup, robot.present.line);
@@ -43,7 +43,8 @@ impl Simulation<'_> {
         Ok(())
     }
 
-    /// Guards what a robot carries from now on, a part or a tool, at its pose in the link; or notes that it is to be detached.
+    /// Guards a part or a tool that a robot carries from now on, at its pose in the link. Without a pose, marks it for
+    /// detachment.
     fn carry(&mut self, i: usize, volume: VolumeId, in_link: Option<&Pose>, line: usize) -> Result<(), FormatError> {
         self.released.retain(|released| *released != (i, volume));
         let Some(in_link) = in_link else {
@@ -58,7 +59,7 @@ impl Simulation<'_> {
         Ok(())
     }
 
-    /// What a robot releases counts up to the instant of the release.
+    /// Detaches what robots have released. It counts up to the instant of the release.
     pub(super) fn detach_released(&mut self) -> Result<(), FormatError> {
         for (i, volume) in std::mem::take(&mut self.released) {
             let robot = &mut self.robots[i];
@@ -69,8 +70,10 @@ impl Simulation<'_> {
         Ok(())
     }
 
-    /// In the order of each program. A robot that grips what another one holds waits for the other's steps of this
-    /// instant, so that it can take a part over.
+    /// Applies grips and releases in the order of each program.
+    ///
+    /// A robot that grips what another one holds waits for the other's steps of this instant, so that it can take a
+    /// part over.
     pub(super) fn apply_grips(&mut self, t_s: f64) -> Result<(), FormatError> {
         let mut late = Vec::new();
         for i in 0..self.robots.len() {
@@ -96,7 +99,7 @@ impl Simulation<'_> {
         self.guard_part(i, action)
     }
 
-    /// Guards what a robot grips or no longer has, in the avoidance of all robots, too.
+    /// Updates the guarded volumes after a grip or a release, also in the avoidance of all robots.
     fn guard_part(&mut self, i: usize, action: &GripAction) -> Result<(), FormatError> {
         let attachment = self.contacts.checker.attachment(action.object).cloned();
         let in_link = attachment.as_ref().map_or(Pose::IDENTITY, |a| a.in_link);

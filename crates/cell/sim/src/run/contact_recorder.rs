@@ -1,4 +1,4 @@
-//! Collisions during a run, and where the objects are that move or are carried.
+//! Collisions during a run, and poses of the objects that move or are carried.
 
 use elbowroom_cell::{Cell, ObjectMotion};
 use elbowroom_kinematics::ChainState;
@@ -11,12 +11,12 @@ use crate::motion::ProgramClock;
 use crate::recording::{Collision, ObjectTrack};
 use crate::replanning::{PerceivedObstacle, Surroundings};
 
-/// Finds what touches between two instants, and follows the objects.
+/// Finds contacts between two instants, and tracks the objects.
 pub(super) struct ContactRecorder<'a> {
     cell: &'a Cell,
     pub checker: FirstContacts<'a>,
     pub parts: CarriedParts<'a>,
-    /// The objects of the last tracks, which move only in a robot's hand.
+    /// The objects of the last tracks, which move only when a robot carries them.
     gripped: Vec<ObjectId>,
     pub objects: Vec<ObjectTrack>,
     /// Time of the last check, s.
@@ -24,7 +24,7 @@ pub(super) struct ContactRecorder<'a> {
 }
 
 impl<'a> ContactRecorder<'a> {
-    /// `models` are the robots with all their tools.
+    /// Creates a recorder. `models` are the robots with all their tools.
     pub fn new(cell: &'a Cell, models: &'a [Robot]) -> Self {
         let placed = models.iter().zip(&cell.robots).map(|(model, r)| (model, r.base_in_world));
         let moving: Vec<ObjectId> = cell.moving_objects.iter().map(|m| m.object).collect();
@@ -40,7 +40,7 @@ impl<'a> ContactRecorder<'a> {
         Self { cell, checker, parts: CarriedParts::new(cell), gripped, objects, checked_s: 0.0 }
     }
 
-    /// Everything around the robots now, with obstacles that sensors saw.
+    /// Everything around the robots now, including obstacles that sensors saw.
     pub fn surroundings(&self, states: &[ChainState], perceived: Vec<PerceivedObstacle>) -> Surroundings {
         let in_world = |o: usize| self.checker.object_in_world(ObjectId(o));
         let object = |(o, object): (usize, &Object)| Object { in_world: in_world(o), ..object.clone() };
@@ -52,7 +52,7 @@ impl<'a> ContactRecorder<'a> {
         }
     }
 
-    /// Records what has touched since the last instant. A collision of two robots is listed for both.
+    /// Records the contacts since the last instant. A collision of two robots is listed for both.
     pub fn check(&mut self, t_s: f64, robots: &mut [SimulatedRobot<'_>], states: &[ChainState]) {
         let Self { cell, checker, parts, checked_s, .. } = self;
         let before = std::mem::replace(checked_s, t_s);
@@ -83,7 +83,7 @@ impl<'a> ContactRecorder<'a> {
         };
         let states: Vec<&ChainState> = states.iter().collect();
         checker.check(&states, &moved, |FirstContact { a, b, fraction }| {
-            // A contact at the end of the step has exactly the time of the tick.
+            // A contact at the end of the step gets exactly the time of the tick.
             let t_s = if fraction < 1.0 { before + fraction * (t_s - before) } else { t_s };
             let collision = Collision { t_s, a: name(a), b: name(b) };
             let mut concerned: Vec<usize> = [robot(a), robot(b)].into_iter().flatten().collect();

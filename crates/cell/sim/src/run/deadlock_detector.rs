@@ -6,7 +6,7 @@ use elbowroom_monitor::{RegionId, RegionKind, RobotSlot, SlotId, ZoneArbiter};
 use super::simulated_robot::SimulatedRobot;
 use crate::recording::Deadlock;
 
-/// Tracks which robots are in a cycle of waiting robots, and since when.
+/// Tracks which robots are in a cycle of waiting robots, and the start of each cycle.
 #[derive(Debug)]
 pub(super) struct DeadlockDetector {
     since_s: Vec<Option<f64>>,
@@ -17,7 +17,7 @@ impl DeadlockDetector {
         Self { since_s: vec![None; robots] }
     }
 
-    /// Observes one tick. A cycle counts while all its robots are stopped: a moving one may still clear it.
+    /// Observes one tick. A cycle counts while all its robots are stopped, because a moving robot may still clear it.
     pub fn observe(&mut self, t_s: f64, arbiter: &ZoneArbiter, robots: &[SimulatedRobot<'_>]) {
         let is_stopped = |robot: usize| robots[robot].stop_state.stopped;
         for robot in 0..robots.len() {
@@ -57,7 +57,7 @@ impl DeadlockDetector {
     }
 }
 
-/// The regions of a slot in whose warning zone the robot is.
+/// Regions of a slot in whose warning zone the robot is.
 fn waited_for(robot: &SimulatedRobot<'_>, slot: SlotId, cell: &Cell) -> Vec<String> {
     let regions = robot.setup.configuration.regions().iter().enumerate();
     let of_slot = regions.filter(|(_, r)| r.kind == RegionKind::Exchange { slot });

@@ -1,4 +1,4 @@
-//! Detection of the end of a run: nothing moves any more, or only what never ends.
+//! Detection of the end of a run: all motion has ended, except motion that never ends.
 
 use elbowroom_cell::Cell;
 use elbowroom_kinematics::ChainState;
@@ -6,12 +6,12 @@ use elbowroom_kinematics::ChainState;
 use super::idle_detector::IdleDetector;
 use crate::recording::RunEnd;
 
-/// A run ends after this time without motion, s.
+/// Time without motion after which a run ends, s.
 const IDLE_TIMEOUT_S: f64 = 1.0;
-/// A run ends after this time in which the robots stand at override 0 and only endless belts move, s.
+/// Time after which a run ends if the robots are stopped at override 0 and only endless belts move, s.
 const STANDSTILL_TIMEOUT_S: f64 = 10.0;
 
-/// Detects that nothing moves any more, or only what never ends.
+/// Detects that all motion has ended, except motion that never ends.
 #[derive(Debug)]
 pub(super) struct EndDetector {
     idle: IdleDetector,

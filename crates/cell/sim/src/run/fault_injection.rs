@@ -1,6 +1,6 @@
-//! Fault injection: faulty injector of a robot's monitor.
+//! Fault injection: faults in the input of a robot's monitor.
 //!
-//! The robot itself moves as commanded: only the input of its monitor is changed. The recording always has the true
+//! Only the input of the monitor changes: the robot itself moves as commanded, and the recording has its true
 //! positions.
 
 use std::collections::VecDeque;
@@ -15,7 +15,7 @@ pub struct InputFault {
     pub robot: RobotId,
     /// Start of the fault, s, inclusive.
     pub from_s: f64,
-    /// End of the fault, s, exclusive; infinite for no end.
+    /// End of the fault, s, exclusive; infinite if the fault does not end.
     pub to_s: f64,
     /// The fault.
     pub kind: InputFaultKind,
@@ -31,13 +31,14 @@ pub enum InputFaultKind {
         by_s: f64,
     },
     /// No snapshot arrives, so the monitor does not answer. The controller keeps the last override for `timeout_s`
-    /// after the first tick without an answer, and then takes the override as 0.
+    /// after the first tick without an answer, and then sets the override to 0.
     Lost {
-        /// The controller's time-out, s; 0 for one that stops at the first missing answer. The stopping-distance law
-        /// does not account for it: its reaction time must include it.
+        /// The controller's time-out, s; 0 if the controller stops at the first missing answer.
+        ///
+        /// The stopping-distance law does not account for it: its reaction time must include it.
         timeout_s: f64,
     },
-    /// The values at the start of the fault, with current stamps.
+    /// All values stay as at the start of the fault, with current stamps.
     Frozen,
     /// The position of one joint is off by a constant.
     Jump {
@@ -59,7 +60,7 @@ impl InputFault {
 /// Replaces the snapshots of robots with faults; the others pass unchanged.
 pub(super) struct FaultInjector<'a> {
     faults: &'a [InputFault],
-    /// Per robot its past snapshots, oldest first; empty if no fault needs them.
+    /// Past snapshots per robot, oldest first; empty if the robot's faults need none.
     past: Vec<VecDeque<StoredSnapshot>>,
     /// The faulty snapshot.
     faulty: StoredSnapshot,
@@ -108,7 +109,7 @@ impl<'a> FaultInjector<'a> {
         Some(self.faulty.snapshot(actual))
     }
 
-    /// True if the controller, without an answer from its monitor, still applies the last override.
+    /// True if the controller still applies the last override without an answer from its monitor.
     pub fn keeps_last_override(&self, robot: RobotId, t_s: f64) -> bool {
         let lost = self.active_fault(robot, t_s);
         lost.is_some_and(|f| matches!(f.kind, InputFaultKind::Lost { timeout_s } if t_s < f.from_s + timeout_s - 1e-9))
@@ -128,7 +129,7 @@ impl<'a> FaultInjector<'a> {
         let oldest_s = self.faults.iter().filter(|f| f.robot == robot).map(needed).fold(actual.now_s, f64::min);
         let past = &mut self.past[robot.0];
         past.push_back(StoredSnapshot::of(actual));
-        // Keep one before the oldest needed one: fault times rarely coincide with ticks.
+        // Keep one snapshot before the oldest needed one: fault times rarely coincide with ticks.
         while past.len() > 1 && past[1].stamp_s <= oldest_s {
             past.pop_front();
         }
@@ -147,7 +148,7 @@ impl StoredSnapshot {
         }
     }
 
-    /// The snapshot with the stored values; clock and sources are those of the monitor.
+    /// The snapshot with the stored values, and with the monitor's clock and sources.
     fn snapshot<'s>(&'s self, actual: &Snapshot<'s>) -> Snapshot<'s> {
         Snapshot {
             stamp_s: self.stamp_s,

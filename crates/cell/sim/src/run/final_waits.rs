@@ -1,5 +1,7 @@
-//! Who waits for whom at the end of a run. It reveals deadlocks that the zone arbiter cannot see: a robot that holds an
-//! exchange region is blocked by a region that the robot waiting for it carries.
+//! Robots that wait for each other at the end of a run.
+//!
+//! This reveals deadlocks that the zone arbiter cannot see: a robot that holds an exchange region is blocked by a
+//! region that the robot waiting for it carries.
 
 use elbowroom_cell::configure::MonitorSetup;
 use elbowroom_cell::{Cell, CellRegionId, Follow};
@@ -9,7 +11,7 @@ use super::outcome::stopped_at;
 use super::simulated_robot::SimulatedRobot;
 use crate::recording::Deadlock;
 
-/// The robots that have stopped before they were finished, and who would have to move first.
+/// The robots that stopped before they were finished, and the robots that would have to move first.
 pub(super) struct FinalWaits<'a> {
     cell: &'a Cell,
     robots: &'a [SimulatedRobot<'a>],
@@ -34,7 +36,7 @@ impl<'a> FinalWaits<'a> {
         Self { cell, robots, stopped_by, graph }
     }
 
-    /// The cycles with a robot that is in no known deadlock.
+    /// Cycles with at least one robot that is in no known deadlock.
     pub fn deadlocks(&self, known: &[Deadlock]) -> Vec<Deadlock> {
         let is_known = |r: RobotSlot| known.iter().any(|d| d.robots.contains(&self.robots[r.0].track.name));
         self.graph.cycles().filter(|cycle| !cycle.iter().all(is_known)).map(|cycle| self.deadlock(cycle)).collect()
@@ -53,7 +55,7 @@ impl<'a> FinalWaits<'a> {
     }
 }
 
-/// The robots that keep this one out of a region: its carrier, its holder, and robots inside.
+/// Robots that keep this robot out of a region: the carrier of the region, its holder, and robots inside it.
 pub(super) fn blockers(
     cell: &Cell,
     setup: &MonitorSetup,

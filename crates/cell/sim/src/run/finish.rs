@@ -1,4 +1,4 @@
-//! The recording of a run, once it has ended.
+//! The recording of a finished run.
 
 use elbowroom_cell::Cell;
 use elbowroom_monitor::ZoneArbiter;
@@ -43,7 +43,7 @@ impl Simulation<'_> {
     }
 }
 
-/// How a run has ended.
+/// State at the end of a run.
 struct Ended<'a> {
     cell: &'a Cell,
     arbiter: Option<&'a ZoneArbiter>,
@@ -54,7 +54,7 @@ struct Ended<'a> {
 }
 
 impl Ended<'_> {
-    /// The recording of a robot, with how it ended.
+    /// The recording of a robot, with how its run ended.
     fn track(&self, robot: SimulatedRobot<'_>) -> RobotTrack {
         let SimulatedRobot { id, setup, mut track, avoiding, guard, hold, governing, .. } = robot;
         track.avoidance = avoiding.map(AvoidingRobot::finish);
@@ -62,7 +62,7 @@ impl Ended<'_> {
             let (holds, ends_held) = hold.finish(self.t_s);
             PerceptionTrack { replans, holds, ends_held }
         });
-        // Collisions within one tick are found in the order of the pairs.
+        // Collisions within one tick are found in the order of the pairs, not of time.
         track.collisions.sort_by(|a, b| a.t_s.total_cmp(&b.t_s));
         let region = track.samples.last().and_then(|s| s.region).map(|r| &*self.cell.regions[r.0].region.name);
         let is_deadlocked = self.deadlocks.iter().any(|d| d.robots.contains(&track.name));

@@ -3,7 +3,7 @@
 use elbowroom_cell::Cell;
 use elbowroom_kinematics::ChainState;
 
-/// Joints that moved less than this (rad, m) count as stationary: the override law approaches a border asymptotically.
+/// Joint motion below which a joint counts as stationary (rad, m): the override law approaches a border asymptotically.
 const STATIONARY: f64 = 1e-5;
 
 /// Detects the end of all motion.
@@ -15,7 +15,7 @@ pub(super) struct IdleDetector {
 }
 
 impl IdleDetector {
-    /// Detects a time without motion of this length (s).
+    /// Creates a detector for periods of this length (s) without motion.
     pub fn new(cell: &Cell, timeout_s: f64) -> Self {
         Self { timeout_s, idle_since_s: 0.0, reference: cell.robots.iter().map(|r| r.start.clone()).collect() }
     }

@@ -1,4 +1,4 @@
-//! What happens in a run: events and times for the recording, and all of it for whoever observes the run.
+//! Events and tick times of a run, for the recording and for the observer of the run.
 
 use elbowroom_cell::Cell;
 use elbowroom_cell::configure::MonitorSetup;
@@ -9,12 +9,12 @@ use elbowroom_spatial::Pose;
 use super::observer::{ObservedInstant, ObservedTick, RunObserver};
 use crate::recording::{EventRow, ObjectTrack, RunEvent};
 
-/// Events of a run, how long the ticks of the monitors took, and who observes it.
+/// Events of a run, durations of the monitors' ticks, and the observer.
 pub(super) struct Journal<'a> {
     cell: &'a Cell,
     pub events: Vec<EventRow>,
     pub tick_ns: Vec<u64>,
-    /// `None` where nobody observes the run.
+    /// `None` if the run has no observer.
     observer: Option<&'a mut dyn RunObserver>,
     /// Number of events that the observer has seen.
     observed_events: usize,
@@ -30,7 +30,7 @@ impl<'a> Journal<'a> {
         self.events.push(EventRow { t_s, robot, region: region.to_owned(), event });
     }
 
-    /// The events of a robot's monitor in its last tick.
+    /// Records the events of a robot's monitor in its last tick.
     pub fn monitor_events(&mut self, t_s: f64, robot: RobotId, monitor: &Monitor, setup: &MonitorSetup) {
         for e in monitor.events() {
             // Switching is reported once, by the switch itself.
@@ -67,7 +67,7 @@ impl<'a> Journal<'a> {
         }
     }
 
-    /// All monitors have ticked that do at this instant.
+    /// Reports an instant to the observer, after all monitors' ticks of this instant.
     pub fn instant(&mut self, t_s: f64, objects: &[ObjectTrack], arbiter: Option<&ZoneArbiter>) {
         let Some(observer) = &mut self.observer else { return };
         observer.instant(&ObservedInstant { t_s, objects, events: &self.events[self.observed_events..], arbiter });

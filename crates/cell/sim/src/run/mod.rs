@@ -1,4 +1,4 @@
-//! Simulation of a cell: programs on one clock, under the monitor.
+//! Simulation of a cell: programs on one clock, under the monitors.
 
 mod avoiding_robot;
 mod carried_parts;
@@ -74,13 +74,16 @@ impl RunOutcome {
 /// override of a tick applies to the motion from this tick to the next.
 ///
 /// # Errors
-/// [`FormatError`] at the line of an infeasible step. Nothing has moved then, except where a part that another robot
-/// moves cannot be gripped.
+/// [`FormatError`] at the line of an infeasible step. The error comes before any motion, except if a part that another
+/// robot moves cannot be gripped.
 pub fn simulate(cell: &Cell, options: &RunOptions) -> Result<RunOutcome, FormatError> {
     simulate_observed(&PlannedPaths::new(cell), options, &mut |_| {}, None)
 }
 
-/// [`simulate`] with paths that may be known, a progress callback, and an observer of the monitors' ticks, such as one that records them.
+/// Like [`simulate`], with paths that may be known already, a progress callback, and an observer of the monitors'
+/// ticks.
+///
+/// The observer can, for example, record the ticks.
 ///
 /// # Errors
 /// As for [`simulate`].
@@ -138,7 +141,9 @@ pub fn simulate_observed(
     Ok(RunOutcome { recording: run.finish(t_s, end), notes })
 }
 
-/// A robot with avoidance or with planned moves around obstacles leaves its program: its claims are not known.
+/// True if the robot keeps to its program, so that its claims are known.
+///
+/// A robot with avoidance, or with planned moves around obstacles that sensors see, may leave its program.
 fn keeps_to_plan(
     cell: &Cell,
     options: &RunOptions,

@@ -1,4 +1,4 @@
-//! What a robot sees of a moving object: late, and with noise.
+//! Observations of a moving object by a robot: delayed and noisy.
 
 use elbowroom_avoidance::ObservedObject;
 use elbowroom_cell::MovingObject;
@@ -6,7 +6,7 @@ use elbowroom_planner::Random;
 use elbowroom_proximity::ccd::{ConstantTwist, RigidMotion};
 use elbowroom_spatial::Vec3;
 
-/// A tracker estimates velocities from positions that are so far apart, s.
+/// Time between the two positions from which a tracker estimates a velocity, s.
 const VELOCITY_WINDOW_S: f64 = 0.5;
 
 /// Noise and delay of observations.
@@ -19,8 +19,10 @@ pub(super) struct ObservationModel {
 }
 
 impl ObservationModel {
-    /// The observation of an object that arrives at `t_s`. Observations have the time at which they were made: the object is
-    /// assumed to have continued its motion since. Noise is the same in every run: it depends on the time and the object.
+    /// The observation of an object that arrives at `t_s`.
+    ///
+    /// It was made `delay_s` earlier; the object is assumed to have continued its motion since. The noise depends on
+    /// the time and the object, so it is the same in every run.
     pub fn observe(&self, object: &MovingObject, t_s: f64, known: bool) -> ObservedObject {
         let seen_s = (t_s - self.delay_s).max(0.0);
         let mut motion = object.motion(seen_s);
@@ -35,7 +37,8 @@ impl ObservationModel {
         ObservedObject { object: object.object, in_world, motion, known }
     }
 
-    /// Error of the position that is seen at a time, m: uniform, with the standard deviation in each coordinate.
+    /// Error of the position that is seen at a time, m: uniform, with `noise_m` as the standard deviation of each
+    /// coordinate.
     fn error(&self, object: &MovingObject, t_s: f64) -> Vec3 {
         let instant = (t_s * 1e6).round() as i64 as u64;
         let mut random = Random::new(instant ^ ((object.object.0 as u64) << 48));

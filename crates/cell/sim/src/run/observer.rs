@@ -1,4 +1,4 @@
-//! Observing a run from outside: what each monitor was given, and what it answered.
+//! Observation of a run from outside: input and output of each monitor.
 
 use elbowroom_cell::CellRobot;
 use elbowroom_monitor::{Monitor, RegionId, Snapshot, TickReport, VolumeId, ZoneArbiter};
@@ -7,21 +7,21 @@ use elbowroom_spatial::Pose;
 
 use crate::recording::{EventRow, ObjectTrack};
 
-/// Sees everything that changes a monitor, in the order in which it happens. It cannot change the run.
+/// Receives everything that changes a monitor, in the order in which it happens. It cannot change the run.
 pub trait RunObserver {
-    /// A region of a robot's monitor was switched.
+    /// Called when a region of a robot's monitor was switched.
     fn switched(&mut self, robot: RobotId, region: RegionId, active: bool);
 
-    /// A volume was attached to a robot.
+    /// Called when a volume was attached to a robot.
     fn attached(&mut self, robot: RobotId, volume: VolumeId, in_link: &Pose);
 
-    /// A volume was detached from a robot.
+    /// Called when a volume was detached from a robot.
     fn detached(&mut self, robot: RobotId, volume: VolumeId);
 
-    /// A monitor has ticked.
+    /// Called after a tick of a monitor.
     fn ticked(&mut self, tick: &ObservedTick<'_>);
 
-    /// All monitors have ticked that do at this instant.
+    /// Called after all monitors' ticks of an instant.
     fn instant(&mut self, instant: &ObservedInstant<'_>);
 }
 
@@ -30,13 +30,13 @@ pub trait RunObserver {
 pub struct ObservedTick<'a> {
     /// The robot.
     pub robot: RobotId,
-    /// What the monitor was given.
+    /// Input of the monitor.
     pub snapshot: &'a Snapshot<'a>,
-    /// What it answered.
+    /// Output of the monitor.
     pub report: &'a TickReport,
     /// The monitor after the tick.
     pub monitor: &'a Monitor,
-    /// The robot with the tool that it has at present.
+    /// The robot with its present tool.
     pub present: &'a CellRobot,
 }
 
@@ -45,9 +45,9 @@ pub struct ObservedTick<'a> {
 pub struct ObservedInstant<'a> {
     /// Time since the start, s.
     pub t_s: f64,
-    /// The objects that move, each with its pose now as the last one.
+    /// The objects that move; the last pose of each is the present one.
     pub objects: &'a [ObjectTrack],
-    /// What has happened since the instant before.
+    /// Events since the previous instant.
     pub events: &'a [EventRow],
     /// The arbiter of the exchange regions.
     pub arbiter: Option<&'a ZoneArbiter>,

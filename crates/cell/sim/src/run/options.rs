@@ -1,4 +1,4 @@
-//! Options of a run, and how far it is.
+//! Options and progress of a run.
 
 use elbowroom_robot::RobotId;
 
@@ -7,20 +7,20 @@ use super::fault_injection::InputFault;
 /// Options of a simulation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunOptions {
-    /// False: the override of the monitor is computed but not applied (`--no-monitor`).
+    /// Whether the override of the monitor is applied (`--no-monitor`: only computed).
     pub apply_override: bool,
-    /// False: robots with `[avoidance]` follow their programs (`--no-avoidance`).
+    /// Whether robots with `[avoidance]` evade (`--no-avoidance`: they follow their programs).
     pub avoidance: bool,
-    /// Number of repetitions of the programs, times their own `repeat`.
+    /// Number of repetitions of the programs, multiplied by their own `repeat`.
     pub repeat: u32,
     /// Fault injection: robots that become silent and stop.
     pub silent_from: Vec<SilentFrom>,
-    /// Fault injection: faulty inputs of the robots' monitors. Where two faults of one robot overlap, the first one in
+    /// Fault injection: faulty inputs of the robots' monitors. If two faults of one robot overlap, the first one in
     /// this list applies.
     pub faults: Vec<InputFault>,
 }
 
-/// A robot that is silent and stopped from a time on.
+/// A robot that is silent and stopped after a given time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SilentFrom {
     /// The robot.

@@ -4,11 +4,13 @@ use elbowroom_monitor::{Configuration, OverrideReason, VirtualTcp, VolumeId};
 
 use crate::recording::{Outcome, PartKind, RobotEnding, RobotTrack};
 
-/// Joints that differ by less than this (rad, m) from their final values have reached them.
+/// Joint difference to the final value below which a joint has reached it (rad, m).
 const SETTLED: f64 = 1e-5;
 
-/// Outcome of a robot with the recording `track`; `governing` is the point with the smallest requested override of the
-/// last tick, `region` the name of the governing region.
+/// Outcome of a robot with the recording `track`.
+///
+/// `governing` is the point with the smallest requested override of the last tick, `region` the name of the governing
+/// region.
 pub(super) fn ending(
     track: &RobotTrack,
     deadlocked: bool,
@@ -56,12 +58,12 @@ pub(super) fn ending(
     }
 }
 
-/// The name of a guarded volume: that of a link, or `tool`, `load`, `tcp`.
+/// Name of a guarded volume: the name of a link, or `tool`, `load`, `tcp`.
 pub(super) fn part_name(configuration: &Configuration, volume: VolumeId) -> Option<String> {
     configuration.volumes().get(volume.0).map(|v| v.name.clone())
 }
 
-/// Since when the robot is at its final configuration, s; `None` if it was still moving.
+/// Time at which the robot stopped at its final configuration, s; `None` if it was still moving.
 pub(super) fn stopped_at(track: &RobotTrack) -> Option<f64> {
     let last = track.samples.last()?;
     let is_elsewhere = |q: &[f64]| q.iter().zip(&last.q).any(|(a, b)| (a - b).abs() > SETTLED);

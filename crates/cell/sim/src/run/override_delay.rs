@@ -1,4 +1,4 @@
-//! Reaction time of controllers: an override takes effect with this delay.
+//! Reaction time of controllers, after which an override takes effect.
 
 use std::collections::VecDeque;
 
@@ -7,7 +7,7 @@ use crate::motion::ProgramClock;
 /// An override that was sent.
 #[derive(Debug, Clone, Copy)]
 struct PendingOverride {
-    /// When it takes effect, s.
+    /// Time at which it takes effect, s.
     from_s: f64,
     speed_override: f64,
 }

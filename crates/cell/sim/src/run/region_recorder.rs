@@ -10,19 +10,19 @@ use elbowroom_spatial::Pose;
 use super::simulated_robot::SimulatedRobot;
 use crate::recording::{RegionPoses, RegionTrack, Span};
 
-/// Distances are measured up to this (m) beyond the needed limit, so that the next measurements can be skipped.
+/// Margin (m) beyond the needed limit in distance measurements, so that the next measurements can be skipped.
 const MARGIN_M: f64 = 0.1;
-/// Between ticks, a region counts as passed through where it is penetrated by more than this, m.
+/// Penetration between ticks above which a region counts as passed through, m.
 const RESOLUTION_M: f64 = 1e-6;
 
 pub(super) struct RegionRecorder<'a> {
     cell: &'a Cell,
     setups: &'a [MonitorSetup],
     tracks: Vec<RegionTrack>,
-    /// Per robot its sweep from the last tick: the true one, not that of the monitor's input.
+    /// Per robot its true sweep since the last tick, not the sweep of the monitor's input.
     sweeps: Vec<RegionSweep>,
     observers: Vec<RegionObserver>,
-    /// Per region of the current tick: true if any robot is in its warning zone.
+    /// Per region whether any robot is in its warning zone in the current tick.
     warned: Vec<bool>,
     /// Time of the last tick, s.
     before_s: f64,
@@ -33,9 +33,9 @@ struct RegionObserver {
     robot: RobotId,
     local: RegionId,
     region: CellRegionId,
-    /// The last measured distance; `None` if there is none.
+    /// The last measured distance; `None` before the first measurement.
     measured: Option<MeasuredDistance>,
-    /// A proven distance at the last tick, m; `None` if the region was inactive or there was no tick.
+    /// A proven distance at the last tick, m; `None` if the region was inactive or at the first tick.
     before_m: Option<f64>,
     warned_since: Option<f64>,
     inside_since: Option<f64>,
@@ -52,10 +52,10 @@ struct MeasuredDistance {
 /// Distances at one tick and since the last one.
 #[derive(Default)]
 struct TickDistances {
-    /// Distance at the tick, where it could matter, m.
+    /// Distance at the tick, if it could matter, m.
     distance_m: Option<f64>,
-    /// Smallest distance since the last tick, where the robot passed through the region or its warning zone and is in
-    /// it at neither tick, m.
+    /// Smallest distance since the last tick, m, if the robot passed through the region or its warning zone and is in
+    /// it at neither tick.
     passed_m: Option<f64>,
 }
 
@@ -81,7 +81,7 @@ impl<'a> RegionRecorder<'a> {
         Self { cell, setups, tracks, sweeps, observers, warned: vec![false; cell.regions.len()], before_s: 0.0 }
     }
 
-    /// Switches a region; false if it had this state already.
+    /// Switches a region. Returns false if it had this state already.
     pub fn switch(&mut self, region: CellRegionId, t_s: f64, active: bool) -> bool {
         let list = &mut self.tracks[region.0].active;
         if list.last().is_some_and(|last| last.1 == active) {
@@ -105,12 +105,12 @@ impl<'a> RegionRecorder<'a> {
         self.sweeps[robot].detach(&self.setups[robot].configuration, volume)
     }
 
-    /// Measured distances are those of the volumes that were attached.
+    /// Discards the measured distances, which apply to the volumes attached so far.
     fn forget(&mut self, robot: usize) {
         self.observers.iter_mut().filter(|o| o.robot.0 == robot).for_each(|o| o.measured = None);
     }
 
-    /// Observes one tick and the motion to it, after the monitors' ticks.
+    /// Observes one tick and the motion since the last one, after the monitors' ticks.
     pub fn observe(&mut self, t_s: f64, robots: &[SimulatedRobot<'_>], states: &[ChainState], frames: &Frames<'_>) {
         for (r, track) in self.cell.regions.iter().zip(&mut self.tracks) {
             if let (RegionPoses::Moving(poses), Some(follow)) = (&mut track.poses, &r.follow) {
@@ -143,7 +143,8 @@ impl<'a> RegionRecorder<'a> {
             let exchange = matches!(region.region.kind, RegionKind::Exchange { .. });
             track.entered |= (inside || passed) && !(exchange && robots[robot].monitor.holds(observer.local));
             self.warned[observer.region.0] |= warned || distances.passed_m.is_some();
-            // A region that was passed through was occupied for a part of the tick; the recording has the whole tick.
+            // A region that was passed through was occupied for part of the tick; the recording contains the whole
+            // tick.
             let tick_span = Span { robot: observer.robot, from_s: before_s, to_s: t_s };
             if distances.passed_m.is_some() && !warned && observer.warned_since.is_none() {
                 track.warning_spans.push(tick_span);
@@ -170,7 +171,7 @@ impl<'a> RegionRecorder<'a> {
 }
 
 impl RegionObserver {
-    /// Measures the distance where it could be below the smallest one so far or within the warning zone, and detects a
+    /// Measures the distance if it could be below the smallest one so far or within the warning zone, and detects a
     /// passage since the last tick.
     fn measure(
         &mut self,

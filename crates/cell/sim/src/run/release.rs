@@ -1,4 +1,4 @@
-//! What would let a stopped robot continue.
+//! Conditions under which a stopped robot would continue.
 
 use elbowroom_cell::configure::MonitorSetup;
 use elbowroom_cell::{Cell, CellRegionId, Follow};
@@ -7,8 +7,10 @@ use elbowroom_monitor::{Life, OverrideReason, ZoneArbiter};
 use super::final_waits::blockers;
 use crate::recording::{HoldReason, Outcome, RobotTrack};
 
-/// What would release the robot with this index, in words; `None` for one that moves, or where nothing is known to. `finished`
-/// says which robots' programs are over.
+/// Condition under which the robot with this index would continue, in words; `None` for a moving robot, or if none is
+/// known.
+///
+/// `finished` states per robot whether its program is over.
 pub(super) fn release(
     cell: &Cell,
     setup: &MonitorSetup,
@@ -32,7 +34,7 @@ pub(super) fn release(
         Outcome::Stopped => match (last.region, last.reason) {
             (Some(region), _) => Some(from_region(cell, setup, region)),
             (None, OverrideReason::Fault(_)) => Some("the input of the monitor is valid again".to_owned()),
-            // Avoidance stopped it.
+            // The obstacle that avoidance stopped for.
             _ => track.ending.by.as_ref().map(|obstacle| format!("{obstacle} moves away")),
         },
     }

@@ -1,11 +1,11 @@
-//! Why a run ends.
+//! Detection of the end of a run, and its reason.
 
 use super::simulated_robot::SimulatedRobot;
 use super::simulation::Simulation;
 use crate::recording::RunEnd;
 
 impl Simulation<'_> {
-    /// Why the run ends now; `None` if it goes on.
+    /// Reason why the run ends now; `None` if it continues.
     pub(super) fn end(&mut self, t_s: f64) -> Option<RunEnd> {
         let present = || self.robots.iter().filter(|robot| !self.options.is_silent(robot.id, t_s));
         if present().all(SimulatedRobot::is_finished) {
@@ -14,7 +14,7 @@ impl Simulation<'_> {
         if t_s >= self.cell.max_s {
             return Some(RunEnd::TimeLimit);
         }
-        // A robot that is held may go on after the next picture, or when its search ends.
+        // A robot that is held may continue after the next picture, or when its search ends.
         let waiting = present().any(|robot| robot.clock.waiting() && robot.is_on_path()) || self.expects_news();
         let ends_here = |robot| self.is_held_for_good(robot, t_s);
         let can_continue = waiting
@@ -24,7 +24,7 @@ impl Simulation<'_> {
         self.ends.end(t_s, &self.states, moves, can_continue)
     }
 
-    /// True if the monitor has stopped a robot, and not at a region that moves on by itself.
+    /// True if the monitor has stopped a robot, unless at a region that moves on by itself.
     fn is_held_for_good(&self, robot: &SimulatedRobot<'_>, t_s: f64) -> bool {
         let region = robot.track.samples.last().and_then(|s| s.region);
         let follow = region.and_then(|r| self.cell.regions[r.0].follow);

@@ -1,4 +1,4 @@
-//! Robots keep clear of what sensors see: pictures are taken in, paths checked, searches begun and ended, tick by tick.
+//! Per-tick processing of what sensors see: pictures are loaded, paths checked, searches started and ended.
 
 use std::time::Instant;
 
@@ -10,7 +10,7 @@ use crate::recording::{HoldReason, RunEvent};
 use crate::replanning::{ClosedRegions, PathGuard, PerceivedObstacles};
 
 impl Simulation<'_> {
-    /// Takes in the pictures that are due; guarded robots replan, or are held.
+    /// Loads the pictures that are due. Guarded robots replan or are held.
     pub(super) fn perceive(&mut self, t_s: f64) {
         let Some(mut perceived) = self.perceived.take() else { return };
         self.end_path_searches(t_s);
@@ -27,13 +27,13 @@ impl Simulation<'_> {
         self.perceived = Some(perceived);
     }
 
-    /// Whether pictures are still to come, or a search is under way.
+    /// Whether pictures remain, or a search is running.
     pub(super) fn expects_news(&self) -> bool {
         let is_searching = |robot: &SimulatedRobot<'_>| robot.guard.as_ref().is_some_and(PathGuard::is_searching);
         self.perceived.as_ref().is_some_and(PerceivedObstacles::has_more) || self.robots.iter().any(is_searching)
     }
 
-    /// Robots whose search for another path has taken its time go on along that path.
+    /// Ends the searches whose time is over. Robots with a new path continue along it.
     fn end_path_searches(&mut self, t_s: f64) {
         let Self { options, robots, states, frames, contacts, journal, .. } = self;
         for robot in robots.iter_mut().filter(|robot| !options.is_silent(robot.id, t_s)) {
@@ -50,7 +50,7 @@ impl Simulation<'_> {
         }
     }
 
-    /// Checks the path of a robot, and holds it, so that it keeps clear of what sensors see.
+    /// Checks the path of a robot, and holds the robot if it must brake for an obstacle or a stale sensor.
     fn keep_clear(&mut self, i: usize, perceived: &PerceivedObstacles<'_>, has_news: bool, t_s: f64) {
         let Self { cell, robots, states, frames, contacts, journal, .. } = self;
         let SimulatedRobot { id, setup, monitor, clock, guard: Some(guard), hold, .. } = &mut robots[i] else { return };
@@ -71,7 +71,7 @@ impl Simulation<'_> {
         }
     }
 
-    /// The joint values of all robots at a time up to now: from the last tick before it.
+    /// The joint values of all robots at a time up to now, from the last tick at or before it.
     fn joint_values_at(&self, t_s: f64) -> Vec<Vec<f64>> {
         let of_robot = |(robot, state): (&SimulatedRobot<'_>, &ChainState)| {
             let samples = &robot.track.samples;

@@ -20,14 +20,14 @@ use crate::motion::ProgramClock;
 use crate::recording::{GoverningPoint, RobotEnding, RobotTrack, Sample, Stop};
 use crate::replanning::{PathGuard, ProgramHold};
 
-/// A robot with its program, its monitor, what keeps it clear of obstacles, and its recording.
+/// A robot with its program, its monitor, its avoidance or guard, and its recording.
 pub(super) struct SimulatedRobot<'a> {
     pub id: RobotId,
     pub setup: &'a MonitorSetup,
     pub monitor: Monitor,
     /// Its program.
     pub clock: ProgramClock,
-    /// The claims of its program; `None` for one that declares none.
+    /// The claims of its program; `None` if the program declares none.
     pub claims: Option<ZoneClaims>,
     /// `None` without avoidance.
     pub avoiding: Option<AvoidingRobot<'a>>,
@@ -35,7 +35,7 @@ pub(super) struct SimulatedRobot<'a> {
     pub guard: Option<PathGuard<'a>>,
     /// Whether an obstacle or a sensor holds it in this tick.
     pub hold: ProgramHold,
-    /// With its tools as they are now.
+    /// The robot with its present tools.
     pub present: CellRobot,
     /// The point with the smallest requested override in the last tick.
     pub governing: Option<VirtualTcp>,
@@ -48,7 +48,7 @@ pub(super) struct SimulatedRobot<'a> {
     scratch: ChainState,
 }
 
-/// What governs a robot in a tick: the reason, and the region and the point if it is one.
+/// Reason of a robot's override in a tick, with the region and the point if a region is the reason.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Governed {
     pub region: Option<CellRegionId>,
@@ -57,12 +57,12 @@ pub(super) struct Governed {
 }
 
 impl Governed {
-    /// By nothing but the lack of an input.
+    /// The lack of an input only.
     pub const STALE: Self = Self { region: None, point: None, reason: OverrideReason::Fault(Fault::Stale) };
 }
 
 impl<'a> SimulatedRobot<'a> {
-    /// Without avoidance and guards.
+    /// Creates a robot without avoidance and guard.
     pub fn new(
         cell: &Cell,
         id: RobotId,
@@ -91,7 +91,7 @@ impl<'a> SimulatedRobot<'a> {
         }
     }
 
-    /// Whether it moves by the time of its program.
+    /// Whether the robot is on its programmed path.
     pub fn is_on_path(&self) -> bool {
         self.avoiding.as_ref().is_none_or(AvoidingRobot::is_on_path)
     }
@@ -101,7 +101,7 @@ impl<'a> SimulatedRobot<'a> {
         self.clock.finished() && self.is_on_path()
     }
 
-    /// Writes where it is and how it moves. A silent robot is assumed to be stationary.
+    /// Writes position and motion. A silent robot is assumed to be stationary.
     pub fn write_state(&self, cell: &Cell, is_silent: bool, state: &mut ChainState) {
         let scale = if is_silent { 0.0 } else { 1.0 };
         state.q.copy_from_slice(&self.clock.point().q);
@@ -114,13 +114,14 @@ impl<'a> SimulatedRobot<'a> {
         cell.robots[self.id.0].robot.chain.forward_motion(state);
     }
 
-    /// The override that its program asks for. A robot that is held is not commanded to move: its constant joint values are no
-    /// frozen reading.
+    /// The override that its program requests; 0 while the robot is held.
+    ///
+    /// A held robot is not commanded to move, so its constant joint values are not a frozen reading.
     pub fn programmed_override(&self) -> f64 {
         if self.hold.reason().is_some() { 0.0 } else { self.clock.programmed_override() }
     }
 
-    /// One tick of its monitor, with this state and these sources; `None` if a fault withholds the input.
+    /// Runs one tick of its monitor, with this state and these sources; `None` if a fault withholds the input.
     pub fn tick_monitor(
         &mut self,
         t_s: f64,
@@ -148,7 +149,7 @@ impl<'a> SimulatedRobot<'a> {
         Some(report)
     }
 
-    /// Its monitor's tick before the first one: it only publishes where the robot is.
+    /// Runs its monitor's tick before the first one, which only publishes the robot's position.
     pub fn publish_occupancy(
         &mut self,
         before_s: f64,
@@ -176,7 +177,7 @@ impl<'a> SimulatedRobot<'a> {
     /// Records a tick.
     pub fn record(&mut self, cell: &Cell, t_s: f64, state: &ChainState, governed: &Governed) {
         let (tcp, tcp_speed) = self.present.tcp(state);
-        // Off its path a robot does not move by its program's time.
+        // A robot off its path does not move by the time of its program.
         let rate = if self.is_on_path() { self.clock.rate() } else { 1.0 };
         if let Some(avoiding) = &mut self.avoiding {
             avoiding.record();
@@ -204,7 +205,8 @@ impl<'a> SimulatedRobot<'a> {
         });
     }
 
-    /// Records that a stop begins at the region or obstacle with this name (empty: at none), or that the present one ends.
+    /// Records the start of a stop at the region or obstacle with this name (empty for none), or the end of the present
+    /// stop.
     pub fn record_stop(&mut self, t_s: f64, by: &str, point: Option<VirtualTcp>, begins: bool) {
         let stops = &mut self.track.stops;
         if !begins {
@@ -241,7 +243,7 @@ fn new_track(robot: &CellRobot, setup: &MonitorSetup) -> RobotTrack {
     }
 }
 
-/// The links of the tools that are not mounted; `None` if no tool is changed.
+/// Links of the tools that are not mounted; `None` if all tools are mounted.
 pub(super) fn absent_links(robot: &CellRobot) -> Option<Vec<LinkId>> {
     let absent: Vec<LinkId> = robot.tools.iter().filter(|t| !t.mounted).map(|t| t.link).collect();
     (!absent.is_empty()).then_some(absent)

@@ -1,4 +1,4 @@
-//! The state of a run, and what happens in each of its ticks.
+//! The state of a run, and its tick.
 
 use std::sync::Arc;
 
@@ -20,33 +20,33 @@ use crate::motion::RegionSwitch;
 use crate::recording::{RunEnd, RunEvent};
 use crate::replanning::PerceivedObstacles;
 
-/// A run: robots on one clock, and what is around them.
+/// A run: robots on one clock, and their surroundings.
 pub(super) struct Simulation<'a> {
     pub cell: &'a Cell,
     pub options: &'a RunOptions,
     pub robots: Vec<SimulatedRobot<'a>>,
-    /// Per robot where it is and how it moves.
+    /// Position and motion of each robot.
     pub states: Vec<ChainState>,
     /// Arbiter of the exchange regions.
     pub arbiter: Option<Arc<ZoneArbiter>>,
     pub deadlocks: DeadlockDetector,
-    /// What sensors see; `None` only while it is taken in.
+    /// Observations of the sensors; `None` only while they are updated.
     pub perceived: Option<PerceivedObstacles<'a>>,
     pub frames: Frames<'a>,
     pub fault_injector: FaultInjector<'a>,
     pub regions: RegionRecorder<'a>,
     pub contacts: ContactRecorder<'a>,
-    /// Robots and their volumes that were released at this instant.
+    /// Volumes that were released at this instant, each with its robot.
     pub released: Vec<(usize, VolumeId)>,
     pub ends: EndDetector,
     pub journal: Journal<'a>,
 }
 
 impl Simulation<'_> {
-    /// Runs to the end: when, and why it ends.
+    /// Runs to the end. Returns the time (s) and the reason of the end.
     ///
     /// # Errors
-    /// [`FormatError`] if a part cannot be gripped or a volume not attached.
+    /// [`FormatError`] if a part cannot be gripped, or a volume cannot be attached.
     pub fn run(&mut self, progress: &mut dyn FnMut(RunProgress)) -> Result<(f64, RunEnd), FormatError> {
         self.publish_initial_occupancy();
         let mut tick = 0_u64;
@@ -65,8 +65,9 @@ impl Simulation<'_> {
         }
     }
 
-    /// Publishes the occupancy of every robot before the first tick of a cell with exchange regions: a robot that
-    /// starts inside would otherwise wait for robots without a status, and count as having entered.
+    /// Publishes the occupancy of every robot before the first tick of a cell with exchange regions.
+    ///
+    /// A robot that starts inside would otherwise wait for robots without a status, and count as having entered.
     fn publish_initial_occupancy(&mut self) {
         if !self.cell.regions.iter().any(|r| matches!(r.region.kind, RegionKind::Exchange { .. })) {
             return;
@@ -87,7 +88,7 @@ impl Simulation<'_> {
         self.perceive(t_s);
         self.declare_claims();
         self.contacts.check(t_s, &mut self.robots, &self.states);
-        // Before the monitors' ticks: these decide how fast the robot moves with what it grips.
+        // Before the monitors' ticks, which decide how fast the robot moves with what it grips.
         self.apply_tools(t_s)?;
         self.apply_grips(t_s)?;
         for i in 0..self.robots.len() {
@@ -135,7 +136,7 @@ impl Simulation<'_> {
         }
     }
 
-    /// The tick of a robot's monitor, applied and recorded.
+    /// Runs the tick of a robot's monitor, applies and records it.
     fn tick_robot(&mut self, i: usize, t_s: f64) {
         let Self { cell, options, robots, states, frames, fault_injector, journal, .. } = self;
         let (robot, state) = (&mut robots[i], &states[i]);
@@ -154,11 +155,11 @@ impl Simulation<'_> {
         robot.applied = if options.apply_override { report.speed_override.min(programmed) } else { programmed };
         robot.governing = report.governing;
         journal.monitor_events(t_s, robot.id, &robot.monitor, robot.setup);
-        // A region governs where it makes the robot slower than programmed.
+        // A region governs if it makes the robot slower than programmed.
         let is_governed = options.apply_override && robot.hold.reason().is_none();
         let regions = &robot.setup.regions;
         let region = is_governed.then(|| report.reason.region()).flatten().map(|r| regions[r.0]);
-        // The monitor counts its own regions, a recording those of the cell.
+        // A monitor numbers its own regions, a recording the regions of the cell.
         let in_cell = |r: RegionId| RegionId(regions[r.0].0);
         let reason = if is_governed { report.reason.with_region(in_cell) } else { OverrideReason::Free };
         let point = region.and(report.governing);

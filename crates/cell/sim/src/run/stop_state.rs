@@ -3,9 +3,9 @@
 use crate::motion::ProgramClock;
 use crate::recording::RunEvent;
 
-/// Below this rate a program counts as stopped.
+/// Rate below which a program counts as stopped.
 const STOPPED: f64 = 1e-3;
-/// Above this rate it counts as moving again.
+/// Rate above which it counts as moving again.
 const RESUMED: f64 = 1e-2;
 
 /// Whether the monitor has stopped one robot.
@@ -15,7 +15,7 @@ pub(super) struct StopState {
 }
 
 impl StopState {
-    /// `Stop` or `Resume`, where that happens now.
+    /// Updates the state. Returns `Stop` or `Resume` if the state changes.
     pub fn update(&mut self, clock: &ProgramClock, applied: f64) -> Option<RunEvent> {
         let held = clock.moving() && clock.programmed_override() > 0.0;
         if !self.stopped && held && clock.rate() < STOPPED && applied < STOPPED {

@@ -1,5 +1,7 @@
-//! Claims of exchange regions: the regions that a program occupies without leaving all of them in between. They are
-//! computed before the run and declared to the zone arbiter during it, so that it grants in an order without deadlocks.
+//! Claims of exchange regions: the regions that a program occupies without leaving all of them in between.
+//!
+//! Claims are computed before the run and declared to the zone arbiter during it, so that it grants in an order without
+//! deadlocks.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -17,12 +19,12 @@ use crate::motion::{HeldObjects, PlanStep, ProgramClock, ProgramPlan, Segment};
 
 /// Sampling step of programs, s of program time.
 const STEP_S: f64 = 0.01;
-/// Most samples of a move; the motion between samples is added to the distances.
+/// Largest number of samples of a move. The motion between samples is added to the distances.
 const MAX_STEPS: f64 = 20_000.0;
-/// Added to warning zones and their hysteresis, m: rounding must not make a zone smaller than the monitor's.
+/// Margin added to warning zones and their hysteresis, m: rounding must not make a zone smaller than the monitor's.
 const MARGIN_M: f64 = 1e-3;
 
-/// The slots that the robot occupies from `from_s` (s, at override 1) on, one bit each.
+/// The slots that the robot occupies from `from_s` (s, at override 1) on, one bit per slot.
 #[derive(Debug, Clone, Copy)]
 struct Occupation {
     from_s: f64,
@@ -50,8 +52,10 @@ pub(super) struct ZoneClaims {
 }
 
 impl ZoneClaims {
-    /// The claims of a plan; `None` where fewer than two slots exist, regions move, or where an object will be in the hand is not
-    /// known in advance.
+    /// Computes the claims of a plan.
+    ///
+    /// `None` for fewer than 2 or more than 63 slots, if exchange regions move, or if it is not known in advance where
+    /// an object will be in the hand.
     pub fn of_plan(
         cell: &Cell,
         robot: RobotId,
@@ -134,8 +138,9 @@ fn at(step: &PlanStep, t: f64) -> Vec<f64> {
     }
 }
 
-/// Turns occupied slots into claims: at each stage, all slots that are occupied until the next stage without any. A
-/// stage without occupied slots has the claims of the next occupied interval, which are so declared in advance.
+/// Turns occupied slots into claims: each stage claims all slots that are occupied until the next stage without any.
+///
+/// A stage without occupied slots gets the claims of the next occupied interval, which are thus declared in advance.
 fn claims_of(mut stages: Vec<ClaimStage>) -> Vec<ClaimStage> {
     let (mut claims, mut is_interval_end) = (0, true);
     for stage in stages.iter_mut().rev() {
@@ -151,14 +156,14 @@ fn claims_of(mut stages: Vec<ClaimStage>) -> Vec<ClaimStage> {
     stages
 }
 
-/// Occupations of a move; they are computed once for a move that occurs several times.
+/// Occupations of a move, computed once for a move that occurs several times.
 struct EvaluatedMove {
     /// Identity of the move.
     key: *const (),
     /// Slots at its start.
     before: u64,
     held: HeldObjects,
-    /// Per tool of the robot whether it is mounted.
+    /// Whether each tool of the robot is mounted.
     mounted: Vec<bool>,
     occupations: Vec<Occupation>,
     /// Slots at its end.
@@ -179,7 +184,7 @@ struct ZoneTester<'a> {
     /// The guarded volumes, with the objects that the robot holds.
     volumes: Vec<Volume>,
     state: ChainState,
-    /// Index of a joint, and its motion bound.
+    /// Index and motion bound of each joint that moves a volume.
     motion_bounds: Vec<(usize, f64)>,
     /// The exchange regions at their poses.
     regions: Vec<PlacedRegion<'a>>,
@@ -210,8 +215,9 @@ impl<'a> ZoneTester<'a> {
         self.volumes = volumes;
     }
 
-    /// Occupations over a motion of this duration that begins with `slots`, and the slots at its end. A robot occupies
-    /// a slot from entering its zone until it can stop before the region.
+    /// Occupations over a motion of this duration that starts with `slots`, and the slots at its end.
+    ///
+    /// A robot occupies a slot from entering its zone until it can stop before the region.
     fn occupations(&mut self, duration: f64, mut slots: u64, q: &dyn Fn(f64) -> Vec<f64>) -> (Vec<Occupation>, u64) {
         let steps = (duration / STEP_S).ceil().clamp(1.0, MAX_STEPS);
         let time = |i: usize| duration * i as f64 / steps;
@@ -231,8 +237,8 @@ impl<'a> ZoneTester<'a> {
         (occupations, end)
     }
 
-    /// Upper bound of the distance (m) to a stop from these joint speeds (rad/s, m/s; none: at rest) at override 1, by
-    /// the assumptions of the stopping law. 0 if the law is off.
+    /// Upper bound of the distance (m) to a stop from these joint speeds (rad/s, m/s; empty: at rest) at override 1,
+    /// under the assumptions of the stopping law; 0 if the law is off.
     fn stopping_distance_m(&self, speed: &[f64]) -> f64 {
         let Some(law) = &self.setup.configuration.laws().stopping_distance else { return 0.0 };
         // Twice the time until braking begins: the law keeps the same reserve.
@@ -247,7 +253,7 @@ impl<'a> ZoneTester<'a> {
         self.motion_bounds.iter().map(|(j, bound)| bound * distance(*j)).sum()
     }
 
-    /// Those of the given slots that have a region within `reach_m` of the robot.
+    /// The given slots that have a region within `reach_m` of the robot.
     fn kept_slots(&mut self, slots: u64, q: &[f64], reach_m: f64) -> u64 {
         if slots == 0 { 0 } else { slots & self.slots_within(q, |region| reach_m.max(zone_m(region))) }
     }
@@ -295,7 +301,7 @@ mod tests {
         let slots = [0, a, a | b, b, 0, b, 0].into_iter().enumerate();
         let stages = slots.map(|(step, slots)| ClaimStage { step, from_s: 0.0, slots }).collect();
         let rest: Vec<(usize, u64)> = claims_of(stages).iter().map(|s| (s.step, s.slots)).collect();
-        // Before each occupied interval and within it, the claims that remain; after the last one, none.
+        // Before and within each occupied interval, the remaining claims; after the last one, none.
         assert_eq!(rest, [(0, a | b), (3, b), (6, 0)]);
     }
 }

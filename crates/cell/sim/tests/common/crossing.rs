@@ -1,4 +1,4 @@
-//! Random paths of an obstacle through the workspace of an arm, the same on every machine.
+//! Random paths of an obstacle through the workspace of an arm, equal on every machine.
 
 use std::f64::consts::PI;
 
@@ -16,7 +16,7 @@ const PEDESTAL_M: f64 = 1.0;
 /// Smallest initial distance of the obstacle to the robot, m.
 const MIN_START_DISTANCE_M: f64 = 0.8;
 
-/// So many paths, for a program that takes so many seconds without an obstacle.
+/// This number of paths, for a program that takes this many seconds without an obstacle.
 pub fn paths(
     cell: &Cell,
     object: ObjectId,
