@@ -30,11 +30,11 @@ use crate::{
 const MIN_OVERRIDE: f64 = 1e-6;
 /// Fraction of the desired velocity below which the robot makes no progress.
 const MIN_PROGRESS: f64 = 0.15;
-/// Path deviation below which the robot need not move, in seconds of joint motion.
+/// Path deviation up to which the robot counts as arrived, in seconds of joint motion.
 const ARRIVED_S: f64 = 2e-3;
 /// Fraction of the top speed below which the robot is stationary.
 const STATIONARY_FRACTION: f64 = 5e-3;
-/// Largest distance from the start of a detour at which a stationary robot begins it, in seconds of joint motion.
+/// Largest distance from the start of a detour at which a stationary robot starts it, in seconds of joint motion.
 const MAX_DETOUR_DRIFT_S: f64 = 1e-3;
 /// Time constant of the return to the path shortly after a correction, s: a faster return would work against the evasion.
 const GENTLE_RETURN_S: f64 = 0.15;
@@ -42,14 +42,14 @@ const GENTLE_RETURN_S: f64 = 0.15;
 const MIN_CORRECTION: f64 = 0.02;
 /// Speed below which an obstacle is stationary, m/s.
 const STATIONARY_OBSTACLE_M_S: f64 = 0.01;
-/// Fixed obstacles are found within this many times the distance in which they limit an evasion (its speed times the time
-/// constant of the controller): a reserve for the next ticks.
+/// Range within which fixed obstacles are found, as a multiple of the distance at which they limit an evasion (evasion
+/// speed times the time constant of the controller): the excess is a reserve for the next ticks.
 const FIXED_RANGE_FACTOR: f64 = 1.5;
 
-/// Keeps one robot of a scene clear of dynamic obstacles, and returns it to its path.
+/// Makes one robot of a scene avoid dynamic obstacles and return to its path.
 ///
-/// The path belongs to the caller: in each tick the reference is the next point of the path, advanced at the rate of the
-/// last output. Where no obstacle is near the command equals the reference.
+/// The path belongs to the caller: in each tick the reference is the next point of the path, advanced at the rate of
+/// the last output. If no obstacle is near, the command equals the reference.
 #[derive(Debug)]
 pub struct Avoider<'s> {
     query: ProximityQuery<'s>,
@@ -65,10 +65,10 @@ pub struct Avoider<'s> {
     machine: StateMachine,
 }
 
-/// A detour that is planned, and not yet followed.
+/// A detour that is planned but not yet followed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlannedDetour {
-    /// Where it begins, rad or m.
+    /// Start of the detour, rad or m.
     start_q: Vec<f64>,
     waypoints: Vec<Vec<f64>>,
 }
@@ -87,21 +87,21 @@ struct Workspace {
 /// A correction of the desired velocity.
 struct Correction {
     reaction: Reaction,
-    /// Fraction of the desired velocity that is left.
+    /// Remaining fraction of the desired velocity.
     progress: f64,
-    /// The next command is exactly the reference.
+    /// Whether the next command is exactly the reference.
     is_reference: bool,
-    /// A stop after it hits nothing that is fixed, and nothing known that moves.
+    /// Whether a stop after the correction hits nothing fixed and no known moving obstacle.
     can_stop: bool,
-    /// It was replaced by braking.
+    /// Whether the correction was replaced by braking.
     is_braked: bool,
 }
 
 impl<'s> Avoider<'s> {
-    /// For a robot of a scene at rest at `q`. `limits` has one entry per independent joint.
+    /// Creates an avoider for a robot of a scene, at rest at `q`. `limits` has one entry per independent joint.
     ///
     /// # Errors
-    /// No such robot, invalid joint values, invalid limits, or a wrong number of them.
+    /// The robot does not exist, joint values or limits are invalid, or their number is wrong.
     pub fn new(
         scene: &'s Scene,
         robot: RobotId,
@@ -149,20 +149,20 @@ impl<'s> Avoider<'s> {
         })
     }
 
-    /// Attaches an object of the scene to a link of this robot or of another one: it is kept clear of obstacles as the link is,
-    /// in detours too. Do not list it among the observed objects until it is detached.
+    /// Attaches an object of the scene to a link of this or another robot. The object then avoids obstacles like the
+    /// link, also in detours. Do not list it among the observed objects until it is detached.
     ///
     /// # Errors
-    /// As [`SceneState::attach_at`](elbowroom_scene::SceneState::attach_at).
+    /// The errors of [`SceneState::attach_at`](elbowroom_scene::SceneState::attach_at).
     pub fn attach(&mut self, object: ObjectId, attachment: Attachment) -> Result<(), AvoidanceError> {
         self.query.attach(object, attachment.clone())?;
         Ok(self.escapes.attach(object, attachment)?)
     }
 
-    /// Detaches an object: it is an obstacle again, where it is now.
+    /// Detaches an object, which becomes an obstacle again at its present pose.
     ///
     /// # Errors
-    /// It is not attached.
+    /// The object is not attached.
     pub fn detach(&mut self, object: ObjectId) -> Result<(), AvoidanceError> {
         let in_world = self.query.detach(object)?;
         Ok(self.escapes.detach(object, in_world)?)
@@ -183,27 +183,27 @@ impl<'s> Avoider<'s> {
         &self.command.qdd
     }
 
-    /// The joint velocities at override 1, rad/s or m/s: for a monitor with the direction-aware law.
+    /// The joint velocities at override 1, rad/s or m/s, for a monitor with the direction-aware law.
     pub fn intent(&self) -> &[f64] {
         &self.command.intent
     }
 
-    /// True if the robot is slow enough to start a detour.
+    /// Whether the robot is slow enough to start a detour.
     pub fn is_stationary(&self) -> bool {
         speed_fraction(&self.command.qd, &self.limits) < STATIONARY_FRACTION
     }
 
-    /// True while the robot follows a detour.
+    /// Whether the robot follows a detour.
     pub fn has_detour(&self) -> bool {
         self.machine.has_detour()
     }
 
-    /// One tick of `dt` seconds. `reference` is the path at the end of the tick, `obstacles` the present observations, and
-    /// `speed_override` (0 to 1) the override of a monitor, which scales the corrected motion.
+    /// Computes one tick of `dt` seconds. `reference` is the path at the end of the tick, `obstacles` the present
+    /// observations, and `speed_override` (0 to 1) the override of a monitor, which scales the corrected motion.
     ///
     /// # Errors
-    /// Poses, motions or joint values that are missing or not finite, or a duration that is not positive. Stop the robot
-    /// then: the next tick starts at rest at the last command, and returns to the path.
+    /// Poses, motions or joint values are missing or not finite, or the duration is not positive. Then stop the robot:
+    /// the next tick starts at rest at the last command and returns to the path.
     pub fn tick(
         &mut self,
         dt: f64,
@@ -214,11 +214,11 @@ impl<'s> Avoider<'s> {
         self.tick_constrained(dt, reference, obstacles, speed_override, None)
     }
 
-    /// As [`tick`](Self::tick), with a constraint on what leaves the path, such as regions in which a monitor
-    /// stops the robot: its border is a row of the least squares, and escapes keep it.
+    /// Like [`tick`](Self::tick), with a constraint on motion off the path, such as regions in which a monitor stops
+    /// the robot: the border of the constraint is a row of the least squares, and escapes keep the constraint.
     ///
     /// # Errors
-    /// As [`tick`](Self::tick).
+    /// The errors of [`tick`](Self::tick).
     pub fn tick_constrained(
         &mut self,
         dt: f64,
@@ -270,22 +270,22 @@ impl<'s> Avoider<'s> {
         Ok(self.conclude(dt, reference, allowed, correction.progress, output))
     }
 
-    /// Plans a detour from the present configuration to `goal`, around all obstacles at their present poses, checked to be
-    /// free, and follows it from the next tick on until an obstacle has to be evaded. The clearance is kept where the ends of
-    /// the detour have it ([`RrtConnect::plan_from_tight_ends`]). Takes as long as planning takes: a controller calls it beside its loop.
+    /// Plans a detour from the present configuration to `goal` around all obstacles at their present poses, checks that
+    /// it is free, and follows it from the next tick until an obstacle has to be evaded. The detour keeps the clearance
+    /// if its ends have it ([`RrtConnect::plan_from_tight_ends`]). Planning takes time: call it outside the loop.
     ///
     /// # Errors
-    /// The robot moves, or as [`RrtConnect::plan_from_tight_ends`].
+    /// The robot moves, or the errors of [`RrtConnect::plan_from_tight_ends`].
     pub fn plan_to(&mut self, goal: &[f64], options: &RrtConnectSettings) -> Result<(), AvoidanceError> {
         let detour = self.plan_detour(goal, options, None)?;
         self.follow_detour(detour)
     }
 
-    /// Plans as [`plan_to`](Self::plan_to), with a constraint on the path ([`RrtConnect::with_constraint`]), such as regions in which a
-    /// monitor stops the robot, for [`follow_detour`](Self::follow_detour) to follow later: planning takes time.
+    /// Plans like [`plan_to`](Self::plan_to), with a constraint on the path ([`RrtConnect::with_constraint`]), such as
+    /// regions in which a monitor stops the robot. [`follow_detour`](Self::follow_detour) follows the detour later.
     ///
     /// # Errors
-    /// The robot moves, or as [`RrtConnect::plan_from_tight_ends`].
+    /// The robot moves, or the errors of [`RrtConnect::plan_from_tight_ends`].
     pub fn plan_detour(
         &mut self,
         goal: &[f64],
@@ -305,8 +305,8 @@ impl<'s> Avoider<'s> {
         Ok(PlannedDetour { start_q: self.command.q.clone(), waypoints: route.waypoints })
     }
 
-    /// Follows a detour from the next tick on, until an obstacle has to be evaded. A robot that has come to rest a little beyond
-    /// the start of the detour goes back to it first.
+    /// Follows a detour from the next tick until an obstacle has to be evaded. A robot that has come to rest slightly
+    /// beyond the start of the detour returns to the start first.
     ///
     /// # Errors
     /// The robot moves, or has moved away since the detour was planned.
@@ -319,8 +319,8 @@ impl<'s> Avoider<'s> {
         Ok(())
     }
 
-    /// A detour is being planned: until it is known, a robot off its path rests where the detour is to begin, unless it has to
-    /// evade what moves. Call it in each tick of the planning.
+    /// Reports that a detour is being planned. Until the detour is known, a robot off its path rests where the detour
+    /// starts, unless it has to evade a moving obstacle. Call this method in each tick of the planning.
     pub fn await_detour(&mut self) {
         self.machine.await_detour();
     }
@@ -343,7 +343,7 @@ impl<'s> Avoider<'s> {
             *max = (v.abs() + limit.stop * dt).min(limit.speed);
         }
         let ahead_s = 2.0 * dt + 0.5 * stop_s(&self.limits, max_next);
-        // Fixed obstacles matter within a stop from the fastest next command, or within the range of an evasion.
+        // Fixed obstacles matter within a stop from the fastest next command and within the range of an evasion.
         let s = &self.settings.reactive;
         let nearby_m = s.fixed_clearance_m + FIXED_RANGE_FACTOR * s.closing_s * s.speed_m_s;
         let fixed_m = nearby_m.max(self.query.own_motion_bounds().max_travel(max_next, ahead_s));
@@ -364,7 +364,7 @@ impl<'s> Avoider<'s> {
         self.update_desired(dt, reference, allowed, objective);
         if allowed == 0.0 {
             self.command.intent.fill(0.0);
-            // A path that is followed stops by itself.
+            // A robot on its path stops by following it.
             match objective {
                 Objective::Path => self.follow_reference(dt, reference),
                 _ => self.brake(dt),
@@ -381,7 +381,7 @@ impl<'s> Avoider<'s> {
         self.reversals.restrict(&mut self.workspace.bounds);
         let Workspace { bounds, desired, next, .. } = &mut self.workspace;
         for (next, stoppable) in bounds.next.iter_mut().zip(&bounds.stoppable) {
-            // The override scales everything but the position limits afterwards.
+            // The override later scales everything except the position limits.
             *next = next.map(|v| (v / allowed).clamp(stoppable[0], stoppable[1]));
         }
         let ProximityQuery { scene, robot, chains, pairs, .. } = &self.query;
@@ -391,7 +391,7 @@ impl<'s> Avoider<'s> {
         let s = &self.settings.reactive;
         let reach_m = FIXED_RANGE_FACTOR * s.closing_s * s.speed_m_s;
         let border = match constraint {
-            // Without an obstacle the robot follows what was planned with the border.
+            // Without an obstacle the robot follows a motion that was planned with the border.
             Some(c) if pairs.iter().any(|p| p.obstacle.may_move()) => self.border.near(c, &self.command.q, reach_m),
             _ => None,
         };
@@ -401,7 +401,7 @@ impl<'s> Avoider<'s> {
         let is_resting = reaction.overrun_m_s <= 0.0
             && ((self.is_stalled() && progress < MIN_PROGRESS)
                 || (self.machine.awaits_detour() && self.is_by_obstacle_at_rest(&reaction)));
-        // The bounds were widened by the override; the scaled command must keep the original ones.
+        // The override widened the bounds; the scaled command must keep the original ones.
         self.update_bounds(dt);
         self.reversals.restrict(&mut self.workspace.bounds);
         let Workspace { bounds, desired, next, .. } = &mut self.workspace;
@@ -413,7 +413,7 @@ impl<'s> Avoider<'s> {
             Objective::Path if !is_resting => self.follow_reference(dt, reference),
             Objective::Detour => next.iter_mut().zip(desired).for_each(|(v, w)| *v = *w * allowed),
             Objective::Rest => self.brake(dt),
-            // Trapped, or a detour is being planned from here: rest instead of creeping.
+            // The robot is trapped, or a detour is being planned from here: rest instead of creeping.
             _ if is_resting => self.brake(dt),
             _ => {}
         }
@@ -472,7 +472,7 @@ impl<'s> Avoider<'s> {
         }
     }
 
-    /// Checks the next command, and replaces it by braking where that is safer.
+    /// Checks the next command and replaces it by braking if that is safer.
     fn check(
         &mut self,
         dt: f64,
@@ -497,7 +497,7 @@ impl<'s> Avoider<'s> {
         correction.is_braked = true;
     }
 
-    /// Replaces the next command by that of an escape where none would be left after it.
+    /// Replaces the next command by the command of an escape if no escape would be left after it.
     fn keep_escape(
         &mut self,
         dt: f64,
@@ -533,12 +533,12 @@ impl<'s> Avoider<'s> {
         state
     }
 
-    /// True if the command, and a stop after it, hit no fixed or known obstacle. While every command satisfies this, a
-    /// collision-free stop exists: that of the previous command. A detour was checked with all fixed obstacles: while it is
-    /// followed, the obstacles that may have moved since count instead.
+    /// Whether the command and a stop after it hit no fixed or known obstacle. While every command satisfies this, a
+    /// collision-free stop exists: the stop of the previous command. A detour was checked against all fixed obstacles;
+    /// while the robot follows it, the obstacles that may have moved since then count instead.
     fn can_stop(&mut self, dt: f64, obstacles: &DynamicObstacles<'_>, is_detour: bool) -> bool {
         let duration_s = 2.0 * dt + 0.5 * stop_s(&self.limits, &self.workspace.next);
-        // Pairs in intended contact, such as a part that is being placed, are ignored: only their distance may not decrease.
+        // Pairs in intended contact, such as a part being placed, are ignored: only their distance must not decrease.
         let is_apart = |p: &ProximityPair| p.distance_m > SweepOptions::default().tolerance_m;
         let has_left_detour = !self.machine.has_detour();
         let counts = |p: &ProximityPair| match p.obstacle {
@@ -552,7 +552,7 @@ impl<'s> Avoider<'s> {
         self.sweep.first_hit(&mut self.query, &segment, obstacles, filter).is_none()
     }
 
-    /// Replaces the next command by braking where that hits a dynamic obstacle later, or nobody knows; says whether it did.
+    /// Brakes if the command hits a dynamic obstacle, and braking hits later or the hit is unproven. Returns whether.
     fn brake_before_hit(&mut self, dt: f64, obstacles: &DynamicObstacles<'_>) -> bool {
         let Self { sweep, query, limits, command, workspace, .. } = self;
         let Workspace { bounds, next, braked, .. } = workspace;
@@ -613,8 +613,8 @@ impl<'s> Avoider<'s> {
         output
     }
 
-    /// True if the tick evaded something that will move on. Off a path that is held, waiting beside an obstacle at rest
-    /// would not end: a detour leads past it.
+    /// Whether the tick evaded an obstacle that will move away. If the path is held, waiting beside an obstacle at rest
+    /// would never end: a detour leads past it.
     fn is_corrected(&self, output: &AvoiderOutput, path: PathKind) -> bool {
         let is_held = is_path_held(path, output.path_deviation_s, self.settings.max_deviation_s);
         let is_at_rest = self.is_by_obstacle_at_rest(&output.reaction);
@@ -622,19 +622,19 @@ impl<'s> Avoider<'s> {
         output.reaction.size > MIN_CORRECTION && will_move_on
     }
 
-    /// True if the obstacle that governs a reaction is at rest.
+    /// Whether the obstacle that governs a reaction is at rest.
     fn is_by_obstacle_at_rest(&self, reaction: &Reaction) -> bool {
         let governing = reaction.governing.and_then(|g| self.query.pairs.get(g));
         governing.is_some_and(|p| p.obstacle_velocity().length() <= STATIONARY_OBSTACLE_M_S)
     }
 
-    /// True if the robot makes no progress for the stall timeout, and no obstacle moves.
+    /// Whether the robot has made no progress for the stall timeout and no obstacle moves.
     fn is_stalled(&self) -> bool {
         let moves = |p: &ProximityPair| p.obstacle_velocity().length() > STATIONARY_OBSTACLE_M_S;
         self.machine.is_stalled() && !self.query.pairs.iter().any(moves)
     }
 
-    /// The rate at which the path may advance.
+    /// Rate at which the path may advance.
     fn path_rate(&mut self, reference: &Reference<'_>, deviation_s: f64) -> f64 {
         let max_deviation_s = self.settings.max_deviation_s;
         let state = PathState { q: &self.command.q, limits: &self.limits, deviation_s, max_deviation_s };

@@ -3,7 +3,7 @@
 use crate::joint_limit::{JointLimit, arrival_speed, distance_s, speed_fraction};
 use crate::reversal_limiter::ReversalLimiter;
 
-/// Distance below which two configurations are the same, in seconds of joint motion at full speed.
+/// Distance up to which two configurations count as equal, in seconds of joint motion at full speed.
 pub(crate) const SAME_CONFIGURATION_S: f64 = 1e-9;
 
 /// Configuration, velocities and limits of the joints.
@@ -16,7 +16,7 @@ pub(crate) struct JointState<'a> {
     pub(crate) limits: &'a [JointLimit],
 }
 
-/// The remaining waypoints of a detour: straight from one to the next, with a stop at each.
+/// The remaining waypoints of a detour: straight motions from waypoint to waypoint, with a stop at each.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Detour {
     /// The next waypoint is the last element.
@@ -26,7 +26,7 @@ pub(crate) struct Detour {
 }
 
 impl Detour {
-    /// From the first waypoint to the last. A robot that is not at the first goes there.
+    /// A detour through the waypoints. A robot that is not at the first waypoint moves there first.
     pub(crate) fn new(mut waypoints: Vec<Vec<f64>>, is_at_first: bool) -> Self {
         waypoints.reverse();
         if is_at_first {
@@ -35,7 +35,7 @@ impl Detour {
         Self { waypoints, speed: 0.0 }
     }
 
-    /// True if no waypoint remains.
+    /// Whether no waypoint remains.
     pub(crate) fn is_finished(&self) -> bool {
         self.waypoints.is_empty()
     }
@@ -45,8 +45,8 @@ impl Detour {
         self.waypoints.clear();
     }
 
-    /// Writes the next velocity to `out`: all joints together, with ramps between the stops, at most `max_speed` as a fraction
-    /// of the top speeds.
+    /// Writes the next velocity to `out`: all joints move together, with ramps between the stops, at most at
+    /// `max_speed` (a fraction of the top speeds).
     pub(crate) fn follow(
         &mut self,
         dt: f64,
@@ -70,7 +70,7 @@ impl Detour {
                     let target =
                         arrival_speed(remaining_s, rise_s).min(max_speed).min(stopping_speed(remaining_s, stop_s, dt));
                     self.speed = target.clamp((self.speed - dt / stop_s).max(0.0), self.speed + dt / rise_s);
-                    // The last step ends at the waypoint, not beyond.
+                    // The last step ends at the waypoint, not beyond it.
                     let rate = (self.speed / remaining_s).min(1.0 / dt);
                     out.iter_mut().zip(difference()).for_each(|(v, d)| *v = d * rate);
                 }
@@ -101,7 +101,7 @@ mod tests {
         let mut ticks = 0;
         while !detour.is_finished() {
             detour.follow(dt, 0.5, &JointState { q: &q, qd: &qd, limits: &limits }, &reversals, &mut next);
-            // It is braked from time to time.
+            // The robot brakes from time to time.
             if (20..24).contains(&(ticks % 50)) {
                 crate::joint_limit::brake(&limits, &[[-9.0, 9.0]; 2], &qd, dt, &mut next);
             }

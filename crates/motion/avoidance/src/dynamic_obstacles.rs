@@ -12,29 +12,30 @@ pub struct ObservedObject {
     pub in_world: Pose,
     /// Motion of the object; [`FrameMotion::REST`] if it is stationary.
     pub motion: FrameMotion,
-    /// True if the path was planned with it: it is kept clear of and not evaded.
+    /// Whether the path was planned with the object: then the robot keeps its distance but does not evade it.
     pub known: bool,
 }
 
-/// Another robot of the scene, as it reports itself.
+/// Another robot of the scene, with the state that it reports.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Neighbour<'a> {
     /// Index of the robot in the scene.
     pub robot: RobotId,
-    /// Its joint values, rad or m.
+    /// Joint values of the robot, rad or m.
     pub q: &'a [f64],
-    /// Its joint velocities, rad/s or m/s.
+    /// Joint velocities of the robot, rad/s or m/s.
     pub qd: &'a [f64],
-    /// True if the path was planned with it: it is kept clear of and not evaded.
+    /// Whether the path was planned with the robot: then the controlled robot keeps its distance but does not evade it.
     pub known: bool,
 }
 
-/// All observed objects and robots besides the controlled one.
+/// All observed objects and robots except the controlled robot.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct DynamicObstacles<'a> {
-    /// Objects. Those that were never observed are fixed at the poses of the scene; those that are no longer observed are
-    /// assumed stationary at the last observed pose, and may move.
+    /// Objects. Objects that were never observed are fixed at their poses in the scene. Objects that are no longer
+    /// observed are assumed stationary at the last observed pose, and may move.
     pub objects: &'a [ObservedObject],
-    /// Robots. Those without updates are assumed stationary at their last configuration, or at that of the scene.
+    /// Robots. Robots without updates are assumed stationary at their last configuration, or at their configuration in
+    /// the scene.
     pub robots: &'a [Neighbour<'a>],
 }

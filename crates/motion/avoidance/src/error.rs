@@ -5,7 +5,7 @@ use elbowroom_scene::SceneError;
 
 use crate::LimitProblem;
 
-/// Why a tick has no command (stop the robot then), or why no detour was planned.
+/// Why a tick has no command (then stop the robot), or why no detour was planned.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum AvoidanceError {
     /// A pose or configuration is invalid.
@@ -22,30 +22,30 @@ pub enum AvoidanceError {
         "`{robot}` gives {given} velocities for {joints} joints, or one that is not finite: give qd, 0 where it is at rest"
     )]
     Neighbour {
-        /// Its name.
+        /// Name of the robot.
         robot: String,
-        /// Numbers given.
+        /// Number of given velocities.
         given: usize,
-        /// Joints that it has.
+        /// Number of joints of the robot.
         joints: usize,
     },
     /// The limits of a joint are invalid.
     #[error("the limits of joint {joint} (from 0): {what}")]
     Limit {
-        /// Number of the joint.
+        /// Index of the joint.
         joint: usize,
         /// The problem.
         what: LimitProblem,
     },
-    /// The number of limits is not that of the joints.
+    /// The number of limits differs from the number of joints.
     #[error("{given} limits for {joints} joints: give one per independent joint, `JointLimit::of` makes them")]
     Limits {
-        /// Entries given.
+        /// Number of given limits.
         given: usize,
-        /// Joints of the robot.
+        /// Number of joints of the robot.
         joints: usize,
     },
-    /// A detour cannot start while the robot moves, or from where it no longer is.
+    /// A detour cannot start while the robot moves, or after the robot has left the start of the detour.
     #[error(
         "a detour starts at rest where it was planned, and the robot moves: plan when `AvoiderOutput::requests_detour` is true"
     )]
@@ -61,9 +61,9 @@ pub enum AvoidanceError {
         "the path gives {given} values for {joints} joints, or one that is not finite: give q and qd, one number per joint"
     )]
     Reference {
-        /// Numbers given, the smaller of q and qd.
+        /// Number of given values, the smaller of q and qd.
         given: usize,
-        /// Joints of the robot.
+        /// Number of joints of the robot.
         joints: usize,
     },
 }

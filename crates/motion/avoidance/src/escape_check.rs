@@ -1,4 +1,5 @@
-//! Proof of an escape: a sweep in time against the predicted motion of all that moves, and against the static scene.
+//! Proof of an escape: a sweep in time against the predicted motion of all moving obstacles, and against the static
+//! scene.
 
 use elbowroom_kinematics::LinkId;
 use elbowroom_planner::PathConstraint;
@@ -16,9 +17,9 @@ use crate::{DynamicObstacles, Neighbour, ObservedObject};
 
 /// Longest stretch that is swept as a straight joint motion at constant rates, s.
 const STRETCH_S: f64 = 0.2;
-/// Share of the clearance by which the motion may deviate from the straight one: the rest is what a proof guarantees.
+/// Fraction of the clearance by which the motion may deviate from a straight one; the proof guarantees the rest.
 const CHORD_SHARE: f64 = 0.5;
-/// Longest stretch of a robot at rest, s: a predicted curve is a chord in it.
+/// Longest stretch of a robot at rest, s: within it, the curve of a predicted motion is replaced by a chord.
 const REST_STRETCH_S: f64 = 0.25;
 /// Shortest stretch of a proof, s.
 const MIN_STRETCH_S: f64 = 0.04;
@@ -27,13 +28,13 @@ const MIN_CONSTRAINT_STRETCH_S: f64 = 1e-3;
 /// Speed below which an obstacle is stationary, m/s and rad/s.
 const STATIONARY: f64 = 0.02;
 
-/// A motion from an instant on.
+/// A motion that begins at an instant.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct TimedMotion<'a> {
     pub(crate) trajectory: &'a EscapeTrajectory,
     /// Time within the trajectory at which the check begins, s.
     pub(crate) elapsed_s: f64,
-    /// Time of the observations at which the check begins, s from now.
+    /// Time of the beginning of the check, s after the observations.
     pub(crate) begins_s: f64,
     /// Duration of the check, s.
     pub(crate) horizon_s: f64,
@@ -42,43 +43,43 @@ pub(crate) struct TimedMotion<'a> {
 /// Clearances of a proof, m.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct EscapeClearance {
-    /// From what moves.
+    /// Clearance from moving obstacles.
     pub(crate) moving_m: f64,
-    /// From what is fixed, and between own links.
+    /// Clearance from fixed obstacles and between the robot's own links.
     pub(crate) fixed_m: f64,
 }
 
-/// Where a motion meets what moves.
+/// A predicted hit of a moving obstacle.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PredictedHit {
-    /// From the beginning of the check, s.
+    /// Time since the beginning of the check, s.
     pub(crate) time_s: f64,
     /// The link that is hit.
     pub(crate) link: LinkId,
-    /// The point of the link, in the world.
+    /// The hit point of the link, in the world, m.
     pub(crate) point: Vec3,
-    /// Velocity of the obstacle, m/s, in the world.
+    /// Velocity of the obstacle in the world, m/s.
     pub(crate) velocity: Vec3,
 }
 
-/// Result of a check against what moves.
+/// Result of a check against moving obstacles.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct MotionCheck {
     pub(crate) hit: Option<PredictedHit>,
-    /// All of the motion was checked, up to the hit.
+    /// Whether all of the motion was checked, up to the hit.
     pub(crate) is_complete: bool,
-    /// Smallest distance at the instants that were measured, m; infinite if nothing comes near.
+    /// Smallest measured distance, m; infinite if no obstacle comes near.
     pub(crate) gap_m: f64,
 }
 
 impl MotionCheck {
-    /// The motion is proven to meet nothing.
+    /// Whether the motion is proven free.
     pub(crate) fn is_free(&self) -> bool {
         self.hit.is_none() && self.is_complete
     }
 }
 
-/// Checks escapes of one robot. It has a scene of its own: the predicted one.
+/// Checks escapes of one robot. It has its own scene state, with predicted poses.
 #[derive(Debug)]
 pub(crate) struct EscapeCheck<'s> {
     scene: &'s Scene,
@@ -87,27 +88,27 @@ pub(crate) struct EscapeCheck<'s> {
     checker: Checker<'s>,
     state: SceneState,
     bounds: MotionBounds,
-    /// Ends of a stretch.
+    /// Configurations at the ends of a stretch.
     from: Vec<f64>,
     to: Vec<f64>,
     /// Deviation of each joint from a straight motion.
     deviation: Vec<f64>,
-    /// Per robot: the end of its stretch.
+    /// Per robot, the configuration at the end of its stretch.
     robots_to: Vec<Vec<f64>>,
     /// Largest distance of a point of an object from its origin, m.
     object_radii: Vec<f64>,
-    /// Evaluations of constraints so far.
+    /// Number of evaluations of constraints so far.
     margins: u64,
     /// Work after which checks end without a proof.
     deadline: EscapeWork,
 }
 
-/// True for an object that moves.
+/// Whether an object moves.
 pub(crate) fn moves(object: &ObservedObject) -> bool {
     object.motion.velocity.length() > STATIONARY || object.motion.angular_velocity.length() > STATIONARY
 }
 
-/// True for a robot that moves.
+/// Whether a robot moves.
 pub(crate) fn robot_moves(robot: &Neighbour<'_>) -> bool {
     robot.qd.iter().any(|v| v.abs() > STATIONARY)
 }
@@ -137,22 +138,22 @@ impl<'s> EscapeCheck<'s> {
         }
     }
 
-    /// All work so far.
+    /// Work done so far.
     pub(crate) fn work(&self) -> EscapeWork {
         EscapeWork::of(&self.checker.stats(), self.margins)
     }
 
-    /// Ends checks without a proof as soon as [`Self::work`] is as much.
+    /// Sets the amount of [`Self::work`] at which checks end without a proof.
     pub(crate) fn set_deadline(&mut self, deadline: EscapeWork) {
         self.deadline = deadline;
     }
 
-    /// True if no more may be checked now.
+    /// Whether the work is used up.
     pub(crate) fn is_overdue(&self) -> bool {
         self.work() >= self.deadline
     }
 
-    /// A sweep that ends, at the latest, when the work is used up.
+    /// Options of a sweep that ends, at the latest, when the work is used up.
     fn sweep_options(&self, clearance_m: f64) -> SweepOptions {
         (self.deadline - self.work()).sweep_options(clearance_m)
     }
@@ -164,7 +165,7 @@ impl<'s> EscapeCheck<'s> {
         Ok(())
     }
 
-    /// Detaches an object, which is there now.
+    /// Detaches an object, which is at `in_world` now.
     pub(crate) fn detach(&mut self, object: ObjectId, in_world: Pose) -> Result<(), SceneError> {
         self.state.detach(self.scene, object)?;
         self.state.place(self.scene, object, in_world)?;
@@ -172,8 +173,8 @@ impl<'s> EscapeCheck<'s> {
         Ok(())
     }
 
-    /// Where a motion first comes nearer than `clearance_m` to something that moves and that `counts`: objects by their
-    /// observation, other robots where `robots_count`. A motion that cannot be checked counts as a hit.
+    /// Checks where a motion first comes nearer than `clearance_m` to a moving obstacle. `counts` selects objects and
+    /// other robots by whether they are known. A motion that cannot be checked counts as a hit.
     pub(crate) fn meets_moving(
         &mut self,
         motion: &TimedMotion<'_>,
@@ -196,7 +197,7 @@ impl<'s> EscapeCheck<'s> {
                 let Some(distance) = distance else { break };
                 first.gap_m = first.gap_m.min(distance.metres);
                 if self.is_overdue() {
-                    // What is not proven counts as a hit.
+                    // A motion that is not proven free counts as a hit.
                     let sides = [(distance.a, distance.on_a), (distance.b, distance.on_b)];
                     let hit = self.object_hit(object, place.translation, sides, t);
                     return Ok(MotionCheck { hit: first.hit.or(Some(hit)), is_complete: false, ..first });
@@ -239,7 +240,7 @@ impl<'s> EscapeCheck<'s> {
         Ok(first)
     }
 
-    /// A hit between an object whose origin is at `place` then and another geometry; both have their points.
+    /// A hit between an object, whose origin is then at `place`, and another geometry; each side has its point.
     fn object_hit(
         &self,
         object: &ObservedObject,
@@ -253,7 +254,8 @@ impl<'s> EscapeCheck<'s> {
         PredictedHit { time_s, link, point, velocity: object.motion.velocity_at(point - place) }
     }
 
-    /// A hit with another robot; both sides have their points. The direction from which it comes is from its point to ours.
+    /// A hit with another robot; each side has its point. The direction of the obstacle is from its point to the
+    /// robot's point.
     fn robot_hit(&self, [a, b]: [(GeometryId, Vec3); 2], time_s: f64) -> PredictedHit {
         let is_own = |id: GeometryId| matches!(id, GeometryId::Link { robot, .. } if robot == self.robot);
         let ((id, point), (_, from)) = if is_own(a.0) { (a, b) } else { (b, a) };
@@ -261,7 +263,8 @@ impl<'s> EscapeCheck<'s> {
         PredictedHit { time_s, link, point, velocity: point - from }
     }
 
-    /// Where a motion first comes nearer than `clearance_m` to another robot; what is not proven counts as a hit.
+    /// Checks where a motion first comes nearer than `clearance_m` to another robot; a motion that is not proven free
+    /// counts as a hit.
     fn meets_robot(
         &mut self,
         motion: &TimedMotion<'_>,
@@ -295,8 +298,8 @@ impl<'s> EscapeCheck<'s> {
         Ok(None)
     }
 
-    /// True if the motion keeps `clearance_m` to all that is fixed and between own links; what moves counts at its
-    /// predicted pose at the beginning of each stretch. False if the work is used up.
+    /// Whether the motion keeps `clearance_m` to all fixed obstacles and between the robot's own links. Moving
+    /// obstacles count at their predicted poses at the beginning of each stretch. False if the work is used up.
     pub(crate) fn keeps_clear_of_fixed(
         &mut self,
         motion: &TimedMotion<'_>,
@@ -324,12 +327,12 @@ impl<'s> EscapeCheck<'s> {
         Ok(true)
     }
 
-    /// True if the motion keeps a constraint, such as regions that are closed to the robot.
+    /// Whether the motion keeps a constraint, such as regions that are closed to the robot.
     pub(crate) fn keeps_constraint(&mut self, motion: &TimedMotion<'_>, constraint: &mut dyn PathConstraint) -> bool {
         let end_s = (motion.trajectory.duration_s - motion.elapsed_s).min(motion.horizon_s);
         let (mut t, mut step_s) = (0.0, STRETCH_S);
         motion.trajectory.q_at(motion.elapsed_s, &mut self.from);
-        // A robot within the margin may leave, but not approach.
+        // A robot within the margin may leave but not approach.
         let need_m = constraint.margin_m(&self.from, f64::INFINITY).min(0.0);
         while t < end_s {
             if self.is_overdue() {
@@ -353,7 +356,7 @@ impl<'s> EscapeCheck<'s> {
         true
     }
 
-    /// Duration of the stretch from `t_s` on in which the motion is straight, but for a share of the clearance.
+    /// Duration of the stretch from `t_s` during which the motion is straight, up to a fraction of the clearance.
     fn stretch_s(&mut self, motion: &TimedMotion<'_>, t_s: f64, clearance_m: f64) -> f64 {
         let (from, mut stretch_s) = (motion.elapsed_s + t_s, STRETCH_S);
         while stretch_s > MIN_STRETCH_S {
@@ -366,7 +369,7 @@ impl<'s> EscapeCheck<'s> {
         stretch_s.max(MIN_STRETCH_S)
     }
 
-    /// Moves the robot to its configuration after `t_s` seconds; true if it rests from then on.
+    /// Moves the robot to its configuration after `t_s` seconds; returns whether it rests from then on.
     fn set_time(&mut self, motion: &TimedMotion<'_>, t_s: f64) -> Result<bool, SceneError> {
         let at = motion.elapsed_s + t_s;
         motion.trajectory.q_at(at, &mut self.from);
@@ -374,7 +377,7 @@ impl<'s> EscapeCheck<'s> {
         Ok(at >= motion.trajectory.duration_s)
     }
 
-    /// Places all that was observed where it is predicted to be in `t_s` seconds.
+    /// Places all observed obstacles where they are predicted to be in `t_s` seconds.
     fn set_moving(&mut self, obstacles: &DynamicObstacles<'_>, t_s: f64) -> Result<(), SceneError> {
         for object in obstacles.objects {
             self.state.place(self.scene, object.object, pose_after(object, t_s))?;
@@ -388,7 +391,7 @@ impl<'s> EscapeCheck<'s> {
         Ok(())
     }
 
-    /// Places all that was observed where it is now: what is no longer observed later stays there.
+    /// Places all observed obstacles where they are now: an obstacle that is no longer observed later stays there.
     pub(crate) fn reset(&mut self, obstacles: &DynamicObstacles<'_>) -> Result<(), SceneError> {
         self.set_moving(obstacles, 0.0)
     }

@@ -1,9 +1,10 @@
-//! Keeps an escape known: a command is given only while one is.
+//! Search for escapes: replaces a command after which no escape would be left by the command of the known escape.
 //!
-//! Where a stop would be hit within the horizon, time-optimal joint motions are sampled ([`escape_targets`]) and proven
-//! against the predicted motion of all that moves ([`EscapeCheck`]). The proven one with the largest gap is kept. The rules
-//! command the robot as long as an escape remains after their command; where none would, the robot moves on the escape that
-//! was proven before (a safety filter in the sense of Fraichard and Asama 2004, "Inevitable collision states").
+//! If a stop would be hit within the horizon, time-optimal joint motions are sampled ([`escape_targets`]) and proven
+//! against the predicted motion of all moving obstacles ([`EscapeCheck`]). The proven motion with the largest gap is
+//! kept. The rules command the robot as long as an escape remains after their command. If none would remain, the robot
+//! moves on the escape that was proven before (a safety filter in the sense of Fraichard and Asama 2004, "Inevitable
+//! collision states").
 //!
 //! [`escape_targets`]: crate::escape_targets
 
@@ -21,27 +22,27 @@ use crate::escape_work::EscapeWork;
 use crate::hit_point::HitPoint;
 use crate::known_escape::KnownEscape;
 
-/// Moving obstacles are on a collision course where they come nearer to a robot that stops now than this many clearances …
+/// A moving obstacle is on a collision course if it comes nearer to a robot that stops now than this many clearances …
 const COURSE_CLEARANCES: f64 = 3.0;
-/// … and remain so until they keep this many, so that the decision does not change with every tick.
+/// … and remains so until it keeps this many clearances, so that the decision does not change with every tick.
 const PASSING_CLEARANCES: f64 = 4.0;
-/// … or, where they are nearer than that now, nearer than this share of their present distance …
+/// … or, if it is nearer than that now, nearer than this fraction of its present distance …
 const COURSE_SHARE: f64 = 0.8;
-/// … and in any case while they are nearer than this many clearances.
+/// … and in any case while it is nearer than this many clearances.
 const NEAR_CLEARANCES: f64 = 2.0;
-/// Where a stop is free for longer than this (s), the search pauses …
+/// If a stop is free for longer than this time (s), the search pauses …
 const UNHURRIED_S: f64 = 1.5;
-/// … for so many ticks.
+/// … for this number of ticks.
 const PAUSE_TICKS: usize = 3;
-/// A better escape than the known one is looked for in every so many examined ticks.
+/// Number of examined ticks per search for a better escape than the known one.
 const IMPROVE_TICKS: usize = 4;
-/// Share of the work of a tick in which it is decided what passes: what is not proven to is on a collision course …
+/// Fraction of a tick's work for deciding which obstacles pass: one not proven to pass is on a collision course …
 const COURSE_SHARE_OF_WORK: f64 = 0.4;
-/// … in which it is decided what a stop meets; where that is not proven to be nothing by then, it counts as met …
+/// … for deciding what a stop hits: a stop not proven free by then counts as hit …
 const STOP_SHARE_OF_WORK: f64 = 0.7;
-/// … and that may be spent before the escape that is known is proven again, where that is needed.
+/// … and for all work before the known escape is proven again, if that is needed.
 const FIND_SHARE: f64 = 0.85;
-/// Deviation of the robot from the escape that it follows, in rad or m, from which it no longer does.
+/// Deviation of the robot from the escape, in rad or m, above which it no longer follows it.
 const OFF_ESCAPE: f64 = 1e-3;
 
 /// Settings of the search.
@@ -49,14 +50,15 @@ const OFF_ESCAPE: f64 = 1e-3;
 pub struct EscapeSettings {
     /// Time for which motions are predicted, s. 0: no escapes are sampled.
     pub horizon_s: f64,
-    /// Largest number of escapes that are examined in one tick.
+    /// Largest number of escapes examined per tick.
     pub per_tick: usize,
-    /// Largest computing time of a tick, µs, counted in elementary tests times their measured costs: the same on every machine and
-    /// in every run. What is not proven then is examined in later ticks; a stop not proven to be free counts as hit.
+    /// Largest computing time of a tick, µs, counted in elementary tests times their measured costs: the count is the
+    /// same on every machine and in every run. What is not proven within this time is examined in later ticks; a stop
+    /// that is not proven free counts as hit.
     pub work_us: u32,
-    /// Clearance of an escape from what moves, m.
+    /// Clearance of an escape from moving obstacles, m.
     pub clearance_m: f64,
-    /// Clearance of an escape from what is fixed, m.
+    /// Clearance of an escape from fixed obstacles, m.
     pub fixed_clearance_m: f64,
 }
 
@@ -67,7 +69,7 @@ impl Default for EscapeSettings {
     }
 }
 
-/// What the search did in a tick.
+/// Result of the search in a tick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum EscapeState {
     /// A stop is free within the horizon.
@@ -81,18 +83,18 @@ pub enum EscapeState {
     Escaping,
 }
 
-/// The instant before a command.
+/// The state before a command.
 pub(crate) struct EscapeTick<'a> {
     pub(crate) dt: f64,
-    /// The robot now.
+    /// The present state of the robot.
     pub(crate) start: EscapeStart<'a>,
     pub(crate) obstacles: &'a DynamicObstacles<'a>,
     /// The point of the path.
     pub(crate) reference_q: &'a [f64],
-    /// A stop after the command of the rules hits nothing that is fixed. On an escape the robot is faster than the rules would
-    /// let it be there: its way may lead around what a stop would hit.
+    /// Whether a stop after the command of the rules hits nothing fixed. On an escape the robot may be faster than the
+    /// rules would permit there, because the escape may lead around the obstacle of a stop.
     pub(crate) can_stop: bool,
-    /// Present distance of the nearest obstacle that is evaded, and of anything fixed, m.
+    /// Present distances of the nearest evaded obstacle and of the nearest fixed obstacle, m.
     pub(crate) nearest: EscapeClearance,
 }
 
@@ -105,12 +107,12 @@ pub(crate) struct EscapeSearch<'s> {
     check: EscapeCheck<'s>,
     /// Configuration at the start of the robot's program.
     home_q: Vec<f64>,
-    /// The robot after the command.
+    /// State of the robot after the command.
     next: NextState,
     stop: EscapeTrajectory,
     trial: EscapeTrial,
     known: KnownEscape,
-    /// What the last examined tick found, and the ticks until the next one.
+    /// Result of the last examined tick, and the number of ticks until the next one.
     state: EscapeState,
     pause: usize,
     course: ObstacleCourse,
@@ -127,12 +129,12 @@ struct NextState {
     qd: Vec<f64>,
 }
 
-/// What the last examined tick found of all that moves and is evaded.
+/// Result of the last examined tick for all moving obstacles that are evaded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum ObstacleCourse {
-    /// Some of it comes near a robot that stops, or that was not excluded.
+    /// Some obstacle comes near a robot that stops, or this was not excluded.
     Collision,
-    /// All of it passes.
+    /// All obstacles pass.
     Passing,
 }
 
@@ -158,31 +160,31 @@ impl<'s> EscapeSearch<'s> {
         }
     }
 
-    /// Attaches an object to a link of any robot. The known escape was proven without it.
+    /// Attaches an object to a link of any robot. The known escape was proven without the object.
     pub(crate) fn attach(&mut self, object: ObjectId, attachment: Attachment) -> Result<(), SceneError> {
         self.reset();
         self.check.attach(object, attachment)
     }
 
-    /// Detaches an object, which is there now.
+    /// Detaches an object, which is at `in_world` now.
     pub(crate) fn detach(&mut self, object: ObjectId, in_world: Pose) -> Result<(), SceneError> {
         self.reset();
         self.check.detach(object, in_world)
     }
 
-    /// Forgets all that was found.
+    /// Forgets all results.
     pub(crate) fn reset(&mut self) {
         self.known.forget();
         (self.state, self.pause) = (EscapeState::Free, 0);
         self.course = ObstacleCourse::Collision;
     }
 
-    /// False if all that moves and is evaded is predicted to pass a robot that stops.
+    /// False if all moving obstacles that are evaded are predicted to pass a robot that stops.
     pub(crate) fn is_on_collision_course(&self) -> bool {
         self.course == ObstacleCourse::Collision
     }
 
-    /// Replaces the next command (rad/s or m/s) by that of the known escape where no escape would be left after it.
+    /// Replaces the next command (rad/s or m/s) by the command of the known escape if no escape would be left after it.
     pub(crate) fn guard(
         &mut self,
         tick: &EscapeTick<'_>,
@@ -202,13 +204,13 @@ impl<'s> EscapeSearch<'s> {
             self.known.is_fresh = false;
             return self.state;
         }
-        // A scene that cannot be checked has no escape: the rules remain.
+        // If the scene cannot be checked, no escape is known: the rules remain in command.
         let state = self.examine(tick, &mut constraint, next).unwrap_or(EscapeState::Unknown);
         if state == EscapeState::Free {
             self.known.forget();
         }
         self.state = state;
-        // An error was reported above: poses that can be placed can be placed again.
+        // An error was reported above; poses that could be placed before can be placed again.
         let _ = self.check.reset(tick.obstacles);
         state
     }
@@ -235,14 +237,14 @@ impl<'s> EscapeSearch<'s> {
             return self.follow(tick, followed_s, hit, clearance, constraint, next);
         }
         let Some(hit) = hit else { return Ok(EscapeState::Free) };
-        // What has to be proven again if nothing is found needs its part of the work.
+        // The known escape must be proven again if no other is found: reserve its part of the work.
         let has_to_be_proven = self.known.is_proven && !self.known.is_fresh;
         self.set_deadline(if has_to_be_proven { FIND_SHARE } else { 1.0 });
         if self.find(tick, &hit, clearance, constraint)? {
             return Ok(EscapeState::Known);
         }
         self.set_deadline(1.0);
-        // The command would lose the last escape: the robot takes it.
+        // The command would lose the last escape: the robot follows that escape.
         self.known.is_proven =
             self.known.is_proven && (self.known.is_fresh || self.is_free_from_now(tick, clearance, constraint)?);
         if self.known.is_proven {
@@ -256,13 +258,13 @@ impl<'s> EscapeSearch<'s> {
         (self.check.work() - self.begin).us()
     }
 
-    /// Checks end when this share of the tick's work is used up.
+    /// Sets the fraction of the tick's work at which checks end.
     fn set_deadline(&mut self, share: f64) {
         let work = EscapeWork::from_us(self.settings.work_us).share(share);
         self.check.set_deadline(self.begin.plus(work));
     }
 
-    /// Moves the beginning of the known escape to the present state; true if it is still free.
+    /// Moves the beginning of the known escape to the present state; returns whether it is still free.
     fn is_free_from_now(
         &mut self,
         tick: &EscapeTick<'_>,
@@ -277,7 +279,7 @@ impl<'s> EscapeSearch<'s> {
             && constraint.as_deref_mut().is_none_or(|c| self.check.keeps_constraint(&motion, c)))
     }
 
-    /// The robot after a command.
+    /// Sets the state of the robot after a command.
     fn set_next(&mut self, tick: &EscapeTick<'_>, next: &[f64]) {
         for (j, limit) in tick.start.limits.iter().enumerate() {
             self.next.q[j] = (tick.start.q[j] + next[j] * tick.dt).clamp(limit.lower, limit.upper);
@@ -285,7 +287,8 @@ impl<'s> EscapeSearch<'s> {
         }
     }
 
-    /// Where a stop meets what moves (at once, where not all was examined), and whether anything is on a collision course at all.
+    /// Predicts where a stop meets a moving obstacle (at once, if not all was examined), and whether any obstacle is on
+    /// a collision course.
     fn stop_hit(&mut self, tick: &EscapeTick<'_>, clearance_m: f64) -> Result<Option<PredictedHit>, SceneError> {
         let clearances = match std::mem::replace(&mut self.course, ObstacleCourse::Collision) {
             ObstacleCourse::Collision => PASSING_CLEARANCES,
@@ -300,7 +303,7 @@ impl<'s> EscapeSearch<'s> {
                 self.course = ObstacleCourse::Passing;
                 return Ok(None);
             }
-            // Before something comes as near as that, nothing comes nearer than the clearance.
+            // Before an obstacle comes within this distance, none comes within the clearance.
             from_s = passing.hit.filter(|_| passing.is_complete).map_or(0.0, |hit| hit.time_s);
         }
         self.set_deadline(STOP_SHARE_OF_WORK);
@@ -308,7 +311,7 @@ impl<'s> EscapeSearch<'s> {
         Ok(stop.hit.map(|hit| PredictedHit { time_s: if stop.is_complete { from_s + hit.time_s } else { 0.0 }, ..hit }))
     }
 
-    /// Checks a stop after the command from `from_s` on.
+    /// Checks a stop after the command, from `from_s` on.
     fn check_stop(&mut self, tick: &EscapeTick<'_>, from_s: f64, clearance_m: f64) -> Result<MotionCheck, SceneError> {
         let start = EscapeStart { q: &self.next.q, qd: &self.next.qd, ..tick.start };
         self.stop.set_stop(&start);
@@ -321,7 +324,7 @@ impl<'s> EscapeSearch<'s> {
         self.known.trajectory.is_near(followed_s, tick.start.q, OFF_ESCAPE)
     }
 
-    /// Moves on along the known escape; another one is looked for where the prediction has changed so that it is hit.
+    /// Continues along the known escape; searches another one if the changed prediction hits it.
     fn follow(
         &mut self,
         tick: &EscapeTick<'_>,
@@ -350,7 +353,8 @@ impl<'s> EscapeSearch<'s> {
         Ok(EscapeState::Escaping)
     }
 
-    /// True if an escape from the robot after the command is known: to the known target, or to a new one.
+    /// Searches an escape from the robot's state after the command, to the known target or to a new one; returns
+    /// whether one is known.
     fn find(
         &mut self,
         tick: &EscapeTick<'_>,
@@ -363,7 +367,7 @@ impl<'s> EscapeSearch<'s> {
         if self.known.is_proven {
             self.trial.target.copy_from_slice(&self.known.target);
             self.examine_trial(tick, clearance, constraint)?;
-            // One other, in case it is better.
+            // One other target, in case it is better.
             if self.trial.best.is_some() {
                 self.known.examined += 1;
                 let may_improve = self.trial.best.is_some_and(|best| best.may_improve());
@@ -379,7 +383,8 @@ impl<'s> EscapeSearch<'s> {
             }
             self.set_trial_target(tick, hit);
             self.examine_trial(tick, clearance, constraint)?;
-            // One that was not examined to its end is examined once more, in a later tick, with more of the tick's work.
+            // A target that was not examined completely is examined once more in a later tick, with more of that tick's
+            // work.
             self.trial.is_repeated = self.check.is_overdue() && !self.trial.is_repeated;
             self.trial.index -= usize::from(self.trial.is_repeated);
         }
@@ -414,7 +419,7 @@ impl<'s> EscapeSearch<'s> {
         Ok(())
     }
 
-    /// Updates the velocity of the point that is hit, per joint at its top speed.
+    /// Updates the velocity of the hit point, per joint at its top speed.
     fn update_point(&mut self, tick: &EscapeTick<'_>, hit: &PredictedHit) {
         let robot = &self.scene.robots()[self.robot.0];
         let in_root = robot.base_in_world.inverse_transform_point(hit.point);

@@ -11,21 +11,23 @@ pub(crate) const ROUND: usize = 50;
 const SIZES_S: [f64; 3] = [0.4, 0.8, 1.4];
 /// Joints that move alone: the first three move the most.
 const SINGLE_JOINTS: usize = 3;
-/// Reserve to the position limits, rad or m: a tick at full speed, so that a stop at the limit is never harder than others.
+/// Distance kept from the position limits, rad or m: a tick at full speed, so that a stop at the limit is never harder
+/// than elsewhere.
 const LIMIT_RESERVE: f64 = 0.02;
 
-/// What the targets evade, in the frame of the robot's root.
+/// The obstacle and the point that targets evade, in the frame of the robot's root.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct EscapeDirections<'a> {
-    /// Velocity of the point that is hit, per joint at its top speed, m/s.
+    /// Velocity of the hit point, per joint at its top speed, m/s.
     pub(crate) point: &'a [Vec3],
-    /// The point that is hit, m.
+    /// The hit point, m.
     pub(crate) at: Vec3,
     /// Direction in which the obstacle moves, a unit vector.
     pub(crate) along: Vec3,
 }
 
-/// Writes target number `index` to `out`. `home` lists configurations to which the robot may return: its path, its start.
+/// Writes target number `index` to `out`. `homes` lists configurations to which the robot may return: its path and its
+/// start.
 pub(crate) fn target(
     index: usize,
     rest_q: &[f64],
@@ -72,10 +74,11 @@ pub(crate) fn target(
     }
 }
 
-/// Number of directions.
+/// Number of candidate directions.
 const DIRECTIONS: usize = 7;
 
-/// Across the motion of the obstacle to four sides, with it, and back over the base to either side.
+/// Candidate directions: across the motion of the obstacle to four sides, along it, towards the axis of the base, and
+/// obliquely up towards that axis.
 fn direction(n: usize, directions: &EscapeDirections<'_>) -> Vec3 {
     let along = directions.along;
     let side = along.cross(Vec3::Z).try_normalize().unwrap_or(Vec3::X);
@@ -92,7 +95,7 @@ fn direction(n: usize, directions: &EscapeDirections<'_>) -> Vec3 {
     }
 }
 
-/// The joint motion in which the point moves in a direction with the least motion, of a size in seconds.
+/// The smallest joint motion that moves the point in a direction, scaled to a size in seconds.
 fn toward(
     direction: Vec3,
     size_s: f64,
@@ -108,7 +111,7 @@ fn toward(
     }
 }
 
-/// The additive recurrence of Roberts: evenly spread in up to 16 dimensions, the same on every machine.
+/// The additive recurrence of Roberts: evenly spread in up to 16 dimensions, and equal on every machine.
 fn quasi_random(n: usize, dimension: usize) -> f64 {
     // Fractional parts of the square roots of the primes are linearly independent over the rationals.
     const PRIMES: [f64; 16] =
@@ -138,7 +141,7 @@ mod tests {
             .collect();
         assert_eq!((&all[0][..], &all[1][..]), (&home[..], &q[..]));
         assert!(all.iter().flatten().all(|q| (-2.0..=1.5).contains(q)));
-        // To the side: every joint moves the point to that side.
+        // To the side: every joint moves the point to this side.
         let side = Vec3::X.cross(Vec3::Z);
         assert!(all[2].iter().zip(&q).zip(&point).all(|((to, from), p)| (to - from) * p.dot(side) >= 0.0));
         // The structured targets repeat, the random ones do not.

@@ -12,7 +12,7 @@ pub(crate) struct EscapeStart<'a> {
     /// Joint velocities, rad/s or m/s.
     pub(crate) qd: &'a [f64],
     pub(crate) limits: &'a [JointLimit],
-    /// Share of the top speeds that the override of a monitor leaves, 0 to 1.
+    /// Fraction of the top speeds that the override of a monitor permits, 0 to 1.
     pub(crate) speed_share: f64,
     pub(crate) reversals: &'a ReversalLimiter,
 }
@@ -32,7 +32,7 @@ impl EscapeTrajectory {
         Self { profiles: vec![JointProfile::default(); joints], duration_s: 0.0, max_speeds: vec![0.0; joints] }
     }
 
-    /// To rest at a configuration, each joint in its least time.
+    /// Moves to rest at a configuration, each joint in its least time.
     pub(crate) fn set_target(&mut self, target: &[f64], start: &EscapeStart<'_>) {
         for (j, profile) in self.profiles.iter_mut().enumerate() {
             let full = &start.limits[j];
@@ -43,7 +43,7 @@ impl EscapeTrajectory {
         self.update_summary();
     }
 
-    /// To rest at the deceleration of a stop, all joints together.
+    /// Stops at the deceleration of a stop, all joints together.
     pub(crate) fn set_stop(&mut self, start: &EscapeStart<'_>) {
         let stop_s = stop_s(start.limits, start.qd);
         for (profile, (q, qd)) in self.profiles.iter_mut().zip(start.q.iter().zip(start.qd)) {
@@ -57,12 +57,12 @@ impl EscapeTrajectory {
         self.max_speeds.iter_mut().zip(&self.profiles).for_each(|(max, p)| *max = p.max_speed);
     }
 
-    /// True if all joints are within `tolerance` of their values after `t_s` seconds.
+    /// Whether all joints are within `tolerance` of their values after `t_s` seconds.
     pub(crate) fn is_near(&self, t_s: f64, q: &[f64], tolerance: f64) -> bool {
         q.iter().zip(&self.profiles).all(|(q, p)| (p.at(t_s).0 - q).abs() <= tolerance)
     }
 
-    /// Writes a bound of the deviation from the straight motion between two times to `out`, rad or m per joint.
+    /// Writes a bound of the deviation from a straight motion between two times to `out`, rad or m per joint.
     pub(crate) fn chord_deviation(&self, from_s: f64, to_s: f64, out: &mut [f64]) {
         let square = (to_s - from_s) * (to_s - from_s);
         out.iter_mut().zip(&self.profiles).for_each(|(d, p)| *d = p.max_acceleration(from_s, to_s) * square / 8.0);

@@ -1,8 +1,8 @@
-//! Offline search in configuration, velocity and time: is there any escape?
+//! Offline search in configuration, velocity and time: decides whether an escape exists at all.
 //!
-//! A tree of states is grown by random time-optimal joint motions from random states of the tree, each kept as long as it is
-//! free (a kinodynamic RRT, `LaValle` and Kuffner 2001, "Randomized kinodynamic planning"). It answers whether a hit could
-//! have been evaded, given the motion of all that moves; a controller has no time for it.
+//! Random time-optimal joint motions from random states grow a tree of states; each motion is kept as long as it is
+//! free (a kinodynamic RRT, `LaValle` and Kuffner 2001, "Randomized kinodynamic planning"). The search tells whether a
+//! hit could have been evaded, given the motion of all obstacles. A controller does not have time for this search.
 
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{Scene, SceneError};
@@ -14,23 +14,23 @@ use crate::{DynamicObstacles, JointLimit};
 
 /// Clearance of a motion that counts as free, m.
 const CLEARANCE_M: f64 = 1e-3;
-/// Share of motions to random configurations within the limits; the others end near their start.
+/// Fraction of motions to random configurations within the limits; the other motions end near their start.
 const GLOBAL_SHARE: f64 = 0.3;
-/// Range of the others, in seconds of a joint at full speed.
+/// Range of the other motions, in seconds of a joint at full speed.
 const LOCAL_S: f64 = 1.0;
-/// Share of the expansions from the latest state of the tree.
+/// Fraction of the expansions that start at the latest state of the tree.
 const LATEST_SHARE: f64 = 0.3;
-/// Range that stands for the range of a joint without limits, rad or m.
+/// Largest distance of a random target from the start of its motion, per joint, rad or m.
 const UNLIMITED: f64 = 6.3;
 
 /// Result of a search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EscapeTreeReport {
-    /// Number of motions that were tried.
+    /// Number of tried motions.
     pub tries: usize,
-    /// Smallest distance on the escape, m; `None` if none was found.
+    /// Smallest distance on the escape, m; `None` if no escape was found.
     pub gap_m: Option<f64>,
-    /// The longest time without a hit, s: the horizon where an escape was found.
+    /// Longest time without a hit, s: the horizon if an escape was found.
     pub longest_s: f64,
 }
 
@@ -43,12 +43,12 @@ struct Node {
     gap_m: f64,
 }
 
-/// Searches an escape of a robot from `q` and `qd` (rad, rad/s; m for prismatic joints) that is free for `horizon_s` seconds
-/// from everything in the scene, with at most `tries` motions; `random` gives
-/// numbers in [0, 1). What moves is assumed to continue its observed motion.
+/// Searches an escape of a robot from `q` and `qd` (rad, rad/s; m for prismatic joints) that is free of everything in
+/// the scene for `horizon_s` seconds, with at most `tries` motions. `random` returns numbers in [0, 1). Moving
+/// obstacles are assumed to continue their observed motion.
 ///
 /// # Errors
-/// Joint values or poses that the scene refuses.
+/// The scene rejects joint values or poses.
 #[allow(clippy::too_many_arguments, reason = "a state, a scene and the size of the search")]
 pub fn search_escape_tree(
     scene: &Scene,
@@ -88,7 +88,7 @@ pub fn search_escape_tree(
         if moving.is_free() && check.keeps_clear_of_fixed(&motion, obstacles, CLEARANCE_M)? {
             return Ok(EscapeTreeReport { tries: n + 1, gap_m: Some(gap_m), longest_s: horizon_s });
         }
-        // A random part of what is free of moving things, if it is free of fixed ones.
+        // A random part of the motion until the first moving obstacle, if this part is free of fixed obstacles.
         motion.horizon_s = free_s.min(trajectory.duration_s) * random();
         if motion.horizon_s <= 0.0 || !check.keeps_clear_of_fixed(&motion, obstacles, CLEARANCE_M)? {
             continue;

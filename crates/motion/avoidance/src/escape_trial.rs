@@ -1,29 +1,29 @@
-//! The escape that is examined, and the best one of a tick.
+//! The examined escape, and the best escape of a tick.
 
 use crate::escape_trajectory::EscapeTrajectory;
 
 /// Gap beyond which escapes are equally good, m.
 const ENOUGH_GAP_M: f64 = 0.15;
-/// Difference of gaps by which another escape is better, m.
+/// Smallest difference of gaps that makes another escape better, m.
 const BETTER_GAP_M: f64 = 0.02;
-/// Difference of durations by which another escape is better at the same gap, s.
+/// Smallest difference of durations that makes another escape better at the same gap, s.
 const BETTER_DURATION_S: f64 = 0.2;
 
-/// What is examined in a tick.
+/// The escapes examined in a tick.
 #[derive(Debug)]
 pub(crate) struct EscapeTrial {
     pub trajectory: EscapeTrajectory,
     pub target: Vec<f64>,
-    /// The best one of the tick.
+    /// The best escape of the tick.
     pub best: Option<EscapeCandidate>,
-    /// Number of the next target.
+    /// Index of the next target.
     pub index: usize,
-    /// The next target was begun before.
+    /// Whether the next target was already begun.
     pub is_repeated: bool,
 }
 
 impl EscapeTrial {
-    /// Of a robot at `q`.
+    /// Creates the trial for a robot at `q`.
     pub fn new(q: &[f64]) -> Self {
         Self {
             trajectory: EscapeTrajectory::new(q.len()),
@@ -43,12 +43,12 @@ pub(crate) struct EscapeCandidate {
 }
 
 impl EscapeCandidate {
-    /// Whether a larger gap would make it better.
+    /// Whether a larger gap would make the escape better.
     pub fn may_improve(&self) -> bool {
         self.gap_m < ENOUGH_GAP_M
     }
 
-    /// Largest gap first, as far as it matters, then the least time.
+    /// Compares by the larger gap, as far as it matters, then by the shorter duration.
     pub fn is_better_than(&self, other: &Self) -> bool {
         let [own, others] = [self, other].map(|e| e.gap_m.min(ENOUGH_GAP_M));
         own > others + BETTER_GAP_M

@@ -4,7 +4,7 @@ use std::ops::Sub;
 
 use elbowroom_scene::{CheckerStats, SweepOptions};
 
-/// Measured costs, ns: an upper estimate on the machine of `docs/measurements/avoidance.md` with other work on it.
+/// Measured costs, ns: upper estimates on the machine of `docs/measurements/avoidance.md` under other load.
 const QUERY_NS: u64 = 8_000;
 const EXACT_PAIR_NS: u64 = 6_000;
 const COARSE_PAIR_NS: u64 = 200;
@@ -14,7 +14,7 @@ const TRIANGLES_NS: u64 = 1_000;
 const SOLID_TRIANGLES_NS: u64 = 300;
 const MARGIN_NS: u64 = 8_000;
 
-/// An amount of work, ns. Equal on every machine, because tests are counted and not time.
+/// An amount of work, ns. Equal on every machine, because it counts tests instead of time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub(crate) struct EscapeWork(u64);
 
@@ -25,7 +25,7 @@ impl EscapeWork {
         Self(us as u64 * 1000)
     }
 
-    /// All that a checker did so far, and so many evaluations of a constraint.
+    /// All work of a checker so far, plus a number of evaluations of a constraint.
     pub(crate) fn of(stats: &CheckerStats, margins: u64) -> Self {
         let exact = stats.pairs_tested.l3;
         let coarse = stats.pairs_tested.total() - exact;
@@ -41,15 +41,16 @@ impl EscapeWork {
         )
     }
 
-    /// A sweep that ends when its exact tests alone have cost so much: what it has not proven by then counts as a hit. Its boxes and
-    /// triangles are counted once it has ended, so that the next one is shorter.
+    /// Options of a sweep that ends when its exact tests alone have used up this work: what it has not proven by then
+    /// counts as a hit. The boxes and triangles of the sweep are counted after its end, so that the next sweep is
+    /// shorter.
     pub(crate) fn sweep_options(self, clearance_m: f64) -> SweepOptions {
         let options = SweepOptions { clearance_m, ..SweepOptions::default() };
         let exact_tests = u32::try_from(self.0 / EXACT_PAIR_NS).unwrap_or(u32::MAX);
         SweepOptions { max_steps: options.max_steps.min(exact_tests), ..options }
     }
 
-    /// A share of it.
+    /// A fraction of the work.
     pub(crate) fn share(self, share: f64) -> Self {
         Self((self.0 as f64 * share) as u64)
     }
@@ -66,7 +67,7 @@ impl EscapeWork {
 impl Sub for EscapeWork {
     type Output = Self;
 
-    /// What is left; none where the other is more.
+    /// The remaining work; 0 if the other amount is larger.
     fn sub(self, other: Self) -> Self {
         Self(self.0.saturating_sub(other.0))
     }

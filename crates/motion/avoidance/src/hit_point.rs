@@ -1,9 +1,9 @@
-//! The point of a robot that is hit, and how fast its joints move it.
+//! The hit point of a robot, and the velocity that its joints give it.
 
 use elbowroom_kinematics::{Chain, ChainState, LinkId};
 use elbowroom_spatial::Vec3;
 
-/// How fast each joint moves a point at its top speed, in the frame of the base.
+/// Velocity that each joint gives a point at its top speed, in the frame of the base.
 #[derive(Debug)]
 pub(crate) struct HitPoint {
     /// Per joint, m/s.
@@ -18,8 +18,8 @@ impl HitPoint {
         Self { velocity: vec![Vec3::ZERO; n], chain: ChainState::new(chain), columns: vec![[0.0; 6]; n] }
     }
 
-    /// For a point of a link, given in the root frame (m), when the robot is where `place` writes; with the joints' top speeds,
-    /// rad/s or m/s.
+    /// Computes the velocities for a point of a link, given in the root frame (m), at the configuration that `place`
+    /// writes, with the joints' top speeds, rad/s or m/s.
     pub fn update(
         &mut self,
         chain: &Chain,

@@ -1,4 +1,4 @@
-//! Limits of the joints, as bounds of the next velocity.
+//! Joint limits as bounds of the next velocity.
 
 use std::fmt;
 
@@ -6,18 +6,18 @@ use elbowroom_kinematics::Chain;
 
 use crate::VelocityBounds;
 
-/// Square of the arrival speed per remaining time, both relative to a rise to full speed. At the deceleration of a rise 2
-/// would just stop in time: the rest is a reserve.
+/// Square of the arrival speed per remaining time, both relative to a rise to full speed. With 2, at the deceleration
+/// of a rise, the joint would just stop in time: the difference is a reserve.
 const ARRIVAL_SQUARE: f64 = 1.6;
-/// Smallest duration of a rise to full speed, s: the arrival speed stays finite.
+/// Smallest duration of a rise to full speed, s, so that the arrival speed stays finite.
 const MIN_RISE_S: f64 = 1e-6;
 
 /// Limits of one joint in rad (m for a prismatic joint), s and s².
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointLimit {
-    /// Lower position limit; −∞ for none.
+    /// Lower position limit; −∞ if the joint has no limit.
     pub lower: f64,
-    /// Upper position limit; +∞ for none.
+    /// Upper position limit; +∞ if the joint has no limit.
     pub upper: f64,
     /// Top speed.
     pub speed: f64,
@@ -36,7 +36,7 @@ pub enum LimitProblem {
     Acceleration,
     /// The deceleration of a stop is below the acceleration, or not finite.
     Stop,
-    /// The position limits are no range.
+    /// The position limits are not a range.
     Range,
 }
 
@@ -52,8 +52,8 @@ impl fmt::Display for LimitProblem {
 }
 
 impl JointLimit {
-    /// The limits of the independent joints of a chain. Full speed is reached in `rise_s` seconds and stopped in `stop_s`;
-    /// joints without a rated speed get `fallback_speed` (rad/s or m/s).
+    /// Limits of the independent joints of a chain. A joint reaches full speed in `rise_s` seconds and stops from it in
+    /// `stop_s`; joints without a rated speed get `fallback_speed` (rad/s or m/s).
     pub fn of(chain: &Chain, rise_s: f64, stop_s: f64, fallback_speed: f64) -> Vec<Self> {
         let joints = chain.active_joints().iter().map(|id| &chain.joints()[id.0].limits);
         joints
@@ -99,7 +99,8 @@ impl JointLimit {
         [-max_speed(q - self.lower), max_speed(self.upper - q)]
     }
 
-    /// The largest velocity after one tick: to rest at the deceleration of a stop, from there at the acceleration.
+    /// Largest velocity after one tick: slowing down to rest at the deceleration of a stop, then speeding up at the
+    /// acceleration.
     fn max_next(&self, qd: f64, dt: f64) -> f64 {
         let stopping_s = (-qd).max(0.0) / self.stop;
         if stopping_s >= dt { qd + self.stop * dt } else { qd.max(0.0) + self.acceleration * (dt - stopping_s) }
@@ -128,7 +129,7 @@ pub(crate) fn stop_s(limits: &[JointLimit], qd: &[f64]) -> f64 {
 }
 
 /// Brakes all joints in proportion at the deceleration of a stop, so that the robot stays on the straight line that was
-/// checked. A joint that would pass its limit stops by itself; `stoppable` are the velocities from which it can.
+/// checked. A joint that would pass its limit stops separately; `stoppable` are the velocities from which it can stop.
 pub(crate) fn brake(limits: &[JointLimit], stoppable: &[[f64; 2]], qd: &[f64], dt: f64, out: &mut [f64]) {
     let stop_s = stop_s(limits, qd);
     let left = if stop_s > dt { 1.0 - dt / stop_s } else { 0.0 };
@@ -137,7 +138,7 @@ pub(crate) fn brake(limits: &[JointLimit], stoppable: &[[f64; 2]], qd: &[f64], d
     }
 }
 
-/// The largest velocity as a fraction of the joint's top speed.
+/// Largest velocity as a fraction of the joint's top speed.
 pub(crate) fn speed_fraction(qd: &[f64], limits: &[JointLimit]) -> f64 {
     qd.iter().zip(limits).map(|(v, l)| v.abs() / l.speed).fold(0.0, f64::max)
 }
@@ -173,7 +174,7 @@ mod tests {
             |a: [f64; 2], b: [f64; 2]| assert!((a[0] - b[0]).abs() < 1e-12 && (a[1] - b[1]).abs() < 1e-12, "{a:?}");
         near(next(0.0), [-0.4, 0.4]);
         near(next(1.5), [0.5, 1.9]);
-        // Half of the tick to rest, the other half away from it.
+        // Half of the tick to rest, the other half speeding up again.
         near(next(0.5), [-0.2, 0.9]);
         near(next(-0.5), [-0.9, 0.2]);
     }

@@ -21,9 +21,9 @@ pub(crate) struct JointProfile {
 }
 
 impl JointProfile {
-    /// From `q` at the velocity `qd` to rest at `target`, as fast as the limit permits. A joint that moves away from the
-    /// target, or too fast to stop there, stops first and reverses; `reversal_wait_s` gives the time before it may move in a
-    /// direction (±1).
+    /// Moves from `q` at the velocity `qd` to rest at `target`, as fast as the limit permits. A joint that moves away
+    /// from the target, or too fast to stop there, stops first and reverses. `reversal_wait_s` returns the time before
+    /// it may move in a direction (±1).
     pub(crate) fn to_rest_at(
         target: f64,
         q: f64,
@@ -47,7 +47,7 @@ impl JointProfile {
         profile
     }
 
-    /// To rest in `stop_s` seconds at constant deceleration.
+    /// Stops in `stop_s` seconds at constant deceleration.
     pub(crate) fn stop(q: f64, qd: f64, stop_s: f64) -> Self {
         let acceleration = if stop_s > 0.0 { -qd / stop_s } else { 0.0 };
         let mut profile = Self { q, qd, max_speed: qd.abs(), ..Self::default() };
@@ -55,13 +55,14 @@ impl JointProfile {
         profile
     }
 
-    /// Accelerate, cruise, brake: `distance` in the direction `sign`, from the speed `speed` to rest.
+    /// Adds phases that accelerate, cruise and brake over `distance` in the direction `sign`, from the speed `speed` to
+    /// rest.
     fn ramp(&mut self, distance: f64, speed: f64, sign: f64, limit: &JointLimit) {
         let (a, d) = (limit.acceleration, limit.stop);
         // v²/(2a) − speed²/(2a) + v²/(2d) = distance
         let reachable = ((2.0 * distance + speed * speed / a) / (1.0 / a + 1.0 / d)).sqrt();
         let top = reachable.min(limit.speed);
-        // Faster than the top speed (a lower override): it slows down first.
+        // If the joint is faster than the top speed (a lower override), it slows down first.
         let rate = if speed > top { -d } else { a };
         let changed = (top * top - speed * speed) / (2.0 * rate);
         let cruise = (distance - changed - top * top / (2.0 * d)).max(0.0);
@@ -108,7 +109,8 @@ mod tests {
 
     use super::*;
 
-    /// The least time by brute force: to full speed in one direction, then in the other, each for a number of steps.
+    /// The least time by brute force: towards full speed in one direction, then in the other, each for a number of
+    /// steps.
     fn fastest_of_many(distance: f64, speed: f64, limit: &JointLimit) -> f64 {
         let mut best = f64::INFINITY;
         for n in 0..=4000 {
@@ -163,7 +165,7 @@ mod tests {
         let limit = JointLimit { lower: -9.0, upper: 9.0, speed: 2.0, acceleration: 4.0, stop: 10.0 };
         let profile =
             JointProfile::to_rest_at(-1.0, 0.0, 1.0, &limit, |direction| if direction < 0.0 { 0.25 } else { 0.0 });
-        // It stops in 0.1 s at 0.05 rad, and rests for the remaining 0.15 s.
+        // The joint stops in 0.1 s at 0.05 rad and rests for the remaining 0.15 s.
         assert!((profile.at(0.1).0 - 0.05).abs() < 1e-12);
         assert_eq!(profile.at(0.2), (profile.at(0.1).0, profile.at(0.2).1));
         assert!(profile.at(0.2).1.abs() < 1e-12 && profile.at(0.26).1 < 0.0);

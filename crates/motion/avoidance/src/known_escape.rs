@@ -1,24 +1,24 @@
-//! The escape that is known.
+//! The known escape.
 
 use crate::escape_trajectory::EscapeTrajectory;
 
-/// The escape that was proven last: it begins after the last command.
+/// The escape that was proven last; it begins after the last command.
 #[derive(Debug)]
 pub(crate) struct KnownEscape {
     pub trajectory: EscapeTrajectory,
     pub target: Vec<f64>,
-    /// Whether there is one.
+    /// Whether a proven escape is known.
     pub is_proven: bool,
-    /// It begins at the present state.
+    /// Whether the escape begins at the present state.
     pub is_fresh: bool,
-    /// Time since the robot follows it, s; `None` if it does not.
+    /// Time since the robot started to follow the escape, s; `None` if it does not follow it.
     pub followed_s: Option<f64>,
-    /// Number of ticks in which it was examined.
+    /// Number of ticks in which the escape was examined.
     pub examined: usize,
 }
 
 impl KnownEscape {
-    /// None, for a robot at `q`.
+    /// Creates a memory without an escape, for a robot at `q`.
     pub fn new(q: &[f64]) -> Self {
         Self {
             trajectory: EscapeTrajectory::new(q.len()),

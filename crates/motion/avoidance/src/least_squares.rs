@@ -4,10 +4,10 @@
 //! negative part (inequality). The minimum is unique and depends continuously on the data, so the commanded motion does not
 //! jump.
 //!
-//! Newton's method on the piecewise quadratic cost: with the constraints that are active at a point the cost is quadratic; an
-//! active-set method finds its minimum within the bounds (Stark and Parker 1995, "Bounded-variable least squares"), and a
-//! line search follows the step as far as the true cost falls. Where the same constraints are active at its end, it is the
-//! minimum.
+//! The solver is Newton's method on the piecewise quadratic cost. With the constraints that are active at a point, the
+//! cost is quadratic. An active-set method finds its minimum within the bounds (Stark and Parker 1995,
+//! "Bounded-variable least squares"), and a line search follows the step as far as the true cost falls. If the same
+//! constraints are active at its end, the end is the minimum.
 
 use elbowroom_spatial::linalg::solve_spd_in_place;
 
@@ -17,9 +17,9 @@ const MAX_STEPS: usize = 100;
 const FLAT_SLOPE: f64 = 1e-13;
 /// Step that counts as 0, relative to the unknown plus 1.
 const SHORT_STEP: f64 = 1e-14;
-/// Bisections of a line search: one per bit of a double's fraction.
+/// Number of bisections of a line search: one per bit of a double's fraction.
 const LINE_SEARCH_BISECTIONS: usize = 52;
-/// Largest number of active-set steps per unknown, one more unknown counted: each step frees an unknown at its bound.
+/// Largest number of active-set steps per unknown, counting one extra unknown: each step frees an unknown at its bound.
 const ACTIVE_SET_STEPS: usize = 8;
 
 /// A soft constraint `a·x = b` or `a·x ≥ b`.
@@ -29,7 +29,7 @@ pub struct SoftConstraint {
     pub a: Vec<f64>,
     /// Right-hand side.
     pub b: f64,
-    /// Weight beside `|x − t|²`, at least 0.
+    /// Weight relative to `|x − t|²`, at least 0.
     pub weight: f64,
     /// True for an inequality, false for an equality.
     pub at_least: bool,
@@ -42,13 +42,13 @@ impl SoftConstraint {
         if self.at_least { residual.min(0.0) } else { residual }
     }
 
-    /// True if the constraint adds to the cost at `x`.
+    /// Whether the constraint adds to the cost at `x`.
     fn is_active(&self, x: &[f64]) -> bool {
         !self.at_least || dot(&self.a, x) < self.b
     }
 }
 
-/// The solver and its workspace: allocated once for a number of unknowns and constraints.
+/// The solver and its workspace, allocated once for a number of unknowns and constraints.
 #[derive(Debug, Clone)]
 pub struct LeastSquares {
     n: usize,
@@ -65,7 +65,7 @@ pub struct LeastSquares {
     hessian: Vec<f64>,
     /// Gradient of the quadratic cost at 0.
     gradient_at_zero: Vec<f64>,
-    /// Cholesky factor of the Hessian of the free unknowns, and the step of those.
+    /// Cholesky factor of the Hessian of the free unknowns, and (in `free_step`) the step of the free unknowns.
     factor: Vec<f64>,
     free_step: Vec<f64>,
     /// Minimum of the quadratic cost, and the gradient there.
@@ -77,7 +77,7 @@ pub struct LeastSquares {
 }
 
 impl LeastSquares {
-    /// For `n` unknowns and at most `capacity` constraints.
+    /// Creates a solver for `n` unknowns and at most `capacity` constraints.
     pub fn new(n: usize, capacity: usize) -> Self {
         let constraint = SoftConstraint { a: vec![0.0; n], b: 0.0, weight: 0.0, at_least: false };
         Self {
@@ -117,8 +117,8 @@ impl LeastSquares {
         &self.constraints[..self.used]
     }
 
-    /// Writes the minimum to `x`, which is also the initial guess. Returns false, with `x` within the bounds, where a number
-    /// is not finite.
+    /// Writes the minimum to `x`, which is also the initial guess. Returns false, with `x` within the bounds, if a
+    /// number is not finite.
     pub fn solve(&mut self, x: &mut [f64]) -> bool {
         for j in 0..self.n {
             // Crossing bounds are replaced by their mean.
@@ -194,7 +194,7 @@ impl LeastSquares {
         }
     }
 
-    /// Moves the target to the minimum over the free unknowns; those that reach a bound are fixed there.
+    /// Moves the target to the minimum over the free unknowns; an unknown that reaches a bound is fixed there.
     fn descend(&mut self) {
         for _ in 0..=self.n {
             self.update_target_gradient();
@@ -250,14 +250,14 @@ impl LeastSquares {
         true
     }
 
-    /// Moves `x` towards the target as far as the true cost falls; true for the full step.
+    /// Moves `x` towards the target as far as the true cost falls; returns whether this is the full step.
     fn line_search(&mut self, x: &mut [f64]) -> bool {
         for j in 0..self.n {
             self.step[j] = self.target[j] - x[j];
         }
         let (mut low, mut high) = (0.0, 1.0);
         if self.slope_along(x, 1.0) > 0.0 {
-            // The slope along a line rises: bisection of its zero to rounding.
+            // The slope along the line increases: bisection of its zero down to rounding.
             for _ in 0..LINE_SEARCH_BISECTIONS {
                 let middle = f64::midpoint(low, high);
                 if self.slope_along(x, middle) > 0.0 { high = middle } else { low = middle }
@@ -273,7 +273,7 @@ impl LeastSquares {
         low == 1.0
     }
 
-    /// Slope of the true cost along the step, at a fraction of it.
+    /// Slope of the true cost at a fraction of the step.
     fn slope_along(&self, x: &[f64], fraction: f64) -> f64 {
         let own: f64 = (0..self.n).map(|j| (x[j] + fraction * self.step[j] - self.desired[j]) * self.step[j]).sum();
         let constraints = self.constraints().iter().filter(|c| c.weight > 0.0).map(|c| {

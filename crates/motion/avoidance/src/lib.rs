@@ -1,15 +1,15 @@
-//! Reactive avoidance: near an obstacle the planned motion is corrected, and resumed afterwards (Reichenbach and Kovačić
+//! Reactive avoidance: near an obstacle the planned motion is corrected and later resumed (Reichenbach and Kovačić
 //! 2003).
 //!
 //! | | |
 //! | --- | --- |
-//! | [`fuzzy`] | fuzzy control in general: variables, rules as sentences, Mamdani inference, control surfaces; data in TOML |
-//! | [`Rules`] | from distance and approach speed to the size and direction of a correction |
-//! | [`ReactiveController`] | one tick: from a desired joint velocity to one that evades, by weighted least squares on the Jacobians of the collision points |
-//! | [`Avoider`] | the control loop in a scene: sense, correct, check by a sweep, command; it leaves its path, waits, and returns |
+//! | [`fuzzy`] | general fuzzy control: variables, rules, Mamdani inference, control surfaces; data in TOML |
+//! | [`Rules`] | size and direction of a correction from distance and approach speed |
+//! | [`ReactiveController`] | one tick: turns a desired joint velocity into an evading one by weighted least squares |
+//! | [`Avoider`] | the control loop in a scene: sense, correct, check by a sweep, command; also waits and returns |
 //!
-//! Avoidance proposes a motion. A monitor of interference regions scales it afterwards; the monitor never depends on this
-//! crate.
+//! Avoidance proposes a motion, and a monitor of interference regions scales it afterwards. The monitor never depends
+//! on this crate.
 //!
 //! ```
 //! use elbowroom_avoidance::{
@@ -42,8 +42,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! **Invariant.** While a proven escape is known and obstacles move as predicted, a command after which no escape
-//! would be left is never given: the robot follows the known one instead.
+//! **Invariant.** While a proven escape is known and obstacles move as predicted, the avoidance never gives a command
+//! after which no escape would be left: the robot follows the known escape instead.
 
 mod avoider;
 mod border;

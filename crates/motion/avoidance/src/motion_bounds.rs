@@ -1,4 +1,4 @@
-//! Bounds of how far the joints can move the links: for proofs that nothing can collide before the next tick.
+//! Bounds of the motion of links by joints, for proofs that nothing can collide before the next tick.
 
 use elbowroom_kinematics::LinkId;
 use elbowroom_kinematics::motion_bound::motion_bound;
@@ -8,7 +8,7 @@ use elbowroom_spatial::Vec3;
 
 use crate::{ObstacleKind, ProximityPair};
 
-/// Metres per rad (or m) of each joint, per link, and per pair of links relative to each other.
+/// Bounds in metres per rad (or m) of each joint: per link, and per pair of links relative to each other.
 #[derive(Debug, Clone)]
 pub(crate) struct MotionBounds {
     links: usize,
@@ -18,8 +18,8 @@ pub(crate) struct MotionBounds {
 }
 
 impl MotionBounds {
-    /// The bounds of a robot; no point of an object that is attached to a link is farther than `attached_radius_m` (per link, m)
-    /// from the link's origin.
+    /// Computes the bounds of a robot. `attached_radius_m` is, per link, the largest distance of a point of an attached
+    /// object from the link's origin, m.
     fn new(robot: &Robot, attached_radius_m: impl Fn(LinkId) -> f64) -> Self {
         let chain = &robot.chain;
         let (links, joints) = (chain.links().len(), chain.dof());
@@ -34,7 +34,7 @@ impl MotionBounds {
             for b in 0..links {
                 let other = chain.path(LinkId(b));
                 let between: Vec<_> = path.iter().copied().filter(|j| !other.contains(j)).collect();
-                // Each link is moved by the joints that are not on the path of the other.
+                // Each link of a pair is moved by the joints that are not on the path of the other link.
                 for (joint, lever_arm) in motion_bound(chain, LinkId(a), radius(a), &between) {
                     bounds.of_pair[(a * links + b) * joints + joint] += lever_arm;
                     bounds.of_pair[(b * links + a) * joints + joint] += lever_arm;

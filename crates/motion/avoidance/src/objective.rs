@@ -3,7 +3,7 @@
 use crate::state_machine::ControlState;
 use crate::{Mode, PathKind, Reference};
 
-/// What the robot moves towards where nothing has to be evaded.
+/// The motion of the robot if nothing has to be evaded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Objective {
     /// The reference.

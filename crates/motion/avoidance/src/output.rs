@@ -36,19 +36,21 @@ pub struct AvoiderOutput {
     pub reaction: Reaction,
     /// Distance to the nearest dynamic obstacle, m; infinite if none is near.
     pub nearest_m: f64,
-    /// The key of the dynamic obstacle that requested the largest correction.
+    /// Key of the dynamic obstacle that requested the largest correction.
     pub governed_by: Option<usize>,
     /// Deviation from the path, in seconds of joint motion at full speed.
     pub path_deviation_s: f64,
-    /// The sweep found that the command, or a stop after it, would collide; the command was replaced by braking.
+    /// Whether the command was replaced by braking, because the sweep found that the command, or a stop after it, would
+    /// collide.
     pub braked: bool,
-    /// What the search for escapes did.
+    /// Result of the search for escapes.
     pub escape: EscapeState,
-    /// Computing time of the search for escapes, µs, counted in elementary tests times their measured costs: the same in every run.
+    /// Computing time of the search for escapes, µs, counted in elementary tests times their measured costs: equal in
+    /// every run.
     pub escape_work_us: u64,
-    /// A detour should be planned ([`crate::Avoider::plan_to`]): the robot is stationary off its path with no dynamic obstacle
-    /// to evade, or stalled for the stall timeout by stationary obstacles. While an obstacle that passes is still in the way the
-    /// plan fails: plan again half a second later.
+    /// Whether a detour should be planned ([`crate::Avoider::plan_to`]): the robot is stationary off its path with no
+    /// dynamic obstacle to evade, or has been stalled for the stall timeout by stationary obstacles. While a passing
+    /// obstacle is still in the way, planning fails: plan again half a second later.
     pub requests_detour: bool,
     /// Durations of the stages.
     pub times: StageTimes,

@@ -6,21 +6,22 @@ use crate::detour::SAME_CONFIGURATION_S;
 use crate::joint_limit::JointLimit;
 use crate::{PathKind, ProximityPair, ReactiveSettings, Reference};
 
-/// Share of the permitted decrease of a distance that the motion along the path takes: the rest is left to an evasion.
+/// Fraction of the permitted decrease of a distance that the motion along the path uses; the rest is left to an
+/// evasion.
 const APPROACH_SHARE: f64 = 0.5;
 
-/// The robot with respect to its path.
+/// The state of the robot relative to its path.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PathState<'a> {
     /// Commanded joint values.
     pub(crate) q: &'a [f64],
     pub(crate) limits: &'a [JointLimit],
     pub(crate) deviation_s: f64,
-    /// Deviation at which a path that may be left stops, s.
+    /// Deviation at which a path that may be left stops, in seconds of joint motion at full speed.
     pub(crate) max_deviation_s: f64,
 }
 
-/// True if the robot is so far off its path that the path does not advance.
+/// Whether the robot is so far off its path that the path does not advance.
 pub(crate) fn is_path_held(path: PathKind, deviation_s: f64, max_deviation_s: f64) -> bool {
     match path {
         PathKind::Continuous => deviation_s > SAME_CONFIGURATION_S,
@@ -28,7 +29,7 @@ pub(crate) fn is_path_held(path: PathKind, deviation_s: f64, max_deviation_s: f6
     }
 }
 
-/// The rate of the path, 0 to 1. `approach_rate` is the rate of a path that is kept near obstacles.
+/// Rate of the path, 0 to 1. `approach_rate` is the rate near obstacles of a path that must be kept.
 pub(crate) fn path_rate(reference: &Reference<'_>, state: &PathState<'_>, approach_rate: impl FnOnce() -> f64) -> f64 {
     let deviation_s = state.deviation_s;
     match reference.path {
@@ -40,13 +41,13 @@ pub(crate) fn path_rate(reference: &Reference<'_>, state: &PathState<'_>, approa
     }
 }
 
-/// Positive where the robot is ahead of the reference, in the norm of the joints' speeds.
+/// Signed lead of the robot over the reference, in the norm of the joints' speeds: positive if the robot is ahead.
 fn lead(reference: &Reference<'_>, state: &PathState<'_>) -> f64 {
     let joints = reference.qd.iter().zip(reference.q.iter().zip(state.q)).zip(state.limits);
     joints.map(|((v, (to, from)), l)| v * (from - to) / (l.speed * l.speed)).sum()
 }
 
-/// The rate at which the distances of dynamic obstacles decrease as fast as [`APPROACH_SHARE`] permits.
+/// Rate at which the distances of dynamic obstacles decrease as fast as [`APPROACH_SHARE`] permits.
 pub(crate) fn approach_rate<'a>(
     chain: &Chain,
     state: &ChainState,

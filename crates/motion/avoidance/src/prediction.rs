@@ -1,14 +1,16 @@
-//! Predicted motion of what was observed: constant velocity and turn rate.
+//! Predicted motion of observed obstacles: constant velocity and turn rate.
 
 use elbowroom_proximity::ccd::ConstantTwist;
 use elbowroom_spatial::{FrameMotion, Pose, Rotation};
 
 use crate::{Neighbour, ObservedObject};
 
-/// Another robot is predicted to move on for this time (s) and to rest afterwards: its joints reverse sooner than a vehicle.
+/// Time, s, for which another robot is predicted to continue its motion before it rests: its joints reverse sooner than
+/// a vehicle.
 const ROBOT_MOTION_S: f64 = 0.5;
 
-/// Pose and motion of an object after `t_s` seconds. Its velocity turns with it, as that of a vehicle in a curve.
+/// Pose and motion of an object after `t_s` seconds. Its velocity turns with it, like the velocity of a vehicle in a
+/// curve.
 fn after(object: &ObservedObject, t_s: f64) -> (Pose, FrameMotion) {
     let FrameMotion { velocity, angular_velocity, .. } = object.motion;
     let turn = Rotation::from_rotation_vector(angular_velocity * t_s);

@@ -25,14 +25,14 @@ pub struct ProximityPair {
 pub enum ObstacleKind {
     /// A link of the robot itself.
     OwnLink(LinkId),
-    /// A known obstacle at the pose of the scene: kept clear of, not evaded.
+    /// A known obstacle at the pose of the scene: the robot keeps its distance but does not evade it.
     Fixed,
-    /// A known obstacle with a known motion: kept clear of, not evaded.
+    /// A known obstacle with a known motion: the robot keeps its distance but does not evade it.
     KnownMoving {
         /// Velocity of the witness point, m/s.
         velocity: Vec3,
     },
-    /// A dynamic obstacle, or one that the path was not planned for: evaded.
+    /// A dynamic obstacle, or one that the path was not planned for: the robot evades it.
     Dynamic {
         /// Velocity of the witness point, m/s.
         velocity: Vec3,
@@ -40,7 +40,7 @@ pub enum ObstacleKind {
         centre: Vec3,
         /// Radius of the bounding sphere, m.
         radius_m: f64,
-        /// Identifies it between ticks: the side on which it passes is kept.
+        /// Identifies the obstacle between ticks, so that the robot keeps the side on which the obstacle passes.
         key: usize,
     },
 }
@@ -50,7 +50,7 @@ impl ObstacleKind {
         matches!(self, Self::Dynamic { .. })
     }
 
-    /// True for dynamic and known moving obstacles.
+    /// Whether the obstacle is dynamic or a known moving one.
     pub(crate) fn may_move(&self) -> bool {
         matches!(self, Self::Dynamic { .. } | Self::KnownMoving { .. })
     }

@@ -9,7 +9,7 @@ use crate::motion_bounds::MotionBounds;
 use crate::reactive_controller::MAX_PAIRS;
 use crate::{AvoidanceError, DynamicObstacles, ObservedObject, ObstacleKind, ProximityPair};
 
-/// Witness points closer than this give no direction, m.
+/// Distance below which witness points do not define a direction, m.
 const TOUCHING_M: f64 = 1e-7;
 
 /// A proximity pair and its geometries in the scene.
@@ -30,9 +30,9 @@ struct Observation {
 /// Range of a proximity query.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ProximityRange {
-    /// Within this distance (m) all obstacles that may move are found.
+    /// Distance (m) within which all obstacles that may move are found.
     pub(crate) dynamic_m: f64,
-    /// Within this distance (m) all obstacles are found, and those that can come so near within `ahead_s`.
+    /// Distance (m) within which all obstacles are found, including obstacles that can come as near within `ahead_s`.
     pub(crate) fixed_m: f64,
     /// Prediction time, s.
     pub(crate) ahead_s: f64,
@@ -45,20 +45,20 @@ pub(crate) struct ProximityQuery<'s> {
     pub(crate) robot: RobotId,
     pub(crate) checker: Checker<'s>,
     pub(crate) state: SceneState,
-    /// Per robot, for velocities.
+    /// Chain state per robot, for velocities.
     pub(crate) chains: Vec<ChainState>,
-    /// Per robot.
+    /// Motion bounds per robot.
     pub(crate) motion_bounds: Vec<MotionBounds>,
-    /// The nearest pair beyond [`MAX_PAIRS`]: of obstacles that may move, and of fixed ones.
+    /// The nearest pairs beyond [`MAX_PAIRS`]: with an obstacle that may move, and with a fixed one.
     pub(crate) excluded: [Option<ProximityPair>; 2],
     /// The pairs, nearest first.
     pub(crate) pairs: Vec<ProximityPair>,
-    /// The same pairs in the same order, with their geometries.
+    /// The same pairs in the same order, with their geometries in the scene.
     pub(crate) scene_pairs: Vec<ScenePair>,
     /// Radius of a sphere about each object's origin that encloses it.
     object_radii: Vec<f64>,
     observed: Vec<Option<Observation>>,
-    /// Per robot: whether it is known.
+    /// Per robot, whether the path was planned with it.
     known_robots: Vec<bool>,
     /// All geometries that may move, and the distance within which they are found, m.
     movable: Vec<(GeometryId, f64)>,
@@ -119,7 +119,7 @@ impl<'s> ProximityQuery<'s> {
         Ok(())
     }
 
-    /// Attaches an object to a link of any robot: it is a part of that robot from now on.
+    /// Attaches an object to a link of any robot, which makes it part of that robot.
     pub(crate) fn attach(&mut self, object: ObjectId, attachment: Attachment) -> Result<(), AvoidanceError> {
         let robot = attachment.robot;
         self.state.attach_at(self.scene, object, attachment)?;
@@ -128,7 +128,7 @@ impl<'s> ProximityQuery<'s> {
         Ok(())
     }
 
-    /// Detaches an object: it stays where it is, at the pose returned.
+    /// Detaches an object, which stays in place; returns its pose.
     pub(crate) fn detach(&mut self, object: ObjectId) -> Result<Pose, AvoidanceError> {
         let robot = self.state.attachment(object).map(|a| a.robot);
         self.state.detach(self.scene, object)?;
@@ -142,7 +142,7 @@ impl<'s> ProximityQuery<'s> {
         self.motion_bounds[robot.0] = MotionBounds::of_state(self.scene, &self.state, robot);
     }
 
-    /// The link that an attached object moves with; any other geometry itself.
+    /// The link with which an attached object moves; any other geometry itself.
     pub(crate) fn carrier(&self, geometry: GeometryId) -> GeometryId {
         carrier(&self.state, geometry)
     }
@@ -175,7 +175,7 @@ impl<'s> ProximityQuery<'s> {
         movable.clear();
         let objects =
             (0..self.observed.len()).filter(|o| self.observed[*o].is_some()).map(|o| GeometryId::Object(ObjectId(o)));
-        // One link stands for all links of a robot.
+        // One link represents all links of a robot.
         let robots = (0..self.chains.len()).filter(|r| *r != self.robot.0);
         let robots = robots.map(|robot| GeometryId::Link { robot: RobotId(robot), link: LinkId(0) });
         let reach = |m: GeometryId| range.dynamic_m.max(range.fixed_m + self.max_approach(m, obstacles, range.ahead_s));
@@ -207,7 +207,7 @@ impl<'s> ProximityQuery<'s> {
         checker.between(own, Selection::All).distances_within(state, range.fixed_m, |d| {
             found.extend(convert(&d).filter(|f| !f.pair.obstacle.may_move()));
         });
-        // Obstacles that may move are never excluded in favour of fixed ones.
+        // Fixed obstacles never displace obstacles that may move.
         let may_move = |f: &ScenePair| f.pair.obstacle.may_move();
         let by_distance = |a: &ScenePair, b: &ScenePair| a.pair.distance_m.total_cmp(&b.pair.distance_m);
         found.sort_unstable_by(|a, b| may_move(b).cmp(&may_move(a)).then(by_distance(a, b)));
@@ -239,7 +239,7 @@ struct PairConverter<'a> {
 }
 
 impl PairConverter<'_> {
-    /// `None` for a pair that the robot's joints do not change.
+    /// Converts a pair; `None` if the robot's joints do not change its distance.
     fn convert(&self, d: &PairDistance) -> Option<ProximityPair> {
         let own_link = |m: GeometryId| match carrier(self.state, m) {
             GeometryId::Link { robot, link } if robot == self.robot => Some(link),
@@ -269,7 +269,7 @@ impl PairConverter<'_> {
         })
     }
 
-    /// On contact the witness points give no direction: away from the origin of the other geometry.
+    /// Direction on contact, when witness points do not define one: away from the origin of the other geometry.
     fn away_on_contact(&self, on_link: Vec3, link: LinkId, other: GeometryId) -> Option<Vec3> {
         let origin = self.state.pose(self.scene, other)?.translation;
         let own = self.root_in_world * self.chains[self.robot.0].link_in_root(link);

@@ -1,12 +1,13 @@
-//! The reactive controller: from a desired joint velocity and the proximity pairs to a velocity that evades.
+//! The reactive controller: computes an evading joint velocity from a desired joint velocity and the proximity pairs.
 //!
 //! Each pair adds two rows to a weighted least-squares problem in the joint velocities ([`LeastSquares`]):
-//! - **evade** (dynamic obstacles): the collision point moves in the direction of the correction of the fuzzy rules, at least
-//!   at its speed, `u·J·q̇ ≥ size·V`;
-//! - **keep clear** (all obstacles): the distance decreases no faster than a stop allows, `ḋ ≥ −(d − d_min)/τ` (Faverjon and
-//!   Tournassoud 1987, "A local based approach for path planning of manipulators with a high number of degrees of freedom").
+//! - **evade** (dynamic obstacles): the collision point moves in the direction of the correction of the fuzzy rules, at
+//!   least at the speed of the correction, `u·J·q̇ ≥ size·V`;
+//! - **keep clear** (all obstacles): the distance decreases no faster than a stop allows, `ḋ ≥ −(d − d_min)/τ`
+//!   (Faverjon and Tournassoud 1987, "A local based approach for path planning of manipulators with a high number of
+//!   degrees of freedom").
 //!
-//! A border ([`Border`]) adds one row of the second kind: where the joints move towards a region, no faster than that.
+//! A border ([`Border`]) adds one row of the second kind: joints move towards a region no faster than a stop allows.
 //!
 //! The remaining degrees of freedom follow the desired velocity: motion beyond the task is minimal in the norm of the joints'
 //! top speeds, and the null space belongs to the task.
@@ -18,21 +19,21 @@ use crate::least_squares::{LeastSquares, SoftConstraint};
 use crate::side_selector::{ApproachingObstacle, SideSelector};
 use crate::{Border, ObstacleKind, ProximityPair, Rules, VelocityBounds};
 
-/// Largest number of proximity pairs that count: the nearest ones.
+/// Largest number of proximity pairs that count, nearest pairs first.
 pub(crate) const MAX_PAIRS: usize = 48;
 /// Weight of an evasion of size 1; the task has the weight 1.
 const EVADE_WEIGHT: f64 = 100.0;
 /// Weight of keeping clear: a desired full speed violates it by a millionth of the evasion speed.
 const KEEP_CLEAR_WEIGHT: f64 = 1e6;
-/// Weight of a border: at a border a monitor stops the robot, so that crossing it would not help to keep clear.
+/// Weight of a border: a monitor stops the robot at a border, so crossing it would not help to keep clear.
 const BORDER_WEIGHT: f64 = 1e8;
-/// Speed below which a motion has no direction, m/s.
+/// Speed below which a motion has no defined direction, m/s.
 const STATIONARY_M_S: f64 = 0.02;
 /// Speed of approach from which an obstacle is fully evaded even by a robot that keeps its path, m/s.
 const FULL_EVASION_M_S: f64 = 0.05;
 
-/// Smallest speed of the collision point with all joints at full speed that counts, m/s: the effort of a direction in which
-/// it hardly moves stays finite.
+/// Smallest speed of the collision point with all joints at full speed that counts, m/s: the effort stays finite in a
+/// direction in which the point hardly moves.
 const MIN_POINT_SPEED_M_S: f64 = 1e-3;
 
 /// Settings of the reactive controller.
@@ -62,10 +63,10 @@ pub enum Mode {
     Transit,
     /// Back to a path: the approach speed does not include the robot's own motion.
     Return,
-    /// Along a path that must be kept: only obstacles that approach by their own motion are evaded. For the others the caller
-    /// slows down.
+    /// Along a path that must be kept: only obstacles that approach by their own motion are evaded. For the other
+    /// obstacles the caller slows down.
     KeepPath,
-    /// Along a detour that was checked with all stationary obstacles: only moving ones count.
+    /// Along a detour that was checked against all stationary obstacles: only moving obstacles count.
     Detour,
 }
 
@@ -78,8 +79,8 @@ pub struct VelocityTask<'a> {
     pub bounds: &'a VelocityBounds,
     /// The purpose of the desired velocity.
     pub mode: Mode,
-    /// False if all dynamic obstacles that move are predicted to pass: the rules then count only those at rest. Distances
-    /// are kept in any case.
+    /// False if all moving dynamic obstacles are predicted to pass: the rules then count only obstacles at rest.
+    /// Distances are kept in any case.
     pub is_on_collision_course: bool,
 }
 
@@ -88,11 +89,11 @@ pub struct VelocityTask<'a> {
 pub struct Reaction {
     /// Largest size of a correction, 0 to 1.
     pub size: f64,
-    /// Index of the pair with that correction.
+    /// Index of the pair that requests this correction.
     pub governing: Option<usize>,
-    /// Largest violation of keeping clear, m/s: above 0 an obstacle approaches faster than the robot can leave.
+    /// Largest violation of keeping clear, m/s; above 0, an obstacle approaches faster than the robot can move away.
     pub overrun_m_s: f64,
-    /// True if the desired velocity violates a constraint of an obstacle that may move.
+    /// Whether the desired velocity violates a constraint of an obstacle that may move.
     pub is_active: bool,
 }
 
@@ -114,7 +115,7 @@ pub struct ReactiveController {
 }
 
 impl ReactiveController {
-    /// For a chain with these top speeds (rad/s or m/s, positive, one per independent joint).
+    /// Creates a controller for a chain with these top speeds (rad/s or m/s, positive, one per independent joint).
     pub fn new(chain: &Chain, speeds: &[f64], rules: Rules, settings: ReactiveSettings) -> Self {
         let n = chain.dof();
         let mut speeds = speeds.to_vec();
@@ -137,8 +138,8 @@ impl ReactiveController {
         &self.rules
     }
 
-    /// Writes the joint velocity that evades to `out`. `state` holds the present poses of the links; only the first 48 pairs
-    /// count, so sort them by distance.
+    /// Writes the evading joint velocity to `out`. `state` holds the present poses of the links. Only the first 48
+    /// pairs count, so sort them by distance.
     pub fn react(
         &mut self,
         chain: &Chain,
@@ -150,7 +151,7 @@ impl ReactiveController {
         self.react_within(chain, state, task, pairs, None, out)
     }
 
-    /// As [`react`](Self::react), within a border.
+    /// Like [`react`](Self::react), within a border.
     pub fn react_within(
         &mut self,
         chain: &Chain,
@@ -180,7 +181,7 @@ impl ReactiveController {
             let size = self.evade(pair, task);
             let counts = match pair.obstacle {
                 ObstacleKind::Dynamic { .. } => true,
-                // The path was planned with it.
+                // The path was planned with the obstacle.
                 ObstacleKind::KnownMoving { .. } => matches!(task.mode, Mode::Detour | Mode::Return),
                 ObstacleKind::OwnLink(_) | ObstacleKind::Fixed => false,
             };
@@ -196,7 +197,7 @@ impl ReactiveController {
             self.keep_within(&border);
         }
         if !self.solver.solve(&mut self.scaled) {
-            // No finite solution: as slow as the bounds allow.
+            // Without a finite solution, the velocity is as low as the bounds permit.
             out.iter_mut().zip(&bounds.next).for_each(|(v, [low, high])| *v = 0.0_f64.clamp(*low, *high));
             return Reaction { is_active: true, ..reaction };
         }
@@ -225,7 +226,7 @@ impl ReactiveController {
         let s = &self.settings;
         let is_dynamic = pair.obstacle.is_dynamic();
         let free = pair.distance_m - if is_dynamic { s.clearance_m } else { s.fixed_clearance_m };
-        // The robot does not back away from known obstacles: there may be no space on the other side.
+        // The robot does not move away from known obstacles: there may be no space on the other side.
         let closing = if is_dynamic { free } else { free.max(0.0) } / s.closing_s;
         let b = (pair.away.dot(pair.obstacle_velocity()) - closing) / s.speed_m_s;
         self.add_constraint(pair.away, b, KEEP_CLEAR_WEIGHT);
@@ -238,7 +239,7 @@ impl ReactiveController {
         for (a, (slope, speed)) in constraint.a.iter_mut().zip(border.gradient.iter().zip(&self.speeds)) {
             *a = slope * speed / s.speed_m_s;
         }
-        // A robot that is nearer than the margin does not back away: its way may lead along the border.
+        // A robot nearer than the margin does not move away: its way may lead along the border.
         constraint.b = -border.margin_m.max(0.0) / s.closing_s / s.speed_m_s;
         (constraint.weight, constraint.at_least) = (BORDER_WEIGHT, true);
     }
@@ -261,7 +262,7 @@ impl ReactiveController {
             return 0.0;
         }
         let mut direction = pair.away;
-        // The obstacle's own velocity is steadier than the one relative to a moving arm.
+        // The obstacle's own velocity is steadier than its velocity relative to a moving arm.
         let approach = if velocity.length() > STATIONARY_M_S { velocity } else { relative };
         if let Some(along) = approach.try_normalize().filter(|_| approach.length() > STATIONARY_M_S) {
             let from_centre = pair.on_link - centre;
@@ -291,7 +292,7 @@ impl ReactiveController {
         self.sides.select(obstacle, max_speed, effort)
     }
 
-    /// Adds the constraint that the collision point moves along `direction` at `b` times the evasion speed at least.
+    /// Adds the constraint that the collision point moves along `direction` at least at `b` times the evasion speed.
     fn add_constraint(&mut self, direction: Vec3, b: f64, weight: f64) {
         let Some(constraint) = self.solver.add_constraint() else { return };
         for (a, p) in constraint.a.iter_mut().zip(&self.point) {

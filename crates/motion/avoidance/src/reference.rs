@@ -7,8 +7,8 @@ pub struct Reference<'a> {
     pub q: &'a [f64],
     /// Joint velocities at the full rate of the path (override 1), rad/s or m/s.
     pub qd: &'a [f64],
-    /// The largest share of a joint's top speed that the path uses, 0..1: detours and returns are not faster, unless
-    /// [`return_speed_fraction`](crate::AvoiderSettings::return_speed_fraction) asks for it.
+    /// Largest fraction of a joint's top speed that the path uses, 0..1: detours and returns are not faster, unless
+    /// [`return_speed_fraction`](crate::AvoiderSettings::return_speed_fraction) is set.
     pub speed_share: f64,
     /// The purpose of the path.
     pub path: PathKind,
@@ -17,8 +17,9 @@ pub struct Reference<'a> {
 /// The purpose of a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PathKind {
-    /// Every point counts (a seam, a line): the robot slows down rather than leaves it, and resumes it where it was left.
+    /// Every point counts (a seam, a line): the robot prefers slowing down to leaving the path, and resumes it where it
+    /// left it.
     Continuous,
-    /// Only the end counts: the robot may leave it and join it again farther on.
+    /// Only the end counts: the robot may leave the path and join it again farther on.
     PointToPoint,
 }

@@ -14,7 +14,7 @@ pub(crate) struct ReversalLimiter {
 }
 
 impl ReversalLimiter {
-    /// Reversals of a joint are at least `min_interval_s` seconds apart.
+    /// Creates a limiter with at least `min_interval_s` seconds between reversals of a joint.
     pub(crate) fn new(joints: usize, min_interval_s: f64) -> Self {
         Self { min_interval_s, sign: vec![0.0; joints], since_s: vec![f64::INFINITY; joints] }
     }
@@ -33,8 +33,8 @@ impl ReversalLimiter {
         }
     }
 
-    /// Time until a joint that moves at `qd` may move in a direction (±1), s; `speed` is its top speed. `qd` need not be
-    /// recorded yet.
+    /// Time until a joint that moves at `qd` may move in a direction (±1), s; `speed` is its top speed. `qd` may be a
+    /// velocity that is not recorded yet.
     pub(crate) fn wait_s(&self, joint: usize, qd: f64, speed: f64, direction: f64) -> f64 {
         let moves = qd.abs() > REST_FRACTION * speed;
         let (sign, since_s) = match self.sign[joint] {
@@ -44,7 +44,7 @@ impl ReversalLimiter {
         if sign * direction < 0.0 { (self.min_interval_s - since_s).max(0.0) } else { 0.0 }
     }
 
-    /// True if a motion from rest reverses no joint that reversed recently.
+    /// Whether a motion from rest reverses only joints that have not reversed recently.
     pub(crate) fn allows(&self, velocity: impl Iterator<Item = f64>) -> bool {
         let mut joints = velocity.zip(&self.sign).zip(&self.since_s);
         joints.all(|((v, sign), since)| v * sign >= 0.0 || *since >= self.min_interval_s)

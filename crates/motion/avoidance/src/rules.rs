@@ -1,12 +1,12 @@
-//! The rules of avoidance: from distance and approach speed to the size and direction of a correction.
+//! The rules of avoidance: size and direction of a correction from distance and approach speed.
 
 use crate::fuzzy::{Controller, FuzzyError, Surface};
 
 /// The default rules, as text to copy and change.
 pub const DEFAULT_RULES: &str = include_str!("default.toml");
 
-/// A fuzzy controller with the inputs `proximity` (m) and `speed` (of approach, m/s) and the outputs `size` (share of
-/// the evasion speed, 0 to 1) and `direction` (degrees: 0 away from the obstacle, 90 perpendicular to its motion).
+/// A fuzzy controller with the inputs `proximity` (m) and `speed` (of approach, m/s) and the outputs `size` (fraction
+/// of the evasion speed, 0 to 1) and `direction` (degrees: 0 away from the obstacle, 90 perpendicular to its motion).
 ///
 /// ```
 /// use elbowroom_avoidance::Rules;
@@ -25,20 +25,21 @@ pub struct Rules {
 /// The correction that the rules request.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Correction {
-    /// Share of the evasion speed, 0 to 1.
+    /// Fraction of the evasion speed, 0 to 1.
     pub size: f64,
     /// 0: away from the obstacle; π/2: perpendicular to its motion, rad.
     pub direction_rad: f64,
 }
 
-/// Size below which the correction is 0: the sampled centre of gravity is not exact.
+/// Size below which the correction is 0, because the sampled centre of gravity is not exact.
 const MIN_SIZE: f64 = 1e-3;
 
 impl Rules {
     /// Reads rules in the form of [`DEFAULT_RULES`].
     ///
     /// # Errors
-    /// [`FuzzyError`] with the line: invalid text, or inputs, outputs or ranges that are not those of avoidance.
+    /// [`FuzzyError`] with the line: the text is invalid, or its inputs, outputs or ranges differ from those of
+    /// avoidance.
     pub fn from_toml(text: &str) -> Result<Self, FuzzyError> {
         let controller = Controller::from_toml(text)?;
         let names = |list: &[crate::fuzzy::Variable]| list.iter().map(|v| v.name.clone()).collect::<Vec<_>>();
@@ -77,8 +78,8 @@ impl Rules {
         self.controller.inputs()[0].range[1]
     }
 
-    /// The correction for a distance (m) and a speed of approach (m/s; negative counts as 0). NaN counts as contact, and as the
-    /// largest speed.
+    /// The correction for a distance (m) and a speed of approach (m/s; negative counts as 0). NaN counts as contact or
+    /// as the largest speed.
     pub fn correction(&self, distance_m: f64, approach_m_s: f64) -> Correction {
         let max_speed = self.controller.inputs()[1].range[1];
         let speed = if approach_m_s.is_nan() { max_speed } else { approach_m_s };

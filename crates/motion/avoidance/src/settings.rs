@@ -9,8 +9,8 @@ pub struct AvoiderSettings {
     pub reactive: ReactiveSettings,
     /// Settings of the search for escapes.
     pub escape: EscapeSettings,
-    /// Speed of detours and of the return to the path, as a fraction of the joints' top speeds. `None`: half, and never faster than
-    /// the path ([`speed_share`](crate::Reference::speed_share)).
+    /// Speed of detours and of the return to the path, as a fraction of the joints' top speeds. `None`: half of the top
+    /// speeds, but never faster than the path ([`speed_share`](crate::Reference::speed_share)).
     pub return_speed_fraction: Option<f64>,
     /// Deviation at which a path that may be left stops, in seconds of joint motion at full speed.
     pub max_deviation_s: f64,
@@ -20,9 +20,9 @@ pub struct AvoiderSettings {
     pub stall_timeout_s: f64,
 }
 
-/// Unless the path is slower, detours and returns have this fraction of the joints' top speeds.
+/// Speed of detours and returns unless the path is slower, as a fraction of the joints' top speeds.
 const RETURN_SPEED: f64 = 0.5;
-/// However slow the path is, a robot that has left it returns with this fraction.
+/// Smallest speed of the return to the path, as a fraction of the joints' top speeds, however slow the path is.
 const LEAST_RETURN_SPEED: f64 = 0.01;
 
 impl AvoiderSettings {
@@ -33,7 +33,8 @@ impl AvoiderSettings {
 }
 
 impl Default for AvoiderSettings {
-    /// Half the speed, or that of the path; 0.4 s of deviation; 0.25 s between reversals; a stall timeout of 0.6 s.
+    /// Half the top speeds or the speed of the path; 0.4 s of deviation; 0.25 s between reversals; a stall timeout of
+    /// 0.6 s.
     fn default() -> Self {
         Self {
             reactive: ReactiveSettings::default(),

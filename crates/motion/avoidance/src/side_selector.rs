@@ -1,31 +1,31 @@
-//! Selects the side to which the robot evades an obstacle: where it leaves the path of the obstacle soonest, with the
-//! smallest motion.
+//! Selects the side to which the robot evades an obstacle: the side where the robot leaves the path of the obstacle
+//! soonest, with the smallest motion.
 
 use elbowroom_spatial::Vec3;
 
 /// Number of candidate directions around the path of an obstacle.
 const CANDIDATES: usize = 8;
-/// A selected side is kept unless another is cheaper by more than this fraction …
+/// A selected side is kept unless another side is cheaper by more than this fraction …
 const HYSTERESIS_FRACTION: f64 = 1.0;
-/// … and this time, s: joints that reverse brake first, and rest for a while.
+/// … and this time, s: joints that reverse brake first and rest for a while.
 const HYSTERESIS_S: f64 = 0.3;
 /// Cost of a second of joint motion relative to a second of waiting.
 const MOTION_WEIGHT: f64 = 0.3;
-/// Smallest speed in a direction that counts, m/s: the cost of a direction in which the point cannot move stays finite.
+/// Smallest speed in a direction that counts, m/s: the cost stays finite in a direction in which the point cannot move.
 const MIN_SPEED_M_S: f64 = 1e-3;
 /// Number of obstacles whose side is stored.
 const CAPACITY: usize = 32;
-/// Ticks after which the side of an obstacle that was not requested again is removed.
+/// Number of ticks after which the side of an obstacle that was not requested again is removed.
 const EXPIRY_TICKS: u64 = 100;
 
-/// An approaching obstacle, relative to the collision point that leaves its path.
+/// An approaching obstacle, relative to the collision point that leaves the obstacle's path.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ApproachingObstacle {
     /// Direction of its motion relative to the point, a unit vector.
     pub(crate) direction: Vec3,
-    /// From the axis of its motion to the point, m.
+    /// Vector from the axis of the obstacle's motion to the point, m.
     pub(crate) offset: Vec3,
-    /// Distance from that axis at which the point is clear, m.
+    /// Distance from that axis at which the point is clear of the obstacle, m.
     pub(crate) clearance_m: f64,
     /// Identifies the obstacle between ticks.
     pub(crate) key: usize,
@@ -60,8 +60,9 @@ impl SideSelector {
         self.selected.retain(|s| s.tick + EXPIRY_TICKS > tick);
     }
 
-    /// The best direction, a unit vector perpendicular to the motion of the obstacle. For a direction, `max_speed` gives the
-    /// largest speed of the point (m/s) and `effort` the joint motion per metre (in seconds of a joint at full speed).
+    /// The best direction, a unit vector perpendicular to the motion of the obstacle. For a direction, `max_speed`
+    /// returns the largest speed of the point (m/s) and `effort` the joint motion per metre (in seconds of a joint at
+    /// full speed).
     pub(crate) fn select(
         &mut self,
         obstacle: &ApproachingObstacle,
@@ -70,7 +71,7 @@ impl SideSelector {
     ) -> Vec3 {
         let direction = obstacle.direction;
         let perpendicular = |v: Vec3| (v - direction * v.dot(direction)).try_normalize();
-        // All links leave the path on the same side: that of the first link, which is the nearest.
+        // All links leave the path on the side of the first link, which is the nearest.
         let same_tick = self.selected.iter().find(|s| s.key == obstacle.key && s.tick == self.tick);
         if let Some(side) = same_tick.and_then(|s| perpendicular(s.side)) {
             return side;

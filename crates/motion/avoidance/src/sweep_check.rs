@@ -13,9 +13,9 @@ use crate::{DynamicObstacles, ObservedObject, ProximityPair};
 
 /// Security margin of the sweep, m.
 const SECURITY_MARGIN_M: f64 = 1e-3;
-/// A sweep may cost as much as this share of the work of the escapes of a tick …
+/// Fraction of the escapes' work per tick that a sweep may use …
 const SHARE_OF_WORK: f64 = 0.5;
-/// … but so much in any case: without it the robot would brake on every way off its path.
+/// … but at least this much, because otherwise the robot would brake on every motion off its path.
 const LEAST_WORK: EscapeWork = EscapeWork::from_us(500);
 
 /// A motion at constant joint velocities.
@@ -25,7 +25,7 @@ pub(crate) struct VelocitySegment<'a> {
     pub(crate) q: &'a [f64],
     /// Joint velocities, rad/s or m/s.
     pub(crate) qd: &'a [f64],
-    /// The motion ends at the position limits.
+    /// Position limits, at which the motion ends.
     pub(crate) limits: &'a [JointLimit],
     /// Duration, s.
     pub(crate) duration_s: f64,
@@ -34,35 +34,36 @@ pub(crate) struct VelocitySegment<'a> {
 /// The first hit of a command.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct CommandHit {
-    /// As a fraction of the duration.
+    /// Time of the hit as a fraction of the duration.
     pub(crate) time: f64,
-    /// False if the work was used up first: then nothing is known of what comes after.
+    /// False if the work was used up first: then the rest of the motion was not checked.
     pub(crate) is_proven: bool,
 }
 
-/// Sweeps of a robot among neighbours and dynamic obstacles.
+/// Sweeps of a robot among other robots and dynamic obstacles.
 #[derive(Debug)]
 pub(crate) struct SweepCheck {
-    /// Per robot the configuration at the end.
+    /// Per robot, the configuration at the end.
     to: Vec<Vec<f64>>,
     /// Indices of the pairs that can close within the duration.
     near: Vec<usize>,
-    /// Per pair what its geometries move with: themselves, or the links that attached objects are attached to.
+    /// Per pair, the geometries with which its geometries move: themselves, or the links of attached objects.
     carriers: Vec<[GeometryId; 2]>,
-    /// What one sweep may cost.
+    /// Largest work of one sweep.
     work: EscapeWork,
 }
 
 impl SweepCheck {
-    /// For a search for escapes of so much work a tick (µs); what a sweep has not proven within its share counts as a hit.
+    /// Creates the check for a search for escapes with this work per tick (µs). What a sweep has not proven within its
+    /// fraction of the work counts as a hit.
     pub(crate) fn new(scene: &Scene, work_us: u32) -> Self {
         let work = EscapeWork::from_us(work_us).share(SHARE_OF_WORK).max(LEAST_WORK);
         let to = scene.robots().iter().map(|r| vec![0.0; r.robot.chain.dof()]).collect();
         Self { to, near: Vec::with_capacity(MAX_PAIRS), carriers: Vec::with_capacity(MAX_PAIRS), work }
     }
 
-    /// Where the segment first hits one of the pairs accepted by `filter`. All dynamic obstacles continue their present motion.
-    /// Only pairs that can close within the duration are swept.
+    /// Finds where the segment first hits one of the pairs accepted by `filter`. All dynamic obstacles continue their
+    /// present motion. Only pairs that can close within the duration are swept.
     pub(crate) fn first_hit(
         &mut self,
         query: &mut ProximityQuery<'_>,
@@ -118,7 +119,7 @@ impl SweepCheck {
         first.map(|time| CommandHit { time, is_proven })
     }
 
-    /// Updates the configurations of all robots at the end.
+    /// Updates the configurations of all robots at the end of the segment.
     fn update_ends(&mut self, robot: RobotId, segment: &VelocitySegment<'_>, obstacles: &DynamicObstacles<'_>) {
         for (j, to) in self.to[robot.0].iter_mut().enumerate() {
             let end = segment.q[j] + segment.qd[j] * segment.duration_s;
@@ -149,7 +150,7 @@ fn observed<'a>(obstacles: &'a DynamicObstacles<'_>, geometry: GeometryId) -> Op
     obstacles.objects.iter().find(|o| GeometryId::Object(o.object) == geometry)
 }
 
-/// The other robot that a geometry is a link of, where it reports its motion.
+/// The other robot to which a geometry belongs, if this robot reports its motion.
 fn neighbour(obstacles: &DynamicObstacles<'_>, geometry: GeometryId, robot: RobotId) -> Option<RobotId> {
     let GeometryId::Link { robot: other, .. } = geometry else { return None };
     (other != robot && obstacles.robots.iter().any(|n| n.robot == other)).then_some(other)

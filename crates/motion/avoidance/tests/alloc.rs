@@ -1,5 +1,5 @@
-//! A tick does not allocate, once the number of pairs and the length of the sweeps have been reached before. Without the test harness, whose threads
-//! allocate.
+//! A tick does not allocate once the number of pairs and the length of the sweeps have been reached before. Runs
+//! without the test harness, whose threads allocate.
 
 mod common;
 
@@ -29,7 +29,7 @@ fn main() {
         }
         corrected
     };
-    // Sweeps allocate where they are longer than any before.
+    // Sweeps allocate if they are longer than all before.
     for _ in 0..3 {
         assert!(pass() > 100);
     }

@@ -1,4 +1,4 @@
-//! The control loop on a small arm: it evades, returns to its path, and does not oscillate.
+//! The control loop on a small arm: the arm evades, returns to its path, and does not oscillate.
 
 use crate::common;
 use crate::common::{Ball, DT, Simulation, avoider, limits, scene};
@@ -116,7 +116,7 @@ fn a_head_on_approach_is_evaded_sideways() {
 #[test]
 fn what_is_predicted_to_pass_is_not_evaded() {
     let scene = scene();
-    // It passes the tip at 0.25 to 0.3 m, across and towards the base.
+    // The ball passes the tip at 0.25 to 0.3 m, across and towards the base.
     let passing = [(at(1.15, -1.0, 0.53), at(0.0, 0.5, 0.0)), (at(1.5, 0.42, 0.5), at(-0.5, 0.0, 0.0))];
     for (from, velocity) in passing {
         let ball = Ball { object: ObjectId(1), from, velocity, stops_s: f64::INFINITY };
@@ -280,7 +280,7 @@ fn invalid_input_is_refused_and_commands_nothing() {
         assert!(avoider.tick(dt, &reference, &DynamicObstacles::default(), 1.0).is_err());
     }
     assert_eq!(avoider.q(), LEAN);
-    // An arm inside the ball has no escape direction, and does not jump.
+    // An arm inside the ball has no escape direction and does not jump.
     let inside = ObservedObject {
         object: ObjectId(1),
         in_world: Pose::from_translation(at(0.6, 0.0, 0.6)),

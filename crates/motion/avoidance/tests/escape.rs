@@ -1,4 +1,4 @@
-//! Fast obstacles that are escaped from, and borders that are kept.
+//! Escapes from fast obstacles, and borders that are kept.
 
 use crate::common::{Ball, DT, Simulation, limits, scene};
 use elbowroom_avoidance::{
@@ -13,7 +13,7 @@ use elbowroom_testkit::random::Random;
 
 const LEAN: [f64; 3] = [0.0, 0.9, 0.6];
 
-/// A ball towards a point near the arm, from afar.
+/// A ball shot from afar towards a point near the arm.
 fn shot(random: &mut Random) -> Ball {
     let about = random.between(-3.1, 3.1);
     let climb = random.between(-0.3, 0.3);
@@ -103,12 +103,12 @@ fn the_work_of_a_tick_is_bounded_and_counted_alike_in_every_run() {
     };
     let most = |ticks: &[(EscapeState, u64)]| ticks.iter().map(|t| t.1).max().unwrap();
     let (free, tight) = (work(1_000_000), work(tight_us));
-    // The check of a stop is made in any case, and where it finds nothing it is all; a query that has begun ends.
+    // A stop is always checked, and if it is free, nothing else is computed; a query that has begun is finished.
     let stop = most(&work(0));
     let searching: Vec<(EscapeState, u64)> = tight.iter().copied().filter(|t| t.0 != EscapeState::Free).collect();
     assert!(most(&searching) <= u64::from(tight_us).max(stop) + 150, "{} {stop}", most(&searching));
     assert!(most(&free) > most(&searching) + 150, "{} {}", most(&free), most(&searching));
-    // With less work per tick an escape is found, only later.
+    // With less work per tick an escape is also found, but later.
     assert!(tight.iter().any(|t| t.0 == EscapeState::Known) && !work(0).iter().any(|t| t.0 == EscapeState::Known));
     assert_eq!(work(tight_us), tight);
 }
@@ -134,9 +134,9 @@ fn the_search_in_space_and_time_tells_what_can_be_escaped() {
     // Through the forearm in 1.2 s: the arm turns away.
     let forearm = search(Vec3::new(0.6, -1.2, 0.62), Vec3::new(0.0, 1.0, 0.0));
     assert!(forearm.gap_m.is_some_and(|gap| gap > 0.0) && forearm.longest_s == 2.5, "{forearm:?}");
-    // Too fast for that.
+    // Too fast for the arm to escape.
     assert_eq!(search(Vec3::new(0.6, -1.2, 0.62), Vec3::new(0.0, 60.0, 0.0)).gap_m, None);
-    // Far away: nothing need be done.
+    // Far away: no escape is needed.
     assert!(search(Vec3::new(6.0, -1.2, 0.5), Vec3::new(0.0, 1.0, 0.0)).gap_m.is_some_and(|gap| gap > 3.0));
 }
 
@@ -156,7 +156,7 @@ impl Wall {
         Self { state: ChainState::new(&robot.chain), robot, normal, at }
     }
 
-    /// Position of the end of the forearm along the normal.
+    /// Position of the end of the forearm along the normal, m.
     fn along(&mut self, q: &[f64]) -> f64 {
         self.state.q.copy_from_slice(q);
         self.robot.chain.forward(&mut self.state);
@@ -179,7 +179,7 @@ impl PathConstraint for Wall {
     }
 }
 
-/// How far the end of the forearm moves along a direction while a ball passes.
+/// Distance by which the end of the forearm moves along a direction while a ball passes.
 fn excursion(horizon_s: f64, normal: Vec3, wall_m: Option<f64>) -> f64 {
     let scene = scene();
     let escape = EscapeSettings { horizon_s, ..EscapeSettings::default() };

@@ -1,4 +1,4 @@
-//! The rules: inference compared with an oracle, properties of the default rules, and invalid texts.
+//! Rules: inference compared with an oracle, properties of the default rules, and invalid texts.
 
 use elbowroom_avoidance::fuzzy::{Controller, Rule, Set, Surface, Variable};
 use elbowroom_avoidance::{DEFAULT_RULES, Rules};
@@ -48,7 +48,7 @@ proptest! {
 
     #[test]
     fn nearer_and_faster_never_gives_a_smaller_correction(d in 0.0..1.0_f64, s in 0.0..2.0_f64, dd in 0.0..0.5_f64, ds in 0.0..0.5_f64) {
-        // Centres of gravity drop slightly between sets: the property holds to 4 % of the full size.
+        // Centres of gravity drop slightly between sets, so the property holds up to 4 % of the full size.
         let rules = Rules::default();
         let here = rules.correction(d, s).size;
         prop_assert!(rules.correction(d - dd, s).size >= here - 0.04);

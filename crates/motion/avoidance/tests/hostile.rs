@@ -32,7 +32,7 @@ fn clearance(clearance_m: f64) -> RrtConnectSettings {
     RrtConnectSettings { clearance_m, ..RrtConnectSettings::default() }
 }
 
-/// Distance of the robot from everything, with the ball at `place`.
+/// Distance of the robot from all obstacles, with the ball at `place`.
 fn distance(scene: &Scene, q: &[f64], place: Option<Vec3>) -> f64 {
     let mut state = SceneState::new(scene);
     state.set_q(scene, RobotId(0), q).unwrap();
@@ -80,7 +80,7 @@ fn an_object_that_is_no_longer_observed_is_assumed_stationary() {
 #[test]
 fn rules_with_less_reach_than_a_stop_cause_no_hit() {
     let scene = scene();
-    // All distances a tenth of the default ones.
+    // All distances are a tenth of the default ones.
     let text: String = elbowroom_avoidance::DEFAULT_RULES
         .lines()
         .scan(false, |near, line| {
@@ -144,7 +144,7 @@ fn detours_keep_to_limits_narrower_than_those_of_the_robot() {
         Avoider::new(&scene, RobotId(0), &HERE, &narrow, Rules::default(), AvoiderSettings::default()).unwrap();
     tick(&mut free, &HERE);
     free.plan_to(&THERE, &few).unwrap();
-    // The narrow limits leave no detour over the pillar.
+    // The narrow limits do not allow a detour over the pillar.
     (narrow[1].lower, narrow[2].lower, narrow[2].upper) = (0.7, 0.4, 0.8);
     let mut held =
         Avoider::new(&scene, RobotId(0), &HERE, &narrow, Rules::default(), AvoiderSettings::default()).unwrap();
@@ -309,7 +309,7 @@ fn after_a_failed_tick_the_robot_returns_without_a_jump() {
     avoider.tick(DT, &resting_at(&HERE), &none, 1.0).unwrap();
     let nan = [ball(at(f64::NAN, 0.0, 0.0), false)];
     assert!(avoider.tick(DT, &resting_at(&HERE), &DynamicObstacles { objects: &nan, robots: &[] }, 1.0).is_err());
-    // Its program advanced in the meantime.
+    // The robot's program advanced in the meantime.
     let on = [-0.7, 0.9, 0.6];
     for n in 0..2_000 {
         let before = avoider.q().to_vec();

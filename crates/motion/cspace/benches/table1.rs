@@ -1,8 +1,9 @@
-//! Table 1 of the joint-space paper reproduced, for its small arm and for one of a KR125's size:
+//! Reproduces table 1 of the joint-space paper for its small arm and for an arm of a KR125's size:
 //! `cargo bench -p elbowroom-cspace --bench table1`.
 //!
-//! To time and blocked cells it adds how many collisions lie in free cells (sampled anywhere, behind the base, and in free
-//! neighbours of blocked cells), and which share of the blocked cells is free in its whole box.
+//! In addition to times and blocked cells, it prints the number of collisions in free cells (sampled anywhere, behind
+//! the base, and in free neighbours of blocked cells) and the fraction of blocked cells that are free in their whole
+//! box.
 
 #![allow(clippy::print_stdout, reason = "a bench prints")]
 #![allow(clippy::unwrap_used, reason = "the numbers are constants")]
@@ -33,7 +34,8 @@ const MODELS: [(ObstacleModel, &str); 7] = [
 ];
 
 fn main() {
-    // The solid of the paper's volumes, 60 x 60 x 140 mm; its limits, -30 degrees and 90 degrees, in this crate's angles.
+    // The solid of the paper's volumes, 60 x 60 x 140 mm; its limits, -30 degrees and 90 degrees, in this crate's
+    // angles.
     let solid = cuboid([0.22, 0.08, 0.05], 0.3, [0.03, 0.03, 0.07]);
     let limits = [[-150.0, 150.0], [-40.0, 120.0], [-90.0, 0.0]];
     reproduce("The paper's arm, 5 degrees", &PlanarArm::PAPER, &grid_of(5.0, limits), &solid, true);

@@ -17,7 +17,7 @@ pub(crate) fn set_range(words: &mut [u64], first: u16, last: u16) {
     words[to] |= tail;
 }
 
-/// Positions of the bits that are set, ascending.
+/// Positions of the set bits, ascending.
 pub(crate) fn ones(mut word: u64) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
         let bit = (word != 0).then(|| word.trailing_zeros() as usize)?;
@@ -26,7 +26,7 @@ pub(crate) fn ones(mut word: u64) -> impl Iterator<Item = usize> {
     })
 }
 
-/// Calls `found(first, last)` for every run of bits that are set.
+/// Calls `found(first, last)` for every run of set bits.
 pub(crate) fn for_each_run(words: &[u64], mut found: impl FnMut(u16, u16)) {
     let end = words.len() * 64;
     let mut k = 0;

@@ -3,7 +3,7 @@
 use crate::bits::ones;
 use crate::{CellIndex, OccupancyBitmap};
 
-/// One word of a row before and after.
+/// One word of a row before and after an update.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct ChangedWord {
     row: u32,
@@ -25,7 +25,7 @@ impl CellChanges {
         self.words.clear();
     }
 
-    /// Records a row before and after.
+    /// Records a row before and after an update.
     #[inline]
     pub(crate) fn record_row(&mut self, row: usize, was: &[u64], now: &[u64]) {
         for index in 0..was.len().min(now.len()) {
@@ -36,7 +36,7 @@ impl CellChanges {
         }
     }
 
-    /// The differences between two bitmaps of one shape; shared planes are skipped.
+    /// Computes the differences between two bitmaps of the same shape; skips shared planes.
     ///
     /// ```
     /// use elbowroom_cspace::{CellChanges, OccupancyBitmap, RowSpan};
@@ -59,7 +59,7 @@ impl CellChanges {
         changes
     }
 
-    /// True if nothing changed.
+    /// Whether no cell changed.
     pub fn is_empty(&self) -> bool {
         self.words.is_empty()
     }
@@ -74,7 +74,7 @@ impl CellChanges {
         self.words.iter().map(|w| (w.was & !w.now).count_ones() as usize).sum()
     }
 
-    /// Every cell that changed, in order, and whether it is blocked now.
+    /// Iterates over the changed cells in order, with whether each is blocked now.
     pub fn iter(&self) -> impl Iterator<Item = (CellIndex, bool)> + '_ {
         self.words.iter().flat_map(move |w| {
             let (plane, row) = (w.row / self.rows_per_plane, w.row % self.rows_per_plane);

@@ -44,40 +44,40 @@ pub enum ConvexObstacleError {
 }
 
 impl ConvexObstacle {
-    /// Limit of coordinates and sizes, metres: beyond, single precision would need coarse margins.
+    /// Limit of coordinates and sizes, metres: beyond it, single precision would need coarse margins.
     pub const MAX_COORDINATE_M: f64 = 1e5;
 
-    /// A sphere; centre in the arm's base frame, metres.
+    /// Creates a sphere; centre in the arm's base frame, metres.
     ///
     /// # Errors
-    /// A number that is not finite or too large, a negative radius.
+    /// A number is not finite or too large, or the radius is negative.
     pub fn sphere(center: Vec3, radius: f64) -> Result<Self, ConvexObstacleError> {
         validate_pose(&Pose::from_translation(center))?;
         validate_size(radius)?;
         Ok(Self { solid: ConvexShape::Sphere { center, radius } })
     }
 
-    /// A box around its frame's origin; half edge lengths in metres.
+    /// Creates a box around its frame's origin; half edge lengths in metres.
     ///
     /// # Errors
-    /// A number that is not finite or too large, a negative size.
+    /// A number is not finite or too large, or a size is negative.
     pub fn cuboid(in_base: Pose, half_extents: Vec3) -> Result<Self, ConvexObstacleError> {
         validate_pose(&in_base)?;
         half_extents.to_array().into_iter().try_for_each(validate_size)?;
         Ok(Self { solid: ConvexShape::Cuboid { in_base, half_extents } })
     }
 
-    /// A convex polyhedron.
+    /// Creates a convex polyhedron.
     ///
     /// # Errors
-    /// A number that is not finite or too large.
+    /// A number is not finite or too large.
     pub fn hull(in_base: Pose, hull: Arc<ConvexHull>) -> Result<Self, ConvexObstacleError> {
         validate_pose(&in_base)?;
         hull.vertices().iter().try_for_each(|v| validate_size(v.length()))?;
         Ok(Self { solid: ConvexShape::Hull { in_base, hull } })
     }
 
-    /// The same solid for `elbowroom-proximity`, and its pose in the arm's base frame.
+    /// The solid as a shape of `elbowroom-proximity`, and its pose in the arm's base frame.
     pub fn shape(&self) -> (Shape, Pose) {
         match &self.solid {
             ConvexShape::Sphere { center, radius } => {
@@ -96,7 +96,7 @@ impl ConvexObstacle {
         shape.aabb(&in_base)
     }
 
-    /// Corners in the arm's base frame; the centre of a sphere.
+    /// Corners in the arm's base frame; for a sphere its centre.
     pub fn corners(&self) -> Vec<Vec3> {
         match &self.solid {
             ConvexShape::Sphere { center, .. } => vec![*center],
@@ -109,7 +109,8 @@ impl ConvexObstacle {
         }
     }
 
-    /// The smallest sphere about the solid's centre that contains it: centre in the arm's base frame, radius, metres.
+    /// The smallest sphere around the solid's centre that contains it: centre in the arm's base frame, and radius,
+    /// metres.
     pub fn enclosing_sphere(&self) -> (Vec3, f64) {
         match &self.solid {
             ConvexShape::Sphere { center, radius } => (*center, *radius),

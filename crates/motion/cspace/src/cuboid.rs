@@ -1,8 +1,8 @@
-//! Boxes as half edge lengths: corners and bisection.
+//! Boxes given by half edge lengths: corners and bisection.
 
 use elbowroom_spatial::Vec3;
 
-/// Corners of a box about the origin; corner `i` is at the upper end of axis `b` where bit `b` of `i` is set.
+/// Corners of a box around the origin; corner `i` is at the upper end of axis `b` if bit `b` of `i` is set.
 pub(crate) fn corners(half: Vec3) -> [Vec3; 8] {
     let side = |i: usize, bit: u8| if i >> bit & 1 == 1 { 1.0 } else { -1.0 };
     std::array::from_fn(|i| Vec3::new(side(i, 0) * half.x, side(i, 1) * half.y, side(i, 2) * half.z))
@@ -10,9 +10,9 @@ pub(crate) fn corners(half: Vec3) -> [Vec3; 8] {
 
 /// A box bisected across its longest edge.
 pub(crate) struct Bisection {
-    /// Centre of the upper half; the lower half lies opposite.
+    /// Centre of the upper half; the centre of the lower half is opposite.
     pub offset: Vec3,
-    /// Half edge lengths of both.
+    /// Half edge lengths of the two halves.
     pub half: Vec3,
 }
 

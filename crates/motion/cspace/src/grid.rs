@@ -1,11 +1,11 @@
-//! Three axes, and the numbering of cells and rows.
+//! The grid of three axes, with the numbering of cells and rows.
 
 use crate::GridAxis;
 
-/// A cell by its number on each of the three axes.
+/// A cell by its index on each of the three axes.
 pub type CellIndex = [u16; 3];
 
-/// Three axes. A *plane* is all cells of one θ1, a *row* all cells of one θ1 and θ2; rows run along θ3.
+/// A grid of three axes. A *plane* is all cells of one θ1, a *row* all cells of one θ1 and θ2; rows run along θ3.
 ///
 /// ```
 /// use elbowroom_cspace::{Grid, GridAxis};
@@ -20,19 +20,19 @@ pub struct Grid {
     axes: [GridAxis; 3],
 }
 
-/// The grid has more cells than a dense table holds.
+/// The grid has more cells than a dense table can hold.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error("{0} x {1} x {2} cells are too many for a dense table (at most {MAX}): make the steps larger", MAX = Grid::MAX_CELLS)]
 pub struct TooManyCells(pub usize, pub usize, pub usize);
 
 impl Grid {
-    /// Most cells: 2³³ bits are 1 GiB.
+    /// Largest number of cells: 2³³ bits are 1 GiB.
     pub const MAX_CELLS: usize = 1 << 33;
 
     /// Joins three axes: base, shoulder, elbow.
     ///
     /// # Errors
-    /// More than [`Grid::MAX_CELLS`] cells.
+    /// The grid has more than [`Grid::MAX_CELLS`] cells.
     pub fn new(axes: [GridAxis; 3]) -> Result<Self, TooManyCells> {
         let [a, b, c] = [axes[0].count(), axes[1].count(), axes[2].count()];
         if a * b * c > Self::MAX_CELLS {
@@ -46,7 +46,7 @@ impl Grid {
         &self.axes
     }
 
-    /// Numbers of cells along the axes.
+    /// Number of cells along each axis.
     pub fn shape(&self) -> [usize; 3] {
         [self.axes[0].count(), self.axes[1].count(), self.axes[2].count()]
     }

@@ -1,12 +1,12 @@
-//! The range of one joint in cells.
+//! The range of one joint, divided into cells.
 
 use std::f64::consts::TAU;
 
-/// Most cells of one axis: ends of intervals are 16-bit.
+/// Largest number of cells of one axis: ends of intervals are 16-bit.
 const MAX_AXIS_CELLS: usize = 1 << 15;
 
-/// A joint's range in cells of equal width: cell `i` is centred on `min + (i + 1/2)·step` and holds all joint values within
-/// half a step of it.
+/// A joint's range in cells of equal width: cell `i` is centred on `min + (i + 1/2)·step` and contains all joint values
+/// within half a step of its centre.
 ///
 /// ```
 /// use elbowroom_cspace::GridAxis;
@@ -34,12 +34,12 @@ pub enum GridAxisError {
     NotFinite {
         /// Name of the joint.
         joint: String,
-        /// Which number.
+        /// The parameter.
         what: AxisParameter,
-        /// Its value, radians.
+        /// Value of the parameter, radians.
         value: f64,
     },
-    /// The upper limit is not above the lower one.
+    /// The upper limit is not above the lower limit.
     #[error("joint `{joint}`: its range is {min} to {max} rad: the upper limit must be above the lower one")]
     Empty {
         /// Name of the joint.
@@ -57,7 +57,7 @@ pub enum GridAxisError {
         /// The step, radians.
         step: f64,
     },
-    /// Too many cells.
+    /// The axis would have too many cells.
     #[error(
         "joint `{joint}`: a step of {step} rad gives {count:.0} cells, more than {MAX_AXIS_CELLS}: make the step larger"
     )]
@@ -66,12 +66,12 @@ pub enum GridAxisError {
         joint: String,
         /// The step, radians.
         step: f64,
-        /// How many cells there would be.
+        /// Number of cells that the axis would have.
         count: f64,
     },
 }
 
-/// A number that defines an axis.
+/// A parameter of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AxisParameter {
     /// Lower limit.
@@ -93,11 +93,12 @@ impl std::fmt::Display for AxisParameter {
 }
 
 impl GridAxis {
-    /// Divides `min..max` into cells of width `step`, all in radians. The last cell may extend beyond `max`: every joint
-    /// value within the limits has a cell.
+    /// Divides `min..max` into cells of width `step`, all in radians. The last cell may extend beyond `max`: every
+    /// joint value within the limits has a cell.
     ///
     /// # Errors
-    /// Limits or step not finite, an empty range, a step that is not positive, or more than 32,768 cells.
+    /// The limits or the step are not finite, the range is empty, the step is not positive, or there are more than
+    /// 32,768 cells.
     pub fn new(joint: impl Into<String>, min: f64, max: f64, step: f64) -> Result<Self, GridAxisError> {
         let joint = joint.into();
         let parameters = [(AxisParameter::Min, min), (AxisParameter::Max, max), (AxisParameter::Step, step)];
@@ -112,7 +113,7 @@ impl GridAxis {
         if step <= 0.0 {
             return Err(GridAxisError::Step { joint, step });
         }
-        // A range that is a whole number of steps but for rounding gets no additional cell at its end.
+        // If the range is a whole number of steps up to rounding, no cell is added at its end.
         let count = ((max - min) / step - 1e-9).ceil().max(1.0);
         if count > MAX_AXIS_CELLS as f64 {
             return Err(GridAxisError::TooMany { joint, step, count });
@@ -120,10 +121,10 @@ impl GridAxis {
         Ok(Self { joint, min, max, step, count: count as usize })
     }
 
-    /// The same in degrees.
+    /// Like [`GridAxis::new`], in degrees.
     ///
     /// # Errors
-    /// As [`GridAxis::new`].
+    /// The errors of [`GridAxis::new`].
     pub fn from_degrees(joint: impl Into<String>, min: f64, max: f64, step: f64) -> Result<Self, GridAxisError> {
         Self::new(joint, min.to_radians(), max.to_radians(), step.to_radians())
     }
@@ -158,12 +159,12 @@ impl GridAxis {
         self.min + (cell as f64 + 0.5) * self.step
     }
 
-    /// Lower border of a cell, radians; `border(count)` is the upper border of the last.
+    /// Lower border of a cell, radians; `border(count)` is the upper border of the last cell.
     pub fn border(&self, cell: usize) -> f64 {
         self.min + cell as f64 * self.step
     }
 
-    /// The cell of a joint value, `None` outside the limits and for NaN. Values are not taken modulo a turn.
+    /// The cell of a joint value; `None` outside the limits and for NaN. Values are not reduced by whole turns.
     pub fn cell(&self, value: f64) -> Option<usize> {
         let slack = 1e-9 * self.step;
         if !(value >= self.min - slack && value <= self.max + slack) {
@@ -177,7 +178,7 @@ impl GridAxis {
         ((self.min / TAU - 0.5).floor() as i32)..=((self.border(self.count) / TAU + 0.5).ceil() as i32)
     }
 
-    /// Cells that `lo..=hi` (radians, not modulo a turn) touches, borders included.
+    /// Cells that `lo..=hi` (radians, not reduced by whole turns) touches, borders included.
     pub(crate) fn cells_touching(&self, lo: f64, hi: f64) -> Option<(usize, usize)> {
         let slack = 1e-9;
         let first = ((lo - self.min) / self.step - slack).floor().max(0.0);

@@ -5,7 +5,7 @@ use crate::{
     PlanarMapError,
 };
 
-/// Obstacles of a planar arm as blocked cells of joint space, each in a layer of its own.
+/// Obstacles of a planar arm as blocked cells of joint space, one layer per obstacle.
 ///
 /// One thread owns the map and changes it; any number of threads read it through a [`MapReader`].
 ///
@@ -34,10 +34,10 @@ pub struct JointMap {
 }
 
 impl JointMap {
-    /// A map without obstacles.
+    /// Creates a map without obstacles.
     ///
     /// # Errors
-    /// As [`PlanarMapBuilder::new`].
+    /// The errors of [`PlanarMapBuilder::new`].
     pub fn new(arm: PlanarArm, grid: &Grid) -> Result<Self, PlanarMapError> {
         Ok(Self { builder: PlanarMapBuilder::new(arm, grid)?, map: LayerMap::new(grid) })
     }
@@ -57,24 +57,24 @@ impl JointMap {
         self.map.layers()
     }
 
-    /// True if a configuration (radians) lies in a blocked cell, and where it lies outside the limits.
+    /// Whether a configuration (radians) is in a blocked cell or outside the limits.
     pub fn is_blocked(&self, q: [f64; 3]) -> bool {
         self.map.is_blocked(q)
     }
 
-    /// Adds an obstacle, or replaces the one of this name; returns the cells that changed.
+    /// Adds an obstacle, or replaces the obstacle of this name; returns the cells that changed.
     pub fn set_obstacle(&mut self, name: &str, obstacle: &ConvexObstacle) -> &CellChanges {
         let mut layer = std::mem::take(&mut self.map.spare);
         self.builder.build_layer(obstacle, &mut layer);
         self.map.set_layer(name, layer)
     }
 
-    /// The same with a layer that was built elsewhere, for the same grid.
+    /// Like [`set_obstacle`](Self::set_obstacle), with a layer that was built elsewhere for the same grid.
     pub fn set_layer(&mut self, name: &str, layer: Layer) -> &CellChanges {
         self.map.set_layer(name, layer)
     }
 
-    /// Removes an obstacle; `None` if there is none of this name.
+    /// Removes an obstacle; `None` if the map has no obstacle of this name.
     pub fn remove_obstacle(&mut self, name: &str) -> Option<&CellChanges> {
         self.map.remove(name)
     }
@@ -95,7 +95,7 @@ impl JointMap {
         self.map.publish();
     }
 
-    /// A reader of the published occupancy, for another thread.
+    /// Creates a reader of the published occupancy, for another thread.
     pub fn reader(&self) -> MapReader {
         self.map.reader()
     }

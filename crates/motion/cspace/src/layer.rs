@@ -5,7 +5,7 @@ use crate::bits::{for_each_run, set_range};
 /// Blocked cells `first..=last` of one row; `row` counts θ1 · (cells of θ2) + θ2.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct RowSpan {
-    /// Number of the row.
+    /// Index of the row.
     pub row: u32,
     /// First blocked cell.
     pub first: u16,
@@ -13,14 +13,14 @@ pub struct RowSpan {
     pub last: u16,
 }
 
-/// The cells that one obstacle blocks: spans sorted by row; several in one row may overlap.
+/// The cells that one obstacle blocks: spans sorted by row; spans of one row may overlap.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Layer {
     pub(crate) spans: Vec<RowSpan>,
 }
 
 impl Layer {
-    /// A layer without blocked cells.
+    /// Creates a layer without blocked cells.
     pub fn new() -> Self {
         Self::default()
     }
@@ -30,7 +30,7 @@ impl Layer {
         &self.spans
     }
 
-    /// Keeps the cells that another layer blocks, too. `cells` is the number of cells of a row.
+    /// Keeps only the cells that another layer also blocks. `cells` is the number of cells of a row.
     pub fn intersect(&mut self, other: &Self, cells: usize) {
         let mut kept = Vec::with_capacity(self.spans.len().min(other.spans.len()));
         let (mut a, mut b) = (self.spans.as_slice(), other.spans.as_slice());
@@ -53,13 +53,13 @@ impl Layer {
         self.spans = kept;
     }
 
-    /// Bytes on the heap.
+    /// Memory on the heap, bytes.
     pub fn bytes(&self) -> usize {
         self.spans.capacity() * size_of::<RowSpan>()
     }
 }
 
-/// Removes the spans of one row and of earlier rows from the front of a list; returns those of the row.
+/// Removes the spans of one row and of earlier rows from the front of a list; returns the spans of the row.
 #[inline]
 pub(crate) fn take_row<'a>(spans: &mut &'a [RowSpan], row: u32) -> &'a [RowSpan] {
     let mut rest = *spans;

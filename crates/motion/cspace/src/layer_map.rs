@@ -7,8 +7,8 @@ use crate::layer::take_row;
 use crate::map_reader::{MapReader, MapSnapshot, PublishedMap};
 use crate::{CellChanges, CellIndex, Grid, Layer, OccupancyBitmap, RowSpan};
 
-/// Blocked cells of obstacles, each in a layer of its own. Layers come from a [`RobotMapBuilder`](crate::RobotMapBuilder) by
-/// [`BoxTree::to_layer`](crate::BoxTree::to_layer), or from a [`PlanarMapBuilder`](crate::PlanarMapBuilder), which a
+/// Blocked cells of obstacles, one layer per obstacle. Layers come from a [`RobotMapBuilder`](crate::RobotMapBuilder)
+/// by [`BoxTree::to_layer`](crate::BoxTree::to_layer), or from a [`PlanarMapBuilder`](crate::PlanarMapBuilder), which a
 /// [`JointMap`](crate::JointMap) contains.
 ///
 /// One thread owns the map and changes it; any number of threads read it through a [`MapReader`].
@@ -44,7 +44,7 @@ pub struct LayerMap {
     /// Union of `fixed` and all layers.
     occupancy: OccupancyBitmap,
     changes: CellChanges,
-    /// The layer that the last update replaced: its memory is reused.
+    /// The layer that the last update replaced, whose memory is reused.
     pub(crate) spare: Layer,
     row: Vec<u64>,
     version: u64,
@@ -52,7 +52,7 @@ pub struct LayerMap {
 }
 
 impl LayerMap {
-    /// A map without blocked cells.
+    /// Creates a map without blocked cells.
     pub fn new(grid: &Grid) -> Self {
         let occupancy = OccupancyBitmap::new(grid.shape());
         Self {
@@ -83,12 +83,13 @@ impl LayerMap {
         self.layers.iter().map(|(name, layer)| (name.as_str(), layer))
     }
 
-    /// True if a configuration (radians) lies in a blocked cell, and where it lies outside the limits.
+    /// Whether a configuration (radians) is in a blocked cell or outside the limits.
     pub fn is_blocked(&self, q: [f64; 3]) -> bool {
         self.grid.cell(q).is_none_or(|cell: CellIndex| self.occupancy.is_blocked(cell))
     }
 
-    /// Adds an obstacle as a layer built for this grid, or replaces the one of this name; returns the cells that changed.
+    /// Adds an obstacle as a layer built for this grid, or replaces the obstacle of this name; returns the cells that
+    /// changed.
     pub fn set_layer(&mut self, name: &str, layer: Layer) -> &CellChanges {
         let known = self.layers.iter().position(|(other, _)| other == name);
         let index = known.unwrap_or_else(|| {
@@ -101,7 +102,7 @@ impl LayerMap {
         &self.changes
     }
 
-    /// Removes an obstacle; `None` if there is none of this name.
+    /// Removes an obstacle; `None` if the map has no obstacle of this name.
     pub fn remove(&mut self, name: &str) -> Option<&CellChanges> {
         let index = self.layers.iter().position(|(other, _)| other == name)?;
         let old = std::mem::take(&mut self.layers[index].1);
@@ -132,7 +133,7 @@ impl LayerMap {
         self.published.store(MapSnapshot { occupancy: self.occupancy.clone(), version: self.version });
     }
 
-    /// A reader of the published occupancy, for another thread.
+    /// Creates a reader of the published occupancy, for another thread.
     pub fn reader(&self) -> MapReader {
         MapReader::new(Arc::clone(&self.published))
     }
@@ -153,7 +154,7 @@ impl LayerMap {
         }
     }
 
-    /// For rows of `W` words.
+    /// Updates rows of `W` words.
     fn update_short<const W: usize>(&mut self, index: usize, old: &Layer) {
         let Self { fixed, occupancy, changes, layers, .. } = self;
         let masks = fixed.masks::<W>();
@@ -199,16 +200,16 @@ impl LayerMap {
     }
 }
 
-/// The spans of all layers but one.
+/// The spans of all layers except one.
 fn others(layers: &[(String, Layer)], index: usize) -> Vec<&[RowSpan]> {
     layers.iter().enumerate().filter(|&(i, _)| i != index).map(|(_, (_, layer))| layer.spans()).collect()
 }
 
-/// Rows in which two layers differ.
+/// Iterates over the rows in which two layers differ.
 struct ChangedRows<'a> {
     was: &'a [RowSpan],
     now: &'a [RowSpan],
-    /// Number of rows of the grid: a layer built for another grid may have more.
+    /// Number of rows of the grid: a layer built for another grid may have more rows.
     rows: u32,
 }
 
@@ -217,7 +218,7 @@ impl<'a> ChangedRows<'a> {
         Self { was: was.spans(), now: now.spans(), rows: (occupancy.shape()[0] * occupancy.shape()[1]) as u32 }
     }
 
-    /// The next row, and its new spans.
+    /// The next row and its new spans.
     #[inline]
     fn next(&mut self) -> Option<(u32, &'a [RowSpan])> {
         while let Some(row) = first_row(self.was, self.now).filter(|&row| row < self.rows) {

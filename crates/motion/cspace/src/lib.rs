@@ -1,8 +1,8 @@
-//! Obstacles in configuration space: which joint values are in collision.
+//! Obstacles in configuration space: the joint values at which a robot is in collision.
 //!
-//! Joints are divided into cells ([`GridAxis`], [`Grid`]); an [`OccupancyBitmap`] has one bit per cell of three joints (base,
-//! shoulder, elbow). A cell is blocked if *any* configuration in its box is in collision, not by its centre alone (the
-//! joint-space paper, `docs/references.md`).
+//! Joints are divided into cells ([`GridAxis`], [`Grid`]); an [`OccupancyBitmap`] has one bit per cell of three joints
+//! (base, shoulder, elbow). A cell is blocked if *any* configuration in its box is in collision; testing only its
+//! centre would not be enough (the joint-space paper, `docs/references.md`).
 //!
 //! Three builders compute blocked cells:
 //!
@@ -30,8 +30,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! **Invariant.** For the robot model and the obstacles from which a builder made a layer, a free cell never contains
-//! a configuration that collides with them; a configuration outside the grid always counts as blocked.
+//! **Invariant.** For the robot model and the obstacles from which a builder made a layer, a free cell never contains a
+//! configuration that collides with them. A configuration outside the grid always counts as blocked.
 
 mod bits;
 mod cell_changes;

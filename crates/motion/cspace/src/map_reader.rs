@@ -15,7 +15,7 @@ pub struct MapSnapshot {
 }
 
 impl MapSnapshot {
-    /// Number of publications before it; 0 is the empty map.
+    /// Number of publications before this snapshot; 0 is the empty map.
     pub fn version(&self) -> u64 {
         self.version
     }
@@ -48,7 +48,7 @@ impl PublishedMap {
     }
 }
 
-/// Reads a map that another thread changes, without locks: a snapshot never changes while it is held.
+/// Reads, without locks, a map that another thread changes: a snapshot never changes while it is held.
 ///
 /// ```
 /// # use elbowroom_cspace::{ConvexObstacle, Grid, GridAxis, JointMap, PlanarArm};
@@ -79,19 +79,19 @@ impl MapReader {
         Self { published, current }
     }
 
-    /// The snapshot that this reader took last.
+    /// The snapshot that this reader loaded last.
     pub fn current(&self) -> &MapSnapshot {
         &self.current
     }
 
-    /// Takes the newest snapshot.
+    /// Loads the newest snapshot.
     pub fn latest(&mut self) -> &MapSnapshot {
         self.current = self.published.0.load_full();
         &self.current
     }
 
-    /// Takes the newest snapshot; returns exactly the cells that changed since the previous one, however many were published
-    /// between.
+    /// Loads the newest snapshot; returns exactly the cells that changed since the previous one, regardless of the
+    /// number of publications in between.
     pub fn refresh(&mut self) -> CellChanges {
         let before = Arc::clone(&self.current);
         self.latest();

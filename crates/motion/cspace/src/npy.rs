@@ -8,7 +8,7 @@ pub(crate) fn header(shape: &[usize]) -> Vec<u8> {
     // A Python tuple of one number ends with a comma.
     let sizes = sizes.join(", ") + if shape.len() == 1 { "," } else { "" };
     let text = format!("{{'descr': '|u1', 'fortran_order': False, 'shape': ({sizes}), }}");
-    // Magic, version, length; then the text, padded so that the data begins at a multiple of 64.
+    // Magic, version, length; then the text, padded so that the data begins at a multiple of 64 bytes.
     let before = 10;
     let padded = (before + text.len() + 1).next_multiple_of(64) - before;
     let mut out = Vec::with_capacity(before + padded);
@@ -21,7 +21,7 @@ pub(crate) fn header(shape: &[usize]) -> Vec<u8> {
 }
 
 impl OccupancyBitmap {
-    /// A `.npy` file: `uint8`, C order, axes θ1, θ2, θ3; 0 is free, 1 blocked.
+    /// Writes a `.npy` file: `uint8`, C order, axes θ1, θ2, θ3; 0 is free, 1 is blocked.
     ///
     /// ```
     /// use elbowroom_cspace::{OccupancyBitmap, RowSpan};

@@ -5,10 +5,10 @@ use std::sync::Arc;
 use crate::bits::{ones, set_range};
 use crate::{CellIndex, Layer, RowSpan};
 
-/// One bit per cell, 1 for blocked. A row is a whole number of 64-bit words, cell `k` is bit `k % 64` of word `k / 64`.
+/// One bit per cell, 1 for blocked. A row is a whole number of 64-bit words; cell `k` is bit `k % 64` of word `k / 64`.
 ///
-/// Planes (all rows of one θ1) are shared until written: a copy costs one counter per plane, a plane without a blocked cell
-/// costs nothing.
+/// Planes (all rows of one θ1) are shared until they are written: a copy costs one counter per plane, and a plane
+/// without blocked cells needs no memory of its own.
 ///
 /// ```
 /// use elbowroom_cspace::{RowSpan, OccupancyBitmap};
@@ -27,11 +27,11 @@ pub struct OccupancyBitmap {
     below: Arc<[u64]>,
 }
 
-/// Rows of at most this many words are written with precomputed masks.
+/// Largest number of words of rows that are written with precomputed masks.
 const MAX_MASKED_WORDS: usize = 8;
 
 impl OccupancyBitmap {
-    /// All cells free; numbers of cells along θ1, θ2, θ3.
+    /// Creates a bitmap with all cells free, given the numbers of cells along θ1, θ2, θ3.
     pub fn new(shape: [usize; 3]) -> Self {
         let words_per_row = shape[2].div_ceil(64);
         let free: Arc<[u64]> = vec![0; words_per_row * shape[1]].into();
@@ -43,12 +43,12 @@ impl OccupancyBitmap {
         Self { shape, words_per_row, planes: vec![Arc::clone(&free); shape[0]], free, below: below.into() }
     }
 
-    /// Numbers of cells along the axes.
+    /// Number of cells along each axis.
     pub fn shape(&self) -> [usize; 3] {
         self.shape
     }
 
-    /// 64-bit words of one row.
+    /// Number of 64-bit words of one row.
     pub fn words_per_row(&self) -> usize {
         self.words_per_row
     }
@@ -64,7 +64,7 @@ impl OccupancyBitmap {
         self.plane(row / self.shape[1]).get(start..start + self.words_per_row).unwrap_or(&[])
     }
 
-    /// True if the cell is blocked, and for a cell outside the grid: unknown is not free.
+    /// Whether the cell is blocked. A cell outside the grid counts as blocked, because its state is unknown.
     pub fn is_blocked(&self, cell: CellIndex) -> bool {
         let [i, j, k] = cell.map(usize::from);
         if i >= self.shape[0] || j >= self.shape[1] || k >= self.shape[2] {
@@ -92,7 +92,7 @@ impl OccupancyBitmap {
         }
     }
 
-    /// Blocks the cells of one span; those outside the grid are left out.
+    /// Blocks the cells of one span; ignores cells outside the grid.
     pub fn block(&mut self, span: RowSpan) {
         self.mark(std::slice::from_ref(&span));
     }
@@ -102,10 +102,10 @@ impl OccupancyBitmap {
         self.mark(layer.spans());
     }
 
-    /// Blocks the cells that are blocked in another table of this shape.
+    /// Blocks the cells that are blocked in another table of the same shape.
     ///
     /// # Panics
-    /// Where the other one has another shape.
+    /// The shapes differ.
     pub fn add_table(&mut self, other: &Self) {
         assert_eq!(self.shape, other.shape, "tables of one shape");
         for (plane, added) in self.planes.iter_mut().zip(&other.planes) {
@@ -152,12 +152,12 @@ impl OccupancyBitmap {
         Masks(self.below.as_chunks().0)
     }
 
-    /// All words of one θ1, for writing: no longer shared. Empty beyond the axis.
+    /// All words of one θ1, no longer shared, for writing. Empty beyond the axis.
     pub(crate) fn plane_mut(&mut self, plane: usize) -> &mut [u64] {
         self.planes.get_mut(plane).map_or(&mut [], |words| Arc::make_mut(words))
     }
 
-    /// True if both have the same plane in memory.
+    /// Whether the two bitmaps have the same plane in memory.
     pub(crate) fn shares(&self, other: &Self, plane: usize) -> bool {
         match (self.planes.get(plane), other.planes.get(plane)) {
             (Some(a), Some(b)) => Arc::ptr_eq(a, b),
@@ -165,7 +165,7 @@ impl OccupancyBitmap {
         }
     }
 
-    /// Blocked cells in order.
+    /// Iterates over the blocked cells in order.
     pub fn iter(&self) -> impl Iterator<Item = CellIndex> + '_ {
         (0..self.shape[0] * self.shape[1]).flat_map(move |row| {
             let (i, j) = ((row / self.shape[1]) as u16, (row % self.shape[1]) as u16);
@@ -186,7 +186,7 @@ impl PartialEq for OccupancyBitmap {
 pub(crate) struct Masks<'a, const W: usize>(&'a [[u64; W]]);
 
 impl<const W: usize> Masks<'_, W> {
-    /// Sets the cells of a span in a row; those outside the grid are left out.
+    /// Sets the cells of a span in a row; ignores cells outside the grid.
     #[inline]
     pub fn mark(self, row: &mut [u64; W], span: RowSpan) {
         let end = self.0.len().saturating_sub(1);

@@ -2,17 +2,17 @@
 
 use elbowroom_spatial::Vec3;
 
-/// A base axis (z, through the origin), a shoulder, an elbow; upper arm and forearm are capsules, wrist, tool and workpiece
-/// one sphere (the joint-space paper, section II).
+/// An arm with a base axis (z, through the origin), a shoulder and an elbow. Upper arm and forearm are capsules; wrist,
+/// tool and workpiece are one sphere (the joint-space paper, section II).
 ///
-/// In the plane of θ1, with `r` away from the base axis:
+/// In the plane of θ1, with `r` the distance from the base axis:
 ///
 /// - shoulder `(r, z) = (offset_m, height_m)`;
 /// - elbow = shoulder + `upper_length_m` · (sin θ2, cos θ2): θ2 is measured from the vertical, positive forward;
 /// - wrist = elbow + `fore_length_m` · (cos(θ2 + θ3), −sin(θ2 + θ3)): at θ3 = 0 the forearm is perpendicular to the upper
 ///   arm.
 ///
-/// An arm bent backwards has negative `r`.
+/// An arm that is bent backwards has negative `r`.
 ///
 /// ```
 /// use elbowroom_cspace::PlanarArm;
@@ -39,13 +39,13 @@ pub struct PlanarArm {
     pub wrist_radius_m: f64,
 }
 
-/// An arm with an invalid dimension.
+/// A dimension of the arm is invalid.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error("the arm's {dimension} is {value_m} m: it must be a finite number, {}", .dimension.range())]
 pub struct ArmError {
-    /// Which dimension.
+    /// The dimension.
     pub dimension: ArmDimension,
-    /// Its value, metres.
+    /// Value of the dimension, metres.
     pub value_m: f64,
 }
 
@@ -78,7 +78,7 @@ impl ArmDimension {
             }
     }
 
-    /// Its valid range in words.
+    /// Valid range of the dimension in words.
     fn range(self) -> &'static str {
         match self {
             Self::ShoulderOffset | Self::ShoulderHeight => "of either sign",
@@ -114,8 +114,9 @@ impl PlanarArm {
         wrist_radius_m: 0.22,
     };
 
-    /// The small arm of the joint-space paper: links of 225 mm and 165 mm, radius of the upper arm 85 mm. Its limits are
-    /// θ2 ≥ −30° above the horizontal and 90° ≤ the angle between the links, which [`PlanarArm::from_paper`] translates.
+    /// The small arm of the joint-space paper: links of 225 mm and 165 mm, radius of the upper arm 85 mm. Its limits
+    /// are θ2 ≥ −30° above the horizontal and 90° ≤ the angle between the links, which [`PlanarArm::from_paper`]
+    /// translates.
     pub const PAPER: Self = Self {
         offset_m: 0.0,
         height_m: 0.0,
@@ -126,8 +127,8 @@ impl PlanarArm {
         wrist_radius_m: 0.08,
     };
 
-    /// Converts joint values (rad) of the joint-space paper to those of this crate. The paper measures θ2 up from the
-    /// horizontal and θ3 as the angle between the links (π is stretched).
+    /// Converts joint values (rad) of the joint-space paper to joint values of this crate. The paper measures θ2 up
+    /// from the horizontal and θ3 as the angle between the links (π if the arm is stretched).
     ///
     /// ```
     /// use elbowroom_cspace::PlanarArm;
@@ -158,11 +159,10 @@ impl PlanarArm {
         [shoulder, elbow, wrist]
     }
 
-    /// Validates the dimensions.
+    /// Checks the dimensions.
     ///
     /// # Errors
-    /// A dimension that is not finite, a negative one (the shoulder's coordinates may be negative), or a link without
-    /// length.
+    /// A dimension is not finite or negative (the shoulder's coordinates may be negative), or a link has length 0.
     pub fn validate(&self) -> Result<(), ArmError> {
         let dimensions = [
             (ArmDimension::ShoulderOffset, self.offset_m),
@@ -182,7 +182,7 @@ impl PlanarArm {
         self.upper_radius_m.max(self.fore_radius_m).max(self.wrist_radius_m)
     }
 
-    /// Bound of the distance of any point of the arm from the base frame's origin, metres.
+    /// Upper bound of the distance of any point of the arm from the base frame's origin, metres.
     pub fn reach_m(&self) -> f64 {
         self.offset_m.hypot(self.height_m) + self.upper_length_m + self.fore_length_m + self.max_radius_m()
     }

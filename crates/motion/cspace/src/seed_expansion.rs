@@ -1,5 +1,5 @@
-//! The method of the joint-space paper, section IV: expansion from seeds, cell by cell, until the surface is closed. Kept
-//! as a reference.
+//! The method of the joint-space paper, section IV: expansion from seeds, cell by cell, until the surface is closed.
+//! Kept as a reference.
 
 use std::collections::VecDeque;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -14,22 +14,23 @@ use crate::{CellIndex, ConvexObstacle, Grid, OccupancyBitmap, PlanarArm, RowSpan
 pub struct SeedExpansion {
     /// The blocked cells.
     pub occupancy: OccupancyBitmap,
-    /// Cells that were tested by a distance query.
+    /// Number of cells tested by a distance query.
     pub tested: usize,
-    /// Cells blocked without a test, between two blocked neighbours.
+    /// Number of cells blocked without a test, between two blocked neighbours.
     pub filled: usize,
-    /// Seeds from inverse kinematics that lie in the grid.
+    /// Number of seeds from inverse kinematics in the grid.
     pub seeds: usize,
 }
 
-/// Blocks cells by expansion from seeds: inverse kinematics aims the forearm's tip and the upper arm at the obstacle (its
-/// centre and its outermost points), neighbours of blocked cells are tested until no free neighbour is untested, and cells
-/// between two blocked neighbours on opposite sides are blocked without a test.
+/// Blocks cells by expansion from seeds. Inverse kinematics aims the forearm's tip and the upper arm at the obstacle
+/// (its centre and its outermost points). Neighbours of blocked cells are tested until all free neighbours are tested.
+/// Cells between two blocked neighbours on opposite sides are blocked without a test.
 ///
-/// A cell is tested by comparing the distance at its centre with a bound of the displacement of each link within its half
-/// widths. The result is conservative *around a seed*; components of the blocked region without a seed are missed (joint
-/// limits can separate them), which is why the result is not a [`Layer`](crate::Layer): no map that guards takes it.
-/// [`CoverMapBuilder::expand_from_seeds`](crate::CoverMapBuilder::expand_from_seeds) does the same for any robot.
+/// The test of a cell compares the distance at its centre with a bound of the displacement of each link within its half
+/// widths. The result is conservative *around a seed*, but misses components of the blocked region without a seed
+/// (joint limits can separate them). For this reason the result is not a [`Layer`](crate::Layer), and a map that guards
+/// a robot cannot use it. [`CoverMapBuilder::expand_from_seeds`](crate::CoverMapBuilder::expand_from_seeds) does the
+/// same for any robot.
 ///
 /// ```
 /// use elbowroom_cspace::{ConvexObstacle, Grid, GridAxis, PlanarArm, expand_from_seeds};
@@ -73,9 +74,9 @@ struct Frontier<T> {
     may_touch: T,
     shape: [usize; 3],
     result: SeedExpansion,
-    /// One flag per cell: it was visited.
+    /// One bit per cell: whether it was visited.
     visited: OccupancyBitmap,
-    /// Blocked cells whose neighbours were not visited yet.
+    /// Blocked cells whose neighbours have not been visited yet.
     list: VecDeque<CellIndex>,
 }
 
@@ -164,7 +165,7 @@ fn capsule(a: Vec3, b: Vec3, radius: f64) -> (Shape, Pose) {
     (Shape::Capsule(Capsule { half_length, radius }), Pose::new(Rotation::from_z(along), (a + b) * 0.5))
 }
 
-/// Cells that inverse kinematics aims at the obstacle.
+/// Cells in which inverse kinematics aims the arm at the obstacle.
 fn seeds(arm: &PlanarArm, grid: &Grid, obstacle: &ConvexObstacle) -> Vec<CellIndex> {
     let (shape, in_base) = obstacle.shape();
     let outermost = [Vec3::X, -Vec3::X, Vec3::Y, -Vec3::Y, Vec3::Z, -Vec3::Z]
@@ -180,8 +181,9 @@ fn seeds(arm: &PlanarArm, grid: &Grid, obstacle: &ConvexObstacle) -> Vec<CellInd
     cells
 }
 
-/// Base rotated to the target or away from it; in that plane the forearm's tip at the target with the elbow on either side
-/// (the cosine rule, the paper's eqs. 9-14), or the upper arm pointing at it.
+/// Configurations that aim at a target: the base turned towards the target or away from it. In that plane, the
+/// forearm's tip is at the target with the elbow on either side (the cosine rule, the paper's eqs. 9-14), or the upper
+/// arm points at the target.
 fn configurations(arm: &PlanarArm, target: Vec3) -> Vec<[f64; 3]> {
     let mut result = Vec::new();
     let toward = target.y.atan2(target.x);
@@ -190,7 +192,7 @@ fn configurations(arm: &PlanarArm, target: Vec3) -> Vec<[f64; 3]> {
         // θ2 is measured from the vertical, forward.
         let (far, pointing) = (x.hypot(y), x.atan2(y));
         let (l1, l2) = (arm.upper_length_m, arm.fore_length_m);
-        // Out of reach, or too near for the forearm to fold back to: stretched, or folded.
+        // The target is out of reach, or too near for the forearm to fold back to it: stretched or folded.
         let cosine =
             |a: f64, b: f64, c: f64| ((a * a + b * b - c * c) / (2.0 * a * b).max(1e-12)).clamp(-1.0, 1.0).acos();
         let between = cosine(l1, l2, far);
@@ -206,7 +208,7 @@ fn configurations(arm: &PlanarArm, target: Vec3) -> Vec<[f64; 3]> {
     result
 }
 
-/// The configuration in the turn of the axes, clamped to the limits (the paper's limit cases).
+/// The cell of a configuration in the turn of the axes, clamped to the limits (the paper's limit cases).
 fn cell_within_limits(grid: &Grid, q: [f64; 3]) -> Option<CellIndex> {
     let mut within = q;
     for (value, axis) in within.iter_mut().zip(grid.axes()) {

@@ -1,4 +1,4 @@
-//! Boxes and convex polyhedra: no contact is missed, few cells are blocked needlessly.
+//! Boxes and convex polyhedra: every contact is found, few cells are blocked needlessly.
 
 use std::sync::Arc;
 
@@ -132,7 +132,7 @@ fn few_cells_are_blocked_needlessly() {
         let samples = if i == 0 { 4000 } else { 500 };
         let share = needless_share(&ARM, &grid, &occupancy, obstacle, samples, &mut random);
         println!("case {i}: {} blocked, {:.2} % needlessly", occupancy.blocked(), share * 100.0);
-        // A floor that only the wrist reaches blocks a thin shell: nearly every cell is at the boundary.
+        // A floor that only the wrist reaches blocks a thin shell, so nearly every cell is at the boundary.
         let most = [0.006, 0.03, 0.06][usize::from(i > 0) + usize::from(i == 11)];
         assert!(share <= most, "case {i}: {share}");
     }

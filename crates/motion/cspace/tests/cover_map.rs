@@ -1,4 +1,4 @@
-//! Maps on covers against single configurations: every collision is blocked.
+//! Maps on covers compared with single configurations: every collision is blocked.
 
 use std::sync::Arc;
 
@@ -124,8 +124,8 @@ fn obstacles_inside_a_closed_link_are_found() {
     check(&case, 20_000);
 }
 
-/// A cell of a link of two axes stands for all values of the third: where some of these are blocked by other links it is tested
-/// all the same.
+/// A cell of a link of two axes represents all values of the third axis: it is tested even if other links block some of
+/// these values.
 #[test]
 fn a_row_is_tested_where_another_link_blocks_its_first_cell() {
     let mut case = Case::new(vec![cuboid([0.6, 0.2, 0.6], [0.3, 0.2, 0.8], [0.2, 0.1, 0.3])]);
@@ -138,7 +138,7 @@ fn a_row_is_tested_where_another_link_blocks_its_first_cell() {
     assert!(map(&case, CoverMapSettings::default()).is_blocked(cell));
 }
 
-/// A torso with an arm on either side, each moved by a joint of its own.
+/// A torso with an arm on either side, each moved by its own joint.
 fn two_armed() -> Robot {
     let joint = |name: &str, parent: usize, child: usize, at: Vec3, axis: Vec3| Joint {
         name: name.into(),
@@ -166,7 +166,7 @@ fn two_armed() -> Robot {
 
 #[test]
 fn an_arm_is_tested_where_the_other_blocks_the_first_cell_of_the_row() {
-    // The wall is in reach of both arms, of the left one at its lower limit, too.
+    // The wall is in reach of both arms; the left arm reaches it also at its lower limit.
     let mut case = Case::new(vec![cuboid([0.35, 0.0, 0.7], [0.0; 3], [0.1, 1.0, 0.7])]);
     case.robot = two_armed();
     case.step = 6.0;
@@ -274,8 +274,8 @@ fn joints_that_follow_others_move_with_them() {
     assert!(touched * 3 >= rounds, "{touched} of {rounds}");
 }
 
-/// A random robot of three joints, and two more that follow the second and the third: turning or sliding, faster, slower or the
-/// other way round.
+/// A random robot of three joints, and two more that follow the second and the third: revolute or prismatic, faster,
+/// slower, or in the opposite direction.
 fn with_followers(random: &mut Random) -> Robot {
     let robot = random_robot(random);
     let mut joints = robot.chain.joints().to_vec();
@@ -312,8 +312,8 @@ fn with_followers(random: &mut Random) -> Robot {
     longer
 }
 
-/// The arm of `PlanarArm::KR125_SIZED` as links of round solids; its joints are 0 at these planar angles, and the third turns
-/// the other way round where `reversed`.
+/// The arm of `PlanarArm::KR125_SIZED` as links of round solids. Its joints are 0 at these planar angles; the third
+/// turns in the opposite direction if `reversed`.
 fn planar_robot(zero: [f64; 3], reversed: bool) -> Robot {
     let arm = PlanarArm::KR125_SIZED;
     let at = |x, z, pitch| Pose::from_xyz_rpy([x, 0.0, z], [0.0, pitch, 0.0]);
@@ -384,7 +384,7 @@ fn an_axis_of_more_than_a_turn_repeats() {
     check(&case, 20_000);
 }
 
-/// Counts the covers that it builds.
+/// A source that counts the covers that it builds.
 #[derive(Default)]
 struct CountedCovers(std::sync::atomic::AtomicUsize);
 

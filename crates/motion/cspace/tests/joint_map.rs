@@ -31,7 +31,7 @@ fn rebuilt(map: &JointMap, fixed: &[ConvexObstacle], obstacles: &[(usize, Convex
     occupancy
 }
 
-/// Applies changes to a copy of the occupancy before, and checks the previous state of each cell.
+/// Applies changes to a copy of the previous occupancy, and checks the previous state of each cell.
 fn apply(before: &OccupancyBitmap, changes: &CellChanges) -> Vec<CellIndex> {
     let mut cells: std::collections::BTreeSet<CellIndex> = before.iter().collect();
     for (cell, blocked) in changes.iter() {

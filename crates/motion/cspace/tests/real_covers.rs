@@ -1,4 +1,5 @@
-//! Maps of real robots on covers: time, a million configurations each, and the share of cells that are blocked needlessly.
+//! Maps of real robots on covers: time, a million configurations each, and the fraction of cells that are blocked
+//! needlessly.
 //!
 //! `cargo test --release -p elbowroom-cspace --test main real_covers:: -- --ignored --nocapture` (minutes; the data is not part of
 //! the repository). `SAMPLES` is the number of configurations.
@@ -12,7 +13,7 @@ use elbowroom_formats::robot::{LoadOptions, load};
 use elbowroom_spatial::{Pose, Vec3};
 use elbowroom_testkit::folder;
 
-/// Repetitions of which the fastest counts.
+/// Number of repetitions, of which the fastest counts.
 const REPETITIONS: usize = 5;
 
 #[test]
@@ -79,7 +80,7 @@ fn measure(name: &str, others: &str, case: &Case, samples: usize) {
     );
 }
 
-/// Processor time of all threads, ms: with other load the time that has passed says little.
+/// Processor time of all threads, ms: under other load the elapsed time is not meaningful.
 fn processor_ms() -> f64 {
     let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
     time.tv_sec as f64 * 1e3 + time.tv_nsec as f64 * 1e-6

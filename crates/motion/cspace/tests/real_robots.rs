@@ -1,5 +1,5 @@
-//! Maps of real robots: a million configurations each, no collision in a free cell; and the share of cells that are blocked
-//! needlessly.
+//! Maps of real robots: a million configurations each, all collisions in blocked cells; and the fraction of cells that
+//! are blocked needlessly.
 //!
 //! `cargo test --release -p elbowroom-cspace --test main real_robots:: -- --ignored --nocapture` (minutes; the data is not part of
 //! the repository).
@@ -43,7 +43,7 @@ fn no_collision_lies_in_a_free_cell() {
             let begin = Instant::now();
             let tree = case.builder().build(&solids).unwrap();
             let ms = begin.elapsed().as_secs_f64() * 1e3;
-            // Checked against the obstacles themselves, not their models.
+            // Compared with the obstacles themselves instead of their models.
             case.compare(&tree, samples);
             case.obstacles = solids;
             let needless = case.needless_share(&tree, 1000);

@@ -1,4 +1,4 @@
-//! Maps of any robot against single configurations: collisions are blocked, and hardly anything else.
+//! Maps of any robot compared with single configurations: collisions are blocked, and hardly any other cells.
 
 use std::sync::Arc;
 
@@ -48,7 +48,7 @@ fn meshes_floors_and_obstacles_over_the_base_axis() {
     let floor = (Shape::HalfSpace(HalfSpace), Pose::from_translation(Vec3::Z * 0.1));
     Case::new(vec![floor, (mesh.clone(), Pose::from_xyz_rpy([0.5, -0.3, 0.3], [0.2, 0.5, 0.1]))]).check(8000);
     Case::new(vec![(mesh.clone(), Pose::from_xyz_rpy([0.0, 0.0, 1.25], [0.2, 0.5, 0.1]))]).check(8000);
-    // Far around the arm, and so large that the arm is inside.
+    // Far around the arm, large enough that the arm is inside.
     Case::new(vec![(Shape::Mesh(Arc::new(box_mesh(1.4))), Pose::from_translation(Vec3::Z * 0.4))]).check(2000);
     let around = Case::new(vec![(Shape::Mesh(Arc::new(box_mesh(6.0))), Pose::IDENTITY)]).builder();
     let tree = around.build(&[(Shape::Mesh(Arc::new(box_mesh(6.0))), Pose::IDENTITY)]).unwrap();
@@ -284,7 +284,7 @@ fn an_obstacle_that_nearly_fills_a_closed_link_is_found() {
     case.robot.colliders[3].push(Collider { name: String::new(), shape: big, in_link });
     case.joints = vec![0, 1, 2];
     case.step = 4.0;
-    // Farther from there the box only cuts the link's surface, as in other tests.
+    // Farther away, the box only cuts the link's surface, as in other tests.
     let mut joints = case.robot.chain.joints().to_vec();
     for (joint, middle) in joints.iter_mut().zip([0.0, 1.2, 0.8]) {
         (joint.limits.lower, joint.limits.upper) = (middle - 0.5, middle + 0.5);

@@ -1,4 +1,5 @@
-//! The slices of any robot, its refined spheres, and its expansion from seeds, against the map with the robot's own solids.
+//! The slices of any robot, its refined spheres, and its expansion from seeds, compared with the map of the robot's own
+//! solids.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -32,7 +33,7 @@ fn slices(case: &Case) -> OccupancyBitmap {
     occupancy(&grid(case), &layers)
 }
 
-/// Cells that the map with the robot's own solids blocks, and those of them that `map` leaves free.
+/// Number of cells that the map of the robot's own solids blocks, and of those cells that `map` leaves free.
 fn exact_and_missed(case: &Case, map: &OccupancyBitmap) -> (usize, usize) {
     let tree = case.builder().build(&case.obstacles).unwrap();
     let [a, b, c] = map.shape();
@@ -46,7 +47,8 @@ fn exact_and_missed(case: &Case, map: &OccupancyBitmap) -> (usize, usize) {
     (exact, missed)
 }
 
-/// No exact cell and no collision is missed; returns the share of cells that the slices block beyond the exact ones.
+/// Checks that the slices block all exact cells and all collisions; returns the fraction of cells that they block
+/// beyond the exact ones.
 fn check(case: &Case, samples: usize) -> f64 {
     let map = slices(case);
     let (exact, missed) = exact_and_missed(case, &map);
@@ -125,7 +127,7 @@ fn slices_of_random_robots() {
     }
 }
 
-/// The same robot with joints that turn about other axes, the first one far either way.
+/// The robot with joints that turn about other axes, the first one far in both directions.
 fn turned(robot: &Robot, random: &mut Random) -> Robot {
     let mut joints = robot.chain.joints().to_vec();
     for joint in &mut joints {
@@ -147,7 +149,7 @@ fn slices_of_axes_of_more_than_a_turn() {
     for joint in &mut joints {
         (joint.limits.lower, joint.limits.upper) = (-6.0, 6.6);
     }
-    // The other way round.
+    // The opposite direction.
     joints[0].axis = -Vec3::Z;
     let chain = elbowroom_kinematics::Chain::new("turns", case.robot.chain.links().to_vec(), joints).unwrap();
     let colliders = case.robot.colliders.clone();
@@ -155,12 +157,12 @@ fn slices_of_axes_of_more_than_a_turn() {
     case.robot.colliders = colliders;
     case.step = 10.0;
     check(&case, 5000);
-    // Cells that are no share of a turn.
+    // The width of cells does not divide a turn.
     case.step = 11.0;
     check(&case, 5000);
 }
 
-/// Around the arm there is no hole, beside the axis there may be.
+/// The slice of a solid around the arm has no hole; the slice of a solid beside the axis may have holes.
 #[test]
 fn a_solid_around_the_arm_blocks_everything() {
     let mut case = Case::new(vec![(Shape::Mesh(Arc::new(box_mesh(6.0))), Pose::IDENTITY)]);
@@ -192,7 +194,7 @@ fn what_has_no_bounds_blocks_what_it_does_itself() {
         occupancy(&grid(case), &[builder.layer(&builder.obstacle(shape).unwrap(), at).unwrap()])
     };
     assert_eq!(slices(&case), itself(&case));
-    // A first joint that slides turns nothing.
+    // If the first joint is prismatic, it turns nothing.
     case.obstacles = vec![cuboid([0.6, 0.2, 0.5], [0.3, 0.2, 0.8], [0.2, 0.1, 0.3])];
     let mut joints = case.robot.chain.joints().to_vec();
     joints[0].kind = JointKind::Prismatic;
@@ -252,12 +254,12 @@ fn an_expansion_finds_what_hangs_together_with_its_seeds() {
     let (exact, missed) = exact_and_missed(&case, &found.occupancy);
     assert!(found.seeds > 0 && found.filled > 0 && found.tested < grid(&case).cells(), "{found:?}");
     assert_eq!(missed, 0, "of {exact}");
-    // Nothing beside a blocked cell is missed: a free neighbour is proven free.
+    // The expansion finds every blocked neighbour: a free neighbour of a blocked cell is proven free.
     compare(&case, &grid(&case), &found.occupancy, 5000);
 }
 
-/// Why no robot may rely on an expansion: seeds are where links are nearest to the centre of an obstacle, and one of two parts has
-/// nothing there.
+/// Shows why no robot may rely on an expansion: seeds are where links are nearest to the centre of an obstacle, and one
+/// of two parts contains no seed.
 #[test]
 fn an_expansion_misses_an_obstacle_of_two_parts() {
     let mesh = box_mesh(0.1);

@@ -1,4 +1,4 @@
-//! Spheres: no contact is missed, few cells are blocked needlessly.
+//! Spheres: every contact is found, few cells are blocked needlessly.
 
 use crate::common::{SampleCounts, Xorshift, fill, grid, missed_contacts, needless_share};
 use elbowroom_cspace::{ConvexObstacle, PlanarArm};

@@ -1,4 +1,4 @@
-//! Point clouds to the joint-space map of any robot.
+//! From point clouds to the joint-space map of any robot.
 
 use elbowroom_cspace::{CoverMapBuilder, LayerMap};
 use elbowroom_vision::cloud::{CloudStatus, CloudTracker, CloudTrackerSettings, PointCloud};
@@ -12,8 +12,8 @@ use crate::settings::PerceptionSettings;
 use crate::times::PerceptionTimes;
 use crate::watched_robots::{WatchedRobot, WatchedRobots};
 
-/// Turns point clouds into obstacles and keeps the joint-space map of a robot up to date: as
-/// [`ObstacleWatcher`](crate::ObstacleWatcher) does with camera frames.
+/// Turns point clouds into obstacles and keeps the joint-space map of a robot up to date, like
+/// [`ObstacleWatcher`](crate::ObstacleWatcher) for camera frames.
 ///
 /// ```
 /// use elbowroom_cspace::{CoverMapBuilder, CoverMapSettings, Grid, GridAxis, RemainingJoints};
@@ -39,18 +39,18 @@ use crate::watched_robots::{WatchedRobot, WatchedRobots};
 #[derive(Debug)]
 pub struct CloudWatcher {
     robots: WatchedRobots,
-    /// Known objects that do not move: points on them are no obstacles.
+    /// Known objects that do not move: points on them do not belong to obstacles.
     known: Vec<ArmPart>,
     tracker: CloudTracker,
     map: RobotMap,
 }
 
 impl CloudWatcher {
-    /// For the map that `builder` fills; points on the robots and on the `known` objects are removed. The first
-    /// [`CloudTrackerSettings::learning_clouds`] valid clouds must show the cell without obstacles.
+    /// Creates a watcher for the map that `builder` fills; points on the robots and on the `known` objects are removed.
+    /// The first [`CloudTrackerSettings::learning_clouds`] valid clouds must show the cell without obstacles.
     ///
     /// # Errors
-    /// Settings out of range.
+    /// A setting is out of range.
     pub fn new(
         robots: Vec<WatchedRobot>,
         builder: CoverMapBuilder,
@@ -78,16 +78,16 @@ impl CloudWatcher {
         self.map.prisms()
     }
 
-    /// The tracker: settings, numbers of points.
+    /// The tracker, with its settings and numbers of points.
     pub fn tracker(&self) -> &CloudTracker {
         &self.tracker
     }
 
-    /// Processes a cloud; `q` are the joint values of each robot at that time, rad or m.
+    /// Processes a cloud; `q` holds the joint values of each robot at that time, rad or m.
     ///
     /// # Errors
-    /// A cloud out of order, joint values that do not match the robots. The map is unchanged: unknown is not free. Where an
-    /// obstacle has no volume its cells are unchanged; the others are updated.
+    /// The cloud is out of order, or the joint values do not match the robots: the map is unchanged, because unknown is
+    /// not free. If an obstacle has no volume, its cells are unchanged and the other obstacles are updated.
     pub fn process_cloud(&mut self, cloud: &PointCloud, q: &[&[f64]]) -> Result<ObstacleUpdate, PerceptionError> {
         let mut parts = self.robots.parts(q)?;
         parts.extend(self.known.iter().cloned());

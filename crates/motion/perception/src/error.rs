@@ -2,15 +2,15 @@
 
 use elbowroom_vision::VisionError;
 
-/// Why a watcher cannot be created, or a frame cannot be used. The map is unchanged.
+/// Why a watcher cannot be created or a frame cannot be used. The map is unchanged.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PerceptionError {
     /// A setting that is negative or not finite.
     #[error("the setting `{name}` is {value}: write a finite number, 0 or more")]
     Setting {
-        /// Its name.
+        /// Name of the setting.
         name: &'static str,
-        /// Its value.
+        /// Value of the setting.
         value: f64,
     },
     /// The number of joint values does not match the robot, or one is not finite.
@@ -23,10 +23,10 @@ pub enum PerceptionError {
         /// Number of joints of the robot.
         dof: usize,
     },
-    /// The frame, the calibration or a setting of the camera.
+    /// The frame, the calibration or a setting of the camera is invalid.
     #[error(transparent)]
     Vision(#[from] VisionError),
-    /// An obstacle without a volume, or too far away.
+    /// An obstacle has no volume or is too far away.
     #[error("an observed obstacle cannot be put into the map: {0}")]
     Obstacle(String),
 }

@@ -1,9 +1,10 @@
-//! Perception: what cameras and point clouds see becomes obstacles with an identity, and these occupied cells of a robot's
-//! joint-space map.
+//! Perception: turns the observations of cameras and point clouds into obstacles with an identity, and these into
+//! occupied cells of a robot's joint-space map.
 //!
-//! An [`ObstacleWatcher`] takes in the frames of a camera, a [`CloudWatcher`] point clouds, each with the joint values of all robots
-//! at that time; both say in an [`ObstacleUpdate`] what changed. A planner on another thread reads the map through a
-//! lock-free reader. [`motion_entry`] has what a robot needs to enter a new path without a stop.
+//! An [`ObstacleWatcher`] processes the frames of a camera, a [`CloudWatcher`] point clouds, each with the joint values
+//! of all robots at that time. Each returns the changes as an [`ObstacleUpdate`]. A planner on another thread reads the
+//! map through a lock-free reader. [`motion_entry`] contains the functions with which a robot enters a new path without
+//! a stop.
 //!
 //! ```
 //! use elbowroom_cspace::{CoverMapBuilder, CoverMapSettings, Grid, GridAxis, RemainingJoints};
@@ -36,15 +37,16 @@
 //!
 //! # Conservative assumptions
 //!
-//! - The prism that vision reports contains what was seen in the frame, dilated by
-//!   [`CameraTrackerSettings::uncertainty_m`](elbowroom_vision::CameraTrackerSettings::uncertainty_m). That must cover the motion of the obstacle
-//!   until the next frame has been processed: its speed times (period + latency), plus the calibration error.
-//! - In the map it also covers its predicted positions up to [`PerceptionSettings::prediction_s`], at constant
+//! - The prism that vision reports contains the observed outline, dilated by
+//!   [`CameraTrackerSettings::uncertainty_m`](elbowroom_vision::CameraTrackerSettings::uncertainty_m). This uncertainty
+//!   must cover the motion of the obstacle until the next frame has been processed: its speed times (period + latency),
+//!   plus the calibration error.
+//! - In the map the prism also covers its predicted positions up to [`PerceptionSettings::prediction_s`], at constant
 //!   velocity: time for a robot to stop or to move away.
 //!
-//! An obstacle that moves into a stopped robot is not prevented from doing so. This is not a certified safety device.
+//! Perception does not prevent an obstacle from moving into a stopped robot. This is not a certified safety device.
 //!
-//! **Invariant.** A frame or cloud that is not accepted frees no cell: unknown is not free.
+//! **Invariant.** A frame or cloud that is not accepted never frees a cell: unknown is not free.
 
 mod cloud_watcher;
 mod error;

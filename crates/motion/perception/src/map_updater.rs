@@ -1,4 +1,4 @@
-//! Updates the obstacles of the joint-space map from the reports of a tracker.
+//! Updates of the obstacles in the joint-space map from the reports of a tracker.
 
 use elbowroom_vision::{self as vision, ObstacleChange, ObstacleId, Point2, polygon};
 
@@ -11,7 +11,7 @@ use crate::robot_prisms::RobotPrisms;
 pub(super) struct PrismSettings {
     /// Prediction horizon: an obstacle also blocks its predicted positions until this time after the frame, seconds.
     pub prediction_s: f64,
-    /// Smaller changes are ignored, metres.
+    /// Size of changes that are ignored, metres.
     pub slack_m: f64,
 }
 
@@ -29,8 +29,8 @@ impl MapUpdater {
     /// Adds and updates reported obstacles in the map, and removes those that left.
     ///
     /// # Errors
-    /// The first obstacle without a valid hull; its cells in the map stay as they are, and it is tried again with the
-    /// next frame. All others are updated nonetheless: the tracker reports each change once.
+    /// The first obstacle without a valid hull. Its cells in the map do not change, and it is tried again with the next
+    /// frame. All other obstacles are updated, because the tracker reports each change only once.
     pub fn update(
         &mut self,
         reported: &[vision::Obstacle],
@@ -75,7 +75,7 @@ impl MapUpdater {
             let drift_m = (prism.velocity_mps - old.velocity_mps).length() * settings.prediction_s;
             if observed.change == ObstacleChange::Unchanged && is_same_solid(&prism, old) && drift_m <= settings.slack_m
             {
-                // Noise of the velocity alone changes nothing.
+                // Noise of the velocity alone does not change the map.
                 (prism.swept_m, prism.velocity_mps) = (std::mem::take(&mut old.swept_m), old.velocity_mps);
                 *old = prism;
                 return Ok(());
@@ -92,7 +92,8 @@ impl MapUpdater {
     }
 }
 
-/// The tracker reports an obstacle as unchanged relative to its last report, which may never have reached the map.
+/// Whether two prisms are equal. The tracker reports an obstacle as unchanged relative to its last report, which may
+/// never have reached the map.
 fn is_same_solid(a: &Prism, b: &Prism) -> bool {
     a.footprint_m == b.footprint_m && [a.z_from_m, a.z_to_m] == [b.z_from_m, b.z_to_m]
 }
@@ -204,7 +205,7 @@ mod tests {
     fn an_obstacle_reported_as_stationary_is_compared_with_the_map() {
         let (mut map, mut updater) = (map(), MapUpdater::default());
         apply(&mut updater, &mut map, &[obstacle(1, ObstacleChange::Entered, [0.8, 0.0])]).unwrap();
-        // It moved in a frame that was rejected, and is stationary since.
+        // The obstacle moved in a frame that was rejected, and has been stationary since.
         let flat = vision::Obstacle { z_to_m: 0.0, ..obstacle(1, ObstacleChange::Moved, [0.6, 0.6]) };
         apply(&mut updater, &mut map, std::slice::from_ref(&flat)).unwrap_err();
         apply(&mut updater, &mut map, &[vision::Obstacle { change: ObstacleChange::Unchanged, ..flat }]).unwrap_err();

@@ -1,24 +1,25 @@
-//! Entering a new trajectory in motion.
+//! Entry into a new trajectory without a stop.
 //!
-//! A trajectory starts at rest. One that replaces another in motion therefore starts on the current straight segment *behind*
-//! the arm, so far back that it is at least as fast as the arm where it passes the arm's configuration. It leaves the segment
-//! so far ahead that the arm could stop before. Execution enters it at the arm's configuration, at the rate at which both
-//! speeds are equal: position, direction and speed are continuous.
+//! A trajectory starts at rest. A trajectory that replaces another one in motion therefore starts on the current
+//! straight segment *behind* the arm, so far back that it is at least as fast as the arm when it passes the arm's
+//! configuration. It leaves the segment so far ahead that the arm could stop before. Execution enters the trajectory at
+//! the arm's configuration, at the rate at which the two speeds are equal: position, direction and speed are
+//! continuous.
 
 use elbowroom_planner::KinematicLimits;
 
 /// Reserve of the distance in which a speed is reached: a factor, and a length in rad for speeds near 0.
 const DISTANCE_RESERVE_FACTOR: f64 = 1.05;
 const DISTANCE_RESERVE_RAD: f64 = 1e-3;
-/// Smallest component of a direction: joints that do not move along it do not limit the motion.
+/// Smallest component of a direction that counts: joints that do not move along the direction do not limit the motion.
 const MIN_COMPONENT: f64 = 1e-12;
-/// Steps in which a root is searched, seconds: in one an arm hardly changes its speed.
+/// Step of the search for a root, seconds: an arm hardly changes its speed in one step.
 const ROOT_STEP_S: f64 = 0.004;
-/// Bisections of such a step: to rounding.
+/// Number of bisections of such a step: down to rounding.
 const ROOT_BISECTIONS: usize = 50;
 
-/// Distance (rad) in which a speed (rad/s) along a direction of unit length is reached from rest, which is also the distance
-/// to stop from it, with a reserve.
+/// Distance (rad) in which a speed (rad/s) along a direction of unit length is reached from rest, with a reserve. It is
+/// also the distance to stop from that speed.
 ///
 /// ```
 /// use elbowroom_perception::motion_entry::acceleration_distance;
@@ -36,7 +37,7 @@ pub fn acceleration_distance(speed: f64, along: &[f64], limits: &KinematicLimits
     0.5 * speed * seconds * DISTANCE_RESERVE_FACTOR + DISTANCE_RESERVE_RAD
 }
 
-/// First zero (s) of a function of time that rises from below 0, up to `end` (s): steps, then bisection.
+/// First zero (s), up to `end` (s), of a function of time that rises from below 0: found by steps, then bisection.
 pub fn first_root(value: impl Fn(f64) -> f64, end: f64) -> Option<f64> {
     let mut low = 0.0;
     let mut high = low;

@@ -1,4 +1,4 @@
-//! What one frame shows, before it changes a map.
+//! Evaluation of one frame, before it changes a map.
 
 use std::time::Duration;
 
@@ -8,7 +8,7 @@ use crate::error::PerceptionError;
 use crate::obstacle_update::ObstacleUpdate;
 use crate::times::PerceptionTimes;
 
-/// Tracks the obstacles of a frame; the update has its status and times, and no prisms yet.
+/// Tracks the obstacles of a frame. The update contains its status and times, but no prisms yet.
 pub(super) fn observe(
     tracker: &mut CameraTracker,
     frame: &Frame,

@@ -7,16 +7,16 @@ use elbowroom_vision::{FrameStatus, ObstacleId, Point2, polygon};
 use crate::prism_boxes::prism_boxes;
 use crate::times::PerceptionTimes;
 
-/// One observed obstacle, as it is in the map.
+/// One observed obstacle, as in the map.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prism {
-    /// Its id.
+    /// Identity of the obstacle.
     pub id: ObstacleId,
-    /// The template that it matches.
+    /// Name of the matching template.
     pub kind: Option<String>,
-    /// Corners of its footprint at the time of the frame, dilated by the uncertainty, world x and y, metres.
+    /// Corners of the footprint at the time of the frame, dilated by the uncertainty, world x and y, metres.
     pub footprint_m: Vec<Point2>,
-    /// The footprint together with the predicted one
+    /// Footprint that covers the present one and the predicted one
     /// [`PerceptionSettings::prediction_s`](crate::PerceptionSettings::prediction_s) later.
     pub swept_m: Vec<Point2>,
     /// Lower end, world z, metres.
@@ -27,45 +27,45 @@ pub struct Prism {
     pub centre_m: Point2,
     /// Velocity of the centre, metres per second.
     pub velocity_mps: Point2,
-    /// True if it was not visible in this frame and keeps its last position.
+    /// Whether the obstacle was not visible in this frame and keeps its last position.
     pub is_unobserved: bool,
 }
 
 impl Prism {
-    /// The solid over the observed footprint, in the world.
+    /// The solid over the observed footprint, in the world frame.
     ///
     /// # Errors
-    /// A prism without a volume.
+    /// The prism has no volume.
     pub fn observed_solid(&self) -> Result<ConvexHull, HullError> {
         prism_hull(&self.footprint_m, [self.z_from_m, self.z_to_m])
     }
 
-    /// The solid over the observed and the predicted footprint, in the world.
+    /// The solid over the observed and the predicted footprint, in the world frame.
     ///
     /// # Errors
-    /// A prism without a volume.
+    /// The prism has no volume.
     pub fn predicted_solid(&self) -> Result<ConvexHull, HullError> {
         prism_hull(&self.swept_m, [self.z_from_m, self.z_to_m])
     }
 
-    /// Boxes that together contain the [observed solid](Self::observed_solid), each with its pose in the world: a joint-space map of
-    /// boxes takes a hundredth of the time of one of other hulls.
+    /// Boxes that together contain the [observed solid](Self::observed_solid), each with its pose in the world. A
+    /// joint-space map of boxes takes a hundredth of the time of a map of other hulls.
     pub fn observed_boxes(&self) -> Vec<(Shape, Pose)> {
         prism_boxes(&self.footprint_m, [self.z_from_m, self.z_to_m])
     }
 
-    /// The same of the [predicted solid](Self::predicted_solid).
+    /// Boxes that together contain the [predicted solid](Self::predicted_solid), each with its pose in the world.
     pub fn predicted_boxes(&self) -> Vec<(Shape, Pose)> {
         prism_boxes(&self.swept_m, [self.z_from_m, self.z_to_m])
     }
 
-    /// True if a convex footprint (world x and y, metres) lies within the observed one.
+    /// Whether the observed footprint contains a convex footprint (world x and y, metres).
     pub fn contains(&self, footprint_m: &[Point2]) -> bool {
         footprint_m.iter().all(|&p| polygon::convex_contains(&self.footprint_m, p))
     }
 }
 
-/// What one frame changed.
+/// The changes by one frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ObstacleUpdate {
     /// Time stamp of the frame, seconds.
@@ -87,7 +87,7 @@ pub struct ObstacleUpdate {
 }
 
 impl ObstacleUpdate {
-    /// True if the frame was accepted and the map is up to date.
+    /// Whether the frame was accepted and the map is up to date.
     pub fn is_accepted(&self) -> bool {
         self.status == FrameStatus::Accepted
     }

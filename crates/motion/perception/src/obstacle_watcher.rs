@@ -1,4 +1,4 @@
-//! Camera frames to the joint-space map of any robot.
+//! From camera frames to the joint-space map of any robot.
 
 use elbowroom_cspace::{CoverMapBuilder, LayerMap, MapReader};
 use elbowroom_vision::{Calibration, CameraTracker, CameraTrackerSettings, Frame, FrameStatus, PixelMask, Stopwatch};
@@ -11,7 +11,7 @@ use crate::robot_map::RobotMap;
 use crate::settings::PerceptionSettings;
 use crate::watched_robots::{WatchedRobot, WatchedRobots};
 
-/// Turns camera frames into obstacles and keeps the joint-space map of a robot up to date: of any robot, on sphere covers of its
+/// Turns camera frames into obstacles and keeps the joint-space map of any robot up to date, on sphere covers of its
 /// links.
 ///
 /// ```
@@ -48,11 +48,11 @@ pub struct ObstacleWatcher {
 }
 
 impl ObstacleWatcher {
-    /// For the map that `builder` fills; all robots are masked in the frames. The first
+    /// Creates a watcher for the map that `builder` fills; all robots are masked in the frames. The first
     /// [`CameraTrackerSettings::learning_frames`] frames must show the empty cell.
     ///
     /// # Errors
-    /// Settings out of range, a camera without calibration.
+    /// A setting is out of range, or the camera has no calibration.
     pub fn new(
         robots: Vec<WatchedRobot>,
         builder: CoverMapBuilder,
@@ -89,16 +89,17 @@ impl ObstacleWatcher {
         self.map.map().reader()
     }
 
-    /// The camera tracker: settings, foreground, detailed timings.
+    /// The camera tracker, with its settings, foreground and detailed timings.
     pub fn tracker(&self) -> &CameraTracker {
         &self.tracker
     }
 
-    /// Processes a frame; `q` are the joint values of each robot at that time, rad or m.
+    /// Processes a frame; `q` holds the joint values of each robot at that time, rad or m.
     ///
     /// # Errors
-    /// A frame of the wrong size or out of order, joint values that do not match the robots. The map is unchanged: unknown is
-    /// not free. Where an obstacle has no volume its cells are unchanged; the others are updated.
+    /// The frame has the wrong size or is out of order, or the joint values do not match the robots: the map is
+    /// unchanged, because unknown is not free. If an obstacle has no volume, its cells are unchanged and the other
+    /// obstacles are updated.
     pub fn process_frame(&mut self, frame: &Frame, q: &[&[f64]]) -> Result<ObstacleUpdate, PerceptionError> {
         let mut stopwatch = Stopwatch::start();
         let parts = self.robots.parts(q)?;

@@ -1,17 +1,17 @@
-//! Boxes around an upright prism, which maps on covers take as they are.
+//! Boxes around an upright prism, which maps on covers use without further covers.
 
 use elbowroom_proximity::{Cuboid, Shape};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 use elbowroom_vision::Point2;
 
-/// A rectangle around the footprint is enough where it is larger by no more than this share.
+/// Largest excess, as a fraction, of the area of a rectangle around the footprint for which the rectangle is used.
 const LARGER_SHARE: f64 = 0.1;
-/// Slabs of a footprint that is not a rectangle.
+/// Number of slabs of a footprint that is not a rectangle.
 const SLABS: usize = 4;
-/// Boxes are larger by this, m: for rounding.
+/// Enlargement of boxes for rounding, m.
 const ROUNDING_M: f64 = 1e-9;
 
-/// Boxes that together contain a prism over a convex footprint (world x and y, m). Empty without an area.
+/// Boxes that together contain a prism over a convex footprint (world x and y, m). Empty if the footprint has no area.
 pub(super) fn prism_boxes(footprint_m: &[Point2], heights_m: [f64; 2]) -> Vec<(Shape, Pose)> {
     let Some(along) = rectangle_direction(footprint_m) else { return Vec::new() };
     let whole = Extent::of(footprint_m, along);
@@ -59,7 +59,7 @@ impl Extent {
         })
     }
 
-    /// Around the part of a polygon between two lines across a direction.
+    /// The rectangle around the part of a polygon between two lines across a direction.
     fn of_slab(polygon: &[Point2], direction: Point2, borders: [f64; 2]) -> Option<Self> {
         let mut extent = Self::EMPTY;
         for (i, &a) in polygon.iter().enumerate() {
@@ -72,7 +72,7 @@ impl Extent {
                 extent.add(a + (b - a) * ((border - from) / (to - from)), direction);
             }
         }
-        // Crossings of borders lie on them.
+        // Crossings of the borders lie on the borders.
         extent.along = borders;
         (extent.across[1] >= extent.across[0]).then_some(extent)
     }
@@ -121,7 +121,7 @@ mod tests {
     }
 
     proptest! {
-        /// No point of the prism is outside, and the boxes are not much larger.
+        /// All points of the prism are inside the boxes, and the boxes are not much larger.
         #[test]
         fn boxes_contain_the_prism(corners in prop::collection::vec((-2.0..2.0_f64, -2.0..2.0_f64), 3..12), shares in prop::collection::vec((0.0..1.0_f64, 0.0..1.0_f64), 40)) {
             let mut points: Vec<Point2> = corners.iter().map(|&(x, y)| Point2::new(x, y)).collect();

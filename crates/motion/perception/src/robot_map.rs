@@ -1,4 +1,4 @@
-//! The joint-space map of a robot with the observed obstacles in it.
+//! The joint-space map of a robot with the observed obstacles.
 
 use elbowroom_cspace::{CoverMapBuilder, LayerMap};
 use elbowroom_vision::{self as vision, Stopwatch};
@@ -8,7 +8,7 @@ use crate::map_updater::{MapUpdater, PrismSettings};
 use crate::obstacle_update::{ObstacleUpdate, Prism};
 use crate::robot_prisms::RobotPrisms;
 
-/// The map of a robot, and the observed obstacles in it.
+/// The map of a robot, with the observed obstacles.
 #[derive(Debug)]
 pub(super) struct RobotMap {
     prisms: RobotPrisms,
@@ -17,7 +17,7 @@ pub(super) struct RobotMap {
 }
 
 impl RobotMap {
-    /// An empty map.
+    /// Creates a map without obstacles.
     pub fn new(builder: CoverMapBuilder, settings: PrismSettings) -> Self {
         Self { prisms: RobotPrisms::new(builder), updater: MapUpdater::default(), settings }
     }
@@ -31,10 +31,10 @@ impl RobotMap {
         self.updater.prisms()
     }
 
-    /// Takes over the obstacles of an accepted frame or cloud, publishes the map, and adds the times.
+    /// Inserts the obstacles of an accepted frame or cloud, publishes the map, and records the times.
     ///
     /// # Errors
-    /// As [`MapUpdater::update`].
+    /// The errors of [`MapUpdater::update`].
     pub fn take_over(
         &mut self,
         reported: &[vision::Obstacle],

@@ -8,7 +8,7 @@ use elbowroom_vision::{ObstacleId, Point2};
 use crate::error::PerceptionError;
 use crate::prism_boxes::prism_boxes;
 
-/// A map with prisms as boxes, each a layer.
+/// A map of prisms, which are stored as boxes with one layer per box.
 #[derive(Debug)]
 pub(super) struct RobotPrisms {
     map: LayerMap,
@@ -18,7 +18,7 @@ pub(super) struct RobotPrisms {
 }
 
 impl RobotPrisms {
-    /// An empty map.
+    /// Creates a map without obstacles.
     pub fn new(builder: CoverMapBuilder) -> Self {
         Self { map: LayerMap::new(builder.grid()), builder, parts: Vec::new() }
     }
@@ -27,15 +27,15 @@ impl RobotPrisms {
         &self.map
     }
 
-    /// Shows readers the present map.
+    /// Publishes the present map to readers.
     pub fn publish(&mut self) {
         self.map.publish();
     }
 
-    /// Blocks the cells of an upright prism in place of those of the obstacle's former one.
+    /// Blocks the cells of an upright prism, which replaces the obstacle's previous prism.
     ///
     /// # Errors
-    /// A prism without a volume, or too far away; the map is unchanged.
+    /// The prism has no volume or is too far away; the map is unchanged.
     pub fn set(
         &mut self,
         id: ObstacleId,
@@ -49,7 +49,7 @@ impl RobotPrisms {
         let layer = |(shape, in_world)| self.builder.layer(&self.builder.obstacle(shape)?, in_world);
         let layers = boxes.iter().map(|(shape, pose)| layer((shape, pose)));
         let layers: Vec<_> = layers.collect::<Result<_, _>>().map_err(|e| PerceptionError::Obstacle(e.to_string()))?;
-        // The new ones first, so that no cell is free in between.
+        // The new layers first, so that no cell is free in between.
         let count = layers.len();
         let mut changed = Changed::default();
         for (part, layer) in layers.into_iter().enumerate() {
@@ -63,7 +63,7 @@ impl RobotPrisms {
         Ok(changed)
     }
 
-    /// Frees the cells of an obstacle; `None` if it has none.
+    /// Frees the cells of an obstacle; `None` if the obstacle is not in the map.
     pub fn remove(&mut self, id: ObstacleId) -> Option<Changed> {
         let at = self.parts.iter().position(|(known, _)| *known == id)?;
         let mut changed = Changed::default();

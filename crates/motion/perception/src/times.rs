@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-/// From a frame to the published map.
+/// Times from a frame to the published map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct PerceptionTimes {
     /// Mask of the arm's silhouette.
@@ -11,7 +11,7 @@ pub struct PerceptionTimes {
     pub background: Duration,
     /// Blobs, floor positions, tracking, prisms.
     pub tracks: Duration,
-    /// Prisms to occupied cells.
+    /// Conversion of prisms to occupied cells.
     pub map: Duration,
     /// Publication of a snapshot for readers.
     pub publish: Duration,

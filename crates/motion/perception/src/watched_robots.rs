@@ -1,4 +1,4 @@
-//! The robots that a sensor sees.
+//! The robots in view of a sensor.
 
 use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_robot::Robot;
@@ -7,7 +7,7 @@ use elbowroom_vision::ArmPart;
 
 use crate::error::PerceptionError;
 
-/// A robot that a sensor sees.
+/// A robot in view of a sensor.
 #[derive(Debug, Clone)]
 pub struct WatchedRobot {
     /// Links, joints, colliders.
@@ -17,7 +17,7 @@ pub struct WatchedRobot {
 }
 
 impl WatchedRobot {
-    /// The colliders of all links but the root link, in the world, at these joint values (rad or m).
+    /// The colliders of all links except the root link, in the world, at these joint values (rad or m).
     pub fn parts(&self, q: &[f64]) -> Vec<ArmPart> {
         let mut parts = Vec::new();
         self.append_parts(&mut ChainState::new(&self.robot.chain), q, &mut parts);
@@ -35,7 +35,7 @@ impl WatchedRobot {
     }
 }
 
-/// All robots that a sensor sees.
+/// All robots in view of a sensor.
 #[derive(Debug)]
 pub(super) struct WatchedRobots {
     robots: Vec<WatchedRobot>,
@@ -47,10 +47,10 @@ impl WatchedRobots {
         Self { states: robots.iter().map(|r| ChainState::new(&r.robot.chain)).collect(), robots }
     }
 
-    /// The colliders of all links that joints move, in the world; `q` are the joint values of each robot.
+    /// The colliders of all links except root links, in the world; `q` holds the joint values of each robot.
     ///
     /// # Errors
-    /// Joint values that do not match the robots.
+    /// The joint values do not match the robots.
     pub fn parts(&mut self, q: &[&[f64]]) -> Result<Vec<ArmPart>, PerceptionError> {
         self.validate(q)?;
         let mut parts = Vec::new();

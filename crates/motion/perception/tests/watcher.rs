@@ -1,4 +1,4 @@
-//! A camera above a KR125: what is refused, and that nothing refused frees a cell.
+//! A camera above a KR125: rejected input, and that rejected input never frees a cell.
 
 use elbowroom_cspace::{CoverMapBuilder, CoverMapSettings, Grid, GridAxis, RemainingJoints};
 use elbowroom_formats::robot::{LoadOptions, load};
@@ -45,7 +45,7 @@ fn new(camera: Calibration, settings: PerceptionSettings) -> Result<ObstacleWatc
     ObstacleWatcher::new(vec![WatchedRobot { robot, base_in_world }], builder, camera, tracker, settings)
 }
 
-/// A watcher that has learnt the empty floor, below an arm that swings, and its pictures.
+/// A watcher that has learnt the empty floor, below an arm that swings, and the rendered frames.
 struct WatchedCell {
     watcher: ObstacleWatcher,
     robot: WatchedRobot,
@@ -68,7 +68,7 @@ impl WatchedCell {
         cell
     }
 
-    /// The next picture.
+    /// Renders the next frame.
     fn picture(&mut self, solids: &[RenderedSolid], q: &[f64]) -> Frame {
         let painted: Vec<_> = self.robot.parts(q).into_iter().map(|part| (part, 235)).collect();
         let conditions = RenderConditions { seed: self.pictures.into(), ..RenderConditions::default() };
@@ -107,7 +107,7 @@ fn rejected_frames_have_a_reason_and_free_no_cells() {
     assert!(refuse(&stamped(f64::NAN), &q).contains("NaN"));
     assert!(refuse(&empty, &q[..5]).contains("5 joint values"));
     assert!(refuse(&empty, &[f64::NAN; 6]).contains("finite"));
-    // A white picture is not a view of the cell: it is rejected, and its status says why.
+    // A white frame does not show the cell: it is rejected, and its status states the reason.
     let mut white = stamped(empty.stamp_s);
     white.pixels_mut().fill(255);
     let update = cell.watcher.process_frame(&white, &[&q]).unwrap();

@@ -15,7 +15,7 @@ use elbowroom_planner::{GridPlanner, GridPlannerSettings, KinematicLimits, Path,
 type Error = Box<dyn std::error::Error>;
 
 const PAIRS: usize = 1000;
-/// One of this many pairs is compared with exhaustive search.
+/// Number of pairs of which one is compared with exhaustive search.
 const COMPARED: usize = 50;
 
 fn main() -> Result<(), Error> {
@@ -90,7 +90,7 @@ fn timing(grid: &Grid, map: &JointMap, paths: &[Path]) -> Result<(), Error> {
     Ok(())
 }
 
-/// A sphere is added at the wrist's position on the path, and the path is planned again.
+/// Adds a sphere at the wrist's position on the path, and plans the path again.
 fn replanning(grid: &Grid, map: &mut JointMap, paths: &[Path]) -> Result<(), Error> {
     let settings = GridPlannerSettings::default();
     for radius in [0.05, 0.15] {
@@ -116,7 +116,7 @@ fn replanning(grid: &Grid, map: &mut JointMap, paths: &[Path]) -> Result<(), Err
     Ok(())
 }
 
-/// The configuration at half of the length.
+/// The configuration at half of the path's length.
 fn halfway(path: &Path) -> [f64; 3] {
     let mut left = 0.5 * path.length_rad;
     for w in path.waypoints.windows(2) {
@@ -133,7 +133,7 @@ fn ends(map: &JointMap, random: &mut Random) -> Option<(CellIndex, CellIndex)> {
     free_cell(map.occupancy(), random).zip(free_cell(map.occupancy(), random))
 }
 
-/// Median, 99th percentile, largest.
+/// Formats median, 99th percentile and largest time.
 fn spread(times: &mut [Duration]) -> String {
     times.sort_unstable();
     let at =

@@ -1,8 +1,8 @@
-//! Time-optimal parametrization: durations and computing times over random paths of seven joints; durations beside
-//! those of the grid planner's time parametrization, over random paths of three joints.
+//! Time-optimal parametrization: durations and computing times over random paths of seven joints; over random paths of
+//! three joints, durations compared with the grid planner's time parametrization.
 //!
-//! `cargo bench -p elbowroom-planner --bench time_optimal_times -- [FILE]`: with a file, the paths are written
-//! to it, a line each: waypoints and blend distance, then the durations.
+//! `cargo bench -p elbowroom-planner --bench time_optimal_times -- [FILE]`: with a file, each path is written to a line
+//! of it: waypoints and blend distance, then the durations.
 #![allow(clippy::print_stdout)]
 
 use std::fmt::Write as _;
@@ -49,7 +49,7 @@ fn timed(solve: impl Fn() -> TimeOptimalTrajectory) -> (TimeOptimalTrajectory, f
     (result, best)
 }
 
-/// The same three-joint paths by `GridPlanner::time_parametrize`, where all is free.
+/// Parametrizes the same three-joint paths by `GridPlanner::time_parametrize`, with all cells free.
 fn beside_grid_planner() -> Result<(), Error> {
     let axis = |name| GridAxis::new(name, -1.0, 1.0, 0.1);
     let grid = Grid::new([axis("a")?, axis("b")?, axis("c")?])?;

@@ -1,12 +1,12 @@
-//! Blocks of 4 × 4 × 4 cells in one word each: bit `(x·4 + y)·4 + z` stands for a cell.
+//! Blocks of 4 × 4 × 4 cells, one 64-bit word each: bit `(x·4 + y)·4 + z` represents one cell.
 
 use elbowroom_cspace::{CellIndex, OccupancyBitmap};
 
-/// Cells along the edge of a block.
+/// Number of cells along the edge of a block.
 pub(crate) const EDGE: usize = 4;
-/// The cells of a block without blocked ones.
+/// The cells of a block in which every cell is free.
 pub(crate) const ALL_FREE: u64 = !0;
-/// Most components of a block: every second cell.
+/// Largest number of components in a block: every second cell is free.
 pub(crate) const MAX_COMPONENTS: usize = 32;
 
 const Z0: u64 = 0x1111_1111_1111_1111;
@@ -17,17 +17,17 @@ const Y3: u64 = Y0 << 12;
 /// A face of a block.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Face {
-    /// The axis normal to it.
+    /// The axis normal to the face.
     pub axis: usize,
-    /// At the upper end of the axis, else at the lower one.
+    /// Whether the face is at the upper end of the axis.
     pub is_upper: bool,
 }
 
-/// The faces at the upper ends of the axes.
+/// The three faces at the upper ends of the axes.
 pub(crate) const UPPER_FACES: [Face; 3] =
     [Face { axis: 0, is_upper: true }, Face { axis: 1, is_upper: true }, Face { axis: 2, is_upper: true }];
 
-/// The faces of a block.
+/// All six faces of a block.
 pub(crate) const FACES: [Face; 6] = [
     Face { axis: 0, is_upper: false },
     UPPER_FACES[0],
@@ -37,7 +37,7 @@ pub(crate) const FACES: [Face; 6] = [
     UPPER_FACES[2],
 ];
 
-/// The cells of the neighbour beyond a face that share it with some cells of this block.
+/// Returns the cells of the neighbour beyond `face` that share this face with some of `cells`.
 pub(crate) fn facing_cells(cells: u64, face: Face) -> u64 {
     match (face.axis, face.is_upper) {
         (0, true) => cells >> 48,
@@ -49,7 +49,7 @@ pub(crate) fn facing_cells(cells: u64, face: Face) -> u64 {
     }
 }
 
-/// Flood fill: the cells of `free` that are connected to `seed` by faces.
+/// Flood fill: returns the cells of `free` that are connected to `seed` through faces.
 fn flood(seed: u64, free: u64) -> u64 {
     let mut now = seed;
     loop {
@@ -63,7 +63,7 @@ fn flood(seed: u64, free: u64) -> u64 {
     }
 }
 
-/// The connected components of a block's free cells, and their number.
+/// Returns the connected components of a block's free cells and their number.
 pub(crate) fn components(free: u64) -> ([u64; MAX_COMPONENTS], usize) {
     let (mut found, mut count, mut rest) = ([0; MAX_COMPONENTS], 0, free);
     if free == ALL_FREE {
@@ -79,13 +79,13 @@ pub(crate) fn components(free: u64) -> ([u64; MAX_COMPONENTS], usize) {
     (found, count)
 }
 
-/// Bit of a cell in its block.
+/// Returns the bit of a cell in its block.
 pub(crate) fn bit_of(cell: CellIndex) -> u32 {
     let [x, y, z] = cell.map(|c| u32::from(c) % EDGE as u32);
     (x * 4 + y) * 4 + z
 }
 
-/// Free cells of a block; cells outside the grid are blocked.
+/// Returns the free cells of a block; cells outside the grid count as blocked.
 pub(crate) fn free_cells(occupancy: &OccupancyBitmap, block: [usize; 3]) -> u64 {
     let [_, rows, count] = occupancy.shape();
     let width = occupancy.words_per_row();
@@ -103,7 +103,7 @@ pub(crate) fn free_cells(occupancy: &OccupancyBitmap, block: [usize; 3]) -> u64 
     free
 }
 
-/// The cell of a component nearest to its centroid: it has line of sight to most of the component.
+/// Returns the cell of a component nearest to its centroid, which sees most of the component in a straight line.
 pub(crate) fn central_bit(component: u64) -> u32 {
     if component == ALL_FREE {
         return 0b01_01_01;
@@ -133,7 +133,7 @@ fn coordinates(bit: u32) -> [i32; 3] {
     [bit >> 4, bit >> 2 & 3, bit & 3].map(u32::cast_signed)
 }
 
-/// The cell of a bit of a block.
+/// Returns the cell that a bit of a block represents.
 pub(crate) fn cell_of(block: [usize; 3], bit: u32) -> CellIndex {
     let at = coordinates(bit);
     [0, 1, 2].map(|i| (block[i] * EDGE) as u16 + at[i] as u16)
@@ -149,7 +149,7 @@ mod tests {
         (0..3).map(|i| (a[i] - b[i]).abs()).sum::<i32>() == 1
     }
 
-    /// The component of a cell, found cell by cell.
+    /// The component of a cell, computed cell by cell.
     fn naive(seed: u32, free: u64) -> u64 {
         let mut component = 1_u64 << seed;
         loop {

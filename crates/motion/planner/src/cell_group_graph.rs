@@ -1,5 +1,5 @@
-//! The coarse graph: its nodes are groups of free cells (the connected components of a block of 4 × 4 × 4 cells), its edges
-//! join groups with a common face.
+//! The coarse graph: a node is a group of free cells (a connected component of a block of 4 × 4 × 4 cells), an edge
+//! joins two groups that share a face.
 
 use elbowroom_cspace::{CellChanges, CellIndex, OccupancyBitmap};
 
@@ -7,7 +7,7 @@ use crate::cell_blocks::{
     ALL_FREE, EDGE, FACES, Face, bit_of, cell_of, central_bit, components, facing_cells, free_cells,
 };
 
-/// Number of a node.
+/// Index of a node.
 pub(crate) type Node = u32;
 
 /// The nodes of a block.
@@ -15,20 +15,20 @@ pub(crate) type Node = u32;
 struct BlockNodes {
     first: Node,
     count: u8,
-    /// Node numbers reserved from `first` on.
+    /// Number of node indices reserved from `first` on.
     capacity: u8,
 }
 
-/// Groups of free cells and their connections.
+/// The graph of groups of free cells.
 #[derive(Debug)]
 pub(crate) struct CellGroupGraph {
-    /// Numbers of blocks along the axes.
+    /// Number of blocks along each axis.
     shape: [usize; 3],
     blocks: Vec<BlockNodes>,
-    /// Per node: its cells, and the cell that stands for it.
+    /// Per node: its cells, and (in `representative`) the cell that represents it.
     cells: Vec<u64>,
     representative: Vec<CellIndex>,
-    /// Node numbers that no block uses any more.
+    /// Number of node indices that are not used any more.
     unused: usize,
     changed_blocks: Vec<u32>,
 }
@@ -60,7 +60,7 @@ impl CellGroupGraph {
         }
     }
 
-    /// Updates the blocks in which cells changed.
+    /// Updates all blocks that contain changed cells.
     pub fn update(&mut self, occupancy: &OccupancyBitmap, changes: &CellChanges) {
         let mut changed_blocks = std::mem::take(&mut self.changed_blocks);
         changed_blocks.clear();
@@ -87,7 +87,7 @@ impl CellGroupGraph {
         let nodes = &mut self.blocks[block];
         if count > usize::from(nodes.capacity) {
             self.unused += usize::from(nodes.capacity);
-            // Blocks at the boundary of an obstacle are divided again and again: reserve more than necessary.
+            // Blocks at the boundary of an obstacle are divided repeatedly: reserve more than necessary.
             let capacity = if nodes.capacity == 0 { count } else { count.next_power_of_two() };
             *nodes = BlockNodes { first: self.cells.len() as Node, count: 0, capacity: capacity as u8 };
             self.cells.resize(self.cells.len() + capacity, 0);
@@ -111,40 +111,40 @@ impl CellGroupGraph {
         (i * self.shape[1] + j) * self.shape[2] + k
     }
 
-    /// Upper bound of the node numbers.
+    /// Upper bound of the node indices, exclusive.
     pub fn node_bound(&self) -> usize {
         self.cells.len()
     }
 
-    /// The cell that stands for a node.
+    /// Returns the cell that represents a node.
     pub fn representative(&self, node: Node) -> CellIndex {
         self.representative[node as usize]
     }
 
-    /// True if all cells of the node's block are free.
+    /// Whether all cells of the node's block are free.
     pub fn is_all_free(&self, node: Node) -> bool {
         self.cells[node as usize] == ALL_FREE
     }
 
-    /// True if the cell belongs to the node.
+    /// Whether the cell belongs to the node.
     pub fn has(&self, node: Node, cell: CellIndex) -> bool {
         let there = cell.map(|c| usize::from(c) / EDGE) == self.representative(node).map(|c| usize::from(c) / EDGE);
         there && self.cells[node as usize] >> bit_of(cell) & 1 == 1
     }
 
-    /// The node of a free cell; `None` for a blocked one.
+    /// Returns the node of a free cell; `None` if the cell is blocked.
     pub fn node(&self, cell: CellIndex) -> Option<Node> {
         let nodes = self.blocks.get(self.block_of(cell))?;
         let bit = bit_of(cell);
         (nodes.first..nodes.first + Node::from(nodes.count)).find(|&n| self.cells[n as usize] >> bit & 1 == 1)
     }
 
-    /// All nodes.
+    /// Iterates over all nodes.
     pub fn nodes(&self) -> impl Iterator<Item = Node> + '_ {
         self.blocks.iter().flat_map(|nodes| nodes.first..nodes.first + Node::from(nodes.count))
     }
 
-    /// Neighbours of a node across some faces.
+    /// Iterates over the neighbours of a node across the given faces.
     #[inline]
     pub fn neighbours(&self, node: Node, faces: &[Face], mut found: impl FnMut(Node)) {
         let cells = self.cells[node as usize];
@@ -167,13 +167,13 @@ impl CellGroupGraph {
         }
     }
 
-    /// Neighbours of a node across all faces.
+    /// Iterates over the neighbours of a node across all faces.
     #[inline]
     pub fn all_neighbours(&self, node: Node, found: impl FnMut(Node)) {
         self.neighbours(node, &FACES, found);
     }
 
-    /// Bytes on the heap.
+    /// Memory on the heap, bytes.
     pub fn bytes(&self) -> usize {
         self.blocks.capacity() * size_of::<BlockNodes>()
             + self.cells.capacity() * size_of::<u64>()

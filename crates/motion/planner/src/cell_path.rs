@@ -9,11 +9,11 @@ use crate::cell_group_graph::{CellGroupGraph, Node};
 
 const NOT_VISITED: u8 = u8::MAX;
 
-/// Workspace of the search, at most 128 cells.
+/// Workspace of the search, for at most 128 cells.
 #[derive(Debug)]
 pub(crate) struct CellPathSearch {
     queue: VecDeque<CellIndex>,
-    /// Per cell of either component: the step that led there.
+    /// Per cell of the two components: the step that reached it.
     step: [u8; 128],
 }
 
@@ -24,8 +24,8 @@ impl Default for CellPathSearch {
 }
 
 impl CellPathSearch {
-    /// The shortest sequence of cells with common faces from `from` in one component to `to` in the other, or in the same,
-    /// ends included. Empty if there is none.
+    /// Computes the shortest sequence of cells with common faces from `from` in one component to `to` in another or the
+    /// same component, both ends included. Empty if no such sequence exists.
     pub fn shortest_path(
         &mut self,
         graph: &CellGroupGraph,
@@ -68,7 +68,7 @@ impl CellPathSearch {
     }
 }
 
-/// The neighbour of a cell: steps 0 to 5 are down and up along each axis.
+/// Returns the neighbour of a cell: steps 0 to 5 are down and up along each axis.
 fn neighbour(mut cell: CellIndex, step: u8) -> Option<CellIndex> {
     let along = &mut cell[usize::from(step / 2)];
     *along = if step % 2 == 1 { along.checked_add(1)? } else { along.checked_sub(1)? };

@@ -1,4 +1,4 @@
-//! An example arm among obstacles: for documentation, tests and benchmarks.
+//! An example arm among obstacles, for documentation, tests and benchmarks.
 
 use elbowroom_cspace::{ConvexObstacle, Grid, GridAxis, GridAxisError, PlanarArm, TooManyCells};
 use elbowroom_kinematics::{Chain, ChainError, Joint, JointKind, Limits, LinkId};
@@ -10,16 +10,16 @@ use elbowroom_spatial::{Pose, Vec3};
 /// An arm with the dimensions of a KUKA KR125.
 pub const ARM: PlanarArm = PlanarArm::KR125_SIZED;
 
-/// The grid of its three joints, with a step in degrees.
+/// Returns the grid of the arm's three joints with the given step in degrees.
 ///
 /// # Errors
-/// An invalid step.
+/// The step is invalid.
 pub fn grid(step_degrees: f64) -> Result<Grid, ExampleError> {
     let axis = |name: &str, min, max| GridAxis::from_degrees(name, min, max, step_degrees);
     Ok(Grid::new([axis("base", -170.0, 170.0)?, axis("shoulder", -90.0, 90.0)?, axis("elbow", -120.0, 150.0)?])?)
 }
 
-/// The same arm as a robot for a scene, with the limits of a grid.
+/// Returns the arm as a robot for a scene, with the limits of a grid.
 ///
 /// # Errors
 /// Two joints of the grid share a name.
@@ -49,7 +49,7 @@ pub fn robot(grid: &Grid) -> Result<Robot, ChainError> {
     Ok(robot)
 }
 
-/// The scene of the arm among obstacles.
+/// Returns the scene of the arm among obstacles.
 ///
 /// ```
 /// use elbowroom_planner::example;
@@ -80,15 +80,15 @@ pub enum ExampleError {
     /// The step is too small.
     #[error(transparent)]
     Cells(#[from] TooManyCells),
-    /// The grid's joints form no chain.
+    /// The grid's joints do not form a chain.
     #[error(transparent)]
     Chain(#[from] ChainError),
-    /// The obstacles form no scene.
+    /// The obstacles do not form a scene.
     #[error(transparent)]
     Scene(#[from] SceneError),
 }
 
-/// Three workspaces of the arm: nearly empty, usual, narrow.
+/// Returns three workspaces of the arm: nearly empty, usual, narrow.
 pub fn cells() -> Vec<(&'static str, Vec<ConvexObstacle>)> {
     let floor = || cuboid([0.0, 0.0, -0.6], 0.0, [3.0, 3.0, 0.1]);
     let usual = [
@@ -115,7 +115,7 @@ pub fn cells() -> Vec<(&'static str, Vec<ConvexObstacle>)> {
     ]
 }
 
-// The constants are valid obstacles; a test counts them.
+// The constants are valid obstacles; a test counts the obstacles.
 fn ball(at: [f64; 3], radius: f64) -> Option<ConvexObstacle> {
     ConvexObstacle::sphere(at.into(), radius).ok()
 }

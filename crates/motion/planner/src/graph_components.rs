@@ -1,9 +1,9 @@
-//! Connected components of the coarse graph: missing paths are reported without a search.
+//! Connected components of the coarse graph: they show without a search that no path exists.
 
 use crate::cell_blocks::UPPER_FACES;
 use crate::cell_group_graph::{CellGroupGraph, Node};
 
-/// One number per connected component (union-find), computed on demand after cells changed.
+/// The connected component of each node (union-find), computed on demand after cells have changed.
 #[derive(Debug, Default)]
 pub(crate) struct GraphComponents {
     parent: Vec<Node>,
@@ -11,17 +11,17 @@ pub(crate) struct GraphComponents {
 }
 
 impl GraphComponents {
-    /// Cells changed.
+    /// Marks the components as outdated because cells have changed.
     pub fn invalidate(&mut self) {
         self.valid = false;
     }
 
-    /// True if no cell has changed since the components were computed.
+    /// Whether the components are up to date: no cell has changed since they were computed.
     pub fn are_valid(&self) -> bool {
         self.valid
     }
 
-    /// The component of a node.
+    /// Returns the component of a node.
     pub fn component_of(&mut self, graph: &CellGroupGraph, node: Node) -> Node {
         if !self.valid {
             self.rebuild(graph);
@@ -29,7 +29,7 @@ impl GraphComponents {
         self.root(node)
     }
 
-    /// True if two nodes are connected.
+    /// Whether two nodes are connected.
     pub fn connected(&mut self, graph: &CellGroupGraph, a: Node, b: Node) -> bool {
         self.component_of(graph, a) == self.component_of(graph, b)
     }
@@ -54,11 +54,11 @@ impl GraphComponents {
 
     fn unite(&mut self, a: Node, b: Node) {
         let (a, b) = (self.root(a), self.root(b));
-        // The smaller number is the root, independent of the order.
+        // The smaller index is the root, so that the result does not depend on the order.
         self.parent[a.max(b) as usize] = a.min(b);
     }
 
-    /// Bytes on the heap.
+    /// Memory on the heap, bytes.
     pub fn bytes(&self) -> usize {
         self.parent.capacity() * size_of::<Node>()
     }

@@ -12,15 +12,16 @@ use crate::nearest_free_cell::nearest_cell;
 use crate::path::{GridPlannerError, GridPlannerSetting, Path, PathEnd};
 use crate::theta_star::{PathLink, SearchOutcome, Terminal, ThetaStarQuery, ThetaStarSearch};
 
-/// After cells changed, a search expands this many nodes before the connected components are computed.
+/// Number of nodes that a search expands after a change of cells before the connected components are computed.
 const NODES_BEFORE_COMPONENTS: usize = 1500;
 
 /// Settings of a [`GridPlanner`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GridPlannerSettings {
-    /// Weight of each joint in lengths; finite, above 0.
+    /// Factor of each joint in lengths; finite, above 0.
     pub weights: [f64; 3],
-    /// An end in a blocked cell may be moved to a free cell within this distance, weighted radians; 0: not at all.
+    /// Largest distance, in weighted radians, by which an end in a blocked cell is moved to a free cell; 0: ends are
+    /// not moved.
     pub max_end_shift_rad: f64,
 }
 
@@ -35,7 +36,7 @@ impl Default for GridPlannerSettings {
     }
 }
 
-/// Finds paths through the free cells of a map; one per thread, as its workspace is reused.
+/// Finds paths through the free cells of a map. Use one planner per thread, because it reuses its workspace.
 ///
 /// ```
 /// use elbowroom_cspace::{ConvexObstacle, Grid, GridAxis, JointMap, PlanarArm};
@@ -65,10 +66,10 @@ pub struct GridPlanner {
 }
 
 impl GridPlanner {
-    /// A planner for the occupancy of a grid.
+    /// Creates a planner for the occupancy of a grid.
     ///
     /// # Errors
-    /// The occupancy has another shape than the grid.
+    /// The shapes of occupancy and grid differ.
     pub fn new(grid: &Grid, occupancy: &OccupancyBitmap) -> Result<Self, GridPlannerError> {
         check_shape(grid, occupancy)?;
         Ok(Self {
@@ -84,11 +85,11 @@ impl GridPlanner {
         })
     }
 
-    /// Replaces the occupancy by a newer one; returns the cells that changed. The cost is that of the changes, and of the
-    /// comparison of planes that the two do not share.
+    /// Replaces the occupancy by a newer one; returns the cells that changed. The cost is proportional to the changes
+    /// and to the number of planes that the two bitmaps do not share, which are compared.
     ///
     /// # Errors
-    /// The occupancy has another shape than the grid.
+    /// The shapes of occupancy and grid differ.
     pub fn update(&mut self, occupancy: &OccupancyBitmap) -> Result<CellChanges, GridPlannerError> {
         check_shape(self.space.grid(), occupancy)?;
         let changes = CellChanges::between(&self.occupancy, occupancy);
@@ -96,9 +97,9 @@ impl GridPlanner {
         Ok(changes)
     }
 
-    /// The same where the changes are known, as [`elbowroom_cspace::JointMap::set_obstacle`] reports them: no plane is compared.
-    /// `changes` must be all differences between the planner's occupancy and the newer one; changes of several updates are
-    /// applied one by one, in order.
+    /// Like [`update`](Self::update) with known changes, as [`elbowroom_cspace::JointMap::set_obstacle`] reports them:
+    /// compares no planes. `changes` must be all differences between the planner's occupancy and the newer one. Changes
+    /// of several updates must be applied one by one, in order.
     ///
     /// ```
     /// # use elbowroom_cspace::{ConvexObstacle, Grid, GridAxis, JointMap, PlanarArm};
@@ -115,7 +116,7 @@ impl GridPlanner {
     /// ```
     ///
     /// # Errors
-    /// The occupancy has another shape than the grid.
+    /// The shapes of occupancy and grid differ.
     pub fn apply(&mut self, occupancy: &OccupancyBitmap, changes: &CellChanges) -> Result<(), GridPlannerError> {
         check_shape(self.space.grid(), occupancy)?;
         self.occupancy = occupancy.clone();
@@ -126,18 +127,18 @@ impl GridPlanner {
         Ok(())
     }
 
-    /// The occupancy that paths are planned on.
+    /// Returns the occupancy on which paths are planned.
     pub fn occupancy(&self) -> &OccupancyBitmap {
         &self.occupancy
     }
 
-    /// A short path from `start` to `goal` (values of the map's joints, radians) through free cells.
+    /// Computes a short path from `start` to `goal` (values of the map's joints, radians) through free cells.
     ///
-    /// It exists if and only if the two cells are connected through free cells with common faces.
+    /// A path exists if and only if the cells of start and goal are connected through free cells with common faces.
     ///
     /// # Errors
-    /// An end outside the grid (NaN too) or in a blocked cell without a free one near enough; ends that are not
-    /// connected; invalid settings.
+    /// An end is outside the grid (or NaN), or its cell is blocked without a free cell near enough; start and goal are
+    /// not connected; a setting is invalid.
     pub fn plan(
         &mut self,
         start: [f64; 3],
@@ -155,7 +156,7 @@ impl GridPlanner {
         Ok(self.path(&points, scale, &ends))
     }
 
-    /// Memory of the planner, bytes, without the occupancy, which it shares with the map.
+    /// Memory of the planner in bytes, without the occupancy, which it shares with the map.
     pub fn bytes(&self) -> usize {
         self.graph.bytes()
             + self.components.bytes()
@@ -165,7 +166,7 @@ impl GridPlanner {
             + self.cells.capacity() * size_of::<CellIndex>()
     }
 
-    /// Nodes that the last search expanded; 0 if there was line of sight.
+    /// Number of nodes that the last search expanded; 0 if the goal was in line of sight.
     pub fn expanded_nodes(&self) -> usize {
         self.search.expanded_nodes
     }
@@ -182,7 +183,7 @@ impl GridPlanner {
         Ok(self.space.scale(settings.weights))
     }
 
-    /// The free ends of a path.
+    /// Returns the two ends of a path, each in a free cell.
     fn ends(
         &mut self,
         [start, goal]: [[f64; 3]; 2],
@@ -220,7 +221,8 @@ impl GridPlanner {
         FreeEnd { at: CellPoint { cell, point: self.space.point_within(q, cell) }, q, moved: 0.0 }
     }
 
-    /// The nearest free cell, one that is connected to a node if there is any.
+    /// Returns the nearest free cell: the nearest one connected to the node `other`, or any if none within the radius
+    /// is connected.
     fn nearest_end(
         &mut self,
         end: PathEnd,
@@ -241,7 +243,8 @@ impl GridPlanner {
         Ok(FreeEnd { at: CellPoint { cell, point }, q: space.q(point), moved })
     }
 
-    /// Points from one free cell to another, without shortcutting; false if they are not connected.
+    /// Computes points from one free cell to another, without shortcutting; returns false if the cells are not
+    /// connected.
     fn connect(&mut self, scale: CellScale, [from, to]: [CellPoint; 2], points: &mut Vec<GridPoint>) -> bool {
         points.clear();
         points.push(from.point);
@@ -265,7 +268,7 @@ impl GridPlanner {
         true
     }
 
-    /// The links from one node to another; false if they are not connected.
+    /// Finds the links from one node to another; returns false if the nodes are not connected.
     fn find_links(&mut self, scale: CellScale, [start, goal]: [Terminal; 2]) -> bool {
         let Self { occupancy, graph, space, search, links, components, .. } = self;
         let mut query = ThetaStarQuery { occupancy, graph, space, scale, start, goal, max_nodes: usize::MAX };
@@ -273,7 +276,7 @@ impl GridPlanner {
             let is_connected = components.connected(graph, start.node, goal.node);
             return is_connected && search.run(&query, links) == SearchOutcome::Found;
         }
-        // Most searches take less time than the components.
+        // Most searches take less time than computing the components.
         query.max_nodes = NODES_BEFORE_COMPONENTS;
         match search.run(&query, links) {
             SearchOutcome::Found => true,
@@ -286,7 +289,7 @@ impl GridPlanner {
         }
     }
 
-    /// Appends the points of the links between two ends; links without line of sight cell by cell.
+    /// Appends the points of the links between two ends; a link without line of sight is appended cell by cell.
     fn append_links(&mut self, [start, goal]: [(Node, CellIndex); 2], points: &mut Vec<GridPoint>) {
         let cell = |graph: &CellGroupGraph, node| match node {
             _ if node == start.0 => start.1,
@@ -304,7 +307,7 @@ impl GridPlanner {
         }
     }
 
-    /// Appends the centres of the cells between two cells in one or two components, both included.
+    /// Appends the centres of the cells from one cell to another in one or two components, both included.
     fn append_cell_path(&mut self, nodes: [Node; 2], cells: [CellIndex; 2], points: &mut Vec<GridPoint>) {
         self.cell_path.shortest_path(&self.graph, nodes, cells, &mut self.cells);
         points.extend(self.cells.iter().map(|&cell| self.space.center(cell)));
@@ -312,7 +315,7 @@ impl GridPlanner {
 
     fn path(&self, points: &[GridPoint], scale: CellScale, ends: &[FreeEnd; 2]) -> Path {
         let mut waypoints: Vec<[f64; 3]> = points.iter().map(|&p| self.space.q(p)).collect();
-        // Points at the ends are less than a billionth of a cell away from the requested ones.
+        // The points at the ends are within a billionth of a cell of the requested ends.
         if let Some(first) = waypoints.first_mut() {
             *first = ends[0].q;
         }
@@ -329,7 +332,7 @@ impl GridPlanner {
     }
 }
 
-/// An end of a path in a free cell.
+/// An end of a path, in a free cell.
 #[derive(Debug, Clone, Copy)]
 struct FreeEnd {
     pub at: CellPoint,

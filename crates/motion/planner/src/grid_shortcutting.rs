@@ -1,25 +1,25 @@
-//! Shortcutting of grid paths: corners are skipped where there is line of sight, and moved to shorten the path. For paths in
-//! the exact scene: `rrt_connect/shortcutting.rs`.
+//! Shortcutting of grid paths: skips corners if there is line of sight, and moves corners to shorten the path. For
+//! paths in the exact scene see `rrt_connect/shortcutting.rs`.
 
 use elbowroom_cspace::{CellIndex, OccupancyBitmap};
 
 use crate::grid_space::{CellScale, GridPoint, GridSpace};
 use crate::line_of_sight::line_of_sight;
 
-/// Up to this number of points, all pairs are checked.
+/// Largest number of points for which all pairs are checked.
 const MAX_ALL_PAIRS: usize = 24;
-/// Most rounds of moving corners.
+/// Largest number of rounds of moving corners.
 const MAX_ROUNDS: usize = 6;
-/// Most moves of a corner by one step size.
+/// Largest number of moves of a corner by one step size.
 const MAX_MOVES: usize = 8;
-/// A round that leaves more than this share of the length is the last one: further rounds gain even less.
+/// If a round leaves more than this fraction of the length, it is the last one: further rounds gain even less.
 const LAST_ROUND_RATIO: f64 = 0.999;
-/// A corner is moved where that shortens its two segments by more than this share: rounding errors move no corner.
+/// Smallest gain, as a fraction of a corner's two segments, for which it is moved: rounding errors do not move corners.
 const MIN_MOVE_GAIN: f64 = 1e-9;
 /// Steps by which a corner is moved, cells.
 const STEPS: [i32; 5] = [16, 8, 4, 2, 1];
 
-/// Workspace, reused.
+/// Workspace of the shortcutting, reused.
 #[derive(Debug, Default)]
 pub(crate) struct GridShortcutting {
     other: Vec<GridPoint>,
@@ -36,7 +36,7 @@ pub(crate) struct PathContext<'a> {
 }
 
 impl GridShortcutting {
-    /// Shortens a path; the ends stay.
+    /// Shortens a path; its ends do not change.
     pub fn run(&mut self, context: PathContext, points: &mut Vec<GridPoint>) {
         self.skip_ahead(context, points);
         self.shortest_subsequence(context, points);
@@ -50,7 +50,7 @@ impl GridShortcutting {
         }
     }
 
-    /// From each point to a far one in line of sight, found by doubling and bisection.
+    /// Joins each point with a far point in line of sight, found by doubling and bisection.
     fn skip_ahead(&mut self, context: PathContext, points: &mut Vec<GridPoint>) {
         self.other.clear();
         let mut at = 0;
@@ -73,7 +73,7 @@ impl GridShortcutting {
         std::mem::swap(&mut self.other, points);
     }
 
-    /// The shortest subsequence of the points.
+    /// Reduces the path to its shortest subsequence of points.
     fn shortest_subsequence(&mut self, context: PathContext, points: &mut Vec<GridPoint>) {
         let count = points.len();
         if !(3..=MAX_ALL_PAIRS).contains(&count) {
@@ -102,7 +102,7 @@ impl GridShortcutting {
         points.truncate(write + 1);
     }
 
-    /// Bytes on the heap.
+    /// Memory on the heap, bytes.
     pub fn bytes(&self) -> usize {
         self.other.capacity() * size_of::<GridPoint>() + (self.length.capacity() + self.next.capacity()) * 8
     }
@@ -145,12 +145,12 @@ fn best_move(
     best
 }
 
-/// Shifts to the 26 neighbours of a cell.
+/// Iterates over the shifts to the 26 neighbours of a cell.
 fn neighbour_shifts() -> impl Iterator<Item = [i32; 3]> {
     (0..27).filter(|&n| n != 13).map(|n| [n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1])
 }
 
-/// The cell of a point, shifted; `None` outside the grid.
+/// Returns the cell of a point, shifted; `None` if it is outside the grid.
 fn shifted_cell(context: PathContext, from: GridPoint, shift: [i32; 3]) -> Option<CellIndex> {
     let shape = context.occupancy.shape();
     let along = |i: usize| {

@@ -1,4 +1,4 @@
-//! Joint values in units of cell widths, and weighted lengths of such points.
+//! Joint values in units of cell widths, and weighted lengths of points in these units.
 
 use elbowroom_cspace::{CellIndex, Grid};
 
@@ -8,7 +8,7 @@ pub(crate) type GridPoint = [f64; 3];
 /// Path ends lie at least this far inside their cell, in cell widths: on a border the cell would be ambiguous.
 const BORDER_INSET: f64 = 1e-9;
 
-/// Conversion between joint values and points.
+/// Converts between joint values and grid points.
 #[derive(Debug, Clone)]
 pub(crate) struct GridSpace {
     grid: Grid,
@@ -29,7 +29,7 @@ impl GridSpace {
         &self.grid
     }
 
-    /// Joint values of a point, radians.
+    /// Returns the joint values of a point, radians.
     pub fn q(&self, point: GridPoint) -> [f64; 3] {
         let value = |i: usize| {
             let axis = &self.grid.axes()[i];
@@ -38,7 +38,7 @@ impl GridSpace {
         [value(0), value(1), value(2)]
     }
 
-    /// Joint values (radians) as a point, inside the grid or not.
+    /// Returns joint values (radians) as a point, inside or outside the grid.
     pub fn point(&self, q: [f64; 3]) -> GridPoint {
         let along = |i: usize| {
             let axis = &self.grid.axes()[i];
@@ -47,7 +47,7 @@ impl GridSpace {
         [along(0), along(1), along(2)]
     }
 
-    /// The same, moved inward from the borders of its cell.
+    /// Returns joint values (radians) as a point, moved inward from the borders of its cell.
     pub fn point_within(&self, q: [f64; 3], cell: CellIndex) -> GridPoint {
         let point = self.point(q);
         let within = |i: usize| {
@@ -57,7 +57,7 @@ impl GridSpace {
         [within(0), within(1), within(2)]
     }
 
-    /// Centre of the part of a cell that lies within the joint limits.
+    /// Returns the centre of the part of a cell that lies within the joint limits.
     pub fn center(&self, cell: CellIndex) -> GridPoint {
         let center = |i: usize| {
             let low = f64::from(cell[i]);
@@ -66,7 +66,7 @@ impl GridSpace {
         [center(0), center(1), center(2)]
     }
 
-    /// Radians per cell width, times the joints' weights.
+    /// Returns the radians per cell width, times the joints' weights.
     pub fn scale(&self, weights: [f64; 3]) -> CellScale {
         let axes = self.grid.axes();
         CellScale([0, 1, 2].map(|i| weights[i] * axes[i].step()))

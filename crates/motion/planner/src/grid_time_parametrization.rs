@@ -1,4 +1,4 @@
-//! Time parametrization of grid paths: a corner is blended where the triangle that is cut off lies in free cells.
+//! Time parametrization of grid paths: a corner is blended if the triangle that is cut off lies in free cells.
 
 use elbowroom_cspace::OccupancyBitmap;
 
@@ -8,12 +8,12 @@ use crate::line_of_sight::box_is_free;
 use crate::path::Path;
 use crate::time_parametrization::{KinematicLimits, PathSegments, TimeParametrizationError, Trajectory};
 
-/// The triangle of a corner is halved in size this often before the trajectory stops at the corner.
+/// Number of times that the triangle of a corner is halved before the trajectory stops at the corner.
 const MAX_HALVINGS: i32 = 6;
-/// A triangle is bisected this often before it counts as blocked.
+/// Number of times that a triangle is bisected before it counts as blocked.
 const MAX_DEPTH: u32 = 7;
 
-/// True if all cells that the triangle touches are free; may be false if only their neighbours are blocked.
+/// Whether all cells that the triangle touches are free. May be false if only their neighbours are blocked.
 fn triangle_is_free(occupancy: &OccupancyBitmap, corners: [GridPoint; 3]) -> bool {
     halves_are_free(occupancy, corners, MAX_DEPTH)
 }
@@ -27,7 +27,7 @@ fn halves_are_free(occupancy: &OccupancyBitmap, [a, b, c]: [GridPoint; 3], depth
     if depth == 0 {
         return false;
     }
-    // The longest edge is bisected.
+    // Bisect the longest edge.
     let far = |p: GridPoint, q: GridPoint| (0..3).map(|i| (p[i] - q[i]).powi(2)).sum::<f64>();
     let (ab, bc, ca) = (far(a, b), far(b, c), far(c, a));
     let [p, q, tip] = if ab >= bc && ab >= ca {
@@ -41,15 +41,16 @@ fn halves_are_free(occupancy: &OccupancyBitmap, [a, b, c]: [GridPoint; 3], depth
     halves_are_free(occupancy, [p, middle, tip], depth - 1) && halves_are_free(occupancy, [middle, q, tip], depth - 1)
 }
 
-/// Halves a blend distance until its triangle is free; 0 if none is.
+/// Halves a blend distance until its triangle is free; 0 if no triangle is free.
 fn free_blend_distance(from: f64, mut is_free: impl FnMut(f64) -> bool) -> f64 {
     let halves = (0..MAX_HALVINGS).map(|n| from * 0.5_f64.powi(n));
     halves.into_iter().find(|&blend_distance| is_free(blend_distance)).unwrap_or(0.0)
 }
 
 impl GridPlanner {
-    /// Time parametrization of a path within limits. Straight segments are kept; corners are blended where the triangle that
-    /// is cut off lies in free cells, up to half of the shorter segment; elsewhere the trajectory stops at the corner.
+    /// Computes the time parametrization of a path within limits. Straight segments are kept. A corner is blended if
+    /// the triangle that is cut off lies in free cells, up to half of the shorter segment; otherwise the trajectory
+    /// stops at the corner.
     ///
     /// ```
     /// # use elbowroom_cspace::{Grid, GridAxis, OccupancyBitmap};
@@ -67,7 +68,7 @@ impl GridPlanner {
     /// ```
     ///
     /// # Errors
-    /// Limits that are not three finite numbers above 0 each; a path without waypoints.
+    /// The limits are not three finite numbers above 0 each, or the path has no waypoints.
     pub fn time_parametrize(
         &self,
         path: &Path,

@@ -1,8 +1,9 @@
-//! Path planning: paths through the free cells of a joint-space map, and RRT-Connect in the exact scene; time parametrization of both.
+//! Path planning: paths through the free cells of a joint-space map, RRT-Connect in the exact scene, and time
+//! parametrization of the paths.
 //!
-//! On the grid, two free cells are connected where they share a *face*; a straight segment is free where all cells that it
-//! touches are free. So a path exists if and only if start and goal are connected, and it never passes between blocked cells
-//! that meet at an edge.
+//! On the grid, two free cells are connected if they share a *face*; a straight segment is free if all cells that it
+//! touches are free. Therefore a path exists if and only if start and goal are connected, and it never passes between
+//! blocked cells that meet at an edge.
 //!
 //! Without a map, or for more than three joints, [`RrtConnect`] samples configurations in the exact scene and proves the path
 //! there.
@@ -24,9 +25,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! **Invariant.** While the map or the scene stays as it was planned in, a returned path never leaves what was proven
-//! free: all cells that it touches are free, or sphere covers or a continuous sweep of the exact scene have proven
-//! every segment.
+//! **Invariant.** While the map or the scene does not change, a returned path never leaves what was proven free: all
+//! cells that it touches are free, or sphere covers or a continuous sweep of the exact scene have proven every segment.
 #![deny(missing_docs)]
 #![forbid(unsafe_code)]
 

@@ -4,13 +4,14 @@ use elbowroom_cspace::OccupancyBitmap;
 
 use crate::grid_space::GridPoint;
 
-/// Cells are enlarged by this on every side, in cell widths: a segment along a border or through a corner touches all cells
+/// Enlargement of cells on every side, in cell widths: a segment along a border or through a corner touches all cells
 /// that meet there, independent of rounding. Smaller than the inset of path ends from borders.
 const CELL_TOLERANCE: f64 = 5e-10;
-/// A segment that moves less along an axis, in cell widths, does not move along it: the inverse would be infinite.
+/// Motion along an axis, in cell widths, below which a segment counts as not moving along it: the inverse would be
+/// infinite.
 const MIN_MOTION: f64 = 1e-300;
 
-/// Whether all cells that the segment touches are free; cells outside of the grid are not.
+/// Whether all cells that the segment touches are free; cells outside the grid count as blocked.
 pub(crate) fn line_of_sight(occupancy: &OccupancyBitmap, a: GridPoint, b: GridPoint) -> bool {
     let line = Line::new(a, b);
     line.cells(0, (0.0, 1.0)).all(|i| {
@@ -39,7 +40,7 @@ fn row_of<'t>(occupancy: &OccupancyBitmap, plane: &'t [u64], row: i64) -> &'t [u
     usize::try_from(row).ok().and_then(|j| plane.get(j * width..(j + 1) * width)).unwrap_or(&[])
 }
 
-/// Without a library call, unlike `f64::floor` on many processors.
+/// Rounds down without a library call, unlike `f64::floor` on many processors.
 #[inline]
 fn floor(value: f64) -> i64 {
     let whole = value as i64;
@@ -69,7 +70,7 @@ impl Line {
         (floor(start.min(end) - CELL_TOLERANCE), floor(start.max(end) + CELL_TOLERANCE))
     }
 
-    /// The cells between them, in the direction of the line.
+    /// The cells along an axis that a part of the line touches, in the direction of the line.
     fn cells(&self, axis: usize, part: (f64, f64)) -> impl Iterator<Item = i64> + use<> {
         let (low, high) = self.range(axis, part);
         let backward = self.d[axis] < 0.0;
@@ -87,7 +88,7 @@ impl Line {
     }
 }
 
-/// Whether the cells `low..=high` of a row are free; those outside of it are not.
+/// Whether the cells `low..=high` of a row are free; cells outside the row count as blocked.
 fn cells_are_free(row: &[u64], count: usize, low: i64, high: i64) -> bool {
     if row.is_empty() || low < 0 || high >= count.cast_signed() as i64 {
         return false;
@@ -128,7 +129,7 @@ mod tests {
     }
 
     proptest! {
-        /// No blocked cell is touched, by all cells one by one: the segment enters and leaves the slab of each axis.
+        /// Compares with a test of all blocked cells one by one: the segment enters and leaves the slab of each axis.
         #[test]
         fn agrees_with_a_test_of_every_blocked_cell(a in point(), b in point(), cells in prop::collection::vec((0u32..72, 0u16..140), 0..400)) {
             let occupancy = bitmap(&cells);

@@ -4,7 +4,7 @@ use elbowroom_cspace::CellIndex;
 
 use crate::grid_space::{CellScale, GridPoint, GridSpace};
 
-/// The accepted cell whose centre is nearest to a point within a radius, and its distance (weighted radians).
+/// Finds the accepted cell whose centre is nearest to a point within a radius, and its distance (weighted radians).
 pub(crate) fn nearest_cell(
     space: &GridSpace,
     scale: CellScale,

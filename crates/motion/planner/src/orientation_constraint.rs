@@ -1,4 +1,4 @@
-//! A direction that is kept along a path: a glass stays upright.
+//! A constraint on the direction of a link along a path, for example to keep a glass upright.
 
 use elbowroom_kinematics::{Chain, ChainState, JointKind, LinkId};
 use elbowroom_robot::RobotId;
@@ -7,18 +7,19 @@ use elbowroom_spatial::{Rotation, Vec3};
 
 use crate::rrt_connect::PathConstraint;
 
-/// Longest edge of a tree: the chord of a longer one leaves the tolerance, rad (and m).
+/// Longest edge of a tree, rad (and m): the chord of a longer edge leaves the tolerance.
 const EDGE_LENGTH: f64 = 0.5;
-/// Share of the tolerance that a projection aims at.
+/// Fraction of the tolerance at which a projection aims.
 const PROJECTED_SHARE: f64 = 0.5;
-/// Steps of a projection.
+/// Largest number of steps of a projection.
 const PROJECTION_STEPS: usize = 12;
 /// Damping of a projection's steps.
 const DAMPING: f64 = 1e-3;
 
-/// Keeps an axis of a link within an angle of a direction in the world, whatever the link does about that axis.
+/// Keeps an axis of a link within an angle of a direction in the world; the link may turn freely about that axis.
 ///
-/// As a [`PathConstraint`], its distances are those of the point at 1 m along the axis, so that a metre is a radian.
+/// As a [`PathConstraint`], it measures the distances of the point at 1 m along the axis, so that 1 m corresponds to 1
+/// rad.
 ///
 /// ```
 /// use elbowroom_planner::{OrientationConstraint, PathConstraint};
@@ -40,7 +41,7 @@ pub struct OrientationConstraint {
     chain: Chain,
     state: ChainState,
     columns: Vec<[f64; 6]>,
-    /// Per value, how much the link turns at most, rad per rad.
+    /// Largest turn of the link per value, rad per rad.
     turns: Vec<f64>,
     link: LinkId,
     axis_in_link: Vec3,
@@ -49,11 +50,11 @@ pub struct OrientationConstraint {
 }
 
 impl OrientationConstraint {
-    /// Keeps `axis_in_link` within `tolerance_rad` of `direction_in_world`. Directions need not have length 1; one without length, or
-    /// a tolerance that is not a number above 0, is violated everywhere.
+    /// Keeps `axis_in_link` within `tolerance_rad` of `direction_in_world`. Directions need not have length 1. If a
+    /// direction has length 0, or the tolerance is not a number above 0, every configuration violates the constraint.
     ///
     /// # Panics
-    /// The scene has no such robot, or the robot no such link.
+    /// The scene does not have this robot, or the robot does not have this link.
     pub fn new(
         scene: &Scene,
         robot: RobotId,
@@ -81,7 +82,7 @@ impl OrientationConstraint {
         }
     }
 
-    /// The axis in the root's frame; its state is computed.
+    /// Computes the state of the chain; returns the axis in the root's frame.
     fn axis(&mut self, q: &[f64]) -> Vec3 {
         if q.len() != self.state.q.len() {
             return Vec3::splat(f64::NAN);
@@ -95,10 +96,10 @@ impl OrientationConstraint {
         angle(self.axis(q), self.direction_in_root)
     }
 
-    /// One damped step of Gauss and Newton that turns the axis by an angle towards the direction.
+    /// One damped Gauss-Newton step that turns the axis by an angle towards the direction.
     fn turn(&mut self, q: &mut [f64], axis: Vec3, by_rad: f64) {
         let across = axis.cross(self.direction_in_root);
-        // Where the two are opposite, any direction across is right.
+        // If the two are opposite, every perpendicular direction is right.
         let about = across.try_normalize().unwrap_or_else(|| Rotation::from_z(axis).x_axis());
         self.chain.jacobian(&self.state, self.link, Vec3::ZERO, &mut self.columns);
         let angular = |column: &[f64; 6]| {
@@ -154,7 +155,8 @@ impl PathConstraint for OrientationConstraint {
     }
 }
 
-/// Per value of the chain, by how much it turns a link at most, rad per rad: 0 for slides and joints that do not carry it.
+/// Largest turn of a link per value of the chain, rad per rad: 0 for prismatic joints and joints that do not carry the
+/// link.
 fn turns(chain: &Chain, link: LinkId) -> Vec<f64> {
     let mut turns = vec![0.0; chain.dof()];
     let mut at = link;
@@ -173,7 +175,7 @@ fn angle(a: Vec3, b: Vec3) -> f64 {
     a.cross(b).length().atan2(a.dot(b))
 }
 
-/// Solves a symmetric system of three equations by its rows (Cramer's rule).
+/// Solves a symmetric system of three equations, given by its rows (Cramer's rule).
 fn solved(rows: [Vec3; 3], right: Vec3) -> Vec3 {
     let [a, b, c] = rows;
     Vec3::new(right.dot(b.cross(c)), right.dot(c.cross(a)), right.dot(a.cross(b))) / a.dot(b.cross(c))

@@ -1,10 +1,11 @@
-//! Several robots planned one after the other, by priority, which then move at the same time as far as that is proven.
+//! Prioritized planning for several robots: plans them one after the other, then lets them move at the same time as far
+//! as that is proven free.
 //!
-//! Each robot's path is planned while those before it rest at their goals and those after it at their starts (Erdmann,
-//! Lozano-Pérez: *On multiple moving objects*, 1987). Run one after the other the motions are free. Then each begins as early as a
-//! sweep of both robots proves it free beside every motion of higher priority: paths stay, times change (Kant, Zucker: *Toward
-//! efficient trajectory planning: the path-velocity decomposition*, 1986). If one priority leaves a robot without a path,
-//! others are tried.
+//! Each robot's path is planned while the robots before it rest at their goals and the robots after it at their starts
+//! (Erdmann, Lozano-Pérez: *On multiple moving objects*, 1987). Run one after the other, the motions are free. Each
+//! motion then starts as early as a sweep of both robots proves it free beside every motion of higher priority: paths
+//! do not change, only times (Kant, Zucker: *Toward efficient trajectory planning: the path-velocity decomposition*,
+//! 1986). If a robot has no path with one priority order, the planner tries others.
 
 use std::time::{Duration, Instant};
 
@@ -17,33 +18,33 @@ use crate::{
     RrtConnectError, RrtConnectSettings, TimedMotion,
 };
 
-/// All priorities of so many robots are tried; of more robots, each as the first.
+/// Up to this number of robots, all priority orders are tried; with more robots, each robot is tried as the first.
 const ALL_ORDERS: usize = 4;
-/// Delays are tried in steps of this, s.
+/// Step of the tried delays, s.
 const DELAY_STEP_S: f64 = 0.05;
 
-/// Gives each of several robots the constraint on its paths.
+/// Provides the path constraint of each of several robots.
 pub trait PathConstraintSource {
-    /// The constraint of a robot; `None` if its paths have none.
+    /// Returns the constraint of a robot; `None` if its paths are not constrained.
     fn constraint_of(&self, robot: RobotId) -> Option<Box<dyn PathConstraint + '_>>;
 }
 
-/// Why there are no motions for several robots.
+/// Why motions for several robots cannot be planned.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PrioritizedPlannerError {
     /// No robot has a goal.
     #[error("no robot has a goal: write at least one")]
     NoGoal,
-    /// One of them has no motion, for the first priority.
+    /// A robot has no motion with the first priority order.
     #[error("robot {}: {error}", .robot.0)]
     Robot {
         /// The robot.
         robot: RobotId,
-        /// Why.
+        /// Why the robot has no motion.
         error: RrtConnectError,
     },
-    /// Whichever robot goes first, one of them has no path around the others at their starts or goals. That proves nothing of
-    /// motions in which they make way for each other.
+    /// With every tried order, some robot has no path around the others at their starts or goals. Motions in which the
+    /// robots make way for each other may still exist.
     #[error(
         "no path in {orders} orders of the robots, after {seconds:.1} s: whichever goes first, one of them has none around the others \
          at their starts or goals. They may have to make way for each other: plan one of them to a place aside before"
@@ -51,14 +52,14 @@ pub enum PrioritizedPlannerError {
     NoPriority {
         /// The robot without a path in the first order.
         robot: RobotId,
-        /// Number of orders that were tried.
+        /// Number of tried orders.
         orders: usize,
         /// Duration of the search, s.
         seconds: f64,
     },
 }
 
-/// Where one of several robots goes.
+/// Goal of one of several robots.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RobotGoal {
     /// The robot.
@@ -80,17 +81,17 @@ pub struct PrioritizedMotion {
     pub motion: TimedMotion,
     /// When it starts, s.
     pub start_s: f64,
-    /// Period of its rows, s.
+    /// Period of the motion's rows, s.
     period_s: f64,
 }
 
 impl PrioritizedMotion {
-    /// When it ends, s.
+    /// Time at which the motion ends, s.
     pub fn end_s(&self) -> f64 {
         self.start_s + self.last_row() as f64 * self.period_s
     }
 
-    /// Its configuration at a multiple of the period: before its start the first, after its end the last.
+    /// Configuration at a multiple of the period: before the start the first configuration, after the end the last.
     pub fn at_tick(&self, tick: usize) -> &[f64] {
         &self.motion.rows[tick.saturating_sub(self.start_tick()).min(self.last_row())].1
     }
@@ -108,7 +109,7 @@ impl PrioritizedMotion {
     }
 }
 
-/// Plans for several robots of a scene by priority.
+/// Plans motions for several robots of a scene by priority.
 ///
 /// ```
 /// use elbowroom_planner::{KinematicLimits, PrioritizedPlanner, RobotGoal, RrtConnectSettings};
@@ -137,30 +138,31 @@ impl std::fmt::Debug for PrioritizedPlanner<'_> {
 }
 
 impl<'s> PrioritizedPlanner<'s> {
-    /// For robots of a scene.
+    /// Creates a planner for the robots of a scene.
     pub fn new(scene: &'s Scene) -> Self {
         Self { scene, covers: &BuiltCovers, constraints: None }
     }
 
-    /// With the covers of links from a source.
+    /// Uses the covers of links from a source.
     #[must_use]
     pub fn with_covers(self, covers: &'s dyn CoverSource) -> Self {
         Self { covers, ..self }
     }
 
-    /// With constraints on the paths, such as regions to stay out of.
+    /// Adds constraints on the paths, for example regions to avoid.
     #[must_use]
     pub fn with_constraints(self, constraints: &'s dyn PathConstraintSource) -> Self {
         Self { constraints: Some(constraints), ..self }
     }
 
-    /// Motions from the configurations in `start` to the goals, with a row every `period_s`; in the order of the goals. The first
-    /// goals have the highest priority if that leaves a path for all. Between rows all robots move straight in joint space; the
-    /// motion of all of them together is proven free, and each keeps its path.
+    /// Computes motions from the configurations in `start` to the goals, with a row every `period_s`, in the order of
+    /// the goals. The first goals have the highest priority if that order leaves a path for every robot. Between rows
+    /// all robots move straight in joint space; the motion of all robots together is proven free, and each robot
+    /// follows its path.
     ///
     /// # Errors
-    /// As [`CoverRrtConnect::plan`] and [`CoverRrtConnect::time_parametrize`], for the first priority and the first robot that they
-    /// concern; [`PrioritizedPlannerError::NoGoal`] without goals.
+    /// The errors of [`CoverRrtConnect::plan`] and [`CoverRrtConnect::time_parametrize`], for the first priority order
+    /// and the first robot that fails; [`PrioritizedPlannerError::NoGoal`] without goals.
     pub fn plan(
         &self,
         start: &SceneState,
@@ -235,7 +237,8 @@ impl<'s> PrioritizedPlanner<'s> {
         Ok((path, motion))
     }
 
-    /// A motion with the first start at which it is free beside all of higher priority: at the latest, when they have ended.
+    /// Sets the earliest start at which a motion is proven free beside all motions of higher priority: at the latest,
+    /// when they have ended.
     fn as_early_as_possible(
         &self,
         start: &SceneState,
@@ -261,8 +264,9 @@ impl<'s> PrioritizedPlanner<'s> {
         Ok(next)
     }
 
-    /// True if two motions are proven free while the second one moves and the first one has not ended: the second path is
-    /// free beside the end of the first, and the first beside the start of the second.
+    /// Whether two motions are proven free while the second one moves and the first one has not ended. At other times
+    /// they are free already: the second path is free beside the end of the first, and the first path beside the start
+    /// of the second.
     fn are_free_together(
         &self,
         checker: &mut Checker<'s>,
@@ -287,7 +291,8 @@ impl<'s> PrioritizedPlanner<'s> {
     }
 }
 
-/// The error of so many orders. What is proven of one robot while the others rest somewhere is not proven of all together.
+/// The error after a number of tried orders. A proof for one robot while the others rest somewhere is not a proof for
+/// all together.
 fn of_orders(
     first: Option<PrioritizedPlannerError>,
     error: PrioritizedPlannerError,
@@ -307,7 +312,7 @@ fn of_orders(
     }
 }
 
-/// Orders of so many robots: all of a few, each as the first of many; the given order first.
+/// Orders of a number of robots: all orders of a few robots, each of many robots as the first; the given order first.
 fn orders(count: usize) -> Vec<Vec<usize>> {
     let given: Vec<usize> = (0..count).collect();
     if count > ALL_ORDERS {

@@ -1,4 +1,5 @@
-//! Goals in space: task space regions (Berenson, Srinivasa, Kuffner: *Task space regions*, 2011), of which a pose is the smallest.
+//! Goals in space: task space regions (Berenson, Srinivasa, Kuffner: *Task space regions*, 2011). The smallest region
+//! is a pose.
 
 use elbowroom_kinematics::inverse::{IkOptions, IkSolver};
 use elbowroom_kinematics::{ChainState, LinkId};
@@ -8,10 +9,10 @@ use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 use crate::rrt_connect::{Random, length};
 
-/// Poses that are within rounding of the region's border belong to it, m or rad.
+/// Tolerance for rounding at the region's border, m or rad.
 const BORDER: f64 = 1e-8;
 
-/// Poses of a tip that a robot may end at.
+/// A set of poses of a tip in which a robot may end.
 ///
 /// ```
 /// use elbowroom_planner::TaskSpaceRegion;
@@ -31,18 +32,18 @@ const BORDER: f64 = 1e-8;
 pub struct TaskSpaceRegion {
     /// The link that the tip belongs to.
     pub link: LinkId,
-    /// The tip in the frame of the link.
+    /// Pose of the tip in the frame of the link.
     pub tip_in_link: Pose,
-    /// The middle of the region.
+    /// Centre of the region.
     pub centre_in_world: Pose,
-    /// How far the tip may be from it along the axes of the centre, m.
+    /// Largest offset of the tip from the centre along the centre's axes, m.
     pub half_extents_m: Vec3,
-    /// How far it may be turned from it: roll, pitch and yaw in the frame of the centre, rad.
+    /// Largest rotation of the tip from the centre: roll, pitch and yaw in the frame of the centre, rad.
     pub half_angles_rad: Vec3,
 }
 
 impl TaskSpaceRegion {
-    /// A single pose of the tip.
+    /// Creates a region of a single pose of the tip.
     pub fn at_pose(link: LinkId, tip_in_link: Pose, tip_in_world: Pose) -> Self {
         Self {
             link,
@@ -53,7 +54,7 @@ impl TaskSpaceRegion {
         }
     }
 
-    /// True for a pose of the tip in the region, but for rounding.
+    /// Whether a pose of the tip is in the region, up to rounding.
     pub fn contains(&self, tip_in_world: &Pose) -> bool {
         let from_centre = self.centre_in_world.inverse_mul(tip_in_world);
         let within = |value: f64, half: f64| value.abs() <= half + BORDER;
@@ -62,13 +63,13 @@ impl TaskSpaceRegion {
             && (0..3).all(|i| within(turned[i], self.half_angles_rad[i]))
     }
 
-    /// Configurations of a robot (rad, m for prismatic joints) within its limits with the tip in the region: all that inverse
-    /// kinematics finds for the centre and for `samples` more poses, the nearest to the robot's configuration in `start` first.
-    /// Other solutions that a joint reaches by whole turns within its limits are among them. Empty if none is found, which proves
-    /// nothing for more than six joints. They may be in collision.
+    /// Finds configurations of a robot (rad, m for prismatic joints) within its limits with the tip in the region: all
+    /// that inverse kinematics finds for the centre and for `samples` more poses, the nearest to the robot's
+    /// configuration in `start` first. This includes solutions that differ by whole turns of a joint within its limits.
+    /// The configurations may be in collision. An empty result proves nothing for more than six joints.
     ///
     /// # Panics
-    /// The scene has no such robot, or the robot no such link.
+    /// The scene does not have this robot, or the robot does not have this link.
     pub fn configurations(
         &self,
         scene: &Scene,
@@ -88,7 +89,7 @@ impl TaskSpaceRegion {
             for q in solver.solve_all(&r.base_in_world.inverse_mul(&tip_in_world), from) {
                 state.q.copy_from_slice(&q);
                 chain.forward(&mut state);
-                // Numeric solutions of poses at the border may be a little outside.
+                // Numerical solutions of poses at the border may be slightly outside.
                 if self.contains(&(r.base_in_world * state.link_in_root(self.link) * self.tip_in_link)) {
                     found.push(q);
                 }
@@ -100,7 +101,7 @@ impl TaskSpaceRegion {
         found
     }
 
-    /// A pose of the region, evenly by position and by each angle.
+    /// A random pose of the region, uniform in position and in each angle.
     fn sample(&self, random: &mut Random) -> Pose {
         let mut within = |half: Vec3| Vec3::from([0, 1, 2].map(|i| random.between(-half[i], half[i])));
         let (at, turned) = (within(self.half_extents_m), within(self.half_angles_rad));
@@ -108,7 +109,8 @@ impl TaskSpaceRegion {
     }
 }
 
-/// Adds the configurations in which one joint has turned a whole turn more or less, where its limits are wider than a turn.
+/// Adds the configurations in which one joint is turned by a whole turn more or less, if its limits are wider than a
+/// turn.
 fn add_whole_turns(found: &mut Vec<Vec<f64>>, lower: &[f64], upper: &[f64]) {
     for i in 0..found.len() {
         for joint in (0..lower.len()).filter(|&j| upper[j] - lower[j] > std::f64::consts::TAU && upper[j].is_finite()) {

@@ -1,8 +1,9 @@
 //! Any-angle search over the coarse graph: lazy Theta* (Nash, Koenig, Tovey 2010).
 //!
-//! The parent of a node is the last corner of the path to it, not the neighbour from which it was found, so lengths are those
-//! of straight segments. Line of sight between a node and its parent is checked once, when the node is expanded; where there
-//! is none, the best neighbour becomes its parent, connected through the cells of both.
+//! The parent of a node is the last corner of the path to the node, not the neighbour from which it was found. Lengths
+//! are therefore lengths of straight segments. Line of sight between a node and its parent is checked once, when the
+//! node is expanded. If it is blocked, the best neighbour becomes the parent, connected through the cells of both
+//! nodes.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -13,7 +14,7 @@ use crate::cell_group_graph::{CellGroupGraph, Node};
 use crate::grid_space::{CellScale, GridPoint, GridSpace};
 use crate::line_of_sight::line_of_sight;
 
-/// A connection through the cells of blocks is not straight: its length is this multiple of the distance.
+/// Length factor of a connection through the cells of blocks, which is not straight.
 const CELL_PATH_FACTOR: f32 = 1.2;
 
 /// State of a node in a search.
@@ -22,14 +23,14 @@ struct SearchNode {
     /// Length from the start.
     length: f32,
     parent: Node,
-    /// Number of the search that reached it; the state is invalid in others.
+    /// Number of the search that reached the node; the state is invalid in other searches.
     search: u32,
     closed: bool,
-    /// Connected to its parent through the cells of both, without line of sight.
+    /// Whether the node is connected to its parent through the cells of both, without line of sight.
     by_cells: bool,
 }
 
-/// A node and the point that stands for it.
+/// A node and the point that represents it.
 #[derive(Clone, Copy)]
 pub(crate) struct Terminal {
     pub node: Node,
@@ -49,7 +50,7 @@ pub(crate) struct ThetaStarQuery<'a> {
 }
 
 impl ThetaStarQuery<'_> {
-    /// The point that stands for a node.
+    /// Returns the point that represents a node.
     pub fn point(&self, node: Node) -> GridPoint {
         if node == self.start.node {
             self.start.point
@@ -74,11 +75,11 @@ pub(crate) enum SearchOutcome {
     LimitReached,
 }
 
-/// A node of a path, and its connection to the node before.
+/// A node of a path and its connection to the previous node.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PathLink {
     pub node: Node,
-    /// Through the cells of both, without line of sight.
+    /// Whether the connection runs through the cells of both nodes, without line of sight.
     pub by_cells: bool,
 }
 
@@ -86,10 +87,10 @@ pub(crate) struct PathLink {
 #[derive(Debug, Default)]
 pub(crate) struct ThetaStarSearch {
     nodes: Vec<SearchNode>,
-    /// Least total length first: lengths are not negative, so their bits sort like the numbers.
+    /// Nodes by least total length: lengths are not negative, so their bits sort like the numbers.
     open: BinaryHeap<Reverse<u64>>,
     number: u32,
-    /// Nodes expanded by the last search.
+    /// Number of nodes that the last search expanded.
     pub expanded_nodes: usize,
 }
 
@@ -100,7 +101,7 @@ impl ThetaStarSearch {
         self.resume(query, links)
     }
 
-    /// Continues a search that reached its limit, with a larger one.
+    /// Continues a search that reached its limit, with a larger limit.
     pub fn resume(&mut self, query: &ThetaStarQuery, links: &mut Vec<PathLink>) -> SearchOutcome {
         links.clear();
         while self.expanded_nodes < query.max_nodes {
@@ -196,7 +197,7 @@ impl ThetaStarSearch {
         }
     }
 
-    /// Bytes on the heap.
+    /// Memory on the heap, bytes.
     pub fn bytes(&self) -> usize {
         self.nodes.capacity() * size_of::<SearchNode>() + self.open.capacity() * size_of::<u64>()
     }

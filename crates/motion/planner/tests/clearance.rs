@@ -1,4 +1,4 @@
-//! A clearance holds for pairs that can never touch, too.
+//! A clearance also holds for pairs that can never touch.
 
 use elbowroom_planner::{CoverModel, CoverObstacles, CoverRrtConnect, RrtConnect, RrtConnectError, RrtConnectSettings};
 use elbowroom_proximity::{Shape, Sphere};
@@ -6,7 +6,7 @@ use elbowroom_robot::{RobotId, example};
 use elbowroom_scene::{Object, Reason, Scene, SceneState};
 use elbowroom_spatial::{Pose, Vec3};
 
-/// A ball 140 mm from the column, which turns about its own axis: proven to be out of reach.
+/// A ball 140 mm from the column, which turns about its own axis: contact is proven to be out of reach.
 #[test]
 fn pairs_out_of_reach_of_contact_keep_the_clearance() {
     let mut builder = Scene::builder();

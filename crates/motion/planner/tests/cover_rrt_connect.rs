@@ -1,4 +1,4 @@
-//! Planning on covers where the scene changes what the models say.
+//! Planning on covers if the scene changes what the models contain.
 
 use elbowroom_planner::{CoverModel, CoverObstacles, CoverRrtConnect, RrtConnect, RrtConnectSettings};
 use elbowroom_proximity::{Shape, Sphere};

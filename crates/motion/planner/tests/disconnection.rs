@@ -1,4 +1,4 @@
-//! Proofs that no path exists: right where walls divide the joint space, and never where a path is known.
+//! Proofs that no path exists: they succeed if walls divide the joint space, and never contradict a known path.
 
 use std::time::{Duration, Instant};
 
@@ -43,7 +43,7 @@ const WALL: (Vec3, Vec3) = (Vec3::new(0.45, 0.0, 0.4), Vec3::new(0.3, 0.02, 1.2)
 
 #[test]
 fn a_wall_from_which_the_arm_cannot_withdraw_separates_its_sides() {
-    // A roof keeps the upper arm down, a wall behind is the other side of the circle.
+    // A roof keeps the upper arm down; a wall behind the arm blocks the other side of the circle.
     let roof = (Vec3::new(0.0, 0.0, 0.75), Vec3::new(1.5, 1.5, 0.15));
     let behind = (Vec3::new(-0.45, 0.0, 0.4), Vec3::new(0.3, 0.02, 1.2));
     let scene = scene(&[WALL, roof, behind]);
@@ -60,8 +60,9 @@ fn a_wall_over_which_the_arm_lifts_separates_nothing() {
     assert!(path.waypoints.len() > 2);
 }
 
-/// One goal is beyond the walls; the other may be reachable, but covers do not leave it: boxes are a millimetre from the forearm
-/// on four sides. What is proven of the first says nothing about the second.
+/// One goal is beyond the walls. The other may be reachable, but covers cannot leave it: boxes are a millimetre from
+/// the forearm
+/// on four sides. A proof for the first goal says nothing about the second.
 #[test]
 fn a_goal_that_cannot_be_left_keeps_the_question_open() {
     let roof = (Vec3::new(0.0, 0.0, 0.75), Vec3::new(1.5, 1.5, 0.15));
@@ -92,7 +93,7 @@ fn a_goal_that_cannot_be_left_keeps_the_question_open() {
     let began = Instant::now();
     let alone = planner.plan(&start, &beyond, &settings(Duration::from_secs(20))).unwrap_err();
     assert!(matches!(alone, RrtConnectError::Disconnected { .. }), "{alone}");
-    // Time enough for the proof, were there one.
+    // The time would be enough for a proof if it existed.
     let settings = settings((4 * began.elapsed()).max(Duration::from_millis(600)));
     for goals in [[beyond, tight], [tight, beyond]] {
         let error = planner.plan_to_any(&start, &goals, &settings).unwrap_err();
@@ -100,7 +101,7 @@ fn a_goal_that_cannot_be_left_keeps_the_question_open() {
     }
 }
 
-/// Where the planner in the exact scene has a path, nothing is proven against it, however little the search on covers may do.
+/// If the planner in the exact scene finds a path, no proof contradicts it, however short the search on covers is.
 #[test]
 fn no_proof_contradicts_a_path() {
     let mut random = SplitMix(7);
@@ -125,7 +126,7 @@ fn no_proof_contradicts_a_path() {
             }
         }
         let &[from, .., to] = &free[..] else { continue };
-        // So few configurations that the search on covers is often interrupted.
+        // Few enough configurations that the search on covers is often interrupted.
         let few = RrtConnectSettings { max_states: 64, seed: case as u64, ..RrtConnectSettings::default() };
         let answer = plan(&scene, &from, &to, &few);
         state.set_q(&scene, ROBOT, &from).unwrap();

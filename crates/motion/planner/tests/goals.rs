@@ -15,7 +15,7 @@ use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 const ROBOT: RobotId = RobotId(0);
 
-/// Covers of the robot and of what is around it.
+/// Covers of the robot and of the obstacles around it.
 fn covers(scene: &Scene) -> (CoverModel, CoverObstacles) {
     let state = SceneState::new(scene);
     let model = CoverModel::new(scene, &state, ROBOT, 0.0).unwrap();
@@ -146,7 +146,7 @@ fn a_kept_orientation_is_kept_everywhere_on_the_path() {
     let tolerance = 0.15;
     let covers = covers(&scene);
     let constraint = OrientationConstraint::new(&scene, ROBOT, link, Vec3::Z, Vec3::X, tolerance);
-    // Configurations with the tip forward: projected ones that are free.
+    // Configurations with the tip forward: projected configurations that are free.
     let mut exact = Checker::new(&scene, CheckerOptions::default());
     let mut forward = Vec::new();
     while forward.len() < 16 {

@@ -1,4 +1,4 @@
-//! Paths against exhaustive search.
+//! Paths compared with exhaustive search.
 
 use crate::common::{
     Random, block, blocked_point, connected, free_cell, grid, grid_optimum, random_configuration, random_occupancy,
@@ -52,7 +52,7 @@ fn paths_are_hardly_longer_than_the_grid_optimum() {
     let mut random = Random(5);
     let (mut sum, mut worst, mut count) = (0.0, 0.0_f64, 0);
     let weights = [[1.0; 3], [2.0, 1.0, 0.5]];
-    // Nearly all of the time is the exhaustive search.
+    // The exhaustive search takes nearly all of the time.
     let rounds: u32 = if std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1") { 150 } else { 30 };
     for round in 0..rounds as usize {
         let shape = [14 + random.index(20), 14 + random.index(20), 14 + random.index(60)];
@@ -162,7 +162,7 @@ fn a_blocked_end_is_moved_to_the_nearest_connected_free_cell() {
     let (start, goal) = (grid.center([2, 2, 2]), grid.center([10, 2, 2]));
     let error = planner.plan(start, goal, &DEFAULT).unwrap_err();
     assert_eq!(error, GridPlannerError::Blocked { end: PathEnd::Goal, radius_rad: 0.0 });
-    // [12, 2, 2] is nearer, but on the other side.
+    // [12, 2, 2] is nearer but on the other side.
     let path = planner.plan(start, goal, &GridPlannerSettings { max_end_shift_rad: 0.35, ..DEFAULT }).unwrap();
     assert!((path.goal_moved_rad - 0.3).abs() < 1e-9 && path.start_moved_rad == 0.0);
     assert_eq!(grid.cell(*path.waypoints.last().unwrap()), Some([7, 2, 2]));

@@ -50,7 +50,7 @@ impl PathConstraint for Forbidden {
     }
 }
 
-/// A constraint of constant distance.
+/// A constraint with a constant distance.
 #[derive(Debug)]
 struct Everywhere(f64);
 
@@ -140,7 +140,7 @@ fn paths_and_trajectories_satisfy_the_constraint() {
     assert!(found >= 12 && found * 10 >= asked * 7, "{found} of {asked}");
 }
 
-/// Far thinner than the check resolution; the path leads around its rim.
+/// The disc is far thinner than the check resolution; the path leads around its rim.
 #[test]
 fn thin_violations_are_found() {
     let scene = example::two_arms();
@@ -158,7 +158,7 @@ fn thin_violations_are_found() {
             let at = |i: usize| w[0][i] + (w[1][i] - w[0][i]) * t;
             assert!((at(1) - 0.3).hypot(at(2) - 0.4) > disc.disc);
         }
-        // Without a rim there is no path.
+        // Without a rim, no path exists.
         let brief = RrtConnectSettings { max_states: 2_000, ..settings() };
         let wall = Forbidden { disc: 100.0, ..disc };
         let error =
@@ -188,7 +188,7 @@ fn a_violating_start_is_left_without_coming_nearer() {
     let scene = example::two_arms();
     let (from, to) = ([0.8, 0.3, 0.4], [2.4, 0.3, 0.4]);
     let state = state_at(&scene, RobotId(0), &from);
-    // A violation, a start within the margin, a goal within the margin.
+    // A violation, a start within the margin, and a goal within the margin.
     let inside = Forbidden::ball(&[0.95, 0.3, 0.4], 0.25);
     let near = Forbidden::ball(&[1.1, 0.3, 0.4], 0.299);
     let arrives = Forbidden::ball(&[2.1, 0.3, 0.4], 0.299);
@@ -249,7 +249,7 @@ impl PathConstraint for Shell {
     }
 }
 
-/// Satisfied, but without a motion bound.
+/// A constraint that is satisfied but has no motion bound.
 #[derive(Debug)]
 struct Endless;
 

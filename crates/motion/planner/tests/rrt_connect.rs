@@ -10,7 +10,7 @@ use elbowroom_planner::{
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{Checker, CheckerOptions, Level, Scene, SceneError, SceneState, Selection, example};
 
-/// Collision queries at the finest level, at many points, independent of the planner.
+/// Collision queries at the finest level at many points, independent of the planner.
 fn dense_check(scene: &Scene, state: &SceneState, robot: RobotId, path: &[Vec<f64>], points: usize) {
     let options = CheckerOptions { level: Level::L3, weights: false, matrix: false, ..CheckerOptions::default() };
     let (mut checker, mut state) = (Checker::new(scene, options), state.clone());
@@ -31,7 +31,7 @@ fn limits(dof: usize) -> KinematicLimits {
     KinematicLimits { velocity: vec![2.0; dof], acceleration: vec![8.0; dof], jerk: vec![80.0; dof] }
 }
 
-/// Speeds and accelerations of the straight lines between samples.
+/// Checks speeds and accelerations of the straight lines between samples.
 fn check_samples(samples: &[(f64, Vec<f64>)], period: f64, limits: &KinematicLimits) {
     let speed = |k: usize, i: usize| (samples[k + 1].1[i] - samples[k].1[i]) / period;
     for k in 0..samples.len() - 1 {
@@ -116,7 +116,7 @@ fn planning_is_reproducible() {
         RrtConnect::new(&scene, RobotId(0)).unwrap().plan(&state, &to, &settings).unwrap().waypoints
     };
     assert_eq!(plan(1), plan(1));
-    // Earlier queries of a planner have no effect.
+    // Earlier queries do not affect a planner.
     let mut planner = RrtConnect::new(&scene, RobotId(0)).unwrap();
     let other = free_values(&mut random, &scene, RobotId(0)).unwrap();
     let _ = planner.plan(&state, &other, &RrtConnectSettings::default());
@@ -154,7 +154,7 @@ fn a_clearance_is_kept() {
     assert!(error.unwrap_err().to_string().contains("less than the clearance of 3 m"));
 }
 
-/// A random free configuration at a distance in a range.
+/// A random free configuration within a range of distances.
 fn at_distance(scene: &Scene, random: &mut Random, range: std::ops::Range<f64>) -> Vec<f64> {
     let mut checker = Checker::new(scene, CheckerOptions::default());
     loop {
@@ -234,7 +234,7 @@ fn a_missing_path_is_reported_as_not_found() {
     assert!(error.to_string().contains("proves nothing"), "{error}");
     let none = RrtConnectSettings { time_limit: Duration::ZERO, ..settings };
     assert!(RrtConnect::new(&scene, RobotId(0)).unwrap().plan(&state, &there, &none).is_err());
-    // Start and goal are the same, and the time limit is the longest duration.
+    // Start and goal are equal, and the time limit is the longest duration.
     let settings = RrtConnectSettings { time_limit: Duration::MAX, ..settings };
     let path = RrtConnect::new(&scene, RobotId(0)).unwrap().plan(&state, &here, &settings).unwrap();
     assert_eq!((path.waypoints.len(), path.length_rad), (2, 0.0));
@@ -282,7 +282,7 @@ fn thin_obstacles_are_found() {
     assert_eq!(bent, 3);
 }
 
-/// The other arm collides with the table, which does not concern this one.
+/// The other arm collides with the table, which does not affect planning for this arm.
 #[test]
 fn pairs_without_the_robot_do_not_count() {
     let scene = example::two_arms();

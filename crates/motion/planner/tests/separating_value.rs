@@ -1,4 +1,5 @@
-//! Proofs by one value of a joint: thin plates that fold through each other at every roll, and rods that pass beside each other.
+//! Proofs by one value of a joint: thin plates that fold through each other at every roll, and rods that pass beside
+//! each other.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -13,7 +14,7 @@ use elbowroom_robot::{Collider, Robot, RobotId};
 use elbowroom_scene::{Scene, SceneState};
 use elbowroom_spatial::{Pose, Vec3};
 
-/// An upper arm along z, a forearm that folds back onto it at the value π of the elbow, and turns about its own axis.
+/// An upper arm along z, and a forearm that folds back onto it at the elbow value π and turns about its own axis.
 fn folding_arm(upper_arm: Shape, forearm: Shape, forearm_offset: Vec3) -> Robot {
     let joint = |name: &str, i: usize, at: Vec3, axis: Vec3, lower: f64, upper: f64| Joint {
         name: name.into(),
@@ -36,7 +37,7 @@ fn folding_arm(upper_arm: Shape, forearm: Shape, forearm_offset: Vec3) -> Robot 
         robot.colliders[link].push(Collider { name: String::new(), shape, in_link: Pose::from_translation(at) });
     };
     add(1, upper_arm, Vec3::Z * 0.3);
-    // Only so that the forearm is not the upper arm's neighbour.
+    // Ensures that the forearm is not the upper arm's neighbour.
     add(2, Shape::Sphere(Sphere { radius: 0.01 }), Vec3::Y * 0.3);
     add(3, forearm, forearm_offset + Vec3::Z * 0.3);
     robot
@@ -62,7 +63,7 @@ fn plan(robot: Robot, from: &[f64], to: &[f64]) -> Result<PlannedPath, RrtConnec
 
 #[test]
 fn thin_plates_that_meet_at_every_roll_separate() {
-    // 6 mm thick: too thin for spheres inside them to prove much.
+    // 6 mm thick: too thin for spheres inside to prove much.
     let thin = || plate(Vec3::new(0.05, 0.003, 0.2));
     let error = plan(folding_arm(thin(), thin(), Vec3::ZERO), &[0.0, 2.0, 0.3], &[0.5, 4.3, -0.4]).unwrap_err();
     let RrtConnectError::Disconnected { joints, .. } = &error else { panic!("{error}") };

@@ -1,4 +1,4 @@
-//! Several robots planned together: merged to one robot, or by priority; every path checked in the scene that they came from.
+//! Several robots planned together, merged to one robot or by priority; every path is checked in the original scene.
 
 use std::time::Duration;
 
@@ -10,7 +10,7 @@ use elbowroom_robot::{RobotId, example};
 use elbowroom_scene::{Checker, CheckerOptions, MergedRobots, Scene, SceneState, SweepOptions};
 use elbowroom_spatial::Pose;
 
-/// Arms opposite to each other, nearer than their reach, and a third that stays.
+/// Two arms opposite to each other, nearer than their reach, and a third arm that does not move.
 fn scene() -> Scene {
     let mut builder = Scene::builder();
     for (name, x, y, yaw) in [("left", -0.45, 0.0, 0.0), ("right", 0.45, 0.0, 3.0), ("behind", 0.0, 0.8, 0.0)] {
@@ -25,7 +25,7 @@ fn two_arms_pass_each_other_beside_a_third() {
     let group = [RobotId(0), RobotId(1)];
     let merged = MergedRobots::new(&scene, &group).unwrap();
     let mut before = SceneState::new(&scene);
-    // Both stretch towards the other, on either side of it, and change sides.
+    // Each stretches towards the other, on opposite sides, and they change sides.
     let (one, other) = ([0.5, 1.3, 0.2], [-0.5, 1.3, 0.2]);
     for robot in group {
         before.set_q(&scene, robot, &one).unwrap();
@@ -62,7 +62,7 @@ fn goal(robot: usize, q: [f64; 3]) -> RobotGoal {
     RobotGoal { robot: RobotId(robot), q: q.to_vec(), limits: limits() }
 }
 
-/// The exact scene between all rows, several times each.
+/// Checks the exact scene between all rows, several times each.
 fn assert_free_together(scene: &Scene, start: &SceneState, motions: &[PrioritizedMotion]) {
     let mut exact = Checker::new(scene, CheckerOptions::default());
     let mut state = start.clone();
@@ -85,7 +85,7 @@ const PERIOD_S: f64 = 0.01;
 fn arms_that_cross_wait_no_longer_than_necessary() {
     let scene = scene();
     let mut start = SceneState::new(&scene);
-    // Each sweeps through the middle, from one side to the other.
+    // Each arm sweeps through the middle from one side to the other.
     start.set_q(&scene, RobotId(0), &[1.4, 1.3, 0.2]).unwrap();
     start.set_q(&scene, RobotId(1), &[2.0, 1.3, 0.2]).unwrap();
     let goals = [goal(0, [-1.4, 1.3, 0.2]), goal(1, [-1.7, 1.3, 0.2])];
@@ -113,7 +113,7 @@ fn a_robot_that_is_in_the_way_moves_first() {
     let motions = PrioritizedPlanner::new(&scene).plan(&start, &goals, PERIOD_S, &settings).unwrap();
     assert_free_together(&scene, &start, &motions);
     assert!(motions[0].end_s() > motions[1].start_s);
-    // Neither can be first where each is in the way of the other.
+    // No order works if each robot is in the way of the other.
     let stuck = [goal(0, [-0.6, 1.4, 0.1]), goal(1, [0.5, 1.4, 0.1])];
     assert!(PrioritizedPlanner::new(&scene).plan(&start, &stuck, PERIOD_S, &settings).is_err());
     let none = PrioritizedPlanner::new(&scene).plan(&start, &[], PERIOD_S, &settings);

@@ -1,21 +1,22 @@
-//! Time-optimal trajectories: limits by independent differentiation, durations by exhaustive search and closed forms.
+//! Time-optimal trajectories: limits checked by independent differentiation, durations by exhaustive search and closed
+//! forms.
 
 use elbowroom_planner::{BlendedPath, KinematicLimits, TimeOptimalTrajectory, TimeParametrizationError};
 use elbowroom_testkit::random::{split_mix, unit};
 use proptest::prelude::*;
 
-/// Excess over a limit that counts as rounding and as what lies between the planner's samples.
+/// Excess over a limit that is accepted for rounding and for maxima between the planner's samples.
 const EXCESS: f64 = 1.002;
 
 fn equal_limits(joints: usize, [v, a, j]: [f64; 3]) -> KinematicLimits {
     KinematicLimits { velocity: vec![v; joints], acceleration: vec![a; joints], jerk: vec![j; joints] }
 }
 
-/// Positions at equal steps, differentiated once, twice and three times by differences alone: each is a mean of the
-/// derivative.
+/// Differentiates positions at equal steps once, twice and three times, only by differences: each difference is a mean
+/// of the derivative.
 fn check_limits(trajectory: &TimeOptimalTrajectory, limits: &KinematicLimits, orders: usize) {
     let seconds = trajectory.seconds();
-    // 1 kHz, or what is needed for 2,000 steps.
+    // 1 kHz, or the step for 2,000 steps.
     let h = (seconds / 2000.0).min(1e-3).max(seconds / 2e5);
     let steps = (seconds / h).ceil() as usize + 3;
     let points: Vec<_> = (0..=steps).map(|n| trajectory.at(n as f64 * h)).collect();
@@ -111,7 +112,8 @@ proptest! {
     }
 }
 
-/// Rest to rest along a straight line: with the speed limit reached, or not even the one of acceleration.
+/// Motion from rest to rest along a straight line: with the speed limit reached, or with not even the acceleration
+/// limit reached.
 #[test]
 fn a_straight_line_takes_the_least_time() {
     for (far, seconds) in [(2.0, 2.0 + 0.25 + 0.1), (0.01, 4.0 * (0.01_f64 / 80.0).cbrt())] {
@@ -152,7 +154,7 @@ impl Curve {
 fn exhaustive_seconds(curves: &[Curve], limits: &KinematicLimits, nodes: usize, levels: usize) -> f64 {
     let joints = limits.velocity.len();
     let x_top = limits.velocity.iter().map(|v| v * v).fold(0.0, f64::max) * 2.0;
-    // Finer at low speed.
+    // Levels are finer at low speed.
     let level = |n: usize| x_top * (n as f64 / (levels - 1) as f64).powi(2);
     let mut least = vec![f64::INFINITY; levels];
     least[0] = 0.0;
@@ -209,7 +211,7 @@ fn no_search_finds_a_faster_motion_around_a_corner() {
         let optimum = exhaustive_seconds(&curves, &limits, 12, 200);
         let found = path.time_optimal_without_jerk_limit(&limits).unwrap().seconds();
         assert!(found < 1.01 * optimum && found > 0.95 * optimum, "case {case}: {found} s, search {optimum} s");
-        // A jerk that is reached in 0.03 ms costs next to nothing.
+        // A jerk that rises in 0.03 ms costs almost no time.
         let smooth = path.time_optimal(&limits).unwrap().seconds();
         assert!(smooth < 1.015 * optimum && smooth > 0.95 * optimum, "case {case}: {smooth} s, search {optimum} s");
     }
@@ -328,7 +330,7 @@ fn blends_stay_in_their_bounds() {
                         assert!((q - chord).abs() <= deviation[i] * (1.0 + 1e-9) + 1e-12);
                     }
                 }
-                // The bound is not loose: it is met within a factor of 2 in the middle of an even number of pieces.
+                // The bound is tight: it is reached within a factor of 2 in the middle of an even number of pieces.
                 if pieces == 16 {
                     let middle = blend.at(0.5 - 0.5 / 16.0);
                     let chord: Vec<f64> = (0..4).map(|i| 0.5 * (points[7][i] + points[8][i])).collect();

@@ -20,7 +20,8 @@ fn three(q: Vec<f64>) -> [f64; 3] {
     q.try_into().unwrap()
 }
 
-/// Checks limits and continuity at samples: positions by velocities, velocities by accelerations, accelerations by jerks.
+/// Checks limits and continuity at samples: positions from velocities, velocities from accelerations, accelerations
+/// from jerks.
 fn check(trajectory: &Trajectory, limits: &KinematicLimits, steps: usize) {
     let h = trajectory.seconds() / steps as f64;
     let mut before = trajectory.at(0.0);
@@ -69,7 +70,7 @@ proptest! {
         if trajectory.seconds() > 0.0 {
             check(&trajectory, &limits, 3000);
         }
-        // A little slower, at rest at multiples of the period: the same limits, and samples at both ends.
+        // A little slower, at rest at multiples of the period: the same limits apply, and samples include both ends.
         let period = 0.01;
         let aligned = trajectory.clone().aligned_to_ticks(period).unwrap();
         let most = trajectory.seconds() + period * (trajectory.stops() + 1) as f64;
@@ -113,7 +114,7 @@ fn trajectories_stay_in_free_cells() {
     assert!(count > 100 && corners > 50 && stops < corners / 2);
 }
 
-/// From rest to rest: the first half accelerates within jerk and acceleration.
+/// Motion from rest to rest: the first half accelerates within limits of jerk and acceleration.
 #[test]
 fn a_straight_segment_takes_the_least_time() {
     let grid = grid([20, 20, 20]);
@@ -121,9 +122,9 @@ fn a_straight_segment_takes_the_least_time() {
     let limits = KinematicLimits { velocity: vec![1.0; 3], acceleration: vec![2.0; 3], jerk: vec![10.0; 3] };
     let seconds =
         |far: f64| planner.time_parametrize(&path(vec![[0.0; 3], [far, 0.0, 0.0]]), &limits).unwrap().seconds();
-    // With the speed limit reached: length / v + v / a + a / j.
+    // If the speed limit is reached: length / v + v / a + a / j.
     assert!((seconds(0.9) - (0.9 + 0.5 + 0.2)).abs() < 1e-9);
-    // With the acceleration limit not reached: 4·∛(length / 2j).
+    // If the acceleration limit is not reached: 4·∛(length / 2j).
     assert!((seconds(0.02) - 4.0 * (0.02_f64 / 20.0).cbrt()).abs() < 1e-9);
 }
 

@@ -1,5 +1,5 @@
-//! Median and 99th percentile of each stage of [`CameraTracker`] on rendered frames of 640 × 480 pixels: four objects crossing,
-//! two of them touching, an arm over them, noise and changing light.
+//! Median and 99th percentile of each stage of [`CameraTracker`] on rendered frames of 640 × 480 pixels: four crossing
+//! objects, two of which touch, an arm over them, noise and changing light.
 //!
 //! `cargo bench -p elbowroom-vision --bench frame_times -- [FRAMES [rgb]]`
 

@@ -1,5 +1,5 @@
-//! Recall, position error and swapped identities on rendered sequences with noise, shadows, drifting light, objects that
-//! touch and separate, and an arm over them; one table.
+//! Recall, position error and swapped identities on rendered sequences with noise, shadows, drifting light, objects
+//! that touch and separate, and an arm over them; prints one table.
 //!
 //! `cargo bench -p elbowroom-vision --bench tracking_quality`
 
@@ -53,7 +53,7 @@ fn main() {
         for seed in 1..=SEEDS {
             run(&sequence, seed, &mut count);
         }
-        // No template matches an object together with its shadow.
+        // An object together with its shadow matches no template.
         count.errors_m.extend(count.errors_m.is_empty().then_some(f64::NAN));
         let worst = count.errors_m.iter().copied().fold(f64::NAN, f64::max);
         println!(

@@ -1,12 +1,12 @@
-//! Data association: which detection belongs to which track.
+//! Data association: assigns detections to tracks.
 //!
-//! Tracks and detections are assigned one to one: the cheapest pairs first, then improved by swaps. What is left over is
-//! merged (several tracks in one detection) or a fragment (several detections of one track).
+//! Tracks and detections are assigned one to one: the cheapest pairs first, then improved by swaps. The remaining ones
+//! are merged (several tracks in one detection) or fragments (several detections of one track).
 
 use crate::detection::Detection;
 use crate::{Point2, polygon};
 
-/// Where a track is expected in this frame.
+/// Predicted position of a track in this frame.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct TrackPrediction {
     pub(crate) outline_m: Vec<Point2>,
@@ -15,18 +15,18 @@ pub(crate) struct TrackPrediction {
     pub(crate) brightness: f64,
     /// Gate: largest distance of a detection from `centre_m`, metres.
     pub(crate) gate_m: f64,
-    /// Occluded by the arm: only detections that overlap the predicted outline are candidates.
+    /// Whether the arm occludes the track: then only detections that overlap the predicted outline are candidates.
     pub(crate) is_occluded: bool,
 }
 
-/// The assignment, and its workspace.
+/// The assignment and its workspace.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Association {
-    /// For each track its detection; several tracks may share one.
+    /// Detection of each track; several tracks may share one.
     pub(crate) detection_of: Vec<Option<usize>>,
-    /// For each detection without a track of its own, the track of which it is a fragment.
+    /// For each detection without its own track, the track of which it is a fragment.
     pub(crate) fragment_of: Vec<Option<usize>>,
-    /// For each track, whether it shares its detection with no other track.
+    /// For each track, whether its detection belongs to this track alone.
     pub(crate) is_isolated: Vec<bool>,
     /// For each detection, the number of its tracks.
     pub(crate) track_count: Vec<u32>,
@@ -47,30 +47,30 @@ struct CandidatePair {
     track: usize,
     detection: usize,
     cost: f64,
-    /// Area of the intersection as a fraction of the track's area, and of the detection's.
+    /// Area of the intersection as a fraction of the track's area, and (in the next field) of the detection's area.
     overlap_of_track: f64,
     overlap_of_detection: f64,
 }
 
-/// Detections without overlap that are candidates of one track, at most: the nearest within the gate.
+/// Largest number of candidates of one track without overlap: the nearest detections within the gate.
 const MAX_GATED: usize = 6;
 const MAX_SWAP_ROUNDS: usize = 8;
-/// A track that a detection covers by more than this fraction is merged into it.
+/// Fraction of a track above which a detection that covers it is merged with it.
 const MERGE_OVERLAP: f64 = 0.3;
-/// A detection that lies by more than this fraction in a track's predicted outline is a fragment of it.
+/// Fraction of a detection above which it is a fragment of the track in whose predicted outline it lies.
 const FRAGMENT_OVERLAP: f64 = 0.5;
-/// Cost of a logarithm of 1 of the ratio of the areas, and the largest logarithm that counts.
+/// Cost of a logarithm of 1 of the ratio of the areas; then the largest logarithm that counts.
 const AREA_COST: f64 = 0.5;
 const MAX_AREA_LOGARITHM: f64 = 2.0;
-/// Difference in brightness that costs 1, grey levels, and the largest cost of brightness.
+/// Difference in brightness that costs 1, grey levels; then the largest cost of brightness.
 const BRIGHTNESS_SCALE_LEVELS: f64 = 40.0;
 const MAX_BRIGHTNESS_COST: f64 = 2.0;
-/// A swap must lower the total cost by more than this: rounding errors swap nothing.
+/// Smallest decrease of the total cost for a swap: rounding errors do not cause swaps.
 const MIN_SWAP_GAIN: f64 = 1e-12;
-/// Smallest area (m²) and radius (m) in a ratio, which stays finite.
+/// Smallest area (m²) and radius (m) in a ratio, so that it stays finite.
 const MIN_AREA_M2: f64 = 1e-9;
 const MIN_RADIUS_M: f64 = 1e-6;
-/// Smallest area in a share of an overlap, m².
+/// Smallest area in the fraction of an overlap, m².
 const MIN_SHARED_AREA_M2: f64 = 1e-12;
 
 impl Association {
@@ -120,7 +120,7 @@ impl Association {
         self.by_cost.sort_unstable_by(|&a, &b| candidates[a].cost.total_cmp(&candidates[b].cost).then(a.cmp(&b)));
     }
 
-    /// Adds a candidate where track and detection overlap; returns whether they do.
+    /// Adds a candidate if track and detection overlap; returns whether they do.
     fn push_overlapping(
         &mut self,
         t: usize,
@@ -143,7 +143,7 @@ impl Association {
         area > 0.0
     }
 
-    /// Assigns pairs in the order of their cost where both are still free.
+    /// Assigns pairs in the order of their cost, as long as track and detection are unassigned.
     fn assign_greedily(&mut self, tracks: usize, detections: usize) {
         reset(&mut self.detection_of, tracks, None);
         reset(&mut self.is_taken, detections, false);
@@ -155,7 +155,7 @@ impl Association {
         }
     }
 
-    /// Greedy assignment is not optimal: swaps the detections of two tracks where that lowers their total cost.
+    /// Swaps the detections of two tracks if that lowers their total cost, because greedy assignment is not optimal.
     fn improve_by_swaps(&mut self, detections: usize) {
         reset(&mut self.track_of, detections, None);
         for (track, &detection) in self.detection_of.iter().enumerate() {
@@ -174,7 +174,7 @@ impl Association {
         }
     }
 
-    /// Assigns the pair, and the track's previous detection to the detection's previous track, if that is cheaper.
+    /// Assigns the pair, and the track's previous detection to the detection's previous track, if this is cheaper.
     fn swap_if_cheaper(&mut self, pair: CandidatePair) -> bool {
         let (a, j) = (pair.track, pair.detection);
         let (Some(i), Some(b)) = (self.detection_of[a], self.track_of[j]) else { return false };
@@ -200,7 +200,8 @@ impl Association {
         &self.candidates[from..to]
     }
 
-    /// Assigns tracks left over to detections that cover them, and detections left over to tracks that cover them.
+    /// Assigns the remaining tracks to detections that cover them, and the remaining detections to tracks that cover
+    /// them.
     fn assign_merged_and_fragments(&mut self, detections: usize) {
         reset(&mut self.fragment_of, detections, None);
         for t in 0..self.detection_of.len() {

@@ -1,9 +1,9 @@
 //! The background model: running mean and running mean absolute deviation of each pixel, in 16-bit fixed point.
 //!
-//! Grey levels have 7 fractional bits in means (`_q7`), 4 in differences (`_q4`), 9 in deviations (`_q9`). Rows are plain
-//! loops over slices of equal length, which the compiler vectorizes for the widest instructions of the processor
-//! ([`dispatch!`]). The model is kept in the illumination in which it was learnt; [`Illumination`] maps it to that of the
-//! present frame, and slow adaptation follows local changes.
+//! Grey levels have 7 fractional bits in means (`_q7`), 4 in differences (`_q4`), 9 in deviations (`_q9`). Rows are
+//! processed by plain loops over slices of equal length, which the compiler vectorizes for the widest instructions of
+//! the processor ([`dispatch!`]). The model stays in the illumination in which it was learnt. [`Illumination`] maps it
+//! to the illumination of the present frame, and slow adaptation follows local changes.
 
 #![expect(clippy::inline_always, reason = "code that is not inlined is not compiled for the wider instructions")]
 
@@ -11,25 +11,25 @@ use fearless_simd::{Level, Simd, dispatch};
 
 use crate::illumination::Illumination;
 
-/// Largest deviation, 12 grey levels. A pixel that flickers more is foreground in some frames, which is safe; with a larger
-/// threshold it would detect nothing.
+/// Largest deviation, 12 grey levels. A pixel that flickers more is foreground in some frames, which is safe; with a
+/// larger threshold it would detect nothing.
 const MAX_DEVIATION_Q4: i16 = 12 << 4;
 /// The largest expected value, 255 grey levels.
 const WHITE_Q4: i16 = 255 << 4;
 const WHITE_Q7: i16 = 255 << 7;
 
-/// When a pixel differs from the background.
+/// Thresholds for the difference of a pixel from the background.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Thresholds {
     /// Smallest difference, grey levels.
     pub(crate) min_difference: f64,
     /// Smallest difference as a multiple of the pixel's mean deviation.
     pub(crate) deviation_factor: f64,
-    /// Brightness in shadow relative to the background, from and to; an empty range where shadows are foreground.
+    /// Range of the brightness in shadow relative to the background; empty if shadows are foreground.
     pub(crate) shadow_range: (f64, f64),
 }
 
-/// One plane (grey, or one of three colours) of the model.
+/// One plane of the model: grey, or one of three colours.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct BackgroundPlane {
     mean_q7: Vec<i16>,
@@ -47,7 +47,7 @@ pub(crate) struct PixelClassifier {
     shadow_to_q14: i16,
 }
 
-/// Classes beside 0, background: possibly shadow, and certainly none.
+/// Classes besides 0 (background): possibly shadow, and certainly not shadow.
 pub(crate) const SHADOW: u8 = 1;
 pub(crate) const FOREGROUND: u8 = 3;
 
@@ -97,7 +97,7 @@ impl PixelClassifier {
         }
     }
 
-    /// Adapts a row of the model to the image, except in `frozen` pixels and where the image differs from the model: a
+    /// Adapts a row of the model to the image, except in `frozen` pixels and in pixels that differ from the model: a
     /// permanent shadow must not raise the deviation of the floor under it.
     #[inline(always)]
     fn adapt<S: Simd>(
@@ -143,8 +143,8 @@ impl BackgroundPlane {
         f32::from(self.deviation_q9[i]) / 512.0
     }
 
-    /// Learns from an image of the empty cell; all images of a pixel have the same weight. `nth` is the number of images
-    /// per pixel, this one included; pixels in `masked` are left out.
+    /// Learns from an image of the empty cell; all images of a pixel have the same weight. `nth` is the number of
+    /// images per pixel, including this one; pixels in `masked` are skipped.
     pub(crate) fn learn(&mut self, pixels: &[u8], nth: &[u16], masked: &[u8]) {
         let models = self.mean_q7.iter_mut().zip(&mut self.deviation_q9);
         let inputs = pixels.iter().zip(nth).zip(masked);
@@ -185,7 +185,7 @@ impl BackgroundPlane {
     }
 }
 
-/// Every `stride`-th row, beginning with row `first`.
+/// Iterates over every `stride`-th row, beginning with row `first`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct RowSubset {
     pub(crate) width: usize,

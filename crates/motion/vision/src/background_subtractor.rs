@@ -1,4 +1,4 @@
-//! Background subtraction: the learnt picture of the empty cell, and the pixels of a frame that differ from it.
+//! Background subtraction: compares a frame with the learnt image of the empty cell and finds the pixels that differ.
 
 use crate::background::{BackgroundPlane, FOREGROUND, PixelClassifier, RowSubset, Thresholds};
 use crate::illumination_estimator::IlluminationEstimator;
@@ -7,16 +7,17 @@ use crate::report::RejectReason;
 use crate::shadow;
 use crate::{CameraTrackerSettings, Channels, Frame, Illumination, PixelMask};
 
-/// One in so many rows adapts in each frame, in turn.
+/// Every Nth row is adapted per frame, round-robin.
 const ROW_STRIDE: usize = 4;
-/// Frames with a gain outside this range are rejected, and those whose floor is brighter or darker by a factor outside it, unless
-/// it is by a few grey levels only.
+/// Accepted gains. Frames with a gain outside this range are rejected, and frames whose floor is brighter or darker by
+/// a factor outside it, unless the difference is only a few grey levels.
 const GAINS: std::ops::RangeInclusive<f64> = 0.4..=2.5;
 const SMALL_CHANGE: f64 = 60.0;
-/// Frames in which a smaller fraction of the samples follows the line of the illumination show something else: rejected.
+/// Smallest fraction of the samples that follow the line of the illumination; other frames show something else and are
+/// rejected.
 const MIN_INLIER_RATIO: f64 = 0.5;
 
-/// Finds the pixels of a frame that are not background.
+/// Finds the pixels of a frame that do not belong to the background.
 #[derive(Debug, Clone)]
 pub(crate) struct BackgroundSubtractor {
     pub width: usize,
@@ -26,20 +27,20 @@ pub(crate) struct BackgroundSubtractor {
     /// The planes of the present frame, one after the other; empty for grey frames.
     colour_planes: Vec<u8>,
     class: Vec<u8>,
-    /// The result: 1 where there is an object.
+    /// The result: 1 in pixels of objects.
     pub foreground: Vec<u8>,
     /// Pixels in which the background does not adapt.
     pub frozen: Vec<u8>,
     /// Number of images of the empty cell in which each pixel was not masked.
     pub learning_counts: Vec<u16>,
-    /// Some pixels were always masked: they are unknown, so not free.
+    /// Whether some pixels were always masked: they are unknown and therefore not free.
     has_unlearnt_pixels: bool,
     estimator: IlluminationEstimator,
     morphology: Morphology,
 }
 
 impl BackgroundSubtractor {
-    /// Without a background.
+    /// Creates a subtractor without a background.
     pub fn new(width: usize, height: usize) -> Self {
         let pixels = width * height;
         Self {
@@ -63,7 +64,7 @@ impl BackgroundSubtractor {
         self.frames_learnt = 0;
     }
 
-    /// How many frames of the empty cell are missing.
+    /// Number of missing frames of the empty cell.
     pub fn frames_to_learn(&self, settings: &CameraTrackerSettings) -> u32 {
         settings.learning_frames.saturating_sub(self.frames_learnt)
     }
@@ -88,7 +89,7 @@ impl BackgroundSubtractor {
         }
     }
 
-    /// Takes the frame for one of the empty cell.
+    /// Learns a frame of the empty cell.
     pub fn learn(&mut self, frame: &Frame, mask: &PixelMask, illumination: &mut [Illumination]) {
         let pixels = self.width * self.height;
         if self.frames_learnt == 0 {
@@ -123,7 +124,8 @@ impl BackgroundSubtractor {
             if estimate.inlier_ratio < MIN_INLIER_RATIO {
                 return Err(RejectReason::Unrecognized { inlier_ratio: estimate.inlier_ratio });
             }
-            // Gain and offset of a floor without contrast are not determined: what they make of its level is.
+            // On a floor without contrast, gain and offset are not determined separately, but the resulting level of
+            // the floor is.
             let level = estimate.gain * learnt_level + estimate.offset;
             let is_as_bright = (level - learnt_level).abs() <= SMALL_CHANGE || GAINS.contains(&(level / learnt_level));
             if !GAINS.contains(&estimate.gain) || !is_as_bright {
@@ -156,7 +158,7 @@ impl BackgroundSubtractor {
         clear_masked(&mut self.class, mask);
     }
 
-    /// Decides which of the pixels that differ are shadows.
+    /// Decides which of the differing pixels are shadows.
     pub fn resolve_shadows(&mut self, frame: &Frame, settings: &CameraTrackerSettings, illumination: &[Illumination]) {
         let input = shadow::ShadowInput {
             pixels: planes_of(frame, &self.colour_planes),
@@ -168,7 +170,7 @@ impl BackgroundSubtractor {
         shadow::resolve(&input, &self.class, settings.shadows.as_ref(), &mut self.foreground);
     }
 
-    /// Opens and closes the foreground; the fraction of it.
+    /// Opens and closes the foreground; returns the fraction of the image that it covers.
     pub fn apply_morphology(&mut self, mask: &PixelMask, settings: &CameraTrackerSettings) -> f64 {
         self.morphology.open_and_restore(&mut self.foreground, self.width, settings.opening_radius_px);
         self.morphology.close(&mut self.foreground, self.width, settings.closing_radius_px);
@@ -177,7 +179,7 @@ impl BackgroundSubtractor {
         covered as f64 / self.foreground.len() as f64
     }
 
-    /// Adapts the background to the frame, in the rows whose turn it is.
+    /// Adapts the rows of the background that are next in turn to the frame.
     pub fn adapt(
         &mut self,
         frame: &Frame,

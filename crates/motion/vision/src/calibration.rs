@@ -1,4 +1,4 @@
-//! The mapping between pixels and positions.
+//! The mapping between pixels and positions in the world.
 
 use elbowroom_spatial::Vec3;
 
@@ -7,12 +7,13 @@ use crate::{Camera, FloorHomography, Point2, VisionError};
 /// Calibration of a camera.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Calibration {
-    /// None: [`CameraTracker::new`](crate::CameraTracker::new) refuses it with a message that names the alternatives.
+    /// No calibration: [`CameraTracker::new`](crate::CameraTracker::new) rejects it with a message that names the
+    /// alternatives.
     #[default]
     Missing,
     /// A homography between the image and the floor.
     Floor(FloorHomography),
-    /// Intrinsics and pose: also determine where points above the floor appear.
+    /// Intrinsics and pose, which also determine the pixels of points above the floor.
     Camera(Camera),
 }
 
@@ -20,7 +21,7 @@ impl Calibration {
     /// Columns and rows of the image.
     ///
     /// # Errors
-    /// [`VisionError::NotCalibrated`].
+    /// [`VisionError::NotCalibrated`] without a calibration.
     pub fn size(&self) -> Result<(usize, usize), VisionError> {
         match self {
             Self::Missing => Err(VisionError::NotCalibrated),
@@ -29,8 +30,8 @@ impl Calibration {
         }
     }
 
-    /// The point of the floor (at height `floor_z_m`) that a pixel shows; `None` if it shows no floor, or without
-    /// calibration.
+    /// The point of the floor (at height `floor_z_m`) that a pixel shows; `None` if the pixel does not show the floor,
+    /// or without calibration.
     pub fn pixel_to_floor(&self, point_px: Point2, floor_z_m: f64) -> Option<Point2> {
         match self {
             Self::Missing => None,
@@ -49,7 +50,7 @@ impl Calibration {
         }
     }
 
-    /// The centre of projection in the world, where it is known.
+    /// The centre of projection in the world, if it is known.
     pub fn eye_in_world(&self) -> Option<Vec3> {
         match self {
             Self::Missing => None,
@@ -58,10 +59,10 @@ impl Calibration {
         }
     }
 
-    /// The camera, where intrinsics and pose are known.
+    /// The camera, if intrinsics and pose are known.
     ///
     /// # Errors
-    /// [`VisionError::NotCalibrated`], [`VisionError::NeedsCamera`].
+    /// [`VisionError::NotCalibrated`] or [`VisionError::NeedsCamera`].
     pub fn camera(&self) -> Result<&Camera, VisionError> {
         match self {
             Self::Missing => Err(VisionError::NotCalibrated),
@@ -70,7 +71,7 @@ impl Calibration {
         }
     }
 
-    /// Whether straight lines of the image are curves on the floor.
+    /// Whether straight lines in the image are curves on the floor.
     pub(crate) fn has_distortion(&self) -> bool {
         matches!(self, Self::Camera(camera) if camera.intrinsics().radial != [0.0; 3])
     }

@@ -4,25 +4,27 @@ use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 use crate::{Point2, VisionError};
 
-/// A point less far in front of the camera, along its axis, has no pixel, metres.
+/// Smallest depth of a point along the camera's axis for which it has a pixel, metres.
 pub(crate) const MIN_DEPTH_M: f64 = 1e-9;
-/// Rays with a smaller slope are the optical axis: they have no direction in the image.
+/// Slope below which a ray counts as the optical axis: it does not have a direction in the image.
 const AXIS_SLOPE: f64 = 1e-12;
 /// Largest slope (tangent of the angle from the optical axis) of a ray through a lens that distorts: 83°.
 const MAX_SLOPE: f64 = 8.0;
-/// Step of the search for the slope at which distortion stops growing.
+/// Step of the search for the slope at which distortion stops increasing.
 const SLOPE_STEP: f64 = 0.01;
-/// Smallest derivative of distortion by the slope that counts as growth; with it distortion goes on beyond that slope.
+/// Smallest derivative of distortion by the slope that counts as increase; beyond the last such slope, distortion is
+/// continued with this derivative.
 const MIN_DERIVATIVE: f64 = 0.05;
-/// Newton steps or bisections for a slope: bisections alone reach the relative error below in so many.
+/// Largest number of Newton steps or bisections for a slope: this number of bisections alone reaches the relative error
+/// below.
 const MAX_UNDISTORT_STEPS: usize = 60;
-/// Relative error of a distorted radius that is rounding.
+/// Relative error of a distorted radius that counts as rounding.
 const RADIUS_ROUNDING: f64 = 1e-15;
 
 /// Intrinsics of a camera (Brown, 1966, radial terms): a point (x, y, z) of the camera's frame with
 /// `r² = (x² + y²) / z²` appears at `(fx·d·x/z + cx, fy·d·y/z + cy)`, `d = 1 + k1·r² + k2·r⁴ + k3·r⁶`.
 ///
-/// The camera's frame: z along the optical axis, x to the right of the image, y down.
+/// In the camera's frame, z is along the optical axis, x to the right of the image, y down.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Intrinsics {
     /// Columns of the image.
@@ -42,7 +44,7 @@ pub struct Intrinsics {
 }
 
 impl Intrinsics {
-    /// A lens without distortion with a horizontal field of view of `field_of_view` radians.
+    /// Creates the intrinsics of a lens without distortion, with a horizontal field of view of `field_of_view` radians.
     pub fn pinhole(width: usize, height: usize, field_of_view: f64) -> Self {
         let (w, h) = (width as f64, height as f64);
         let focal = w / (2.0 * (field_of_view / 2.0).tan());
@@ -80,15 +82,15 @@ impl Intrinsics {
 pub struct Camera {
     intrinsics: Intrinsics,
     in_world: Pose,
-    /// Largest slope of a ray up to which distortion is monotonic; beyond, it is extended linearly.
+    /// Largest slope of a ray up to which distortion is monotonic; beyond it, distortion is extended linearly.
     max_slope: f64,
 }
 
 impl Camera {
-    /// A camera at `camera_in_world` (z along the optical axis, x to the right of the image).
+    /// Creates a camera at `camera_in_world` (z along the optical axis, x to the right of the image, y down).
     ///
     /// # Errors
-    /// Numbers that are not finite, focal lengths that are not positive, an empty image, or distortion that folds the image
+    /// Numbers are not finite, focal lengths are not positive, the image is empty, or the distortion folds the image
     /// over before its corners.
     pub fn new(intrinsics: Intrinsics, camera_in_world: Pose) -> Result<Self, VisionError> {
         let refuse = |why: &str| Err(VisionError::Calibration(why.into()));
@@ -118,10 +120,10 @@ impl Camera {
         Ok(camera)
     }
 
-    /// A camera at `eye` whose optical axis points to `target`; `up` points upward in the image.
+    /// Creates a camera at `eye` whose optical axis points to `target`; `up` points upward in the image.
     ///
     /// # Errors
-    /// As [`Camera::new`]; and where eye and target coincide, or `up` is parallel to the optical axis.
+    /// The errors of [`Camera::new`]; or eye and target coincide, or `up` is parallel to the optical axis.
     pub fn look_at(intrinsics: Intrinsics, eye: Vec3, target: Vec3, up: Vec3) -> Result<Self, VisionError> {
         let no_view = || VisionError::Calibration("eye, target and up do not make a view; choose another up".into());
         let z = (target - eye).try_normalize().ok_or_else(no_view)?;
@@ -145,13 +147,13 @@ impl Camera {
         self.in_world.translation
     }
 
-    /// The pixel that shows a point of the world, also outside the image; `None` behind the camera or for a point that is
-    /// not finite.
+    /// The pixel that shows a point of the world, also outside the image; `None` for a point that is behind the camera
+    /// or not finite.
     pub fn world_to_pixel(&self, p_in_world: Vec3) -> Option<Point2> {
         self.camera_to_pixel(self.in_world.inverse_transform_point(p_in_world))
     }
 
-    /// As [`Camera::world_to_pixel`], for a point in the camera's frame.
+    /// Like [`Camera::world_to_pixel`], for a point in the camera's frame.
     pub fn camera_to_pixel(&self, p_in_camera: Vec3) -> Option<Point2> {
         if !(p_in_camera.z > MIN_DEPTH_M) || !p_in_camera.is_finite() {
             return None;
@@ -186,7 +188,8 @@ impl Camera {
         ((point_px.x - i.cx) / i.fx).hypot((point_px.y - i.cy) / i.fy)
     }
 
-    /// The largest slope up to which distortion grows with the slope; infinite without distortion, at most 8 (83°) with it.
+    /// The largest slope up to which distortion increases with the slope; infinite without distortion, otherwise at
+    /// most 8 (83°).
     fn monotonic_limit(&self) -> f64 {
         if self.intrinsics.radial == [0.0; 3] {
             return f64::INFINITY;
@@ -199,7 +202,7 @@ impl Camera {
             .map_or(MAX_SLOPE, |r| (r - SLOPE_STEP).max(0.0))
     }
 
-    /// Distorted radius, extended linearly where the polynomial would fold back.
+    /// Distorted radius, extended linearly beyond the largest slope, where the polynomial would fold back.
     fn distort_extended(&self, r: f64) -> f64 {
         let last = self.max_slope;
         if r <= last {

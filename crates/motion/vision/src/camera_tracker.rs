@@ -1,4 +1,4 @@
-//! Camera frames to obstacles.
+//! From camera frames to obstacles.
 
 use elbowroom_spatial::Vec3;
 
@@ -13,7 +13,7 @@ use crate::{
 };
 use crate::{frame_check, polygon, raster};
 
-/// The background does not adapt up to this distance from an obstacle, pixels.
+/// Distance from an obstacle within which the background does not adapt, pixels.
 const FROZEN_MARGIN_PX: f64 = 4.0;
 
 /// Tracks obstacles with one camera: background subtraction, shadow detection, connected components, projection to the
@@ -55,7 +55,7 @@ pub struct CameraTracker {
     channels: Option<Channels>,
     frames: u64,
     last_s: Option<f64>,
-    /// When tracks were last updated.
+    /// Time of the last update of the tracks, seconds.
     updated_s: f64,
     background: BackgroundSubtractor,
     empty_mask: PixelMask,
@@ -68,10 +68,10 @@ pub struct CameraTracker {
 }
 
 impl CameraTracker {
-    /// A tracker without a background model.
+    /// Creates a tracker without a background model.
     ///
     /// # Errors
-    /// A missing calibration, a camera that sees the horizon, settings out of range.
+    /// The calibration is missing, the camera sees the horizon, or a setting is out of range.
     pub fn new(calibration: Calibration, settings: CameraTrackerSettings) -> Result<Self, VisionError> {
         settings.check()?;
         let (width, height) = calibration.size()?;
@@ -116,26 +116,27 @@ impl CameraTracker {
         &self.report
     }
 
-    /// The foreground of the last frame, one byte per pixel: 1 if there is an object.
+    /// The foreground of the last frame, one byte per pixel: 1 in pixels of objects.
     pub fn foreground(&self) -> &[u8] {
         &self.background.foreground
     }
 
-    /// The floor of the area that was masked in every picture of the empty cell so far; `None` if all of it was seen.
+    /// The floor of the area that was masked in every image of the empty cell so far; `None` if all of it was seen.
     pub fn hidden_floor(&self) -> Option<HiddenFloor> {
         HiddenFloor::of(&self.background.learning_counts, self.background.width, &self.calibration, &self.settings)
     }
 
-    /// Discards the background model: the next frames must show the empty cell. Obstacles are kept meanwhile.
+    /// Discards the background model: the next frames must show the empty cell. Obstacles are kept.
     pub fn relearn(&mut self) {
         self.background.relearn();
     }
 
-    /// Processes a frame. `arm` masks the pixels that the arm covers in it, see [`PixelMask::mask_arm`]; also while the
-    /// background is learnt, where a pixel that is masked in every frame becomes an obstacle.
+    /// Processes a frame. `arm` masks the pixels that the arm covers in the frame, see [`PixelMask::mask_arm`]. The
+    /// mask also applies while the background is learnt; a pixel that is masked in all of these frames becomes an
+    /// obstacle.
     ///
     /// # Errors
-    /// Frames of the wrong size or kind, or out of order. The state does not change.
+    /// The frame has the wrong size or kind, or is out of order. The state does not change.
     pub fn process(&mut self, frame: &Frame, arm: Option<&PixelMask>) -> Result<&FrameReport, VisionError> {
         let (width, height) = (self.background.width, self.background.height);
         frame_check::frame(frame, arm, width, height, self.channels, self.last_s)?;
@@ -148,7 +149,7 @@ impl CameraTracker {
         self.report.illumination.resize(frame.channels().count(), Illumination::default());
         self.background.begin(frame);
         self.report.timings.convert = stopwatch.lap();
-        // Moved out of `self`, as the mask is borrowed while `self` is mutated.
+        // Moved out of `self`, because the mask is borrowed while `self` is mutated.
         let empty_mask = std::mem::take(&mut self.empty_mask);
         let mask = arm.unwrap_or(&empty_mask);
         if self.background.frames_to_learn(&self.settings) > 0 {
@@ -204,7 +205,7 @@ impl CameraTracker {
         let blobs = self.components.label(&self.background.foreground, width, self.settings.min_area_px);
         self.report.timings.label = stopwatch.lap();
         let occluded = occlusion_mask(mask, width, self.background.height);
-        // The brightness of a blob is taken from the first plane.
+        // The brightness of a blob is computed from the first plane.
         let pixels = self.background.planes_of(frame);
         self.detector.project(blobs, pixels, occluded, &self.calibration, &self.settings);
         self.background.frozen.copy_from_slice(mask.plane());
@@ -215,7 +216,7 @@ impl CameraTracker {
         self.report.timings.project = stopwatch.lap();
     }
 
-    /// Determines which tracks the arm occludes, and updates all of them.
+    /// Determines the tracks that the arm occludes, and updates all tracks.
     fn update_tracks(&mut self, stamp_s: f64, mask: &PixelMask) {
         let occluded = occlusion_mask(mask, self.background.width, self.background.height);
         for track in &mut self.tracker.tracks {

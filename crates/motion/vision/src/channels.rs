@@ -13,7 +13,7 @@ pub enum Channels {
 }
 
 impl Channels {
-    /// Bytes per pixel.
+    /// Number of bytes per pixel.
     pub fn count(self) -> usize {
         match self {
             Self::Grey => 1,

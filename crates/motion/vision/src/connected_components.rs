@@ -1,4 +1,4 @@
-//! Connected-component labelling: runs along rows, united with those of the row above by union-find (8 neighbours).
+//! Connected-component labelling: runs along rows, united by union-find with the runs of the row above (8 neighbours).
 
 use std::ops::Range;
 
@@ -8,15 +8,15 @@ use crate::{Point2, polygon};
 /// A connected component of the foreground.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Blob {
-    /// Number of its pixels.
+    /// Number of pixels.
     pub area_px: usize,
     /// Columns from its leftmost pixel to one past its rightmost.
     pub columns: Range<usize>,
     /// Rows from its uppermost pixel to one past its lowest.
     pub rows: Range<usize>,
-    /// Mean position of its pixels.
+    /// Mean position of the pixels.
     pub centre_px: Point2,
-    /// The convex hull of its pixels, edges of pixels included.
+    /// The convex hull of the pixels, including their edges.
     pub outline_px: Vec<Point2>,
 }
 
@@ -57,7 +57,7 @@ struct ComponentStats {
     y_twice: u64,
     columns: Range<u32>,
     rows: Range<u32>,
-    /// Runs, and where they start in `runs_by_blob`.
+    /// Number of runs, and their start in `runs_by_blob`.
     runs: u32,
     first: u32,
 }
@@ -65,8 +65,8 @@ struct ComponentStats {
 const NONE: u32 = u32::MAX;
 
 impl ConnectedComponents {
-    /// The blobs of at least `min_area_px` pixels of a plane (foreground is what is not 0) that is `width` wide, in the
-    /// order of their first pixels, row by row.
+    /// Finds the blobs of at least `min_area_px` pixels in a plane that is `width` wide (pixels other than 0 are
+    /// foreground), in the order of their first pixels, row by row.
     pub fn label(&mut self, plane: &[u8], width: usize, min_area_px: usize) -> &[Blob] {
         self.runs.clear();
         self.sets.parent.clear();
@@ -84,7 +84,7 @@ impl ConnectedComponents {
         &self.blobs[..self.count]
     }
 
-    /// Unites the runs from `first` on with those of the row above that they touch, diagonally too.
+    /// Unites the runs from `first` on with the runs of the row above that they touch, also diagonally.
     fn unite_with_row_above(&mut self, above: Range<usize>, first: usize) {
         let mut a = above.start;
         for here in first..self.runs.len() {
@@ -170,7 +170,7 @@ impl ComponentStats {
     }
 }
 
-/// The convex hull of runs in the order of their rows: of each row only the ends can be corners.
+/// The convex hull of runs in the order of their rows: only the ends of each row can be corners.
 fn outline(runs: impl Iterator<Item = Run>, corners: &mut Vec<Point2>, hull: &mut Vec<Point2>) {
     corners.clear();
     let mut row: Option<Run> = None;

@@ -1,4 +1,4 @@
-//! What one frame shows of an obstacle.
+//! Detections: the observation of an obstacle in one frame.
 
 use crate::Point2;
 
@@ -9,11 +9,11 @@ pub(crate) struct Detection {
     pub(crate) outline_m: Vec<Point2>,
     pub(crate) centre_m: Point2,
     pub(crate) area: f64,
-    /// Mean grey level, or any other feature on that scale.
+    /// Mean grey level, or another feature on this scale.
     pub(crate) brightness: f64,
-    /// It touches the arm's silhouette: a part of it may be occluded.
+    /// Whether the blob touches the arm's silhouette, so that a part may be occluded.
     pub(crate) touches_arm: bool,
-    /// It touches the image border: a part of it may lie outside.
+    /// Whether the blob touches the image border, so that a part may be outside.
     pub(crate) touches_border: bool,
     pub(crate) z_from_m: f64,
     pub(crate) z_to_m: f64,

@@ -1,15 +1,16 @@
-//! Blobs of the image to detections on the floor.
+//! Converts blobs of the image to detections on the floor.
 
 use crate::connected_components::Blob;
 use crate::detection::Detection;
 use crate::{Calibration, CameraTrackerSettings, Point2, polygon, raster};
 
-/// Where the lens distorts, longer pieces of an outline are divided before they are projected to the floor, pixels.
+/// Longest piece of an outline that is projected to the floor without division if the lens distorts, pixels.
 const MAX_PIECE_PX: f64 = 12.0;
-/// Samples of the brightness along each side of a blob; the outer quarters, which may show floor, are left out.
+/// Number of samples of the brightness along each side of a blob; the outer quarters, which may show floor, are
+/// skipped.
 const BRIGHTNESS_SAMPLES: usize = 16;
 
-/// Pixels that the arm occludes: all 0 if there are none.
+/// Pixels that the arm occludes; all 0 if it occludes none.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct OcclusionMask<'a> {
     pub(crate) plane: &'a [u8],
@@ -28,7 +29,7 @@ impl OcclusionMask<'_> {
 /// The detections of one frame; memory is reused.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Detector {
-    /// The first `count` of them are this frame's.
+    /// Detections; the first `count` belong to this frame.
     list: Vec<Detection>,
     count: usize,
     points: Vec<Point2>,
@@ -40,7 +41,7 @@ impl Detector {
         &self.list[..self.count]
     }
 
-    /// Projects blobs to the floor and drops those that lie wholly outside the monitored area.
+    /// Projects blobs to the floor and drops blobs that are entirely outside the monitored area.
     pub(crate) fn project(
         &mut self,
         blobs: &[Blob],
@@ -65,7 +66,7 @@ impl Detector {
             let (columns, rows) = (&blob.columns, &blob.rows);
             detection.touches_border =
                 columns.start == 0 || rows.start == 0 || columns.end >= occluded.width || rows.end >= occluded.height;
-            // Opening and closing change outlines by a pixel: two more count as touching.
+            // Opening and closing change outlines by a pixel: a distance of up to two more pixels counts as touching.
             polygon::inflate(&blob.outline_px, 2.0, &mut self.grown_px, &mut self.points);
             detection.touches_arm = occluded.touches(&self.grown_px);
             detection.z_from_m = settings.floor_z_m;

@@ -3,7 +3,7 @@
 /// Disjoint sets; a set is represented by its smallest member, its root.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct DisjointSets {
-    /// Each member's parent, a root's own number; other values for numbers in no set.
+    /// Parent of each member; a root is its own parent. Numbers outside all sets have other values.
     pub parent: Vec<u32>,
 }
 

@@ -4,20 +4,20 @@ use elbowroom_formats::FormatError;
 
 use crate::Channels;
 
-/// Why a frame, a calibration or a setting was refused. Tracked obstacles are not affected.
+/// Why a frame, a calibration or a setting was rejected. Tracked obstacles are not affected.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum VisionError {
-    /// A file that is missing, truncated or of another format. The message names the file and what to write instead.
+    /// A file is missing, truncated or of another format. The message states the file and what to write instead.
     #[error(transparent)]
     File(#[from] FormatError),
-    /// A frame without pixels.
+    /// A frame has no pixels.
     #[error("{frame}: the frame is empty: {width} x {height} pixels")]
     Empty {
-        /// The frame's name.
+        /// Name of the frame.
         frame: String,
-        /// Its columns.
+        /// Number of columns.
         width: usize,
-        /// Its rows.
+        /// Number of rows.
         height: usize,
     },
     /// The number of bytes does not match the size of the image.
@@ -25,26 +25,26 @@ pub enum VisionError {
         "{frame}: {width} x {height} pixels of {bytes_per_pixel} byte(s) need {expected} bytes, but there are {found}"
     )]
     WrongLength {
-        /// The frame's name.
+        /// Name of the frame.
         frame: String,
-        /// Its announced columns.
+        /// Announced number of columns.
         width: usize,
-        /// Its announced rows.
+        /// Announced number of rows.
         height: usize,
         /// 1 for grey, 3 for RGB.
         bytes_per_pixel: usize,
         /// `width * height * bytes_per_pixel`.
         expected: usize,
-        /// Number of bytes present.
+        /// Number of bytes found.
         found: usize,
     },
-    /// A frame of another size than the camera was calibrated for.
+    /// The size of a frame differs from the size in the camera's calibration.
     #[error(
         "{frame}: the frame has {found_width} x {found_height} pixels, but the camera was calibrated for {width} x \
          {height}; set the camera back to that size, or calibrate it again"
     )]
     WrongSize {
-        /// The frame's name.
+        /// Name of the frame.
         frame: String,
         /// Columns of the calibration.
         width: usize,
@@ -58,23 +58,23 @@ pub enum VisionError {
     /// Grey and RGB frames were mixed.
     #[error("{frame}: the frame is {found}, but those before it were {expected}; one camera sends one kind")]
     WrongChannels {
-        /// The frame's name.
+        /// Name of the frame.
         frame: String,
         /// Channels of the first frame.
         expected: Channels,
-        /// Channels of this one.
+        /// Channels of this frame.
         found: Channels,
     },
-    /// A frame that is not later than the one before it.
+    /// A frame is not later than the previous one.
     #[error(
         "{frame}: its time {stamp_s} s is not after {last_s} s, the time of the frame before; send frames in order"
     )]
     OutOfOrder {
-        /// The frame's name.
+        /// Name of the frame.
         frame: String,
-        /// Its time stamp, seconds.
+        /// Time stamp of the frame, seconds.
         stamp_s: f64,
-        /// The stamp of the frame before, seconds.
+        /// Time stamp of the previous frame, seconds.
         last_s: f64,
     },
     /// No calibration was given.
@@ -83,21 +83,21 @@ pub enum VisionError {
          pixels (FloorHomography::from_points), or intrinsics and a pose (Camera::new)"
     )]
     NotCalibrated,
-    /// Heights are needed, which a floor homography does not determine.
+    /// Heights are needed, but a floor homography does not determine them.
     #[error(
         "a floor homography does not determine where a point above the floor appears; calibrate with intrinsics and a \
          pose (Camera::new), or draw the silhouette in pixels (PixelMask::mask_polygon)"
     )]
     NeedsCamera,
-    /// A calibration that does not determine positions.
+    /// A calibration does not determine positions.
     #[error("the camera's calibration is not usable: {0}")]
     Calibration(String),
-    /// A setting out of its range.
+    /// A setting is out of its range.
     #[error("the setting `{name}` is {value}; {expected}")]
     Setting {
-        /// The field's name.
+        /// Name of the field.
         name: &'static str,
-        /// Its value.
+        /// Value of the setting.
         value: f64,
         /// What to write instead.
         expected: &'static str,

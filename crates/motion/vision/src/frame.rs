@@ -14,9 +14,9 @@ use crate::{Channels, VisionError};
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Frame {
-    /// Its name in messages: a file, or a number.
+    /// Name of the frame in messages: a file or a number.
     pub name: String,
-    /// When it was taken, seconds; rises from frame to frame.
+    /// Time at which the frame was taken, seconds; increases from frame to frame.
     pub stamp_s: f64,
     width: usize,
     height: usize,
@@ -25,10 +25,10 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// A frame taken at 0 s.
+    /// Creates a frame taken at 0 s.
     ///
     /// # Errors
-    /// No pixels, or another number of bytes than width × height × channels.
+    /// The frame has no pixels, or the number of bytes is not width × height × channels.
     pub fn new(
         name: impl Into<String>,
         width: usize,
@@ -41,17 +41,17 @@ impl Frame {
         Ok(frame)
     }
 
-    /// The same frame with the time at which it was taken, seconds.
+    /// Sets the time at which the frame was taken, seconds.
     #[must_use]
     pub fn with_stamp(mut self, stamp_s: f64) -> Self {
         self.stamp_s = stamp_s;
         self
     }
 
-    /// Replaces the image and reuses its memory: `write` receives the old bytes and leaves the new ones.
+    /// Replaces the image and reuses its memory: `write` receives the old bytes and must leave the new ones.
     ///
     /// # Errors
-    /// As [`Frame::new`]; the frame is then empty.
+    /// The errors of [`Frame::new`]; the frame is then empty.
     pub fn fill(
         &mut self,
         width: usize,
@@ -80,23 +80,23 @@ impl Frame {
         Ok(())
     }
 
-    /// Removes the image; the memory stays.
+    /// Removes the image but keeps its memory.
     pub(crate) fn clear(&mut self) {
         (self.width, self.height) = (0, 0);
     }
 
-    /// Takes the memory of the pixels out; the frame is then empty.
+    /// Moves the memory of the pixels out; the frame is then empty.
     pub(crate) fn take_pixels(&mut self) -> Vec<u8> {
         self.clear();
         std::mem::take(&mut self.pixels)
     }
 
-    /// Columns.
+    /// Number of columns.
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// Rows.
+    /// Number of rows.
     pub fn height(&self) -> usize {
         self.height
     }
@@ -119,7 +119,7 @@ impl Frame {
     /// The bytes of one row, from the top.
     ///
     /// # Panics
-    /// On a row that does not exist.
+    /// The row does not exist.
     pub fn row(&self, y: usize) -> &[u8] {
         let length = self.width * self.channels.count();
         &self.pixels[y * length..(y + 1) * length]

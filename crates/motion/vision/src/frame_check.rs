@@ -1,8 +1,8 @@
-//! Checks of a camera and of its frames before they are used.
+//! Checks of a camera and its frames before use.
 
 use crate::{Calibration, CameraTrackerSettings, Channels, Frame, PixelMask, Point2, VisionError};
 
-/// Whether a frame and its mask have the camera's size and channels, and whether the frame is later than the last one.
+/// Checks that a frame and its mask have the camera's size and channels, and that the frame is later than the last one.
 pub(crate) fn frame(
     frame: &Frame,
     arm: Option<&PixelMask>,
@@ -37,7 +37,7 @@ pub(crate) fn frame(
     }
 }
 
-/// Whether the whole image shows floor: pixels above the horizon have no position.
+/// Checks that the whole image shows floor: pixels above the horizon have no position.
 pub(crate) fn floor_visible(
     calibration: &Calibration,
     settings: &CameraTrackerSettings,

@@ -9,14 +9,14 @@ use crate::{Frame, VisionError};
 
 /// A stream of frames.
 pub trait FrameSource {
-    /// Writes the next frame to `frame`, whose memory is reused; false when there are no more.
+    /// Writes the next frame to `frame`, whose memory is reused; returns false at the end of the stream.
     ///
     /// # Errors
-    /// A frame that cannot be read. The stream continues: the next call returns the frame after it.
+    /// A frame cannot be read. The stream continues: the next call returns the following frame.
     fn next_frame(&mut self, frame: &mut Frame) -> Result<bool, VisionError>;
 }
 
-/// Image files in a given order, a fixed time apart.
+/// Image files in a given order, at constant intervals.
 ///
 /// ```
 /// use elbowroom_vision::{ImageFiles, Frame, FrameSource};
@@ -33,17 +33,17 @@ pub struct ImageFiles {
 }
 
 impl ImageFiles {
-    /// These files in this order, `period_s` seconds apart, the first at 0 s.
+    /// Creates a source of these files in this order, `period_s` seconds apart, the first at 0 s.
     pub fn list(files: impl IntoIterator<Item = impl AsRef<Path>>, period_s: f64) -> Self {
         let paths = files.into_iter().map(|file| file.as_ref().to_owned()).collect();
         Self { paths, next: 0, period_s, raw: None }
     }
 
-    /// The images of a folder in the order of their names (byte by byte: number them with leading zeros); other files are
-    /// skipped.
+    /// Creates a source of the images in a folder in the order of their names (byte by byte: number them with leading
+    /// zeros); skips other files.
     ///
     /// # Errors
-    /// A folder that cannot be read or holds no image.
+    /// The folder cannot be read or contains no images.
     pub fn folder(folder: &Path, period_s: f64) -> Result<Self, VisionError> {
         let cannot = |e: std::io::Error| FormatError::new(folder, None, format!("cannot be read: {e}"));
         let mut files = Vec::new();
@@ -62,7 +62,7 @@ impl ImageFiles {
         Ok(Self::list(files, period_s))
     }
 
-    /// The same files with the layout of raw ones among them.
+    /// Sets the layout of raw files among the files.
     ///
     /// ```
     /// use elbowroom_vision::{Channels, Frame, FrameSource, ImageFiles, RawLayout};
@@ -102,7 +102,7 @@ impl FrameSource for ImageFiles {
     }
 }
 
-/// Any function that fills frames, for example the driver of a camera.
+/// Any function that fills frames is a source, for example the driver of a camera.
 ///
 /// ```
 /// use elbowroom_vision::{Channels, Frame, FrameSource};

@@ -2,19 +2,20 @@
 
 use crate::{Calibration, CameraTrackerSettings, Point2, polygon};
 
-/// Floor that no picture of the empty cell showed: it is unknown, so it counts as an obstacle once it can be seen.
+/// Floor that no image of the empty cell showed: it is unknown, so it counts as an obstacle as soon as it can be seen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HiddenFloor {
-    /// Smallest world x and y of it, m.
+    /// Smallest world x and y of the floor, m.
     pub min_m: Point2,
-    /// Largest world x and y of it, m.
+    /// Largest world x and y of the floor, m.
     pub max_m: Point2,
-    /// Its area, m².
+    /// Area of the floor, m².
     pub area_m2: f64,
 }
 
 impl HiddenFloor {
-    /// Of the pixels that were never seen, `width` in a row. `None` where fewer than an obstacle has are within the area.
+    /// Computes the floor of the pixels that were never seen, with `width` pixels per row. `None` if fewer pixels are
+    /// within the area than an obstacle has.
     pub(crate) fn of(
         seen: &[u16],
         width: usize,

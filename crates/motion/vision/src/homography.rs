@@ -9,9 +9,9 @@ use crate::{Point2, VisionError};
 
 type Matrix = [[f64; 3]; 3];
 
-/// Smallest ratio of the second smallest eigenvalue to the largest: below, more than one homography fits the pairs.
+/// Smallest ratio of the second smallest eigenvalue to the largest; below it, more than one homography fits the pairs.
 const MIN_EIGENVALUE_RATIO: f64 = 1e-9;
-/// Smallest determinant of a homography between normalized points: below, it maps the image to a line.
+/// Smallest determinant of a homography between normalized points; below it, the homography maps the image to a line.
 const MIN_DETERMINANT: f64 = 1e-7;
 
 /// A homography from the image to the floor (no lens distortion).
@@ -39,12 +39,13 @@ pub struct FloorHomography {
 }
 
 impl FloorHomography {
-    /// The homography of an image of `width` × `height` pixels from points of the floor: their pixels and their positions
-    /// (metres, world x and y). Four pairs determine it; with more, the algebraic error is minimized.
+    /// Computes the homography of an image of `width` × `height` pixels from points of the floor: their pixels and
+    /// their positions (metres, world x and y). Four pairs determine it; with more pairs, the algebraic error is
+    /// minimized.
     ///
     /// # Errors
-    /// Fewer than four pairs, lists of different length, numbers that are not finite, three of four points on one line
-    /// (the homography is then not determined), or points on both sides of the horizon.
+    /// There are fewer than four pairs, the lists have different lengths, numbers are not finite, three of four points
+    /// are on one line (then the homography is not determined), or points are on both sides of the horizon.
     pub fn from_points(
         width: usize,
         height: usize,
@@ -71,15 +72,14 @@ impl FloorHomography {
         Ok(floor)
     }
 
-    /// The same homography with the camera's position, metres, world frame: heights of templates can then be taken into
-    /// account.
+    /// Adds the camera's position, metres, world frame: then the heights of templates can be used.
     #[must_use]
     pub fn with_eye(mut self, eye_in_world: Vec3) -> Self {
         self.eye_in_world = Some(eye_in_world);
         self
     }
 
-    /// The camera's position, where it was given.
+    /// The camera's position, if it was given.
     pub fn eye_in_world(&self) -> Option<Vec3> {
         self.eye_in_world
     }
@@ -89,8 +89,9 @@ impl FloorHomography {
         (self.width, self.height)
     }
 
-    /// The largest distance of a given position from the image of its pixel, metres. About 0 with four pairs; with more, a
-    /// large value shows a wrong pair or lens distortion (then use [`crate::Camera`]).
+    /// The largest distance of a given position from the position that the homography gives its pixel, metres. About 0
+    /// with four pairs. With more pairs, a large value indicates a wrong pair or lens distortion (then use
+    /// [`crate::Camera`]).
     pub fn max_residual_m(&self) -> f64 {
         self.max_residual_m
     }
@@ -135,7 +136,7 @@ fn check_pairs(width: usize, height: usize, points_px: &[Point2], points_m: &[Po
     }
 }
 
-/// Points translated to their mean and scaled to a mean distance of √2, and the matrix that does it.
+/// Points translated to their mean and scaled to a mean distance of √2, and the matrix of this transformation.
 fn normalized(points: &[Point2]) -> Option<(Vec<Point2>, Matrix)> {
     let n = points.len() as f64;
     let mean = points.iter().fold(Point2::default(), |s, &p| s + p) * (1.0 / n);
@@ -193,7 +194,7 @@ fn inverse(m: &Matrix) -> Option<Matrix> {
     transposed.iter().flatten().all(|x| x.is_finite()).then_some(transposed)
 }
 
-/// The same homography with a largest entry of 1.
+/// The homography scaled to a largest entry of 1.
 fn scaled(m: Matrix) -> Matrix {
     let largest = m.iter().flatten().fold(0.0_f64, |s, x| s.max(x.abs()));
     m.map(|row| row.map(|x| x / largest))

@@ -1,11 +1,11 @@
 //! The brightness of an image compared with the learnt background.
 
-/// `observed = gain · learnt + offset`, offset in grey levels.
+/// The illumination `observed = gain · learnt + offset`, offset in grey levels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Illumination {
-    /// Ratio of brightness to that of the learnt background.
+    /// Ratio of the brightness to the learnt background.
     pub gain: f64,
-    /// Added to the brightness, grey levels.
+    /// Offset of the brightness, grey levels.
     pub offset: f64,
     /// Fraction of the samples that are inliers, 0 to 1.
     pub inlier_ratio: f64,

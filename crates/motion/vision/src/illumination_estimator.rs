@@ -1,28 +1,30 @@
 //! Global illumination change: one gain and one offset per plane between the background model and the present frame.
 //!
-//! Lamps, sun and the camera's exposure change the whole image at once. A line `observed = gain · learnt + offset` is fitted
-//! to a grid of pixels: of some candidate lines the one with the most inliers is taken and refined by least squares over
-//! its inliers, so that pixels of obstacles have no influence. Where the floor has no contrast, the gain stays at 1.
+//! Lamps, sun and the camera's exposure change the whole image at the same time. A line `observed = gain · learnt +
+//! offset` is fitted to a grid of pixels. Among some candidate lines, the one with the most inliers is chosen and
+//! refined by least squares over its inliers, so that pixels of obstacles do not affect it. On a floor without
+//! contrast, the gain stays at 1.
 
 use crate::background::BackgroundPlane;
 use crate::illumination::Illumination;
 
-/// Distance of the samples, both ways, pixels.
+/// Spacing of the samples in both directions, pixels.
 const SAMPLE_STEP_PX: usize = 8;
-/// Largest distance of an inlier from the line, grey levels: so many, or so many mean deviations of the floor's pixels.
+/// Largest distance of an inlier from the line: in grey levels; then as a multiple of the mean deviation of the floor's
+/// pixels.
 const INLIER_LEVELS: f32 = 8.0;
 const INLIER_DEVIATIONS: f32 = 2.5;
-/// Deviations above this are no noise, grey levels.
+/// Deviation above which a difference does not count as noise, grey levels.
 const MAX_INLIER_LEVELS: f32 = 24.0;
-/// Weight of the gain 1 in the least squares, squared grey levels. A uniform floor does not determine a gain: then the offset
-/// alone follows the lamp. Pulled towards the gain of the frame before, it would shrink from frame to frame, as the noise of the
-/// learnt levels lowers each estimate a little.
+/// Weight of the gain 1 in the least squares, squared grey levels. A uniform floor does not determine the gain: then
+/// only the offset follows the lamp. With the gain of the previous frame instead of 1, the gain would shrink from frame
+/// to frame, because the noise of the learnt levels lowers each estimate slightly.
 const GAIN_PRIOR_WEIGHT: f32 = 25.0;
 
-/// Fewest samples for an estimate, and fewest inliers for a fit: with fewer the noise of the pixels decides.
+/// Smallest number of samples for an estimate, and of inliers for a fit: with fewer, the noise of the pixels dominates.
 const MIN_SAMPLES: usize = 16;
 const MIN_INLIERS: f32 = 8.0;
-/// Grey levels of pixels that are not saturated; a saturated pixel does not follow the line.
+/// Grey levels of pixels that are not saturated: saturated pixels do not follow the line.
 const UNSATURATED: std::ops::Range<u8> = 3..253;
 
 /// The line `observed = gain · learnt + offset`, offset in grey levels.
@@ -43,9 +45,9 @@ pub(crate) struct IlluminationEstimator {
 }
 
 impl IlluminationEstimator {
-    /// The illumination of a plane of an image that is `width` wide; `frozen` pixels are left out. The line of the frame
-    /// before, `previous`, is one of the candidates. `None` if there are too few samples. With it, the mean learnt level (grey
-    /// levels) of the pixels that follow it.
+    /// Estimates the illumination of a plane of an image that is `width` wide; skips `frozen` pixels. The line of the
+    /// previous frame, `previous`, is one of the candidates. Also returns the mean learnt level (grey levels) of the
+    /// pixels that follow the line. `None` if there are too few samples.
     pub(crate) fn estimate(
         &mut self,
         plane: &BackgroundPlane,
@@ -120,7 +122,7 @@ impl IlluminationEstimator {
     }
 }
 
-/// The median; there is at least one value.
+/// The median of at least one value.
 fn middle(values: &mut [f32]) -> f32 {
     let middle = values.len() / 2;
     *values.select_nth_unstable_by(middle, f32::total_cmp).1

@@ -1,4 +1,4 @@
-//! Frames from and to files: PNG, PNM (PGM, PPM, PBM) and raw bytes. Hostile input is refused here.
+//! Frames from and to files: PNG, PNM (PGM, PPM, PBM) and raw bytes. Hostile input is rejected here.
 
 use std::path::Path;
 
@@ -7,26 +7,26 @@ use elbowroom_formats::{FormatError, png, pnm, read_file};
 
 use crate::{Channels, Frame, VisionError};
 
-/// Larger files are refused.
+/// Largest accepted file, bytes.
 const MAX_BYTES: u64 = 1 << 28;
 
-/// Size and channels of raw files (`.raw`, `.gray`, `.grey`), which do not state them.
+/// Size and channels of raw files (`.raw`, `.gray`, `.grey`), which do not contain them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RawLayout {
-    /// Columns.
+    /// Number of columns.
     pub width: usize,
-    /// Rows.
+    /// Number of rows.
     pub height: usize,
     /// Grey or RGB.
     pub channels: Channels,
 }
 
-/// Reads an image into `frame`, whose memory is reused; the frame is named after the path. The format follows from the
-/// content (PNG, PNM) or from the name (`.raw`, `.gray`, `.grey`, which need a layout). Opacity is dropped, 16-bit
+/// Reads an image into `frame`, whose memory is reused; the frame is named after the path. The format is determined by
+/// the content (PNG, PNM) or by the name (`.raw`, `.gray`, `.grey`, which need a layout). Opacity is dropped; 16-bit
 /// samples are scaled to 8 bits.
 ///
 /// # Errors
-/// Files that are missing, truncated, too large or of another format. The message names the file, the fault, and what to
+/// The file is missing, truncated, too large or of another format. The message states the file, the fault, and what to
 /// write instead.
 pub fn read(path: &Path, raw: Option<RawLayout>, frame: &mut Frame) -> Result<(), VisionError> {
     frame.clear();
@@ -34,10 +34,10 @@ pub fn read(path: &Path, raw: Option<RawLayout>, frame: &mut Frame) -> Result<()
     decode(&bytes, path, raw, frame)
 }
 
-/// As [`read`], from bytes; `file` is named in messages.
+/// Like [`read`], from bytes; `file` is the name in messages.
 ///
 /// # Errors
-/// As [`read`]; the frame is then empty.
+/// The errors of [`read`]; the frame is then empty.
 pub fn decode(bytes: &[u8], file: &Path, raw: Option<RawLayout>, frame: &mut Frame) -> Result<(), VisionError> {
     frame.name.clear();
     frame.name.push_str(&file.to_string_lossy());
@@ -73,7 +73,7 @@ fn is_raw(file: &Path) -> bool {
     ["raw", "gray", "grey"].iter().any(|&e| extension == e)
 }
 
-/// PNG or PNM, whichever the content is.
+/// Decodes PNG or PNM, depending on the content.
 fn decode_image(bytes: &[u8], file: &Path, pixels: &mut Vec<u8>) -> Result<ImageHeader, FormatError> {
     if png::is_png(bytes) {
         png::read(bytes, file, pixels)
@@ -84,23 +84,23 @@ fn decode_image(bytes: &[u8], file: &Path, pixels: &mut Vec<u8>) -> Result<Image
     }
 }
 
-/// The bytes of an image or point cloud file.
+/// Reads the bytes of an image or point cloud file.
 pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, FormatError> {
     read_file(path, MAX_BYTES, "a smaller picture or a thinner cloud")
 }
 
-/// A 16-bit grey PNG or PGM as (width, height, values): the format in which depth cameras save images.
+/// Reads a 16-bit grey PNG or PGM as (width, height, values): the format in which depth cameras save images.
 ///
 /// # Errors
-/// As [`read`]; and images that are not 16-bit grey.
+/// The errors of [`read`]; or the image is not 16-bit grey.
 pub fn read_grey16(path: &Path) -> Result<(usize, usize, Vec<u16>), VisionError> {
     decode_grey16(&read_bytes(path)?, path)
 }
 
-/// As [`read_grey16`], from bytes.
+/// Like [`read_grey16`], from bytes.
 ///
 /// # Errors
-/// As [`read_grey16`].
+/// The errors of [`read_grey16`].
 pub fn decode_grey16(bytes: &[u8], path: &Path) -> Result<(usize, usize, Vec<u16>), VisionError> {
     let mut pixels = Vec::new();
     let header = decode_image(bytes, path, &mut pixels)?;
@@ -127,7 +127,7 @@ pub fn decode_grey16(bytes: &[u8], path: &Path) -> Result<(usize, usize, Vec<u16
 /// ```
 ///
 /// # Errors
-/// A frame without pixels.
+/// The frame has no pixels.
 pub fn encode_png(frame: &Frame) -> Result<Vec<u8>, VisionError> {
     let (width, height) = (frame.width(), frame.height());
     if width == 0 || height == 0 {

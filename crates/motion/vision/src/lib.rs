@@ -1,4 +1,5 @@
-//! Camera frames and point clouds to obstacles: upright prisms with an identity, reported as they enter, move and leave.
+//! Turns camera frames and point clouds into obstacles: upright prisms with an identity, reported when they enter, move
+//! and leave.
 //!
 //! | step | method | types |
 //! | --- | --- | --- |
@@ -9,14 +10,14 @@
 //! | self-filter | pixels of the arm are neither foreground nor background | [`PixelMask`], [`ArmPart`] |
 //! | blobs | connected components of the foreground | [`ConnectedComponents`], [`Blob`] |
 //! | tracking | data association by position, area and brightness; merged and occluded objects | [`ObstacleId`], [`ObstacleChange`] |
-//! | templates | a known footprint gives the height, else it is unbounded | [`Template`] |
+//! | templates | a known footprint gives the height; otherwise it is unbounded | [`Template`] |
 //! | obstacle | convex footprint inflated by an uncertainty, from the floor to a height | [`Obstacle`] |
-//! | point clouds | PCD, PLY, depth images to the same obstacles | [`cloud`] |
+//! | point clouds | PCD, PLY and depth images, converted to the same obstacles | [`cloud`] |
 //! | synthetic images | for tests and demonstrations | [`render`] |
 //!
-//! [`CameraTracker`] does all of it for a camera, [`cloud::CloudTracker`] for a sensor of points. Lengths are metres,
-//! times seconds, positions in the world frame; pixels are counted from the upper left corner of the image, whose first
-//! pixel has its centre at (0.5, 0.5). Memory is reused: once lists have grown, a frame allocates nothing.
+//! [`CameraTracker`] performs all steps for a camera, [`cloud::CloudTracker`] for a sensor of points. Lengths are in
+//! metres, times in seconds, positions in the world frame. Pixels are counted from the upper left corner of the image,
+//! whose first pixel has its centre at (0.5, 0.5). Memory is reused: once lists have grown, a frame allocates nothing.
 //!
 //! ```
 //! use elbowroom_spatial::Vec3;
@@ -44,36 +45,37 @@
 //!
 //! # Unknown is not free
 //!
-//! - A rejected frame ([`FrameStatus::Rejected`]) and a cloud without valid points ([`cloud::CloudStatus::Empty`]) change
-//!   no obstacle; how long the obstacles can still be used is the caller's decision.
-//! - An obstacle that the arm occludes is kept, however long. Where it is occluded in part, its outline only grows; where
-//!   it was moving, it is extrapolated behind the arm with its velocity. What enters behind the arm is not detected.
-//! - The background does not adapt at obstacles, so a stationary obstacle never becomes background. What is present while
-//!   the background is learnt is background; a place that was masked all that time is an obstacle.
-//! - Without a matching template an obstacle is [`CameraTrackerSettings::unbounded_height_m`] high.
+//! - A rejected frame ([`FrameStatus::Rejected`]) or a cloud without valid points ([`cloud::CloudStatus::Empty`]) does
+//!   not change any obstacle; the caller decides how long the obstacles can still be used.
+//! - An obstacle that the arm occludes is kept for any length of time. If it is partly occluded, its outline only
+//!   grows; if it was moving, it is extrapolated behind the arm with its velocity. An object that enters behind the arm
+//!   is not detected.
+//! - The background does not adapt at obstacles, so a stationary obstacle never becomes background. Everything that is
+//!   present while the background is learnt is background; a place that was masked all that time is an obstacle.
+//! - An obstacle without a matching template is [`CameraTrackerSettings::unbounded_height_m`] high.
 //!
 //! # Limits of a single camera
 //!
-//! - *Parallax.* An object covers more floor in the image than its footprint. Its outline projected to the floor contains
-//!   its footprint, and is used as it is unless a template gives the height `h`; then, with the camera `H` above the
-//!   floor, the footprint is also within the outline scaled by `1 − h / H` about the point below the camera, and the
-//!   intersection of the two is used. This holds for objects that stand on the floor and do not overhang: of a table top,
-//!   or a load on a hook, the part towards the point below the camera may lie outside the reported prism. A point cloud
-//!   has no such limit.
-//! - *Templates.* At a single position a high, narrow object covers the same floor as a lower, longer one. A template is
-//!   accepted only where it matches for some frames in a row and has hardly ever failed to; a high object that is
-//!   stationary from the start where it looks like a lower one is still mistaken. Use templates only for objects that
-//!   occur in the cell.
-//! - *Camouflage.* What differs from the floor by less than [`CameraTrackerSettings::min_difference`] (or than its noise)
-//!   is not detected; with [`CameraTrackerSettings::shadows`], neither is an evenly coloured object on an evenly coloured
-//!   floor that is as dark as a shadow. The gain of the whole image is estimated in each frame, so a change of
-//!   illumination common to all pixels is not foreground.
+//! - *Parallax.* An object covers more floor in the image than its footprint. Its outline projected to the floor
+//!   contains its footprint, and is used unchanged unless a template gives the height `h`. Then, with the camera `H`
+//!   above the floor, the footprint is also within the outline scaled by `1 − h / H` about the point below the camera,
+//!   and the intersection of the two is used. This holds for objects that stand on the floor and do not overhang: for a
+//!   table top, or a load on a hook, the part towards the point below the camera may be outside the reported prism. A
+//!   point cloud does not have this limit.
+//! - *Templates.* At a single position, a high, narrow object covers the same floor as a lower, longer one. A template
+//!   is accepted only if it matches for some frames in a row and has hardly ever failed to match. A high object that is
+//!   stationary from the start, at a place where it looks like a lower one, is still mistaken for it. Use templates
+//!   only for objects that occur in the cell.
+//! - *Camouflage.* An object that differs from the floor by less than [`CameraTrackerSettings::min_difference`] (or by
+//!   less than the floor's noise) is not detected. With [`CameraTrackerSettings::shadows`], an evenly coloured object
+//!   on an evenly coloured floor that is as dark as a shadow is not detected either. The gain of the whole image is
+//!   estimated in each frame, so a change of illumination common to all pixels is not foreground.
 //! - *Touching objects* are divided along an estimated line; together they cover all of the foreground, and each is as
 //!   high as the highest of them.
 //!
 //! This is not a certified safety device.
 //!
-//! **Invariant.** If a frame is rejected or a cloud has no valid point, no obstacle ever changes, so none disappears.
+//! **Invariant.** If a frame is rejected or a cloud has no valid point, no obstacle ever changes or disappears.
 
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]

@@ -1,5 +1,5 @@
-//! Self-filter of the camera: pixels that the arm covers are neither foreground nor background. What is behind them is
-//! unknown, not free.
+//! Self-filter of the camera: pixels that the arm covers are neither foreground nor background. The space behind them
+//! is unknown, not free.
 
 use elbowroom_proximity::Shape;
 use elbowroom_spatial::{Pose, Vec3};
@@ -24,8 +24,8 @@ pub enum ArmPart {
 }
 
 impl ArmPart {
-    /// A shape in the world as a capsule or as the hull of its corners; `None` for an unbounded shape (a half-space).
-    /// Cylinders become the box around them, meshes the hull of their vertices.
+    /// Converts a shape in the world to a capsule or to the hull of its corners; `None` for an unbounded shape (a
+    /// half-space). A cylinder becomes the box around it, a mesh the hull of its vertices.
     ///
     /// ```
     /// use elbowroom_proximity::{Capsule, Shape};
@@ -90,7 +90,7 @@ pub struct PixelMask {
 }
 
 impl PixelMask {
-    /// An empty mask of this size.
+    /// Creates an empty mask of this size.
     pub fn new(width: usize, height: usize) -> Self {
         Self { width, plane: vec![0; width * height], is_empty: true, ..Self::default() }
     }
@@ -108,18 +108,18 @@ impl PixelMask {
         x < self.width && self.plane.get(y * self.width + x).is_some_and(|&pixel| pixel != 0)
     }
 
-    /// Masks every pixel that the convex hull of the points, inflated by a margin, touches (all in pixels).
+    /// Masks every pixel touched by the convex hull of the points, inflated by a margin (all in pixels).
     pub fn mask_polygon(&mut self, points_px: &[Point2], margin_px: f64) {
         polygon::inflate(points_px, margin_px.max(0.0), &mut self.outline, &mut self.workspace);
         raster::fill_convex(&mut self.plane, self.width, &self.outline, 1);
         self.is_empty = false;
     }
 
-    /// Masks the silhouettes of the parts of an arm, each inflated by `margin_m` metres and then by one pixel. A part that
-    /// is partly behind the camera masks the whole image; one that is wholly behind it, nothing.
+    /// Masks the silhouettes of the parts of an arm, each inflated by `margin_m` metres and then by one pixel. A part
+    /// that is partly behind the camera masks the whole image; a part that is entirely behind it masks nothing.
     ///
     /// # Errors
-    /// [`VisionError::NotCalibrated`], [`VisionError::NeedsCamera`].
+    /// [`VisionError::NotCalibrated`] or [`VisionError::NeedsCamera`].
     pub fn mask_arm(&mut self, calibration: &Calibration, arm: &[ArmPart], margin_m: f64) -> Result<(), VisionError> {
         let camera = calibration.camera()?;
         let mut points = std::mem::take(&mut self.points);
@@ -138,13 +138,13 @@ impl PixelMask {
         Ok(())
     }
 
-    /// Fraction of the image that is masked, 0 to 1.
+    /// Masked fraction of the image, 0 to 1.
     pub fn coverage(&self) -> f64 {
         let masked: usize = self.plane.iter().map(|&pixel| usize::from(pixel)).sum();
         masked as f64 / self.plane.len().max(1) as f64
     }
 
-    /// Columns and rows.
+    /// Number of columns and rows.
     pub fn size(&self) -> (usize, usize) {
         (self.width, self.plane.len() / self.width.max(1))
     }
@@ -158,7 +158,7 @@ impl PixelMask {
     }
 }
 
-/// How much of a part is in front of the camera.
+/// Visibility of a part: fully, partly or not in front of the camera.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Visibility {
     Full,
@@ -166,8 +166,8 @@ pub(crate) enum Visibility {
     None,
 }
 
-/// Adds points to `points_px` whose convex hull contains the image of the part, inflated by a margin, if all of it is in
-/// front of the camera; `outline` is scratch memory.
+/// Adds points to `points_px` whose convex hull contains the image of the part, inflated by a margin, if the whole part
+/// is in front of the camera. `outline` is scratch memory.
 pub(crate) fn silhouette(
     camera: &Camera,
     part: &ArmPart,
@@ -189,7 +189,7 @@ pub(crate) fn silhouette(
     visibility
 }
 
-/// Points per edge of an outline: with lens distortion edges are curves.
+/// Number of points per edge of an outline: with lens distortion, edges are curves.
 const POINTS_PER_EDGE: u32 = 8;
 
 /// The pixels of an outline in normalized image coordinates (x / z and y / z of the camera's frame).
@@ -202,8 +202,8 @@ fn distort_outline(camera: &Camera, outline: &[Point2], out: &mut Vec<Point2>) {
     }
 }
 
-/// Adds points in normalized image coordinates whose hull contains the image of the part; counts the points in front of
-/// the camera and behind it.
+/// Adds points in normalized image coordinates whose hull contains the image of the part. Returns the numbers of points
+/// in front of the camera and behind it.
 fn project_part(camera: &Camera, part: &ArmPart, margin_m: f64, out: &mut Vec<Point2>) -> (usize, usize) {
     match part {
         ArmPart::Capsule { from, to, radius_m } => {
@@ -218,14 +218,15 @@ fn project_part(camera: &Camera, part: &ArmPart, margin_m: f64, out: &mut Vec<Po
     }
 }
 
-/// The tangent cone from the camera to a sphere, cut in the plane through its centre: an octagon around that circle.
+/// Projects the tangent cone from the camera to a sphere, cut in the plane through the sphere's centre: an octagon
+/// around the resulting circle.
 fn project_sphere(camera: &Camera, centre_in_world: Vec3, radius_m: f64, out: &mut Vec<Point2>) -> (usize, usize) {
     let c = camera.camera_in_world().inverse_transform_point(centre_in_world);
     let distance = c.length();
     let Some(view) = c.try_normalize().filter(|_| distance > radius_m && c.is_finite()) else { return (1, 1) };
     let across = view.any_perpendicular();
     let other = view.cross(across);
-    // The radius of the tangent cone in that plane, enlarged so that the octagon's edges lie outside the circle.
+    // The radius of the tangent cone in that plane, enlarged so that the octagon's edges are outside the circle.
     let tangent = radius_m * distance / (distance * distance - radius_m * radius_m).sqrt();
     let r = tangent / (std::f64::consts::PI / 8.0).cos();
     let mut counts = (0, 0);

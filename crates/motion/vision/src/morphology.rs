@@ -9,7 +9,7 @@ pub(crate) struct Morphology {
 }
 
 impl Morphology {
-    /// Removes what is narrower than `2 · radius + 1` pixels: noise.
+    /// Removes areas narrower than `2 · radius + 1` pixels, which are noise.
     pub(crate) fn open(&mut self, plane: &mut [u8], width: usize, radius: usize) {
         for _ in 0..radius {
             self.pass(plane, width, |a, b| a & b);
@@ -19,7 +19,7 @@ impl Morphology {
         }
     }
 
-    /// As [`Self::open`], but what remains regains what it lost at its corners, up to `radius` pixels away.
+    /// Like [`Self::open`], but restores the corners of the remaining areas, up to `radius` pixels away.
     pub(crate) fn open_and_restore(&mut self, plane: &mut [u8], width: usize, radius: usize) {
         self.original.clear();
         self.original.extend_from_slice(plane);
@@ -32,7 +32,7 @@ impl Morphology {
         }
     }
 
-    /// Fills gaps that are narrower than `2 · radius + 1` pixels.
+    /// Fills gaps narrower than `2 · radius + 1` pixels.
     pub(crate) fn close(&mut self, plane: &mut [u8], width: usize, radius: usize) {
         for _ in 0..radius {
             self.pass(plane, width, |a, b| a | b);

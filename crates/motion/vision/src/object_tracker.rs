@@ -1,9 +1,10 @@
 //! Multi-object tracking: obstacles that keep their identity from frame to frame.
 //!
-//! The position of a track is predicted from its velocity and corrected by its detection (alpha-beta filter). Objects that
-//! touch are detected as one: each track then gets a share of the outline, divided by the power diagram (the line on which
-//! squared distance less squared radius is equal), so that the shares cover all of it, and keeps its area and brightness
-//! for the time after the separation. Tracks that the arm occludes are kept, however long.
+//! The position of a track is predicted from its velocity and corrected by its detection (alpha-beta filter). Objects
+//! that touch are detected as one. Each of their tracks then gets a part of the outline, divided by the power diagram
+//! (the line on which squared distance minus squared radius is equal), so that the parts cover the whole outline. The
+//! track keeps its area and brightness for the time after the separation. Tracks that the arm occludes are kept for any
+//! length of time.
 
 use elbowroom_spatial::Vec3;
 
@@ -29,23 +30,24 @@ pub(crate) struct ObjectTracker {
     workspace: Vec<Point2>,
 }
 
-/// Slower objects count as stationary: noise of the outline alone gives such speeds, metres per second.
+/// Speed below which an object counts as stationary, metres per second: noise of the outline alone causes such speeds.
 const STATIONARY_MPS: f64 = 0.05;
 
-/// An object that the arm occludes in part is assumed to move on at its last speed for so long, s; then it is where it was seen
-/// or assumed until the arm sets it free.
+/// Time for which a partly occluded object is assumed to move on at its last speed, s. Afterwards it is assumed to stay
+/// where it was seen or predicted until the arm no longer occludes it.
 const MAX_EXTRAPOLATION_S: f64 = 1.0;
 
-/// Reported heights may exceed the present ones by so many times the hysteresis before the prism changes.
+/// Multiple of the hysteresis by which reported heights may exceed the present ones before the prism changes.
 const HEIGHT_HYSTERESIS_FACTOR: f64 = 2.0;
 
-/// Gains for a track with a detection of its own: its position is the measured one, which is accurate to a pixel or two.
+/// Gains for a track with its own detection: the measured position is used, which is accurate to a pixel or two.
 const ISOLATED_GAINS: AlphaBetaGains = AlphaBetaGains { position: 1.0, velocity: 0.4 };
 
-/// Gains for merged tracks: the line that divides them is uncertain, so that the prediction counts for more.
+/// Gains for merged tracks: the line that divides them is uncertain, so the prediction has more weight.
 const MERGED_GAINS: AlphaBetaGains = AlphaBetaGains { position: 0.35, velocity: 0.08 };
 
-/// A track whose share of a merged outline has less than this fraction of its own area is missed: it is covered.
+/// Fraction of its own area below which a track's part of a merged outline means that the track was missed: it is
+/// covered.
 const MIN_SHARE: f64 = 0.1;
 
 impl ObjectTracker {
@@ -73,7 +75,7 @@ impl ObjectTracker {
     }
 
     fn predict(&mut self, dt_s: f64, settings: &CameraTrackerSettings) {
-        // The list never shrinks, so that its elements keep their memory.
+        // The list never shrinks, so its elements keep their memory.
         let count = self.predictions.len().max(self.tracks.len());
         self.predictions.resize_with(count, TrackPrediction::default);
         for (track, prediction) in self.tracks.iter().zip(&mut self.predictions) {
@@ -88,7 +90,7 @@ impl ObjectTracker {
         }
     }
 
-    /// A track with a detection of its own.
+    /// Updates a track that has its own detection.
     fn update_isolated(&mut self, t: usize, detection: &Detection, dt_s: f64, settings: &CameraTrackerSettings) {
         self.tracks[t].merged_z_to_m = None;
         if detection.touches_arm {
@@ -110,7 +112,7 @@ impl ObjectTracker {
         track.correct(predicted_m, detection.centre_m, dt_s, ISOLATED_GAINS, settings.max_speed_mps);
     }
 
-    /// One of several tracks that share a detection: gets its share of the outline.
+    /// Updates one of several tracks that share a detection: the track gets its part of the outline.
     fn update_merged(
         &mut self,
         t: usize,
@@ -148,13 +150,13 @@ impl ObjectTracker {
         track.correct(own.centre_m, measured_m, dt_s, MERGED_GAINS, f64::INFINITY);
     }
 
-    /// The top of the highest object in detection `d`.
+    /// Largest height of the objects in detection `d`.
     fn max_z_of_merged(&self, d: usize, association: &Association, settings: &CameraTrackerSettings) -> Option<f64> {
         let merged = self.tracks.iter().zip(&association.detection_of).filter(|(_, of)| **of == Some(d));
         merged.map(|(track, _)| track.own_z_range_m(settings).1).max_by(f64::total_cmp)
     }
 
-    /// Extends a track's outline by a partial detection; nothing changes where that lies within the outline.
+    /// Extends a track's outline by a partial detection; does not change it if the detection is within the outline.
     fn extend_outline(&mut self, t: usize, detection: &Detection, settings: &CameraTrackerSettings) {
         let track = &mut self.tracks[t];
         track.frames_missed = 0;
@@ -172,7 +174,7 @@ impl ObjectTracker {
         track.centre_m = polygon::centroid(&track.outline_m);
     }
 
-    /// Extends the outline of a moving, partly occluded object by where its velocity takes it behind the arm.
+    /// Extends the outline of a moving, partly occluded object to its predicted position behind the arm.
     fn extrapolate(&mut self, t: usize, dt_s: f64) {
         let track = &mut self.tracks[t];
         track.frames_seen = track.frames_seen.saturating_add(1);
@@ -200,7 +202,7 @@ impl ObjectTracker {
         self.tracks.push(track);
     }
 
-    /// Writes the obstacles of this frame, those that have left included, and drops the latter's tracks.
+    /// Writes the obstacles of this frame, including obstacles that have left, whose tracks are dropped.
     pub(crate) fn write_obstacles(
         &mut self,
         settings: &CameraTrackerSettings,
@@ -228,7 +230,7 @@ impl ObjectTracker {
         out.sort_unstable_by_key(|obstacle| obstacle.id);
     }
 
-    /// Writes the obstacles unchanged: for frames that are rejected.
+    /// Writes the obstacles unchanged, for rejected frames.
     pub(crate) fn write_unobserved(&mut self, out: &mut Vec<Obstacle>) {
         let mut count = 0;
         for track in &mut self.tracks {
@@ -250,7 +252,7 @@ impl ObjectTracker {
             track.keep_prism();
             return;
         }
-        // No size and no footprint follow from an incomplete outline.
+        // An incomplete outline determines neither the size nor the footprint.
         footprint_m.clone_from(&track.outline_m);
         if is_whole {
             let matched =
@@ -284,13 +286,13 @@ impl ObjectTracker {
     }
 }
 
-/// The line that divides two merged objects: `normal · p <= offset` is the first one's side.
+/// The line that divides two merged objects: `normal · p <= offset` is the side of the first object.
 fn power_bisector(own: &TrackPrediction, other: &TrackPrediction) -> (Point2, f64) {
     let power = |p: &TrackPrediction| p.centre_m.dot(p.centre_m) - p.area / std::f64::consts::PI;
     ((other.centre_m - own.centre_m) * 2.0, power(other) - power(own))
 }
 
-/// Writes the next obstacle of a list, into the memory of a spare one where there is any.
+/// Writes the next obstacle of a list, using the memory of a spare one if available.
 fn write(obstacle: &Obstacle, count: &mut usize, out: &mut Vec<Obstacle>, spare: &mut Vec<Obstacle>) {
     if *count == out.len() {
         out.push(spare.pop().unwrap_or_default());
@@ -315,7 +317,8 @@ mod tests {
         }
     }
 
-    /// An object at 1 m/s stops behind the arm: it is assumed to go on for a second, and grows no more after that.
+    /// An object that moves at 1 m/s stops behind the arm: it is assumed to move on for a second, and then stops
+    /// growing.
     #[test]
     fn an_object_that_the_arm_occludes_does_not_grow_forever() {
         let (settings, mut tracker) = (CameraTrackerSettings::default(), ObjectTracker::default());
@@ -331,7 +334,7 @@ mod tests {
         assert!(far_m[9] > 1.5, "{far_m:?}");
         assert!((2.0..2.2).contains(&far_m[20]) && far_m[20..].iter().all(|x| *x == far_m[20]), "{far_m:?}");
         assert_eq!(tracker.tracks[0].velocity_mps, Point2::default());
-        // Seen in full, it is as large as it is.
+        // Seen completely, the object has its true size.
         tracker.update(&[square(1.0, false)], 0.05, &settings);
         assert!(tracker.tracks[0].outline_m.iter().all(|p| p.x < 1.2));
     }

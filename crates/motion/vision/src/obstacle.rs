@@ -7,7 +7,7 @@ use elbowroom_spatial::{Aabb, Vec3};
 
 use crate::Point2;
 
-/// Identity of an obstacle from its entering to its leaving. One tracker never uses it twice.
+/// Identity of an obstacle from entering to leaving. A tracker never uses an identity twice.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub struct ObstacleId(pub u64);
 
@@ -17,49 +17,50 @@ impl fmt::Display for ObstacleId {
     }
 }
 
-/// The change of an obstacle since the frame before.
+/// The change of an obstacle since the previous frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ObstacleChange {
-    /// It is new.
+    /// The obstacle is new.
     #[default]
     Entered,
-    /// Its prism changed.
+    /// The prism changed.
     Moved,
-    /// Its prism is the same.
+    /// The prism is the same.
     Unchanged,
-    /// It is gone; reported once.
+    /// The obstacle is gone; reported once.
     Left,
 }
 
 /// An upright prism: all points above its footprint from `z_from_m` to `z_to_m`, world frame.
 ///
-/// The prism contains what was observed, inflated by
-/// [`CameraTrackerSettings::uncertainty_m`](crate::CameraTrackerSettings::uncertainty_m), under the assumption stated in
-/// the crate's documentation (objects stand on the floor and do not overhang).
+/// The prism contains the observed outline, inflated by
+/// [`CameraTrackerSettings::uncertainty_m`](crate::CameraTrackerSettings::uncertainty_m), under the assumption stated
+/// in the crate's documentation (objects stand on the floor and do not overhang).
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Obstacle {
-    /// Its identity.
+    /// Identity of the obstacle.
     pub id: ObstacleId,
-    /// Its change since the frame before.
+    /// Change since the previous frame.
     pub change: ObstacleChange,
-    /// The template that it matches, which gives its height.
+    /// Name of the matching template, which gives the height.
     pub kind: Option<Arc<str>>,
-    /// Corners of its convex footprint, counter-clockwise, world x and y, metres.
+    /// Corners of the convex footprint, counter-clockwise, world x and y, metres.
     pub footprint_m: Vec<Point2>,
-    /// Its lower end, world z, metres: the floor for obstacles of a camera.
+    /// Lower end, world z, metres: the floor for obstacles of a camera.
     pub z_from_m: f64,
-    /// Its upper end, world z, metres.
+    /// Upper end, world z, metres.
     pub z_to_m: f64,
     /// Estimated centre in this frame, world x and y, metres: not a bound.
     pub centre_m: Point2,
     /// Estimated velocity of the centre, metres per second: not a bound.
     pub velocity_mps: Point2,
-    /// It was not observed in this frame (occluded by the arm, or missed) and is kept at its last position.
+    /// Whether the obstacle was not observed in this frame (occluded by the arm, or missed) and keeps its last
+    /// position.
     pub is_unobserved: bool,
 }
 
 impl Obstacle {
-    /// The prism's corners, world frame: the lower ones, then the upper ones in the same order.
+    /// The prism's corners, world frame: the lower corners, then the upper corners in the same order.
     pub fn corners(&self) -> impl Iterator<Item = Vec3> + '_ {
         [self.z_from_m, self.z_to_m]
             .into_iter()

@@ -3,7 +3,7 @@
 use std::ops::{Add, Mul, Sub};
 
 /// A point in a plane. In an image: pixels, x to the right, y down, the centre of the first pixel at (0.5, 0.5). On the
-/// floor: metres along the world's x and y axes. The unit is in the name of a variable (`corner_px`, `centre_m`).
+/// floor: metres along the world's x and y axes. The name of a variable states the unit (`corner_px`, `centre_m`).
 ///
 /// ```
 /// use elbowroom_vision::Point2;
@@ -18,7 +18,7 @@ pub struct Point2 {
 }
 
 impl Point2 {
-    /// The point (x, y).
+    /// Creates the point (x, y).
     pub const fn new(x: f64, y: f64) -> Self {
         Self { x, y }
     }
@@ -28,7 +28,7 @@ impl Point2 {
         self.x.hypot(self.y)
     }
 
-    /// Two-dimensional cross product; positive where `o` lies to the left of `self`.
+    /// Two-dimensional cross product; positive if `o` is to the left of `self`.
     pub fn cross(self, o: Self) -> f64 {
         self.x * o.y - self.y * o.x
     }
@@ -38,7 +38,7 @@ impl Point2 {
         self.x * o.x + self.y * o.y
     }
 
-    /// Neither NaN nor infinite.
+    /// Whether both coordinates are neither NaN nor infinite.
     pub fn is_finite(self) -> bool {
         self.x.is_finite() && self.y.is_finite()
     }

@@ -1,12 +1,12 @@
-//! Convex polygons in a plane: lists of corners, counter-clockwise where y is to the left of x.
+//! Convex polygons in a plane: lists of corners, counter-clockwise if y is to the left of x.
 //!
-//! The functions write to lists of the caller, so that nothing is allocated once lists have grown.
+//! The functions write to lists of the caller, so that nothing is allocated once these lists have grown.
 
 use crate::Point2;
 
-/// Smaller sums of cross products, m² or pixels², are no area: their inverse would be infinite.
+/// Sum of cross products, m² or pixels², below which a polygon has no area: the inverse would be infinite.
 const MIN_CENTROID_WEIGHT: f64 = 1e-300;
-/// Edges at a smaller sine of the angle between them are parallel: their extensions do not meet.
+/// Sine of the angle between edges below which they are parallel: their extensions do not meet.
 const PARALLEL_SINE: f64 = 1e-9;
 
 /// Corners of the regular octagon around the unit circle, which [`inflate`] adds to each corner.
@@ -26,8 +26,8 @@ const OCTAGON: [Point2; 8] = {
     ]
 };
 
-/// The convex hull of `points`, which are reordered, into `hull` (Andrew's monotone chain). Points that are not finite
-/// are left out.
+/// Computes the convex hull of `points`, which are reordered, into `hull` (Andrew's monotone chain). Points that are
+/// not finite are ignored.
 ///
 /// ```
 /// use elbowroom_vision::{Point2, polygon};
@@ -72,7 +72,7 @@ pub fn area(polygon: &[Point2]) -> f64 {
     polygon.windows(2).map(|w| (w[0] - o).cross(w[1] - o)).sum::<f64>() / 2.0
 }
 
-/// The centroid of a polygon's area; the mean of the corners where it has no area.
+/// The centroid of a polygon's area; the mean of the corners if the polygon has no area.
 pub fn centroid(polygon: &[Point2]) -> Point2 {
     let Some(&o) = polygon.first() else { return Point2::default() };
     let (mut sum, mut weight) = (Point2::default(), 0.0);
@@ -88,12 +88,12 @@ pub fn centroid(polygon: &[Point2]) -> Point2 {
     polygon.iter().fold(Point2::default(), |s, &p| s + p) * (1.0 / polygon.len() as f64)
 }
 
-/// Whether `p` lies in or on a convex polygon.
+/// Whether `p` is inside or on the border of a convex polygon.
 pub fn convex_contains(polygon: &[Point2], p: Point2) -> bool {
     polygon.len() > 2 && edges(polygon).all(|(a, b)| (b - a).cross(p - a) >= 0.0)
 }
 
-/// Whether `p` lies in a simple polygon, convex or not, of either orientation (crossing number).
+/// Whether `p` is inside a simple polygon, convex or not, of either orientation (crossing number).
 pub fn contains(polygon: &[Point2], p: Point2) -> bool {
     let crosses =
         |(a, b): &(Point2, Point2)| (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x);
@@ -149,8 +149,8 @@ pub fn intersection(a: &[Point2], b: &[Point2], out: &mut Vec<Point2>, workspace
     }
 }
 
-/// Inflates a convex polygon: the result contains every point within `margin` of it, and little more (8 % of the margin at
-/// the corners). `workspace` is scratch memory.
+/// Inflates a convex polygon: the result contains every point within `margin` of it, and little more (8 % of the margin
+/// at the corners). `workspace` is scratch memory.
 ///
 /// ```
 /// use elbowroom_vision::{Point2, polygon};
@@ -165,8 +165,8 @@ pub fn inflate(polygon: &[Point2], margin: f64, out: &mut Vec<Point2>, workspace
     convex_hull(workspace, out);
 }
 
-/// Replaces edges by the extensions of their neighbours until at most `max_corners` corners are left, each time the edge
-/// that adds the smallest area. The result contains the original polygon and has at least four corners.
+/// Replaces edges by the extensions of their neighbours until at most `max_corners` corners are left, each time the
+/// edge that adds the smallest area. The result contains the original polygon and has at least four corners.
 pub fn simplify_outward(polygon: &mut Vec<Point2>, max_corners: usize) {
     while polygon.len() > max_corners.max(4) {
         let Some((edge, corner)) = edge_to_remove(polygon) else { return };
@@ -184,7 +184,7 @@ fn edge_to_remove(polygon: &[Point2]) -> Option<(usize, Point2)> {
         let [p, a, b, q] = [polygon[(i + n - 1) % n], polygon[i], polygon[(i + 1) % n], polygon[(i + 2) % n]];
         let (before, after) = (a - p, q - b);
         let turn = before.cross(after);
-        // Extensions that meet behind the edge, or too far away for a defined intersection, do not replace it.
+        // Extensions that meet behind the edge, or too far away for a defined intersection, cannot replace it.
         if turn <= PARALLEL_SINE * before.length() * after.length() {
             continue;
         }
@@ -197,7 +197,7 @@ fn edge_to_remove(polygon: &[Point2]) -> Option<(usize, Point2)> {
     best.map(|(_, i, corner)| (i, corner))
 }
 
-/// Lengths of the sides of the rectangle of smallest area around a convex polygon, the longer one first.
+/// Lengths of the sides of the smallest-area rectangle around a convex polygon, longer side first.
 ///
 /// One such rectangle has a side along an edge of the polygon (Freeman and Shapira, 1975).
 pub fn min_area_rectangle(polygon: &[Point2]) -> (f64, f64) {

@@ -14,7 +14,7 @@ pub(crate) fn any_in_convex(plane: &[u8], width: usize, polygon_px: &[Point2]) -
     any
 }
 
-/// Calls with the pixels of each row that the polygon touches, as indices in a plane of `pixels` pixels.
+/// Calls `visit` with the pixels of each row that the polygon touches, as indices in a plane of `pixels` pixels.
 fn for_each_row(pixels: usize, width: usize, polygon_px: &[Point2], mut visit: impl FnMut(std::ops::Range<usize>)) {
     if width == 0 || polygon_px.iter().any(|p| !p.is_finite()) {
         return;

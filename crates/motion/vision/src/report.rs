@@ -7,11 +7,11 @@ use crate::{Illumination, Obstacle};
 /// Why a frame is rejected.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum RejectReason {
-    /// Much lighter or darker than while the background was learnt, black or white: a gain outside 0.4 to 2.5, or an
-    /// offset of more than 60 grey levels.
+    /// The image is much lighter or darker than while the background was learnt, black or white: a gain outside 0.4 to
+    /// 2.5, or an offset of more than 60 grey levels.
     Illumination(Illumination),
-    /// Less than half of the visible floor agrees with the background model: a lamp was switched on, the camera was
-    /// moved, something covers the lens.
+    /// Less than half of the visible floor agrees with the background model: for example because a lamp was switched
+    /// on, the camera was moved, or something covers the lens.
     Unrecognized {
         /// Fraction of the samples that agree with the background model, 0 to 1.
         inlier_ratio: f64,
@@ -22,7 +22,7 @@ pub enum RejectReason {
         /// Fraction of the image, 0 to 1.
         foreground_ratio: f64,
     },
-    /// A point cloud with too few valid points.
+    /// A point cloud has too few valid points.
     FewPoints {
         /// Number of valid points.
         points: usize,
@@ -36,24 +36,24 @@ pub enum RejectReason {
 pub enum FrameStatus {
     /// The background is being learnt; nothing is known yet.
     Learning {
-        /// Frames of the empty cell still to come.
+        /// Number of missing frames of the empty cell.
         frames_left: u32,
     },
     /// The frame was accepted and evaluated: where no obstacle is reported, none was detected.
     Accepted,
     /// The frame was not evaluated: the obstacles are those of the last accepted frame. Unknown is not free: the caller
-    /// should stop what relies on it.
+    /// should stop everything that relies on the obstacles.
     Rejected(RejectReason),
 }
 
-/// Time per stage of one frame.
+/// Times per stage of one frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct StageTimings {
-    /// Colours to planes.
+    /// Separation of colours into planes.
     pub convert: Duration,
     /// Gain and offset of the illumination.
     pub illumination: Duration,
-    /// Each pixel against the background model.
+    /// Comparison of each pixel with the background model.
     pub classify: Duration,
     /// Shadow detection.
     pub shadows: Duration,
@@ -97,11 +97,11 @@ impl StageTimings {
 /// The result of one frame. Borrowed from the [`CameraTracker`](crate::CameraTracker), which reuses it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrameReport {
-    /// When the frame was taken, seconds.
+    /// Time at which the frame was taken, seconds.
     pub stamp_s: f64,
     /// Whether the obstacles can be used.
     pub status: FrameStatus,
-    /// All obstacles in the order of their identities; those that left are reported once.
+    /// All obstacles in the order of their identities; an obstacle that left is reported once more.
     pub obstacles: Vec<Obstacle>,
     /// Fraction of the image that is foreground, 0 to 1.
     pub foreground_ratio: f64,

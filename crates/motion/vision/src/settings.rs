@@ -2,12 +2,12 @@
 
 use crate::{Point2, Template, VisionError};
 
-/// When a darker pixel is a shadow. All conditions must hold; see [`CameraTrackerSettings::shadows`].
+/// Conditions under which a darker pixel is a shadow. All of them must hold; see [`CameraTrackerSettings::shadows`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ShadowSettings {
     /// Brightness of the darkest shadow relative to the lit floor.
     pub min_ratio: f64,
-    /// Brightness of the faintest shadow relative to the lit floor; fainter ones are mostly within the noise.
+    /// Brightness of the faintest shadow relative to the lit floor; fainter shadows are mostly within the noise.
     pub max_ratio: f64,
     /// Largest mean difference of the dimmed floor from its texture, grey levels.
     pub max_texture_error: f64,
@@ -35,51 +35,52 @@ impl Default for ShadowSettings {
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct CameraTrackerSettings {
-    /// The monitored area of the floor, world x and y, metres: a simple polygon. Objects wholly outside are ignored.
-    /// Empty: everything visible.
+    /// The monitored area of the floor, world x and y, metres: a simple polygon. Objects entirely outside it are
+    /// ignored. Empty: everything visible.
     pub area_m: Vec<Point2>,
     /// Height of the floor, world z, metres.
     pub floor_z_m: f64,
-    /// Height above the floor of objects that match no template, metres: above everything that an arm can reach.
+    /// Height above the floor of objects without a matching template, metres: must be above everything that an arm can
+    /// reach.
     pub unbounded_height_m: f64,
-    /// Inflation of footprints, metres: errors of the calibration, of the outline (a pixel or two), and the distance that
-    /// an object moves until the next frame.
+    /// Inflation of footprints, metres: covers errors of the calibration and of the outline (a pixel or two), and the
+    /// motion of an object until the next frame.
     pub uncertainty_m: f64,
-    /// Additional inflation of the reported prism, metres, so that noise and small steps do not change it. About the size
-    /// of a pixel on the floor.
+    /// Additional inflation of the reported prism, metres, so that noise and small steps do not change it. Use about
+    /// the size of a pixel on the floor.
     pub hysteresis_m: f64,
-    /// Largest number of corners of a footprint; it is simplified outward.
+    /// Largest number of corners of a footprint, which is simplified outward.
     pub max_corners: usize,
-    /// Known types of objects. Objects that match none are `unbounded_height_m` high.
+    /// Known types of objects. Objects without a matching template are `unbounded_height_m` high.
     pub templates: Vec<Template>,
-    /// Frames in a row in which an object must match a template before it is accepted. A single view cannot distinguish a
-    /// high, narrow object from a lower, longer one.
+    /// Number of frames in a row in which an object must match a template before the template is accepted. A single
+    /// view cannot distinguish a high, narrow object from a lower, longer one.
     pub template_frames: u32,
     /// Smallest difference of a foreground pixel from the background, grey levels.
     pub min_difference: f64,
-    /// Smallest difference of a foreground pixel in mean deviations of the pixel (1.25 of them are a standard deviation of
-    /// normal noise).
+    /// Smallest difference of a foreground pixel, in mean deviations of the pixel (1.25 mean deviations are one
+    /// standard deviation of normal noise).
     pub deviation_factor: f64,
-    /// Shadow detection. `None`: shadows are obstacles, which is safe. With it, an evenly coloured object on an evenly
-    /// coloured floor that is not darker than a shadow is not detected.
+    /// Shadow detection. `None`: shadows are obstacles, which is safe. With shadow detection, an evenly coloured object
+    /// on an evenly coloured floor is not detected if it is not darker than a shadow.
     pub shadows: Option<ShadowSettings>,
-    /// Radius of the morphological opening: what is narrower than 2·n + 1 pixels is noise.
+    /// Radius of the morphological opening: areas narrower than 2·n + 1 pixels are noise.
     pub opening_radius_px: usize,
     /// Radius of the morphological closing: gaps narrower than 2·n + 1 pixels are filled.
     pub closing_radius_px: usize,
-    /// Smaller blobs are noise, pixels.
+    /// Smallest area of a blob, pixels; smaller blobs are noise.
     pub min_area_px: usize,
-    /// Frames of the empty cell from which the background is learnt.
+    /// Number of frames of the empty cell from which the background is learnt.
     pub learning_frames: u32,
-    /// Frames in which the background follows a change of illumination by about two thirds.
+    /// Number of frames in which the background follows a change of illumination by about two thirds.
     pub adaptation_frames: u32,
-    /// Largest fraction of the image that may be foreground; other frames are rejected.
+    /// Largest fraction of the image that may be foreground; frames with more are rejected.
     pub max_foreground: f64,
     /// Speed of the fastest object, metres per second.
     pub max_speed_mps: f64,
-    /// Frames in a row in which an object must be detected before it is reported.
+    /// Number of frames in a row in which an object must be detected before it is reported.
     pub enter_frames: u32,
-    /// Frames in a row in which an object that the arm does not occlude must not be detected before it has left.
+    /// Number of frames in a row without a detection after which an object that the arm does not occlude has left.
     pub leave_frames: u32,
 }
 
@@ -114,7 +115,7 @@ impl CameraTrackerSettings {
     /// Checks that every setting is in its range.
     ///
     /// # Errors
-    /// The first setting that is out of its range, and its range.
+    /// The first setting that is out of range, with its range.
     pub fn check(&self) -> Result<(), VisionError> {
         let shadows = self.shadows.unwrap_or_default();
         let ranges = [

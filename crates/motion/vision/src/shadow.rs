@@ -1,8 +1,8 @@
-//! Shadow detection: a shadow dims the floor by one ratio and keeps its texture and its colour.
+//! Shadow detection: a shadow dims the floor by a common ratio and keeps its texture and colour.
 //!
-//! The ratio alone would accept every grey object. Around each candidate pixel nine samples are compared with the
-//! background times their common ratio, in each plane: if they do not follow the texture, or where the planes' ratios
-//! differ, the pixel is foreground.
+//! The ratio alone would accept every grey object. Therefore nine samples around each candidate pixel are compared, in
+//! each plane, with the background times their common ratio. If they do not follow the texture, or if the ratios of the
+//! planes differ, the pixel is foreground.
 
 use crate::ShadowSettings;
 use crate::background::{BackgroundPlane, SHADOW};
@@ -34,7 +34,7 @@ pub(crate) fn resolve(input: &ShadowInput<'_>, class: &[u8], settings: Option<&S
     }
 }
 
-/// Calls with the column of each [`SHADOW`]; eight background pixels cost one comparison.
+/// Calls `found` with the column of each [`SHADOW`] pixel; eight background pixels cost one comparison.
 fn for_each_candidate(row: &[u8], mut found: impl FnMut(usize)) {
     let (chunks, rest) = row.as_chunks::<8>();
     for (c, chunk) in chunks.iter().enumerate() {

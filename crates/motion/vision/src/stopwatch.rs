@@ -13,12 +13,12 @@ use std::time::{Duration, Instant};
 pub struct Stopwatch(Instant);
 
 impl Stopwatch {
-    /// Begins the first interval.
+    /// Starts the first interval.
     pub fn start() -> Self {
         Self(Instant::now())
     }
 
-    /// The time since the start or the last lap; the next interval begins.
+    /// Returns the time since the start or the last lap, and starts the next interval.
     pub fn lap(&mut self) -> Duration {
         let now = Instant::now();
         now - std::mem::replace(&mut self.0, now)

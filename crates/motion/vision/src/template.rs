@@ -1,4 +1,4 @@
-//! Templates: known types of objects, whose footprint gives their height.
+//! Templates: known types of objects whose footprint gives their height.
 
 use std::sync::Arc;
 
@@ -17,22 +17,22 @@ use crate::{Point2, polygon};
 pub struct Template {
     /// Name of obstacles of this type.
     pub name: Arc<str>,
-    /// The longer side of the rectangle around its footprint, metres (the diameter of a cylinder).
+    /// The longer side of the rectangle around the footprint, metres (the diameter of a cylinder).
     pub length_m: f64,
     /// The shorter side, metres.
     pub width_m: f64,
-    /// Its height, metres.
+    /// Height, metres.
     pub height_m: f64,
-    /// Whether it is a cylinder, whose footprint fills π/4 of the rectangle around it.
+    /// Whether the object is a cylinder, whose footprint fills π/4 of the rectangle around it.
     pub is_round: bool,
     /// Tolerance of each observed side, metres.
     pub tolerance_m: f64,
-    /// Tolerance of the height, metres: obstacles are that much higher.
+    /// Tolerance of the height, metres: obstacles are higher by this amount.
     pub height_tolerance_m: f64,
 }
 
 impl Template {
-    /// A cuboid with tolerances of 5 cm for the sides and 1 cm for the height.
+    /// Creates a cuboid with tolerances of 5 cm for the sides and 1 cm for the height.
     pub fn new(name: &str, length_m: f64, width_m: f64, height_m: f64) -> Self {
         Self {
             name: name.into(),
@@ -45,13 +45,13 @@ impl Template {
         }
     }
 
-    /// An upright cylinder, with the same tolerances.
+    /// Creates an upright cylinder with the same tolerances.
     pub fn cylinder(name: &str, diameter_m: f64, height_m: f64) -> Self {
         Self { is_round: true, ..Self::new(name, diameter_m, diameter_m, height_m) }
     }
 
-    /// Whether a convex footprint has this size and shape: the sides of the rectangle around it, and its area, within the
-    /// tolerance.
+    /// Whether a convex footprint has this size and shape: the sides of the rectangle around it and its area are within
+    /// the tolerance.
     fn fits_footprint(&self, footprint_m: &[Point2]) -> bool {
         let (length, width) = polygon::min_area_rectangle(footprint_m);
         let fill_ratio = if self.is_round { std::f64::consts::FRAC_PI_4 } else { 1.0 };
@@ -60,7 +60,7 @@ impl Template {
         self.fits(length, width) && (area(-tolerance)..=area(tolerance)).contains(&polygon::area(footprint_m))
     }
 
-    /// Whether a rectangle has these sides, the longer one first, within the tolerance.
+    /// Whether a rectangle has these sides within the tolerance, longer side first.
     pub fn fits(&self, length_m: f64, width_m: f64) -> bool {
         (length_m - self.length_m).abs() <= self.tolerance_m && (width_m - self.width_m).abs() <= self.tolerance_m
     }
@@ -78,7 +78,7 @@ impl Template {
     }
 }
 
-/// Matches outlines with templates; memory is reused.
+/// Matches outlines to templates; memory is reused.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct TemplateMatcher {
     bound_m: Vec<Point2>,
@@ -89,8 +89,8 @@ pub(crate) struct TemplateMatcher {
 }
 
 impl TemplateMatcher {
-    /// The template that an outline on the floor matches; of several the highest, which is safe. `footprint_m` becomes the
-    /// footprint: the outline without the projection of the sides.
+    /// Finds the template that matches an outline on the floor; among several, the highest one, which is safe.
+    /// `footprint_m` is set to the footprint: the outline without the projection of the sides.
     pub(crate) fn best_match(
         &mut self,
         templates: &[Template],
@@ -110,10 +110,10 @@ impl TemplateMatcher {
         best
     }
 
-    /// An object with upright sides of height h covers on the floor its footprint F and the projection of its top, which is
-    /// F scaled from the nadir by s = H / (H − h), where H is the height of the camera. So F lies in the outline, and in the
-    /// outline scaled by 1 / s. As h is known within a tolerance only, the second bound is the hull of the two extreme
-    /// scalings.
+    /// Bounds the footprint of an object with upright sides of height h. On the floor the object covers its footprint F
+    /// and the projection of its top, which is F scaled from the nadir by s = H / (H − h); H is the height of the
+    /// camera. Therefore F is within the outline and within the outline scaled by 1 / s. Because h is known only within
+    /// a tolerance, the second bound is the hull of the two extreme scalings.
     fn bound_footprint(&mut self, outline_m: &[Point2], template: &Template, eye_above_floor_m: Option<Vec3>) {
         self.candidate_m.clear();
         self.candidate_m.extend_from_slice(outline_m);

@@ -6,24 +6,25 @@ use crate::{CameraTrackerSettings, Obstacle, ObstacleChange, ObstacleId, Point2,
 /// One tracked obstacle.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Track {
-    /// Its convex outline on the floor as observed, metres.
+    /// Convex outline on the floor as observed, metres.
     pub(crate) outline_m: Vec<Point2>,
-    /// Its outline when it was last observed in full, moved on with its velocity while the arm occludes a part of it.
+    /// Outline when it was last completely observed, moved on with the velocity while the arm occludes a part of it.
     pub(crate) full_outline_m: Vec<Point2>,
-    /// Time for which it was moved on since then, s.
+    /// Time for which this outline was moved on since then, s.
     pub(crate) extrapolated_s: f64,
-    /// The arm occludes a part of the outline in this frame: set by the caller before
+    /// Whether the arm occludes a part of the outline in this frame; the caller sets it before
     /// [`ObjectTracker::update`](crate::object_tracker::ObjectTracker::update).
     pub(crate) is_occluded: bool,
     pub(crate) obstacle: Obstacle,
     pub(crate) centre_m: Point2,
     pub(crate) velocity_mps: Point2,
-    /// Of the last frame in which it was observed in full and apart from others.
+    /// Area in the last frame in which the object was observed completely and apart from others.
     pub(crate) area: f64,
     pub(crate) brightness: f64,
-    /// Its outline is incomplete, or a share of a merged one.
+    /// Whether the outline is incomplete, or a part of a merged one.
     pub(crate) is_truncated: bool,
-    /// The template that it has been matching, and for how many frames in a row.
+    /// The template that currently matches, and (in `candidate_frames`) the number of frames in a row in which it has
+    /// matched.
     pub(crate) template_candidate: Option<usize>,
     pub(crate) candidate_frames: u32,
     pub(crate) frames_fully_visible: u32,
@@ -32,30 +33,31 @@ pub(crate) struct Track {
     pub(crate) frames_seen: u32,
     pub(crate) frames_missed: u32,
     pub(crate) is_reported: bool,
-    /// Area of the footprint when its prism last changed.
+    /// Area of the footprint when the prism last changed.
     pub(crate) reported_area: f64,
     pub(crate) z_from_m: f64,
     pub(crate) z_to_m: f64,
-    /// While several are observed as one, the top of the highest: the line between them is uncertain.
+    /// Top of the highest object while several are observed as one, because the line between them is uncertain.
     pub(crate) merged_z_to_m: Option<f64>,
 }
 
 /// Gains of an alpha-beta filter, each from 0 (keep the prediction) to 1 (P. R. Kalata: *The tracking index*, 1984).
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct AlphaBetaGains {
-    /// Alpha: the position is the predicted one plus this share of the residual (measured less predicted position).
+    /// Alpha: the position is the predicted one plus this fraction of the residual (measured minus predicted position).
     pub(crate) position: f64,
-    /// Beta: the velocity changes by this share of the residual per time step.
+    /// Beta: the velocity changes by this fraction of the residual per time step.
     pub(crate) velocity: f64,
 }
 
-/// At most one fully visible frame in so many may match no template.
+/// At most one fully visible frame in this number may be without a matching template.
 const FRAMES_PER_MISMATCH: u32 = 10;
 
 /// Smallest speed by which the speed limit is divided, m/s: a track at rest is not limited.
 const MIN_SPEED_MPS: f64 = 1e-12;
 
-/// A footprint smaller than this fraction of the reported one is reported again, so that a prism is not much too large.
+/// Fraction of the reported footprint's area below which a smaller footprint is reported again, so that a prism is not
+/// much too large.
 const SHRUNK_AREA_RATIO: f64 = 0.8;
 
 impl Track {
@@ -112,8 +114,8 @@ impl Track {
         self.obstacle.is_unobserved = true;
     }
 
-    /// Accepts a template that matches in some frames in a row, if nearly all fully visible frames have matched one: a
-    /// moving high, narrow object covers for a while the same floor as a lower, longer one.
+    /// Accepts a template that matches in some frames in a row, if nearly all fully visible frames have matched a
+    /// template: a moving high, narrow object covers for a while the same floor as a lower, longer one.
     pub(crate) fn update_template(&mut self, matched: Option<usize>, template_frames: u32) {
         let is_same = matched == self.template_candidate;
         self.candidate_frames = if is_same { self.candidate_frames.saturating_add(1) } else { 1 };
@@ -125,7 +127,7 @@ impl Track {
         self.template = matched.filter(|_| is_accepted);
     }
 
-    /// Lower and upper end, those of objects merged with it included.
+    /// Lower and upper end, including those of objects merged with the track.
     pub(crate) fn z_range_m(&self, settings: &CameraTrackerSettings) -> (f64, f64) {
         let (from, to) = self.own_z_range_m(settings);
         (from, to.max(self.merged_z_to_m.unwrap_or(to)))

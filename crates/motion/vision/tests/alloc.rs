@@ -1,5 +1,5 @@
-//! Frames allocate nothing once lists have grown. Without the test harness, whose threads allocate too: the counter
-//! counts the whole process.
+//! Frames allocate nothing once lists have grown. Runs without the test harness, whose threads also allocate: the
+//! counter counts the whole process.
 
 use elbowroom_spatial::Vec3;
 use elbowroom_testkit::allocation::{AllocationCounter, COUNTING_ALLOCATOR, CountingAllocator};
@@ -26,7 +26,7 @@ fn main() {
     let mut renderer = Renderer::new(camera, Channels::Rgb, 1);
     let (mut frame, mut mask) = (Frame::default(), PixelMask::new(160, 120));
     let (mut measured, mut reported) = (0, 0);
-    // The same frames are repeated: in the first rounds the lists grow.
+    // The same frames are repeated; in the first rounds the lists grow.
     for i in 0..325_u32 {
         let t = f64::from(i.saturating_sub(5) % 80) / 80.0;
         let solids = [

@@ -1,4 +1,4 @@
-//! The arm in the image: what it occludes is unknown, and so not free.
+//! The arm in the image: the space that it occludes is unknown and therefore not free.
 
 use crate::synthetic;
 use crate::synthetic::{SyntheticScene, covers};
@@ -57,7 +57,7 @@ fn an_occluded_object_is_kept_until_it_is_observed_to_be_gone() {
     scene.step(std::slice::from_ref(&object));
     let arm = [forearm(Vec3::new(0.2, -0.6, 1.0))];
     for i in 0..100 {
-        // Removed in between, without being observed.
+        // The object is removed in between, without being observed.
         let solids = if i < 50 { std::slice::from_ref(&object) } else { &[] };
         let report = scene.step_with_arm(solids, &arm);
         assert_eq!(report.obstacles.len(), 1, "frame {i}");

@@ -1,4 +1,4 @@
-//! Invalid input: files, sizes, order, illumination; and its messages.
+//! Invalid input (files, sizes, order, illumination) and its messages.
 
 use crate::synthetic;
 use std::path::Path;
@@ -112,7 +112,7 @@ fn frames_of_the_wrong_size_channels_or_time_are_refused_and_obstacles_stay() {
     assert!(refuse(tracker, Frame::default()).contains("empty"));
     assert!(refuse(tracker, grey(64, 48, 0.0)).contains("send frames in order"));
     assert!(refuse(tracker, grey(64, 48, f64::NAN)).contains("in order"));
-    // A camera that repeats its last picture does not see.
+    // A camera that repeats its last image does not observe the cell.
     let last_s = scene.frame.stamp_s;
     assert!(refuse(tracker, grey(64, 48, last_s)).contains("in order"));
     let rgb = Frame::new("f.png", 64, 48, Channels::Rgb, vec![9; 3 * 64 * 48]).unwrap().with_stamp(9.0);
@@ -209,7 +209,7 @@ fn a_homography_does_not_determine_the_silhouette_of_the_arm() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Damaged files are refused or read; they never panic.
+    /// Damaged files are rejected or read; they never cause a panic.
     #[test]
     fn damaged_images_never_panic(at in 0_usize..200, to in any::<u8>(), is_png in any::<bool>()) {
         let mut bytes = if is_png { png(12, 9) } else { b"P2\n3 2\n255\n1 2 3 4 5 6\n".to_vec() };

@@ -11,7 +11,7 @@ use elbowroom_vision::cloud::{CloudStatus, CloudTracker, CloudTrackerSettings, P
 use elbowroom_vision::{ArmPart, Camera, Intrinsics, Obstacle, ObstacleChange, Point2, polygon, read_grey16};
 use proptest::prelude::*;
 
-/// A box by two corners.
+/// A box given by two corners.
 type Cuboid = (Vec3, Vec3);
 
 /// The points that a sensor at `eye` measures on floor, boxes and a capsule, with noise and invalid points; world frame.
@@ -67,7 +67,7 @@ fn march(eye: Vec3, toward: Vec3, a: Vec3, b: Vec3, radius: f64) -> Option<f64> 
 const EYE: Vec3 = Vec3::new(0.1, -0.2, 3.0);
 const ARM: (Vec3, Vec3, f64) = (Vec3::new(0.3, 1.5, 1.2), Vec3::new(0.3, 0.0, 1.0), 0.1);
 
-/// A sensor at the ceiling that points down.
+/// A sensor at the ceiling, pointing down.
 fn sensor_in_world() -> Pose {
     Pose::new(Rotation::from_rpy(std::f64::consts::PI, 0.0, 0.4), EYE)
 }
@@ -118,7 +118,7 @@ fn boxes_are_detected_and_the_arm_is_filtered() {
     println!("60,000 points: {:.2} ms", times[10].as_secs_f64() * 1e3);
     let unchanged = tracker.report().obstacles.iter().all(|o| o.change == ObstacleChange::Unchanged);
     assert!(unchanged, "noise must not move objects: {:#?}", tracker.report().obstacles);
-    // Without its parts the arm is an obstacle, down to the floor.
+    // If its parts are not given, the arm is an obstacle, down to the floor.
     let points = scan(EYE, &truth, Some(ARM), 60_000, 99);
     assert!(tracker.process(&cloud(&points, 10.0), &[]).unwrap().obstacles.len() > 2);
 }
@@ -197,7 +197,7 @@ fn a_cloud_without_valid_points_changes_no_obstacle() {
 
 #[test]
 fn clusters_agree_with_a_naive_search() {
-    // Points in a sparse block of voxels; clusters by comparing all voxels with all.
+    // Points in a sparse block of voxels; expected clusters by comparing all pairs of voxels.
     let mut random = Xorshift(77);
     for round in 0..30 {
         let n = 20 + round * 4;
@@ -225,7 +225,7 @@ fn clusters_agree_with_a_naive_search() {
         };
         let mut tracker = CloudTracker::new(settings).unwrap();
         let mut cloud = PointCloud { stamp_s: 1.0, ..PointCloud::default() };
-        // Two points per voxel: a single one has no outline.
+        // Two points per voxel, because a single point has no outline.
         let at =
             |c: &[i32; 3], d: f64| Vec3::new(f64::from(c[0]) + d, f64::from(c[1]) + d, f64::from(c[2]) + 0.5) * 0.1;
         cloud.fill(cubes.iter().flat_map(|c| [at(c, 0.3), at(c, 0.6)]));
@@ -337,7 +337,7 @@ proptest! {
     }
 }
 
-/// Recorded clouds, where the data set is present.
+/// Recorded clouds, if the data set is present.
 #[test]
 fn real_clouds_are_read_and_clustered() {
     let Some(clouds) = folder::data_part("clouds") else { return };

@@ -1,4 +1,4 @@
-//! Calibration, polygons, blobs and masks against naive implementations.
+//! Calibration, polygons, blobs and masks compared with naive implementations.
 
 use elbowroom_spatial::Vec3;
 use elbowroom_testkit::random::xorshift;
@@ -44,7 +44,7 @@ proptest! {
             Intrinsics { radial: [0.0; 3], ..*camera.intrinsics() }, *camera.camera_in_world()).unwrap();
         let seen: Vec<Point2> = seen.into_iter().map(|(x, y)| p(x, y)).collect();
         let at: Vec<Point2> = seen.iter().map(|&s| straight.pixel_to_plane(s, 0.0).unwrap()).collect();
-        // Nearly collinear points are refused or, where they are accepted, mapped exactly.
+        // Nearly collinear points are rejected or, if accepted, mapped exactly.
         if let Ok(floor) = FloorHomography::from_points(640, 480, &seen, &at) {
             prop_assert!(floor.max_residual_m() < 1e-6, "{}", floor.max_residual_m());
             for &s in &seen {
@@ -71,7 +71,7 @@ proptest! {
         let seen: Vec<Point2> = steps.iter().map(|&s| a + along * s).collect();
         let at: Vec<Point2> = seen.iter().map(|&s| s * 0.01).collect();
         prop_assert!(FloorHomography::from_points(640, 480, &seen, &at).is_err());
-        // Three of four collinear points too.
+        // Three of four collinear points are also rejected.
         let mut seen = seen[..3].to_vec();
         seen.push(a + p(-along.y, along.x) * 200.0 + p(3.0, 1.0));
         let at: Vec<Point2> = seen.iter().map(|&s| s * 0.01).collect();

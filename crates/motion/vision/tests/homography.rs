@@ -7,8 +7,8 @@ use elbowroom_vision::{
     CameraTracker, CameraTrackerSettings, Channels, FloorHomography, Frame, PixelMask, Point2, Template,
 };
 
-/// The error of the crate's position with a calibration by four points of the floor, and possibly the camera's position;
-/// and whether its template matched.
+/// The error of the crate's position with a calibration by four points of the floor and, optionally, the camera's
+/// position; and whether its template matched.
 fn reported_position(with_eye: bool) -> (Point2, bool) {
     let camera = synthetic::camera(640, 480);
     let seen = [(20.0, 20.0), (620.0, 30.0), (610.0, 450.0), (30.0, 460.0)].map(|(x, y)| Point2::new(x, y));
@@ -39,7 +39,7 @@ fn reported_position(with_eye: bool) -> (Point2, bool) {
 fn templates_need_the_position_of_the_camera() {
     let (error, is_known) = reported_position(true);
     assert!(is_known && error.length() < 0.01, "{error:?}");
-    // Without it the projected outline is used: larger, displaced, and safe.
+    // Without the position, the projected outline is used: larger, displaced, and safe.
     let (error, _) = reported_position(false);
     assert!(error.length() > 0.02, "{error:?}");
 }

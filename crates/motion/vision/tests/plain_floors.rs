@@ -1,4 +1,4 @@
-//! Floors with little contrast, under lamps that change: no picture is rejected, and no crate is missed.
+//! Floors with little contrast, under lamps that change: every image is accepted, and every crate is detected.
 
 use elbowroom_spatial::Vec3;
 use elbowroom_testkit::random::SplitMix;
@@ -33,7 +33,8 @@ impl PlainFloor {
         Self { random, floor, noise, tracker, frame, pictures: 0 }
     }
 
-    /// The next picture under a lamp, without or with the crate: its status, and whether an obstacle is reported.
+    /// Renders the next image under a lamp, with or without the crate; returns its status and whether an obstacle is
+    /// reported.
     fn step(&mut self, gain: f64, with_crate: bool) -> (FrameStatus, bool) {
         let Self { random, floor, noise, frame, .. } = self;
         for (i, pixel) in frame.pixels_mut().iter_mut().enumerate() {
@@ -51,7 +52,7 @@ impl PlainFloor {
     }
 }
 
-/// Pictures of one floor, a crate in every tenth.
+/// Processes images of one floor, with a crate in every tenth.
 fn watch(floor: &mut PlainFloor, pictures: u32) {
     for _ in 0..30 {
         floor.step(1.0, false);
@@ -76,7 +77,7 @@ fn no_picture_of_a_plain_floor_is_rejected_and_no_crate_missed() {
     }
 }
 
-/// 56 pictures of a floor of 100 ± 4 levels were accepted, and then none again.
+/// Regression: 56 images of a floor of 100 ± 4 levels were accepted, and all later ones were rejected.
 #[test]
 fn an_empty_cell_with_a_grey_floor_is_seen_for_a_thousand_pictures() {
     let mut floor = PlainFloor::new(7, 8.0, 2.0);

@@ -64,7 +64,7 @@ fn objects_are_covered_and_obstacles_are_near_objects() {
             }
             for obstacle in report.obstacles.iter().filter(|o| o.change != ObstacleChange::Left) {
                 reported += 1;
-                // The projection of an object lies between it and the floor point behind its top.
+                // The projection of an object is between the object and the floor point behind its top.
                 let reach = |solid: &RenderedSolid| solid.z_to_m * 0.9 + 0.5;
                 let is_near = solids.iter().any(|s| (synthetic::middle(s) - obstacle.centre_m).length() < reach(s));
                 assert!(is_near, "case {case}, frame {frame}: nothing is at {:?}", obstacle.centre_m);

@@ -85,7 +85,7 @@ fn a_dark_drum_with_a_template_crosses() {
 
 #[test]
 fn an_object_without_a_template_crosses_and_is_unbounded() {
-    // 1.1 m high and viewed obliquely: the centre of the projected outline is not that of the object.
+    // 1.1 m high and viewed obliquely: the centre of the projected outline differs from the centre of the object.
     let column = |p, angle| RenderedSolid::cuboid(p, Vec3::new(0.3, 0.25, 1.1), angle, 200);
     crosses(SyntheticScene::new(320, 240, settings()), column, 0.6);
 }
@@ -98,7 +98,8 @@ fn lens_distortion_changes_nothing() {
     crosses(scene, |p, angle| RenderedSolid::cuboid(p, CRATE, angle, 210), 0.02);
 }
 
-/// Two objects on given paths: both are covered in every frame, and each has the same identity in the first and last.
+/// Two objects on given paths: both are covered in every frame, and each has the same identity in the first and last
+/// frame.
 fn check_identities(paths: impl Fn(f64) -> [RenderedSolid; 2], frames: u32) {
     let mut scene = SyntheticScene::new(320, 240, settings());
     let mut ids: Option<[ObstacleId; 2]> = None;
@@ -201,7 +202,7 @@ fn a_stationary_object_never_becomes_background() {
 fn a_shadow_is_an_obstacle_only_without_shadow_detection() {
     let light = Some(Vec3::new(0.9, 0.3, -1.0));
     let crate_here = RenderedSolid::cuboid(Point2::new(0.0, 0.0), CRATE, 0.3, 210);
-    // An object outside the image whose shadow falls into it.
+    // An object outside the image casts a shadow into it.
     let mut lamp_post = RenderedSolid::cuboid(Point2::new(-2.2, -0.9), Vec3::new(0.5, 0.5, 0.1), 0.0, 200);
     (lamp_post.z_from_m, lamp_post.z_to_m) = (5.0, 5.1);
     let mut areas = Vec::new();
@@ -254,7 +255,7 @@ fn objects_outside_the_monitored_area_are_ignored_until_they_reach_into_it() {
             first_reported = Some(x - 0.3);
         }
     }
-    // Its side reaches the border at 1.0; its upper edge is projected up to 7 cm farther out.
+    // The side of the object reaches the border at 1.0; its upper edge is projected up to 7 cm farther out.
     let reported = first_reported.unwrap();
     assert!((0.99..1.05).contains(&reported), "{reported}");
 }

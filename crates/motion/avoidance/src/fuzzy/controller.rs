@@ -13,7 +13,7 @@ const SAMPLES: usize = 129;
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{}{what}\n  write: {write_instead}", line.map(|l| format!("line {l}: ")).unwrap_or_default())]
 pub struct FuzzyError {
-    /// Line of the text, from 1, where known.
+    /// Line of the text, from 1, if known.
     pub line: Option<usize>,
     /// The problem.
     pub what: String,
@@ -31,7 +31,7 @@ impl FuzzyError {
     }
 }
 
-/// A fuzzy controller: from inputs to outputs, by rules.
+/// A fuzzy controller: computes outputs from inputs by rules.
 ///
 /// ```
 /// use elbowroom_avoidance::fuzzy::Controller;
@@ -61,14 +61,14 @@ pub struct Controller {
     inputs: Vec<Variable>,
     outputs: Vec<Variable>,
     rules: Vec<Rule>,
-    /// Per output: the samples of its sets.
+    /// Per output, the samples of its sets.
     samples: Vec<Samples>,
 }
 
 #[derive(Debug, Clone, PartialEq)]
 struct Samples {
     at: Vec<f64>,
-    /// Per set the membership at each sample.
+    /// Per set, the membership at each sample.
     degrees: Vec<Vec<f64>>,
 }
 
@@ -83,8 +83,8 @@ impl Samples {
 }
 
 impl Controller {
-    /// Validates that names are unique, that every set of an output contains a sample, and that at every input within the
-    /// ranges at least one rule applies to each output.
+    /// Creates a controller. Checks that names are unique, that every set of an output contains a sample, and that at
+    /// every input within the ranges at least one rule applies to each output.
     ///
     /// # Errors
     /// [`FuzzyError`] without a line.
@@ -122,8 +122,8 @@ impl Controller {
         &self.rules
     }
 
-    /// Computes one number per output from one number per input. Numbers are clamped to the ranges of the variables; NaN and
-    /// missing inputs count as the lower end of the range. Does not allocate.
+    /// Computes one number per output from one number per input. Numbers are clamped to the ranges of the variables;
+    /// NaN and missing inputs count as the lower end of the range. Does not allocate.
     pub fn infer(&self, inputs: &[f64], outputs: &mut [f64]) {
         let degrees = self.degrees(inputs);
         for (number, out) in outputs.iter_mut().enumerate().take(self.outputs.len()) {
@@ -173,7 +173,7 @@ impl Controller {
         variable.within(moment / area, center)
     }
 
-    /// Checks the coverage on a grid over the ranges of the inputs that includes the corners of the sets.
+    /// Checks coverage by the rules on a grid over the ranges of the inputs; the grid includes the corners of the sets.
     fn check_coverage(&self) -> Result<(), FuzzyError> {
         let mut x = vec![0.0; self.inputs.len()];
         let grid: Vec<Vec<f64>> = self.inputs.iter().map(grid_values).collect();

@@ -1,4 +1,4 @@
-//! Fuzzy control in general: variables with named sets, rules as sentences, Mamdani inference, control surfaces.
+//! General fuzzy control: variables with named sets, rules as sentences, Mamdani inference, control surfaces.
 //!
 //! Membership functions are trapezoids; "and" is the minimum; a rule clips its conclusion at its strength (minimum);
 //! conclusions about one output are joined by the maximum; the output is the centre of gravity of the result (Mamdani and

@@ -1,8 +1,8 @@
-//! Rules.
+//! Fuzzy rules.
 
 use super::Variable;
 
-/// `if` all conditions hold, `then` all conclusions hold to the degree of the weakest condition.
+/// A rule: `if` all conditions hold, `then` all conclusions hold to the degree of the weakest condition.
 ///
 /// Written as a sentence: `if proximity is near and speed is fast then size is large and direction is aside`.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -17,7 +17,7 @@ impl Rule {
     /// Reads a sentence.
     ///
     /// # Errors
-    /// Another form, or an unknown name; the message lists the known names.
+    /// The sentence has another form or contains an unknown name; the message lists the known names.
     pub fn parse(sentence: &str, inputs: &[Variable], outputs: &[Variable]) -> Result<Self, String> {
         let words: Vec<&str> = sentence.split_whitespace().collect();
         let then = words.iter().position(|w| *w == "then");
@@ -31,7 +31,7 @@ impl Rule {
         Ok(Self { conditions, conclusions })
     }
 
-    /// Writes the sentence.
+    /// Writes the rule as a sentence.
     pub fn to_sentence(&self, inputs: &[Variable], outputs: &[Variable]) -> String {
         let write = |variables: &[Variable], list: &[(usize, usize)]| {
             let clause = |&(v, s): &(usize, usize)| format!("{} is {}", variables[v].name, variables[v].sets[s].0);

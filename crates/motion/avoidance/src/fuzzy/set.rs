@@ -15,7 +15,7 @@ pub struct Set {
 }
 
 impl Set {
-    /// `None` unless the corners are finite and ascending.
+    /// Creates a set; `None` unless the corners are finite and ascending.
     pub fn new(corners: [f64; 4]) -> Option<Self> {
         let is_valid = corners.iter().all(|c| c.is_finite()) && corners.windows(2).all(|w| w[0] <= w[1]);
         is_valid.then_some(Self { corners })

@@ -19,13 +19,14 @@ pub struct Surface {
     pub z: Vec<Vec<f64>>,
     /// Range of the output.
     pub z_range: [f64; 2],
-    /// Units of the inputs and of the output, for drawings; empty if there is none.
+    /// Units of the inputs and of the output, for drawings; empty if a quantity has no unit.
     pub units: [&'static str; 3],
 }
 
 impl Surface {
-    /// Output `output` of a controller over its first two inputs, with `steps` values of each; the other inputs are at the
-    /// lower end of their ranges. `None` if there are fewer inputs or outputs, or fewer than two steps.
+    /// Computes output number `output` of a controller over its first two inputs, with `steps` values of each; the
+    /// other inputs are at the lower end of their ranges. `None` if the controller has fewer inputs or outputs, or if
+    /// there are fewer than two steps.
     ///
     /// ```
     /// use elbowroom_avoidance::{Rules, fuzzy::Surface};
@@ -59,7 +60,7 @@ impl Surface {
         Some(Self { x_name, y_name, z_name, x, y, z, z_range: out.range, units: [""; 3] })
     }
 
-    /// The same with units for drawings.
+    /// Adds units for drawings.
     #[must_use]
     pub fn with_units(self, units: [&'static str; 3]) -> Self {
         Self { units, ..self }

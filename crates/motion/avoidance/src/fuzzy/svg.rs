@@ -16,11 +16,11 @@ const X_AXIS: [f64; 2] = [200.0, 75.0];
 const Y_AXIS: [f64; 2] = [200.0, -75.0];
 /// Height of the output axis, pixels.
 const Z_AXIS: f64 = 190.0;
-/// Dark blue to green to yellow: readable in grey as well.
+/// Dark blue to green to yellow: also readable in grey.
 const COLOURS: [[f64; 3]; 4] = [[68.0, 1.0, 84.0], [49.0, 104.0, 142.0], [53.0, 183.0, 121.0], [253.0, 231.0, 37.0]];
 
 impl Surface {
-    /// The surface as an SVG document.
+    /// Draws the surface as an SVG document.
     ///
     /// ```
     /// use elbowroom_avoidance::{Rules, fuzzy::Surface};
@@ -34,7 +34,7 @@ impl Surface {
              font-family=\"sans-serif\" font-size=\"13\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
         );
         Self::base_plane(&mut svg);
-        // From the far corner to the near one: later patches hide earlier ones.
+        // From the far corner to the near corner: later patches hide earlier patches.
         for i in 0..self.x.len().saturating_sub(1) {
             for j in (0..self.y.len().saturating_sub(1)).rev() {
                 self.patch(&mut svg, i, j);

@@ -7,15 +7,15 @@ use super::Set;
 pub struct Variable {
     /// Name in rules.
     pub name: String,
-    /// Inputs and outputs are clamped to this range. Sets may extend beyond it: the outer sets of an output usually do, so that
-    /// the centre of gravity can reach the ends of the range.
+    /// Range to which inputs and outputs are clamped. Sets may extend beyond it: the outer sets of an output usually
+    /// do, so that the centre of gravity can reach the ends of the range.
     pub range: [f64; 2],
     /// Name and set, in ascending order.
     pub sets: Vec<(String, Set)>,
 }
 
 impl Variable {
-    /// Index of the set of this name.
+    /// Index of the set with this name.
     pub fn set(&self, name: &str) -> Option<usize> {
         self.sets.iter().position(|(n, _)| n == name)
     }

@@ -1,8 +1,8 @@
 //! The state machine of the avoidance.
 //!
-//! The state decides what the robot does where nothing has to be evaded ([`ControlState`]); each tick ends with one event
-//! ([`Event`]), and [`transition`] is the only function that changes the state. `t` is the idle time: the time at rest off the
-//! path without a correction.
+//! The state decides what the robot does if nothing has to be evaded ([`ControlState`]). Each tick ends with one event
+//! ([`Event`]), and [`transition`] is the only function that changes the state. `t` is the idle time: the time at rest
+//! off the path without a correction.
 //!
 //! | state | `DetourPlanned` | `DetourActive` | `OnPath` | `Corrected` | `AtRest` | `Moving` | `Halted` | `Failed` | `FailedWhileEvading` |
 //! | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |
@@ -12,7 +12,7 @@
 //! | `Holding t` | `Detouring` | `Holding t` | `Following` | `Evading` | `Holding t+dt` | `Holding t` | `Holding 0` | `Holding t` | `Evading` |
 //! | `Returning t` | `Detouring` | `Returning t` | `Following` | `Evading` | `Returning t+dt` | `Returning t` | `Holding 0` | `Returning t` | `Evading` |
 //!
-//! `Holding` with an idle time of the stall timeout or more is `Returning`. `DetourActive` occurs in `Detouring` only.
+//! `Holding` with an idle time of at least the stall timeout is `Returning`. `DetourActive` occurs only in `Detouring`.
 
 use crate::detour::Detour;
 use crate::state::AvoiderState;
@@ -22,7 +22,7 @@ const RECENT_CORRECTION_S: f64 = 0.1;
 /// Time (s) after which a stalled robot is reported as waiting.
 const REPORT_WAITING_S: f64 = 0.1;
 
-/// What the robot does where nothing has to be evaded.
+/// The behaviour of the robot if nothing has to be evaded.
 #[derive(Debug, Clone, Default)]
 pub(crate) enum ControlState {
     /// Follows its path.
@@ -30,20 +30,20 @@ pub(crate) enum ControlState {
     Following,
     /// Follows a planned detour.
     Detouring(Detour),
-    /// Off the path, with a recent correction: gently drawn back to the path.
+    /// Off the path, with a recent correction: returns gently to the path.
     Evading,
     /// Off the path: brakes and waits for a detour.
     Holding { idle_s: f64 },
-    /// Off the path, and no detour was planned within the stall timeout: drawn straight back to the path.
+    /// Off the path, and no detour was planned within the stall timeout: returns straight to the path.
     Returning { idle_s: f64 },
 }
 
-/// What happened in a tick, or between two ticks.
+/// An event in a tick or between two ticks.
 #[derive(Debug, Clone)]
 pub(crate) enum Event {
     /// A detour was planned.
     DetourPlanned(Detour),
-    /// The robot is on its detour, with waypoints left.
+    /// The robot is on its detour, with remaining waypoints.
     DetourActive,
     /// The robot is on its path.
     OnPath,
@@ -55,7 +55,7 @@ pub(crate) enum Event {
     Moving,
     /// Off the path without a recent correction, at the override 0 or while a detour is being planned.
     Halted,
-    /// The tick failed: the robot is stopped where it is.
+    /// The tick failed: the robot stops where it is.
     Failed,
     /// The tick failed shortly after a correction.
     FailedWhileEvading,
@@ -89,23 +89,23 @@ fn transition(state: ControlState, event: Event, stall_timeout_s: f64) -> Contro
     }
 }
 
-/// What a tick found, for the state machine.
+/// Findings of a tick for the state machine.
 #[allow(clippy::struct_excessive_bools, reason = "the guards of the transition table, one each")]
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct TickSummary {
     pub(crate) dt: f64,
-    /// The robot is at the configuration of its path.
+    /// Whether the robot is at the configuration of its path.
     pub(crate) is_at_reference: bool,
-    /// A correction was large enough to count.
+    /// Whether a correction was large enough to count.
     pub(crate) is_corrected: bool,
-    /// The path requires motion, and the robot makes no progress.
+    /// Whether the path requires motion but the robot makes no progress.
     pub(crate) is_stalled: bool,
     pub(crate) is_stationary: bool,
-    /// The override is 0.
+    /// Whether the override is 0.
     pub(crate) is_halted: bool,
 }
 
-/// The state and the times that all states share.
+/// The state, and the times that all states share.
 #[derive(Debug)]
 pub(crate) struct StateMachine {
     state: ControlState,
@@ -114,7 +114,7 @@ pub(crate) struct StateMachine {
     stalled_s: f64,
     /// Time since the last correction, s.
     since_correction_s: f64,
-    /// A detour is being planned from where the robot is.
+    /// Whether a detour is being planned from the present configuration.
     awaits_detour: bool,
 }
 
@@ -128,7 +128,7 @@ impl StateMachine {
         &self.state
     }
 
-    /// The detour, where the robot follows one.
+    /// The detour that the robot follows, if any.
     pub(crate) fn detour_mut(&mut self) -> Option<&mut Detour> {
         match &mut self.state {
             ControlState::Detouring(detour) => Some(detour),
@@ -136,7 +136,7 @@ impl StateMachine {
         }
     }
 
-    /// True if the robot is on a detour with waypoints left.
+    /// Whether the robot is on a detour with remaining waypoints.
     pub(crate) fn has_detour(&self) -> bool {
         matches!(&self.state, ControlState::Detouring(detour) if !detour.is_finished())
     }
@@ -147,17 +147,18 @@ impl StateMachine {
         }
     }
 
-    /// True if the robot has made no progress for the stall timeout.
+    /// Whether the robot has made no progress for the stall timeout.
     pub(crate) fn is_stalled(&self) -> bool {
         self.stalled_s >= self.stall_timeout_s
     }
 
-    /// True if a detour is being planned in this tick.
+    /// Whether a detour is being planned in this tick.
     pub(crate) fn awaits_detour(&self) -> bool {
         self.awaits_detour
     }
 
-    /// A detour is being planned from where the robot is in this tick: it does not return meanwhile.
+    /// Reports that a detour is being planned from the present configuration in this tick: the robot does not return
+    /// meanwhile.
     pub(crate) fn await_detour(&mut self) {
         self.awaits_detour = true;
         if matches!(self.state, ControlState::Returning { .. }) {
@@ -207,7 +208,7 @@ impl StateMachine {
         });
     }
 
-    /// The state to report after a tick, in this order of precedence: halted at the override 0, waiting where the robot is
+    /// The state to report after a tick. In order of precedence: halted at the override 0, waiting if the robot is
     /// stationary and stalled, then the control state. Off the path, `is_reacting` is reported as evading.
     pub(crate) fn reported(&self, tick: &TickSummary, is_reacting: bool) -> AvoiderState {
         if tick.is_halted {

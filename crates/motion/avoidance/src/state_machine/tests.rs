@@ -9,7 +9,7 @@ fn detour() -> Detour {
     Detour::new(vec![vec![0.0], vec![1.0]], true)
 }
 
-/// The state of a cell of the table: name and idle time, where `t` is the idle time of the row.
+/// The state of a cell of the table: name and idle time; `t` is the idle time of the row.
 fn parse_state(cell: &str, t: f64) -> ControlState {
     let (name, time) = cell.trim_matches('`').split_once(' ').unwrap_or((cell.trim_matches('`'), ""));
     let idle_s = match time {
@@ -113,7 +113,7 @@ fn a_tick_is_one_event() {
     assert_eq!(after(&mut machine, tick()), "Holding");
     machine.start_detour(detour());
     assert_eq!(after(&mut machine, tick()), "Detouring");
-    // At the end of the detour, or where it is abandoned, the robot is off its path again.
+    // At the end of the detour, or when it is abandoned, the robot is off its path again.
     machine.abandon_detour();
     assert_eq!(after(&mut machine, TickSummary { is_stationary: true, ..tick() }), "Holding");
     assert_eq!(machine.state().idle_s(), DT);

@@ -12,7 +12,7 @@ use elbowroom_scene::{Checker, CheckerOptions, Object, Scene, SceneState, Select
 use elbowroom_spatial::{FrameMotion, Pose, Vec3};
 
 pub const DT: f64 = 0.004;
-/// Time between plans, s: while an obstacle is on the way they fail.
+/// Time between plans, s: planning fails while an obstacle is in the way.
 const PLAN_INTERVAL_S: f64 = 0.5;
 /// Largest number of validated states of a plan.
 const PLAN_STATES: u64 = 40_000;
@@ -70,7 +70,7 @@ impl Ball {
 /// Configuration and velocity of a path at path time.
 pub type Path<'a> = &'a dyn Fn(f64) -> (Vec<f64>, Vec<f64>);
 
-/// One run: the path at the rate of the output, every step checked by a sweep.
+/// One run: the path advances at the rate of the output, and a sweep checks every step.
 pub struct Simulation<'s> {
     pub scene: &'s Scene,
     pub avoider: Avoider<'s>,
@@ -100,7 +100,7 @@ impl<'s> Simulation<'s> {
         Self::with(scene, q, avoider(scene, q))
     }
 
-    /// With an avoider of other settings.
+    /// Creates a simulation with an avoider with other settings.
     pub fn with(scene: &'s Scene, q: &[f64], avoider: Avoider<'s>) -> Self {
         Self {
             scene,
@@ -137,7 +137,7 @@ impl<'s> Simulation<'s> {
         output
     }
 
-    /// Plans a detour to `goal` where one is requested, with as much work and as often as a run does.
+    /// Plans a detour to `goal` if one is requested, with the work limit and interval of a run.
     pub fn plan(&mut self, goal: &[f64]) -> bool {
         if !self.output.requests_detour || self.t < self.not_before_s {
             return false;

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-/// The best of several rounds.
+/// Returns the shortest time of several rounds.
 pub fn best(rounds: usize, mut run: impl FnMut()) -> Duration {
     let once = |_| {
         let start = processor_time();
@@ -18,7 +18,7 @@ fn processor_time() -> Duration {
     Duration::try_from(clock_gettime(ClockId::ThreadCPUTime)).unwrap_or_default()
 }
 
-/// Wall-clock time, where the system gives no other.
+/// Returns wall-clock time if the system does not measure processor time.
 #[cfg(not(unix))]
 fn processor_time() -> Duration {
     static START: std::sync::OnceLock<std::time::Instant> = std::sync::OnceLock::new();

@@ -1,11 +1,11 @@
 //! Builds the joint map of one obstacle, and by two straightforward methods for comparison, in one run:
 //! `cargo bench -p elbowroom-cspace --bench joint_map`.
 //!
-//! - `pruned`: the centre of every cell against the exact obstacle, planes and rows out of reach skipped;
-//! - `spheres`: the links as 19 overlapping spheres, the centre of every cell, nothing skipped.
+//! - `pruned`: tests the centre of every cell against the exact obstacle; skips planes and rows out of reach;
+//! - `spheres`: the links are 19 overlapping spheres; tests the centre of every cell and skips none.
 //!
-//! Both mark a cell by its centre; `elbowroom` marks it if any configuration in it is in collision. Times are processor times
-//! of this thread, the best of several runs.
+//! The two methods mark a cell by its centre; `elbowroom` marks a cell if any configuration in it is in collision.
+//! Times are processor times of this thread, the best of several runs.
 
 #![allow(clippy::print_stdout, reason = "a bench prints")]
 
@@ -53,7 +53,7 @@ fn main() {
     }
 }
 
-/// Name, the solid for the straightforward methods, the obstacle and the same moved by a centimetre.
+/// Name, the solid for the straightforward methods, the obstacle, and the obstacle moved by a centimetre.
 fn workload() -> [(&'static str, RoundedBox, [ConvexObstacle; 2]); 2] {
     let at = Vec3::new(1.3, 0.4, 0.9);
     let ball = |at| ConvexObstacle::sphere(at, 0.25).expect("finite");
@@ -73,7 +73,8 @@ fn grid(step_deg: f64) -> Grid {
     Grid::new(axes).expect("it fits")
 }
 
-/// Times of the row intervals alone, and with clearing and writing the bitmap; blocked cells.
+/// Times of computing the row intervals alone, and with clearing and writing the bitmap; and the number of blocked
+/// cells.
 fn building(grid: &Grid, obstacle: &ConvexObstacle) -> (Duration, Duration, usize) {
     let mut builder = PlanarMapBuilder::new(ARM, grid).expect("a sound arm");
     let (mut layer, mut occupancy) = (Layer::new(), OccupancyBitmap::new(grid.shape()));
@@ -86,7 +87,7 @@ fn building(grid: &Grid, obstacle: &ConvexObstacle) -> (Duration, Duration, usiz
     (fill, whole, occupancy.blocked())
 }
 
-/// Times with changed cells: an obstacle is added, the whole map is rebuilt, an obstacle is moved.
+/// Times with changed cells: adding an obstacle, rebuilding the whole map, moving an obstacle.
 fn updates(grid: &Grid, obstacle: &ConvexObstacle, moved: &ConvexObstacle) -> (Duration, Duration, Duration) {
     let mut map = JointMap::new(ARM, grid).expect("a sound arm");
     let mut added = Duration::MAX;

@@ -12,7 +12,7 @@ use fearless_simd::{Level as SimdLevel, dispatch};
 
 type V = [f32; 3];
 
-/// A box with rounded edges: a ball is a box without size.
+/// A box with rounded edges; a ball is a box of size 0.
 pub struct RoundedBox {
     center: V,
     axes: [V; 3],
@@ -36,7 +36,7 @@ impl RoundedBox {
         dot(self.half, self.half).sqrt() + self.round
     }
 
-    /// The solid seen from the plane of θ1.
+    /// The solid in the frame of the plane of θ1.
     fn turned(&self, [sin, cos]: [f32; 2]) -> Self {
         let turn = |v: V| [v[0] * cos + v[1] * sin, v[1] * cos - v[0] * sin, v[2]];
         Self { center: turn(self.center), axes: self.axes.map(turn), ..*self }
@@ -61,7 +61,7 @@ impl RoundedBox {
         beyond(0) * beyond(0) + beyond(1) * beyond(1) + beyond(2) * beyond(2)
     }
 
-    /// One row of a ball: in the plane, in closed form.
+    /// Computes one row of a ball: in the plane, in closed form.
     #[inline(always)]
     fn ball_row(&self, elbow: [f32; 2], [x, z]: [&[f32]; 2], [r2, r3]: [f32; 2], row: &mut [u8]) {
         let (u, w) = (self.center[0] - elbow[0], self.center[2] - elbow[1]);
@@ -75,8 +75,8 @@ impl RoundedBox {
         }
     }
 
-    /// Squared distance of a segment to the box: the distance along it is convex, so halving by the golden section finds
-    /// the least; for a ball's middle in closed form.
+    /// Squared distance of a segment to the box. The distance along the segment is convex, so a golden-section search
+    /// finds the least; the middle of a ball has a closed form.
     #[inline(always)]
     fn segment(&self, p: V, d: V) -> f32 {
         let at = |t: f32| self.square([p[0] + t * d[0], p[1] + t * d[1], p[2] + t * d[2]]);
@@ -97,7 +97,7 @@ fn dot(a: V, b: V) -> f32 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Sines and cosines of the middles of all cells, and the forearm for every pair of θ2 and θ3.
+/// Sines and cosines at the centres of all cells, and the forearm for every pair of θ2 and θ3.
 pub struct Planar {
     arm: PlanarArm,
     base: Vec<[f32; 2]>,
@@ -131,7 +131,7 @@ impl Planar {
         (at, [at[0] + upper * sin, at[1] + upper * cos])
     }
 
-    /// Planes out of reach are skipped, rows of which the elbow is too far, rows that the upper arm blocks.
+    /// Skips planes out of reach, rows whose elbow is too far, and rows that the upper arm blocks.
     pub fn pruned(&self, solid: &RoundedBox, cells: &mut [u8]) {
         dispatch!(self.simd_level, _simd => self.pruned_lanes(solid, cells));
     }
@@ -175,7 +175,7 @@ impl Planar {
         }
     }
 
-    /// Links as overlapping spheres that cover them, every cell.
+    /// Tests every cell with the links as overlapping spheres that cover them.
     pub fn spheres(&self, solid: &RoundedBox, cells: &mut [u8]) {
         dispatch!(self.simd_level, _simd => self.spheres_lanes(solid, cells));
     }

@@ -1,10 +1,10 @@
-//! Times of building the map of a whole robot: its own solids among a table, a column, a mesh obstacle of 5,000 triangles,
-//! and one of 50,000.
+//! Times of building the map of a whole robot with its own solids, among a table, a column, a mesh obstacle of 5,000
+//! triangles, and one of 50,000.
 //!
 //! `cargo bench -p elbowroom-cspace --bench robot_map -- [ROBOT.urdf [STEP_DEG [THREADS]]]`
 //!
-//! Without a robot: the KR125 of the examples. First three joints, the others at 0. `bisect` is how often a cell at the
-//! boundary is bisected before it counts as blocked. Times are the best of three.
+//! Without a robot: the KR125 of the examples. The map has the first three joints; the others are at 0. `bisect` is the
+//! number of bisections of a cell at the boundary before it counts as blocked. Times are the best of three.
 #![allow(clippy::print_stdout, reason = "a bench prints")]
 
 use std::error::Error;

@@ -1,8 +1,8 @@
-//! Names of the obstacle models.
+//! The obstacle models.
 
 use std::str::FromStr;
 
-/// Most spheres of one obstacle.
+/// Largest number of spheres of one obstacle.
 pub(crate) const MAX_SPHERES: u32 = 4096;
 
 /// The solid that represents an obstacle in a map (the joint-space paper, sections II to V).
@@ -26,17 +26,17 @@ pub enum ObstacleModel {
     /// The solid itself.
     #[default]
     Exact,
-    /// One slice, copied to every θ1 within bounds.
+    /// One slice, copied to every θ1 within its bounds.
     Slices,
     /// The enclosing sphere.
     Sphere,
     /// Spheres around this many parts (rounded up to a power of two, at most 4096).
     Spheres(u32),
-    /// The axis-aligned box around it.
+    /// The axis-aligned box around the solid.
     Box,
 }
 
-/// The name of no model.
+/// The name is not the name of an obstacle model.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("`{0}` is no obstacle model: write exact, slices, sphere, spheres=N (N from 1 to 4096) or box")]
 pub struct UnknownObstacleModel(pub String);

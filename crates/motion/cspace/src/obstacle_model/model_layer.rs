@@ -9,7 +9,8 @@ use crate::convex_obstacle::ConvexShape;
 use crate::{ConvexObstacle, Layer, PlanarMapBuilder};
 
 impl ObstacleModel {
-    /// Replaces a layer by the cells that this model of an obstacle blocks: never fewer than the obstacle itself blocks.
+    /// Replaces a layer by the cells that this model of an obstacle blocks; the model always blocks all cells that the
+    /// obstacle itself blocks.
     pub fn build_layer(self, builder: &mut PlanarMapBuilder, obstacle: &ConvexObstacle, layer: &mut Layer) {
         match self {
             Self::Exact => builder.build_layer(obstacle, layer),

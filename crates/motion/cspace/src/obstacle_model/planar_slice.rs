@@ -1,8 +1,8 @@
 //! One slice, copied to a range of planes: the fastest model of the joint-space paper (section III).
 //!
-//! An obstacle within bounds of base angle, radius and height is enclosed by a rectangle in every plane that intersects it.
-//! A point of the arm's plane that is within a distance of the obstacle is within that distance of the rectangle, too, so
-//! the spans of one plane hold for all.
+//! A rectangle encloses an obstacle within bounds of base angle, radius and height in every plane that intersects it.
+//! If a point of the arm's plane is within a distance of the obstacle, it is also within this distance of the
+//! rectangle, so the spans of one plane hold for all planes.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -14,7 +14,7 @@ use crate::{ConvexObstacle, Layer, PlanarMapBuilder, RowSpan};
 /// Bounds of base angle, radius and height of an obstacle, metres and radians.
 struct CylindricalBounds {
     middle: f64,
-    /// Half the angle; at least π where the obstacle intersects the base axis.
+    /// Half of the angle; at least π if the obstacle intersects the base axis.
     half: f64,
     near: f64,
     far: f64,
@@ -28,7 +28,7 @@ pub(super) fn build_layer(builder: &mut PlanarMapBuilder, obstacle: &ConvexObsta
     let bounds = CylindricalBounds::new(obstacle);
     let half = if bounds.near > radius { bounds.half + (radius / bounds.near).asin() } else { PI };
     let angle = builder.grid().axes()[0].center(0);
-    // Before the base axis, and behind it for an arm that is bent backwards.
+    // In front of the base axis, and behind it for an arm that is bent backwards.
     let mut slices = [Layer::new(), Layer::new()];
     for (slice, side) in slices.iter_mut().zip([1.0, -1.0]) {
         let (in_base, half_extents) = bounds.in_plane(angle, side);
@@ -69,7 +69,7 @@ impl CylindricalBounds {
             for corner in obstacle.corners() {
                 let across = corner.x * -middle.sin() + corner.y * middle.cos();
                 let along = corner.dot(radial);
-                // The solid lies beyond the line through its nearest corner perpendicular to the middle direction.
+                // The solid is beyond the line through its nearest corner perpendicular to the middle direction.
                 near = near.min(along);
                 far = far.max(along.hypot(across));
                 half = half.max(across.abs().atan2(along));
@@ -81,8 +81,8 @@ impl CylindricalBounds {
         Self { middle, half, near: near.max(0.0), far, low: bounds.min.z, high: bounds.max.z }
     }
 
-    /// The rectangle of radii and heights in the plane of an angle, in front of the base axis or behind it: a box without
-    /// depth, and its half extents.
+    /// The rectangle of radii and heights in the plane of an angle, in front of the base axis or behind it: a box
+    /// without depth, given by its pose and half extents.
     fn in_plane(&self, angle: f64, side: f64) -> (Pose, Vec3) {
         let at = (self.near + self.far) * 0.5 * side;
         let middle = Vec3::new(at * angle.cos(), at * angle.sin(), (self.low + self.high) * 0.5);

@@ -9,11 +9,12 @@ use crate::convex_obstacle::ConvexShape;
 use crate::cuboid::Bisection;
 use crate::{ConvexObstacle, Layer, PlanarMapBuilder};
 
-/// Replaces a layer by the cells that spheres around parts of an obstacle block: one sphere first, then 2, 4, 8 … while the
-/// deadline has not passed and there are fewer than `max_spheres`. Returns the number of spheres of the layer.
+/// Replaces a layer by the cells that spheres around parts of an obstacle block: first one sphere, then 2, 4, 8 … until
+/// the deadline passes or `max_spheres` is reached. Returns the number of spheres of the layer.
 ///
-/// The first sphere is always completed. Each refinement only frees cells: its cells are intersected with those of fewer
-/// spheres, and both contain all cells that the obstacle blocks. A refinement that the deadline interrupts is discarded.
+/// The first sphere is always completed. Each refinement only frees cells: its cells are intersected with the cells of
+/// fewer spheres, and both sets contain all cells that the obstacle blocks. A refinement that the deadline interrupts
+/// is discarded.
 ///
 /// ```
 /// use elbowroom_cspace::{ConvexObstacle, Grid, GridAxis, Layer, PlanarMapBuilder, PlanarArm, spheres_until};

@@ -1,13 +1,13 @@
-//! Directions of a link that meets an outline, one elbow at a time, in double precision: rows in which the wrist's sphere
-//! meets the outline in several arcs.
+//! Directions of a link that meets an outline, one elbow at a time, in double precision: for rows in which the wrist's
+//! sphere meets the outline in several arcs.
 
 use std::f64::consts::TAU;
 
 use super::normals::{MAX_NORMALS, OutlineNormals};
 use super::outline::Outline;
 
-/// Calls `found(lo, hi)` for every interval of directions in which the end of a link of length `reach` with its joint at `at`
-/// (shoulder's frame), lies inside the outline. Angles in radians, `lo ≤ hi`.
+/// Calls `found(lo, hi)` for every interval of directions in which the end of a link is inside the outline. The link
+/// has length `reach` and its joint at `at` (shoulder's frame). Angles in radians, `lo ≤ hi`.
 pub(super) fn for_each_inside(
     outline: &Outline,
     normals: &OutlineNormals,
@@ -15,7 +15,7 @@ pub(super) fn for_each_inside(
     reach: f64,
     mut found: impl FnMut(f64, f64),
 ) {
-    // Each line excludes the directions around its normal that lead beyond it; what no line excludes is inside.
+    // Each line excludes the directions around its normal that lead beyond it; all other directions are inside.
     let mut free = [(0.0, 0.0); MAX_NORMALS];
     let mut count = 0;
     for k in 0..normals.count {
@@ -37,7 +37,7 @@ pub(super) fn for_each_inside(
         *f = (f.0 - turn, f.1 - turn);
     }
     free.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-    // The last may extend beyond the start.
+    // The last interval may extend beyond the start.
     let mut reached = free.iter().map(|f| f.1 - TAU).fold(start, f64::max);
     for &(from, to) in free.iter() {
         if from > reached {
@@ -50,8 +50,8 @@ pub(super) fn for_each_inside(
     }
 }
 
-/// Directions from `at`, which is outside, in which a link of length `reach` meets the outline: lowest and highest angle,
-/// radians; `None` if it never does.
+/// Directions from `at`, which is outside, in which a link of length `reach` meets the outline: lowest and highest
+/// angle, radians; `None` if the link never meets it.
 pub(super) fn visible_interval(
     outline: &Outline,
     normals: &OutlineNormals,
@@ -61,7 +61,7 @@ pub(super) fn visible_interval(
     let line = |k: usize| [f64::from(normals.x[k]), f64::from(normals.y[k]), f64::from(outline.far[k])];
     let lines = || (0..normals.count).map(line).enumerate();
     let gap = |[x, y, far]: [f64; 3]| far - x * at[0] - y * at[1];
-    // The line that `at` is farthest outside of: the whole outline lies beyond it.
+    // The line that `at` is farthest outside of: the whole outline is beyond it.
     let (_, nearest) = lines().min_by(|a, b| gap(a.1).total_cmp(&gap(b.1)))?;
     let ahead = [-nearest[0], -nearest[1]];
     let (mut lo, mut hi) = (f64::INFINITY, f64::NEG_INFINITY);

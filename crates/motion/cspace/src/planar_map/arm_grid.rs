@@ -1,4 +1,4 @@
-//! What stays constant for one arm and one grid.
+//! Constants of one arm and one grid.
 
 use fearless_simd::Level as SimdLevel;
 
@@ -14,9 +14,9 @@ pub(super) struct ArmGrid {
     pub simd_level: SimdLevel,
     /// Cosine and sine of θ1 at the centre of each cell.
     pub planes: Vec<[f64; 2]>,
-    /// Directions of the upper arm at the borders of θ2's cells, one more than cells.
+    /// Directions of the upper arm at the borders of θ2's cells: one more than there are cells.
     pub borders: ArmDirections,
-    /// The same at the centres of the cells.
+    /// Directions of the upper arm at the centres of the cells.
     pub middles: ArmDirections,
 }
 
@@ -45,10 +45,10 @@ impl ArmGrid {
 }
 
 impl ArmDirections {
-    /// At `count` values of θ2.
+    /// Computes the directions at `count` values of θ2.
     fn new(count: usize, elbow: &GridAxis, theta2: impl Fn(usize) -> f64) -> Self {
         let padded = count.next_multiple_of(WIDTH) + WIDTH;
-        // The padding repeats the last value: any finite number will do.
+        // The padding repeats the last value: any finite number works.
         let theta2 = |i: usize| theta2(i.min(count - 1));
         let at = |i: usize| theta2(i).sin_cos();
         Self {
@@ -59,7 +59,7 @@ impl ArmDirections {
     }
 }
 
-/// Cosine and sine of half an arc; of half a turn where it is more than a quarter.
+/// Cosine and sine of half an arc; of half a turn if half the arc is more than a quarter turn.
 pub(super) fn half_arc(half: f64) -> [f32; 2] {
     if half < std::f64::consts::FRAC_PI_2 { [half.cos() as f32, half.sin() as f32] } else { [-1.0, 1.0] }
 }

@@ -1,4 +1,4 @@
-//! Builds the map of an obstacle for a planar arm.
+//! Builder of the map of an obstacle for a planar arm.
 
 use elbowroom_spatial::{Pose, Vec3};
 
@@ -11,7 +11,7 @@ use super::{convex, sphere};
 use crate::convex_obstacle::ConvexShape;
 use crate::{ArmError, ConvexObstacle, Grid, Layer, PlanarArm};
 
-/// Computes which cells of a grid an obstacle blocks for one planar arm.
+/// Computes the cells of a grid that an obstacle blocks for one planar arm.
 ///
 /// ```
 /// use elbowroom_cspace::{ConvexObstacle, Grid, GridAxis, Layer, PlanarMapBuilder, OccupancyBitmap, PlanarArm};
@@ -31,11 +31,11 @@ use crate::{ArmError, ConvexObstacle, Grid, Layer, PlanarArm};
 #[derive(Debug, Clone)]
 pub struct PlanarMapBuilder {
     arm_grid: ArmGrid,
-    /// Workspace: one bit per row of a plane, set where the upper arm blocks the whole row.
+    /// Workspace: one bit per row of a plane, set if the upper arm blocks the whole row.
     full_rows: Vec<u16>,
 }
 
-/// Why no map can be built for an arm and a grid.
+/// Why a map cannot be built for an arm and a grid.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PlanarMapError {
     /// A dimension of the arm is invalid.
@@ -46,19 +46,20 @@ pub enum PlanarMapError {
     Coarse {
         /// Name of the joint.
         joint: String,
-        /// Its step, degrees.
+        /// Step of the joint, degrees.
         degrees: f64,
     },
 }
 
-/// Largest step. Larger cells say little, and the number of lines of an outline stays bounded.
+/// Largest step, degrees. Larger cells carry little information, and the limit bounds the number of lines of an
+/// outline.
 const MAX_STEP_DEGREES: f64 = 15.0;
 
 impl PlanarMapBuilder {
-    /// For an arm and a grid.
+    /// Creates a builder for an arm and a grid.
     ///
     /// # Errors
-    /// An invalid dimension of the arm, or a step above 15 degrees.
+    /// A dimension of the arm is invalid, or a step is above 15 degrees.
     pub fn new(arm: PlanarArm, grid: &Grid) -> Result<Self, PlanarMapError> {
         arm.validate()?;
         for axis in grid.axes() {
@@ -81,7 +82,8 @@ impl PlanarMapBuilder {
         &self.arm_grid.grid
     }
 
-    /// Replaces a layer by the cells that an obstacle blocks: every cell in whose box any configuration touches it.
+    /// Replaces a layer by the cells that an obstacle blocks: all cells whose box contains a configuration that touches
+    /// it.
     pub fn build_layer(&mut self, obstacle: &ConvexObstacle, layer: &mut Layer) {
         layer.spans.clear();
         let Self { arm_grid, full_rows } = self;
@@ -106,7 +108,7 @@ impl PlanarMapBuilder {
         }
     }
 
-    /// The cells that a box blocks in the first plane, as one slice: the others stay free.
+    /// Computes the cells that a box blocks in the first plane, as one slice; the other planes stay free.
     pub(crate) fn build_slice(&mut self, in_base: &Pose, half_extents: Vec3, layer: &mut Layer) {
         layer.spans.clear();
         let Self { arm_grid, full_rows } = self;

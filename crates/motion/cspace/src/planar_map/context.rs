@@ -1,4 +1,4 @@
-//! What the planes of one convex obstacle share, and the outlines of one plane.
+//! Constants of one convex obstacle for all planes, and the outlines of one plane.
 
 use elbowroom_spatial::Vec3;
 use fearless_simd::Level as SimdLevel;
@@ -16,14 +16,15 @@ pub(super) struct ConvexContext {
     pub simd_level: SimdLevel,
     pub arm: PlanarArm,
     pub spans: SpanWriter,
-    /// Centre of the obstacle's enclosing sphere, and its radius plus the largest radius of the arm, metres.
+    /// Centre of the obstacle's enclosing sphere, and (in `grown_radius`) its radius plus the largest radius of the
+    /// arm, metres.
     pub center: Vec3,
     pub grown_radius: f64,
-    /// Tangent of half a step of θ1, and 1/cos − 1.
+    /// Tangent of half a step of θ1, and (in `stretch`) 1/cos − 1.
     pub tangent: f64,
     pub stretch: f64,
-    /// How much farther from the base axis a point of the grown obstacle may be than along the wedge's middle (x/cos δ1
-    /// for x), metres.
+    /// Largest difference between the distance of a point of the grown obstacle from the base axis and its distance
+    /// along the wedge's middle (x/cos δ1 instead of x), metres.
     pub max_stretch: f32,
     /// Sine and cosine of half a step of θ2.
     pub turn: [f32; 2],
@@ -38,25 +39,25 @@ pub(super) struct ConvexContext {
     pub upper_reach: f32,
     /// Rounding error of a distance from a line in single precision, metres.
     pub rounding: f32,
-    /// For an elbow farther outside than this, tangents are accurate to the margins, metres: at a corner this near, the
-    /// rotation of a tangent by rounding moves the end of the forearm by no more than the margin (eight times the rounding).
+    /// Distance of the elbow outside a line, metres, above which tangents are accurate to the margins: at a corner this
+    /// near, rounding of a tangent moves the end of the forearm by at most the margin (eight times the rounding).
     pub clear: f32,
 }
 
-/// When, and how finely, an outline is cut into sectors about the shoulder.
+/// Conditions and width for cutting an outline into sectors around the shoulder.
 #[derive(Clone, Copy)]
 pub(super) struct Sectors {
-    /// Outlines within a smaller angle stay whole, radians.
+    /// Angle below which an outline stays whole, radians.
     pub whole_rad: f64,
     /// Width of a sector, radians.
     pub width_rad: f64,
 }
 
 impl ConvexContext {
-    /// For an obstacle within a sphere about `center` with `radius`, metres.
+    /// Creates the constants of an obstacle within a sphere around `center` with `radius`, metres.
     pub fn new(arm_grid: &ArmGrid, center: Vec3, radius: f64) -> Self {
         let [half1, half2, _] = arm_grid.grid.half_widths();
-        // The forearm ends in half a sphere: the wrist's is no smaller.
+        // The forearm ends in half a sphere, so the wrist's sphere is at least as large.
         let wrist_radius_m = arm_grid.arm.wrist_radius_m.max(arm_grid.arm.fore_radius_m);
         let arm = PlanarArm { wrist_radius_m, ..arm_grid.arm };
         let size = center.length() + radius + arm.reach_m();
@@ -82,13 +83,13 @@ impl ConvexContext {
         }
     }
 
-    /// With outlines that are never cut: quicker, and more is blocked.
+    /// Disables cutting into sectors: faster, but more cells are blocked.
     pub fn without_sectors(mut self) -> Self {
         self.sectors.whole_rad = f64::INFINITY;
         self
     }
 
-    /// False if not even the enclosing sphere, grown by the largest radius of the arm, intersects the wedge.
+    /// Whether the enclosing sphere, grown by the largest radius of the arm, intersects the wedge.
     pub fn may_reach(&self, [cos, sin]: [f64; 2], side: f64) -> bool {
         let x = (self.center.x * cos + self.center.y * sin) * side;
         let y = (self.center.y * cos - self.center.x * sin).abs();
@@ -98,28 +99,30 @@ impl ConvexContext {
 }
 
 impl Sectors {
-    /// Coarse grids have few cells inside for those that are blocked needlessly at the boundary, and few rows to compute.
-    /// Of floors and walls at the end of the arm's reach, nearly all cells are at the boundary.
+    /// Chooses the sectors. Coarse grids have few inner cells compared with the cells blocked needlessly at the
+    /// boundary, and few rows to compute. For floors and walls at the end of the arm's reach, nearly all cells are at
+    /// the boundary.
     fn new(step2: f64, is_large: bool) -> Self {
         let whole_rad = if is_large { 0.6 } else { (0.08 / step2).clamp(0.6, 2.0) };
         Self { whole_rad, width_rad: 0.25 }
     }
 }
 
-/// 24 degrees between neighbouring normals, 12 in coarse grids.
+/// Cosine of 24 degrees between neighbouring normals, of 12 degrees in coarse grids.
 fn spacing_cosine(step2: f64) -> f32 {
     if step2 > 0.045 { 0.978 } else { 0.9135 }
 }
 
-/// Outlines for the radii of the three links in one plane: the upper arm's as it is, the others rotated by half a step of
-/// θ2.
+/// Outlines for the radii of the three links in one plane: the upper arm's outline unrotated, the other two rotated by
+/// half a step of θ2.
 pub(super) struct Outlines {
     pub normals: OutlineNormals,
     pub raw: Outline,
     pub upper: Outline,
     pub fore: Outline,
     pub wrist: Outline,
-    /// Corner `k` of the wrist's outline is within reach of an elbow on its circle where `corner·elbow ≥ reach_limits[k]`.
+    /// Limits for corners: corner `k` of the wrist's outline is within reach of an elbow on its circle if `corner·elbow
+    /// ≥ reach_limits[k]`.
     pub reach_limits: [f32; PADDED_NORMALS],
 }
 
@@ -148,10 +151,10 @@ impl Outlines {
 
 /// The rows of one plane.
 pub(super) struct PlaneRows<'a> {
-    /// Number of the first row.
+    /// Index of the first row.
     pub first: usize,
     pub count: usize,
-    /// One bit per row: the upper arm blocks all of it.
+    /// One bit per row, set if the upper arm blocks the whole row.
     pub full: &'a [u16],
     pub middles: &'a ArmDirections,
     pub borders: &'a ArmDirections,

@@ -1,4 +1,4 @@
-//! Boxes and convex polyhedra: outlines plane by plane, intervals row by row.
+//! Boxes and convex polyhedra: outlines per plane, intervals per row.
 
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
@@ -17,7 +17,7 @@ use crate::Layer;
 /// Margin for angles seen from the shoulder in single precision, radians.
 const UPPER_MARGIN: f64 = 2.0 * ANGLE_ERROR as f64;
 
-/// Adds the spans of some planes. `solid` is the obstacle as seen in a plane of the arm; `full_rows` is workspace.
+/// Adds the spans of some planes. `solid` is the obstacle in the frame of a plane of the arm; `full_rows` is workspace.
 pub(super) fn build<B: PlaneSolid>(
     arm_grid: &ArmGrid,
     context: &ConvexContext,
@@ -60,7 +60,8 @@ pub(super) fn build<B: PlaneSolid>(
 }
 
 impl Outlines {
-    /// Which links reach the solid in one plane, and the normals of its outline; false if none does.
+    /// Determines the links that reach the solid in one plane, and the normals of its outline; false if no link reaches
+    /// it.
     fn set_normals<B: PlaneSolid>(&mut self, context: &ConvexContext, solid: &B, side: f64) -> bool {
         let lean = (context.tangent * side) as f32;
         let gap = reaching_radius(context, solid, lean, side as f32) - context.margin;
@@ -70,13 +71,13 @@ impl Outlines {
         if !(self.upper.exists || self.fore.exists || self.wrist.exists) {
             return false;
         }
-        // y is down in the shoulder's frame, z up in the solid's.
+        // In the shoulder's frame y is down, in the solid's frame z is up.
         let own = solid.own_directions(lean).map(|[x, z]| [x, -z]);
         self.normals = OutlineNormals::new(own, context.spacing_cosine);
         true
     }
 
-    /// The upper arm's outline; directions in which the upper arm meets it.
+    /// Sets the upper arm's outline; returns the directions in which the upper arm meets it.
     fn set_upper<B: PlaneSolid>(&mut self, context: &ConvexContext, solid: &B, side: f64) -> Directions {
         if !self.upper.exists {
             return Directions::Nowhere;
@@ -88,8 +89,8 @@ impl Outlines {
 
     /// Adds the spans of one plane; false if their rows do not ascend.
     ///
-    /// Rotating a solid about the shoulder and taking the convex hull adds little to a solid that is seen within a narrow
-    /// angle, and much to one around the shoulder: such a solid is cut into sectors.
+    /// The convex hull of a solid rotated about the shoulder is little larger than the solid if the solid is within a
+    /// narrow angle, but much larger if it surrounds the shoulder. Such a solid is cut into sectors.
     fn write_rows<B: PlaneSolid>(
         &mut self,
         context: &ConvexContext,
@@ -121,8 +122,8 @@ impl Outlines {
         false
     }
 
-    /// Sets the outlines of forearm and wrist, or their parts in a sector of these two normals, rotated by half a step of
-    /// θ2. Returns the directions from the shoulder in which the larger one lies before it is rotated.
+    /// Sets the outlines of forearm and wrist, or their parts in a sector with these two normals, rotated by half a
+    /// step of θ2. Returns the directions from the shoulder in which the larger outline lies before the rotation.
     fn set_rotated<B: PlaneSolid>(
         &mut self,
         context: &ConvexContext,
@@ -138,7 +139,7 @@ impl Outlines {
             }
             line_distances(context, solid, normals, lean, radius as f32, &mut raw.far);
             for [x, y] in sector.into_iter().flatten() {
-                // The nearest normal is this one: sides are inserted first.
+                // The nearest normal is the sector's own: its sides are inserted first.
                 let along = |k: &usize| normals.x[*k] * x + normals.y[*k] * y;
                 if let Some(k) = (0..normals.count).max_by(|a, b| along(a).total_cmp(&along(b))) {
                     raw.far[k] = raw.far[k].min(context.margin);
@@ -146,7 +147,7 @@ impl Outlines {
             }
             directions = directions.union(raw.rotate_both_ways(context.simd_level, normals, context.turn, link));
         }
-        // Where the wrist's outline vanishes by rounding, the forearm's is used for the end of the forearm.
+        // If the wrist's outline vanishes by rounding, the end of the forearm uses the forearm's outline.
         if self.fore.exists && !self.wrist.exists {
             self.wrist.clone_from(&self.fore);
         }

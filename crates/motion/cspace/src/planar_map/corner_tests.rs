@@ -1,4 +1,4 @@
-//! Tests of single lines and corners against the elbows of sixteen rows.
+//! Tests of single lines and corners for the elbows of sixteen rows.
 
 use fearless_simd::{Simd, SimdBase, SimdMask, mask32x16};
 
@@ -11,19 +11,19 @@ pub(super) type Mask<S> = mask32x16<S>;
 /// Sixteen points, x and y.
 pub(super) type Points<S> = [Lanes<S>; 2];
 
-/// One answer for every line or corner and each of sixteen rows: most are known from the culling.
+/// One result per line or corner and per row of sixteen: most results are known from the culling.
 #[derive(Clone, Copy)]
 pub(super) struct CornerTests<'a, S: Simd> {
     pub outlines: &'a Outlines,
-    /// Lines or corners whose answers differ from row to row.
+    /// Lines or corners whose results differ between rows.
     pub mixed: LineBits,
-    /// Answers of the others.
+    /// Results of the other lines or corners.
     pub certain: LineBits,
     pub elbow: Points<S>,
 }
 
 impl<S: Simd> CornerTests<'_, S> {
-    /// The elbow is outside of line `k` of the forearm's outline.
+    /// Whether the elbow is outside line `k` of the forearm's outline.
     #[inline(always)]
     pub fn is_outside(&self, simd: S, k: usize) -> Mask<S> {
         let Outlines { normals, fore, .. } = self.outlines;
@@ -34,7 +34,7 @@ impl<S: Simd> CornerTests<'_, S> {
         Mask::splat(simd, self.certain.contains(k))
     }
 
-    /// Corner `k` of the wrist's outline is within reach of the forearm.
+    /// Whether corner `k` of the wrist's outline is within reach of the forearm.
     #[inline(always)]
     pub fn is_reached(&self, simd: S, k: usize) -> Mask<S> {
         let Outlines { wrist, reach_limits, .. } = self.outlines;

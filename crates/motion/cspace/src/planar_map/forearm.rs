@@ -1,13 +1,13 @@
-//! The forearm against its outline, sixteen rows at a time.
+//! The forearm and its outline, sixteen rows at a time.
 //!
-//! Seen from the elbow, what the forearm can touch begins and ends at a tangent to its outline, if the touched corner is
-//! within reach, or where the end of the forearm crosses the outline. The end carries the wrist's sphere, whose outline contains
-//! the forearm's: there the wrist is blocked too. So the forearm needs its tangents only, and the wrist the two points where
-//! its circle enters and leaves its outline.
+//! Seen from the elbow, the directions in which the forearm touches begin and end at a tangent to its outline, if the
+//! touched corner is within reach, or where the end of the forearm crosses the outline. The end carries the wrist's
+//! sphere, whose outline contains the forearm's outline: there the wrist is also blocked. Therefore the forearm needs
+//! only its tangents, and the wrist only the two points at which its circle enters and leaves its outline.
 //!
-//! Forearm and wrist together are blocked in one interval: the forearm's outline is convex, and every arc of the wrist
-//! contains an angle at which the forearm touches, or there is only one arc (the part of the disk near a convex outline is
-//! convex).
+//! Forearm and wrist together are blocked in one interval. The reason: the forearm's outline is convex, and every arc
+//! of the wrist contains an angle at which the forearm touches, or the wrist has only one arc (the part of the disk
+//! near a convex outline is convex).
 
 use fearless_simd::{Select, Simd, SimdBase, SimdMask};
 
@@ -19,12 +19,12 @@ use crate::bits::ones;
 
 /// Tangents from sixteen elbows to the forearm's outline.
 pub(super) struct ForearmTangents<S: Simd> {
-    /// The elbow is inside, or so close that single precision cannot decide.
+    /// Whether the elbow is inside, or so close that single precision cannot decide.
     pub inside: Mask<S>,
-    /// Corners at which the outline begins and ends, counter-clockwise, relative to the elbow.
+    /// Corners at which the outline begins (`lo`) and ends (`hi`), counter-clockwise, relative to the elbow.
     pub lo: Points<S>,
     pub hi: Points<S>,
-    /// Whether they are within reach.
+    /// Whether these corners are within reach.
     pub lo_reached: Mask<S>,
     pub hi_reached: Mask<S>,
     /// Bound of the rotation of the tangents by rounding, radians.
@@ -53,7 +53,7 @@ impl<S: Simd> ForearmTangents<S> {
             let here = tests.is_outside(simd, k);
             last = (k + 1, here);
             outside |= here;
-            // Lines that the elbow is outside of run clockwise: the first of them begins at the far end.
+            // Lines with the elbow outside run clockwise: the first of them begins at the far end.
             let (begins, ends) = (here & !before, before & !here);
             let [x, y] = [s(outline.corner_x[k]), s(outline.corner_y[k])];
             hi = [begins.select(x, hi[0]), begins.select(y, hi[1])];
@@ -74,7 +74,7 @@ impl<S: Simd> ForearmTangents<S> {
         Self { inside, lo, hi, lo_reached, hi_reached, widen }
     }
 
-    /// Distance of the elbow from the outline's farthest line, metres; below 0 inside.
+    /// Distance of the elbow from the outline's farthest line, metres; below 0 inside the outline.
     #[inline(always)]
     fn distance_outside(simd: S, outlines: &Outlines, culling: &RowCulling, elbow: Points<S>) -> Lanes<S> {
         let (normals, outline) = (&outlines.normals, &outlines.fore);

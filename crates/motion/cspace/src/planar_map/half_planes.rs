@@ -1,4 +1,4 @@
-//! Intersection of half planes: lines that do not touch it are moved inward.
+//! Intersection of half planes: moves lines that do not touch it inward.
 
 use super::normals::{MAX_NORMALS, OutlineNormals};
 

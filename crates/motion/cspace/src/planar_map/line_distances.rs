@@ -8,7 +8,7 @@ use super::plane_solid::{PlaneSolid, TiltedDirections};
 use super::simd_math::{WIDTH, load, mad, splat};
 use super::wedge_support::support_distance;
 
-/// Radius from which on the grown solid intersects the wedge, metres; negative if the solid itself does.
+/// Radius from which the grown solid intersects the wedge, metres; negative if the solid itself intersects it.
 pub(super) fn reaching_radius<B: PlaneSolid>(context: &ConvexContext, solid: &B, lean: f32, side: f32) -> f32 {
     let offset = context.arm.offset_m as f32;
     dispatch!(context.simd_level, simd => reaching_radius_lanes(simd, solid, lean, side, offset))
@@ -63,13 +63,13 @@ fn line_distances_lanes<S: Simd, B: PlaneSolid>(
     let offset = splat(simd, context.arm.offset_m as f32);
     let [up, down] = solid.vertical_extents();
     let stretch = splat(simd, context.max_stretch);
-    // What is out of the arm's reach does not matter, and rotating far corners would enlarge the outline.
+    // The part out of the arm's reach does not matter, and rotating far corners would enlarge the outline.
     let length = (context.arm.upper_length_m + context.arm.fore_length_m) as f32;
     let limit = splat(simd, length * (1.0 + 1e-5) + context.margin);
     for at in (0..normals.count).step_by(WIDTH) {
         let (x, z) = (load(simd, &normals.x[at..]), -load(simd, &normals.y[at..]));
         let distance = support_distance(simd, solid, [x, z], lean, radius);
-        // Nothing in this wedge lies behind the base axis.
+        // In this wedge, everything is in front of the base axis.
         let height = (z * splat(simd, up)).max(z * splat(simd, -down));
         let axis = mad(z.abs(), splat(simd, radius), height) - x * offset;
         let inward = (x * side).simd_lt(zero);

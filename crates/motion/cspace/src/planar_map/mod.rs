@@ -1,15 +1,16 @@
 //! The map of a planar arm: blocked intervals of θ3, row by row, in the arm's plane. Fast and conservative.
 //!
-//! For one θ1 the arm moves in a plane. A cell is blocked if any configuration in its box touches the obstacle. The three
-//! half widths of the box are applied one after the other:
+//! For one θ1 the arm moves in a plane. A cell is blocked if any configuration in its box touches the obstacle. The
+//! builder applies the three half widths of the box one after the other:
 //!
 //! 1. θ1 sweeps the plane through a wedge. The obstacle, grown by a link's radius and cut by the wedge, projects to a
 //!    convex outline in the plane: the link's axis meets it if and only if the link touches for some θ1 of the cell.
-//! 2. θ2 rotates the whole arm about the shoulder: instead, the outline is rotated about it, to both sides.
-//! 3. θ3 at fixed θ2 rotates the forearm about the elbow: the angles at which it meets the outline are an interval, those of
-//!    the wrist's sphere one or more arcs; cells that an interval touches are blocked.
+//! 2. θ2 rotates the whole arm about the shoulder: instead, the outline is rotated about the shoulder, to both sides.
+//! 3. θ3 at fixed θ2 rotates the forearm about the elbow: the angles at which the forearm meets the outline form one
+//!    interval, the angles of the wrist's sphere one or more arcs; cells that an interval touches are blocked.
 //!
-//! The upper arm blocks whole rows. The half plane behind the base axis (`r < 0`) is a second wedge, opposite to the first.
+//! The upper arm blocks whole rows. The half plane behind the base axis (`r < 0`) is a second wedge, opposite to the
+//! first one.
 //!
 //! | file | contents |
 //! | --- | --- |
@@ -22,8 +23,8 @@
 //! | `span_writer.rs`, `arc_intervals.rs`, `upper_arm.rs` | from intervals to spans of cells |
 //! | `simd_math.rs`, `precision.rs` | vector arithmetic and its margins |
 //!
-//! Each function that calls `dispatch!` is a kernel: its body is compiled once per instruction set. There are few kernels, with
-//! loops over vectors only; all other code is compiled once.
+//! Each function that calls `dispatch!` is a kernel: its body is compiled once per instruction set. Kernels are few and
+//! contain only loops over vectors; all other code is compiled once.
 
 #![allow(
     clippy::inline_always,

@@ -2,16 +2,16 @@
 
 use super::simd_math::WIDTH;
 
-/// Most normals of an outline: sixteen directions of the obstacle's own, the rest to round corners.
+/// Largest number of normals of an outline: sixteen own directions of the obstacle, the rest to round corners.
 pub(super) const MAX_NORMALS: usize = 64;
-/// Length of the arrays: the normals and a whole vector of padding.
+/// Length of the arrays: the normals and one vector of padding.
 pub(super) const PADDED_NORMALS: usize = MAX_NORMALS + WIDTH;
-/// Most directions of the obstacle's own.
+/// Largest number of own directions of an obstacle.
 const MAX_OWN: usize = 16;
-/// Directions closer than this (sine of 0.1 degrees) count as one.
+/// Difference of directions up to which they count as one (sine of 0.1 degrees).
 const SAME_DIRECTION_SINE: f32 = 0.0017;
 
-/// Unit normals in counter-clockwise order, in the plane; padded with the first.
+/// Unit normals in counter-clockwise order, in the plane; padded with the first normal.
 #[derive(Debug, Clone)]
 pub(super) struct OutlineNormals {
     pub count: usize,
@@ -20,8 +20,9 @@ pub(super) struct OutlineNormals {
 }
 
 impl OutlineNormals {
-    /// The given directions (any length, any order; zeros are left out) and more between them, so that the cosine of the
-    /// angle between neighbours is at least `spacing_cosine` (0.97 or less): these lines round the corners.
+    /// Sorts the given directions (any length, any order; zeros are ignored) and adds more directions between them, so
+    /// that the cosine of the angle between neighbours is at least `spacing_cosine` (0.97 or less): the lines of the
+    /// added directions round the corners.
     pub fn new(own: impl Iterator<Item = [f32; 2]>, spacing_cosine: f32) -> Self {
         let (sorted, count) = sorted(own);
         let mut normals = Self { count: 0, x: [0.0; PADDED_NORMALS], y: [0.0; PADDED_NORMALS] };
@@ -88,7 +89,7 @@ fn sorted(own: impl Iterator<Item = [f32; 2]>) -> ([[f32; 2]; MAX_OWN], usize) {
     let mut list = SortedDirections { found: [[0.0; 2]; MAX_OWN], keys: [0.0; MAX_OWN], count: 0 };
     own.for_each(|direction| list.insert(direction));
     if list.count < 3 {
-        // One or two lines bound no outline.
+        // One or two lines do not bound an outline.
         for axis in [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]] {
             list.insert(axis);
         }
@@ -105,7 +106,7 @@ fn unit([x, y]: [f32; 2]) -> [f32; 2] {
     [x * over, y * over]
 }
 
-/// Grows with the angle, from 0 to 4.
+/// A number from 0 to 4 that increases with the angle.
 fn angle_key([x, y]: [f32; 2]) -> f32 {
     let along = x / (x.abs() + y.abs());
     if y < 0.0 { 3.0 + along } else { 1.0 - along }

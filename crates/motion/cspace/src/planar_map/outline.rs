@@ -1,4 +1,4 @@
-//! Convex outlines in the arm's plane: lines, and the stretch of each that bounds the outline.
+//! Convex outlines in the arm's plane: lines, and the part of each line that bounds the outline.
 
 use std::f64::consts::TAU;
 
@@ -8,14 +8,14 @@ use super::half_planes;
 use super::normals::{OutlineNormals, PADDED_NORMALS};
 use super::simd_math::{Lanes, WIDTH, atan2, load, mad, splat};
 
-/// Lines whose neighbours meet in front of them by more than this are moved inward, metres.
+/// Overlap, in metres, by which the neighbours of a line meet in front of it before it is moved inward.
 const SLACK_LINE_M: f32 = 2e-4;
 
 /// A convex outline in the shoulder's frame (x outward, y down): points with `normal·p ≤ far` for all [`OutlineNormals`].
 ///
-/// Line `k` bounds the outline from `from` to `to` along its tangent (the normal rotated by +90°), counted from the foot of
-/// the perpendicular from the shoulder. A line that does not touch the outline has `from > to`; its neighbours then extend a
-/// little too far.
+/// Line `k` bounds the outline from `from` to `to` along its tangent (the normal rotated by +90°), counted from the
+/// foot of the perpendicular from the shoulder. A line that does not touch the outline has `from > to`; its neighbours
+/// then extend slightly too far.
 #[derive(Debug, Clone)]
 pub(super) struct Outline {
     pub far: [f32; PADDED_NORMALS],
@@ -55,7 +55,7 @@ impl Outline {
         }
     }
 
-    /// True if some line does not touch the outline.
+    /// Whether some line does not touch the outline.
     #[inline(always)]
     fn is_slack<S: Simd>(&self, simd: S, normals: &OutlineNormals) -> bool {
         let mut slack = false;
@@ -92,8 +92,8 @@ impl Outline {
         }
     }
 
-    /// Completes this outline and writes one that contains it rotated about the shoulder by any angle up to the one of this
-    /// sine and cosine, to either side. Returns the directions in which this one lies.
+    /// Completes this outline and writes an outline that contains it after any rotation about the shoulder, to either
+    /// side, up to the angle of this sine and cosine. Returns the directions in which this outline lies.
     pub fn rotate_both_ways(
         &mut self,
         simd_level: SimdLevel,
@@ -169,19 +169,19 @@ impl Outline {
     }
 }
 
-/// Directions from the shoulder.
+/// A set of directions from the shoulder.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Directions {
-    /// None: the outline is empty or out of reach.
+    /// Empty set: the outline is empty or out of reach.
     Nowhere,
-    /// All: the shoulder is inside the outline.
+    /// All directions: the shoulder is inside the outline.
     Everywhere,
     /// From the lowest to the highest angle, radians.
     Between(f64, f64),
 }
 
 impl Directions {
-    /// Lowest and highest angle, radians; for all directions one turn that starts at `start`.
+    /// Lowest and highest angle, radians; for all directions, one turn that starts at `start`.
     pub fn range_from(self, start: f64) -> Option<(f64, f64)> {
         match self {
             Self::Nowhere => None,
@@ -190,7 +190,7 @@ impl Directions {
         }
     }
 
-    /// The smallest range that contains both.
+    /// The smallest range that contains both sets.
     pub fn union(self, other: Self) -> Self {
         match (self, other) {
             (Self::Nowhere, any) | (any, Self::Nowhere) => any,
@@ -200,22 +200,22 @@ impl Directions {
     }
 }
 
-/// Bits of the lanes from line `at` on that are lines of the outline, not padding.
+/// Bits of the lanes from line `at` on that are lines of the outline instead of padding.
 fn valid_lanes(normals: &OutlineNormals, at: usize) -> u64 {
     !0 >> (64 - (normals.count - at).min(WIDTH))
 }
 
-/// An outline as it appears from the shoulder.
+/// An outline seen from the shoulder.
 #[derive(Clone, Copy)]
 struct ShoulderView {
     /// Unit vector against the normal of the line that the shoulder is farthest outside of.
     ahead: [f32; 2],
-    /// Distance of the shoulder from that line: the whole outline lies beyond it.
+    /// Distance of the shoulder from that line: the whole outline is beyond the line.
     depth: f32,
 }
 
 impl ShoulderView {
-    /// `None` if the shoulder is inside.
+    /// Creates the view; `None` if the shoulder is inside the outline.
     #[inline(always)]
     fn new(normals: &OutlineNormals, outline: &Outline) -> Option<Self> {
         let (mut k, mut least) = (0, f32::INFINITY);
@@ -236,7 +236,7 @@ struct TangentRange<S: Simd> {
 }
 
 impl<S: Simd> TangentRange<S> {
-    /// Empty.
+    /// Creates an empty range.
     #[inline(always)]
     fn new(simd: S, view: ShoulderView) -> Self {
         Self { view, lo: splat(simd, f32::INFINITY), hi: splat(simd, f32::NEG_INFINITY) }
@@ -252,7 +252,7 @@ impl<S: Simd> TangentRange<S> {
         self.hi = lanes.select(self.hi.max(tangent), self.hi);
     }
 
-    /// `None` if the range is empty.
+    /// The range as angles; `None` if it is empty.
     #[inline(always)]
     fn directions(&self, simd: S) -> Option<Directions> {
         let (lo, hi) = (self.lo.min(self.lo.slide::<8>(self.lo)), self.hi.max(self.hi.slide::<8>(self.hi)));

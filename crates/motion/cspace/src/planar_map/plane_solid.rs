@@ -8,7 +8,7 @@ use fearless_simd::{Select, Simd, SimdBase, SimdFloat};
 
 use super::simd_math::{Lanes, mad, splat};
 
-/// Directions of sixteen lanes, `(x, 0, z) + m·(lean, side, 0)`: with growing `m` they tilt out of the plane.
+/// Directions of sixteen lanes, `(x, 0, z) + m·(lean, side, 0)`: with increasing `m` they tilt out of the plane.
 #[derive(Clone, Copy)]
 pub(super) struct TiltedDirections<S: Simd> {
     pub x: Lanes<S>,
@@ -26,8 +26,8 @@ pub(super) struct LinearPiece<S: Simd> {
     pub slope: Lanes<S>,
 }
 
-/// A solid in the frame of one plane: x outward, y across, z up, from the base axis; `at` of a linear piece counts x and z
-/// from the shoulder.
+/// A solid in the frame of one plane: x outward, y across, z up, from the base axis; `at` of a linear piece measures x
+/// and z from the shoulder.
 pub(super) trait PlaneSolid {
     /// Selects the plane of direction (cos, sin).
     fn rotate_to_plane(&mut self, plane: [f64; 2]);
@@ -54,7 +54,7 @@ fn in_plane(v: Vec3, [cos, sin]: [f64; 2]) -> PlaneVector {
     PlaneVector { x: (v.x * cos + v.y * sin) as f32, y: (v.y * cos - v.x * sin) as f32, z: v.z as f32 }
 }
 
-/// Normal, in the plane, of the line in which the wedge's side cuts a face of normal `n`.
+/// Normal, in the plane, of the line in which the wedge's side cuts a face with normal `n`.
 fn face_direction(n: PlaneVector, lean: f32) -> [f32; 2] {
     [n.x + n.y.abs() * -lean, n.z]
 }
@@ -74,7 +74,7 @@ pub(super) struct PlaneBox {
     center: Vec3,
     edges: [Vec3; 3],
     shoulder: [f64; 2],
-    /// In the plane: the centre, the same with x and z from the shoulder, and the half edges.
+    /// In the plane: the centre, the centre with x and z from the shoulder, and the half edges.
     middle: PlaneVector,
     from_shoulder: PlaneVector,
     half: [PlaneVector; 3],
@@ -107,7 +107,8 @@ impl PlaneSolid for PlaneBox {
     }
 
     fn own_directions(&self, lean: f32) -> impl Iterator<Item = [f32; 2]> {
-        // Half edges lie along the faces' normals. A flat box has no normal for two of its faces and needs none.
+        // Half edges are parallel to the faces' normals. A flat box has no normals for two of its faces and does not
+        // need them.
         let faces = self.half.into_iter().flat_map(move |g| {
             let length = (g.x * g.x + g.y * g.y + g.z * g.z).sqrt().max(f32::MIN_POSITIVE);
             let n = PlaneVector { x: g.x / length, y: g.y / length, z: g.z / length };
@@ -138,11 +139,11 @@ impl PlaneSolid for PlaneBox {
     }
 }
 
-/// A convex polyhedron: corners, and the faces and edges that give its outline straight stretches.
+/// A convex polyhedron: its corners, and the faces and edges that cause straight stretches of its outline.
 #[derive(Debug, Clone)]
 pub(super) struct PlaneHull {
     corners: Vec<Vec3>,
-    /// Normals of the largest faces, directions of the longest edges.
+    /// Normals of the largest faces, and (in the next field) directions of the longest edges.
     normals: Vec<Vec3>,
     edges: Vec<Vec3>,
     shoulder: [f64; 2],
@@ -168,7 +169,7 @@ impl PlaneHull {
     }
 }
 
-/// Unit normals of the largest faces and directions of the longest edges between faces that are not in one plane.
+/// Unit normals of the largest faces, and directions of the longest edges between faces that are not coplanar.
 fn flat_features(hull: &ConvexHull) -> (Vec<Vec3>, Vec<Vec3>) {
     let corners = hull.vertices();
     let normal = |t: &[u32; 3]| {
@@ -203,14 +204,14 @@ fn sharp_edges(hull: &ConvexHull, normals: &[Vec3]) -> Vec<Vec3> {
     found.into_iter().map(|(a, b)| hull.vertices()[b as usize] - hull.vertices()[a as usize]).collect()
 }
 
-/// Which vectors count as parallel.
+/// The relation by which vectors count as parallel.
 #[derive(Clone, Copy, PartialEq)]
 enum Parallel {
     SameSense,
     EitherSense,
 }
 
-/// Keeps the `most` longest as unit vectors, after adding up parallel ones.
+/// Keeps the `most` longest vectors as unit vectors, after adding up parallel ones.
 fn keep_longest(list: &mut Vec<Vec3>, most: usize, parallel: Parallel) {
     let mut kept: Vec<Vec3> = Vec::new();
     for &v in list.iter() {

@@ -1,4 +1,4 @@
-//! Test: decisions in single precision, row by row, against double precision.
+//! Audit for tests: compares decisions in single precision, row by row, with double precision.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -10,8 +10,8 @@ use crate::RowSpan;
 /// Number of rows compared.
 pub(super) static ROWS: AtomicUsize = AtomicUsize::new(0);
 
-/// Panics where the spans lack an angle that double precision finds blocked by the outlines moved inward by half of the
-/// margin.
+/// Compares the spans with the outlines moved inward by half of the margin. Panics if the spans do not contain an angle
+/// that double precision finds blocked.
 pub(super) fn compare(context: &ConvexContext, outlines: &Outlines, plane: &PlaneRows, spans: &[RowSpan]) {
     if !outlines.wrist.exists {
         return;
@@ -48,7 +48,8 @@ pub(super) fn compare(context: &ConvexContext, outlines: &Outlines, plane: &Plan
     }
 }
 
-/// The lines of an outline moved inward by half of the margin; between the old corners they lie inside the old outline.
+/// The lines of an outline, moved inward by half of the margin; between the old corners they are inside the old
+/// outline.
 fn moved_inward(context: &ConvexContext, outline: &Outline) -> Outline {
     let mut inner = outline.clone();
     inner.far.iter_mut().for_each(|far| *far -= 0.5 * context.margin);
@@ -63,7 +64,7 @@ mod tests {
     use crate::{ConvexObstacle, Grid, GridAxis, Layer, PlanarArm, PlanarMapBuilder};
     use elbowroom_testkit::random::Xorshift;
 
-    /// Numbers of 0..1 that are the same everywhere.
+    /// Numbers in 0..1 that are equal on every machine.
     #[test]
     fn a_million_rows_are_decided_as_in_double_precision() {
         let mut random = Xorshift(0x2545_f491_4f6c_dd1d);

@@ -1,7 +1,8 @@
 //! Culling of an outline's lines and corners for sixteen rows.
 //!
-//! Over sixteen rows the elbow moves on an arc about the shoulder. Most lines have it on the same side all the time, most
-//! corners are within reach of the forearm all the time or never: only the others are evaluated row by row.
+//! Over sixteen rows the elbow moves on an arc about the shoulder. Most lines have the elbow on the same side for the
+//! whole arc, and most corners are within reach of the forearm for the whole arc or never. Only the other lines and
+//! corners are evaluated row by row.
 
 use fearless_simd::{Simd, SimdBase, SimdMask};
 
@@ -29,12 +30,12 @@ impl LineBits {
         !0 >> (64 - self.count)
     }
 
-    /// Each line takes its bit from the line before it.
+    /// The mask in which each line has the bit of the line before it.
     fn mask_from_before(self) -> u64 {
         (self.bits << 1 | self.bits >> (self.count - 1)) & self.all()
     }
 
-    /// Each line takes its bit from the line after it.
+    /// The mask in which each line has the bit of the line after it.
     fn mask_from_after(self) -> u64 {
         (self.bits >> 1 | self.bits << (self.count - 1)) & self.all()
     }
@@ -59,7 +60,7 @@ struct ProductRange<S: Simd> {
 }
 
 impl<S: Simd> ProductRange<S> {
-    /// Of `along·cos t + across·sin t`, for `t` within half the arc to both sides.
+    /// Bounds of `along·cos t + across·sin t`, for `t` within half the arc to both sides.
     #[inline(always)]
     fn new(along: Lanes<S>, across: Lanes<S>, [cos, sin]: [Lanes<S>; 2]) -> Self {
         let (turned, swing) = (along * cos, across.abs() * sin);
@@ -73,22 +74,24 @@ fn along_and_across<S: Simd>([x, y]: [Lanes<S>; 2], elbow: [Lanes<S>; 2]) -> [La
     [x * elbow[0] + y * elbow[1], x * elbow[1] - y * elbow[0]]
 }
 
-/// What is certain for all sixteen rows, and what is possible for some.
+/// Results that are certain for all sixteen rows, and results that are possible for some rows.
 #[derive(Debug)]
 pub(super) struct RowCulling {
-    /// Lines of the forearm's outline that the elbow is outside of.
+    /// Lines of the forearm's outline with the elbow outside (certain; in `may_front` possible).
     pub front: LineBits,
     pub may_front: LineBits,
-    /// Those that the elbow is farther outside of than [`ConvexContext::clear`].
+    /// Lines with the elbow farther outside than [`ConvexContext::clear`].
     pub clear: u64,
-    /// Lines of the wrist's outline that the elbow is outside of.
+    /// Lines of the wrist's outline with the elbow outside.
     pub wrist_front: u64,
-    /// Corners of the wrist's outline within reach of the forearm.
+    /// Corners of the wrist's outline within reach of the forearm (certain; in `may_reach` possible).
     pub reached: LineBits,
     pub may_reach: LineBits,
-    /// Lines of the wrist's outline that the wrist's circle may cross twice between their corners, with the elbow outside.
+    /// Lines of the wrist's outline that the wrist's circle may cross twice between their corners, with the elbow
+    /// outside.
     pub double_entry: u64,
-    /// The same with the elbow inside.
+    /// Lines of the wrist's outline that the wrist's circle may cross twice between their corners, with the elbow
+    /// inside.
     pub double_exit: u64,
 }
 
@@ -143,19 +146,19 @@ impl RowCulling {
         for bits in [&mut culling.front, &mut culling.may_front, &mut culling.reached, &mut culling.may_reach] {
             bits.bits &= all;
         }
-        // With a corner certainly within reach the circle crosses the line once.
+        // If a corner is certainly within reach, the circle crosses the line once.
         let open = !(culling.reached.bits | culling.reached.mask_from_after());
         (culling.double_entry, culling.double_exit) = (double_entry.bits & all & open, double_exit.bits & all & open);
         (culling.clear, culling.wrist_front) = (clear.bits & all, wrist_front.bits & all);
         culling
     }
 
-    /// True if neither forearm nor wrist can block any of the rows.
+    /// Whether neither forearm nor wrist can block any of the rows.
     pub fn is_free(&self) -> bool {
         self.may_reach.bits == 0 && self.double_entry == 0 && self.wrist_front != 0
     }
 
-    /// Lines of the forearm's outline that are evaluated row by row, and those at which the side may change.
+    /// Lines of the forearm's outline that are evaluated row by row, and lines at which the side may change.
     pub fn front_edges(&self) -> (LineBits, u64) {
         let mixed = LineBits { bits: self.may_front.bits & !self.front.bits, ..self.front };
         (mixed, mixed.bits | mixed.mask_from_before() | (self.front.bits ^ self.front.mask_from_before()))

@@ -1,4 +1,4 @@
-//! Kernel: from outlines to spans, the rows of one plane.
+//! Kernel that converts the outlines of one plane to spans of its rows.
 
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, dispatch};
 
@@ -12,7 +12,7 @@ use super::span_writer::RowBatch;
 use super::wrist::WristCrossings;
 use crate::Layer;
 
-/// Adds the spans of all rows of one plane, those of full rows only with `write_full`; false if rows do not ascend.
+/// Adds the spans of all rows of one plane, of full rows only if `write_full` is set; false if rows do not ascend.
 pub(super) fn write_plane(
     context: &ConvexContext,
     outlines: &Outlines,
@@ -44,7 +44,7 @@ fn write_lanes<S: Simd>(
         let known = plane.full[chunk] & inside;
         let full = if write_full { known } else { 0 };
         let row = (plane.first + start) as u32;
-        // Where the forearm reaches, its end does.
+        // Where the forearm reaches, the end of the forearm also reaches.
         if known == inside || !outlines.wrist.exists {
             context.spans.write_full(row, full, layer);
             continue;
@@ -55,7 +55,7 @@ fn write_lanes<S: Simd>(
     ordered
 }
 
-/// Adds the spans of rows that are full, and of those of the rows in `hit` that forearm or wrist block.
+/// Adds the spans of the full rows, and of the rows in `hit` that forearm or wrist block.
 #[inline(always)]
 fn write_sixteen_rows<S: Simd>(
     simd: S,
@@ -69,7 +69,7 @@ fn write_sixteen_rows<S: Simd>(
     let RowBatch { row, full, hit: open } = rows;
     let upper = context.arm.upper_length_m as f32;
     let PlaneRows { middles, borders, count, .. } = plane;
-    // Between the eighth row and the ninth, or at the end of the last.
+    // Between the eighth and the ninth row, or at the end of the last row.
     let middle = (start + WIDTH / 2).min(*count);
     let arc = ElbowArc { middle: [borders.cos[middle] * upper, borders.sin[middle] * upper], half: context.arc };
     let culling = RowCulling::new(simd, context, outlines, arc);
@@ -102,7 +102,7 @@ fn write_sixteen_rows<S: Simd>(
     several == 0
 }
 
-/// The interval of forearm and wrist, radians, where the elbow is outside both outlines: all directions are within less
+/// The interval of forearm and wrist, radians, if the elbow is outside both outlines: all directions are within less
 /// than half a turn.
 #[inline(always)]
 fn interval_from_outside<S: Simd>(simd: S, fore: &ForearmTangents<S>, wrist: &WristCrossings<S>) -> [Lanes<S>; 2] {
@@ -114,7 +114,7 @@ fn interval_from_outside<S: Simd>(simd: S, fore: &ForearmTangents<S>, wrist: &Wr
     angles(simd, lo, hi)
 }
 
-/// The same where the elbow may be inside the wrist's outline.
+/// The interval of forearm and wrist, radians, if the elbow may be inside the wrist's outline.
 #[inline(always)]
 fn interval_from_inside<S: Simd>(simd: S, fore: &ForearmTangents<S>, wrist: &WristCrossings<S>) -> [Lanes<S>; 2] {
     // A tangent out of reach adds nothing to the wrist's arc.
@@ -123,7 +123,7 @@ fn interval_from_inside<S: Simd>(simd: S, fore: &ForearmTangents<S>, wrist: &Wri
     let fore_hi = pick(alone | fore.hi_reached, fore.hi, fore.lo);
     let [fore_lo, fore_hi] = angles(simd, fore_lo, fore_hi);
     let [wrist_lo, wrist_hi] = angles(simd, wrist.lo, wrist.hi);
-    // The wrist's interval in the turn of the forearm's.
+    // Shifts the wrist's interval to the turn of the forearm's interval.
     let turn = splat(simd, std::f32::consts::TAU);
     let apart = (fore_lo + fore_hi - wrist_lo - wrist_hi) * splat(simd, 0.5);
     let shift = (apart / turn).round_ties_even() * turn;
@@ -144,7 +144,7 @@ fn pick<S: Simd>(which: Mask<S>, yes: Points<S>, no: Points<S>) -> Points<S> {
     [which.select(yes[0], no[0]), which.select(yes[1], no[1])]
 }
 
-/// Angles of both ends, the second not below the first.
+/// Angles of both ends; the second is not below the first.
 #[inline(always)]
 fn angles<S: Simd>(simd: S, lo: Points<S>, hi: Points<S>) -> [Lanes<S>; 2] {
     let lo = atan2(simd, lo[1], lo[0]);
@@ -153,7 +153,7 @@ fn angles<S: Simd>(simd: S, lo: Points<S>, hi: Points<S>) -> [Lanes<S>; 2] {
     [lo, hi.simd_lt(lo).select(hi + turn, hi)]
 }
 
-/// Rows in which the wrist meets the outline in several arcs; `zero` is the cell coordinate of angle 0 per row.
+/// Writes rows in which the wrist meets the outline in several arcs; `zero` is the cell coordinate of angle 0 per row.
 #[cold]
 #[inline(never)]
 fn write_rows_singly(

@@ -1,6 +1,6 @@
 //! Arithmetic on sixteen lanes of `f32`: inverse tangent and inverse cosine.
 //!
-//! Multiplications and additions are not fused: the result does not depend on the instruction set.
+//! Multiplications and additions are not fused, so that the result does not depend on the instruction set.
 
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, f32x16};
 
@@ -59,7 +59,7 @@ const ACOS: [f32; 6] = [
     -0.004180968543343454,
 ];
 
-/// Bound of the error of [`atan2`] and [`acos`], rounding included, about ten times the measured one, radians.
+/// Bound of the error of [`atan2`] and [`acos`], rounding included, radians: about ten times the measured error.
 pub(crate) const ANGLE_ERROR: f32 = 1e-5;
 
 /// Angle of the point (x, y), −π..π; 0 at the origin.

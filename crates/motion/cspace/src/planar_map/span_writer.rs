@@ -1,4 +1,4 @@
-//! From intervals of θ3 to spans of cells.
+//! Converts intervals of θ3 to spans of cells.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -14,25 +14,25 @@ pub(super) struct SpanWriter {
     pub scale: f32,
     /// Cell coordinate of the direction that continues the upper arm.
     pub zero: f32,
-    /// Cells of a whole turn.
+    /// Number of cells in a whole turn.
     turn: f32,
-    /// Cells of the axis.
+    /// Number of cells of the axis.
     count: f32,
     /// Widening of every interval, in cells.
     margin: f32,
     last: u16,
-    /// The axis is longer than a turn: an interval may appear more than twice.
+    /// Whether the axis is longer than a turn: then an interval may appear more than twice.
     exceeds_turn: bool,
 }
 
 /// Sixteen rows to write.
 #[derive(Clone, Copy)]
 pub(super) struct RowBatch {
-    /// Number of the first row.
+    /// Index of the first row.
     pub row: u32,
-    /// Bit per row: all cells are blocked.
+    /// One bit per row, set if all cells are blocked.
     pub full: u16,
-    /// Bit per row: the cells of the interval are blocked.
+    /// One bit per row, set if the cells of the interval are blocked.
     pub hit: u16,
 }
 
@@ -54,7 +54,7 @@ impl SpanWriter {
         }
     }
 
-    /// Spans of rows that are blocked as a whole.
+    /// Writes the spans of rows that are blocked as a whole.
     pub fn write_full(&self, row: u32, full: u16, layer: &mut Layer) {
         let mut rest = full;
         while rest != 0 {
@@ -64,7 +64,7 @@ impl SpanWriter {
         }
     }
 
-    /// Spans of sixteen rows: all cells of full rows, `lo..=hi` (cell coordinates, any turn) of rows that are hit.
+    /// Writes the spans of sixteen rows: all cells of full rows, `lo..=hi` (cell coordinates, any turn) of hit rows.
     #[inline(always)]
     pub fn write<S: Simd>(&self, simd: S, rows: RowBatch, [lo, hi]: [Lanes<S>; 2], layer: &mut Layer) {
         let RowBatch { row, full, hit } = rows;
@@ -89,7 +89,7 @@ impl SpanWriter {
         let inside = whole | mask32x16::from_bitmask(simd, u64::from(hit)) & first.simd_le(end);
         let zero = i32x16::splat(simd, 0);
         let (first, last) = (whole.select(zero, first), whole.select(end, last.min(end)));
-        // Both ends packed into one number; rows that are kept move to the front.
+        // Packs both ends into one number; rows that are kept move to the front.
         let ends = (first + (last << 16)).compress(inside).to_array();
         let lanes = i32x16::simd_from(simd, LANE_NUMBERS).compress(inside).to_array();
         let count = inside.to_bitmask().count_ones() as usize;
@@ -100,7 +100,7 @@ impl SpanWriter {
         }));
     }
 
-    /// True if the cell of an angle, radians, is off the axis or in one of the spans; `base` is the cell coordinate of
+    /// Whether the cell of an angle, radians, is off the axis or in one of the spans; `base` is the cell coordinate of
     /// angle 0.
     #[cfg(test)]
     pub fn contains(&self, spans: &[&RowSpan], angle: f64, base: f64) -> bool {
@@ -127,7 +127,7 @@ impl SpanWriter {
         }
     }
 
-    /// One row; angles in radians; `base` is the cell coordinate of angle 0.
+    /// Writes an interval of one row; angles in radians; `base` is the cell coordinate of angle 0.
     pub fn write_interval(&self, row: u32, base: f32, [lo, hi]: [f64; 2], layer: &mut Layer) {
         let (scale, turn, margin) = (f64::from(self.scale), f64::from(self.turn), f64::from(self.margin));
         let lo = lo * scale + f64::from(base) - margin;
@@ -144,7 +144,7 @@ impl SpanWriter {
         }
     }
 
-    /// The interval in the turn in which it begins, and the part of it that continues from the turn before.
+    /// Writes the interval in the turn in which it begins, and the part that continues from the previous turn.
     fn write_wrapped(&self, row: u32, first: i32, last: i32, wrapped: i32, layer: &mut Layer) {
         let end = i32::from(self.last);
         if self.exceeds_turn {
@@ -164,7 +164,7 @@ impl SpanWriter {
         for k in -1..=turns {
             let shift = f64::from(self.turn) * f64::from(k);
             let first = (f64::from(first) + shift).floor().max(0.0);
-            // Both ends were rounded down: the upper one stands for the end of its cell.
+            // Both ends were rounded down: the upper one represents the end of its cell.
             let last = (f64::from(last) + 1.0 + shift).floor().min(f64::from(self.last));
             if first <= last {
                 layer.spans.push(RowSpan { row, first: first as u16, last: last as u16 });

@@ -1,4 +1,4 @@
-//! Spheres: the outline in the plane is a disk, and everything has a closed form.
+//! Spheres: the outline in the plane is a disk, so all results have a closed form.
 
 use std::ops::Range;
 
@@ -19,7 +19,8 @@ pub(super) struct SphereObstacle {
     pub radius: f64,
 }
 
-/// Concentric disks for the three links; shoulder's frame, x outward, y down. A radius below zero: no disk.
+/// Concentric disks for the three links, in the shoulder's frame: x outward, y down. A radius below 0 means that the
+/// link has no disk.
 struct GrownDisks {
     center: [f64; 2],
     upper: f64,
@@ -28,14 +29,15 @@ struct GrownDisks {
     wrist: f32,
 }
 
-/// What all planes share.
+/// Constants of one sphere for all planes.
 struct SphereContext {
     tangent: f64,
     /// 1/cos δ1.
     slant: f64,
     /// Radius of the sphere plus the largest radius of the arm, metres.
     grown_radius: f64,
-    /// By what share a point of the wedge may be farther from the base axis than along the middle: 1/cos δ1 − 1.
+    /// Largest excess, as a fraction, of the distance of a wedge's point from the base axis over its distance along the
+    /// middle: 1/cos δ1 − 1.
     stretch: f64,
     /// sin and 1 − cos of half a step of θ2.
     sine: f64,
@@ -60,7 +62,7 @@ impl SphereContext {
     }
 }
 
-/// Rows of one vector: sixteen borders have this many rows between them.
+/// Number of rows of one vector: sixteen borders have this many rows between them.
 const ROWS: usize = WIDTH - 1;
 
 /// Adds the spans of some planes; `full_rows` is workspace.
@@ -90,7 +92,7 @@ pub(super) fn build(
             }
             dispatch!(*simd_level, simd => rows.write(simd, &disks, first, shoulder.count(), full_rows, layer));
             if between > before {
-                // Both sides of the base axis: rows were written twice.
+                // Rows on both sides of the base axis were written twice.
                 layer.spans[before..].sort_unstable();
             }
         }
@@ -98,11 +100,11 @@ pub(super) fn build(
 }
 
 impl GrownDisks {
-    /// The sphere grown by each radius, cut by the wedge to one side of the base axis and projected: at most these disks.
+    /// Disks that contain the sphere grown by each radius, cut by the wedge to one side of the base axis and projected.
     ///
-    /// Where the centre lies in the wedge that is the whole disk. Where it lies beside, at distance `d` from the wedge's
-    /// side, the cut is an ellipse about the centre's foot with half axes √(R² − d²) and a little less; what of it lies
-    /// inside the wedge again is at most `w` beyond (w: how far the disk's far end lies within the wedge).
+    /// If the centre is in the wedge, this is the whole disk. If the centre is beside the wedge, at distance `d` from
+    /// its side, the cut is an ellipse around the centre's foot with half axes √(R² − d²) and slightly less. The part
+    /// of the ellipse inside the wedge is at most `w` beyond (`w`: depth of the disk's far end in the wedge).
     fn in_plane(
         arm: &PlanarArm,
         context: &SphereContext,
@@ -142,21 +144,21 @@ impl GrownDisks {
 
 /// The sphere relative to the wedge, metres.
 struct WedgeCut {
-    /// Of the sphere, with its margin.
+    /// Radius of the sphere, with its margin.
     radius: f64,
-    /// The centre is outside the wedge.
+    /// Whether the centre is outside the wedge.
     beside: bool,
-    /// Tangent of half the wedge, and the sphere's centre along and across it.
+    /// Tangent of half the wedge's angle; then the sphere's centre along and across the wedge.
     t: f64,
     x: f64,
     y: f64,
-    /// Centre of the disks, from the base axis, and the distance of the sphere's centre from the wedge.
+    /// Centre of the disks, from the base axis; then the distance of the sphere's centre from the wedge.
     middle: f64,
     distance: f64,
 }
 
 impl WedgeCut {
-    /// Radius of the disk for a link; below 0 if there is none.
+    /// Radius of the disk for a link; below 0 if the link has no disk.
     fn disk_radius(&self, link: f64) -> f64 {
         let whole = self.radius + link;
         if self.distance > whole {
@@ -164,22 +166,22 @@ impl WedgeCut {
         }
         let within = if self.beside { (self.t * (self.x + whole) - self.y).max(0.0) } else { 0.0 };
         let radius = (whole * whole - self.distance * self.distance + within * within).sqrt();
-        // No disk where all of it lies behind the base axis.
+        // No disk if all of it is behind the base axis.
         if self.middle + radius > 0.0 { radius } else { -1.0 }
     }
 }
 
-/// What the rows of all planes share.
+/// Constants of the rows of all planes.
 struct DiskRows<'a> {
     arm: PlanarArm,
-    /// Cosine and sine of the arc of the elbow over half of [`ROWS`] rows and a little more.
+    /// Cosine and sine of the elbow's arc over half of [`ROWS`] rows and slightly more.
     arc: [f32; 2],
     spans: SpanWriter,
     borders: &'a ArmDirections,
 }
 
 impl DiskRows<'_> {
-    /// Kernel: adds the spans of the rows of one plane, of which `row` is the first.
+    /// Kernel: adds the spans of the rows of one plane; `row` is the first row.
     #[inline(always)]
     fn write<S: Simd>(
         &self,
@@ -192,7 +194,7 @@ impl DiskRows<'_> {
     ) {
         let [x, y] = [disks.center[0] as f32, disks.center[1] as f32];
         let (upper, fore) = (self.arm.upper_length_m as f32, self.arm.fore_length_m as f32);
-        // The disk is in reach of an elbow with `center·elbow` above this.
+        // The disk is in reach of an elbow if `center·elbow` is above this value.
         let reach = (fore + disks.wrist) * 1.0001;
         let least = (x * x + y * y + upper * upper - reach * reach) * 0.5;
         let least = least - (x * x + y * y + upper * upper + reach * reach) * 1e-6;
@@ -202,7 +204,7 @@ impl DiskRows<'_> {
             let bits = u32::from(full_rows[start / WIDTH]) | u32::from(*next) << WIDTH;
             let inside = (1u16 << left) - 1;
             let full = (bits >> (start % WIDTH)) as u16 & inside;
-            // In the middle of the arc; missing rows make it shorter.
+            // In the middle of the arc; missing rows make the arc shorter.
             let middle = (start + ROWS / 2).min(count);
             let [cos, sin] = [self.borders.cos[middle] * upper, self.borders.sin[middle] * upper];
             let (along, across) = (x * cos + y * sin, (x * sin - y * cos).abs());
@@ -220,8 +222,8 @@ impl DiskRows<'_> {
         }
     }
 
-    /// The blocked intervals of θ3, in cells, of the rows from `start` on. A row lies between two borders: its interval
-    /// contains those of both.
+    /// The blocked intervals of θ3, in cells, of the rows from `start` on. A row lies between two borders; its interval
+    /// contains the intervals of both.
     #[inline(always)]
     fn between_borders<S: Simd>(&self, simd: S, disks: &GrownDisks, start: usize) -> (u16, [Lanes<S>; 2]) {
         let (scale, zero) = (splat(simd, self.spans.scale), splat(simd, self.spans.zero));
@@ -239,7 +241,7 @@ impl DiskRows<'_> {
         let (huge, none) = (splat(simd, 1e6), splat(simd, f32::INFINITY));
         let lo = all.select(-huge, hit.select(middle - half, none));
         let hi = all.select(huge, hit.select(middle + half, -none));
-        // The middle may jump by a turn from one border to the next.
+        // The middle may jump by a turn between neighbouring borders.
         let jump = middle.slide::<1>(middle) - middle;
         let turn = splat(simd, std::f32::consts::TAU * self.spans.scale);
         let half_turn = turn * splat(simd, 0.5);
@@ -250,8 +252,9 @@ impl DiskRows<'_> {
     }
 }
 
-/// Cosine of half the interval in which forearm or wrist meet their disks: above 1 never, −1 or less always. The wrist's
-/// disk is no smaller: where the forearm's end is the first to meet its disk, the wrist has met its own before.
+/// Cosine of half the interval in which forearm or wrist meet their disks: above 1 never, −1 or less always. The
+/// wrist's disk is at least as large: where the forearm's end is the first part to meet its disk, the wrist has already
+/// met its own.
 #[inline(always)]
 fn half_width_cosine<S: Simd>(simd: S, square: Lanes<S>, length: f32, disks: &GrownDisks) -> Lanes<S> {
     let &GrownDisks { fore, wrist, .. } = disks;

@@ -4,13 +4,13 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use crate::GridAxis;
 
-/// Marks the rows (cells of θ2) in which the direction of the upper arm lies within `lo..=hi` for some θ2; angles of
-/// directions in the shoulder's frame (x outward, y down), radians.
+/// Marks the rows (cells of θ2) in which the direction of the upper arm is within `lo..=hi` for some θ2; directions are
+/// angles in the shoulder's frame (x outward, y down), radians.
 pub(super) fn mark_rows(shoulder: &GridAxis, lo: f64, hi: f64, full_rows: &mut [u16]) {
     if hi - lo >= TAU {
         return mark_cells(0, shoulder.count() - 1, full_rows);
     }
-    // θ2 = 0 is upward, the direction −π/2.
+    // θ2 = 0 is upward, which is the direction −π/2.
     let (lo, hi) = (lo + FRAC_PI_2, hi + FRAC_PI_2);
     let turn = TAU * (lo / TAU).round();
     let (lo, hi) = (lo - turn, hi - turn);

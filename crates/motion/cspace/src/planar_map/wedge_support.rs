@@ -1,20 +1,20 @@
-//! Support distances, in directions of the plane, of the part of a grown solid that lies in the wedge.
+//! Support distances, in directions of the plane, of the part of a grown solid that is inside the wedge.
 //!
-//! The wedge of one side of the base axis is `|y| ≤ t·x`. For any `m ≥ 0` the support distance of the whole grown solid in
-//! the direction `u + m·(t, ±1, 0)` bounds the support distance in `u` of the part in the wedge (the wedge's points have
-//! `t·x ± y ≥ 0`), and the least of these bounds is the support distance itself (convex duality). So an early stop, or a
-//! rounding, only makes the outline larger.
+//! The wedge on one side of the base axis is `|y| ≤ t·x`. For any `m ≥ 0`, the support distance of the whole grown
+//! solid in the direction `u + m·(t, ±1, 0)` is an upper bound of the support distance in `u` of the part inside the
+//! wedge (the wedge's points have `t·x ± y ≥ 0`). The least of these bounds is the support distance itself (convex
+//! duality). Therefore an early stop or a rounding error only enlarges the outline.
 
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask};
 
 use super::plane_solid::{LinearPiece, PlaneSolid, TiltedDirections};
 use super::simd_math::{Lanes, mad, splat};
 
-/// Directions tilt at most this far out of the plane (tangent).
+/// Largest tilt of directions out of the plane (tangent).
 const MAX_TILT: f32 = 24.0;
-/// Tilt at which the first slope is evaluated: within the plane, equally distant corners would hide it.
+/// Tilt at which the first slope is evaluated: in the plane itself, equally distant corners would hide the slope.
 const MIN_TILT: f32 = 2e-5;
-/// Linear pieces that are evaluated; a box has at most four.
+/// Number of evaluated linear pieces; a box has at most four.
 const MAX_PIECES: usize = 3;
 
 /// The curved part: the support distance of a ball, `radius·√(1 + 2·b·m + c·m²)`.
@@ -76,7 +76,7 @@ pub(super) fn support_distance<S: Simd, B: PlaneSolid>(
     let mut directions = TiltedDirections { x, z, lean: splat(simd, lean), side: one };
     let ball = BallSupport::new(simd, &directions, radius);
     let start = splat(simd, MIN_TILT);
-    // On which side does the farthest point lie outside the wedge?
+    // The side of the wedge beyond which the farthest point is.
     let curved = ball.slope(simd, start);
     let right = solid.linear_piece(simd, &directions, start);
     directions.side = -one;
@@ -92,7 +92,7 @@ pub(super) fn support_distance<S: Simd, B: PlaneSolid>(
     untilted.min(tilted_bound(simd, solid, &directions, &ball, lower))
 }
 
-/// The least bound found: between a piece that still falls and one that rises, the next `m` is where both together are
+/// Searches the least bound: between a falling and a rising piece, the next `m` is where the two together are
 /// least.
 #[inline(always)]
 fn tilted_bound<S: Simd, B: PlaneSolid>(
@@ -130,7 +130,7 @@ mod tests {
     use super::*;
     use crate::planar_map::plane_solid::PlaneBox;
 
-    /// The same bound by evaluating many tilts in f64.
+    /// The least bound computed by evaluating many tilts in f64.
     fn brute_force(corners: &[Vec3], [x, z]: [f64; 2], lean: f64, radius: f64) -> f64 {
         let mut best = f64::INFINITY;
         for i in -4000..=4000 {
@@ -158,7 +158,7 @@ mod tests {
                     support_distance(simd, &solid, u, lean as f32, 0.2).to_array()[0]
                 });
                 let slow = brute_force(&corners, [x, z], lean, 0.2);
-                // The samples are coarse: their minimum is a little above the least bound.
+                // The samples are coarse: their minimum is slightly above the least bound.
                 let size = 1.0 + half[0] + half[1] + half[2];
                 let off = (f64::from(fast) - slow) / size;
                 assert!(off > -1e-3 && off < 2e-5, "{at:?} turned {turn}, lean {lean}, ({x}, {z}): {fast}, not {slow}");

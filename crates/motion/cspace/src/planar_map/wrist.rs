@@ -1,4 +1,4 @@
-//! The wrist's sphere against its outline, sixteen rows at a time.
+//! The wrist's sphere and its outline, sixteen rows at a time.
 
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask};
 
@@ -10,13 +10,13 @@ use super::row_culling::RowCulling;
 use super::simd_math::{Lanes, mad, splat};
 use crate::bits::ones;
 
-/// Where the wrist, on its circle about the elbow, enters and leaves its outline, sixteen rows.
+/// Points at which the wrist, on its circle about the elbow, enters and leaves its outline, for sixteen rows.
 pub(super) struct WristCrossings<S: Simd> {
-    /// Never outside.
+    /// Rows in which the wrist is never outside.
     pub all: Mask<S>,
-    /// The elbow is inside: the arc may be longer than half a turn.
+    /// Rows with the elbow inside: the arc may be longer than half a turn.
     pub around: Mask<S>,
-    /// Rows with one arc, or whose arcs are all between these points.
+    /// Rows with one arc, or with several arcs that are all between these points.
     pub hit: Mask<S>,
     pub lo: Points<S>,
     pub hi: Points<S>,
@@ -38,7 +38,8 @@ impl<S: Simd> CrossedLine<S> {
         self.far = rows.select(far, self.far);
     }
 
-    /// The point on the circle and the line, relative to the elbow; `side` is 1 at the line's far end, −1 at its near end.
+    /// The intersection of circle and line, relative to the elbow; `side` is 1 at the line's far end, −1 at its near
+    /// end.
     #[inline(always)]
     fn point(&self, simd: S, elbow: Points<S>, length: f32, side: f32) -> Points<S> {
         let [x, y] = self.normal;
@@ -54,7 +55,7 @@ fn line<S: Simd>(simd: S, normals: &OutlineNormals, outline: &Outline, k: usize)
     [splat(simd, normals.x[k]), splat(simd, normals.y[k]), splat(simd, outline.far[k])]
 }
 
-/// The foot of a perpendicular that lies this near to a line's corner counts as between the corners, metres.
+/// Distance from a line's corner up to which the foot of a perpendicular counts as between the corners, metres.
 const CORNER_TOLERANCE_M: f32 = 1e-5;
 
 impl<S: Simd> WristCrossings<S> {
@@ -116,7 +117,7 @@ impl<S: Simd> WristCrossings<S> {
         wrist
     }
 
-    /// Foot of the perpendicular from the elbow on line `k`: its distance, and its place along the line.
+    /// Foot of the perpendicular from the elbow to line `k`: its distance, and its position along the line.
     #[inline(always)]
     fn foot(simd: S, outlines: &Outlines, k: usize, elbow: Points<S>) -> [Lanes<S>; 2] {
         let [x, y, far] = line(simd, &outlines.normals, &outlines.wrist, k);
@@ -129,7 +130,7 @@ impl<S: Simd> WristCrossings<S> {
         s(outline.from[k] - CORNER_TOLERANCE_M).simd_le(along) & along.simd_le(s(outline.to[k] + CORNER_TOLERANCE_M))
     }
 
-    /// Least distance of the elbow from a line, metres; below 0 outside.
+    /// Least distance of the elbow from a line, metres; below 0 outside the outline.
     #[inline(always)]
     fn distance_inside(simd: S, outlines: &Outlines, elbow: Points<S>) -> Lanes<S> {
         let (normals, outline) = (&outlines.normals, &outlines.wrist);

@@ -12,8 +12,8 @@ pub struct CellBox<'a> {
     pub last: &'a [u16],
 }
 
-/// Blocked cells as recursively bisected boxes: any number of axes, and memory that grows with the surface of the blocked
-/// region, 8 bytes for each split or box.
+/// Blocked cells as recursively bisected boxes, for any number of axes. The memory grows with the surface of the
+/// blocked region: 8 bytes for each split or box.
 ///
 /// ```
 /// use elbowroom_cspace::{GridAxis, RemainingJoints, RobotMapBuilder};
@@ -32,16 +32,16 @@ pub struct CellBox<'a> {
 #[derive(Debug, Clone, PartialEq)]
 pub struct BoxTree {
     pub(super) axes: Vec<GridAxis>,
-    /// Slabs along the first axis, in order: first cell, and the nodes.
+    /// Slabs along the first axis, in order: first cell and nodes.
     pub(super) slabs: Vec<(u16, Vec<Node>)>,
 }
 
-/// A box. The left half of a split is the next node, the right half the node of a number.
+/// A box. The left half of a split is the next node; the right half is the node with the given index.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Node {
     Free,
     Blocked,
-    /// Cells from `at` on are in the right half.
+    /// A split: cells from `at` on are in the right half.
     Split {
         axis: u8,
         at: u16,
@@ -83,8 +83,8 @@ impl BoxTree {
         &self.axes
     }
 
-    /// True if a configuration (rad or m, one value per axis) lies in a blocked cell, where it lies outside the limits,
-    /// and where the number of values is wrong.
+    /// Whether a configuration (rad or m, one value per axis) is in a blocked cell. Also true if it is outside the
+    /// limits or has the wrong number of values.
     pub fn is_blocked(&self, q: &[f64]) -> bool {
         if q.len() != self.axes.len() {
             return true;
@@ -99,7 +99,7 @@ impl BoxTree {
         self.is_blocked_cell(&cell[..q.len()])
     }
 
-    /// The same for a cell, by its number on each axis.
+    /// Whether a cell is blocked, given by its index on each axis.
     pub fn is_blocked_cell(&self, cell: &[u16]) -> bool {
         let outside = |(c, axis): (&u16, &GridAxis)| usize::from(*c) >= axis.count();
         if cell.len() != self.axes.len() || cell.iter().zip(&self.axes).any(outside) {
@@ -134,7 +134,7 @@ impl BoxTree {
         sum
     }
 
-    /// Calls `found` for every blocked box; no two overlap.
+    /// Calls `found` for every blocked box; boxes do not overlap.
     pub fn for_each_box(&self, mut found: impl FnMut(CellBox<'_>)) {
         let mut slabs = self.slabs.iter().peekable();
         let mut open = Vec::new();
@@ -162,7 +162,7 @@ impl BoxTree {
         }
     }
 
-    /// The blocked cells as a layer, `None` unless the axes are the grid's three.
+    /// Converts the blocked cells to a layer; `None` unless the axes are the grid's three axes.
     pub fn to_layer(&self, grid: &Grid) -> Option<Layer> {
         if self.axes != grid.axes() {
             return None;
@@ -180,7 +180,7 @@ impl BoxTree {
         Some(Layer { spans: merge_adjacent(spans) })
     }
 
-    /// Bytes on the heap.
+    /// Memory on the heap, bytes.
     pub fn bytes(&self) -> usize {
         self.slabs.iter().map(|(_, nodes)| nodes.len() * size_of::<Node>()).sum()
     }

@@ -1,4 +1,4 @@
-//! Builds maps of a robot, on threads.
+//! Builder of maps of a robot, on several threads.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -17,15 +17,15 @@ use super::settings::{MAX_JOINTS, RobotMapSettings, RobotMapStats};
 use super::subdivision::{NodeLimitReached, Slab, Subdivision};
 use crate::GridAxis;
 
-/// Most bisections of a cell for the boundary resolution: with many axes its boundary has many parts.
+/// Largest number of bisections of a cell for the boundary resolution: with many axes its boundary has many parts.
 const MAX_BISECTIONS: u32 = 24;
-/// Slabs per thread: slabs take unequal times.
+/// Number of slabs per thread: slabs take unequal times.
 const SLABS_PER_THREAD: usize = 8;
 
 /// Builds maps of one robot: any solids, any number of joints.
 ///
-/// A map holds contacts of the robot's links with obstacles; no self-collisions, and no contacts of links that none of the
-/// axes moves.
+/// A map contains contacts of the robot's links with obstacles. It does not contain self-collisions, or contacts of
+/// links that neither an axis of the map nor a swept joint moves.
 ///
 /// ```
 /// use elbowroom_cspace::{GridAxis, RemainingJoints, RobotMapBuilder};
@@ -50,11 +50,12 @@ pub struct RobotMapBuilder {
 }
 
 impl RobotMapBuilder {
-    /// For a robot with its base at `base_in_world`; `joints[i]` is the index of axis `i` among the joint values.
+    /// Creates a builder for a robot with its base at `base_in_world`; `joints[i]` is the index of axis `i` among the
+    /// joint values.
     ///
     /// # Errors
-    /// Joints that the robot does not have, too many of them, fixed values that do not fit, solids or a base whose poses
-    /// are not finite.
+    /// The robot does not have a joint, there are too many joints, the fixed values do not fit, or the poses of solids
+    /// or base are not finite.
     pub fn new(
         robot: &Robot,
         base_in_world: Pose,
@@ -70,7 +71,7 @@ impl RobotMapBuilder {
         Ok(Self { chain, pieces, axes: axes.to_vec(), settings: RobotMapSettings::default() })
     }
 
-    /// With other settings than the default ones.
+    /// Replaces the default settings.
     #[must_use]
     pub fn with_settings(self, settings: RobotMapSettings) -> Self {
         Self { settings, ..self }
@@ -81,24 +82,25 @@ impl RobotMapBuilder {
         &self.axes
     }
 
-    /// The frame of the first axis in the world, for [`ObstacleModel::solids`](crate::ObstacleModel::solids): its z lies
-    /// along the axis.
+    /// The frame of the first axis in the world, for [`ObstacleModel::solids`](crate::ObstacleModel::solids): its z
+    /// direction is along the axis.
     pub fn base_in_world(&self) -> Pose {
         self.chain.base_axis()
     }
 
-    /// The map of some solids, placed in the world: blocks every cell in whose box any configuration touches one of them.
+    /// Builds the map of some solids, placed in the world: blocks every cell whose box contains a configuration that
+    /// touches one of them.
     ///
     /// # Errors
-    /// A solid whose pose or size is not finite, or a map above the memory limit.
+    /// The pose or size of a solid is not finite, or the map is above the memory limit.
     pub fn build(&self, obstacles: &[(Shape, Pose)]) -> Result<BoxTree, RobotMapError> {
         self.build_with_stats(obstacles).map(|(tree, _)| tree)
     }
 
-    /// The same; calls `progress` from any thread with the share that is done, from 0 to 1.
+    /// Like [`build`](Self::build); calls `progress` from any thread with the finished fraction, 0 to 1.
     ///
     /// # Errors
-    /// As [`RobotMapBuilder::build`].
+    /// The errors of [`RobotMapBuilder::build`].
     pub fn build_with_progress(
         &self,
         obstacles: &[(Shape, Pose)],
@@ -107,10 +109,10 @@ impl RobotMapBuilder {
         self.build_all(obstacles, progress).map(|(tree, _)| tree)
     }
 
-    /// The same with statistics.
+    /// Like [`build`](Self::build), with statistics.
     ///
     /// # Errors
-    /// As [`RobotMapBuilder::build`].
+    /// The errors of [`RobotMapBuilder::build`].
     pub fn build_with_stats(&self, obstacles: &[(Shape, Pose)]) -> Result<(BoxTree, RobotMapStats), RobotMapError> {
         self.build_all(obstacles, &|_| ())
     }
@@ -143,7 +145,7 @@ impl RobotMapBuilder {
         Ok((tree, stats))
     }
 
-    /// What all threads share.
+    /// The shared task of all threads.
     pub(super) fn task<'a>(
         &'a self,
         obstacles: &'a [PlacedObstacle],
@@ -168,7 +170,7 @@ impl RobotMapBuilder {
         self.settings.threads.unwrap_or_else(available).max(1)
     }
 
-    /// Bisections of a cell, per number of axes counted from the first.
+    /// Number of bisections of a cell, per number of axes counted from the first.
     fn bisections(&self) -> [u32; MAX_JOINTS + 1] {
         let mut out = [0; MAX_JOINTS + 1];
         for (i, axis) in self.axes.iter().enumerate() {
@@ -181,12 +183,12 @@ impl RobotMapBuilder {
         out
     }
 
-    /// True if swept volumes are moved by no axis of the map.
+    /// Whether the robot has swept volumes that no axis of the map moves.
     pub(super) fn has_static_solids(&self) -> bool {
         !self.pieces.static_solids.is_empty()
     }
 
-    /// True if an obstacle touches a swept volume that no axis of the map moves.
+    /// Whether an obstacle touches a swept volume that no axis of the map moves.
     pub(super) fn is_blocked_throughout(&self, obstacles: &[PlacedObstacle]) -> bool {
         let touches = |(shape, in_world): &(Shape, Pose), obstacle: &PlacedObstacle| {
             collides(shape, in_world, &obstacle.shape, &obstacle.in_world)
@@ -209,7 +211,7 @@ impl RobotMapBuilder {
             .collect()
     }
 
-    /// Closed meshes of the robot, each with the obstacles that fit inside.
+    /// Pairs of the robot's closed meshes with the obstacles that fit inside.
     pub(super) fn containment_candidates(&self, obstacles: &[PlacedObstacle]) -> Vec<ContainmentCandidate> {
         let mut out = Vec::new();
         for (closed_mesh, ClosedMesh { piece, .. }) in self.pieces.closed_meshes.iter().enumerate() {

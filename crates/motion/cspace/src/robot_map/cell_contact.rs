@@ -1,4 +1,4 @@
-//! Cells that are not proven free at once: bisected until a contact is found or excluded.
+//! Cells that are not proven free immediately: bisected until a contact is found or excluded.
 
 use elbowroom_proximity::DistanceSettings;
 
@@ -6,11 +6,11 @@ use super::motion_bound::MotionBound;
 use super::pair_evaluator::{JointBox, PairEvaluator, PieceObstaclePair};
 use super::settings::MAX_JOINTS;
 
-/// A corner of the box is checked where it is nearer by at least this share of the distance, to first order.
+/// Smallest decrease of the distance, to first order, as a fraction, for which a corner of the box is checked.
 const CORNER_GAIN: f64 = 0.8;
 
 impl PairEvaluator<'_> {
-    /// True if a piece that `depth` axes move may touch in a cell, out of some pairs.
+    /// Whether some of these pairs, with a piece that `depth` axes move, may touch in a cell.
     pub fn may_touch_in_cell(&mut self, cell: &JointBox, pairs: &[PieceObstaclePair], depth: usize) -> bool {
         if self.contains_obstacle(depth, None) {
             return true;
@@ -19,14 +19,14 @@ impl PairEvaluator<'_> {
         let pieces = &self.task.pieces.pieces;
         let mut here: Vec<PieceObstaclePair> =
             pairs.iter().filter(|pair| pieces[pair.piece as usize].depth == depth).copied().collect();
-        // The nearest is the most likely to touch, and one contact is enough.
+        // The nearest pair is the most likely to touch, and one contact is enough.
         here.sort_by(|a, b| a.distance.total_cmp(&b.distance));
         let touches = here.into_iter().any(|pair| self.may_touch(pair, cell, None, self.task.bisections[depth]));
         self.set_configuration(&cell.center);
         touches
     }
 
-    /// True if a pair may touch in a box: checks the centre, then the corner that is nearer to first order, then both
+    /// Whether a pair may touch in a box: checks the centre, then the corner that is nearer to first order, then both
     /// halves.
     fn may_touch(
         &mut self,
@@ -42,7 +42,7 @@ impl PairEvaluator<'_> {
         let bound = MotionBound::new(piece, task.chain, &self.state);
         let displacement = bound.max_displacement(piece, &joint_box.half);
         let in_world = self.in_world(pair.piece as usize);
-        // Where the solids overlap, a collision query is the cheaper one.
+        // If the solids overlap, a collision query is cheaper.
         if checked_corner.is_none() {
             self.stats.collision_queries += 1;
             if self.workspace.collides(&piece.shape, &in_world, &obstacle.shape, &obstacle.in_world) {
@@ -71,7 +71,7 @@ impl PairEvaluator<'_> {
             corner[axis] += joint_box.half[axis] * if speed < 0.0 { -1.0 } else { 1.0 };
             displacements[axis] = bound.axis_displacement(piece, axis, &joint_box.half);
         }
-        // Where the corner is little nearer, no contact is to be expected.
+        // If the corner is hardly nearer, a contact is unlikely.
         let is_worthwhile = nearer > CORNER_GAIN * gap.distance;
         if is_worthwhile && checked_corner.is_none_or(|checked| !is_same_configuration(checked, &corner)) {
             self.set_configuration(&corner);
@@ -98,7 +98,7 @@ impl PairEvaluator<'_> {
     }
 }
 
-/// True if two configurations are the same but for rounding.
+/// Whether two configurations are equal up to rounding.
 fn is_same_configuration(a: &[f64; MAX_JOINTS], b: &[f64; MAX_JOINTS]) -> bool {
     a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 1e-9)
 }

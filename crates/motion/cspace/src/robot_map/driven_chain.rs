@@ -1,4 +1,4 @@
-//! Which joints of a robot are axes of the map, and which of them move each link.
+//! The joints of a robot that are axes of the map, and the axes that move each link.
 
 use elbowroom_kinematics::{Chain, ChainState, JointId, JointKind, LinkId};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
@@ -12,22 +12,22 @@ use crate::GridAxis;
 pub enum RemainingJoints<'a> {
     /// Any value within their limits: the links beyond them are replaced by the volume that they sweep.
     Swept,
-    /// Fixed at these joint values (rad or m, one for each joint of the robot).
+    /// Fixed joint values (rad or m, one for each joint of the robot).
     Fixed(&'a [f64]),
 }
 
 /// A joint of the chain that an axis of the map moves.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct DrivingJoint {
-    /// Number of the map's axis.
+    /// Index of the map's axis.
     pub axis: usize,
-    /// The joint's frame is that of its child.
+    /// The joint's child; its frame is the joint's frame.
     pub child: LinkId,
     /// Unit vector in the child's frame.
     pub along: Vec3,
-    /// True for a rotation, false for a translation.
+    /// Whether the joint rotates; otherwise it translates.
     pub turns: bool,
-    /// Of the axis's value.
+    /// Multiplier of the axis's value.
     pub multiplier: f64,
 }
 
@@ -48,13 +48,13 @@ pub(super) struct SweptJoint {
 #[derive(Debug, Clone)]
 pub(super) struct LinkJoints {
     pub driving: Vec<DrivingJoint>,
-    /// Joints of any value, from the root on, and the fixed ones between and behind them.
+    /// Joints that may have any value, from the root on, and the fixed joints between and after them.
     pub swept: Vec<SweptJoint>,
-    /// The last link before the first swept joint: it moves with the map alone.
+    /// The last link before the first swept joint: only axes of the map move it.
     pub carrier: LinkId,
 }
 
-/// A chain of which the axes of a map move some joints.
+/// A chain in which the axes of a map move some joints.
 #[derive(Debug, Clone)]
 pub(super) struct DrivenChain {
     pub chain: Chain,
@@ -97,7 +97,7 @@ impl DrivenChain {
         Ok(Self { chain: chain.clone(), base_in_world, joints: joints.to_vec(), ranges, fixed_values, links })
     }
 
-    /// A state for [`DrivenChain::set_axes`].
+    /// Creates a state for [`DrivenChain::set_axes`].
     pub fn state(&self) -> ChainState {
         let mut state = ChainState::new(&self.chain);
         state.q.copy_from_slice(&self.fixed_values);
@@ -113,14 +113,14 @@ impl DrivenChain {
         self.chain.forward(state);
     }
 
-    /// A frame on the first axis, z along it.
+    /// A frame on the first axis, with z along it.
     pub fn base_axis(&self) -> Pose {
         let driving = self.links.iter().flat_map(|l| &l.driving);
         let Some(first) = driving.into_iter().find(|joint| joint.axis == 0) else { return self.base_in_world };
         let child = self.link_in_world(&self.state(), first.child);
         let along = child.transform_vector(first.along);
         let base = self.base_in_world;
-        // The base's own orientation where the axis is its z: angles are then those of the joint.
+        // The base's own orientation if the axis is its z: then angles are the angles of the joint.
         let upright = base.transform_vector(Vec3::Z).dot(along) > 1.0 - 1e-12;
         let rotation = if upright { base.rotation } else { Rotation::from_z(along) };
         Pose::new(rotation, child.translation)
@@ -131,7 +131,7 @@ impl DrivenChain {
     }
 }
 
-/// Joint values at the centre of their ranges; 0 for unlimited joints.
+/// Joint values at the centres of their ranges; 0 for unlimited joints.
 fn range_centers(chain: &Chain) -> Vec<f64> {
     let center = |(low, high): (f64, f64)| if low.is_finite() && high.is_finite() { 0.5 * (low + high) } else { 0.0 };
     chain.lower().into_iter().zip(chain.upper()).map(center).collect()
@@ -152,7 +152,7 @@ fn link_joints(chain: &Chain, link: LinkId, axes: &[usize], sweeps: bool) -> Lin
                 out.driving.push(DrivingJoint { axis, child: joint.child, along: joint.axis, turns, multiplier });
                 out.carrier = joint.child;
             }
-            // Behind a swept joint, an axis of the map is swept, too.
+            // After a swept joint, an axis of the map is also swept.
             Some(_) => out.swept.push(swept_joint(chain, id, multiplier, offset)),
             None if sweeps && value.is_some() => out.swept.push(swept_joint(chain, id, multiplier, offset)),
             None if out.swept.is_empty() => out.carrier = joint.child,
@@ -171,7 +171,7 @@ fn swept_joint(chain: &Chain, id: JointId, multiplier: f64, offset: f64) -> Swep
     SweptJoint { child: joint.child, parent: joint.parent, origin: joint.origin, along: joint.axis, slide }
 }
 
-/// A joint that does not move, between or behind swept ones: a prismatic joint of no range.
+/// A joint that does not move, between or after swept joints: a prismatic joint with a range of 0.
 fn fixed_joint(chain: &Chain, id: JointId) -> SweptJoint {
     let joint = &chain.joints()[id.0];
     SweptJoint { child: joint.child, parent: joint.parent, origin: joint.origin, along: Vec3::Z, slide: Some([0.0; 2]) }

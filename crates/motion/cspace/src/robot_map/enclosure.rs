@@ -8,28 +8,29 @@ use elbowroom_spatial::{Pose, Vec3};
 use super::driven_chain::SweptJoint;
 use crate::cuboid;
 
-/// Sides of the prism around a solid of revolution.
+/// Number of sides of the prism around a solid of revolution.
 const PRISM_SIDES: u32 = 24;
 
 /// A bounding volume of the solid, in the frame of the current joint.
 pub(super) struct Enclosure {
-    /// The solid lies within `margin` of the convex hull of these points.
+    /// Points: the solid is within `margin` of their convex hull.
     pub points: Vec<Vec3>,
     pub margin: f64,
-    /// It lies within this ball, too.
+    /// Centre of a ball that also contains the solid.
     pub center: Vec3,
     pub radius: f64,
 }
 
-/// Encloses all poses of a solid of the last link: a shape in the frame of the link before the first joint. `None` for an
-/// unbounded solid.
+/// Encloses all poses of a solid of the last link in a shape in the frame of the link before the first joint. `None`
+/// for an unbounded solid.
 pub(super) fn swept_enclosure(shape: &Shape, in_link: Pose, joints: &[SweptJoint]) -> Option<(Shape, Pose)> {
     let mut all = Enclosure::new(shape, in_link)?;
     for (at, joint) in joints.iter().enumerate().rev() {
         if let Some(ends) = joint.slide {
             all.sweep_translation(joint.along, ends);
         } else {
-            // With its centre where this axis meets the one before, the ball does not grow by the rotation about that one.
+            // With its centre where this axis meets the previous one, the ball does not grow by the rotation about the
+            // previous axis.
             let before = joints[..at].last().filter(|j| j.slide.is_none() && j.child == joint.parent);
             all.sweep_rotation(joint.along, before.map(|b| nearest_on_axis(joint, b)));
         }
@@ -38,9 +39,9 @@ pub(super) fn swept_enclosure(shape: &Shape, in_link: Pose, joints: &[SweptJoint
     all.shape()
 }
 
-/// The point of a joint's axis nearest to the axis of the joint before it, as a length along it.
+/// The point of a joint's axis nearest to the previous joint's axis, as a length along the axis.
 fn nearest_on_axis(joint: &SweptJoint, before: &SweptJoint) -> f64 {
-    // In the parent's frame: the axis before passes through its origin.
+    // In the parent's frame, the previous axis passes through the origin.
     let (o, a, b) = (joint.origin.translation, joint.origin.transform_vector(joint.along), before.along);
     let cos = a.dot(b);
     let sin2 = 1.0 - cos * cos;
@@ -48,7 +49,7 @@ fn nearest_on_axis(joint: &SweptJoint, before: &SweptJoint) -> f64 {
 }
 
 impl Enclosure {
-    /// Of a solid placed in a frame; `None` for an unbounded solid.
+    /// Encloses a solid placed in a frame; `None` for an unbounded solid.
     pub fn new(shape: &Shape, in_link: Pose) -> Option<Self> {
         let (points, margin) = match shape {
             Shape::Sphere(s) => (vec![Vec3::ZERO], s.radius),
@@ -83,7 +84,7 @@ impl Enclosure {
         self.radius += 0.5 * (high - low);
     }
 
-    /// By a full turn; the ball's centre is put at `center_at` along the axis, if given.
+    /// Sweeps the enclosure by a full turn; places the ball's centre at `center_at` along the axis, if given.
     fn sweep_rotation(&mut self, along: Vec3, center_at: Option<f64>) {
         let height_and_radius = |p: Vec3| (p.dot(along), (p - along * p.dot(along)).length());
         let (mut low, mut high, mut wide) = (f64::INFINITY, f64::NEG_INFINITY, 0.0_f64);
@@ -102,7 +103,7 @@ impl Enclosure {
         self.margin = 0.0;
     }
 
-    /// The hull or the ball, whichever is smaller.
+    /// The smaller one of hull and ball.
     fn shape(self) -> Option<(Shape, Pose)> {
         // Enlarged for rounding.
         let radius = self.radius * (1.0 + 1e-9);
@@ -124,7 +125,7 @@ impl Enclosure {
 fn prism(along: Vec3, ends: [f64; 2], radius: f64) -> Vec<Vec3> {
     let u = along.any_perpendicular();
     let v = along.cross(u);
-    // Corners lie outside the cylinder, so that the sides touch it; enlarged for rounding.
+    // Corners are outside the cylinder, so that the sides touch it; enlarged for rounding.
     let out = radius / (PI / f64::from(PRISM_SIDES)).cos() * (1.0 + 1e-9);
     let corner = |i: u32| (2.0 * PI * f64::from(i) / f64::from(PRISM_SIDES)).sin_cos();
     let rounding = 1e-9 * (ends[1] - ends[0]).abs();
@@ -139,7 +140,7 @@ mod tests {
 
     use super::*;
 
-    /// A revolute joint.
+    /// Creates a revolute joint.
     fn revolute(at: usize, origin: Pose, along: Vec3) -> SweptJoint {
         SweptJoint { child: LinkId(at + 1), parent: LinkId(at), origin, along, slide: None }
     }

@@ -1,13 +1,14 @@
 //! Bound of the motion of a piece within a box of joint space.
 //!
-//! From the centre of the box to any point of it, at constant rates in a unit of time, a point x of the piece starts with the
-//! velocity V = Σ δᵢ·vᵢ(x), where vᵢ(x) = aᵢ × (x − oᵢ) for a joint that rotates, aᵢ for a prismatic one. With x = c + r and
-//! |r| ≤ R (the ball around the piece)
+//! From the centre of the box to any of its points, at constant rates in a unit of time, a point x of the piece starts
+//! with the velocity V = Σ δᵢ·vᵢ(x). Here vᵢ(x) = aᵢ × (x − oᵢ) for a rotating joint and aᵢ for a prismatic one. With x
+//! = c + r and |r| ≤ R (the ball around the piece)
 //!
 //! |V|  ≤  |Σ δᵢ·vᵢ(c)| + R·|Σ δᵢ·aᵢ|,   |Σ δᵢ·uᵢ|²  ≤  Σ hᵢ²|uᵢ|² + 2 Σ_{i<j} hᵢ·hⱼ·|uᵢ·uⱼ|   for all |δᵢ| ≤ hᵢ.
 //!
-//! The velocity changes by no more than the growth Σⱼ (hⱼ + 2 Σ_{i<j} hᵢ)·hⱼ·Lⱼ in that time (derived in the scene's
-//! `sweep/README.md`; Lⱼ bounds the distance from axis j), which adds half of it. No point moves farther than Σ hⱼ·Lⱼ, either.
+//! In that time the velocity changes at most by the growth Σⱼ (hⱼ + 2 Σ_{i<j} hᵢ)·hⱼ·Lⱼ (derived in the scene's
+//! `sweep/README.md`; Lⱼ bounds the distance from axis j), which adds half of it to the displacement. Also, no point
+//! moves farther than Σ hⱼ·Lⱼ.
 
 use elbowroom_kinematics::ChainState;
 use elbowroom_kinematics::motion_bound::{JointRate, SpeedBound};
@@ -29,7 +30,7 @@ pub(super) struct MotionBound {
     depth: usize,
 }
 
-/// Accuracy of distances, metres: a smaller gap counts as none.
+/// Accuracy of distances, metres: a smaller gap counts as 0.
 const DISTANCE_TOLERANCE_M: f64 = 1e-9;
 
 impl MotionBound {
@@ -50,7 +51,7 @@ impl MotionBound {
         bound
     }
 
-    /// Bound of the displacement of any point of the piece within a box of these half widths, metres.
+    /// Bound of the displacement of any point of the piece within a box with these half widths, metres.
     pub fn max_displacement(&self, piece: &RobotPiece, half: &[f64]) -> f64 {
         let (cap, growth) = path_length_and_growth(piece, half);
         let linear = max_weighted_sum(&self.linear, half, self.depth);
@@ -58,7 +59,7 @@ impl MotionBound {
         cap.min(first_order + 0.5 * growth) * (1.0 + 1e-9) + DISTANCE_TOLERANCE_M
     }
 
-    /// Bound of the displacement of one point of the piece (in the world) within a box of these half widths, metres.
+    /// Bound of the displacement of one point of the piece (in the world) within a box with these half widths, metres.
     pub fn max_point_displacement(&self, piece: &RobotPiece, half: &[f64], p: Vec3) -> f64 {
         let mut linear = self.linear;
         for (axis, v) in linear.iter_mut().enumerate().take(self.depth) {
@@ -73,7 +74,7 @@ impl MotionBound {
         half[axis] * (self.linear[axis].length() + piece.radius * self.angular[axis].length())
     }
 
-    /// Velocity, per unit of an axis, of a point of the piece (in the world).
+    /// Velocity of a point of the piece (in the world) per unit of an axis.
     pub fn point_velocity(&self, axis: usize, p: Vec3) -> Vec3 {
         self.linear[axis] + self.angular[axis].cross(p - self.center)
     }
@@ -85,7 +86,8 @@ fn path_length_and_growth(piece: &RobotPiece, half: &[f64]) -> (f64, f64) {
         let rate = half[joint.axis] * joint.multiplier.abs();
         if joint.turns { JointRate::Revolute { rate, lever_m: *lever_m } } else { JointRate::Prismatic { rate } }
     };
-    // In a unit of time the path is as long as the speed, and the velocity changes by the acceleration.
+    // In a unit of time, the length of the path equals the speed, and the change of the velocity equals the
+    // acceleration.
     let bound = SpeedBound::of_joints(piece.joints.iter().zip(&piece.lever_arms).map(joint_rate));
     (bound.speed, bound.acceleration)
 }

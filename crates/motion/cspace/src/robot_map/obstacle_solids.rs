@@ -15,10 +15,10 @@ use crate::cuboid::Bisection;
 const MAX_WEDGE_RAD: f64 = PI / 12.0;
 
 impl ObstacleModel {
-    /// Solids of this model that together enclose an obstacle (placed in the world). `base` is the frame of the base axis:
-    /// `box` is aligned with it, and `slices` are wedges about its z.
+    /// Computes solids of this model that together enclose an obstacle, placed in the world. `base` is the frame of the
+    /// base axis: `box` is aligned with it, and `slices` are wedges about its z axis.
     ///
-    /// Half spaces stay as they are.
+    /// Half spaces are returned unchanged.
     ///
     /// ```
     /// use elbowroom_cspace::ObstacleModel;
@@ -56,7 +56,7 @@ impl ObstacleModel {
     }
 }
 
-/// A sphere about the centre of a shape's bounding box, in its frame.
+/// A sphere around the centre of a shape's bounding box, in the shape's frame.
 fn enclosing_sphere(shape: &Shape) -> (Shape, Vec3) {
     if let Shape::Sphere(_) = shape {
         return (shape.clone(), Vec3::ZERO);
@@ -69,7 +69,7 @@ fn enclosing_sphere(shape: &Shape) -> (Shape, Vec3) {
     (Shape::Sphere(Sphere { radius: radius * (1.0 + 1e-12) }), center)
 }
 
-/// Spheres around those parts of the shape's bounding box that the shape intersects.
+/// Spheres around the parts of the shape's bounding box that the shape intersects.
 fn spheres(shape: &Shape, count: u32) -> Vec<(Shape, Vec3)> {
     let whole = shape.aabb(&Pose::IDENTITY);
     let mut parts = vec![(whole.center(), whole.extent() * 0.5)];
@@ -81,7 +81,7 @@ fn spheres(shape: &Shape, count: u32) -> Vec<(Shape, Vec3)> {
     }
     let holds = |(center, half): &(Vec3, Vec3)| {
         let part = Shape::Cuboid(Cuboid { half_extents: *half });
-        // With a tolerance, so that no surface falls between two parts.
+        // The tolerance ensures that no surface falls between two parts.
         within(&part, &Pose::from_translation(*center), shape, &Pose::IDENTITY, 1e-9 * half.length())
     };
     parts.retain(holds);
@@ -94,7 +94,7 @@ fn halves((center, half): (Vec3, Vec3)) -> [(Vec3, Vec3); 2] {
     [1.0, -1.0].map(|side| (center + offset * side, half))
 }
 
-/// Bounds of angle, radius and height about the base frame's z, as convex wedges; `None` if one has no volume.
+/// Bounds of angle, radius and height about the base frame's z axis, as convex wedges; `None` if a wedge has no volume.
 fn wedges(shape: &Shape, in_base: &Pose) -> Option<Vec<Shape>> {
     let SectorBounds { first, width, near, far, low, high } = SectorBounds::new(shape, in_base)?;
     let count = (width / MAX_WEDGE_RAD).ceil().max(1.0);

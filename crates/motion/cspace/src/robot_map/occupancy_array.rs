@@ -23,11 +23,11 @@ pub struct OccupancyArray {
 }
 
 impl OccupancyArray {
-    /// Most cells: 1 GiB.
+    /// Largest number of cells: 1 GiB.
     pub const MAX_CELLS: usize = 1 << 30;
 
-    /// The cells that any of some maps blocks; `None` if there are more than [`OccupancyArray::MAX_CELLS`], no memory
-    /// for them, or a map has other axes.
+    /// Computes the union of the cells that some maps block. `None` if there are more cells than
+    /// [`OccupancyArray::MAX_CELLS`], the memory is not available, or a map has other axes.
     pub fn new<'b>(axes: &[GridAxis], maps: impl IntoIterator<Item = &'b BoxTree>) -> Option<Self> {
         let shape: Vec<usize> = axes.iter().map(GridAxis::count).collect();
         let count = shape.iter().try_fold(1usize, |all, n| all.checked_mul(*n)).filter(|n| *n <= Self::MAX_CELLS)?;
@@ -81,7 +81,7 @@ impl OccupancyArray {
     /// Writes a `.npy` file: `uint8`, C order, 0 is free, 1 blocked (NumPy's format, version 1.0).
     ///
     /// # Errors
-    /// An error of the writer.
+    /// The writer failed.
     pub fn write_npy(&self, mut out: impl Write) -> io::Result<()> {
         out.write_all(&npy::header(&self.shape))?;
         out.write_all(&self.cells)?;

@@ -1,4 +1,4 @@
-//! One piece and one obstacle: farther apart than a threshold, or not proven to be.
+//! One piece and one obstacle: tests whether they are proven farther apart than a threshold.
 
 use elbowroom_proximity::advanced::{distance_upper_bound, is_farther_than};
 use elbowroom_proximity::{Shape, WarmStart, Workspace, separation_within};
@@ -6,8 +6,8 @@ use elbowroom_spatial::Pose;
 
 use super::placed_obstacle::PlacedObstacle;
 
-/// `None` if a piece is certainly farther from an obstacle than `threshold_m`, else an estimate of the distance. Between
-/// meshes the cheapest test comes first: one pair of triangles that is near enough decides.
+/// Returns `None` if a piece is certainly farther from an obstacle than `threshold_m`, otherwise an estimate of the
+/// distance. Between meshes the cheapest test is first: one pair of triangles that is near enough decides.
 pub(super) fn distance_within(
     workspace: &mut Workspace,
     shape: &Shape,
@@ -24,6 +24,6 @@ pub(super) fn distance_within(
     if metres <= threshold_m {
         return Some(metres);
     }
-    // If not farther, other triangles are near, or one mesh is inside the other.
+    // If the distance is not proven larger, other triangles are near, or one mesh is inside the other.
     (!is_farther_than(a, in_world, b, &obstacle.in_world, threshold_m, workspace)).then_some(threshold_m)
 }

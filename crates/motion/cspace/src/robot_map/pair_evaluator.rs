@@ -15,7 +15,7 @@ use super::robot_pieces::{ClosedMesh, RobotPieces};
 use super::settings::{MAX_JOINTS, RobotMapStats};
 use crate::GridAxis;
 
-/// No distance query where the distance in an enclosing box was below this share of the required one.
+/// Fraction of the required distance below which the distance in an enclosing box makes a new query pointless.
 const RECHECK_RATIO: f64 = 0.85;
 
 /// A piece of the robot and an obstacle that it may touch in the current box.
@@ -23,19 +23,19 @@ const RECHECK_RATIO: f64 = 0.85;
 pub(super) struct PieceObstaclePair {
     pub piece: u32,
     pub obstacle: u32,
-    /// Estimate of the distance, metres, from this box or one around it; infinite before the first query.
+    /// Estimate of the distance, metres, from this box or an enclosing one; infinite before the first query.
     pub distance: f64,
     pub warm_start: WarmStart,
 }
 
-/// A closed mesh of the robot and an obstacle that is small enough to be inside.
+/// A closed mesh of the robot and an obstacle small enough to be inside.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ContainmentCandidate {
     pub closed_mesh: u32,
     pub obstacle: u32,
 }
 
-/// What all threads share.
+/// Data shared by all threads.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SubdivisionTask<'a> {
     pub chain: &'a DrivenChain,
@@ -43,13 +43,13 @@ pub(super) struct SubdivisionTask<'a> {
     pub axes: &'a [GridAxis],
     pub obstacles: &'a [PlacedObstacle],
     pub containment_candidates: &'a [ContainmentCandidate],
-    /// How often a cell at the boundary is bisected, per number of axes that move a piece.
+    /// Number of bisections of a cell at the boundary, per number of axes that move a piece.
     pub bisections: [u32; MAX_JOINTS + 1],
-    /// Checks of a cell of three axes.
+    /// Number of checks of a cell of three axes.
     pub max_checks_per_cell: u32,
-    /// Most nodes of all slabs together.
+    /// Largest number of nodes of all slabs together.
     pub max_nodes: usize,
-    /// Nodes of the finished slabs.
+    /// Number of nodes of the finished slabs.
     pub used_nodes: &'a AtomicUsize,
 }
 
@@ -68,20 +68,20 @@ impl JointBox {
             let low = axis.border(cells.first[i].into());
             let high = axis.border(cells.end[i].into()).min(axis.max()).max(low);
             joint_box.center[i] = 0.5 * (low + high);
-            // A value on the border belongs to one of two cells: both include it.
+            // A value on the border belongs to one of two cells; both cells include it.
             joint_box.half[i] = 0.5 * (high - low) + 1e-8 * axis.step();
         }
         joint_box
     }
 }
 
-/// Evaluates pairs; one per thread.
+/// Evaluates pairs; use one evaluator per thread.
 pub(super) struct PairEvaluator<'a> {
     pub task: SubdivisionTask<'a>,
     pub state: ChainState,
     pub workspace: Workspace,
     pub stats: RobotMapStats,
-    /// Checks left for the current cell.
+    /// Number of checks left for the current cell.
     pub checks_left: u32,
 }
 
@@ -106,19 +106,19 @@ impl<'a> PairEvaluator<'a> {
         self.task.chain.link_in_world(&self.state, piece.link) * piece.in_link
     }
 
-    /// True if a pair is proven apart in the whole box, in which the piece moves no farther than `displacement`; what is
-    /// learnt of the pair is kept.
+    /// Whether a pair is proven apart in the whole box, in which the piece moves at most by `displacement`. Stores the
+    /// distance found for the pair.
     pub fn is_apart(&mut self, pair: &mut PieceObstaclePair, bound: &MotionBound, displacement: f64) -> bool {
         let piece = &self.task.pieces.pieces[pair.piece as usize];
         let obstacle = &self.task.obstacles[pair.obstacle as usize];
         if obstacle.min_distance(bound.center) - piece.radius > displacement {
             return true;
         }
-        // Certainly not farther apart than that.
+        // The pair is certainly not farther apart than the displacement.
         if obstacle.points.first().is_some_and(|p| p.distance(bound.center) + piece.radius <= displacement) {
             return false;
         }
-        // It was nearer in an enclosing box: a query is unlikely to prove it apart.
+        // The pair was nearer in an enclosing box: a query is unlikely to prove it apart.
         if pair.distance < RECHECK_RATIO * displacement {
             return false;
         }
@@ -130,7 +130,8 @@ impl<'a> PairEvaluator<'a> {
         found.is_none()
     }
 
-    /// True if the nearest of some pairs is in contact in the whole box, as one solid is so deep inside the other.
+    /// Whether the nearest of some pairs is in contact in the whole box, because one solid is deep enough inside the
+    /// other.
     pub fn is_in_contact_throughout(&mut self, joint_box: &JointBox, pairs: &[PieceObstaclePair]) -> bool {
         let Some(&nearest) = pairs.iter().min_by(|a, b| a.distance.total_cmp(&b.distance)) else { return false };
         let piece = &self.task.pieces.pieces[nearest.piece as usize];
@@ -148,8 +149,8 @@ impl<'a> PairEvaluator<'a> {
             || obstacle.points.iter().any(|&p| stays(depth_inside(&piece.shape, &in_world, p), p))
     }
 
-    /// True if an obstacle is inside a link that no more than `depth` axes move, at the current configuration, without
-    /// touching its surface. With a box, only where it is so deep inside that it stays there in the whole box.
+    /// Whether an obstacle is inside a link that at most `depth` axes move, at the current configuration, without
+    /// touching its surface. With a box: only if the obstacle is deep enough inside to stay there in the whole box.
     pub fn contains_obstacle(&self, depth: usize, throughout: Option<&JointBox>) -> bool {
         self.task.containment_candidates.iter().any(|candidate| {
             let ClosedMesh { mesh, piece } = &self.task.pieces.closed_meshes[candidate.closed_mesh as usize];
@@ -159,7 +160,7 @@ impl<'a> PairEvaluator<'a> {
             let link = self.task.chain.link_in_world(&self.state, piece.link);
             let center = link.transform_point(piece.center);
             let mesh_in_world = link * piece.in_link;
-            // Surfaces that do not touch: a connected component is inside as a whole or not at all.
+            // The surfaces do not touch, so a connected component is inside as a whole or not at all.
             let inside = |p: &Vec3| {
                 let near = center.distance(*p) <= piece.radius * (1.0 + 1e-9);
                 near && mesh.contains(mesh_in_world.inverse_transform_point(*p))

@@ -10,13 +10,13 @@ use crate::ConvexObstacle;
 /// An obstacle, placed in the world.
 #[derive(Debug, Clone)]
 pub(super) struct PlacedObstacle {
-    /// In the form of [`as_mesh`].
+    /// The shape, converted by [`as_mesh`].
     pub shape: Shape,
-    /// In the form given.
+    /// The shape as given.
     original: Shape,
     pub in_world: Pose,
     pub bounds: Aabb,
-    /// A point of each connected component; none for a half space.
+    /// One point of each connected component; empty for a half space.
     pub points: Vec<Vec3>,
 }
 
@@ -59,7 +59,7 @@ impl PlacedObstacle {
         depth_inside(&self.original, &self.in_world, p)
     }
 
-    /// True if a component of it may fit inside a ball of this radius.
+    /// Whether a component of the obstacle may fit inside a ball of this radius.
     pub fn fits_inside(&self, radius: f64) -> bool {
         match self.points.len() {
             0 => false,

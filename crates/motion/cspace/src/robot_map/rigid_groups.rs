@@ -12,13 +12,13 @@ use super::error::RobotMapError;
 /// The solids that the same joints of the map move.
 #[derive(Debug)]
 pub(super) struct RigidGroup {
-    /// From the root outwards; at least one.
+    /// The joints from the root outwards; at least one.
     pub joints: Vec<DrivingJoint>,
-    /// In the frame of the last joint's child.
+    /// The solids in the frame of the last joint's child.
     pub solids: Vec<(Shape, Pose)>,
 }
 
-/// All solids of a robot that the map counts.
+/// All solids of a robot that count in the map.
 #[derive(Debug, Default)]
 pub(super) struct RigidGroups {
     pub groups: Vec<RigidGroup>,
@@ -48,7 +48,7 @@ impl RigidGroups {
         Ok(all)
     }
 
-    /// The group of some joints; made where there is none yet.
+    /// The group of some joints; created if it does not exist yet.
     fn group(&mut self, joints: &[DrivingJoint]) -> &mut RigidGroup {
         let last = joints.last().map(|joint| joint.child);
         let is_same = |group: &RigidGroup| group.joints.last().map(|joint| joint.child) == last;
@@ -60,7 +60,8 @@ impl RigidGroups {
     }
 }
 
-/// The solids of a link, or what they sweep, with their poses in the link or in the one that carries the swept volume.
+/// The solids of a link, or their swept volumes, with their poses in the link or in the link that carries the swept
+/// volume.
 fn solids(robot: &Robot, chain: &DrivenChain, link: usize) -> Result<Vec<(Shape, Pose)>, RobotMapError> {
     let LinkJoints { swept, .. } = &chain.links[link];
     let invalid = || RobotMapError::InvalidPlacement(format!("link `{}`", chain.chain.links()[link]));
@@ -73,7 +74,7 @@ fn solids(robot: &Robot, chain: &DrivenChain, link: usize) -> Result<Vec<(Shape,
     solids.collect()
 }
 
-/// Pose of a link in the frame of another.
+/// Pose of a link in the frame of another link.
 pub(super) fn relative_pose(state: &ChainState, frame: LinkId, link: LinkId) -> Pose {
     state.link_in_root(frame).inverse_mul(&state.link_in_root(link))
 }

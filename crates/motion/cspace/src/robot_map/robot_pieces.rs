@@ -14,34 +14,36 @@ use super::solid_pieces::{SolidPiece, as_mesh, split_capsule};
 use super::triangle_soup::TriangleSoup;
 use crate::ConvexObstacle;
 
-/// Size of a piece as a share of its distance from the farthest axis: rotation adds as small a share to its motion.
+/// Size of a piece as a fraction of its distance from the farthest axis: rotation adds an equally small fraction to its
+/// motion.
 const PIECE_SIZE_RATIO: f64 = 0.15;
 
-/// Sample points of a piece, for its penetration depth in an obstacle.
+/// Number of sample points of a piece, for its penetration depth in an obstacle.
 const SAMPLE_POINTS: usize = 6;
 
 /// A piece of the robot.
 #[derive(Debug, Clone)]
 pub(super) struct RobotPiece {
     pub shape: Shape,
-    /// The link that it moves with.
+    /// The link with which the piece moves.
     pub link: LinkId,
     pub in_link: Pose,
-    /// A ball around it, in the link's frame.
+    /// Centre of a ball around the piece, in the link's frame.
     pub center: Vec3,
     pub radius: f64,
-    /// Number of axes, counted from the first, that can move it.
+    /// Number of axes, counted from the first, that can move the piece.
     pub depth: usize,
-    /// The joints that move it.
+    /// The joints that move the piece.
     pub joints: Vec<DrivingJoint>,
-    /// Some points of it, in the link's frame, far apart.
+    /// Some points of the piece that are far apart, in the link's frame.
     pub points: Vec<Vec3>,
-    /// Per joint: bound of the distance of any point of the piece from its axis, metres.
+    /// Per joint, a bound of the distance of any point of the piece from its axis, metres.
     pub lever_arms: Vec<f64>,
 }
 
 impl RobotPiece {
-    /// A piece that some joints move, placed in the frame of the last one's child; `None` if it is too far away.
+    /// Creates a piece that some joints move, placed in the frame of the last joint's child; `None` if it is too far
+    /// away.
     fn new(chain: &DrivenChain, piece: SolidPiece, joints: &[DrivingJoint]) -> Option<Self> {
         let reach = piece.center.length() + piece.radius;
         if !(reach <= ConvexObstacle::MAX_COORDINATE_M) {
@@ -93,7 +95,7 @@ impl RobotPieces {
         Ok(all)
     }
 
-    /// Adds a solid of a group to those with flat sides or to the round ones, and to the closed meshes.
+    /// Adds a solid of a group to the flat-sided or to the round solids, and to the closed meshes.
     fn add_solid(
         &mut self,
         chain: &DrivenChain,

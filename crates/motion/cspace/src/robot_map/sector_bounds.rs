@@ -1,4 +1,4 @@
-//! Bounds of angle, radius and height about an axis: what slices know of an obstacle.
+//! Bounds of angle, radius and height about an axis: the data of an obstacle that slices use.
 
 use std::f64::consts::{PI, TAU};
 
@@ -10,20 +10,20 @@ use super::enclosure::Enclosure;
 /// A sector of a ring about z that encloses a solid, radians and metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct SectorBounds {
-    /// First angle.
+    /// First angle, radians.
     pub first: f64,
-    /// A whole turn where the solid contains the axis.
+    /// Width of the angle, radians: a whole turn if the solid contains the axis.
     pub width: f64,
-    /// Radii.
+    /// Radii `near` and `far`, metres.
     pub near: f64,
     pub far: f64,
-    /// Heights.
+    /// Heights `low` and `high`, metres.
     pub low: f64,
     pub high: f64,
 }
 
 impl SectorBounds {
-    /// Of a solid in a frame; `None` for an unbounded one.
+    /// Computes the bounds of a solid in a frame; `None` for an unbounded solid.
     pub fn new(shape: &Shape, in_frame: &Pose) -> Option<Self> {
         let solid = Enclosure::new(shape, *in_frame)?;
         let margin = solid.margin;
@@ -31,7 +31,7 @@ impl SectorBounds {
         for p in &solid.points {
             (low, high, far) = (low.min(p.z - margin), high.max(p.z + margin), far.max(p.x.hypot(p.y) + margin));
         }
-        // Distance from the axis within the solid's height.
+        // Distance from the axis within the height of the solid.
         let axis = Shape::Capsule(Capsule { half_length: 0.5 * (high - low), radius: 0.0 });
         let on_axis = Pose::new(Rotation::IDENTITY, Vec3::Z * (0.5 * (low + high)));
         let near = (separation(shape, in_frame, &axis, &on_axis).lower_bound * (1.0 - 1e-12)).max(0.0);
@@ -40,13 +40,13 @@ impl SectorBounds {
     }
 }
 
-/// First angle and width of the range that a solid covers about z, radians; a full turn where it contains the axis.
+/// First angle and width of the range that a solid covers about z, radians; a full turn if the solid contains the axis.
 fn angle_range(solid: &Enclosure, near: f64) -> (f64, f64) {
     if near <= 0.0 {
         return (-PI, TAU);
     }
-    // The axis is outside the solid: less than half a turn about the direction of its centre, unless the convex hull contains
-    // the axis.
+    // The axis is outside the solid: the range is less than half a turn about the direction of the centre, unless the
+    // convex hull contains the axis.
     let middle = solid.center.y.atan2(solid.center.x);
     let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
     for p in &solid.points {

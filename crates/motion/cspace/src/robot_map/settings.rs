@@ -1,23 +1,24 @@
 //! Settings, limits and statistics of building a robot's map.
 
-/// Most axes of a map.
+/// Largest number of axes of a map.
 pub const MAX_JOINTS: usize = 8;
 
 /// Settings of a [`RobotMapBuilder`](crate::RobotMapBuilder).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RobotMapSettings {
-    /// How often a cell at the boundary is bisected before it counts as blocked; `None`: until its parts are as small as
-    /// [`boundary_resolution`](Self::boundary_resolution). 0 is fast and blocks more cells than necessary; 18 (about what 2
-    /// degrees need for the default resolution) hardly more. At most 60.
+    /// Number of bisections of a cell at the boundary before it counts as blocked. `None`: until its parts are as small
+    /// as [`boundary_resolution`](Self::boundary_resolution). 0 is fast but blocks more cells than necessary; 18 (about
+    /// the number for 2 degrees at the default resolution) blocks hardly more than necessary. At most 60.
     pub bisections: Option<u32>,
-    /// Half width of the smallest parts of a cell, rad (m where a joint slides): undecided parts are then few of all blocked
-    /// cells.
+    /// Half width of the smallest parts of a cell, rad (m for a prismatic joint): with this size, undecided parts are a
+    /// small fraction of all blocked cells.
     pub boundary_resolution: f64,
-    /// Checks of a cell of three axes before it counts as blocked; fewer with more axes, as its boundary has more parts.
+    /// Number of checks of a cell of three axes before it counts as blocked; with more axes the boundary has more parts
+    /// and fewer checks are made.
     pub max_checks_per_cell: u32,
     /// Memory limit of the map, bytes.
     pub max_bytes: usize,
-    /// Number of threads; `None`: as many as the machine runs at once.
+    /// Number of threads; `None`: as many as the machine can run at once.
     pub threads: Option<usize>,
 }
 
@@ -36,13 +37,13 @@ impl Default for RobotMapSettings {
 /// Statistics of building a map.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct RobotMapStats {
-    /// Boxes of joint space that were evaluated, cells included.
+    /// Number of evaluated boxes of joint space, cells included.
     pub boxes: u64,
-    /// Distance queries between a piece and an obstacle.
+    /// Number of distance queries between a piece and an obstacle.
     pub distance_queries: u64,
-    /// Collision queries at single configurations.
+    /// Number of collision queries at single configurations.
     pub collision_queries: u64,
-    /// Cells that count as blocked because neither contact nor freedom was proven.
+    /// Number of cells that count as blocked because neither contact nor freedom was proven.
     pub undecided: u64,
 }
 

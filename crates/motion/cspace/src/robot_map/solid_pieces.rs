@@ -1,4 +1,4 @@
-//! Solids in small pieces: bounds of their motion are tight, as a small piece moves nearly like one point.
+//! Solids in small pieces: the bounds of their motion are tight, because a small piece moves almost like one point.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -8,9 +8,9 @@ use elbowroom_spatial::{Pose, Vec3};
 
 use crate::cuboid;
 
-/// Most pieces of one group of solids.
+/// Largest number of pieces of one group of solids.
 pub(super) const MAX_PIECES: usize = 24;
-/// Largest distance of a prism from the cylinder in it, metres.
+/// Largest distance of a prism from the cylinder inside it, metres.
 const PRISM_TOLERANCE_M: f64 = 2e-4;
 /// Largest ratio of length to width of a prism's faces.
 const MAX_ASPECT_RATIO: f64 = 30.0;
@@ -20,7 +20,7 @@ const MAX_ASPECT_RATIO: f64 = 30.0;
 pub(super) struct SolidPiece {
     pub shape: Shape,
     pub in_solid: Pose,
-    /// A ball around it, in the solid's frame.
+    /// Centre of a ball around the piece, in the solid's frame.
     pub center: Vec3,
     pub radius: f64,
 }
@@ -41,7 +41,7 @@ impl SolidPiece {
         Self::new(shape).placed(&Pose::from_translation(Vec3::Z * z))
     }
 
-    /// Some points of it, far apart, in the solid's frame.
+    /// Some points of the piece that are far apart, in the solid's frame.
     pub fn points(&self, count: usize) -> Vec<Vec3> {
         let Shape::Mesh(mesh) = &self.shape else { return vec![self.center] };
         let all = mesh.vertices();
@@ -58,14 +58,14 @@ impl SolidPiece {
         found.into_iter().map(|p| self.in_solid.transform_point(p)).collect()
     }
 
-    /// The same piece, with the solid placed at a pose.
+    /// The piece with its solid placed at a pose.
     pub fn placed(self, pose: &Pose) -> Self {
         Self { in_solid: *pose * self.in_solid, center: pose.transform_point(self.center), ..self }
     }
 }
 
-/// The same solid as the kind of shape with the fastest queries: a mesh for flat-sided solids, and for a cylinder a prism
-/// around it.
+/// Converts a solid to the kind of shape with the fastest queries: a mesh for flat-sided solids, a prism around a
+/// cylinder.
 pub(super) fn as_mesh(shape: &Shape) -> Shape {
     let faces = match shape {
         Shape::Cuboid(c) => Some((cuboid::corners(c.half_extents).to_vec(), BOX_FACES.to_vec())),
@@ -74,11 +74,11 @@ pub(super) fn as_mesh(shape: &Shape) -> Shape {
         _ => None,
     };
     let mesh = faces.and_then(|(corners, faces)| TriMesh::new(corners, faces).ok());
-    // A box without volume has no interior, and needs none: it is all surface.
+    // A box without volume does not have an interior and does not need one: it consists only of surface.
     mesh.map_or_else(|| shape.clone(), |mesh| Shape::Mesh(Arc::new(mesh)))
 }
 
-/// A prism around a cylinder, about [`PRISM_TOLERANCE_M`] from it at most.
+/// A prism around a cylinder, at most about [`PRISM_TOLERANCE_M`] from it.
 fn prism(cylinder: &Cylinder) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let Cylinder { half_length: h, radius } = *cylinder;
     let sides = (PI / (2.0 * PRISM_TOLERANCE_M / radius.max(PRISM_TOLERANCE_M)).sqrt()).ceil().clamp(16.0, 256.0);
@@ -105,7 +105,7 @@ fn prism(cylinder: &Cylinder) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     (corners, faces)
 }
 
-/// Faces of a box by the numbers of [`cuboid::corners`], oriented outward.
+/// Faces of a box by the indices of [`cuboid::corners`], oriented outward.
 const BOX_FACES: [[u32; 3]; 12] = [
     [0, 2, 3],
     [0, 3, 1],
@@ -121,7 +121,7 @@ const BOX_FACES: [[u32; 3]; 12] = [
     [1, 7, 5],
 ];
 
-/// A capsule in pieces no longer than about twice `size`; other shapes as they are.
+/// Splits a capsule into pieces not longer than about twice `size`; returns other shapes unchanged.
 pub(super) fn split_capsule(shape: &Shape, size: f64) -> Vec<SolidPiece> {
     match *shape {
         Shape::Capsule(Capsule { half_length, radius }) => {
@@ -131,7 +131,7 @@ pub(super) fn split_capsule(shape: &Shape, size: f64) -> Vec<SolidPiece> {
     }
 }
 
-/// A long solid as short ones in a row.
+/// Splits a long solid into a row of short ones.
 fn split_along_z(half_length: f64, size: f64, shape: impl Fn(f64) -> Shape) -> Vec<SolidPiece> {
     let count = (half_length / size).ceil().clamp(1.0, MAX_PIECES as f64);
     let half = half_length / count;

@@ -1,5 +1,5 @@
-//! Spheres around the parts of an obstacle, more and smaller ones until a deadline (the joint-space paper, section VI.C),
-//! for any robot.
+//! Spheres around the parts of an obstacle, refined until a deadline (the joint-space paper, section VI.C), for any
+//! robot.
 
 use std::time::Instant;
 
@@ -13,9 +13,9 @@ use crate::{Layer, ObstacleModel};
 
 /// The cells that spheres around the parts of an obstacle block: first one sphere, then 2, 4, 8 …
 ///
-/// Each refinement only frees cells: its cells are intersected with those of fewer spheres, and both hold all cells that the
-/// obstacle blocks. One that the deadline interrupts is discarded. [`spheres_until`](crate::spheres_until) is the same for an
-/// arm of capsules in a plane.
+/// Each refinement only frees cells: its cells are intersected with the cells of fewer spheres, and both sets contain
+/// all cells that the obstacle blocks. A refinement that the deadline interrupts is discarded.
+/// [`spheres_until`](crate::spheres_until) does the same for an arm of capsules in a plane.
 ///
 /// ```
 /// use elbowroom_cspace::{CoverMapBuilder, CoverMapSettings, Grid, GridAxis, RemainingJoints, SphereRefinement};
@@ -45,11 +45,11 @@ pub struct SphereRefinement<'b> {
 }
 
 impl<'b> SphereRefinement<'b> {
-    /// One sphere around an obstacle, placed in the world, to become at most so many. Half spaces stay as they are, and so do
-    /// spheres.
+    /// Starts with one sphere around an obstacle, placed in the world, to be refined to at most a given number. Half
+    /// spaces and spheres are used unchanged.
     ///
     /// # Errors
-    /// As [`CoverMapBuilder::obstacle`] and [`CoverMapBuilder::layer`].
+    /// The errors of [`CoverMapBuilder::obstacle`] and [`CoverMapBuilder::layer`].
     pub fn new(
         builder: &'b CoverMapBuilder,
         shape: &'b Shape,
@@ -59,16 +59,16 @@ impl<'b> SphereRefinement<'b> {
         let is_final = matches!(shape, Shape::HalfSpace(_) | Shape::Sphere(_));
         let most = if is_final { 1 } else { most.min(MAX_SPHERES) };
         let mut first = Self { builder, shape, in_world, most, spheres: 1, layer: Layer::new() };
-        // Without a deadline there is always a layer.
+        // Without a deadline, `layer_of` always returns a layer.
         first.layer = first.layer_of(1, None)?.unwrap_or_default();
         Ok(first)
     }
 
-    /// Twice as many spheres, unless there would be too many or the deadline passes. The time is
-    /// checked between two spheres only: one that is begun is finished. False if nothing changed.
+    /// Doubles the number of spheres, unless there would be too many or the deadline passes. The time is checked only
+    /// between two spheres: a sphere that is begun is finished. Returns false if nothing changed.
     ///
     /// # Errors
-    /// As [`CoverMapBuilder::layer`].
+    /// The errors of [`CoverMapBuilder::layer`].
     pub fn refine(&mut self, deadline: Instant) -> Result<bool, RobotMapError> {
         if self.spheres.saturating_mul(2) > self.most {
             return Ok(false);
@@ -84,12 +84,12 @@ impl<'b> SphereRefinement<'b> {
         self.spheres
     }
 
-    /// The cells.
+    /// Returns the blocked cells.
     pub fn into_layer(self) -> Layer {
         self.layer
     }
 
-    /// The cells of so many spheres; `None` if the deadline passes.
+    /// The cells that a number of spheres blocks; `None` if the deadline passes.
     fn layer_of(&self, count: u32, deadline: Option<Instant>) -> Result<Option<Layer>, RobotMapError> {
         let base = self.builder.base_in_world();
         let mut whole = Layer::new();

@@ -13,7 +13,7 @@ use super::settings::{MAX_JOINTS, RobotMapStats};
 /// One thread's work on slabs.
 pub(super) struct Subdivision<'a> {
     evaluator: PairEvaluator<'a>,
-    /// Stack of the pairs in question, box by box.
+    /// Stack of the undecided pairs, box by box.
     pairs: Vec<PieceObstaclePair>,
     nodes: Vec<Node>,
 }
@@ -34,7 +34,7 @@ impl<'a> Subdivision<'a> {
         Self { evaluator: PairEvaluator::new(task), pairs: Vec::new(), nodes: Vec::new() }
     }
 
-    /// The tree of some cells.
+    /// Builds the tree of some cells.
     pub fn run(&mut self, cells: &CellRange) -> Result<Slab, NodeLimitReached> {
         self.pairs.clear();
         self.nodes.clear();
@@ -56,11 +56,11 @@ impl<'a> Subdivision<'a> {
         Ok(Slab { nodes: std::mem::take(&mut self.nodes), stats: self.evaluator.stats })
     }
 
-    /// Adds the tree of a box in which the pairs from `first` on are in question; removes them from the stack.
+    /// Adds the tree of a box whose undecided pairs are those from `first` on; removes these pairs from the stack.
     fn explore(&mut self, cells: &CellRange, first: usize) -> Result<(), NodeLimitReached> {
         let task = self.evaluator.task;
         if self.nodes.len() + task.used_nodes.load(Ordering::Relaxed) >= task.max_nodes {
-            // The other threads need not continue, either.
+            // Makes the other threads stop, too.
             task.used_nodes.store(task.max_nodes, Ordering::Relaxed);
             return Err(NodeLimitReached);
         }
@@ -104,8 +104,8 @@ impl<'a> Subdivision<'a> {
         Ok(())
     }
 
-    /// Culls pairs that are proven apart: copies the others to the end of the stack. Returns the least number of axes that
-    /// move a piece of those.
+    /// Culls pairs that are proven apart: copies the other pairs to the end of the stack. Returns the least number of
+    /// axes that move a piece of these pairs.
     fn cull_pairs(&mut self, joint_box: &JointBox, from: usize, to: usize) -> Option<usize> {
         let task = self.evaluator.task;
         let mut lowest = None;
@@ -113,7 +113,7 @@ impl<'a> Subdivision<'a> {
         for i in from..to {
             let mut pair = self.pairs[i];
             let piece = &task.pieces.pieces[pair.piece as usize];
-            // A box that is to be bisected for other pairs is often too large to prove this one apart.
+            // A box that will be bisected for other pairs is often too large to prove this pair apart.
             if lowest.is_some_and(|depth| piece.depth > depth && moves_more_by_later_axes(piece, joint_box, depth)) {
                 self.pairs.push(pair);
                 continue;
@@ -134,7 +134,7 @@ impl<'a> Subdivision<'a> {
         lowest
     }
 
-    /// The axis along which a box is bisected for pieces of a depth: the one that moves them most.
+    /// The axis along which a box is bisected for pieces of a depth: the axis that moves them most.
     fn split_axis(&self, cells: &CellRange, joint_box: &JointBox, begin: usize, depth: usize) -> Option<usize> {
         let task = self.evaluator.task;
         let mut displacements = [0.0; MAX_JOINTS];
@@ -155,7 +155,7 @@ impl<'a> Subdivision<'a> {
         long.max_by(|&a, &b| displacements[a].total_cmp(&displacements[b]))
     }
 
-    /// Adds a split and both halves.
+    /// Adds a split and its two halves.
     fn split(&mut self, cells: &CellRange, begin: usize, axis: usize) -> Result<(), NodeLimitReached> {
         let at = cells.first[axis] + cells.count(axis) / 2;
         let halves = cells.split(axis, at);
@@ -177,7 +177,7 @@ impl<'a> Subdivision<'a> {
     }
 }
 
-/// True if the axes beyond `depth` move a piece more than those before.
+/// Whether the axes from `depth` on move a piece more than the axes before.
 fn moves_more_by_later_axes(piece: &RobotPiece, joint_box: &JointBox, depth: usize) -> bool {
     let (mut before, mut beyond) = (0.0, 0.0);
     for (joint, lever_arm) in piece.joints.iter().zip(&piece.lever_arms) {

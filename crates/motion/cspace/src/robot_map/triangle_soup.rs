@@ -8,7 +8,7 @@ use elbowroom_spatial::{Aabb, Pose, Vec3};
 
 use super::solid_pieces::{MAX_PIECES, SolidPiece};
 
-/// Most triangles after long ones are split.
+/// Largest number of triangles after long ones are split.
 const MAX_TRIANGLES: usize = 1 << 20;
 
 /// Surfaces of flat-sided solids.
@@ -25,12 +25,12 @@ impl TriangleSoup {
         self.triangles.extend(mesh.triangles().iter().map(|t| t.map(|v| v + first)));
     }
 
-    /// Distance of the farthest vertex from the origin.
+    /// Distance of the farthest vertex from the origin, m.
     pub fn reach(&self) -> f64 {
         self.vertices.iter().map(|v| v.length()).fold(0.0, f64::max)
     }
 
-    /// In pieces of about this radius; `None` if a coordinate is not finite.
+    /// Splits the soup into pieces of about this radius; `None` if a coordinate is not finite.
     pub fn split(mut self, size: f64) -> Option<Vec<SolidPiece>> {
         if self.triangles.is_empty() {
             return Some(Vec::new());
@@ -57,7 +57,7 @@ impl TriangleSoup {
         while let Some(t) = open.pop() {
             let edge = |i: usize| self.vertices[t[i] as usize].distance(self.vertices[t[(i + 1) % 3] as usize]);
             let long = (0..3).max_by(|&a, &b| edge(a).total_cmp(&edge(b))).unwrap_or(0);
-            // NaN is not longer than anything.
+            // A comparison with NaN is false.
             if edge(long) > longest && self.triangles.len() + open.len() < MAX_TRIANGLES {
                 let [a, b, c] = [t[long], t[(long + 1) % 3], t[(long + 2) % 3]];
                 let middle = self.vertices.len() as u32;
@@ -88,7 +88,7 @@ impl TriangleGroup {
         Self { triangles, size: bounds.extent().length(), bounds }
     }
 
-    /// Bisected across the longest side of the bounds; unchanged if all triangles are on one side.
+    /// Bisects the group across the longest side of its bounds; unchanged if all triangles are on one side.
     fn halves(self, soup: &TriangleSoup) -> Result<[Self; 2], Self> {
         let extent = self.bounds.extent().to_array();
         let axis = (0..3).max_by(|&a, &b| extent[a].total_cmp(&extent[b])).unwrap_or(0);

@@ -1,4 +1,5 @@
-//! Covers that are built once: nearly all time of a small map goes into them, and most cases have the arm of the examples.
+//! Covers that are built only once: they take nearly all the time of a small map, and most cases use the arm of the
+//! examples.
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
@@ -7,7 +8,7 @@ use elbowroom_proximity::Shape;
 use elbowroom_spatial::Pose;
 use elbowroom_validity::{CoverSource, SphereCover};
 
-/// By slack and shapes, as they are printed: the digits of a number are all that it takes to read it again.
+/// Covers by slack and shapes in printed form: the digits of a printed number suffice to read it again.
 static KEPT: Mutex<BTreeMap<String, Option<SphereCover>>> = Mutex::new(BTreeMap::new());
 
 /// The source of covers for the tests of this program.

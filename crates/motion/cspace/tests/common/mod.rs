@@ -14,7 +14,7 @@ use elbowroom_proximity::{Capsule, Shape, Sphere, separation};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 pub use elbowroom_testkit::random::Xorshift;
 
-/// So many random cases of a long run, `ELBOWROOM_LONG=1`; else a part of them, one of so many.
+/// Number of random cases: `cases` in a long run (`ELBOWROOM_LONG=1`), otherwise `cases / one_of`.
 pub fn long_run(cases: usize, one_of: usize) -> usize {
     if std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1") { cases } else { cases / one_of }
 }
@@ -96,7 +96,7 @@ pub fn touches(arm: &PlanarArm, q: [f64; 3], obstacle: &(Shape, Pose)) -> bool {
     clearance(arm, q, obstacle) <= 0.0
 }
 
-/// What is proven of a box of joint space.
+/// The proven state of a box of joint space.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum BoxState {
     Free,
@@ -104,7 +104,7 @@ pub enum BoxState {
     Unknown,
 }
 
-/// Proof by subdivision: a box is free where the distance at its centre is more than any point of the arm can move.
+/// Proof by subdivision: a box is free if the distance at its centre is larger than the motion of any point of the arm.
 pub fn box_state(arm: &PlanarArm, q: [f64; 3], half: [f64; 3], obstacle: &(Shape, Pose), depth: u32) -> BoxState {
     let gap = clearance(arm, q, obstacle);
     if gap <= 0.0 {
@@ -162,9 +162,9 @@ pub fn free_neighbours(occupancy: &OccupancyBitmap) -> Vec<CellIndex> {
 /// Numbers of random configurations.
 #[derive(Debug, Clone, Copy)]
 pub struct SampleCounts {
-    /// Anywhere. A third as many are bent backwards over the base.
+    /// Configurations anywhere. A third as many more are bent backwards over the base.
     pub uniform: usize,
-    /// In free neighbours of blocked cells.
+    /// Configurations in free neighbours of blocked cells.
     pub beside: usize,
 }
 
@@ -205,7 +205,7 @@ pub fn missed_contacts(
     missed
 }
 
-/// Share of blocked cells that are proven free in their whole box, out of `samples` blocked cells.
+/// Fraction of blocked cells that are proven free in their whole box, out of `samples` blocked cells.
 pub fn needless_share(
     arm: &PlanarArm,
     grid: &Grid,

@@ -16,8 +16,8 @@ pub fn occupancy(grid: &Grid, layers: &[Layer]) -> OccupancyBitmap {
     map
 }
 
-/// Asserts that no collision lies in a free cell: in all cells, and in free neighbours of blocked ones. Returns the number of
-/// collisions.
+/// Asserts that free cells contain no collision: tests all cells, and free neighbours of blocked cells. Returns the
+/// number of collisions.
 pub fn compare(case: &Case, grid: &Grid, map: &OccupancyBitmap, samples: usize) -> usize {
     let mut random = Random(7);
     let mut state = ChainState::new(&case.robot.chain);
@@ -66,7 +66,7 @@ pub fn free_neighbours(map: &OccupancyBitmap) -> Vec<[u16; 3]> {
     out
 }
 
-/// Share of the blocked cells in which a local search finds no collision, out of some.
+/// Fraction of some blocked cells in which a local search finds no collision.
 pub fn needless_share(case: &Case, grid: &Grid, map: &OccupancyBitmap, samples: usize) -> f64 {
     let mut random = Random(3);
     let mut state = ChainState::new(&case.robot.chain);

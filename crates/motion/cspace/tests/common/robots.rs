@@ -37,7 +37,7 @@ pub fn box_mesh(size: f64) -> TriMesh {
     TriMesh::new(corners, faces.to_vec()).unwrap()
 }
 
-/// The three-joint arm of the examples with a wrist of three more joints, a mesh, a box and a cylinder on it.
+/// The three-joint arm of the examples with a wrist of three more joints, carrying a mesh, a box and a cylinder.
 pub fn six_joints() -> Robot {
     let arm = example::arm().unwrap();
     let mut joints = arm.chain.joints().to_vec();
@@ -110,7 +110,7 @@ impl Case {
         .unwrap()
     }
 
-    /// True if a link that the map's joints move is in collision.
+    /// Whether a link that the map's joints move is in collision.
     pub fn collides(&self, state: &mut ChainState, q: &[f64], links: &[usize], around: &[Aabb]) -> bool {
         state.q.copy_from_slice(q);
         self.robot.chain.forward(state);
@@ -154,7 +154,7 @@ impl Case {
         (0..chain.links().len()).filter(|l| chain.path(LinkId(*l)).iter().any(moves)).collect()
     }
 
-    /// All joint values; those of the map's joints are `q`.
+    /// Values of all joints; the values of the map's joints are `q`.
     pub fn all_values(&self, q: &[f64], random: &mut Random) -> Vec<f64> {
         let (low, high) = (self.robot.chain.lower(), self.robot.chain.upper());
         let mut all: Vec<f64> = match &self.fixed {
@@ -167,14 +167,15 @@ impl Case {
         all
     }
 
-    /// Builds the map and checks that no collision lies in a free cell: in all cells, and in free neighbours of blocked ones.
+    /// Builds the map and checks that free cells contain no collision: tests all cells, and free neighbours of blocked
+    /// cells.
     pub fn check(&self, samples: usize) -> BoxTree {
         let tree = self.builder().build(&self.obstacles).unwrap();
         self.compare(&tree, samples);
         tree
     }
 
-    /// The same for an existing map.
+    /// Checks an existing map like [`check`](Self::check).
     pub fn compare(&self, tree: &BoxTree, samples: usize) {
         let mut random = Random(7);
         let mut state = ChainState::new(&self.robot.chain);
@@ -202,7 +203,7 @@ impl Case {
         assert!(collisions > 0 || tree.blocked() == 0, "no sample is in collision: the test is void");
     }
 
-    /// Share of the blocked cells in which a local search finds no collision, out of some.
+    /// Fraction of some blocked cells in which a local search finds no collision.
     pub fn needless_share(&self, tree: &BoxTree, samples: usize) -> f64 {
         let mut random = Random(3);
         let mut state = ChainState::new(&self.robot.chain);
@@ -216,8 +217,8 @@ impl Case {
         f64::from(needless) / samples as f64
     }
 
-    /// True if a local search for the least distance, from the nearest of the cell's corners and centre with decreasing
-    /// steps, finds a collision.
+    /// Whether a local search for the least distance finds a collision. It starts from the nearest of the cell's
+    /// corners and centre, with decreasing steps.
     pub fn collides_in(&self, state: &mut ChainState, axes: &[GridAxis], cell: &[u16]) -> bool {
         let n = axes.len();
         let low: Vec<f64> = axes.iter().zip(cell).map(|(a, c)| a.border((*c).into())).collect();

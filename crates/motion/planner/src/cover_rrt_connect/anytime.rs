@@ -1,4 +1,4 @@
-//! Shorter and shorter paths until a deadline.
+//! Anytime planning: finds ever shorter paths until a deadline.
 
 use std::time::{Duration, Instant};
 
@@ -12,26 +12,27 @@ use super::query_ends::QueryEnds;
 use super::shortcutting::Shortcutting;
 use crate::rrt_connect::{PlannedPath, Random, RrtConnectError, RrtConnectSettings, length, path_length};
 
-/// A shorter path must be shorter by this share.
+/// Smallest gain of a shorter path, as a fraction of the length.
 const LEAST_GAIN: f64 = 1e-3;
 
-/// A path that was made shorter until a deadline.
+/// A path that was shortened until a deadline.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AnytimePath {
-    /// The shortest.
+    /// The shortest path found.
     pub path: PlannedPath,
-    /// Time since the beginning and length (rad, and m) of each path that was the shortest so far; the first is the first found.
+    /// Time since the beginning and length (rad, and m) of each path that was the shortest so far; the first entry is
+    /// the first path.
     pub improvements: Vec<(Duration, f64)>,
-    /// True if no path can be shorter by more than 0.1 %: it is as long as the straight segment.
+    /// Whether no path can be shorter by more than 0.1 %, because the path is about as long as the straight segment.
     pub is_shortest: bool,
 }
 
 impl CoverRrtConnect<'_> {
-    /// As [`plan_to_any`](Self::plan_to_any), then searches for shorter paths, each proven free, until the time limit (or the
-    /// limit of configurations) is reached (AORRTC).
+    /// Like [`plan_to_any`](Self::plan_to_any), then searches for shorter paths, each proven free, until the time limit
+    /// or the limit of configurations is reached (AORRTC).
     ///
     /// # Errors
-    /// As [`plan_to_any`](Self::plan_to_any).
+    /// The errors of [`plan_to_any`](Self::plan_to_any).
     pub fn plan_anytime<G: AsRef<[f64]>>(
         &mut self,
         start: &SceneState,
@@ -43,14 +44,14 @@ impl CoverRrtConnect<'_> {
         let mut improvements = vec![(begin.elapsed(), path.length_rad)];
         let left = RrtConnectSettings { time_limit: settings.time_limit.saturating_sub(begin.elapsed()), ..*settings };
         let mut random = Random::new(settings.seed);
-        // In the exact scene ends may be free that the covers cannot leave.
+        // An end may be free in the exact scene although the covers cannot leave it.
         let Ok(ends) = self.edges().query_ends(start, goals, &left, &mut random) else {
             return Ok(AnytimePath { path, improvements, is_shortest: false });
         };
         let (mut best, mut is_shortest) = (path, false);
         while !is_shortest && !self.covers.is_exhausted() {
             let Some(other) = self.shorter(&ends, &best, &mut random) else { break };
-            // The segments to the ends may make it longer.
+            // The segments to the ends may make the path longer.
             if other.length_rad >= best.length_rad {
                 continue;
             }
@@ -63,12 +64,12 @@ impl CoverRrtConnect<'_> {
         Ok(AnytimePath { path: best, improvements, is_shortest })
     }
 
-    /// True if a path is hardly longer than the segment to the nearest goal.
+    /// Whether a path is hardly longer than the segment to the nearest goal.
     fn is_straight(ends: &QueryEnds, path: &PlannedPath) -> bool {
         !ends.misses_goals() && path.length_rad * (1.0 - LEAST_GAIN) <= ends.straight_length()
     }
 
-    /// A path that is shorter than another by at least the least gain.
+    /// Searches for a path that is shorter than another by at least the smallest gain.
     fn shorter(&mut self, ends: &QueryEnds, than: &PlannedPath, random: &mut Random) -> Option<PlannedPath> {
         let before = Instant::now();
         let goals: Vec<Vec<f64>> = ends.goals().map(<[f64]>::to_vec).collect();

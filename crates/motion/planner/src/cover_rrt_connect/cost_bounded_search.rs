@@ -1,6 +1,6 @@
-//! RRT-Connect for paths shorter than a bound, in the space of configurations and costs (Wilson, Thomason, Kingston, Gammell:
-//! *AORRTC: almost-surely asymptotically optimal planning with RRT-Connect*, 2025): a sample has a cost beside its configuration, and
-//! it is joined to the nearest node from which it is reached at no more than this cost.
+//! RRT-Connect for paths shorter than a bound, in the space of configurations and costs (Wilson, Thomason, Kingston,
+//! Gammell: *AORRTC: almost-surely asymptotically optimal planning with RRT-Connect*, 2025): a sample is a
+//! configuration and a cost. It is joined to the nearest node that reaches it within this cost.
 
 use super::edge_validator::EdgeValidator;
 use super::informed_sampler::InformedSampler;
@@ -8,24 +8,24 @@ use super::tree::Tree;
 use super::tree_search::LEAST_PROGRESS;
 use crate::rrt_connect::{length, lerp};
 
-/// Two trees of which only nodes that may be on a path below a bound are kept.
+/// Two trees that keep only nodes that may be on a path below a bound.
 pub(super) struct CostBoundedSearch<'v, V> {
     pub validator: &'v mut V,
     trees: [Tree; 2],
-    /// Ends from which each tree grows: the start, the goals.
+    /// Ends from which the trees grow: the start, and the goals.
     roots: [Vec<Vec<f64>>; 2],
     bound: f64,
 }
 
 impl<'v, V: EdgeValidator> CostBoundedSearch<'v, V> {
-    /// For a path from a start to one of several goals that is shorter than `bound`, rad (and m).
+    /// Creates a search for a path from a start to one of several goals that is shorter than `bound`, rad (and m).
     pub fn new(validator: &'v mut V, start: &[f64], goals: &[Vec<f64>], bound: f64) -> Self {
         let tree = |roots: &[Vec<f64>]| Tree::new(start.len(), roots.iter().map(Vec::as_slice));
         let roots = [vec![start.to_vec()], goals.to_vec()];
         Self { validator, trees: [tree(&roots[0]), tree(&roots[1])], roots, bound }
     }
 
-    /// Waypoints of a path below the bound; `None` if a limit is reached.
+    /// Searches for a path. Returns the waypoints of a path below the bound; `None` if a limit is reached.
     pub fn run(&mut self, sampler: &mut InformedSampler) -> Option<Vec<Vec<f64>>> {
         let mut sample = self.roots[0][0].clone();
         while !self.validator.is_exhausted() {
@@ -48,7 +48,7 @@ impl<'v, V: EdgeValidator> CostBoundedSearch<'v, V> {
         self.roots[side].iter().map(|root| length(root, q)).fold(f64::INFINITY, f64::min)
     }
 
-    /// One edge towards a sample from the nearest node that reaches it at no more than a cost. Returns the new node.
+    /// Adds one edge towards a sample, from the nearest node that reaches it within a cost. Returns the new node.
     fn extend(&mut self, side: usize, sample: &[f64], cost: f64) -> Option<usize> {
         let (near, distance) = self.trees[side].nearest_within(sample, cost)?;
         self.step(side, near, sample, distance)
@@ -75,7 +75,7 @@ impl<'v, V: EdgeValidator> CostBoundedSearch<'v, V> {
         Some(self.trees[side].add(near, &next))
     }
 
-    /// Extends a tree straight to a node of the other. Returns the node that reaches it below the bound.
+    /// Extends a tree straight to a node of the other tree. Returns the node that reaches it below the bound.
     fn connect(&mut self, side: usize, other_side: usize, node: usize) -> Option<usize> {
         let target = self.trees[other_side].q(node).to_vec();
         let left = self.bound - self.trees[other_side].cost(node);

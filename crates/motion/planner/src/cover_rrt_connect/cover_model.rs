@@ -9,17 +9,17 @@ use elbowroom_validity::{
     BuiltCovers, CoverSource, CoveredLinkId, CoveredRobot, NotCertain, ObstacleSet, ValidityChecker, ValidityError,
 };
 
-/// Pairs that are proven to stay farther apart than the clearance by no more than this are tested all the same, m.
+/// Tolerance, m: pairs that are proven to stay apart by at most this much more than the clearance are tested, too.
 const REACH_TOLERANCE_M: f64 = 1e-3;
 
-/// One robot of a scene with sphere covers of its links and of what it holds. Built once; serves all scenes with the same robot,
-/// whatever their objects are.
+/// One robot of a scene, with sphere covers of its links and of the objects that it holds. A model is built once and
+/// serves all scenes with the same robot, whatever their objects.
 #[derive(Debug, Clone)]
 pub struct CoverModel {
     pub(super) robot: CoveredRobot,
-    /// The geometry of each body.
+    /// The geometry of each covered link.
     covered_links: Vec<GeometryId>,
-    /// Covered links that the scene tests, and their margins.
+    /// Pairs of covered links that the scene tests, and their margins.
     pairs: Vec<(usize, usize, f64)>,
     index: RobotId,
     base_in_world: Pose,
@@ -27,25 +27,25 @@ pub struct CoverModel {
 }
 
 impl CoverModel {
-    /// Covers a robot with what it holds in a state; pairs of its links are those that the scene tests, kept farther apart than
-    /// their margins and the clearance (m).
+    /// Covers a robot and the objects that it holds in a state. The model tests the same pairs of links as the scene,
+    /// and keeps them farther apart than their margins and the clearance (m).
     ///
     /// # Errors
-    /// A link or held object that no spheres enclose.
+    /// No spheres enclose some link or held object.
     ///
     /// # Panics
-    /// The scene has no such robot.
+    /// The scene does not have this robot.
     pub fn new(scene: &Scene, state: &SceneState, robot: RobotId, clearance_m: f64) -> Result<Self, ValidityError> {
         Self::with_covers(scene, state, robot, clearance_m, &BuiltCovers)
     }
 
-    /// As [`new`](Self::new), with the covers of links from a source.
+    /// Like [`new`](Self::new), with the covers of links from a source.
     ///
     /// # Errors
-    /// As [`new`](Self::new).
+    /// The errors of [`new`](Self::new).
     ///
     /// # Panics
-    /// The scene has no such robot.
+    /// The scene does not have this robot.
     pub fn with_covers(
         scene: &Scene,
         state: &SceneState,
@@ -72,8 +72,8 @@ impl CoverModel {
         Ok(Self { robot: covered, covered_links, pairs, index: robot, base_in_world, clearance_m })
     }
 
-    /// True if the model was made for the same pairs, base and clearance (m), and nothing is held: then it serves another
-    /// scene with the same robot.
+    /// Whether the model also serves another scene with the same robot: it was made for the same pairs, base and
+    /// clearance (m), and nothing is held.
     pub fn serves(&self, scene: &Scene, state: &SceneState, clearance_m: f64) -> bool {
         let holds = (0..scene.objects().len()).any(|i| state.attachment(ObjectId(i)).is_some());
         let held = self.covered_links.iter().any(|b| matches!(b, GeometryId::Object(_)));
@@ -114,7 +114,7 @@ fn tested_pairs(
     pairs
 }
 
-/// The solids that a robot must not touch: objects and other robots, as they are in a state.
+/// The solids that a robot must not touch: objects and other robots, placed as in a state.
 #[derive(Debug, Clone)]
 pub struct CoverObstacles {
     pub(super) set: ObstacleSet,
@@ -125,13 +125,12 @@ pub struct CoverObstacles {
 }
 
 impl CoverObstacles {
-    /// The obstacles of a model in a state, each with the largest margin that the scene has for a pair of it, and the clearance
-    /// (m).
+    /// The obstacles of a model in a state, each with its largest margin to a link of the model, and the clearance (m).
     pub fn new(model: &CoverModel, scene: &Scene, state: &SceneState, clearance_m: f64) -> Self {
         Self::with_covers(model, scene, state, clearance_m, &BuiltCovers)
     }
 
-    /// As [`new`](Self::new), with the covers of meshes and hulls from a source.
+    /// Like [`new`](Self::new), with the covers of meshes and hulls from a source.
     pub fn with_covers(
         model: &CoverModel,
         scene: &Scene,
@@ -197,15 +196,15 @@ impl CoverObstacles {
     }
 }
 
-/// The margin of a pair in metres; `None` if the scene does not test it with a clearance (m).
+/// The margin of a pair in metres; `None` if the scene does not test the pair with a clearance (m).
 fn tested_margin(scene: &Scene, state: &SceneState, a: GeometryId, b: GeometryId, clearance_m: f64) -> Option<f64> {
     let (pair_state, reason) = state.pair(scene, a, b)?;
     let entry = scene.allowed_collision_matrix().get(a, b);
-    // Pairs of held objects have no entry.
+    // Pairs of held objects do not have an entry.
     let margin_m = entry.map_or_else(|| scene.padding_m(a) + scene.padding_m(b), |e| e.margin_m);
     match (pair_state, reason) {
         (PairState::Tested, _) => Some(margin_m),
-        // Out of reach of contact, but not of every clearance.
+        // Out of reach of contact, but within reach of the clearance.
         (_, Reason::OutOfReach { least_m }) if least_m <= margin_m + clearance_m + REACH_TOLERANCE_M => Some(margin_m),
         _ => None,
     }

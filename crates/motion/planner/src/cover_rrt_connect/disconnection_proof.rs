@@ -1,9 +1,10 @@
 //! Proofs that no path exists (Basch, Guibas, Hsu, Nguyen: *Disconnection proofs for motion planning*, 2001).
 //!
-//! A few joints span a grid of closed cells. A cell is blocked where the covers prove that the robot collides in all of it,
-//! wherever the other joints are. A path never enters a blocked cell, so that it stays in cells that join at faces (a cell
-//! shares each of its edges and corners with the neighbours that complete the turn around them, and one that is blocked blocks
-//! the edge or corner, too). If the cells around the start are enclosed by blocked ones and the goal is not among them, there is no path.
+//! A few joints span a grid of closed cells. A cell is blocked if the covers prove that the robot collides everywhere
+//! in the cell, whatever the values of the other joints. A path never enters a blocked cell, so it stays in cells that
+//! are connected through faces. (A cell shares each of its edges and corners with the neighbours that complete the turn
+//! around them; a blocked cell also blocks the edge or corner.) If blocked cells enclose the cells around the start,
+//! and the goal is not among the enclosed cells, no path exists.
 
 use std::time::Instant;
 
@@ -13,15 +14,15 @@ use crate::rrt_connect::JointRange;
 
 /// Largest number of cells of a grid.
 const MAX_CELLS: usize = 8_000_000;
-/// Cells whose collision is tested together: a multiple of sixteen.
+/// Number of cells whose collision is tested together: a multiple of sixteen.
 const BATCH: usize = 64;
 
-/// Joints that span a grid, and the width of its cells.
+/// The joints that span a grid, and the width of its cells.
 #[derive(Debug, Clone)]
 pub(super) struct Projection {
     /// Indices of the joints.
     pub joints: Vec<usize>,
-    /// Width of a cell, rad; metres of prismatic joints are a tenth.
+    /// Width of a cell, rad; for prismatic joints a tenth of this number in metres.
     pub step: f64,
 }
 
@@ -32,7 +33,7 @@ struct Axis {
     min: f64,
     step: f64,
     count: usize,
-    /// True if the last cell is next to the first.
+    /// Whether the last cell is next to the first.
     wraps: bool,
 }
 
@@ -58,7 +59,7 @@ impl Axis {
         self.min + (cell as f64 + 0.5) * self.step
     }
 
-    /// The cell beside another, if there is one.
+    /// The cell next to another, if it exists.
     fn beside(&self, cell: usize, is_up: bool) -> Option<usize> {
         let (first, last) = (0, self.count - 1);
         match (is_up, self.wraps) {
@@ -70,7 +71,7 @@ impl Axis {
     }
 }
 
-/// What is known of a cell.
+/// The known state of a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Cell {
     Unknown,
@@ -79,17 +80,17 @@ enum Cell {
     Reached(u8),
 }
 
-/// Cells reached from both ends.
+/// A flood fill from both ends.
 struct Flood<'c, 'm> {
     checker: &'c mut ValidityChecker<'m>,
     axes: Vec<Axis>,
     cells: Vec<Cell>,
-    /// A configuration for the joints that span nothing.
+    /// Values of the joints that do not span the grid.
     others: Vec<f64>,
     half_widths: Vec<f64>,
 }
 
-/// True if it is proven that no path within the ranges joins two configurations. False proves nothing.
+/// Whether it is proven that no path within the ranges joins two configurations. False proves nothing.
 pub(super) fn are_disconnected(
     checker: &mut ValidityChecker,
     ranges: &[JointRange],
@@ -111,7 +112,7 @@ pub(super) fn are_disconnected(
 }
 
 impl Flood<'_, '_> {
-    /// Extends from both ends by turns until one cannot be extended (true), or they meet.
+    /// Extends both ends alternately until one cannot be extended (true) or they meet (false).
     fn encloses_an_end(&mut self, from: &[f64], to: &[f64], deadline: Instant) -> bool {
         let ends = [self.cell_of(from), self.cell_of(to)];
         if ends[0] == ends[1] {
@@ -133,14 +134,14 @@ impl Flood<'_, '_> {
         false
     }
 
-    /// Reaches the cells beside some of a front. False if the other end is reached.
+    /// Reaches the cells next to some cells of a front. False if the other end is reached.
     fn extend(&mut self, side: u8, front: &mut Vec<usize>, candidates: &mut Vec<usize>) -> bool {
         candidates.clear();
         while let Some(cell) = front.pop() {
             for beside in self.neighbours(cell).into_iter().flatten() {
                 match self.cells[beside] {
                     Cell::Unknown => {
-                        // Until it is tested, so that it is listed once.
+                        // Marked until it is tested, so that it is listed only once.
                         self.cells[beside] = Cell::Blocked;
                         candidates.push(beside);
                     }
@@ -160,7 +161,7 @@ impl Flood<'_, '_> {
         true
     }
 
-    /// True for the cells that are proven in collision as a whole.
+    /// For each cell, whether it is proven in collision as a whole.
     fn are_blocked(&mut self, cells: &[usize]) -> Vec<bool> {
         let mut centres = Vec::with_capacity(cells.len() * self.others.len());
         for &cell in cells {
@@ -183,7 +184,7 @@ impl Flood<'_, '_> {
         self.axes.iter().rev().fold(0, |index, axis| index * axis.count + axis.cell(q[axis.joint]))
     }
 
-    /// The cells that share a face with one, two per axis.
+    /// The cells that share a face with a cell, two per axis.
     fn neighbours(&self, cell: usize) -> Vec<Option<usize>> {
         let (mut found, mut rest, mut stride) = (Vec::with_capacity(2 * self.axes.len()), cell, 1);
         for axis in &self.axes {

@@ -1,9 +1,9 @@
-//! Edges that the covers prove, within the constraint of the exact planner.
+//! Validity of edges by the covers, within the constraint of the exact planner.
 
 use super::edge_validator::{CoverValidator, EdgeValidator};
 use crate::rrt_connect::{ConstraintChecker, RrtConnect};
 
-/// Edges that the covers prove, within the constraint.
+/// Proves edges by the covers, within the constraint of the exact planner.
 pub(super) struct EdgeSearch<'p, 'm> {
     pub exact: &'p mut RrtConnect<'m>,
     pub covers: &'p mut CoverValidator<'m>,

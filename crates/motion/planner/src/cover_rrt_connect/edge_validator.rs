@@ -1,4 +1,4 @@
-//! Validity of edges: by the covers, and by the exact scene where they are not certain.
+//! Validity of edges: decided by the covers, and by the exact scene for pairs that the covers leave open.
 
 use std::time::{Duration, Instant};
 
@@ -10,19 +10,19 @@ use super::cover_model::{CoverModel, CoverObstacles};
 use super::disconnection_proof::{Projection, are_disconnected};
 use crate::rrt_connect::{JointRange, MotionValidator, RrtConnectError};
 
-/// The clock is read once in so many questions: it costs as much as a short edge.
+/// Number of questions per reading of the clock, which costs as much as a short edge.
 const QUESTIONS_PER_CLOCK_READING: u64 = 16;
-/// Configurations of a block.
+/// Number of configurations in a block.
 const BLOCK: u64 = 16;
 
 /// Longest edge of a tree, rad (and m).
 const EDGE_LENGTH: f64 = 1.0;
 
-/// What a tree search asks.
+/// The questions of a tree search.
 pub(super) trait EdgeValidator {
-    /// True if the straight segment between two configurations is proven free.
+    /// Whether the straight segment between two configurations is proven free.
     fn edge_is_free(&mut self, from: &[f64], to: &[f64]) -> bool;
-    /// True if the search must end.
+    /// Whether the search must end.
     fn is_exhausted(&mut self) -> bool;
 
     /// Longest edge of a tree, rad (and m).
@@ -30,14 +30,14 @@ pub(super) trait EdgeValidator {
         EDGE_LENGTH
     }
 
-    /// Moves a configuration to where a constraint is satisfied. False if that fails.
+    /// Moves a configuration so that it satisfies a constraint. False if that fails.
     fn project(&mut self, q: &mut [f64]) -> bool {
         let _ = q;
         true
     }
 }
 
-/// Proves edges by the covers; by the exact scene the pairs that the covers leave open.
+/// Proves edges by the covers; proves pairs that the covers leave open in the exact scene.
 #[derive(Debug)]
 pub(super) struct CoverValidator<'m> {
     checker: ValidityChecker<'m>,
@@ -46,9 +46,9 @@ pub(super) struct CoverValidator<'m> {
     robot: RobotId,
     deadline: Instant,
     max_states: u64,
-    /// Blocks before the present query.
+    /// Number of blocks before the present query.
     blocks_before: u64,
-    /// How often it was asked whether the search must end.
+    /// Number of questions whether the search must end.
     questions: u64,
     pairs: Vec<NotCertain>,
 }
@@ -67,12 +67,13 @@ impl<'m> CoverValidator<'m> {
         self.blocks_before = self.checker.blocks();
     }
 
-    /// Goes on with a query until another time.
+    /// Continues a query until another time.
     pub fn extend_deadline(&mut self, deadline: Instant) {
         self.deadline = deadline;
     }
 
-    /// True if it is proven that no path within the ranges joins two configurations; what that tests is not counted.
+    /// Whether it is proven that no path within the ranges joins two configurations. Does not count the tests of the
+    /// proof.
     pub fn are_disconnected(
         &mut self,
         ranges: &[JointRange],
@@ -86,23 +87,23 @@ impl<'m> CoverValidator<'m> {
         answer
     }
 
-    /// Configurations that were tested in this query.
+    /// Number of configurations tested in this query.
     pub fn states_checked(&self) -> u64 {
         BLOCK * (self.checker.blocks() - self.blocks_before)
     }
 
-    /// That no path was found within the limits.
+    /// The error that no path was found within the limits.
     pub fn not_found(&self, after: Duration, nodes: usize) -> RrtConnectError {
         let states_checked = self.states_checked();
         RrtConnectError::NotFound { seconds: after.as_secs_f64(), states_checked, nodes, nearer: Vec::new() }
     }
 
-    /// What the covers say of a configuration.
+    /// The validity of a configuration according to the covers.
     pub fn state(&mut self, q: &[f64]) -> Validity {
         self.checker.state(q).unwrap_or(Validity::Uncertain)
     }
 
-    /// True if an edge is proven free: what the covers leave open is swept exactly.
+    /// Whether an edge is proven free; pairs that the covers leave open are swept exactly.
     pub fn is_free_exactly(
         &mut self,
         exact: &mut MotionValidator,

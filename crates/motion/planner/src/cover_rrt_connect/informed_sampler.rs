@@ -1,9 +1,9 @@
-//! Samples of configurations that may be on a shorter path (Gammell, Srinivasa, Barfoot: *Informed RRT\**, 2014): in the ellipsoid
-//! whose foci are the start and a goal.
+//! Sampler of configurations that may be on a shorter path (Gammell, Srinivasa, Barfoot: *Informed RRT\**, 2014): it
+//! draws from the ellipsoid whose foci are the start and a goal.
 
 use crate::rrt_connect::{Random, SamplingRegion, length};
 
-/// Draws outside the limits after which a sample is drawn from the region instead.
+/// Number of draws outside the limits after which a sample is drawn from the region instead.
 const TRIALS: usize = 16;
 
 /// Draws from the ellipsoids of a start and several goals, within a region.
@@ -23,7 +23,7 @@ impl<'r> InformedSampler<'r> {
         self.random.between(low, high)
     }
 
-    /// A configuration through which a path shorter than `bound` may lead. False if no path can be shorter.
+    /// Draws a configuration through which a path shorter than `bound` may lead. False if no path can be shorter.
     pub fn sample(&mut self, bound: f64, out: &mut [f64]) -> bool {
         let open: Vec<&Vec<f64>> = self.goals.iter().filter(|goal| length(&self.start, goal) < bound).collect();
         if open.is_empty() {
@@ -41,7 +41,7 @@ impl<'r> InformedSampler<'r> {
     }
 }
 
-/// A point of the ellipsoid of points whose distances from two foci add up to `sum` or less, evenly.
+/// Draws uniformly from the ellipsoid of points whose distances from two foci add up to at most `sum`.
 fn in_ellipsoid(a: &[f64], b: &[f64], sum: f64, random: &mut Random, out: &mut [f64]) {
     let distance = length(a, b);
     in_unit_ball(random, out);
@@ -74,11 +74,11 @@ fn reflect_to(a: &[f64], b: &[f64], distance: f64, out: &mut [f64]) {
     }
 }
 
-/// A point of the unit ball, evenly: a normally distributed direction and a radius.
+/// Draws uniformly from the unit ball: a normally distributed direction and a radius.
 fn in_unit_ball(random: &mut Random, out: &mut [f64]) {
     let mut square = 0.0;
     for value in out.iter_mut() {
-        // Box and Muller.
+        // Box-Muller transform.
         let (u, v) = (1.0 - random.unit(), random.unit());
         *value = (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos();
         square += *value * *value;

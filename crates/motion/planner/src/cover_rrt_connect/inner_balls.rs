@@ -1,22 +1,23 @@
-//! Balls inside solids, many of them points: what of them is inside another solid proves a collision.
+//! Balls inside solids, many of them points: if one of them overlaps another solid, the solids collide.
 
 use std::collections::BTreeSet;
 
 use elbowroom_proximity::{Capsule, Cylinder, Shape};
 use elbowroom_spatial::{Pose, Vec3};
 
-/// Balls along the axis of a capsule or cylinder.
+/// Number of balls along the axis of a capsule or cylinder.
 const AXIS_BALLS: u32 = 9;
 
 /// A ball that is part of a solid; its radius may be 0.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct InnerBall {
-    /// In the frame of the solid's link or object, m.
+    /// Centre in the frame of the solid's link or object, m.
     pub centre: Vec3,
     pub radius_m: f64,
 }
 
-/// Balls inside a shape: its vertices and the centres of its triangles, or round its axis or centre. None of a half-space.
+/// Balls inside a shape: its vertices and the centres of its triangles, or balls around its axis or centre. Empty for a
+/// half-space.
 pub(super) fn inner_balls(shape: &Shape, in_geometry: Pose) -> Vec<InnerBall> {
     let ball = |centre: Vec3, radius_m: f64| InnerBall { centre: in_geometry.transform_point(centre), radius_m };
     let along = |half_length: f64, radius: f64| {
@@ -40,7 +41,7 @@ pub(super) fn inner_balls(shape: &Shape, in_geometry: Pose) -> Vec<InnerBall> {
         Shape::Mesh(m) => {
             let corner = |v: u32| m.vertices()[v as usize];
             let centres = m.triangles().iter().map(|&[a, b, c]| (corner(a) + corner(b) + corner(c)) / 3.0);
-            // Vertices of no triangle are no part of the surface.
+            // Vertices without a triangle are not part of the surface.
             let used: BTreeSet<u32> = m.triangles().iter().flatten().copied().collect();
             let corners = used.into_iter().map(corner);
             corners.chain(centres).map(|p| ball(p, 0.0)).collect()

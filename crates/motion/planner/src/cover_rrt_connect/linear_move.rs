@@ -12,34 +12,36 @@ use super::planner::CoverRrtConnect;
 use crate::path::PathEnd;
 use crate::rrt_connect::{LinearMoveEnd, PlannedPath, RrtConnectError, RrtConnectSettings, length, lerp, path_length};
 
-/// First step along the line: the tip moves at most this far, m, and turns at most as many rad.
+/// Largest first step along the line: translation of the tip, m, and rotation, rad.
 const STEP: f64 = 0.05;
-/// A step shorter than this share of the line is not divided further.
+/// Fraction of the line below which a step is not divided further.
 const SHORTEST_STEP: f64 = 1e-6;
-/// A step in which the joints move farther than this has changed the posture, rad (and m).
+/// Motion of the joints, rad (and m), above which a step has changed the posture.
 const LONGEST_JOINT_STEP: f64 = 0.5;
 
-/// A straight line of a tip: its position moves evenly along the line, its orientation turns evenly by the shortest rotation.
+/// A straight line of a tip: its position moves uniformly along the line, its orientation turns uniformly by the
+/// shortest rotation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LinearMove {
     /// The link that the tip belongs to.
     pub link: LinkId,
-    /// The tip in the frame of the link.
+    /// Pose of the tip in the frame of the link.
     pub tip_in_link: Pose,
-    /// Where the line ends.
+    /// Pose of the tip at the end of the line.
     pub target_in_world: Pose,
-    /// How far the tip may be from the line where the joints move straight between waypoints, m.
+    /// Largest distance of the tip from the line while the joints move straight between waypoints, m.
     pub tolerance_m: f64,
-    /// How far it may be turned from the orientation on the line, rad.
+    /// Largest rotation of the tip from the orientation on the line, rad.
     pub tolerance_rad: f64,
 }
 
 impl CoverRrtConnect<'_> {
-    /// The joint path of a straight line of the tip from the robot's configuration in `start`, in one posture, proven free. The
-    /// deviation from the line is measured at quarters of each segment.
+    /// Computes the joint path of a straight line of the tip from the robot's configuration in `start`, in one posture,
+    /// proven free. The deviation from the line is measured at the quarters of each segment.
     ///
     /// # Errors
-    /// As [`plan`](Self::plan) for the start; [`RrtConnectError::LinearMove`] with the share of the line that can be followed.
+    /// The errors of [`plan`](Self::plan) for the start; [`RrtConnectError::LinearMove`] with the fraction of the line
+    /// that can be followed.
     pub fn plan_linear(
         &mut self,
         start: &SceneState,
@@ -90,9 +92,9 @@ struct LineFollower<'c> {
     state: ChainState,
     from_in_root: Pose,
     to_in_root: Pose,
-    /// Share of the line that was followed.
+    /// Followed fraction of the line.
     share: f64,
-    /// Longest share of a step.
+    /// Largest step, as a fraction of the line.
     step: f64,
 }
 
@@ -129,7 +131,7 @@ impl<'c> LineFollower<'c> {
     fn next(&mut self, from: &[f64]) -> Option<Vec<f64>> {
         let mut step = self.step.min(1.0 - self.share);
         while step > SHORTEST_STEP {
-            // Rounding must not leave a last step of no length.
+            // Rounding must not leave a last step of length 0.
             let to_share = if self.share + step > 1.0 - SHORTEST_STEP { 1.0 } else { self.share + step };
             let mut to = from.to_vec();
             if self.solver.refine(&self.on_line(to_share), &mut to)
@@ -144,7 +146,7 @@ impl<'c> LineFollower<'c> {
         None
     }
 
-    /// True if the tip is within the tolerance of the line at the quarters of a segment.
+    /// Whether the tip is within the tolerance of the line at the quarters of a segment.
     fn stays_near(&mut self, from: &[f64], to: &[f64], to_share: f64) -> bool {
         let mut q = from.to_vec();
         [0.25, 0.5, 0.75].iter().all(|&part| {

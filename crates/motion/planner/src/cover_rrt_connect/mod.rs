@@ -1,5 +1,5 @@
-//! RRT-Connect on sphere covers: edges are proven sixteen configurations at a time; the exact scene settles what the covers
-//! leave open at the ends.
+//! RRT-Connect on sphere covers: edges are proven sixteen configurations at a time; what the covers leave open at the
+//! ends is proven in the exact scene.
 
 mod anytime;
 mod cost_bounded_search;

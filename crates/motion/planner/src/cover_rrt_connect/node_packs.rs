@@ -1,6 +1,6 @@
 //! Nearest neighbours by a linear search, sixteen nodes at a time in single precision.
 //!
-//! Up to some ten thousand nodes that is faster than a tree of nodes, and there is nothing to keep in balance.
+//! Up to about ten thousand nodes this is faster than a tree of nodes, and nothing needs balancing.
 
 #![allow(clippy::inline_always, reason = "a kernel is compiled for each instruction set as a whole")]
 
@@ -10,7 +10,7 @@ use fearless_simd::{Level as SimdLevel, Simd, dispatch, f32x16, prelude::*};
 
 const LANES: usize = 16;
 
-/// Configurations in packs of sixteen: the values of the first joint, those of the second, …
+/// Configurations in packs of sixteen: the values of the first joint, then of the second, …
 #[derive(Debug, Clone)]
 pub(super) struct NodePacks {
     dof: usize,
@@ -38,7 +38,7 @@ impl NodePacks {
         self.len += 1;
     }
 
-    /// The nearest node; 0 if there is none. The answer is the same on every instruction set.
+    /// The nearest node; 0 if there are no nodes. The result is the same on every instruction set.
     pub fn nearest(&self, q: &[f64]) -> usize {
         dispatch!(self.simd_level, simd => self.nearest_in_lanes(simd, q))
     }
@@ -46,7 +46,7 @@ impl NodePacks {
     #[inline(always)]
     fn nearest_in_lanes<S: Simd>(&self, simd: S, q: &[f64]) -> usize {
         let mut best = f32x16::splat(simd, f32::INFINITY);
-        // Numbers of packs: exact in single precision up to 2²⁴.
+        // Indices of packs: exact in single precision up to 2²⁴.
         let mut best_pack = f32x16::splat(simd, 0.0);
         for (number, pack) in self.rows.chunks_exact(self.dof.max(1)).enumerate() {
             let squares = squared_distances(simd, pack, q);
@@ -77,7 +77,7 @@ impl NodePacks {
     }
 }
 
-/// Squared distances of the nodes of a pack. Not fused: sums are rounded alike on every instruction set.
+/// Squared distances of the nodes of a pack. Not fused: sums are rounded in the same way on every instruction set.
 #[inline(always)]
 fn squared_distances<S: Simd>(simd: S, pack: &[[f32; LANES]], q: &[f64]) -> f32x16<S> {
     let mut squares = f32x16::splat(simd, 0.0);

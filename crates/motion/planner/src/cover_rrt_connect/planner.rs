@@ -1,4 +1,4 @@
-//! The planner.
+//! RRT-Connect planner on sphere covers.
 
 use std::time::Instant;
 
@@ -15,19 +15,19 @@ use super::shortcutting::Shortcutting;
 use super::tree_search::TreeSearch;
 use crate::rrt_connect::{PlannedPath, Random, RrtConnect, RrtConnectError, RrtConnectSettings, length, path_length};
 
-/// Share of the time limit after which the exact scene is searched.
+/// Fraction of the time limit after which the exact scene is searched.
 const COVER_SHARE: f64 = 0.5;
-/// Share of its time after which a search on covers is interrupted: there may be a proof that no path exists.
+/// Fraction of its time after which a search on covers is interrupted to try to prove that no path exists.
 const FIRST_SHARE: f64 = 0.02;
-/// Share of its time that such proofs may take: there is more often a path than none.
+/// Fraction of its time that such proofs may take: usually a path exists.
 const PROOF_SHARE: f64 = 0.3;
-/// Share of that for values of one joint that no path crosses.
+/// Fraction of the proofs' time for values of one joint that no path crosses.
 const VALUE_SHARE: f64 = 0.3;
 
-/// Plans for one robot of a scene on sphere covers: the same answers as [`RrtConnect`] gives, far sooner.
+/// Plans for one robot of a scene on sphere covers: the same answers as [`RrtConnect`], much faster.
 ///
-/// Edges are proven by the covers, sixteen configurations at a time. Where the covers leave an end open, the exact scene proves
-/// an edge that leaves it; where they leave no path, the exact scene is searched.
+/// Edges are proven by the covers, sixteen configurations at a time. If the covers leave an end open, the exact scene
+/// proves an edge that leaves this end; if the covers leave no path, the exact scene is searched.
 ///
 /// ```
 /// use elbowroom_planner::{CoverModel, CoverObstacles, CoverRrtConnect, RrtConnect, RrtConnectSettings};
@@ -50,17 +50,17 @@ pub struct CoverRrtConnect<'m> {
 }
 
 impl<'m> CoverRrtConnect<'m> {
-    /// On the covers of the robot of an exact planner, whose limits and constraint hold here, too.
+    /// Creates a planner on the covers of the robot of an exact planner, whose limits and constraint also apply here.
     pub fn new(exact: RrtConnect<'m>, model: &'m CoverModel, obstacles: &'m CoverObstacles) -> Self {
         let covers = CoverValidator::new(model, obstacles, exact.robot());
         Self { exact, covers }
     }
 
-    /// Plans from the robot's configuration in `start` to `goal` (rad, m for prismatic joints). What else is in the scene must
-    /// be where it was when the obstacles were made, and the clearance the same.
+    /// Plans from the robot's configuration in `start` to `goal` (rad, m for prismatic joints). Everything else in the
+    /// scene must be where it was when the obstacles were made, with the same clearance.
     ///
     /// # Errors
-    /// As [`RrtConnect::plan`]; and [`RrtConnectError::Disconnected`] if it is proven that there is no path.
+    /// The errors of [`RrtConnect::plan`]; and [`RrtConnectError::Disconnected`] if it is proven that no path exists.
     pub fn plan(
         &mut self,
         start: &SceneState,
@@ -70,11 +70,12 @@ impl<'m> CoverRrtConnect<'m> {
         self.plan_to_any(start, &[goal], settings)
     }
 
-    /// As [`plan`](Self::plan), to whichever of several goals is found first; the last waypoint is that goal. Goals that are
-    /// beyond limits or not free are left out.
+    /// Like [`plan`](Self::plan), but stops at the first of several goals that it reaches; the last waypoint is that
+    /// goal. Goals that are beyond limits or not free are skipped.
     ///
     /// # Errors
-    /// As [`plan`](Self::plan), proofs being about these goals alone: of the first goal where none is valid; [`RrtConnectError::NoGoal`] without goals.
+    /// The errors of [`plan`](Self::plan); a proof covers these goals only. If no goal is valid, the error of the first
+    /// goal; [`RrtConnectError::NoGoal`] without goals.
     pub fn plan_to_any<G: AsRef<[f64]>>(
         &mut self,
         start: &SceneState,
@@ -90,7 +91,7 @@ impl<'m> CoverRrtConnect<'m> {
         self.plan_exactly(begin, start, goals, settings)
     }
 
-    /// In the exact scene: one goal after the other, each in its share of the time that is left.
+    /// Plans in the exact scene: one goal after the other, each in its part of the remaining time.
     fn plan_exactly<G: AsRef<[f64]>>(
         &mut self,
         begin: Instant,
@@ -106,7 +107,7 @@ impl<'m> CoverRrtConnect<'m> {
             if let Ok(path) = found {
                 return Ok(PlannedPath { planning_time: path.planning_time + spent, ..path });
             }
-            // That one was not found says more than that another is invalid.
+            // That the search found no path to one goal says more than that another goal is invalid.
             if i == 0 || matches!(found, Err(RrtConnectError::NotFound { .. })) {
                 answer = found;
             }
@@ -149,7 +150,7 @@ impl<'m> CoverRrtConnect<'m> {
         EdgeSearch { exact: &mut self.exact, covers: &mut self.covers }
     }
 
-    /// The straight segment to a goal, the nearest first.
+    /// The first straight segment to a goal that is proven free, nearest goals first.
     fn straight(&mut self, ends: &QueryEnds) -> Option<Vec<Vec<f64>>> {
         let from = ends.from();
         let mut goals: Vec<&[f64]> = ends.goals().collect();
@@ -159,7 +160,7 @@ impl<'m> CoverRrtConnect<'m> {
         Some(vec![from.to_vec(), reached.to_vec()])
     }
 
-    /// Waypoints from the start to a goal.
+    /// Searches for waypoints from the start to a goal.
     fn search(
         &mut self,
         begin: Instant,
@@ -186,7 +187,7 @@ impl<'m> CoverRrtConnect<'m> {
 }
 
 impl EdgeSearch<'_, '_> {
-    /// An error where it is proven that no path leads from the start to any goal.
+    /// Returns an error if it is proven that no path leads from the start to any goal.
     fn expect_connected(&mut self, ends: &QueryEnds, deadline: Instant) -> Result<(), RrtConnectError> {
         let bounds = &self.exact.bounds;
         let ranges = bounds.ranges();
@@ -218,7 +219,7 @@ impl EdgeSearch<'_, '_> {
     }
 }
 
-/// Each joint alone, then neighbours in the chain, with finer cells where there are fewer.
+/// Each joint alone, then neighbours in the chain; the cells are finer for fewer joints.
 fn projections(dof: usize) -> Vec<Projection> {
     let neighbours = |count: usize, step: f64| {
         (0..(dof + 1).saturating_sub(count)).map(move |j| Projection { joints: (j..j + count).collect(), step })

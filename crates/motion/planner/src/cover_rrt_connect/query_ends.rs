@@ -1,4 +1,4 @@
-//! Ends of a query: start and goals, and where the covers begin to prove what is around them.
+//! Ends of a query: start and goals, and the exits from which the covers prove edges.
 
 use std::time::Duration;
 
@@ -9,18 +9,18 @@ use super::edge_search::EdgeSearch;
 use crate::path::PathEnd;
 use crate::rrt_connect::{JointBounds, PlannedPath, Random, RrtConnectError, RrtConnectSettings, length};
 
-/// Configurations tried around an end that the covers leave open.
+/// Number of configurations tried around an end that the covers leave open.
 const EXIT_TRIALS: usize = 400;
-/// Largest distance of such a configuration from the end, rad (and m).
+/// Largest distance of a tried configuration from the end, rad (and m).
 const EXIT_RADIUS: f64 = 0.5;
 
 /// A start or a goal, and the configurations through which a path leaves it.
 #[derive(Debug, Clone)]
 struct QueryEnd {
     q: Vec<f64>,
-    /// Where the margin of the constraint is kept.
+    /// Configuration that keeps the margin of the constraint.
     constrained: Vec<f64>,
-    /// Where the covers prove it free.
+    /// Configuration that the covers prove free.
     exit: Vec<f64>,
 }
 
@@ -35,42 +35,42 @@ impl QueryEnd {
 pub(super) struct QueryEnds {
     start: QueryEnd,
     goals: Vec<QueryEnd>,
-    /// True if a goal was left out that may be valid: no exit from it was found.
+    /// Whether a skipped goal may be valid: no exit from it was found.
     misses_goals: bool,
 }
 
 impl QueryEnds {
-    /// Where the search begins.
+    /// Exit of the start, where the search begins.
     pub fn from(&self) -> &[f64] {
         &self.start.exit
     }
 
-    /// Where it may end.
+    /// Exits of the goals, where the search may end.
     pub fn goals(&self) -> impl Iterator<Item = &[f64]> {
         self.goals.iter().map(|goal| &goal.exit[..])
     }
 
-    /// Both.
+    /// Exits of the start and the goals.
     pub fn all(&self) -> impl Iterator<Item = &[f64]> {
         std::iter::once(self.from()).chain(self.goals())
     }
 
-    /// The start itself, and the goals themselves.
+    /// The start and the goals themselves.
     pub fn ends(&self) -> (&[f64], impl Iterator<Item = &[f64]>) {
         (&self.start.q, self.goals.iter().map(|goal| &goal.q[..]))
     }
 
-    /// A path between exits is shorter than the whole path by at least this, rad (and m).
+    /// Least difference in length between a whole path and its part between exits, rad (and m).
     pub fn exit_length(&self) -> f64 {
         self.start.exit_length() + self.goals.iter().map(QueryEnd::exit_length).fold(f64::INFINITY, f64::min)
     }
 
-    /// True if there may be other goals: what is proven of these is not proven of all.
+    /// Whether there may be other goals, so that a proof for these goals is not a proof for all.
     pub fn misses_goals(&self) -> bool {
         self.misses_goals
     }
 
-    /// A path between exits with the segments to the ends themselves.
+    /// Extends a path between exits by the segments to the ends themselves.
     pub fn completed(&self, path: PlannedPath) -> PlannedPath {
         let reached = path.waypoints.last().and_then(|last| self.goals.iter().find(|goal| goal.exit == *last));
         let Some(goal) = reached else { return path };
@@ -80,7 +80,7 @@ impl QueryEnds {
 }
 
 impl EdgeSearch<'_, '_> {
-    /// The start and all goals that are valid and can be left; the validators are prepared for the query.
+    /// Returns the start and all goals that are valid and can be left; prepares the validators for the query.
     pub(super) fn query_ends<G: AsRef<[f64]>>(
         &mut self,
         start: &SceneState,
@@ -99,7 +99,8 @@ impl EdgeSearch<'_, '_> {
                 Err(e) => {
                     let is_open = matches!(e, RrtConnectError::NotFound { .. });
                     misses_goals |= is_open;
-                    // Of a goal that may be valid nothing is known; what is wrong with others helps.
+                    // A goal that may be valid comes first; otherwise the reason why the first goal is invalid helps
+                    // most.
                     if i == 0 || is_open {
                         reason = e;
                     }
@@ -123,7 +124,7 @@ impl EdgeSearch<'_, '_> {
         Ok((QueryEnd { q, constrained: near, exit }, QueryEnd { q: goal, constrained: near_goal, exit: goal_exit }))
     }
 
-    /// Both ends within limits; the validators are prepared for the query.
+    /// Returns the ends within limits; prepares the validators for the query.
     pub(super) fn ends(
         &mut self,
         start: &SceneState,
@@ -139,13 +140,13 @@ impl EdgeSearch<'_, '_> {
         let from = bounds.clamped_end(PathEnd::Start, start.q(self.exact.robot()))?;
         let to = bounds.clamped_end(PathEnd::Goal, goal)?;
         if self.exact.has_other_robots() {
-            // Links that no joint moves are in no block; another robot may touch them all the same.
+            // No block contains links that no joint moves; another robot may still touch them.
             self.exact.free_margin_m(PathEnd::Start, &from)?;
         }
         Ok([from, to])
     }
 
-    /// An end, or a configuration near by that the covers prove free and that an exactly proven edge joins with it.
+    /// Returns an end, or a nearby configuration that the covers prove free and to which an edge is proven exactly.
     fn exit(&mut self, ends: &[Vec<f64>; 2], which: usize, random: &mut Random) -> Result<Vec<f64>, RrtConnectError> {
         let q = &ends[which];
         if self.covers.state(q) == Validity::Free {

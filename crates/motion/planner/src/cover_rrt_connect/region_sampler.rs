@@ -3,7 +3,7 @@
 use super::tree_search::ConfigurationSampler;
 use crate::rrt_connect::{Random, SamplingRegion};
 
-/// Draws around the root of the tree that grows, and from the region: that around the ends first, later all of it.
+/// Draws samples around the root of the growing tree and from the region: first around the ends, later everywhere.
 pub(super) struct RegionSampler<'r> {
     region: SamplingRegion,
     random: &'r mut Random,
@@ -16,13 +16,14 @@ impl<'r> RegionSampler<'r> {
     }
 }
 
-/// Share of the samples that are drawn around the root: most searches fail to leave a narrow place around an end.
+/// Fraction of the samples that are drawn around the root: most failing searches cannot leave a narrow place around an
+/// end.
 const LOCAL_SHARE: f64 = 0.6;
-/// How far from the root they are at most, in each value, rad (and m).
+/// Largest distance of these samples from the root, in each value, rad (and m).
 const LOCAL_DISTANCE: f64 = 2.0;
-/// Share of the region about the ends that is sampled first.
+/// Fraction of the region, around the ends, that is sampled first.
 const NEAR_SHARE: f64 = 0.3;
-/// Samples after which the whole region is sampled.
+/// Approximate number of samples after which the whole region is sampled.
 const WIDENING_ROUNDS: f64 = 40.0;
 
 impl ConfigurationSampler for RegionSampler<'_> {

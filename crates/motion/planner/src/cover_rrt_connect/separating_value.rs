@@ -1,9 +1,10 @@
-//! Proofs that no path exists by one value of a joint: where the robot is in collision at that value whatever its other joints do,
-//! no path passes from one side of the value to the other.
+//! Proofs that no path exists by one value of a joint: if the robot is in collision at that value whatever its other
+//! joints do, no path passes from one side of the value to the other.
 //!
-//! At a value of joint j, pairs of solids whose relative pose depends on j and on at most one more joint k are followed over the
-//! whole range of k. Where a ball inside one solid overlaps the other by the depth d, at the distance r from the axis of k, it does
-//! so at every value of k that differs by less than d / r: no point of an arc is farther from its first point than the arc is long.
+//! At a value of joint j, pairs of solids are followed whose relative pose depends on j and on at most one more joint
+//! k. They are followed over the whole range of k. If a ball inside one solid overlaps the other by the depth d, at the
+//! distance r from the axis of k, it also overlaps at every value of k that differs by less than d / r, because no
+//! point of an arc is farther from its first point than the arc is long.
 
 use std::time::Instant;
 
@@ -16,20 +17,20 @@ use elbowroom_spatial::{Aabb, Pose, Vec3};
 use super::inner_balls::{InnerBall, inner_balls};
 use crate::rrt_connect::JointRange;
 
-/// Distance of tried values, rad; metres of prismatic joints are a tenth.
+/// Spacing of tried values, rad; for prismatic joints a tenth of this number in metres.
 const VALUE_STEP: f64 = 0.05;
-/// Most values tried of one joint.
+/// Largest number of values tried per joint.
 const MAX_VALUES: f64 = 100.0;
-/// Values of the other joint at which a collision is looked for before a proof begins.
+/// Number of values of the other joint that are tested for a collision before a proof begins.
 const PROBES: u32 = 7;
-/// A proof ends where it gets no farther than this, rad (and m).
+/// Advance, rad (and m), below which a proof ends.
 const LEAST_ADVANCE: f64 = 0.003;
-/// Share of a proven interval that is used: the rest is for rounding.
+/// Fraction of a proven interval that is used: the rest allows for rounding.
 const USED_SHARE: f64 = 0.98;
-/// Depths below this are not used, m.
+/// Depth below which an overlap is not used, m.
 const DEPTH_ROUNDING_M: f64 = 1e-7;
 
-/// Solids of a link or object.
+/// The solids of a link or object.
 struct Solids<'s> {
     id: GeometryId,
     shapes: Vec<(&'s Shape, Pose)>,
@@ -45,7 +46,7 @@ impl<'s> Solids<'s> {
         Self { id, shapes, bounds, balls }
     }
 
-    /// How deep a ball (in the frame of these solids) overlaps one of them, m; 0 if it does not.
+    /// Depth by which a ball (in the frame of these solids) overlaps one of them, m; 0 if it does not.
     fn depth(&self, centre: Vec3, radius_m: f64) -> f64 {
         let of_shape = |(&(shape, pose), bounds): (&(&Shape, Pose), &Aabb)| {
             let is_near = bounds.inflated(radius_m).contains(pose.inverse_transform_point(centre));
@@ -55,9 +56,9 @@ impl<'s> Solids<'s> {
     }
 }
 
-/// Two solids of which at least one is the robot's, and the joints on which their relative pose depends.
+/// Two solids, at least one of them on the robot, and the joints on which their relative pose depends.
 struct FollowedPair {
-    /// Positions in the list of solids.
+    /// Indices in the list of solids.
     solids: [usize; 2],
     joints: Vec<JointId>,
 }
@@ -73,7 +74,7 @@ pub(super) struct SeparatingValue<'s> {
 }
 
 impl<'s> SeparatingValue<'s> {
-    /// Of a robot within the ranges of its values; all else stays as in the state.
+    /// Creates a search for a robot within the ranges of its values; everything else stays as in the state.
     pub fn new(scene: &'s Scene, state: &SceneState, robot: RobotId, ranges: Vec<JointRange>) -> Self {
         let chain = &scene.robots()[robot.0].robot.chain;
         let (mut solids, mut pairs): (Vec<Solids>, _) = (Vec::new(), Vec::new());
@@ -97,7 +98,7 @@ impl<'s> SeparatingValue<'s> {
         &self.scene.robots()[self.robot.0].robot.chain
     }
 
-    /// A joint with a proven value between two configurations. `None` proves nothing.
+    /// Finds a joint with a proven value between two configurations. `None` proves nothing.
     pub fn joint_between(&mut self, from: &[f64], to: &[f64], deadline: Instant) -> Option<usize> {
         (0..self.ranges.len()).find(|&joint| {
             let range = self.ranges[joint];
@@ -113,7 +114,7 @@ impl<'s> SeparatingValue<'s> {
         })
     }
 
-    /// True if it is proven that every configuration with a value of a joint is in collision.
+    /// Whether it is proven that every configuration with this value of a joint is in collision.
     fn separates(&mut self, others: &[f64], joint: usize, value: f64, deadline: Instant) -> bool {
         let mut q = others.to_vec();
         q[joint] = value;
@@ -123,7 +124,7 @@ impl<'s> SeparatingValue<'s> {
         })
     }
 
-    /// The pairs that follow a joint, and besides at most one joint of another index.
+    /// The pairs that depend on `joint` and, besides, on at most one joint, whose value is `other`.
     fn pairs_of(&self, joint: usize, other: usize) -> Vec<usize> {
         let chain = self.chain();
         let follows = |pair: &FollowedPair| {
@@ -174,7 +175,8 @@ impl<'s> SeparatingValue<'s> {
         placed(a, poses[0]).any(|(x, at)| placed(b, poses[1]).any(|(y, there)| collides(x, &at, y, &there)))
     }
 
-    /// How far a joint can change at the present configuration, either way, so that a pair certainly stays in collision.
+    /// Change of a joint from the present configuration, in either direction, during which a pair is certain to stay in
+    /// collision.
     fn reach(&self, pair: usize, other: usize) -> f64 {
         let FollowedPair { solids: [a, b], joints } = &self.pairs[pair];
         let chain = self.chain();
@@ -224,8 +226,8 @@ impl Axis {
     }
 }
 
-/// The joints between a link of the robot and another of its links, or something that no joint of it moves. `None` where
-/// neither is a link of the robot, or one may be attached to something.
+/// The joints between a link of the robot and another of its links, or a geometry that no joint of the robot moves.
+/// `None` if neither is a link of the robot, or if one is an attached object.
 fn joints_between(chain: &Chain, state: &SceneState, robot: RobotId, pair: [GeometryId; 2]) -> Option<Vec<JointId>> {
     let link = |id: GeometryId| match id {
         GeometryId::Link { robot: of, link } if of == robot => Some(link),
@@ -244,7 +246,7 @@ fn joints_between(chain: &Chain, state: &SceneState, robot: RobotId, pair: [Geom
     Some(joints.into_iter().filter(|&j| chain.coupling(j).is_some()).collect())
 }
 
-/// All postures of a joint: its limits, or one turn.
+/// All postures of a joint: its limits or one turn.
 fn whole_range(range: &JointRange) -> Option<(f64, f64)> {
     if range.lower.is_finite() && range.upper.is_finite() {
         return Some((range.lower, range.upper));

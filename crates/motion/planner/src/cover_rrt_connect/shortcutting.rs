@@ -3,19 +3,20 @@
 use super::edge_validator::EdgeValidator;
 use crate::rrt_connect::{length, lerp, path_length};
 
-/// Rounds of leaving out waypoints and cutting corners.
+/// Largest number of rounds of removing waypoints and cutting corners.
 const ROUNDS: usize = 8;
-/// A round that gains a smaller share than this is the last.
+/// Gain, as a fraction of the length, below which a round is the last.
 const MIN_GAIN: f64 = 0.01;
-/// How far from a corner it is cut, as shares of the shorter of its edges. What is left of both edges is proven already.
+/// Distances from a corner at which it is cut, as fractions of the shorter of its edges. The remaining parts of both
+/// edges are proven already.
 const CUTS: [f64; 2] = [0.75, 0.35];
-/// A cut that gains a smaller share of both edges than this is not worth an edge.
+/// Gain, as a fraction of both edges, below which a cut is not worth an edge.
 const MIN_CUT_GAIN: f64 = 0.008;
 
 /// Shortens a path.
 pub(super) struct Shortcutting<'v, V> {
     validator: &'v mut V,
-    /// Keys of the edges that were not proven.
+    /// Keys of edges that could not be proven.
     rejected: Vec<u64>,
 }
 
@@ -24,7 +25,7 @@ impl<'v, V: EdgeValidator> Shortcutting<'v, V> {
         Self { validator, rejected: Vec::new() }
     }
 
-    /// Of a path whose ends no proven edge joins.
+    /// Creates a shortcutting for a path whose ends cannot be joined by a proven edge.
     pub fn of_rejected_ends(validator: &'v mut V, path: &[Vec<f64>]) -> Self {
         let ends = path.first().zip(path.last());
         Self { validator, rejected: ends.map(|(from, to)| edge_key(from, to)).into_iter().collect() }
@@ -63,7 +64,7 @@ impl<'v, V: EdgeValidator> Shortcutting<'v, V> {
         }
     }
 
-    /// True if an edge is proven free. What was rejected once is not tested again: rounds repeat most of their questions.
+    /// Whether an edge is proven free. A rejected edge is not tested again, because rounds repeat most of their tests.
     fn is_joined(&mut self, from: &[f64], to: &[f64]) -> bool {
         let key = edge_key(from, to);
         if self.rejected.contains(&key) {
@@ -76,7 +77,7 @@ impl<'v, V: EdgeValidator> Shortcutting<'v, V> {
         is_free
     }
 
-    /// Replaces corners by an edge between points before and after them.
+    /// Replaces each corner by an edge between points before and after it.
     fn cut_corners(&mut self, path: &mut Vec<Vec<f64>>) {
         let mut corner = 1;
         while corner + 1 < path.len() {
@@ -90,7 +91,7 @@ impl<'v, V: EdgeValidator> Shortcutting<'v, V> {
         }
     }
 
-    /// The ends of a proven edge across a corner, the farthest first.
+    /// The ends of a proven edge across a corner, farthest first.
     fn cut(&mut self, before: &[f64], corner: &[f64], after: &[f64]) -> Option<[Vec<f64>; 2]> {
         let edges = [length(before, corner), length(corner, after)];
         let shorter = edges[0].min(edges[1]);
@@ -99,7 +100,7 @@ impl<'v, V: EdgeValidator> Shortcutting<'v, V> {
             lerp(corner, before, distance / edges[0], &mut ends[0]);
             lerp(corner, after, distance / edges[1], &mut ends[1]);
             let gain = 2.0 * distance - length(&ends[0], &ends[1]);
-            // False for edges without length, too.
+            // Also false for edges of length 0.
             if !(gain > MIN_CUT_GAIN * (edges[0] + edges[1])) {
                 return None;
             }
@@ -111,7 +112,7 @@ impl<'v, V: EdgeValidator> Shortcutting<'v, V> {
     }
 }
 
-/// A number for an edge. Two edges hardly ever have the same; where they do, one is taken for rejected, never for free.
+/// A hash of an edge. Two edges rarely have the same hash; if they do, one counts as rejected, never as free.
 fn edge_key(from: &[f64], to: &[f64]) -> u64 {
     let mix = |key: u64, value: &f64| (key ^ value.to_bits()).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29);
     from.iter().chain(to).fold(0, mix)

@@ -1,4 +1,4 @@
-//! Time-optimal motion along a planned path: corners are blended where the covers prove it.
+//! Time-optimal motion along a planned path: corners are blended if the covers prove the blend.
 
 use elbowroom_scene::SceneState;
 
@@ -7,25 +7,25 @@ use super::planner::CoverRrtConnect;
 use crate::rrt_connect::{PlannedPath, RrtConnectError, RrtConnectSettings};
 use crate::time_parametrization::{BlendedPath, CornerBlend, KinematicLimits, Trajectory};
 
-/// Chords by which a blend is tested before it is timed.
+/// Number of chords by which a blend is tested before it is timed.
 const BLEND_PIECES: usize = 4;
 
-/// A motion in time: at rest at both ends.
+/// A motion in time, at rest at both ends.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TimedMotion {
     /// Duration, s.
     pub duration_s: f64,
-    /// Corners at which it rests.
+    /// Number of corners at which the motion rests.
     pub stops: usize,
     /// Time (s) and values (rad, m for prismatic joints), linear in between.
     pub rows: Vec<(f64, Vec<f64>)>,
 }
 
 impl TimedMotion {
-    /// A trajectory with a row every `period` (s).
+    /// Samples a trajectory, with a row every `period` (s).
     ///
     /// # Errors
-    /// A period that is not a finite number above 0.
+    /// The period is not a finite number above 0.
     pub fn of(trajectory: &Trajectory, period: f64) -> Result<Self, RrtConnectError> {
         let rows = trajectory.samples(period)?;
         Ok(Self { duration_s: trajectory.seconds(), stops: trajectory.stops(), rows })
@@ -33,12 +33,16 @@ impl TimedMotion {
 }
 
 impl CoverRrtConnect<'_> {
-    /// The fastest motion along a path within limits of speed, acceleration and jerk, with a row every `period` (s). The path is
-    /// one that was planned from `start`: its segments are proven. The polyline through the rows is proven free, too. Corners are rounded, so that the motion rests at none, unless the path turns
-    /// back or what is left of a corner cannot be proven.
+    /// Computes the fastest motion along a path within limits of speed, acceleration and jerk, with a row every
+    /// `period` (s).
+    ///
+    /// The path must have been planned from `start`: its segments are proven. The polyline through the rows is proven
+    /// free, too. Corners are rounded, so that the motion does not rest at them, unless the path turns back or the
+    /// rounded corner cannot be proven.
     ///
     /// # Errors
-    /// Limits that are not one finite number above 0 per joint, an invalid period, or a path of another robot.
+    /// The limits are not one finite number above 0 per joint, the period is invalid, or the path belongs to another
+    /// robot.
     pub fn time_parametrize(
         &mut self,
         start: &SceneState,
@@ -59,7 +63,7 @@ impl CoverRrtConnect<'_> {
         TimedMotion::of(&self.exact.time_parametrize(start, path, limits, period, settings)?, period)
     }
 
-    /// True if the polyline through the rows is proven free.
+    /// Whether the polyline through the rows is proven free.
     fn are_proven(&mut self, rows: &[(f64, Vec<f64>)]) -> bool {
         let sweep = self.exact.validator.sweep;
         rows.windows(2).all(|pair| {

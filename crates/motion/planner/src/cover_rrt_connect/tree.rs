@@ -10,18 +10,18 @@ pub(super) struct Tree {
     /// The configurations, one after the other.
     q: Vec<f64>,
     packs: NodePacks,
-    /// Number of roots: they are the first nodes.
+    /// Number of roots, which are the first nodes.
     roots: usize,
     /// A root is its own parent.
     parents: Vec<u32>,
     /// Length of the branch from the root, rad (and m).
     costs: Vec<f64>,
-    /// Per node, samples that are farther away are not extended to: its dynamic domain.
+    /// Per node, the radius of its dynamic domain: the node is not extended to samples that are farther away.
     pub radii: Vec<f32>,
 }
 
 impl Tree {
-    /// A tree with one root or several, all of the same number of values.
+    /// Creates a tree with one or several roots, all with the same number of values.
     pub fn new<'q>(dof: usize, roots: impl IntoIterator<Item = &'q [f64]>) -> Self {
         let (q, parents, costs, radii) = Default::default();
         let mut tree = Self { dof, q, packs: NodePacks::new(dof), roots: 0, parents, costs, radii };
@@ -72,7 +72,7 @@ impl Tree {
         (node, length(self.q(node), q))
     }
 
-    /// The nearest node from which a configuration is reached at no more than a cost (the branch's length included), and its
+    /// The nearest node that reaches a configuration within a cost (including the length of the branch), and its
     /// Euclidean distance.
     pub fn nearest_within(&self, q: &[f64], cost: f64) -> Option<(usize, f64)> {
         let mut best: Option<(usize, f32)> = None;
@@ -85,7 +85,7 @@ impl Tree {
         best.map(|(node, _)| (node, length(self.q(node), q)))
     }
 
-    /// The nodes from one to the root.
+    /// The nodes from `node` to the root.
     pub fn branch(&self, node: usize) -> Vec<usize> {
         let mut branch = vec![node];
         let mut at = node;

@@ -1,6 +1,6 @@
 //! RRT-Connect (Kuffner, `LaValle`: *RRT-Connect: an efficient approach to single-query path planning*, 2000) with a dynamic
 //! domain (Yershova, Jaillet, Siméon, `LaValle`: *Dynamic-domain RRTs*, 2005): a node from which an extension failed is extended
-//! only towards samples near by.
+//! only towards nearby samples.
 
 use super::edge_validator::EdgeValidator;
 use super::tree::Tree;
@@ -9,7 +9,8 @@ use crate::rrt_connect::{length, lerp};
 /// Dynamic domain of a node after its first failure, rad (and m).
 const DOMAIN_RADIUS: f64 = 4.0;
 
-/// A step of a connection that comes nearer to its target by less than this share is its last.
+/// Smallest gain of a step of a connection, as a fraction of the distance to its target; a step with less gain is the
+/// last.
 pub(super) const LEAST_PROGRESS: f64 = 0.05;
 
 /// Draws configurations.
@@ -22,12 +23,12 @@ pub(super) trait ConfigurationSampler {
 pub(super) struct TreeSearch<'v, V> {
     pub validator: &'v mut V,
     trees: [Tree; 2],
-    /// True if the first tree is that of the goal.
+    /// Whether the first tree belongs to the goal.
     is_swapped: bool,
 }
 
 impl<'v, V: EdgeValidator> TreeSearch<'v, V> {
-    /// From a start to any of several goals.
+    /// Creates a search from a start to any of several goals.
     pub fn new<'q>(validator: &'v mut V, start: &'q [f64], goals: impl IntoIterator<Item = &'q [f64]>) -> Self {
         let trees = [Tree::new(start.len(), [start]), Tree::new(start.len(), goals)];
         Self { validator, trees, is_swapped: false }
@@ -38,7 +39,7 @@ impl<'v, V: EdgeValidator> TreeSearch<'v, V> {
         self.trees.iter().map(Tree::len).sum()
     }
 
-    /// Waypoints of a path; `None` if a limit is reached.
+    /// Searches for a path. Returns its waypoints; `None` if a limit is reached.
     pub fn run(&mut self, sampler: &mut impl ConfigurationSampler) -> Option<Vec<Vec<f64>>> {
         let mut sample = self.trees[0].q(0).to_vec();
         let mut round = 0;
@@ -61,7 +62,7 @@ impl<'v, V: EdgeValidator> TreeSearch<'v, V> {
         None
     }
 
-    /// One edge towards a target. Returns the new node.
+    /// Adds one edge towards a target. Returns the new node.
     fn extend(&mut self, tree: usize, near: usize, target: &[f64], distance: f64) -> Option<usize> {
         let mut next = target.to_vec();
         let from = &self.trees[tree];
@@ -80,7 +81,7 @@ impl<'v, V: EdgeValidator> TreeSearch<'v, V> {
         Some(self.trees[tree].add(near, &next))
     }
 
-    /// Grows the other tree straight to a node of the first. Returns the node that reaches it.
+    /// Grows the second tree straight to a node of the first. Returns the node that reaches it.
     fn connect(&mut self, node: usize) -> Option<usize> {
         let target = self.trees[0].q(node).to_vec();
         let (mut near, mut distance) = self.trees[1].nearest(&target);

@@ -7,7 +7,7 @@ use crate::path::PathEnd;
 
 /// Distance of the first samples from the end, as rad (or m) of the joint that moves solids most.
 const FIRST_RADIUS: f64 = 0.01;
-/// Distance of the last samples.
+/// Distance of the last samples from the end, measured like the first distance.
 const LAST_RADIUS: f64 = 1.0;
 /// Factor from one distance to the next.
 const RADIUS_FACTOR: f64 = 1.4;
@@ -21,7 +21,7 @@ pub(super) enum ExitError {
     Violation {
         /// The violation in words.
         what: String,
-        /// Distance from it in metres: 0 or less, or NaN.
+        /// Distance from the violation in metres: 0 or less, or NaN.
         distance_m: f64,
     },
     /// No exit was found.
@@ -36,9 +36,9 @@ pub(super) struct ClearanceExit<'a, 's> {
 }
 
 impl ClearanceExit<'_, '_> {
-    /// The end itself where it has the clearance; else a configuration near by that has it, and that a straight segment
-    /// reaches which keeps half of the distance at the end and comes no nearer to a violation of the constraint. Restores
-    /// the settings of the sweep.
+    /// Returns the end itself if it has the clearance. Otherwise returns a nearby configuration with the clearance,
+    /// and a straight segment to it is proven: the segment keeps half of the distance at the end and comes no nearer to
+    /// a violation of the constraint. Restores the settings of the sweep.
     pub fn find(mut self, end: PathEnd, q: &[f64], clearance_m: f64) -> Result<Vec<f64>, ExitError> {
         let violation = self.validator.constraint.as_mut().and_then(|constraint| constraint.violation(q));
         let violation = violation.map(|(what, distance_m)| ExitError::Violation { what, distance_m });
@@ -60,7 +60,7 @@ impl ClearanceExit<'_, '_> {
         found.ok_or(violation.unwrap_or(ExitError::NotFound))
     }
 
-    /// A configuration with the clearance, and a proven segment to it that keeps `kept_m`.
+    /// Samples a configuration with the clearance to which a segment is proven that keeps `kept_m`.
     fn sample(&mut self, end: &[f64], clearance_m: f64, kept_m: f64) -> Option<Vec<f64>> {
         let mut radius = FIRST_RADIUS;
         let mut candidate = end.to_vec();
@@ -86,7 +86,7 @@ impl ClearanceExit<'_, '_> {
     }
 }
 
-/// A random configuration at a distance.
+/// A random configuration at a weighted distance.
 fn sample_at_distance(
     validator: &MotionValidator<'_>,
     from: &[f64],

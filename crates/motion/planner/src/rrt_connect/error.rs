@@ -1,4 +1,4 @@
-//! Why there is no path.
+//! Errors of path planning in the exact scene.
 
 use elbowroom_scene::SceneError;
 
@@ -6,15 +6,15 @@ use super::settings::RrtConnectSetting;
 use crate::path::PathEnd;
 use crate::time_parametrization::TimeParametrizationError;
 
-/// Joint values beyond a full turn (2π, rounded up) where the limits are within one are probably degrees, rad.
+/// Joint values above a full turn (2π, rounded up) are probably degrees if the limits are within a full turn, rad.
 const FULL_TURN_RAD: f64 = 6.3;
 
-/// Unit of a joint's value.
+/// Unit of a joint value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum JointUnit {
-    /// Radians, of a rotation.
+    /// Radians, for a rotation.
     Radians,
-    /// Metres, of a translation.
+    /// Metres, for a translation.
     Metres,
 }
 
@@ -27,21 +27,21 @@ impl std::fmt::Display for JointUnit {
     }
 }
 
-/// What ends a linear move before its target.
+/// Why a linear move ends before its target.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LinearMoveEnd {
-    /// No joint values within the limits continue the line without a leap.
+    /// No joint values within the limits continue the line without a jump.
     #[error("the joints cannot follow: the line leaves the reach or a joint's limits, or passes a singularity")]
     Unreachable,
-    /// The line is not proven free there.
+    /// The next part of the line is not proven free.
     #[error("it is not free")]
     NotFree,
 }
 
-/// Why there is no path.
+/// Why a path cannot be planned.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RrtConnectError {
-    /// An end beyond the joint limits.
+    /// An end is beyond the joint limits.
     #[error(
         "{end}: joint `{joint}` is {value} {unit}, outside its limits: write a value from {lower} to {upper} {unit}{}",
         if *unit == JointUnit::Radians && value.abs() > FULL_TURN_RAD && *upper < FULL_TURN_RAD { " (are these degrees?)" } else { "" }
@@ -51,16 +51,16 @@ pub enum RrtConnectError {
         end: PathEnd,
         /// Name of the joint.
         joint: String,
-        /// Its value, rad or m.
+        /// Value of the joint, rad or m.
         value: f64,
         /// Lower limit.
         lower: f64,
         /// Upper limit.
         upper: f64,
-        /// Unit of these numbers.
+        /// Unit of the value and the limits.
         unit: JointUnit,
     },
-    /// An end in collision, or nearer than the clearance.
+    /// An end is in collision or nearer than the clearance.
     #[error(
         "{end}: `{a}` and `{b}` {}: no path can have it as an end; write joint values that are free",
         if *clearance_m > 0.0 { format!("are {metres} m apart, less than the clearance of {clearance_m} m") } else { "are in collision".into() }
@@ -68,16 +68,17 @@ pub enum RrtConnectError {
     InCollision {
         /// Start or goal.
         end: PathEnd,
-        /// Name of one of the pair.
+        /// Name of the first of the pair.
         a: String,
-        /// Name of the other.
+        /// Name of the second of the pair.
         b: String,
-        /// Their distance less the pair's security margin, m.
+        /// Distance of the pair minus its security margin, m.
         metres: f64,
         /// The required clearance, m.
         clearance_m: f64,
     },
-    /// An end that violates the [`PathConstraint`](crate::PathConstraint): a goal, or a start that no straight segment leaves.
+    /// An end violates the [`PathConstraint`](crate::PathConstraint): a goal, or a start that no straight segment
+    /// leaves.
     #[error(
         "{end}: it is in {what}{}: write joint values outside of it",
         if *end == PathEnd::Start { ", and no straight exit was found" } else { "" }
@@ -87,10 +88,10 @@ pub enum RrtConnectError {
         end: PathEnd,
         /// The violation in words.
         what: String,
-        /// Distance from it in metres: 0 or less, or NaN if it is not known.
+        /// Distance from the violation in metres: 0 or less, or NaN if it is not known.
         metres: f64,
     },
-    /// No path was found within the limits. That proves nothing.
+    /// The search found no path within its limits. A path may still exist.
     #[error(
         "no path found in {seconds:.1} s ({states_checked} states checked, {nodes} of them connected to start or goal): this \
          proves nothing, there may be one; allow more time, or plan over a state in between{}",
@@ -99,15 +100,15 @@ pub enum RrtConnectError {
     NotFound {
         /// Duration of the search, s.
         seconds: f64,
-        /// Configurations that were checked.
+        /// Number of checked configurations.
         states_checked: u64,
-        /// Nodes of both trees.
+        /// Number of nodes in the two trees.
         nodes: usize,
-        /// Joints of which the goal's posture has another value, full turns away and nearer to the start, rad.
+        /// Joints for which the goal's posture has another value, full turns away and nearer to the start, rad.
         nearer: Vec<(String, f64)>,
     },
-    /// No path exists within the joint limits: some joints cannot get from start to goal without a collision, whatever the
-    /// others do. This is proven.
+    /// Proven: no path exists within the joint limits. Some joints cannot get from start to goal without a collision,
+    /// regardless of the other joints.
     #[error(
         "no path exists: {} cannot get from start to goal without a collision, whatever the other joints do: choose another \
          posture as the goal{}",
@@ -117,10 +118,10 @@ pub enum RrtConnectError {
     Disconnected {
         /// Names of the joints.
         joints: Vec<String>,
-        /// Joints of which the goal's posture has another value, full turns away and nearer to the start, rad.
+        /// Joints for which the goal's posture has another value, full turns away and nearer to the start, rad.
         nearer: Vec<(String, f64)>,
     },
-    /// No goal was given, or a region of goals contains no configuration that was found.
+    /// No goal was given, or no configuration was found in a region of goals.
     #[error("there is no goal: write at least one configuration, or a pose that the robot reaches")]
     NoGoal,
     /// A linear move cannot be followed to its end.
@@ -128,23 +129,23 @@ pub enum RrtConnectError {
         "the straight line can be followed for {percent:.1} % only, there {end}: plan a free motion, or move start or target"
     )]
     LinearMove {
-        /// How much of it.
+        /// Followed part of the line, percent.
         percent: f64,
-        /// Why.
+        /// Why the move ends there.
         end: LinearMoveEnd,
     },
-    /// An invalid setting.
+    /// A setting is invalid.
     #[error("{setting} is {value}: write {}", .setting.range())]
     InvalidSetting {
-        /// Which one.
+        /// The setting.
         setting: RrtConnectSetting,
-        /// Its value.
+        /// Value of the setting.
         value: f64,
     },
-    /// Limits or a period for which there is no trajectory.
+    /// The limits or the period do not allow a trajectory.
     #[error(transparent)]
     TimeParametrization(#[from] TimeParametrizationError),
-    /// Values that the scene rejects, or a robot that it does not have.
+    /// The scene rejects the values, or does not have the robot.
     #[error(transparent)]
     Scene(#[from] SceneError),
 }

@@ -1,4 +1,4 @@
-//! Time parametrization of paths in the exact scene: a corner is blended where the result is proven free.
+//! Time parametrization of paths in the exact scene: a corner is blended if the result is proven free.
 
 use elbowroom_scene::SceneState;
 
@@ -8,17 +8,19 @@ use super::planner::RrtConnect;
 use super::settings::RrtConnectSettings;
 use crate::time_parametrization::{KinematicLimits, PathElement, PathSegments, Trajectory};
 
-/// The blend distance of a corner is halved this often before the trajectory stops at the corner.
+/// Number of times that the blend distance of a corner is halved before the trajectory stops at the corner.
 const MAX_HALVINGS: i32 = 5;
-/// Where a sample lies on the border of two elements, its element is determined this share of a period beside it: a stop is
-/// the end of one segment and the beginning of the next.
+/// Fraction of a period by which the element of a sample is looked up beside the sample if it lies on the border of two
+/// elements: a stop is the end of one segment and the beginning of the next.
 const INSET_PERIODS: f64 = 1e-6;
 
 impl RrtConnect<'_> {
-    /// Time parametrization of a path that was planned from `start`, within limits: straight along its segments, which are
-    /// proven, corners blended where that is proven free, else with a stop. The proof is of the polyline through the positions at every `period` (s), which
-    /// [`Trajectory::samples`] returns and a controller with linear interpolation follows. The trajectory rests at multiples
-    /// of the period only.
+    /// Computes the time parametrization of a path that was planned from `start`, within limits.
+    ///
+    /// The motion is straight along the path's segments, which are proven. A corner is blended if that is proven free;
+    /// otherwise the motion stops there. The proof covers the polyline through the positions at every `period` (s),
+    /// which [`Trajectory::samples`] returns and which a controller with linear interpolation follows. The trajectory
+    /// rests only at multiples of the period.
     ///
     /// ```
     /// use elbowroom_planner::{KinematicLimits, RrtConnect, RrtConnectSettings};
@@ -38,7 +40,8 @@ impl RrtConnect<'_> {
     /// ```
     ///
     /// # Errors
-    /// Limits that are not one finite number above 0 per joint, an invalid period, or a path of another robot.
+    /// The limits are not one finite number above 0 per joint, the period is invalid, or the path belongs to another
+    /// robot.
     pub fn time_parametrize(
         &mut self,
         start: &SceneState,
@@ -63,7 +66,7 @@ impl RrtConnect<'_> {
                 blend_distances[n] = if blend_distances[n] > least[n] { 0.5 * blend_distances[n] } else { 0.0 };
             }
             if blend_distances == before {
-                // No smaller blend is left: with stops at all corners, samples go from waypoint to waypoint.
+                // No smaller blend is left. With stops at all corners, samples go from waypoint to waypoint.
                 blend_distances.fill(0.0);
                 return Ok(Trajectory::new(segments, &blend_distances).aligned_to_ticks(period)?);
             }
@@ -79,7 +82,7 @@ impl RrtConnect<'_> {
             let ((t, a), (next, b)) = (&pair[0], &pair[1]);
             let inset = INSET_PERIODS * period;
             let (first, last) = match (trajectory.element_at(t + inset), trajectory.element_at(next - inset)) {
-                // Both on one segment, which is proven.
+                // Both samples on one segment, which is proven.
                 (Some(Segment(m)), Some(Segment(n))) if m == n => continue,
                 (Some(Segment(m)), Some(Segment(n) | Corner(n))) => (m + 1, n),
                 (Some(Corner(m)), Some(Segment(n) | Corner(n))) => (m, n),

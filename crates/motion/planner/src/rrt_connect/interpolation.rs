@@ -17,7 +17,7 @@ pub(crate) fn path_length(path: &[Vec<f64>]) -> f64 {
     path.windows(2).map(|w| length(&w[0], &w[1])).sum()
 }
 
-/// The configuration after a length, and its segment.
+/// The configuration after a length along a path, and its segment.
 pub(crate) fn point_at(path: &[Vec<f64>], far: f64) -> (usize, Vec<f64>) {
     let mut left = far;
     for (segment, w) in path.windows(2).enumerate() {

@@ -6,23 +6,23 @@ use super::error::{JointUnit, RrtConnectError};
 use super::random::Random;
 use crate::path::PathEnd;
 
-/// A prismatic joint without limits is sampled this far beyond both ends, m.
+/// Distance beyond both ends within which a prismatic joint without limits is sampled, m.
 const UNBOUNDED_SLIDE_M: f64 = 1.0;
-/// Values beyond a limit by no more than this are clamped to it, rad or m.
+/// Excess over a limit up to which a value is clamped to it, rad or m.
 const LIMIT_TOLERANCE: f64 = 1e-9;
 
-/// The limits of a robot's values.
+/// Limits of a robot's values.
 #[derive(Debug, Clone)]
 pub(crate) struct JointBounds {
     lower: Vec<f64>,
     upper: Vec<f64>,
     names: Vec<String>,
     prismatic: Vec<bool>,
-    /// True if a full turn of the joint changes no posture.
+    /// Whether a full turn of the joint leads to the same posture.
     repeats: Vec<bool>,
 }
 
-/// The values that a joint may take, rad or m.
+/// The values that a joint may have, rad or m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct JointRange {
     /// Lower limit, or -∞.
@@ -30,11 +30,11 @@ pub(crate) struct JointRange {
     /// Upper limit, or +∞.
     pub upper: f64,
     pub is_prismatic: bool,
-    /// True if a full turn of the joint changes no posture.
+    /// Whether a full turn of the joint leads to the same posture.
     pub repeats: bool,
 }
 
-/// True if what follows a joint turns by whole turns with it.
+/// Whether all joints that follow a value turn by whole turns with it.
 fn repeats(chain: &Chain, index: usize) -> bool {
     let follows = |id: usize| chain.coupling(JointId(id)).filter(|c| c.index == index);
     (0..chain.joints().len())
@@ -53,7 +53,7 @@ impl JointBounds {
         }
     }
 
-    /// The values that each joint may take.
+    /// The values that each joint may have.
     pub fn ranges(&self) -> Vec<JointRange> {
         let range = |i: usize| JointRange {
             lower: self.lower[i],
@@ -73,7 +73,7 @@ impl JointBounds {
         self.lower.len()
     }
 
-    /// The values, clamped where they exceed a limit by rounding.
+    /// Returns the values, clamped if they exceed a limit by rounding only.
     pub fn clamped_end(&self, end: PathEnd, q: &[f64]) -> Result<Vec<f64>, RrtConnectError> {
         for (i, &value) in q.iter().enumerate() {
             if !(value >= self.lower[i] - LIMIT_TOLERANCE && value <= self.upper[i] + LIMIT_TOLERANCE) {
@@ -94,7 +94,7 @@ impl JointBounds {
         Ok(q)
     }
 
-    /// True if all values are within the limits.
+    /// Whether all values are within the limits.
     pub fn contains(&self, q: &[f64]) -> bool {
         q.iter().enumerate().all(|(i, v)| *v >= self.lower[i] && *v <= self.upper[i])
     }
@@ -111,7 +111,7 @@ impl JointBounds {
         q.iter_mut().enumerate().for_each(|(i, v)| *v = v.max(self.lower[i]).min(self.upper[i]));
     }
 
-    /// Joints that reach the same posture full turns nearer to the start, and their values there.
+    /// Joints with another value for the same posture, full turns away and nearer to the start, and that value.
     pub fn equivalent_goals(&self, from: &[f64], to: &[f64]) -> Vec<(String, f64)> {
         let turn = std::f64::consts::TAU;
         let other = |i: usize| {
@@ -122,13 +122,13 @@ impl JointBounds {
         (0..self.dof()).filter_map(other).collect()
     }
 
-    /// The region between two configurations and around them: up to the limits; half a turn beyond both ends where there are
-    /// none.
+    /// The region between and around two configurations: up to the limits, or half a turn beyond both ends if a joint
+    /// has no limits (for prismatic joints 1 m).
     pub fn sampling_region(&self, from: &[f64], to: &[f64]) -> SamplingRegion {
         self.sampling_region_of([from, to])
     }
 
-    /// The same for several configurations.
+    /// The sampling region of several configurations.
     pub fn sampling_region_of<'q>(&self, ends: impl IntoIterator<Item = &'q [f64]>) -> SamplingRegion {
         let mut extremes = vec![(f64::INFINITY, f64::NEG_INFINITY); self.dof()];
         for q in ends {
@@ -147,14 +147,14 @@ impl JointBounds {
     }
 }
 
-/// Per value: lower bound, the smaller end, the greater end, upper bound.
+/// Sampling region: per value the lower bound, the smaller end, the greater end, the upper bound.
 #[derive(Debug, Clone)]
 pub(crate) struct SamplingRegion {
     each: Vec<[f64; 4]>,
 }
 
 impl SamplingRegion {
-    /// A sample between the ends and within a share of the region beyond them.
+    /// Draws a sample between the ends and within a fraction of the region beyond them.
     pub fn sample(&self, share: f64, random: &mut Random, out: &mut [f64]) {
         for (value, [least, low, high, most]) in out.iter_mut().zip(&self.each) {
             let (from, to) = (low + (least - low) * share, high + (most - high) * share);
@@ -162,19 +162,19 @@ impl SamplingRegion {
         }
     }
 
-    /// True for a configuration of the region.
+    /// Whether a configuration is in the region.
     pub fn contains(&self, q: &[f64]) -> bool {
         q.iter().zip(&self.each).all(|(value, [least, _, _, most])| value >= least && value <= most)
     }
 
-    /// As [`around`](Self::around), with what is beyond the limits moved to them.
+    /// Like [`around`](Self::around), but values beyond the limits are clamped to them.
     pub fn clamped_around(&self, q: &[f64], distance: f64, random: &mut Random, out: &mut [f64]) {
         for ((value, &at), [least, _, _, most]) in out.iter_mut().zip(q).zip(&self.each) {
             *value = random.between(at - distance, at + distance).clamp(*least, *most);
         }
     }
 
-    /// A sample within a distance of a configuration in each value.
+    /// Draws a sample within a distance of a configuration in each value.
     pub fn around(&self, q: &[f64], distance: f64, random: &mut Random, out: &mut [f64]) {
         for ((value, &at), [least, _, _, most]) in out.iter_mut().zip(q).zip(&self.each) {
             *value = random.between((at - distance).max(*least), (at + distance).min(*most));

@@ -1,4 +1,4 @@
-//! Weights that make joints of different kind and place comparable: how far each moves the solids that depend on it.
+//! Weights that make joints of different kind and place comparable: the motion of the solids that depend on each joint.
 
 use elbowroom_kinematics::{Chain, ChainState, LinkId};
 use elbowroom_proximity::Shape;
@@ -8,14 +8,14 @@ use elbowroom_spatial::{Pose, Vec3};
 use super::joint_bounds::JointBounds;
 use super::random::Random;
 
-/// Configurations that are sampled.
+/// Number of sampled configurations.
 const SAMPLES: usize = 16;
 /// Step of the difference quotient, rad or m.
 const DIFFERENCE_STEP: f64 = 1e-4;
-/// Least weight of a joint, as a share of the largest.
+/// Least weight of a joint, as a fraction of the largest.
 const MIN_WEIGHT_RATIO: f64 = 0.05;
 
-/// Metres that the farthest point of a solid moves per rad (or m) of each value: an estimate, not used in proofs.
+/// Motion of the farthest point of a solid per value, m per rad (or m): an estimate, not used in proofs.
 pub(super) fn joint_weights(robot: &Robot, bounds: &JointBounds) -> Vec<f64> {
     let corners = corners(robot);
     let dof = bounds.dof();

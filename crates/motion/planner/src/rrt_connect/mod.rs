@@ -1,5 +1,5 @@
-//! Path planning for any number of joints in the exact scene: RRT-Connect, then shortcutting; every segment of the result is
-//! proven by a sweep.
+//! Path planning for any number of joints in the exact scene: RRT-Connect, then shortcutting. A sweep proves every
+//! segment of the result.
 
 mod clearance_exit;
 mod error;

@@ -1,5 +1,5 @@
-//! Motion validator: whether configurations and motions of one robot are valid in the exact scene, by discrete checks and
-//! by continuous proofs.
+//! Motion validator: checks by sampling, and proves continuously, whether motions of one robot are free in the exact
+//! scene.
 
 use std::time::Instant;
 
@@ -12,7 +12,7 @@ use elbowroom_scene::{
 use super::interpolation::lerp;
 use super::path_constraint::ConstraintChecker;
 
-/// Validates motions of one robot; all else stays as in a state.
+/// Validates motions of one robot; everything else stays as in a state.
 #[derive(Debug)]
 pub(crate) struct MotionValidator<'s> {
     scene: &'s Scene,
@@ -21,12 +21,12 @@ pub(crate) struct MotionValidator<'s> {
     state: SceneState,
     pub sweep: SweepOptions,
     pub constraint: Option<ConstraintChecker<'s>>,
-    /// Metres per rad or m of each value, see [`super::joint_weights`].
+    /// Motion of the solids per value, m per rad or m; see [`super::joint_weights`].
     pub weights: Vec<f64>,
     max_weight: f64,
-    /// Largest step of a discrete check, see [`Self::distance`].
+    /// Largest step of a discrete check; see [`Self::distance`].
     pub check_resolution: f64,
-    /// Configurations that were checked.
+    /// Number of checked configurations.
     pub states_checked: u64,
     pub deadline: Instant,
     pub max_states: u64,
@@ -50,12 +50,12 @@ impl<'s> MotionValidator<'s> {
         }
     }
 
-    /// True if the limit of time or configurations is reached.
+    /// Whether the limit of time or configurations is reached.
     pub fn is_exhausted(&self) -> bool {
         self.states_checked >= self.max_states || Instant::now() >= self.deadline
     }
 
-    /// Sets the state of the scene; fails where the scene rejects the goal.
+    /// Sets the state of the scene; fails if the scene rejects the goal.
     pub fn set_start(&mut self, state: &SceneState, goal: &[f64]) -> Result<(), SceneError> {
         state.check_q(self.scene, self.robot, goal)?;
         self.state.clone_from(state);
@@ -63,12 +63,12 @@ impl<'s> MotionValidator<'s> {
         Ok(())
     }
 
-    /// Its robot in the scene.
+    /// The robot in the scene.
     pub fn placed_robot(&self) -> &'s SceneRobot {
         &self.scene.robots()[self.robot.0]
     }
 
-    /// The scene, and its state: all but the robot is as it was set.
+    /// The scene and its state, in which everything but the robot is as it was set.
     pub fn scene_state(&self) -> (&'s Scene, &SceneState) {
         (self.scene, &self.state)
     }
@@ -77,12 +77,12 @@ impl<'s> MotionValidator<'s> {
         self.scene.name(geometry)
     }
 
-    /// False if the scene rejects the values: they count as not free.
+    /// Sets the robot's values. False if the scene rejects them: they count as not free.
     fn set_robot(&mut self, q: &[f64]) -> bool {
         self.state.set_q(self.scene, self.robot, q).is_ok()
     }
 
-    /// A pair nearer than the clearance.
+    /// Returns a pair nearer than the clearance.
     pub fn first_contact(&mut self, q: &[f64]) -> Option<PairContact> {
         self.set_robot(q);
         self.pair_within(self.sweep.clearance_m)
@@ -92,25 +92,25 @@ impl<'s> MotionValidator<'s> {
         self.checker.between(Selection::Robot(self.robot), Selection::All).within(&self.state, metres)
     }
 
-    /// The nearest pair of the robot.
+    /// Returns the nearest pair of the robot.
     pub fn nearest_pair(&mut self, q: &[f64]) -> Option<PairDistance> {
         self.set_robot(q);
         self.checker.between(Selection::Robot(self.robot), Selection::All).distance(&self.state)
     }
 
-    /// Distance of a pair less its security margin, metres.
+    /// Distance of a pair minus its security margin, metres.
     pub fn pair_distance(&mut self, q: &[f64], contact: &PairContact) -> f64 {
         self.set_robot(q);
         let found = self.checker.between(contact.a.into(), contact.b.into()).distance(&self.state);
         found.map_or(0.0, |d| d.metres)
     }
 
-    /// True if the constraint, if any, is satisfied with a margin for a proof.
+    /// Whether the constraint, if any, is satisfied with a margin for a proof.
     pub fn satisfies_constraint(&mut self, q: &[f64]) -> bool {
         self.constraint.as_mut().is_none_or(|constraint| constraint.is_free(q))
     }
 
-    /// True if a configuration is free with a margin for a proof.
+    /// Whether a configuration is free with a margin for a proof.
     pub fn is_free(&mut self, q: &[f64]) -> bool {
         self.states_checked += 1;
         let margin = self.sweep.clearance_m + self.sweep.tolerance_m;
@@ -118,18 +118,18 @@ impl<'s> MotionValidator<'s> {
         self.satisfies_constraint(q) && self.set_robot(q) && self.pair_within(margin).is_none()
     }
 
-    /// Weighted distance: about how far solids move, as rad (or m) of the joint that moves them most.
+    /// Weighted distance: approximate motion of the solids, as rad (or m) of the joint that moves them most.
     pub fn distance(&self, a: &[f64], b: &[f64]) -> f64 {
         let each = a.iter().zip(b).zip(&self.weights).map(|((x, y), w)| ((x - y) * w).powi(2));
         if self.max_weight > 0.0 { each.sum::<f64>().sqrt() / self.max_weight } else { 0.0 }
     }
 
-    /// The step of each joint, alone, of this weighted distance.
+    /// Steps of the joints that each, alone, have this weighted distance.
     pub fn equivalent_steps(&self, distance: f64) -> impl Iterator<Item = f64> + '_ {
         self.weights.iter().map(move |w| if *w > 0.0 { distance * self.max_weight / w } else { 0.0 })
     }
 
-    /// Checks `b`, then configurations between at the resolution, coarsely first. No proof.
+    /// Checks `b`, then configurations in between at the resolution, coarsely first. This is not a proof.
     pub fn discrete_check(&mut self, a: &[f64], b: &[f64]) -> bool {
         if !self.is_free(b) {
             return false;
@@ -156,18 +156,19 @@ impl<'s> MotionValidator<'s> {
         constrained && self.sweep_is_free(a, b)
     }
 
-    /// The same where `a` may be nearer to a violation of the constraint than paths may, if the segment comes no nearer.
+    /// Like [`proves_motion`](Self::proves_motion), but `a` may be nearer to a violation of the constraint than paths
+    /// may, if the segment comes no nearer.
     pub fn proves_departure(&mut self, a: &[f64], b: &[f64]) -> bool {
         let constrained = self.constraint.as_mut().is_none_or(|constraint| constraint.proves_departure(a, b));
         constrained && self.sweep_is_free(a, b)
     }
 
-    /// True if the constraint, if any, is proven to be satisfied on the straight segment from `a` to `b`.
+    /// Whether the constraint, if any, is proven to be satisfied on the straight segment from `a` to `b`.
     pub fn constraint_allows(&mut self, a: &[f64], b: &[f64]) -> bool {
         self.constraint.as_mut().is_none_or(|constraint| constraint.proves_motion(a, b))
     }
 
-    /// True if one pair is proven to stay apart while the robot moves straight from a configuration.
+    /// Whether one pair is proven to stay apart while the robot moves straight from a configuration.
     pub fn pair_sweep_is_free(
         &mut self,
         a: GeometryId,
@@ -181,12 +182,12 @@ impl<'s> MotionValidator<'s> {
             && matches!(pair.sweep(&self.state, &[to], options), Ok(None))
     }
 
-    /// True if the scene has more than its robot.
+    /// Whether the scene has other robots.
     pub fn has_other_robots(&self) -> bool {
         self.scene.robots().len() > 1
     }
 
-    /// The proof in the scene.
+    /// Proves a segment in the scene.
     fn sweep_is_free(&mut self, a: &[f64], b: &[f64]) -> bool {
         if !self.set_robot(a) {
             return false;
@@ -196,7 +197,7 @@ impl<'s> MotionValidator<'s> {
         matches!(pairs.sweep(&self.state, &moves, &self.sweep), Ok(None))
     }
 
-    /// A discrete check, as it is cheaper, then the proof.
+    /// Checks a segment discretely, which is cheaper, then proves it.
     pub fn is_valid_motion(&mut self, a: &[f64], b: &[f64]) -> bool {
         self.discrete_check(a, b) && self.proves_motion(a, b)
     }

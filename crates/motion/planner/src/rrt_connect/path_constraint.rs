@@ -6,39 +6,41 @@ use super::interpolation::lerp;
 
 /// Margin of a proof, m, the same as for sweeps.
 const TOLERANCE_M: f64 = 1e-4;
-/// Evaluations of a segment after which it counts as not proven.
+/// Number of evaluations after which a segment counts as not proven.
 const MAX_EVALUATIONS: u32 = 20_000;
 /// Factor on motion bounds for the rounding of their sums.
 const ROUNDING_FACTOR: f64 = 1.0 + 1e-9;
 
-/// A constraint on paths beyond the solids of the scene, for example to stay out of the regions of a monitor.
+/// A constraint on paths beyond the solids of the scene, for example to avoid the regions of a monitor.
 ///
 /// Configurations are all values of the robot, rad (m for prismatic joints). NaN counts as a violation.
 pub trait PathConstraint: Debug {
-    /// Lower bound of the distance of all guarded points from a violation, m; 0 or less where the constraint is violated.
-    /// Where it is more than `limit_m`, any greater number may be returned.
+    /// Lower bound of the distance of all guarded points from a violation, m; 0 or less if the constraint is violated.
+    /// If the distance is more than `limit_m`, the method may return any greater number.
     fn distance_m(&mut self, q: &[f64], limit_m: f64) -> f64;
 
-    /// The same less the margin that paths keep, which may differ from place to place. A path has less of it only where it
-    /// leaves a start or reaches a goal that has less.
+    /// Like [`distance_m`](Self::distance_m), minus the margin that paths keep, which may vary with the place. A path
+    /// has a smaller margin only while it leaves a start or reaches a goal with a smaller margin.
     fn margin_m(&mut self, q: &[f64], limit_m: f64) -> f64 {
         self.distance_m(q, limit_m)
     }
 
     /// Upper bound of the displacement of all guarded points, m, while all joints move straight and together from one
-    /// configuration to another; a share of that motion displaces them by no more than the same share.
+    /// configuration to another. A fraction of that motion displaces the points by at most the same fraction of the
+    /// bound.
     fn motion_bound_m(&mut self, from: &[f64], to: &[f64]) -> f64;
 
-    /// The violation at a configuration, or the nearest one, in words: "region `press`".
+    /// Describes the violation at a configuration, or the nearest one, in words: "region `press`".
     fn describe_nearest(&mut self, q: &[f64]) -> String;
 
-    /// Longest edge of a tree, rad (and m), where the constraint leaves only a thin part of the joint space: then samples are
-    /// moved by [`project`](Self::project). `None` where most configurations satisfy it.
+    /// Longest edge of a tree, rad (and m), if the constraint leaves only a thin part of the joint space: then samples
+    /// are moved by [`project`](Self::project). `None` if most configurations satisfy the constraint.
     fn projected_edge_length(&self) -> Option<f64> {
         None
     }
 
-    /// Moves a configuration by little to one that satisfies the constraint; leaves it where it does. False if that fails.
+    /// Moves a configuration slightly to one that satisfies the constraint; does not change it if it does already.
+    /// False if that fails.
     fn project(&mut self, q: &mut [f64]) -> bool {
         let _ = q;
         true
@@ -115,17 +117,17 @@ impl<'c> ConstraintChecker<'c> {
         (!(distance > 0.0)).then(|| (self.constraint.describe_nearest(q), distance))
     }
 
-    /// As [`PathConstraint::projected_edge_length`].
+    /// See [`PathConstraint::projected_edge_length`].
     pub fn projected_edge_length(&self) -> Option<f64> {
         self.constraint.projected_edge_length()
     }
 
-    /// As [`PathConstraint::project`].
+    /// See [`PathConstraint::project`].
     pub fn project(&mut self, q: &mut [f64]) -> bool {
         self.constraint.project(q)
     }
 
-    /// True if the margin of paths is kept, with the margin of a proof.
+    /// Whether a configuration keeps the margin of paths, with a margin for a proof.
     pub fn is_free(&mut self, q: &[f64]) -> bool {
         self.constraint.margin_m(q, TOLERANCE_M) > TOLERANCE_M
     }
@@ -136,8 +138,9 @@ impl<'c> ConstraintChecker<'c> {
         proves_segment(from, to, motion_bound, TOLERANCE_M, |q, limit| self.constraint.margin_m(q, limit))
     }
 
-    /// The same where `from` need not keep that margin: then the segment comes no nearer than `from` is, but for a tolerance
-    /// that is less than the distance of `from` from a violation.
+    /// Like [`proves_motion`](Self::proves_motion), but `from` may have a smaller margin. Then the segment comes no
+    /// nearer to a violation than `from` is, up to a tolerance that is less than the distance of `from` from a
+    /// violation.
     pub fn proves_departure(&mut self, from: &[f64], to: &[f64]) -> bool {
         if self.is_free(from) {
             return self.proves_motion(from, to);
@@ -152,8 +155,9 @@ impl<'c> ConstraintChecker<'c> {
     }
 }
 
-/// Conservative advancement from the middle outwards: a margin at a configuration proves the part of the segment within which
-/// no point moves farther. Nothing is proven where less than `need` is left, as the proof might not terminate.
+/// Conservative advancement from the middle outwards: a margin at a configuration proves the part of the segment on
+/// which no point moves farther than the margin. If less than `need` is left, nothing is proven, because the proof
+/// might not terminate.
 fn proves_segment(
     from: &[f64],
     to: &[f64],
@@ -194,8 +198,8 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(2_000))]
-        /// A ball in the plane and a straight segment: what is proven has a positive distance at every sample, what has a
-        /// positive distance at every sample (and a little more than a proof needs) is proven.
+        /// A ball in the plane and a straight segment. If a segment is proven, every sample has a positive distance. If
+        /// every sample has a positive distance (and slightly more than a proof needs), the segment is proven.
         #[test]
         fn proofs_agree_with_fine_sampling(
             from in prop::array::uniform2(-1.0..1.0_f64),
@@ -212,7 +216,7 @@ mod tests {
                 distance(&q)
             }).fold(f64::INFINITY, f64::min);
             prop_assert!(!proven || least > 0.0, "{least}");
-            // No sample is farther than 0.75 mm from the nearest point of all.
+            // Every sample is within 0.75 mm of the nearest point of all.
             prop_assert!(proven || least < TOLERANCE_M + 7.5e-4, "{least}");
         }
     }

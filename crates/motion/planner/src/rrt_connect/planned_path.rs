@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use super::interpolation::path_length;
 
-/// A path from start to goal: straight in joint space from each waypoint to the next, proven free.
+/// A path from start to goal: straight in joint space from each waypoint to the next, and proven free.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlannedPath {
     /// All values of the robot, rad (m for prismatic joints), at least two waypoints; the first is the start.
@@ -17,12 +17,12 @@ pub struct PlannedPath {
     pub planning_time: Duration,
     /// Time of shortcutting.
     pub simplification_time: Duration,
-    /// Configurations that were checked.
+    /// Number of checked configurations.
     pub states_checked: u64,
 }
 
 impl PlannedPath {
-    /// Of waypoints, at least one, that took a time to find: a copy of a single one is added.
+    /// Creates a path from waypoints (at least one) and the time of the search; a single waypoint is duplicated.
     pub fn of(mut waypoints: Vec<Vec<f64>>, planning_time: Duration) -> Self {
         if let [only] = &waypoints[..] {
             waypoints.push(only.clone());

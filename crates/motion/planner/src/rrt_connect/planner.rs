@@ -19,20 +19,20 @@ use super::shortcutting::Shortcutting;
 use super::tree_search::BidirectionalSearch;
 use crate::path::PathEnd;
 
-/// Longest time limit, a year: instants cannot be as far apart as durations can be long.
+/// Longest time limit: one year. Instants cannot be as far apart as durations can be long.
 const MAX_TIME_LIMIT: Duration = Duration::from_hours(365 * 24);
 
-/// When a search ends that begins at a time.
+/// Time at which a search that begins at `begin` ends.
 fn deadline(begin: Instant, settings: &RrtConnectSettings) -> Instant {
     begin + settings.time_limit.min(MAX_TIME_LIMIT)
 }
 
-/// Plans for one robot of a scene; all else stays as in a state.
+/// Plans for one robot of a scene; everything else stays as in a state.
 ///
-/// Two trees of configurations grow from start and goal until they meet (RRT-Connect). Edges are checked at discrete
-/// configurations while the trees grow; the edges of the path are proven by
-/// [`Checker::sweep`](elbowroom_scene::Checker::sweep), which is continuous. For the same scene, ends and settings the path is
-/// the same, unless the time limit is reached.
+/// Two trees of configurations grow from start and goal until they meet (RRT-Connect). While the trees grow, edges are
+/// checked at discrete configurations; the edges of the path are proven by the continuous
+/// [`Checker::sweep`](elbowroom_scene::Checker::sweep). For the same scene, ends and settings the path is always the
+/// same, unless the time limit is reached.
 ///
 /// ```
 /// use elbowroom_planner::{RrtConnect, RrtConnectSettings};
@@ -56,10 +56,10 @@ pub struct RrtConnect<'s> {
 }
 
 impl<'s> RrtConnect<'s> {
-    /// For one robot of a scene.
+    /// Creates a planner for one robot of a scene.
     ///
     /// # Errors
-    /// The scene has no such robot.
+    /// The scene does not have this robot.
     pub fn new(scene: &'s Scene, robot: RobotId) -> Result<Self, SceneError> {
         let count = scene.robots().len();
         let r = scene.robots().get(robot.0).ok_or(SceneError::NoSuchRobot { index: robot.0, count })?;
@@ -68,30 +68,32 @@ impl<'s> RrtConnect<'s> {
         Ok(Self { validator: MotionValidator::new(scene, robot, weights), bounds, robot })
     }
 
-    /// With a constraint that paths satisfy.
+    /// Adds a constraint that paths satisfy.
     ///
-    /// A start that violates it, or is nearer to a violation than paths may be, is left by a straight segment that does not come
-    /// nearer; a goal that is nearer is reached in the same manner. A goal that violates it is rejected.
+    /// If the start violates the constraint, or is nearer to a violation than paths may be, the path leaves it by a
+    /// straight segment that comes no nearer. If the goal is nearer to a violation than paths may be, the path reaches
+    /// it in the same way. A goal that violates the constraint is rejected.
     #[must_use]
     pub fn with_constraint(mut self, constraint: impl PathConstraint + 's) -> Self {
         self.validator.constraint = Some(ConstraintChecker::new(constraint));
         self
     }
 
-    /// With limits narrower than the robot's own: lowest and highest value per joint, rad or m. Missing ones, and wider ones,
-    /// have no effect.
+    /// Narrows the robot's limits: lowest and highest value per joint, rad or m. Missing or wider limits have no
+    /// effect.
     #[must_use]
     pub fn with_limits(mut self, limits: impl IntoIterator<Item = (f64, f64)>) -> Self {
         self.bounds.narrow(limits.into_iter());
         self
     }
 
-    /// Plans from the robot's configuration in `start` to `goal` (rad, m for prismatic joints). Self-collision, objects and
-    /// other robots, which stay as in `start`, are checked according to the scene's allowed collision matrix.
+    /// Plans from the robot's configuration in `start` to `goal` (rad, m for prismatic joints). Checks self-collision,
+    /// objects and other robots, which stay as in `start`, according to the scene's allowed collision matrix.
     ///
     /// # Errors
-    /// An end beyond limits, in collision or nearer than the clearance, a goal that violates the [`PathConstraint`]; values
-    /// that are NaN or too few; an invalid setting; no path found within the limits, which proves nothing.
+    /// An end is beyond limits, in collision or nearer than the clearance; the goal violates the [`PathConstraint`];
+    /// values are NaN or too few; a setting is invalid; or no path was found within the limits, which does not prove
+    /// that none exists.
     pub fn plan(
         &mut self,
         start: &SceneState,
@@ -108,11 +110,12 @@ impl<'s> RrtConnect<'s> {
         Ok(self.connect(begin, exits, &mut random, settings)?.with_ends(ends))
     }
 
-    /// As [`plan`](Self::plan), but the ends need only be free: an end with less than the clearance is left (or reached) by
-    /// a straight segment that keeps half of the distance at the end, before the clearance is kept.
+    /// Like [`plan`](Self::plan), but the ends need only be free: the path leaves (or reaches) an end with less than
+    /// the clearance by a straight segment that keeps half of the distance at the end, and keeps the clearance
+    /// otherwise.
     ///
     /// # Errors
-    /// As [`plan`](Self::plan); where no such segment is found, no path is found.
+    /// The errors of [`plan`](Self::plan); if no such segment is found, no path is found.
     pub fn plan_from_tight_ends(
         &mut self,
         start: &SceneState,
@@ -128,9 +131,10 @@ impl<'s> RrtConnect<'s> {
         Ok(self.connect(begin, exits, &mut random, settings)?.with_ends(ends))
     }
 
-    /// The first of these straight segments, by the number of the waypoint at its end, that a sweep of the exact scene does not
-    /// prove free or that the constraint does not allow; `None` if all of them are proven. The first waypoint is where the robot is
-    /// in `start`. Serves paths that were planned otherwise, such as on a map.
+    /// Returns the first of these straight segments, by the index of the waypoint at its end, that a sweep of the exact
+    /// scene does not prove free or that the constraint does not allow; `None` if all of them are proven. The first
+    /// waypoint must be the robot's configuration in `start`. Checks paths that were planned by other means, for
+    /// example on a map.
     ///
     /// ```
     /// use elbowroom_planner::{RrtConnect, RrtConnectSettings};
@@ -148,7 +152,7 @@ impl<'s> RrtConnect<'s> {
     /// ```
     ///
     /// # Errors
-    /// As [`plan`](Self::plan) for the ends and the settings.
+    /// The errors of [`plan`](Self::plan) for the ends and the settings.
     pub fn first_unproven_segment(
         &mut self,
         start: &SceneState,
@@ -199,7 +203,8 @@ impl<'s> RrtConnect<'s> {
         RrtConnectError::NotFound { seconds, states_checked, nodes, nearer: self.bounds.equivalent_goals(from, to) }
     }
 
-    /// For each end a configuration near by that has the clearance and satisfies the constraint, or the end itself.
+    /// Returns, for each end, the end itself or a nearby configuration that has the clearance and satisfies the
+    /// constraint.
     fn clearance_exits(
         &mut self,
         ends: &[Vec<f64>; 2],
@@ -220,8 +225,8 @@ impl<'s> RrtConnect<'s> {
         Ok(exits)
     }
 
-    /// Prepares the validator for a query. Returns start and goal, within limits and free; the tolerance of the sweep is
-    /// reduced to the distances at the ends.
+    /// Prepares the validator for a query. Returns start and goal, within limits and free. Reduces the tolerance of the
+    /// sweep to half of the distances at the ends at most.
     pub(super) fn prepare(
         &mut self,
         start: &SceneState,
@@ -244,7 +249,7 @@ impl<'s> RrtConnect<'s> {
         Ok([checked.pop().unwrap_or_default(), to])
     }
 
-    /// Prepares the validator for a query, the ends unchecked.
+    /// Prepares the validator for a query without checking the ends.
     pub(crate) fn begin(
         &mut self,
         start: &SceneState,
@@ -259,7 +264,7 @@ impl<'s> RrtConnect<'s> {
         Ok(())
     }
 
-    /// Distance of the nearest pair at an end beyond its margin and the clearance, metres.
+    /// Distance of the nearest pair at an end minus its margin and the clearance, metres.
     pub(crate) fn free_margin_m(&mut self, end: PathEnd, q: &[f64]) -> Result<f64, RrtConnectError> {
         let clearance_m = self.validator.sweep.clearance_m;
         if let Some(contact) = self.validator.first_contact(q) {
@@ -270,7 +275,8 @@ impl<'s> RrtConnect<'s> {
         Ok(self.validator.nearest_pair(q).map_or(f64::INFINITY, |d| d.metres) - clearance_m)
     }
 
-    /// The ends, or for each a configuration near by that has the clearance from the constraint, if there is one.
+    /// Returns the ends if there is no constraint. Otherwise returns, for each end, the end itself or a nearby
+    /// configuration that has the clearance and satisfies the constraint.
     pub(crate) fn constraint_exits(
         &mut self,
         ends: &[Vec<f64>; 2],
@@ -285,17 +291,17 @@ impl<'s> RrtConnect<'s> {
         self.clearance_exits(ends, random, settings)
     }
 
-    /// True if the scene has more than its robot.
+    /// Whether the scene has other robots.
     pub(crate) fn has_other_robots(&self) -> bool {
         self.validator.has_other_robots()
     }
 
-    /// Its robot in the scene.
+    /// The robot in the scene.
     pub(crate) fn placed_robot(&self) -> &'s SceneRobot {
         self.validator.placed_robot()
     }
 
-    /// Number of its robot.
+    /// Index of the robot.
     pub(crate) fn robot(&self) -> RobotId {
         self.robot
     }

@@ -7,24 +7,24 @@ use std::time::Duration;
 pub struct RrtConnectSettings {
     /// Time limit of search and shortcutting together, approximately.
     pub time_limit: Duration,
-    /// Limit of the configurations checked, approximately: unlike time, the same on every machine.
+    /// Approximate limit of checked configurations. Unlike a time limit, it acts in the same way on every machine.
     pub max_states: u64,
-    /// Distance that pairs keep beyond their security margins, m.
+    /// Distance that pairs keep in addition to their security margins, m.
     pub clearance_m: f64,
     /// Seed of the random numbers.
     pub seed: u64,
-    /// Longest edge of a tree. An edge moves solids about as far as this rotation (rad or m) of the joint that moves them
+    /// Longest edge of a tree: an edge moves solids about as far as this motion (rad or m) of the joint that moves them
     /// most.
     pub edge_length: f64,
-    /// Largest step of a discrete check, measured like [`edge_length`](Self::edge_length). Collisions in between are found by
-    /// the proof.
+    /// Largest step of a discrete check, measured like [`edge_length`](Self::edge_length). The proof finds collisions
+    /// in between.
     pub check_resolution: f64,
     /// Settings of shortcutting.
     pub shortcutting: ShortcuttingSettings,
 }
 
 impl Default for RrtConnectSettings {
-    /// 5 s, any number of configurations, no clearance.
+    /// 5 s, any number of configurations, clearance 0.
     fn default() -> Self {
         Self {
             time_limit: Duration::from_secs(5),
@@ -41,13 +41,13 @@ impl Default for RrtConnectSettings {
 /// Settings of shortcutting.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ShortcuttingSettings {
-    /// Random shortcuts that are tried.
+    /// Number of random shortcuts that are tried.
     pub max_attempts: usize,
-    /// Consecutive failures after which no more are tried.
+    /// Number of consecutive failures after which trying ends.
     pub max_failures: usize,
-    /// Rounds of moving corners.
+    /// Number of rounds of moving corners.
     pub max_rounds: usize,
-    /// A shortcut or a round must gain this share of the length.
+    /// Fraction of the length that a shortcut or a round must gain.
     pub min_gain: f64,
 }
 
@@ -69,7 +69,7 @@ pub enum RrtConnectSetting {
 }
 
 impl RrtConnectSetting {
-    /// Its valid values in words.
+    /// Valid values of the setting in words.
     pub(super) fn range(self) -> &'static str {
         match self {
             Self::Clearance => "a finite number of metres, 0 or more",

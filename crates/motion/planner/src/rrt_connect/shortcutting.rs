@@ -5,9 +5,10 @@ use super::motion_validator::MotionValidator;
 use super::random::Random;
 use super::settings::ShortcuttingSettings;
 
-/// Shares of the distance by which a corner is pulled towards the line between its neighbours.
+/// Fractions of the distance by which a corner is pulled towards the line between its neighbours.
 const PULL_RATIOS: [f64; 4] = [0.9, 0.5, 0.25, 0.1];
-/// A corner is pulled where that shortens its two segments by more than this share: rounding errors pull no corner.
+/// Smallest gain, as a fraction of a corner's two segments, for which it is pulled: rounding errors do not pull
+/// corners.
 const MIN_PULL_GAIN: f64 = 1e-9;
 
 /// Shortens a path.
@@ -32,7 +33,7 @@ impl Shortcutting<'_, '_> {
         }
     }
 
-    /// Leaves out waypoints, as many at once as possible.
+    /// Removes waypoints, as many at once as possible.
     fn skip_waypoints(&mut self, path: &mut Vec<Vec<f64>>) {
         let mut from = 0;
         while from + 2 < path.len() && !self.validator.is_exhausted() {
@@ -44,7 +45,7 @@ impl Shortcutting<'_, '_> {
         }
     }
 
-    /// Straight segments between two random points of the path.
+    /// Joins random pairs of points of the path by straight segments.
     fn random_shortcuts(&mut self, path: &mut Vec<Vec<f64>>) {
         let mut failures = 0;
         for _ in 0..self.settings.max_attempts {
@@ -93,7 +94,7 @@ impl Shortcutting<'_, '_> {
     }
 }
 
-/// A corner moved by a share of the distance to the foot of its perpendicular on the line between its neighbours.
+/// A corner moved by a fraction of the distance to the foot of its perpendicular on the line between its neighbours.
 fn pulled_corner(before: &[f64], corner: &[f64], after: &[f64], share: f64) -> Vec<f64> {
     let along: Vec<f64> = after.iter().zip(before).map(|(a, b)| a - b).collect();
     let square: f64 = along.iter().map(|x| x * x).sum();

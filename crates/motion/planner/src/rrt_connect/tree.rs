@@ -1,4 +1,4 @@
-//! The tree of one end.
+//! The search tree of one path end.
 
 /// A tree of configurations; node 0 is the root.
 #[derive(Debug, Clone)]
@@ -7,9 +7,9 @@ pub(super) struct Tree {
     /// All values of all nodes.
     values: Vec<f64>,
     parents: Vec<u32>,
-    /// The edge to the parent is proven.
+    /// Whether the edge to the parent is proven.
     proven: Vec<bool>,
-    /// An edge between the node and the root was not proven.
+    /// Whether some edge between the node and the root could not be proven.
     pruned: Vec<bool>,
 }
 
@@ -35,7 +35,7 @@ impl Tree {
         self.parents.len() - 1
     }
 
-    /// The node of least weighted distance.
+    /// The node with the least weighted distance.
     pub fn nearest(&self, q: &[f64], weights: &[f64]) -> usize {
         let (mut best, mut least) = (0, f64::INFINITY);
         for (node, values) in self.values.chunks_exact(self.dof.max(1)).enumerate() {
@@ -50,7 +50,7 @@ impl Tree {
         best
     }
 
-    /// The nodes from a node to the root.
+    /// The nodes from `node` to the root.
     pub fn branch(&self, node: usize) -> Vec<usize> {
         let mut branch = vec![node];
         let mut at = node;
@@ -73,7 +73,7 @@ impl Tree {
         self.proven[node] = true;
     }
 
-    /// Prunes a node with its subtree. Children come after their parents.
+    /// Prunes a node and its subtree. Children have greater indices than their parents.
     pub fn prune(&mut self, node: usize) {
         self.pruned[node] = true;
         for n in node + 1..self.len() {

@@ -1,6 +1,6 @@
 //! RRT-Connect (Kuffner, `LaValle`: *RRT-Connect: an efficient approach to single-query path planning*, 2000) with lazy
-//! proofs: edges are checked discretely when they are added, and proven when they are on a path; an edge that is not proven is
-//! pruned with its subtree, and the search continues.
+//! proofs: edges are checked discretely when they are added, and proven when they are part of a path. An edge that
+//! cannot be proven is pruned with its subtree, and the search continues.
 
 use super::interpolation::lerp;
 use super::joint_bounds::SamplingRegion;
@@ -8,11 +8,12 @@ use super::motion_validator::MotionValidator;
 use super::random::Random;
 use super::tree::Tree;
 
-/// Samples after which the whole region is sampled; before, the neighbourhood of the ends.
+/// Number of samples after which the whole region is sampled; before, samples stay around the ends.
 const WIDENING_ROUNDS: f64 = 300.0;
-/// Share of the region, about the ends, that is sampled first.
+/// Fraction of the region, around the ends, that is sampled first.
 const FIRST_SHARE: f64 = 0.1;
-/// One in so many samples stays near the ends, in this share of the region: exits of narrow starts and goals are there.
+/// Every Nth sample stays near the ends, in the fraction `NEAR_SHARE` of the region: exits of narrow starts and goals
+/// are there.
 const NEAR_ROUNDS: u32 = 3;
 const NEAR_SHARE: f64 = 0.3;
 
@@ -21,7 +22,7 @@ pub(super) struct BidirectionalSearch<'w, 's> {
     validator: &'w mut MotionValidator<'s>,
     region: &'w SamplingRegion,
     random: &'w mut Random,
-    /// The first is that of the start where `swapped` is false.
+    /// If `swapped` is false, the first tree belongs to the start.
     trees: [Tree; 2],
     swapped: bool,
     edge_length: f64,
@@ -44,14 +45,14 @@ impl<'w, 's> BidirectionalSearch<'w, 's> {
         self.trees.iter().map(Tree::len).sum()
     }
 
-    /// Waypoints of a proven path; `None` if a limit is reached.
+    /// Searches for a path. Returns the waypoints of a proven path; `None` if a limit is reached.
     pub fn run(&mut self) -> Option<Vec<Vec<f64>>> {
         let mut sample = self.trees[0].q(0).to_vec();
         for round in 0_u32.. {
             if self.validator.is_exhausted() {
                 break;
             }
-            // At first near the ends; later anywhere, and still near the ends in every third round.
+            // At first near the ends, later anywhere; every third round stays near the ends.
             let is_near = round % NEAR_ROUNDS == NEAR_ROUNDS - 1;
             let share = if is_near { NEAR_SHARE } else { (FIRST_SHARE + f64::from(round) / WIDENING_ROUNDS).min(1.0) };
             self.region.sample(share, self.random, &mut sample);
@@ -71,8 +72,8 @@ impl<'w, 's> BidirectionalSearch<'w, 's> {
         None
     }
 
-    /// Extends a tree towards a target, edge by edge until one is not free; returns the last node added and whether it is the
-    /// target, `None` if no edge was added.
+    /// Extends a tree towards a target, edge by edge, until an edge is not free. Returns the last added node and
+    /// whether it is the target; `None` if no edge was added.
     fn extend(&mut self, tree: usize, from: usize, target: &[f64]) -> Option<(usize, bool)> {
         let (mut last, mut added) = (from, None);
         let mut next = target.to_vec();
@@ -100,12 +101,12 @@ impl<'w, 's> BidirectionalSearch<'w, 's> {
         added
     }
 
-    /// Both branches as one path, each edge proven; `None` if one is not, which is then pruned.
+    /// Joins two branches to one path and proves each edge; `None` if an edge is not proven, which is then pruned.
     fn proven_path(&mut self, node: usize, other: usize) -> Option<Vec<Vec<f64>>> {
         let mut path = Vec::new();
         for (tree, end) in [(0, node), (1, other)] {
             let branch = self.trees[tree].branch(end);
-            // From the root: early edges prune the largest subtrees.
+            // From the root: edges near the root prune the largest subtrees.
             for &n in branch.iter().rev().skip(1) {
                 if self.trees[tree].is_proven(n) {
                     continue;
@@ -122,7 +123,7 @@ impl<'w, 's> BidirectionalSearch<'w, 's> {
                 path.extend(states);
                 path.reverse();
             } else {
-                // Both branches have the configuration at which they meet.
+                // The configuration at which the branches meet is in both.
                 path.extend(states.skip(1));
             }
         }

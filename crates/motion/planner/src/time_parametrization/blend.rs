@@ -1,9 +1,9 @@
-//! Blends: corners without a stop.
+//! Blends: corners that the motion passes without a stop.
 //!
-//! The velocity changes smoothly from one segment's to the next one's, `v1 + (v2 − v1)·S(t/T)` with `S = 3τ² − 2τ³`. So no
-//! joint is faster than on the segments, accelerations are at most 1.5·|v2 − v1|/T and 0 at the ends, jerks at most
-//! 6·|v2 − v1|/T²; and as `S` is below its mirror image in the first half, the curve stays in the triangle of its ends and
-//! the corner.
+//! The velocity changes smoothly from the velocity on one segment to that on the next, `v1 + (v2 − v1)·S(t/T)` with `S
+//! = 3τ² − 2τ³`. Therefore no joint is faster than on the segments, accelerations are at most 1.5·|v2 − v1|/T and 0 at
+//! the ends, and jerks are at most 6·|v2 − v1|/T². As `S` is below its mirror image in the first half, the curve stays
+//! in the triangle of its ends and the corner.
 
 use super::limits::KinematicLimits;
 
@@ -24,7 +24,7 @@ impl Blend<'_> {
         each.map(|(change, (a, j))| (1.5 * change / a).max((6.0 * change / j).sqrt())).fold(0.0, f64::max)
     }
 
-    /// Position (relative to the beginning of the blend), velocity, acceleration of one joint after `t` seconds.
+    /// Position (relative to the beginning of the blend), velocity and acceleration of one joint after `t` seconds.
     pub fn at(&self, t: f64, joint: usize) -> [f64; 3] {
         let x = (t / self.seconds).clamp(0.0, 1.0);
         let share = x * x * (3.0 - 2.0 * x);

@@ -1,6 +1,7 @@
 //! Limits of velocity, acceleration and jerk.
 
-/// Largest velocity, acceleration and jerk of each joint; all finite and above 0. For prismatic joints read m for rad.
+/// Largest velocity, acceleration and jerk of each joint; all finite and above 0. For prismatic joints, read m instead
+/// of rad.
 #[derive(Debug, Clone, PartialEq)]
 pub struct KinematicLimits {
     /// rad/s.
@@ -35,17 +36,17 @@ impl std::fmt::Display for LimitKind {
 /// Why a path has no time parametrization.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum TimeParametrizationError {
-    /// An invalid limit.
+    /// A limit is invalid.
     #[error("joint {joint}: the largest {kind} is {value}: give a finite number above 0")]
     Limit {
-        /// Number of the joint, counted from 0.
+        /// Index of the joint, counted from 0.
         joint: usize,
         /// Velocity, acceleration or jerk.
         kind: LimitKind,
-        /// Its value, rad per s, s² or s³.
+        /// Value of the limit, rad per s, s² or s³.
         value: f64,
     },
-    /// Not one limit per joint.
+    /// The number of limits differs from the number of joints.
     #[error("the largest {kind} is given for {given} joints, the path has {joints}: give one number per joint")]
     Count {
         /// Velocity, acceleration or jerk.
@@ -55,16 +56,16 @@ pub enum TimeParametrizationError {
         /// Number of joints of the path.
         joints: usize,
     },
-    /// A path without waypoints, or with one that is not finite or of another length.
+    /// The path has no waypoints, or a waypoint that is not finite or has another number of values.
     #[error("the path has no waypoints, or one that is not finite or of another length: time a path that was planned")]
     Path,
-    /// An invalid period.
+    /// The period is invalid.
     #[error("the period is {0} s: give a finite number above 0")]
     Period(f64),
 }
 
 impl KinematicLimits {
-    /// Validates all limits, for a number of joints.
+    /// Checks all limits, for a number of joints.
     pub(super) fn validate(&self, joints: usize) -> Result<(), TimeParametrizationError> {
         let all = [
             (LimitKind::Velocity, &self.velocity),
@@ -84,7 +85,7 @@ impl KinematicLimits {
         Ok(())
     }
 
-    /// Limits along a direction (unit vector): those of the joint that reaches its limit first.
+    /// Limits along a direction (unit vector), set by the joint that reaches its limit first.
     pub(super) fn in_direction(&self, direction: &[f64]) -> DirectionalLimits {
         let least = |limit: &[f64]| {
             let each = limit.iter().zip(direction).filter(|(_, d)| **d != 0.0).map(|(l, d)| l / d.abs());

@@ -1,5 +1,5 @@
-//! Time parametrization: from waypoints to a trajectory within limits of velocity, acceleration and jerk, for any number of
-//! joints.
+//! Time parametrization: turns waypoints into a trajectory within limits of velocity, acceleration and jerk, for any
+//! number of joints.
 
 mod blend;
 mod limits;

@@ -5,10 +5,10 @@ use super::limits::{DirectionalLimits, KinematicLimits, TimeParametrizationError
 use super::speed_profile::bisect_greatest;
 use super::speed_ramp::SpeedRamp;
 
-/// Waypoints nearer than this count as one, rad.
+/// Distance below which waypoints count as one, rad.
 const SAME_POINT_RAD: f64 = 1e-9;
 
-/// The segments of a path, and the limits of the joints.
+/// The segments of a path and the limits of the joints.
 #[derive(Debug, Clone)]
 pub(crate) struct PathSegments {
     pub(super) segments: Vec<Segment>,
@@ -34,14 +34,14 @@ pub(super) struct Corner {
 }
 
 impl Corner {
-    /// Distance of the blend's beginning and end from the corner.
+    /// Distance from the corner to the beginning and the end of the blend.
     pub fn blend_distance(self) -> f64 {
         0.5 * self.speed * self.seconds
     }
 }
 
 impl PathSegments {
-    /// Validates waypoints and limits; leaves out repeated waypoints.
+    /// Checks waypoints and limits; removes repeated waypoints.
     pub fn new<Q: AsRef<[f64]>>(waypoints: &[Q], limits: &KinematicLimits) -> Result<Self, TimeParametrizationError> {
         let (Some(first), Some(last)) = (waypoints.first(), waypoints.last()) else {
             return Err(TimeParametrizationError::Path);
@@ -67,7 +67,7 @@ impl PathSegments {
         Ok(Self { segments, end, limits: limits.clone() })
     }
 
-    /// Number of segments; corner `n` is the one before segment `n`, for `1..count`.
+    /// Number of segments; corner `n` is before segment `n`, for `1..count`.
     pub fn count(&self) -> usize {
         self.segments.len()
     }
@@ -77,7 +77,7 @@ impl PathSegments {
         0.5 * self.segments[corner - 1].length.min(self.segments[corner].length)
     }
 
-    /// The triangle that contains the blend at a corner: a point of each segment and the corner between.
+    /// The triangle that contains the blend at a corner: one point on each segment, and the corner.
     pub fn triangle(&self, corner: usize, blend_distance: f64) -> [Vec<f64>; 3] {
         let (a, b) = (&self.segments[corner - 1], &self.segments[corner]);
         [
@@ -87,8 +87,8 @@ impl PathSegments {
         ]
     }
 
-    /// The fastest corners. `blend_distances[n]` is the largest distance from corner `n` at which its blend begins: 0 to stop
-    /// there; entry 0 is not used.
+    /// The corners at their largest speeds. `blend_distances[n]` is the largest distance from corner `n` at which its
+    /// blend begins: 0 to stop there; entry 0 is not used.
     pub(super) fn corners(&self, blend_distances: &[f64]) -> Vec<Corner> {
         let mut corners = vec![Corner::default(); self.count() + 1];
         for n in 1..self.count() {
@@ -114,7 +114,7 @@ impl PathSegments {
         Corner { speed, seconds: Blend::seconds(speed, directions, &self.limits) }
     }
 
-    /// Reduces the speeds of corners until each segment is long enough for its change of speed: a forward pass, then a
+    /// Reduces the speeds at corners until each segment is long enough for its change of speed: a forward pass, then a
     /// backward pass.
     fn limit_corner_speeds(&self, corners: &mut [Corner]) {
         let fits = |segment: &Segment, a: Corner, b: Corner| {

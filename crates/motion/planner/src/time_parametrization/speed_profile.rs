@@ -3,7 +3,7 @@
 use super::limits::DirectionalLimits;
 use super::speed_ramp::SpeedRamp;
 
-/// Bisections: beyond rounding of any speed.
+/// Number of bisections: enough to reach the rounding error of any speed.
 const BISECTIONS: usize = 60;
 
 /// Speed as a function of time on a straight segment.
@@ -12,12 +12,12 @@ pub(super) struct SpeedProfile {
     up: SpeedRamp,
     down: SpeedRamp,
     peak: f64,
-    /// Seconds at the peak speed.
+    /// Time at the peak speed, s.
     hold: f64,
 }
 
 impl SpeedProfile {
-    /// The fastest from one speed to another over a length, which must be sufficient for the change.
+    /// The fastest profile from one speed to another over a length, which must be sufficient for the change.
     pub fn new(length: f64, from: f64, to: f64, limits: DirectionalLimits) -> Self {
         let ramps = |peak: f64| (SpeedRamp::new(from, peak, limits), SpeedRamp::new(peak, to, limits));
         let over = |peak: f64| {
@@ -49,7 +49,7 @@ impl SpeedProfile {
     }
 }
 
-/// The greatest value of `low..=high` for which a monotonic condition holds; it must hold for `low`.
+/// Finds the greatest value of `low..=high` for which a monotonic condition holds; it must hold for `low`.
 pub(super) fn bisect_greatest(low: f64, high: f64, holds: impl Fn(f64) -> bool) -> f64 {
     if low >= high || holds(high) {
         return high.max(low);

@@ -1,13 +1,13 @@
-//! Changes of speed: acceleration rises, holds and falls again; it is 0 at both ends.
+//! Changes of speed: the acceleration rises, stays constant and falls again; it is 0 at both ends.
 
 use super::limits::DirectionalLimits;
 
-/// The fastest change from one speed to another within acceleration and jerk.
+/// The fastest change from one speed to another within limits of acceleration and jerk.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SpeedRamp {
     from: f64,
     to: f64,
-    /// Seconds for which the acceleration rises, and falls.
+    /// Time for which the acceleration rises, and equally falls, s.
     rise: f64,
     pub seconds: f64,
 }

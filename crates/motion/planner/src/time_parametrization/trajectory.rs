@@ -5,7 +5,7 @@ use super::limits::TimeParametrizationError;
 use super::segments::{Corner, PathSegments, point_along};
 use super::speed_profile::SpeedProfile;
 
-/// Rounding error of a number of periods that is ignored.
+/// Rounding error in a number of periods that is ignored.
 const PERIOD_ROUNDING: f64 = 1e-9;
 
 /// State of the joints at an instant.
@@ -19,7 +19,8 @@ pub struct TrajectoryPoint {
     pub qdd: Vec<f64>,
 }
 
-/// A path with a time parametrization: at rest at both ends; velocity and acceleration are continuous, jerk is limited.
+/// A path with a time parametrization: at rest at both ends, with continuous velocity and acceleration and limited
+/// jerk.
 #[derive(Debug, Clone)]
 pub struct Trajectory {
     path: PathSegments,
@@ -27,12 +28,12 @@ pub struct Trajectory {
     seconds: f64,
 }
 
-/// A segment or a blend in time.
+/// The motion along a segment or a blend.
 #[derive(Debug, Clone)]
 struct Phase {
-    /// Time of its beginning, s.
+    /// Time at which the phase begins, s.
     begin: f64,
-    /// The joints are at rest at its beginning.
+    /// Whether the joints are at rest when the phase begins.
     starts_at_rest: bool,
     /// Time in the phase per time of the trajectory, at most 1.
     time_scale: f64,
@@ -41,9 +42,9 @@ struct Phase {
 
 #[derive(Debug, Clone, Copy)]
 enum PhaseKind {
-    /// Along segment `n`, from `blend_distance` after its corner.
+    /// Motion along segment `n`, from `blend_distance` after its corner.
     Straight { n: usize, blend_distance: f64, profile: SpeedProfile },
-    /// The blend before segment `n`.
+    /// Motion along the blend before segment `n`.
     Blend { n: usize, corner: Corner },
 }
 
@@ -91,12 +92,13 @@ impl Trajectory {
         self.seconds
     }
 
-    /// Number of corners at which it stops.
+    /// Number of corners at which the trajectory stops.
     pub fn stops(&self) -> usize {
         self.phases.iter().skip(1).filter(|p| p.starts_at_rest).count()
     }
 
-    /// State of the joints `t` seconds after the start; before it that at the start, afterwards (and for NaN) that at the end.
+    /// State of the joints `t` seconds after the start. Before the start the first state, after the end (and for NaN)
+    /// the last.
     pub fn at(&self, t: f64) -> TrajectoryPoint {
         let joints = self.path.end.len();
         if self.phases.is_empty() || !(t < self.seconds) {
@@ -142,11 +144,11 @@ impl Trajectory {
         })
     }
 
-    /// The same trajectory a little slower, so that it rests at multiples of a period (s) only: samples at these times then
-    /// include every corner at which it stops. Each part from rest to rest takes less than a period longer.
+    /// Slows the trajectory down slightly, so that it rests only at multiples of a period (s): samples at these times
+    /// then include every corner at which it stops. Each part from rest to rest takes less than a period longer.
     ///
     /// # Errors
-    /// A period that is not a finite number above 0.
+    /// The period is not a finite number above 0.
     pub fn aligned_to_ticks(mut self, period: f64) -> Result<Self, TimeParametrizationError> {
         validate_period(period)?;
         let ends: Vec<f64> = self.phases.iter().skip(1).map(|p| p.begin).chain([self.seconds]).collect();
@@ -173,7 +175,7 @@ impl Trajectory {
     /// faster than its limit.
     ///
     /// # Errors
-    /// A period that is not a finite number above 0.
+    /// The period is not a finite number above 0.
     pub fn samples(&self, period: f64) -> Result<Vec<(f64, Vec<f64>)>, TimeParametrizationError> {
         validate_period(period)?;
         let count = periods(self.seconds, period).max(0.0) as usize;

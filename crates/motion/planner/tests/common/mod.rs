@@ -60,7 +60,7 @@ pub fn random_configuration(grid: &Grid, cell: CellIndex, random: &mut Random) -
     })
 }
 
-/// True if two cells are connected through free cells with common faces.
+/// Whether two cells are connected through free cells with common faces.
 pub fn connected(occupancy: &OccupancyBitmap, from: CellIndex, to: CellIndex) -> bool {
     let shape = occupancy.shape();
     let index = |c: CellIndex| (usize::from(c[0]) * shape[1] + usize::from(c[1])) * shape[2] + usize::from(c[2]);
@@ -83,7 +83,8 @@ pub fn connected(occupancy: &OccupancyBitmap, from: CellIndex, to: CellIndex) ->
     false
 }
 
-/// Length (cell widths) of the shortest path over centres of cells, 26 neighbours, no corner cut; `None` if there is none.
+/// Length (cell widths) of the shortest path over centres of cells with 26 neighbours, without cutting corners; `None`
+/// if no path exists.
 pub fn grid_optimum(occupancy: &OccupancyBitmap, scale: [f64; 3], from: CellIndex, to: CellIndex) -> Option<f64> {
     let shape = occupancy.shape();
     let index = |c: CellIndex| (usize::from(c[0]) * shape[1] + usize::from(c[1])) * shape[2] + usize::from(c[2]);
@@ -112,14 +113,14 @@ pub fn grid_optimum(occupancy: &OccupancyBitmap, scale: [f64; 3], from: CellInde
     None
 }
 
-/// The neighbour, if all cells that the step touches are free.
+/// Returns the neighbour if all cells that the step touches are free.
 fn step(occupancy: &OccupancyBitmap, cell: CellIndex, shift: [i32; 3]) -> Option<CellIndex> {
     let at =
         |part: usize| [0, 1, 2].map(|i| (i32::from(cell[i]) + if part >> i & 1 == 1 { shift[i] } else { 0 }) as u16);
     (0..8).all(|part| !occupancy.is_blocked(at(part))).then(|| at(7))
 }
 
-/// The first of many points along the waypoints that lies in a blocked cell.
+/// Returns the first of many points along the waypoints that is in a blocked cell.
 pub fn blocked_point(
     grid: &Grid,
     occupancy: &OccupancyBitmap,

@@ -1,4 +1,4 @@
-//! Robots with more joints and other kinds of them, among obstacles.
+//! Robots with more joints and with joints of other kinds, among obstacles.
 
 use elbowroom_kinematics::{Chain, Joint, JointId, JointKind, Limits, LinkId, Mimic};
 use elbowroom_proximity::{Capsule, Cuboid, Shape};
@@ -45,7 +45,7 @@ fn scene(robot: Robot, objects: Vec<Object>) -> Scene {
     builder.build().unwrap()
 }
 
-/// A serial robot of capsules along z: kinds, axes, limits.
+/// A serial robot of capsules along z, given by the kinds, axes and limits of its joints.
 fn serial(joints: &[(JointKind, Vec3, f64, f64)], length: f64, mimic: Option<(usize, Mimic)>) -> Robot {
     let joint = |(i, (kind, axis, low, high)): (usize, &(JointKind, Vec3, f64, f64))| Joint {
         name: format!("j{i}"),
@@ -96,7 +96,7 @@ pub fn cabinet() -> Scene {
     scene(robot, boards.into_iter().chain(sides).chain([post, floor]).collect())
 }
 
-/// Two prismatic joints, a continuous one, an arm whose last joint mimics the one before.
+/// Two prismatic joints, a continuous joint, and an arm whose last joint mimics the one before.
 pub fn crane() -> Scene {
     let prismatic = |axis, low, high| (JointKind::Prismatic, axis, low, high);
     let revolute = |axis, bound: f64| (JointKind::Revolute, axis, -bound, bound);
@@ -114,8 +114,8 @@ pub fn crane() -> Scene {
     scene(robot, posts.to_vec())
 }
 
-/// The example's arm, separated from the other half of its workspace by walls on both sides of the waist and above the
-/// shoulder.
+/// The example's arm; walls on both sides of the waist and above the shoulder separate it from the other half of its
+/// workspace.
 pub fn halved() -> Scene {
     let walls = [
         cuboid("right", [0.65, 0.0, 1.0], [0.55, 0.005, 1.0]),
@@ -125,7 +125,7 @@ pub fn halved() -> Scene {
     scene(example::arm().unwrap(), walls.to_vec())
 }
 
-/// The example's arm and a sheet, a tenth of a millimetre thick, upright in front of it.
+/// The example's arm, and an upright sheet, a tenth of a millimetre thick, in front of it.
 pub fn sheet() -> Scene {
     scene(example::arm().unwrap(), vec![cuboid("sheet", [0.55, 0.0, 0.35], [0.35, 0.000_05, 0.35])])
 }

@@ -1,4 +1,4 @@
-//! Self-filter of point clouds: points on the arm, and what the arm occludes.
+//! Self-filter of point clouds: points on the arm, and lines of sight that the arm blocks.
 
 use elbowroom_proximity::{Capsule, ConvexHull, Cuboid, Shape, within};
 use elbowroom_spatial::{Aabb, Pose, Rotation, Vec3};
@@ -10,7 +10,7 @@ use crate::ArmPart;
 struct ArmShape {
     shape: Shape,
     in_world: Pose,
-    /// Inflated by the margin.
+    /// Bounding box, inflated by the margin.
     bounds: Aabb,
 }
 
@@ -52,7 +52,7 @@ impl ArmShape {
         match &self.shape {
             Shape::Capsule(capsule) => p.distance(capsule.axis_point(p)) <= capsule.radius + margin_m,
             Shape::Hull(hull) => p.distance(hull.nearest(p)) <= margin_m,
-            // The bounding box of points that have no hull.
+            // The bounding box of points that do not have a hull.
             other => other.aabb(&Pose::IDENTITY).inflated(margin_m).contains(p),
         }
     }

@@ -1,4 +1,4 @@
-//! Point clouds to obstacles.
+//! From point clouds to obstacles.
 
 use std::time::{Duration, Instant};
 
@@ -18,13 +18,13 @@ use crate::{ArmPart, CameraTrackerSettings, Obstacle, Point2, VisionError, polyg
 pub enum CloudStatus {
     /// The background is being learnt; nothing is known yet.
     Learning {
-        /// Clouds of the cell without obstacles still to come.
+        /// Number of missing clouds of the cell without obstacles.
         clouds_left: u32,
     },
     /// The cloud was evaluated: where no obstacle is reported, none was measured.
     Valid,
-    /// Too few points are valid: the obstacles are those of the last valid cloud. Unknown is not free: how long they can be
-    /// used is the caller's decision, see [`CloudReport::age_s`].
+    /// Too few points are valid: the obstacles are those of the last valid cloud. Unknown is not free: the caller
+    /// decides how long these obstacles can be used, see [`CloudReport::age_s`].
     Empty {
         /// Number of valid points.
         points: usize,
@@ -33,12 +33,12 @@ pub enum CloudStatus {
     },
 }
 
-/// Time per stage of one cloud.
+/// Times per stage of one cloud.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct CloudTimings {
-    /// Points to the world, floor and arm removed, voxel grid.
+    /// Transformation of points to the world, removal of floor and arm, voxel grid.
     pub filter: Duration,
-    /// Voxels to clusters.
+    /// Clustering of voxels.
     pub cluster: Duration,
     /// Outlines, tracks and prisms.
     pub track: Duration,
@@ -54,13 +54,13 @@ impl CloudTimings {
 /// The result of one cloud. Borrowed from the [`CloudTracker`], which reuses it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CloudReport {
-    /// When the cloud was measured, seconds.
+    /// Time of the measurement, seconds.
     pub stamp_s: f64,
     /// Whether the obstacles can be used.
     pub status: CloudStatus,
-    /// Seconds since the last valid cloud, 0 for a valid one; infinite if there was none.
+    /// Seconds since the last valid cloud: 0 for a valid cloud, infinite if there was none.
     pub age_s: f64,
-    /// All obstacles in the order of their identities; those that left are reported once.
+    /// All obstacles in the order of their identities; an obstacle that left is reported once more.
     pub obstacles: Vec<Obstacle>,
     /// Number of points on the arm.
     pub arm_points: usize,
@@ -68,8 +68,8 @@ pub struct CloudReport {
     pub background_points: usize,
     /// Number of points of the floor, above the ceiling, outside the monitored area or outside the voxel grid.
     pub outside_points: usize,
-    /// Number of points in voxels or clusters with too few points. If there are many, the voxels are too small for the
-    /// sensor, and objects may be missed.
+    /// Number of points in voxels or clusters with too few points. If this number is large, the voxels are too small
+    /// for the sensor and objects may be missed.
     pub noise_points: usize,
     /// Number of voxels that contain points of objects.
     pub voxels: usize,
@@ -102,10 +102,10 @@ pub struct CloudTracker {
     arm: ArmFilter,
     voxels: VoxelGrid,
     background: VoxelGrid,
-    /// Clouds of the background still to come.
+    /// Number of missing clouds of the background.
     clouds_left: u32,
     clusters: Clusters,
-    /// The first `detection_count` of them are this cloud's.
+    /// Detections; the first `detection_count` belong to this cloud.
     detections: Vec<Detection>,
     detection_count: usize,
     corners: Vec<Point2>,
@@ -116,10 +116,10 @@ pub struct CloudTracker {
 }
 
 impl CloudTracker {
-    /// A tracker without obstacles.
+    /// Creates a tracker without obstacles.
     ///
     /// # Errors
-    /// Settings out of range.
+    /// A setting is out of range.
     pub fn new(settings: CloudTrackerSettings) -> Result<Self, VisionError> {
         settings.check()?;
         let mut background = VoxelGrid::default();
@@ -163,11 +163,11 @@ impl CloudTracker {
         &self.report
     }
 
-    /// Processes a cloud. `arm` are the parts of the arm in the world: points on them are removed, and obstacles behind
-    /// them are kept. Hulls are built again for each cloud; capsules are faster.
+    /// Processes a cloud. `arm` holds the parts of the arm in the world: points on them are removed, and obstacles
+    /// behind them are kept. Hulls are built again for each cloud; capsules are faster.
     ///
     /// # Errors
-    /// A cloud that is not later than the one before it. The state does not change.
+    /// The cloud is not later than the previous one. The state does not change.
     pub fn process(&mut self, cloud: &PointCloud, arm: &[ArmPart]) -> Result<&CloudReport, VisionError> {
         let (stamp_s, last_s) = (cloud.stamp_s, self.last_s.unwrap_or(f64::NEG_INFINITY));
         if !(stamp_s > last_s) || !stamp_s.is_finite() {
@@ -269,7 +269,8 @@ impl CloudTracker {
             }
             polygon::convex_hull(&mut self.corners, &mut detection.outline_m);
             if detection.outline_m.len() < 3 {
-                // All points lie in one vertical plane, for example on a wall seen edge-on: the outline gets a thickness.
+                // All points are in one vertical plane, for example on a wall seen edge-on: the outline gets a
+                // thickness.
                 let thickness = 0.5 * self.settings.voxel_m;
                 polygon::inflate(&detection.outline_m.clone(), thickness, &mut detection.outline_m, &mut self.corners);
             }
@@ -285,7 +286,8 @@ impl CloudTracker {
         self.detection_count = count;
     }
 
-    /// Marks tracks and detections that the arm occludes, in part or in full: their absence or their end is not observed.
+    /// Marks tracks and detections that the arm occludes in part or in full: their absence or their end is not
+    /// observed.
     fn mark_occluded(&mut self) {
         let sensor = self.settings.sensor_in_world.translation;
         let (arm, margin_m) = (&self.arm, self.settings.arm_margin_m);

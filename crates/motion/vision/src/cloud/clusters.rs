@@ -9,7 +9,7 @@ pub(super) struct Clusters {
     sets: DisjointSets,
     /// Voxels, cluster by cluster.
     pub(super) members: Vec<u32>,
-    /// Where each cluster ends in `members`.
+    /// End of each cluster in `members`.
     ends: Vec<u32>,
     cluster_of: Vec<u32>,
     sizes: Vec<u32>,
@@ -18,8 +18,8 @@ pub(super) struct Clusters {
 const NONE: u32 = u32::MAX;
 
 impl Clusters {
-    /// Clusters voxels with at least `min_points` points; clusters of fewer than `min_voxels` voxels are dropped. The
-    /// order is that of their first voxels.
+    /// Clusters voxels with at least `min_points` points; drops clusters of fewer than `min_voxels` voxels. Clusters
+    /// are in the order of their first voxels.
     pub(super) fn find(&mut self, voxels: &VoxelGrid, min_points: u32, min_voxels: u32) {
         self.sets.parent.clear();
         let is_occupied = |voxel: usize| voxels.list[voxel].points >= min_points;
@@ -72,7 +72,7 @@ impl Clusters {
         }
     }
 
-    /// The voxels of each cluster.
+    /// Iterates over the clusters, each given by its voxels.
     pub(super) fn iter(&self) -> impl Iterator<Item = &[u32]> {
         (0..self.ends.len()).map(|c| {
             let from = if c == 0 { 0 } else { self.ends[c - 1] };

@@ -1,4 +1,4 @@
-//! Depth images to points.
+//! Conversion of depth images to points.
 
 use elbowroom_spatial::Vec3;
 
@@ -6,12 +6,13 @@ use super::point_cloud::PointCloud;
 use crate::{Camera, Point2, VisionError};
 
 impl PointCloud {
-    /// Replaces the points by those of a depth image: depths along the camera's optical axis in metres, row by row. Depths
-    /// that are 0, negative or not finite are invalid: dropped and counted. The points are in the camera's frame, so
-    /// [`CloudTrackerSettings::sensor_in_world`](super::CloudTrackerSettings::sensor_in_world) is the camera's pose.
+    /// Replaces the points by the points of a depth image: depths along the camera's optical axis in metres, row by
+    /// row. Depths that are 0, negative or not finite are invalid: they are dropped and counted. The points are in the
+    /// camera's frame, so [`CloudTrackerSettings::sensor_in_world`](super::CloudTrackerSettings::sensor_in_world) is
+    /// the camera's pose.
     ///
     /// # Errors
-    /// Another number of depths than the camera has pixels.
+    /// The number of depths differs from the camera's number of pixels.
     ///
     /// ```
     /// use elbowroom_spatial::Vec3;
@@ -29,11 +30,11 @@ impl PointCloud {
         self.fill_from(camera, depths_m.len(), |i| f64::from(depths_m[i]))
     }
 
-    /// As [`PointCloud::fill_from_depths`], for whole multiples of `unit_m` metres (0.001 for most cameras) as
-    /// [`read_grey16`](crate::read_grey16) returns them.
+    /// Like [`PointCloud::fill_from_depths`], for whole multiples of `unit_m` metres (0.001 for most cameras) as
+    /// returned by [`read_grey16`](crate::read_grey16).
     ///
     /// # Errors
-    /// As [`PointCloud::fill_from_depths`]; and a unit that is not positive.
+    /// The errors of [`PointCloud::fill_from_depths`]; or the unit is not positive.
     pub fn fill_from_grey16(&mut self, camera: &Camera, depths: &[u16], unit_m: f64) -> Result<(), VisionError> {
         if !(unit_m > 0.0 && unit_m.is_finite()) {
             let expected = "a positive number of metres per step of depth, mostly 0.001";

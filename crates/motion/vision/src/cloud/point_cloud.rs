@@ -21,18 +21,19 @@ use crate::image_file::read_bytes;
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PointCloud {
-    /// Its name in messages.
+    /// Name of the cloud in messages.
     pub name: String,
-    /// When it was measured, seconds.
+    /// Time of the measurement, seconds.
     pub stamp_s: f64,
-    /// Finite points, sensor's frame, metres.
+    /// Finite points in the sensor's frame, metres.
     pub points: Vec<Vec3>,
-    /// Number of invalid points: NaN, infinite, or without a depth. Nothing was measured there, which does not mean free.
+    /// Number of invalid points: NaN, infinite, or without a depth. Nothing was measured there, but the space may be
+    /// occupied.
     pub dropped: usize,
 }
 
 impl PointCloud {
-    /// Replaces the points, sensor's frame, metres; those that are not finite are dropped and counted.
+    /// Replaces the points (sensor's frame, metres); drops and counts points that are not finite.
     pub fn fill(&mut self, points: impl IntoIterator<Item = Vec3>) {
         self.points.clear();
         self.dropped = 0;
@@ -48,18 +49,18 @@ impl PointCloud {
     /// Reads a `.pcd` (ASCII, binary, compressed) or `.ply` file; the cloud is named after the path.
     ///
     /// # Errors
-    /// Files that are missing, cut off or of another format: the file, the line, the fault, and what to write instead. The
-    /// cloud is then empty.
+    /// The file is missing, truncated or of another format. The error states the file, the line, the fault, and what to
+    /// write instead. The cloud is then empty.
     pub fn read(&mut self, path: &Path) -> Result<(), VisionError> {
         self.fill([]);
         let bytes = read_bytes(path)?;
         self.decode(&bytes, path)
     }
 
-    /// As [`PointCloud::read`], from bytes.
+    /// Like [`PointCloud::read`], from bytes.
     ///
     /// # Errors
-    /// As [`PointCloud::read`].
+    /// The errors of [`PointCloud::read`].
     pub fn decode(&mut self, bytes: &[u8], file: &Path) -> Result<(), VisionError> {
         self.fill([]);
         self.name = file.to_string_lossy().into_owned();

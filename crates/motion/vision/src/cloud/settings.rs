@@ -9,41 +9,44 @@ use crate::{CameraTrackerSettings, Point2, VisionError, polygon};
 pub struct CloudTrackerSettings {
     /// Pose of the sensor.
     pub sensor_in_world: Pose,
-    /// The monitored area, world x and y: a simple polygon; points outside are dropped. Empty: everything.
+    /// The monitored area, world x and y: a simple polygon; points outside are dropped. Empty: no limit.
     pub area_m: Vec<Point2>,
     /// Height of the floor, world z.
     pub floor_z_m: f64,
-    /// Points up to this height above the floor are floor.
+    /// Height above the floor up to which points belong to the floor.
     pub floor_thickness_m: f64,
-    /// Points above this height above the floor are dropped: the ceiling, or above everything an arm can reach.
+    /// Height above the floor beyond which points are dropped: the ceiling, or a height above everything an arm can
+    /// reach.
     pub ceiling_m: f64,
     /// Side of a voxel.
     pub voxel_m: f64,
-    /// A voxel with fewer points is noise.
+    /// Smallest number of points of a voxel; with fewer points it is noise.
     pub min_points: u32,
-    /// A cluster with fewer voxels is noise.
+    /// Smallest number of voxels of a cluster; with fewer voxels it is noise.
     pub min_voxels: u32,
-    /// Points up to this distance from the arm belong to the arm.
+    /// Distance from the arm up to which points belong to the arm.
     pub arm_margin_m: f64,
-    /// Whether obstacles extend down to the floor, as a sensor above measures no undersides; else to their lowest point.
+    /// Whether obstacles extend down to the floor, because a sensor above does not measure undersides; otherwise they
+    /// extend to their lowest point.
     pub extend_to_floor: bool,
     /// Inflation of obstacles on all sides.
     pub uncertainty_m: f64,
-    /// As [`CameraTrackerSettings::hysteresis_m`].
+    /// See [`CameraTrackerSettings::hysteresis_m`].
     pub hysteresis_m: f64,
-    /// As [`CameraTrackerSettings::max_corners`].
+    /// See [`CameraTrackerSettings::max_corners`].
     pub max_corners: usize,
-    /// Largest fraction of invalid points (see [`PointCloud::dropped`](super::PointCloud::dropped)); other clouds are
-    /// rejected.
+    /// Largest fraction of invalid points (see [`PointCloud::dropped`](super::PointCloud::dropped)); clouds with more
+    /// are rejected.
     pub max_dropped: f64,
-    /// So many first valid clouds show the cell without obstacles: points in and beside voxels in which these have points
-    /// belong to the background. 0: there is no background, and everything above the floor is an obstacle.
+    /// Number of first valid clouds that show the cell without obstacles: later points in and beside voxels with points
+    /// of these clouds belong to the background. 0: no background is learnt, and everything above the floor is an
+    /// obstacle.
     pub learning_clouds: u32,
-    /// As [`CameraTrackerSettings::max_speed_mps`].
+    /// See [`CameraTrackerSettings::max_speed_mps`].
     pub max_speed_mps: f64,
-    /// As [`CameraTrackerSettings::enter_frames`].
+    /// See [`CameraTrackerSettings::enter_frames`].
     pub enter_frames: u32,
-    /// As [`CameraTrackerSettings::leave_frames`].
+    /// See [`CameraTrackerSettings::leave_frames`].
     pub leave_frames: u32,
 }
 
@@ -76,7 +79,7 @@ impl CloudTrackerSettings {
     /// Checks that every setting is in its range.
     ///
     /// # Errors
-    /// The first setting that is out of its range, and its range.
+    /// The first setting that is out of range, with its range.
     pub fn check(&self) -> Result<(), VisionError> {
         self.for_tracking().check()?;
         let ranges = [
@@ -98,7 +101,7 @@ impl CloudTrackerSettings {
         Ok(())
     }
 
-    /// True if a point (world) is above the floor, below the ceiling and over the monitored area.
+    /// Whether a point (world) is above the floor, below the ceiling and over the monitored area.
     pub(super) fn is_watched(&self, p: Vec3) -> bool {
         let heights = self.floor_z_m + self.floor_thickness_m..=self.floor_z_m + self.ceiling_m;
         heights.contains(&p.z) && (self.area_m.is_empty() || polygon::contains(&self.area_m, Point2::new(p.x, p.y)))

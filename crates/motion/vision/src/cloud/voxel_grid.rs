@@ -7,7 +7,7 @@ use elbowroom_spatial::Vec3;
 pub(super) struct Voxel {
     key: u64,
     pub(super) points: u32,
-    /// Bounding box of its points.
+    /// Bounding box of the points in the voxel.
     pub(super) min: [f32; 3],
     pub(super) max: [f32; 3],
 }
@@ -16,14 +16,15 @@ pub(super) struct Voxel {
 #[derive(Debug, Clone, Default)]
 pub(super) struct VoxelGrid {
     pub(super) list: Vec<Voxel>,
-    /// Index in the list plus 1; 0 where free. The length is a power of two.
+    /// Index in the list plus 1; 0 if the slot is free. The length is a power of two.
     table: Vec<u32>,
 }
 
-/// Bits per axis of a key; indices stay away from the ends of the range, so that neighbours do not wrap.
+/// Number of bits per axis of a key; indices stay away from the ends of the range, so that neighbours do not wrap
+/// around.
 const BITS: u32 = 21;
 const HALF: f64 = (1 << (BITS - 1)) as f64;
-/// First length of the table, a power of two; it grows with the cloud.
+/// Initial length of the table, a power of two; the table grows with the cloud.
 const FIRST_SLOTS: usize = 1 << 10;
 
 impl VoxelGrid {
@@ -60,24 +61,24 @@ impl VoxelGrid {
         true
     }
 
-    /// Counts a point in its voxel and in the 26 around it.
+    /// Counts a point in its voxel and in the 26 voxels around it.
     pub(super) fn add_with_neighbours(&mut self, p: Vec3, voxel_m: f64) {
         for step in (0..27).map(|i| Vec3::new(f64::from(i / 9 - 1), f64::from(i / 3 % 3 - 1), f64::from(i % 3 - 1))) {
             self.add(p + step * voxel_m, voxel_m);
         }
     }
 
-    /// True if the voxel of a point contains points.
+    /// Whether the voxel of a point contains points.
     pub(super) fn contains(&self, p: Vec3, voxel_m: f64) -> bool {
         !self.list.is_empty() && key(p, voxel_m).is_some_and(|key| self.table[self.slot(key)] != 0)
     }
 
-    /// Calls with the indices of those of the 26 neighbours that precede `index` in space, so that each pair is visited
-    /// once.
+    /// Calls `visit` with the indices of those of the 26 neighbours that precede `index` in space, so that each pair is
+    /// visited once.
     pub(super) fn neighbours(&self, index: usize, mut visit: impl FnMut(usize)) {
         let key = self.list[index].key;
         for step in (0..13_u64).map(|i| (i / 9, i / 3 % 3, i % 3)) {
-            // The key of the neighbour at −1 on all axes; steps of 0, 1, 2 are offsets of −1, 0, 1.
+            // The key of the neighbour at −1 on all axes; steps of 0, 1, 2 correspond to offsets of −1, 0, 1.
             let low = key - (1 << (2 * BITS)) - (1 << BITS) - 1;
             let other = low + (step.0 << (2 * BITS)) + (step.1 << BITS) + step.2;
             let slot = self.slot(other);

@@ -11,13 +11,13 @@ pub(super) struct Canvas {
     pub(super) width: usize,
     pub(super) height: usize,
     pub(super) pixels: Vec<[u8; 3]>,
-    /// Pixels in shadow: they are dimmed once, in however many shadows they are.
+    /// Pixels in shadow: they are dimmed once, regardless of the number of shadows.
     shade: Vec<u8>,
     points: Vec<Point2>,
     outline: Vec<Point2>,
 }
 
-/// Pieces of each edge: with lens distortion edges are curves.
+/// Number of pieces of each edge: with lens distortion, edges are curves.
 const PIECES_PER_EDGE: u32 = 6;
 
 impl Canvas {
@@ -62,7 +62,7 @@ impl Canvas {
         for (a, b) in polygon::edges(&solid.footprint_m) {
             let outward = Point2::new(b.y - a.y, a.x - b.x);
             if outward.dot(Point2::new(eye.x, eye.y) - a) > 0.0 {
-                // Light from the upper left: sides have different shades.
+                // The light comes from the upper left, so that sides have different shades.
                 let facing = outward.dot(Point2::new(-0.6, 0.8)) / outward.length().max(1e-12);
                 let colour = solid.colour.map(|value| (f64::from(value) * (0.85 + 0.1 * facing)) as u8);
                 let (low, high) = (solid.z_from_m, solid.z_to_m);
@@ -91,7 +91,7 @@ impl Canvas {
         for_each_centre(self.width, self.height, &self.outline, |i| self.pixels[i] = colour);
     }
 
-    /// The outline in the image of a flat convex patch of the world.
+    /// Computes the outline in the image of a flat convex patch of the world.
     fn outline_of(&mut self, camera: &Camera, corners: &[Vec3]) {
         self.points.clear();
         for (i, &a) in corners.iter().enumerate() {
@@ -104,7 +104,7 @@ impl Canvas {
     }
 }
 
-/// Calls with each pixel whose centre lies in a convex outline.
+/// Calls `visit` with each pixel whose centre is inside a convex outline.
 fn for_each_centre(width: usize, height: usize, outline_px: &[Point2], mut visit: impl FnMut(usize)) {
     let low = outline_px.iter().fold(f64::INFINITY, |s, p| s.min(p.y)).max(0.0) as usize;
     let high = outline_px.iter().fold(0.0_f64, |s, p| s.max(p.y)) as usize;

@@ -7,9 +7,9 @@ use elbowroom_spatial::Vec3;
 pub struct RenderConditions {
     /// Brightness relative to the first image.
     pub gain: f64,
-    /// Added by the sensor, grey levels.
+    /// Offset added by the sensor, grey levels.
     pub offset: f64,
-    /// Difference of the gain between the right edge and the left one.
+    /// Difference of the gain between the right and the left edge.
     pub slope: f64,
     /// Standard deviation of the noise, grey levels.
     pub noise: f64,
@@ -17,7 +17,7 @@ pub struct RenderConditions {
     pub light: Option<Vec3>,
     /// Brightness of the floor in shadow, relative to the lit floor.
     pub shadow: f64,
-    /// Seed of the noise: another one for each image.
+    /// Seed of the noise; use a different seed for each image.
     pub seed: u64,
 }
 

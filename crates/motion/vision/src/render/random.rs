@@ -1,6 +1,6 @@
-//! Pseudo-random numbers of synthetic images.
+//! Pseudo-random numbers for synthetic images.
 
-/// Xorshift64* (Marsaglia, Vigna): the same numbers on every machine.
+/// Xorshift64* (Marsaglia, Vigna): generates the same numbers on every machine.
 #[derive(Debug, Clone)]
 pub(super) struct Random(u64);
 
@@ -18,7 +18,7 @@ impl Random {
         self.0.wrapping_mul(0x2545_f491_4f6c_dd1d)
     }
 
-    /// Approximately normal, mean 0, standard deviation 1: the sum of four uniform bytes.
+    /// An approximately normal number, mean 0, standard deviation 1: the sum of four uniform bytes.
     pub(super) fn normal(&mut self) -> f64 {
         let [a, b, c, d, ..] = self.next().to_be_bytes();
         let sum = u32::from(a) + u32::from(b) + u32::from(c) + u32::from(d);

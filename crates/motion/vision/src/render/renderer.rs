@@ -34,7 +34,7 @@ pub struct Renderer {
 }
 
 impl Renderer {
-    /// A floor with a texture (waves, joints of slabs, grain) that depends on `seed`.
+    /// Creates a floor with a texture (waves, joints of slabs, grain) that depends on `seed`.
     pub fn new(camera: Camera, channels: Channels, seed: u64) -> Self {
         let (width, height) = (camera.intrinsics().width, camera.intrinsics().height);
         let mut random = Random::new(seed);
@@ -57,11 +57,11 @@ impl Renderer {
         &self.camera
     }
 
-    /// Renders an image into `frame`; its name and time do not change. Arm parts are drawn over everything, in their grey
-    /// level.
+    /// Renders an image into `frame`; its name and time do not change. Arm parts are drawn over everything else, in
+    /// their grey level.
     ///
     /// # Errors
-    /// As [`Frame::fill`]; none for a camera with pixels.
+    /// The errors of [`Frame::fill`]; none for a camera with pixels.
     pub fn render(
         &mut self,
         solids: &[RenderedSolid],

@@ -13,12 +13,12 @@ pub struct RenderedSolid {
     pub z_from_m: f64,
     /// Upper end, world z, metres.
     pub z_to_m: f64,
-    /// Red, green, blue of its top; grey images show the green.
+    /// Red, green and blue of the top; grey images show the green.
     pub colour: [u8; 3],
 }
 
 impl RenderedSolid {
-    /// A box on the floor (z = 0), rotated by `angle` radians about its vertical axis.
+    /// Creates a box on the floor (z = 0), rotated by `angle` radians about its vertical axis.
     pub fn cuboid(centre_m: Point2, size_m: Vec3, angle: f64, grey: u8) -> Self {
         let (sin, cos) = angle.sin_cos();
         let corner = |(sx, sy): (f64, f64)| {
@@ -29,7 +29,7 @@ impl RenderedSolid {
         Self { footprint_m, z_from_m: 0.0, z_to_m: size_m.z, colour: [grey; 3] }
     }
 
-    /// An upright cylinder on the floor (z = 0), with 32 sides inscribed in the circle.
+    /// Creates an upright cylinder on the floor (z = 0), with 32 sides inscribed in the circle.
     pub fn cylinder(centre_m: Point2, radius_m: f64, height_m: f64, grey: u8) -> Self {
         let corner = |i: u32| {
             let (sin, cos) = (f64::from(i) * std::f64::consts::TAU / 32.0).sin_cos();

@@ -9,7 +9,7 @@ use elbowroom_vision::{
     Obstacle, PixelMask, Point2, polygon,
 };
 
-/// Seconds between frames.
+/// Time between frames, seconds.
 pub const PERIOD_S: f64 = 0.04;
 
 pub struct SyntheticScene {
@@ -72,7 +72,7 @@ pub fn covers(obstacle: &Obstacle, solid: &RenderedSolid) -> bool {
         && solid.footprint_m.iter().all(|&p| polygon::convex_contains(&obstacle.footprint_m, p))
 }
 
-/// Whether samples of the solid's footprint lie in one or another of the prisms.
+/// Whether each sample of the solid's footprint is in at least one of the prisms.
 pub fn cover_together(obstacles: &[Obstacle], solid: &RenderedSolid) -> bool {
     let middle = polygon::centroid(&solid.footprint_m);
     let samples = polygon::edges(&solid.footprint_m).flat_map(|(a, b)| {

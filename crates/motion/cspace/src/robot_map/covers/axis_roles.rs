@@ -1,23 +1,23 @@
-//! Which axis of the map is in lanes, and how many cells of each axis differ.
+//! The axis of the map in lanes, and the number of different cells of each axis.
 
 use std::f64::consts::TAU;
 
 use super::super::rigid_groups::RigidGroup;
 use crate::Grid;
 
-/// The axes of a map by what they do.
+/// The axes of a map by their role.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct AxisRoles {
     /// The axis of the first joint of every link that the map moves.
     pub lanes: usize,
     /// The other two, ascending.
     pub others: [usize; 2],
-    /// Cells of each axis that are computed: of one turn where the axis has more.
+    /// Number of computed cells of each axis: the cells of one turn if the axis has more.
     pub counts: [usize; 3],
 }
 
 impl AxisRoles {
-    /// `None` if the links have not all the same first joint, or its axis moves another joint, too.
+    /// Assigns the roles; `None` if not all links have the same first joint, or its axis also moves another joint.
     pub fn new(grid: &Grid, groups: &[RigidGroup]) -> Option<Self> {
         let Some(first) = groups.first().and_then(|group| group.joints.first()) else {
             return Some(Self { lanes: 0, others: [1, 2], counts: grid.shape() });
@@ -35,13 +35,14 @@ impl AxisRoles {
         self.counts[self.lanes]
     }
 
-    /// Numbers of cells of the two other axes.
+    /// Number of cells of each of the two other axes.
     pub fn other_counts(&self) -> [usize; 2] {
         self.others.map(|axis| self.counts[axis])
     }
 }
 
-/// Cells of each axis that differ: those of one turn where the axis has more, and all its joints turn whole turns.
+/// Number of different cells of each axis: the cells of one turn if the axis has more and all its joints turn by whole
+/// turns.
 fn computed_counts(grid: &Grid, groups: &[RigidGroup]) -> [usize; 3] {
     [0, 1, 2].map(|number| {
         let axis = &grid.axes()[number];

@@ -1,23 +1,23 @@
-//! Trees of balls with sixteen children a node: what sixteen lanes test at a time.
+//! Trees of balls with sixteen children per node: sixteen lanes test them at the same time.
 
 use elbowroom_validity::Ball;
 use elbowroom_validity::lanes::LANES;
 
-/// Nodes of more balls than this have sixteen children.
+/// Number of balls above which a node has sixteen children.
 const FULL_NODE: usize = 64;
 
-/// No group below.
+/// Index that means that a ball has no group below.
 pub(super) const LEAF: u32 = u32::MAX;
 
-/// Up to sixteen balls; each is a leaf, or encloses the balls of another group.
+/// Up to sixteen balls; each ball is a leaf or encloses the balls of another group.
 #[derive(Debug, Clone)]
 pub(super) struct BallGroup {
     pub balls: Vec<Ball>,
-    /// Per ball, the number of the group below, or [`LEAF`].
+    /// Per ball, the index of the group below, or [`LEAF`].
     pub below: Vec<u32>,
 }
 
-/// The tree of some balls, the root first; empty without balls.
+/// The tree of some balls, root first; empty if there are no balls.
 pub(super) fn ball_tree(balls: &[Ball]) -> Vec<BallGroup> {
     let mut groups = Vec::new();
     if !balls.is_empty() {
@@ -33,7 +33,8 @@ fn push(groups: &mut Vec<BallGroup>, balls: &mut [Ball]) -> u32 {
         groups[number] = BallGroup { balls: balls.to_vec(), below: vec![LEAF; balls.len()] };
         return number as u32;
     }
-    // All parts of a large node, as large boxes are tested against the root alone; else as few as leave full groups at the bottom.
+    // A large node uses all parts, because large boxes are tested only against the root; other nodes use as few parts
+    // as leave full groups at the bottom.
     let parts = if balls.len() > FULL_NODE { LANES } else { balls.len().div_ceil(LANES) };
     for part in split(balls, parts) {
         let ball = Ball::enclosing(part);
@@ -44,7 +45,7 @@ fn push(groups: &mut Vec<BallGroup>, balls: &mut [Ball]) -> u32 {
     number as u32
 }
 
-/// Splits balls along the longest axis into groups of about the same size, none empty.
+/// Splits balls along the longest axis into nonempty groups of about the same size.
 pub(super) fn split(balls: &mut [Ball], parts: usize) -> Vec<&mut [Ball]> {
     if parts == 1 || balls.len() == 1 {
         return vec![balls];

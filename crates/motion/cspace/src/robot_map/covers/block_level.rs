@@ -6,7 +6,7 @@ use super::axis_roles::AxisRoles;
 use super::step_chain::StepChain;
 use crate::Grid;
 
-/// A frame in single precision: columns of its rotation, and its origin.
+/// A frame in single precision: the columns of its rotation, and its origin.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Frame {
     pub columns: [[f32; 3]; 3],
@@ -23,23 +23,23 @@ impl Frame {
     }
 }
 
-/// Boxes of `2^level` cells along every axis; along the axis in lanes a box is one lane.
+/// Boxes of `2^level` cells along every axis; along the axis in lanes, one lane is one box.
 #[derive(Debug, Clone)]
 pub(super) struct BlockLevel {
-    /// Half widths of a box, rad or m, by axis of the map.
+    /// Half widths of a box, rad or m, per axis of the map.
     pub half: [f64; 3],
-    /// Number of boxes along the two other axes.
+    /// Number of boxes along each of the two other axes.
     pub blocks: [usize; 2],
-    /// Frames of all steps, seen from the first, at the centre of each box.
+    /// Frames of all steps, relative to the first step, at the centre of each box.
     frames: Vec<Frame>,
     steps: usize,
 }
 
 impl BlockLevel {
-    /// Boxes for links that are moved by those of the other axes that `uses` says.
+    /// Creates boxes for links that are moved by the other axes selected in `uses`.
     pub fn new(level: u32, grid: &Grid, roles: &AxisRoles, uses: [bool; 2], steps: &StepChain) -> Self {
         let size = 1 << level;
-        // A value on the border of a cell belongs to it.
+        // A value on the border of a cell belongs to the cell.
         let half = [0, 1, 2].map(|axis| grid.axes()[axis].step() * (0.5 * size as f64 + 1e-6));
         let counts = roles.other_counts();
         let blocks = [0, 1].map(|k| if uses[k] { counts[k].div_ceil(size) } else { 1 });

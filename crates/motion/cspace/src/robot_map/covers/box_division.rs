@@ -14,12 +14,12 @@ use super::solid_core::SolidCore;
 use super::step_chain::Step;
 use super::witnesses::Witnesses;
 
-/// Sixteen boxes that differ in the axis in lanes alone.
+/// Sixteen boxes that differ only in the axis in lanes.
 #[derive(Debug, Clone, Copy)]
 struct Boxes {
     level: usize,
     others: [usize; 2],
-    /// Boxes of the axis in lanes from `16 · group` on.
+    /// Index of sixteen boxes of the axis in lanes, which start at box `16 · group`.
     group: usize,
     /// Groups of the largest balls that may touch, one bit each.
     probes: u32,
@@ -33,9 +33,9 @@ pub(super) struct BoxDivision<'a> {
     /// The joint of the axis in lanes.
     first: &'a Step,
     simd_level: SimdLevel,
-    /// Groups in question, box by box.
+    /// Undecided groups, box by box.
     pairs: Vec<NearGroup>,
-    /// Those that are left.
+    /// Groups left undecided by the tests.
     left: Vec<NearGroup>,
     open: Vec<NearGroup>,
     places: PlaceMemo,
@@ -78,7 +78,7 @@ impl<'a> BoxDivision<'a> {
         }
     }
 
-    /// True if a cell, by its number on each axis, is not proven free.
+    /// Whether a cell, given by its index on each axis, is not proven free.
     pub fn may_touch(&mut self, cell: [usize; 3]) -> bool {
         let (lane, others) = (cell[self.roles.lanes], self.roles.others.map(|axis| cell[axis]));
         (0..self.classes.len()).any(|number| {
@@ -96,14 +96,14 @@ impl<'a> BoxDivision<'a> {
         })
     }
 
-    /// Number of a class and of a root group of it, for all links.
+    /// Class index and root group index, for all links.
     pub fn roots(&self) -> Vec<(usize, u32)> {
         let of_class =
             |(class, covers): (usize, &CoverClass)| covers.roots.iter().map(move |&root| (class, root)).collect();
         self.classes.iter().enumerate().flat_map(|all| -> Vec<_> { of_class(all) }).collect()
     }
 
-    /// Distance of a group's balls from the centre of the obstacle at the centre of a cell, less their radii, m.
+    /// Distance of a group's balls from the centre of the obstacle at the centre of a cell, minus their radii, m.
     pub fn distance_from_centre(&self, class: usize, group: u32, cell: [usize; 3]) -> f32 {
         let covers = &self.classes[class];
         let level = &covers.levels[0];
@@ -121,7 +121,7 @@ impl<'a> BoxDivision<'a> {
         gaps[..balls.lanes.count_ones() as usize].iter().copied().fold(f32::INFINITY, f32::min)
     }
 
-    /// Divides boxes; the pairs in question are those from `from` on.
+    /// Divides boxes; the undecided pairs are those from `from` on.
     fn divide(&mut self, class: usize, boxes: Boxes, from: usize) {
         let left = self.left.len();
         let known = self.assess(class, boxes, from);
@@ -136,12 +136,13 @@ impl<'a> BoxDivision<'a> {
         self.left.truncate(left);
     }
 
-    /// Halves the boxes that are open along each axis.
+    /// Halves the open boxes along each axis.
     fn divide_parts(&mut self, class: usize, boxes: Boxes, open: u32, left: usize) {
         let level = boxes.level - 1;
         let uses = self.classes[class].uses;
         let blocks = self.classes[class].levels[level].blocks;
-        // Boxes that differ in the axis in lanes alone follow each other: the links are at the same places in them.
+        // Boxes that differ only in the axis in lanes follow each other, because the links are at the same places in
+        // them.
         for i in 0..=usize::from(uses[0]) {
             for j in 0..=usize::from(uses[1]) {
                 let at = [[boxes.others[0], i], [boxes.others[1], j]];
@@ -155,7 +156,8 @@ impl<'a> BoxDivision<'a> {
         }
     }
 
-    /// Divides one half of the boxes of the axis in lanes: each box becomes two lanes, eight boxes fill sixteen.
+    /// Divides one half of the boxes of the axis in lanes: each box becomes two lanes, so that eight boxes fill sixteen
+    /// lanes.
     fn divide_half(&mut self, class: usize, boxes: Boxes, half: usize, open: u32, left: usize) {
         let part = |lanes: u32| doubled(lanes >> (8 * half) & 0xff);
         let group = 2 * boxes.group + half;
@@ -199,8 +201,8 @@ impl<'a> BoxDivision<'a> {
         let mut live = if count >= LANES { 0xffff } else { (1 << count) - 1 };
         live &= self.pairs[from..].iter().fold(0, |all, pair| all | pair.boxes);
         let covers = &self.classes[class];
-        // What links of fewer axes block needs no test; these were filled before. A cell of a class that leaves out the first axis
-        // stands for all its values, and others may have blocked only some of them.
+        // Cells blocked by links of fewer axes need no test; they were set before. A cell of a class that does not use
+        // the first axis represents all its values, and other classes may have blocked only some of them.
         if boxes.level == 0 && covers.uses != [false, true] {
             live &= !self.bits.sixteen(boxes.others, boxes.group);
         }
@@ -232,17 +234,17 @@ impl<'a> BoxDivision<'a> {
     }
 }
 
-/// What is known of sixteen boxes.
+/// Results for sixteen boxes.
 #[derive(Debug, Clone, Copy)]
 struct Known {
-    /// Where any ball is near.
+    /// Boxes in which any ball is near.
     near: u32,
     contact: u32,
     /// Groups of the largest balls that may still touch.
     probes: u32,
 }
 
-/// Each of eight bits twice.
+/// Doubles each of eight bits.
 fn doubled(bits: u32) -> u32 {
     let spread = (bits | bits << 4) & 0x0f0f;
     let spread = (spread | spread << 2) & 0x3333;

@@ -1,4 +1,4 @@
-//! Builds layers of a robot's map on covers.
+//! Builder of layers of a robot's map on covers.
 
 use std::sync::OnceLock;
 
@@ -24,27 +24,28 @@ use super::step_chain::StepChain;
 use crate::seed_expansion::expand;
 use crate::{Grid, Layer, ObstacleModel, RowSpan, SeedExpansion};
 
-/// Slack of covers as a share of the robot's reach, and its limits, m.
+/// Slack of covers as a fraction of the robot's reach; then its limits, m.
 const SLACK_SHARE: f64 = 0.0018;
 const LEAST_SLACK_M: f64 = 0.001;
 const MOST_SLACK_M: f64 = 0.0045;
 
-/// Most cells of all three axes, and of the two that are not in lanes: tables of them take 256 MiB and 200 MB.
+/// Largest number of cells of all three axes, and of the two axes that are not in lanes: tables of them take 256 MiB
+/// and 200 MB.
 const MOST_CELLS: usize = 1 << 31;
 const MOST_ROWS: usize = 1 << 20;
 
 /// Settings of a [`CoverMapBuilder`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct CoverMapSettings {
-    /// Largest protrusion of a cover from its link, m; `None`: by the size of the robot, 1 to 4.5 mm.
+    /// Largest protrusion of a cover from its link, m; `None`: depends on the size of the robot, 1 to 4.5 mm.
     pub slack_m: Option<f64>,
-    /// Cells count as blocked from this distance on, m: a cover so much larger than the robot.
+    /// Distance up to which cells count as blocked, m: a cover is larger than the robot by this distance.
     pub clearance_m: f64,
 }
 
 /// Builds maps of one robot on sphere covers of its links, in milliseconds: a [`Layer`] per obstacle, over three axes.
 ///
-/// A layer blocks every cell in which any configuration has a link that the axes move in contact with the obstacle.
+/// A layer blocks every cell with a configuration in which a link that the axes move is in contact with the obstacle.
 ///
 /// ```
 /// use elbowroom_cspace::{CoverMapBuilder, CoverMapSettings, Grid, GridAxis, LayerMap, RemainingJoints};
@@ -70,16 +71,18 @@ pub struct CoverMapBuilder {
     steps: StepChain,
     classes: Vec<CoverClass>,
     planar: Option<PlanarArmMap>,
-    /// Made for the first slices.
+    /// Computed for the first slices.
     slice_motions: OnceLock<SliceMotions>,
     slack_m: f64,
 }
 
 impl CoverMapBuilder {
-    /// For a robot with its base at `base_in_world`; `joints[i]` is the index of axis `i` among the joint values.
+    /// Creates a builder for a robot with its base at `base_in_world`; `joints[i]` is the index of axis `i` among the
+    /// joint values.
     ///
     /// # Errors
-    /// As [`RobotMapBuilder::new`], links that are not all carried by one joint of the map, and more cells than tables hold.
+    /// The errors of [`RobotMapBuilder::new`]; the links are not all carried by one joint of the map; or there are more
+    /// cells than tables can hold.
     pub fn new(
         robot: &Robot,
         base_in_world: Pose,
@@ -91,10 +94,10 @@ impl CoverMapBuilder {
         Self::with_covers(robot, base_in_world, grid, joints, remaining, settings, &BuiltCovers)
     }
 
-    /// As [`new`](Self::new), with the covers of the links from a source, such as a cache.
+    /// Like [`new`](Self::new), with the covers of the links from a source, such as a cache.
     ///
     /// # Errors
-    /// As [`new`](Self::new).
+    /// The errors of [`new`](Self::new).
     pub fn with_covers(
         robot: &Robot,
         base_in_world: Pose,
@@ -119,7 +122,7 @@ impl CoverMapBuilder {
         if !(settings.clearance_m >= 0.0 && settings.clearance_m.is_finite()) {
             return Err(RobotMapError::Clearance(settings.clearance_m));
         }
-        // The capsules of an arm in a plane are those of its links.
+        // The capsules of an arm in a plane are the capsules of its links.
         let has_clearance = settings.clearance_m > 0.0;
         let planar = if has_clearance { None } else { PlanarArmMap::new(&exact.chain, &groups, grid, slack_m) };
         let mut steps = StepChain::default();
@@ -145,8 +148,8 @@ impl CoverMapBuilder {
         &self.grid
     }
 
-    /// True if the robot is an arm in a plane with round links: convex obstacles then take hundredths of a millisecond, as
-    /// with a [`PlanarMapBuilder`](crate::PlanarMapBuilder).
+    /// Whether the robot is an arm in a plane with round links. For these, convex obstacles take hundredths of a
+    /// millisecond, as with a [`PlanarMapBuilder`](crate::PlanarMapBuilder).
     pub fn is_planar(&self) -> bool {
         self.planar.is_some()
     }
@@ -156,24 +159,24 @@ impl CoverMapBuilder {
         self.slack_m
     }
 
-    /// The frame of the first axis in the world, for [`ObstacleModel::solids`](crate::ObstacleModel::solids): its z lies
-    /// along the axis.
+    /// The frame of the first axis in the world, for [`ObstacleModel::solids`](crate::ObstacleModel::solids): its z
+    /// direction is along the axis.
     pub fn base_in_world(&self) -> Pose {
         self.exact.base_in_world()
     }
 
-    /// An obstacle for [`layer`](Self::layer), prepared once for all its poses.
+    /// Prepares an obstacle for [`layer`](Self::layer), once for all its poses.
     ///
     /// # Errors
-    /// A shape with NaN or infinite numbers.
+    /// The shape contains NaN or infinite numbers.
     pub fn obstacle(&self, shape: &Shape) -> Result<CoverObstacle, RobotMapError> {
         CoverObstacle::new(shape, self.slack_m)
     }
 
-    /// The cells that an obstacle blocks, placed in the world.
+    /// Computes the cells that an obstacle blocks, placed in the world.
     ///
     /// # Errors
-    /// A pose that is not finite, or too far away.
+    /// The pose is not finite or too far away.
     pub fn layer(&self, obstacle: &CoverObstacle, in_world: &Pose) -> Result<Layer, RobotMapError> {
         obstacle.validate_place(in_world)?;
         if let Some(layer) = self.layer_of_shape(ObstacleModel::Exact, &obstacle.shape, in_world)? {
@@ -186,13 +189,14 @@ impl CoverMapBuilder {
         Ok(division.bits.to_layer(self.grid.shape()))
     }
 
-    /// The cells that [`ObstacleModel::Slices`] of a solid block: one slice, without the joint nearest the base, copied to the
-    /// values of that joint at which the links can be at the solid. The solid needs no preparation.
+    /// Computes the cells that [`ObstacleModel::Slices`] of a solid block: one slice, without the joint nearest the
+    /// base, copied to the values of that joint at which the links can reach the solid. The solid needs no preparation.
     ///
-    /// Half spaces, which have no bounds, and all solids where the joint nearest the base slides, block what they do themselves.
+    /// Half spaces, which have no bounds, and all solids if the joint nearest the base is prismatic, are mapped by
+    /// themselves instead of by slices.
     ///
     /// # Errors
-    /// A shape with NaN or infinite numbers, a pose that is not finite, or too far away.
+    /// The shape contains NaN or infinite numbers, or the pose is not finite or too far away.
     pub fn slice_layer(&self, shape: &Shape, in_world: &Pose) -> Result<Layer, RobotMapError> {
         if shape.validate().is_err() || !in_world.is_finite() {
             return Err(RobotMapError::InvalidPlacement("an obstacle".into()));
@@ -214,16 +218,16 @@ impl CoverMapBuilder {
         Ok(division.bits.to_layer(self.grid.shape()))
     }
 
-    /// Blocks cells by expansion from seeds, the method of the joint-space paper, section IV: from cells at which a link
-    /// is nearest to the obstacle's centre, neighbours are tested until no free neighbour of a blocked cell is untested;
-    /// cells between two blocked neighbours on opposite sides are blocked without a test.
+    /// Blocks cells by expansion from seeds, the method of the joint-space paper, section IV. Seeds are cells at which
+    /// a link is nearest to the obstacle's centre. From them, neighbours are tested until all free neighbours of
+    /// blocked cells are tested. Cells between two blocked neighbours on opposite sides are blocked without a test.
     ///
-    /// **Not conservative.** No cell beside a blocked one is missed, but parts of the blocked cells in which there is no seed are:
-    /// an arm that reaches the obstacle with two links, or over its back, has several. The result is not a [`Layer`], so that no map
-    /// that guards takes it.
+    /// **Not conservative.** The expansion finds every blocked cell beside a blocked cell, but misses parts of the
+    /// blocked cells that contain no seed: an arm that reaches the obstacle with two links, or over its back, has
+    /// several such parts. For this reason the result is not a [`Layer`], and a map that guards a robot cannot use it.
     ///
     /// # Errors
-    /// A pose that is not finite, or too far away.
+    /// The pose is not finite or too far away.
     pub fn expand_from_seeds(&self, obstacle: &CoverObstacle, in_world: &Pose) -> Result<SeedExpansion, RobotMapError> {
         obstacle.validate_place(in_world)?;
         let shape = self.grid.shape();
@@ -232,11 +236,12 @@ impl CoverMapBuilder {
         let mut division = BoxDivision::new(&lanes, &self.classes, self.roles, first);
         let counts = self.roles.counts;
         let seeds = seeds(&mut division, counts);
-        // Cells beyond one turn repeat those of the turn.
+        // Cells beyond one turn repeat the cells of the turn.
         Ok(expand(shape, seeds, |cell| division.may_touch([0, 1, 2].map(|k| usize::from(cell[k]) % counts[k]))))
     }
 
-    /// Computes once what all slices need of the robot; [`slice_layer`](Self::slice_layer) does it where that was left out.
+    /// Computes, once, the data of the robot that all slices need; otherwise the first
+    /// [`slice_layer`](Self::slice_layer) computes it.
     pub fn prepare_slices(&self) {
         self.slice_motions();
     }
@@ -246,7 +251,8 @@ impl CoverMapBuilder {
             .get_or_init(|| self.classes.iter().map(|class| class.motions_in_slice(&self.steps, &self.roles)).collect())
     }
 
-    /// The layer of a solid that needs no division: one that touches what no axis moves, or one of an arm in a plane.
+    /// The layer of a solid that needs no division: the solid touches a swept volume that no axis moves, or the robot
+    /// is an arm in a plane.
     fn layer_of_shape(
         &self,
         model: ObstacleModel,
@@ -277,7 +283,7 @@ fn reach_m(robot: &Robot) -> f64 {
     chain.path(chain.tip()).iter().map(|j| chain.joints()[j.0].origin.translation.length()).sum()
 }
 
-/// A layer of all cells.
+/// A layer that blocks all cells.
 fn full(grid: &Grid) -> Layer {
     let last = (grid.shape()[2] - 1) as u16;
     Layer { spans: (0..grid.rows() as u32).map(|row| RowSpan { row, first: 0, last }).collect() }

@@ -1,10 +1,10 @@
-//! Blocked cells as bits, while a layer is computed: a row of bits along the axis in lanes.
+//! Blocked cells as bits during the computation of a layer: a row of bits along the axis in lanes.
 
 use super::axis_roles::AxisRoles;
 use crate::bits::{for_each_run, set_range};
 use crate::{Layer, RowSpan};
 
-/// One bit per cell that is computed.
+/// One bit per computed cell.
 #[derive(Debug, Clone)]
 pub(super) struct CellBits {
     roles: AxisRoles,
@@ -12,7 +12,7 @@ pub(super) struct CellBits {
     words: Vec<u64>,
 }
 
-/// A run of cells of the axis in lanes in a box of the two others, ends excluded.
+/// A run of cells of the axis in lanes, in a box of the two other axes; ends excluded.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct CellBox {
     pub lanes: [usize; 2],
@@ -26,7 +26,7 @@ impl CellBits {
         Self { roles, words_per_row, words: vec![0; first * second * words_per_row] }
     }
 
-    /// Sets cells; those beyond the axes are left out.
+    /// Sets cells; ignores cells beyond the axes.
     pub fn set(&mut self, cells: &CellBox) {
         let counts = self.roles.other_counts();
         let last = cells.lanes[1].min(self.roles.lane_count());
@@ -41,7 +41,8 @@ impl CellBits {
         }
     }
 
-    /// Sets the same cells of the axis in lanes in a box of the two others, ends excluded and cells beyond the axes left out.
+    /// Sets the same cells of the axis in lanes in a box of the two other axes; ends are excluded, cells beyond the
+    /// axes are ignored.
     pub fn add_lanes(&mut self, lanes: &[u64], others: [[usize; 2]; 2]) {
         let counts = self.roles.other_counts();
         for i in others[0][0]..others[0][1].min(counts[0]) {
@@ -57,7 +58,7 @@ impl CellBits {
         self.row_mut(others)[group / 4] |= u64::from(lanes) << (16 * (group % 4));
     }
 
-    /// Which of sixteen cells of a row are set.
+    /// Returns, for sixteen cells of a row, whether they are set.
     #[inline]
     pub fn sixteen(&self, [i, j]: [usize; 2], group: usize) -> u32 {
         let row = (i * self.roles.other_counts()[1] + j) * self.words_per_row;
@@ -70,7 +71,8 @@ impl CellBits {
         &mut self.words[row..row + self.words_per_row]
     }
 
-    /// The layer of a grid of at least as many cells: cells beyond those that are computed repeat them.
+    /// Converts the bits to the layer of a grid with at least as many cells: cells beyond the computed ones repeat
+    /// them.
     pub fn to_layer(&self, shape: [usize; 3]) -> Layer {
         let rows = self.rows_of_last_axis();
         let counts = self.roles.counts;
@@ -97,7 +99,7 @@ impl CellBits {
         Layer { spans }
     }
 
-    /// The same bits, in rows along the last axis.
+    /// The bits, in rows along the last axis.
     fn rows_of_last_axis(&self) -> std::borrow::Cow<'_, [u64]> {
         if self.roles.lanes == 2 {
             return (&self.words).into();
@@ -105,7 +107,7 @@ impl CellBits {
         let counts = self.roles.counts;
         let words_per_row = counts[2].div_ceil(64);
         let mut rows = vec![0; counts[0] * counts[1] * words_per_row];
-        // The axis in lanes is one of the first two, the last is the second of the others.
+        // The axis in lanes is one of the first two axes; the last axis is the second of the others.
         let [planes, along] = self.roles.other_counts();
         for plane in 0..planes {
             let bits = &self.words[plane * along * self.words_per_row..][..along * self.words_per_row];
@@ -131,7 +133,7 @@ impl CellBits {
     }
 }
 
-/// Transposes 64 × 64 bits: bit `j` of word `i` and bit `i` of word `j` change places (Warren, *Hacker's Delight*, 7-3).
+/// Transposes 64 × 64 bits: exchanges bit `j` of word `i` with bit `i` of word `j` (Warren, *Hacker's Delight*, 7-3).
 fn transpose(block: &mut [u64; 64]) {
     let (mut width, mut mask) = (32, 0x0000_0000_ffff_ffff_u64);
     while width != 0 {

@@ -11,28 +11,29 @@ use super::block_level::{BlockLevel, single};
 use super::step_chain::StepChain;
 use crate::Grid;
 
-/// Boxes are not larger than this, rad or m, unless there are too many of them.
+/// Largest box, rad or m, unless there are too many boxes.
 const WIDEST_BLOCK: f64 = 0.3;
-/// More boxes than this make larger ones worth while.
+/// Number of boxes above which larger boxes are worthwhile.
 const MOST_BLOCKS: usize = 4096;
-/// Most halvings.
+/// Largest number of halvings.
 const MOST_LEVELS: u32 = 8;
 
-/// Balls about a link that are tested at a time: each is a leaf of its cover, or encloses the balls of another group.
+/// Balls around a link that are tested at the same time: each ball is a leaf of the link's cover, or encloses the balls
+/// of another group.
 #[derive(Debug, Clone)]
 pub(super) struct CoverGroup {
     /// Centres in the frame of the last step of its path, m.
     pub centres: PointRow,
-    /// m.
+    /// Radii, m.
     pub radii: Row,
-    /// Per ball, the number of the group below, or [`LEAF`].
+    /// Per ball, the index of the group below, or [`LEAF`].
     pub below: [u32; LANES],
-    /// Lanes that have a ball.
+    /// Lanes that contain a ball.
     pub lanes: u32,
-    /// Lanes that have a leaf.
+    /// Lanes that contain a leaf.
     pub leaves: u32,
     pub largest: f32,
-    /// Number of its path.
+    /// Index of the group's path.
     pub path: u32,
 }
 
@@ -40,13 +41,13 @@ pub(super) struct CoverGroup {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PathStep {
     pub step: u32,
-    /// Which of the two other axes moves it.
+    /// The one of the two other axes that moves the step.
     pub axis: usize,
     pub multiplier: f32,
     pub turns: bool,
 }
 
-/// The steps that move a link, but for the first.
+/// The steps that move a link, without the first step.
 #[derive(Debug, Clone, Default)]
 pub(super) struct CoverPath {
     /// The last step.
@@ -57,26 +58,26 @@ pub(super) struct CoverPath {
 /// Bounds of the motion of a group's balls within a box, m.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct GroupMotion {
-    /// Length of the path of a centre.
+    /// Length of the path of a centre, m.
     pub paths: Row,
-    /// Distance of a centre from where its velocity leads.
+    /// Distance of a centre from the point to which its velocity leads, m.
     pub curvatures: Row,
 }
 
-/// Covers of links that the axis in lanes and the same others move.
+/// Covers of links that the axis in lanes and the same other axes move.
 #[derive(Debug, Clone)]
 pub(super) struct CoverClass {
-    /// Which of the two other axes move the links.
+    /// For each of the two other axes, whether it moves the links.
     pub uses: [bool; 2],
     pub groups: Vec<CoverGroup>,
     /// Root groups, one per group of links.
     pub roots: Vec<u32>,
-    /// Groups of the largest balls: they find boxes that are in contact throughout.
+    /// Groups of the largest balls, which find boxes that are in contact throughout.
     pub probes: Vec<u32>,
     pub paths: Vec<CoverPath>,
-    /// Cells first.
+    /// Levels of boxes; the first level is single cells.
     pub levels: Vec<BlockLevel>,
-    /// Per level and group of balls.
+    /// Motions per level and group of balls.
     pub motions: Vec<Vec<GroupMotion>>,
     /// Largest lever arm, m.
     pub reach_m: f64,
@@ -90,7 +91,7 @@ pub(super) struct CoveredGroup<'a> {
     pub path: Vec<usize>,
 }
 
-/// The classes of some groups, those that few axes move first.
+/// The classes of some groups; classes that few axes move are first.
 pub(super) fn classes(
     groups: &[CoveredGroup<'_>],
     steps: &StepChain,
@@ -158,7 +159,7 @@ impl CoverClass {
         self.paths.push(CoverPath { last: last as u32, steps: group.path.iter().filter_map(path_step).collect() });
     }
 
-    /// Adds the bounds of the motions in boxes of these half widths.
+    /// Adds the bounds of the motions in boxes with these half widths.
     fn add_motions(&mut self, steps: &StepChain, paths: &[&[usize]], half: &[f64; 3]) {
         let of_group = |group: &CoverGroup| group.motion(steps, paths[group.path as usize], half);
         let (motions, reaches): (Vec<GroupMotion>, Vec<f64>) = self.groups.iter().map(of_group).unzip();
@@ -166,7 +167,7 @@ impl CoverClass {
         self.reach_m = reaches.into_iter().fold(self.reach_m, f64::max);
     }
 
-    /// Bounds of the motions in boxes of each level where the axis in lanes does not move, per level and group.
+    /// Bounds of the motions in boxes of each level if the axis in lanes does not move, per level and group.
     pub fn motions_in_slice(&self, steps: &StepChain, roles: &AxisRoles) -> Vec<Vec<GroupMotion>> {
         let path = |path: &CoverPath| path.steps.iter().map(|step| step.step as usize).collect();
         let paths: Vec<Vec<usize>> = self.paths.iter().map(path).collect();
@@ -208,7 +209,8 @@ impl CoverGroup {
         self.largest = self.largest.max(radius);
     }
 
-    /// Bounds of the motions of its balls by the joints of a path in a box of these half widths, and the largest lever arm, m.
+    /// Bounds of the motions of the group's balls by the joints of a path in a box with these half widths, and the
+    /// largest lever arm, m.
     fn motion(&self, steps: &StepChain, path: &[usize], half: &[f64; 3]) -> (GroupMotion, f64) {
         let mut bounds = GroupMotion { paths: Row::ZERO, curvatures: Row::ZERO };
         let mut reach_m = 0.0;
@@ -228,7 +230,7 @@ impl CoverGroup {
     }
 }
 
-/// The largest balls, none with its centre in another.
+/// The largest balls; no ball has its centre in another one.
 fn largest(balls: &[Ball]) -> Vec<Ball> {
     let mut sorted = balls.to_vec();
     sorted.sort_by(|a, b| b.radius.total_cmp(&a.radius));

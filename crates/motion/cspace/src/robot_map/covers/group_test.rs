@@ -1,4 +1,4 @@
-//! Sixteen boxes of joint space against the groups of balls that may be near in them.
+//! Test of sixteen boxes of joint space against the groups of balls that may be near in them.
 
 use elbowroom_validity::lanes::{LANES, splat};
 use fearless_simd::Simd;
@@ -13,7 +13,7 @@ use super::place_memo::PlaceMemo;
 use super::witnesses::Witnesses;
 use crate::bits::ones;
 
-/// A ball is replaced by those in it where its radius is larger than this share of its motion in a box.
+/// Ratio of a ball's radius to its motion in a box above which the ball is replaced by the balls inside it.
 const EXPANSION_SHARE: f32 = 3.0;
 
 /// Balls of a group and an element of the obstacle that may touch in some of sixteen boxes.
@@ -33,19 +33,19 @@ pub(super) struct BoxTest<'a> {
     pub frames: &'a [Frame],
     pub poses: &'a [CellPose],
     pub half: HalfWidths,
-    /// Boxes not yet known to be in contact, in which balls are in question.
+    /// Boxes that are undecided: balls may be near, and no contact is known yet.
     pub live: u32,
     /// Groups of the largest balls that may touch in some of the boxes, one bit each.
     pub probes: u32,
-    /// Boxes where any ball is near.
+    /// Boxes in which any ball is near.
     pub near: u32,
-    /// Boxes that are in contact throughout; cells that are blocked.
+    /// Boxes that are in contact throughout; for single cells, blocked cells.
     pub contact: u32,
 }
 
 #[allow(clippy::inline_always, reason = "parts of a kernel")]
 impl BoxTest<'_> {
-    /// Tests groups; adds those that are left to `left`.
+    /// Tests groups; adds the undecided ones to `left`.
     #[inline(always)]
     pub fn run<S: Simd>(
         &mut self,
@@ -76,9 +76,9 @@ impl BoxTest<'_> {
 
     /// Finds boxes in contact with the largest balls.
     ///
-    /// A cell is blocked if any configuration in it is in contact. The centre of a box of two cells along every axis is a corner
-    /// of all its cells, so that a contact there blocks them; one that lasts from the centre of a box of four cells to those of
-    /// its halves blocks all of that, too.
+    /// A cell is blocked if any configuration in it is in contact. The centre of a box of two cells along every axis is
+    /// a corner of all its cells, so a contact there blocks them all. A contact that lasts from the centre of a box of
+    /// four cells to the centres of its halves also blocks the whole box.
     #[inline(always)]
     fn probe<S: Simd>(&mut self, simd: S, places: &mut PlaceMemo) {
         let [element] = self.obstacle.elements else { return };
@@ -110,8 +110,8 @@ impl BoxTest<'_> {
         }
     }
 
-    /// Finds cells that are blocked by balls that blocked others, or boxes of two cells along every axis that these touch at the
-    /// centre, which is a corner of all their cells.
+    /// Finds cells that are blocked by balls that blocked other cells before. Also finds boxes of two cells along every
+    /// axis that these balls touch at the centre, which is a corner of all their cells.
     #[inline(always)]
     fn recall<S: Simd>(&mut self, simd: S, witnesses: &[Witnesses]) {
         for witnesses in witnesses {
@@ -143,7 +143,7 @@ impl BoxTest<'_> {
         }
     }
 
-    /// Tests a group in its boxes; adds what is below to `open` and what is left to `left`.
+    /// Tests a group in its boxes; adds the groups below to `open` and the undecided groups to `left`.
     #[inline(always)]
     fn test<S: Simd>(
         &mut self,
@@ -194,7 +194,7 @@ impl BoxTest<'_> {
         }
     }
 
-    /// Replaces the larger balls that are near by those in them, and the element where it is larger; keeps the rest.
+    /// Replaces large near balls by the balls inside them, and the element if it is larger; keeps the other balls.
     fn divide(
         &mut self,
         pair: NearGroup,

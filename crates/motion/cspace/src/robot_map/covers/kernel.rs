@@ -1,8 +1,8 @@
-//! The kernels: sixteen balls of the robot in one box of joint space.
+//! The kernels that test sixteen balls of the robot in one box of joint space.
 //!
-//! A box is free of a ball if a plane separates the ball from the obstacle in the whole box. The plane is the one across the
-//! shortest way from the obstacle at the centre of the box; toward it the ball moves by no more than its displacements by half
-//! the box along the normal, and a bound of the curvature.
+//! A box is free of a ball if a plane separates the ball from the obstacle in the whole box. The plane is perpendicular
+//! to the shortest connection from the obstacle at the centre of the box. Towards the plane, the ball moves at most by
+//! its displacements by half the box along the normal, plus a bound of the curvature.
 
 #![allow(clippy::inline_always, reason = "a kernel is compiled for each instruction set as a whole")]
 
@@ -14,7 +14,7 @@ use super::cover_class::{CoverGroup, CoverPath, GroupMotion};
 use super::obstacle_lanes::CellPose;
 use super::solid_core::SolidCore;
 
-/// Half widths of a box: of the axis in lanes, times the joint's multiplier, and of the others.
+/// Half widths of a box: of the axis in lanes, times the joint's multiplier, and of the other axes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct HalfWidths {
     pub lanes: f32,
@@ -22,12 +22,12 @@ pub(super) struct HalfWidths {
     pub others: [f32; 2],
 }
 
-/// Sixteen balls at the centre of a box, seen from the first joint.
+/// Sixteen balls at the centre of a box, relative to the first joint.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct GroupPlace {
-    /// m.
+    /// Centres, m.
     pub centres: PointRow,
-    /// Displacements by half the box along the two axes that are not in lanes, to first order, m.
+    /// Displacements by half the box along each of the two axes that are not in lanes, to first order, m.
     pub along: [PointRow; 2],
 }
 
@@ -61,12 +61,12 @@ impl GroupPlace {
     }
 }
 
-/// A solid about a point of the obstacle's frame.
+/// A solid around a point of the obstacle's frame.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Target {
     pub core: SolidCore,
     pub centre: [f32; 3],
-    /// Its radius, with an allowance for rounding errors, m.
+    /// Radius of the solid, with an allowance for rounding errors, m.
     pub reach: f32,
 }
 
@@ -102,8 +102,8 @@ pub(super) fn near_balls<S: Simd>(
     near & !(squared.simd_gt(needed).to_bitmask() as u32)
 }
 
-/// Distances of a group's balls from a solid at the centre of the box, less the sums of the radii: at most 0 if they touch.
-/// `reach` of the target is its radius less rounding errors.
+/// Distances of a group's balls from a solid at the centre of the box, minus the sums of the radii: at most 0 if they
+/// touch. `reach` of the target is its radius minus rounding errors.
 #[inline(always)]
 pub(super) fn gaps<S: Simd>(
     simd: S,
@@ -119,7 +119,7 @@ pub(super) fn gaps<S: Simd>(
     target.core.signed_distance(simd, p) - reach
 }
 
-/// Lanes that are at most a limit, one bit each; NaN is not.
+/// Lanes whose value is at most a limit, one bit each; false for NaN.
 #[inline(always)]
 pub(super) fn at_most<S: Simd>(v: f32x16<S>, limit: f32x16<S>) -> u32 {
     v.simd_le(limit).to_bitmask() as u32
@@ -130,7 +130,7 @@ fn cross<S: Simd>(a: V3<S>, b: V3<S>) -> V3<S> {
     V3(a.1 * b.2 - a.2 * b.1, a.2 * b.0 - a.0 * b.2, a.0 * b.1 - a.1 * b.0)
 }
 
-/// A pose in all lanes, its origin seen from a point.
+/// A pose in all lanes, with its origin relative to a point.
 struct PoseSplat<S: Simd> {
     x: V3<S>,
     y: V3<S>,
@@ -138,7 +138,7 @@ struct PoseSplat<S: Simd> {
     origin: V3<S>,
 }
 
-// No closures: they are compiled for the lowest instruction set.
+// Without closures, because closures are compiled for the lowest instruction set.
 impl<S: Simd> PoseSplat<S> {
     #[inline(always)]
     fn new(simd: S, pose: &CellPose, from: [f32; 3]) -> Self {

@@ -9,42 +9,42 @@ use super::ball_tree::split;
 use super::solid_core::SolidCore;
 use crate::ConvexObstacle;
 
-/// Least extent of a mesh that can be a box, m.
+/// Smallest extent of a mesh that counts as a box, m.
 const LEAST_EXTENT_M: f64 = 1e-9;
 
-/// Children of an inner node of a tree of balls.
+/// Number of children of an inner node of a tree of balls.
 const FAN_OUT: usize = 4;
 
 /// A solid of an obstacle, or a node of a tree of balls.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Element {
-    /// In the frame of the obstacle's core, m.
+    /// Centre in the frame of the obstacle's core, m.
     pub centre: [f32; 3],
     pub core: SolidCore,
-    /// m.
+    /// Radius, m.
     pub radius: f32,
-    /// Number of the element after all that are below this one.
+    /// Index of the element after all elements below this one.
     pub end: u32,
     pub is_leaf: bool,
 }
 
-/// An obstacle prepared for maps on covers, to be placed anywhere: shapes without flat sides and boxes (also as meshes) as they
-/// are, other meshes and hulls as the spheres of a cover.
+/// An obstacle prepared for maps on covers, for any placement: shapes without flat sides and boxes (including meshes
+/// that are boxes) unchanged, other meshes and hulls as the spheres of a cover.
 #[derive(Debug, Clone)]
 pub struct CoverObstacle {
     pub(super) elements: Vec<Element>,
-    /// Frame of the elements in that of the shape.
+    /// Frame of the elements, in the frame of the shape.
     pub(super) frame: Pose,
-    /// No point is farther from the origin of the elements' frame, m; 0 for a half space.
+    /// Largest distance of a point from the origin of the elements' frame, m; 0 for a half space.
     pub(super) reach_m: f64,
     pub(super) shape: Shape,
 }
 
 impl CoverObstacle {
-    /// An obstacle; spheres of a cover protrude by `slack_m` at most.
+    /// Prepares an obstacle; spheres of a cover protrude by at most `slack_m`.
     ///
     /// # Errors
-    /// A shape with NaN or infinite numbers.
+    /// The shape contains NaN or infinite numbers.
     pub fn new(shape: &Shape, slack_m: f64) -> Result<Self, RobotMapError> {
         if shape.validate().is_err() {
             return Err(RobotMapError::InvalidPlacement("an obstacle".into()));
@@ -67,7 +67,7 @@ impl CoverObstacle {
         }
     }
 
-    /// Refuses a place that is not finite, or too far away.
+    /// Rejects a pose that is not finite or too far away.
     pub(super) fn validate_place(&self, in_world: &Pose) -> Result<(), RobotMapError> {
         let farthest = in_world.translation.abs().max_element() + self.reach_m + self.frame.translation.length();
         if in_world.is_finite() && farthest <= ConvexObstacle::MAX_COORDINATE_M {
@@ -118,7 +118,7 @@ fn box_core(half: Vec3) -> SolidCore {
     SolidCore::Box([half.x as f32, half.y as f32, half.z as f32])
 }
 
-/// The box whose eight corners are the vertices of a mesh: half extents, and its frame.
+/// The box whose eight corners are the vertices of a mesh: its half extents and its frame.
 pub(super) fn box_of(mesh: &TriMesh) -> Option<(Vec3, Pose)> {
     let corners = mesh.vertices();
     if corners.len() != 8 {

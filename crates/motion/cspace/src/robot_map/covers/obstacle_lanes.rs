@@ -1,4 +1,4 @@
-//! An obstacle at its place, seen from sixteen values of the axis in lanes.
+//! A placed obstacle relative to sixteen values of the axis in lanes.
 
 use elbowroom_spatial::Pose;
 
@@ -9,29 +9,29 @@ use super::obstacle::{CoverObstacle, Element};
 use super::step_chain::Step;
 use crate::Grid;
 
-/// Rounding errors of coordinates and distances in single precision, per metre that coordinates reach: six rotations and
-/// translations, each rounded (3·10⁻⁷), and the products and sums of three of them.
+/// Rounding errors of coordinates and distances in single precision, per metre of the coordinates' range: six rotations
+/// and translations, each rounded (3·10⁻⁷), and the products and sums of three of them.
 const ROUNDING_SHARE: f64 = 5e-6;
 
-/// Pose of the first joint's frame in that of the obstacle.
+/// Pose of the first joint's frame in the frame of the obstacle.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct CellPose {
     pub columns: [[f32; 3]; 3],
     pub origin: [f32; 3],
 }
 
-/// An obstacle at its place.
+/// A placed obstacle.
 #[derive(Debug)]
 pub(super) struct ObstacleLanes<'a> {
     pub elements: &'a [Element],
-    /// Per level and box of the first axis.
+    /// Poses per level and box of the first axis.
     pub poses: Vec<Vec<CellPose>>,
     /// Rounding errors of a distance, m.
     pub rounding: f32,
 }
 
 impl<'a> ObstacleLanes<'a> {
-    /// `first` is the joint of the axis in lanes.
+    /// Places an obstacle; `first` is the joint of the axis in lanes.
     pub fn new(
         obstacle: &'a CoverObstacle,
         in_world: &Pose,

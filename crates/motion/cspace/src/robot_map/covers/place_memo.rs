@@ -1,4 +1,4 @@
-//! Where groups of balls are, for the boxes in work: the same for all values of the axis in lanes.
+//! Memory of the places of groups of balls in the current box: they are equal for all values of the axis in lanes.
 
 use fearless_simd::Simd;
 
@@ -9,7 +9,7 @@ use super::kernel::{GroupPlace, HalfWidths};
 /// Places of a class's groups in one box.
 #[derive(Debug, Default)]
 pub(super) struct PlaceMemo {
-    /// Level and numbers of the box.
+    /// Level and indices of the box.
     of: Option<(usize, [usize; 2])>,
     /// Changes with the box.
     version: u32,
@@ -19,7 +19,7 @@ pub(super) struct PlaceMemo {
 }
 
 impl PlaceMemo {
-    /// For another class.
+    /// Prepares the memory for another class.
     pub fn start(&mut self, class: &CoverClass) {
         self.of = None;
         let count = self.places.len().max(class.groups.len());
@@ -27,7 +27,7 @@ impl PlaceMemo {
         self.places.resize(count, GroupPlace::ZERO);
     }
 
-    /// For a box of a level.
+    /// Prepares the memory for a box of a level.
     pub fn enter(&mut self, level: usize, others: [usize; 2]) {
         if self.of != Some((level, others)) {
             self.of = Some((level, others));
@@ -35,7 +35,7 @@ impl PlaceMemo {
         }
     }
 
-    /// The place of a group in the box that was entered.
+    /// The place of a group in the entered box.
     #[inline(always)]
     #[allow(clippy::inline_always, reason = "part of a kernel")]
     pub fn place<S: Simd>(

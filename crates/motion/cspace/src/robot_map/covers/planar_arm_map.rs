@@ -1,4 +1,4 @@
-//! Robots whose three joints are those of an arm in a plane, with round links: [`PlanarMapBuilder`] fills their maps.
+//! Robots whose three joints form an arm in a plane with round links: [`PlanarMapBuilder`] fills their maps.
 
 use std::f64::consts::TAU;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -11,10 +11,11 @@ use super::super::rigid_groups::RigidGroup;
 use super::obstacle::box_of;
 use crate::{ConvexObstacle, Grid, GridAxis, Layer, ObstacleModel, PlanarArm, PlanarMapBuilder};
 
-/// Largest cosine between axes that count as perpendicular, sine between those that count as parallel, and distance of points from the plane that count as none, m.
+/// Largest cosine between axes that count as perpendicular, sine between axes that count as parallel, and distance from
+/// the plane of points that count as in the plane, m.
 const ANGLE_TOLERANCE: f64 = 1e-9;
 const PLANE_TOLERANCE_M: f64 = 1e-6;
-/// Points of a circle that are measured.
+/// Number of measured points of a circle.
 const CIRCLE_POINTS: u32 = 64;
 
 /// Fills the map of an arm in a plane.
@@ -22,12 +23,12 @@ const CIRCLE_POINTS: u32 = 64;
 pub(super) struct PlanarArmMap {
     builder: Arc<Mutex<PlanarMapBuilder>>,
     base_in_world: Pose,
-    /// Cells of the third axis where it has the opposite sense.
+    /// Number of cells of the third axis if it has the opposite sense.
     reversed: Option<u16>,
 }
 
-/// A solid of a link where all joints of the map are at 0, in the frame of the plane: z along the first axis, y along the two
-/// others.
+/// A solid of a link with all joints of the map at 0, in the frame of the plane: z along the first axis, y along the
+/// two others.
 #[derive(Debug, Clone)]
 struct PlacedSolid {
     shape: Shape,
@@ -35,8 +36,8 @@ struct PlacedSolid {
 }
 
 impl PlanarArmMap {
-    /// `None` if the joints or the links are others, or where capsules would protrude from the links by more than
-    /// `tolerance_m`.
+    /// Creates the map; `None` if the joints or the links do not form such an arm, or if capsules would protrude from
+    /// the links by more than `tolerance_m`.
     pub fn new(chain: &DrivenChain, groups: &[RigidGroup], grid: &Grid, tolerance_m: f64) -> Option<Self> {
         let moved: Vec<&RigidGroup> = groups.iter().filter(|group| !group.solids.is_empty()).collect();
         let joints = &moved.iter().max_by_key(|group| group.joints.len())?.joints;
@@ -70,7 +71,7 @@ impl PlanarArmMap {
         let offsets = [0.0, fit.upper_angle, fit.fore_angle - fit.upper_angle];
         let planar_grid = planar_grid(grid, offsets, is_reversed)?;
         let mut builder = PlanarMapBuilder::new(fit.arm, &planar_grid).ok()?;
-        // Once for all: the first layer takes twice as long as later ones.
+        // Done once in advance, because the first layer takes twice as long as later ones.
         let reach = Vec3::X * fit.arm.reach_m();
         let cuboid = ConvexObstacle::cuboid(Pose::from_translation(reach), Vec3::new(0.2, 0.2, 0.2)).ok()?;
         builder.build_layer(&cuboid, &mut Layer::new());
@@ -78,7 +79,7 @@ impl PlanarArmMap {
         Some(Self { builder: Arc::new(Mutex::new(builder)), base_in_world: base, reversed })
     }
 
-    /// The cells that a model of a convex obstacle blocks; `None` for others.
+    /// The cells that a model of a convex obstacle blocks; `None` for other obstacles.
     pub fn layer(&self, model: ObstacleModel, shape: &Shape, in_world: &Pose) -> Option<Layer> {
         let in_base = self.base_in_world.inverse() * *in_world;
         let obstacle = match shape {
@@ -103,13 +104,14 @@ impl PlanarArmMap {
     }
 }
 
-/// The grid in the angles of the planar arm: planar value = value + offset, the third with the opposite sign where reversed.
+/// The grid in the angles of the planar arm: planar value = value + offset; the third value has the opposite sign if
+/// reversed.
 fn planar_grid(grid: &Grid, offsets: [f64; 3], is_reversed: bool) -> Option<Grid> {
     let axis = |i: usize| {
         let axis = &grid.axes()[i];
         let end = axis.border(axis.count());
         if i == 2 && is_reversed {
-            // The last cell becomes the first: it must be a whole one.
+            // The last cell becomes the first, so it must be a whole cell.
             let is_whole = (end - axis.max()).abs() <= 1e-9 * axis.step();
             return GridAxis::new(axis.joint(), offsets[i] - end, offsets[i] - axis.min(), axis.step())
                 .ok()
@@ -124,7 +126,8 @@ fn planar_grid(grid: &Grid, offsets: [f64; 3], is_reversed: bool) -> Option<Grid
 /// An arm of capsules and a sphere that encloses round links.
 struct ArmFit {
     arm: PlanarArm,
-    /// Of the upper arm from the first axis, and of the forearm from the perpendicular to it, where all joints are at 0.
+    /// Angle of the upper arm from the first axis, and of the forearm from the perpendicular to it, with all joints at
+    /// 0.
     upper_angle: f64,
     fore_angle: f64,
 }
@@ -162,13 +165,13 @@ impl ArmFit {
 }
 
 impl PlacedSolid {
-    /// True for a sphere, capsule or cylinder with its axis in the plane.
+    /// Whether the solid is a sphere, or a capsule or cylinder with its axis in the plane.
     fn is_round_in_plane(&self) -> bool {
         let is_round = matches!(self.shape, Shape::Sphere(_) | Shape::Capsule(_) | Shape::Cylinder(_));
         is_round && self.ends().iter().all(|end| end.y.abs() <= PLANE_TOLERANCE_M)
     }
 
-    /// Ends of its axis.
+    /// Ends of the solid's axis.
     fn ends(&self) -> [Vec3; 2] {
         let half = match &self.shape {
             Shape::Capsule(c) => c.half_length,
@@ -178,7 +181,7 @@ impl PlacedSolid {
         [half, -half].map(|z| self.pose.transform_point(Vec3::Z * z))
     }
 
-    /// Largest distance of its points from a segment, m.
+    /// Largest distance of the solid's points from a segment, m.
     fn reach_from(&self, a: Vec3, b: Vec3) -> f64 {
         let from = |p: Vec3| distance_from_segment(p, a, b);
         match &self.shape {
@@ -188,7 +191,7 @@ impl PlacedSolid {
                     let (sin, cos) = (f64::from(i) * step).sin_cos();
                     [1.0, -1.0].map(|side| Vec3::new(c.radius * cos, c.radius * sin, side * c.half_length))
                 });
-                // Between two points the circle is nowhere farther from their chord than this.
+                // Between two points, the circle is at most this far from their chord.
                 let between = c.radius * (1.0 - (0.5 * step).cos());
                 rim.map(|p| from(self.pose.transform_point(p))).fold(0.0, f64::max) + between
             }
@@ -199,13 +202,13 @@ impl PlacedSolid {
     }
 }
 
-/// How far points of a capsule's surface are from the nearest of some solids, m.
+/// Largest distance of points of a capsule's surface from the nearest of some solids, m.
 fn protrusion(solids: &[&PlacedSolid], a: Vec3, b: Vec3, radius: f64) -> f64 {
     let along = (b - a).try_normalize().unwrap_or(Vec3::Z);
     let (u, v) = (Vec3::Y, along.cross(Vec3::Y));
     let mut worst: f64 = 0.0;
     for i in 0..=24 {
-        // Caps at both ends, and the cylinder between.
+        // Caps at both ends, and the cylinder in between.
         let (centre, lean) = match i {
             0..4 => (a, -1.5 + 0.375 * f64::from(i)),
             21.. => (b, 0.375 * f64::from(i - 20)),

@@ -4,13 +4,13 @@
 use super::box_division::BoxDivision;
 use crate::CellIndex;
 
-/// Descents start from this many values of each axis.
+/// Number of values of each axis from which descents start.
 const STARTS: usize = 4;
 /// Steps of a descent, in cells, the largest first.
 const STEPS: [isize; 4] = [16, 4, 2, 1];
 
-/// Cells at which the links of each path are nearest to the centre of the obstacle, as far as descents along the axes from a
-/// few cells find them.
+/// Finds cells at which the links of each path are nearest to the centre of the obstacle, as far as descents along the
+/// axes from a few cells find them.
 pub(super) fn seeds(division: &mut BoxDivision<'_>, counts: [usize; 3]) -> Vec<CellIndex> {
     let start = |axis: usize, i: usize| (2 * i + 1) * counts[axis] / (2 * STARTS);
     let mut found = Vec::new();
@@ -29,7 +29,7 @@ pub(super) fn seeds(division: &mut BoxDivision<'_>, counts: [usize; 3]) -> Vec<C
     found
 }
 
-/// Goes to the best of the neighbours along the axes while one is better.
+/// Moves to the best neighbour along the axes as long as one is better.
 fn descend(from: [usize; 3], counts: [usize; 3], mut distance: impl FnMut([usize; 3]) -> f32) -> CellIndex {
     let (mut at, mut least) = (from, distance(from));
     for step in STEPS {

@@ -1,9 +1,10 @@
-//! The kernel of the slices: sixteen balls of the robot against a ring about the first joint's axis.
+//! The kernel of slices: tests sixteen balls of the robot against a ring about the first joint's axis.
 //!
-//! The ring has a rectangle of radius and height as its section, so that the value of the first joint plays no part: it is in
-//! contact with a ball if the ball's radius and height are. A box of the two other joints is free of a ball if a line separates
-//! these from the rectangle in the whole box, across the shortest way at the centre of the box. The angles that a ball covers
-//! where it may be in the ring say for which values of the first joint it may touch a sector of it.
+//! The section of the ring is a rectangle of radius and height, so the value of the first joint does not matter: a ball
+//! touches the ring if the ball's radius and height touch the rectangle. A box of the two other joints is free of a
+//! ball if a line separates the ball's radius and height from the rectangle in the whole box. The line is perpendicular
+//! to the shortest connection at the centre of the box. The angles that a ball covers where it may touch the ring give
+//! the values of the first joint at which it may touch a sector of the ring.
 
 #![allow(clippy::inline_always, reason = "a kernel is compiled for each instruction set as a whole")]
 
@@ -14,32 +15,32 @@ use super::cover_class::{CoverGroup, GroupMotion};
 use super::kernel::GroupPlace;
 use crate::planar_map::simd_math::{ANGLE_ERROR, atan2};
 
-/// Nearer to the axis than this the direction from it says nothing, m.
+/// Distance from the axis, m, below which the direction from the axis is not defined.
 const LEAST_RADIUS_M: f32 = 1e-6;
 
 /// The rectangle of a ring, m.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct RingSection {
-    /// Radii.
+    /// Radii, m.
     pub near: f32,
     pub far: f32,
-    /// Heights.
+    /// Heights, m.
     pub low: f32,
     pub high: f32,
-    /// Allowance for rounding errors.
+    /// Allowance for rounding errors, m.
     pub rounding: f32,
 }
 
-/// What is known of sixteen balls in a box.
+/// Results for sixteen balls in a box.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct RingContact {
     /// Balls that are not proven apart from the ring in the whole box, one bit each.
     pub near: u32,
-    /// Balls that touch it at the centre of the box, and wherever the motion that was given leads.
+    /// Balls that touch the ring at the centre of the box and throughout the given motion.
     pub contact: u32,
 }
 
-/// Angles that sixteen balls cover, from the direction of x or, behind the axis, from the opposite one.
+/// Angles that sixteen balls cover, measured from the direction of x or, behind the axis, from the opposite direction.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct CoveredAngles {
     pub low: [f32; LANES],
@@ -51,10 +52,10 @@ pub(super) struct CoveredAngles {
 /// A ball's motion about the axis: displacements by half the box, to first order, m.
 struct RadialMotion<S: Simd> {
     radius: f32x16<S>,
-    /// Away from the axis, and upwards, along each of the two axes.
+    /// Displacements away from the axis, and (in the next field) upwards, along each of the two axes.
     outward: [f32x16<S>; 2],
     upward: [f32x16<S>; 2],
-    /// Sums of both axes: away from the axis, and across.
+    /// Sums over the two axes: away from the axis, and across.
     outward_sum: f32x16<S>,
     across_sum: f32x16<S>,
 }
@@ -80,7 +81,8 @@ impl<S: Simd> RadialMotion<S> {
     }
 }
 
-/// Which balls are near the ring, and which touch it; `stays` is how far they move while the contact must last.
+/// Finds the balls that are near the ring, and those that touch it; `stays` is their motion during which the contact
+/// must last.
 #[inline(always)]
 pub(super) fn ring_contact<S: Simd>(
     simd: S,
@@ -109,7 +111,7 @@ pub(super) fn ring_contact<S: Simd>(
     let mut needed = distance * (reach + motion.curvatures.load(simd));
     needed += (out * moved.outward[0] + up * moved.upward[0]).abs();
     needed += (out * moved.outward[1] + up * moved.upward[1]).abs();
-    // Between ring and axis, a motion across leads outwards, too.
+    // Between ring and axis, a motion across also leads outwards.
     let least = moved.radius - moved.outward_sum;
     let bend = (least * least + moved.across_sum * moved.across_sum).sqrt() - least;
     needed += (zero - out).max(zero) * bend;
@@ -122,7 +124,7 @@ pub(super) fn ring_contact<S: Simd>(
     result
 }
 
-/// The angles that balls cover in the whole box, as far as they are no nearer to the axis than the ring.
+/// The angles that balls cover in the whole box, except where they are nearer to the axis than the ring.
 #[inline(always)]
 pub(super) fn covered_angles<S: Simd>(
     simd: S,
@@ -135,14 +137,14 @@ pub(super) fn covered_angles<S: Simd>(
     let moved = RadialMotion::new(simd, place);
     let radius = group.radii.load(simd) + motion.curvatures.load(simd) + splat(simd, ring.rounding);
     let near = splat(simd, ring.near);
-    // The centre turns by the motion across, the ball about it covers the angle of its tangents: nearer than the ring, no more
-    // than those of a ball at the ring.
+    // The centre turns by the motion across, and the ball around it covers the angle of its tangents. Nearer to the
+    // axis than the ring, it covers at most the angle of a ball at the ring.
     let least = moved.radius - moved.outward_sum;
     let turn = moved.across_sum / least.max(splat(simd, LEAST_RADIUS_M));
     let turning = angle_of_tangents(simd, radius, near.max(least)) + turn;
     let pi = splat(simd, std::f32::consts::PI);
     let turning = least.simd_gt(splat(simd, LEAST_RADIUS_M)).select(turning, pi);
-    // Or a larger ball covers all of the motion.
+    // Alternatively, a larger ball covers the whole motion.
     let across = moved.across_sum;
     let larger = radius + (moved.outward_sum * moved.outward_sum + across * across).sqrt();
     let half = turning.min(angle_of_tangents(simd, larger, near.max(moved.radius))).min(pi) + splat(simd, ANGLE_ERROR);
@@ -155,7 +157,8 @@ pub(super) fn covered_angles<S: Simd>(
     }
 }
 
-/// An upper bound of the angle between a ball's centre and its tangents, seen from a distance; a turn from inside.
+/// An upper bound of the angle between a ball's centre and its tangents, seen from a distance; half a turn if seen from
+/// inside.
 #[inline(always)]
 fn angle_of_tangents<S: Simd>(simd: S, radius: f32x16<S>, distance: f32x16<S>) -> f32x16<S> {
     let sine = radius / distance.max(splat(simd, LEAST_RADIUS_M));

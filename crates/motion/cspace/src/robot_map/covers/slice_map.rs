@@ -1,9 +1,9 @@
-//! One slice, copied over the first joint: the quickest model of the joint-space paper (section III), for any robot.
+//! One slice, copied over the first joint: the fastest model of the joint-space paper (section III), for any robot.
 //!
-//! The obstacle is enclosed in a sector of a ring about the first joint's axis. As the ring looks the same from all values of
-//! that joint, which cells of the two other joints touch it is found once, without that joint. The links that touch it there
-//! cover a range of angles; the first joint's cells that turn this range into the sector are blocked. That range is found for
-//! boxes of few cells, the contact for single ones.
+//! The obstacle is enclosed in a sector of a ring about the first joint's axis. The ring looks the same from all values
+//! of that joint, so the cells of the two other joints that touch it are computed once, without the first joint. The
+//! links that touch the ring there cover a range of angles; the first joint's cells that turn this range into the
+//! sector are blocked. The range of angles is computed for boxes of few cells, the contact for single cells.
 
 use std::cmp::Ordering;
 use std::f64::consts::{PI, TAU};
@@ -25,17 +25,17 @@ use super::step_chain::Step;
 use crate::bits::{ones, set_range};
 use crate::{ConvexObstacle, GridAxis};
 
-/// The level of boxes whose angles are found: four cells along every axis.
+/// Level of the boxes whose angles are computed: four cells along every axis.
 const ANGLE_LEVEL: usize = 2;
-/// A ball is replaced by those in it where its radius is larger than this share of its motion in a box.
+/// Ratio of a ball's radius to its motion in a box above which the ball is replaced by the balls inside it.
 const EXPANSION_SHARE: f32 = 3.0;
-/// As `ROUNDING_SHARE` of obstacles in lanes.
+/// Like `ROUNDING_SHARE` of obstacles in lanes.
 const ROUNDING_SHARE: f64 = 5e-6;
 
 /// Bounds of motions without the first joint, per class, level and group.
 pub(super) type SliceMotions = Vec<Vec<Vec<GroupMotion>>>;
 
-/// A sector of a ring, seen from the first joint at 0.
+/// A sector of a ring, relative to the first joint at 0.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct RingSector {
     section: RingSection,
@@ -45,7 +45,8 @@ pub(super) struct RingSector {
 }
 
 impl RingSector {
-    /// Around a solid in the world; `None` for one that is unbounded or too far away. `reach_m` bounds the robot's coordinates.
+    /// Computes a sector around a solid in the world; `None` if the solid is unbounded or too far away. `reach_m`
+    /// bounds the robot's coordinates.
     pub fn new(shape: &Shape, in_world: &Pose, joint: &Step, reach_m: f64) -> Option<Self> {
         let bounds = SectorBounds::new(shape, &(joint.at_zero.inverse() * *in_world))?;
         let SectorBounds { first, width, near, far, low, high } = bounds;
@@ -72,7 +73,7 @@ struct SliceBox {
     others: [usize; 2],
 }
 
-/// Angles that links cover, before the axis and behind it; low above high: none.
+/// Angles that links cover, in front of the axis and behind it; low above high means an empty range.
 type AngleRanges = [[f32; 2]; 2];
 const NO_ANGLES: AngleRanges = [[f32::INFINITY, f32::NEG_INFINITY]; 2];
 
@@ -85,10 +86,10 @@ pub(super) struct SliceDivision<'a> {
     first: &'a Step,
     axis: &'a GridAxis,
     simd_level: SimdLevel,
-    /// Balls in question, box by box.
+    /// Undecided balls, box by box.
     open: Vec<NearBalls>,
     work: Vec<NearBalls>,
-    /// Cells of the first joint that touch in the box in work.
+    /// Cells of the first joint that touch in the current box.
     lanes: Vec<u64>,
     pub bits: CellBits,
 }
@@ -131,7 +132,8 @@ impl<'a> SliceDivision<'a> {
         }
     }
 
-    /// Divides a box; the balls in question are those from `from` on, and the groups of the largest in `probes`.
+    /// Divides a box; the undecided balls are those from `from` on, and the groups of the largest balls are in
+    /// `probes`.
     fn divide(&mut self, class: usize, at: SliceBox, from: usize, probes: u32) {
         let end = self.open.len();
         let angle_level = ANGLE_LEVEL.min(self.classes[class].levels.len() - 1);
@@ -171,7 +173,7 @@ impl<'a> SliceDivision<'a> {
         }
     }
 
-    /// Blocks the cells of the first joint in a box of the others.
+    /// Blocks the cells of the first joint in a box of the other joints.
     fn block(&mut self, class: usize, at: SliceBox) {
         let (uses, size) = (self.classes[class].uses, 1usize << at.level);
         let range = |k: usize| [at.others[k] * size, (at.others[k] + 1) * size];
@@ -179,7 +181,7 @@ impl<'a> SliceDivision<'a> {
         self.bits.add_lanes(&self.lanes, others);
     }
 
-    /// Tests the balls in question; adds what is left to `open`.
+    /// Tests the undecided balls; adds the remaining ones to `open`.
     fn assess(&mut self, class: usize, at: SliceBox, from: usize, probes: u32, wants: Wants) -> SliceState {
         let covers = &self.classes[class];
         let level = &covers.levels[at.level];
@@ -194,8 +196,9 @@ impl<'a> SliceDivision<'a> {
             class: covers,
             frames: level.frames(at.others),
             motions: &motions[at.level],
-            // As in maps of three joints: the centre of a box of two cells along every axis is a corner of each, and a contact
-            // that lasts from the centre of a box of four to those of its halves blocks all of that.
+            // As in maps of three joints: the centre of a box of two cells along every axis is a corner of each cell,
+            // and a contact that lasts from the centre of a box of four cells to the centres of its halves blocks the
+            // whole box.
             stays: match at.level {
                 0 => None,
                 1 => Some(Stays::Nowhere),
@@ -211,7 +214,7 @@ impl<'a> SliceDivision<'a> {
         dispatch!(simd_level, simd => test.run(simd, from, probes, open, work))
     }
 
-    /// The first joint's cells that turn some angles into the sector.
+    /// Finds the first joint's cells that turn some angles into the sector.
     fn find_lanes(&mut self, angles: &AngleRanges) {
         self.lanes.fill(0);
         for ([low, high], side) in angles.iter().zip([0.0, PI]) {
@@ -224,7 +227,7 @@ impl<'a> SliceDivision<'a> {
         }
     }
 
-    /// Adds the cells that hold an angle of the first joint in a range, in any turn.
+    /// Adds the cells that contain an angle of the first joint in a range, in any turn.
     fn add_lanes(&mut self, lowest: f64, highest: f64) {
         let last = self.roles.lane_count() as u16 - 1;
         if highest - lowest >= TAU {
@@ -247,25 +250,25 @@ impl<'a> SliceDivision<'a> {
     }
 }
 
-/// How far a contact must last.
+/// The motion during which a contact must last.
 #[derive(Clone, Copy)]
 enum Stays<'a> {
     Nowhere,
     Within(&'a [GroupMotion]),
 }
 
-/// What a test of a box is for.
+/// The purpose of a test of a box.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Wants {
-    /// The balls in question in its parts.
+    /// Find the undecided balls in the parts of the box.
     Division,
-    /// The angles of all balls in question, and these.
+    /// Find the angles of all undecided balls, and these balls.
     Angles,
-    /// Whether it is blocked, and if not, the balls in question.
+    /// Find out whether the box is blocked, and if not, the undecided balls.
     Contact,
 }
 
-/// What is known of a box.
+/// Results for a box.
 struct SliceState {
     is_near: bool,
     is_blocked: bool,
@@ -322,7 +325,7 @@ impl SliceTest<'_> {
         state
     }
 
-    /// Tests the largest balls, which find most contacts, and most of the angles.
+    /// Tests the largest balls, which find most contacts and most of the angles.
     #[inline(always)]
     fn probe<S: Simd>(&self, simd: S, state: &mut SliceState) {
         for (number, &group) in self.class.probes.iter().take(32).enumerate() {
@@ -343,7 +346,7 @@ impl SliceTest<'_> {
         }
     }
 
-    /// Tests balls of a group; adds those below to `work`, and returns those to keep.
+    /// Tests balls of a group; adds the balls below to `work` and returns the balls to keep.
     #[inline(always)]
     fn test<S: Simd>(&self, simd: S, next: NearBalls, state: &mut SliceState, work: &mut Vec<NearBalls>) -> u32 {
         let group = &self.class.groups[next.group as usize];

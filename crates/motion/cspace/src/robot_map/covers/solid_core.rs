@@ -1,4 +1,4 @@
-//! The core of a rounded obstacle about the origin: distances from it in lanes.
+//! The core of a rounded obstacle around the origin: distances from it in lanes.
 
 #![allow(clippy::inline_always, reason = "a kernel is compiled for each instruction set as a whole")]
 
@@ -10,16 +10,16 @@ use fearless_simd::{Select, Simd, f32x16, prelude::*};
 pub(super) enum SolidCore {
     /// The origin.
     Point,
-    /// A box about the origin, by its half extents; a segment where two are 0.
+    /// A box around the origin, given by its half extents; a segment if two of them are 0.
     Box([f32; 3]),
-    /// About z.
+    /// A cylinder about the z axis.
     Cylinder { radius: f32, half_length: f32 },
     /// All points with z ≤ 0.
     HalfSpace,
 }
 
 impl SolidCore {
-    /// From the nearest point of the core; a normal of the core if it is not 0.
+    /// Vector from the nearest point of the core; a normal of the core if it is not 0.
     #[inline(always)]
     pub fn vector_to<S: Simd>(self, simd: S, p: V3<S>) -> V3<S> {
         let zero = splat(simd, 0.0);
@@ -36,7 +36,7 @@ impl SolidCore {
         }
     }
 
-    /// Distance of a point from the core; inside, less than 0 and not deeper than the point is.
+    /// Distance of a point from the core; inside, it is negative and its size is at most the depth of the point.
     #[inline(always)]
     pub fn signed_distance<S: Simd>(self, simd: S, p: V3<S>) -> f32x16<S> {
         let vector = self.vector_to(simd, p);
@@ -58,7 +58,7 @@ impl SolidCore {
     }
 }
 
-/// A coordinate less the nearest value of the interval about 0 of a half length.
+/// A coordinate minus the nearest value of an interval around 0, given by its half length.
 #[inline(always)]
 fn beyond<S: Simd>(simd: S, p: f32x16<S>, half: f32) -> f32x16<S> {
     p - p.max(splat(simd, -half)).min(splat(simd, half))

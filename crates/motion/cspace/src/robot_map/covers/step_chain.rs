@@ -1,4 +1,4 @@
-//! The joints that move the covers, each with a frame whose z axis lies along it.
+//! The joints that move the covers, each with a frame whose z axis is along the joint's axis.
 
 use elbowroom_kinematics::LinkId;
 use elbowroom_kinematics::motion_bound::{JointRate, SpeedBound};
@@ -12,24 +12,24 @@ use crate::GridAxis;
 /// A moving joint.
 #[derive(Debug, Clone)]
 pub(super) struct Step {
-    /// The step that carries it; none: it is carried by the base.
+    /// The step that carries this one; `None` if the base carries it.
     pub parent: Option<usize>,
-    /// Its frame where the map's axes are at 0, in that of the parent, or in the world.
+    /// Frame of the step with the map's axes at 0, in the frame of the parent or in the world.
     pub at_zero: Pose,
-    /// Number of the map's axis.
+    /// Index of the map's axis.
     pub axis: usize,
-    /// Of the axis's value.
+    /// Multiplier of the axis's value.
     pub multiplier: f64,
     pub turns: bool,
-    /// Range of its value, rad or m.
+    /// Range of the step's value, rad or m.
     range: [f64; 2],
-    /// The link that it moves, and the step's frame in it.
+    /// The link that the step moves, and the step's frame in it.
     child: LinkId,
     frame_in_child: Pose,
 }
 
 impl Step {
-    /// What a value of the joint does.
+    /// The motion of the joint at a value.
     pub fn moved(&self, value: f64) -> Pose {
         if self.turns {
             Pose::new(Rotation::from_axis_angle(Vec3::Z, value), Vec3::ZERO)
@@ -46,7 +46,7 @@ pub(super) struct StepChain {
 }
 
 impl StepChain {
-    /// Adds the steps of a path of joints from the root; returns their numbers.
+    /// Adds the steps of a path of joints from the root; returns their indices.
     pub fn add_path(&mut self, chain: &DrivenChain, axes: &[GridAxis], joints: &[DrivingJoint]) -> Vec<usize> {
         let mut path: Vec<usize> = Vec::new();
         for joint in joints {
@@ -80,7 +80,7 @@ impl StepChain {
         self.steps.len() - 1
     }
 
-    /// Frames of all steps seen from that of the first, which is carried by the base alone.
+    /// Frames of all steps relative to the first step, which only the base carries.
     pub fn seen_from_first(&self, values: &[f64; 3]) -> Vec<Pose> {
         let mut frames: Vec<Pose> = Vec::with_capacity(self.steps.len());
         for step in &self.steps {
@@ -93,7 +93,7 @@ impl StepChain {
         frames
     }
 
-    /// Pose of the link's frame of a step's child in the step's frame.
+    /// Pose of the frame of a step's child link in the step's frame.
     pub fn child_in_frame(&self, step: usize) -> Pose {
         self.steps[step].frame_in_child.inverse()
     }
@@ -113,7 +113,7 @@ impl StepChain {
         levers
     }
 
-    /// Bound of the motion of a point with these lever arms within a box of joint values of these half widths.
+    /// Bound of the motion of a point with these lever arms within a box of joint values with these half widths.
     pub fn motion(&self, path: &[usize], levers: &[f64], half: &[f64; 3]) -> PointMotion {
         let rates = path.iter().zip(levers).map(|(&at, &lever_m)| {
             let step = &self.steps[at];
@@ -125,11 +125,11 @@ impl StepChain {
     }
 }
 
-/// Bound of the motion of a point from the centre of a box of joint values to anywhere in it.
+/// Bound of the motion of a point from the centre of a box of joint values to any point of the box.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PointMotion {
-    /// Length of its path, m.
+    /// Length of the point's path, m.
     pub path_m: f64,
-    /// Distance from where its velocity at the centre leads, m.
+    /// Distance of the end from the point to which the velocity at the centre leads, m.
     pub curvature_m: f64,
 }

@@ -1,15 +1,15 @@
-//! Balls that blocked cells: they are likely to block neighbouring cells, too.
+//! Balls that blocked cells: they are likely to block neighbouring cells as well.
 
 use elbowroom_validity::lanes::{LANES, Row};
 
 use super::ball_tree::LEAF;
 use super::cover_class::{CoverClass, CoverGroup, GroupMotion};
 
-/// The balls of a path that blocked cells last, with the element of the obstacle that they touched.
+/// The balls of a path that blocked cells most recently, with the element of the obstacle that they touched.
 #[derive(Debug)]
 pub(super) struct Witnesses {
     pub group: CoverGroup,
-    /// Within a cell.
+    /// Motion within a cell.
     pub motion: GroupMotion,
     pub element: u32,
     /// Group and lane of each ball.
@@ -18,7 +18,7 @@ pub(super) struct Witnesses {
 }
 
 impl Witnesses {
-    /// None yet, for each path of a class.
+    /// Creates empty memories, one per path of a class.
     pub fn none(class: &CoverClass) -> Vec<Self> {
         let none = |path: usize| Self {
             group: CoverGroup::empty(path as u32),
@@ -30,7 +30,7 @@ impl Witnesses {
         (0..class.paths.len()).map(none).collect()
     }
 
-    /// Remembers a ball in place of the oldest one.
+    /// Stores a ball in place of the oldest one.
     pub fn add(&mut self, class: &CoverClass, group: u32, lane: u32, element: u32) {
         if self.element != element {
             self.element = element;

@@ -1,4 +1,4 @@
-//! Banded matrices: symmetric, with two diagonals beside the main one, as quadratic splines have.
+//! Banded matrices: symmetric, with two diagonals beside the main one, as for quadratic splines.
 
 /// The main diagonal and the two below it: `rows[i][k]` is the element (i, i − k).
 #[derive(Debug, Default)]
@@ -12,8 +12,8 @@ impl BandedMatrix {
         self.rows.resize(order, [0.0; 3]);
     }
 
-    /// Solves for a right-hand side in place by `LDLᵀ`, which overwrites the matrix. False if it is not positive
-    /// definite.
+    /// Solves for a right-hand side in place by `LDLᵀ`, which overwrites the matrix. False if the matrix is not
+    /// positive definite.
     pub fn solve(&mut self, x: &mut [f64]) -> bool {
         let rows = &mut self.rows;
         for i in 0..rows.len() {

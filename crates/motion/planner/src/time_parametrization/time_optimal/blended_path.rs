@@ -4,20 +4,20 @@ use super::super::limits::TimeParametrizationError;
 use super::corner_blend::CornerBlend;
 use super::path_element::PathElement;
 
-/// Waypoints nearer than this count as one, rad (m).
+/// Distance below which waypoints count as one, rad (m).
 const SAME_POINT: f64 = 1e-9;
-/// Directions that differ by less are the same: the waypoint between them is left out.
+/// Difference below which directions count as equal: the waypoint between them is removed.
 const SAME_DIRECTION: f64 = 1e-9;
-/// Directions whose sum is less are opposite: the motion rests there.
+/// Sum below which directions count as opposite: the motion rests there.
 const OPPOSITE_DIRECTION: f64 = 1e-6;
-/// A blend that is refused is made half as large this often before the motion rests at the corner.
+/// Number of times that a refused blend is halved before the motion rests at the corner.
 const MAX_HALVINGS: i32 = 24;
-/// Straight stretches shorter than this share of their segment are left out.
+/// Fraction of a segment below which its straight stretch is omitted.
 const NO_STRETCH: f64 = 1e-9;
 
 /// A path of straight segments and corner blends, from rest to rest.
 ///
-/// The tangent and its derivative by the path position are continuous wherever the motion does not rest.
+/// The tangent and its derivative by the path position are continuous except where the motion rests.
 #[derive(Debug, Clone)]
 pub struct BlendedPath {
     pub(super) sections: Vec<PathSection>,
@@ -34,7 +34,7 @@ pub(super) struct PathSection {
 
 /// A straight segment.
 struct Leg<'q> {
-    /// Index of its first waypoint.
+    /// Index of the leg's first waypoint.
     waypoint: usize,
     from: &'q [f64],
     /// Unit vector.
@@ -51,15 +51,18 @@ impl<'q> Leg<'q> {
 }
 
 impl BlendedPath {
-    /// Replaces the corners of a polyline by blends. Each blend begins and ends half a segment from its corner, or at
-    /// half, a quarter, … of that, until `is_free` accepts it. The motion rests where the path turns back by 180
-    /// degrees, and where no blend is accepted, down to 10⁻⁷ of the first.
+    /// Replaces the corners of a polyline by blends.
     ///
-    /// Positions are in rad, in m for prismatic joints. Waypoints within 10⁻⁹ of the one before are left out, as are
-    /// those without a change of direction.
+    /// Each blend begins and ends half a segment from its corner. Until `is_free` accepts the blend, this distance is
+    /// halved, down to 10⁻⁷ of the first. The motion rests where the path turns back by 180 degrees, and at corners
+    /// without an accepted blend.
+    ///
+    /// Positions are in rad (m for prismatic joints). Waypoints within 10⁻⁹ of the previous one, or without a change of
+    /// direction, are removed.
     ///
     /// # Errors
-    /// [`TimeParametrizationError::Path`]: no waypoints, or one that is not finite or of another length.
+    /// [`TimeParametrizationError::Path`]: there are no waypoints, or one is not finite or has another number of
+    /// values.
     pub fn new<Q: AsRef<[f64]>>(
         waypoints: &[Q],
         mut is_free: impl FnMut(&CornerBlend) -> bool,
@@ -91,8 +94,7 @@ fn norm(values: impl Iterator<Item = f64>) -> f64 {
     values.map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// Validates waypoints and connects those that differ; a leg that continues in the direction of the one before
-/// prolongs it.
+/// Checks waypoints and connects different ones; a leg that continues in the direction of the previous leg prolongs it.
 fn legs<Q: AsRef<[f64]>>(waypoints: &[Q]) -> Result<Vec<Leg<'_>>, TimeParametrizationError> {
     let first = waypoints.first().ok_or(TimeParametrizationError::Path)?.as_ref();
     let is_valid = |q: &Q| q.as_ref().len() == first.len() && q.as_ref().iter().all(|x| x.is_finite());
@@ -126,7 +128,7 @@ fn differ(a: &[f64], b: &[f64], sign: f64) -> f64 {
     norm(a.iter().zip(b).map(|(a, b)| a + sign * b))
 }
 
-/// The largest blend distance of the corner between two legs that is accepted; 0 to rest there.
+/// The largest accepted blend distance at the corner between two legs; 0 to rest there.
 fn blend_distance(legs: &[Leg], is_free: &mut impl FnMut(&CornerBlend) -> bool) -> f64 {
     let [a, b] = legs else { return 0.0 };
     if differ(&a.direction, &b.direction, 1.0) < OPPOSITE_DIRECTION {

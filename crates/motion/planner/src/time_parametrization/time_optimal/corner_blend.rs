@@ -1,8 +1,9 @@
 //! Corner blends: curves with continuous curvature that replace the corner between two straight segments.
 //!
-//! The tangent turns smoothly from one direction to the other, `q′ = u + (v − u)·S(σ/2d)` with `S = 3τ² − 2τ³`. That
-//! is a Bézier curve of degree 4 whose control points are on the two legs of the corner, at the distances d, d/2, 0,
-//! d/2, d. So it is in the triangle of its ends and the corner, and its curvature is 0 at both ends.
+//! The tangent turns smoothly from one direction to the other, `q′ = u + (v − u)·S(σ/2d)` with `S = 3τ² − 2τ³`. The
+//! result is a Bézier curve of degree 4 whose control points are on the two legs of the corner, at the distances d,
+//! d/2, 0, d/2, d. Therefore the curve is in the triangle of its ends and the corner, and its curvature is 0 at both
+//! ends.
 
 /// Position along a blend and the first three derivatives of one joint, see [`CornerBlend`].
 pub(super) fn derivatives(direction: f64, turn: f64, offset: f64, length: f64) -> [f64; 4] {
@@ -15,7 +16,7 @@ pub(super) fn derivatives(direction: f64, turn: f64, offset: f64, length: f64) -
     ]
 }
 
-/// A corner blend that was proposed: whoever knows the obstacles decides whether it may be used.
+/// A proposed corner blend: the caller, who knows the obstacles, decides whether it may be used.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CornerBlend<'p> {
     pub(super) waypoint: usize,
@@ -51,7 +52,7 @@ impl CornerBlend<'_> {
         ]
     }
 
-    /// Position at a share of the curve from 0 to 1, rad (m).
+    /// Position at a fraction of the curve from 0 to 1, rad (m).
     pub fn at(&self, share: f64) -> Vec<f64> {
         let (length, share) = (2.0 * self.distance, share.clamp(0.0, 1.0));
         let legs = self.before.iter().zip(self.after);
@@ -63,12 +64,12 @@ impl CornerBlend<'_> {
         each.collect()
     }
 
-    /// A polyline of this many pieces (at least one) through points of the curve, rad (m), and how far each joint of
-    /// the curve is at most from the chord at the same share of a piece, rad (m).
+    /// A polyline of this many pieces (at least one) through points of the curve, rad (m), and per joint the largest
+    /// distance of the curve from the chord at the same fraction of a piece, rad (m).
     pub fn polyline(&self, pieces: usize) -> (Vec<Vec<f64>>, Vec<f64>) {
         let pieces = pieces.max(1);
         let points = (0..=pieces).map(|n| self.at(n as f64 / pieces as f64)).collect();
-        // An eighth of the second derivative, which is 1.5·|v − u|/(2d) at most, times the squared length of a piece.
+        // An eighth of the second derivative, which is at most 1.5·|v − u|/(2d), times the squared length of a piece.
         let factor = 0.375 * self.distance / (pieces as f64).powi(2);
         (points, self.before.iter().zip(self.after).map(|(u, v)| factor * (v - u).abs()).collect())
     }

@@ -1,20 +1,20 @@
-//! Interior-point method: the speed spline of least duration under limits of velocity, acceleration and jerk.
+//! Interior-point method: finds the speed spline of least duration under limits of velocity, acceleration and jerk.
 //!
-//! A primal-dual method whose iterates all satisfy the constraints strictly. The only constraint that is not convex,
-//! jerk, reads `|ℓ(x, b, c)| ≤ 1/√x`; the right-hand side is convex, so that its tangent at an iterate is a stronger
-//! constraint. With it, each step is one of a convex problem (sequential convex programming), and stays admissible. A
-//! step costs O(N): the matrix is banded.
+//! The method is primal-dual; all its iterates satisfy the constraints strictly. The only constraint that is not convex
+//! is jerk: `|ℓ(x, b, c)| ≤ 1/√x`. Its right-hand side is convex, so the tangent at an iterate is a stronger
+//! constraint. With this tangent, each step solves a convex problem (sequential convex programming) and stays
+//! admissible. A step costs O(N), because the matrix is banded.
 
 use super::banded_matrix::BandedMatrix;
 use super::jerk_constraints::{AccelerationRow, Collocation, JerkConstraints, JerkRow};
 use super::speed_spline::{LocalMap, apply, around};
 
-/// The duality gap, as a share of the duration, at which it ends.
+/// Duality gap, as a fraction of the duration, at which the method ends.
 const RELATIVE_GAP: f64 = 2e-2;
-/// Change of the duration by a step, as a share, at which it ends.
+/// Change of the duration in a step, as a fraction, at which the method ends.
 const RELATIVE_STEP: f64 = 6e-3;
 const MAX_ITERATIONS: usize = 40;
-/// Share of the distance to the nearest constraint that a step covers.
+/// Fraction of the distance to the nearest constraint that a step covers.
 const TO_BOUNDARY: f64 = 0.99;
 
 /// Slacks of one or two bounds (their reciprocals), multipliers, and the multipliers' steps.
@@ -25,7 +25,7 @@ struct Multiplier<const N: usize> {
     step: [f64; N],
 }
 
-/// The multipliers that a barrier has at first, and the sum of multipliers times slacks.
+/// Initial multipliers of a barrier, and the sum of multipliers times slacks.
 #[derive(Debug, Clone, Copy, Default)]
 struct Gap {
     first: Option<f64>,
@@ -35,7 +35,7 @@ struct Gap {
 impl<const N: usize> Multiplier<N> {
     const NEW: Self = Self { dual: [0.0; N], inverse: [0.0; N], step: [0.0; N] };
 
-    /// The weights `dual / slack` in the matrix.
+    /// Sets the slacks; returns the weights `dual / slack` in the matrix.
     #[inline]
     fn set_slacks(&mut self, slacks: [f64; N], gap: &mut Gap) -> [f64; N] {
         // One division for two slacks.
@@ -52,7 +52,8 @@ impl<const N: usize> Multiplier<N> {
         weights
     }
 
-    /// The multipliers' steps for a step of the slacks; the greatest shares of slack and multiplier that are used up.
+    /// Sets the multipliers' steps for a step of the slacks; returns the largest fractions of slack and multiplier that
+    /// are used up.
     #[inline]
     fn set_step(&mut self, slack_steps: [f64; N], barrier: f64, used: &mut [f64; 2]) {
         for i in 0..N {
@@ -74,12 +75,12 @@ impl<const N: usize> Multiplier<N> {
     }
 }
 
-/// Gradients and the matrix of one point, by x, b and c.
+/// Gradients and matrix of one point with respect to x, b and c.
 #[derive(Debug, Default)]
 struct LocalSystem {
-    /// Of the duration.
+    /// Gradient of the duration.
     objective: [f64; 3],
-    /// Of the barrier.
+    /// Gradient of the barrier.
     barrier: [f64; 3],
     matrix: [[f64; 3]; 3],
 }
@@ -103,7 +104,7 @@ pub(super) struct InteriorPoint<'c> {
     gap: Gap,
 }
 
-/// The fastest coefficients, from ones that satisfy all constraints strictly.
+/// Finds the fastest coefficients, starting from coefficients that satisfy all constraints strictly.
 pub(super) fn fastest(constraints: &JerkConstraints, coefficients: Vec<f64>) -> Vec<f64> {
     let mut state = InteriorPoint::new(constraints, coefficients);
     let mut steps = Vec::new();
@@ -151,7 +152,7 @@ impl<'c> InteriorPoint<'c> {
         self.positive.len() + self.speed.len() + 2 * (self.acceleration.len() + self.jerk.len())
     }
 
-    /// Gradients and matrix at the iterate. At first, the multipliers are those of a barrier.
+    /// Computes gradients and matrix at the iterate. In the first call, sets the multipliers to those of a barrier.
     fn assemble(&mut self, is_first: bool) {
         self.matrix.clear(self.coefficients.len());
         self.gradients.clear();
@@ -177,7 +178,7 @@ impl<'c> InteriorPoint<'c> {
         self.gap = gap;
     }
 
-    /// Gradients and matrix of a point by its own x, b and c.
+    /// Gradients and matrix of a point with respect to its own x, b and c.
     #[inline]
     fn assemble_point(&mut self, n: usize, point: &Collocation, y: [f64; 3], gap: &mut Gap) -> LocalSystem {
         let mut local = LocalSystem::default();
@@ -205,7 +206,8 @@ impl<'c> InteriorPoint<'c> {
         local
     }
 
-    /// Steps of all multipliers, and the greatest shares of slacks and multipliers that a full step uses up.
+    /// Computes the steps of all multipliers; returns the largest fractions of slacks and multipliers that a full step
+    /// uses up.
     fn multiplier_steps(&mut self, steps: &[f64], barrier: f64) -> [f64; 2] {
         let mut used = [0.0; 2];
         for (multiplier, step) in self.positive.iter_mut().zip(steps) {
@@ -243,7 +245,8 @@ impl<'c> InteriorPoint<'c> {
 }
 
 impl LocalSystem {
-    /// Adds a system by x, b and c at an offset from where this one's are: `x + 2·offset·b + offset²·c` and so on.
+    /// Adds the system of a point at an offset from this system's point: its x is `x + 2·offset·b + offset²·c`, and so
+    /// on.
     #[inline]
     fn add_shifted(&mut self, other: &Self, offset: f64) {
         let (twice, square) = (2.0 * offset, offset * offset);
@@ -287,7 +290,7 @@ impl LocalSystem {
         }
     }
 
-    /// Adds what is by x, b and c as by the coefficients around an interval.
+    /// Converts the system from x, b and c to the coefficients around an interval, and adds it.
     fn add_to(&self, map: &LocalMap, interval: usize, matrix: &mut BandedMatrix, gradients: &mut [[f64; 2]]) {
         let m = &self.matrix;
         let full = [[m[0][0], m[1][0], m[2][0]], [m[1][0], m[1][1], m[2][1]], [m[2][0], m[2][1], m[2][2]]];

@@ -1,8 +1,8 @@
-//! Jerk constraints: limits of velocity, acceleration and jerk at collocation points of a path, in terms of the
-//! squared speed.
+//! Jerk constraints: limits of velocity, acceleration and jerk at collocation points of a path, in terms of the squared
+//! speed.
 //!
-//! With `x = ṡ²`, `b = s̈` and `c = s⃛/ṡ`, the acceleration of a joint is `q″x + q′b`, and its jerk
-//! `√x·(q‴x + 3q″b + q′c)`: divided by √x, all but the bound of the jerk is linear in (x, b, c).
+//! With `x = ṡ²`, `b = s̈` and `c = s⃛/ṡ`, the acceleration of a joint is `q″x + q′b`, and its jerk is `√x·(q‴x + 3q″b
+//! + q′c)`. After division by √x, everything except the bound of the jerk is linear in (x, b, c).
 
 use std::ops::Range;
 
@@ -15,40 +15,40 @@ use super::speed_spline::{LocalMap, SpeedSpline, apply, around};
 
 /// At rest the jerk is constant: over a length s, `x = REST_FACTOR·(jerk²·s⁴)^(1/3)`.
 const REST_FACTOR: f64 = 2.725_680_889_248_209;
-/// Squared speeds may exceed those of TOPP-RA by this factor, as its grid is another approximation.
+/// Factor by which squared speeds may exceed the result of TOPP-RA, whose grid is another approximation.
 const MOST_FACTOR: f64 = 1.1;
-/// Share of a limit that the first profile uses.
+/// Fraction of a limit that the first profile uses.
 const FIRST_SHARE: f64 = 0.95;
 
-/// A joint's acceleration by x and b, divided by its limit.
+/// Coefficients of x and b in a joint's acceleration, divided by its limit.
 pub(super) type AccelerationRow = [f64; 2];
-/// A joint's jerk by x, b and c, divided by √x and its limit.
+/// Coefficients of x, b and c in a joint's jerk, divided by √x and its limit.
 pub(super) type JerkRow = [f64; 3];
 
 /// A point at which constraints are evaluated.
 #[derive(Debug, Clone)]
 pub(super) struct Collocation {
-    /// From the beginning of the interval.
+    /// Distance from the beginning of the interval.
     pub offset: f64,
-    /// Duration is the sum of `weight/√x`.
+    /// Weight in the duration, which is the sum of `weight/√x`.
     pub weight: f64,
-    /// Reciprocal of the greatest x.
+    /// Reciprocal of the largest x.
     pub x_factor: f64,
     pub accelerations: Range<usize>,
     pub jerks: Range<usize>,
 }
 
-/// The points of an interval.
+/// The collocation points of an interval.
 #[derive(Debug, Clone)]
 pub(super) struct IntervalPoints {
     pub index: usize,
-    /// To x, b and c at its beginning.
+    /// Map to x, b and c at the beginning of the interval.
     pub map: LocalMap,
     pub points: Range<usize>,
 }
 
 impl Collocation {
-    /// x, b and c from those at the beginning of the interval.
+    /// Computes x, b and c from their values at the beginning of the interval.
     #[inline]
     pub fn at_offset(&self, [x, b, c]: [f64; 3]) -> [f64; 3] {
         [x + self.offset * (2.0 * b + self.offset * c), b + self.offset * c, c]
@@ -65,8 +65,8 @@ pub(super) struct JerkConstraints {
 }
 
 impl JerkConstraints {
-    /// Jerk is limited at both ends of each interval, as it jumps there; acceleration at its beginning, and in blends
-    /// in its middle.
+    /// Limits jerk at both ends of each interval, as it jumps there; acceleration at the beginning of each interval,
+    /// and in blends also in the middle.
     pub fn new(
         section: &PathSection,
         grid: &PathGrid,
@@ -134,7 +134,7 @@ impl JerkConstraints {
         }
     }
 
-    /// Makes the constraints of each interval of the grid stronger by the ratios that were found there.
+    /// Makes the constraints of each interval of the grid stronger by the given ratios.
     pub fn tighten(&mut self, ratios: &[Ratios]) {
         for interval in &self.intervals {
             let [v, a, j] = ratios[interval.index].map(|ratio| ratio.max(1.0));
@@ -146,20 +146,20 @@ impl JerkConstraints {
         }
     }
 
-    /// Numbers of rows of acceleration and jerk.
+    /// Number of rows of acceleration and of jerk.
     fn rows(&self) -> [usize; 2] {
         [self.accelerations.len(), self.jerks.len()]
     }
 
-    /// A point with all rows from `first` on.
+    /// Adds a point with all rows from `first` on.
     fn add_point(&mut self, offset: f64, weight: f64, x_max: f64, first: [usize; 2]) {
         let [accelerations, jerks] = [first[0]..self.rows()[0], first[1]..self.rows()[1]];
         self.points.push(Collocation { offset, weight, x_factor: x_max.recip(), accelerations, jerks });
     }
 
-    /// Coefficients that satisfy all constraints strictly: a profile that keeps the jerk's limit at every constant
-    /// speed, made slower as a whole. `most` is the greatest squared speed at each node, under limits of velocity and
-    /// acceleration.
+    /// Computes coefficients that satisfy all constraints strictly: a profile that keeps the limit of jerk at every
+    /// constant speed, slowed down as a whole. `most` is the largest squared speed at each node under limits of
+    /// velocity and acceleration.
     pub fn feasible_coefficients(
         &self,
         section: &PathSection,
@@ -171,7 +171,7 @@ impl JerkConstraints {
         self.made_feasible(x.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect())
     }
 
-    /// Coefficients made smaller by one factor, until all constraints are satisfied strictly.
+    /// Reduces coefficients by one factor until all constraints are satisfied strictly.
     pub fn made_feasible(&self, mut coefficients: Vec<f64>) -> Vec<f64> {
         let factor = self.largest_factor(&coefficients);
         for x in &mut coefficients {
@@ -193,9 +193,9 @@ impl JerkConstraints {
         self.states(coefficients).map(|(point, [x, ..])| point.weight / x.sqrt()).sum()
     }
 
-    /// By which factor, at most 1, the squared speed may be multiplied.
+    /// Largest factor, at most 1, by which the squared speed may be multiplied.
     fn largest_factor(&self, coefficients: &[f64]) -> f64 {
-        // Shares of the limits of speed and acceleration, and the squared one of jerk.
+        // Fractions of the limits of speed and acceleration, and the squared fraction of the limit of jerk.
         let (mut most, mut jerk): (f64, f64) = (FIRST_SHARE, FIRST_SHARE * FIRST_SHARE);
         for (point, [x, b, c]) in self.states(coefficients) {
             most = most.max(x * point.x_factor);
@@ -210,8 +210,8 @@ impl JerkConstraints {
     }
 }
 
-/// Leaves out rows, from one on, that another row implies while the squared speed is at most `most`; returns the
-/// greatest `|b|`.
+/// Removes rows of acceleration, from index `from` on, that another row implies while the squared speed is at most
+/// `most`; returns the largest `|b|`.
 fn leave_out_slack_accelerations(rows: &mut Vec<AccelerationRow>, from: usize, most: f64) -> f64 {
     let Some(&[c, p]) = rows[from..].iter().max_by(|r, s| r[1].abs().total_cmp(&s[1].abs())) else {
         return f64::INFINITY;
@@ -223,7 +223,7 @@ fn leave_out_slack_accelerations(rows: &mut Vec<AccelerationRow>, from: usize, m
     (1.0 + c.abs() * most) / p.abs()
 }
 
-/// The same for jerk.
+/// Removes rows of jerk, from index `from` on, that another row implies while the squared speed is at most `most`.
 fn leave_out_slack_jerks(rows: &mut Vec<JerkRow>, from: usize, most: f64, b_max: f64) {
     let Some(&[d, c, p]) = rows[from..].iter().max_by(|r, s| r[2].abs().total_cmp(&s[2].abs())) else { return };
     retain_from(rows, from, |row| {
@@ -233,7 +233,7 @@ fn leave_out_slack_jerks(rows: &mut Vec<JerkRow>, from: usize, most: f64, b_max:
     });
 }
 
-/// `Vec::retain` for the rows from one on.
+/// `Vec::retain` for the rows from index `from` on.
 fn retain_from<T: Copy>(rows: &mut Vec<T>, from: usize, keep: impl Fn(&T) -> bool) {
     let mut kept = from;
     for index in from..rows.len() {
@@ -245,7 +245,7 @@ fn retain_from<T: Copy>(rows: &mut Vec<T>, from: usize, keep: impl Fn(&T) -> boo
     rows.truncate(kept);
 }
 
-/// Squared speeds at the nodes: half of the most, and no faster than constant jerk reaches from either side.
+/// Squared speeds at the nodes: half of `most`, and at most the speed that constant jerk reaches from either side.
 fn slow_profile(section: &PathSection, grid: &PathGrid, limits: &KinematicLimits, most: &[f64]) -> Vec<f64> {
     let jerks: Vec<[f64; 2]> = section.elements.iter().map(|e| path_jerk(e, limits)).collect();
     let of = |interval: usize| jerks[grid.elements[interval] as usize];
@@ -268,8 +268,8 @@ fn slow_profile(section: &PathSection, grid: &PathGrid, limits: &KinematicLimits
     x
 }
 
-/// The squared speed after s from rest is this times s^(4/3); the greatest squared speed that is constant over an
-/// element.
+/// Two properties of an element: the factor of s^(4/3) in the squared speed after a length s from rest, and the largest
+/// squared speed that is constant over the element.
 fn path_jerk(element: &PathElement, limits: &KinematicLimits) -> [f64; 2] {
     let along = |direction: f64, limit: f64| limit / direction.abs();
     let [mut jerk, mut x] = [f64::INFINITY; 2];

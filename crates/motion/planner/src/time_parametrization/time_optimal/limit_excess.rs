@@ -1,17 +1,17 @@
-//! Limit excess: by how much a motion must be slowed down to keep all limits everywhere, not only where they were
-//! imposed.
+//! Limit excess: the factor by which a motion must be slowed down to keep all limits everywhere, not only at the points
+//! where they were imposed.
 
 use super::super::limits::KinematicLimits;
 use super::blended_path::PathSection;
 use super::path_element::PathElement;
 use super::path_speed::{PathState, SpeedPiece};
 
-/// Intervals of a piece between whose ends values are bounded by their second differences.
+/// Number of intervals of a piece; between their ends, values are bounded by their second differences.
 const SAMPLES: usize = 4;
-/// Rounding.
+/// Margin for rounding.
 const MARGIN: f64 = 1e-9;
 
-/// Greatest ratios of velocity, acceleration and jerk to their limits.
+/// Largest ratios of velocity, acceleration and jerk to their limits.
 pub(super) type Ratios = [f64; 3];
 
 /// The ratios of each piece. `orders` is 3 with the limit of jerk, 2 without.
@@ -39,7 +39,7 @@ pub(super) fn time_stretch(ratios: &[Ratios]) -> f64 {
     let mut stretch = 1.0;
     for [v, a, j] in ratios {
         let needed = v.max(a.sqrt()).max(j.cbrt());
-        // NaN is not lost.
+        // Keeps NaN.
         if !(needed <= stretch) {
             stretch = needed;
         }
@@ -68,7 +68,7 @@ fn joint_derivatives(element: &PathElement, [s, v, a, j]: PathState, joint: usiz
     [p * v * scales[0], (p * a + c * v * v) * scales[1], (p * j + 3.0 * c * v * a + d * v * v * v) * scales[2]]
 }
 
-/// A smooth function exceeds its samples by no more than about an eighth of its second difference.
+/// Includes the samples of a smooth function, which exceeds them by at most about an eighth of its second difference.
 fn include(ratios: &mut Ratios, samples: [[f64; 3]; SAMPLES + 1]) {
     for order in 0..3 {
         let mut bend: f64 = 0.0;

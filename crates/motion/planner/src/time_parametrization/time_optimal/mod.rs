@@ -1,8 +1,8 @@
-//! Time-optimal parametrization of a whole path: corners are blended, and the speed along the path is the greatest
+//! Time-optimal parametrization of a whole path: corners are blended, and the speed along the path is the largest
 //! within limits of velocity, acceleration and jerk.
 //!
-//! TOPP-RA (H. Pham, Q.-C. Pham, *A New Approach to Time-Optimal Path Parameterization Based on Reachability
-//! Analysis*, IEEE T-RO 34(3), 2018) solves it under limits of velocity and acceleration. Under the limit of jerk, an
+//! TOPP-RA (H. Pham, Q.-C. Pham, *A New Approach to Time-Optimal Path Parameterization Based on Reachability Analysis*,
+//! IEEE T-RO 34(3), 2018) solves the problem under limits of velocity and acceleration. For the limit of jerk, an
 //! interior-point method improves a slow profile while all constraints hold.
 
 mod banded_matrix;

@@ -2,14 +2,14 @@
 
 use super::corner_blend::derivatives;
 
-/// A straight segment or a corner blend. The parameter of a straight segment is its length.
+/// A straight segment or a corner blend. The parameter of a straight segment is the length along it.
 #[derive(Debug, Clone)]
 pub(super) struct PathElement {
-    /// Path position of its beginning.
+    /// Path position at the beginning.
     pub begin: f64,
     pub length: f64,
     pub from: Vec<f64>,
-    /// Tangent at its beginning, a unit vector.
+    /// Tangent at the beginning, a unit vector.
     pub direction: Vec<f64>,
     /// Change of the tangent over a corner blend; empty on a straight segment.
     pub turn: Vec<f64>,
@@ -20,7 +20,7 @@ impl PathElement {
         self.turn.is_empty()
     }
 
-    /// Position and its first three derivatives by `s`, of one joint.
+    /// Position of one joint and its first three derivatives by `s`.
     pub fn at(&self, s: f64, joint: usize) -> [f64; 4] {
         let offset = (s - self.begin).clamp(0.0, self.length);
         let [q, p, c, d] = match self.turn.get(joint) {

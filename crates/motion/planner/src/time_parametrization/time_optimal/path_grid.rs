@@ -6,14 +6,14 @@ use super::path_element::PathElement;
 
 /// Ratio of neighbouring spacings on a straight segment.
 const GROWTH: f64 = 1.5;
-/// Least share of the section, and greatest of its segment, that the first interval after a rest has.
+/// Smallest fraction of the section, and largest fraction of the segment, that the first interval after a rest has.
 const REST_SHARE: [f64; 2] = [1e-7, 0.05];
 
-/// Numbers of intervals.
+/// Numbers of intervals per element.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct GridDensity {
     pub per_blend: usize,
-    /// On a straight segment, were they equal: where acceleration rises slowly, and at most.
+    /// Least and largest number of intervals on a straight segment if all had the widest spacing.
     pub per_straight: [f64; 2],
 }
 
@@ -26,7 +26,7 @@ pub(super) struct PathGrid {
     pub elements: Vec<u32>,
 }
 
-/// Spacings that a straight segment begins or ends with.
+/// Spacings at the beginning or end of a straight segment.
 #[derive(Debug, Clone, Copy)]
 struct EndSpacing {
     /// Length of the interval beside a rest; 0 beside a blend.
@@ -76,7 +76,8 @@ impl PathGrid {
     }
 }
 
-/// Beside a blend as in the blend; beside a rest a small share of the stretch on which acceleration rises.
+/// Spacings at one end of a straight segment: beside a blend as in the blend, beside a rest a small fraction of the
+/// stretch on which acceleration rises.
 fn end_spacing(
     neighbour: Option<&PathElement>,
     straight: &PathElement,
@@ -94,7 +95,7 @@ fn end_spacing(
     EndSpacing { rest, next: 0.5 * rest }
 }
 
-/// Half of the distance that is covered while acceleration rises, within bounds.
+/// Half of the distance covered while acceleration rises, within bounds.
 fn widest_spacing(
     straight: &PathElement,
     section: &PathSection,
@@ -107,7 +108,7 @@ fn widest_spacing(
     (0.5 * speed * limits.acceleration / limits.jerk).max(straight.length / most).min(straight.length / least)
 }
 
-/// Spacings that grow from both ends to the widest.
+/// Appends spacings that grow from both ends up to the widest.
 fn straight_spacings(length: f64, left: EndSpacing, right: EndSpacing, widest: f64, spacings: &mut Vec<f64>) {
     let mut from_right = Vec::new();
     let mut rest = length - left.rest - right.rest;

@@ -1,16 +1,15 @@
-//! Speed along a path: pieces on which `s̈` is linear in the path position `s`, so that `s(t)` has a closed form.
+//! Speed along a path: on each piece, `s̈` is linear in the path position `s`, so that `s(t)` has a closed form.
 //!
-//! With `s̈ = b + c·(s − s₀)` the squared speed `x = ṡ²` is quadratic in s, `s⃛ = c·ṡ`, and `s(t)` is a combination
-//! of sinh and cosh (c > 0) or sin and cos (c < 0) with ω = √|c|. Near rest the jerk is constant instead, `s =
-//! j·t³/6`.
+//! With `s̈ = b + c·(s − s₀)` the squared speed `x = ṡ²` is quadratic in s, `s⃛ = c·ṡ`, and `s(t)` is a combination of
+//! sinh and cosh (c > 0) or sin and cos (c < 0) with ω = √|c|. Near rest the jerk is constant instead: `s = j·t³/6`.
 
-/// Below this argument the series of sinh, atanh … are exact to rounding.
+/// Argument below which the series of sinh, atanh … are exact up to rounding.
 const SERIES: f64 = 1e-3;
 
 /// A piece of the motion along a path.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SpeedPiece {
-    /// Time and path position at its beginning.
+    /// Time and path position at the beginning.
     pub time: f64,
     pub position: f64,
     pub seconds: f64,
@@ -19,11 +18,11 @@ pub(super) struct SpeedPiece {
 
 #[derive(Debug, Clone, Copy)]
 pub(super) enum SpeedLaw {
-    /// `s̈ = b + c·(s − s₀)`, from a speed.
+    /// `s̈ = b + c·(s − s₀)`, beginning with a speed.
     Linear { speed: f64, b: f64, c: f64 },
-    /// From rest with a constant jerk.
+    /// Begins at rest, with a constant jerk.
     FromRest { jerk: f64 },
-    /// To rest with a constant jerk, over a length.
+    /// Ends at rest after a length, with a constant jerk.
     ToRest { jerk: f64, length: f64 },
 }
 
@@ -31,7 +30,7 @@ pub(super) enum SpeedLaw {
 pub(super) type PathState = [f64; 4];
 
 impl SpeedLaw {
-    /// Over a length from squared speed `x` with `b` and `c`, to squared speed `end`; and the duration.
+    /// A piece over a length from squared speed `x`, with `b` and `c`, to squared speed `end`; and its duration.
     pub fn linear(length: f64, x: f64, end: f64, b: f64, c: f64) -> (Self, f64) {
         let speed = x.max(0.0).sqrt();
         let mean = 0.5 * (speed + end.max(0.0).sqrt());
@@ -46,13 +45,13 @@ impl SpeedLaw {
         (Self::Linear { speed, b, c }, length / mean * stretch)
     }
 
-    /// From rest over a length to a speed, and the duration.
+    /// A piece from rest over a length to a speed, and its duration.
     pub fn from_rest(length: f64, speed: f64) -> (Self, f64) {
         let seconds = 3.0 * length / speed;
         (Self::FromRest { jerk: 6.0 * length / seconds.powi(3) }, seconds)
     }
 
-    /// To rest over a length from a speed, and the duration.
+    /// A piece from a speed over a length to rest, and its duration.
     pub fn to_rest(length: f64, speed: f64) -> (Self, f64) {
         let seconds = 3.0 * length / speed;
         (Self::ToRest { jerk: 6.0 * length / seconds.powi(3), length }, seconds)
@@ -75,7 +74,7 @@ impl SpeedPiece {
         })
     }
 
-    /// State at a time since its beginning.
+    /// State at a time since the beginning of the piece.
     pub fn at(&self, t: f64) -> PathState {
         let [s, v, a, j] = match self.law {
             SpeedLaw::Linear { speed, b, c } => {

@@ -1,23 +1,24 @@
-//! Scaled limits: limits of the joints in a unit of time in which a section of a path takes about 1.
+//! Scaled limits: limits of the joints in a unit of time such that a section of a path takes about 1 unit.
 
 use super::super::limits::{KinematicLimits, LimitKind, TimeParametrizationError};
 use super::blended_path::PathSection;
 
-/// Larger limits (per length of the section, in the scaled unit of time) are never reached, and are reduced to these
-/// so that sums and products stay finite.
+/// Bounds of the limits (per length of the section, in the scaled unit of time). Larger limits are never reached; they
+/// are reduced to these bounds so that sums and products stay finite.
 const LARGEST: [f64; 3] = [1e6, 1e7, 1e8];
 
 /// Limits of a section of a path.
 #[derive(Debug, Clone)]
 pub(super) struct ScaledLimits {
-    /// Per unit of time and its powers.
+    /// Limits per scaled unit of time and its powers.
     pub limits: KinematicLimits,
     /// The unit of time, s.
     pub unit: f64,
 }
 
 impl ScaledLimits {
-    /// The unit is the least time that any joint needs for its path, by any one of its limits.
+    /// Scales limits. The unit is the longest of the least times that each joint needs for its path by each of its
+    /// limits.
     pub fn new(section: &PathSection, limits: &KinematicLimits) -> Result<Self, TimeParametrizationError> {
         let mut unit: f64 = 0.0;
         for joint in 0..limits.velocity.len() {

@@ -1,4 +1,4 @@
-//! Section motions: the motion along a part of a path from rest to rest.
+//! Section motions: motion along the part of a path from one rest to the next.
 
 use super::super::limits::{KinematicLimits, TimeParametrizationError};
 use super::blended_path::PathSection;
@@ -11,13 +11,13 @@ use super::scaled_limits::ScaledLimits;
 use super::speed_spline::SpeedSpline;
 use super::topp_ra::ReachabilityAnalysis;
 
-/// Without the limit of jerk, and with it.
+/// Densities without and with the limit of jerk.
 const DENSITIES: [GridDensity; 2] = [
     GridDensity { per_blend: 16, per_straight: [32.0, 32.0] },
     GridDensity { per_blend: 8, per_straight: [6.0, 16.0] },
 ];
-/// Time stretches, likewise, below which nothing is gained by another solution with constraints tightened where they
-/// are exceeded.
+/// Time stretches, without and with the limit of jerk, below which another solution with tightened constraints gains
+/// nothing.
 const FINE_STRETCH: [f64; 2] = [1.002, 1.01];
 const MAX_REFINEMENTS: [usize; 2] = [4, 1];
 
@@ -29,7 +29,7 @@ pub(super) struct SectionMotion {
     elements: Vec<u32>,
     /// Time of the pieces per second, 1/s.
     pub rate: f64,
-    /// Duration in the pieces' time.
+    /// Duration in the time unit of the pieces.
     duration: f64,
 }
 
@@ -41,7 +41,7 @@ struct Problem<'p> {
     orders: usize,
 }
 
-/// A motion, if it is finite, and by how much each piece exceeds the limits before time is stretched.
+/// A motion, if it is finite, and the excess of each piece over the limits before time is stretched.
 struct Attempt {
     motion: Option<SectionMotion>,
     ratios: Vec<Ratios>,
@@ -49,7 +49,7 @@ struct Attempt {
 }
 
 impl SectionMotion {
-    /// The fastest motion within velocity and acceleration.
+    /// The fastest motion within limits of velocity and acceleration.
     pub fn without_jerk_limit(
         section: &PathSection,
         limits: &KinematicLimits,
@@ -70,7 +70,7 @@ impl SectionMotion {
         best.motion.ok_or(TimeParametrizationError::Path)
     }
 
-    /// The fastest motion within velocity, acceleration and jerk.
+    /// The fastest motion within limits of velocity, acceleration and jerk.
     pub fn with_jerk_limit(section: &PathSection, limits: &KinematicLimits) -> Result<Self, TimeParametrizationError> {
         let problem = Problem::new(section, limits, 3)?;
         let (grid, limits) = (&problem.grid, &problem.scaled.limits);
@@ -102,7 +102,7 @@ impl SectionMotion {
         self.pieces.len()
     }
 
-    /// State along the path after `t` seconds, per second and its powers, and the path element.
+    /// State along the path after `t` seconds, in seconds and their powers, and the path element.
     pub fn at(&self, t: f64) -> (PathState, usize) {
         let time = (t * self.rate).clamp(0.0, self.duration);
         let n = self.pieces.partition_point(|p| p.time <= time).saturating_sub(1);
@@ -124,7 +124,7 @@ impl<'p> Problem<'p> {
         Ok(Self { section, scaled, grid, orders })
     }
 
-    /// Slowed down to keep all limits.
+    /// The motion slowed down to keep all limits.
     fn attempt(&self, (pieces, duration): (Vec<SpeedPiece>, f64)) -> Attempt {
         let elements = &self.grid.elements;
         let ratios = ratios(self.section, elements, &pieces, &self.scaled.limits, self.orders);

@@ -1,8 +1,8 @@
 //! Speed splines: the squared speed `x(s)` as a quadratic B-spline over a path grid, from rest to rest.
 //!
-//! On the first and the last interval, beside a rest, the jerk is constant, which is `x ∝ s^(4/3)` and so `s̈ = x /
-//! 1.5s`: a linear relation between the first two coefficients. Between them x has a continuous derivative `x′ =
-//! 2s̈`.
+//! On the first and the last interval, beside a rest, the jerk is constant: `x ∝ s^(4/3)`, therefore `s̈ = x / 1.5s`,
+//! which is a linear relation between the first two coefficients. Between these intervals x has a continuous derivative
+//! `x′ = 2s̈`.
 
 use super::path_grid::PathGrid;
 use super::path_speed::{SpeedLaw, SpeedPiece};
@@ -10,24 +10,24 @@ use super::path_speed::{SpeedLaw, SpeedPiece};
 /// Linear maps from three neighbouring coefficients to `x`, `b = s̈` and `c = s⃛/ṡ` at a point of an interval.
 pub(super) type LocalMap = [[f64; 3]; 3];
 
-/// The spline's knots. Coefficients are numbered by the grid's intervals; the first and the last are padding.
+/// The spline's knots. Coefficients are numbered like the grid's intervals; the first and the last are padding.
 #[derive(Debug)]
 pub(super) struct SpeedSpline<'g> {
     grid: &'g PathGrid,
 }
 
 impl<'g> SpeedSpline<'g> {
-    /// The grid has at least three intervals.
+    /// Creates a spline on a grid with at least three intervals.
     pub fn new(grid: &'g PathGrid) -> Self {
         Self { grid }
     }
 
-    /// Spacing as the spline sees it: none beside a rest.
+    /// Spacing in the spline: 0 beside a rest.
     fn spacing(&self, interval: usize) -> f64 {
         if interval == 0 || interval + 1 == self.grid.intervals() { 0.0 } else { self.grid.spacing(interval) }
     }
 
-    /// Maps from the coefficients `interval − 1`, `interval` and `interval + 1`, at a share of an interval.
+    /// Maps from the coefficients `interval − 1`, `interval` and `interval + 1`, at a fraction of an interval.
     pub fn local_map(&self, interval: usize, share: f64) -> LocalMap {
         let h = self.grid.spacing(interval);
         let [left, right] = [self.spacing(interval - 1) + h, h + self.spacing(interval + 1)];
@@ -45,7 +45,7 @@ impl<'g> SpeedSpline<'g> {
         map
     }
 
-    /// The relation beside a rest gives the outermost coefficient.
+    /// Replaces the outermost coefficient by means of the relation beside a rest.
     fn eliminate_padding(&self, interval: usize, h: f64, map: &mut LocalMap) {
         let last = self.grid.intervals() - 1;
         for row in map {
@@ -60,7 +60,7 @@ impl<'g> SpeedSpline<'g> {
         }
     }
 
-    /// The motion, and its duration.
+    /// The motion and its duration.
     pub fn pieces(&self, coefficients: &[f64]) -> (Vec<SpeedPiece>, f64) {
         let (count, nodes) = (self.grid.intervals(), &self.grid.nodes);
         let mut pieces = Vec::with_capacity(count);
@@ -80,7 +80,7 @@ impl<'g> SpeedSpline<'g> {
     }
 }
 
-/// The coefficients that matter on an interval.
+/// The coefficients that affect an interval.
 #[inline]
 pub(super) fn around(coefficients: &[f64], interval: usize) -> [f64; 3] {
     let c = &coefficients[interval - 1..=interval + 1];

@@ -1,16 +1,16 @@
 //! Time-optimal path parametrization by reachability analysis (TOPP-RA) under limits of velocity and acceleration.
 //!
 //! H. Pham, Q.-C. Pham: *A New Approach to Time-Optimal Path Parameterization Based on Reachability Analysis*, IEEE
-//! Transactions on Robotics 34(3), 2018. With `x = ṡ²` and `u = s̈`, constant over an interval, constraints are
-//! linear in (u, x). The backward pass computes the controllable sets, which are intervals from 0 as rest is always
-//! admissible; the forward pass takes the greatest `u` that stays in them.
+//! With `x = ṡ²` and `u = s̈`, constant over an interval, constraints are linear in (u, x). The backward pass computes
+//! the controllable sets; they are intervals from 0, because rest is always admissible. The forward pass uses the
+//! largest `u` that stays in these sets.
 
 use super::super::limits::KinematicLimits;
 use super::blended_path::PathSection;
 use super::limit_excess::Ratios;
 use super::path_grid::PathGrid;
 
-/// Newton steps for the greatest controllable `x`: each leaves one line of a polygon.
+/// Largest number of Newton steps for the largest controllable `x`: each step leaves one line of a polygon.
 const MAX_STEPS: usize = 64;
 
 /// `−1 ≤ u·a + x·b ≤ 1`, see [`control_range`].
@@ -24,9 +24,9 @@ struct Row {
 #[derive(Debug, Default)]
 pub(super) struct ReachabilityAnalysis {
     rows: Vec<Row>,
-    /// Index of the first row of each interval, and the number of rows at last.
+    /// Index of the first row of each interval, then the number of rows.
     first: Vec<usize>,
-    /// Greatest `x` at each node by velocity, and by what does not depend on `u`.
+    /// Largest `x` at each node by velocity and by constraints that do not depend on `u`.
     x_max: Vec<f64>,
 }
 
@@ -44,7 +44,7 @@ impl Bound {
 }
 
 impl ReachabilityAnalysis {
-    /// The greatest squared speed at each node of the grid, from rest to rest.
+    /// The largest squared speed at each node of the grid, from rest to rest.
     pub fn squared_speeds(&self, grid: &PathGrid) -> Vec<f64> {
         let count = grid.intervals();
         let mut controllable = vec![0.0; count + 1];
@@ -61,7 +61,7 @@ impl ReachabilityAnalysis {
         x
     }
 
-    /// Makes the constraints of each interval stronger by the ratios that were found there.
+    /// Makes the constraints of each interval stronger by the given ratios.
     pub fn tighten(&mut self, ratios: &[Ratios]) {
         for (n, [v, a, _]) in ratios.iter().enumerate() {
             for row in &mut self.rows[self.first[n]..self.first[n + 1]] {
@@ -91,7 +91,7 @@ impl ReachabilityAnalysis {
                 let [v, a] = [limits.velocity[joint], limits.acceleration[joint]];
                 for share in [0.0, 0.5, 1.0] {
                     let [_, p, c, _] = element.at(grid.nodes[n] + share * h, joint);
-                    // There, x is greater by 2·share·h·u.
+                    // At that point, x is greater by 2·share·h·u.
                     all.rows.push(Row { a: (p + 2.0 * share * h * c) / a, b: c / a });
                     if share != 0.5 {
                         let x = &mut all.x_max[n + share as usize];
@@ -109,7 +109,7 @@ impl ReachabilityAnalysis {
     }
 }
 
-/// The bounds of `u` that matter at a squared speed, such that the next one is in `0..=next`.
+/// The active bounds of `u` at a squared speed, such that the next squared speed is in `0..=next`.
 fn control_range(rows: &[Row], spacing: f64, next: f64, x: f64) -> [Bound; 2] {
     let slope = -0.5 / spacing;
     let mut low = Bound { intercept: 0.0, slope };
@@ -128,8 +128,8 @@ fn control_range(rows: &[Row], spacing: f64, next: f64, x: f64) -> [Bound; 2] {
     [low, high]
 }
 
-/// The greatest squared speed from which some `u` leads into `0..=next`: the width of the range of `u` is concave in
-/// x, so that Newton's method from above ends at its root.
+/// The largest squared speed from which some `u` leads into `0..=next`. The width of the range of `u` is concave in x,
+/// so Newton's method from above ends at its root.
 fn greatest_controllable(rows: &[Row], spacing: f64, next: f64, x_max: f64) -> f64 {
     let mut x = x_max;
     for _ in 0..MAX_STEPS {
@@ -137,7 +137,7 @@ fn greatest_controllable(rows: &[Row], spacing: f64, next: f64, x_max: f64) -> f
         if high.at(x) >= low.at(x) {
             return x;
         }
-        // Not by a difference from x, which may be greater by many powers of ten.
+        // Computed without a difference from x, which may be greater by many powers of ten.
         let root = (high.intercept - low.intercept) / (low.slope - high.slope);
         if !(root >= 0.0 && root < x) {
             return x;

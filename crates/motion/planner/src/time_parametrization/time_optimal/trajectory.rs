@@ -5,18 +5,19 @@ use super::super::trajectory::{TrajectoryPoint, periods, validate_period};
 use super::blended_path::BlendedPath;
 use super::section_motion::SectionMotion;
 
-/// A blended path with a time-optimal parametrization: at rest at both ends.
+/// A blended path with a time-optimal parametrization, at rest at both ends.
 #[derive(Debug, Clone)]
 pub struct TimeOptimalTrajectory {
     path: BlendedPath,
     motions: Vec<SectionMotion>,
-    /// Time at which each section begins, and the duration, s.
+    /// Times at which the sections begin, and the duration, s.
     times: Vec<f64>,
 }
 
 impl BlendedPath {
-    /// The fastest motion along the path within limits of velocity, acceleration and jerk. All three are kept at every
-    /// instant; acceleration is continuous. Prismatic joints: read m for rad in the limits.
+    /// Computes the fastest motion along the path within limits of velocity, acceleration and jerk. All three limits
+    /// are kept at every instant; acceleration is continuous. For prismatic joints, read m instead of rad in the
+    /// limits.
     ///
     /// ```
     /// use elbowroom_planner::{BlendedPath, KinematicLimits};
@@ -31,17 +32,18 @@ impl BlendedPath {
     /// ```
     ///
     /// # Errors
-    /// Limits that are not one finite number above 0 per joint, or so small that no duration is finite.
+    /// The limits are not one finite number above 0 per joint, or so small that no duration is finite.
     pub fn time_optimal(&self, limits: &KinematicLimits) -> Result<TimeOptimalTrajectory, TimeParametrizationError> {
         limits.validate(self.joints())?;
         let motions = self.sections.iter().map(|section| SectionMotion::with_jerk_limit(section, limits));
         Ok(TimeOptimalTrajectory::new(self.clone(), motions.collect::<Result<_, _>>()?))
     }
 
-    /// The fastest motion within velocity and acceleration (TOPP-RA). Jerk is not limited: acceleration jumps.
+    /// Computes the fastest motion within limits of velocity and acceleration (TOPP-RA). Jerk is not limited:
+    /// acceleration jumps.
     ///
     /// # Errors
-    /// As [`Self::time_optimal`].
+    /// The errors of [`Self::time_optimal`].
     pub fn time_optimal_without_jerk_limit(
         &self,
         limits: &KinematicLimits,
@@ -67,18 +69,18 @@ impl TimeOptimalTrajectory {
         self.times.last().copied().unwrap_or(0.0)
     }
 
-    /// Number of corners at which it rests.
+    /// Number of corners at which the motion rests.
     pub fn stops(&self) -> usize {
         self.path.stops()
     }
 
-    /// Number of intervals of the grid on which the motion was computed.
+    /// Number of grid intervals on which the motion was computed.
     pub fn grid_intervals(&self) -> usize {
         self.motions.iter().map(SectionMotion::intervals).sum()
     }
 
-    /// State of the joints `t` seconds after the start: rad, rad/s and rad/s², m for prismatic joints. Before the
-    /// start that at the start, afterwards (and for NaN) that at the end.
+    /// State of the joints `t` seconds after the start: rad, rad/s and rad/s² (m for prismatic joints). Before the
+    /// start the first state, after the end (and for NaN) the last.
     pub fn at(&self, t: f64) -> TrajectoryPoint {
         let joints = self.path.joints();
         if !(t < self.seconds()) {
@@ -104,11 +106,11 @@ impl TimeOptimalTrajectory {
         point
     }
 
-    /// The same trajectory a little slower, so that it rests at multiples of a period (s) only: each part from rest
-    /// to rest takes less than a period longer.
+    /// Slows the trajectory down slightly, so that it rests only at multiples of a period (s): each part from rest to
+    /// rest takes less than a period longer.
     ///
     /// # Errors
-    /// A period that is not a finite number above 0.
+    /// The period is not a finite number above 0.
     pub fn aligned_to_ticks(mut self, period: f64) -> Result<Self, TimeParametrizationError> {
         validate_period(period)?;
         let mut ticks = 0.0;
@@ -125,7 +127,7 @@ impl TimeOptimalTrajectory {
     /// interpolation between them, no joint is faster than its limit.
     ///
     /// # Errors
-    /// A period that is not a finite number above 0.
+    /// The period is not a finite number above 0.
     pub fn samples(&self, period: f64) -> Result<Vec<(f64, Vec<f64>)>, TimeParametrizationError> {
         validate_period(period)?;
         let count = periods(self.seconds(), period).max(0.0) as usize;
