@@ -1,6 +1,6 @@
 //! Loading time of each URDF below a directory: `cargo bench -p elbowroom-formats --bench load_times -- DIR`.
 //!
-//! Best of five, files in the cache of the operating system: milliseconds without and with visual meshes.
+//! Prints milliseconds, best of five, without and with visual meshes. The files are in the cache of the operating system.
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;

@@ -1,5 +1,7 @@
-//! Time of the lists of near and of approaching pairs of a robot among four boxes and a mesh, along smooth motions and at random states:
-//! `cargo bench -p elbowroom-formats --bench near_times -- ROBOT.urdf [MARGIN_M]`.
+//! Query times for near and approaching pairs of a robot among four boxes and a mesh: `cargo bench -p elbowroom-formats
+//! --bench near_times -- ROBOT.urdf [MARGIN_M]`.
+//!
+//! The robot moves along smooth motions, and is at random states.
 
 use std::time::Instant;
 
@@ -30,7 +32,7 @@ fn main() {
                 state.set_q(&scene, RobotId(0), q).expect("a state");
                 let mut query = checker.between(one, other);
                 near.push(timed(|| query.distances_within(&state, margin, |_| reported += 1)));
-                // A hundred steps in two seconds, no joint faster than 2 rad/s.
+                // A hundred steps in two seconds; joints move at most at 2 rad/s.
                 let qd: Vec<f64> = q.iter().zip(next).map(|(a, b)| ((b - a) * 50.0).clamp(-2.0, 2.0)).collect();
                 motion.set_qd(&scene, &state, RobotId(0), &qd).expect("velocities");
                 approaching.push(timed(|| query.approaching(&state, &motion, &policy, 1.0, |_| {})));
@@ -48,14 +50,14 @@ fn main() {
     }
 }
 
-/// Microseconds.
+/// Duration of a query, microseconds.
 fn timed(query: impl FnOnce()) -> f64 {
     let started = Instant::now();
     query();
     started.elapsed().as_secs_f64() * 1e6
 }
 
-/// The robot with four boxes and one of its own links as a mesh around it.
+/// The robot, surrounded by four boxes and one of its own links as a mesh.
 fn among(robot: Robot) -> Scene {
     let part = robot.colliders.iter().flatten().map(|b| b.shape.clone()).find(|s| matches!(s, Shape::Mesh(_)));
     let reach = 1.0;

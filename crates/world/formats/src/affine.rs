@@ -1,10 +1,10 @@
-//! Affine transforms of mesh files: unlike a pose they may scale, shear and mirror.
+//! Affine transforms of mesh files. Unlike a pose, they may scale, shear and mirror.
 
 use elbowroom_spatial::{Pose, Vec3};
 
 use crate::mesh_data::MeshData;
 
-/// `p ↦ rows · [p, 1]`.
+/// The transform `p ↦ rows · [p, 1]`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Affine(pub(crate) [[f64; 4]; 3]);
 
@@ -43,7 +43,7 @@ impl Affine {
         row(0).dot(row(1).cross(row(2))) < 0.0
     }
 
-    /// The transform with its linear part transposed, and the same origin.
+    /// The transform with its linear part transposed and the origin unchanged.
     pub(crate) fn transposed(&self) -> Self {
         Self::rotation([0, 1, 2].map(|c| self.column(c).to_array())).with_origin(self.column(3))
     }
@@ -52,8 +52,9 @@ impl Affine {
         Vec3::from(self.0.map(|row| row[c]))
     }
 
-    /// The inverse; `None` if the linear part is singular, or nearly: where the volume of its axes is at most 1e-9 of the
-    /// product of their lengths.
+    /// The inverse; `None` if the linear part is singular or nearly singular.
+    ///
+    /// Nearly singular means that the volume of its axes is at most 1e-9 of the product of their lengths.
     pub(crate) fn inverse(&self) -> Option<Self> {
         let (x, y, z) = (self.column(0), self.column(1), self.column(2));
         let volume = x.dot(y.cross(z));
@@ -73,7 +74,7 @@ impl Affine {
         self
     }
 
-    /// Transforms a mesh; for a mirror image the winding is reversed.
+    /// Transforms a mesh. A mirroring transform reverses the winding.
     pub(crate) fn apply(&self, mesh: &mut MeshData) {
         mesh.vertices.iter_mut().for_each(|v| *v = self.point(*v));
         if self.is_mirror() {

@@ -1,4 +1,4 @@
-//! Lines and cells of comma-separated text. Cells may be in quotation marks, but hold no commas or line ends.
+//! Lines and cells of comma-separated text. Cells may have quotation marks, but contain no commas or line ends.
 
 use std::collections::HashSet;
 use std::fs::File;
@@ -10,14 +10,13 @@ use crate::error::Location;
 
 type Result<T> = std::result::Result<T, FormatError>;
 
-/// Longest line that is read, bytes.
+/// Largest length of a line, bytes.
 const MAX_LINE: usize = 1 << 20;
 
-/// Largest file that is read where all of it is kept, bytes.
+/// Largest size of a file that is kept whole in memory, bytes.
 pub(crate) const MAX_BYTES: u64 = 1 << 30;
 
-/// Lines of a CSV file that are not blank, with their numbers; a byte order mark and white space at both ends are
-/// removed.
+/// Non-blank lines of a CSV file, with their numbers, without a byte order mark and without white space at both ends.
 pub(crate) struct CsvLines<'a, R> {
     source: R,
     file: &'a Path,
@@ -26,7 +25,7 @@ pub(crate) struct CsvLines<'a, R> {
 }
 
 impl<'a> CsvLines<'a, BufReader<File>> {
-    /// The lines of a file of at most `max_bytes`. Pipes, which have no size, are read too.
+    /// Opens a file of at most `max_bytes`. Pipes, which have no size, can be read too.
     pub(crate) fn open(path: &'a Path, max_bytes: u64) -> Result<Self> {
         let unreadable = |e: std::io::Error| {
             FormatError::unreadable(path, &e, "a CSV file: a header of column names, then rows of numbers")
@@ -45,12 +44,12 @@ impl<'a> CsvLines<'a, BufReader<File>> {
 }
 
 impl<'a, R: BufRead> CsvLines<'a, R> {
-    /// The lines of the text of `file`.
+    /// Reads the lines of a source; `file` is named in messages.
     pub(crate) fn new(source: R, file: &'a Path) -> Self {
         Self { source, file, line: 0, buffer: Vec::new() }
     }
 
-    /// The next line and where it is; `None` at the end.
+    /// The next line and its location; `None` at the end.
     pub(crate) fn next(&mut self) -> Result<Option<(Location<'a>, &str)>> {
         loop {
             self.line += 1;
@@ -74,7 +73,7 @@ impl<'a, R: BufRead> CsvLines<'a, R> {
     }
 }
 
-/// The cells of a line, without white space and quotation marks around them.
+/// The cells of a line, without surrounding white space and quotation marks.
 pub(crate) fn cells(line: &str) -> impl Iterator<Item = &str> {
     line.split(',').map(|cell| {
         let cell = cell.trim();
@@ -82,13 +81,13 @@ pub(crate) fn cells(line: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// A name that occurs twice among the columns.
+/// A column name that occurs twice.
 pub(crate) fn duplicate(columns: &[String]) -> Option<&String> {
     let mut seen = HashSet::new();
     columns.iter().find(|name| !seen.insert(name.as_str()))
 }
 
-/// The value of a cell; `instead` is an example of a value to write.
+/// The value of a cell as a finite number; `instead` is an example of a valid value for messages.
 pub(crate) fn finite(cell: &str, column: &str, at: Location<'_>, instead: &str) -> Result<f64> {
     match cell.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),
@@ -110,12 +109,12 @@ fn shortened(cell: &str) -> String {
     if cell.chars().count() > 40 { cell.chars().take(39).chain(['…']).collect() } else { cell.to_owned() }
 }
 
-/// The error where the time in a row is not after the time in the row before.
+/// The error of a row whose time is not after the time of the previous row.
 pub(crate) fn not_rising(t_s: f64, last_s: f64, at: Location<'_>) -> FormatError {
     at.error(format!("t_s is {t_s} after {last_s}")).hint("times that rise from row to row")
 }
 
-/// What is wrong with a header of these names that lacks the column `of`.
+/// The message for a header with these names that lacks the column `of`.
 pub(crate) fn missing_column(of: &str, names: &[String]) -> String {
     let first = of.split('`').next().unwrap_or(of);
     let why = match names {

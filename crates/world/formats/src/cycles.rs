@@ -7,7 +7,7 @@ enum Visit {
     Done,
 }
 
-/// One element of every cycle among `count` elements, each of which refers to at most one `next`.
+/// Returns one element of every cycle among `count` elements. Each element refers to at most one `next`.
 pub(crate) fn find_cycles(count: usize, next: impl Fn(usize) -> Option<usize>) -> Vec<usize> {
     let mut cycles = Vec::new();
     let mut visits = vec![Visit::New; count];

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 /// Why a file was refused.
 ///
-/// Displayed as `FILE:LINE: what` and, on a line of its own, `  write: hint`.
+/// Displayed as `FILE:LINE: what` and, on a separate line, `  write: hint`.
 ///
 /// ```
 /// use elbowroom_formats::FormatError;
@@ -14,45 +14,45 @@ use std::path::{Path, PathBuf};
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FormatError {
-    /// The file.
+    /// Path of the file.
     pub file: PathBuf,
-    /// Its line, counted from 1; `None` without lines (binary files, missing files).
+    /// Line in the file, counted from 1; `None` for files without lines (binary files, missing files).
     pub line: Option<usize>,
     /// The fault.
     pub what: String,
-    /// What to write instead, where that is known.
+    /// What to write instead, if known.
     pub write_instead: Option<String>,
 }
 
-/// Something that the user of a valid model should know.
+/// A fact that the user of a valid model should know.
 ///
 /// Displayed like [`FormatError`].
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Warning {
-    /// The file.
+    /// Path of the file.
     pub file: PathBuf,
-    /// Its line, counted from 1.
+    /// Line in the file, counted from 1.
     pub line: Option<usize>,
     /// The fact.
     pub what: String,
-    /// What to write instead, where that is known.
+    /// What to write instead, if known.
     pub write_instead: Option<String>,
 }
 
 impl FormatError {
-    /// An error at a line (`None`: no line) of a file.
+    /// Creates an error at a line of a file (`None`: without a line).
     pub fn new(file: impl AsRef<Path>, line: impl Into<Option<usize>>, what: impl Into<String>) -> Self {
         Self { file: file.as_ref().to_owned(), line: line.into(), what: what.into(), write_instead: None }
     }
 
-    /// The same error with what to write instead.
+    /// Adds what to write instead.
     #[must_use]
     pub fn hint(mut self, write_instead: impl Into<String>) -> Self {
         self.write_instead = Some(write_instead.into());
         self
     }
 
-    /// The error for a file that the system does not let read, where `wanted` says what belongs there.
+    /// Creates the error for a file that the system cannot read; `wanted` says what the file should be.
     pub fn unreadable(file: impl AsRef<Path>, e: &std::io::Error, wanted: &str) -> Self {
         let instead = match e.kind() {
             std::io::ErrorKind::PermissionDenied => "a file that you may read, or `chmod u+r` on this one",
@@ -63,12 +63,12 @@ impl FormatError {
 }
 
 impl Warning {
-    /// A warning at a line (`None`: no line) of a file.
+    /// Creates a warning at a line of a file (`None`: without a line).
     pub fn new(file: impl AsRef<Path>, line: impl Into<Option<usize>>, what: impl Into<String>) -> Self {
         Self { file: file.as_ref().to_owned(), line: line.into(), what: what.into(), write_instead: None }
     }
 
-    /// The same warning with what to write instead.
+    /// Adds what to write instead.
     #[must_use]
     pub fn hint(mut self, write_instead: impl Into<String>) -> Self {
         self.write_instead = Some(write_instead.into());
@@ -115,17 +115,17 @@ impl std::error::Error for FormatError {}
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Location<'a> {
     pub(crate) file: &'a Path,
-    /// Counted from 1.
+    /// Line number, counted from 1.
     pub(crate) line: usize,
 }
 
 impl Location<'_> {
-    /// An error at this line.
+    /// Creates an error at this line.
     pub(crate) fn error(self, what: impl Into<String>) -> FormatError {
         FormatError::new(self.file, self.line, what)
     }
 
-    /// A warning at this line.
+    /// Creates a warning at this line.
     pub(crate) fn warning(self, what: impl Into<String>) -> Warning {
         Warning::new(self.file, self.line, what)
     }
@@ -141,7 +141,7 @@ pub(crate) struct WarningList {
 impl WarningList {
     const MAX_COUNT: usize = 200;
 
-    /// Builds the warning only below the limit: determining a line scans the file.
+    /// Builds the warning only below the limit, because finding a line number scans the file.
     pub(crate) fn push_with(&mut self, make: impl FnOnce() -> Warning) {
         if self.list.len() < Self::MAX_COUNT {
             self.list.push(make());

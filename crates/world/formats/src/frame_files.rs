@@ -1,5 +1,7 @@
-//! A folder of camera pictures (`*.png`, `*.pgm`, `*.ppm`) or point clouds (`*.pcd`, `*.ply`) in the order of their names, and
-//! `times.csv` with the columns `file` and `t_s`, when each was taken.
+//! Folders of camera pictures or point clouds with their times.
+//!
+//! A folder holds pictures (`*.png`, `*.pgm`, `*.ppm`) or point clouds (`*.pcd`, `*.ply`), in the order of their names.
+//! Its `times.csv` has the columns `file` and `t_s`, the time of each frame in seconds.
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -12,17 +14,17 @@ type Result<T> = std::result::Result<T, FormatError>;
 const TIMES: &str = "times.csv";
 const HEADER: &str = "the header file,t_s and a row per picture: frame_0000.png,0.0";
 
-/// What the files of a folder are.
+/// Kind of the files of a folder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FrameKind {
-    /// Pictures: of brightness, colour or depth.
+    /// Pictures of brightness, colour or depth.
     Picture,
     /// Point clouds.
     Cloud,
 }
 
 impl FrameKind {
-    /// Endings of the names.
+    /// File name extensions of the kind.
     fn endings(self) -> &'static [&'static str] {
         match self {
             Self::Picture => &["png", "pgm", "ppm", "pnm"],
@@ -45,16 +47,16 @@ impl FrameKind {
     }
 }
 
-/// A picture or cloud and when it was taken.
+/// A picture or cloud with its time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrameFile {
-    /// The file.
+    /// Path of the file.
     pub path: PathBuf,
-    /// Seconds.
+    /// Time of the picture or cloud, seconds.
     pub t_s: f64,
 }
 
-/// The pictures or clouds of a folder, in the order of their names, which is that of their times.
+/// Reads the list of pictures or clouds of a folder, in the order of their names, which must be the order of their times.
 ///
 /// ```
 /// use elbowroom_formats::frame_files::FrameKind;
@@ -69,7 +71,7 @@ pub struct FrameFile {
 /// ```
 ///
 /// # Errors
-/// [`FormatError`] if the folder has no picture, or the times are missing, incomplete or do not rise.
+/// [`FormatError`] if the folder has no file of this kind, or if the times are missing, incomplete or do not increase.
 pub fn read(folder: &Path, kind: FrameKind) -> Result<(Vec<FrameFile>, Vec<Warning>)> {
     let pictures = files(folder, kind)?;
     let file = folder.join(TIMES);
@@ -115,7 +117,7 @@ fn files(folder: &Path, kind: FrameKind) -> Result<Vec<PathBuf>> {
     Ok(found)
 }
 
-/// Line and time of each file.
+/// Line number and time of each file.
 fn times(file: &Path) -> Result<HashMap<String, (usize, f64)>> {
     let mut lines = CsvLines::open(file, csv::MAX_BYTES).map_err(|e| e.hint(HEADER))?;
     let Some((at, header)) = lines.next()? else {

@@ -1,14 +1,14 @@
-//! Raster images: what the readers and writers of [`png`](crate::png) and [`pnm`](crate::pnm) have in common.
+//! Raster images: the types shared by the readers and writers of [`png`](crate::png) and [`pnm`](crate::pnm).
 
 use std::fmt;
 use std::path::Path;
 
 use crate::FormatError;
 
-/// Images with more columns or rows are refused, which bounds memory.
+/// Largest number of columns or rows of an image, which bounds memory.
 const MAX_SIDE: usize = 16_384;
 
-/// Upper bound on the bytes that one byte of a file can decode to; deflate reaches 1032.
+/// Upper bound on the bytes to which one byte of a file can decode; deflate reaches 1032.
 const MAX_EXPANSION: usize = 1100;
 
 /// Channels and bits per sample of an image.
@@ -35,7 +35,7 @@ pub enum PixelFormat {
 }
 
 impl PixelFormat {
-    /// Samples per pixel, 1 to 4.
+    /// Number of samples per pixel, 1 to 4.
     pub fn channels(self) -> usize {
         match self {
             Self::Grey8 | Self::Grey16 => 1,
@@ -45,7 +45,7 @@ impl PixelFormat {
         }
     }
 
-    /// Bytes per sample, 1 or 2.
+    /// Number of bytes per sample, 1 or 2.
     pub fn bytes_per_sample(self) -> usize {
         match self {
             Self::Grey8 | Self::GreyAlpha8 | Self::Rgb8 | Self::Rgba8 => 1,
@@ -61,27 +61,29 @@ impl fmt::Display for PixelFormat {
     }
 }
 
-/// Size and pixel format of an image. Its pixels are stored separately: rows from the top, pixels from the left, no
-/// padding.
+/// Size and pixel format of an image.
+///
+/// The pixels are stored separately: rows from the top, pixels from the left, without padding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ImageHeader {
-    /// Columns.
+    /// Number of columns.
     pub width: usize,
-    /// Rows.
+    /// Number of rows.
     pub height: usize,
     /// Channels and bits per sample.
     pub format: PixelFormat,
 }
 
 impl ImageHeader {
-    /// Number of bytes of the pixels; `usize::MAX` where that overflows.
+    /// Number of bytes of the pixels; `usize::MAX` on overflow.
     pub fn byte_count(&self) -> usize {
         let per_pixel = self.format.channels() * self.format.bytes_per_sample();
         self.width.saturating_mul(self.height).saturating_mul(per_pixel)
     }
 
-    /// Converts pixels in place to [`PixelFormat::Grey8`] or [`PixelFormat::Rgb8`] and returns the new header. Opacity
-    /// is dropped; 16-bit samples are scaled to 8 bits and rounded.
+    /// Converts pixels in place to [`PixelFormat::Grey8`] or [`PixelFormat::Rgb8`], and returns the new header.
+    ///
+    /// Opacity is dropped; 16-bit samples are scaled to 8 bits and rounded.
     ///
     /// ```
     /// use elbowroom_formats::image::{ImageHeader, PixelFormat};
@@ -115,7 +117,7 @@ fn to_8_bit(sample: u16) -> u8 {
     ((u32::from(sample) + 128) / 257) as u8
 }
 
-/// Refuses images without pixels, larger than 16,384 pixels a side, or larger than a file of `file_bytes` bytes can encode.
+/// Refuses images without pixels, with a side above 16,384 pixels, or larger than `file_bytes` bytes can encode.
 pub(crate) fn check_size(header: &ImageHeader, file_bytes: usize, file: &Path) -> Result<(), FormatError> {
     let ImageHeader { width, height, .. } = *header;
     if width == 0 || height == 0 {
@@ -133,13 +135,13 @@ pub(crate) fn check_size(header: &ImageHeader, file_bytes: usize, file: &Path) -
     Ok(())
 }
 
-/// The error of a decoder that gave up.
+/// The error of a decoder that failed.
 pub(crate) fn undecodable(file: &Path, why: impl fmt::Display) -> FormatError {
     FormatError::new(file, None, format!("cannot be decoded: {why}"))
         .hint("the whole picture: the file is damaged or was cut off while it was written")
 }
 
-/// Empties `pixels`, decodes into it and empties it again on failure.
+/// Clears `pixels`, decodes into it, and clears it again on failure.
 pub(crate) fn cleared_on_error<T, E>(
     pixels: &mut Vec<u8>,
     decode: impl FnOnce(&mut Vec<u8>) -> Result<T, E>,

@@ -1,4 +1,4 @@
-//! Bytes and text of a file, with checks that are common to all formats.
+//! Bytes and text of a file, with the checks that all formats share.
 
 use std::borrow::Cow;
 use std::fs::File;
@@ -7,7 +7,7 @@ use std::path::Path;
 
 use crate::FormatError;
 
-/// Larger model files are refused, which bounds memory.
+/// Largest size of a model file, which bounds memory, bytes.
 const MAX_BYTES: u64 = 1 << 30;
 
 /// Reads the file of a model or mesh.
@@ -15,10 +15,11 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>, FormatError> {
     read_file(path, MAX_BYTES, "a coarser mesh: collision checking needs thousands of triangles, not millions")
 }
 
-/// Reads a regular file whole; refuses directories, devices and pipes, which may never end.
+/// Reads a whole regular file. Refuses directories, devices and pipes, which may never end.
 ///
 /// # Errors
-/// A file that cannot be read, is not a regular file, or has more than `max_bytes` bytes; `smaller` is then the hint.
+/// [`FormatError`] if the file cannot be read, is not a regular file, or has more than `max_bytes` bytes. In the last
+/// case `smaller` is the hint.
 pub fn read_file(path: &Path, max_bytes: u64, smaller: &str) -> Result<Vec<u8>, FormatError> {
     let cannot = |e: std::io::Error| FormatError::unreadable(path, &e, "the path of a file that is there");
     let meta = std::fs::metadata(path).map_err(cannot)?;
@@ -49,7 +50,7 @@ pub(crate) fn check_content(bytes: &[u8], file: &Path) -> Result<(), FormatError
     }
     if bytes.trim_ascii_start().starts_with(b"ISO-10303") {
         let mut stl = file.with_extension("stl");
-        // A STEP file may itself be called .stl.
+        // A STEP file may have the extension .stl.
         if stl == file {
             stl = file.with_extension("mesh.stl");
         }
@@ -64,14 +65,14 @@ pub(crate) fn check_content(bytes: &[u8], file: &Path) -> Result<(), FormatError
     Ok(())
 }
 
-/// A path as a word of a command line.
+/// Quotes a path as a word of a command line.
 pub(crate) fn shell_word(path: &Path) -> String {
     let text = path.display().to_string();
     let is_plain = |c: char| c.is_alphanumeric() || "/._-+:,@%".contains(c);
     if text.chars().all(is_plain) { text } else { format!("'{}'", text.replace('\'', r"'\''")) }
 }
 
-/// What to do with a file that, by its extension, is a planning scene of `MoveIt`; `None` for others.
+/// Hint for a file whose extension is that of a `MoveIt` planning scene; `None` for other files.
 pub fn planning_scene_hint(file: &Path) -> Option<String> {
     let is_scene = file.extension().is_some_and(|e| ["scene", "yaml", "yml"].iter().any(|s| e.eq_ignore_ascii_case(s)));
     let command = || format!("elbowroom convert {} cell.toml", shell_word(file));
@@ -84,7 +85,7 @@ pub fn planning_scene_hint(file: &Path) -> Option<String> {
     })
 }
 
-/// The text of a file: UTF-8; UTF-16 with a byte order mark or as XML; Latin-1 if the XML declaration states it.
+/// Decodes the text of a file: UTF-8; UTF-16 with a byte order mark or as XML; Latin-1 if the XML declaration states it.
 pub(crate) fn text<'a>(bytes: &'a [u8], file: &Path) -> Result<Cow<'a, str>, FormatError> {
     if let Some(rest) = bytes.strip_prefix(b"\xef\xbb\xbf") {
         return utf8(rest, file);
@@ -118,7 +119,7 @@ fn utf16<'a>(bytes: &[u8], unit: fn([u8; 2]) -> u16, file: &Path) -> Result<Cow<
         .map_err(|_| FormatError::new(file, None, "is not valid UTF-16 text").hint("save the file as UTF-8"))
 }
 
-/// The bytes without byte order mark, UTF-16 converted to UTF-8.
+/// The bytes without a byte order mark; UTF-16 is converted to UTF-8.
 pub(crate) fn text_bytes<'a>(bytes: &'a [u8], file: &Path) -> Result<Cow<'a, [u8]>, FormatError> {
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
         return text(bytes, file).map(|t| Cow::Owned(t.into_owned().into_bytes()));

@@ -20,9 +20,8 @@
 //! | PNM | [`pnm`] | PBM, PGM, PPM, in text and in bytes |
 //!
 //! All models are in metres and radians. A file either becomes a valid model, with [`Warning`]s, or gives a
-//! [`FormatError`] that names the file, the line, the fault and what to write instead. No reader panics, recurses on the
-//! input, or allocates more than in proportion to the file: counts are compared with the remaining bytes before memory is
-//! reserved, and instances are limited.
+//! [`FormatError`] that names the file, the line, the fault and what to write instead. Readers do not recurse on the
+//! input and limit the number of instances. They compare counts with the remaining bytes before they reserve memory.
 //!
 //! The readers of meshes are part of this crate instead of libraries: they keep double precision, line numbers for
 //! messages, and one entry per object, and they check every count of a hostile file.
@@ -48,8 +47,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! **Invariant.** Whatever bytes a file has, reading never panics and never reserves more memory than in proportion to
-//! them: the result is a valid model or a [`FormatError`].
+//! **Invariant.** Whatever bytes a file has, reading it never panics and never reserves memory out of proportion to its
+//! size. The result is always a valid model or a [`FormatError`].
 
 mod affine;
 mod csv;

@@ -1,4 +1,4 @@
-//! Mesh files of any format: detected by content first, extension second.
+//! Mesh files of any format. The content decides the format, then the extension.
 
 use std::path::Path;
 
@@ -35,13 +35,13 @@ impl MeshFormat {
     }
 }
 
-/// Loads a mesh file: STL, OBJ, DAE, glTF/GLB, PLY, OFF or 3DS, detected by content first and extension second.
+/// Loads a mesh file: STL, OBJ, DAE, glTF/GLB, PLY, OFF or 3DS. The content decides the format, then the extension.
 ///
-/// `unit` is the unit of formats that define none (STL, OBJ, PLY, OFF, 3DS); `None` means metres. A COLLADA file is
-/// rotated so that its up axis is +z. One entry per object.
+/// `unit` is the unit for formats that define none (STL, OBJ, PLY, OFF, 3DS); `None` means metres. A COLLADA file is
+/// rotated so that its up axis is +z. The result has one entry per object.
 ///
 /// # Errors
-/// A file that cannot be read, is of another format, damaged, or has no triangles.
+/// [`FormatError`] if the file cannot be read, has another format, is damaged, or has no triangles.
 ///
 /// ```
 /// use elbowroom_formats::mesh;
@@ -58,10 +58,10 @@ pub fn load(path: &Path, unit: Option<LengthUnit>) -> Result<LoadedMeshes, Forma
     load_with(path, unit, UpAxis::ToZ)
 }
 
-/// As [`load`], with a choice about the up axis.
+/// Like [`load`], with a choice for the up axis.
 ///
 /// # Errors
-/// As [`load`].
+/// The errors of [`load`].
 pub fn load_with(path: &Path, unit: Option<LengthUnit>, up: UpAxis) -> Result<LoadedMeshes, FormatError> {
     let bytes = input::read(path)?;
     let mut loaded = parse(&bytes, path, unit, up)?;
@@ -71,11 +71,13 @@ pub fn load_with(path: &Path, unit: Option<LengthUnit>, up: UpAxis) -> Result<Lo
     Ok(loaded)
 }
 
-/// Parses the content of a mesh file; `file` is named in messages, determines the format where the content does not, and
-/// is the path to which the buffers of a glTF are relative.
+/// Parses the content of a mesh file.
+///
+/// `file` is named in messages, and the buffers of a glTF are relative to it. Its extension decides the format if the
+/// content does not.
 ///
 /// # Errors
-/// As [`load`].
+/// The errors of [`load`].
 pub fn parse(bytes: &[u8], file: &Path, unit: Option<LengthUnit>, up: UpAxis) -> Result<LoadedMeshes, FormatError> {
     let format = detect(bytes, file)?;
     let mut loaded = match format {
@@ -108,7 +110,7 @@ fn apply_unit(loaded: &mut LoadedMeshes, format: MeshFormat, file: &Path, unit: 
     loaded.meshes.iter_mut().for_each(|m| m.scale(Vec3::splat(factor)));
 }
 
-/// A transform or a unit may have made finite numbers infinite.
+/// Refuses numbers that a transform or a unit has made infinite.
 fn refuse_overflow(loaded: &LoadedMeshes, file: &Path) -> Result<(), FormatError> {
     for mesh in &loaded.meshes {
         if let Some(i) = mesh.vertices.iter().position(|v| !v.is_finite()) {
@@ -119,8 +121,9 @@ fn refuse_overflow(loaded: &LoadedMeshes, file: &Path) -> Result<(), FormatError
     Ok(())
 }
 
-/// A warning where an extent (metres per axis) suggests a wrong unit: a robot is rarely larger than 20 m or smaller than
-/// 5 mm. The warning names no file.
+/// Returns a warning if an extent (metres per axis) suggests a wrong unit. The warning names no file.
+///
+/// A robot is rarely larger than 20 m or smaller than 5 mm.
 ///
 /// ```
 /// use elbowroom_formats::mesh::unit_warning;
@@ -145,7 +148,7 @@ pub fn unit_warning(extent: Vec3) -> Option<Warning> {
 /// Detects the format of a file.
 ///
 /// # Errors
-/// A file of another format; the message names the format where it is known.
+/// [`FormatError`] for a file of another format. The message names the format, if it is known.
 pub fn detect(bytes: &[u8], file: &Path) -> Result<MeshFormat, FormatError> {
     input::check_content(bytes, file)?;
     let decoded = input::text_bytes(&bytes[..bytes.len().min(4096) & !1], file).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! Triangle meshes as the readers return them.
+//! Triangle meshes, as returned by the readers.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use elbowroom_spatial::{Aabb, Vec3};
 
 use crate::{FormatError, Warning};
 
-/// Largest number of vertices or triangles that a file may expand to, instances counted.
+/// Largest number of vertices or triangles to which a file may expand, including instances.
 pub(crate) const MAX_ELEMENTS: usize = 20_000_000;
 
 /// The triangles of one object.
@@ -15,7 +15,7 @@ pub(crate) const MAX_ELEMENTS: usize = 20_000_000;
 /// Every index is below `vertices.len()` and every coordinate is finite; degenerate and duplicate triangles stay.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct MeshData {
-    /// The object's name in the file, or the file's stem.
+    /// Name of the object in the file, or the file's stem.
     pub name: String,
     /// Positions in metres, in the frame of the file.
     pub vertices: Vec<Vec3>,
@@ -24,12 +24,12 @@ pub struct MeshData {
 }
 
 impl MeshData {
-    /// The bounding box of all vertices; empty if there are none.
+    /// The bounding box of all vertices; empty without vertices.
     pub fn aabb(&self) -> Aabb {
         Aabb::from_points(self.vertices.iter().copied())
     }
 
-    /// Multiplies every vertex by a factor per axis; for a mirror image the winding is reversed.
+    /// Multiplies every vertex by a factor per axis. A mirroring scale reverses the winding.
     ///
     /// ```
     /// use elbowroom_formats::MeshData;
@@ -49,7 +49,7 @@ impl MeshData {
         }
     }
 
-    /// Adds the triangles of another mesh.
+    /// Appends the triangles of another mesh.
     pub(crate) fn append(&mut self, other: Self) {
         let offset = self.vertices.len() as u32;
         self.vertices.extend(other.vertices);
@@ -60,10 +60,10 @@ impl MeshData {
         self.triangles.iter_mut().for_each(|t| t.swap(1, 2));
     }
 
-    /// The mesh as a shape for queries.
+    /// Converts the mesh to a shape for queries.
     ///
     /// # Errors
-    /// What [`TriMesh::new`] refuses; `file` is named in the message.
+    /// The errors of [`TriMesh::new`]; `file` is named in the message.
     pub fn into_trimesh(self, file: &Path) -> Result<TriMesh, FormatError> {
         let name = self.name;
         TriMesh::new(self.vertices, self.triangles)
@@ -74,9 +74,9 @@ impl MeshData {
 /// The content of a mesh file.
 #[derive(Debug, Clone, Default)]
 pub struct LoadedMeshes {
-    /// One entry per object, whatever its materials; never empty, and none without triangles.
+    /// One entry per object, whatever its materials. Never empty; every entry has triangles.
     pub meshes: Vec<MeshData>,
-    /// What the user should know.
+    /// Warnings for the user.
     pub warnings: Vec<Warning>,
 }
 
@@ -86,7 +86,7 @@ impl LoadedMeshes {
         self.meshes.iter().fold(Aabb::EMPTY, |all, m| all.union(&m.aabb()))
     }
 
-    /// All objects as one mesh, with the name of the first.
+    /// Merges all objects into one mesh, with the name of the first.
     pub fn merged(self) -> MeshData {
         let mut parts = self.meshes.into_iter();
         let mut whole = parts.next().unwrap_or_default();
@@ -100,9 +100,9 @@ impl LoadedMeshes {
 /// Treatment of the up axis of a COLLADA file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum UpAxis {
-    /// Rotate the mesh so that up is +z.
+    /// Rotates the mesh so that its up axis is +z.
     ToZ,
-    /// Ignore it, as rviz and `MoveIt` do for meshes of a URDF.
+    /// Ignores the up axis, as rviz and `MoveIt` do for meshes of a URDF.
     Ignore,
 }
 

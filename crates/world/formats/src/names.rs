@@ -6,12 +6,12 @@ use std::collections::{HashMap, HashSet};
 #[derive(Debug, Default)]
 pub(crate) struct UniqueNames {
     taken: HashSet<String>,
-    /// The next suffix of each name: counting from 2 each time would take quadratic time.
+    /// Next suffix of each name. Counting from 2 every time would take quadratic time.
     next: HashMap<String, usize>,
 }
 
 impl UniqueNames {
-    /// The name, or with the first numeric suffix that makes it unique.
+    /// The name, with the first numeric suffix that makes it unique, if necessary.
     pub(crate) fn unique(&mut self, name: &str) -> String {
         if self.taken.insert(name.to_owned()) {
             return name.to_owned();
@@ -27,10 +27,10 @@ impl UniqueNames {
     }
 }
 
-/// More names than this are not listed.
+/// Largest number of listed names.
 const MAX_LISTED: usize = 40;
 
-/// The first names in backticks, and the number of the others.
+/// The first names in backticks, and the number of further names.
 pub(crate) fn list_names<'a>(names: impl Iterator<Item = &'a str>) -> String {
     let names: Vec<String> = names.map(|n| format!("`{n}`")).collect();
     let more = names.len().saturating_sub(MAX_LISTED);

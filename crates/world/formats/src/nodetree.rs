@@ -8,7 +8,7 @@ use crate::affine::Affine;
 use crate::mesh_data::{LoadedMeshes, MeshData};
 use crate::{FormatError, Warning};
 
-/// Frames with meshes, parents before their children.
+/// A tree of frames with meshes, parents before their children.
 ///
 /// ```
 /// use elbowroom_formats::nodetree::{Node, NodeTree};
@@ -20,47 +20,47 @@ use crate::{FormatError, Warning};
 /// ```
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct NodeTree {
-    /// The model's name, or the file's stem.
+    /// Name of the model, or the file's stem.
     pub name: String,
-    /// Parents come before their children.
+    /// Nodes, parents before their children.
     pub nodes: Vec<Node>,
-    /// What the user should know.
+    /// Warnings for the user.
     pub warnings: Vec<Warning>,
 }
 
 /// A frame of a [`NodeTree`].
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Node {
-    /// Its name in the file; may repeat.
+    /// Name in the file; may repeat.
     pub name: String,
-    /// Index of its parent; `None` at the top.
+    /// Index of the parent; `None` for a top node.
     pub parent: Option<usize>,
-    /// Its rest frame in that of its parent, or in the world at the top (m). In a 3DS file the origin is the pivot.
+    /// Rest frame in the frame of the parent, or in the world for a top node (m). In a 3DS file the origin is the pivot.
     pub in_parent: Pose,
-    /// Meshes in its frame (m), with the scale of the file applied.
+    /// Meshes in the node's frame (m), with the scale of the file applied.
     pub meshes: Vec<MeshData>,
-    /// Its animation in order of time; empty if it does not move. In a 3DS file the first key is the rest frame.
+    /// Animation, in order of time; empty if the node does not move. In a 3DS file the first key is the rest frame.
     pub track: Vec<Keyframe>,
 }
 
 /// The frame of a node at a time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Keyframe {
-    /// Seconds.
+    /// Time, seconds.
     pub time_s: f64,
-    /// The node's frame in that of its parent.
+    /// The node's frame in the frame of its parent.
     pub in_parent: Pose,
 }
 
 impl Node {
-    /// A node without meshes and without animation.
+    /// Creates a node without meshes and without animation.
     pub fn new(name: impl Into<String>, parent: Option<usize>, in_parent: Pose) -> Self {
         Self { name: name.into(), parent, in_parent, ..Self::default() }
     }
 }
 
 impl NodeTree {
-    /// A tree without nodes.
+    /// Creates a tree without nodes.
     pub fn new(name: impl Into<String>) -> Self {
         Self { name: name.into(), ..Self::default() }
     }
@@ -71,7 +71,7 @@ impl NodeTree {
         self.nodes.len() - 1
     }
 
-    /// The rest frame of every node in the world. A parent that does not come before its child counts as the world.
+    /// The rest frame of every node in the world. A parent that is not before its child counts as the world.
     pub fn in_world(&self) -> Vec<Pose> {
         let mut all: Vec<Pose> = Vec::with_capacity(self.nodes.len());
         for node in &self.nodes {
@@ -81,17 +81,17 @@ impl NodeTree {
         all
     }
 
-    /// Indices of the children of a node; of the nodes at the top for `None`.
+    /// Indices of the children of a node; for `None`, of the top nodes.
     pub fn children(&self, of: Option<usize>) -> impl Iterator<Item = usize> + '_ {
         self.nodes.iter().enumerate().filter(move |(_, n)| n.parent == of).map(|(i, _)| i)
     }
 
-    /// Index of the first node of this name.
+    /// Index of the first node with this name.
     pub fn find(&self, name: &str) -> Option<usize> {
         self.nodes.iter().position(|n| n.name == name)
     }
 
-    /// Multiplies all lengths.
+    /// Multiplies all lengths by a factor.
     pub fn scale(&mut self, factor: f64) {
         for node in &mut self.nodes {
             node.in_parent.translation = node.in_parent.translation * factor;
@@ -139,15 +139,16 @@ impl NodeTree {
     }
 }
 
-/// The rigid part of an affine transform: its origin, and its axes made orthonormal, x first. The rest (scale, shear,
-/// mirror) is applied to the meshes.
+/// The rigid part of an affine transform: its origin, and its axes made orthonormal, x first.
+///
+/// Scale, shear and mirror are applied to the meshes instead.
 pub(crate) fn rigid(map: &Affine) -> Pose {
     let column = |c: usize| Vec3::new(map.0[0][c], map.0[1][c], map.0[2][c]);
     let x = if map.is_mirror() { -column(0) } else { column(0) };
     Pose::new(Rotation::from_x_and_xy(x, column(1)).unwrap_or(Rotation::IDENTITY), column(3))
 }
 
-/// The value at a time, interpolated between the neighbouring keys; `None` without keys. Keys are in order of time.
+/// The value at a time, interpolated between the neighbouring keys; `None` without keys. Keys must be in order of time.
 pub(crate) fn sample<T: Copy>(keys: &[(f64, T)], time: f64, interpolate: impl Fn(T, T, f64) -> T) -> Option<T> {
     let after = keys.partition_point(|(t, _)| *t < time);
     match (after.checked_sub(1).and_then(|i| keys.get(i)), keys.get(after)) {

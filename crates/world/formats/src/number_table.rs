@@ -21,39 +21,39 @@ type Result<T> = std::result::Result<T, FormatError>;
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct NumberTable {
-    /// The file, for messages.
+    /// Path of the file, for messages.
     pub file: PathBuf,
-    /// Names of the columns, each once.
+    /// Names of the columns, all different.
     pub columns: Vec<String>,
-    /// Line and values of each row.
+    /// Line number and values of each row.
     pub rows: Vec<(usize, Vec<f64>)>,
 }
 
 /// A row of a table with a column of times.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TimedRow {
-    /// Its line in the file.
+    /// Line number in the file.
     pub line: usize,
-    /// Its time, seconds.
+    /// Time, seconds.
     pub t_s: f64,
     /// Values of the selected columns.
     pub values: Vec<f64>,
 }
 
 impl NumberTable {
-    /// Reads a file of at most 1 GiB; blank lines are skipped.
+    /// Reads a file of at most 1 GiB. Blank lines are skipped.
     ///
     /// # Errors
-    /// [`FormatError`] with the line of a cell that is not a finite number, of a row with another number of cells than the
-    /// header, or of a header that repeats a name.
+    /// [`FormatError`] with the line of a cell that is not a finite number, of a row whose number of cells differs from
+    /// the header, or of a header that repeats a name.
     pub fn read(path: &Path) -> Result<Self> {
         Self::from_lines(path, CsvLines::open(path, csv::MAX_BYTES)?)
     }
 
-    /// Parses the text of such a file; `path` is named in messages.
+    /// Parses the text of a CSV file; `path` is named in messages.
     ///
     /// # Errors
-    /// As for [`Self::read`].
+    /// The errors of [`Self::read`].
     pub fn parse(path: &Path, text: &str) -> Result<Self> {
         Self::from_lines(path, CsvLines::new(text.as_bytes(), path))
     }
@@ -80,7 +80,7 @@ impl NumberTable {
     /// Index of a column.
     ///
     /// # Errors
-    /// [`FormatError`] that lists the columns.
+    /// [`FormatError`] that lists the columns, if the table has no such column.
     pub fn column(&self, name: &str) -> Result<usize> {
         self.columns.iter().position(|c| c == name).ok_or_else(|| {
             let what = missing_column(name, &self.columns);
@@ -91,7 +91,7 @@ impl NumberTable {
     /// The rows as times (column `t_s`) and values of some columns.
     ///
     /// # Errors
-    /// [`FormatError`] if there is no column `t_s` or no row, or where the time does not rise.
+    /// [`FormatError`] if the table has no column `t_s` or no rows, or if the time does not increase.
     pub fn timed(&self, columns: &[usize]) -> Result<Vec<TimedRow>> {
         let time = self.column("t_s")?;
         let mut last_s = f64::NEG_INFINITY;
@@ -165,7 +165,7 @@ mod tests {
         assert!(message(".").contains("is a folder"));
     }
 
-    /// Comparing all names with all others would take hours.
+    /// Comparing every name with all other names would take hours.
     #[test]
     fn a_header_of_many_columns_is_read_quickly() {
         let header = (0..100_000).map(|i| i.to_string()).collect::<Vec<_>>().join(",");

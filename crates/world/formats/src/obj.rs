@@ -1,7 +1,7 @@
 //! Wavefront OBJ: polygons of any size, relative indices, continued lines.
 //!
-//! One entry per object: by `o` where the file has any, else by `g`; a repeated name continues its object.
-//! Materials, normals, texture coordinates, points and lines are ignored, unknown statements with a warning.
+//! The result has one entry per object: by `o` if the file has any, else by `g`. A repeated name continues its object.
+//! Materials, normals, texture coordinates, points and lines are ignored. Unknown statements are ignored with a warning.
 
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
@@ -13,13 +13,13 @@ use crate::mesh_data::{LoadedMeshes, MeshData, split_vertices};
 use crate::tokens::{Lines, integer, show, vector};
 use crate::{FormatError, Warning, input, polygon};
 
-/// Number of different unknown words that are warned of.
+/// Largest number of different unknown words with a warning.
 const MAX_UNKNOWN_WORDS: usize = 20;
 
-/// Parses an OBJ file. Numbers are taken as metres.
+/// Parses an OBJ file. Numbers are metres.
 ///
 /// # Errors
-/// Faces without corners, missing vertices, invalid numbers; a file of unknown statements alone.
+/// [`FormatError`] for faces without corners, missing vertices, invalid numbers, or a file with unknown statements only.
 pub fn parse(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> {
     input::check_content(bytes, file)?;
     let text = input::text_bytes(bytes, file)?;
@@ -34,8 +34,9 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> {
     parser.finish()
 }
 
-/// Joins lines that end with a backslash to the next line. Their line ends follow after the joined line, so that later
-/// lines keep their numbers.
+/// Joins lines that end with a backslash to the next line.
+///
+/// Their line ends follow after the joined line, so that later lines keep their numbers.
 fn join_lines(text: &[u8]) -> std::borrow::Cow<'_, [u8]> {
     if !text.contains(&b'\\') {
         return text.into();
@@ -65,7 +66,7 @@ fn join_lines(text: &[u8]) -> std::borrow::Cow<'_, [u8]> {
 struct Face {
     object: usize,
     line: usize,
-    /// End of its corners in `corners`; they begin at the end of the face before.
+    /// End of its corners in `corners`; they begin at the end of the previous face.
     end: usize,
 }
 
@@ -78,7 +79,7 @@ struct ObjParser<'a> {
     index_of: HashMap<String, usize>,
     object: usize,
     has_objects: bool,
-    /// The first statement that OBJ does not have: its line and its word.
+    /// Line and word of the first statement that OBJ does not define.
     first_unknown: Option<(usize, String)>,
     unknown_words: HashSet<String>,
     warnings: WarningList,
@@ -118,7 +119,7 @@ impl<'a> ObjParser<'a> {
         Ok(())
     }
 
-    /// Warns of a statement that OBJ does not have, once for each word.
+    /// Warns about a statement that OBJ does not define, once per word.
     fn unknown(&mut self, line: usize, word: &[u8]) {
         let word = show(word);
         self.first_unknown.get_or_insert_with(|| (line, word.clone()));
@@ -212,7 +213,7 @@ impl<'a> ObjParser<'a> {
     }
 }
 
-/// True for a statement of OBJ that is read or ignored: those of the format's description, and former ones.
+/// True for a known statement of OBJ, read or ignored: from the format's description, or a former one.
 fn is_keyword(word: &[u8]) -> bool {
     const KEYWORDS: &[&str] = &[
         "v",
@@ -287,7 +288,7 @@ mod tests {
         let skipped = |line, word| (Some(line), format!("`{word}` is no OBJ statement: such lines are skipped"));
         let expected = [skipped(1, "exported"), skipped(5, "tag")];
         assert_eq!(warned, expected.each_ref().map(|(line, what)| (*line, what.as_str())));
-        // Without a vertex it is not an OBJ file.
+        // A file without vertices is not an OBJ file.
         let error = parse(b"\nhello world\n", Path::new("a.obj")).unwrap_err();
         assert!(error.line == Some(2) && error.what.contains("is this an OBJ file?"), "{error}");
     }

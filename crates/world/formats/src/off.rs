@@ -13,10 +13,10 @@ pub(crate) fn is_header(head: &[u8]) -> bool {
     word.strip_suffix(b"OFF").is_some_and(|prefix| prefix.len() <= 5 && prefix.iter().all(|b| b"STCN4n".contains(b)))
 }
 
-/// Parses an OFF file. Numbers are taken as metres.
+/// Parses an OFF file. Numbers are metres.
 ///
 /// # Errors
-/// More elements announced than the file can hold, missing vertices, invalid numbers, binary OFF.
+/// [`FormatError`] for declared counts that the file cannot hold, missing vertices, invalid numbers, or binary OFF.
 pub fn parse(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> {
     input::check_content(bytes, file)?;
     let text = input::text_bytes(bytes, file)?;
@@ -52,8 +52,9 @@ fn next<'a>(lines: &mut Lines<'a>, file: &Path, of: impl Fn() -> String) -> Resu
     })
 }
 
-/// The numbers of vertices and faces, on the header's line or the next; counts that the file cannot hold are refused before
-/// anything is allocated.
+/// The numbers of vertices and faces, on the header's line or the next line.
+///
+/// Counts that the file cannot hold are refused before memory is allocated.
 fn counts(lines: &mut Lines<'_>, file: &Path) -> Result<(usize, usize), FormatError> {
     let (mut line, mut content) = next(lines, file, || "its counts".to_owned())?;
     let mut rest: Vec<&[u8]> = words(content).collect();

@@ -1,4 +1,4 @@
-//! PNG, read and written by the crate `png`.
+//! PNG images, read and written with the crate `png`.
 
 use std::io::{self, Cursor, Write};
 use std::path::Path;
@@ -8,20 +8,22 @@ use png::{BitDepth, ColorType, Compression, Decoder, Encoder, Filter, Limits, Tr
 use crate::FormatError;
 use crate::image::{ImageHeader, PixelFormat, check_size, cleared_on_error, undecodable};
 
-/// Memory that the decoder may take beside the pixels, bytes.
+/// Memory that the decoder may use in addition to the pixels, bytes.
 const MAX_DECODER_BYTES: usize = 1 << 30;
 
-/// Whether these bytes begin a PNG file.
+/// Whether these bytes are the beginning of a PNG file.
 pub fn is_png(bytes: &[u8]) -> bool {
     bytes.starts_with(b"\x89PNG")
 }
 
-/// Reads a PNG file into `pixels`, whose memory is reused. Palettes and samples of less than 8 bits are expanded to 8
-/// bits, a transparent colour to an opacity channel; interlaced files are read too. `file` is named in messages.
+/// Reads a PNG file into `pixels`, whose memory is reused. `file` is named in messages.
+///
+/// Palettes and samples of less than 8 bits are expanded to 8 bits, a transparent colour to an opacity channel.
+/// Interlaced files are supported.
 ///
 /// # Errors
-/// Files that are damaged, cut off, or announce more than 16,384 pixels a side or more pixels than their bytes can
-/// encode. `pixels` is then empty.
+/// [`FormatError`] if the file is damaged or cut off, or declares a side above 16,384 pixels or more pixels than its
+/// bytes can encode. `pixels` is then empty.
 ///
 /// ```
 /// use elbowroom_formats::image::{ImageHeader, PixelFormat};
@@ -43,7 +45,7 @@ fn decode(bytes: &[u8], file: &Path, pixels: &mut Vec<u8>) -> Result<ImageHeader
     decoder.set_transformations(Transformations::EXPAND);
     decoder.set_ignore_text_chunk(true);
     decoder.set_ignore_iccp_chunk(true);
-    // The size is checked before the decoder takes memory for a row.
+    // The size is checked before the decoder allocates a row.
     let (width, height) = decoder.read_header_info().map_err(|e| undecodable(file, e))?.size();
     let (width, height) = (width as usize, height as usize);
     check_size(&ImageHeader { width, height, format: PixelFormat::Grey8 }, bytes.len(), file)?;
@@ -72,11 +74,11 @@ fn pixel_format(color: ColorType, depth: BitDepth) -> Option<PixelFormat> {
     }
 }
 
-/// Writes an image as PNG, compressed for speed rather than for size, and flushes `out`.
+/// Writes an image as PNG, compressed for speed instead of size, and flushes `out`.
 ///
 /// # Errors
-/// What `out` reports; [`io::ErrorKind::InvalidInput`] for an image without pixels or with another number of bytes than
-/// [`ImageHeader::byte_count`].
+/// The errors of `out`; [`io::ErrorKind::InvalidInput`] for an image without pixels, or if the number of bytes differs
+/// from [`ImageHeader::byte_count`].
 pub fn write(mut out: impl Write, header: &ImageHeader, pixels: &[u8]) -> io::Result<()> {
     let side = |n: usize| u32::try_from(n).map_err(|e| io::Error::new(io::ErrorKind::InvalidInput, e));
     let mut encoder = Encoder::new(&mut out, side(header.width)?, side(header.height)?);
@@ -95,7 +97,7 @@ pub fn write(mut out: impl Write, header: &ImageHeader, pixels: &[u8]) -> io::Re
     out.flush()
 }
 
-/// Keeps errors of the output as they are; all others are about the image.
+/// Keeps errors of the output unchanged; all other errors are about the image.
 fn invalid_input(error: png::EncodingError) -> io::Error {
     match error {
         png::EncodingError::IoError(e) => e,
@@ -133,7 +135,7 @@ mod tests {
         error.to_string()
     }
 
-    /// A file of another encoder setup than [`write`]'s.
+    /// A file with an encoder setup that [`write`] does not use.
     fn special(color: ColorType, depth: BitDepth, width: u32, height: u32, rows: &[u8]) -> Vec<u8> {
         let mut file = Vec::new();
         let mut encoder = Encoder::new(&mut file, width, height);

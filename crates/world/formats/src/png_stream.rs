@@ -1,11 +1,11 @@
-//! PNG pictures one after another in a stream, as `ffmpeg -f image2pipe -c:v png -` writes them.
+//! Streams of consecutive PNG pictures, as `ffmpeg -f image2pipe -c:v png -` writes them.
 
 use std::io::{self, ErrorKind, Read};
 
 const SIGNATURE: [u8; 8] = *b"\x89PNG\r\n\x1a\n";
-/// Largest picture, bytes.
+/// Largest size of a picture, bytes.
 const MAX_BYTES: usize = 256 << 20;
-/// Length, type and checksum of a chunk.
+/// Size of the length, type and checksum of a chunk, bytes.
 const CHUNK_FRAME: usize = 12;
 
 /// Splits a stream into PNG pictures.
@@ -29,15 +29,15 @@ pub struct PngStream<R> {
 }
 
 impl<R: Read> PngStream<R> {
-    /// Reads from a stream that begins with a picture.
+    /// Creates a reader for a stream that begins with a picture.
     pub fn new(input: R) -> Self {
         Self { input }
     }
 
-    /// The bytes of the next picture; `None` at the end of the stream. Its contents are not checked.
+    /// Returns the bytes of the next picture; `None` at the end of the stream. The content of the picture is not checked.
     ///
     /// # Errors
-    /// A stream that cannot be read, that ends within a picture, or whose next bytes are no PNG picture.
+    /// [`io::Error`] if the stream cannot be read, ends within a picture, or its next bytes are not a PNG picture.
     pub fn next_picture(&mut self) -> io::Result<Option<Vec<u8>>> {
         let mut picture = vec![0; SIGNATURE.len()];
         if !self.read_or_end(&mut picture)? {
@@ -63,7 +63,7 @@ impl<R: Read> PngStream<R> {
 
     fn append(&mut self, picture: &mut Vec<u8>, count: usize) -> io::Result<()> {
         let from = picture.len();
-        // Memory grows with what arrives, not with what a header announces.
+        // Memory grows with the received bytes, not with the length that a header declares.
         let read = self.input.by_ref().take(count as u64).read_to_end(picture)?;
         if picture.len() - from == count && read == count {
             return Ok(());
@@ -71,7 +71,7 @@ impl<R: Read> PngStream<R> {
         Err(io::Error::new(ErrorKind::UnexpectedEof, "the stream ends within a picture"))
     }
 
-    /// Fills the buffer; false at the end of the stream.
+    /// Fills the buffer. Returns false at the end of the stream.
     fn read_or_end(&mut self, buffer: &mut [u8]) -> io::Result<bool> {
         let mut filled = 0;
         while filled < buffer.len() {

@@ -1,22 +1,23 @@
-//! PNM, the files of Netpbm: PBM, PGM and PPM, in text (P1 to P3) and in bytes (P4 to P6).
+//! PNM, the image files of Netpbm: PBM, PGM and PPM, as text (P1 to P3) and binary (P4 to P6).
 
 use std::path::Path;
 
 use crate::FormatError;
 use crate::image::{ImageHeader, PixelFormat, check_size, cleared_on_error, undecodable};
 
-/// Whether these bytes begin a PNM file.
+/// Whether these bytes are the beginning of a PNM file.
 pub fn is_pnm(bytes: &[u8]) -> bool {
     matches!(bytes, [b'P', b'1'..=b'6', ..])
 }
 
-/// Reads a PNM file into `pixels`, whose memory is reused. Samples with a maximum up to 255 become 8-bit samples, others
-/// 16-bit samples; where the maximum is smaller than the type's, they are scaled to its full range. Bitmaps become grey
-/// images of 0 (black, 1 in the file) and 255. `file` is named in messages.
+/// Reads a PNM file into `pixels`, whose memory is reused. `file` is named in messages.
+///
+/// Samples with a maximum up to 255 become 8-bit samples, others 16-bit samples. If the maximum is smaller than the
+/// type's maximum, samples are scaled to the full range. Bitmaps become grey images of 0 (black, 1 in the file) and 255.
 ///
 /// # Errors
-/// Files that are damaged, cut off, or announce more than 16,384 pixels a side or more pixels than their bytes can
-/// encode. `pixels` is then empty.
+/// [`FormatError`] if the file is damaged or cut off, or declares a side above 16,384 pixels or more pixels than its
+/// bytes can encode. `pixels` is then empty.
 ///
 /// ```
 /// use elbowroom_formats::pnm;
@@ -76,7 +77,7 @@ impl Scanner<'_> {
         self.rest = &self.rest[length..];
     }
 
-    /// A number after blanks and comments, and the one blank that ends it.
+    /// Reads a number after blanks and comments, and the one blank that ends it.
     fn header_number(&mut self) -> Option<usize> {
         self.skip_while(is_blank);
         while self.rest.first() == Some(&b'#') {
@@ -99,11 +100,11 @@ impl Scanner<'_> {
         std::str::from_utf8(digits).ok()?.parse::<u32>().ok().map(|n| n as usize)
     }
 
-    /// Whole numbers with blanks between them.
+    /// Reads whole numbers separated by blanks.
     fn samples_in_text(&mut self, header: &ImageHeader, pixels: &mut Vec<u8>) -> Result<(), &'static str> {
         let bytes = header.format.bytes_per_sample();
         let largest = if bytes == 1 { 0xff } else { 0xffff };
-        // A digit for each sample: memory stays in proportion to the file.
+        // At least a digit per sample, so that memory stays in proportion to the file.
         if header.byte_count() / bytes > self.rest.len() {
             return Err("it ends before its pixels");
         }
@@ -120,7 +121,7 @@ impl Scanner<'_> {
         Ok(())
     }
 
-    /// Digits 0 and 1, with or without blanks between them.
+    /// Reads digits 0 and 1, with or without blanks between them.
     fn bits_in_text(&mut self, count: usize, pixels: &mut Vec<u8>) -> Result<(), &'static str> {
         for &byte in self.rest.iter().filter(|&&b| !is_blank(b)).take(count) {
             match byte {
@@ -132,7 +133,7 @@ impl Scanner<'_> {
         if pixels.len() == count { Ok(()) } else { Err("it ends before its pixels") }
     }
 
-    /// Eight pixels in a byte, the first in its highest bit; every row begins a new byte.
+    /// Reads eight pixels per byte, the first in the highest bit. Every row begins with a new byte.
     fn bits(&mut self, width: usize, height: usize, pixels: &mut Vec<u8>) -> Option<()> {
         let stride = width.div_ceil(8);
         let rows = self.rest.get(..stride * height)?;

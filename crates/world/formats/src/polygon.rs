@@ -5,13 +5,13 @@
 
 use elbowroom_spatial::Vec3;
 
-/// Upper bound on point-in-ear tests per corner, against hostile polygons.
+/// Largest number of point-in-ear tests per corner, as a limit for hostile polygons.
 const MAX_TESTS_PER_CORNER: usize = 1000;
 
-/// Appends the triangles of a polygon, with its winding. Fewer than three corners give none.
+/// Appends the triangles of a polygon, with its winding. Fewer than three corners give no triangles.
 ///
-/// What has no ears (crossing edges, collinear corners) becomes a fan, so that no corner is lost.
-/// Every index must be below `vertices.len()`.
+/// A polygon without ears (crossing edges, collinear corners) becomes a fan, so that no corner is lost. Every index must
+/// be below `vertices.len()`.
 pub(crate) fn triangulate(vertices: &[Vec3], polygon: &[u32], out: &mut Vec<[u32; 3]>) {
     match *polygon {
         [] | [_] | [_, _] => {}
@@ -28,7 +28,9 @@ pub(crate) fn fan(polygon: &[u32], out: &mut Vec<[u32; 3]>) {
     out.extend(polygon.get(1..).unwrap_or_default().windows(2).map(|w| [polygon[0], w[0], w[1]]));
 }
 
-/// Appends the triangles of a strip: each vertex from the third on with the two before it, every other one reversed.
+/// Appends the triangles of a strip: each vertex from the third on with the two before it.
+///
+/// Every second triangle is reversed.
 pub(crate) fn strip(vertices: &[u32], out: &mut Vec<[u32; 3]>) {
     out.extend(
         vertices.windows(3).enumerate().map(|(i, w)| if i % 2 == 0 { [w[0], w[1], w[2]] } else { [w[1], w[0], w[2]] }),
@@ -149,7 +151,7 @@ mod tests {
             prop_assert!((area_of(&vertices, &out) - expected).abs() < 1e-9 * expected);
         }
 
-        /// Any corners at all, repeated and crossing: n - 2 triangles, only of given corners.
+        /// Arbitrary corners, repeated and crossing: n - 2 triangles, all with given corners.
         #[test]
         fn any_polygon_gives_n_minus_two_triangles(xs in prop::collection::vec((-2..3i8, -2..3i8, -1..2i8), 1..12),
                                          polygon in prop::collection::vec(any::<prop::sample::Index>(), 3..30)) {

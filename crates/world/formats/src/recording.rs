@@ -1,5 +1,6 @@
-//! Recordings as controllers write them: degrees, millimetres, semicolons and decimal commas, other names and other times.
-//! [`read`] makes the joint states of this project of them.
+//! Recordings as controllers write them: with degrees, millimetres, semicolons, decimal commas, other names and times.
+//!
+//! [`read`] converts them to joint states of this project.
 
 use std::borrow::Cow;
 use std::fmt::Write;
@@ -12,25 +13,26 @@ use crate::{FormatError, JointStateOptions, JointStates, csv, read_file};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
-/// How a recording is written. The default is that of [`JointStates`]: radians, metres, a column `t_s`.
+/// Layout of a recording. The default is the layout of [`JointStates`]: radians, metres, a column `t_s`.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RecordingLayout {
     /// Unit of revolute joints.
     pub angle: AngleUnit,
     /// Unit of prismatic joints.
     pub length: LengthUnit,
-    /// Column of the time; `None`: `t_s`.
+    /// Name of the time column; `None` means `t_s`.
     pub time: Option<String>,
-    /// Unit of the time, s: 0.001 for milliseconds; `None`: seconds.
+    /// Unit of the time, s: 0.001 for milliseconds; `None` means seconds.
     pub time_unit_s: Option<f64>,
-    /// Time from row to row, s, if there is no column of the time.
+    /// Time from row to row, s, for a recording without a time column. If given, it overrides a time column.
     pub period_s: Option<f64>,
-    /// Joints and their columns, where these have other names. Names that differ in capitals alone are the same.
+    /// Pairs of a joint and its column, if the column has another name. Upper and lower case do not matter.
     pub columns: Vec<(String, String)>,
 }
 
-/// Reads a recording of one robot. Cells are separated by commas, semicolons or tabs; with semicolons or tabs numbers may have
-/// decimal commas.
+/// Reads a recording of one robot.
+///
+/// Cells are separated by commas, semicolons or tabs. With semicolons or tabs, numbers may have decimal commas.
 ///
 /// ```
 /// use elbowroom_formats::recording::{RecordingLayout, read};
@@ -56,7 +58,7 @@ pub struct RecordingLayout {
 /// ```
 ///
 /// # Errors
-/// [`FormatError`] names the line and the column.
+/// [`FormatError`] with the line and the column.
 pub fn read(path: &Path, robot: &str, chain: &Chain, layout: &RecordingLayout) -> Result<JointStates> {
     let text = String::from_utf8(read_file(path, csv::MAX_BYTES, "a file with fewer rows or columns")?)
         .map_err(|_| FormatError::new(path, None, "is not UTF-8 text").hint("the file saved as UTF-8"))?;
@@ -64,12 +66,12 @@ pub fn read(path: &Path, robot: &str, chain: &Chain, layout: &RecordingLayout) -
     JointStates::parse(path, &text, &JointStateOptions::trajectory(robot, chain))
 }
 
-/// What a column is.
+/// Conversion of the cells of a column.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Cell {
-    /// As it is, but for the decimal comma.
+    /// Unchanged, except for the decimal comma.
     Kept,
-    /// A number times this.
+    /// A number that is multiplied by the scale.
     Scaled(Scale),
 }
 
@@ -90,7 +92,7 @@ impl Scale {
     }
 }
 
-/// A recording, line by line, with commas, the names of the chain, and SI units. Lines keep their numbers.
+/// Translation of a recording, line by line, to commas, the names of the chain, and SI units. Lines keep their numbers.
 struct Translation<'t> {
     text: &'t str,
     separator: char,
@@ -121,11 +123,11 @@ impl<'t> Translation<'t> {
         Ok(Self { text, separator, names, cells, period_s: layout.period_s })
     }
 
-    /// The name of a column in this project, and what it holds.
+    /// The name of a column in this project, and the conversion of its cells.
     fn column(name: &str, robot: &str, chain: &Chain, layout: &RecordingLayout, time: &str) -> (String, Cell) {
         if name.eq_ignore_ascii_case(time) {
             let unit = layout.time_unit_s.map_or(Cell::Kept, |unit_s| Cell::Scaled(Scale::Seconds(unit_s)));
-            // Of two times the given period is used.
+            // If a time column and a period are given, the period is used.
             let of_file = if layout.period_s.is_some() { format!("{name} of the file") } else { "t_s".to_owned() };
             return (of_file, unit);
         }
@@ -173,7 +175,7 @@ impl<'t> Translation<'t> {
         out
     }
 
-    /// A cell of a row; what is not a number stays as it is and is refused later, with its line.
+    /// Converts a cell of a row. Text that is not a number stays unchanged and is refused later, with its line.
     fn cell<'c>(&self, column: usize, cell: &'c str) -> Cow<'c, str> {
         let cell = unquoted(cell);
         let cell = if self.separator == ',' { Cow::Borrowed(cell) } else { Cow::Owned(cell.replace(',', ".")) };

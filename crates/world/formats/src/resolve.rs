@@ -1,16 +1,16 @@
-//! Resolves the `filename` of a URDF to a file.
+//! Resolution of the `filename` of a URDF to a file.
 
 use std::path::{Path, PathBuf};
 
-/// Directories above the file that are searched, and entries of each that are searched for a `package.xml`.
+/// Largest number of searched directories above the file, and of entries of each that are searched for a `package.xml`.
 const MAX_LEVELS: usize = 24;
 const MAX_ENTRIES: usize = 2000;
 
-/// The file of a reference, or a description of the search.
+/// Returns the file to which a reference refers, or a description of the search.
 ///
-/// `package://NAME/PATH` (and `model://`) is searched in every directory from `base` upward: in a directory named NAME, or
-/// with a `package.xml` of that name, there or directly below. `file://` is absolute, all else relative to `base`. The
-/// case of the last component of the path may differ.
+/// `package://NAME/PATH` (and `model://`) is searched in every directory from `base` upward: in a directory named NAME,
+/// or with a `package.xml` of that name, in this directory or directly below. `file://` is absolute; all other references
+/// are relative to `base`. The case of the last component of the path may differ.
 pub(crate) fn resolve(reference: &str, base: &Path) -> Result<PathBuf, String> {
     let reference = reference.trim();
     let try_both =
@@ -45,7 +45,7 @@ fn describe_search(reference: &str, base: &Path) -> String {
     }
 }
 
-/// The name of a folder; the current one has none in a relative path.
+/// The name of a folder; "the current folder" for an empty relative path.
 fn folder(base: &Path) -> String {
     if base.as_os_str().is_empty() { "the current folder".to_owned() } else { base.display().to_string() }
 }
@@ -63,7 +63,7 @@ fn package_directories<'a>(name: &'a str, base: &Path) -> impl Iterator<Item = P
         let below = level.join(name);
         [is_itself.then_some(level), below.is_dir().then_some(below)].into_iter().flatten()
     });
-    // Reading the package.xml of every subdirectory is slow and comes last.
+    // Reading the package.xml of every subdirectory is slow, so it comes last.
     by_directory.chain(levels.into_iter().flat_map(move |level| subdirectories_named(name, &level)))
 }
 
@@ -87,7 +87,7 @@ fn package_name(directory: &Path) -> Option<String> {
     Some(crate::xml::child(document.root_element(), "name")?.text()?.trim().to_owned())
 }
 
-/// The path if it is a file, or the only file in the directory whose name differs in case alone.
+/// The path if it is a file, or the only file in the directory whose name differs only in case.
 fn existing_file(path: &Path) -> Option<PathBuf> {
     if path.is_file() {
         return Some(path.to_owned());
@@ -102,7 +102,7 @@ fn existing_file(path: &Path) -> Option<PathBuf> {
     }
 }
 
-/// Decodes `%20` and the like; other text stays.
+/// Decodes `%20` and similar sequences; other text stays unchanged.
 pub(crate) fn percent_decode(text: &str) -> String {
     let mut out = Vec::with_capacity(text.len());
     let mut rest = text.as_bytes();

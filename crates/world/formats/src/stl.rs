@@ -1,7 +1,7 @@
 //! STL, binary and ASCII.
 //!
-//! Some binary files begin with `solid`, so the size decides first: a file of exactly `84 + 50·n` bytes, with n at
-//! byte 80, is binary. Normals are not read: the winding determines the outside.
+//! Some binary files begin with `solid`, so the size decides first: a file of exactly `84 + 50·n` bytes, with n at byte
+//! 80, is binary. Normals are not read: the winding determines the outside.
 
 use std::collections::HashMap;
 use std::io::{self, Write};
@@ -31,10 +31,10 @@ fn promised_size(bytes: &[u8]) -> Option<usize> {
     (count as usize).checked_mul(FACET)?.checked_add(HEADER)
 }
 
-/// Parses an STL file; one entry per `solid` of an ASCII file, one for a binary file. Numbers are taken as metres.
+/// Parses an STL file: one entry per `solid` of an ASCII file, one entry for a binary file. Numbers are metres.
 ///
 /// # Errors
-/// Truncated files, unexpected words, invalid numbers.
+/// [`FormatError`] for truncated files, unexpected words, or invalid numbers.
 pub fn parse(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> {
     input::check_content(bytes, file)?;
     let text = input::text_bytes(bytes, file)?;
@@ -43,7 +43,7 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> {
     if is_text { parse_ascii(&text, file) } else { parse_binary(bytes, file) }
 }
 
-/// Merges bitwise equal corners of triangles to shared vertices.
+/// Merges bitwise equal corners of triangles into shared vertices.
 #[derive(Default)]
 struct VertexMerger {
     mesh: MeshData,
@@ -172,7 +172,7 @@ impl AsciiReader<'_> {
     }
 
     fn facet(&mut self, builder: &mut VertexMerger) -> Result<(), FormatError> {
-        // The normal is not used and may be anything, `-nan(ind)` included.
+        // The normal is not used and may be anything, including `-nan(ind)`.
         let mut words_of_normal = 0;
         while self.words.peek().is_some_and(|w| !w.eq_ignore_ascii_case(b"outer")) && words_of_normal < 4 {
             self.words.next();
@@ -202,12 +202,10 @@ impl AsciiReader<'_> {
     }
 }
 
-/// Writes a binary STL of all meshes together; numbers are metres, rounded to single precision as the format requires.
-///
-/// Triangles with an index out of range are an error.
+/// Writes a binary STL of all meshes together. Numbers are metres, rounded to single precision as the format requires.
 ///
 /// # Errors
-/// What the writer reports; [`io::ErrorKind::InvalidInput`] for an index out of range or more than 2³² triangles.
+/// The errors of the writer; [`io::ErrorKind::InvalidInput`] for an index out of range or more than 2³² triangles.
 ///
 /// ```
 /// use elbowroom_formats::{MeshData, stl};

@@ -6,7 +6,7 @@ use elbowroom_spatial::Vec3;
 
 use crate::FormatError;
 
-/// Tokens of a text, separated by white space; `\n`, `\r\n` and a lone `\r` end a line.
+/// Tokens of a text, separated by white space. `\n`, `\r\n` and a lone `\r` end a line.
 #[derive(Debug, Clone)]
 pub(crate) struct Tokens<'a> {
     bytes: &'a [u8],
@@ -32,7 +32,7 @@ impl<'a> Tokens<'a> {
         &self.bytes[self.position..]
     }
 
-    /// The rest of the present line, without its ending.
+    /// The rest of the current line, without its ending.
     pub(crate) fn rest_of_line(&mut self) -> &'a [u8] {
         let rest = self.rest();
         let length = rest.iter().position(|&b| b == b'\n' || b == b'\r').unwrap_or(rest.len());
@@ -79,12 +79,12 @@ impl<'a> Lines<'a> {
         self.bytes.len()
     }
 
-    /// The number of the line last returned.
+    /// Number of the last returned line.
     pub(crate) fn line(&self) -> usize {
         self.line
     }
 
-    /// The next line that is not blank without its comment (`#`).
+    /// The next line that is not blank after its comment (`#`) is removed.
     pub(crate) fn next_content(&mut self) -> Option<(usize, &'a [u8])> {
         for (line, text) in self.by_ref() {
             let content = text.split(|&b| b == b'#').next().unwrap_or(text).trim_ascii();
@@ -111,7 +111,7 @@ impl<'a> Iterator for Lines<'a> {
     }
 }
 
-/// A decimal number, also `nan` and `inf`.
+/// Parses a decimal number, or `nan` and `inf`.
 pub(crate) fn number(word: &[u8]) -> Option<f64> {
     std::str::from_utf8(word).ok()?.parse().ok()
 }
@@ -120,7 +120,7 @@ pub(crate) fn integer(word: &[u8]) -> Option<i64> {
     std::str::from_utf8(word).ok()?.parse().ok()
 }
 
-/// A token for a message: short and printable.
+/// Formats a token for a message: short and printable.
 pub(crate) fn show(word: &[u8]) -> String {
     let text = String::from_utf8_lossy(&word[..word.len().min(60)]);
     let mut shown: String = text.chars().take(40).map(|c| if c.is_control() { '?' } else { c }).collect();
@@ -130,7 +130,7 @@ pub(crate) fn show(word: &[u8]) -> String {
     shown
 }
 
-/// A name for a message: whole, unless it is longer than any name that people write.
+/// Formats a name for a message. Only unusually long names are shortened.
 pub(crate) fn show_name(name: &str) -> String {
     const MAX_CHARS: usize = 200;
     let mut shown: String = name.chars().take(MAX_CHARS).map(|c| if c.is_control() { '?' } else { c }).collect();
@@ -140,7 +140,7 @@ pub(crate) fn show_name(name: &str) -> String {
     shown
 }
 
-/// Three finite numbers from the next tokens.
+/// Reads three finite numbers from the next tokens.
 pub(crate) fn vector<'a>(
     words: &mut impl Iterator<Item = &'a [u8]>,
     file: &Path,
@@ -168,7 +168,7 @@ pub(crate) fn vector<'a>(
     Ok(v.into())
 }
 
-/// Line numbers of byte offsets.
+/// Index from byte offsets to line numbers.
 pub(crate) struct LineIndex {
     /// Offset of the first byte of each line after the first.
     starts: Vec<usize>,

@@ -1,12 +1,15 @@
-//! Files that are written whole, or not at all.
+//! Files that are written completely or not at all.
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// The new content of a file. It stands beside the file until [`Self::put`], so that a full disk, an error or a power cut leaves what
-/// was there before. Dropped before that, it leaves nothing. A pipe or a device is written to directly.
+/// New content of a file, written completely or not at all.
+///
+/// The content is in a file beside the target until [`Self::put`]. A full disk, an error or a power cut leaves the
+/// previous content in place. If the value is dropped before `put`, the file beside the target is removed. A pipe or a
+/// device is written directly.
 ///
 /// ```
 /// use elbowroom_formats::WholeFile;
@@ -21,31 +24,31 @@ use std::sync::atomic::{AtomicU32, Ordering};
 #[derive(Debug)]
 pub struct WholeFile {
     path: PathBuf,
-    /// Beside the file; `None` for a pipe or a device.
+    /// The file beside the target; `None` for a pipe or a device.
     beside: Option<(Beside, File)>,
 }
 
 impl WholeFile {
-    /// Writes the content by `write`, and puts it in its place.
+    /// Writes the content with `write`, and replaces the target.
     ///
     /// # Errors
-    /// What `write` says, or the system.
+    /// The errors of `write` or of the system.
     pub fn write(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
         Self::begin(path, write)?.put()
     }
 
-    /// Writes the content by `write` beside the file. It has the permissions of the file that it replaces.
+    /// Writes the content with `write` to a file beside the target, with the permissions of the file to be replaced.
     ///
     /// # Errors
-    /// What `write` says, or the system; also where the file that is there may not be written.
+    /// The errors of `write` or of the system; also if the existing file is read-only.
     pub fn begin(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<Self> {
         let (path, is_file) = match fs::metadata(path) {
-            // What a symbolic link names is replaced, not the link.
+            // The target of a symbolic link is replaced, not the link.
             Ok(found) => (fs::canonicalize(path)?, found.is_file()),
             Err(_) => (path.to_path_buf(), true),
         };
         let replaced = fs::metadata(&path).ok().map(|found| found.permissions());
-        // To rename onto a file needs no right to write it: one that its owner protects would be lost.
+        // Renaming onto a file does not need the right to write it: a file that its owner protects would be lost.
         if replaced.as_ref().is_some_and(fs::Permissions::readonly) {
             return Err(io::ErrorKind::PermissionDenied.into());
         }
@@ -59,25 +62,25 @@ impl WholeFile {
         Ok(Self { path, beside: Some((beside, file)) })
     }
 
-    /// Puts the content in the place of the file.
+    /// Replaces the target with the new content.
     ///
     /// # Errors
-    /// What the system says.
+    /// The errors of the system.
     pub fn put(self) -> io::Result<()> {
         self.beside.map_or(Ok(()), |(beside, _)| fs::rename(&beside.0, &self.path))
     }
 
-    /// As [`Self::put`], and returns once it is on the disk.
+    /// Like [`Self::put`], but returns only when the content is on the disk.
     ///
     /// # Errors
-    /// What the system says.
+    /// The errors of the system.
     pub fn put_durably(self) -> io::Result<()> {
         if let Some((_, file)) = &self.beside {
             file.sync_all()?;
         }
         let folder = self.path.parent().filter(|folder| !folder.as_os_str().is_empty()).map(Path::to_path_buf);
         self.put()?;
-        // The name is on the disk with its folder; a system that cannot open folders writes it by itself.
+        // Syncing the folder puts the name on the disk. A system that cannot open folders writes the name by itself.
         if let Ok(folder) = File::open(folder.unwrap_or_else(|| ".".into())) {
             let _ = folder.sync_all();
         }
@@ -85,7 +88,7 @@ impl WholeFile {
     }
 }
 
-/// The file of the new content, in the same folder; what is left of it is removed.
+/// The file of the new content, in the same folder. If it still exists when dropped, it is removed.
 #[derive(Debug)]
 struct Beside(PathBuf);
 
@@ -99,12 +102,12 @@ impl Beside {
 
 impl Drop for Beside {
     fn drop(&mut self) {
-        // It is not there any more where all went well.
+        // After success the file no longer exists.
         let _ = fs::remove_file(&self.0);
     }
 }
 
-/// Writes all, or says why not: what a buffer still holds when it is dropped would be lost without a word.
+/// Writes everything or returns the error: an error would be lost if the buffer wrote its rest when dropped.
 fn write_through<W: Write>(to: W, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<W> {
     let mut out = BufWriter::new(to);
     write(&mut out)?;

@@ -56,12 +56,12 @@ fn without_position(message: &str) -> &str {
     message.rsplit_once(" at ").filter(|(_, tail)| is_position(tail)).map_or(message, |(what, _)| what)
 }
 
-/// The line on which a node begins; for many nodes see [`LineIndex`](crate::tokens::LineIndex).
+/// The line on which a node begins. For many nodes use [`LineIndex`](crate::tokens::LineIndex).
 pub(crate) fn line(node: Node<'_, '_>) -> usize {
     node.document().text_pos_at(node.range().start).row as usize
 }
 
-/// The line of an attribute, or of the node where it has no such attribute.
+/// The line of an attribute, or of the node if it does not have the attribute.
 pub(crate) fn attribute_line(node: Node<'_, '_>, name: &str) -> usize {
     let start = node.attribute_node(name).map_or(node.range().start, |a| a.range().start);
     node.document().text_pos_at(start).row as usize
@@ -77,7 +77,7 @@ pub(crate) fn child<'a, 'i>(node: Node<'a, 'i>, name: &'static str) -> Option<No
     children(node, name).next()
 }
 
-/// All text directly in a node, also where comments divide it.
+/// All text directly in a node, even if comments divide it.
 pub(crate) fn text<'a>(node: Node<'a, '_>) -> std::borrow::Cow<'a, str> {
     let mut pieces = node.children().filter(Node::is_text).filter_map(|t| t.text());
     match (pieces.next(), pieces.next()) {
@@ -87,17 +87,17 @@ pub(crate) fn text<'a>(node: Node<'a, '_>) -> std::borrow::Cow<'a, str> {
     }
 }
 
-/// A text as the value of an attribute.
+/// Escapes a text for the value of an attribute.
 pub(crate) fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
-/// The command that expands a xacro file: to `arm.urdf` from `arm.xacro` and from `arm.urdf.xacro`.
+/// The command that expands a xacro file: to `arm.urdf`, from `arm.xacro` or `arm.urdf.xacro`.
 pub(crate) fn xacro_hint(file: &Path) -> String {
     let stem = input::stem(file);
     let stem = stem.strip_suffix(".urdf").unwrap_or(&stem);
     let mut urdf = file.with_file_name(format!("{stem}.urdf"));
-    // A xacro file may itself be called .urdf.
+    // A xacro file may have the extension .urdf.
     if urdf == file {
         urdf = file.with_file_name(format!("{stem}.expanded.urdf"));
     }

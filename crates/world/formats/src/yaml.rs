@@ -12,23 +12,26 @@ use serde_json::{Map, Number, Value};
 use crate::FormatError;
 use crate::tokens::show;
 
-/// Lists and mappings in each other.
+/// Largest depth of nested lists and mappings.
 const MAX_DEPTH: usize = 100;
-/// Values with anchors and their repetitions that a short file may have; a long one may have as many as it has bytes.
+/// Number of values with anchors, and of their copies, that a short file may have.
+///
+/// A long file may have as many as it has bytes.
 const MIN_COPIED: usize = 1000;
 
-/// The first document of a text.
+/// Parses the first document of a text.
 ///
 /// # Errors
-/// Text that is not YAML, keys that are no text or occur twice, merge keys, aliases that repeat more than the file has.
+/// [`FormatError`] for text that is not YAML, keys that are not text or occur twice, merge keys, or aliases that repeat
+/// more than the file has.
 pub(crate) fn parse(text: &str, file: &Path) -> Result<Value, FormatError> {
     Builder::new(text, file).build(&mut |_, _| {})
 }
 
-/// The line of the field `world.objects[2].id` of a document, or of the part of the path that there is.
+/// The line of the field with a path such as `world.objects[2].id`, or of the part of the path that exists.
 pub(crate) fn line_of(text: &str, file: &Path, path: &str) -> usize {
     let mut found = (0, 1);
-    // Where the document is wrong further on, the part before it has been seen.
+    // If a later part of the document is invalid, the part before it has been visited.
     drop(Builder::new(text, file).build(&mut |open, line| {
         let here = path_of(open);
         let is_above = path
@@ -41,7 +44,7 @@ pub(crate) fn line_of(text: &str, file: &Path, path: &str) -> usize {
     found.1
 }
 
-/// The path of the value that comes next.
+/// The path of the next value.
 fn path_of(open: &[Open]) -> String {
     let mut path = String::new();
     for Open { container, .. } in open {
@@ -61,16 +64,16 @@ fn path_of(open: &[Open]) -> String {
     path
 }
 
-/// A list or mapping whose end has not come yet.
+/// A list or mapping whose end is not reached yet.
 struct Open {
     container: Container,
-    /// The number of its anchor; 0 for none.
+    /// Number of its anchor; 0 without an anchor.
     anchor: usize,
 }
 
 enum Container {
     List(Vec<Value>),
-    /// The last key is that of the value which comes next.
+    /// A mapping, and the key of the next value.
     Mapping(Map<String, Value>, Option<String>),
 }
 
@@ -88,7 +91,7 @@ impl<'t> Builder<'t> {
         Self { file, text, open: Vec::new(), anchored: HashMap::new(), copied: 0, root: None }
     }
 
-    /// Builds the document; calls `visit` before each value with what it is in, and its line.
+    /// Builds the document. Calls `visit` before each value with the open containers and the line of the value.
     fn build(mut self, visit: &mut dyn FnMut(&[Open], usize)) -> Result<Value, FormatError> {
         for event in Parser::new_from_str(self.text) {
             let (event, span) = event.map_err(|e| self.no_yaml(&e))?;
@@ -168,7 +171,7 @@ impl<'t> Builder<'t> {
         Err(self.error(line, &format!("has more than {MAX_DEPTH} lists and mappings in each other"), "fewer levels"))
     }
 
-    /// A copy of an anchored value.
+    /// Copies an anchored value.
     fn repeat(&mut self, anchor: usize, line: usize) -> Result<Value, FormatError> {
         let Some(value) = self.anchored.get(&anchor) else {
             return Err(self.error(line, "has an alias within its own value", "a value that ends before its alias"));
@@ -189,7 +192,7 @@ impl<'t> Builder<'t> {
         Err(self.error(line, "has aliases that repeat more than the file has", hint))
     }
 
-    /// Puts a value where it belongs.
+    /// Adds a value to its container.
     fn value(&mut self, value: Value, anchor: usize, line: usize) -> Result<(), FormatError> {
         if anchor > 0 {
             self.count_copies(extent(&value).0, line)?;
@@ -204,7 +207,7 @@ impl<'t> Builder<'t> {
     }
 }
 
-/// Number of values in a value, itself included, and of levels.
+/// Number of values in a value, including itself, and number of levels.
 fn extent(value: &Value) -> (usize, usize) {
     let all = |(count, depth): (usize, usize), v: &Value| {
         let (n, d) = extent(v);
@@ -217,7 +220,7 @@ fn extent(value: &Value) -> (usize, usize) {
     }
 }
 
-/// A scalar by the core schema; a byte of `!!binary` is its number.
+/// Parses a scalar by the core schema. A byte of `!!binary` becomes its number.
 fn scalar(text: &str, style: ScalarStyle, tag: Option<&Tag>) -> Value {
     match tag.filter(|t| t.is_yaml_core_schema()).map(|t| &t.suffix[..]) {
         Some("str") => return Value::from(text),
@@ -238,7 +241,7 @@ fn scalar(text: &str, style: ScalarStyle, tag: Option<&Tag>) -> Value {
     }
 }
 
-/// A finite number.
+/// Parses a finite number.
 fn number(text: &str) -> Option<Number> {
     if let Ok(whole) = text.parse::<i64>() {
         return Some(Number::from(whole));

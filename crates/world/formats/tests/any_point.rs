@@ -1,5 +1,6 @@
-//! Inverse kinematics of random points on the surfaces of real robots; few of them here, 10⁵ for each robot with
-//! `ELBOWROOM_LONG=1`. The bench of the same name prints the table.
+//! Inverse kinematics of random points on the surfaces of real robots.
+//!
+//! Few points by default, 10⁵ per robot with `ELBOWROOM_LONG=1`. The bench with the same name prints the table.
 #![allow(clippy::print_stdout)]
 
 use elbowroom_formats::robot::{self, LoadOptions};

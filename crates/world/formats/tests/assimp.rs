@@ -1,7 +1,7 @@
-//! 3DS files against assimp.
+//! Comparison of 3DS files with assimp.
 //!
-//! Needs the program `assimp` (in the package `cmeel-assimp`, which comes with `pin`) beside the Python that
-//! `ELBOWROOM_PYTHON` names, or on the search path; says so and passes without.
+//! Needs the program `assimp` (in the package `cmeel-assimp`, which `pin` installs), in the directory of the Python given
+//! by `ELBOWROOM_PYTHON` or on the search path. Without it the test prints a message and passes.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -14,7 +14,7 @@ use serde_json::Value;
 
 type Matrix = [[f64; 4]; 3];
 
-/// The program; `None` and a message where it is missing.
+/// Path of the program; `None` and a message if it is missing.
 fn assimp() -> Option<PathBuf> {
     let beside = std::env::var_os("ELBOWROOM_PYTHON").map(|p| PathBuf::from(p).with_file_name("assimp"));
     let beside = beside.filter(|p| p.is_file()).unwrap_or_else(|| "assimp".into());
@@ -107,7 +107,7 @@ fn ours(node: &Node, in_world: &Pose) -> Vec<[Vec3; 3]> {
     node.meshes.iter().flat_map(of).collect()
 }
 
-/// Every triangle of one list is in the other, with the same winding.
+/// Checks that every triangle of one list is in the other, with the same winding.
 fn assert_same_triangles(a: &[[Vec3; 3]], b: &[[Vec3; 3]], tolerance: f64, name: &str) {
     assert_eq!(a.len(), b.len(), "{name}");
     let same =
@@ -136,7 +136,7 @@ fn the_nine_files_are_read_as_assimp_reads_them() {
         let tolerance = 1e-5 * largest(&tree);
         let (mut objects, mut triangles) = (0, 0);
         for (node, in_world) in tree.nodes.iter().zip(tree.in_world()) {
-            // Without a keyframer, assimp names objects by number.
+            // Assimp names objects by number if the file has no keyframer.
             let same = |t: &&Theirs| t.name == node.name || (theirs.len() == 1 && t.name == "3DSMesh_0");
             let their = theirs.iter().find(same).unwrap_or_else(|| panic!("{name}: {}", node.name));
             let parent = node.parent.map(|p| tree.nodes[p].name.clone());

@@ -12,7 +12,7 @@ fn extension(path: &Path) -> String {
     path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default()
 }
 
-/// `loaded (…)` or the message.
+/// Returns `loaded (…)`, or the message as an error.
 fn outcome(path: &Path) -> Result<String, String> {
     let text = |e: elbowroom_formats::FormatError| e.to_string();
     match extension(path).as_str() {
@@ -93,7 +93,7 @@ fn every_file_loads_or_gives_a_reason() {
     }
 }
 
-/// `triangles collision 6182, visual 0` of a row of SOURCES.md, counted there by another library.
+/// Reads the counts from `triangles collision 6182, visual 0` of a row of SOURCES.md, counted by another library.
 fn counted_elsewhere(sources: &str, name: &str) -> Option<(usize, usize)> {
     let row = sources.lines().find(|l| l.starts_with(&format!("| urdf/{name} |")))?;
     let counts = row.split("triangles collision ").nth(1)?;
@@ -102,7 +102,7 @@ fn counted_elsewhere(sources: &str, name: &str) -> Option<(usize, usize)> {
     Some((collision.parse().ok()?, visual.parse().ok()?))
 }
 
-/// Every robot: as many triangles as another library counts, the same by package as by relative paths, and an SRDF
+/// Every robot has as many triangles as another library counts, equally by package and by relative paths, and an SRDF
 /// with its links.
 #[test]
 fn urdf_robots_are_complete() {

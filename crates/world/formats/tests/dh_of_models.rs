@@ -1,5 +1,7 @@
-//! Denavit-Hartenberg tables of every robot of the data set, from URDF, 3DS and glTF models: their product is the model's
-//! forward kinematics. The 3DS and glTF models have no tracks; a file of joints is made from the URDF.
+//! Denavit-Hartenberg tables of every robot of the data set, from URDF, 3DS and glTF models.
+//!
+//! The product of each table is the model's forward kinematics. The 3DS and glTF models have no tracks; the test writes a
+//! joints file from the URDF.
 #![allow(clippy::print_stdout)]
 
 use std::path::{Path, PathBuf};
@@ -14,7 +16,7 @@ use elbowroom_testkit::folder;
 
 const STATES: usize = 200;
 
-/// Joint values of an additive recurrence, within a turn.
+/// Joint values of an additive recurrence, within one turn.
 fn spread(chain: &Chain, index: usize) -> Vec<f64> {
     let at = |i: usize| (0.5 + 0.618_033_988_75 * index as f64 + 0.137 * (i * (index + 1)) as f64).fract();
     (0..chain.dof()).map(|i| std::f64::consts::TAU * (at(i) - 0.5)).collect()
@@ -25,7 +27,7 @@ fn difference(a: &Pose, b: &Pose) -> f64 {
     pairs.map(|(x, y)| (x - y).abs()).fold(0.0, |w, d| if d > w || d.is_nan() { d } else { w })
 }
 
-/// Largest difference from forward kinematics at the link: generalized, direct, modified, frames.
+/// Largest difference from forward kinematics at the link, per table: generalized, direct, modified, frames.
 fn worst(chain: &Chain, tip: LinkId) -> [f64; 4] {
     let (generalized, direct) = (GeneralizedTable::extract(chain, tip), DirectTable::extract(chain, tip));
     let (modified, frames) = (ModifiedTable::extract(chain, tip), FrameChain::extract(chain, tip));
@@ -72,7 +74,7 @@ fn every_urdf_has_its_tables() {
             if path.extension().is_none_or(|e| e != "urdf") || path.to_string_lossy().ends_with(".package.urdf") {
                 continue;
             }
-            // Some refer to missing meshes: only the joints are needed here.
+            // Some models refer to missing meshes; only the joints are needed here.
             let Ok(model) = elbowroom_formats::urdf::parse(&std::fs::read(&path).unwrap(), &path) else { continue };
             let chain = robot::chain(&model, &path).unwrap();
             check(&path.strip_prefix(&data).unwrap().display().to_string(), &chain);
@@ -103,7 +105,8 @@ fn chain_of(path: &Path, joints: Option<PathBuf>) -> Chain {
     robot::load(path, &LoadOptions { joints, ..LoadOptions::default() }).unwrap().robot.chain
 }
 
-/// The pose of the last joint's link by the model's table agrees with the URDF within the single precision of the files.
+/// Checks the pose of the last joint's link by the model's table against the URDF, within the single precision of the
+/// files.
 fn same_robot(urdf: &Chain, model: &Chain) {
     let last = urdf.joints()[urdf.active_joints()[5].0].child;
     let name = &urdf.links()[last.0];
@@ -119,8 +122,8 @@ fn same_robot(urdf: &Chain, model: &Chain) {
     }
 }
 
-/// The KR150 of the examples, a 3DS file, as it is and after writing and reading: seven local frames, base and six joints,
-/// are seven rows of the form of table 1 of Reichenbach and Kovačić 2003.
+/// The KR150 of the examples, a 3DS file, unchanged and after writing and reading: its seven local frames (base and six
+/// joints) are seven rows of the form of table 1 of Reichenbach and Kovačić 2003.
 #[test]
 fn the_kr150_of_the_examples_has_the_published_geometry() {
     let path = folder::examples().join("models/kr150/kr150.3ds");
@@ -138,7 +141,7 @@ fn the_kr150_of_the_examples_has_the_published_geometry() {
         let joints: Vec<&str> = direct.table.rows.iter().filter_map(|r| r.joint.as_deref()).collect();
         assert_eq!(joints.len(), 6);
         assert_eq!(direct.frames[1..7], joints, "base, then a row for every joint");
-        // The lengths of the KUKA KR150, in any row.
+        // The lengths of the KUKA KR150, each in any row.
         for length in [0.75, 0.35, 1.25, 0.055, 1.1] {
             let found = direct.table.rows.iter().flat_map(|r| [r.a, r.b, r.d]);
             assert!(found.into_iter().any(|v| (v.abs() - length).abs() < 1e-6), "{length} is not in the table");

@@ -57,7 +57,7 @@ proptest! {
         }
     }
 
-    /// After writing and reading: the same corners in single precision, in the same order.
+    /// After writing and reading, the corners are equal in single precision, in the same order.
     #[test]
     fn binary_stl_survives_a_round_trip(corners in prop::collection::vec(prop::array::uniform3(-1e3..1e3f32), 3..40),
                                         faces in prop::collection::vec(prop::array::uniform3(any::<prop::sample::Index>()), 1..60)) {
@@ -76,7 +76,7 @@ proptest! {
     }
 }
 
-/// Deep nesting must not overflow the stack, and millions of small elements must take neither the memory nor an hour.
+/// Deep nesting must not overflow the stack. Millions of small elements must not use too much memory or time.
 #[test]
 fn deep_and_wide_trees_are_handled() {
     let deep = 200_000;
@@ -117,7 +117,7 @@ fn exponential_node_instances_are_refused() {
     assert!(run("dae", circle.as_bytes()).is_err());
 }
 
-/// Small files that announce large contents: each must be refused or read within seconds.
+/// Small files that declare large contents: each must be refused or read within seconds.
 #[test]
 fn small_files_that_expand_are_refused_quickly() {
     let started = std::time::Instant::now();
@@ -151,7 +151,7 @@ fn overflowing_counts_are_refused() {
     }
 }
 
-/// A primitive that is left out would be free space.
+/// A missing primitive would be free space.
 #[test]
 fn a_primitive_of_an_unknown_mode_is_refused() {
     let text = String::from_utf8(samples("gltf").remove(0)).unwrap();

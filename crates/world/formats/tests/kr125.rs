@@ -1,4 +1,4 @@
-//! The KR125 of `examples/models`: its published table.
+//! The KR125 of `examples/models` and its published table.
 
 use elbowroom_formats::robot::{LoadOptions, load};
 use elbowroom_kinematics::{Chain, ChainState, JointKind, Limits, dh::ClassicalRow};

@@ -24,7 +24,7 @@ fn close(a: Vec3, b: Vec3) -> bool {
     (a - b).length() < 1e-6
 }
 
-/// A closed box from 0 to (1, 2, 3), its faces seen from outside.
+/// A closed box from 0 to (1, 2, 3), with its faces oriented outwards.
 fn brick() -> MeshData {
     let vertices = (0..8).map(|i| Vec3::new(f64::from(i & 1), f64::from(i & 2), f64::from(i & 4) * 0.75)).collect();
     let quads: [[u32; 4]; 6] = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
@@ -65,7 +65,7 @@ fn binary_stl_may_begin_with_solid() {
     let mut bytes = brick_stl();
     bytes[..6].copy_from_slice(b"solid ");
     assert_eq!(parse("a.stl", &bytes, UpAxis::ToZ).meshes[0].triangles.len(), 12);
-    // With bytes after its end it has not the exact size, but is not text either.
+    // With bytes after its end, the file does not have the exact size, but is not text either.
     bytes.extend([0; 7]);
     bytes[10] = 0;
     let loaded = parse("a.stl", &bytes, UpAxis::ToZ);
@@ -91,7 +91,7 @@ fn collada_axes_are_converted_only_on_request() {
     let load = |axis: &str, up| parse("a.dae", brick_dae("", axis, node).as_bytes(), up);
     let kept = load("<up_axis>Y_UP</up_axis>", UpAxis::Ignore).aabb();
     assert!(close(kept.max, Vec3::new(1.0, 2.0, 3.0)));
-    // Up is y and the viewer's direction z in the file: they become z and -y.
+    // In the file, up is y and the viewer's direction z: they become z and -y.
     for axis in ["<up_axis>Y_UP</up_axis>", ""] {
         let turned = load(axis, UpAxis::ToZ);
         assert!(
@@ -99,7 +99,7 @@ fn collada_axes_are_converted_only_on_request() {
         );
         assert!((volume(&turned.meshes[0]) - 6.0).abs() < 1e-9);
     }
-    // Up is x, right -y, and the viewer's direction z in the file.
+    // In the file, up is x, right is -y, and the viewer's direction z.
     let turned = load("<up_axis>X_UP</up_axis>", UpAxis::ToZ);
     assert!(close(turned.aabb().min, Vec3::new(-2.0, -3.0, 0.0)) && close(turned.aabb().max, Vec3::new(0.0, 0.0, 1.0)));
     assert!((volume(&turned.meshes[0]) - 6.0).abs() < 1e-9);

@@ -22,7 +22,7 @@ fn names_are_shown_whole() {
     let name = "left_hand_of_the_second_robot_finger_joint_number_one";
     let error = refused(&with_joint("floating", "", "").replace("\"j\"", &format!("\"{name}\"")));
     assert!(error.what.contains(name), "{error}");
-    // What no one calls a joint is still cut.
+    // A name longer than any real joint name is still shortened.
     let error = refused(&with_joint("floating", "", "").replace("\"j\"", &format!("\"{}\"", "x".repeat(5000))));
     assert!(error.what.len() < 300 && error.what.contains('…'), "{error}");
 }

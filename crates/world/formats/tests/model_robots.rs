@@ -1,4 +1,4 @@
-//! Robots from 3DS and glTF models: tracks, files of joints, and export as URDF and 3DS.
+//! Robots from 3DS and glTF models: tracks, joints files, and export as URDF and 3DS.
 
 use std::path::Path;
 
@@ -19,7 +19,7 @@ fn box_mesh(name: &str) -> MeshData {
     MeshData { name: name.into(), vertices: (0..8).map(corner).collect(), triangles }
 }
 
-/// A base and one link that may move.
+/// A base and one link, which may move.
 fn one(track: impl Fn(Pose) -> Vec<Pose>) -> NodeTree {
     let mut tree = NodeTree::new("one");
     let mut base = Node::new("base", None, Pose::IDENTITY);
@@ -117,7 +117,7 @@ fn a_track_that_is_not_a_joint_is_fixed_with_a_warning() {
     assert_eq!(loaded.robot.chain.dof(), 0);
     let said = loaded.warnings.iter().map(|w| w.what.clone()).collect::<String>();
     assert!(said.contains("rotates about [0, 0, 1] at first, but about [1, 0, 0] between 1.00 s and 2.00 s"), "{said}");
-    // The file of joints overrides the track.
+    // The joints file overrides the track.
     let side = "units = { length = \"mm\", angle = \"deg\" }\n[joint.link]\naxis = \"z\"\nmin = -10\nmax = 40\n";
     let loaded = load(&one(twice), &LoadOptions::default(), Some(side)).unwrap();
     assert_eq!(loaded.robot.chain.dof(), 1);
@@ -217,7 +217,7 @@ fn several_roots_get_a_common_root_and_equal_names_are_numbered() {
     assert_eq!(loaded.robot.chain.root(), LinkId(2));
 }
 
-/// A glTF of a base and a link that rotates about its y axis in three keys; `edit` changes the JSON.
+/// Loads a glTF of a base and a link that rotates about its y axis in three keys; `edit` changes the JSON.
 fn animated(edit: impl Fn(String) -> String, values: &[f32]) -> Result<LoadedRobot, String> {
     use base64::Engine as _;
     let corners = [0.0, 0.0, 0.0, 0.2, 0.0, 0.0, 0.0, 0.2, 0.0];
@@ -293,7 +293,7 @@ fn random_q(random: &mut Xorshift, chain: &Chain) -> Vec<f64> {
         .collect()
 }
 
-/// Largest difference of a link's pose at random joint values; joints by name.
+/// Largest difference of a link's pose at random joint values, with joints matched by name.
 fn apart(a: &Chain, b: &Chain, links: &[&str]) -> f64 {
     let mut random = Xorshift(0x1234_5678_9abc_def1);
     let mut worst: f64 = 0.0;
@@ -394,7 +394,7 @@ fn the_derived_3ds_and_glb_are_their_urdf_again_with_a_file_of_joints() {
     }
 }
 
-/// The robot after export and loading.
+/// Differences between the robot and the robot after export and loading.
 fn round_trip(robot: &Robot, name: &str, links: &[&str]) -> (f64, f64, f64) {
     let dir = tempfile::tempdir().unwrap();
     let files = robot::write_urdf(robot, dir.path(), name).unwrap();
@@ -453,7 +453,7 @@ fn tracks_alone_carry_axes_and_limits_of_an_exported_robot() {
         let link = &urdf.chain.links()[joint.child.0];
         let same = &chain.joints()[chain.parent_joint(chain.link(link).unwrap()).unwrap().0];
         assert_eq!(same.kind, joint.kind);
-        // The direction is that of the first motion, upward where the range allows it; and zero is in the range.
+        // The direction is that of the first motion: upward if the range allows it. Zero is in the range.
         let sense = if joint.limits.upper > 0.0 { 1.0 } else { -1.0 };
         assert!(same.axis.distance(joint.axis * sense) < 1e-5, "{link}: {:?} {:?}", same.axis, joint.axis);
         let near = |a: f64, b: f64| (a - b).abs() < 1e-4;

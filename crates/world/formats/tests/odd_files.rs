@@ -1,4 +1,4 @@
-//! Paths that are no regular files, and wrong counts.
+//! Paths that are not regular files, and wrong counts.
 
 use elbowroom_formats::mesh;
 

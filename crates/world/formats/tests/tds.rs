@@ -1,4 +1,4 @@
-//! 3DS: what is written is read back, frames follow the format, hostile bytes are refused.
+//! 3DS: written trees are read back unchanged, frames follow the format, hostile bytes are refused.
 
 use std::path::Path;
 
@@ -20,7 +20,7 @@ fn apart(a: &Pose, b: &Pose) -> f64 {
     turned.max(a.translation.distance(b.translation))
 }
 
-/// Equal up to single precision and the names.
+/// Checks that two trees are equal, within single precision and except for the names.
 fn assert_same(a: &NodeTree, b: &NodeTree, tolerance: f64) {
     assert_eq!(a.nodes.len(), b.nodes.len());
     for (a, b) in a.nodes.iter().zip(&b.nodes) {
@@ -46,7 +46,7 @@ fn a_tree_round_trips_with_frames_meshes_and_tracks() {
     assert!(again(&tree).warnings.is_empty());
 }
 
-/// Bytes of the first chunk of this number, found by number and length.
+/// Replaces the body of the first chunk that has this number and length.
 fn patch(bytes: &mut [u8], head: [u8; 6], body: &[u8]) {
     let at = bytes.windows(6).position(|w| w == head).unwrap();
     bytes[at + 6..at + 6 + body.len()].copy_from_slice(body);
@@ -163,7 +163,7 @@ fn cycles_and_missing_parents_become_roots_with_a_warning() {
         bytes.windows(2).enumerate().filter(|(_, w)| *w == [0x10, 0xb0]).map(|(i, _)| i).collect();
     for (wrong, said) in [(1u16, "is its own ancestor"), (77, "does not exist")] {
         let mut bytes = bytes.clone();
-        // The name of the second is `flag`: header, five bytes, two flags.
+        // The name of the second node is `flag`: header, five bytes, two flags.
         let at = parents[1] + 6 + 5 + 4;
         bytes[at..at + 2].copy_from_slice(&wrong.to_le_bytes());
         let tree = tds::parse(&bytes, FILE.as_ref()).unwrap();
@@ -259,7 +259,7 @@ fn chunk(id: u16, body: &[u8]) -> Vec<u8> {
     [&id.to_le_bytes()[..], &length.to_le_bytes(), body].concat()
 }
 
-/// A node of the keyframer at the top, with a name and one key of its position.
+/// A top node of the keyframer, with a name and one position key.
 fn node(id: u16, name: &str, at: [f32; 3]) -> Vec<u8> {
     let header = chunk(0xb010, &[name.as_bytes(), &[0, 0, 0, 0, 0, 0xff, 0xff]].concat());
     let key = chunk(0xb020, &[&[0; 10][..], &1u32.to_le_bytes(), &[0; 6], &floats(&at)].concat());
@@ -284,7 +284,7 @@ fn hundreds_of_thousands_of_cameras_lights_and_objects_are_read_quickly() {
         nodes.extend(node(0xb005, &format!("l{i}"), [0.0; 3]));
     }
     for i in (0..MANY).step_by(2) {
-        // To the right; a second target of the same name, to the left, is ignored.
+        // The target is to the right; a second target with the same name, to the left, is ignored.
         nodes.extend(node(0xb004, &format!("c{i}"), [1.0, 0.0, 0.0]));
         nodes.extend(node(0xb004, &format!("c{i}"), [-1.0, 0.0, 0.0]));
     }

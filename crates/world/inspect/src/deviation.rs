@@ -12,10 +12,10 @@ use crate::simplify::Simplified;
 /// Largest depth of subdivision.
 const DEPTH: u32 = 12;
 
-/// Largest number of distance computations for subdivided faces; beyond it the bound stays less tight.
+/// Largest number of distance computations for subdivided faces. When it is used up, the bound stays less tight.
 const BUDGET: usize = 60_000_000;
 
-/// Upper bound (m) of the distance of any point of the surface of `mesh` from the surface of `simple`.
+/// Upper bound (m) on the distance of any point of the surface of `mesh` from the surface of `simple`.
 pub(super) fn bound(mesh: &TriMesh, simple: &Simplified) -> f64 {
     let mut faces_of: Vec<Vec<u32>> = vec![Vec::new(); simple.vertices.len()];
     for (i, t) in simple.triangles.iter().enumerate() {
@@ -50,8 +50,9 @@ pub(super) fn bound(mesh: &TriMesh, simple: &Simplified) -> f64 {
     worst + 1e-12 * size
 }
 
-/// The faces at the vertices that the corners of a face collapsed to. The nearest face is usually among them; any face
-/// gives a valid bound.
+/// The faces at the vertices to which the corners of a face collapsed.
+///
+/// They usually include the nearest face; any face gives a valid bound.
 fn around(t: &[u32; 3], simple: &Simplified, faces_of: &[Vec<u32>], near: &mut Vec<[Vec3; 3]>) {
     let once = |mut list: Vec<u32>| {
         list.sort_unstable();
@@ -67,7 +68,7 @@ fn around(t: &[u32; 3], simple: &Simplified, faces_of: &[Vec<u32>], near: &mut V
     near.extend(list.iter().map(|f| simple.triangles[*f as usize].map(|v| simple.vertices[v as usize])));
 }
 
-/// The largest corner-to-nearest-face distance, and the minimum over the faces of the largest corner distance.
+/// The largest distance (m) of a corner from its nearest face, and the minimum over the faces of the largest one.
 fn measure(face: [Vec3; 3], solids: &[[Vec3; 3]]) -> (f64, f64) {
     let mut nearest = [f64::INFINITY; 3];
     let mut together = f64::INFINITY;
@@ -79,7 +80,7 @@ fn measure(face: [Vec3; 3], solids: &[[Vec3; 3]]) -> (f64, f64) {
     (nearest.into_iter().fold(0.0, f64::max), together)
 }
 
-/// Bound for one face; values below `enough` need no refinement.
+/// Bound (m) for one face. A bound below `enough` is not refined.
 fn of_face(face: [Vec3; 3], solids: &[[Vec3; 3]], enough: f64, depth: u32, budget: &mut usize) -> f64 {
     *budget = budget.saturating_sub(4 * solids.len());
     let (least, together) = measure(face, solids);
@@ -94,8 +95,9 @@ fn of_face(face: [Vec3; 3], solids: &[[Vec3; 3]], enough: f64, depth: u32, budge
     quarters.into_iter().map(part).fold(0.0, f64::max).min(together)
 }
 
-/// All faces that can be nearest to some point of `face`: those whose distance from its centroid exceeds the smallest
-/// one by at most twice its radius.
+/// All faces that can be nearest to a point of `face`.
+///
+/// Their distance from its centroid exceeds the smallest distance by at most twice the radius of `face`.
 fn relevant(face: [Vec3; 3], solids: &[[Vec3; 3]]) -> Vec<[Vec3; 3]> {
     let middle = (face[0] + face[1] + face[2]) / 3.0;
     let radius = face.into_iter().map(|p| p.distance(middle)).fold(0.0, f64::max);
@@ -105,8 +107,10 @@ fn relevant(face: [Vec3; 3], solids: &[[Vec3; 3]]) -> Vec<[Vec3; 3]> {
     distances.iter().zip(solids).filter(near).map(|(_, s)| *s).collect()
 }
 
-/// The point of a triangle nearest to `p`, by the region of the triangle's plane that `p` is over (Ericson, "Real-Time
-/// Collision Detection", 2005, section 5.1.5). A degenerate triangle gives one of its points, which is a bound as well.
+/// The point of a triangle nearest to `p`, by the region of the triangle's plane above which `p` lies.
+///
+/// For a degenerate triangle, one of its points, which is also a valid bound. Source: Ericson, "Real-Time Collision
+/// Detection", 2005, section 5.1.5.
 fn nearest_on([a, b, c]: [Vec3; 3], p: Vec3) -> Vec3 {
     let (ab, ac, ap) = (b - a, c - a, p - a);
     let (d1, d2) = (ab.dot(ap), ac.dot(ap));
@@ -166,7 +170,7 @@ mod tests {
         TriMesh::new(vertices, triangles.collect()).unwrap()
     }
 
-    /// Largest distance of sampled points of the original.
+    /// Largest distance of sampled points of the original from the simplified mesh.
     fn sampled(mesh: &TriMesh, simple: &Simplified) -> f64 {
         let solids: Vec<[Vec3; 3]> = simple.triangles.iter().map(|t| t.map(|v| simple.vertices[v as usize])).collect();
         let nearest = |p: Vec3| solids.iter().map(|s| p.distance(nearest_on(*s, p))).fold(f64::INFINITY, f64::min);
@@ -202,7 +206,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
 
-        /// Any triangles: intersecting, degenerate, with coincident corners.
+        /// Arbitrary triangles: intersecting, degenerate, with coincident corners.
         #[test]
         fn the_deviation_of_any_triangle_soup_is_bounded(
             corners in prop::collection::vec((0..4_u8, 0..4_u8, 0..4_u8), 3..20),

@@ -14,7 +14,7 @@ pub enum DhConvention {
     /// `Rz(θ)·Tz(d)·Tx(a)·Ty(b)·Rx(α)` along the axes; exists for every chain.
     #[default]
     Generalized,
-    /// `Rz(θ)·Tz(d)·Tx(a)·Rx(α)`, where all b of the generalized table are 0.
+    /// `Rz(θ)·Tz(d)·Tx(a)·Rx(α)`; exists if every b of the generalized table is 0.
     Classical,
     /// `Rx(α)·Tx(a)·Rz(θ)·Tz(d)`, after Craig.
     Modified,
@@ -57,10 +57,11 @@ pub struct DhRow4 {
 /// A row of the table with one row per frame.
 #[derive(Debug, Clone, Serialize)]
 pub struct DirectRow {
-    /// The frame: a joint's, or a link's at a fixed joint; with a `*` for an auxiliary row before the frame of that
-    /// name.
+    /// Name of the frame: a joint, or a link for a fixed joint.
+    ///
+    /// A `*` marks an auxiliary row before the frame of that name.
     pub frame: String,
-    /// The row.
+    /// Parameters of the row.
     #[serde(flatten)]
     pub row: DhRow,
 }
@@ -70,9 +71,9 @@ pub struct DirectRow {
 pub struct ClassicalDh {
     /// `Rz(θ)·Tz(d)·Tx(a)·Rx(α)`, joint axes along z of the previous frame; empty if the table does not exist.
     pub rows: Vec<DhRow4>,
-    /// Largest difference between the product of the rows and forward kinematics; null where the table does not exist.
+    /// Largest difference between the product of the rows and forward kinematics; null if the table does not exist.
     pub residual: Option<f64>,
-    /// Rows that need b, and why; null where none does.
+    /// Rows that need b, and why; null if the table exists.
     pub why_not: Option<String>,
 }
 
@@ -140,7 +141,7 @@ impl DirectDh {
     }
 }
 
-/// The table as text, in degrees and metres.
+/// Writes the table as text, in degrees and metres.
 pub(super) fn fmt_generalized(f: &mut fmt::Formatter<'_>, tip: &str, rows: &[DhRow], residual: f64) -> fmt::Result {
     writeln!(f, "\nGeneralized DH to {tip} (deg, m), residual {residual:.1e}")?;
     writeln!(f, "{:24} {:>9} {:>9} {:>9} {:>9} {:>9}", "joint", "theta", "a", "b", "d", "alpha")?;

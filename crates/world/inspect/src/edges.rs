@@ -4,8 +4,9 @@ use std::collections::HashMap;
 
 use elbowroom_proximity::TriMesh;
 
-/// Numbers of edges with one face, and with more than two. Vertices are merged as in the test for closed meshes;
-/// degenerate faces have no edges.
+/// Counts the edges with one face, and the edges with more than two faces.
+///
+/// Vertices are merged as in the test for closed meshes; degenerate faces have no edges.
 pub(super) fn count(mesh: &TriMesh) -> (usize, usize) {
     let weld = mesh.welded_vertices();
     let mut uses: HashMap<(u32, u32), u32> = HashMap::with_capacity(mesh.triangles().len() * 3 / 2);

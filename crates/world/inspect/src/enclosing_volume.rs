@@ -8,12 +8,12 @@ use serde::{Serialize, Serializer};
 /// The enclosing volume of one solid.
 #[derive(Debug, Clone, Serialize)]
 pub struct EnclosingVolume {
-    /// The solid's link.
+    /// Name of the solid's link.
     pub link: String,
-    /// Its kind: a capsule, a box, or the solid's own kind where it is already a primitive.
+    /// Kind of the volume: a capsule, a box, or the solid's own kind if the solid is a primitive.
     #[serde(serialize_with = "serialize_kind")]
     pub volume: ShapeKind,
-    /// Its volume divided by that of the solid's convex hull; null where the hull has none.
+    /// Volume divided by the volume of the solid's convex hull; null if the hull has no volume.
     pub ratio_to_hull: Option<f64>,
 }
 

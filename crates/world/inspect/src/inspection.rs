@@ -1,4 +1,4 @@
-//! Contents of a model, as one document.
+//! Inspection of a model: its contents as one document.
 
 use std::path::{Path, PathBuf};
 
@@ -22,23 +22,23 @@ use crate::units::{self, SuspectUnit, suspect_units};
 /// Options of an inspection.
 #[derive(Debug, Clone, Default)]
 pub struct InspectOptions {
-    /// The SRDF of a URDF.
+    /// SRDF file for a URDF.
     pub srdf: Option<PathBuf>,
-    /// The unit of formats without a unit.
+    /// Unit for formats that state none.
     pub unit: Option<LengthUnit>,
-    /// The joints file of a 3DS or glTF model; default: the one beside it.
+    /// Joints file of a 3DS or glTF model. Default: the file beside the model.
     pub joints: Option<PathBuf>,
-    /// Further joints of such a model, in the syntax of the command line.
+    /// Further joints of a 3DS or glTF model, in the syntax of the command line.
     pub joint: Vec<String>,
-    /// The last link of the DH table; default: the leaf with the most independent joints.
+    /// Last link of the DH table. Default: the leaf with the most independent joints.
     pub tip: Option<String>,
-    /// The DH tables in the text output, in this order; empty: the generalized one. JSON has all of them.
+    /// DH tables in the text output, in this order. Empty: the generalized table. JSON has all tables.
     pub dh: Vec<DhConvention>,
-    /// Omits what is slow to compute: resolution levels, pairs, and visual meshes.
+    /// Whether to omit slow results: resolution levels, pairs, and visual meshes.
     pub brief: bool,
 }
 
-/// What a model file describes.
+/// Kind of content of a model file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ModelKind {
@@ -51,22 +51,22 @@ pub enum ModelKind {
 /// Contents of a model. Lengths in metres, angles in radians; unlimited or unknown values are `null` in JSON.
 #[derive(Debug, Clone, Serialize)]
 pub struct Inspection {
-    /// The file.
+    /// Path of the file.
     pub model: PathBuf,
-    /// The model's name.
+    /// Name of the model.
     pub name: String,
-    /// Whether it is a robot or a mesh.
+    /// Whether the model is a robot or a mesh.
     #[serde(rename = "what")]
     pub kind: ModelKind,
-    /// Names of the links; for a mesh file, of its objects.
+    /// Names of the links; for a mesh file, names of its objects.
     pub links: Vec<String>,
     /// The joints, including fixed ones.
     pub joints: Vec<JointRow>,
-    /// Degrees of freedom.
+    /// Number of degrees of freedom.
     pub dof: usize,
     /// One entry per collision mesh.
     pub meshes: Vec<MeshRow>,
-    /// Link pairs that the SRDF disables.
+    /// Number of link pairs that the SRDF disables.
     pub disabled_pairs: usize,
     /// The last link of the DH table; null for a mesh.
     pub dh_tip: Option<String>,
@@ -74,17 +74,17 @@ pub struct Inspection {
     pub dh: Vec<DhRow>,
     /// Largest difference between the product of the rows and forward kinematics; null for a mesh.
     pub dh_residual: Option<f64>,
-    /// The classical table, which exists where all b are 0; null for a mesh.
+    /// The classical DH table, which exists if every b is 0; null for a mesh.
     pub dh_classical: Option<ClassicalDh>,
-    /// The table in the modified convention (Craig); null for a mesh.
+    /// The modified DH table (Craig); null for a mesh.
     pub dh_modified: Option<ModifiedDh>,
-    /// The table with one row per frame of the model; null for a mesh.
+    /// The DH table with one row per frame of the model; null for a mesh.
     pub dh_direct: Option<DirectDh>,
     /// Resolution level L2: the enclosing volume of each solid for whole-arm guarding.
     pub levels: Vec<EnclosingVolume>,
-    /// The levels per link, including coarse, middle and fine triangles. Empty if omitted.
+    /// The levels of each link, including coarse, middle and fine triangles. Empty if omitted.
     pub resolution: Vec<LinkLevels>,
-    /// The allowed collision matrix, one entry per pair of links with colliders. Empty for a mesh, and where omitted.
+    /// The allowed collision matrix, one entry per pair of links with colliders. Empty for a mesh, and if omitted.
     pub pairs: Vec<PairRow>,
     /// Suspected unit errors.
     pub suspect_units: Vec<SuspectUnit>,
@@ -103,11 +103,12 @@ pub struct Inspection {
 }
 
 impl Inspection {
-    /// Inspects a URDF, a 3DS or glTF model, or a mesh file; the format is detected by content.
+    /// Inspects a URDF, a 3DS or glTF model, or a mesh file.
+    ///
+    /// Files with the extension `urdf`, `xacro` or `xml` count as robots; for other files the content decides.
     ///
     /// # Errors
-    /// [`FormatError`] if the file, or a collision mesh it names, cannot be read; or where the link `tip` does not
-    /// exist.
+    /// [`FormatError`] if the file or one of its collision meshes cannot be read, or if the link `tip` does not exist.
     pub fn of(path: &Path, options: &InspectOptions) -> Result<Self, FormatError> {
         if is_mesh(path) { Self::of_mesh(path, options) } else { Self::of_robot(path, options) }
     }
@@ -216,7 +217,7 @@ impl Inspection {
         }
     }
 
-    /// Warns of pairs that collide in every sampled state, or at rest.
+    /// Warns about pairs that collide in every sampled state, or at rest.
     fn warn_of_pairs(&mut self) {
         for p in self.pairs.iter().filter(|p| p.tested && (p.always || p.at_rest)) {
             let often = match &p.suggestion {
@@ -232,7 +233,7 @@ impl Inspection {
         }
     }
 
-    /// Warns of faults of meshes.
+    /// Warns about faults of meshes.
     fn warn_of_meshes(&mut self) {
         for m in &self.meshes {
             if m.inside_out {
@@ -249,14 +250,15 @@ impl Inspection {
         }
     }
 
-    /// The text of an SRDF for the robot: what need not be tested, with reasons; `None` for a mesh, and without
-    /// [`pairs`](Self::pairs).
+    /// The text of an SRDF for the robot: pairs that need no test, with reasons.
+    ///
+    /// `None` for a mesh, or if [`pairs`](Self::pairs) is empty.
     pub fn srdf(&self) -> Option<String> {
         let given = self.srdf.clone().unwrap_or_default();
         (self.robot.is_some() && !self.pairs.is_empty()).then(|| pairs::srdf(&self.name, &self.pairs, given))
     }
 
-    /// The robot, where the model is one.
+    /// The robot, if the model is one.
     pub fn robot(&self) -> Option<&Robot> {
         self.robot.as_ref()
     }
@@ -267,15 +269,17 @@ impl Inspection {
     }
 }
 
-/// The text of an SRDF for a robot: what need not be tested, with reasons, and the groups, states and the like of `given`.
+/// Writes the text of an SRDF for a robot: pairs that need no test, with reasons, and the groups and states of `given`.
 ///
 /// # Errors
-/// [`FormatError`] with `file` where a scene refuses the robot.
+/// [`FormatError`] with `file` if a scene refuses the robot.
 pub fn srdf(file: &Path, robot: &Robot, given: Srdf) -> Result<String, FormatError> {
     Ok(pairs::srdf(robot.chain.name(), &pairs::of_robot(file, robot)?, given))
 }
 
-/// True for everything except URDF, 3DS and glTF. A URDF is XML with the root `robot`, or has its extension.
+/// True for all files except a URDF, and a 3DS or glTF file that is a robot.
+///
+/// A URDF has the root `robot` in its first 4096 bytes, or its extension.
 fn is_mesh(path: &Path) -> bool {
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
     if matches!(extension.as_deref(), Some("urdf" | "xacro" | "xml")) {
@@ -286,7 +290,7 @@ fn is_mesh(path: &Path) -> bool {
     !(head.contains("<robot ") || head.contains("<robot>") || is_robot_tree(&bytes, path))
 }
 
-/// True for a node tree that is a robot; whole scenes are not.
+/// True for a node tree that is a robot; false for a whole scene.
 fn is_robot_tree(bytes: &[u8], path: &Path) -> bool {
     robot::tree_format(bytes, path).is_some_and(|format| {
         robot::parse_tree(bytes, format, path, None).is_ok_and(|t| t.nodes.len() <= robot::MAX_LINKS)

@@ -1,5 +1,7 @@
-//! Contents of a robot model or mesh file: joints and limits, meshes and their faults, DH tables, resolution levels,
-//! the allowed collision matrix, and suspected unit errors. No cell is needed; `elbowroom_report` renders the images.
+//! Contents of a robot model or mesh file.
+//!
+//! An inspection lists joints and limits, meshes and their faults, DH tables, resolution levels, the allowed collision
+//! matrix, and suspected unit errors. It needs no cell. `elbowroom_report` renders the images.
 //!
 //! ```
 //! use elbowroom_inspect::{InspectOptions, Inspection};
@@ -15,8 +17,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! **Invariant.** Whatever looks wrong in a model (units, open meshes, links that touch), an inspection only reports
-//! it: it never repairs the model and never changes the file.
+//! **Invariant.** Whatever looks wrong in a model (units, open meshes, links that touch), an inspection only reports it:
+//! it never repairs the model and never changes the file.
 
 mod deviation;
 mod dh;

@@ -12,24 +12,24 @@ use serde::Serialize;
 /// One entry of the allowed collision matrix.
 #[derive(Debug, Clone, Serialize)]
 pub struct PairRow {
-    /// One link.
+    /// Name of the first link.
     pub a: String,
-    /// The other.
+    /// Name of the second link.
     pub b: String,
     /// Whether collision queries test the pair.
     pub tested: bool,
-    /// The reason.
+    /// Why the pair is tested or not.
     pub reason: String,
-    /// Suggestion from sampling for a tested pair: never, always, or at rest in contact.
+    /// Suggestion from sampling for a tested pair: never in contact, always in contact, or in contact at rest.
     pub suggestion: Option<String>,
     /// Weight; pairs of larger weight are tested first.
     pub weight: f64,
     /// Security margin, m.
     pub margin_m: f64,
-    /// Reason without details, by which rows are counted.
+    /// Reason without details; rows are counted by it.
     #[serde(skip)]
     pub kind: ReasonKind,
-    /// True if all samples are in contact.
+    /// True if the pair is in contact in all samples.
     #[serde(skip)]
     pub always: bool,
     /// True for a contact at rest without a collider in between.
@@ -37,7 +37,7 @@ pub struct PairRow {
     pub at_rest: bool,
 }
 
-/// Reason without details why a pair is tested or not.
+/// Why a pair is tested or not, without details.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ReasonKind {
     /// Nothing excludes the pair.
@@ -50,7 +50,7 @@ pub enum ReasonKind {
     Srdf,
     /// Proven to be out of reach of each other.
     OutOfReach,
-    /// In contact in none of the samples.
+    /// Never in contact in the samples.
     NeverInSamples,
     /// In contact in all samples.
     AlwaysInContact,
@@ -58,12 +58,12 @@ pub enum ReasonKind {
     TouchesAtRest,
     /// Set by hand.
     ByHand,
-    /// Attached, or allowed to touch what is attached.
+    /// Attached, or allowed to touch an attached object.
     Attached,
 }
 
 impl ReasonKind {
-    /// As in the table of an inspection: `not excluded`, `adjacent`, …
+    /// The name as in the table of an inspection: `not excluded`, `adjacent`, …
     pub fn name(self) -> &'static str {
         match self {
             Self::NotExcluded => "not excluded",
@@ -103,9 +103,11 @@ impl From<&Reason> for ReasonKind {
     }
 }
 
-/// The SRDF that a robot should have, as MoveIt's Setup Assistant writes it: pairs that are adjacent, proven to be out of reach of
-/// each other, or in contact in all samples are disabled, and those of the present SRDF. Pairs that touch at rest, or in no
-/// sample, are comments: whether to disable them is for a person to decide. Groups, states and the like are those of `given`.
+/// Writes the SRDF that a robot should have, in the form of MoveIt's Setup Assistant.
+///
+/// It disables pairs that are adjacent, proven to be out of reach of each other, in contact in all samples, or disabled
+/// in the present SRDF. Pairs that touch at rest, or never in the samples, become comments: a person must decide whether
+/// to disable them. Groups, states and other contents are copied from `given`.
 pub(super) fn srdf(robot: &str, pairs: &[PairRow], given: Srdf) -> String {
     let reason = |row: &PairRow| match (row.kind, row.always) {
         (ReasonKind::Adjacent | ReasonKind::NoJointBetween, _) => Some("Adjacent"),

@@ -2,10 +2,10 @@
 
 use elbowroom_spatial::Vec3;
 
-/// `xᵀ A x + 2 bᵀ x + c` with a symmetric `A`.
+/// The quadric `xᵀ A x + 2 bᵀ x + c` with a symmetric `A`.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Quadric {
-    /// xx, xy, xz, yy, yz, zz.
+    /// Entries of `A`: xx, xy, xz, yy, yz, zz.
     a: [f64; 6],
     b: Vec3,
     c: f64,
@@ -41,7 +41,7 @@ impl Quadric {
         x.dot(self.times(x)) + 2.0 * self.b.dot(x) + self.c
     }
 
-    /// The minimum point; `None` if the minimum is a line or a plane, or nearly so.
+    /// The point of the minimum; `None` if the minimum is a line or a plane, or nearly so.
     pub fn lowest(&self) -> Option<Vec3> {
         let [xx, xy, xz, yy, yz, zz] = self.a;
         let (u, v, w) = (Vec3::new(xx, xy, xz), Vec3::new(xy, yy, yz), Vec3::new(xz, yz, zz));
@@ -51,7 +51,7 @@ impl Quadric {
         if !(det > 1e-6 * trace * trace * trace) {
             return None;
         }
-        // The inverse of a symmetric matrix has the cross products of its rows as columns.
+        // The columns of the inverse of a symmetric matrix are the cross products of its rows.
         Some((cross * self.b.x + w.cross(u) * self.b.y + u.cross(v) * self.b.z) / -det)
     }
 }

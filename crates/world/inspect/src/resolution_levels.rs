@@ -9,28 +9,28 @@ use serde::Serialize;
 
 use crate::{deviation, simplify};
 
-/// The levels of one link, in its frame; for a mesh file, of one object.
+/// Resolution levels of one link, in its frame. For a mesh file: of one object.
 ///
-/// Boxes, capsule and hull enclose the link. The middle and coarse triangles do not: they lie on both sides of the
-/// exact surface within `deviation_m`. A query with a security margin of the deviation covers the exact surface.
+/// Boxes, capsule and hull enclose the link. The middle and coarse triangles lie on both sides of the exact surface,
+/// within `deviation_m`. A query whose security margin equals the deviation covers the exact surface.
 #[derive(Debug, Clone, Serialize)]
 pub struct LinkLevels {
-    /// The link, or the object.
+    /// Name of the link or object.
     pub link: String,
-    /// Axis-aligned box in the link's frame; the basis of L1.
+    /// Axis-aligned box in the link's frame, the basis of L1.
     #[serde(rename = "box")]
     pub aabb: BoxRow,
-    /// Level L2.
+    /// Level L2: an oriented box.
     pub obb: Option<ObbRow>,
     /// Level `capsule`.
     pub capsule: Option<CapsuleRow>,
-    /// Level `hull`; null where the link is flat.
+    /// Level `hull`; null if the link is flat.
     pub hull: Option<HullRow>,
-    /// Level L3: all triangles; null where the link has no mesh.
+    /// Level L3: all triangles; null if the link has no mesh.
     pub fine: Option<TrianglesRow>,
-    /// About a quarter of the triangles.
+    /// A mesh with about a quarter of the triangles.
     pub middle: Option<TrianglesRow>,
-    /// About a sixteenth.
+    /// A mesh with about a sixteenth of the triangles.
     pub coarse: Option<TrianglesRow>,
     /// Hull, middle and coarse meshes.
     #[serde(skip)]
@@ -40,31 +40,31 @@ pub struct LinkLevels {
 /// An axis-aligned box.
 #[derive(Debug, Clone, Serialize)]
 pub struct BoxRow {
-    /// Least corner.
+    /// Corner with the smallest coordinates, m.
     pub min_m: [f64; 3],
-    /// Greatest corner.
+    /// Corner with the largest coordinates, m.
     pub max_m: [f64; 3],
 }
 
 /// An oriented box.
 #[derive(Debug, Clone, Serialize)]
 pub struct ObbRow {
-    /// Its centre.
+    /// Centre, m.
     pub center_m: [f64; 3],
-    /// Its rotation as in URDF, rad.
+    /// Rotation as in URDF, rad.
     pub rpy: [f64; 3],
-    /// Edge lengths.
+    /// Edge lengths, m.
     pub size_m: [f64; 3],
 }
 
 /// A capsule.
 #[derive(Debug, Clone, Serialize)]
 pub struct CapsuleRow {
-    /// One end of its axis.
+    /// First end of the axis, m.
     pub from_m: [f64; 3],
-    /// The other.
+    /// Second end of the axis, m.
     pub to_m: [f64; 3],
-    /// Its radius.
+    /// Radius, m.
     pub radius_m: f64,
 }
 
@@ -75,7 +75,7 @@ pub struct HullRow {
     pub vertices: usize,
     /// Number of faces.
     pub triangles: usize,
-    /// Volume.
+    /// Volume, m³.
     pub volume_m3: f64,
 }
 
@@ -84,11 +84,11 @@ pub struct HullRow {
 pub struct TrianglesRow {
     /// Number of triangles.
     pub triangles: usize,
-    /// Proven upper bound of the distance of any point of the exact surface from this mesh. Null if it is not known.
+    /// Proven upper bound on the distance of any point of the exact surface from this mesh, m. Null if unknown.
     pub deviation_m: Option<f64>,
 }
 
-/// Larger meshes are not simplified: that would take minutes.
+/// Largest number of triangles of a mesh that is simplified. Simplifying larger meshes would take minutes.
 const MAX_TRIANGLES: usize = 500_000;
 /// Smallest number of triangles after simplification.
 const MIN_TRIANGLES: usize = 12;
@@ -163,7 +163,7 @@ struct TriangleLevels {
     coarse: Option<TrianglesRow>,
 }
 
-/// The triangle levels of a link; middle and coarse meshes are added to `meshes`.
+/// Computes the triangle levels of a link, and adds the middle and coarse meshes to `meshes`.
 fn triangles(colliders: &[Collider], meshes: &mut Vec<MeshData>) -> TriangleLevels {
     let solids: Vec<(&TriMesh, &Pose)> = colliders
         .iter()

@@ -7,17 +7,17 @@ use serde::{Serialize, Serializer};
 
 use crate::edges;
 
-/// A joint.
+/// Row of a joint.
 #[derive(Debug, Clone, Serialize)]
 pub struct JointRow {
-    /// Its name.
+    /// Name of the joint.
     pub name: String,
     /// `fixed`, `revolute`, `continuous` or `prismatic`.
     #[serde(rename = "type", serialize_with = "serialize_kind")]
     pub kind: JointKind,
-    /// Parent link.
+    /// Name of the parent link.
     pub parent: String,
-    /// Child link.
+    /// Name of the child link.
     pub child: String,
     /// Lower limit, rad or m.
     pub lower: Option<f64>,
@@ -25,7 +25,7 @@ pub struct JointRow {
     pub upper: Option<f64>,
     /// Largest speed, rad/s or m/s.
     pub velocity: Option<f64>,
-    /// The source joint of a mimic joint.
+    /// Name of the source joint of a mimic joint.
     pub mimic: Option<String>,
 }
 
@@ -36,34 +36,36 @@ impl JointRow {
     }
 }
 
-/// A triangle mesh.
+/// Row of a triangle mesh.
 #[derive(Debug, Clone, Serialize)]
 pub struct MeshRow {
-    /// Its link; for a mesh file, its object.
+    /// Name of the link; for a mesh file, of the object.
     pub link: String,
-    /// The object's name.
+    /// Name of the object.
     pub name: String,
     /// Number of triangles.
     pub triangles: usize,
     /// Number of distinct vertices.
     pub vertices: usize,
-    /// True if every edge is shared by two faces of opposite direction, after closing hairline seams.
+    /// True if, after closing hairline seams, every edge is shared by two faces of opposite direction.
     pub closed: bool,
-    /// Vertices on hairline seams that are merged within `weld_tolerance_m`; distances refer to the original faces.
+    /// Number of vertices on hairline seams that are merged within `weld_tolerance_m`.
+    ///
+    /// Distances refer to the original faces.
     pub welded_vertices: usize,
-    /// 0 if nothing was welded.
+    /// Tolerance of the merge, m; 0 if no vertices were merged.
     pub weld_tolerance_m: f64,
-    /// Faces without area.
+    /// Number of faces without area.
     pub degenerate: usize,
-    /// Duplicate faces.
+    /// Number of duplicate faces.
     pub duplicate: usize,
-    /// Edges with one face: the boundaries of holes.
+    /// Number of edges with one face: the boundaries of holes.
     pub open_edges: usize,
-    /// Edges with more than two faces.
+    /// Number of edges with more than two faces.
     pub non_manifold_edges: usize,
     /// True if the faces of a closed mesh are oriented inwards.
     pub inside_out: bool,
-    /// Edge lengths of its axis-aligned box, in its own frame.
+    /// Edge lengths of the axis-aligned box, in the mesh's frame, m.
     pub extent_m: [f64; 3],
 }
 

@@ -1,7 +1,9 @@
-//! Mesh simplification by edge collapse in the order of quadric error (Garland and Heckbert, "Surface simplification
-//! using quadric error metrics", 1997). Boundary edges are preserved by planes across them.
+//! Mesh simplification by edge collapse in the order of quadric error.
 //!
-//! The deviation of the result is bounded afterwards ([`crate::deviation`]), so the order of collapses affects only the
+//! Planes across boundary edges preserve these edges. Source: Garland and Heckbert, "Surface simplification using quadric
+//! error metrics", 1997.
+//!
+//! [`crate::deviation`] bounds the deviation of the result afterwards, so the order of collapses affects only the
 //! quality.
 
 use std::cmp::Reverse;
@@ -17,7 +19,7 @@ use crate::quadric::Quadric;
 pub(super) struct Simplified {
     pub vertices: Vec<Vec3>,
     pub triangles: Vec<[u32; 3]>,
-    /// Per original vertex: the vertex that it collapsed to.
+    /// Per original vertex: the vertex to which it collapsed.
     pub collapsed_to: Vec<u32>,
 }
 
@@ -35,7 +37,7 @@ impl EdgeCollapse {
     fn collapse_to(&mut self, target: usize, heap: &mut BinaryHeap<Candidate>) {
         while self.alive > target {
             let Some(next) = heap.pop() else { break };
-            // A vertex that changed since has newer candidates.
+            // A vertex that has changed since then has newer candidates.
             let now = self.version[next.a as usize] + self.version[next.b as usize];
             if now == next.version && self.may_collapse(&next) {
                 self.collapse(&next);
@@ -55,9 +57,9 @@ struct Candidate {
 }
 
 impl Candidate {
-    /// Lowest cost first; ties are broken by the ends, so that the result is deterministic.
+    /// Sort key: lowest cost first. The ends break ties, so that the result is deterministic.
     fn key(&self) -> Reverse<(u64, u32, u32)> {
-        // The bits of non-negative floats have the order of their values.
+        // The bits of non-negative floats are in the order of their values.
         Reverse((self.cost.max(0.0).to_bits(), self.a, self.b))
     }
 }
@@ -82,7 +84,7 @@ impl Ord for Candidate {
 struct EdgeCollapse {
     at: Vec<Vec3>,
     quadrics: Vec<Quadric>,
-    /// Corners; `None` for a removed face.
+    /// Corners of each face; `None` for a removed face.
     faces: Vec<Option<[u32; 3]>>,
     /// Faces of each vertex, including removed ones.
     of_vertex: Vec<Vec<u32>>,
@@ -176,7 +178,7 @@ impl EdgeCollapse {
         (cost.is_finite() && at.is_finite()).then_some(Candidate { cost, a, b, at, version })
     }
 
-    /// The collapse must not fold faces, change the topology, or leave a corner without a face.
+    /// True if the collapse folds no face, keeps the topology, and leaves a face at every corner.
     fn may_collapse(&self, c: &Candidate) -> bool {
         let has = |f: &[u32; 3], v: u32| f.contains(&v);
         let shared: Vec<[u32; 3]> = self.faces_of(c.a).map(|f| f.1).filter(|f| has(f, c.b)).collect();
@@ -224,7 +226,7 @@ impl EdgeCollapse {
         self.quadrics[c.a as usize].add(&other);
         self.at[c.a as usize] = c.at;
         self.collapsed_to[c.b as usize] = c.a;
-        // Larger than both versions: all candidates of either vertex become invalid.
+        // Larger than both versions, so that all candidates of either vertex become invalid.
         self.version[c.a as usize] += self.version[c.b as usize] + 1;
         self.version[c.b as usize] = u32::MAX / 2;
     }
@@ -251,7 +253,7 @@ impl EdgeCollapse {
             }
             self.collapsed_to[v] = end;
         }
-        // Vertices of degenerate faces only have no target.
+        // Vertices that only degenerate faces use have no target.
         let collapsed_to = self.collapsed_to.iter().map(|v| place[*v as usize]).collect();
         Simplified { vertices, triangles, collapsed_to }
     }

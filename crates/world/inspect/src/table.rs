@@ -144,7 +144,7 @@ impl Inspection {
     }
 }
 
-/// Number of triangles and the bound of their deviation, in millimetres.
+/// Number of triangles and the bound on their deviation, in millimetres.
 fn off(row: Option<&TrianglesRow>) -> String {
     let Some(row) = row else { return "-".into() };
     let off = row.deviation_m.map_or("?".into(), |d| format!("{:.2}", 1000.0 * d));

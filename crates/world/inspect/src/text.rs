@@ -1,6 +1,6 @@
 //! Names shortened to the width of a column.
 
-/// The end of a name that is longer than `width` characters, after an ellipsis.
+/// Shortens a name that is longer than `width` characters to an ellipsis and its end.
 pub(crate) fn shortened(name: &str, width: usize) -> String {
     if name.chars().count() <= width {
         return name.to_owned();

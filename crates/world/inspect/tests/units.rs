@@ -1,4 +1,4 @@
-//! Unit errors of published robots, where the data is available: each factor is identified, and correct units are not
+//! Unit errors of published robots, if the data are available: each factor is identified, and correct units are not
 //! suspected.
 
 use std::path::PathBuf;
@@ -11,7 +11,7 @@ use elbowroom_robot::{Collider, Robot};
 use elbowroom_spatial::{Pose, Vec3};
 use elbowroom_testkit::folder;
 
-/// The factor, the likely unit, and the unit it was read as.
+/// The factor, the likely unit, and the unit as which the numbers were read.
 const FACTORS: [(f64, &str, &str); 9] = [
     (1000.0, "mm", "m"),
     (100.0, "cm", "m"),
@@ -24,7 +24,7 @@ const FACTORS: [(f64, &str, &str); 9] = [
     (0.001, "applied twice", "mm"),
 ];
 
-/// All robots of the data, each solid replaced by its box.
+/// All robots of the data, with each solid replaced by its box.
 fn robots() -> Vec<(PathBuf, Robot)> {
     let load = |urdf: PathBuf| {
         let options = LoadOptions { load_visuals: false, ..LoadOptions::default() };
@@ -49,7 +49,7 @@ fn boxed(mut robot: Robot) -> Robot {
     robot
 }
 
-/// Scales the solids of one link, or of all, by `factor`.
+/// Scales the solids of one link, or of all links, by `factor`.
 fn scaled(robot: &Robot, link: Option<usize>, factor: f64) -> Robot {
     let mut robot = robot.clone();
     for (_, colliders) in robot.colliders.iter_mut().enumerate().filter(|(l, _)| link.is_none_or(|only| only == *l)) {
@@ -83,7 +83,7 @@ fn wrong_units_of_real_arms_are_detected_and_right_ones_are_not_reported() {
     for (file, robot) in robots() {
         let file = file.display();
         assert_eq!(suspect_units(&robot), [], "{file}");
-        // Two or three links are not enough; several robots and a rail have no typical sizes.
+        // Two or three links are not enough; several robots, and a rail, have no typical sizes.
         if moved_links(&robot).len() < 4 || file.to_string().contains("/cell/") {
             continue;
         }
@@ -149,7 +149,7 @@ fn limits_in_degrees_and_joints_in_millimetres_are_named() {
     }
 }
 
-/// One joint of an arm in degrees is suspected, a screwdriver's axis with a hundred turns is not.
+/// One joint of an arm in degrees is suspected; a screwdriver's axis with a hundred turns is not.
 #[test]
 fn one_joint_in_degrees_is_distinguished_from_one_with_a_wide_range() {
     let joint = |i: usize, limit: f64| elbowroom_kinematics::Joint {

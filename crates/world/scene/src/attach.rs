@@ -8,8 +8,10 @@ use crate::attachment::Attachment;
 use crate::{PairEntry, PairState, Reason, Scene, SceneError, SceneState};
 
 impl SceneState {
-    /// Attaches an object to a link, with its present pose: it moves with the link from then on, and is checked against the
-    /// other links, except `touch_links`, and against the other objects. Its padding and hand edits of its pairs remain.
+    /// Attaches an object to a link, at its present pose.
+    ///
+    /// From then on the object moves with the link. It is checked against the other links, except `touch_links`, and
+    /// against the other objects. Its padding and the manual edits of its pairs remain.
     ///
     /// ```
     /// use elbowroom_kinematics::LinkId;
@@ -31,7 +33,7 @@ impl SceneState {
     /// ```
     ///
     /// # Errors
-    /// No such object, robot or link, or the object is attached already.
+    /// [`SceneError`] if the object, robot or link does not exist, or the object is attached already.
     pub fn attach(
         &mut self,
         scene: &Scene,
@@ -48,10 +50,10 @@ impl SceneState {
         self.attach_at(scene, object, attachment)
     }
 
-    /// As [`SceneState::attach`], with the object's frame moved to a given pose in the link: a tool in its changer.
+    /// Like [`SceneState::attach`], but moves the object's frame to a given pose in the link: a tool in its changer.
     ///
     /// # Errors
-    /// As [`SceneState::attach`], or a pose that is not finite.
+    /// The errors of [`SceneState::attach`], or a pose that is not finite.
     pub fn attach_at(&mut self, scene: &Scene, object: ObjectId, attachment: Attachment) -> Result<(), SceneError> {
         self.check_attach(scene, object, &attachment)?;
         if !attachment.in_link.is_finite() {
@@ -68,7 +70,7 @@ impl SceneState {
     /// Detaches an object: it keeps its present pose.
     ///
     /// # Errors
-    /// No such object, or it is not attached.
+    /// [`SceneError`] if the object does not exist or is not attached.
     pub fn detach(&mut self, scene: &Scene, object: ObjectId) -> Result<(), SceneError> {
         let count = scene.objects.len();
         let o = scene.objects.get(object.0).ok_or(SceneError::NoSuchObject { index: object.0, count })?;
@@ -79,9 +81,10 @@ impl SceneState {
         Ok(())
     }
 
-    /// Whether a pair is tested now, and why: the [allowed collision matrix](Scene::allowed_collision_matrix), as attachments
-    /// change it. `None` if there is no such pair, as for two objects of which none is
-    /// attached and that nobody edited.
+    /// Whether a pair is tested now, and why.
+    ///
+    /// This is the [allowed collision matrix](Scene::allowed_collision_matrix) as attachments change it. `None` if the
+    /// pair does not exist, for example two unattached objects without an edit.
     pub fn pair(&self, scene: &Scene, a: GeometryId, b: GeometryId) -> Option<(PairState, Reason)> {
         if a == b || !scene.has_shape(a) || !scene.has_shape(b) {
             return None;
@@ -115,7 +118,7 @@ impl SceneState {
         Some((PairState::Tested, Reason::Default))
     }
 
-    /// True if a joint moves one against the other.
+    /// True if a joint moves one geometry against the other.
     fn joint_between(&self, scene: &Scene, a: GeometryId, b: GeometryId) -> bool {
         let chain = |r: RobotId| &scene.robots[r.0].robot.chain;
         match (self.carrier(a), self.carrier(b)) {

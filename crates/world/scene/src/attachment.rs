@@ -11,7 +11,7 @@ pub struct Attachment {
     pub robot: RobotId,
     /// The link that holds the object.
     pub link: LinkId,
-    /// Pose of the object's frame in the link's.
+    /// Pose of the object's frame in the link's frame.
     pub in_link: Pose,
     /// Links of the robot that may touch the object, such as fingers.
     pub touch_links: Vec<LinkId>,

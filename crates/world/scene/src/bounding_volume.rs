@@ -1,14 +1,14 @@
-//! Bounding boxes and capsules of many points: fitted to the outermost ones, then enlarged until they contain all.
+//! Bounding boxes and capsules of many points: fitted to the outermost points, then enlarged to contain all.
 
 use elbowroom_proximity::{Capsule, Cuboid, Shape, fit};
 use elbowroom_spatial::{Pose, Vec3};
 
-/// Number of directions in which the outermost points are taken.
+/// Number of directions in which outermost points are selected.
 const DIRECTIONS: usize = 256;
 /// Allowance for the rounding of a pose that is later composed with others, as a fraction of the coordinates.
 const GROWTH: f64 = 8.0 * f64::EPSILON;
 
-/// A tight oriented box around the points. `None` without points.
+/// A tight oriented box around the points. `None` if there are no points.
 pub(crate) fn cuboid(points: &[Vec3]) -> Option<(Shape, Pose)> {
     let fit = fit::cuboid(&outermost(points))?;
     let Shape::Cuboid(c) = fit.shape else { return None };
@@ -18,7 +18,7 @@ pub(crate) fn cuboid(points: &[Vec3]) -> Option<(Shape, Pose)> {
     Some((Shape::Cuboid(Cuboid { half_extents }), pose))
 }
 
-/// A tight capsule around the points. `None` without points.
+/// A tight capsule around the points. `None` if there are no points.
 pub(crate) fn capsule(points: &[Vec3]) -> Option<(Shape, Pose)> {
     let fit = fit::capsule(&outermost(points))?;
     let Shape::Capsule(c) = fit.shape else { return None };
@@ -31,7 +31,7 @@ pub(crate) fn capsule(points: &[Vec3]) -> Option<(Shape, Pose)> {
     Some((Shape::Capsule(Capsule { radius, ..c }), pose))
 }
 
-/// All points where they are few, else those outermost in directions spread evenly over the sphere.
+/// All points if they are few, else the outermost points in directions spread evenly over the sphere.
 fn outermost(points: &[Vec3]) -> Vec<Vec3> {
     if points.len() <= 2 * DIRECTIONS {
         return points.to_vec();

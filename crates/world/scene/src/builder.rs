@@ -1,4 +1,4 @@
-//! From robots and objects to a scene.
+//! Builder of a scene from robots and objects.
 
 use std::collections::HashMap;
 
@@ -11,7 +11,7 @@ use crate::geometry_model::GeometryModel;
 use crate::local_shape::LocalShape;
 use crate::{Object, PairEdit, PairRules, Scene, SceneError, SceneRobot, scale};
 
-/// Collects the robots, objects and settings of a scene. Errors are reported by [`SceneBuilder::build`].
+/// Collects the robots, objects and settings of a scene. [`SceneBuilder::build`] reports the errors.
 ///
 /// ```
 /// use elbowroom_kinematics::{Chain, LinkId};
@@ -55,7 +55,7 @@ impl Default for SceneBuilder {
 }
 
 impl Scene {
-    /// An empty scene to fill.
+    /// Starts an empty scene.
     pub fn builder() -> SceneBuilder {
         SceneBuilder::default()
     }
@@ -74,7 +74,11 @@ impl SceneBuilder {
         ObjectId(self.objects.len() - 1)
     }
 
-    /// Metres that everything must keep from a link or object, links of the same robot included. Two paddings add up.
+    /// Sets the padding of a link or object: the distance (m) that all other geometry must keep from it.
+    ///
+    /// Other geometry includes links of the same robot.
+    ///
+    /// The paddings of the two geometries of a pair add up.
     pub fn padding(&mut self, id: GeometryId, metres: f64) -> &mut Self {
         self.padding.insert(id, metres);
         self
@@ -86,29 +90,30 @@ impl SceneBuilder {
         self
     }
 
-    /// Edits the allowed collision matrix, after everything else, in the order of the calls.
+    /// Edits one pair of the allowed collision matrix. Single edits apply last, in the order of the calls.
     pub fn edit(&mut self, a: GeometryId, b: GeometryId, edit: PairEdit) -> &mut Self {
         self.edits.push((a, b, edit));
         self
     }
 
-    /// Edits the allowed collision matrix between selections, before the edits of single pairs.
+    /// Edits the allowed collision matrix between selections. These edits apply before the edits of single pairs.
     pub fn rules(&mut self, rules: PairRules) -> &mut Self {
         self.rules.extend(rules);
         self
     }
 
-    /// Whether to look for pairs that no joint values within the limits bring together (default: yes). The proof takes time
-    /// once and makes each query faster; the answers are the same.
+    /// Sets whether to look for pairs that no joint values within the limits bring together (default: yes).
+    ///
+    /// The proof takes time once and makes each query faster; the answers are the same.
     pub fn prove_out_of_reach(&mut self, prove: bool) -> &mut Self {
         self.prove_out_of_reach = prove;
         self
     }
 
-    /// Makes all models and the allowed collision matrix.
+    /// Builds all models and the allowed collision matrix.
     ///
     /// # Errors
-    /// [`SceneError`], naming what is wrong.
+    /// [`SceneError`], which names the invalid input.
     pub fn build(self) -> Result<Scene, SceneError> {
         let names = names(&self.robots, &self.objects)?;
         self.check()?;
@@ -173,7 +178,7 @@ impl SceneBuilder {
         Ok(GeometryModel::new(id, shapes, padding))
     }
 
-    /// All errors that show without making a model.
+    /// Reports all errors that can be found without building a model.
     fn check(&self) -> Result<(), SceneError> {
         for r in &self.robots {
             let (colliders, links) = (r.robot.colliders.len(), r.robot.chain.links().len());
@@ -222,7 +227,7 @@ impl SceneBuilder {
     }
 }
 
-/// The geometry by name; an error where a name is used twice.
+/// Geometry by name; an error if a name is used twice.
 pub(crate) fn names(robots: &[SceneRobot], objects: &[Object]) -> Result<HashMap<String, GeometryId>, SceneError> {
     let mut names = HashMap::new();
     let mut add = |name: String, id| match names.insert(name.clone(), id) {

@@ -10,24 +10,29 @@ use elbowroom_spatial::Vec3;
 
 use crate::{Scene, SceneState};
 
-/// Error of the triangles of spheres, capsules and cylinders, m.
+/// Largest distance of the triangles of spheres, capsules and cylinders from the surface, m.
 const CHORD_ERROR_M: f64 = 1e-4;
 
 /// Two triangles that touch, or two colliders that are in contact without touching triangles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SurfaceContact {
-    /// Indices of the colliders of the first and the second; 0 for an object.
+    /// Indices of the colliders of the first and the second geometry; 0 for an object.
     pub colliders: [usize; 2],
-    /// Indices of their triangles. `None` if one collider is inside the other, where a round shape is touched outside of the
-    /// triangles inscribed in it, and for half-spaces.
+    /// Indices of the touching triangles of the two colliders.
+    ///
+    /// `None` if one collider is inside the other, if a round shape is touched outside the triangles inscribed in it, and
+    /// for half-spaces.
     pub triangles: Option<[u32; 2]>,
-    /// The ends of the segment in which the triangles cross, in the world, m. Where they only touch, and without triangles: a point
-    /// of the first and one of the second.
+    /// Ends of the segment in which the triangles cross, in the world, m.
+    ///
+    /// If the triangles only touch, and without triangles: one point of each geometry.
     pub points: [Vec3; 2],
 }
 
-/// The surfaces of a scene as triangles. Meshes, hulls and boxes have their own (two triangles a face of a box); spheres, capsules and
-/// cylinders have triangles inscribed in them, 0.1 mm from the surface at most (at most 256 segments around).
+/// The surfaces of a scene as triangles.
+///
+/// Meshes, hulls and boxes have their own triangles (two per face of a box). Spheres, capsules and cylinders have
+/// inscribed triangles, at most 0.1 mm from the surface (with at most 256 segments around).
 ///
 /// ```
 /// use elbowroom_robot::RobotId;
@@ -47,19 +52,21 @@ pub struct SurfaceContact {
 #[derive(Debug)]
 pub struct ContactSurfaces<'s> {
     scene: &'s Scene,
-    /// Per link or object that was asked for, its colliders; `None` for one without triangles.
+    /// Colliders per link or object queried so far; `None` for a collider without triangles.
     meshes: HashMap<GeometryId, Vec<Option<Arc<TriMesh>>>>,
     workspace: Workspace,
 }
 
 impl<'s> ContactSurfaces<'s> {
-    /// For the shapes of a scene, as they are checked; without margins.
+    /// Prepares the shapes of a scene as they are checked, without margins.
     pub fn new(scene: &'s Scene) -> Self {
         Self { scene, meshes: HashMap::new(), workspace: Workspace::new() }
     }
 
-    /// Calls `found` for each pair of triangles of two links or objects that touch, ordered by collider and triangle; once without
-    /// triangles for colliders in contact of which none touch. Does nothing if the two are apart.
+    /// Calls `found` for each pair of touching triangles of two links or objects, ordered by collider and triangle.
+    ///
+    /// Colliders that are in contact without touching triangles are reported once, without triangles. Does nothing if the
+    /// two geometries are apart.
     pub fn contacts(
         &mut self,
         state: &SceneState,

@@ -2,7 +2,7 @@
 
 use crate::{PairNumber, PairState};
 
-/// Why a scene was not built or a state was not changed. Nothing has changed then.
+/// Why a scene was not built or a state was not changed. On an error nothing changes.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SceneError {
     /// Two robots, links or objects share a name.
@@ -11,23 +11,23 @@ pub enum SceneError {
     /// A robot's index is out of range.
     #[error("there is no robot {index}; the scene has {count}, counted from 0")]
     NoSuchRobot {
-        /// The index.
+        /// The invalid index.
         index: usize,
         /// Number of robots.
         count: usize,
     },
-    /// Robots that cannot be merged.
+    /// The robots cannot be merged.
     #[error("the robots cannot be merged to `{robot}`: {what}: name each robot once")]
     Merge {
         /// Name of the merged robot.
         robot: String,
-        /// Why, in words.
+        /// The reason, in words.
         what: String,
     },
     /// An object's index is out of range.
     #[error("there is no object {index}; the scene has {count}, counted from 0")]
     NoSuchObject {
-        /// The index.
+        /// The invalid index.
         index: usize,
         /// Number of objects.
         count: usize,
@@ -37,12 +37,12 @@ pub enum SceneError {
     NoSuchLink {
         /// Name of the robot.
         robot: String,
-        /// The index.
+        /// The invalid index.
         index: usize,
         /// Number of links.
         count: usize,
     },
-    /// The colliders of a robot are not listed per link.
+    /// The lists of colliders of a robot do not match its links.
     #[error(
         "robot `{robot}` lists colliders for {colliders} links, but its chain has {links}; one list per link, empty where it has no collision shape"
     )]
@@ -59,7 +59,7 @@ pub enum SceneError {
     Shape {
         /// Name of the link or object.
         geometry: String,
-        /// What is wrong.
+        /// The error of the shape.
         source: elbowroom_proximity::ShapeError,
     },
     /// A pose holds a NaN or an infinity.
@@ -70,11 +70,11 @@ pub enum SceneError {
     JointCount {
         /// Name of the robot.
         robot: String,
-        /// Independent joints.
+        /// Number of independent joints.
         expected: usize,
-        /// Their names.
+        /// Names of the independent joints.
         joints: String,
-        /// Length of the vector.
+        /// Length of the given vector.
         given: usize,
     },
     /// A joint value is NaN or infinite.
@@ -84,7 +84,7 @@ pub enum SceneError {
         robot: String,
         /// Name of the joint.
         joint: String,
-        /// The value.
+        /// The joint value.
         value: f64,
     },
     /// A padding is invalid.
@@ -92,7 +92,7 @@ pub enum SceneError {
     Padding {
         /// Name of the link or object.
         geometry: String,
-        /// The value.
+        /// The padding, m.
         value: f64,
     },
     /// A scale is invalid.
@@ -100,7 +100,7 @@ pub enum SceneError {
     Scale {
         /// Name of the link or object.
         geometry: String,
-        /// The value.
+        /// The factor.
         value: f64,
     },
     /// A mesh or hull is invalid after scaling.
@@ -108,7 +108,7 @@ pub enum SceneError {
     ScaledShape {
         /// Name of the link or object.
         geometry: String,
-        /// What is wrong.
+        /// The error of the scaled shape, in words.
         what: String,
     },
     /// The object is already attached.
@@ -122,7 +122,7 @@ pub enum SceneError {
     /// The object is not attached.
     #[error("`{0}` is attached to nothing")]
     NotAttached(String),
-    /// The object is attached, so that its link determines its pose.
+    /// The object is attached, so its link determines its pose.
     #[error("`{object}` is attached to `{link}` and moves with it; detach it before placing it")]
     PlacedWhileAttached {
         /// Name of the object.
@@ -141,20 +141,20 @@ pub enum SceneError {
 /// Why an allowed collision matrix was refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MatrixError {
-    /// Not TOML of the shape that [`AllowedCollisionMatrix::to_text`](crate::AllowedCollisionMatrix::to_text) writes.
+    /// The text is not TOML in the format of [`AllowedCollisionMatrix::to_text`](crate::AllowedCollisionMatrix::to_text).
     #[error("the allowed collision matrix cannot be read: {0}")]
     Syntax(String),
-    /// The file is of another version.
+    /// The file has another version.
     #[error("version {0} of the allowed collision matrix is unknown; this program reads version 1")]
     Version(i64),
-    /// A name that the scene does not have.
+    /// The scene does not have this name.
     #[error(
         "the allowed collision matrix names `{name}`, which the scene does not have (or which has no collision shape); {hint}"
     )]
     UnknownName {
-        /// The name.
+        /// The unknown name.
         name: String,
-        /// Names that may be meant.
+        /// Similar names, as a hint.
         hint: String,
     },
     /// The matrix has no such pair.
@@ -162,25 +162,25 @@ pub enum MatrixError {
         "{a} and {b} are no pair of the matrix: it has pairs of links with collision shapes, of such links and objects, and of two objects"
     )]
     NoSuchPair {
-        /// One side.
+        /// First side of the pair.
         a: String,
-        /// Other side.
+        /// Second side of the pair.
         b: String,
     },
     /// A pair is listed twice.
     #[error("the pair {a}, {b} is listed twice; remove one")]
     Twice {
-        /// One side.
+        /// First side of the pair.
         a: String,
-        /// Other side.
+        /// Second side of the pair.
         b: String,
     },
     /// A margin or weight is invalid.
     #[error("{a}, {b}: {what} is {value}; write a finite number, 0 or more")]
     Number {
-        /// One side.
+        /// First side of the pair.
         a: String,
-        /// Other side.
+        /// Second side of the pair.
         b: String,
         /// The field.
         what: PairNumber,
@@ -192,15 +192,15 @@ pub enum MatrixError {
         "{a}, {b}: the matrix has {state} because `{reason}`, the model has `{model}`; write the matrix again, or set reason = {{ by_hand = \"why\" }}"
     )]
     Contradiction {
-        /// One side.
+        /// First side of the pair.
         a: String,
-        /// Other side.
+        /// Second side of the pair.
         b: String,
         /// The state in the file.
         state: PairState,
         /// The reason in the file.
         reason: String,
-        /// The reason by the model.
+        /// The reason from the model.
         model: String,
     },
 }

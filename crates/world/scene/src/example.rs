@@ -6,8 +6,9 @@ use elbowroom_spatial::{Pose, Vec3};
 
 use crate::{Object, Scene, SceneBuilder};
 
-/// Two [example arms](elbowroom_robot::example::arm), `left` at the origin and `right` 1.2 m along x, a `part` (object 0) on a
-/// `table` (object 1).
+/// A scene of two [example arms](elbowroom_robot::example::arm), a part and a table.
+///
+/// `left` is at the origin and `right` 1.2 m along x; a `part` (object 0) lies on a `table` (object 1).
 ///
 /// ```
 /// let scene = elbowroom_scene::example::two_arms();
@@ -18,7 +19,7 @@ use crate::{Object, Scene, SceneBuilder};
 pub fn two_arms() -> Scene {
     let mut builder = SceneBuilder::default();
     for (name, x) in [("left", 0.0), ("right", 1.2)] {
-        // The chain is a constant; a test builds it.
+        // The chain is constant, and a test builds it.
         if let Ok(arm) = arm() {
             builder.robot(name, arm, Pose::from_translation(Vec3::X * x));
         }

@@ -10,28 +10,27 @@ use crate::Level;
 use crate::bounding_volume;
 use crate::local_shape::LocalShape;
 
-/// The constant models of a link or object with shapes.
+/// The constant models of a link or object that has shapes.
 #[derive(Debug, Clone)]
 pub(crate) struct GeometryModel {
     pub id: GeometryId,
     pub exact: Vec<LocalShape>,
-    /// Built at first use: for large meshes it takes longer than all the rest.
+    /// Built at first use: for large meshes it takes longer than all other models.
     hull: OnceLock<Vec<LocalShape>>,
     pub capsule: Vec<LocalShape>,
     pub cuboid: Vec<LocalShape>,
     /// `cuboid` as an oriented box; `None` if the geometry is unbounded.
     pub obb: Option<Obb>,
-    /// True if a coarse model is much cheaper than the exact one.
+    /// True if a coarse model is much cheaper to test than the exact one.
     pub complex: bool,
-    /// True if the capsule has the smaller volume of the two enclosures, so that it can separate what the box cannot.
+    /// True if the capsule has the smaller volume of the two enclosures: it can separate pairs that the box cannot.
     pub slim: bool,
     pub padding_m: f64,
-    /// Metres by which a hull may fail to enclose its mesh.
+    /// Length (m) by which a hull may fail to enclose its mesh.
     hull_slack_m: f64,
 }
 
-/// The error bound of [`ConvexHull::from_points`](elbowroom_proximity::ConvexHull::from_points), rounded up, as a fraction of
-/// the extent.
+/// The error bound of [`ConvexHull::from_points`](elbowroom_proximity::ConvexHull::from_points) per extent, rounded up.
 const HULL_TOLERANCE: f64 = 1e-12;
 
 impl GeometryModel {
@@ -60,12 +59,12 @@ impl GeometryModel {
         }
     }
 
-    /// Metres by which the models of a level may fail to enclose the geometry.
+    /// Length (m) by which the models of a level may fail to enclose the geometry.
     pub fn slack_m(&self, level: Level) -> f64 {
         if level == Level::Hull { self.hull_slack_m } else { 0.0 }
     }
 
-    /// The shapes of a level. L1 has no model of a single link or object.
+    /// The shapes of a level. L1 has no model of a single link or object, and gets the shapes of L2.
     pub fn at(&self, level: Level) -> &[LocalShape] {
         match level {
             Level::L1 | Level::L2 => &self.cuboid,
@@ -153,7 +152,7 @@ fn prism(half_length: f64, radius: f64) -> Vec<Vec3> {
     (0..24).map(corner).flat_map(|(s, c)| [-1.0, 1.0].map(|z| Vec3::new(out * c, out * s, z * half_length))).collect()
 }
 
-/// The convex shape around one shape: itself, the hull of a mesh, or the box of a mesh too flat to have a hull.
+/// The convex shape around one shape: the shape itself, the hull of a mesh, or the box of a mesh too flat to have a hull.
 fn hull(local: &LocalShape) -> LocalShape {
     let Shape::Mesh(mesh) = &local.shape else { return local.clone() };
     match mesh.hull() {

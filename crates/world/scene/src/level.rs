@@ -5,17 +5,18 @@ use std::str::FromStr;
 
 /// The models that a query compares, from coarse to exact.
 ///
-/// All levels but [`Level::Auto`] and [`Level::L3`] compare enclosing volumes. Their answers are conservative: "free" is
-/// certain, a contact may be none, and a distance is never too large.
+/// All levels except [`Level::Auto`] and [`Level::L3`] compare enclosing volumes, with conservative answers: "free" is
+/// guaranteed; a reported contact may be a false positive; distances are lower bounds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub enum Level {
-    /// From coarse to exact, no finer than each pair needs. The answer is that of [`Level::L3`].
+    /// From coarse to exact, only as fine as each pair needs. The answer equals that of [`Level::L3`].
     #[default]
     Auto,
-    /// One axis-aligned box in the world around each robot with the objects attached to it, and one around each other
-    /// object. Links of one robot, which this level cannot separate, are compared at [`Level::L2`].
+    /// One axis-aligned box in the world per robot with its attached objects, and one per unattached object.
+    ///
+    /// Links of one robot cannot be separated at this level; they are compared at [`Level::L2`].
     L1,
-    /// One oriented box per link or object, its axis-aligned box first.
+    /// One oriented box per link or object, after a test of its axis-aligned box.
     L2,
     /// One capsule per link or object.
     Capsule,
@@ -26,7 +27,7 @@ pub enum Level {
 }
 
 impl Level {
-    /// The levels with models of their own, coarse first.
+    /// The levels with their own models, coarse first.
     const ANSWERING: [Self; 5] = [Self::L1, Self::L2, Self::Capsule, Self::Hull, Self::L3];
 }
 
@@ -43,7 +44,7 @@ impl fmt::Display for Level {
     }
 }
 
-/// A string that names no level.
+/// Error of a string that names no level.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("`{0}` is no resolution level; write auto, L1, L2, L3, capsule or hull")]
 pub struct UnknownLevel(pub String);

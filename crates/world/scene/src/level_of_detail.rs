@@ -1,13 +1,14 @@
-//! Progressive level of detail: distant pairs are compared by one box each, approaching ones deeper in the box trees of their
-//! meshes, near ones exactly (Reichenbach and Kovačić 2003).
+//! Progressive level of detail (Reichenbach and Kovačić 2003).
+//!
+//! Distant pairs are compared by one box each, approaching pairs deeper in the box trees of their meshes, near pairs
+//! exactly.
 
 use elbowroom_proximity::contact::Detail;
 
-/// Which pairs an [approaching-pairs query](crate::Checker::approaching) reports, and at which level of detail: a choice by
-/// distance and speed.
+/// Policy of an [approaching-pairs query](crate::Checker::approaching): which pairs it reports, at which level of detail.
 ///
-/// A pair may stay coarse only where it is proven to be farther apart than `exact_m` and not to meet within `exact_s`.
-/// Nearer or faster pairs are measured exactly.
+/// The choice depends on distance and speed. A pair stays coarse only if it is proven to be farther apart than `exact_m`
+/// and not to meet within `exact_s`. Nearer or faster pairs are measured exactly.
 ///
 /// ```
 /// use elbowroom_scene::{Detail, LevelOfDetail};
@@ -20,30 +21,33 @@ use elbowroom_proximity::contact::Detail;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LevelOfDetail {
-    /// Pairs nearer than this beyond their margin are measured exactly, metres.
+    /// Distance beyond the margin, metres. Nearer pairs are measured exactly.
     pub exact_m: f64,
-    /// Pairs that may meet sooner than this are measured exactly, seconds.
+    /// Time to contact, seconds. Pairs that may meet sooner are measured exactly.
     pub exact_s: f64,
-    /// Pairs that are certainly farther apart than this beyond their margin are not reported, metres, unless they may meet
-    /// within `exact_s`.
+    /// Distance beyond the margin, metres.
+    ///
+    /// Pairs proven to be farther apart are not reported, unless they may meet within `exact_s`.
     pub within_m: f64,
-    /// False: every reported pair is measured exactly.
+    /// Whether pairs may stay coarse. If false, every reported pair is measured exactly.
     pub progressive: bool,
 }
 
 impl Default for LevelOfDetail {
-    /// Exact below 0.1 m and 0.3 s, reported up to 1 m.
+    /// Exact below 0.1 m or 0.3 s, reported up to 1 m.
     fn default() -> Self {
         Self { exact_m: 0.1, exact_s: 0.3, within_m: 1.0, progressive: true }
     }
 }
 
-/// Per depth of the box trees, the least gap of the outermost boxes at which that depth is tried, as a share of the distance
-/// below which a pair is measured exactly. Below the last share, smaller boxes would hardly prove more.
+/// Per depth of the box trees: the least gap of the outermost boxes at which that depth is tried.
+///
+/// A gap is a fraction of the distance below which a pair is measured exactly. Below the last fraction, smaller boxes
+/// would hardly prove more.
 const LEAST_GAP_SHARE: [f64; 3] = [1.0, 0.5, 0.1];
 
 impl LevelOfDetail {
-    /// Metres below which a pair is measured exactly whose points approach each other at no more than `closing_m_s`.
+    /// Distance (m) below which a pair is measured exactly, for points that approach each other at most at `closing_m_s`.
     fn exact_below(&self, closing_m_s: f64) -> f64 {
         let ahead = if self.exact_s > 0.0 { self.exact_s * closing_m_s.max(0.0) } else { 0.0 };
         let needed = self.exact_m.max(ahead);
@@ -54,8 +58,10 @@ impl LevelOfDetail {
         }
     }
 
-    /// The level of detail to begin with for a pair whose outermost boxes are `lower_bound_m` apart, by the fastest approach
-    /// of any of its points: the nearer and the faster, the deeper.
+    /// The level of detail at which to start with a pair: the nearer and faster, the deeper.
+    ///
+    /// The outermost boxes of the pair are `lower_bound_m` apart; `closing_m_s` is the fastest approach of any of its
+    /// points.
     pub fn depth(&self, lower_bound_m: f64, closing_m_s: f64) -> Detail {
         let needed = self.exact_below(closing_m_s);
         let far = |share: &f64| lower_bound_m > needed * share;

@@ -1,9 +1,10 @@
-//! Robots and objects in one world, and collision queries on them: collision, tolerance, distance, contact points, continuous
-//! collision detection.
+//! Robots and objects in one world, with collision queries.
 //!
-//! A [`Scene`] is constant and shared between threads: robots, objects, their models from coarse to exact
-//! ([`Level`]) and the [`AllowedCollisionMatrix`]. A [`SceneState`] holds the present configuration and what is attached to
-//! what. A [`Checker`] answers queries, one per thread. See `docs/scene.md`.
+//! The queries are collision, tolerance, distance, contact points, and continuous collision detection.
+//!
+//! A [`Scene`] is constant and shared between threads: robots, objects, their models from coarse to exact ([`Level`]) and
+//! the [`AllowedCollisionMatrix`]. A [`SceneState`] holds the current configuration and the attachments of objects. A
+//! [`Checker`] answers queries, one checker per thread. See `docs/scene.md`.
 //!
 //! ```
 //! use elbowroom_robot::RobotId;
@@ -18,8 +19,8 @@
 //! # Ok::<(), elbowroom_scene::SceneError>(())
 //! ```
 //!
-//! **Invariant.** If a pair is tested and its exact models are in contact, no [`Level`], weight or order of pairs ever
-//! makes a [`Checker`] answer "free"; a state with joint values that are not finite is always refused.
+//! **Invariant.** If a pair is tested and its exact models are in contact, a [`Checker`] never answers "free", at any
+//! [`Level`], with any weights and any order of pairs. A state with joint values that are not finite is always refused.
 
 mod allowed_collision_matrix;
 mod attach;

@@ -9,7 +9,7 @@ pub(crate) struct LocalShape {
     pub shape: Shape,
     /// Pose of the shape's frame in the frame of its link or object.
     pub in_geometry: Pose,
-    /// Bounding box in the frame of the link or object, for geometry of several shapes.
+    /// Bounding box in the frame of the link or object. Used for geometry of several shapes.
     pub bounds: Aabb,
 }
 

@@ -1,4 +1,4 @@
-//! Several robots as one, so that what plans for one robot plans for all of them together.
+//! Several robots merged into one, so that a planner for one robot plans for all of them together.
 
 use std::ops::Range;
 
@@ -9,11 +9,13 @@ use elbowroom_spatial::{Pose, Vec3};
 use crate::allowed_collision_matrix::{AllowedCollisionMatrix, PairState, Reason};
 use crate::{Attachment, MatrixError, Object, PairEdit, Scene, SceneError, SceneState};
 
-/// Why a pair is tested or skipped: as in the scene that was merged.
+/// Reason of a pair whose state is copied from the scene before the merge.
 const NOTE: &str = "as before the robots were merged";
 
-/// A scene in which some robots are one: its values are those of the first, then those of the second, … Pairs, margins and weights
-/// are as they were.
+/// A scene in which several robots are merged into one.
+///
+/// The joint values of the merged robot are those of the first robot, then those of the second, and so on. Pairs, margins
+/// and weights are unchanged.
 ///
 /// ```
 /// use elbowroom_robot::RobotId;
@@ -29,17 +31,19 @@ const NOTE: &str = "as before the robots were merged";
 #[derive(Debug, Clone)]
 pub struct MergedRobots {
     scene: Scene,
-    /// The robots in their order, and the number of the first link of each in the merged robot.
+    /// The robots in order, each with the index of its first link in the merged robot.
     group: Vec<(RobotId, usize)>,
-    /// The values of each.
+    /// Per robot: the range of its joint values.
     values: Vec<Range<usize>>,
 }
 
 impl MergedRobots {
-    /// The merged robot is the first of the new scene and is named after all of them; the others follow in their order.
+    /// Merges robots.
+    ///
+    /// The merged robot is the first of the new scene and is named after all of them; the others follow in order.
     ///
     /// # Errors
-    /// No such robot, or a robot that is named twice.
+    /// [`SceneError`] if a robot does not exist or is named twice.
     pub fn new(scene: &Scene, robots: &[RobotId]) -> Result<Self, SceneError> {
         let count = scene.robots().len();
         if let Some(&RobotId(index)) = robots.iter().find(|robot| robot.0 >= count) {
@@ -72,13 +76,13 @@ impl MergedRobots {
             }
         }
         for (i, object) in scene.objects().iter().enumerate() {
-            // As the scene has it: scaled.
+            // Scaled, as in the scene.
             let scaled = scene.shapes(GeometryId::Object(ObjectId(i))).next();
             let (shape, in_object) = scaled.unwrap_or((&object.shape, Pose::IDENTITY));
             let in_world = object.in_world * in_object;
             builder.object(Object { name: object.name.clone(), shape: shape.clone(), in_world });
         }
-        // The margins of pairs contain the paddings; those of held objects are read from here.
+        // The margins of pairs contain the paddings; the margins of attached objects are read from here.
         for id in scene.geometries().filter(|&id| scene.padding_m(id) > 0.0) {
             builder.padding(self.geometry(id), scene.padding_m(id));
         }
@@ -88,14 +92,14 @@ impl MergedRobots {
         merged.with_allowed_collision_matrix(matrix).map_err(|e| failed(e.to_string()))
     }
 
-    /// The matrix of the merged scene, with what differs from that of the scene edited by hand.
+    /// The matrix of the merged scene. Entries that would differ from the original scene's matrix are set by hand.
     fn matrix(&self, scene: &Scene, merged: &Scene) -> Result<AllowedCollisionMatrix, MatrixError> {
         let mut matrix = merged.allowed_collision_matrix().clone();
         let before = scene.allowed_collision_matrix();
         for entry in before.entries().iter().chain(before.object_entries()) {
             let (a, b) = (self.geometry(entry.a), self.geometry(entry.b));
             let by_rules = matrix.get(a, b).cloned();
-            // What is out of reach collides with nothing, but has a distance.
+            // A pair out of reach never collides, but has a distance.
             let is_tested = entry.state == PairState::Tested || matches!(entry.reason, Reason::OutOfReach { .. });
             let is_same = by_rules.as_ref().is_some_and(|e| (e.state == PairState::Tested) == is_tested);
             if !is_same || matches!(entry.reason, Reason::ByHand(_)) {
@@ -112,17 +116,17 @@ impl MergedRobots {
         Ok(matrix)
     }
 
-    /// The scene.
+    /// The merged scene.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
-    /// The merged robot.
+    /// Id of the merged robot.
     pub fn robot(&self) -> RobotId {
         RobotId(0)
     }
 
-    /// A link or object of the scene that was merged.
+    /// Converts the id of a link or object of the original scene to the merged scene.
     pub fn geometry(&self, id: GeometryId) -> GeometryId {
         match id {
             GeometryId::Object(_) => id,
@@ -133,10 +137,10 @@ impl MergedRobots {
         }
     }
 
-    /// The same state of the scene that was merged.
+    /// Converts a state of the original scene to the merged scene.
     ///
     /// # Errors
-    /// As [`SceneState::set_q`], [`SceneState::place`] and [`SceneState::attach_at`].
+    /// The errors of [`SceneState::set_q`], [`SceneState::place`] and [`SceneState::attach_at`].
     pub fn state(&self, scene: &Scene, state: &SceneState) -> Result<SceneState, SceneError> {
         let mut merged = SceneState::new(&self.scene);
         let all: Vec<f64> = self.group.iter().flat_map(|(robot, _)| state.q(*robot)).copied().collect();
@@ -157,7 +161,7 @@ impl MergedRobots {
         Ok(merged)
     }
 
-    /// The values of each merged robot.
+    /// Splits joint values of the merged robot into those of each robot.
     pub fn split<'q>(&'q self, q: &'q [f64]) -> impl ExactSizeIterator<Item = &'q [f64]> {
         self.values.iter().map(|range| q.get(range.clone()).unwrap_or_default())
     }
@@ -190,7 +194,7 @@ impl MergedRobots {
     }
 }
 
-/// Links and joints of several robots on one root.
+/// Links and joints of several robots on one common root.
 struct JoinedLinks {
     names: Vec<String>,
     links: Vec<String>,
@@ -212,14 +216,14 @@ impl Default for JoinedLinks {
 }
 
 impl JoinedLinks {
-    /// Adds a robot; returns the number of its first link.
+    /// Adds a robot and returns the index of its first link.
     fn add(&mut self, scene: &Scene, id: RobotId) -> usize {
         let placed = &scene.robots()[id.0];
         let (robot, name) = (&placed.robot, &placed.name);
         let (first_link, first_joint) = (self.links.len(), self.joints.len());
         self.names.push(name.clone());
         self.links.extend(robot.chain.links().iter().map(|link| format!("{name}/{link}")));
-        // As the scene has them: scaled.
+        // Scaled, as in the scene.
         let shapes = |link: usize| {
             let id = GeometryId::Link { robot: id, link: LinkId(link) };
             let mut colliders = robot.colliders[link].clone();

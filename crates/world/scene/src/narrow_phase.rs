@@ -1,4 +1,4 @@
-//! The narrow phase: two links or objects against each other.
+//! The narrow phase: tests two links or objects against each other.
 
 use elbowroom_proximity::advanced::{bvh_lower_bound, bvh_lower_bound_to_shape};
 use elbowroom_proximity::contact::{ContactPoint, ContactSettings, contact_point};
@@ -11,10 +11,10 @@ use crate::obb_gap::obb_gap;
 use crate::world_box::{WorldBox, round_up};
 use crate::{CheckerStats, Level, Scene, SceneState};
 
-/// Workspace of the narrow phase, and statistics of its work.
+/// Workspace and statistics of the narrow phase.
 #[derive(Debug)]
 pub(crate) struct NarrowPhase {
-    /// Boxed: 36 KB would be moved with every checker, and threads of tests have small stacks.
+    /// Boxed: its 36 KB would be moved with every checker, and test threads have small stacks.
     workspace: Box<Workspace>,
     /// World boxes of the shapes of the second geometry.
     bounds: Vec<WorldBox>,
@@ -39,7 +39,7 @@ impl<'s> PlacedModel<'s> {
     }
 }
 
-/// Warm start of a pair of links or objects: the pair of shapes that was nearest last time, and where.
+/// Warm start of a pair of links or objects: the nearest pair of shapes of the last query, and where they were nearest.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct PairWarmStart {
     shapes: (u32, u32),
@@ -52,7 +52,7 @@ impl NarrowPhase {
         Self { workspace: Box::default(), bounds: Vec::with_capacity(most), stats: CheckerStats::default() }
     }
 
-    /// The coarse level whose enclosures are certainly farther apart than `limit` metres; `None` if neither is.
+    /// The coarse level that proves the pair farther apart than `limit` metres; `None` if no coarse level does.
     pub fn separated_coarsely(&mut self, a: &PlacedModel, b: &PlacedModel, limit: f64) -> Option<Level> {
         if !(a.model.complex || b.model.complex) {
             return None;
@@ -85,7 +85,7 @@ impl NarrowPhase {
         }
     }
 
-    /// True if the models of a level are not certainly farther apart than `limit` metres.
+    /// True unless the models of a level are proven farther apart than `limit` metres.
     pub fn within(&mut self, a: &PlacedModel, b: &PlacedModel, level: Level, limit: f64) -> bool {
         self.stats.pairs_tested.add(level, 1);
         let (of_a, of_b) = (a.model.at(level), b.model.at(level));
@@ -124,14 +124,14 @@ impl NarrowPhase {
         within
     }
 
-    /// Adds the statistics of the last query, which was about these shapes.
+    /// Adds the statistics of the last query, whose shapes are given.
     fn count_mesh_query(&mut self, x: &LocalShape, y: &LocalShape) {
         if matches!(x.shape, Shape::Mesh(_)) || matches!(y.shape, Shape::Mesh(_)) {
             self.stats.add_mesh_query(self.workspace.stats());
         }
     }
 
-    /// Separation of the models of a level, or `None` if it is certainly above `limit` metres.
+    /// Separation of the models of a level; `None` if it is proven to be above `limit` metres.
     pub fn separation(
         &mut self,
         a: &PlacedModel,
@@ -149,7 +149,7 @@ impl NarrowPhase {
             self.count_mesh_query(x, y);
             return found;
         }
-        // The pair of shapes that was nearest last time gives a limit to the others.
+        // The nearest pair of shapes of the last query gives a limit for the other pairs.
         let (first, mut best, mut limit) = ((warm_start.shapes.0 as usize, warm_start.shapes.1 as usize), None, limit);
         if let (Some(x), Some(y)) = (of_a.get(first.0), of_b.get(first.1)) {
             let (x_in_world, y_in_world) = (a.in_world * x.in_geometry, b.in_world * y.in_geometry);
@@ -181,8 +181,9 @@ impl NarrowPhase {
         best
     }
 
-    /// Lower bound (m) on the distance by the box trees of the meshes down to a depth, with points of the nearest boxes; a
-    /// little more than `limit` where the bound is certainly above it. `None` if there are no such trees.
+    /// Lower bound (m) on the distance from the meshes' box trees down to a depth, with points of the nearest boxes.
+    ///
+    /// Slightly more than `limit` if the bound is proven to be above it. `None` if the shapes have no box trees.
     pub fn box_tree_bound(
         &mut self,
         a: &PlacedModel,
@@ -209,8 +210,9 @@ impl NarrowPhase {
         Some(coarse.map_or(beyond, |c| (c.lower_bound, [c.on_a, c.on_b])))
     }
 
-    /// Where the exact models touch, or are no farther apart than the limit, and which of their shapes: the first pair of
-    /// shapes that touches, else the first within the limit.
+    /// Contact point of the exact models, if they touch or are within the limit, with the indices of the two shapes.
+    ///
+    /// The result is the first pair of shapes that touches, else the first pair within the limit.
     pub fn contact_point(
         &mut self,
         a: &PlacedModel,
@@ -241,7 +243,7 @@ impl NarrowPhase {
         near
     }
 
-    /// An upper bound (m) on the distance of the exact models; `None` if it is not cheap.
+    /// Upper bound (m) on the distance of the exact models; `None` if computing it is not cheap.
     pub fn upper_bound(&mut self, a: &PlacedModel, b: &PlacedModel, warm_start: &mut PairWarmStart) -> Option<f64> {
         let ([x], [y]) = (&a.model.exact[..], &b.model.exact[..]) else { return None };
         let (x_in_world, y_in_world) = (a.in_world * x.in_geometry, b.in_world * y.in_geometry);
@@ -258,13 +260,13 @@ fn distance_settings(limit: f64, warm_start: &mut WarmStart) -> DistanceSettings
     DistanceSettings { limit, warm_start: Some(warm_start), ..DistanceSettings::default() }
 }
 
-/// The tighter one of capsule and box, where there is one.
+/// The tighter one of capsule and box, if the model has one.
 fn enclosure(model: &GeometryModel) -> &[LocalShape] {
     let shapes = if model.slim { &model.capsule } else { &model.cuboid };
     if matches!(shapes[..], [LocalShape { shape: Shape::Capsule(_) | Shape::Cuboid(_), .. }]) { shapes } else { &[] }
 }
 
-/// The nearer of two, with the smaller lower bound of both.
+/// The nearer of two separations, with the smaller lower bound.
 fn nearer(best: Option<Separation>, s: Separation) -> Separation {
     match best {
         None => s,

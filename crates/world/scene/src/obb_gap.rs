@@ -5,8 +5,10 @@ use elbowroom_spatial::Obb;
 /// Allowance for rounding, as a fraction of the largest coordinate.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// A lower bound (m) on the distance of two boxes given in the same frame: the widest gap along the face normals of both and
-/// their cross products. 0 or less where no axis separates them; NaN bounds nothing.
+/// Lower bound (m) on the distance of two boxes in one common frame.
+///
+/// It is the widest gap along the face normals of the boxes and the cross products of their edges. 0 or less if no axis
+/// separates them; NaN bounds nothing.
 pub(crate) fn obb_gap(a: &Obb, b: &Obb) -> f64 {
     let r = (a.pose.rotation.inverse() * b.pose.rotation).rows();
     let t = a.pose.rotation.inverse_rotate(b.pose.translation - a.pose.translation).to_array();
@@ -33,7 +35,7 @@ pub(crate) fn obb_gap(a: &Obb, b: &Obb) -> f64 {
         }
     }
     let place = a.pose.translation.abs() + b.pose.translation.abs() + a.half_extents + b.half_extents;
-    // At most 100 times the rounding of the numerator where edges are nearly parallel.
+    // At most 100 times the rounding of the numerator, for nearly parallel edges.
     let rounding = 100.0 * ROUNDING * (place.x + place.y + place.z);
     // `max` ignores NaN; the sum of the matrix entries does not.
     let certain = widest - rounding;
@@ -65,7 +67,7 @@ mod tests {
             let exact = separation(&shape(&a), &a.pose, &shape(&b), &b.pose);
             let bound = obb_gap(&a, &b);
             prop_assert!(bound <= exact.distance, "{bound} {exact:?}");
-            // Separating axes are exact about yes and no.
+            // Separating axes decide exactly whether boxes are separated.
             if exact.lower_bound > 1e-9 {
                 prop_assert!(bound > 0.0, "{bound} {exact:?}");
             }

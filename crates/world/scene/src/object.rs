@@ -3,12 +3,12 @@
 use elbowroom_proximity::Shape;
 use elbowroom_spatial::Pose;
 
-/// A named shape that no joint moves.
+/// A named shape that is not part of a robot.
 #[derive(Debug, Clone)]
 pub struct Object {
-    /// Unique in the scene.
+    /// Name, unique in the scene.
     pub name: String,
-    /// Its collision shape.
+    /// Collision shape.
     pub shape: Shape,
     /// Pose of the shape's frame in the world.
     pub in_world: Pose,

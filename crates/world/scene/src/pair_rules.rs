@@ -1,4 +1,4 @@
-//! Changes of the allowed collision matrix between selections: a part with anything, a robot with an object.
+//! Changes of the allowed collision matrix between selections, such as a part with everything, or a robot with an object.
 
 use elbowroom_robot::{Exclusion, GeometryId, Robot, RobotId};
 
@@ -8,16 +8,18 @@ use crate::{MatrixError, PairEdit, Scene, Selection};
 /// A change of all pairs between two selections.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PairRule {
-    /// One side. A robot means its links, without the objects attached to them.
+    /// First side. A robot means its links, without the objects attached to them.
     pub a: Selection,
-    /// The other side.
+    /// Second side.
     pub b: Selection,
-    /// The change.
+    /// The change of each pair.
     pub edit: PairEdit,
 }
 
-/// Changes of the allowed collision matrix between selections, in the order in which they apply: a later one overrides an earlier
-/// one. Two objects are a pair here too, for when one of them is attached to a robot.
+/// Changes of the allowed collision matrix between selections.
+///
+/// The changes apply in order: a later one overrides an earlier one. Two objects also form a pair here; its rules apply
+/// while one of them is attached to a robot.
 ///
 /// ```
 /// use elbowroom_robot::{GeometryId, ObjectId};
@@ -59,12 +61,12 @@ impl PairRule {
 }
 
 impl PairRules {
-    /// True if nothing is changed.
+    /// True if the list is empty.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// The reason why the pair is skipped; `None` if the last rule for it tests it, or none names it.
+    /// The reason why the pair is skipped; `None` if the last rule for it tests it, or if no rule names it.
     pub fn skipped(&self, a: GeometryId, b: GeometryId) -> Option<&str> {
         match self.last_state(a, b) {
             Some(PairEdit::Skip(reason)) => Some(reason),
@@ -86,8 +88,10 @@ impl PairRules {
         self.0.iter().rev().find(|rule| is_kind(&rule.edit) && rule.applies(a, b)).map(|rule| &rule.edit)
     }
 
-    /// Disables the pairs of links that are skipped within one robot, and enables those that its SRDF disables and a rule tests:
-    /// for what checks the robot without a scene. Adjacent links stay untested.
+    /// Applies the rules within one robot to its disabled pairs, for checks of the robot without a scene.
+    ///
+    /// Disables the pairs of links that the rules skip, and enables the pairs that the SRDF disables and a rule tests.
+    /// Adjacent links stay untested.
     pub fn edit_robot(&self, id: RobotId, robot: &mut Robot) {
         if self.is_empty() {
             return;
@@ -110,8 +114,9 @@ impl PairRules {
         }
     }
 
-    /// Edits the matrix of a scene. Adjacent links stay untested, and pairs that are out of reach keep their proof where a rule
-    /// tests them.
+    /// Edits the matrix of a scene.
+    ///
+    /// Adjacent links stay untested, and pairs that are out of reach keep their proof if a rule tests them.
     pub(crate) fn edit_scene(&self, scene: &mut Scene) -> Result<(), MatrixError> {
         if self.is_empty() {
             return Ok(());

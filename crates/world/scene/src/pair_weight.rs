@@ -1,12 +1,14 @@
-//! The weight of a pair: which one to test first (Giralt et al., "Collision queries sorted using a weight matrix").
+//! The weight of a pair, which decides the order of tests.
 //!
-//! Initial weights come from kinematics and geometry: the more joints lie between two links the more they move against each
-//! other, large geometry collides more often than small, and geometry whose reachable volumes hardly overlap seldom meets.
-//! Then results count: a contact raises the weight of its pair and lowers all others. A query without a contact changes no
-//! weight, because it had to test every pair anyway.
+//! Source: Giralt et al., "Collision queries sorted using a weight matrix".
 //!
-//! So weights depend only on which contacts were reported, and the reported contact is the one of the largest weight: the same
-//! one at every exact level, however many pairs the enclosing volumes separate before it.
+//! Initial weights come from kinematics and geometry: the more joints lie between two links, the more they move against
+//! each other; large geometry collides more often than small geometry; geometry whose reachable volumes hardly overlap
+//! seldom meets. Then results count: a contact raises the weight of its pair and lowers all others. A query without a
+//! contact changes no weight, because it had to test every pair anyway.
+//!
+//! Weights therefore depend only on which contacts were reported. The reported contact is the one of the largest weight.
+//! It is equal at every exact level, however many pairs the enclosing volumes separate before it.
 
 use elbowroom_kinematics::{JointKind, LinkId};
 use elbowroom_robot::{GeometryId, RobotId};
@@ -14,12 +16,14 @@ use elbowroom_spatial::{Aabb, Pose, Vec3};
 
 use crate::{Object, SceneRobot};
 
-/// What the initial weights depend on, for one link or object.
+/// Inputs of the initial weights, for one link or object.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct WeightPrior {
-    /// Distance (m) of the farthest point from the origin; infinite for unbounded geometry.
+    /// Distance (m) of a link's farthest point from its origin, or half an object's box diagonal; infinite if unbounded.
     radius_m: f64,
-    /// Centre of a sphere that contains the geometry at any joint values, or nearly so: unlimited slides count with 1 m.
+    /// Centre of a sphere that contains the geometry at any joint values.
+    ///
+    /// An approximation: unlimited slides count as 1 m.
     centre: Vec3,
     reach_m: f64,
 }
@@ -59,10 +63,11 @@ impl WeightPrior {
         }
     }
 
-    /// Initial weight of a pair, dimensionless: 1 + the number of moving joints `between`, times (x / (1 + x))³ with x the sum
-    /// of both radii (m), times the share of the smaller reach sphere's diameter that both overlap by.
+    /// Initial weight of a pair, dimensionless.
     ///
-    /// The cube: the volume of the relative positions in which two bodies overlap grows with the cube of their sizes.
+    /// The product of 1 + the number of moving joints `between`; (x / (1 + x))³ with x the sum of the two radii (m); and
+    /// the overlap of the two reach spheres as a fraction of the smaller diameter. The cube is used because the volume of
+    /// the relative positions in which two bodies overlap grows with the cube of their sizes.
     pub fn weight(&self, other: &Self, between: usize) -> f64 {
         let radii = self.radius_m + other.radius_m;
         let size = if radii.is_finite() { radii / (1.0 + radii) } else { 1.0 };
@@ -75,7 +80,7 @@ impl WeightPrior {
     }
 }
 
-/// Number of moving joints between two links or objects: along the chain of one robot, otherwise through both bases.
+/// Number of moving joints between two links or objects: along the chain of one robot, else through their two bases.
 pub(crate) fn joints_between(robots: &[SceneRobot], a: GeometryId, b: GeometryId) -> usize {
     match (a, b) {
         (GeometryId::Link { robot, link }, GeometryId::Link { robot: other, link: to }) if robot == other => {
@@ -104,13 +109,13 @@ pub(crate) fn link_depth(robots: &[SceneRobot], robot: RobotId, link: LinkId) ->
     chain.path(link).iter().filter(|j| chain.joints()[j.0].kind.moves()).count()
 }
 
-/// A contact moves the weight of its pair by this share of the distance to [`CONTACT_WEIGHT`].
+/// Fraction of the distance to [`CONTACT_WEIGHT`] by which a contact raises the weight of its pair.
 const RAISE: f64 = 0.25;
-/// The limit of raised weights: above every initial weight, so that the pair that was in contact last is tested first.
+/// Limit of raised weights: above every initial weight, so that the pair of the last contact is tested first.
 pub(crate) const CONTACT_WEIGHT: f64 = 1e3;
-/// Share that all other weights lose at a contact.
+/// Fraction that all other weights lose at a contact.
 const DECAY: f64 = 1.0 / 64.0;
-/// Lower bound of decayed weights, below which they would underflow and lose their order.
+/// Lower bound of decayed weights. Smaller weights would underflow and lose their order.
 const LEAST: f64 = 1e-9;
 
 /// The weight of a pair after it was reported in contact.
@@ -118,7 +123,7 @@ pub(crate) fn raised(weight: f64) -> f64 {
     weight + RAISE * (CONTACT_WEIGHT.max(weight) - weight)
 }
 
-/// The weight of a pair after another one was reported in contact.
+/// The weight of a pair after another pair was reported in contact.
 pub(crate) fn lowered(weight: f64) -> f64 {
     (weight * (1.0 - DECAY)).max(LEAST.min(weight))
 }

@@ -1,4 +1,4 @@
-//! The same robots among other objects.
+//! A scene with the same robots and other objects.
 
 use elbowroom_robot::{GeometryId, ObjectId};
 use elbowroom_spatial::Pose;
@@ -10,9 +10,11 @@ use crate::local_shape::LocalShape;
 use crate::{Object, Scene, SceneError};
 
 impl Scene {
-    /// The same robots among other objects, as for the obstacles of a new camera frame. The models of the links, their
-    /// paddings and the entries of pairs of links are kept. Pairs with objects have the entries of the pair rules; none of
-    /// them is proven to be out of reach. The answers are those of a scene built so.
+    /// Returns a scene with the same robots and other objects, such as the obstacles of a new camera frame.
+    ///
+    /// The models of the links, their paddings and the entries of pairs of links are kept. Pairs with objects get the
+    /// entries of the pair rules, without out-of-reach proofs. The answers equal those of a scene built with these
+    /// objects.
     ///
     /// ```
     /// use elbowroom_proximity::{Shape, Sphere};
@@ -32,7 +34,7 @@ impl Scene {
     /// ```
     ///
     /// # Errors
-    /// An object with an invalid shape or pose, or two objects of one name.
+    /// [`SceneError`] if an object has an invalid shape or pose, or if two objects share a name.
     pub fn with_objects(&self, objects: Vec<Object>) -> Result<Self, SceneError> {
         let names = names(&self.robots, &objects)?;
         let mut models = self.models[..self.first_object].to_vec();

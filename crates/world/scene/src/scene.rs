@@ -1,4 +1,4 @@
-//! The constant part: robots, objects, their models and the allowed collision matrix.
+//! The constant part of a scene: robots, objects, their models and the allowed collision matrix.
 
 use std::collections::HashMap;
 
@@ -13,17 +13,18 @@ use crate::{AllowedCollisionMatrix, MatrixError, Object};
 /// A robot with a name and a base pose.
 #[derive(Debug, Clone)]
 pub struct SceneRobot {
-    /// Unique in the scene.
+    /// Name, unique in the scene.
     pub name: String,
     /// Chain, colliders and disabled pairs.
     pub robot: Robot,
-    /// Pose of its root link.
+    /// Pose of the robot's root link in the world.
     pub base_in_world: Pose,
 }
 
-/// Robots and objects in one world (the *Scenario* of Giralt et al.), constant: any number of threads may share one.
+/// Robots and objects in one world (the *Scenario* of Giralt et al.).
 ///
-/// What moves is in a [`SceneState`](crate::SceneState); a [`Checker`](crate::Checker) answers queries.
+/// A scene is constant: any number of threads may share it. A [`SceneState`](crate::SceneState) holds the moving parts; a
+/// [`Checker`](crate::Checker) answers queries.
 ///
 /// ```
 /// use elbowroom_proximity::{Shape, Sphere};
@@ -45,9 +46,9 @@ pub struct SceneRobot {
 pub struct Scene {
     pub(crate) robots: Vec<SceneRobot>,
     pub(crate) objects: Vec<Object>,
-    /// Links and objects with shapes, in this order: links of the first robot, …, objects.
+    /// Models of the links and objects that have shapes, in this order: links of the first robot, …, objects.
     pub(crate) models: Vec<GeometryModel>,
-    /// Per robot and link, the index of its model where it has one.
+    /// Per robot and link: the index of its model, if it has one.
     pub(crate) link_model: Vec<Vec<Option<usize>>>,
     /// Index of the model of the first object; the others follow.
     pub(crate) first_object: usize,
@@ -74,11 +75,12 @@ impl Scene {
         &self.matrix
     }
 
-    /// The same scene with another allowed collision matrix, made from [`Scene::allowed_collision_matrix`] or read by
-    /// [`AllowedCollisionMatrix::from_text`].
+    /// Returns this scene with another allowed collision matrix.
+    ///
+    /// The matrix is derived from [`Scene::allowed_collision_matrix`] or read by [`AllowedCollisionMatrix::from_text`].
     ///
     /// # Errors
-    /// [`MatrixError::NoSuchPair`] if the matrix is one of another scene.
+    /// [`MatrixError::NoSuchPair`] if the matrix belongs to another scene.
     pub fn with_allowed_collision_matrix(mut self, matrix: AllowedCollisionMatrix) -> Result<Self, MatrixError> {
         let (ours, theirs) = (self.model_matrix.entries(), matrix.entries());
         let unknown_name = |id: GeometryId| match id {
@@ -94,7 +96,9 @@ impl Scene {
         Ok(self)
     }
 
-    /// `robot/link`, or the object's name. An id that the scene does not have is described by its index.
+    /// The name of a geometry: `robot/link`, or the object's name.
+    ///
+    /// An id that the scene does not have is described by its index.
     pub fn name(&self, id: GeometryId) -> String {
         match id {
             GeometryId::Link { robot, link } => self
@@ -108,12 +112,12 @@ impl Scene {
         }
     }
 
-    /// The link or object of that name: `robot/link`, or an object's name.
+    /// The link or object with this name: `robot/link`, or an object's name.
     pub fn geometry(&self, name: &str) -> Option<GeometryId> {
         self.names.get(name).copied()
     }
 
-    /// The robot of that name.
+    /// The robot with this name.
     pub fn robot(&self, name: &str) -> Option<RobotId> {
         self.robots.iter().position(|r| r.name == name).map(RobotId)
     }
@@ -128,8 +132,9 @@ impl Scene {
         self.model_of(id).is_some()
     }
 
-    /// The shapes of a link or object as they are checked, scaled where the scene scales them, each with its pose in the frame of
-    /// the link or object. None if it has no shape.
+    /// The shapes of a link or object, each with its pose in the frame of the link or object.
+    ///
+    /// These are the shapes that are checked: scaled, if the scene scales them. Empty if the link or object has no shape.
     pub fn shapes(&self, id: GeometryId) -> impl Iterator<Item = (&Shape, Pose)> + '_ {
         let model = self.model_of(id).map(|m| &self.models[m]);
         model.into_iter().flat_map(|m| m.exact.iter().map(|s| (&s.shape, s.in_geometry)))
@@ -152,7 +157,7 @@ impl Scene {
         self.first_object + object.0
     }
 
-    /// True if all joint values are certainly within the limits; NaN is not.
+    /// True if all joint values are certainly within the limits; false for NaN.
     pub(crate) fn within_limits(&self, robot: RobotId, q: &[f64]) -> bool {
         let chain = &self.robots[robot.0].robot.chain;
         let within = |(i, q): (usize, &f64)| {

@@ -6,7 +6,7 @@ use elbowroom_spatial::FrameMotion;
 
 use crate::{Scene, SceneError, SceneState};
 
-/// Velocities of the robots and objects of a [`Scene`], all at rest at first.
+/// Velocities of the robots and objects of a [`Scene`]. Initially everything is at rest.
 ///
 /// [`SceneMotion::new`] allocates all memory.
 ///
@@ -25,12 +25,12 @@ use crate::{Scene, SceneError, SceneState};
 #[derive(Debug, Clone)]
 pub struct SceneMotion {
     chains: Vec<ChainState>,
-    /// Per object, if it is not attached.
+    /// Per object: its motion, if it is not attached.
     objects: Vec<FrameMotion>,
 }
 
 impl SceneMotion {
-    /// Everything at rest.
+    /// Creates a motion with everything at rest.
     pub fn new(scene: &Scene) -> Self {
         Self {
             chains: scene.robots.iter().map(|r| ChainState::new(&r.robot.chain)).collect(),
@@ -38,12 +38,12 @@ impl SceneMotion {
         }
     }
 
-    /// Sets a robot's joint velocities (rad/s or m/s, in the order of
-    /// [`Chain::active_joints`](elbowroom_kinematics::Chain::active_joints)) at its configuration in `state`. Does not
-    /// allocate.
+    /// Sets a robot's joint velocities at its configuration in `state`. Does not allocate.
+    ///
+    /// `qd` is in rad/s or m/s, in the order of [`Chain::active_joints`](elbowroom_kinematics::Chain::active_joints).
     ///
     /// # Errors
-    /// No such robot, a wrong number of values, or a value that is NaN or infinite.
+    /// [`SceneError`] if the robot does not exist, the number of values is wrong, or a value is NaN or infinite.
     pub fn set_qd(&mut self, scene: &Scene, state: &SceneState, robot: RobotId, qd: &[f64]) -> Result<(), SceneError> {
         state.check_q(scene, robot, qd)?;
         let chain = &mut self.chains[robot.0];
@@ -53,10 +53,10 @@ impl SceneMotion {
         Ok(())
     }
 
-    /// Sets the motion of an object that is not attached: of its frame, in the world.
+    /// Sets the motion of an unattached object's frame, in the world.
     ///
     /// # Errors
-    /// No such object, or a number that is NaN or infinite.
+    /// [`SceneError`] if the object does not exist, or a number is NaN or infinite.
     pub fn set_object(&mut self, scene: &Scene, object: ObjectId, motion: FrameMotion) -> Result<(), SceneError> {
         let count = scene.objects.len();
         let o = scene.objects.get(object.0).ok_or(SceneError::NoSuchObject { index: object.0, count })?;
@@ -67,8 +67,9 @@ impl SceneMotion {
         Ok(())
     }
 
-    /// The motion of the frame of a link or object in the world; an attached object moves with its link. `None` if the scene
-    /// has no such link or object.
+    /// The motion of the frame of a link or object, in the world.
+    ///
+    /// An attached object moves with its link. `None` if the scene has no such link or object.
     pub fn of(&self, scene: &Scene, state: &SceneState, id: GeometryId) -> Option<FrameMotion> {
         let (robot, link) = match id {
             GeometryId::Link { robot, link } => (robot, link),

@@ -1,4 +1,4 @@
-//! Which geometry a query covers.
+//! Selections of the geometry that a query covers.
 
 use elbowroom_kinematics::LinkId;
 use elbowroom_robot::{GeometryId, ObjectId, RobotId};
@@ -35,7 +35,7 @@ impl From<GeometryId> for Selection {
 }
 
 impl Selection {
-    /// True if the geometry is selected; `carrier` is the robot that it is attached to, if it is an attached object.
+    /// True if the geometry is selected. `carrier` is the robot to which an attached object is attached.
     pub(crate) fn contains(self, id: GeometryId, carrier: Option<RobotId>) -> bool {
         match (self, id) {
             (Self::All, _) | (Self::Robots, GeometryId::Link { .. }) | (Self::Objects, GeometryId::Object(_)) => true,
@@ -47,7 +47,7 @@ impl Selection {
         }
     }
 
-    /// True if it can contain objects only.
+    /// True if the selection can contain only objects.
     pub(crate) fn is_objects(self) -> bool {
         matches!(self, Self::Object(_) | Self::Objects)
     }

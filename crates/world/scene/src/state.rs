@@ -1,4 +1,4 @@
-//! The mutable part: the present configuration.
+//! The mutable part of a scene: the current configuration and attachments.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -10,25 +10,25 @@ use crate::attachment::Attachment;
 use crate::world_box::WorldBox;
 use crate::{Scene, SceneError};
 
-/// The poses of the robots and objects of a [`Scene`], and what is attached to what.
+/// The poses of the robots and objects of a [`Scene`], and the attachments of objects.
 ///
 /// [`SceneState::new`] allocates all memory. States are independent of each other and of the checkers that read them.
 #[derive(Debug)]
 pub struct SceneState {
     pub(crate) chains: Vec<ChainState>,
-    /// Per model.
+    /// Per model: its pose in the world.
     pub(crate) in_world: Vec<Pose>,
-    /// Per model, then per robot with the objects attached to it.
+    /// Boxes in the world: one per model, then one per robot with the objects attached to it.
     pub(crate) boxes: Vec<WorldBox>,
-    /// Per object.
+    /// Per object: its attachment.
     pub(crate) attached: Vec<Option<Attachment>>,
-    /// Per object: true if its pose is not that of the scene.
+    /// Per object: true if its pose differs from its pose in the scene.
     pub(crate) displaced: Vec<bool>,
     /// Per robot: true if a joint is beyond its limits.
     pub(crate) beyond_limits: Vec<bool>,
     /// True if the out-of-reach proofs of the scene hold for every pair.
     pub(crate) all_proofs_hold: bool,
-    /// Identifies the set of attachments: states of equal number have equal pairs. 0: nothing is attached.
+    /// Number of the set of attachments: states with equal numbers have equal pairs. 0: no object is attached.
     pub(crate) arrangement: u64,
 }
 
@@ -46,7 +46,7 @@ impl Clone for SceneState {
         }
     }
 
-    /// Keeps the memory of `self`.
+    /// Reuses the memory of `self`.
     fn clone_from(&mut self, source: &Self) {
         let Self { chains, in_world, boxes, attached, displaced, beyond_limits, all_proofs_hold, arrangement } = source;
         self.chains.clone_from(chains);
@@ -59,11 +59,11 @@ impl Clone for SceneState {
     }
 }
 
-/// Numbers of arrangements; only their equality matters.
+/// Source of arrangement numbers; only their equality has a meaning.
 static NEXT_ARRANGEMENT: AtomicU64 = AtomicU64::new(1);
 
 impl SceneState {
-    /// All joints at zero (which may lie beyond a limit), objects as in the scene, nothing attached.
+    /// Creates the initial state: joints at zero (which may be beyond a limit), objects as in the scene, none attached.
     pub fn new(scene: &Scene) -> Self {
         let mut state = Self {
             chains: scene.robots.iter().map(|r| ChainState::new(&r.robot.chain)).collect(),
@@ -84,12 +84,14 @@ impl SceneState {
         state
     }
 
-    /// Moves a robot to joint values (rad or m, in the order of
-    /// [`Chain::active_joints`](elbowroom_kinematics::Chain::active_joints)), together with the objects attached to it. Values
-    /// beyond the limits are accepted. Does not allocate.
+    /// Moves a robot to joint values, together with the objects attached to it. Does not allocate.
+    ///
+    /// `q` is in rad or m, in the order of [`Chain::active_joints`](elbowroom_kinematics::Chain::active_joints). Values
+    /// beyond the limits are accepted.
     ///
     /// # Errors
-    /// No such robot, a wrong number of values, or a value that is NaN or infinite. Nothing has moved then.
+    /// [`SceneError`] if the robot does not exist, the number of values is wrong, or a value is NaN or infinite. On an
+    /// error nothing moves.
     pub fn set_q(&mut self, scene: &Scene, robot: RobotId, q: &[f64]) -> Result<(), SceneError> {
         self.check_q(scene, robot, q)?;
         self.chains[robot.0].q.copy_from_slice(q);
@@ -98,10 +100,10 @@ impl SceneState {
         Ok(())
     }
 
-    /// Whether [`set_q`](Self::set_q) takes joint values.
+    /// Checks whether [`set_q`](Self::set_q) accepts joint values.
     ///
     /// # Errors
-    /// As [`set_q`](Self::set_q).
+    /// The errors of [`set_q`](Self::set_q).
     #[allow(clippy::unused_self)]
     pub fn check_q(&self, scene: &Scene, robot: RobotId, q: &[f64]) -> Result<(), SceneError> {
         let count = scene.robots.len();
@@ -119,7 +121,7 @@ impl SceneState {
         Ok(())
     }
 
-    /// Joint values of a robot, rad or m; empty if there is no such robot.
+    /// Joint values of a robot, rad or m; empty if the robot does not exist.
     pub fn q(&self, robot: RobotId) -> &[f64] {
         self.chains.get(robot.0).map_or(&[], |c| &c.q)
     }
@@ -127,7 +129,7 @@ impl SceneState {
     /// Sets the pose of an object.
     ///
     /// # Errors
-    /// No such object, a pose that is not finite, or the object is attached.
+    /// [`SceneError`] if the object does not exist or is attached, or the pose is not finite.
     pub fn place(&mut self, scene: &Scene, object: ObjectId, in_world: Pose) -> Result<(), SceneError> {
         let name = self.check_place(scene, object)?;
         if !in_world.is_finite() {
@@ -139,7 +141,7 @@ impl SceneState {
         Ok(())
     }
 
-    /// The name of an object that can be placed.
+    /// Checks that an object can be placed, and returns its name.
     pub(crate) fn check_place<'s>(&self, scene: &'s Scene, object: ObjectId) -> Result<&'s str, SceneError> {
         let count = scene.objects.len();
         let o = scene.objects.get(object.0).ok_or(SceneError::NoSuchObject { index: object.0, count })?;
@@ -152,7 +154,7 @@ impl SceneState {
         }
     }
 
-    /// Copies another state of the same scene; allocates only where the attachments differ.
+    /// Copies another state of the same scene. Allocates only if the attachments differ.
     pub(crate) fn copy_from(&mut self, scene: &Scene, other: &Self) {
         for (robot, (own, chain)) in self.chains.iter_mut().zip(&other.chains).enumerate() {
             own.q.copy_from_slice(&chain.q);
@@ -184,12 +186,12 @@ impl SceneState {
         scene.robots[robot.0].base_in_world * self.chains[robot.0].link_in_root(link)
     }
 
-    /// How an object is attached; `None` if it is not.
+    /// The attachment of an object; `None` if it is not attached.
     pub fn attachment(&self, object: ObjectId) -> Option<&Attachment> {
         self.attached.get(object.0)?.as_ref()
     }
 
-    /// How the geometry is attached, if it is an attached object.
+    /// The attachment of a geometry, if it is an attached object.
     pub(crate) fn attachment_of(&self, id: GeometryId) -> Option<&Attachment> {
         match id {
             GeometryId::Object(o) => self.attachment(o),
@@ -197,7 +199,7 @@ impl SceneState {
         }
     }
 
-    /// Robot and link that the geometry moves with.
+    /// The robot and link with which the geometry moves.
     pub(crate) fn carrier(&self, id: GeometryId) -> Option<(RobotId, LinkId)> {
         match id {
             GeometryId::Link { robot, link } => Some((robot, link)),
@@ -217,7 +219,7 @@ impl SceneState {
         };
     }
 
-    /// Updates all that follows from a robot's joint values.
+    /// Updates all data that depend on a robot's joint values.
     pub(crate) fn robot_moved(&mut self, scene: &Scene, robot: RobotId) {
         let chain = &scene.robots[robot.0].robot.chain;
         for link in 0..chain.links().len() {
@@ -236,7 +238,7 @@ impl SceneState {
         self.update_robot_box(scene, robot);
     }
 
-    /// Moves the objects attached to a robot to where its links are.
+    /// Moves the objects attached to a robot to the poses of its links.
     pub(crate) fn move_attached(&mut self, scene: &Scene, robot: RobotId) {
         for object in 0..self.attached.len() {
             let Some(a) = self.attached[object].as_ref().filter(|a| a.robot == robot) else { continue };
@@ -259,7 +261,9 @@ impl SceneState {
         self.boxes[scene.models.len() + robot.0] = all;
     }
 
-    /// True if the out-of-reach proofs of the scene hold for the geometry: joints within limits, object in place.
+    /// True if the out-of-reach proofs of the scene hold for the geometry.
+    ///
+    /// They hold for a robot with its joints within the limits, and for an unattached object at its pose of the scene.
     pub(crate) fn proofs_hold(&self, id: GeometryId) -> bool {
         match id {
             GeometryId::Link { robot, .. } => !self.beyond_limits[robot.0],
@@ -273,7 +277,7 @@ impl SceneState {
             !self.beyond_limits.contains(&true) && self.displaced.iter().zip(&self.attached).all(in_place);
     }
 
-    /// Updates all that follows from what is attached to what, except poses and boxes.
+    /// Updates all data that depend on the attachments, except poses and boxes.
     pub(crate) fn attachments_changed(&mut self) {
         self.update_proofs();
         let any = self.attached.iter().any(Option::is_some);

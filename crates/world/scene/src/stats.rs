@@ -5,20 +5,20 @@ use crate::Level;
 /// A number per resolution level.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct PerLevel {
-    /// [`Level::L1`].
+    /// Number for [`Level::L1`].
     pub l1: u64,
-    /// [`Level::L2`].
+    /// Number for [`Level::L2`].
     pub l2: u64,
-    /// [`Level::Capsule`].
+    /// Number for [`Level::Capsule`].
     pub capsule: u64,
-    /// [`Level::Hull`].
+    /// Number for [`Level::Hull`].
     pub hull: u64,
-    /// [`Level::L3`].
+    /// Number for [`Level::L3`].
     pub l3: u64,
 }
 
 impl PerLevel {
-    /// The number of one level; 0 for [`Level::Auto`], which is not a model of its own.
+    /// The number of one level; 0 for [`Level::Auto`], which has no model.
     pub fn get(&self, level: Level) -> u64 {
         match level {
             Level::Auto => 0,
@@ -35,7 +35,7 @@ impl PerLevel {
         self.l1 + self.l2 + self.capsule + self.hull + self.l3
     }
 
-    /// Adds each number.
+    /// Adds the numbers of each level.
     fn sum(&mut self, other: &Self) {
         self.l1 += other.l1;
         self.l2 += other.l2;
@@ -56,23 +56,24 @@ impl PerLevel {
     }
 }
 
-/// Work of a [`Checker`](crate::Checker) since it was made or [`reset`](crate::Checker::reset_stats).
+/// Work of a [`Checker`](crate::Checker) since its creation or the last [reset](crate::Checker::reset_stats).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct CheckerStats {
-    /// Queries, by the finest level that each needed.
+    /// Number of queries, by the finest level that each used.
     pub answered: PerLevel,
-    /// Pairs proven far enough apart, by the level that proved it.
+    /// Number of pairs proven far enough apart, by the level that proved it.
     pub pairs_cleared: PerLevel,
-    /// Pairs tested one by one, by the level of the models tested.
+    /// Number of pairs tested one by one, by the level of the models tested.
     pub pairs_tested: PerLevel,
-    /// Pairs skipped because the allowed collision matrix proves them out of reach.
+    /// Number of pairs skipped because the allowed collision matrix proves them out of reach.
     pub pairs_skipped: u64,
-    /// Tests of one box of a mesh against sixteen boxes of another, in pairs of meshes.
+    /// Number of tests of one box of a mesh against sixteen boxes of another, in pairs of meshes.
     pub mesh_boxes: u64,
-    /// Pairs of triangles left undecided by boxes and single precision, in pairs of meshes.
+    /// Number of pairs of triangles that boxes and single precision left undecided, in pairs of meshes.
     pub mesh_triangles: u64,
-    /// Triangles of meshes whose distance to a shape that is not a mesh was computed; for continuous witness points, once more per
-    /// face of that shape.
+    /// Number of mesh triangles whose distance to a shape other than a mesh was computed.
+    ///
+    /// For continuous witness points, each triangle counts once more per face of that shape.
     pub triangles_beside_solids: u64,
 }
 

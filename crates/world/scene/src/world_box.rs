@@ -2,7 +2,7 @@
 
 use elbowroom_spatial::{Aabb, Obb, Pose, Vec3};
 
-/// Lower and upper corner, each followed by the negated other one, so that both directions of each axis are lanes.
+/// Lower and upper corner, each followed by the negated opposite corner, so that both directions of each axis are lanes.
 #[derive(Debug, Clone, Copy)]
 #[repr(align(32))]
 pub(crate) struct WorldBox {
@@ -12,13 +12,13 @@ pub(crate) struct WorldBox {
     high: [f32; 8],
 }
 
-/// Coordinates (m) from which on squares could overflow.
+/// Coordinates (m) from which squares could overflow.
 const FAR: f64 = 1e15;
 /// Allowance for the rounding of poses and products, as a fraction of the largest coordinate.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 impl WorldBox {
-    /// All of space: the box of unknown or unbounded geometry.
+    /// The whole space: the box of unknown or unbounded geometry.
     pub const EVERYTHING: Self = Self::from_corners([f32::NEG_INFINITY; 3], [f32::INFINITY; 3]);
 
     const fn from_corners(min: [f32; 3], max: [f32; 3]) -> Self {
@@ -53,7 +53,7 @@ impl WorldBox {
 
     #[inline]
     fn around(center: Vec3, half: Vec3, size: f64) -> Self {
-        // A NaN anywhere fails the comparison, too.
+        // A NaN in any term fails the comparison, too.
         if !(size + half.x + half.y + half.z + (center.x + center.y + center.z).abs() < FAR) {
             return Self::EVERYTHING;
         }
@@ -62,7 +62,7 @@ impl WorldBox {
         Self::from_corners(min.map(|x| (x as f32).next_down()), max.map(|x| (x as f32).next_up()))
     }
 
-    /// The box around both.
+    /// The box around two boxes.
     #[inline]
     pub fn union(&self, o: &Self) -> Self {
         Self {
@@ -77,7 +77,7 @@ impl WorldBox {
     /// True if the boxes are certainly farther apart than `margin` (m) along some axis.
     #[inline]
     pub fn separated(&self, o: &Self, margin: f32) -> bool {
-        // Rounding is monotonic: a rounded difference above the margin is one above the margin.
+        // Rounding is monotonic: if the rounded difference is above the margin, the exact difference is too.
         let mut separated = false;
         for i in 0..8 {
             separated |= self.low[i] - o.high[i] > margin;
@@ -85,7 +85,7 @@ impl WorldBox {
         separated
     }
 
-    /// Nearest points of two boxes; a point of the intersection where they overlap.
+    /// Nearest points of two boxes; a common point if they overlap.
     pub fn nearest_points(&self, o: &Self) -> (Vec3, Vec3) {
         let (mut p, mut q) = ([0.0; 3], [0.0; 3]);
         for i in 0..3 {
@@ -146,7 +146,7 @@ mod tests {
             if x.separated(&y, round_up(margin)) {
                 prop_assert!(a.distance(&b) > margin);
             }
-            // And is not much less.
+            // The bound is not much less than the distance.
             prop_assert!(f64::from(x.gap(&y)) >= a.distance(&b) - 1e-5 * (1.0 + a.max.length() + b.max.length()));
         }
     }

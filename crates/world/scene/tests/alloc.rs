@@ -1,5 +1,6 @@
-//! Queries do not allocate once a checker is made. Without the test harness, because its threads allocate, too, and the counter
-//! counts the whole process.
+//! Queries do not allocate after a checker is created.
+//!
+//! The test runs without the test harness, because its threads also allocate, and the counter counts the whole process.
 
 mod common;
 
@@ -28,7 +29,7 @@ fn main() {
         for state in &mut states {
             let mut checker = Checker::new(&scene, CheckerOptions { level, ..CheckerOptions::default() });
             let (one, other) = (Selection::Robot(RobotId(0)), Selection::Robot(RobotId(1)));
-            // The first query about a selection or an arrangement of attached objects makes its list.
+            // The first query about a selection or an arrangement of attached objects builds its list.
             checker.collides(state);
             checker.between(one, other).collides(state);
             let counter = AllocationCounter::start();
@@ -50,7 +51,7 @@ fn main() {
         }
     }
 
-    // Sweeps allocate where they are longer than all before: the same sweeps again do not allocate.
+    // Sweeps that are longer than all before allocate; repeating the same sweeps does not.
     let path = ConstantTwist::linear(scene.objects()[2].in_world, Vec3::X);
     for state in &mut states {
         let mut checker = Checker::new(&scene, CheckerOptions::default());

@@ -1,4 +1,4 @@
-//! Level of detail and time to collision: pairs left out or reported coarsely are proven to be distant.
+//! Level of detail and time to collision: pairs that are omitted or reported coarsely are proven to be distant.
 
 use crate::common::{Random, RandomGeometry, all_distances, apart, link, scene_of, shapes};
 
@@ -90,7 +90,7 @@ fn no_pair_meets_before_the_earliest_time() {
                 continue;
             }
             asked += 1;
-            // Frames keep their velocities, with all shapes of the geometry.
+            // Frames keep their velocities and carry all shapes of the geometry.
             let later = |m: GeometryId, t: f64| {
                 let path =
                     ConstantTwist::from_motion(at.0.pose(&scene, m).unwrap(), &at.1.of(&scene, &at.0, m).unwrap(), 1.0);

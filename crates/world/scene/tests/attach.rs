@@ -1,4 +1,4 @@
-//! An attached object against the same object placed at the same pose.
+//! Comparison of an attached object with the same object placed at the same pose.
 
 use crate::common::{Random, RandomGeometry, apart, link, scene_of};
 
@@ -34,7 +34,7 @@ fn an_attached_object_answers_as_the_object_at_its_pose() {
             held.pose(&scene, GeometryId::Object(ObjectId(5))),
             placed.pose(&scene, GeometryId::Object(ObjectId(5)))
         );
-        // Against another robot, and against each other object: the same answers.
+        // The answers are equal for another robot and for every other object.
         let forearm = Selection::Link { robot: RobotId(1), link: LinkId(3) };
         for other in [forearm, Selection::Object(ObjectId(0)), Selection::Object(ObjectId(6))] {
             let (x, y) = (checker.between(part, other).distance(&held), plain.between(part, other).distance(&placed));
@@ -83,7 +83,7 @@ fn pairs_of_attached_objects_have_their_reasons() {
     {
         assert_eq!(of(&state, tested), Some((PairState::Tested, Reason::Default)), "{tested:?}");
     }
-    // Two tools on one flange are no pair.
+    // Two tools on one flange form no pair.
     state.attach(&scene, ObjectId(1), RobotId(0), LinkId(3), &[]).unwrap();
     assert!(matches!(of(&state, GeometryId::Object(ObjectId(1))), Some((PairState::Skipped, Reason::Attached(_)))));
     // An object attached to a base is as stationary as the objects around it.
@@ -110,7 +110,7 @@ fn a_detached_object_keeps_its_pose_and_errors_are_reported() {
     assert!(state.attach(&scene, ObjectId(99), RobotId(0), LinkId(0), &[]).is_err());
     assert!(state.attach(&scene, ObjectId(0), RobotId(9), LinkId(0), &[]).is_err());
     assert!(state.attach(&scene, ObjectId(0), RobotId(0), LinkId(0), &[LinkId(44)]).is_err());
-    // The pose where it was detached counts, not that of the scene.
+    // The pose at which the object was detached counts, not its pose in the scene.
     let mut checker = Checker::new(&scene, CheckerOptions::default());
     let d = checker.between(Selection::Object(ObjectId(2)), Selection::Robots).distance(&state).unwrap();
     assert!((apart(&scene, &state, d.a, d.b) - d.metres).abs() < 1e-9);

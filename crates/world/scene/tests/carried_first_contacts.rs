@@ -1,4 +1,4 @@
-//! First contacts of an object that a robot carries, against testing every pair at many instants.
+//! Comparison of the first contacts of a carried object with tests of every pair at many instants.
 
 use elbowroom_kinematics::{Chain, ChainState, Joint, JointKind, Limits, LinkId};
 use elbowroom_proximity::{Capsule, Cuboid, Shape, Sphere, collides};
@@ -10,7 +10,7 @@ use elbowroom_testkit::random::linear_congruential;
 const PART: ObjectId = ObjectId(0);
 const HAND: LinkId = LinkId(3);
 
-/// Four links in a row, joints about y and x in turn.
+/// Four links in a row, with joints alternating about y and x.
 fn arm() -> Robot {
     let joint = |i: usize| Joint {
         name: format!("j{i}"),
@@ -114,7 +114,7 @@ fn a_carried_object_meets_links_robots_and_objects() {
                 let reported = found.iter().find(|f| f.0 == other).map(|f| f.1);
                 match (first, reported) {
                     (Some(first), Some(reported)) => {
-                        // A contact of a thousandth of the step may not be seen.
+                        // A contact that lasts a thousandth of the step may be missed.
                         let late = reported - first;
                         assert!(late < 1e-3 && late > -1.0 / f64::from(fine) - 1e-9, "{other:?}: {reported} {first}");
                     }
@@ -132,7 +132,7 @@ fn a_carried_object_meets_links_robots_and_objects() {
                 known.push(other);
             }
         }
-        // Detached, it stays.
+        // After detaching, the part stays in place.
         let end = setup.states(&goals, 1.0);
         let place = checker.object_in_world(PART);
         assert!(place.translation.distance((end[0].link_in_root(HAND) * in_link).translation) < 1e-12);

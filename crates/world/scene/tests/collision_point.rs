@@ -1,4 +1,4 @@
-//! The collision point against the shapes themselves and against queries link by link.
+//! Comparison of the collision point with the shapes themselves and with queries link by link.
 
 use crate::common::{Random, RandomGeometry, apart, link, random_state, scene_of, shapes};
 
@@ -47,7 +47,7 @@ fn the_link_nearest_to_a_base_is_reported_with_its_point() {
         check(&scene, &state, &c);
         several += usize::from(all.len() > 1);
         met += 1;
-        // One robot and the objects only.
+        // Only one robot and the objects.
         let alone =
             checker.between(Selection::Robot(RobotId(1)), Selection::Objects).collision_point(&state, Detail::Exact);
         assert!(alone.is_none_or(
@@ -135,7 +135,7 @@ fn work_with_meshes_is_that_of_the_query_itself() {
     let mut beside_solids = 0;
     for _ in 0..100 {
         let state = random_state(&scene, &mut r);
-        // What another query has done before must not be counted again.
+        // The work of an earlier query must not be counted again.
         let mut by_boxes = |before: fn(&mut Checker<'_>, &SceneState)| {
             before(&mut checker, &state);
             beside_solids += checker.stats().triangles_beside_solids;

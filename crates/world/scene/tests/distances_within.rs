@@ -1,4 +1,4 @@
-//! The distances within a margin against each pair measured by itself.
+//! Comparison of the distances within a margin with single measurements of each pair.
 
 use crate::common;
 use crate::common::{Random, RandomGeometry, all_distances, link, random_state, scene_of};
@@ -7,7 +7,7 @@ use elbowroom_robot::{GeometryId, RobotId};
 use elbowroom_scene::{Checker, CheckerOptions, Level, PairDistance, Scene, SceneState, Selection};
 use elbowroom_spatial::Pose;
 
-/// Tolerance (m) on distances of two methods.
+/// Tolerance (m) between the distances of two methods.
 const TOLERANCE: f64 = 1e-9;
 
 fn near(checker: &mut Checker, state: &SceneState, margin: f64) -> Vec<PairDistance> {
@@ -161,7 +161,7 @@ fn nan_and_unbounded_geometry_are_near() {
     assert_eq!(everything, checker.between(Selection::All, Selection::All).len(&state));
     let touching = near(&mut checker, &state, 0.0);
     assert_eq!(near(&mut checker, &state, -1.0), touching);
-    // A state with an angle beyond all precision: everything it moves is near, nothing panics.
+    // In a state with an angle beyond all precision, everything that the angle moves is near, and nothing panics.
     let mut lost = SceneState::new(&scene);
     lost.set_q(&scene, RobotId(0), &[1e300, -1e300, 1e18]).unwrap();
     near(&mut checker, &lost, 0.1);

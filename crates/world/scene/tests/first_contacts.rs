@@ -1,4 +1,4 @@
-//! First contacts against testing every pair at every step.
+//! Comparison of first contacts with tests of every pair at every step.
 
 use elbowroom_kinematics::{Chain, ChainState, Joint, JointKind, Limits, LinkId};
 use elbowroom_proximity::ccd::{ConstantTwist, RigidMotion};
@@ -9,7 +9,7 @@ use elbowroom_scene::{FirstContacts, MovedObject, Object};
 use elbowroom_spatial::{Pose, Vec3};
 use elbowroom_testkit::random::linear_congruential;
 
-/// Five links in a row, joints about y and z in turn; link 2 has no collider.
+/// Five links in a row, with joints alternating about y and z; link 2 has no collider.
 fn snake() -> Robot {
     let joint = |i: usize| Joint {
         name: format!("j{i}"),
@@ -55,7 +55,7 @@ fn gripper() -> Robot {
     robot
 }
 
-/// The calls at which the fingers begin to touch, while both go through `q` together.
+/// The calls at which the fingers begin to touch, while both fingers move through `q` together.
 fn touches(q: &[f64]) -> Vec<usize> {
     let robot = gripper();
     let mut checker = FirstContacts::new(vec![(&robot, Pose::IDENTITY)], &[]);
@@ -72,7 +72,7 @@ fn touches(q: &[f64]) -> Vec<usize> {
 #[test]
 fn fingers_on_an_empty_palm_collide_and_a_rest_pose_contact_counts_once_they_have_separated() {
     assert_eq!(touches(&[0.0, -0.005, -0.01, -0.02, -0.03]), [2]);
-    // Closed at the start: no event, until they have been open.
+    // Closed at the start: the contact counts only after the fingers have been open.
     assert_eq!(touches(&[-0.01, -0.012, -0.02, -0.012]), [0; 0]);
     assert_eq!(touches(&[-0.02, -0.01, 0.0, 0.01, -0.02, -0.03]), [4]);
     let robot = gripper();
@@ -128,7 +128,7 @@ fn every_first_contact_is_found_with_its_time() {
         let robots = setup.base.map(|base| (&setup.robot, base)).to_vec();
         let mut checker = FirstContacts::new(robots, &setup.objects).moving(&[ObjectId(0)]);
         assert_eq!(checker.len(), setup.pairs().len());
-        // Every other run has steps so coarse that a contact may begin and end within one.
+        // Every other run has steps so coarse that a contact may begin and end within one step.
         let (steps, fine) = if run % 2 == 0 { (200, 4) } else { (12, 50) };
         let goals: Vec<Vec<f64>> = (0..2).map(|_| (0..4).map(|_| random() * 2.4).collect()).collect();
         let travel = Vec3::new(random(), 2.5, random() * 0.5);

@@ -1,5 +1,7 @@
-//! Level of detail on the example RX60B among moving meshes and boxes: the same answers with and without, and the savings.
-//! 100,000 motions with `ELBOWROOM_LONG=1`, `--release`, `-- --nocapture` for the table.
+//! Level of detail on the example RX60B among moving meshes and boxes: equal answers with and without it, and the
+//! savings.
+//!
+//! `ELBOWROOM_LONG=1` tests 100,000 motions (use `--release`); `-- --nocapture` prints the table.
 
 use crate::common::rx60b;
 use std::time::{Duration, Instant};
@@ -82,7 +84,7 @@ fn level_of_detail_gives_the_same_answers_for_less_work() {
         let mut state = SceneState::new(&scene);
         let mut motion = SceneMotion::new(&scene);
         for (object, id) in (0..scene.objects().len()).map(|o| (o, ObjectId(o))) {
-            // Half of them anywhere, half in the arm's workspace.
+            // Half of the poses are anywhere, half in the arm's workspace.
             let far = if object % 2 == k % 2 { 1.5 } else { 0.6 };
             let mut pose = r.pose(far);
             pose.translation.z += 0.4;
@@ -101,7 +103,7 @@ fn level_of_detail_gives_the_same_answers_for_less_work() {
             assert_eq!(p.detail, Detail::Exact);
             reported += 1;
             contacts += u64::from(p.metres == 0.0);
-            // In the same order.
+            // Pairs are in the same order.
             let other = others
                 .find(|o| (o.a, o.b) == (p.a, p.b))
                 .expect("a pair reported exactly is reported coarsely as well");
@@ -112,7 +114,7 @@ fn level_of_detail_gives_the_same_answers_for_less_work() {
             } else {
                 soon += 1;
                 assert!((other.metres - p.metres).abs() < 1e-9 && (p.metres == 0.0) == (other.metres == 0.0));
-                // Of several nearest points another may be reported.
+                // If a pair has several nearest points, another one may be reported.
                 let same = other.on_a.distance(p.on_a) + other.on_b.distance(p.on_b) < 1e-9 && p.metres > 1e-3;
                 assert!(!same || (other.closing_m_s - p.closing_m_s).abs() < 1e-5, "{other:?} {p:?}");
                 times += u64::from(same);

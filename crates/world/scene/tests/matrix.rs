@@ -110,7 +110,7 @@ fn proofs_are_not_used_where_they_do_not_hold() {
     }
     let c = checker.collides(&state).expect("beyond the limits it touches");
     assert_eq!((c.a, c.b), (link(0, 0), link(0, 3)));
-    // The present pose of a moved object counts.
+    // The current pose of a moved object counts.
     state.set_q(&scene, RobotId(0), &[0.0; 3]).unwrap();
     assert!(checker.collides(&state).is_none());
     let hand = state.pose(&scene, link(0, 3)).unwrap();
@@ -188,7 +188,7 @@ fn edits_count_and_samples_only_suggest() {
     let mut same = SceneState::new(&skipping);
     same.set_q(&skipping, RobotId(0), state.q(RobotId(0))).unwrap();
     assert!(Checker::new(&skipping, CheckerOptions::default()).collides(&same).is_none());
-    // Edits by hand apply whatever the options.
+    // Edits by hand apply with any options.
     assert!(
         Checker::new(&skipping, CheckerOptions { matrix: false, ..CheckerOptions::default() })
             .collides(&same)

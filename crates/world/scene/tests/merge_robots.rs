@@ -1,4 +1,4 @@
-//! Merged robots: the answers of a scene do not change where some of its robots become one.
+//! Merged robots: the answers of a scene do not change if some of its robots are merged into one.
 
 use elbowroom_kinematics::LinkId;
 use elbowroom_proximity::{Cuboid, Shape, Sphere};
@@ -9,7 +9,7 @@ use elbowroom_scene::{
 use elbowroom_spatial::{Pose, Vec3};
 use elbowroom_testkit::random::SplitMix;
 
-/// Three arms around a table; the part is held by the second, the ball is scaled, one pair is skipped and one has a margin.
+/// Three arms around a table. The second holds the part, the ball is scaled, one pair is skipped and one has a margin.
 fn scene() -> Scene {
     let mut builder = Scene::builder();
     for (i, name) in ["left", "right", "behind"].into_iter().enumerate() {

@@ -1,5 +1,5 @@
-//! Pairs proven out of reach are out of reach: objects placed where a link certainly reaches, at random and at the ends of its
-//! range.
+//! Pairs proven out of reach are really out of reach: objects are placed where a link certainly reaches, at random and at
+//! the ends of its range.
 
 use crate::common::{Random, RandomGeometry};
 
@@ -13,8 +13,9 @@ use elbowroom_spatial::{Pose, Vec3};
 /// Length of the rod of the last link, from its origin, m.
 const LENGTH: f64 = 0.5;
 
-/// `joints` joints of random kinds and axes, far apart or at one point; the last link has a rod. Of three joints the last may
-/// mimic the first.
+/// `joints` joints of random kinds and axes, far apart or at one point; the last link has a rod.
+///
+/// Of three joints, the last may mimic the first.
 fn arm(r: &mut Random, joints: usize) -> Robot {
     let follows = joints == 3 && r.unit() < 0.3;
     let joint = |i: usize, r: &mut Random| {
@@ -51,7 +52,7 @@ fn ball(r: &mut Random, robot: &Robot) -> Object {
     robot.chain.forward(&mut state);
     let tip = LinkId(robot.chain.links().len() - 1);
     let at = state.link_in_root(tip).transform_point(Vec3::Z * (LENGTH * r.between(0.5, 1.0)));
-    // Beside the rod's centre line, so that both barely touch.
+    // Beside the rod's centre line, so that ball and rod barely touch.
     Object {
         name: "ball".into(),
         shape: Shape::Sphere(Sphere { radius: 0.015 }),
@@ -68,7 +69,7 @@ fn objects_that_a_link_touches_are_never_out_of_reach() {
         let tip = GeometryId::Link { robot: RobotId(0), link: LinkId(robot.chain.links().len() - 1) };
         let mut builder = Scene::builder();
         builder.object(ball(&mut r, &robot));
-        // And one anywhere, so that some pairs are proven.
+        // A second ball anywhere, so that some pairs are proven.
         let far = Pose::from_translation(r.vec3(2.0));
         builder.object(Object { name: "far".into(), shape: Shape::Sphere(Sphere { radius: 0.05 }), in_world: far });
         builder.robot("arm", robot, Pose::IDENTITY);
@@ -86,7 +87,8 @@ fn links_of_two_robots_that_touch_are_never_out_of_reach() {
     let mut r = Random(19);
     for round in 0..200 {
         let (one, other) = (arm(&mut r, 1), arm(&mut r, 1 + round % 2));
-        // The base of the second is placed so that the tips of both rods meet at values within the limits of both.
+        // The base of the second robot is placed so that the tips of the two rods meet at values within the limits of
+        // both robots.
         let [a, b] = [&one, &other].map(|robot| ball(&mut r, robot).in_world.translation);
         let mut builder = Scene::builder();
         let tip = |robot: &Robot| LinkId(robot.chain.links().len() - 1);

@@ -1,4 +1,4 @@
-//! Rules between selections: what a scene, an attached object and the first contacts of a run make of them.
+//! Rules between selections: their effect on a scene, on an attached object, and on the first contacts of a run.
 
 use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_robot::{GeometryId, ObjectId, Robot, RobotId};
@@ -50,7 +50,7 @@ fn a_carried_part_may_touch_what_the_rules_say() {
         let expected = Some((PairState::Skipped, Reason::ByHand("it stands there".into())));
         assert_eq!(holding(&scene).pair(&scene, PART, TABLE), expected, "{other:?}");
         assert_eq!(holding(&scene).pair(&scene, TABLE, PART), expected);
-        // Also after several robots became one.
+        // The rules also apply after several robots are merged into one.
         let merged = MergedRobots::new(&scene, &[RobotId(0), RobotId(1)]).unwrap();
         let state = merged.state(&scene, &holding(&scene)).unwrap();
         assert!(matches!(state.pair(merged.scene(), PART, TABLE), Some((PairState::Skipped, _))));
@@ -107,7 +107,7 @@ fn first_contacts_leave_out_what_the_rules_skip() {
         assert!(some.iter().eq(all.iter().filter(|pair| pair.1 != PART)), "{q:?}: {all:?} {some:?}");
         of_part += all.iter().filter(|pair| pair.1 == PART).count();
         of_table += some.iter().filter(|pair| pair.1 == TABLE).count();
-        // The same pairs as a scene with these rules.
+        // The pairs are those of a scene with these rules.
         let mut state = SceneState::new(&ruled);
         state.set_q(&ruled, RobotId(0), &q).unwrap();
         let mut found = Vec::new();

@@ -1,4 +1,4 @@
-//! Every query against a direct test of all pairs.
+//! Comparison of every query with a direct test of all pairs.
 
 use crate::common::{Random, RandomGeometry, all_distances, apart, link, random_state, scene_of};
 
@@ -43,7 +43,7 @@ fn contains(s: Selection, m: GeometryId) -> bool {
     }
 }
 
-/// Tolerance (m) within which two methods may differ about yes and no.
+/// Distance (m) from a threshold within which two methods may give different yes-or-no answers.
 const DOUBT: f64 = 1e-9;
 
 #[test]
@@ -187,7 +187,7 @@ fn a_larger_padding_never_clears_and_a_larger_scale_of_convex_shapes_never_widen
     let mut nearer = 0;
     for s in &states {
         let (before, after) = (small.distance(s).unwrap().metres, large.distance(s).unwrap().metres);
-        // The state's boxes are those of the scene that it was made for.
+        // The state's boxes are those of the scene for which it was created.
         let mut t = SceneState::new(&grown);
         t.set_q(&grown, RobotId(0), s.q(RobotId(0))).unwrap();
         t.set_q(&grown, RobotId(1), s.q(RobotId(1))).unwrap();

@@ -1,4 +1,4 @@
-//! Sweeps between two configurations: against dense samples, and where samples would miss a contact.
+//! Sweeps between two configurations: compared with dense samples, and for contacts that samples would miss.
 
 use crate::common::rx60b;
 use std::sync::Arc;
@@ -17,7 +17,7 @@ use elbowroom_scene::{
 };
 use elbowroom_spatial::{Pose, Vec3};
 
-/// More than the rounding of poses and distances at 1 m.
+/// Distance (m) that exceeds the rounding of poses and distances at 1 m.
 const DOUBT: f64 = 1e-9;
 
 fn is_long_run() -> bool {
@@ -38,7 +38,7 @@ fn at(scene: &Scene, start: &SceneState, moves: &[SweepMove], t: f64) -> SceneSt
     state
 }
 
-/// Checks an answer against `samples` instants. Returns the first sampled contact.
+/// Checks an answer against `samples` instants, and returns the first sampled contact.
 fn check(
     checker: &mut Checker,
     (one, other): (Selection, Selection),
@@ -52,7 +52,7 @@ fn check(
     if let Some(h) = hit {
         assert!(h.certain, "{h:?}");
         let state = at(scene, start, moves, h.time);
-        // The pair itself, tested directly; others may be nearer at the start only.
+        // The pair itself, tested directly; other pairs may be nearer only at the start.
         let padding = scene.allowed_collision_matrix().get(h.a, h.b).map_or(0.0, |e| e.margin_m);
         let metres = (apart(scene, &state, h.a, h.b) - padding).max(0.0);
         assert!((metres - h.metres).abs() < DOUBT, "{h:?} {metres}");
@@ -138,7 +138,7 @@ fn the_first_of_all_contacts_is_reported() {
         let moves = [SweepMove::Robot { robot: RobotId(0), to: &to }];
         let Some(hit) = checker.sweep(&start, &moves, &options).unwrap().filter(|h| !h.at_start()) else { continue };
         seen += 1;
-        // Every pair by itself: none earlier than the answer by more than the tolerance allows.
+        // Every single pair: no hit is earlier than the answer by more than the tolerance allows.
         for o in (0..scene.objects().len()).map(ObjectId) {
             let alone =
                 checker.between(Selection::Robot(RobotId(0)), Selection::Object(o)).sweep(&start, &moves, &options);
@@ -180,7 +180,7 @@ fn a_plate_of_a_tenth_of_a_millimetre_and_a_wire_are_not_missed() {
             let options = SweepOptions { tolerance_m: 1e-5, ..SweepOptions::default() };
             let hit = checker.sweep(&start, &moves, &options).unwrap().expect("in the way");
             assert!(hit.certain && hit.metres <= 1e-5 && hit.b == GeometryId::Object(ObjectId(0)), "{hit:?}");
-            // The arm is on this side of it, by about its own half width.
+            // The arm is before the object, by about its own half width.
             let waist = from + (to - from) * hit.time;
             assert!(waist < -0.05 && waist > -0.3, "{waist}");
             let back = [SweepMove::Robot { robot: RobotId(0), to: &[from, 0.1, 0.2] }];
@@ -213,7 +213,7 @@ fn adjacent_links_never_hit_and_distant_links_do() {
         found += 1;
     }
     assert!((5..55).contains(&found), "{found}");
-    // Folded onto its own base: only the ends of the chain meet.
+    // The arm folds onto its own base: only the ends of the chain meet.
     start.set_q(&scene, RobotId(0), &[0.0; 6]).unwrap();
     let fold = [SweepMove::Robot { robot: RobotId(0), to: &[0.0, 2.2, 2.3, 0.0, 0.0, 0.0] }];
     let hit = checker.sweep(&start, &fold, &SweepOptions::default()).unwrap().expect("into its base");
@@ -244,7 +244,7 @@ fn an_attached_object_moves_along() {
     let hit = checker.sweep(&start, &swing, &options).unwrap().expect("the rod does not");
     assert_eq!((hit.a, hit.b), (GeometryId::Object(ObjectId(0)), GeometryId::Object(ObjectId(1))));
     check(&mut checker, ALL, &start, &swing, &options, Some(&hit), 500);
-    // It cannot have a path of its own then.
+    // An attached object cannot have its own path.
     let path = Pose::IDENTITY;
     let error = checker.sweep(&start, &[SweepMove::Object { object: ObjectId(0), path: &path }], &options).unwrap_err();
     assert!(error.to_string().contains("attached to `arm/forearm`"), "{error}");
@@ -270,7 +270,7 @@ fn objects_on_paths_meet_arms_that_move_and_links_that_do_not() {
         hits += usize::from(hit.is_some_and(|h| !h.at_start()));
     }
     assert!((8..100).contains(&hits), "{hits}");
-    // The base is stationary and is not a pair with other stationary geometry.
+    // The base is stationary and forms no pair with other stationary geometry.
     let scene = past(Shape::Cuboid(Cuboid { half_extents: Vec3::splat(0.02) }), Pose::from_translation(Vec3::Y));
     let mut checker = Checker::new(&scene, CheckerOptions::default());
     let path = ConstantTwist::linear(Pose::from_translation(Vec3::new(0.0, 1.0, 0.1)), Vec3::Y * -2.0);
@@ -308,7 +308,7 @@ fn a_larger_clearance_or_tolerance_is_never_later() {
     let scene = scene_of(66, |_| {});
     let mut r = Random(66);
     let mut checker = Checker::new(&scene, CheckerOptions::default());
-    // A tolerance of 0 takes a step until no digit is left.
+    // With a tolerance of 0, the search continues to the last digit.
     for _ in 0..if is_long_run() { 60 } else { 15 } {
         let start = start(&scene, &mut r);
         let to = r.q();
@@ -407,7 +407,7 @@ fn unknown_motions_are_refused_or_a_hit() {
         .unwrap()
         .unwrap();
     assert!(hit.time <= 1.0 && (!hit.certain || hit.metres <= options.tolerance_m), "{hit:?}");
-    // Angles beyond all precision, and steps used up.
+    // Angles beyond all precision, and a search that runs out of steps.
     let far = [SweepMove::Robot { robot: RobotId(0), to: &[1e300, -1e300, 0.0] }];
     assert!(checker.sweep(&start, &far, &options).unwrap().is_some());
     let mut r = Random(68);
@@ -441,7 +441,7 @@ fn cage(r: &mut Random) -> Scene {
         } else {
             Shape::Capsule(Capsule { half_length: 1.5 * size, radius: thin })
         };
-        // Half of them as meshes.
+        // Half of the plates and wires are meshes.
         let shape = if i % 4 < 2 {
             shape
         } else {
@@ -473,7 +473,7 @@ fn random_motions_of_the_rx60b_among_thin_plates_and_wires() {
             let mut q = || rx60b::limits().map(|(l, u)| r.between(l, u)).collect::<Vec<_>>();
             let mut to = q();
             start.set_q(&scene, RobotId(0), &q()).unwrap();
-            // From anywhere, and from a free start, far and near.
+            // From any start, and from a free start, far and near.
             if i % 4 > 0 {
                 while checker.collides(&start).is_some() {
                     start.set_q(&scene, RobotId(0), &q()).unwrap();
@@ -494,7 +494,7 @@ fn random_motions_of_the_rx60b_among_thin_plates_and_wires() {
                     assert!(a.0.abs_diff(b.0) > 1, "neighbours: {h:?}");
                 }
             }
-            // Occasionally against very many samples.
+            // Occasionally compared with very many samples.
             let samples = if i % 100 == 0 { 50 * samples } else { samples };
             let sampled = check(&mut checker, ALL, &start, &moves, &options, hit.as_ref(), samples);
             asking += begin.elapsed();

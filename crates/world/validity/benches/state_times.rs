@@ -1,10 +1,10 @@
-//! Time per configuration: on proven edges, and one at a time.
+//! Time per configuration: on proven edges, and for single configurations.
 //!
 //! `cargo bench -p elbowroom-validity --bench state_times -- ROBOT.urdf ROBOT.srdf [OBSTACLES]` prints a line for each
-//! number of random obstacles. With `points:N` for `OBSTACLES` they are one cloud of N points.
+//! number of random obstacles. With `points:N` for `OBSTACLES` the obstacle is one cloud of N points.
 //!
-//! `state_times WORKLOAD.json ROBOT.urdf [ROBOT.srdf]` asks what `cargo xtask planning --validity` wrote and prints one line of
-//! JSON.
+//! `state_times WORKLOAD.json ROBOT.urdf [ROBOT.srdf]` runs the workload that `cargo xtask planning --validity` wrote,
+//! and prints one line of JSON.
 
 #![allow(clippy::print_stdout, reason = "a bench prints what it measures")]
 
@@ -24,14 +24,14 @@ type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 /// States per radian of an edge, as planners sample them.
 const STATES_PER_RADIAN: f64 = 32.0;
 
-/// Edges and configurations that are free.
+/// Free edges and configurations.
 #[derive(Default)]
 struct Questions {
     edges: Vec<(Vec<f64>, Vec<f64>)>,
     states: Vec<Vec<f64>>,
 }
 
-/// Nanoseconds.
+/// Times, nanoseconds.
 struct Times {
     per_state_on_edge: f64,
     per_state_alone: f64,
@@ -59,7 +59,7 @@ fn robot(urdf: &str, srdf: Option<&String>) -> Result<Robot> {
     Ok(load(urdf.as_ref(), &options)?.robot)
 }
 
-/// Random obstacles, and random edges of one radian that are free among them.
+/// Measures random obstacles, with random edges of one radian that are free among them.
 fn random_scene(robot: &Robot, count: usize, is_cloud: bool) -> Result<()> {
     let covered = CoveredRobot::new(robot, Pose::IDENTITY)?;
     let mut random = Random(7);
@@ -70,7 +70,7 @@ fn random_scene(robot: &Robot, count: usize, is_cloud: bool) -> Result<()> {
     let places: Vec<Vec3> = (0..count).map(|_| place()).collect();
     let mut obstacles = ObstacleSet::default();
     if is_cloud {
-        // A wall and a table as a camera sees them: points a centimetre apart on surfaces.
+        // A wall and a table as seen by a camera: points on surfaces, one centimetre apart.
         let surface = |p: &Vec3| if p.x > 0.0 { Vec3::new(0.8, p.y, p.z) } else { Vec3::new(p.x, p.y, -0.1) };
         let points: Vec<Vec3> = places.iter().map(surface).collect();
         let mut least = f64::INFINITY;
@@ -106,7 +106,7 @@ fn random_scene(robot: &Robot, count: usize, is_cloud: bool) -> Result<()> {
         let (a, b) = (q(), q());
         let length = distance(&a, &b);
         let to: Vec<f64> = a.iter().zip(&b).map(|(x, y)| x + (y - x) / length).collect();
-        // A slide that this takes beyond its limits is not a question.
+        // An edge that takes a slide beyond its limits is not measured.
         if checker.edge_is_free(&a, &to)? {
             questions.edges.push((a.clone(), to));
         }
@@ -126,7 +126,7 @@ fn random_scene(robot: &Robot, count: usize, is_cloud: bool) -> Result<()> {
     Ok(())
 }
 
-/// Medians of several rounds.
+/// Measures the medians of several rounds.
 fn measure(checker: &mut ValidityChecker<'_>, questions: &Questions, states_on_edges: f64) -> Result<Times> {
     let before = checker.blocks();
     for (a, b) in &questions.edges {
@@ -152,8 +152,8 @@ fn measure(checker: &mut ValidityChecker<'_>, questions: &Questions, states_on_e
     })
 }
 
-/// Seconds of processor time that a task takes: the median of several rounds, each of which repeats it for a tenth of a second at
-/// least.
+/// Processor time of a task, s: the median of several rounds, each of which repeats the task for at least a tenth of a
+/// second.
 fn median_s(mut task: impl FnMut() -> Result<()>) -> Result<f64> {
     const ROUNDS: usize = 7;
     const ROUND_S: f64 = 0.1;
@@ -173,13 +173,13 @@ fn median_s(mut task: impl FnMut() -> Result<()>) -> Result<f64> {
     Ok(seconds[ROUNDS / 2])
 }
 
-/// Processor time of this thread so far, s; `None` if the system does not tell.
+/// Processor time of this thread so far, s; `None` if the system does not report it.
 fn processor_s() -> Option<f64> {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
     text.split_whitespace().next()?.parse::<f64>().ok().map(|ns| ns * 1e-9)
 }
 
-/// Reads a workload, leaves out what is not found free, and prints the times.
+/// Reads a workload, drops the parts that are not found free, and prints the times.
 fn workload(path: &str, urdf: &str, srdf: Option<&String>) -> Result<()> {
     let document: Value = serde_json::from_str(&std::fs::read_to_string(path)?)?;
     let list = |name: &str| document[name].as_array().cloned().ok_or(format!("{path}: no list `{name}`"));
@@ -223,11 +223,12 @@ fn workload(path: &str, urdf: &str, srdf: Option<&String>) -> Result<()> {
     Ok(())
 }
 
-/// Where the values of a configuration come from: from the workload's, or constant.
+/// Source of each value of a configuration: an index in the workload's values, or a constant.
 struct JointOrder(Vec<std::result::Result<usize, f64>>);
 
 impl JointOrder {
-    /// By the names in `joints` and the values in `fixed`; without `joints` the values are those of the robot, in its order.
+    /// By the names in `joints` and the values in `fixed`. Without `joints`, the values are those of the robot, in its
+    /// order.
     fn new(robot: &Robot, document: &Value) -> Result<Self> {
         let Some(names) = document["joints"].as_array() else {
             return Ok(Self((0..robot.chain.dof()).map(Ok).collect()));

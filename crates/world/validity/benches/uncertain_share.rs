@@ -1,7 +1,7 @@
-//! Share of random configurations that covers leave uncertain, and the pairs of links that leave most.
+//! Fraction of random configurations that covers leave uncertain, and the pairs of links that cause most of them.
 //!
 //! `cargo bench -p elbowroom-validity --bench uncertain_share -- [STATES] ROBOT.urdf …` prints a row of a table for each
-//! robot, with the SRDF beside it where there is one: among five obstacles, and without any.
+//! robot, among five obstacles and without obstacles. It uses the SRDF beside the robot, if it exists.
 
 #![allow(clippy::print_stdout, reason = "a bench prints what it measures")]
 
@@ -17,7 +17,7 @@ use elbowroom_validity::{CoveredRobot, NotCertain, ObstacleSet, Validity, Validi
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
-/// Per pair of links, how many uncertain configurations it is near in.
+/// Per pair of links: number of uncertain configurations in which the pair is near.
 type PairCounts = BTreeMap<(usize, usize), usize>;
 
 fn main() -> Result<()> {
@@ -52,7 +52,8 @@ fn row(path: &Path, states: usize) -> Result<()> {
     Ok(())
 }
 
-/// Numbers of configurations that are free, hit and uncertain; per pair of links, how many uncertain ones it is near in.
+/// Numbers of configurations that are free, hit and uncertain; per pair of links, the number of uncertain ones in which
+/// it is near.
 fn ask(robot: &CoveredRobot, set: &ObstacleSet, q: &[f64]) -> Result<([usize; 3], PairCounts)> {
     let mut checker = ValidityChecker::new(robot, set);
     let (mut answers, mut near) = (Vec::new(), Vec::new());
@@ -87,7 +88,7 @@ fn reach_m(robot: &Robot) -> f64 {
     robot.chain.joints().iter().map(|joint| joint.origin.translation.length()).sum()
 }
 
-/// A table, a post, a shelf, a ball and a pipe, at shares of the robot's reach.
+/// A table, a post, a shelf, a ball and a pipe, at fractions of the robot's reach.
 fn five_obstacles(reach_m: f64) -> ObstacleSet {
     let at = |x: f64, y: f64, z: f64| Pose::from_translation(Vec3::new(x, y, z) * reach_m);
     let mut set = ObstacleSet::default();

@@ -1,4 +1,4 @@
-//! Where covers come from: they are built, or kept from an earlier run.
+//! Sources of covers: built, or kept from an earlier run.
 
 use elbowroom_proximity::Shape;
 use elbowroom_spatial::{Pose, Vec3};
@@ -6,18 +6,20 @@ use rayon::prelude::*;
 
 use crate::cover::SphereCover;
 
-/// Number of this construction of covers, the triangles of curved shapes included: to be raised with each change of either, so
-/// that no cover of a former one is taken from a cache.
+/// Version of the construction of covers, including the triangles of curved shapes.
+///
+/// Increase it with each change of either, so that no cover of an earlier version is read from a cache.
 const CONSTRUCTION: u64 = 3;
 
-/// Gives the cover of shapes: built, or kept from an earlier run. A source must give what [`SphereCover::new`] would.
+/// Source of the covers of shapes: built, or kept from an earlier run. Must return what [`SphereCover::new`] would.
 pub trait CoverSource: Sync {
-    /// As [`SphereCover::new`].
+    /// Returns the cover that [`SphereCover::new`] would return.
     fn cover(&self, shapes: &[(&Shape, Pose)], slack_m: f64) -> Option<SphereCover>;
 }
 
-/// The covers of several bodies, in their order, built in parallel: each body as its shapes and its slack in metres. `None`
-/// as in [`SphereCover::new`].
+/// Builds the covers of several bodies in parallel, and returns them in the order of the bodies.
+///
+/// A body consists of its shapes and its slack in metres. A cover is `None` if [`SphereCover::new`] would return `None`.
 ///
 /// ```
 /// use elbowroom_proximity::{Shape, Sphere};
@@ -32,7 +34,7 @@ pub fn covers(bodies: &[(Vec<(&Shape, Pose)>, f64)], source: &dyn CoverSource) -
     bodies.par_iter().with_max_len(1).map(|(shapes, slack_m)| source.cover(shapes, *slack_m)).collect()
 }
 
-/// Builds every cover.
+/// Source that builds every cover.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct BuiltCovers;
 
@@ -42,7 +44,7 @@ impl CoverSource for BuiltCovers {
     }
 }
 
-/// Passes on all numbers that a cover depends on, for a hash: the construction, the slack, and the shapes with their poses.
+/// Passes all numbers on which a cover depends, for a hash: the construction, the slack, and the shapes with their poses.
 ///
 /// ```
 /// use elbowroom_proximity::{Shape, Sphere};
@@ -67,7 +69,7 @@ pub fn describe_cover(shapes: &[(&Shape, Pose)], slack_m: f64, pass: &mut dyn Fn
     }
 }
 
-/// A number for the kind of shape, then its own.
+/// Passes a number for the kind of shape, then the numbers of the shape.
 fn describe_shape(shape: &Shape, count: &mut dyn FnMut(u64)) {
     let mut numbers = |kind: u64, lengths: &[f64]| {
         count(kind);

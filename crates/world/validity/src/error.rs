@@ -1,28 +1,28 @@
 //! Errors of validity checks.
 
-/// Why a robot cannot be checked, or a question not be answered.
+/// Why a robot cannot be checked, or a query cannot be answered.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ValidityError {
-    /// A link cannot be enclosed by spheres.
+    /// Spheres cannot enclose a link.
     #[error(
         "link `{link}` cannot be enclosed by spheres: a shape is unbounded or too far away, or has NaN or infinite numbers"
     )]
     NotCovered {
-        /// Its name.
+        /// Name of the link.
         link: String,
     },
-    /// A link that the chain does not have.
+    /// The chain does not have this link.
     #[error("there is no link number {index}")]
     NoSuchLink {
-        /// Its index.
+        /// Index of the link.
         index: usize,
     },
-    /// A configuration with too few or too many values.
+    /// A configuration has too few or too many values.
     #[error("a configuration has {found} values, the robot has {expected} joints: give one value per joint")]
     WrongCount {
-        /// How many were given.
+        /// Number of given values.
         found: usize,
-        /// How many joints move independently.
+        /// Number of joints that move independently.
         expected: usize,
     },
 }

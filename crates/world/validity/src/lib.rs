@@ -1,9 +1,9 @@
 //! Validity of robot configurations and edges at vector speed: proven free, proven in collision, or not certain.
 //!
-//! A [`CoveredRobot`] encloses every link in a tree of spheres, built once from its shapes. A [`ValidityChecker`] moves sixteen
-//! configurations at a time among the solids of an [`ObstacleSet`] and answers in three values ([`Validity`]): the outer spheres
-//! prove that a configuration is free, inner spheres that it is in collision, and what neither proves is for an exact checker.
-//! An edge is proven as a whole: between neighbouring configurations every sphere stays near its chord.
+//! A [`CoveredRobot`] encloses every link in a tree of spheres, built once from its shapes. A [`ValidityChecker`] moves
+//! sixteen configurations at a time among the solids of an [`ObstacleSet`]. It has three answers ([`Validity`]): outer
+//! spheres prove that a configuration is free, inner spheres prove that it is in collision, and an exact checker must
+//! decide the rest. An edge is proven as a whole: between neighbouring configurations every sphere stays near its chord.
 //!
 //! ```
 //! use elbowroom_proximity::{Shape, Sphere};
@@ -23,8 +23,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! **Invariant.** If the robot and the obstacles are where they are said to be, [`Validity::Free`] never collides and
-//! [`Validity::Hit`] always does; numbers that prove nothing, NaN among them, are always [`Validity::Uncertain`].
+//! **Invariant.** If the robot and the obstacles are at their stated poses, [`Validity::Free`] never collides and
+//! [`Validity::Hit`] always does. Numbers that prove nothing, including NaN, are always [`Validity::Uncertain`].
 
 mod check;
 mod cover;

@@ -1,12 +1,12 @@
-//! The answer to whether a configuration is free.
+//! The result of a check of a configuration.
 
-/// What is known of a configuration.
+/// Result of a check of a configuration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Validity {
-    /// Nothing touches: proven.
+    /// Proven free: the solids do not touch.
     Free,
-    /// Two solids overlap: proven.
+    /// Proven in collision: two solids overlap.
     Hit,
-    /// The spheres do not settle it; the exact scene does.
+    /// The spheres prove neither; the exact scene decides.
     Uncertain,
 }

@@ -1,11 +1,13 @@
-//! Answers against the exact scene: proven free never collides, proven hit always does.
+//! Comparison of answers with the exact scene: proven free never collides, proven hit always does.
 //!
-//! `ELBOWROOM_VALIDITY_STATES=1000000` compares as many configurations, and a tenth as many edges, over all robots of the data, in
-//! the release profile best: `cargo test --release -p elbowroom-validity --test main against_scene::real_robots -- --nocapture`. With
-//! `ELBOWROOM_VALIDITY_JOBS=DIRECTORY` it writes configurations and answers for Coal, see `xtask/planning/README.md`.
+//! `ELBOWROOM_VALIDITY_STATES=1000000` compares this number of configurations, and a tenth as many edges, over all robots
+//! of the data. Use the release profile: `cargo test --release -p elbowroom-validity --test main
+//! against_scene::real_robots -- --nocapture`. With `ELBOWROOM_VALIDITY_JOBS=DIRECTORY` it writes configurations and
+//! answers for Coal, see `xtask/planning/README.md`.
 //!
-//! The scene is asked what the covers answer: whether a configuration collides that is proven free or hit, and whether any of
-//! some configurations of an edge does that is proven free. Some of the edges, proven or not, are swept as well.
+//! The exact scene checks the answers of the covers: whether a configuration that is proven free or hit collides, and
+//! whether any of some configurations of an edge that is proven free collides. Some of the edges, proven or not, are also
+//! swept.
 
 #![allow(clippy::print_stdout, reason = "a comparison prints what it finds")]
 
@@ -21,30 +23,32 @@ use elbowroom_testkit::folder;
 use elbowroom_validity::{CoveredRobot, Validity, ValidityChecker};
 use fearless_simd::Level as SimdLevel;
 
-/// How much is compared, and how closely.
+/// Extent and density of a comparison.
 #[derive(Debug, Clone, Copy)]
 struct Extent {
-    /// Configurations for each surroundings.
+    /// Number of configurations for each surroundings.
     states: usize,
-    /// One edge of so many is swept by the exact scene.
+    /// The exact scene sweeps one edge in this number.
     swept: usize,
-    /// Configurations of a proven edge, beside its start, that the exact scene is asked about.
+    /// Number of configurations of a proven edge, in addition to its start, that the exact scene checks.
     points: usize,
-    /// Configurations in which overlapping links are counted: those that nearly always do are no collision pair.
+    /// Number of configurations in which overlapping links are counted. Links that nearly always overlap form no
+    /// collision pair.
     samples: usize,
-    /// Surroundings drawn at most, until a robot has configurations that are not proven to collide.
+    /// Largest number of surroundings drawn until a robot has configurations that are not proven to collide.
     draws: usize,
 }
 
-/// Of every build.
+/// Extent for every build.
 const SHORT: Extent = Extent { states: 200, swept: 3, points: 4, samples: 0, draws: 1 };
-/// Of `ELBOWROOM_VALIDITY_STATES`.
+/// Extent for `ELBOWROOM_VALIDITY_STATES`.
 const LONG: Extent = Extent { states: 5000, swept: 20, points: 12, samples: 60, draws: 11 };
-/// Robots that are compared at the same time in a long run.
+/// Number of robots that are compared at the same time in a long run.
 const THREADS: usize = 2;
-/// One configuration of so many, and one edge, is compared on instruction sets without fused sums, which are slow there.
+/// One configuration and one edge in this number are compared on instruction sets without fused sums, which are slow
+/// there.
 const IN_SOFTWARE: usize = 200;
-/// Links of a robot that overlap in this share of its configurations are no collision pair.
+/// Fraction of a robot's configurations. Links that overlap in at least this fraction form no collision pair.
 const NEARLY_ALWAYS: f64 = 0.95;
 
 #[derive(Default, Debug, Clone, Copy)]
@@ -57,7 +61,7 @@ struct Counts {
     swept: usize,
     swept_proven: usize,
     swept_free: usize,
-    /// Configurations and edges at which the exact scene says the opposite of what is proven.
+    /// Number of configurations and edges for which the exact scene contradicts the proof.
     contradictions: usize,
 }
 
@@ -91,7 +95,7 @@ impl Counts {
         self.contradictions += 1;
     }
 
-    /// A row of a table; shares of all configurations, of all edges, and of the swept edges that are free.
+    /// A row of a table, with fractions of all configurations, of all edges, and of the swept edges that are free.
     fn row(&self, name: &str) -> String {
         let share = |part: usize, of: usize| format!("{:.1} %", 100.0 * part as f64 / of.max(1) as f64);
         let of_states = |part: usize| share(part, self.states());
@@ -109,7 +113,7 @@ impl Counts {
     }
 }
 
-/// A robot among surroundings.
+/// A robot and its surroundings.
 struct Comparison<'c> {
     robot: &'c Robot,
     base: Pose,
@@ -118,14 +122,14 @@ struct Comparison<'c> {
     extent: Extent,
 }
 
-/// What a checker says: of configurations, of edges.
+/// Answers of a checker, for configurations and for edges.
 #[derive(Debug, PartialEq)]
 struct Answers {
     states: Vec<Validity>,
     edges: Vec<bool>,
 }
 
-/// From a free configuration to any.
+/// An edge from a free configuration to an arbitrary one.
 type Edge<'q> = (&'q [f64], Vec<f64>);
 
 impl Comparison<'_> {
@@ -168,7 +172,7 @@ impl Comparison<'_> {
         (counts, q, answers)
     }
 
-    /// What is not certain needs no exact answer.
+    /// Compares configurations with the exact scene. Uncertain ones need no exact answer.
     fn compare_states(&self, scene: &Scene, q: &[f64], answers: &[Validity], counts: &mut Counts) {
         let mut exact = Checker::new(scene, CheckerOptions::default());
         let mut state = SceneState::new(scene);
@@ -193,7 +197,7 @@ impl Comparison<'_> {
             counts.edges += 1;
             counts.proven_edges += usize::from(proven);
             for point in (0..points).filter(|_| proven) {
-                // One in each of as many parts, the last at the end.
+                // One point in each of `points` parts, the last one at the end.
                 let share = if point + 1 == points { 1.0 } else { (point as f64 + random.unit()) / points as f64 };
                 state.set_q(scene, ROBOT, &at(from, to, share)).unwrap();
                 if let Some(contact) = exact.collides(&state) {
@@ -215,12 +219,12 @@ impl Comparison<'_> {
     }
 }
 
-/// A share of the way between two configurations.
+/// The configuration at a fraction of the way between two configurations.
 fn at(from: &[f64], to: &[f64], share: f64) -> Vec<f64> {
     from.iter().zip(to).map(|(a, b)| a + share * (b - a)).collect()
 }
 
-/// Instruction sets other than the best, and which share of the answers is compared on each: one in so many.
+/// Instruction sets other than the best, each with N: one answer in N is compared on it.
 fn other_simd_levels() -> Vec<(SimdLevel, usize)> {
     let best = SimdLevel::new();
     let mut levels = Vec::new();
@@ -237,7 +241,7 @@ fn other_simd_levels() -> Vec<(SimdLevel, usize)> {
 fn random_robots_among_random_obstacles() {
     let mut random = Random(5);
     let mut all = Counts::default();
-    // Robots among the same obstacles: to cover these takes longer than all that follows.
+    // All robots share the obstacles: covering these takes longer than the rest of the test.
     let surroundings = [3, 10, 30].map(|count| Surroundings::new(&mut random, Kind::Mixed, count, 1.2));
     let rounds = if is_long_run() { 12 } else { 6 };
     for round in 0..rounds {
@@ -257,17 +261,17 @@ fn random_robots_among_random_obstacles() {
     println!("{all:?}");
     assert_eq!(all.contradictions, 0);
     assert!(all.free > 42 * rounds && all.hit > 42 * rounds, "{all:?}");
-    // The covers settle most of it.
+    // The covers decide most cases.
     assert!(all.uncertain * 4 < all.free + all.hit, "{all:?}");
     assert!(all.swept_proven * 10 > all.swept_free * 7, "{all:?}");
 }
 
-/// Total number of configurations on real robots, where it is set.
+/// Total number of configurations on real robots, if it is set.
 fn states_wanted() -> Option<usize> {
     std::env::var("ELBOWROOM_VALIDITY_STATES").ok().map(|n| n.parse().expect("ELBOWROOM_VALIDITY_STATES is a number"))
 }
 
-/// The robots to compare: a few, or all of the data.
+/// The robots to compare: a few, or all robots of the data.
 fn robots() -> Vec<PathBuf> {
     let few = if is_long_run() {
         &["panda", "ur5e", "kuka_kr150_2", "staubli_tx60"][..]
@@ -285,7 +289,7 @@ fn load(path: &Path) -> Robot {
     elbowroom_formats::robot::load(path, &options).unwrap().robot
 }
 
-/// Disables the pairs of links that nearly always overlap: where they are checked, nothing else is.
+/// Disables the pairs of links that nearly always overlap: with them, nearly every configuration would collide.
 fn disable_overlapping(robot: &mut Robot, random: &mut Random, samples: usize) {
     if samples == 0 {
         return;
@@ -306,7 +310,7 @@ fn disable_overlapping(robot: &mut Robot, random: &mut Random, samples: usize) {
     robot.disabled_pairs.extend(often.map(|((a, b), _)| (a, b, "Default".to_owned())));
 }
 
-/// No point of the robot is much farther from its base, m.
+/// Approximate upper bound on the distance of any point of the robot from its base, m.
 fn reach_m(robot: &Robot) -> f64 {
     let extent = |link: LinkId| {
         let boxes = robot.colliders[link.0].iter().map(|c| c.shape.aabb(&c.in_link));
@@ -316,9 +320,9 @@ fn reach_m(robot: &Robot) -> f64 {
     joints + robot.links_with_colliders().map(extent).fold(0.0, f64::max)
 }
 
-/// Surroundings among which a robot has configurations that are not proven to collide, if such are soon found.
+/// Surroundings among which a robot has configurations that are not proven to collide, if the search finds them soon.
 fn surroundings(robot: &Robot, covered: &CoveredRobot, random: &mut Random, kind: Kind, draws: usize) -> Surroundings {
-    // To cover a mesh takes as long as hundreds of configurations.
+    // Covering a mesh takes as long as hundreds of configurations.
     let solids = if states_wanted().is_some() || is_long_run() { 14 } else { 6 };
     let count = if kind == Kind::Cloud { 400 } else { solids };
     let mut draw = || Surroundings::new(random, kind, count, (0.5 * reach_m(robot)).max(1.0));
@@ -332,14 +336,14 @@ fn surroundings(robot: &Robot, covered: &CoveredRobot, random: &mut Random, kind
     drawn
 }
 
-/// True if of twenty configurations more than two are not proven to collide.
+/// True if more than two of twenty configurations are not proven to collide.
 fn is_open(robot: &Robot, covered: &CoveredRobot, among: &Surroundings, random: &mut Random) -> bool {
     let mut checker = ValidityChecker::new(covered, among.obstacle_set());
     let mut is_hit = || checker.state(&random.q(&robot.chain)).unwrap() == Validity::Hit;
     (0..20).filter(|_| !is_hit()).count() > 2
 }
 
-/// One robot among surroundings of three kinds, new ones every round.
+/// Compares one robot among surroundings of three kinds, new ones every round.
 fn compare(path: &Path, random: &mut Random, (states, extent): (usize, Extent)) -> Counts {
     let mut robot = load(path);
     disable_overlapping(&mut robot, random, extent.samples);

@@ -1,4 +1,4 @@
-//! Boxes in joint space proven in collision: so is every configuration in them, by the exact scene.
+//! Boxes in joint space proven to be in collision: every configuration in them collides in the exact scene.
 
 use crate::common::{ROBOT, Random, RandomGeometry, is_long_run, obstacle_set, obstacles, scene, single_joint};
 use elbowroom_kinematics::{Chain, JointKind, Limits};
@@ -12,7 +12,7 @@ use elbowroom_validity::{CoveredRobot, ObstacleSet, ValidityChecker, ValidityErr
 fn every_configuration_of_a_proven_box_collides() {
     let mut random = Random(21);
     let (mut proven, mut narrow) = (0, 0);
-    // Robots among the same obstacles: to cover these takes longer than all that follows.
+    // All robots share the obstacles: covering these takes longer than the rest of the test.
     let surroundings = [3, 10, 24].map(|count| obstacles(&mut random, count, 0.8));
     let sets = surroundings.each_ref().map(|solids| obstacle_set(solids));
     let rounds = if is_long_run() { 18 } else { 6 };
@@ -25,7 +25,7 @@ fn every_configuration_of_a_proven_box_collides() {
         let mut checker = ValidityChecker::new(&covered, &sets[round % 3]);
         let mut exact = Checker::new(&scene, CheckerOptions::default());
         let mut state = SceneState::new(&scene);
-        // In every other round some joints are anywhere within their limits, the last one always.
+        // In every other round some joints may have any value within their limits, the last joint always.
         let (lower, upper) = (robot.chain.lower(), robot.chain.upper());
         let mut whole: Vec<bool> = lower.iter().map(|low| low.is_finite() && random.index(3) == 0).collect();
         match whole.last_mut() {
@@ -42,7 +42,7 @@ fn every_configuration_of_a_proven_box_collides() {
             proven += 1;
             narrow += usize::from(whole.iter().all(|w| !w));
             for _ in 0..20 {
-                // Corners are the farthest. Slides stay within their limits.
+                // The corners are farthest from the centre. Slides stay within their limits.
                 let within = |i: usize, c: f64| {
                     if whole[i] { (lower[i], upper[i]) } else { ((c - width).max(lower[i]), (c + width).min(upper[i])) }
                 };
@@ -89,7 +89,7 @@ fn numbers_that_are_none_prove_nothing_and_wrong_counts_are_errors() {
     assert!(answers.is_empty());
 }
 
-/// The bounds of motion hold within the limits of slides: whichever joint is beyond them, nothing is proven.
+/// The bounds of motion hold within the limits of slides: if any joint is beyond them, nothing is proven.
 #[test]
 fn a_box_around_a_joint_beyond_its_limits_proves_nothing() {
     let joints = [Vec3::X, Vec3::Y, Vec3::Z].into_iter().enumerate().map(|(i, axis)| {

@@ -11,9 +11,10 @@ use elbowroom_spatial::{Pose, Vec3};
 use elbowroom_testkit::folder;
 use elbowroom_validity::{Ball, SphereCover};
 
-/// Divisions of a triangle before a part counts as not covered; far below the rounding that covers allow for.
+/// Number of divisions of a triangle after which a part counts as uncovered; far below the rounding for which covers
+/// allow.
 const MAX_DEPTH: u32 = 80;
-/// Points on which a ball is compared.
+/// Number of compared points on a ball.
 const ON_BALL: usize = 48;
 
 fn placed_triangles(shape: &Shape, pose: &Pose) -> Vec<[Vec3; 3]> {
@@ -27,7 +28,9 @@ fn near(balls: &[Ball], centre: Vec3, radius: f64) -> Vec<Ball> {
     balls.iter().filter(|b| b.centre.distance(centre) <= b.radius + radius).copied().collect()
 }
 
-/// Proves that a triangle lies in the union of balls: it is divided until every part has all corners in one ball, which is convex.
+/// Proves that a triangle lies in the union of balls.
+///
+/// The triangle is divided until every part has all corners in one ball, which is convex.
 fn is_in_union([a, b, c]: [Vec3; 3], balls: &[Ball], depth: u32) -> bool {
     if balls.iter().any(|ball| ball.contains(a) && ball.contains(b) && ball.contains(c)) {
         return true;
@@ -54,7 +57,8 @@ fn assert_surface_is_covered(name: &str, triangles: &[[Vec3; 3]], cover: &Sphere
     }
 }
 
-/// Divides a cube until a part lies in one ball or outside all shapes; of the smallest parts the centre is compared.
+/// Divides a cube until every part lies in one ball or outside all shapes. Of the smallest parts only the centre is
+/// tested.
 fn solid_is_in_union(shapes: &[(Shape, Pose)], balls: &[Ball], centre: Vec3, half: f64, depth: u32) -> bool {
     let corner = Vec3::splat(half).length();
     if balls.iter().any(|b| ((b.centre - centre).abs() + Vec3::splat(half)).length() <= b.radius) {
@@ -88,7 +92,7 @@ fn gap(shapes: &[(Shape, Pose)], p: Vec3) -> f64 {
     shapes.iter().map(|(s, pose)| project_point(s, pose, p).signed_distance).fold(f64::INFINITY, f64::min)
 }
 
-/// Largest distance of a point of the balls from closed shapes; inner balls must lie in one of them.
+/// Largest distance of a point of the balls from closed shapes. Inner balls must lie in one of the shapes.
 fn largest_protrusion(shapes: &[(Shape, Pose)], cover: &SphereCover) -> f64 {
     let protrusion = cover.outer.iter().flat_map(on_ball).map(|p| gap(shapes, p)).fold(0.0, f64::max);
     for ball in &cover.inner {
@@ -151,7 +155,7 @@ fn the_proofs_notice_a_missing_ball() {
         is_proven(&balls) != (true, true)
     };
     let noticed = (0..cover.outer.len()).filter(is_noticed).count();
-    // A few lie in the union of others: a cover counts whole voxels.
+    // A few spheres lie in the union of others, because a cover counts whole voxels.
     assert!(noticed * 4 > cover.outer.len() * 3, "{noticed} of {}", cover.outer.len());
 }
 
@@ -194,7 +198,7 @@ fn open_meshes_and_soups_are_covered() {
         assert_complete(&format!("open by {missing}"), &[(mesh(&tube, missing), random.pose(0.2))], 0.005, false);
     }
     for i in 0..4 {
-        // Triangles without order, some without area.
+        // Unordered triangles, some without area.
         let mut vertices: Vec<Vec3> = (0..60).map(|_| random.vec3(0.05)).collect();
         vertices[1] = vertices[0];
         vertices[5] = vertices[3].lerp(vertices[4], 0.3);
@@ -219,7 +223,7 @@ fn a_mesh_inside_out_has_no_inner_balls_outside() {
     assert!(solid_is_in_union(&block, &cover.outer, Vec3::ZERO, 0.051, 6));
 }
 
-/// `ELBOWROOM_VALIDITY_COVERS=all` proves the covers of all robots of the data, in the release profile best.
+/// `ELBOWROOM_VALIDITY_COVERS=all` proves the covers of all robots of the data. Use the release profile.
 #[test]
 fn links_of_real_robots_are_covered() {
     let is_wanted = |path: &std::path::Path| match std::env::var_os("ELBOWROOM_VALIDITY_COVERS") {

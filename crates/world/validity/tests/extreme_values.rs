@@ -1,4 +1,4 @@
-//! Extreme values: unlimited slides, huge angles, bases and solids far away, robots and obstacle sets without anything.
+//! Extreme values: unlimited slides, huge angles, distant bases and solids, empty robots and obstacle sets.
 
 use std::sync::Arc;
 
@@ -21,7 +21,7 @@ fn ball_set(centre: Vec3, radius: f64) -> ObstacleSet {
     set
 }
 
-/// Joints in a row, each with its origin, axis and limits; a ball of 5 cm at the end, at a place in the last link.
+/// Joints in a row, each with its origin, axis and limits, and a ball of 5 cm in the last link.
 fn serial(joints: &[(JointKind, Vec3, Vec3, Limits)], ball_at: Vec3) -> Robot {
     let list: Vec<Joint> = joints
         .iter()
@@ -38,7 +38,7 @@ fn serial(joints: &[(JointKind, Vec3, Vec3, Limits)], ball_at: Vec3) -> Robot {
     robot
 }
 
-/// A turning joint about z, then a slide along z without limits; the ball is half a metre from the axis.
+/// A revolute joint about z, then a slide along z without limits; the ball is half a metre from the axis.
 fn unlimited_slide(axis: Vec3) -> Robot {
     let turn = (JointKind::Revolute, Vec3::ZERO, Vec3::Z, Limits::symmetric(6.0));
     let slide = (JointKind::Prismatic, Vec3::ZERO, axis, Limits::UNLIMITED);
@@ -85,7 +85,7 @@ fn slides_beyond_their_limits_are_not_certain() {
     let turn = (JointKind::Revolute, Vec3::ZERO, Vec3::Z, Limits::symmetric(3.0));
     let slide = (JointKind::Prismatic, Vec3::ZERO, Vec3::X, Limits::range(0.0, 0.05));
     let mut robot = serial(&[turn, slide], Vec3::X * 0.5);
-    // A ball of the base that the slide reaches outside its limits only: nothing but the table of the pair sees it.
+    // A ball of the base that the slide reaches only outside its limits: only the table of the pair can detect it.
     let collider =
         Collider { name: String::new(), shape: sphere(0.05), in_link: Pose::from_translation(Vec3::X * 1.5) };
     robot.colliders[0].push(collider);
@@ -207,7 +207,7 @@ fn huge_obstacles_and_margins_are_never_free_by_overflow() {
             let mut set = ObstacleSet::default();
             set.add_shape(&shape, &Pose::from_translation(Vec3::X * (size + 0.549)), 0.0);
             assert!(!is_free(&set), "{shape:?}");
-            // Beside it, with a margin.
+            // A ball beside the robot's ball, with a margin.
             let mut set = ObstacleSet::default();
             let small = Pose::from_translation(Vec3::new(0.5, 0.05 + 0.01 + size * (1.0 - 1e-7), 0.0));
             set.add_shape(&sphere(0.01), &small, size);
@@ -216,7 +216,7 @@ fn huge_obstacles_and_margins_are_never_free_by_overflow() {
         let mut set = ObstacleSet::default();
         set.add_points(&[Vec3::X * (size + 0.549)], size);
         assert!(!is_free(&set), "a point of {size} m");
-        // A plane, turned about the contact, given at a point far away along itself.
+        // A plane, rotated about the contact and given at a distant point of the plane.
         let rotation = Rotation::from_axis_angle(Vec3::X, 0.3);
         let at = Vec3::X * 0.5 + rotation * Vec3::new(size, 0.0, -0.049);
         let mut set = ObstacleSet::default();

@@ -1,4 +1,4 @@
-//! One answer on every instruction set: a hash over states, edges and pairs that are not certain.
+//! Equal answers on every instruction set: a hash over states, edges and uncertain pairs.
 
 use crate::common::{Random, RandomGeometry, obstacle_set, obstacles};
 use elbowroom_spatial::Pose;
@@ -6,7 +6,7 @@ use elbowroom_testkit::hash::Fnv;
 use elbowroom_validity::{CoveredRobot, NotCertain, ValidityChecker};
 use fearless_simd::Level as SimdLevel;
 
-/// Changes where an answer changes: on purpose with the covers or what an edge is divided into, else never.
+/// Expected hash. It changes if an answer changes: only on purpose, with the covers or the division of edges.
 const EXPECTED: u64 = 0xd0e2_e60b_a8bb_4f3d;
 
 fn simd_levels() -> Vec<SimdLevel> {
@@ -42,7 +42,7 @@ fn every_instruction_set_gives_the_same_answers() {
                 hash.add(answer as u64);
             }
             let mut pairs = Vec::new();
-            // In software a fused sum takes a hundred times as long.
+            // A fused sum in software takes a hundred times as long.
             for (i, (from, to)) in q.chunks(dof).zip(near.chunks(dof)).enumerate().step_by(2) {
                 hash.add(u64::from(checker.edge_is_free(from, to).unwrap()));
                 if i % 16 == 0 {

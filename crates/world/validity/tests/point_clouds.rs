@@ -1,4 +1,4 @@
-//! Point clouds and very many obstacles: answers against plain distances.
+//! Point clouds and very many obstacles: answers compared with plain distances.
 
 use crate::common::{Random, RandomGeometry, single_joint};
 use elbowroom_kinematics::{Chain, ChainState, JointKind, Limits, LinkId};
@@ -30,7 +30,7 @@ fn arm() -> Robot {
     robot
 }
 
-/// Least gap between the arm's balls and points with a radius.
+/// Smallest gap between the arm's balls and points with a radius, m.
 fn gap(chain: &Chain, q: &[f64], points: &[Vec3], radius: f64) -> f64 {
     let mut state = ChainState::new(chain);
     state.q.copy_from_slice(q);
@@ -56,7 +56,7 @@ fn ten_thousand_points_are_where_they_are() {
         for _ in 0..400 {
             let q = random.q(&robot.chain);
             let gap = gap(&robot.chain, &q, &points, radius);
-            // All is balls: only rounding is uncertain.
+            // All solids are balls, so only rounding causes uncertain answers.
             let answer = checker.state(&q).unwrap();
             let expected = if gap > 0.0 { Validity::Free } else { Validity::Hit };
             assert!(answer == expected || gap.abs() < 1e-4, "{answer:?}, but the gap is {gap}");
@@ -95,7 +95,7 @@ fn a_million_obstacles() {
     let (robot, mut random) = (arm(), Random(12));
     let covered = CoveredRobot::new(&robot, Pose::IDENTITY).unwrap();
     let mut set = ObstacleSet::default();
-    // A shell outside the reach, and one ball of its own in front.
+    // A shell outside the reach, and one separate ball in front.
     let points: Vec<Vec3> = (0..1_000_000)
         .map(|_| random.vec3(1.0).try_normalize().unwrap_or(Vec3::Z) * random.between(1.4, 3.0))
         .collect();
@@ -106,7 +106,7 @@ fn a_million_obstacles() {
     let last = set.add_shape(&Shape::Sphere(Sphere { radius: 0.1 }), &Pose::from_translation(in_front), 0.0);
     assert_eq!(set.len(), 1_000_001);
     let mut checker = ValidityChecker::new(&covered, &set);
-    // Straight up nothing is near, towards the ball it is hit; skipped, it is not.
+    // Straight up, nothing is near. Towards the ball, the arm hits it, unless the pair is skipped.
     let forward = [0.0, 1.4, 0.3];
     assert_eq!(checker.state(&[0.0; 3]), Ok(Validity::Free));
     assert_eq!(checker.state(&forward), Ok(Validity::Hit));

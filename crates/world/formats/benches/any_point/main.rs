@@ -1,12 +1,13 @@
-//! Inverse kinematics of random points on the surfaces of real robots:
-//! `cargo bench -p elbowroom-formats --bench any_point -- [POINTS] [PINOCCHIO]`.
+//! Inverse kinematics of random points on the surfaces of real robots: `cargo bench -p elbowroom-formats --bench
+//! any_point -- [POINTS] [PINOCCHIO]`.
 //!
-//! POINTS (default 100,000) points for each robot, equally many on every moving link, sampled by area on its collision
-//! geometry. A target is the position of the point (and its normal) at a random state within the limits; the search starts
-//! from another random state. Solutions are checked by forward kinematics.
+//! Each robot gets POINTS points (default 100,000), equally many on every moving link, sampled by area on its collision
+//! geometry. A target is the position of the point (and its normal) at a random state within the limits; the search
+//! starts from another random state. Forward kinematics checks the solutions.
 //!
-//! The first PINOCCHIO (default 0) problems for each link are also solved by damped least squares with Pinocchio:
-//! `pin_dls.py`, with the Python of `ELBOWROOM_PYTHON` (which needs `pin` and `numpy`). Data as in the tests, `ELBOWROOM_DATA`.
+//! The first PINOCCHIO problems (default 0) of each link are also solved by damped least squares with Pinocchio:
+//! `pin_dls.py`, with the Python of `ELBOWROOM_PYTHON` (which needs `pin` and `numpy`). The data are those of the tests,
+//! `ELBOWROOM_DATA`.
 #![allow(clippy::print_stdout)]
 
 mod pinocchio;
@@ -22,7 +23,7 @@ use surface::{SplitMix, Surface};
 
 const ROBOTS: [&str; 4] = ["kuka_kr150_2", "staubli_tx60", "ur5e", "abb_irb2400"];
 
-/// The first line of the table.
+/// Header line of the table.
 const HEAD: &str = "robot          link                 task             n  reached %  restarted %  median µs  p99 µs  mean µs  worst m  worst rad  beyond limits";
 
 fn main() {

@@ -1,4 +1,4 @@
-//! The same problems for a damped least squares with Pinocchio.
+//! The same problems solved by damped least squares with Pinocchio.
 
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -10,7 +10,7 @@ use elbowroom_spatial::Vec3;
 
 use crate::problem::IkProblem;
 
-/// Prints one line, or the reason why it failed.
+/// Prints one line of results, or the reason of a failure.
 pub fn run(urdf: &Path, chain: &Chain, problems: &[IkProblem]) {
     let python = std::env::var("ELBOWROOM_PYTHON").unwrap_or_else(|_| "python3".into());
     match ask(&python, urdf, chain, problems) {
@@ -41,7 +41,7 @@ fn ask(python: &str, urdf: &Path, chain: &Chain, problems: &[IkProblem]) -> std:
     Ok(String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
-/// Per problem: point and normal on the link, target point, target normal (or zeros), start.
+/// One line per problem: point and normal on the link, target point, target normal (or zeros), start.
 fn lines(problems: &[IkProblem]) -> String {
     let mut text = String::new();
     for q in problems {

@@ -1,4 +1,4 @@
-//! Inverse kinematics problems, and how many of them are solved.
+//! Inverse kinematics problems, and counts of the solved ones.
 
 use std::time::Instant;
 

@@ -1,4 +1,4 @@
-//! Random points of a link's surface.
+//! Random points on a link's surface.
 
 use elbowroom_proximity::tessellate::tessellate;
 use elbowroom_robot::Collider;
@@ -30,7 +30,7 @@ impl Surface {
         Self { triangles, area_up_to }
     }
 
-    /// A point, uniform over the surface, and its normal; `None` for a link without colliders.
+    /// Draws a point, uniform over the surface, with its normal; `None` for a link without colliders.
     pub fn draw(&self, random: &mut SplitMix) -> Option<(Vec3, Vec3)> {
         let at = random.unit() * self.area_up_to.last()?;
         let index = self.area_up_to.partition_point(|&a| a < at).min(self.triangles.len() - 1);

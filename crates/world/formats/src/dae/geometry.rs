@@ -13,7 +13,7 @@ use crate::{FormatError, Warning, polygon, xml};
 
 type Ids<'a, 'i> = HashMap<&'a str, Node<'a, 'i>>;
 
-/// All primitives of a geometry as one mesh, in the file's numbers.
+/// Reads all primitives of a geometry as one mesh, in the numbers of the file.
 pub(super) fn read<'a, 'i>(
     geometry: Node<'a, 'i>,
     ids: &Ids<'a, 'i>,
@@ -49,15 +49,15 @@ struct GeometryReader<'a, 'i, 'w> {
     ids: &'w Ids<'a, 'i>,
     file: &'w Path,
     vertices: Vec<Vec3>,
-    /// First point of each source in `vertices`, and its number of points.
+    /// Per source: its first point in `vertices`, and its number of points.
     first_of: HashMap<NodeId, (u32, u32)>,
     triangles: Vec<[u32; 3]>,
     warnings: &'w mut WarningList,
-    /// Points read from the whole file: thousands of geometries may share one source, and each reads it.
+    /// Number of points read from the whole file. Thousands of geometries may share one source, and each reads it again.
     points_read: &'w mut usize,
 }
 
-/// Positions of vertex indices in `<p>`, and the points that they refer to.
+/// Positions of the vertex indices in `<p>`, and the points to which they refer.
 struct Layout {
     stride: usize,
     offset: usize,
@@ -95,7 +95,7 @@ impl<'a, 'i> GeometryReader<'a, 'i, '_> {
         let (mut stride, mut vertex) = (1, None);
         for input in xml::children(node, "input") {
             let text = input.attribute("offset").unwrap_or("0");
-            // No exporter writes more; a huge offset would only make a huge stride.
+            // Exporters never write a larger offset; a huge offset would only cause a huge stride.
             let offset = text.trim().parse::<usize>().ok().filter(|&o| o < 1000).ok_or_else(|| {
                 FormatError::new(self.file, xml::line(input), "the input's offset is no small integer")
                     .hint("offset=\"0\"")
@@ -117,7 +117,7 @@ impl<'a, 'i> GeometryReader<'a, 'i, '_> {
         Ok(Layout { stride, offset, first, count })
     }
 
-    /// The points of an input; read once per source.
+    /// Reads the points of an input, once per source.
     fn positions(&mut self, input: Node<'a, 'i>) -> Result<(u32, u32), FormatError> {
         let mut source = target(self.ids, input, "source", self.file)?;
         if source.tag_name().name() == "vertices" {

@@ -1,8 +1,10 @@
 //! COLLADA 1.4 and 1.5: the triangles of the scene in world coordinates, in metres.
 //!
-//! One entry per node with geometry. Read: units, up axis, `matrix translate rotate scale` of nested and
-//! instanced nodes, `triangles polylist polygons tristrips trifans`, skins in their bind shape. Ignored:
-//! materials, lights, cameras, animations, lines. Refused: `skew`, `lookat`, references into other files.
+//! The result has one entry per node with geometry.
+//! - Read: units, up axis, `matrix translate rotate scale` of nested and instanced nodes, `triangles polylist polygons
+//!   tristrips trifans`, skins in their bind shape.
+//! - Ignored: materials, lights, cameras, animations, lines.
+//! - Refused: `skew`, `lookat`, references into other files.
 
 mod geometry;
 mod scene;
@@ -18,10 +20,11 @@ use crate::mesh_data::{LoadedMeshes, UpAxis};
 use crate::tokens::show;
 use crate::{FormatError, input, xml};
 
-/// Parses a COLLADA file, its unit applied; a file that states none is in metres.
+/// Parses a COLLADA file and applies its unit. A file that states no unit is in metres.
 ///
 /// # Errors
-/// Invalid XML, references to missing elements, missing vertices, invalid numbers, nodes in a cycle.
+/// [`FormatError`] for invalid XML, references to missing elements, missing vertices, invalid numbers, or nodes in a
+/// cycle.
 pub fn parse(bytes: &[u8], file: &Path, up: UpAxis) -> Result<LoadedMeshes, FormatError> {
     input::check_content(bytes, file)?;
     let text = input::text(bytes, file)?;
@@ -56,7 +59,7 @@ fn unit_in_metres(asset: Option<Node<'_, '_>>, file: &Path) -> Result<f64, Forma
 /// The rotation of the stated up axis to +z (COLLADA 1.4.1, `up_axis`).
 fn upright(asset: Option<Node<'_, '_>>, file: &Path, warnings: &mut WarningList) -> Affine {
     let Some(node) = asset.and_then(|a| xml::child(a, "up_axis")) else {
-        // The default of the specification.
+        // Y_UP is the default of the specification.
         return Affine::rotation(Y_UP);
     };
     match node.text().unwrap_or_default().trim() {

@@ -14,7 +14,7 @@ use crate::mesh_data::{MAX_ELEMENTS, MeshData};
 use crate::tokens::show;
 use crate::{FormatError, Warning, xml};
 
-/// Limits of visited nodes and their depth: nodes that instance each other expand exponentially.
+/// Limits on the number of visited nodes and on their depth: nodes that instance each other expand exponentially.
 const MAX_VISITS: usize = 100_000;
 const MAX_DEPTH: usize = 200;
 
@@ -27,7 +27,7 @@ pub(super) struct SceneReader<'a, 'i, 'w> {
     points_read: usize,
 }
 
-/// All objects of the scene of the file; all geometries as they are where the scene is empty.
+/// All objects of the scene of the file; if the scene is empty, all geometries without node transforms.
 pub(super) fn meshes(
     root: Node<'_, '_>,
     to_metres: &Affine,
@@ -55,7 +55,7 @@ impl<'a, 'i> SceneReader<'a, 'i, '_> {
         }
     }
 
-    /// The element that a `#reference` names.
+    /// The element to which a `#reference` refers.
     fn target(&self, node: Node<'a, 'i>, attribute: &str) -> Result<Node<'a, 'i>, FormatError> {
         source::target(&self.ids, node, attribute, self.file)
     }
@@ -81,13 +81,13 @@ impl<'a, 'i> SceneReader<'a, 'i, '_> {
                     _ => {}
                 }
             }
-            // Reversed, as the stack is last in, first out.
+            // Reversed, because the stack is last in, first out.
             stack[first_child..].reverse();
         }
         Ok(meshes)
     }
 
-    /// The geometry of a node itself, as one object.
+    /// Reads the geometry of a node itself, as one object.
     fn read_node(&mut self, node: Node<'a, 'i>, to_scene: &Affine, out: &mut Vec<MeshData>) -> Result<(), FormatError> {
         let mut object: Option<MeshData> = None;
         for instance in node.children().filter(Node::is_element) {

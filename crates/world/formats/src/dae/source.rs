@@ -9,7 +9,7 @@ use roxmltree::Node;
 use crate::tokens::{Tokens, number, show};
 use crate::{FormatError, xml};
 
-/// The element that a `#reference` in an attribute names.
+/// The element to which a `#reference` in an attribute refers.
 pub(super) fn target<'a, 'i>(
     ids: &HashMap<&'a str, Node<'a, 'i>>,
     node: Node<'a, 'i>,
@@ -31,7 +31,7 @@ pub(super) fn target<'a, 'i>(
     })
 }
 
-/// The points of a `<source>`: its array read through its accessor.
+/// The points of a `<source>`: its array, read through its accessor.
 pub(super) fn points(source: Node<'_, '_>, file: &Path) -> Result<Vec<Vec3>, FormatError> {
     let array = xml::child(source, "float_array").ok_or_else(|| {
         FormatError::new(file, xml::line(source), "the source has no <float_array>")
@@ -64,7 +64,7 @@ pub(super) fn points(source: Node<'_, '_>, file: &Path) -> Result<Vec<Vec3>, For
     Ok((0..count).map(|i| &numbers[offset + i * stride..]).map(|p| Vec3::new(p[x], p[y], p[z])).collect())
 }
 
-/// The columns called X, Y and Z, else the first three.
+/// The columns named X, Y and Z, else the first three.
 fn coordinate_columns(accessor: Node<'_, '_>) -> [usize; 3] {
     let names: Vec<_> = xml::children(accessor, "param").map(|p| p.attribute("name").unwrap_or_default()).collect();
     let column = |axis: &str| names.iter().position(|n| n.eq_ignore_ascii_case(axis));
@@ -74,7 +74,7 @@ fn coordinate_columns(accessor: Node<'_, '_>) -> [usize; 3] {
     }
 }
 
-/// Finite numbers; positions are the only arrays that are read.
+/// Reads finite numbers. Only arrays of positions are read.
 fn floats(node: Node<'_, '_>, file: &Path) -> Result<Vec<f64>, FormatError> {
     let text = xml::text(node);
     let mut numbers = Vec::with_capacity(text.len() / 12);
@@ -93,7 +93,7 @@ fn floats(node: Node<'_, '_>, file: &Path) -> Result<Vec<f64>, FormatError> {
     Ok(numbers)
 }
 
-/// Non-negative integers: indices and counts.
+/// Reads non-negative integers: indices and counts.
 pub(super) fn indices(node: Node<'_, '_>, file: &Path) -> Result<Vec<u32>, FormatError> {
     let text = xml::text(node);
     let mut numbers = Vec::with_capacity(text.len() / 6);

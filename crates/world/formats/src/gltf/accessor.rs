@@ -1,4 +1,4 @@
-//! Numbers of an accessor, every step checked against the bytes present.
+//! Reads the numbers of an accessor, and checks every step against the available bytes.
 
 use std::borrow::Cow;
 use std::path::Path;
@@ -8,8 +8,10 @@ use elbowroom_spatial::Vec3;
 use super::document::{Accessor, Document, Sparse};
 use crate::FormatError;
 
-/// An accessor without data is all zeros but for its sparse values; more zeros than this for each of these would take
-/// memory out of proportion to the file.
+/// Largest number of zeros per sparse value.
+///
+/// An accessor without data is all zeros except for its sparse values; more zeros would take memory out of proportion to
+/// the file.
 const MAX_ZEROS_PER_VALUE: usize = 100;
 
 /// Type of one number.
@@ -40,7 +42,7 @@ impl ComponentType {
         matches!(self, Self::U8 | Self::U16 | Self::U32)
     }
 
-    /// Bytes.
+    /// Size, bytes.
     fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
@@ -49,7 +51,7 @@ impl ComponentType {
         }
     }
 
-    /// Factor of normalized integers.
+    /// Scale factor of normalized integers.
     fn normalization(self) -> f64 {
         match self {
             Self::I8 => 1.0 / 127.0,
@@ -73,7 +75,7 @@ impl ComponentType {
     }
 }
 
-/// Numbers per element.
+/// Number of numbers per element.
 fn width(element_type: &str) -> Option<usize> {
     match element_type {
         "SCALAR" => Some(1),
@@ -86,7 +88,7 @@ fn width(element_type: &str) -> Option<usize> {
     }
 }
 
-/// Elements of a buffer view: numbers of one type, so many per element.
+/// Elements of a buffer view: a fixed number of numbers of one type per element.
 struct Elements {
     buffer_view: usize,
     offset: usize,
@@ -107,7 +109,7 @@ impl<'a> AccessorReader<'a> {
         FormatError::new(self.file, None, format!("{place} {what}"))
     }
 
-    /// The accessor of an index; `what` it is for is named in messages.
+    /// The accessor with an index. Messages name its purpose `what`.
     pub(super) fn accessor(&self, index: usize, place: &str, what: &str) -> Result<&'a Accessor, FormatError> {
         self.document.accessors.get(index).ok_or_else(|| {
             self.error(place, &format!("has its {what} in accessor {index}, which does not exist"))
@@ -115,7 +117,7 @@ impl<'a> AccessorReader<'a> {
         })
     }
 
-    /// Positions; integers as of `KHR_mesh_quantization` are read too.
+    /// Reads positions. Integers as in `KHR_mesh_quantization` are also supported.
     pub(super) fn points(&self, accessor: &Accessor, place: &str) -> Result<Vec<Vec3>, FormatError> {
         if accessor.element_type != "VEC3" {
             return Err(self.error(place, "has positions that are no vectors of three").hint("\"type\": \"VEC3\""));
@@ -147,7 +149,7 @@ impl<'a> AccessorReader<'a> {
         Ok(numbers.into_iter().map(|i| i as u32).collect())
     }
 
-    /// Floats, or normalized integers, `width` per element.
+    /// Reads floats or normalized integers, `width` per element.
     pub(super) fn vectors(&self, accessor: &Accessor, width: usize, place: &str) -> Result<Vec<f64>, FormatError> {
         let found = self::width(&accessor.element_type);
         if found != Some(width) {
@@ -175,10 +177,10 @@ impl<'a> AccessorReader<'a> {
         })
     }
 
-    /// `count × width` numbers, sparse replacements applied.
+    /// Reads `count × width` numbers and applies sparse replacements.
     fn rows(&self, accessor: &Accessor, place: &str, width: usize) -> Result<Vec<f64>, FormatError> {
         let (count, component) = (accessor.count, self.component(accessor.component_type, place)?);
-        // Read first: the number of sparse values bounds the number of zeros.
+        // Read first, because the number of sparse values limits the number of zeros.
         let sparse = accessor.sparse.as_ref().map(|s| self.sparse_rows(s, component, place, width)).transpose()?;
         let replaced = sparse.as_ref().map_or(0, |(rows, _)| rows.len());
         let mut numbers = match accessor.buffer_view {
@@ -204,7 +206,7 @@ impl<'a> AccessorReader<'a> {
         Ok(numbers)
     }
 
-    /// The rows that are replaced, and their values.
+    /// The replaced rows and their values.
     fn sparse_rows(
         &self,
         sparse: &Sparse,
@@ -238,7 +240,7 @@ impl<'a> AccessorReader<'a> {
         let bytes = buffer.get(view.byte_offset..end).and_then(|b| b.get(elements.offset..)).ok_or_else(short)?;
         let needed =
             count.saturating_sub(1).saturating_mul(stride).saturating_add(if count == 0 { 0 } else { row_bytes });
-        // With a stride below one row a small file could expand to a large one.
+        // With a stride below one row, a small file could expand to a large one.
         if needed > bytes.len() || stride < row_bytes {
             return Err(short());
         }

@@ -12,17 +12,17 @@ use crate::affine::Affine;
 use crate::mesh_data::MAX_ELEMENTS;
 use crate::nodetree::sample;
 
-/// Channels of one node: values at rising times.
+/// Channels of one node: values at increasing times.
 #[derive(Default)]
 pub(super) struct NodeAnimation {
-    /// The animation that they belong to.
+    /// Index of the animation of these channels.
     animation: usize,
     positions: Vec<(f64, Vec3)>,
     rotations: Vec<(f64, Rotation)>,
 }
 
 impl NodeAnimation {
-    /// The node's transform at every time of a channel; what has no channel is as in `rest`.
+    /// The node's transform at every time of a channel. Parts without a channel are as in `rest`.
     pub(super) fn keys(&self, rest: &Node) -> impl Iterator<Item = (f64, Affine)> + '_ {
         let mut times: Vec<f64> =
             self.positions.iter().map(|k| k.0).chain(self.rotations.iter().map(|k| k.0)).collect();
@@ -39,7 +39,7 @@ impl NodeAnimation {
     }
 }
 
-/// The animated nodes, by their index in the document. Of several animations the first that moves a node counts.
+/// The animated nodes, by their index in the document. If several animations move a node, the first one counts.
 pub(super) fn node_animations(
     reader: &AccessorReader<'_>,
     elements: &mut usize,

@@ -9,10 +9,10 @@ use super::document::Document;
 use crate::tokens::show;
 use crate::{FormatError, input};
 
-/// The JSON, and the binary chunk of a GLB.
+/// The JSON of a file, and the binary chunk of a GLB.
 type Chunks<'a> = (Cow<'a, [u8]>, Option<&'a [u8]>);
 
-/// Splits a file into its chunks; a plain glTF is all JSON.
+/// Splits a file into its chunks. A plain glTF is JSON only.
 pub(super) fn split<'a>(bytes: &'a [u8], file: &Path) -> Result<Chunks<'a>, FormatError> {
     if !bytes.starts_with(b"glTF") {
         return input::text_bytes(bytes, file).map(|json| (json, None));
@@ -46,7 +46,7 @@ pub(super) fn split<'a>(bytes: &'a [u8], file: &Path) -> Result<Chunks<'a>, Form
     Ok((json.into(), binary))
 }
 
-/// The bytes of every buffer, each at least as long as announced.
+/// Loads the bytes of every buffer, each at least as long as declared.
 pub(super) fn load<'a>(
     document: &Document,
     binary: Option<&'a [u8]>,

@@ -1,4 +1,4 @@
-//! The JSON of a glTF: only the parts that are read. Unknown properties are ignored, references are checked on use.
+//! The parts of the JSON of a glTF that are read. Unknown properties are ignored; references are checked on use.
 
 use std::path::Path;
 
@@ -37,7 +37,7 @@ pub(super) struct Asset {
     version: String,
 }
 
-/// What glTF of every version has.
+/// Properties of glTF files of all versions.
 #[derive(Debug, Deserialize)]
 struct Versioned {
     asset: Asset,
@@ -53,7 +53,7 @@ impl Asset {
     }
 }
 
-/// The nodes at the top of a scene.
+/// Top nodes of a scene.
 #[derive(Debug, Deserialize)]
 pub(super) struct Scene {
     #[serde(default)]
@@ -67,7 +67,7 @@ pub(super) struct Node {
     pub(super) skin: Option<usize>,
     #[serde(default)]
     pub(super) children: Vec<usize>,
-    /// Column by column; instead of translation, rotation and scale.
+    /// Matrix in column-major order, which replaces translation, rotation and scale.
     pub(super) matrix: Option<[f32; 16]>,
     pub(super) translation: Option<[f32; 3]>,
     /// Unit quaternion x, y, z, w.
@@ -171,7 +171,7 @@ pub(super) struct Channel {
 #[derive(Debug, Deserialize)]
 pub(super) struct Target {
     pub(super) node: Option<usize>,
-    /// `translation` and `rotation` are read.
+    /// Animated property; only `translation` and `rotation` are read.
     pub(super) path: String,
 }
 

@@ -1,8 +1,8 @@
 //! glTF 2.0, as JSON or GLB: the triangles of the scene in world coordinates, or the tree of its nodes.
 //!
-//! One entry per node with a mesh, its primitives together. Numbers are metres and the frame of the file is kept: glTF
-//! defines +y as up, and nothing is rotated. Skins and morphs stay in their rest shape. External buffers must be relative
-//! paths below the directory of the file. Files that require an extension are refused.
+//! The result has one entry per node with a mesh, with all primitives of the mesh. Numbers are metres, and the frame of
+//! the file is kept: glTF defines +y as up, and nothing is rotated. Skins and morphs stay in their rest shape. External
+//! buffers must be relative paths below the directory of the file. Files that require an extension are refused.
 
 mod accessor;
 mod animation;
@@ -22,8 +22,8 @@ use scene::SceneReader;
 /// Parses a glTF or GLB file.
 ///
 /// # Errors
-/// JSON or chunks that are damaged, references to missing elements, buffers that are missing or too short, required
-/// extensions, nodes in a cycle.
+/// [`FormatError`] for damaged JSON or chunks, references to missing elements, missing or too short buffers, required
+/// extensions, or nodes in a cycle.
 pub fn parse(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> {
     let mut meshes = Vec::new();
     let warnings = read_scene(bytes, file, |scene| {
@@ -38,12 +38,13 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> {
     Ok(LoadedMeshes { meshes, warnings })
 }
 
-/// Parses a glTF or GLB file as a tree: every node of the scene with its frame, its mesh in this frame, and the
-/// translation and rotation channels of the first animation that moves it. Scale, shear and mirror are applied to the
-/// meshes.
+/// Parses a glTF or GLB file as a tree of nodes.
+///
+/// Every node of the scene has its frame, its mesh in this frame, and the translation and rotation channels of the first
+/// animation that moves it. Scale, shear and mirror are applied to the meshes.
 ///
 /// # Errors
-/// As [`parse`], and animations with missing numbers.
+/// The errors of [`parse`], and animations with missing numbers.
 pub fn parse_tree(bytes: &[u8], file: &Path) -> Result<NodeTree, FormatError> {
     let mut tree = NodeTree::new(input::stem(file));
     tree.warnings = read_scene(bytes, file, |scene| tree::build(scene, &mut tree))?;
@@ -51,7 +52,7 @@ pub fn parse_tree(bytes: &[u8], file: &Path) -> Result<NodeTree, FormatError> {
     Ok(tree)
 }
 
-/// Reads the scene of a file, passes it on, and returns the warnings.
+/// Reads the scene of a file, passes it to the caller's function, and returns the warnings.
 fn read_scene(
     bytes: &[u8],
     file: &Path,

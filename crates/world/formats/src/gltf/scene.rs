@@ -11,9 +11,9 @@ use crate::{FormatError, Warning, input, polygon};
 const MAX_DEPTH: usize = 200;
 const MAX_VISITS: usize = 100_000;
 
-/// The last of the modes of primitives with points and lines.
+/// Last primitive mode with points or lines.
 const LINE_STRIP: u32 = 3;
-/// Modes of primitives with triangles.
+/// Primitive modes with triangles.
 const TRIANGLES: u32 = 4;
 const TRIANGLE_STRIP: u32 = 5;
 const TRIANGLE_FAN: u32 = 6;
@@ -21,23 +21,23 @@ const TRIANGLE_FAN: u32 = 6;
 /// Reads the scene of a document.
 pub(super) struct SceneReader<'a> {
     pub(super) reader: AccessorReader<'a>,
-    /// Parents before their children.
+    /// Visited nodes, parents before their children.
     pub(super) nodes: Vec<SceneNode>,
     pub(super) warnings: Vec<Warning>,
-    /// Vertices, corners and keys read so far.
+    /// Number of vertices, corners and keys read so far.
     pub(super) elements: usize,
 }
 
 /// A visited node.
 pub(super) struct SceneNode {
-    /// Its index in the document.
+    /// Index in the document.
     pub(super) index: usize,
     /// Index of the parent in [`SceneReader::nodes`].
     pub(super) parent: Option<usize>,
     pub(super) name: String,
-    /// Its frame in the scene, with scale, shear and mirror.
+    /// Frame in the scene, with scale, shear and mirror.
     pub(super) to_scene: Affine,
-    /// In its own frame; `None` without triangles.
+    /// Mesh in the node's own frame; `None` if it has no triangles.
     pub(super) mesh: Option<MeshData>,
 }
 
@@ -46,7 +46,7 @@ impl<'a> SceneReader<'a> {
         Self { reader, nodes: Vec::new(), warnings: Vec::new(), elements: 0 }
     }
 
-    /// Traverses all nodes of the scene.
+    /// Visits all nodes of the scene.
     pub(super) fn read(&mut self) -> Result<(), FormatError> {
         let mut stack: Vec<_> = self.roots()?.into_iter().map(|n| (n, Affine::IDENTITY, None, 0)).rev().collect();
         while let Some((index, parent_to_scene, parent, depth)) = stack.pop() {
@@ -89,7 +89,7 @@ impl<'a> SceneReader<'a> {
         })
     }
 
-    /// The nodes at the top: of the default scene, else of the first, else those that are no child.
+    /// The top nodes: of the default scene, else of the first scene, else all nodes that are not a child.
     fn roots(&self) -> Result<Vec<usize>, FormatError> {
         let document = self.reader.document;
         let index = document.scene.unwrap_or(0);
@@ -169,7 +169,7 @@ fn from_matrix(columns: &[f32; 16]) -> Affine {
     Affine([0, 1, 2].map(|row| [0, 1, 2, 3].map(|column| f64::from(columns[4 * column + row]))))
 }
 
-/// Translation, rotation and scale of a node; of a matrix without its shear.
+/// Translation, rotation and scale of a node. The shear of a matrix is dropped.
 pub(super) fn decomposed(node: &Node) -> (Vec3, Rotation, [f64; 3]) {
     if let Some(matrix) = node.matrix {
         let map = from_matrix(&matrix);

@@ -1,8 +1,8 @@
 //! Joint states as CSV: the one reader of tables with a column per joint.
 //!
-//! The header names the joints, in any order. Every row is a state: radians, or metres for prismatic joints. Joints that
-//! follow another one (mimic) and fixed joints have no column. With several robots the names are prefixed, `robot.joint`;
-//! with one robot they may be. The columns `t_s` (seconds) and `index` are optional.
+//! The header names the joints, in any order. Every row is a state, in radians, or in metres for prismatic joints. Fixed
+//! joints, and joints that follow another one (mimic), have no column. With several robots, names have the prefix of the
+//! robot, `robot.joint`; with one robot the prefix is optional. The columns `t_s` (seconds) and `index` are optional.
 
 use std::collections::HashMap;
 use std::io::BufRead;
@@ -16,64 +16,65 @@ use crate::{FormatError, Warning};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
-/// A robot whose joint values a file gives.
+/// A robot whose joint values are in a file.
 #[derive(Debug, Clone, Copy)]
 pub struct JointStateRobot<'a> {
-    /// The prefix of its columns; empty if there is only one robot without a name.
+    /// Prefix of its columns; empty for a single robot without a name.
     pub name: &'a str,
     /// Its joints.
     pub chain: &'a Chain,
-    /// Its values, in the order of the chain, where the file has no column for it, which is then a warning; `None`
-    /// makes that an error.
+    /// Values, in the order of the chain, for a file that has no column for the robot; they are used with a warning.
+    ///
+    /// `None` makes the missing columns an error.
     pub default_q: Option<&'a [f64]>,
 }
 
-/// What happens with the column `t_s`.
+/// Treatment of the column `t_s`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TimeColumn {
-    /// It is skipped.
+    /// The column is skipped.
     Ignored,
-    /// It must be present and increase from row to row; at least one row is required.
+    /// The column must be present and increase from row to row. At least one row is required.
     Required,
 }
 
-/// What happens with columns other than joints, `t_s` and `index`.
+/// Treatment of columns other than joints, `t_s` and `index`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ExtraColumns {
-    /// They are errors.
+    /// Such columns are errors.
     Refused,
-    /// They are skipped with a warning.
+    /// Such columns are skipped with a warning.
     Skipped,
 }
 
-/// What happens with values beyond a joint's limits.
+/// Treatment of values beyond a joint's limits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LimitCheck {
     /// Limits are not checked.
     None,
-    /// One warning names the first such value and the number of such states.
+    /// One warning names the first value beyond limits and the number of states with such values.
     Warn,
-    /// They are errors.
+    /// Values beyond limits are errors.
     Refuse,
 }
 
-/// What a file of joint states must hold.
+/// Requirements on a file of joint states.
 #[derive(Debug, Clone)]
 pub struct JointStateOptions<'a> {
     /// The robots, in the order in which their values are returned.
     pub robots: Vec<JointStateRobot<'a>>,
-    /// What happens with the column `t_s`.
+    /// Treatment of the column `t_s`.
     pub time: TimeColumn,
-    /// What happens with other columns.
+    /// Treatment of other columns.
     pub extra_columns: ExtraColumns,
-    /// What happens with values beyond limits.
+    /// Treatment of values beyond limits.
     pub limits: LimitCheck,
-    /// Larger files are refused, bytes.
+    /// Largest size of a file, bytes.
     pub max_bytes: u64,
 }
 
 impl<'a> JointStateOptions<'a> {
-    /// States of robots, in a file of any size: no times, no other columns, limits not checked.
+    /// Options for states of robots, in a file of any size, without times and other columns. Limits are not checked.
     pub fn states(robots: Vec<JointStateRobot<'a>>) -> Self {
         Self {
             robots,
@@ -84,8 +85,9 @@ impl<'a> JointStateOptions<'a> {
         }
     }
 
-    /// A trajectory of one robot, of at most 1 GiB: times are required, values beyond limits are errors, other columns
-    /// are skipped.
+    /// Options for a trajectory of one robot, of at most 1 GiB.
+    ///
+    /// Times are required, values beyond limits are errors, and other columns are skipped.
     pub fn trajectory(name: &'a str, chain: &'a Chain) -> Self {
         Self {
             robots: vec![JointStateRobot { name, chain, default_q: None }],
@@ -117,11 +119,11 @@ impl<'a> JointStateOptions<'a> {
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointStates {
-    /// The file, for messages.
+    /// Path of the file, for messages.
     pub file: PathBuf,
-    /// What the user should know.
+    /// Warnings for the user.
     pub warnings: Vec<Warning>,
-    /// Where the values of each robot end among those of a row.
+    /// Per robot: end of its values in a row.
     ends: Vec<usize>,
     values: Vec<f64>,
     times_s: Vec<f64>,
@@ -129,7 +131,7 @@ pub struct JointStates {
 }
 
 impl JointStates {
-    /// One state that comes from no file of states: the joint values of each robot. `file` is named in messages.
+    /// Creates a single state from the joint values of each robot. `file` is named in messages.
     pub fn single<'q>(file: &Path, robots: impl IntoIterator<Item = &'q [f64]>) -> Self {
         let (mut ends, mut values) = (Vec::new(), Vec::new());
         for q in robots {
@@ -142,15 +144,15 @@ impl JointStates {
     /// Reads a file.
     ///
     /// # Errors
-    /// [`FormatError`] names the line and the column.
+    /// [`FormatError`] with the line and the column.
     pub fn read(path: &Path, options: &JointStateOptions<'_>) -> Result<Self> {
         Self::from_lines(path, CsvLines::open(path, options.max_bytes)?, options)
     }
 
-    /// Reads from a source such as standard input; `path` is named in messages.
+    /// Reads from a source such as standard input; `path` is named in messages. The size is not limited.
     ///
     /// # Errors
-    /// As for [`JointStates::read`]; the size is not limited.
+    /// The errors of [`JointStates::read`].
     pub fn read_from(path: &Path, source: impl BufRead, options: &JointStateOptions<'_>) -> Result<Self> {
         Self::from_lines(path, CsvLines::new(source, path), options)
     }
@@ -158,7 +160,7 @@ impl JointStates {
     /// Parses text; `path` is named in messages.
     ///
     /// # Errors
-    /// As for [`JointStates::read`].
+    /// The errors of [`JointStates::read`].
     pub fn parse(path: &Path, text: &str, options: &JointStateOptions<'_>) -> Result<Self> {
         Self::from_lines(path, CsvLines::new(text.as_bytes(), path), options)
     }
@@ -168,7 +170,7 @@ impl JointStates {
         self.rows
     }
 
-    /// Whether there is no state.
+    /// Whether the number of states is 0.
     pub fn is_empty(&self) -> bool {
         self.rows == 0
     }
@@ -181,7 +183,7 @@ impl JointStates {
     /// The joint values of one robot in one state, in the order of its chain: rad, or m for prismatic joints.
     ///
     /// # Panics
-    /// Beyond the last state or robot.
+    /// If `state` or `robot` is out of range.
     pub fn q(&self, state: usize, robot: usize) -> &[f64] {
         assert!(state < self.rows, "state {state} of {}", self.rows);
         let width = self.ends.last().copied().unwrap_or(0);
@@ -189,7 +191,7 @@ impl JointStates {
         &self.values[state * width..][begin..self.ends[robot]]
     }
 
-    /// The time of each state, seconds; empty unless times were required.
+    /// The time of each state, seconds; empty unless times are required.
     pub fn times_s(&self) -> &[f64] {
         &self.times_s
     }
@@ -253,16 +255,16 @@ fn check_time(time: Option<f64>, last: Option<&f64>, at: Location<'_>) -> Result
     }
 }
 
-/// Values may be so far (rad or m) beyond limits before they are worth a warning, or an error.
+/// Largest distances beyond the limits (rad or m) that cause no warning and no error, respectively.
 const WARN_TOLERANCE: f64 = 1e-9;
 const REFUSE_TOLERANCE: f64 = 1e-6;
-/// Joint values beyond a full turn (2π, rounded up) where the limits are within one are probably degrees, rad.
+/// A full turn (2π, rounded up), rad. Larger joint values are probably degrees if the limits are within a full turn.
 const FULL_TURN_RAD: f64 = 6.3;
 
 /// A joint with a column.
 struct JointColumn {
     robot: usize,
-    /// As in the chain, without prefix.
+    /// Name as in the chain, without prefix.
     name: String,
     lower: f64,
     upper: f64,
@@ -291,7 +293,7 @@ impl<'a> Joints<'a> {
         (0..self.options.robots.len()).map(count).collect()
     }
 
-    /// Values of a row where the file has no columns; 0 if it must have them.
+    /// Values of a row for robots without columns in the file; 0 for robots that must have columns.
     fn defaults(&self) -> Vec<f64> {
         let dof = |robot: usize| self.list.iter().filter(|j| j.robot == robot).count();
         let of_robot = |(robot, r): (usize, &JointStateRobot<'_>)| {
@@ -306,7 +308,7 @@ impl<'a> Joints<'a> {
         format!("{}.{}", self.options.robots[joint.robot].name, joint.name)
     }
 
-    /// The name that a user should write: prefixed where there are several robots.
+    /// The name that a user should write: with prefix if there are several robots.
     fn shown(&self, joint: &JointColumn) -> String {
         if self.options.robots.len() == 1 { joint.name.clone() } else { self.prefixed(joint) }
     }
@@ -338,7 +340,7 @@ impl<'a> Joints<'a> {
         at.warning(format!("`{name}` is {value}, beyond its limits {lower:.4} to {upper:.4}{degrees}"))
     }
 
-    /// Why a column is none of a joint with a value of its own.
+    /// Why a column is not the column of an independent joint.
     fn why_extra(&self, name: &str) -> String {
         for r in &self.options.robots {
             let bare = name.strip_prefix(r.name).and_then(|n| n.strip_prefix('.')).unwrap_or(name);
@@ -356,7 +358,7 @@ impl<'a> Joints<'a> {
     }
 }
 
-/// What a column holds.
+/// Content of a column.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Column {
     /// The value of a joint, by its index in a row.
@@ -430,7 +432,7 @@ impl Header {
         }
     }
 
-    /// Writes the values of a row; returns its time where that is required.
+    /// Reads the values of a row into `values`, and returns its time if times are required.
     fn read_row(&self, at: Location<'_>, text: &str, values: &mut [f64]) -> Result<Option<f64>> {
         let mut time = None;
         let mut cells = csv::cells(text);

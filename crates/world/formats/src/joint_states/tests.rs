@@ -6,7 +6,7 @@ use proptest::prelude::*;
 
 use super::*;
 
-/// A revolute joint `turn`, a prismatic joint `slide`, a fixed one and one that follows `turn`.
+/// A revolute joint `turn`, a prismatic joint `slide`, a fixed joint, and a joint that follows `turn`.
 fn chain() -> Chain {
     let joint = |i: usize, name: &str, kind: JointKind, limits: Limits, mimic: Option<Mimic>| Joint {
         name: name.into(),
@@ -184,7 +184,7 @@ fn files_beyond_the_largest_size_are_refused() {
 }
 
 proptest! {
-    /// Whatever the text, there is an answer, and what is accepted is finite and complete.
+    /// Any text gives a result without a panic; accepted values are finite and complete.
     #[test]
     fn no_input_panics(text in "[a-z_.,\"\n0-9einf -]{0,80}", with_header: bool) {
         let chain = chain();

@@ -13,13 +13,13 @@
 //!
 //! | key | default | meaning |
 //! | --- | --- | --- |
-//! | `axis` | that of the node's track; required without a track | direction of rotation or translation |
+//! | `axis` | the axis of the node's track; required without a track | direction of rotation or translation |
 //! | `in` | `"node"` | frame of `axis` and `at`: `node`, `parent` or `world`, at rest |
 //! | `at` | the node's origin (pivot), or the track's centre | a point on the axis; it becomes the link's origin |
-//! | `kind` | the track's; else `revolute` with `min` and `max`, `continuous` without | or `prismatic`, `fixed` |
+//! | `kind` | the kind of the track; else `revolute` with `min` and `max`, `continuous` without | or `prismatic`, `fixed` |
 //! | `min`, `max` | the ends of the track | limits |
 //! | `speed`, `acceleration` | unknown | limits |
-//! | `name` | the node's | of the joint |
+//! | `name` | the node's name | name of the joint |
 //! | `mimic` | none | `{ joint = "NAME", multiplier = 1, offset = 0 }` |
 
 mod file;
@@ -36,7 +36,7 @@ pub use spec::{AxisFrame, JointSpec};
 pub(crate) use to_toml::key;
 pub use to_toml::to_toml;
 
-/// The default file of the joints of a model: `arm.joints.toml` for `arm.3ds`.
+/// The default path of the joints file of a model: `arm.joints.toml` for `arm.3ds`.
 ///
 /// ```
 /// use elbowroom_formats::joints;
@@ -49,7 +49,7 @@ pub fn default_path(model: &Path) -> PathBuf {
 /// Reads a file of joints.
 ///
 /// # Errors
-/// A file that is not TOML or has other keys; the line is named.
+/// [`FormatError`] with the line, if the file is not TOML or has unknown keys.
 pub fn load(path: &Path) -> Result<Vec<JointSpec>, FormatError> {
     let bytes = input::read(path)?;
     let content = input::text(&bytes, path)?;
@@ -59,7 +59,7 @@ pub fn load(path: &Path) -> Result<Vec<JointSpec>, FormatError> {
 /// Parses a file of joints; `path` is named in messages.
 ///
 /// # Errors
-/// As [`load`].
+/// The errors of [`load`].
 ///
 /// ```
 /// use elbowroom_formats::joints;
@@ -72,11 +72,12 @@ pub fn parse(content: &str, path: &Path) -> Result<Vec<JointSpec>, FormatError> 
     file::parse(content, path)
 }
 
-/// Parses a joint as it is given on the command line, in metres and degrees: `NODE: axis=y, min=-150, max=20`.
-/// A vector is three numbers with spaces between them.
+/// Parses a joint from the command line, in metres and degrees: `NODE: axis=y, min=-150, max=20`.
+///
+/// A vector is three numbers separated by spaces.
 ///
 /// # Errors
-/// Anything else; the text is named.
+/// [`FormatError`] with the text, for any other input.
 ///
 /// ```
 /// use elbowroom_formats::joints;

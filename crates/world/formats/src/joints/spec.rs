@@ -11,31 +11,31 @@ use crate::FormatError;
 /// The joint that the user specifies for one node.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointSpec {
-    /// The file, or the option, that specifies it.
+    /// The file or option that specifies the joint.
     pub file: PathBuf,
-    /// Its line.
+    /// Line in the file.
     pub line: Option<usize>,
-    /// The node that moves.
+    /// Name of the node that moves.
     pub node: String,
-    /// The joint's name.
+    /// Name of the joint.
     pub name: Option<String>,
-    /// Its kind.
+    /// Kind of the joint.
     pub kind: Option<JointKind>,
-    /// Direction in [`JointSpec::frame`], of any length but 0.
+    /// Direction of the axis in [`JointSpec::frame`], of any length except 0.
     pub axis: Option<Vec3>,
     /// A point on the axis in [`JointSpec::frame`], m.
     pub at: Option<Vec3>,
-    /// The frame of axis and point.
+    /// The frame of `axis` and `at`.
     pub frame: AxisFrame,
-    /// Lower limit in the given units: see [`JointSpec::si`].
+    /// Lower limit in the given units; [`JointSpec::si`] converts it.
     pub min: Option<f64>,
     /// Upper limit in the given units.
     pub max: Option<f64>,
-    /// Per second, in the given units.
+    /// Largest speed, per second, in the given units.
     pub speed: Option<f64>,
-    /// Per second squared, in the given units.
+    /// Largest acceleration, per second squared, in the given units.
     pub acceleration: Option<f64>,
-    /// Name of the joint that it mimics, multiplier, and offset in the given units.
+    /// Source joint of a mimic joint, multiplier, and offset in the given units.
     pub mimic: Option<(String, f64, f64)>,
     units: JointUnits,
 }
@@ -47,7 +47,7 @@ pub(super) struct JointUnits {
     pub(super) angle: AngleUnit,
 }
 
-/// The frame in which an axis is given.
+/// The frame of a given axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum AxisFrame {
     /// The rest frame of the node itself.
@@ -69,7 +69,7 @@ impl JointSpec {
         }
     }
 
-    /// A specification that names only the node.
+    /// Creates a specification that names only the node.
     pub(super) fn new(node: &str, file: &Path, line: Option<usize>, units: JointUnits) -> Self {
         Self {
             file: file.to_owned(),
@@ -89,7 +89,7 @@ impl JointSpec {
         }
     }
 
-    /// A length of this joint in metres.
+    /// Converts a length of this joint to metres.
     pub(super) fn metres(&self, length: f64) -> f64 {
         self.units.length.to_metres(length)
     }

@@ -1,11 +1,12 @@
-//! The joints of a robot as a file.
+//! Writer of the joints of a robot as a joints file.
 
 use std::fmt::Write;
 
 use elbowroom_kinematics::{Chain, JointKind};
 
-/// The joints of a robot as the text of a file of joints, in metres and radians, digit for digit. Nodes are called
-/// after the links.
+/// Writes the joints of a robot as the text of a joints file, in metres and radians, without loss of digits.
+///
+/// Nodes are named after the links.
 ///
 /// ```
 /// use elbowroom_formats::joints;
@@ -50,13 +51,13 @@ pub fn to_toml(chain: &Chain) -> String {
     text
 }
 
-/// A name as a TOML key.
+/// Quotes a name as a TOML key, if necessary.
 pub(crate) fn key(name: &str) -> String {
     let bare = !name.is_empty() && name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_' || b == b'-');
     if bare { name.to_owned() } else { quoted(name) }
 }
 
-/// A name as a TOML text.
+/// Quotes a name as a TOML string.
 fn quoted(name: &str) -> String {
     let mut text = String::from("\"");
     for c in name.chars() {

@@ -1,10 +1,10 @@
-//! Allowed collision matrix of a scene.
+//! The allowed collision matrix of a scene.
 
 use super::field::{Field, Reading};
 use super::types::AllowedCollisions;
 use crate::FormatError;
 
-/// The matrix; empty if the scene has none.
+/// Parses the matrix; empty if the scene has none.
 pub(crate) fn parse(scene: &Field<'_>, reading: &mut Reading) -> Result<AllowedCollisions, FormatError> {
     let Some(field) = scene.get("allowed_collision_matrix")? else { return Ok(AllowedCollisions::default()) };
     let names = field.names("entry_names")?;

@@ -10,24 +10,24 @@ use serde_json::Value;
 
 use crate::{FormatError, Warning, yaml};
 
-/// Larger values of joints are refused, rad or m: poses computed from them would not be finite.
+/// Largest joint value, rad or m. Poses computed from larger values would not be finite.
 const MAX_JOINT_VALUE: f64 = 1e6;
 
-/// The document that a field belongs to.
+/// The document of a field.
 #[derive(Debug)]
 pub(crate) struct Location<'a> {
     pub(crate) file: &'a Path,
-    /// The part of the file, before the path in messages: ``set `A`, problem `B`: ``, or nothing.
+    /// The part of the file, before the path in messages: ``set `A`, problem `B`: ``, or empty.
     pub(crate) part: String,
-    /// The text of a YAML document, in which lines are looked up.
+    /// Text of a YAML document, for line numbers.
     pub(crate) yaml: Option<&'a str>,
 }
 
-/// A value of the document, and where it is.
+/// A value of the document, with its location.
 #[derive(Debug, Clone)]
 pub(crate) struct Field<'a> {
     pub(crate) location: &'a Location<'a>,
-    /// Empty for the document itself.
+    /// Path in the document; empty for the document itself.
     path: String,
     value: &'a Value,
 }
@@ -37,12 +37,12 @@ impl<'a> Field<'a> {
         Self { location, path: String::new(), value }
     }
 
-    /// An error here.
+    /// Creates an error at this field.
     pub(crate) fn error(&self, what: impl std::fmt::Display, hint: impl Into<String>) -> FormatError {
         FormatError::new(self.location.file, self.line(), self.sentence(what)).hint(hint)
     }
 
-    /// A warning here.
+    /// Creates a warning at this field.
     fn warning(&self, what: impl std::fmt::Display, hint: impl Into<String>) -> Warning {
         Warning::new(self.location.file, self.line(), self.sentence(what)).hint(hint)
     }
@@ -66,7 +66,7 @@ impl<'a> Field<'a> {
         Ok(value.map(|value| Self { location: self.location, path, value }))
     }
 
-    /// The field of an object that must have it.
+    /// A required field of an object.
     pub(crate) fn require(&self, key: &str, hint: &str) -> Result<Self, FormatError> {
         self.get(key)?.ok_or_else(|| self.error(format!("has no `{key}`"), hint))
     }
@@ -84,7 +84,7 @@ impl<'a> Field<'a> {
         Ok(values.iter().enumerate().map(element).collect())
     }
 
-    /// The elements of a list in an object; none where it is missing.
+    /// The elements of a list in an object; empty if the list is missing.
     pub(crate) fn list(&self, key: &str) -> Result<Vec<Self>, FormatError> {
         self.get(key)?.map_or_else(|| Ok(Vec::new()), |field| field.elements())
     }
@@ -108,7 +108,7 @@ impl<'a> Field<'a> {
         self.get(key)?.map_or(Ok(""), |field| field.text())
     }
 
-    /// A text that is not empty.
+    /// A non-empty text.
     pub(crate) fn name(&self) -> Result<&'a str, FormatError> {
         Some(self.text()?).filter(|name| !name.is_empty()).ok_or_else(|| self.error("is empty", "a name"))
     }
@@ -137,7 +137,7 @@ impl<'a> Field<'a> {
         Err(self.error(format!("is {value}"), "radians, metres for a prismatic joint: 0.25"))
     }
 
-    /// A whole number from 0 up.
+    /// A whole number, 0 or more.
     pub(crate) fn index(&self) -> Result<u32, FormatError> {
         let index = self.value.as_u64().and_then(|n| u32::try_from(n).ok());
         index.ok_or_else(|| self.error(format!("is {}", kind(self.value)), "a whole number, 0 or more"))
@@ -148,7 +148,7 @@ impl<'a> Field<'a> {
         self.elements()?.iter().map(Self::number).collect()
     }
 
-    /// So many numbers: a list, or an object with these names.
+    /// A fixed number of numbers: a list, or an object with these names.
     pub(crate) fn tuple<const N: usize>(&self, names: [&str; N]) -> Result<[f64; N], FormatError> {
         let hint = format!("[{}]", names.join(", "));
         let numbers = match self.value {
@@ -161,7 +161,7 @@ impl<'a> Field<'a> {
         <[f64; N]>::try_from(numbers).map_err(|n| self.error(format!("has {} numbers, not {N}", n.len()), hint))
     }
 
-    /// True for a whole number or a word of this meaning, as in messages and in files written by hand.
+    /// True for the given word or whole number; messages use numbers, files written by hand use words.
     pub(crate) fn is(&self, word: &str, number: u64) -> bool {
         self.value.as_str().is_some_and(|w| w.eq_ignore_ascii_case(word)) || self.value.as_u64() == Some(number)
     }
@@ -175,7 +175,7 @@ impl<'a> Field<'a> {
     }
 }
 
-/// What a value is, for messages.
+/// The kind of a value, for messages.
 fn kind(value: &Value) -> &'static str {
     match value {
         Value::Null => "null",
@@ -187,18 +187,19 @@ fn kind(value: &Value) -> &'static str {
     }
 }
 
-/// What is kept while a document is read: warnings, each kind once (a file may have thousands of problems of the same
-/// kind), and the mesh files that it names.
+/// State of reading a document: its warnings and the mesh files that it names.
+///
+/// Each kind of warning is kept once, because a file may have thousands of problems of one kind.
 #[derive(Debug, Default)]
 pub(crate) struct Reading {
     seen: HashSet<&'static str>,
     pub(crate) warnings: Vec<Warning>,
-    /// By reference as written and scale.
+    /// Meshes by reference, as written, and scale.
     pub(crate) mesh_files: HashMap<(String, [u64; 3]), Arc<TriMesh>>,
 }
 
 impl Reading {
-    /// Warns of the first of a kind.
+    /// Warns about the first case of a kind.
     pub(crate) fn once(&mut self, kind: &'static str, at: &Field<'_>, what: impl std::fmt::Display, hint: &str) {
         if self.seen.insert(kind) {
             self.warnings.push(at.warning(format!("{what} (reported once)"), hint));

@@ -1,6 +1,6 @@
 //! Messages of `MoveIt` as documents: collision objects, poses, the allowed collision matrix, the state of the robot.
 //!
-//! Sets of planning problems and planning scenes share them.
+//! Readers of planning problems and planning scenes share this module.
 
 pub(crate) mod collision_matrix;
 pub(crate) mod field;

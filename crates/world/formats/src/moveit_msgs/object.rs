@@ -17,7 +17,7 @@ pub(crate) fn world(scene: &Field<'_>, reading: &mut Reading) -> Result<Vec<Coll
     world.list("collision_objects")?.iter().map(|field| object(field, reading)).collect()
 }
 
-/// An octomap that is not read would be an obstacle that is not seen.
+/// Refuses an octomap with data: the reader ignores octomaps, so its obstacles would be missing.
 fn refuse_octomap(world: &Field<'_>) -> Result<(), FormatError> {
     let Some(octomap) = world.get("octomap")?.map(|o| Ok(o.get("octomap")?.unwrap_or(o))).transpose()? else {
         return Ok(());
@@ -58,7 +58,7 @@ fn object(field: &Field<'_>, reading: &mut Reading) -> Result<CollisionObject, F
     Ok(CollisionObject { id, frame: pose::frame_id(field)?, solids })
 }
 
-/// Shapes with their poses; without any pose they are at the object's, where it `has_own`.
+/// Shapes with their poses. Shapes without poses have the pose of the object, if it `has_own`.
 fn posed<'a>(field: &Field<'a>, keys: [&str; 2], has_own: bool) -> Result<Vec<(Field<'a>, Pose)>, FormatError> {
     if has_own && field.list(keys[1])?.is_empty() {
         return Ok(field.list(keys[0])?.into_iter().map(|shape| (shape, Pose::IDENTITY)).collect());
@@ -77,7 +77,7 @@ pub(crate) fn attached(field: &Field<'_>, reading: &mut Reading) -> Result<Attac
     Ok(AttachedObject { object, link, touch_links: field.names("touch_links")? })
 }
 
-/// Refuses two objects of one name.
+/// Refuses two objects with the same name.
 pub(crate) fn check_ids(
     root: &Field<'_>,
     objects: &[CollisionObject],
@@ -90,7 +90,7 @@ pub(crate) fn check_ids(
     }
 }
 
-/// The first name that two objects have.
+/// The first name that two objects share.
 pub(crate) fn duplicate<'o>(mut objects: impl Iterator<Item = &'o CollisionObject>) -> Option<&'o str> {
     let mut known = HashSet::new();
     objects.find(|o| !known.insert(o.id.as_str())).map(|o| o.id.as_str())

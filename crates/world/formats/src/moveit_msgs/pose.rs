@@ -6,9 +6,9 @@ use super::field::Field;
 use super::types::FixedFrame;
 use crate::FormatError;
 
-/// Quaternions shorter than this have no direction that their writer meant.
+/// Least length of a quaternion. A shorter one has no intended direction.
 const MIN_QUATERNION: f64 = 1e-3;
-/// Larger coordinates are refused, metres.
+/// Largest coordinate, metres.
 const MAX_COORDINATE_M: f64 = 1e9;
 
 /// A pose with `position` and `orientation` (x, y, z, w); a missing part is zero.
@@ -16,7 +16,7 @@ pub(crate) fn pose(field: &Field<'_>) -> Result<Pose, FormatError> {
     parts(field, ["position", "orientation"])
 }
 
-/// The same under the names of a transform.
+/// A pose with the field names of a transform.
 pub(crate) fn transform(field: &Field<'_>) -> Result<Pose, FormatError> {
     parts(field, ["translation", "rotation"])
 }
@@ -27,7 +27,7 @@ fn parts(field: &Field<'_>, [translation, rotation]: [&str; 2]) -> Result<Pose, 
     Ok(Pose::new(rotation, translation))
 }
 
-/// Three coordinates, metres.
+/// Reads three coordinates, metres.
 pub(crate) fn point(field: &Field<'_>) -> Result<Vec3, FormatError> {
     let [x, y, z] = field.tuple(["x", "y", "z"])?;
     let point = Vec3::new(x, y, z);
@@ -38,7 +38,7 @@ pub(crate) fn point(field: &Field<'_>) -> Result<Vec3, FormatError> {
     }
 }
 
-/// True if squares of the coordinates stay finite.
+/// True if the squares of the coordinates stay finite.
 pub(crate) fn is_position(point: Vec3) -> bool {
     point.abs().max_element() <= MAX_COORDINATE_M
 }

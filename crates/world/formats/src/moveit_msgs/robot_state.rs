@@ -1,4 +1,4 @@
-//! State of the robot: joint values, pose of its base, attached objects.
+//! The state of the robot: joint values, pose of its base, attached objects.
 
 use std::collections::HashSet;
 
@@ -9,7 +9,7 @@ use super::types::{AttachedObject, JointValue};
 use super::{object, pose};
 use crate::FormatError;
 
-/// Rotations (rad) and translations (m) up to this are none.
+/// Rotations (rad) and translations (m) up to this count as zero.
 const IDENTITY_TOLERANCE: f64 = 1e-9;
 
 /// The state of the robot, as far as the file has it.
@@ -21,7 +21,7 @@ pub(crate) struct RobotState {
 }
 
 impl RobotState {
-    /// Takes over what another state has.
+    /// Overrides this state with the values of another state.
     pub(crate) fn overlay(&mut self, other: Self) {
         let given: HashSet<String> = other.joints.iter().map(|j| j.joint.clone()).collect();
         self.joints.retain(|j| !given.contains(&j.joint));
@@ -44,7 +44,7 @@ pub(crate) fn parse(field: &Field<'_>, reading: &mut Reading) -> Result<RobotSta
     Ok(RobotState { joints, base_in_world, attached })
 }
 
-/// Names and values of joints, no joint twice.
+/// Names and values of joints, each joint once.
 fn joint_values(field: &Field<'_>, keys: [&str; 2]) -> Result<Vec<JointValue>, FormatError> {
     let mut values = Vec::new();
     let mut known = HashSet::new();
@@ -57,7 +57,7 @@ fn joint_values(field: &Field<'_>, keys: [&str; 2]) -> Result<Vec<JointValue>, F
     Ok(values)
 }
 
-/// The pose of the base: that of the joint which moves it. `None` if all are at rest.
+/// The pose of the base: the pose of the joint that moves it. `None` if all joints are at rest.
 fn base(field: &Field<'_>) -> Result<Option<Pose>, FormatError> {
     let mut moved = None;
     for (_, transform) in field.paired_lists(["joint_names", "transforms"])? {

@@ -11,13 +11,13 @@ use super::pose;
 use crate::mesh_data::UpAxis;
 use crate::{FormatError, mesh as mesh_file, resolve};
 
-/// Mesh files that one document may name.
+/// Largest number of mesh files that one document may name.
 const MAX_MESH_FILES: usize = 1000;
 
-/// What becomes of a cone, for warnings.
+/// Treatment of a cone, for warnings.
 pub(crate) const CONE: &str = "is a cone, which is enclosed by its cylinder";
 
-/// A box, sphere, cylinder or cone.
+/// Reads a box, sphere, cylinder or cone.
 pub(crate) fn primitive(field: &Field<'_>, reading: &mut Reading) -> Result<Shape, FormatError> {
     let kind = field.require("type", "\"type\": \"box\", \"sphere\", \"cylinder\" or \"cone\"")?;
     let dimensions = field.require("dimensions", "\"dimensions\": the numbers of the shape, metres")?;
@@ -41,12 +41,12 @@ pub(crate) fn primitive(field: &Field<'_>, reading: &mut Reading) -> Result<Shap
     Err(kind.error(format!("is {}, no known shape", kind.shown()), "\"box\", \"sphere\", \"cylinder\" or \"cone\""))
 }
 
-/// True for a dimension of a solid, metres.
+/// True for a valid dimension of a solid, metres.
 pub(crate) fn is_size(v: f64) -> bool {
     (0.0..=1e9).contains(&v)
 }
 
-/// So many dimensions, none negative.
+/// Reads a fixed number of non-negative dimensions.
 fn sizes<const N: usize>(field: &Field<'_>, names: [&str; N]) -> Result<[f64; N], FormatError> {
     let sizes = field.tuple(names)?;
     match sizes.iter().position(|v| !is_size(*v)) {
@@ -55,7 +55,7 @@ fn sizes<const N: usize>(field: &Field<'_>, names: [&str; N]) -> Result<[f64; N]
     }
 }
 
-/// A mesh with its vertices and triangles, or with its file.
+/// Reads a mesh from its vertices and triangles, or from its file.
 pub(crate) fn mesh(field: &Field<'_>, reading: &mut Reading) -> Result<Shape, FormatError> {
     let layout = "\"vertices\": [[x, y, z], …], \"triangles\": [[0, 1, 2], …]";
     if let (None, Some(resource)) = (field.get("vertices")?, field.get("resource")?) {
@@ -70,7 +70,7 @@ pub(crate) fn mesh(field: &Field<'_>, reading: &mut Reading) -> Result<Shape, Fo
     Ok(Shape::Mesh(Arc::new(mesh)))
 }
 
-/// The mesh of a file, found as in a URDF and in metres.
+/// Reads the mesh of a file, in metres. The file is found as in a URDF.
 fn mesh_file(resource: &Field<'_>, scale: [f64; 3], reading: &mut Reading) -> Result<Arc<TriMesh>, FormatError> {
     let name = resource.text()?;
     let key = (name.to_owned(), scale.map(f64::to_bits));
@@ -104,7 +104,7 @@ fn triangle(field: &Field<'_>) -> Result<[u32; 3], FormatError> {
     <[u32; 3]>::try_from(corners).map_err(|c| field.error(format!("has {} corners, not 3", c.len()), hint))
 }
 
-/// A plane with its coefficients.
+/// Reads a plane from its coefficients.
 pub(crate) fn plane(field: &Field<'_>) -> Result<(Shape, Pose), FormatError> {
     let coefficients = if field.is_list() { None } else { field.get("coef")? };
     let [a, b, c, d] = coefficients.as_ref().unwrap_or(field).tuple(["a", "b", "c", "d"])?;
@@ -112,7 +112,7 @@ pub(crate) fn plane(field: &Field<'_>) -> Result<(Shape, Pose), FormatError> {
     half_space([a, b, c, d]).ok_or_else(|| field.error("is a plane without a direction", hint))
 }
 
-/// The half-space below the plane `a x + b y + c z + d = 0`, and its pose; `None` if it has no direction.
+/// The half-space below the plane `a x + b y + c z + d = 0`, and its pose; `None` if the plane has no direction.
 pub(crate) fn half_space([a, b, c, d]: [f64; 4]) -> Option<(Shape, Pose)> {
     let length = (a * a + b * b + c * c).sqrt();
     let normal = Vec3::new(a, b, c).try_normalize().filter(|n| n.is_finite())?;

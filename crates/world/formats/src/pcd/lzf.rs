@@ -2,7 +2,7 @@
 
 /// Decompresses to exactly `length` bytes; `None` if the data is damaged.
 pub(super) fn decompress(input: &[u8], length: usize) -> Option<Vec<u8>> {
-    // Three bytes decompress to at most 264: the announced length is checked before memory is reserved.
+    // Three bytes decompress to at most 264, so the declared length is checked before memory is reserved.
     if length > input.len().saturating_mul(88) + 32 {
         return None;
     }

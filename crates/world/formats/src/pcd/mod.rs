@@ -16,7 +16,7 @@ enum Encoding {
     Compressed,
 }
 
-/// TYPE of a field.
+/// Number type of a field (TYPE).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum NumberType {
     Float,
@@ -24,7 +24,7 @@ enum NumberType {
     Unsigned,
 }
 
-/// A field of the points: its type, and its offset in the bytes or words of a point.
+/// A field of a point: its type, and its offset in the bytes or words of the point.
 #[derive(Debug, Clone, Copy)]
 struct Field {
     kind: NumberType,
@@ -39,16 +39,17 @@ struct Header {
     xyz: [Field; 3],
     points: usize,
     encoding: Encoding,
-    /// Line of DATA, from 1.
+    /// Line number of DATA, counted from 1.
     line: usize,
 }
 
-/// Parses the points of a PCD file as they are written: sensors write NaN if they measured nothing. Numbers are taken
-/// as metres.
+/// Parses the points of a PCD file as written.
+///
+/// Numbers are metres; sensors write NaN for points that they did not measure.
 ///
 /// # Errors
-/// Headers that make no sense, more points announced than the file can hold, damaged compression, words that are no
-/// numbers.
+/// [`FormatError`] for invalid headers, more declared points than the file can hold, damaged compression, or words that
+/// are not numbers.
 pub fn parse_points(bytes: &[u8], file: &Path) -> Result<Vec<Vec3>, FormatError> {
     if bytes.is_empty() {
         return Err(FormatError::new(file, None, "is empty").hint("a PCD header and points"));
@@ -100,7 +101,7 @@ fn header<'a>(bytes: &'a [u8], file: &Path) -> Result<(Header, &'a [u8]), Format
                 let xyz = coordinates(&lists[0], &fields, file, line)?;
                 return Ok((Header { fields, xyz, points, encoding, line }, rest));
             }
-            // Comments, VERSION, VIEWPOINT, and what later versions may add.
+            // Comments, VERSION, VIEWPOINT, and keywords of later versions.
             _ => {}
         }
     }
@@ -205,7 +206,7 @@ fn binary(header: &Header, body: &[u8], file: &Path) -> Result<Vec<Vec3>, Format
     Ok(body.chunks_exact(stride).take(header.points).map(point).collect())
 }
 
-/// All points in one compressed block, field by field instead of point by point.
+/// Reads all points of one compressed block, which is stored field by field instead of point by point.
 fn compressed(header: &Header, body: &[u8], file: &Path) -> Result<Vec<Vec3>, FormatError> {
     let stride: usize = header.fields.iter().map(|f| f.size * f.count).sum();
     let damaged = || {

@@ -1,5 +1,7 @@
-//! Planning scenes of `MoveIt`: the `.scene` text that its motion planning panel saves, and `moveit_msgs/PlanningScene` as YAML (or
-//! JSON), as `rostopic echo` prints it and `MotionBenchMaker` reads it.
+//! Planning scenes of `MoveIt`.
+//!
+//! Two forms are read: the `.scene` text that the motion planning panel saves, and `moveit_msgs/PlanningScene` as YAML
+//! (or JSON), as `rostopic echo` prints it and `MotionBenchMaker` reads it.
 //!
 //! | read | meaning |
 //! | --- | --- |
@@ -7,7 +9,7 @@
 //! | `fixed_frame_transforms` | frames of the objects; a `.scene` has none |
 //! | `allowed_collision_matrix`, `robot_state` | pairs that may touch, joint values, attached objects; a `.scene` has none |
 //!
-//! All else is ignored, except for what would be an obstacle that is not seen, which is refused: an octomap with data, an object
+//! Other content is ignored. Content whose obstacles would be missing is refused: an octomap with data, and an object
 //! that is not added.
 
 mod scene;
@@ -23,18 +25,20 @@ use crate::{FormatError, input};
 pub use crate::moveit_msgs::types::{AllowedCollisions, AttachedObject, CollisionObject, FixedFrame, JointValue};
 pub use scene::PlanningScene;
 
-/// Larger files are refused: a parsed document takes several times the memory of its text.
+/// Largest size of a file, bytes. A parsed document takes several times the memory of its text.
 const MAX_BYTES: u64 = 64 << 20;
 
 /// Reads a file of at most 64 MiB.
 ///
 /// # Errors
-/// As [`parse`], and a file that cannot be read.
+/// The errors of [`parse`], or a file that cannot be read.
 pub fn read(path: &Path) -> Result<PlanningScene, FormatError> {
     parse(path, &input::read_file(path, MAX_BYTES, "a scene whose meshes have fewer triangles")?)
 }
 
-/// Parses either form, recognized by its content; `file` is named in messages, and mesh files are found relative to it.
+/// Parses a planning scene in either form. The content decides the form.
+///
+/// `file` is named in messages, and mesh files are relative to it.
 ///
 /// ```
 /// use elbowroom_formats::planning_scene;
@@ -45,7 +49,7 @@ pub fn read(path: &Path) -> Result<PlanningScene, FormatError> {
 /// ```
 ///
 /// # Errors
-/// Text that is not a planning scene, with the line.
+/// [`FormatError`] with the line, if the text is not a planning scene.
 pub fn parse(file: &Path, bytes: &[u8]) -> Result<PlanningScene, FormatError> {
     input::check_content(bytes, file)?;
     let text = input::text(bytes, file)?;

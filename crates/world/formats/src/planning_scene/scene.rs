@@ -1,4 +1,4 @@
-//! What a planning scene says.
+//! Content of a planning scene.
 
 use std::path::PathBuf;
 
@@ -10,13 +10,13 @@ use crate::moveit_msgs::types::{AllowedCollisions, AttachedObject, CollisionObje
 /// The content of a planning scene.
 #[derive(Debug, Clone, Default)]
 pub struct PlanningScene {
-    /// The file, for messages.
+    /// Path of the file, for messages.
     pub file: PathBuf,
-    /// Its name; empty if it has none.
+    /// Name of the scene; may be empty.
     pub name: String,
-    /// Objects of the world; no name twice.
+    /// Objects of the world, with unique names.
     pub objects: Vec<CollisionObject>,
-    /// Frames that objects may refer to, besides the links of a robot.
+    /// Frames to which objects may refer, in addition to the links of a robot.
     pub frames: Vec<FixedFrame>,
     /// Objects that a robot holds.
     pub attached: Vec<AttachedObject>,
@@ -24,8 +24,8 @@ pub struct PlanningScene {
     pub allowed: AllowedCollisions,
     /// Joint values of the robot.
     pub joints: Vec<JointValue>,
-    /// Pose of the robot's root link, where the scene has one.
+    /// Pose of the robot's root link, if the scene has it.
     pub base_in_world: Option<Pose>,
-    /// What the user should know.
+    /// Warnings for the user.
     pub warnings: Vec<Warning>,
 }

@@ -1,4 +1,4 @@
-//! Tests of both forms of planning scenes.
+//! Tests of the two forms of planning scenes.
 
 use std::path::Path;
 
@@ -36,7 +36,7 @@ fn the_newer_text_has_poses_of_objects_and_subframes() {
     assert_eq!(ids, [("table top", 2), ("ground", 1)]);
     let (Shape::Cuboid(cuboid), pose) = solid(&scene, 0, 0) else { panic!("a box") };
     assert_eq!(cuboid.half_extents, Vec3::new(0.3, 0.2, 0.05));
-    // The object is turned by a quarter about z: its x is y of the world.
+    // The object is turned by a quarter about z: its x is the y of the world.
     assert!((pose.translation - Vec3::new(1.0, 0.2, 0.5)).length() < 1e-7, "{pose:?}");
     let (Shape::Cylinder(cylinder), pose) = solid(&scene, 0, 1) else { panic!("a cylinder") };
     assert_eq!((cylinder.radius, cylinder.half_length), (0.05, 0.4), "radius, then length");
@@ -101,7 +101,7 @@ fn mesh_files_are_found_beside_the_scene() {
 
 #[test]
 fn errors_name_the_line_and_a_remedy() {
-    // File, text, part that is replaced, replacement, line, message, hint.
+    // File, text, replaced part, replacement, line, message, hint.
     let cases: &[(&str, &str, &str, &str, usize, &str, &str)] = &[
         ("a.scene", NEW, "* table top", "*table top", 2, "`*table` where an object begins", "* NAME"),
         ("a.scene", NEW, "* table top", "* ", 2, "object without a name", "* NAME"),

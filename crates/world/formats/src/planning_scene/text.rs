@@ -1,6 +1,6 @@
 //! The `.scene` text: a name, objects that begin with `*`, and a line with a dot.
 //!
-//! Objects have a pose and subframes in the newer version. A line of four colour components follows each shape.
+//! In the newer version, objects have a pose and subframes. A line of four colour components follows each shape.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -20,7 +20,7 @@ const END: &str = "a last line with a dot: the file may be truncated, save it ag
 /// The shortest text of a vertex or triangle: `0 0 0` and a line ending.
 const MIN_ROW_BYTES: usize = 6;
 
-/// True for a text of this form; YAML has no line that begins with an asterisk and a blank.
+/// True for a text of this form. YAML lines never begin with an asterisk and a blank.
 pub(super) fn is_scene_text(text: &str, file: &Path) -> bool {
     let is_marker = |line: &str| line.starts_with("* ") || line == ".";
     file.extension().is_some_and(|e| e.eq_ignore_ascii_case("scene"))
@@ -40,7 +40,7 @@ pub(super) fn parse(text: &str, file: &Path) -> Result<PlanningScene, FormatErro
     Ok(PlanningScene { name, objects, warnings: reader.warnings.finish(file), ..PlanningScene::default() })
 }
 
-/// The newer version: the line behind the first name is a position, of the older one a number of shapes.
+/// True for the newer version: the line after the first name is a position, in the older version a number of shapes.
 fn has_object_poses(text: &str) -> bool {
     let mut lines = Lines::new(text.as_bytes()).map(|(_, line)| line.trim_ascii());
     let is_name = |line: &[u8]| line.starts_with(b"*");
@@ -109,7 +109,7 @@ impl<'a> SceneText<'a> {
         Ok(CollisionObject { id, frame: String::new(), solids })
     }
 
-    /// A shape, and its pose in the frame that the file places.
+    /// Reads a shape, and its pose in the frame whose pose the file states.
     fn shape(&mut self, of: &str) -> Result<(Shape, Pose), FormatError> {
         const SHAPES: &str = "box, sphere, cylinder, cone, plane or mesh";
         let word = self.word(&format!("`{of}` has fewer shapes than it says"), SHAPES)?;

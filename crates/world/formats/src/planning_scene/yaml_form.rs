@@ -18,7 +18,7 @@ pub(super) fn parse(text: &str, file: &Path) -> Result<PlanningScene, FormatErro
     if !document.is_object() {
         return Err(root.error("is no planning scene", LAYOUT));
     }
-    // The answer of the service `get_planning_scene` has the scene in a field.
+    // The response of the service `get_planning_scene` has the scene in a field.
     let root = root.get("scene")?.unwrap_or(root);
     if root.get("world")?.is_none() {
         return Err(root.error("has no `world`: it is no planning scene", LAYOUT));

@@ -1,4 +1,4 @@
-//! The body: consecutive numbers, as text or in bytes.
+//! The body: consecutive numbers, in text or binary form.
 
 use std::path::Path;
 
@@ -27,7 +27,7 @@ impl<'a> BodyReader<'a> {
         FormatError::new(self.file, line, what)
     }
 
-    /// Refuses an element with a larger count than the rest of the file can hold.
+    /// Refuses an element whose count is larger than the rest of the file can hold.
     pub(super) fn check_remaining(&self, element: &Element) -> Result<(), FormatError> {
         let (left, least) = if self.encoding == Encoding::Ascii {
             // At least a digit and a blank for each value; the last blank may be missing.

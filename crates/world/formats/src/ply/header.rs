@@ -52,7 +52,7 @@ impl ScalarType {
 pub(super) struct Property {
     pub(super) name: String,
     pub(super) kind: ScalarType,
-    /// The type of the count before a list; `None` for a single value.
+    /// Type of the count before a list; `None` for a single value.
     pub(super) list_count: Option<ScalarType>,
 }
 
@@ -76,7 +76,7 @@ impl Header {
     }
 }
 
-/// Parses the header; returns it and the body.
+/// Parses the header, and returns it with the body.
 pub(super) fn parse<'a>(bytes: &'a [u8], file: &Path) -> Result<(Header, &'a [u8]), FormatError> {
     let mut encoding = None;
     let mut elements: Vec<Element> = Vec::new();
@@ -126,7 +126,7 @@ pub(super) fn parse<'a>(bytes: &'a [u8], file: &Path) -> Result<(Header, &'a [u8
     Ok((Header { encoding: encoding.ok_or_else(missing)?, elements, lines: line }, rest))
 }
 
-/// Lines end with `\n`, `\r\n` or `\r`.
+/// Splits off the first line. Lines end with `\n`, `\r\n` or `\r`.
 fn split_line(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
     let length = bytes.iter().position(|&b| b == b'\n' || b == b'\r')?;
     let (line, rest) = bytes.split_at(length);

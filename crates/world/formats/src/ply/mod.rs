@@ -12,10 +12,10 @@ use crate::{FormatError, input, polygon};
 use body::BodyReader;
 use header::{Element, Header};
 
-/// Parses a PLY file. Numbers are taken as metres.
+/// Parses a PLY file. Numbers are metres.
 ///
 /// # Errors
-/// Invalid headers, more elements announced than the file can hold, missing vertices, invalid numbers.
+/// [`FormatError`] for invalid headers, declared counts that the file cannot hold, missing vertices, or invalid numbers.
 pub fn parse(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> {
     input::check_content(bytes, file)?;
     let (header, body) = header::parse(bytes, file)?;
@@ -41,8 +41,9 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> {
     Ok(LoadedMeshes { meshes: vec![mesh], warnings: Vec::new() })
 }
 
-/// Parses the vertices of a PLY file as they are written, with or without faces: sensors write NaN if they measured
-/// nothing. Numbers are taken as metres.
+/// Parses the vertices of a PLY file as written, with or without faces.
+///
+/// Numbers are metres; sensors write NaN for points that they did not measure.
 ///
 /// ```
 /// let text = b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n";
@@ -52,7 +53,7 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> {
 /// ```
 ///
 /// # Errors
-/// Invalid headers, more elements announced than the file can hold, words that are no numbers.
+/// [`FormatError`] for invalid headers, declared counts that the file cannot hold, or words that are not numbers.
 pub fn parse_points(bytes: &[u8], file: &Path) -> Result<Vec<Vec3>, FormatError> {
     input::check_content(bytes, file)?;
     let (header, body) = header::parse(bytes, file)?;
@@ -127,7 +128,7 @@ fn read_vertices(
     Ok(())
 }
 
-/// Lists of corners, kept until all vertices are read: faces may come first.
+/// Lists of corners, kept until all vertices are read, because faces may come first.
 #[derive(Default)]
 struct FaceLists {
     are_strips: bool,

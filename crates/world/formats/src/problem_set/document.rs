@@ -1,4 +1,4 @@
-//! The JSON text as entries in the order of the file, each key once.
+//! The JSON text as entries in the order of the file, with unique keys.
 
 use std::collections::HashSet;
 use std::fmt;
@@ -13,7 +13,7 @@ use crate::FormatError;
 /// The layout, for messages.
 pub(super) const LAYOUT: &str = "{\"SET\": {\"ID\": {\"scene\": {…}, \"request\": {…}}}}";
 
-/// The entries of a JSON object. A key that occurs twice is an error: the first entry would be lost.
+/// The entries of a JSON object. A repeated key is an error, because its first entry would be lost.
 #[derive(Debug)]
 pub(super) struct Entries<T>(pub(super) Vec<(String, T)>);
 
@@ -48,7 +48,7 @@ impl<'de, T: Deserialize<'de>> Visitor<'de> for EntriesVisitor<T> {
 /// Parses the text.
 ///
 /// # Errors
-/// [`FormatError`] with the line where it is not JSON, or of another layout.
+/// [`FormatError`] with the line, if the text is not JSON or has another layout.
 pub(super) fn parse<'de, T: Deserialize<'de>>(text: &'de str, file: &Path) -> Result<T, FormatError> {
     serde_json::from_str(text).map_err(|e| {
         let line = (e.line() > 0).then_some(e.line());

@@ -6,12 +6,12 @@ use crate::FormatError;
 use crate::moveit_msgs::field::Field;
 use crate::moveit_msgs::types::JointValue;
 
-/// Constraints of a message that are not about joint values.
+/// Constraints of a message on quantities other than joint values.
 const OTHER_CONSTRAINTS: [&str; 3] = ["position_constraints", "orientation_constraints", "visibility_constraints"];
-/// What a goal is made of, for messages.
+/// The layout of a goal, for messages.
 const JOINTS: &str = "\"joint_constraints\": [{\"joint_name\": \"NAME\", \"position\": 0.5}, …]";
 
-/// The alternative goals of a request, each as joint values.
+/// Reads the alternative goals of a request, each as joint values.
 pub(super) fn goals(request: &Field<'_>) -> Result<Vec<Vec<JointValue>>, FormatError> {
     if let Some(constraints) = request.get("path_constraints")? {
         for key in OTHER_CONSTRAINTS.into_iter().chain(["joint_constraints"]) {

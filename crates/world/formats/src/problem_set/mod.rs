@@ -1,5 +1,6 @@
-//! Sets of planning problems in the layout of `MotionBenchMaker`: `{set: {id: {scene, request}}}`, with scenes and requests as
-//! `MoveIt` writes its messages.
+//! Sets of planning problems in the layout of `MotionBenchMaker`: `{set: {id: {scene, request}}}`.
+//!
+//! Scenes and requests are in the form in which `MoveIt` writes its messages.
 //!
 //! | read | meaning |
 //! | --- | --- |
@@ -9,8 +10,8 @@
 //! | `scene.robot_state`, `request.start_state` | joint values, pose of the base, attached objects; the latter overrides |
 //! | `request.goal_constraints` | joint values; several are alternatives |
 //!
-//! All else is ignored, except for what would make an answer wrong, which is refused: an octomap with data, goals that are
-//! poses, path constraints.
+//! Other content is ignored. Content that would make an answer wrong is refused: an octomap with data, goals that are
+//! poses, and path constraints.
 
 mod document;
 mod goal;
@@ -31,30 +32,30 @@ use document::{Entries, LAYOUT};
 pub use crate::moveit_msgs::types::{AllowedCollisions, AttachedObject, CollisionObject, FixedFrame, JointValue};
 pub use problem::PlanningProblem;
 
-/// Larger files are refused: a parsed document takes several times the memory of its text.
+/// Largest size of a file, bytes. A parsed document takes several times the memory of its text.
 const MAX_BYTES: u64 = 256 << 20;
 
 /// The problems of a file.
 #[derive(Debug, Clone)]
 pub struct ProblemFile {
-    /// The file, for messages.
+    /// Path of the file, for messages.
     pub file: PathBuf,
-    /// In the order of the file.
+    /// Problems in the order of the file.
     pub problems: Vec<PlanningProblem>,
-    /// What the user should know; each kind of warning once.
+    /// Warnings for the user, one per kind.
     pub warnings: Vec<Warning>,
 }
 
 /// Reads a file of at most 256 MiB.
 ///
 /// # Errors
-/// As [`parse`], and a file that cannot be read.
+/// The errors of [`parse`], or a file that cannot be read.
 pub fn read(path: &Path) -> Result<ProblemFile, FormatError> {
     let smaller = "fewer problems per file: the sets can be in files of their own";
     parse(path, &input::read_file(path, MAX_BYTES, smaller)?)
 }
 
-/// Parses such a file; `file` is named in messages.
+/// Parses the content of a file of problems; `file` is named in messages.
 ///
 /// ```
 /// use elbowroom_formats::problem_set;
@@ -73,7 +74,7 @@ pub fn read(path: &Path) -> Result<ProblemFile, FormatError> {
 /// ```
 ///
 /// # Errors
-/// Text that is not JSON of this layout: the message has the line, or set, problem and field.
+/// [`FormatError`] if the text is not JSON of this layout. The message has the line, or the set, problem and field.
 pub fn parse(file: &Path, bytes: &[u8]) -> Result<ProblemFile, FormatError> {
     input::check_content(bytes, file)?;
     let text = input::text(bytes, file)?;

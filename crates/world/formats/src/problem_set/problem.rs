@@ -1,4 +1,4 @@
-//! A planning problem, as far as it is read.
+//! The parts of a planning problem that are read.
 
 use elbowroom_spatial::Pose;
 
@@ -7,11 +7,11 @@ use crate::moveit_msgs::types::{AllowedCollisions, AttachedObject, CollisionObje
 /// A planning problem: obstacles, a start and alternative goals.
 #[derive(Debug, Clone)]
 pub struct PlanningProblem {
-    /// Name of its set.
+    /// Name of the set.
     pub set: String,
-    /// Its key in the set.
+    /// Key in the set.
     pub id: String,
-    /// Frames that objects may refer to, besides the links.
+    /// Frames to which objects may refer, in addition to the links.
     pub frames: Vec<FixedFrame>,
     /// Obstacles.
     pub objects: Vec<CollisionObject>,
@@ -21,8 +21,8 @@ pub struct PlanningProblem {
     pub matrix: AllowedCollisions,
     /// Pose of the robot's root link.
     pub base_in_world: Pose,
-    /// Joint values at the start; no joint twice.
+    /// Joint values at the start, each joint once.
     pub start: Vec<JointValue>,
-    /// Alternative goals, at least one; none is empty.
+    /// Alternative goals: at least one, all non-empty.
     pub goals: Vec<Vec<JointValue>>,
 }

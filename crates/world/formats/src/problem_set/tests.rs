@@ -58,7 +58,7 @@ fn parse_problem(problem: &Value) -> Result<ProblemFile, FormatError> {
     parse(Path::new("set.json"), json!({"shelf": {"7": problem}}).to_string().as_bytes())
 }
 
-/// The message where one field of the complete problem is replaced.
+/// The message if one field of the complete problem is replaced.
 fn refused(pointer: &str, value: Value) -> String {
     let mut problem = complete();
     *problem.pointer_mut(pointer).expect(pointer) = value;
@@ -95,7 +95,7 @@ fn shapes_have_the_dimensions_and_poses_of_the_message() {
     let solid = |object: usize, i: usize| problem.objects[object].solids[i].clone();
     let (Shape::Cuboid(cuboid), pose) = solid(0, 0) else { panic!("a box") };
     assert_eq!(cuboid.half_extents, Vec3::new(0.2, 0.1, 0.05));
-    // A quarter turn about z of the object's pose, from a quaternion that is not of unit length.
+    // A quarter turn about z of the object's pose, from a quaternion whose length is not 1.
     assert!((pose.translation - Vec3::new(0.0, 0.1, 1.0)).length() < 1e-12);
     assert!((pose.transform_vector(Vec3::X) - Vec3::Y).length() < 1e-12);
     let (Shape::Sphere(sphere), _) = solid(0, 1) else { panic!("a sphere") };

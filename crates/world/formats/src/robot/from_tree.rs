@@ -1,4 +1,4 @@
-//! Robots from node trees: every node is a link; joints are given by animation tracks, by a file of joints, or by options.
+//! Robots from node trees: every node is a link; animation tracks, a joints file, or options define the joints.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -21,7 +21,9 @@ use crate::{FormatError, Warning};
 /// Largest number of links of a robot, which bounds the size of its allowed collision matrix.
 pub const MAX_LINKS: usize = 2000;
 
-/// The robot of a tree. `file` is named in messages; `default_path` is the file in which joints can be specified.
+/// Converts a tree to a robot.
+///
+/// `file` is named in messages; `default_path` is the joints file in which joints can be specified.
 pub(super) fn robot(
     tree: NodeTree,
     specs: &[JointSpec],
@@ -47,9 +49,9 @@ pub(super) fn robot(
 pub(super) struct NodeJoint {
     name: String,
     kind: JointKind,
-    /// In the node's frame.
+    /// Axis in the node's frame.
     axis: Vec3,
-    /// The link's origin in the node's frame.
+    /// Origin of the link in the node's frame, m.
     at: Vec3,
     limits: Limits,
     mimic: Option<(String, f64, f64)>,
@@ -57,9 +59,9 @@ pub(super) struct NodeJoint {
 
 struct RobotBuilder<'a> {
     tree: NodeTree,
-    /// Unique, one per node.
+    /// Unique names, one per node.
     names: Vec<String>,
-    /// Name of the root link that is added where the file has none.
+    /// Name of the root link that is added if the file has none.
     own_root: String,
     frames: Vec<Pose>,
     file: &'a Path,
@@ -134,7 +136,7 @@ impl<'a> RobotBuilder<'a> {
         NodeJoint { name: self.names[i].clone(), kind, axis, at, limits: Limits::range(lower, upper), mimic: None }
     }
 
-    /// The joint that the user specifies, with the track for what is not specified.
+    /// The joint that the user specifies. The track supplies values that are not specified.
     fn specified_joint(
         &self,
         i: usize,
@@ -192,7 +194,7 @@ impl<'a> RobotBuilder<'a> {
 
     fn build(self, node_joints: &[Option<NodeJoint>]) -> Result<Robot, FormatError> {
         let nodes = &self.tree.nodes;
-        // The frame of a link is that of its node, translated to the axis of the joint.
+        // The frame of a link is the frame of its node, translated to the axis of the joint.
         let link_in_node: Vec<Pose> =
             node_joints.iter().map(|m| Pose::from_translation(m.as_ref().map_or(Vec3::ZERO, |m| m.at))).collect();
         let tops: Vec<usize> = self.tree.children(None).collect();

@@ -1,4 +1,4 @@
-//! The warning about a model without joints, with a template of the file of joints.
+//! The warning about a model without joints, with a template of a joints file.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -11,10 +11,10 @@ use crate::names::list_names;
 use crate::nodetree::NodeTree;
 use elbowroom_spatial::Pose;
 
-/// More nodes than this are not in the template.
+/// Largest number of nodes in the template.
 const MAX_LISTED: usize = 40;
 
-/// The warning about a tree without joints; none where no node could be moved by a joint.
+/// The warning about a tree without joints; empty if a joint could not move any node.
 pub(super) fn missing_joints_warning(
     tree: &NodeTree,
     names: &[String],

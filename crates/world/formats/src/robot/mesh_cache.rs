@@ -21,13 +21,13 @@ type Scale = [u64; 3];
 type Loaded = Result<(HashMap<Scale, TriMeshes>, Vec<Warning>), FormatError>;
 
 pub(super) struct MeshCache {
-    /// By reference as written: the file, or a description of the search.
+    /// Per reference as written: the file, or a description of the search.
     paths: HashMap<String, Result<PathBuf, String>>,
     files: HashMap<PathBuf, Loaded>,
 }
 
 impl MeshCache {
-    /// Loads all meshes of the geometries. The result does not depend on the threads.
+    /// Loads all meshes of the geometries. The result does not depend on the number of threads.
     pub(super) fn load<'a>(
         meshes: impl Iterator<Item = &'a LinkGeometry>,
         base: &Path,
@@ -56,7 +56,7 @@ impl MeshCache {
         }
     }
 
-    /// The meshes of a file, and its warnings on the first call.
+    /// The meshes of a file, and on the first call its warnings.
     pub(super) fn meshes(&mut self, path: &Path, scale: Vec3) -> Result<(TriMeshes, Vec<Warning>), FormatError> {
         let missing = || FormatError::new(path, None, "was not loaded");
         match self.files.get_mut(path) {
@@ -76,7 +76,7 @@ fn key(scale: Vec3) -> Scale {
 
 fn load_files(scales_of: HashMap<PathBuf, Vec<Vec3>>, unit: Option<LengthUnit>) -> HashMap<PathBuf, Loaded> {
     let mut jobs: Vec<_> = scales_of.into_iter().collect();
-    // A hash map has no order; by their size, large files are spread over the threads.
+    // A hash map has no order. Sorting by size spreads large files over the threads.
     jobs.sort_by_cached_key(|(path, _)| std::cmp::Reverse(std::fs::metadata(path).map_or(0, |m| m.len())));
     let load = |(path, scales): (PathBuf, Vec<Vec3>)| {
         let loaded = load_file(&path, &scales, unit);

@@ -1,4 +1,4 @@
-//! Robots: a URDF with its meshes, or a 3DS or glTF model; with an SRDF.
+//! Robots from files: a URDF with its meshes, or a 3DS or glTF model; with an SRDF.
 
 mod from_tree;
 mod joint_candidates;
@@ -34,43 +34,46 @@ pub use to_urdf::{UrdfExport, to_urdf, write_urdf};
 /// Options of [`load`].
 #[derive(Debug, Clone, Default)]
 pub struct LoadOptions {
-    /// Its SRDF, whose disabled pairs are added to [`Robot::disabled_pairs`].
+    /// SRDF file, whose disabled pairs are added to [`Robot::disabled_pairs`].
     pub srdf: Option<PathBuf>,
     /// Whether to load visual geometry.
     pub load_visuals: bool,
-    /// The unit of a 3DS model, or of meshes whose format defines none (STL, OBJ, PLY, OFF, 3DS); the default is metres.
-    /// The numbers of a URDF itself are always metres.
+    /// Unit of a 3DS model, or of meshes whose format defines none (STL, OBJ, PLY, OFF, 3DS).
+    ///
+    /// Default: metres. The numbers of a URDF itself are always metres.
     pub unit: Option<LengthUnit>,
-    /// The file of joints of a 3DS or glTF model; the default is [`joints::default_path`], where that exists.
+    /// Joints file of a 3DS or glTF model. Default: [`joints::default_path`], if that file exists.
     pub joints: Option<PathBuf>,
-    /// More joints of such a model, in the syntax of [`joints::parse_option`]. They override the file.
+    /// Further joints of a 3DS or glTF model, in the syntax of [`joints::parse_option`]. They override the file.
     pub joint: Vec<String>,
 }
 
-/// A robot, and what the user should know.
+/// A robot, with warnings for the user.
 #[derive(Debug, Clone)]
 pub struct LoadedRobot {
-    /// Links and joints in the order of the file.
+    /// The robot, with links and joints in the order of the file.
     pub robot: Robot,
-    /// The SRDF of the options; its warnings are among those below.
+    /// The SRDF of the options. Its warnings are in `warnings`.
     pub srdf: Option<Srdf>,
     /// Warnings about the URDF, its meshes and the SRDF.
     pub warnings: Vec<Warning>,
 }
 
-/// Loads a robot: a URDF with its collision meshes, or a 3DS or glTF model, detected by content first and extension second;
-/// with the visual meshes of a URDF, and an SRDF, as the options say.
+/// Loads a robot: a URDF with its collision meshes, or a 3DS or glTF model.
+///
+/// The content decides the format, then the extension. The options say whether to load the visual meshes of a URDF, and
+/// an SRDF.
 ///
 /// Each object of a mesh file becomes one collider. A mesh file is read once, however many links use it. The unit of a
-/// COLLADA mesh is applied and its up axis is not, as in rviz and `MoveIt`.
+/// COLLADA mesh is applied; its up axis is ignored, as in rviz and `MoveIt`.
 ///
-/// Every node of a 3DS or glTF model becomes a link. Joints are inferred from tracks that rotate or translate a node, and
-/// specified by [`LoadOptions::joints`] or [`LoadOptions::joint`]; all other nodes are fixed. A model without joints gives a
-/// warning with a template of the file of joints.
+/// Every node of a 3DS or glTF model becomes a link. Joints are inferred from tracks that rotate or translate a node, or
+/// specified by [`LoadOptions::joints`] or [`LoadOptions::joint`]; all other nodes are fixed. A model without joints
+/// gives a warning with a template of a joints file.
 ///
 /// # Errors
-/// An invalid model, file of joints or SRDF, and every collision mesh that is missing or cannot be read; visual meshes only
-/// give warnings.
+/// [`FormatError`] for an invalid model, joints file or SRDF, and for every collision mesh that is missing or cannot be
+/// read. Visual meshes only give warnings.
 ///
 /// ```
 /// use elbowroom_formats::robot::{self, LoadOptions};
@@ -98,10 +101,10 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<LoadedRobot, FormatErr
     Ok(LoadedRobot { robot, srdf, warnings: warnings.finish(path) })
 }
 
-/// Adds the disabled pairs of an SRDF to a robot. Returns warnings.
+/// Adds the disabled pairs of an SRDF to a robot, and returns warnings.
 ///
 /// # Errors
-/// A file that cannot be read or is not an SRDF.
+/// [`FormatError`] if the file cannot be read or is not an SRDF.
 pub fn apply_srdf(robot: &mut Robot, path: &Path) -> Result<Vec<Warning>, FormatError> {
     let mut warnings = WarningList::default();
     disable_pairs(robot, path, &mut warnings)?;
@@ -117,10 +120,10 @@ pub fn tree_format(bytes: &[u8], file: &Path) -> Option<MeshFormat> {
     mesh::detect(bytes, file).ok().filter(|f| matches!(f, MeshFormat::Tds | MeshFormat::Gltf))
 }
 
-/// The nodes of a 3DS or glTF model, in metres.
+/// Parses the nodes of a 3DS or glTF model, in metres.
 ///
 /// # Errors
-/// As [`tds::parse`] and [`gltf::parse_tree`].
+/// The errors of [`tds::parse`] and [`gltf::parse_tree`].
 pub fn parse_tree(
     bytes: &[u8],
     format: MeshFormat,
@@ -199,11 +202,11 @@ fn visuals_to_load<'a>(link: &'a urdf::UrdfLink, options: &LoadOptions) -> &'a [
     if options.load_visuals { &link.visuals } else { &[] }
 }
 
-/// The chain of a model; links and joints keep their order.
+/// Converts a model to a chain; links and joints keep their order.
 ///
 /// # Errors
-/// What [`Chain::new`] refuses beyond the checks of [`urdf::parse`]; the line is that of the joint or link that the
-/// message names.
+/// The errors of [`Chain::new`] beyond the checks of [`urdf::parse`], with the line of the joint or link that the message
+/// names.
 pub fn chain(model: &UrdfModel, file: &Path) -> Result<Chain, FormatError> {
     let links = model.links.iter().map(|l| l.name.clone()).collect();
     let joint = |j: &urdf::UrdfJoint| kinematics::Joint {
@@ -302,7 +305,7 @@ impl Loader<'_> {
         }
     }
 
-    /// Warns of a robot of which all parts are tiny, and of joints more than 20 m apart.
+    /// Warns about a robot whose parts are all tiny, and about joints more than 20 m from their parent.
     fn check_units(&mut self, model: &UrdfModel) {
         let is_tiny = self.largest > 0.0 && self.largest < 1.0;
         if let Some(warning) = mesh::unit_warning(Vec3::splat(self.largest)).filter(|_| is_tiny) {

@@ -1,8 +1,8 @@
-//! Difference of two poses.
+//! The difference of two poses.
 
 use elbowroom_spatial::Pose;
 
-/// Poses with a smaller difference (m, rad) are equal.
+/// Difference (m, rad) below which poses are equal.
 pub(super) const SAME_POSE: f64 = 1e-9;
 
 /// The larger of the angle (rad) and the distance (m) between two poses.

@@ -10,18 +10,20 @@ use elbowroom_spatial::Pose;
 use crate::mesh_data::MeshData;
 use crate::nodetree::{Keyframe, Node, NodeTree};
 
-/// Largest distance of triangles from curved surfaces (m).
+/// Largest distance of triangles from curved surfaces, m.
 const MAX_CHORD_ERROR_M: f64 = 1e-4;
-/// Largest rotation between two keys (rad), so that its direction is unambiguous.
+/// Largest rotation between two keys, rad, so that its direction is unambiguous.
 const MAX_KEY_STEP_RAD: f64 = FRAC_PI_3;
-/// Replaces the limit of an unlimited prismatic joint (m).
+/// Limit that replaces the limit of an unlimited prismatic joint, m.
 const UNLIMITED_M: f64 = 1.0;
 
-/// The links as nodes at zero joint values, their geometry as meshes, and each joint as a track: from zero to its upper
-/// limit, to its lower limit and back, one key per second. A continuous joint makes one whole turn.
+/// Converts a robot to a tree: links as nodes at zero joint values, geometry as meshes, and each joint as a track.
 ///
-/// So the file contains axes and limits of joints, and [`load`](super::load) reads the robot from it. What a tree cannot
-/// contain is lost: names, speeds and mimics of joints (but see [`joints::to_toml`](crate::joints::to_toml)), the
+/// A track goes from zero to the upper limit, to the lower limit and back, with one key per second. A continuous joint
+/// makes one whole turn.
+///
+/// So the file contains axes and limits of joints, and [`load`](super::load) can read the robot from it. Data that a tree
+/// cannot contain are lost: names, speeds and mimics of joints (but see [`joints::to_toml`](crate::joints::to_toml)), the
 /// direction of a joint whose range is below zero, and the exact surface of spheres, cylinders and capsules (0.1 mm).
 ///
 /// ```
@@ -61,7 +63,7 @@ fn node(chain: &Chain, link: usize, parent: Option<usize>, colliders: &[Collider
     node
 }
 
-/// Colliders as triangles in the link's frame, named after the link and numbered where there are several.
+/// Colliders as triangles in the link's frame, named after the link and numbered if there are several.
 pub(super) fn meshes(link: &str, colliders: &[Collider]) -> Vec<MeshData> {
     let mesh = |(i, collider): (usize, &Collider)| {
         let (vertices, triangles) = tessellate(&collider.shape, MAX_CHORD_ERROR_M);

@@ -13,23 +13,24 @@ use crate::srdf::{DisabledPair, Srdf};
 use crate::xml::escaped;
 use crate::{FormatError, WholeFile, stl};
 
-/// Replaces the limit of an unlimited prismatic joint (m), which a URDF requires.
+/// Limit that replaces the limit of an unlimited prismatic joint, m. A URDF requires a limit.
 const UNLIMITED_M: f64 = 1e6;
 
 /// A URDF, its SRDF and its meshes.
 #[derive(Debug, Clone, Default)]
 pub struct UrdfExport {
-    /// The text of the URDF.
+    /// Text of the URDF.
     pub urdf: String,
-    /// The text of an SRDF with the disabled pairs; `None` if there are none.
+    /// Text of an SRDF with the disabled pairs; `None` if no pairs are disabled.
     pub srdf: Option<String>,
-    /// Mesh files, by their names relative to the URDF.
+    /// Mesh files, with their names relative to the URDF.
     pub meshes: Vec<(String, MeshData)>,
 }
 
-/// Converts a robot to a URDF: links, joints, limits, mimics, and geometry as exact primitives or triangle meshes, for
-/// collision and as visuals. A capsule becomes a cylinder and two spheres, which every URDF reader supports. `name` is the
-/// name of the robot.
+/// Converts a robot to a URDF: links, joints, limits, mimics, and geometry.
+///
+/// The geometry is written as exact primitives or triangle meshes, for collision and as visuals. A capsule becomes a
+/// cylinder and two spheres, which every URDF reader supports. `name` is the name of the robot.
 ///
 /// ```
 /// use elbowroom_formats::robot;
@@ -53,11 +54,12 @@ pub fn to_urdf(robot: &Robot, name: &str) -> UrdfExport {
     export
 }
 
-/// Writes a robot as `DIR/NAME.urdf` with its meshes in `DIR/meshes`, and `DIR/NAME.srdf` where pairs are disabled.
+/// Writes a robot as `DIR/NAME.urdf` with its meshes in `DIR/meshes`, and `DIR/NAME.srdf` if pairs are disabled.
+///
 /// Returns the files, the URDF first.
 ///
 /// # Errors
-/// A file that cannot be written.
+/// [`FormatError`] if a file cannot be written.
 pub fn write_urdf(robot: &Robot, dir: &Path, name: &str) -> Result<Vec<PathBuf>, FormatError> {
     let export = to_urdf(robot, name);
     let cannot = |path: &Path| {
@@ -86,7 +88,7 @@ pub fn write_urdf(robot: &Robot, dir: &Path, name: &str) -> Result<Vec<PathBuf>,
 fn urdf(robot: &Robot, name: &str, out: &mut String, meshes: &mut Vec<(String, MeshData)>) -> fmt::Result {
     let chain = &robot.chain;
     writeln!(out, "<?xml version=\"1.0\"?>\n<robot name=\"{}\">", escaped(name))?;
-    // Robots written to the same directory have their own meshes.
+    // Each robot has its own folder of meshes, so that several robots can be written to the same directory.
     let folder = plain_name(name);
     for (i, link) in chain.links().iter().enumerate() {
         let collisions =
@@ -128,9 +130,9 @@ struct GeometryElement {
 
 /// Names of the mesh files of a link.
 struct MeshFiles<'a> {
-    /// The folder of the robot below `meshes`.
+    /// Folder of the robot below `meshes`.
     folder: &'a str,
-    /// Before the name of the link: empty, or `visual_`.
+    /// Prefix of the link's name: empty, or `visual_`.
     prefix: &'a str,
     /// Index of the link, which makes the names unique.
     index: usize,
@@ -138,7 +140,7 @@ struct MeshFiles<'a> {
 }
 
 impl MeshFiles<'_> {
-    /// The file of one collider, relative to the URDF.
+    /// Path of the file of one collider, relative to the URDF.
     fn path(&self, collider: usize) -> String {
         let Self { folder, prefix, index, .. } = self;
         let link = plain_name(self.link);
@@ -183,7 +185,7 @@ fn elements(
     elements
 }
 
-/// A name as part of a file name.
+/// Converts a name to a part of a file name.
 fn plain_name(name: &str) -> String {
     let plain = |c: char| if c.is_ascii_alphanumeric() || "-_".contains(c) { c } else { '_' };
     name.chars().map(plain).take(80).collect()
@@ -217,7 +219,7 @@ fn joint_element(chain: &Chain, joint: &Joint, out: &mut String) -> fmt::Result 
             let end = |x: f64| x.clamp(-UNLIMITED_M, UNLIMITED_M);
             write!(out, " lower=\"{:?}\" upper=\"{:?}\"", end(limits.lower), end(limits.upper))?;
         }
-        // 0 means unknown: the attributes are required.
+        // The attributes are required; 0 means unknown.
         let (effort, velocity) = (limits.effort.unwrap_or(0.0), limits.velocity.unwrap_or(0.0));
         write!(out, " effort=\"{effort:?}\" velocity=\"{velocity:?}\"")?;
         if let Some(acceleration) = limits.acceleration {

@@ -1,4 +1,4 @@
-//! Joints inferred from animation tracks: the axis of rotation or translation of a node's keys.
+//! Joints inferred from animation tracks: finds the axis of rotation or translation of a node's keys.
 
 use std::f64::consts::{PI, TAU};
 
@@ -9,36 +9,36 @@ use crate::nodetree::Node;
 
 /// The motion of a node's keys.
 pub(super) enum TrackJoint {
-    /// None.
+    /// The node does not move.
     None,
-    /// That of a joint.
+    /// The motion of a joint.
     Joint(InferredJoint),
-    /// Another one; a description for messages.
+    /// A motion that no single joint makes, with a description for messages.
     NoJoint(String),
 }
 
-/// A joint, in the rest frame of the node.
+/// An inferred joint, in the rest frame of the node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct InferredJoint {
     pub(super) kind: JointKind,
     pub(super) axis: Vec3,
-    /// A point on the axis; zero where the origin is one.
+    /// A point on the axis, m; zero if the origin is on the axis.
     pub(super) at: Vec3,
     /// Range of the keys, rad or m; the rest frame is 0.
     pub(super) lower: f64,
     pub(super) upper: f64,
 }
 
-/// Rotations below this (rad) are rounding errors of single precision.
+/// Angle (rad) below which a rotation is a rounding error of single precision.
 const NOISE_RAD: f64 = 1e-5;
-/// Directions that differ by less than this (rad) are equal.
+/// Angle (rad) below which directions are equal.
 const SAME_DIRECTION_RAD: f64 = 2e-3;
-/// Translations below this fraction of the model's size are rounding errors.
+/// Distance, as a fraction of the model's size, below which a translation is a rounding error.
 const NOISE: f64 = 1e-5;
 /// Largest deviation of a rotating node from its circle, as a fraction of the model's size.
 const MAX_DEVIATION: f64 = 1e-3;
 
-/// Infers the joint of a node's keys. The direction of the first motion is positive. `size` is that of the model (m).
+/// Infers the joint of a node's keys. The direction of the first motion is positive. `size` is the size of the model, m.
 pub(super) fn infer_joint(node: &Node, size: f64) -> TrackJoint {
     if node.track.is_empty() {
         return TrackJoint::None;
@@ -96,7 +96,7 @@ fn infer_rotation(poses: &[(f64, Pose)], turns: &[Vec3], largest_turn: Vec3, siz
     TrackJoint::Joint(InferredJoint { kind, axis, at, lower: range.0, upper: range.1 })
 }
 
-/// The point of the axis nearest to the origin, from the key with the best-conditioned rotation.
+/// The point of the axis nearest to the origin, computed from the key with the best-conditioned rotation.
 fn centre(poses: &[(f64, Pose)], angles: &[f64], axis: Vec3) -> Vec3 {
     let best = |a: &(&(f64, Pose), &f64), b: &(&(f64, Pose), &f64)| {
         let size = |angle: f64| (angle * 0.5).sin().abs();
@@ -131,8 +131,9 @@ fn infer_translation(poses: &[(f64, Pose)], size: f64) -> TrackJoint {
     TrackJoint::Joint(InferredJoint { kind: JointKind::Prismatic, axis, at: Vec3::ZERO, lower, upper })
 }
 
-/// The common direction of vectors that point to and fro along `longest`, in the sense of the first that is longer than
-/// `noise`.
+/// The common direction of vectors that point back and forth along `longest`.
+///
+/// Its sign is that of the first vector that is longer than `noise`.
 fn direction(vectors: &[Vec3], longest: Vec3, noise: f64) -> Vec3 {
     let sum = vectors.iter().fold(Vec3::ZERO, |sum, v| if v.dot(longest) < 0.0 { sum - *v } else { sum + *v });
     let axis = sum.try_normalize().or(longest.try_normalize()).unwrap_or(Vec3::Z);
@@ -140,7 +141,7 @@ fn direction(vectors: &[Vec3], longest: Vec3, noise: f64) -> Vec3 {
     snapped(if first.dot(axis) < 0.0 { -axis } else { axis })
 }
 
-/// A coordinate axis where the direction is one within single precision.
+/// The coordinate axis, if the direction is one within single precision; else the direction.
 fn snapped(axis: Vec3) -> Vec3 {
     let exact = axis.to_array().map(|x| if x.abs() < 1e-6 { 0.0 } else { x });
     Vec3::from(exact).try_normalize().unwrap_or(axis)
@@ -150,7 +151,7 @@ fn range(values: &[f64]) -> (f64, f64) {
     values.iter().fold((0.0, 0.0), |(low, high): (f64, f64), v| (low.min(*v), high.max(*v)))
 }
 
-/// A vector with few digits, for messages.
+/// Formats a vector with few digits, for messages.
 pub(super) fn show_vector(v: Vec3) -> String {
     let number = |x: f64| {
         let text = format!("{:.4}", x + 0.0);

@@ -1,4 +1,4 @@
-//! SRDF: groups, named states, end effectors, virtual joints, and the link pairs that are not tested.
+//! SRDF: groups, named states, end effectors, virtual joints, and disabled pairs of links.
 
 mod model;
 mod parser;

@@ -1,11 +1,11 @@
-//! What an SRDF says.
+//! Content of an SRDF.
 
 use crate::Warning;
 
-/// The content of an SRDF, in the file's order.
+/// The content of an SRDF, in the order of the file.
 #[derive(Debug, Clone, Default)]
 pub struct Srdf {
-    /// Name of the robot, where it is stated.
+    /// Name of the robot, if stated.
     pub robot: Option<String>,
     /// Groups of joints and links.
     pub groups: Vec<Group>,
@@ -17,16 +17,16 @@ pub struct Srdf {
     pub virtual_joints: Vec<VirtualJoint>,
     /// Joints that are not actuated.
     pub passive_joints: Vec<String>,
-    /// Pairs of links that are not tested.
+    /// Disabled pairs of links, which are not tested.
     pub disabled: Vec<DisabledPair>,
-    /// What the user should know.
+    /// Warnings for the user.
     pub warnings: Vec<Warning>,
 }
 
 /// One `<group>`.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Group {
-    /// Its name.
+    /// Name of the group.
     pub name: String,
     /// Names of links.
     pub links: Vec<String>,
@@ -41,9 +41,9 @@ pub struct Group {
 /// One `<group_state>`: values of the joints of a group.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GroupState {
-    /// Its name. States of several groups may share one.
+    /// Name of the state. States of several groups may share a name.
     pub name: String,
-    /// The group.
+    /// Name of the group.
     pub group: String,
     /// Joints and their values, rad or m.
     pub values: Vec<(String, f64)>,
@@ -52,38 +52,38 @@ pub struct GroupState {
 /// One `<end_effector>`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct EndEffector {
-    /// Its name.
+    /// Name of the end effector.
     pub name: String,
-    /// The group of its links.
+    /// Group of its links.
     pub group: String,
-    /// The link that carries it.
+    /// Link that carries it.
     pub parent_link: String,
-    /// The group of that link, where it is stated.
+    /// Group of that link, if stated.
     pub parent_group: Option<String>,
 }
 
 /// One `<virtual_joint>`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct VirtualJoint {
-    /// Its name.
+    /// Name of the joint.
     pub name: String,
     /// `fixed`, `planar` or `floating`.
     pub kind: String,
-    /// The frame that it is in.
+    /// Name of the parent frame.
     pub parent_frame: String,
-    /// The root link of the robot.
+    /// Root link of the robot.
     pub child_link: String,
 }
 
 /// One `<disable_collisions>`.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct DisabledPair {
-    /// The first link.
+    /// First link.
     pub link1: String,
-    /// The second link.
+    /// Second link.
     pub link2: String,
-    /// The reason as written; empty if none is stated.
+    /// Reason as written; empty if not stated.
     pub reason: String,
-    /// Its line in the file; 0 for one that is written.
+    /// Line in the file; 0 for a pair that was not read from a file.
     pub line: usize,
 }

@@ -1,4 +1,4 @@
-//! The text of an SRDF.
+//! Parser of the text of an SRDF.
 
 use std::collections::HashSet;
 use std::path::Path;
@@ -15,10 +15,10 @@ const READ: [&str; 6] =
     ["group", "group_state", "end_effector", "virtual_joint", "passive_joint", "disable_collisions"];
 const WITHOUT_EFFECT: [&str; 2] = ["link_sphere_approximation", "joint_property"];
 
-/// Parses an SRDF. `file` is named in messages. Elements of other names give a warning.
+/// Parses an SRDF. `file` is named in messages. Elements with other names give a warning.
 ///
 /// # Errors
-/// Malformed XML, another root element than `<robot>`, pairs without their links.
+/// [`FormatError`] for malformed XML, a root element other than `<robot>`, or pairs without their links.
 ///
 /// ```
 /// use elbowroom_formats::srdf;
@@ -80,7 +80,7 @@ fn disabled_pair(node: Node<'_, '_>, file: &Path) -> Result<DisabledPair, Format
     Ok(DisabledPair { link1: link("link1")?, link2: link("link2")?, reason, line: 0 })
 }
 
-/// What an element should be, for messages.
+/// An example of a valid element, for messages.
 fn example(element: &str) -> &'static str {
     match element {
         "group" | "link" | "chain" => "<group name=\"arm\"><chain base_link=\"base_link\" tip_link=\"tool0\"/></group>",
@@ -93,14 +93,14 @@ fn example(element: &str) -> &'static str {
     }
 }
 
-/// What of an element is incomplete is left out, with a warning.
+/// Reader of elements. Incomplete parts of an element are skipped with a warning.
 struct Reader<'a> {
     file: &'a Path,
     warnings: WarningList,
 }
 
 impl Reader<'_> {
-    /// Warns once of each kind of element that is not read.
+    /// Warns once about each kind of element that is not read.
     fn report_ignored(&mut self, root: Node<'_, '_>) {
         let mut known: HashSet<&str> = READ.into_iter().chain(WITHOUT_EFFECT).collect();
         for node in root.children().filter(Node::is_element) {
@@ -117,7 +117,7 @@ impl Reader<'_> {
         }
     }
 
-    /// An attribute that is not empty.
+    /// A non-empty attribute.
     fn attribute(&mut self, node: Node<'_, '_>, name: &str) -> Option<String> {
         let found = node.attribute(name).map(|text| text.trim().to_owned()).filter(|text| !text.is_empty());
         if found.is_none() {
@@ -153,7 +153,7 @@ impl Reader<'_> {
             let (Some(joint_name), Some(text)) = (self.attribute(joint, "name"), self.attribute(joint, "value")) else {
                 continue;
             };
-            // Joints of several values, such as planar ones, are none of a chain.
+            // A chain has no joints with several values, such as planar joints.
             values.extend(text.parse::<f64>().ok().filter(|v| v.is_finite()).map(|value| (joint_name, value)));
         }
         Some(GroupState { name, group: node.attribute("group").unwrap_or_default().to_owned(), values })

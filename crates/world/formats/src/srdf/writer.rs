@@ -1,4 +1,4 @@
-//! An SRDF as text.
+//! Writer of an SRDF as text.
 
 use std::fmt::{self, Write};
 
@@ -6,7 +6,7 @@ use super::model::Srdf;
 use crate::xml::escaped;
 
 impl Srdf {
-    /// The text of the SRDF; comments follow. Warnings and lines are not written.
+    /// Writes the text of the SRDF, followed by comments. Warnings and line numbers are not written.
     ///
     /// ```
     /// use elbowroom_formats::srdf::{self, DisabledPair, Group, Srdf};

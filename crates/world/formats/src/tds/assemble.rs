@@ -1,4 +1,4 @@
-//! Assembles objects and nodes to a tree.
+//! Assembly of objects and nodes to a tree.
 
 use std::collections::{HashMap, VecDeque};
 use std::path::Path;
@@ -92,7 +92,9 @@ fn parents(nodes: &[FileNode], file: &Path, warnings: &mut WarningList) -> Vec<O
     parents
 }
 
-/// Nodes with parents before children, children in the order of the file; targets without children are left out.
+/// The order of the nodes: parents before children, children in the order of the file.
+///
+/// Targets without children are omitted.
 fn order(nodes: &[FileNode], parents: &[Option<usize>]) -> Vec<usize> {
     let mut children = vec![Vec::new(); nodes.len()];
     for (i, parent) in parents.iter().enumerate() {
@@ -111,7 +113,7 @@ fn order(nodes: &[FileNode], parents: &[Option<usize>]) -> Vec<usize> {
     order
 }
 
-/// The object of each node: of several with its name the next one, or again the only one.
+/// The object of each node. Of several objects with its name, the next unused one; the last one is reused.
 fn object_of(objects: &[Object], nodes: &[FileNode], order: &[usize]) -> Vec<Option<usize>> {
     let mut named: HashMap<&str, VecDeque<usize>> = HashMap::new();
     for (i, object) in objects.iter().enumerate() {
@@ -128,11 +130,11 @@ fn object_of(objects: &[Object], nodes: &[FileNode], order: &[usize]) -> Vec<Opt
 
 /// Rest frames of the nodes.
 struct Frames {
-    /// In the world, with scale and mirror.
+    /// Frames in the world, with scale and mirror.
     full: Vec<Affine>,
-    /// In the world, without scale and mirror.
+    /// Frames in the world, without scale and mirror.
     rigid: Vec<Pose>,
-    /// Whether vertices are in their object's frame, and there are no tracks.
+    /// Whether vertices are in their object's frame; tracks are then absent.
     is_local: bool,
 }
 
@@ -153,7 +155,9 @@ impl Frames {
         Self { full, rigid, is_local: false }
     }
 
-    /// Nodes with an object have its axes; others those of the nearest object below them, or their parent's.
+    /// Frames from the axes of objects.
+    ///
+    /// A node without an object has the axes of the nearest object below it, or of its parent.
     fn of_axes(
         objects: &[Object],
         nodes: &[FileNode],
@@ -163,12 +167,12 @@ impl Frames {
         file: &Path,
         warnings: &mut WarningList,
     ) -> Self {
-        // Assimp writes the rows of the rotation in place of its columns.
+        // Assimp writes the rows of the rotation instead of its columns.
         let own = |i: usize| object_of[i].and_then(|o| objects[o].axes).map(|axes| axes.transposed());
         let mut nearest: Vec<Option<(usize, Affine)>> = (0..nodes.len()).map(|i| own(i).map(|a| (0, a))).collect();
         for &i in order.iter().rev() {
             if let (Some(parent), Some((far, axes))) = (parents[i], nearest[i]) {
-                // In reverse order, so that of equally near objects the first is taken.
+                // In reverse order, so that the first of equally near objects is selected.
                 if nearest[parent].is_none_or(|(d, _)| far < d) {
                     nearest[parent] = Some((far + 1, axes));
                 }
@@ -219,7 +223,7 @@ impl Frames {
         self.full[i].after(&Affine::translation((-node.pivot).to_array())).after(&to_object)
     }
 
-    /// The keys of position and rotation together; empty for less than two.
+    /// The keys of position and rotation combined; empty for fewer than two keys.
     fn track(&self, node: &FileNode, parent: Option<usize>) -> Vec<Keyframe> {
         if self.is_local || node.position.len().max(node.rotation.len()) < 2 {
             return Vec::new();
@@ -253,8 +257,9 @@ fn node_transform(position: Vec3, rotation: Rotation, scale: Vec3) -> Affine {
         .after(&Affine::scale(scale.to_array()))
 }
 
-/// The transform from the vertices of the file to the object's frame. With mirroring axes the file contains the vertices
-/// unmirrored: x is negated, as other readers do.
+/// The transform from the vertices of the file to the object's frame.
+///
+/// If the axes mirror, the file contains the vertices unmirrored. Then x is negated, as in other readers.
 fn to_object(object: &Object) -> Affine {
     let Some((axes, back)) = object.axes.and_then(|axes| Some((axes, axes.inverse()?))) else {
         return Affine::IDENTITY;

@@ -6,11 +6,11 @@ use elbowroom_spatial::{Rotation, Vec3};
 
 use super::keyframer::{FileNode, NodeKind};
 
-/// The targets of a file by name and parent: a file may have tens of thousands.
+/// The targets of a file by name and parent. A file may have tens of thousands of them.
 pub(super) struct CameraTargets<'a> {
     nodes: &'a [FileNode],
     parents: &'a [Option<usize>],
-    /// Of several targets with the same name and parent, the first in the file.
+    /// First target in the file for each name and parent.
     first: HashMap<(&'a str, Option<usize>), usize>,
 }
 
@@ -23,7 +23,8 @@ impl<'a> CameraTargets<'a> {
         Self { nodes, parents, first }
     }
 
-    /// The orientation of a camera: -z points to its target, x is horizontal; then the roll (degrees in the file).
+    /// The orientation of a camera: -z points to its target, x is horizontal; then its roll (degrees in the file)
+    /// applies.
     pub(super) fn orientation(&self, camera: usize) -> Rotation {
         let node = &self.nodes[camera];
         let target = self.first.get(&(node.name.as_str(), self.parents[camera])).map(|&i| &self.nodes[i]);

@@ -6,10 +6,10 @@ use elbowroom_spatial::Vec3;
 
 use crate::FormatError;
 
-/// Bytes of id and length.
+/// Size of id and length, bytes.
 const HEAD: usize = 6;
 
-/// A chunk: an id and bytes.
+/// A chunk: an id and its bytes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Chunk<'a> {
     pub(super) id: u16,
@@ -60,7 +60,7 @@ impl<'a> Iterator for Children<'a, '_> {
     }
 }
 
-/// Reads consecutive numbers.
+/// Reader of consecutive numbers.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cursor<'a, 'f> {
     rest: &'a [u8],
@@ -108,7 +108,7 @@ impl<'a, 'f> Cursor<'a, 'f> {
         Ok(())
     }
 
-    /// Checks a count of elements of so many bytes each against the remaining bytes.
+    /// Checks a count of elements of `bytes_each` bytes against the remaining bytes.
     pub(super) fn count(&self, count: usize, bytes_each: usize, of: &str) -> Result<usize, FormatError> {
         if self.rest.len() / bytes_each < count {
             let what = format!("claims {count} {of}, and has bytes for {}", self.rest.len() / bytes_each);
@@ -125,7 +125,7 @@ impl<'a, 'f> Cursor<'a, 'f> {
         self.take().map(u32::from_le_bytes)
     }
 
-    /// A finite number.
+    /// Reads a finite number.
     pub(super) fn f32(&mut self) -> Result<f32, FormatError> {
         let number = self.take().map(f32::from_le_bytes)?;
         if number.is_finite() {
@@ -138,7 +138,7 @@ impl<'a, 'f> Cursor<'a, 'f> {
         Ok(Vec3::new(f64::from(self.f32()?), f64::from(self.f32()?), f64::from(self.f32()?)))
     }
 
-    /// A text that ends with a zero byte; one byte is one character.
+    /// Reads a text that ends with a zero byte; one byte is one character.
     pub(super) fn text(&mut self) -> Result<String, FormatError> {
         let Some(length) = self.rest.iter().position(|&b| b == 0) else {
             return Err(self.error("has a name without an end").hint("the whole file: copy or export it again"));

@@ -26,7 +26,7 @@ pub(super) enum NodeKind {
 pub(super) struct FileNode {
     pub(super) kind: NodeKind,
     pub(super) name: String,
-    /// Distinguishes dummies, and instances of one object.
+    /// Instance name, which distinguishes dummies and instances of one object.
     pub(super) instance: Option<String>,
     pub(super) number: Option<u16>,
     pub(super) parent: Option<u16>,
@@ -42,7 +42,7 @@ impl FileNode {
         !(self.position.is_empty() && self.rotation.is_empty() && self.scale.is_empty())
     }
 
-    /// Its name in the tree.
+    /// Name of the node in the tree.
     pub(super) fn display_name(&self) -> String {
         match &self.instance {
             Some(instance) if self.name.starts_with("$$$") => instance.clone(),
@@ -53,7 +53,7 @@ impl FileNode {
     }
 }
 
-/// A node; `None` for other chunks.
+/// Reads a node; `None` for other chunks.
 pub(super) fn read(
     chunk: &Chunk<'_>,
     file: &Path,

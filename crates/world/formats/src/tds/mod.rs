@@ -1,6 +1,6 @@
 //! 3DS, the format of 3D Studio: objects, their frames, hierarchy and animation.
 //!
-//! | chunk | what is read |
+//! | chunk | content that is read |
 //! | --- | --- |
 //! | `0100` | master scale: all lengths are divided by it, as assimp does |
 //! | `4000`, `4100`, `4110`, `4120` | objects with vertices and faces; materials, smoothing and mapping are ignored |
@@ -8,16 +8,19 @@
 //! | `B002` … `B007` | nodes: objects, dummies (`$$$DUMMY`), cameras, lights and their targets |
 //! | `B010`, `B011`, `B030` | name, instance name, parent, number (default: counted from 0) |
 //! | `B013` | pivot: the position of the node's origin in the object's frame |
-//! | `B020`, `B021`, `B022`, `B024` | tracks of position, rotation (relative to the key before, in the parent's frame, against the right hand), scale, roll |
+//! | `B020` … `B022`, `B024` | tracks: position, left-handed rotation (from key to key, in the parent's frame), scale, roll |
 //!
 //! # Frames
 //!
-//! Vertices are stored in world coordinates at the time of saving; `4160` is the object's frame at that time. So a vertex in the node's frame is `T(-pivot) · M⁻¹ · v`, and the node's frame in its parent's is
-//! `T(position) · R · S` of the first keys. Scale is applied to the meshes, so that every frame of the tree is rigid and has
-//! its origin at the pivot. A file without tracks is read as assimp writes it: vertices in the object's frame, which is
-//! given by `4160` with rows and columns exchanged; a node without a frame has that of the nearest object below it.
+//! Vertices are stored in world coordinates at the time of saving; `4160` is the object's frame at that time. So a vertex
+//! in the node's frame is `T(-pivot) · M⁻¹ · v`, and the node's frame in its parent's frame is `T(position) · R · S` of
+//! the first keys. Scale is applied to the meshes, so that every frame of the tree is rigid and has its origin at the
+//! pivot.
 //!
-//! A 3DS file states no unit: numbers are taken as metres.
+//! A file without tracks is read in the form that assimp writes. Its vertices are in the object's frame, given by `4160`
+//! with rows and columns exchanged. A node without a frame has the frame of the nearest object below it.
+//!
+//! A 3DS file states no unit: numbers are metres.
 
 mod assemble;
 mod camera_target;
@@ -36,10 +39,11 @@ use crate::{FormatError, input};
 
 pub use writer::write;
 
-/// Parses a 3DS file; `file` is named in messages and gives the tree its name.
+/// Parses a 3DS file. `file` is named in messages, and its stem is the name of the tree.
 ///
 /// # Errors
-/// A file of another format, chunks longer than their parent, faces with missing vertices, numbers that are not finite.
+/// [`FormatError`] for another format, chunks longer than their parent, faces with missing vertices, or numbers that are
+/// not finite.
 ///
 /// ```
 /// use elbowroom_formats::nodetree::{Node, NodeTree};
@@ -67,7 +71,7 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<NodeTree, FormatError> {
     Ok(tree)
 }
 
-/// Whether these bytes begin a 3DS file: its id with a plausible length.
+/// Whether these bytes are the beginning of a 3DS file: its id with a plausible length.
 pub(crate) fn is_header(bytes: &[u8]) -> bool {
     // `MM` also begins big-endian TIFF and some binary STL: the length or the first inner chunk must match too.
     bytes.len() >= 6 && bytes.starts_with(&[0x4d, 0x4d]) && {

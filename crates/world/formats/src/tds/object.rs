@@ -11,14 +11,14 @@ use crate::affine::Affine;
 /// A mesh as in the file.
 pub(super) struct Object {
     pub(super) name: String,
-    /// In world coordinates, or in the object's frame: see [`super::assemble`].
+    /// Vertices in world coordinates or in the object's frame: see [`super::assemble`].
     pub(super) vertices: Vec<Vec3>,
     pub(super) triangles: Vec<[u32; 3]>,
     /// The object's frame in the world, which may scale and mirror; `None` if the file has none.
     pub(super) axes: Option<Affine>,
 }
 
-/// An object; `None` for cameras and lights.
+/// Reads an object; `None` for cameras and lights.
 pub(super) fn read(chunk: &Chunk<'_>, file: &Path) -> Result<Option<Object>, FormatError> {
     let mut cursor = chunk.cursor(file);
     let name = cursor.text()?;
@@ -66,7 +66,7 @@ fn triangles(cursor: &mut Cursor<'_, '_>) -> Result<Vec<[u32; 3]>, FormatError> 
     (0..count).map(|_| face().map(|[a, b, c, _]| [a, b, c])).collect()
 }
 
-/// Three axes and the origin, as columns.
+/// Reads three axes and the origin, as columns.
 fn axes(cursor: &mut Cursor<'_, '_>) -> Result<Affine, FormatError> {
     let (x, y, z, origin) = (cursor.vector()?, cursor.vector()?, cursor.vector()?, cursor.vector()?);
     let row = |i: usize| [x, y, z, origin].map(|v| v.to_array()[i]);

@@ -7,12 +7,12 @@ use elbowroom_spatial::{Rotation, Vec3};
 use super::chunk::Cursor;
 use crate::FormatError;
 
-/// Frames per second of 3D Studio; files do not state it.
+/// Frame rate of 3D Studio, frames per second. Files do not state it.
 pub(super) const FRAMES_PER_SECOND: f64 = 30.0;
 
-/// Rotations larger than this (rad) between two keys get keys in between: beyond half a turn the direction is ambiguous.
+/// Largest rotation (rad) between two keys without keys in between: beyond half a turn the direction is ambiguous.
 const MAX_KEY_ANGLE: f64 = 0.9 * PI;
-/// Rotations that would need more keys than this get none.
+/// Largest number of inserted keys. A rotation that would need more keys gets none.
 const MAX_INSERTED_KEYS: f64 = 8.0;
 
 /// Values at frames, in order of the frames.
@@ -48,8 +48,10 @@ pub(super) fn numbers(cursor: &mut Cursor<'_, '_>) -> Result<Track<f64>, FormatE
     keys(cursor, 4, |c| c.f32().map(f64::from))
 }
 
-/// Rotations in the parent's frame. A key is an angle (left-handed) and an axis, relative to the key before; large
-/// rotations get keys in between, so that neighbours are less than half a turn apart.
+/// Reads rotations in the parent's frame.
+///
+/// A key is an angle (left-handed) and an axis, relative to the previous key. Large rotations get keys in between, so
+/// that neighbouring keys are less than half a turn apart.
 pub(super) fn rotations(cursor: &mut Cursor<'_, '_>) -> Result<Track<Rotation>, FormatError> {
     let keys = keys(cursor, 16, |c| Ok((f64::from(c.f32()?), c.vector()?)))?;
     let mut track: Track<Rotation> = Vec::with_capacity(keys.len());

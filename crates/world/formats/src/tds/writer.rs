@@ -1,4 +1,4 @@
-//! Writes trees as 3DS files.
+//! Writer of trees as 3DS files.
 
 use std::path::Path;
 
@@ -10,21 +10,19 @@ use crate::mesh_data::MeshData;
 use crate::names::UniqueNames;
 use crate::nodetree::{Keyframe, NodeTree};
 
-/// Largest count: the format has 16 bits.
+/// Largest count in the format, which has 16 bits.
 const MAX_COUNT: usize = 65_535;
 
-/// Writes a tree as a 3DS file: objects with their axes, and a keyframer with hierarchy, pivots and tracks. Numbers are
-/// metres, rounded to single precision as the format requires; times are rounded to frames of 1/30 s.
+/// Writes a tree as a 3DS file: objects with their axes, and a keyframer with hierarchy, pivots and tracks.
 ///
-/// A node with one mesh becomes one object. Several meshes, and meshes with more than 65 535 vertices or faces, become
-/// objects below the node. Repeated names are numbered. Names may be longer than the ten characters of 3D Studio, which
-/// other programs read. `file` is named in messages.
+/// Numbers are metres, rounded to single precision as the format requires; times are rounded to frames of 1/30 s. A node
+/// with one mesh becomes one object. Several meshes, and meshes with more than 65 535 vertices or faces, become objects
+/// below the node. Repeated names are numbered. Names may be longer than the ten characters of 3D Studio; other programs
+/// can read them. `file` is named in messages. For an example see [`parse`](super::parse).
 ///
 /// # Errors
-/// A parent that does not come before its child, a triangle with a missing vertex, more than 65 535 nodes, numbers beyond
-/// single precision.
-///
-/// For an example see [`parse`](super::parse).
+/// [`FormatError`] for a parent that is not before its child, a triangle with a missing vertex, more than 65 535 nodes,
+/// or numbers beyond single precision.
 pub fn write(tree: &NodeTree, file: &Path) -> Result<Vec<u8>, FormatError> {
     let records = records(tree, file)?;
     let last_frame = records.iter().flat_map(|p| &p.track).map(|k| frame(k.time_s)).max().unwrap_or(0);
@@ -57,7 +55,7 @@ pub fn write(tree: &NodeTree, file: &Path) -> Result<Vec<u8>, FormatError> {
     Ok(whole.bytes)
 }
 
-/// A node of the file, with one object or none.
+/// A node of the file, with at most one object.
 struct NodeRecord {
     name: String,
     parent: Option<usize>,
@@ -118,7 +116,7 @@ fn check(mesh: &MeshData, file: &Path) -> Result<(), FormatError> {
     Ok(())
 }
 
-/// A name in the characters of the format.
+/// Converts a name to the characters of the format.
 fn plain(name: &str) -> String {
     let plain = |c: char| if u32::from(c) < 256 && !c.is_control() { c } else { '_' };
     let plain: String = name.chars().map(plain).take(200).collect();
@@ -213,7 +211,7 @@ fn node(w: &mut Writer, number: usize, record: &NodeRecord) {
     });
 }
 
-/// Poses at frames, beginning with the rest frame; never empty, frames are unique.
+/// Poses at frames, beginning with the rest frame. Never empty; frames are unique.
 fn keys(record: &NodeRecord) -> Vec<(u32, Pose)> {
     let mut keys: Vec<(u32, Pose)> = vec![(0, record.in_parent)];
     for key in &record.track {
@@ -248,7 +246,7 @@ fn track(w: &mut Writer, id: u16, keys: &[(u32, Pose)], value: impl Fn(&mut Writ
 #[derive(Default)]
 struct Writer {
     bytes: Vec<u8>,
-    /// A number did not fit into its bits.
+    /// True if a number did not fit into its bits.
     overflow: bool,
 }
 
@@ -283,7 +281,7 @@ impl Writer {
         v.to_array().into_iter().for_each(|n| self.f32(n));
     }
 
-    /// One byte per character, and a zero byte.
+    /// Writes one byte per character, and a zero byte.
     fn text(&mut self, text: &str) {
         self.bytes.extend(text.chars().map(|c| u32::from(c) as u8));
         self.bytes.push(0);

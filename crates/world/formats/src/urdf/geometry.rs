@@ -51,7 +51,7 @@ impl UrdfParser<'_> {
         Ok(Geometry::Mesh { filename, scale })
     }
 
-    /// A length that is there and not negative.
+    /// Reads a required, non-negative length.
     fn dimension(&self, node: Node<'_, '_>, attribute: &str) -> Result<f64, FormatError> {
         let name = node.tag_name().name();
         let hint = format!("<{name} {attribute}=\"0.1\" …>");

@@ -39,7 +39,7 @@ impl UrdfParser<'_> {
         Ok(joints)
     }
 
-    /// One warning for all joints without a velocity limit; one that follows another needs none.
+    /// Adds one warning for all joints without a velocity limit. A joint that follows another needs none.
     fn check_velocity_limits(&mut self, nodes: &[Node<'_, '_>], joints: &[UrdfJoint]) {
         let lacks = |j: &UrdfJoint| j.kind.moves() && j.mimic.is_none() && j.limits.velocity.is_none();
         let Some(first) = joints.iter().position(lacks) else { return };
@@ -134,7 +134,7 @@ impl UrdfParser<'_> {
                 .error(node, format!("the velocity limit of `{name}` is negative"))
                 .hint("velocity=\"1.5\", in rad/s or m/s"));
         }
-        // Not in the specification, but written by some tools, with a prefix (drake) or without.
+        // Not in the specification, but some tools write it, with a prefix (drake) or without.
         let acceleration =
             node.attributes().find(|a| a.name() == "acceleration").and_then(|a| a.value().trim().parse().ok());
         let acceleration = acceleration.filter(|a: &f64| a.is_finite() && *a > 0.0);
@@ -170,7 +170,7 @@ impl UrdfParser<'_> {
         Ok(Some(UrdfMimic { joint: source, multiplier, offset: self.number(node, "offset")?.unwrap_or(0.0) }))
     }
 
-    /// A fixed joint neither mimics nor is mimicked; mimics form no cycle.
+    /// Checks that a fixed joint neither mimics nor is mimicked, and that mimics form no cycle.
     fn check_mimics(&mut self, nodes: &[Node<'_, '_>], joints: &mut [UrdfJoint]) -> Result<(), FormatError> {
         for i in 0..joints.len() {
             let Some(mimic) = joints[i].mimic else { continue };

@@ -1,4 +1,4 @@
-//! URDF: parsed and checked, with the line in every message; meshes are loaded by [`robot`](crate::robot).
+//! URDF files, parsed and checked, with the line in every message. [`robot`](crate::robot) loads the meshes.
 
 mod geometry;
 mod joint;
@@ -15,15 +15,15 @@ use crate::tokens::{LineIndex, show};
 use crate::{FormatError, input, xml};
 pub use model::{Geometry, LinkGeometry, UrdfJoint, UrdfLink, UrdfMimic, UrdfModel};
 
-/// What a file with the root element `<sdf>` is.
+/// Description of a file with the root element `<sdf>`.
 pub(crate) const SDF: &str = "is SDF, the format of Gazebo";
-/// What to do with it.
+/// What to use instead of the file.
 pub(crate) const SDF_HINT: &str = "the URDF that the SDF was made from, or the one that a converter makes of it; of a mesh the file that its <uri> names";
 
-/// Parses a URDF; meshes are named, not opened. `file` is named in messages.
+/// Parses a URDF. Meshes are named, not opened. `file` is named in messages.
 ///
 /// # Errors
-/// Whatever is not a tree of links with finite numbers; unexpanded xacro; files of other formats.
+/// [`FormatError`] for content that is not a tree of links with finite numbers, an unexpanded xacro, or another format.
 ///
 /// ```
 /// use elbowroom_formats::urdf;
@@ -96,7 +96,7 @@ fn refuse_xacro(root: Node<'_, '_>, file: &Path) -> Result<(), FormatError> {
         .hint(xml::xacro_hint(file)))
 }
 
-/// `<drake:joint>` and `<drake:link>` belong to the tree: without them the robot would be a different one.
+/// Refuses `<drake:joint>` and `<drake:link>`. They belong to the tree: without them the robot would be a different one.
 fn refuse_extensions(root: Node<'_, '_>, file: &Path) -> Result<(), FormatError> {
     let is_foreign = |n: &Node<'_, '_>| n.is_element() && n.tag_name().namespace() != root.tag_name().namespace();
     let extension = root.children().filter(is_foreign).find(|n| matches!(n.tag_name().name(), "joint" | "link"));

@@ -8,22 +8,22 @@ use crate::Warning;
 /// The content of a URDF.
 #[derive(Debug, Clone)]
 pub struct UrdfModel {
-    /// The robot's name; the stem of the file name where it has none.
+    /// Name of the robot; the stem of the file name if the URDF has none.
     pub name: String,
-    /// In the order of the file. At least one; names are unique.
+    /// Links in the order of the file. At least one; names are unique.
     pub links: Vec<UrdfLink>,
-    /// In the order of the file; they form a tree over all links.
+    /// Joints in the order of the file. They form a tree over all links.
     pub joints: Vec<UrdfJoint>,
-    /// What the user should know.
+    /// Warnings for the user.
     pub warnings: Vec<Warning>,
 }
 
 /// A link and its geometry.
 #[derive(Debug, Clone)]
 pub struct UrdfLink {
-    /// Unique among the links.
+    /// Name, unique among the links.
     pub name: String,
-    /// Its line in the file.
+    /// Line in the file.
     pub line: usize,
     /// Visual geometry.
     pub visuals: Vec<LinkGeometry>,
@@ -34,45 +34,45 @@ pub struct UrdfLink {
 /// One `<collision>` or `<visual>`.
 #[derive(Debug, Clone)]
 pub struct LinkGeometry {
-    /// Its name, where it has one.
+    /// Name, if it has one.
     pub name: Option<String>,
-    /// Its line in the file.
+    /// Line in the file.
     pub line: usize,
-    /// Its frame in that of the link.
+    /// Pose of its frame in the link's frame.
     pub in_link: Pose,
-    /// Its shape.
+    /// Shape.
     pub geometry: Geometry,
 }
 
 /// A shape; lengths in metres.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Geometry {
-    /// Centred; full edge lengths.
+    /// A centred box with full edge lengths.
     Box(Vec3),
-    /// Centred.
+    /// A centred sphere.
     Sphere {
-        /// Its radius.
+        /// Radius.
         radius: f64,
     },
-    /// Along z, centred.
+    /// A centred cylinder along z.
     Cylinder {
-        /// Its radius.
+        /// Radius.
         radius: f64,
-        /// Its full length.
+        /// Full length.
         length: f64,
     },
-    /// Along z, centred.
+    /// A centred capsule along z.
     Capsule {
-        /// Its radius.
+        /// Radius.
         radius: f64,
-        /// Its length without the caps.
+        /// Length without the caps.
         length: f64,
     },
-    /// A file.
+    /// A mesh file.
     Mesh {
-        /// As written: relative, `package://` or `file://`.
+        /// Reference as written: relative, `package://` or `file://`.
         filename: String,
-        /// Factor per axis; negative ones mirror.
+        /// Factor per axis; negative factors mirror.
         scale: Vec3,
     },
 }
@@ -80,33 +80,33 @@ pub enum Geometry {
 /// A joint.
 #[derive(Debug, Clone)]
 pub struct UrdfJoint {
-    /// Unique among the joints.
+    /// Name, unique among the joints.
     pub name: String,
-    /// Its line in the file.
+    /// Line in the file.
     pub line: usize,
-    /// Its kind.
+    /// Kind of the joint.
     pub kind: JointKind,
     /// Index of the parent in [`UrdfModel::links`].
     pub parent: usize,
     /// Index of the child in [`UrdfModel::links`].
     pub child: usize,
-    /// The child's frame in that of the parent, at value 0.
+    /// Pose of the child's frame in the parent's frame, at value 0.
     pub origin: Pose,
-    /// Unit axis in the joint's frame; +x where a fixed joint has none.
+    /// Unit axis in the joint's frame; +x for a fixed joint without an axis.
     pub axis: Vec3,
     /// Limits of position, velocity, acceleration and effort.
     pub limits: Limits,
-    /// The joint that it mimics.
+    /// Relation to the joint that it mimics.
     pub mimic: Option<UrdfMimic>,
 }
 
-/// `value = multiplier · value of joint + offset`.
+/// Mimic relation `value = multiplier · value of joint + offset`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UrdfMimic {
-    /// Index in [`UrdfModel::joints`].
+    /// Index of the source joint in [`UrdfModel::joints`].
     pub joint: usize,
     /// Multiplier.
     pub multiplier: f64,
-    /// Radians or metres.
+    /// Offset, rad or m.
     pub offset: f64,
 }

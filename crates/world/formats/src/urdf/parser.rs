@@ -1,4 +1,4 @@
-//! Links, and attributes that are common to all elements.
+//! Parser of links, and of attributes that all elements share.
 
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
@@ -82,7 +82,7 @@ impl UrdfParser<'_> {
         <[f64; N]>::try_from(numbers).map_err(|n| error(&format!("has {} numbers, not {N}", n.len())))
     }
 
-    /// `<origin xyz="…" rpy="…"/>`, each zero where missing.
+    /// Reads `<origin xyz="…" rpy="…"/>`; missing attributes are zero.
     pub(super) fn origin(&self, node: Node<'_, '_>) -> Result<Pose, FormatError> {
         let Some(origin) = xml::child(node, "origin") else { return Ok(Pose::IDENTITY) };
         let xyz = self.vector(origin, "xyz")?.unwrap_or_default();
@@ -107,7 +107,7 @@ impl UrdfParser<'_> {
         Ok(links)
     }
 
-    /// Invalid collision geometry is an error, invalid visual geometry a warning.
+    /// Reads the geometries of a link. Invalid collision geometry is an error, invalid visual geometry a warning.
     fn geometries(&mut self, link: Node<'_, '_>, role: GeometryRole) -> Result<Vec<LinkGeometry>, FormatError> {
         let mut geometries = Vec::new();
         for node in xml::children(link, role.element()) {
@@ -130,7 +130,7 @@ impl UrdfParser<'_> {
         })
     }
 
-    /// Elements of extensions are ignored; each kind gives one warning.
+    /// Warns about ignored elements of extensions, once per kind.
     pub(super) fn warn_of_extensions(&mut self, root: Node<'_, '_>) {
         let mut seen = HashSet::new();
         for node in root.children().filter(Node::is_element) {

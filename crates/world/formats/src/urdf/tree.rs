@@ -1,4 +1,4 @@
-//! Links and joints must form one tree.
+//! Check that links and joints form one tree.
 
 use std::path::Path;
 
@@ -40,7 +40,7 @@ pub(super) fn check(links: &[UrdfLink], joints: &[UrdfJoint], file: &Path) -> Re
     refuse_cycles(links, joints, &parent_joint, file)
 }
 
-/// Refuses links that do not reach the root, because they are in a cycle or below one.
+/// Refuses links that are not connected to the root, because they are in a cycle or below one.
 fn refuse_cycles(
     links: &[UrdfLink],
     joints: &[UrdfJoint],

@@ -1,4 +1,4 @@
-//! Small valid files of every format, damage to them, and one function for all readers.
+//! Small valid files of every format, a function that damages them, and one function for all readers.
 
 #[path = "waving.rs"]
 pub mod waving;
@@ -16,7 +16,7 @@ pub use elbowroom_testkit::random::Xorshift;
 pub const PARSERS: [&str; 12] =
     ["stl", "obj", "dae", "gltf", "ply", "off", "3ds", "urdf", "srdf", "scene", "yaml", "mesh"];
 
-/// The approximate size of a reader's result, bytes.
+/// Runs a reader and returns the approximate size of its result, bytes.
 pub fn run(parser: &str, bytes: &[u8]) -> Result<usize, FormatError> {
     let file = Path::new("fuzz").with_extension(parser);
     let size = |loaded: LoadedMeshes| {

@@ -9,9 +9,9 @@ pub(super) struct UnitConfusion {
     pub factor: f64,
     /// The unit of the numbers.
     pub looks_like: UnitLabel,
-    /// The unit they were read as.
+    /// The unit as which they were read.
     pub read_as: UnitLabel,
-    /// Description.
+    /// Description for messages.
     pub words: &'static str,
 }
 
@@ -19,7 +19,7 @@ const fn confusion(factor: f64, looks_like: UnitLabel, read_as: UnitLabel, words
     UnitConfusion { factor, looks_like, read_as, words }
 }
 
-/// Largest first. 39.37 and 25.4 are too close to be distinguished by sizes: both involve inches.
+/// All confusions, largest factor first. Sizes cannot distinguish 39.37 and 25.4: both involve inches.
 const ALL: [UnitConfusion; 9] = [
     confusion(1000.0, UnitLabel::Millimetre, UnitLabel::Metre, "its numbers look like mm, read as metres"),
     confusion(100.0, UnitLabel::Centimetre, UnitLabel::Metre, "its numbers look like cm, read as metres"),
@@ -42,10 +42,10 @@ const ALL: [UnitConfusion; 9] = [
     confusion(0.001, UnitLabel::AppliedTwice, UnitLabel::Millimetre, "looks like mm applied twice: metres, read as mm"),
 ];
 
-/// Sizes beyond this factor are suspect: the geometric mean of 1 and the smallest factor.
+/// Factor beyond which sizes are suspect: the geometric mean of 1 and the smallest factor.
 const SUSPECT_FACTOR: f64 = 3.162;
 
-/// The confusion whose factor is closest to `times` on a logarithmic scale; `None` where `times` is not suspect.
+/// The confusion whose factor is closest to `times` on a logarithmic scale; `None` if `times` is not suspect.
 pub(super) fn nearest(times: f64) -> Option<UnitConfusion> {
     if !(times > 0.0 && times.is_finite()) || (1.0 / SUSPECT_FACTOR..=SUSPECT_FACTOR).contains(&times) {
         return None;

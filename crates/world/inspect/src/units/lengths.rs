@@ -1,9 +1,9 @@
-//! Lengths: solids are compared with the chain that carries them, and the chain with the size of a workshop.
+//! Unit errors of lengths: compares solids with the chain that carries them, and the chain with the size of a workshop.
 //!
-//! The chain's own dimensions are the reference `R`: the longest distance from the root to a leaf through the origins
-//! and strokes of its joints. For 35 published arms the sum of the largest box edges of all moved links is 1.0 to 1.65
-//! times that distance without strokes, which is close enough to distinguish factors of 2.5. For a chain of few links
-//! there is no such rule: only extreme sizes are suspect.
+//! The chain's own dimensions are the reference `R`: the longest distance from the root to a leaf through the origins and
+//! strokes of its joints. For 35 published arms, the sum of the largest box edges of all moved links is 1.0 to 1.65 times
+//! that distance without strokes. This is close enough to distinguish factors of 2.5. Chains of few links follow no such
+//! rule: only extreme sizes are suspect.
 
 use elbowroom_kinematics::{Chain, JointId, JointKind, LinkId};
 use elbowroom_robot::Robot;
@@ -16,19 +16,19 @@ use super::{SuspectQuantity, SuspectUnit, UnitLabel};
 const LINK_SUM: f64 = 1.3;
 /// Smallest number of moved links with solids for which the rule for arms applies.
 const ARM: usize = 4;
-/// A link this many times larger than the chain is suspect.
+/// Ratio of a link to the chain, above which the link is suspect.
 const LARGE: f64 = 10.0;
-/// The same for a link of an arm whose other links are plausible.
+/// Ratio for a link of an arm whose other links are plausible.
 const LARGE_IN_ARM: f64 = 3.2;
-/// The same for a fixed link, which may be a building.
+/// Ratio for a fixed link, which may be a building.
 const LARGE_AND_FIXED: f64 = 100.0;
-/// In a chain of few links, nothing smaller than this (m) is suspected of being too large.
+/// Size in a chain of few links, m. Smaller links are not suspected of being too large.
 const LARGE_M: f64 = 5.0;
 /// Typical size of a link, relative to its chain.
 const LINK: f64 = 0.35;
-/// A model whose largest solid is smaller than the chain divided by this is suspect.
+/// Ratio of the chain to the model's largest solid, above which the model is suspect.
 const SMALL: f64 = 200.0;
-/// A longer chain (m) or stroke (m) is suspect.
+/// Length of a chain or stroke above which it is suspect, m.
 const FAR_M: f64 = 50.0;
 /// Length of a typical arm, m.
 const ARM_M: f64 = 1.5;
@@ -47,7 +47,7 @@ struct Sizes<'r> {
     chain: &'r Chain,
     /// Longest distance through the chain, m.
     reference: f64,
-    /// The same without strokes, m: the reference for the links of an arm.
+    /// Longest distance through the chain without strokes, m: the reference for the links of an arm.
     arm: f64,
     /// Links with solids.
     links: Vec<LinkSize>,
@@ -88,29 +88,29 @@ impl<'r> Sizes<'r> {
         self.links.iter().fold(0.0, |m: f64, l| m.max(l.extent_m))
     }
 
-    /// Factor by which moved links of `extents` (m) are too large in sum; `whole` is the number of moved links.
+    /// Factor by which the sum of the moved links' `extents` (m) is too large; `whole` is the number of moved links.
     fn times(&self, extents: &[f64], whole: usize) -> f64 {
         let together = extents.iter().sum::<f64>() * whole as f64 / extents.len() as f64;
         together / (LINK_SUM * self.arm)
     }
 
-    /// The moved links that are not far larger than the chain, m.
+    /// Sizes of the moved links that are not far larger than the chain, m.
     fn ordinary(&self) -> Vec<f64> {
         self.moved().filter(|e| *e <= LARGE_IN_ARM * self.arm).collect()
     }
 
-    /// True if links are as long as the distances between joints. Those of a gantry are as long as its strokes.
+    /// True if links are as long as the distances between joints. The links of a gantry are as long as its strokes.
     fn is_arm(&self) -> bool {
         self.arm > 0.0 && self.arm.is_finite() && self.reference <= 3.0 * self.arm && self.moved().count() >= ARM
     }
 
-    /// True if the moved links are those of an arm, except for some that are far too large.
+    /// True if the moved links have the sizes of an arm, except for some that are far too large.
     fn is_arm_with_outliers(&self) -> bool {
         let (ordinary, moved) = (self.ordinary(), self.moved().count());
         self.is_arm() && 2 * ordinary.len() >= moved && factor::nearest(self.times(&ordinary, moved)).is_none()
     }
 
-    /// All meshes of an arm by the same factor, or all of its joints.
+    /// Suspects all meshes of an arm by the same factor, or all of its joints.
     fn all_links(&self) -> Option<SuspectUnit> {
         let moved: Vec<f64> = self.moved().collect();
         if !self.is_arm() || self.is_arm_with_outliers() {
@@ -133,7 +133,7 @@ impl<'r> Sizes<'r> {
         Some(self.suspect(SuspectQuantity::Meshes, None, Some(largest), confusion, reason))
     }
 
-    /// One link that is far larger than the chain.
+    /// Suspects one link that is far larger than the chain.
     fn single(&self, size: LinkSize) -> Option<SuspectUnit> {
         let LinkSize { link, extent_m, is_moved } = size;
         let in_arm = is_moved && self.is_arm_with_outliers();
@@ -156,7 +156,7 @@ impl<'r> Sizes<'r> {
         Some(self.suspect(SuspectQuantity::Meshes, Some(name.clone()), Some(extent_m), confusion, reason))
     }
 
-    /// Too few links for an arm, and all of them tiny.
+    /// Suspects a model whose solids are all tiny compared with the chain.
     fn small(&self) -> Option<SuspectUnit> {
         let (largest, reference) = (self.largest(), self.reference);
         if !(largest > 0.0 && largest * SMALL < reference) {
@@ -175,7 +175,7 @@ impl<'r> Sizes<'r> {
         Some(self.suspect(SuspectQuantity::Meshes, None, Some(largest), confusion, reason))
     }
 
-    /// The solids match the chain, but both are too large for a workshop; or there are no solids.
+    /// Suspects the joints of a chain that is too large for a workshop, with solids that match it or without solids.
     fn far(&self) -> Option<SuspectUnit> {
         if self.reference <= FAR_M {
             return None;
@@ -193,7 +193,7 @@ impl<'r> Sizes<'r> {
         self.suspect(SuspectQuantity::Joints, None, None, confusion, reason)
     }
 
-    /// Prismatic joints with a stroke longer than a workshop.
+    /// Suspects prismatic joints with a stroke longer than a workshop.
     fn strokes(&self) -> Vec<SuspectUnit> {
         let joints = self.chain.joints().iter().filter(|j| j.kind == JointKind::Prismatic && j.mimic.is_none());
         let far = joints.filter_map(|j| Some((j, stroke(j.limits.lower, j.limits.upper).filter(|s| *s > FAR_M)?)));
@@ -265,7 +265,7 @@ fn remedy(confusion: &UnitConfusion, all: bool) -> String {
     }
 }
 
-/// Longest edge of the box around all solids of a link, in its frame.
+/// Longest edge of the box around all solids of a link, in its frame, m.
 fn extent(robot: &Robot, link: usize) -> Option<f64> {
     let around = robot.colliders[link].iter().fold(Aabb::EMPTY, |all, b| all.union(&b.shape.aabb(&b.in_link)));
     let extent = around.extent().max_element();
@@ -278,7 +278,7 @@ fn stroke(lower: f64, upper: f64) -> Option<f64> {
     farthest.is_finite().then_some(farthest)
 }
 
-/// The longest distance from the root to a leaf, m. Suspect strokes are left out.
+/// The longest distance from the root to a leaf, m. Suspect strokes do not count.
 fn longest_distance(chain: &Chain, strokes: bool) -> f64 {
     let stride = |id: &JointId| {
         let joint = &chain.joints()[id.0];

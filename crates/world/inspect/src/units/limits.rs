@@ -1,13 +1,13 @@
-//! Limits of revolute joints: degrees in place of radians.
+//! Unit errors of the limits of revolute joints: degrees instead of radians.
 
 use elbowroom_kinematics::{Chain, Joint, JointKind};
 
 use super::{SuspectQuantity, SuspectUnit, UnitLabel};
 
-/// Limits beyond three turns (rad) are suspect. The widest ranges of real arms are two turns.
+/// Limit above which a joint is suspect, rad: three turns. The widest ranges of real arms are two turns.
 const WIDE_RAD: f64 = 6.0 * std::f64::consts::PI;
 
-/// All joints where most are suspect; otherwise those whose limits are round in degrees.
+/// Suspects all wide joints if most joints are wide; otherwise the wide joints whose limits are round in degrees.
 pub(super) fn suspects(chain: &Chain) -> Vec<SuspectUnit> {
     let bounded = |j: &&Joint| j.kind == JointKind::Revolute && j.mimic.is_none() && farthest(j).is_finite();
     let turning: Vec<&Joint> = chain.joints().iter().filter(bounded).collect();
@@ -31,7 +31,7 @@ fn farthest(joint: &Joint) -> f64 {
     joint.limits.lower.abs().max(joint.limits.upper.abs())
 }
 
-/// A multiple of half a degree, if the value is in degrees.
+/// True for a multiple of half a degree, if the value is in degrees.
 fn is_round(limit: f64) -> bool {
     (2.0 * limit - (2.0 * limit).round()).abs() < 1e-9
 }
@@ -60,7 +60,7 @@ mod tests {
     use elbowroom_kinematics::{Limits, LinkId};
     use elbowroom_spatial::{Pose, Vec3};
 
-    /// What the file says, divided by the factor, is what was meant.
+    /// The number in the file divided by the factor is the intended number.
     #[test]
     fn the_factor_leads_from_degrees_to_radians() {
         let joint = Joint {

@@ -1,5 +1,7 @@
-//! Suspected unit errors: sizes of solids are compared with the chain that carries them, joint offsets and strokes with
-//! the size of a workshop, limits of revolute joints with full turns. The JSON entry and the message have one source.
+//! Suspected unit errors of a model.
+//!
+//! Sizes of solids are compared with the chain that carries them, joint offsets and strokes with the size of a workshop,
+//! and limits of revolute joints with full turns. The JSON entry and the message have one source.
 
 mod factor;
 mod lengths;
@@ -12,7 +14,7 @@ use elbowroom_spatial::Vec3;
 
 pub use suspect::{SuspectQuantity, SuspectUnit, UnitLabel};
 
-/// Suspected unit errors of a robot. A suspicion is a hint, not a proof.
+/// Lists suspected unit errors of a robot. A suspicion is a hint, not a proof.
 ///
 /// ```
 /// use elbowroom_inspect::suspect_units;
@@ -40,8 +42,9 @@ pub fn suspect_units(robot: &Robot) -> Vec<SuspectUnit> {
     suspects
 }
 
-/// `format` is the format of the file, where known. Without a chain only the size of the object is available, which
-/// cannot distinguish small units.
+/// The suspected unit error of an object of a mesh file. `format` is the format of the file, if known.
+///
+/// Without a chain, only the size of the object is available, which cannot distinguish small units.
 pub(super) fn of_mesh(object: &str, extent_m: Vec3, format: Option<MeshFormat>) -> Option<SuspectUnit> {
     if format.is_some_and(MeshFormat::states_its_unit) {
         return None;

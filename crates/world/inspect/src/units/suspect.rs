@@ -43,7 +43,7 @@ pub enum UnitLabel {
 }
 
 impl UnitLabel {
-    /// Its symbol, as in JSON.
+    /// The symbol of the unit, as in JSON.
     pub fn symbol(self) -> &'static str {
         match self {
             Self::Millimetre => "mm",
@@ -62,21 +62,22 @@ impl UnitLabel {
 pub struct SuspectUnit {
     /// The suspect quantity: `meshes`, `joints` (their origins), `stroke` or `limits`.
     pub of: SuspectQuantity,
-    /// The link, or the object of a mesh file; null where the whole model is concerned.
+    /// The link, or the object of a mesh file; null if the suspicion is about the whole model.
     pub link: Option<String>,
-    /// The joint; null where all or none are concerned.
+    /// The joint; null if the suspicion is about all joints or about no joint.
     pub joint: Option<String>,
-    /// Largest edge of the box of the link, or of the largest solid, as read, m; null for joints.
+    /// Largest edge of the box of the link, or of the largest solid, as read, m; null for joints, strokes and limits.
     pub extent_m: Option<f64>,
     /// The reference, m: the longest distance through the chain; null for a mesh file and for limits.
     pub reference_m: Option<f64>,
-    /// The likely unit of the numbers: `mm`, `cm`, `in` or `deg`; `applied twice` where metres were scaled as if they
-    /// were millimetres, centimetres or inches.
+    /// The likely unit of the numbers: `mm`, `cm`, `in` or `deg`, or `applied twice`.
+    ///
+    /// `applied twice` means that metres were scaled as if they were millimetres, centimetres or inches.
     pub looks_like: UnitLabel,
-    /// The unit that they were read as: `m`, `mm`, `cm`, `in` or `rad`.
+    /// The unit as which the numbers were read: `m`, `mm`, `cm`, `in` or `rad`.
     pub read_as: UnitLabel,
-    /// The factor by which it is too large, approximately; below 1 if it is too small.
+    /// The approximate factor by which the quantity is too large; below 1 if it is too small.
     pub factor: f64,
-    /// The message.
+    /// The message for the user.
     pub reason: String,
 }

@@ -1,4 +1,4 @@
-//! Changes of single pairs by hand.
+//! Manual changes of single pairs.
 
 use elbowroom_robot::GeometryId;
 
@@ -10,22 +10,24 @@ use crate::{MatrixError, Scene};
 /// A change of one pair.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PairEdit {
-    /// Skip the pair, with the reason why.
+    /// Skips the pair, with the reason.
     Skip(String),
-    /// Test the pair, with the reason why.
+    /// Tests the pair, with the reason.
     Test(String),
-    /// Security margin in metres, in place of the paddings.
+    /// Sets the security margin in metres, which replaces the sum of the paddings.
     Margin(f64),
-    /// Weight.
+    /// Sets the weight (dimensionless).
     Weight(f64),
 }
 
 impl AllowedCollisionMatrix {
-    /// Changes one pair by hand. `scene` supplies the names for errors. An edit of two objects holds while one is attached to a
-    /// robot, and in queries that name both.
+    /// Changes one pair by hand.
+    ///
+    /// `scene` supplies the names for errors. An edit of a pair of objects applies while one of them is attached to a
+    /// robot, and in queries that name both objects.
     ///
     /// # Errors
-    /// [`MatrixError`] if there is no such pair or the number is invalid.
+    /// [`MatrixError`] if the matrix has no such pair or the number is invalid.
     pub fn edit(&mut self, scene: &Scene, a: GeometryId, b: GeometryId, edit: PairEdit) -> Result<(), MatrixError> {
         let no_such_pair = || MatrixError::NoSuchPair { a: scene.name(a), b: scene.name(b) };
         if !(scene.has_shape(a) && scene.has_shape(b)) {
@@ -45,7 +47,7 @@ impl AllowedCollisionMatrix {
             PairEdit::Weight(weight) => entry.weight = check(PairNumber::Weight, weight)?,
             PairEdit::Margin(margin_m) => {
                 entry.margin_m = check(PairNumber::Margin, margin_m)?;
-                // Out of reach of each other, but not out of reach of the margin.
+                // The geometries are out of reach of each other, but may come within the margin.
                 if matches!(entry.reason, Reason::OutOfReach { least_m } if least_m <= entry.margin_m) {
                     (entry.state, entry.reason) = (PairState::Tested, Reason::Default);
                 }

@@ -42,22 +42,23 @@ impl fmt::Display for PairNumber {
     }
 }
 
-/// What is known of one pair.
+/// Entry of one pair.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PairEntry {
-    /// The geometry that comes first: lower robot, lower link, links before objects.
+    /// First geometry of the pair: lower robot index, then lower link index; links before objects.
     pub a: GeometryId,
-    /// The other geometry.
+    /// Second geometry of the pair.
     pub b: GeometryId,
     /// Whether the pair is tested.
     pub state: PairState,
-    /// Security margin, metres: the pair collides if it is not farther apart. The sum of both paddings, unless set by hand.
+    /// Security margin, metres: the pair collides if it is at most this far apart.
+    ///
+    /// The sum of the two paddings, unless set by hand.
     pub margin_m: f64,
-    /// Pairs of larger weight are tested first. Dimensionless.
+    /// Weight, dimensionless. Pairs of larger weight are tested first.
     pub weight: f64,
     /// Why the pair is tested or skipped.
     pub reason: Reason,
-    /// What samples suggest; without effect until
-    /// [accepted](crate::AllowedCollisionMatrix::accept_suggestions).
+    /// Reason that sampling suggests; without effect until [accepted](crate::AllowedCollisionMatrix::accept_suggestions).
     pub suggestion: Option<Reason>,
 }

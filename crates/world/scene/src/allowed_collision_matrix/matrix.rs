@@ -1,4 +1,4 @@
-//! The matrix: one entry per pair, in a fixed order.
+//! The allowed collision matrix: one entry per pair, in a fixed order.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -7,23 +7,25 @@ use elbowroom_robot::GeometryId;
 use super::entry::{PairEntry, PairState};
 use super::reason::Reason;
 
-/// Weight of two objects of which one is attached: as that of two large bodies that a joint moves. Dimensionless.
+/// Weight of a pair of objects, one of which is attached: equal to that of two large bodies that one joint moves.
+///
+/// Dimensionless.
 pub(crate) const OBJECTS_WEIGHT: f64 = 1.0;
 
-/// One entry per pair: links of one robot, links of different robots, links and objects.
+/// Allowed collision matrix: one entry per pair of links, and per pair of a link and an object.
 ///
-/// Complete (skipped pairs have an entry too, with a reason), reproducible (equal models give equal matrices) and in a fixed
-/// order. Two objects are no pair while neither is attached to a robot; they have an entry where one was
-/// [edited](AllowedCollisionMatrix::edit), which then holds while one is attached.
+/// The matrix is complete (skipped pairs have an entry too, with a reason), reproducible (equal models give equal
+/// matrices) and in a fixed order. Two objects form a pair only while one of them is attached to a robot. They have an
+/// entry only if the pair was [edited](AllowedCollisionMatrix::edit); the edit applies while one of them is attached.
 ///
-/// What "skipped" means depends on the reason. Pairs that are out of reach are skipped only where the answer stays the
-/// same: distance and tolerance queries use the proven least distance in their place, and they are tested in a state beyond
-/// the joint limits, for which the proof does not hold.
+/// What "skipped" means depends on the reason. Pairs that are out of reach are skipped only if the answer stays the same:
+/// distance and tolerance queries use the proven least distance instead of a measurement. In a state beyond the joint
+/// limits, where the proof does not hold, these pairs are tested.
 #[derive(Debug, Clone)]
 pub struct AllowedCollisionMatrix {
     entries: Vec<PairEntry>,
     index: HashMap<(GeometryId, GeometryId), usize>,
-    /// The edited pairs of two objects.
+    /// Edited pairs of two objects.
     of_objects: BTreeMap<(GeometryId, GeometryId), PairEntry>,
 }
 
@@ -39,7 +41,7 @@ impl AllowedCollisionMatrix {
         Self { entries, index, of_objects: BTreeMap::new() }
     }
 
-    /// All entries but those of two objects, in their order.
+    /// All entries in order, without the pairs of two objects.
     pub fn entries(&self) -> &[PairEntry] {
         &self.entries
     }
@@ -49,13 +51,13 @@ impl AllowedCollisionMatrix {
         self.of_objects.values()
     }
 
-    /// The entry of a pair, in either order of its geometries.
+    /// The entry of a pair, with its geometries in either order.
     pub fn get(&self, a: GeometryId, b: GeometryId) -> Option<&PairEntry> {
         let of_objects = || self.of_objects.get(&(a.min(b), a.max(b)));
         self.position(a, b).map(|i| &self.entries[i]).or_else(of_objects)
     }
 
-    /// The entry to edit: made where there is none of two objects, with their margin (m).
+    /// The entry to edit. For two objects without an entry, makes one with their margin (m).
     pub(super) fn entry_mut(&mut self, a: GeometryId, b: GeometryId, margin_m: f64) -> Option<&mut PairEntry> {
         if let Some(at) = self.position(a, b) {
             return Some(&mut self.entries[at]);
@@ -80,8 +82,9 @@ impl AllowedCollisionMatrix {
         self.entries.iter().filter(|e| e.state == PairState::Tested).count()
     }
 
-    /// Skips each pair that samples suggest to skip. Answers may then differ from those of all pairs: samples are no proof.
-    /// Returns the number of pairs changed.
+    /// Skips each tested pair that has a suggestion, and returns the number of pairs changed.
+    ///
+    /// Answers may then differ from the answers for all pairs, because samples prove nothing.
     pub fn accept_suggestions(&mut self) -> usize {
         let mut accepted = 0;
         for entry in &mut self.entries {

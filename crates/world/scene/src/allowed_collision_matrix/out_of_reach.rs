@@ -1,9 +1,10 @@
-//! Pairs that no joint values within the limits bring together: proven, not sampled.
+//! Proof, without sampling, that no joint values within the limits bring a pair together.
 //!
-//! First by reach spheres: at any joint values a link stays in a sphere around its first moving joint. Then, for pairs that few
-//! joints move against each other, by branch and bound over the joint values. At the centre of a cell of joint space the
-//! shapes are measured. No point moves farther from there to the boundary of the cell than the motion bounds of the joints
-//! times the half widths of the cell. Where the shapes are farther apart, the whole cell is clear; otherwise it is split.
+//! The first test uses reach spheres: at any joint values a link stays in a sphere around its first moving joint. The
+//! second test is branch and bound over the joint values, for pairs that few joints move against each other. It measures
+//! the shapes at the centre of a cell of joint space. From there to the boundary of the cell, no point moves farther than
+//! the motion bounds of the joints times the half widths of the cell. If the shapes are farther apart than that, the
+//! whole cell is clear; otherwise it is split.
 
 use elbowroom_kinematics::motion_bound::{max_stroke_m, motion_bound};
 use elbowroom_kinematics::{JointId, JointKind};
@@ -18,14 +19,14 @@ use crate::local_shape::LocalShape;
 use crate::narrow_phase::{NarrowPhase, PlacedModel};
 use crate::{Level, Scene, SceneState};
 
-/// Clearance (m) beyond the margin that a proof must show, so that the rounding of poses cannot matter.
+/// Clearance (m) beyond the margin that a proof must show, so that the rounding of poses cannot invalidate it.
 const CLEARANCE: f64 = 1e-3;
 /// Largest number of joints that branch and bound subdivides.
 const MAX_JOINTS: usize = 3;
 /// Largest number of cells per pair.
 const MAX_CELLS: usize = 4000;
 
-/// Marks the pairs that are proven out of reach.
+/// Marks the pairs that are proven to be out of reach.
 pub(crate) fn prove_out_of_reach(scene: &Scene, mut matrix: AllowedCollisionMatrix) -> AllowedCollisionMatrix {
     let mut search = BranchAndBound { scene, state: SceneState::new(scene), narrow: NarrowPhase::new(scene) };
     for entry in matrix.entries_mut().iter_mut().filter(|e| e.state == PairState::Tested) {
@@ -39,9 +40,9 @@ pub(crate) fn prove_out_of_reach(scene: &Scene, mut matrix: AllowedCollisionMatr
     matrix
 }
 
-/// A volume that contains the geometry at any joint values, in the frame of a common ancestor or the world.
+/// A volume that contains the geometry at any joint values, in the frame of a common ancestor or in the world.
 enum ReachVolume<'s> {
-    /// Centre and radius.
+    /// Sphere with centre and radius.
     Sphere(Vec3, f64),
     /// Geometry that no joint moves.
     Fixed(&'s [LocalShape], Pose),
@@ -60,7 +61,7 @@ fn by_reach_spheres(scene: &Scene, a: GeometryId, b: GeometryId, required: f64) 
             };
             shapes.iter().map(gap).fold(f64::INFINITY, f64::min)
         }
-        // Nothing moves: excluded by the pair rules.
+        // Neither geometry moves: the pair rules exclude the pair.
         (ReachVolume::Fixed(..), ReachVolume::Fixed(..)) => return None,
     };
     (least > required && least.is_finite()).then_some(least)
@@ -97,11 +98,11 @@ fn reach_volume(scene: &Scene, id: GeometryId, other: GeometryId) -> Option<Reac
             radius += max_stroke_m(chain, *j);
         }
     }
-    // Slightly enlarged for the rounding of the sum. An infinite or NaN radius is not a sphere.
+    // Slightly enlarged for the rounding of the sum. An infinite or NaN radius bounds nothing.
     radius.is_finite().then_some(ReachVolume::Sphere(in_frame.translation, radius * (1.0 + 1e-12)))
 }
 
-/// The joints from the last link shared with the other geometry to the link, outwards.
+/// The joints from the last link shared with the other geometry to this link, in this order.
 fn own_joints(scene: &Scene, id: GeometryId, other: GeometryId) -> Vec<JointId> {
     let GeometryId::Link { robot, link } = id else { return Vec::new() };
     let chain = &scene.robots[robot.0].robot.chain;
@@ -120,7 +121,7 @@ fn own_joints(scene: &Scene, id: GeometryId, other: GeometryId) -> Vec<JointId> 
 struct PairJoint {
     robot: RobotId,
     index: usize,
-    /// Largest displacement of any point of one against the other, metres per rad or m.
+    /// Largest displacement of any point of one geometry against the other, metres per rad or per m.
     motion_bound: f64,
 }
 
@@ -138,7 +139,7 @@ struct BranchAndBound<'s> {
 }
 
 impl BranchAndBound<'_> {
-    /// `required` metres, where every cell is proven to be that clear.
+    /// Returns `required` (m) if the pair is proven to be that far apart in every cell.
     fn least_distance(&mut self, a: GeometryId, b: GeometryId, required: f64) -> Option<f64> {
         let models = [self.scene.model_of(a)?, self.scene.model_of(b)?];
         let joints = self.joints(a, b)?;
@@ -159,7 +160,7 @@ impl BranchAndBound<'_> {
             if clear(&mut self.narrow, at_boundary) {
                 continue;
             }
-            // No cell around this point can be clear.
+            // A cell that contains this point cannot be proven clear.
             if !clear(&mut self.narrow, required) {
                 return None;
             }
@@ -174,7 +175,7 @@ impl BranchAndBound<'_> {
         Some(required)
     }
 
-    /// All joints that move the pair; `None` if they are too many or unbounded.
+    /// All joints that move the pair; `None` if there are too many, or if a motion bound is infinite.
     fn joints(&self, a: GeometryId, b: GeometryId) -> Option<Vec<PairJoint>> {
         let mut joints: Vec<PairJoint> = Vec::new();
         for (id, other) in [(a, b), (b, a)] {

@@ -9,42 +9,43 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Reason {
-    /// No reason to skip it: tested.
+    /// Tested: the pair has no reason to be skipped.
     Default,
-    /// At most one moving joint between them, directly or through fixed joints and links without colliders.
+    /// At most one moving joint between the links, directly or through fixed joints and links without colliders.
     Adjacent,
-    /// No joint moves one against the other.
+    /// No joint moves one geometry against the other.
     NoJointBetween,
-    /// The SRDF disables it, for its own reason.
+    /// Disabled in the SRDF, with the reason given there.
     Srdf(String),
-    /// Proven: within the joint limits they are never closer than this, metres.
+    /// Proven: within the joint limits the geometries are never closer than `least_m`.
     OutOfReach {
         /// Least distance of the shapes, metres.
         least_m: f64,
     },
-    /// In contact in no sample of the joint space.
+    /// Never in contact in the sampled configurations.
     NeverInSamples {
         /// Number of sampled configurations.
         samples: u64,
-        /// Confidence of the rule of three: P(contact) < 3 / samples.
+        /// Confidence (rule of three) of the statement P(contact) < 3 / samples.
         confidence: f64,
     },
-    /// In contact in every sample of the joint space.
+    /// Always in contact in the sampled configurations.
     AlwaysInContact {
         /// Number of sampled configurations.
         samples: u64,
     },
-    /// In contact in the rest pose (all joints at 0, or at the limit nearest to 0), with no collider between them: by design,
-    /// or a modelling error.
+    /// In contact in the rest pose, without a collider between the links: intended by the design, or a modelling error.
+    ///
+    /// In the rest pose all joints are at 0, or at the limit nearest to 0.
     TouchesAtRest {
-        /// Number of samples in which they were in contact.
+        /// Number of samples in which the geometries were in contact.
         contacts: u32,
         /// Number of sampled configurations.
         samples: u32,
     },
-    /// Decided by a user, with this note.
+    /// Set by a user, with this note.
     ByHand(String),
-    /// The object is attached to this `robot/link` at present.
+    /// The object is at present attached to this `robot/link`.
     Attached(String),
     /// The object is attached to another link and may touch this one.
     MayTouch(String),

@@ -1,4 +1,4 @@
-//! The entries that follow from the models alone, before any geometry is measured.
+//! Entries that follow from the models alone, before any geometry is measured.
 
 use elbowroom_robot::{GeometryId, RobotId};
 
@@ -8,8 +8,9 @@ use super::reason::Reason;
 use crate::pair_weight::{WeightPrior, joints_between};
 use crate::{Object, SceneRobot};
 
-/// The matrix by the rules of [`collision_pairs`](elbowroom_robot::collision_pairs). `ids` are the links and objects that
-/// have shapes, `padding` is in metres.
+/// Builds the matrix by the rules of [`collision_pairs`](elbowroom_robot::collision_pairs).
+///
+/// `ids` are the links and objects that have shapes; `padding` is in metres.
 pub(crate) fn by_rules(
     robots: &[SceneRobot],
     objects: &[Object],
@@ -39,7 +40,7 @@ pub(crate) fn by_rules(
     AllowedCollisionMatrix::new(entries)
 }
 
-/// What the rules make of two geometries.
+/// Result of the rules for two geometries.
 enum Rule {
     /// No entry.
     NoPair,

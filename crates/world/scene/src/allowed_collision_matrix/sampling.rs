@@ -1,4 +1,4 @@
-//! What a fixed sequence of configurations suggests about the pairs.
+//! Suggestions for pairs from a fixed sequence of sampled configurations.
 
 use elbowroom_robot::{GeometryId, RSequence, RobotId, rest_pose_contacts};
 
@@ -12,14 +12,14 @@ use crate::{Level, Scene, SceneState};
 const CONFIDENCE: f64 = 0.95;
 
 impl AllowedCollisionMatrix {
-    /// This matrix with what `samples` configurations of the whole joint space suggest about its pairs.
+    /// Returns this matrix with suggestions from `samples` configurations of the whole joint space.
     ///
-    /// The configurations are Roberts' R-sequence over the joint limits ([`RSequence`]): the same ones each time. Objects have
-    /// their poses of the scene. Pairs never in contact get [`Reason::NeverInSamples`] as their suggestion, pairs always in
-    /// contact [`Reason::AlwaysInContact`], others that are in contact in the rest pose with no collider between them
-    /// [`Reason::TouchesAtRest`]. Nothing is skipped before
-    /// [`AllowedCollisionMatrix::accept_suggestions`]. The confidence is that of independent samples; the sequence is more even
-    /// than those.
+    /// The configurations are Roberts' R-sequence over the joint limits ([`RSequence`]), equal on every call. Objects
+    /// have their poses of the scene. The suggestion is [`Reason::NeverInSamples`] for pairs never in contact and
+    /// [`Reason::AlwaysInContact`] for pairs always in contact. Other pairs that are in contact in the rest pose, without
+    /// a collider between them, get [`Reason::TouchesAtRest`]. No pair is skipped before
+    /// [`AllowedCollisionMatrix::accept_suggestions`]. The confidence assumes independent samples; the sequence is more
+    /// even than independent samples.
     ///
     /// ```
     /// use elbowroom_scene::example;
@@ -44,7 +44,7 @@ impl AllowedCollisionMatrix {
                     || !narrow.within(&a, &b, Level::L3, pair.margin_m);
                 if clear { pair.clear = true } else { pair.contact = true }
             }
-            // Both clear and in contact: neither never nor always.
+            // A pair seen both clear and in contact is neither "never" nor "always".
             undecided.retain(|p| !(p.clear && p.contact));
         }
         for entry in matrix.entries_mut() {
@@ -75,7 +75,7 @@ impl AllowedCollisionMatrix {
     }
 }
 
-/// A pair that was not both clear and in contact so far.
+/// A pair that so far was either always clear or always in contact.
 struct UndecidedPair {
     entry: usize,
     models: [usize; 2],
@@ -85,7 +85,7 @@ struct UndecidedPair {
 }
 
 impl UndecidedPair {
-    /// `None` for pairs of which samples can tell nothing.
+    /// Returns `None` for pairs about which samples say nothing.
     fn new(scene: &Scene, entry: usize, e: &PairEntry) -> Option<Self> {
         if matches!(e.reason, Reason::NoJointBetween | Reason::OutOfReach { .. }) {
             return None;

@@ -1,4 +1,4 @@
-//! The allowed collision matrix as text: names, not indices, one pair a line, in a fixed order.
+//! The allowed collision matrix as text: with names instead of indices, one pair per line, in a fixed order.
 
 use std::collections::HashSet;
 
@@ -35,7 +35,7 @@ const HEAD: &str = "# Allowed collision matrix: state is tested or skipped, marg
     # Change a state with reason = { by_hand = \"why\" }.\nversion = 1\npairs = [\n";
 
 impl AllowedCollisionMatrix {
-    /// TOML that [`AllowedCollisionMatrix::from_text`] reads; the same for equal matrices.
+    /// Writes TOML that [`AllowedCollisionMatrix::from_text`] reads. Equal matrices give equal texts.
     pub fn to_text(&self, scene: &Scene) -> String {
         let mut text = String::from(HEAD);
         let by_hand = self.object_entries().filter(|e| matches!(e.reason, Reason::ByHand(_)));
@@ -60,13 +60,13 @@ impl AllowedCollisionMatrix {
         text
     }
 
-    /// The scene's matrix, changed by the entries of the text. Pairs that the text leaves out keep the scene's entry.
+    /// Returns the scene's matrix, changed by the entries of the text. Pairs missing in the text keep the scene's entry.
     ///
     /// Reasons that follow from the model (default, adjacent, no joint between, SRDF, out of reach) are checked against
     /// the model: a matrix of another model is refused.
     ///
     /// # Errors
-    /// [`MatrixError`] if the text is not an allowed collision matrix, or not one of this scene.
+    /// [`MatrixError`] if the text is not an allowed collision matrix, or belongs to another scene.
     pub fn from_text(scene: &Scene, text: &str) -> Result<Self, MatrixError> {
         let file: MatrixFile = toml::from_str(text).map_err(|e| MatrixError::Syntax(e.to_string().trim().into()))?;
         if file.version != 1 {
@@ -114,7 +114,7 @@ fn apply(entry: &mut PairEntry, row: EntryRow) -> Result<(), MatrixError> {
     entry.margin_m = row.margin_m;
     entry.weight = row.weight;
     entry.suggestion = row.suggestion;
-    // Where both have a proof, the model's is the present one.
+    // If both have a proof, the model's proof is the current one.
     if !matches!((&entry.reason, &row.reason), (Reason::OutOfReach { .. }, Reason::OutOfReach { .. })) {
         entry.reason = row.reason;
     }

@@ -18,27 +18,27 @@ struct MovingModel<'s> {
     motion: FrameMotion,
 }
 
-/// What is known of a pair at some level of detail, metres less margin.
+/// Result for a pair at one level of detail; lengths in metres, less the margin.
 struct ApproachBound {
     metres: f64,
     lower_bound: f64,
     on: [Vec3; 2],
     detail: Detail,
-    /// Proven time before which they do not meet, seconds; at most the horizon.
+    /// Proven time, seconds, before which the pair does not meet; at most the horizon.
     earliest_s: f64,
 }
 
-/// What a query requires of a pair.
+/// Requirements of a query for one pair.
 struct ApproachLimits<'p> {
     policy: &'p LevelOfDetail,
-    /// Horizon of the proof, seconds: the longer one of the policy's and the query's.
+    /// Horizon of the proof, seconds: the longer of the policy's and the query's horizon.
     horizon_s: f64,
     /// Distance (m, less margin) beyond which the exact distance is not needed.
     reach: f64,
 }
 
 impl<'s> CheckerCore<'s> {
-    /// Every pair within the policy's reach, in the order of the hierarchy.
+    /// Reports every pair within the policy's reach, in the order of the hierarchy.
     pub(super) fn approaching(
         &mut self,
         list: &mut PairList,
@@ -49,7 +49,7 @@ impl<'s> CheckerCore<'s> {
         mut found: impl FnMut(ApproachingPair),
     ) {
         let scene = self.scene;
-        // The motion of every model once, though it is in many pairs.
+        // Computes the motion of every model once, though each model is in many pairs.
         let mut moving = std::mem::take(&mut self.moving);
         moving.clear();
         moving.extend(scene.models.iter().enumerate().map(|(i, m)| {
@@ -82,7 +82,7 @@ impl<'s> CheckerCore<'s> {
         self.answered();
     }
 
-    /// From the boxes around both down to the level of detail that suffices, or the exact geometry.
+    /// Refines a pair from the boxes around its models down to the level of detail that suffices, or the exact geometry.
     fn approach(
         &mut self,
         pair: &mut GeometryPair,
@@ -105,7 +105,7 @@ impl<'s> CheckerCore<'s> {
         if next == Detail::Boxes(0) {
             next = Detail::Boxes(1);
         }
-        // Each level that does not suffice is followed by the next.
+        // If a level does not suffice, the next one follows.
         while let Detail::Boxes(depth @ 1..=2) = next {
             let Some((lower, on)) = self.narrow.box_tree_bound(a, b, depth, limit) else { break };
             let lower = (lower - pair.margin).max(proven);
@@ -131,7 +131,7 @@ impl<'s> CheckerCore<'s> {
         (!out).then_some(ApproachBound { metres: metres.max(proven), ..bound })
     }
 
-    /// True if a pair is neither near nor soon to meet.
+    /// True if a pair is proven to be beyond `within_m` and not to meet within `exact_s`.
     fn out_of_range(&mut self, bound: &ApproachBound, level: Level, limits: &ApproachLimits) -> bool {
         let policy = limits.policy;
         let out = bound.lower_bound > nan_is_infinite(policy.within_m) && bound.earliest_s >= policy.exact_s;
@@ -143,7 +143,7 @@ impl<'s> CheckerCore<'s> {
 }
 
 impl ApproachBound {
-    /// By a proven lower bound on the distance.
+    /// From a proven lower bound on the distance.
     fn new(
         sides: &[MovingModel; 2],
         margin: f64,
@@ -158,7 +158,7 @@ impl ApproachBound {
     }
 }
 
-/// True if the policy allows to stay at this level of detail.
+/// True if the policy allows the pair to stay at this level of detail.
 fn suffices(bound: &ApproachBound, policy: &LevelOfDetail) -> bool {
     bound.lower_bound > policy.exact_m && bound.earliest_s >= policy.exact_s
 }
@@ -187,12 +187,12 @@ fn approaching_pair([a, b]: &[MovingModel; 2], bound: &ApproachBound, horizon_s:
     }
 }
 
-/// A limit in metres; NaN is not a limit.
+/// Limit in metres, at least 0; NaN means no limit.
 fn nan_is_infinite(metres: f64) -> f64 {
     if metres.is_nan() { f64::INFINITY } else { metres.max(0.0) }
 }
 
-/// Points of the boxes around both that are near each other.
+/// Points of the boxes around the two models that are near each other.
 fn facing_points(a: &PlacedModel, b: &PlacedModel) -> [Vec3; 2] {
     let Some((x, y)) = a.obb().zip(b.obb()) else { return [a.in_world.translation, b.in_world.translation] };
     let nearest = |o: &elbowroom_spatial::Obb, p: Vec3| {
@@ -203,7 +203,7 @@ fn facing_points(a: &PlacedModel, b: &PlacedModel) -> [Vec3; 2] {
     [nearest(&x, on_b), on_b]
 }
 
-/// Upper bound (m/s) on the speed of every point as long as velocity and angular velocity of the frame stay constant.
+/// Upper bound (m/s) on the speed of every point while the velocity and angular velocity of the frame stay constant.
 fn speed_bound(m: &MovingModel) -> f64 {
     let rotation = m.motion.angular_velocity.length();
     match m.placed.obb() {
@@ -216,7 +216,7 @@ fn speed_bound(m: &MovingModel) -> f64 {
     }
 }
 
-/// Estimate of the present approach speed of the two, m/s. The proof is [`earliest_contact`].
+/// Estimate of the present approach speed of two models, m/s. [`earliest_contact`] holds the proof.
 fn closing_speed_estimate([a, b]: &[MovingModel; 2]) -> f64 {
     let seen_from = |x: &MovingModel, y: &MovingModel| {
         let at = x.placed.obb().map_or(x.placed.in_world.translation, |o| o.pose.translation);
@@ -228,12 +228,12 @@ fn closing_speed_estimate([a, b]: &[MovingModel; 2]) -> f64 {
     seen_from(a, b).min(seen_from(b, a))
 }
 
-/// Proven time (s) in which the two do not meet, by the boxes around them; at most the horizon.
+/// Proven time (s) in which two models do not meet, computed with the boxes around them; at most the horizon.
 fn earliest_contact([a, b]: &[MovingModel; 2], lower: f64, on: [Vec3; 2], margin: f64, horizon_s: f64) -> f64 {
     if !(lower > 0.0 && horizon_s > 0.0) {
         return 0.0;
     }
-    // The margin enlarges one of them, a bounded one.
+    // The margin enlarges one of the models, a bounded one.
     let first = a.placed.obb().is_some();
     let (margin_a, margin_b) = if first { (margin, 0.0) } else { (0.0, margin) };
     let Some((shape_a, path_a)) = moving_enclosure(a, margin_a, horizon_s) else { return 0.0 };
@@ -242,7 +242,7 @@ fn earliest_contact([a, b]: &[MovingModel; 2], lower: f64, on: [Vec3; 2], margin
     horizon_s * contact_free_fraction(&near, &shape_a, &path_a, &shape_b, &path_b)
 }
 
-/// The box around a model, or its only shape where it is unbounded, and its motion at constant velocities.
+/// The box around a model, or its only shape if it is unbounded, and its motion at constant velocities.
 fn moving_enclosure(m: &MovingModel, margin: f64, seconds: f64) -> Option<(Shape, ConstantTwist)> {
     let (shape, start): (Shape, Pose) = match (m.placed.obb(), &m.placed.model.exact[..]) {
         (Some(obb), _) => (Shape::Cuboid(Cuboid { half_extents: obb.half_extents + Vec3::splat(margin) }), obb.pose),

@@ -1,9 +1,9 @@
-//! The broad phase: the pairs that proofs and world boxes do not decide.
+//! The broad phase: selects the pairs that proofs and world boxes leave undecided.
 //!
-//! [`broad_phase`](CheckerCore::broad_phase) separates boxes by a known tolerance: for collision and tolerance queries, all
-//! contacts, collision points, distances within a margin and approaching pairs.
-//! [`broad_phase_by_gap`](CheckerCore::broad_phase_by_gap) orders pairs by the gaps of their boxes: for the minimum distance,
-//! whose limit decreases while pairs are measured. Sweeps have a search of their own (`sweep/search.rs`).
+//! [`broad_phase`](CheckerCore::broad_phase) compares boxes by a known tolerance. Collision and tolerance queries, all
+//! contacts, collision points, distances within a margin and approaching pairs use it.
+//! [`broad_phase_by_gap`](CheckerCore::broad_phase_by_gap) orders pairs by the gaps of their boxes. The minimum distance
+//! uses it: its limit decreases while pairs are measured. Sweeps use their own search (`sweep/search.rs`).
 
 use super::core::{Candidate, CheckerCore};
 use super::pair_list::PairList;
@@ -11,12 +11,13 @@ use super::result::PairDistance;
 use crate::world_box::round_up;
 use crate::{Level, SceneState};
 
-/// More than the relative rounding error of a sum of two non-negative f32.
+/// Factor that exceeds the relative rounding error of a sum of two non-negative f32.
 const ROUND_UP: f32 = 1.0 + 4.0 * f32::EPSILON;
 
 impl CheckerCore<'_> {
-    /// Collects the pairs that may not be farther apart than their margin and `tolerance` metres. With `by_robot`, one pair
-    /// stands for all pairs of a robot with another robot or an object.
+    /// Collects the pairs that may be within their margin plus `tolerance` metres.
+    ///
+    /// With `by_robot`, one pair represents all pairs of a robot with another robot or an object.
     pub(super) fn broad_phase(&mut self, list: &PairList, state: &SceneState, tolerance: f64, by_robot: bool) {
         self.candidates.clear();
         self.finest = Level::L1;
@@ -56,8 +57,10 @@ impl CheckerCore<'_> {
         }
     }
 
-    /// Collects the pairs that may be nearer than the best so far, with the gaps of their world boxes, or their proven least
-    /// distances, as keys. `last` is the pair that is measured already. Pairs at [`Level::L1`] are measured at once.
+    /// Collects the pairs that may be nearer than the best pair so far.
+    ///
+    /// Their keys are the gaps of their world boxes or their proven least distances. `last` is the pair that is measured
+    /// already. Pairs at [`Level::L1`] are measured at once.
     pub(super) fn broad_phase_by_gap(
         &mut self,
         list: &PairList,
@@ -102,7 +105,7 @@ impl CheckerCore<'_> {
         }
     }
 
-    /// Sorts the candidates by key, then by the hierarchy.
+    /// Sorts the candidates by key, then by their order in the hierarchy.
     pub(super) fn sort_candidates(&mut self) {
         if self.candidates.len() < 2 {
             return;

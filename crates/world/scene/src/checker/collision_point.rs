@@ -9,7 +9,7 @@ use super::result::{ColliderId, CollisionPoint};
 use crate::{Level, SceneState, pair_weight};
 
 impl CheckerCore<'_> {
-    /// The contact of the pair that is first in the order of the hierarchy.
+    /// Finds the contact of the pair that is first in the order of the hierarchy.
     pub(super) fn collision_point(
         &mut self,
         list: &PairList,
@@ -42,7 +42,7 @@ impl CheckerCore<'_> {
         found.map(|c| self.link_first(c, state))
     }
 
-    /// The side nearer to its base first; an object that is not attached last.
+    /// Puts the side nearer to its base first, and an unattached object last.
     fn link_first(&self, c: CollisionPoint, state: &SceneState) -> CollisionPoint {
         let depth = |id: GeometryId| {
             let carrier = state.carrier(id);

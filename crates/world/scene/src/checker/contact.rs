@@ -1,4 +1,4 @@
-//! Collision and tolerance queries: whether a pair is in contact, and which.
+//! Collision and tolerance queries: whether a pair is in contact, and which pair.
 
 use super::core::CheckerCore;
 use super::pair_list::{GeometryPair, PairList};
@@ -6,7 +6,7 @@ use super::result::PairContact;
 use crate::{Level, SceneState};
 
 impl CheckerCore<'_> {
-    /// A pair that is not farther apart than its margin and `tolerance` metres.
+    /// Finds a pair that is at most its margin plus `tolerance` metres apart.
     pub(super) fn first_contact(
         &mut self,
         list: &mut PairList,
@@ -35,7 +35,7 @@ impl CheckerCore<'_> {
         found
     }
 
-    /// Every pair in contact.
+    /// Reports every pair in contact.
     pub(super) fn all_contacts(&mut self, list: &PairList, state: &SceneState, mut found: impl FnMut(PairContact)) {
         self.broad_phase(list, state, 0.0, self.options.level == Level::L1);
         self.sort_candidates();

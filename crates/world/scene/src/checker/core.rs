@@ -1,4 +1,4 @@
-//! What all queries of a checker share.
+//! State that all queries of a checker share.
 
 use elbowroom_spatial::FrameMotion;
 
@@ -7,26 +7,28 @@ use super::pair_list::GeometryPair;
 use crate::narrow_phase::{NarrowPhase, PlacedModel};
 use crate::{Level, Scene, SceneState};
 
-/// Scene, settings and workspace of a checker; all but the pair lists.
+/// Scene, settings and workspace of a checker, without the pair lists.
 #[derive(Debug)]
 pub(crate) struct CheckerCore<'s> {
     pub scene: &'s Scene,
     pub options: CheckerOptions,
     pub narrow: NarrowPhase,
-    /// The pairs that the broad phase has left.
+    /// Pairs that the broad phase left undecided.
     pub candidates: Vec<Candidate>,
     /// Per model: its motion, and a bound on the speed (m/s) of its points. Workspace of the query for approaching pairs.
     pub moving: Vec<(FrameMotion, f64)>,
     /// Upper bound on the minimum distance, metres.
     pub upper_bound: f64,
-    /// The finest level that the present query has needed.
+    /// The finest level that the present query has used.
     pub finest: Level,
 }
 
-/// A pair that the broad phase has left undecided.
+/// A pair that the broad phase left undecided.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Candidate {
-    /// Sort key, small first. Minimum distance: a lower bound of the distance less margin, m. Collision and tolerance with
+    /// Sort key, small first.
+    ///
+    /// Minimum distance: a lower bound on the distance less margin, m. Collision and tolerance queries with
     /// [`CheckerOptions::weights`]: the negative weight of the pair. All other queries: 0, so that the rank decides.
     pub key: f64,
     /// Position of the pair in the order of the hierarchy, which decides among equal keys: [`GeometryPair::rank`].
@@ -52,12 +54,12 @@ impl<'s> CheckerCore<'s> {
         [pair.a, pair.b].map(|model| PlacedModel::new(self.scene, state, model as usize))
     }
 
-    /// Records that the query has needed a level.
+    /// Records that the query has used a level.
     pub fn used(&mut self, level: Level) {
         self.finest = self.finest.max(level);
     }
 
-    /// Records that models of a level prove a pair clear.
+    /// Records that the models of a level prove a pair clear.
     pub fn cleared(&mut self, level: Level) {
         self.narrow.stats.pairs_cleared.add(level, 1);
         self.used(level);
@@ -68,7 +70,7 @@ impl<'s> CheckerCore<'s> {
         self.narrow.stats.answered.add(self.finest, 1);
     }
 
-    /// Least distance (m) of a pair that the allowed collision matrix proves in a state; 0 without a proof.
+    /// Least distance (m) of a pair that the allowed collision matrix proves for a state; 0 without a proof.
     pub fn proven_distance(&self, pair: &GeometryPair, state: &SceneState) -> f64 {
         let side = |model: u32| state.proofs_hold(self.scene.models[model as usize].id);
         let holds = pair.proven_least_m > 0.0
@@ -77,7 +79,7 @@ impl<'s> CheckerCore<'s> {
         if holds { pair.proven_least_m } else { 0.0 }
     }
 
-    /// True if coarse models prove a pair farther apart than `limit` metres, at [`Level::Auto`].
+    /// True if, at [`Level::Auto`], coarse models prove a pair farther apart than `limit` metres.
     pub fn cleared_coarsely(&mut self, [a, b]: &[PlacedModel<'s>; 2], limit: f64) -> bool {
         if self.options.level == Level::Auto
             && self.options.uses_boxes()

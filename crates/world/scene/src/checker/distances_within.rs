@@ -1,4 +1,4 @@
-//! The distance of every pair within a margin.
+//! Distances of all pairs within a margin.
 
 use super::core::CheckerCore;
 use super::pair_list::PairList;
@@ -6,7 +6,7 @@ use super::result::PairDistance;
 use crate::SceneState;
 
 impl CheckerCore<'_> {
-    /// Every pair that is not certainly farther apart than its margin and `within` metres, in the order of the hierarchy.
+    /// Reports every pair that may be within its margin plus `within` (m), in the order of the hierarchy.
     pub(super) fn distances_within(
         &mut self,
         list: &mut PairList,
@@ -14,7 +14,7 @@ impl CheckerCore<'_> {
         within: f64,
         mut found: impl FnMut(PairDistance),
     ) {
-        // A robot as a whole is not a pair: L1 is answered at L2.
+        // A robot as a whole forms no pair, so L1 is answered at L2.
         self.broad_phase(list, state, within, false);
         self.sort_candidates();
         let level = self.options.pair_level();

@@ -5,16 +5,16 @@ use super::pair_list::{CarrierBlock, PairList};
 use super::result::PairDistance;
 use crate::{Level, SceneState};
 
-/// Number of the nearest candidates whose upper bounds are computed before any candidate is measured.
+/// Number of nearest candidates whose upper bounds are computed before any candidate is measured.
 const UPPER_BOUNDS: usize = 2;
 
 impl CheckerCore<'_> {
-    /// The nearest pair; `None` if there is none.
+    /// Finds the nearest pair; `None` if the list is empty.
     pub(super) fn minimum_distance(&mut self, list: &mut PairList, state: &SceneState) -> Option<PairDistance> {
         self.finest = Level::L1;
         self.upper_bound = f64::INFINITY;
         let mut best: Option<PairDistance> = None;
-        // The pair that was nearest is likely to be nearest again, and gives a limit to the others.
+        // The nearest pair of the last query is likely to be nearest again, and gives a limit for the other pairs.
         let mut last = list.nearest.filter(|_| self.options.level != Level::L1);
         if let Some(index) = last {
             if self.tighten_upper_bound(list, index, state) {
@@ -40,12 +40,12 @@ impl CheckerCore<'_> {
         best
     }
 
-    /// True if a pair at least so far apart cannot be the nearest.
+    /// True if a pair that is at least this far apart cannot be the nearest.
     pub(super) fn exceeds_best(&self, metres: f64, best: Option<&PairDistance>) -> bool {
         metres > self.upper_bound || best.is_some_and(|b| metres >= b.metres)
     }
 
-    /// Tightens the upper bound by that of one pair; false if it has none that is cheap.
+    /// Tightens the upper bound by the bound of one pair; false if computing that bound is not cheap.
     fn tighten_upper_bound(&mut self, list: &mut PairList, index: usize, state: &SceneState) -> bool {
         if !matches!(self.options.level, Level::Auto | Level::L3) {
             return false;
@@ -57,7 +57,7 @@ impl CheckerCore<'_> {
         true
     }
 
-    /// Measures the box of a robot against that of another robot or an object.
+    /// Measures the distance of a robot's box to the box of another robot or an object.
     pub(super) fn measure_robot_boxes(
         &mut self,
         list: &PairList,
@@ -80,7 +80,7 @@ impl CheckerCore<'_> {
         }
     }
 
-    /// Measures one pair, no farther than the best so far.
+    /// Measures one pair, with the best distance so far as the limit.
     fn measure(&mut self, list: &mut PairList, index: usize, state: &SceneState, best: &mut Option<PairDistance>) {
         let pair = &mut list.pairs[index];
         let sides = self.sides(pair, state);

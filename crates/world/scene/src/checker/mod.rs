@@ -25,11 +25,11 @@ use self::pair_list::PairList;
 use crate::sweep::{SweepHit, SweepMove, SweepOptions, Sweeper};
 use crate::{CheckerStats, Level, LevelOfDetail, Scene, SceneError, SceneMotion, SceneState, Selection};
 
-/// Answers queries about states of one scene; each thread has its own.
+/// Answers queries about states of one scene. Each thread needs its own checker.
 ///
-/// It keeps warm starts (likely pairs, nearest triangles), which make the next answer faster, never different. Queries do not
-/// allocate, except the first one about a [selection](Checker::between) and the first one after an object was attached or
-/// detached.
+/// The checker keeps warm starts (likely pairs, nearest triangles), which make the next answer faster but never
+/// different. Queries do not allocate, except the first query about a [selection](Checker::between) and the first query
+/// after an object was attached or detached.
 ///
 /// ```
 /// use elbowroom_robot::RobotId;
@@ -51,32 +51,32 @@ use crate::{CheckerStats, Level, LevelOfDetail, Scene, SceneError, SceneMotion, 
 pub struct Checker<'s> {
     core: CheckerCore<'s>,
     lists: Vec<PairList>,
-    /// Made at the first sweep.
+    /// Created at the first sweep.
     sweeper: Option<Box<Sweeper>>,
 }
 
 impl<'s> Checker<'s> {
-    /// A checker of a scene, ready for queries about all pairs.
+    /// Creates a checker of a scene, ready for queries about all pairs.
     pub fn new(scene: &'s Scene, options: CheckerOptions) -> Self {
         let core = CheckerCore::new(scene, options);
-        // Models that are built at first use are built now.
+        // Models that are built at first use are built here.
         scene.models.iter().for_each(|m| _ = m.at(options.level));
         let mut checker = Self { core, lists: Vec::new(), sweeper: None };
         checker.all().update(&SceneState::new(scene));
         checker
     }
 
-    /// The scene it was made for.
+    /// The scene of this checker.
     pub fn scene(&self) -> &'s Scene {
         self.core.scene
     }
 
-    /// Its settings.
+    /// The settings of this checker.
     pub fn options(&self) -> CheckerOptions {
         self.core.options
     }
 
-    /// Statistics of its queries so far.
+    /// Statistics of the queries so far.
     pub fn stats(&self) -> CheckerStats {
         self.core.narrow.stats
     }
@@ -86,14 +86,16 @@ impl<'s> Checker<'s> {
         self.core.narrow.stats = CheckerStats::default();
     }
 
-    /// The finest level that the last query needed.
+    /// The finest level that the last query used.
     pub fn last_level(&self) -> Level {
         self.core.finest
     }
 
-    /// Queries about pairs with one geometry in each selection. Equal selections: the pairs within, as the self-collision of a
-    /// robot. Pairs excluded by rule stay excluded, even where both are named; two objects, which are no pair otherwise, are
-    /// one where only objects are named.
+    /// Selects the pairs with one geometry in each selection, for queries.
+    ///
+    /// Equal selections select the pairs within: for a robot, its self-collision. Pairs excluded by rule stay excluded,
+    /// even if both geometries are named. A pair of unattached objects counts only if both selections contain objects
+    /// only.
     ///
     /// ```
     /// use elbowroom_kinematics::LinkId;
@@ -123,34 +125,36 @@ impl<'s> Checker<'s> {
         self.between(Selection::All, Selection::All)
     }
 
-    /// A pair in contact (not farther apart than its margin), or `None` if there is none.
+    /// Finds a pair in contact (at most its margin apart); `None` if no pair is in contact.
     pub fn collides(&mut self, state: &SceneState) -> Option<PairContact> {
         self.all().collides(state)
     }
 
-    /// Every pair in contact, in the order of the hierarchy.
+    /// Reports every pair in contact, in the order of the hierarchy.
     pub fn contacts(&mut self, state: &SceneState, found: impl FnMut(PairContact)) {
         self.all().contacts(state, found);
     }
 
-    /// A pair not farther apart than `tolerance_m` beyond its margin. Values below 0 count as 0, NaN as infinite.
+    /// Finds a pair at most `tolerance_m` (metres) beyond its margin apart. Values below 0 count as 0, NaN as infinite.
     pub fn within(&mut self, state: &SceneState, tolerance_m: f64) -> Option<PairContact> {
         self.all().within(state, tolerance_m)
     }
 
-    /// The nearest pair with its distance and witness points; `None` if there is no pair at all.
+    /// Finds the nearest pair, with its distance and witness points; `None` if the scene has no pair to test.
     pub fn distance(&mut self, state: &SceneState) -> Option<PairDistance> {
         self.all().distance(state)
     }
 
-    /// The collision point: the point, the link, the collider and its triangle, and the normals. Of several collisions it
-    /// is that of the pair first in the order of the hierarchy: the link nearest to a base. `None` if nothing collides,
-    /// margins included.
+    /// Finds the collision point with link, collider, triangle and normals; `None` if nothing collides, margins included.
     ///
-    /// [`Detail::Boxes`] stops at a depth of the box trees of the meshes: "nothing collides" is certain then, a collision may be
-    /// none, and the point is a point of the surface in the box. [`Detail::Exact`] goes on to the triangles; which of several
-    /// touching triangles is reported is specified in [`contact`](elbowroom_proximity::contact), the same on every instruction
-    /// set. Compares the exact models, whatever [`CheckerOptions::level`] is. Allocates only for hulls.
+    /// If several pairs collide, it is the point of the pair that is first in the order of the hierarchy: the link
+    /// nearest to a base.
+    ///
+    /// [`Detail::Boxes`] stops at a depth of the box trees of the meshes: "nothing collides" is guaranteed, a reported
+    /// collision may be a false positive, and the point is a surface point in the box. [`Detail::Exact`] continues to the
+    /// triangles. [`contact`](elbowroom_proximity::contact) specifies which of several touching triangles is reported;
+    /// the choice is equal on every instruction set. Compares the exact models, whatever [`CheckerOptions::level`] is.
+    /// Allocates only for hulls.
     ///
     /// ```
     /// use elbowroom_robot::RobotId;
@@ -169,10 +173,12 @@ impl<'s> Checker<'s> {
         self.all().collision_point(state, detail)
     }
 
-    /// Every pair that is not certainly farther apart than `margin_m` beyond its own margin, with distance, proven lower bound
-    /// and witness points, in the order of the hierarchy (nearest to a base first). A pair in contact has distance 0 and a point
-    /// in or near both. Reports a pair exactly where [`Checker::within`] would find one; values below 0 count as 0, NaN
-    /// as infinite. [`Level::L1`] is answered at [`Level::L2`].
+    /// Reports every pair that is not proven farther apart than `margin_m` (metres) beyond its own margin.
+    ///
+    /// Each pair has its distance, proven lower bound and witness points. The order is that of the hierarchy (nearest to
+    /// a base first). A pair in contact has distance 0 and a point in or near both geometries. A pair is reported if and
+    /// only if [`Checker::within`] would find it. Values below 0 count as 0, NaN as infinite. [`Level::L1`] is answered
+    /// at [`Level::L2`].
     ///
     /// ```
     /// use elbowroom_robot::RobotId;
@@ -193,15 +199,21 @@ impl<'s> Checker<'s> {
         self.all().distances_within(state, margin_m, found);
     }
 
-    /// The pairs that are near or may soon meet at the present velocities, each with its time to collision, in the order of the
-    /// hierarchy: progressive level of detail (Reichenbach and Kovačić 2003). Distant pairs are compared by one box each,
-    /// approaching ones deeper in the box trees of their meshes, near and fast ones exactly, as `policy` says.
-    /// `horizon_s` limits [`ApproachingPair::earliest_s`].
+    /// Reports the pairs that are near or may soon meet at the present velocities, each with its time to collision.
     ///
-    /// Guaranteed for every policy: a pair nearer than `exact_m`, or not proven to be apart for `exact_s`, is measured
-    /// exactly, contact included; a pair reported coarsely is farther; and a pair that is not reported is farther than
-    /// `within_m` and does not meet within `exact_s`. NaN speeds and distances count as near and soon. Compares the exact
-    /// models, whatever [`CheckerOptions::level`] is.
+    /// The order is that of the hierarchy. The query uses progressive level of detail (Reichenbach and Kovačić 2003):
+    /// distant pairs are compared by one box each, approaching pairs deeper in the box trees of their meshes, near and
+    /// fast pairs exactly, as `policy` says. `horizon_s` (seconds) limits [`ApproachingPair::earliest_s`].
+    ///
+    /// Under every policy these guarantees hold:
+    /// - A pair nearer than `exact_m`, or not proven to be apart for `exact_s`, is always measured exactly, contact
+    ///   included.
+    /// - A pair reported coarsely is always farther apart than `exact_m`, and never meets within `exact_s` at constant
+    ///   velocities.
+    /// - A pair that is not reported is always farther apart than `within_m`, and never meets within `exact_s` at
+    ///   constant velocities.
+    ///
+    /// NaN speeds and distances count as near and soon. Compares the exact models, whatever [`CheckerOptions::level`] is.
     ///
     /// ```
     /// use elbowroom_robot::RobotId;
@@ -234,13 +246,14 @@ impl<'s> Checker<'s> {
         self.all().approaching(state, motion, policy, horizon_s, found);
     }
 
-    /// Continuous collision detection: the first time at which a pair is nearer than its margin during a motion, or `None`
-    /// where no pair is during all of it. Proven, not sampled, so that nothing thin is passed through. What is not in `moves`
-    /// keeps its pose of `start`. Pairs excluded by rule (adjacent links, SRDF, by hand) never count; a link that no joint moves
-    /// counts against an object on a path of its own, objects among themselves only where only objects are
-    /// [named](Checker::between).
+    /// Finds the first time at which a pair is nearer than its margin during a motion (continuous collision detection).
     ///
-    /// The first sweep allocates, and later ones where they are longer than any before. [`Level::L1`] is answered at
+    /// `None` means that every pair is clear during the whole motion. This is proven, not sampled, so that thin geometry
+    /// cannot be passed through. Geometry that is not in `moves` keeps its pose of `start`. Pairs excluded by rule
+    /// (adjacent links, SRDF, by hand) never count. A link that no joint moves counts against an object on its own path.
+    /// Two unattached objects count only if both selections [name](Checker::between) objects only.
+    ///
+    /// The first sweep allocates, as does a later sweep that is longer than all before it. [`Level::L1`] is answered at
     /// [`Level::L2`].
     ///
     /// ```
@@ -267,7 +280,8 @@ impl<'s> Checker<'s> {
     /// ```
     ///
     /// # Errors
-    /// As [`SceneState::set_q`] and [`SceneState::place`], for the end of the motion; a robot or object that moves twice.
+    /// The errors of [`SceneState::set_q`] and [`SceneState::place`] for the end of the motion; a robot or object that
+    /// moves twice.
     pub fn sweep(
         &mut self,
         start: &SceneState,
@@ -277,9 +291,11 @@ impl<'s> Checker<'s> {
         self.all().sweep(start, moves, options)
     }
 
-    /// [`Checker::sweep`] of one robot through waypoints (joint values, rad or m), straight in joint space from each to the
-    /// next. The first waypoint is either the configuration in `start` or the end of the first segment. Returns the hit with the
-    /// index of the waypoint at the end of its segment; its time is that of the segment.
+    /// Like [`Checker::sweep`], but moves one robot through waypoints (joint values, rad or m).
+    ///
+    /// The robot moves straight in joint space from each waypoint to the next. The first waypoint is either the
+    /// configuration in `start` or the end of the first segment. Returns the hit with the index of the waypoint at the
+    /// end of its segment; the time of the hit is relative to that segment.
     ///
     /// ```
     /// use elbowroom_robot::RobotId;
@@ -294,7 +310,7 @@ impl<'s> Checker<'s> {
     /// ```
     ///
     /// # Errors
-    /// As [`Checker::sweep`], for any of the waypoints, before anything is tested.
+    /// The errors of [`Checker::sweep`] for any of the waypoints, reported before any test.
     pub fn sweep_path<Q: AsRef<[f64]>>(
         &mut self,
         start: &SceneState,

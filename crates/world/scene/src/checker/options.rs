@@ -2,19 +2,23 @@
 
 use crate::Level;
 
-/// Settings of a [`Checker`](crate::Checker). None of them but [`CheckerOptions::level`] changes an answer; at levels of
-/// enclosing volumes the allowed collision matrix, whose proofs are tighter, makes distances more exact.
+/// Settings of a [`Checker`](crate::Checker).
+///
+/// Only [`CheckerOptions::level`] changes answers, with one exception: at levels of enclosing volumes, the allowed
+/// collision matrix makes distances more exact, because its proofs are tighter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CheckerOptions {
-    /// The models that are compared.
+    /// The level of the models that are compared.
     pub level: Level,
-    /// Where [`Level::Auto`] begins: [`Level::L1`], [`Level::L2`], or [`Level::L3`], which compares the exact geometry only.
+    /// First level of [`Level::Auto`]: [`Level::L1`], [`Level::L2`], or [`Level::L3`] (exact geometry only).
     pub start: Level,
-    /// Whether the pairs most likely to collide are tested first, by kinematics and by earlier contacts. Otherwise the order is
-    /// that of the hierarchy: of several contacts, the one nearest to a base is reported.
+    /// Whether the pairs most likely to collide, by kinematics and earlier contacts, are tested first.
+    ///
+    /// Otherwise the order is that of the hierarchy: of several contacts, the one nearest to a base is reported.
     pub weights: bool,
-    /// Whether pairs that the allowed collision matrix proves out of reach are skipped. Pairs excluded by rule (adjacent
-    /// links, SRDF, by hand) never count.
+    /// Whether pairs that the allowed collision matrix proves out of reach are skipped.
+    ///
+    /// Pairs excluded by rule (adjacent links, SRDF, by hand) never count.
     pub matrix: bool,
 }
 
@@ -25,7 +29,7 @@ impl Default for CheckerOptions {
 }
 
 impl CheckerOptions {
-    /// The level at which pairs are compared one by one.
+    /// The level at which single pairs are compared.
     pub(crate) fn pair_level(self) -> Level {
         match self.level {
             Level::Auto => Level::L3,
@@ -34,7 +38,7 @@ impl CheckerOptions {
         }
     }
 
-    /// True if the boxes of a pair may decide that it is clear: the answer is the same.
+    /// True if the boxes of a pair may decide that it is clear, because the answer is the same.
     pub(crate) fn uses_boxes(self) -> bool {
         match self.level {
             Level::Auto => self.start <= Level::L2,

@@ -1,4 +1,4 @@
-//! The distance of one pair, as minimum-distance and tolerance queries measure it.
+//! The distance of one pair, for minimum-distance and tolerance queries.
 
 use super::core::CheckerCore;
 use super::pair_list::GeometryPair;
@@ -7,8 +7,9 @@ use crate::SceneState;
 use crate::narrow_phase::PlacedModel;
 
 impl<'s> CheckerCore<'s> {
-    /// Measures one pair, from coarse to fine; `None` if the models are certainly farther apart than `limit` metres.
-    /// `margin` is the pair's margin and what the models may fail to enclose.
+    /// Measures one pair, from coarse to fine; `None` if the models are proven farther apart than `limit` metres.
+    ///
+    /// `margin` is the pair's margin plus the length by which the models may fail to enclose the geometry.
     pub(super) fn pair_distance(
         &mut self,
         pair: &mut GeometryPair,
@@ -27,7 +28,7 @@ impl<'s> CheckerCore<'s> {
             self.narrow.stats.pairs_cleared.add(level, 1);
             return None;
         };
-        // A proof about the exact shapes may be tighter than what enclosing volumes tell.
+        // A proof about the exact shapes may be tighter than the bound of enclosing volumes.
         let proven = (self.proven_distance(pair, state) - pair.margin).max(0.0);
         let (metres, lower_bound) = less_margin(&s, margin);
         let (metres, lower_bound) = (metres.max(proven), lower_bound.max(proven));

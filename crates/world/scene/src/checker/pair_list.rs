@@ -9,7 +9,7 @@ use crate::narrow_phase::PairWarmStart;
 use crate::world_box::round_up;
 use crate::{PairState, Reason, Scene, SceneState, Selection, pair_weight};
 
-/// A pair and what was learned of it.
+/// A pair with its learned weight and warm start.
 #[derive(Debug, Clone)]
 pub(crate) struct GeometryPair {
     /// Indices of models.
@@ -17,38 +17,38 @@ pub(crate) struct GeometryPair {
     pub b: u32,
     /// Security margin, metres.
     pub margin: f64,
-    /// Proven least distance; 0 without a proof. Infinite where the user has excluded the pair.
+    /// Proven least distance, metres; 0 without a proof. Infinite if the user has excluded the pair.
     pub proven_least_m: f64,
     /// Position in the order of the hierarchy.
     pub rank: u32,
-    /// How likely the pair is to collide, as learned: collision and tolerance queries test high weights first.
+    /// Learned likelihood that the pair collides: collision and tolerance queries test high weights first.
     pub weight: f64,
     pub warm_start: PairWarmStart,
 }
 
 impl GeometryPair {
-    /// A pair without a proof; `None` if one has no shape.
+    /// A pair without a proof; `None` if one of the geometries has no shape.
     pub fn of(scene: &Scene, a: GeometryId, b: GeometryId, margin: f64) -> Option<Self> {
         let (a, b) = (scene.model_of(a)? as u32, scene.model_of(b)? as u32);
         Some(Self { a, b, margin, proven_least_m: 0.0, rank: 0, weight: 1.0, warm_start: PairWarmStart::default() })
     }
 }
 
-/// The data of a pair that the broad phase reads, packed.
+/// Data of a pair for the broad phase, packed.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PackedPair {
     pub a: u32,
     pub b: u32,
-    /// Metres, rounded up.
+    /// Margin, metres, rounded up.
     pub margin: f32,
-    /// True if there is a proof of the least distance.
+    /// True if the least distance has a proof.
     pub proven: bool,
 }
 
-/// Pairs between the same two carriers: robots, or objects that are not attached.
+/// Pairs between the same two carriers: robots, or unattached objects.
 #[derive(Debug, Clone)]
 pub(crate) struct CarrierBlock {
-    /// Indices of boxes of a state: of a robot, or of an object that is not attached.
+    /// Indices of boxes of a state: the box of a robot, or of an unattached object.
     pub a: usize,
     pub b: usize,
     pub start: usize,
@@ -60,13 +60,13 @@ pub(crate) struct CarrierBlock {
 #[derive(Debug, Clone)]
 pub(crate) struct PairList {
     pub key: (Selection, Selection),
-    /// The arrangement of attached objects that it was made for.
+    /// The arrangement of attached objects for which the list was built.
     pub arrangement: Option<u64>,
     pub pairs: Vec<GeometryPair>,
-    /// One per pair.
+    /// One element per pair.
     pub packed: Vec<PackedPair>,
     pub blocks: Vec<CarrierBlock>,
-    /// The pair that was nearest last time.
+    /// The nearest pair of the last query.
     pub nearest: Option<usize>,
 }
 
@@ -75,7 +75,7 @@ impl PairList {
         Self { key, arrangement: None, pairs: Vec::new(), packed: Vec::new(), blocks: Vec::new(), nearest: None }
     }
 
-    /// Makes the list again for the attachments of a state; what was learned of pairs that remain is kept.
+    /// Rebuilds the list for the attachments of a state, and keeps the learned data of pairs that remain.
     pub fn rebuild(&mut self, scene: &Scene, state: &SceneState) {
         let known: HashMap<(u32, u32), GeometryPair> = self.pairs.drain(..).map(|p| ((p.a, p.b), p)).collect();
         self.nearest = None;
@@ -122,7 +122,7 @@ impl PairList {
         }
     }
 
-    /// Pairs of two objects: where one is attached, or where the query names nothing but objects.
+    /// Adds pairs of two objects: those with an attached object, or all if the query names objects only.
     fn add_object_pairs(&mut self, scene: &Scene, state: &SceneState) {
         let named = self.key.0.is_objects() && self.key.1.is_objects();
         let attached = |o: usize| state.attached[o].is_some();
@@ -148,7 +148,7 @@ impl PairList {
         self.pairs.extend(GeometryPair::of(scene, a, b, margin).map(|p| GeometryPair { proven_least_m, weight, ..p }));
     }
 
-    /// Orders the pairs by the hierarchy: nearest to a base first, in the order of the matrix among equals.
+    /// Orders the pairs by the hierarchy: nearest to a base first; ties are in the order of the matrix.
     fn rank(&mut self, scene: &Scene, state: &SceneState) {
         let depth = |model: u32| {
             let carrier = state.carrier(scene.models[model as usize].id);

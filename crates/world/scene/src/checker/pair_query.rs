@@ -9,23 +9,23 @@ use super::result::{ApproachingPair, CollisionPoint, PairContact, PairDistance};
 use crate::sweep::{SweepHit, SweepMove, SweepOptions, Sweeper};
 use crate::{LevelOfDetail, SceneError, SceneMotion, SceneState};
 
-/// Queries about a selection of pairs; made by [`Checker::between`](crate::Checker::between).
+/// Queries about a selection of pairs. Created by [`Checker::between`](crate::Checker::between).
 #[derive(Debug)]
 pub struct PairQuery<'c, 's> {
     pub(super) core: &'c mut CheckerCore<'s>,
     pub(super) list: &'c mut PairList,
-    /// Made at the first sweep.
+    /// Created at the first sweep.
     pub(super) sweeper: &'c mut Option<Box<Sweeper>>,
 }
 
 impl<'s> PairQuery<'_, 's> {
-    /// The core, and the list brought up to date with the attachments of the state.
+    /// The core and the list, after an update of the list to the attachments of the state.
     fn updated(&mut self, state: &SceneState) -> (&mut CheckerCore<'s>, &mut PairList) {
         self.update(state);
         (&mut *self.core, &mut *self.list)
     }
 
-    /// Brings the list up to date with the attachments of the state.
+    /// Updates the list to the attachments of the state.
     pub(super) fn update(&mut self, state: &SceneState) {
         if self.list.arrangement != Some(state.arrangement) {
             self.list.rebuild(self.core.scene, state);
@@ -34,52 +34,52 @@ impl<'s> PairQuery<'_, 's> {
         }
     }
 
-    /// Number of pairs, those out of reach included.
+    /// Number of pairs, including pairs out of reach.
     pub fn len(&mut self, state: &SceneState) -> usize {
         self.updated(state).1.pairs.len()
     }
 
-    /// True if there is no pair.
+    /// True if the selection has no pair.
     pub fn is_empty(&mut self, state: &SceneState) -> bool {
         self.len(state) == 0
     }
 
-    /// As [`Checker::collides`](crate::Checker::collides).
+    /// Like [`Checker::collides`](crate::Checker::collides).
     pub fn collides(&mut self, state: &SceneState) -> Option<PairContact> {
         self.within(state, 0.0)
     }
 
-    /// As [`Checker::contacts`](crate::Checker::contacts).
+    /// Like [`Checker::contacts`](crate::Checker::contacts).
     pub fn contacts(&mut self, state: &SceneState, found: impl FnMut(PairContact)) {
         let (core, list) = self.updated(state);
         core.all_contacts(list, state, found);
     }
 
-    /// As [`Checker::within`](crate::Checker::within).
+    /// Like [`Checker::within`](crate::Checker::within).
     pub fn within(&mut self, state: &SceneState, tolerance_m: f64) -> Option<PairContact> {
         let (core, list) = self.updated(state);
         core.first_contact(list, state, tolerance(tolerance_m))
     }
 
-    /// As [`Checker::collision_point`](crate::Checker::collision_point).
+    /// Like [`Checker::collision_point`](crate::Checker::collision_point).
     pub fn collision_point(&mut self, state: &SceneState, detail: Detail) -> Option<CollisionPoint> {
         let (core, list) = self.updated(state);
         core.collision_point(list, state, detail)
     }
 
-    /// As [`Checker::distance`](crate::Checker::distance).
+    /// Like [`Checker::distance`](crate::Checker::distance).
     pub fn distance(&mut self, state: &SceneState) -> Option<PairDistance> {
         let (core, list) = self.updated(state);
         core.minimum_distance(list, state)
     }
 
-    /// As [`Checker::distances_within`](crate::Checker::distances_within).
+    /// Like [`Checker::distances_within`](crate::Checker::distances_within).
     pub fn distances_within(&mut self, state: &SceneState, margin_m: f64, found: impl FnMut(PairDistance)) {
         let (core, list) = self.updated(state);
         core.distances_within(list, state, tolerance(margin_m), found);
     }
 
-    /// As [`Checker::approaching`](crate::Checker::approaching).
+    /// Like [`Checker::approaching`](crate::Checker::approaching).
     pub fn approaching(
         &mut self,
         state: &SceneState,
@@ -92,10 +92,10 @@ impl<'s> PairQuery<'_, 's> {
         core.approaching(list, state, motion, policy, horizon_s, found);
     }
 
-    /// As [`Checker::sweep`](crate::Checker::sweep).
+    /// Like [`Checker::sweep`](crate::Checker::sweep).
     ///
     /// # Errors
-    /// As [`Checker::sweep`](crate::Checker::sweep).
+    /// The errors of [`Checker::sweep`](crate::Checker::sweep).
     pub fn sweep(
         &mut self,
         start: &SceneState,
@@ -106,10 +106,10 @@ impl<'s> PairQuery<'_, 's> {
         sweeper(self.sweeper, self.core).sweep(self.core, self.list, start, moves, options)
     }
 
-    /// As [`Checker::sweep_path`](crate::Checker::sweep_path).
+    /// Like [`Checker::sweep_path`](crate::Checker::sweep_path).
     ///
     /// # Errors
-    /// As [`Checker::sweep_path`](crate::Checker::sweep_path).
+    /// The errors of [`Checker::sweep_path`](crate::Checker::sweep_path).
     pub fn sweep_path<Q: AsRef<[f64]>>(
         &mut self,
         start: &SceneState,

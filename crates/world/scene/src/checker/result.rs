@@ -1,4 +1,4 @@
-//! Answers to queries.
+//! Results of queries.
 
 use elbowroom_proximity::Separation;
 use elbowroom_proximity::contact::{ContactPoint, Detail};
@@ -7,63 +7,64 @@ use elbowroom_spatial::Vec3;
 
 use crate::Level;
 
-/// Two links or objects in contact or, as the answer to a tolerance query, not farther apart than its tolerance.
+/// A pair of links or objects in contact or, as the result of a tolerance query, within its tolerance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PairContact {
-    /// The first of the pair, in the order of the allowed collision matrix.
+    /// First geometry of the pair, in the order of the allowed collision matrix.
     pub a: GeometryId,
-    /// The other.
+    /// Second geometry of the pair.
     pub b: GeometryId,
-    /// The finest resolution level used: that of the models in contact, or within the tolerance. Only at [`Level::L3`] this is
-    /// certain; at [`Level::L1`] the pair stands for its robots.
+    /// The finest resolution level used: the level of the models in contact or within the tolerance.
+    ///
+    /// The contact is certain only at [`Level::L3`]. At [`Level::L1`] the pair represents its robots.
     pub level: Level,
 }
 
 /// Distance of a pair.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PairDistance {
-    /// Metres between the shapes, less the pair's margin; 0 on contact.
+    /// Distance between the shapes, less the pair's margin, metres; 0 on contact.
     pub metres: f64,
     /// Proven lower bound on the distance of every pair of the query, metres.
     pub lower_bound: f64,
-    /// Witness point on `a` (without padding), in the world. On overlap: a point in or near both.
+    /// Witness point on `a` (without padding), in the world. On overlap: a point in or near both geometries.
     pub on_a: Vec3,
-    /// Witness point on `b`.
+    /// Witness point on `b` (without padding), in the world.
     pub on_b: Vec3,
-    /// The first of the pair.
+    /// First geometry of the pair.
     pub a: GeometryId,
-    /// The other.
+    /// Second geometry of the pair.
     pub b: GeometryId,
-    /// The finest resolution level used: that of the models that were measured.
+    /// The finest resolution level used: the level of the models that were measured.
     pub level: Level,
 }
 
 /// The collision point of the colliding link nearest to a base (after Reichenbach and Kovačić 2003).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CollisionPoint {
-    /// The link that collides: of a pair the one nearer to its base, the first where both are as near.
+    /// The colliding link: the geometry of the pair that is nearer to its base, or the first one on a tie.
     pub link: GeometryId,
-    /// Index of its collider; 0 for an object.
+    /// Index of the link's collider; 0 for an object.
     pub collider: usize,
-    /// The triangle of the collider that the point is on, where it is a mesh and the answer exact.
+    /// Index of the collider's triangle that holds the point, if the collider is a mesh and the answer exact.
     pub triangle: Option<u32>,
     /// The point on the surface of the link (without padding), in the world.
     pub on_link: Vec3,
-    /// Outward normal of the link's surface there, unit vector in the world.
+    /// Outward normal of the link's surface at that point, unit vector in the world.
     pub normal: Vec3,
-    /// The geometry that it collides with.
+    /// The geometry with which the link collides.
     pub other: GeometryId,
-    /// Index of its collider.
+    /// Index of the other geometry's collider; 0 for an object.
     pub other_collider: usize,
-    /// The triangle of that collider.
+    /// Index of the triangle of that collider, if it is a mesh and the answer exact.
     pub other_triangle: Option<u32>,
-    /// The point on the other surface: the same where surfaces of triangles or boxes intersect, else the nearest one.
+    /// The point on the other surface: `on_link` if surfaces of triangles or boxes intersect, else the nearest point.
     pub on_other: Vec3,
-    /// Outward normal of the other surface there.
+    /// Outward normal of the other surface at that point, unit vector in the world.
     pub other_normal: Vec3,
     /// The level of detail of the answer: only [`Detail::Exact`] is certain.
     pub detail: Detail,
-    /// False if the surfaces (or boxes) do not touch, but are not farther apart than the pair's margin.
+    /// False if the surfaces (or boxes) do not touch but are within the pair's margin.
     pub touching: bool,
 }
 
@@ -76,7 +77,7 @@ pub(super) struct ColliderId {
 }
 
 impl CollisionPoint {
-    /// A contact of `a` and `b`.
+    /// From a contact point between `a` and `b`.
     pub(super) fn new(a: ColliderId, b: ColliderId, found: &ContactPoint, detail: Detail) -> Self {
         Self {
             link: a.geometry,
@@ -94,7 +95,7 @@ impl CollisionPoint {
         }
     }
 
-    /// The same with the two sides exchanged.
+    /// Exchanges the two sides.
     pub(super) fn swapped(self) -> Self {
         Self {
             link: self.other,
@@ -112,29 +113,34 @@ impl CollisionPoint {
     }
 }
 
-/// A pair in motion: how far apart it is, and when it may meet.
+/// A pair in motion: its distance, and when it may meet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ApproachingPair {
-    /// The first of the pair, in the order of the allowed collision matrix.
+    /// First geometry of the pair, in the order of the allowed collision matrix.
     pub a: GeometryId,
-    /// The other.
+    /// Second geometry of the pair.
     pub b: GeometryId,
     /// Proven lower bound on the distance of the shapes, less the pair's margin, metres; 0 on contact.
     pub lower_bound: f64,
-    /// The distance less the margin where [`ApproachingPair::detail`] is exact; else the lower bound again. Never too large.
+    /// Distance less the margin, metres, if [`ApproachingPair::detail`] is exact; else equal to `lower_bound`.
+    ///
+    /// Never too large.
     pub metres: f64,
-    /// Witness point on `a`, in the world; where not exact, a point of the nearest boxes, or near them.
+    /// Witness point on `a`, in the world. If `detail` is not exact: a point of the nearest boxes, or near them.
     pub on_a: Vec3,
-    /// Witness point on `b`.
+    /// Witness point on `b`, in the world.
     pub on_b: Vec3,
-    /// Approach speed of the two points, m/s; negative if they separate.
+    /// Approach speed of the two witness points, m/s; negative if they separate.
     pub closing_m_s: f64,
-    /// Metres over that speed, seconds: the time to collision if these points meet and keep their velocities. Infinite where
-    /// they separate.
+    /// Time to collision, s, if the witness points meet and keep their velocities: `metres` divided by `closing_m_s`.
+    ///
+    /// Infinite if they separate.
     pub estimate_s: f64,
-    /// Proven: no contact (margin included) sooner, seconds, as long as the velocities of both frames' origins and their
-    /// angular velocities stay constant. Joints at constant rates curve the path of a link:
-    /// [`sweep`](crate::Checker::sweep) proves that. At most the horizon of the query.
+    /// Proven lower bound on the time of contact (margin included), seconds; at most the horizon of the query.
+    ///
+    /// As long as the velocities of both frames' origins and their angular velocities stay constant, the pair never meets
+    /// before this time. Joints at constant rates curve the path of a link: [`sweep`](crate::Checker::sweep) proves that
+    /// case.
     pub earliest_s: f64,
     /// The level of detail at which the pair was measured.
     pub detail: Detail,

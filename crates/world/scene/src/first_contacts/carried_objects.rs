@@ -9,9 +9,11 @@ use super::{FirstContacts, PlacedGeometry, TrackedPair};
 use crate::Attachment;
 
 impl FirstContacts<'_> {
-    /// Attaches an object to a link from the last [`check`](Self::check) on. It is checked against all links but those that
-    /// may touch it, and against all objects. What it touches now does not begin to touch: such a contact counts once it has
-    /// separated, or is 1 mm deeper than now. The object no longer moves by itself.
+    /// Attaches an object to a link, effective from the last [`check`](Self::check).
+    ///
+    /// The object is checked against all objects and all links except those that may touch it. It no longer moves by
+    /// itself. A pair that touches already counts as a new contact only after it has separated, or if it is 1 mm deeper
+    /// than now.
     pub fn attach(&mut self, object: ObjectId, attachment: Attachment, states: &[&ChainState]) {
         let shape = &self.objects[object.0].shape;
         let radius = shape.aabb(&attachment.in_link).max_distance(Vec3::ZERO);
@@ -20,18 +22,18 @@ impl FirstContacts<'_> {
         self.renew_pairs(object, states);
     }
 
-    /// Detaches an object: it stays where it was at the last [`check`](Self::check).
+    /// Detaches an object. It stays at its pose of the last [`check`](Self::check).
     pub fn detach(&mut self, object: ObjectId, states: &[&ChainState]) {
         self.held[object.0] = None;
         self.renew_pairs(object, states);
     }
 
-    /// How an object is attached; `None` if it is not.
+    /// The attachment of an object; `None` if it is not attached.
     pub fn attachment(&self, object: ObjectId) -> Option<&Attachment> {
         self.held[object.0].as_ref().map(|h| &h.attachment)
     }
 
-    /// Whether an attached object is being set down: it may touch objects, up to a depth of 1 mm.
+    /// Sets whether an attached object is being set down: it may then touch objects, up to a depth of 1 mm.
     pub fn set_down(&mut self, object: ObjectId, set_down: bool) {
         if let Some(held) = &mut self.held[object.0] {
             held.set_down = set_down;
@@ -60,7 +62,7 @@ impl FirstContacts<'_> {
         let Self { robots, objects, boxes, placed, held, .. } = self;
         let now = PlacedGeometry { robots, objects, boxes, placed, states };
         let pairs = partners.into_iter().map(|other| {
-            // Links are named first, as in all other pairs.
+            // Links come first, as in all other pairs.
             let (a, b) = if matches!(other, GeometryId::Link { .. }) { (other, id) } else { (id, other) };
             let mut pair = TrackedPair::new(robots, held, a, b);
             let moves = |o: ObjectId| GeometryId::Object(o) == other && held[o.0].is_none();

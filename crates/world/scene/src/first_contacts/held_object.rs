@@ -1,4 +1,4 @@
-//! How a robot carries an object, and what moves a geometry.
+//! How a robot carries an object, and which link moves a geometry.
 
 use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_robot::{GeometryId, Robot, RobotId};
@@ -6,13 +6,13 @@ use elbowroom_spatial::Pose;
 
 use crate::Attachment;
 
-/// How a robot carries an object.
+/// An object that a robot carries.
 #[derive(Debug, Clone)]
 pub(super) struct HeldObject {
     pub attachment: Attachment,
-    /// Radius around the link's origin that holds the object, m.
+    /// Radius of a sphere around the link's origin that contains the object, m.
     pub radius: f64,
-    /// True while it is set down: it may touch objects.
+    /// True while the object is set down: it may touch objects.
     pub set_down: bool,
 }
 
@@ -23,7 +23,7 @@ impl HeldObject {
     }
 }
 
-/// The link that moves a geometry, and a radius (m) around the link's origin that holds the geometry.
+/// The link that moves a geometry, and the radius (m) of a sphere around the link's origin that contains the geometry.
 pub(super) struct Carrier {
     pub robot: RobotId,
     pub link: LinkId,

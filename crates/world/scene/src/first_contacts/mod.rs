@@ -15,13 +15,13 @@ use held_object::{Carrier, HeldObject};
 
 /// Finds the first contact of each pair while robots and objects move in small steps.
 ///
-/// Between two calls of [`FirstContacts::check`] every joint moves at a constant rate, and an object along its path. A pair
-/// found `d` apart is not tested again before its geometry can have moved by `d`. Where it can have, the time between the
-/// calls is searched too, so that no thin or fast geometry passes through: every contact deeper than 10 µm that lasts longer
-/// than a thousandth of that time is found.
+/// Between two calls of [`FirstContacts::check`] every joint moves at a constant rate, and an object along its path. A
+/// pair found `d` apart is tested again only after its geometry can have moved by `d`. In that case the time between the
+/// calls is searched too, so that thin or fast geometry cannot pass through: every contact deeper than 10 µm that lasts
+/// longer than a thousandth of that time is found.
 ///
-/// Links of one robot with no collider between them that touch at the first call do not begin to touch: such a contact
-/// counts once they have separated. [`rest_pose_contacts`](elbowroom_robot::rest_pose_contacts) lists these pairs.
+/// Links of one robot without a collider between them may touch at the first call. Such a contact counts only after the
+/// links have separated. [`rest_pose_contacts`](elbowroom_robot::rest_pose_contacts) lists these pairs.
 #[derive(Debug)]
 pub struct FirstContacts<'a> {
     robots: Vec<(&'a Robot, Pose)>,
@@ -29,14 +29,14 @@ pub struct FirstContacts<'a> {
     /// Bounding boxes of the colliders in their own frames, per robot, link and collider.
     boxes: Vec<Vec<Vec<Aabb>>>,
     object_boxes: Vec<Aabb>,
-    /// Present poses of the objects, with their boxes.
+    /// Current poses of the objects, with their boxes.
     placed: Vec<(Pose, Aabb)>,
     /// Joint values at the last call; empty before the first.
     last: Vec<Vec<f64>>,
     pairs: Vec<TrackedPair>,
-    /// Per object, how a robot carries it.
+    /// Per object: how a robot carries it.
     held: Vec<Option<HeldObject>>,
-    /// Links that are not there, such as tools in their stands.
+    /// Absent links, such as tools in their stands.
     absent: Vec<(RobotId, LinkId)>,
     /// Which pairs may touch.
     rules: PairRules,
@@ -45,23 +45,24 @@ pub struct FirstContacts<'a> {
 /// A pair that touches for the first time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FirstContact {
-    /// The first of the pair.
+    /// First geometry of the pair.
     pub a: GeometryId,
-    /// The other.
+    /// Second geometry of the pair.
     pub b: GeometryId,
-    /// When, as a fraction of the time since the last call: 1 is now.
+    /// Time of the contact as a fraction of the time since the last call: 1 is now.
     pub fraction: f64,
 }
 
-/// An object, and how it moved from the last call to this one.
+/// An object and its motion from the last call to this one.
 #[derive(Clone, Copy)]
 pub struct MovedObject<'m> {
     /// The object.
     pub object: ObjectId,
-    /// Its path; `t = 1` is now.
+    /// Path of the object; `t = 1` is now.
     pub path: &'m dyn RigidMotion,
-    /// True if the object jumps to the path without motion in between (a conveyor that begins again): only its present pose
-    /// is tested.
+    /// True if the object jumps to the path without motion in between, such as on a conveyor that begins again.
+    ///
+    /// Only its current pose is tested then.
     pub jumps: bool,
 }
 
@@ -69,47 +70,47 @@ pub struct MovedObject<'m> {
 struct TrackedPair {
     a: GeometryId,
     b: GeometryId,
-    /// The joints that move it.
+    /// The joints that move the pair.
     joints: Vec<PairJoint>,
-    /// The object and its radius (m), where one of the pair is an object that moves.
+    /// The object and its radius (m), if one geometry of the pair is an object that moves.
     moving_object: Option<(ObjectId, f64)>,
     /// Distance travelled by that object since the last measurement, m.
     travel: f64,
-    /// No contact before the geometry has moved by this, m. Negative: never measured.
+    /// The pair cannot meet before its geometry has moved by this distance, m. Negative: never measured.
     clear: f64,
     touched: bool,
-    /// No collider lies between the two: they may be designed to overlap.
+    /// No collider lies between the two links: they may overlap by design.
     joined: bool,
     /// In contact since the first call, or since an object of the pair was attached or detached.
     resting: bool,
-    /// For a resting pair with a carried object: from which penetration depth on its contact counts, m.
+    /// Penetration depth from which a contact counts, for a resting pair with a carried object, m.
     allowed_depth: Option<f64>,
 }
 
 #[derive(Debug)]
 struct PairJoint {
     robot: RobotId,
-    /// Index in q.
+    /// Index in `q`.
     index: usize,
-    /// Largest displacement of any point, m per rad or m.
+    /// Largest displacement of any point, metres per rad or per m.
     motion_bound: f64,
-    /// Value at the last measurement.
+    /// Joint value at the last measurement, rad or m.
     measured_at: f64,
 }
 
-/// Above this (m) a lower bound on the distance is good enough.
+/// Above this distance (m) a lower bound on the distance is sufficient.
 const NEAR: f64 = 0.05;
-/// The search between two calls ignores contacts that are not deeper than this, m,
+/// Contacts at most this deep (m) are ignored in the search between two calls.
 const MIN_DEPTH: f64 = 1e-5;
-/// and those that do not last longer than this share of the time, so that it ends at any speed.
+/// Contacts that last at most this fraction of the time are ignored in the search, so that it ends at any speed.
 const MIN_DURATION: f64 = 1e-3;
-/// A contact that is permitted while a part is lifted off or set down counts from this penetration depth on, m.
+/// Penetration depth from which a permitted contact counts while a part is lifted off or set down, m.
 const SET_DOWN_DEPTH: f64 = 1e-3;
 /// Factor on measured distances, for the rounding of sums of motion bounds.
 const ROUNDING: f64 = 0.999;
 
 impl<'a> FirstContacts<'a> {
-    /// For robots with their bases in the world, and objects.
+    /// Creates the search for robots with their bases in the world, and objects.
     pub fn new(robots: Vec<(&'a Robot, Pose)>, objects: &'a [Object]) -> Self {
         let local = |c: &Collider| c.shape.aabb(&Pose::IDENTITY);
         let boxes =
@@ -133,7 +134,7 @@ impl<'a> FirstContacts<'a> {
         }
     }
 
-    /// Leaves out the pairs that the rules skip, those of carried objects too.
+    /// Removes the pairs that the rules skip, including pairs of carried objects.
     #[must_use]
     pub fn skipping(mut self, rules: PairRules) -> Self {
         self.rules = rules;
@@ -141,8 +142,9 @@ impl<'a> FirstContacts<'a> {
         self
     }
 
-    /// Whether a link is there, from the last [`check`](Self::check) on; at first all are. What touches a link when it comes does
-    /// not begin to touch: such a contact counts once it has separated, or is 1 mm deeper.
+    /// Sets whether a link is present, effective from the last [`check`](Self::check). At first all links are present.
+    ///
+    /// A pair that touches when its link becomes present counts only after it has separated, or if it is 1 mm deeper.
     pub fn set_present(&mut self, robot: RobotId, link: LinkId, present: bool, states: &[&ChainState]) {
         self.absent.retain(|absent| *absent != (robot, link));
         if !present {
@@ -155,7 +157,7 @@ impl<'a> FirstContacts<'a> {
         pairs.iter_mut().filter(|p| p.a == id || p.b == id).for_each(|pair| pair.rest_where_in_contact(&now));
     }
 
-    /// Declares which objects move by themselves: stationary links can meet those too.
+    /// Declares which objects move by themselves: they can meet stationary links too.
     #[must_use]
     pub fn moving(mut self, objects: &[ObjectId]) -> Self {
         for &o in objects {
@@ -181,7 +183,7 @@ impl<'a> FirstContacts<'a> {
         self.pairs.len()
     }
 
-    /// True if there is no pair.
+    /// True if the number of pairs is 0.
     pub fn is_empty(&self) -> bool {
         self.pairs.is_empty()
     }
@@ -194,8 +196,10 @@ impl<'a> FirstContacts<'a> {
         }
     }
 
-    /// Calls `found` for each pair that touched since the last call (or, at the first call, touches) and never did before.
-    /// `states` holds forward kinematics, one per robot; `moved_objects` the objects declared by [`Self::moving`].
+    /// Calls `found` for each pair that touched for the first time since the last call.
+    ///
+    /// At the first call, these are the pairs that touch now. `states` holds forward kinematics, one per robot;
+    /// `moved_objects` the objects declared by [`Self::moving`].
     pub fn check(
         &mut self,
         states: &[&ChainState],
@@ -220,7 +224,7 @@ impl<'a> FirstContacts<'a> {
             let jumped = object.is_some_and(|(s, _)| s.jumps);
             pair.travel += travel;
             let moved = pair.moved(|j| states[j.robot.0].q[j.index]);
-            // NaN (an unlimited slide that did not move) must be tested again.
+            // NaN (an unlimited slide that did not move) requires a new test.
             if !jumped && (moved + pair.travel < pair.clear || (pair.resting && moved == 0.0)) {
                 continue;
             }
@@ -283,7 +287,7 @@ impl TrackedPair {
         Self { a, b, joints, moving_object, travel, clear, touched, joined, resting, allowed_depth }
     }
 
-    /// A pair that is in contact from now on does not begin to touch until it has separated.
+    /// Marks a pair that is in contact now as resting: its contact counts only after it has separated or gone deeper.
     fn rest_where_in_contact(&mut self, now: &PlacedGeometry<'_, '_>) {
         let gap = now.gap(self.a, self.b);
         self.resting = gap.is_none();
@@ -291,12 +295,12 @@ impl TrackedPair {
         self.measured(now.states, gap);
     }
 
-    /// True if a resting pair is deeper in contact than is permitted.
+    /// True if a resting pair penetrates deeper than permitted.
     fn is_too_deep(&self, now: &PlacedGeometry<'_, '_>) -> bool {
         self.allowed_depth.is_some_and(|allowed| !(now.depth(self.a, self.b) <= allowed))
     }
 
-    /// True if the contact is that of a part with what it is set down on; the pair rests from then on.
+    /// True if a part touches the object on which it is set down; the pair rests from then on.
     fn is_set_down(&mut self, held: &[Option<HeldObject>], now: &PlacedGeometry<'_, '_>) -> bool {
         let (GeometryId::Object(a), GeometryId::Object(b)) = (self.a, self.b) else { return false };
         let is_set_down = [a, b].iter().any(|o| held[o.0].as_ref().is_some_and(|h| h.set_down));
@@ -330,29 +334,31 @@ struct Interval<'w, 'a> {
 /// An instant of an interval at which a pair is apart.
 #[derive(Clone, Copy)]
 struct ClearInstant {
-    /// Fraction of the time.
+    /// Time as a fraction of the interval.
     at: f64,
     /// Lower bound on the distance, metres.
     gap_m: f64,
 }
 
-/// An instant of an interval.
+/// An instant of an interval, with the measured gap of a pair.
 #[derive(Clone, Copy)]
 struct MeasuredInstant {
-    /// Fraction of the time.
+    /// Time as a fraction of the interval.
     at: f64,
     /// Distance of the pair, metres; `None` in contact.
     gap_m: Option<f64>,
 }
 
 impl Interval<'_, '_> {
-    /// The first contact of a pair that is `gap` apart now, as a fraction of the time. Its object travelled `travel` m.
+    /// Finds the first contact of a pair, as a fraction of the interval.
+    ///
+    /// The pair is `gap` apart now, and its object travelled `travel` (m).
     fn first_contact(&self, pair: &TrackedPair, travel: f64, gap: Option<f64>) -> Option<f64> {
         let now = |j: &PairJoint| self.now.states[j.robot.0].q[j.index];
         let before = |j: &PairJoint| self.last[j.robot.0][j.index];
         let by_joints: f64 = pair.joints.iter().map(|j| j.motion_bound * (now(j) - before(j)).abs()).sum::<f64>();
         let travel_bound = travel + by_joints;
-        // Without a bound only the present instant is tested.
+        // Without a bound, only the current instant is tested.
         if !travel_bound.is_finite() {
             return gap.is_none().then_some(1.0);
         }
@@ -361,12 +367,14 @@ impl Interval<'_, '_> {
         self.bisect(pair, travel_bound, from, MeasuredInstant { at: 1.0, gap_m: gap })
     }
 
-    /// The first contact between two instants. Over all of the time the gap changes by `travel_bound` m at most.
+    /// Finds the first contact between two instants.
+    ///
+    /// Over the whole interval the gap changes by at most `travel_bound` (m).
     fn bisect(&self, pair: &TrackedPair, travel_bound: f64, from: ClearInstant, to: MeasuredInstant) -> Option<f64> {
-        // The gap at either end excludes contact for a while: contact is possible only in between.
+        // The gap at each end excludes contact for a while, so contact is possible only in between.
         let first = from.at + from.gap_m.max(0.0) / travel_bound;
         let last = to.at - to.gap_m.unwrap_or(0.0) * ROUNDING / travel_bound;
-        // True for NaN, too: where nothing moved.
+        // Also true for NaN, if nothing moved.
         if !(last - first > (2.0 * MIN_DEPTH / travel_bound).max(MIN_DURATION)) {
             return to.gap_m.is_none().then_some(to.at);
         }
@@ -379,7 +387,7 @@ impl Interval<'_, '_> {
         }
     }
 
-    /// The gap of a pair at a fraction of the time.
+    /// The gap of a pair at a fraction of the interval.
     fn gap(&self, pair: &TrackedPair, at: f64) -> Option<f64> {
         let mut states: Vec<ChainState> = self.now.states.iter().map(|s| (*s).clone()).collect();
         let moves = |r: usize| pair.joints.iter().any(|j| j.robot.0 == r);
@@ -432,7 +440,7 @@ impl<'a> PlacedGeometry<'_, 'a> {
         }
     }
 
-    /// The largest penetration depth of two geometries in contact, m; of meshes, that of their hulls.
+    /// The largest penetration depth of two geometries in contact, m. For meshes: the depth of their hulls.
     fn depth(&self, a: GeometryId, b: GeometryId) -> f64 {
         let solids = |id| (0..self.shape_count(id)).map(move |i| (id, i));
         let pairs = solids(a).flat_map(|a| solids(b).map(move |b| (a, b)));
@@ -444,7 +452,7 @@ impl<'a> PlacedGeometry<'_, 'a> {
         pairs.map(depth).fold(0.0, f64::max)
     }
 
-    /// A proven lower bound on the distance; `None` on contact.
+    /// Proven lower bound on the distance, m; `None` on contact.
     fn gap(&self, a: GeometryId, b: GeometryId) -> Option<f64> {
         let mut least = f64::INFINITY;
         for i in 0..self.shape_count(a) {

@@ -1,4 +1,4 @@
-//! Speed bounds of links and of objects attached to them, seen from the root or from any link between.
+//! Speed bounds of links and of objects attached to them, relative to the root or any link in between.
 
 use elbowroom_kinematics::motion_bound::SpeedBound;
 use elbowroom_kinematics::{JointCoupling, JointId, JointKind, LinkId};
@@ -7,7 +7,7 @@ use elbowroom_spatial::{Pose, Vec3};
 
 use crate::{Level, Scene};
 
-/// The constant part: joints of each robot, joints above each link, bounding box of each model.
+/// The constant data: joints of each robot, joints above each link, bounding box of each model.
 #[derive(Debug)]
 pub(super) struct LinkBounds {
     /// Per robot and joint.
@@ -23,7 +23,7 @@ struct JointGeometry {
     kind: JointKind,
     child: LinkId,
     coupling: Option<JointCoupling>,
-    /// In the child's frame.
+    /// The axis in the child's frame.
     axis: Vec3,
     /// Origin of the child at value 0, in the parent's frame, metres.
     origin: Vec3,
@@ -62,7 +62,7 @@ impl LinkBounds {
         Self { joints: joints.collect(), paths: paths.collect(), corners: corners.collect() }
     }
 
-    /// Number of joints above the link that has most.
+    /// The largest number of joints above a link.
     pub fn longest_path(&self) -> usize {
         self.paths.iter().flatten().map(Vec::len).max().unwrap_or(0)
     }
@@ -76,12 +76,12 @@ impl LinkBounds {
         self.corners(model).map_or(f64::INFINITY, |c| c.iter().map(|p| p.length()).fold(0.0, f64::max))
     }
 
-    /// The radius of a bounded model, else 0.
+    /// The radius (m) of a bounded model, else 0.
     pub fn finite_radius(&self, model: usize) -> f64 {
         self.corners(model).map_or(0.0, |_| self.radius(model))
     }
 
-    /// Number of joints above both of two links of a robot.
+    /// Number of joints that the paths from the root to two links of a robot share.
     pub fn common_joints(&self, robot: RobotId, a: LinkId, b: LinkId) -> usize {
         let of = |l: LinkId| &self.paths[robot.0][l.0];
         of(a).iter().zip(of(b)).take_while(|(x, y)| x == y).count()
@@ -93,8 +93,10 @@ impl LinkBounds {
         self.paths[robot.0][link.0].get(last).map(|j| self.joints[robot.0][j.0].child)
     }
 
-    /// Appends the speed bounds of a model on a link (at `in_link` where it is an attached object): one per number of joints
-    /// left out from the root on, from none to all. Returns the sum of the lengths that its pose is computed from, metres.
+    /// Appends the speed bounds of a model on a link, and returns the sum (m) of the lengths that determine its pose.
+    ///
+    /// `in_link` is the pose of an attached object. The bounds are one per number of joints left out from the root on,
+    /// from none to all.
     pub fn append_bounds(
         &self,
         robot: RobotId,
@@ -109,9 +111,9 @@ impl LinkBounds {
         out.resize(begin + path.len() + 1, SpeedBound::REST);
         let mut size = self.finite_radius(model) + in_link.map_or(0.0, |p| p.translation.length());
         let mut bound = SpeedBound::REST;
-        // Farthest point from the origin of the frame below the joint.
+        // The farthest point from the origin of the frame below the joint.
         let mut radius = self.farthest_corner(model, in_link, Vec3::length);
-        // Origin of the next joint in that frame, at both ends of the motion, and the radius there.
+        // The origin of the next joint in that frame, at both ends of the motion, and the radius there.
         let mut next: Option<([Vec3; 2], f64)> = None;
         for (i, id) in path.iter().enumerate().rev() {
             let j = &self.joints[robot.0][id.0];
@@ -141,7 +143,7 @@ impl LinkBounds {
         if size.is_finite() { size } else { 0.0 }
     }
 
-    /// The largest of a length over the corners, in the link's frame; infinite if the model is unbounded.
+    /// The largest length over all corners, in the link's frame; infinite if the model is unbounded.
     fn farthest_corner(&self, model: usize, in_link: Option<Pose>, length: impl Fn(Vec3) -> f64) -> f64 {
         let Some(corners) = self.corners(model) else { return f64::INFINITY };
         let place = |p: &Vec3| in_link.map_or(*p, |c| c.transform_point(*p));

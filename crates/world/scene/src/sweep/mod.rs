@@ -1,9 +1,10 @@
-//! Continuous collision detection: when does anything first touch while robots move from one configuration to another? Proven,
-//! not sampled.
+//! Continuous collision detection: the time of the first contact while robots move from one configuration to another.
 //!
-//! One search over the time of the motion serves all pairs together ([`search`]). It rests on how far apart the geometry of a
-//! pair is at an instant, and on a bound of how much nearer it can come until another ([`link_bounds`]). README.md has the
-//! proof.
+//! Proven, not sampled.
+//!
+//! One search over the time of the motion handles all pairs together ([`search`]). It needs the distance between the
+//! geometry of a pair at an instant, and a bound on how much nearer the pair can come until another instant
+//! ([`link_bounds`]). README.md has the proof.
 
 mod link_bounds;
 mod moves;

@@ -8,13 +8,18 @@ use crate::Level;
 /// Settings of a sweep.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SweepOptions {
-    /// A pair is hit as soon as it is nearer than this beyond its margin, metres. Values below 0 count as 0, NaN as infinite.
+    /// Clearance, metres.
+    ///
+    /// A pair is hit when it is nearer than its margin plus this. Values below 0 count as 0, NaN as infinite.
     pub clearance_m: f64,
-    /// Resolution of "nearer", metres: before a reported hit every pair was farther than its margin and the clearance, at the
-    /// hit one is no farther than that and the tolerance. A pass in between may or may not be reported. Not finer than the
-    /// rounding of poses of that size (about 1e-14 of the largest coordinate); 0, a negative number or NaN require just that.
+    /// Resolution of a hit, metres.
+    ///
+    /// Before a reported hit, every pair was farther apart than its margin plus the clearance. At the hit, one pair is at
+    /// most its margin plus the clearance plus the tolerance apart. A pass in between may or may not be reported. The
+    /// resolution is never finer than the rounding of poses of that size (about 1e-14 of the largest coordinate). 0,
+    /// negative numbers and NaN select that finest resolution.
     pub tolerance_m: f64,
-    /// After so many distances of exact shapes the answer is a hit that is not [`SweepHit::certain`].
+    /// Largest number of distances of exact shapes. Beyond it, the answer is a hit that is not [`SweepHit::certain`].
     pub max_steps: u32,
 }
 
@@ -28,24 +33,27 @@ impl Default for SweepOptions {
 /// The first time at which a pair is too near during a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SweepHit {
-    /// Time as a fraction of the motion in `[0, 1]`: no pair was too near before. 0 if one is at the start.
+    /// Time as a fraction of the motion in `[0, 1]`: before it, no pair was too near.
+    ///
+    /// 0 if a pair is too near at the start.
     pub time: f64,
-    /// The first of the pair, in the order of the allowed collision matrix.
+    /// First geometry of the pair, in the order of the allowed collision matrix.
     pub a: GeometryId,
-    /// The other.
+    /// Second geometry of the pair.
     pub b: GeometryId,
     /// Witness point on `a` (without padding) at that time, in the world.
     pub on_a: Vec3,
-    /// Witness point on `b`.
+    /// Witness point on `b` (without padding) at that time, in the world.
     pub on_b: Vec3,
-    /// Metres between the shapes at that time, less the pair's margin; 0 on contact.
+    /// Distance between the shapes at that time, less the pair's margin, metres; 0 on contact.
     pub metres: f64,
     /// The level of the models that were measured.
     pub level: Level,
     /// Number of distances measured, over all pairs and times.
     pub steps: u32,
-    /// False if the proof ended here without a contact: steps used up, a number that is not finite, an infinite speed bound.
-    /// The motion is free before `time` and unknown after, and unknown is not free.
+    /// False if the proof ended without a contact: steps used up, a number that is not finite, an infinite speed bound.
+    ///
+    /// The motion is then free before `time` and unknown after it. Unknown does not mean free.
     pub certain: bool,
 }
 

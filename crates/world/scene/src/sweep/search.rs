@@ -1,4 +1,6 @@
-//! The search over time: test the middle, drop the times proven free around it, go on with the rest, earlier times first.
+//! The search over time: tests the middle, drops the times proven free around it, then searches the rest.
+//!
+//! Earlier times come first.
 
 use elbowroom_kinematics::motion_bound::SpeedBound;
 use elbowroom_proximity::Separation;
@@ -12,19 +14,20 @@ use crate::checker::pair_list::{GeometryPair, PairList};
 use crate::narrow_phase::PlacedModel;
 use crate::{Level, Reason};
 
-/// Least share of the open time that a box must clear so that the exact shapes need not be measured: small, because boxes are
-/// some hundred times faster.
+/// Least fraction of the open time that a box must clear to save the measurement of the exact shapes.
+///
+/// Small, because boxes are some hundred times faster.
 const LEAST_SHARE: f64 = 0.01;
 
 /// Workspace of the search.
 #[derive(Debug, Default)]
 pub(super) struct SweepSearch {
-    /// Pairs with an object on a path of its own that the matrix excludes because no joint moves them.
+    /// Pairs with an object on its own path that the matrix excludes because no joint moves them.
     extra: Vec<GeometryPair>,
     tracks: Vec<PairTrack>,
-    /// Open times; those of the time span on top are at the end.
+    /// Open times; the open times of the topmost time span are at the end.
     open: Vec<OpenTime>,
-    /// Earlier parts of the present time span, on their way to the end of `open`.
+    /// Earlier parts of the current time span, before they are moved to the end of `open`.
     early: Vec<OpenTime>,
     spans: Vec<TimeSpan>,
     /// The earliest known hit: track and time.
@@ -35,19 +38,21 @@ pub(super) struct SweepSearch {
 /// A pair in motion.
 #[derive(Debug, Clone, Copy)]
 struct PairTrack {
-    /// Index of the pair: in the list, then in `extra`.
+    /// Index of the pair: first in the list, then in `extra`.
     pair: usize,
     sides: [PairSide; 2],
     bound: SpeedBound,
-    /// Metres: margin, clearance and tolerance.
+    /// Sum of margin, clearance and tolerance, metres.
     near: f64,
-    /// Metres: a tested pair that is nearer is hit. Slightly less than `near`, for rounding.
+    /// Distance below which a tested pair is hit, metres. Slightly less than `near`, for rounding.
     hit_below: f64,
-    /// Metres: a pair that is farther is proven free. Half a tolerance less than `near`, so that every test makes progress.
+    /// Distance above which a pair is proven free, metres.
+    ///
+    /// Half a tolerance less than `near`, so that every test makes progress.
     free_above: f64,
 }
 
-/// A time in which a pair is not proven free.
+/// A time interval in which a pair is not proven free.
 #[derive(Debug, Clone, Copy)]
 struct OpenTime {
     track: usize,
@@ -55,7 +60,7 @@ struct OpenTime {
     to: f64,
 }
 
-/// A part of the motion with open times; everything before is free.
+/// A part of the motion with open times; all earlier times are free.
 #[derive(Debug, Clone, Copy)]
 struct TimeSpan {
     from: f64,
@@ -63,16 +68,16 @@ struct TimeSpan {
     begin: usize,
 }
 
-/// The result of testing a pair at an instant.
+/// Result of the test of a pair at an instant.
 enum PairTest {
-    /// Free for so long before and after; infinite: for all of its open time.
+    /// Free for this time before and after the instant. Infinite: for all of its open time.
     Free(f64),
     TooNear,
     /// Not tested: the steps are used up.
     OutOfSteps,
 }
 
-/// What a search works on.
+/// Data that a search needs.
 struct Context<'r, 'c, 's, 'm> {
     core: &'r mut CheckerCore<'s>,
     list: &'r mut PairList,
@@ -82,7 +87,7 @@ struct Context<'r, 'c, 's, 'm> {
 }
 
 impl SweepSearch {
-    /// The first hit along the trajectory, `None` if all of it is free.
+    /// Finds the first hit along the trajectory; `None` if the whole trajectory is free.
     pub fn run(
         &mut self,
         core: &mut CheckerCore,
@@ -100,7 +105,7 @@ impl SweepSearch {
         found
     }
 
-    /// All pairs that count, open from 0 to 1.
+    /// Collects all pairs that count, open from time 0 to 1.
     fn track_pairs(
         &mut self,
         core: &mut CheckerCore,
@@ -140,7 +145,9 @@ impl SweepSearch {
         }
     }
 
-    /// Links that no joint moves are no pair with stationary objects, but with objects on paths of their own.
+    /// Adds the pairs of links that no joint moves with objects on their own paths.
+    ///
+    /// With stationary objects these links form no pair.
     fn add_fixed_links(&mut self, core: &CheckerCore, list: &PairList, trajectory: &SweepTrajectory) {
         let scene = core.scene;
         for object in (0..scene.objects.len()).map(ObjectId).filter(|o| trajectory.is_free(*o)) {
@@ -167,8 +174,8 @@ impl SweepSearch {
             let length = to - span.from;
             let tracks = || self.open[span.begin..].iter().map(|o| &self.tracks[o.track]);
             let short = |t: &PairTrack| t.bound.speed * length <= 0.5 * (t.near - t.free_above);
-            // Where nothing moves by more than the tolerance in the whole span, its start decides all of it. Without a speed
-            // bound nothing more can be decided.
+            // If no pair moves by more than a quarter of the tolerance in the whole span, the start of the span decides
+            // all of it. Without a speed bound nothing more can be decided.
             let last = !(middle > span.from && middle < to)
                 || tracks().all(short)
                 || tracks().any(|t| t.bound.speed == f64::INFINITY);
@@ -182,14 +189,15 @@ impl SweepSearch {
         self.hit.map(|(track, time)| self.hit_of(c, track, time))
     }
 
-    /// Tests the pairs of a time span at an instant, and pushes spans for the times that remain open. Returns a pair without
-    /// progress.
+    /// Tests the pairs of a time span at an instant, and pushes spans for the times that remain open.
+    ///
+    /// Returns a pair for which the search cannot make progress.
     fn test_span(&mut self, c: &mut Context, span: &TimeSpan, at: f64, last: bool) -> Option<usize> {
         self.early.clear();
         let mut late = span.begin;
         for i in span.begin..self.open.len() {
             let open = self.open[i];
-            // After a hit, only earlier times matter.
+            // After a hit, only earlier times count.
             let to = self.hit.map_or(open.to, |h| h.1.min(open.to));
             if to < open.from {
                 continue;
@@ -233,7 +241,7 @@ impl SweepSearch {
         }
     }
 
-    /// Tests one pair at the present time, from coarse to fine; `time` before and after is open.
+    /// Tests one pair at the current time, from coarse to fine. It is open for `time` before and after.
     fn test_pair(&mut self, c: &mut Context, track: &PairTrack, time: f64) -> PairTest {
         let (core, trajectory) = (&mut *c.core, &mut *c.trajectory);
         let [a, b] = track.sides.map(|side| PlacedModel::new(core.scene, &trajectory.state, side.model));
@@ -279,7 +287,7 @@ impl SweepSearch {
         }
     }
 
-    /// The answer: the distance of a pair at a time.
+    /// The hit of a pair at a time, with its distance.
     fn hit_of(&mut self, c: &mut Context, track: usize, time: f64) -> SweepHit {
         c.trajectory.set_time(c.core.scene, c.moves, time);
         let track = self.tracks[track];

@@ -10,7 +10,7 @@ use crate::checker::core::CheckerCore;
 use crate::checker::pair_list::PairList;
 use crate::{Level, Scene, SceneError, SceneState};
 
-/// What sweeps need beside the checker's core: made at the first one and kept.
+/// Trajectory and search of sweeps: created at the first sweep, then kept.
 #[derive(Debug)]
 pub(crate) struct Sweeper {
     trajectory: SweepTrajectory,
@@ -22,7 +22,7 @@ impl Sweeper {
         Self { trajectory: SweepTrajectory::new(scene, level), search: SweepSearch::default() }
     }
 
-    /// From the start state along the moves.
+    /// Sweeps from the start state along the moves.
     pub fn sweep(
         &mut self,
         core: &mut CheckerCore,
@@ -35,7 +35,7 @@ impl Sweeper {
         Ok(self.search.run(core, list, &mut self.trajectory, moves, options))
     }
 
-    /// One robot from the start state along waypoints.
+    /// Sweeps one robot from the start state along waypoints.
     pub fn sweep_path<Q: AsRef<[f64]>>(
         &mut self,
         core: &mut CheckerCore,

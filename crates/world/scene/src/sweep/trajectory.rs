@@ -13,19 +13,19 @@ use crate::{Level, Scene, SceneError, SceneState};
 /// A motion of the scene.
 #[derive(Debug)]
 pub(super) struct SweepTrajectory {
-    /// The scene at the time set last.
+    /// The scene at the last set time.
     pub state: SceneState,
     link_bounds: LinkBounds,
-    /// Per robot.
+    /// Per robot: its joint values over time.
     segments: Vec<JointSegment>,
-    /// Per object: its path, where it has one.
+    /// Per object: its own path, if it has one.
     free_objects: Vec<Option<FreeObject>>,
-    /// Per model: where its bounds begin in `bounds`. One more: the end.
+    /// Per model: start of its bounds in `bounds`. One more element: the end.
     first: Vec<usize>,
     bounds: Vec<SpeedBound>,
-    /// Per model: sum of the lengths that its pose is computed from, metres.
+    /// Per model: sum of the lengths from which its pose is computed, metres.
     sizes: Vec<f64>,
-    /// True if the velocities of the links are those of the time set last.
+    /// True if the velocities of the links belong to the last set time.
     velocities_known: bool,
     now: f64,
 }
@@ -40,10 +40,10 @@ struct JointSegment {
     within_limits: bool,
 }
 
-/// An object on a path of its own.
+/// An object on its own path.
 #[derive(Debug, Clone, Copy)]
 struct FreeObject {
-    /// The path, where it is one at constant velocities.
+    /// The path, if its velocities are constant.
     constant_twist: Option<ConstantTwist>,
 }
 
@@ -73,7 +73,7 @@ impl SweepTrajectory {
         }
     }
 
-    /// Checks all moves, then begins at a state.
+    /// Checks all moves, then starts the trajectory at a state.
     pub fn start(&mut self, scene: &Scene, start: &SceneState, moves: &[SweepMove]) -> Result<(), SceneError> {
         self.segments.iter_mut().for_each(|s| s.moves = false);
         self.free_objects.fill(None);
@@ -115,7 +115,7 @@ impl SweepTrajectory {
         Ok(())
     }
 
-    /// Begins the next segment of the only robot that moves, between joint values that were checked.
+    /// Starts the next segment of the only moving robot, between checked joint values.
     pub fn next_segment(&mut self, scene: &Scene, robot: RobotId, from: &[f64], to: &[f64]) {
         let segment = &mut self.segments[robot.0];
         segment.from.copy_from_slice(from);
@@ -155,7 +155,7 @@ impl SweepTrajectory {
         self.first.push(self.bounds.len());
     }
 
-    /// Bound of an object that is not attached.
+    /// Speed bound of an unattached object.
     fn free_object_bound(&self, id: GeometryId, model: usize, moves: &[SweepMove]) -> SpeedBound {
         let own = moves.iter().find_map(|m| match m {
             SweepMove::Object { object, path } if GeometryId::Object(*object) == id => Some(*path),
@@ -164,7 +164,7 @@ impl SweepTrajectory {
         own.map_or(SpeedBound::REST, |path| path_bound(path, self.link_bounds.radius(model)))
     }
 
-    /// Moves everything to its pose at `t`.
+    /// Moves all robots and objects to their poses at time `t`.
     pub fn set_time(&mut self, scene: &Scene, moves: &[SweepMove], t: f64) {
         for (robot, segment) in self.segments.iter().enumerate().filter(|(_, s)| s.moves) {
             let chain = &mut self.state.chains[robot];
@@ -183,7 +183,7 @@ impl SweepTrajectory {
         self.now = t;
     }
 
-    /// The two sides of a pair, each as seen from the last link that carries both.
+    /// The two sides of a pair, each relative to the last link that carries both.
     pub fn sides(&self, scene: &Scene, a: usize, b: usize) -> [PairSide; 2] {
         let carriers = [a, b].map(|m| self.state.carrier(scene.models[m].id));
         let cut = match carriers {
@@ -193,7 +193,7 @@ impl SweepTrajectory {
         [PairSide { model: a, cut }, PairSide { model: b, cut }]
     }
 
-    /// Bounds throughout the motion.
+    /// Speed bounds of a side throughout the motion.
     pub fn bound(&self, side: PairSide) -> SpeedBound {
         self.bounds[(self.first[side.model] + side.cut).min(self.first[side.model + 1] - 1)]
     }
@@ -211,12 +211,12 @@ impl SweepTrajectory {
         }
     }
 
-    /// True if the object moves on a path of its own.
+    /// True if the object moves on its own path.
     pub fn is_free(&self, object: ObjectId) -> bool {
         self.free_objects[object.0].is_some()
     }
 
-    /// The largest speed of any point of a side at the time set last, metres per unit of time.
+    /// The largest speed of any point of a side at the last set time, metres per unit of time.
     pub fn speed_now(&mut self, scene: &Scene, side: PairSide) -> f64 {
         let bound = self.bound(side).speed;
         if bound == 0.0 {
@@ -247,7 +247,7 @@ impl SweepTrajectory {
         if rounded_up < bound { rounded_up } else { bound }
     }
 
-    /// Velocity of the point of a link at the root's origin, and its angular velocity, in the root's frame.
+    /// Velocity of the link's point at the root's origin, and the link's angular velocity, in the root's frame.
     fn twist(&self, robot: RobotId, link: LinkId) -> (Vec3, Vec3) {
         let chain = &self.state.chains[robot.0];
         (chain.point_velocity(link, Vec3::ZERO), chain.link_motion(link).angular_velocity)
@@ -262,11 +262,11 @@ impl SweepTrajectory {
     }
 }
 
-/// Bound of an object on a path of its own whose points are within `radius` metres of its frame's origin.
+/// Speed bound of an object on its own path, whose points are within `radius` metres of its frame's origin.
 fn path_bound(path: &dyn RigidMotion, radius: f64) -> SpeedBound {
     let constant_twist = path.constant_twist();
     let speed = match constant_twist {
-        // Without rotation, far points are no faster than near ones.
+        // Without rotation, far points are no faster than near points.
         Some(s) if s.rotation == Vec3::ZERO => s.velocity.length(),
         _ => path.speed(radius, 0.0, 1.0),
     };
@@ -277,7 +277,7 @@ fn path_bound(path: &dyn RigidMotion, radius: f64) -> SpeedBound {
     SpeedBound { speed, acceleration }.rounded_up()
 }
 
-/// The largest length of the velocities at some points; NaN counts as infinite.
+/// The largest speed over some points; NaN counts as infinite.
 fn largest_speed(points: &[Vec3], velocity: impl Fn(Vec3) -> Vec3) -> f64 {
     let known = |v: f64| if v.is_nan() { f64::INFINITY } else { v };
     points.iter().map(|p| known(velocity(*p).length_squared())).fold(0.0, f64::max).sqrt()

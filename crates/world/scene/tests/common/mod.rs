@@ -17,15 +17,15 @@ pub use elbowroom_testkit::random::Random;
 
 /// Random geometry of scenes.
 pub trait RandomGeometry {
-    /// Each coordinate within `size` of 0.
+    /// A vector with each coordinate within `size` of 0.
     fn vec3(&mut self, size: f64) -> Vec3;
 
     fn pose(&mut self, size: f64) -> Pose;
 
-    /// Within the limits of the example arm.
+    /// Joint values within the limits of the example arm.
     fn q(&mut self) -> [f64; 3];
 
-    /// Dimensions up to `size`; the kind is below 6.
+    /// A shape with dimensions up to `size`; `kind` must be below 6.
     fn shape(&mut self, kind: usize, size: f64) -> Shape;
 }
 
@@ -53,7 +53,7 @@ impl RandomGeometry for Random {
             3 => Shape::Cuboid(Cuboid { half_extents: Vec3::new(x, y, z) }),
             4 => Shape::Hull(Arc::new(ConvexHull::from_points(&points(self, size)).unwrap())),
             _ => {
-                // Two convex parts side by side: not convex.
+                // Two convex parts beside each other are not convex together.
                 let hull = ConvexHull::from_points(&points(self, 0.5 * size)).unwrap();
                 let part = |shift: f64| hull.vertices().iter().map(move |&v| v + Vec3::X * shift);
                 let count = hull.vertices().len() as u32;
@@ -69,7 +69,7 @@ fn points(random: &mut Random, size: f64) -> Vec<Vec3> {
     (0..12).map(|_| random.vec3(size)).collect()
 }
 
-/// The example arm with meshes in place of its capsules.
+/// The example arm with meshes instead of capsules.
 pub fn mesh_arm() -> Robot {
     let mut robot = elbowroom_robot::example::arm().unwrap();
     for collider in robot.colliders.iter_mut().flatten() {
@@ -93,7 +93,7 @@ pub fn mixed_arm(r: &mut Random) -> Robot {
     robot
 }
 
-/// Two different arms among objects of every kind, without edits.
+/// Two different arms among objects of every kind, without edits of pairs.
 pub fn scene_of(seed: u64, more: impl FnOnce(&mut SceneBuilder)) -> Scene {
     let mut r = Random(seed);
     let mut builder = Scene::builder();
@@ -111,7 +111,7 @@ pub fn scene_of(seed: u64, more: impl FnOnce(&mut SceneBuilder)) -> Scene {
     builder.build().unwrap()
 }
 
-/// A state with both arms anywhere.
+/// A state with random joint values for both arms.
 pub fn random_state(scene: &Scene, r: &mut Random) -> SceneState {
     let mut state = SceneState::new(scene);
     for robot in 0..scene.robots().len() {
@@ -120,7 +120,7 @@ pub fn random_state(scene: &Scene, r: &mut Random) -> SceneState {
     state
 }
 
-/// All shapes of a link or object with their present poses.
+/// All shapes of a link or object with their current poses.
 pub fn shapes(scene: &Scene, state: &SceneState, id: GeometryId) -> Vec<(Shape, Pose)> {
     let in_world = state.pose(scene, id).unwrap();
     match id {
@@ -132,7 +132,7 @@ pub fn shapes(scene: &Scene, state: &SceneState, id: GeometryId) -> Vec<(Shape, 
     }
 }
 
-/// Distance of two links or objects by measuring every pair of shapes.
+/// Distance of two links or objects, measured between every pair of shapes.
 pub fn apart(scene: &Scene, state: &SceneState, a: GeometryId, b: GeometryId) -> f64 {
     let (of_a, of_b) = (shapes(scene, state, a), shapes(scene, state, b));
     let all = of_a.iter().flat_map(|(s, p)| of_b.iter().map(move |(t, q)| separation(s, p, t, q).distance));

@@ -45,7 +45,7 @@ pub fn robot() -> Robot {
     robot
 }
 
-/// A binary STL: 80 bytes of header, the number of triangles, and 50 bytes each: normal, corners, attribute.
+/// Reads a binary STL: a header of 80 bytes, the number of triangles, and 50 bytes each: normal, corners, attribute.
 fn stl(file: &Path) -> TriMesh {
     let bytes = std::fs::read(file).unwrap();
     let number = |at: usize| f64::from(f32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()));

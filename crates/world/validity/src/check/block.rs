@@ -1,4 +1,4 @@
-//! The kernel: a block of sixteen configurations against obstacles and against itself.
+//! The kernel for a block of sixteen configurations: obstacles and self-collision.
 
 #![allow(clippy::inline_always, reason = "a kernel is compiled for each instruction set as a whole")]
 
@@ -10,63 +10,64 @@ use crate::lanes::{LANES, V3, splat};
 use crate::model::{CoveredRobot, LinkPair, SphereNode};
 use crate::obstacles::{BroadPhase, ObstacleSet, RoundedSolid};
 
-/// What a block is tested for.
+/// Request for the test of a block.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct BlockRequest {
-    /// True if neighbouring lanes are configurations on one straight segment, and the motion between them counts, too.
+    /// True if neighbouring lanes are configurations on one straight segment, and the motion between them also counts.
     pub chords: bool,
-    /// One bit per lane that counts.
+    /// One bit per lane; lanes without a bit do not count.
     pub active: u32,
 }
 
-/// What was found, one bit per lane.
+/// Result of the test of a block, one bit per lane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct BlockResult {
-    /// Configurations at which a sphere touches something.
+    /// Configurations at which a sphere touches an obstacle or another link.
     pub touching: u32,
-    /// Configurations from which the motion to the next is not proven free, though neither end touches anything.
+    /// Configurations from which the motion to the next one is not proven free, although nothing touches at either end.
     pub unproven: u32,
 }
 
 impl BlockResult {
-    /// True if all that counts is proven free.
+    /// True if all active lanes, and the motion between them if it counts, are proven free.
     pub fn is_free(self) -> bool {
         self.touching == 0 && self.unproven == 0
     }
 }
 
-/// Two things that are not certainly apart.
+/// A pair that is not proven to be apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum NearPair {
-    /// Entries of the links.
+    /// Indices of two links.
     Links(u32, u32),
-    /// A body and an obstacle's number.
+    /// Index of a body and number of an obstacle.
     Obstacle(u32, u32),
 }
 
-/// A robot among obstacles.
+/// A robot and its obstacles.
 #[derive(Clone, Copy)]
 pub(crate) struct BlockModel<'m> {
     pub robot: &'m CoveredRobot,
     pub obstacles: &'m ObstacleSet,
     pub tree: &'m BroadPhase,
     pub motion: &'m MotionTable,
-    /// Per body and obstacle, true if the pair is not checked; empty if every pair is.
+    /// Per body and obstacle: true if the pair is not checked. Empty if every pair is checked.
     pub skipped: &'m [bool],
 }
 
 /// Margins of a pair of spheres or of a sphere and an obstacle.
 #[derive(Clone, Copy)]
 struct Reach {
-    /// Sum of both radii.
+    /// Sum of the two radii, and of the margin of links.
     radius: f32,
     half_chord: f32,
     sag: f32,
 }
 
 impl BlockModel<'_> {
-    /// Tests the block that the workspace was prepared for. Stops as soon as the answer is known: where chords count, at the
-    /// first lane that touches, otherwise when all lanes do.
+    /// Tests the block for which the workspace was prepared.
+    ///
+    /// Stops as soon as the answer is known: with chords, at the first lane that touches; otherwise when all lanes touch.
     #[inline(always)]
     pub fn check<S: Simd>(
         &self,
@@ -95,7 +96,7 @@ impl BlockModel<'_> {
 }
 
 impl BlockModel<'_> {
-    /// Lanes in which two links are not farther apart than their margin and more.
+    /// Lanes in which two links may be at most their margin plus `more_m` apart.
     #[inline(always)]
     pub fn check_pair<S: Simd>(
         &self,
@@ -119,7 +120,7 @@ struct Kernel<'k, 'm, 'p, S: Simd> {
     workspace: &'k mut Workspace,
     request: BlockRequest,
     result: BlockResult,
-    /// Where given, every pair is listed and nothing ends early.
+    /// If given, collects every near pair, and no test ends early.
     pairs: Option<&'p mut Vec<NearPair>>,
 }
 
@@ -130,7 +131,7 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         self.pairs.is_none() && (touching == self.request.active || (self.request.chords && touching != 0))
     }
 
-    /// Lanes of which more can be learnt.
+    /// Lanes whose result can still change.
     #[inline(always)]
     fn open_lanes(&self) -> u32 {
         if self.pairs.is_some() { self.request.active } else { self.request.active & !self.result.touching }
@@ -139,7 +140,7 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
     #[inline(always)]
     fn obstacles(&mut self) {
         let robot = self.model.robot;
-        // What is farthest from the base moves most and hits first.
+        // Bodies farthest from the base move most and hit first.
         for (index, body) in robot.covered_links.iter().enumerate().rev() {
             if body.frame == 0 {
                 continue;
@@ -153,8 +154,10 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         }
     }
 
-    /// As [`obstacles`](Self::obstacles) where only the segment counts: what touches ends it, and large nodes, which tell soonest,
-    /// come before all that is below them.
+    /// Like [`obstacles`](Self::obstacles), if only the whole segment counts.
+    ///
+    /// The first touching sphere ends the test. Large nodes give an answer soonest, so they are tested before the nodes
+    /// below them.
     #[inline(always)]
     fn obstacles_by_level(&mut self) {
         let mut open = std::mem::take(&mut self.workspace.node_obstacles);
@@ -168,11 +171,11 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         self.workspace.node_obstacles = open;
     }
 
-    /// The roots of all links. True if a sphere touches.
+    /// Tests the roots of all links. True if a sphere touches.
     #[inline(always)]
     fn any_root_touches(&mut self, open: &mut Vec<NodeObstacle>) -> bool {
         let robot = self.model.robot;
-        // What is farthest from the base moves most and hits first.
+        // Bodies farthest from the base move most and hit first.
         for (index, body) in robot.covered_links.iter().enumerate().rev() {
             if body.frame == 0 {
                 continue;
@@ -186,7 +189,7 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         false
     }
 
-    /// The children of a node. True if a sphere touches.
+    /// Tests the children of a node. True if a sphere touches.
     #[inline(always)]
     fn any_child_touches(&mut self, parent: NodeObstacle, open: &mut Vec<NodeObstacle>) -> bool {
         let robot = self.model.robot;
@@ -201,7 +204,7 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         false
     }
 
-    /// The broad phase of a node, and the node against what is found. True if a sphere touches.
+    /// Runs the broad phase of a node, and tests the node against the solids found. True if a sphere touches.
     #[inline(always)]
     fn root_touches(&mut self, body: usize, root: u32, open: &mut Vec<NodeObstacle>) -> bool {
         let node = &self.model.robot.nodes[root as usize];
@@ -225,7 +228,7 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         is_touching
     }
 
-    /// A node against an obstacle. True if a sphere touches; the node is listed in `open` where its children decide.
+    /// Tests a node against a solid. True if a sphere touches. Adds the node to `open` if its children must decide.
     #[inline(always)]
     fn node_touches(&mut self, pair: NodeObstacle, open: &mut Vec<NodeObstacle>) -> bool {
         let (simd, robot) = (self.simd, self.model.robot);
@@ -260,7 +263,7 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         false
     }
 
-    /// The broad phase of a node, and what is below it against the obstacles that are found.
+    /// Runs the broad phase of a node, and tests the nodes below it against the solids found.
     #[inline(always)]
     fn obstacles_near(&mut self, body: usize, root: u32) {
         let node = &self.model.robot.nodes[root as usize];
@@ -296,8 +299,9 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         }
     }
 
-    /// Descends from a node to the spheres near an obstacle, for some lanes. `None` if all are proven apart; else the lanes
-    /// for which nothing else of this pair matters.
+    /// Descends from a node to the spheres near an obstacle, for some lanes.
+    ///
+    /// `None` if all lanes are proven apart; otherwise the lanes in which the pair needs no further test.
     #[inline(always)]
     fn tree_against(&mut self, body: usize, root: u32, obstacle: &RoundedSolid, mut open: u32) -> Option<u32> {
         let (simd, robot) = (self.simd, self.model.robot);
@@ -343,7 +347,7 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         settled
     }
 
-    /// Records the lanes at which a leaf below a node touches for certain, found without going there.
+    /// Records the lanes in which a leaf below a node certainly touches, without a descent to the leaf.
     #[inline(always)]
     fn certainly_touches(&mut self, vector: V3<S>, length: f32) -> bool {
         if !(length > 0.0) {
@@ -355,8 +359,10 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         touching != 0
     }
 
-    /// The lanes for which a pair is settled by lanes that are not apart. On a segment all where pairs are listed: this pair is.
-    /// Where only the segment counts none: lanes that touch end it, and others may touch yet.
+    /// The lanes in which a pair needs no further test after lanes that are not apart.
+    ///
+    /// On a segment with a list of pairs: all, because this pair is listed. If only the whole segment counts: none,
+    /// because lanes that touch end the test and other lanes may still touch.
     #[inline(always)]
     fn settled_by(&self, not_apart: u32) -> u32 {
         match (self.request.chords, self.pairs.is_some()) {
@@ -366,7 +372,7 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         }
     }
 
-    /// The lanes that touch; records them.
+    /// Records and returns the lanes that touch.
     #[inline(always)]
     fn touching(&mut self, vector: V3<S>, reach: Reach) -> u32 {
         let touching = within(self.simd, vector, reach.radius) & self.request.active;
@@ -374,9 +380,11 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         touching
     }
 
-    /// Lanes from which the motion to the next is not proven apart. `height` is the least height of both ends of each motion over
-    /// the core, along a direction that is not normalized: best the mean of the directions at both ends, as a plane across it
-    /// separates the chord from the core, if any does nearly.
+    /// Lanes from which the motion to the next lane is not proven apart.
+    ///
+    /// `height` is the lower height of the two ends of each motion above the core, along `direction`, which is not
+    /// normalized. The best direction is the mean of the directions at both ends: a plane perpendicular to it separates
+    /// the chord from the core in nearly every case in which a plane can.
     #[inline(always)]
     fn not_apart(&self, direction: V3<S>, height: f32x16<S>, reach: Reach) -> u32 {
         let radius = splat(self.simd, reach.radius + reach.sag);
@@ -402,7 +410,7 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         }
     }
 
-    /// Marks the pairs whose bounding spheres are near, and which the tables do not exclude.
+    /// Marks the pairs whose bounding spheres are near and which the tables do not exclude.
     #[inline(always)]
     fn mark_near_pairs(&mut self) {
         let (simd, robot, motion) = (self.simd, self.model.robot, self.model.motion);
@@ -437,7 +445,7 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         }
     }
 
-    /// Descends in the trees of two links. True if they are not proven apart.
+    /// Descends in the trees of two links. True if the links are not proven apart.
     #[inline(always)]
     fn bodies_near(&mut self, index: usize, pair: &LinkPair, more_m: f32) -> bool {
         let (simd, robot) = (self.simd, self.model.robot);
@@ -510,7 +518,7 @@ fn is_leaf(node: &SphereNode, next: u32) -> bool {
     node.end == next
 }
 
-/// One bit per lane whose vector is shorter than a length; NaN counts.
+/// One bit per lane whose vector is shorter than a length. The bit is also set for NaN.
 #[inline(always)]
 fn within<S: Simd>(simd: S, vector: V3<S>, length: f32) -> u32 {
     let is_beyond = vector.dot(vector).simd_ge(splat(simd, length * length));

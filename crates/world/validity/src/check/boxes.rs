@@ -1,20 +1,22 @@
-//! Boxes in joint space that are proven in collision as a whole: what disconnects two configurations.
+//! Boxes in joint space that are proven to be in collision as a whole, to prove that two configurations are disconnected.
 
 use super::block::BlockRequest;
 use super::checker::ValidityChecker;
 use crate::error::ValidityError;
 use crate::lanes::LANES;
 
-/// Half widths in single precision are never below those in double precision.
+/// Factor by which half widths in single precision are never below the half widths in double precision.
 const ROUNDED_UP: f64 = 1.0 + 1e-6;
 
 impl ValidityChecker<'_> {
-    /// Whether *every* configuration of a box in joint space is proven in collision, for several boxes of the same size: those
-    /// within `half_widths` (rad, m for prismatic joints, within their limits; infinite if a joint may be anywhere) of a centre. `centres` has the
-    /// values of all centres one after the other. False proves nothing.
+    /// Whether *every* configuration of a box in joint space is proven to be in collision, for several boxes of one size.
     ///
-    /// Proven by depth: at the centre an inner sphere of a link overlaps an obstacle or another link deeper than either moves
-    /// within the box.
+    /// A box holds the configurations within `half_widths` (rad, or m for prismatic joints) of a centre; prismatic joints
+    /// stay within their limits. A half width is infinite if a joint may have any value. `centres` has the values of all
+    /// centres one after the other. `false` proves nothing.
+    ///
+    /// The proof uses depth: at the centre, an inner sphere of a link overlaps an obstacle or another link deeper than
+    /// the two can move against each other within the box.
     ///
     /// ```
     /// use elbowroom_proximity::{Cuboid, Shape};
@@ -33,7 +35,8 @@ impl ValidityChecker<'_> {
     /// ```
     ///
     /// # Errors
-    /// A number of values that is not a multiple of the robot's, or another number of half widths.
+    /// [`ValidityError::WrongCount`] if the number of values in `centres` is not a multiple of the robot's, or the number
+    /// of half widths is not the robot's.
     pub fn boxes_are_in_collision(
         &mut self,
         centres: &[f64],
@@ -58,7 +61,7 @@ impl ValidityChecker<'_> {
         Ok(())
     }
 
-    /// Of each moving joint, also of those that follow another. NaN and negative numbers count as anywhere.
+    /// Half width of each moving joint, including joints that follow another. NaN and negative numbers count as infinite.
     fn half_widths_of_steps(&self, half_widths: &[f64]) -> Vec<f32> {
         let of_step = |index: usize, multiplier: f64| {
             let half = half_widths[index];
@@ -69,12 +72,12 @@ impl ValidityChecker<'_> {
         self.robot.chain.steps.iter().map(|step| of_step(step.index, step.multiplier)).collect()
     }
 
-    /// Lanes whose boxes are in collision, one bit each.
+    /// Lanes whose boxes are proven to be in collision, one bit each.
     fn block_of_boxes(&mut self, centres: &[f64], half_widths: &[f32]) -> u32 {
         let dof = self.robot.dof();
         let mut active = 0;
         for lane in 0..LANES {
-            // Lanes that do not count repeat the first.
+            // Unused lanes repeat the first lane.
             let at = if (lane + 1) * dof <= centres.len() { lane * dof } else { 0 };
             let is_accepted = self.workspace.set_lane(self.robot, lane, &centres[at..at + dof]);
             active |= u32::from(is_accepted && at == lane * dof) << lane;

@@ -15,12 +15,12 @@ use crate::model::{CoveredLinkId, CoveredRobot};
 use crate::obstacles::{BroadPhase, ObstacleSet};
 use crate::validity::Validity;
 
-/// Motion of the robot's fastest point within one block of an edge, m. Longer edges are tested block by block from the start.
+/// Motion of the robot's fastest point within one block of an edge, m. Longer edges are tested block by block, in order.
 const BLOCK_LENGTH_M: f64 = 3.0;
-/// A stretch whose chords are shorter than this and not proven free is not divided further, m.
+/// Length of a chord, m. A stretch with shorter chords that is not proven free is not divided further.
 const SHORTEST_CHORD_M: f64 = 0.004;
 
-/// Two things that are not proven apart.
+/// A pair that is not proven to be apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum NotCertain {
     /// Two links of the robot.
@@ -29,10 +29,11 @@ pub enum NotCertain {
     Obstacle(CoveredLinkId, usize),
 }
 
-/// Answers whether configurations and edges of a robot are free; each thread has its own.
+/// Answers whether configurations and edges of a robot are free. Each thread needs its own checker.
 ///
-/// Free and hit are proven: no rounding, no sample between two others and no gap of a cover makes a collision free. What the
-/// proofs do not reach, such as a slide beyond its limits or an angle of 10⁶ rad, is uncertain. See README.md of this crate.
+/// `Free` and `Hit` are proven: rounding, motion between two samples, or a gap of a cover never makes a collision free.
+/// Cases beyond the reach of the proofs, such as a slide beyond its limits or an angle beyond 10⁶ rad, are uncertain. See
+/// README.md of this crate.
 ///
 /// ```
 /// use elbowroom_proximity::{Shape, Sphere};
@@ -53,7 +54,7 @@ pub struct ValidityChecker<'m> {
     obstacles: &'m ObstacleSet,
     outer: BroadPhase,
     inner: BroadPhase,
-    /// Per body and obstacle, true if the pair is not checked; empty if all are.
+    /// Per body and obstacle: true if the pair is not checked. Empty if all pairs are checked.
     skipped: Vec<bool>,
     motion: MotionTable,
     pub(super) workspace: Workspace,
@@ -64,7 +65,7 @@ pub struct ValidityChecker<'m> {
     blocks: u64,
 }
 
-/// What kernels read of a checker: a macro, so that its workspaces can be written at the same time.
+/// The part of a checker that kernels read. A macro, so that its workspaces can be written at the same time.
 macro_rules! block_model {
     ($checker:ident) => {
         BlockModel {
@@ -78,7 +79,7 @@ macro_rules! block_model {
 }
 
 impl<'m> ValidityChecker<'m> {
-    /// A checker of a robot among obstacles.
+    /// Creates a checker of a robot among obstacles.
     pub fn new(robot: &'m CoveredRobot, obstacles: &'m ObstacleSet) -> Self {
         let tree = |solids: &[crate::obstacles::RoundedSolid]| {
             let boxes: Vec<_> = solids.iter().map(crate::obstacles::RoundedSolid::bounds).collect();
@@ -102,14 +103,14 @@ impl<'m> ValidityChecker<'m> {
         }
     }
 
-    /// With an instruction set other than the best of this processor. Answers do not depend on it.
+    /// Selects an instruction set other than the best of this processor. The answers are the same.
     #[must_use]
     pub fn with_simd_level(mut self, level: SimdLevel) -> Self {
         self.simd_level = level;
         self
     }
 
-    /// A body and an obstacle that may touch.
+    /// Allows a body and an obstacle to touch: the pair is not checked.
     pub fn skip(&mut self, body: CoveredLinkId, obstacle: usize) {
         let count = self.obstacles.len();
         if body.0 < self.robot.covered_links.len() && obstacle < count {
@@ -118,7 +119,7 @@ impl<'m> ValidityChecker<'m> {
         }
     }
 
-    /// Blocks of sixteen configurations that were tested.
+    /// Number of blocks of sixteen configurations tested so far.
     pub fn blocks(&self) -> u64 {
         self.blocks
     }
@@ -126,16 +127,18 @@ impl<'m> ValidityChecker<'m> {
     /// Whether a configuration (rad, m for prismatic joints) is free.
     ///
     /// # Errors
-    /// Too few or too many values. Values that are NaN or infinite are uncertain.
+    /// [`ValidityError::WrongCount`] if the number of values is wrong. NaN and infinite values are uncertain.
     pub fn state(&mut self, q: &[f64]) -> Result<Validity, ValidityError> {
         self.expect_count(q)?;
         Ok(self.single_state(q))
     }
 
-    /// Whether each of several configurations is free; `q` has their values one after the other.
+    /// Whether each of several configurations is free.
+    ///
+    /// `q` has their values (rad, m for prismatic joints) one after the other.
     ///
     /// # Errors
-    /// A number of values that is not a multiple of the robot's.
+    /// [`ValidityError::WrongCount`] if the number of values is not a multiple of the robot's.
     pub fn states(&mut self, q: &[f64], answers: &mut Vec<Validity>) -> Result<(), ValidityError> {
         let dof = self.robot.dof();
         if dof == 0 || !q.len().is_multiple_of(dof) {
@@ -146,21 +149,24 @@ impl<'m> ValidityChecker<'m> {
         Ok(())
     }
 
-    /// True if the straight segment in joint space between two configurations is proven free. False proves nothing.
+    /// True if the straight segment in joint space between two configurations is proven free. `false` proves nothing.
     ///
     /// # Errors
-    /// Too few or too many values. Values that are NaN or infinite are not free.
+    /// [`ValidityError::WrongCount`] if the number of values is wrong. NaN and infinite values are not free.
     pub fn edge_is_free(&mut self, from: &[f64], to: &[f64]) -> Result<bool, ValidityError> {
         self.expect_count(from)?;
         self.expect_count(to)?;
         Ok(self.segment(from, to))
     }
 
-    /// The pairs that are not proven apart on a segment, each once; empty if it is proven free. The answer is complete: the
-    /// segment is free where these pairs are.
+    /// Lists the pairs that are not proven apart on a segment, each once.
+    ///
+    /// The list is empty if the segment is proven free.
+    ///
+    /// The list is complete: if these pairs are free on the segment, the segment is free.
     ///
     /// # Errors
-    /// As [`edge_is_free`](Self::edge_is_free).
+    /// The errors of [`edge_is_free`](Self::edge_is_free).
     pub fn uncertain_pairs(
         &mut self,
         from: &[f64],
@@ -229,7 +235,9 @@ impl<'m> ValidityChecker<'m> {
         (0..blocks).all(|i| self.stretch(&Stretch { from, to, begin: share(i), end: share(i + 1) }, length_m))
     }
 
-    /// Tests a stretch in one block; where only the motion between its lanes is not proven, each half in a block of its own.
+    /// Tests a stretch in one block.
+    ///
+    /// If only the motion between its lanes is not proven, tests each half in its own block.
     fn stretch(&mut self, stretch: &Stretch, length_m: f64) -> bool {
         if self.obstacles.has_unknown || !self.workspace.set_stretch(self.robot, stretch) {
             return false;
@@ -261,7 +269,7 @@ impl<'m> ValidityChecker<'m> {
     }
 }
 
-/// Number of blocks in which a segment is tested first.
+/// Number of blocks in which a segment is first tested.
 fn block_count(length_m: f64) -> usize {
     let blocks = (length_m / BLOCK_LENGTH_M).ceil();
     // NaN counts as 1: the block rejects it.

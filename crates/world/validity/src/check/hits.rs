@@ -1,7 +1,7 @@
-//! Proven collisions: an inner sphere of a body overlaps something that lies in an obstacle or in another body.
+//! Proven collisions: an inner sphere of a body overlaps a solid inside an obstacle, or an inner sphere of another body.
 //!
-//! A box in joint space is proven in collision as a whole where the overlap at its centre is deeper than anything moves within
-//! the box (section 3 of README.md has the lever arms).
+//! A box in joint space is proven to be in collision as a whole if the overlap at its centre is deeper than any motion
+//! within the box (section 3 of README.md has the lever arms).
 
 #![allow(clippy::inline_always, reason = "a kernel is compiled for each instruction set as a whole")]
 
@@ -13,12 +13,14 @@ use crate::lanes::{V3, splat};
 use crate::model::{CoveredLink, CoveredRobot, InnerSphere, LinkPair};
 use crate::obstacles::BroadPhase;
 
-/// More than the relative rounding error of a sum of lever arms.
+/// Factor that exceeds the relative rounding error of a sum of lever arms.
 const ROUNDED_UP: f32 = 1.0 + 2e-5;
 
 impl BlockModel<'_> {
-    /// Lanes of the last block at which one of the pairs certainly collides, one bit each, even if the joint of each step is
-    /// anywhere within its half width (rad or m) of the lane's value. No half widths: at the values themselves.
+    /// Lanes of the last block in which one of the pairs certainly collides, one bit each.
+    ///
+    /// The collision holds for any joint value within the half width (rad or m) of each step around the lane's value.
+    /// Empty `half_widths`: at the lane's values themselves.
     #[inline(always)]
     pub fn hits<S: Simd>(
         &self,
@@ -41,7 +43,7 @@ impl BlockModel<'_> {
         hits
     }
 
-    /// No two points of a pair move farther against each other than this, m.
+    /// Upper bound on the motion of two points of a pair against each other, m.
     fn motion_within(&self, pair: NearPair, half_widths: &[f32]) -> f32 {
         let sum: f32 = match pair {
             NearPair::Obstacle(link, _) => {
@@ -106,7 +108,7 @@ fn inner_spheres<'r>(robot: &'r CoveredRobot, body: &CoveredLink) -> &'r [InnerS
     &robot.inner[body.inner.start as usize..body.inner.end as usize]
 }
 
-/// One bit per lane whose vector is certainly shorter than a length; NaN is not.
+/// One bit per lane whose vector is certainly shorter than a length. The bit is not set for NaN.
 #[inline(always)]
 fn shorter<S: Simd>(simd: S, vector: V3<S>, length: f32) -> u32 {
     if !(length > 0.0) {

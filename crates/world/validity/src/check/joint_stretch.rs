@@ -6,9 +6,9 @@ use fearless_simd::{Simd, f32x16};
 
 use crate::lanes::{Fused, LANES, Row, splat};
 
-/// Intervals between the lanes of a block.
+/// Number of intervals between the lanes of a block.
 pub(crate) const INTERVALS: usize = LANES - 1;
-/// Shares of a stretch at which the lanes are.
+/// Positions of the lanes as fractions of a stretch.
 const SHARES: Row = {
     let mut shares = [0.0; LANES];
     let mut lane = 0;
@@ -19,7 +19,7 @@ const SHARES: Row = {
     Row(shares)
 };
 
-/// The first value of a joint in a stretch, and how it changes.
+/// The first value of a joint in a stretch, and its change.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct JointStretch {
     pub first: f32,

@@ -1,4 +1,4 @@
-//! Table of lever arms: how far each joint moves each link, and the links of each pair against each other.
+//! Table of lever arms: how far each joint moves each link, and the two links of each pair against each other.
 
 use crate::lanes::{LANES, Row};
 use crate::model::{BatchedChain, CoveredRobot};
@@ -8,13 +8,13 @@ use crate::model::{BatchedChain, CoveredRobot};
 pub(crate) struct MotionTable {
     /// Number of columns, a multiple of the lanes.
     pub columns: usize,
-    /// Column of the first pair; the links are before it.
+    /// Column of the first pair; the columns before it are links.
     first_pair: usize,
-    /// Per step and sixteen columns.
+    /// Lever arms, per step and sixteen columns.
     pub lever_m: Vec<Row>,
-    /// Per step, the longest lever arm of any body.
+    /// Per step: the longest lever arm of any body.
     longest_m: Vec<f64>,
-    /// In the column of a pair, the sum of the radii of both bounding spheres and its margin.
+    /// In the column of a pair: the sum of the radii of the two bounding spheres and the margin, m.
     root_radii_m: Vec<Row>,
 }
 
@@ -50,12 +50,12 @@ impl MotionTable {
         &self.root_radii_m
     }
 
-    /// Column of a pair of links; that of a body is its number.
+    /// Column of a pair of links. The column of a body is its index.
     pub fn pair(&self, index: usize) -> usize {
         self.first_pair + index
     }
 
-    /// No point of the robot moves farther between two configurations, m.
+    /// Upper bound on the motion of any point of the robot between two configurations, m.
     pub fn displacement_m(&self, chain: &BatchedChain, from: &[f64], to: &[f64]) -> f64 {
         let mut length = 0.0;
         for (step, lever) in chain.steps.iter().zip(&self.longest_m) {

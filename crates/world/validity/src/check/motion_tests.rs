@@ -1,4 +1,4 @@
-//! Batched motion against double precision: positions, chords and deviations from them.
+//! Comparison of batched motion with double precision: positions, chords and deviations from chords.
 
 use elbowroom_kinematics::{Chain, ChainState, Joint, JointId, JointKind, Limits, LinkId, Mimic};
 use elbowroom_proximity::{Shape, Sphere};
@@ -18,17 +18,17 @@ const BALL_M: f64 = 0.02;
 
 /// Random chains.
 trait RandomChain {
-    /// Each coordinate within `size` of 0.
+    /// A vector with each coordinate within `size` of 0.
     fn vec3(&mut self, size: f64) -> Vec3;
 
     fn rotation(&mut self) -> Rotation;
 
     fn axis(&mut self) -> Vec3;
 
-    /// All kinds of joints, branches, joints that follow others.
+    /// A chain with all kinds of joints, branches, and joints that follow others.
     fn chain(&mut self, joints: usize, size: f64) -> Chain;
 
-    /// Within the limits; joints without limits within `unlimited` of 0.
+    /// Joint values within the limits; for joints without limits within `unlimited` of 0.
     fn q(&mut self, chain: &Chain, unlimited: f64) -> Vec<f64>;
 }
 
@@ -63,7 +63,7 @@ impl RandomChain for Random {
             let source = (0..i).find(|&j| matches!(list[j].kind, Revolute | Continuous) && list[j].mimic.is_none());
             let mimic = source.filter(|_| kind != Fixed && self.index(6) == 0);
             let multiplier = if kind == Prismatic { 0.1 * size } else { -0.5 };
-            // A slide that follows a turning joint needs that joint's limits.
+            // A slide that follows a revolute joint needs that joint's limits.
             let mimic = mimic.filter(|&j| kind != Prismatic || list[j].kind == Revolute);
             let mimic = mimic.map(|j| Mimic { joint: JointId(j), multiplier, offset: 0.1 });
             let parent = if i > 1 && self.index(5) == 0 { i - 2 } else { i };
@@ -134,7 +134,7 @@ impl Case {
         self.base.transform_point(self.state.link_in_root(LinkId(link)).transform_point(p))
     }
 
-    /// From the ball of one link to that of another, in the frame of the last link that carries both.
+    /// Vector from the ball of one link to the ball of another, in the frame of the last link that carries both.
     fn between(&self, a: usize, b: usize) -> Vec3 {
         let (of_a, of_b) = (self.chain.path(LinkId(a)), self.chain.path(LinkId(b)));
         let common = of_a.iter().zip(&of_b).take_while(|(i, j)| i == j).last();
@@ -143,7 +143,7 @@ impl Case {
         rotation.inverse() * (self.in_world(a, self.centres[a]) - self.in_world(b, self.centres[b]))
     }
 
-    /// Largest error of a ball's centre in a lane, as a share of what its radius was enlarged by.
+    /// Largest error of a ball's centre in a lane, as a fraction of the enlargement of its radius.
     fn worst_share(&self, workspace: &Workspace, lane: usize) -> f64 {
         let mut worst: f64 = 0.0;
         for (link, body) in self.covered.covered_links.iter().enumerate() {
@@ -196,12 +196,12 @@ fn single_precision_stays_within_its_bound() {
         }
     }
     println!("largest error as a share of the bound: states {worst_state:.3}, edges {worst_stretch:.3}");
-    // A bound of worst cases; random errors partly cancel.
+    // The bound covers worst cases; random errors partly cancel.
     assert!(worst_state < 0.5 && worst_stretch < 0.7);
     assert!(worst_state > 0.01, "errors far below the bound: it can be smaller");
 }
 
-/// Of points at the shares of an interval: largest distance from the nearer end and from the chord.
+/// For points at equal fractions of an interval: the largest distance from the nearer end and from the chord.
 fn chord_and_sag(points: &[Vec3]) -> (f64, f64) {
     let (first, last) = (points[0], points[points.len() - 1]);
     let mut most: (f64, f64) = (0.0, 0.0);
@@ -216,7 +216,7 @@ fn chord_and_sag(points: &[Vec3]) -> (f64, f64) {
 /// Samples per interval.
 const SAMPLES: usize = 16;
 
-/// Samples three intervals of a stretch and compares with the bounds; returns the largest shares of them that were seen.
+/// Samples three intervals of a stretch, compares with the bounds, and returns the largest fractions of the bounds seen.
 fn compare_motion(case: &mut Case, from: &[f64], to: &[f64], random: &mut Random) -> [f64; 4] {
     let (table, mut workspace) = case.workspace();
     assert!(workspace.set_stretch(&case.covered, &Stretch { from, to, begin: 0.0, end: 1.0 }));
@@ -224,7 +224,7 @@ fn compare_motion(case: &mut Case, from: &[f64], to: &[f64], random: &mut Random
     let links = case.centres.len();
     let pairs: Vec<(usize, usize, usize)> =
         case.covered.pairs.iter().enumerate().map(|(i, p)| (p.a.0, p.b.0, i)).collect();
-    // A point of each ball's surface, besides its centre.
+    // A point on the surface of each ball, in addition to its centre.
     let on_ball: Vec<Vec3> =
         (0..links).map(|i| case.centres[i] + random.vec3(1.0).try_normalize().unwrap_or(Vec3::X) * BALL_M).collect();
     let mut most = [0.0_f64; 4];
@@ -260,7 +260,7 @@ fn compare_motion(case: &mut Case, from: &[f64], to: &[f64], random: &mut Random
             most[3] = most[3].max(share_of(seen.1, bound.1));
         }
     }
-    // No point moves farther than the whole edge's bound.
+    // No point moves farther than the bound of the whole edge.
     case.set(from);
     let before: Vec<Vec3> = (0..links).map(|l| case.in_world(l, on_ball[l])).collect();
     case.set(to);
@@ -281,7 +281,7 @@ fn no_point_leaves_its_chord_farther_than_the_bound() {
         for largest in [0.05, 1.0, 4.4] {
             let (from, mut to) = (random.q(&case.chain, 30.0), random.q(&case.chain, 30.0));
             to.iter_mut().zip(&from).for_each(|(to, from)| *to = from + (*to - from).clamp(-largest, largest));
-            // Often most joints rest.
+            // In many cases most joints rest.
             if round % 3 == 0 && !to.is_empty() {
                 let moving = random.index(to.len());
                 (0..to.len()).filter(|&i| i != moving).for_each(|i| to[i] = from[i]);
@@ -294,11 +294,11 @@ fn no_point_leaves_its_chord_farther_than_the_bound() {
         "largest share of the bounds: covered_links, half chord {:.3}, deviation {:.3}; pairs {:.3}, {:.3}",
         most[0], most[1], most[2], most[3]
     );
-    // The bounds are reached nearly.
+    // The bounds are nearly reached.
     assert!(most.iter().all(|&m| m > 0.5), "{most:?}");
 }
 
-/// Turning joints about z in a row, 0.5 m apart, a ball 0.5 m beyond the last.
+/// Revolute joints about z in a row, 0.5 m apart, with a ball 0.5 m beyond the last joint.
 fn planar(joints: usize) -> Case {
     let list = (0..joints)
         .map(|i| Joint {

@@ -1,4 +1,4 @@
-//! Builds the tables of what can touch.
+//! Builder of the pair tables, which say which pairs of links can touch.
 
 use fearless_simd::dispatch;
 
@@ -9,15 +9,15 @@ use crate::lanes::{LANES, Row, detected_simd_level};
 use crate::model::{BEYOND_RAD, CELLS, CoveredRobot, LEVELS, LinkPair, MAX_PAIRS, PairTable};
 use crate::obstacles::{BroadPhase, ObstacleSet};
 
-/// Slides with longer strokes are not covered by a table, m.
+/// Longest stroke of a slide that a table covers, m.
 const LONGEST_STROKE_M: f64 = 0.1;
-/// Rounding of cell borders, rad.
+/// Allowance for the rounding of cell borders, rad.
 const ROUNDING_RAD: f64 = 1e-3;
 
-/// Fine cells per coarse cell and joint.
+/// Number of fine cells per coarse cell and joint.
 const REFINEMENT: usize = 4;
 
-/// Pairs with the same turning joints between them, if these are one or two.
+/// Pairs with the same one or two turning joints between them.
 struct Group {
     steps: [usize; 2],
     pairs: Vec<usize>,
@@ -29,13 +29,13 @@ impl Group {
         self.steps[0] == self.steps[1]
     }
 
-    /// False for cells in which one joint would have two values.
+    /// False for cells in which the single joint of the group would have two values.
     fn has(&self, cell: [usize; 2]) -> bool {
         !self.is_single() || cell[0] == cell[1]
     }
 }
 
-/// The tables of a robot; pairs that are in none are always checked.
+/// The tables of a robot. Pairs without a table are always checked.
 pub(crate) fn pair_tables(robot: &CoveredRobot) -> Vec<PairTable> {
     let mut groups: Vec<Group> = Vec::new();
     for (p, pair) in robot.pairs.iter().enumerate() {
@@ -48,7 +48,7 @@ pub(crate) fn pair_tables(robot: &CoveredRobot) -> Vec<PairTable> {
     groups.into_iter().map(|group| table(robot, group)).collect()
 }
 
-/// The one or two independent turning joints of a pair, where all others are short slides.
+/// The one or two independent turning joints of a pair, if all other joints between its links are short slides.
 fn turning_steps(robot: &CoveredRobot, pair: &LinkPair) -> Option<[usize; 2]> {
     let mut turning = Vec::new();
     for joint in &pair.joints {
@@ -66,11 +66,11 @@ fn turning_steps(robot: &CoveredRobot, pair: &LinkPair) -> Option<[usize; 2]> {
     }
 }
 
-/// Cells of a grid over the joints of a group, and the pairs of each that may touch, a bit each.
+/// Cells of a grid over the joints of a group, each with the pairs that may touch, one bit per pair.
 struct NearCells {
-    /// Cells per turn of each joint.
+    /// Number of cells per turn of each joint.
     per_turn: usize,
-    /// Cell of each joint, pairs.
+    /// Cell of each joint, and bits of the pairs.
     cells: Vec<([usize; 2], u8)>,
 }
 
@@ -80,12 +80,12 @@ fn table(robot: &CoveredRobot, group: Group) -> PairTable {
     let mut prober = Prober::new(robot, &group);
     let reachable = NearCells::reachable(robot, &group);
     let fine = reachable.refined(&group);
-    // Coarse cells leave few fine ones to test; each level tests what the one before it left.
+    // Coarse cells leave few fine cells to test. Each level tests the cells that the level before it left.
     let mut near = prober.near(&reachable, BEYOND_RAD[LEVELS - 1]).refined(&group);
     let mut levels: [Vec<u8>; LEVELS] = Default::default();
     for level in (0..LEVELS).rev() {
         near = prober.near(&near, BEYOND_RAD[level]);
-        // What no joint value reaches is always checked.
+        // Cells that no joint value reaches are always checked.
         let mut cells = vec![u8::MAX; CELLS * row.max(1)];
         fine.cells.iter().for_each(|&(cell, _)| cells[index(cell)] = 0);
         near.cells.iter().for_each(|&(cell, pairs)| cells[index(cell)] = pairs);
@@ -104,7 +104,7 @@ impl NearCells {
         Self { per_turn, cells: cells.map(|cell| (cell, u8::MAX)).collect() }
     }
 
-    /// The same region in fine cells.
+    /// The same region, divided into fine cells.
     fn refined(&self, group: &Group) -> Self {
         let parts = || (0..REFINEMENT * REFINEMENT).map(|k| [k / REFINEMENT, k % REFINEMENT]);
         let part = |cell: [usize; 2], [i, j]: [usize; 2]| [cell[0] * REFINEMENT + i, cell[1] * REFINEMENT + j];
@@ -129,7 +129,7 @@ impl<'r> Prober<'r> {
         Self { robot, group, motion, workspace }
     }
 
-    /// The cells in which a pair may touch for a value up to `beyond_rad` outside.
+    /// The cells in which a pair may touch at a value inside the cell or up to `beyond_rad` outside it.
     fn near(&mut self, among: &NearCells, beyond_rad: f32) -> NearCells {
         let per_turn = among.per_turn;
         let width_rad = std::f64::consts::TAU / per_turn as f64;
@@ -145,7 +145,7 @@ impl<'r> Prober<'r> {
         NearCells { per_turn, cells }
     }
 
-    /// Sets the lanes to the centres of cells; slides are in the middle of their stroke, all other joints at zero.
+    /// Sets the lanes to the centres of cells. Slides are in the middle of their stroke, all other joints at zero.
     fn place(&mut self, block: &[([usize; 2], u8)], per_turn: usize) {
         for (i, step) in self.robot.chain.steps.iter().enumerate() {
             let middle = if step.is_prismatic { 0.5 * (step.lower + step.upper) } else { 0.0 };
@@ -153,7 +153,7 @@ impl<'r> Prober<'r> {
         }
         let centre = |cell: usize| ((cell as f64 + 0.5) * std::f64::consts::TAU / per_turn as f64) as f32;
         for lane in 0..LANES {
-            // Lanes that are left repeat the last.
+            // Unused lanes repeat the last one.
             let (cell, _) = block[lane.min(block.len() - 1)];
             for k in 0..2 {
                 self.workspace.values[self.group.steps[k]].0[lane] = centre(cell[k]);
@@ -162,7 +162,7 @@ impl<'r> Prober<'r> {
         self.workspace.set_no_motion();
     }
 
-    /// Per lane, the pairs that may touch where each turning joint moves by up to `turn_rad`, of those that are asked for.
+    /// Per lane: those pairs of `asked` that may touch if each turning joint moves by up to `turn_rad`.
     fn near_pairs(&mut self, asked: u8, turn_rad: f64) -> [u8; LANES] {
         let mut near = [0_u8; LANES];
         let (robot, work) = (self.robot, &mut self.workspace);
@@ -178,7 +178,7 @@ impl<'r> Prober<'r> {
     }
 }
 
-/// True if some value within the joint's limits is in the cell or near it.
+/// True if a value within the joint's limits is in the cell or near it.
 fn is_reachable(robot: &CoveredRobot, step: usize, cell: usize, per_turn: usize) -> bool {
     let step = &robot.chain.steps[step];
     let width = step.upper - step.lower;
@@ -190,8 +190,9 @@ fn is_reachable(robot: &CoveredRobot, step: usize, cell: usize, per_turn: usize)
     from_lower <= width || from_lower >= std::f64::consts::TAU - cell_rad
 }
 
-/// No point of one body moves farther against the other where each turning joint moves by up to `turn_rad`, and slides from the
-/// middle of their stroke to anywhere.
+/// Upper bound (m) on the motion of a point of one body against the other.
+///
+/// Each turning joint moves by up to `turn_rad`, and each slide from the middle of its stroke to any other position.
 fn motion_m(robot: &CoveredRobot, pair: &LinkPair, turn_rad: f64) -> f32 {
     let each = pair.joints.iter().map(|joint| {
         let step = &robot.chain.steps[joint.step];

@@ -1,14 +1,17 @@
 //! Straight segments in joint space: the joint values of a block, and how far points move between its lanes.
 //!
-//! Between two neighbouring lanes every joint value changes by a constant rate. A point at `p(t)`, `t` from 0 to 1, moves no
-//! farther than `Σ ρ|Δ|` (`ρ`: lever arm of a joint for the body, `Δ`: change of its value). Its second derivative is the sum of
-//! `Δ_i Δ_j ∂²p/∂q_i∂q_j`. For joint `i` at or before joint `j` on the way from the base this derivative is
-//! `z_i × (z_j × (p − o_j))` where both turn, at most `ρ_j`; `z_i × z_j`, at most 1, where `i` turns and `j` slides; and 0 where
-//! `i` slides. So no point leaves its chord farther than an eighth of `Σ_j ρ_j |Δ_j| (|Δ_j| + 2 Σ |Δ_i|)`, the inner sum over the
-//! turning joints before `j`, the first term in brackets for turning joints only.
+//! Between two neighbouring lanes every joint value changes at a constant rate. A point at `p(t)`, `t` from 0 to 1, moves
+//! at most `Σ ρ|Δ|` (`ρ`: lever arm of a joint for the body, `Δ`: change of its value). Its second derivative is the sum
+//! of `Δ_i Δ_j ∂²p/∂q_i∂q_j`. For joint `i` at or before joint `j` on the path from the base, this derivative is:
+//! - `z_i × (z_j × (p − o_j))` if both joints turn: at most `ρ_j`;
+//! - `z_i × z_j` if `i` turns and `j` slides: at most 1;
+//! - 0 if `i` slides.
 //!
-//! Two links of the robot are seen from the frame of the last joint that moves both: what moves both does not move one against
-//! the other. The same sums over the joints behind it bound their relative motion.
+//! So the distance of a point from its chord is at most an eighth of `Σ_j ρ_j |Δ_j| (|Δ_j| + 2 Σ |Δ_i|)`. The inner sum
+//! is over the turning joints before `j`; the first term in brackets applies to turning joints only.
+//!
+//! The motion of two links against each other is computed in the frame of the last joint that moves both: joints that
+//! move both do not move one against the other. The same sums over the joints after it bound the relative motion.
 //!
 //! All sums are matrix products: a row of lever arms per joint ([`MotionTable`]), a lane per body or pair.
 
@@ -22,23 +25,24 @@ use super::workspace::Workspace;
 use crate::lanes::{Fused, LANES, Row, splat};
 use crate::model::{CoveredRobot, JointStep};
 
-/// Rounding of the sums in single precision.
+/// Factor for the rounding of the sums in single precision.
 const ROUNDED_UP: f32 = 1.000_02;
-/// A joint value that changes by more than this within one block is not tested, rad or m.
+/// Largest change of a joint value within one tested block, rad or m.
 const MAX_CHANGE: f64 = 4.5;
 /// A stretch of a straight segment from `from` to `to`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Stretch<'q> {
     pub from: &'q [f64],
     pub to: &'q [f64],
-    /// Where it begins and ends, as shares of the segment.
+    /// Start and end of the stretch, as fractions of the segment.
     pub begin: f64,
     pub end: f64,
 }
 
 impl Workspace {
-    /// Prepares a block of evenly spaced configurations of a stretch. False if values change too much or no bounds hold for
-    /// them.
+    /// Prepares a block of evenly spaced configurations of a stretch.
+    ///
+    /// False if a value changes too much, or if the bounds do not hold for it.
     pub fn set_stretch(&mut self, robot: &CoveredRobot, stretch: &Stretch) -> bool {
         let mut is_valid = true;
         for (i, step) in robot.chain.steps.iter().enumerate() {
@@ -52,7 +56,7 @@ impl Workspace {
         is_valid
     }
 
-    /// Values of the joints in the lanes, and the bounds of the motion between them.
+    /// Computes the joint values in the lanes, and the bounds of the motion between lanes.
     #[inline(always)]
     pub fn spread<S: Simd>(&mut self, simd: S, robot: &CoveredRobot, table: &MotionTable) {
         let rows = table.columns / LANES;
@@ -80,14 +84,14 @@ impl Workspace {
         }
     }
 
-    /// Half of the longest chord and the largest deviation from a chord, of a body.
+    /// Half of the longest chord of a body and its largest deviation from a chord, m.
     #[inline(always)]
     pub fn body_motion(&self, body: usize) -> (f32, f32) {
         let at = |rows: &[Row]| rows[body / LANES].0[body % LANES];
         (at(&self.half_chord_m), at(&self.sag_m))
     }
 
-    /// The same of the motion of two links against each other. What turns both is not in their deviation.
+    /// Like `body_motion`, for two links against each other. Turns that both links share are not in the deviation.
     #[inline(always)]
     pub fn pair_motion(&self, column: usize, common_frame: usize) -> (f32, f32) {
         let (half_chord, sag) = self.body_motion(column);
@@ -95,11 +99,11 @@ impl Workspace {
             return (f32::INFINITY, f32::INFINITY);
         }
         let common = 0.5 * half_chord * self.turned[common_frame];
-        // The sum has the rounding errors of what is taken away, too.
+        // The sum also has the rounding errors of the subtracted part.
         (half_chord, (sag * ROUNDED_UP - common).max(0.0))
     }
 
-    /// Sets the joint values of one lane. False if no bounds hold for them.
+    /// Sets the joint values of one lane. False if the bounds do not hold for them.
     pub fn set_lane(&mut self, robot: &CoveredRobot, lane: usize, q: &[f64]) -> bool {
         let mut is_valid = true;
         for (i, step) in robot.chain.steps.iter().enumerate() {
@@ -111,7 +115,7 @@ impl Workspace {
     }
 }
 
-/// The value of a joint in single precision, an angle less whole turns; false if no bounds hold for it.
+/// The value of a joint in single precision (an angle is reduced by whole turns), and whether the bounds hold for it.
 #[inline(always)]
 pub(crate) fn joint_value(step: &JointStep, q: &[f64]) -> (f32, bool) {
     let value = step.multiplier * q[step.index] + step.offset;
@@ -119,7 +123,7 @@ pub(crate) fn joint_value(step: &JointStep, q: &[f64]) -> (f32, bool) {
     (single as f32, step.accepts(value))
 }
 
-/// The angle less whole turns.
+/// The angle reduced by whole turns, rad.
 #[inline(always)]
 fn reduced(angle: f64) -> f64 {
     angle - std::f64::consts::TAU * (angle / std::f64::consts::TAU).round_ties_even()

@@ -1,4 +1,6 @@
-//! The kernel for one configuration: lanes are spheres. Positions and comparisons are those of a block, so is the answer.
+//! The kernel for one configuration, whose lanes are spheres.
+//!
+//! Positions and comparisons equal those of a block, and so does the answer.
 
 #![allow(clippy::inline_always, reason = "a kernel is compiled for each instruction set as a whole")]
 
@@ -11,14 +13,14 @@ use crate::model::{LinkPair, RootSphere, SpherePack};
 use crate::obstacles::{BroadPhase, RoundedSolid};
 use crate::validity::Validity;
 
-/// Up to so many solids are tested one by one against sixteen spheres, more by the tree of boxes.
+/// Up to this number of solids, each is tested against sixteen spheres; above it, the tree of boxes is used.
 const FEW_SOLIDS: usize = 24;
 
-/// A robot among obstacles, at one configuration.
+/// A robot and its obstacles, at one configuration.
 pub(crate) struct SingleKernel<'k, 'm, S: Simd> {
     pub simd: S,
     pub model: BlockModel<'m>,
-    /// Boxes of the solids that lie in obstacles.
+    /// Boxes of the solids inside obstacles.
     pub inner: &'m BroadPhase,
     pub matrix: &'m LinkMatrix,
     pub workspace: &'k mut SingleWorkspace,
@@ -52,7 +54,7 @@ impl<S: Simd> SingleKernel<'_, '_, S> {
         if self.model.obstacles.outer.len() <= FEW_SOLIDS { self.few_hit() } else { self.many_hit() }
     }
 
-    /// Each solid against sixteen nodes of the broad phase at a time.
+    /// Tests each solid against sixteen nodes of the broad phase at a time.
     #[inline(always)]
     fn few_hit(&mut self) -> bool {
         let (simd, packs) = (self.simd, &self.model.robot.packs);
@@ -77,7 +79,7 @@ impl<S: Simd> SingleKernel<'_, '_, S> {
         false
     }
 
-    /// Each node of the broad phase against the tree of boxes.
+    /// Tests each node of the broad phase against the tree of boxes.
     #[inline(always)]
     fn many_hit(&mut self) -> bool {
         let (simd, packs) = (self.simd, &self.model.robot.packs);
@@ -104,7 +106,7 @@ impl<S: Simd> SingleKernel<'_, '_, S> {
         false
     }
 
-    /// A node of the broad phase against a solid. True if a collision is proven.
+    /// Tests a node of the broad phase against a solid. True if a collision is proven.
     #[inline(always)]
     fn solid_hit(&mut self, root: &RootSphere, solid: usize) -> bool {
         let (skipped, obstacles) = (self.model.skipped, self.model.obstacles);
@@ -112,7 +114,7 @@ impl<S: Simd> SingleKernel<'_, '_, S> {
         if !skipped.is_empty() && skipped[root.body as usize * obstacles.len() + source as usize] {
             return false;
         }
-        // An obstacle may have thousands of solids; that a link touches another of them changes nothing.
+        // An obstacle may have thousands of solids; one more touching solid changes nothing.
         if self.workspace.unproven.contains(&(root.body, source)) || !self.touches(root.pack, &obstacles.outer[solid]) {
             return false;
         }
@@ -124,7 +126,7 @@ impl<S: Simd> SingleKernel<'_, '_, S> {
         is_hit
     }
 
-    /// True if a leaf below touches a solid.
+    /// True if a leaf below a pack touches a solid.
     #[inline(always)]
     fn touches(&mut self, pack: u32, solid: &RoundedSolid) -> bool {
         let (simd, packs) = (self.simd, &self.model.robot.packs.packs);
@@ -151,7 +153,7 @@ impl<S: Simd> SingleKernel<'_, '_, S> {
         is_touching
     }
 
-    /// True if an inner sphere of a body overlaps a solid that lies in an obstacle.
+    /// True if an inner sphere of a body overlaps a solid inside an obstacle.
     #[inline(always)]
     fn is_proven_hit(&mut self, body: usize, obstacle: u32) -> bool {
         let (simd, robot, obstacles) = (self.simd, self.model.robot, self.model.obstacles);
@@ -178,7 +180,7 @@ impl<S: Simd> SingleKernel<'_, '_, S> {
         is_hit
     }
 
-    /// True if a vector is certainly shorter than the radius of its sphere and another one. NaN is not.
+    /// True if a vector is certainly shorter than the sum of its sphere's radius and another radius. False for NaN.
     #[inline(always)]
     fn shorter(&self, vector: V3<S>, pack: &SpherePack, radius: f32) -> bool {
         let simd = self.simd;
@@ -217,7 +219,7 @@ impl<S: Simd> SingleKernel<'_, '_, S> {
         false
     }
 
-    /// True if a collision of a pair is proven. `links` are its links, the one with the sphere first.
+    /// True if a collision of a pair is proven. `links` has the link with the sphere first.
     #[inline(always)]
     fn pair_hit(&mut self, root: &RootSphere, pair: &LinkPair, links: [usize; 2]) -> bool {
         let centre = self.workspace.link_centre(links[0]);
@@ -231,7 +233,7 @@ impl<S: Simd> SingleKernel<'_, '_, S> {
         self.are_inside(links)
     }
 
-    /// Descends from a sphere of one tree and a pack of the other. True if two leaves are nearer than a margin.
+    /// Descends from a sphere of one tree and a pack of the other. True if two leaves are closer than the margin.
     #[inline(always)]
     fn trees_touch(&mut self, sphere: WorldSphere, pack: u32, margin_m: f32) -> bool {
         let (simd, packs) = (self.simd, &self.model.robot.packs.packs);
@@ -289,7 +291,7 @@ impl<S: Simd> SingleKernel<'_, '_, S> {
     }
 }
 
-/// One bit for each of so many lanes.
+/// One bit for each of the first `count` lanes.
 #[inline(always)]
 fn used_lanes(count: usize) -> u32 {
     if count >= LANES { 0xffff } else { (1 << count) - 1 }

@@ -1,4 +1,4 @@
-//! One configuration at a time against sixteen: the same spheres touch.
+//! Comparison of the kernel for one configuration with the kernel for sixteen: the same spheres touch.
 
 use elbowroom_proximity::{Cuboid, Cylinder, Shape, Sphere};
 use elbowroom_robot::example;
@@ -15,7 +15,7 @@ use crate::model::CoveredRobot;
 use crate::obstacles::{BroadPhase, ObstacleSet, RoundedSolid};
 use crate::validity::Validity;
 
-/// Lanes at which spheres touch, by the kernel for blocks.
+/// Lanes in which spheres touch, by the kernel for blocks.
 fn touching(robot: &CoveredRobot, obstacles: &ObstacleSet, q: &[Vec<f64>]) -> u32 {
     let motion = MotionTable::new(robot);
     let mut workspace = Workspace::new(robot, &motion);

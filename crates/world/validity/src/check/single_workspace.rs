@@ -1,4 +1,4 @@
-//! Memory for one configuration at a time.
+//! Workspace for one configuration at a time.
 
 #![allow(clippy::inline_always, reason = "part of a kernel that is compiled for each instruction set as a whole")]
 
@@ -8,15 +8,17 @@ use super::segment::joint_value;
 use crate::lanes::{LANES, PointRow, Row, V3};
 use crate::model::{CoveredRobot, Frame, JointTurns, RootSphere, SpherePack, SpherePacks};
 
-/// Numbers no pair.
+/// Marks links that form no pair.
 const NO_PAIR: u32 = u32::MAX;
 
-/// Which links must not touch, and how near their bounding spheres may be: a row per link, a lane per other link.
+/// Pairs of links that must not touch, and how near their bounding spheres may be.
+///
+/// The matrix has one row per link and one lane per other link.
 #[derive(Debug, Clone)]
 pub(crate) struct LinkMatrix {
-    /// Rows of sixteen links.
+    /// Number of rows of sixteen links.
     pub rows: usize,
-    /// m².
+    /// Squares of distances, m².
     squares: Vec<Row>,
     partners: Vec<u32>,
     pairs: Vec<u32>,
@@ -37,7 +39,7 @@ impl LinkMatrix {
             if robot.covered_links[a].nodes.is_empty() || robot.covered_links[b].nodes.is_empty() {
                 continue;
             }
-            // Of a pair that is given twice the larger margin counts.
+            // If a pair is given twice, the larger margin counts.
             let known = &mut matrix.pairs[a * rows * LANES + b];
             if *known != NO_PAIR && robot.pairs[*known as usize].margin_m >= pair.margin_m {
                 continue;
@@ -55,20 +57,20 @@ impl LinkMatrix {
         &self.squares[a * self.rows + row]
     }
 
-    /// One bit per link of a row with which a link makes a pair.
+    /// One bit per link of a row that forms a pair with a link.
     #[inline(always)]
     pub fn partners(&self, a: usize, row: usize) -> u32 {
         self.partners[a * self.rows + row]
     }
 
-    /// The number of a pair of partners.
+    /// The index of the pair of two links that form one.
     #[inline(always)]
     pub fn pair(&self, a: usize, b: usize) -> usize {
         self.pairs[a * self.rows * LANES + b] as usize
     }
 }
 
-/// A sphere in the world, and the pack of what is below it.
+/// A sphere in the world, with the pack of the spheres below it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct WorldSphere {
     pub centre: [f32; 3],
@@ -76,7 +78,7 @@ pub(crate) struct WorldSphere {
     pub below: Option<u32>,
 }
 
-/// What a check of one configuration writes.
+/// Memory that a check of one configuration writes.
 #[derive(Debug, Clone)]
 pub(crate) struct SingleWorkspace {
     /// Values of the joints, sixteen in a row.
@@ -88,11 +90,11 @@ pub(crate) struct SingleWorkspace {
     pub root_radii: Vec<Row>,
     /// Centres of the links' bounding spheres.
     pub links: Vec<PointRow>,
-    /// Per pair of links, true if a table says that they are apart.
+    /// Per pair of links: true if a table proves them apart.
     pub is_excluded: Vec<bool>,
-    /// Per step, its cell in the tables.
+    /// Per step: its cell in the tables.
     cells: Vec<[i32; LANES]>,
-    /// Per pack the centres of its spheres in the world, where `stamps` has the number of the present configuration.
+    /// Per pack: the centres of its spheres in the world, valid if `stamps` has the number of the current configuration.
     centres: Vec<PointRow>,
     stamps: Vec<u32>,
     stamp: u32,
@@ -100,7 +102,7 @@ pub(crate) struct SingleWorkspace {
     pub open: Vec<(u32, u32)>,
     pub found: Vec<u32>,
     pub found_inner: Vec<u32>,
-    /// Links and obstacles whose collision could not be proven: they touch, and no test of them can say more.
+    /// Links and obstacles that touch without a proven collision; further tests of such a pair add nothing.
     pub unproven: Vec<(u32, u32)>,
     /// Packs of spheres still to visit.
     pub open_packs: Vec<u32>,
@@ -134,7 +136,7 @@ impl SingleWorkspace {
         }
     }
 
-    /// Sets the values of the joints and forgets the last configuration. False if no bounds hold for the values.
+    /// Sets the values of the joints and discards the last configuration. False if the bounds do not hold for the values.
     #[inline(always)]
     pub fn begin(&mut self, robot: &CoveredRobot, q: &[f64]) -> bool {
         if self.stamp == u32::MAX {
@@ -214,7 +216,7 @@ impl SingleWorkspace {
         at
     }
 
-    /// The centre of a sphere of a pack that was computed already.
+    /// The centre of a sphere of a pack, which must be computed already.
     #[inline(always)]
     pub fn centre(&self, pack: u32, lane: usize) -> [f32; 3] {
         lane_of(&self.centres[pack as usize], lane)

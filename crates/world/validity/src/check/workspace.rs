@@ -1,4 +1,4 @@
-//! Memory of a checker.
+//! Workspace of a checker.
 
 use super::joint_stretch::JointStretch;
 use super::motion_table::MotionTable;
@@ -13,31 +13,31 @@ pub(crate) struct NodeObstacle {
     pub obstacle: u32,
 }
 
-/// What a check of sixteen configurations writes.
+/// Memory that a check of sixteen configurations writes.
 #[derive(Debug, Clone)]
 pub(crate) struct Workspace {
-    /// Per moving joint, its values.
+    /// Per moving joint: its values.
     pub values: Vec<Row>,
     pub frames: Vec<FrameLanes>,
-    /// Per sphere node its centres in the world, where `stamps` has the number of the present block.
+    /// Per sphere node: its centres in the world, valid if `stamps` has the number of the current block.
     centres: Vec<PointRow>,
     stamps: Vec<u32>,
     stamp: u32,
-    /// Per obstacle, lanes that are settled for a body, and for which body of which block.
+    /// Per obstacle: the block, the body, and the lanes in which that body needs no further test.
     settled: Vec<(u32, usize, u32)>,
-    /// Per moving joint, its values in a stretch.
+    /// Per moving joint: its values in a stretch.
     pub stretch: Vec<JointStretch>,
     /// Per body, then per pair of links: half of the longest chord, m.
     pub half_chord_m: Vec<Row>,
-    /// The same: the largest deviation of a point from its chord, m.
+    /// Per body, then per pair of links: the largest deviation of a point from its chord, m.
     pub sag_m: Vec<Row>,
-    /// Per pair of links, the square of the distance at which their bounding spheres are near, m².
+    /// Per pair of links: the square of the distance below which their bounding spheres are near, m².
     pub reach_squares: Vec<Row>,
-    /// Per frame, how much the turning joints that carry it change between lanes, rad.
+    /// Per frame: the change of the turning joints that carry it, between two lanes, rad.
     pub turned: Vec<f32>,
-    /// Per step, how much its joint changes between lanes, rad or m.
+    /// Per step: the change of its joint between two lanes, rad or m.
     pub deltas: Vec<f32>,
-    /// Per pair of links, true if it must be checked in this block.
+    /// Per pair of links: true if it must be checked in this block.
     pub near_pairs: Vec<bool>,
     /// Packs still to visit.
     pub open: Vec<(u32, u32)>,
@@ -73,14 +73,14 @@ impl Workspace {
         }
     }
 
-    /// Configurations that do not belong together: no motion between lanes.
+    /// Prepares for unrelated configurations, without motion between lanes.
     pub fn set_no_motion(&mut self) {
         self.half_chord_m.fill(Row::ZERO);
         self.sag_m.fill(Row::ZERO);
         self.deltas.fill(0.0);
     }
 
-    /// Forgets the centres of the last block.
+    /// Discards the centres of the last block.
     pub fn begin_block(&mut self) {
         if self.stamp == u32::MAX {
             self.stamps.fill(0);
@@ -90,7 +90,7 @@ impl Workspace {
         self.stamp += 1;
     }
 
-    /// Lanes in which nothing else of a body and an obstacle matters in this block.
+    /// Lanes in which a body and an obstacle need no further test in this block.
     pub fn settled(&self, body: usize, obstacle: u32) -> u32 {
         match self.settled.get(obstacle as usize) {
             Some(&(stamp, of_body, lanes)) if (stamp, of_body) == (self.stamp, body) => lanes,
@@ -98,7 +98,7 @@ impl Workspace {
         }
     }
 
-    /// Adds lanes to those that are settled.
+    /// Adds lanes in which a body and an obstacle need no further test.
     pub fn settle(&mut self, body: usize, obstacle: u32, lanes: u32) {
         let lanes = lanes | self.settled(body, obstacle);
         if self.settled.len() <= obstacle as usize {
@@ -122,7 +122,7 @@ impl Workspace {
         centre
     }
 
-    /// Centres of a node that were computed for this block already.
+    /// Centres of a node, which must be computed for this block already.
     #[inline(always)]
     #[allow(clippy::inline_always, reason = "part of a kernel")]
     pub fn known_centre<S: fearless_simd::Simd>(&self, simd: S, node: u32) -> crate::lanes::V3<S> {

@@ -1,4 +1,4 @@
-//! A ball: centre and radius.
+//! Balls: centre and radius.
 
 use elbowroom_spatial::Vec3;
 
@@ -11,7 +11,7 @@ pub struct Ball {
     pub radius: f64,
 }
 
-/// Rounding errors of radii and of clipped triangles are below this, m, for solids of up to 100 m.
+/// Bound on the rounding errors of radii and clipped triangles, for solids of up to 100 m, m.
 pub(crate) const ROUNDING_M: f64 = 1e-9;
 
 impl Ball {
@@ -20,7 +20,7 @@ impl Ball {
         self.centre.distance(p) <= self.radius
     }
 
-    /// A ball that encloses others; no balls: radius 0 at the origin.
+    /// A ball that encloses others. Without balls: radius 0 at the origin.
     pub fn enclosing(balls: &[Self]) -> Self {
         enclosing(balls)
     }
@@ -30,7 +30,7 @@ impl Ball {
         farthest_squared(self.centre, centre, half) <= (self.radius - ROUNDING_M).powi(2) && self.radius > ROUNDING_M
     }
 
-    /// The ball with a centre that single precision represents, enlarged by the distance that the centre moved.
+    /// The ball with a centre in single precision, enlarged by the distance that the centre moved.
     pub(crate) fn rounded_up(self) -> Self {
         let c = self.centre;
         let centre = Vec3::new(f64::from(c.x as f32), f64::from(c.y as f32), f64::from(c.z as f32));
@@ -43,7 +43,9 @@ pub(crate) fn farthest_squared(from: Vec3, centre: Vec3, half: Vec3) -> f64 {
     ((from - centre).abs() + half).length_squared()
 }
 
-/// A ball that encloses others (Bădoiu, Clarkson: *Smaller core-sets for balls*, 2003, extended to balls). Empty: radius 0.
+/// A ball that encloses others (Bădoiu, Clarkson: *Smaller core-sets for balls*, 2003, extended to balls).
+///
+/// Without balls: radius 0 at the origin.
 pub(crate) fn enclosing(balls: &[Ball]) -> Ball {
     let Some(first) = balls.first() else { return Ball { centre: Vec3::ZERO, radius: 0.0 } };
     let mut centre = balls.iter().fold(Vec3::ZERO, |sum, b| sum + b.centre) * (1.0 / balls.len() as f64);

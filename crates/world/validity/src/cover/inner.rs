@@ -4,16 +4,18 @@ use super::ball::{Ball, ROUNDING_M};
 use super::placement::PlacedShapes;
 use super::voxel_grid::VoxelGrid;
 
-/// Inner spheres of one cover.
+/// Largest number of inner spheres of one cover.
 const MAX_INNER: usize = 24;
-/// Candidates that are measured.
+/// Largest number of candidates that are measured.
 const CANDIDATES: usize = 600;
-/// A ball whose centre is nearer to that of a larger one than this share of the larger radius adds little.
+/// Least distance of a ball's centre from the centre of a larger ball, as a fraction of the larger radius.
+///
+/// Nearer balls add little.
 const LEAST_SPACING: f64 = 0.6;
-/// Smaller balls prove little, m.
+/// Least radius, m. Smaller balls prove little.
 const LEAST_RADIUS_M: f64 = 0.004;
 
-/// Balls in the closed shapes.
+/// Selects balls in the closed shapes.
 pub(super) fn inner_balls(placed: &PlacedShapes, grid: &VoxelGrid) -> Vec<Ball> {
     let stride = grid.inside.len().div_ceil(CANDIDATES).max(1);
     let mut balls: Vec<Ball> = grid

@@ -1,4 +1,4 @@
-//! Balls as large as the slack allows, with centres inside.
+//! Balls with centres inside the solid, as large as the slack allows.
 
 use elbowroom_proximity::TriMesh;
 use elbowroom_spatial::Vec3;
@@ -8,26 +8,26 @@ use super::placement::PlacedShapes;
 use super::surface_voxels::SurfaceVoxel;
 use super::voxel_grid::{Voxel, VoxelGrid};
 
-/// Iterations of the shrinking ball.
+/// Largest number of iterations of the shrinking ball.
 const SHRINKINGS: usize = 8;
-/// Near an edge, the distances of centres from the surface along the mean of its normals, in slacks.
+/// Near an edge: distances of ball centres from the surface along the mean of its normals, in multiples of the slack.
 const BESIDE_EDGES: [f64; 2] = [1.0, 2.0];
-/// An edge is near where the mean of the normals differs from the triangle's: below this cosine.
+/// Cosine below which the mean of the normals differs so much from the triangle's normal that an edge is near.
 const EDGE_COSINE: f64 = 0.97;
-/// Where the largest ball is smaller than this, in slacks, an edge is near.
+/// Radius of the largest ball, in multiples of the slack, below which an edge is near.
 const NEAR_EDGE: f64 = 4.0;
 
-/// What outer spheres must not protrude from.
+/// The surface beyond which outer spheres must not protrude.
 pub(super) struct MedialBalls<'g, 's> {
     placed: &'g PlacedShapes<'s>,
     grid: &'g VoxelGrid,
-    /// The triangles from which outside is not far.
+    /// The triangles near the outside.
     visible: TriMesh,
     slack_m: f64,
 }
 
 impl<'g, 's> MedialBalls<'g, 's> {
-    /// `None` if no triangle is visible.
+    /// Returns `None` if no triangle is visible.
     pub fn new(placed: &'g PlacedShapes<'s>, grid: &'g VoxelGrid, slack_m: f64) -> Option<Self> {
         let vertices = grid.surface.visible.concat();
         let triangles = (0..vertices.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
@@ -35,13 +35,13 @@ impl<'g, 's> MedialBalls<'g, 's> {
         Some(Self { placed, grid, visible: TriMesh::new(vertices, triangles).ok()?, slack_m })
     }
 
-    /// The largest ball about a point that keeps the slack; `None` outside.
+    /// The largest ball about a point that protrudes by at most the slack; `None` outside.
     pub fn largest(&self, centre: Vec3) -> Option<Ball> {
         let nearest = self.visible.nearest_point_within(centre, f64::INFINITY)?;
         self.ball(centre, nearest.distance(centre))
     }
 
-    /// The ball about a centre at a distance from the surface, enlarged by the slack.
+    /// The ball about a centre at a given distance from the surface, enlarged by the slack.
     fn ball(&self, centre: Vec3, distance_m: f64) -> Option<Ball> {
         let depth_m = match self.grid.at(centre) {
             Voxel::Outside => return None,
@@ -54,7 +54,9 @@ impl<'g, 's> MedialBalls<'g, 's> {
         (radius > 0.0).then_some(Ball { centre, radius })
     }
 
-    /// Balls that touch the surface in a voxel from inside, the slack aside. Where they are small, balls beside the edge, too.
+    /// Balls that touch the surface in a voxel from inside, apart from the slack.
+    ///
+    /// If they are small, also balls beside the edge.
     pub fn candidates(&self, voxel: &SurfaceVoxel) -> Vec<Ball> {
         let [a, b, c] = self.placed.triangles[voxel.triangle as usize];
         let Some(normal) = (b - a).cross(c - a).try_normalize() else { return Vec::new() };
@@ -67,8 +69,9 @@ impl<'g, 's> MedialBalls<'g, 's> {
         balls
     }
 
-    /// The largest ball that touches the surface at a point (Ma, Bae, Choi: *3D medial axis point approximation using nearest
-    /// neighbors and the normal field*, 2012), enlarged by the slack.
+    /// The largest ball that touches the surface at a point, enlarged by the slack.
+    ///
+    /// Source: Ma, Bae, Choi: *3D medial axis point approximation using nearest neighbors and the normal field*, 2012.
     fn touching(&self, surface: Vec3, inward: Vec3) -> Option<Ball> {
         let step = self.grid.lattice.step_m;
         if self.grid.at(surface + inward * (1.5 * step)) == Voxel::Outside {

@@ -1,9 +1,9 @@
-//! Sphere covers of solids: outer spheres that enclose a solid, inner spheres that lie in it.
+//! Sphere covers of solids: outer spheres that enclose a solid, inner spheres inside it.
 //!
-//! The outer cover is complete by construction. The solid is divided into voxels; the content of every voxel that the surface
-//! crosses (the clipped triangles and the corners that are not outside) and every voxel inside lies in one sphere of the
-//! cover. A sphere is never larger than the distance of its centre from the surface plus the slack, so that no point of the
-//! cover is farther from the solid than the slack.
+//! The outer cover is complete by construction. The solid is divided into voxels. Every voxel inside lies in one sphere
+//! of the cover. So does the content of every voxel that the surface crosses (the clipped triangles, and the corners that
+//! are not outside). A sphere is never larger than the distance of its centre from the surface plus the slack, so no
+//! point of the cover is farther from the solid than the slack.
 
 mod ball;
 mod inner;
@@ -27,11 +27,12 @@ use self::placement::PlacedShapes;
 use self::selection::outer_balls;
 use self::voxel_grid::VoxelGrid;
 
-/// Shapes that reach farther from the origin are not covered, m: rounding errors of double precision would exceed
-/// [`ROUNDING_M`].
+/// Largest distance of a covered shape from the origin, m.
+///
+/// Beyond it, rounding errors of double precision would exceed [`ROUNDING_M`].
 const LARGEST_M: f64 = 1e4;
 
-/// Outer and inner spheres of a solid made of shapes.
+/// Outer and inner spheres of a solid that consists of shapes.
 ///
 /// ```
 /// use elbowroom_proximity::{Cuboid, Shape};
@@ -45,18 +46,20 @@ const LARGEST_M: f64 = 1e4;
 /// ```
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SphereCover {
-    /// Their union encloses the solid.
+    /// Outer spheres: their union encloses the solid.
     pub outer: Vec<Ball>,
-    /// Each lies in the solid. None for surfaces that are not closed.
+    /// Inner spheres: each lies in the solid. Empty for surfaces that are not closed.
     pub inner: Vec<Ball>,
 }
 
 impl SphereCover {
-    /// Covers the union of shapes, each with its pose in the frame of the cover. No outer sphere protrudes from the solid by
-    /// more than `slack_m`, but for gaps narrower than two voxels, cavities that the surface encloses, and solids of more
-    /// voxels than fit.
+    /// Covers the union of shapes, each with its pose in the frame of the cover.
     ///
-    /// `None` if a shape is unbounded, has NaN or infinite numbers or reaches beyond 10 km: no spheres enclose it. No shapes: an empty cover.
+    /// No outer sphere protrudes from the solid by more than `slack_m`, except at gaps narrower than two voxels, at
+    /// cavities that the surface encloses, and for solids that need more voxels than the largest number.
+    ///
+    /// `None` if a shape is unbounded, has NaN or infinite numbers, or reaches beyond 10 km, because spheres cannot
+    /// enclose it. Without shapes the cover is empty.
     pub fn new(shapes: &[(&Shape, Pose)], slack_m: f64) -> Option<Self> {
         let mut cover = Self::default();
         let mut others = Vec::new();

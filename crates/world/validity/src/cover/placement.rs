@@ -1,9 +1,9 @@
-//! Shapes at their poses in one frame: triangles, and how deep a point lies in a shape.
+//! Shapes at their poses in one frame: their triangles, and the depth of a point in a shape.
 
 use elbowroom_proximity::{Shape, project_point, tessellate::tessellate};
 use elbowroom_spatial::{Pose, Vec3};
 
-/// Deviation of triangles from a curved surface that is asked for, m.
+/// Requested deviation of triangles from a curved surface, m.
 const CHORD_ERROR_M: f64 = 2e-4;
 
 /// Shapes at their poses.
@@ -11,7 +11,7 @@ pub(super) struct PlacedShapes<'s> {
     shapes: Vec<(&'s Shape, Pose)>,
     /// Corners of the triangles of all surfaces.
     pub triangles: Vec<[Vec3; 3]>,
-    /// No point of a surface is farther from the triangles, m; larger than 0 if a shape is curved.
+    /// Upper bound on the distance of a point of a surface from the triangles, m; above 0 if a shape is curved.
     pub chord_error_m: f64,
 }
 
@@ -34,8 +34,9 @@ impl<'s> PlacedShapes<'s> {
     }
 }
 
-/// No point of a surface is farther from its triangles, m. Circles have whole numbers of segments, and at most 256, so that this may
-/// be more than what was asked for.
+/// Upper bound on the distance of a point of a surface from its triangles, m.
+///
+/// May be more than the requested deviation, because circles have a whole number of segments, and at most 256.
 fn deviation_m(shape: &Shape) -> f64 {
     let half_angle = |radius: f64, error_m: f64| {
         let wanted = std::f64::consts::PI / (1.0 - error_m / radius).clamp(-1.0, 1.0).acos();
@@ -43,7 +44,7 @@ fn deviation_m(shape: &Shape) -> f64 {
     };
     match shape {
         Shape::Cylinder(c) => c.radius * (1.0 - half_angle(c.radius, CHORD_ERROR_M).cos()),
-        // Curved in both directions, with half of the deviation in each.
+        // Curved in both directions: each direction has half of the deviation.
         Shape::Capsule(c) => c.radius * half_angle(c.radius, 0.5 * CHORD_ERROR_M).sin().powi(2),
         Shape::Sphere(s) => s.radius * half_angle(s.radius, 0.5 * CHORD_ERROR_M).sin().powi(2),
         _ => 0.0,
@@ -75,7 +76,7 @@ mod tests {
                 let length = if matches!(shape, Shape::Sphere(_)) { 0.0 } else { half_length };
                 let mut farthest: f64 = 0.0;
                 for n in 0..400 {
-                    // A little of the circle in fine steps, at different heights.
+                    // A small part of the circle in fine steps, at different heights.
                     let (turn, tilt) = (f64::from(n) * 0.002, if is_cylinder { 0.0 } else { f64::from(n % 20) * 0.07 });
                     let across = Vec3::new(turn.cos(), turn.sin(), 0.0) * (radius * tilt.cos());
                     let p = across + Vec3::Z * (radius * tilt.sin() + if is_cylinder { 0.0 } else { length });

@@ -1,4 +1,4 @@
-//! Selection of the outer spheres: greedily, then without those that are not needed, then as small as possible.
+//! Greedy selection of the outer spheres, followed by removal of redundant spheres and shrinking of the rest.
 
 use elbowroom_spatial::{Aabb, Vec3};
 
@@ -10,20 +10,21 @@ use super::uncovered::cover_inside;
 use super::voxel_grid::VoxelGrid;
 use super::voxel_tree::{VoxelTree, contains_all};
 
-/// The outer spheres of a solid while they are chosen.
+/// The outer spheres of a solid during their selection.
 struct CoverSelection<'g, 's> {
     medial: MedialBalls<'g, 's>,
     surface: &'g SurfaceVoxels,
     tree: VoxelTree,
     balls: Vec<Ball>,
-    /// How many balls contain what lies in each voxel of the surface.
+    /// Per voxel of the surface: the number of balls that contain its content.
     counts: Vec<u16>,
-    /// What was found in a ball; memory that is reused.
+    /// Voxels found in a ball; reused memory.
     found: Vec<u32>,
 }
 
-/// Balls whose union contains all voxels inside, and what lies in each voxel of the surface. `None` where triangles have NaN or
-/// infinite numbers.
+/// Balls whose union contains all voxels inside, and the content of each voxel of the surface.
+///
+/// `None` if triangles have NaN or infinite numbers.
 pub(super) fn outer_balls(placed: &PlacedShapes, grid: &VoxelGrid, slack_m: f64) -> Option<Vec<Ball>> {
     let medial = MedialBalls::new(placed, grid, slack_m)?;
     let (surface, tree) = (&grid.surface, VoxelTree::new(&grid.surface));
@@ -49,8 +50,9 @@ impl CoverSelection<'_, '_> {
         }
     }
 
-    /// Of the candidates that contain what lies in a voxel, the one that contains most of what no ball contains yet. Lists what
-    /// it contains.
+    /// The best candidate that contains the content of a voxel: the one with the most voxels that no ball contains yet.
+    ///
+    /// Lists in `found` the voxels that the ball contains.
     fn best_ball(&mut self, voxel: usize) -> Ball {
         let candidates = self.medial.candidates(&self.surface.voxels[voxel]);
         let mut best = None;
@@ -71,7 +73,7 @@ impl CoverSelection<'_, '_> {
         ball
     }
 
-    /// A ball about what lies in a voxel.
+    /// A ball about the content of a voxel.
     fn smallest_ball(&self, voxel: usize) -> Ball {
         let points = self.surface.points(voxel);
         let centre = Aabb::from_points(points.iter().copied()).center();
@@ -79,7 +81,7 @@ impl CoverSelection<'_, '_> {
         self.medial.largest(centre).filter(|b| b.radius > radius).unwrap_or(Ball { centre, radius })
     }
 
-    /// Shrinks each ball to the voxels that no other contains, the smallest ball first, and removes it where there are none.
+    /// Shrinks each ball to the voxels that only it contains, the smallest ball first, and removes balls without any.
     fn trim(&mut self) {
         let mut order: Vec<usize> = (0..self.balls.len()).collect();
         order.sort_by(|&i, &j| self.balls[i].radius.total_cmp(&self.balls[j].radius));
@@ -97,7 +99,7 @@ impl CoverSelection<'_, '_> {
         self.balls.retain(|b| b.radius > 0.0);
     }
 
-    /// Radius that a ball needs for those of the voxels found which it alone contains; 0 if there are none.
+    /// Radius that a ball needs for the found voxels that only it contains; 0 without such voxels.
     fn needed_radius(&self, centre: Vec3) -> f64 {
         let alone = self.found.iter().filter(|&&voxel| self.counts[voxel as usize] == 1);
         let points = alone.flat_map(|&voxel| self.surface.points(voxel as usize));
@@ -106,7 +108,7 @@ impl CoverSelection<'_, '_> {
     }
 }
 
-/// All numbers below `n`, in a scattered order that is always the same.
+/// All numbers below `n`, in a scattered order that is equal on every call.
 fn spread(n: usize) -> impl Iterator<Item = usize> {
     // A multiplier near the golden section that shares no factor with the length visits every number once.
     let mut stride = ((n as f64) * 0.618_033_988_75) as usize | 1;

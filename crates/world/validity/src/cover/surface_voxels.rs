@@ -1,11 +1,11 @@
-//! Voxels that a surface crosses, each with what lies in it.
+//! Voxels that a surface crosses, with their content.
 
 use elbowroom_spatial::{Aabb, Vec3};
 
 use super::triangle_slices::Lattice;
 use super::voxel_bits::VoxelBits;
 
-/// A voxel with more points than this has the corners of their bounds instead.
+/// Largest number of points of a voxel. Above it, the corners of their bounding box replace the points.
 const MAX_POINTS: usize = 24;
 
 /// A part of a triangle in a voxel.
@@ -13,12 +13,12 @@ struct Piece {
     key: u64,
     cell: [u32; 3],
     triangle: u32,
-    /// Its corners in the list of all.
+    /// Range of its corners in the list of all points.
     first: u32,
     end: u32,
 }
 
-/// All parts of triangles, sorted by voxels along a curve that keeps near ones together.
+/// All parts of triangles, sorted by voxel along a curve on which near voxels are close together.
 pub(super) struct TrianglePieces {
     pieces: Vec<Piece>,
     points: Vec<Vec3>,
@@ -27,19 +27,19 @@ pub(super) struct TrianglePieces {
 /// A voxel that the surface crosses.
 #[derive(Clone, Copy)]
 pub(super) struct SurfaceVoxel {
-    /// Its points in the list of all: what lies in the voxel is in their convex hull.
+    /// Range of its points in the list of all points: their convex hull contains the content of the voxel.
     first: u32,
     end: u32,
     /// One of the triangles.
     pub triangle: u32,
     /// A point of this triangle in the voxel.
     pub anchor: Vec3,
-    /// Its neighbourhood: a bit per voxel outside.
+    /// Neighbouring voxels that are outside, one bit each.
     outside: u32,
 }
 
 impl SurfaceVoxel {
-    /// Away from what is outside: a mean of the normals nearby. `None` where outside is on all sides.
+    /// Direction away from the outside: a mean of the normals nearby. `None` if the outside is on all sides.
     pub fn inward(&self) -> Option<Vec3> {
         let offset = |i: u32| Vec3::new(f64::from(i % 3), f64::from(i / 3 % 3), f64::from(i / 9)) - Vec3::splat(1.0);
         let outside = (0..27).filter(|i| self.outside >> i & 1 == 1);
@@ -47,13 +47,13 @@ impl SurfaceVoxel {
     }
 }
 
-/// The voxels from which outside is not far, and their points.
+/// The surface voxels near the outside, and their points.
 pub(super) struct SurfaceVoxels {
     pub voxels: Vec<SurfaceVoxel>,
-    /// Their cells.
+    /// Cells of the voxels.
     pub cells: VoxelBits,
     points: Vec<Vec3>,
-    /// Triangles and parts of triangles in these voxels, as far as possible whole ones.
+    /// Triangles in these voxels: whole ones if possible, else parts.
     pub visible: Vec<[Vec3; 3]>,
 }
 
@@ -81,8 +81,10 @@ impl TrianglePieces {
 }
 
 impl SurfaceVoxels {
-    /// The voxels with outside in one of their neighbours. The part of the solid in a voxel lies in the convex hull of the
-    /// triangles' parts and of the corners that are not outside.
+    /// Collects the voxels that have an outside voxel as a neighbour.
+    ///
+    /// The part of the solid in a voxel lies in the convex hull of the triangles' parts and of the corners that are not
+    /// outside.
     pub fn new(all: &TrianglePieces, lattice: Lattice, outside: &VoxelBits, triangles: &[[Vec3; 3]]) -> Self {
         let cells = VoxelBits::none(outside.counts);
         let mut surface = Self { voxels: Vec::new(), cells, points: Vec::new(), visible: Vec::new() };
@@ -98,7 +100,7 @@ impl SurfaceVoxels {
         surface
     }
 
-    /// Triangles that cross only these voxels as a whole, and the parts of others.
+    /// Whole triangles that cross only these voxels, and the parts of other triangles in them.
     fn visible_parts(&self, all: &TrianglePieces, triangles: &[[Vec3; 3]]) -> Vec<[Vec3; 3]> {
         let is_visible = |piece: &&Piece| self.cells.contains(piece.cell.map(|c| c as usize));
         let mut is_whole = vec![true; triangles.len()];
@@ -112,7 +114,7 @@ impl SurfaceVoxels {
         visible
     }
 
-    /// What lies in a voxel is in the convex hull of these points.
+    /// Points whose convex hull contains the content of a voxel.
     pub fn points(&self, voxel: usize) -> &[Vec3] {
         let v = &self.voxels[voxel];
         &self.points[v.first as usize..v.end as usize]
@@ -148,7 +150,7 @@ fn around_corner([x, y, z]: [u32; 3]) -> u32 {
     (in_plane | in_plane << 9) << (9 * z)
 }
 
-/// Place of a voxel on a curve through all (Morton, 1966).
+/// Position of a voxel on a curve through all voxels (Morton, 1966).
 fn curve_key(cell: [u32; 3]) -> u64 {
     (0..3).map(|axis| interleaved(cell[axis].into()) << axis).fold(0, |key, part| key | part)
 }

@@ -50,13 +50,13 @@ pub(super) struct Lattice {
 }
 
 impl Lattice {
-    /// The voxels of a closed interval along an axis; a value on a border is in the voxels on both sides.
+    /// The voxels of a closed interval along an axis. A value on a border is in the voxels on both sides.
     pub fn range(&self, axis: usize, low: f64, high: f64) -> std::ops::RangeInclusive<i32> {
         let index = |v: f64| ((v - self.origin[axis]) / self.step_m).floor() as i32;
         index(low - ROUNDING_M)..=index(high + ROUNDING_M)
     }
 
-    /// The corner of a voxel with the least coordinates.
+    /// The corner of a voxel with the smallest coordinates.
     pub fn corner(&self, cell: [u32; 3]) -> Vec3 {
         let [x, y, z] = cell.map(|c| f64::from(c) * self.step_m);
         self.origin + Vec3::new(x, y, z)
@@ -66,7 +66,7 @@ impl Lattice {
         self.origin[axis] + f64::from(index) * self.step_m
     }
 
-    /// Calls `found` with every voxel that a triangle crosses and the corners of the part of the triangle in it.
+    /// Calls `found` with every voxel that a triangle crosses, and the corners of the triangle's part in it.
     pub fn slice(&self, triangle: [Vec3; 3], mut found: impl FnMut([i32; 3], &[Vec3])) {
         let mut corners = [Vec3::ZERO; 12];
         corners[..3].copy_from_slice(&triangle);

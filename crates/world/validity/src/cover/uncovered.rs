@@ -1,4 +1,4 @@
-//! Balls for what is inside and in no ball yet.
+//! Balls for the voxels inside that no ball contains yet.
 
 use elbowroom_spatial::Vec3;
 
@@ -12,17 +12,19 @@ struct Uncovered<'g, 's, 'b> {
     balls: &'b mut Vec<Ball>,
 }
 
-/// Adds balls until each voxel inside is in one.
+/// Adds balls until every voxel inside is in a ball.
 pub(super) fn cover_inside(grid: &VoxelGrid, medial: &MedialBalls, balls: &mut Vec<Ball>) {
     let size = grid.counts.iter().fold(1, |size, &n| size.max(n)).next_power_of_two();
-    // Large balls contain most.
+    // Large balls contain the most voxels.
     balls.sort_by(|a, b| b.radius.total_cmp(&a.radius));
     let near: Vec<u32> = (0..balls.len() as u32).collect();
     Uncovered { grid, medial, balls }.cover_cube([0; 3], size, &near);
 }
 
 impl Uncovered<'_, '_, '_> {
-    /// Covers the voxels inside that lie in a cube. `near` has the balls that touch it, but for those that were added since.
+    /// Covers the voxels inside that lie in a cube.
+    ///
+    /// `near` has the balls that touch the cube, without the balls added since.
     fn cover_cube(&mut self, cell: [usize; 3], size: usize, near: &[u32]) {
         if !self.grid.inside.any_in_cube(cell, size) {
             return;

@@ -1,8 +1,8 @@
-//! A bit per voxel of a grid, in rows along x.
+//! A set of voxels of a grid, one bit per voxel, in rows along x.
 
 use std::collections::VecDeque;
 
-/// Bits of a row that one word holds.
+/// Number of bits of a row in one word.
 const WORD: usize = 64;
 
 /// A set of voxels.
@@ -48,7 +48,7 @@ impl VoxelBits {
         })
     }
 
-    /// True if some voxel of a cube is in the set. The cube may reach beyond the grid.
+    /// True if a voxel of a cube is in the set. The cube may reach beyond the grid.
     pub fn any_in_cube(&self, [x, y, z]: [usize; 3], size: usize) -> bool {
         let end = |axis: usize, from: usize| (from + size).min(self.counts[axis]);
         let (first, last) = (x / WORD, (end(0, x).max(1) - 1) / WORD);
@@ -67,7 +67,9 @@ impl VoxelBits {
         (z..end(2, z)).any(|z| (y..end(1, y)).any(|y| in_row(&self.words[self.row(y, z)])))
     }
 
-    /// A bit for each of the 27 voxels around and at one that is not at the border of the grid: x first, then y, then z.
+    /// One bit for a voxel and each of its 26 neighbours: x first, then y, then z.
+    ///
+    /// The voxel must not be at the border of the grid.
     pub fn neighbourhood(&self, [x, y, z]: [usize; 3]) -> u32 {
         let mut bits = 0;
         for k in 0..9 {
@@ -79,7 +81,7 @@ impl VoxelBits {
         bits as u32
     }
 
-    /// The voxels that are connected to the first one through faces, without those of this set.
+    /// The voxels that are connected to the first voxel through faces, without passing through voxels of this set.
     pub fn flood_around(&self) -> Self {
         let mut reached = Self::none(self.counts);
         reached.words[0] = 1;
@@ -102,7 +104,7 @@ impl VoxelBits {
         reached
     }
 
-    /// Spreads what was reached along a row.
+    /// Spreads the reached voxels along a row.
     fn spread_in_row(&self, reached: &mut Self, row: usize) {
         let first = row * self.row_words;
         let mut from_left = 0;
@@ -119,7 +121,7 @@ impl VoxelBits {
         }
     }
 
-    /// Takes what was reached in a row to the row beside it; true if that is new there.
+    /// Copies the reached voxels of a row to the adjacent row. True if any are new there.
     fn step_to_row(&self, reached: &mut Self, row: usize, other: usize) -> bool {
         let mut is_new = false;
         for i in 0..self.row_words {
@@ -136,14 +138,14 @@ impl VoxelBits {
         first..first + self.row_words
     }
 
-    /// The bits of a word of a row that are voxels.
+    /// The bits of a word of a row that are voxels of the grid.
     fn mask(&self, word: usize) -> u64 {
         let left = self.counts[0] - word * WORD;
         if left >= WORD { u64::MAX } else { (1 << left) - 1 }
     }
 }
 
-/// Spreads bits to both sides through free ones: twice as far with each step (Kogge and Stone, 1973).
+/// Spreads bits to both sides through free bits: twice as far with each step (Kogge and Stone, 1973).
 fn spread(from: u64, free: u64) -> u64 {
     let (mut left, mut right) = (from, from);
     let (mut free_left, mut free_right) = (free, free);

@@ -1,4 +1,4 @@
-//! A voxel grid around a solid: which voxels its surface crosses, which are outside, which inside.
+//! A voxel grid around a solid: voxels that its surface crosses, voxels outside, and voxels inside.
 
 use elbowroom_spatial::{Aabb, Vec3};
 
@@ -6,11 +6,13 @@ use super::surface_voxels::{SurfaceVoxels, TrianglePieces};
 use super::triangle_slices::Lattice;
 use super::voxel_bits::VoxelBits;
 
-/// Number of voxels above which they are made larger.
+/// Largest number of voxels. Above it, the voxels are made larger.
 const MAX_VOXELS: f64 = 48e6;
-/// Edge of a voxel as a share of the slack: half a diagonal stays below the slack.
+/// Range of the edge of a voxel, as a fraction of the slack: half a diagonal stays below the slack.
 const STEP_SHARES: std::ops::RangeInclusive<f64> = 0.6..=0.9;
-/// As many voxels of the surface (by its area; it crosses more) take little time: then they are small, for fewer spheres.
+/// Target number of surface voxels, by the area (the surface crosses more).
+///
+/// It takes little time; small voxels need fewer spheres.
 const SURFACE_VOXELS: f64 = 30e3;
 
 /// State of a voxel.
@@ -24,16 +26,16 @@ pub(super) enum Voxel {
 /// Voxels around a solid.
 pub(super) struct VoxelGrid {
     pub lattice: Lattice,
-    /// Per axis; one layer on each side is outside.
+    /// Number of voxels per axis; one layer on each side is outside.
     pub counts: [usize; 3],
     outside: VoxelBits,
-    /// What the surface encloses, with the voxels of the surface from which outside is not near.
+    /// Voxels that the surface encloses, and surface voxels that are not near the outside.
     pub inside: VoxelBits,
     pub surface: SurfaceVoxels,
 }
 
 impl VoxelGrid {
-    /// `None` if there are no triangles.
+    /// Returns `None` if there are no triangles.
     pub fn new(triangles: &[[Vec3; 3]], slack_m: f64) -> Option<Self> {
         if triangles.is_empty() {
             return None;
@@ -51,7 +53,7 @@ impl VoxelGrid {
         Some(Self { lattice, counts, outside, inside, surface })
     }
 
-    /// The voxel that contains a point; outside beyond the grid.
+    /// The state of the voxel that contains a point; outside beyond the grid.
     pub fn at(&self, p: Vec3) -> Voxel {
         let cell = [0, 1, 2].map(|axis| ((p[axis] - self.lattice.origin[axis]) / self.lattice.step_m).floor() as i32);
         if (0..3).any(|axis| cell[axis] < 0 || cell[axis] as usize >= self.counts[axis]) {
@@ -76,7 +78,7 @@ fn step_m(triangles: &[[Vec3; 3]], extent: Vec3, slack_m: f64) -> f64 {
     let area: f64 = triangles.iter().map(|[a, b, c]| 0.5 * (*b - *a).cross(*c - *a).length()).sum();
     let mut step = (area / SURFACE_VOXELS).sqrt().clamp(STEP_SHARES.start() * slack_m, STEP_SHARES.end() * slack_m);
     let voxels = |step: f64| (0..3).map(|axis| extent[axis] / step + 4.0).product::<f64>();
-    // Beyond this the slack is not kept, the cover is complete all the same.
+    // With larger voxels the slack may be exceeded, but the cover is still complete.
     while voxels(step) > MAX_VOXELS {
         step *= 1.1;
     }

@@ -1,4 +1,4 @@
-//! A tree of boxes over the surface voxels, to find those in a ball.
+//! A tree of boxes over the surface voxels, which finds the voxels in a ball.
 
 use elbowroom_spatial::Aabb;
 
@@ -8,9 +8,11 @@ use super::surface_voxels::SurfaceVoxels;
 /// Children of a node.
 const FAN_OUT: usize = 8;
 
-/// Boxes over runs of voxels, and over runs of these.
+/// Boxes over runs of voxels, and over runs of such boxes.
 pub(super) struct VoxelTree {
-    /// The first level has a box per run of voxels, each further one a box per run of the one before; the last has one run.
+    /// Levels of boxes: the first has a box per run of voxels, each further one a box per run of the previous level.
+    ///
+    /// The last has one run.
     levels: Vec<Vec<Aabb>>,
     voxels: usize,
 }
@@ -59,7 +61,7 @@ impl VoxelTree {
     }
 }
 
-/// True if a ball contains what lies in a voxel, with room for rounding errors.
+/// True if a ball contains the content of a voxel, with room for rounding errors.
 pub(super) fn contains_all(ball: &Ball, surface: &SurfaceVoxels, voxel: usize) -> bool {
     let square = (ball.radius - ROUNDING_M).powi(2);
     ball.radius > ROUNDING_M && surface.points(voxel).iter().all(|&p| (p - ball.centre).length_squared() <= square)
@@ -69,7 +71,7 @@ fn touches(bounds: &Aabb, ball: &Ball) -> bool {
     let beyond = |axis: usize| {
         let below = bounds.min[axis] - ball.centre[axis];
         let above = ball.centre[axis] - bounds.max[axis];
-        // Faster than `max`, which is careful about NaN.
+        // Faster than `max`, which handles NaN.
         let outside = if below > above { below } else { above };
         if outside > 0.0 { outside * outside } else { 0.0 }
     };

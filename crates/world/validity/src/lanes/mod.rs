@@ -1,11 +1,12 @@
 //! SIMD lanes: sixteen configurations at a time in single precision.
 //!
-//! Multiplications are fused with additions on every instruction set (where the processor cannot, in software), so that an
-//! answer never depends on it.
+//! Multiplications are fused with additions on every instruction set (in software if the processor cannot), so an answer
+//! never depends on the instruction set.
 //!
-//! No closures in kernels: a closure is compiled for the lowest instruction set unless it is inlined.
+//! Do not use closures in kernels: a closure that is not inlined is compiled for the lowest instruction set.
 
-// A kernel that is not inlined into the function its instruction set is chosen for is compiled for the lowest one.
+// A kernel is compiled for the lowest instruction set unless it is inlined into the function that selects the instruction
+// set.
 #![allow(clippy::inline_always)]
 
 mod row;

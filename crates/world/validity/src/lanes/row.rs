@@ -32,7 +32,7 @@ pub trait Fused: Sized {
 impl<S: Simd> Fused for f32x16<S> {
     #[inline(always)]
     fn fused(self, k: Self, c: Self) -> Self {
-        // Without an instruction for it, sixteen calls in line would make kernels large and slow to compile.
+        // Without a hardware instruction, sixteen inlined calls would make kernels large and slow to compile.
         #[cfg(target_arch = "x86_64")]
         if matches!(self.simd.level(), SimdLevel::Sse2(_) | SimdLevel::Sse4_2(_)) {
             let [mut a, mut b, mut sum] = [[0.0; LANES]; 3];
@@ -63,13 +63,13 @@ impl Row {
     /// 0 in all lanes.
     pub const ZERO: Self = Self([0.0; LANES]);
 
-    /// From memory.
+    /// Loads the row from memory.
     #[inline(always)]
     pub fn load<S: Simd>(&self, simd: S) -> f32x16<S> {
         f32x16::simd_from(simd, self.0)
     }
 
-    /// To memory.
+    /// Stores lanes in memory.
     #[inline(always)]
     pub fn store<S: Simd>(&mut self, lanes: f32x16<S>) {
         lanes.store_slice(&mut self.0);
@@ -84,13 +84,13 @@ impl PointRow {
     /// 0 in all lanes.
     pub const ZERO: Self = Self([Row::ZERO; 3]);
 
-    /// From memory.
+    /// Loads the points from memory.
     #[inline(always)]
     pub fn load<S: Simd>(&self, simd: S) -> V3<S> {
         V3(self.0[0].load(simd), self.0[1].load(simd), self.0[2].load(simd))
     }
 
-    /// To memory.
+    /// Stores points in memory.
     #[inline(always)]
     pub fn store<S: Simd>(&mut self, v: V3<S>) {
         self.0[0].store(v.0);
@@ -137,7 +137,7 @@ impl<S: Simd> V3<S> {
         Self(self.0.fused(k, c.0), self.1.fused(k, c.1), self.2.fused(k, c.2))
     }
 
-    /// The coordinates of the next lane in each; the last lane keeps its own.
+    /// Shifts the coordinates by one lane: each lane gets those of the next lane; the last lane keeps its own.
     #[must_use]
     #[inline(always)]
     pub fn next_lane(self) -> Self {
@@ -145,7 +145,7 @@ impl<S: Simd> V3<S> {
     }
 }
 
-/// The value of the next lane in each; the last lane keeps its own.
+/// Shifts the values by one lane: each lane gets the value of the next lane; the last lane keeps its own.
 #[inline(always)]
 fn next_lane<S: Simd>(v: f32x16<S>) -> f32x16<S> {
     let last = v[LANES - 1];

@@ -4,12 +4,12 @@ use fearless_simd::{Simd, f32x16, i32x16, prelude::*};
 
 use super::row::{Fused, splat};
 
-/// π/2 in three parts, the first two with so few digits that products with whole numbers up to 2¹³ are exact.
+/// π/2 in three parts; the first two have so few digits that their products with whole numbers up to 2¹³ are exact.
 const HALF_PI: [f32; 3] = [1.570_312_5, 4.837_513e-4, 7.549_79e-8];
 const SIN: [f32; 3] = [-1.666_665_5e-1, 8.332_161e-3, -1.951_529_6e-4];
 const COS: [f32; 3] = [4.166_664_6e-2, -1.388_731_6e-3, 2.443_315_7e-5];
 
-/// Sine and cosine of angles up to 1000 rad. Error below 1.5e-7.
+/// Sine and cosine of angles up to 1000 rad. The error is below 1.5e-7.
 #[inline(always)]
 pub(crate) fn sin_cos<S: Simd>(simd: S, angle: f32x16<S>) -> (f32x16<S>, f32x16<S>) {
     let quarter = (angle * splat(simd, std::f32::consts::FRAC_2_PI)).round_ties_even();
@@ -31,7 +31,7 @@ pub(crate) fn sin_cos<S: Simd>(simd: S, angle: f32x16<S>) -> (f32x16<S>, f32x16<
     (flip(s, sin_sign), flip(c, cos_sign))
 }
 
-/// The value with the opposite sign where `sign` is −0.
+/// The value, with the opposite sign in lanes in which `sign` is −0.
 #[inline(always)]
 fn flip<S: Simd>(v: f32x16<S>, sign: f32x16<S>) -> f32x16<S> {
     let (v, sign): (i32x16<S>, i32x16<S>) = (v.bitcast(), sign.bitcast());

@@ -26,7 +26,7 @@ fn largest_error(size: f64, blocks: usize) -> f64 {
 
 #[test]
 fn sine_and_cosine_are_as_exact_as_their_documentation_says() {
-    // 8 rad is what README.md of this crate counts with.
+    // README.md of this crate assumes 8 rad.
     for (size, blocks) in [(0.01, 2000), (0.8, 60_000), (8.0, 200_000), (1000.0, 200_000)] {
         let worst = largest_error(size, blocks);
         println!("up to {size} rad: {worst:.2e}");

@@ -1,4 +1,4 @@
-//! A cylinder about a joint's axis: encloses what the joint turns.
+//! A cylinder about a joint's axis that encloses the geometry turned by the joint.
 
 use std::sync::LazyLock;
 
@@ -6,11 +6,11 @@ use elbowroom_spatial::{Pose, Vec3};
 
 use crate::cover::Ball;
 
-/// Points of a circle that are measured; the largest distance lies between two of them.
+/// Number of measured points of a circle. The largest distance may lie between two of them.
 const CIRCLE_POINTS: u32 = 64;
-/// The angle from one of them to the next, rad.
+/// The angle between two adjacent points, rad.
 const CIRCLE_STEP: f64 = std::f64::consts::TAU / CIRCLE_POINTS as f64;
-/// Cosine and sine of each.
+/// Cosine and sine of each point.
 static CIRCLE: LazyLock<[[f64; 2]; CIRCLE_POINTS as usize]> = LazyLock::new(|| {
     std::array::from_fn(|i| {
         let (sin, cos) = (i as f64 * CIRCLE_STEP).sin_cos();
@@ -21,14 +21,14 @@ static CIRCLE: LazyLock<[[f64; 2]; CIRCLE_POINTS as usize]> = LazyLock::new(|| {
 /// A cylinder about the z axis of a joint's frame.
 #[derive(Debug, Clone, Copy)]
 pub struct AxisCylinder {
-    /// m.
+    /// Radius, m.
     pub radius: f64,
     low: f64,
     high: f64,
 }
 
 impl AxisCylinder {
-    /// The cylinder about z that encloses some balls.
+    /// The cylinder about z that encloses balls.
     pub fn around(balls: impl Iterator<Item = Ball>) -> Self {
         let none = Self { radius: 0.0, low: f64::INFINITY, high: f64::NEG_INFINITY };
         balls.fold(none, |c, b| Self {
@@ -38,13 +38,13 @@ impl AxisCylinder {
         })
     }
 
-    /// Around all positions of a slide along the axis.
+    /// The cylinder around all positions of a slide along the axis.
     #[must_use]
     pub fn slid(self, lower: f64, upper: f64) -> Self {
         Self { low: self.low + lower.min(0.0), high: self.high + upper.max(0.0), ..self }
     }
 
-    /// A cylinder about another z axis, in whose frame this one's is at a pose.
+    /// A cylinder about another z axis that encloses this one; `pose` is the pose of this cylinder in the other frame.
     #[must_use]
     pub fn seen_from(self, pose: &Pose) -> Self {
         let axis = pose.rotation.z_axis();
@@ -55,12 +55,12 @@ impl AxisCylinder {
         Self { radius, low, high }
     }
 
-    /// Largest distance of a circle about this axis from the other axis.
+    /// Largest distance of a circle about this axis from the other axis, m.
     fn farthest_from_axis(self, pose: &Pose, centre: Vec3) -> f64 {
         if self.radius == 0.0 {
             return centre.x.hypot(centre.y);
         }
-        // `max` would drop a NaN, and with it the bound.
+        // `max` would drop a NaN, and the bound with it.
         if !centre.is_finite() {
             return f64::INFINITY;
         }
@@ -69,7 +69,7 @@ impl AxisCylinder {
             let p = centre + x * cos + y * sin;
             p.x * p.x + p.y * p.y
         };
-        // Between two points the circle is nowhere farther from their chord than this.
+        // Largest distance of the circle from the chord between two points.
         let between = self.radius * (1.0 - (0.5 * CIRCLE_STEP).cos());
         CIRCLE.iter().map(squared).fold(0.0, f64::max).sqrt() + between
     }

@@ -7,51 +7,55 @@ use crate::cover::{Ball, ROUNDING_M, enclosing};
 
 /// Children of an inner node.
 const FAN_OUT: usize = 4;
-/// The broad phase tests the nodes of a tree at which the radius has fallen to this, m.
+/// Radius, m. The broad phase tests the first nodes of a tree that are at most this large.
 const BROAD_PHASE_RADIUS_M: f64 = 0.15;
 
-/// A node counts as touching only where it does by more than this, m: then a leaf below does, whatever is rounded.
+/// Depth, m.
+///
+/// A node counts as touching only if it touches by more than this: then a leaf below touches, whatever the rounding.
 const TOUCHING_MARGIN_M: f64 = 1e-4;
 
 /// A sphere of a tree; it encloses all spheres below it.
 #[derive(Debug, Clone)]
 pub(crate) struct SphereNode {
-    /// In the frame of the body's joint, m.
+    /// Centre in the frame of the body's joint, m.
     pub centre: [f32; 3],
-    /// m, rounding errors included.
+    /// Radius, rounding errors included, m.
     pub radius: f32,
-    /// What is nearer to the centre touches a leaf below; negative if the centre is in none, m.
+    /// Distance from the centre below which a point touches a leaf below, m; negative if the centre is not in a leaf.
     pub touching_m: f32,
-    /// The frame that moves it.
+    /// Index of the frame that moves the sphere.
     pub frame: u32,
-    /// Index of the node after all that are below this one.
+    /// Index after the last node below this one.
     pub end: u32,
 }
 
-/// A sphere that lies in a body.
+/// A sphere inside a body.
 #[derive(Debug, Clone)]
 pub(crate) struct InnerSphere {
     pub centre: [f32; 3],
     pub radius: f32,
 }
 
-/// A link (or what is attached to it) with a cover.
+/// A link, or a body attached to it, with a cover.
 #[derive(Debug, Clone)]
 pub(crate) struct CoveredLink {
     pub link: LinkId,
-    /// Frame of its joint; 0 if none moves it.
+    /// Frame of its joint; 0 if no joint moves it.
     pub frame: usize,
-    /// Its tree in the list of all nodes; the first is the root.
+    /// Range of its tree in the list of all nodes; the first node is the root.
     pub nodes: std::ops::Range<u32>,
     /// Nodes that the broad phase tests; every leaf is below one.
     pub broad_phase: Vec<u32>,
-    /// Its inner spheres in the list of all.
+    /// Range of its inner spheres in the list of all inner spheres.
     pub inner: std::ops::Range<u32>,
-    /// Per step of the chain: no point of the body moves farther per rad, or per m; 0 if the joint does not move it.
+    /// Per step of the chain: upper bound on the motion of any point of the body, m per rad or per m.
+    ///
+    /// It is 0 if the joint does not move the body.
     pub lever_m: Vec<f32>,
 }
 
-/// Appends the tree of a cover; returns its nodes and those for the broad phase.
+/// Appends the tree of a cover. Returns its nodes and the nodes for the broad phase.
 pub(crate) fn push_tree(
     nodes: &mut Vec<SphereNode>,
     balls: &[Ball],
@@ -83,7 +87,7 @@ impl TreeBuilder<'_> {
     fn push(&mut self, balls: &mut [Ball], is_below: bool) {
         let ball = if let [only] = balls { *only } else { enclosing(balls) };
         let index = self.nodes.len();
-        // Rounding to single precision never makes it smaller.
+        // Rounding to single precision never makes the radius smaller.
         let radius = ((ball.radius + ROUNDING_M) as f32).next_up();
         let touching_m = touching_m(&ball, balls);
         self.nodes.push(SphereNode { centre: single(ball.centre), radius, touching_m, frame: self.frame, end: 0 });
@@ -101,13 +105,13 @@ impl TreeBuilder<'_> {
     }
 }
 
-/// Nearer to the centre of a ball than this is what touches one of the balls in it, rounding errors included.
+/// Distance from the centre of a ball below which a point touches one of the balls in it, rounding errors included, m.
 fn touching_m(ball: &Ball, balls: &[Ball]) -> f32 {
     let depth = |b: &Ball| b.radius - b.centre.distance(ball.centre);
     (balls.iter().map(depth).fold(f64::NEG_INFINITY, f64::max) - TOUCHING_MARGIN_M) as f32
 }
 
-/// Splits balls at medians along the longest axis into at most `parts` groups, none empty.
+/// Splits balls at medians along the longest axis into at most `parts` groups, all non-empty.
 fn split(balls: &mut [Ball], parts: usize) -> Vec<&mut [Ball]> {
     if parts == 1 || balls.len() == 1 {
         return vec![balls];

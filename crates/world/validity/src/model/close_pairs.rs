@@ -1,4 +1,4 @@
-//! Links that are always near each other without touching: their covers must be closer to them than the slack.
+//! Links that are always near each other without touching: their covers need a smaller slack.
 
 use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_proximity::separation;
@@ -9,12 +9,13 @@ use crate::cover::{Ball, ROUNDING_M, SphereCover};
 
 /// Configurations at which the covers of a pair are compared.
 const SAMPLES: usize = 24;
-/// The slack of both covers together stays below twice this share of the gap that a pair usually has.
+/// Slack of each cover as a fraction of the usual gap of its pair. The two slacks together are at most twice this
+/// fraction.
 const SHARE_OF_GAP: f64 = 0.3;
-/// Covers are not made closer than this, m.
+/// Least slack of a cover, m.
 const LEAST_SLACK_M: f64 = 1e-3;
 
-/// Links whose covers touch another's at every sample though the links do not, each with the slack that keeps them apart, m.
+/// Links whose covers touch in every sample although the links do not, each with a slack (m) that keeps them apart.
 pub(super) fn closer_slacks(robot: &Robot, covers: &[(LinkId, Option<SphereCover>)]) -> Vec<(LinkId, f64)> {
     let cover = |wanted: LinkId| covers.iter().find(|(link, _)| *link == wanted).and_then(|(_, cover)| cover.as_ref());
     let states = samples(robot);
@@ -33,13 +34,13 @@ pub(super) fn closer_slacks(robot: &Robot, covers: &[(LinkId, Option<SphereCover
             slacks.extend([a, b].map(|link| (link, SHARE_OF_GAP * usual_m)));
         }
     }
-    // Of several the smallest.
+    // If a link has several slacks, the smallest counts.
     slacks.sort_by(|(a, of_a), (b, of_b)| a.cmp(b).then(of_a.total_cmp(of_b)));
     slacks.dedup_by_key(|(link, _)| *link);
     slacks
 }
 
-/// Configurations spread over the limits, always the same.
+/// Configurations spread over the limits, equal on every call.
 fn samples(robot: &Robot) -> Vec<ChainState> {
     let (lower, upper) = (robot.chain.lower(), robot.chain.upper());
     let at = |k: usize| {
@@ -57,10 +58,12 @@ fn samples(robot: &Robot) -> Vec<ChainState> {
     (0..SAMPLES).map(at).collect()
 }
 
-/// Whether a ball of one cover touches one of the other, which is placed in the frame of the first.
+/// Whether a ball of one cover touches a ball of the other.
+///
+/// `b_in_a` is the pose of the second cover in the frame of the first.
 fn overlap(of_a: &[Ball], of_b: &[Ball], b_in_a: &Pose) -> bool {
     let of_b: Vec<Ball> = of_b.iter().map(|b| Ball { centre: b_in_a.transform_point(b.centre), ..*b }).collect();
-    // Most balls of most pairs are far from the whole of the other cover.
+    // Most balls of most pairs are far from the whole other cover.
     let near_a = touching(&of_b, &around(of_a));
     let near_b = touching(of_a, &around(&near_a));
     near_a.iter().any(|ball| near_b.iter().any(|other| touch(other, ball)))

@@ -14,12 +14,12 @@ use crate::lanes::{LANES, PointRow, Row, V3, sin_cos, splat};
 pub(crate) struct BatchedChain {
     /// Moving joints from the root outwards; step `i` moves frame `i + 1`.
     pub steps: Vec<JointStep>,
-    /// Per link of the chain.
+    /// Per link of the chain: its frame and its pose in the frame.
     pub links: Vec<LinkFrame>,
     pub base_in_world: Pose,
 }
 
-/// Poses of frames in the world, one per lane: columns of the rotation, origin.
+/// Poses of frames in the world, one per lane: columns of the rotation, and origin.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct FrameLanes {
     pub columns: [PointRow; 3],
@@ -41,7 +41,7 @@ impl BatchedChain {
             };
             let axis = axis_rotation(joint.axis);
             let limits = chain.joints()[chain.active_joints()[coupling.index].0].limits;
-            // A mimic joint with multiplier 0 does not move, whatever the limits (0·∞ is NaN).
+            // A mimic joint with multiplier 0 does not move, whatever the limits are (0·∞ is NaN).
             let turns_with_q = |q: f64| if coupling.multiplier == 0.0 { 0.0 } else { coupling.multiplier * q };
             let ends = [limits.lower, limits.upper].map(|q| turns_with_q(q) + coupling.offset);
             let [lower, upper] = value_range(!joint.kind.turns(), ends);
@@ -75,7 +75,7 @@ impl BatchedChain {
         steps
     }
 
-    /// Memory for the frames, the root's in place.
+    /// Memory for the frames; the root's frame is set.
     pub fn frames(&self) -> Vec<FrameLanes> {
         vec![constant_frame(&self.base_in_world); self.steps.len() + 1]
     }
@@ -117,7 +117,7 @@ impl JointStep {
 }
 
 impl FixedRotation {
-    /// A column of the product of a frame's rotation and this one.
+    /// Column `k` of the product of the parent frame's rotation and this rotation.
     #[inline(always)]
     fn column<S: Simd>(&self, simd: S, parent: &FrameLanes, k: usize) -> V3<S> {
         match self {
@@ -141,7 +141,7 @@ fn sum<S: Simd>(a: V3<S>, s: f32x16<S>, b: V3<S>, t: f32x16<S>) -> V3<S> {
 }
 
 impl FrameLanes {
-    /// A point given in the frame, in the world.
+    /// Converts a point from the frame to the world.
     #[inline(always)]
     pub fn point<S: Simd>(&self, simd: S, p: [f32; 3]) -> V3<S> {
         let mut at = self.origin.load(simd);
@@ -153,7 +153,7 @@ impl FrameLanes {
 }
 
 impl FrameLanes {
-    /// A direction of the world, in the frame.
+    /// Converts a direction from the world to the frame.
     #[inline(always)]
     pub fn local_direction<S: Simd>(&self, simd: S, v: V3<S>) -> V3<S> {
         let x = self.columns[0].load(simd).dot(v);

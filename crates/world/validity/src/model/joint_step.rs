@@ -3,38 +3,40 @@
 use elbowroom_kinematics::JointKind;
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
-/// Entries of a rotation this near to 0 or ±1 count as exact.
+/// Distance from 0 or ±1 within which entries of a rotation count as exact.
 const PRINCIPAL_TOLERANCE: f64 = 1e-9;
-/// Slides are tested up to this far from their zero, m, where their limits are wider.
+/// Largest tested distance of slides from their zero, m, if their limits are wider.
 const LONGEST_SLIDE_M: f64 = 100.0;
-/// Slides may be this far beyond their limits, m: for rounding and for what an inverse kinematics leaves.
+/// Distance by which slides may exceed their limits, m: for rounding and for the residual error of inverse kinematics.
 const BEYOND_LIMITS_M: f64 = 1e-3;
-/// Up to this, rad, the reduction of an angle to one turn in double precision is far more exact than single precision.
+/// Largest angle, rad.
+///
+/// Up to it, reducing an angle to one turn in double precision is far more exact than single precision.
 const LARGEST_ANGLE_RAD: f64 = 1e6;
 
-/// A moving joint. The frame that it moves has its z axis along the joint's axis.
+/// A moving joint. The z axis of the frame that it moves is along the joint's axis.
 #[derive(Debug, Clone)]
 pub(crate) struct JointStep {
-    /// Index of the frame that carries the joint; 0 is that of the root.
+    /// Index of the frame that carries the joint; 0 is the root's frame.
     pub parent: usize,
     pub is_prismatic: bool,
     /// Rotation of the joint's frame at value 0 in the parent frame.
     pub rotation: FixedRotation,
     /// Origin of the joint's frame in the parent frame, m.
     pub translation: [f32; 3],
-    /// Both, in double precision.
+    /// Pose of the joint's frame at value 0 in the parent frame, in double precision.
     pub at_zero: Pose,
-    /// The joint's value is `multiplier·q[index] + offset`.
+    /// Index in `q`. The joint's value is `multiplier·q[index] + offset`.
     pub index: usize,
     pub multiplier: f64,
     pub offset: f64,
-    /// Lowest and highest value, rad or m: for a turning joint its limits, for a slide a little more, and never unlimited.
+    /// Lowest and highest value, rad or m: the limits of a turning joint; for a slide slightly wider, and always finite.
     pub lower: f64,
     pub upper: f64,
 }
 
 impl JointStep {
-    /// True for the values for which the bounds of motion and rounding hold. False for NaN.
+    /// True for values for which the bounds of motion and rounding hold. False for NaN.
     #[inline]
     pub fn accepts(&self, value: f64) -> bool {
         if self.is_prismatic { value >= self.lower && value <= self.upper } else { value.abs() <= LARGEST_ANGLE_RAD }
@@ -55,7 +57,7 @@ pub(super) fn value_range(is_prismatic: bool, ends: [f64; 2]) -> [f64; 2] {
 pub(crate) enum FixedRotation {
     /// Column `k` is `sign` times the coordinate axis `axis`.
     Permutation { axis: [usize; 3], sign: [f32; 3] },
-    /// Any other.
+    /// Any other rotation, by columns.
     Matrix([[f32; 3]; 3]),
 }
 
@@ -69,7 +71,7 @@ impl FixedRotation {
     }
 }
 
-/// A rotation that turns the z axis to a joint's axis, along coordinate axes where the axis is one.
+/// A rotation that turns the z axis to a joint's axis, along coordinate axes if the joint's axis is one.
 pub(crate) fn axis_rotation(axis: Vec3) -> Rotation {
     match principal(axis) {
         Some((k, sign)) => {
@@ -93,14 +95,14 @@ pub(crate) fn single(v: Vec3) -> [f32; 3] {
     [v.x as f32, v.y as f32, v.z as f32]
 }
 
-/// Where a link is: in a frame that a joint moves, at a constant pose.
+/// Frame and constant pose of a link: the frame is moved by a joint.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LinkFrame {
     pub frame: usize,
     pub in_frame: Pose,
 }
 
-/// True if the kind has a step of its own.
+/// True if a joint of this kind is a step of its own.
 pub(crate) fn moves(kind: JointKind) -> bool {
     kind != JointKind::Fixed
 }

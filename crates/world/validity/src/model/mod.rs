@@ -34,19 +34,23 @@ use crate::error::ValidityError;
 
 /// Largest protrusion of the cover of a link, m.
 const SLACK_M: f64 = 0.005;
-/// The same of small links and parts, such as those of grippers.
+/// Largest protrusion of the cover of a small link or part, such as those of grippers, m.
 const FINE_SLACK_M: f64 = 0.002;
-/// Links whose bounding box has a shorter diagonal than this are small, m.
+/// Diagonal of the bounding box below which a link is small, m.
 const FINE_DIAGONAL_M: f64 = 0.25;
 
-/// Largest error of a joint's rotation in single precision, rad: of its angle (up to 8 rad), of sine and cosine, and of the
-/// products of rotations. Counted in README.md of this crate.
+/// Largest error of a joint's rotation in single precision, rad.
+///
+/// It includes the errors of its angle (up to 8 rad), of sine and cosine, and of the products of rotations. README.md of
+/// this crate derives it.
 pub(crate) const ROTATION_ERROR_RAD: f64 = 4e-6;
-/// Rounding errors of coordinates per joint, and once more of comparisons, per metre that they can reach. Counted there, too.
+/// Rounding errors of coordinates per joint, and once more of comparisons, per metre that they can reach.
+///
+/// Derived in README.md.
 pub(crate) const ROUNDING_SHARE: f64 = 2e-6;
-/// The same of a margin, per metre.
+/// Rounding error of a margin, per metre.
 const MARGIN_SHARE: f64 = 1e-6;
-/// Robots that reach farther from the origin of the world are not covered, m.
+/// Largest reach of a covered robot from the origin of the world, m.
 const LONGEST_REACH_M: f64 = 1e6;
 
 /// Index of a body in a [`CoveredRobot`].
@@ -59,23 +63,24 @@ pub(crate) struct LinkPair {
     pub a: CoveredLinkId,
     pub b: CoveredLinkId,
     pub margin_m: f32,
-    /// The frame in which both are seen: that of the last joint which moves both.
+    /// The frame in which the pair is compared: the frame of the last joint that moves both links.
     pub common_frame: usize,
-    /// The joints that move one against the other.
+    /// The joints that move one link against the other.
     pub joints: Vec<RelativeJoint>,
 }
 
 /// A joint that moves one body of a pair and not the other.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct RelativeJoint {
-    /// Its step in the chain.
+    /// Step of the joint in the chain.
     pub step: usize,
-    /// Its lever arm for the body that it moves, m per rad or m.
+    /// Lever arm of the joint for the body that it moves, m per rad or per m.
     pub lever_m: f32,
 }
 
-/// A robot with a sphere cover for each link: what a [`ValidityChecker`](crate::ValidityChecker) moves. Constant; any number of
-/// checkers may share one.
+/// A robot with a sphere cover for each link, for a [`ValidityChecker`](crate::ValidityChecker).
+///
+/// It is constant; any number of checkers may share one.
 ///
 /// ```
 /// use elbowroom_spatial::Pose;
@@ -91,22 +96,22 @@ pub struct CoveredRobot {
     pub(crate) chain: BatchedChain,
     pub(crate) covered_links: Vec<CoveredLink>,
     pub(crate) nodes: Vec<SphereNode>,
-    /// The same trees for one configuration at a time.
+    /// The trees of `nodes` for one configuration at a time.
     pub(crate) packs: SpherePacks,
     pub(crate) inner: Vec<InnerSphere>,
     pub(crate) pairs: Vec<LinkPair>,
     /// Built at first use.
     pub(crate) tables: OnceLock<Vec<PairTable>>,
-    /// No point of a link is farther from the origin of the world, m.
+    /// Upper bound on the distance of any point of a link from the origin of the world, m.
     pub(crate) reach_m: f32,
     dof: usize,
 }
 
 impl CoveredRobot {
-    /// A robot with its base at a pose. Pairs of links are those of [`collision_pairs`], without margins.
+    /// Covers a robot with its base at a pose. The pairs of links are those of [`collision_pairs`], without margins.
     ///
     /// # Errors
-    /// A link that no spheres enclose: it is unbounded, or has NaN or infinite numbers.
+    /// [`ValidityError`] if spheres cannot enclose a link: it is unbounded, or has NaN or infinite numbers.
     pub fn new(robot: &Robot, base_in_world: Pose) -> Result<Self, ValidityError> {
         let mut covered = Self::without_pairs(robot, base_in_world)?;
         let body = |id: GeometryId| match id {
@@ -123,18 +128,18 @@ impl CoveredRobot {
         Ok(covered)
     }
 
-    /// As [`new`](Self::new), without any pair of links; they are added by [`add_pair`](Self::add_pair).
+    /// Like [`new`](Self::new), but without pairs of links. [`add_pair`](Self::add_pair) adds pairs.
     ///
     /// # Errors
-    /// As [`new`](Self::new).
+    /// The errors of [`new`](Self::new).
     pub fn without_pairs(robot: &Robot, base_in_world: Pose) -> Result<Self, ValidityError> {
         Self::with_covers(robot, base_in_world, &BuiltCovers)
     }
 
-    /// As [`without_pairs`](Self::without_pairs), with covers from a source, which several threads ask at once.
+    /// Like [`without_pairs`](Self::without_pairs), with covers from a source, which several threads call at once.
     ///
     /// # Errors
-    /// As [`new`](Self::new).
+    /// The errors of [`new`](Self::new).
     pub fn with_covers(robot: &Robot, base_in_world: Pose, source: &dyn CoverSource) -> Result<Self, ValidityError> {
         let chain = BatchedChain::new(&robot.chain, base_in_world);
         let dof = robot.chain.dof();
@@ -155,11 +160,12 @@ impl CoveredRobot {
         Ok(covered)
     }
 
-    /// Adds a body that moves with a link: a tool, or a part that the robot holds. Its shapes are given with their poses in the
-    /// link's frame.
+    /// Adds a body that moves with a link: a tool, or a part that the robot holds.
+    ///
+    /// The poses of its shapes are in the link's frame.
     ///
     /// # Errors
-    /// No such link, or a shape that no spheres enclose.
+    /// [`ValidityError`] if the link does not exist, or spheres cannot enclose a shape.
     pub fn add_covered_link(
         &mut self,
         chain: &Chain,
@@ -199,7 +205,7 @@ impl CoveredRobot {
         Ok(CoveredLinkId(self.covered_links.len() - 1))
     }
 
-    /// Two links must stay farther apart than a margin, m.
+    /// Adds a pair of links that must stay farther apart than a margin (m).
     pub fn add_pair(&mut self, a: CoveredLinkId, b: CoveredLinkId, margin_m: f64) {
         let (Some(one), Some(other)) = (self.covered_links.get(a.0), self.covered_links.get(b.0)) else { return };
         let (of_a, of_b) = (self.chain.steps_to(one.frame), self.chain.steps_to(other.frame));
@@ -210,7 +216,7 @@ impl CoveredRobot {
         let joints = joints.collect();
         self.tables = OnceLock::new();
         let common_frame = common.checked_sub(1).map_or(0, |last| of_a[last] + 1);
-        // Of a margin that is not a number nothing is known: no pair keeps it.
+        // NaN as a margin counts as infinite: no pair keeps it.
         let margin_m = if margin_m.is_nan() { f64::INFINITY } else { margin_m };
         let margin_m = ((margin_m.max(0.0) * (1.0 + MARGIN_SHARE)) as f32).next_up();
         self.pairs.push(LinkPair { a, b, margin_m, common_frame, joints });
@@ -226,7 +232,7 @@ impl CoveredRobot {
         self.covered_links.iter().map(|b| b.link)
     }
 
-    /// Radius of the sphere around a body; 0 if it has no spheres.
+    /// Radius of the sphere around a body, m; 0 if it has no spheres.
     pub(crate) fn bounding_radius_m(&self, body: CoveredLinkId) -> f32 {
         let nodes = &self.covered_links[body.0].nodes;
         if nodes.is_empty() { 0.0 } else { self.nodes[nodes.start as usize].radius }
@@ -239,7 +245,9 @@ impl CoveredRobot {
     }
 }
 
-/// The covers of all links with colliders, in the order of the chain; closer ones of links that are always near others.
+/// The covers of all links with colliders, in the order of the chain.
+///
+/// Links that are always near others get a smaller slack.
 fn link_covers(robot: &Robot, source: &dyn CoverSource) -> Vec<(LinkId, Option<SphereCover>)> {
     let mut covers = usual_covers(robot, source);
     for (link, slack) in closer_slacks(robot, &covers) {
@@ -253,7 +261,7 @@ fn link_covers(robot: &Robot, source: &dyn CoverSource) -> Vec<(LinkId, Option<S
     covers
 }
 
-/// The covers of all links with colliders, in the order of the chain, on all processors.
+/// The covers of all links with colliders, in the order of the chain, built on all processors.
 fn usual_covers(robot: &Robot, source: &dyn CoverSource) -> Vec<(LinkId, Option<SphereCover>)> {
     let links: Vec<LinkId> = robot.links_with_colliders().collect();
     let body = |link: &LinkId| {
@@ -265,14 +273,14 @@ fn usual_covers(robot: &Robot, source: &dyn CoverSource) -> Vec<(LinkId, Option<
     links.into_iter().zip(covers(&bodies, source)).collect()
 }
 
-/// The slack of a cover by the size of what it covers.
+/// The slack of a cover, m, by the size of the covered shapes.
 fn slack_m(shapes: &[(&Shape, Pose)]) -> f64 {
     let bounds = shapes.iter().map(|(s, p)| s.aabb(p)).reduce(|a, b| a.union(&b));
     let is_small = bounds.is_some_and(|b| b.extent().length() < FINE_DIAGONAL_M);
     if is_small { FINE_SLACK_M } else { SLACK_M }
 }
 
-/// Bound of the rounding errors of a point of a body, and of what is computed from it.
+/// Bound on the rounding errors of a point of a body, and of values computed from the point, m.
 fn rounding_m(reach: Reach) -> f64 {
     let terms = (reach.joints + 1) as f64;
     ROTATION_ERROR_RAD * reach.arms_m + ROUNDING_SHARE * terms * reach.world_m + ROUNDING_M

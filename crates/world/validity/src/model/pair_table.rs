@@ -1,35 +1,40 @@
-//! Tables of what can touch: for links that at most two turning joints move against each other, whether they are apart for
-//! certain, cell by cell over the values of these joints.
+//! Tables of the pairs of links that can touch.
+//!
+//! They cover links that at most two turning joints move against each other. Per cell of the values of these joints, a
+//! table says whether the links are certainly apart.
 
 use fearless_simd::{Simd, f32x16, i32x16, prelude::*};
 
 use crate::lanes::{LANES, Row, splat};
 
-/// Cells per turn of a joint.
+/// Number of cells per turn of a joint.
 pub(crate) const CELLS: usize = 448;
 /// Number of tables for motions of different length.
 pub(crate) const LEVELS: usize = 5;
-/// At each level, a cell is marked for all values up to this far beyond it, rad: for the motion between two lanes, twice as long
-/// at most.
+/// Per level: a cell is marked for all joint values up to this distance beyond it, rad.
+///
+/// The level is used for motion between two lanes of at most twice this distance.
 pub(crate) const BEYOND_RAD: [f32; LEVELS] = [0.0, 0.005, 0.010, 0.018, 0.036];
-/// Pairs of one table, a bit each.
+/// Largest number of pairs of one table, one bit each.
 pub(crate) const MAX_PAIRS: usize = 8;
 
-/// What can touch over the values of two joints (or of one: then both are the same).
+/// Pairs that can touch, over the values of two joints. For a single joint, the two joints are equal.
 #[derive(Debug, Clone)]
 pub(crate) struct PairTable {
     /// Steps of the joints.
     pub steps: [usize; 2],
-    /// The pairs, by their numbers.
+    /// Indices of the pairs.
     pub pairs: Vec<usize>,
-    /// Cells from one cell of the first joint to the next; 0 if both joints are the same.
+    /// Offset from one cell of the first joint to the next; 0 if the two joints are equal.
     pub row: usize,
-    /// Per level, per cell of the first joint and cell of the second, a bit per pair that may touch.
+    /// Per level, per cell of the first joint and cell of the second: one bit per pair that may touch.
     pub levels: [Vec<u8>; LEVELS],
 }
 
 impl PairTable {
-    /// The pairs that may touch in a block, or between its lanes; joint values and their changes between lanes in rad.
+    /// The pairs that may touch in a block, or between its lanes.
+    ///
+    /// Joint values and their changes between lanes are in rad.
     #[inline(always)]
     #[allow(clippy::inline_always, clippy::cast_possible_wrap, reason = "part of a kernel; a small number")]
     pub fn near<S: Simd>(&self, simd: S, values: &[Row], deltas: [f32; 2]) -> u8 {
@@ -46,7 +51,7 @@ impl PairTable {
 }
 
 impl PairTable {
-    /// The pairs that may touch at a configuration, by the cells of both joints.
+    /// The pairs that may touch at a configuration, by the cells of the two joints.
     #[inline(always)]
     #[allow(clippy::inline_always, reason = "part of a kernel")]
     pub fn near_at(&self, cells: [usize; 2]) -> u8 {
@@ -62,7 +67,7 @@ pub(crate) fn cells<S: Simd>(simd: S, angles: f32x16<S>, out: &mut [i32; LANES])
     cells.store_slice(out);
 }
 
-/// The cell of an angle, not rounded down yet.
+/// The cell of an angle, before rounding down.
 #[inline(always)]
 #[allow(clippy::inline_always, reason = "part of a kernel")]
 fn cell<S: Simd>(simd: S, angle: f32x16<S>) -> f32x16<S> {

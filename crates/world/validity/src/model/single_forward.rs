@@ -1,4 +1,6 @@
-//! Forward kinematics of one configuration: lanes are coordinates. The same sums as for sixteen, rounded alike.
+//! Forward kinematics of one configuration, with coordinates as lanes.
+//!
+//! Sums and rounding equal those for sixteen configurations.
 
 #![allow(clippy::inline_always, reason = "part of a kernel that is compiled for each instruction set as a whole")]
 
@@ -8,17 +10,17 @@ use super::forward::BatchedChain;
 use super::joint_step::{FixedRotation, JointStep};
 use crate::lanes::{LANES, Row, sin_cos};
 
-/// A vector of coordinates; the fourth is not used.
+/// A vector of coordinates; the fourth is unused.
 type Vec4 = [f32; 4];
 
-/// Pose of a frame in the world: columns of the rotation, origin.
+/// Pose of a frame in the world: columns of the rotation, and origin.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Frame {
     pub columns: [Vec4; 3],
     pub origin: Vec4,
 }
 
-/// Sines and cosines of all joints, sixteen together.
+/// Sines and cosines of all joints, in rows of sixteen.
 #[derive(Debug, Clone)]
 pub(crate) struct JointTurns {
     sin: Vec<Row>,
@@ -32,7 +34,7 @@ impl JointTurns {
 }
 
 impl BatchedChain {
-    /// Memory for the frames of one configuration, the root's in place.
+    /// Memory for the frames of one configuration; the root's frame is set.
     pub fn single_frames(&self) -> Vec<Frame> {
         let r = self.base_in_world.rotation;
         let vec4 = |v: elbowroom_spatial::Vec3| [v.x as f32, v.y as f32, v.z as f32, 0.0];
@@ -40,7 +42,7 @@ impl BatchedChain {
         vec![Frame { columns, origin: vec4(self.base_in_world.translation) }; self.steps.len() + 1]
     }
 
-    /// Computes all frames from the values of the joints, sixteen joints in a row.
+    /// Computes all frames from the values of the joints, in rows of sixteen.
     #[inline(always)]
     pub fn forward_single<S: Simd>(&self, simd: S, values: &[Row], turns: &mut JointTurns, frames: &mut [Frame]) {
         for (r, row) in values.iter().enumerate() {
@@ -78,7 +80,7 @@ impl JointStep {
 }
 
 impl FixedRotation {
-    /// The product of a rotation, given by its columns, and this one.
+    /// The product of a rotation, given by its columns, and this rotation.
     #[inline(always)]
     fn times<S: Simd>(&self, simd: S, c: [f32x4<S>; 3]) -> [f32x4<S>; 3] {
         match self {
@@ -89,7 +91,7 @@ impl FixedRotation {
 }
 
 impl Frame {
-    /// A point given in the frame, in the world.
+    /// Converts a point from the frame to the world.
     #[inline(always)]
     pub fn point<S: Simd>(&self, simd: S, p: [f32; 3]) -> Vec4 {
         let mut at = vector(simd, self.origin);

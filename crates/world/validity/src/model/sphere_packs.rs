@@ -1,4 +1,4 @@
-//! The sphere trees of links for one configuration at a time: lanes are spheres, sixteen children of a node together.
+//! The sphere trees of links for one configuration at a time: lanes are spheres, up to sixteen children of a node.
 
 use super::body::{InnerSphere, SphereNode};
 use crate::lanes::{LANES, PointRow, Row};
@@ -6,13 +6,13 @@ use crate::lanes::{LANES, PointRow, Row};
 /// Up to sixteen spheres of one link.
 #[derive(Debug, Clone)]
 pub(crate) struct SpherePack {
-    /// In the frame of the link's joint, m.
+    /// Centres in the frame of the link's joint, m.
     pub centres: PointRow,
-    /// m, rounding errors included.
+    /// Radii, rounding errors included, m.
     pub radii: Row,
-    /// The frame that moves them.
+    /// Index of the frame that moves the spheres.
     pub frame: u32,
-    /// The pack of the spheres below each; `None` for leaves.
+    /// Per sphere: the pack of the spheres below it; `None` for leaves.
     pub below: [Option<u32>; LANES],
     /// One bit per sphere.
     pub used: u32,
@@ -20,15 +20,15 @@ pub(crate) struct SpherePack {
     pub leaves: u32,
 }
 
-/// A sphere with a place of its own: the root of a link's tree, or a node of the broad phase.
+/// A single sphere outside packs: the root of a link's tree, or a node of the broad phase.
 #[derive(Debug, Clone)]
 pub(crate) struct RootSphere {
-    /// Number of the covered link.
+    /// Index of the covered link.
     pub body: u32,
     pub centre: [f32; 3],
     pub radius: f32,
     pub frame: u32,
-    /// The pack of the spheres below; of itself where it is a leaf.
+    /// The pack of the spheres below it; for a leaf, the pack of the leaf itself.
     pub pack: u32,
     pub is_leaf: bool,
 }
@@ -37,16 +37,16 @@ pub(crate) struct RootSphere {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct SpherePacks {
     pub packs: Vec<SpherePack>,
-    /// Per covered link its root; `None` if it has no spheres.
+    /// Per covered link: its root; `None` if it has no spheres.
     pub links: Vec<Option<RootSphere>>,
-    /// The nodes of the broad phase of links that joints move, the farthest from the base first.
+    /// The broad-phase nodes of links that joints move, the farthest from the base first.
     pub broad_phase: Vec<RootSphere>,
-    /// Per covered link, the packs of its inner spheres.
+    /// Per covered link: the packs of its inner spheres.
     pub inner: Vec<std::ops::Range<usize>>,
 }
 
 impl SpherePacks {
-    /// Appends a link; `frame` moves it.
+    /// Appends a link, moved by `frame`.
     pub fn push_link(
         &mut self,
         nodes: &[SphereNode],
@@ -77,7 +77,7 @@ impl SpherePacks {
         RootSphere { body, centre, radius, frame, pack: self.push(nodes, &members), is_leaf }
     }
 
-    /// Appends a pack of nodes and what is below them.
+    /// Appends a pack of nodes, and the packs below them.
     fn push(&mut self, nodes: &[SphereNode], members_of_pack: &[u32]) -> u32 {
         let mut spheres = Vec::new();
         for &node in members_of_pack {
@@ -120,7 +120,7 @@ fn children(nodes: &[SphereNode], node: u32) -> Vec<u32> {
     children
 }
 
-/// Up to sixteen nodes that together enclose all leaves below a node: the largest are divided first.
+/// Up to sixteen nodes that together enclose all leaves below a node. The largest nodes are divided first.
 fn members(nodes: &[SphereNode], node: u32) -> Vec<u32> {
     let mut members = children(nodes, node);
     loop {

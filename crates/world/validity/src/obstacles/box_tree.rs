@@ -1,4 +1,4 @@
-//! Broad phase: a tree of bounding boxes, sixteen children wide, tested a node at a time.
+//! Broad phase: a tree of bounding boxes with sixteen children per node, tested one node at a time.
 
 #![allow(clippy::inline_always, reason = "part of a kernel that is compiled for each instruction set as a whole")]
 
@@ -16,7 +16,7 @@ pub(crate) struct Bounds {
 impl Bounds {
     pub const EMPTY: Self = Self { min: [f32::INFINITY; 3], max: [f32::NEG_INFINITY; 3] };
 
-    /// Around the points of all lanes, enlarged.
+    /// The box around the points of all lanes, enlarged by a margin (m).
     #[inline(always)]
     pub fn around<S: Simd>(v: V3<S>, margin: f32) -> Self {
         let min = [v.0.reduce_min() - margin, v.1.reduce_min() - margin, v.2.reduce_min() - margin];
@@ -24,7 +24,7 @@ impl Bounds {
         Self { min, max }
     }
 
-    /// Around a sphere.
+    /// The box around a sphere.
     #[inline(always)]
     pub fn of_sphere(centre: [f32; 3], radius: f32) -> Self {
         let [x, y, z] = centre;
@@ -51,7 +51,7 @@ struct Pack {
 /// A tree over boxes that do not move.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct BoxTree {
-    /// The boxes of items in packs, then the boxes of packs in packs, up to a single pack.
+    /// Levels of packs: the boxes of items, then the boxes of packs, up to a single pack.
     levels: Vec<Vec<Pack>>,
     /// Item of each box of the lowest level.
     items: Vec<u32>,
@@ -72,7 +72,7 @@ impl BoxTree {
         Self { levels, items }
     }
 
-    /// Collects the items whose boxes overlap a box; `open` is memory for the packs still to visit.
+    /// Collects the items whose boxes overlap a box. `open` is workspace for the packs still to visit.
     #[inline(always)]
     pub fn overlapping<S: Simd>(&self, simd: S, bounds: &Bounds, open: &mut Vec<(u32, u32)>, found: &mut Vec<u32>) {
         found.clear();
@@ -106,7 +106,7 @@ impl Pack {
         pack
     }
 
-    /// One bit per child whose box overlaps; boxes that touch overlap.
+    /// One bit per child whose box overlaps; boxes that only touch count.
     #[inline(always)]
     fn overlaps<S: Simd>(&self, simd: S, b: &Bounds) -> u32 {
         let x = self.overlaps_along(simd, b, 0);
@@ -123,12 +123,12 @@ impl Pack {
     }
 }
 
-/// Items in the order of a curve through space (Morton, 1966), so that neighbours share packs.
+/// The items in the order of a curve through space (Morton, 1966), so that neighbours share packs.
 fn spatial_order(boxes: &[Bounds]) -> Vec<u32> {
     let all = boxes.iter().fold(Bounds::EMPTY, |all, b| all.union(b));
     let key = |b: &Bounds| {
         let cell = |k: usize| {
-            // Unbounded boxes come first or last, wherever that is.
+            // Unbounded boxes come first or last; either is correct.
             let (low, high) = (all.min[k].max(-1e6), all.max[k].min(1e6));
             let share = (0.5 * (b.min[k].max(-1e6) + b.max[k].min(1e6)) - low) / (high - low).max(1e-6);
             (share.clamp(0.0, 1.0) * 1023.0) as u32

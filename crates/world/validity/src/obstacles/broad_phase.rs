@@ -1,4 +1,4 @@
-//! Which boxes may overlap a query.
+//! The broad phase: boxes that may overlap a query.
 
 #![allow(clippy::inline_always, reason = "part of a kernel that is compiled for each instruction set as a whole")]
 
@@ -8,10 +8,10 @@ use super::box_tree::{Bounds, BoxTree};
 use super::slab_index::SlabIndex;
 use crate::lanes::V3;
 
-/// Up to so many boxes are in slabs, too.
+/// Largest number of boxes that are also stored in slabs.
 const MOST_IN_SLABS: usize = 2048;
 
-/// Boxes that do not move: a tree, which is faster for a large query, and slabs, which are faster for a small one.
+/// Boxes that do not move: in a tree (faster for a large query) and in slabs (faster for a small query).
 #[derive(Debug, Clone, Default)]
 pub(crate) struct BroadPhase {
     tree: BoxTree,
@@ -19,13 +19,15 @@ pub(crate) struct BroadPhase {
 }
 
 impl BroadPhase {
-    /// Of boxes; queries are within `reach_m` of the origin, mostly.
+    /// Builds the index of boxes. Most queries are within `reach_m` of the origin.
     pub fn new(boxes: &[Bounds], reach_m: f32) -> Self {
         let slabs = (boxes.len() <= MOST_IN_SLABS).then(|| SlabIndex::new(boxes, reach_m));
         Self { tree: BoxTree::new(boxes), slabs }
     }
 
-    /// Collects the items whose boxes may overlap that around the points of a block, `margin` larger; `open` is memory.
+    /// Collects the items whose boxes may overlap the box around the points of a block, enlarged by `margin` (m).
+    ///
+    /// `open` is workspace.
     #[inline(always)]
     pub fn around<S: Simd>(
         &self,
@@ -38,7 +40,7 @@ impl BroadPhase {
         self.tree.overlapping(simd, &Bounds::around(points, margin), open, found);
     }
 
-    /// The same of one sphere.
+    /// Collects the items whose boxes may overlap the box of one sphere.
     #[inline(always)]
     pub fn near_sphere<S: Simd>(
         &self,

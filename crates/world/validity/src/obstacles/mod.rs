@@ -1,4 +1,4 @@
-//! Obstacles: what does not move while configurations are tested.
+//! Obstacles: solids that do not move while configurations are tested.
 
 mod box_tree;
 mod broad_phase;
@@ -19,10 +19,10 @@ use prism::PrismBoxes;
 const MESH_SLACK_M: f64 = 0.005;
 /// Rounding errors of coordinates and distances in single precision, per metre of coordinates and extents.
 const ROUNDING_SHARE: f64 = 2e-6;
-/// Obstacles that are farther away or larger, margins included, are not enclosed: squares would overflow, m.
+/// Largest distance or size of an enclosed obstacle, margins included, m. Beyond it, squares would overflow.
 const LARGEST_M: f64 = 1e8;
 
-/// Solids that do not move: shapes and points of a cloud.
+/// Obstacles that do not move: shapes, and points of a cloud.
 ///
 /// ```
 /// use elbowroom_proximity::{Cuboid, Shape};
@@ -35,27 +35,28 @@ const LARGEST_M: f64 = 1e8;
 /// ```
 #[derive(Debug, Clone, Default)]
 pub struct ObstacleSet {
-    /// Their union encloses all obstacles, margins included.
+    /// Solids whose union encloses all obstacles, margins included.
     pub(crate) outer: Vec<RoundedSolid>,
     /// The obstacle of each entry of `outer`.
     pub(crate) outer_source: Vec<u32>,
-    /// Each lies in an obstacle.
+    /// Solids that each lie in an obstacle.
     pub(crate) inner: Vec<RoundedSolid>,
     /// The obstacle of each entry of `inner`.
     pub(crate) inner_source: Vec<u32>,
     count: usize,
-    /// True for obstacles that no solid encloses.
+    /// True if an obstacle has no enclosing solid.
     pub(crate) has_unknown: bool,
 }
 
 impl ObstacleSet {
-    /// Adds a shape that counts up to `margin_m` beyond its surface; returns its number. A shape with NaN or infinite numbers,
-    /// or a coordinate beyond 10⁸ m, makes every answer uncertain.
+    /// Adds a shape with a margin (m) around its surface, and returns its number.
+    ///
+    /// A shape with NaN or infinite numbers, or with a coordinate beyond 10⁸ m, makes every answer uncertain.
     pub fn add_shape(&mut self, shape: &Shape, in_world: &Pose, margin_m: f64) -> usize {
         self.add_shape_with(shape, in_world, margin_m, &BuiltCovers)
     }
 
-    /// As [`add_shape`](Self::add_shape), with the covers of meshes and hulls from a source.
+    /// Like [`add_shape`](Self::add_shape), with the covers of meshes and hulls from a source.
     pub fn add_shape_with(&mut self, shape: &Shape, in_world: &Pose, margin_m: f64, covers: &dyn CoverSource) -> usize {
         let id = self.next();
         if shape.validate().is_err() || !in_world.is_finite() || !margin_m.is_finite() {
@@ -99,8 +100,9 @@ impl ObstacleSet {
         id
     }
 
-    /// True for a hull that is a prism: its boxes are added, the outer ones enlarged by the first margin (m), the inner ones made
-    /// smaller by the second.
+    /// Adds the boxes of a hull that is a prism. Returns false for other shapes.
+    ///
+    /// The outer boxes are enlarged by the first margin (m); the inner ones are made smaller by the second.
     fn add_prism(&mut self, shape: &Shape, in_world: &Pose, [outside_m, rounding_m]: [f64; 2], id: usize) -> bool {
         let Shape::Hull(hull) = shape else { return false };
         let Some(boxes) = PrismBoxes::of(hull, MESH_SLACK_M) else { return false };
@@ -113,8 +115,9 @@ impl ObstacleSet {
         true
     }
 
-    /// Adds the points of a cloud as balls of one radius; returns the number that they share. Points that are not finite, or
-    /// beyond 10⁸ m, make every answer uncertain.
+    /// Adds the points of a cloud as balls of one radius (m), and returns the number that they share.
+    ///
+    /// Points that are not finite, or beyond 10⁸ m, make every answer uncertain.
     pub fn add_points(&mut self, points: &[Vec3], radius_m: f64) -> usize {
         let id = self.next();
         for p in points {
@@ -135,7 +138,7 @@ impl ObstacleSet {
         self.count
     }
 
-    /// True without obstacles.
+    /// True if the set has no obstacles.
     pub fn is_empty(&self) -> bool {
         self.count == 0
     }

@@ -1,11 +1,11 @@
-//! Upright convex prisms as a few boxes: what a sensor sees, without the time that a cover of spheres takes.
+//! Upright convex prisms as a few boxes: for the shapes that a sensor sees, much faster than a cover of spheres.
 
 use elbowroom_proximity::ConvexHull;
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
-/// Vertices so near to each other are the same, m.
+/// Distance within which vertices are the same, m.
 const SAME_M: f64 = 1e-9;
-/// A prism has at most so many sides: each may need a box.
+/// Largest number of sides of a prism; each side may need a box.
 const MAX_SIDES: usize = 64;
 /// Largest number of boxes.
 const MAX_BOXES: usize = 64;
@@ -17,23 +17,25 @@ pub(super) struct PlacedBox {
     pub in_prism: Pose,
 }
 
-/// Boxes whose union encloses a prism, and boxes that lie in it.
+/// Boxes whose union encloses a prism, and boxes inside it.
 #[derive(Debug, Default)]
 pub(super) struct PrismBoxes {
     pub outer: Vec<PlacedBox>,
     pub inner: Vec<PlacedBox>,
 }
 
-/// A convex polygon whose longest side is along x of its frame, counter-clockwise, and heights.
+/// A convex polygon and its heights. Its longest side is along x of its frame; its corners are counter-clockwise.
 struct Prism {
     corners: Vec<[f64; 2]>,
     heights: [f64; 2],
-    /// Rotation about z of the polygon's frame.
+    /// Rotation of the polygon's frame about z.
     frame: Rotation,
 }
 
 impl PrismBoxes {
-    /// Of a hull that is a prism along its z; the boxes protrude by `slack_m`, or more if they would be many. `None` for any other hull.
+    /// The boxes of a hull that is a prism along its z; `None` for any other hull.
+    ///
+    /// The boxes protrude by `slack_m`, or more if there would be too many boxes.
     pub fn of(hull: &ConvexHull, slack_m: f64) -> Option<Self> {
         let prism = Prism::of(hull)?;
         let (cuts, _) = prism.cuts(slack_m);
@@ -41,7 +43,7 @@ impl PrismBoxes {
         for x in cuts.windows(2).map(|pair| [pair[0], pair[1]]) {
             let [[low0, high0], [low1, high1]] = x.map(|x| prism.range(x));
             boxes.outer.push(prism.placed(x, [low0.min(low1), high0.max(high1)]));
-            // The upper side of a convex polygon is above its chord, the lower one below.
+            // The upper side of a convex polygon is above its chord, the lower side below.
             let within = [low0.max(low1), high0.min(high1)];
             if within[0] < within[1] {
                 boxes.inner.push(prism.placed(x, within));
@@ -68,7 +70,7 @@ impl Prism {
         if is_prism { Self::over(&lower, heights) } else { None }
     }
 
-    /// `None` if a vertex lies within a face: a hull may have such vertices.
+    /// Returns `None` if a vertex lies within a face; a hull may have such vertices.
     fn over(lower: &[&Vec3], heights: [f64; 2]) -> Option<Self> {
         let middle = lower.iter().fold(Vec3::ZERO, |sum, v| sum + **v) / lower.len() as f64;
         let mut corners: Vec<Vec3> = lower.iter().map(|v| **v).collect();
@@ -94,8 +96,9 @@ impl Prism {
         turns.all(is_left).then_some(Self { corners, heights, frame })
     }
 
-    /// Values of x between which one box each encloses the polygon, and by how much (m) such boxes protrude: the slack, or more
-    /// where that would be too many boxes.
+    /// Values of x between which one box each encloses the polygon, and the protrusion of these boxes (m).
+    ///
+    /// The protrusion is the slack, or more if there would be too many boxes.
     fn cuts(&self, slack_m: f64) -> (Vec<f64>, f64) {
         let mut at: Vec<f64> = self.corners.iter().map(|c| c[0]).collect();
         at.sort_by(f64::total_cmp);
@@ -120,7 +123,7 @@ impl Prism {
         (cuts, slack_m)
     }
 
-    /// Least and largest y of the polygon at x.
+    /// Smallest and largest y of the polygon at x.
     fn range(&self, x: f64) -> [f64; 2] {
         let sides = self.corners.iter().zip(self.corners.iter().cycle().skip(1));
         let mut range = [f64::INFINITY, f64::NEG_INFINITY];
@@ -170,8 +173,8 @@ mod tests {
         local.max_element()
     }
 
-    /// Random convex polygons, rectangles at angles among them: every point of the prism is in an outer box, every point of an
-    /// inner box in the prism, and no outer box protrudes by more than the slack.
+    /// Random convex polygons, including rotated rectangles: every point of the prism is in an outer box, every point of
+    /// an inner box is in the prism, and no outer box protrudes by more than the slack.
     #[test]
     fn boxes_enclose_a_prism_closely() {
         let (mut random, slack_m) = (SplitMix(7), 0.005);
@@ -211,7 +214,7 @@ mod tests {
             let (_, protrudes_m) = Prism::of(&hull).unwrap().cuts(slack_m);
             assert!(protrudes_m < 0.1, "{protrudes_m}");
             for _ in 0..200 {
-                // A point of the prism: a mixture of its vertices.
+                // A point of the prism: a weighted mean of its vertices.
                 let weights: Vec<f64> = hull.vertices().iter().map(|_| random.between(0.0, 1.0).powi(6)).collect();
                 let total: f64 = weights.iter().sum();
                 let inside = hull.vertices().iter().zip(&weights).fold(Vec3::ZERO, |p, (v, w)| p + *v * (w / total));
@@ -232,7 +235,7 @@ mod tests {
         }
     }
 
-    /// How far a point is beyond the faces of a hull, m.
+    /// Distance of a point beyond the faces of a hull, m.
     fn beyond(hull: &ConvexHull, p: Vec3) -> f64 {
         let v = hull.vertices();
         let beyond = |t: &[u32; 3]| {
@@ -263,7 +266,7 @@ mod tests {
         }
         let hull = ConvexHull::from_faces(vertices, faces).unwrap();
         assert!(PrismBoxes::of(&hull, 0.005).is_none());
-        // Of a size that only a mistaken unit has: few boxes, and no memory for more.
+        // A size that only results from a wrong unit: few boxes, and no memory for more.
         let huge = prism(&[[0.0, 0.0], [1e7, 0.0], [3e6, 2e6]], [0.0, 1.0]);
         assert!(PrismBoxes::of(&huge, 0.005).unwrap().outer.len() <= MAX_BOXES);
     }

@@ -1,5 +1,8 @@
-//! Broad phase for up to a few thousand boxes: each axis is divided into slabs, and each slab knows which boxes begin before its
-//! end and which end after its begin, a bit per box. The boxes that overlap a query are in all six sets that its ends choose.
+//! Broad phase for up to a few thousand boxes.
+//!
+//! Each axis is divided into slabs. Each slab has one bit per box that begins before the slab's end, and one bit per box
+//! that ends after the slab's begin. The ends of a query select six sets; the boxes that overlap the query are in all of
+//! them.
 
 #![allow(clippy::inline_always, reason = "part of a kernel that is compiled for each instruction set as a whole")]
 
@@ -7,13 +10,13 @@ use fearless_simd::{Simd, f32x4, i32x4, prelude::*};
 
 use super::box_tree::Bounds;
 
-/// Slabs per axis.
+/// Number of slabs per axis.
 const SLABS: usize = 128;
-/// The last, as a number of lanes.
+/// Index of the last slab, for lanes.
 const LAST: f32 = (SLABS - 1) as f32;
-/// Words that are read together.
+/// Number of words that are read together.
 const WORDS: usize = 4;
-/// Boxes of so many words.
+/// Number of boxes in these words.
 const BOXES: usize = 64 * WORDS;
 
 /// One bit per box.
@@ -22,15 +25,15 @@ type Set = [u64; WORDS];
 /// Boxes that do not move.
 #[derive(Debug, Clone)]
 pub(crate) struct SlabIndex {
-    /// Where the first slab begins, m, and how many are in a metre, per axis.
+    /// Per axis: start of the first slab (m), and number of slabs per metre.
     low: [f32; 4],
     per_metre: [f32; 4],
-    /// Per 256 boxes, axis, side and slab.
+    /// Sets per 256 boxes, axis, side and slab.
     sets: Vec<Set>,
 }
 
 impl SlabIndex {
-    /// Of boxes; queries are within `reach_m` of the origin, mostly.
+    /// Builds the index of boxes. Most queries are within `reach_m` of the origin.
     pub fn new(boxes: &[Bounds], reach_m: f32) -> Self {
         let sets = vec![[0; WORDS]; boxes.len().div_ceil(BOXES) * 6 * SLABS];
         let mut index = Self { low: [0.0; 4], per_metre: [0.0; 4], sets };
@@ -54,7 +57,9 @@ impl SlabIndex {
         self.sets[(item / BOXES * 6 + side) * SLABS + slab][item % BOXES / 64] |= 1 << (item % 64);
     }
 
-    /// What begins in a slab has begun in all later ones, what ends in it has not ended in all before.
+    /// Completes the sets.
+    ///
+    /// A box that begins in a slab has begun in all later ones. A box that ends in a slab has not ended in earlier ones.
     fn accumulate(&mut self) {
         for (side, sets) in self.sets.chunks_exact_mut(SLABS).enumerate() {
             if side % 2 == 1 {
@@ -70,12 +75,12 @@ impl SlabIndex {
         }
     }
 
-    /// The slab of a coordinate: never smaller for a larger one.
+    /// The slab of a coordinate; never decreases as the coordinate increases.
     fn slab(&self, v: f32, k: usize) -> usize {
         ((v - self.low[k]) * self.per_metre[k]).clamp(0.0, LAST) as usize
     }
 
-    /// The same of three coordinates.
+    /// The slabs of three coordinates.
     #[inline(always)]
     fn slabs<S: Simd>(&self, simd: S, v: f32x4<S>) -> [usize; 3] {
         let slab = (v - f32x4::simd_from(simd, self.low)) * f32x4::simd_from(simd, self.per_metre);
@@ -84,7 +89,7 @@ impl SlabIndex {
         [slab[0] as usize % SLABS, slab[1] as usize % SLABS, slab[2] as usize % SLABS]
     }
 
-    /// Collects the boxes that may overlap that of a sphere.
+    /// Collects the boxes that may overlap the box of a sphere.
     #[inline(always)]
     pub fn near_sphere<S: Simd>(&self, simd: S, [x, y, z]: [f32; 3], radius: f32, found: &mut Vec<u32>) {
         found.clear();

@@ -1,4 +1,4 @@
-//! A convex obstacle with rounded edges: a box, point, segment or half-space, or a cylinder, with a radius around it.
+//! A convex obstacle with rounded edges: a box, point, segment, half-space or cylinder, with a radius around it.
 
 #![allow(clippy::inline_always, reason = "part of a kernel that is compiled for each instruction set as a whole")]
 
@@ -9,7 +9,7 @@ use super::box_tree::Bounds;
 use crate::lanes::{Fused, V3, splat};
 use crate::model::single;
 
-/// Stands for unbounded: zero times it is zero.
+/// Length that represents "unbounded"; its product with zero is zero.
 const FAR: f32 = 1e30;
 
 /// All points within `radius` of a core.
@@ -17,27 +17,27 @@ const FAR: f32 = 1e30;
 pub(crate) struct RoundedSolid {
     /// Origin of its frame in the world, m.
     origin: [f32; 3],
-    /// Columns of its rotation; `None` if its axes are those of the world.
+    /// Columns of its rotation; `None` if its axes are parallel to the world axes.
     columns: Option<[[f32; 3]; 3]>,
     core: Core,
-    /// m.
+    /// Radius around the core, m.
     pub radius: f32,
 }
 
-/// What the radius is around, in the frame of the solid.
+/// The core that the radius surrounds, in the frame of the solid.
 #[derive(Debug, Clone, Copy)]
 enum Core {
-    /// A box; a point, a segment and a half-space are boxes without or with unbounded extents.
+    /// A box. Points, segments and half-spaces are boxes with zero or unbounded extents.
     Box { low: [f32; 3], high: [f32; 3] },
     /// A cylinder about z.
     Cylinder { radius: f32, half_length: f32 },
 }
 
-/// What separates the sphere about a point from a solid: the shortest vector from the core to the point.
+/// A point relative to a solid, with the shortest vector from the core to the point.
 pub(crate) struct FromCore<S: Simd> {
     /// The point in the frame of the solid.
     pub point: V3<S>,
-    /// From the nearest point of the core.
+    /// Vector from the nearest point of the core.
     pub vector: V3<S>,
 }
 
@@ -71,7 +71,7 @@ impl RoundedSolid {
         Self { origin: single(origin), columns, core, radius }
     }
 
-    /// A box around it in the world.
+    /// A box around the solid in the world.
     pub fn bounds(&self) -> Bounds {
         let (centre, half) = self.core.centre_and_half();
         let axes = self.columns.unwrap_or([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
@@ -79,7 +79,7 @@ impl RoundedSolid {
         for k in 0..3 {
             let middle: f32 = self.origin[k] + (0..3).map(|i| axes[i][k] * centre[i]).sum::<f32>();
             let reach: f32 = (0..3).map(|i| (axes[i][k] * half[i]).abs()).sum::<f32>() + self.radius;
-            // Rounding errors of this sum, generously.
+            // A generous bound on the rounding errors of this sum.
             let reach = reach + 1e-6 * (reach + middle.abs() + self.origin[k].abs());
             (bounds.min[k], bounds.max[k]) = (middle - reach, middle + reach);
         }
@@ -123,7 +123,7 @@ fn support_along<S: Simd>(simd: S, d: f32x16<S>, low: f32, high: f32) -> f32x16<
     (d * splat(simd, low)).max(d * splat(simd, high))
 }
 
-/// A coordinate less the nearest one between two.
+/// Difference of a coordinate and the nearest coordinate of an interval.
 #[inline(always)]
 fn beyond<S: Simd>(simd: S, p: f32x16<S>, low: f32, high: f32) -> f32x16<S> {
     p - p.max(splat(simd, low)).min(splat(simd, high))

@@ -1,4 +1,4 @@
-//! Jobs for `xtask/planning/cpp/hits.cpp`, which asks Coal: a robot, its surroundings, configurations.
+//! Jobs for `xtask/planning/cpp/hits.cpp`, which runs them with Coal: a robot, its surroundings, configurations.
 
 use std::fmt::Write as _;
 
@@ -7,15 +7,15 @@ use elbowroom_proximity::{Shape, tessellate::tessellate};
 use elbowroom_robot::{GeometryId, Robot, collision_pairs};
 use elbowroom_spatial::{Pose, Vec3};
 
-/// Half of the edge of a box in place of a half-space, m.
+/// Half of the edge of the box that replaces a half-space, m.
 const FLOOR_M: f64 = 50.0;
 
-/// The links of all colliders, in the order in which the job lists these.
+/// The links of all colliders, in the order of the colliders in the job.
 fn links(robot: &Robot) -> Vec<LinkId> {
     robot.links_with_colliders().flat_map(|link| robot.colliders[link.0].iter().map(move |_| link)).collect()
 }
 
-/// The lines of a robot: its joints, a body per collider.
+/// Writes the lines of a robot: its joints, and a body per collider.
 pub fn robot(job: &mut String, robot: &Robot) {
     let chain = &robot.chain;
     for joint in chain.topological_order().iter().map(|j| &chain.joints()[j.0]) {
@@ -30,7 +30,7 @@ pub fn robot(job: &mut String, robot: &Robot) {
     }
 }
 
-/// The lines of surroundings: solids, pairs, and a path of one state per configuration.
+/// Writes the lines of surroundings: solids, pairs, and a path of one state per configuration.
 pub fn surroundings(job: &mut String, robot: &Robot, solids: &[(Shape, Pose)], q: &[f64]) {
     let (chain, links) = (&robot.chain, links(robot));
     writeln!(job, "cell").unwrap();

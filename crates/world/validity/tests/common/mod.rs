@@ -15,21 +15,21 @@ use elbowroom_validity::ObstacleSet;
 
 /// Random geometry, robots and joint vectors.
 pub trait RandomGeometry {
-    /// Each coordinate within `size` of 0.
+    /// A vector with each coordinate within `size` of 0.
     fn vec3(&mut self, size: f64) -> Vec3;
 
-    /// Half of them are right angles about coordinate axes, which are frequent in real models.
+    /// A rotation. Half of them are right angles about coordinate axes, which are frequent in real models.
     fn rotation(&mut self) -> Rotation;
 
     fn pose(&mut self, size: f64) -> Pose;
 
-    /// Convex shapes of six kinds, a closed mesh, an open one.
+    /// A shape: one of six convex kinds, a closed mesh, or an open mesh.
     fn shape(&mut self, size: f64) -> Shape;
 
-    /// Joints that turn or slide, about any axis; a mimic joint; branches.
+    /// A robot with joints that turn or slide about any axis, a mimic joint, and branches.
     fn robot(&mut self, joints: usize) -> Robot;
 
-    /// Within the limits of a robot.
+    /// Joint values within the limits of a robot.
     fn q(&mut self, chain: &Chain) -> Vec<f64>;
 }
 
@@ -115,7 +115,7 @@ impl RandomGeometry for Random {
     }
 }
 
-/// The surface of a shape as a mesh, without its last triangles.
+/// The surface of a shape as a mesh, without its last `missing` triangles.
 pub fn mesh(shape: &Shape, missing: usize) -> Shape {
     let (vertices, mut triangles) = tessellate::tessellate(shape, 2e-3);
     triangles.truncate(triangles.len() - missing);
@@ -131,7 +131,7 @@ pub fn obstacles(random: &mut Random, count: usize, spread: f64) -> Vec<(Shape, 
     list
 }
 
-/// What surrounds a robot.
+/// Kind of the surroundings of a robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// Spheres, capsules, cylinders and boxes.
@@ -160,7 +160,7 @@ impl Surroundings {
         let mut points = Vec::new();
         while solids.len() + points.len() <= count {
             if kind == Kind::Cloud {
-                // A patch of a wall, as a camera sees it.
+                // A patch of a wall, as seen by a camera.
                 let wall = random.pose(spread);
                 let mut on_wall = || Vec3::new(random.between(-0.3, 0.3), random.between(-0.3, 0.3), 0.0);
                 points.extend((0..20).map(|_| wall.transform_point(on_wall())));
@@ -177,19 +177,19 @@ impl Surroundings {
         Self { solids, points, set }
     }
 
-    /// With covers of the meshes, which take long.
+    /// The obstacles with the covers of the meshes, which take long to build.
     pub fn obstacle_set(&self) -> &ObstacleSet {
         &self.set
     }
 
-    /// All as shapes, points as balls.
+    /// All obstacles as shapes; points become balls.
     pub fn as_solids(&self) -> Vec<(Shape, Pose)> {
         let ball = |p: &Vec3| (Shape::Sphere(Sphere { radius: POINT_RADIUS_M }), Pose::from_translation(*p));
         self.solids.iter().cloned().chain(self.points.iter().map(ball)).collect()
     }
 }
 
-/// The exact scene: every pair is asked, no answer rests on a proof that links are out of reach.
+/// The exact scene. Every pair is tested: proofs that links are out of reach are not used.
 pub fn scene(robot: &Robot, base: Pose, solids: &[(Shape, Pose)]) -> Scene {
     let mut builder = Scene::builder();
     builder.robot("robot", robot.clone(), base);
@@ -200,7 +200,7 @@ pub fn scene(robot: &Robot, base: Pose, solids: &[(Shape, Pose)]) -> Scene {
     builder.build().unwrap()
 }
 
-/// Whether the random tests have all their rounds: `ELBOWROOM_LONG=1`.
+/// Whether the random tests run all their rounds: `ELBOWROOM_LONG=1`.
 pub fn is_long_run() -> bool {
     std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1")
 }
@@ -215,7 +215,7 @@ pub fn obstacle_set(solids: &[(Shape, Pose)]) -> ObstacleSet {
 
 pub const ROBOT: RobotId = RobotId(0);
 
-/// Joint number `i` of a serial chain, without limits.
+/// Joint with index `i` of a serial chain, without limits.
 pub fn single_joint(i: usize, kind: JointKind, origin: Pose, axis: Vec3) -> Joint {
     let name = format!("joint {i}");
     let limits = Limits::UNLIMITED;
