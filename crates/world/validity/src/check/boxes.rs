@@ -1,6 +1,6 @@
 //! Boxes in joint space that are proven to be in collision as a whole, to prove that two configurations are disconnected.
 
-use super::block::BlockRequest;
+use super::block_request::BlockRequest;
 use super::checker::ValidityChecker;
 use crate::error::ValidityError;
 use crate::lanes::LANES;

@@ -2,7 +2,8 @@
 
 use fearless_simd::{Level as SimdLevel, dispatch};
 
-use super::block::{BlockModel, BlockRequest, BlockResult, NearPair};
+use super::block::BlockModel;
+use super::block_request::{BlockRequest, BlockResult, NearPair};
 use super::motion_table::MotionTable;
 use super::pair_table_builder::pair_tables;
 use super::segment::Stretch;

@@ -7,7 +7,8 @@
 
 use fearless_simd::{Simd, prelude::*};
 
-use super::block::{BlockModel, NearPair};
+use super::block::BlockModel;
+use super::block_request::NearPair;
 use super::workspace::Workspace;
 use crate::lanes::{V3, splat};
 use crate::model::{CoveredLink, CoveredRobot, InnerSphere, LinkPair};

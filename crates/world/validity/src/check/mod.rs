@@ -1,6 +1,7 @@
 //! Checks of states and edges of a robot among obstacles.
 
 mod block;
+mod block_request;
 mod boxes;
 mod checker;
 mod hits;

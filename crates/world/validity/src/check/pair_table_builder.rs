@@ -2,7 +2,8 @@
 
 use fearless_simd::dispatch;
 
-use super::block::{BlockModel, BlockRequest};
+use super::block::BlockModel;
+use super::block_request::BlockRequest;
 use super::motion_table::MotionTable;
 use super::workspace::Workspace;
 use crate::lanes::{LANES, Row, detected_simd_level};

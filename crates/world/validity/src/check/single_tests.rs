@@ -7,7 +7,8 @@ use elbowroom_testkit::random::Random;
 use fearless_simd::dispatch;
 
 use super::ValidityChecker;
-use super::block::{BlockModel, BlockRequest};
+use super::block::BlockModel;
+use super::block_request::BlockRequest;
 use super::motion_table::MotionTable;
 use super::workspace::Workspace;
 use crate::lanes::{LANES, detected_simd_level};
