@@ -1,5 +1,6 @@
-//! The table of inverse kinematics over every robot of the data:
-//! `cargo bench -p elbowroom-kinematics --bench ik_table -- [TARGETS]` (data as in the tests, `ELBOWROOM_DATA`).
+//! The table of inverse kinematics over every robot of the data.
+//!
+//! `cargo bench -p elbowroom-kinematics --bench ik_table -- [TARGETS]` (data as in the tests, `ELBOWROOM_DATA`)
 #![allow(clippy::print_stdout)]
 
 #[path = "../tests/common/mod.rs"]

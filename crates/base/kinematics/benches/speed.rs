@@ -14,7 +14,7 @@ use elbowroom_kinematics::inverse::{IkOptions, IkSolver};
 use elbowroom_kinematics::{Chain, ChainState, Joint, JointKind, Limits, LinkId};
 use elbowroom_spatial::{Pose, Vec3};
 
-/// Six revolute axes as in most URDF files: axes along z, y, y, x, y, x, and a fixed flange.
+/// Six revolute axes as in most URDF files, along z, y, y, x, y, x, and a fixed flange.
 fn urdf_like() -> Chain {
     let axes = [Vec3::Z, Vec3::Y, Vec3::Y, Vec3::X, Vec3::Y, Vec3::X, Vec3::Z];
     let offsets = [(0.0, 0.45), (0.15, 0.0), (0.0, 0.6), (0.0, 0.1), (0.6, 0.0), (0.0, 0.0), (0.1, 0.0)]

@@ -1,4 +1,4 @@
-//! From links and joints to a checked chain.
+//! Construction of a checked chain from links and joints.
 
 use std::collections::HashMap;
 
@@ -6,13 +6,15 @@ use crate::forward_step::ForwardStep;
 use crate::{Chain, ChainError, Joint, JointCoupling, JointEnd, JointId, JointKind, LinkId};
 
 impl Chain {
-    /// Checks the links and joints and makes a chain of them. Joints may be in any order. Axes are normalized, position limits of
-    /// continuous joints removed, and mimics of mimics resolved to the independent joint.
+    /// Checks links and joints and builds a chain from them.
+    ///
+    /// Joints may be in any order. Axes are normalized, position limits of continuous joints are removed, and a mimic of
+    /// a mimic is resolved to the independent joint.
     ///
     /// # Errors
-    /// [`ChainError`] names the link or joint: no root or several, cycles, a link with two parents or unknown, names used twice, an
-    /// axis without direction, limits out of order, mimics of unknown or fixed joints or of each other, and numbers that are not
-    /// finite.
+    /// [`ChainError`] names the link or joint. Causes: no root or several roots, cycles, a link with two parents,
+    /// unknown links, duplicate names, an axis without direction, limits out of order, mimics of unknown or fixed joints
+    /// or of each other, and numbers that are not finite.
     pub fn new(name: impl Into<String>, links: Vec<String>, mut joints: Vec<Joint>) -> Result<Self, ChainError> {
         let link_by_name = index_names(&links).map_err(|name| ChainError::DuplicateLink { name })?;
         let joint_by_name =
@@ -67,7 +69,8 @@ fn check_joint(joint: &mut Joint, links: usize) -> Result<(), ChainError> {
         return Ok(());
     }
     let [x, y, z] = joint.axis.to_array();
-    // An axis of length 1 within rounding stays as it is: the joints of a chain make the same chain again, bit by bit.
+    // An axis of length 1 within rounding stays as it is: a chain built from the joints of a chain is the same, bit by
+    // bit.
     if !((joint.axis.length_squared() - 1.0).abs() <= 4.0 * f64::EPSILON) {
         joint.axis =
             joint.axis.try_normalize().ok_or_else(|| ChainError::BadAxis { joint: joint.name.clone(), x, y, z })?;
@@ -114,7 +117,8 @@ fn single_root(links: &[String], parent_joint: &[Option<JointId>]) -> Result<Lin
     }
 }
 
-/// Breadth-first order from the root. With one parent per link, a link that is not visited lies on a cycle or behind one.
+/// Joints in breadth-first order from the root. With one parent per link, a link that is not visited lies on a cycle
+/// or behind one.
 fn outwards(links: &[String], joints: &[Joint], root: LinkId) -> Result<Vec<JointId>, ChainError> {
     let mut children: Vec<Vec<JointId>> = vec![Vec::new(); links.len()];
     for (i, joint) in joints.iter().enumerate() {
@@ -142,7 +146,7 @@ fn coupling(joints: &[Joint], active: &[JointId], start: usize) -> Result<Option
         return Ok(None);
     }
     let (mut at, mut multiplier, mut offset) = (start, 1.0, 0.0);
-    // More steps than joints visit one of them twice.
+    // More steps than joints would visit one of them twice.
     for _ in 0..=joints.len() {
         let Some(mimic) = joints[at].mimic else {
             let index = active.iter().position(|j| j.0 == at).unwrap_or(0);

@@ -7,10 +7,10 @@ use elbowroom_spatial::{Pose, Rotation, Vec3};
 use crate::forward_step::ForwardStep;
 use crate::{Joint, JointCoupling, JointId, JointKind, LinkId};
 
-/// A tree of links and joints, immutable. Built and checked by [`Chain::new`].
+/// An immutable tree of links and joints, built and checked by [`Chain::new`].
 ///
-/// Links and joints keep the order of the file. The vector `q` has one value per *independent* joint (neither fixed nor mimic),
-/// in file order, too: see [`Chain::active_joints`].
+/// Links and joints keep the order of the file. The vector `q` has one value per *independent* joint (neither fixed
+/// nor mimic), also in file order: see [`Chain::active_joints`].
 #[derive(Debug, Clone)]
 pub struct Chain {
     pub(crate) name: String,
@@ -23,9 +23,9 @@ pub struct Chain {
     /// Joints from the root outwards.
     pub(crate) order: Vec<JointId>,
     pub(crate) active: Vec<JointId>,
-    /// Per joint; `None` where fixed.
+    /// Coupling of each joint; `None` if it is fixed.
     pub(crate) couplings: Vec<Option<JointCoupling>>,
-    /// `order` again, prepared for the forward pass.
+    /// The joints of `order`, prepared for the forward pass.
     pub(crate) steps: Vec<ForwardStep>,
 }
 
@@ -45,7 +45,7 @@ impl Chain {
         &self.joints
     }
 
-    /// Number of independent joints: neither fixed nor mimic. The length of `q`.
+    /// Number of independent joints (neither fixed nor mimic), which is the length of `q`.
     pub fn dof(&self) -> usize {
         self.active.len()
     }
@@ -60,27 +60,27 @@ impl Chain {
         &self.order
     }
 
-    /// The link of that name.
+    /// The link with this name.
     pub fn link(&self, name: &str) -> Option<LinkId> {
         self.link_by_name.get(name).copied()
     }
 
-    /// The joint of that name.
+    /// The joint with this name.
     pub fn joint(&self, name: &str) -> Option<JointId> {
         self.joint_by_name.get(name).copied()
     }
 
-    /// The link without parent.
+    /// The link without a parent.
     pub fn root(&self) -> LinkId {
         self.root
     }
 
-    /// The joint whose child is the link; `None` for the root and for links that are not of this chain.
+    /// The joint whose child is the link; `None` for the root and for links that are not in this chain.
     pub fn parent_joint(&self, link: LinkId) -> Option<JointId> {
         self.parent_joint.get(link.0).copied().flatten()
     }
 
-    /// Links that are no parent, in file order.
+    /// The links without children, in file order.
     pub fn leaves(&self) -> Vec<LinkId> {
         let mut is_leaf = vec![true; self.links.len()];
         for joint in &self.joints {
@@ -89,8 +89,8 @@ impl Chain {
         (0..self.links.len()).filter(|&i| is_leaf[i]).map(LinkId).collect()
     }
 
-    /// The leaf with the most non-mimic joints (fixed ones counted) between it and the root, the first in the file
-    /// among equals.
+    /// The leaf with the most non-mimic joints (including fixed joints) between it and the root; among equals, the first
+    /// in the file.
     pub fn tip(&self) -> LinkId {
         let mut best = (self.root, 0);
         for leaf in self.leaves() {
@@ -114,8 +114,8 @@ impl Chain {
         path
     }
 
-    /// The joints on the path from one link to the other: those above the first link only, from the root outwards, then those
-    /// above the second link only.
+    /// The joints on the path from one link to the other: first the joints above the first link only, from the root
+    /// outwards, then the joints above the second link only.
     pub fn joints_between(&self, a: LinkId, b: LinkId) -> Vec<JointId> {
         let (a, b) = (self.path(a), self.path(b));
         let common = a.iter().zip(&b).take_while(|(x, y)| x == y).count();
@@ -135,12 +135,12 @@ impl Chain {
         false
     }
 
-    /// Lower bounds of `q`, rad or m; −∞ where unlimited.
+    /// Lower bounds of `q`, rad or m; −∞ if unlimited.
     pub fn lower(&self) -> Vec<f64> {
         self.active.iter().map(|j| self.joints[j.0].limits.lower).collect()
     }
 
-    /// Upper bounds of `q`, rad or m; +∞ where unlimited.
+    /// Upper bounds of `q`, rad or m; +∞ if unlimited.
     pub fn upper(&self) -> Vec<f64> {
         self.active.iter().map(|j| self.joints[j.0].limits.upper).collect()
     }
@@ -150,21 +150,22 @@ impl Chain {
         self.active.iter().position(|&j| j == joint)
     }
 
-    /// The independent joint that a mimic joint follows, through mimics of mimics, with the total multiplier and offset (rad or m);
-    /// `None` if the joint is independent or fixed.
+    /// The independent joint that a mimic joint follows, through mimics of mimics, with the total multiplier and offset
+    /// (rad or m); `None` if the joint is independent or fixed.
     pub fn mimic_source(&self, joint: JointId) -> Option<crate::Mimic> {
         self.joints.get(joint.0)?.mimic?;
         let c = self.couplings[joint.0]?;
         Some(crate::Mimic { joint: self.active[c.index], multiplier: c.multiplier, offset: c.offset })
     }
 
-    /// The joint's value as a function of `q`, through mimics of mimics; `None` if the joint is fixed or not of this chain.
+    /// The joint's value as a function of `q`, through mimics of mimics; `None` if the joint is fixed or not in this
+    /// chain.
     pub fn coupling(&self, joint: JointId) -> Option<JointCoupling> {
         self.couplings.get(joint.0).copied().flatten()
     }
 
-    /// Value (rad or m) of any joint at `q`: its own entry, what it mimics, or 0 where fixed.
-    /// NaN where `q` is too short.
+    /// Value (rad or m) of any joint at `q`: its own entry, the value that it mimics, or 0 if it is fixed. NaN if `q` is
+    /// too short.
     pub fn joint_value(&self, joint: JointId, q: &[f64]) -> f64 {
         self.coupling(joint).map_or(0.0, |c| c.value(q))
     }

@@ -2,20 +2,20 @@
 
 use std::fmt;
 
-/// Why links and joints do not make a chain. Every message names the link or joint and says what to write instead.
+/// Why links and joints do not form a chain. Every message names the link or joint and says what to write instead.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ChainError {
-    /// There is no link.
+    /// The chain has no link.
     #[error("the chain has no links; name at least its root link")]
     NoLinks,
-    /// Two links of one name.
+    /// Two links have the same name.
     #[error("two links are called `{name}`; give every link a name of its own")]
     DuplicateLink {
         /// The name.
         name: String,
     },
-    /// Two joints of one name.
+    /// Two joints have the same name.
     #[error("two joints are called `{name}`; give every joint a name of its own")]
     DuplicateJoint {
         /// The name.
@@ -51,7 +51,7 @@ pub enum ChainError {
         "links {roots:?} have no parent joint; a chain has one root, so connect the others to it, with fixed joints if need be"
     )]
     ManyRoots {
-        /// The links without parent.
+        /// The links without a parent.
         roots: Vec<String>,
     },
     /// Joints form a cycle.
@@ -76,22 +76,22 @@ pub enum ChainError {
         /// Third component.
         z: f64,
     },
-    /// NaN or infinity in the origin.
+    /// The origin has a NaN or infinite number.
     #[error("the origin of joint `{joint}` is not finite; write numbers of metres and radians")]
     BadOrigin {
         /// The joint.
         joint: String,
     },
-    /// Limits out of order or NaN.
+    /// The limits are out of order or NaN.
     #[error(
         "joint `{joint}` may move from {lower} to {upper}; write the smaller bound as lower (leave both out where there is none)"
     )]
     BadLimits {
         /// The joint.
         joint: String,
-        /// As given, rad or m.
+        /// The given lower bound, rad or m.
         lower: f64,
-        /// As given, rad or m.
+        /// The given upper bound, rad or m.
         upper: f64,
     },
     /// A mimic joint follows an unknown joint.
@@ -102,7 +102,7 @@ pub enum ChainError {
         /// The given index.
         source_joint: usize,
     },
-    /// A mimic joint follows a fixed one.
+    /// A mimic joint follows a fixed joint.
     #[error(
         "joint `{joint}` mimics `{source_joint}`, which is fixed; make `{joint}` fixed, or name a joint that moves"
     )]
@@ -120,14 +120,14 @@ pub enum ChainError {
         /// A joint of the cycle.
         joint: String,
     },
-    /// Multiplier or offset is not finite.
+    /// The multiplier or offset of a mimic joint is not finite.
     #[error("joint `{joint}` mimics with multiplier {multiplier} and offset {offset}; both must be finite")]
     BadMimic {
         /// The mimic joint.
         joint: String,
-        /// As given.
+        /// The given multiplier.
         multiplier: f64,
-        /// As given.
+        /// The given offset, rad or m.
         offset: f64,
     },
 }

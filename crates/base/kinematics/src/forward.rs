@@ -7,11 +7,11 @@ use crate::{Chain, ChainState, JointKind};
 impl Chain {
     /// Computes the pose of every link in the root from `state.q`. Does not allocate.
     ///
-    /// The state must have been made for this chain. Where `q` is shorter than [`Chain::dof`], poses that depend on the
+    /// The state must have been created for this chain. If `q` is shorter than [`Chain::dof`], poses that depend on the
     /// missing values are NaN.
     ///
     /// # Panics
-    /// Where the state was made for a chain with fewer links.
+    /// Panics if the state was created for a chain with fewer links.
     pub fn forward(&self, state: &mut ChainState) {
         state.poses[self.root.0] = Pose::IDENTITY;
         for step in &self.steps {
@@ -19,11 +19,13 @@ impl Chain {
         }
     }
 
-    /// Computes pose, velocity and acceleration of every link in the root from `state.q`, `qd`, `qdd`: the outward
-    /// pass of the recursive Newton-Euler method (Luh, Walker, Paul 1980), exact. Does not allocate.
+    /// Computes pose, velocity and acceleration of every link in the root from `state.q`, `qd`, `qdd`. Exact; does not
+    /// allocate.
+    ///
+    /// Source: the outward pass of the recursive Newton-Euler method (Luh, Walker, Paul 1980).
     ///
     /// # Panics
-    /// Where the state was made for a chain with fewer links.
+    /// Panics if the state was created for a chain with fewer links.
     pub fn forward_motion(&self, state: &mut ChainState) {
         state.poses[self.root.0] = Pose::IDENTITY;
         state.motions[self.root.0] = FrameMotion::REST;
@@ -48,14 +50,16 @@ impl Chain {
     }
 }
 
-/// Adds the joint's own motion. On entry `motion` is that of the parent at the child's origin; `axis` is in the root.
+/// Adds the joint's own motion. On entry `motion` is the motion of the parent at the child's origin; `axis` is in
+/// the root.
 #[inline]
 fn add_joint_motion(motion: &mut FrameMotion, kind: JointKind, axis: Vec3, rate: f64, acceleration: f64) {
     let carried = motion.angular_velocity;
     let relative = axis * rate;
     if kind == JointKind::Prismatic {
         motion.velocity += relative;
-        // The factor 2 is that of Coriolis acceleration: the axis rotates, and the slide changes its distance from the parent's axis.
+        // The factor 2 of Coriolis acceleration: the axis rotates, and the slide changes its distance from the parent's
+        // axis.
         motion.acceleration += axis * acceleration + carried.cross(relative) * 2.0;
     } else {
         motion.angular_velocity += relative;

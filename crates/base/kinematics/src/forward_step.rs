@@ -11,10 +11,10 @@ pub(crate) struct ForwardStep {
     pub parent: usize,
     pub child: usize,
     pub origin: Pose,
-    /// False if the origin is a translation, as for most joints in files: no rotation to multiply.
+    /// False if the origin is only a translation, as for most joints in files: then no rotation is multiplied.
     pub origin_rotates: bool,
     pub axis: Vec3,
-    /// Index and sign where the axis is a coordinate axis, as for most joints.
+    /// Index and sign if the axis is a coordinate axis, as for most joints.
     pub principal: Option<(usize, f64)>,
     pub coupling: JointCoupling,
 }
@@ -56,7 +56,7 @@ impl ForwardStep {
     }
 }
 
-/// Index and sign where the unit vector is a coordinate axis.
+/// Index and sign of the axis if the unit vector is a coordinate axis.
 pub(crate) fn principal(axis: Vec3) -> Option<(usize, f64)> {
     (0..3).find(|&i| axis[i].abs() == 1.0).map(|i| (i, axis[i]))
 }

@@ -6,14 +6,17 @@ use crate::{Chain, ChainState, JointKind, LinkId};
 
 impl Chain {
     /// Geometric Jacobian of the point `point_in_link` (m, in the link's frame) at the poses of the last
-    /// [`Chain::forward`]: `out[i]` is the velocity of the point (x, y, z, m/s) and the angular velocity of the link (x, y, z,
-    /// rad/s), both in the root's frame, per unit of `qd[i]`. The shares of mimic joints are added to those of the joint that they follow.
-    /// Does not allocate.
+    /// [`Chain::forward`].
     ///
-    /// `out` has [`Chain::dof`] columns; a longer one is zeroed beyond, a shorter one lacks the last columns.
+    /// `out[i]` is the velocity of the point (x, y, z, m/s) and the angular velocity of the link (x, y, z, rad/s), both
+    /// in the root's frame, per unit of `qd[i]`. The contribution of a mimic joint is added to the column of the joint
+    /// that it follows. Does not allocate.
+    ///
+    /// `out` has [`Chain::dof`] columns. If it is longer, the additional columns are zeroed; if it is shorter, the last
+    /// columns are left out.
     ///
     /// # Panics
-    /// Where the state was made for a chain with fewer links.
+    /// Panics if the state was created for a chain with fewer links.
     ///
     /// ```
     /// # use elbowroom_kinematics::{Chain, ChainState, Joint, JointKind, Limits, LinkId};

@@ -24,12 +24,12 @@ pub enum JointKind {
 }
 
 impl JointKind {
-    /// True for the kinds that rotate: revolute and continuous.
+    /// True for kinds that rotate: revolute and continuous.
     pub fn turns(self) -> bool {
         matches!(self, Self::Revolute | Self::Continuous)
     }
 
-    /// True for all kinds but fixed.
+    /// True for all kinds except fixed.
     pub fn moves(self) -> bool {
         self != Self::Fixed
     }
@@ -42,25 +42,25 @@ pub struct Limits {
     pub lower: f64,
     /// Largest value; +∞ without a limit.
     pub upper: f64,
-    /// Largest speed, rad/s or m/s; `None` where unknown (0 in a file means unknown, too).
+    /// Largest speed, rad/s or m/s; `None` if unknown (0 in a file means unknown too).
     pub velocity: Option<f64>,
-    /// Largest acceleration, rad/s² or m/s²; `None` where unknown.
+    /// Largest acceleration, rad/s² or m/s²; `None` if unknown.
     pub acceleration: Option<f64>,
-    /// Largest torque (N·m) or force (N); `None` where unknown.
+    /// Largest torque (N·m) or force (N); `None` if unknown.
     pub effort: Option<f64>,
 }
 
 impl Limits {
-    /// No limits at all.
+    /// Limits that restrict nothing.
     pub const UNLIMITED: Self =
         Self { lower: f64::NEG_INFINITY, upper: f64::INFINITY, velocity: None, acceleration: None, effort: None };
 
-    /// From `lower` to `upper` (rad or m), other limits unknown.
+    /// Limits from `lower` to `upper` (rad or m); all other limits are unknown.
     pub const fn range(lower: f64, upper: f64) -> Self {
         Self { lower, upper, ..Self::UNLIMITED }
     }
 
-    /// From `-bound` to `bound` (rad or m), other limits unknown.
+    /// Limits from `-bound` to `bound` (rad or m); all other limits are unknown.
     pub const fn symmetric(bound: f64) -> Self {
         Self::range(-bound, bound)
     }
@@ -70,8 +70,8 @@ impl Limits {
         value >= self.lower - tolerance && value <= self.upper + tolerance
     }
 
-    /// How far `value` (rad or m) is beyond the limits (the joint overshoot of Giralt et al.): above 0 beyond the upper
-    /// one, below 0 beyond the lower one, 0 within them. NaN for NaN.
+    /// The joint overshoot of Giralt et al.: how far `value` (rad or m) is beyond the limits. Positive beyond the upper
+    /// limit, negative beyond the lower limit, 0 within the limits. NaN for NaN.
     ///
     /// ```
     /// use elbowroom_kinematics::Limits;
@@ -91,55 +91,56 @@ impl Limits {
 pub struct Mimic {
     /// The joint that is followed.
     pub joint: JointId,
-    /// Factor on its value.
+    /// Factor for the followed joint's value.
     pub multiplier: f64,
-    /// Added afterwards, rad or m.
+    /// Offset, added after multiplication, rad or m.
     pub offset: f64,
 }
 
-/// A joint's value as a function of the independent joint values: `multiplier · q[index] + offset`. The identity of one entry
-/// of `q` for every joint that is neither fixed nor mimic.
+/// A joint's value as a function of the independent joint values: `multiplier · q[index] + offset`. For a joint that
+/// is neither fixed nor mimic it is the identity of one entry of `q`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointCoupling {
     /// Index in `q`.
     pub index: usize,
-    /// Factor on that value.
+    /// Factor for that entry of `q`.
     pub multiplier: f64,
-    /// Added afterwards, rad or m.
+    /// Offset, added after multiplication, rad or m.
     pub offset: f64,
 }
 
 impl JointCoupling {
-    /// The joint's value, rad or m. NaN where `q` is too short, so that a mistake cannot pass for a pose.
+    /// The joint's value, rad or m. NaN if `q` is too short, so that a mistake cannot pass for a pose.
     #[inline]
     pub fn value(&self, q: &[f64]) -> f64 {
         q.get(self.index).map_or(f64::NAN, |v| self.multiplier * v + self.offset)
     }
 
-    /// The joint's rate (rad/s or m/s, or their derivatives) from those of `q`. NaN where `qd` is too short.
+    /// The joint's rate (rad/s or m/s, or a derivative) from the rates of `q`. NaN if `qd` is too short.
     #[inline]
     pub fn rate(&self, qd: &[f64]) -> f64 {
         qd.get(self.index).map_or(f64::NAN, |v| self.multiplier * v)
     }
 }
 
-/// A joint between two links. The child's frame is the joint's frame, rotated about or translated along `axis` by the joint's value.
+/// A joint between two links. The child's frame is the joint's frame, rotated about `axis` or translated along it by
+/// the joint's value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Joint {
-    /// Unique among the chain's joints.
+    /// Name, unique among the chain's joints.
     pub name: String,
-    /// Its kind.
+    /// The joint's kind.
     pub kind: JointKind,
     /// The parent link.
     pub parent: LinkId,
     /// The child link.
     pub child: LinkId,
-    /// The child's frame in the parent's, at value 0.
+    /// The child's frame in the parent's frame, at joint value 0.
     pub origin: Pose,
-    /// Unit axis in the joint's frame. [`Chain::new`](crate::Chain::new) normalizes it; ignored where fixed.
+    /// Unit axis in the joint's frame. [`Chain::new`](crate::Chain::new) normalizes it; ignored if the joint is fixed.
     pub axis: Vec3,
-    /// Its limits. [`Chain::new`](crate::Chain::new) removes the position limits of continuous joints.
+    /// The joint's limits. [`Chain::new`](crate::Chain::new) removes the position limits of continuous joints.
     pub limits: Limits,
-    /// The joint that it follows; ignored where fixed.
+    /// The joint that this joint follows, if any; ignored if the joint is fixed.
     pub mimic: Option<Mimic>,
 }

@@ -1,7 +1,8 @@
 //! Kinematic chains: forward kinematics, Jacobians, inverse kinematics, Denavit-Hartenberg tables, motion bounds.
 //!
 //! A [`Chain`] is constant: a tree of links and joints, checked once. A [`ChainState`] is mutable and belongs to one
-//! thread: joint values in, poses and velocities of all links out. Nothing allocates after both have been built.
+//! thread: it takes joint values and provides poses and velocities of all links. After both have been built, nothing
+//! allocates.
 //!
 //! | task | where |
 //! | --- | --- |
@@ -39,8 +40,8 @@
 //! ```
 //!
 //! **Invariant.** While the joints of a chain move along a straight segment of joint space, no point within a radius
-//! of a link's origin ever travels farther than [`displacement_bound`](motion_bound::displacement_bound); with a NaN
-//! the bound is NaN.
+//! of a link's origin ever travels farther than [`displacement_bound`](motion_bound::displacement_bound). If a value
+//! is NaN, the bound is NaN.
 
 mod build;
 mod chain;

@@ -4,21 +4,23 @@ use elbowroom_spatial::{FrameMotion, Pose, Vec3};
 
 use crate::{Chain, LinkId};
 
-/// Joint values of a chain and the poses, velocities and accelerations of its links. [`ChainState::new`] allocates all memory.
+/// Joint values of a chain, and the poses, velocities and accelerations of its links. [`ChainState::new`] allocates
+/// all memory.
 #[derive(Debug, Clone)]
 pub struct ChainState {
     /// Values of the independent joints, rad or m, in the order of [`Chain::active_joints`].
     pub q: Vec<f64>,
-    /// Their velocities, rad/s or m/s.
+    /// Velocities of the independent joints, rad/s or m/s.
     pub qd: Vec<f64>,
-    /// Their accelerations, rad/s² or m/s².
+    /// Accelerations of the independent joints, rad/s² or m/s².
     pub qdd: Vec<f64>,
     pub(crate) poses: Vec<Pose>,
     pub(crate) motions: Vec<FrameMotion>,
 }
 
 impl ChainState {
-    /// All joints at zero and at rest, poses computed. Zero may lie outside a joint's limits: nothing is clamped.
+    /// The state with all joints at zero and at rest, and with computed poses. Zero may be outside a joint's limits;
+    /// values are not clamped.
     pub fn new(chain: &Chain) -> Self {
         let mut state = Self {
             q: vec![0.0; chain.dof()],
@@ -31,30 +33,30 @@ impl ChainState {
         state
     }
 
-    /// The link's frame in the root link's, as of the last [`Chain::forward`] or [`Chain::forward_motion`].
+    /// The link's frame in the root link's frame, as of the last [`Chain::forward`] or [`Chain::forward_motion`].
     ///
     /// # Panics
-    /// Where the link is not of the chain that the state was made for.
+    /// Panics if the link is not in the chain for which the state was created.
     #[inline]
     pub fn link_in_root(&self, link: LinkId) -> Pose {
         self.poses[link.0]
     }
 
-    /// Velocity and acceleration of the link's frame, seen from and expressed in the root link's frame, as of the last
+    /// Velocity and acceleration of the link's frame, measured in and expressed in the root link's frame, as of the last
     /// [`Chain::forward_motion`].
     ///
     /// # Panics
-    /// Where the link is not of the chain that the state was made for.
+    /// Panics if the link is not in the chain for which the state was created.
     #[inline]
     pub fn link_motion(&self, link: LinkId) -> FrameMotion {
         self.motions[link.0]
     }
 
-    /// Velocity (m/s, in the root's frame) of the point of a link that is at `point_in_root` (m) now, as of the last
+    /// Velocity (m/s, in the root's frame) of the point of a link that is now at `point_in_root` (m), as of the last
     /// [`Chain::forward_motion`].
     ///
     /// # Panics
-    /// Where the link is not of the chain that the state was made for.
+    /// Panics if the link is not in the chain for which the state was created.
     #[inline]
     pub fn point_velocity(&self, link: LinkId, point_in_root: Vec3) -> Vec3 {
         self.motions[link.0].velocity_at(point_in_root - self.poses[link.0].translation)

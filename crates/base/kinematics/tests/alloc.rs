@@ -1,5 +1,6 @@
-//! Nothing that a control tick calls allocates. Without the test harness, because its threads allocate, too, and the counter
-//! counts the whole process.
+//! Test that the calls of a control tick do not allocate.
+//!
+//! It runs without the test harness, whose threads allocate too: the counter is for the whole process.
 mod common;
 
 use common::{RandomGeometry, SplitMix};
@@ -59,7 +60,7 @@ fn main() {
             point.jacobian_with_normal(&q, &mut five).unwrap();
             random.state(&chain, &mut q);
             reached += usize::from(point.solve(&there, &mut q).is_ok());
-            // Out of reach: all starts are used up.
+            // The target is out of reach: all starts are used.
             let far = OrientedPoint { point_in_root: there.point_in_root + Vec3::Z * 9.0, ..there };
             assert!(point.solve(&far, &mut q).is_err());
             let _ = point.refine(&there, &mut q, 5);

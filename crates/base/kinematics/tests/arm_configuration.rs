@@ -20,7 +20,8 @@ fn forward(chain: &Chain, q: &[f64]) -> ChainState {
     state
 }
 
-/// Shoulder 0.3 m ahead of axis 1, upper arm of 0.7 m upright at zero, forearm level.
+/// An arm with its shoulder 0.3 m ahead of axis 1, an upper arm of 0.7 m that is upright at zero, and a level
+/// forearm.
 fn arm() -> Chain {
     let rows = [
         (0.300, FRAC_PI_2, 0.600, 0.0),
@@ -50,7 +51,7 @@ fn postures_known_by_sight() {
     for turned in [-3.0, -1.0, 0.0, 2.5] {
         assert_eq!(at([turned, 0.0, 0.0, 0.0, 0.4, 0.0]), "front up no_flip");
         assert_eq!(at([turned, 0.0, 0.0, 0.0, -0.4, 0.0]), "front up flip");
-        // The upper arm hangs forward, the forearm rises.
+        // The upper arm leans forward, and the forearm rises.
         assert_eq!(at([turned, -2.0, 1.9, 0.0, 0.4, 0.0]), "front down no_flip");
         // The upper arm leans back; the forearm is bent up from it, or hangs over to the back.
         assert_eq!(at([turned, 0.9, 1.5, 0.0, 0.4, 0.0]), "back down no_flip");
@@ -79,7 +80,7 @@ fn the_geometry_of_the_links_says_the_same() {
             let configuration = solver.configuration(&answer).unwrap();
             assert_eq!(configuration.shoulder == Shoulder::Front, w.0 >= 0.0);
             if w.0 > s.0 {
-                // In front: the height of the line at the elbow.
+                // In front, compare with the height of the line at the elbow.
                 let line = s.1 + (w.1 - s.1) * (e.0 - s.0) / (w.0 - s.0);
                 assert_eq!(configuration.elbow == Elbow::Up, e.1 >= line, "{answer:?}");
             }

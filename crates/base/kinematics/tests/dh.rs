@@ -1,4 +1,4 @@
-//! Denavit-Hartenberg tables: their product is the chain for any axes; classical where classical suffices.
+//! Denavit-Hartenberg tables: their product equals the chain for any axes, and rows are classical if possible.
 #![allow(clippy::print_stdout)]
 
 use crate::common;
@@ -10,7 +10,7 @@ use elbowroom_kinematics::dh::{ClassicalRow, GeneralizedRow, GeneralizedTable};
 use elbowroom_kinematics::{Chain, ChainState, JointKind, Limits, LinkId};
 use elbowroom_spatial::Pose;
 
-/// The product of the rows, written out as 4×4 matrices: the oracle.
+/// The oracle: the product of the rows, written out as 4×4 matrices.
 fn product(rows: &[GeneralizedRow], mut value: impl FnMut(&str) -> f64) -> [[f64; 4]; 4] {
     type M = [[f64; 4]; 4];
     let times =
@@ -72,7 +72,7 @@ fn awkward_chains() {
         largest = largest.max(residual);
         with_b += table.rows.iter().filter(|r| r.b != 0.0).count();
         auxiliary += table.rows.iter().filter(|r| r.joint.is_none()).count();
-        // One row per moving joint, in order, with its name.
+        // The table has one row per moving joint, in order, with the joint's name.
         let names: Vec<_> = table.rows.iter().filter_map(|r| r.joint.clone()).collect();
         let moving = chain.path(chain.tip()).into_iter().map(|j| &chain.joints()[j.0]);
         let expected: Vec<_> = moving.filter(|j| j.kind != JointKind::Fixed).map(|j| j.name.clone()).collect();
@@ -85,7 +85,7 @@ fn awkward_chains() {
     println!("largest residual {largest:.1e}, {with_b} rows with b, {auxiliary} rows without joint");
 }
 
-/// Where no axes are nearly parallel, b is needed only in the row that ends at the tip.
+/// If no axes are nearly parallel, b is needed only in the row that ends at the tip.
 #[test]
 fn classical_where_classical_suffices() {
     let mut random = SplitMix(1);
@@ -131,7 +131,7 @@ fn a_chain_from_classical_rows_is_their_product() {
         assert_eq!(chain.links()[chain.tip().0], "link_6");
         let given = GeneralizedTable { rows: rows.iter().map(GeneralizedRow::from).collect(), residual: 0.0 };
         assert!(worst(&chain, &given, chain.tip(), &mut random, 3) < 1e-13);
-        // And the frame of every row is a link.
+        // The frame of every row is a link, too.
         let middle = GeneralizedTable { rows: given.rows[..3].to_vec(), residual: 0.0 };
         assert!(worst(&chain, &middle, chain.link("link_3").unwrap(), &mut random, 3) < 1e-13);
     }

@@ -1,7 +1,7 @@
-//! The same chain as direct and as modified Denavit-Hartenberg table, and as frames of Reichenbach and Kovačić 2003: each
-//! product is forward kinematics for any axes, and each round-trips.
+//! The same chain as direct and as modified Denavit-Hartenberg table, and as frames of Reichenbach and Kovačić 2003.
 //!
-//! 10⁵ chains with `ELBOWROOM_LONG=1`.
+//! Each product equals forward kinematics for any axes, and each form round-trips. `ELBOWROOM_LONG=1` tests 10⁵
+//! chains.
 #![allow(clippy::print_stdout)]
 
 use crate::common;
@@ -30,7 +30,7 @@ fn along(i: usize, v: f64) -> Matrix {
     m
 }
 
-/// Right-handed about a coordinate axis.
+/// A right-handed rotation about a coordinate axis.
 fn about(axis: usize, t: f64) -> Matrix {
     let (s, c) = t.sin_cos();
     let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
@@ -39,7 +39,7 @@ fn about(axis: usize, t: f64) -> Matrix {
     m
 }
 
-/// About any unit vector, by Rodrigues' formula.
+/// A rotation about any unit vector, by Rodrigues' formula.
 fn about_vector(u: Vec3, t: f64) -> Matrix {
     let (s, c) = t.sin_cos();
     let cross = [[0.0, -u.z, u.y], [u.z, 0.0, -u.x], [-u.y, u.x, 0.0]];
@@ -52,7 +52,7 @@ fn about_vector(u: Vec3, t: f64) -> Matrix {
     m
 }
 
-/// What a joint value adds to an angle and to a length.
+/// The parts of a joint value that are added to an angle and to a length.
 fn shares(kind: JointKind, q: f64) -> (f64, f64) {
     match kind {
         JointKind::Fixed => (0.0, 0.0),
@@ -71,7 +71,7 @@ fn generalized(rows: &[GeneralizedRow], value: &dyn Fn(&str) -> f64) -> Matrix {
     })
 }
 
-/// Craig's convention, as 4×4 matrices.
+/// The product of Craig's rows, as 4×4 matrices.
 fn modified(rows: &[ModifiedRow], value: &dyn Fn(&str) -> f64) -> Matrix {
     rows.iter().fold(UNIT, |at, r| {
         let (turn, slide) = shares(r.kind, r.joint.as_deref().map_or(0.0, value));
@@ -141,7 +141,7 @@ impl Forms {
                 difference(&modified(&self.modified.rows, &value), expected),
                 difference(&paper(&self.frames.frames, &value), tip_in_root),
             ];
-            // And the products computed by the crate.
+            // The products computed by the crate.
             let theirs = [self.direct.table.tip_in_root(value), self.modified.tip_in_root(value)];
             assert!(theirs.iter().all(|t| t.translation.distance(expected.translation) < 1e-9));
             assert!(self.frames.tip_in_root(value).translation.distance(tip_in_root.translation) < 1e-12);
@@ -206,7 +206,8 @@ fn awkward_chains_in_all_forms() {
     println!("direct: {auxiliary} auxiliary frames, {with_b} rows with b");
 }
 
-/// Rows of every convention to a chain, and the chain to rows of every convention: the same product every time.
+/// Converts rows of every convention to a chain, and the chain to rows of every convention: the product is always
+/// the same.
 #[test]
 fn tables_to_chains_to_tables() {
     let mut random = SplitMix(5);
@@ -229,7 +230,7 @@ fn tables_to_chains_to_tables() {
         let given = GeneralizedTable { rows: rows.clone(), residual: 0.0 };
         let product = generalized(&rows, &value);
         check_round(&given.to_chain("given").unwrap(), &product, &value);
-        // The same factors, regrouped.
+        // The factors are the same, regrouped.
         let craig = ModifiedTable::from(&given);
         assert!(same(&product, &modified(&craig.rows, &value)) < 1e-14);
         assert!(same(&product, &generalized(&GeneralizedTable::from(&craig).rows, &value)) < 1e-14);
@@ -254,7 +255,8 @@ fn same(a: &Matrix, b: &Matrix) -> f64 {
     a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
-/// The chain equals the product, and so does all that is extracted from it, converted to a chain once more.
+/// Checks that the chain equals the product, and so does everything that is extracted from it and converted to a
+/// chain again.
 fn check_round(chain: &Chain, product: &Matrix, value: &dyn Fn(&str) -> f64) {
     assert!(difference(product, tip_at(chain, value)) < 1e-12);
     let (generalized, modified) =
@@ -271,7 +273,7 @@ fn check_round(chain: &Chain, product: &Matrix, value: &dyn Fn(&str) -> f64) {
     }
 }
 
-/// The last link.
+/// The pose of the last link.
 fn tip_at(chain: &Chain, value: &dyn Fn(&str) -> f64) -> Pose {
     let mut state = ChainState::new(chain);
     for (v, id) in state.q.iter_mut().zip(chain.active_joints()) {
@@ -329,7 +331,8 @@ fn kr150() -> Chain {
     Chain::new("kr150", links.to_vec(), joints.collect()).unwrap()
 }
 
-/// Seven local frames, the base and six joints, are seven rows a, b, d, α, θ; what the last joint carries follows.
+/// Seven local frames, the base and six joints, are seven rows a, b, d, α, θ; the part that the last joint carries
+/// follows.
 #[test]
 fn the_kr150_has_the_shape_of_table_1_of_s4() {
     let mut models = vec![("dimensions", kr150())];
@@ -349,7 +352,7 @@ fn the_kr150_has_the_shape_of_table_1_of_s4() {
         let r = &seven[0];
         assert_eq!((r.a, r.b, r.d, r.alpha, r.theta), (0.0, 0.0, 0.0, 0.0, 0.0));
         assert!((seven[1].d - 0.75).abs() < 1e-12 && seven[1].a == 0.0 && seven[1].b == 0.0);
-        // The lengths are the robot's, in whichever of a, b, d they are.
+        // The lengths are the robot's, in any of a, b and d.
         for (row, length) in seven[1..].iter().zip([0.75, 0.35, 1.25, 0.055, 1.1, 0.23]) {
             assert!((Vec3::new(row.a, row.b, row.d).length() - length).abs() < 1e-12, "{row:?} {length}");
             let quarters = row.alpha / FRAC_PI_2;
@@ -358,13 +361,13 @@ fn the_kr150_has_the_shape_of_table_1_of_s4() {
         let joints: Vec<_> = seven.iter().filter_map(|r| r.joint.as_deref()).collect();
         assert_eq!(joints, ["joint_a1", "joint_a2", "joint_a3", "joint_a4", "joint_a5"]);
         assert_eq!(direct.table.rows[7].joint.as_deref(), Some("joint_a6"));
-        // Seven frames of the paper's equations, too.
+        // The paper's equations have seven frames, too.
         assert_eq!(FrameChain::extract(&chain, chain.link("link_6").unwrap()).frames.len(), 7);
     }
     assert!(shown.iter().all(|s| *s == shown[0]), "the same robot, the same table, whatever the file's rounding");
 }
 
-/// Craig's table of the PUMA 560 (1986, figure 3.21) by its lengths: α 0, −90, 0, −90, 90, −90.
+/// Craig's table of the PUMA 560 (1986, figure 3.21), with its lengths: α 0, −90, 0, −90, 90, −90.
 #[test]
 fn the_modified_table_of_a_known_robot_is_recovered() {
     let (a2, a3, d3, d4) = (0.4318, 0.0203, 0.1244, 0.4318);

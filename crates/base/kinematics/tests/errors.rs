@@ -1,4 +1,4 @@
-//! All errors of links and joints that do not make a chain, with their messages.
+//! All errors of links and joints that do not form a chain, with their messages.
 
 use elbowroom_kinematics::{Chain, ChainError, Joint, JointId, JointKind, Limits, LinkId, Mimic};
 use elbowroom_spatial::{Pose, Vec3};
@@ -98,7 +98,7 @@ fn mimics_of_nothing_of_fixed_joints_and_of_each_other() {
     assert!(matches!(build(&links, with([mimic(0, 1.0, 0.0), None, None])), Err(ChainError::MimicCycle { .. })));
     let ring = with([mimic(1, 1.0, 0.0), mimic(2, 1.0, 0.0), mimic(0, 1.0, 0.0)]);
     assert!(matches!(build(&links, ring), Err(ChainError::MimicCycle { .. })));
-    // Leads into a cycle without being part of it.
+    // The mimic leads into a cycle without being part of it.
     let lasso = with([mimic(1, 1.0, 0.0), mimic(2, 1.0, 0.0), mimic(1, 1.0, 0.0)]);
     assert!(matches!(build(&links, lasso), Err(ChainError::MimicCycle { .. })));
     assert!(matches!(build(&links, with([None, mimic(0, f64::NAN, 0.0), None])), Err(ChainError::BadMimic { .. })));
@@ -126,7 +126,7 @@ fn a_mimic_of_a_mimic_follows_the_independent_joint() {
 
 #[test]
 fn the_tip_is_the_leaf_with_most_joints_that_are_no_mimics() {
-    // root ─ a ─ b(mimic) ─ c(mimic)   and   root ─ d ─ e: the shorter branch has more joints that are no mimics.
+    // root ─ a ─ b(mimic) ─ c(mimic)   and   root ─ d ─ e: the shorter branch has more non-mimic joints.
     let joints = vec![
         joint("a", 0, 1),
         Joint { mimic: mimic(0, 1.0, 0.0), ..joint("b", 1, 2) },

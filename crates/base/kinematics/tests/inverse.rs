@@ -207,14 +207,14 @@ fn errors_name_the_cause() {
         }
         other => panic!("{other:?}"),
     }
-    // Off its plane: within reach, but without a solution.
+    // The target is off the arm's plane: within reach, but without a solution.
     match planar.solve(&Pose::from_translation(Vec3::new(1.0, 0.5, 0.2)), &[0.0; 2]) {
         Err(IkError::NoConvergence { position_error_m, .. }) => assert!(position_error_m > 0.15),
         other => panic!("{other:?}"),
     }
 }
 
-/// The remaining error is that of the closest pose found, not that of the seed.
+/// The remaining error is the error of the closest pose found, not of the seed.
 #[test]
 fn a_target_beyond_reach_is_as_far_as_the_arm_ends_before_it() {
     let z = Vec3::Z;
@@ -227,7 +227,7 @@ fn a_target_beyond_reach_is_as_far_as_the_arm_ends_before_it() {
     for task in [IkTask::Pose, IkTask::Position] {
         let options = IkOptions { task, ..IkOptions::default() };
         let mut solver = IkSolver::new(&planar, planar.tip(), Pose::IDENTITY, options);
-        // The seed points the other way: 5.1 m from the target.
+        // The seed points in the opposite direction: 5.1 m from the target.
         match solver.solve(&Pose::from_translation(Vec3::X * 3.0), &[PI - 0.2, 0.0, 0.0]) {
             Err(IkError::Unreachable { position_error_m, angle_error_rad }) => {
                 assert!((position_error_m - 0.9).abs() < 1e-3, "{task:?}: {position_error_m}");

@@ -1,5 +1,5 @@
-//! Poses against a direct product of matrices, velocities and Jacobians against finite differences, on random trees and on
-//! every real robot.
+//! Poses compared with a direct product of matrices, velocities and Jacobians with finite differences, on random
+//! trees and on every real robot.
 #![allow(clippy::print_stdout)]
 
 use crate::common;
@@ -34,7 +34,7 @@ fn about(axis: Vec3, angle: f64) -> Matrix {
     m
 }
 
-/// Recursively, from the link to the root, mimics by following names: independent of the crate's pass.
+/// The pose by recursion from the link to the root, with mimics resolved by name; independent of the crate's pass.
 fn direct(chain: &Chain, q: &[f64], link: LinkId) -> Matrix {
     let Some(joint) = chain.joints().iter().find(|j| j.child == link) else {
         return matrix(&Pose::IDENTITY);
@@ -55,7 +55,7 @@ fn direct_value(chain: &Chain, q: &[f64], joint: &Joint) -> f64 {
     }
 }
 
-/// A random tree: links and joints shuffled, every kind, axes along anything, mimics and mimics of mimics.
+/// A random tree: shuffled links and joints, every kind, arbitrary axes, mimics and mimics of mimics.
 fn random_tree(random: &mut SplitMix) -> Chain {
     let n = 2 + random.below(9);
     let mut order: Vec<usize> = (0..n).collect();
@@ -186,7 +186,7 @@ proptest! {
 
     #[test]
     fn a_moved_root_frame_moves_everything_alike(seed: u64) {
-        // The same tree on a rotated base: all poses and velocities rotate with it.
+        // The tree is on a rotated base: all poses and velocities rotate with it.
         let mut random = SplitMix(seed);
         let chain = random_tree(&mut random);
         let base = random.pose();

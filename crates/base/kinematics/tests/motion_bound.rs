@@ -1,11 +1,11 @@
-//! Motion bounds against points of links that move.
+//! Motion bounds compared with points of moving links.
 
 use elbowroom_kinematics::motion_bound::{displacement_bound, max_motion_bounds, motion_bound};
 use elbowroom_kinematics::{Chain, ChainState, Joint, JointId, JointKind, Limits, LinkId, Mimic};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 use proptest::prelude::*;
 
-/// Rotations, slides without limits, and mimic joints with an offset.
+/// A chain with rotations, slides without limits, and mimic joints with an offset.
 fn chain() -> Chain {
     use JointKind::{Continuous, Prismatic, Revolute};
     let kinds = [Revolute, Prismatic, Continuous, Revolute, Prismatic, Revolute];

@@ -1,7 +1,8 @@
-//! Every robot of the data against Pinocchio: poses, velocities and accelerations of all links at 100 random states, 1,000 with
-//! `ELBOWROOM_LONG=1`.
+//! Every robot of the data compared with Pinocchio: poses, velocities and accelerations of all links at 100 random
+//! configurations, 1,000 with `ELBOWROOM_LONG=1`.
 //!
-//! Needs a Python with `pin` and `numpy`, named by `ELBOWROOM_PYTHON` (default `python3`); without it the test passes with a message.
+//! Needs a Python with `pin` and `numpy`, given by `ELBOWROOM_PYTHON` (default `python3`); without it the test
+//! prints a message and passes.
 #![allow(clippy::print_stdout)]
 
 use crate::common;
@@ -15,7 +16,7 @@ use elbowroom_kinematics::{Chain, ChainState, LinkId};
 
 const TOLERANCE: f64 = 1e-9;
 
-/// Random states of each robot.
+/// Number of random configurations of each robot.
 fn states() -> usize {
     if std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1") { 1000 } else { 100 }
 }
@@ -30,7 +31,7 @@ fn python() -> Option<String> {
     None
 }
 
-/// A Python with Pinocchio that answers for one robot after another: to start it takes longer than its answers.
+/// A Python process with Pinocchio that answers for all robots in turn: starting it takes longer than its answers.
 struct Reference {
     process: Child,
     input: ChildStdin,
@@ -46,7 +47,7 @@ impl Reference {
         Self { process, input, output }
     }
 
-    /// Poses, velocities and accelerations of all links at each of the states, which are a line each.
+    /// Poses, velocities and accelerations of all links at each of the states; `states` has one state per line.
     fn motions(&mut self, urdf: &Path, chain: &Chain, states: &str) -> Vec<f64> {
         let names: Vec<&str> = chain.active_joints().iter().map(|j| chain.joints()[j.0].name.as_str()).collect();
         let (count, file) = (states.lines().count(), urdf.display());

@@ -10,7 +10,7 @@ use elbowroom_kinematics::{Chain, ChainState, JointKind, Limits, LinkId};
 use elbowroom_spatial::{Pose, Vec3};
 use proptest::prelude::*;
 
-/// By the chain's own forward kinematics: the oracle.
+/// The oracle: point and normal by the chain's own forward kinematics.
 fn place(chain: &Chain, link: LinkId, point: Vec3, normal: Vec3, q: &[f64]) -> (Vec3, Vec3) {
     let mut state = ChainState::new(chain);
     state.q.copy_from_slice(q);
@@ -113,7 +113,7 @@ proptest! {
             prop_assert!(chain.joints()[id.0].limits.contains(q[i], 0.0));
             prop_assert!(end.joints().contains(id) || q[i] == start[i]);
         }
-        // The same input, the same solution; another point in between changes nothing.
+        // The same input gives the same solution; another point in between changes nothing.
         let mut again = start.clone();
         end.set_point(Vec3::splat(0.3), None).unwrap();
         let _ = end.solve(&at(Vec3::splat(0.2)), &mut again);
@@ -167,7 +167,8 @@ proptest! {
     }
 }
 
-/// Reachable by construction, from a random start, on every link of an arm with narrow and with wide limits.
+/// The targets are reachable by construction, from a random start, on every link of an arm with narrow and with wide
+/// limits.
 #[test]
 fn reachable_targets_are_reached() {
     for bound in [0.8, 2.0, PI, 6.0] {
@@ -195,7 +196,7 @@ fn reachable_targets_are_reached() {
 #[test]
 fn out_of_reach_the_nearest_configuration_and_its_distance_are_returned() {
     let (_, mut end) = planar(Limits::symmetric(PI));
-    // Beyond the stretched arm, inside the unreachable disc, and off its plane.
+    // The targets are beyond the stretched arm, inside the unreachable disc, and off its plane.
     for (target, distance) in [
         (Vec3::new(0.9, -1.2, 0.0), 1.5 - 0.8),
         (Vec3::new(0.06, 0.08, 0.0), 0.2 - 0.1),

@@ -1,7 +1,7 @@
 //! Time of a distance per pair of shapes: `cargo bench -p elbowroom-proximity --bench pair_times`.
 //!
-//! "hit" are pairs closer than 10 cm that do not touch, "overlap" pairs that do, "rejected" pairs proven farther than
-//! 10 cm. The least mean of ten rounds, to exclude the load of other processes.
+//! "hit" are pairs closer than 10 cm that do not touch, "overlap" pairs that touch, "rejected" pairs proven to be
+//! farther apart than 10 cm. The result is the smallest mean of ten rounds, to exclude the load of other processes.
 #![allow(clippy::print_stdout, reason = "a bench prints")]
 
 #[path = "../tests/common/mod.rs"]
@@ -37,7 +37,7 @@ fn gather(first: &str, second: &str, wanted: impl Fn(Option<f64>) -> bool) -> Ve
     found
 }
 
-/// Nanoseconds per case; a NaN if there is none.
+/// Nanoseconds per case; NaN without cases.
 fn time<T>(cases: &[Case], query: impl Fn(&Shape, &Pose, &Shape, &Pose) -> T) -> f64 {
     if cases.is_empty() {
         return f64::NAN;
@@ -67,7 +67,7 @@ fn main() {
                 time(&gather(first, second, |d| d.is_some_and(|d| d > 0.0)), near),
                 time(&overlapping, near),
                 time(&gather(first, second, |d| d.is_none()), near),
-                // The penetration of hulls builds hulls, and is not for a control tick.
+                // The penetration of hulls builds hulls, so it is not for a control tick.
                 if *first == "hull" || *second == "hull" {
                     f64::NAN
                 } else {

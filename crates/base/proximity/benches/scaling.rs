@@ -1,7 +1,7 @@
 //! Cost of a mesh as a function of its number of triangles: time and memory to build it, time per query.
 //!
-//! `cargo bench -p elbowroom-proximity --bench scaling -- [--json]` prints one row per size, from 1,000 to
-//! 2,000,000 triangles: two bumpy balls, 1 m across, apart by 1 % and overlapping by 1 %.
+//! `cargo bench -p elbowroom-proximity --bench scaling -- [--json]` prints one row per size, from 1,000 to 2,000,000
+//! triangles, for two bumpy balls of 1 m, apart by 1 % and overlapping by 1 %.
 
 #![allow(clippy::print_stdout, reason = "a bench prints")]
 
@@ -41,7 +41,7 @@ fn ball(triangles: usize) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     (vertices, faces)
 }
 
-/// Median microseconds of `query` over rotated poses at this distance of the centres.
+/// Median microseconds of `query` over rotated poses with this distance of the centres.
 fn time(apart: f64, mut query: impl FnMut(&Pose)) -> f64 {
     let pose = |i: usize| {
         let turn = i as f64;

@@ -1,17 +1,17 @@
-//! Specialist queries on two triangle meshes: which triangles, statistics, upper bounds, levels of detail.
+//! Specialist queries on two triangle meshes: triangle pairs, statistics, upper bounds, levels of detail.
 //!
-//! They take [`TriMesh`](crate::TriMesh) instead of [`Shape`](crate::Shape), and a [`Workspace`](crate::Workspace). Most users
-//! need none of them: [`Workspace::separation`](crate::Workspace::separation) takes a limit and a warm start for any two
-//! shapes.
+//! These queries use [`TriMesh`](crate::TriMesh) instead of [`Shape`](crate::Shape), and a
+//! [`Workspace`](crate::Workspace). Most users do not need them:
+//! [`Workspace::separation`](crate::Workspace::separation) accepts a limit and a warm start for any two shapes.
 //!
 //! | how do I … | |
 //! | --- | --- |
 //! | find the nearest two triangles | [`mesh_separation_with`], then [`Workspace::closest_features`](crate::Workspace::closest_features) |
-//! | find a pair of triangles that touch, or all | [`colliding_triangles`], [`for_each_contact`] |
+//! | find one or all pairs of triangles that touch | [`colliding_triangles`], [`for_each_contact`] |
 //! | find a pair of triangles within a tolerance | [`triangles_within`], [`is_farther_than`] |
 //! | get an upper bound of the distance first | [`distance_upper_bound`] |
 //! | choose which of many pairs of meshes to measure first | [`Landmarks`] |
-//! | bound the distance by the boxes of the BVH only | [`bvh_lower_bound`], [`bvh_lower_bound_to_shape`] |
+//! | bound the distance by the boxes of the BVH alone | [`bvh_lower_bound`], [`bvh_lower_bound_to_shape`] |
 //! | ask whether any of several meshes touches any of others, such as two arms | [`MeshGroup`] |
 //! | count the nodes and triangles visited | [`Workspace::stats`](crate::Workspace::stats) |
 

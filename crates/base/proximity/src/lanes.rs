@@ -1,10 +1,10 @@
-//! SIMD lanes: three coordinates, each a register, and the choice of the instruction set.
+//! SIMD lanes: points as three registers of coordinates, and the choice of the instruction set.
 //!
-//! f32 lanes fuse multiplications with additions where the processor can, f64 lanes never do. Decisions in f32 are
-//! conservative however they are rounded; distances that are returned are computed in f64 and do not depend on the
-//! instruction set.
+//! f32 lanes fuse multiplications with additions if the processor can; f64 lanes never do. Decisions in f32 are
+//! conservative whatever the rounding. Returned distances are computed in f64 and do not depend on the instruction
+//! set.
 
-// A kernel that is not inlined into the function its instruction set is chosen for is compiled for the lowest one.
+// A kernel is compiled for the lowest instruction set unless it is inlined into the function that selects the set.
 #![allow(clippy::inline_always)]
 
 use std::ops::{Add, Mul, Sub};
@@ -13,8 +13,8 @@ use std::sync::OnceLock;
 use elbowroom_spatial::Vec3;
 use fearless_simd::{Level as SimdLevel, Simd, f32x8, f32x16, f64x8, prelude::*};
 
-/// 2⁻¹⁷ = 128 half-units of rounding per unit of extent: the error bound of a gap in f32. README.md of `mesh_mesh` counts 75
-/// for the worst test.
+/// Error bound of a gap in f32, per unit of extent: 2⁻¹⁷ = 128 half-units of rounding. README.md of `mesh_mesh`
+/// counts 75 for the worst test.
 pub(crate) const F32_ERROR: f64 = 1.0 / 131_072.0;
 
 /// The best instruction set of this processor, detected once.
@@ -24,9 +24,9 @@ pub(crate) fn detected_simd_level() -> SimdLevel {
     *DETECTED.get_or_init(SimdLevel::new)
 }
 
-/// Arithmetic of one register.
+/// Arithmetic on one register.
 pub(crate) trait Lanes: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
-    /// `self·k + c`, in one rounding or in two.
+    /// `self·k + c`, with one rounding or two.
     fn times_plus(self, k: Self, c: Self) -> Self;
 }
 
@@ -51,7 +51,7 @@ impl<S: Simd> Lanes for f64x8<S> {
     }
 }
 
-/// Three coordinates of many points.
+/// The three coordinates of many points.
 #[derive(Clone, Copy)]
 pub(crate) struct V3<T>(pub T, pub T, pub T);
 
@@ -179,7 +179,7 @@ pub(crate) fn array16<S: Simd>(x: W16<S>) -> [f32; 16] {
     out
 }
 
-/// In single precision.
+/// Converts a vector to single precision.
 #[inline]
 pub(crate) fn narrow(v: Vec3) -> [f32; 3] {
     [v.x as f32, v.y as f32, v.z as f32]

@@ -1,5 +1,6 @@
-//! Shapes, and the proximity queries between two of them: collision, distance, penetration, contact points, continuous
-//! collision detection.
+//! Shapes, and proximity queries between two of them.
+//!
+//! The queries are collision, distance, penetration, contact points and continuous collision detection.
 //!
 //! A [`Shape`] is given in its own frame and placed by a [`Pose`](elbowroom_spatial::Pose). All lengths are metres.
 //!
@@ -38,11 +39,13 @@
 //! | hull | | | | | closed | GJK | GJK per triangle |
 //! | mesh | | | | | closed | | closed per triangle pair |
 //!
-//! The error for sizes of about 1 m, as checked by the tests: 1e-14 m for spheres and half-spaces, 2e-14 m for capsules against
-//! primitives, 1e-12 m for boxes and hulls, 1e-11 m for cylinders. Every answer has its own bound: `lower_bound <= exact <=
-//! distance`. Nothing allocates but [`penetration`] of hulls and meshes, [`fit`], [`tessellate`] and the construction of hulls
-//! and meshes. Nothing panics. A NaN, an infinity or a length of 1e150 m in a pose or a dimension counts as contact (distance
-//! 0), because unknown must not count as free.
+//! The error for sizes of about 1 m, as checked by the tests: 1e-14 m for spheres and half-spaces, 2e-14 m for
+//! capsules against primitives, 1e-12 m for boxes and hulls, 1e-11 m for cylinders. Every answer has its own bound:
+//! `lower_bound <= exact <= distance`.
+//!
+//! Only [`penetration`] of hulls and meshes, [`fit`], [`tessellate`] and the construction of hulls and meshes
+//! allocate. Nothing panics. A NaN, an infinity or a length of 1e150 m in a pose or a dimension counts as contact
+//! (distance 0), because unknown must not count as free.
 //!
 //! ```
 //! use elbowroom_proximity::{Capsule, Cylinder, Shape, separation};
@@ -55,8 +58,8 @@
 //! assert!((gap.distance - (0.6 - 0.06 - 0.15)).abs() < 1e-15);
 //! ```
 //!
-//! **Invariant.** For valid shapes at any poses, the exact distance is never below the reported lower bound and never
-//! above the reported distance; whatever is not finite is always a contact.
+//! **Invariant.** For valid shapes at any poses, the exact distance is never below the reported lower bound and
+//! never above the reported distance. Input that is not finite is always a contact.
 
 pub mod advanced;
 mod bvh;

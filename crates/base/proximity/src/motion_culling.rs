@@ -1,4 +1,4 @@
-//! Motion-based face culling: only faces whose outward normal has a component along their motion can be the first to touch.
+//! Motion-based face culling: only faces whose outward normal has a component along their motion can touch first.
 
 use elbowroom_spatial::Vec3;
 
@@ -7,7 +7,7 @@ use crate::ccd::{ConstantTwist, RigidMotion};
 use crate::repair::Shells;
 use crate::shape::topology::is_degenerate;
 
-/// The velocity of a mesh relative to another body, in the mesh's frame, over some time.
+/// The velocity of a mesh relative to another body during some time, in the mesh's frame.
 ///
 /// ```
 /// use elbowroom_proximity::ccd::ConstantTwist;
@@ -23,20 +23,20 @@ pub struct RelativeTwist {
     pub velocity: Vec3,
     /// Angular velocity of the mesh relative to the other body, mesh frame, radians per unit of time.
     pub angular_velocity: Vec3,
-    /// Largest deviation from that velocity, metres per unit of time.
+    /// Largest deviation from `velocity`, metres per unit of time.
     pub velocity_slack: f64,
-    /// Largest deviation from that angular velocity, radians per unit of time.
+    /// Largest deviation from `angular_velocity`, radians per unit of time.
     pub angular_slack: f64,
 }
 
 impl RelativeTwist {
-    /// Constant over time.
+    /// A twist that is constant over time.
     pub fn constant(velocity: Vec3, angular_velocity: Vec3) -> Self {
         Self { velocity, angular_velocity, velocity_slack: 0.0, angular_slack: 0.0 }
     }
 
-    /// Encloses all twists of `mesh` relative to `other` between the times `from` and `to`, in the mesh's own frame.
-    /// A screw motion relative to a body at rest has a constant twist; the slack is then rounding.
+    /// Encloses all twists of `mesh` relative to `other` between the times `from` and `to`, in the mesh's own frame. A
+    /// screw motion relative to a body at rest has a constant twist; then the slack is only rounding.
     pub fn between(mesh: &ConstantTwist, other: &ConstantTwist, from: f64, to: f64) -> Self {
         let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
         let pose = mesh.pose(middle);
@@ -59,13 +59,14 @@ impl RelativeTwist {
 
 /// The outward normals of a mesh, prepared for culling.
 ///
-/// Where two bodies are apart and then touch for the first time, the contact lies on a face of the mesh whose outward
-/// normal N has N · V ≥ 0 at some point of the face, V being that point's velocity relative to the other body: at an edge
-/// or a corner it is one of the faces that meet there. All others need not be tested (Reichenbach and Kovačić 2003).
+/// If two bodies are apart and then touch for the first time, the contact lies on a face of the mesh whose outward
+/// normal N has N · V ≥ 0 at some point of the face, where V is that point's velocity relative to the other body. At
+/// an edge or a corner this holds for one of the faces that meet there. All other faces need not be tested
+/// (Reichenbach and Kovačić 2003).
 ///
-/// Faces whose outward side is uncertain are never culled: open and one-sided surfaces, faces without area, closed surfaces of
-/// inconsistent orientation (see [`orient`](crate::repair::orient)), cavities inside others. A closed surface that intersects
-/// itself so that some of it is inside out is taken as oriented.
+/// Faces whose outward side is uncertain are never culled: open and one-sided surfaces, faces without area, closed
+/// surfaces of inconsistent orientation (see [`orient`](crate::repair::orient)), cavities inside others. A closed
+/// surface that intersects itself so that a part of it is inside out is used with its given orientation.
 ///
 /// ```
 /// use elbowroom_proximity::motion_culling::{FaceCulling, RelativeTwist};
@@ -86,9 +87,9 @@ pub struct FaceCulling {
 
 #[derive(Debug, Clone, Copy)]
 struct Face {
-    /// Outward, its length twice the area; zero where unknown.
+    /// Outward normal with a length of twice the area; zero if unknown.
     normal: Vec3,
-    /// p × N of the corners: N · (ω × p) = ω · (p × N).
+    /// p × N of the corners, because N · (ω × p) = ω · (p × N).
     moments: [Vec3; 3],
     length: f64,
     /// Largest error of `normal`.
@@ -107,7 +108,7 @@ impl Face {
 }
 
 impl FaceCulling {
-    /// Determines the outward side of every face. Linear in the number of faces.
+    /// Determines the outward side of every face, in time linear in the number of faces.
     pub fn of(mesh: &TriMesh) -> Self {
         let mut faces = vec![Face::UNKNOWN; mesh.triangles().len()];
         let shells = Shells::of(mesh.vertices(), mesh.triangles());
@@ -130,7 +131,7 @@ impl FaceCulling {
         Self { faces, radius }
     }
 
-    /// The faces that may be the first to touch during a motion with these twists. A NaN keeps all.
+    /// The faces that may be the first to touch during a motion with these twists. A NaN keeps all faces.
     pub fn kept_faces(&self, twist: &RelativeTwist) -> KeptFaces {
         let (v, w) = (twist.velocity, twist.angular_velocity);
         let slack = twist.velocity_slack + twist.angular_slack * self.radius;
@@ -154,7 +155,7 @@ pub struct KeptFaces {
 }
 
 impl KeptFaces {
-    /// True if the triangle is in the set; false beyond the mesh's last.
+    /// True if the triangle is in the set; false for an index beyond the mesh's last triangle.
     pub fn contains(&self, triangle: usize) -> bool {
         self.bits.get(triangle / 64).is_some_and(|word| word >> (triangle % 64) & 1 == 1)
     }

@@ -1,4 +1,4 @@
-//! Projection of a point onto a surface, a function per shape in the shape's frame.
+//! Projection of a point onto a surface: one function per shape, in the shape's frame.
 
 use elbowroom_spatial::{Pose, Vec3};
 
@@ -12,14 +12,14 @@ pub struct PointProjection {
     pub signed_distance: f64,
     /// Nearest point of the surface, in the world.
     pub on_surface: Vec3,
-    /// Unit vector in the world along which the signed distance grows fastest: the outward normal there.
+    /// Unit vector in the world along which the signed distance grows fastest: the outward normal at `on_surface`.
     pub outward: Vec3,
 }
 
 /// Nearest surface point and signed distance of the world point `p`.
 ///
-/// Exact to a few units in the last place. Where several surface points are equally near (the centre of a sphere, the
-/// axis of a cylinder), the choice is deterministic. A NaN or an infinity gives a signed distance of 0.
+/// Exact to a few units in the last place. If several surface points are equally near (at the centre of a sphere, on
+/// the axis of a cylinder), the choice is deterministic. A NaN or an infinity gives a signed distance of 0.
 ///
 /// ```
 /// use elbowroom_proximity::{Cylinder, Shape, project_point};
@@ -47,7 +47,7 @@ pub fn project_point(shape: &Shape, shape_in_world: &Pose, p: Vec3) -> PointProj
 }
 
 impl TriMesh {
-    /// The point of the surface nearest to a point, both in the local frame; `None` if it is farther away than a limit, m.
+    /// The point of the surface nearest to `p`, both in the local frame; `None` if it is farther away than `limit_m`.
     ///
     /// ```
     /// use elbowroom_proximity::TriMesh;
@@ -77,21 +77,21 @@ fn project_local(shape: &Shape, p: Vec3) -> PointProjection {
     }
 }
 
-/// Of the sphere around `center`; `fallback` is the direction for the centre itself.
+/// Projection onto the sphere around `center`; `fallback` is the direction for the centre itself.
 fn sphere_around(p: Vec3, center: Vec3, radius: f64, fallback: Vec3) -> PointProjection {
     let outward = (p - center).try_normalize().unwrap_or(fallback);
     let signed_distance = (p - center).length() - radius;
     PointProjection { signed_distance, on_surface: center + outward * radius, outward }
 }
 
-/// `nearest` is the point of a solid nearest to `p`; `None` where `p` is inside.
+/// Projection of a point outside a solid, whose point nearest to `p` is `nearest`; `None` if `p` is inside.
 fn outside(p: Vec3, nearest: Vec3) -> Option<PointProjection> {
     let outward = (p - nearest).try_normalize()?;
     Some(PointProjection { signed_distance: (p - nearest).length(), on_surface: nearest, outward })
 }
 
 fn capsule(c: &Capsule, p: Vec3) -> PointProjection {
-    // On the axis, the nearest surface is the side, or the cap at the very end.
+    // For a point on the axis, the nearest surface is the side, or the cap at the very end.
     let fallback = if c.half_length > 0.0 { Vec3::X } else { Vec3::Z };
     sphere_around(p, c.axis_point(p), c.radius, fallback)
 }
@@ -125,7 +125,7 @@ fn hull(h: &ConvexHull, p: Vec3) -> PointProjection {
     if let Some(found) = outside(p, h.nearest(p)) {
         return found;
     }
-    // Inside a convex solid the nearest plane is the nearest face.
+    // Inside a convex solid the nearest plane contains the nearest face.
     let heights = h.planes().iter().map(|&(normal, offset)| (normal.dot(p) - offset, normal));
     let (height, outward) = heights.fold((f64::NEG_INFINITY, Vec3::Z), |best, x| if x.0 > best.0 { x } else { best });
     PointProjection { signed_distance: height, on_surface: p - outward * height, outward }

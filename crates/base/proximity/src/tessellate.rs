@@ -8,8 +8,9 @@ use crate::Shape;
 
 /// Vertices and outward triangles of a shape's surface in its own frame.
 ///
-/// No point of a curved surface is farther than `chord_error_m` from the triangles (at most 256 segments around).
-/// Solids are closed, with shared vertices; a half-space is a square patch of 4 m; hulls and meshes are returned as they are.
+/// No point of a curved surface is farther than `chord_error_m` (m) from the triangles (with at most 256 segments
+/// around). Solids are closed, with shared vertices. A half-space is a square patch of 4 m. Hulls and meshes are
+/// returned as they are.
 ///
 /// ```
 /// use elbowroom_proximity::{Shape, Sphere, TriMesh, tessellate::tessellate};
@@ -38,7 +39,7 @@ pub fn tessellate(shape: &Shape, chord_error_m: f64) -> (Vec<Vec3>, Vec<[u32; 3]
     }
 }
 
-/// Segments of a circle whose sagitta stays below the error; a multiple of 4.
+/// Number of segments of a circle whose sagitta is below the error; a multiple of 4.
 fn segments(radius: f64, chord_error: f64) -> usize {
     let cosine = (1.0 - chord_error / radius).clamp(-1.0, 1.0);
     let wanted = PI / cosine.acos();
@@ -46,7 +47,7 @@ fn segments(radius: f64, chord_error: f64) -> usize {
 }
 
 fn rounded(half_length: f64, radius: f64, chord_error: f64) -> (Vec<Vec3>, Vec<[u32; 3]>) {
-    // A sphere is curved in both directions: each gets half the error.
+    // A sphere is curved in both directions, so each gets half the error.
     let around = segments(radius, 0.5 * chord_error);
     let rings = around / 4;
     let mut profile = Vec::with_capacity(2 * rings);
@@ -62,7 +63,7 @@ fn rounded(half_length: f64, radius: f64, chord_error: f64) -> (Vec<Vec3>, Vec<[
     revolve(&profile, [-half_length - radius, half_length + radius], around)
 }
 
-/// Surface of revolution of a profile of `(z, radius)`, bottom to top, about z, closed by a vertex at either end.
+/// Surface of revolution about z of a profile of `(z, radius)`, bottom to top, closed by a vertex at each end.
 fn revolve(profile: &[(f64, f64)], ends: [f64; 2], around: usize) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let mut vertices = vec![Vec3::Z * ends[0], Vec3::Z * ends[1]];
     for &(z, radius) in profile {

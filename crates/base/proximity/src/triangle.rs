@@ -1,14 +1,14 @@
 //! Closest points and intersection of triangles and segments in a common frame.
 //!
-//! The normal of a slender triangle (height at most 1/100 of the longest edge) has too few digits after rounding to decide
-//! on which side of it a point is. There the signs are computed by exact predicates (Shewchuk, *Adaptive precision
-//! floating-point arithmetic and fast robust geometric predicates*, 1997); elsewhere the error of f64 is far below the distance
-//! that meshes count as contact.
+//! The normal of a slender triangle (height at most 1/100 of the longest edge) has too few digits after rounding to
+//! decide on which side of it a point is. For such triangles the signs are computed by exact predicates (Shewchuk,
+//! *Adaptive precision floating-point arithmetic and fast robust geometric predicates*, 1997). For all others the
+//! error of f64 is far below the distance at which meshes count as in contact.
 
 use elbowroom_spatial::Vec3;
 use robust::{Coord3D, orient3d};
 
-/// The closest points of two shapes and the square of their distance.
+/// The closest points of two shapes and their squared distance.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ClosestPoints {
     pub squared: f64,
@@ -47,8 +47,10 @@ pub(crate) fn nearest_on_segment(p: Vec3, a: Vec3, b: Vec3) -> Vec3 {
     if along >= squared { b } else { a + ab * (along / squared) }
 }
 
-/// The point of the triangle nearest to `p`. The signs of sub-areas decide whether the projection is inside; they are computed
-/// from differences of nearby points, so that slivers and far points keep their digits. Outside, the nearest edge is exact.
+/// The point of the triangle nearest to `p`.
+///
+/// The signs of sub-areas decide whether the projection is inside. They are computed from differences of nearby
+/// points, so that slivers and far points keep their digits. Outside, the nearest edge is exact.
 #[inline]
 pub(crate) fn nearest_on_triangle(p: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
     let n = (b - a).cross(c - a);
@@ -76,8 +78,10 @@ fn nearest_on_edges(p: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
     candidates[if squared[2] < squared[first] { 2 } else { first }]
 }
 
-/// Closest points of two segments. The derivative of the squared distance along the first is monotone and piecewise
-/// linear; its root is interpolated in the piece that contains it, which avoids cancellation for parallel segments.
+/// Closest points of two segments.
+///
+/// The derivative of the squared distance along the first segment is monotone and piecewise linear. Its root is
+/// interpolated in the piece that contains it, which avoids cancellation for parallel segments.
 pub(crate) fn segment_segment(a0: Vec3, a1: Vec3, b0: Vec3, b1: Vec3) -> ClosestPoints {
     let (u, v) = (a1 - a0, b1 - b0);
     let vv = v.length_squared();
@@ -116,7 +120,7 @@ pub(crate) fn segment_segment(a0: Vec3, a1: Vec3, b0: Vec3, b1: Vec3) -> Closest
 /// Squared ratio of height to longest edge up to which a triangle is slender.
 const SLENDER: f64 = 1e-4;
 
-/// True if the plane of the triangle is too inaccurate in f64; `normal` is the cross product of two edges.
+/// True if the plane of the triangle is too inaccurate in f64. `normal` is the cross product of two edges.
 #[inline]
 fn is_slender([a, b, c]: &[Vec3; 3], normal: Vec3) -> bool {
     let longest = (*b - *a).length_squared().max((*c - *b).length_squared()).max((*a - *c).length_squared());
@@ -127,14 +131,14 @@ fn normal([a, b, c]: &[Vec3; 3]) -> Vec3 {
     (*b - *a).cross(*c - *a)
 }
 
-/// Where the segment intersects the triangle (its border included): up to rounding for most triangles, exactly for
-/// slender ones.
+/// The point in which the segment intersects the triangle (including its border), if it does: up to rounding for
+/// most triangles, exactly for slender ones.
 pub(crate) fn segment_crosses(p: Vec3, q: Vec3, t: [Vec3; 3]) -> Option<Vec3> {
     let n = normal(&t);
     if is_slender(&t, n) { crosses_exactly(p, q, &t) } else { crosses_by_signs(p, q, &t, n) }
 }
 
-/// By f64 signs alone; `n` is the triangle's normal, of any length.
+/// Like [`segment_crosses`], by f64 signs alone; `n` is the triangle's normal, of any length.
 #[inline]
 fn crosses_by_signs(p: Vec3, q: Vec3, t: &[Vec3; 3], n: Vec3) -> Option<Vec3> {
     let [a, b, c] = *t;
@@ -148,8 +152,9 @@ fn crosses_by_signs(p: Vec3, q: Vec3, t: &[Vec3; 3], n: Vec3) -> Option<Vec3> {
     inside.then_some(x)
 }
 
-/// The ends are on different sides of the plane, and the segment's line passes all edges on the same side. A segment in
-/// the triangle's plane, or a triangle that is exactly a line, does not count: there edges and corners give the distance.
+/// Like [`segment_crosses`], by exact signs: the ends are on different sides of the plane, and the segment's line
+/// passes all edges on the same side. A segment in the triangle's plane, or a triangle that is exactly a line, does
+/// not count: then edges and corners give the distance.
 #[cold]
 fn crosses_exactly(p: Vec3, q: Vec3, t: &[Vec3; 3]) -> Option<Vec3> {
     let at = |v: Vec3| Coord3D { x: v.x, y: v.y, z: v.z };
@@ -164,8 +169,9 @@ fn crosses_exactly(p: Vec3, q: Vec3, t: &[Vec3; 3]) -> Option<Vec3> {
     passes.then(|| intersection_point(p, q, t))
 }
 
-/// The point of the segment nearest to a slender triangle that it intersects. The point by heights over the plane loses its
-/// digits as the triangle gets thinner, while the closest points of its edges become more accurate: the best of them.
+/// The point of the segment nearest to a slender triangle that it intersects. The point from heights over the plane
+/// loses its digits as the triangle gets thinner, while the closest points of the edges become more accurate; the
+/// best of them is returned.
 fn intersection_point(p: Vec3, q: Vec3, t: &[Vec3; 3]) -> Vec3 {
     let n = normal(t);
     let (hp, hq) = (n.dot(p - t[0]), n.dot(q - t[0]));
@@ -177,9 +183,10 @@ fn intersection_point(p: Vec3, q: Vec3, t: &[Vec3; 3]) -> Vec3 {
     candidates.into_iter().min_by(|x, y| error(x).total_cmp(&error(y))).unwrap_or(p)
 }
 
-/// True if an edge of one intersects the other: up to rounding. Where one is slender, true is exact, and false may be wrong.
+/// True if an edge of one triangle intersects the other, up to rounding. If one is slender, true is exact and false
+/// may be wrong.
 pub(crate) fn triangles_cross(s: [Vec3; 3], t: [Vec3; 3]) -> bool {
-    // Each must have corners on both sides of the other's plane.
+    // Each triangle must have corners on both sides of the other's plane.
     let (Some(of_s), Some(of_t)) = (sides(&s, &t), sides(&t, &s)) else { return false };
     (edges_cross(&s, of_s, &t) || edges_cross(&t, of_t, &s)) && confirmed(&s, &t)
 }

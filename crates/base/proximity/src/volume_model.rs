@@ -1,4 +1,4 @@
-//! How a solid is replaced by an enclosing volume.
+//! The kind of enclosing volume that replaces a solid.
 
 use elbowroom_spatial::Pose;
 
@@ -21,12 +21,12 @@ pub enum VolumeModel {
 }
 
 impl VolumeModel {
-    /// The volume of a tool, a load or an object: primitives as they are, a mesh as [`VolumeModel::of`].
+    /// The volume of a tool, a load or an object: primitives unchanged, a mesh as by [`VolumeModel::of`].
     pub fn of_solid(self, shape: &Shape, in_frame: Pose) -> (Shape, Pose) {
         if matches!(shape, Shape::Mesh(_)) { self.of(shape, in_frame) } else { (shape.clone(), in_frame) }
     }
 
-    /// The volume of one solid; every model encloses the solid.
+    /// The volume of one solid. With every model, it encloses the solid.
     pub fn of(self, shape: &Shape, in_frame: Pose) -> (Shape, Pose) {
         let fitted = match (self, shape) {
             (Self::Capsule, Shape::Mesh(mesh)) => fit::capsule_of_mesh(mesh),
@@ -43,7 +43,7 @@ impl VolumeModel {
             (Self::Tightest, Shape::Hull(hull)) => fit::tightest(hull.vertices()),
             _ => None,
         };
-        // A solid that cannot be fitted, as all its points coincide, is used as it is.
+        // A solid that cannot be fitted, because all its points coincide, is used unchanged.
         fitted.map_or_else(|| (shape.clone(), in_frame), |f| (f.shape, in_frame * f.in_frame))
     }
 }

@@ -1,5 +1,6 @@
-//! Queries of a control tick do not allocate. Without the test harness, whose threads allocate too: the counter is for the whole
-//! process.
+//! Test that queries of a control tick do not allocate.
+//!
+//! It runs without the test harness, whose threads allocate too: the counter is for the whole process.
 mod common;
 
 use std::hint::black_box;

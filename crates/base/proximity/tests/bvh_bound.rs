@@ -40,7 +40,7 @@ fn boxes_are_never_farther_than_surfaces_and_get_better_with_depth() {
                 };
                 assert!(on(&a, &p, c.on_a) < 1e-6 && on(&b, &q, c.on_b) < 1e-6, "landmarks");
             }
-            // With a limit: `None` only where it is proven, and otherwise the same bound.
+            // With a limit, `None` is returned only if it is proven, and otherwise the same bound.
             let limit = r.between(0.0, 1.0);
             match bvh_lower_bound(&a, &p, &b, &q, level, limit, &mut workspace) {
                 None => assert!(exact.distance > limit),

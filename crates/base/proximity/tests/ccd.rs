@@ -12,7 +12,7 @@ use elbowroom_proximity::{
 };
 use elbowroom_spatial::{FrameMotion, Pose, Rotation, Vec3};
 
-/// 100,000 with `ELBOWROOM_LONG=1`.
+/// Number of motions; 100,000 with `ELBOWROOM_LONG=1`.
 fn motions(usual: usize) -> usize {
     if std::env::var_os("ELBOWROOM_LONG").is_some() { usual * 50 } else { usual }
 }
@@ -57,7 +57,8 @@ fn mover(rng: &mut SplitMix, kind: usize) -> Shape {
     }
 }
 
-/// Half of them towards the origin, three quarters with rotation, some about distant axes or many times.
+/// A random motion: half are towards the origin, three quarters have rotation, some about distant axes or with many
+/// turns.
 fn motion(rng: &mut SplitMix) -> ConstantTwist {
     let from = Pose::new(Rotation::from_rotation_vector(rng.vec(3.0)), rng.vec(1.5));
     let aim = if rng.below(2) == 0 { rng.vec(0.3) } else { rng.vec(1.2) };
@@ -77,7 +78,7 @@ fn motion(rng: &mut SplitMix) -> ConstantTwist {
     }
 }
 
-/// A motion of which only speed bounds are known.
+/// A motion with nothing known but its speed bounds.
 struct Opaque(ConstantTwist);
 
 impl RigidMotion for Opaque {
@@ -92,7 +93,7 @@ impl RigidMotion for Opaque {
     }
 }
 
-/// Least distance up to `end` by samples and golden-section search between them.
+/// Smallest distance up to `end`, by samples and golden-section search between them.
 fn least_distance(distance: &dyn Fn(f64) -> f64, end: f64, samples: usize) -> f64 {
     let at = |k: usize| end * k as f64 / samples as f64;
     let d: Vec<f64> = (0..=samples).map(|k| distance(at(k))).collect();
@@ -128,7 +129,7 @@ fn golden(f: &dyn Fn(f64) -> f64, mut lo: f64, mut hi: f64) -> f64 {
     fx.min(fy)
 }
 
-/// Checks one answer; true if it was a contact after the start.
+/// Checks one answer; returns true if it was a contact after the start.
 fn check(
     a: &Shape,
     pa: &dyn RigidMotion,
@@ -183,7 +184,7 @@ fn no_tunnelling_when_both_move() {
         let (pa, mut pb) = (motion(&mut rng), motion(&mut rng));
         pb.velocity = pb.velocity * 0.3;
         hits += usize::from(check(&a, &pa, &b, &pb, &options, 150));
-        // The order of the two makes no difference.
+        // The order of the two shapes makes no difference.
         let (forward, swapped) =
             (time_of_impact(&a, &pa, &b, &pb, &options), time_of_impact(&b, &pb, &a, &pa, &options));
         assert_eq!(forward.is_some(), swapped.is_some());
@@ -203,7 +204,7 @@ fn motions_with_speed_bounds_only_find_the_same() {
         let sharp = time_of_impact(&a, known, &b, &Pose::IDENTITY, &options);
         let coarse = time_of_impact(&a, &unknown, &b, &Pose::IDENTITY, &options);
         if let (Some(sharp), Some(coarse)) = (sharp, coarse) {
-            // Both are within the tolerance of one contact; a pass within the tolerance may be reported or not.
+            // Both results are within the tolerance of one contact; a pass within the tolerance may be reported or not.
             assert!(sharp.time == 0.0 || coarse.time > 0.0);
         }
     }
@@ -212,19 +213,19 @@ fn motions_with_speed_bounds_only_find_the_same() {
 #[test]
 fn times_match_the_closed_forms() {
     let options = CcdOptions { tolerance: 1e-9, ..CcdOptions::default() };
-    // A rod about its end onto a floor 0.3 m below: sin θ = (0.3 - 0.01) / 1.
+    // A rod turns about its end onto a floor 0.3 m below: sin θ = (0.3 - 0.01) / 1.
     let rod = Shape::Capsule(Capsule { half_length: 0.5, radius: 0.01 });
     let lying = Pose::new(Rotation::from_axis_angle(Vec3::Y, std::f64::consts::FRAC_PI_2), Vec3::new(0.5, 0.0, 0.3));
     let fall = ConstantTwist::screw(lying, Vec3::Z * 0.3, Vec3::Y * 1.0, 0.0);
     let hit = time_of_impact(&rod, &fall, &Shape::HalfSpace(HalfSpace), &Pose::IDENTITY, &options).unwrap();
     assert!((hit.time - 0.29_f64.asin()).abs() < 1e-8, "{hit:?}");
     assert!((hit.normal.unwrap() - Vec3::Z).length() < 1e-9);
-    // Two balls crossing: |(-1 + 3t, 0.1)| = 0.15.
+    // Two balls cross: |(-1 + 3t, 0.1)| = 0.15.
     let ball = |radius| Shape::Sphere(Sphere { radius });
     let fly = ConstantTwist::linear(Pose::from_translation(Vec3::new(-1.0, 0.1, 0.0)), Vec3::X * 3.0);
     let hit = time_of_impact(&ball(0.1), &fly, &ball(0.05), &Pose::IDENTITY, &options).unwrap();
     assert!((hit.time - (1.0 - (0.15_f64.powi(2) - 0.01).sqrt()) / 3.0).abs() < 1e-8, "{hit:?}");
-    // A square turning beside a wall: its corner reaches h√2·cos(45° - θ) = 0.13.
+    // A square turns beside a wall: its corner reaches h√2·cos(45° - θ) = 0.13.
     let square = cuboid(0.1, 0.1, 0.1);
     let turn = ConstantTwist::screw(Pose::IDENTITY, Vec3::ZERO, Vec3::Z * 50.0, 0.0);
     let wall = Pose::from_translation(Vec3::X * (0.13 + 0.05));
@@ -242,23 +243,23 @@ fn motions_along_the_gap_cost_no_steps() {
     };
     let plate = cuboid(5.0, 5.0, 0.001);
     let over = |z: f64| Pose::from_translation(Vec3::new(-4.0, 0.0, z));
-    // Sliding 1 mm above a plate, 8 m long; the same as a mesh.
+    // The brick slides 1 mm above a plate, 8 m long; then the same as a mesh.
     let brick = cuboid(0.1, 0.1, 0.1);
     let slide = ConstantTwist::linear(over(0.102), Vec3::X * 8.0);
     for (a, b) in [(brick.clone(), plate.clone()), (mesh_of(&brick), mesh_of(&plate))] {
         assert_eq!(steps_and_hit(&a, &slide, &b, &Pose::IDENTITY), None);
     }
-    // Fast rotation about the direction of the gap, and of a ball about any axis.
+    // It rotates fast about the direction of the gap; a ball rotates fast about any axis.
     let spin = ConstantTwist::screw(over(0.102), over(0.0).translation, Vec3::Z * 300.0, 0.0);
     assert_eq!(steps_and_hit(&brick, &spin, &plate, &Pose::IDENTITY), None);
     let ball = Shape::Sphere(Sphere { radius: 0.1 });
     let spin = ConstantTwist::screw(over(0.102), over(0.102).translation, Vec3::new(200.0, 100.0, 50.0), 0.0);
     assert_eq!(steps_and_hit(&ball, &spin, &plate, &Pose::IDENTITY), None);
-    // On the same turntable.
+    // Both shapes are on the same turntable.
     let turn = |start| ConstantTwist::screw(start, Vec3::new(1.0, 2.0, 0.0), Vec3::Z * 30.0, 0.5);
     let (p, q) = (Pose::IDENTITY, Pose::from_translation(Vec3::X * 0.201));
     assert_eq!(steps_and_hit(&brick, &turn(p), &mesh_of(&brick), &turn(q)), None);
-    // Receding.
+    // One shape recedes.
     let leave = ConstantTwist::linear(q, Vec3::X);
     assert_eq!(steps_and_hit(&mesh_of(&brick), &leave, &mesh_of(&brick), &p), None);
 }
@@ -273,21 +274,21 @@ fn contact_at_the_start_is_reported_at_time_zero() {
         assert!(hit.at_start() && hit.certain && hit.time == 0.0 && hit.steps == 1, "{x}: {hit:?}");
         assert_eq!(hit.normal.is_some(), x > 0.2, "{x}: {hit:?}");
     }
-    // Initial proximity is allowed where the shapes are within the tolerance, not where they touch.
+    // Initial proximity is allowed if the shapes are within the tolerance, but not if they touch.
     let options = CcdOptions { allow_initial_proximity: true, ..options };
     assert!(time_of_impact(&brick, &leave(0.1), &brick, &Pose::IDENTITY, &options).is_some());
     assert!(time_of_impact(&brick, &leave(0.2 + 0.9e-4), &brick, &Pose::IDENTITY, &options).is_none());
     let approach = ConstantTwist::linear(Pose::from_translation(Vec3::X * (0.2 + 0.9e-4)), Vec3::X * -1.0);
     let hit = time_of_impact(&brick, &approach, &brick, &Pose::IDENTITY, &options).unwrap();
     assert!(!hit.at_start() && hit.separation <= 0.45e-4 && hit.time < 0.9e-4, "{hit:?}");
-    // At rest.
+    // Both shapes are at rest.
     let near = Pose::from_translation(Vec3::X * 0.25);
     let at_rest = ConstantTwist::linear(near, Vec3::ZERO);
     assert!(time_of_impact(&brick, &at_rest, &brick, &Pose::IDENTITY, &options).is_none());
     assert!(time_of_impact(&brick, &near, &mesh_of(&brick), &at_rest, &options).unwrap().at_start());
 }
 
-/// Its speed bound is not a number.
+/// A motion whose speed bound is not a number.
 struct UnknownSpeed;
 impl RigidMotion for UnknownSpeed {
     fn pose(&self, t: f64) -> Pose {
@@ -320,7 +321,7 @@ fn nan_is_a_contact_that_is_not_certain() {
             for shape in [&brick, &ball, &mesh_of(&brick)] {
                 for (a, b) in [(shape, &ball), (&ball, shape)] {
                     let hit = time_of_impact(a, &path, b, &far, &CcdOptions::default());
-                    // A huge number may be proven free; NaN and infinity never.
+                    // A huge number may be proven free; NaN and infinity never are.
                     let known = path.is_finite() && bad == 1e300;
                     assert!(known || hit.is_some_and(|h| !h.certain), "{path:?}: {hit:?}");
                 }
@@ -338,7 +339,7 @@ fn nan_is_a_contact_that_is_not_certain() {
 
 #[test]
 fn exhausted_steps_are_a_contact_that_is_not_certain() {
-    // Between two plates no plane separates the ball from both.
+    // Between two plates, a plane cannot separate the ball from both.
     let slot = TriMesh::new(
         vec![
             Vec3::new(-1.0, 0.01, -1.0),
@@ -388,7 +389,8 @@ fn the_earliest_time_is_not_after_the_contact() {
     assert_eq!((when.estimate_s, when.earliest_s), (0.0, 0.0));
 }
 
-/// The kept faces alone give the same contact: were the first contact on a culled face, the whole mesh would already be in
+/// The kept faces alone give the same contact. If the first contact were on a culled face, the whole mesh would
+/// already be in contact at the time of impact of the kept faces.
 /// contact at the time of impact of the kept faces.
 #[test]
 fn the_first_contact_is_on_a_face_that_was_kept() {

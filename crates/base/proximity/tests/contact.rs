@@ -11,7 +11,7 @@ use elbowroom_proximity::{
 };
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
-/// A wavy ball, tessellated to a tolerance: closed, oriented outward, not convex.
+/// A wavy ball, tessellated to a tolerance: closed and oriented outward, but not convex.
 fn lump(r: &mut SplitMix, fine: f64) -> Shape {
     let (stretch, wave) =
         (Vec3::new(r.between(0.5, 1.5), r.between(0.5, 1.5), r.between(0.5, 1.5)), r.between(0.0, 0.4));
@@ -23,7 +23,7 @@ fn placed(shape: &Shape, in_world: &Pose, triangle: u32) -> [Vec3; 3] {
     m.triangles()[triangle as usize].map(|i| in_world.transform_point(m.vertices()[i as usize]))
 }
 
-/// Where the segment from `p` to `q` intersects the triangle (Möller and Trumbore).
+/// The point in which the segment from `p` to `q` intersects the triangle, if any (Möller and Trumbore).
 fn pierced(p: Vec3, q: Vec3, [a, b, c]: [Vec3; 3]) -> Option<Vec3> {
     let (d, e1, e2, from) = (q - p, b - a, c - a, p - a);
     let det = e1.dot(d.cross(e2));
@@ -65,7 +65,7 @@ fn two_meshes_touch_at_the_longest_crossing() {
         let (mut p, q) = (r.pose(0.2), r.pose(0.5));
         let Shape::Mesh(m) = &a else { unreachable!() };
         let a = if r.below(10) == 0 {
-            // Ten times as large, and around the other.
+            // The shape is ten times as large, and around the other one.
             p = q;
             let large = m.vertices().iter().map(|v| *v * 10.0).collect();
             Shape::Mesh(Arc::new(TriMesh::new(large, m.triangles().to_vec()).unwrap()))
@@ -160,7 +160,7 @@ fn smooth_shapes_touch_at_the_deepest_point_of_the_mesh() {
         met[kind] += 1;
         assert!(on_triangle(c.on_a, placed(&a, &p, c.triangle_a.unwrap())), "{c:?}");
         assert!(depth(c.on_b).abs() < 1e-9 && depth(c.on_a) < 1e-9, "{} {b:?} {c:?}", depth(c.on_a));
-        // No corner or centroid of a triangle is deeper.
+        // All corners and centroids of triangles are at most as deep.
         if kind != 2 {
             let deepest = (0..m.triangles().len() as u32)
                 .flat_map(|t| {
@@ -178,7 +178,7 @@ fn smooth_shapes_touch_at_the_deepest_point_of_the_mesh() {
 fn contact_points_of_simple_shapes_are_as_far_apart_as_they_overlap() {
     let mut r = SplitMix(4);
     let mut met = 0;
-    // Includes pairs of cylinders for which the penetration once took seconds.
+    // These include pairs of cylinders that are hard for the penetration search.
     for _ in 0..2000 {
         let (x, y) = (CONVEX[r.below(4)], if r.below(6) == 0 { "plane" } else { CONVEX[r.below(5)] });
         let (a, b, p, q) = (r.shape(x), r.shape(y), r.pose(0.6), r.pose(0.6));

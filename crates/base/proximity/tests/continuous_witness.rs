@@ -101,7 +101,7 @@ fn cylinders_and_capsules_have_continuous_points() {
     assert!(worst < 5e-3, "one on the other: a step of {worst} m");
 }
 
-/// For parallel faces, the centre of the patch in which they overlap.
+/// For parallel faces, the points are in the centre of the patch in which they overlap.
 #[test]
 fn the_points_are_in_the_middle_of_the_patch() {
     for kind in KINDS {
@@ -135,7 +135,7 @@ fn parallel_edges_have_continuous_points() {
     }
 }
 
-/// Four feet of a table over a floor: always the same one.
+/// For four feet of a table over a floor, always the same foot is chosen.
 #[test]
 fn of_several_tied_features_always_the_same_is_chosen() {
     let mut corners = Vec::new();

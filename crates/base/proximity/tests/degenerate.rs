@@ -138,7 +138,7 @@ fn degenerate_meshes_are_reported_repaired_fitted_and_projected_on() {
             let solid = TriMesh::new(welded.vertices, oriented.triangles).unwrap();
             assert!(solid.report().closed && !solid.report().inside_out && solid.report().degenerate == 0, "{name}");
         }
-        // Faces are culled only where the mesh is certainly a solid.
+        // Faces are culled only if the mesh is guaranteed to be a solid.
         let kept = FaceCulling::of(mesh).kept_faces(&RelativeTwist::constant(Vec3::Z, Vec3::ZERO)).count();
         let sure = ["inside out", "needles", "far", "huge", "tiny"].contains(&name);
         assert_eq!(kept < triangles.len(), sure, "{name}: {kept} of {}", triangles.len());

@@ -1,7 +1,8 @@
-//! A hash over the answers of a fixed workload, last bits included. Changes for speed or clarity must not change it.
+//! A hash over the answers of a fixed workload, including the last bits. Changes for speed or clarity must not
+//! change it.
 //!
-//! Linux on x86-64 only: sines and hypotenuses are computed by the C library, whose last bits differ between systems. Two
-//! triangle meshes are hashed on every system and for every instruction set in `mesh_pairs.rs`.
+//! Only for Linux on x86-64: the C library computes sines and hypotenuses, and its last bits differ between systems.
+//! `mesh_pairs.rs` hashes two triangle meshes on every system and for every instruction set.
 #![cfg(all(target_os = "linux", target_arch = "x86_64"))]
 
 use crate::common::{RandomGeometry, SplitMix};
@@ -198,7 +199,7 @@ fn meshes() -> u64 {
     hash.0.0
 }
 
-/// A change here is a change of answers: state why.
+/// Golden hashes. A change here is a change of answers: state why.
 const GOLDEN: [u64; 4] = [0xb7d5_0679_0aba_9ccf, 0x3e42_3ca7_24d8_9f2e, 0x5235_182d_8990_1819, 0x0f36_acca_e098_7658];
 
 #[test]

@@ -1,4 +1,4 @@
-//! Groups of meshes: the same answers as of all pairs of meshes one by one, on every instruction set.
+//! Groups of meshes give the same answers as all pairs of meshes one by one, on every instruction set.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ fn triangulated(shape: &Shape, missing: usize) -> Arc<TriMesh> {
     Arc::new(TriMesh::new(vertices, triangles).unwrap())
 }
 
-/// Closed meshes mostly, some open, some large enough to contain others, some far from their origin.
+/// A random mesh. Most are closed, some open, some large enough to contain others, some far from their origin.
 fn mesh(random: &mut SplitMix) -> Arc<TriMesh> {
     let mut size = || random.between(0.03, 0.2);
     let (x, y, z) = (size(), size(), size());
@@ -31,7 +31,7 @@ fn mesh(random: &mut SplitMix) -> Arc<TriMesh> {
             let hull = elbowroom_proximity::ConvexHull::from_points(&points).unwrap();
             triangulated(&Shape::Hull(Arc::new(hull)), 0)
         }
-        // A shell: the surface of a ball, and a smaller one in it.
+        // A shell is the surface of a ball, with a smaller one in it.
         _ => {
             let (mut vertices, mut triangles) = tessellate(&Shape::Sphere(Sphere { radius: x + 0.1 }), 2e-3);
             let (inner, cavity) = tessellate(&Shape::Sphere(Sphere { radius: x }), 2e-3);
@@ -77,7 +77,7 @@ fn groups_collide_where_a_pair_does() {
     let mut workspaces: Vec<_> = simd_levels().into_iter().map(GroupWorkspace::with_simd_level).collect();
     let (mut hits, mut asked) = (0, 0);
     for round in 0..30 {
-        // One in ten has more meshes than lanes.
+        // One group in ten has more meshes than lanes.
         let counts = if round % 10 == 0 { [3, 19] } else { [1 + random.below(6), 1 + random.below(6)] };
         let [one, other] = counts.map(|n| (0..n).map(|_| mesh(&mut random)).collect::<Vec<_>>());
         let groups = [MeshGroup::new(one.clone()), MeshGroup::new(other.clone())];
@@ -107,7 +107,7 @@ fn meshes_that_nearly_touch() {
     let mut workspace = GroupWorkspace::new();
     for _ in 0..2000 {
         let [a, b] = [random.pose(0.2), random.pose(0.2)];
-        // Its vertices are on the sphere, its faces within 2 mm of it.
+        // The ball's vertices are on the sphere, and its faces within 2 mm of it.
         let gap = random.between(-6e-3, 3e-3);
         let away = random.vec(1.0).try_normalize().unwrap_or(Vec3::X);
         let touching = Pose::new(b.rotation, a.translation + away * (0.2 + gap));
@@ -119,7 +119,7 @@ fn meshes_that_nearly_touch() {
     }
 }
 
-/// A mesh inside another one touches it, a mesh in the cavity of a shell does not.
+/// A mesh inside another one touches it; a mesh in the cavity of a shell does not.
 #[test]
 fn meshes_in_others() {
     let shape = |radius: f64| tessellate(&Shape::Sphere(Sphere { radius }), 1e-3);

@@ -9,7 +9,7 @@ use elbowroom_testkit::hash::Fnv;
 use elbowroom_testkit::random::Random;
 use fearless_simd::Level as SimdLevel;
 
-/// Random meshes and rotations, by integer arithmetic and without library functions, the same on every machine.
+/// Random meshes and rotations, the same on every machine: by integer arithmetic, without library functions.
 trait RandomMeshes {
     fn vector(&mut self) -> Vec3;
 
@@ -18,7 +18,7 @@ trait RandomMeshes {
     /// A closed lump: the faces of a cube, subdivided and displaced.
     fn lump(&mut self, cuts: usize) -> TriMesh;
 
-    /// Triangles of all sizes, slivers and points among them, anywhere.
+    /// Triangles of all sizes at any place, including slivers and points.
     fn soup(&mut self, count: usize) -> TriMesh;
 }
 
@@ -88,7 +88,7 @@ impl RandomMeshes for Random {
                 1 => vertices.extend([p, p + u, p + u]),
                 2 => vertices.extend([p, p + u, p + u * 0.3]),
                 3 => vertices.extend([p, p + u, p + u * 0.5 + v * 1e-9]),
-                // Along the axes, as modelled parts are.
+                // Edges are along the axes, as in modelled parts.
                 4 => vertices.extend([p, p + Vec3::X * size, p + Vec3::Y * size]),
                 _ => vertices.extend([p, p + u, p + v]),
             }
@@ -117,7 +117,7 @@ fn segments(p: [Vec3; 2], q: [Vec3; 2]) -> f64 {
     best
 }
 
-/// Distance of a point from a triangle's plane where its projection is inside, else infinite.
+/// Distance of a point from a triangle's plane if its projection is inside, else infinite.
 fn over(x: Vec3, t: [Vec3; 3]) -> f64 {
     let n = (t[1] - t[0]).cross(t[2] - t[0]);
     if n.length() < 1e-12 * (t[1] - t[0]).length_squared().max((t[2] - t[0]).length_squared()) || n.length() == 0.0 {
@@ -233,7 +233,7 @@ fn compare(a: &TriMesh, here: &Pose, b: &TriMesh, there: &Pose, n: &mut Random, 
     all.sort_unstable();
     assert!(all.windows(2).all(|w| w[0] != w[1]), "a contact is reported twice");
     expected.sort_unstable();
-    // Pairs closer than the error of f64 may be reported as well.
+    // Pairs closer than the f64 error may be reported as well.
     let (of_a, of_b) = (corners(a, here), corners(b, there));
     assert!(expected.iter().all(|p| all.binary_search(p).is_ok()), "a contact is missing");
     assert!(all.iter().all(|&(i, j)| triangles(of_a[i as usize], of_b[j as usize]) <= close), "no contact");
@@ -329,7 +329,7 @@ fn nan_is_contact() {
             assert_eq!(mesh_separation(&m, x, &m, y, &mut s).distance, 0.0);
         }
     }
-    // So far away that nothing can be near: certain in f64.
+    // The meshes are so far apart that f64 proves that nothing is near.
     let there = Pose::from_translation(Vec3::X * 1e17);
     assert_eq!(colliding_triangles(&m, &Pose::IDENTITY, &m, &there, &mut s), None);
     let shape = Shape::Mesh(m.into());
@@ -352,8 +352,8 @@ fn simd_levels() -> Vec<(&'static str, SimdLevel)> {
     levels
 }
 
-/// Hashes of a fixed workload: all answers, last bits included; and the course of the search, that is which pairs were found and
-/// how many nodes were visited.
+/// Hashes of a fixed workload: all answers, including the last bits; and the course of the search, which is the
+/// pairs found and the number of nodes visited.
 fn golden(simd_level: SimdLevel) -> (u64, u64) {
     let (mut n, mut s) = (Random(7), Workspace::with_simd_level(simd_level));
     let (mut answers, mut course) = (Fnv::default(), Fnv::default());
@@ -384,7 +384,7 @@ fn golden(simd_level: SimdLevel) -> (u64, u64) {
     (answers.0, course.0)
 }
 
-/// The answers on any machine. A change here is a change of answers: state why.
+/// Hash of the answers on any machine. A change here is a change of answers: state why.
 const GOLDEN: u64 = 0xd7f2_aa22_0e93_64ca;
 
 #[test]

@@ -6,23 +6,23 @@ use elbowroom_spatial::Pose;
 
 const KINDS: [&str; 7] = ["sphere", "capsule", "cylinder", "box", "hull", "plane", "mesh"];
 
-/// Gaps in metres; below 0 they overlap.
+/// Gaps in metres; negative if the shapes overlap.
 const GAPS: [f64; 20] = [
     0.0, 1e-15, 3e-15, 1e-14, 1e-13, 1e-12, 1e-11, 1e-10, 1e-9, 1e-8, 1e-7, 1e-6, -1e-15, -1e-14, -1e-13, -1e-12,
     -1e-11, -1e-9, -1e-6, -1e-3,
 ];
 
-// By the number of cylinders, metres, for shapes of about 1 m.
+// The following values, by the number of cylinders, are in metres, for shapes of about 1 m.
 
-/// A larger gap is never contact.
+/// Gap above which shapes are never in contact.
 const SEPARATED: [f64; 3] = [2e-13, 2e-13, 1e-8];
-/// Error of the distance.
+/// Largest error of the distance.
 const ACCURATE: [f64; 3] = [1e-11, 1e-8, 1e-8];
-/// Largest distance of a witness point outside its shape, as a share of the coordinates, on contact and apart.
+/// Largest distance of a witness point outside its shape, as a fraction of the coordinates, on contact and apart.
 const ON_SHAPE: [f64; 3] = [1e-9, 1e-8, 1e-8];
 const ON_SHAPE_APART: f64 = 1e-15;
 
-/// Excess of the distance of continuous witness points over the distance, as a share of the coordinates.
+/// Excess of the distance of continuous witness points over the distance, as a fraction of the coordinates.
 const PARALLEL: f64 = 2e-8;
 
 struct Placed {
@@ -41,7 +41,7 @@ impl Placed {
         [&self.a, &self.b].iter().all(|s| !matches!(s, Shape::Sphere(_) | Shape::HalfSpace(_)))
     }
 
-    /// About the largest coordinate that occurs: no shape of these tests is larger than 3 m.
+    /// Approximately the largest coordinate: shapes of these tests are at most 3 m large.
     fn scale(&self) -> f64 {
         3.0 + self.a_in_world.translation.abs().max_element() + self.b_in_world.translation.abs().max_element()
     }
@@ -71,8 +71,8 @@ impl Placed {
         s
     }
 
-    /// True if a millimetre along the normal stays inside, other than beyond the edge of a thin disc or a sharp corner of a
-    /// hull.
+    /// True if a millimetre along the normal stays inside, which is not so beyond the edge of a thin disc or a sharp
+    /// corner of a hull.
     fn blunt(&self) -> bool {
         let least = |shape: &Shape| match shape {
             Shape::Sphere(s) => s.radius,
@@ -118,7 +118,7 @@ fn near_contact_every_answer_agrees() {
     let mut rng = SplitMix(2026);
     for first in KINDS {
         for second in KINDS {
-            // Two half-spaces are apart in too few poses; two meshes have their own tests.
+            // Two half-spaces are apart in too few poses, and two meshes have their own tests.
             if first != second || !["plane", "mesh"].contains(&first) {
                 pair(first, second, &mut rng);
             }
@@ -142,7 +142,7 @@ fn overlapping_shapes_share_the_witness_point() {
     }
 }
 
-/// Shapes with the same pose, as those of one link in the link's frame.
+/// The shapes have the same pose, like the shapes of one link in the link's frame.
 #[test]
 fn shapes_at_the_same_place_have_one_answer() {
     let mut rng = SplitMix(5);

@@ -13,7 +13,7 @@ fn shape(kind: u8, x: f64, y: f64, z: f64) -> Shape {
     }
 }
 
-/// Half of the sizes are 0 or down to 1e-12 m.
+/// Sizes; half of them are 0 or down to 1e-12 m.
 fn size() -> impl Strategy<Value = f64> {
     prop_oneof![Just(0.0), (-12.0_f64..0.0).prop_map(|e| 10_f64.powf(e)), 0.01..1.0, 0.01..1.0]
 }

@@ -1,4 +1,4 @@
-//! Fits around the collision meshes of real robots; skipped where their descriptions are not installed.
+//! Fits around the collision meshes of real robots; skipped if their descriptions are not installed.
 #![allow(clippy::print_stdout, reason = "the test prints how tight the fits are")]
 
 use std::cmp::Ordering;
@@ -30,7 +30,7 @@ fn fits_around_real_links_hold_every_vertex() {
     // Collision meshes of up to 1,200 triangles: the test build is slow.
     let small = |p: &PathBuf| std::fs::metadata(p).is_ok_and(|m| m.len() < 60_000);
     files.retain(|p| p.components().any(|c| c.as_os_str() == "collision") && small(p));
-    // Every third: all manufacturers are among them.
+    // Every third file is used, which includes all manufacturers.
     files = files.into_iter().step_by(3).take(24).collect();
     assert!(!files.is_empty(), "no small collision meshes in {}", root.display());
     let mut ratios: BTreeMap<String, Vec<f64>> = BTreeMap::new();

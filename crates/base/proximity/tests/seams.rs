@@ -72,7 +72,7 @@ fn point_containment_matches_the_mesh_without_seams() {
     }
 }
 
-/// Distances are measured to the triangles as given, not to the welded ones.
+/// Distances are measured to the triangles as given, not to the welded triangles.
 #[test]
 fn distances_are_to_the_triangles_as_given() {
     let mut rng = SplitMix(151);

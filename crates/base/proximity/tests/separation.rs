@@ -1,5 +1,6 @@
-//! Distances checked by certificates: witness points inside the solids prove an upper bound, a support plane between them a lower
-//! bound. Neither uses the code under test.
+//! Distances checked by certificates that do not use the code under test.
+//!
+//! Witness points inside the solids prove an upper bound, a support plane between the solids a lower bound.
 
 use crate::common::{CONVEX, RandomGeometry, SplitMix, cases};
 use elbowroom_proximity::{Cuboid, Shape, Sphere, collides, project_point, separation, separation_within, within};
@@ -14,8 +15,9 @@ fn plane_gap(a: &Shape, pa: &Pose, b: &Shape, pb: &Pose, d: Vec3) -> f64 {
     low - pb.transform_point(b.support(pb.inverse_transform_vector(d))).dot(d)
 }
 
-/// The best of the support planes near `d`: perpendicular to the witness points, along normals of faces, perpendicular to axes,
-/// and improved by hill climbing until they prove `wanted` or improve no more. Every direction gives a valid bound.
+/// The best of the support planes near `d`: perpendicular to the witness points, along normals of faces,
+/// perpendicular to axes, and improved by hill climbing until they prove `wanted` or do not improve any more. Every
+/// direction gives a valid bound.
 fn best_plane_gap(d: Vec3, frames: [Rotation; 2], wanted: f64, gap: impl Fn(Vec3) -> f64) -> f64 {
     let axes = frames.map(|r| [r.x_axis(), r.y_axis(), r.z_axis()]);
     let across = axes.as_flattened().iter().map(|&e| d - e * d.dot(e));
@@ -270,7 +272,7 @@ fn degenerate_sizes_and_poses_have_an_answer() {
             let s = separation(&a, &pa, &b, &Pose::IDENTITY);
             let scale = 1.0 + ra + rb + at;
             certify(&a, &pa, &b, &Pose::IDENTITY, 1e-12 * scale);
-            // Each contains the sphere of half its size about its centre, and is inside the one of twice its size.
+            // Each shape contains the sphere of half its size about its centre, and is inside the sphere of twice its size.
             assert!(s.distance <= (at - 0.5 * (ra + rb)).max(0.0) + 1e-14 * scale, "{a:?} {b:?} {at}: {s:?}");
             assert!(s.distance >= (at - 2.0 * (ra + rb)).max(0.0) - 1e-14 * scale, "{a:?} {b:?} {at}: {s:?}");
         }

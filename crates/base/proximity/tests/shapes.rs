@@ -91,7 +91,7 @@ fn moving_by_the_penetration_depth_separates_and_by_less_does_not() {
     }
 }
 
-/// Overlap along a direction of the world: no shorter translation along it separates.
+/// Overlap along a direction of the world: every shorter translation along it leaves the shapes overlapping.
 fn overlap_along(a: &Shape, pa: &Pose, b: &Shape, pb: &Pose, d: Vec3) -> f64 {
     let low = pa.transform_point(a.support(pa.inverse_transform_vector(-d)));
     let high = pb.transform_point(b.support(pb.inverse_transform_vector(d)));
@@ -202,7 +202,7 @@ fn meshes_report_and_refuse() {
     let twice = t.iter().chain(&t[..1]).copied().chain([[0, 0, 1]]).collect();
     let report = *TriMesh::new(v.clone(), twice).unwrap().report();
     assert_eq!((report.duplicate, report.degenerate), (1, 1));
-    // As in an STL file: every triangle has its own vertices.
+    // The triangles are as in an STL file: each has its own vertices.
     let soup: Vec<Vec3> = t.iter().flatten().map(|&i| v[i as usize]).collect();
     let faces = (0..t.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
     assert!(TriMesh::new(soup, faces).unwrap().report().closed);

@@ -1,5 +1,5 @@
-//! Nearly degenerate triangles, meshes far from their own origin, tiny meshes: every answer compared with distances in exact
-//! arithmetic, and with every other answer.
+//! Nearly degenerate triangles, meshes far from their own origin, tiny meshes: every answer compared with distances
+//! in exact arithmetic, and with every other answer.
 
 use std::sync::Arc;
 
@@ -43,7 +43,8 @@ fn across(rng: &mut SplitMix, sliver: &[Vec3; 3], height: f64, slender: bool) ->
     [through + direction * ahead, through - direction * behind, through + third]
 }
 
-/// Every answer about two meshes in the world, against the exact square of their distance; the distance.
+/// Compares every answer about two meshes in the world with the exact square of their distance; returns the
+/// distance.
 fn agree(a: &TriMesh, pa: &Pose, b: &TriMesh, pb: &Pose, exact: &Square, error: f64) -> f64 {
     let workspace = &mut Workspace::new();
     let near = mesh_separation(a, pa, b, pb, workspace);
@@ -156,7 +157,7 @@ fn flat_shapes_near_slivers_have_right_bounds() {
             } else {
                 Shape::Hull(Arc::new(ConvexHull::from_points(corners.as_flattened()).unwrap()))
             };
-            // A corner of it at the sliver, or an edge.
+            // A corner or an edge of the shape is at the sliver.
             let touch = Vec3::new(half, half, half * [1.0, 0.3][case % 2]);
             let rotation = rng.pose(1.0).rotation;
             let pose = Pose::new(rotation, (s[0] + s[1] + s[2]) / 3.0 - rotation * touch + rng.vec(height));
@@ -169,14 +170,14 @@ fn flat_shapes_near_slivers_have_right_bounds() {
     }
 }
 
-/// Points at a distance from slivers: the projection onto the line must not be lost in an inaccurate normal.
+/// Points at a distance from slivers: an inaccurate normal must not lose the projection onto the line.
 #[test]
 fn points_far_from_slivers_have_right_distances() {
     let mut rng = SplitMix(16);
     for height in [1e-15, 1e-14, 1e-13, 1e-12, 1e-10, 1e-8] {
         for _ in 0..400 {
             let s = sliver(&mut rng, height);
-            // Over its middle, however inaccurate that direction is.
+            // The point is over the sliver's middle, however inaccurate that direction is.
             let n = (s[1] - s[0]).cross(s[2] - s[0]).try_normalize().unwrap_or(Vec3::Z);
             let p = (s[0] + s[1] + s[2]) / 3.0 + n * rng.between(-1.0, 1.0) + rng.vec(1.0) * (3.0 * height);
             let t = placed_triangle(s, &Pose::IDENTITY);
@@ -222,7 +223,7 @@ fn meshes_far_from_their_origin_have_one_answer() {
         let far = [1e3, 1e5, 1e6, 1e7][case % 4];
         let (ca, cb) = (rng.vec(far), rng.vec(far));
         let (a, b) = (cube(ca, 1.0), cube(cb, 1.0));
-        // Corner towards corner, so that the bounding spheres have the same gap as the corners.
+        // The cubes are corner towards corner, so that the bounding spheres have the same gap as the corners.
         let direction = Vec3::splat(1.0 / 3.0_f64.sqrt());
         let gap = [0.0, 1e-16, 1e-12, 1e-10, 1e-9, -1e-10][case % 6] * far;
         let pb = Pose::from_translation(ca - cb + direction * (2.0 * 3.0_f64.sqrt() + gap));

@@ -1,4 +1,4 @@
-//! All touching triangles compared with every pair of triangles, each by its separating axes.
+//! All touching triangles compared with a test of every pair of triangles by its separating axes.
 
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -8,7 +8,7 @@ use elbowroom_proximity::contact::{for_each_triangle_contact, triangle_surface};
 use elbowroom_proximity::{Capsule, Cuboid, Cylinder, HalfSpace, Shape, Sphere, TriMesh, Workspace, collides};
 use elbowroom_spatial::{Pose, Vec3};
 
-/// A wavy ball: closed, not convex.
+/// A wavy ball: closed, but not convex.
 fn lump(r: &mut SplitMix, fine: f64) -> Shape {
     Shape::Mesh(Arc::new(crate::common::lump(0.3, fine, Vec3::splat(1.0), r.between(0.0, 0.4))))
 }
@@ -72,7 +72,7 @@ fn all_touching_triangles_are_found_and_no_others() {
             for_each_triangle_contact(m, &p, &n, &q, &mut workspace, |c| {
                 let [s, t] = [corners(m, &p, c.triangle_a as usize), corners(&n, &q, c.triangle_b as usize)];
                 assert!(found.insert((c.triangle_a as usize, c.triangle_b as usize)), "twice: {c:?}");
-                // Crossing: both ends on both triangles. Touching: one on each.
+                // If the triangles cross, both ends are on both triangles; if they touch, one is on each.
                 let [on_a, on_b] = c.segment;
                 assert!(off_triangle(on_a, s) < 1e-9 && off_triangle(on_b, t) < 1e-9, "{c:?}");
             });

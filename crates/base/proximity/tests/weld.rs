@@ -6,7 +6,7 @@ use elbowroom_proximity::{ConvexHull, TriMesh};
 use elbowroom_spatial::Vec3;
 use proptest::prelude::*;
 
-/// The vertices that `weld` must merge, by comparing every pair.
+/// The vertices that `weld` must merge, found by comparing every pair.
 fn simple_targets(vertices: &[Vec3], tolerance: f64) -> Vec<usize> {
     let mut kept: Vec<usize> = Vec::new();
     let mut target = Vec::new();
@@ -39,7 +39,7 @@ proptest! {
         let target = simple_targets(&vertices, tolerance);
         let merged = target.iter().enumerate().filter(|(i, t)| i != *t).count();
         prop_assert_eq!(welded.report.merged, merged);
-        // No vertex moved by more than the tolerance, and those left are farther apart.
+        // Vertices move by at most the tolerance, and the remaining vertices are farther apart.
         for (i, v) in welded.vertices.iter().enumerate() {
             prop_assert!(vertices.iter().any(|w| w == v));
             prop_assert!(welded.vertices[..i].iter().all(|w| w.distance(*v) > tolerance));
@@ -47,7 +47,7 @@ proptest! {
         let dropped = welded.report.zero_area + welded.report.duplicate;
         prop_assert_eq!(welded.triangles.len() + dropped, triangles.len());
         prop_assert_eq!(welded.report.unused + merged + welded.vertices.len(), vertices.len());
-        // Done it again changes nothing.
+        // Welding again changes nothing.
         let again = weld(&welded.vertices, &welded.triangles, tolerance).unwrap();
         prop_assert_eq!(&again.vertices, &welded.vertices);
         prop_assert!(again.report.merged == 0 && again.report.duplicate == 0);
@@ -127,7 +127,7 @@ fn duplicates_are_removed_and_walls_between_solids_stay() {
 
 #[test]
 fn a_sliver_that_closes_a_surface_stays() {
-    // The edge from 0 to 1 of a tetrahedron is split_components on one side: a face without area fills the seam.
+    // The edge from 0 to 1 of a tetrahedron is split on one side: a face without area fills the seam.
     let vertices = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z, Vec3::X * 0.5];
     let faces = vec![[0, 2, 4], [4, 2, 1], [0, 4, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
     let closed = weld(&vertices, &faces, 1e-9).unwrap();
@@ -143,7 +143,7 @@ fn cavities_stay_and_solids_face_outward() {
     let inner = |inward| cube(1.0, Vec3::splat(0.2), inward);
     let beside = |inward| cube(1.0, Vec3::X * 9.0, inward);
     let core = |inward| cube(0.5, Vec3::splat(0.2), inward);
-    // Orientation as given, and whether each bounds a cavity: outer, inner, core, beside.
+    // Each case is the given orientation, and whether the shell bounds a cavity: outer, inner, core, beside.
     let cases = [
         ([false, true, false, false], [false, true, false, false]),
         ([true, false, true, true], [false, true, false, false]),

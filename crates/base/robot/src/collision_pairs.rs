@@ -1,14 +1,15 @@
-//! All pairs that a collision query of robots among objects has to check.
+//! All pairs that a collision query of robots and objects must check.
 
 use elbowroom_kinematics::LinkId;
 
 use crate::{GeometryId, ObjectId, Robot, RobotId};
 
-/// All pairs that a collision query has to check, in a fixed order.
+/// All pairs that a collision query must check, in a fixed order.
 ///
-/// Two links of one robot are a pair unless [`Robot::exclusion`] names a reason: they are adjacent, disabled by the SRDF, or
-/// no joint moves one against the other. Two links of different robots, and a link and an object, are a pair where a joint
-/// moves one of them. Two objects are never a pair.
+/// - Two links of one robot are a pair unless [`Robot::exclusion`] names a reason: they are adjacent, disabled by
+///   the SRDF, or no joint moves one relative to the other.
+/// - Two links of different robots, and a link and an object, are a pair if a joint moves one of them.
+/// - Two objects are never a pair.
 pub fn collision_pairs(robots: &[&Robot], objects: usize) -> Vec<(GeometryId, GeometryId)> {
     let mut list = Vec::new();
     let links: Vec<(usize, LinkId)> =

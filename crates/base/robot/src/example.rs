@@ -6,10 +6,11 @@ use elbowroom_spatial::{Pose, Vec3};
 
 use crate::{Collider, Robot};
 
-/// A three-joint arm of capsules: the first joint rotates about z, the other two about y. It is upright at zero.
+/// A three-joint arm of capsules: the first joint rotates about z, the other two about y. At joint values 0 it is
+/// upright.
 ///
 /// # Errors
-/// Never: the chain is a constant.
+/// Never fails: the chain is a constant.
 pub fn arm() -> Result<Robot, ChainError> {
     let joint = |name: &str, i: usize, height: f64, axis: Vec3, bound: f64| Joint {
         name: name.into(),

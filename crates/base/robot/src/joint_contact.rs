@@ -1,4 +1,5 @@
-//! Links that touch where they are joined: meshes that overlap at a wrist, a piston in its cylinder, a lever at its pin.
+//! Links that touch at the joint that connects them: meshes that overlap at a wrist, a piston in its cylinder, a
+//! lever at its pin.
 
 use std::sync::Arc;
 
@@ -10,84 +11,94 @@ use elbowroom_spatial::{Aabb, Pose, Vec3};
 use crate::rest_pose::touch;
 use crate::{Collider, RSequence, Robot};
 
-/// Configurations that are sampled.
+/// Number of sampled configurations.
 const SAMPLES: u64 = 1000;
-/// Largest number of moving joints between links that several joint values move against each other.
+/// Largest number of moving joints between the links if several joint values move them relative to each other.
 const MOST_JOINTS: usize = 2;
-/// The same where a mimic joint is among them: a linkage.
+/// Largest number of moving joints between the links if a mimic joint is among them: a linkage.
 const MOST_LINKAGE_JOINTS: usize = 3;
-/// The largest share of the smaller link's size that contacts may lie from the joint: 1 is as far as that link extends.
+/// Largest distance of a contact from the joint, as a fraction of the smaller link's size: 1 is as far as that link
+/// extends.
 const MOST_REACH: f64 = 1.0;
-/// The largest share of it by which the farthest contact of one configuration may lie farther from the joint than that of another.
+/// Largest difference between the farthest contacts of two configurations, in distance from the joint, as a fraction
+/// of the smaller link's size.
 const MOST_SPREAD: f64 = 0.25;
-/// The largest share of it that all contacts at a pivot extend over, on either link.
+/// Largest extent of all contacts at a pivot, on either link, as a fraction of the smaller link's size.
 const PIVOT_EXTENT: f64 = 0.5;
-/// The least share of the configurations in which links touch at a pivot.
+/// Smallest fraction of the configurations in which links touch at a pivot.
 const PIVOT_SHARE: f64 = 0.5;
-/// Difference up to which axes are one, m and rad.
+/// Largest difference between axes that count as the same, m and rad.
 const SAME_AXIS: f64 = 1e-6;
-/// Error of the triangles of round shapes, as a share of the diagonal of their boxes: some twenty segments around.
+/// Error of the triangles of round shapes, as a fraction of the diagonal of their boxes: about twenty segments
+/// around.
 const CHORD_ERROR: f64 = 0.005;
 
-/// Links that reach farther from their own origin, or are farther from the root link, are not compared, m: by rounding all their
-/// triangles would touch.
+/// Largest distance (m) of a link's points from its own origin, and of that origin from the root link. Farther links
+/// are not compared: because of rounding, all their triangles would touch.
 const LARGEST_M: f64 = 1e4;
-/// A pair with more contacts in all configurations together is given up, so that the search ends soon.
+/// Largest number of contacts of a pair in all configurations together. A pair with more is dropped, so that the
+/// search ends soon.
 const MOST_CONTACTS: usize = 2_000_000;
 
-/// Two links of one robot that touch by their model, and not by the robot's motion.
+/// Two links of one robot that touch because of their model, not because of the robot's motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointContact {
     /// One link.
     pub a: LinkId,
     /// The other link.
     pub b: LinkId,
-    /// What was found.
+    /// The kind of contact.
     pub kind: JointContactKind,
     /// The moving joint between them that is nearest to the contacts.
     pub joint: JointId,
-    /// In each configuration the nearest contact lies between these distances from the origin of the joint, m.
+    /// Range (m), over the configurations, of the distance between the nearest contact and the origin of the joint.
     pub nearest_m: (f64, f64),
-    /// In each configuration the farthest contact lies between these distances from the origin of the joint, m.
+    /// Range (m), over the configurations, of the distance between the farthest contact and the origin of the joint.
     pub farthest_m: (f64, f64),
     /// Number of sampled configurations in which they touch.
     pub contacts: u64,
-    /// Number of sampled configurations, spread evenly over the joint limits. The same configurations each time.
+    /// Number of sampled configurations, which are spread evenly over the joint limits and are always the same.
     pub samples: u64,
 }
 
-/// Why a contact is one of the model.
+/// Why a contact belongs to the model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum JointContactKind {
-    /// They touch in every configuration, and nowhere but at the joint.
+    /// The links touch in every configuration, and only at the joint.
     AtJoint,
-    /// They touch in every configuration, always at the joint and in some farther out as well; they turn against each other about
-    /// one axis, or a mimic joint is between them, so that they are joined like links that a joint connects directly.
+    /// The links touch in every configuration, always at the joint and in some configurations also farther out. They
+    /// turn against each other about one axis, or a mimic joint is between them, so they are joined like links that a
+    /// joint connects directly.
     Linkage,
-    /// One joint value moves them through mimic joints, and in at least half of its values they touch, always at the same place
-    /// of both: the pivot at which a linkage is closed, such as the eye of a piston rod.
+    /// One joint value moves the links through mimic joints. In at least half of its values they touch, always at the
+    /// same place of each link: the pivot at which a linkage is closed, such as the eye of a piston rod.
     Pivot,
 }
 
-/// The pairs of links that touch where they are joined, such as a flange that is drawn into the wrist, a piston in its
-/// cylinder or a lever at its pin: not by the robot's motion but by its model. `start` are joint values in rad or m, one per
-/// [active joint](elbowroom_kinematics::Chain::active_joints); empty if their number does not match the chain or a value is
-/// not finite.
+/// Finds the pairs of links that touch at the joint between them because of the model, not because of the robot's
+/// motion: for example a flange that is drawn into the wrist, a piston in its cylinder or a lever at its pin.
 ///
-/// A pair is found where it is tested ([`Robot::links_can_meet`]), and one of this holds in 1000 configurations over the joint
-/// limits, with two million contacts in all at most. Distances are from the origin of one joint between the links, the
-/// same in all configurations; the size is the diagonal of the smaller link's box.
+/// `start` are joint values in rad or m, one per [active joint](elbowroom_kinematics::Chain::active_joints). The
+/// result is empty if their number does not match the chain or a value is not finite.
 ///
-/// - [`AtJoint`](JointContactKind::AtJoint): they touch in all and at `start`, no contact is farther than the size, and at most two
-///   moving joints lie between them; the farthest contacts of any two configurations differ by no more than a quarter of the size. So
-///   links that touch at the joint, and in some configurations farther out as well, are not found. Where one joint value alone moves
-///   all joints between them (mimic joints follow it), as for a balancing cylinder, there may be more joints and the contact may
-///   wander along the stroke.
-/// - [`Linkage`](JointContactKind::Linkage): they touch in all and at `start`; all joints between them turn about one axis, or at most
-///   three lie between them, one of which is a mimic joint. The nearest contact is never farther than the size, and differs by no
-///   more than a quarter of it. Since they always touch, testing them tells nothing about the contacts farther out.
-/// - [`Pivot`](JointContactKind::Pivot): one joint value moves them, through a mimic joint; they touch in half of the configurations
-///   at least, and on either link all contacts of all configurations lie in a box with a diagonal of half of the size.
+/// A pair is found if it is tested ([`Robot::links_can_meet`]) and one of the following holds in 1000 configurations
+/// over the joint limits, with at most two million contacts in all. Distances are from the origin of one joint
+/// between the links, the same joint in all configurations; the size is the diagonal of the smaller link's box.
+///
+/// - [`AtJoint`](JointContactKind::AtJoint): the links touch in all configurations and at `start`, no contact is
+///   farther than the size, and at most two moving joints lie between them. The distances of the farthest contacts
+///   of any two configurations differ by at most a quarter of the size, so links that touch at the joint and in some
+///   configurations also farther out are not found. If one joint value alone moves all joints between the links
+///   (mimic joints follow it), as for a balancing cylinder, there may be more joints and the contact may move along
+///   the stroke.
+/// - [`Linkage`](JointContactKind::Linkage): the links touch in all configurations and at `start`. All joints
+///   between them turn about one axis, or at most three lie between them and one of these is a mimic joint. The
+///   distance of the nearest contact is at most the size, and varies by at most a quarter of it. Since the links
+///   always touch, testing them gives no information about the contacts farther out.
+/// - [`Pivot`](JointContactKind::Pivot): one joint value moves the links, through a mimic joint. They touch in at
+///   least half of the configurations. On either link, all contacts of all configurations lie in a box with a
+///   diagonal of half the size.
+///
 ///
 /// ```
 /// use elbowroom_robot::{example, joint_contacts};
@@ -102,7 +113,7 @@ pub fn joint_contacts(robot: &Robot, start: &[f64]) -> Vec<JointContact> {
     }
     state.q.copy_from_slice(start);
     robot.chain.forward(&mut state);
-    // At a pivot they need not touch at the start.
+    // At a pivot the links need not touch at the start.
     let may_be = |a, b| closes_linkage(robot, &moving_joints(robot, a, b)) || touch(robot, &state, a, b);
     let candidates = candidates(robot).filter(|(a, b)| may_be(*a, *b));
     let mut candidates: Vec<Candidate> = candidates.filter_map(|(a, b)| Candidate::new(robot, a, b, &state)).collect();
@@ -122,7 +133,7 @@ pub fn joint_contacts(robot: &Robot, start: &[f64]) -> Vec<JointContact> {
     candidates.into_iter().filter_map(Candidate::found).collect()
 }
 
-/// Pairs of links that a query tests although few joints lie between them.
+/// Pairs of links that a query tests although only few joints lie between them.
 fn candidates(robot: &Robot) -> impl Iterator<Item = (LinkId, LinkId)> + '_ {
     let links: Vec<LinkId> = robot.links_with_colliders().collect();
     let pairs: Vec<_> = links.iter().enumerate().flat_map(|(i, a)| links[i + 1..].iter().map(|b| (*a, *b))).collect();
@@ -154,7 +165,7 @@ fn closes_linkage(robot: &Robot, joints: &[JointId]) -> bool {
     joints.len() > 1 && has_mimic(robot, joints) && follow_one_value(robot, joints)
 }
 
-/// True if all joints turn about one axis: in all configurations, if in one.
+/// True if all joints turn about one axis. If this holds in one configuration, it holds in all.
 fn share_axis(robot: &Robot, joints: &[JointId], state: &ChainState) -> bool {
     let axis = |j: &JointId| {
         let joint = &robot.chain.joints()[j.0];
@@ -170,37 +181,37 @@ fn share_axis(robot: &Robot, joints: &[JointId], state: &ChainState) -> bool {
     axes.iter().all(is_same)
 }
 
-/// A pair that may be joined, after all configurations so far.
+/// A pair that may be joined, according to all configurations so far.
 struct Candidate<'r> {
     robot: &'r Robot,
     links: [LinkId; 2],
-    /// Per link, its surfaces with their poses in the link.
+    /// Surfaces of each link, with their poses in the link.
     surfaces: [Vec<(Arc<TriMesh>, Pose)>; 2],
-    /// The moving joints between the links, with the contacts' distances.
+    /// The moving joints between the links, with the distances of the contacts.
     joints: Vec<JointRegion>,
     /// Diagonal of the box of the smaller link, m.
     size_m: f64,
-    /// The largest difference between the farthest contacts of two configurations, m.
+    /// Largest allowed difference between the farthest contacts of two configurations, m.
     most_spread_m: f64,
-    /// Which kinds it may still be.
+    /// The kinds that are still possible.
     may_be_at_joint: bool,
     may_be_linkage: bool,
     may_be_pivot: bool,
-    /// Per link, the box of all contacts in its frame.
+    /// Box of all contacts on each link, in the frame of the link.
     boxes: [Option<Aabb>; 2],
-    /// Configurations in which they touch, and in which they do not.
+    /// Number of configurations in which the links touch, and in which they are apart.
     touching: u64,
     apart: u64,
     /// Number of contacts so far.
     contacts: usize,
 }
 
-/// How far from a joint two links touch.
+/// Distances of the contacts of two links from a joint.
 struct JointRegion {
     joint: JointId,
-    /// Least and largest distance of a configuration's nearest contact from the joint's origin, m.
+    /// Smallest and largest distance of a configuration's nearest contact from the joint's origin, m.
     nearest_m: (f64, f64),
-    /// The same of its farthest contact, m.
+    /// Smallest and largest distance of a configuration's farthest contact from the joint's origin, m.
     farthest_m: (f64, f64),
 }
 
@@ -221,7 +232,7 @@ impl JointRegion {
 }
 
 impl<'r> Candidate<'r> {
-    /// `None` if a link has a surface without triangles, or is too large.
+    /// Creates a candidate; `None` if a link has a surface without triangles, or is too large.
     fn new(robot: &'r Robot, a: LinkId, b: LinkId, state: &ChainState) -> Option<Self> {
         if ![a, b].iter().all(|l| robot.link_radius(*l) <= LARGEST_M) {
             return None;
@@ -254,7 +265,7 @@ impl<'r> Candidate<'r> {
         })
     }
 
-    /// Takes the contacts of a configuration; false if the pair is of no kind.
+    /// Adds the contacts of a configuration; returns false if the pair cannot be of any kind.
     fn measure(&mut self, state: &ChainState, workspace: &mut Workspace) -> bool {
         if !self.links.iter().all(|l| state.link_in_root(*l).translation.length() <= LARGEST_M) {
             return false;
@@ -295,7 +306,7 @@ impl<'r> Candidate<'r> {
         })
     }
 
-    /// The points at which the links touch, in the root link.
+    /// The points at which the links touch, in the root link's frame.
     fn contacts(&self, state: &ChainState, workspace: &mut Workspace) -> Vec<Vec3> {
         let in_root = self.links.map(|l| state.link_in_root(l));
         let mut contacts = Vec::new();
@@ -305,7 +316,7 @@ impl<'r> Candidate<'r> {
                 let y_in_root = in_root[1] * *y_in_link;
                 let found = |contact: TriangleContact| contacts.extend(contact.segment);
                 if for_each_triangle_contact(x, &x_in_root, y, &y_in_root, workspace, found) {
-                    // Which one is inside is not said: the smaller one.
+                    // The contact does not state which surface is inside: assume the smaller one.
                     let extent = |mesh: &TriMesh| mesh.aabb().extent().length();
                     let (inner, at) = if extent(x) < extent(y) { (x, x_in_root) } else { (y, y_in_root) };
                     contacts.extend(inner.vertices().iter().map(|p| at.transform_point(*p)));

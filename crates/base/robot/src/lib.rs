@@ -1,7 +1,7 @@
-//! A robot as data: a kinematic chain, the collision shapes of its links, and the link pairs that never count.
+//! A robot as data: a kinematic chain, the collision shapes of its links, and the link pairs to ignore.
 //!
-//! [`Robot`] is what model files are read into and what the monitor, the configuration-space maps and the scene are built
-//! from. This crate has no checker: it answers which pairs of links and objects have to be checked at all
+//! Model files are loaded into a [`Robot`]; the monitor, the configuration-space maps and the scene are built from
+//! it. This crate does not check for collisions. It determines which pairs of links and objects must be checked
 //! ([`collision_pairs`], [`Robot::exclusion`]) and which links touch in the rest pose ([`rest_pose_contacts`]).
 //!
 //! ```
@@ -16,8 +16,8 @@
 //! # Ok::<(), elbowroom_kinematics::ChainError>(())
 //! ```
 //!
-//! **Invariant.** If more than one moving joint or a link with colliders is between two links with colliders, they are
-//! always a collision pair, unless no joint moves one against the other or the SRDF disables the pair.
+//! **Invariant.** If more than one moving joint or a link with colliders is between two links with colliders, they
+//! are always a collision pair, unless no joint moves one relative to the other or the SRDF disables the pair.
 
 mod adjacency;
 mod collision_pairs;

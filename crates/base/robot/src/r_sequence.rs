@@ -2,15 +2,17 @@
 
 use elbowroom_kinematics::{Chain, ChainState};
 
-/// Roberts' R-sequence: evenly spread points of the unit cube in any dimension, the multiples of powers of the generalized
-/// golden ratio (Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018). Identical on every machine.
+/// Roberts' R-sequence: evenly spread points of the unit cube in any dimension, identical on every machine.
+///
+/// The points are multiples of powers of the generalized golden ratio (Roberts, "The unreasonable effectiveness of
+/// quasirandom sequences", 2018).
 #[derive(Debug, Clone)]
 pub struct RSequence {
     steps: Vec<f64>,
 }
 
 impl RSequence {
-    /// The sequence in the unit cube of so many dimensions.
+    /// Creates the sequence in the unit cube of `dimensions` dimensions.
     pub fn new(dimensions: usize) -> Self {
         // The positive root of x^(d+1) = x + 1 by Newton's method, in plain arithmetic: equal on every machine.
         let mut phi = 2.0_f64;
@@ -26,8 +28,8 @@ impl RSequence {
         Self { steps: (0..dimensions).map(|_| next()).collect() }
     }
 
-    /// Sets a chain to point `n`, scaled to the joint limits (±π where a rotation has none, ±1 m where a slide has none), and
-    /// computes forward kinematics. The chain's first coordinate of the point is `axis`.
+    /// Sets a chain to point `n`, scaled to the joint limits (±π for a rotation without limits, ±1 m for a slide without
+    /// limits), and computes forward kinematics. `axis` is the point's coordinate for the first joint of the chain.
     pub fn set_state(&self, chain: &Chain, state: &mut ChainState, n: u64, axis: usize) {
         for i in 0..chain.dof() {
             let (lower, upper) = range(chain, i);
@@ -42,7 +44,7 @@ impl RSequence {
     }
 }
 
-/// The range that samples of a joint are taken from, rad or m.
+/// The range from which samples of a joint are taken, rad or m.
 fn range(chain: &Chain, index: usize) -> (f64, f64) {
     let joint = &chain.joints()[chain.active_joints()[index].0];
     let most = if joint.kind.turns() { std::f64::consts::PI } else { 1.0 };

@@ -5,14 +5,15 @@ use elbowroom_proximity::collides;
 
 use crate::{RSequence, Robot};
 
-/// Configurations that are sampled to see whether the links separate.
+/// Number of configurations that are sampled to see whether the links separate.
 const SAMPLES: u32 = 200;
 
-/// Two links of one robot that are a collision pair, have no link with colliders between them, and touch in the rest pose.
+/// Two links of one robot that are a collision pair, have no link with colliders between them, and touch in the rest
+/// pose.
 ///
-/// The model does not tell whether this is an error. The links of a wrist whose axes intersect, or fingers drawn closed, may
-/// be designed to overlap; an SRDF should then disable the pair. The share of configurations in which they touch is a hint: it
-/// is 1 if they overlap by design.
+/// The model does not show whether this is an error. The links of a wrist whose axes intersect, or fingers drawn
+/// closed, may be designed to overlap; then an SRDF should disable the pair. The fraction of configurations in which
+/// they touch is a hint: it is 1 if they overlap by design.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RestPoseContact {
     /// One link.
@@ -21,7 +22,7 @@ pub struct RestPoseContact {
     pub b: LinkId,
     /// Number of sampled configurations in which they touch.
     pub contacts: u32,
-    /// Number of sampled configurations, spread evenly over the joint limits. The same configurations each time.
+    /// Number of sampled configurations, which are spread evenly over the joint limits and are always the same.
     pub samples: u32,
 }
 
@@ -32,9 +33,10 @@ impl RestPoseContact {
     }
 }
 
-/// The pairs that touch in the rest pose: joint values in rad or m, one per [active
-/// joint](elbowroom_kinematics::Chain::active_joints). Empty if the number of values does not match the chain or a value is
-/// not finite.
+/// Finds the pairs that touch in the rest pose.
+///
+/// `rest` are the joint values in rad or m, one per [active joint](elbowroom_kinematics::Chain::active_joints). The
+/// result is empty if their number does not match the chain or a value is not finite.
 ///
 /// ```
 /// use elbowroom_kinematics::{Chain, Joint, JointKind, Limits, LinkId};

@@ -24,7 +24,7 @@ pub struct Robot {
     pub chain: Chain,
     /// Collision geometry per link.
     pub colliders: Vec<Vec<Collider>>,
-    /// Geometry for display only, per link. A link without visuals is drawn by its colliders.
+    /// Geometry for display only, per link. A link without visuals is drawn with its colliders.
     pub visuals: Vec<Vec<Collider>>,
     /// Link pairs that the SRDF disables, each with the SRDF's reason.
     pub disabled_pairs: Vec<(LinkId, LinkId, String)>,

@@ -1,4 +1,4 @@
-//! Links that always touch where they are joined, and those that only seem to.
+//! Links that always touch at the joint between them, and links that only seem to.
 
 use elbowroom_kinematics::{Chain, ChainState, Joint, JointId, JointKind, Limits, LinkId, Mimic};
 use elbowroom_proximity::{Capsule, Cuboid, Shape, Sphere, collides};
@@ -44,7 +44,7 @@ fn found(robot: &Robot) -> Vec<JointContact> {
     joint_contacts(robot, &vec![0.0; robot.chain.dof()])
 }
 
-/// A forearm whose end holds a wrist of two joints; the hand's hub reaches into the forearm.
+/// A forearm with a wrist of two joints at its end; the hand's hub reaches into the forearm.
 fn wrist(hand: Vec<Collider>) -> Robot {
     let forearm = vec![cuboid(Vec3::new(0.4, 0.1, 0.1), Vec3::X * 0.25)];
     arm(vec![forearm, vec![sphere(0.04, Vec3::ZERO)], hand], &[0.45, 0.02], 1.5)
@@ -58,14 +58,14 @@ fn a_hub_inside_the_forearm_is_found_with_its_joint() {
     let contact = all[0];
     assert_eq!((contact.a, contact.b), (LinkId(0), LinkId(2)));
     assert!(contact.farthest_m.1 < 0.1 && contact.samples >= 1000, "{contact:?}");
-    // The same each time, whatever the start within the sampled range.
+    // The result is always the same, whatever the start within the sampled range.
     assert_eq!(joint_contacts(&robot, &[0.3, -0.2]), all);
     assert!(joint_contacts(&robot, &[0.0]).is_empty() && joint_contacts(&robot, &[f64::NAN, 0.0]).is_empty());
 }
 
 #[test]
 fn a_hand_that_also_hits_the_forearm_elsewhere_stays_a_pair() {
-    // Always in the forearm with its hub, and folded back onto it with a bar in some configurations.
+    // The hand's hub is always in the forearm; in some configurations a bar is folded back onto the forearm.
     let forearm = vec![cuboid(Vec3::new(0.4, 0.1, 0.1), Vec3::X * 0.25)];
     let hand = vec![sphere(0.05, Vec3::ZERO), bar(0.4, 0.02)];
     let folding = arm(vec![forearm, vec![sphere(0.04, Vec3::ZERO)], hand], &[0.45, 0.02], 3.1);
@@ -74,8 +74,8 @@ fn a_hand_that_also_hits_the_forearm_elsewhere_stays_a_pair() {
 
 #[test]
 fn links_that_touch_often_but_not_always_stay_a_pair() {
-    // The hand's pin touches the forearm at rest, and separates when the wrist turns: in how many configurations depends on
-    // the range.
+    // The hand's pin touches the forearm at rest, and separates when the wrist turns. The range determines in how many
+    // configurations.
     let mut shares = Vec::new();
     for half_range in [1.5, 2.0, 3.0] {
         let forearm = vec![cuboid(Vec3::new(0.4, 0.1, 0.1), Vec3::X * 0.25)];
@@ -87,7 +87,7 @@ fn links_that_touch_often_but_not_always_stay_a_pair() {
     assert!(shares.iter().all(|s| *s > 0.5 && *s < 1.0), "{shares:?}");
 }
 
-/// The share of 1000 configurations in which the first colliders of two links touch.
+/// The fraction of 1000 configurations in which the first colliders of two links touch.
 fn share_in_contact(robot: &Robot, a: LinkId, b: LinkId) -> f64 {
     let (mut state, sequence) = (ChainState::new(&robot.chain), RSequence::new(robot.chain.dof()));
     let mut touches = |n: u64| {
@@ -103,11 +103,11 @@ fn share_in_contact(robot: &Robot, a: LinkId, b: LinkId) -> f64 {
 
 #[test]
 fn links_that_always_touch_far_from_their_joints_stay_a_pair() {
-    // A plate around the base that the forearm's far end always slides on.
+    // The forearm's far end always slides on a plate around the base.
     let plate = vec![cuboid(Vec3::new(3.0, 3.0, 0.1), -Vec3::Z * 0.1)];
     let far = vec![sphere(0.06, Vec3::X * 0.9)];
     let mut robot = arm(vec![plate, vec![sphere(0.02, Vec3::ZERO)], far], &[0.0, 0.1], 3.0);
-    // Both joints about z: the far end stays on the plate.
+    // Both joints are about z, so the far end stays on the plate.
     let joints = robot.chain.joints().iter().cloned().map(|j| Joint { axis: Vec3::Z, ..j }).collect();
     robot.chain = Chain::new("arm", robot.chain.links().to_vec(), joints).unwrap();
     assert!(found(&robot).is_empty(), "{:?}", found(&robot));
@@ -154,7 +154,7 @@ fn a_piston_that_one_joint_value_moves_is_found_and_one_that_leaves_its_cylinder
     let pairs = |robot: &Robot| found(robot).iter().map(|c| (c.a.0, c.b.0)).collect::<Vec<_>>();
     // The piston's end stays in the base, where the cylinder is mounted.
     assert_eq!(pairs(&pistons(0.1)), [(0, 3)]);
-    // It is drawn out of the base.
+    // The piston is drawn out of the base.
     assert!(pairs(&pistons(0.5)).is_empty());
 }
 
@@ -186,19 +186,20 @@ fn lever(lever_at: Vec3, post_x_m: f64) -> Robot {
 
 #[test]
 fn a_lever_on_the_axis_of_the_joint_below_counts_as_joined_even_where_it_also_hits_farther_out() {
-    // Beside the arm the lever always touches the shoulder at the common axis; in some states its end hits the post as well.
+    // The lever beside the arm always touches the shoulder at the common axis; in some configurations its end also hits
+    // the post.
     let near = lever(Vec3::ZERO, 0.0);
     assert_eq!(kinds(&near), [(0, 2, JointContactKind::Linkage)]);
     let contact = found(&near)[0];
     assert!(contact.nearest_m.1 < 0.1 && contact.farthest_m.1 > 0.4, "{contact:?}");
-    // It hits nothing else: only at the joint.
+    // It hits nothing else, so the contact is only at the joint.
     assert_eq!(kinds(&lever(Vec3::ZERO, 5.0)), [(0, 2, JointContactKind::AtJoint)]);
-    // On an axis of its own it stays a pair.
+    // On its own axis it remains a pair.
     assert!(kinds(&lever(Vec3::new(0.03, 0.0, 0.0), 0.0)).is_empty(), "{:?}", kinds(&lever(Vec3::X * 0.03, 0.0)));
 }
 
-/// A crank, and a rod on the base that one value moves too; the rod's eye passes the crank's pin at a distance that the ratio
-/// of the mimic joint makes smaller or larger.
+/// A crank, and a rod on the base that the same value moves. The rod's eye passes the crank's pin at a distance that
+/// the ratio of the mimic joint makes smaller or larger.
 fn crank(eye_m: f64, ratio: f64) -> Robot {
     let joint = |name: &str, parent, child, at, mimic| Joint {
         name: name.to_owned(),
@@ -229,9 +230,10 @@ fn an_eye_on_its_pin_is_found_though_it_leaves_it_at_the_ends_of_the_stroke() {
     assert_eq!(kinds(&robot), [(1, 2, JointContactKind::Pivot)]);
     let contact = found(&robot)[0];
     assert!(contact.contacts >= 500 && contact.contacts < contact.samples, "{contact:?}");
-    // It need not touch at the start.
+    // The links need not touch at the start.
     assert!(joint_contacts(&robot, &[1.0]).contains(&contact));
-    // In less than half of the stroke: no pivot. Driven by a value of its own: neither.
+    // The links touch in less than half of the stroke: not a pivot. Driven by its own value, the rod is not a pivot
+    // either.
     assert!(kinds(&crank(0.04, 0.25)).is_empty(), "{:?}", kinds(&crank(0.04, 0.25)));
     let joints = robot.chain.joints().iter().cloned().map(|j| Joint { mimic: None, ..j }).collect();
     let free = Robot { chain: Chain::new("crank", robot.chain.links().to_vec(), joints).unwrap(), ..robot };

@@ -1,4 +1,4 @@
-//! The pair rules on the example arm, whose upper arm has its colliders removed.
+//! The pair rules on the example arm, with the colliders of its upper arm removed.
 
 use elbowroom_kinematics::{Chain, JointKind, LinkId};
 use elbowroom_robot::{Exclusion, GeometryId, ObjectId, Robot, RobotId, collision_pairs, example};
@@ -23,7 +23,7 @@ fn adjacent_links_are_no_pair_and_two_moving_joints_make_one() {
     assert!(robot.links_can_meet(BASE, FOREARM) && robot.links_can_meet(FOREARM, BASE));
     robot.disabled_pairs.push((FOREARM, BASE, "Never".into()));
     assert_eq!(robot.exclusion(BASE, FOREARM), Some(Exclusion::Srdf("Never".into())));
-    // Across a fixed joint and a link without colliders there is one moving joint: adjacent.
+    // Across a fixed joint and a link without colliders lies one moving joint, so the links are adjacent.
     let mut joints = robot.chain.joints().to_vec();
     joints[2].kind = JointKind::Fixed;
     robot.chain = Chain::new("stiff", robot.chain.links().to_vec(), joints).unwrap();

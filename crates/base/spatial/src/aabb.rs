@@ -32,28 +32,28 @@ impl Aabb {
         points.into_iter().fold(Self::EMPTY, |b, p| Self { min: b.min.min(p), max: b.max.max(p) })
     }
 
-    /// From centre and half extents.
+    /// A box from its centre and half extents (m).
     #[inline]
     pub fn from_center(center: Vec3, half_extents: Vec3) -> Self {
         Self { min: center - half_extents, max: center + half_extents }
     }
 
-    /// The smallest box around both.
+    /// The smallest box around this box and the other one.
     #[inline]
     #[must_use]
     pub fn union(&self, o: &Self) -> Self {
         Self { min: self.min.min(o.min), max: self.max.max(o.max) }
     }
 
-    /// Enlarged by `margin` metres on every side.
+    /// This box enlarged by `margin` metres on every side.
     #[inline]
     #[must_use]
     pub fn inflated(&self, margin: f64) -> Self {
         Self { min: self.min - Vec3::splat(margin), max: self.max + Vec3::splat(margin) }
     }
 
-    /// The smallest axis-aligned box of the outer frame around this box with the pose `pose`; all of space where this box is
-    /// unbounded.
+    /// The smallest axis-aligned box of the outer frame around this box with the pose `pose`; all of space if this box
+    /// is unbounded.
     #[inline]
     #[must_use]
     pub fn transformed(&self, pose: &Pose) -> Self {
@@ -143,7 +143,7 @@ mod tests {
     use crate::{Obb, Rotation};
     use elbowroom_testkit::random::{split_mix, unit};
 
-    /// The box of a turned box has its eight corners, and none of its sides can be moved inwards.
+    /// The box around a turned box contains its eight corners, and no side can be moved inwards.
     #[test]
     fn the_box_of_a_turned_box_is_the_smallest_one_around_its_corners() {
         let mut state = 5;

@@ -2,7 +2,7 @@
 
 use crate::Vec3;
 
-/// Linear and angular velocity and acceleration of a frame, seen from and expressed in the outer frame.
+/// Linear and angular velocity and acceleration of a frame, measured in and expressed in the outer frame.
 ///
 /// ```
 /// use elbowroom_spatial::{FrameMotion, Vec3};
@@ -46,7 +46,7 @@ impl FrameMotion {
             + self.angular_velocity.cross(self.angular_velocity.cross(offset))
     }
 
-    /// The motion of a frame fixed to this one, with its origin at `offset` from this one's.
+    /// The motion of a frame fixed to this frame, with its origin at `offset` (m) from this frame's origin.
     #[inline]
     #[must_use]
     pub fn shifted(&self, offset: Vec3) -> Self {
@@ -68,7 +68,8 @@ mod tests {
     use crate::Rotation;
     use elbowroom_testkit::random::{split_mix, unit};
 
-    /// Against differences of the position of a point on a frame that travels and turns with constant accelerations.
+    /// Comparison with differences of the position of a point on a frame that travels and turns with constant
+    /// accelerations.
     #[test]
     fn velocity_and_acceleration_are_the_derivatives_of_the_position() {
         let mut state = 6;
@@ -83,7 +84,7 @@ mod tests {
             };
             let offset = vec3();
             let at = |t: f64| {
-                // To the second order in time.
+                // Exact to the second order in time.
                 let turn = motion.angular_velocity * t + motion.angular_acceleration * (0.5 * t * t);
                 let travel = motion.velocity * t + motion.acceleration * (0.5 * t * t);
                 Rotation::from_rotation_vector(turn) * offset + travel

@@ -1,7 +1,8 @@
-//! Poses, rotations, velocities of frames, bounding boxes, units and small linear algebra: the types that all other crates share.
+//! Types that all other crates share: poses, rotations, velocities of frames, bounding boxes, units and small linear
+//! algebra.
 //!
-//! Units are metres, radians and seconds; readers of files convert with [`units`]. A [`Pose`] named `tool_in_world` maps points
-//! from the tool's frame to the world's.
+//! Units are metres, radians and seconds; readers of files convert with [`units`]. A [`Pose`] named `tool_in_world`
+//! maps points from the tool's frame to the world frame.
 //!
 //! ```
 //! use elbowroom_spatial::{Pose, Rotation, Vec3};
@@ -11,8 +12,8 @@
 //! assert!((p_in_tool - Vec3::new(0.0, 0.0, 0.25)).length() < 1e-15);
 //! ```
 //!
-//! **Invariant.** If a pose is finite, the box of transformed points never loses one: [`Aabb::transformed`] contains
-//! the image of every point of the box up to rounding, and for an unbounded box it is all of space.
+//! **Invariant.** If a pose is finite, [`Aabb::transformed`] always contains the image of every point of the box, up
+//! to rounding. For an unbounded box it is all of space.
 
 mod aabb;
 mod frame_motion;

@@ -1,10 +1,12 @@
 //! Small dense linear algebra: Cholesky decomposition and eigenvalues of symmetric matrices.
 
-/// Solves the leading `n` equations of `a·x = b` for a symmetric positive definite `a` by Cholesky decomposition. Reads the
-/// lower triangle only; entries of `b` beyond `n` are returned unchanged. `None` if a pivot is not positive.
+/// Solves the leading `n` equations of `a·x = b` for a symmetric positive definite `a` by Cholesky decomposition.
+///
+/// Reads the lower triangle only; entries of `b` beyond `n` are returned unchanged. Returns `None` if a pivot is not
+/// positive.
 ///
 /// # Panics
-/// Where `n` is larger than `N`.
+/// Panics if `n` is larger than `N`.
 ///
 /// ```
 /// use elbowroom_spatial::linalg::solve_spd;
@@ -17,12 +19,14 @@ pub fn solve_spd<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N], n: usize
     solve_spd_in_place(a.as_flattened_mut(), N, &mut b[..n]).then_some(b)
 }
 
-/// Solves `a·x = b` for a symmetric positive definite `a` by Cholesky decomposition: as many equations as `b` has entries. Row
-/// `i` of `a` begins at `i·stride`; only its lower triangle is read. On return `a` holds the factor and `b` the solution.
-/// False if a pivot is not positive; `a` and `b` are then undefined.
+/// Solves `a·x = b` in place for a symmetric positive definite `a` by Cholesky decomposition.
+///
+/// The number of equations is the length of `b`. Row `i` of `a` begins at `i·stride`; only its lower triangle is
+/// read. On return `a` holds the factor and `b` the solution. Returns false if a pivot is not positive; then `a` and
+/// `b` are undefined.
 ///
 /// # Panics
-/// Where `a` is too short.
+/// Panics if `a` is too short.
 #[inline]
 pub fn solve_spd_in_place(a: &mut [f64], stride: usize, b: &mut [f64]) -> bool {
     let n = b.len();
@@ -58,8 +62,9 @@ pub fn solve_spd_in_place(a: &mut [f64], stride: usize, b: &mut [f64]) -> bool {
     true
 }
 
-/// Eigenvalues and eigenvectors (columns) of a symmetric matrix, in no order, by 30 sweeps of cyclic Jacobi rotations (Golub
-/// and Van Loan, "Matrix Computations", 8.5).
+/// Eigenvalues and eigenvectors (columns) of a symmetric matrix, in arbitrary order.
+///
+/// Performs 30 sweeps of cyclic Jacobi rotations (Golub and Van Loan, "Matrix Computations", 8.5).
 ///
 /// ```
 /// use elbowroom_spatial::linalg::symmetric_eigen;
@@ -82,7 +87,7 @@ pub fn symmetric_eigen<const N: usize>(mut a: [[f64; N]; N]) -> ([f64; N], [[f64
     (std::array::from_fn(|i| a[i][i]), v)
 }
 
-/// The Jacobi rotation that zeroes entry (p, q).
+/// Applies the Jacobi rotation that zeroes entry (p, q).
 fn rotate<const N: usize>(a: &mut [[f64; N]; N], v: &mut [[f64; N]; N], p: usize, q: usize) {
     if a[p][q].abs() < 1e-300 {
         return;
@@ -104,7 +109,7 @@ fn rotate<const N: usize>(a: &mut [[f64; N]; N], v: &mut [[f64; N]; N], p: usize
 mod tests {
     use super::*;
 
-    /// A Hilbert matrix, badly conditioned, with a stronger diagonal.
+    /// A Hilbert matrix, which is badly conditioned, with a stronger diagonal.
     fn hilbert() -> [[f64; 6]; 6] {
         let mut a = [[0.0; 6]; 6];
         for i in 0..6 {

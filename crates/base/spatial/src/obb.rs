@@ -2,8 +2,8 @@
 
 use crate::{Aabb, Pose, Vec3};
 
-/// The oriented box `B = (bc, bu, bv, bw, hu, hv, hw)` of Romanelli 2011, eq. 5: its pose has the centre `bc` and the axes
-/// `bu, bv, bw`, its half extents are `hu, hv, hw`.
+/// The oriented box `B = (bc, bu, bv, bw, hu, hv, hw)` of Romanelli 2011, eq. 5. Its pose has the centre `bc` and
+/// the axes `bu, bv, bw`; its half extents are `hu, hv, hw`.
 ///
 /// ```
 /// use elbowroom_spatial::{Obb, Pose, Vec3};
@@ -33,7 +33,7 @@ impl Obb {
         8.0 * self.half_extents.x * self.half_extents.y * self.half_extents.z
     }
 
-    /// The smallest axis-aligned box around it.
+    /// The smallest axis-aligned box around this box.
     pub fn aabb(&self) -> Aabb {
         Aabb::from_center(self.pose.translation, self.pose.rotation.abs_mul(self.half_extents))
     }

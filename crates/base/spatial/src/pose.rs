@@ -22,51 +22,51 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// Both frames coincide.
+    /// The identity: both frames coincide.
     pub const IDENTITY: Self = Self { rotation: Rotation::IDENTITY, translation: Vec3::ZERO };
 
-    /// From orientation and origin.
+    /// A pose from orientation and origin (m).
     #[inline]
     pub const fn new(rotation: Rotation, translation: Vec3) -> Self {
         Self { rotation, translation }
     }
 
-    /// Same orientation, origin at `translation` (metres).
+    /// A pose without rotation, with its origin at `translation` (metres).
     #[inline]
     pub const fn from_translation(translation: Vec3) -> Self {
         Self { rotation: Rotation::IDENTITY, translation }
     }
 
-    /// As in a URDF `<origin>`: metres, and roll, pitch, yaw in radians.
+    /// A pose as in a URDF `<origin>`: metres, and roll, pitch, yaw in radians.
     pub fn from_xyz_rpy(xyz: [f64; 3], rpy: [f64; 3]) -> Self {
         Self::new(Rotation::from_rpy(rpy[0], rpy[1], rpy[2]), xyz.into())
     }
 
-    /// A point of the inner frame, in the outer one.
+    /// Maps a point from the inner frame to the outer frame.
     #[inline]
     pub fn transform_point(&self, p: Vec3) -> Vec3 {
         self.rotation * p + self.translation
     }
 
-    /// A direction of the inner frame, in the outer one.
+    /// Maps a direction from the inner frame to the outer frame.
     #[inline]
     pub fn transform_vector(&self, v: Vec3) -> Vec3 {
         self.rotation * v
     }
 
-    /// A point of the outer frame, in the inner one.
+    /// Maps a point from the outer frame to the inner frame.
     #[inline]
     pub fn inverse_transform_point(&self, p: Vec3) -> Vec3 {
         self.rotation.inverse_rotate(p - self.translation)
     }
 
-    /// A direction of the outer frame, in the inner one.
+    /// Maps a direction from the outer frame to the inner frame.
     #[inline]
     pub fn inverse_transform_vector(&self, v: Vec3) -> Vec3 {
         self.rotation.inverse_rotate(v)
     }
 
-    /// The pose of the outer frame in the inner one.
+    /// The pose of the outer frame in the inner frame.
     #[inline]
     #[must_use]
     pub fn inverse(&self) -> Self {
@@ -74,7 +74,7 @@ impl Pose {
         Self { rotation, translation: -(rotation * self.translation) }
     }
 
-    /// `self.inverse() * other`: the pose of the other frame in this one.
+    /// `self.inverse() * other`: the pose of the other frame in this frame.
     #[inline]
     #[must_use]
     pub fn inverse_mul(&self, other: &Self) -> Self {

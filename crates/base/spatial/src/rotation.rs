@@ -26,18 +26,18 @@ impl Rotation {
     /// No rotation.
     pub const IDENTITY: Self = Self(DMat3::IDENTITY);
 
-    /// Rotates by `angle` radians about the unit vector `axis`, right-handed.
+    /// A right-handed rotation by `angle` radians about the unit vector `axis`.
     #[inline]
     pub fn from_axis_angle(axis: Vec3, angle: f64) -> Self {
         Self(DMat3::from_axis_angle(axis.into(), angle))
     }
 
-    /// Fixed-axis roll, pitch, yaw in radians as in URDF: `Rz(yaw)·Ry(pitch)·Rx(roll)`.
+    /// A rotation from fixed-axis roll, pitch, yaw in radians as in URDF: `Rz(yaw)·Ry(pitch)·Rx(roll)`.
     pub fn from_rpy(roll: f64, pitch: f64, yaw: f64) -> Self {
         Self(DMat3::from_rotation_z(yaw) * DMat3::from_rotation_y(pitch) * DMat3::from_rotation_x(roll))
     }
 
-    /// Rotation vector: its direction is the axis, its length the angle in radians.
+    /// A rotation from a rotation vector: its direction is the axis, its length the angle in radians.
     pub fn from_rotation_vector(v: Vec3) -> Self {
         match v.try_normalize() {
             Some(axis) => Self::from_axis_angle(axis, v.length()),
@@ -53,8 +53,8 @@ impl Rotation {
         orthonormal.then(|| Self(DMat3::from_cols(x.into(), y.into(), z.into())))
     }
 
-    /// The frame whose x axis points along `x` and whose xy plane holds `xy`.
-    /// `None` if the two are parallel or one of them is zero.
+    /// The frame whose x axis points along `x` and whose xy plane contains `xy`. `None` if the two are parallel or one
+    /// of them is zero.
     pub fn from_x_and_xy(x: Vec3, xy: Vec3) -> Option<Self> {
         let ex = x.try_normalize()?;
         let ez = ex.cross(xy.try_normalize()?);
@@ -71,7 +71,7 @@ impl Rotation {
         Self(DMat3::from_cols(x.into(), z.cross(x).into(), z.into()))
     }
 
-    /// From a quaternion, normalized first. `None` if it is zero or not finite.
+    /// A rotation from a quaternion, which is normalized first. `None` if it is zero or not finite.
     pub fn from_quaternion_xyzw(q: [f64; 4]) -> Option<Self> {
         let q = DQuat::from_array(q);
         let n = q.length();
@@ -112,11 +112,13 @@ impl Rotation {
         self.to_rotation_vector().length()
     }
 
-    /// The product with a rotation about a coordinate axis, `self·R(axis, angle)`: axis 0 is x, 1 y, 2 z. Same as the product with
-    /// [`Rotation::from_axis_angle`] for a third of the work.
+    /// The product with a rotation about a coordinate axis, `self·R(axis, angle)`: axis 0 is x, 1 y, 2 z; `angle` is in
+    /// radians.
+    ///
+    /// Equals the product with [`Rotation::from_axis_angle`], at a third of the work.
     ///
     /// # Panics
-    /// Where `axis` is not 0, 1 or 2.
+    /// Panics if `axis` is not 0, 1 or 2.
     ///
     /// ```
     /// use elbowroom_spatial::{Rotation, Vec3};
@@ -146,7 +148,7 @@ impl Rotation {
         Self(self.0.transpose())
     }
 
-    /// The inverse applied to a vector, without forming it.
+    /// Applies the inverse rotation to a vector, without forming the inverse.
     #[inline]
     pub fn inverse_rotate(self, v: Vec3) -> Vec3 {
         Vec3::new(self.x_axis().dot(v), self.y_axis().dot(v), self.z_axis().dot(v))
@@ -160,7 +162,7 @@ impl Rotation {
         self * Self::from_rotation_vector(turn * t)
     }
 
-    /// The same rotation without the rounding errors of a long product.
+    /// This rotation without the rounding errors of a long product.
     #[inline]
     #[must_use]
     pub fn renormalized(self) -> Self {
@@ -169,19 +171,19 @@ impl Rotation {
         Self(DMat3::from_cols(x, z.cross(x), z))
     }
 
-    /// First column: the x axis seen from the outer frame.
+    /// First column: the x axis in the outer frame.
     #[inline]
     pub fn x_axis(self) -> Vec3 {
         self.0.x_axis.into()
     }
 
-    /// Second column.
+    /// Second column: the y axis in the outer frame.
     #[inline]
     pub fn y_axis(self) -> Vec3 {
         self.0.y_axis.into()
     }
 
-    /// Third column.
+    /// Third column: the z axis in the outer frame.
     #[inline]
     pub fn z_axis(self) -> Vec3 {
         self.0.z_axis.into()
@@ -199,7 +201,8 @@ impl Rotation {
         self.0.transpose().to_cols_array_2d()
     }
 
-    /// Component-wise absolute matrix applied to a non-negative vector: half extents of a rotated box.
+    /// The component-wise absolute matrix applied to a non-negative vector, which gives the half extents of a rotated
+    /// box.
     #[inline]
     pub fn abs_mul(self, v: Vec3) -> Vec3 {
         self.x_axis().abs() * v.x + self.y_axis().abs() * v.y + self.z_axis().abs() * v.z

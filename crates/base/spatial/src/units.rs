@@ -8,12 +8,12 @@
 //! assert_eq!(AngleUnit::Degree.to_radians(90.0), std::f64::consts::FRAC_PI_2);
 //! ```
 
-/// Metres from millimetres.
+/// Converts millimetres to metres.
 pub fn mm(v: f64) -> f64 {
     LengthUnit::Millimetre.to_metres(v)
 }
 
-/// Radians from degrees.
+/// Converts degrees to radians.
 pub fn deg(v: f64) -> f64 {
     AngleUnit::Degree.to_radians(v)
 }
@@ -21,19 +21,19 @@ pub fn deg(v: f64) -> f64 {
 /// A unit of length that a file may be written in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum LengthUnit {
-    /// m
+    /// Metre, m.
     #[default]
     Metre,
-    /// cm
+    /// Centimetre, cm.
     Centimetre,
-    /// mm
+    /// Millimetre, mm.
     Millimetre,
-    /// inch, 25.4 mm
+    /// Inch, 25.4 mm.
     Inch,
 }
 
 impl LengthUnit {
-    /// From its symbol: `m`, `cm`, `mm`, `in`.
+    /// Parses a symbol: `m`, `cm`, `mm`, `in`.
     pub fn parse(symbol: &str) -> Option<Self> {
         Some(match symbol {
             "m" => Self::Metre,
@@ -44,7 +44,7 @@ impl LengthUnit {
         })
     }
 
-    /// Its symbol.
+    /// The symbol of the unit.
     pub fn symbol(self) -> &'static str {
         match self {
             Self::Metre => "m",
@@ -68,15 +68,15 @@ impl LengthUnit {
 /// A unit of angle that a file may be written in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum AngleUnit {
-    /// rad
+    /// Radian, rad.
     #[default]
     Radian,
-    /// deg
+    /// Degree, deg.
     Degree,
 }
 
 impl AngleUnit {
-    /// From its symbol: `rad`, `deg`.
+    /// Parses a symbol: `rad`, `deg`.
     pub fn parse(symbol: &str) -> Option<Self> {
         Some(match symbol {
             "rad" => Self::Radian,
@@ -85,7 +85,7 @@ impl AngleUnit {
         })
     }
 
-    /// Its symbol.
+    /// The symbol of the unit.
     pub fn symbol(self) -> &'static str {
         match self {
             Self::Radian => "rad",

@@ -77,7 +77,7 @@ impl Vec3 {
         (self - o).length()
     }
 
-    /// The unit vector of the same direction, or `None` if the length is zero or not finite.
+    /// The unit vector in the same direction, or `None` if the length is zero or not finite.
     #[inline]
     pub fn try_normalize(self) -> Option<Self> {
         let length = self.length();
@@ -87,7 +87,8 @@ impl Vec3 {
         self.rescaled().map(|v| v / v.length())
     }
 
-    /// Scaled to a largest component of 1, for vectors so small or large that their square under- or overflows.
+    /// The vector scaled to a largest component of 1, for vectors so small or large that their square under- or
+    /// overflows.
     fn rescaled(self) -> Option<Self> {
         let largest = self.abs().max_element();
         (largest > 0.0 && self.is_finite()).then(|| Self::new(self.x / largest, self.y / largest, self.z / largest))

@@ -1,5 +1,7 @@
-//! Counts what a program allocates. Such a test runs without the test harness (`harness = false`), because the harness has
-//! threads that allocate, and the counter is for the whole process. The program installs the allocator:
+//! Counter of a program's allocations, for tests.
+//!
+//! Such a test runs without the test harness (`harness = false`): the harness has threads that allocate, and the
+//! counter is for the whole process. The program installs the allocator:
 //!
 //! ```
 //! use elbowroom_testkit::allocation::{COUNTING_ALLOCATOR, AllocationCounter, CountingAllocator};
@@ -24,17 +26,17 @@ use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 /// The type of [`COUNTING_ALLOCATOR`].
 pub type CountingAllocator = &'static StatsAlloc<System>;
 
-/// The allocator of the system, with counters.
+/// The system allocator with counters.
 pub const COUNTING_ALLOCATOR: CountingAllocator = &INSTRUMENTED_SYSTEM;
 
-/// What was allocated since its start, by all threads.
+/// Counts the allocations of all threads since its start.
 pub struct AllocationCounter(Region<'static, System>);
 
 impl AllocationCounter {
-    /// Counts from now on.
+    /// Starts counting.
     ///
     /// # Panics
-    /// If the program has another allocator, so that nothing would be counted.
+    /// Panics if the program has another allocator, because then nothing would be counted.
     pub fn start() -> Self {
         let check = Region::new(COUNTING_ALLOCATOR);
         drop(black_box(Box::new(1_u8)));
@@ -42,13 +44,13 @@ impl AllocationCounter {
         Self(Region::new(COUNTING_ALLOCATOR))
     }
 
-    /// New blocks, and blocks that were made larger or smaller.
+    /// Number of new blocks, and of blocks that were resized.
     pub fn allocations(&self) -> usize {
         let change = self.0.change();
         change.allocations + change.reallocations
     }
 
-    /// [`Self::allocations`], and blocks that were freed.
+    /// Number of [`Self::allocations`], and of blocks that were freed.
     pub fn changes(&self) -> usize {
         self.allocations() + self.0.change().deallocations
     }

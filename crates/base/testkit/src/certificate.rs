@@ -1,12 +1,12 @@
-//! Certificates of servers of tests.
+//! Certificates for test servers.
 
 use std::path::{Path, PathBuf};
 
-/// Writes a certificate that a server of these names (or IP addresses) has made for itself, and its private key, both in PEM, to
+/// Writes a self-signed certificate for these host names (or IP addresses) and its private key, both in PEM, to
 /// `NAME.pem` and `NAME.key.pem` in a folder.
 ///
 /// # Panics
-/// Where a name is none, or the folder cannot be written to.
+/// Panics if a host name is invalid, or the folder cannot be written to.
 pub fn write_certificate(folder: &Path, name: &str, hosts: &[&str]) -> (PathBuf, PathBuf) {
     let hosts = hosts.iter().map(|host| (*host).to_owned()).collect::<Vec<_>>();
     let made = rcgen::generate_simple_self_signed(hosts).expect("names of hosts");

@@ -1,5 +1,5 @@
-//! Folders that tests read: the workspace, its examples, and the robots, meshes and recordings beside it, which are not
-//! part of it.
+//! Folders that tests read: the workspace, its examples, and the robots, meshes and recordings outside the
+//! workspace.
 
 use std::path::{Path, PathBuf};
 
@@ -18,19 +18,19 @@ pub fn model(name: &str) -> PathBuf {
     examples().join("models").join(name).join(name).with_extension("urdf")
 }
 
-/// The data on real robots: `$ELBOWROOM_DATA`, or `../shared/data` beside the workspace. If that folder is missing, prints one
-/// line on standard error and returns `None`: the test proves nothing.
+/// The data on real robots: `$ELBOWROOM_DATA`, or `../shared/data` beside the workspace. If that folder is missing,
+/// prints one line on standard error and returns `None`; then the test proves nothing.
 pub fn data() -> Option<PathBuf> {
     found(data_place())
 }
 
-/// A folder of the data, such as `urdf`; like [`data`] if it is missing.
+/// A folder of the data, such as `urdf`; like [`data`], prints a line and returns `None` if it is missing.
 pub fn data_part(part: &str) -> Option<PathBuf> {
     found(data_place().join(part))
 }
 
-/// The robots in folders of the data, such as `urdf` and `cell`: every `NAME/NAME.urdf`, in the order of the names. For a
-/// missing folder, prints a line as [`data`] does.
+/// The robots in folders of the data, such as `urdf` and `cell`: every `NAME/NAME.urdf`, in the order of the names.
+/// Like [`data`], prints a line if a folder is missing.
 pub fn robots(parts: &[&str]) -> Vec<PathBuf> {
     let urdf = |folder: PathBuf| {
         let file = folder.join(folder.file_name()?).with_added_extension("urdf");
@@ -42,7 +42,7 @@ pub fn robots(parts: &[&str]) -> Vec<PathBuf> {
     robots
 }
 
-/// All files below a folder, sorted; none if there is no such folder.
+/// All files below a folder, sorted; empty if the folder does not exist.
 pub fn files_below(folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
     let mut waiting = vec![folder.to_owned()];

@@ -17,7 +17,7 @@ impl Default for Fnv {
 }
 
 impl Fnv {
-    /// Adds the eight bytes of a number, the lowest first.
+    /// Adds the eight bytes of a number, lowest byte first.
     pub fn add(&mut self, value: u64) {
         for byte in value.to_le_bytes() {
             self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
@@ -31,7 +31,7 @@ mod tests {
 
     #[test]
     fn the_hash_is_the_published_one() {
-        // Eight zeros: 0 changes no bit before each multiplication.
+        // Eight zero bytes: a zero byte does not change the hash before the multiplication.
         let mut hash = Fnv::default();
         hash.add(0);
         let expected = (0..8).fold(Fnv::default().0, |h, _| h.wrapping_mul(0x0100_0000_01b3));

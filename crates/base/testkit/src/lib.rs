@@ -1,5 +1,7 @@
-//! What tests, benches and developers' tools of several crates share: generators of pseudo-random numbers, folders of data, a
-//! counter of allocations, a hash, free addresses, certificates, arguments of benches. No crate that is shipped links this one.
+//! Utilities that tests, benches and developers' tools of several crates share.
+//!
+//! It has generators of pseudo-random numbers, folders of data, a counter of allocations, a hash, free addresses,
+//! certificates and arguments of benches. Shipped crates never link this crate.
 //!
 //! ```
 //! use elbowroom_testkit::random::Random;

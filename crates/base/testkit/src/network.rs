@@ -1,21 +1,21 @@
-//! Addresses and waiting for tests of services on the loopback network.
+//! Free addresses and waiting, for tests of services on the loopback network.
 
 use std::net::TcpListener;
 use std::time::{Duration, Instant};
 
-/// An address of this machine at which no program listens, such as `127.0.0.1:40123`.
+/// A loopback address at which no program listens, such as `127.0.0.1:40123`.
 ///
 /// # Panics
-/// If no port is free.
+/// Panics if no port is free.
 pub fn free_address() -> String {
     let listener = TcpListener::bind("127.0.0.1:0").expect("a free port");
     listener.local_addr().expect("its address").to_string()
 }
 
-/// Waits until a condition holds, at most 20 s; asks every 2 ms.
+/// Waits until a condition holds, at most 20 s; checks every 2 ms.
 ///
 /// # Panics
-/// If it does not hold by then, with the message.
+/// Panics with the message `what` if the condition does not hold by then.
 #[track_caller]
 pub fn eventually(what: &str, mut holds: impl FnMut() -> bool) {
     let began = Instant::now();

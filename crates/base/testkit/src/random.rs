@@ -1,7 +1,7 @@
 //! Generators of pseudo-random numbers, the same on every machine.
 //!
-//! Each function advances a state of 64 bits, which begins as the seed, and returns 64 bits. Tests with fixed results
-//! (golden hashes, thresholds that a seed was found to meet) depend on the sequences, so these never change.
+//! Each function advances a state of 64 bits, which starts as the seed, and returns 64 bits. The sequences never
+//! change: tests with fixed results (golden hashes, thresholds that a seed was found to meet) depend on them.
 //!
 //! ```
 //! use elbowroom_testkit::random::SplitMix;
@@ -10,7 +10,7 @@
 //! assert!(values.iter().all(|x| (0.0..1.0).contains(x)));
 //! ```
 
-/// `SplitMix64` (Steele, Lea, Flood: *Fast splittable pseudorandom number generators*, 2014). Any seed will do.
+/// `SplitMix64` (Steele, Lea, Flood: *Fast splittable pseudorandom number generators*, 2014). Any seed is valid.
 pub fn split_mix(state: &mut u64) -> u64 {
     *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let z = (*state ^ (*state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -18,7 +18,8 @@ pub fn split_mix(state: &mut u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// Xorshift with the shifts 13, 7, 17 (Marsaglia: *Xorshift RNGs*, 2003). The seed must not be 0, which yields only zeros.
+/// Xorshift with the shifts 13, 7, 17 (Marsaglia: *Xorshift RNGs*, 2003). The seed must not be 0, which gives only
+/// zeros.
 pub fn xorshift(state: &mut u64) -> u64 {
     *state ^= *state << 13;
     *state ^= *state >> 7;
@@ -26,19 +27,19 @@ pub fn xorshift(state: &mut u64) -> u64 {
     *state
 }
 
-/// The linear congruential generator of Knuth's MMIX. Any seed will do; the low bits have short periods.
+/// The linear congruential generator of Knuth's MMIX. Any seed is valid; the low bits have short periods.
 pub fn linear_congruential(state: &mut u64) -> u64 {
     *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
     *state
 }
 
-/// A number of `[0, 1)` from the upper 53 bits.
+/// A number in `[0, 1)` from the upper 53 bits.
 pub fn unit(bits: u64) -> f64 {
     (bits >> 11) as f64 / (1_u64 << 53) as f64
 }
 
 /// Xorshift64* with the shifts 12, 25, 27 (Vigna: *An experimental exploration of Marsaglia's xorshift generators,
-/// scrambled*, 2016). The seed must not be 0, which yields only zeros.
+/// scrambled*, 2016). The seed must not be 0, which gives only zeros.
 fn xorshift_star(state: &mut u64) -> u64 {
     *state ^= *state >> 12;
     *state ^= *state << 25;
@@ -59,17 +60,17 @@ macro_rules! generator {
                 $step(&mut self.0)
             }
 
-            /// A number of `[0, 1)`.
+            /// A number in `[0, 1)`.
             pub fn unit(&mut self) -> f64 {
                 unit(self.bits())
             }
 
-            /// A number of `[low, high)`.
+            /// A number in `[low, high)`.
             pub fn between(&mut self, low: f64, high: f64) -> f64 {
                 low + (high - low) * self.unit()
             }
 
-            /// Numbers of `[-largest, largest)`, such as the coordinates of a vector.
+            /// Numbers in `[-largest, largest)`, such as the coordinates of a vector.
             pub fn within<const N: usize>(&mut self, largest: f64) -> [f64; N] {
                 std::array::from_fn(|_| self.between(-largest, largest))
             }
@@ -121,7 +122,7 @@ mod tests {
         std::array::from_fn(|_| generator(&mut seed))
     }
 
-    /// Golden hashes of other crates follow from these sequences.
+    /// Golden hashes of other crates depend on these sequences.
     #[test]
     fn the_sequences_are_the_published_ones() {
         let split = [6_457_827_717_110_365_317, 3_203_168_211_198_807_973, 9_817_491_932_198_370_423];
@@ -143,7 +144,7 @@ mod tests {
         assert_eq!(unit(u64::MAX), 1.0 - f64::EPSILON / 2.0);
     }
 
-    /// Golden hashes of other crates follow from these draws, too.
+    /// Golden hashes of other crates depend on these draws, too.
     #[test]
     fn draws_are_made_of_the_next_bits() {
         let (mut random, mut bits) = (Random(3), Random(3));

@@ -1,9 +1,9 @@
 //! Access classes of users.
 
-/// Access classes of users in ascending order; each includes the rights of those before it.
+/// Access classes of users in ascending order; each class includes the rights of all lower classes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum AccessClass {
-    /// May read everything and switch nothing.
+    /// May read everything and may not switch anything.
     Operator,
     /// May switch, add, change and remove temporary regions. User programs have this class.
     Programmer,

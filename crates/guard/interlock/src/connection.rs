@@ -1,10 +1,10 @@
-//! What grants a monitor its exchange regions.
+//! Connection of a monitor to the arbiter of its exchange regions.
 
 use std::sync::Arc;
 
 use crate::{RobotSlot, SlotGrants, ZoneArbiter};
 
-/// What grants a monitor its exchange regions.
+/// The source of the grants for a monitor's exchange regions.
 #[derive(Debug, Clone)]
 pub enum Interlock {
     /// The arbiter that all monitors of the process share, and the slot of this robot in it.

@@ -1,6 +1,7 @@
 //! State of a robot with respect to an exchange region.
 
-/// State of a robot with respect to an exchange region and those that share its slot (`docs/laws.md`, section 11).
+/// State of a robot with respect to an exchange region and the regions that share its slot (`docs/laws.md`, section
+/// 11).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ExchangeState {
     /// Beyond the warning zone.

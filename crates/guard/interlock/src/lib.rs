@@ -1,10 +1,13 @@
-//! Interlocks between robots: exchange regions that at most one of them is in at any time, whatever happens to processes and
-//! messages. Exchange regions that are granted together are a **slot** ([`SlotId`]).
+//! Interlocks between robots: at most one robot is in an exchange region at any time, whatever happens to processes
+//! and messages.
 //!
-//! Controllers that share memory use a [`ZoneArbiter`], which each of them calls in its tick. Between processes each robot has a
-//! [`Guard`], which reports where the robot is and learns which slots it holds, and one [`Arbiter`] grants slots. Both are state
-//! machines without input or output: time and messages go in, messages come out, so that the same code is model-checked, simulated
-//! and run. [`wire`] has the bytes of the messages; `docs/interlocks.md` has the protocol, its invariants and a table of faults.
+//! Exchange regions that are granted together are a **slot** ([`SlotId`]).
+//!
+//! Controllers that share memory use a [`ZoneArbiter`]; each controller calls it in its tick. Between processes,
+//! each robot has a [`Guard`], which reports where the robot is and learns which slots it holds, and one [`Arbiter`]
+//! grants slots. Guard and arbiter are state machines without input or output: time and messages go in, messages
+//! come out. So the same code is model-checked, simulated and run. [`wire`] encodes the messages.
+//! `docs/interlocks.md` describes the protocol, its invariants and a table of faults.
 //!
 //! ```
 //! use elbowroom_interlock::{Arbiter, ArbiterSettings, Boot, Guard, Micros, Occupancy, RobotSettings, RobotSlot, SlotId};
@@ -35,8 +38,8 @@
 //! ```
 //!
 //! **Invariant.** Under the assumptions of `docs/interlocks.md` (guards report truly, robots stop in their stopping
-//! times), no robot ever becomes committed to the active regions of a slot while another one is committed to them or
-//! inside.
+//! times), no robot ever becomes committed to the active regions of a slot while another robot is committed to them
+//! or inside them.
 
 mod access_class;
 mod connection;

@@ -1,17 +1,17 @@
-//! What robots publish about a slot, and what they are granted.
+//! Published occupancies of slots, and answers to requests.
 
 use crate::RobotSlot;
 
 /// Position of a robot with respect to the regions of a slot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Occupancy {
-    /// Never published. An occupancy that was published too long ago counts the same.
+    /// Never published. An occupancy that was published too long ago counts as unknown too.
     Unknown,
     /// Beyond the warning zone, and able to stop outside the regions.
     Outside,
     /// In the warning zone, and able to stop outside the regions.
     Warning,
-    /// Outside the regions, but not proven to stop there: the robot moves too fast, or its deceleration is not known.
+    /// Outside the regions, but not proven to stop outside: the robot moves too fast, or its deceleration is not known.
     Committed,
     /// Inside.
     Inside,
@@ -29,7 +29,7 @@ impl Occupancy {
     }
 
     /// True if the robot is in the slot's regions or may enter them whatever is commanded now: [`Occupancy::Committed`]
-    /// and [`Occupancy::Inside`]. No other robot is granted the slot then, and the robot does not release it.
+    /// and [`Occupancy::Inside`]. Then the slot is not granted to other robots, and the robot does not release it.
     pub fn occupies(self) -> bool {
         self >= Self::Committed
     }
@@ -40,7 +40,8 @@ impl Occupancy {
 pub enum Grant {
     /// The robot holds the slot.
     Held,
-    /// This other robot holds the slot, occupies it, requested it first, or must come first so that all can finish.
+    /// This other robot holds the slot, occupies it, requested it first, or must come first so that all robots can
+    /// finish.
     Waiting(RobotSlot),
     /// The occupancy of this other robot is not known.
     Unknown(RobotSlot),

@@ -2,7 +2,7 @@
 
 use crate::RobotSlot;
 
-/// A set of the first 128 robots of a cell, one bit each; others cannot be added.
+/// A set of the first 128 robots of a cell, one bit each; other robots cannot be added.
 ///
 /// ```
 /// use elbowroom_interlock::{RobotSet, RobotSlot};
@@ -28,24 +28,24 @@ impl RobotSet {
         robot.0 < Self::CAPACITY && self.0 >> robot.0 & 1 == 1
     }
 
-    /// Whether no robot is in the set.
+    /// Whether the set is empty.
     pub fn is_empty(self) -> bool {
         self.0 == 0
     }
 
-    /// The robots of either set.
+    /// The robots of this set, the other set or both.
     #[must_use]
     pub fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    /// The robots of this set that are not in the other one.
+    /// The robots of this set that are not in the other set.
     #[must_use]
     pub fn difference(self, other: Self) -> Self {
         Self(self.0 & !other.0)
     }
 
-    /// The robots in the order of their indices.
+    /// Iterates over the robots in the order of their indices.
     pub fn iter(self) -> impl Iterator<Item = RobotSlot> {
         let first = |bits: u128| (bits != 0).then_some(bits);
         // Each step drops the lowest bit.

@@ -1,12 +1,13 @@
-//! Grants that come from outside of the process, such as those of an arbiter on a network.
+//! Grants that come from outside the process, for example from an arbiter on a network.
 
 use std::sync::atomic::{AtomicBool, AtomicU8, Ordering::SeqCst};
 
 use crate::{ExchangeState, Occupancy, SlotId};
 
-/// What a robot is granted, and what its monitor found, per slot. Before each tick the caller writes what is granted at that
-/// moment; after it, it reads what the tick found and passes it on. In a tick with invalid input nothing is found: what is
-/// read then is that of the last valid tick.
+/// A robot's grants and its monitor's observations, per slot.
+///
+/// Before each tick the caller writes the grants of that moment; after the tick it reads what the tick found and
+/// passes it on. A tick with invalid input finds nothing: then the values are those of the last valid tick.
 ///
 /// ```
 /// use elbowroom_interlock::{ExchangeState, Occupancy, SlotGrants, SlotId};
@@ -32,7 +33,7 @@ struct SlotEntry {
 }
 
 impl SlotGrants {
-    /// Grants of nothing, for this number of slots.
+    /// Creates the state for this number of slots, without grants.
     pub fn new(slots: usize) -> Self {
         Self { slots: (0..slots).map(|_| SlotEntry::default()).collect() }
     }
@@ -42,15 +43,15 @@ impl SlotGrants {
         self.slots.len()
     }
 
-    /// Writes what is granted for the next tick: whether the robot may enter the slot's regions, and whether it must halt because
-    /// another one was found inside.
+    /// Writes the grants for the next tick: whether the robot may enter the slot's regions, and whether it must halt
+    /// because another robot was found inside.
     pub fn write(&self, slot: SlotId, may_enter: bool, must_halt: bool) {
         self.slots[slot.0].may_enter.store(may_enter, SeqCst);
         self.slots[slot.0].must_halt.store(must_halt, SeqCst);
     }
 
-    /// Where the last valid tick found the robot. `Unknown` before the first one, of a slot of which the configuration has no
-    /// region, and while the source that a region follows is lost.
+    /// The robot's occupancy in the last valid tick. `Unknown` before the first valid tick, for a slot without a region
+    /// in the configuration, and while the source that a region follows is lost.
     pub fn occupancy(&self, slot: SlotId) -> Occupancy {
         Occupancy::from_u8(self.slots[slot.0].occupancy.load(SeqCst))
     }
@@ -60,22 +61,22 @@ impl SlotGrants {
         ExchangeState::from_u8(self.slots[slot.0].state.load(SeqCst))
     }
 
-    /// True if the robot needs the slot: in the last valid tick it was in or near a region of it that is switched on.
+    /// True if the robot needs the slot: in the last valid tick it was in or near an active region of the slot.
     pub fn is_needed(&self, slot: SlotId) -> bool {
         self.slots[slot.0].is_near_active_region.load(SeqCst)
     }
 
-    /// What [`SlotGrants::write`] wrote last: the robot may enter the slot's regions.
+    /// The last value written with [`SlotGrants::write`]: whether the robot may enter the slot's regions.
     pub fn may_enter(&self, slot: SlotId) -> bool {
         self.slots[slot.0].may_enter.load(SeqCst)
     }
 
-    /// What [`SlotGrants::write`] wrote last: the robot must halt.
+    /// The last value written with [`SlotGrants::write`]: whether the robot must halt.
     pub fn must_halt(&self, slot: SlotId) -> bool {
         self.slots[slot.0].must_halt.load(SeqCst)
     }
 
-    /// Writes what a tick of the monitor found.
+    /// Writes the findings of a tick of the monitor.
     pub fn found(&self, slot: SlotId, occupancy: Occupancy, state: ExchangeState, is_near_active_region: bool) {
         let entry = &self.slots[slot.0];
         entry.occupancy.store(occupancy as u8, SeqCst);

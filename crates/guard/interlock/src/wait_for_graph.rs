@@ -1,9 +1,11 @@
-//! Which robot waits for which, and the cycles among them.
+//! The wait-for graph of robots, and its cycles.
 
 use crate::{RobotSet, RobotSlot};
 
-/// The wait-for graph of the first 128 robots of a cell: a deadlock is a cycle in it. What waiting means is up to the caller: for
-/// a slot that another robot holds, or at a region that another robot carries. Does not allocate.
+/// The wait-for graph of the first 128 robots of a cell; a deadlock is a cycle in it. Never allocates.
+///
+/// The caller defines what waiting means: for a slot that another robot holds, or at a region that another robot
+/// carries.
 ///
 /// ```
 /// use elbowroom_interlock::{RobotSlot, WaitForGraph};
@@ -16,7 +18,7 @@ use crate::{RobotSet, RobotSlot};
 /// ```
 #[derive(Debug, Clone)]
 pub struct WaitForGraph {
-    /// Per robot those that it waits for directly.
+    /// The robots that each robot waits for directly.
     awaited: [RobotSet; RobotSet::CAPACITY],
 }
 
@@ -27,14 +29,14 @@ impl Default for WaitForGraph {
 }
 
 impl WaitForGraph {
-    /// Takes that one robot waits for another.
+    /// Records that one robot waits for another.
     pub fn add(&mut self, waiting: RobotSlot, awaited: RobotSlot) {
         if let Some(set) = self.awaited.get_mut(waiting.0) {
             set.insert(awaited);
         }
     }
 
-    /// The robots that this one waits for, directly or through others: itself if it is in a cycle.
+    /// The robots that this one waits for, directly or through others; includes itself if it is in a cycle.
     pub fn reached_from(&self, robot: RobotSlot) -> RobotSet {
         let direct = |robot: RobotSlot| self.awaited.get(robot.0).copied().unwrap_or_default();
         let mut reached = direct(robot);
@@ -47,7 +49,7 @@ impl WaitForGraph {
         reached
     }
 
-    /// The robots that wait for this one and that it waits for, itself among them; empty if it is in no cycle.
+    /// The robots that wait for this one and that it waits for, including itself; empty if it is in no cycle.
     pub fn cycle(&self, robot: RobotSlot) -> RobotSet {
         let reached = self.reached_from(robot);
         if !reached.contains(robot) {
@@ -56,7 +58,7 @@ impl WaitForGraph {
         reached.iter().filter(|other| self.reached_from(*other).contains(robot)).collect()
     }
 
-    /// The cycles, in the order of their first robots. Cycles that share a robot are one.
+    /// The cycles, in the order of their first robots. Cycles that share a robot count as one.
     pub fn cycles(&self) -> impl Iterator<Item = RobotSet> {
         let mut seen = RobotSet::default();
         (0..RobotSet::CAPACITY).map(RobotSlot).filter_map(move |robot| {
@@ -88,7 +90,7 @@ mod tests {
     fn cycles_are_found_and_chains_are_none() {
         assert!(cycles(&[(1, 0), (2, 1)]).is_empty());
         assert_eq!(cycles(&[(1, 0), (2, 1), (0, 2)]), [[0, 1, 2]]);
-        // A robot outside waits for one of a cycle.
+        // A robot outside a cycle waits for a robot in it.
         assert_eq!(cycles(&[(0, 1), (2, 1), (1, 2)]), [[1, 2]]);
         assert_eq!(cycles(&[(2, 0), (0, 2), (3, 1), (1, 3)]), [[0, 2], [1, 3]]);
         assert_eq!(cycles(&[(127, 5), (5, 127)]), [[5, 127]]);
@@ -101,7 +103,7 @@ mod tests {
     }
 
     proptest! {
-        /// Beside the closure by Warshall's algorithm.
+        /// Comparison with the closure by Warshall's algorithm.
         #[test]
         fn cycles_are_the_components_of_the_closure(edges in prop::collection::vec((0..9_usize, 0..9_usize), 0..14)) {
             let mut reaches = [[false; 9]; 9];

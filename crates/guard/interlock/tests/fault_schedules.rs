@@ -1,5 +1,6 @@
-//! Exclusion and progress under random schedules of faults, with simulated arms. `ELBOWROOM_SCHEDULES=100000` runs that many,
-//! `ELBOWROOM_SCHEDULES=500..501` that one.
+//! Exclusion and progress under random schedules of faults, with simulated arms.
+//!
+//! `ELBOWROOM_SCHEDULES=100000` runs that many schedules, `ELBOWROOM_SCHEDULES=500..501` that one.
 
 #![allow(clippy::print_stdout, reason = "figures of a test")]
 
@@ -14,7 +15,7 @@ fn schedule(seed: u64, planted: PlantedFault) -> Findings {
     World::new(robots, 1 + seed, planted).run(LENGTH_MS)
 }
 
-/// What must not happen.
+/// The findings that must not occur.
 fn wrong(findings: &Findings) -> [u64; 3] {
     [findings.double_occupancies, findings.stuck, findings.unresolved_deadlocks]
 }
@@ -32,7 +33,7 @@ fn run(seeds: Range<u64>) -> Findings {
     all
 }
 
-/// `ELBOWROOM_SCHEDULES`: how many, or which (`20000..30000`).
+/// The seeds to run: `ELBOWROOM_SCHEDULES` is their number or range (`20000..30000`).
 fn seeds(default: u64) -> Range<u64> {
     let text = std::env::var("ELBOWROOM_SCHEDULES").unwrap_or_default();
     let (from, to) = text.split_once("..").unwrap_or(("0", &text));

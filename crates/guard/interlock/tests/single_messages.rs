@@ -1,4 +1,4 @@
-//! One guard and one arbiter, message by message: what each of them must not believe.
+//! One guard and one arbiter, message by message: messages that they must not believe.
 
 use elbowroom_interlock::{
     Arbiter, ArbiterEvent, ArbiterSettings, Boot, Guard, Ignored, Micros, Occupancy, RobotSettings, RobotSlot, SlotId,
@@ -17,13 +17,13 @@ fn arbiter() -> Arbiter {
     Arbiter::new(ArbiterSettings { checksum: CHECKSUM, ..ArbiterSettings::new(robots, 1) }, Boot(1))
 }
 
-/// The guard of the cell's robot of this number, with this checksum of the cell file.
+/// The guard of the cell's robot with this number, with this checksum of the cell file.
 fn guard(robot: usize, checksum: u64) -> Guard {
     Guard::new(RobotSlot(robot), 1, checksum, Boot(1))
 }
 
-/// A message to the arbiter, and all its answers to this guard. Returns the events. Robot 0 is in its warning zone, the
-/// other outside.
+/// Sends a message to the arbiter, and all its answers to this guard; returns the events. Robot 0 is in its warning
+/// zone, the other robot outside.
 fn exchange(guard: &mut Guard, arbiter: &mut Arbiter, now: Micros) -> Vec<ArbiterEvent> {
     guard.observe(SLOT, if guard.robot() == RobotSlot(0) { Occupancy::Warning } else { Occupancy::Outside });
     let outputs = arbiter.receive(&guard.state(now), now);
@@ -37,14 +37,14 @@ fn exchange(guard: &mut Guard, arbiter: &mut Arbiter, now: Micros) -> Vec<Arbite
     outputs.events
 }
 
-/// A guard learns of the arbiter with the first answer, is trusted with the second message.
+/// A guard learns of the arbiter with the first answer, and is trusted with its second message.
 fn until_heard(guards: &mut [Guard], arbiter: &mut Arbiter, from: u64, to: u64) -> Vec<ArbiterEvent> {
     let times = (from..to).step_by(10).map(ms);
     times.flat_map(|now| guards.iter_mut().flat_map(|g| exchange(g, arbiter, now)).collect::<Vec<_>>()).collect()
 }
 
-/// A robot with another cell file says nothing about the regions of this one: not that it is outside of them, and it is
-/// granted none.
+/// A robot with another cell file cannot report about the regions of this one, not even that it is outside them, and
+/// it is granted none of them.
 #[test]
 fn a_robot_with_another_configuration_is_neither_granted_nor_believed() {
     for (checksums, expected) in [([CHECKSUM, CHECKSUM], true), ([CHECKSUM, 8], false), ([8, CHECKSUM], false)] {
@@ -63,7 +63,7 @@ fn a_robot_with_another_configuration_is_neither_granted_nor_believed() {
     }
 }
 
-/// An answer is as old as the message that it answers, not as the last one that was sent.
+/// The age of an answer is the age of the message that it answers, not of the last message sent.
 #[test]
 fn a_late_answer_confirms_a_grant_for_the_rest_of_its_validity_only() {
     let mut arbiter = arbiter();
@@ -73,7 +73,7 @@ fn a_late_answer_confirms_a_grant_for_the_rest_of_its_validity_only() {
     assert!(guard.may_enter(SLOT, ms(200)) && !guard.may_enter(SLOT, ms(260)));
     let question: StateMessage = guard.state(ms(300));
     let answer = arbiter.receive(&question, ms(330)).replies.into_iter().find(|r| r.robot == RobotSlot(0)).unwrap();
-    // Later messages are on their way when the answer comes.
+    // Later messages are under way when the answer arrives.
     for now in [310, 320, 330, 340] {
         guard.state(ms(now));
     }

@@ -1,4 +1,4 @@
-//! Messages to bytes and back; bytes that are no messages.
+//! Encoding and decoding of messages, and bytes that are not valid messages.
 
 use elbowroom_interlock::frame::MessageError;
 use elbowroom_interlock::wire::{Message, decode, encode};

@@ -1,7 +1,8 @@
-//! Duration of a tick where every link is guarded as its exact mesh:
-//! `cargo bench -p elbowroom-monitor --bench mesh_tick`.
+//! Duration of a tick with every link guarded as its exact mesh.
 //!
-//! An RX60B of 23,012 triangles moves among 20 regions, beside a second one whose seven links are dynamic regions.
+//! `cargo bench -p elbowroom-monitor --bench mesh_tick`
+//!
+//! An RX60B of 23,012 triangles moves among 20 regions, beside a second RX60B whose seven links are dynamic regions.
 
 #![allow(clippy::print_stdout, reason = "a bench prints")]
 

@@ -61,7 +61,7 @@ fn regions(count: usize, nearest: f64, farthest: f64) -> Vec<Region> {
     (0..count).map(one).collect()
 }
 
-/// Prints one row, if its name contains the command's argument.
+/// Prints one row if its name contains the command's argument.
 fn measure(name: &str, regions: Vec<Region>, laws: Laws) {
     if elbowroom_testkit::bench::arguments().next().is_some_and(|part| !name.contains(&part)) {
         return;
@@ -73,7 +73,7 @@ fn measure(name: &str, regions: Vec<Region>, laws: Laws) {
     for i in 0..TICKS {
         let (q, intent) = (joints(t), velocities(t));
         let now_s = 0.002 * f64::from(i);
-        // The same slow motion for all laws and versions, whatever override is requested.
+        // The slow motion is the same for all laws and versions, whatever override is requested.
         let s = Snapshot { qd: &[0.0; 6], intent: Some(&intent), ..Snapshot::stationary(now_s, &q) };
         let begin = Instant::now();
         let report = std::hint::black_box(m.tick(std::hint::black_box(&s)));

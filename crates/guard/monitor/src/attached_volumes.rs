@@ -1,4 +1,4 @@
-//! The volumes that are parts of the robot at present: some are attached and detached while it runs.
+//! The volumes that are attached to the robot at present: some are attached and detached while it runs.
 
 use elbowroom_spatial::Pose;
 
@@ -7,7 +7,7 @@ use crate::{Configuration, Presence, Volume, VolumeId};
 /// Why a volume cannot be attached or detached.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum AttachError {
-    /// No volume has this index.
+    /// The configuration has no volume with this index.
     #[error("there is no volume {0}")]
     Unknown(usize),
     /// The volume is always a part of the robot.
@@ -18,14 +18,14 @@ pub enum AttachError {
     NotFinite(String),
 }
 
-/// Poses of the volumes in their links, for those that are parts of the robot at present.
+/// Pose in its link of each volume that is a part of the robot at present.
 #[derive(Debug, Clone)]
 pub(crate) struct AttachedVolumes {
     in_link: Vec<Option<Pose>>,
 }
 
 impl AttachedVolumes {
-    /// As they are at first.
+    /// The initial state: a volume whose presence is `Detached` is detached.
     pub(crate) fn new(config: &Configuration) -> Self {
         let in_link = |v: &Volume| (v.presence != Presence::Detached).then_some(v.in_link);
         Self { in_link: config.volumes.iter().map(in_link).collect() }
@@ -63,14 +63,14 @@ impl AttachedVolumes {
         Ok(())
     }
 
-    /// Detaches a volume; nothing changes where it is detached.
+    /// Detaches a volume; without effect if it is detached already.
     pub(crate) fn detach(&mut self, config: &Configuration, volume: VolumeId) -> Result<(), AttachError> {
         switchable(config, volume)?;
         self.in_link[volume.0] = None;
         Ok(())
     }
 
-    /// Makes it equal to another one of the same configuration, without allocation.
+    /// Copies the state of `other`, which has the same configuration, without allocation.
     pub(crate) fn copy_from(&mut self, other: &Self) {
         self.in_link.copy_from_slice(&other.in_link);
     }

@@ -1,12 +1,12 @@
-//! Check that the robot brakes as fast as stated.
+//! Check that the robot brakes as fast as its configuration states.
 
 /// Tolerance of the measured stop time, s.
 const TOLERANCE_S: f64 = 0.01;
 /// Tolerance of the measured stop time, as a fraction of it.
 const TOLERANCE_FRACTION: f64 = 0.05;
 
-/// Compares the robot's stop time with the largest one that is allowed: it falls by one second per second, down to the stop
-/// time of the commanded override.
+/// Compares the robot's stop time with the largest allowed one, which falls by one second per second, down to the
+/// stop time of the commanded override.
 #[derive(Debug, Default)]
 pub(crate) struct BrakingCheck {
     last: Option<Braking>,
@@ -14,7 +14,7 @@ pub(crate) struct BrakingCheck {
     failed: bool,
 }
 
-/// How fast a robot is, and what it was commanded.
+/// The measured stop time of a robot and the override commanded to it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Braking {
     /// Time stamp of the joint values, s.
@@ -23,7 +23,7 @@ pub(crate) struct Braking {
     pub(crate) stop_s: f64,
     /// The largest override that may be in effect.
     pub(crate) commanded: f64,
-    /// Since when no larger one may, s.
+    /// Time from which no larger override may be in effect, s.
     pub(crate) commanded_since_s: f64,
     /// Stop time of the program at override 1, s; infinite if it is not known.
     pub(crate) full_stop_s: f64,
@@ -35,7 +35,7 @@ impl BrakingCheck {
     pub(crate) fn update(&mut self, now: Braking) {
         let allowed_s = |last: &Braking| {
             let braked_s = last.stop_s.min(self.allowed_s) - (now.stamp_s - last.stamp_s);
-            // Between two ticks the robot went on as it was commanded before, and brakes only since then.
+            // Until `since_s` the robot may have run at the previous override; it brakes only from then on.
             let since_s = now.commanded_since_s.clamp(last.stamp_s, now.stamp_s.max(last.stamp_s));
             let went_on_s = stop_at(last.commanded, last.full_stop_s.max(now.full_stop_s)) - (now.stamp_s - since_s);
             braked_s.max(went_on_s)
@@ -74,7 +74,7 @@ mod tests {
         })
     }
 
-    /// Velocities derived from positions are those of the middle of a tick: the robot seems to brake late.
+    /// Derived velocities are valid for the middle of a tick, so the robot seems to brake late.
     #[test]
     fn derived_velocities_are_no_weaker_brakes() {
         let (tick_s, full_stop_s) = (0.04, 0.1);

@@ -7,7 +7,7 @@ const LEAF: usize = 4;
 /// Depth of a balanced tree over 2³² regions.
 const DEPTH: usize = 34;
 
-/// A static tree of axis-aligned boxes; a query visits the boxes that overlap another box and never allocates.
+/// A static tree of axis-aligned boxes. A query visits the boxes that overlap a given box and never allocates.
 #[derive(Debug, Default)]
 pub(crate) struct RegionTree {
     nodes: Vec<Node>,
@@ -25,7 +25,7 @@ struct Node {
 }
 
 impl RegionTree {
-    /// A tree over pairs of region and box; all boxes must be finite.
+    /// Builds a tree over pairs of region index and box; all boxes must be finite.
     pub(crate) fn new(mut items: Vec<(u32, Aabb)>) -> Self {
         let mut tree = Self::default();
         if !items.is_empty() {

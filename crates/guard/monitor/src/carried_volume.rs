@@ -36,9 +36,9 @@ pub(crate) struct Approach {
     pub(crate) program_speed: f64,
     /// Actual speed of the robot, m/s.
     pub(crate) real_speed: f64,
-    /// At the largest accelerations of all joints together, m/s².
+    /// Acceleration if all joints have their largest acceleration, m/s².
     pub(crate) acceleration: f64,
-    /// At the decelerations of all joints together, m/s².
+    /// Deceleration if all joints have their stated deceleration, m/s².
     pub(crate) deceleration: f64,
 }
 
@@ -49,7 +49,7 @@ pub(crate) struct CarriedVolume {
     /// Centre and radius of a bounding sphere, in the frame of the shape.
     center_in_shape: Vec3,
     radius: f64,
-    /// From the root outwards.
+    /// The joints that move the volume, from the root outwards.
     influences: Vec<JointInfluence>,
     center: Vec3,
     /// Bound for every direction.
@@ -84,7 +84,7 @@ impl CarriedVolume {
         carried
     }
 
-    /// Sets the pose of the shape in the link. Allocates the first time only.
+    /// Sets the pose of the shape in the link. Allocates on the first call only.
     pub(crate) fn set_in_link(&mut self, chain: &Chain, in_link: &Pose) {
         let reach_m = self.radius + in_link.transform_point(self.center_in_shape).length();
         let reaches = joint_reaches(chain, self.link, reach_m, |id| max_stroke_m(chain, id));
@@ -134,9 +134,9 @@ impl CarriedVolume {
         (acceleration, deceleration)
     }
 
-    /// Largest distance (m) of a point from where its velocity alone takes it, when each joint moves by at most
-    /// `joint_travel`: half of the second derivative of its position, where `|∂²p/∂qᵢ∂qⱼ|` is at most the lever of the outer
-    /// joint if the inner one is revolute, and 0 if that is prismatic.
+    /// Largest distance (m) between a point and its linear extrapolation if each joint moves by at most `joint_travel`:
+    /// half of the second derivative of its position. `|∂²p/∂qᵢ∂qⱼ|` is at most the lever of the outer joint if the
+    /// inner joint is revolute, and 0 if it is prismatic.
     #[inline]
     pub(crate) fn curvature_offset(&self, joint_travel: impl Fn(usize) -> f64) -> f64 {
         let (mut sum, mut turned) = (0.0, 0.0);
@@ -155,9 +155,9 @@ impl CarriedVolume {
 /// Motion of the chain in one tick.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct VolumeMotion<'a> {
-    /// At the velocities of the program at override 1.
+    /// The chain at the velocities of the program at override 1.
     pub(crate) intent: &'a ChainState,
-    /// At the actual velocities.
+    /// The chain at the actual velocities.
     pub(crate) now: &'a ChainState,
     /// Time over which the actual velocities were derived from positions, s; 0 if they were given.
     pub(crate) uncertain_s: f64,

@@ -79,13 +79,14 @@ pub enum ConfigError {
     /// A law is invalid.
     #[error("laws: {0}")]
     Laws(String),
-    /// The robot's pose is not finite.
+    /// The pose of the robot's base is not finite.
     #[error("the robot's base is not at a finite position")]
     Base,
-    /// There are exchange regions, but nothing that grants their slots.
+    /// The configuration has exchange regions, but no interlock grants their slots.
     #[error("region `{0}` is an exchange region: it needs an Interlock that has its slot")]
     NoArbiter(String),
-    /// An exchange region is shared with robots of other processes, and it is not known whether this one can stop outside.
+    /// An exchange region is shared with robots of other processes, but the stopping-distance law, which shows whether
+    /// this robot can stop outside, is off.
     #[error(
         "region `{0}` is an exchange region between controllers: a grant may end while the robot moves, so it must be known \
          where it can stop; write `stopping_distance = true` into `[monitor]` of the cell file, and the robot's measured \
@@ -138,7 +139,7 @@ impl Configuration {
         &self.regions
     }
 
-    /// What regions follow; a [`SourceId`](crate::SourceId) is an index into them.
+    /// The sources that regions follow; a [`SourceId`](crate::SourceId) is an index into them.
     pub fn sources(&self) -> &[SourceSpec] {
         &self.sources
     }
@@ -148,7 +149,7 @@ impl Configuration {
         &self.laws
     }
 
-    /// The region of this name.
+    /// The region with this name.
     pub fn region(&self, name: &str) -> Option<RegionId> {
         self.regions.iter().position(|r| r.name == name).map(RegionId)
     }

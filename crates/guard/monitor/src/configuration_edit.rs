@@ -7,9 +7,9 @@ use crate::{AccessClass, Configuration, Region};
 pub enum ConfigurationEdit {
     /// Adds a region.
     Add(Box<Region>),
-    /// Replaces the region of the same name.
+    /// Replaces the region with the same name.
     Change(Box<Region>),
-    /// Removes the region of this name.
+    /// Removes the region with this name.
     Remove(String),
     /// Replaces the laws.
     Laws(crate::Laws),
@@ -31,7 +31,7 @@ pub enum EditError {
     /// No region has this name.
     #[error("there is no region `{0}`")]
     Unknown(String),
-    /// A region of this name exists already.
+    /// A region with this name exists already.
     #[error("there is a region `{0}` already")]
     Exists(String),
     /// The edited configuration would be invalid.

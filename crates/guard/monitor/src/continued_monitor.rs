@@ -1,9 +1,9 @@
-//! A monitor with other regions that goes on where another one of the same robot has ended.
+//! Replacement of a monitor by one with other regions for the same robot, without a break.
 
 use crate::{Configuration, Monitor, Presence, RegionId, VolumeId};
 
-/// Per region of `new` the region of `old` that is the same in every respect: name, place, shape, laws and source. `None` for a
-/// new one, and for one that was changed.
+/// Maps each region of `new` to the region of `old` with the same name, place, shape, laws and source; `None` if the
+/// region is new or was changed.
 pub fn same_regions(new: &Configuration, old: &Configuration) -> Vec<Option<RegionId>> {
     let source = |c: &Configuration, r: RegionId| c.regions[r.0].follow.map(|s| c.sources[s.0].clone());
     let same = |r: RegionId| {
@@ -15,12 +15,12 @@ pub fn same_regions(new: &Configuration, old: &Configuration) -> Vec<Option<Regi
 }
 
 impl Monitor {
-    /// Takes over everything that the former monitor of the same robot knows and that this one needs in order to go on without a
-    /// break: the last joint values and overrides, the present fault, what is attached, and for each region that is the same as
-    /// before (`same`: [`same_regions`]) whether it is on, entered and granted. Regions without a former one are as in a new
-    /// monitor. Call it between two ticks; the former monitor is of no use afterwards. Never allocates.
+    /// Copies the state of the former monitor of the same robot, so that this monitor continues without a break: the
+    /// last joint values and overrides, the present fault and the attached volumes. For each region that has not changed
+    /// (`same`: [`same_regions`]) it also copies whether the region is on, entered and granted; all other regions are as
+    /// in a new monitor. Call it between two ticks; do not use the former monitor afterwards. Never allocates.
     ///
-    /// Both must have the same robot, volumes and laws.
+    /// Both monitors must have the same robot, volumes and laws.
     ///
     /// ```
     /// # use elbowroom_kinematics::{Chain, Joint, JointKind, Limits, LinkId};
@@ -55,17 +55,18 @@ impl Monitor {
         if let (Some(client), Some(before)) = (&mut self.zone_client, &former.zone_client) {
             client.continue_from(before);
         }
-        // The events of this are those of the former monitor; the next tick clears them.
+        // These events repeat changes that the former monitor has reported; the next tick clears them.
         self.regions.continue_from(&self.config, &former.regions, same, &mut self.log);
     }
 
-    /// Attaches and detaches until the same volumes are parts of the robot.
+    /// Attaches and detaches volumes so that the same ones are parts of the robot as in `former`.
     fn attach_as(&mut self, former: &Self) {
         for v in 0..self.config.volumes.len() {
             if self.config.volumes[v].presence == Presence::Always {
                 continue;
             }
-            // Errors are those of volumes that are always there, and of poses that the former monitor has not refused.
+            // Errors concern only volumes that are always attached (skipped above) and poses that the former monitor has
+            // accepted.
             let _ = match former.now.attached.in_link(v) {
                 Some(in_link) => self.attach(VolumeId(v), in_link),
                 None => self.detach(VolumeId(v)),
@@ -112,7 +113,7 @@ mod tests {
         region
     }
 
-    /// A monitor of the second configuration, continued after a tick of the first one.
+    /// A monitor of the second configuration that continues from a monitor of the first one after a tick.
     fn continued(first: Configuration, second: Configuration, q: f64) -> Monitor {
         let mut former = Monitor::new(first, None).unwrap();
         former.tick(&Snapshot::stationary(0.0, &[q]));
@@ -130,7 +131,7 @@ mod tests {
         assert!(monitor.is_inside(RegionId(1)));
         let report = monitor.tick(&Snapshot::stationary(0.002, &[1.0]));
         assert_eq!((report.outputs, monitor.events()), (1 << 3, &[][..]));
-        // A region that is gone takes its output with it.
+        // Removing a region switches its output off.
         let mut monitor = continued(configuration(vec![with_output(1.0)]), configuration(vec![]), 1.0);
         assert_eq!(monitor.tick(&Snapshot::stationary(0.002, &[1.0])).outputs, 0);
     }

@@ -1,4 +1,4 @@
-//! What the regions request of the speed override, and which of them governs.
+//! The speed override that the regions request, and the region that governs it.
 
 use crate::region_clearance::{RegionClearance, RegionClearances};
 use crate::region_states::RegionStates;
@@ -8,19 +8,20 @@ use crate::{Configuration, OverrideReason, RegionId, RegionKind, Snapshot};
 /// The smallest requested override and its reason.
 pub(crate) struct Decision<'a> {
     pub(crate) speed_override: f64,
-    /// Upper limit in this tick, which no limit of the rate of change may exceed.
+    /// Upper limit in this tick; a limited rate of change must not exceed it.
     pub(crate) immediate_limit: f64,
     pub(crate) reason: OverrideReason,
     pub(crate) governing: Option<&'a RegionClearance>,
 }
 
 impl<'a> Decision<'a> {
-    /// Override 0, at once.
+    /// Override 0, applied at once.
     pub(crate) fn stop(reason: OverrideReason, governing: Option<&'a RegionClearance>) -> Self {
         Self { speed_override: 0.0, immediate_limit: 0.0, reason, governing }
     }
 
-    /// The minimum over all regions (Romanelli 2011, eq. 4); of equal requests that of the region of lowest index.
+    /// The minimum over all regions (Romanelli 2011, eq. 4); of equal requests, the one of the region with the lowest
+    /// index.
     pub(crate) fn of(
         config: &Configuration,
         regions: &RegionStates,

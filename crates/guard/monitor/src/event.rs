@@ -5,7 +5,7 @@ use crate::RegionId;
 /// A change in the last tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Event {
-    /// The region, where the event concerns one.
+    /// The region, if the event concerns one.
     pub region: Option<RegionId>,
     /// The kind of change.
     pub kind: EventKind,

@@ -8,24 +8,24 @@ use thiserror::Error;
 
 use crate::{ConfigError, Configuration, Interlock, Monitor, RegionId, SlotGrants, SlotId, Snapshot, TickReport};
 
-/// Without a valid tick for this long it is not known where the robot is: somebody may move it by hand.
+/// Without a valid tick for this long, the robot's position is unknown: somebody may move it by hand.
 const UNSEEN: Micros = Micros(100_000);
 
-/// Why bytes from the network were not obeyed.
+/// Why a message from the network was not obeyed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum NotObeyed {
-    /// They are no message of an arbiter.
+    /// The bytes are not a message of an arbiter.
     #[error(transparent)]
     Wire(#[from] MessageError),
-    /// The guard does not obey the message.
+    /// The guard ignores the message.
     #[error(transparent)]
     Ignored(#[from] Ignored),
 }
 
-/// The monitor of a robot and its guard. Each tick asks the guard what the robot may enter, and then reports to it where the
-/// robot is: in this order, and in one step. Nothing here allocates after construction.
+/// The monitor of a robot and its guard. Each tick first asks the guard which exchange regions the robot may enter,
+/// and then reports to the guard where the robot is. Never allocates after construction.
 ///
-/// All times are those of one monotonic clock of this process.
+/// All times are read from one monotonic clock of this process.
 ///
 /// ```
 /// use elbowroom_interlock::{Boot, Guard, Micros};
@@ -65,7 +65,7 @@ pub struct GuardedMonitor {
 }
 
 impl GuardedMonitor {
-    /// A monitor that obeys this guard.
+    /// Creates a monitor that obeys this guard.
     ///
     /// # Errors
     /// As for [`Monitor::new`]: the guard has fewer slots than the regions need, or the stopping-distance law is off.
@@ -89,7 +89,7 @@ impl GuardedMonitor {
             self.grants.write(slot, self.guard.may_enter(slot, now), self.guard.must_halt(slot));
         }
         let report = self.monitor.tick(snapshot);
-        // A tick with invalid input has seen nothing: what was seen before must not count as seen after a grant was closed.
+        // A tick with invalid input has no observation: an older one must not count as made after a grant was closed.
         if self.monitor.input_fault().is_none() {
             self.seen = Some(now);
             for slot in (0..self.guard.slots()).map(SlotId) {
@@ -100,30 +100,30 @@ impl GuardedMonitor {
         report
     }
 
-    /// The bytes of the next message to the arbiter, to be sent at `now`: every 10 ms, and at once where a tick changed what
-    /// [`GuardedMonitor::grants`] says.
+    /// Encodes the next message to the arbiter, to be sent at `now`: every 10 ms, and at once if a tick changed
+    /// [`GuardedMonitor::grants`].
     pub fn state(&mut self, now: Micros) -> &[u8] {
         if self.seen.is_none_or(|seen| now - seen > UNSEEN) {
             self.guard.lose_sight();
         }
         self.guard.state_into(now, &mut self.message);
-        // A cell has at most `MAX_SLOTS` slots; a longer message would be empty, and the arbiter would know nothing.
+        // A cell has at most `MAX_SLOTS` slots; a longer message would be empty, and the arbiter would receive nothing.
         if !wire::encode_state(&self.message, &mut self.bytes) {
             self.bytes.clear();
         }
         &self.bytes
     }
 
-    /// Takes bytes of the arbiter.
+    /// Passes a message of the arbiter to the guard.
     ///
     /// # Errors
-    /// Why they are not obeyed; then nothing changes.
+    /// [`NotObeyed`] states why the message is not obeyed; then nothing changes.
     pub fn receive(&mut self, bytes: &[u8]) -> Result<(), NotObeyed> {
         wire::decode_grants(bytes, &mut self.answer)?;
         Ok(self.guard.receive(&self.answer)?)
     }
 
-    /// What the guard granted in the last tick, and where that found the robot.
+    /// What the guard granted in the last tick, and where that tick found the robot.
     pub fn grants(&self) -> &SlotGrants {
         &self.grants
     }
@@ -138,20 +138,20 @@ impl GuardedMonitor {
         &self.monitor
     }
 
-    /// The interlock for another monitor of this robot and this guard, as [`GuardedMonitor::replace`] takes it.
+    /// The interlock for another monitor of this robot and this guard, for use with [`GuardedMonitor::replace`].
     pub fn interlock(&self) -> Interlock {
         Interlock::Granted(self.grants.clone())
     }
 
-    /// Exchanges the monitor with `next`, which goes on where this one has ended ([`Monitor::continue_from`]). `next` was made with
-    /// [`GuardedMonitor::interlock`] and has the same exchange regions; the guard stays. Call it between two ticks; it does not
-    /// allocate.
+    /// Replaces the monitor by `next`, which continues from the present one ([`Monitor::continue_from`]); the guard
+    /// stays. Create `next` with [`GuardedMonitor::interlock`] and the same exchange regions. Call it between two ticks.
+    /// Never allocates.
     pub fn replace(&mut self, next: &mut Monitor, same: &[Option<RegionId>]) {
         next.continue_from(&mut self.monitor, same);
         std::mem::swap(&mut self.monitor, next);
     }
 
-    /// The monitor, to switch regions and attach volumes. Ticks go through [`GuardedMonitor::tick`].
+    /// The monitor, to switch regions and attach volumes. For ticks, use [`GuardedMonitor::tick`].
     pub fn monitor_mut(&mut self) -> &mut Monitor {
         &mut self.monitor
     }

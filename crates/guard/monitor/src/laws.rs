@@ -4,16 +4,16 @@
 /// The laws of a monitor. The default is the law of Romanelli 2011 alone: `v = v₀ · clamp(d / δ, 0, 1)`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Laws {
-    /// True: a region does not limit a volume whose distance from it increases. Off by default, because it needs the program's
-    /// [`intent`](crate::Snapshot::intent) to release a stationary robot.
+    /// If true, a region does not limit a volume whose distance from it increases. Off by default, because it needs the
+    /// program's [`intent`](crate::Snapshot::intent) to release a stationary robot.
     pub direction_aware: bool,
-    /// Largest fraction of v₀ while a robot leaves a region from inside, with the direction-aware law.
+    /// Largest fraction of v₀ while a robot leaves a region from inside; used by the direction-aware law.
     pub recovery: f64,
-    /// Limits the override so that a stop ends before the border.
+    /// The stopping-distance law, which limits the override so that a stop ends before the border; `None` if it is off.
     pub stopping_distance: Option<StoppingSettings>,
     /// Largest change of the override per second; 0 for unlimited. Faults and contact stop at once in any case.
     pub override_rate: f64,
-    /// Age (s) beyond which input is stale: the override is 0.
+    /// Age (s) beyond which input is stale; then the override is 0.
     pub stale_s: f64,
 }
 
@@ -25,10 +25,10 @@ impl Default for Laws {
 
 /// Assumptions of the stopping-distance law: how the robot stops, and how its programs accelerate.
 ///
-/// The robot stops along its programmed path. Its **stop time** is the longest that any joint needs by itself,
-/// `n = max |q̇ᵢ| / aᵢ` with `aᵢ` of [`StoppingSettings::joint_deceleration`]. While the robot runs faster than the commanded
-/// override, from [`StoppingSettings::reaction_s`] after the command at the latest, `n` is assumed to fall by at least one
-/// second per second, whatever the program does meanwhile.
+/// The robot stops along its programmed path. Its **stop time** n is the longest time that any joint needs by
+/// itself, `n = max |q̇ᵢ| / aᵢ` with `aᵢ` from [`StoppingSettings::joint_deceleration`]. While the robot runs faster
+/// than the commanded override, n is assumed to fall by at least one second per second, whatever the program does
+/// meanwhile. This starts at most [`StoppingSettings::reaction_s`] after the command.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StoppingSettings {
     /// Longest time (s) from a commanded override to the first deceleration.
@@ -37,8 +37,8 @@ pub struct StoppingSettings {
     pub period_s: f64,
     /// Guaranteed deceleration of each joint, rad/s² or m/s².
     pub joint_deceleration: Vec<f64>,
-    /// Largest acceleration of each joint in any program at override 1, rad/s² or m/s²: it bounds how fast a path can bend
-    /// towards a region.
+    /// Largest acceleration of each joint in any program at override 1, rad/s² or m/s². It bounds how fast a path can
+    /// bend towards a region.
     pub joint_acceleration: Vec<f64>,
 }
 
@@ -59,8 +59,8 @@ pub fn warning_factor(distance_m: f64, warning_m: f64) -> f64 {
     if distance_m > 0.0 { distance_m / warning_m } else { 0.0 }
 }
 
-/// The override of a speed zone: `slow_to` inside (at most `programmed`), rising linearly to `programmed` at the outer border
-/// of the warning zone.
+/// The override of a speed zone: `slow_to` inside, but at most `programmed`; it rises linearly to `programmed` at
+/// the outer border of the warning zone.
 ///
 /// ```
 /// use elbowroom_monitor::laws::speed_zone;
@@ -74,7 +74,7 @@ pub fn speed_zone(distance_m: f64, warning_m: f64, slow_to: f64, programmed: f64
     inside + (programmed - inside) * warning_factor(distance_m, warning_m)
 }
 
-/// The stop time (s) of these joint velocities: the longest time that any joint needs to come to rest by itself,
+/// The stop time (s) of these joint velocities: the longest time that any joint needs by itself to come to rest,
 /// `max |q̇ᵢ| / aᵢ`.
 ///
 /// ```
@@ -88,10 +88,11 @@ pub fn stop_time(velocity: &[f64], deceleration: &[f64]) -> f64 {
 
 /// Upper bound of the program time (s, at override 1) that passes while a robot comes to rest from the override `sigma`.
 ///
-/// `full_stop_s` is the stop time m of the program's own velocities, and `growth` bounds the rate of change of m by program
-/// time, `α = max Aᵢ / aᵢ` with the program's accelerations Aᵢ and the joints' decelerations aᵢ. While the stop time
-/// `n = σ·m` falls by one second per second, `∫ m du = n²/2` over the program time u; with `m(u) ≥ m − α·u` this gives
-/// `u ≤ (m/α) · (1 − √(1 − α·σ²))`, and `σ²·m` bounds it in every case: a stop takes no longer than n, at no more than σ.
+/// `full_stop_s` is the stop time m of the program's own velocities. `growth` bounds the rate of change of m by
+/// program time: `α = max Aᵢ / aᵢ` with the program's accelerations Aᵢ and the joints' decelerations aᵢ. While the
+/// stop time `n = σ·m` falls by one second per second, `∫ m du = n²/2` over the program time u; with
+/// `m(u) ≥ m − α·u` this gives `u ≤ (m/α) · (1 − √(1 − α·σ²))`. In every case `u ≤ σ²·m`: a stop takes at most n, at
+/// an override of at most σ.
 ///
 /// ```
 /// use elbowroom_monitor::laws::stopping_program_time;

@@ -2,9 +2,9 @@
 //!
 //! An **interference region** is a solid that a robot must not enter ([`RegionKind::Forbidden`]), that it reports
 //! ([`RegionKind::Monitored`]) or that it shares with other robots ([`RegionKind::Exchange`]). A **warning zone** surrounds
-//! it, in which the speed override falls with the distance. In every control tick a [`Monitor`] computes the largest speed
-//! override that the laws allow, and the reason for it, from **virtual TCPs**: for each region the closest point of the
-//! guarded volumes.
+//! it; there the speed override falls with the distance. In every control tick a [`Monitor`] computes the largest
+//! speed override that the laws allow, and its reason, from **virtual TCPs**: for each region the closest point of
+//! the guarded volumes.
 //!
 //! ```
 //! use elbowroom_kinematics::{Chain, Joint, JointKind, Limits, LinkId};
@@ -42,8 +42,8 @@
 //!
 //! This is not a certified safety device.
 //!
-//! **Invariant.** Whatever a snapshot holds, a tick never allocates, locks or panics; input that is stale, out of
-//! order, not finite or implausible is always override 0, with an [`OverrideReason`].
+//! **Invariant.** Under any input, a tick never allocates, locks or panics. If the input is stale, out of order, not
+//! finite or implausible, the override is always 0, with an [`OverrideReason`].
 
 mod attached_volumes;
 mod braking_check;

@@ -22,7 +22,7 @@ use crate::{
     RegionKind, Snapshot, SwitchError, TickReport, VolumeId,
 };
 
-/// Smallest override by which actual velocities are divided to infer those of the program.
+/// Smallest override by which the actual velocities are divided to infer the program's velocities.
 const MIN_INFERENCE_OVERRIDE: f64 = 0.01;
 
 /// The monitor of one robot: see the [crate documentation](crate).
@@ -44,26 +44,28 @@ pub struct Monitor {
     source_check: SourceCheck,
     pub(crate) zone_client: Option<ZoneClient>,
     pub(crate) last_override: Option<f64>,
-    /// True if a volume was attached since the last tick: then the override does not fall at a limited rate.
+    /// True if a volume was attached since the last tick: then the override falls at once, without its rate limit.
     pub(crate) just_attached: bool,
     pub(crate) faults: Faults,
 }
 
-/// What stops the robot, whatever its regions are.
+/// Faults that stop the robot, whatever its regions request.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Faults {
-    /// Of the input of the last tick.
+    /// Fault of the input of the last tick.
     pub(crate) input: Option<Fault>,
-    /// Its host knows it, the input does not show it.
+    /// Fault reported by the host, which the input does not show.
     pub(crate) external: Option<Fault>,
 }
 
 impl Monitor {
-    /// A monitor that is ready to tick: everything is allocated here. Exchange regions need the interlock that grants them.
+    /// Creates a monitor that is ready to tick, and allocates all of its memory. Exchange regions need the interlock
+    /// that grants them.
     ///
     /// # Errors
-    /// [`ConfigError::NoArbiter`] if there are exchange regions, but nothing that grants their slots;
-    /// [`ConfigError::NoStoppingDistance`] if they are shared with other processes without the stopping-distance law.
+    /// [`ConfigError::NoArbiter`] if an exchange region has no interlock that grants its slot;
+    /// [`ConfigError::NoStoppingDistance`] if exchange regions are shared with other processes without the
+    /// stopping-distance law.
     pub fn new(config: Configuration, interlock: Option<Interlock>) -> Result<Self, ConfigError> {
         let zone_client = interlock.map(|interlock| ZoneClient::new(interlock, &config)).transpose()?;
         if let (None, Some(region)) = (&zone_client, config.first_exchange()) {
@@ -91,7 +93,8 @@ impl Monitor {
         })
     }
 
-    /// The largest speed override that the laws allow in this tick, and its reason. Never allocates, locks or panics.
+    /// Computes the largest speed override that the laws allow in this tick, and its reason. Never allocates, locks or
+    /// panics.
     pub fn tick(&mut self, s: &Snapshot) -> TickReport {
         self.begin();
         let since_last_s = self.watchdog.since_last(s);
@@ -129,7 +132,7 @@ impl Monitor {
         self.conclude(s, dt_s)
     }
 
-    /// Switches a temporary region; takes effect with the next tick.
+    /// Switches a temporary region on or off, from the next tick on.
     ///
     /// # Errors
     /// [`SwitchError`] if the region is permanent or the access class is too low.
@@ -149,9 +152,10 @@ impl Monitor {
         Ok(())
     }
 
-    /// Attaches a volume that is not [always](crate::Presence::Always) there, such as an object that the robot has gripped: from
-    /// the next tick on it moves with its link at the pose `in_link`, and counts as every other volume. One that is attached
-    /// already moves there. Call it before the robot moves with it. Never allocates.
+    /// Attaches a volume that is not [always](crate::Presence::Always) there, such as an object that the robot has
+    /// gripped. From the next tick on it moves with its link at the pose `in_link` and counts like every other volume. A
+    /// volume that is attached already moves to `in_link`. Call it before the robot moves with the object. Never
+    /// allocates.
     ///
     /// ```
     /// # use elbowroom_kinematics::{Chain, Joint, JointKind, Limits, LinkId};
@@ -192,7 +196,8 @@ impl Monitor {
         Ok(())
     }
 
-    /// Detaches a volume: it does not count from the next tick on. Call it when the robot has let go. Never allocates.
+    /// Detaches a volume, which does not count from the next tick on. Call it when the robot has let go. Never
+    /// allocates.
     ///
     /// # Errors
     /// [`AttachError`] if the volume is always there or unknown; then nothing changes.
@@ -204,8 +209,8 @@ impl Monitor {
         self.sweep.detach(&self.config, volume)
     }
 
-    /// Forgets where the robot was: the next joint values may be anywhere, and are not [too fast](Fault::TooFast). Call it where
-    /// the robot is known to be at rest, after it was moved while nobody looked. Never allocates.
+    /// Forgets where the robot was: the next joint values may be anywhere without being [too fast](Fault::TooFast). Call
+    /// it when the robot is known to be at rest, after it was moved without ticks. Never allocates.
     ///
     /// ```
     /// # use elbowroom_kinematics::{Chain, Joint, JointKind, Limits, LinkId};
@@ -228,9 +233,9 @@ impl Monitor {
         self.sweep.reset();
     }
 
-    /// Stops the robot, from the next tick on, for a fault that its host knows and the input does not show; `None` ends it. The
-    /// robot is measured as before, and rises from override 0 afterwards. Set it here instead of lowering the override of a
-    /// report: the monitor has to know which override the robot executes. Never allocates.
+    /// Stops the robot from the next tick on, for a fault that its host knows and the input does not show; `None` ends
+    /// the fault. The monitor still measures the robot; after the fault the override rises from 0. Use this instead of
+    /// lowering the override of a report: the monitor has to know which override the robot executes. Never allocates.
     pub fn set_external_fault(&mut self, fault: Option<Fault>) {
         self.faults.external = fault;
     }
@@ -383,7 +388,7 @@ impl Monitor {
     }
 }
 
-/// Infers the program's velocities at override 1 from the actual ones, which result from the last override.
+/// Infers the program's velocities at override 1 from the actual velocities, which result from the last override.
 fn infer_intent(intent: &mut [f64], real: &[f64], last_override: f64) {
     let scale = 1.0 / last_override.max(MIN_INFERENCE_OVERRIDE);
     intent.iter_mut().zip(real).for_each(|(full, v)| *full = v * scale);

@@ -1,4 +1,4 @@
-//! What may be asked of a monitor between its ticks.
+//! Queries of a monitor between its ticks.
 
 use elbowroom_kinematics::ChainState;
 use elbowroom_spatial::Pose;
@@ -14,12 +14,12 @@ use crate::{
 };
 
 impl Monitor {
-    /// The fault of [`Monitor::set_external_fault`].
+    /// The fault set by [`Monitor::set_external_fault`].
     pub fn external_fault(&self) -> Option<Fault> {
         self.faults.external
     }
 
-    /// What is wrong with the input of the last tick. `None` if it was valid and the robot was measured.
+    /// The fault of the input of the last tick; `None` if the input was valid and the robot was measured.
     pub fn input_fault(&self) -> Option<Fault> {
         self.faults.input
     }
@@ -38,7 +38,7 @@ impl Monitor {
         self.regions.is_active(region.0)
     }
 
-    /// The region of this name.
+    /// The region with this name.
     pub fn region(&self, name: &str) -> Option<RegionId> {
         self.config.region(name)
     }
@@ -53,14 +53,15 @@ impl Monitor {
         self.log.as_slice()
     }
 
-    /// The virtual TCPs of the last tick: for every region near the robot the point that requests the smallest override.
+    /// The virtual TCPs of the last tick: for every region near the robot, the point that requests the smallest
+    /// override.
     pub fn virtual_tcps<'a>(&'a self, s: &'a Snapshot<'a>) -> impl Iterator<Item = VirtualTcp> + 'a {
         let active = self.clearances.near().iter().map(|r| *r as usize).filter(|r| self.regions.is_active(*r));
         active.filter_map(|r| self.clearances.get(r)).map(|c| self.virtual_tcp(c, s))
     }
 
-    /// Distance (m) of the region to the closest volume that it guards against, at the state of the last tick; `None` where
-    /// it exceeds `limit` or the region is inactive. Not part of the tick: for reports.
+    /// Distance (m) from the region to the closest volume that it guards against, at the state of the last tick; `None`
+    /// if it exceeds `limit` or the region is inactive. For reports; a tick does not use it.
     pub fn distance(&self, region: RegionId, limit: f64) -> Option<f64> {
         let found =
             self.is_active(region).then(|| distance_to_guarded(&self.config, &self.now, region, limit)).flatten();
@@ -82,8 +83,8 @@ impl Monitor {
         self.exchange(region).is_some_and(|(client, slot)| client.holds(slot))
     }
 
-    /// The grants that come from outside of the process ([`Granted`](crate::Interlock::Granted)). `None` if the robots share an
-    /// arbiter, and without exchange regions.
+    /// The grants that come from outside this process ([`Granted`](crate::Interlock::Granted)); `None` if the robots
+    /// share an arbiter or the configuration has no exchange regions.
     pub fn slot_grants(&self) -> Option<&SlotGrants> {
         self.zone_client.as_ref()?.slot_grants()
     }
@@ -101,8 +102,8 @@ impl Monitor {
         }
     }
 
-    /// Whether the region stops this robot now: it is active, and forbidden or taken by another robot. An exchange region
-    /// without a holder is not closed: it is granted on approach.
+    /// Whether the region stops this robot now: it is active, and forbidden or taken by another robot. An exchange
+    /// region without a holder is not closed, because it is granted on approach.
     pub fn is_closed(&self, region: RegionId) -> bool {
         self.is_active(region)
             && match self.config.regions[region.0].kind {
@@ -119,7 +120,7 @@ impl Monitor {
         self.now.region_in_world[region.0]
     }
 
-    /// Pose of a volume's shape in the last tick; of a detached volume, where it was attached last.
+    /// Pose of a volume's shape in the last tick; for a detached volume, its pose when it was last attached.
     pub fn volume_in_world(&self, volume: VolumeId) -> Pose {
         self.now.volume_in_world[volume.0]
     }

@@ -1,8 +1,8 @@
-//! The overrides that were commanded recently, and that the robot may still be executing.
+//! The recently commanded overrides, which the robot may still be executing.
 
 use std::collections::VecDeque;
 
-/// Number of overrides that are stored; the oldest two are merged where more are pending.
+/// Number of overrides that are stored; if more are pending, the oldest two are merged.
 const CAPACITY: usize = 256;
 
 /// A commanded override.
@@ -11,7 +11,7 @@ struct CommandedOverride {
     at_s: f64,
     /// The largest of this override and all later ones.
     max: f64,
-    /// The smallest of them.
+    /// The smallest of this override and all later ones.
     min: f64,
 }
 
@@ -22,7 +22,7 @@ pub(crate) struct OverrideRange {
     pub(crate) min: f64,
 }
 
-/// What the robot does until the override of this tick takes effect, at most.
+/// Upper bounds of the robot's motion until the override of this tick takes effect.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct PendingMotion {
     /// Program time that passes, s.
@@ -36,12 +36,12 @@ pub(crate) struct PendingMotion {
 pub(crate) struct StopTime {
     /// Stop time m at override 1, s.
     pub(crate) full_stop_s: f64,
-    /// Bound α of its rate of change by program time.
+    /// Bound α of the rate of change of m by program time.
     pub(crate) growth: f64,
 }
 
-/// The overrides that were commanded and may still be in effect: a robot executes a lower override up to the reaction time
-/// late, a higher one at once.
+/// The commanded overrides that may still be in effect. A robot executes a lower override up to the reaction time
+/// late, a higher override at once.
 #[derive(Debug)]
 pub(crate) struct OverrideHistory {
     reaction_s: f64,
@@ -80,7 +80,7 @@ impl OverrideHistory {
         }
     }
 
-    /// The largest override that may be in effect, and since when no larger one may, s.
+    /// The largest override that may be in effect, and the time (s) from which no larger one may be.
     pub(crate) fn largest(&self) -> (f64, f64) {
         self.commanded.front().map_or((0.0, f64::NEG_INFINITY), |c| (c.max, c.at_s + self.reaction_s))
     }
@@ -92,9 +92,9 @@ impl OverrideHistory {
         OverrideRange { max: oldest.max, min }
     }
 
-    /// Bounds the motion from `stamp_s`, where the robot runs at the override `running`, until an override commanded at
-    /// `now_s` takes effect. `stop_time` gives the stop time after some program time. While the robot is faster than
-    /// commanded, its override falls by at least `(1 − α·σ²) / m` per second.
+    /// Bounds the motion from `stamp_s` until an override commanded at `now_s` takes effect. At `stamp_s` the robot runs
+    /// at the override `running`. `stop_time` returns the stop time after some program time. While the robot is faster
+    /// than commanded, its override falls by at least `(1 − α·σ²) / m` per second.
     pub(crate) fn pending_motion(
         &mut self,
         stamp_s: f64,

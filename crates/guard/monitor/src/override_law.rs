@@ -1,4 +1,5 @@
-//! The override law of a tick: the override that each pair of volume and region requests, by the formulas of `laws.rs`.
+//! The override law of a tick: the override that each pair of volume and region requests, with the formulas of
+//! `laws.rs`.
 
 use elbowroom_proximity::Shape;
 use elbowroom_spatial::Vec3;
@@ -13,15 +14,16 @@ use crate::tick_context::TickContext;
 use crate::volume_region_pair::{RequestedOverride, VolumeRegionPair};
 use crate::{RegionKind, Snapshot, SourceState};
 
-/// Margin (m) of rounding errors before a border.
+/// Margin (m) for rounding errors before a border.
 const ROUNDING_M: f64 = 1e-6;
 
 /// Settings of the override law.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct OverrideLawSettings {
-    /// Margin (m) before the border at which the stopping-distance law stops: rounding never ends inside.
+    /// Distance (m) before the border at which the stopping-distance law stops, so that rounding never puts the stop
+    /// inside.
     pub(crate) stop_margin_m: f64,
-    /// Speed (rad/s, m/s) below which a joint is at rest where its deceleration is not stated.
+    /// Speed (rad/s, m/s) below which a joint is at rest if its deceleration is not stated.
     pub(crate) rest_speed: f64,
     pub(crate) recovery: RecoverySettings,
 }
@@ -35,21 +37,21 @@ impl Default for OverrideLawSettings {
 /// The override law of one tick.
 pub(crate) struct OverrideLaw<'a> {
     pub(crate) tick: TickContext<'a>,
-    /// The stopping-distance law, where it is on.
+    /// The stopping-distance law, if it is on.
     pub(crate) stopping_law: Option<&'a StoppingLaw>,
     /// Upper bound of the travel of all points of all regions until the robot is at rest, m.
     pub(crate) max_region_travel_m: f64,
     pub(crate) settings: OverrideLawSettings,
 }
 
-/// Direction in which the distance of a pair changes.
+/// How the distance of a pair changes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Direction {
-    /// It decreases, or is not known to increase.
+    /// The distance decreases, or is not known to increase.
     Approaching,
-    /// It increases.
+    /// The distance increases.
     Leaving,
-    /// The volume is inside a region at rest and the program leads out.
+    /// The volume is inside a region at rest, and the program leaves the region.
     Recovering,
 }
 
@@ -68,8 +70,8 @@ impl OverrideLaw<'_> {
         }
     }
 
-    /// True if the robot, commanded to stop in this tick, ends outside the region: by the stopping-distance law or,
-    /// where no deceleration is stated, because it is at rest.
+    /// True if the robot, commanded to stop in this tick, comes to rest outside the region: by the stopping-distance law
+    /// or, if no deceleration is stated, because it is at rest.
     pub(crate) fn stops_outside(&self, pair: &VolumeRegionPair) -> bool {
         if pair.separation.distance <= 0.0 {
             return false;
@@ -93,8 +95,9 @@ impl OverrideLaw<'_> {
         let config = self.tick.config;
         let v0 = self.tick.snapshot.programmed_override;
         let warned = v0 * warning_factor(pair.separation.distance, config.regions[pair.region].warning_m);
-        // Proving that the request of the warning zone or of another pair is slow enough is cheaper than searching the limit.
-        // An override that changes at a limited rate may exceed the request of the zone: then the limit itself is needed.
+        // Proving that the request of the warning zone or of another pair is slow enough is cheaper than searching the
+        // limit. With a limited rate of change the override may exceed the request of the zone: then the limit itself is
+        // needed.
         let max = if config.laws.override_rate > 0.0 { v0 } else { warned.min(so_far) };
         let law = self.stopping_law.map(|law| (law, self.stopping_query(pair, law)));
         let limit = |margin_m: &dyn Fn(f64) -> f64, max: f64| match &law {
@@ -114,7 +117,7 @@ impl OverrideLaw<'_> {
             Direction::Approaching => held,
             Direction::Leaving => {
                 let max = v0.min(so_far);
-                // What leaves keeps no margin but that of rounding, however close it is.
+                // A leaving volume keeps only the margin for rounding, however close it is.
                 let stopping = limit(&|free_m| ROUNDING_M.min(0.5 * free_m), max);
                 RequestedOverride::immediate(if stopping < max { stopping } else { v0 })
             }
@@ -122,7 +125,7 @@ impl OverrideLaw<'_> {
         }
     }
 
-    /// The pair as a query of the stopping-distance law; `None` on contact.
+    /// The query of the stopping-distance law for the pair; `None` on contact.
     fn stopping_query(&self, pair: &VolumeRegionPair, law: &StoppingLaw) -> Option<StoppingQuery> {
         let config = self.tick.config;
         let s = &pair.separation;
@@ -131,7 +134,8 @@ impl OverrideLaw<'_> {
             return None;
         }
         let (volume, region) = (pair.volume, &config.regions[pair.region]);
-        // Two convex solids have a separating plane: only motion across it counts. Others may approach in any direction.
+        // Two convex solids have a separating plane, and only motion across it counts. Other solids may approach in any
+        // direction.
         let is_convex = |shape: &Shape| !matches!(shape, Shape::Mesh(_));
         if !(is_convex(&config.volumes[volume].shape) && is_convex(&region.shape)) {
             let approach = law.approach_any_direction(volume);
@@ -145,13 +149,13 @@ impl OverrideLaw<'_> {
         }
         let closing_speed = |state| max_speed_along(config, self.tick.now, volume, state, towards);
         let program_speed = closing_speed(self.tick.intent?);
-        // The actual motion only counts where the program is not known.
+        // The actual motion counts only if the program is not known.
         let real_speed = if law.program_is_known() { 0.0 } else { closing_speed(&self.tick.now.chain) };
         let approach = law.approach(volume, towards, program_speed, real_speed);
         Some(StoppingQuery { volume, approach, free_m, region })
     }
 
-    /// How the region approaches by its own motion: against `towards`, or in any direction.
+    /// The approach of the region by its own motion: against `towards`, or in any direction.
     fn region_approach(&self, pair: &VolumeRegionPair, law: &StoppingLaw, towards: Option<Vec3>) -> RegionApproach {
         let region = &self.tick.config.regions[pair.region];
         let Some(source) = region.source_state(self.tick.snapshot.sources) else { return RegionApproach::default() };
@@ -166,7 +170,7 @@ impl OverrideLaw<'_> {
             };
             return approach.older_by(older_s);
         }
-        // Of a half-space only the points that come to where the volume may be count.
+        // Only the points of a half-space that come to where the volume may be count.
         let volume = &self.tick.now.volume_box[pair.volume];
         let drift = source.motion.velocity.length() * (law.rest_after_s() + older_s);
         let motion = TurningMotion::new(&source.motion, volume.max_distance(origin) + law.reach_m(pair.volume) + drift);
@@ -194,15 +198,15 @@ impl OverrideLaw<'_> {
             && self.tick.region_point_velocity(pair.region, pair.separation.on_b).length() <= rest_speed
     }
 
-    /// Leaving: the distance increases now and over the lookahead time, in the direction of the program, and the actual
-    /// motion does not decrease it. A distance that decreases never clears an alarm.
+    /// The direction of the pair. It is `Leaving` if the distance increases now and over the lookahead time, along the
+    /// program's motion, and the actual motion does not decrease it. A decreasing distance never clears an alarm.
     fn direction(&self, pair: &VolumeRegionPair) -> Direction {
         let tick = &self.tick;
         let (Some(predicted), Some(intent)) = (tick.predicted, tick.intent) else { return Direction::Approaching };
         let (v, r) = (pair.volume, pair.region);
         let away = (pair.separation.on_a - pair.separation.on_b).try_normalize();
         let Some(away) = away.filter(|_| pair.separation.distance > 0.0) else {
-            // Where a region that moves will be when the robot rests is not known well enough to move inside of it.
+            // Where a moving region will be when the robot is at rest is not known well enough for motion inside it.
             let recovers = border_speed(tick, pair) <= self.settings.recovery.region_rest_speed
                 && leads_out(tick, &self.settings.recovery, pair, intent, predicted);
             return if recovers { Direction::Recovering } else { Direction::Approaching };
@@ -216,8 +220,8 @@ impl OverrideLaw<'_> {
     }
 }
 
-/// Upper bound of the travel (m) of all points of all dynamic regions from their readings until the robot is at rest; 0 without the
-/// stopping-distance law.
+/// Upper bound of the travel (m) of all points of all dynamic regions, from their readings until the robot is at
+/// rest; 0 without the stopping-distance law.
 pub(crate) fn max_region_travel_m(now: &Placement, snapshot: &Snapshot<'_>, law: Option<&StoppingLaw>) -> f64 {
     let Some(law) = law else { return 0.0 };
     let travel_m = |dynamic: &DynamicRegion| {
@@ -227,7 +231,7 @@ pub(crate) fn max_region_travel_m(now: &Placement, snapshot: &Snapshot<'_>, law:
     now.dynamic_regions.iter().map(travel_m).fold(0.0, f64::max)
 }
 
-/// By how long (s) the reading of a source is older than that of the robot.
+/// Time (s) by which the reading of a source is older than the reading of the robot; 0 if it is newer.
 fn older_s(snapshot: &Snapshot<'_>, source: &SourceState) -> f64 {
     (snapshot.stamp_s - source.stamp_s).max(0.0)
 }

@@ -19,7 +19,7 @@ pub(crate) struct DynamicRegion {
 pub(crate) struct Placement {
     pub(crate) chain: ChainState,
     pub(crate) attached: AttachedVolumes,
-    /// Of detached volumes: where they were last, and an empty box.
+    /// Poses of the volumes. A detached volume keeps its last pose, and its box is empty.
     pub(crate) volume_in_world: Vec<Pose>,
     pub(crate) volume_box: Vec<Aabb>,
     pub(crate) region_in_world: Vec<Pose>,
@@ -43,7 +43,7 @@ impl Placement {
         }
     }
 
-    /// Places everything as in the snapshot; where it has no joint velocities, `velocity` (empty at rest) replaces them.
+    /// Places everything as in the snapshot. If it has no joint velocities, `velocity` (empty at rest) replaces them.
     pub(crate) fn place(&mut self, config: &Configuration, s: &Snapshot, velocity: &[f64]) {
         copy_or_zero(&mut self.chain.q, s.q);
         copy_or_zero(&mut self.chain.qd, if s.qd.is_empty() { velocity } else { s.qd });
@@ -108,7 +108,7 @@ fn extrapolated(source: &SourceState, ahead_s: f64) -> Pose {
     Pose::new(turn * source.pose.rotation, source.pose.translation + velocity * ahead_s)
 }
 
-/// Copies `from`; an empty slice stands for zeros.
+/// Copies `from`; an empty slice means zeros.
 fn copy_or_zero(to: &mut [f64], from: &[f64]) {
     if from.is_empty() { to.fill(0.0) } else { to.copy_from_slice(from) }
 }

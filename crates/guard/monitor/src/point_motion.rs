@@ -1,4 +1,4 @@
-//! Motion of points of links, volumes and regions, seen from the world.
+//! Motion of points of links, volumes and regions, in the world frame.
 
 use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_spatial::{FrameMotion, Pose, Vec3};
@@ -11,7 +11,7 @@ use crate::{Configuration, Region, SourceState};
 pub(crate) struct LinkPoint<'a> {
     base_in_world: &'a Pose,
     link_motion: FrameMotion,
-    /// From the link's origin to the point, in the frame of the root link, m.
+    /// Vector from the link's origin to the point, in the frame of the root link, m.
     offset: Vec3,
 }
 
@@ -72,7 +72,7 @@ pub(crate) struct PointMotion {
     pub(crate) acceleration: Vec3,
 }
 
-/// Motion of the point of a region that is at `point_in_world` (m).
+/// Motion of the point of a region at `point_in_world` (m).
 pub(crate) fn region_point_motion(region: &Region, sources: &[SourceState], point_in_world: Vec3) -> PointMotion {
     let Some(source) = region.source_state(sources) else { return PointMotion::default() };
     let offset = point_in_world - source.pose.translation;

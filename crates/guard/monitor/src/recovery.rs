@@ -1,4 +1,4 @@
-//! Recovery: whether the program of a robot inside a region leads out of it.
+//! Recovery: whether the program of a robot inside a region leaves it.
 
 use elbowroom_kinematics::ChainState;
 use elbowroom_proximity::{Penetration, Shape, penetration};
@@ -13,8 +13,8 @@ use crate::volume_region_pair::VolumeRegionPair;
 pub(crate) struct RecoverySettings {
     /// Smallest decrease of the penetration depth within the lookahead time, m.
     min_decrease_m: f64,
-    /// Largest increase of the depth, as a fraction of the travel, where the program moves along a face: curvature of the
-    /// path.
+    /// Largest increase of the depth while the program moves along a face, as a fraction of the travel; it allows for
+    /// the curvature of the path.
     slope: f64,
     /// Largest increase of the depth within the lookahead time, m.
     max_increase_m: f64,
@@ -22,7 +22,7 @@ pub(crate) struct RecoverySettings {
     near_s: f64,
     /// Number of samples along the predicted motion.
     samples: u32,
-    /// Speed (m/s) of its border up to which a region is at rest: joint values of a robot at rest tremble.
+    /// Speed (m/s) of its border up to which a region counts as at rest: joint values of a robot at rest tremble.
     pub(crate) region_rest_speed: f64,
 }
 
@@ -39,8 +39,8 @@ impl Default for RecoverySettings {
     }
 }
 
-/// True if the program leads out of the region without going deeper: by the nearest side within the lookahead time, or
-/// by another side farther on.
+/// True if the program leaves the region without going deeper: by the nearest side within the lookahead time, or by
+/// another side farther on.
 pub(crate) fn leads_out(
     tick: &TickContext<'_>,
     settings: &RecoverySettings,
@@ -56,10 +56,10 @@ pub(crate) fn leads_out(
     };
     match penetration(volume, volume_predicted, region, region_predicted) {
         Some(then) if then.depth + settings.min_decrease_m < now.depth => true,
-        // More than the curvature of a path explains.
+        // The increase is more than the curvature of a path explains.
         Some(then) if then.depth > now.depth + settings.max_increase_m => false,
         Some(_) => leads_out_ahead(tick, settings, pair, intent, &now),
-        // At the border no depth is left to decrease; and a volume beyond a thin plate has passed through it.
+        // At the border no depth is left to decrease, and a volume beyond a thin plate has passed through it.
         None => {
             let margin_m = (settings.min_decrease_m - now.depth).max(0.0);
             tick.leaves_along(pair, intent, now.direction)
@@ -68,8 +68,8 @@ pub(crate) fn leads_out(
     }
 }
 
-/// Upper bound of the speed (m/s) at which the border of a region moves beside a volume. A ball that turns about its centre, or a cylinder
-/// about its axis, stays where it is.
+/// Upper bound of the speed (m/s) at which the border of a region moves next to a volume. The border of a ball that
+/// turns about its centre, or of a cylinder that turns about its axis, does not move.
 pub(crate) fn border_speed(tick: &TickContext<'_>, pair: &VolumeRegionPair) -> f64 {
     let region = &tick.config.regions[pair.region];
     let Some(source) = region.source_state(tick.snapshot.sources) else { return 0.0 };
@@ -85,7 +85,7 @@ pub(crate) fn border_speed(tick: &TickContext<'_>, pair: &VolumeRegionPair) -> f
     match &region.shape {
         Shape::Sphere(_) => of_center,
         Shape::Cylinder(_) | Shape::Capsule(_) => of_center + turning(across),
-        // Of a plane only motion across it counts, where the volume is.
+        // For a plane only the motion across it counts, at the volume's position.
         Shape::HalfSpace(_) => {
             let volume = &tick.now.volume_box[pair.volume];
             velocity(volume.center()).dot(axis).abs() + 0.5 * across * volume.extent().length()

@@ -6,15 +6,15 @@ use elbowroom_spatial::{Pose, Rotation, Vec3};
 use crate::taught_points::{TeachError, plane_rotation};
 use crate::{AccessClass, SlotId, SourceState};
 
-/// Index of a region in its [`Configuration`](crate::Configuration).
+/// Index of a region in the [`Configuration`](crate::Configuration).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct RegionId(pub usize);
 
-/// Index of a guarded volume in its configuration.
+/// Index of a guarded volume in the configuration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct VolumeId(pub usize);
 
-/// Index of a source of motion (encoder, pose sensor, frame of another robot) in its configuration.
+/// Index of a source of motion (encoder, pose sensor, frame of another robot) in the configuration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct SourceId(pub usize);
 
@@ -30,7 +30,7 @@ pub enum RegionKind {
     },
     /// Forbidden to all robots except the holder of the slot.
     Exchange {
-        /// Its lock in the shared [`ZoneArbiter`](crate::ZoneArbiter).
+        /// The lock of the region in the shared [`ZoneArbiter`](crate::ZoneArbiter).
         slot: SlotId,
     },
 }
@@ -64,7 +64,7 @@ impl Life {
         }
     }
 
-    /// The lowest class that may edit or switch a region of this life.
+    /// The lowest class that may edit or switch a region with this life.
     pub fn needed_class(self) -> AccessClass {
         match self {
             Self::Permanent => AccessClass::Integrator,
@@ -101,8 +101,8 @@ impl Default for Guards {
 
 /// A solid with a warning zone.
 ///
-/// `anchor` is the frame of the region's characteristic point (sphere: centre; cylinder: centre of the bottom
-/// base; plane: origin; parallelepiped: centre of the bottom base). The anchor of a dynamic region, which follows a source,
+/// `anchor` is the frame of the region's characteristic point (sphere: centre; cylinder: centre of the bottom base;
+/// plane: origin; parallelepiped: centre of the bottom base). For a dynamic region, which follows a source, `anchor`
 /// is given in the source's frame.
 #[derive(Debug, Clone)]
 pub struct Region {
@@ -116,13 +116,13 @@ pub struct Region {
     pub shape_in_anchor: Pose,
     /// Effect on the robot.
     pub kind: RegionKind,
-    /// Who may switch it.
+    /// Who may switch the region.
     pub life: Life,
     /// Thickness δ of the warning zone, metres; 0 for none.
     pub warning_m: f64,
-    /// The parts of the robot that it guards against.
+    /// The parts of the robot that the region guards against.
     pub guards: Guards,
-    /// The source of motion that it follows; `None` for a static region.
+    /// The source of motion that the region follows; `None` for a static region.
     pub follow: Option<SourceId>,
     /// Distance (m) beyond a boundary at which the outputs are switched off again.
     pub hysteresis_m: f64,
@@ -133,7 +133,7 @@ pub struct Region {
 }
 
 impl Region {
-    /// Any solid; `anchor` is both the pose of the shape and its characteristic frame.
+    /// A region with any solid; `anchor` is both the pose of the shape and its characteristic frame.
     pub fn solid(name: impl Into<String>, shape: Shape, anchor: Pose) -> Self {
         Self {
             name: name.into(),
@@ -190,37 +190,37 @@ impl Region {
         }
     }
 
-    /// With a warning zone of this thickness (m).
+    /// Sets the thickness of the warning zone (m).
     #[must_use]
     pub fn warning(self, warning_m: f64) -> Self {
         Self { warning_m, ..self }
     }
 
-    /// With this kind; the default is forbidden.
+    /// Sets the kind; the default is forbidden.
     #[must_use]
     pub fn kind(self, kind: RegionKind) -> Self {
         Self { kind, ..self }
     }
 
-    /// Monitored, without a speed limit.
+    /// Makes the region monitored, without a speed limit.
     #[must_use]
     pub fn monitored(self) -> Self {
         self.kind(RegionKind::Monitored { slow_to: None })
     }
 
-    /// With this life; the default is permanent.
+    /// Sets the life; the default is permanent.
     #[must_use]
     pub fn life(self, life: Life) -> Self {
         Self { life, ..self }
     }
 
-    /// Guarding against these parts; the default is the arm.
+    /// Sets the guarded parts; the default is the arm.
     #[must_use]
     pub fn guards(self, guards: Guards) -> Self {
         Self { guards, ..self }
     }
 
-    /// Following a source of motion.
+    /// Makes the region follow a source of motion.
     #[must_use]
     pub fn follow(self, source: SourceId) -> Self {
         Self { follow: Some(source), ..self }

@@ -7,30 +7,31 @@ use elbowroom_spatial::FrameMotion;
 pub(crate) struct RegionApproach {
     /// Largest closing speed of its points now, m/s; negative if all recede.
     speed: f64,
-    /// Largest acceleration of its points, m/s²: what turns keeps its speed and changes its direction.
+    /// Largest acceleration of its points, m/s²: a turning point keeps its speed and changes its direction.
     acceleration: f64,
     /// Largest speed of its points in any direction, m/s.
     max_speed: f64,
-    /// By how long (s) the reading of its motion is older than that of the robot.
+    /// Time (s) by which the reading of the region's motion is older than the robot's reading.
     older_s: f64,
 }
 
 impl RegionApproach {
-    /// The approach as it was read so long (s) before the robot's joint values.
+    /// The approach with a reading that is `older_s` (s) older than the robot's joint values.
     pub(crate) fn older_by(self, older_s: f64) -> Self {
         Self { older_s, ..self }
     }
 
-    /// The distance (m) by which it has come closer since its reading at any moment until `time_s` after that of the robot, at most.
+    /// Upper bound of the distance (m) by which the region comes closer, from its reading until `time_s` after the
+    /// robot's reading.
     pub(crate) fn travel_m(&self, time_s: f64) -> f64 {
-        // Of what stands still the age does not count, even if it is infinite.
+        // For a region at rest the age does not count, even if it is infinite.
         if self.is_still() {
             return 0.0;
         }
         let time_s = time_s + self.older_s;
         // The sum is convex in time: it is largest at the beginning or at the end.
         let turning = self.speed * time_s + 0.5 * self.acceleration * time_s * time_s;
-        // NaN stays: it never fits.
+        // NaN passes through: the caller treats it as too far.
         if turning < 0.0 {
             0.0
         } else if turning > self.max_speed * time_s {
@@ -40,13 +41,14 @@ impl RegionApproach {
         }
     }
 
-    /// Whether no point of it moves.
+    /// Whether all points of the region are at rest.
     pub(crate) fn is_still(&self) -> bool {
         self.max_speed == 0.0
     }
 }
 
-/// A body that moves and turns at a constant rate, or that an arm carries whose joints do, with the radius of its points.
+/// Bounds of the motion of a body, up to some radius, that moves and turns at a constant rate or that an arm carries
+/// whose joints do.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct TurningMotion {
     /// Largest speed of its points by turning, m/s.
@@ -58,15 +60,15 @@ pub(crate) struct TurningMotion {
 }
 
 impl TurningMotion {
-    /// The motion of all points within `radius_m` of the frame's origin; the frame keeps its velocity, or turns it as it
-    /// turns itself (an object beside its axis, the hand of a robot).
+    /// Bounds the motion of all points within `radius_m` of the frame's origin. The frame keeps its velocity, or its
+    /// velocity turns with it (an object beside its axis, the hand of a robot).
     pub(crate) fn new(motion: &FrameMotion, radius_m: f64) -> Self {
         let turns = motion.angular_velocity.length();
-        // Of what does not turn the radius does not count, even if it is infinite.
+        // Without rotation the radius does not count, even if it is infinite.
         let times_radius = |rate: f64| if rate > 0.0 { rate * radius_m } else { 0.0 };
         let (swings, fastest) = (times_radius(turns), motion.velocity.length() + times_radius(turns));
-        // Both kinds of motion bend the path of a point by no more than its angular speed times its largest speed. A hand of an arm with
-        // several joints circles without turning: its path bends as it does now.
+        // In both cases the acceleration of a point is at most its angular speed times its largest speed. The hand of an arm
+        // with several joints may circle without turning: then its path bends as it does now.
         let turning = if turns > 0.0 { turns * fastest } else { 0.0 };
         let now = motion.acceleration.length()
             + times_radius(motion.angular_acceleration.length())
@@ -84,7 +86,7 @@ impl TurningMotion {
         RegionApproach { speed: closing_speed, acceleration: self.bends, max_speed: self.fastest, older_s: 0.0 }
     }
 
-    /// The approach where it may come from any side.
+    /// The approach if the body may come from any side.
     pub(crate) fn approach_any_direction(&self) -> RegionApproach {
         RegionApproach { speed: self.fastest, acceleration: 0.0, max_speed: self.fastest, older_s: 0.0 }
     }
@@ -112,7 +114,7 @@ mod tests {
                 // The origin keeps its velocity.
                 let straight = velocity * t + turned(t) * point - point;
                 assert!(straight.dot(towards) <= approach.travel_m(t) + 1e-9);
-                // The origin turns its velocity: summed over short steps.
+                // The velocity of the origin turns with the body: summed over short steps.
                 let arc = (0..200).fold(Pose::IDENTITY, |at, i| {
                     let s = t / 200.0;
                     let rotation = turned((f64::from(i) + 1.0) * s);

@@ -18,24 +18,24 @@ pub(crate) struct RegionClearance {
     tick: u64,
     /// Distance of the closest guarded volume, m.
     pub(crate) distance: f64,
-    /// Lower bound of that distance in the previous tick, m, where the region was measured then.
+    /// Lower bound of that distance in the previous tick, m.
     pub(crate) previous_distance: f64,
     /// The smallest override that a pair of the region requests.
     pub(crate) requested_override: f64,
-    /// Upper limit of the override in this tick, which no limit of the rate of change may exceed.
+    /// Upper limit of the override in this tick; a limited rate of change must not exceed it.
     pub(crate) immediate_limit: f64,
     /// The pair that requests the smallest override.
     pub(crate) governing: VolumeRegionPair,
-    /// False if a volume may not be able to stop outside. Evaluated for exchange regions only; true for others.
+    /// False if a volume may not be able to stop outside. Evaluated for exchange regions only; true for all others.
     pub(crate) stops_outside: bool,
 }
 
-/// Largest travel since the previous tick, m: pairs within it are measured too.
+/// Largest travel since the previous tick, m; pairs within it are measured too.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct TravelBound {
-    /// Of the volumes.
+    /// Travel of the volumes.
     pub(crate) volumes_m: f64,
-    /// Of volumes and dynamic regions towards each other.
+    /// Travel of volumes and dynamic regions towards each other.
     pub(crate) relative_m: f64,
 }
 
@@ -43,7 +43,7 @@ pub(crate) struct TravelBound {
 #[derive(Debug)]
 pub(crate) struct RegionClearances {
     tree: RegionTree,
-    /// Enclosing boxes for cheap lower bounds, where a shape has one.
+    /// Enclosing boxes for cheap lower bounds; `None` for a shape without one.
     region_bounds: Vec<Option<RoundedBox>>,
     volume_bounds: Vec<Option<RoundedBox>>,
     /// Regions outside the broad-phase tree: dynamic or unbounded.
@@ -90,19 +90,20 @@ impl RegionClearances {
         self.measured_pairs = 0;
     }
 
-    /// Regions that a guarded volume is near to, in no particular order.
+    /// Regions with a guarded volume near, in no particular order.
     pub(crate) fn near(&self) -> &[u32] {
         &self.near
     }
 
-    /// The region's clearance, where a guarded volume is near.
+    /// The region's clearance, if a guarded volume is near.
     pub(crate) fn get(&self, region: usize) -> Option<&RegionClearance> {
         let clearance = &self.of_region[region];
         (clearance.tick == self.tick && self.tick > 0).then_some(clearance)
     }
 
-    /// Measures every region of `measured` against the volumes that it guards against, as far as `law` or `travel` need it.
-    // Inlined into the tick, the loop would not keep its bounds in registers.
+    /// Measures every region of `measured` against the volumes that it guards against, as far as `law` or `travel`
+    /// require.
+    // If it were inlined into the tick, the loop would not keep its bounds in registers.
     #[inline(never)]
     pub(crate) fn measure(
         &mut self,
@@ -157,7 +158,7 @@ struct Measurement<'a> {
 }
 
 impl Measurement<'_> {
-    /// Measures one pair where it can have an effect.
+    /// Measures one pair if it can have an effect.
     #[inline]
     fn visit(&mut self, r: usize, v: usize, extra_reach: f64) {
         let (region, volume) = (&self.config.regions[r], &self.config.volumes[v]);
@@ -199,7 +200,7 @@ impl Measurement<'_> {
             || region.distance_bound(region_in_world, volume, in_world) > limit
     }
 
-    /// Adds a pair to the clearance of its region; `is_first` where it is the first of this tick.
+    /// Adds a pair to the clearance of its region; `is_first` if it is the first pair of the region in this tick.
     fn record(&mut self, pair: VolumeRegionPair, is_first: bool) {
         let of_region = if is_first { f64::INFINITY } else { self.of_region[pair.region].requested_override };
         let RequestedOverride { speed_override: requested_override, immediate_limit } =
@@ -214,7 +215,7 @@ impl Measurement<'_> {
         let clearance = &mut self.of_region[pair.region];
         if is_first {
             self.near.push(pair.region as u32);
-            // A region that was not near in the previous tick was beyond its reach.
+            // A region that was not near in the previous tick was farther away than its reach.
             let previous_distance = if clearance.tick + 1 == self.tick {
                 clearance.distance
             } else {

@@ -1,4 +1,4 @@
-//! Distances of regions at any joint values: for planners.
+//! Distances to regions at any joint values, for planners.
 
 use elbowroom_kinematics::LinkId;
 use elbowroom_kinematics::motion_bound::displacement_bound;
@@ -7,9 +7,9 @@ use crate::distance_to_guarded::distance_to_guarded;
 use crate::placement::Placement;
 use crate::{Configuration, Monitor, RegionId, SourceState, Volume};
 
-/// Region-distance query: distances at any joint values between the guarded volumes and the regions that are closed to a
-/// robot ([`Monitor::is_closed`]), with the volumes, guards and shapes of its monitor. The set of closed regions and their
-/// poses are those at the time of [`Monitor::region_distance`].
+/// Distances at any joint values between the guarded volumes and the regions that are closed to a robot
+/// ([`Monitor::is_closed`]), with the volumes, guards and shapes of its monitor. [`Monitor::region_distance`] fixes
+/// the set of closed regions and their poses.
 ///
 /// ```
 /// use elbowroom_kinematics::{Chain, Joint, JointKind, Limits, LinkId};
@@ -57,7 +57,7 @@ pub struct RegionDistanceQuery<'m> {
     robot_placed: bool,
 }
 
-/// A link with volumes that count for any of the regions.
+/// A link with volumes that any of the regions guards against.
 #[derive(Debug, Clone, Copy)]
 struct GuardedLink {
     link: LinkId,
@@ -66,8 +66,8 @@ struct GuardedLink {
 }
 
 impl Monitor {
-    /// A query of the regions that are closed now for the volumes that are attached now, with dynamic regions at the poses given by `sources`, one per source of
-    /// the configuration.
+    /// Creates a query for the regions that are closed now and the volumes that are attached now. Dynamic regions are at
+    /// the poses given by `sources`, one per source of the configuration.
     pub fn region_distance(&self, sources: &[SourceState]) -> RegionDistanceQuery<'_> {
         let config = self.configuration();
         let regions: Vec<_> = (0..config.regions.len()).map(RegionId).filter(|r| self.is_closed(*r)).collect();
@@ -103,7 +103,7 @@ impl RegionDistanceQuery<'_> {
     }
 
     /// The regions within `limit_m` (m) of the volumes that they guard against, each with a proven lower bound of the
-    /// distance: 0 inside, and 0 for all regions where their poses or the joint values are not known.
+    /// distance. The bound is 0 inside, and 0 for all regions if their poses or the joint values are not known.
     pub fn distances(&self, limit_m: f64) -> impl Iterator<Item = (RegionId, f64)> + '_ {
         self.regions.iter().filter_map(move |region| {
             if !(self.regions_placed && self.robot_placed) {
@@ -113,8 +113,9 @@ impl RegionDistanceQuery<'_> {
         })
     }
 
-    /// Upper bound of the travel (m) of any point of the guarded volumes while all joints move straight and together from one
-    /// configuration to another. In a fraction of the motion the travel is at most the same fraction of the bound.
+    /// Upper bound of the travel (m) of any point of the guarded volumes while all joints move straight and together
+    /// from one configuration to another. During a fraction of the motion, the travel is at most that fraction of the
+    /// bound.
     pub fn motion_bound(&self, from: &[f64], to: &[f64]) -> f64 {
         let chain = &self.config.chain;
         let each = self.links.iter().map(|l| displacement_bound(chain, l.link, l.radius_m, from, to));

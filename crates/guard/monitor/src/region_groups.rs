@@ -4,8 +4,9 @@ use elbowroom_proximity::within;
 
 use crate::Region;
 
-/// Groups exchange regions whose warning zones overlap, and all dynamic ones. A group is one slot, granted as a whole, so that
-/// two robots never each hold what the other needs next. Returns the number of the group of each region.
+/// Groups exchange regions whose warning zones overlap; all dynamic regions are in one group. A group is one slot,
+/// granted as a whole, so that two robots never each hold what the other needs next. Returns the group number of
+/// each region.
 pub fn group_overlapping(regions: &[&Region]) -> Vec<usize> {
     let mut group: Vec<usize> = (0..regions.len()).collect();
     for i in 0..regions.len() {

@@ -1,4 +1,4 @@
-//! What a monitor knows of each of its regions: whether it is on, and whether the robot is in it.
+//! State of each region of a monitor: whether it is on, and whether the robot is in it.
 
 use crate::event::EventLog;
 use crate::region_clearance::RegionClearances;
@@ -6,14 +6,14 @@ use crate::region_sweep::RegionSweep;
 use crate::zone_state::{DigitalOutputs, ZoneState};
 use crate::{Configuration, EventKind, Life, RegionId, RegionKind};
 
-/// One region.
+/// The state of one region.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct RegionState {
-    /// It is switched on.
+    /// True if the region is switched on.
     pub(crate) active: bool,
-    /// Where the robot is; outside where the region is inactive.
+    /// Reported position of the robot; always outside if the region is inactive.
     pub(crate) zone: ZoneState,
-    /// The same, whether or not the region is active.
+    /// Position of the robot, whether or not the region is active.
     pub(crate) presence: ZoneState,
 }
 
@@ -21,20 +21,20 @@ pub(crate) struct RegionState {
 #[derive(Debug)]
 pub(crate) struct RegionStates {
     states: Vec<RegionState>,
-    /// Regions that are measured in this tick: the active ones, and all exchange regions of which it is known where they are.
+    /// Regions that are measured in this tick: active regions, and all exchange regions with a known pose.
     pub(crate) measured: Vec<bool>,
     /// Regions in whose warning zone the robot is, in this tick and in the previous one.
     warned: Vec<u32>,
     previously_warned: Vec<u32>,
     /// Regions switched since the last tick.
     switched: Vec<(RegionId, bool)>,
-    /// Regions switched for this tick: the motion since the previous tick does not count for them.
+    /// Regions switched for this tick; the motion since the previous tick does not count for them.
     just_switched: Vec<RegionId>,
     outputs: DigitalOutputs,
 }
 
 impl RegionStates {
-    /// Permanent regions are on, temporary ones off.
+    /// The initial states: permanent regions are on, temporary regions are off.
     pub(crate) fn new(config: &Configuration) -> Self {
         let count = config.regions.len();
         let outside = ZoneState::default();
@@ -58,12 +58,12 @@ impl RegionStates {
         self.states[region].active
     }
 
-    /// The digital outputs, a bit each.
+    /// The digital outputs, one bit each.
     pub(crate) fn output_bits(&self) -> u64 {
         self.outputs.bits
     }
 
-    /// Switches a region; false if it is so already.
+    /// Switches a region; returns false if it is in that state already.
     pub(crate) fn switch(&mut self, region: RegionId, on: bool) -> bool {
         let is_change = self.states[region.0].active != on;
         self.states[region.0].active = on;
@@ -73,7 +73,7 @@ impl RegionStates {
         is_change
     }
 
-    /// Begins a tick: what was switched since the last one takes effect.
+    /// Begins a tick: switches since the last tick take effect.
     pub(crate) fn begin(&mut self, log: &mut EventLog) {
         self.just_switched.clear();
         for (region, on) in self.switched.drain(..) {
@@ -82,14 +82,14 @@ impl RegionStates {
         }
     }
 
-    /// Chooses what is measured: all that is active, and exchange regions.
+    /// Selects the regions to measure: active regions and exchange regions.
     pub(crate) fn choose_measured(&mut self, config: &Configuration) {
         for ((measured, state), region) in self.measured.iter_mut().zip(&self.states).zip(&config.regions) {
             *measured = state.active || matches!(region.kind, RegionKind::Exchange { .. });
         }
     }
 
-    /// Finds out where the robot is now, and logs what has changed.
+    /// Updates where the robot is, and logs the changes.
     pub(crate) fn update(
         &mut self,
         config: &Configuration,
@@ -110,7 +110,7 @@ impl RegionStates {
                 && let Some(passed_m) =
                     sweep.passed(config, id, [clearance.previous_distance, clearance.distance], to.warned)
             {
-                // A region that was passed is reported for one tick.
+                // A region that a volume passed is reported for one tick.
                 to = from.next(passed_m, region);
             }
             state.presence = to;
@@ -125,7 +125,7 @@ impl RegionStates {
         }
     }
 
-    /// Takes over the state of each region that is the same as a former one; those without one are as they are.
+    /// Copies the state of each region that has not changed; all other regions keep their state.
     pub(crate) fn continue_from(
         &mut self,
         config: &Configuration,

@@ -1,8 +1,9 @@
-//! Continuous check between two snapshots: regions that a volume passes from one to the next.
+//! Continuous check between two snapshots: finds the regions that a volume passes through between them.
 //!
-//! Joints and regions are assumed to move straight from one snapshot to the next. No point of a volume then travels farther
-//! than `T`, the sum over the joints of motion bound times change; so while the distances at two instants sum to more than the
-//! travel between them, the volume cannot have touched in between. If they do not, the interval is halved.
+//! Joints and regions are assumed to move straight from one snapshot to the next. Then no point of a volume travels
+//! farther than `T`, the sum over the joints of motion bound times change. If the distances at two instants sum to
+//! more than the travel between them, the volume cannot have touched the region in between. Otherwise the interval
+//! is halved.
 
 use elbowroom_kinematics::motion_bound::update_max_motion_bounds;
 use elbowroom_spatial::{Pose, Vec3};
@@ -12,7 +13,7 @@ use crate::placement::Placement;
 use crate::region_clearance::TravelBound;
 use crate::{AttachError, Configuration, RegionId, SourceState, VolumeId};
 
-/// Size of an unbounded region that rotates, m: the border of a half-space beyond it is ignored.
+/// Size of an unbounded region that rotates, m: the border of a half-space is ignored beyond it.
 const UNBOUNDED_SIZE_M: f64 = 100.0;
 /// A source that moves farther than twice its reported travel plus this (m) has jumped.
 const JUMP_M: f64 = 0.01;
@@ -49,7 +50,7 @@ pub struct RegionSweep {
     to: Vec<f64>,
     /// The motions of the dynamic regions, in the order of [`Placement::dynamic_regions`].
     region_motions: Vec<RegionMotion>,
-    /// Per joint the motion bound of all volumes, m per rad or m.
+    /// Motion bound of all volumes per joint, m per rad or m.
     motion_bounds: Vec<f64>,
     /// Memory for updates of the bounds.
     scratch: Vec<f64>,
@@ -67,7 +68,7 @@ struct RegionMotion {
     travel_m: f64,
 }
 
-/// The instant between two snapshots at which a region is closest.
+/// The closest approach of a region between two snapshots.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClosestApproach {
     /// Fraction of the motion, 0..1.
@@ -81,7 +82,7 @@ pub struct ClosestApproach {
 struct BisectionSettings {
     /// Largest number of halvings of the interval.
     max_depth: u32,
-    /// True: an interval that is undecided at the largest depth counts as its lower bound.
+    /// If true, an interval that is undecided at the largest depth counts with its lower bound.
     conservative: bool,
 }
 
@@ -96,7 +97,7 @@ struct Sample {
 }
 
 impl RegionSweep {
-    /// For this configuration; everything is allocated here.
+    /// Creates a sweep for this configuration; allocates all of its memory.
     pub fn new(config: &Configuration) -> Self {
         let at = Placement::new(config);
         let dof = config.chain.dof();
@@ -116,8 +117,8 @@ impl RegionSweep {
         sweep
     }
 
-    /// Attaches a volume, as [`Monitor::attach`](crate::Monitor::attach) does. Call it where the robot is at the next snapshot:
-    /// the volume counts for the motion to that one too, as if it had been attached before.
+    /// Attaches a volume, as [`Monitor::attach`](crate::Monitor::attach) does. Call it when the robot is at the next
+    /// snapshot: the volume also counts for the motion to that snapshot, as if it had been attached before.
     ///
     /// # Errors
     /// [`AttachError`]; then nothing changes.
@@ -140,12 +141,12 @@ impl RegionSweep {
     fn update_motion_bounds(&mut self, config: &Configuration) {
         let volumes = self.at.attached.iter(config).map(|(v, in_link)| (v.link, v.radius_at(in_link)));
         update_max_motion_bounds(&config.chain, volumes, &mut self.motion_bounds, &mut self.scratch);
-        // Other volumes are placed now.
+        // Volumes have changed: the placement is no longer valid.
         self.fraction = None;
     }
 
-    /// Advances to the next snapshot, `dt_s` (s) after the last one: joint values (rad, m) and one source per source of the
-    /// configuration. Returns false, and resets, where their number is wrong or a value is not finite.
+    /// Advances to the next snapshot, `dt_s` (s) after the last one: joint values (rad, m) and one state per source of
+    /// the configuration. Returns false, and resets, if their number is wrong or a value is not finite.
     pub fn advance(&mut self, config: &Configuration, q: &[f64], sources: &[SourceState], dt_s: f64) -> bool {
         let fits = q.len() == self.to.len() && sources.len() == config.sources.len();
         if !fits || !q.iter().all(|v| v.is_finite()) {
@@ -160,7 +161,7 @@ impl RegionSweep {
         true
     }
 
-    /// As [`RegionSweep::advance`] for a snapshot that is valid and placed, `dt_s` (s) after the previous one.
+    /// Like [`RegionSweep::advance`], for a snapshot that is valid and placed, `dt_s` (s) after the previous one.
     pub(crate) fn advance_to(&mut self, config: &Configuration, now: &Placement, dt_s: f64, sources: &[SourceState]) {
         for (motion, dynamic) in self.region_motions.iter_mut().zip(&now.dynamic_regions) {
             (motion.from, motion.to) = (motion.to, now.region_in_world[dynamic.region]);
@@ -192,8 +193,8 @@ impl RegionSweep {
         self.known = 0;
     }
 
-    /// Upper bound of the travel (m) of a volume and a region towards each other since the last snapshot; infinite if it
-    /// is not known.
+    /// Upper bound of the travel (m) of a volume and a region towards each other since the previous snapshot; infinite
+    /// if the motion is not known.
     pub fn travel_bound_of(&self, region: RegionId) -> f64 {
         if self.known < 2 {
             return f64::INFINITY;
@@ -201,8 +202,8 @@ impl RegionSweep {
         self.travel_m + self.dynamic_index(region).map_or(0.0, |i| self.region_motions[i].travel_m)
     }
 
-    /// How much farther than the laws require pairs are measured, because of the travel since the last snapshot; 0 (nothing to
-    /// search) if it is not known.
+    /// Distance beyond the reach of the laws up to which pairs are measured, because of the travel since the previous
+    /// snapshot; 0 (nothing to search) if the motion is not known.
     pub(crate) fn extra_reach_for_travel(&self) -> TravelBound {
         if self.known < 2 {
             return TravelBound { volumes_m: 0.0, relative_m: 0.0 };
@@ -217,8 +218,9 @@ impl RegionSweep {
         distance_to_guarded(config, &self.at, region, limit).map(|d| d.distance)
     }
 
-    /// The closest approach of the region and the guarded volumes between the last two snapshots, to within `resolution_m`
-    /// (m). `None` if it is not below `below_m` and below the distances at both ends, or the motion is not known.
+    /// The closest approach of the region and the guarded volumes between the last two snapshots, to within
+    /// `resolution_m` (m). `None` if its distance is not below `below_m` and below the distances at both ends, or if the
+    /// motion is not known.
     pub fn closest_approach(
         &mut self,
         config: &Configuration,
@@ -235,7 +237,7 @@ impl RegionSweep {
         self.bisect(config, region, below_m, ends, BisectionSettings { max_depth, conservative: false })
     }
 
-    /// [`RegionSweep::closest_approach`] with known lower bounds `ends` of the distances at the ends.
+    /// Like [`RegionSweep::closest_approach`], with known lower bounds `ends` of the distances at the ends.
     fn bisect(
         &mut self,
         config: &Configuration,
@@ -257,8 +259,8 @@ impl RegionSweep {
         bisection.best
     }
 
-    /// The smallest distance (m) since the last snapshot where it is inside the region or, unless the robot is `warned`
-    /// anyway, in its warning zone. `ends` are the distances at both snapshots. Undecided intervals count as passed.
+    /// The smallest distance (m) since the last snapshot if it is inside the region or, unless the robot is `warned`
+    /// anyway, in its warning zone. `ends` are the distances at both snapshots. An undecided interval counts as passed.
     pub(crate) fn passed(
         &mut self,
         config: &Configuration,
@@ -278,7 +280,7 @@ impl RegionSweep {
         closest.map(|c| c.distance_m)
     }
 
-    /// Distance at a fraction of the motion; distance and lower bound are `limit` where it exceeds that.
+    /// The distance at a fraction of the motion; if it exceeds `limit`, distance and lower bound are `limit`.
     fn measure(&mut self, config: &Configuration, region: RegionId, fraction: f64, limit: f64) -> BoundedDistance {
         self.place(config, region, fraction);
         let beyond = BoundedDistance { distance: limit, lower_bound: limit };

@@ -6,7 +6,7 @@ use elbowroom_spatial::Vec3;
 
 use crate::{Region, RegionId, VolumeId};
 
-/// The result of one tick: plain data of fixed size.
+/// The result of one tick: plain data with a fixed size.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TickReport {
     /// Time stamp of the snapshot, s.
@@ -15,7 +15,7 @@ pub struct TickReport {
     pub speed_override: f64,
     /// Why the override has this value; [`OverrideReason::named`] shows it with names.
     pub reason: OverrideReason,
-    /// The virtual TCP that requests the smallest override, where one limits it.
+    /// The virtual TCP that requests the smallest override, if one limits the override.
     pub governing: Option<VirtualTcp>,
     /// Digital outputs, bit i is channel i.
     pub outputs: u64,
@@ -53,16 +53,16 @@ pub enum OverrideReason {
     SpeedZone(RegionId),
     /// An exchange region that is not granted to this robot limits the override.
     Waiting(RegionId),
-    /// The interlock halts the robot: another robot was found inside an exchange region that only one of them may be in.
+    /// The interlock halts the robot: another robot was found inside an exchange region that only one robot may enter.
     Halted(RegionId),
     /// The override is rising or falling at its largest rate.
     Rate,
-    /// The input is invalid.
+    /// A fault stops the robot.
     Fault(Fault),
 }
 
 impl OverrideReason {
-    /// The region that limits the override, where one does.
+    /// The region that limits the override, if one does.
     pub fn region(self) -> Option<RegionId> {
         match self {
             Self::Region(r) | Self::SpeedZone(r) | Self::Waiting(r) | Self::Halted(r) => Some(r),
@@ -70,8 +70,8 @@ impl OverrideReason {
         }
     }
 
-    /// The reason with the names of the regions, those of the monitor's configuration: for messages. Without names
-    /// `Display` shows the region's index.
+    /// The reason with the names of the regions, for messages. `regions` are the regions of the monitor's configuration.
+    /// Without names, `Display` shows the region's index.
     ///
     /// ```
     /// use elbowroom_monitor::{OverrideReason, Region, RegionId};
@@ -85,7 +85,7 @@ impl OverrideReason {
         NamedReason { reason: self, regions }
     }
 
-    /// The same reason with its region, also that of a fault, under another index.
+    /// The reason with its region, or the region of its fault, under another index.
     #[must_use]
     pub fn with_region(self, index: impl FnOnce(RegionId) -> RegionId) -> Self {
         match self {
@@ -114,7 +114,7 @@ pub struct NamedReason<'a> {
 }
 
 impl NamedReason<'_> {
-    /// The name of a region, or its index where it is none of the regions given.
+    /// The name of a region, or its index if it is not one of the given regions.
     fn name(&self, id: RegionId) -> RegionName<'_> {
         self.regions.get(id.0).map_or(RegionName::Index(id.0), |region| RegionName::Name(&region.name))
     }
@@ -157,12 +157,12 @@ impl fmt::Display for RegionName<'_> {
     }
 }
 
-/// Invalid input, which stops the robot.
+/// A fault, such as invalid input, that stops the robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fault {
-    /// Older than [`Laws::stale_s`](crate::Laws).
+    /// The input is older than [`Laws::stale_s`](crate::Laws).
     Stale,
-    /// The time stamp lies before that of the previous snapshot, or in the future.
+    /// The time stamp lies before the time stamp of the previous snapshot, or in the future.
     Backwards,
     /// A number is NaN or infinite.
     NotFinite,
@@ -180,14 +180,14 @@ pub enum Fault {
         /// Index of the joint in `q`.
         joint: usize,
     },
-    /// The stopping-distance law is on and no velocity is known: none was given, and this is the first position.
+    /// The stopping-distance law is on and no velocity is known: the snapshot has none, and its position is the first.
     NoVelocity,
     /// The joint values are bitwise constant although the robot is commanded to move: the reading is frozen.
     Frozen,
     /// The robot brakes less than stated in [`StoppingSettings`](crate::StoppingSettings).
     Braking,
-    /// It is not known which regions there are now, or the monitor is not built for them yet. A monitor does not know this by
-    /// itself: its host says so with [`Monitor::set_external_fault`](crate::Monitor::set_external_fault).
+    /// The present regions are unknown, or the monitor is not built for them yet. A monitor cannot detect this by
+    /// itself: its host reports it with [`Monitor::set_external_fault`](crate::Monitor::set_external_fault).
     Regions,
     /// The source of motion that an active region follows is stale or not finite.
     Source {

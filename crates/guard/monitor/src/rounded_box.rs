@@ -1,4 +1,4 @@
-//! A cheap lower bound of the distance between two primitives. Pairs that it excludes need no exact distance.
+//! A cheap lower bound of the distance between two primitives. Pairs that the bound excludes need no exact distance.
 
 use elbowroom_proximity::Shape;
 use elbowroom_spatial::{Pose, Vec3};
@@ -14,7 +14,8 @@ pub(crate) struct RoundedBox {
 }
 
 impl RoundedBox {
-    /// `None` for half-spaces, hulls and meshes, which need not be centred at their origin.
+    /// The rounded box around a shape. `None` for half-spaces, hulls and meshes, which need not be centred at their
+    /// origin.
     pub(crate) fn around(shape: &Shape) -> Option<Self> {
         let (half_extents, radius) = match shape {
             Shape::Sphere(s) => (Vec3::ZERO, s.radius),

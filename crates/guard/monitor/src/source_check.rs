@@ -5,11 +5,11 @@ use crate::{SourceSpec, SourceState};
 /// Plausibility of a source's last reading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum SourceStatus {
-    /// Current, finite and within the limits.
+    /// The reading is current, finite and within the limits.
     Valid,
-    /// Stale, from the future, or not finite.
+    /// The reading is stale, from the future, or not finite.
     Lost,
-    /// Farther away than the limits or the reported motion allow.
+    /// The reading is farther from the last valid one than the limits or the reported motion allow.
     Jumped,
 }
 
@@ -25,8 +25,8 @@ impl SourceCheck {
         Self { last_valid: vec![None; sources], status: vec![SourceStatus::Valid; sources] }
     }
 
-    /// Checks the readings of one tick. Readings that are not valid are not stored: the allowed travel grows with the time
-    /// since the last valid one, so a source that was moved by hand becomes valid again.
+    /// Checks the readings of one tick. Only valid readings are stored. The allowed travel grows with the time since the
+    /// last valid reading, so a source that was moved by hand becomes valid again.
     pub(crate) fn update(&mut self, specs: &[SourceSpec], sources: &[SourceState], now_s: f64, stale_s: f64) {
         for (i, (spec, source)) in specs.iter().zip(sources).enumerate() {
             let is_current = (0.0..=stale_s).contains(&(now_s - source.stamp_s));
@@ -79,7 +79,7 @@ mod tests {
     fn a_jump_is_a_fault_until_the_limits_allow_the_travel() {
         let readings: Vec<_> = (0..60).map(|i| at(f64::from(i) * 0.01, if i < 5 { 0.0 } else { 3.9 }, 0.0)).collect();
         let statuses = statuses(SourceLimits::default(), &readings);
-        // The last valid reading is that of 0.04 s; 3.9 m take 0.39 s at 10 m/s.
+        // The last valid reading is the one at 0.04 s; 3.9 m take 0.39 s at 10 m/s.
         let jumped = statuses.iter().filter(|t| **t == SourceStatus::Jumped).count();
         assert_eq!((statuses[4], statuses[5], jumped), (SourceStatus::Valid, SourceStatus::Jumped, 38));
         assert_eq!(statuses[59], SourceStatus::Valid);

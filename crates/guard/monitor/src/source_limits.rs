@@ -4,13 +4,13 @@ use elbowroom_spatial::{Pose, Vec3};
 
 use crate::SourceState;
 
-/// Noise of a pose (m, rad) that counts as no motion.
+/// Noise of a pose (m, rad) that does not count as motion.
 const JITTER: f64 = 2e-3;
 /// Fraction by which a pose may move faster than the reported motion.
 const UNREPORTED_FRACTION: f64 = 0.1;
 /// Speed (m/s, rad/s) by which a pose may move faster than the reported motion, in addition.
 const UNREPORTED_SPEED: f64 = 0.5;
-/// Two readings farther apart than this (s) are not compared with the reported motion.
+/// Time between two readings (s) above which the reported motion is not used to check them.
 const REPORT_VALID_S: f64 = 0.1;
 
 /// A source of motion and its plausibility limits.
@@ -18,7 +18,7 @@ const REPORT_VALID_S: f64 = 0.1;
 pub struct SourceSpec {
     /// Name for reports.
     pub name: String,
-    /// Motion beyond these limits is a fault.
+    /// Limits of its motion; motion beyond them is a fault.
     pub limits: SourceLimits,
 }
 
@@ -49,7 +49,8 @@ pub struct SourceLimits {
     pub speed_m_s: f64,
     /// Largest turning rate, rad/s. By default 20: about three turns per second.
     pub turn_rad_s: f64,
-    /// Travel (m, in the world) after which the reading wraps around, as that of an encoder: a step back by it is not a jump.
+    /// Travel (m, in the world) after which the reading wraps around, as for an encoder. A step back by this travel is
+    /// not a jump.
     pub wrap_m: Option<Vec3>,
 }
 
@@ -85,7 +86,7 @@ impl SourceLimits {
         if elapsed_s > REPORT_VALID_S {
             return possible;
         }
-        // The laws extrapolate with the reported motion, so the pose must agree with it.
+        // The laws extrapolate with the reported motion, so the pose must match it.
         let reported =
             |a: f64, b: f64| (a.max(b) * (1.0 + UNREPORTED_FRACTION) + UNREPORTED_SPEED) * elapsed_s + JITTER;
         let (a, b) = (&from.motion, &to.motion);
@@ -99,7 +100,7 @@ impl SourceLimits {
         s.motion.velocity.length() <= self.speed_m_s && s.motion.angular_velocity.length() <= self.turn_rad_s
     }
 
-    /// Distance (m) between the origins, across the wrap where there is one.
+    /// Distance (m) between the origins, across the wrap if there is one.
     fn moved(&self, from: &Pose, to: &Pose) -> f64 {
         let step = to.translation - from.translation;
         let wrapped = self.wrap_m.map_or(f64::INFINITY, |w| (step + w).length().min((step - w).length()));

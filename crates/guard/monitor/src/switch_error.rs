@@ -1,11 +1,11 @@
-//! Why a region was not switched.
+//! Errors of switching a region.
 
 use crate::AccessClass;
 
 /// Why a switch was refused.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum SwitchError {
-    /// Permanent regions are always active.
+    /// The region is permanent, so it is always active.
     #[error("region `{0}` is permanent: no program can switch it; make it `life = \"temporary\"` to switch it")]
     Permanent(String),
     /// The access class is too low.

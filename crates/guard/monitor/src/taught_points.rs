@@ -1,12 +1,12 @@
-//! Validation of taught points: which points are missing or degenerate, and the frames that points determine.
+//! Validation of taught points: finds missing and degenerate points, and computes the frames that points determine.
 
 use std::fmt;
 
 use elbowroom_spatial::{Rotation, Vec3};
 
-/// Points nearer than this (m) are the same point: a robot repeats to about 0.05 mm.
+/// Distance (m) below which two points are the same: a robot repeats to about 0.05 mm.
 const SAME_POINT_M: f64 = 1e-4;
-/// Directions within this sine of each other are parallel.
+/// Sine of the angle between two directions below which they are parallel.
 pub(crate) const PARALLEL_SINE: f64 = 1e-3;
 
 /// A taught point, by its role.
@@ -134,7 +134,7 @@ pub enum TeachError {
     /// Four points lie in a plane.
     #[error("the four surface points lie in a plane; teach one of them off it")]
     Coplanar,
-    /// A dimension is zero or negative.
+    /// A dimension is not larger than 0.1 mm.
     #[error("the {dimension} would be {value_m} m; it must be larger than 0.1 mm")]
     Size {
         /// The dimension.
@@ -176,7 +176,7 @@ pub(crate) fn require_not_collinear(u: Vec3, v: Vec3, points: PointTriple) -> Re
     }
 }
 
-/// Refuses dimensions of zero and less.
+/// Refuses dimensions that are not larger than `SAME_POINT_M`.
 pub(crate) fn require_positive(dimension: Dimension, value_m: f64) -> Result<(), TeachError> {
     if value_m > SAME_POINT_M { Ok(()) } else { Err(TeachError::Size { dimension, value_m }) }
 }

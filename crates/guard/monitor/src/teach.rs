@@ -1,6 +1,6 @@
-//! Regions from taught points: the robot is driven to characteristic points, whose positions are recorded.
+//! Regions from taught points: the robot is driven to characteristic points, and their positions are recorded.
 //!
-//! Every function refuses points that do not determine its shape; the error names the points.
+//! Every function refuses points that do not determine its shape. The error names the points.
 
 use elbowroom_spatial::{Rotation, Vec3};
 
@@ -9,13 +9,14 @@ use crate::taught_points::{PARALLEL_SINE, require_distinct, require_not_collinea
 
 pub use crate::taught_points::{Dimension, PointTriple, TaughtPoint, TeachError};
 
-/// Sine (of 5°) of the normal's elevation below which a base counts as upright: a taught base may lean to either side.
+/// Sine (of 5°) of the normal's elevation below which a base counts as upright; a taught base may lean to either
+/// side.
 const UPRIGHT_SINE: f64 = 0.087;
 
-/// A sphere from its centre and one point of its surface (m).
+/// A sphere from its centre and one point on its surface (m).
 ///
 /// # Errors
-/// [`TeachError`] if the two coincide.
+/// [`TeachError`] if the two points coincide.
 ///
 /// ```
 /// use elbowroom_monitor::teach;
@@ -30,10 +31,10 @@ pub fn sphere_from_center(name: &str, center: Vec3, surface: Vec3) -> Result<Reg
     Ok(Region::sphere(name, center, center.distance(surface)))
 }
 
-/// A sphere from four points of its surface (m).
+/// A sphere from four points on its surface (m).
 ///
 /// # Errors
-/// [`TeachError`] where points coincide, three lie on a line or all in a plane.
+/// [`TeachError`] if points coincide, three lie on a line or all four lie in a plane.
 pub fn sphere_from_points(name: &str, points: [Vec3; 4]) -> Result<Region, TeachError> {
     let names = [TaughtPoint::First, TaughtPoint::Second, TaughtPoint::Third, TaughtPoint::Fourth];
     require_distinct(std::array::from_fn::<_, 4, _>(|i| (names[i], points[i])))?;
@@ -49,11 +50,13 @@ pub fn sphere_from_points(name: &str, points: [Vec3; 4]) -> Result<Region, Teach
     Ok(Region::sphere(name, points[0] + x, x.length()))
 }
 
-/// A cylinder from the centre of its base, a point of the base's rim and a point at the height of its top (m).
-/// Its axis is perpendicular to the world's XY plane, as in Romanelli 2011, upwards or downwards.
+/// A vertical cylinder from the centre of its base, a point on the base's rim and a point at the height of its top
+/// (m).
+///
+/// The axis is perpendicular to the world's XY plane, as in Romanelli 2011, upwards or downwards.
 ///
 /// # Errors
-/// [`TeachError`] where radius or height is zero.
+/// [`TeachError`] if points coincide, or the radius or height is zero.
 pub fn cylinder(name: &str, base: Vec3, rim: Vec3, top: Vec3) -> Result<Region, TeachError> {
     require_distinct([(TaughtPoint::BaseCentre, base), (TaughtPoint::Rim, rim), (TaughtPoint::Top, top)])?;
     let radius = (rim.x - base.x).hypot(rim.y - base.y);
@@ -67,7 +70,7 @@ pub fn cylinder(name: &str, base: Vec3, rim: Vec3, top: Vec3) -> Result<Region, 
 /// A plane from its origin, a point on its x axis and a point in its xy plane (m); the region lies below it.
 ///
 /// # Errors
-/// [`TeachError`] where points coincide or lie on a line.
+/// [`TeachError`] if points coincide or lie on a line.
 pub fn plane(name: &str, origin: Vec3, on_x: Vec3, in_xy: Vec3) -> Result<Region, TeachError> {
     Region::plane(name, origin, on_x, in_xy)
 }
@@ -75,7 +78,7 @@ pub fn plane(name: &str, origin: Vec3, on_x: Vec3, in_xy: Vec3) -> Result<Region
 /// A box parallel to the world's axes from two opposite corners (m).
 ///
 /// # Errors
-/// [`TeachError`] if an edge has no length.
+/// [`TeachError`] if an edge has zero length.
 pub fn cuboid_from_corners(name: &str, from: Vec3, to: Vec3) -> Result<Region, TeachError> {
     require_distinct([(TaughtPoint::FirstCorner, from), (TaughtPoint::SecondCorner, to)])?;
     let size = (to - from).abs();
@@ -85,9 +88,10 @@ pub fn cuboid_from_corners(name: &str, from: Vec3, to: Vec3) -> Result<Region, T
     Ok(Region::cuboid_from_corners(name, from, to))
 }
 
-/// A box of any orientation from three corners of its base (the first is shared by both edges) and a height (m).
-/// The second edge is made perpendicular to the first. A positive height points up and a negative one down, in any order of
-/// the corners ([`height_direction`]).
+/// A box of any orientation from three corners of its base (both edges start at the first corner) and a height (m).
+///
+/// The second edge is made perpendicular to the first. A positive height points up and a negative height points
+/// down, in any order of the corners ([`height_direction`]).
 ///
 /// # Errors
 /// [`TeachError`] if the corners lie on a line or the height is zero.
@@ -119,13 +123,14 @@ pub fn cuboid_from_base(
     let width = taught.y_axis().dot(across - corner);
     require_positive(Dimension::Width, width)?;
     let center = corner + taught.x_axis() * (length / 2.0) + taught.y_axis() * (width / 2.0);
-    // The anchor lies on the lower side with its z axis up. An upright base has no lower side: there it is the taught side.
+    // The anchor lies on the lower side with its z axis up. An upright base has no lower side: its anchor is on the
+    // taught side.
     let lower = if direction.z < 0.0 { center + direction * height.abs() } else { center };
     let up = if direction.z < 0.0 { -direction } else { direction };
     let rotation = if taught.z_axis().dot(up) > 0.0 {
         taught
     } else {
-        // Rotated by half a turn about the first edge.
+        // The frame is rotated by half a turn about the first edge.
         Rotation::from_x_and_xy(taught.x_axis(), -taught.y_axis()).ok_or(collinear)?
     };
     Ok(Region::cuboid(name, lower, Vec3::new(length, width, height.abs()), rotation))
@@ -136,13 +141,15 @@ pub fn cuboid_from_base(
 pub struct HeightDirection {
     /// Unit vector in the world, from the taught base into the box, perpendicular to the base.
     pub direction: Vec3,
-    /// True if the base is upright within 5°: it has no upper side, and the order of the corners decides.
+    /// True if the base is upright within 5°. It has no upper side then, and the order of the corners decides.
     pub upright_base: bool,
 }
 
-/// The direction of the height in [`cuboid_from_base`]: perpendicular to the base, upwards (the world's +z) where the height
-/// is positive and downwards where it is negative. An upright base has no upper side; there a positive height points along
-/// the first edge (corner to `along`) × the second (corner to `across`), a negative one against it.
+/// The direction of the height in [`cuboid_from_base`]: perpendicular to the base, upwards (the world's +z) if the
+/// height is positive, downwards if it is negative.
+///
+/// An upright base has no upper side. There a positive height points along the first edge (corner to `along`) × the
+/// second (corner to `across`), and a negative height points in the opposite direction.
 ///
 /// # Errors
 /// [`TeachError`] if the corners coincide or lie on a line.
@@ -191,7 +198,7 @@ mod tests {
 
     #[test]
     fn the_order_of_corners_does_not_flip_a_box() {
-        // Level, and leaning by up to 80 degrees in several directions.
+        // The base is level, or leans by up to 80 degrees in several directions.
         for k in 0..40 {
             let (lean, round) = (f64::from(k % 8) * 11.0_f64.to_radians(), f64::from(k) * 0.7);
             let turn = Rotation::from_axis_angle(Vec3::new(round.cos(), round.sin(), 0.0), lean);
@@ -202,7 +209,7 @@ mod tests {
                 for height in [0.25, -0.25] {
                     let region = cuboid_from_base("b", corner, corner + along, corner + across, height).unwrap();
                     let centre = (region.anchor * region.shape_in_anchor).translation;
-                    // The normal that points up is that of the turned z axis: it leans by less than a right angle.
+                    // The upward normal is the turned z axis: it leans by less than a right angle.
                     let expected = center + turn.z_axis() * (height / 2.0);
                     assert!(centre.distance(expected) < 1e-12, "{lean} {height} {centre:?} {expected:?}");
                     for p in [corner, corner + along, corner + across] {

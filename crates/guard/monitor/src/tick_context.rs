@@ -1,4 +1,4 @@
-//! What the laws of one tick evaluate.
+//! The state that the laws of one tick evaluate.
 
 use elbowroom_kinematics::ChainState;
 use elbowroom_spatial::Vec3;
@@ -13,7 +13,7 @@ use crate::{Configuration, Snapshot};
 pub(crate) struct DirectionSettings {
     /// Prediction time along the program's velocities, s.
     pub(crate) lookahead_s: f64,
-    /// Smallest rate of a growing distance, m/s.
+    /// Smallest rate at which the distance of a leaving volume grows, m/s.
     pub(crate) leaving_speed: f64,
 }
 
@@ -23,7 +23,7 @@ impl Default for DirectionSettings {
     }
 }
 
-/// The state of robot and regions in one tick.
+/// The state of the robot and the regions in one tick.
 #[derive(Clone, Copy)]
 pub(crate) struct TickContext<'a> {
     pub(crate) config: &'a Configuration,
@@ -39,17 +39,17 @@ pub(crate) struct TickContext<'a> {
 }
 
 impl TickContext<'_> {
-    /// Velocity (m/s) of the point of a volume that is at `point` (world, m) when the chain moves as in `state`.
+    /// Velocity (m/s) of the point of a volume at `point` (world, m) when the chain moves as in `state`.
     pub(crate) fn volume_point_velocity(&self, state: &ChainState, volume: usize, point: Vec3) -> Vec3 {
         LinkPoint::new(self.config, state, self.config.volumes[volume].link, point).velocity()
     }
 
-    /// Velocity (m/s) of the point of a region that is at `point` (world, m).
+    /// Velocity (m/s) of the point of a region at `point` (world, m).
     pub(crate) fn region_point_velocity(&self, region: usize, point: Vec3) -> Vec3 {
         region_point_motion(&self.config.regions[region], self.snapshot.sources, point).velocity
     }
 
-    /// True if the program leaves the region along `away`, and the robot does not actually move against it.
+    /// True if the program leaves the region along `away`, and the robot's actual motion is not towards the region.
     pub(crate) fn leaves_along(&self, pair: &VolumeRegionPair, intent: &ChainState, away: Vec3) -> bool {
         let region_velocity = self.region_point_velocity(pair.region, pair.separation.on_b);
         let velocity = |state| self.volume_point_velocity(state, pair.volume, pair.separation.on_a) - region_velocity;

@@ -1,4 +1,4 @@
-//! How long the joint values have been the same to the last bit, and how far the robot may have travelled unseen.
+//! Program time since the joint values last changed by a bit, in which the robot may have travelled unseen.
 
 use crate::laws::{stop_time, stopping_program_time};
 use crate::override_history::OverrideRange;
@@ -9,23 +9,25 @@ const FROZEN_S: f64 = 0.1;
 /// Time (s) at override 0 after which a robot whose reading was frozen may try to move again.
 const REST_S: f64 = 1.0;
 
-/// The program time in which a reading has not changed.
+/// The program time since a reading last changed.
 ///
-/// A program at override 0 stands still, whatever was commanded: a controller that hears no override says so by it.
+/// At programmed override 0 the program does not advance, whatever was commanded: a controller that receives no
+/// override reports programmed override 0.
 ///
-/// A frozen robot may try to move again after a rest: an answer was lost, or its brakes were slow. What it may have travelled unseen
-/// still counts, the way in which it came to rest included, so that it stops before every region all the same.
+/// A frozen robot may try to move again after a rest: an answer may have been lost, or its brakes may have been
+/// slow. Its possible unseen travel, including the travel while it came to rest, still counts, so that the robot
+/// still stops before every region.
 #[derive(Debug, Default)]
 pub(crate) struct UnchangedReading {
     /// Largest program time, s.
     max_s: f64,
-    /// Smallest program time, s. Begins again where the robot has been at rest for long enough.
+    /// Smallest program time, s. Restarts at 0 after the robot has been at rest for long enough.
     min_s: f64,
-    /// Time at override 0 since the reading is frozen, s.
+    /// Time at override 0 since the reading froze, s.
     rest_s: f64,
-    /// Override of the program at the last valid snapshot.
+    /// Programmed override at the last valid snapshot.
     programmed_override: f64,
-    /// How the joints brake, and their largest plausible speeds; empty if nobody asks.
+    /// Decelerations of the joints, and their largest plausible speeds; empty without the stopping-distance law.
     deceleration: Vec<f64>,
     max_speed: Vec<f64>,
     /// Bound of the rate of change of the stop time by program time.
@@ -33,19 +35,19 @@ pub(crate) struct UnchangedReading {
 }
 
 impl UnchangedReading {
-    /// Of joints with these largest plausible speeds.
+    /// Creates the state for joints with these largest plausible speeds.
     pub(crate) fn new(laws: &Laws, max_speed: Vec<f64>) -> Self {
         let Some(stopping) = &laws.stopping_distance else { return Self::default() };
         let growth = stop_time(&stopping.joint_acceleration, &stopping.joint_deceleration);
         Self { deceleration: stopping.joint_deceleration.clone(), max_speed, growth, ..Self::default() }
     }
 
-    /// Takes the override of the program at a valid snapshot.
+    /// Stores the programmed override of a valid snapshot.
     pub(crate) fn take_program(&mut self, s: &Snapshot) {
         self.programmed_override = s.programmed_override;
     }
 
-    /// The reading has changed.
+    /// Restarts at 0, because the reading has changed.
     pub(crate) fn forget(&mut self) {
         (self.max_s, self.min_s, self.rest_s) = (0.0, 0.0, 0.0);
     }
@@ -55,12 +57,12 @@ impl UnchangedReading {
         self.max_s
     }
 
-    /// True if the robot must have moved, and its reading has not.
+    /// True if the robot must have moved but its reading has not changed.
     pub(crate) fn is_frozen(&self) -> bool {
         self.min_s > FROZEN_S
     }
 
-    /// The reading is the same as before this time (s).
+    /// Counts a reading that is the same as `passed_s` (s) before.
     pub(crate) fn count(&mut self, s: &Snapshot, passed_s: f64, overrides: OverrideRange) {
         let (before, after) = (self.programmed_override, s.programmed_override);
         let max = overrides.max.min(before.max(after));
@@ -81,7 +83,7 @@ impl UnchangedReading {
         }
     }
 
-    /// Program time in which the robot stops from this override.
+    /// Program time (s) in which the robot stops from this override.
     fn stop_of_program_s(&self, s: &Snapshot, speed_override: f64) -> f64 {
         let full_stop_s = stop_time(s.intent.unwrap_or(&self.max_speed), &self.deceleration);
         stopping_program_time(speed_override, full_stop_s, self.growth)

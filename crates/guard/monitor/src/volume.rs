@@ -12,19 +12,20 @@ use crate::Guards;
 pub enum Part {
     /// The tool centre point, enclosed by a solid that moves with it.
     Tcp,
-    /// The tool centre point, not enclosed by any such solid: regions that guard against the tool or the arm include it.
+    /// The tool centre point, not enclosed by a solid that moves with it: regions that guard against the tool or the arm
+    /// include it.
     TcpOutside,
     /// The tool.
     Tool,
-    /// What the tool holds: the load, and objects that it has gripped.
+    /// The load, or an object that the tool has gripped.
     Load,
     /// A link.
     Arm,
 }
 
 impl Part {
-    /// True if a region with these guards includes this part: `arm` is the links with tool and load; a tool centre point
-    /// outside of all solids counts for every guard.
+    /// True if a region with these guards includes this part. `arm` includes the links, the tool and the load; every
+    /// guard includes a tool centre point outside all solids.
     pub fn counts_for(self, guards: Guards) -> bool {
         match self {
             Self::Tcp => guards.tcp,
@@ -38,29 +39,32 @@ impl Part {
 /// Whether a volume is a part of the robot all the time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Presence {
-    /// All the time.
+    /// The volume is always a part of the robot.
     #[default]
     Always,
-    /// Attached and detached while the robot runs ([`Monitor::attach`](crate::Monitor::attach)); attached at first.
+    /// The volume is attached and detached while the robot runs ([`Monitor::attach`](crate::Monitor::attach)); attached
+    /// at first.
     Attached,
-    /// Attached and detached while the robot runs; detached at first, as objects that it will grip.
+    /// The volume is attached and detached while the robot runs; detached at first, such as an object that the robot
+    /// will grip.
     Detached,
 }
 
-/// A solid that moves with a link and is kept out of regions: a guarded volume.
+/// A guarded volume: a solid that moves with a link and that the monitor keeps out of regions.
 #[derive(Debug, Clone)]
 pub struct Volume {
-    /// Name for reports: that of the link, the tool or the object.
+    /// Name of the link, the tool or the object, for reports.
     pub name: String,
     /// The part of the robot.
     pub part: Part,
-    /// The link that it moves with.
+    /// The link that the volume moves with.
     pub link: LinkId,
     /// The solid.
     pub shape: Shape,
-    /// Pose of the shape in the frame of the link; of a volume that is detached at first, until it is attached elsewhere.
+    /// Pose of the shape in the frame of the link. For a volume that is detached at first, the pose until it is attached
+    /// elsewhere.
     pub in_link: Pose,
-    /// Whether it is always there.
+    /// Whether the volume is always there.
     pub presence: Presence,
 }
 
@@ -79,29 +83,29 @@ impl Volume {
         Self { name: "tool".into(), part: Part::Tool, link, shape, in_link: obb_in_link.pose, presence }
     }
 
-    /// An object that the robot will grip with this link: detached at first.
+    /// An object that the robot will grip with this link; detached at first.
     pub fn gripped(name: impl Into<String>, link: LinkId, shape: Shape) -> Self {
         let (part, presence) = (Part::Load, Presence::Detached);
         Self { name: name.into(), part, link, shape, in_link: Pose::IDENTITY, presence }
     }
 
-    /// Radius (m) of a sphere around the link's origin that holds the volume, for motion bounds of the link.
+    /// Radius (m) of a sphere around the link's origin that encloses the volume, for motion bounds of the link.
     pub fn radius_in_link(&self) -> f64 {
         self.radius_at(&self.in_link)
     }
 
-    /// As [`Volume::radius_in_link`], with the shape at another pose in the link.
+    /// Like [`Volume::radius_in_link`], with the shape at another pose in the link.
     pub(crate) fn radius_at(&self, in_link: &Pose) -> f64 {
         self.shape.aabb(in_link).max_distance(Vec3::ZERO)
     }
 
-    /// True for an object that is only gripped while the robot runs.
+    /// True for an object that is gripped only while the robot runs.
     pub(crate) fn is_gripped_object(&self) -> bool {
         self.part == Part::Load && self.presence == Presence::Detached
     }
 }
 
-/// The volumes of all links that a joint moves. Solids fixed to the root link do not move and get no volume.
+/// The volumes of all links that joints move. Solids fixed to the root link do not move and get no volume.
 pub fn arm_volumes(robot: &Robot, model: VolumeModel) -> Vec<Volume> {
     let chain = &robot.chain;
     let volume = |link: usize, collider: &Collider| {

@@ -1,4 +1,4 @@
-//! A guarded volume near a region, and the override that the laws request for the two.
+//! A guarded volume near a region, and the override that the laws request for the pair.
 
 use elbowroom_proximity::Separation;
 
@@ -18,7 +18,7 @@ pub(crate) struct VolumeRegionPair {
 pub(crate) struct RequestedOverride {
     /// The requested override.
     pub(crate) speed_override: f64,
-    /// Upper limit in this tick, which no limit of the rate of change may exceed.
+    /// Upper limit in this tick; a limited rate of change must not exceed it.
     pub(crate) immediate_limit: f64,
 }
 
@@ -28,7 +28,7 @@ impl RequestedOverride {
         Self { speed_override, immediate_limit: speed_override }
     }
 
-    /// An override that may be approached at a limited rate from at most `programmed`.
+    /// An override that may be approached at a limited rate; the rate-limited override is at most `programmed`.
     pub(crate) fn gradual(speed_override: f64, programmed: f64) -> Self {
         Self { speed_override, immediate_limit: programmed }
     }

@@ -6,7 +6,7 @@ use elbowroom_spatial::Pose;
 
 use crate::Configuration;
 
-/// A warm start for every pair of volume and region that are both meshes, and the workspace of their queries.
+/// A warm start for every pair of a mesh volume and a mesh region, and the workspace of their queries.
 #[derive(Debug)]
 pub(crate) struct WarmStartCache {
     /// Row of each region that is a mesh.

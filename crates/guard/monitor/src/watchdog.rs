@@ -11,22 +11,22 @@ use crate::{Fault, Laws, Snapshot};
 /// Settings of the plausibility check.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct WatchdogSettings {
-    /// Tolerance of the joint limits (rad or m): controllers overshoot by less.
+    /// Tolerance of the joint limits (rad or m); controllers overshoot by less.
     pub(crate) limit_tolerance: f64,
     /// Largest plausible speed of a joint as a multiple of its rated speed.
     pub(crate) speed_factor: f64,
     /// Largest plausible speed of a joint without a rated speed, rad/s or m/s: faster than any industrial joint.
     pub(crate) default_speed: f64,
-    /// Quantization of the readings (rad or m) where their difference gives a speed.
+    /// Quantization of the readings (rad or m), if their difference gives a speed.
     pub(crate) jitter: f64,
     /// Largest plausible travel of a joint as a multiple of its reported velocity.
     pub(crate) velocity_factor: f64,
-    /// Time (s) between two readings beyond which velocities do not explain the travel.
+    /// Time (s) between two readings above which velocities do not explain the travel.
     pub(crate) silence_s: f64,
-    /// Largest plausible demand of a program as a multiple of a joint's largest speed. At override 1 it may exceed what the joint
-    /// can, but not what arithmetic survives.
+    /// Largest plausible demand of a program as a multiple of a joint's largest speed. At override 1 a program may
+    /// demand more than the joint can do, but not so much that the arithmetic fails.
     pub(crate) demand_factor: f64,
-    /// No joint reaches its largest demand in less time, s.
+    /// Shortest time in which a joint reaches its largest demand, s.
     pub(crate) least_rise_s: f64,
 }
 
@@ -51,7 +51,7 @@ pub(crate) struct Watchdog {
     settings: WatchdogSettings,
     joints: Vec<JointBound>,
     stale_s: f64,
-    /// True with the stopping-distance law: it needs velocities, and readings that are not frozen.
+    /// True with the stopping-distance law, which needs velocities and readings that are not frozen.
     needs_motion: bool,
     last_valid: Option<SnapshotTimes>,
     last_q: Vec<f64>,
@@ -60,9 +60,9 @@ pub(crate) struct Watchdog {
     received_qd: Vec<f64>,
     /// Largest travel of each joint since the last valid reading by the velocities received since.
     explained_travel: Vec<f64>,
-    /// Velocities derived from positions, where none are given.
+    /// Velocities derived from positions, for snapshots without velocities.
     velocity: Vec<f64>,
-    /// Time over which they were derived, s.
+    /// Time over which the velocities were derived, s; 0 if they were given.
     derived_over_s: f64,
     unchanged: UnchangedReading,
 }
@@ -83,7 +83,7 @@ struct JointBound {
 }
 
 impl JointBound {
-    /// Difference of two readings; the shorter one where the joint is continuous.
+    /// Difference of two readings; the shorter way round if the joint is continuous.
     fn step(&self, from: f64, to: f64) -> f64 {
         let step = to - from;
         if self.wraps { (step + PI).rem_euclid(TAU) - PI } else { step }
@@ -121,7 +121,8 @@ impl Watchdog {
         }
     }
 
-    /// Accepts and stores the snapshot, or returns its fault; `overrides` are those that the robot may be executing.
+    /// Accepts and stores the snapshot, or returns its fault. `overrides` are the overrides that the robot may be
+    /// executing.
     pub(crate) fn check(&mut self, s: &Snapshot, sources: usize, overrides: OverrideRange) -> Result<(), Fault> {
         self.check_form(s, sources)?;
         self.check_time(s)?;
@@ -135,7 +136,7 @@ impl Watchdog {
         motion
     }
 
-    /// Forgets the last valid snapshot: the next one may be anywhere.
+    /// Forgets the last valid snapshot: the next joint values may be anywhere.
     pub(crate) fn forget_position(&mut self) {
         self.last_valid = None;
         self.explained_travel.fill(0.0);
@@ -152,8 +153,8 @@ impl Watchdog {
         if self.needs_motion { &self.velocity } else { &[] }
     }
 
-    /// The velocities of the last valid snapshot are those of some instant within this time (s) before it; 0 if they were
-    /// given.
+    /// Uncertainty of the time of the velocities, s: they are the velocities at some instant within this time before the
+    /// last valid snapshot; 0 if they were given.
     pub(crate) fn velocity_uncertain_s(&self) -> f64 {
         self.derived_over_s
     }

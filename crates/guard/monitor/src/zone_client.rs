@@ -1,4 +1,4 @@
-//! A monitor's side of the interlock of its exchange regions.
+//! A monitor's client of the interlock for its exchange regions.
 
 use crate::event::EventLog;
 use crate::zone_state::ZoneState;
@@ -7,24 +7,24 @@ use crate::{
     SlotGrants, SlotId, ZoneArbiter,
 };
 
-/// What a tick found at one region.
+/// The result of a tick for one region.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct RegionStatus {
-    /// The region is active. One that is switched off limits nothing, but the robot that is in it keeps its slot.
+    /// True if the region is active. A region that is switched off limits nothing, but a robot in it keeps its slot.
     pub(crate) is_active: bool,
-    /// False if the source that it follows is lost: then it is not known where it is.
+    /// False if the source that the region follows is lost: then the region's position is unknown.
     pub(crate) is_measured: bool,
     pub(crate) zone: ZoneState,
-    /// The robot can stop outside the region.
+    /// True if the robot can stop outside the region.
     pub(crate) stops_outside: bool,
 }
 
-/// The client of one robot.
+/// The interlock client of one robot.
 #[derive(Debug)]
 pub(crate) struct ZoneClient {
     interlock: Interlock,
     slots: Vec<SlotSession>,
-    /// True if the deceleration is stated, so that a moving robot can be proven to stop outside.
+    /// True if the robot's deceleration is stated: only then can a moving robot be proven to stop outside.
     proves_stops: bool,
 }
 
@@ -34,18 +34,19 @@ struct SlotSession {
     slot: SlotId,
     regions: Vec<RegionId>,
     occupancy: Occupancy,
-    /// One of its regions is active, and the robot is in it, in its warning zone or unable to stop outside.
+    /// True if a region of the slot is active and the robot is in it, in its warning zone or unable to stop outside.
     is_near_active_region: bool,
     /// The region whose halt the robot obeys: the first active one. A region that is switched off limits nothing.
     first_active: Option<RegionId>,
     grant: Option<Grant>,
     state: SlotState,
-    /// Time since which the robot holds the slot outside of all warning zones.
+    /// Time since which the robot has held the slot while outside all warning zones.
     left_s: Option<f64>,
 }
 
-/// A robot that has left but cannot be proven to stop outside keeps its slot. For this time (s) its override is not limited
-/// by the slot's regions; afterwards it is, until the robot can stop. Most robots are far enough away by then.
+/// Time (s) for which the slot's regions do not limit a robot that has left but cannot be proven to stop outside.
+/// The robot keeps its slot; after this time the regions limit its override until it can stop. Most robots are far
+/// enough away by then.
 const LEAVING_S: f64 = 0.25;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -58,7 +59,7 @@ enum SlotState {
 
 impl ZoneClient {
     /// # Errors
-    /// The interlock lacks a slot or the robot, or what it needs is not configured.
+    /// [`ConfigError`] if the interlock lacks a slot or the robot, or if a setting that the interlock needs is missing.
     pub(crate) fn new(interlock: Interlock, config: &Configuration) -> Result<Self, ConfigError> {
         let proves_stops = config.laws.stopping_distance.is_some();
         let mut slots: Vec<SlotSession> = Vec::new();
@@ -110,7 +111,8 @@ impl ZoneClient {
         }
     }
 
-    /// Goes on where the client of a former monitor of the same robot has ended: what it holds, and where it was seen.
+    /// Continues from the client of a former monitor of the same robot: copies what it holds, and where the robot was
+    /// found.
     pub(crate) fn continue_from(&mut self, former: &Self) {
         for session in &mut self.slots {
             let Some(before) = former.slots.iter().find(|s| s.slot == session.slot) else { continue };
@@ -133,7 +135,7 @@ impl ZoneClient {
         }
     }
 
-    /// True if another robot holds the slot, or occupies it; of a robot in another process, as far as this one is refused
+    /// True if another robot holds or occupies the slot. A robot in another process counts only if this robot is refused
     /// or halted because of it.
     pub(crate) fn is_taken(&self, slot: SlotId) -> bool {
         match &self.interlock {
@@ -151,7 +153,7 @@ impl ZoneClient {
         }
     }
 
-    /// An active region that halts the robot, because another one was found inside.
+    /// An active region that halts the robot because another robot was found inside.
     pub(crate) fn halted_by(&self) -> Option<RegionId> {
         let Interlock::Granted(grants) = &self.interlock else { return None };
         self.slots.iter().filter(|s| grants.must_halt(s.slot)).find_map(|s| s.first_active)
@@ -166,7 +168,7 @@ impl ZoneClient {
         self.slots.iter().any(|s| s.slot == slot && s.state == SlotState::Held)
     }
 
-    /// True if the slot's regions do not limit this robot: it holds the slot and has not left for longer than
+    /// True if the slot's regions do not limit this robot: it holds the slot and has not been outside for longer than
     /// [`LEAVING_S`].
     pub(crate) fn may_enter(&self, slot: SlotId, now_s: f64) -> bool {
         let has_left = |s: &SlotSession| s.left_s.is_some_and(|left_s| now_s - left_s > LEAVING_S);
@@ -174,14 +176,14 @@ impl ZoneClient {
     }
 }
 
-/// Publishes the occupancy of all slots before the first request: other robots may be granted a slot, and this robot may
-/// have to yield, because of it.
+/// Publishes the occupancy of all slots before the first request, because it may let other robots be granted a slot
+/// and may require this robot to yield.
 fn exchange(arbiter: &ZoneArbiter, robot: RobotSlot, sessions: &mut [SlotSession], now_s: f64) {
     for session in &*sessions {
         arbiter.publish(session.slot, robot, session.occupancy, now_s);
     }
     for session in sessions {
-        // Near a region that is switched off it needs no slot, but keeps one that it has.
+        // Near a region that is switched off the robot needs no slot, but it keeps a slot that it holds.
         let keeps = session.occupancy > Occupancy::Outside && arbiter.holder(session.slot) == Some(robot);
         let requests = session.is_near_active_region || keeps;
         session.grant = requests.then(|| arbiter.request(session.slot, robot, now_s));
@@ -202,10 +204,10 @@ impl SlotSession {
         }
     }
 
-    /// Where the robot is with respect to all regions of the slot, those that are switched off included.
+    /// Finds where the robot is with respect to all regions of the slot, including regions that are switched off.
     fn observe(&mut self, status: &impl Fn(RegionId) -> RegionStatus, proves_stops: bool, now_s: f64) {
-        // Without a stated deceleration nothing is proven for a moving robot. Until the slot is granted, the warning law
-        // is assumed to keep it outside.
+        // Without a stated deceleration, nothing can be proven for a moving robot. Until the slot is granted, the warning
+        // law is assumed to keep the robot outside.
         let held = self.state == SlotState::Held;
         let occupancy = |region: RegionStatus| {
             let can_stop = region.stops_outside || !(proves_stops || held && region.zone.warned);
@@ -232,7 +234,8 @@ impl SlotSession {
         }
     }
 
-    /// A slot that was granted may have been released in the same tick, by yielding.
+    /// The state with a shared arbiter. A slot that was granted may have been released in the same tick, because the
+    /// robot yielded.
     fn shared_state(&self, arbiter: &ZoneArbiter, robot: RobotSlot) -> SlotState {
         match self.grant {
             None => SlotState::Away,
@@ -242,7 +245,8 @@ impl SlotSession {
         }
     }
 
-    /// A grant that has ended while the robot cannot stop outside any more was used: stopping it in the region helps nobody.
+    /// The state with grants from outside. A grant that ends when the robot cannot stop outside any more counts as used:
+    /// stopping the robot inside the region has no benefit.
     fn granted_state(&self, may_enter: bool) -> SlotState {
         let goes_on = self.state == SlotState::Held && self.occupancy.occupies();
         if may_enter || goes_on {

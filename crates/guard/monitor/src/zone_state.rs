@@ -12,7 +12,7 @@ pub(crate) struct ZoneState {
 }
 
 impl ZoneState {
-    /// The occupancy that the robot publishes; `can_stop` where it can stop outside the region.
+    /// The occupancy that the robot publishes; `can_stop` if it can stop outside the region.
     pub(crate) fn occupancy(self, can_stop: bool) -> Occupancy {
         match (self.inside, can_stop, self.warned) {
             (true, ..) => Occupancy::Inside,

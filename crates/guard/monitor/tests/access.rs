@@ -1,4 +1,4 @@
-//! A configuration is validated when it is built, and each access class may edit only what it is allowed to.
+//! Configurations are validated when they are built, and each access class may make only its allowed edits.
 
 use crate::common::{gantry, parts};
 use elbowroom_monitor::{
@@ -20,7 +20,7 @@ fn larger(name: &str, life: Life) -> Box<Region> {
     Box::new(Region::sphere(name, Vec3::X, 0.3).life(life))
 }
 
-/// Every kind of edit, and the lowest class that may do it.
+/// Every kind of edit, with the lowest class that may make it.
 fn edits() -> Vec<(ConfigurationEdit, AccessClass)> {
     use AccessClass::{Integrator, Programmer};
     use Life::{Permanent, Temporary};
@@ -29,7 +29,7 @@ fn edits() -> Vec<(ConfigurationEdit, AccessClass)> {
         (ConfigurationEdit::Add(larger("new", Temporary)), Programmer),
         (ConfigurationEdit::Change(larger("wall", Permanent)), Integrator),
         (ConfigurationEdit::Change(larger("cart", Temporary)), Programmer),
-        // A programmer may neither make a permanent region temporary, nor a temporary one permanent.
+        // A programmer may not make a permanent region temporary, or a temporary region permanent.
         (ConfigurationEdit::Change(larger("wall", Temporary)), Integrator),
         (ConfigurationEdit::Change(larger("cart", Permanent)), Integrator),
         (ConfigurationEdit::Remove("wall".into()), Integrator),

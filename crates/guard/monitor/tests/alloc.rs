@@ -1,4 +1,5 @@
-//! The tick does not allocate. Without the test harness, because the counter includes all threads of the process.
+//! Test that a tick does not allocate. It runs without the test harness, because the counter includes all threads of
+//! the process.
 
 mod common;
 mod rail;
@@ -61,7 +62,7 @@ fn main() {
             let report = m.tick(&Snapshot { qd: &qd, intent: Some(&speed), ..Snapshot::stationary(now_s, &q) });
             assert!(!matches!(report.reason, OverrideReason::Fault(_)), "{}", report.reason);
             pairs += report.measured_pairs;
-            // It applies the override, but creeps where it should stop.
+            // The robot applies the override, but creeps when it should stop.
             applied = report.speed_override;
             t += 0.002 * applied.max(0.1);
             assert!(m.events().len() < 8000);
@@ -83,7 +84,7 @@ fn stopping() -> StoppingSettings {
     }
 }
 
-/// Two arms that move through two exchange regions: granted, waiting, yielding, in a cycle.
+/// Two arms that move through two exchange regions: granted, waiting, yielding, in a wait cycle.
 fn exchange() {
     let slots = [SlotId(0), SlotId(1)];
     let arbiter = Arc::new(ZoneArbiter::new(&["a", "b"], &["left", "right"]));
@@ -103,7 +104,7 @@ fn exchange() {
         .collect();
     let counter = AllocationCounter::start();
     let (mut granted, mut waiting) = (0, 0);
-    // Each applies its override, but creeps where it should stop.
+    // Each robot applies its override, but creeps when it should stop.
     let mut robots = [(0.0_f64, 0.0), (2.0, 0.0)];
     for i in 0..20_000 {
         if i == 10_000 {
@@ -126,7 +127,7 @@ fn exchange() {
     assert_eq!(changes, 0);
 }
 
-/// A tick with its messages, of a robot whose regions are granted on a network.
+/// A tick, including its messages, of a robot whose regions are granted on a network.
 fn guarded() {
     let mut robot = Carriage::new(0, 0.0, 1.0).robot;
     let settings = ArbiterSettings::new(vec![RobotSettings::new("rail", [SLOT])], 1);
@@ -135,7 +136,7 @@ fn guarded() {
     let mut bytes = Vec::with_capacity(MAX_BYTES);
     let (mut allocations, mut granted) = (0, 0);
     for tick in 0..10_000_u64 {
-        // To and fro through the region.
+        // The robot moves back and forth through the region.
         let t = tick as f64 * 0.002;
         let (q, qd) = ([2.0 - 1.5 * t.cos()], [1.5 * t.sin()]);
         let now = Micros(1 + tick * 2_000);
@@ -146,7 +147,7 @@ fn guarded() {
         let state = robot.state(now);
         decode_state(state, &mut message).expect("a state");
         allocations += counter.changes();
-        // The arbiter allocates: it is not part of the tick of a robot.
+        // The arbiter allocates: it is not part of a robot's tick.
         let replies = arbiter.receive(&message, now).replies;
         let counter = AllocationCounter::start();
         for reply in &replies {

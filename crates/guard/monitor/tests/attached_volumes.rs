@@ -54,7 +54,7 @@ fn laws() -> [Laws; 3] {
     [Laws::default(), stopping.clone(), Laws { direction_aware: true, override_rate: 5.0, ..stopping }]
 }
 
-/// The reports of a run of `seconds`, in which the robot applies the override, but creeps where it should stop.
+/// The reports of a run of `seconds` in which the robot applies the override, but creeps when it should stop.
 fn run(monitor: &mut Monitor, from_s: f64, seconds: f64) -> Vec<TickReport> {
     let (mut applied, mut t) = (0.0, 3.0 * from_s);
     let ticks = (seconds / 0.002).round() as u32;
@@ -118,7 +118,7 @@ fn the_reported_distance_is_that_of_brute_force() {
             m.detach(part_id()).unwrap();
             sweep.detach(&config, part_id()).unwrap();
         }
-        // Ticks so far apart that every motion is possible.
+        // The ticks are so far apart that every motion is possible.
         m.tick(&Snapshot::stationary(10.0 * f64::from(i), &q));
         assert!(sweep.advance(&config, &q, &[], 10.0));
         let query = {
@@ -160,7 +160,7 @@ fn a_part_gripped_inside_a_region_holds_the_robot_until_its_program_leads_out() 
         let laws = Laws { direction_aware, ..Laws::default() };
         let parts = ConfigurationParts { laws, ..parts(rail.clone(), volumes.clone(), vec![region.clone()]) };
         let mut m = Monitor::new(Configuration::new(parts).unwrap(), None).unwrap();
-        // The hand is 0.1 m above the bin, the part reaches down into it.
+        // The hand is 0.1 m above the bin, and the part reaches into it.
         let q = [1.4, 0.0, 1.0, 0.0, 0.0, 0.0];
         let tick = |m: &mut Monitor, i: u32, up: f64| {
             let intent = [0.0, 0.0, up, 0.0, 0.0, 0.0];
@@ -175,7 +175,7 @@ fn a_part_gripped_inside_a_region_holds_the_robot_until_its_program_leads_out() 
         let leaves = m.configuration().laws().recovery;
         assert_eq!(up.speed_override, if direction_aware { leaves } else { 0.0 });
         assert_eq!(tick(&mut m, 2, -0.2).speed_override, 0.0, "deeper into it");
-        // Released there, it does not count any more.
+        // After it is released there, it does not count any more.
         m.detach(VolumeId(1)).unwrap();
         let report = tick(&mut m, 3, 0.2);
         assert!(report.speed_override > leaves && !m.is_inside(RegionId(0)), "{report:?}");
@@ -195,7 +195,7 @@ fn the_override_falls_at_once_for_what_is_attached() {
     m.attach(VolumeId(1), &Pose::IDENTITY).unwrap();
     let report = m.tick(&Snapshot::stationary(0.002, &q));
     assert!((report.speed_override - 0.8).abs() < 1e-9, "{report:?}");
-    // Only for that tick: the override rises at its rate.
+    // This applies to that tick only: then the override rises at its rate.
     m.detach(VolumeId(1)).unwrap();
     let report = m.tick(&Snapshot::stationary(0.004, &q));
     assert!((report.speed_override - 0.801).abs() < 1e-9 && report.reason == OverrideReason::Rate, "{report:?}");

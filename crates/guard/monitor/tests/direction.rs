@@ -50,10 +50,10 @@ fn a_robot_inside_may_leave_slowly() {
     assert!((override_at(&mut m, 1.0, 0.4, 0.3) - 0.1).abs() < 1e-12, "out");
 }
 
-/// Within rounding of the border, and within the smallest decrease of the depth, a robot must be able to leave.
+/// A robot within rounding of the border, and within the smallest decrease of the depth, must be able to leave.
 #[test]
 fn a_robot_at_the_very_border_is_free_to_leave() {
-    // A thin plate as well: passing through it does not lead out.
+    // The plate is thin as well: passing through it does not count as leaving.
     let plate = Region::cuboid("plate", Vec3::new(0.5, 0.0, -0.5), Vec3::new(1e-3, 1.0, 1.0), Rotation::IDENTITY);
     let regions = [(ball(), 0.5), (plate.warning(0.2).guards(Guards::TCP), 0.5005)];
     for (region, border) in regions {
@@ -76,8 +76,8 @@ fn an_actual_approach_is_limited_whatever_the_program_intends() {
     assert!((report.speed_override - 0.5).abs() < 1e-12);
 }
 
-/// Random arms, regions and intents: where the override is above that of the paper, every distance within a warning zone
-/// grows.
+/// Random arms, regions and intents: whenever the override exceeds the override of the paper, every distance within
+/// a warning zone grows.
 #[test]
 fn a_decreasing_distance_never_clears_an_alarm() {
     let mut r = XorshiftStar(5);
@@ -132,7 +132,7 @@ fn the_stopping_law_stops_outside() {
         joint_acceleration: vec![2.0; 6],
     };
     let laws = Laws { stopping_distance: Some(stopping), ..Laws::default() };
-    // No warning zone at all: the stopping law alone must keep the point outside.
+    // Without a warning zone, the stopping law alone must keep the point outside.
     let mut m = point_monitor(vec![Region::sphere("ball", Vec3::ZERO, 0.5)], laws);
     for speed in [0.2, 1.0, 3.0] {
         let (mut x, mut sigma, dt) = (3.0, 1.0_f64, 0.002);
@@ -181,7 +181,7 @@ fn a_dynamic_region_follows_its_source_and_its_motion_counts() {
     let motion = FrameMotion { velocity: Vec3::Y * 0.4, acceleration: Vec3::Y * -1.0, ..FrameMotion::REST };
     let quarter = Rotation::from_rpy(0.0, 0.0, std::f64::consts::FRAC_PI_2);
     let source = SourceState { pose: Pose::new(quarter, Vec3::Y), motion, stamp_s: 0.0 };
-    // The region's centre: 1 m along y and its 0.1 m turned from x to y.
+    // The region's centre is 1 m along y, and its 0.1 m are turned from x to y.
     let q = [0.0, 0.6, 0.0, 0.0, 0.0, 0.0];
     let report = m.tick(&Snapshot { sources: &[source], ..Snapshot::stationary(0.0, &q) });
     assert!((report.speed_override - 0.3 / 0.5).abs() < 1e-12);
@@ -190,7 +190,7 @@ fn a_dynamic_region_follows_its_source_and_its_motion_counts() {
     assert!((tcp.velocity + Vec3::Y * 0.4).length() < 1e-12 && (tcp.acceleration - Vec3::Y).length() < 1e-12);
 }
 
-/// The override of a robot at x that stands beside a region and whose program moves it along x at `program` (m/s).
+/// The override of a robot at rest at x beside a region, with a program that moves it along x at `program` (m/s).
 fn override_beside(region: Region, source: SourceState, x: f64, program: f64) -> f64 {
     let volumes = vec![Volume::tcp(LinkId(6), Vec3::ZERO)];
     let region = region.follow(SourceId(0)).guards(Guards::TCP);
@@ -209,7 +209,8 @@ fn override_beside(region: Region, source: SourceState, x: f64, program: f64) ->
     m.tick(&snapshot).speed_override
 }
 
-/// Beside a ball of 0.5 m that moves along x: read at x, so long (s) before the robot's joint values.
+/// The override beside a ball of 0.5 m that moves along x; it was read at x, `age_s` (s) before the robot's joint
+/// values.
 fn override_beside_a_ball((x, speed, age_s): (f64, f64, f64), robot_x: f64, program: f64) -> f64 {
     let motion = FrameMotion { velocity: Vec3::X * speed, ..FrameMotion::REST };
     let source = SourceState { pose: Pose::from_translation(Vec3::X * x), motion, stamp_s: 1.0 - age_s };
@@ -224,13 +225,13 @@ fn the_age_of_a_source_counts_as_travel_of_its_region() {
         let old = override_beside_a_ball((0.0, 1.0, 0.04), robot_x, -0.1);
         let new = override_beside_a_ball((0.04, 1.0, 0.0), robot_x, -0.1);
         let as_if_new = override_beside_a_ball((0.0, 1.0, 0.0), robot_x, -0.1);
-        // The warning zone sees the region where it was read.
+        // The warning zone uses the region's position in the reading.
         assert!(old <= new + 0.2 + 1e-9 && old <= as_if_new, "{robot_x}: {old}, {new}, {as_if_new}");
         assert!(old == 0.0 || new > 0.0, "{robot_x}: {old}, {new}");
         slowed += i32::from(old < as_if_new);
     }
     assert!(slowed > 20, "{slowed}");
-    // A ball at rest is where it was.
+    // A ball at rest has not moved since its reading.
     assert_eq!(override_beside_a_ball((0.0, 0.0, 0.04), 0.6, -0.1), override_beside_a_ball((0.0, 0.0, 0.0), 0.6, -0.1));
 }
 
@@ -243,7 +244,8 @@ fn a_robot_in_a_region_that_moves_waits_until_it_stands() {
     }
 }
 
-/// What turns in itself stays where it is; a plane on a hand whose joint values tremble does not move faster where the robot is.
+/// A body that turns about its own axis stays in place. A plane on a hand whose joint values tremble does not move
+/// faster at the robot's position.
 #[test]
 fn a_robot_leaves_a_region_that_turns_in_itself() {
     let turning = |about: Vec3, at: Vec3| SourceState {
@@ -255,7 +257,7 @@ fn a_robot_leaves_a_region_that_turns_in_itself() {
     let ball_at = |center: Vec3| Region::sphere("ball", center, 0.5).warning(0.2);
     let disc = || Region::cylinder("disc", Vec3::Z * -0.5, 0.5, 1.0, Rotation::IDENTITY).warning(0.2);
     let block = Region::cuboid("block", Vec3::Z * -0.5, Vec3::splat(1.0), Rotation::IDENTITY).warning(0.2);
-    // All that is behind x = 0.5 in the world, with its source there.
+    // The wall is everything behind x = 0.5 in the world, with its source there.
     let wall = |source: Vec3| {
         let at = |y: f64, z: f64| Vec3::new(0.5, y, z) - source;
         Region::plane("wall", at(0.0, 0.0), at(1.0, 0.0), at(0.0, 1.0)).unwrap().warning(0.2)
@@ -292,7 +294,7 @@ fn virtual_tcps_have_the_position_velocity_and_acceleration_of_the_closest_point
         let (volume, region) = (&config.volumes()[0], &config.regions()[0]);
         let exact = separation(&volume.shape, &m.volume_in_world(VolumeId(0)), &region.shape, &region.anchor);
         assert!((exact.distance - tcp.distance_m).abs() < 1e-12);
-        // The same material point a little earlier and later.
+        // The positions of the same material point a little earlier and later.
         let in_tool = m.volume_in_world(VolumeId(0)).inverse_transform_point(tcp.position);
         let mut at = |dt: f64| {
             let q = std::array::from_fn::<f64, 6, _>(|i| q[i] + qd[i] * dt + 0.5 * qdd[i] * dt * dt);

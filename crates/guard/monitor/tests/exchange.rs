@@ -1,4 +1,4 @@
-//! The states that a monitor publishes at an exchange region, from the approach until it has left.
+//! The states that a monitor publishes at an exchange region, from the approach until the robot has left.
 
 use std::sync::Arc;
 
@@ -47,7 +47,7 @@ fn a_robot_publishes_that_it_cannot_stop_outside() {
     assert_eq!(observed[..4], [Outside, Granted, Committed, Inside], "{observed:?}");
     assert_eq!(observed.last(), Some(&Outside));
     assert_eq!(published[..4], [Occupancy::Outside, Occupancy::Warning, Occupancy::Committed, Occupancy::Inside]);
-    // Without a stated deceleration it may be unable to stop as soon as it moves with the grant.
+    // Without a stated deceleration, the robot may be unable to stop as soon as it moves with the grant.
     let (observed, _) = states(Laws::default());
     assert_eq!(observed[..4], [Outside, Granted, Committed, Inside], "{observed:?}");
     assert_eq!(observed.last(), Some(&Outside));

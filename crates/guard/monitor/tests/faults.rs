@@ -65,7 +65,7 @@ fn numbers_that_no_program_demands_stop_the_robot() {
             }
         }
     }
-    // What a program may demand that is slowed down.
+    // A program that is slowed down may demand this.
     assert_eq!(fault_of(|s| s.intent = Some(&[30.0; 6])), None);
     assert_eq!(fault_of(|s| s.qdd = &[500.0; 6]), None);
 }
@@ -105,7 +105,7 @@ fn a_lost_source_stops_the_robot_while_its_region_is_active() {
     assert_eq!(tick(0.4, source(0.4, 5.0)), OverrideReason::Free);
 }
 
-/// Numbers as from a faulty field bus: any bit pattern, or a plausible one with a flipped bit.
+/// Numbers as from a faulty field bus: any bit pattern, or a plausible number with a flipped bit.
 fn corrupted(r: &mut XorshiftStar, around: f64) -> f64 {
     match r.bits() % 4 {
         0 => f64::from_bits(r.bits()),

@@ -1,4 +1,5 @@
-//! Exchange regions that are granted from outside of the process, and regions that are switched off with a robot inside.
+//! Exchange regions that are granted from outside the process, and regions that are switched off with a robot
+//! inside.
 
 use std::sync::Arc;
 
@@ -33,7 +34,7 @@ fn table() -> Region {
         .life(Life::Temporary)
 }
 
-/// A gantry whose tool goes along x; it reaches the region when its first joint is near 3 m.
+/// A gantry whose tool moves along x; it reaches the region when its first joint is near 3 m.
 struct Robot {
     monitor: Monitor,
     ticks: u32,
@@ -73,7 +74,7 @@ fn granted() -> (Arc<SlotGrants>, Robot) {
 }
 
 impl Robot {
-    /// Moves at 1 m/s until the state is reached; the report of that tick.
+    /// Moves at 1 m/s until the state is reached; returns the report of that tick.
     fn seek(&mut self, state: ExchangeState) -> TickReport {
         for _ in 0..5_000 {
             let report = self.tick(1.0);
@@ -157,11 +158,11 @@ fn a_robot_in_a_region_that_is_switched_off_is_reported_until_it_has_left() {
     grants.write(SLOT, false, false);
     let report = robot.tick(1.0);
     assert_eq!((grants.occupancy(SLOT), grants.is_needed(SLOT)), (Occupancy::Inside, false));
-    // For everything else the region is not there.
+    // For everything else the region does not exist.
     assert_eq!((report.speed_override, report.governing), (1.0, None));
     assert!(!robot.monitor.is_inside(REGION) && !robot.monitor.is_warned(REGION));
     assert!(robot.monitor.events().iter().any(|e| e.kind == EventKind::InsideOut));
-    // It does not wait for the grant, and is then beyond the region and its warning zone.
+    // The robot does not wait for the grant, and is afterwards beyond the region and its warning zone.
     let seen: Vec<_> = (0..3_000).map(|_| (robot.tick(1.0).speed_override, grants.occupancy(SLOT))).collect();
     assert!(seen.iter().all(|(speed_override, _)| *speed_override == 1.0));
     let mut occupancies: Vec<_> = seen.iter().map(|(_, occupancy)| *occupancy).collect();
@@ -180,7 +181,7 @@ fn the_arbiter_of_the_process_keeps_the_slot_of_a_region_that_is_switched_off() 
     assert_eq!((arbiter.holder(SLOT), arbiter.occupancy(SLOT, RobotSlot(0))), (Some(RobotSlot(0)), Occupancy::Inside));
     robot.seek(ExchangeState::Outside);
     assert_eq!(arbiter.holder(SLOT), None);
-    // One that enters while the region is off requests nothing, but others see it.
+    // A robot that enters while the region is off requests nothing, but others see it.
     robot.x = 2.0;
     let mut other = Robot::new(table(), (arbiter.clone(), RobotSlot(1)));
     other.monitor.switch(REGION, false, AccessClass::Programmer).unwrap();
@@ -215,7 +216,7 @@ fn grants_from_outside_need_the_stopping_distance_and_the_slot() {
     assert_eq!(new(laws(), 0), ConfigError::NoArbiter("table".into()));
 }
 
-/// Where the volume that cannot stop is measured first, the others do not undo what it showed.
+/// If the volume that cannot stop is measured first, the other volumes do not undo its result.
 #[test]
 fn a_robot_is_committed_by_any_of_its_volumes() {
     let ball = |name: &str, x: f64| Volume {
@@ -232,7 +233,7 @@ fn a_robot_is_committed_by_any_of_its_volumes() {
         let mut robot = Robot::of(volumes, table(), Interlock::Granted(grants.clone()));
         grants.write(SLOT, true, false);
         robot.seek(ExchangeState::Committed);
-        // The other ball is half a metre behind, and could stop.
+        // The other ball is half a metre behind and could stop.
         assert!(robot.x > 3.3 && robot.x < 3.65, "{offsets:?}: {}", robot.x);
     }
 }

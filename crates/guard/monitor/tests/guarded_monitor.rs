@@ -1,4 +1,4 @@
-//! Monitor, guard and arbiter together: what carriages on rails do at an exchange region.
+//! Monitor, guard and arbiter together: carriages on rails at an exchange region.
 
 use crate::rail;
 use crate::rail::{BORDERS, Carriage, Cell, REGION, SLOT, WARNING_M, configuration};
@@ -33,7 +33,7 @@ fn a_grant_that_ends_during_the_approach_stops_the_robot_before_the_border() {
         cell.carriages[0].is_connected = false;
         cell.until("the grant ends", |cell| state(cell, 0) != ExchangeState::Granted);
         assert_eq!(state(&cell, 0), ExchangeState::Waiting, "{x}");
-        // In the same tick it is limited again.
+        // The carriage is limited again in the same tick.
         assert!(cell.carriages[0].speed_override() < 1.0);
         cell.run(3.0);
         assert!(cell.carriages[0].x < BORDERS.0 && cell.carriages[0].v < 0.01, "{}", cell.carriages[0].x);
@@ -52,7 +52,7 @@ fn a_committed_robot_goes_on_without_the_network_and_keeps_the_slot() {
         cell.carriages[0].x > BORDERS.1
     });
     cell.run(2.0);
-    // Nobody has heard that it is through.
+    // The arbiter has not received the message that the carriage is through.
     assert_eq!((cell.arbiter.holder(SLOT), state(&cell, 1)), (Some(RobotSlot(0)), ExchangeState::Waiting));
     cell.carriages[0].is_connected = true;
     cell.until("the other one is inside", |cell| cell.carriages[1].is_inside());
@@ -84,7 +84,7 @@ fn a_region_that_is_switched_off_is_not_requested() {
 #[test]
 fn two_that_are_found_inside_halt_until_one_is_moved_out() {
     let mut cell = Cell::new(vec![Carriage::new(0, 1.9, 1.0), Carriage::new(1, 2.1, 1.0)]);
-    // The one that is heard first may move until the other one is heard, too.
+    // The carriage whose message arrives first may move until the other's message arrives.
     cell.until("both halt", Cell::is_halted);
     cell.run(0.5);
     for (carriage, x) in cell.carriages.iter().zip([1.9, 2.1]) {
@@ -114,7 +114,8 @@ fn a_robot_that_is_not_seen_any_more_blocks_the_slot() {
 fn a_tick_that_sees_nothing_gives_nothing_up() {
     let mut cell = Cell::new(vec![Carriage::new(0, 0.0, 1.0)]);
     cell.until("it is in the warning zone", |cell| state(cell, 0) == ExchangeState::Granted);
-    // It turns back and has just left the zone: its message closes the grant, but the next tick sees nothing.
+    // The carriage turns back and has just left the zone: its message closes the grant, but the next tick has no valid
+    // input.
     cell.carriages[0].program = -1.0;
     cell.until("it closes the grant", |cell| {
         let robot = &cell.carriages[0].robot;

@@ -1,4 +1,4 @@
-//! The override law compared with an oracle with the case distinctions of Romanelli 2011 (eqs. 1-4).
+//! Comparison of the override law with an oracle that has the case distinctions of Romanelli 2011 (eqs. 1-4).
 
 use crate::common::{RandomGeometry, XorshiftStar, configuration, gantry};
 use elbowroom_kinematics::LinkId;
@@ -6,7 +6,7 @@ use elbowroom_monitor::{Guards, Monitor, Region, Snapshot, Volume};
 use elbowroom_spatial::{Rotation, Vec3};
 
 const CASES: usize = 1_000_000;
-/// Regions per monitor: building one costs more than a tick.
+/// Number of regions per monitor: building a monitor costs more than a tick.
 const PER_MONITOR: usize = 100;
 
 /// Builds a region and the oracle's distance function for a point.
@@ -39,7 +39,7 @@ fn plane(r: &mut XorshiftStar, rotation: Rotation) -> (Region, Box<dyn Fn(Vec3) 
     let origin = r.vec3(1.0);
     let (x, y) = (rotation * Vec3::X, rotation * Vec3::Y);
     let normal = x.cross(y);
-    // Eq. 3: the distance to the surface; below it is the region.
+    // Eq. 3: the distance to the surface; the region is below it.
     let oracle = move |p: Vec3| normal.x * (p.x - origin.x) + normal.y * (p.y - origin.y) + normal.z * (p.z - origin.z);
     (Region::plane("p", origin, origin + x * 0.7, origin + x * 0.2 + y * 1.3).unwrap(), Box::new(oracle))
 }
@@ -111,7 +111,7 @@ fn many_regions_combine_by_the_minimum() {
         for i in 0..30 {
             let shapes: [Sample; 3] = [sphere, cylinder, cuboid];
             let rotation = Rotation::from_axis_angle(r.direction(), r.between(-3.1, 3.1));
-            // One plane is enough: it forbids half of all points.
+            // One plane is sufficient: it forbids half of all points.
             let sample = if i == 0 { plane } else { shapes[(r.bits() % 3) as usize] };
             let (mut region, oracle) = sample(&mut r, rotation);
             region.name = format!("{i}");

@@ -30,7 +30,8 @@ fn reacting_after(reaction_s: f64) -> Monitor {
     Monitor::new(Configuration::new(parts).unwrap(), None).unwrap()
 }
 
-/// A point on the x axis whose program moves at 2 m/s towards the wall at x = 2. It accelerates at 8 m/s² and brakes at 4.
+/// A point on the x axis whose program moves at 2 m/s towards the wall at x = 2. It accelerates at 8 m/s² and brakes
+/// at 4 m/s².
 struct PointRobot {
     x: f64,
     speed: f64,
@@ -97,7 +98,7 @@ fn a_frozen_reading_stops_the_robot_before_it_is_inside() {
     }
 }
 
-/// A robot that starts to move 0.3 s after the command is valid; one that does not start then is frozen.
+/// A robot that starts to move 0.3 s after the command is valid; a robot that does not start then is frozen.
 #[test]
 fn a_robot_that_reacts_late_is_not_frozen() {
     let mut m = reacting_after(0.3);
@@ -111,7 +112,8 @@ fn a_robot_that_reacts_late_is_not_frozen() {
     assert!((ticks(0.3)..ticks(1.5)).any(|tick| reason(tick) == OverrideReason::Fault(Fault::Frozen)));
 }
 
-/// A robot whose brakes open later than its reaction time is frozen, rests for a second, and tries again: that time it moves.
+/// A robot whose brakes open later than its reaction time is frozen, rests for a second, and tries again; then it
+/// moves.
 #[test]
 fn a_robot_that_was_frozen_tries_again_after_a_rest() {
     let (mut m, mut robot) = (monitor(), PointRobot { x: -20.0, speed: 0.0 });
@@ -137,14 +139,14 @@ fn a_robot_that_was_frozen_tries_again_after_a_rest() {
     assert!(robot.x > -18.0, "it stands at {}", robot.x);
 }
 
-/// A controller that hears no override stops by itself, and says so by an override of 0 of its program: however long that is, its
-/// robot is not frozen, and is known to be where it is.
+/// A controller that receives no override stops by itself and reports programmed override 0. However long that
+/// lasts, its robot is not frozen, and its position is known.
 #[test]
 fn a_robot_whose_controller_stops_it_is_not_frozen() {
     let mut m = monitor();
     let intent = [2.0, 0.0, 0.0, 0.0, 0.0, 0.0];
     let mut tick = |tick: u32, programmed_override: f64| {
-        // 100 mm before the wall.
+        // The robot is 100 mm before the wall.
         let stationary = Snapshot::stationary(TICK_S * f64::from(tick), &[1.9, 0.0, 0.0, 0.0, 0.0, 0.0]);
         m.tick(&Snapshot { qd: &[0.0; 6], intent: Some(&intent), programmed_override, ..stationary })
     };
@@ -158,7 +160,7 @@ fn a_robot_whose_controller_stops_it_is_not_frozen() {
     assert!(again > 0.9 * at_first, "{again}, at first {at_first}");
 }
 
-/// A robot that its host stops is at rest although its program would move it; it goes on when the host lets it.
+/// A robot stopped by its host is at rest although its program would move it; it continues when the host allows it.
 #[test]
 fn a_robot_that_its_host_stops_is_not_frozen() {
     let mut m = monitor();
@@ -174,7 +176,7 @@ fn a_robot_that_its_host_stops_is_not_frozen() {
     }
     let (speed_override, reason, fault) = tick(5000, None);
     assert!(speed_override > 0.0 && fault.is_none(), "{reason}");
-    // Stopped again, from whatever override was reached.
+    // The robot stops again, whatever override was reached.
     assert_eq!(tick(5001, Some(Fault::Regions)).0, 0.0);
 }
 
@@ -201,7 +203,7 @@ fn a_robot_that_brakes_less_than_stated_is_a_fault() {
         for tick in 0..6000 {
             let (q, qd) = ([robot.x, 0.0, 0.0, 0.0, 0.0, 0.0], [robot.speed, 0.0, 0.0, 0.0, 0.0, 0.0]);
             let stationary = Snapshot::stationary(TICK_S * f64::from(tick), &q);
-            // The operator stops it.
+            // The operator stops the robot.
             let programmed_override = if robot.x > 0.9 { 0.0 } else { 1.0 };
             let report = m.tick(&Snapshot { qd: &qd, intent: Some(&intent), programmed_override, ..stationary });
             found |= matches!(report.reason, OverrideReason::Fault(Fault::Braking));
@@ -215,7 +217,7 @@ fn a_robot_that_brakes_less_than_stated_is_a_fault() {
 #[test]
 fn a_stop_by_a_fault_ends_with_the_fault() {
     let (q, intent) = ([0.0; 6], [2.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
-    // Not a time, from the future, out of order, stale.
+    // The times are not a number, from the future, out of order, stale.
     for stamp_s in [f64::NAN, f64::INFINITY, -1.0, 1.0] {
         let mut m = monitor();
         let at = |now_s: f64| Snapshot { qd: &[0.0; 6], intent: Some(&intent), ..Snapshot::stationary(now_s, &q) };

@@ -1,4 +1,5 @@
-//! The region-distance query compared with the monitor that created it, and its motion bound with sampled motions.
+//! Comparison of the region-distance query with the monitor that created it, and of its motion bound with sampled
+//! motions.
 
 use std::sync::Arc;
 
@@ -104,7 +105,7 @@ fn unknown_poses_count_as_inside() {
         let all: Vec<_> = query.distances(0.0).collect();
         assert!(all.len() == 4 && all.iter().all(|a| a.1 == 0.0), "{all:?}");
     };
-    // No joint values yet; invalid joint values; no state of the source.
+    // The query has no joint values yet; invalid joint values; no state of the source.
     let sources = [source()];
     let mut query = monitor.region_distance(&sources);
     assert_inside(&query);

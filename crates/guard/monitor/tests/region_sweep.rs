@@ -1,4 +1,4 @@
-//! The sweep between two snapshots compared with an oracle that samples the motion.
+//! Comparison of the sweep between two snapshots with an oracle that samples the motion.
 
 use crate::common::{RandomGeometry, XorshiftStar, arm, arm_volumes, configuration, joint, parts};
 use elbowroom_kinematics::{Chain, JointKind};
@@ -95,7 +95,7 @@ fn an_output_is_on_for_one_tick_where_a_plate_was_passed() {
     assert_eq!(tick(&mut m, 2, 0.008), (vec![WarnIn, InsideIn, OutputOn(7)], 1 << 7));
     assert!(m.is_inside(RegionId(0)));
     assert_eq!(tick(&mut m, 3, 0.024), (vec![InsideOut, WarnOut, OutputOff(7)], 0));
-    // Back again, and then no snapshot until the input is stale: the motion is not known.
+    // The robot moves back again. Then no snapshot arrives until the input is stale, so the motion is not known.
     assert_eq!(tick(&mut m, 4, 0.010), (vec![], 0));
     let late = m.tick(&Snapshot::stationary(0.2, &[-0.010]));
     assert!(m.events().is_empty() && late.outputs == 0);
@@ -124,7 +124,7 @@ fn a_region_that_passes_is_reported_and_one_that_jumps_is_not() {
         m.events().iter().any(|e| e.kind == EventKind::InsideIn)
     };
     assert!(!at(0, -0.020, 4.0) && !at(1, -0.004, 4.0) && at(2, 0.012, 4.0) && !at(3, 0.028, 4.0));
-    // The reading wraps around to the beginning of the belt.
+    // The reading wraps around to the start of the belt.
     assert!(!at(4, -2.0, 4.0));
 }
 

@@ -1,16 +1,16 @@
-//! From tables to chains.
+//! Construction of chains from Denavit-Hartenberg tables.
 
 use elbowroom_spatial::{Pose, Vec3};
 
 use super::generalized::{GeneralizedRow, GeneralizedTable};
 use crate::{Chain, ChainError, Joint, JointKind, Limits, LinkId};
 
-/// One classical row: `T = Rz(θ+q)·Tz(d)·Tx(a)·Rx(α)`, or with q added to d where the joint is prismatic.
+/// One classical row: `T = Rz(θ+q)·Tz(d)·Tx(a)·Rx(α)`; if the joint is prismatic, q is added to d instead.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ClassicalRow {
     /// Name of the joint.
     pub joint: String,
-    /// How it moves.
+    /// The joint's kind.
     pub kind: JointKind,
     /// Translation along the new x axis, m.
     pub a: f64,
@@ -32,12 +32,15 @@ impl From<&ClassicalRow> for GeneralizedRow {
 }
 
 impl Chain {
-    /// A serial chain from classical rows. Its links are `base` and, for row i (from 1), `link_i_drive`, which moves with
-    /// the joint, and on it `link_i`: the row's frame, after d, a and α. The last `link_i` is the flange and the
-    /// [`Chain::tip`]. The joints have the names of the rows, the fixed ones between drive and link `NAME_frame`.
+    /// Builds a serial chain from classical rows.
+    ///
+    /// Its links are `base` and, for each row i (from 1), `link_i_drive` and `link_i`. `link_i_drive` moves with the
+    /// joint. `link_i` is fixed on it and is the row's frame, after d, a and α. The last `link_i` is the flange and the
+    /// [`Chain::tip`]. Joints have the names of the rows; the fixed joints between drive and link are called
+    /// `NAME_frame`.
     ///
     /// # Errors
-    /// [`ChainError`] as in [`Chain::new`]: names used twice, bounds out of order, numbers that are not finite.
+    /// [`ChainError`] as in [`Chain::new`]: duplicate names, bounds out of order, numbers that are not finite.
     pub fn from_dh(name: impl Into<String>, rows: &[ClassicalRow]) -> Result<Self, ChainError> {
         let limits = |i: usize| rows.get(i).map_or(Limits::UNLIMITED, |r: &ClassicalRow| r.limits);
         let generalized: Vec<GeneralizedRow> = rows.iter().map(GeneralizedRow::from).collect();
@@ -47,8 +50,8 @@ impl Chain {
 }
 
 impl GeneralizedTable {
-    /// The serial chain of the table, links as in [`Chain::from_dh`], without limits. Rows without joint become fixed
-    /// joints `fixed_i`; mimic joints become independent ones.
+    /// Builds the serial chain of the table without limits; its links are as in [`Chain::from_dh`]. Rows without a joint
+    /// become fixed joints `fixed_i`; mimic joints become independent joints.
     ///
     /// # Errors
     /// [`ChainError`] as in [`Chain::new`].

@@ -1,4 +1,4 @@
-//! One row per frame of the model, as in Reichenbach and Kovačić 2003.
+//! The direct table: one row per frame of the model, as in Reichenbach and Kovačić 2003.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt;
@@ -11,15 +11,17 @@ use super::residual::residual;
 use super::split::{along_z, exact_row, row_and_rest};
 use crate::{Chain, JointKind, LinkId};
 
-/// A generalized table that follows the frames of the model, while [`GeneralizedTable::extract`] follows the
-/// axes.
+/// A generalized table that follows the frames of the model; [`GeneralizedTable::extract`] follows the axes instead.
 ///
-/// Every frame between root and tip keeps its origin: that of the root link, of each joint, of each link on a fixed joint,
-/// and of the tip. A frame whose z axis is its joint's axis, and a frame without joint, keeps its orientation, too; any
-/// other is rotated so that its joint acts about or along z, as the convention requires, and about that axis so that entry
-/// (3,1) of its row is 0. Each frame is one row with a, b, d, α and θ; only where a kept frame has (3,1) ≠ 0 an auxiliary frame
-/// precedes it, marked by `*`. A model of a base and six joints has seven rows, as in table 1 of the paper, followed by
-/// what the last joint carries: the tip, or a point of a surface.
+/// Every frame between root and tip keeps its origin. The frames are those of the root link, of each joint, of each
+/// link on a fixed joint, and of the tip. A frame whose z axis is its joint's axis keeps its orientation too, and so
+/// does a frame without a joint. Any other frame is rotated so that its joint acts about or along z, as the
+/// convention requires, and then about that axis so that entry (3,1) of its row is 0.
+///
+/// Each frame is one row with a, b, d, α and θ. Only if a kept frame has (3,1) ≠ 0, an auxiliary frame precedes it,
+/// marked by `*`. A model of a base and six joints has seven rows, as in table 1 of the paper, followed by what the
+/// last joint carries: the tip, or a point of a surface.
+///
 ///
 /// ```
 /// use elbowroom_kinematics::dh::DirectTable;
@@ -40,20 +42,20 @@ use crate::{Chain, JointKind, LinkId};
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct DirectTable {
-    /// The frame that each row leads to: a link where it has no joint, else the joint that acts in it (from the next row
+    /// The frame after each row: a link if the frame has no joint, else the joint that acts in it (from the next row
     /// on). An auxiliary frame has the name of the frame that it precedes, with a `*`.
     pub frames: Vec<String>,
-    /// The rows, and how well their product reproduces the chain.
+    /// The rows and their residual with respect to the chain.
     pub table: GeneralizedTable,
 }
 
 impl DirectTable {
-    /// The frames from the root link to the link `tip`. Works for every chain.
+    /// Extracts the frames from the root link to the link `tip`. Works for every chain.
     pub fn extract(chain: &Chain, tip: LinkId) -> Self {
         Self::extract_to(chain, tip, Pose::IDENTITY)
     }
 
-    /// As [`DirectTable::extract`], to a frame fixed on the link `tip` (m): a tool, or a point of a surface.
+    /// Like [`DirectTable::extract`], up to a frame fixed on the link `tip` (m): a tool, or a point of a surface.
     pub fn extract_to(chain: &Chain, tip: LinkId, tool_in_tip: Pose) -> Self {
         let mut rows = Rows {
             frames: vec![chain.links()[chain.root().0].clone()],
@@ -73,7 +75,7 @@ impl DirectTable {
             let rotation = Pose::new(rotation, Vec3::ZERO);
             rows.push(&next.name, &(frame * rotation));
             rows.joint = Some((next.name.clone(), next.kind));
-            // The joint moves what follows its frame; rotating back leads to the link's own frame.
+            // The joint moves everything after its frame; rotating back gives the link's own frame.
             pending = rotation.inverse();
         }
         let end = pending * tool_in_tip;
@@ -90,7 +92,7 @@ impl DirectTable {
 struct Rows {
     frames: Vec<String>,
     list: Vec<GeneralizedRow>,
-    /// The joint that acts in the last frame, that is in the next row.
+    /// The joint that acts in the last frame and therefore belongs to the next row.
     joint: Option<(String, JointKind)>,
 }
 
@@ -109,17 +111,17 @@ impl Rows {
     }
 }
 
-/// The rotation of a frame that takes its z onto the axis and entry (3,1) of its row to 0.
+/// The rotation of a frame that takes its z axis onto `axis` and makes entry (3,1) of its row 0.
 fn one_row_rotation(frame: &Pose, axis: Vec3) -> Rotation {
     let onto = z_onto(axis);
     let [x, y, _] = (frame.rotation * onto).rows()[2];
-    // x·cos φ + y·sin φ = 0, by the smaller angle; of two quarter turns the positive one, independent of rounding.
+    // x·cos φ + y·sin φ = 0, with the smaller angle; of two quarter turns the positive one, independent of rounding.
     let angle = if x.abs() < 1e-12 { 0.0 } else { (-x / y).atan() };
     let angle = if angle < 1e-9 - FRAC_PI_2 { angle + PI } else { angle };
     onto.rotated_about(2, angle)
 }
 
-/// The columns of table 1 of Reichenbach and Kovačić 2003: lengths in m, angles in rad.
+/// Prints the columns of table 1 of Reichenbach and Kovačić 2003: lengths in m, angles in rad.
 impl fmt::Display for DirectTable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let widest = |names: &mut dyn Iterator<Item = usize>| names.max().unwrap_or(0).max(5);
@@ -135,7 +137,7 @@ impl fmt::Display for DirectTable {
     }
 }
 
-/// To the last digit shown; adding 0 removes the sign of a zero.
+/// Rounds to the last digit shown; adding 0 removes the sign of a zero.
 fn round(v: f64) -> f64 {
     (v * 1e3).round() / 1e3 + 0.0
 }

@@ -1,4 +1,4 @@
-//! From a chain to its generalized table.
+//! Extraction of the generalized table of a chain.
 
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
@@ -8,13 +8,13 @@ use super::split::{along_z, exact_row, is_along_z, row_and_rest};
 use crate::{Chain, JointKind, LinkId};
 
 impl GeneralizedTable {
-    /// The generalized table of `tip` in the root link, with its residual. Fixed joints are merged into the rows around
-    /// them. Works for every chain; the residual is rounding (about 1e-15 per metre and joint).
+    /// Extracts the generalized table of `tip` in the root link, with its residual. Fixed joints are merged into the
+    /// rows around them. Works for every chain; the residual is only rounding (about 1e-15 per metre and joint).
     pub fn extract(chain: &Chain, tip: LinkId) -> Self {
         Self::extract_to(chain, tip, Pose::IDENTITY)
     }
 
-    /// As [`GeneralizedTable::extract`], to a frame fixed on the link `tip`: a tool, or a point of a surface.
+    /// Like [`GeneralizedTable::extract`], up to a frame fixed on the link `tip`: a tool, or a point of a surface.
     /// `tool_in_tip` is in metres.
     pub fn extract_to(chain: &Chain, tip: LinkId, tool_in_tip: Pose) -> Self {
         let mut rows = Vec::new();
@@ -29,7 +29,7 @@ impl GeneralizedTable {
             let axis_in_joint = Pose::new(z_onto(next.axis), Vec3::ZERO);
             let rest = push_row(&mut rows, joint.take(), &(pending * axis_in_joint));
             joint = Some((next.name.clone(), next.kind));
-            // The joint moves what follows its axis frame; rotating back leads to the link's own frame.
+            // The joint moves everything after its axis frame; rotating back gives the link's own frame.
             pending = rest * axis_in_joint.inverse();
         }
         push_last(&mut rows, joint, &(pending * tool_in_tip));
@@ -41,7 +41,7 @@ impl GeneralizedTable {
 
 /// A rotation that takes z onto the axis; the identity if the axis is z.
 pub fn z_onto(axis: Vec3) -> Rotation {
-    // Adding 0 removes the sign of zeros, which would choose another rotation about the axis.
+    // Adding 0 removes the sign of zeros, which would select another rotation about the axis.
     if axis == Vec3::Z { Rotation::IDENTITY } else { Rotation::from_z(axis + Vec3::ZERO) }
 }
 

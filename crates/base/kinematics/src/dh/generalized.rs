@@ -29,7 +29,7 @@ impl GeneralizedRow {
     pub(super) const IDENTITY: Self =
         Self { joint: None, kind: JointKind::Fixed, theta: 0.0, a: 0.0, b: 0.0, d: 0.0, alpha: 0.0 };
 
-    /// The frame after the row in the frame before it, at the joint value `q` (rad or m; ignored without joint).
+    /// The frame after the row in the frame before it, at the joint value `q` (rad or m; ignored without a joint).
     pub fn transform(&self, q: f64) -> Pose {
         let (theta, d) = match self.kind {
             JointKind::Fixed => (self.theta, self.d),
@@ -45,15 +45,15 @@ impl GeneralizedRow {
 /// The generalized rows from the root to a tip.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GeneralizedTable {
-    /// In order from the root.
+    /// The rows, in order from the root.
     pub rows: Vec<GeneralizedRow>,
-    /// Largest difference of an entry (m, or of a rotation matrix) between the product of the rows and forward kinematics,
-    /// over 32 states spread over the joint ranges.
+    /// Largest difference of an entry (m, or of a rotation matrix) between the product of the rows and forward
+    /// kinematics, over 32 configurations spread over the joint ranges.
     pub residual: f64,
 }
 
 impl GeneralizedTable {
-    /// The product of the rows: the tip in the root. `value` gives each joint's value by its name, rad or m.
+    /// The product of the rows: the tip in the root. `value` returns a joint's value for its name, rad or m.
     pub fn tip_in_root(&self, mut value: impl FnMut(&str) -> f64) -> Pose {
         self.rows.iter().fold(Pose::IDENTITY, |at, row| {
             let q = row.joint.as_deref().map_or(0.0, &mut value);

@@ -1,4 +1,4 @@
-//! Denavit-Hartenberg tables: extracted from any chain in generalized form, and chains built from tables.
+//! Denavit-Hartenberg tables: extracts them from any chain in generalized form, and builds chains from tables.
 //!
 //! | table | row | the joint acts on | notes |
 //! | --- | --- | --- | --- |
@@ -10,12 +10,14 @@
 //! A generalized row is `T = Rz(θ)·Tz(d)·Tx(a)·Ty(b)·Rx(α)` (Reichenbach and Kovačić 2003). The joint of a row acts about
 //! or along the z axis of the frame *before* the row: its value is added to θ (revolute) or d (prismatic).
 //!
-//! [`GeneralizedTable::extract`] makes every joint axis the z axis of a frame. The transform from one axis to the next is a
-//! row times a rotation about and a translation along the second axis; that remainder commutes with the second joint, so
-//! it goes to the next row. A row found this way is classical (b = 0, a ≥ 0), by the common normal. Only where two axes are
-//! parallel but for rounding (less than a thousandth of a radian) b is used, because their common normal would be very far
-//! away. At the tip no remainder can be passed on: a transform whose entry (3,1) is 0 is one row, any other is split into
-//! `T1·T2`, each with that zero, by an auxiliary frame (a row without joint).
+//! [`GeneralizedTable::extract`] makes every joint axis the z axis of a frame. The transform from one axis to the
+//! next is a row times a rotation about the second axis and a translation along it. This remainder commutes with the
+//! second joint, so it goes to the next row. Such a row is classical (b = 0, a ≥ 0), by the common normal. Only if
+//! two axes are almost parallel (less than a thousandth of a radian), b is used, because their common normal would
+//! be very far away.
+//!
+//! At the tip the remainder cannot be passed on. A transform whose entry (3,1) is 0 is one row; any other transform
+//! is split into `T1·T2`, each with that entry 0, by an auxiliary frame (a row without a joint).
 //!
 //! ```
 //! use elbowroom_kinematics::dh::{ClassicalRow, GeneralizedTable};

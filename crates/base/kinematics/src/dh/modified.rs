@@ -6,8 +6,10 @@ use super::generalized::{GeneralizedRow, GeneralizedTable};
 use super::residual::residual;
 use crate::{Chain, ChainError, Joint, JointKind, Limits, LinkId};
 
-/// One modified row (Craig, "Introduction to Robotics", 1986): `T = Rx(α)·Tx(a)·Rz(θ)·Tz(d)`. The joint of a row acts
-/// about or along the z axis of the frame *after* the row: its value is added to θ (revolute) or d (prismatic).
+/// One modified row (Craig, "Introduction to Robotics", 1986): `T = Rx(α)·Tx(a)·Rz(θ)·Tz(d)`.
+///
+/// The joint of a row acts about or along the z axis of the frame *after* the row: its value is added to θ
+/// (revolute) or d (prismatic).
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModifiedRow {
     /// The joint whose value is added to θ (revolute) or d (prismatic); `None` in fixed and auxiliary rows.
@@ -26,7 +28,7 @@ pub struct ModifiedRow {
 }
 
 impl ModifiedRow {
-    /// The frame after the row in the frame before it, at the joint value `q` (rad or m; ignored without joint).
+    /// The frame after the row in the frame before it, at the joint value `q` (rad or m; ignored without a joint).
     pub fn transform(&self, q: f64) -> Pose {
         let (theta, d) = match self.kind {
             JointKind::Fixed => (self.theta, self.d),
@@ -45,11 +47,11 @@ impl ModifiedRow {
 
 /// The modified rows from the root to a tip.
 ///
-/// Made from the generalized table by regrouping the same factors: `Tx(a)·Rx(α)` of a row and `Rz(θ)·Tz(d)` of the next are
-/// one modified row, because rotation about and translation along x commute. So the first row of a robot whose first axis
-/// is z of the root has α = a = 0, and after the last joint a row without joint leads to the tip. Where a generalized row has
-/// b (axes less than a thousandth of a radian from parallel, or the tip), it becomes two auxiliary rows without joint:
-/// `Ty(b) = Rz(π/2)·Tx(b)·Rz(−π/2)`.
+/// The table regroups the factors of the generalized table: `Tx(a)·Rx(α)` of a row and `Rz(θ)·Tz(d)` of the next row
+/// are one modified row, because rotation about x and translation along x commute. So the first row of a robot whose
+/// first axis is z of the root has α = a = 0, and after the last joint a row without a joint leads to the tip. A
+/// generalized row with b (for axes less than a thousandth of a radian from parallel, or at the tip) becomes two
+/// auxiliary rows without a joint: `Ty(b) = Rz(π/2)·Tx(b)·Rz(−π/2)`.
 ///
 /// ```
 /// use elbowroom_kinematics::dh::{ClassicalRow, ModifiedTable};
@@ -67,26 +69,26 @@ impl ModifiedRow {
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModifiedTable {
-    /// In order from the root.
+    /// The rows, in order from the root.
     pub rows: Vec<ModifiedRow>,
-    /// As [`GeneralizedTable::residual`].
+    /// The residual, as in [`GeneralizedTable::residual`].
     pub residual: f64,
 }
 
 impl ModifiedTable {
-    /// The modified table of `tip` in the root link, with its residual. Works for every chain.
+    /// Extracts the modified table of `tip` in the root link, with its residual. Works for every chain.
     pub fn extract(chain: &Chain, tip: LinkId) -> Self {
         Self::extract_to(chain, tip, Pose::IDENTITY)
     }
 
-    /// As [`ModifiedTable::extract`], to a frame fixed on the link `tip` (m): a tool, or a point of a surface.
+    /// Like [`ModifiedTable::extract`], up to a frame fixed on the link `tip` (m): a tool, or a point of a surface.
     pub fn extract_to(chain: &Chain, tip: LinkId, tool_in_tip: Pose) -> Self {
         let mut table = Self::from(&GeneralizedTable::extract_to(chain, tip, tool_in_tip));
         table.residual = residual(chain, tip, tool_in_tip, |value| table.tip_in_root(value));
         table
     }
 
-    /// The product of the rows: the tip in the root. `value` gives each joint's value by its name, rad or m.
+    /// The product of the rows: the tip in the root. `value` returns a joint's value for its name, rad or m.
     pub fn tip_in_root(&self, mut value: impl FnMut(&str) -> f64) -> Pose {
         self.rows.iter().fold(Pose::IDENTITY, |at, row| {
             let q = row.joint.as_deref().map_or(0.0, &mut value);
@@ -94,8 +96,8 @@ impl ModifiedTable {
         })
     }
 
-    /// The serial chain of the table, without limits. Its links are `base` and, for row i (from 1), `link_i`: the row's
-    /// frame. Rows without joint become fixed joints `fixed_i`; mimic joints become independent ones.
+    /// Builds the serial chain of the table without limits. Its links are `base` and, for each row i (from 1), `link_i`:
+    /// the row's frame. Rows without a joint become fixed joints `fixed_i`; mimic joints become independent joints.
     ///
     /// # Errors
     /// [`ChainError`] as in [`Chain::new`].
@@ -120,7 +122,7 @@ impl ModifiedTable {
     }
 }
 
-/// The same product; the residual is kept.
+/// Keeps the product and the residual.
 impl From<&GeneralizedTable> for ModifiedTable {
     fn from(table: &GeneralizedTable) -> Self {
         let mut rows = Vec::new();
@@ -143,7 +145,7 @@ impl From<&GeneralizedTable> for ModifiedTable {
     }
 }
 
-/// `Tx(a)·Ty(b)` as auxiliary rows, before a row that has only α; leaves `a` to that row where b is 0.
+/// Pushes `Tx(a)·Ty(b)` as auxiliary rows, before a row that has only α; if b is 0, leaves `a` to that row.
 fn push_lateral(a: &mut f64, b: f64, push: &mut impl FnMut(ModifiedRow)) {
     if b == 0.0 {
         return;
@@ -155,7 +157,7 @@ fn push_lateral(a: &mut f64, b: f64, push: &mut impl FnMut(ModifiedRow)) {
     *a = 0.0;
 }
 
-/// The same product, all b = 0; the residual is kept. Where the first row has α or a, a row without joint precedes it.
+/// Keeps the product and the residual; all b are 0. If the first row has α or a, a row without a joint precedes it.
 impl From<&ModifiedTable> for GeneralizedTable {
     fn from(table: &ModifiedTable) -> Self {
         let mut rows: Vec<GeneralizedRow> = Vec::new();

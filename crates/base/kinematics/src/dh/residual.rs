@@ -1,4 +1,4 @@
-//! How well the product of a table's rows reproduces a chain.
+//! Residual of a table: how well the product of its rows reproduces a chain.
 
 use elbowroom_spatial::Pose;
 
@@ -8,7 +8,7 @@ use crate::{Chain, ChainState, LinkId};
 /// Number of configurations at which the residual is measured.
 const CONFIGURATIONS: usize = 32;
 
-/// A joint's value by its name.
+/// Returns a joint's value for its name.
 pub type JointValues<'a> = &'a dyn Fn(&str) -> f64;
 
 /// Largest difference of an entry between `product` and forward kinematics over a fixed set of configurations; NaN if an

@@ -1,4 +1,4 @@
-//! Chains to frames, and back.
+//! Conversion of chains to frames, and back.
 
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
@@ -7,8 +7,9 @@ use crate::forward_step::principal;
 use crate::{Chain, ChainError, Joint, JointKind, Limits, LinkId};
 
 impl FrameChain {
-    /// The frames from the root link to the link `tip`: one for the root, static and at the origin, and one for every joint,
-    /// named as the link that it carries. Where the last one had to be rotated, a static frame `NAME_end` rotates back.
+    /// Extracts the frames from the root link to the link `tip`: a static frame at the origin for the root, and one
+    /// frame for every joint, named after the link that it carries. If the last frame had to be rotated, a static frame
+    /// `NAME_end` rotates back.
     pub fn extract(chain: &Chain, tip: LinkId) -> Self {
         let name = |link: LinkId| chain.links()[link.0].clone();
         let mut frames = vec![LocalFrame::fixed(name(chain.root()), Vec3::ZERO)];
@@ -26,12 +27,14 @@ impl FrameChain {
         Self { frames }
     }
 
-    /// The serial chain of the frames. Its links are the frames; where the first one is not static at the origin, a link
-    /// `global` precedes it. Joints have the names of the motions, those of static frames are `NAME_fixed`; mimic joints
-    /// become independent ones.
+    /// Builds the serial chain of the frames.
+    ///
+    /// Its links are the frames; if the first frame is not static at the origin, a link `global` precedes it. Joints
+    /// have the names of the motions; joints of static frames are called `NAME_fixed`. Mimic joints become independent
+    /// joints.
     ///
     /// # Errors
-    /// [`ChainError::BadAxis`] if a frame is rotated about a vector without direction; else as [`Chain::new`].
+    /// [`ChainError::BadAxis`] if a frame is rotated about a vector without direction; otherwise as [`Chain::new`].
     pub fn to_chain(&self, name: impl Into<String>) -> Result<Chain, ChainError> {
         let mut links = Vec::new();
         let mut joints = Vec::new();

@@ -18,11 +18,11 @@ pub enum FrameAxis {
 /// How a joint moves a frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointMotion {
-    /// The joint's name. A mimic joint has its own: its value is `multiplier · q(source) + offset`.
+    /// The joint's name. A mimic joint has its own name: its value is `multiplier · q(source) + offset`.
     pub joint: String,
     /// Revolute or prismatic.
     pub kind: JointKind,
-    /// About or along which axis of the frame.
+    /// The axis of the frame that the joint moves about or along.
     pub along: FrameAxis,
     /// True if the displacement is minus the joint's value.
     pub reversed: bool,
@@ -30,7 +30,7 @@ pub struct JointMotion {
     pub limits: Limits,
 }
 
-/// Equation 3: the six numbers of a dynamic frame.
+/// The six numbers of a dynamic frame (equation 3).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Displacement {
     /// Translation along the frame's axes, m.
@@ -44,7 +44,7 @@ pub struct Displacement {
 }
 
 impl Displacement {
-    /// `T(c) · Rz(α) · Ry(β) · Rx(γ)`.
+    /// The pose `T(c) · Rz(α) · Ry(β) · Rx(γ)`.
     pub fn pose(&self) -> Pose {
         Pose::new(Rotation::from_rpy(self.gamma, self.beta, self.alpha), self.c)
     }
@@ -80,15 +80,15 @@ impl FrameAxis {
 /// A local frame, in the frame before it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LocalFrame {
-    /// Unique among the frames: a link's name.
+    /// Name of a link, unique among the frames.
     pub name: String,
     /// The centre vector, m.
     pub centre: Vec3,
-    /// The vector that the frame is rotated about, of any length but zero.
+    /// The vector that the frame is rotated about; any length except zero.
     pub axis: Vec3,
-    /// The fixed rotation θk about it, rad.
+    /// The fixed rotation θk about `axis`, rad.
     pub angle: f64,
-    /// Its joint; `None` for a static frame.
+    /// The frame's joint; `None` for a static frame.
     pub motion: Option<JointMotion>,
 }
 
@@ -98,7 +98,7 @@ impl LocalFrame {
         Self { name: name.into(), centre, axis: Vec3::Z, angle: 0.0, motion: None }
     }
 
-    /// `T_center · T_rotation`, the constant part. NaN if the axis has no direction, unless the angle is 0.
+    /// The constant part `T_center · T_rotation`. NaN if the axis has no direction, unless the angle is 0.
     pub fn fixed_pose(&self) -> Pose {
         let rotation = match self.axis.try_normalize() {
             _ if self.angle == 0.0 => Rotation::IDENTITY,
@@ -117,15 +117,15 @@ impl LocalFrame {
     }
 }
 
-/// Frames one behind the other, from the global one outwards.
+/// A sequence of frames from the global frame outwards.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrameChain {
-    /// In order.
+    /// The frames, in order from the global frame.
     pub frames: Vec<LocalFrame>,
 }
 
 impl FrameChain {
-    /// Equation 4: the last frame in the global one. `value` gives each joint's value by its name, rad or m.
+    /// The last frame in the global frame (equation 4). `value` returns a joint's value for its name, rad or m.
     pub fn tip_in_root(&self, mut value: impl FnMut(&str) -> f64) -> Pose {
         self.frames.iter().fold(Pose::IDENTITY, |at, frame| {
             let q = frame.motion.as_ref().map_or(0.0, |m| value(&m.joint));

@@ -1,7 +1,8 @@
-//! A chain as frames with a centre and a rotation about a vector: the form of virtual-reality models (Reichenbach and
-//! Kovačić 2003, eqs. 1-4). Frame k has a fixed centre vector `p_center,k` and a fixed rotation by `θk` about the vector
-//! `p_rotation,k`; a dynamic frame i moves, besides, by a translation `c_i` and the angles `γ`, `β`, `α` about x, y and
-//! the actual z axis (roll, pitch, yaw):
+//! A chain as frames with a centre and a rotation about a vector: the form of virtual-reality models.
+//!
+//! Source: Reichenbach and Kovačić 2003, eqs. 1-4. Frame k has a fixed centre vector `p_center,k` and a fixed
+//! rotation by `θk` about the vector `p_rotation,k`. A dynamic frame i also moves by a translation `c_i` and the
+//! angles `γ`, `β`, `α` about x, y and the actual z axis (roll, pitch, yaw):
 //!
 //! ```text
 //! T_center,k   = T(p_center,k)                        (1)
@@ -10,8 +11,8 @@
 //! T⁰_n         = Π_k T_center,k · T_rotation,k · T_q,k  (4), k from 1 to n
 //! ```
 //!
-//! A joint determines one of the six numbers of (3). Joints about x, y or z of their frame are kept; for any other axis
-//! the frame is rotated so that its z is the axis, and the next one rotated back.
+//! A joint determines one of the six numbers of (3). Joints about x, y or z of their frame are kept. For any other
+//! axis the frame is rotated so that its z axis is the joint's axis, and the next frame is rotated back.
 //!
 //! ```
 //! use elbowroom_kinematics::frames::{FrameAxis, FrameChain, JointMotion, LocalFrame};

@@ -1,4 +1,4 @@
-//! The joints between root and tip, fixed ones merged.
+//! The joints between root and tip, with fixed joints merged.
 
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
@@ -8,13 +8,13 @@ use crate::{Chain, JointKind, LinkId};
 /// A moving joint between root and tip.
 #[derive(Debug, Clone)]
 pub struct ArmJoint {
-    /// This joint's frame in the frame of the joint before, fixed joints between them included.
+    /// This joint's frame in the frame of the joint before it, including fixed joints between them.
     pub origin: Pose,
     pub prismatic: bool,
     pub axis: Vec3,
-    /// Index and sign where the axis is a coordinate axis.
+    /// Index and sign if the axis is a coordinate axis.
     pub principal: Option<(usize, f64)>,
-    /// Index of the arm's variable that determines its value.
+    /// Index of the arm's variable that determines the joint's value.
     pub variable: usize,
     pub multiplier: f64,
     pub offset: f64,
@@ -33,7 +33,7 @@ impl ArmJoint {
 #[derive(Debug, Clone)]
 pub struct ArmVariable {
     pub name: String,
-    /// Its index in the chain's `q`.
+    /// Index of the joint in the chain's `q`.
     pub q_index: usize,
     pub lower: f64,
     pub upper: f64,
@@ -47,11 +47,11 @@ pub struct ArmVariable {
 pub struct Arm {
     pub joints: Vec<ArmJoint>,
     pub variables: Vec<ArmVariable>,
-    /// The link that carries the first moving joint, in the root.
+    /// The pose in the root of the link that carries the first moving joint.
     pub base_in_root: Pose,
     /// The tip (tool included) in the last joint's frame.
     pub tip_in_last: Pose,
-    /// Upper bound on the distance of the tip from the first joint's origin, m. Infinite with an unlimited slide.
+    /// Upper bound on the distance of the tip from the first joint's origin, m; infinite with an unlimited slide.
     pub reach: f64,
 }
 
@@ -139,7 +139,7 @@ impl Arm {
         if offsets > 1e-6 { 0.5 * offsets } else { 1.0 }
     }
 
-    /// The tip in the root; `axes` (one per joint) receive the joint axes.
+    /// The tip in the root. Writes the joint axes, one per joint, to `axes`.
     pub fn tip_in_root(&self, x: &[f64], axes: &mut [AxisInRoot]) -> Pose {
         let mut at = Pose::IDENTITY;
         for (joint, out) in self.joints.iter().zip(axes) {

@@ -1,36 +1,38 @@
-//! Names of the branches of inverse kinematics of six axes with a spherical wrist: shoulder, elbow, wrist.
+//! Branches of inverse kinematics of six axes with a spherical wrist: shoulder, elbow, wrist.
 
 use std::fmt;
 
-/// On which side of axis 1 the wrist centre is. The front is where axis 2 is; where axis 2 meets axis 1, the direction
-/// `axis 2 × axis 1` of the file.
+/// The side of axis 1 on which the wrist centre is. The front is the side of axis 2; if axis 2 meets axis 1, it is
+/// the direction `axis 2 × axis 1` of the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Shoulder {
     /// In front of axis 1.
     Front,
-    /// Behind it: the arm reaches over itself.
+    /// Behind axis 1: the arm reaches over itself.
     Back,
 }
 
-/// On which side of the line from axis 2 to the wrist centre axis 3 is.
+/// The side of the line from axis 2 to the wrist centre on which axis 3 is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Elbow {
-    /// Above it, away from the base, where the wrist is in front and level. It is kept where the arm turns over to the back.
+    /// Above the line, away from the base, if the wrist is in front and level. The name is kept when the arm turns over
+    /// to the back.
     Up,
-    /// Below it.
+    /// Below the line.
     Down,
 }
 
-/// On which side of its straight position axis 5 is bent.
+/// The side of its straight position to which axis 5 is bent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Wrist {
-    /// To positive joint values. The straight position is the one nearest to the middle of the joint's range.
+    /// To positive joint values. The straight position is the one nearest the middle of the joint's range.
     NoFlip,
     /// To negative joint values.
     Flip,
 }
 
-/// The branch of inverse kinematics that joint values belong to: one of eight, which meet where the arm is singular.
+/// The branch of inverse kinematics that joint values belong to: one of eight, which meet at the singularities of
+/// the arm.
 ///
 /// ```
 /// use elbowroom_kinematics::inverse::{ArmConfiguration, Elbow, Shoulder, Wrist};
@@ -65,7 +67,7 @@ impl fmt::Display for ArmConfiguration {
     }
 }
 
-/// Which branches are wanted: what is `None` may be either.
+/// The wanted branches; `None` accepts either side.
 ///
 /// ```
 /// use elbowroom_kinematics::inverse::{ConfigurationChoice, Elbow, Wrist};
@@ -85,13 +87,13 @@ pub struct ConfigurationChoice {
     pub wrist: Option<Wrist>,
 }
 
-/// A word that chooses no configuration.
+/// Why words do not name a configuration.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ConfigurationWordError {
-    /// Another word.
+    /// The word is unknown.
     #[error("\"{0}\" is no word of a configuration: front or back, up or down, no_flip or flip")]
     Unknown(String),
-    /// A second word for the same part.
+    /// The word is the second one for the same part.
     #[error(
         "\"{0}\" contradicts or repeats another word: one of front and back, one of up and down, one of no_flip and flip"
     )]
@@ -99,13 +101,13 @@ pub enum ConfigurationWordError {
 }
 
 impl ConfigurationChoice {
-    /// Every word a configuration may have.
+    /// All words of a configuration.
     pub const WORDS: [&str; 6] = ["front", "back", "up", "down", "no_flip", "flip"];
 
-    /// Of [`Self::WORDS`], at most one for each part.
+    /// Builds a choice from words of [`Self::WORDS`], at most one for each part.
     ///
     /// # Errors
-    /// [`ConfigurationWordError`] for another word, or a second one for a part.
+    /// [`ConfigurationWordError`] for an unknown word, or a second word for a part.
     pub fn from_words<'w>(words: impl IntoIterator<Item = &'w str>) -> Result<Self, ConfigurationWordError> {
         let mut choice = Self::default();
         for word in words {
@@ -130,7 +132,7 @@ impl ConfigurationChoice {
         *self == Self::default()
     }
 
-    /// True if the configuration has everything that is chosen.
+    /// True if the configuration matches everything that is chosen.
     pub fn admits(&self, configuration: &ArmConfiguration) -> bool {
         self.shoulder.is_none_or(|s| s == configuration.shoulder)
             && self.elbow.is_none_or(|e| e == configuration.elbow)

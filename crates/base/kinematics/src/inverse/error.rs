@@ -1,4 +1,4 @@
-//! Why there is no solution.
+//! Errors of inverse kinematics.
 
 /// Why inverse kinematics has no solution.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -9,9 +9,9 @@ pub enum IkError {
         "the target is out of reach: the closest found is {position_error_m:.6} m and {angle_error_rad:.6} rad away"
     )]
     Unreachable {
-        /// Distance that remains, m.
+        /// Remaining distance, m.
         position_error_m: f64,
-        /// Angle that remains, rad.
+        /// Remaining angle, rad.
         angle_error_rad: f64,
     },
     /// Only joint values outside the limits reach the target.
@@ -21,32 +21,32 @@ pub enum IkError {
     Limits {
         /// The joint that is farthest outside, in the solution that is least outside.
         joint: String,
-        /// Its value there, rad or m.
+        /// The joint's value in that solution, rad or m.
         value: f64,
-        /// Its lower bound, rad or m.
+        /// The joint's lower bound, rad or m.
         lower: f64,
-        /// Its upper bound, rad or m.
+        /// The joint's upper bound, rad or m.
         upper: f64,
     },
-    /// The search ended without a solution; there may be one.
+    /// The search ended without a solution; one may exist.
     #[error(
         "no answer after {restarts} starts: the closest found is {position_error_m:.6} m and {angle_error_rad:.6} rad away; try a seed nearer to the answer, or more restarts"
     )]
     NoConvergence {
-        /// Distance that remains, m.
+        /// Remaining distance, m.
         position_error_m: f64,
-        /// Angle that remains, rad.
+        /// Remaining angle, rad.
         angle_error_rad: f64,
-        /// Starting points tried.
+        /// Number of starting points tried.
         restarts: usize,
     },
-    /// The seed needs one value per independent joint of the chain.
+    /// The seed does not have one value per independent joint of the chain.
     #[error("the seed needs one value per independent joint of the chain")]
     SeedLength,
-    /// The seed holds a value that is NaN or infinite.
+    /// The seed has a NaN or infinite value.
     #[error("the seed holds a value that is not finite")]
     SeedNotFinite,
-    /// The target pose holds a number that is NaN or infinite.
+    /// The target pose has a NaN or infinite number.
     #[error("the target pose is not finite")]
     TargetNotFinite,
 }

@@ -4,13 +4,13 @@ use elbowroom_spatial::{Pose, Vec3};
 
 /// `R` equations on the pose of a tip in the root.
 pub trait Goal<const R: usize> {
-    /// What [`Goal::jacobian_column`] needs of the pose where it is evaluated.
+    /// What [`Goal::jacobian_column`] needs from the pose at which it is evaluated.
     type Linearization: Copy;
 
-    /// Computed once per Jacobian.
+    /// Computes the linearization, once per Jacobian.
     fn linearize(&self, tip_in_root: &Pose) -> Self::Linearization;
 
-    /// The error vector, metres made comparable with radians. Its square is minimized.
+    /// The error vector, with metres scaled to be comparable with radians. The search minimizes its square.
     fn error(&self, tip_in_root: &Pose) -> [f64; R];
 
     /// Decrease of the error per unit of a motion of the tip: `linear` (m) and `angular` (rad), in the root.

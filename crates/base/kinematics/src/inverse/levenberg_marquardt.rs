@@ -1,8 +1,10 @@
 //! Damped least squares with joint limits.
 //!
-//! Levenberg-Marquardt on the error of a [`Goal`], with damping proportional to the squared error (Sugihara 2011,
-//! "Solvability-unconcerned inverse kinematics by the Levenberg-Marquardt method"), so that it vanishes at a solution and
-//! convergence there is quadratic. Joints at a bound that the step would violate are excluded from the step.
+//! Levenberg-Marquardt on the error of a [`Goal`], with damping proportional to the squared error. So the damping
+//! vanishes at a solution, and convergence there is quadratic. Joints at a bound that the step would violate are
+//! excluded from the step.
+//!
+//! Source: Sugihara 2011, "Solvability-unconcerned inverse kinematics by the Levenberg-Marquardt method".
 
 use elbowroom_spatial::linalg::solve_spd;
 use elbowroom_spatial::{Pose, Vec3};
@@ -10,8 +12,8 @@ use elbowroom_spatial::{Pose, Vec3};
 use super::arm::{Arm, AxisInRoot};
 use super::goal::Goal;
 
-/// Least damping. Jacobian columns are of the order of 1: this is far above the rounding of their products, so that singular
-/// directions are not amplified, and far below what slows convergence down.
+/// Least damping. Jacobian columns are of the order of 1. This is far above the rounding of their products, so that
+/// singular directions are not amplified, and far below values that slow convergence down.
 const FLOOR: f64 = 1e-13;
 
 /// Workspace for goals of `R` equations.
@@ -36,12 +38,12 @@ impl<const R: usize> LmWorkspace<R> {
         }
     }
 
-    /// The tip in the root; the joint axes are kept.
+    /// The tip in the root; stores the joint axes.
     pub fn tip_in_root(&mut self, arm: &Arm, x: &[f64]) -> Pose {
         arm.tip_in_root(x, &mut self.axes)
     }
 
-    /// The axes of the last [`LmWorkspace::tip_in_root`], one per joint.
+    /// The joint axes of the last [`LmWorkspace::tip_in_root`], one per joint.
     pub fn axes(&self) -> &[AxisInRoot] {
         &self.axes
     }
@@ -131,10 +133,10 @@ impl<const R: usize, G: Goal<R>> LevenbergMarquardt<'_, R, G> {
         }
     }
 
-    /// Computes the step's result in `trial`, without the joints that it would move beyond their limits; false if there is no
-    /// step.
+    /// Computes the step's result in `trial`, without the joints that it would move beyond their limits; false if no
+    /// step exists.
     fn step(&mut self, x: &[f64], e: &[f64; R], lambda: f64) -> bool {
-        // Each round but the last fixes a joint, so there are no more rounds than joints.
+        // Each round but the last fixes a joint, so the number of rounds is limited by the number of joints.
         for _ in 0..=x.len() {
             let solved =
                 if x.len() < R { self.solve_in_joint_space(e, lambda) } else { self.solve_in_task_space(e, lambda) };
@@ -148,7 +150,7 @@ impl<const R: usize, G: Goal<R>> LevenbergMarquardt<'_, R, G> {
         self.apply_step(x)
     }
 
-    /// `Δx = Jᵀ(J·Jᵀ + λ·1)⁻¹·e` over the joints that are not fixed: a system of as many equations as the goal has.
+    /// Solves `Δx = Jᵀ(J·Jᵀ + λ·1)⁻¹·e` over the joints that are not fixed: one equation per equation of the goal.
     fn solve_in_task_space(&mut self, e: &[f64; R], lambda: f64) -> bool {
         let mut a = [[0.0; R]; R];
         for (column, _) in self.workspace.columns.iter().zip(&self.workspace.fixed).filter(|(_, fixed)| !**fixed) {
@@ -171,8 +173,8 @@ impl<const R: usize, G: Goal<R>> LevenbergMarquardt<'_, R, G> {
         true
     }
 
-    /// `Δx = (Jᵀ·J + λ·1)⁻¹·Jᵀ·e`, the same step by a system of as many equations as there are joints, fewer than `R`:
-    /// the system in task space would be singular without λ.
+    /// Solves `Δx = (Jᵀ·J + λ·1)⁻¹·Jᵀ·e`, the same step, with one equation per joint, for fewer than `R` joints: the
+    /// system in task space would be singular without λ.
     fn solve_in_joint_space(&mut self, e: &[f64; R], lambda: f64) -> bool {
         let LmWorkspace { columns, trial, fixed, .. } = &mut *self.workspace;
         let (mut a, mut b) = ([[0.0; R]; R], [0.0; R]);
@@ -194,7 +196,7 @@ impl<const R: usize, G: Goal<R>> LevenbergMarquardt<'_, R, G> {
         true
     }
 
-    /// Fixes the joints at a bound that the step would move beyond it; true if there was one.
+    /// Fixes the joints at a bound that the step would move beyond it; true if there are any.
     fn fix_joints_at_bounds(&mut self, x: &[f64]) -> bool {
         let mut any = false;
         for (i, variable) in self.arm.variables.iter().enumerate() {
@@ -227,7 +229,7 @@ impl<const R: usize, G: Goal<R>> LevenbergMarquardt<'_, R, G> {
         true
     }
 
-    /// A value beyond a range of a full turn or more is wrapped to the other end, others are clamped.
+    /// Wraps a value beyond a range of a full turn or more to the other end; clamps any other value.
     fn wrapped_or_clamped(&self, i: usize, value: f64) -> f64 {
         let v = &self.arm.variables[i];
         let turn = std::f64::consts::TAU;

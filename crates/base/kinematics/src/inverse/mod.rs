@@ -1,9 +1,9 @@
 //! Inverse kinematics: joint values that bring a tip to a target.
 //!
-//! An [`IkSolver`] analyses the joints between root and tip once. Six revolute axes with a spherical wrist are solved in closed
-//! form, whatever the file's conventions (ortho-parallel basis and spherical wrist after Brandstötter, Angerer, Hofbaur
-//! 2014, by `rs-opw-kinematics`); everything else by damped least squares with joint limits and restarts from a
-//! low-discrepancy sequence, so that the same input always gets the same answer.
+//! An [`IkSolver`] analyses the joints between root and tip once. Six revolute axes with a spherical wrist are
+//! solved in closed form, whatever the file's conventions (ortho-parallel basis and spherical wrist after
+//! Brandstötter, Angerer, Hofbaur 2014, by `rs-opw-kinematics`). All other chains are solved by damped least squares
+//! with joint limits and restarts from a low-discrepancy sequence. The same input always gives the same answer.
 //!
 //! | chain | method | result |
 //! | --- | --- | --- |
@@ -11,8 +11,8 @@
 //! | six or more axes otherwise (UR, iiwa, rails, positioners) | numeric | one solution, near the seed where possible |
 //! | fewer than six | numeric | [`IkTask::Pose`] if the target lies within the chain's freedom, else [`IkTask::Position`] |
 //!
-//! The up to eight solutions of a spherical wrist have names: shoulder front or back, elbow up or down, wrist flipped or not
-//! ([`ArmConfiguration`]).
+//! The solutions of a spherical wrist, up to eight, have names ([`ArmConfiguration`]): shoulder front or back, elbow
+//! up or down, wrist flipped or not.
 //!
 //! ```
 //! use elbowroom_kinematics::inverse::{IkOptions, IkSolver};

@@ -1,6 +1,6 @@
 //! Settings of inverse kinematics.
 
-/// How an [`IkSolver`](super::IkSolver) finds its solutions.
+/// The method by which an [`IkSolver`](super::IkSolver) finds its solutions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum IkMethod {
     /// Closed form for six axes with a spherical wrist.
@@ -9,7 +9,7 @@ pub enum IkMethod {
     Numeric,
 }
 
-/// What has to match the target.
+/// What must match the target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum IkTask {
     /// Position and orientation.
@@ -22,13 +22,13 @@ pub enum IkTask {
 /// Settings of an [`IkSolver`](super::IkSolver).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct IkOptions {
-    /// What has to match.
+    /// What must match the target.
     pub task: IkTask,
     /// Largest accepted distance from the target, m.
     pub position_tolerance_m: f64,
     /// Largest accepted rotation from the target, rad.
     pub angle_tolerance_rad: f64,
-    /// Numeric method: largest number of starting points, the seed among them.
+    /// Numeric method: largest number of starting points, including the seed.
     pub restarts: usize,
     /// Numeric method: largest number of iterations from one starting point.
     pub iterations: usize,

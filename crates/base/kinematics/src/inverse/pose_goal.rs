@@ -32,7 +32,7 @@ impl PoseError {
     }
 }
 
-/// A whole pose, or with [`IkTask::Position`] its position.
+/// The goal of a whole pose or, with [`IkTask::Position`], of its position.
 #[derive(Debug, Clone, Copy)]
 pub struct PoseGoal {
     pub target: Pose,

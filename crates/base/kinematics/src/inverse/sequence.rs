@@ -1,9 +1,11 @@
-//! Starting points of searches: a low-discrepancy sequence over the joint ranges, the same each time.
+//! Starting points of searches: a deterministic low-discrepancy sequence over the joint ranges.
 
 use std::f64::consts::PI;
 
-/// Additive recurrence on the generalized golden ratio (Roberts 2018, "The unreasonable effectiveness of
-/// quasirandom sequences"): component `axis` of point `index` in `dimensions` dimensions, in `[0, 1)`.
+/// Component `axis` of point `index` of the sequence in `dimensions` dimensions, in `[0, 1)`.
+///
+/// Additive recurrence on the generalized golden ratio (Roberts 2018, "The unreasonable effectiveness of quasirandom
+/// sequences").
 pub fn quasirandom(index: usize, axis: usize, dimensions: usize) -> f64 {
     element(index, axis_step(axis, dimensions))
 }
@@ -17,12 +19,13 @@ pub fn axis_step(axis: usize, dimensions: usize) -> f64 {
     phi.powf(-(axis as f64 + 1.0))
 }
 
-/// [`quasirandom`] by the increment of the axis.
+/// Like [`quasirandom`], with the increment of the axis.
 pub fn element(index: usize, step: f64) -> f64 {
     (0.5 + step * (index + 1) as f64).fract()
 }
 
-/// The part of a joint's range that starting points are taken from: a full turn of an angle, and the reach of the rest of the arm
+/// The part of a joint's range from which starting points are taken: a full turn of an angle; the reach of the rest
+/// of the arm for an unlimited slide.
 /// for an unlimited slide.
 pub fn window(lower: f64, upper: f64, turns: bool, reach: f64) -> (f64, f64) {
     let half = if turns { PI } else { reach.max(1.0) };
@@ -34,7 +37,7 @@ pub fn window(lower: f64, upper: f64, turns: bool, reach: f64) -> (f64, f64) {
     (center - half, center + half)
 }
 
-/// Fills `q` with configuration `index` of a sequence over the chain's joint ranges (a turn, or ±1 m, where unlimited).
+/// Fills `q` with configuration `index` of a sequence over the chain's joint ranges (a turn, or ±1 m, if unlimited).
 pub fn sample_configuration(chain: &crate::Chain, index: usize, q: &mut [f64]) {
     for (i, id) in chain.active.iter().enumerate() {
         let joint = &chain.joints[id.0];

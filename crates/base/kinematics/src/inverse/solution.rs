@@ -3,7 +3,7 @@
 /// Joint values within the limits that bring the tip to the target.
 #[derive(Debug, Clone, PartialEq)]
 pub struct IkSolution {
-    /// All of the chain's independent joints, rad or m; those that do not move the tip are as in the seed.
+    /// Values of all of the chain's independent joints, rad or m; joints that do not move the tip are as in the seed.
     pub q: Vec<f64>,
     /// Distance of the tip from the target, m.
     pub position_error_m: f64,

@@ -1,4 +1,4 @@
-//! The solver: closed form where there is one, then numeric searches from the seed and from other starting points.
+//! The solver: uses the closed form if possible, then numeric searches from the seed and from other starting points.
 
 use std::f64::consts::TAU;
 
@@ -17,15 +17,15 @@ use crate::{Chain, LinkId};
 
 /// Largest number of steps of [`IkSolver::refine`].
 const REFINE_STEPS: usize = 12;
-/// Starts of the numeric method where the closed form has no solution within the limits: aligned wrist axes leave a choice that
-/// the closed form does not make by the limits.
+/// Starts of the numeric method if the closed form has no solution within the limits. Aligned wrist axes leave a
+/// choice that the closed form makes without regard to the limits.
 const STARTS_AFTER_CLOSED_FORM: usize = 12;
-/// Starts of the search for the closest pose where the target is beyond reach.
+/// Starts of the search for the closest pose if the target is beyond reach.
 const STARTS_BEYOND_REACH: usize = 8;
 /// Largest violation of a limit (rad) by a closed-form solution that is still refined into the range.
 const LIMIT_SLACK: f64 = 1e-6;
 
-/// Inverse kinematics of one tip of one chain. Holds what it needs of the chain, and its workspace.
+/// Inverse kinematics of one tip of one chain. Contains its data of the chain and its workspace.
 #[derive(Clone)]
 pub struct IkSolver {
     arm: Arm,
@@ -60,10 +60,11 @@ struct LimitViolation {
 }
 
 impl IkSolver {
-    /// For the frame `tip_offset` (the tool, or any point of a surface, in the link's frame) on the link `tip`. Detects a spherical
-    /// wrist; where the closed-form model does not reproduce the chain, the numeric method is used.
+    /// Creates a solver for the frame `tip_offset` on the link `tip`: the tool, or any point of a surface, in the link's
+    /// frame (m).
     ///
-    /// Limits are those of the independent joints; mimic joints follow theirs.
+    /// Detects a spherical wrist; if the closed-form model does not reproduce the chain, the numeric method is used. The
+    /// limits of the independent joints apply; mimic joints follow them.
     pub fn new(chain: &Chain, tip: LinkId, tip_offset: Pose, options: IkOptions) -> Self {
         let arm = Arm::new(chain, tip, tip_offset);
         let wrist = if options.task == IkTask::Pose { SphericalWrist::detect(&arm) } else { None };
@@ -83,8 +84,8 @@ impl IkSolver {
         if self.wrist.is_some() { IkMethod::SphericalWrist } else { IkMethod::Numeric }
     }
 
-    /// The branch that `q` (all of the chain's values) belongs to; `None` if the arm has no spherical wrist, or where `q` has
-    /// another length or is not finite.
+    /// The branch that `q` (all of the chain's values) belongs to; `None` if the arm has no spherical wrist, or if `q`
+    /// has another length or is not finite.
     pub fn configuration(&self, q: &[f64]) -> Option<ArmConfiguration> {
         if q.len() != self.dof || !q.iter().all(|v| v.is_finite()) {
             return None;
@@ -93,12 +94,14 @@ impl IkSolver {
         self.wrist.as_ref()?.configuration(&self.arm, x.as_slice().try_into().ok()?)
     }
 
-    /// A solution within the joint limits for the tip at `target_in_root`, near `seed` (all of the chain's `q`, rad or m): in closed
-    /// form the nearest of all, numerically the one that the search from the seed converges to. Full turns are subtracted or
-    /// added where that is nearer to the seed and within the limits.
+    /// Finds a solution within the joint limits for the tip at `target_in_root`, near `seed` (all of the chain's `q`,
+    /// rad or m).
+    ///
+    /// In closed form it is the nearest of all solutions, numerically the one to which the search from the seed
+    /// converges. Full turns are added or subtracted if the result is nearer to the seed and within the limits.
     ///
     /// # Errors
-    /// [`IkError::SeedLength`], [`IkError::SeedNotFinite`] or [`IkError::TargetNotFinite`] for invalid input; else
+    /// [`IkError::SeedLength`], [`IkError::SeedNotFinite`] or [`IkError::TargetNotFinite`] for invalid input; otherwise
     /// [`IkError::Unreachable`], [`IkError::Limits`] or [`IkError::NoConvergence`], with the remaining error.
     pub fn solve(&mut self, target_in_root: &Pose, seed: &[f64]) -> Result<IkSolution, IkError> {
         self.check(target_in_root, seed)?;
@@ -113,10 +116,11 @@ impl IkSolver {
         self.search(target_in_root, seed, &start, outside)
     }
 
-    /// All solutions found within the limits, nearest to the seed first; empty if there is none or the input is invalid.
+    /// All solutions found within the limits, nearest to the seed first; empty if none is found or the input is invalid.
     ///
-    /// In closed form these are all branches (up to eight), each with the turns nearest to the seed. Numerically they are the
-    /// distinct ones that the configured starts converge to, at most 16: for more than six axes a sample of infinitely many.
+    /// In closed form these are all branches (up to eight), each with the turns nearest to the seed. Numerically they
+    /// are the distinct solutions to which the configured starts converge, at most 16; for more than six axes this is a
+    /// sample of infinitely many.
     pub fn solve_all(&mut self, target_in_root: &Pose, seed: &[f64]) -> Vec<Vec<f64>> {
         if self.check(target_in_root, seed).is_err() || self.beyond_reach(target_in_root) {
             return Vec::new();
@@ -142,8 +146,9 @@ impl IkSolver {
         all.iter().map(|found| self.solution(found, seed, 0).q).collect()
     }
 
-    /// Refines a nearby `q` (all of the chain's values, within the limits) by a few steps, in place; true if the target is met
-    /// within the tolerances. Does not allocate. Where false, `q` is the best result of the steps.
+    /// Refines a nearby `q` (all of the chain's values, within the limits) by a few steps, in place. Does not allocate.
+    ///
+    /// Returns true if the target is met within the tolerances; otherwise `q` is the best result of the steps.
     pub fn refine(&mut self, target_in_root: &Pose, q: &mut [f64]) -> bool {
         if self.check(target_in_root, q).is_err() {
             return false;
@@ -224,7 +229,7 @@ impl IkSolver {
         let Some(wrist) = &self.wrist else {
             return Vec::new();
         };
-        // The library subtracts turns one by one: the seed gets none.
+        // The library subtracts turns one by one, so the seed is passed without full turns.
         let seed: [f64; 6] = std::array::from_fn(|i| start[i] % TAU);
         let mut within: Vec<[f64; 6]> = Vec::with_capacity(8);
         for mut x in wrist.candidates(target, &seed) {
@@ -248,8 +253,8 @@ impl IkSolver {
         found
     }
 
-    /// Adds and subtracts full turns until every joint is as near to `start` as its limits allow. Returns the worst violation where a
-    /// joint stays outside.
+    /// Adds and subtracts full turns until every joint is as near to `start` as its limits allow. Returns the worst
+    /// violation if a joint stays outside its limits.
     fn unwind(&self, x: &mut [f64], start: &[f64]) -> Option<LimitViolation> {
         let mut worst: Option<LimitViolation> = None;
         for (i, variable) in self.arm.variables.iter().enumerate() {
@@ -278,11 +283,11 @@ impl IkSolver {
         if !self.met(&error) {
             return (None, error);
         }
-        // Convergence may have been slow (at a bound, or where axes are aligned): a second run gains the last digits.
+        // Convergence may have been slow (at a bound, or with aligned axes): a second run gains the last digits.
         self.minimize(target, &mut x, bounded, iterations);
         let mut unwound = x.clone();
         if self.unwind(&mut unwound, start).is_none() || !bounded {
-            // Corrects violations by rounding of the turns.
+            // Corrects violations from the rounding of the turns.
             let error = self.minimize(target, &mut unwound, bounded, REFINE_STEPS);
             if self.met(&error) {
                 return (Some(Candidate { x: unwound, error }), error);
@@ -338,7 +343,7 @@ impl IkSolver {
         }
     }
 
-    /// Whether the target can be met without limits, for an error that names the limiting joint.
+    /// The limit violation of a solution without limits, if one is found; for an error that names the limiting joint.
     fn search_outside(&mut self, target: &Pose, start: &[f64]) -> Option<LimitViolation> {
         if self.wrist.is_some() {
             return None;
@@ -372,10 +377,11 @@ fn squared_distance(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
 }
 
-/// `angle` plus the whole turns that bring it nearest to `near` within the bounds; nearest of all where none is within.
+/// `angle` plus the whole turns that bring it nearest to `near` within the bounds; if none is within, least outside
+/// them.
 fn nearest_turn(angle: f64, near: f64, lower: f64, upper: f64) -> f64 {
     let nearest = angle + TAU * ((near - angle) / TAU).round();
-    // A turn on each side of the nearest, and those next to either bound, hold the best one within the bounds.
+    // The best value within the bounds is the nearest one, or the first one inside either bound.
     let at_lower = if lower.is_finite() { angle + TAU * ((lower - LIMIT_SLACK - angle) / TAU).ceil() } else { nearest };
     let at_upper =
         if upper.is_finite() { angle + TAU * ((upper + LIMIT_SLACK - angle) / TAU).floor() } else { nearest };

@@ -1,8 +1,8 @@
-//! Six axes with a spherical wrist, in closed form.
+//! Closed-form inverse kinematics of six axes with a spherical wrist.
 //!
-//! The axes are read as lines at joint values 0, so any convention of the file is accepted. With `z` along axis 1 and `y` along
-//! axis 2 the parameters of the ortho-parallel basis follow; the transform from the model's last frame to the tip is a constant
-//! tool.
+//! The axes are read as lines at joint values 0, so any convention of the file is accepted. With `z` along axis 1
+//! and `y` along axis 2, the parameters of the ortho-parallel basis follow. The transform from the model's last
+//! frame to the tip is a constant tool.
 
 use std::f64::consts::PI;
 
@@ -16,8 +16,8 @@ use super::arm_configuration::{ArmConfiguration, Elbow, Shoulder, Wrist};
 use super::rotation_error::rotation_error;
 use super::sequence::quasirandom;
 
-/// Files round π/2: axes this close to perpendicular count as perpendicular (rad), and this close to intersecting as intersecting
-/// (m). The solutions are refined on the chain as written.
+/// Deviation from perpendicular (rad) and from intersecting (m) below which axes count as perpendicular or
+/// intersecting: files round π/2. The solutions are refined on the chain as written.
 const SLACK: f64 = 1e-3;
 
 /// The closed-form model of an arm.
@@ -29,19 +29,19 @@ pub struct SphericalWrist {
     branches: Branches,
 }
 
-/// What tells the branches apart.
+/// Parameters that distinguish the branches.
 #[derive(Debug, Clone, Copy)]
 struct Branches {
-    /// 1 where axis 2 as it is in the file, crossed with axis 1, points to the front.
+    /// Sign: 1 if axis 2 as in the file, crossed with axis 1, points to the front.
     front: f64,
-    /// 1 where axis 1 as it is in the file points away from the base.
+    /// Sign: 1 if axis 1 as in the file points away from the base.
     up: f64,
     /// Value of joint 5 at which axes 4 and 6 are aligned, nearest to the middle of its range, rad.
     straight: f64,
 }
 
 impl SphericalWrist {
-    /// `None` if the arm has another structure, or where the model does not reproduce it.
+    /// Builds the model; `None` if the arm has another structure, or if the model does not reproduce it.
     pub fn detect(arm: &Arm) -> Option<Self> {
         if arm.joints.len() != 6 || arm.variables.len() != 6 {
             return None;
@@ -123,7 +123,7 @@ impl SphericalWrist {
         })
     }
 
-    /// The branch that values of the arm's joints belong to.
+    /// The branch that the joint values `q` belong to.
     pub fn configuration(&self, arm: &Arm, q: &[f64; 6]) -> Option<ArmConfiguration> {
         let mut axes = [AxisInRoot { origin: Vec3::ZERO, axis: Vec3::ZERO }; 6];
         arm.tip_in_root(q, &mut axes);
@@ -132,7 +132,7 @@ impl SphericalWrist {
         let Branches { front, up, straight } = self.branches;
         let ahead = (a2.axis * front).cross(a1.axis);
         let is_front = (center - a1.origin).dot(ahead) >= 0.0;
-        // The triangle axis 2, axis 3, wrist centre in the plane of the arm: ahead and up.
+        // The triangle of axis 2, axis 3 and wrist centre in the plane of the arm; coordinates are ahead and up.
         let flat = |v: Vec3| (v.dot(ahead), v.dot(a1.axis * up));
         let (elbow, wrist) = (flat(a3.origin - a2.origin), flat(center - a2.origin));
         let turned = elbow.0 * wrist.1 - elbow.1 * wrist.0;
@@ -163,8 +163,8 @@ impl SphericalWrist {
         })
     }
 
-    /// Up to eight solutions of the model, angles near the seed's, limits ignored. Where two axes of the wrist are aligned, axis 4
-    /// stays as near to the seed as possible.
+    /// Up to eight solutions of the model, with angles near the seed and without regard to limits. If two axes of the
+    /// wrist are aligned, axis 4 stays as near to the seed as possible.
     pub fn candidates(&self, target_in_root: &Pose, seed: &[f64; 6]) -> Vec<[f64; 6]> {
         let flange = self.base_in_root.inverse() * *target_in_root * self.tool_in_flange.inverse();
         let rotation = OpwRotation::from_array(flange.rotation.to_quaternion_xyzw());
@@ -176,14 +176,14 @@ impl SphericalWrist {
     }
 }
 
-/// 1 where `axis_1` points from the arm's base to the arm.
+/// Sign: 1 if `axis_1` points from the arm's base to the arm.
 fn away_from_base(axis_1: Vec3, shoulder_in_root: &Pose, arm: &Arm) -> f64 {
     let height = axis_1.dot(shoulder_in_root.translation - arm.base_in_root.translation);
     let along = if height.abs() > SLACK { height } else { axis_1.dot(arm.base_in_root.rotation * Vec3::Z) };
     if along < 0.0 { -1.0 } else { 1.0 }
 }
 
-/// Of `aligned` and what is half turns away from it, the value nearest to the middle of the range of joint 5.
+/// The value nearest to the middle of the range of joint 5, of `aligned` and the values half turns away from it.
 fn straight(aligned: f64, arm: &Arm) -> f64 {
     let range = &arm.variables[4];
     let middle = 0.5 * (range.lower + range.upper);
@@ -207,7 +207,8 @@ fn wrist_center(a4: &AxisInRoot, a5: &AxisInRoot, a6: &AxisInRoot) -> Option<Vec
     (distance(a5, center) < SLACK && distance(a6, center) < SLACK).then_some(center)
 }
 
-/// Lengths that are zero but for rounding, as exact zeros: only there the model treats aligned axes as such.
+/// Replaces a length that is zero but for rounding by exact zero: the model treats aligned axes as such only at
+/// exact zeros.
 fn snap(length: f64) -> f64 {
     if length.abs() < 1e-9 { 0.0 } else { length }
 }

@@ -1,9 +1,9 @@
 //! Upper bounds on how far joints move the points of a link.
 //!
-//! All of them come from one walk along the chain from the link to the root ([`joint_reaches`]). A point within `radius_m` of
-//! the link's origin is never farther from the origin of a joint's child frame than `radius_m` plus the joint offsets and the
-//! strokes of the slides between them. A rotation by θ displaces it by at most that reach times θ, a slide by its own
-//! displacement.
+//! All bounds come from one walk along the chain from the link to the root ([`joint_reaches`]). A point within
+//! `radius_m` of the link's origin is never farther from the origin of a joint's child frame than the reach:
+//! `radius_m` plus the joint offsets and the strokes of the slides between them. A rotation by θ displaces the point
+//! by at most the reach times θ, a slide by at most its own displacement.
 //!
 //! | function | bound on |
 //! | --- | --- |
@@ -33,28 +33,30 @@ pub use speed::{JointRate, SpeedBound};
 
 use crate::{Chain, JointCoupling, JointId, JointKind, LinkId};
 
-/// A joint between the root and a link, and the reach of the geometry that it carries.
+/// A joint between the root and a link, and the reach of the geometry that the joint carries.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointReach {
     /// The joint.
     pub joint: JointId,
-    /// How it moves.
+    /// The joint's kind.
     pub kind: JointKind,
-    /// Its value as a function of `q`; `None` if it is fixed.
+    /// The joint's value as a function of `q`; `None` if it is fixed.
     pub coupling: Option<JointCoupling>,
-    /// No point of the geometry is farther from the origin of the joint's child frame, m.
+    /// Upper bound of the distance of any point of the geometry from the origin of the joint's child frame, m.
     pub reach_m: f64,
 }
 
 impl JointReach {
-    /// Largest displacement of a point per unit of the joint's own value: the reach (m per rad), or 1 (m per m) for a slide.
+    /// Largest displacement of a point per unit of the joint's own value: the reach (m per rad), or 1 (m per m) for a
+    /// slide.
     pub fn lever_arm(&self) -> f64 {
         if self.kind == JointKind::Prismatic { 1.0 } else { self.reach_m }
     }
 }
 
-/// The joints from a link to the root, in that order, each with the reach of a geometry within `radius_m` of the link's origin.
-/// `stroke_m` gives the largest distance of a slide from its zero: [`max_stroke_m`] for any configuration.
+/// The joints from a link to the root, in that order, each with the reach of a geometry within `radius_m` of the
+/// link's origin. `stroke_m` returns the largest distance of a slide from its zero; use [`max_stroke_m`] for any
+/// configuration.
 pub fn joint_reaches<'c>(
     chain: &'c Chain,
     link: LinkId,
@@ -75,16 +77,18 @@ pub fn joint_reaches<'c>(
     })
 }
 
-/// Largest distance (m) of a slide from its zero within the limits; infinite if a limit is.
+/// Largest distance (m) of a slide from its zero within the limits; infinite if a limit is infinite.
 pub fn max_stroke_m(chain: &Chain, joint: JointId) -> f64 {
     let Some(c) = chain.coupling(joint) else { return 0.0 };
     let limits = chain.joints()[chain.active_joints()[c.index].0].limits;
     limits.lower.abs().max(limits.upper.abs()) * c.multiplier.abs() + c.offset.abs()
 }
 
-/// Largest displacement of any point within `radius_m` of the link's origin per unit of each joint of `joints`, at any
-/// configuration within the limits: (index in `q`, m per rad or m), from the link to the root. Joints that are not between
-/// the root and the link are left out. A mimic joint has an entry of its own with the index of the joint that it follows.
+/// Largest displacement per unit of each joint of `joints` of any point within `radius_m` of the link's origin, at
+/// any configuration within the limits.
+///
+/// Returns (index in `q`, m per rad or m), from the link to the root. Joints that are not between the root and the
+/// link are left out. A mimic joint has an entry of its own, with the index of the joint that it follows.
 pub fn motion_bound(chain: &Chain, link: LinkId, radius_m: f64, joints: &[JointId]) -> Vec<(usize, f64)> {
     joint_reaches(chain, link, radius_m, |id| max_stroke_m(chain, id))
         .filter(|r| joints.contains(&r.joint))
@@ -92,9 +96,11 @@ pub fn motion_bound(chain: &Chain, link: LinkId, radius_m: f64, joints: &[JointI
         .collect()
 }
 
-/// Per entry of `q` the largest displacement of any point of several geometries per unit of that joint (m per rad or m), at
-/// any configuration. A geometry is a link and the radius (m) around the link's origin that holds it. The shares of mimic
-/// joints are added to those of the joint that they follow.
+/// Largest displacement of any point of several geometries per unit of each entry of `q` (m per rad or m), at any
+/// configuration.
+///
+/// A geometry is a link and the radius (m) around the link's origin that encloses it. The contribution of a mimic
+/// joint is added to the contribution of the joint that it follows.
 pub fn max_motion_bounds(chain: &Chain, geometries: impl IntoIterator<Item = (LinkId, f64)>) -> Vec<f64> {
     let mut bounds = vec![0.0; chain.dof()];
     let mut scratch = bounds.clone();
@@ -102,8 +108,8 @@ pub fn max_motion_bounds(chain: &Chain, geometries: impl IntoIterator<Item = (Li
     bounds
 }
 
-/// As [`max_motion_bounds`], written to `bounds` without allocation; `scratch` is overwritten. Both have one entry per entry of
-/// `q`.
+/// Like [`max_motion_bounds`], written to `bounds` without allocation; `scratch` is overwritten. `bounds` and
+/// `scratch` have one entry per entry of `q`.
 pub fn update_max_motion_bounds(
     chain: &Chain,
     geometries: impl IntoIterator<Item = (LinkId, f64)>,
@@ -122,9 +128,11 @@ pub fn update_max_motion_bounds(
     }
 }
 
-/// Largest distance (m) that any point within `radius_m` of the link's origin travels while all joints move together along the
-/// straight segment between two configurations; along a fraction of the segment at most the same fraction of it. As
-/// [`motion_bound`], but slides count with their largest distance from zero on the segment. NaN if a value is.
+/// Upper bound of the distance (m) that any point within `radius_m` of the link's origin travels while all joints
+/// move together along the straight segment between two configurations.
+///
+/// Along a fraction of the segment, the distance is at most that fraction of the bound. Like [`motion_bound`],
+/// except that slides count with their largest distance from zero on the segment. NaN if a value is NaN.
 pub fn displacement_bound(chain: &Chain, link: LinkId, radius_m: f64, from: &[f64], to: &[f64]) -> f64 {
     let ends = |coupling: Option<JointCoupling>| {
         let ends = coupling.and_then(|c| Some((c, [*from.get(c.index)?, *to.get(c.index)?])));

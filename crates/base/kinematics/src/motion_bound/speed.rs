@@ -1,32 +1,32 @@
 //! Bounds on the speed of points carried by joints that move at constant rates.
 
-/// Relative allowance for the rounding of the sums that a bound is made of.
+/// Relative allowance for the rounding of the sums in a bound.
 const ROUNDING: f64 = 1.0 + 1e-9;
 
 /// Upper bounds on the speed and the acceleration of every point of a geometry, in some frame, throughout a motion.
 ///
-/// The unit of time is that of the rates: seconds, or the length of a motion whose time runs from 0 to 1. Built joint by joint
-/// from the geometry towards the frame ([`SpeedBound::revolute`], [`SpeedBound::prismatic`]), or from the frame
-/// outwards ([`SpeedBound::of_joints`]).
+/// The unit of time is the unit of the rates: seconds, or the length of a motion whose time runs from 0 to 1. A bound is
+/// built joint by joint from the geometry towards the frame ([`SpeedBound::revolute`], [`SpeedBound::prismatic`]),
+/// or from the frame outwards ([`SpeedBound::of_joints`]).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SpeedBound {
-    /// Metres per unit of time.
+    /// Bound on the speed, metres per unit of time.
     pub speed: f64,
-    /// Metres per unit of time squared.
+    /// Bound on the acceleration, metres per unit of time squared.
     pub acceleration: f64,
 }
 
 /// A joint at a constant rate, for [`SpeedBound::of_joints`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum JointRate {
-    /// Revolute or continuous.
+    /// A revolute or continuous joint.
     Revolute {
         /// Absolute rate, rad per unit of time.
         rate: f64,
-        /// No point of the geometry is farther from the axis, m.
+        /// Upper bound of the distance of any point of the geometry from the axis, m.
         lever_m: f64,
     },
-    /// Prismatic.
+    /// A prismatic joint.
     Prismatic {
         /// Absolute rate, metres per unit of time.
         rate: f64,
@@ -34,10 +34,10 @@ pub enum JointRate {
 }
 
 impl SpeedBound {
-    /// Of a geometry at rest.
+    /// The bound for a geometry at rest.
     pub const REST: Self = Self { speed: 0.0, acceleration: 0.0 };
 
-    /// Of joints listed from the frame outwards.
+    /// The bound for joints listed from the frame outwards.
     pub fn of_joints(joints: impl IntoIterator<Item = JointRate>) -> Self {
         let (mut bound, mut rotation) = (Self::REST, 0.0);
         for joint in joints {
@@ -56,8 +56,8 @@ impl SpeedBound {
         bound
     }
 
-    /// The bound where everything is carried by a revolute joint as well, which rotates at `rate` rad per unit of time; no
-    /// point is farther than `lever_m` metres from its axis.
+    /// The bound if a revolute joint carries everything as well. It rotates at `rate` rad per unit of time, and all
+    /// points are within `lever_m` metres of its axis.
     #[must_use]
     pub fn revolute(self, rate: f64, lever_m: f64) -> Self {
         if rate == 0.0 {
@@ -68,7 +68,7 @@ impl SpeedBound {
         Self { speed: self.speed + own, acceleration: self.acceleration + rate * (own + 2.0 * self.speed) }
     }
 
-    /// The bound where everything is carried by a prismatic joint as well, at `rate` metres per unit of time.
+    /// The bound if a prismatic joint carries everything as well, at `rate` metres per unit of time.
     #[must_use]
     pub fn prismatic(self, rate: f64) -> Self {
         Self { speed: self.speed + rate, ..self }
@@ -80,14 +80,14 @@ impl SpeedBound {
         Self { speed: self.speed + other.speed, acceleration: self.acceleration + other.acceleration }
     }
 
-    /// Enlarged by an allowance for rounding; NaN becomes infinite.
+    /// The bound enlarged by an allowance for rounding; NaN becomes infinite.
     #[must_use]
     pub fn rounded_up(self) -> Self {
         let known = |x: f64| if x.is_nan() { f64::INFINITY } else { x * ROUNDING };
         Self { speed: known(self.speed), acceleration: known(self.acceleration) }
     }
 
-    /// Largest distance (m) that a point travels in `dt` where no point is faster than `speed_now` at one end of it.
+    /// Largest distance (m) that a point travels in `dt` if at one end of it no point is faster than `speed_now`.
     pub fn distance(self, speed_now: f64, dt: f64) -> f64 {
         let linear = self.speed * dt;
         let quadratic = speed_now * dt + 0.5 * self.acceleration * dt * dt;
@@ -95,7 +95,7 @@ impl SpeedBound {
         if quadratic < linear { quadratic } else { linear }
     }
 
-    /// A time in which no point travels `distance_m` metres; infinite if nothing moves, 0 where `distance_m` is NaN.
+    /// A time in which no point travels `distance_m` metres; infinite if nothing moves, 0 if `distance_m` is NaN.
     pub fn time_for(self, speed_now: f64, distance_m: f64) -> f64 {
         if !(distance_m > 0.0) {
             return 0.0;

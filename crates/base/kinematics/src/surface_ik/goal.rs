@@ -1,10 +1,10 @@
-//! Target point and normal, as the goals of a search.
+//! Target point and target normal as goals of a search.
 
 use elbowroom_spatial::{Pose, Vec3};
 
 use crate::inverse::goal::Goal;
 
-/// The point alone: three equations.
+/// The goal of the point alone: three equations.
 #[derive(Debug, Clone, Copy)]
 pub struct PositionGoal {
     pub target: Vec3,
@@ -34,7 +34,7 @@ impl Goal<3> for PositionGoal {
     }
 }
 
-/// The point and the direction of its normal: five equations.
+/// The goal of the point and the direction of its normal: five equations.
 #[derive(Debug, Clone, Copy)]
 pub struct SurfaceGoal {
     pub position: PositionGoal,
@@ -74,12 +74,13 @@ impl Tangents {
             let k = sine.atan2(cosine) / sine;
             return [a * k, b * k];
         }
-        // In the same direction there is nothing to scale; in the opposite one every rotation is as short: the first tangent.
+        // If the directions are equal, nothing has to be scaled. If they are opposite, all rotations are equally short: use
+        // the first tangent.
         if cosine < 0.0 { [std::f64::consts::PI, 0.0] } else { [a, b] }
     }
 }
 
-/// Angle between two unit vectors, exact to rounding at both ends.
+/// Angle between two unit vectors (rad), exact to rounding at both ends.
 pub fn angle_between(a: Vec3, b: Vec3) -> f64 {
     a.cross(b).length().atan2(a.dot(b))
 }

@@ -1,28 +1,35 @@
-//! Inverse kinematics of any point of a robot's surface, the end of the chain in Reichenbach and Kovačić 2003.
+//! Inverse kinematics of any point of a robot's surface, which is the end of the chain in Reichenbach and Kovačić
+//! 2003.
 //!
-//! The point of a robot that touches something is seldom its tip. A [`PointChain`] makes the point the origin of the last
-//! frame of a chain of its own: the joints between the root and the point's link, no others. It computes the point and
-//! its outward normal ([`PointChain::place`]), their Jacobians ([`PointChain::jacobian`],
-//! [`PointChain::jacobian_with_normal`]), and joint values that bring the point to a target, with the normal in a given
-//! direction if required ([`PointChain::solve`], [`PointChain::refine`]). Only [`PointChain::new`] allocates;
-//! [`PointChain::set_point`] changes to another point of the same link. The Denavit-Hartenberg table of the new chain is
+//! The point of a robot that touches something is seldom its tip. A [`PointChain`] makes the point the origin of the
+//! last frame of its own chain, which has only the joints between the root and the point's link. It computes:
+//!
+//! - the point and its outward normal ([`PointChain::place`]);
+//! - their Jacobians ([`PointChain::jacobian`], [`PointChain::jacobian_with_normal`]);
+//! - joint values that bring the point to a target, with the normal in a given direction if required
+//!   ([`PointChain::solve`], [`PointChain::refine`]).
+//!
+//! Only [`PointChain::new`] allocates; [`PointChain::set_point`] changes to another point of the same link. The
+//! Denavit-Hartenberg table of the new chain is
 //! [`GeneralizedTable::extract_to`](crate::dh::GeneralizedTable::extract_to) (or
-//! [`DirectTable::extract_to`](crate::dh::DirectTable::extract_to)) with the point as the translation of its last frame.
+//! [`DirectTable::extract_to`](crate::dh::DirectTable::extract_to)) with the point as the translation of its last
+//! frame.
 //!
 //! | target | equations | result |
 //! | --- | --- | --- |
 //! | the point's position | 3 | on links behind three joints or more: met where it is in reach and within the limits. Behind one or two joints the point moves on a circle or a surface, and only targets on it are met |
 //! | position and direction of the normal | 5: the turn about the normal stays free | behind five joints or more the same; behind fewer, only targets within the chain's freedom are met |
 //!
-//! Targets are met by the damped least squares of [`crate::inverse`], on three or five equations (or on as many as there
-//! are joints, where these are fewer). The first start is the given `q`, so that the solution is near it where possible;
-//! where a search ends in a local minimum the next starts come from a fixed low-discrepancy sequence. The same input
-//! always gets the same answer, every solution is within the joint limits, and where there is none the nearest
-//! configuration found is left in `q` and the error returns the remaining distance.
+//! Targets are met by the damped least squares of [`crate::inverse`], on three or five equations (on as many as
+//! there are joints, if these are fewer). The first start is the given `q`, so that the solution is near it if
+//! possible. If a search ends in a local minimum, the next starts come from a fixed low-discrepancy sequence. The
+//! same input always gives the same answer, and every solution is within the joint limits. If no solution is found,
+//! `q` is set to the nearest configuration found, and the error returns the remaining distance.
 //!
-//! The error of a normal `n` against the required one `m` is the angle between them, as a vector of two components in the
-//! tangent plane of `n`: `e = θ·(t₁·d, t₂·d)`, `d` the unit vector from `n` towards `m` perpendicular to `n`. Its row of
-//! the Jacobian is `(t₁·ṅ, t₂·ṅ)` with `ṅ = ω × n`; the gradient of `θ²` by it is exact at any angle.
+//! The error of a normal `n` against the required normal `m` is the angle between them, as a vector of two
+//! components in the tangent plane of `n`: `e = θ·(t₁·d, t₂·d)`, where `d` is the unit vector from `n` towards `m`
+//! perpendicular to `n`. Its row of the Jacobian is `(t₁·ṅ, t₂·ṅ)` with `ṅ = ω × n`; the gradient of `θ²` from it is
+//! exact at any angle.
 //!
 //! ```
 //! use elbowroom_kinematics::surface_ik::{OrientedPoint, PointChain, SurfaceIkOptions};

@@ -2,15 +2,15 @@
 
 /// Settings of a [`PointChain`](super::PointChain).
 ///
-/// A search goes on to 1e-9 m and 1e-9 rad where it can; the tolerances decide what is accepted if it cannot: rotating a
-/// normal that is almost parallel to an axis takes very large joint motions.
+/// A search continues to 1e-9 m and 1e-9 rad if it can. The tolerances decide what is accepted if it cannot:
+/// rotating a normal that is almost parallel to an axis takes very large joint motions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SurfaceIkOptions {
     /// Largest accepted distance from the target, m.
     pub position_tolerance_m: f64,
-    /// Largest accepted angle between the normal and the required one, rad.
+    /// Largest accepted angle between the normal and the required normal, rad.
     pub angle_tolerance_rad: f64,
-    /// Largest number of starting points, the given `q` among them.
+    /// Largest number of starting points, including the given `q`.
     pub starts: usize,
     /// Largest number of steps from one starting point.
     pub iterations: usize,
@@ -22,12 +22,12 @@ impl Default for SurfaceIkOptions {
     }
 }
 
-/// The target is met: the remaining error, and the effort.
+/// The result if the target is met: the remaining error, and the effort.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SurfaceIkSolution {
     /// Distance from the target, m.
     pub position_error_m: f64,
-    /// Angle between the normal and the required one, rad; 0 if none was required.
+    /// Angle between the normal and the required normal, rad; 0 if no normal was required.
     pub angle_error_rad: f64,
     /// Starting points tried beyond the given `q`.
     pub restarts: usize,

@@ -7,6 +7,6 @@ use elbowroom_spatial::Vec3;
 pub struct OrientedPoint {
     /// The point, m.
     pub point_in_root: Vec3,
-    /// Outward normal of the surface, unit length. `None` if it is unknown, or in a target does not matter.
+    /// Outward normal of the surface, unit length. `None` if it is unknown or, in a target, if it does not matter.
     pub normal_in_root: Option<Vec3>,
 }

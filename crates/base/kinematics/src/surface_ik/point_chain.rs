@@ -11,8 +11,8 @@ use crate::inverse::levenberg_marquardt::LmWorkspace;
 use crate::inverse::sequence::axis_step;
 use crate::{Chain, JointId, LinkId};
 
-/// A point fixed on a link, with its outward normal where that is known, and the joints that move it. Holds what it needs
-/// of the chain and its workspace: only [`PointChain::new`] allocates.
+/// A point fixed on a link, with its outward normal if it is known, and the joints that move the point. Contains its
+/// data of the chain and its workspace: only [`PointChain::new`] allocates.
 #[derive(Debug, Clone)]
 pub struct PointChain {
     pub(super) arm: Arm,
@@ -20,13 +20,13 @@ pub struct PointChain {
     link: LinkId,
     point_in_link: Vec3,
     normal_in_link: Option<Vec3>,
-    /// The link's frame in that of the last joint before it.
+    /// The link's frame in the frame of the last joint before it.
     link_in_last: Pose,
     pub(super) joints: Vec<JointId>,
     pub(super) dof: usize,
     /// Length (m) whose error counts as much as one radian.
     pub(super) scale: f64,
-    /// Per variable, the increment of the sequence of starts.
+    /// Increments of the sequence of starts, one per variable.
     pub(super) increments: Vec<f64>,
     pub(super) position: LmWorkspace<3>,
     pub(super) surface: LmWorkspace<5>,
@@ -35,7 +35,8 @@ pub struct PointChain {
 }
 
 impl PointChain {
-    /// The point `point_in_link` (m) of the link with the outward normal `normal_in_link` (any length), both in the link's frame.
+    /// Creates the chain of the point `point_in_link` (m) of the link, with the outward normal `normal_in_link` (any
+    /// length), both in the link's frame.
     ///
     /// # Errors
     /// [`PointError::UnknownLink`], [`PointError::PointNotFinite`] or [`PointError::NormalWithoutDirection`].
@@ -71,7 +72,7 @@ impl PointChain {
         Ok(this)
     }
 
-    /// Changes to another point of the same link. Does not allocate; on error the old point stays.
+    /// Changes to another point of the same link. Does not allocate; on error the old point is kept.
     ///
     /// # Errors
     /// [`PointError::PointNotFinite`] or [`PointError::NormalWithoutDirection`].
@@ -101,21 +102,24 @@ impl PointChain {
         self.normal_in_link
     }
 
-    /// The independent joints that move the point, from the root outwards (a mimic joint counts as the joint that it follows). The
-    /// others keep their values in [`PointChain::solve`], and have columns of zeros in the Jacobians.
+    /// The independent joints that move the point, from the root outwards (a mimic joint counts as the joint that it
+    /// follows). All other joints keep their values in [`PointChain::solve`], and have columns of zeros in the
+    /// Jacobians.
     pub fn joints(&self) -> &[JointId] {
         &self.joints
     }
 
-    /// Forward kinematics: point and normal at `q` (all of the chain's values, rad or m). NaN where `q` is too short.
+    /// Forward kinematics: point and normal at `q` (all of the chain's values, rad or m). NaN if `q` is too short.
     pub fn place(&mut self, q: &[f64]) -> OrientedPoint {
         self.load(q);
         let tip_in_root = self.position.tip_in_root(&self.arm, &self.x);
         self.place_of(&tip_in_root)
     }
 
-    /// Velocity of the point (x, y, z in the root, m/s) per unit of each of the chain's `q`, at `q`. `out` has as many
-    /// columns as [`Chain::dof`]; a longer one is zeroed beyond, a shorter one lacks the last columns.
+    /// Velocity of the point (x, y, z in the root, m/s) per unit of each entry of the chain's `q`, at `q`.
+    ///
+    /// `out` has [`Chain::dof`] columns. If it is longer, the additional columns are zeroed; if it is shorter, the last
+    /// columns are left out.
     pub fn jacobian(&mut self, q: &[f64], out: &mut [[f64; 3]]) {
         out.fill([0.0; 3]);
         self.load(q);
@@ -130,12 +134,12 @@ impl PointChain {
         }
     }
 
-    /// As [`PointChain::jacobian`], with two rows more: the velocity of the unit normal (1/s) along the first and the
-    /// second of the returned tangents (unit vectors in the root, right-handed with the normal). The normal has no
-    /// velocity along itself.
+    /// Like [`PointChain::jacobian`], with two more rows: the velocity of the unit normal (1/s) along the first and the
+    /// second of the returned tangents (unit vectors in the root, right-handed with the normal). Along itself the normal
+    /// has no velocity.
     ///
     /// # Errors
-    /// [`PointError::NoNormal`]; `out` is zeroed then.
+    /// [`PointError::NoNormal`]; then `out` is zeroed.
     pub fn jacobian_with_normal(&mut self, q: &[f64], out: &mut [[f64; 5]]) -> Result<[Vec3; 2], PointError> {
         out.fill([0.0; 5]);
         let normal_in_link = self.normal_in_link.ok_or(PointError::NoNormal)?;

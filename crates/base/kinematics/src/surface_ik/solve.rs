@@ -1,4 +1,4 @@
-//! Joint values that bring the point to its target.
+//! Search for joint values that bring the point to its target.
 
 use std::f64::consts::TAU;
 
@@ -13,13 +13,13 @@ use crate::inverse::arm::ArmVariable;
 use crate::inverse::levenberg_marquardt::LevenbergMarquardt;
 use crate::inverse::sequence::{element, window};
 
-/// Few joints have few local minima: more starts than these find nothing new.
+/// Number of starts for one joint, which has few local minima: more starts find nothing new.
 const STARTS_OF_ONE_JOINT: usize = 12;
 const STARTS_OF_TWO_JOINTS: usize = 48;
 /// Starts for the nearest configuration to a target out of reach.
 const STARTS_BEYOND_REACH: usize = 8;
 
-/// Tolerance of a search (m, rad): convergence is quadratic, so this is one step more than a millionth.
+/// Tolerance of a search (m, rad). Convergence is quadratic, so this takes one step more than a millionth.
 const SEARCH_TOLERANCE: f64 = 1e-9;
 
 /// The goal of a target.
@@ -29,7 +29,7 @@ enum TargetGoal {
     Surface(SurfaceGoal),
 }
 
-/// The error that remains.
+/// The remaining error.
 #[derive(Clone, Copy)]
 struct RemainingError {
     position_m: f64,
@@ -37,14 +37,16 @@ struct RemainingError {
 }
 
 impl PointChain {
-    /// Brings the point to `target`, with its normal along the target's where that has one. `q` holds all of the chain's values (rad
-    /// or m): on entry the configuration where the search starts; on success the solution, within the joint limits; where the
-    /// target is not reached the nearest configuration found, within the limits, too. Joints that do not move the point keep
-    /// their values, full turns are subtracted or added where that is nearer to the start. Does not allocate.
+    /// Brings the point to `target`, with its normal along the target's normal if the target has one. Does not allocate.
+    ///
+    /// `q` contains all of the chain's values (rad or m). On entry it is the configuration from which the search starts.
+    /// On success it is the solution, within the joint limits; if the target is not reached, it is the nearest
+    /// configuration found, also within the limits. Joints that do not move the point keep their values. Full turns are
+    /// added or subtracted if the result is nearer to the start.
     ///
     /// # Errors
-    /// [`PointError::NotReached`] with the remaining error; another [`PointError`] if a number is not finite, `q` has the wrong
-    /// length, or the target has a normal and the point has none (`q` is unchanged then).
+    /// [`PointError::NotReached`] with the remaining error. Another [`PointError`], with `q` unchanged, if a number is
+    /// not finite, `q` has the wrong length, or the target has a normal and the point has none.
     pub fn solve(&mut self, target: &OrientedPoint, q: &mut [f64]) -> Result<SurfaceIkSolution, PointError> {
         let goal = self.goal(target, q)?;
         let starts = self.starts(target);
@@ -73,8 +75,8 @@ impl PointChain {
         Err(PointError::NotReached { position_error_m: error.position_m, angle_error_rad: error.angle_rad, starts })
     }
 
-    /// At most `steps` steps from `q` towards `target`, in place: for a control loop, where the target is near. The error never
-    /// grows; `Ok` where the target is met. Does not allocate.
+    /// Performs at most `steps` steps from `q` towards `target`, in place: for a control loop with a target nearby. The
+    /// error never grows. Does not allocate. Returns `Ok` if the target is met.
     ///
     /// # Errors
     /// As [`PointChain::solve`], with one start.
@@ -146,7 +148,7 @@ impl PointChain {
         }
     }
 
-    /// Improves `x`, in place.
+    /// Improves `x` in place; returns the remaining error.
     fn minimize(&mut self, goal: &TargetGoal, iterations: usize) -> RemainingError {
         let Self { arm, scale, x, position, surface, .. } = self;
         let (arm, scale, bounded) = (&*arm, *scale, true);
@@ -178,7 +180,7 @@ impl PointChain {
         }
     }
 
-    /// Stores `x` in `q`, by full turns as near to the old values as the limits allow.
+    /// Stores `x` in `q`, shifted by full turns as near to the old values as the limits allow.
     fn store_near(&self, q: &mut [f64]) {
         for (value, variable) in self.x.iter().zip(&self.arm.variables) {
             let q = &mut q[variable.q_index];
@@ -196,7 +198,7 @@ impl SurfaceGoal {
     }
 }
 
-/// `value` plus the full turns that bring it nearest to `near`, where that is within the limits; else `value`.
+/// `value` plus the full turns that bring it nearest to `near`, if that is within the limits; otherwise `value`.
 fn near_turn(value: f64, near: f64, variable: &ArmVariable) -> f64 {
     if !variable.wraps {
         return value;

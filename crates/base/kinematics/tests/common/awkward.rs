@@ -1,4 +1,5 @@
-//! Chains that are hard for tables: parallel, intersecting and coincident axes, quarter and half turns, and nearly so.
+//! Chains that are hard for tables: parallel, intersecting and coincident axes, quarter and half turns, and nearly
+//! such.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -7,7 +8,7 @@ use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 use super::{RandomGeometry, SplitMix};
 
-/// Rotations that make axes parallel, opposite, perpendicular, nearly so, or anything; gimbal lock included.
+/// Rotations that make axes parallel, opposite, perpendicular, nearly such, or arbitrary; including gimbal lock.
 pub fn awkward_rotation(random: &mut SplitMix) -> Rotation {
     let tiny = [0.0, 1e-15, 1e-12, 1e-10, 1e-8, 3.7e-6, 1e-4, 2e-3][random.below(8)];
     let quarter = |random: &mut SplitMix| FRAC_PI_2 * random.below(4) as f64;

@@ -12,7 +12,7 @@ pub struct Line {
     pub method: IkMethod,
     pub axes: usize,
     pub success: f64,
-    /// Share of the solutions that needed the numeric method or another start.
+    /// Fraction of the solutions that needed the numeric method or another start.
     pub retried: f64,
     pub median_us: f64,
     pub p99_us: f64,
@@ -38,7 +38,8 @@ impl Line {
     }
 }
 
-/// Targets are poses of random states within the limits, seeds other random states.
+/// Measures one chain. Targets are poses of random configurations within the limits; seeds are other random
+/// configurations.
 pub fn measure(chain: &Chain, targets: usize) -> Line {
     let tip = chain.tip();
     let mut solver = IkSolver::new(chain, tip, Pose::IDENTITY, IkOptions::default());
@@ -62,7 +63,7 @@ pub fn measure(chain: &Chain, targets: usize) -> Line {
         };
         found += 1;
         retried += usize::from(solution.restarts > 0);
-        // Checked by the chain's own forward kinematics and limits.
+        // The solution is checked by the chain's own forward kinematics and limits.
         state.q.copy_from_slice(&solution.q);
         chain.forward(&mut state);
         let reached = state.link_in_root(tip);

@@ -93,7 +93,7 @@ pub fn serial(joints: &[(JointKind, Pose, Vec3, Limits)]) -> Chain {
 
 /// Random geometry and states.
 pub trait RandomGeometry {
-    /// Each coordinate within 1 of 0.
+    /// A vector with each coordinate within 1 of 0.
     fn vector(&mut self) -> Vec3;
 
     fn pose(&mut self) -> Pose;
@@ -121,7 +121,8 @@ impl RandomGeometry for SplitMix {
     }
 }
 
-/// Ortho-parallel basis and spherical wrist with every frame rotated at random: nothing of the geometry is along an axis.
+/// Ortho-parallel basis and spherical wrist with every frame rotated at random: no part of the geometry is along an
+/// axis.
 pub fn disguised_wrist_arm(random: &mut SplitMix, limit: f64) -> Chain {
     let lateral = random.between(-0.2, 0.2) * random.below(2) as f64;
     let points = [

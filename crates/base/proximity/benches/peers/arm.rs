@@ -15,9 +15,9 @@ pub const DISTANCES: [&str; 5] = ["0.6", "1.0", "1.4", "1.8", "2.2"];
 const STATES: usize = 5000;
 const HARD: usize = 2000;
 
-/// Rings and sectors: 23,012 triangles in all.
+/// Rings and sectors of each link: 23,012 triangles in all.
 const GRID: [[usize; 2]; LINKS] = [[50, 36], [50, 36], [60, 40], [56, 36], [40, 32], [40, 32], [31, 30]];
-/// From one joint to the next, metres; the last from the sixth joint to the tip.
+/// Offsets from one joint to the next, metres; the last from the sixth joint to the tip.
 const STEPS: [[f64; 3]; LINKS] = [
     [0.0, 0.0, 0.13],
     [0.0, 0.08, 0.07],
@@ -29,7 +29,7 @@ const STEPS: [[f64; 3]; LINKS] = [
 ];
 /// Radius of each link at its beginning, metres.
 const RADII: [f64; LINKS + 1] = [0.078, 0.062, 0.052, 0.044, 0.04, 0.037, 0.03, 0.028];
-/// Axis of each joint (1 is y, 2 is z) and how far it turns either way, radians.
+/// Axis of each joint (1 is y, 2 is z) and largest turn in either direction, radians.
 const JOINTS: [(usize, f64); LINKS - 1] = [(2, PI), (1, 2.2), (1, 2.4), (2, PI), (1, 2.0), (2, PI)];
 
 pub fn generate(folder: &Path) -> Outcome<()> {
@@ -68,7 +68,7 @@ fn link_mesh(link: usize, random: &mut SplitMix) -> Outcome<TriMesh> {
     rounded(&tube.surface(random))
 }
 
-/// Equidistributed states: the additive recurrence of the generalized golden ratio in twelve dimensions
+/// Equidistributed configurations, by the additive recurrence of the generalized golden ratio in twelve dimensions
 /// (Roberts 2018, "The unreasonable effectiveness of quasirandom sequences").
 fn two_arms(n: usize, apart: f64) -> [Pose; 2 * LINKS] {
     const AXES: usize = 2 * JOINTS.len();

@@ -27,10 +27,10 @@ pub struct Cell {
     pub query_records: Box<dyn Query>,
 }
 
-/// The answer for a record: 0 or 1, or metres. The loop is inside, so that the dynamic call is paid once per round.
+/// The answer for a record: 0 or 1, or metres. The loop is inside, so that the dynamic call is made once per round.
 pub trait Query {
     fn answer(&mut self, record: usize) -> f64;
-    /// Queries the first `records`, `passes` times; returns the sum of the answers.
+    /// Queries the first `records` records, `passes` times; returns the sum of the answers.
     fn pass(&mut self, records: usize, passes: usize) -> f64;
 }
 
@@ -50,7 +50,7 @@ impl<F: FnMut(usize) -> f64> Query for F {
     }
 }
 
-/// All cells of `data` and of `extra`; sets whose file is missing are left out.
+/// All cells of `data` and of `extra`; sets whose file is missing are skipped.
 pub fn all(data: &Path, extra: &Path) -> Outcome<Vec<Cell>> {
     let mut cells = Vec::new();
     for tag in TAGS {
@@ -122,7 +122,7 @@ impl MeshPair {
         })
     }
 
-    /// Every step warm-starts the next; a path begins with a cold start.
+    /// Every step warm-starts the next; a path starts cold.
     fn warm(&self, poses: &Rc<Poses>) -> Box<dyn Query> {
         let (a, b, poses, mut workspace) = (self.a.clone(), self.b.clone(), poses.clone(), Workspace::new());
         let mut warm_start = WarmStart::default();
@@ -133,7 +133,7 @@ impl MeshPair {
             }
             let settings = DistanceSettings { warm_start: Some(&mut warm_start), ..DistanceSettings::default() };
             let near = mesh_separation_with(&a, &p[0], &b, &p[1], settings, &mut workspace);
-            // Without a limit there is always an answer; a NaN would be counted as a disagreement.
+            // Without a limit the answer is always `Some`; a NaN would be counted as a disagreement.
             near.map_or(f64::NAN, |near| near.distance)
         })
     }

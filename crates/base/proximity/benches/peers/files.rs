@@ -16,7 +16,7 @@ fn in_file<T, E: std::fmt::Display>(path: &Path, result: Result<T, E>) -> Outcom
     result.map_err(|e| format!("{}: {e}", path.display()))
 }
 
-/// Poses of several bodies, one record after the other.
+/// Poses of several bodies, record after record.
 pub struct Poses {
     pub bodies: usize,
     pub poses: Vec<Pose>,
@@ -33,7 +33,7 @@ impl Poses {
     }
 }
 
-/// Coordinates as a file holds them: single precision.
+/// A surface with its coordinates rounded to single precision, as in a file.
 pub fn rounded(surface: &Surface) -> Outcome<TriMesh> {
     let single = |x: f64| f64::from(x as f32);
     let vertices = surface.0.iter().map(|v| Vec3::new(single(v.x), single(v.y), single(v.z))).collect();
@@ -53,7 +53,7 @@ pub fn write_mesh(path: &Path, mesh: &TriMesh) -> Outcome<()> {
     in_file(path, fs::write(path, bytes))
 }
 
-/// Vertices of equal bits become one, as in every other runner.
+/// Reads a mesh. Vertices with equal bits become one, as in all other runners.
 pub fn read_mesh(path: &Path) -> Outcome<TriMesh> {
     let bytes = in_file(path, fs::read(path))?;
     let records = bytes.get(84..).unwrap_or_default().chunks_exact(50);
@@ -104,7 +104,7 @@ pub fn read_poses(path: &Path) -> Outcome<Poses> {
     Ok(Poses { bodies, poses: poses.ok_or_else(|| format!("{}: a matrix is no rotation", path.display()))? })
 }
 
-/// Size and tolerance of a pair of meshes, metres.
+/// Writes size and tolerance of a pair of meshes, metres.
 pub fn write_meta(path: &Path, size: f64, tolerance: f64) -> Outcome<()> {
     in_file(path, fs::write(path, format!("{size:?} {tolerance:?}\n")))
 }

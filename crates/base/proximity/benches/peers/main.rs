@@ -2,8 +2,9 @@
 //!
 //! `cargo bench -p elbowroom-proximity --bench peers -- generate DIR`
 //!
-//! `generate DIR` writes the meshes and poses, `extend DIR EXTRA` the paths and random poses that go with them, `serve DIR EXTRA`
-//! answers `time` and `answers` on standard input. `xtask/peers/README.md` defines the format and the protocol.
+//! `generate DIR` writes the meshes and poses, `extend DIR EXTRA` the paths and random poses for them,
+//! `serve DIR EXTRA` answers `time` and `answers` on standard input. `xtask/peers/README.md` defines the format and
+//! the protocol.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "the protocol uses standard output")]
 
 mod arm;

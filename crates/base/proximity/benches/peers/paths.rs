@@ -1,4 +1,4 @@
-//! Additions to any workload: paths of small steps, and many random poses to compare answers on.
+//! Additions to any workload: paths of small steps, and many random poses on which answers are compared.
 
 use std::path::Path;
 
@@ -11,10 +11,11 @@ use crate::files::{Outcome, read_mesh, read_meta, read_poses, write_poses};
 use crate::random::RandomGeometry;
 
 pub const TAGS: [&str; 2] = ["m4k", "m23k"];
-/// Records in one path.
+/// Number of records in one path.
 pub const STEPS: usize = 200;
 const PATHS: usize = 10;
-/// Random records per pair: with the bands' and the robots' they make more than 200,000 yes-or-no answers.
+/// Random records per pair. Together with the records of the bands and the robots, they give more than 200,000
+/// yes-or-no answers.
 const RANDOM: [usize; 2] = [45_000, 30_000];
 
 /// Reads the pairs in `data`, writes `{tag}_{near,far}_path.pose` and `{tag}_random.pose` to `extra`.
@@ -51,7 +52,8 @@ struct RandomWalk<'a> {
 }
 
 impl RandomWalk<'_> {
-    /// Alternating steps of 0.5 % of the size and of 1°, as straight as keeping the gap within `gaps` (metres) permits.
+    /// A path of alternating steps of 0.5 % of the size and of 1°, as straight as possible with the gap within `gaps`
+    /// (metres).
     fn path(&mut self, start: &[Pose], gaps: [f64; 2]) -> Vec<Pose> {
         let (a_in_world, mut b_in_world) = (start[0], start[1]);
         let (mut heading, mut axis) = (self.random.direction(), self.random.direction());
@@ -76,13 +78,13 @@ impl RandomWalk<'_> {
         if step % 2 == 1 {
             return Pose::new(from.rotation, from.translation + heading * (0.005 * self.size));
         }
-        // About the centre of B.
+        // The rotation is about the centre of B.
         let middle = self.b.aabb().center();
         let rotation = Rotation::from_axis_angle(axis, 1_f64.to_radians()) * from.rotation;
         Pose::new(rotation, from.transform_point(middle) - rotation * middle)
     }
 
-    /// Centres up to 1.1 sizes apart: some touch, some are near, some are far.
+    /// Poses with centres up to 1.1 sizes apart: some touch, some are near, some are far.
     fn anywhere(&mut self) -> [Pose; 2] {
         let a_in_world = Pose::new(self.random.rotation(), self.random.direction());
         let rotation = self.random.rotation();

@@ -1,4 +1,4 @@
-//! Pairs of meshes, and poses at a wanted gap.
+//! Pairs of meshes, and poses with a given gap.
 
 use std::f64::consts::PI;
 use std::path::Path;
@@ -77,7 +77,8 @@ impl Placing<'_> {
         [a_in_world, a_in_world * b_in_a]
     }
 
-    /// Just before first contact, then 0.15 % to 10 % of the size further; surfaces that meet only.
+    /// A pose of B just before first contact, moved 0.15 % to 10 % of the size further, so that the surfaces meet.
+    /// `None` if they do not meet.
     fn pushed_in(&mut self) -> Option<Pose> {
         let (mut pose, away) = self.at_gap(0.0005 * self.size, 0.0005 * self.size)?;
         let push = self.size * (0.0015 + self.random.between_decades(0.001, 0.1));
@@ -85,8 +86,8 @@ impl Placing<'_> {
         colliding_triangles(self.a, &Pose::IDENTITY, self.b, &pose, &mut self.workspace).map(|_| pose)
     }
 
-    /// B moved in from a distance, so that one of its vertices approaches one of A's, until the gap is right; and the direction
-    /// from which it came.
+    /// Moves B in from a distance, so that one of its vertices approaches a vertex of A, until the gap is right. Returns
+    /// the pose and the direction from which B came.
     fn at_gap(&mut self, gap: f64, allowed: f64) -> Option<(Pose, Vec3)> {
         let (rotation, away) = (self.random.rotation(), self.random.direction());
         let on_a = self.a.vertices()[self.random.below(self.a.vertices().len())];
@@ -98,7 +99,7 @@ impl Placing<'_> {
             if left < allowed {
                 return (left + gap > 0.0).then_some((pose, away));
             }
-            // No point of B approaches by more than the step.
+            // Points of B approach by at most the step.
             out -= left;
             if out < -3.0 * self.size {
                 return None;

@@ -5,13 +5,13 @@ use elbowroom_testkit::random::SplitMix;
 
 /// Random sizes, directions and rotations.
 pub trait RandomGeometry {
-    /// Log-uniform in `low..high`.
+    /// A number that is log-uniform in `low..high`.
     fn between_decades(&mut self, low: f64, high: f64) -> f64;
 
-    /// Uniform on the unit sphere.
+    /// A direction, uniform on the unit sphere.
     fn direction(&mut self) -> Vec3;
 
-    /// Uniform over all rotations: a quaternion drawn from the ball in four dimensions.
+    /// A rotation, uniform over all rotations: a quaternion drawn from the ball in four dimensions.
     fn rotation(&mut self) -> Rotation;
 }
 

@@ -8,13 +8,13 @@ use elbowroom_proximity::advanced::{
 use elbowroom_proximity::{DistanceSettings, Shape, TriMesh, WarmStart, Workspace, fit, separation_within};
 use elbowroom_spatial::{Aabb, Pose, Vec3};
 
-/// Pairs of links for which an upper bound is computed first.
+/// Number of pairs of links for which an upper bound is computed first.
 const FIRST_PAIRS: usize = 2;
 
-/// The links' meshes; both arms have the same.
+/// The links' meshes, which are the same for both arms.
 pub struct Arms {
     links: Vec<Arc<TriMesh>>,
-    /// The same, for collisions.
+    /// The same meshes, for collisions.
     group: MeshGroup,
     group_workspace: GroupWorkspace,
     /// Centre and radius of the bounding sphere of each link, metres.
@@ -25,7 +25,7 @@ pub struct Arms {
     workspace: Workspace,
     /// Boxes of all links in the world, first arm first.
     boxes: Vec<Aabb>,
-    /// Landmarks of all links, likewise.
+    /// Landmarks of all links in the world, first arm first.
     placed_landmarks: Vec<PlacedLandmarks>,
     /// Lower bound of the distance, and the links.
     order: Vec<(f64, usize, usize)>,
@@ -58,7 +58,7 @@ impl Arms {
         self.links.iter().map(|link| link.aabb().extent().max_element()).fold(0.0, f64::max)
     }
 
-    /// True if a link of one arm touches one of the other.
+    /// True if a link of one arm touches a link of the other.
     pub fn collides(&mut self, poses: &[Pose]) -> bool {
         let (one, other) = poses.split_at(self.links.len());
         self.group.collides(one, &self.group, other, &mut self.group_workspace)
@@ -77,7 +77,7 @@ impl Arms {
         margin: f64,
         mut close: impl FnMut(&[Arc<TriMesh>], usize, usize, &[Pose], &mut Workspace) -> bool,
     ) -> bool {
-        // The box around each arm, from the spheres around its links, excludes most states at once.
+        // The box around each arm, from the spheres around its links, excludes most configurations at once.
         let links = self.links.len();
         if !self.around(&poses[..links]).inflated(margin).overlaps(&self.around(&poses[links..])) {
             return false;
@@ -97,8 +97,8 @@ impl Arms {
         false
     }
 
-    /// Metres between the arms: upper bounds of the pairs whose landmarks are nearest limit all others, which follow in the
-    /// order of their capsules.
+    /// Distance between the arms, metres. Upper bounds of the pairs with the nearest landmarks limit all other pairs,
+    /// which follow in the order of their capsules.
     pub fn distance(&mut self, poses: &[Pose]) -> f64 {
         self.place(poses);
         let links = self.links.len();

@@ -39,7 +39,7 @@ fn execute(line: &str, cells: &mut [Cell]) -> Option<String> {
     }
 }
 
-/// Nanoseconds of this thread's processor time per record, after a warm-up of a millisecond or one pass.
+/// Processor time of this thread per record, in nanoseconds, after a warm-up of a millisecond or one pass.
 fn time(cell: &mut Cell, records: usize, passes: usize) -> f64 {
     let start = processor_time();
     let mut sum = 0.0;
@@ -65,7 +65,7 @@ fn processor_time() -> Duration {
     Duration::try_from(clock_gettime(ClockId::ThreadCPUTime)).unwrap_or_default()
 }
 
-/// Wall-clock time, where the system gives no other.
+/// Wall-clock time, if the system provides no other.
 #[cfg(not(unix))]
 fn processor_time() -> Duration {
     static START: std::sync::OnceLock<std::time::Instant> = std::sync::OnceLock::new();

@@ -21,7 +21,7 @@ impl Ripples {
         Self((0..waves).map(&mut wave).collect())
     }
 
-    /// `along` and `around` run from 0 to 1.
+    /// The ripple at a place; `along` and `around` run from 0 to 1.
     fn at(&self, along: f64, around: f64) -> f64 {
         let wave = |w: &[f64; 5]| w[4] * (w[0] * along + w[1]).sin() * (w[2] * around + w[3]).sin();
         1.0 + self.0.iter().map(wave).sum::<f64>()
@@ -30,21 +30,21 @@ impl Ripples {
 
 /// A tube with round ends.
 pub struct Tube<'a> {
-    /// The axis, for 0 to 1.
+    /// The axis as a function of a parameter from 0 to 1.
     pub axis: &'a dyn Fn(f64) -> Vec3,
-    /// Radius along it, metres.
+    /// Radius along the axis, metres.
     pub radius: &'a dyn Fn(f64) -> f64,
-    /// Flanges: where, half width, height (metres).
+    /// Flanges: place along the axis, half width, height (metres).
     pub flanges: &'a [[f64; 3]],
     /// Largest relative height of the ripples.
     pub ripple: f64,
-    /// `2 · rings · sectors` triangles.
+    /// Number of rings; the tube has `2 · rings · sectors` triangles.
     pub rings: usize,
     pub sectors: usize,
 }
 
 impl Tube<'_> {
-    /// Closed, genus 0.
+    /// The closed surface, of genus 0.
     pub fn surface(&self, random: &mut SplitMix) -> Surface {
         let ripples = Ripples::new(random, 8, self.ripple);
         let mut vertices = vec![(self.axis)(0.0)];
@@ -52,7 +52,7 @@ impl Tube<'_> {
         for ring in 0..self.rings {
             let along = (ring as f64 + 0.5) / self.rings as f64;
             let (center, tangent) = ((self.axis)(along), self.tangent(along));
-            // The side of the last ring, made perpendicular again: the rings do not twist.
+            // The side of the last ring is made perpendicular again, so that the rings do not twist.
             side = (side - tangent * side.dot(tangent)).try_normalize().unwrap_or(tangent.any_perpendicular());
             let radius = self.outline(along);
             let point = |around, height| ring_point(center, [side, tangent.cross(side)], around, height);

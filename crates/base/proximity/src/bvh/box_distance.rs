@@ -10,19 +10,19 @@ use crate::lanes::{F32_ERROR, V3, W16, abs16, array16, detected_simd_level, load
 
 /// Distance from a box in its own frame.
 pub(crate) struct BoxDistance {
-    /// Middle in the mesh's frame.
+    /// Centre of the box in the mesh's frame.
     center: [f32; 3],
-    /// Rows: the box's axes in the mesh's frame.
+    /// The box's axes in the mesh's frame, as rows.
     axes: [[f32; 3]; 3],
     half: [f32; 3],
-    /// Half extents of the box around it, along the mesh's axes.
+    /// Half extents of the bounding box of this box, along the mesh's axes.
     bounding_half: [f32; 3],
-    /// No bound is off by more.
+    /// Upper bound of the error of every bound.
     error: f32,
 }
 
 impl BoxDistance {
-    /// `bounds` in the frame that `in_mesh` places, metres.
+    /// Distance from the box `bounds` in the frame that `in_mesh` places, metres.
     pub fn new(tree: &Bvh16, bounds: &Aabb, in_mesh: &Pose) -> Self {
         let unit = tree.frame.unit;
         let middle = tree.frame.to_units(in_mesh.transform_point(bounds.center()));
@@ -39,12 +39,12 @@ impl BoxDistance {
         }
     }
 
-    /// Distance from a point of the mesh's frame, metres.
+    /// Distance from a point in the mesh's frame, metres.
     pub fn from_point(tree: &Bvh16, p: Vec3) -> Self {
         Self::new(tree, &Aabb { min: Vec3::ZERO, max: Vec3::ZERO }, &Pose::from_translation(p))
     }
 
-    /// A length in metres as a limit of the traversal.
+    /// Converts a length in metres to a limit of the traversal.
     pub fn limit(tree: &Bvh16, metres: f64) -> f32 {
         (metres * tree.frame.inverse * (1.0 + 1e-6)) as f32
     }

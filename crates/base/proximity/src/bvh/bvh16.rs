@@ -7,8 +7,8 @@ use super::node::{ARITY, LEAF_SIZE, Leaf, Node};
 use super::triangle_order::{fill, order_triangles};
 use super::unit_frame::UnitFrame;
 
-/// A tree without pointers: child `i` of node `m` at height `h` is number `16 m + i` at height `h - 1`; height 0 are
-/// the leaves. The root is itself the only child of one more node, at the last level.
+/// A tree without pointers: child `i` of node `m` at height `h` has the number `16 m + i` at height `h - 1`; height
+/// 0 has the leaves. The root is the only child of one additional node at the last level.
 #[derive(Debug, Clone)]
 pub(crate) struct Bvh16 {
     pub frame: UnitFrame,
@@ -17,7 +17,7 @@ pub(crate) struct Bvh16 {
     /// Triangle index per slot; leaf `m` has the slots from `8 m` on.
     pub order: Vec<u32>,
     pub leaves: Vec<Leaf>,
-    /// `levels[h]` holds the nodes whose children are of height `h`.
+    /// Nodes by height: the children of the nodes in `levels[h]` are at height `h`.
     pub levels: Vec<Vec<Node>>,
 }
 
@@ -60,7 +60,7 @@ impl Bvh16 {
         self.levels.len() - 1
     }
 
-    /// Bit `i` is set where node `m` at height `h` has a child `i`.
+    /// Bit mask of children: bit `i` is set if node `m` at height `h` has a child `i`.
     #[inline]
     pub fn children(&self, height: usize, m: usize) -> u32 {
         let below = if height == 1 { self.leaves.len() } else { self.levels[height - 2].len() };
@@ -68,7 +68,7 @@ impl Bvh16 {
         (1u32 << count) - 1
     }
 
-    /// The node that holds the children of node `m` at height `h`, at least 1.
+    /// The node with the children of node `m` at height `h`, where `h` is at least 1.
     #[inline(always)]
     pub fn node(&self, height: usize, m: usize) -> &Node {
         &self.levels[height - 1][m]
@@ -99,7 +99,7 @@ impl Bvh16 {
     }
 }
 
-/// Lanes without a triangle repeat the last one; queries mask them where it matters.
+/// Fills a leaf. Lanes without a triangle repeat the last one; queries mask them if it matters.
 fn fill_leaf(leaf: &mut Leaf, number: usize, order: &[u32], corners: impl Fn(usize) -> [Vec3; 3]) {
     for lane in 0..LEAF_SIZE {
         let slot = (number * LEAF_SIZE + lane).min(order.len() - 1);
@@ -125,7 +125,7 @@ fn fill_node(node: &mut Node, number: usize, span: usize, leaves: &[Leaf]) {
         for k in 0..3 {
             let middle = 0.5 * (low[k] + high[k]);
             node.center[k][lane] = middle;
-            // Corners are off by 2⁻²⁵ at most, the middle and the differences by as much each.
+            // Corners are off by at most 2⁻²⁵, the middle and each difference by as much.
             node.half[k][lane] = (high[k] - middle).max(middle - low[k]) + BOX_MARGIN;
             node.normal[k][lane] = n[k];
             node.landmark[k][lane] = landmark[k];
@@ -135,7 +135,7 @@ fn fill_node(node: &mut Node, number: usize, span: usize, leaves: &[Leaf]) {
     }
 }
 
-/// 2⁻²²: four half-units of rounding of a number in [-1, 1], twice as much as can occur.
+/// 2⁻²²: four half-units of rounding for a number in [-1, 1], twice as much as can occur.
 const BOX_MARGIN: f32 = 1.0 / 4_194_304.0;
-/// 2⁻²⁰: a dot product of a unit vector with a rounded point of [-1, 1]³ is off by less than 10·2⁻²⁴.
+/// 2⁻²⁰: the dot product of a unit vector and a rounded point of [-1, 1]³ is off by less than 10·2⁻²⁴.
 const SLAB_MARGIN: f32 = 1.0 / 1_048_576.0;

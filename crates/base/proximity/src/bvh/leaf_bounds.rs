@@ -39,7 +39,7 @@ pub(crate) fn most_central(leaves: &[Leaf], center: [f32; 3]) -> [f32; 3] {
     landmark[best]
 }
 
-/// Area-weighted mean normal, slightly shorter than 1; zero where the normals cancel or have no length.
+/// Area-weighted mean normal, slightly shorter than 1; zero if the normals cancel or have no length.
 pub(super) fn mean_normal(leaves: &[Leaf]) -> [f32; 3] {
     let mut sum = [[0.0f32; LEAF_SIZE]; 3];
     for leaf in leaves {

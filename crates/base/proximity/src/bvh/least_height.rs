@@ -14,12 +14,12 @@ pub(crate) struct LeastHeight {
 }
 
 impl LeastHeight {
-    /// `up` is a unit vector in the mesh's frame.
+    /// Creates the query along `up`, a unit vector in the mesh's frame.
     pub fn new(up: Vec3) -> Self {
         Self { up: narrow(up) }
     }
 
-    /// The height of a point of the mesh as a limit of the traversal.
+    /// Converts the height of a point of the mesh to a limit of the traversal.
     pub fn limit(tree: &Bvh16, up: Vec3, p: Vec3) -> f32 {
         (tree.frame.to_units(p).dot(up) + 2.0 * F32_ERROR) as f32
     }

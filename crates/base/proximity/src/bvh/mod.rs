@@ -1,7 +1,9 @@
-//! The bounding volume hierarchy (BVH) of a triangle mesh: 16 children per node, 8 triangles per leaf, and its traversal by
-//! one query. Two meshes against each other: [`mesh_mesh`](crate::mesh_mesh).
+//! The bounding volume hierarchy (BVH) of a triangle mesh, and its traversal by one query.
+//!
+//! A node has 16 children, a leaf 8 triangles. For two meshes against each other, see
+//! [`mesh_mesh`](crate::mesh_mesh).
 
-// A kernel that is not inlined into the function its instruction set is chosen for is compiled for the lowest one.
+// A kernel is compiled for the lowest instruction set unless it is inlined into the function that selects the set.
 #![allow(clippy::inline_always)]
 
 mod box_distance;

@@ -1,8 +1,8 @@
-//! What the tree stores: nodes of sixteen boxes and leaves of eight triangles, structure of arrays.
+//! The contents of the tree: nodes of sixteen boxes and leaves of eight triangles, as structures of arrays.
 
-/// Children of a node at most: the lanes of one SIMD test.
+/// Largest number of children of a node: the lanes of one SIMD test.
 pub(crate) const ARITY: usize = 16;
-/// Triangles of a leaf at most.
+/// Largest number of triangles of a leaf.
 pub(crate) const LEAF_SIZE: usize = 8;
 
 /// Up to sixteen children, structure of arrays, in units of the mesh's [`UnitFrame`](super::UnitFrame).

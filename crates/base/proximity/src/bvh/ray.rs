@@ -1,4 +1,4 @@
-//! Boxes that a ray passes.
+//! Boxes that a ray passes through.
 
 use elbowroom_spatial::Vec3;
 use fearless_simd::{Simd, dispatch, prelude::*};
@@ -8,14 +8,14 @@ use super::node::{ARITY, Node};
 use super::node_bound::NodeBound;
 use crate::lanes::{F32_ERROR, W16, array16, detected_simd_level, load16, narrow, splat16};
 
-/// A ray. The bound is below 0 for boxes that it passes and above 0 for others.
+/// A ray. The bound is below 0 for boxes that it passes through and above 0 for others.
 pub(crate) struct Ray {
     from: [f32; 3],
     inverse: [f32; 3],
 }
 
 impl Ray {
-    /// From a point of the mesh's box along a direction none of whose coordinates is 0.
+    /// Creates a ray from a point of the mesh's box along `direction`; no coordinate of `direction` is 0.
     pub fn new(tree: &Bvh16, from: Vec3, direction: Vec3) -> Self {
         let inverse = Vec3::new(1.0 / direction.x, 1.0 / direction.y, 1.0 / direction.z);
         Self { from: narrow(tree.frame.to_units(from)), inverse: narrow(inverse) }
@@ -31,7 +31,7 @@ impl Ray {
         let (ny, fy) = ((near.1 * y).min(far.1 * y), (near.1 * y).max(far.1 * y));
         let (nz, fz) = ((near.2 * z).min(far.2 * z), (near.2 * z).max(far.2 * z));
         let enters = nx.max(ny).max(nz).max(0.0);
-        // The boxes are inflated by far more than these few roundings can amount to.
+        // The boxes are inflated by far more than the error of these few roundings.
         enters - fx.min(fy).min(fz)
     }
 }

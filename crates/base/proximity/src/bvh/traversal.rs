@@ -15,7 +15,7 @@ struct PendingNode {
     height: u8,
 }
 
-/// Each step down leaves at most 15 siblings on the stack; trees are 8 high.
+/// Each step down leaves at most 15 siblings on the stack, and trees have a height of 8.
 const STACK_SIZE: usize = 16 * 10;
 
 impl Bvh16 {
@@ -28,7 +28,7 @@ impl Bvh16 {
         while len > 0 {
             len -= 1;
             let PendingNode { bound, number, height } = stack[len];
-            // A NaN is visited: what is unknown must not be left out.
+            // A NaN is visited: an unknown bound must not exclude a child.
             if bound > limit {
                 continue;
             }

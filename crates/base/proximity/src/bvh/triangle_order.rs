@@ -1,8 +1,8 @@
 //! The order of triangles in the tree: neighbours in space become neighbours in memory.
 //!
-//! The triangles below a node are one run whose length is a power of the arity times the leaf size, so the tree needs no
-//! pointers. Splits are chosen by the surface-area heuristic (Goldsmith and Salmon, 1987; binned as Wald, 2007) among the
-//! ranks that keep every run but the last full.
+//! The triangles below a node are one run. Its length is a power of the arity times the leaf size, so the tree needs
+//! no pointers. Splits are chosen by the surface-area heuristic (Goldsmith and Salmon, 1987; binned as in Wald,
+//! 2007), only among ranks for which every run but the last is full.
 
 use elbowroom_spatial::Vec3;
 use rayon::prelude::*;
@@ -12,9 +12,9 @@ use super::unit_frame::UnitFrame;
 
 /// Bins per axis of the split search.
 const BINS: usize = 16;
-/// Below this many triangles a second thread costs more than it saves.
+/// Number of triangles below which a second thread costs more than it saves.
 const PARALLEL_RUN: usize = 16_384;
-/// Elements that one thread fills at least.
+/// Smallest number of elements that one thread fills.
 const FILLED_RUN: usize = 1024;
 
 /// The bounds of a triangle, for sorting.
@@ -94,7 +94,7 @@ fn bounds_of(triangle: usize, vertices: &[Vec3], triangles: &[[u32; 3]], frame: 
     item
 }
 
-/// Sorts one run; `capacity` is that of the largest subtree that can be below it.
+/// Sorts one run; `capacity` is the capacity of the largest subtree that can be below it.
 fn arrange(items: &mut [TriangleBounds], mut capacity: usize) {
     if items.len() <= LEAF_SIZE {
         return;

@@ -2,7 +2,7 @@
 
 use elbowroom_spatial::{Aabb, Vec3};
 
-/// Origin and unit of a mesh: in units of this frame all its coordinates lie in [-1, 1].
+/// Origin and unit of a mesh: in this frame and unit all its coordinates are in [-1, 1].
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct UnitFrame {
     pub center: Vec3,

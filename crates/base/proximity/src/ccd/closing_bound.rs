@@ -1,4 +1,4 @@
-//! Bounds of the speed at which a gap closes. Their derivation: README.md in this folder.
+//! Bounds of the speed at which a gap closes. README.md in this folder derives them.
 
 use elbowroom_spatial::{Pose, Vec3};
 
@@ -7,10 +7,10 @@ use super::enclosing_points::EnclosingPoints;
 use super::rigid_motion::RigidMotion;
 use crate::Shape;
 
-/// Factor by which speeds are multiplied and times divided, for the rounding of a dozen operations.
+/// Factor for the rounding of a dozen operations: speeds are multiplied by it, times divided.
 const ROUNDING: f64 = 1.0 + 1e-12;
 
-/// A quantity that decreases by at most `rate·Δ + ½·growth·Δ²`, and by at most `cap·Δ`.
+/// Bound of a quantity that decreases by at most `rate·Δ + ½·growth·Δ²`, and by at most `cap·Δ`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ClosingBound {
     pub rate: f64,
@@ -19,13 +19,13 @@ pub(super) struct ClosingBound {
 }
 
 impl ClosingBound {
-    /// The most it can decrease in `dt`.
+    /// Largest possible decrease in `dt`.
     pub fn over(&self, dt: f64) -> f64 {
         let curved = self.rate * dt + 0.5 * self.growth * dt * dt;
         least(curved, self.cap * dt)
     }
 
-    /// A time during which it cannot decrease by `distance`; 0 if nothing is known.
+    /// A time in which the quantity cannot decrease by `distance`; 0 if no bound is known.
     pub fn time_for(&self, distance: f64) -> f64 {
         if !(distance > 0.0) {
             return 0.0;
@@ -60,7 +60,7 @@ impl<'a> BoundedShape<'a> {
         Self { shape, motion, twist: motion.constant_twist(), points: EnclosingPoints::of(shape) }
     }
 
-    /// Metres per unit of `t` that no point exceeds, infinite where unknown.
+    /// Upper bound of the speed of all points, metres per unit of `t`; infinite if unknown.
     fn speed(&self, from: f64, to: f64) -> f64 {
         let radius = self.points.map(|p| p.radius());
         match (radius, self.twist) {
@@ -80,7 +80,7 @@ impl<'a> BoundedShape<'a> {
     }
 }
 
-/// Bounds at time `t` of how the distance of two shapes can decrease.
+/// Bounds, at time `t`, of the decrease of the distance of two shapes.
 pub(super) struct PairBounds<'a> {
     pub a: &'a BoundedShape<'a>,
     pub b: &'a BoundedShape<'a>,
@@ -90,7 +90,7 @@ pub(super) struct PairBounds<'a> {
 }
 
 impl PairBounds<'_> {
-    /// The most that the distance can decrease until the end of the motion, metres.
+    /// Largest possible decrease of the distance until the end of the motion, metres.
     pub fn until_end(&self) -> f64 {
         let left = 1.0 - self.t;
         let apart = (self.a.speed(self.t, 1.0) + self.b.speed(self.t, 1.0)) * left * ROUNDING;
@@ -131,12 +131,12 @@ impl PairBounds<'_> {
         dt
     }
 
-    /// Bounds from the relative velocity at the points of either shape, where both twists are constant.
+    /// Bounds from the relative velocity at the points of either shape, if both twists are constant.
     fn twist_bounds(&self, normal: Option<Vec3>) -> impl Iterator<Item = ClosingBound> {
         let both = self.a.twist.zip(self.b.twist);
         let sides = both.map(|(a, b)| {
             let translating = a.rotation == Vec3::ZERO && b.rotation == Vec3::ZERO;
-            // Without rotation all points have the same velocity, and any point is enough.
+            // Without rotation all points have the same velocity, so any point is sufficient.
             let any = translating.then(|| EnclosingPoints::few(&[Vec3::ZERO]));
             [
                 self.a.points.or(any).map(|c| closing(&c, &self.a_in_world, &a, &b, self.t, normal)),
@@ -147,8 +147,8 @@ impl PairBounds<'_> {
     }
 }
 
-/// From the points of a shape with the twist `own`, against a shape with the twist `other`; `normal` points from the other to
-/// this shape and rotates with the other.
+/// Bound from the points of a shape with the twist `own`, against a shape with the twist `other`. `normal` points
+/// from the other shape to this shape and rotates with the other.
 fn closing(
     points: &EnclosingPoints,
     in_world: &Pose,

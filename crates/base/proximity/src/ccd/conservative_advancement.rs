@@ -1,4 +1,5 @@
-//! Conservative advancement: steps during which the shapes certainly do not touch, with a distance query after each.
+//! Conservative advancement: steps in which the shapes are guaranteed not to touch, with a distance query after
+//! each.
 
 use elbowroom_spatial::{Pose, Vec3};
 
@@ -12,9 +13,11 @@ use crate::{DistanceSettings, Separation, Shape, WarmStart, Workspace};
 /// The relative resolution of positions.
 const RESOLUTION: f64 = 64.0 * f64::EPSILON;
 
-/// The first time at which two moving shapes are within the tolerance of contact; `None` if they are apart all along.
+/// The first time at which two moving shapes are within the tolerance of contact; `None` if they are apart
+/// throughout.
 ///
-/// A NaN or an infinity in a pose, a dimension or a motion counts as a contact that is not certain: unknown does not count as free.
+/// A NaN or an infinity in a pose, a dimension or a motion gives a contact that is not certain: unknown does not
+/// count as free.
 pub fn time_of_impact(
     a: &Shape,
     a_motion: &dyn RigidMotion,
@@ -25,7 +28,7 @@ pub fn time_of_impact(
     time_of_impact_with(a, a_motion, b, b_motion, options, &mut Workspace::new())
 }
 
-/// [`time_of_impact`] with a workspace, which many calls share.
+/// Like [`time_of_impact`], with a workspace that many calls share.
 ///
 /// ```
 /// use elbowroom_proximity::ccd::{CcdOptions, ConstantTwist, time_of_impact_with};
@@ -58,7 +61,7 @@ pub fn time_of_impact_with(
         let finest = resolution(&bounds);
         let limit = bounds.until_end() + finest;
         let settings = DistanceSettings { limit, warm_start: Some(&mut warm_start), ..DistanceSettings::default() };
-        // Farther than the rest of the motion can close: free.
+        // If the distance is larger than the rest of the motion can close, the motion is free.
         let near = workspace.separation(a, &a_in_world, b, &b_in_world, settings)?;
         if steps == 1 && options.allow_initial_proximity && near.lower_bound > 0.0 {
             tolerance = tolerance.min(0.5 * near.lower_bound);
@@ -68,7 +71,7 @@ pub fn time_of_impact_with(
         if !(near.distance > tolerance) {
             return found(near.distance <= tolerance && a_in_world.is_finite() && b_in_world.is_finite());
         }
-        // Half the tolerance is kept: the distance never reaches 0, so that witness points always give a direction.
+        // Half the tolerance is kept, so that the distance never reaches 0 and the witness points always give a direction.
         let keep = 0.5 * tolerance;
         let free = bounds.time_for(near.lower_bound - keep).max(time_by_slab(&bounds, &near, keep));
         if free >= 1.0 - t {
@@ -83,7 +86,7 @@ pub fn time_of_impact_with(
     None
 }
 
-/// Time during which the empty slab between the two certainly stays thicker than `keep`.
+/// Time during which the empty slab between the two shapes is guaranteed to stay thicker than `keep`.
 fn time_by_slab(bounds: &PairBounds, near: &Separation, keep: f64) -> f64 {
     match separating_slab(bounds.a.shape, &bounds.a_in_world, bounds.b.shape, &bounds.b_in_world, near) {
         Some(slab) => bounds.time_for_slab(slab.thickness - keep, slab.normal),

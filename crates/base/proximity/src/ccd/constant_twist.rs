@@ -2,10 +2,11 @@
 
 use elbowroom_spatial::{FrameMotion, Pose, Vec3};
 
-/// Motion with constant velocity and constant angular velocity of one point of the body, the pivot, over `t` in `[0, 1]`.
+/// Motion with constant angular velocity, and constant velocity of one point of the body, the pivot, over `t` in
+/// `[0, 1]`.
 ///
-/// Every screw motion is of this kind: its pivot moves along the axis. So is a linear motion of the frame's origin with a
-/// constant rotation, the linear move of a robot's tool.
+/// Every screw motion is such a motion: its pivot moves along the axis. So is the linear move of a robot's tool: a
+/// linear motion of the frame's origin with a constant rotation.
 ///
 /// ```
 /// use elbowroom_proximity::ccd::{ConstantTwist, RigidMotion};
@@ -20,28 +21,29 @@ use elbowroom_spatial::{FrameMotion, Pose, Vec3};
 pub struct ConstantTwist {
     /// Pose of the body in the world at `t = 0`.
     pub start: Pose,
-    /// The pivot at `t = 0`: world, metres.
+    /// The pivot at `t = 0`, in the world, metres.
     pub pivot: Vec3,
     /// Velocity of the pivot in the world, metres per unit of `t`.
     pub velocity: Vec3,
-    /// Angular velocity in the world, radians per unit of `t`; of any size.
+    /// Angular velocity in the world, radians per unit of `t`; may be of any size.
     pub rotation: Vec3,
 }
 
 impl ConstantTwist {
-    /// Without rotation; every point is displaced by `travel` metres (world).
+    /// A motion without rotation that displaces every point by `travel` metres (world).
     pub fn linear(start: Pose, travel: Vec3) -> Self {
         Self { start, pivot: start.translation, velocity: travel, rotation: Vec3::ZERO }
     }
 
-    /// A rotation by the rotation vector `turn` (world, radians) about the axis through `on_axis` (world, metres), and
-    /// `travel` metres along it. Without a rotation there is no axis and nothing moves.
+    /// A rotation by the rotation vector `turn` (world, radians) about the axis through `on_axis` (world, metres), and a
+    /// travel of `travel` metres along it. If `turn` is zero, the axis is undefined and nothing moves.
     pub fn screw(start: Pose, on_axis: Vec3, turn: Vec3, travel: f64) -> Self {
         let velocity = turn.try_normalize().map_or(turn * travel, |axis| axis * travel);
         Self { start, pivot: on_axis, velocity, rotation: turn }
     }
 
-    /// From one pose to another: the origin moves straight, the rotation is the shortest, at a constant rate.
+    /// A motion from one pose to another: the origin moves straight, the rotation is the shortest, both at a constant
+    /// rate.
     pub fn straight(from: Pose, to: Pose) -> Self {
         let rotation = (to.rotation * from.rotation.inverse()).to_rotation_vector();
         let invalid = Vec3::splat(f64::NAN);
@@ -65,7 +67,7 @@ impl ConstantTwist {
         self.start.is_finite() && self.pivot.is_finite() && self.velocity.is_finite() && self.rotation.is_finite()
     }
 
-    /// Velocity (metres per unit of `t`) of the body's point that is at `p` (world) at time `t`.
+    /// Velocity (metres per unit of `t`) of the body's point at `p` (world, metres) at time `t`.
     #[inline]
     pub fn velocity_at(&self, p: Vec3, t: f64) -> Vec3 {
         self.velocity + self.rotational_velocity_at(p, t)

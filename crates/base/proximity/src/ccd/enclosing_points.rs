@@ -4,10 +4,10 @@ use elbowroom_spatial::Vec3;
 
 use crate::Shape;
 
-/// Points (local frame) whose convex hull holds the shape without its rounding radius.
+/// Points (local frame) whose convex hull encloses the shape without its rounding radius.
 ///
-/// The radius is excluded: the distance to a sphere is the distance to its centre less a constant, so it changes no faster
-/// than the centre moves, however fast the sphere rotates.
+/// The radius is excluded: the distance to a sphere is the distance to its centre minus a constant. So it changes no
+/// faster than the centre moves, however fast the sphere rotates.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct EnclosingPoints {
     points: [Vec3; 8],
@@ -15,7 +15,7 @@ pub(super) struct EnclosingPoints {
 }
 
 impl EnclosingPoints {
-    /// `None` for a half-space: the speed of its points is unbounded as soon as it rotates.
+    /// The points of a shape; `None` for a half-space: the speed of its points is unbounded as soon as it rotates.
     pub fn of(shape: &Shape) -> Option<Self> {
         let corners = |low: Vec3, high: Vec3| {
             let pick = |k: usize, bit: usize, l: f64, h: f64| if k & bit == 0 { l } else { h };
@@ -42,7 +42,7 @@ impl EnclosingPoints {
         })
     }
 
-    /// Up to eight points.
+    /// Creates a set of up to eight points.
     pub fn few(points: &[Vec3]) -> Self {
         let used = points.len().min(8);
         Self { points: std::array::from_fn(|k| points.get(k).copied().unwrap_or_default()), used }

@@ -1,10 +1,15 @@
-//! Continuous collision detection (CCD): when do two moving shapes first touch? Proven for all times, not sampled.
+//! Continuous collision detection (CCD): the first time at which two moving shapes touch, proven for all times, not
+//! sampled.
 //!
-//! [`time_of_impact`] takes any two shapes and how they move: at rest (a [`Pose`](elbowroom_spatial::Pose)), straight, about an
-//! axis or along a screw ([`ConstantTwist`]), or any [`RigidMotion`] that can bound its own speed. `None` means that the shapes
-//! are apart during all of the motion, ends included; thin plates are not tunnelled through. `Some` means that they are within
-//! the tolerance at [`TimeOfImpact::time`] and were apart before. A pass within the tolerance may be reported as a contact; a
-//! contact is always reported.
+//! [`time_of_impact`] accepts any two shapes and their motions: at rest (a [`Pose`](elbowroom_spatial::Pose)),
+//! straight, about an axis or along a screw ([`ConstantTwist`]), or any [`RigidMotion`] that can bound its own
+//! speed.
+//!
+//! - `None` means that the shapes are apart during the whole motion, including its ends; shapes never pass through
+//!   thin plates unnoticed.
+//! - `Some` means that they are within the tolerance at [`TimeOfImpact::time`] and were apart before.
+//!
+//! A contact is always reported; a pass within the tolerance may be reported as a contact.
 //!
 //! Method: conservative advancement (Mirtich, 1996). README.md in this folder derives the bounds.
 //!

@@ -3,19 +3,20 @@
 /// Settings of continuous collision detection.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CcdOptions {
-    /// At a reported contact the shapes are no farther apart than this, metres. Not finer than the resolution of poses of that
-    /// size (about 1e-14 of the largest coordinate); 0, a negative number or NaN mean that resolution.
+    /// Largest distance of the shapes at a reported contact, metres. Not finer than the resolution of poses of that size
+    /// (about 1e-14 of the largest coordinate); 0, a negative number or NaN selects that resolution.
     pub tolerance: f64,
-    /// After so many distance queries the result is a contact that is not [`certain`](super::TimeOfImpact::certain). A mesh that
-    /// slides along another just outside the tolerance advances by about the distance per step.
+    /// Largest number of distance queries; beyond it the result is a contact that is not
+    /// [`certain`](super::TimeOfImpact::certain). A mesh that slides along another just outside the tolerance advances
+    /// by about the distance per step.
     pub max_steps: u32,
-    /// For shapes that start nearer than the tolerance without touching: the start is not a contact, but coming nearer than
-    /// half the initial distance is. Shapes that touch at the start are reported at time 0 all the same.
+    /// If true, a start nearer than the tolerance without touching is not a contact, but coming nearer than half the
+    /// initial distance is. Shapes that touch at the start are still reported at time 0.
     pub allow_initial_proximity: bool,
 }
 
 impl Default for CcdOptions {
-    /// 0.1 mm, 10,000 steps, and a start within the tolerance is a contact.
+    /// A tolerance of 0.1 mm and 10,000 steps; a start within the tolerance is a contact.
     fn default() -> Self {
         Self { tolerance: 1e-4, max_steps: 10_000, allow_initial_proximity: false }
     }

@@ -1,4 +1,4 @@
-//! Motions over a unit of time, and the bounds of their speed.
+//! Motions over a unit of time, and bounds of their speed.
 
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
@@ -6,8 +6,9 @@ use super::constant_twist::ConstantTwist;
 
 /// A rigid motion: the pose of a body as a function of `t` from 0 to 1.
 ///
-/// The proof rests on the speed bounds: one that is too large costs steps, one that is too small makes the result wrong. A
-/// [`Pose`] is the motion of a body at rest; [`ConstantTwist`] is linear, screw and rotary motion.
+/// The proof depends on the speed bounds: a bound that is too large costs steps, a bound that is too small makes the
+/// result wrong. A [`Pose`] is the motion of a body at rest; [`ConstantTwist`] covers linear, screw and rotary
+/// motion.
 ///
 /// ```
 /// use elbowroom_proximity::ccd::{CcdOptions, RigidMotion, time_of_impact};
@@ -29,21 +30,21 @@ use super::constant_twist::ConstantTwist;
 /// assert!((hit.time - 0.5).abs() < 1e-3); // cos(πt) = 0
 /// ```
 pub trait RigidMotion {
-    /// Pose of the body in the world at `t` in `[0, 1]`, metres.
+    /// Pose of the body in the world (metres) at `t` in `[0, 1]`.
     fn pose(&self, t: f64) -> Pose;
 
-    /// Upper bound of the speed of the body's points within `radius` metres of its frame's origin, anywhere between `from`
-    /// and `to`: metres per unit of `t`. Must not grow when the interval shrinks.
+    /// Upper bound of the speed, in metres per unit of `t`, of the body's points within `radius` metres of its frame's
+    /// origin, at any time between `from` and `to`. Must not grow when the interval shrinks.
     fn speed(&self, radius: f64, from: f64, to: f64) -> f64;
 
-    /// The same for the component of the velocity along a unit vector of the world; may be negative if all those points
-    /// move the other way. By default the speed.
+    /// Upper bound, as [`RigidMotion::speed`], of the velocity component along a unit vector of the world. May be
+    /// negative if all of these points move the other way. The default is the speed.
     fn speed_along(&self, direction: Vec3, radius: f64, from: f64, to: f64) -> f64 {
         let _ = direction;
         self.speed(radius, from, to)
     }
 
-    /// The whole motion, where its twist is constant: pairs of such motions have far sharper bounds.
+    /// The whole motion, if its twist is constant; pairs of such motions have much tighter bounds.
     fn constant_twist(&self) -> Option<ConstantTwist> {
         None
     }
@@ -66,7 +67,7 @@ impl RigidMotion for Pose {
 impl RigidMotion for ConstantTwist {
     fn pose(&self, t: f64) -> Pose {
         if !self.is_finite() {
-            // A rotation vector of NaN would give the identity.
+            // A rotation vector with NaN would give the identity.
             return Pose::from_translation(Vec3::splat(f64::NAN));
         }
         let turn = Rotation::from_rotation_vector(self.rotation * t);

@@ -6,7 +6,8 @@ use crate::separation::rounding;
 use crate::shape::hull::farthest;
 use crate::{Separation, Shape};
 
-/// A mesh of more vertices is replaced by its box: its exact extent would cost more than it saves.
+/// Largest number of vertices of a mesh that is used itself. A larger mesh is replaced by its box: its exact extent
+/// would cost more than it saves.
 const MAX_VERTICES: usize = 20_000;
 
 /// A slab with one shape on each side.
@@ -14,7 +15,7 @@ const MAX_VERTICES: usize = 20_000;
 pub(super) struct SeparatingSlab {
     /// Unit vector in the world, from B to A.
     pub normal: Vec3,
-    /// Proven, metres, above 0.
+    /// Proven thickness, metres, above 0.
     pub thickness: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Time to collision from the present poses and velocities: one distance, no iteration.
+//! Time to collision from the present poses and velocities: one distance, without iteration.
 
 use elbowroom_spatial::{FrameMotion, Pose, Vec3};
 
@@ -7,7 +7,7 @@ use super::constant_twist::ConstantTwist;
 use super::separating_slab::separating_slab;
 use crate::{Separation, Shape};
 
-/// When two moving shapes may meet.
+/// Estimate and lower bound of the time until two moving shapes meet.
 ///
 /// ```
 /// use elbowroom_proximity::ccd::{MovingShape, time_to_collision};
@@ -24,11 +24,11 @@ use crate::{Separation, Shape};
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TimeToCollision {
-    /// Distance over closing speed of the nearest points, seconds: correct if these points meet and keep their velocities.
-    /// Infinite if they do not approach each other. 0 on contact and where a number is not finite.
+    /// Distance over closing speed of the nearest points, seconds: correct if these points meet and keep their
+    /// velocities. Infinite if they do not approach each other; 0 on contact, or if a number is not finite.
     pub estimate_s: f64,
-    /// Lower bound of the time, seconds, while velocity and angular velocity are constant: proven. At most the horizon; the
-    /// horizon itself means that there is no contact within it.
+    /// Proven lower bound of the time, seconds, while velocity and angular velocity are constant. At most the horizon;
+    /// the horizon itself means that the shapes do not touch within it.
     pub earliest_s: f64,
 }
 
@@ -37,9 +37,9 @@ pub struct TimeToCollision {
 pub struct MovingShape<'a> {
     /// The shape.
     pub shape: &'a Shape,
-    /// Its pose now.
+    /// The shape's pose now.
     pub in_world: &'a Pose,
-    /// Velocity and angular velocity of its frame; accelerations are ignored.
+    /// Velocity and angular velocity of the shape's frame; accelerations are ignored.
     pub motion: &'a FrameMotion,
 }
 
@@ -53,8 +53,10 @@ impl MovingShape<'_> {
     }
 }
 
-/// Estimate and proven bound of the time until two shapes meet. `near` is their [`separation`](crate::separation()) now,
-/// `horizon_s` the time for which the bound is computed, seconds.
+/// Estimate and proven bound of the time until two shapes meet.
+///
+/// `near` is their present [`separation`](crate::separation()). `horizon_s` is the time, in seconds, for which the
+/// bound is computed.
 pub fn time_to_collision(near: &Separation, a: MovingShape, b: MovingShape, horizon_s: f64) -> TimeToCollision {
     let (twist_a, twist_b) = (a.twist(horizon_s), b.twist(horizon_s));
     let is_finite = twist_a.is_finite() && twist_b.is_finite() && horizon_s >= 0.0;
@@ -65,8 +67,10 @@ pub fn time_to_collision(near: &Separation, a: MovingShape, b: MovingShape, hori
     TimeToCollision { estimate_s: estimate(near, a, b), earliest_s: free * horizon_s }
 }
 
-/// The fraction of two motions, in `[0, 1]`, during which the distance certainly does not reach 0: the proven half of
-/// [`time_to_collision`]. The shapes may be larger than those that `near` was measured between.
+/// The fraction of two motions, in `[0, 1]`, during which the distance is guaranteed not to reach 0.
+///
+/// This is the proven half of [`time_to_collision`]. The shapes may be larger than the shapes for which `near` was
+/// measured.
 ///
 /// ```
 /// use elbowroom_proximity::ccd::{ConstantTwist, contact_free_fraction};

@@ -5,8 +5,9 @@ use elbowroom_spatial::{Pose, Vec3};
 /// Level of detail.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub enum Detail {
-    /// Boxes of the BVHs of meshes down to this depth; 0 is the box around the whole mesh, along the axes of its own frame.
-    /// [`TriMesh::bvh_depth`](crate::TriMesh::bvh_depth) is the largest depth. Conservative: what is reported free is free.
+    /// Boxes of the BVHs of meshes down to this depth; 0 is the box around the whole mesh, along the axes of its own
+    /// frame. [`TriMesh::bvh_depth`](crate::TriMesh::bvh_depth) is the largest depth. Shapes reported free are
+    /// guaranteed to be free.
     Boxes(u8),
     /// Triangles.
     #[default]
@@ -16,15 +17,15 @@ pub enum Detail {
 /// Settings of a contact query.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactSettings {
-    /// Shapes that do not touch but are no farther apart than this, metres, give their nearest points. Negative counts as 0,
-    /// NaN as infinite.
+    /// Largest distance, metres, at which shapes that do not touch return their nearest points. A negative limit counts
+    /// as 0, NaN as infinite.
     pub limit: f64,
     /// Level of detail of meshes.
     pub detail: Detail,
 }
 
 impl Default for ContactSettings {
-    /// Exact, and only shapes that touch.
+    /// Exact, and only for shapes that touch.
     fn default() -> Self {
         Self { limit: 0.0, detail: Detail::Exact }
     }
@@ -39,24 +40,24 @@ impl ContactSettings {
 /// A point where two shapes touch, or where they are nearest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactPoint {
-    /// On the surface of the first shape, in the world.
+    /// Point on the surface of the first shape, in the world.
     pub on_a: Vec3,
-    /// On the surface of the second: the same point, or the corresponding one (see [the table](super)).
+    /// Point on the surface of the second shape: the same point, or the corresponding one (see [the table](super)).
     pub on_b: Vec3,
-    /// Outward normal of the first surface at its point, unit vector in the world.
+    /// Outward normal of the first surface at its point, a unit vector in the world.
     pub normal_a: Vec3,
-    /// Outward normal of the second.
+    /// Outward normal of the second surface at its point, a unit vector in the world.
     pub normal_b: Vec3,
-    /// The triangle of the first that contains the point, where it is a mesh.
+    /// The triangle of the first shape that contains the point, if the shape is a mesh.
     pub triangle_a: Option<u32>,
-    /// The triangle of the second.
+    /// The triangle of the second shape that contains the point, if the shape is a mesh.
     pub triangle_b: Option<u32>,
-    /// False if the shapes are apart, and the points are the nearest ones.
+    /// False if the shapes are apart; then the points are the nearest ones.
     pub touching: bool,
 }
 
 impl ContactPoint {
-    /// With the shapes exchanged.
+    /// The result with the shapes exchanged.
     pub(super) fn swapped(self) -> Self {
         Self {
             on_a: self.on_b,
@@ -69,7 +70,7 @@ impl ContactPoint {
         }
     }
 
-    /// Of shapes or poses that are not usable: in contact, at the origins.
+    /// The result for shapes or poses that are not usable: in contact, at the origins.
     pub(super) fn unknown(a_in_world: &Pose, b_in_world: &Pose) -> Self {
         Self {
             on_a: a_in_world.translation,

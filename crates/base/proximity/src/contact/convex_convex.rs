@@ -1,4 +1,5 @@
-//! Two shapes neither of which is a mesh: the witness points after moving one out of the other, moved back.
+//! Contact of two shapes that are not meshes: the witness points after moving one shape out of the other, moved
+//! back.
 
 use elbowroom_spatial::{Pose, Vec3};
 
@@ -15,14 +16,14 @@ pub(super) fn convex_convex(a: PlacedShape, b: PlacedShape, limit: f64) -> Optio
     if !overlap.depth.is_finite() {
         return Some(contact(a, a.in_world.translation, b, b.in_world.translation, overlap.direction));
     }
-    // Slightly farther than the depth, so that the nearest points are those of a gap and not of an overlap.
+    // Slightly farther than the depth, so that the nearest points belong to a gap and not to an overlap.
     let size = a.in_world.translation.distance(b.in_world.translation) + overlap.depth;
     let mut gap = 1e-9 * size.max(1e-3);
     loop {
         let step = overlap.direction * (overlap.depth + gap);
         let moved = Pose { translation: a.in_world.translation + step, ..*a.in_world };
         let apart = separation(a.shape, &moved, b.shape, b.in_world);
-        // The penetration of curved hulls is accurate to 1e-4 only.
+        // The penetration of curved hulls is accurate only to 1e-4.
         if apart.distance > 0.0 || gap > size + 1.0 {
             return Some(contact(a, apart.on_a - step, b, apart.on_b, overlap.direction));
         }

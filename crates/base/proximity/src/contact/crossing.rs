@@ -4,15 +4,15 @@ use elbowroom_spatial::Vec3;
 
 use crate::triangle::{segment_crosses, triangle_triangle};
 
-/// The longest crossing so far, in one frame.
+/// The longest crossing so far; all triangles are in one frame.
 #[derive(Debug)]
 pub(super) struct LongestCrossing {
-    /// Lengths that differ by less are equal, metres.
+    /// Lengths that differ by less count as equal, metres.
     resolution: f64,
     best: Option<Crossing>,
 }
 
-/// Where two triangles meet.
+/// The place where two triangles meet.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Crossing {
     /// Length of the segment in units of the resolution; 0 if the triangles only touch.
@@ -25,7 +25,7 @@ pub(super) struct Crossing {
 }
 
 impl LongestCrossing {
-    /// For shapes of this size, metres.
+    /// Creates the search for shapes of this size, metres.
     pub fn new(size: f64) -> Self {
         Self { resolution: (1e-9 * size).max(f64::MIN_POSITIVE), best: None }
     }
@@ -51,7 +51,7 @@ impl LongestCrossing {
     }
 }
 
-/// The ends of the segment in which two triangles that touch cross; their nearest points if they do not cross.
+/// The ends of the segment in which two touching triangles cross; their nearest points if they do not cross.
 pub(super) fn triangles_meet(s: &[Vec3; 3], t: &[Vec3; 3]) -> (Vec3, Vec3) {
     crossing(s, t).unwrap_or_else(|| {
         let near = triangle_triangle(*s, *t);

@@ -1,4 +1,4 @@
-//! Two meshes: the middle of the longest crossing of two triangles.
+//! Contact of two meshes: the middle of the longest crossing of two triangles.
 
 use elbowroom_spatial::{Pose, Vec3};
 

@@ -1,4 +1,4 @@
-//! A mesh and a box or a convex hull: triangles against the flat faces.
+//! Contact of a mesh and a box or a convex hull: triangles against the flat faces.
 
 use elbowroom_spatial::{Pose, Vec3};
 
@@ -35,7 +35,7 @@ const FACES: [[u32; 3]; 12] = [
     [4, 7, 6],
 ];
 
-/// Where the surfaces meet; `None` if they do not.
+/// The contact of the surfaces; `None` if they do not meet.
 pub(super) fn mesh_polyhedron(
     mesh: &TriMesh,
     in_world: &Pose,
@@ -54,7 +54,7 @@ pub(super) fn mesh_polyhedron(
     };
     let bounds = other.aabb(&Pose::IDENTITY);
     let query = BoxDistance::new(&mesh.bvh, &bounds, other_in_mesh);
-    // Rounding may leave this gap between surfaces that touch.
+    // Rounding may leave a gap of this size between surfaces that touch.
     let size = mesh.aabb().extent().max_element() + bounds.extent().max_element();
     let tolerance = 1e-12 * (size + other_in_mesh.translation.length());
     let limit = BoxDistance::limit(&mesh.bvh, tolerance);

@@ -1,4 +1,5 @@
-//! A mesh and a sphere, capsule, cylinder or half-space: the point of the mesh that is deepest in it.
+//! Contact of a mesh and a sphere, capsule, cylinder or half-space: the point of the mesh that is deepest in the
+//! other shape.
 
 use elbowroom_spatial::{Aabb, Pose, Vec3};
 
@@ -11,16 +12,17 @@ use crate::{Shape, TriMesh, project_point};
 
 /// The deepest point so far.
 struct Deepest {
-    /// Heights that differ by less are equal, metres.
+    /// Heights that differ by less count as equal, metres.
     resolution: f64,
-    /// Distance from the centre or the axis, or height, in units of the resolution: less is deeper.
+    /// Distance from the centre or the axis, or height, in units of the resolution; a smaller value is deeper.
     height: f64,
     at: Vec3,
     triangle: usize,
 }
 
 impl Deepest {
-    /// Of equals the smaller index, so that the result does not depend on the order of the tree.
+    /// Offers a point. Of equal points the one with the smaller triangle index is kept, so that the result does not
+    /// depend on the order of the tree.
     fn offer(&mut self, height: f64, at: Vec3, triangle: usize) {
         let height = (height / self.resolution).round();
         if height < self.height || (height == self.height && triangle < self.triangle) {
@@ -29,7 +31,7 @@ impl Deepest {
     }
 }
 
-/// Where the surfaces meet; `None` if the other is wholly inside the mesh.
+/// The contact of the surfaces; `None` if the other shape is wholly inside the mesh.
 pub(super) fn mesh_smooth(
     mesh: &TriMesh,
     in_world: &Pose,

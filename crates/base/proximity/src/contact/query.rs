@@ -12,16 +12,17 @@ use super::surface::{contained, nearest_points};
 use crate::advanced::{BvhBound, bvh_lower_bound, bvh_lower_bound_to_shape};
 use crate::{QueryStats, Shape, TriMesh, Workspace};
 
-/// The point where two shapes touch, or where they are nearest; `None` if they are certainly farther apart than the limit.
-/// A pose or a dimension that is not a number touches everything: the points are then the origins.
+/// The point where two shapes touch, or where they are nearest; `None` if they are guaranteed to be farther apart
+/// than the limit.
 ///
-/// Allocates only for hulls (not for boxes, cylinders and hulls against each other). All pairs of triangles that touch are
-/// compared, so deep overlaps of fine meshes are slow.
+/// If a number of a pose or a dimension is not finite, the shapes count as touching, and the points are the origins.
+/// Allocates only for hulls (except boxes, cylinders and hulls against each other). All pairs of triangles that
+/// touch are compared, so deep overlaps of fine meshes are slow.
 ///
-/// At [`Detail::Boxes`] meshes are as large as their boxes at that depth: `None` is certain, a contact may be none. The points are
-/// then landmarks, points of the surfaces (to f32 rounding) within the nearest boxes, the normals the mean normals there, and
-/// there is no triangle. Simple shapes have no boxes below the one around the whole shape; against each other, and against
-/// half-spaces, they are measured exactly.
+/// At [`Detail::Boxes`] meshes are as large as their boxes at that depth: `None` is guaranteed, a reported contact
+/// may be a false positive. The points are then landmarks, which are points of the surfaces (to f32 rounding) within
+/// the nearest boxes; the normals are the mean normals there, and the triangles are `None`. Simple shapes have only
+/// the box around the whole shape; against each other, and against half-spaces, they are measured exactly.
 ///
 /// ```
 /// use elbowroom_proximity::contact::{ContactSettings, contact_point};
@@ -88,7 +89,7 @@ fn exact(a: PlacedShape, b: PlacedShape, limit: f64, workspace: &mut Workspace) 
     }
 }
 
-/// A mesh (the first) and a shape that is none.
+/// The contact of a mesh (the first shape) and a shape that is not a mesh.
 fn mesh_simple(
     mesh: &TriMesh,
     a: PlacedShape,
@@ -120,7 +121,7 @@ fn by_boxes(a: PlacedShape, b: PlacedShape, depth: u8, limit: f64, workspace: &m
     (!(bound.lower_bound > limit)).then(|| of_boxes(&bound))
 }
 
-/// The contact of boxes; where their mean normal is zero, the direction from one to the other is used instead.
+/// The contact of boxes. If a mean normal is zero, the direction from one point to the other is used instead.
 fn of_boxes(bound: &BvhBound) -> ContactPoint {
     let toward = (bound.on_b - bound.on_a).try_normalize().unwrap_or(Vec3::Z);
     let or = |normal: Vec3, other| if normal == Vec3::ZERO { other } else { normal };

@@ -1,4 +1,4 @@
-//! Normals and triangles at surface points, nearest points, and containment: what the pairs of shapes share.
+//! Common parts of contact queries: normals and triangles at surface points, nearest points, and containment.
 
 use elbowroom_spatial::Vec3;
 
@@ -17,7 +17,7 @@ pub(super) struct SurfaceElement {
 /// The nearest points of shapes that are apart; `None` if they are farther apart than the limit.
 pub(super) fn nearest_points(a: PlacedShape, b: PlacedShape, limit: f64) -> Option<ContactPoint> {
     if limit == 0.0 {
-        // They do not touch.
+        // The shapes do not touch.
         return None;
     }
     let s = separation_within(a.shape, a.in_world, b.shape, b.in_world, limit)?;
@@ -42,21 +42,22 @@ pub(super) fn surface_at(PlacedShape { shape, in_world }: PlacedShape, on: Vec3,
         let normal = outward_normal(mesh, triangle, at, in_world.inverse_transform_vector(out));
         return SurfaceElement { normal: in_world.transform_vector(normal), triangle: Some(triangle as u32) };
     }
-    // From slightly below the surface: above it, rounding would determine the direction.
+    // The point is moved slightly below the surface: above it, rounding would determine the direction.
     let below = on - out * (1e-7 * (on.distance(in_world.translation) + 1e-3));
     let normal = project_point(shape, in_world, below).outward;
-    // In a shape thinner than that, the nearest surface is on the other side.
+    // If the shape is thinner than that, the nearest surface is on the other side.
     SurfaceElement { normal: if normal.dot(out) >= 0.0 { normal } else { out }, triangle: None }
 }
 
-/// One shape inside the other, surfaces not touching: a point of the inner one, and the nearest of the outer one's surface.
+/// The contact of shapes whose surfaces do not touch, one inside the other: a point of the inner shape, and the
+/// nearest point of the outer surface.
 pub(super) fn contained(a: PlacedShape, b: PlacedShape) -> ContactPoint {
     point_inside(a, b)
         .or_else(|| point_inside(b, a).map(ContactPoint::swapped))
         .unwrap_or_else(|| ContactPoint::unknown(a.in_world, b.in_world))
 }
 
-/// A point of the first inside the second.
+/// A point of the first shape inside the second.
 fn point_inside(a: PlacedShape, b: PlacedShape) -> Option<ContactPoint> {
     let local = match a.shape {
         Shape::Mesh(m) => m
@@ -84,8 +85,9 @@ fn point_inside(a: PlacedShape, b: PlacedShape) -> Option<ContactPoint> {
     })
 }
 
-/// Unit normal of a triangle to the outside of the mesh, mesh frame: by its orientation, unless points beside it show that the
-/// solid is on that side. A triangle without area has none: `away` then, or z.
+/// Unit normal of a triangle towards the outside of the mesh, in the mesh frame. It follows the triangle's
+/// orientation, unless points beside the triangle show that the solid is on that side. For a triangle without area
+/// it is `away`, or z.
 pub(super) fn outward_normal(mesh: &TriMesh, triangle: usize, at: Vec3, away: Vec3) -> Vec3 {
     let [a, b, c] = mesh.corners(triangle);
     let Some(normal) = (b - a).cross(c - a).try_normalize() else { return away.try_normalize().unwrap_or(Vec3::Z) };

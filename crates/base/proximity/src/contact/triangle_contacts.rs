@@ -1,4 +1,4 @@
-//! All pairs of triangles of two surfaces that touch, each with the segment in which it does.
+//! All pairs of triangles of two surfaces that touch, each with its contact segment.
 
 use std::sync::Arc;
 
@@ -16,14 +16,16 @@ pub struct TriangleContact {
     pub triangle_a: u32,
     /// Index of the triangle of the second mesh.
     pub triangle_b: u32,
-    /// The ends of the segment in which they cross, in the world. Where they only touch, or lie in one plane: the nearest
-    /// points, the first on the first triangle.
+    /// The ends of the segment in which the triangles cross, in the world. If they only touch, or lie in one plane: the
+    /// nearest points, the first one on the first triangle.
     pub segment: [Vec3; 2],
 }
 
-/// The surface of a shape as triangles: of meshes, hulls and boxes exactly; of spheres, capsules and cylinders inscribed, no
-/// farther from the surface than `chord_error_m` (at most 256 segments around). `None` for half-spaces, which are unbounded, and
-/// for shapes whose triangles are no mesh.
+/// The surface of a shape as triangles. `None` for half-spaces, which are unbounded, and for shapes whose triangles
+/// are not a valid mesh.
+///
+/// Meshes, hulls and boxes are exact. Spheres, capsules and cylinders are inscribed, no farther from the surface
+/// than `chord_error_m` (at most 256 segments around).
 ///
 /// ```
 /// use elbowroom_proximity::contact::triangle_surface;
@@ -43,8 +45,10 @@ pub fn triangle_surface(shape: &Shape, chord_error_m: f64) -> Option<Arc<TriMesh
     }
 }
 
-/// Calls `found` for each pair of triangles that touch, or that are closer than f64 can separate, each once and in no particular
-/// order. Returns true if the meshes are in contact without touching triangles: one is inside the other, or a pose is not
+/// Calls `found` for each pair of triangles that touch, or that are closer than f64 can separate, once per pair and
+/// in no particular order.
+///
+/// Returns true if the meshes are in contact without touching triangles: one is inside the other, or a pose is not
 /// usable.
 ///
 /// ```

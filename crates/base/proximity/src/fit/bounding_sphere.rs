@@ -1,9 +1,11 @@
-//! The smallest enclosing sphere, by exchange of support points until none is outside: a simplex method for this problem
-//! of linear-programming type (Sharir and Welzl, 1992). Coplanar points give the smallest enclosing circle.
+//! The smallest enclosing sphere, by exchange of support points until all points are inside.
+//!
+//! This is a simplex method for this problem of linear-programming type (Sharir and Welzl, 1992). Coplanar points
+//! give the smallest enclosing circle.
 
 use elbowroom_spatial::Vec3;
 
-/// Centre and radius, up to rounding.
+/// Centre and radius of the smallest enclosing sphere, up to rounding.
 pub(super) fn smallest(points: &[Vec3]) -> (Vec3, f64) {
     let Some(&first) = points.first() else { return (Vec3::ZERO, 0.0) };
     let mut basis = vec![first];
@@ -25,7 +27,7 @@ pub(super) fn smallest(points: &[Vec3]) -> (Vec3, f64) {
     (sphere.0, reach)
 }
 
-/// The smallest sphere around at most five points by testing all subsets of at most four, and that subset.
+/// The smallest sphere around at most five points, found by testing all subsets of at most four, and that subset.
 fn of_few(points: &[Vec3]) -> Option<((Vec3, f64), Vec<Vec3>)> {
     let mut best: Option<((Vec3, f64), Vec<Vec3>)> = None;
     for mask in 1_usize..1 << points.len() {

@@ -19,13 +19,13 @@ pub(super) fn fit(points: &[Vec3]) -> Option<(Capsule, Pose)> {
     Some(verified(points, best))
 }
 
-/// The capsule along the frame's z axis whose radius is `widening` times that of the points projected along the axis.
+/// The capsule along the frame's z axis with `widening` times the radius of the points projected along the axis.
 fn along(points: &[Vec3], rotation: Rotation, widening: f64) -> (Capsule, Pose) {
     let local: Vec<Vec3> = points.iter().map(|&p| rotation.inverse_rotate(p)).collect();
     let projected: Vec<Vec3> = local.iter().map(|p| Vec3::new(p.x, p.y, 0.0)).collect();
     let (center, least_radius) = bounding_sphere::smallest(&projected);
     let radius = least_radius * widening;
-    // The axis extends so far that a cap covers each point.
+    // The axis is long enough for a cap to cover each point.
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for (p, s) in local.iter().zip(&projected) {
         let cover = (radius * radius - (*s - center).length_squared()).max(0.0).sqrt();
@@ -37,7 +37,8 @@ fn along(points: &[Vec3], rotation: Rotation, widening: f64) -> (Capsule, Pose) 
     (Capsule { half_length, radius }, Pose::new(rotation, rotation * middle))
 }
 
-/// A wider capsule may be so much shorter that it is smaller: golden-section search.
+/// The best widened capsule, by golden-section search: a wider capsule may be so much shorter that its volume is
+/// smaller.
 fn widened(points: &[Vec3], rotation: Rotation) -> (Capsule, Pose) {
     let ratio = 0.5 * (5.0_f64.sqrt() - 1.0);
     let (mut lo, mut hi) = (1.0, 1.8);

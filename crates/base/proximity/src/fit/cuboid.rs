@@ -1,4 +1,5 @@
-//! Bounding box of any orientation. A smallest box is flush with edges of the hull (O'Rourke, 1985); most are flush with a face.
+//! Bounding box of any orientation. A smallest box is flush with edges of the hull (O'Rourke, 1985); most are flush
+//! with a face.
 
 use elbowroom_spatial::{Aabb, Pose, Rotation, Vec3};
 
@@ -6,7 +7,7 @@ use super::margin::{MARGIN, scale};
 use super::principal_axes;
 use crate::{ConvexHull, Cuboid};
 
-/// Hull faces tried, the largest first.
+/// Number of hull faces tried, largest first.
 const FACES: usize = 100;
 
 pub(super) fn fit(points: &[Vec3], hull: Option<&ConvexHull>) -> Option<(Cuboid, Pose)> {
@@ -14,7 +15,7 @@ pub(super) fn fit(points: &[Vec3], hull: Option<&ConvexHull>) -> Option<(Cuboid,
         let extent = bounds(points, r).extent();
         extent.x * extent.y * extent.z
     };
-    // The volume of a flat set can be 0 in many orientations: its area decides, then its length.
+    // The volume of a flat set can be 0 in many orientations: then the area decides, then the length.
     let flat = hull.is_none();
     let cost = |r: Rotation| {
         let e = bounds(points, r).extent();
@@ -22,7 +23,7 @@ pub(super) fn fit(points: &[Vec3], hull: Option<&ConvexHull>) -> Option<(Cuboid,
     };
     let mut starts = vec![Rotation::IDENTITY, principal_axes::principal(points)];
     starts.extend(hull.map(flush).unwrap_or_default());
-    // Each cost is a pass over all points: it is computed once per start, not once per comparison.
+    // Each cost is a pass over all points, so it is computed once per start, not once per comparison.
     let mut starts: Vec<(f64, Rotation)> = starts.into_iter().map(|s| (cost(s), s)).collect();
     starts.sort_by(|x, y| x.0.total_cmp(&y.0));
     let tried = starts.into_iter().take(3).map(|(_, s)| principal_axes::descend(s, &[Vec3::X, Vec3::Y, Vec3::Z], cost));

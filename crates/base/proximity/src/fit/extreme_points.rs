@@ -1,4 +1,4 @@
-//! The points of a set that decide what encloses it.
+//! The points of a set that determine its enclosing shapes.
 
 use elbowroom_spatial::{Pose, Vec3};
 
@@ -17,14 +17,14 @@ use crate::{Capsule, ConvexHull, Cuboid};
 /// ```
 #[derive(Debug, Clone)]
 pub struct ExtremePoints {
-    /// The corners of the hull, or all points if they are flat. A hull may exclude points by its tolerance, so what is not exactly
-    /// inside is kept.
+    /// The corners of the hull, or all points if they are flat. A hull may exclude points by its tolerance, so points
+    /// that are not exactly inside are kept.
     points: Vec<Vec3>,
     hull: Option<ConvexHull>,
 }
 
 impl ExtremePoints {
-    /// `None` without points or where one is not finite.
+    /// Computes the extreme points; `None` without points or if one is not finite.
     pub fn of(points: &[Vec3]) -> Option<Self> {
         if points.is_empty() || !points.iter().all(|p| p.is_finite()) {
             return None;
@@ -32,7 +32,7 @@ impl ExtremePoints {
         Some(Self::with_hull(points, ConvexHull::from_points(points).ok()))
     }
 
-    /// Of finite points, at least one, whose hull is known.
+    /// Computes the extreme points of at least one finite point, with a known hull.
     pub(crate) fn with_hull(points: &[Vec3], hull: Option<ConvexHull>) -> Self {
         let points = hull.as_ref().and_then(|hull| points_on_surface(points, hull)).unwrap_or_else(|| points.to_vec());
         Self { points, hull }
@@ -58,7 +58,7 @@ impl ExtremePoints {
     }
 }
 
-/// The hull's vertices and the points on or outside of its surface; `None` where finding them would take too long.
+/// The hull's vertices and the points on or outside its surface; `None` if finding them would take too long.
 fn points_on_surface(points: &[Vec3], hull: &ConvexHull) -> Option<Vec<Vec3>> {
     let mut kept = hull.vertices().to_vec();
     let margin = 1e-13 * scale(points);

@@ -1,8 +1,8 @@
-//! What a fit is enlarged by.
+//! The margin by which a fit is enlarged.
 
 use elbowroom_spatial::Vec3;
 
-/// Margin for the rounding of a pose that is composed with others later, as a fraction of the coordinates.
+/// Margin for rounding when a pose is composed with others later, as a fraction of the coordinates.
 pub(super) const MARGIN: f64 = 4.0 * f64::EPSILON;
 
 /// Largest coordinate of the points.

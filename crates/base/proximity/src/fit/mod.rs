@@ -1,7 +1,7 @@
-//! Bounding shapes of points: sphere, capsule, box. They enclose every point.
+//! Bounding shapes of points: sphere, capsule, box. Each encloses every point.
 //!
-//! Each fit is verified against all points in the arithmetic of the distance queries, and enlarged by a margin for rounding.
-//! Fits use the vertices of the convex hull where there is one.
+//! Each fit is verified against all points in the arithmetic of the distance queries, and enlarged by a margin for
+//! rounding. Fits use the vertices of the convex hull if it exists.
 
 mod bounding_sphere;
 mod capsule;
@@ -21,14 +21,15 @@ use margin::{MARGIN, scale};
 pub struct Fit {
     /// Capsule, cuboid or sphere.
     pub shape: Shape,
-    /// Its frame in the frame of the points.
+    /// Pose of the shape's frame in the frame of the points.
     pub in_frame: Pose,
-    /// Its volume, m³.
+    /// Volume of the shape, m³.
     pub volume: f64,
 }
 
-/// A small enclosing capsule: its axis starts at the principal axes and is rotated to a local minimum of the volume.
-/// `None` without points or where one is not finite.
+/// A small enclosing capsule. `None` without points or if one is not finite.
+///
+/// Its axis starts at the principal axes and is rotated to a local minimum of the volume.
 ///
 /// ```
 /// use elbowroom_proximity::{Shape, fit};
@@ -41,8 +42,10 @@ pub fn capsule(points: &[Vec3]) -> Option<Fit> {
     ExtremePoints::of(points)?.capsule()
 }
 
-/// A small enclosing box: it starts flush with a face and an edge of the convex hull or along the principal axes, and is
-/// rotated to a local minimum of the volume. `None` without points or where one is not finite.
+/// A small enclosing box. `None` without points or if one is not finite.
+///
+/// It starts flush with a face and an edge of the convex hull, or along the principal axes, and is rotated to a
+/// local minimum of the volume.
 ///
 /// ```
 /// use elbowroom_proximity::fit;
@@ -54,7 +57,7 @@ pub fn cuboid(points: &[Vec3]) -> Option<Fit> {
     ExtremePoints::of(points)?.cuboid()
 }
 
-/// The smallest enclosing sphere. `None` without points or where one is not finite.
+/// The smallest enclosing sphere. `None` without points or if one is not finite.
 ///
 /// ```
 /// use elbowroom_proximity::{Shape, fit};
@@ -72,7 +75,7 @@ pub fn sphere(points: &[Vec3]) -> Option<Fit> {
     Some(Fit { shape: Shape::Sphere(sphere), in_frame, volume: sphere.volume() })
 }
 
-/// The smaller of capsule and box by volume. `None` without points or where one is not finite.
+/// The smaller of capsule and box by volume. `None` without points or if one is not finite.
 ///
 /// ```
 /// use elbowroom_proximity::{Shape, fit};
@@ -85,17 +88,17 @@ pub fn tightest(points: &[Vec3]) -> Option<Fit> {
     smaller(extreme.capsule(), extreme.cuboid())
 }
 
-/// As [`capsule`] of the vertices, kept with the mesh.
+/// Like [`capsule`], for the vertices of a mesh; stored with the mesh.
 pub(crate) fn capsule_of_mesh(mesh: &TriMesh) -> Option<Fit> {
     mesh.enclosing_capsule().map(Fit::from)
 }
 
-/// As [`cuboid`] of the vertices, kept with the mesh.
+/// Like [`cuboid`], for the vertices of a mesh; stored with the mesh.
 pub(crate) fn cuboid_of_mesh(mesh: &TriMesh) -> Option<Fit> {
     mesh.enclosing_cuboid().map(Fit::from)
 }
 
-/// As [`tightest`] of the vertices, kept with the mesh.
+/// Like [`tightest`], for the vertices of a mesh; stored with the mesh.
 pub(crate) fn tightest_of_mesh(mesh: &TriMesh) -> Option<Fit> {
     smaller(capsule_of_mesh(mesh), cuboid_of_mesh(mesh))
 }
@@ -118,12 +121,12 @@ impl From<(Cuboid, Pose)> for Fit {
 }
 
 impl ExtremePoints {
-    /// [`capsule`] of all points.
+    /// Like [`capsule`], for all points.
     pub fn capsule(&self) -> Option<Fit> {
         self.enclosing_capsule().map(Fit::from)
     }
 
-    /// [`cuboid`] of all points.
+    /// Like [`cuboid`], for all points.
     pub fn cuboid(&self) -> Option<Fit> {
         self.enclosing_cuboid().map(Fit::from)
     }

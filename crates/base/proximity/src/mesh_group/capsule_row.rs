@@ -1,4 +1,4 @@
-//! Sixteen capsules around meshes, and which of them may touch another one.
+//! Sixteen capsules around meshes, and the test which of them may touch another capsule.
 
 use elbowroom_spatial::Vec3;
 use fearless_simd::{Simd, prelude::*};
@@ -7,18 +7,18 @@ use super::sphere_row::LANES;
 use crate::TriMesh;
 use crate::lanes::{V3, W16, load16, splat16};
 
-/// Below this, squared sine of the angle of two axes, they count as parallel.
+/// Squared sine of the angle of two axes below which they count as parallel.
 const PARALLEL: f32 = 1e-5;
 
-/// A capsule around a mesh, in its frame, m.
+/// A capsule around a mesh, in the frame of the mesh; lengths in m.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BoundingCapsule {
     pub middle: Vec3,
-    /// Of length 1.
+    /// Direction of the axis, of length 1.
     pub axis: Vec3,
     pub half_length: f64,
     pub radius: f64,
-    /// From the origin to the farthest point of the mesh, at most.
+    /// Upper bound of the distance from the origin to the farthest point of the mesh.
     pub reach: f64,
 }
 
@@ -27,18 +27,18 @@ pub(super) struct BoundingCapsule {
 pub(super) struct CapsuleRow {
     pub half_length: [f32; LANES],
     pub radius: [f32; LANES],
-    /// A bit per lane in use.
+    /// Bit mask of the lanes in use.
     pub used: u32,
 }
 
-/// Where they are.
+/// Positions of the capsules of a row.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PlacedRow {
     pub middle: [[f32; LANES]; 3],
     pub axis: [[f32; LANES]; 3],
 }
 
-/// A lane of a row.
+/// One capsule of a row, with its position.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PlacedCapsule {
     middle: [f32; 3],
@@ -85,7 +85,8 @@ impl CapsuleRow {
         }
     }
 
-    /// The lanes whose bounding spheres are not proven to be farther than `error` from that of a capsule. Axes are not read.
+    /// The lanes whose bounding spheres are not proven to be farther than `error` from the bounding sphere of a capsule.
+    /// The axes are not read.
     #[inline(always)]
     pub fn near_spheres<S: Simd>(&self, simd: S, placed: &PlacedRow, one: &PlacedCapsule, error: f32) -> u32 {
         let between = splat16(simd, one.middle).minus(load16(simd, &placed.middle));
@@ -94,14 +95,14 @@ impl CapsuleRow {
         !(between.dot(between).simd_gt(reach * reach).to_bitmask() as u32) & self.used
     }
 
-    /// The same of the capsules themselves.
+    /// The lanes whose capsules are not proven to be farther than `error` from a capsule.
     #[inline(always)]
     pub fn near_capsules<S: Simd>(&self, simd: S, placed: &PlacedRow, one: &PlacedCapsule, error: f32) -> u32 {
         let between = splat16(simd, one.middle).minus(load16(simd, &placed.middle));
         let (u, v) = (splat16(simd, one.axis), load16(simd, &placed.axis));
         let half_lengths = [W16::splat(simd, one.half_length), W16::load_array_ref(simd, &self.half_length)];
         let n = separating_direction(simd, between, [u, v], half_lengths);
-        // Whatever the direction is, the gap along it is one.
+        // For any direction, the gap along it is a lower bound.
         let gap = n.dot(between) - (n.dot(u).abs() * half_lengths[0] + n.dot(v).abs() * half_lengths[1]);
         let radii = W16::load_array_ref(simd, &self.radius) + W16::splat(simd, one.radius + error);
         let is_apart = gap.simd_gt(W16::splat(simd, 0.0)) & (gap * gap).simd_gt(radii * radii * n.dot(n));
@@ -109,7 +110,8 @@ impl CapsuleRow {
     }
 }
 
-/// From about the nearest point of a segment in each lane to about that of another; `between` joins their middles.
+/// The direction between approximate nearest points of two segments in each lane; `between` joins the segments'
+/// middles.
 #[inline(always)]
 fn separating_direction<S: Simd>(
     simd: S,
@@ -142,7 +144,7 @@ mod tests {
     use crate::lanes::{detected_simd_level, narrow};
     use crate::{Capsule, separation};
 
-    /// Lanes that are left out are apart by the exact distance; few that are apart by a millimetre are kept.
+    /// Excluded lanes are apart by the exact distance; few lanes that are apart by a millimetre are kept.
     #[test]
     fn capsules_that_are_left_out_are_apart() {
         let mut random = SplitMix(8);

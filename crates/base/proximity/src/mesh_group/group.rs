@@ -1,4 +1,4 @@
-//! Groups of meshes, and whether two of them touch.
+//! Groups of meshes, and the query whether two of them touch.
 
 use std::sync::Arc;
 
@@ -13,7 +13,8 @@ use crate::TriMesh;
 use crate::lanes::{detected_simd_level, narrow};
 use crate::mesh_mesh::{Workspace, colliding_triangles};
 
-/// Meshes that move each with its own pose, such as the links of an arm, with what settles most of their collision queries.
+/// Meshes that each move with their own pose, such as the links of an arm, with data that decides most of their
+/// collision queries.
 ///
 /// ```
 /// use std::sync::Arc;
@@ -31,11 +32,11 @@ use crate::mesh_mesh::{Workspace, colliding_triangles};
 #[derive(Debug, Clone)]
 pub struct MeshGroup {
     meshes: Vec<GroupMesh>,
-    /// Of the capsules around the meshes.
+    /// Rows of the capsules around the meshes.
     rows: Vec<CapsuleRow>,
-    /// Their middles.
+    /// Middles of the capsules.
     middles: Vec<Vec3>,
-    /// From the origin of a mesh to its farthest point, at most, m.
+    /// Upper bound of the distance from the origin of a mesh to its farthest point, m.
     reach: f64,
 }
 
@@ -43,11 +44,11 @@ pub struct MeshGroup {
 struct GroupMesh {
     mesh: Arc<TriMesh>,
     capsule: BoundingCapsule,
-    /// Spheres inside the solid; empty if it has no interior.
+    /// Spheres inside the solid; empty if the mesh has no interior.
     interior: SphereRow,
 }
 
-/// Memory for queries on groups: one per thread. No answer depends on earlier queries.
+/// Memory for queries on groups, one per thread. Answers never depend on earlier queries.
 #[derive(Debug, Default)]
 pub struct GroupWorkspace {
     mesh: Workspace,
@@ -55,7 +56,8 @@ pub struct GroupWorkspace {
     sides: [PlacedSpheres; 2],
     /// Meshes of the first group, rows of the second, and the lanes that may touch.
     near: Vec<(usize, usize, u32)>,
-    /// Pairs that spheres do not settle: how deep those inside overlap (below zero: how far they are apart), and which they are.
+    /// Pairs that the spheres do not decide: how deep the inner spheres overlap (negative: how far they are apart), and
+    /// the pair.
     unsettled: Vec<(f32, (usize, usize))>,
 }
 
@@ -69,12 +71,12 @@ struct PlacedSpheres {
 }
 
 impl GroupWorkspace {
-    /// For the best instruction set of this processor.
+    /// Creates a workspace for the best instruction set of this processor.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// For a given instruction set.
+    /// Creates a workspace for a given instruction set.
     #[doc(hidden)]
     pub fn with_simd_level(simd_level: SimdLevel) -> Self {
         Self { simd_level: Some(simd_level), mesh: Workspace::with_simd_level(simd_level), ..Self::default() }
@@ -82,7 +84,7 @@ impl GroupWorkspace {
 }
 
 impl MeshGroup {
-    /// Of meshes; takes some milliseconds for each.
+    /// Creates a group; takes some milliseconds for each mesh.
     pub fn new(meshes: Vec<Arc<TriMesh>>) -> Self {
         let meshes: Vec<_> = meshes.into_iter().map(GroupMesh::new).collect();
         let capsules: Vec<_> = meshes.iter().map(|m| m.capsule).collect();
@@ -91,9 +93,10 @@ impl MeshGroup {
         Self { meshes, rows: capsules.chunks(LANES).map(CapsuleRow::new).collect(), middles, reach }
     }
 
-    /// True if a mesh of this group touches one of another, as [`colliding_triangles`] of each
-    /// pair says. `poses` has one for each mesh of this group, `other_poses` for each of the other; where one is missing the
-    /// answer is true.
+    /// True if a mesh of this group touches a mesh of the other, as [`colliding_triangles`] decides for each pair.
+    ///
+    /// `poses` has one pose for each mesh of this group, `other_poses` one for each mesh of the other group; if the
+    /// number is wrong the answer is true.
     pub fn collides(&self, poses: &[Pose], other: &Self, other_poses: &[Pose], workspace: &mut GroupWorkspace) -> bool {
         if poses.len() != self.meshes.len() || other_poses.len() != other.meshes.len() {
             return true;
@@ -122,11 +125,11 @@ struct GroupQuery<'a> {
 }
 
 impl GroupQuery<'_> {
-    /// Bounding volumes of all pairs, then spheres of the pairs that are left. True if a collision is proven; `unsettled` has
-    /// the pairs of which nothing is.
+    /// Tests the bounding volumes of all pairs, then the spheres of the remaining pairs. True if a collision is proven;
+    /// the pairs without a proof are in `unsettled`.
     #[inline(always)]
     fn settle<S: Simd>(&self, simd: S, workspace: &mut GroupWorkspace) -> bool {
-        // The rows of the second group are read first, and soon after they were written.
+        // The rows of the second group are read first, soon after they were written.
         let [one, other] = &mut workspace.sides;
         let sum = self.place_middles(1, &mut other.rows) + self.place_middles(0, &mut one.rows);
         let reach = self.groups[0].reach.max(self.groups[1].reach);
@@ -138,7 +141,8 @@ impl GroupQuery<'_> {
         !workspace.near.is_empty() && self.settle_near(simd, error, workspace)
     }
 
-    /// The middles of the capsules; returns the sum of their coordinates' magnitudes, m, which is not a number where one is none.
+    /// Places the middles of the capsules. Returns the sum of their coordinates' magnitudes, m, which is NaN if one of
+    /// them is.
     #[inline(always)]
     fn place_middles(&self, side: usize, rows: &mut Vec<PlacedRow>) -> f32 {
         let group = self.groups[side];
@@ -230,7 +234,7 @@ impl GroupQuery<'_> {
         workspace.unsettled.extend((0..one).flat_map(|a| (0..other).map(move |b| (0.0, (a, b)))));
     }
 
-    /// The triangles of what is left, the deepest first.
+    /// Measures the triangles of the remaining pairs, the deepest first.
     fn measure(&self, workspace: &mut GroupWorkspace) -> bool {
         let GroupWorkspace { mesh, unsettled, .. } = workspace;
         unsettled.sort_unstable_by(|x, y| y.0.total_cmp(&x.0));

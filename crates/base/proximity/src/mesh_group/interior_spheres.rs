@@ -4,18 +4,18 @@ use elbowroom_spatial::Vec3;
 
 use crate::TriMesh;
 
-/// Points of a grid that are tried, about.
+/// Approximate number of grid points that are tried.
 const POINTS: f64 = 1500.0;
-/// Steps away from the nearest point of the surface.
+/// Number of steps away from the nearest point of the surface.
 const STEPS: usize = 12;
-/// The bound of a distance's rounding error, as a share of the size.
+/// Bound of a distance's rounding error, as a fraction of the size.
 const ROUNDING: f64 = 1e-9;
 
-/// A point inside, and a radius (m) at which no point of the surface is nearer.
+/// A point inside the solid, and a radius (m) within which the surface has no point.
 type Sphere = (Vec3, f64);
 
-/// Up to `count` spheres in the interior: each is that among the points of a grid which contains the most points that no
-/// earlier one does, moved where it grows.
+/// Up to `count` spheres in the interior. Each is chosen among the points of a grid as the sphere that contains the
+/// most points outside all earlier spheres, and is then moved while it grows.
 pub(super) fn interior_spheres(mesh: &TriMesh, count: usize) -> Vec<Sphere> {
     if !mesh.has_interior() {
         return Vec::new();
@@ -38,7 +38,7 @@ pub(super) fn interior_spheres(mesh: &TriMesh, count: usize) -> Vec<Sphere> {
     chosen
 }
 
-/// Points of the mesh's box.
+/// A grid of points in the mesh's box.
 fn grid(mesh: &TriMesh) -> Vec<Vec3> {
     let (bounds, extent) = (mesh.aabb(), mesh.aabb().extent());
     let spacing = (extent.x * extent.y * extent.z / POINTS).cbrt();
@@ -61,14 +61,14 @@ fn grid(mesh: &TriMesh) -> Vec<Vec3> {
     points
 }
 
-/// No point of the surface is nearer to a point inside, m; `None` outside.
+/// Lower bound of the distance (m) from an inside point to the surface; `None` for a point outside.
 fn clearance(mesh: &TriMesh, p: Vec3) -> Option<f64> {
     let nearest = mesh.nearest_point_within(p, f64::INFINITY)?;
     let metres = p.distance(nearest) - ROUNDING * (mesh.aabb().max_distance(Vec3::ZERO) + p.length());
     (metres > 0.0 && mesh.contains(p)).then_some(metres)
 }
 
-/// Moved away from the surface as long as the radius grows.
+/// The sphere moved away from the surface as long as its radius grows.
 fn grown(mesh: &TriMesh, mut best: Sphere) -> Sphere {
     let mut step = 0.5 * best.1;
     for _ in 0..STEPS {
@@ -89,7 +89,7 @@ mod tests {
     use crate::tessellate::tessellate;
     use crate::{Capsule, Cuboid, Shape};
 
-    /// No point of any triangle, in steps of a twentieth of its sides, is in one of the spheres; all centres are inside.
+    /// The spheres contain no point of any triangle, in steps of a twentieth of its sides; all centres are inside.
     #[test]
     fn spheres_are_inside() {
         let shapes = [
@@ -114,7 +114,7 @@ mod tests {
                 assert!(mesh.contains(*centre) && *radius > 0.0);
                 assert!(on_surface.iter().all(|p| p.distance(*centre) >= *radius));
             }
-            // The largest is nearly as large as one can be.
+            // The largest sphere is nearly as large as possible.
             let largest = spheres.iter().fold(0.0, |r: f64, s| r.max(s.1));
             let expected = if matches!(shape, Shape::Capsule(_)) { 0.05 } else { 0.02 };
             assert!((largest - expected).abs() < 3e-3, "{largest}");

@@ -1,9 +1,10 @@
-//! Two groups of meshes, such as the links of two arms: whether any mesh of one touches any of the other.
+//! Two groups of meshes, such as the links of two arms, and the query whether any mesh of one touches any mesh of
+//! the other.
 //!
-//! Most pairs are settled without their triangles: bounding spheres and capsules of all pairs are compared sixteen at a time,
-//! and of what is left, sixteen spheres inside each solid prove collisions.
+//! Most pairs are decided without their triangles. Bounding spheres and capsules of all pairs are compared sixteen
+//! at a time; for the remaining pairs, sixteen spheres inside each solid prove collisions.
 
-// A kernel that is not inlined into the function its instruction set is chosen for is compiled for the lowest one.
+// A kernel is compiled for the lowest instruction set unless it is inlined into the function that selects the set.
 #![allow(clippy::inline_always)]
 
 mod capsule_row;

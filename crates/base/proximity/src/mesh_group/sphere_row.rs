@@ -1,4 +1,4 @@
-//! Sixteen spheres of a mesh, and how deep those of two meshes overlap.
+//! Sixteen spheres of a mesh, and the overlap of the spheres of two meshes.
 
 use elbowroom_spatial::Vec3;
 use fearless_simd::{Simd, prelude::*};
@@ -6,14 +6,14 @@ use fearless_simd::{Simd, prelude::*};
 use super::group_frame::PoseF32;
 use crate::lanes::{W16, load16, rows16, splat16, store16};
 
-/// Spheres of a row.
+/// Number of spheres of a row.
 pub(super) const LANES: usize = 16;
 
-/// Up to sixteen spheres; the first one again in lanes that are not used.
+/// Up to sixteen spheres; unused lanes repeat the first one.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SphereRow {
     centres: [[f32; LANES]; 3],
-    /// m.
+    /// Radii, m.
     radii: [f32; LANES],
     used: usize,
 }
@@ -21,7 +21,7 @@ pub(super) struct SphereRow {
 impl SphereRow {
     pub const EMPTY: Self = Self { centres: [[0.0; LANES]; 3], radii: [0.0; LANES], used: 0 };
 
-    /// Of centres and radii, m; of more than sixteen the first ones.
+    /// Creates a row from centres and radii, m; uses at most the first sixteen.
     pub fn new(spheres: &[(Vec3, f64)]) -> Self {
         let mut row = Self { used: spheres.len().min(LANES), ..Self::EMPTY };
         for lane in 0..LANES {
@@ -38,7 +38,7 @@ impl SphereRow {
         self.used == 0
     }
 
-    /// In the frame of a pose.
+    /// Places the spheres at a pose.
     #[inline(always)]
     pub fn place<S: Simd>(&self, simd: S, pose: &PoseF32, placed: &mut Self) {
         let centres = load16(simd, &self.centres).placed(&rows16(simd, &pose.rows), splat16(simd, pose.shift));
@@ -47,9 +47,11 @@ impl SphereRow {
         placed.used = self.used;
     }
 
-    /// The largest difference of squares, m²: of the sum of two radii and `more`, and of the distance of their centres. Above
-    /// zero some two spheres overlap, even where each pair's radii are less by `-more` metres; below none do. Negative infinity
-    /// where a row is empty.
+    /// The largest difference (m²) over all pairs of spheres: the square of the sum of both radii and `more`, minus the
+    /// square of the distance of the centres.
+    ///
+    /// If it is positive, two spheres overlap, even if each pair's radii are less by `-more` metres; if it is negative,
+    /// none do. Negative infinity if a row is empty.
     #[inline(always)]
     pub fn deepest<S: Simd>(&self, simd: S, other: &Self, more: f32) -> f32 {
         if other.is_empty() {

@@ -1,4 +1,4 @@
-//! Level of detail: lower bounds of the distance by the boxes of the trees down to some depth.
+//! Level of detail: lower bounds of the distance from the boxes of the trees down to some depth.
 
 use elbowroom_spatial::{Pose, Vec3};
 
@@ -12,27 +12,31 @@ use super::workspace::Workspace;
 use crate::bvh::{ARITY, BoxDistance, Bvh16, NodeBound};
 use crate::{Shape, TriMesh};
 
-/// A lower bound of a distance by boxes, and the boxes that are nearest.
+/// A lower bound of a distance by boxes, and the nearest boxes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BvhBound {
-    /// Proven: the distance is not below this, metres. 0 where boxes touch, and where one mesh is inside the other.
+    /// Proven lower bound of the distance, metres; 0 if boxes touch, or if one mesh is inside the other.
     pub lower_bound: f64,
     /// A point of the first surface (to f32 rounding) in its nearest box, in the world.
     pub on_a: Vec3,
-    /// The same of the second. Their distance is no smaller than that of the surfaces.
+    /// A point of the second surface (to f32 rounding) in its nearest box, in the world. The distance of the two points
+    /// is at least the distance of the surfaces.
     pub on_b: Vec3,
-    /// Mean normal of the triangles in the box of the first, by their orientation, in the world; zero where they cancel.
+    /// Mean normal of the triangles in the box of the first mesh, by their orientation, in the world; zero if they
+    /// cancel.
     pub normal_a: Vec3,
-    /// The same of the second.
+    /// Mean normal of the triangles in the box of the second mesh, by their orientation, in the world; zero if they
+    /// cancel.
     pub normal_b: Vec3,
 }
 
-/// A lower bound of the distance of two meshes by their boxes down to a depth (0: the box around all of a mesh;
-/// [`TriMesh::bvh_depth`] and beyond: boxes of up to eight triangles); `None` if they are certainly farther apart than
-/// `limit` metres, which may end the query at a smaller depth.
+/// A lower bound of the distance of two meshes by their boxes down to a depth; `None` if they are guaranteed to be
+/// farther apart than `limit` metres, which may end the query at a smaller depth.
 ///
-/// The boxes are aligned with the axes of each mesh's own frame, and have a slab along the mean normal of what they hold.
-/// Which of several boxes at nearly the same distance is returned depends on rounding in f32, and so on the instruction set.
+/// Depth 0 is the box around the whole mesh; [`TriMesh::bvh_depth`] and more are boxes of up to eight triangles. The
+/// boxes are aligned with the axes of each mesh's own frame, and have a slab along the mean normal of their
+/// triangles. Of several boxes at nearly the same distance, rounding in f32, and so the instruction set, decides
+/// which one is returned.
 ///
 /// ```
 /// use elbowroom_proximity::advanced::{bvh_lower_bound, mesh_separation};
@@ -93,7 +97,7 @@ impl BvhBound {
     }
 }
 
-/// The pair of boxes at the depth with the least lower bound, no farther apart than `radius`, units of A.
+/// The pair of boxes at `depth` with the smallest lower bound, no farther apart than `radius`, units of A.
 fn nearest_node_pair(meshes: &MeshPair, depth: u8, radius: f64, workspace: &mut Workspace) -> Option<NodePair> {
     let Workspace { stack, stats, .. } = workspace;
     let placement = meshes.placement;
@@ -103,7 +107,7 @@ fn nearest_node_pair(meshes: &MeshPair, depth: u8, radius: f64, workspace: &mut 
     let (lowest_a, lowest_b) = (root.height_a.saturating_sub(depth), root.height_b.saturating_sub(depth));
     let mut best: Option<NodePair> = None;
     stack.clear();
-    // The roots themselves are tested before any is expanded.
+    // The roots themselves are tested before one is expanded.
     stats.boxes += expand_sides::<DISTANCE>(meshes, &root, Sides { a: false, b: false }, &cutoff, stack);
     while let Some(pair) = stack.pop() {
         if pair.key > cutoff.squared {
@@ -127,7 +131,7 @@ fn nearest_node_pair(meshes: &MeshPair, depth: u8, radius: f64, workspace: &mut 
     best
 }
 
-/// Landmark and mean normal of a node, mesh frame, metres.
+/// Landmark (m) and mean normal of a node, in the mesh frame.
 fn landmark(tree: &Bvh16, number: u32, height: u8) -> (Vec3, Vec3) {
     let (parent, lane) = tree.parent(height as usize, number as usize);
     let at = |p: &[[f32; ARITY]; 3]| [p[0][lane], p[1][lane], p[2][lane]];
@@ -135,8 +139,8 @@ fn landmark(tree: &Bvh16, number: u32, height: u8) -> (Vec3, Vec3) {
     (tree.frame.in_metres(at(&parent.landmark)), normal.try_normalize().unwrap_or(Vec3::ZERO))
 }
 
-/// [`bvh_lower_bound`] of a mesh and a bounded simple shape, by the box around the shape in its own frame. `None` for a
-/// half-space, for a mesh as the second, and where a number is not finite.
+/// Like [`bvh_lower_bound`], for a mesh and a bounded simple shape, by the box around the shape in its own frame.
+/// `None` if the shape is a half-space or a mesh, or if a number is not finite.
 pub fn bvh_lower_bound_to_shape(
     mesh: &TriMesh,
     mesh_in_world: &Pose,
@@ -170,7 +174,7 @@ fn point_of(shape: &Shape) -> Vec3 {
     if let Shape::Hull(hull) = shape { hull.vertices()[0] } else { Vec3::ZERO }
 }
 
-/// A node and its lower bound, units of the tree.
+/// A node and its lower bound, in units of the tree.
 #[derive(Clone, Copy)]
 struct BoundedNode {
     bound: f32,
@@ -178,13 +182,13 @@ struct BoundedNode {
     height: u8,
 }
 
-/// The box at a depth with the least bound.
+/// The box at `depth` with the smallest bound.
 fn nearest_node(tree: &Bvh16, query: &BoxDistance, depth: u8) -> BoundedNode {
     let root = tree.height() as u8;
     let lowest = root.saturating_sub(depth);
     let above = query.lower_bounds(&tree.levels[root as usize][0])[0];
     let mut best = BoundedNode { bound: f32::INFINITY, number: 0, height: root };
-    // Each step down leaves at most 15 siblings on the stack; trees are 8 high.
+    // Each step down leaves at most 15 siblings on the stack, and trees have a height of 8.
     let mut stack = [BoundedNode { bound: 0.0, number: 0, height: 0 }; 16 * 10];
     stack[0] = BoundedNode { bound: above, number: 0, height: root };
     let mut len = 1;
@@ -205,7 +209,7 @@ fn nearest_node(tree: &Bvh16, query: &BoxDistance, depth: u8) -> BoundedNode {
         while rest != 0 {
             let lane = rest.trailing_zeros();
             rest &= rest - 1;
-            // A child is no nearer than the box that holds it.
+            // A child is no nearer than the box that contains it.
             let bound = bounds[lane as usize].max(node.bound);
             stack[len] = BoundedNode { bound, number: node.number * ARITY as u32 + lane, height: node.height - 1 };
             nearest = if bound < stack[nearest].bound { len } else { nearest };

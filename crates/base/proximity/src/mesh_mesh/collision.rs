@@ -1,4 +1,4 @@
-//! Collision of two meshes: the first pair of triangles that touch, or all of them.
+//! Collision of two meshes: finds one pair of triangles that touch, or all pairs.
 
 use elbowroom_spatial::Pose;
 
@@ -16,10 +16,10 @@ use crate::TriMesh;
 use crate::bvh::LEAF_SIZE;
 use crate::triangle::triangles_cross;
 
-/// A pair of triangles that touch, or `None` if the meshes are certainly apart.
+/// A pair of triangles that touch, or `None` if the meshes are guaranteed to be apart.
 ///
-/// Triangles closer than f64 can separate count as touching: 2⁻⁴⁰ of the sizes and distance of the meshes. A mesh wholly
-/// inside a closed one is in contact. Which of several pairs is found is unspecified.
+/// Triangles closer than f64 can separate count as touching: 2⁻⁴⁰ of the sizes and distance of the meshes. A mesh
+/// wholly inside a closed mesh is in contact. If several pairs touch, the choice is unspecified.
 ///
 /// ```
 /// use elbowroom_proximity::{TriMesh, Workspace, advanced::colliding_triangles};
@@ -48,8 +48,10 @@ pub fn colliding_triangles(
     first
 }
 
-/// Calls `found` with every pair of triangles that touch, or that are closer than f64 can separate, each once and in no
-/// particular order; with [`MeshFeatures::Containment`] if none touch and one mesh is inside the other.
+/// Calls `found` with every pair of triangles that touch, or that are closer than f64 can separate, once per pair
+/// and in no particular order.
+///
+/// If none touch and one mesh is inside the other, calls it with [`MeshFeatures::Containment`].
 ///
 /// ```
 /// use elbowroom_proximity::advanced::{MeshFeatures, for_each_contact};
@@ -78,7 +80,7 @@ pub fn for_each_contact(
     });
 }
 
-/// `found` returns true to end the query.
+/// Visits the contacts; `found` returns true to end the query.
 fn visit_contacts(
     a: &TriMesh,
     a_in_world: &Pose,
@@ -112,7 +114,7 @@ fn visit_contacts(
 
 struct CollisionTraversal<'a> {
     meshes: &'a MeshPair<'a>,
-    /// Called with the indices of two triangles that touch; returns true to end the traversal.
+    /// Callback with the indices of two triangles that touch; returns true to end the traversal.
     found: &'a mut dyn FnMut(u32, u32) -> bool,
 }
 
@@ -138,7 +140,7 @@ impl CollisionTraversal<'_> {
         self.measure(batch, stats)
     }
 
-    /// Pairs that cross are found at once; the others are measured in batches.
+    /// Visits pairs of triangles of two leaves. Pairs that cross are found at once; the others are measured in batches.
     fn visit_leaves(
         &mut self,
         pair: &NodePair,

@@ -1,10 +1,10 @@
-//! One mesh wholly inside another.
+//! Containment of one mesh in another.
 
 use elbowroom_spatial::{Pose, Vec3};
 
 use crate::TriMesh;
 
-/// A point of one mesh inside the other (world), where the surfaces are known not to touch.
+/// A point of one mesh inside the other (world); the surfaces are known not to touch.
 pub(super) fn contained_point(a: &TriMesh, a_in_world: &Pose, b: &TriMesh, b_in_world: &Pose) -> Option<Vec3> {
     point_inside(a, a_in_world, b, b_in_world).or_else(|| point_inside(b, b_in_world, a, a_in_world))
 }
@@ -15,7 +15,7 @@ fn point_inside(outer: &TriMesh, outer_in_world: &Pose, inner: &TriMesh, inner_i
         return None;
     }
     let inner_in_outer = outer_in_world.inverse_mul(inner_in_world);
-    // The surfaces do not touch: a connected mesh is inside as a whole or not at all.
+    // The surfaces do not touch, so a connected mesh is inside either as a whole or not at all.
     let bounds = outer.aabb();
     if inner.component_vertices().len() == 1
         && !inner.extremes.iter().all(|&p| bounds.contains(inner_in_outer.transform_point(p)))

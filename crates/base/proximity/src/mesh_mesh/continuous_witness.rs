@@ -1,4 +1,5 @@
-//! Continuous witness points of two meshes: a second traversal over all pairs of triangles that are tied with the nearest.
+//! Continuous witness points of two meshes: a second traversal over all pairs of triangles that are tied with the
+//! nearest pair.
 
 use elbowroom_spatial::Vec3;
 
@@ -24,7 +25,8 @@ pub(super) fn tolerances(a: &TriMesh, b: &TriMesh) -> PatchTolerances {
     PatchTolerances::of((a.bvh.radius + b.bvh.radius) * a.bvh.frame.inverse)
 }
 
-/// True if the closest points lie on faces or edges that are so nearly parallel that other points are tied.
+/// True if the closest points lie on faces or edges that are so nearly parallel that other points are tied with
+/// them.
 pub(super) fn has_parallel_features(meshes: &MeshPair, nearest: &NearestPair, tolerances: PatchTolerances) -> bool {
     let Some(along) = (nearest.points.on_b - nearest.points.on_a).try_normalize() else { return false };
     let (s, t) = corners(meshes, nearest.triangles);
@@ -32,8 +34,8 @@ pub(super) fn has_parallel_features(meshes: &MeshPair, nearest: &NearestPair, to
     feature(&s, along).may_overlap(feature(&t, -along), tolerances)
 }
 
-/// The closest points, and their triangles, that are nearest to the anchor among all pairs tied with the nearest; `None` where
-/// the closest points are unique. The result does not depend on which pairs were found first.
+/// The closest points, and their triangles, that are nearest to the anchor among all pairs tied with the nearest
+/// pair; `None` if the closest points are unique. The result does not depend on the order in which pairs are found.
 pub(super) fn continuous_witness(
     meshes: &MeshPair,
     nearest: &NearestPair,
@@ -53,8 +55,8 @@ pub(super) fn continuous_witness(
     Some((ClosestPoints { squared: nearest.distance * nearest.distance, on_a, on_b }, triangles))
 }
 
-/// The direction with the widest gap between the two nearest triangles: that of the closest points, unless they are so close
-/// that it has lost its digits and the normal of a face is more accurate.
+/// The direction with the widest gap between the two nearest triangles. It is the direction of the closest points,
+/// unless they are so close that it has lost its digits and a face normal is more accurate.
 fn patch_query(meshes: &MeshPair, nearest: &NearestPair, anchor: Vec3, tolerance: f64) -> Option<PatchQuery> {
     let (s, t) = corners(meshes, nearest.triangles);
     let toward_b = (nearest.points.on_b - nearest.points.on_a).try_normalize()?;
@@ -78,7 +80,7 @@ fn corners(meshes: &MeshPair, (ta, tb): (u32, u32)) -> ([Vec3; 3], [Vec3; 3]) {
 /// The traversal of all pairs of triangles within the radius.
 struct TiedPairs<'a> {
     meshes: &'a MeshPair<'a>,
-    /// Pairs farther apart are not tied.
+    /// Largest distance of tied pairs.
     radius: f64,
     choice: WitnessChoice<(u32, u32)>,
 }
@@ -87,14 +89,15 @@ impl TiedPairs<'_> {
     fn run(&mut self, workspace: &mut Workspace) {
         let meshes = self.meshes;
         let mut cutoff = Cutoff::new(self.radius, meshes.placement);
-        // Without it a hundred times as many pairs of large triangles are left to the exact test.
+        // Without this, a hundred times as many pairs of large triangles are left to the exact test.
         cutoff.align(self.choice.query.direction, meshes.placement);
         let Workspace { stack, batch, stats, .. } = workspace;
         batch.clear();
         stack.clear();
         stack.push(NodePair::root(&meshes.a.bvh, &meshes.b.bvh));
         while let Some(pair) = stack.pop() {
-            // Parallel faces have as many tied pairs as the product of their triangles: those near the anchor decide.
+            // For parallel faces the number of tied pairs is the product of their numbers of triangles; only pairs near the
+            // anchor matter.
             if self.choice.is_beaten(|anchor| self.nearest_in_box(&pair, anchor)) {
                 continue;
             }
@@ -117,7 +120,7 @@ impl TiedPairs<'_> {
         }
     }
 
-    /// The point of the box of a pair's first node nearest to a point.
+    /// The point nearest to `p` in the box of a pair's first node.
     fn nearest_in_box(&self, pair: &NodePair, p: Vec3) -> Vec3 {
         let (parent, lane) = self.meshes.a.bvh.parent(pair.height_a.into(), pair.a as usize);
         let at = |rows: &[[f32; ARITY]; 3]| Vec3::new(rows[0][lane].into(), rows[1][lane].into(), rows[2][lane].into());
@@ -143,7 +146,7 @@ impl TiedPairs<'_> {
         if let Some(patch) = self.choice.query.closest_points(&Polygon::new(s), &Polygon::new(t)) {
             let onto_b = |p| nearest_on_triangle(p, t);
             let (on_a, on_b) = alternating_projections(patch.on_a, &|q| nearest_on_triangle(q, s), &onto_b);
-            // Faces inclined to the common direction may have been clipped to points that are not tied.
+            // Faces that are inclined to the common direction may have been clipped to points that are not tied.
             let limit = self.radius + 2.0 * self.choice.query.tolerance;
             if (on_a - on_b).length_squared() <= limit * limit {
                 self.choice.note_patch(patch.patch_size);

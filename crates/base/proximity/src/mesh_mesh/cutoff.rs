@@ -1,34 +1,34 @@
-//! The cutoff distance of a traversal, with the error of f32 added on the conservative side.
+//! The cutoff distance of a traversal, with the f32 error added on the conservative side.
 
 use elbowroom_spatial::Vec3;
 
 use super::relative_placement::RelativePlacement;
 
-/// A pair of boxes, slabs or triangles is left out where its gap exceeds this.
+/// Largest gap of a pair of boxes, slabs or triangles that is not excluded.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cutoff {
-    /// Units of A.
+    /// The largest gap, units of A.
     pub gap: f32,
-    /// Its square, for sums of squared gaps.
+    /// Its square, for comparison with sums of squared gaps.
     pub squared: f32,
-    /// Axes along the line of the best pair, once there is one.
+    /// Axes along the line of the best pair, if one was found.
     pub witness_frame: Option<WitnessFrame>,
 }
 
-/// A frame whose first axis points from A to B along the line of the best pair so far: gaps measured there are the
-/// tightest.
+/// A frame whose first axis points from A to B along the line of the best pair so far. Gaps measured along its axes
+/// are the tightest.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct WitnessFrame {
-    /// Rows: the axes in A's axes.
+    /// The axes in A's axes, as rows.
     pub of_a: [[f32; 3]; 3],
-    /// Rows: the axes in B's axes, times the ratio of units.
+    /// The axes in B's axes, times the ratio of units, as rows.
     pub of_b: [[f32; 3]; 3],
     /// Origin of B.
     pub shift: [f32; 3],
 }
 
 impl Cutoff {
-    /// Leaves out pairs farther apart than `radius` (units of A).
+    /// Creates a cutoff that excludes pairs farther apart than `radius` (units of A).
     #[inline]
     pub fn new(radius: f64, placement: &RelativePlacement) -> Self {
         let mut cutoff = Self { gap: 0.0, squared: 0.0, witness_frame: None };
@@ -36,7 +36,7 @@ impl Cutoff {
         cutoff
     }
 
-    /// The same witness frame with another radius.
+    /// Changes the radius and keeps the witness frame.
     #[cfg(test)]
     pub fn with_radius(mut self, radius: f64, placement: &RelativePlacement) -> Self {
         self.set_radius(radius, placement);
@@ -46,12 +46,12 @@ impl Cutoff {
     #[inline]
     fn set_radius(&mut self, radius: f64, placement: &RelativePlacement) {
         self.gap = round_up(radius + placement.f32_error);
-        // Twice the error, and the axes of a frame are orthonormal up to f32 rounding.
+        // Allow twice the error, because the axes of a frame are orthonormal only up to f32 rounding.
         let square = (radius + 2.0 * placement.f32_error) * (radius + 2.0 * placement.f32_error) * (1.0 + 1e-5);
         self.squared = round_up(square);
     }
 
-    /// A smaller radius, and the points at which it was found.
+    /// Sets a smaller radius, and aligns the witness frame with the points at which it was found.
     #[inline]
     pub fn tighten(&mut self, radius: f64, on_a: Vec3, on_b: Vec3, placement: &RelativePlacement) {
         self.set_radius(radius, placement);
@@ -82,7 +82,7 @@ impl WitnessFrame {
     }
 }
 
-/// Rounded up with a margin of two units in the last place.
+/// Rounds up with a margin of two units in the last place.
 #[inline]
 fn round_up(x: f64) -> f32 {
     (x * (1.0 + 3e-7)) as f32

@@ -15,18 +15,18 @@ use super::workspace::Workspace;
 use crate::TriMesh;
 use crate::separation::{DistanceSettings, Separation, WitnessPoints};
 
-/// Widths of the beam search over landmarks that gives the first upper bound: of a distance, of a tolerance query, and of
+/// Widths of the beam search over landmarks that finds the first upper bound: for a distance, a tolerance query, and
 /// [`distance_upper_bound`].
 const DISTANCE_WIDTH: usize = 4;
 const TOLERANCE_WIDTH: usize = 2;
 const UPPER_BOUND_WIDTH: usize = 2;
 
-/// How the tolerance query gets its first upper bound where near pairs are expected.
+/// First upper bound of the tolerance query if near pairs are expected.
 pub(crate) const EXPECT_NEAR: FirstBound = FirstBound::Landmarks { width: TOLERANCE_WIDTH };
-/// The same where pairs beyond the tolerance are expected.
+/// First upper bound of the tolerance query if pairs beyond the tolerance are expected.
 pub(crate) const EXPECT_FAR: FirstBound = FirstBound::FirstLeaves;
 
-/// [`separation`](crate::separation()) of two meshes.
+/// The [`separation`](crate::separation()) of two meshes.
 ///
 /// ```
 /// use elbowroom_proximity::{TriMesh, Workspace, advanced::mesh_separation};
@@ -49,9 +49,9 @@ pub fn mesh_separation(
     found.unwrap_or_else(|| Separation::unknown(a_in_world, b_in_world))
 }
 
-/// Like [`mesh_separation`], with settings; `None` if the meshes are certainly farther apart than the limit.
+/// Like [`mesh_separation`], with settings; `None` if the meshes are guaranteed to be farther apart than the limit.
 ///
-/// [`Workspace::closest_features`] are the nearest triangles, [`Workspace::stats`] the work that was done.
+/// Afterwards, [`Workspace::closest_features`] returns the nearest triangles and [`Workspace::stats`] the work done.
 pub fn mesh_separation_with(
     a: &TriMesh,
     a_in_world: &Pose,
@@ -75,7 +75,7 @@ pub fn mesh_separation_with(
     let meshes = MeshPair { a, b, placement: &placement, simd_level: workspace.simd_level() };
     let unit = a.bvh.frame.unit;
     let radius = limit.max(0.0) / unit + placement.f64_error;
-    // Where a limit is known, most meshes are beyond it, and the traversal finds that soonest.
+    // With a limit, most meshes are beyond it, and the traversal shows that soonest.
     let first_bound = if radius < f64::INFINITY { EXPECT_FAR } else { FirstBound::Landmarks { width: DISTANCE_WIDTH } };
     let continuous = witness_points == WitnessPoints::Continuous;
     let tolerances = tolerances(a, b);
@@ -118,11 +118,12 @@ pub fn mesh_separation_with(
     })
 }
 
-/// An upper bound of the distance of two meshes, metres: the distance of a pair of triangles that is likely near. It is often the
-/// distance itself, at a small part of its cost; with the warm start of a recent query it costs a single pair of triangles.
-/// Infinite where a pose is not finite.
+/// An upper bound of the distance of two meshes, metres: the distance of a pair of triangles that is likely near.
+/// Infinite if a pose is not finite.
 ///
-/// `warm_start` becomes the pair that was found. Of several pairs of meshes, the least upper bound is a limit for all of them.
+/// It is often the distance itself, at a small fraction of its cost; with the warm start of a recent query it costs
+/// a single pair of triangles. `warm_start` is set to the pair that was found. For several pairs of meshes, the
+/// smallest upper bound is a limit for all of them.
 ///
 /// ```
 /// use elbowroom_proximity::advanced::{distance_upper_bound, mesh_separation_with};
@@ -164,10 +165,12 @@ pub fn distance_upper_bound(
     (found.distance + placement.f64_error) * a.bvh.frame.unit
 }
 
-/// A pair of triangles no farther apart than `tolerance` metres, or `None` if the meshes certainly are.
+/// A pair of triangles no farther apart than `tolerance` metres, or `None` if the meshes are guaranteed to be
+/// farther apart.
 ///
-/// A NaN or negative tolerance counts as 0; a mesh inside a closed one is near. Which pair is found is unspecified. The query
-/// begins where the surfaces are likely nearest; where most meshes are beyond the tolerance, [`is_farther_than`] is faster.
+/// A NaN or negative tolerance counts as 0; a mesh inside a closed mesh is near. If several pairs are near, the
+/// choice is unspecified. The query starts where the surfaces are likely nearest; if most meshes are beyond the
+/// tolerance, [`is_farther_than`] is faster.
 ///
 /// ```
 /// use elbowroom_proximity::{TriMesh, Workspace, advanced::triangles_within};
@@ -190,8 +193,8 @@ pub fn triangles_within(
     features_within(a, a_in_world, b, b_in_world, tolerance, EXPECT_NEAR, workspace)
 }
 
-/// True if two meshes are certainly farther apart than `tolerance` metres: the negation of [`triangles_within`], faster
-/// where that is the usual answer.
+/// True if two meshes are guaranteed to be farther apart than `tolerance` metres. It is the negation of
+/// [`triangles_within`], and faster if true is the usual answer.
 ///
 /// ```
 /// use elbowroom_proximity::{TriMesh, Workspace, advanced::is_farther_than};
@@ -213,7 +216,7 @@ pub fn is_farther_than(
     features_within(a, a_in_world, b, b_in_world, tolerance, EXPECT_FAR, workspace).is_none()
 }
 
-/// [`triangles_within`] with a choice of the first upper bound.
+/// Like [`triangles_within`], with a choice of the first upper bound.
 pub(crate) fn features_within(
     a: &TriMesh,
     a_in_world: &Pose,

@@ -1,4 +1,4 @@
-//! Every decision in f32 is checked in f64: no box excludes its triangles, and no pair within the cutoff is left out.
+//! Checks of every f32 decision in f64: boxes contain their triangles, and pairs within the cutoff are kept.
 
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 use elbowroom_testkit::random::Random;
@@ -20,10 +20,10 @@ use crate::triangle::triangle_triangle;
 trait RandomMeshes {
     fn vector(&mut self) -> Vec3;
 
-    /// A wavy strip: neighbours in space are neighbours in the tree, some of them slivers.
+    /// A wavy strip: neighbours in space are neighbours in the tree, and some triangles are slivers.
     fn strip(&mut self, count: usize) -> TriMesh;
 
-    /// A second pose for which surfaces are near each other.
+    /// A second pose at which the surfaces are near each other.
     fn pose(&mut self, a: &TriMesh, here: &Pose, b: &TriMesh) -> Pose;
 }
 
@@ -54,7 +54,7 @@ impl RandomMeshes for Random {
     }
 }
 
-/// Decisions to check.
+/// Number of decisions to check.
 fn cases(usual: usize) -> usize {
     if std::env::var_os("ELBOWROOM_LONG").is_some() { 10_000_000 } else { usual }
 }
@@ -90,7 +90,7 @@ fn assert_holds(node: &Node, lane: usize, p: Vec3) {
     assert!(at(&node.normal).length() <= 1.0);
 }
 
-/// A child of a node in f64: its box and slab, in its own tree's frame.
+/// A child of a node in f64: its box and slab, in the frame of its own tree.
 struct Child {
     center: Vec3,
     half: Vec3,
@@ -106,7 +106,8 @@ fn child(tree: &Bvh16, height: u8, number: u32) -> Child {
     Child { center: at(&node.center), half: at(&node.half), normal: at(&node.normal), low, high }
 }
 
-/// The largest lower bound of the distance of two children, in units of A, by the formulas of `node_kernel.rs` in f64.
+/// The largest lower bound of the distance of two children, in units of A, with the formulas of `node_kernel.rs` in
+/// f64.
 fn bound(a: &Child, b: &Child, placement: &RelativePlacement, frame: Option<&WitnessFrame>) -> f64 {
     let column = |k: usize| Vec3::new(placement.exact[0][k], placement.exact[1][k], placement.exact[2][k]);
     // B's axes in A, each as long as B's unit.
@@ -161,7 +162,7 @@ fn bound_in(frame: &WitnessFrame, a: &Child, b: &Child) -> f64 {
     Vec3::new(ahead.max(0.0), aside(1), aside(2)).length() * (1.0 - 1e-6)
 }
 
-/// One pair of nodes expanded; returns how many pairs of children f32 left out.
+/// Expands one pair of nodes; returns how many pairs of children f32 excluded.
 fn check_boxes<const MODE: u8>(meshes: &MeshPair, pair: &NodePair, cutoff: &Cutoff, radius: f64) -> usize {
     let MeshPair { a, b, placement, .. } = *meshes;
     let (a, b) = (&a.bvh, &b.bvh);
@@ -187,7 +188,7 @@ fn check_boxes<const MODE: u8>(meshes: &MeshPair, pair: &NodePair, cutoff: &Cuto
                 decided += 1;
                 let frame = cutoff.witness_frame.as_ref().filter(|_| MODE != INTERSECTION);
                 let exact = bound(&child(a, x.0, x.1), &child(b, y.0, y.1), placement, frame);
-                // The own boxes of the nodes may have decided; children are inside them.
+                // The own boxes of the nodes may have decided; the children are inside them.
                 let own = bound(&child(a, pair.height_a, pair.a), &child(b, y.0, y.1), placement, None).max(bound(
                     &child(a, x.0, x.1),
                     &child(b, pair.height_b, pair.b),
@@ -201,7 +202,7 @@ fn check_boxes<const MODE: u8>(meshes: &MeshPair, pair: &NodePair, cutoff: &Cuto
     decided
 }
 
-/// One pair of leaves; returns how many pairs of triangles f32 left out.
+/// Checks one pair of leaves; returns how many pairs of triangles f32 excluded.
 fn check_leaves(meshes: &MeshPair, pair: &NodePair, cutoff: &Cutoff, radius: f64) -> usize {
     let MeshPair { a, b, placement, .. } = *meshes;
     let leaves = LeafPair { a: pair.a as usize, b: pair.b as usize };
@@ -228,7 +229,7 @@ fn random_lanes(n: &mut Random, a: &Bvh16, b: &Bvh16, pair: &NodePair) -> (usize
     (i, if expanded.b { lane(b, pair.height_b, pair.b) } else { 0 })
 }
 
-/// The distance of some pair of triangles, plus a relative 1e-12: a radius at which rounding decides.
+/// The distance of some pair of triangles, plus a relative 1e-12: a radius at which rounding matters.
 fn distance_of_a_pair(n: &mut Random, meshes: &MeshPair, pair: &NodePair) -> Option<f64> {
     let MeshPair { a, b, placement, .. } = *meshes;
     let slot = |n: &mut Random, tree: &Bvh16, leaf: u32| {
@@ -262,7 +263,7 @@ fn pairs_left_out_in_f32_are_farther_than_the_cutoff() {
             while !pair.is_leaves() {
                 let (i, j) = random_lanes(&mut n, &a.bvh, &b.bvh, &pair);
                 let next = pair.child(i, j, 0.0);
-                // Half of the radii are the bound of one pair of boxes: there rounding decides.
+                // Half of the radii equal the bound of one pair of boxes, so that rounding decides.
                 let ends = (child(&a.bvh, next.height_a, next.a), child(&b.bvh, next.height_b, next.b));
                 let exact = bound(&ends.0, &ends.1, &placement, cutoff.witness_frame.as_ref());
                 if n.unit() < 0.5 && exact > placement.f64_error {

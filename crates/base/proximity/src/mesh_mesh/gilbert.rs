@@ -1,20 +1,21 @@
-//! Separation of triangles by Gilbert's descent towards the closest points: every step gives a candidate for a separating
-//! direction.
+//! Separation of triangles by Gilbert's descent towards the closest points. Every step gives a candidate for a
+//! separating direction.
 //!
-//! E. G. Gilbert, *An iterative procedure for computing the minimum of a quadratic form on a convex set*, SIAM J.
-//! Control 4 (1966). A gap measured along any direction is a lower bound of the distance; along the closest points it is
-//! the distance itself, and the bound converges to it quadratically. So few steps suffice, and none need be exact.
+//! Source: E. G. Gilbert, *An iterative procedure for computing the minimum of a quadratic form on a convex set*,
+//! SIAM J. Control 4 (1966). A gap measured along any direction is a lower bound of the distance. Along the closest
+//! points it is the distance itself, and the bound converges to it quadratically. So few steps are sufficient, and
+//! they need not be exact.
 
 use fearless_simd::{Simd, prelude::*};
 
 use crate::lanes::{V3, W8};
 
-/// Steps at most. More separate hardly any further pairs.
+/// Largest number of steps. More steps separate hardly any more pairs.
 const STEPS: usize = 2;
 
-/// The lanes of `of_b` that are farther than `gap` from the triangle that is in all lanes of `of_a`.
+/// The lanes of `of_b` that are farther than `gap` from the triangle in all lanes of `of_a`.
 ///
-/// `toward` points roughly from A to B, any length. Only the lanes in `candidates` matter.
+/// `toward` points roughly from A to B, with any length. Only the lanes in `candidates` matter.
 #[inline(always)]
 pub(super) fn separated_lanes<S: Simd>(
     simd: S,
@@ -28,7 +29,7 @@ pub(super) fn separated_lanes<S: Simd>(
     for _ in 0..STEPS {
         let (w, lower) = support_gap(of_a, of_b, v);
         let square = v.dot(v);
-        // An upper bound of the length of `v`, positive also where `v` is 0: the test is conservative.
+        // An upper bound of the length of `v`, positive even if `v` is 0: the test is conservative.
         let length = square.sqrt() * 1.000_001 + 1e-18;
         out |= lower.simd_gt(length * gap).to_bitmask();
         if candidates & !out == 0 {
@@ -44,8 +45,8 @@ pub(super) fn separated_lanes<S: Simd>(
     out
 }
 
-/// The difference of the support points of B against `d` and of A along `d`, and the gap between them along `d`, times the
-/// length of `d`.
+/// The difference of the support points of B against `d` and of A along `d`, and the gap between them along `d`,
+/// times the length of `d`.
 #[inline(always)]
 fn support_gap<S: Simd>(of_a: &[V3<W8<S>>; 3], of_b: &[V3<W8<S>>; 3], d: V3<W8<S>>) -> (V3<W8<S>>, W8<S>) {
     let (a, far) = lowest(of_a, V3(-d.0, -d.1, -d.2));

@@ -1,5 +1,7 @@
-//! A first upper bound of the distance: a beam search down both trees by the distances of landmarks, points of the surfaces.
-//! It proves no lower bound, and costs less than expanding a few nodes.
+//! A first upper bound of the distance: a beam search down both trees by the distances of landmarks, which are
+//! points of the surfaces.
+//!
+//! It does not prove a lower bound, and costs less than expanding a few nodes.
 
 use fearless_simd::{Simd, dispatch, prelude::*};
 
@@ -8,9 +10,9 @@ use super::node_pair::NodePair;
 use crate::bvh::{ARITY, Bvh16, LEAF_SIZE, Leaf, Node};
 use crate::lanes::{V3, W8, W16, load_corners, load16, rows8, rows16, splat8, splat16, store16};
 
-/// Largest width of the beam: pairs of nodes that are followed at each height.
+/// Largest width of the beam: the number of node pairs that are followed at each height.
 const MAX_WIDTH: usize = 4;
-/// Pairs of triangles that are returned.
+/// Number of pairs of triangles that are returned.
 const RETURNED: usize = 8;
 
 /// The nearest items offered, in ascending order of distance, at most `capacity`.
@@ -53,8 +55,8 @@ impl<T: Copy, const N: usize> Beam<T, N> {
 type NodeBeam = Beam<NodePair, MAX_WIDTH>;
 type SlotBeam = Beam<(u32, u32), RETURNED>;
 
-/// Slots of the triangles whose centroids are nearest at the end of a beam search, the nearest first; where there are fewer
-/// than returned, the first again.
+/// Slots of the triangles whose centroids are nearest at the end of a beam search, the nearest first. If fewer are
+/// found than are returned, the first is repeated.
 pub(super) fn nearest_landmark_pairs(meshes: &MeshPair, width: usize) -> [(u32, u32); RETURNED] {
     let root = NodePair::root(&meshes.a.bvh, &meshes.b.bvh);
     let mut beam = NodeBeam::new(root, width);
@@ -80,7 +82,7 @@ pub(super) fn nearest_landmark_pairs(meshes: &MeshPair, width: usize) -> [(u32, 
     slots
 }
 
-/// For each child of A's node the nearest of B's.
+/// Offers, for each child of A's node, the nearest child of B's node.
 fn offer_children(meshes: &MeshPair, pair: &NodePair, next: &mut NodeBeam) {
     let expanded = pair.expanded_sides();
     let (node_a, mask_a) = lanes(&meshes.a.bvh, pair.a, pair.height_a, expanded.a);
@@ -106,7 +108,7 @@ fn lanes(tree: &Bvh16, number: u32, height: u8, expanded: bool) -> (&Node, u32) 
     }
 }
 
-/// For each triangle of A's leaf the nearest of B's.
+/// Offers, for each triangle of A's leaf, the nearest triangle of B's leaf.
 fn offer_triangles(meshes: &MeshPair, pair: &NodePair, nearest: &mut SlotBeam) {
     let (a, b) = (&meshes.a.bvh, &meshes.b.bvh);
     let (leaf_a, leaf_b) = (pair.a as usize, pair.b as usize);
@@ -134,11 +136,11 @@ fn centroids<S: Simd>(simd: S, leaf: &Leaf) -> V3<W8<S>> {
     p.plus(q).plus(r).times(W8::splat(simd, 1.0 / 3.0))
 }
 
-/// For each of sixteen points the nearest of others: its squared distance and its number.
+/// The nearest partner of each of sixteen points: its squared distance and its number.
 struct NearestPartners {
     squares: [f32; ARITY],
     partners: [f32; ARITY],
-    /// Bits of those nearer than the threshold.
+    /// Bit mask of the partners nearer than the threshold.
     better: u32,
 }
 

@@ -1,4 +1,4 @@
-//! A few points of a surface, to estimate which of many meshes is nearest.
+//! A few points of a surface, for estimating which of many meshes is nearest.
 
 use elbowroom_spatial::Pose;
 use fearless_simd::{Simd, dispatch, prelude::*};
@@ -7,10 +7,10 @@ use crate::TriMesh;
 use crate::bvh::{ARITY, Bvh16, Leaf, box_of, most_central};
 use crate::lanes::{V3, W16, detected_simd_level, load16, rows16, splat16, store16};
 
-/// Sixteen points of a mesh's surface, spread over it.
+/// Sixteen points spread over a mesh's surface.
 ///
-/// Of many pairs of meshes, the one whose landmarks are nearest is a good one to measure first: its distance is a limit
-/// that most others exceed. The distance of landmarks is an upper bound up to f32 rounding and proves no lower bound.
+/// Of many pairs of meshes, measure the pair with the nearest landmarks first: most other pairs exceed its distance,
+/// which is then their limit. The distance of landmarks is an upper bound up to f32 rounding, not a lower bound.
 ///
 /// ```
 /// use elbowroom_proximity::{TriMesh, advanced::Landmarks};
@@ -35,7 +35,7 @@ pub struct PlacedLandmarks {
 }
 
 impl Landmarks {
-    /// Of a mesh, in its own frame, metres.
+    /// Landmarks of a mesh, in its own frame, metres.
     pub fn of(mesh: &TriMesh) -> Self {
         let Bvh16 { leaves, frame, .. } = &mesh.bvh;
         let mut points = [[0.0; ARITY]; 3];
@@ -50,7 +50,7 @@ impl Landmarks {
         Self { points }
     }
 
-    /// In the frame in which the mesh has this pose.
+    /// The landmarks in the frame in which the mesh has this pose.
     pub fn placed(&self, pose: &Pose) -> PlacedLandmarks {
         let rows = pose.rotation.rows().map(|row| row.map(|x| x as f32));
         let shift = pose.translation.to_array().map(|x| x as f32);

@@ -1,4 +1,4 @@
-//! The f32 kernel of leaves: eight triangles against eight: which of the 64 pairs may be within the cutoff.
+//! The f32 kernel of leaves: finds which of the 64 pairs of eight triangles against eight may be within the cutoff.
 
 use fearless_simd::{Simd, dispatch, prelude::*};
 
@@ -9,7 +9,7 @@ use super::relative_placement::RelativePlacement;
 use crate::bvh::Leaf;
 use crate::lanes::{V3, W8, load_corners, load8, rows8, splat8, store8};
 
-/// Two leaves: their numbers in the trees.
+/// Two leaves, by their numbers in the trees.
 #[derive(Clone, Copy)]
 pub(super) struct LeafPair {
     pub a: usize,
@@ -59,7 +59,7 @@ pub(super) fn pairs_within(
     })
 }
 
-/// Leaves out pairs that Gilbert's descent proves to be farther apart than the cutoff.
+/// Excludes pairs that Gilbert's descent proves to be farther apart than the cutoff.
 #[inline(always)]
 fn by_descent<S: Simd>(
     simd: S,
@@ -93,7 +93,7 @@ pub(super) fn touching_pairs(meshes: &MeshPair, leaves: LeafPair, cutoff: &Cutof
     })
 }
 
-/// For every triangle of A the triangle of B with the least lower bound.
+/// For every triangle of A, the triangle of B with the smallest lower bound.
 pub(super) fn best_partners(meshes: &MeshPair, leaves: LeafPair, frame: &WitnessFrame) -> PairMask {
     let (a, b) = leaves.leaves(meshes);
     let all = leaves.all(meshes);
@@ -120,7 +120,7 @@ fn triangles_in_a<S: Simd>(simd: S, b: &Leaf, placement: &RelativePlacement) -> 
 pub(super) struct PairMask(pub u64);
 
 impl PairMask {
-    /// The lanes that hold triangles.
+    /// The lanes that contain triangles.
     #[inline(always)]
     fn full(count_a: usize, count_b: usize) -> Self {
         let row = (1u64 << count_b) - 1;
@@ -139,7 +139,7 @@ impl PairMask {
         self.0 == 0
     }
 
-    /// Lanes of the two triangles of each pair, in the order of their bits.
+    /// Lanes of the two triangles of each pair, in bit order.
     #[inline(always)]
     pub fn lanes(mut self) -> impl Iterator<Item = (u32, u32)> {
         std::iter::from_fn(move || {
@@ -164,7 +164,7 @@ impl<S: Simd> Intervals<S> {
         Self::along(simd, leaf, &frame.of_a, [0.0; 3])
     }
 
-    /// Along the axes of the frame that the corners are in.
+    /// Intervals along the axes of the frame that the corners are in.
     #[inline(always)]
     fn own([p, q, r]: &Triangles<S>) -> Self {
         Self {
@@ -190,7 +190,7 @@ impl<S: Simd> Intervals<S> {
         Self { low: V3(n.0, u.0, v.0).plus(shift), high: V3(n.1, u.1, v.1).plus(shift) }
     }
 
-    /// The intervals of all eight together.
+    /// The interval of all eight triangles together.
     #[inline(always)]
     fn whole(&self) -> ([f32; 3], [f32; 3]) {
         let (l, h) = (self.low, self.high);
@@ -203,7 +203,7 @@ impl<S: Simd> Intervals<S> {
 pub(super) struct LeafIntervals {
     low: [[f32; 8]; 3],
     high: [[f32; 8]; 3],
-    /// Lowest and highest of all eight.
+    /// Lowest and highest value of all eight triangles.
     whole: ([f32; 3], [f32; 3]),
     known: bool,
 }
@@ -212,7 +212,7 @@ impl LeafIntervals {
     pub const UNKNOWN: Self =
         Self { low: [[0.0; 8]; 3], high: [[0.0; 8]; 3], whole: ([0.0; 3], [0.0; 3]), known: false };
 
-    /// To be called before the leaf or the axes change.
+    /// Invalidates the intervals; call it before the leaf or the axes change.
     pub fn invalidate(&mut self) {
         self.known = false;
     }
@@ -232,7 +232,7 @@ impl LeafIntervals {
         Intervals { low: load8(simd, &self.low), high: load8(simd, &self.high) }
     }
 
-    /// Lower bound of the squared distance of each triangle of A from all of B.
+    /// Lower bound of the squared distance of each triangle of A from all triangles of B.
     #[inline(always)]
     fn square_of_whole<S: Simd>(&self, simd: S, a: &Intervals<S>) -> W8<S> {
         let (zero, (low, high)) = (W8::splat(simd, 0.0), &self.whole);
@@ -242,7 +242,7 @@ impl LeafIntervals {
         n * n + u * u + v * v
     }
 
-    /// Leaves out pairs that are farther apart than the cutoff.
+    /// Excludes pairs that are farther apart than the cutoff.
     #[inline(always)]
     fn pairs_within<S: Simd>(&self, simd: S, a: &Intervals<S>, cutoff: &Cutoff, pairs: PairMask) -> PairMask {
         let mut rows = !self.square_of_whole(simd, a).simd_gt(cutoff.squared).to_bitmask() & 0xff;
@@ -260,7 +260,7 @@ impl LeafIntervals {
         PairMask(left & pairs.0)
     }
 
-    /// For every triangle of A the one of the least lower bound.
+    /// For every triangle of A, the triangle of B with the smallest lower bound.
     #[inline(always)]
     fn nearest<S: Simd>(&self, simd: S, a: &Intervals<S>, pairs: PairMask) -> PairMask {
         let (ends, b) = ((store8(a.low), store8(a.high)), self.each(simd));
@@ -291,7 +291,7 @@ fn square<S: Simd>(simd: S, b: &Intervals<S>, (low, high): &([[f32; 8]; 3], [[f3
     n * n + u * u + v * v
 }
 
-/// Leaves out pairs whose boxes, along A's axes, are farther apart than the cutoff.
+/// Excludes pairs whose boxes, along A's axes, are farther apart than the cutoff.
 #[inline(always)]
 fn by_boxes<S: Simd>(simd: S, a: &Triangles<S>, b: &Triangles<S>, cutoff: &Cutoff, pairs: PairMask) -> PairMask {
     let (a, b) = (Intervals::own(a), Intervals::own(b));
@@ -307,7 +307,7 @@ fn by_boxes<S: Simd>(simd: S, a: &Triangles<S>, b: &Triangles<S>, cutoff: &Cutof
     PairMask(left & pairs.0)
 }
 
-/// Leaves out pairs that are farther apart than the cutoff along the normal of either triangle; all in A's frame.
+/// Excludes pairs that are farther apart than the cutoff along the normal of either triangle; all in A's frame.
 #[inline(always)]
 fn by_normals<S: Simd>(
     simd: S,
@@ -342,8 +342,8 @@ fn one<S: Simd>(simd: S, leaf: &Leaf, k: usize, i: usize) -> V3<W8<S>> {
     splat8(simd, [leaf.corner[k][0][i], leaf.corner[k][1][i], leaf.corner[k][2][i]])
 }
 
-/// Planes of triangles: normals of any length, and the interval of each triangle along its own, grown by the gap of the
-/// cutoff times that length (or more).
+/// Planes of triangles: normals of any length, and the interval of each triangle along its own normal, enlarged by
+/// at least the gap of the cutoff times that length.
 struct TrianglePlanes<S: Simd> {
     normal: V3<W8<S>>,
     low: W8<S>,
@@ -355,7 +355,8 @@ impl<S: Simd> TrianglePlanes<S> {
     fn new(corners: &Triangles<S>, gap: f32) -> Self {
         let normal = corners[1].minus(corners[0]).cross(corners[2].minus(corners[0]));
         let (low, high) = range(normal, corners);
-        // Squares of numbers this small underflow; the sum of the coordinates is longer than the normal, which suffices.
+        // Squares of such small numbers underflow. The sum of the coordinates is longer than the normal, which is
+        // sufficient.
         let square = normal.dot(normal);
         let sum = normal.0.abs() + normal.1.abs() + normal.2.abs() + 1e-30;
         let length = square.simd_gt(1e-30).select(square.sqrt() * 1.000_001, sum);

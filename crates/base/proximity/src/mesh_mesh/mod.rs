@@ -1,6 +1,7 @@
-//! Queries on two triangle meshes: simultaneous traversal of their trees, sixteen boxes a test. See README.md in this folder.
+//! Queries on two triangle meshes: simultaneous traversal of their trees, with tests of sixteen boxes. See README.md
+//! in this folder.
 
-// A kernel that is not inlined into the function its instruction set is chosen for is compiled for the lowest one.
+// A kernel is compiled for the lowest instruction set unless it is inlined into the function that selects the set.
 #![allow(clippy::inline_always)]
 
 mod bvh_bound;

@@ -10,6 +10,6 @@ pub(super) struct NearestPair {
     pub points: ClosestPoints,
     pub triangles: (u32, u32),
     pub warm_start: WarmStart,
-    /// Lower bound of how far, added up, the points of tied pairs are from those of this pair.
+    /// Lower bound of the sum of the distances between the points of tied pairs and the points of this pair.
     pub spread: f64,
 }

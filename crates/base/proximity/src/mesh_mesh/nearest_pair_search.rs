@@ -1,4 +1,5 @@
-//! Branch and bound for the nearest pair of triangles: first a good upper bound, then the proof that no pair is nearer.
+//! Branch and bound for the nearest pair of triangles: finds a good upper bound, then proves that all other pairs
+//! are farther.
 
 use elbowroom_spatial::Vec3;
 
@@ -16,15 +17,16 @@ use super::workspace::{QueryStats, Workspace};
 use crate::bvh::LEAF_SIZE;
 use crate::triangle::ClosestPoints;
 
-/// A warm start whose triangles have moved apart by this much (units of A) is replaced by a new first bound.
+/// Increase of the distance of a warm start's triangles (units of A) above which it is replaced by a new first
+/// bound.
 const STALE: f64 = 0.02;
 
-/// How a search gets its first upper bound.
+/// How a search finds its first upper bound.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum FirstBound {
-    /// From a beam search over landmarks of this width: the sooner a near pair is found, the less is expanded.
+    /// By a beam search over landmarks: the sooner a near pair is found, the fewer nodes are expanded.
     Landmarks {
-        /// Pairs of nodes followed at each height.
+        /// Number of node pairs followed at each height.
         width: usize,
     },
     /// From the first leaves of the traversal: meshes that are farther apart than the radius are dismissed soonest.
@@ -34,11 +36,11 @@ pub(crate) enum FirstBound {
 /// Settings of a search; lengths in units of A.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SearchSettings {
-    /// Pairs farther apart than this are of no interest.
+    /// Largest distance of pairs to search for.
     pub radius: f64,
-    /// The search ends at a pair no farther apart than this.
+    /// Distance at which the search ends: a pair no farther apart is sufficient.
     pub sufficient: f64,
-    /// Pairs whose distances differ by no more are tied: [`NearestPair::spread`].
+    /// Largest difference between the distances of tied pairs; see [`NearestPair::spread`].
     pub tie_tolerance: f64,
     pub warm_start: WarmStart,
     pub first_bound: FirstBound,
@@ -73,7 +75,7 @@ pub(super) fn nearest_pair(
     search.best
 }
 
-/// The nearest of the pairs that give the first upper bound.
+/// The nearest of the pairs that provide the first upper bound.
 pub(super) fn upper_bound_pair(
     meshes: &MeshPair,
     settings: &SearchSettings,
@@ -127,12 +129,12 @@ impl<'a> NearestPairSearch<'a> {
         }
     }
 
-    /// Expands the pair of the least bound until two leaves are reached, and measures some of their triangles.
+    /// Expands the pair with the smallest bound until it reaches two leaves, and measures some of their triangles.
     fn descend_to_leaves(&mut self, stack: &mut NodePairStack) {
         while let Some(pair) = stack.pop() {
             if pair.is_leaves() {
                 self.sample(LeafPair { a: pair.a as usize, b: pair.b as usize });
-                // There are other pairs of triangles in these leaves.
+                // These leaves have other pairs of triangles.
                 stack.push(pair);
                 return;
             }
@@ -140,8 +142,8 @@ impl<'a> NearestPairSearch<'a> {
         }
     }
 
-    /// Measures, for each triangle of a leaf of A, the one of B with the least lower bound: a batch of one pair costs as much
-    /// as one of eight.
+    /// Measures, for each triangle of a leaf of A, the triangle of B with the smallest lower bound: a batch of one pair
+    /// costs as much as a batch of eight.
     fn sample(&mut self, leaves: LeafPair) {
         let chosen = match &self.cutoff.witness_frame {
             Some(frame) => best_partners(self.meshes, leaves, frame),
@@ -163,8 +165,8 @@ impl<'a> NearestPairSearch<'a> {
         self.flush();
     }
 
-    /// Keeps the nearer pair; of equals the one with the smaller indices, so that the result does not depend on the order of
-    /// tests.
+    /// Keeps the nearer pair; of equal pairs the one with the smaller indices, so that the result does not depend on the
+    /// order of tests.
     fn offer(&mut self, distance: f64, points: ClosestPoints, triangles: (u32, u32), warm_start: WarmStart) {
         let mut spread = 0.0;
         if let Some(best) = &mut self.best
@@ -202,7 +204,7 @@ impl<'a> NearestPairSearch<'a> {
         if self.best.is_none() {
             self.align_witness_frame(&found, len);
         }
-        // The nearest first: it may make the others irrelevant.
+        // The nearest pair comes first: it may make the others irrelevant.
         while let Some(lane) = least(&found.at_least, len, self.radius + self.settings.tie_tolerance) {
             let triangles = self.batch.triangles[lane];
             let distance = found.distance[lane] as f32;
@@ -219,7 +221,7 @@ impl<'a> NearestPairSearch<'a> {
         }
     }
 
-    /// Aligns the witness frame with the nearest pair measured, also if it is not within the radius.
+    /// Aligns the witness frame with the nearest measured pair, even if it is not within the radius.
     fn align_witness_frame(&mut self, found: &Distances, len: usize) {
         if let Some(lane) = least(&found.distance, len, self.aligned_at) {
             let points = found.closest_points(lane);
@@ -277,7 +279,7 @@ impl<'a> NearestPairSearch<'a> {
     }
 }
 
-/// The lane of the smallest number no larger than `limit`; a NaN, of which nothing is known, comes first.
+/// The lane of the smallest number not larger than `limit`. A NaN, which means unknown, comes first.
 #[inline(always)]
 fn least(numbers: &[f64; BATCH], len: usize, limit: f64) -> Option<usize> {
     let mut best = None;

@@ -1,4 +1,4 @@
-//! The f32 kernel of nodes: children of one node against children of another, sixteen at a time.
+//! The f32 kernel of nodes: tests children of one node against children of another, sixteen at a time.
 
 use fearless_simd::{Simd, dispatch, prelude::*};
 
@@ -14,8 +14,8 @@ pub(super) const INTERSECTION: u8 = 0;
 /// Mode of a distance or tolerance query: squared distances decide.
 pub(super) const DISTANCE: u8 = 1;
 
-/// Pushes the pairs of children of `pair` that may be within the cutoff, the one of the least key last, and returns the
-/// number of 16-lane tests.
+/// Pushes the pairs of children of `pair` that may be within the cutoff, the pair with the smallest key last, and
+/// returns the number of 16-lane tests.
 pub(super) fn expand<const MODE: u8>(
     meshes: &MeshPair,
     pair: &NodePair,
@@ -25,7 +25,7 @@ pub(super) fn expand<const MODE: u8>(
     expand_sides::<MODE>(meshes, pair, pair.expanded_sides(), cutoff, stack)
 }
 
-/// [`expand`] for one side, both or none: a node that is not expanded is tested itself.
+/// Like [`expand`], for one side, both sides or none: a node that is not expanded is tested itself.
 pub(super) fn expand_sides<const MODE: u8>(
     meshes: &MeshPair,
     pair: &NodePair,
@@ -49,14 +49,14 @@ pub(super) fn expand_sides<const MODE: u8>(
     })
 }
 
-/// The box of a node in its own tree's frame and units.
+/// The box of a node in the frame and units of its own tree.
 #[derive(Clone, Copy)]
 struct NodeBox {
     center: [f32; 3],
     half: [f32; 3],
 }
 
-/// A node, of which the lanes in `mask` are tested.
+/// A node with a mask of the lanes to test.
 #[derive(Clone, Copy)]
 struct Side<'a> {
     node: &'a Node,
@@ -65,7 +65,7 @@ struct Side<'a> {
     own: NodeBox,
 }
 
-/// All children of a node to be expanded; of one that is not, its own lane in its parent.
+/// The lanes to test: all children if the node is expanded; otherwise the node's own lane in its parent.
 #[inline(always)]
 fn side(tree: &Bvh16, number: u32, height: u8, expanded: bool) -> Side<'_> {
     let (number, height) = (number as usize, height as usize);
@@ -79,9 +79,11 @@ fn side(tree: &Bvh16, number: u32, height: u8, expanded: bool) -> Side<'_> {
     }
 }
 
-/// Calls `emit(i, j, key)` for every pair of children that may be within the cutoff, and returns the number of 16-lane
-/// tests. A negative key is the least depth of overlap along any axis tested; others are the gap ([`INTERSECTION`]) or a lower
-/// bound of the squared distance, in units of A.
+/// Calls `emit(i, j, key)` for every pair of children that may be within the cutoff, and returns the number of
+/// 16-lane tests.
+///
+/// A negative key is the smallest depth of overlap along any tested axis. Other keys are the gap ([`INTERSECTION`])
+/// or a lower bound of the squared distance, in units of A.
 #[inline(always)]
 fn test_children<S: Simd, const MODE: u8>(
     simd: S,
@@ -188,7 +190,7 @@ struct LanesOfA<S: Simd> {
     slab: SlabsOfA<S>,
 }
 
-/// Boxes of one frame, enclosed in boxes of the other.
+/// Boxes of one frame, enclosed in boxes of the other frame.
 #[inline(always)]
 fn placed_boxes<S: Simd>(simd: S, c: V3<W16<S>>, h: V3<W16<S>>, p: &AffineF32) -> (V3<W16<S>>, V3<W16<S>>) {
     (c.placed(&rows16(simd, &p.m), splat16(simd, p.t)), h.mapped(&rows16(simd, &p.abs)))
@@ -236,7 +238,7 @@ fn beyond<S: Simd, const MODE: u8>(
 /// Slabs of A's children (lanes) against one box of B.
 struct SlabsOfA<S: Simd> {
     normal: V3<W16<S>>,
-    /// Absolute normals in B's axes, times the ratio of units.
+    /// Absolute values of the normals in B's axes, times the ratio of units.
     spread: V3<W16<S>>,
     low: W16<S>,
     high: W16<S>,
@@ -290,15 +292,15 @@ impl SlabsOfB {
 
 /// Both nodes' children as intervals along the axes of a [`WitnessFrame`].
 struct WitnessIntervals<S: Simd> {
-    /// A: upper end along the line; middle and half width along the two others.
+    /// A: upper end along the line; middle and half width along the other two axes.
     far: W16<S>,
     middle: (W16<S>, W16<S>),
     half: (W16<S>, W16<S>),
-    /// B: lower end along the line; the same.
+    /// B: lower end along the line; middle and half width along the other two axes.
     near_b: [f32; 16],
     middle_b: ([f32; 16], [f32; 16]),
     half_b: ([f32; 16], [f32; 16]),
-    /// The same for all children of B at once.
+    /// Intervals of all children of B at once.
     near: W16<S>,
     across_b: [(W16<S>, W16<S>); 2],
 }
@@ -328,7 +330,7 @@ impl<S: Simd> WitnessIntervals<S> {
         }
     }
 
-    /// Children of B and of A that are farther than `limit` (squared) from the whole other node.
+    /// Children of B and of A that are farther than `limit` (squared) from the whole of the other node.
     #[inline(always)]
     fn beyond(&self, simd: S, a: &Side, b: &Side, frame: &WitnessFrame, limit: f32) -> (u32, u32) {
         let zero = W16::splat(simd, 0.0);
@@ -372,8 +374,8 @@ fn across<S: Simd>(simd: S, c: V3<W16<S>>, h: V3<W16<S>>, axis: [f32; 3]) -> (W1
     (c.dot(splat16(simd, axis)), h.dot(splat16(simd, absolute(axis))))
 }
 
-/// Upper bound of the height of each child along `d`: by its box, or by its slab for the component of `d` along the slab's
-/// normal and by its box for the rest.
+/// Upper bound of the height of each child along `d`: from its box, or from its slab for the component of `d` along
+/// the slab's normal and from its box for the rest.
 #[inline(always)]
 fn reach<S: Simd>(simd: S, node: &Node, c: V3<W16<S>>, h: V3<W16<S>>, d: [f32; 3]) -> W16<S> {
     let d = splat16(simd, d);

@@ -1,19 +1,19 @@
-//! Pairs of nodes still to be expanded.
+//! Pairs of nodes that are still to be expanded.
 
 use crate::bvh::{ARITY, Bvh16};
 
-/// A pair of nodes still to be expanded.
+/// A pair of nodes that is still to be expanded.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct NodePair {
     pub a: u32,
     pub b: u32,
-    /// A lower bound of the distance, see [`expand`](super::node_kernel::expand).
+    /// A lower bound of the distance; see [`expand`](super::node_kernel::expand).
     pub key: f32,
     pub height_a: u8,
     pub height_b: u8,
 }
 
-/// Which of two nodes are meant.
+/// A selection of one or both of two nodes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sides {
     pub a: bool,
@@ -31,7 +31,7 @@ impl NodePair {
         self.height_a == 0 && self.height_b == 0
     }
 
-    /// Which of the two is replaced by its children: the higher one; both, where they are equally high.
+    /// The nodes that are replaced by their children: the higher node, or both if they are equally high.
     #[inline(always)]
     pub fn expanded_sides(&self) -> Sides {
         Sides { a: self.height_a >= self.height_b, b: self.height_b >= self.height_a }
@@ -43,7 +43,7 @@ impl NodePair {
         self.child_of(self.expanded_sides(), i, j, key)
     }
 
-    /// The same where these sides are expanded.
+    /// Like [`NodePair::child`], with a selection of expanded nodes.
     #[inline(always)]
     pub fn child_of(&self, expanded: Sides, i: usize, j: usize, key: f32) -> Self {
         let (a, height_a) =
@@ -54,11 +54,11 @@ impl NodePair {
     }
 }
 
-/// Each step down pushes at most 256 pairs and takes one away; trees over 2³² triangles in leaves of 8 are 8 high, and
-/// pairs of unequal height push 16 a step until they are equal.
+/// Each step down pushes at most 256 pairs and removes one. Trees over 2³² triangles in leaves of 8 have a height of
+/// 8, and pairs of unequal height push 16 per step until they are equal.
 const CAPACITY: usize = 8 * 256 + 8 * 16;
 
-/// Pairs of nodes still to be expanded, last in first out.
+/// A stack of pairs of nodes that are still to be expanded.
 #[derive(Debug)]
 pub(super) struct NodePairStack {
     entries: [NodePair; CAPACITY],
@@ -84,7 +84,7 @@ impl NodePairStack {
         self.len
     }
 
-    /// True if a pair was lost: then nothing is proven to be apart.
+    /// True if a pair was lost: then nothing can be proven to be apart.
     pub fn overflowed(&self) -> bool {
         self.overflowed
     }
@@ -103,7 +103,7 @@ impl NodePairStack {
         self.entries.get(self.len).copied()
     }
 
-    /// Sorts the entries from this one on: the one of the least key is the next.
+    /// Sorts the entries from this one on, so that the one with the smallest key is next.
     pub fn sort_from(&mut self, first: usize, key: impl Fn(&NodePair) -> f64) {
         if let Some(entries) = self.entries.get_mut(first..self.len) {
             entries.sort_unstable_by(|a, b| key(b).total_cmp(&key(a)));

@@ -1,4 +1,4 @@
-//! The placement of the second mesh relative to the first, in both precisions, and the error bounds of f32 and f64.
+//! The placement of the second mesh relative to the first in f32 and f64, and the error bounds of f32 and f64.
 
 use elbowroom_spatial::{Pose, Vec3};
 
@@ -25,11 +25,12 @@ pub(super) struct RelativePlacement {
     pub a_in_b: AffineF32,
     pub frame_a: UnitFrame,
     pub frame_b: UnitFrame,
-    /// Rows of the map from units of B to units of A, translation last.
+    /// Rows of the map from units of B to units of A; translation in the last column.
     pub exact: [[f64; 4]; 3],
-    /// No f32 gap of boxes, slabs or triangles is off by more, in units of A. See README.md, "Error bounds".
+    /// Upper bound of the error of every f32 gap of boxes, slabs or triangles, in units of A. See README.md, "Error
+    /// bounds".
     pub f32_error: f64,
-    /// No f64 distance of two triangles is off by more, in units of A; nearer than this is contact.
+    /// Upper bound of the error of every f64 distance of two triangles, in units of A; smaller distances are contact.
     pub f64_error: f64,
 }
 
@@ -43,7 +44,7 @@ impl RelativePlacement {
         let columns: [[f64; 3]; 3] = std::array::from_fn(|i| std::array::from_fn(|j| rows[j][i]));
         let back =
             std::array::from_fn(|i| -(columns[i][0] * t[0] + columns[i][1] * t[1] + columns[i][2] * t[2]) / scale);
-        // Bounds every coordinate in units of A, up to √3.
+        // Bounds every coordinate in units of A, up to a factor of √3.
         let extent = 1.0 + scale + t[0].abs().max(t[1].abs()).max(t[2].abs());
         let world_rounding = world_rounding(&a.frame, a_in_world, &b.frame, b_in_world) / a.frame.unit;
         Self {
@@ -57,13 +58,14 @@ impl RelativePlacement {
         }
     }
 
-    /// False if numbers are NaN, infinite, or so large compared with the meshes that f64 has no digits left for them.
+    /// False if numbers are NaN, infinite, or so large compared with the meshes that f64 has no digits left for the
+    /// meshes.
     #[inline]
     pub fn is_usable(&self) -> bool {
         self.f64_error.is_finite() && self.f32_error < F32_ERROR * 1e15
     }
 
-    /// A point of B's unit frame in A's.
+    /// Maps a point from B's unit frame to A's unit frame.
     #[inline]
     pub fn map_to_a(&self, p: Vec3) -> Vec3 {
         let row = |r: &[f64; 4]| r[0] * p.x + r[1] * p.y + r[2] * p.z + r[3];
@@ -74,29 +76,29 @@ impl RelativePlacement {
 /// 2⁻⁴⁰; README.md, "Triangles in f64".
 const F64_ERROR: f64 = 1.0 / 1_099_511_627_776.0;
 
-/// From centre to centre, metres, world axes.
+/// Vector from centre to centre, metres, world axes.
 #[inline]
 fn offset(a: &UnitFrame, a_in_world: &Pose, b: &UnitFrame, b_in_world: &Pose) -> Vec3 {
     let apart = b_in_world.translation - a_in_world.translation;
     apart + b_in_world.rotation * b.center - a_in_world.rotation * a.center
 }
 
-/// The rounding of positions in the world and of the unit frames' centres in their meshes, at most, metres.
+/// Upper bound of the rounding of positions in the world and of the unit frames' centres in their meshes, metres.
 #[inline]
 fn world_rounding(a: &UnitFrame, a_in_world: &Pose, b: &UnitFrame, b_in_world: &Pose) -> f64 {
     let reach = |p: &Pose, f: &UnitFrame| p.translation.abs().max_element() + f.center.abs().max_element();
     16.0 * f64::EPSILON * (reach(a_in_world, a) + reach(b_in_world, b))
 }
 
-/// True if the bounding spheres of two meshes are so much farther apart than `limit` metres that triangles would be, too,
-/// however they are rounded: by at least twice [`RelativePlacement::f64_error`].
+/// True if the bounding spheres of two meshes are so much farther apart than `limit` metres that the triangles are
+/// too, whatever the rounding: by at least twice [`RelativePlacement::f64_error`].
 #[inline]
 pub(super) fn spheres_farther_than(a: &Bvh16, a_in_world: &Pose, b: &Bvh16, b_in_world: &Pose, limit: f64) -> bool {
     let between = offset(&a.frame, a_in_world, &b.frame, b_in_world);
     let extent = a.frame.unit + b.frame.unit + between.x.abs() + between.y.abs() + between.z.abs();
     let error = extent * F64_ERROR + world_rounding(&a.frame, a_in_world, &b.frame, b_in_world);
     let reach = (a.radius + b.radius + limit) * (1.0 + 1e-12) + 2.0 * error;
-    // Infinite and NaN prove nothing here; `is_usable` reports them.
+    // An infinity or NaN proves nothing here; `is_usable` reports it.
     let squared = between.length_squared();
     squared.is_finite() && squared > reach * reach && a_in_world.is_finite() && b_in_world.is_finite()
 }

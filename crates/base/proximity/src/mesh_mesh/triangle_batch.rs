@@ -50,7 +50,8 @@ impl TriangleBatch {
         self.len == BATCH
     }
 
-    /// Measures all pairs and empties the batch; lanes from `len` on are meaningless. The second value is `len`.
+    /// Measures all pairs and empties the batch. The second value is the number `len` of pairs; lanes from `len` on are
+    /// undefined.
     pub fn measure(&mut self, simd_level: SimdLevel, placement: &RelativePlacement) -> (Distances, usize) {
         let len = std::mem::take(&mut self.len);
         (dispatch!(simd_level, simd => distances(simd, &self.corners, placement)), len)
@@ -65,7 +66,7 @@ fn unit_corners(mesh: &TriMesh, triangle: usize) -> [Vec3; 3] {
     [at(p), at(q), at(r)]
 }
 
-/// Corners of a triangle of each, in units and axes of A.
+/// Corners of a triangle of each mesh, in units and axes of A.
 #[inline(always)]
 pub(super) fn corners_in_a(
     a: &TriMesh,

@@ -1,4 +1,5 @@
-//! The f64 kernel of triangles: distances of eight pairs of triangles at once, in f64. README.md, "Triangles in f64".
+//! The f64 kernel of triangles: distances of eight pairs of triangles at once. README.md, "Triangles in f64",
+//! describes it.
 
 use fearless_simd::{Simd, f64x8, prelude::*};
 
@@ -9,7 +10,7 @@ use crate::bvh::UnitFrame;
 use crate::lanes::V3;
 use crate::triangle::ClosestPoints;
 
-/// Pairs of one batch.
+/// Number of pairs of one batch.
 pub(super) const BATCH: usize = 8;
 
 /// Corners of up to eight pairs, `[corner][axis][lane]`, each mesh in its own frame, metres.
@@ -23,12 +24,12 @@ impl Corners {
     pub const ZERO: Self = Self { a: [[[0.0; BATCH]; 3]; 3], b: [[[0.0; BATCH]; 3]; 3] };
 }
 
-/// Per pair, in units of A.
+/// Distances of the pairs of a batch, in units of A.
 #[derive(Debug, Clone)]
 pub(super) struct Distances {
-    /// Exact to within the error of f64, where certain: see `at_least`.
+    /// Distance, exact to within the f64 error if it is certain: see `at_least`.
     pub distance: [f64; BATCH],
-    /// Where this is smaller than `distance`, the distance is uncertain, and the true one is not below this.
+    /// Lower bound of the true distance. If it is smaller than `distance`, the distance is uncertain.
     pub at_least: [f64; BATCH],
     on_a: [[f64; BATCH]; 3],
     apart: [[f64; BATCH]; 3],
@@ -41,7 +42,7 @@ impl Distances {
         self.at_least[lane] >= self.distance[lane]
     }
 
-    /// Closest points of one pair, where certain.
+    /// Closest points of one pair; valid if they are certain.
     #[inline(always)]
     pub fn closest_points(&self, lane: usize) -> ClosestPoints {
         let on_a = Vec3::new(self.on_a[0][lane], self.on_a[1][lane], self.on_a[2][lane]);
@@ -56,14 +57,14 @@ type Triangle<S> = [V3<W<S>>; 3];
 /// A triangle with the quantities that several tests share.
 struct Prepared<S: Simd> {
     corner: Triangle<S>,
-    /// `edge[k]` runs from corner `k` to the next.
+    /// Edges: `edge[k]` runs from corner `k` to the next.
     edge: Triangle<S>,
     /// Squared lengths of the edges, and their inverses (0 for an edge without length).
     square: [W<S>; 3],
     inverse: [W<S>; 3],
     normal: V3<W<S>>,
     normal_square: W<S>,
-    /// 1 over the square of the normal, 0 if it has no length.
+    /// 1 over the square of the normal; 0 if the normal has no length.
     normal_inverse: W<S>,
     longest: W<S>,
 }
@@ -89,7 +90,7 @@ impl<S: Simd> Prepared<S> {
     }
 }
 
-/// 1/x, or 0 where x is too small for it.
+/// 1/x, or 0 if x is too small for it.
 #[inline(always)]
 fn reciprocal<S: Simd>(simd: S, x: W<S>) -> W<S> {
     let tiny = W::splat(simd, f64::MIN_POSITIVE);
@@ -139,10 +140,10 @@ pub(super) fn distances<S: Simd>(simd: S, corners: &Corners, placement: &Relativ
     let slender = slender(simd, &a) | slender(simd, &b);
     let crossed = crossing(simd, &a, &b, &heights_a, &heights_b, &mut best);
     let distance = best.square.sqrt();
-    // The width of a slender triangle (1e-2), or what nearly parallel edges diverge by over their length; doubled.
+    // The width of a slender triangle (1e-2), or the divergence of nearly parallel edges over their length; doubled.
     let share = slender.select(W::splat(simd, 0.022), spread.sqrt() * 2.0);
     let margin = a.longest.max(b.longest).sqrt() * share;
-    // Nor is a crossing of slender triangles a proof.
+    // A crossing of slender triangles is not a proof either.
     let at_least = (crossed & slender).select(zero - 1.0, distance - margin);
     let mut out =
         Distances { distance: [0.0; BATCH], at_least: [0.0; BATCH], on_a: [[0.0; BATCH]; 3], apart: [[0.0; BATCH]; 3] };
@@ -157,7 +158,7 @@ pub(super) fn distances<S: Simd>(simd: S, corners: &Corners, placement: &Relativ
 struct Best<S: Simd> {
     square: W<S>,
     on_a: V3<W<S>>,
-    /// From the point of B to that of A.
+    /// Vector from the point of B to the point of A.
     apart: V3<W<S>>,
 }
 
@@ -199,8 +200,8 @@ fn slender<S: Simd>(simd: S, t: &Prepared<S>) -> <W<S> as SimdBase<S>>::Mask {
     !(t.normal_square.simd_gt(t.longest * t.longest * SLENDER)) | t.longest.simd_le(W::splat(simd, 1e-140))
 }
 
-/// Closest points of the nine pairs of edges (Ericson, 2005, 5.1.9). Returns the largest squared sine among pairs that
-/// are nearly parallel, whose parameters are ill-conditioned; 0 if there are none.
+/// Closest points of the nine pairs of edges (Ericson, 2005, 5.1.9). Returns the largest squared sine among nearly
+/// parallel pairs, whose parameters are ill-conditioned; 0 without such pairs.
 #[inline(always)]
 fn edges<S: Simd>(simd: S, a: &Prepared<S>, b: &Prepared<S>, best: &mut Best<S>) -> W<S> {
     let (zero, one) = (W::splat(simd, 0.0), W::splat(simd, 1.0));
@@ -215,7 +216,7 @@ fn edges<S: Simd>(simd: S, a: &Prepared<S>, b: &Prepared<S>, best: &mut Best<S>)
             let full = a.square[i] * b.square[j];
             let across = full - along * along;
             let parallel = across.simd_le(full * PARALLEL);
-            // Plus what cancellation may hide.
+            // Adds the error that cancellation may hide.
             let sine = across.max(zero) * a.inverse[i] * b.inverse[j] + 1e-15;
             spread = spread.max(parallel.select(sine, zero));
             let s = (along * f - c * b.square[j]) / parallel.select(one, across);
@@ -232,13 +233,13 @@ fn edges<S: Simd>(simd: S, a: &Prepared<S>, b: &Prepared<S>, best: &mut Best<S>)
 
 /// The projection of a point onto the plane of a triangle.
 struct Projection<S: Simd> {
-    /// Squared height where the projected point is inside the triangle, else infinite.
+    /// Squared height if the projected point is inside the triangle, else infinite.
     square: W<S>,
-    /// From the projected point to the point.
+    /// Vector from the projected point to the point.
     offset: V3<W<S>>,
 }
 
-/// `height` is the dot product of the normal and the point less a corner.
+/// Projects `point` onto the triangle; `height` is the dot product of the normal and the point minus a corner.
 #[inline(always)]
 fn height_over<S: Simd>(simd: S, t: &Prepared<S>, point: V3<W<S>>, height: W<S>) -> Projection<S> {
     let (zero, r) = (W::splat(simd, 0.0), point.minus(t.corner[0]));
@@ -255,7 +256,7 @@ fn height_over<S: Simd>(simd: S, t: &Prepared<S>, point: V3<W<S>>, height: W<S>)
     Projection { square, offset: t.normal.times(share) }
 }
 
-/// Where an edge of one triangle passes through the other; the point of intersection is kept.
+/// The lanes in which an edge of one triangle passes through the other; stores the point of intersection.
 #[inline(always)]
 fn crossing<S: Simd>(
     simd: S,
@@ -285,13 +286,13 @@ fn crossing<S: Simd>(
     any
 }
 
-/// Where heights of both signs, or 0, occur: the plane intersects the triangle.
+/// The lanes in which the heights have both signs, or one is 0: the plane intersects the triangle.
 #[inline(always)]
 fn intersects_plane<S: Simd>(zero: W<S>, h: &[W<S>; 3]) -> M<S> {
     h[0].min(h[1]).min(h[2]).simd_le(zero) & h[0].max(h[1]).max(h[2]).simd_ge(zero)
 }
 
-/// Where edge `k` of `t`, whose corners have these heights over `f`, passes through `f`.
+/// The lanes in which edge `k` of `t`, whose corners have these heights over `f`, passes through `f`, and the point.
 #[inline(always)]
 fn pierced<S: Simd>(simd: S, t: &Prepared<S>, f: &Prepared<S>, heights: &[W<S>; 3], k: usize) -> (M<S>, V3<W<S>>) {
     let zero = W::splat(simd, 0.0);

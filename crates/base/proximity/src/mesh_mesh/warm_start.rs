@@ -1,15 +1,15 @@
-//! Warm start: where a distance query of two meshes begins.
+//! Warm start: the starting point of a distance query of two meshes.
 
-/// The pair of triangles that was nearest in an earlier query of the same two meshes: where the next query begins.
+/// The nearest pair of triangles of an earlier query of the same two meshes, at which the next query starts.
 ///
-/// It changes the time of a query, never its answer. A warm start of two other meshes only makes the query slower. The default
-/// is a cold start.
+/// It changes the time of a query, never its answer. A warm start of two other meshes only makes the query slower.
+/// The default is a cold start.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WarmStart {
     /// Slots of the two triangles.
     pub(super) a: u32,
     pub(super) b: u32,
-    /// Their distance then, units of A.
+    /// Distance of the two triangles in that query, units of A.
     pub(super) distance: f32,
 }
 

@@ -1,4 +1,4 @@
-//! Memory that queries reuse, and what the last query did.
+//! Memory that queries reuse, and the work of the last query.
 
 use std::cell::RefCell;
 
@@ -9,7 +9,7 @@ use super::node_pair::NodePairStack;
 use super::triangle_batch::TriangleBatch;
 use crate::lanes::detected_simd_level;
 
-/// Work done by one query with a mesh: the first five are of two meshes.
+/// Work done by one query with a mesh. The first five numbers are for two meshes.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct QueryStats {
     /// Pairs of nodes expanded.
@@ -22,12 +22,12 @@ pub struct QueryStats {
     pub triangles: u32,
     /// Batches of up to eight such pairs measured in f64.
     pub batches: u32,
-    /// Triangles whose distance to a shape that is not a mesh was computed; for continuous witness points, once more per face of that
-    /// shape. Points of contact are not in it.
+    /// Triangles whose distance to a shape that is not a mesh was computed; for continuous witness points, once more per
+    /// face of that shape. Contact points do not count.
     pub triangles_beside_solids: u32,
 }
 
-/// Memory that queries reuse: one per thread. It never allocates, and no answer depends on earlier queries.
+/// Memory that queries reuse, one per thread. It never allocates, and answers never depend on earlier queries.
 #[derive(Debug)]
 pub struct Workspace {
     pub(super) stack: NodePairStack,
@@ -44,7 +44,7 @@ impl Default for Workspace {
 }
 
 impl Workspace {
-    /// For the best instruction set of this processor.
+    /// Creates a workspace for the best instruction set of this processor.
     pub const fn new() -> Self {
         Self {
             stack: NodePairStack::new(),
@@ -55,7 +55,7 @@ impl Workspace {
         }
     }
 
-    /// For a given instruction set.
+    /// Creates a workspace for a given instruction set.
     #[doc(hidden)]
     pub const fn with_simd_level(simd_level: SimdLevel) -> Self {
         Self { simd_level: Some(simd_level), ..Self::new() }
@@ -66,12 +66,12 @@ impl Workspace {
         self.stats
     }
 
-    /// The closest features of the last distance query on two meshes: `None` if they were beyond the limit.
+    /// The closest features of the last distance query on two meshes; `None` if they were beyond the limit.
     pub fn closest_features(&self) -> Option<MeshFeatures> {
         self.closest_features
     }
 
-    /// The work of a query that has not counted here.
+    /// Sets the work of a query that was not counted here.
     pub(crate) fn set_stats(&mut self, stats: QueryStats) {
         self.stats = stats;
     }
@@ -87,7 +87,7 @@ impl Workspace {
     }
 }
 
-/// Runs a query with this thread's own workspace, which is static: the first use does not allocate either.
+/// Runs a query with this thread's own workspace. It is static, so that not even the first use allocates.
 pub(crate) fn with_thread_workspace<T>(query: impl FnOnce(&mut Workspace) -> T) -> T {
     thread_local! { static WORKSPACE: RefCell<Workspace> = const { RefCell::new(Workspace::new()) } }
     WORKSPACE.with_borrow_mut(query)

@@ -1,8 +1,9 @@
 //! Penetration depth of two convex cores by the expanding polytope algorithm (EPA; van den Bergen, 2001).
 //!
-//! The difference `A - B` contains the origin; its boundary point nearest to the origin gives the penetration. A polytope inside
-//! it is expanded at the face nearest to the origin until the support point there is no farther than the face. The depth
-//! returned is that of a support plane, so it always separates; the face is a lower bound.
+//! The difference `A - B` contains the origin; its boundary point nearest to the origin gives the penetration. A
+//! polytope inside the difference is expanded at the face nearest to the origin until the support point there is no
+//! farther than the face. The returned depth belongs to a support plane, so the translation always separates the
+//! cores; the face is a lower bound.
 
 use elbowroom_spatial::{Pose, Vec3};
 
@@ -11,7 +12,7 @@ use crate::separation::core::Core;
 
 const MAX_ITERATIONS: usize = 64;
 
-/// Depth, and unit direction (frame of b) in which to move a. The depth is negative if they are apart.
+/// Depth, and unit direction (frame of b) in which to move a. The depth is negative if the cores are apart.
 pub(super) fn expanding_polytope(a: &Core, b: &Core, a_in_b: &Pose) -> (f64, Vec3) {
     let difference = |d: Vec3| a_in_b.transform_point(a.support(a_in_b.inverse_transform_vector(d))) - b.support(-d);
     let mut best = (f64::INFINITY, Vec3::Z);
@@ -40,7 +41,7 @@ pub(super) fn expanding_polytope(a: &Core, b: &Core, a_in_b: &Pose) -> (f64, Vec
     best
 }
 
-/// The axes of both frames and their cross products, in both senses.
+/// The axes of both frames and their cross products, each with both signs.
 fn initial_directions(a_in_b: &Pose) -> Vec<Vec3> {
     let b = [Vec3::X, Vec3::Y, Vec3::Z];
     let a = b.map(|e| a_in_b.transform_vector(e));

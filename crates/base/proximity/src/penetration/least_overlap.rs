@@ -1,4 +1,5 @@
-//! Penetration depth of the cores of two primitives: a search for the direction of least overlap, without allocation.
+//! Penetration depth of the cores of two primitives: searches for the direction of least overlap, without
+//! allocation.
 //!
 //! The overlap along a direction is the support function of the difference `B - A`. The difference of segments, boxes and
 //! cylinders is a Minkowski sum of segments and discs, and its boundary point nearest to an inner point lies
@@ -14,16 +15,16 @@ use elbowroom_spatial::{Pose, Vec3};
 
 use crate::separation::core::Core;
 
-/// Directions sampled around each segment before the best is refined.
+/// Number of directions sampled around each segment before the best is refined.
 const SAMPLES_AROUND: usize = 24;
 
-/// Directions sampled on the sphere before the best are refined.
+/// Number of directions sampled on the sphere before the best ones are refined.
 const SAMPLES_ON_SPHERE: usize = 96;
 
-/// The number of samples that are refined.
+/// Number of samples that are refined.
 const STARTS: usize = 4;
 
-/// Descent steps at most.
+/// Largest number of descent steps.
 const MAX_STEPS: usize = 200;
 
 /// The least overlap so far.
@@ -49,7 +50,8 @@ impl<F: Fn(Vec3) -> f64> Best<F> {
         }
     }
 
-    /// The best direction perpendicular to the unit vector `axis`: samples, then a golden-section search around the best.
+    /// Offers the best direction perpendicular to the unit vector `axis`: samples, then a golden-section search around
+    /// the best.
     fn offer_around(&mut self, axis: Vec3) {
         let (x, y) = (axis.any_perpendicular(), axis.cross(axis.any_perpendicular()));
         let at = |angle: f64| x * angle.cos() + y * angle.sin();
@@ -77,7 +79,7 @@ impl<F: Fn(Vec3) -> f64> Best<F> {
         }
     }
 
-    /// Pattern search from `d`: descent by steps in six directions, of shrinking size.
+    /// Pattern search from `d`: descent by steps of shrinking size in six directions.
     fn descend(&mut self, mut d: Vec3) {
         let (mut depth, mut step, mut phase) = (self.offer(d), 0.1, 0.0);
         for _ in 0..MAX_STEPS {
@@ -92,7 +94,7 @@ impl<F: Fn(Vec3) -> f64> Best<F> {
                 let there = self.offer(tilted);
                 next = if there < next.0 { (there, tilted) } else { next };
             }
-            // Progress within rounding must not enlarge the steps: the search would not end.
+            // Progress within rounding must not enlarge the steps; otherwise the search would not end.
             step *= if next.0 < depth - 1e-14 * depth.abs() { 1.2 } else { 0.5 };
             phase += 0.4;
             (depth, d) = next;
@@ -100,7 +102,8 @@ impl<F: Fn(Vec3) -> f64> Best<F> {
     }
 }
 
-/// Least overlap of the cores and the unit direction (frame of b) in which to move a. Negative where they are apart.
+/// Least overlap of the cores, and the unit direction (frame of b) in which to move a. Negative if the cores are
+/// apart.
 pub(super) fn least_overlap(a: &Core, b: &Core, a_in_b: &Pose) -> (f64, Vec3) {
     let overlap = |d: Vec3| {
         let low_of_a = a_in_b.transform_point(a.support(-a_in_b.inverse_transform_vector(d)));
@@ -133,7 +136,7 @@ pub(super) fn least_overlap(a: &Core, b: &Core, a_in_b: &Pose) -> (f64, Vec3) {
     (best.depth, best.direction)
 }
 
-/// The directions of the segments of which the core is the Minkowski sum.
+/// The directions of the segments whose Minkowski sum is the core.
 fn segments<'a>(core: &Core, axes: &'a [Vec3; 3]) -> &'a [Vec3] {
     match core {
         Core::Cuboid(_) => axes,
@@ -142,11 +145,11 @@ fn segments<'a>(core: &Core, axes: &'a [Vec3; 3]) -> &'a [Vec3] {
     }
 }
 
-/// Descent from the best direction so far and from the best of samples spread evenly over the sphere.
+/// Descends from the best direction so far and from the best samples spread evenly over the sphere.
 fn refine<F: Fn(Vec3) -> f64>(best: &mut Best<F>) {
     let mut starts = [(f64::INFINITY, best.direction); STARTS];
     for k in 0..SAMPLES_ON_SPHERE {
-        // A Fibonacci lattice.
+        // The samples are a Fibonacci lattice.
         let z = 1.0 - (2 * k + 1) as f64 / SAMPLES_ON_SPHERE as f64;
         let (rho, angle) = ((1.0 - z * z).sqrt(), k as f64 * PI * (3.0 - 5.0_f64.sqrt()));
         let d = Vec3::new(rho * angle.cos(), rho * angle.sin(), z);

@@ -14,22 +14,23 @@ use crate::{Shape, TriMesh, collides, project_point};
 /// The penetration of two shapes: a translation that separates them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Penetration {
-    /// Penetration depth: how far to move the first shape, metres. 0 if the shapes just touch; infinite if no translation
-    /// separates them.
+    /// Penetration depth: the distance by which to move the first shape, metres. 0 if the shapes just touch; infinite if
+    /// no translation separates them.
     pub depth: f64,
-    /// Direction in which to move it, unit vector in the world.
+    /// Direction in which to move the first shape, a unit vector in the world.
     pub direction: Vec3,
 }
 
 /// The shortest translation of `a` that separates it from `b`; `None` if they are apart.
 ///
-/// A translation by `depth * direction` always separates (up to rounding). It is the shortest one
+/// A translation by `depth * direction` always separates the shapes (up to rounding). It is the shortest one
 /// - exactly, for spheres against all convex shapes, for half-spaces, for boxes (15 axes) and for capsules against
 ///   capsules and boxes;
 /// - within 1e-9 of the size for cylinders, by a search that is tested against brute force but not proven;
-/// - for hulls, within 1e-9 of the size where the difference of the two has flat faces, within about 1e-4 where it is
+/// - for hulls, within 1e-9 of the size if the difference of the two has flat faces, within about 1e-4 if it is
 ///   curved;
-/// - for meshes, of their convex hulls: the translation out of a notch of a mesh may be shorter than the one returned.
+/// - for meshes, for their convex hulls: the translation out of a notch of a mesh may be shorter than the returned
+///   one.
 ///
 /// Does not allocate for pairs of spheres, capsules, cylinders, boxes and half-spaces.
 ///
@@ -70,7 +71,7 @@ fn two_half_spaces(a_in_world: &Pose, b_in_world: &Pose) -> Penetration {
     Penetration { depth, direction: b_in_world.rotation.z_axis() }
 }
 
-/// Of a bounded shape and a half-space.
+/// Penetration of a bounded shape and a half-space.
 fn half_space(a: &Shape, a_in_world: &Pose, b_in_world: &Pose) -> Penetration {
     let normal = b_in_world.rotation.z_axis();
     let lowest = a_in_world.transform_point(a.support(-a_in_world.inverse_transform_vector(normal)));
@@ -78,7 +79,7 @@ fn half_space(a: &Shape, a_in_world: &Pose, b_in_world: &Pose) -> Penetration {
     Penetration { depth: (-height).max(0.0), direction: normal }
 }
 
-/// Of the hull of a mesh; of its vertices where it is flat and has no hull.
+/// Queries the hull of a mesh; a flat mesh has no hull, and its vertices are used.
 fn with_hull(m: &TriMesh, query: impl Fn(&Shape) -> Penetration) -> Penetration {
     match m.hull() {
         Some(hull) => query(&Shape::Hull(Arc::new(hull.clone()))),
@@ -86,7 +87,7 @@ fn with_hull(m: &TriMesh, query: impl Fn(&Shape) -> Penetration) -> Penetration 
     }
 }
 
-/// Neither is a half-space; either may still be a mesh.
+/// Penetration of two shapes that are not half-spaces; either may be a mesh.
 fn bounded(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose) -> Penetration {
     if let Shape::Mesh(m) = b
         && let Some(hull) = m.hull()
@@ -130,14 +131,14 @@ fn core_of(s: &Shape) -> (Core<'_>, f64) {
     }
 }
 
-/// Where the cores are apart and only the radii overlap: along the witness points of the cores. Frame of b.
+/// Penetration if the cores are apart and only the radii overlap: along the witness points of the cores. Frame of b.
 fn shallow(a: &Shape, b: &Shape, a_in_b: &Pose) -> Option<Penetration> {
     let (gap, radii) = convex(a, b, a_in_b, f64::INFINITY)?;
     if !(gap.lower > 0.0) {
         return None;
     }
     let direction = (gap.on_a - gap.on_b).try_normalize()?;
-    // Witness points close to each other give an inaccurate direction: the overlap along it decides.
+    // Witness points close to each other give an inaccurate direction, so the overlap along it decides.
     let (core_a, core_b) = (core_of(a).0, core_of(b).0);
     let low_of_a = a_in_b.transform_point(core_a.support(-a_in_b.inverse_transform_vector(direction)));
     let overlap = (core_b.support(direction) - low_of_a).dot(direction);

@@ -1,4 +1,4 @@
-//! Connected components as separate meshes.
+//! Splitting of a mesh into its connected components.
 
 use elbowroom_spatial::Vec3;
 
@@ -8,16 +8,17 @@ use crate::shape::topology::{components, first_of_equal};
 /// One connected component of a mesh.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Component {
-    /// Its vertices, in the order given.
+    /// Vertices of the component, in the given order.
     pub vertices: Vec<Vec3>,
-    /// Its triangles, indices into its vertices.
+    /// Triangles of the component, as indices into `vertices`.
     pub triangles: Vec<[u32; 3]>,
-    /// Their indices in the original mesh.
+    /// Indices of the triangles in the original mesh.
     pub from: Vec<u32>,
 }
 
-/// Connected components in the order of their first triangles. Triangles that share a corner are connected; corners of
-/// equal coordinates count as one.
+/// Splits a mesh into connected components, in the order of their first triangles.
+///
+/// Triangles that share a corner are connected; corners with equal coordinates count as one.
 ///
 /// ```
 /// use elbowroom_proximity::repair::split_components;
@@ -29,7 +30,7 @@ pub struct Component {
 /// ```
 ///
 /// # Errors
-/// A triangle has an index beyond the vertex list.
+/// [`RepairError`] if a triangle has an index beyond the vertex list.
 pub fn split_components(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<Vec<Component>, RepairError> {
     check(vertices.len(), triangles)?;
     let first = first_of_equal(vertices);

@@ -1,6 +1,6 @@
-//! Why triangles were refused.
+//! Errors of mesh repair.
 
-/// Why triangles were not changed.
+/// Why triangles were refused and not changed.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum RepairError {
     /// The tolerance is negative, NaN or infinite.
@@ -9,14 +9,14 @@ pub enum RepairError {
     /// A triangle has an index beyond the vertex list.
     #[error("triangle {triangle} names vertex {index}, but there are only {vertices} vertices")]
     IndexOutOfRange {
-        /// Which triangle, from 0.
+        /// Index of the triangle, from 0.
         triangle: usize,
-        /// The index it names.
+        /// The vertex index in the triangle.
         index: u32,
         /// Number of vertices.
         vertices: usize,
     },
-    /// Indices are 32 bits wide.
+    /// More vertices or triangles than 32-bit indices can number.
     #[error("{0} is more vertices or triangles than 32-bit indices can name (4294967295)")]
     TooLarge(usize),
 }

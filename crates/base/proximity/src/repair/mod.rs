@@ -1,7 +1,7 @@
 //! Mesh repair: weld vertices, orient faces consistently, split into connected components.
 //!
-//! [`TriMesh`](crate::TriMesh) accepts triangles as they are and reports on them; these functions change them, and report
-//! what they changed.
+//! [`TriMesh`](crate::TriMesh) accepts triangles as they are and reports on them. The functions of this module
+//! change triangles, and report what they changed.
 //!
 //! ```
 //! use elbowroom_proximity::TriMesh;

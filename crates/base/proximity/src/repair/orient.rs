@@ -1,4 +1,4 @@
-//! Consistent orientation: the faces of a closed surface point outward.
+//! Consistent orientation: faces of a closed surface point outward.
 
 use elbowroom_spatial::Vec3;
 
@@ -11,32 +11,33 @@ use crate::TriMesh;
 pub struct Oriented {
     /// The same triangles in the same order, some with two corners swapped.
     pub triangles: Vec<[u32; 3]>,
-    /// What was changed.
+    /// Counts of the changes.
     pub report: OrientReport,
 }
 
 /// Counts of what [`orient`] found and changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct OrientReport {
-    /// Triangles reversed.
+    /// Number of reversed triangles.
     pub flipped: usize,
-    /// Surfaces connected over edges of two faces.
+    /// Number of shells: surfaces connected over edges of two faces.
     pub shells: usize,
-    /// Those that are closed.
+    /// Number of closed shells.
     pub closed: usize,
-    /// Closed ones that face inward because they bound a cavity inside another.
+    /// Number of closed shells that face inward because they bound a cavity inside another shell.
     pub cavities: usize,
-    /// Those that are not orientable, as a Möbius strip; left as they are.
+    /// Number of shells that are not orientable, such as a Möbius strip; they are not changed.
     pub one_sided: usize,
 }
 
-/// Reverses triangles so that neighbours agree and closed surfaces face outward. Corners of equal coordinates count as
-/// one; edges of more than two faces do not connect. Open surfaces keep the orientation of their first triangle.
+/// Reverses triangles so that neighbours agree and closed surfaces face outward.
 ///
-/// A closed surface inside another of the opposite orientation bounds a cavity and stays opposite.
+/// Corners with equal coordinates count as one; edges of more than two faces do not connect. Open surfaces keep the
+/// orientation of their first triangle. A closed surface inside another of the opposite orientation bounds a cavity
+/// and stays opposite.
 ///
 /// # Errors
-/// A triangle has an index beyond the vertex list.
+/// [`RepairError`] if a triangle has an index beyond the vertex list.
 pub fn orient(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<Oriented, RepairError> {
     check(vertices.len(), triangles)?;
     let Shells { list, reversed } = Shells::of(vertices, triangles);
@@ -59,10 +60,10 @@ pub fn orient(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<Oriented, Rep
     Ok(Oriented { triangles: oriented, report })
 }
 
-/// Per shell: true unless it bounds a cavity.
+/// Whether each shell faces outward: true unless it bounds a cavity.
 fn outward(list: &[Shell], vertices: &[Vec3], triangles: &[[u32; 3]]) -> Vec<bool> {
     let mut outward = vec![true; list.len()];
-    // The sign of the volume is meaningful only where the orientation is consistent.
+    // The sign of the volume is meaningful only if the orientation is consistent.
     let signed: Vec<(usize, f64)> =
         list.iter().enumerate().filter(|(_, s)| s.consistent).filter_map(|(i, s)| Some((i, s.volume?))).collect();
     let mixed = signed.iter().any(|d| d.1 > 0.0) && signed.iter().any(|d| d.1 < 0.0);

@@ -4,26 +4,27 @@ use elbowroom_spatial::{Aabb, Vec3};
 
 use crate::shape::topology::{Edges, first_of_equal, is_proper};
 
-/// No shell, no neighbour.
+/// Index that means no shell or no neighbour.
 const NONE: u32 = u32::MAX;
 
 /// A surface connected over edges of exactly two faces.
 #[derive(Debug, Clone)]
 pub(crate) struct Shell {
-    /// Its faces, in breadth-first order.
+    /// Faces of the shell, in breadth-first order.
     pub faces: Vec<u32>,
-    /// All faces have the same orientation as given.
+    /// True if all faces have the same orientation as given.
     pub consistent: bool,
-    /// The faces can be oriented consistently: not a Möbius strip.
+    /// True if the faces can be oriented consistently, unlike those of a Möbius strip.
     pub orientable: bool,
-    /// Every edge of its faces has an even number of uses by this shell.
+    /// True if this shell uses every edge of its faces an even number of times.
     pub closed: bool,
-    /// Signed volume, m³, with all faces oriented like the first; `None` where open, or too small for a sign.
+    /// Signed volume, m³, with all faces oriented like the first; `None` if the shell is open, or the volume too small
+    /// for a sign.
     pub volume: Option<f64>,
     pub bounds: Aabb,
 }
 
-/// All shells, and per triangle whether its orientation is opposite to that of the first face of its shell.
+/// All shells, and for each triangle whether its orientation is opposite to that of the first face of its shell.
 pub(crate) struct Shells {
     pub list: Vec<Shell>,
     pub reversed: Vec<bool>,
@@ -51,7 +52,7 @@ impl Shells {
     }
 }
 
-/// Per face and corner: the neighbour over the edge from there to the next corner, where that edge has two faces.
+/// The neighbour of each face over the edge from each corner to the next, if that edge has two faces.
 fn neighbours(faces: &[[u32; 3]], edges: &Edges) -> Vec<[u32; 3]> {
     let mut neighbour = vec![[NONE; 3]; faces.len()];
     edges.for_each(|low, high, uses| {
@@ -138,15 +139,15 @@ fn measure(shell: &mut Shell, vertices: &[Vec3], triangles: &[[u32; 3]], reverse
 }
 
 impl Shells {
-    /// True if all closed shells are consistent and have the same sign: the solid is then their union, and the sign gives
-    /// the orientation of each.
+    /// True if all closed shells are consistent and have the same sign. Then the solid is their union, and the sign
+    /// gives the orientation of each.
     pub fn agree(&self) -> bool {
         let mut signs = self.closed().map(|s| s.volume.filter(|_| s.consistent).map(f64::signum));
         let first = signs.next().flatten();
         first.is_some() && signs.all(|sign| sign == first)
     }
 
-    /// True if the bounds of no other closed shell overlap this one's: it is a separate solid, not a cavity.
+    /// True if the bounds of all other closed shells are apart from its bounds: then it is a separate solid, not a cavity.
     pub fn is_alone(&self, number: usize) -> bool {
         let bounds = &self.list[number].bounds;
         let mut others = self.list.iter().enumerate().filter(|&(n, s)| n != number && s.closed);

@@ -1,4 +1,4 @@
-//! Merging of vertices that are meant to be one.
+//! Merging of vertices that represent the same point.
 
 use elbowroom_spatial::Vec3;
 
@@ -8,40 +8,45 @@ use crate::shape::topology::{Edges, first_of_equal, is_degenerate, is_proper, me
 /// The result of [`weld`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Welded {
-    /// The vertices that are left, in the order given.
+    /// The remaining vertices, in the given order.
     pub vertices: Vec<Vec3>,
-    /// The triangles that are left, in the order given, as indices into the vertices that are left.
+    /// The remaining triangles, in the given order, as indices into the remaining vertices.
     pub triangles: Vec<[u32; 3]>,
-    /// What was changed.
+    /// Counts of the changes.
     pub report: WeldReport,
 }
 
 /// Counts of what [`weld`] changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct WeldReport {
-    /// Vertices replaced by an earlier one.
+    /// Number of vertices replaced by an earlier one.
     pub merged: usize,
-    /// Vertices left out because no triangle that is left uses them.
+    /// Number of vertices removed because no remaining triangle uses them.
     pub unused: usize,
-    /// Triangles left out because they have no area.
+    /// Number of triangles removed because they have no area.
     pub zero_area: usize,
-    /// Triangles without area that stay, because without them a closed surface would open: three different corners on
-    /// a line, as where a long edge meets two short ones.
+    /// Number of triangles without area that were kept, because without them a closed surface would open: three
+    /// different corners on a line, for example at the meeting of a long edge and two short ones.
     pub slivers_kept: usize,
-    /// Triangles left out because an earlier one has the same corners in the same orientation. Two of opposite orientation
-    /// are the wall between two solids and stay.
+    /// Number of triangles removed because an earlier one has the same corners in the same orientation. Two triangles of
+    /// opposite orientation are kept: they are the wall between two solids.
     pub duplicate: usize,
 }
 
 /// Merges vertices within `tolerance` metres, and removes triangles that have lost their area or are duplicates.
 ///
-/// Vertices are processed in order: each is merged into the nearest (of equally near, the first) kept vertex within the
-/// tolerance, or is kept itself. So no vertex moves by more than the tolerance, however long a chain of close neighbours is, no two kept
-/// vertices are within it, and the result depends on nothing but the input. Tolerance 0 merges equal coordinates.
-/// Vertices that are not finite stay as they are.
+/// Vertices are processed in order. Each is merged into the nearest kept vertex within the tolerance (the first, if
+/// several are equally near), or is kept itself. So under any input:
+///
+/// - a vertex never moves by more than the tolerance, however long a chain of close neighbours is;
+/// - two kept vertices are never within the tolerance of each other;
+/// - the result depends only on the input.
+///
+/// Tolerance 0 merges equal coordinates. Vertices that are not finite are not changed.
 ///
 /// # Errors
-/// The tolerance is not a finite number of metres, 0 or more; a triangle has an index beyond the vertex list.
+/// [`RepairError`] if the tolerance is not a finite number of metres, 0 or more, or a triangle has an index beyond
+/// the vertex list.
 pub fn weld(vertices: &[Vec3], triangles: &[[u32; 3]], tolerance: f64) -> Result<Welded, RepairError> {
     if !(tolerance >= 0.0 && tolerance.is_finite()) {
         return Err(RepairError::Tolerance(tolerance));
@@ -57,8 +62,8 @@ pub fn weld(vertices: &[Vec3], triangles: &[[u32; 3]], tolerance: f64) -> Result
     Ok(Welded { vertices, triangles, report })
 }
 
-/// For each vertex the index of the one into which [`weld`] merges it; its own index if it is kept. A tolerance that is not
-/// a positive finite number of metres merges equal coordinates.
+/// For each vertex, the index of the vertex into which [`weld`] merges it; its own index if it is kept. A tolerance
+/// that is not a positive finite number of metres merges equal coordinates.
 ///
 /// ```
 /// use elbowroom_proximity::repair::merge_targets;
@@ -75,8 +80,8 @@ pub fn merge_targets(vertices: &[Vec3], tolerance: f64) -> Vec<u32> {
     target
 }
 
-/// Leaves out triangles without area. One with three different corners toggles whether its edges are matched, so it
-/// is removed only where one of them is unmatched anyway.
+/// Removes triangles without area. A triangle with three different corners toggles whether its edges are matched, so
+/// it is removed only if one of its edges is unmatched anyway.
 fn without_flat(vertices: &[Vec3], faces: Vec<[u32; 3]>, report: &mut WeldReport) -> Vec<[u32; 3]> {
     let flat: Vec<bool> = faces.iter().map(|f| is_degenerate(f.map(|i| vertices[i as usize]))).collect();
     let mut beside_open = vec![false; faces.len()];
@@ -103,7 +108,7 @@ fn without_flat(vertices: &[Vec3], faces: Vec<[u32; 3]>, report: &mut WeldReport
 }
 
 fn without_copies(faces: &[[u32; 3]], report: &mut WeldReport) -> Vec<[u32; 3]> {
-    // Rotated until the smallest corner is first, triangles of the same corners and orientation are equal.
+    // Rotated so that the smallest corner is first, triangles with the same corners and orientation are equal.
     let rotated = |f: &[u32; 3]| {
         let least = (0..3).min_by_key(|&k| f[k]).unwrap_or(0);
         [f[least], f[(least + 1) % 3], f[(least + 2) % 3]]
@@ -118,7 +123,7 @@ fn without_copies(faces: &[[u32; 3]], report: &mut WeldReport) -> Vec<[u32; 3]> 
     faces.iter().zip(duplicate).filter(|(_, duplicate)| !duplicate).map(|(f, _)| *f).collect()
 }
 
-/// The vertices in use, in their order, and triangles with the new indices.
+/// The vertices in use, in their given order, and the triangles with the new indices.
 fn compact(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let mut index = vec![u32::MAX; vertices.len()];
     triangles.iter().flatten().for_each(|&i| index[i as usize] = 0);

@@ -26,7 +26,7 @@ pub(super) fn capsule(
         half: c.half_length,
     };
     let size = (a_in_world.translation.abs() + b_in_world.translation.abs()).max_element() + c.half_length;
-    // The gap to a bounding box must exceed the rounding.
+    // The gap to a bounding box must exceed the rounding error.
     let outer = if let Shape::Capsule(o) = b { o.radius } else { 0.0 };
     let reach = limit + c.radius + 2.0 * rounding(2.0 * size + c.radius + outer);
     let (p, q, radius) = match b {
@@ -66,7 +66,7 @@ pub(super) fn capsule(
     closed_form(p, q, scale, [c.radius, radius], limit, b_in_world)
 }
 
-/// A capsule whose axis is perpendicular to the line between the closest points.
+/// Separation of a capsule whose axis is perpendicular to the line between the closest points.
 #[cold]
 fn ambiguous_capsule(
     c: &Capsule,
@@ -99,7 +99,8 @@ fn core_half_extents(shape: &Shape) -> Vec3 {
     }
 }
 
-/// A capsule with hardly any radius, closer than the closed form resolves: the root is lost in the rounding of the excess.
+/// Separation of a capsule with hardly any radius that is closer than the closed form resolves: the root is lost in
+/// the rounding of the excess.
 #[cold]
 fn thin_capsule(
     c: &Capsule,
@@ -109,7 +110,8 @@ fn thin_capsule(
     points: Gap,
     proven: f64,
 ) -> Option<Separation> {
-    // Without the limit, so that the answer does not depend on it. The points of the closed form are as good as any others.
+    // The query has no limit, so that the answer does not depend on it. The points of the closed form are as good as any
+    // others.
     let (gap, radii) = convex(&Shape::Capsule(*c), b, &b_in_world.inverse_mul(a_in_world), f64::INFINITY)?;
     let better = gap.lower > 0.0 && points.distance < gap.distance;
     let gap = if better { points.at_least(gap.lower) } else { gap };

@@ -19,7 +19,7 @@ pub(super) fn continuous_witness(a: &Core, b: &Core, a_in_b: &Pose, gap: Gap) ->
     let Some(toward_b) = (gap.on_b - gap.on_a).try_normalize() else { return gap };
     let tolerances = PatchTolerances::of(radius_a + radius_b);
     let toward_b_in_a = a_in_b.inverse_transform_vector(toward_b);
-    // Most closest points are corners of one of the two: a cheap test excludes them first.
+    // Most closest points are corners of one of the two cores: a cheap test excludes them first.
     let flatness = 2.0 * tolerances.tie / tolerances.min_size;
     if is_corner(b, -toward_b, gap.on_b, flatness * radius_b)
         || is_corner(a, toward_b_in_a, a_in_b.inverse_transform_point(gap.on_a), flatness * radius_a)
@@ -34,7 +34,7 @@ pub(super) fn continuous_witness(a: &Core, b: &Core, a_in_b: &Pose, gap: Gap) ->
         let top_of_a = a_in_b.transform_point(a.support(a_in_b.inverse_transform_vector(d)));
         [top_of_a.dot(d), b.support(-d).dot(d)]
     };
-    // Points that are very close give a direction with few digits; the normal of a face has all.
+    // Points that are very close give a direction with few digits; a face normal has all digits.
     let center_a = a_in_b.transform_point(center_a);
     let normal_a = normal(a, toward_b_in_a, a_in_b.inverse_transform_point(center_b));
     let normal_b = normal(b, -toward_b, center_a);
@@ -59,11 +59,12 @@ pub(super) fn continuous_witness(a: &Core, b: &Core, a_in_b: &Pose, gap: Gap) ->
     with_points(gap, on_a, on_b, tolerances.tie)
 }
 
-/// False if the closest point of a line along the unit vector `direction` and `b` is certainly unique; `to_b` leads from the
-/// closest point of the line to that of `b`. All in the frame of `b`, and without a root.
+/// False if the closest point of `b` and a line along the unit vector `direction` is guaranteed to be unique. `to_b`
+/// is the vector from the closest point of the line to that of `b`. All vectors are in the frame of `b`. Computes no
+/// square root.
 #[inline]
 pub(super) fn is_line_ambiguous(direction: Vec3, b: &Shape, to_b: Vec3) -> bool {
-    /// Squared cosine. Lines that are less parallel than this are tied over a few millimetres at most.
+    /// Squared cosine. Lines that are less parallel than this are tied over at most a few millimetres.
     const PARALLEL: f64 = 0.98;
     const SLOPE: f64 = TIE_TOLERANCE / MIN_PATCH_SIZE;
     let along = direction.dot(to_b);
@@ -90,7 +91,8 @@ pub(super) fn transformed(feature: SupportFeature, pose: &Pose) -> SupportFeatur
     }
 }
 
-/// The gap with other points, unless they are farther apart than tied points are: they may result from an inaccurate direction.
+/// The gap with other points, unless they are farther apart than tied points: then they may result from an
+/// inaccurate direction.
 pub(super) fn with_points(gap: Gap, on_a: Vec3, on_b: Vec3, tie_tolerance: f64) -> Gap {
     let apart = on_a.distance(on_b);
     if apart <= gap.distance + 2.0 * tie_tolerance { Gap { apart, on_a, on_b, ..gap } } else { gap }

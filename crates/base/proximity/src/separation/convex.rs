@@ -1,4 +1,4 @@
-//! Two convex shapes without a special method: projections, GJK where these do not converge.
+//! Two convex shapes without a special method: projections, then GJK if these do not converge.
 
 use elbowroom_spatial::{Pose, Vec3};
 
@@ -9,7 +9,7 @@ use super::goal::Goal;
 use super::{half_space, projections};
 use crate::Shape;
 
-/// Two bounded convex shapes: gap of the cores in the frame of the second, and radii.
+/// Separation data of two bounded convex shapes: the gap of the cores, in the frame of the second, and the radii.
 #[inline]
 pub(super) fn rounded_convex(a: &Shape, b: &Shape, a_in_b: &Pose, limit: f64, goal: Goal) -> Option<(Gap, [f64; 2])> {
     let (gap, radii) = convex(a, b, a_in_b, limit)?;
@@ -25,7 +25,8 @@ fn with_continuous_witness(a: &Shape, b: &Shape, a_in_b: &Pose, gap: Gap) -> Gap
     }
 }
 
-/// Two convex shapes of which the second may be a half-space: gap of the cores in the frame of the second, and radii.
+/// Separation data of two convex shapes, the second possibly a half-space: the gap of the cores, in the frame of the
+/// second, and the radii.
 #[inline]
 pub(crate) fn convex(a: &Shape, b: &Shape, a_in_b: &Pose, limit: f64) -> Option<(Gap, [f64; 2])> {
     let (core_a, ra) = rounded(a)?;
@@ -33,7 +34,7 @@ pub(crate) fn convex(a: &Shape, b: &Shape, a_in_b: &Pose, limit: f64) -> Option<
         return Some((half_space::core_half_space(&core_a, a_in_b), [ra, 0.0]));
     }
     let (core_b, rb) = rounded(b)?;
-    // Beyond the place where the bound in `Gap::separation` passes the limit, so that this bound alone decides.
+    // This limit is beyond the place where the bound in `Gap::separation` passes the limit, so that bound alone decides.
     let limit = limit + ra + rb + 2.0 * rounding(ra + rb);
     let proven = bounds_gap(&core_a, &core_b, a_in_b);
     if proven > limit {
@@ -43,7 +44,8 @@ pub(crate) fn convex(a: &Shape, b: &Shape, a_in_b: &Pose, limit: f64) -> Option<
     Some((gap, [ra, rb]))
 }
 
-/// Gap of bounding boxes along the axes of the second's frame: never above the exact distance. 0 if nothing is known.
+/// Gap of the bounding boxes along the axes of the second's frame, which never exceeds the exact distance. 0 if it
+/// is unknown.
 #[allow(clippy::inline_always, reason = "for two boxes it is most of the time")]
 #[inline(always)]
 fn bounds_gap(a: &Core, b: &Core, a_in_b: &Pose) -> f64 {

@@ -9,7 +9,7 @@ use crate::{ConvexHull, Cuboid, Cylinder, Shape};
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Core<'a> {
     Point,
-    /// Along z, half length.
+    /// A segment along z, by its half length.
     Segment(f64),
     Cylinder(Cylinder),
     Cuboid(Cuboid),
@@ -19,7 +19,7 @@ pub(crate) enum Core<'a> {
     Triangle([Vec3; 3]),
 }
 
-/// Core and radius of a convex and bounded shape.
+/// Core and radius of a bounded convex shape.
 #[inline]
 pub(crate) fn rounded(shape: &Shape) -> Option<(Core<'_>, f64)> {
     Some(match shape {
@@ -58,7 +58,7 @@ impl Core<'_> {
         }
     }
 
-    /// Bound of its coordinates, metres: the scale of its rounding errors.
+    /// Bound of the core's coordinates, metres, which is the scale of its rounding errors.
     #[inline]
     pub fn size(&self) -> f64 {
         match self {
@@ -78,7 +78,7 @@ impl Core<'_> {
         self.support(dir).dot(dir)
     }
 
-    /// Bounds in its own frame.
+    /// Bounds of the core in its own frame.
     pub fn aabb(&self) -> Aabb {
         let max = Vec3::new(self.reach(Vec3::X), self.reach(Vec3::Y), self.reach(Vec3::Z));
         let min = -Vec3::new(self.reach(-Vec3::X), self.reach(-Vec3::Y), self.reach(-Vec3::Z));

@@ -4,17 +4,19 @@ use elbowroom_spatial::{Pose, Vec3};
 
 use super::result::Separation;
 
-/// Relative difference of the bounds at which iterative methods stop, as a fraction of the coordinates.
+/// Difference of the bounds at which iterative methods stop, as a fraction of the coordinates.
 pub(super) const CONVERGED: f64 = 1e-13;
 
-/// Closest points closer than this fraction of the coordinates give a direction with too few digits for a proof.
+/// Distance of closest points, as a fraction of the coordinates, below which their direction has too few digits for
+/// a proof.
 pub(super) const CLOSE: f64 = 1e-6;
 
-/// Closest points of two cores in the frame of the second, the distance, and a proven bound below it.
+/// Closest points of two cores in the frame of the second, their distance, and a proven lower bound of the distance.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Gap {
     pub distance: f64,
-    /// Distance of the two points. Continuous witness points may be farther apart than the least distance, by the tie tolerance.
+    /// Distance of the two points. For continuous witness points it may exceed the smallest distance by the tie
+    /// tolerance.
     pub apart: f64,
     pub lower: f64,
     pub on_a: Vec3,
@@ -22,7 +24,7 @@ pub(crate) struct Gap {
 }
 
 impl Gap {
-    /// From witness points of a method whose only error is rounding of numbers up to `scale`.
+    /// The gap from witness points of a method whose only error is the rounding of numbers up to `scale`.
     #[inline]
     pub fn closed(on_a: Vec3, on_b: Vec3, scale: f64) -> Self {
         let distance = (on_a - on_b).length();
@@ -34,13 +36,14 @@ impl Gap {
         Self { distance: 0.0, apart: 0.0, lower: 0.0, on_a, on_b }
     }
 
-    /// True if cores are proven to be farther apart than their radii, added: the shapes do not touch.
+    /// True if the cores are proven to be farther apart than the sum of their radii: the shapes do not touch.
     #[inline]
     pub fn is_beyond(&self, radii: f64) -> bool {
         self.lower - radii - rounding(radii) > 0.0
     }
 
-    /// With a lower bound from another method: what is proven to be apart does not touch, whatever the rounding of the points.
+    /// The gap with a lower bound from another method. Shapes proven to be apart do not touch, whatever the rounding of
+    /// the points.
     #[inline]
     pub fn at_least(self, proven: f64) -> Self {
         let lower = self.lower.max(proven);
@@ -49,7 +52,8 @@ impl Gap {
         Self { lower, distance, apart: self.apart.max(distance), ..self }
     }
 
-    /// The separation, in the world, of the shapes with these radii around the cores; `frame_in_world` is the frame of the gap.
+    /// The separation, in the world, of the shapes with these radii around the cores. `frame_in_world` is the frame of
+    /// the gap.
     #[inline]
     pub fn separation(self, radii: [f64; 2], frame_in_world: &Pose) -> Separation {
         let radius = radii[0] + radii[1];
@@ -72,7 +76,7 @@ impl Gap {
         }
     }
 
-    /// One point for both: the middle of the segment between the cores that both radii cover.
+    /// A contact with one point for both shapes: the middle of the segment between the cores that both radii cover.
     fn contact(&self, radii: [f64; 2], frame_in_world: &Pose) -> Separation {
         let along = (0.5 * (self.distance + radii[0] - radii[1])).max(0.0).min(self.distance);
         let share = if self.distance > 0.0 { along / self.distance } else { 0.0 };

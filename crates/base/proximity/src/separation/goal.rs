@@ -1,8 +1,8 @@
-//! What a query over a pair of shapes is for.
+//! The goal of a query over a pair of shapes.
 
 use super::settings::WitnessPoints;
 
-/// What a query over a pair of shapes is for.
+/// The goal of a query over a pair of shapes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Goal {
     /// A separation with these witness points.

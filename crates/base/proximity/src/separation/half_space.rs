@@ -1,4 +1,4 @@
-//! A shape and a half-space: the height of its lowest point (Romanelli 2011, eqs. 7-8 for the box).
+//! Gap of a shape and a half-space: the height of its lowest point (Romanelli 2011, eqs. 7-8 for the box).
 
 use elbowroom_spatial::{Pose, Vec3};
 
@@ -8,7 +8,7 @@ use super::gap::{Gap, rounding};
 /// Normals closer to opposite than this count as opposite.
 const PARALLEL: f64 = 1e-14;
 
-/// Lowest point of the core and its projection onto the plane, in the frame of the half-space.
+/// The gap from the lowest point of the core and its projection onto the plane, in the frame of the half-space.
 #[inline]
 pub(super) fn core_half_space(a: &Core, a_in_b: &Pose) -> Gap {
     let down = -a_in_b.inverse_transform_vector(Vec3::Z);
@@ -17,7 +17,7 @@ pub(super) fn core_half_space(a: &Core, a_in_b: &Pose) -> Gap {
     above(lowest, t.x + t.y + t.z + a.size())
 }
 
-/// From the lowest point; the frame's solid is `z <= 0`.
+/// The gap from the lowest point; the solid is `z <= 0` in its frame.
 #[inline]
 pub(super) fn above(lowest: Vec3, scale: f64) -> Gap {
     let height = lowest.z;
@@ -26,14 +26,14 @@ pub(super) fn above(lowest: Vec3, scale: f64) -> Gap {
     Gap { distance, apart: distance, lower: (height - rounding(scale)).max(0.0), on_a: lowest, on_b: projected }
 }
 
-/// Two half-spaces are apart only where they face each other exactly.
+/// The gap of two half-spaces, which are apart only if they face each other exactly.
 pub(super) fn half_space_half_space(a_in_b: &Pose) -> Gap {
     let normal = a_in_b.rotation.z_axis();
     let p = a_in_b.translation;
     if normal.z < 0.0 && normal.x.abs().max(normal.y.abs()) < PARALLEL {
         return above(p, p.x.abs() + p.y.abs() + p.z.abs());
     }
-    // Against both normals at once until below the second plane as well.
+    // Move against both normals at once until the point is below the second plane as well.
     let down = -(normal + Vec3::Z);
     let shared = if p.z > 0.0 { p + down * (p.z / (1.0 + normal.z)) } else { p };
     let shared = if shared.is_finite() { shared } else { p };

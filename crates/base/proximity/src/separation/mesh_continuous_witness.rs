@@ -21,8 +21,9 @@ pub(super) fn tolerances(mesh: &TriMesh, radius: f64) -> PatchTolerances {
     PatchTolerances::of(mesh.bvh.bounding_sphere().1 + radius)
 }
 
-/// As [`continuous_witness`](super::continuous_witness::continuous_witness), of a mesh (first) and a core, in the mesh's frame.
-/// `nearest_triangle` contains the point of the gap; `spread` is the sum of the distances of tied points found before.
+/// Like [`continuous_witness`](super::continuous_witness::continuous_witness), for a mesh (first) and a core, in the
+/// mesh's frame. `nearest_triangle` contains the point of the gap; `spread` is the sum of the distances of tied
+/// points found before.
 pub(super) fn mesh_continuous_witness(
     mesh: &TriMesh,
     core: &Core,

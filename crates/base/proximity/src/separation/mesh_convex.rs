@@ -1,5 +1,6 @@
-//! A mesh and a convex shape or a half-space: traversal of the BVH, nearest box first, with the best distance so far as the
-//! limit.
+//! A mesh and a convex shape or a half-space: traversal of the BVH.
+//!
+//! The nearest box is visited first, and the best distance so far is the limit.
 
 use elbowroom_spatial::{Pose, Vec3};
 
@@ -20,17 +21,17 @@ struct Best {
     gap: Option<Gap>,
     /// The nearest triangle.
     triangle: usize,
-    /// Gaps above this are of no interest.
+    /// Largest gap to search for.
     limit: f64,
-    /// Gaps that differ by no more are tied.
+    /// Largest difference between tied gaps.
     tie_tolerance: f64,
     /// Sum of the distances of the witness points of tied triangles.
     spread: f64,
-    /// The search ends at a gap no larger than this.
+    /// Gap at which the search ends: a gap no larger is sufficient.
     sufficient: f64,
-    /// Smallest proven bound of all triangles.
+    /// Smallest proven lower bound of all triangles.
     lower: f64,
-    /// Triangles measured.
+    /// Number of measured triangles.
     measured: u32,
 }
 
@@ -79,8 +80,8 @@ impl Best {
     }
 }
 
-/// Gap of a mesh and a convex core in the mesh's frame; `None` if it exceeds the limit by more than the core's radius. Gaps
-/// below the radius are contact, and are not minimized further.
+/// Gap of a mesh and a convex core in the mesh's frame; `None` if it exceeds the limit by more than the core's
+/// radius. Gaps below the radius are contact and are not minimized further.
 pub(super) fn mesh_core(
     mesh: &TriMesh,
     core: &Core,
@@ -90,7 +91,7 @@ pub(super) fn mesh_core(
     goal: Goal,
     stats: &mut QueryStats,
 ) -> Option<Gap> {
-    // The bound in `Gap::separation` decides; this one must not pass the limit before it.
+    // The bound in `Gap::separation` decides; this bound must not pass the limit earlier.
     let (limit, sufficient) = (limit + radius + 2.0 * rounding(radius), radius);
     let t = core_in_mesh.translation;
     let extent = mesh.aabb().min.abs().max(mesh.aabb().max.abs()).max_element();
@@ -117,7 +118,7 @@ pub(super) fn mesh_core(
             let mesh_in_core = core_in_mesh.inverse();
             best.search(mesh, &query, &|i, limit| {
                 let triangle = Core::Triangle(mesh.corners(i).map(|p| mesh_in_core.transform_point(p)));
-                // The rounding of the transformation back is subtracted from the bound below.
+                // The rounding of the transformation back is subtracted from the lower bound below.
                 let limit = limit + 2.0 * rounding(scale);
                 let gap = projections::distance(&triangle, core, &Pose::IDENTITY, limit)?;
                 let back = |p| core_in_mesh.transform_point(p);
@@ -127,7 +128,7 @@ pub(super) fn mesh_core(
         }
     }
     stats.triangles_beside_solids += best.measured;
-    // The centre of a hull's bounds may be outside of it.
+    // The centre of a hull's bounds may be outside the hull.
     let own = if let Core::Hull(hull) = core { hull.vertices()[0] } else { core.middle() };
     let inside = core_in_mesh.transform_point(own);
     if !best.is_done() && mesh.contains(inside) {
@@ -141,7 +142,7 @@ pub(super) fn mesh_core(
     Some(mesh_continuous_witness(mesh, core, core_in_mesh, gap, triangle, spread, stats))
 }
 
-/// The mesh's lowest point over a half-space, in the half-space's frame.
+/// The gap from the mesh's lowest point over a half-space, in the half-space's frame.
 pub(super) fn mesh_half_space(mesh: &TriMesh, mesh_in_b: &Pose, stats: &mut QueryStats) -> Gap {
     let up = mesh_in_b.inverse_transform_vector(Vec3::Z);
     let mut lowest = mesh.corners(0)[0];
@@ -164,13 +165,13 @@ pub(crate) fn nearest_on_mesh(mesh: &TriMesh, p: Vec3) -> (Vec3, usize) {
     nearest_on_mesh_within(mesh, p, f64::INFINITY).unwrap_or((mesh.corners(0)[0], 0))
 }
 
-/// As [`nearest_on_mesh`]; `None` if it is farther away than a limit.
+/// Like [`nearest_on_mesh`]; `None` if the point is farther away than `limit`.
 pub(crate) fn nearest_on_mesh_within(mesh: &TriMesh, p: Vec3, limit: f64) -> Option<(Vec3, usize)> {
     let mut best = (limit, Vec3::ZERO, usize::MAX);
     mesh.bvh.traverse(&BoxDistance::from_point(&mesh.bvh, p), BoxDistance::limit(&mesh.bvh, limit), &mut |triangle| {
         let q = nearest_on_triangle(p, mesh.corners(triangle));
         let distance = (q - p).length();
-        // Of equals the smaller index, so that the result does not depend on the order of the tree.
+        // Of equal distances the smaller index is used, so that the result does not depend on the order of the tree.
         if distance < best.0 || (distance == best.0 && triangle < best.2) {
             best = (distance, q, triangle);
         }
@@ -179,7 +180,7 @@ pub(crate) fn nearest_on_mesh_within(mesh: &TriMesh, p: Vec3, limit: f64) -> Opt
     (best.2 != usize::MAX).then_some((best.1, best.2))
 }
 
-/// The point of a triangle (mesh frame) nearest to a cylinder; where they overlap, one in both.
+/// The point of a triangle (mesh frame) nearest to a cylinder; if they overlap, a point in both.
 pub(crate) fn nearest_to_cylinder(cylinder: &crate::Cylinder, in_mesh: &Pose, triangle: [Vec3; 3]) -> Vec3 {
     let local = triangle.map(|p| in_mesh.inverse_transform_point(p));
     let gap = projections::distance(&Core::Triangle(local), &Core::Cylinder(*cylinder), &Pose::IDENTITY, f64::INFINITY);

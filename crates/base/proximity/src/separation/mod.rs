@@ -1,4 +1,4 @@
-//! The distance query: a file per method, the choice per pair of shapes in `query.rs`.
+//! The distance query: one file per method; `query.rs` chooses the method for each pair of shapes.
 
 mod capsule;
 mod continuous_witness;

@@ -1,4 +1,4 @@
-//! The order in which a pair of shapes is computed: the same for either order of the arguments.
+//! The order in which a pair of shapes is computed, which is independent of the order of the arguments.
 
 use std::cmp::Ordering;
 
@@ -6,7 +6,7 @@ use elbowroom_spatial::{Pose, Vec3};
 
 use crate::Shape;
 
-/// Simple shapes first, so that each pair has one method.
+/// Rank of a shape: simple shapes come first, so that each pair has one method.
 #[inline]
 fn rank(s: &Shape) -> u8 {
     match s {
@@ -20,7 +20,7 @@ fn rank(s: &Shape) -> u8 {
     }
 }
 
-/// True if `a` is computed as the first shape. Both orders of the arguments give the same answer that way.
+/// True if `a` is computed as the first shape, so that both orders of the arguments give the same answer.
 #[inline]
 pub(super) fn comes_first(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose) -> bool {
     let (of_a, of_b) = (rank(a), rank(b));

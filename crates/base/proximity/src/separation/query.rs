@@ -1,4 +1,4 @@
-//! The distance query: its entry points, and the choice of the method for a pair of shapes.
+//! The distance query: its entry points, and the choice of the method for each pair of shapes.
 
 use elbowroom_spatial::Pose;
 
@@ -32,13 +32,13 @@ use crate::{Shape, TriMesh};
 /// assert!((s.on_b - Vec3::new(0.2, 0.0, 0.1)).length() < 1e-15);
 /// ```
 pub fn separation(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose) -> Separation {
-    // Without a limit there is always an answer.
+    // Without a limit the answer is always `Some`.
     separation_within(a, a_in_world, b, b_in_world, f64::INFINITY)
         .unwrap_or_else(|| Separation::unknown(a_in_world, b_in_world))
 }
 
-/// Like [`separation`], or `None` if the shapes are certainly farther apart than `limit` metres: much faster for
-/// far pairs of boxes, cylinders, hulls and meshes.
+/// Like [`separation`], or `None` if the shapes are guaranteed to be farther apart than `limit` metres. Much faster
+/// for far pairs of boxes, cylinders, hulls and meshes.
 ///
 /// ```
 /// use elbowroom_proximity::{Shape, Sphere, separation_within};
@@ -51,8 +51,9 @@ pub fn separation_within(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &P
     dispatch_meshes(a, a_in_world, b, b_in_world, limit, Goal::CONTINUOUS, MeshOptions::DEFAULT)
 }
 
-/// True if the shapes touch or overlap, or are too close for f64 to separate: exactly where the distance of [`separation`]
-/// is 0, in either order of the shapes.
+/// True if the shapes touch or overlap, or are too close for f64 to separate.
+///
+/// It is true exactly if the distance of [`separation`] is 0, in either order of the shapes.
 ///
 /// ```
 /// use elbowroom_proximity::{Cuboid, HalfSpace, Shape, collides};
@@ -78,9 +79,9 @@ pub fn within(a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, tolera
     dispatch_meshes(a, a_in_world, b, b_in_world, tolerance, Goal::WithinLimit, MeshOptions::DEFAULT).is_some()
 }
 
-/// The distance query with reused memory and all its settings.
+/// The distance query with reused memory and all settings.
 impl Workspace {
-    /// Distance and witness points, or `None` if the shapes are certainly farther apart than the limit.
+    /// Distance and witness points, or `None` if the shapes are guaranteed to be farther apart than the limit.
     ///
     /// ```
     /// use elbowroom_proximity::{DistanceSettings, Shape, TriMesh, WarmStart, Workspace};
@@ -110,20 +111,21 @@ impl Workspace {
         dispatch_meshes(a, a_in_world, b, b_in_world, limit, Goal::Separation(witness_points), options)
     }
 
-    /// [`collides`](crate::collides()).
+    /// Like [`collides`](crate::collides()), with reused memory.
     pub fn collides(&mut self, a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose) -> bool {
         self.within(a, a_in_world, b, b_in_world, 0.0)
     }
 
-    /// [`within`](crate::within()). It is fastest where most pairs are farther apart than the tolerance, as after a broad phase.
+    /// Like [`within`](crate::within()), with reused memory. Fastest if most pairs are farther apart than the tolerance,
+    /// as after a broad phase.
     pub fn within(&mut self, a: &Shape, a_in_world: &Pose, b: &Shape, b_in_world: &Pose, tolerance: f64) -> bool {
         let options = MeshOptions { workspace: Some(self), first_bound: EXPECT_FAR, ..MeshOptions::DEFAULT };
         dispatch_meshes(a, a_in_world, b, b_in_world, tolerance, Goal::WithinLimit, options).is_some()
     }
 
-    /// An upper bound of the distance of two meshes, metres, at a small part of the cost of the distance
-    /// ([`distance_upper_bound`](crate::advanced::distance_upper_bound)); `None` if one is not a mesh or a pose is not finite.
-    /// `warm_start` as in [`DistanceSettings`].
+    /// An upper bound of the distance of two meshes, metres, at a small fraction of the cost of the distance
+    /// ([`distance_upper_bound`](crate::advanced::distance_upper_bound)). `None` if a shape is not a mesh or a pose is
+    /// not finite. `warm_start` as in [`DistanceSettings`].
     pub fn distance_upper_bound(
         &mut self,
         a: &Shape,
@@ -138,12 +140,12 @@ impl Workspace {
     }
 }
 
-/// What only queries on two meshes use.
+/// Options that only queries on two meshes use.
 struct MeshOptions<'w> {
-    /// The thread's own where there is none.
+    /// Workspace; the thread's own workspace if `None`.
     workspace: Option<&'w mut Workspace>,
     warm_start: Option<&'w mut WarmStart>,
-    /// Of decisions.
+    /// First upper bound of tolerance queries.
     first_bound: FirstBound,
 }
 
@@ -151,7 +153,7 @@ impl MeshOptions<'_> {
     const DEFAULT: Self = Self { workspace: None, warm_start: None, first_bound: EXPECT_NEAR };
 }
 
-/// Every query over a pair of shapes: two meshes, or any other pair.
+/// Entry point of every query over a pair of shapes: two meshes, or any other pair.
 #[inline]
 fn dispatch_meshes(
     a: &Shape,
@@ -176,7 +178,7 @@ fn dispatch_meshes(
     }
 }
 
-/// All pairs but two meshes: validity of the input, the order of the pair, its method, and the limit.
+/// All pairs except two meshes: checks the input, orders the pair, selects its method, and applies the limit.
 fn validated(
     a: &Shape,
     a_in_world: &Pose,
@@ -202,7 +204,7 @@ fn validated(
     (!(found.lower_bound > limit)).then_some(found)
 }
 
-/// Two meshes. A negative limit counts as 0.
+/// Query on two meshes. A negative limit counts as 0.
 #[inline(never)]
 fn mesh_mesh(
     a: &TriMesh,
@@ -232,7 +234,8 @@ fn mesh_mesh(
     }
 }
 
-/// The method for a pair of shapes, the first of which comes first. The gaps are in the frame of the second.
+/// Applies the method for a pair of shapes in the order of [`comes_first`]. The gaps are in the frame of the second
+/// shape.
 #[inline]
 fn by_first_shape(
     a: &Shape,
@@ -249,7 +252,8 @@ fn by_first_shape(
     }
 }
 
-/// All but spheres: a function of its own, because its register pressure would slow down the few instructions for spheres.
+/// All shapes except spheres. It is a separate function, because its register pressure would slow down the few
+/// instructions for spheres.
 #[inline(never)]
 fn all_but_spheres(
     a: &Shape,

@@ -1,8 +1,8 @@
-//! A segment and a box (or another segment), a segment and a cylinder.
+//! Nearest point of a segment to a box (or another segment) or to a cylinder.
 //!
-//! Along the segment the squared distance to a convex solid is convex and once differentiable, so half its derivative
-//! `g(t)`, the dot product of the direction and the excess over the solid, is monotone: its root is bracketed by its
-//! breakpoints, and computed in closed form (box) or by Newton steps (cylinder) in between.
+//! Along the segment, the squared distance to a convex solid is convex and once differentiable. So half its
+//! derivative `g(t)`, the dot product of the direction and the excess over the solid, is monotone. Its root is
+//! bracketed by its breakpoints, and computed in between in closed form (box) or by Newton steps (cylinder).
 
 use elbowroom_spatial::Vec3;
 
@@ -51,7 +51,7 @@ struct Bracket {
 }
 
 impl Bracket {
-    /// The two ends, or the position of the minimum where the root is not between them.
+    /// The bracket at the two ends, or the position of the minimum if the root is not between them.
     #[inline]
     fn start(half: f64, g: impl Fn(f64) -> f64) -> Result<Self, f64> {
         let (g_lo, g_hi) = (g(-half), g(half));
@@ -84,7 +84,7 @@ impl Bracket {
     }
 }
 
-/// The point of the segment nearest to the box. With two half extents of 0 the box is a segment along an axis.
+/// The point of the segment nearest to the box. A box with two half extents of 0 is a segment along an axis.
 #[inline]
 pub(super) fn nearest_to_box(s: &Segment, solid: &Cuboid) -> Vec3 {
     let (c, d, h) = (s.middle, s.direction, solid.half_extents);
@@ -99,7 +99,7 @@ pub(super) fn nearest_to_box(s: &Segment, solid: &Cuboid) -> Vec3 {
             bracket.tighten((-h[k] - c[k]) / d[k], g);
         }
     }
-    // Linear in between: the set of nonzero excesses is constant, and the middle of the piece shows it.
+    // The function is linear in between: the set of nonzero excesses is constant, and the middle of the piece shows it.
     let mid = bracket.middle();
     let p = s.at(mid);
     let excess = p - solid.nearest(p);
@@ -120,7 +120,7 @@ pub(super) fn nearest_to_cylinder(s: &Segment, solid: &Cylinder) -> Vec3 {
         Ok(bracket) => bracket,
         Err(t) => return s.at(t),
     };
-    // A few steps from the point nearest to the axis are mostly enough.
+    // A few steps from the point nearest to the axis are mostly sufficient.
     let across2 = d.x * d.x + d.y * d.y;
     let crossing = if across2 > 0.0 { -(c.x * d.x + c.y * d.y) / across2 } else { 0.0 };
     let start = crossing.max(-0.9 * s.half).min(0.9 * s.half);
@@ -147,12 +147,13 @@ pub(super) fn nearest_to_cylinder(s: &Segment, solid: &Cylinder) -> Vec3 {
     s.at(t)
 }
 
-/// Newton steps before the bracket is tightened by the breakpoints of `g`.
+/// Number of Newton steps before the bracket is tightened by the breakpoints of `g`.
 const QUICK_STEPS: usize = 8;
-/// Newton steps after that, at most.
+/// Largest number of Newton steps after that.
 const MAX_STEPS: usize = 60;
 
-/// Newton steps on `g` inside the bracket, bisecting it where they leave; the last position as an error where not converged.
+/// Newton steps on `g` inside the bracket; bisects the bracket if a step leaves it. The last position is an error if
+/// the steps have not converged.
 #[inline]
 fn newton(s: &Segment, solid: &Cylinder, bracket: &mut Bracket, start: f64, steps: usize) -> Result<f64, f64> {
     let d = s.direction;

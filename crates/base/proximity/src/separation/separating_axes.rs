@@ -4,17 +4,17 @@ use elbowroom_spatial::{Pose, Vec3};
 
 use crate::Cuboid;
 
-/// Gap along one of the 15 axes; positive proves the boxes apart.
+/// Gap along one of the 15 axes; a positive gap proves the boxes to be apart.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct AxisGap {
-    /// Along the unit axis, metres.
+    /// Gap along the unit axis, metres.
     pub gap: f64,
     /// Unit vector from b to a, frame of b.
     pub axis: Vec3,
 }
 
-/// The axis of the largest gap, or of the least overlap. Pairs of edges too parallel to give an axis are left out: the normals
-/// of their faces cover them.
+/// The axis of the largest gap, or of the least overlap. Pairs of edges that are too parallel to give an axis are
+/// skipped: the normals of their faces cover them.
 pub(crate) fn best_axis(a: &Cuboid, b: &Cuboid, a_in_b: &Pose) -> AxisGap {
     let (r, t) = (a_in_b.rotation, a_in_b.translation);
     let u = [r.x_axis(), r.y_axis(), r.z_axis()];

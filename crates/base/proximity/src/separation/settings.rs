@@ -14,10 +14,10 @@ use crate::mesh_mesh::WarmStart;
 pub struct DistanceSettings<'w> {
     /// Largest distance of interest, metres: the query may end as soon as the shapes are proven to be farther apart.
     pub limit: f64,
-    /// Which witness points are returned where they are not unique.
+    /// The witness points to return if they are not unique.
     pub witness_points: WitnessPoints,
-    /// For two meshes: where the search begins, replaced by where the next query of the same two meshes should begin. It changes
-    /// the time, never the answer. Other pairs of shapes ignore it.
+    /// For two meshes: the start of the search, which is replaced by the start for the next query of the same two
+    /// meshes. It changes the time, never the answer. Other pairs of shapes ignore it.
     pub warm_start: Option<&'w mut WarmStart>,
 }
 
@@ -28,16 +28,18 @@ impl Default for DistanceSettings<'_> {
     }
 }
 
-/// Which witness points are returned where they are not unique.
+/// The witness points to return if they are not unique.
 ///
-/// That is where faces, edges or sides of two shapes (other than spheres and half-spaces) are so nearly parallel that many pairs
-/// of points are within 2e-8 of the sizes (radii, added) of the least distance.
+/// They are not unique if faces, edges or sides of two shapes (other than spheres and half-spaces) are so nearly
+/// parallel that the distances of many pairs of points are within 2e-8 of the sizes (radii, added) of the smallest
+/// distance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum WitnessPoints {
-    /// The pair nearest to a point between the centres of the shapes, near that of the smaller: it changes continuously with the
-    /// poses where the nearest pair itself would jump. It is farther apart than the distance by no more than that tolerance.
+    /// The pair nearest to a point between the centres of the shapes, close to the centre of the smaller shape. This
+    /// pair changes continuously with the poses, while the nearest pair itself would jump. The distance of its points
+    /// exceeds the smallest distance by at most that tolerance.
     #[default]
     Continuous,
-    /// The pair found first: faster, for queries in which only the distance matters.
+    /// The pair found first. Faster, for queries in which only the distance matters.
     Any,
 }

@@ -1,4 +1,4 @@
-//! A sphere and any other shape: closed forms for the distance of its centre.
+//! Separation of a sphere and any other shape: closed forms for the distance of its centre.
 
 use elbowroom_spatial::{Pose, Vec3};
 
@@ -11,7 +11,7 @@ use super::settings::WitnessPoints;
 use crate::mesh_mesh::QueryStats;
 use crate::{Shape, Sphere};
 
-/// A sphere is its centre with a radius, and the distance of the centre has a closed form.
+/// Separation of a sphere: it is its centre with a radius, and the distance of the centre has a closed form.
 #[inline]
 pub(super) fn sphere(
     s: Sphere,
@@ -31,7 +31,7 @@ pub(super) fn sphere(
         Shape::HalfSpace(_) => (Vec3::new(p.x, p.y, p.z.min(0.0)), 0.0),
         Shape::Hull(h) => (h.nearest(p), 0.0),
         Shape::Mesh(m) => {
-            // The nearest point to a centre is unique but for coincidence.
+            // The nearest point to a centre is unique except for coincidence.
             let goal = Goal::Separation(WitnessPoints::Any);
             let gap = mesh_core(m, &Core::Point, &Pose::from_translation(p), limit, s.radius, goal, stats)?;
             return Some(gap.separation([0.0, s.radius], b_in_world).swapped());
@@ -40,7 +40,8 @@ pub(super) fn sphere(
     closed_form(p, q, size + q.abs().max_element(), [s.radius, radius], limit, b_in_world)
 }
 
-/// From exact closest points of the cores; `None`, without a root, where they are farther apart than the limit.
+/// The separation from exact closest points of the cores; `None`, without a square root, if they are farther apart
+/// than the limit.
 #[inline]
 pub(super) fn closed_form(
     p: Vec3,

@@ -19,8 +19,8 @@ pub(super) fn bounding_sphere(core: &Core) -> Option<(f64, Vec3)> {
     }
 }
 
-/// True if only the neighbourhood of one point of the core is within `depth` (m) of the height of `top`, the support point
-/// along a unit vector. Much faster than [`support_feature`].
+/// True if, within `depth` (m) of the height of `top`, the core has only the neighbourhood of one point. `top` is
+/// the support point along a unit vector. Much faster than [`support_feature`].
 #[inline]
 pub(super) fn is_corner(core: &Core, along: Vec3, top: Vec3, depth: f64) -> bool {
     let d = along.abs();
@@ -48,7 +48,7 @@ pub(super) fn support_feature(core: &Core, along: Vec3, tolerances: PatchToleran
             if c.radius > min_size && along.x.hypot(along.y) * min_size < tie {
                 return SupportFeature::Face;
             }
-            // The width over which the lateral surface is within the tolerance.
+            // The width within which the lateral surface is within the tolerance.
             line(c.half_length, along.z, (8.0 * c.radius * tie).sqrt(), tolerances)
         }
         Core::Cuboid(c) => box_feature(c, along, tolerances),
@@ -57,14 +57,14 @@ pub(super) fn support_feature(core: &Core, along: Vec3, tolerances: PatchToleran
     }
 }
 
-/// A line along z of this half length.
+/// The feature of a line along z with this half length.
 fn line(half: f64, slope: f64, width: f64, tolerances: PatchTolerances) -> SupportFeature {
     let PatchTolerances { tie, min_size } = tolerances;
     let is_edge = 2.0 * half > min_size && slope.abs() * min_size < tie;
     if is_edge { SupportFeature::Edge(Vec3::Z, width) } else { SupportFeature::Point }
 }
 
-/// By the axes of a box that are perpendicular to the direction.
+/// The feature of a box, by its axes that are perpendicular to the direction.
 fn box_feature(c: &Cuboid, along: Vec3, tolerances: PatchTolerances) -> SupportFeature {
     let PatchTolerances { tie, min_size } = tolerances;
     let (mut found, mut width) = (SupportFeature::Point, 0.0_f64);
@@ -81,8 +81,8 @@ fn box_feature(c: &Cuboid, along: Vec3, tolerances: PatchTolerances) -> SupportF
     if let SupportFeature::Edge(axis, _) = found { SupportFeature::Edge(axis, width) } else { found }
 }
 
-/// Normal of the face most aligned with the direction; of a cylinder's lateral surface the one toward `other`, the centre of the
-/// other shape, which is more accurate than the closest points of two lateral surfaces.
+/// Normal of the face most aligned with the direction. For a cylinder's lateral surface it is the normal towards
+/// `other`, the centre of the other shape, which is more accurate than the closest points of two lateral surfaces.
 pub(super) fn normal(core: &Core, along: Vec3, other: Vec3) -> Vec3 {
     match core {
         Core::Cylinder(_) if faces_end(along) => Vec3::Z * along.z.signum(),
@@ -96,8 +96,8 @@ pub(super) fn normal(core: &Core, along: Vec3, other: Vec3) -> Vec3 {
     }
 }
 
-/// Calls `each` with the faces most aligned with the direction, as corners in order; a line has two corners. Where an edge is the
-/// support feature, one of its two faces is enough.
+/// Calls `each` with the faces most aligned with the direction, as corners in order; a line has two corners. If an
+/// edge is the support feature, one of its two faces is sufficient.
 pub(super) fn for_each_face(core: &Core, along: Vec3, each: &mut dyn FnMut(&[Vec3])) {
     match core {
         Core::Segment(half) => each(&[Vec3::Z * *half, Vec3::Z * -half]),
@@ -128,7 +128,7 @@ fn faces_end(along: Vec3) -> bool {
     along.z.abs() > along.x.hypot(along.y)
 }
 
-/// An octagon in the end of a cylinder.
+/// An octagon in one end of a cylinder.
 fn end(c: &Cylinder, toward: f64) -> [Vec3; 8] {
     std::array::from_fn(|k| {
         let (sin, cos) = (k as f64 * FRAC_PI_4).sin_cos();
@@ -152,7 +152,7 @@ fn box_face(c: &Cuboid, along: Vec3) -> [Vec3; 4] {
     })
 }
 
-/// Triangles whose normals differ by less than this from the most aligned one are one face.
+/// Largest difference of normals from the most aligned one at which triangles count as one face.
 const COPLANAR: f64 = 1e-6;
 
 fn for_each_hull_face(hull: &ConvexHull, along: Vec3, each: &mut dyn FnMut(&[Vec3])) {

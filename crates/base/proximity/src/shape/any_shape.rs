@@ -31,7 +31,7 @@ pub enum Shape {
     HalfSpace(HalfSpace),
     /// A convex polyhedron.
     Hull(Arc<ConvexHull>),
-    /// A triangle mesh; solid where closed.
+    /// A triangle mesh, which is solid if it is closed.
     Mesh(Arc<TriMesh>),
 }
 
@@ -55,7 +55,7 @@ pub enum ShapeKind {
 }
 
 impl ShapeKind {
-    /// Word for messages: `sphere`, `capsule`, `cylinder`, `box`, `plane`, `hull`, `mesh`.
+    /// The word for messages: `sphere`, `capsule`, `cylinder`, `box`, `plane`, `hull`, `mesh`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Sphere => "sphere",
@@ -83,15 +83,15 @@ pub enum ShapeError {
     Dimension {
         /// Kind of shape.
         shape: ShapeKind,
-        /// Which dimension.
+        /// Name of the dimension.
         dimension: &'static str,
-        /// Its value, metres.
+        /// Value of the dimension, metres.
         value: f64,
     },
 }
 
 impl Shape {
-    /// Its kind.
+    /// The kind of the shape.
     pub fn kind(&self) -> ShapeKind {
         match self {
             Self::Sphere(_) => ShapeKind::Sphere,
@@ -104,8 +104,8 @@ impl Shape {
         }
     }
 
-    /// The smallest axis-aligned box in the world around the shape. That of a half-space is unbounded, except along a normal
-    /// that is parallel to an axis.
+    /// The smallest axis-aligned box in the world around the shape. For a half-space the box is unbounded, except along
+    /// a normal that is parallel to an axis.
     pub fn aabb(&self, in_world: &Pose) -> Aabb {
         let r = in_world.rotation;
         let around = |half: Vec3| Aabb::from_center(in_world.translation, half);
@@ -120,8 +120,9 @@ impl Shape {
         }
     }
 
-    /// The support point: the point farthest along `dir`, both in the local frame. For a mesh, that of its convex hull. A
-    /// half-space has none in any direction but its normal; its origin is returned.
+    /// The support point: the point farthest along `dir`, both in the local frame. For a mesh it is the support point of
+    /// its convex hull. A half-space has a support point only along its normal; for other directions its origin is
+    /// returned.
     pub fn support(&self, dir: Vec3) -> Vec3 {
         match self {
             Self::Sphere(s) => s.support(dir),
@@ -147,10 +148,10 @@ impl Shape {
         }
     }
 
-    /// Checks the dimensions; hulls and meshes are checked when they are made.
+    /// Checks the dimensions. Hulls and meshes are checked when they are created.
     ///
     /// # Errors
-    /// A dimension is negative or not finite.
+    /// [`ShapeError`] if a dimension is negative or not finite.
     pub fn validate(&self) -> Result<(), ShapeError> {
         let (list, used) = self.dimensions();
         for &(dimension, value) in &list[..used] {

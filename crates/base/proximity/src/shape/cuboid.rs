@@ -1,6 +1,6 @@
 use elbowroom_spatial::Vec3;
 
-/// A box around its frame's origin, edges along the axes.
+/// A box around its frame's origin, with its edges along the axes.
 ///
 /// ```
 /// use elbowroom_proximity::Cuboid;
@@ -27,8 +27,8 @@ impl Cuboid {
         Vec3::new(h.x.copysign(dir.x), h.y.copysign(dir.y), h.z.copysign(dir.z))
     }
 
-    /// The point of the solid nearest to `p` (itself where inside), local frame: algorithm 1 of Romanelli 2011, axis by
-    /// axis.
+    /// The point of the solid nearest to `p` (`p` itself if it is inside), local frame. This is algorithm 1 of Romanelli
+    /// 2011, axis by axis.
     #[inline]
     pub fn nearest(&self, p: Vec3) -> Vec3 {
         p.max(-self.half_extents).min(self.half_extents)

@@ -36,7 +36,7 @@ impl Cylinder {
         }
     }
 
-    /// The point of the solid nearest to `p` (itself where inside), local frame.
+    /// The point of the solid nearest to `p` (`p` itself if it is inside), local frame.
     #[inline]
     pub fn nearest(&self, p: Vec3) -> Vec3 {
         let rho = (p.x * p.x + p.y * p.y).sqrt();

@@ -1,4 +1,4 @@
-//! Convex hulls. Their construction: `quickhull`.
+//! Convex hulls; `quickhull` constructs them.
 
 use elbowroom_spatial::{Aabb, Vec3};
 
@@ -27,29 +27,30 @@ pub struct ConvexHull {
     aabb: Aabb,
 }
 
-/// A corner may be outside of a face by this part of the extent.
+/// Distance, as a fraction of the extent, by which a corner may be outside a face.
 const OUTSIDE: f64 = 1e-9;
-/// Most pairs of corner and face that are tested.
+/// Largest number of pairs of corner and face that are tested.
 const MAX_SIDES: usize = 1 << 32;
 
 impl ConvexHull {
-    /// The convex hull of a set of points (quickhull; Barber, Dobkin, Huhdanpaa, 1996).
+    /// Computes the convex hull of a set of points (quickhull; Barber, Dobkin, Huhdanpaa, 1996).
     ///
-    /// Points within about 1e-13 of the extent of a face count as on it: every input point is inside the result up to
+    /// Points within about 1e-13 of the extent of a face count as on it, so every input point is inside the result up to
     /// that tolerance.
     ///
     /// # Errors
-    /// Fewer than four points, a coordinate that is not finite, or all points on one point, line or plane.
+    /// [`HullError`] for fewer than four points, a coordinate that is not finite, or points that all lie on one point,
+    /// line or plane.
     pub fn from_points(points: &[Vec3]) -> Result<Self, HullError> {
         let (vertices, triangles) = quickhull(points)?;
         Self::assemble(vertices, triangles).ok_or(HullError::Numeric)
     }
 
-    /// The hull with exactly these corners and faces, such as those of a hull that was written to a file: the order of both
-    /// is kept, so that every query gives the same bits.
+    /// Builds a hull with exactly these corners and faces, for example the corners and faces of a hull that was written
+    /// to a file. The order of both is kept, so that every query gives the same bits.
     ///
     /// # Errors
-    /// [`HullError::Faces`] if a face names no corner or has no area, or a corner is outside of a face.
+    /// [`HullError::Faces`] if a face has an index beyond the corners or no area, or if a corner is outside a face.
     ///
     /// ```
     /// use elbowroom_proximity::ConvexHull;
@@ -107,19 +108,19 @@ impl ConvexHull {
         farthest(&self.vertices, dir)
     }
 
-    /// The point of the solid nearest to `p` (itself where inside), local frame.
+    /// The point of the solid nearest to `p` (`p` itself if it is inside), local frame.
     pub fn nearest(&self, p: Vec3) -> Vec3 {
         self.nearest_with_face(p).0
     }
 
-    /// The nearest point, and a face that contains it where `p` is outside.
+    /// The nearest point, and a face that contains it if `p` is outside.
     pub(crate) fn nearest_with_face(&self, p: Vec3) -> (Vec3, Option<usize>) {
         let heights = || self.planes.iter().map(|(normal, offset)| normal.dot(p) - offset);
         if !heights().any(|height| height > 0.0) {
             return (p, None);
         }
-        // All faces are tested, also those that `p` is just below by rounding: at a corner, `p` may be above a distant face
-        // only.
+        // All faces are tested, including those that `p` is just below because of rounding: at a corner, `p` may be above
+        // only a distant face.
         let mut best = (f64::INFINITY, p, None);
         for (i, height) in heights().enumerate() {
             if height * height < best.0 {
@@ -175,7 +176,7 @@ pub(crate) fn enclosed_volume(vertices: &[Vec3], triangles: &[[u32; 3]]) -> f64 
 fn plane(vertices: &[Vec3], t: [u32; 3]) -> Option<(Vec3, f64)> {
     let [a, b, c] = t.map(|i| vertices[i as usize]);
     let normal = (b - a).cross(c - a).try_normalize()?;
-    // The largest of the three, so that rounding never leaves a vertex outside.
+    // The largest of the three offsets, so that rounding never leaves a vertex outside.
     let offset = normal.dot(a).max(normal.dot(b)).max(normal.dot(c));
     Some((normal, offset))
 }

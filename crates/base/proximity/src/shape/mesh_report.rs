@@ -1,26 +1,27 @@
-//! What the checks of a mesh found.
+//! Report of the checks of a mesh.
 
-/// Counts and properties of a triangle mesh, as found when it was made.
+/// Counts and properties of a triangle mesh, found when it was created.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeshReport {
     /// Number of triangles.
     pub triangles: usize,
-    /// Number of vertices as given.
+    /// Number of given vertices.
     pub vertices: usize,
-    /// Every edge is shared by two triangles (vertices of equal coordinates count as one, and so do those that were
-    /// [`welded`](Self::welded)): the mesh has an interior.
+    /// True if every edge is shared by two triangles, so that the mesh has an interior. Vertices with equal coordinates
+    /// count as one, and so do [`welded`](Self::welded) vertices.
     pub closed: bool,
-    /// Vertices on open boundaries that were identified with another one within [`weld_tolerance`](Self::weld_tolerance), which
-    /// closes hairline seams. Point containment uses the closed surface; distances are to the triangles as given.
+    /// Number of vertices on open boundaries that were identified with another vertex within
+    /// [`weld_tolerance`](Self::weld_tolerance), which closes hairline seams. Point containment uses the closed surface;
+    /// distances are to the triangles as given.
     pub welded: usize,
-    /// Metres: a millionth of the largest extent where seams were closed; 0 if none were.
+    /// Tolerance of this identification, metres: a millionth of the largest extent if seams were closed; 0 otherwise.
     pub weld_tolerance: f64,
-    /// Triangles without area.
+    /// Number of triangles without area.
     pub degenerate: usize,
-    /// Triangles with the same three corners as an earlier one.
+    /// Number of triangles with the same three corners as an earlier one.
     pub duplicate: usize,
-    /// Closed, and its triangles face inwards.
+    /// True if the mesh is closed and its triangles face inwards.
     pub inside_out: bool,
-    /// Volume enclosed, m³, where closed; 0 where open.
+    /// Enclosed volume, m³, if the mesh is closed; 0 if it is open.
     pub volume: f64,
 }

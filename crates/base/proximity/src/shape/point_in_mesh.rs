@@ -1,5 +1,6 @@
-//! Point containment of a mesh by ray casting. A ray that passes too close to an edge is discarded, and another direction is
-//! tried.
+//! Point containment of a mesh by ray casting.
+//!
+//! A ray that passes too close to an edge is discarded, and another direction is tried.
 
 use elbowroom_spatial::Vec3;
 
@@ -19,9 +20,9 @@ const RAYS: [Vec3; 6] = [
 
 #[derive(Default)]
 struct Crossings {
-    /// Of components whose triangles are not oriented alike.
+    /// Number of crossings of components whose triangles are not oriented alike.
     unoriented: usize,
-    /// Of the others: leaving minus entering.
+    /// Leaving minus entering crossings of all other components.
     signed: i64,
     uncertain: bool,
 }
@@ -36,8 +37,9 @@ impl TriMesh {
     /// True if the point (local frame) is inside a closed component of the surface; always false for an open mesh. Hairline
     /// seams count as closed ([`MeshReport::welded`](super::MeshReport::welded)).
     ///
-    /// A winding number other than zero counts as inside: components that overlap stay solid, a cavity of the opposite
-    /// orientation is free. Of components whose triangles are not oriented alike the parity of the crossings decides.
+    /// A winding number other than zero counts as inside: components that overlap stay solid, and a cavity of the
+    /// opposite orientation is free. For components whose triangles are not oriented alike, the parity of the crossings
+    /// decides.
     ///
     /// ```
     /// # use elbowroom_proximity::TriMesh;
@@ -57,7 +59,7 @@ impl TriMesh {
                 return crossings.is_inside();
             }
         }
-        // Of what is not oriented alike there is nothing better than the last ray.
+        // For components that are not oriented alike, the last ray is the best available answer.
         crossings.unoriented % 2 == 1 || self.winding_number(p).abs() > 0.5
     }
 
@@ -73,7 +75,8 @@ impl TriMesh {
         found
     }
 
-    /// Sum of the solid angles of all closed components that are oriented alike over 4π (Van Oosterom and Strackee, 1983).
+    /// The sum over 4π of the solid angles of all closed components that are oriented alike (Van Oosterom and Strackee,
+    /// 1983).
     fn winding_number(&self, p: Vec3) -> f64 {
         let angle = |[a, b, c]: [Vec3; 3]| {
             let (a, b, c) = (a - p, b - p, c - p);
@@ -122,7 +125,7 @@ mod tests {
     use crate::{Cuboid, Shape, TriMesh};
     use elbowroom_spatial::Vec3;
 
-    /// A cube with a cubic cavity, of which some triangles are turned round.
+    /// A cube with a cubic cavity and some reversed triangles.
     fn hollow(flipped: &[usize]) -> TriMesh {
         let cube = |half: f64| tessellate(&Shape::Cuboid(Cuboid { half_extents: Vec3::splat(half) }), 1e-3);
         let ((mut vertices, mut triangles), (inner, faces)) = (cube(0.5), cube(0.4));
@@ -135,7 +138,7 @@ mod tests {
         TriMesh::new(vertices, triangles).unwrap()
     }
 
-    /// Wherever a ray goes, it gives the same answer for all points of a region without a surface in it.
+    /// Any ray direction gives the same answer for all points of a region without a surface in it.
     #[test]
     fn turned_triangles_divide_no_region() {
         let mut seed = 3;

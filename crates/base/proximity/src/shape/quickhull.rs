@@ -12,12 +12,12 @@ struct Face {
     corners: [u32; 3],
     normal: Vec3,
     offset: f64,
-    /// Points above this face, each kept by one face only.
+    /// Points above this face; each point is stored with one face only.
     outside: Vec<u32>,
     alive: bool,
 }
 
-/// Vertices (only those of the hull) and outward faces.
+/// Vertices (only vertices of the hull) and outward faces.
 pub(super) fn quickhull(points: &[Vec3]) -> Result<Faces, HullError> {
     if points.len() < 4 {
         return Err(HullError::TooFew(points.len()));
@@ -26,7 +26,7 @@ pub(super) fn quickhull(points: &[Vec3]) -> Result<Faces, HullError> {
         return Err(HullError::NotFinite(i));
     }
     let bounds = Aabb::from_points(points.iter().copied());
-    // Centred and scaled to unit size: tolerances are then dimensionless, and no product overflows.
+    // Points are centred and scaled to unit size, so that tolerances are dimensionless and products do not overflow.
     let extent = bounds.extent().max_element();
     let magnitude = bounds.min.abs().max(bounds.max.abs()).max_element();
     if !(extent > magnitude * 1e-14) || extent < 1e-290 {
@@ -69,7 +69,7 @@ impl<'a> Builder<'a> {
         let normal = (b - a).cross(c - a).try_normalize()?;
         let id = self.faces.len() as u32;
         for k in 0..3 {
-            // An edge used twice in one direction: rounding has folded the surface.
+            // If an edge is used twice in one direction, rounding has folded the surface.
             if self.edge.insert((corners[k], corners[(k + 1) % 3]), id).is_some() {
                 return None;
             }
@@ -110,7 +110,7 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
-    /// Replaces the faces visible from `apex` by a cone from their border to it.
+    /// Replaces the faces visible from `apex` by a cone from their border to `apex`.
     fn add_point(&mut self, face: u32, apex: u32) -> Result<(), HullError> {
         let (visible, horizon) = self.horizon(face, apex)?;
         let mut orphans = Vec::new();
@@ -158,8 +158,8 @@ impl<'a> Builder<'a> {
         Ok((visible, border.into_iter().map(|(a, b, _)| (a, b)).collect()))
     }
 
-    /// A face is replaced where the point is above it, or where the point is collinear with the shared edge, which would
-    /// otherwise become a sliver.
+    /// True if the face is replaced: the point is above it, or the point is collinear with the shared edge, where the
+    /// face would otherwise become a sliver.
     fn is_visible(&self, apex: u32, face: u32, a: u32, b: u32) -> bool {
         if self.height(face, apex) > self.tolerance {
             return true;
@@ -189,7 +189,7 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// Four points that span a volume, counter-clockwise `a b c` seen from the side away from `d`.
+/// Four points that span a volume; `a b c` are counter-clockwise seen from the side away from `d`.
 fn simplex(points: &[Vec3], tolerance: f64) -> Result<[u32; 4], HullError> {
     let farthest = |measure: &dyn Fn(Vec3) -> f64| {
         (0..points.len()).map(|i| (measure(points[i]), i)).max_by(|x, y| x.0.total_cmp(&y.0)).unwrap_or((0.0, 0))

@@ -1,4 +1,4 @@
-//! Triangle meshes: checked when made, with a report on their topology, and indexed by a BVH.
+//! Triangle meshes: checked when created, with a report on their topology, and indexed by a BVH.
 
 use std::sync::OnceLock;
 
@@ -10,7 +10,7 @@ use super::{Capsule, ConvexHull, Cuboid};
 use crate::bvh::Bvh16;
 use crate::fit::ExtremePoints;
 
-/// A surface of triangles. Where it is closed it bounds a solid.
+/// A surface of triangles. If it is closed, it bounds a solid.
 ///
 /// ```
 /// use elbowroom_proximity::TriMesh;
@@ -28,14 +28,14 @@ pub struct TriMesh {
     aabb: Aabb,
     report: MeshReport,
     pub(crate) bvh: Bvh16,
-    /// The farthest vertices along each axis: if one is outside a box, so is part of the mesh.
+    /// The farthest vertices along each axis: if one is outside a box, part of the mesh is outside too.
     pub(crate) extremes: [Vec3; 6],
     /// One vertex of every connected component.
     component_vertices: Vec<Vec3>,
-    /// Triangles that belong to a closed component, by index.
+    /// Whether each triangle, by index, belongs to a closed component.
     pub(crate) in_closed_component: Vec<bool>,
     pub(crate) in_oriented_component: Vec<bool>,
-    /// The representative of each vertex, where seams had to be closed by a tolerance.
+    /// The representative of each vertex, if seams had to be closed by a tolerance.
     welded_vertices: Option<Vec<u32>>,
     hull: OnceLock<Option<ConvexHull>>,
     capsule: OnceLock<Option<(Capsule, Pose)>>,
@@ -45,15 +45,15 @@ pub struct TriMesh {
 /// Why triangles were refused.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum MeshError {
-    /// No triangle.
+    /// The mesh has no triangle.
     #[error("a mesh needs at least one triangle")]
     Empty,
     /// A triangle has an index beyond the vertex list.
     #[error("triangle {triangle} names vertex {index}, but there are only {vertices} vertices (0 to {})", vertices.saturating_sub(1))]
     IndexOutOfRange {
-        /// Which triangle, from 0.
+        /// Index of the triangle, from 0.
         triangle: usize,
-        /// The index it names.
+        /// The vertex index in the triangle.
         index: u32,
         /// Number of vertices.
         vertices: usize,
@@ -61,20 +61,21 @@ pub enum MeshError {
     /// A coordinate is NaN, infinite or beyond 1e100.
     #[error("vertex {vertex} has a coordinate that is not a finite number below 1e100 m")]
     NotFinite {
-        /// Which vertex, from 0.
+        /// Index of the vertex, from 0.
         vertex: usize,
     },
-    /// Indices are 32 bits wide.
+    /// More vertices or triangles than 32-bit indices can number.
     #[error("{0} is more vertices or triangles than 32-bit indices can name (4294967295)")]
     TooLarge(usize),
 }
 
 impl TriMesh {
-    /// Checks and indexes a mesh; vertices in metres, local frame. Open, inside-out, degenerate and duplicate
-    /// triangles are accepted and reported in [`TriMesh::report`].
+    /// Checks and indexes a mesh; vertices in metres, local frame. Open, inside-out, degenerate and duplicate triangles
+    /// are accepted and reported in [`TriMesh::report`].
     ///
     /// # Errors
-    /// No triangle, an index out of range, a coordinate that is not finite, more than 2³²-1 vertices or triangles.
+    /// [`MeshError`] if the mesh has no triangle, an index out of range, a coordinate that is not finite, or more than
+    /// 2³²-1 vertices or triangles.
     pub fn new(vertices: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshError> {
         check(&vertices, &triangles)?;
         let (topology, bvh) = prepare(&vertices, &triangles);
@@ -112,7 +113,7 @@ impl TriMesh {
         &self.aabb
     }
 
-    /// What the checks found when the mesh was made.
+    /// The report of the checks at creation.
     pub fn report(&self) -> &MeshReport {
         &self.report
     }
@@ -122,12 +123,12 @@ impl TriMesh {
         self.hull.get_or_init(|| ConvexHull::from_points(&self.vertices).ok()).as_ref()
     }
 
-    /// A small capsule around all vertices and its frame in that of the mesh, computed on the first call.
+    /// A small capsule around all vertices and its frame in the mesh's frame, computed on the first call.
     pub(crate) fn enclosing_capsule(&self) -> Option<(Capsule, Pose)> {
         *self.capsule.get_or_init(|| self.extreme_points().enclosing_capsule())
     }
 
-    /// A small box around all vertices and its frame in that of the mesh, computed on the first call.
+    /// A small box around all vertices and its frame in the mesh's frame, computed on the first call.
     pub(crate) fn enclosing_cuboid(&self) -> Option<(Cuboid, Pose)> {
         *self.cuboid.get_or_init(|| self.extreme_points().enclosing_cuboid())
     }
@@ -136,13 +137,13 @@ impl TriMesh {
         ExtremePoints::with_hull(&self.vertices, self.hull().cloned())
     }
 
-    /// Bytes of the BVH, in addition to vertices and triangles.
+    /// Size of the BVH in bytes, in addition to vertices and triangles.
     pub fn bvh_bytes(&self) -> usize {
         self.bvh.bytes()
     }
 
-    /// Levels of the BVH below the box around the whole mesh. Every level divides a box into up to sixteen; those of the last
-    /// hold up to eight triangles each.
+    /// Number of levels of the BVH below the box around the whole mesh. Every level divides a box into up to sixteen
+    /// boxes; each box of the last level has up to eight triangles.
     ///
     /// ```
     /// use elbowroom_proximity::{Shape, Sphere, TriMesh, tessellate::tessellate};
@@ -168,8 +169,8 @@ impl TriMesh {
         }
     }
 
-    /// For each vertex the one that represents it in the topology: the first of equal coordinates, and across hairline seams
-    /// the first of those within [`MeshReport::weld_tolerance`].
+    /// For each vertex, the vertex that represents it in the topology: the first with equal coordinates and, across
+    /// hairline seams, the first of those within [`MeshReport::weld_tolerance`].
     ///
     /// ```
     /// use elbowroom_proximity::TriMesh;
@@ -192,7 +193,7 @@ impl TriMesh {
         &self.component_vertices
     }
 
-    /// True if some component of the surface is closed, so that points can be inside.
+    /// True if a component of the surface is closed, so that points can be inside.
     pub fn has_interior(&self) -> bool {
         self.in_closed_component.iter().any(|&c| c)
     }
@@ -234,10 +235,10 @@ fn extremes(vertices: &[Vec3], triangles: &[[u32; 3]]) -> [Vec3; 6] {
     found
 }
 
-/// From this many triangles on, tree and topology are computed in parallel.
+/// Number of triangles from which tree and topology are computed in parallel.
 const LARGE: usize = 20_000;
 
-/// The two long steps of making a mesh, concurrently where it is large.
+/// Performs the two long steps of creating a mesh, in parallel if the mesh is large.
 fn prepare(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (Topology, Bvh16) {
     if triangles.len() < LARGE {
         return (topology::examine(vertices, triangles), Bvh16::build(vertices, triangles));

@@ -1,10 +1,10 @@
-//! Whether a placed shape consists of usable numbers.
+//! Check that a placed shape has usable numbers.
 
 use elbowroom_spatial::Pose;
 
 use super::{Capsule, Shape};
 
-/// Lengths from here on count as infinite: their squares would overflow.
+/// Length from which lengths count as infinite: their squares would overflow.
 const TOO_LARGE: f64 = 1e150;
 
 impl Shape {

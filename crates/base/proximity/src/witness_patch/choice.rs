@@ -5,17 +5,18 @@ use elbowroom_spatial::Vec3;
 use super::patch_query::PatchQuery;
 use super::tolerances::PatchTolerances;
 
-/// Of the tied pairs of points offered, the one nearest to the anchor.
+/// The choice of the pair nearest to the anchor, among the offered tied pairs of points.
 #[derive(Debug)]
 pub(crate) struct WitnessChoice<Key> {
     pub query: PatchQuery,
     min_size: f64,
     /// The witness point found first, on the first shape.
     first: Vec3,
-    /// True once tied points were found farther apart than the least patch: the witness points are not unique.
+    /// True after tied points were found that are farther apart than the smallest patch: the witness points are not
+    /// unique.
     ambiguous: bool,
-    /// Distances from the anchor that differ by less are equal, and the smaller key decides: so the result does not depend on
-    /// the order of the offers.
+    /// Distances from the anchor that differ by less count as equal, and the smaller key decides, so that the result
+    /// does not depend on the order of the offers.
     step: f64,
     best: Option<Chosen<Key>>,
 }
@@ -35,7 +36,7 @@ impl<Key: Copy + PartialOrd> WitnessChoice<Key> {
         Self { query, min_size, first, ambiguous: false, step: 1e-3 * min_size, best: None }
     }
 
-    /// True if a feature cannot change the choice; `nearest` gives its point nearest to the anchor.
+    /// True if a feature cannot change the choice. `nearest` returns the feature's point nearest to the anchor.
     pub fn is_beaten(&self, nearest: impl FnOnce(Vec3) -> Vec3) -> bool {
         let Some(best) = self.best.filter(|_| self.ambiguous) else { return false };
         nearest(self.query.anchor).distance(self.query.anchor) > (best.score + 1.0) * self.step
@@ -58,7 +59,7 @@ impl<Key: Copy + PartialOrd> WitnessChoice<Key> {
         }
     }
 
-    /// Key and points; `None` if the witness points are unique.
+    /// Key and points of the choice; `None` if the witness points are unique.
     pub fn chosen(&self) -> Option<(Key, Vec3, Vec3)> {
         self.best.filter(|_| self.ambiguous).map(|b| (b.key, b.on_a, b.on_b))
     }

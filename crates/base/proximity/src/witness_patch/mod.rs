@@ -1,10 +1,10 @@
-//! Continuous witness points: where faces or edges are parallel, or nearly so, the witness points are not unique, and rounding
-//! would choose among them.
+//! Continuous witness points: for parallel or nearly parallel faces or edges, the witness points are not unique, and
+//! rounding would decide.
 //!
-//! Among the pairs of points that are tied, no farther apart than the least distance and [`TIE_TOLERANCE`] of the sizes, the
-//! one nearest to an anchor point is returned. The anchor is between the centres of the two shapes, near that of the
-//! smaller, and moves with them. So for parallel faces the result is the centre of the patch in which they overlap, or the
-//! point of the patch nearest to it, and it changes continuously with the poses.
+//! Pairs of points are tied if their distance exceeds the smallest distance by at most [`TIE_TOLERANCE`] of the
+//! sizes. The tied pair nearest to an anchor point is returned. The anchor is between the centres of the two shapes,
+//! near the centre of the smaller one, and moves with them. So for parallel faces the result is the centre of the
+//! patch in which they overlap, or the point of the patch nearest to it, and it changes continuously with the poses.
 
 mod choice;
 mod patch_query;

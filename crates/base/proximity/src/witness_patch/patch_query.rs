@@ -9,11 +9,11 @@ use super::polygon::Polygon;
 pub(crate) struct PatchQuery {
     /// Unit vector from the first shape to the second.
     pub direction: Vec3,
-    /// Largest height of the first shape along it, and least height of the second.
+    /// Largest height of the first shape along the direction, and smallest height of the second.
     pub ends: [f64; 2],
-    /// [`PatchTolerances::tie`].
+    /// The tolerance [`PatchTolerances::tie`].
     pub tolerance: f64,
-    /// Of all pairs of points the one nearest to this is returned.
+    /// The anchor: of all pairs of points, the nearest to it is returned.
     pub anchor: Vec3,
 }
 
@@ -27,8 +27,8 @@ pub(crate) struct PatchPoints {
 }
 
 impl PatchQuery {
-    /// The pair of points, one on each face, that are within the tolerance of the ends, opposite each other, and nearest to
-    /// the anchor.
+    /// The pair of points, one on each face, that are within the tolerance of the ends, opposite each other, and nearest
+    /// to the anchor.
     pub fn closest_points(&self, of_a: &Polygon, of_b: &Polygon) -> Option<PatchPoints> {
         let top = of_a.clipped(-self.direction, self.tolerance - self.ends[0]);
         let bottom = of_b.clipped(self.direction, self.ends[1] + self.tolerance);
@@ -39,14 +39,14 @@ impl PatchQuery {
     }
 }
 
-/// Of several directions the one with the largest gap between the ends.
+/// The direction with the largest gap between the ends.
 pub(crate) fn widest_gap(directions: impl IntoIterator<Item = Vec3>, ends: &dyn Fn(Vec3) -> [f64; 2]) -> Option<Vec3> {
     let gap = |d: &Vec3| ends(*d)[1] - ends(*d)[0];
     directions.into_iter().max_by(|d, e| gap(d).total_cmp(&gap(e)))
 }
 
-/// From a point of the patch to closest points nearby, by alternating projections: they remove what the tie tolerance admitted
-/// where faces are inclined, and leave the points unchanged where faces are parallel.
+/// Moves a point of the patch to closest points nearby, by alternating projections. They remove the deviation that
+/// the tie tolerance allowed for inclined faces, and leave the points unchanged for parallel faces.
 pub(crate) fn alternating_projections(
     on_a: Vec3,
     onto_a: &dyn Fn(Vec3) -> Vec3,
@@ -59,7 +59,7 @@ pub(crate) fn alternating_projections(
     (on_a, onto_b(on_a))
 }
 
-/// The anchor between two centres, near that of the smaller shape: continuous in all arguments and symmetric.
+/// The anchor between two centres, near the centre of the smaller shape; continuous in all arguments and symmetric.
 pub(crate) fn anchor_between(a: Vec3, radius_a: f64, b: Vec3, radius_b: f64) -> Vec3 {
     let (wa, wb) = (radius_b * radius_b, radius_a * radius_a);
     let sum = wa + wb;

@@ -4,7 +4,7 @@ use elbowroom_spatial::Vec3;
 
 use crate::triangle::{nearest_on_segment, nearest_on_triangle};
 
-/// Corners of a polygon at most: a face of eight, and one more for each of sixteen cuts.
+/// Largest number of corners of a polygon: a face of eight, and one more for each of sixteen cuts.
 const MAX_CORNERS: usize = 24;
 
 /// A flat convex polygon.
@@ -15,7 +15,7 @@ pub(crate) struct Polygon {
 }
 
 impl Polygon {
-    /// Of up to eight corners in order.
+    /// Creates a polygon from up to eight corners in order.
     pub fn new(corners: impl IntoIterator<Item = Vec3>) -> Self {
         let mut polygon = Self { points: [Vec3::ZERO; MAX_CORNERS], len: 0 };
         corners.into_iter().take(8).for_each(|p| polygon.push(p));
@@ -48,7 +48,7 @@ impl Polygon {
         kept
     }
 
-    /// The overlap with the other, both projected along the unit vector `along`, enlarged by `tolerance`.
+    /// The overlap with the other polygon, both projected along the unit vector `along`, enlarged by `tolerance`.
     pub fn overlap(&self, other: &Self, along: Vec3, tolerance: f64) -> Self {
         let side = if along.x.abs() < 0.6 { Vec3::X } else { Vec3::Y };
         let u = along.cross(side);
@@ -60,7 +60,7 @@ impl Polygon {
         kept
     }
 
-    /// The part within the extent of the other along a direction, enlarged by `tolerance`.
+    /// The part within the extent of the other polygon along a direction, enlarged by `tolerance`.
     fn within_extent(&self, other: &Self, direction: Vec3, tolerance: f64) -> Self {
         let Some(n) = direction.try_normalize() else { return *self };
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -71,7 +71,7 @@ impl Polygon {
         self.clipped(n, high + tolerance).clipped(-n, tolerance - low)
     }
 
-    /// Roughly its largest extent: the largest distance of a corner from the first.
+    /// Approximately the largest extent: the largest distance of a corner from the first.
     pub fn size(&self) -> f64 {
         self.points().iter().fold(0.0, |size: f64, p| size.max(p.distance(self.points[0])))
     }

@@ -1,4 +1,4 @@
-//! Whether a shape shows a point, an edge or a face in a direction.
+//! The feature of a shape in a direction: a point, an edge or a face.
 
 use elbowroom_spatial::Vec3;
 
@@ -7,16 +7,16 @@ use super::tolerances::PatchTolerances;
 /// The part of a shape within the tie tolerance of its farthest point along a direction.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum SupportFeature {
-    /// Smaller than the least patch.
+    /// The feature is smaller than the smallest patch.
     Point,
     /// An edge along this unit vector, and its width, metres.
     Edge(Vec3, f64),
-    /// More than an edge.
+    /// The feature is more than an edge.
     Face,
 }
 
 impl SupportFeature {
-    /// Of the convex hull of `points`, the farthest of which is `top`.
+    /// The feature of the convex hull of `points`, whose farthest point is `top`.
     pub fn of(points: impl Iterator<Item = Vec3>, top: Vec3, along: Vec3, tolerances: PatchTolerances) -> Self {
         let PatchTolerances { tie, min_size } = tolerances;
         let mut found = Self::Point;
@@ -37,7 +37,7 @@ impl SupportFeature {
         if let Self::Edge(u, _) = found { Self::Edge(u, width) } else { found }
     }
 
-    /// False if the features of two shapes certainly overlap in no more than a point.
+    /// False if the features of two shapes are guaranteed to overlap in at most a point.
     pub fn may_overlap(self, other: Self, tolerances: PatchTolerances) -> bool {
         match (self, other) {
             (Self::Point, _) | (_, Self::Point) => false,

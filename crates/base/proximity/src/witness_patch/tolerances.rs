@@ -1,21 +1,21 @@
-//! When gaps are tied, and when a patch is a point.
+//! Tolerances for tied gaps and for patches that count as points.
 
-/// Gaps that differ by less than this share of the sizes (the radii of both shapes, added) are tied.
+/// Difference below which gaps are tied, as a fraction of the sizes (the radii of both shapes, added).
 pub(crate) const TIE_TOLERANCE: f64 = 1e-8;
-/// A patch smaller than this share of the sizes is a point.
+/// Size below which a patch counts as a point, as a fraction of the sizes.
 pub(crate) const MIN_PATCH_SIZE: f64 = 1e-3;
 
-/// The two constants as lengths.
+/// The two tolerances as lengths.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PatchTolerances {
-    /// [`TIE_TOLERANCE`] of the sizes.
+    /// [`TIE_TOLERANCE`] times the sizes.
     pub tie: f64,
-    /// [`MIN_PATCH_SIZE`] of the sizes.
+    /// [`MIN_PATCH_SIZE`] times the sizes.
     pub min_size: f64,
 }
 
 impl PatchTolerances {
-    /// `size`: the radii of both shapes, added.
+    /// The tolerances for `size`, the sum of the radii of both shapes.
     pub fn of(size: f64) -> Self {
         Self { tie: TIE_TOLERANCE * size, min_size: MIN_PATCH_SIZE * size }
     }

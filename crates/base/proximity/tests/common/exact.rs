@@ -1,5 +1,6 @@
-//! The distance of two placed triangles without any rounding: every f64 is a whole number times a power of two, and so
-//! are sums and products of them.
+//! The distance of two placed triangles without any rounding.
+//!
+//! Every f64 is a whole number times a power of two, and so are sums and products of such numbers.
 #![allow(dead_code)]
 
 use std::cmp::Ordering;
@@ -65,7 +66,7 @@ impl Mul for &Dyadic {
 pub type Point = [Dyadic; 3];
 pub type Triangle = [Point; 3];
 
-/// A local point where its pose puts it, by the matrix as it is stored.
+/// A local point at its place in the pose, by the matrix as it is stored.
 pub fn placed(p: Vec3, pose: &Pose) -> Point {
     let (rows, local, t) = (pose.rotation.rows(), p.to_array().map(Dyadic::of), pose.translation.to_array());
     std::array::from_fn(|i| {
@@ -91,7 +92,7 @@ fn cross(a: &Point, b: &Point) -> Point {
     [two(1, 2), two(2, 0), two(0, 1)]
 }
 
-/// A squared distance as a fraction; the denominator is positive.
+/// A squared distance as a fraction with a positive denominator.
 #[derive(Debug, Clone)]
 pub struct Square {
     numerator: Dyadic,
@@ -108,7 +109,7 @@ impl Square {
         if (&left - &(&o.numerator * &self.denominator)).sign() <= 0 { self } else { o }
     }
 
-    /// How its root compares with a length that is not negative, metres.
+    /// Compares the square root with a length that is not negative, metres.
     pub fn root_cmp(&self, length: f64) -> Ordering {
         let length = Dyadic::of(length);
         (&self.numerator - &(&(&length * &length) * &self.denominator)).sign().cmp(&0)
@@ -137,7 +138,7 @@ fn point_segment(p: &Point, a: &Point, b: &Point) -> Square {
     Square { numerator: dot(&n, &n), denominator: whole }
 }
 
-/// Where the inner nearest points of two lines lie on both segments.
+/// Squared distance of two lines if their inner nearest points lie on both segments.
 fn segments(a: &[&Point; 2], b: &[&Point; 2]) -> Option<Square> {
     let (u, v, w) = (minus(a[1], a[0]), minus(b[1], b[0]), minus(b[0], a[0]));
     let n = cross(&u, &v);

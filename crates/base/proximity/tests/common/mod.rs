@@ -11,7 +11,7 @@ use elbowroom_proximity::{
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 pub use elbowroom_testkit::random::SplitMix;
 
-/// A sphere that is stretched along the axes and has waves: closed, not convex.
+/// A sphere that is stretched along the axes and has waves: closed, but not convex.
 pub fn lump(radius: f64, fine: f64, stretch: Vec3, wave: f64) -> TriMesh {
     let (mut v, t) = tessellate(&Shape::Sphere(Sphere { radius }), fine);
     for p in &mut v {
@@ -23,11 +23,11 @@ pub fn lump(radius: f64, fine: f64, stretch: Vec3, wave: f64) -> TriMesh {
 
 /// Random geometry.
 pub trait RandomGeometry {
-    /// Each coordinate within `half` of 0.
+    /// A vector with each coordinate within `half` of 0.
     fn vec(&mut self, half: f64) -> Vec3;
-    /// One pose in four has its axes along the world's, one in eight its origin on a round number.
+    /// A pose. One in four has its axes along the world's axes, one in eight its origin on a round number.
     fn pose(&mut self, half: f64) -> Pose;
-    /// One dimension in eight is zero or tiny.
+    /// A dimension. One in eight is zero or tiny.
     fn size(&mut self) -> f64;
     fn shape(&mut self, kind: &str) -> Shape;
     fn hull(&mut self) -> ConvexHull;
@@ -84,7 +84,7 @@ impl RandomGeometry for SplitMix {
     }
 }
 
-/// Cases per pair: `ELBOWROOM_LONG=1` asks for a million.
+/// Number of cases per pair: a million with `ELBOWROOM_LONG=1`.
 pub fn cases(usual: usize) -> usize {
     if std::env::var_os("ELBOWROOM_LONG").is_some() { 1_000_000 } else { usual }
 }

@@ -6,16 +6,16 @@ use crate::{
     SlotReport, StateMessage, Token,
 };
 
-/// What a step of the arbiter gives.
+/// The outputs of a step of the arbiter.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Outputs {
     /// Messages to guards.
     pub replies: Vec<GrantsMessage>,
-    /// What has changed.
+    /// Changes at the arbiter.
     pub events: Vec<ArbiterEvent>,
 }
 
-/// The arbiter of a cell. It never takes a slot back: its holder gives it up, or the integrator clears a silent one.
+/// The arbiter of a cell. It never takes a slot back: the holder releases it, or the integrator clears a silent holder.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Arbiter {
     settings: ArbiterSettings,
@@ -25,19 +25,19 @@ pub struct Arbiter {
     tokens: u64,
     robots: Vec<RobotRecord>,
     slots: Vec<SlotRecord>,
-    /// The deadlocks that were reported and are still there.
+    /// The deadlocks that were reported and still exist.
     deadlocks: Vec<Vec<RobotSlot>>,
 }
 
-/// What the arbiter knows of a robot.
+/// The arbiter's knowledge of a robot.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 struct RobotRecord {
     boot: Boot,
     sequence: u64,
     heard: Option<Micros>,
-    /// The last message was of this configuration, by a guard that obeys this start of the arbiter.
+    /// True if the last message had this configuration and its guard obeys this start of the arbiter.
     is_trusted: bool,
-    /// Declared to be outside by the integrator, and silent since.
+    /// True if the integrator declared the robot to be outside, and it has been silent since.
     is_cleared: bool,
     reports: Vec<SlotReport>,
 }
@@ -54,15 +54,15 @@ impl RobotRecord {
         }
     }
 
-    /// The occupancy of a slot, as far as it can be trusted.
+    /// The reported occupancy of a slot; `Unknown` if the robot is not trusted.
     fn occupancy(&self, slot: SlotId) -> Occupancy {
         if self.is_trusted { self.reports[slot.0].occupancy } else { Occupancy::Unknown }
     }
 }
 
 impl Arbiter {
-    /// An arbiter that knows nothing of its robots yet. `boot` should be higher than that of former arbiters: the time of day
-    /// will do, as one that learns of a higher one before it is in service takes the next.
+    /// An arbiter without knowledge of its robots. `boot` should be higher than for all former arbiters. The time of
+    /// day is sufficient: an arbiter that learns of a higher number before it is in service takes the next number.
     pub fn new(settings: ArbiterSettings, boot: Boot) -> Self {
         let robots = vec![RobotRecord::new(settings.slots); settings.robots.len()];
         let slots = vec![SlotRecord::default(); settings.slots];
@@ -84,13 +84,13 @@ impl Arbiter {
         &self.slots[slot.0].queue
     }
 
-    /// True if a robot's last message is not older than the silence of the settings, and can be trusted.
+    /// True if a robot's last message can be trusted and is not older than the silence of the settings.
     pub fn is_known(&self, robot: RobotSlot, now: Micros) -> bool {
         let record = &self.robots[robot.0];
         record.is_trusted && record.heard.is_some_and(|heard| now - heard <= self.settings.silence)
     }
 
-    /// Takes a message of a guard. Messages that are late, twice there, or of no robot of the cell change nothing.
+    /// Processes a message of a guard. It changes nothing if it is late or repeated, or its robot is not in the cell.
     pub fn receive(&mut self, message: &StateMessage, now: Micros) -> Outputs {
         let mut outputs = Outputs::default();
         self.started.get_or_insert(now);
@@ -128,10 +128,10 @@ impl Arbiter {
         outputs
     }
 
-    /// Whether a robot has been silent for long enough to be cleared: until its last grant has expired and it has come to rest.
+    /// Checks that a robot has been silent for so long that its last grant has expired and it has come to rest.
     ///
     /// # Errors
-    /// How long it must be silent still.
+    /// The time for which the robot must still be silent.
     pub fn may_clear(&mut self, robot: RobotSlot, now: Micros) -> Result<(), Micros> {
         let settings = &self.settings.robots[robot.0];
         let needed = (self.settings.validity + settings.stop_time).with_drift();
@@ -141,17 +141,17 @@ impl Arbiter {
         if silent < needed { Err(needed - silent) } else { Ok(()) }
     }
 
-    /// Declares that a silent robot is at rest outside of all regions, as seen by the integrator. Its slots are free, and others are
-    /// granted slots without it until it speaks again.
+    /// Declares that a silent robot is at rest outside all regions, as seen by the integrator. Its slots become free,
+    /// and other robots are granted slots without it until it sends a message again.
     ///
     /// # Errors
-    /// As [`Self::may_clear`].
+    /// The time for which the robot must still be silent.
     pub fn clear(&mut self, robot: RobotSlot, now: Micros) -> Result<Outputs, Micros> {
         self.may_clear(robot, now)?;
         Ok(self.clear_at_once(robot, now))
     }
 
-    /// [`Arbiter::clear`] without the test, which is what makes it safe.
+    /// Like [`Arbiter::clear`], without the check that makes it safe.
     pub(crate) fn clear_at_once(&mut self, robot: RobotSlot, now: Micros) -> Outputs {
         let mut outputs = Outputs::default();
         let record = &mut self.robots[robot.0];
@@ -172,20 +172,20 @@ impl Arbiter {
         outputs
     }
 
-    /// A guard obeys a later start of an arbiter: this one begins again with the next number, and knows nothing.
+    /// Restarts with the next number and without knowledge, because a guard obeys a later start of an arbiter.
     fn take_next_boot(&mut self, other: Boot, now: Micros, outputs: &mut Outputs) {
         *self = Self { started: Some(now), ..Self::new(self.settings.clone(), other.next()) };
         outputs.events.push(ArbiterEvent::StartedAgain(self.boot));
     }
 
-    /// Whether the guard that was heard last may still obey a grant. Another guard of its robot is not heard until then: of two
-    /// that run at once the first one counts, and what the second one reports is never older than the last use of a grant.
+    /// Whether the guard of the last message may still obey a grant. While it may, messages of a second guard of the
+    /// robot are ignored, so that the second guard never reports about a time before the last use of a grant.
     fn may_obey_a_grant(&self, robot: RobotSlot, now: Micros) -> bool {
         let longest = self.settings.validity.with_drift();
         self.robots[robot.0].heard.is_some_and(|heard| now - heard <= longest)
     }
 
-    /// A guard has started again: what it held is neither confirmed nor given to others until it reports where its robot is.
+    /// Records a guard's start: its slots are neither confirmed nor granted to others until it reports its occupancy.
     fn start_guard(&mut self, robot: RobotSlot, boot: Boot, outputs: &mut Outputs) {
         let is_first = self.robots[robot.0].boot == Boot::NONE;
         self.robots[robot.0] = RobotRecord { boot, ..RobotRecord::new(self.slots.len()) };
@@ -213,7 +213,7 @@ impl Arbiter {
         record.reports.clone_from(&message.slots);
     }
 
-    /// Applies a robot's report: what it gave up is free, what it was found in is its own.
+    /// Applies a robot's report: frees the slots that it gave up, and makes it hold the slots that it was found in.
     fn settle(&mut self, robot: RobotSlot, outputs: &mut Outputs) {
         for slot in self.settings.robots[robot.0].slots.clone() {
             let report = self.robots[robot.0].reports[slot.0];
@@ -236,16 +236,16 @@ impl Arbiter {
         }
     }
 
-    /// Whether the holder's report gives its slot up.
+    /// Whether the holder's report gives up its slot.
     fn gives_up(&self, slot: SlotId, robot: RobotSlot, report: SlotReport) -> bool {
         match self.slots[slot.0].token_of(robot) {
             Some(token) => report.released >= Some(token),
-            // Of a guard that started again: the grant was for the former one.
+            // The guard started again: the grant was for the former guard.
             None => matches!(report.occupancy, Occupancy::Outside | Occupancy::Warning),
         }
     }
 
-    /// A robot that may be inside holds the slot, if no other one does.
+    /// Makes a robot that may be inside the holder of the slot, if no other robot holds it.
     fn found_inside(&mut self, slot: SlotId, robot: RobotSlot, outputs: &mut Outputs) {
         match self.slots[slot.0].holder {
             None => {
@@ -279,7 +279,7 @@ impl Arbiter {
         record.intruders.retain(|other| *other != robot);
     }
 
-    /// Grants each free slot to the first robot that waits for it, if all others are known to be outside. Returns the robots.
+    /// Grants each free slot to its first waiting robot if all others are known to be outside. Returns these robots.
     fn grant_free_slots(&mut self, now: Micros, outputs: &mut Outputs) -> Vec<RobotSlot> {
         let mut granted = Vec::new();
         for slot in (0..self.slots.len()).map(SlotId) {
@@ -296,9 +296,9 @@ impl Arbiter {
         granted
     }
 
-    /// The robot with the highest priority, of equals the one that has waited longest. One that could not use the slot before
-    /// another one of the queue has had it comes after that: otherwise what was given up to resolve a cycle would close it
-    /// again.
+    /// The waiting robot with the highest priority; among equals, the robot that has waited longest. A robot that would
+    /// close a cycle with the slot is skipped until another robot of the queue has had it: otherwise a release that
+    /// resolves a cycle would close it again.
     fn first_waiting(&self, slot: SlotId) -> Option<RobotSlot> {
         let slot = &self.slots[slot.0];
         let graph = wait_for_graph(&self.slots);
@@ -308,8 +308,8 @@ impl Arbiter {
         able.min_by_key(rank).map(|(_, robot)| *robot)
     }
 
-    /// Whether the slot may be granted: the robot itself is known, and every other one that can ever be in it is known to be
-    /// outside without a grant, or was cleared.
+    /// Whether the slot may be granted: the robot itself is known, and every other robot that can ever be in it is known
+    /// to be outside without a grant, or was cleared.
     fn may_grant(&self, slot: SlotId, robot: RobotSlot, now: Micros) -> bool {
         let others = (0..self.robots.len()).map(RobotSlot).filter(|other| *other != robot);
         let mut expected = others.filter(|other| self.settings.robots[other.0].slots.contains(&slot));
@@ -321,7 +321,7 @@ impl Arbiter {
             })
     }
 
-    /// Asks one robot of each cycle to give up what another one of it waits for, or reports the deadlock.
+    /// Asks a robot of each cycle to give up a slot that another robot of it waits for, or reports the deadlock.
     fn resolve_cycles(&mut self, now: Micros, outputs: &mut Outputs) {
         for slot in &mut self.slots {
             slot.release_requested = false;
@@ -338,8 +338,8 @@ impl Arbiter {
         self.deadlocks = deadlocks;
     }
 
-    /// Of the slots that robots of a cycle hold and others of it wait for, and that their holders can give up, that of the robot
-    /// with the lowest priority, of equals the one that was granted last.
+    /// The slot to give up in a cycle: its holder in the cycle can give it up, and another robot of the cycle waits for
+    /// it. Chooses the holder with the lowest priority; among equals, the slot that was granted last.
     fn least_important(&self, cycle: RobotSet, now: Micros) -> Option<usize> {
         let holder = |slot: usize| self.slots[slot].holder.map(|h| h.robot).filter(|robot| cycle.contains(*robot));
         let is_waited_for = |slot: usize| self.slots[slot].queue.iter().any(|robot| cycle.contains(*robot));
@@ -356,7 +356,7 @@ impl Arbiter {
         self.is_known(robot, now) && matches!(occupancy, Occupancy::Outside | Occupancy::Warning)
     }
 
-    /// The message to a guard.
+    /// The next message to a guard.
     fn answer(&mut self, robot: RobotSlot) -> GrantsMessage {
         self.serial += 1;
         let record = &self.robots[robot.0];
@@ -379,14 +379,14 @@ impl Arbiter {
         }
     }
 
-    /// Whether two robots claim the slot and this is one of them.
+    /// Whether the slot has intruders and this robot is its holder or one of them.
     fn must_halt(&self, slot: SlotId, robot: RobotSlot) -> bool {
         let slot = &self.slots[slot.0];
         !slot.intruders.is_empty() && (slot.is_held_by(robot) || slot.intruders.contains(&robot))
     }
 }
 
-/// What the model check needs to see and to rewrite.
+/// Access for the model check, which reads and rewrites the state.
 #[cfg(test)]
 impl Arbiter {
     pub(crate) fn each_time(&mut self, f: &mut impl FnMut(&mut Micros)) {
@@ -394,8 +394,8 @@ impl Arbiter {
         self.robots.iter_mut().filter_map(|robot| robot.heard.as_mut()).for_each(f);
     }
 
-    /// Forgets what no later step reads: of reports all but whether the robot occupies the slot and obeys a grant, of messages
-    /// that cannot be trusted everything, and which deadlock was reported.
+    /// Forgets state that no later step reads: the reported deadlocks, all reports that cannot be trusted, and of the
+    /// other reports everything but whether the robot occupies the slot and obeys a grant.
     pub(crate) fn forget_unread(&mut self) {
         let any = Some(Token { boot: Boot(1), number: 1 });
         self.deadlocks.clear();
@@ -421,12 +421,12 @@ impl Arbiter {
         &mut self.robots[robot].sequence
     }
 
-    /// Sets the counters of messages and grants, above all that were given.
+    /// Sets the counters of messages and grants to values above all that were given.
     pub(crate) fn set_counters(&mut self, serial: u64, tokens: u64) {
         (self.serial, self.tokens) = (serial, tokens);
     }
 
-    /// Whether a message would change nothing, now and as long as this arbiter runs.
+    /// Whether a message would change nothing while this arbiter runs.
     pub(crate) fn is_past(&self, message: &StateMessage) -> bool {
         let record = &self.robots[message.robot.0];
         message.arbiter <= self.boot && message.boot == record.boot && message.sequence <= record.sequence
@@ -442,7 +442,7 @@ impl Arbiter {
         }
     }
 
-    /// Everything about a robot, without its index.
+    /// Hashes everything about a robot except its index.
     pub(crate) fn hash_robot(&self, robot: RobotSlot, hasher: &mut impl std::hash::Hasher) {
         use std::hash::Hash;
         self.robots[robot.0].hash(hasher);
@@ -452,7 +452,7 @@ impl Arbiter {
         }
     }
 
-    /// A fault for the model check to find.
+    /// A planted fault for the model check: takes a slot back.
     pub(crate) fn take_back(&mut self, slot: SlotId) {
         self.free(slot);
     }

@@ -1,11 +1,11 @@
-//! The clock by which grants end and news grow old.
+//! The clock for the ages of grants and messages.
 
 use std::time::Duration;
 
 use crate::Micros;
 
-/// The time since this clock was made. It never goes back, whatever happens to the time of day, and on Linux it goes on while the
-/// computer is suspended: what was granted before the sleep has ended after it.
+/// A clock that shows the time since it was made. It never goes back, whatever happens to the time of day. On Linux
+/// it continues while the computer is suspended, so the time of the suspension counts towards the end of a grant.
 ///
 /// ```
 /// use elbowroom_interlock::Clock;
@@ -40,14 +40,14 @@ impl Clock {
     }
 }
 
-/// Since the computer was started, the time of its sleep included.
+/// Time since the computer was started, including the time when it was suspended.
 #[cfg(target_os = "linux")]
 fn now() -> Duration {
     let since_boot = rustix::time::clock_gettime(rustix::time::ClockId::Boottime);
     Duration::new(since_boot.tv_sec.max(0) as u64, since_boot.tv_nsec.max(0) as u32)
 }
 
-/// Since the first call.
+/// Time since the first call.
 #[cfg(not(target_os = "linux"))]
 fn now() -> Duration {
     static FIRST: std::sync::OnceLock<std::time::Instant> = std::sync::OnceLock::new();

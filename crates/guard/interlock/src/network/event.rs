@@ -1,4 +1,4 @@
-//! What an arbiter did, for people and logs.
+//! Events of an arbiter, for people and logs.
 
 use crate::{Boot, RobotSlot, SlotId};
 
@@ -9,18 +9,18 @@ pub enum ArbiterEvent {
     Granted(SlotId, RobotSlot),
     /// The robot gave the slot up.
     Released(SlotId, RobotSlot),
-    /// The robot was found in the slot's regions without a grant, while nobody held it: it holds the slot now.
+    /// The robot was found in the slot's regions without a grant while the slot was free; the robot holds the slot now.
     FoundInside(SlotId, RobotSlot),
-    /// The second robot was found in the slot's regions while the first holds it.
+    /// The second robot was found in the slot's regions while the first one holds the slot.
     Conflict(SlotId, RobotSlot, RobotSlot),
-    /// These robots wait for each other, and none can stop outside of what the next one needs.
+    /// These robots wait for each other, and none of them can stop outside the slot that the next one needs.
     Deadlock(Vec<RobotSlot>),
     /// A guard started again.
     GuardStarted(RobotSlot, Boot),
-    /// The robot's configuration is another one: it is not trusted.
+    /// The robot has another configuration, so it is not trusted.
     OtherConfiguration(RobotSlot),
     /// The integrator declared the silent robot to be outside.
     Cleared(RobotSlot),
-    /// Guards obey a later start of an arbiter: this one began again, with this number.
+    /// A guard obeys a later start of an arbiter: this arbiter started again, with this number.
     StartedAgain(Boot),
 }

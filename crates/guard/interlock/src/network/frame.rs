@@ -1,39 +1,40 @@
-//! The frame of every binary message of a cell: two letters of the protocol, version, kind, contents, CRC-32; little-endian.
+//! The frame of every binary message of a cell (little-endian): two letters of the protocol, version, kind,
+//! contents, CRC-32.
 
 use thiserror::Error;
 
-/// Bytes of a frame around its contents.
+/// Number of bytes of a frame around its contents.
 pub const FRAME_BYTES: usize = 8;
 
-/// Why bytes are no message.
+/// Why bytes are not a valid message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum MessageError {
-    /// Too short, too long, or not as long as it says.
+    /// The length is too short, too long, or different from the stated one.
     #[error("{0} bytes are not the length of this message")]
     Length(usize),
-    /// Of another protocol.
+    /// The message has another protocol.
     #[error("the bytes are no message of this protocol")]
     Protocol,
-    /// Of another version of the protocol.
+    /// The message has another version of the protocol.
     #[error("the message has version {found}, this is version {here}: run the same release on both sides")]
     Version {
-        /// That of the message.
+        /// Version of the message.
         found: u8,
-        /// That of this release.
+        /// Version of this release.
         here: u8,
     },
-    /// Damaged.
+    /// The message is damaged.
     #[error("the checksum of the message is wrong")]
     Checksum,
-    /// Of another kind: from the other side.
+    /// The message has another kind: it comes from the other side.
     #[error("the message is of another kind: it comes from the other side")]
     Kind,
-    /// A value that nobody writes.
+    /// The message has a value that no sender writes.
     #[error("the message has a value that means nothing")]
     Value,
 }
 
-/// A protocol: how its messages begin.
+/// A protocol: the letters and the version at the start of its messages.
 ///
 /// ```
 /// use elbowroom_interlock::frame::{MessageError, Protocol};
@@ -50,14 +51,14 @@ pub enum MessageError {
 /// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Protocol {
-    /// The first two bytes.
+    /// The first two bytes of a message.
     pub letters: [u8; 2],
-    /// The third.
+    /// The third byte of a message.
     pub version: u8,
 }
 
 impl Protocol {
-    /// Starts a message of this kind in `out`, which is emptied.
+    /// Starts a message of this kind in `out`, after clearing it.
     pub fn begin(&self, kind: u8, out: &mut Vec<u8>) {
         out.clear();
         out.extend_from_slice(&self.letters);
@@ -73,7 +74,7 @@ impl Protocol {
     /// The kind and the contents of a message.
     ///
     /// # Errors
-    /// [`MessageError`]: the bytes are no message of this protocol and version, or they were damaged.
+    /// [`MessageError`] if the bytes are not a message of this protocol and version, or were damaged.
     pub fn contents<'a>(&self, bytes: &'a [u8]) -> Result<(u8, Reader<'a>), MessageError> {
         let length = MessageError::Length(bytes.len());
         let (framed, crc) = bytes.split_last_chunk::<4>().ok_or(length)?;
@@ -91,14 +92,14 @@ impl Protocol {
     }
 }
 
-/// The bytes that are not read yet. All numbers are little-endian; `None` if the bytes are over.
+/// A reader of the bytes that are not read yet. All numbers are little-endian; `None` if too few bytes are left.
 #[derive(Debug)]
 pub struct Reader<'a> {
     rest: &'a [u8],
 }
 
 impl Reader<'_> {
-    /// How many bytes are left.
+    /// Number of bytes that are left.
     pub fn remaining(&self) -> usize {
         self.rest.len()
     }
@@ -109,27 +110,27 @@ impl Reader<'_> {
         Some(*first)
     }
 
-    /// One byte.
+    /// Reads one byte.
     pub fn u8(&mut self) -> Option<u8> {
         self.take().map(|[b]: [u8; 1]| b)
     }
 
-    /// Two bytes.
+    /// Reads two bytes.
     pub fn u16(&mut self) -> Option<u16> {
         self.take().map(u16::from_le_bytes)
     }
 
-    /// Eight bytes.
+    /// Reads eight bytes.
     pub fn u64(&mut self) -> Option<u64> {
         self.take().map(u64::from_le_bytes)
     }
 
-    /// A number of double precision.
+    /// Reads a double-precision number.
     pub fn f64(&mut self) -> Option<f64> {
         self.take().map(f64::from_le_bytes)
     }
 
-    /// Replaces the contents of `out` by this many numbers.
+    /// Replaces the contents of `out` by `count` numbers.
     pub fn numbers(&mut self, count: usize, out: &mut Vec<f64>) -> Option<()> {
         out.clear();
         for _ in 0..count {

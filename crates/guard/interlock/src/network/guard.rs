@@ -7,13 +7,13 @@ use crate::{Boot, GrantsMessage, Micros, Occupancy, RobotSlot, SlotAnswer, SlotI
 /// Why a message of an arbiter was not obeyed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum Ignored {
-    /// It is for another robot, or another cell.
+    /// The message is for another robot or another cell.
     #[error("the message is for another robot or another cell")]
     OtherRobot,
     /// The arbiter has another cell file.
     #[error("the arbiter has another configuration: load the same cell file on both sides")]
     OtherConfiguration,
-    /// It answers another start of this robot's guard.
+    /// The message answers another start of this robot's guard.
     #[error("the message answers another start of this guard")]
     OtherStart,
     /// A later message was obeyed before.
@@ -21,10 +21,10 @@ pub enum Ignored {
     Late,
 }
 
-/// The times at which this many messages were sent are remembered; an answer to an older one confirms nothing.
+/// Number of sent messages whose times are stored; an answer to an older message confirms nothing.
 const REMEMBERED: usize = if cfg!(test) { 8 } else { 64 };
 
-/// The guard of one robot: reports where it is, and knows which slots it may enter.
+/// The guard of one robot, which reports where the robot is and knows which slots it may enter.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Guard {
     robot: RobotSlot,
@@ -32,29 +32,30 @@ pub struct Guard {
     validity: Micros,
     boot: Boot,
     sequence: u64,
-    /// Times at which the last messages were sent, at the index of their sequence number.
+    /// Times at which the last messages were sent, indexed by sequence number.
     sent: Vec<Micros>,
     arbiter: Boot,
     serial: u64,
     slots: Vec<GuardedSlot>,
 }
 
-/// One slot, as the guard knows it.
+/// The guard's state of one slot.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 struct GuardedSlot {
     occupancy: Occupancy,
-    /// The robot needs the slot where it is near. Near a region that is switched off it does not.
+    /// True if the robot needs the slot when it is near. It does not near a region that is switched off.
     is_needed: bool,
     token: Option<Token>,
     released: Option<Token>,
-    /// When the message was sent whose answer last confirmed the token.
+    /// Time at which the message was sent whose answer last confirmed the token.
     confirmed: Option<Micros>,
     orders: Orders,
-    /// The grant is not obeyed any more. It is given up once the robot is then observed to be able to stop outside.
+    /// True if the grant is not obeyed any more. It is given up when the robot is next observed to be able to stop
+    /// outside.
     is_closing: bool,
 }
 
-/// What the arbiter asked for last.
+/// The arbiter's last requests.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 struct Orders {
     release_requested: bool,
@@ -72,16 +73,18 @@ impl GuardedSlot {
         is_closing: false,
     };
 
-    /// Forgets a grant that the arbiter does not know. The occupancy counts as unknown until it is observed again, as the
-    /// robot may have entered since it was last observed.
+    /// Forgets a grant that the arbiter does not know. The occupancy counts as unknown until it is observed again,
+    /// because the robot may have entered since the last observation.
     fn forget(&mut self) {
         *self = Self { released: self.released, ..Self::NEW };
     }
 }
 
 impl Guard {
-    /// The guard of a robot in a cell with this number of slots and this configuration. `boot` must be higher than that of the
-    /// robot's former guards; the time of day will do, as a guard that learns of a higher one takes the next.
+    /// Creates the guard of a robot in a cell with this number of slots and this configuration.
+    ///
+    /// `boot` must be higher than for all former guards of the robot. The time of day is sufficient: a guard that learns
+    /// of a higher number takes the next number.
     pub fn new(robot: RobotSlot, slots: usize, checksum: u64, boot: Boot) -> Self {
         Self {
             robot,
@@ -96,8 +99,8 @@ impl Guard {
         }
     }
 
-    /// With another time for which a grant may be obeyed after its request was sent; the default is 50 ms. It must not be
-    /// longer than that of the arbiter.
+    /// Sets the time for which a grant may be obeyed after its request was sent; the default is 50 ms. It must not be
+    /// longer than the validity in the arbiter's settings.
     #[must_use]
     pub fn validity(self, validity: Micros) -> Self {
         Self { validity, ..self }
@@ -123,12 +126,13 @@ impl Guard {
         self.slots[slot.0].token
     }
 
-    /// True if the robot must stop because another one was found inside.
+    /// True if the robot must stop because another robot was found inside.
     pub fn must_halt(&self, slot: SlotId) -> bool {
         self.slots[slot.0].orders.halt
     }
 
-    /// Takes what the monitor found at a slot in a tick, after it has decided with [`Guard::may_enter`].
+    /// Records the occupancy that the monitor found at a slot in a tick, after the tick has decided with
+    /// [`Guard::may_enter`].
     pub fn observe(&mut self, slot: SlotId, occupancy: Occupancy) {
         let slot = &mut self.slots[slot.0];
         slot.occupancy = occupancy;
@@ -142,13 +146,13 @@ impl Guard {
         }
     }
 
-    /// Takes whether the robot needs a slot in whose warning zone it is; it does until this says otherwise. It does not where
-    /// all its regions there are switched off. A slot that it has it keeps until it is outside.
+    /// Sets whether the robot needs a slot when it is in the slot's warning zone; true until this is called. Set it to
+    /// false if all regions of the slot there are switched off. The robot keeps a slot that it has until it is outside.
     pub fn need(&mut self, slot: SlotId, is_needed: bool) {
         self.slots[slot.0].is_needed = is_needed;
     }
 
-    /// Takes that it is not known any more where the robot is: nobody else is granted a slot that it can be in.
+    /// Records that the robot's position is not known any more: then no other robot is granted a slot that it can be in.
     pub fn lose_sight(&mut self) {
         self.slots.iter_mut().for_each(|slot| slot.occupancy = Occupancy::Unknown);
     }
@@ -158,7 +162,8 @@ impl Guard {
         self.slots.len()
     }
 
-    /// True if the robot may enter the regions of a slot now: it has a grant that is confirmed and not older than its validity.
+    /// True if the robot may enter the regions of a slot now: its grant is confirmed, and the confirmation is not older
+    /// than the validity.
     pub fn may_enter(&self, slot: SlotId, now: Micros) -> bool {
         let slot = &self.slots[slot.0];
         let is_fresh = slot.confirmed.is_some_and(|sent| sent <= now && now - sent <= self.validity);
@@ -172,7 +177,7 @@ impl Guard {
         message
     }
 
-    /// Writes the next message to the arbiter. Does not allocate where `message` has as many slots as the cell.
+    /// Writes the next message to the arbiter. Does not allocate if `message` has as many slots as the cell.
     pub fn state_into(&mut self, now: Micros, message: &mut StateMessage) {
         for slot in &mut self.slots {
             let is_asked = slot.orders.release_requested || slot.orders.halt;
@@ -187,10 +192,10 @@ impl Guard {
         message.slots.extend(self.slots.iter().map(GuardedSlot::report));
     }
 
-    /// Takes a message of an arbiter.
+    /// Processes a message of an arbiter.
     ///
     /// # Errors
-    /// Why it is not obeyed.
+    /// [`Ignored`] states why the message is not obeyed.
     pub fn receive(&mut self, message: &GrantsMessage) -> Result<(), Ignored> {
         if message.robot != self.robot || message.slots.len() != self.slots.len() {
             return Err(Ignored::OtherRobot);
@@ -217,7 +222,7 @@ impl Guard {
         Ok(())
     }
 
-    /// The arbiter knows a later start of this robot's guard: this one begins again with the next number.
+    /// Restarts this guard with the next number, because the arbiter knows a later start of this robot's guard.
     fn take_next_boot(&mut self, known: Boot) {
         if known > self.boot {
             self.boot = known.next();
@@ -226,7 +231,7 @@ impl Guard {
         }
     }
 
-    /// When the message with this sequence number was sent.
+    /// Time at which the message with this sequence number was sent.
     pub(crate) fn sent_at(&self, sequence: u64) -> Option<Micros> {
         let age = self.sequence.checked_sub(sequence)?;
         (sequence > 0 && age < REMEMBERED as u64).then(|| self.sent[sequence as usize % REMEMBERED])
@@ -259,7 +264,7 @@ impl GuardedSlot {
     }
 }
 
-/// What the model check needs to see and to rewrite.
+/// Access for the model check, which reads and rewrites the state.
 #[cfg(test)]
 impl Guard {
     pub(crate) fn each_time(&mut self, f: &mut impl FnMut(&mut Micros)) {
@@ -267,7 +272,7 @@ impl Guard {
         self.slots.iter_mut().filter_map(|slot| slot.confirmed.as_mut()).for_each(f);
     }
 
-    /// The grant that is obeyed and the last one given up, per slot.
+    /// Visits the grant that is obeyed and the last grant given up, per slot.
     pub(crate) fn each_token(&mut self, f: &mut impl FnMut(usize, &mut Option<Token>)) {
         for (s, slot) in self.slots.iter_mut().enumerate() {
             f(s, &mut slot.token);
@@ -292,7 +297,7 @@ impl Guard {
         self.sent_at(sequence).is_some_and(|sent| now - sent <= self.validity)
     }
 
-    /// A confirmation that is too old to be obeyed is none.
+    /// Removes confirmations that are too old to be obeyed.
     pub(crate) fn forget_expired(&mut self, now: Micros) {
         let validity = self.validity;
         for slot in &mut self.slots {
@@ -300,13 +305,13 @@ impl Guard {
         }
     }
 
-    /// Whether a message would change nothing, now and ever after.
+    /// Whether a message would never change anything from now on.
     pub(crate) fn is_past(&self, message: &GrantsMessage) -> bool {
         let late = message.arbiter < self.arbiter || message.arbiter == self.arbiter && message.serial <= self.serial;
         message.robot_boot < self.boot || message.robot_boot == self.boot && late
     }
 
-    /// Sets when the messages up to the last one were sent.
+    /// Sets the times at which the messages up to the last one were sent.
     pub(crate) fn set_sent(&mut self, times: &[Option<Micros>]) {
         self.sent.fill(Micros(0));
         for (sequence, time) in times.iter().enumerate() {
@@ -315,7 +320,7 @@ impl Guard {
         self.sequence = times.len() as u64 - 1;
     }
 
-    /// A fault for the model check to find: a grant is given up as soon as that is decided.
+    /// A planted fault for the model check: gives up a grant as soon as the guard has decided to.
     pub(crate) fn give_up_at_once(&mut self) {
         for slot in self.slots.iter_mut().filter(|slot| slot.is_closing) {
             slot.released = slot.token.or(slot.released);

@@ -1,4 +1,4 @@
-//! Robots whose controllers are different processes: an arbiter, a guard per robot, and the messages between them.
+//! Interlock of robots whose controllers are different processes: an arbiter, a guard per robot, and their messages.
 
 mod arbiter;
 mod clock;

@@ -1,16 +1,16 @@
-//! What an arbiter knows of a slot.
+//! The arbiter's record of a slot.
 
 use crate::{RobotSlot, Token, WaitForGraph};
 
-/// One slot.
+/// The arbiter's record of one slot.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Hash)]
 pub(super) struct SlotRecord {
     pub(super) holder: Option<Holder>,
     /// Robots that wait, in the order of their requests.
     pub(super) queue: Vec<RobotSlot>,
-    /// Robots that were found inside while another one held the slot, until they are seen outside or cleared.
+    /// Robots that were found inside while another robot held the slot, until they are seen outside or cleared.
     pub(super) intruders: Vec<RobotSlot>,
-    /// The holder is asked to give the slot up.
+    /// True if the holder is asked to give the slot up.
     pub(super) release_requested: bool,
 }
 
@@ -18,7 +18,8 @@ pub(super) struct SlotRecord {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) struct Holder {
     pub(super) robot: RobotSlot,
-    /// `None` if its guard has started again and has not reported where the robot is: neither confirmed nor given to others.
+    /// The grant. `None` if the robot's guard has started again and has not reported where the robot is; then the slot
+    /// is neither confirmed nor granted to others.
     pub(super) token: Option<Token>,
 }
 
@@ -27,19 +28,20 @@ impl SlotRecord {
         self.holder.is_some_and(|holder| holder.robot == robot)
     }
 
-    /// The grant of this robot.
+    /// The grant, if this robot holds it.
     pub(super) fn token_of(&self, robot: RobotSlot) -> Option<Token> {
         self.holder.filter(|holder| holder.robot == robot).and_then(|holder| holder.token)
     }
 
-    /// Whether the robot would wait for one that waits for it, if it held this slot.
+    /// Whether the robot would close a cycle by holding this slot: another waiting robot would wait for it, and it waits
+    /// for that robot.
     pub(super) fn would_close_cycle(&self, graph: &WaitForGraph, robot: RobotSlot) -> bool {
         let reached = graph.reached_from(robot);
         self.queue.iter().any(|waiting| *waiting != robot && reached.contains(*waiting))
     }
 }
 
-/// A robot waits for the holders of the slots in whose queues it is.
+/// Builds the wait-for graph: a robot waits for the holders of the slots in whose queues it is.
 pub(super) fn wait_for_graph(slots: &[SlotRecord]) -> WaitForGraph {
     let mut graph = WaitForGraph::default();
     for slot in slots {
@@ -61,7 +63,7 @@ mod tests {
             let holder = holder.map(|robot| Holder { robot: RobotSlot(robot), token: None });
             SlotRecord { holder, queue: queue.iter().map(|r| RobotSlot(*r)).collect(), ..SlotRecord::default() }
         };
-        // Robot 0 waits for what 1 holds, which waits for the free slot.
+        // Robot 0 waits for a slot that robot 1 holds, and robot 1 waits for the free slot.
         let slots = [slot(None, &[0, 1]), slot(Some(1), &[0])];
         let graph = wait_for_graph(&slots);
         assert!(slots[0].would_close_cycle(&graph, RobotSlot(0)) && !slots[0].would_close_cycle(&graph, RobotSlot(1)));

@@ -2,18 +2,19 @@
 
 use std::ops::{Add, Sub};
 
-/// A time on the [`Clock`](crate::Clock) of one process, or a length of time, in microseconds. Times of different processes are never
-/// compared.
+/// A time on the [`Clock`](crate::Clock) of one process, or a duration, in microseconds. Times of different
+/// processes are never compared.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Micros(pub u64);
 
 impl Micros {
-    /// Whole microseconds of a length of time in seconds, rounded up; 0 for what is not a length of time.
+    /// Converts a duration in seconds to whole microseconds, rounded up; 0 if `seconds` is not a valid duration.
     pub fn from_seconds(seconds: f64) -> Self {
         Self((seconds * 1e6).ceil().max(0.0) as u64)
     }
 
-    /// This length of time on the clock of another process. Clocks may differ by one percent in rate; twice that is waited.
+    /// An upper bound of this duration on the clock of another process. The rates of clocks may differ by one percent;
+    /// the bound allows for twice that.
     pub(crate) fn with_drift(self) -> Self {
         self + Self(self.0 / 50 + 1)
     }
@@ -27,7 +28,7 @@ impl Add for Micros {
     }
 }
 
-/// 0 if the difference would be negative.
+/// Saturates at 0.
 impl Sub for Micros {
     type Output = Self;
 

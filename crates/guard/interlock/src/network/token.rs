@@ -1,6 +1,6 @@
-//! Numbers that only rise: starts of processes, and grants.
+//! Numbers that only increase: starts of processes, and grants.
 
-/// Number of the start of a process. A later start of the same role has a higher number; 0 is none.
+/// Number of the start of a process. A later start of the same role has a higher number; 0 means none.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Boot(pub u64);
 
@@ -15,7 +15,7 @@ impl Boot {
     }
 }
 
-/// Names one grant of one slot. Tokens of a slot rise, over starts of the arbiter too.
+/// Identifies one grant of one slot. Tokens of a slot increase, also across starts of the arbiter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Token {
     /// Start of the arbiter that granted.

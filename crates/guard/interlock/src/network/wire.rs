@@ -1,4 +1,4 @@
-//! The bytes of the messages: little-endian, with a version and a checksum, at most [`MAX_BYTES`].
+//! Binary format of the messages: little-endian, with a version and a checksum, at most [`MAX_BYTES`] long.
 //!
 //! | bytes | state | grants |
 //! | --- | --- | --- |
@@ -11,12 +11,12 @@
 //! | per slot | 1 occupancy, 1 wants, 16 token, 16 released | 16 granted, 1 release requested, 1 halt |
 //! | 4 | CRC-32 of all before | the same |
 //!
-//! No token is 16 zero bytes, as the start 0 is none.
+//! An absent token is written as 16 zero bytes, because start 0 means none.
 
 use crate::frame::{FRAME_BYTES, MessageError, Protocol, Reader};
 use crate::{Boot, GrantsMessage, Occupancy, RobotSlot, SlotAnswer, SlotReport, StateMessage, Token};
 
-/// More slots than this are not written.
+/// Largest number of slots; messages with more slots are not written.
 pub const MAX_SLOTS: usize = 256;
 /// Length of the longest message.
 pub const MAX_BYTES: usize = FRAME_BYTES + 4 + WORDS * 8 + MAX_SLOTS * 34;
@@ -35,7 +35,7 @@ pub enum Message {
     Grants(GrantsMessage),
 }
 
-/// The bytes of a message; `None` if it has more than [`MAX_SLOTS`] slots or its robot's index does not fit in two bytes.
+/// Encodes a message; `None` if it has more than [`MAX_SLOTS`] slots or its robot's index does not fit in two bytes.
 pub fn encode(message: &Message) -> Option<Vec<u8>> {
     let mut bytes = Vec::with_capacity(MAX_BYTES);
     match message {
@@ -45,8 +45,8 @@ pub fn encode(message: &Message) -> Option<Vec<u8>> {
     .then_some(bytes)
 }
 
-/// Replaces `bytes` by those of a guard's message; false as [`encode`] gives `None`. Does not allocate where `bytes` has the
-/// capacity [`MAX_BYTES`].
+/// Replaces `bytes` by a guard's encoded message; returns false if [`encode`] would return `None`. Does not allocate
+/// if `bytes` has the capacity [`MAX_BYTES`].
 pub fn encode_state(m: &StateMessage, bytes: &mut Vec<u8>) -> bool {
     let words = [m.checksum, m.boot.0, m.sequence, m.arbiter.0, 0];
     let fits = write_header(STATE, m.robot, m.slots.len(), words, bytes);
@@ -57,7 +57,7 @@ pub fn encode_state(m: &StateMessage, bytes: &mut Vec<u8>) -> bool {
     fits
 }
 
-/// Replaces `bytes` by those of the arbiter's message; otherwise as [`encode_state`].
+/// Replaces `bytes` by the arbiter's encoded message; otherwise like [`encode_state`].
 pub fn encode_grants(m: &GrantsMessage, bytes: &mut Vec<u8>) -> bool {
     let words = [m.checksum, m.arbiter.0, m.serial, m.robot_boot.0, m.echo];
     let fits = write_header(GRANTS, m.robot, m.slots.len(), words, bytes);
@@ -68,10 +68,10 @@ pub fn encode_grants(m: &GrantsMessage, bytes: &mut Vec<u8>) -> bool {
     fits
 }
 
-/// The message of these bytes.
+/// Decodes a message.
 ///
 /// # Errors
-/// Why they are none. No bytes panic.
+/// [`MessageError`] if the bytes are not a valid message. Never panics.
 pub fn decode(bytes: &[u8]) -> Result<Message, MessageError> {
     let (header, reader) = read_header(bytes)?;
     match header.kind {
@@ -89,16 +89,16 @@ pub fn decode(bytes: &[u8]) -> Result<Message, MessageError> {
     }
 }
 
-/// Reads a guard's message into `message`. Does not allocate where that has memory for its slots.
+/// Decodes a guard's message into `message`. Does not allocate if `message` has memory for its slots.
 ///
 /// # Errors
-/// Why the bytes are no such message; `message` means nothing then.
+/// [`MessageError`] if the bytes are not a valid message of a guard; then the contents of `message` are unspecified.
 pub fn decode_state(bytes: &[u8], message: &mut StateMessage) -> Result<(), MessageError> {
     let (header, reader) = read_header(bytes)?;
     if header.kind == STATE { read_state(&header, reader, bytes, message) } else { Err(MessageError::Kind) }
 }
 
-/// Reads the arbiter's message into `message`; otherwise as [`decode_state`].
+/// Decodes the arbiter's message into `message`; otherwise like [`decode_state`].
 ///
 /// # Errors
 /// As for [`decode_state`].
@@ -107,7 +107,7 @@ pub fn decode_grants(bytes: &[u8], message: &mut GrantsMessage) -> Result<(), Me
     if header.kind == GRANTS { read_grants(&header, reader, bytes, message) } else { Err(MessageError::Kind) }
 }
 
-/// What both kinds begin with.
+/// The part that both kinds of message begin with.
 struct Header {
     kind: u8,
     robot: RobotSlot,
@@ -115,7 +115,7 @@ struct Header {
     words: [u64; WORDS],
 }
 
-/// False if the message cannot be written.
+/// Writes the header; returns false if the message cannot be written.
 fn write_header(kind: u8, robot: RobotSlot, slots: usize, words: [u64; WORDS], bytes: &mut Vec<u8>) -> bool {
     PROTOCOL.begin(kind, bytes);
     let (Ok(robot), Ok(count)) = (u16::try_from(robot.0), u16::try_from(slots)) else { return false };
@@ -185,7 +185,7 @@ fn write_answer(answer: &SlotAnswer, bytes: &mut Vec<u8>) {
     bytes.extend_from_slice(&[u8::from(answer.release_requested), u8::from(answer.halt)]);
 }
 
-/// Bytes that no guard and no arbiter writes.
+/// Error: bytes that guards and arbiters never write.
 struct Meaningless;
 
 fn header(reader: &mut Reader<'_>, kind: u8) -> Option<Header> {
@@ -205,7 +205,7 @@ fn flag(reader: &mut Reader<'_>) -> Option<bool> {
     }
 }
 
-/// A token that may be none.
+/// Reads a token; `None` if the token is absent.
 fn token(reader: &mut Reader<'_>) -> Result<Option<Token>, Meaningless> {
     match (reader.u64().ok_or(Meaningless)?, reader.u64().ok_or(Meaningless)?) {
         (0, 0) => Ok(None),

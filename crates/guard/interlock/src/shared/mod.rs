@@ -1,14 +1,16 @@
 //! The arbiter of robots whose controllers share memory: locks and published occupancies.
 //!
-//! In each tick every controller publishes its robot's occupancy of every slot, and then requests the slots in whose warning
-//! zone the robot is. A slot is granted to one robot at a time, in the order of requests, and only while every other robot is
-//! known to be outside and able to stop outside: an unknown occupancy counts as occupied. A slot is released only by a robot
-//! that is outside and can stop outside. A robot that becomes silent while it holds a slot keeps it until the integrator
-//! clears it; one that becomes silent elsewhere blocks further grants until it publishes again or is cleared.
+//! In each tick every controller publishes its robot's occupancy of every slot, and then requests the slots in whose
+//! warning zone the robot is. A slot is granted to one robot at a time, in the order of requests, and only while
+//! every other robot is known to be outside and able to stop outside: an unknown occupancy counts as occupied. Only
+//! a robot that is outside and can stop outside releases a slot. A robot that becomes silent while it holds a slot
+//! keeps it until the integrator clears it. A robot that becomes silent without holding the slot blocks further
+//! grants until it publishes again or is cleared.
 //!
-//! Robots that declare their needs are granted a slot only while all of them can still get what they need in some order
-//! (`safe_order.rs`). All operations are sequences of single atomic steps: no lock, no wait, no allocation after
-//! construction. `docs/laws.md`, section 11, states the guarantees and the results of the model check (`check`).
+//! Robots that declare their needs are granted a slot only while all of them can still get what they need in some
+//! order (`safe_order.rs`). All operations are sequences of single atomic steps: they never lock or wait, and after
+//! construction they never allocate. `docs/laws.md`, section 11, states the guarantees and the results of the model
+//! check (`check`).
 //!
 //! ```
 //! use elbowroom_interlock::{Grant, Occupancy, RobotSlot, SlotId, ZoneArbiter};

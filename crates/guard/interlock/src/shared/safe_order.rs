@@ -1,14 +1,15 @@
-//! Deadlock avoidance: a safe-state test over declared needs (Dijkstra, "Cooperating sequential processes", 1965: the
-//! banker's algorithm).
+//! Deadlock avoidance: a safe-state test over declared needs, by the banker's algorithm.
 //!
-//! A robot that knows its program declares the slots that it may need before it next holds none. A slot is granted only if
-//! afterwards every robot that could finish before can still finish: in some order each gets all slots that it declared,
-//! while those that have finished have released theirs. Then robots that keep to their declarations never wait for each
-//! other in a cycle. A robot without a declaration is assumed to need no more than it has; for it, cycles are only detected
-//! ([`WaitForGraph`](crate::WaitForGraph)).
+//! Source: Dijkstra, "Cooperating sequential processes", 1965.
 //!
-//! Younger requests may overtake an older one that waits for this reason, but not for ever: a robot that holds nothing does
-//! not start while an older request waits whose declared slots overlap with its own.
+//! A robot that knows its program declares the slots that it may need before it next holds none. A slot is granted
+//! only if every robot that could finish before the grant can still finish after it: in some order, each robot gets
+//! all slots that it declared, and robots that have finished have released their slots. If all robots keep to their
+//! declarations, they never wait for each other in a cycle. A robot without a declaration is assumed to need no more
+//! than it has; its cycles are only detected ([`WaitForGraph`](crate::WaitForGraph)).
+//!
+//! Younger requests may overtake an older one that waits for this reason, but not for ever: a robot that holds
+//! nothing does not start while an older request waits and the declared slots of the two overlap.
 
 use std::sync::atomic::Ordering::SeqCst;
 
@@ -24,16 +25,16 @@ pub(super) const MAX_SLOTS: usize = 63;
 pub(super) struct SafeOrder<'a> {
     state: &'a SharedState,
     now_s: f64,
-    /// Per robot the slots that it holds or occupies.
+    /// Bits, per robot, of the slots that it holds or occupies.
     held: [u64; RobotSet::CAPACITY],
-    /// Per robot the slots that it declared.
+    /// Bits, per robot, of the slots that it declared.
     claims: [u64; RobotSet::CAPACITY],
-    /// Silent robots: what they hold stays held.
+    /// Silent robots; they keep what they hold.
     silent: RobotSet,
 }
 
 impl<'a> SafeOrder<'a> {
-    /// `None` if no robot declared anything.
+    /// The present holdings and declarations; `None` if no robot has declared anything.
     pub(super) fn of(state: &'a SharedState, now_s: f64) -> Option<Self> {
         if state.robots.iter().all(|r| r.claims.load(SeqCst) == 0) || state.has(InjectedFault::NoSafeOrder) {
             return None;
@@ -55,7 +56,7 @@ impl<'a> SafeOrder<'a> {
         Some(order)
     }
 
-    /// The order as it was before the robot acquired the slot.
+    /// The state before the robot acquired the slot.
     pub(super) fn without(mut self, slot: SlotId, robot: RobotSlot) -> Self {
         self.held[robot.0] &= !(1 << slot.0);
         self
@@ -65,7 +66,7 @@ impl<'a> SafeOrder<'a> {
         (0..self.state.robots.len().min(RobotSet::CAPACITY)).map(RobotSlot)
     }
 
-    /// The robots that can get all slots that they need in some order, if `robot` also holds the slots `more`.
+    /// The robots that can, in some order, get all slots that they need, if `robot` also holds the slots `more`.
     fn finishing(&self, robot: RobotSlot, more: u64) -> RobotSet {
         let held = |r: RobotSlot| if r == robot { self.held[r.0] | more } else { self.held[r.0] };
         let mut done = RobotSet::default();
@@ -81,7 +82,7 @@ impl<'a> SafeOrder<'a> {
         }
     }
 
-    /// True if every robot that can finish now still can after the slot is granted to `robot`.
+    /// True if every robot that can finish now can still finish after the slot is granted to `robot`.
     pub(super) fn allows(&self, slot: SlotId, robot: RobotSlot) -> bool {
         let before = self.finishing(robot, 0);
         let holds_any = self.held[robot.0] != 0;
@@ -94,7 +95,7 @@ impl<'a> SafeOrder<'a> {
         before.difference(after).is_empty()
     }
 
-    /// A robot that holds a slot that `robot` needs, or any slot.
+    /// A robot that holds a slot that `robot` needs; if no robot does, one that holds any slot.
     pub(super) fn blocker(&self, slot: SlotId, robot: RobotSlot) -> Option<RobotSlot> {
         let needs = self.claims[robot.0] | 1 << slot.0;
         let others = || self.robots().filter(|o| *o != robot);
@@ -102,7 +103,7 @@ impl<'a> SafeOrder<'a> {
         holds(needs).or_else(|| holds(u64::MAX))
     }
 
-    /// A robot with an older request that waits only for the safe order, where `robot` holds nothing and the needs of the
+    /// A robot with an older request that waits only for the safe order, if `robot` holds nothing and the needs of the
     /// two overlap.
     pub(super) fn older_waiting(&self, slot: SlotId, robot: RobotSlot, ticket: u64) -> Option<RobotSlot> {
         if self.held[robot.0] != 0 {

@@ -19,7 +19,7 @@ pub(super) struct SharedState {
     pub(super) injected_fault: AtomicU8,
 }
 
-/// Faults of the protocol that the model check must find. None is ever active outside tests.
+/// Planted faults of the protocol that the model check must find; never active outside tests.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub(super) enum InjectedFault {
@@ -35,19 +35,20 @@ pub(super) enum InjectedFault {
 #[derive(Debug)]
 pub(super) struct RobotEntry {
     pub(super) name: String,
-    /// Bits of the slots that it declared, and [`DECLARED`](super::safe_order::DECLARED); 0 if it declared nothing.
+    /// Bits of the slots that the robot declared, and [`DECLARED`](super::safe_order::DECLARED); 0 if it declared
+    /// nothing.
     pub(super) claims: AtomicU64,
 }
 
 #[derive(Debug)]
 pub(super) struct SlotEntry {
     pub(super) name: String,
-    /// Index of the robot plus 1; 0 for none.
+    /// Index of the holder plus 1; 0 for none.
     pub(super) holder: AtomicU32,
     pub(super) robots: Box<[RobotAtSlot]>,
 }
 
-/// One robot at one slot.
+/// The state of one robot at one slot.
 #[derive(Debug, Default)]
 pub(super) struct RobotAtSlot {
     pub(super) registered: AtomicBool,
@@ -98,16 +99,16 @@ impl SharedState {
     /// Makes the robot the holder of a slot.
     ///
     /// # Errors
-    /// Another robot holds it.
+    /// The robot that holds the slot, if another robot does.
     pub(super) fn acquire(&self, slot: SlotId, robot: RobotSlot) -> Result<(), RobotSlot> {
         let me = robot.0 as u32 + 1;
         let acquired = self.slots[slot.0].holder.compare_exchange(0, me, SeqCst, SeqCst);
         acquired.map(|_| ()).map_err(|holder| RobotSlot(holder as usize - 1))
     }
 
-    /// Releases the slot where the robot holds it.
+    /// Releases the slot if the robot holds it.
     pub(super) fn release(&self, slot: SlotId, robot: RobotSlot) {
-        // Fails where another robot holds the slot, or none: nothing to release.
+        // Fails if the slot is free or another robot holds it: then there is nothing to release.
         let _ = self.slots[slot.0].holder.compare_exchange(robot.0 as u32 + 1, 0, SeqCst, SeqCst);
     }
 

@@ -1,4 +1,4 @@
-//! The rules of the arbiter, one at a time.
+//! Tests of the arbiter's rules, one at a time.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering::SeqCst};
@@ -21,7 +21,7 @@ fn arbiter() -> ZoneArbiter {
     arbiter
 }
 
-/// `LEFT` holds `A` and `RIGHT` holds `B`, both with this occupancy.
+/// An arbiter in which `LEFT` holds `A` and `RIGHT` holds `B`, both with this occupancy.
 fn both_hold(occupancy: Occupancy) -> ZoneArbiter {
     let arbiter = arbiter();
     for (slot, robot) in [(A, LEFT), (B, RIGHT)] {
@@ -31,7 +31,7 @@ fn both_hold(occupancy: Occupancy) -> ZoneArbiter {
     arbiter
 }
 
-/// Each robot is in the warning zone of the slot that the other one holds.
+/// Puts each robot into the warning zone of the slot that the other one holds.
 fn approach_each_other(arbiter: &ZoneArbiter) {
     arbiter.publish(B, LEFT, Occupancy::Warning, 0.0);
     arbiter.publish(A, RIGHT, Occupancy::Warning, 0.0);

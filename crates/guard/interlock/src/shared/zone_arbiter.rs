@@ -6,27 +6,28 @@ use super::safe_order::{DECLARED, MAX_SLOTS, SafeOrder};
 use super::shared_state::{InjectedFault, SharedState};
 use crate::{AccessClass, Grant, Occupancy, RobotSet, RobotSlot, SlotId, WaitForGraph};
 
-/// Locks and published occupancies that several controllers share.
+/// An arbiter in shared memory: locks and published occupancies that several controllers share.
 #[derive(Debug)]
 pub struct ZoneArbiter {
     pub(super) state: SharedState,
 }
 
 impl ZoneArbiter {
-    /// An arbiter for these robots and locks. No robot is registered at any slot: see [`ZoneArbiter::register`].
+    /// Creates an arbiter for these robots and slots. Robots are registered at slots with [`ZoneArbiter::register`].
     pub fn new(robots: &[&str], slots: &[&str]) -> Self {
         Self { state: SharedState::new(robots, slots) }
     }
 
-    /// With another time (s) without a publication after which a robot's occupancy is not known; the default is 0.1 s. It
+    /// Sets the time (s) without a publication after which a robot's occupancy is not known; the default is 0.1 s. It
     /// must be longer than the ticks of the robots.
     #[must_use]
     pub fn silence_timeout(self, silence_timeout_s: f64) -> Self {
         Self { state: SharedState { silence_timeout_s, ..self.state } }
     }
 
-    /// Registers a robot at a slot: from now on the slot is granted only while the robot's occupancy is known. Monitors
-    /// register their robot when they are built; register robots of other processes before the first tick.
+    /// Registers a robot at a slot: from now on the slot is granted to other robots only while this robot's occupancy is
+    /// known. Monitors register their robot when they are built; register robots of other processes before the first
+    /// tick.
     pub fn register(&self, slot: SlotId, robot: RobotSlot) {
         self.state.entry(slot, robot).registered.store(true, SeqCst);
     }
@@ -56,14 +57,15 @@ impl ZoneArbiter {
         self.state.holder(slot)
     }
 
-    /// The occupancy that a robot published last.
+    /// The last published occupancy of a robot.
     pub fn occupancy(&self, slot: SlotId, robot: RobotSlot) -> Occupancy {
         self.state.occupancy(slot, robot)
     }
 
-    /// Publishes a robot's occupancy. A robot outside releases the slot and leaves its queue, so only a robot that can stop
-    /// outside may publish `Outside`; otherwise publish [`Occupancy::Committed`]. Publish for all slots before the first
-    /// [`ZoneArbiter::request`] of a tick.
+    /// Publishes a robot's occupancy. Publish for all slots before the first [`ZoneArbiter::request`] of a tick.
+    ///
+    /// `Outside` releases the slot and removes the robot from its queue, so publish it only if the robot can stop
+    /// outside; otherwise publish [`Occupancy::Committed`].
     pub fn publish(&self, slot: SlotId, robot: RobotSlot, occupancy: Occupancy, now_s: f64) {
         let entry = self.state.entry(slot, robot);
         entry.registered.store(true, SeqCst);
@@ -108,8 +110,8 @@ impl ZoneArbiter {
         if let Err(holder) = self.state.acquire(slot, robot) {
             return Grant::Waiting(holder);
         }
-        // The state may have changed between the check and this: another robot may have entered, or two slots may have been
-        // acquired at once of which only one is allowed.
+        // The state may have changed since the check: another robot may have entered, or two slots may have been acquired at
+        // once of which only one is allowed.
         let refusal = self.occupied(slot, robot, now_s).or_else(|| self.order_violation(slot, robot, now_s));
         let must_keep = || self.occupancy(slot, robot).occupies() || self.state.has(InjectedFault::NoSecondCheck);
         if let Some(refusal) = refusal.filter(|_| !must_keep()) {
@@ -120,8 +122,8 @@ impl ZoneArbiter {
         Grant::Held
     }
 
-    /// Declares that a silent robot is at rest outside the regions, as seen by the integrator. It does not block the slot
-    /// until it publishes again. Returns false if the access class is too low, and where the robot is not silent.
+    /// Declares that a silent robot is at rest outside the regions, as seen by the integrator. The robot does not block
+    /// the slot until it publishes again. Returns false if the access class is too low or the robot is not silent.
     pub fn clear(&self, slot: SlotId, robot: RobotSlot, who: AccessClass, now_s: f64) -> bool {
         let is_silent = self.occupancy(slot, robot) == Occupancy::Unknown || self.state.is_silent(slot, robot, now_s);
         let allowed = who >= AccessClass::Integrator && is_silent;
@@ -132,11 +134,11 @@ impl ZoneArbiter {
         allowed
     }
 
-    /// Declares all slots that a robot may need from now on until it next holds none of them: those of a stretch of its
-    /// program in which it moves from one to the next without leaving them all. Declare the rest of the stretch, or the next
-    /// one, as the program advances; while a slot is held, a declaration may only shrink.
+    /// Declares all slots that a robot may need from now on until it next holds none of them. These are the slots of a
+    /// stretch of its program in which the robot moves from slot to slot without leaving all of them.
     ///
-    /// Declarations have an effect in arbiters of at most 63 slots and 128 robots.
+    /// Declare the rest of the stretch, or the next stretch, as the program advances; while a slot is held, a
+    /// declaration may only shrink. Declarations have an effect in arbiters of at most 63 slots and 128 robots.
     ///
     /// ```
     /// use elbowroom_interlock::{Grant, Occupancy, RobotSlot, SlotId, ZoneArbiter};
@@ -159,8 +161,9 @@ impl ZoneArbiter {
         self.state.robots[robot.0].claims.store(if fits { bits | DECLARED } else { 0 }, SeqCst);
     }
 
-    /// The robots that wait for each other in a cycle with this one, each with a slot that it waits for; empty if it is in
-    /// no cycle. A silent robot is in no cycle: it may publish again, or be cleared. Not part of the tick: it allocates.
+    /// The robots that wait for each other in a cycle with this one, each with a slot that it waits for; empty if this
+    /// robot is in no cycle. A silent robot is never in a cycle: it may publish again, or be cleared. Allocates: do not
+    /// call it in a tick.
     pub fn wait_cycle(&self, robot: RobotSlot, now_s: f64) -> Vec<(RobotSlot, SlotId)> {
         let cycle = self.wait_for_graph(now_s).cycle(robot);
         let is_awaited = |s: &SlotId, r: RobotSlot| {
@@ -178,8 +181,8 @@ impl ZoneArbiter {
         }
     }
 
-    /// A robot waits for those that block a slot that it has requested. Silent robots are in no cycle: they may publish again, or be
-    /// cleared.
+    /// Builds the wait-for graph: a robot waits for the robots that block a slot that it has requested. A silent robot
+    /// is never in a cycle: it may publish again, or be cleared.
     fn wait_for_graph(&self, now_s: f64) -> WaitForGraph {
         let mut graph = WaitForGraph::default();
         for slot in self.state.all_slots() {
@@ -191,7 +194,7 @@ impl ZoneArbiter {
         graph
     }
 
-    /// The robots that block the slot for `robot`: its holder and those that occupy it, unless they are silent.
+    /// The robots that block the slot for `robot`: its holder and the robots that occupy it, unless they are silent.
     fn blockers(&self, slot: SlotId, robot: RobotSlot, now_s: f64) -> impl Iterator<Item = RobotSlot> + '_ {
         let holder = self.holder(slot);
         self.state.others(slot, robot).filter(move |other| {
@@ -206,7 +209,8 @@ impl ZoneArbiter {
         cycle.iter().all(is_inside)
     }
 
-    /// The robot that yields in the cycle: the first (by index) that holds a slot and can stop outside of all that it holds.
+    /// The robot that yields in the cycle: the first (by index) that holds a slot and can stop outside all slots that it
+    /// holds.
     fn yielding_robot(&self, cycle: RobotSet) -> Option<RobotSlot> {
         let can_yield = |r: &RobotSlot| {
             let mut held = self.state.all_slots().filter(|s| self.holder(*s) == Some(*r)).peekable();
@@ -224,14 +228,14 @@ impl ZoneArbiter {
         if let Some(occupied) = self.occupied(slot, robot, now_s) {
             return Some(occupied);
         }
-        // A robot that occupies the slot already precedes all that can wait.
+        // A robot that already occupies the slot precedes all robots that can wait.
         if self.occupancy(slot, robot).occupies() {
             return None;
         }
         self.predecessor(slot, robot, now_s).map(Grant::Waiting)
     }
 
-    /// The other robot that occupies the slot, or whose occupancy is not known.
+    /// Refuses the slot if another robot occupies it, or if the occupancy of another robot is not known.
     fn occupied(&self, slot: SlotId, robot: RobotSlot, now_s: f64) -> Option<Grant> {
         let state = &self.state;
         state.others(slot, robot).find_map(|other| match state.occupancy(slot, other) {
@@ -244,9 +248,9 @@ impl ZoneArbiter {
         })
     }
 
-    /// Repeats the checks for a holder that can stop outside: it keeps the slot only while all others are known to be
-    /// outside. One may have entered without the slot (by starting there, or because a region moved or was switched on), or
-    /// become silent.
+    /// Repeats the checks for the holder. A holder that can stop outside keeps the slot only while all other robots are
+    /// known to be outside. Another robot may have entered without the slot (by starting there, or because a region
+    /// moved or was switched on), or become silent.
     fn confirm(&self, slot: SlotId, robot: RobotSlot, now_s: f64) -> Grant {
         self.state.leave_queue(slot, robot);
         let refusal = if self.occupancy(slot, robot).occupies() { None } else { self.occupied(slot, robot, now_s) };
@@ -256,7 +260,7 @@ impl ZoneArbiter {
         refusal
     }
 
-    /// The robot that precedes `robot` at a slot that no robot occupies.
+    /// The robot that precedes `robot` at an unoccupied slot.
     fn predecessor(&self, slot: SlotId, robot: RobotSlot, now_s: f64) -> Option<RobotSlot> {
         let state = &self.state;
         let mine = state.ticket(slot, robot);
@@ -277,7 +281,7 @@ impl ZoneArbiter {
         })
     }
 
-    /// Repeats the test of the safe order after a slot was acquired: two robots may have acquired one slot each at the same
+    /// Repeats the safe-order test after a slot was acquired: two robots may have acquired one slot each at the same
     /// time.
     fn order_violation(&self, slot: SlotId, robot: RobotSlot, now_s: f64) -> Option<Grant> {
         let order = SafeOrder::of(&self.state, now_s)?.without(slot, robot);

@@ -3,7 +3,7 @@
 use elbowroom_interlock::{Occupancy, SlotId};
 use elbowroom_testkit::random::{split_mix, unit};
 
-/// Number of regions on a path, and of slots of the cell.
+/// Number of regions on a path, which is also the number of slots of the cell.
 pub const REGIONS: usize = 3;
 /// The regions on the path of every arm, m.
 const BORDERS: [(f64, f64); REGIONS] = [(0.8, 1.0), (1.1, 1.3), (1.4, 1.6)];
@@ -12,9 +12,9 @@ const WARNING_M: f64 = 0.5;
 const BRAKE_M_S2: f64 = 5.0;
 pub const STEP_MS: u64 = 1;
 pub const TICK_MS: u64 = 2;
-/// A controller brakes when it has had no tick for this long.
+/// Time without a tick after which a controller brakes.
 const WATCHDOG_MS: u64 = 20;
-/// An arm that has waited for this long turns back.
+/// Waiting time after which an arm turns back.
 const PATIENCE_MS: u64 = 1_000;
 
 #[derive(Debug)]
@@ -31,21 +31,22 @@ pub struct Arm {
     /// Slot of each region on the path.
     pub slots: [SlotId; REGIONS],
     pub inside: [bool; REGIONS],
-    /// Until when a region is switched off. It is switched on again when the arm has left it, at the latest.
+    /// Time until which each region is switched off. A region is switched on again at the latest when the arm has left
+    /// it.
     pub off_until_ms: [u64; REGIONS],
 }
 
-/// What an arm did in a step.
+/// The progress of an arm in a step.
 pub enum Progress {
     None,
-    /// It has arrived at an end of its path.
+    /// The arm has arrived at an end of its path.
     Passed,
-    /// It has turned back after it waited for this long.
+    /// The arm has turned back after waiting for this long.
     TurnedBack(u64),
 }
 
 impl Arm {
-    /// `turn` is how far its order of slots is rotated.
+    /// Creates an arm; `turn` rotates its order of slots.
     pub fn new(rng: &mut u64, turn: usize) -> Self {
         let forward = split_mix(rng).is_multiple_of(2);
         Self {
@@ -64,19 +65,20 @@ impl Arm {
         }
     }
 
-    /// Where it rests if it brakes now.
+    /// The position at which it comes to rest if it brakes now.
     pub fn stop(&self) -> f64 {
         self.x + self.direction * self.v * self.v / (2.0 * BRAKE_M_S2)
     }
 
-    /// Where it rests at the latest if it speeds up for a time (s) and until its controller notices that no tick came.
+    /// The farthest position at which it comes to rest if it accelerates for `time_s` (s) and until its controller
+    /// notices the missing tick.
     pub fn latest_stop(&self, time_s: f64) -> f64 {
         let reaction_s = time_s + 1e-3 * (WATCHDOG_MS + TICK_MS) as f64;
         let v = (self.v + BRAKE_M_S2 * reaction_s).min(self.top_speed);
         self.x + self.direction * (v * reaction_s + v * v / (2.0 * BRAKE_M_S2))
     }
 
-    /// Whether it is in a region or will be before it rests at `stop`.
+    /// Whether it is in a region or will be before it comes to rest at `stop`.
     pub fn sweeps(&self, stop: f64, region: usize) -> bool {
         let (from, to) = BORDERS[region];
         let (low, high) = (self.x.min(stop), self.x.max(stop));
@@ -94,18 +96,18 @@ impl Arm {
         }
     }
 
-    /// Whether it can stop outside of the regions of a slot, and is outside.
+    /// Whether it is outside the regions of a slot and can stop outside them.
     pub fn can_stay_out(&self, slot: SlotId) -> bool {
         let regions = (0..REGIONS).filter(|i| self.slots[*i] == slot);
         regions.into_iter().all(|i| !self.sweeps(self.latest_stop(2e-3 * TICK_MS as f64), i))
     }
 
-    /// At rest outside of all regions.
+    /// Whether it is at rest outside all regions.
     pub fn rests_outside(&self) -> bool {
         self.v == 0.0 && BORDERS.iter().all(|(from, to)| self.x < *from || self.x > *to)
     }
 
-    /// Moves it for one step; it rests for `rest_ms` at an end of its path.
+    /// Moves it for one step; at an end of its path it rests for `rest_ms`.
     pub fn advance(&mut self, ms: u64, rest_ms: u64, rng: &mut u64) -> Progress {
         let dt = 1e-3 * STEP_MS as f64;
         let has_ticks = ms - self.last_tick_ms <= WATCHDOG_MS;
@@ -136,7 +138,7 @@ impl Arm {
         Progress::None
     }
 
-    /// Where it is now; returns the slots that it has just entered.
+    /// Updates the regions that it is in; returns the slots that it has just entered.
     pub fn look(&mut self) -> impl Iterator<Item = SlotId> + use<> {
         let before = self.inside;
         self.inside = BORDERS.map(|(from, to)| self.x > from && self.x < to);

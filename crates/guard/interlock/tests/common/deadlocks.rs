@@ -1,12 +1,13 @@
-//! Deadlocks that could be resolved: robots wait for each other in a circle, and one of them can stop outside of what it holds.
+//! Resolvable deadlocks: robots wait for each other in a cycle, and one of them can stop outside the slots that it
+//! holds.
 
 use elbowroom_interlock::{Arbiter, RobotSlot, SlotId};
 
 use super::arm::{Arm, REGIONS};
 
-/// A circle that could be resolved must be within this time, in which nothing fails.
+/// Time within which a resolvable cycle must be resolved if nothing fails meanwhile.
 const RESOLVED_WITHIN_MS: u64 = 300;
-/// How often it is looked for circles.
+/// Interval between two searches for cycles.
 const LOOK_MS: u64 = 10;
 
 /// Watches one arbiter.
@@ -17,7 +18,7 @@ pub struct DeadlockWatch {
 }
 
 impl DeadlockWatch {
-    /// True once for each circle that lasts too long.
+    /// True once for each cycle that lasts too long.
     pub fn is_unresolved(&mut self, arbiter: &Arbiter, arms: &[Arm], ms: u64) -> bool {
         if !ms.is_multiple_of(LOOK_MS) {
             return false;
@@ -30,11 +31,12 @@ impl DeadlockWatch {
     }
 }
 
-/// The robots of circles in which one can stop outside of what the others need; empty if there are none.
+/// The robots of cycles in which one robot can stop outside the slots that the others need; empty without such
+/// cycles.
 fn resolvable_circle(arbiter: &Arbiter, arms: &[Arm]) -> Vec<usize> {
     let waits = |robot: usize, slot: usize| arbiter.queue(SlotId(slot)).contains(&RobotSlot(robot));
     let holder = |slot: usize| arbiter.holder(SlotId(slot)).map(|robot| robot.0);
-    // reaches[a][b]: a waits for what b holds, or for one that does.
+    // reaches[a][b]: a waits for a slot that b holds, directly or through other robots.
     let n = arms.len();
     let mut reaches = vec![vec![false; n]; n];
     for (robot, row) in reaches.iter_mut().enumerate() {

@@ -1,5 +1,7 @@
-//! A simulated cell: arms with brakes, their guards, arbiters, a network that loses, repeats, delays and reorders messages, and
-//! processes that pause, crash and restart. The truth is where the arms are, not what the protocol believes.
+//! A simulated cell: arms with brakes, their guards, arbiters, an unreliable network and unreliable processes.
+//!
+//! The network loses, repeats, delays and reorders messages; processes pause, crash and restart. The positions of
+//! the arms are the truth, not the state of the protocol.
 #![allow(dead_code, reason = "every test program uses a part of it")]
 
 mod arm;
@@ -18,31 +20,31 @@ use process::{ArbiterProcess, Process};
 
 const SEND_MS: u64 = 10;
 
-/// Faults that are built in to see whether the simulation finds them.
+/// Faults that are planted to test whether the simulation finds them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PlantedFault {
     None,
     /// Grants never expire, and silent robots are cleared at once.
     EndlessValidity,
-    /// A robot that is asked to give a slot up loses it without its consent.
+    /// A robot that is asked to give up a slot loses it without its consent.
     UnilateralRelease,
 }
 
-/// What a schedule showed.
+/// The findings of a schedule.
 #[derive(Debug, Default, Clone, PartialEq, Eq)]
 pub struct Findings {
     pub double_occupancies: u64,
-    /// A message from before a clear, which came after it, said that the robot is where another one is by now: both halt until
-    /// the next message.
+    /// A message sent before a clear and received after it reported the robot at a place where another robot is by now;
+    /// both halt until the next message.
     pub conflicts: u64,
-    /// Arms that did not get on in the last part, in which no fault happens, although none is preferred to them; nor in
-    /// twenty seconds more.
+    /// Arms without progress in the last part, in which no fault happens, and in twenty more seconds, although no arm is
+    /// preferred to them.
     pub stuck: u64,
-    /// Arms that did in those: many slow arms share the regions, and turn back on the way.
+    /// Arms with progress only in those additional seconds: many slow arms share the regions, and turn back on the way.
     pub late: u64,
-    /// Arms that did not get on in the last part while preferred ones did.
+    /// Arms without progress in the last part while preferred arms had progress.
     pub starved: u64,
-    /// Circles of waiting robots that could have been resolved, and were not.
+    /// Cycles of waiting robots that could have been resolved, but were not.
     pub unresolved_deadlocks: u64,
     pub passages: u64,
     pub clears: u64,
@@ -71,12 +73,12 @@ impl Findings {
 
 #[derive(Debug, Clone)]
 enum Packet {
-    /// To the arbiter of this number.
+    /// A message to the arbiter of this number.
     State(u64, StateMessage),
     Grants(GrantsMessage),
 }
 
-/// Until when no message passes to and from a robot.
+/// Times until which no message passes to and from a robot.
 #[derive(Debug, Clone, Copy, Default)]
 struct Cut {
     states_until_ms: u64,
@@ -98,7 +100,7 @@ pub struct World {
     settings: ArbiterSettings,
     packets: Vec<(u64, Packet)>,
     loss: f64,
-    /// Faults are this much rarer.
+    /// Factor by which faults are rarer.
     calm: f64,
     deadlock: DeadlockWatch,
     pub findings: Findings,
@@ -201,7 +203,7 @@ impl World {
         self.chance(p)
     }
 
-    /// Lets something fail, now and then.
+    /// Causes a fault now and then.
     fn fail(&mut self) {
         for r in 0..self.arms.len() {
             if self.fails(0.000_6) {
@@ -221,7 +223,7 @@ impl World {
             }
         }
         if self.fails(0.000_2) {
-            // The network falls apart.
+            // The network splits.
             let members: Vec<usize> = (0..self.arms.len()).filter(|_| self.chance(0.5)).collect();
             for r in members {
                 self.cut(r);
@@ -244,7 +246,7 @@ impl World {
         }
     }
 
-    /// In both directions, or in one.
+    /// Cuts the connection in both directions, or in one.
     fn cut(&mut self, r: usize) {
         let until_ms = self.ms + self.between(10, 3_000);
         let (states, grants) = [(true, true), (true, false), (false, true)][self.between(0, 3) as usize];
@@ -253,7 +255,7 @@ impl World {
         cut.grants_until_ms = if grants { until_ms } else { cut.grants_until_ms };
     }
 
-    /// A person switches the regions off in which the arm is.
+    /// A person switches off the regions that the arm is in.
     fn switch_off(&mut self, r: usize) {
         let until_ms = self.ms + self.between(10, 2_000);
         let arm = &mut self.arms[r];
@@ -263,11 +265,11 @@ impl World {
         }
     }
 
-    /// The time of day may have been set back: the number of the start may be lower than the last.
+    /// The number of the next start. The time of day may have been set back, so it may be lower than the last one.
     fn next_boot(&mut self) -> Boot {
         self.boots += 1;
         let time = if self.chance(0.3) { 1 + self.boots / 2 } else { self.boots };
-        // No two starts take the same number.
+        // Two starts never have the same number.
         Boot(time * 1_000 + self.boots)
     }
 
@@ -276,7 +278,7 @@ impl World {
         self.guards[robot] = self.new_guard(robot, boot);
         let down = self.between(1, 1_000);
         self.processes[robot].down_until_ms = self.ms + down;
-        // Its joints are trusted a moment later.
+        // The joint values are trusted a moment later.
         self.trusted_at_ms[robot] = self.ms + down + self.between(0, 100);
         self.findings.restarts += 1;
     }
@@ -288,7 +290,7 @@ impl World {
         self.findings.restarts += 1;
     }
 
-    /// Somebody may start another arbiter meanwhile, and stop one of the two when they see both.
+    /// Pauses the arbiter. Meanwhile somebody may start another arbiter, and later stop one of the two.
     fn pause_arbiter(&mut self) {
         let until_ms = self.ms + self.between(10, 2_000);
         self.arbiters[0].process.paused_until_ms = until_ms;
@@ -305,7 +307,7 @@ impl World {
         self.findings.second_arbiters += 1;
     }
 
-    /// A person clears a robot that they see at rest outside of the regions.
+    /// A person clears a robot that they see at rest outside the regions.
     fn clear_by_a_person(&mut self, robot: usize) {
         let ArbiterProcess { arbiter, process, .. } = &mut self.arbiters[0];
         if !self.arms[robot].rests_outside() || !process.runs(self.ms) {
@@ -410,7 +412,7 @@ impl World {
         self.give_out(outputs);
     }
 
-    /// One tick of the monitor of an arm: how fast it may move, and what the guard is to know of it.
+    /// One tick of an arm's monitor: determines how fast the arm may move, and informs the guard.
     fn tick(&mut self, r: usize) {
         let ms = self.ms;
         let now = self.processes[r].clock(ms);
@@ -420,7 +422,7 @@ impl World {
         let is_trusted = ms >= self.trusted_at_ms[r];
         let is_inside = |i: usize| arm.sweeps(arm.stop(), i);
         let allowed = (0..REGIONS).all(|i| {
-            // Rounding must not make a robot that stops just before the border one that cannot stop.
+            // Rounding must not turn a robot that stops just before the border into one that cannot stop.
             let stays_out = !arm.sweeps(arm.latest_stop(dt + 1e-3), i);
             is_inside(i) || stays_out || guard.may_enter(arm.slots[i], now)
         });
@@ -447,7 +449,7 @@ impl World {
         }
     }
 
-    /// Counts the moments at which an arm enters a slot that another one is in.
+    /// Counts the times at which an arm enters a slot that another arm is in.
     fn count_double_occupancies(&mut self) {
         for r in 0..self.arms.len() {
             for slot in self.arms[r].look() {
@@ -458,7 +460,7 @@ impl World {
     }
 }
 
-/// The message with which the robot would give up what it is asked for, in the warning zone.
+/// The message with which the robot would give up the requested slot, in the warning zone.
 fn given_up(message: &StateMessage, reply: &GrantsMessage) -> Option<StateMessage> {
     let mut forged = message.clone();
     forged.sequence += 1;

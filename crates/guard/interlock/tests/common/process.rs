@@ -1,4 +1,4 @@
-//! Processes that pause, crash and start again, with clocks of their own.
+//! Processes that pause, crash and restart, each with its own clock.
 
 use elbowroom_interlock::{Arbiter, Micros};
 use elbowroom_testkit::random::{split_mix, unit};
@@ -27,11 +27,11 @@ impl Process {
     }
 }
 
-/// An arbiter and its process. While one pauses another one may be started, and both run for a moment.
+/// An arbiter and its process. While it pauses, another one may be started; then both run for a moment.
 pub struct ArbiterProcess {
     pub id: u64,
     pub arbiter: Arbiter,
     pub process: Process,
-    /// When somebody stops it, because there is another one.
+    /// Time at which somebody stops it, because another one runs.
     pub ends_ms: u64,
 }

@@ -19,8 +19,8 @@ impl Configuration {
         hasher.hex()
     }
 
-    /// SHA-256 (hex) over the part of the configuration without regions and sources: chain, volumes and laws. Without the
-    /// objects that programs grip, too: like regions they are no part of the robot.
+    /// SHA-256 (hex) over chain, volumes and laws. Regions, sources and the objects that programs grip are left out:
+    /// they are not parts of the robot.
     pub fn robot_checksum(&self) -> String {
         let mut hasher = Hasher(Sha256::new());
         let own: Vec<&Volume> = self.volumes.iter().filter(|v| !v.is_gripped_object()).collect();
@@ -39,7 +39,7 @@ impl Region {
     }
 }
 
-/// Hashes values in order, each with its length or a tag, so that the bytes of two configurations differ.
+/// Hashes values in order, each with its length or a tag, so that different configurations hash different bytes.
 struct Hasher(Sha256);
 
 impl Hasher {

@@ -1,4 +1,4 @@
-//! Every field of a configuration is in its checksum. A field that is added later fails to compile here until it is named.
+//! Test that every field of a configuration is in its checksum. A new field fails to compile here until it is named.
 
 use std::collections::HashMap;
 
@@ -71,7 +71,7 @@ fn turned() -> Pose {
 }
 
 fn top() -> Vec<Named> {
-    // No `..`: what is added to a configuration must be added here, and to the changes below.
+    // No `..`: a new field of a configuration must be added here, and to the changes below.
     let Configuration { robot: _, base_in_world: _, chain: _, volumes: _, regions: _, sources: _, laws: _ } =
         configuration();
     vec![
@@ -252,7 +252,7 @@ fn a_change_of_any_field_changes_the_checksum() {
     }
 }
 
-/// What a chain also carries and no law reads: a change of these needs no new approval.
+/// Fields of a chain that no law reads: a change of them needs no new approval.
 #[test]
 fn what_decides_no_override_is_not_in_the_checksum() {
     let neutral: [Named; 4] = [

@@ -1,11 +1,14 @@
 //! The stopping-distance law: the largest override from which a stop still ends before a region.
 //!
-//! The travel of a volume is bounded in two ways, both valid for every program that keeps to the accelerations of
-//! [`StoppingSettings`](crate::StoppingSettings); the smaller bound counts. **By program time**: until the robot is at rest the program
-//! advances by at most some time u, and within u no joint deviates from the straight line `q′·u` by more than `A·u²/2`.
-//! **By the stop**: after braking has begun no joint travels farther than `a·n²/2`, whatever the program does. The first
-//! bound is tighter for a robot that passes by or leaves, the second for one that moves straight towards a region.
-//! `docs/laws.md`, section 7, derives them.
+//! The travel of a volume is bounded in two ways; the smaller bound counts. Both hold for every program that keeps
+//! to the accelerations of [`StoppingSettings`](crate::StoppingSettings).
+//! - **By program time**: until the robot is at rest, the program advances by at most some time u. Within u no joint
+//!   deviates from the straight line `q′·u` by more than `A·u²/2`. This bound is tighter for a robot that passes by
+//!   or leaves.
+//! - **By the stop**: after braking has begun, no joint travels farther than `a·n²/2`, whatever the program does.
+//!   This bound is tighter for a robot that moves straight towards a region.
+//!
+//! `docs/laws.md`, section 7, derives the bounds.
 
 use elbowroom_kinematics::ChainState;
 use elbowroom_spatial::{Pose, Vec3};
@@ -18,8 +21,8 @@ use crate::override_history::{OverrideHistory, OverrideRange, PendingMotion, Sto
 use crate::region_approach::RegionApproach;
 use crate::{Configuration, StoppingSettings, VolumeId};
 
-/// Safety factor of the reaction time. While it slows down, a robot still executes earlier, higher overrides; without this
-/// margin the proof fails from time to time, and the override falls to 0 and rises again.
+/// Safety factor of the reaction time. While a robot slows down, it still executes earlier, higher overrides.
+/// Without this margin the proof fails from time to time, and the override falls to 0 and rises again.
 const REACTION_FACTOR: f64 = 2.0;
 /// Halvings of the interval in which the largest override is searched.
 const BISECTION_STEPS: u32 = 16;
@@ -28,7 +31,7 @@ const BISECTION_STEPS: u32 = 16;
 #[derive(Debug)]
 pub(crate) struct StoppingLaw {
     settings: StoppingSettings,
-    /// Bound α of the rate of change of the stop time by program time.
+    /// Bound α of the rate of change of the stop time, by program time.
     growth: f64,
     axes: Vec<WorldAxis>,
     volumes: Vec<CarriedVolume>,
@@ -41,13 +44,13 @@ pub(crate) struct StoppingLaw {
     /// False if the program's speeds are only inferred from the actual ones.
     program_is_known: bool,
     history: OverrideHistory,
-    /// From the snapshot to the start of a stop that is requested in the next tick, s.
+    /// Time from the snapshot to the start of a stop that is requested in the next tick, s.
     horizon_s: f64,
-    /// Time until the robot is at rest, at most, s.
+    /// Upper bound of the time until the robot is at rest, s.
     rest_after_s: f64,
     /// Time over which velocities were derived from positions, s.
     uncertain_s: f64,
-    /// Program time since the joint values last changed, at most, s.
+    /// Upper bound of the program time since the joint values last changed, s.
     unchanged_s: f64,
     /// Motion until the override of this tick takes effect.
     pending: PendingMotion,
@@ -64,9 +67,9 @@ struct JointSpeeds {
 /// Phases of a motion that ends at rest; times in s.
 #[derive(Debug, Clone, Copy)]
 struct StopPhases {
-    /// Program time until braking begins.
+    /// Program time until braking starts.
     run: f64,
-    /// Stop time when braking begins.
+    /// Stop time when braking starts.
     stop: f64,
     /// Program time until rest.
     total: f64,
@@ -84,20 +87,20 @@ pub(crate) struct StoppingInput<'a> {
     pub(crate) programmed_override: f64,
     /// Time over which the actual velocities were derived from positions, s; 0 if they were given.
     pub(crate) uncertain_s: f64,
-    /// Program time since the joint values last changed, at most, s.
+    /// Upper bound of the program time since the joint values last changed, s.
     pub(crate) unchanged_s: f64,
     pub(crate) volume_in_world: &'a [Pose],
     pub(crate) attached: &'a AttachedVolumes,
 }
 
-/// A volume before a region.
+/// A volume near a region.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct StoppingQuery {
     pub(crate) volume: usize,
     pub(crate) approach: Approach,
     /// Distance that the volume may still travel, m.
     pub(crate) free_m: f64,
-    /// How the region approaches by itself.
+    /// The approach of the region by its own motion.
     pub(crate) region: RegionApproach,
 }
 
@@ -131,7 +134,7 @@ impl StoppingLaw {
         }
     }
 
-    /// A volume is attached at this pose in its link.
+    /// Sets the pose in its link at which a volume was attached.
     pub(crate) fn attach(&mut self, config: &Configuration, volume: VolumeId, in_link: &Pose) {
         self.volumes[volume.0].set_in_link(&config.chain, in_link);
     }
@@ -156,7 +159,7 @@ impl StoppingLaw {
         let StoppingInput { now, intent, .. } = *tick;
         let (decelerations, accelerations) = (&self.settings.joint_deceleration, &self.settings.joint_acceleration);
         let growth = self.growth;
-        // Derived velocities are uncertain by the acceleration in the time over which they were derived.
+        // A derived velocity is uncertain by the acceleration times the time over which it was derived.
         let max_speed = |speed: &f64, a: &f64| speed.abs() + a * tick.uncertain_s;
         for (to, (v, a)) in self.real.speed.iter_mut().zip(now.qd.iter().zip(accelerations)) {
             *to = max_speed(v, a);
@@ -197,15 +200,15 @@ impl StoppingLaw {
         self.update_reach(tick.programmed_override, tick.attached);
     }
 
-    /// The approach of a volume along the unit vector `towards` (world), where no point of it moves faster along that than
-    /// `program_speed` and `real_speed`, m/s.
+    /// The approach of a volume along the unit vector `towards` (world), along which no point of the volume moves faster
+    /// than `program_speed` and `real_speed`, m/s.
     pub(crate) fn approach(&self, volume: usize, towards: Vec3, program_speed: f64, real_speed: f64) -> Approach {
         let (acceleration, deceleration) = self.volumes[volume].rates_along(&self.axes, &self.settings, towards);
         let real_speed = real_speed + acceleration * self.uncertain_s;
         Approach { program_speed, real_speed, acceleration, deceleration }
     }
 
-    /// As [`StoppingLaw::approach`], in any direction.
+    /// Like [`StoppingLaw::approach`], in any direction.
     pub(crate) fn approach_any_direction(&self, volume: usize) -> Approach {
         self.volumes[volume].any_direction()
     }
@@ -233,17 +236,17 @@ impl StoppingLaw {
         self.reach_m[volume]
     }
 
-    /// Time (s) until the robot is at rest, at most.
+    /// Upper bound of the time (s) until the robot is at rest.
     pub(crate) fn rest_after_s(&self) -> f64 {
         self.rest_after_s
     }
 
-    /// True if the volume cannot travel so far (m) in any direction.
+    /// True if the volume cannot travel `distance_m` (m) in any direction.
     pub(crate) fn is_out_of_reach(&self, volume: usize, distance_m: f64) -> bool {
         self.reach_m[volume] < distance_m
     }
 
-    /// True if the program's speeds are known and not only inferred.
+    /// True if the program's speeds are known, not only inferred.
     pub(crate) fn program_is_known(&self) -> bool {
         self.program_is_known
     }
@@ -271,7 +274,7 @@ impl StoppingLaw {
         self.stop_after(REACTION_FACTOR * c * self.horizon_s + self.unchanged_s, c)
     }
 
-    /// Phases of a stop where the robot executes the pending overrides, and `c` afterwards.
+    /// Phases of a stop if the robot executes the pending overrides, and `c` afterwards.
     fn pending_phases(&self, c: f64) -> StopPhases {
         let faster = self.pending.speed_override.max(c);
         self.stop_after(self.pending.program_s + faster * self.settings.period_s + self.unchanged_s, faster)
@@ -286,7 +289,7 @@ impl StoppingLaw {
         }
     }
 
-    /// Phases where only the actual speeds are known: all joints accelerate until the stop begins.
+    /// Phases of a stop if only the actual speeds are known: all joints accelerate until the stop begins.
     fn real_phases(&self) -> StopPhases {
         let run_s = self.horizon_s + self.unchanged_s;
         let stop_s = self.real.stop_s + self.growth * run_s;
@@ -306,11 +309,11 @@ impl StoppingLaw {
 
     fn fits(&self, query: &StoppingQuery, phases: &StopPhases) -> bool {
         let region_travel = query.region.travel_m(self.horizon_s + phases.stop);
-        // A travel of NaN does not fit.
+        // A travel of NaN fails the comparison: it does not fit.
         self.travel(query.volume, &query.approach, phases, &self.program) + region_travel <= query.free_m
     }
 
-    /// The smaller of the two bounds, m.
+    /// Bounds the travel of a volume: the smaller of the two bounds, m.
     fn travel(&self, volume: usize, approach: &Approach, phases: &StopPhases, speeds: &JointSpeeds) -> f64 {
         let volume = &self.volumes[volume];
         let acceleration = &self.settings.joint_acceleration;
@@ -328,7 +331,8 @@ impl StoppingLaw {
     }
 }
 
-/// The largest value below `max` for which `fits` holds, to `max / 2^BISECTION_STEPS`; it holds for 0.
+/// The largest value below `max` for which `fits` holds, to within `max / 2^BISECTION_STEPS`. Assumes that `fits`
+/// holds for 0.
 fn bisect(max: f64, fits: impl Fn(f64) -> bool) -> f64 {
     let (mut low, mut high) = (0.0, max);
     for _ in 0..BISECTION_STEPS {

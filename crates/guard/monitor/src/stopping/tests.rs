@@ -1,4 +1,4 @@
-//! The travel bound compared with random programs that use the stated accelerations fully.
+//! Comparison of the travel bound with random programs that fully use the stated accelerations.
 
 use elbowroom_kinematics::{Chain, ChainState, Joint, JointKind, Limits, LinkId};
 use elbowroom_proximity::{Shape, Sphere};
@@ -134,7 +134,7 @@ fn no_program_travels_farther_than_the_bound() {
                 "{} joints, flat {flat}: at largest {largest:.3} of the bound, {mean:.3} on average",
                 kinds.len()
             );
-            // Some programs must nearly reach the bound, or the test proves little.
+            // Some programs must nearly reach the bound; otherwise the test proves little.
             assert!(kinds.len() > 2 || largest > 0.9, "{largest}");
         }
     }

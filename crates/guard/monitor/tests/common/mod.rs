@@ -21,7 +21,7 @@ pub fn joint(name: &str, kind: JointKind, parent: usize, origin: Vec3, axis: Vec
     }
 }
 
-/// Three prismatic joints and a spherical wrist: every pose of the last link is a joint vector.
+/// Three prismatic joints and a spherical wrist: every pose of the last link is reachable.
 pub fn gantry() -> Chain {
     let kinds = [JointKind::Prismatic; 3].into_iter().chain([JointKind::Revolute; 3]);
     let axes = [Vec3::X, Vec3::Y, Vec3::Z, Vec3::Z, Vec3::Y, Vec3::X];
@@ -87,10 +87,10 @@ pub fn parts(chain: Chain, volumes: Vec<Volume>, regions: Vec<Region>) -> Config
 
 /// Random vectors.
 pub trait RandomGeometry {
-    /// Each coordinate within `range` of 0.
+    /// A vector with each coordinate within `range` of 0.
     fn vec3(&mut self, range: f64) -> Vec3;
 
-    /// Uniform on the unit sphere.
+    /// A direction, uniform on the unit sphere.
     fn direction(&mut self) -> Vec3;
 }
 

@@ -1,4 +1,5 @@
-//! Carriages on rails through one exchange region, their monitors and guards, an arbiter, and bytes between them.
+//! Carriages on rails through one exchange region, with monitors, guards, an arbiter, and encoded messages between
+//! them.
 #![allow(dead_code, reason = "every test program uses a part of it")]
 
 use elbowroom_interlock::wire::{decode_state, encode_grants};
@@ -12,7 +13,7 @@ use elbowroom_spatial::{Pose, Vec3};
 
 pub const SLOT: SlotId = SlotId(0);
 pub const REGION: RegionId = RegionId(0);
-/// The region on the rail, m, and its warning zone.
+/// Borders of the region on the rail, m, and its warning zone.
 pub const BORDERS: (f64, f64) = (1.7, 2.3);
 pub const WARNING_M: f64 = 0.5;
 pub const TICK_S: f64 = 0.002;
@@ -62,11 +63,11 @@ pub struct Carriage {
     /// Velocity of the program at override 1, m/s.
     pub program: f64,
     pub robot: GuardedMonitor,
-    /// Messages pass in both directions.
+    /// True if messages pass in both directions.
     pub is_connected: bool,
-    /// The monitor gets valid input.
+    /// True if the monitor gets valid input.
     pub is_seen: bool,
-    /// Velocity at which a person moves it, whatever its override, m/s.
+    /// Velocity at which a person moves the carriage, whatever its override, m/s.
     pub by_hand: Option<f64>,
     pub report: Option<TickReport>,
 }
@@ -118,14 +119,14 @@ impl Cell {
         Micros(1_000_000 + self.ticks * 2_000)
     }
 
-    /// One tick of all robots, and their messages.
+    /// Performs one tick of all robots, and delivers their messages.
     pub fn step(&mut self) {
         let now = self.now();
         for carriage in &mut self.carriages {
             carriage.tick(now);
         }
         let inside = || self.carriages.iter().filter(|c| c.is_inside());
-        // Two that are inside at the start halt once the arbiter has heard both, and they its answer.
+        // Two robots that start inside halt once the arbiter has received both messages, and they have received its answer.
         let may_halt_still = self.ticks <= 2 * SEND_TICKS;
         assert!(inside().count() <= 1 || may_halt_still || inside().all(|c| c.speed_override() == 0.0));
         if self.ticks.is_multiple_of(SEND_TICKS) {

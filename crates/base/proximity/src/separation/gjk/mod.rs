@@ -1,4 +1,4 @@
-//! The GJK algorithm: distance of any two convex cores. The method and its error: README.md in this folder.
+//! The GJK algorithm: distance of any two convex cores. README.md in this folder describes the method and its error.
 
 mod simplex;
 
@@ -8,11 +8,11 @@ use super::core::Core;
 use super::gap::{CONVERGED, Gap, rounding};
 use simplex::{Simplex, Vertex};
 
-/// More than any pair needs; at this number the bounds found so far are returned.
+/// Largest number of iterations, more than any pair needs. If it is reached, the bounds found so far are returned.
 const MAX_ITERATIONS: usize = 100;
 
-/// Distance of `a` and `b` in the frame of `b`, starting along `start`, a direction from `b` to `a`.
-/// `None` as soon as the distance is proven to be above `limit`.
+/// Distance of `a` and `b` in the frame of `b`; `None` as soon as the distance is proven to be above `limit`. The
+/// search starts along `start`, a direction from `b` to `a`.
 pub(crate) fn distance(a: &Core, b: &Core, a_in_b: &Pose, start: Vec3, limit: f64) -> Option<Gap> {
     let t = a_in_b.translation.abs();
     let scale = t.x + t.y + t.z + a.size() + b.size();
@@ -60,8 +60,8 @@ pub(crate) fn distance(a: &Core, b: &Core, a_in_b: &Pose, start: Vec3, limit: f6
 
 /// The simplex with one more vertex, reduced to the face that contains its nearest point; `None` without progress.
 ///
-/// Where the vertices are so close together that rounding decides, the simplex is replaced by its nearest point,
-/// which is a point of `A - B` like any other, and the search continues from there.
+/// If the vertices are so close together that rounding decides, the simplex is replaced by its nearest point, which
+/// is a point of `A - B` like any other, and the search continues from there.
 fn add_vertex(
     simplex: &Simplex,
     next: Vertex,
@@ -81,13 +81,13 @@ fn add_vertex(
     [grown, segment].into_iter().filter(|s| s.len < 4).find_map(|s| {
         let nearer = s.blend(|x| x.w);
         let length = nearer.length();
-        // Equality to the last place counts as progress: a gap of g over an edge of length 1 shortens by g² only.
+        // Equality to the last place counts as progress: a gap of g over an edge of length 1 shortens only by g².
         (length <= upper * (1.0 + 2.0 * f64::EPSILON)).then_some((s, nearer, length))
     })
 }
 
-/// Whether the tetrahedron contains the origin: signs may be wrong where it is flat, a common point is proof. Otherwise it is
-/// reduced to its nearest face.
+/// Whether the tetrahedron contains the origin. If the tetrahedron is flat, signs may be wrong, but a common point
+/// is proof. If it does not contain the origin, it is reduced to its nearest face.
 #[cold]
 #[inline(never)]
 fn shares_a_point(tetrahedron: &mut Simplex, tolerance: f64) -> bool {

@@ -2,7 +2,7 @@
 
 use elbowroom_spatial::Vec3;
 
-/// A vertex of the difference `A - B` and the points it is the difference of, all in B's frame.
+/// A vertex of the difference `A - B` and the two points whose difference it is, all in B's frame.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Vertex {
     pub w: Vec3,
@@ -41,13 +41,14 @@ impl Simplex {
         self.vertices[..self.len].iter().any(|v| v.w == w)
     }
 
-    /// The weighted sum of what `of` selects.
+    /// The weighted sum of the vectors that `of` selects.
     pub fn blend(&self, of: impl Fn(&Vertex) -> Vec3) -> Vec3 {
         (0..self.len).fold(Vec3::ZERO, |sum, i| sum + of(&self.vertices[i]) * self.weights[i])
     }
 
-    /// Keeps the smallest face that contains the point nearest to the origin. False if a tetrahedron contains the origin;
-    /// where the origin is known to be `apart`, all faces are tested instead of relying on the signs of flat tetrahedra.
+    /// Keeps the smallest face that contains the point nearest to the origin. Returns false if a tetrahedron contains
+    /// the origin. If the origin is known to be `apart`, all faces are tested, without relying on the signs of flat
+    /// tetrahedra.
     pub fn reduce(&mut self, apart: bool) -> bool {
         let best = match self.len {
             1 => return true,
@@ -100,7 +101,8 @@ impl Simplex {
         }
     }
 
-    /// Sub-areas are computed from differences of nearby vertices, so that small triangles on curved surfaces keep their digits.
+    /// The nearest face of a triangle. Sub-areas are computed from differences of nearby vertices, so that small
+    /// triangles on curved surfaces keep their digits.
     fn triangle(&self, i: usize, j: usize, k: usize) -> Face {
         let (a, b, c) = (self.w(i), self.w(j), self.w(k));
         let n = (b - a).cross(c - a);
@@ -114,7 +116,7 @@ impl Simplex {
         if edges[2].squared < first.squared { edges[2] } else { first }
     }
 
-    /// The nearest of the faces that have the origin on their outer side; `None` if none has.
+    /// The nearest of the faces with the origin on their outer side; `None` if the origin is inside all of them.
     fn tetrahedron(&self, apart: bool) -> Option<Face> {
         let mut best: Option<Face> = None;
         for [i, j, k, opposite] in [[0, 1, 2, 3], [0, 1, 3, 2], [0, 2, 3, 1], [1, 2, 3, 0]] {

@@ -13,9 +13,9 @@ pub(super) struct CorePair<'a> {
     pub a_in_b: &'a Pose,
     /// Rounding error of a bound, metres.
     pub rounding: f64,
-    /// Bounds this close have converged, metres.
+    /// Difference of bounds at which they have converged, metres.
     pub converged: f64,
-    /// Witness points this close give an inaccurate direction, metres.
+    /// Distance of witness points below which their direction is inaccurate, metres.
     pub close: f64,
 }
 
@@ -33,7 +33,7 @@ impl<'a> CorePair<'a> {
         self.a_in_b.transform_point(self.a.support(-self.a_in_b.inverse_transform_vector(direction)))
     }
 
-    /// Distance of the two support planes perpendicular to the unit vector: never above the exact distance.
+    /// Distance of the two support planes perpendicular to the unit vector, which never exceeds the exact distance.
     #[inline]
     pub fn plane_gap(&self, direction: Vec3) -> f64 {
         (self.low_of_a(direction) - self.b.support(direction)).dot(direction) - self.rounding

@@ -5,7 +5,7 @@ use elbowroom_spatial::{Rotation, Vec3};
 use crate::separation::core::Core;
 use crate::triangle::nearest_on_triangle;
 
-/// Nearest point and its derivative: a symmetric matrix with eigenvalues in 0..1, as columns.
+/// Nearest point and its derivative: a symmetric matrix, as columns, with eigenvalues in 0..1.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Projection {
     pub point: Vec3,
@@ -48,7 +48,7 @@ impl Core<'_> {
                 if rho2 <= c.radius * c.radius {
                     return Projection::diagonal(point, 1.0, 1.0, along);
                 }
-                // On the rim only the rotation about the axis remains.
+                // On the rim only rotation about the axis remains.
                 let k = c.radius / rho2.sqrt() / rho2;
                 let xy = -p.x * p.y * k;
                 let derivative =
@@ -89,8 +89,8 @@ fn on_triangle(q: Vec3, [a, b, c]: [Vec3; 3]) -> Projection {
     Projection { point: q, derivative }
 }
 
-/// The Newton step to the fixed point of the alternating projection. `moved` is the step of one alternating projection; the
-/// derivative of `onto_a` is in the frame of a.
+/// The Newton step to the fixed point of alternating projection. `moved` is the step of one alternating projection;
+/// the derivative of `onto_a` is in the frame of a.
 #[inline]
 pub(super) fn newton_step(a_in_b: Rotation, onto_a: &Projection, onto_b: &Projection, moved: Vec3, trust: f64) -> Vec3 {
     let through_a = |v: Vec3| {

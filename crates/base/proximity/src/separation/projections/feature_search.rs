@@ -1,5 +1,5 @@
-//! Exhaustive search over faces, axes and edges near the witness points, for features so nearly parallel that iterations do not
-//! converge.
+//! Exhaustive search over faces, axes and edges near the witness points, if features are so nearly parallel that
+//! iterations do not converge.
 
 use elbowroom_spatial::{Pose, Vec3};
 
@@ -10,13 +10,13 @@ use crate::separation::core::Core;
 use crate::separation::gap::Gap;
 use crate::separation::segment::{Segment, nearest_to_box, nearest_to_cylinder};
 
-/// The best support planes among the normals of faces, the directions perpendicular to edges and the cross products of edges near
-/// the witness points.
+/// The best lower bound from support planes whose normals are normals of faces, directions perpendicular to edges,
+/// or cross products of edges, all near the witness points.
 pub(super) fn lower_bound(cores: &CorePair, gap: &Gap) -> f64 {
     let difference = gap.on_a - gap.on_b;
     let Some(v) = difference.try_normalize() else { return 0.0 };
-    // Directions less aligned with the witness points are not considered; of witness points close together the direction is
-    // inaccurate.
+    // Directions less aligned with the witness points are not considered. If the witness points are close together,
+    // their direction is inaccurate.
     let alignment = if gap.distance > cores.close { 0.99 } else { 0.5 };
     let mut best = cores.plane_gap(v);
     let mut test = |d: Vec3| {
@@ -39,7 +39,8 @@ pub(super) fn lower_bound(cores: &CorePair, gap: &Gap) -> f64 {
     best
 }
 
-/// Witness points at the support points along the axes and on the edges of boxes, where they are nearer; bounds from all normals.
+/// Moves witness points to support points along the axes and to edges of boxes if these are nearer;
+/// computes bounds from all normals.
 pub(super) fn improve(cores: &CorePair, mut gap: Gap) -> Gap {
     let a_in_b = cores.a_in_b;
     let mut offer = |on_a: Vec3, on_b: Vec3| gap = nearer_of(gap, on_a, on_b);
@@ -70,7 +71,7 @@ pub(super) fn improve(cores: &CorePair, mut gap: Gap) -> Gap {
     gap.at_least(lower_bound(cores, &gap))
 }
 
-/// Witness points on the edges of a hull or a triangle near the current ones.
+/// Moves witness points to edges of a hull or a triangle near the current ones.
 fn along_edges(cores: &CorePair, gap: Gap) -> Gap {
     let (a_in_b, reach, mut best) = (cores.a_in_b, 1e3 * cores.close, gap);
     let segment = |from: Vec3, to: Vec3| {

@@ -5,7 +5,7 @@ use elbowroom_spatial::Vec3;
 use crate::ConvexHull;
 use crate::separation::core::Core;
 
-/// More than meet at a corner of any usual hull; leaving some out only weakens a bound.
+/// Largest number of vectors: more than meet at a corner of any usual hull. Omitting some only weakens a bound.
 const CAPACITY: usize = 12;
 
 /// Up to [`CAPACITY`] unit vectors.
@@ -28,14 +28,14 @@ impl UnitVectors {
     }
 }
 
-/// Directions in the core's frame; of curved surfaces the normal and the tangents at the point.
+/// Directions in the core's frame; for curved surfaces the normal and the tangents at the point.
 pub(super) struct LocalFeatures {
     pub normals: UnitVectors,
     pub edges: UnitVectors,
 }
 
 impl LocalFeatures {
-    /// Faces and edges within `reach` of the point, or all where there are few.
+    /// Faces and edges within `reach` of the point, or all of them if they are few.
     pub fn of(core: &Core, p: Vec3, reach: f64) -> Self {
         let mut found = Self { normals: UnitVectors::EMPTY, edges: UnitVectors::EMPTY };
         match core {
@@ -85,7 +85,7 @@ pub(super) fn for_each_edge(core: &Core, p: Vec3, reach: f64, found: &mut dyn Fn
         Core::Hull(hull) => {
             let at = |i: u32| hull.vertices()[i as usize];
             for &[i, j, k] in hull.triangles() {
-                // Each edge belongs to two faces, once in each direction.
+                // Each edge belongs to two faces, with one direction in each.
                 for (i, j) in [(i, j), (j, k), (k, i)].into_iter().filter(|(i, j)| i < j) {
                     offer(at(i), at(j));
                 }

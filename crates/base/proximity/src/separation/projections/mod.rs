@@ -1,4 +1,5 @@
-//! Distance of two convex cores by Newton's method on alternating projections. The method: README.md in this folder.
+//! Distance of two convex cores by Newton's method on alternating projections. README.md in this folder describes
+//! the method.
 
 mod core_pair;
 pub(crate) mod derivative;
@@ -13,29 +14,30 @@ use super::gjk;
 use core_pair::CorePair;
 use derivative::newton_step;
 
-/// Iterations before GJK takes over.
+/// Largest number of iterations before GJK is used.
 const ITERATIONS: usize = 12;
 
-/// Bounds closer than this fraction of the distance have not converged only because of an inaccurate direction.
+/// Difference of bounds, as a fraction of the distance, below which only an inaccurate direction prevents
+/// convergence.
 const NEARLY_CONVERGED: f64 = 1e-6;
 
-/// Iterations after GJK.
+/// Largest number of iterations after GJK.
 const ITERATIONS_AFTER_GJK: usize = 40;
 
-/// Factors on the derivative: nearly all of it, and less after a step that increased the distance.
+/// Factors for the derivative: nearly 1, and less after a step that increased the distance.
 const DAMPING: [f64; 4] = [1.0 - 1e-9, 1.0 - 1e-3, 0.9, 0.0];
 
 /// The result of a search.
 enum Outcome {
-    /// Proven farther apart than the limit.
+    /// The cores are proven to be farther apart than the limit.
     Farther,
     /// The bounds have converged.
     Converged(Gap),
-    /// They have not; the best so far.
+    /// The bounds have not converged; the best gap so far.
     Open(Gap),
 }
 
-/// Distance of two cores in the frame of the second; `None` where proven above `limit`.
+/// Distance of two cores in the frame of the second; `None` if it is proven to be above `limit`.
 pub(crate) fn distance(a: &Core, b: &Core, a_in_b: &Pose, limit: f64) -> Option<Gap> {
     let cores = CorePair::new(a, b, a_in_b);
     let start = a_in_b.transform_point(a.middle());
@@ -50,9 +52,10 @@ pub(crate) fn distance(a: &Core, b: &Core, a_in_b: &Pose, limit: f64) -> Option<
     finish(&cores, before, start, limit)
 }
 
-/// GJK from the best points of the projections, then projections from those of GJK.
+/// Runs GJK from the best points of the projections, then projections from the points of GJK.
 ///
-/// What is proven to be apart stays so: a limit may end the search earlier, and changes nothing else.
+/// Cores that are proven to be apart stay apart: a limit may end the search earlier, and never changes anything
+/// else.
 #[cold]
 fn finish(cores: &CorePair, before: Option<Gap>, start: Vec3, limit: f64) -> Option<Gap> {
     let mut best = before;
@@ -80,7 +83,7 @@ fn finish(cores: &CorePair, before: Option<Gap>, start: Vec3, limit: f64) -> Opt
     (!(gap.lower > limit)).then_some(gap)
 }
 
-/// In contact, or apart with bounds that have converged.
+/// True if the cores are in contact, or apart with bounds that have converged.
 fn is_decided(cores: &CorePair, gap: &Gap) -> bool {
     !(gap.distance > 0.0) || (gap.lower > 0.0 && gap.distance - gap.lower <= cores.converged)
 }
@@ -90,11 +93,11 @@ fn nearer(a: Gap, b: Gap) -> Gap {
     if b.distance < a.distance { b.at_least(a.lower) } else { a.at_least(b.lower) }
 }
 
-/// Alternating projections, with Newton steps in between.
+/// Alternates projections with Newton steps.
 #[inline]
 fn search(cores: &CorePair, start: Vec3, limit: f64, iterations: usize) -> Outcome {
     let mut best = Gap { distance: f64::INFINITY, apart: f64::INFINITY, lower: 0.0, on_a: start, on_b: start };
-    // The start is arbitrary: its step is a plain projection, and is not compared with the one before.
+    // The start is arbitrary, so its step is a plain projection and is not compared with the one before.
     let (mut p, mut damping, mut compared) = (start, DAMPING.len() - 1, false);
     for _ in 0..iterations {
         let onto_b = cores.b.project(p);

@@ -1,4 +1,4 @@
-//! Connected components.
+//! Connected components of a mesh.
 
 /// Root vertex of the connected component of each vertex (union-find with path halving).
 pub(crate) fn components(count: usize, faces: &[[u32; 3]]) -> Vec<u32> {
@@ -7,7 +7,7 @@ pub(crate) fn components(count: usize, faces: &[[u32; 3]]) -> Vec<u32> {
         let mut a = root(&mut parent, f[0]);
         for &v in &f[1..] {
             let b = root(&mut parent, v);
-            // The smaller becomes the root: neighbours in a file are mostly neighbours in space.
+            // The smaller index becomes the root: neighbours in a file are mostly neighbours in space.
             let (low, high) = (a.min(b), a.max(b));
             parent[high as usize] = low;
             a = low;

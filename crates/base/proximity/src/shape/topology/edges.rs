@@ -1,15 +1,17 @@
 //! The edges of a surface, grouped by a counting sort instead of hashing.
 
-/// Uses of every edge, in buckets by the edge's smaller vertex; faces of fewer than three different corners have none.
+/// Uses of every edge, in buckets by the edge's smaller vertex. Faces with fewer than three different corners have
+/// no uses.
 pub(crate) struct Edges {
-    /// Where the bucket of each vertex begins in `uses`.
+    /// Start of the bucket of each vertex in `uses`.
     starts: Vec<usize>,
-    /// Larger vertex in the upper half, label in the lower, sorted within each bucket.
+    /// Larger vertex in the upper half, label in the lower half, sorted within each bucket.
     uses: Vec<u64>,
 }
 
 impl Edges {
-    /// `label` of triangle and corner is stored with the use of the edge from that corner to the next.
+    /// Collects the edges. `label` of triangle and corner is stored with the use of the edge from that corner to the
+    /// next.
     pub fn new(vertices: usize, faces: &[[u32; 3]], label: impl Fn(usize, usize) -> u32) -> Self {
         let mut starts = vec![0; vertices + 1];
         for_each_edge(faces, |_, _, low, _| starts[low as usize] += 1);
@@ -23,7 +25,7 @@ impl Edges {
             uses[*at] = u64::from(high) << 32 | u64::from(label(triangle, corner));
             *at += 1;
         });
-        // Each start has moved to the end of its bucket, the start of the next.
+        // Each start has moved to the end of its bucket, which is the start of the next.
         starts.rotate_right(1);
         starts[0] = 0;
         let mut edges = Self { starts, uses };
@@ -37,7 +39,7 @@ impl Edges {
         }
     }
 
-    /// Every edge once: smaller vertex, larger vertex, uses with the larger vertex in the upper half.
+    /// Visits every edge once: smaller vertex, larger vertex, uses with the larger vertex in the upper half.
     pub fn for_each(&self, mut edge: impl FnMut(u32, u32, &[u64])) {
         for (low, bucket) in self.starts.windows(2).enumerate() {
             for uses in self.uses[bucket[0]..bucket[1]].chunk_by(|a, b| a >> 32 == b >> 32) {
@@ -57,7 +59,7 @@ fn for_each_edge(faces: &[[u32; 3]], mut edge: impl FnMut(usize, usize, u32, u32
     }
 }
 
-/// True for three different corners.
+/// True if the three corners are different.
 pub(crate) fn is_proper(f: &[u32; 3]) -> bool {
     f[0] != f[1] && f[1] != f[2] && f[2] != f[0]
 }

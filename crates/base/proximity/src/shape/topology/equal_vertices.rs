@@ -1,11 +1,11 @@
-//! Vertices of equal coordinates.
+//! Vertices with equal coordinates.
 
 use elbowroom_spatial::Vec3;
 
 /// An empty slot of the table.
 const FREE: (u32, u32) = (0, u32::MAX);
 
-/// The first vertex of the same coordinates, for each vertex (-0 is 0; a NaN equals the same NaN).
+/// For each vertex, the first vertex with the same coordinates (-0 equals 0; a NaN equals the same NaN).
 ///
 /// Open addressing with linear probing: half the time of the standard map for a million vertices.
 pub(crate) fn first_of_equal(vertices: &[Vec3]) -> Vec<u32> {
@@ -35,7 +35,7 @@ fn bits(v: Vec3) -> [u64; 3] {
     v.to_array().map(|c| (c + 0.0).to_bits())
 }
 
-/// Folded products of the three, so that every bit reaches every other.
+/// Folded products of the three numbers, so that every bit affects every other.
 fn mix([x, y, z]: [u64; 3]) -> u64 {
     let fold = |a: u64, b: u64| {
         let product = u128::from(a) * u128::from(b);

@@ -4,17 +4,18 @@ use std::collections::HashMap;
 
 use elbowroom_spatial::Vec3;
 
-/// Maps every vertex selected by `merge` to the nearest (of equally near, the first) kept vertex within the tolerance, or keeps
-/// it. `target` holds the first of equal coordinates for each vertex at the start.
+/// Maps every vertex selected by `merge` to the nearest kept vertex within the tolerance (the first, if several are
+/// equally near), or keeps it. At the start, `target` contains the first vertex with equal coordinates for each
+/// vertex.
 ///
-/// Cells are twice as wide as the tolerance, so that neighbours are in the 27 cells around, rounding included.
+/// Cells are twice as wide as the tolerance, so that neighbours are in the 27 cells around, even with rounding.
 pub(crate) fn merge_near(vertices: &[Vec3], target: &mut [u32], tolerance: f64, merge: impl Fn(usize) -> bool) {
     let width = (2.0 * tolerance).max(1e-290);
     let mut kept: HashMap<[u64; 3], Vec<u32>> = HashMap::new();
     for i in 0..vertices.len() {
         let v = vertices[i];
         if target[i] as usize != i {
-            // The first of the same coordinates has been decided already.
+            // The first vertex with the same coordinates has been decided already.
             target[i] = target[target[i] as usize];
             continue;
         }
@@ -29,7 +30,7 @@ pub(crate) fn merge_near(vertices: &[Vec3], target: &mut [u32], tolerance: f64, 
     }
 }
 
-/// Cells are numbered by integral f64: an i64 would overflow where the tolerance is tiny compared with a coordinate.
+/// Cells are numbered by integral f64: an i64 would overflow if the tolerance is tiny compared with a coordinate.
 fn key(cell: f64) -> u64 {
     (cell + 0.0).to_bits()
 }

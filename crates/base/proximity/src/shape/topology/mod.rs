@@ -22,11 +22,11 @@ pub(super) struct Topology {
     pub report: MeshReport,
     /// One vertex of every connected component.
     pub component_vertices: Vec<Vec3>,
-    /// Triangles that belong to a closed component, by index.
+    /// Whether each triangle, by index, belongs to a closed component.
     pub in_closed_component: Vec<bool>,
-    /// Triangles of components in which neighbours are oriented alike, by index.
+    /// Whether each triangle, by index, belongs to a component in which neighbours are oriented alike.
     pub in_oriented_component: Vec<bool>,
-    /// The representative of each vertex, where seams had to be closed by a tolerance.
+    /// The representative of each vertex, if seams had to be closed by a tolerance.
     pub welded_vertices: Option<Vec<u32>>,
 }
 
@@ -78,16 +78,16 @@ impl Surface {
 }
 
 struct EdgeReport {
-    /// Per component: true if some edge is used by an odd number of triangles, or where no triangle has three different
+    /// True, per component, if an edge is used by an odd number of triangles, or if no triangle has three different
     /// corners. A component whose edges are used two or four times still has an interior.
     open: Vec<bool>,
-    /// Per component: true if some edge is not used in both directions equally often.
+    /// True, per component, if an edge is not used equally often in both directions.
     unoriented: Vec<bool>,
-    /// Edges used by an odd number of triangles.
+    /// Number of edges used by an odd number of triangles.
     odd: usize,
-    /// Every edge has two uses.
+    /// True if every edge has two uses.
     all_twice: bool,
-    /// Triangles of three different corners that another triangle has already.
+    /// Number of triangles with three different corners that an earlier triangle has already.
     duplicates: usize,
 }
 
@@ -102,7 +102,8 @@ fn examine_edges(vertices: usize, faces: &[[u32; 3]], component_of: &[u32]) -> E
     for f in faces.iter().filter(|f| is_proper(f)) {
         report.open[component_of[f[0] as usize] as usize] = false;
     }
-    // The third corner, and the direction of the edge: uses with the same corner are the same triangle.
+    // The label is the third corner and the direction of the edge: uses with the same third corner are the same
+    // triangle.
     let label = |triangle: usize, corner: usize| {
         let [a, b, third] = [0, 1, 2].map(|k| faces[triangle][(corner + k) % 3]);
         third << 1 | u32::from(a > b)
@@ -119,14 +120,14 @@ fn examine_edges(vertices: usize, faces: &[[u32; 3]], component_of: &[u32]) -> E
             report.odd += 1;
             report.open[component_of[low as usize] as usize] = true;
         }
-        // Counted at one of its three edges, that between its two smaller corners.
+        // A triangle is counted at one of its three edges, the one between its two smaller corners.
         let same = uses.windows(2).filter(|u| third(u[0]) == third(u[1]) && third(u[0]) > high);
         report.duplicates += same.count();
     });
     report
 }
 
-/// Duplicates among the faces with fewer than three different corners.
+/// Number of duplicates among the faces with fewer than three different corners.
 fn degenerate_duplicates(faces: &[[u32; 3]]) -> usize {
     let sorted = |mut f: [u32; 3]| {
         f.sort_unstable();
@@ -154,7 +155,7 @@ fn representatives(vertices: &[Vec3], faces: &[[u32; 3]], component_of: &[u32]) 
 pub(crate) fn is_degenerate([a, b, c]: [Vec3; 3]) -> bool {
     let longest2 = (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared());
     let area2 = (b - a).cross(c - a).length_squared();
-    // The root is needed only where the squares would overflow or underflow.
+    // The square root is needed only if the squares would overflow or underflow.
     if area2 > 1e-200 && longest2 < 1e100 {
         return area2 <= 1e-28 * longest2 * longest2;
     }

@@ -1,28 +1,29 @@
-//! Hairline seams: vertices that are one in the model and differ in the last digits of a file.
+//! Hairline seams: vertices that are one in the model, but differ in the last digits of a file.
 //!
-//! Merging vertices never opens a closed surface: an edge with an even number of uses keeps it, and a triangle that
-//! degenerates removes its uses in pairs. So only vertices on boundaries are considered.
+//! Merging vertices never opens a closed surface: an edge with an even number of uses keeps an even number, and a
+//! triangle that degenerates removes its uses in pairs. So only vertices on boundaries are considered.
 
 use elbowroom_spatial::{Aabb, Vec3};
 
 use super::merge_near::merge_near;
 use super::{Edges, is_proper};
 
-/// Boundary vertices within this share of the mesh's largest extent are merged. Single precision, in which most files are
-/// written, keeps 6e-8 of a coordinate.
+/// Distance, as a fraction of the mesh's largest extent, within which boundary vertices are merged. Single
+/// precision, which most files use, keeps 6e-8 of a coordinate.
 pub(super) const TOLERANCE: f64 = 1e-6;
 
 /// Vertices merged across seams.
 pub(super) struct Seams {
     /// The representative of each vertex.
     pub welded_vertices: Vec<u32>,
-    /// Vertices represented by one of different coordinates.
+    /// Number of vertices represented by a vertex with different coordinates.
     pub welded: usize,
-    /// Metres.
+    /// Tolerance, metres.
     pub tolerance: f64,
 }
 
-/// Merges boundary vertices; `None` if that shortens no boundary. `first` is the first of equal coordinates.
+/// Merges boundary vertices; `None` if that shortens no boundary. `first` is the first vertex with equal
+/// coordinates.
 pub(super) fn close(vertices: &[Vec3], triangles: &[[u32; 3]], first: &[u32]) -> Option<Seams> {
     let (on_boundary, open) = boundary(vertices.len(), &faces(triangles, first));
     let extent = Aabb::from_points(triangles.iter().flatten().map(|&i| vertices[i as usize])).extent();
@@ -40,7 +41,8 @@ pub(super) fn faces(triangles: &[[u32; 3]], representative: &[u32]) -> Vec<[u32;
     triangles.iter().map(|t| t.map(|i| representative[i as usize])).collect()
 }
 
-/// Vertices on edges of an odd number of uses, or of triangles without three different corners; and the number of such edges.
+/// Vertices on edges with an odd number of uses, or of triangles without three different corners; and the number of
+/// such edges.
 fn boundary(vertices: usize, faces: &[[u32; 3]]) -> (Vec<bool>, usize) {
     let (mut on_boundary, mut open) = (vec![false; vertices], 0);
     Edges::new(vertices, faces, |_, _| 0).for_each(|low, high, uses| {

@@ -1,4 +1,4 @@
-//! The counting of edges compared with a simple implementation with maps.
+//! Comparison of the edge counts with a simple implementation with maps.
 
 use std::collections::{HashMap, HashSet};
 
@@ -35,7 +35,7 @@ fn simple(faces: &[[u32; 3]], component_of: &[u32]) -> Simple {
     Simple { open, all_twice: uses.values().all(|n| *n == 2), duplicates: duplicates.count() }
 }
 
-/// Components by propagating the least index until nothing changes.
+/// Components, found by propagating the smallest index until nothing changes.
 fn simple_components(count: usize, faces: &[[u32; 3]]) -> Vec<u32> {
     let mut of: Vec<u32> = (0..count as u32).collect();
     loop {

@@ -1,5 +1,5 @@
-//! States that behave the same from now on are one state: of numbers only their order counts, of times only whether they are
-//! past a limit, and of robots with the same program not which is which.
+//! Canonical states: states that behave the same from now on become one state. Numbers count only by their order,
+//! times only by whether they are past a limit, and robots with the same program are interchangeable.
 
 use std::collections::BTreeSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -8,18 +8,18 @@ use super::renaming::what_counts;
 use super::state::{CellState, NOW};
 use crate::{Boot, Micros, RobotSlot, SlotReport, Token};
 
-/// Counters of the arbiter are above all ranks.
+/// Serial number of the arbiter, above all ranks.
 const SERIAL: u64 = 100;
 const TOKENS: u64 = 100;
-/// Numbers of the grants that are held are above all others.
+/// First number of held grants, above the numbers of all other grants.
 const HELD: u64 = 50;
 
-/// Lets time pass: everything that happened is older.
+/// Lets time pass: makes all stored times older.
 pub(super) fn pass(state: &mut CellState, step: Micros) {
     each_time(state, |time| *time = *time - step);
 }
 
-/// Rewrites a state to the one that stands for all that behave the same. Older than `oldest` is no different from that;
+/// Replaces a state by the canonical one of all states that behave the same. Ages above `oldest` are equivalent;
 /// robots of the same class have the same program.
 pub(super) fn canonicalize(state: &mut CellState, oldest: Micros, classes: &[usize]) {
     each_time(state, |time| *time = (*time).max(NOW - oldest));
@@ -40,7 +40,7 @@ pub(super) fn canonicalize(state: &mut CellState, oldest: Micros, classes: &[usi
     sort_robots(state, classes);
 }
 
-/// Robots of the same class are in an order that their states give them. Those with equal keys do not differ.
+/// Sorts the robots of each class by their states. Robots with equal keys do not differ.
 fn sort_robots(state: &mut CellState, classes: &[usize]) {
     state.set_indices(|_| 0);
     let key = |r: usize| {
@@ -54,7 +54,7 @@ fn sort_robots(state: &mut CellState, classes: &[usize]) {
     };
     let keys: Vec<_> = (0..classes.len()).map(key).collect();
     let mut order: Vec<usize> = (0..classes.len()).collect();
-    // Robots keep the indices that robots of their class have.
+    // Each class keeps its set of indices.
     order.sort_by_key(|r| keys[*r]);
     let mut indices: Vec<usize> = (0..classes.len()).collect();
     indices.sort_by_key(|r| classes[*r]);
@@ -71,7 +71,8 @@ fn each_time(state: &mut CellState, mut f: impl FnMut(&mut Micros)) {
     state.guards.iter_mut().for_each(|guard| guard.each_time(&mut f));
 }
 
-/// Messages that change nothing are as good as lost, except for an arbiter that starts again. Of the others only what is read.
+/// Removes messages that change nothing, unless an arbiter may still start again. Of all others, keeps only what is
+/// read.
 fn drop_past_messages(state: &mut CellState, robot: usize) {
     let CellState { arbiter, guards, to_arbiter, to_guard, faults, .. } = state;
     let any = Some(Token { boot: Boot(1), number: 1 });
@@ -83,7 +84,8 @@ fn drop_past_messages(state: &mut CellState, robot: usize) {
     if faults.arbiter_crashes == 0 {
         to_arbiter[robot].retain(|m| !arbiter.is_past(m));
     }
-    // Only an arbiter that starts again would take it, and not trust it; nor does this one trust what was for a former one.
+    // Only an arbiter that starts again would accept such a message, and it would not trust it. This arbiter does not
+    // trust a message for a former arbiter either.
     for message in to_arbiter[robot].iter_mut().filter(|m| arbiter.is_past(m) || m.arbiter < arbiter.boot()) {
         message.slots.fill(SlotReport::UNKNOWN);
         message.arbiter = Boot::NONE;
@@ -94,8 +96,8 @@ fn drop_past_messages(state: &mut CellState, robot: usize) {
     }
 }
 
-/// A grant that was given up counts only as long as the robot may be granted it again, by a message that is late, or holds it
-/// still for the arbiter.
+/// Forgets grants that were given up and do not count any more. Such a grant counts only while a late message may
+/// grant it to the robot again, or while the arbiter still has the robot as its holder.
 fn forget_past_releases(state: &mut CellState, robot: usize) {
     for slot in 0..state.slots() {
         let held =
@@ -110,8 +112,9 @@ fn forget_past_releases(state: &mut CellState, robot: usize) {
     }
 }
 
-/// Of the sequence numbers of messages under way to the arbiter and the last that it has heard only the order counts, of those
-/// that are answered only when they were sent: the guard has sent them all, and sends higher ones from now on.
+/// Replaces sequence numbers by ranks. For messages under way to the arbiter and its last received message only the
+/// order of the numbers counts. For answered messages only the times at which they were sent count. The guard has
+/// sent all of these messages, and sends higher numbers from now on.
 fn rank_sequences(state: &mut CellState, robot: usize) {
     let CellState { arbiter, guards, to_arbiter, to_guard, .. } = state;
     let guard = &mut guards[robot];
@@ -134,7 +137,7 @@ fn rank_sequences(state: &mut CellState, robot: usize) {
     guard.set_sent(&sent);
 }
 
-/// Serial numbers are compared by each guard within one start of the arbiter.
+/// Replaces serial numbers by ranks. Each guard compares them within one start of the arbiter.
 fn rank_serials(state: &mut CellState, robot: usize) {
     let (guard, messages) = (&mut state.guards[robot], &mut state.to_guard[robot]);
     let obeyed = (guard.arbiter(), *guard.serial_mut());
@@ -148,12 +151,13 @@ fn rank_serials(state: &mut CellState, robot: usize) {
     }
 }
 
-/// The grant of a slot that the arbiter has given last.
+/// The grant of a slot that the arbiter issued last.
 fn held_token(state: &mut CellState, slot: usize) -> Option<Token> {
     state.arbiter.holder_token_mut(slot).map(|(_, token)| *token)
 }
 
-/// Grants are compared within one slot; those that are held, `held` in their order, over all slots, too.
+/// Replaces the numbers of grants by ranks. Grants are compared within one slot; held grants (`held`, in their
+/// order) are also compared over all slots.
 fn rank_tokens(state: &mut CellState, slot: usize, held: &[Token]) {
     let mut seen = BTreeSet::new();
     each_token(state, slot, &mut |token| _ = seen.insert(*token));

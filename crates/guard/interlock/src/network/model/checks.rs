@@ -1,5 +1,7 @@
-//! What the model check explores. The suite explores the first states of most cells. `ELBOWROOM_MODEL_STATES` sets another number,
-//! `ELBOWROOM_MODEL_SECONDS` a time, `ELBOWROOM_MODEL_CELL` the only cell.
+//! The cells that the model check explores. For most cells, the suite explores only the first states.
+//!
+//! `ELBOWROOM_MODEL_STATES` sets another number of states, `ELBOWROOM_MODEL_SECONDS` a time, `ELBOWROOM_MODEL_CELL`
+//! the only cell.
 
 use std::time::{Duration, Instant};
 
@@ -14,21 +16,21 @@ const PAIR: &[&[&str]] = &[&["_.X"], &["_.X"]];
 const FROM_BEYOND: &[&[&str]] = &[&["._X"], &["._X"]];
 /// Three robots and one slot.
 const THREE: &[&[&str]] = &[&["_.X"], &["_.X"], &["_.X"]];
-/// Two robots that go through two slots in both directions, from one into the other.
+/// Two robots that pass through two slots in opposite directions, from one slot into the other.
 const CROSSING: &[&[&str]] = &[&["_.X.__", "__.XX."], &["__.XX.", "_.X.__"]];
-/// The same, and a third one in one of them.
+/// The robots of `CROSSING`, and a third robot in one of the slots.
 const CROSSING_AND_ONE: &[&[&str]] = &[&["_.X.__", "__.XX."], &["__.XX.", "_.X.__"], &["_.X_", "____"]];
 
-/// What an exploration has shown.
+/// The result of an exploration.
 #[derive(Debug)]
 struct Explored {
     holds: bool,
-    /// All states that can be reached were explored.
+    /// True if all reachable states were explored.
     is_complete: bool,
     states: usize,
 }
 
-/// A whole number from the environment.
+/// A whole number from an environment variable.
 fn setting(name: &str) -> Option<usize> {
     std::env::var(name).ok()?.parse().ok()
 }
@@ -54,16 +56,16 @@ fn explore(name: &str, model: CellModel, states: usize) -> Explored {
     explored
 }
 
-/// A cell, and how many states the suite explores of it.
+/// A cell, and the number of its states that the suite explores.
 struct Check {
     name: &'static str,
     model: CellModel,
     states: usize,
-    /// Those are all of them.
+    /// True if these are all states of the cell.
     is_complete: bool,
 }
 
-/// The first states, of which there are more.
+/// A check of the first states of a cell that has more.
 fn first(name: &'static str, model: CellModel) -> Check {
     Check { name, model, states: 30_000, is_complete: false }
 }

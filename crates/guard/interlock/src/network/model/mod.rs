@@ -1,9 +1,11 @@
-//! Model check: every interleaving of guards, arbiter, messages, crashes and clears of a small cell, on the code that runs.
+//! Model check: every interleaving of guards, arbiter, messages, crashes and clears of a small cell, on the
+//! production code.
 //!
-//! Robots go round programs of a few places. What a tick lets a robot do the next tick finds: between the two, messages pass.
-//! Messages are delivered in any order, any number of times, or never: of each direction a few are under way per robot, and one more
-//! replaces the oldest. Time goes on in steps. States that behave the same are one state ([`canonical`]), so that there are
-//! finitely many, and small cells can be explored completely.
+//! Robots cycle through programs of a few places. A tick finds what the tick before let the robot do; messages pass
+//! between the two ticks. Messages are delivered in any order, any number of times, or never. A few messages per
+//! robot and direction are under way; one more replaces the oldest. Time advances in steps. States that behave the
+//! same are one state ([`canonical`]), so the number of states is finite, and small cells can be explored
+//! completely.
 
 mod canonical;
 mod checks;
@@ -28,9 +30,9 @@ const STEP: Micros = Micros(100);
 /// Whether ages between a request and the end of its grant are distinguished.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Clock {
-    /// Once time passes, grants have ended and robots are silent.
+    /// After one time step, grants have ended and robots are silent.
     Coarse,
-    /// Grants are obeyed for one step, and robots are silent after two.
+    /// Grants are obeyed for one time step, and robots are silent after two.
     Fine,
 }
 
@@ -47,19 +49,19 @@ impl Clock {
         Micros(if self == Self::Coarse { 0 } else { 100 })
     }
 
-    /// Nothing changes any more at this age.
+    /// Age beyond which nothing changes any more.
     fn oldest(self) -> Micros {
         Micros(if self == Self::Coarse { 100 } else { 300 })
     }
 }
 
-/// Faults that are built in to see whether the model check finds them.
+/// Faults that are planted to test whether the model check finds them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum PlantedFault {
     None,
-    /// A person clears a robot that is not silent long enough, and grants never expire.
+    /// A person clears a robot that has not been silent for long enough, and grants never expire.
     HastyClear,
-    /// A report without the grant counts as one that gives it up.
+    /// A report without the grant counts as giving it up.
     TokensUnchecked,
     /// A grant is taken back without the consent of its holder.
     UnilateralRelease,
@@ -83,11 +85,11 @@ struct CellModel {
 /// What a robot does in a tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Step {
-    /// It ends what the last tick let it do.
+    /// The robot completes what the last tick let it do.
     Remain,
-    /// The tick finds it at the next place, for which it needs no grant.
+    /// The tick finds the robot at the next place, for which it needs no grant.
     Advance,
-    /// The tick lets it enter the next place, where the next tick will find it.
+    /// The tick lets the robot enter the next place, where the next tick will find it.
     Enter,
 }
 
@@ -96,7 +98,7 @@ enum Action {
     Tick(usize, Step),
     /// The guard sends a message.
     Send(usize),
-    /// The arbiter takes a message, which may come again.
+    /// The arbiter receives a message, which may be delivered again.
     ToArbiter(usize, usize),
     ToGuard(usize, usize),
     TimePasses,
@@ -136,20 +138,20 @@ impl CellModel {
         self.programs[robot].occupancy(place, slot).occupies()
     }
 
-    /// Whether the robot is in a slot, or will be whatever is decided now.
+    /// Whether the robot is in a slot, or will be in it whatever is decided now.
     fn is_in(&self, state: &CellState, robot: usize, slot: SlotId) -> bool {
         let RobotState { place, enters } = state.robots[robot];
         self.occupies(robot, place, slot) || enters && self.occupies(robot, self.programs[robot].next(place), slot)
     }
 
-    /// Whether the robot needs grants to go on from a place, and which.
+    /// The slots that the robot must be granted to move on from a place.
     fn needed(&self, robot: usize, place: usize) -> impl Iterator<Item = SlotId> + '_ {
         let next = self.programs[robot].next(place);
         let enters = move |s: &SlotId| self.occupies(robot, next, *s) && !self.occupies(robot, place, *s);
         (0..self.slots).map(SlotId).filter(enters)
     }
 
-    /// One tick; `None` if that step is impossible.
+    /// Performs one tick; `None` if the step is impossible.
     fn tick(&self, state: &mut CellState, r: usize, step: Step) -> Option<()> {
         let RobotState { place, enters } = state.robots[r];
         let is_advance = step == Step::Advance;
@@ -193,7 +195,7 @@ impl CellModel {
         under_way.push(message);
     }
 
-    /// All robots are outside, and the arbiter knows them.
+    /// Makes all robots, which are outside, known to the arbiter.
     fn know_each_other(&self, state: &mut CellState) {
         for r in (0..2).flat_map(|_| 0..self.programs.len()) {
             self.tick(state, r, Step::Remain);
@@ -204,7 +206,7 @@ impl CellModel {
         }
     }
 
-    /// An integrator clears a robot that is at rest outside; `None` if that is refused.
+    /// Clears a robot that is at rest outside, as an integrator does; `None` if that is refused.
     fn clear(&self, state: &mut CellState, robot: usize) -> Option<()> {
         if (0..self.slots).any(|s| self.is_in(state, robot, SlotId(s))) {
             return None;
@@ -228,7 +230,7 @@ impl CellModel {
         self.reply(state, outputs.replies);
     }
 
-    /// What an action changes; `None` if it is impossible.
+    /// Applies an action to the state; `None` if the action is impossible.
     fn act(&self, state: &mut CellState, action: Action) -> Option<()> {
         match action {
             Action::Tick(r, step) => self.tick(state, r, step)?,
@@ -312,7 +314,7 @@ impl Model for CellModel {
     }
 }
 
-/// A message that gives up every grant that it does not name.
+/// Makes a message give up every grant that it does not name.
 fn give_up_all(message: &mut StateMessage) {
     let every = Token { boot: Boot(u64::MAX), number: u64::MAX };
     for slot in message.slots.iter_mut().filter(|slot| slot.token.is_none()) {

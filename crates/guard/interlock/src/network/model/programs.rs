@@ -1,4 +1,4 @@
-//! The ways of the robots of a model.
+//! Programs of the robots of a model.
 
 use crate::{Occupancy, SlotId};
 
@@ -9,7 +9,7 @@ pub(super) struct Program {
 }
 
 impl Program {
-    /// One word per slot: `_` is outside, `.` in the warning zone, `X` inside.
+    /// Builds a program from one word per slot: `_` is outside, `.` in the warning zone, `X` inside.
     pub(super) fn new(words: &[&str]) -> Self {
         let occupancy = |c: char| match c {
             'X' => Occupancy::Inside,

@@ -1,8 +1,8 @@
-//! What two states may differ by and still behave the same.
+//! Differences between states that do not change their behaviour.
 
 use crate::Occupancy;
 
-/// What the arbiter makes of an occupancy: unknown, out, or in.
+/// Maps an occupancy to the case that the arbiter distinguishes: unknown, outside or inside.
 pub(crate) fn what_counts(occupancy: Occupancy) -> Occupancy {
     match occupancy {
         Occupancy::Unknown => Occupancy::Unknown,
@@ -11,7 +11,7 @@ pub(crate) fn what_counts(occupancy: Occupancy) -> Occupancy {
     }
 }
 
-/// Moves the element at each index to the index `to` has for it.
+/// Moves the element at each index `i` to the index `to[i]`.
 pub(crate) fn permute<T>(elements: &mut Vec<T>, to: &[usize]) {
     let mut moved: Vec<(usize, T)> = to.iter().copied().zip(elements.drain(..)).collect();
     moved.sort_by_key(|(to, _)| *to);

@@ -22,7 +22,7 @@ pub(super) struct CellState {
 pub(super) struct RobotState {
     /// Index into its program.
     pub(super) place: usize,
-    /// The last tick let it enter the next place, where the next tick will find it.
+    /// True if the last tick let the robot enter the next place, where the next tick will find it.
     pub(super) enters: bool,
 }
 
@@ -48,7 +48,7 @@ impl CellState {
         permute(&mut self.to_guard, to);
     }
 
-    /// Sets the index that guards and messages have of their robots.
+    /// Sets the robot indices that guards and messages contain.
     pub(super) fn set_indices(&mut self, index: impl Fn(usize) -> usize) {
         for r in 0..self.guards.len() {
             let robot = RobotSlot(index(r));

@@ -41,7 +41,7 @@ impl StateGraph {
         self.0.edge_count()
     }
 
-    /// The states from which not all robots can finish any more.
+    /// The states from which not all robots can finish.
     fn unfinished(&self, model: &ProtocolModel) -> Vec<NodeIndex> {
         let finished = self.0.node_indices().filter(|i| model.finished(&self.0[*i])).collect();
         let mut search = Dfs::from_parts(finished, self.0.visit_map());
@@ -66,12 +66,13 @@ impl StateGraph {
         let unfinished = self.unfinished(model);
         let dead: Vec<_> = unfinished.iter().copied().filter(is_settled).collect();
         let silent = dead.iter().filter(|i| !model.reports_cycle(&self.0[**i])).count();
-        // Every part of the graph that cannot finish must contain a deadlock.
+        // Every part of the graph from which not all robots can finish must contain a deadlock.
         assert!(unfinished.is_empty() || !dead.is_empty(), "robots move for ever without finishing");
         (dead.len(), silent)
     }
 
-    /// A robot that can stay at its place for ever although every robot ticks again and again.
+    /// A robot that can stay at its place for ever although every robot ticks again and again, with a state in which it
+    /// does.
     pub(super) fn starving(&self, model: &ProtocolModel) -> Option<(NodeIndex, usize)> {
         let robots = model.robots();
         kosaraju_scc(&self.0).iter().find_map(|component| {
@@ -83,7 +84,7 @@ impl StateGraph {
         })
     }
 
-    /// Per robot whether a tick of it leads from a state of the component to one of them.
+    /// Whether, for each robot, one of its ticks leads from a state of the component to a state of the component.
     fn ticks_within(&self, component: &[NodeIndex], robots: usize) -> Vec<bool> {
         let inside: std::collections::HashSet<_> = component.iter().copied().collect();
         let mut ticks = vec![false; robots];

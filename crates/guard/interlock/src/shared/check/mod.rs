@@ -1,10 +1,15 @@
-//! Model check of the exchange protocol: every reachable state of small models, over the arbiter's own code.
+//! Model check of the exchange protocol: explores every reachable state of small models, with the arbiter's own
+//! code.
 //!
-//! A model has two or three robots on programs of a few places. Each place is outside, in the warning zone or inside of each
-//! slot. A robot moves by at most one place per tick and needs one more to stop: commanded to stop while it moves, it ends
-//! one place farther on. Its tick is that of a monitor: publish for all slots, request those that it is near, then move only
-//! if it holds a slot or can still stop outside it. In any state any robot may be next; any may also rest although it may
-//! move, become silent (its controller stops it), publish again, or be cleared by an integrator who sees it outside.
+//! A model has two or three robots on programs of a few places. Each place is outside, in the warning zone or inside
+//! of each slot. A robot moves by at most one place per tick and needs one more place to stop: if it is commanded to
+//! stop while it moves, it stops one place farther on.
+//!
+//! A robot ticks as a monitor does: publish for all slots, request the slots that the robot is near, then
+//! move only if the robot holds a slot or can still stop outside it. In any state any robot may be next. Any robot
+//! may also rest although it may move, become silent (its controller stops it), publish again, or be cleared by an
+//! integrator who sees it outside.
+//!
 //! `docs/laws.md`, section 11, lists the properties and the numbers of states.
 
 mod explore;
@@ -15,9 +20,9 @@ use model::{Faults, ProtocolModel};
 
 use super::shared_state::InjectedFault;
 
-/// Two robots pass through two regions in opposite directions, without leaving both in between.
+/// Two robots pass through two regions in opposite directions, and each stays in at least one of them in between.
 const OPPOSITE: [&[&str]; 2] = [&["_.XXX.___", "___.XXX._"], &["___.XXX._", "_.XXX.___"]];
-/// Each of three robots goes from its own region into that of the next robot.
+/// Each of three robots goes from its own region into the next robot's region.
 const RING: [&[&str]; 3] =
     [&["_.XX.__", "__.XX._", "_______"], &["_______", "_.XX.__", "__.XX._"], &["__.XX._", "_______", "_.XX.__"]];
 /// Three robots and one region.
@@ -26,7 +31,7 @@ const SHARED: [&[&str]; 3] = [&["_.XX._"], &["_.XX._"], &["_..X._"]];
 const PIPELINE: [&[&str]; 3] = [&["_.XX.__", "__.XX._"], &["_.XX.__", "__.XX._"], &["_______", "__.XX._"]];
 /// Two robots and three regions, one after the other and back.
 const CHAIN: [&[&str]; 2] = [&["_.X._____", "__.XX.___", "____.XX._"], &["____.XX._", "__.XX.___", "_.X._____"]];
-/// As `OPPOSITE`, with wide warning zones: both robots wait while they move, outside of the slots that they hold.
+/// Like `OPPOSITE`, with wide warning zones: both robots wait while they move, outside the slots that they hold.
 const WIDE: [&[&str]; 2] = [&["_...XX.__", "__...XX._"], &["__...XX._", "_...XX.__"]];
 /// Three robots and one region that is switched on at any time, also while two or three robots are inside.
 const SWITCHED: [&[&str]; 3] = [&["_.XX._"], &["_.XX._"], &["_.XX._"]];
@@ -94,7 +99,7 @@ fn every_deadlock_of_robots_without_declarations_is_detected() {
         println!("{name}, undeclared: {} states, {dead} deadlocked", graph.states());
         assert_eq!(unreported, 0, "{name}: deadlocks without a reported cycle");
     }
-    // A region that is switched on over two robots: no other robot enters, and the deadlock is reported.
+    // A region is switched on while two robots are inside: no other robot enters, and the deadlock is reported.
     let switched = model(&SWITCHED).switchable().faults(Faults::First);
     println!("switched: {} states", explored(&switched).states());
     assert_eq!(explored(&model(&SWITCHED).switchable()).deadlocks(&switched).1, 0, "two inside, not reported");

@@ -21,7 +21,7 @@ pub(super) enum Faults {
 #[derive(Debug)]
 #[allow(clippy::struct_excessive_bools, reason = "independent switches of a test")]
 pub(super) struct ProtocolModel {
-    /// Per robot, per slot, per place.
+    /// Occupancy per robot, per slot, per place.
     programs: Vec<Vec<Vec<Occupancy>>>,
     pub(super) arbiter: ZoneArbiter,
     declares: bool,
@@ -40,7 +40,7 @@ pub(super) struct RobotState {
     pub(super) at: u8,
     moving: bool,
     silent: bool,
-    /// Next operation of its tick, where the operations of different robots interleave.
+    /// Next operation of the tick, if the operations of different robots interleave.
     phase: u8,
 }
 
@@ -50,7 +50,7 @@ pub(super) struct ModelState {
     pub(super) robots: Vec<RobotState>,
     on: bool,
     holders: Vec<u8>,
-    /// Per slot and robot: registered, occupancy, whether it is current, rank in the queue.
+    /// Per slot and robot: whether it is registered, its occupancy, whether that is current, and its rank in the queue.
     entries: Vec<[u8; 4]>,
 }
 
@@ -69,7 +69,7 @@ pub(super) enum Step {
 }
 
 impl ProtocolModel {
-    /// Per robot one word per slot: `_` is outside, `.` in the warning zone, `X` inside.
+    /// Builds a model from one word per robot and slot: `_` is outside, `.` in the warning zone, `X` inside.
     pub(super) fn new(programs: &[&[&str]]) -> Self {
         let occupancy = |c: char| match c {
             'X' => Occupancy::Inside,
@@ -116,12 +116,12 @@ impl ProtocolModel {
         Self { interleaves: true, ..self }
     }
 
-    /// With regions that are off at first.
+    /// Makes the regions switchable; they are off at first.
     pub(super) fn switchable(self) -> Self {
         Self { switchable: true, ..self }
     }
 
-    /// With silent robots that may be moved by hand until an integrator clears them.
+    /// Lets silent robots be moved by hand until an integrator clears them.
     pub(super) fn joggable(self) -> Self {
         Self { joggable: true, ..self }
     }
@@ -143,7 +143,7 @@ impl ProtocolModel {
         self.programs[robot][0].len()
     }
 
-    /// Every robot at the first place of its program and known to be outside.
+    /// The initial state: every robot is at the first place of its program and known to be outside.
     pub(super) fn start(&self) -> ModelState {
         for (slot, robot) in self.pairs() {
             self.arbiter.publish(SlotId(slot), RobotSlot(robot), Occupancy::Outside, NOW_S);
@@ -157,7 +157,7 @@ impl ProtocolModel {
         (0..self.slots()).flat_map(move |s| (0..robots).map(move |r| (s, r)))
     }
 
-    /// The memory of the arbiter, with the tickets of the queue as ranks: only their order counts.
+    /// Saves the memory of the arbiter, with the tickets of the queue as ranks: only their order counts.
     fn save(&self, robots: Vec<RobotState>, on: bool) -> ModelState {
         let ticket = |(s, r): (usize, usize)| self.arbiter.state.ticket(SlotId(s), RobotSlot(r));
         let mut tickets: Vec<u64> = self.pairs().map(ticket).filter(|t| *t > 0).collect();
@@ -190,7 +190,7 @@ impl ProtocolModel {
         }
     }
 
-    /// Declares the rest of the stretch that the robot is in: up to the next place outside all slots.
+    /// Declares the slots of the rest of the robot's stretch: up to the next place outside all slots.
     fn declare(&self, robot: usize, at: u8) {
         if !self.declares {
             return;
@@ -201,7 +201,7 @@ impl ProtocolModel {
         self.arbiter.declare(RobotSlot(robot), claims.into_iter().map(SlotId));
     }
 
-    /// The actual occupancy: `Committed` where the robot ends inside although it is commanded to stop.
+    /// The actual occupancy: `Committed` if the robot comes to rest inside although it is commanded to stop.
     fn actual(&self, robot: usize, current: RobotState, slot: usize) -> Occupancy {
         let place = |at: usize| self.programs[robot][slot][at.min(self.places(robot) - 1)];
         let at = usize::from(current.at);
@@ -341,7 +341,7 @@ impl ProtocolModel {
         if near && self.arbiter.check(SlotId(slot), me, NOW_S).is_none() { then(1) } else { then(2) }
     }
 
-    /// Moves as the laws allow: into no slot that the robot does not hold.
+    /// Moves the robot as the laws allow: never into a slot that it does not hold.
     fn advance(&self, robot: usize, current: RobotState, may_move: bool) -> RobotState {
         let last = self.places(robot) - 1;
         let at = usize::from(current.at);
@@ -365,13 +365,13 @@ impl ProtocolModel {
         self.stopped(robot, current)
     }
 
-    /// Commanded to stop, a moving robot ends one place farther on.
+    /// The state after a stop: a moving robot stops one place farther on.
     fn stopped(&self, robot: usize, current: RobotState) -> RobotState {
         let on = u8::from(current.moving && usize::from(current.at) + 1 < self.places(robot));
         RobotState { at: current.at + on, moving: false, ..current }
     }
 
-    /// No robot enters a slot, or passes the last point where it can stop, while another occupies it.
+    /// Checks that no robot enters a slot, or passes the last point where it can stop, while another robot occupies it.
     fn check(&self, before: &ModelState, step: Step, after: &ModelState) -> Result<(), String> {
         if !before.on || matches!(step, Step::Jog(_)) {
             return Ok(());
