@@ -12,7 +12,7 @@ use elbowroom_spatial::{Aabb, Pose, Vec3};
 
 use crate::{Object, PairRules};
 use held_object::{Carrier, HeldObject};
-use placed_geometry::{NEAR, PlacedGeometry};
+use placed_geometry::PlacedGeometry;
 
 /// Finds the first contact of each pair while robots and objects move in small steps.
 ///

@@ -8,7 +8,7 @@ use elbowroom_spatial::{Aabb, Pose};
 use crate::Object;
 
 /// Above this distance (m) a lower bound on the distance is sufficient.
-pub(super) const NEAR: f64 = 0.05;
+const NEAR: f64 = 0.05;
 
 /// All geometry at one instant.
 #[derive(Clone, Copy)]
