@@ -1,8 +1,8 @@
 //! Jerk constraints: limits of velocity, acceleration and jerk at collocation points of a path, in terms of the squared
 //! speed.
 //!
-//! With `x = ṡ²`, `b = s̈` and `c = s⃛/ṡ`, the acceleration of a joint is `q″x + q′b`, and its jerk is `√x·(q‴x + 3q″b
-//! + q′c)`. After division by √x, everything except the bound of the jerk is linear in (x, b, c).
+//! With `x = ṡ²`, `b = s̈` and `c = s⃛/ṡ`, the acceleration of a joint is `q″x + q′b`, and its jerk is
+//! `√x·(q‴x + 3q″b + q′c)`. After division by √x, everything except the bound of the jerk is linear in (x, b, c).
 
 use std::ops::Range;
 
