@@ -1,5 +1,5 @@
-//! What a developer of the workspace runs through `cargo xtask`, and what needs the product's own crates: generated files,
-//! random cells under an oracle, comparisons with other libraries. `cargo xtask help` lists the commands.
+//! Commands of `cargo xtask` that need the product's own crates: generated files, random cells under an oracle,
+//! comparisons with other libraries. `cargo xtask help` lists the commands.
 //!
 //! **Invariant.** Whatever a monitor answers, the oracle of `fuzz cells` never uses the product's kinematics, distances
 //! or laws.

@@ -1,4 +1,4 @@
-//! The generated models under `examples/models`: written, or compared with what is committed.
+//! Generated models under `examples/models`: written, or compared with the committed files.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -19,7 +19,7 @@ pub fn write(root: &Path) -> Result<(), String> {
     Ok(())
 }
 
-/// Compares with the files that are there; a missing, differing or left-over file is an error.
+/// Compares with the existing files; a missing, differing or superfluous file is an error.
 pub fn check(root: &Path) -> Result<(), String> {
     let files = files()?;
     let mut wrong = Vec::new();
@@ -50,7 +50,7 @@ fn files() -> Result<Vec<File>, String> {
     Ok(files)
 }
 
-/// Meshes that lie in a generated folder and are generated no more.
+/// Lists meshes in a generated folder that are no longer generated.
 fn left_over(root: &Path, files: &[File]) -> Vec<String> {
     let paths: BTreeSet<PathBuf> = files.iter().map(|(name, _)| root.join(FOLDER).join(name)).collect();
     let folders: BTreeSet<&Path> = paths.iter().filter_map(|path| path.parent()).collect();

@@ -1,4 +1,4 @@
-//! How the cost of a mesh grows with its triangles, measured and drawn: the figures of `docs/measurements/benchmarks.md`.
+//! Growth of a mesh's cost with its triangles, measured and drawn: the figures of `docs/measurements/benchmarks.md`.
 
 use std::path::Path;
 

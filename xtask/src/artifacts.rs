@@ -1,4 +1,4 @@
-//! Programs that cargo has compiled, as its messages report them.
+//! Compiled programs, as cargo's messages report them.
 
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
@@ -14,7 +14,7 @@ pub struct Artifact {
     pub executable: PathBuf,
     /// The `Cargo.toml` of its package.
     pub manifest: PathBuf,
-    /// What it is: `bin`, `lib`, `test`, `bench`.
+    /// Kind of target: `bin`, `lib`, `test`, `bench`.
     pub kind: String,
     /// The name of the target.
     pub name: String,
@@ -22,7 +22,7 @@ pub struct Artifact {
     pub is_test: bool,
 }
 
-/// Compiles what the words choose, such as `test --no-run`, and answers the programs.
+/// Compiles the targets that the words choose, such as `test --no-run`, and returns the programs.
 ///
 /// # Errors
 /// If something does not compile; cargo has printed why.
@@ -40,7 +40,7 @@ pub fn compile(root: &Path, args: &[&str], env: &[(&str, &str)]) -> Result<Vec<A
     artifacts(&String::from_utf8_lossy(&output.stdout))
 }
 
-/// Compiles a bench as `cargo bench` does, and answers its executable.
+/// Compiles a bench as `cargo bench` does, and returns its executable.
 ///
 /// # Errors
 /// If it does not compile.
@@ -50,7 +50,7 @@ pub fn bench(root: &Path, package: &str, name: &str) -> Result<PathBuf, String> 
     bench.map(|artifact| artifact.executable).ok_or_else(|| format!("cargo has not built the bench {name}"))
 }
 
-/// The programs among cargo's messages, one JSON object a line.
+/// Reads the programs from cargo's messages, one JSON object per line.
 fn artifacts(messages: &str) -> Result<Vec<Artifact>, String> {
     let mut found = Vec::new();
     for line in messages.lines().filter(|line| line.starts_with('{')) {

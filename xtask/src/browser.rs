@@ -1,4 +1,4 @@
-//! The browser that opens the report in a test.
+//! Browser that opens the report in a test.
 
 use std::path::{Path, PathBuf};
 
@@ -7,17 +7,17 @@ use crate::shell;
 /// Programs to try, in order.
 const NAMES: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "chrome"];
 
-/// The browser: `$ELBOWROOM_CHROMIUM`, or the first of the usual names on the search path.
+/// Finds the browser: `$ELBOWROOM_CHROMIUM`, or the first of the usual names on the search path.
 pub fn find(root: &Path) -> Option<PathBuf> {
     let named = std::env::var("ELBOWROOM_CHROMIUM").ok();
     let mut candidates = named.iter().map(String::as_str).chain(NAMES);
     candidates.find(|name| shell::succeeds(root, name, &["--version"])).map(PathBuf::from)
 }
 
-/// The browser, from Debian where there is none.
+/// Finds the browser, or installs it from Debian.
 ///
 /// # Errors
-/// If it cannot be had; the message says what to do.
+/// If there is no browser and none can be installed; the message says what to do.
 pub fn install(root: &Path) -> Result<PathBuf, String> {
     if let Some(browser) = find(root) {
         println!("the browser is {}", browser.display());

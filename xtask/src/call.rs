@@ -1,9 +1,9 @@
-//! A command line: how it failed, its options, the folders that it means.
+//! Command line: failures, options, and the folders that it refers to.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Why a command did not end well, in the words to print.
+/// Why a command failed, as text to print.
 #[derive(Debug)]
 pub enum Failure {
     /// A check found something: exit 1.
@@ -18,7 +18,7 @@ impl From<String> for Failure {
     }
 }
 
-/// Prints why a command failed, with its help where the call was wrong, and answers the exit status.
+/// Prints why a command failed, with its help if the call was wrong, and returns the exit status.
 pub fn exit(result: Result<(), Failure>, help: &str) -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
@@ -33,25 +33,25 @@ pub fn exit(result: Result<(), Failure>, help: &str) -> ExitCode {
     }
 }
 
-/// The value of an option that counts something.
+/// Parses the value of an option that is a count.
 ///
 /// # Errors
-/// Anything but a whole number of 1 or more.
+/// Anything except a whole number of 1 or more.
 pub fn count(option: &str, value: &str) -> Result<usize, String> {
     let number = value.parse().ok().filter(|n| *n > 0);
     number.ok_or_else(|| format!("`{option} {value}`: write a whole number of 1 or more"))
 }
 
-/// Where the real robots are: `given`, or `$ELBOWROOM_DATA`, or beside the workspace.
+/// Folder of the real robots: `given`, or `$ELBOWROOM_DATA`, or beside the workspace.
 pub fn data_folder(root: &Path, given: Option<&Path>) -> PathBuf {
     let given = given.map(Path::to_path_buf).or_else(|| std::env::var_os("ELBOWROOM_DATA").map(PathBuf::from));
     given.unwrap_or_else(|| root.join("../shared/data"))
 }
 
-/// The root of the workspace, wherever the command was started.
+/// Root of the workspace, wherever the command was started.
 ///
 /// # Errors
-/// Where the manifest of this package has no folder above it.
+/// If the manifest of this package has no folder above it.
 pub fn workspace_root() -> Result<PathBuf, String> {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     here.parent().map(Path::to_path_buf).ok_or_else(|| format!("{} has no parent directory", here.display()))

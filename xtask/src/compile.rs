@@ -1,4 +1,4 @@
-//! C++ programs of the measurements: compiled again only where something has changed.
+//! C++ programs of the measurements, compiled again only if something has changed.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,16 +7,16 @@ use xtask::shell;
 
 use crate::{machine, native};
 
-/// What a program is made of.
+/// Source and options of a program.
 pub struct Program<'a> {
     pub compiler: &'a str,
     pub name: &'a str,
     pub source: PathBuf,
-    /// Other sources of ours that it includes.
+    /// Other sources of the project that it includes.
     pub included: Vec<PathBuf>,
-    /// Before the source.
+    /// Compiler arguments before the source.
     pub flags: Vec<String>,
-    /// After it.
+    /// Compiler arguments after the source.
     pub links: Vec<String>,
 }
 

@@ -1,4 +1,4 @@
-//! The crates of the workspace and their groups: a folder `crates/GROUP/CRATE` for each.
+//! Crates of the workspace and their groups: each has a folder `crates/GROUP/CRATE`.
 
 use std::path::{Path, PathBuf};
 
@@ -18,23 +18,23 @@ pub const GROUPS: [(&str, &[&str]); 7] = [
 /// One crate of the workspace.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Crate {
-    /// The folder above it.
+    /// Name of the folder above it.
     pub group: String,
-    /// Its own folder's name, which its package has after `elbowroom-`.
+    /// Name of its folder; its package is `elbowroom-` and this name.
     pub name: String,
     /// Its folder.
     pub folder: PathBuf,
 }
 
 impl Crate {
-    /// The package's name.
+    /// Name of the package.
     #[must_use]
     pub fn package(&self) -> String {
         package(&self.name)
     }
 }
 
-/// The package of the crate with this name.
+/// Name of the package of the crate with this name.
 #[must_use]
 pub fn package(name: &str) -> String {
     if name == "elbowroom" { name.to_owned() } else { format!("elbowroom-{name}") }
@@ -43,16 +43,16 @@ pub fn package(name: &str) -> String {
 /// Reads a `Cargo.toml`.
 ///
 /// # Errors
-/// Names the file.
+/// If the file cannot be read or parsed; the message names it.
 pub fn manifest(path: &Path) -> Result<Table, String> {
     let text = std::fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))?;
     text.parse().map_err(|e| format!("{}: {e}", path.display()))
 }
 
-/// Every crate below `crates`, sorted by group and name.
+/// Finds every crate below `crates`, sorted by group and name.
 ///
 /// # Errors
-/// A folder that cannot be read.
+/// If a folder cannot be read.
 pub fn find(root: &Path) -> Result<Vec<Crate>, String> {
     let mut found = Vec::new();
     for group in folders(&root.join("crates"))? {

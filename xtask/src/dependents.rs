@@ -1,4 +1,4 @@
-//! Who depends on whom, from the manifests: what a change to a crate can break.
+//! Dependents of packages, from the manifests: the packages that a change of a crate can break.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::path::Path;
 use toml::{Table, Value};
 use xtask::crates::{self, Crate};
 
-/// A package of the workspace, with the manifest that says what it uses.
+/// A package of the workspace, with its manifest.
 #[derive(Debug)]
 pub struct Package {
     /// Its folder below the root, with a slash at the end.
@@ -15,7 +15,7 @@ pub struct Package {
     pub manifest: Table,
 }
 
-/// Every package of the workspace, by its name.
+/// Reads every package of the workspace, by its name.
 pub fn packages(root: &Path) -> Result<BTreeMap<String, Package>, String> {
     let found = crates::find(root)?.into_iter();
     let crates = found.map(|Crate { group, name, .. }| (crates::package(&name), format!("crates/{group}/{name}/")));
@@ -28,7 +28,7 @@ pub fn packages(root: &Path) -> Result<BTreeMap<String, Package>, String> {
     crates.chain(tools).map(read).collect()
 }
 
-/// The changed packages, all that link them, and those whose tests use one of these; each with how many steps it is away.
+/// Finds the changed packages, all that link them, and those whose tests use one of these; each with its distance in steps.
 pub fn dependents(packages: &BTreeMap<String, Package>, changed: BTreeSet<String>) -> BTreeMap<String, usize> {
     let uses = |package: &str, kind: &str, of: &BTreeMap<String, usize>| {
         let used = packages[package].manifest.get(kind).and_then(Value::as_table)?;

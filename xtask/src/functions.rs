@@ -1,4 +1,4 @@
-//! How long the functions of a source are.
+//! Lengths of the functions of a source.
 
 /// One function of a formatted source.
 #[derive(Debug, PartialEq, Eq)]
@@ -7,11 +7,11 @@ pub struct Function<'t> {
     pub name: &'t str,
     /// The line of its `fn`, from 1.
     pub line: usize,
-    /// Its lines, the closing brace included.
+    /// Number of its lines, the closing brace included.
     pub lines: usize,
 }
 
-/// Every function of a formatted source: from its `fn` to the brace that closes at the same depth.
+/// Finds every function of a formatted source: from its `fn` to the brace that closes at the same depth.
 pub fn functions(text: &str) -> Vec<Function<'_>> {
     let lines: Vec<&str> = text.lines().collect();
     let mut found = Vec::new();

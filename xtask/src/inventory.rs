@@ -1,4 +1,4 @@
-//! How large the crates are: files, lines, public items, and how long files and functions get.
+//! Sizes of the crates: files, lines, public items, and lengths of files and functions.
 
 use std::path::{Path, PathBuf};
 
@@ -6,7 +6,7 @@ use xtask::crates;
 
 use crate::functions::functions;
 
-/// What was counted in one crate, or in all.
+/// Counts for one crate, or for all.
 #[derive(Debug, Default)]
 struct Size {
     /// Lines of each file below `src`.
@@ -88,7 +88,7 @@ fn is_public(line: &str) -> bool {
     rest.and_then(|rest| rest.split_whitespace().next()).is_some_and(|word| ITEMS.contains(&word))
 }
 
-/// Median, 90th percentile and maximum.
+/// Returns median, 90th percentile and maximum.
 fn spread(lengths: &[usize]) -> [usize; 3] {
     let mut sorted = lengths.to_vec();
     sorted.sort_unstable();

@@ -1,4 +1,4 @@
-//! What the programs of a developer share: [`Failure`], options, other programs, the Python of the references.
+//! Parts shared by the developers' programs: [`Failure`], options, other programs, the Python of the references.
 #![allow(clippy::print_stdout, reason = "for programs that talk to the person who started them")]
 
 pub mod browser;

@@ -1,24 +1,24 @@
-//! What is measured on.
+//! Machine of a measurement.
 
 use std::fs;
 
-/// The last core this process may run on: the first is where interrupts go. `None` if the system does not say.
+/// The last core that this process may use; the first one handles interrupts. `None` if the system does not say.
 pub fn core() -> Option<usize> {
     let status = fs::read_to_string("/proc/self/status").ok()?;
     last_of(status.lines().find_map(|line| line.strip_prefix("Cpus_allowed_list:"))?)
 }
 
-/// The last number of a list like `0-3,8`.
+/// Returns the last number of a list such as `0-3,8`.
 fn last_of(list: &str) -> Option<usize> {
     list.trim().rsplit([',', '-']).next()?.parse().ok()
 }
 
-/// The processor's name.
+/// Name of the processor.
 pub fn processor() -> String {
     field("model name").unwrap_or_else(|| std::env::consts::ARCH.to_owned())
 }
 
-/// The instruction sets it has: what was compiled for others must be compiled again.
+/// Instruction sets of the processor: programs compiled for other sets must be compiled again.
 pub fn instruction_sets() -> String {
     field("flags").or_else(|| field("Features")).unwrap_or_default()
 }

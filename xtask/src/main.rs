@@ -1,9 +1,10 @@
 //! Checks, generated files and benches of the workspace: `cargo xtask help` lists them.
 //!
-//! This program is small, so that the first check runs after seconds. What needs the product's own crates is the program
-//! `elbowroom-devtools`, which it starts: in the profile of the tests where it checks, as a release build where it measures.
+//! This program is small, so that the first check runs after seconds. Commands that need the product's own crates are
+//! in the program `elbowroom-devtools`, which it starts: in the profile of the tests for checks, as a release build for
+//! measurements.
 //!
-//! **Invariant.** If a step of `test` fails, the steps after it always run all the same, and the exit status is always 1.
+//! **Invariant.** If a step of `test` fails, the steps after it always run nevertheless, and the exit status is always 1.
 #![allow(clippy::print_stdout, reason = "this program talks to the person who started it")]
 
 mod artifacts;
@@ -111,10 +112,10 @@ cargo xtask COMMAND
 Exit status: 0 all well, 1 a check failed, 2 the call is wrong.
 ";
 
-/// The parsers that `fuzz` throws files at, besides the cell file's.
+/// Parsers that `fuzz` tests, besides the cell file's.
 const PARSERS: [&str; 11] = ["urdf", "srdf", "scene", "yaml", "stl", "obj", "dae", "gltf", "ply", "off", "mesh"];
 
-/// Commands of `elbowroom-devtools` that measure, or run long: as a release build.
+/// Commands of `elbowroom-devtools` that measure or run long: they use a release build.
 const MEASURING: [&str; 7] = ["cross-validate", "contacts", "evade", "golden", "paths", "rpq", "scaling"];
 
 fn main() -> ExitCode {
@@ -153,7 +154,7 @@ fn dispatch(words: &[&str]) -> Result<(), Failure> {
     }
 }
 
-/// Runs a command of `elbowroom-devtools`. Nothing is printed: the standard output may be read by a program.
+/// Runs a command of `elbowroom-devtools`. It prints nothing itself: a program may read the standard output.
 fn devtools(root: &Path, words: &[&str], profile: &[&str]) -> Result<(), Failure> {
     let run = ["run", "--quiet", "--package", "elbowroom-devtools"];
     let args: Vec<&str> = run.iter().chain(profile).chain(&["--"]).chain(words).copied().collect();
@@ -169,7 +170,7 @@ fn fuzz(root: &Path, seconds: &str) -> Result<(), Failure> {
         return Err(Failure::Usage(format!("`fuzz {seconds}`: SECONDS is a whole number")));
     }
     let fuzz = |words: &[&str]| devtools(root, &[&["fuzz"], words].concat(), &["--release"]);
-    // Real files, where they are, damage more interestingly than the built-in samples.
+    // If real files exist, they make better starting points for damage than the built-in samples.
     let data = xtask::call::data_folder(root, None).display().to_string();
     for parser in PARSERS {
         fuzz(&["parser", parser, seconds, &data])?;

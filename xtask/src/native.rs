@@ -1,11 +1,11 @@
-//! Other programs, their output on standard error: standard output is for the table or the JSON lines alone.
+//! Other programs, with their output on standard error: standard output is only for the table or the JSON lines.
 
 use std::path::Path;
 use std::process::Stdio;
 
 use crate::shell::command;
 
-/// Prints and runs; anything but success is an error that names the call.
+/// Prints and runs a call; anything except success is an error that names the call.
 pub fn run(folder: &Path, words: &[&str], env: &[(&str, &str)]) -> Result<(), String> {
     let call = words.join(" ");
     let shown = if call.len() > 160 { format!("{}…", call.chars().take(160).collect::<String>()) } else { call };
@@ -18,7 +18,7 @@ pub fn run(folder: &Path, words: &[&str], env: &[(&str, &str)]) -> Result<(), St
     if status.success() { Ok(()) } else { Err(format!("`{shown}` failed ({status})")) }
 }
 
-/// As [`run`], its standard output being ours.
+/// Like [`run`], but the program writes to this process's standard output.
 pub fn show(folder: &Path, words: &[&str]) -> Result<(), String> {
     let (program, args) = words.split_first().ok_or("nothing to run")?;
     let mut command = command(program);
@@ -27,14 +27,14 @@ pub fn show(folder: &Path, words: &[&str]) -> Result<(), String> {
     if status.success() { Ok(()) } else { Err(format!("`{program}` failed ({status})")) }
 }
 
-/// Whether a program is there at all.
+/// Whether a program exists.
 pub fn exists(program: &str) -> bool {
     let mut command = command(program);
     command.arg("--version").stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     command.status().is_ok()
 }
 
-/// Packages by apt, as root on Debian and its kin.
+/// Installs packages by apt, as root on Debian and related systems.
 pub fn apt(folder: &Path, packages: &[&str]) -> Result<(), String> {
     let quiet = [("DEBIAN_FRONTEND", "noninteractive")];
     let install: Vec<&str> =
@@ -44,7 +44,7 @@ pub fn apt(folder: &Path, packages: &[&str]) -> Result<(), String> {
         .map_err(|e| format!("{e}; by hand: apt-get install {}", packages.join(" ")))
 }
 
-/// The cargo that started us.
+/// The cargo that started this program.
 pub fn cargo() -> String {
     std::env::var("CARGO").unwrap_or_else(|_| "cargo".into())
 }

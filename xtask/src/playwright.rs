@@ -1,25 +1,25 @@
-//! Playwright, which drives the browser in the tests of the view. It brings no browser, and downloads none.
+//! Playwright, which drives the browser in the tests of the view. It includes no browser, and downloads none.
 
 use std::path::{Path, PathBuf};
 
 use crate::shell;
 
-/// Pinned, so that the tests are driven in the same way everywhere.
+/// Pinned, so that tests are driven in the same way everywhere.
 const PACKAGE: &str = "playwright==1.65.2";
-/// Proves that what is installed is what is pinned, and starts.
+/// Checks that the pinned version is installed, and starts.
 const PROBE: &str = "import importlib.metadata as m, playwright.sync_api; assert m.version('playwright') == '1.65.2'";
 const FOLDER: &str = "target/playwright";
 
-/// The Python that has it, where it is there.
+/// Finds the Python with Playwright, if installed.
 pub fn ready(root: &Path) -> Option<PathBuf> {
     let python = root.join(FOLDER).join("bin/python");
     shell::succeeds(root, &python.to_string_lossy(), &["-c", PROBE]).then_some(python)
 }
 
-/// The Python that has it, from PyPI if it is not there.
+/// Finds the Python with Playwright, or installs it from PyPI.
 ///
 /// # Errors
-/// If it cannot be had; the message says what to do.
+/// If it cannot be installed; the message says what to do.
 pub fn install(root: &Path) -> Result<PathBuf, String> {
     if let Some(python) = ready(root) {
         println!("{FOLDER} has {PACKAGE}");

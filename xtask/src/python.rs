@@ -1,4 +1,4 @@
-//! The Python that a few tests use as an independent reference: Pinocchio for kinematics, readers of recordings.
+//! Python that a few tests use as an independent reference: Pinocchio for kinematics, readers of recordings.
 
 use std::path::{Path, PathBuf};
 
@@ -8,27 +8,27 @@ use crate::shell;
 const PACKAGES: [&str; 5] =
     ["pin==4.1.0", "numpy==2.4.6", "mcap==1.6.0", "mcap-ros2-support==0.6.0", "rosbags==0.11.9"];
 
-/// Proves that what is installed is what is pinned.
+/// Checks that the pinned versions are installed.
 const PROBE: &str = "import pinocchio, numpy, mcap_ros2.decoder, rosbags.typesys
 from importlib.metadata import version
 assert pinocchio.__version__ == '4.1.0' and numpy.__version__ == '2.4.6'
 assert (version('mcap'), version('mcap-ros2-support'), version('rosbags')) == ('1.6.0', '0.6.0', '0.11.9')";
 
-/// The interpreter inside `target/venv`, whether or not it exists.
+/// Path of the interpreter inside `target/venv`, whether or not it exists.
 pub fn interpreter(root: &Path) -> PathBuf {
     root.join("target/venv/bin/python")
 }
 
-/// The interpreter, where it is there with every pinned package.
+/// Returns the interpreter, if it exists with every pinned package.
 pub fn ready(root: &Path) -> Option<PathBuf> {
     let python = interpreter(root);
     shell::succeeds(root, &python.to_string_lossy(), &["-c", PROBE]).then_some(python)
 }
 
-/// Makes `target/venv` ready: nothing if it already is, else a fresh environment from PyPI.
+/// Prepares `target/venv`: does nothing if it is complete, else makes a new environment from PyPI.
 ///
 /// # Errors
-/// Where Python, `venv` or the packages cannot be had; the message says what to do.
+/// If Python, `venv` or the packages cannot be installed; the message says what to do.
 pub fn install(root: &Path) -> Result<(), String> {
     if ready(root).is_some() {
         println!("target/venv has {}", PACKAGES.join(", "));

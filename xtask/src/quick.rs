@@ -1,4 +1,4 @@
-//! `cargo xtask quick`: the checks of what changed, and the quick ones of what depends on it.
+//! `cargo xtask quick`: checks of changed crates, and the quick checks of their dependents.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -11,11 +11,11 @@ use crate::test_run::{Choice, Program};
 use crate::workspace::WORKSPACE;
 use crate::{documents, layers, suite, test_run};
 
-/// Longest last time, in seconds, of the units of tests that run in crates which only depend on a change.
+/// Longest last time, s, of test units that run in crates which only depend on a change.
 const LONGEST_BEYOND_S: f64 = 1.0;
 
-/// Checks what differs from `since`, a commit: formats, layers, documents, lints, then the tests of the changed crates and those
-/// that are quick of all that depend on them.
+/// Checks the changes since the commit `since`: formats, layers, documents, lints, then all tests of the changed crates and
+/// the quick tests of their dependents.
 pub fn run(root: &Path, since: &str) -> Result<(), String> {
     let files = changed(root, since)?;
     println!("{} files differ from {since}", files.len());
@@ -29,7 +29,7 @@ pub fn run(root: &Path, since: &str) -> Result<(), String> {
         return Ok(());
     }
     println!("affected: {}", packages.keys().map(String::as_str).collect::<Vec<_>>().join(", "));
-    // The whole workspace: what has not changed costs nothing, and with a part of it libraries would have other features.
+    // The whole workspace: unchanged crates cost nothing, and in a part of it libraries would have other features.
     shell::cargo(root, &[&["clippy"], &WORKSPACE[..], &["--all-targets", "--", "-D", "warnings"]].concat(), &[])?;
     suite::announce_data(root);
     let references = References::find(root, true)?;
@@ -46,14 +46,14 @@ pub fn run(root: &Path, since: &str) -> Result<(), String> {
     test_run::run(root, &WORKSPACE, &references.environment().collect::<Vec<_>>(), &choice, || ())
 }
 
-/// Files that differ from a commit, and new ones.
+/// Lists files that differ from a commit, and new ones.
 fn changed(root: &Path, since: &str) -> Result<Vec<String>, String> {
     let differing = shell::output(root, "git", &["diff", "--name-only", since])?;
     let new = shell::output(root, "git", &["ls-files", "--others", "--exclude-standard"])?;
     Ok(differing.lines().chain(new.lines()).map(str::to_owned).collect())
 }
 
-/// The packages to check again, each with how many steps it is away from a change.
+/// Returns the packages to check again, each with its distance in steps from a change.
 fn affected(packages: &BTreeMap<String, Package>, files: &[String]) -> BTreeMap<String, usize> {
     let concerns_all = |file: &String| {
         ["Cargo.", ".cargo/", "clippy.toml", "rustfmt.toml", "examples/", "clients/"]

@@ -1,20 +1,20 @@
-//! What some tests compare with or open pages in: Python packages, a browser, and the driver of the browser.
+//! References of some tests: Python packages to compare with, a browser to open pages in, and its driver.
 
 use std::path::Path;
 
 use xtask::{browser, playwright, python};
 
-/// Paths as the tests take them from the environment; those that are missing leave tests out, with a message.
+/// Paths that the tests read from the environment; without a path its tests are left out, with a message.
 #[derive(Debug)]
 pub struct References {
     found: [(&'static str, Option<String>); 3],
 }
 
 impl References {
-    /// Installs what is missing; offline, only searches and says what is left out.
+    /// Installs missing references; offline, only searches and reports what is left out.
     ///
     /// # Errors
-    /// What cannot be installed, and how to do it by hand.
+    /// If a reference cannot be installed; the message says how to do it by hand.
     pub fn find(root: &Path, offline: bool) -> Result<Self, String> {
         if !offline {
             python::install(root)?;
@@ -33,7 +33,7 @@ impl References {
         Ok(Self { found })
     }
 
-    /// The variables to set.
+    /// Environment variables to set.
     pub fn environment(&self) -> impl Iterator<Item = (&str, &str)> {
         self.found.iter().filter_map(|(name, path)| Some((*name, path.as_deref()?)))
     }

@@ -1,10 +1,11 @@
-//! Running other programs: every call is printed before it runs.
+//! Calls of other programs: each call is printed before it runs.
 
 use std::path::Path;
 use std::process::Command;
 
-/// A program to run, without what cargo tells about our own package: build scripts that read it (of `ring`) would run anew at each
-/// change between `cargo test` and `cargo xtask`, and everything above them would be compiled again.
+/// Makes a command for a program, without cargo's variables about this package: build scripts that read them (of
+/// `ring`) would run again at each change between `cargo test` and `cargo xtask`, and all dependents would be compiled
+/// again.
 pub fn command(program: &str) -> Command {
     let mut command = Command::new(program);
     let of_package = |name: &str| name.starts_with("CARGO_PKG_") || name.starts_with("CARGO_MANIFEST_");
@@ -25,7 +26,7 @@ pub fn run(root: &Path, program: &str, args: &[&str], env: &[(&str, &str)]) -> R
     }
 }
 
-/// As [`run`], for the cargo that started us.
+/// Like [`run`], for the cargo that started this program.
 ///
 /// # Errors
 /// An exit status other than 0.
@@ -38,25 +39,25 @@ pub fn cargo(root: &Path, args: &[&str], env: &[(&str, &str)]) -> Result<(), Str
     }
 }
 
-/// As [`cargo`], silent; gives the exit status.
+/// Like [`cargo`], but silent; returns the exit status.
 ///
 /// # Errors
-/// Where cargo does not start.
+/// If cargo does not start.
 pub fn cargo_status(root: &Path, args: &[&str]) -> Result<i32, String> {
     let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".into());
     wait(root, &cargo, args, &[])
 }
 
-/// Prints and runs; gives the exit status, -1 if a signal ended the program.
+/// Prints and runs a call; returns the exit status, -1 if a signal ended the program.
 ///
 /// # Errors
-/// Where the program does not start.
+/// If the program does not start.
 pub fn status(root: &Path, program: &str, args: &[&str], env: &[(&str, &str)]) -> Result<i32, String> {
     println!("$ {}", line(program, args, env));
     wait(root, program, args, env)
 }
 
-/// What `program args…` prints.
+/// Returns the output of `program args…`.
 ///
 /// # Errors
 /// An exit status other than 0, with the standard error of the program.
@@ -64,10 +65,10 @@ pub fn output(root: &Path, program: &str, args: &[&str]) -> Result<String, Strin
     output_with(root, program, args, &[])
 }
 
-/// As [`output`], with more variables.
+/// Like [`output`], with more environment variables.
 ///
 /// # Errors
-/// As there.
+/// As for [`output`].
 pub fn output_with(root: &Path, program: &str, args: &[&str], env: &[(&str, &str)]) -> Result<String, String> {
     let output = command(program).args(args).envs(env.iter().copied()).current_dir(root).output();
     let output = output.map_err(|e| format!("cannot start `{program}`: {e}"))?;
@@ -77,7 +78,7 @@ pub fn output_with(root: &Path, program: &str, args: &[&str], env: &[(&str, &str
     Ok(String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
-/// Whether `program args…` runs and ends well; prints nothing.
+/// Whether `program args…` runs and succeeds; prints nothing.
 pub fn succeeds(root: &Path, program: &str, args: &[&str]) -> bool {
     let output = command(program).args(args).current_dir(root).output();
     output.is_ok_and(|output| output.status.success())
@@ -100,15 +101,15 @@ fn quoted(word: &str) -> String {
     if word.is_empty() || word.contains([' ', '\n', '"', '$', '*']) { format!("'{word}'") } else { word.to_owned() }
 }
 
-/// Where cargo puts what it builds.
+/// Folder of cargo's build output.
 pub fn target_folder(root: &Path) -> std::path::PathBuf {
     std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), |folder| root.join(folder))
 }
 
-/// Makes a folder and those above it.
+/// Makes a folder and its parents.
 ///
 /// # Errors
-/// Names the folder.
+/// If that fails; the message names the folder.
 pub fn make_folder(folder: &Path) -> Result<(), String> {
     std::fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))
 }

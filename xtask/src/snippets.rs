@@ -1,12 +1,12 @@
-//! Runs the commands that the documents promise.
+//! Runs the commands of the documents.
 //!
-//! They are run with the command that the tests compiled: a `cargo` before cargo on the search path starts it for
+//! They run with the command that the tests compiled: a program `cargo` earlier on the search path starts it for
 //! `cargo run`, and `elbowroom` is it. A release build would compile the workspace once more.
 //!
 //! A ```` ```sh ```` block that follows the line `<!-- run -->` must end with exit status 0 when bash runs it in the
-//! workspace root; `<!-- run: 1 -->` names another status. One that is not run says why: `<!-- not run: it never ends -->`.
-//! A ```` ```text ```` block that follows `<!-- shows: COMMAND -->` is what
-//! the command prints, or lines of it in their order; in lines with µs, times may differ.
+//! workspace root; `<!-- run: 1 -->` names another status. A block that is not run says why: `<!-- not run: it never
+//! ends -->`. A ```` ```text ```` block that follows `<!-- shows: COMMAND -->` has the output of the command, or some
+//! lines of it in their order; in lines with µs, times may differ.
 
 use std::path::{Path, PathBuf};
 
@@ -58,23 +58,23 @@ impl Snippet {
     }
 }
 
-/// The first line of the document that is not in what a command prints, in the same order.
+/// Finds the first line of the document that is missing in the output of a command, in the same order.
 fn missing_line<'a>(shown: &'a [String], printed: &str) -> Option<&'a String> {
     let mut printed = printed.lines();
-    // `…` stands for lines that are left out.
+    // `…` stands for omitted lines.
     let mut shown = shown.iter().filter(|line| line.trim() != "…");
     shown.find(|line| !printed.by_ref().any(|found| is_shown(line, found)))
 }
 
-/// Whether a printed line is that of the document. If the document shows times in µs, the times before a bracket may differ, and a
-/// busy machine shows some of them in ms or s.
+/// Whether a printed line matches a line of the document. If the document shows times in µs, the times before a bracket
+/// may differ, as may their units: a busy machine prints some of them in ms or s.
 fn is_shown(shown: &str, printed: &str) -> bool {
     let (shown, printed) = (shown.trim_end(), printed.trim_end());
     let has_times = shown.split_whitespace().any(|word| word.trim_end_matches(',') == "µs");
     if has_times { without_times(shown) == without_times(printed) } else { shown == printed }
 }
 
-/// The words of a line up to a bracket, without each number and its unit of time, and the rest as it is.
+/// Returns the words of a line up to a bracket, without numbers and their units of time, and the rest unchanged.
 fn without_times(line: &str) -> Vec<&str> {
     let (before, rest) = line.split_at(line.find('(').unwrap_or(line.len()));
     let mut words: Vec<&str> = Vec::new();
@@ -90,7 +90,7 @@ fn without_times(line: &str) -> Vec<&str> {
     words
 }
 
-/// The search path with the two programs that stand for the installed command.
+/// Returns the search path with the two programs that stand for the installed command.
 fn search_path(root: &Path) -> Result<String, String> {
     let folder = shell::target_folder(root).join("snippets");
     shell::make_folder(&folder)?;
@@ -167,13 +167,13 @@ fn parse(text: &str) -> Result<Vec<Snippet>, String> {
     Ok(snippets)
 }
 
-/// Whether the line says why the block below it is not run.
+/// Whether the line says why the following block is not run.
 fn is_reason(line: &str) -> bool {
     let reason = line.trim().strip_prefix("<!-- not run:").and_then(|rest| rest.strip_suffix("-->"));
     reason.is_some_and(|reason| !reason.trim().is_empty())
 }
 
-/// The expected exit status, where the line is a marker.
+/// Parses the expected exit status, if the line is a marker.
 fn marker(line: &str) -> Result<Option<i32>, String> {
     let Some(inner) = line.trim().strip_prefix("<!-- run").and_then(|rest| rest.strip_suffix("-->")) else {
         return Ok(None);

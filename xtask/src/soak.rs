@@ -1,4 +1,4 @@
-//! `cargo xtask soak`: runs that take minutes to hours, and that no change has to wait for.
+//! `cargo xtask soak`: runs of minutes to hours, which are not part of the checks of a change.
 
 use std::path::Path;
 use std::time::Instant;
@@ -9,14 +9,14 @@ use xtask::{Failure, shell};
 struct Run {
     name: &'static str,
     what: &'static str,
-    /// Words after `cargo`.
+    /// Arguments of `cargo`.
     words: &'static [&'static str],
     env: &'static [(&'static str, &'static str)],
 }
 
 const LONG: (&str, &str) = ("ELBOWROOM_LONG", "1");
 
-/// `docs/measurements/soak.md` has what was seen.
+/// The runs; `docs/measurements/soak.md` has their results.
 const RUNS: [Run; 15] = [
     Run {
         name: "geometry",
@@ -141,7 +141,7 @@ const RUNS: [Run; 15] = [
     },
 ];
 
-/// Runs those that are named, or lists all.
+/// Runs the named ones, or lists all.
 pub fn run(root: &Path, names: &[&str]) -> Result<(), Failure> {
     if names.is_empty() {
         for run in &RUNS {

@@ -1,4 +1,4 @@
-//! `cargo xtask test`: every check, timed, with a table at the end.
+//! `cargo xtask test`: all checks with their times, and a table at the end.
 
 use std::path::Path;
 use std::sync::Mutex;
@@ -14,21 +14,21 @@ use crate::{documents, layers, snippets, test_run};
 
 type Check = fn(&Context) -> Result<(), String>;
 
-/// How a step ended and how long it took.
+/// Result of a step, and its duration.
 struct Outcome {
     name: &'static str,
     ok: bool,
     time: Duration,
 }
 
-/// What every step knows.
+/// Data that every step has.
 struct Context<'a> {
     root: &'a Path,
     offline: bool,
     again: bool,
-    /// What the tests compare with and open pages in, while it is being installed.
+    /// References of the tests, while they are being installed.
     references: Mutex<Option<JoinHandle<Result<References, String>>>>,
-    /// Steps that run beside the tests, and how they ended.
+    /// Steps that run beside the tests, and their results.
     beside: Vec<&'static Step>,
     ended: Mutex<Vec<Outcome>>,
 }
@@ -39,8 +39,9 @@ struct Step {
     check: Check,
 }
 
-/// Cheap checks first: what fails fast should fail first. The workspace is compiled twice: built by `tests`, checked by `clippy` (and `docs`).
-/// What comes after `tests` runs beside them, so that no processor rests while crates are compiled one after another.
+/// The steps, cheap ones first, so that quick failures come first. The workspace is compiled twice: built by `tests`,
+/// checked by `clippy` (and `docs`). Steps after `tests` run beside them, so that no processor is idle while crates are
+/// compiled one after another.
 static STEPS: [Step; 10] = [
     Step { name: "fmt", what: "cargo fmt --check", check: fmt },
     Step {
@@ -110,7 +111,7 @@ fn step_name(word: Option<&str>) -> Result<String, String> {
     Err(format!("no step is called `{word}`; there are {}", names()))
 }
 
-/// Runs the chosen steps, all of them even where one fails, and sums up.
+/// Runs the chosen steps, all of them even if one fails, and prints a summary.
 pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
     if options.list {
         for step in &STEPS {
@@ -122,7 +123,7 @@ pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
     let mut chosen: Vec<&Step> = STEPS.iter().filter(is_chosen).collect();
     let (mut references, mut beside) = (None, Vec::new());
     if let Some(tests) = chosen.iter().position(|step| step.name == "tests") {
-        // Downloads wait for the network, so they go on beside the first steps.
+        // Downloads wait for the network, so they run beside the first steps.
         let (folder, offline) = (root.to_path_buf(), options.offline);
         references = Some(std::thread::spawn(move || References::find(&folder, offline)));
         beside = chosen.split_off(tests + 1);
@@ -131,7 +132,7 @@ pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
     let context = Context { root, offline: options.offline, again: options.again, references, beside, ended };
     let started = Instant::now();
     let mut outcomes: Vec<Outcome> = chosen.into_iter().map(|step| timed(step, &context)).collect();
-    // Where the tests do not compile, nothing has run beside them.
+    // If the tests do not compile, nothing has run beside them.
     run_beside(&context);
     outcomes.append(&mut locked(&context.ended));
     print_table(&outcomes, started.elapsed());
@@ -139,7 +140,7 @@ pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
     if failed.is_empty() { Ok(()) } else { Err(Failure::Check(format!("failed: {}", failed.join(", ")))) }
 }
 
-/// Runs the steps beside the tests that have not run yet, one after another.
+/// Runs the remaining steps that belong beside the tests, one after another.
 fn run_beside(context: &Context) {
     let mut ended = locked(&context.ended);
     while let Some(step) = context.beside.get(ended.len()) {
@@ -173,7 +174,7 @@ fn fmt(context: &Context) -> Result<(), String> {
 fn clippy(context: &Context) -> Result<(), String> {
     let args = [&["clippy"], &WORKSPACE[..], &["--all-targets", "--", "-D", "warnings"]].concat();
     shell::cargo(context.root, &args, &beside_tests(context))?;
-    // What differs without the feature is the command and the façade.
+    // Without the feature only the command and the façade differ.
     let without = ["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"];
     shell::cargo(context.root, &without, &beside_tests(context))
 }
@@ -182,7 +183,7 @@ fn tests(context: &Context) -> Result<(), String> {
     let references = locked(&context.references).take().and_then(|found| found.join().ok());
     let references = references.unwrap_or_else(|| Err("the installation of the references panicked".into()));
     announce_data(context.root);
-    // What cannot be installed fails the step, but not before the tests have run.
+    // A failed installation fails the step, but only after the tests have run.
     let environment = references.iter().flat_map(References::environment);
     let env: Vec<_> = network(context).into_iter().chain(environment).collect();
     let choice = Choice { longest: &|_| f64::INFINITY, again: context.again };
@@ -195,14 +196,14 @@ fn doctests(context: &Context) -> Result<(), String> {
     shell::cargo(context.root, &args, &beside_tests(context))
 }
 
-/// Tests on real robots pass where their data are missing: the log must show which run it was.
+/// Reports whether the real data exist: without them tests on real robots pass, so the log must show it.
 pub fn announce_data(root: &Path) {
     let folder = xtask::call::data_folder(root, None);
     let line = if folder.is_dir() { "real data:" } else { "tests on real data are skipped: no data at" };
     println!("{line} {}", folder.display());
 }
 
-/// Commands of `elbowroom-devtools` in the profile and with the features of the tests: they have compiled it already.
+/// Runs commands of `elbowroom-devtools` in the profile and with the features of the tests, which have compiled it already.
 fn devtools(context: &Context, words: &[&str]) -> Result<(), String> {
     let program = program(context.root, "elbowroom-devtools")?;
     shell::run(context.root, &program.to_string_lossy(), words, &[])
@@ -215,13 +216,14 @@ fn generated(context: &Context) -> Result<(), String> {
 
 fn docs(context: &Context) -> Result<(), String> {
     let mut env = beside_tests(context);
-    // Each crate merges itself into the index of the search, 3 s each. For pages with a search: remove `target/doc`, run `cargo doc`.
+    // Each crate merges itself into the search index, 3 s each. For pages with a search: remove `target/doc`, run
+    // `cargo doc`.
     let _ = std::fs::remove_dir_all(shell::target_folder(context.root).join("doc/search.index"));
     env.push(("RUSTDOCFLAGS", "-D warnings"));
     shell::cargo(context.root, &[&["doc", "--no-deps"], &WORKSPACE[..]].concat(), &env)
 }
 
-/// One job: other processors run tests.
+/// Limits cargo to one job: other processors run tests.
 fn beside_tests<'a>(context: &Context) -> Vec<(&'static str, &'a str)> {
     [network(context), vec![("CARGO_BUILD_JOBS", "1")]].concat()
 }

@@ -1,5 +1,6 @@
-//! The collision point beside Coal: robots of the data in slight contact with themselves, a box and a mesh. Point, triangles,
-//! normals and the link nearest to the base must be those that Coal finds when it checks pair by pair.
+//! Comparison of the collision point with Coal: robots of the data in slight contact with themselves, a box and a mesh.
+//! Point, triangles, normals and the link nearest to the base must equal those that Coal finds when it checks pair by
+//! pair.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -13,13 +14,13 @@ use elbowroom_scene::{Checker, CheckerOptions, Detail, Scene, SceneState};
 use crate::cross_validation::{self, reference, world};
 use xtask::Failure;
 
-/// What is run, beside [`reference::SCRIPT`].
+/// The script, beside [`reference::SCRIPT`].
 const SCRIPT: &[u8] = include_bytes!("coal_contacts.py");
 
-/// Without `--only`.
+/// Robots without `--only`.
 const ROBOTS: [&str; 5] = ["kuka_kr150_2", "abb_irb6650s_125_350", "staubli_tx60l", "fanuc_lrmate200ic5l", "ur5e"];
 
-/// What the words after `contacts` say.
+/// Options of `contacts`.
 #[derive(Debug, PartialEq)]
 struct Options {
     data: Option<PathBuf>,
@@ -45,7 +46,7 @@ impl Options {
     }
 }
 
-/// Compares every robot; an error where an answer differs.
+/// Compares every robot; an error if an answer differs.
 pub fn run(root: &Path, words: &[&str]) -> Result<(), Failure> {
     let options = Options::parse(words).map_err(Failure::Usage)?;
     let data = xtask::call::data_folder(root, options.data.as_deref());
@@ -68,9 +69,9 @@ pub fn run(root: &Path, words: &[&str]) -> Result<(), Failure> {
     }
 }
 
-/// What must be 0.
+/// Counts that must be 0.
 const WRONG: [&str; 7] = ["comparison", "pair", "link", "triangle", "point", "normal", "sign"];
-/// What is counted beside.
+/// Counts for information.
 const COUNTED: [&str; 7] = ["states", "free", "contacts", "several", "contained", "face", "edge"];
 
 fn compare_all(
@@ -113,7 +114,8 @@ fn compare_all(
     Ok(wrong)
 }
 
-/// States just within a contact: between a free one and one that collides, cut in half twelve times. Every fourth stays as it is.
+/// Returns states just within a contact, by twelve bisections between a free state and a colliding one. Every fourth
+/// state stays as it is.
 fn at_contact(scene: &Scene, random: &[Vec<f64>]) -> Result<Vec<Vec<f64>>, String> {
     let mut checker = Checker::new(scene, CheckerOptions::default());
     let mut state = SceneState::new(scene);
@@ -146,7 +148,7 @@ fn at_contact(scene: &Scene, random: &[Vec<f64>]) -> Result<Vec<Vec<f64>>, Strin
     Ok(states)
 }
 
-/// A line per state for the script, and µs per question.
+/// Returns a line per state for the script, and the time per query, µs.
 fn ours(scene: &Scene, states: &[Vec<f64>]) -> Result<(String, f64), String> {
     let mut first = BTreeMap::new();
     let mut count = 0;
@@ -228,7 +230,7 @@ mod tests {
         }
     }
 
-    /// Our own arm, where the reference is installed.
+    /// Uses the example arm, if the reference is installed.
     #[test]
     fn our_own_arm_meets_where_the_reference_says() {
         let root = crate::workspace_root().unwrap();

@@ -1,4 +1,4 @@
-//! Our answers beside theirs.
+//! Comparison of elbowroom's answers with those of the reference.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -13,35 +13,36 @@ use elbowroom_scene::{Checker, CheckerOptions, PairDistance, Scene, SceneState};
 use super::reference::Answers;
 use super::world;
 
-/// Distances agree where they differ by no more than this share, or by [`ABSOLUTE_M`].
+/// Largest relative difference of equal distances; [`ABSOLUTE_M`] is the absolute one.
 const RELATIVE: f64 = 1e-9;
 const ABSOLUTE_M: f64 = 1e-12;
 
-/// Of one scene over all states.
+/// Results of one scene over all states.
 #[derive(Debug, Default)]
 pub struct Comparison {
     pub states: usize,
     pub pairs: usize,
     pub contacts: usize,
-    /// One closed mesh lies wholly inside another: contact for us, a gap to the hollow surface for Coal.
+    /// States in which one closed mesh lies wholly inside another: a contact for elbowroom, a gap to the hollow surface
+    /// for Coal.
     pub contained: usize,
-    /// A primitive is nearest, and the difference is within what Coal's iteration leaves.
+    /// States in which a primitive is nearest, and the difference is within the error of Coal's iteration.
     pub iterated: usize,
-    /// States with another answer that nothing above explains, and the first of them in words.
+    /// States with another answer that nothing above explains; `first` describes the first of them.
     pub disagreements: usize,
     pub first: Vec<String>,
-    /// Greatest relative difference of distances that agree.
+    /// Greatest relative difference of equal distances.
     pub worst: f64,
-    /// µs per state: joint values set and distance computed.
+    /// Time per state, µs: joint values set and distance computed.
     pub distance_us: f64,
-    /// µs per state: joint values set and collision computed.
+    /// Time per state, µs: joint values set and collision computed.
     pub collide_us: f64,
 }
 
-/// What Coal's GJK may leave of a pair with a primitive, m and relative.
+/// Largest error of Coal's GJK for a pair with a primitive, m and relative.
 const ITERATED: f64 = 2e-6;
 
-/// Queries our checker in every state and compares.
+/// Queries elbowroom's checker in every state and compares.
 pub fn compare(scene: &Scene, states: &[Vec<f64>], theirs: &Answers) -> Result<Comparison, String> {
     let (ours, distance_us) = timed(scene, states, Checker::distance)?;
     let (hits, collide_us) = timed(scene, states, |checker, state| checker.collides(state).is_some())?;
@@ -64,7 +65,7 @@ pub fn compare(scene: &Scene, states: &[Vec<f64>], theirs: &Answers) -> Result<C
         }
         state.set_q(scene, RobotId(0), q).map_err(|e| e.to_string())?;
         let free_for_them = gap > 0.0 && !theirs.collides[i];
-        // Contact or a hair's breadth: their two answers need not fit each other there.
+        // At contact or very close to it the two answers of the reference need not agree with each other.
         let touching = difference > 0.0 && found.metres.max(gap) <= ITERATED;
         let same_comparison = hits[i] == theirs.collides[i] || touching;
         if found.metres == 0.0 && free_for_them && is_contained(scene, &state, &found) {
@@ -89,11 +90,11 @@ impl Comparison {
     }
 }
 
-/// All states are gone through so many times, and the fastest counts: ours are so short that one interruption by another
-/// program would be most of what is measured.
+/// Number of passes over all states, of which the fastest counts: the queries are so short that one interruption by another
+/// program would dominate the measurement.
 const PASSES: usize = 5;
 
-/// The answers, and µs per state.
+/// Returns the answers, and the time per state, µs.
 fn timed<'s, T>(
     scene: &'s Scene,
     states: &[Vec<f64>],
@@ -116,7 +117,7 @@ fn timed<'s, T>(
     Ok((answers, least * 1e6 / states.len().max(1) as f64))
 }
 
-/// True if no surface of the pair touches the other, but a solid lies inside another.
+/// Whether no surface of the pair touches the other, but a solid lies inside another.
 fn is_contained(scene: &Scene, state: &SceneState, found: &PairDistance) -> bool {
     let mut workspace = Workspace::new();
     let mut inside = false;
@@ -131,7 +132,8 @@ fn is_contained(scene: &Scene, state: &SceneState, found: &PairDistance) -> bool
                     Some(_) => return false,
                     None => {}
                 },
-                // A primitive whose middle is in the mesh: its surface may touch, or not; Coal takes it for full.
+                // The surface of a primitive whose centre is in the mesh may touch or not; Coal treats the primitive as
+                // solid.
                 (Shape::Mesh(x), _) => inside |= x.contains(pose_a.inverse().transform_point(pose_b.translation)),
                 (_, Shape::Mesh(y)) => inside |= y.contains(pose_b.inverse().transform_point(pose_a.translation)),
                 _ => {}
@@ -145,8 +147,9 @@ fn placed(scene: &Scene, state: &SceneState, id: GeometryId) -> Option<elbowroom
     state.pose(scene, id)
 }
 
-/// True if a primitive is nearest. Where it is a box, its twelve triangles must be as far away as we say: triangles
-/// against triangles is where both agree to the last digits, so that what is left is Coal's iteration.
+/// Whether a primitive is nearest and Coal's iteration explains the difference. For a box, its twelve triangles must
+/// have the distance that elbowroom reports: between triangles both libraries agree to the last digits, so the
+/// difference is Coal's iteration.
 fn iterated(scene: &Scene, state: &SceneState, found: &PairDistance) -> bool {
     let [a, b] = [found.a, found.b].map(|m| world::colliders(scene, m));
     let is_mesh = |collider: &&Collider| matches!(collider.shape, Shape::Mesh(_));
@@ -164,7 +167,7 @@ fn iterated(scene: &Scene, state: &SceneState, found: &PairDistance) -> bool {
     (least - found.metres).abs() <= RELATIVE * least + ABSOLUTE_M
 }
 
-/// The exact surface, of meshes and boxes.
+/// Returns the exact surface of meshes and boxes.
 fn triangles(shape: &Shape) -> Option<Arc<TriMesh>> {
     match shape {
         Shape::Mesh(mesh) => Some(Arc::clone(mesh)),

@@ -1,5 +1,5 @@
-//! Every robot and cell of the data beside Pinocchio and Coal: the same states, triangles and pairs; distances and
-//! contacts must be equal. And our allowed collision matrix beside each SRDF.
+//! Comparison of every robot and cell of the data with Pinocchio and Coal: the same states, triangles and pairs;
+//! distances and contacts must be equal. Also compares elbowroom's allowed collision matrix with each SRDF.
 
 mod compare;
 pub mod reference;
@@ -13,7 +13,7 @@ use reference::Answers;
 use world::Files;
 use xtask::{Failure, python};
 
-/// What the words after `cross-validate` say.
+/// Options of `cross-validate`.
 #[derive(Debug, PartialEq)]
 struct Options {
     data: Option<PathBuf>,
@@ -41,7 +41,7 @@ impl Options {
     }
 }
 
-/// Compares every robot; an error where an answer differs and nothing explains it.
+/// Compares every robot; an error if an answer differs without explanation.
 pub fn run(root: &Path, words: &[&str]) -> Result<(), Failure> {
     let options = Options::parse(words).map_err(Failure::Usage)?;
     let data = xtask::call::data_folder(root, options.data.as_deref());
@@ -61,7 +61,7 @@ pub fn run(root: &Path, words: &[&str]) -> Result<(), Failure> {
     }
 }
 
-/// A Python with Pinocchio and Coal; installed if it is not there.
+/// Returns a Python with Pinocchio and Coal; installs it if necessary.
 pub fn interpreter(root: &Path) -> Result<PathBuf, String> {
     if let Some(named) = std::env::var_os("ELBOWROOM_PYTHON") {
         return Ok(named.into());
@@ -73,7 +73,7 @@ pub fn interpreter(root: &Path) -> Result<PathBuf, String> {
     python::ready(root).ok_or_else(|| "target/venv is not ready".to_owned())
 }
 
-/// States that differ without explanation.
+/// Counts states that differ without explanation.
 fn compare_all(
     root: &Path,
     python: &Path,
@@ -203,7 +203,7 @@ mod tests {
         }
     }
 
-    /// A few states of our own arm against the reference, where it is installed.
+    /// Compares a few states of the example arm with the reference, if it is installed.
     #[test]
     fn our_own_arm_agrees_with_the_reference() {
         let root = crate::workspace_root().unwrap();
@@ -227,7 +227,7 @@ mod tests {
         let comparison = compare::compare(&scene, &states, &theirs).unwrap();
         assert_eq!(comparison.disagreements, 0, "{:?}", comparison.first);
         assert!(comparison.contacts > 0 && comparison.contacts < 20, "{comparison:?}");
-        // A hair off, and it is found: a nanometre per metre is what is allowed, a contact denied is not.
+        // A slightly larger error is found: a nanometre per metre is allowed, a missed contact is not.
         let free = theirs.collides.iter().position(|hit| !hit).unwrap();
         theirs.least[free] *= 1.0 + 1e-5;
         let hit = theirs.collides.iter().position(|hit| *hit).unwrap();

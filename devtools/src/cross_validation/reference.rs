@@ -1,4 +1,4 @@
-//! The same pairs of the same triangles by Pinocchio and Coal, in a Python of their own.
+//! Queries of the same pairs of the same triangles by Pinocchio and Coal, in a separate Python.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -11,34 +11,35 @@ use elbowroom_spatial::Pose;
 
 use super::world;
 
-/// What they say.
+/// Answers of the reference.
 pub struct Answers {
-    /// Least distance over all pairs per state, metres.
+    /// Least distance over all pairs, per state, m.
     pub least: Vec<f64>,
-    /// Per state.
+    /// Whether anything collides, per state.
     pub collides: Vec<bool>,
-    /// Pairs of colliders.
+    /// Number of pairs of colliders.
     pub pairs: usize,
-    /// µs per state of `computeDistances`, over the first [`WHOLE`] states.
+    /// Time per state of `computeDistances`, µs, over the first [`WHOLE`] states.
     pub distance_us: f64,
-    /// µs per state of `computeCollisions`, over the first [`WHOLE`] states.
+    /// Time per state of `computeCollisions`, µs, over the first [`WHOLE`] states.
     pub collide_us: f64,
-    /// µs per state of the least distance by a bound that runs from pair to pair, in a loop of Python's, over all states.
+    /// Time per state of the least distance with a bound passed from pair to pair, in a loop in Python, µs, over all
+    /// states.
     pub bounded_us: f64,
 }
 
-/// In so many states every pair is measured to the end by `computeDistances` as well: for its time, and so that the
-/// least distance by a bound is compared with the least of all.
+/// Number of states in which `computeDistances` also measures every pair completely: for its time, and to compare the
+/// least distance with a bound against the least of all.
 pub const WHOLE: usize = 200;
 
-/// What is run.
+/// The script.
 pub const SCRIPT: &[u8] = include_bytes!("pin_coal.py");
 
-/// What the bound may change of a least distance, as a share of it: nothing but rounding.
+/// Largest relative change of a least distance by the bound: only rounding.
 const BOUNDED: f64 = 1e-12;
 
-/// Queries every pair of colliders of the `pairs` of geometries. Where the least distance of the pairs without an object is
-/// `known` per state, only the others are measured.
+/// Queries every pair of colliders of the `pairs` of geometries. If `known` gives the least distance of the pairs
+/// without an object per state, only the other pairs are measured.
 pub fn query_reference(
     python: &Path,
     folder: &Path,
@@ -81,7 +82,7 @@ pub fn query_reference(
     Ok(Answers { least, collides, pairs, distance_us, collide_us, bounded_us })
 }
 
-/// An error where the least distance by a bound is not the least of all.
+/// Returns an error if the least distance with a bound is not the least of all.
 fn same(least: &[f64], whole: &[f64]) -> Result<(), String> {
     let apart = |(bounded, all): (&f64, &f64)| (bounded.max(0.0) - all.max(0.0)).abs() > BOUNDED * all.abs();
     match least.iter().zip(whole).position(apart) {
@@ -92,7 +93,7 @@ fn same(least: &[f64], whole: &[f64]) -> Result<(), String> {
     }
 }
 
-/// Text, numbers, pairs of colliders.
+/// Text, numbers, and number of pairs of colliders.
 pub type Job = (String, Vec<u8>, usize);
 
 pub fn job(

@@ -1,4 +1,4 @@
-//! Our allowed collision matrix beside an SRDF's list of disabled pairs.
+//! Comparison of elbowroom's allowed collision matrix with an SRDF's list of disabled pairs.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -10,18 +10,18 @@ use elbowroom_scene::{PairEntry, PairState, Reason, Scene};
 
 use super::world;
 
-/// States that the suggestions come from.
+/// Number of states that the suggestions are sampled from.
 const SAMPLES: u64 = 1000;
 
-/// Every pair of links of one robot.
+/// Comparison of every pair of links of one robot.
 pub struct Comparison {
-    /// (what the SRDF says, what we say) → pairs of link names.
+    /// (what the SRDF says, what elbowroom says) → pairs of link names.
     pub cases: BTreeMap<(String, String), Vec<String>>,
-    /// Both test it or both skip it.
+    /// Number of pairs that both test or both skip.
     pub equal: usize,
 }
 
-/// `plain` is the robot without its SRDF, `disabled` the pairs of the SRDF.
+/// Compares. `plain` is the robot without its SRDF, `disabled` the pairs of the SRDF.
 pub fn compare(name: &str, plain: Robot, disabled: &[(LinkId, LinkId, String)]) -> Result<Comparison, String> {
     let links = plain.chain.links().to_vec();
     let scene = world::scene(name, plain, Vec::new())?;
@@ -56,12 +56,12 @@ impl Comparison {
         self.cases.entry((theirs, ours(entry))).or_default().push(names);
     }
 
-    /// Pairs that one side tests and the other does not.
+    /// Number of pairs that one side tests and the other does not.
     pub fn different(&self) -> usize {
         self.cases.values().map(Vec::len).sum::<usize>() - self.equal
     }
 
-    /// A table: what both say, how many pairs, and which where they differ.
+    /// Formats a table: what both say, how many pairs, and the names of pairs that differ.
     pub fn table(&self) -> String {
         let mut out = String::from("| SRDF | elbowroom | pairs | which |\n| --- | --- | ---: | --- |\n");
         for ((theirs, ours), pairs) in &self.cases {
@@ -73,7 +73,7 @@ impl Comparison {
     }
 }
 
-/// Our reason, without the numbers in which pairs differ.
+/// Returns elbowroom's reason, without the numbers in which pairs differ.
 fn ours(entry: Option<&PairEntry>) -> String {
     let Some(entry) = entry else { return "no solid".into() };
     match (entry.state, &entry.reason, &entry.suggestion) {

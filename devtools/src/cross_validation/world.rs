@@ -1,4 +1,4 @@
-//! A robot of the data as a scene, alone or with two objects around it.
+//! Robot of the data as a scene, alone or with two objects around it.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -13,14 +13,14 @@ use elbowroom_scene::{Object, Scene, SceneState};
 use elbowroom_spatial::{Aabb, Pose, Vec3};
 use elbowroom_testkit::random::SplitMix;
 
-/// A robot's files.
+/// Files of a robot.
 pub struct Files {
     pub name: String,
     pub urdf: PathBuf,
     pub srdf: Option<PathBuf>,
 }
 
-/// Every robot and cell of the data, by name.
+/// Finds every robot and cell of the data, by name.
 pub fn find(data: &Path) -> Vec<Files> {
     let mut found = Vec::new();
     let folders = ["urdf", "cell"].iter().filter_map(|kind| std::fs::read_dir(data.join(kind)).ok()).flatten();
@@ -29,7 +29,7 @@ pub fn find(data: &Path) -> Vec<Files> {
         for urdf in files.filter(|path| path.extension().is_some_and(|e| e == "urdf")) {
             let name = urdf.file_stem().unwrap_or_default().to_string_lossy().into_owned();
             let srdf = urdf.with_extension("srdf");
-            // NAME.package.urdf is the same robot again.
+            // NAME.package.urdf is the same robot with package paths.
             if !name.ends_with(".package") {
                 found.push(Files { name, urdf, srdf: srdf.is_file().then_some(srdf) });
             }
@@ -39,14 +39,14 @@ pub fn find(data: &Path) -> Vec<Files> {
     found
 }
 
-/// Loads it, with its SRDF where requested and there.
+/// Loads a robot, with its SRDF if that is requested and exists.
 pub fn load(files: &Files, with_srdf: bool) -> Result<Robot, String> {
     let srdf = files.srdf.clone().filter(|_| with_srdf);
     let options = LoadOptions { srdf, ..LoadOptions::default() };
     robot::load(&files.urdf, &options).map(|loaded| loaded.robot).map_err(|e| e.to_string())
 }
 
-/// The robot with its root link in the world frame, and the objects.
+/// Builds a scene of the robot, with its root link in the world frame, and the objects.
 pub fn scene(name: &str, robot: Robot, objects: Vec<Object>) -> Result<Scene, String> {
     let mut builder = Scene::builder();
     builder.robot(name, robot, Pose::IDENTITY);
@@ -56,7 +56,7 @@ pub fn scene(name: &str, robot: Robot, objects: Vec<Object>) -> Result<Scene, St
     builder.build().map_err(|e| e.to_string())
 }
 
-/// A box and a mesh (a link of our own RX60B, made larger or smaller) where the robot can reach them.
+/// Returns a box and a mesh (a scaled link of the example robot RX60B) within reach of the robot.
 pub fn objects(root: &Path, alone: &Scene) -> Result<Vec<Object>, String> {
     let around = extent(alone);
     let (middle, half) = ((around.min + around.max) * 0.5, (around.max - around.min).length() * 0.5);
@@ -77,7 +77,7 @@ pub fn objects(root: &Path, alone: &Scene) -> Result<Vec<Object>, String> {
     ])
 }
 
-/// The box around the robot at zero.
+/// Returns the box around the robot at zero joint values.
 fn extent(scene: &Scene) -> Aabb {
     let state = SceneState::new(scene);
     let mut around: Option<Aabb> = None;
@@ -91,7 +91,7 @@ fn extent(scene: &Scene) -> Aabb {
     around.unwrap_or(Aabb { min: Vec3::ZERO, max: Vec3::splat(1.0) })
 }
 
-/// Colliders of a geometry; an object's frame is its shape's.
+/// Returns the colliders of a geometry; the frame of an object is the frame of its shape.
 pub fn colliders(scene: &Scene, id: GeometryId) -> Vec<Collider> {
     match id {
         GeometryId::Link { robot, link } => scene.robots()[robot.0].robot.colliders[link.0].clone(),
@@ -102,13 +102,13 @@ pub fn colliders(scene: &Scene, id: GeometryId) -> Vec<Collider> {
     }
 }
 
-/// The collision pairs by the rule, without the allowed collision matrix.
+/// Returns the collision pairs by the rule, without the allowed collision matrix.
 pub fn by_rule(scene: &Scene) -> Vec<(GeometryId, GeometryId)> {
     let robots: Vec<&Robot> = scene.robots().iter().map(|r| &r.robot).collect();
     collision_pairs(&robots, scene.objects().len())
 }
 
-/// Name of the link; empty for an object.
+/// Returns the name of the link; empty for an object.
 pub fn link_name(scene: &Scene, id: GeometryId) -> String {
     match id {
         GeometryId::Link { robot, link: LinkId(link) } => scene.robots()[robot.0].robot.chain.links()[link].clone(),
@@ -116,7 +116,7 @@ pub fn link_name(scene: &Scene, id: GeometryId) -> String {
     }
 }
 
-/// Random joint values within the limits; half a turn either way, or a metre, where there are none.
+/// Returns random joint values within the limits; without limits, within half a turn or a metre in each direction.
 pub fn states(robot: &Robot, count: usize) -> Vec<Vec<f64>> {
     let chain = &robot.chain;
     let mut random = SplitMix(20_261_120);

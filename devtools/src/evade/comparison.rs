@@ -1,4 +1,4 @@
-//! The same run without avoidance and with it.
+//! Comparison of a run without avoidance and with it.
 
 use elbowroom_cell::{Cell, Drive, ObjectPath};
 use elbowroom_robot::ObjectId;
@@ -13,7 +13,7 @@ pub struct RunComparison {
     pub on: Recording,
 }
 
-/// The chosen runs, in parallel, in order.
+/// Makes the chosen runs, in parallel; returns them in order.
 pub fn compare(
     cell: &Cell,
     object: ObjectId,

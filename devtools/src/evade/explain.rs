@@ -1,4 +1,4 @@
-//! Whether there was an escape before a hit.
+//! Search for an escape before a hit.
 
 use elbowroom_avoidance::{DynamicObstacles, ObservedObject, search_escape_tree};
 use elbowroom_cell::{Cell, Drive, ObjectPath, OutOfReachProofs, QueryModel};
@@ -9,10 +9,10 @@ use elbowroom_testkit::random::Random;
 
 /// Times before a hit from which an escape is searched, s.
 const EXPLAINED_S: [f64; 7] = [3.0, 2.5, 2.0, 1.5, 1.0, 0.75, 0.5];
-/// An escape is free for this time after the time of the hit, s.
+/// Time after the hit for which an escape must stay free, s.
 const AFTER_HIT_S: f64 = 1.5;
 
-/// Searches an escape from the states of the robot before a hit, in space and time, and prints what was found.
+/// Searches an escape from the states of the robot before a hit, in space and time, and prints the result.
 pub fn explain(
     cell: &Cell,
     object: ObjectId,
@@ -31,7 +31,7 @@ pub fn explain(
         let Some(at) = samples.iter().rposition(|s| s.t_s <= hit_s - before_s).filter(|n| *n > 0) else { continue };
         let (last, now) = (&samples[at - 1], &samples[at]);
         let qd: Vec<f64> = now.q.iter().zip(&last.q).map(|(a, b)| (a - b) / run.tick_s).collect();
-        // The obstacle moves straight: its present motion is its true path.
+        // The obstacle moves in a straight line, so its present motion is its true path.
         let seen = cell.moving_objects.iter().map(|m| ObservedObject {
             object: m.object,
             in_world: m.pose(now.t_s),

@@ -5,14 +5,14 @@
 //!
 //! `cargo xtask evade --robots` prints the time of a step for every robot of the data instead.
 //!
-//! `--add` adds the tables of a file to the cell, such as the regions of `devtools/src/evade/regions.toml`. `--csv` writes a
-//! row per run: whether it hits without and with avoidance, its extra time, and the time in each state.
+//! `--add` adds the tables of a file to the cell, such as the regions of `devtools/src/evade/regions.toml`. `--csv`
+//! writes a row per run: whether it hits without and with avoidance, its extra time, and the time in each state.
 //!
-//! Environment: `EVADE_ONLY=135,301` makes these runs only, and prints what the arm did; `EVADE_EXPLAIN=5000` searches an escape
-//! with so many motions from several instants before each hit, against the true path of the obstacle.
+//! Environment: `EVADE_ONLY=135,301` makes only these runs, and prints what the arm did; `EVADE_EXPLAIN=5000` searches
+//! an escape with this many motions from several instants before each hit, against the true path of the obstacle.
 
 mod comparison;
-// One copy with the tests of the simulation, which make the hardest of these runs.
+// Shared with the tests of the simulation, which make the hardest of these runs.
 #[path = "../../../crates/cell/sim/tests/common/crossing.rs"]
 mod crossing;
 mod explain;
@@ -33,7 +33,7 @@ use table::Table;
 /// The cell, shared with the tests of the simulation.
 const CELL: &str = "crates/cell/sim/tests/evade.toml";
 
-/// What the words after `evade` say.
+/// Options of `evade`.
 #[derive(Debug, PartialEq)]
 struct Options {
     runs: usize,
@@ -117,7 +117,7 @@ fn compare(root: &Path, options: &Options) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The cell with what the options add and change.
+/// Loads the cell, with the additions and changes of the options.
 fn load(root: &Path, options: &Options) -> Result<Cell, Box<dyn Error>> {
     let file = options.cell.clone().unwrap_or_else(|| root.join(CELL));
     let read = |path: &Path| std::fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()));

@@ -1,4 +1,4 @@
-//! `cargo xtask evade --robots`: the time of a step of avoidance for every robot of the data, joint by joint as its file has them.
+//! `cargo xtask evade --robots`: time of a step of avoidance for every robot of the data, with the joints of its file.
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -13,14 +13,14 @@ use elbowroom_testkit::random::SplitMix;
 
 /// Runs of each robot.
 const RUNS: u64 = 3;
-/// Random programs that are tried for them: some collide with the robot itself, or are beyond its limits.
+/// Number of random programs tried for the runs: some make the robot collide with itself, or exceed its limits.
 const TRIED: u64 = 12;
-/// Joints without limits, and wide ones, turn within this much, rad.
+/// Range of joints without limits or with wide ones, rad.
 const RANGE: f64 = 3.0;
-/// Of the cells, s.
+/// Tick of the cells, s.
 const TICK_S: f64 = 0.002;
 
-/// Prints a line a robot.
+/// Prints a line per robot.
 pub fn run() -> Result<(), Box<dyn Error>> {
     let Some(data) = elbowroom_testkit::folder::data() else { return Ok(()) };
     println!("robot                      runs  hits  evading, s   step, us: median, 99 %, longest of the runs");
@@ -51,7 +51,7 @@ fn urdf_files(folder: &Path) -> Result<Vec<PathBuf>, Box<dyn Error>> {
         let Ok(of_robot) = std::fs::read_dir(robot?.path()) else { continue };
         for file in of_robot {
             let name = file?.path();
-            // Beside each there is the same robot with the paths of its package.
+            // Each file has a variant of the same robot with package paths.
             let is_of_package = name.file_stem().is_some_and(|stem| Path::new(stem).extension().is_some());
             if name.extension().is_some_and(|kind| kind == "urdf") && !is_of_package {
                 files.push(name);
@@ -72,7 +72,7 @@ fn runs(file: &Path) -> Result<Vec<RobotTrack>, Box<dyn Error>> {
         let text = cell(file, &robot, &mut SplitMix(seed));
         let Ok(cell) = Cell::parse(PathBuf::from("steps.toml"), &text) else { continue };
         let alone = simulate(&cell, &RunOptions { avoidance: false, ..RunOptions::default() });
-        // A program that hits the robot itself says nothing of the obstacle.
+        // A run in which the robot hits itself says nothing about the obstacle.
         let hits_itself = |t: &RobotTrack| t.collisions.iter().any(|c| c.a != "crate" && c.b != "crate");
         if alone.map_or(true, |o| hits_itself(&o.recording.robots[0])) {
             continue;
@@ -86,7 +86,7 @@ fn runs(file: &Path) -> Result<Vec<RobotTrack>, Box<dyn Error>> {
     Ok(tracks)
 }
 
-/// The robot goes to and fro; a crate crosses where its tip is in between.
+/// Makes a cell in which the robot moves back and forth, and a crate crosses the place of its tip in between.
 fn cell(file: &Path, robot: &Robot, random: &mut SplitMix) -> String {
     let limits = robot.chain.joints().iter().filter(|j| j.kind != JointKind::Fixed && j.mimic.is_none());
     let limits: Vec<[f64; 2]> = limits.map(|j| [j.limits.lower.max(-RANGE), j.limits.upper.min(RANGE)]).collect();

@@ -6,10 +6,10 @@ use elbowroom_sim::{RobotTrack, Sample};
 
 use super::comparison::RunComparison;
 
-/// Below this share of its speed a joint counts as stationary.
+/// Fraction of its largest speed below which a joint counts as stationary.
 const STATIONARY_SHARE: f64 = 1e-4;
 
-/// Times of a step of avoidance, one entry a run, microseconds.
+/// Times of a step of avoidance, one entry per run, µs.
 #[derive(Default)]
 struct StepTimes {
     median: Vec<f64>,
@@ -20,16 +20,16 @@ struct StepTimes {
 /// Regions that the monitor guarded while the robot evaded.
 #[derive(Default)]
 struct RegionStops {
-    /// Runs in which one was entered.
+    /// Number of runs in which a region was entered.
     entered: usize,
-    /// Runs in which the monitor stopped the robot off its path at one.
+    /// Number of runs in which the monitor stopped the robot off its path at a region.
     stopped: usize,
     longest_s: f64,
 }
 
-/// How joints moved.
+/// Motion of the joints.
 struct JointMotion {
-    /// Largest excess over a speed (a share of it) and a limit of a joint (rad).
+    /// Largest excess over a joint's speed (as a fraction of it) and over its limit (rad).
     over: [f64; 2],
     least_reversal_s: f64,
 }
@@ -53,7 +53,7 @@ pub struct Statistics {
     travel: Vec<f64>,
     nearest_m: Vec<f64>,
     steps: StepTimes,
-    /// Runs in which the robot followed an escape.
+    /// Number of runs in which the robot followed an escape.
     escaped: usize,
     joints: JointMotion,
     plans: [usize; 2],
@@ -62,7 +62,7 @@ pub struct Statistics {
     show: bool,
 }
 
-/// Override below which the robot stands.
+/// Override below which the robot counts as stopped.
 const STOPPED_OVERRIDE: f64 = 1e-3;
 
 /// Longest time (s) for which the monitor stopped a robot at a region while it was off its path.
@@ -79,17 +79,17 @@ fn longest_stop_s(track: &RobotTrack, tick_s: f64) -> f64 {
 }
 
 impl Statistics {
-    /// Of no runs. `show`: whether to print the states of the robot before a collision.
+    /// Creates empty statistics. `show`: whether to print the states of the robot before a collision.
     pub fn new(show: bool) -> Self {
         Self { show, ..Self::default() }
     }
 
-    /// A line about the runs so far.
+    /// Formats a line about the runs so far.
     pub fn progress(&self) -> String {
         format!("{} runs: {} collide without, {} with", self.runs, self.hit_off, self.hit_on)
     }
 
-    /// Adds a run, and prints a line where it hits or does not finish.
+    /// Adds a run, and prints a line if it hits or does not finish.
     pub fn add(&mut self, cell: &Cell, RunComparison { number, off, on }: &RunComparison) {
         self.runs += 1;
         let (without, with) = (&off.robots[0], &on.robots[0]);
@@ -223,7 +223,7 @@ fn show(track: &RobotTrack, until_s: f64) {
     println!("  plans {:?}", avoidance.plans);
 }
 
-/// Sum of the motion of all joints.
+/// Sums the motion of all joints.
 fn travel(track: &RobotTrack) -> f64 {
     let step = |w: &[Sample]| w[1].q.iter().zip(&w[0].q).map(|(a, b)| (a - b).abs()).sum::<f64>();
     track.samples.windows(2).map(step).sum()

@@ -1,4 +1,4 @@
-//! The table of `--csv`: a row per run.
+//! Table of `--csv`: a row per run.
 
 use std::fs::File;
 use std::io::Write;
@@ -8,7 +8,7 @@ use elbowroom_avoidance::AvoiderState;
 
 use super::comparison::RunComparison;
 
-/// States that have a column with their time.
+/// States with a column for their time.
 const STATES: [AvoiderState; 6] = [
     AvoiderState::Following,
     AvoiderState::Evading,
@@ -36,7 +36,7 @@ impl Table {
     }
 }
 
-/// The line of a run.
+/// Formats the line of a run.
 fn row(RunComparison { number, off, on }: &RunComparison) -> String {
     let (without, with) = (&off.robots[0], &on.robots[0]);
     let hits = [without, with].map(|track| u8::from(!track.collisions.is_empty()));

@@ -1,4 +1,4 @@
-//! The figures of `docs/laws.md`: written, or compared with what is committed. Their curves are the laws' own functions.
+//! Figures of `docs/laws.md`: written, or compared with the committed files. Their curves are the laws' own functions.
 
 mod plots;
 mod rail;
@@ -22,7 +22,7 @@ pub fn write(root: &Path) -> Result<(), String> {
     Ok(())
 }
 
-/// Compares with the files that are there; a missing, differing or left-over figure is an error.
+/// Compares with the existing files; a missing, differing or superfluous figure is an error.
 pub fn check(root: &Path) -> Result<(), String> {
     let files = files()?;
     let folder = root.join(FOLDER);

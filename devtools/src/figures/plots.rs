@@ -1,4 +1,4 @@
-//! What the figures show.
+//! Contents of the figures.
 
 use elbowroom_monitor::laws::{rate_limited, speed_zone, warning_factor};
 use elbowroom_monitor::{Laws, StoppingSettings};
@@ -6,7 +6,7 @@ use elbowroom_monitor::{Laws, StoppingSettings};
 use super::rail::{Rail, TICK_S};
 use super::svg::{Axis, Curve, Dash, Plot};
 
-/// Millimetres in a metre.
+/// Millimetres per metre.
 const MM: f64 = 1000.0;
 /// Warning zone of most figures, m.
 const ZONE_M: f64 = 0.25;
@@ -40,7 +40,7 @@ fn warning() -> Plot {
     Plot { title: "The warning law", x: distance(0.0, 600.0, 100.0), y: override_axis(), curves }
 }
 
-/// A robot that keeps its distance, the law fed the programmed override and fed its own last answer.
+/// A robot that keeps its distance: the law gets the programmed override, or its own last answer.
 fn feedback() -> Plot {
     let mut curves = Vec::new();
     for (colour, share) in [(0, 0.9), (1, 0.5)] {
@@ -59,7 +59,7 @@ fn feedback() -> Plot {
     Plot { title: "Why v₀ is the programmed override", x, y: override_axis(), curves }
 }
 
-/// A robot that obeys at once.
+/// A robot that obeys the override at once.
 fn approach() -> Plot {
     let run = |speed: f64| {
         let mut d = 0.3;
@@ -80,7 +80,7 @@ fn approach() -> Plot {
     Plot { title: "Approach under the warning law, δ = 250 mm", x, y, curves }
 }
 
-/// A robot that follows the warning law as well as its deceleration lets it.
+/// A robot that follows the warning law as well as its deceleration permits.
 fn overrun() -> Plot {
     let speed = 1.0;
     let run = |deceleration: f64| {
@@ -129,7 +129,7 @@ fn zone_needed() -> Plot {
     Plot { title: "How thick a warning zone must be", x, y, curves }
 }
 
-/// A straight line past two balls whose warning zones overlap.
+/// A straight line past two spheres whose warning zones overlap.
 fn minimum() -> Plot {
     let ball = |(cx, cy): (f64, f64), radius: f64| {
         move |x: f64| 100.0 * warning_factor(((x / MM - cx).powi(2) + cy * cy).sqrt() - radius, ZONE_M)
@@ -155,7 +155,7 @@ fn speed_zones() -> Plot {
     Plot { title: "Speed zone, δ = 250 mm", x: distance(0.0, 400.0, 100.0), y: override_axis(), curves }
 }
 
-/// A program that goes towards the ball, then back.
+/// A program that moves towards the sphere, then back.
 fn release() -> Result<Plot, String> {
     let run = |laws: Laws| {
         let mut rail = Rail::new(laws, ZONE_M, 0.001, 0.4)?;
@@ -174,7 +174,7 @@ fn release() -> Result<Plot, String> {
     Ok(Plot { title: "Leaving a warning zone, v = 0.5 m/s, δ = 250 mm", x, y: override_axis(), curves })
 }
 
-/// A robot that starts 50 mm inside and wants out.
+/// A robot that starts 50 mm inside and moves out.
 fn recovery() -> Result<Plot, String> {
     let run = |laws: Laws| {
         let mut rail = Rail::new(laws, ZONE_M, 0.001, -0.05)?;
@@ -279,7 +279,7 @@ fn override_axis() -> Axis {
     Axis { title: "speed override (%)", from: 0.0, to: 100.0, step: 20.0 }
 }
 
-/// 201 points of a function of x.
+/// Samples a function of x at 201 points.
 fn over(from: f64, to: f64, y: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
     (0..=200).map(|i| from + (to - from) * f64::from(i) / 200.0).map(|x| (x, y(x))).collect()
 }
@@ -288,7 +288,7 @@ fn over(from: f64, to: f64, y: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
 mod tests {
     use super::*;
 
-    /// Where the robot stands at the end of a curve of [`overrun`], mm.
+    /// Returns the position at which the robot stops at the end of a curve of [`overrun`], mm.
     fn rest_mm(curve: usize) -> f64 {
         overrun().curves[curve].points.last().unwrap().0
     }

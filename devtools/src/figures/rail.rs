@@ -1,4 +1,4 @@
-//! The smallest robot that a monitor can watch: a linear axis with a TCP, in front of a ball.
+//! Smallest robot that a monitor can watch: a linear axis with a TCP, in front of a sphere.
 
 use elbowroom_kinematics::{Chain, Joint, JointKind, Limits, LinkId};
 use elbowroom_monitor::{
@@ -8,19 +8,19 @@ use elbowroom_spatial::{Pose, Vec3};
 
 /// Time between ticks, s.
 pub const TICK_S: f64 = 0.002;
-/// Where the ball's surface meets the axis, m.
+/// Position at which the sphere's surface meets the axis, m.
 const BORDER_M: f64 = 1.5;
 
 /// The axis under its monitor, in simulated time.
 pub struct Rail {
     monitor: Monitor,
     ticks: u32,
-    /// Distance of the TCP to the ball, negative inside, m.
+    /// Distance of the TCP from the sphere, negative inside, m.
     pub distance_m: f64,
 }
 
 impl Rail {
-    /// A rail whose ball has this warning zone and hysteresis (m); channel 0 is up in the warning zone.
+    /// Creates a rail whose sphere has this warning zone and hysteresis (m); channel 0 is on in the warning zone.
     pub fn new(laws: Laws, warning_m: f64, hysteresis_m: f64, distance_m: f64) -> Result<Self, String> {
         let axis = Joint {
             name: "rail".into(),
@@ -55,14 +55,16 @@ impl Rail {
         f64::from(self.ticks) * TICK_S
     }
 
-    /// The speed override that the monitor computes for a stationary robot whose program goes at `intent` (m/s) at override 1.
+    /// Computes the speed override of the monitor for a stationary robot whose program moves at `intent` (m/s) at
+    /// override 1.
     pub fn override_at_rest(&mut self, intent: f64) -> f64 {
         let (q, intent) = ([BORDER_M - self.distance_m], [intent]);
         let stationary = Snapshot::stationary(self.time_s(), &q);
         self.monitor.tick(&Snapshot { qd: &[0.0], intent: Some(&intent), ..stationary }).speed_override
     }
 
-    /// One tick, then one step of the program, which asks for `intent` (m/s, positive towards the ball) at override 1.
+    /// Runs one tick, then one step of the program, which requests `intent` (m/s, positive towards the sphere) at
+    /// override 1.
     pub fn step(&mut self, intent: f64) -> TickReport {
         let (q, intent) = ([BORDER_M - self.distance_m], [intent]);
         let report = self.monitor.tick(&Snapshot { intent: Some(&intent), ..Snapshot::stationary(self.time_s(), &q) });

@@ -1,22 +1,22 @@
-//! A line plot as SVG: a few curves, two axes, a legend. No clock, no random number: the same plot gives the same bytes.
+//! Line plot as SVG: a few curves, two axes, a legend. Without clock or random numbers: equal plots have equal bytes.
 //!
-//! The background is transparent and every colour is of middle lightness, so that a figure reads on white and on dark.
-//! Curves differ in dashes as well as in colour.
+//! The background is transparent and every colour is of middle lightness, so that a figure is readable on white and on
+//! dark. Curves differ in dashes as well as in colour.
 
 use std::fmt::Write as _;
 
 /// Size of the picture, px.
 const SIZE: (f64, f64) = (760.0, 360.0);
-/// Left, right, top, bottom of the plot area, px.
+/// Left, right, top, bottom edge of the plot area, px.
 const AREA: [f64; 4] = [68.0, 510.0, 44.0, 300.0];
-/// Text and axes.
+/// Colour of text and axes.
 const GREY: &str = "#7d848c";
 const COLOURS: [&str; 5] = ["#2f81f7", "#d9622b", "#2c9c4b", "#a268e8", "#c04a8a"];
 const DASHES: [&str; 3] = ["", "7 4", "2 3"];
 
 /// One axis, linear.
 pub struct Axis {
-    /// What it shows, with the unit.
+    /// Quantity, with its unit.
     pub title: &'static str,
     /// Value at its beginning.
     pub from: f64,
@@ -26,7 +26,7 @@ pub struct Axis {
     pub step: f64,
 }
 
-/// How a curve is drawn.
+/// Line style of a curve.
 #[derive(Clone, Copy)]
 pub enum Dash {
     /// Without gaps.
@@ -43,15 +43,15 @@ pub struct Curve {
     pub label: String,
     /// Index of its colour; curves of one colour belong together.
     pub colour: usize,
-    /// How it is drawn.
+    /// Line style.
     pub dash: Dash,
-    /// Where it runs, in the units of the axes.
+    /// Points, in the units of the axes.
     pub points: Vec<(f64, f64)>,
 }
 
 /// A figure.
 pub struct Plot {
-    /// Headline.
+    /// Title.
     pub title: &'static str,
     /// Horizontal axis.
     pub x: Axis,
@@ -62,7 +62,7 @@ pub struct Plot {
 }
 
 impl Plot {
-    /// The file's text.
+    /// Returns the text of the file.
     pub fn svg(&self) -> String {
         let mut out = String::new();
         let (w, h) = SIZE;
@@ -149,7 +149,7 @@ impl Axis {
         (0..=count).map(|i| self.from + self.step * i as f64)
     }
 
-    /// A tick's value with as many decimals as the step has.
+    /// Formats a tick's value with as many decimals as the step has.
     fn label(&self, value: f64) -> String {
         let is_whole = |digits: &u8| {
             let scaled = self.step * 10_f64.powi(i32::from(*digits));
@@ -190,14 +190,14 @@ fn text(out: &mut String, at: (f64, f64), anchor: &str, more: &str, words: &str)
 }
 
 fn line(out: &mut String, what: std::fmt::Arguments<'_>) {
-    // Writing into a String cannot fail.
+    // Writing to a String cannot fail.
     let _ = writeln!(out, "{what}");
 }
 
-/// Hundredths of a pixel: coarse enough that the last bit of a computation never shows.
+/// Formats a number to hundredths of a pixel: coarse enough that the last bit of a computation never shows.
 fn number(v: f64) -> String {
     let rounded = (v * 100.0).round() / 100.0;
-    // No "-0".
+    // Adding 0 avoids "-0".
     format!("{}", rounded + 0.0)
 }
 

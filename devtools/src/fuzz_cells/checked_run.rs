@@ -7,7 +7,7 @@ use super::generate::Places;
 use super::oracle::{self, Findings, Promises};
 use super::spec::CellSpec;
 
-/// A run and what the oracle found in it.
+/// A run and the findings of the oracle.
 pub struct CheckedRun {
     pub findings: Findings,
     pub finished: usize,
@@ -17,7 +17,7 @@ pub struct CheckedRun {
     pub simulated_s: f64,
 }
 
-/// Runs a cell with these faults of its input, its programs as often as `run --repeat` says.
+/// Runs a cell with these faults of its input; `repeat` is the number of passes, as in `run --repeat`.
 pub fn run(cell: &Cell, faults: Vec<InputFault>, repeat: u32) -> Result<CheckedRun, String> {
     let options = RunOptions { faults, repeat: repeat.max(1), ..RunOptions::default() };
     let outcome = simulate(cell, &options).map_err(|e| e.to_string())?;
@@ -32,7 +32,7 @@ pub fn run(cell: &Cell, faults: Vec<InputFault>, repeat: u32) -> Result<CheckedR
     })
 }
 
-/// As [`run`], of a cell that is not written yet.
+/// Like [`run`], for a cell that is not written to a file yet.
 pub fn run_spec(spec: &CellSpec, places: &Places<'_>) -> Result<CheckedRun, String> {
     run(&spec.parse(places.cells)?, spec.faults.clone(), spec.repeat)
 }

@@ -1,4 +1,4 @@
-//! `cargo xtask fuzz cells`: random cells, run in simulated time, and an oracle that knows only the recording.
+//! `cargo xtask fuzz cells`: runs random cells in simulated time, and checks them by an oracle that knows only the recording.
 
 mod checked_run;
 pub mod generate;
@@ -23,19 +23,19 @@ use xtask::Failure;
 
 /// A mesh for regions: a corner of two plates, 0.3 m wide, closed and not convex.
 const CORNER: &str = include_str!("corner.obj");
-/// Failing cells that are written as files, per kind; more teach nothing new.
+/// Largest number of failing cells written as files, per kind.
 const WRITTEN: usize = 20;
 
-/// Stack of a thread that runs cells.
+/// Stack size of a thread that runs cells, bytes.
 const STACK_BYTES: usize = 8 << 20;
 
-/// Seed of the cells in the test suite; how many there are depends on their kind.
+/// Seed of the cells in the test suite; their number depends on the kind.
 const SUITE_SEED: u64 = 13;
 
-/// What to do.
+/// Options of `fuzz cells`.
 #[derive(Debug, PartialEq)]
 pub struct Options {
-    /// Cells per kind; without it as many as in the test suite.
+    /// Cells per kind; by default as many as in the test suite.
     count: Option<usize>,
     seed: u64,
     kinds: Vec<Kind>,
@@ -95,7 +95,7 @@ fn kinds(word: &str) -> Result<Vec<Kind>, String> {
     kind.map(|k| vec![k]).ok_or_else(|| format!("`--kind {word}`: write {names} or all"))
 }
 
-/// Runs the cells, or one file, and prints what was found; fails where anything was.
+/// Runs the cells, or one file, and prints the findings; fails if there are any.
 pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
     let cells = write_cell_files(root)?;
     if let Some(file) = &options.replay {
@@ -113,7 +113,7 @@ pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
     if failed == 0 { Ok(()) } else { Err(Failure::Check(format!("{failed} cells failed: {}", cells.display()))) }
 }
 
-/// The folder that the cells stand in, with the files that they name.
+/// Makes the folder of the cells, with the files that they name.
 pub fn write_cell_files(root: &Path) -> Result<PathBuf, String> {
     let cells = root.join("target/fuzz-cells");
     let written = std::fs::create_dir_all(&cells).and_then(|()| std::fs::write(cells.join("corner.obj"), CORNER));
@@ -121,7 +121,7 @@ pub fn write_cell_files(root: &Path) -> Result<PathBuf, String> {
     Ok(cells)
 }
 
-/// The cells of every kind that the test suite runs, always the same ones.
+/// Checks the cells of every kind that the test suite runs, always the same ones.
 pub fn check(root: &Path) -> Result<(), String> {
     let options = Options { count: None, seed: SUITE_SEED, ..Options::default() };
     run(root, &options).map_err(|failure| match failure {
@@ -147,7 +147,7 @@ fn replay(file: &Path) -> Result<(), Failure> {
     Err(Failure::Check(format!("{} findings", findings.len())))
 }
 
-/// Runs the cases on all cores; what is found does not depend on how many there are.
+/// Runs the cases on all cores; the findings do not depend on their number.
 fn fuzz(kind: Kind, options: &Options, places: &Places<'_>) -> Summary {
     let mut summary = Summary::new(kind.name());
     let begin = Instant::now();
@@ -167,7 +167,7 @@ fn fuzz(kind: Kind, options: &Options, places: &Places<'_>) -> Summary {
                     }
                 }
             };
-            // As large as that of a main thread: a robot with avoidance is built on the stack.
+            // As large as a main thread's stack: a robot with avoidance is built on the stack.
             let worker = std::thread::Builder::new().stack_size(STACK_BYTES).spawn_scoped(threads, work);
             worker.expect("the system has no more threads");
         }
@@ -197,7 +197,7 @@ fn fuzz(kind: Kind, options: &Options, places: &Places<'_>) -> Summary {
     summary
 }
 
-/// Makes the cell smaller while it fails in the same way, and writes it.
+/// Shrinks the cell while it fails in the same way, and writes it.
 fn report(
     finding: &Finding,
     spec: &CellSpec,

@@ -1,4 +1,4 @@
-//! What a run of the fuzzer found, in a table or as JSON.
+//! Results of the fuzzer, in a table or as JSON.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -14,9 +14,9 @@ use super::oracle::Finding;
 #[derive(Debug, Default)]
 pub struct Summary {
     kind: &'static str,
-    /// Run and run.
+    /// Number of cells that were run.
     pub cells: usize,
-    /// Refused by the cell file or the programs, and why.
+    /// Numbers of cells that the cell file or the programs refuse, by reason.
     refused: BTreeMap<String, usize>,
     robots: usize,
     finished: usize,
@@ -28,11 +28,11 @@ pub struct Summary {
     simulated_s: f64,
     failing: FailingCells,
     pub took: Duration,
-    /// Failing cells as files, and what is wrong there.
+    /// Failing cells as files, each with its findings.
     pub files: Vec<(PathBuf, String)>,
 }
 
-/// Cells with at least one finding, by what was found.
+/// Numbers of cells with at least one finding, by kind of finding.
 #[derive(Debug, Default)]
 struct FailingCells {
     entries: usize,
@@ -60,7 +60,7 @@ impl Summary {
         Self { kind, ..Self::default() }
     }
 
-    /// Cells in which something was found.
+    /// Number of cells with findings.
     pub fn failed(&self) -> usize {
         self.failing.any
     }
@@ -80,7 +80,7 @@ impl Summary {
     }
 
     pub fn refuse(&mut self, why: &str) {
-        // Without its numbers and names one message stands for many.
+        // Without its numbers and names a message stands for many.
         let short: String = why.lines().next().unwrap_or("").chars().filter(|c| !c.is_ascii_digit()).take(90).collect();
         *self.refused.entry(short).or_default() += 1;
     }
@@ -121,7 +121,7 @@ impl Summary {
     }
 }
 
-/// A table, and the failing cells.
+/// Prints a table, and the failing cells.
 pub fn print(summaries: &[Summary]) {
     let names = summaries.iter().map(|s| format!(" {:>10}", s.kind)).collect::<Vec<_>>().concat();
     println!("{:<18}{names}", "");
@@ -140,7 +140,7 @@ pub fn print(summaries: &[Summary]) {
     }
 }
 
-/// One line of JSON.
+/// Formats one line of JSON.
 pub fn json(seed: u64, summaries: &[Summary]) -> String {
     let mut text = format!("{{\"seed\":{seed},\"kinds\":[");
     for (i, s) in summaries.iter().enumerate() {
@@ -172,7 +172,7 @@ pub fn json(seed: u64, summaries: &[Summary]) -> String {
     text + "]}"
 }
 
-/// A finding as a sentence.
+/// Formats a finding as a sentence.
 pub fn in_words(finding: &Finding, cell: &Cell) -> String {
     let robot = |r: &usize| cell.robots[*r].name.as_str();
     let region = |r: &usize| cell.regions[*r].region.name.as_str();

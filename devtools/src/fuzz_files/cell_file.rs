@@ -49,7 +49,7 @@ fn mutate(text: &str, random: &mut Random) -> String {
     text
 }
 
-/// What the words say.
+/// Options of `fuzz cell-file`.
 pub struct Options {
     file: PathBuf,
     seconds: u64,

@@ -1,4 +1,4 @@
-//! `cargo xtask fuzz parser` and `cargo xtask fuzz cell-file`: mutated files, given to the readers.
+//! `cargo xtask fuzz parser` and `cargo xtask fuzz cell-file`: fuzzing of the readers with mutated files.
 
 mod cell_file;
 mod parser;

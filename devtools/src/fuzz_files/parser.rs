@@ -20,7 +20,7 @@ use corpus::{PARSERS, Xorshift, mutate, samples};
 const LARGEST_SEED: u64 = 64 * 1024;
 const SLOW: Duration = Duration::from_secs(2);
 
-/// What the words say.
+/// Options of `fuzz parser`.
 pub struct Options {
     parser: &'static str,
     seconds: u64,

@@ -1,4 +1,4 @@
-//! The planner of problem sets with a limit of configurations instead of time.
+//! Planner of problem sets with a limit of configurations instead of time.
 
 use std::time::Duration;
 
@@ -11,14 +11,14 @@ use elbowroom_robot::RobotId;
 
 use super::digest::Digest;
 
-/// Configurations that a search may check, on the covers and again in the exact scene.
+/// Largest number of configurations that a search checks, on the covers and again in the exact scene.
 const MAX_STATES: u64 = 200_000;
-/// Never reached.
+/// Time limit, which is never reached.
 const TIME_LIMIT: Duration = Duration::from_hours(24);
 /// The only robot.
 const ROBOT: RobotId = RobotId(0);
 
-/// [`CoverRrtConnect`] on covers that are built, not read from files. It hashes each solution.
+/// [`CoverRrtConnect`] on covers that are built instead of read from files. It hashes each solution.
 #[derive(Clone, Default)]
 pub struct BoundedEngine {
     model: Option<CoverModel>,
@@ -26,7 +26,7 @@ pub struct BoundedEngine {
 }
 
 impl BoundedEngine {
-    /// Builds the covers of a problem's robot, if those that there are serve another one.
+    /// Builds the covers of a problem's robot, unless the present covers are of the same robot.
     pub fn prepare(&mut self, problem: &ProblemScene, clearance_m: f64) -> Result<(), String> {
         let (scene, start) = (problem.scene(), problem.start());
         if !self.model.as_ref().is_some_and(|m| m.serves(scene, start, clearance_m)) {
@@ -87,7 +87,7 @@ impl PlanningEngine for BoundedEngine {
     }
 }
 
-/// The exact planner, which holds the joints that the goals do not name.
+/// Creates the exact planner, which holds joints that the goals do not name.
 fn exact(problem: &ProblemScene) -> Result<RrtConnect<'_>, RrtConnectError> {
     Ok(RrtConnect::new(problem.scene(), ROBOT)?.with_limits(problem.limits().iter().copied()))
 }

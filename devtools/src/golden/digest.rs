@@ -4,12 +4,13 @@ use std::fmt::Write as _;
 
 use sha2::{Digest as _, Sha256};
 
-/// A hash of answers in their order. Everything has a fixed size or its length before it: different answers are different bytes.
+/// A hash of answers in their order. Every item has a fixed size or its length before it: different answers have
+/// different bytes.
 #[derive(Debug, Clone, Default)]
 pub struct Digest(Sha256);
 
 impl Digest {
-    /// The bits: 0.0 and -0.0 differ, and so do two NaN with different bits.
+    /// Adds the bits of a number: 0.0 and -0.0 differ, and so do two NaN with different bits.
     pub fn number(&mut self, value: f64) {
         self.0.update(value.to_bits().to_le_bytes());
     }
@@ -18,7 +19,7 @@ impl Digest {
         values.into_iter().for_each(|value| self.number(value));
     }
 
-    /// A number that may be missing.
+    /// Adds a number that may be missing.
     pub fn some_number(&mut self, value: Option<f64>) {
         self.flag(value.is_some());
         self.numbers(value);
@@ -37,7 +38,7 @@ impl Digest {
         self.0.update(value.as_bytes());
     }
 
-    /// 64 hexadecimal digits.
+    /// Returns 64 hexadecimal digits.
     pub fn hex(self) -> String {
         let mut digits = String::new();
         for byte in self.0.finalize() {

@@ -7,10 +7,10 @@ use super::digest::Digest;
 /// The answers about a robot, a kind of cell or a set of problems.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct HashedGroup {
-    /// Without white space.
+    /// Name, without white space.
     pub name: String,
     pub hash: String,
-    /// Answers hashed.
+    /// Number of hashed answers.
     pub count: usize,
 }
 
@@ -20,7 +20,7 @@ impl HashedGroup {
         Self { name, hash: digest.hex(), count }
     }
 
-    /// The hash of all groups, in their order.
+    /// Returns the hash of all groups, in their order.
     pub fn total(groups: &[Self]) -> Self {
         let mut digest = Digest::default();
         for group in groups {

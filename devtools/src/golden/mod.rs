@@ -26,7 +26,7 @@ use part::Part;
 use record::Record;
 use xtask::Failure;
 
-/// Hashes the requested parts, prints, writes and compares them; an error where a hash differs from the record.
+/// Hashes the requested parts, prints, writes and compares them; an error if a hash differs from the record.
 pub fn run(root: &Path, words: &[&str]) -> Result<(), Failure> {
     let options = Options::parse(words).map_err(Failure::Usage)?;
     let data = xtask::call::data_folder(root, options.data.as_deref());
@@ -58,7 +58,7 @@ pub fn run(root: &Path, words: &[&str]) -> Result<(), Failure> {
     Err(Failure::Check(format!("{} groups differ from the record\n  {lines}", differences.len())))
 }
 
-/// The groups of a part, sorted by name.
+/// Returns the groups of a part, sorted by name.
 fn hash(part: Part, root: &Path, data: &Path, options: &Options) -> Result<Vec<HashedGroup>, String> {
     let mut groups = match part {
         Part::Queries => queries::groups(root, data, options.rows),

@@ -1,4 +1,4 @@
-//! What the words after `golden` say.
+//! Options of `cargo xtask golden`.
 
 use std::path::PathBuf;
 
@@ -8,13 +8,13 @@ use super::part::Part;
 #[derive(Debug, PartialEq)]
 pub struct Options {
     pub data: Option<PathBuf>,
-    /// Random states over all robots.
+    /// Number of random states over all robots.
     pub rows: usize,
-    /// Random cells.
+    /// Number of random cells.
     pub cells: usize,
-    /// Seeds per planning problem, from 0.
+    /// Number of seeds per planning problem, from 0.
     pub seeds: usize,
-    /// Only this part.
+    /// The only part to hash.
     only: Option<Part>,
     /// The record to write.
     pub out: Option<PathBuf>,
@@ -51,7 +51,7 @@ impl Options {
         Ok(options)
     }
 
-    /// The parts to hash.
+    /// Returns the parts to hash.
     pub fn parts(&self) -> impl Iterator<Item = Part> {
         Part::ALL.into_iter().filter(|part| self.only.is_none_or(|only| only == *part))
     }

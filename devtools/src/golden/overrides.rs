@@ -14,18 +14,18 @@ use crate::fuzz_cells::generate::{self, Kind, Places};
 use crate::fuzz_cells::spec::CellSpec;
 use crate::fuzz_cells::write_cell_files;
 
-/// The kinds of cells; not those with planned moves, whose paths depend on the time of the search.
+/// Kinds of cells; without planned moves, whose paths depend on the time of the search.
 pub const KINDS: [Kind; 6] = [Kind::Stop, Kind::Exchange, Kind::Faults, Kind::Moving, Kind::Tools, Kind::Recordings];
 /// Seed of the cells: case I of a kind is `cargo xtask fuzz cells --kind KIND --seed 17 --case I`.
 const SEED: u64 = 17;
 
-/// Hashes the runs of so many cells, an even share of each kind.
+/// Hashes the runs of this many cells, evenly distributed over the kinds.
 pub fn groups(root: &Path, data: Option<&Path>, cells: usize) -> Result<Vec<HashedGroup>, String> {
     let folder = write_cell_files(root)?;
     let places = Places { cells: &folder, root, data };
     let kinds = KINDS.len();
     let progress = Progress::new(Part::Overrides, cells);
-    // Kinds by turns: any number of cells is an even share.
+    // Kinds take turns, so that any number of cells is distributed evenly.
     let job = |i: usize| run(KINDS[i % kinds], (i / kinds) as u64, &places);
     let hashes = in_order(cells, progress, "cells", job);
     let refused = hashes.iter().filter(|hash| hash.is_none()).count();
@@ -40,7 +40,7 @@ pub fn groups(root: &Path, data: Option<&Path>, cells: usize) -> Result<Vec<Hash
     Ok(KINDS.into_iter().enumerate().map(of_kind).collect())
 }
 
-/// The hash of one run; `None` if the cell or a step of its programs is refused.
+/// Returns the hash of one run; `None` if the cell or a step of its programs is refused.
 fn run(kind: Kind, case: u64, places: &Places<'_>) -> Option<String> {
     let spec = generate::cell(kind, &mut kind.random(SEED, case), places);
     let recording = recording(&spec, places)?;

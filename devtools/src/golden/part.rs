@@ -1,4 +1,4 @@
-//! What is hashed.
+//! Parts of the hashes.
 
 /// A part of the hashes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -14,7 +14,7 @@ pub enum Part {
 impl Part {
     pub const ALL: [Self; 3] = [Self::Queries, Self::Overrides, Self::Plans];
 
-    /// `queries`, `overrides` or `plans`.
+    /// Returns the name: `queries`, `overrides` or `plans`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Queries => "queries",

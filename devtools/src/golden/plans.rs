@@ -13,7 +13,7 @@ use super::part::Part;
 use super::problem_files::{self, ProblemFile};
 use super::progress::Progress;
 
-/// Hashes the paths of all problems, planned with so many seeds each, from 0.
+/// Hashes the paths of all problems, planned with this many seeds each, from 0.
 pub fn groups(data: &Path, seeds: usize) -> Result<Vec<HashedGroup>, String> {
     let mut groups = Vec::new();
     for file in problem_files::find(data)? {
@@ -22,7 +22,7 @@ pub fn groups(data: &Path, seeds: usize) -> Result<Vec<HashedGroup>, String> {
     Ok(groups)
 }
 
-/// A group for each set of a file.
+/// Returns a group for each set of a file.
 fn of_file(file: ProblemFile, seeds: usize) -> Result<Vec<HashedGroup>, String> {
     let ProblemFile { name, file, urdf, robot, problems } = file;
     let model = ProblemModel::new(&urdf, robot, &file, &problems).map_err(|e| e.to_string())?;
@@ -49,10 +49,10 @@ fn of_file(file: ProblemFile, seeds: usize) -> Result<Vec<HashedGroup>, String> 
     Ok(sets.iter().zip(hashes.chunks(seeds)).map(of_set).collect())
 }
 
-/// A set's solutions with one seed.
+/// Solutions of a set with one seed.
 struct SetHash {
     hex: String,
-    /// Problems with a path.
+    /// Number of problems with a path.
     found: usize,
 }
 

@@ -1,4 +1,4 @@
-//! The planning problems of the data, with the robot of each file.
+//! Planning problems of the data, with the robot of each file.
 
 use std::path::{Path, PathBuf};
 
@@ -9,7 +9,7 @@ use crate::cross_validation::world::{self, Files};
 
 /// A file of problems and its robot.
 pub struct ProblemFile {
-    /// Its folder's name.
+    /// Name of its folder.
     pub name: String,
     pub file: PathBuf,
     pub urdf: PathBuf,
@@ -17,8 +17,8 @@ pub struct ProblemFile {
     pub problems: Vec<PlanningProblem>,
 }
 
-/// Every `problems/NAME/*.json`. The robot is that of the data's `urdf` with the name of a URDF of the folder, which has meshes;
-/// otherwise the folder's first URDF that can be loaded. An error if there is none.
+/// Finds every `problems/NAME/*.json`. The robot is the one in the data's `urdf` with the name of a URDF of the folder,
+/// because it has meshes; otherwise the folder's first URDF that can be loaded. An error if there is none.
 pub fn find(data: &Path) -> Result<Vec<ProblemFile>, String> {
     let mut found = Vec::new();
     for folder in entries(&data.join("problems")) {
@@ -33,7 +33,7 @@ pub fn find(data: &Path) -> Result<Vec<ProblemFile>, String> {
     Ok(found)
 }
 
-/// Sorted; nothing for a folder that cannot be read.
+/// Lists a folder, sorted; empty if it cannot be read.
 fn entries(folder: &Path) -> Vec<PathBuf> {
     let mut paths: Vec<PathBuf> =
         std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()).collect();

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use super::part::Part;
 
-/// From one line to the next.
+/// Time between two lines.
 const PERIOD: Duration = Duration::from_secs(10);
 
 /// Progress of a part.
@@ -16,7 +16,7 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// Of a part with so many steps.
+    /// Creates the progress of a part with this many steps.
     pub fn new(part: Part, all: usize) -> Self {
         let now = Instant::now();
         Self { part, all, begin: now, printed: now }

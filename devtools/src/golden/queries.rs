@@ -12,10 +12,11 @@ use super::part::Part;
 use super::progress::Progress;
 use crate::cross_validation::world::{self, Files};
 
-/// What is queried of each state: collision, distance, and whether anything is within 20 mm.
+/// Queries of each state: collision, distance, and whether anything is within 20 mm.
 const KINDS: [QueryKind; 3] = [QueryKind::Collision, QueryKind::Distance, QueryKind::Tolerance(0.02)];
 
-/// Hashes so many rows, an even share for each robot: half of them of the robot alone, half with two objects beside it.
+/// Hashes this many rows, evenly distributed over the robots: half of them of the robot alone, half with two objects
+/// beside it.
 pub fn groups(root: &Path, data: &Path, rows: usize) -> Result<Vec<HashedGroup>, String> {
     let robots = world::find(data);
     let mut progress = Progress::new(Part::Queries, robots.len());
@@ -46,7 +47,7 @@ fn of_robot(root: &Path, files: &Files, rows: usize) -> Result<Vec<HashedGroup>,
     Ok(groups)
 }
 
-/// All rows of the first kind, then all of the next.
+/// Hashes all rows of the first kind, then all of the next.
 pub fn digest(model: &QueryModel, states: &[Vec<f64>]) -> Result<Digest, String> {
     let states = QueryStates::parse(&model.file, &table(model, states), model).map_err(|e| e.to_string())?;
     let scene = model.scene(OutOfReachProofs::Compute).map_err(|e| e.to_string())?;
@@ -63,7 +64,7 @@ pub fn digest(model: &QueryModel, states: &[Vec<f64>]) -> Result<Digest, String>
     Ok(digest)
 }
 
-/// The states as a file of `query --states`.
+/// Formats the states as a file of `query --states`.
 fn table(model: &QueryModel, states: &[Vec<f64>]) -> String {
     let chain = &model.robots[0].robot.chain;
     let names: Vec<&str> = chain.active_joints().iter().map(|j| chain.joints()[j.0].name.as_str()).collect();
@@ -76,7 +77,7 @@ fn table(model: &QueryModel, states: &[Vec<f64>]) -> String {
     table
 }
 
-/// What a row says, except for the level that it was answered at.
+/// Adds the contents of a row, except for the level of its answer.
 fn add_record(digest: &mut Digest, record: &QueryRecord) {
     digest.whole(record.index);
     digest.flag(record.collides == 1);

@@ -1,8 +1,8 @@
-//! Reasons of overrides as numbers, whatever their names and texts are.
+//! Reasons of overrides as numbers, independent of their names and texts.
 
 use elbowroom_monitor::{Fault, OverrideReason, RegionId};
 
-/// The kind of a reason, and the region or the joint that it names.
+/// Returns the kind of a reason, and the region or the joint that it names.
 pub fn code(reason: OverrideReason) -> (usize, Option<usize>) {
     let of = |kind, RegionId(region)| (kind, Some(region));
     match reason {

@@ -1,4 +1,4 @@
-//! A file of hashes: sorted lines `part group hash count`.
+//! File of hashes: sorted lines `part group hash count`.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -28,7 +28,7 @@ impl Record {
         text.lines().enumerate().map(line).collect::<Result<_, _>>().map(Self)
     }
 
-    /// Replaces the lines of one part and keeps those of the others: a run that is interrupted keeps the parts that it completed.
+    /// Replaces the lines of one part and keeps all others: an interrupted run keeps the parts that it completed.
     pub fn add_to_file(file: &Path, part: Part, groups: &[HashedGroup]) -> Result<(), String> {
         let mut record = if file.exists() { Self::read(file)? } else { Self::default() };
         record.replace(part, groups);
@@ -49,7 +49,7 @@ impl Record {
         text
     }
 
-    /// Names each group of a part that is not as recorded, or is in one of the two alone.
+    /// Names each group of a part that differs from the record, or is only in one of the two.
     pub fn differences(&self, part: Part, groups: &[HashedGroup]) -> Vec<String> {
         let recorded: Vec<&HashedGroup> =
             self.0.iter().filter(|(of, _)| of == part.name()).map(|(_, group)| group).collect();

@@ -1,4 +1,4 @@
-//! Equal answers have equal hashes, and other answers have others.
+//! Tests: equal answers have equal hashes, and different answers have different hashes.
 
 use elbowroom_cell::QueryModel;
 

@@ -1,39 +1,39 @@
-//! What was planned in one cell, and how it is printed.
+//! Plans of one cell, and their summary.
 
 use std::path::PathBuf;
 use std::time::Duration;
 
 use elbowroom_scene::Scene;
 
-/// A path: a time (or length) and joint values, linear between.
+/// A path: a time (or length) and joint values, linear between rows.
 pub type Polyline = Vec<(f64, Vec<f64>)>;
 
-/// What the reference found on the paths of a course.
+/// Result of the reference for the paths of a course.
 pub struct PathCheck {
     pub points: usize,
-    /// Paths with a collision.
+    /// Number of paths with a collision.
     pub hits: usize,
-    /// The first of them in words.
+    /// Description of the first collision.
     pub first: Option<String>,
 }
 
 /// Many starts and goals in one scene.
 pub struct Course {
     pub name: String,
-    /// What Pinocchio reads the joints from.
+    /// URDF from which Pinocchio reads the joints.
     pub urdf: PathBuf,
     pub scene: Scene,
     pub asked: usize,
     pub found: usize,
-    /// Pairs of which it is proven that no path joins them.
+    /// Number of pairs for which it is proven that no path joins them.
     pub disconnected: usize,
     pub straight: usize,
-    /// Of the whole plan, per pair.
+    /// Time of the whole plan, per pair.
     pub planning: Vec<Duration>,
-    /// Of making it short, and of timing, per path.
+    /// Times of simplification and of time parametrization, per path.
     pub simplifying: Vec<Duration>,
     pub timing: Vec<Duration>,
-    /// Corners at which a motion stops, of all.
+    /// Number of corners at which a motion stops, of all corners.
     pub stops: usize,
     pub corners: usize,
     /// Waypoints and motions of all paths.
@@ -109,7 +109,7 @@ impl Course {
     }
 }
 
-/// Median and 99th percentile, ms.
+/// Returns median and 99th percentile, ms.
 fn spread(times: &[Duration]) -> [f64; 2] {
     let mut times = times.to_vec();
     times.sort_unstable();
@@ -119,7 +119,7 @@ fn spread(times: &[Duration]) -> [f64; 2] {
     [0.5, 0.99].map(|share| 1e3 * at(share))
 }
 
-/// Waypoints with the length gone so far.
+/// Returns the waypoints, each with the path length up to it.
 pub fn along<Q: AsRef<[f64]>>(waypoints: &[Q]) -> Polyline {
     let mut far = 0.0;
     let mut last: Option<&[f64]> = None;

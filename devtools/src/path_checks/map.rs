@@ -12,10 +12,10 @@ use super::course::{Course, along};
 
 /// Width of a cell, degrees.
 const STEP: f64 = 2.0;
-/// From row to row of a motion, s.
+/// Time between rows of a motion, s.
 const PERIOD: f64 = 0.004;
 
-/// Plans between the middles of random free cells.
+/// Plans between the centres of random free cells.
 pub fn course(folder: &Path, name: &str, obstacles: &[ConvexObstacle], pairs: usize) -> Result<Course, String> {
     fn text(e: impl std::fmt::Display) -> String {
         e.to_string()
@@ -64,7 +64,7 @@ fn free(grid: &Grid, map: &JointMap, random: &mut SplitMix) -> [f64; 3] {
     }
 }
 
-/// The arm's joints for Pinocchio; its solids go another way.
+/// Writes the arm's joints for Pinocchio; its solids are passed separately.
 fn urdf(folder: &Path, grid: &Grid) -> Result<PathBuf, String> {
     let robot = example::robot(grid).map_err(|e| e.to_string())?;
     let chain = &robot.chain;

@@ -1,5 +1,5 @@
-//! Planned paths beside Coal: random starts and goals on the joint-space map and for real robots, every path checked by
-//! Pinocchio and Coal at many points.
+//! Check of planned paths by Coal: random starts and goals on the joint-space map and for real robots, every path
+//! checked by Pinocchio and Coal at many points.
 
 mod course;
 mod map;
@@ -13,7 +13,7 @@ use xtask::Failure;
 use crate::cross_validation;
 use course::Course;
 
-/// What the words after `paths` say.
+/// Options of `paths`.
 #[derive(Debug, PartialEq)]
 struct Options {
     data: Option<PathBuf>,
@@ -44,7 +44,7 @@ impl Options {
     }
 }
 
-/// Plans and checks; an error where Coal finds a collision.
+/// Plans and checks; an error if Coal finds a collision.
 pub fn run(root: &Path, words: &[&str]) -> Result<(), Failure> {
     let options = Options::parse(words).map_err(Failure::Usage)?;
     let python = cross_validation::interpreter(root)?;
@@ -57,7 +57,7 @@ pub fn run(root: &Path, words: &[&str]) -> Result<(), Failure> {
     }
 }
 
-/// Paths on which the reference finds a collision.
+/// Counts the paths on which the reference finds a collision.
 fn check_all(root: &Path, python: &Path, folder: &Path, options: &Options) -> Result<usize, String> {
     let wanted = |name: &str| options.only.as_ref().is_none_or(|only| name.contains(only.as_str()));
     if !options.json {
@@ -100,7 +100,7 @@ mod tests {
         }
     }
 
-    /// A few paths of the map against the reference, where it is installed; and one that goes through a post.
+    /// Checks a few paths of the map, and one that goes through a post, with the reference, if it is installed.
     #[test]
     fn the_reference_agrees_and_would_find_a_collision() {
         let root = crate::workspace_root().unwrap();
@@ -113,7 +113,7 @@ mod tests {
         let (name, obstacles) = elbowroom_planner::example::cells().swap_remove(1);
         let mut course = map::course(&folder, name, &obstacles, 12).unwrap();
         let free = reference::check(&python, &folder, &course, 500).unwrap();
-        // The post stands where the arm points at half of this way.
+        // The post is where the arm points half-way.
         let through = [0.0, -0.5].map(|turn| vec![turn, 0.3, 0.2]);
         course.paths.push(vec![(0.0, through[0].clone()), (1.0, vec![-1.57, 0.3, 0.2])]);
         let caught = reference::check(&python, &folder, &course, 500).unwrap();

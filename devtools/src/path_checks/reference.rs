@@ -1,4 +1,4 @@
-//! Every path by Pinocchio and Coal, in a Python of their own.
+//! Check of every path by Pinocchio and Coal, in a separate Python.
 
 use std::path::Path;
 use std::process::Command;
@@ -6,7 +6,7 @@ use std::process::Command;
 use super::course::{Course, PathCheck};
 use crate::cross_validation::{reference, world};
 
-/// Checks so many points of each path, evenly spread over its times.
+/// Checks this many points of each path, evenly spread over its times.
 pub fn check(python: &Path, folder: &Path, course: &Course, points: usize) -> Result<PathCheck, String> {
     std::fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     let pairs = world::by_rule(&course.scene);

@@ -14,7 +14,7 @@ use elbowroom_testkit::random::SplitMix;
 use super::course::{Course, along};
 use crate::cross_validation::world::{self, Files};
 
-/// Robots of the data that are planned for, each with the size of what stands around it.
+/// Robots of the data, each with the size of its surroundings, m.
 const ROBOTS: [(&str, f64); 6] = [
     ("panda", 1.0),
     ("ur5e", 1.0),
@@ -23,7 +23,7 @@ const ROBOTS: [(&str, f64); 6] = [
     ("kuka_lbr_iiwa_14_r820", 1.0),
     ("abb_irb2400", 1.8),
 ];
-/// From row to row of a motion, s.
+/// Time between rows of a motion, s.
 const PERIOD: f64 = 0.004;
 
 pub fn known(name: &str) -> bool {
@@ -83,7 +83,7 @@ pub fn course(files: &Files, pairs: usize) -> Result<Course, String> {
     Ok(course)
 }
 
-/// A floor, a shelf in front, posts beside with a beam across.
+/// Returns a floor, a shelf in front, and posts at the side with a beam across.
 fn around(size: f64) -> Vec<Object> {
     let cuboid = |name: &str, at: [f64; 3], full: [f64; 3]| Object {
         name: name.into(),
@@ -101,7 +101,7 @@ fn around(size: f64) -> Vec<Object> {
     ]
 }
 
-/// Random states without contact; an error where the robot hardly has any.
+/// Returns random states without contact; an error if the robot has hardly any.
 fn free(scene: &Scene, count: usize) -> Result<Vec<Vec<f64>>, String> {
     let mut checker = Checker::new(scene, CheckerOptions::default());
     let mut state = SceneState::new(scene);
@@ -122,7 +122,7 @@ fn free(scene: &Scene, count: usize) -> Result<Vec<Vec<f64>>, String> {
     Ok(free)
 }
 
-/// Half a turn either way if there is no limit.
+/// Returns a random value within limits; half a turn in each direction without limits.
 fn within(low: f64, high: f64, random: &mut SplitMix) -> f64 {
     let turn = std::f64::consts::PI;
     let (low, high) = (if low.is_finite() { low } else { -turn }, if high.is_finite() { high } else { turn });

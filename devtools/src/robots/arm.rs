@@ -1,4 +1,4 @@
-//! What arms of six axes have in common: how their links hang together.
+//! Common structure of six-axis arms: how their links are connected.
 
 use super::model::{Joint, Link, Primitive, Turn};
 use crate::solid::Mesh;
@@ -10,20 +10,20 @@ pub const Y: [f64; 3] = [0.0, 1.0, 0.0];
 pub const Z: [f64; 3] = [0.0, 0.0, 1.0];
 pub const Z_DOWN: [f64; 3] = [0.0, 0.0, -1.0];
 
-/// Of an arm; its flange is of steel. Red, green, blue, 0 to 1.
+/// Colours of an arm with a steel flange. Red, green, blue, 0 to 1.
 pub struct Colours {
-    /// From the turntable to the forearm.
+    /// Colour from the turntable to the forearm.
     pub paint: [f64; 3],
-    /// Base and wrist.
+    /// Colour of base and wrist.
     pub cast: [f64; 3],
 }
 
 const STEEL: [f64; 3] = [0.72, 0.73, 0.75];
 
-/// From the base to the frame that lies on the flange.
+/// Names from the base to the frame on the flange.
 const LINKS: [&str; 8] = ["base_link", "link_1", "link_2", "link_3", "link_4", "link_5", "link_6", "tool0"];
 
-/// A joint's name, where it stands in the link before (m), its axis, its range (degrees), its speed (degrees per second).
+/// A joint's name, its place in the previous link (m), its axis, its range (degrees), its speed (degrees per second).
 pub type Axis = (&'static str, [f64; 3], [f64; 3], [f64; 2], f64);
 
 /// Links of meshes, base to flange, and a bare frame.
@@ -43,7 +43,7 @@ fn links(parts: [(Option<Mesh>, Vec<Primitive>); 7], &Colours { paint, cast }: &
     named.map(|((name, (solid, primitives)), colour)| Link { name, solid, primitives, colour }).collect()
 }
 
-/// Six joints that turn, base to flange, and where the bare frame stands on the last link: metres; roll, pitch, yaw.
+/// Six revolute joints, base to flange, and the place of the bare frame on the last link: metres; roll, pitch, yaw.
 pub fn joints(axes: &[Axis; 6], [frame_xyz, frame_rpy]: [[f64; 3]; 2]) -> Vec<Joint> {
     let turning = |(i, &(name, xyz, axis, range_deg, speed_deg_s)): (usize, &Axis)| Joint {
         name,

@@ -1,4 +1,4 @@
-//! An arm with the dimensions of the KUKA KR125, the robot of the paper on joint-space models; solids of our own.
+//! Arm with the dimensions of the KUKA KR125, the robot of the paper on joint-space models; the solids are original.
 
 use super::arm::{self, Colours, X_BACK, Y, Z_DOWN};
 use super::model::{Form, Joint, Primitive, PrimitiveKind, Robot};
@@ -16,9 +16,9 @@ const ABOUT: &str = "
 
 const COLOURS: Colours = Colours { paint: [0.95, 0.46, 0.10], cast: [0.22, 0.23, 0.25] };
 
-/// Height of the frame of joint 1 above the floor, metres.
+/// Height of the frame of joint 1 above the floor, m.
 const FOOT: f64 = 0.35;
-/// From the elbow to the frame of joint 4, metres.
+/// Distance from the elbow to the frame of joint 4, m.
 const HALF_WAY: f64 = 0.55;
 
 /// The whole robot.
@@ -30,7 +30,7 @@ pub fn robot() -> Robot {
         links: arm::of_primitives([base(), column(), upper_arm(), elbow(), forearm(), wrist(), flange()], &COLOURS),
         joints: joints(),
         disabled: vec![
-            // Within the limits of joint 5 the flange stays clear of the fork.
+            // Within the limits of joint 5 the flange never reaches the fork.
             ("link_3", "link_5", "Never"),
             ("link_4", "link_6", "Never"),
         ],
@@ -55,7 +55,7 @@ fn base() -> Vec<Primitive> {
     vec![cuboid([0.0, 0.0, 0.02], [0.9, 0.9, 0.04]), upright([0.0, 0.0, 0.19], 0.34, 0.30)]
 }
 
-/// Round about axis 1, and what carries the shoulder.
+/// A round part about axis 1, and the support of the shoulder.
 fn column() -> Vec<Primitive> {
     vec![
         upright([0.0, 0.0, 0.10], 0.38, 0.16),
@@ -109,12 +109,12 @@ fn upright(at: [f64; 3], radius: f64, length: f64) -> Primitive {
     Primitive { kind: PrimitiveKind::Cylinder { radius, length }, at, rpy: [0.0; 3] }
 }
 
-/// Along y.
+/// A cylinder along y.
 fn across(at: [f64; 3], radius: f64, length: f64) -> Primitive {
     Primitive { kind: PrimitiveKind::Cylinder { radius, length }, at, rpy: [FRAC_PI_2, 0.0, 0.0] }
 }
 
-/// Along x.
+/// A cylinder along x.
 fn along(at: [f64; 3], radius: f64, length: f64) -> Primitive {
     Primitive { kind: PrimitiveKind::Cylinder { radius, length }, at, rpy: [0.0, FRAC_PI_2, 0.0] }
 }

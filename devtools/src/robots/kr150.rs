@@ -1,4 +1,5 @@
-//! An arm with the dimensions of the KUKA KR150, the robot of the paper on kinematics out of 3-D models; solids of our own.
+//! Arm with the dimensions of the KUKA KR150, the robot of the paper on kinematics from 3-D models; the solids are
+//! original.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -20,17 +21,17 @@ const ABOUT: &str = "
 
 const COLOURS: Colours = Colours { paint: [0.93, 0.45, 0.11], cast: [0.22, 0.23, 0.25] };
 
-/// Height of the shoulder, and how far it lies before axis 1, metres.
+/// Height of the shoulder, and its distance in front of axis 1, m.
 const SHOULDER: [f64; 2] = [0.75, 0.35];
-/// Between shoulder and elbow.
+/// Distance between shoulder and elbow, m.
 const UPPER_ARM: f64 = 1.25;
-/// From the elbow to the axis of the forearm, down at zero.
+/// Distance from the elbow down to the axis of the forearm, at zero joint values, m.
 const DROP: f64 = 0.055;
-/// From above the elbow to the wrist.
+/// Distance from above the elbow to the wrist, m.
 const FOREARM: f64 = 1.1;
-/// From the wrist to the flange.
+/// Distance from the wrist to the flange, m.
 const HAND: f64 = 0.23;
-/// Height of the bearing of axis 1.
+/// Height of the bearing of axis 1, m.
 const BEARING: f64 = 0.32;
 
 /// The whole robot.
@@ -95,10 +96,10 @@ fn carousel() -> Mesh {
     mesh
 }
 
-/// Tapered, beside shoulder and elbow, with covers over both gears and a rail for the cables.
+/// Tapered upper arm, beside shoulder and elbow, with covers over both gears and a rail for the cables.
 fn upper_arm() -> Mesh {
     let mut mesh = Mesh::new();
-    // The outline runs along its v, which lies along the link's x.
+    // The outline runs along its v, which is along the link's x.
     let plate: Outline = tapered_slot(0.215, 0.165, UPPER_ARM, 0.045, 12).iter().map(|&[u, v]| [v, -u]).collect();
     mesh.add(&along_minus_y([0.0; 3]), &extrude(&plate, 0.065, 0.235, 0.03));
     let cover = |radius: f64| lathe(&[[radius, 0.0], [radius, 0.02], [radius * 0.9, 0.034]], 28);
@@ -154,7 +155,7 @@ fn forearm() -> Mesh {
     mesh
 }
 
-/// Between the cheeks of the fork.
+/// The wrist between the cheeks of the fork.
 fn wrist() -> Mesh {
     let mut mesh = Mesh::new();
     mesh.add(&along_y([0.0, -0.073, 0.0]), &drum(0.080, 0.146, 28));
@@ -190,13 +191,13 @@ fn flange() -> Mesh {
     mesh
 }
 
-/// Upright on z = 0, both rims bevelled.
+/// A drum upright on z = 0, with both rims bevelled.
 fn drum(radius: f64, length: f64, segments: usize) -> Mesh {
     let bevel = radius * 0.07;
     lathe(&[[radius - bevel, 0.0], [radius, bevel], [radius, length - bevel], [radius - bevel, length]], segments)
 }
 
-/// Of a length, standing on z = 0: body and cap.
+/// A motor of a length, standing on z = 0: body and cap.
 fn motor(radius: f64, length: f64, segments: usize) -> Mesh {
     let narrow = radius * 0.92;
     let body = [

@@ -1,4 +1,4 @@
-//! Example robots of our own: figures in, URDF or 3DS, SRDF and meshes out. One file per robot.
+//! Generated example robots: dimensions in, URDF or 3DS, SRDF and meshes out. One file per robot.
 
 mod arm;
 mod kr125;
@@ -17,13 +17,13 @@ use model::{Form, Robot};
 
 use crate::solid::binary_stl;
 
-/// Every robot we generate.
+/// Returns every generated robot.
 pub fn all() -> Vec<Robot> {
     vec![ns16::robot(), rx60b::robot(), kr125::robot(), kr150::robot()]
 }
 
 impl Robot {
-    /// The model and its SRDF; an error where a solid does not close.
+    /// Returns the model and its SRDF; an error if a solid is not closed.
     pub fn files(&self) -> Result<Vec<File>, String> {
         let name = self.name;
         let solids = || self.links.iter().filter_map(|l| Some((l.name, l.solid.as_ref()?)));

@@ -1,4 +1,4 @@
-//! A robot as data, before it is written.
+//! Robot as data, before it is written.
 
 use crate::solid::Mesh;
 
@@ -8,17 +8,17 @@ pub struct Robot {
     pub name: &'static str,
     /// Written at the head of the URDF.
     pub about: &'static str,
-    /// In what form it is written.
+    /// Form in which it is written.
     pub form: Form,
-    /// In order from the root.
+    /// Links, in order from the root.
     pub links: Vec<Link>,
-    /// In order from the root.
+    /// Joints, in order from the root.
     pub joints: Vec<Joint>,
     /// Pairs that are never tested, beyond neighbours: link, link, reason.
     pub disabled: Vec<(&'static str, &'static str, &'static str)>,
 }
 
-/// In what form a robot is written.
+/// Form in which a robot is written.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Form {
     /// URDF, and a mesh per link.
@@ -29,19 +29,19 @@ pub enum Form {
 
 /// One rigid body.
 pub struct Link {
-    /// As in the URDF.
+    /// Name, as in the URDF.
     pub name: &'static str,
-    /// None for a bare frame.
+    /// Mesh; `None` for a bare frame.
     pub solid: Option<Mesh>,
-    /// Solids that a URDF can write down itself, in the link's frame; beside a mesh or instead of one.
+    /// Solids that a URDF describes without a mesh, in the link's frame; beside a mesh or instead of one.
     pub primitives: Vec<Primitive>,
     /// Red, green, blue, 0 to 1.
     pub colour: [f64; 3],
 }
 
-/// A solid that a URDF can write down itself.
+/// A solid that a URDF describes without a mesh.
 pub struct Primitive {
-    /// What it is.
+    /// Kind and sizes.
     pub kind: PrimitiveKind,
     /// Its centre in the link, metres.
     pub at: [f64; 3],
@@ -49,36 +49,36 @@ pub struct Primitive {
     pub rpy: [f64; 3],
 }
 
-/// Sizes in metres.
+/// Kind of a primitive; sizes in metres.
 pub enum PrimitiveKind {
     /// Edge lengths.
     Box([f64; 3]),
-    /// Along its z.
+    /// A cylinder along its z.
     Cylinder {
-        /// Of the round faces.
+        /// Radius of the round faces.
         radius: f64,
-        /// From face to face.
+        /// Distance from face to face.
         length: f64,
     },
 }
 
 /// A joint between two links.
 pub struct Joint {
-    /// As in the URDF.
+    /// Name, as in the URDF.
     pub name: &'static str,
-    /// Nearer to the root.
+    /// Link nearer to the root.
     pub parent: &'static str,
-    /// Moved by the joint.
+    /// Link that the joint moves.
     pub child: &'static str,
-    /// Joint frame in the parent, metres.
+    /// Position of the joint frame in the parent, m.
     pub xyz: [f64; 3],
-    /// Joint frame in the parent: roll, pitch, yaw in radians.
+    /// Rotation of the joint frame in the parent: roll, pitch, yaw in radians.
     pub rpy: [f64; 3],
-    /// None: fixed.
+    /// Rotation of a revolute joint; `None` for a fixed one.
     pub turns: Option<Turn>,
 }
 
-/// How a revolute joint turns.
+/// Rotation of a revolute joint.
 pub struct Turn {
     /// Unit vector in the joint frame.
     pub axis: [f64; 3],

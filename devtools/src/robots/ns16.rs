@@ -1,4 +1,4 @@
-//! An arm with the dimensions of the Comau SMART NS16 (arc version), solids of our own.
+//! Arm with the dimensions of the Comau SMART NS16 (arc version); the solids are original.
 
 use elbowroom_spatial::Vec3;
 
@@ -116,7 +116,7 @@ fn upper_arm() -> Mesh {
     mesh.add(&along_minus_y([0.0, 0.0, 0.7]), &bolts(0.064, 8, 0.2125, 0.006));
     let rail = extrude(&rounded_rectangle(0.075, 0.36, 0.030, 5), 0.185, 0.212, 0.009);
     mesh.add(&along_minus_y([0.0, 0.0, 0.355]), &rail);
-    // The inner side: a boss around each gear, as far as the neighbours reach.
+    // The inner side: a boss around each gear, up to the neighbours.
     mesh.add(&along_minus_y([0.0, -0.070, 0.0]), &lathe(&[[0.104, 0.0], [0.104, 0.012]], 36));
     mesh.add(&along_minus_y([0.0, -0.071, 0.7]), &lathe(&[[0.080, 0.0], [0.080, 0.012]], 36));
     mesh

@@ -1,11 +1,11 @@
-//! What arms are put together from: motors, bolts, skins.
+//! Parts of arms: motors, bolts, skins.
 
 use elbowroom_spatial::Vec3;
 
 use crate::solid::outline::{circle, rounded_rectangle};
 use crate::solid::{Mesh, along_minus_x, extrude, lathe, loft, upright};
 
-/// Motor of a length, standing on z = 0: mounting flange, finned body, end cap.
+/// Makes a motor of a length, standing on z = 0: mounting flange, finned body, end cap.
 pub fn motor(radius: f64, length: f64) -> Mesh {
     let mut mesh = Mesh::new();
     let body = [
@@ -25,12 +25,12 @@ pub fn motor(radius: f64, length: f64) -> Mesh {
     mesh
 }
 
-/// A hexagon head standing on z = 0.
+/// Makes a hexagon head standing on z = 0.
 pub fn bolt(radius: f64, height: f64) -> Mesh {
     lathe(&[[radius, 0.0], [radius, height * 0.85], [radius * 0.88, height]], 6)
 }
 
-/// Bolt heads on a circle about z, sunk a little into the plane at `z`.
+/// Makes bolt heads on a circle about z, sunk a little into the plane at `z`.
 pub fn bolts(circle_radius: f64, count: usize, z: f64, radius: f64) -> Mesh {
     let mut mesh = Mesh::new();
     let sunk = radius * 0.5;
@@ -40,8 +40,8 @@ pub fn bolts(circle_radius: f64, count: usize, z: f64, radius: f64) -> Mesh {
     mesh
 }
 
-/// A loft of rounded rectangles `(centre, size, corner radius)` with `arc` edges to a corner; `plane` puts the flat section
-/// into space.
+/// Makes a loft of rounded rectangles `(centre, size, corner radius)` with `arc` edges to a corner; `plane` maps the
+/// flat section into space.
 pub fn skin(rows: &[(Vec3, [f64; 2], f64)], arc: usize, plane: impl Fn([f64; 2]) -> Vec3) -> Mesh {
     let section = |&(center, [width, height], radius): &(Vec3, [f64; 2], f64)| {
         let outline = rounded_rectangle(width, height, radius, arc);

@@ -1,4 +1,5 @@
-//! An arm with the dimensions of the Stäubli RX60B, solids of our own: the robot of the paper's test of proximity queries.
+//! Arm with the dimensions of the Stäubli RX60B, the robot of the paper's test of proximity queries; the solids are
+//! original.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -20,7 +21,7 @@ const ABOUT: &str = "
 
 const COLOURS: Colours = Colours { paint: [0.93, 0.77, 0.16], cast: [0.30, 0.31, 0.33] };
 
-/// Edges around the large round parts.
+/// Number of edges around the large round parts.
 const ROUND: usize = 66;
 
 /// The whole robot.
@@ -99,7 +100,7 @@ fn upper_arm() -> Mesh {
         mesh.add(&along_minus_y([0.0, 0.0, z]), &screws(radius + 0.0055, count, 0.136, 0.0045));
     }
     mesh.add(&along_minus_y([0.0, 0.0, 0.145]), &extrude(&rounded_rectangle(0.05, 0.12, 0.02, 6), 0.130, 0.146, 0.006));
-    // The inner side: a boss around each gear, as far as the neighbours reach.
+    // The inner side: a boss around each gear, up to the neighbours.
     mesh.add(&along_minus_y([0.0, -0.0455, 0.0]), &lathe(&[[0.080, 0.0], [0.080, 0.008]], ROUND));
     mesh.add(&along_minus_y([0.0, -0.0455, 0.290]), &lathe(&[[0.070, 0.0], [0.070, 0.008]], ROUND));
     mesh
@@ -142,7 +143,7 @@ fn forearm() -> Mesh {
     ];
     mesh.add(&upright([0.0; 3]), &upright_skin(&rows));
     for cheek in [along_y([0.0, 0.0, 0.210]), along_minus_y([0.0, 0.0, 0.210])] {
-        // v of the outline runs along z or against it: the part is turned so that it goes back to the tube.
+        // The v of the outline runs along z or against it: the part is turned so that it points back to the tube.
         let back = if cheek.transform_vector(Vec3::Y).z < 0.0 { 1.0 } else { -1.0 };
         let slot = tapered_slot(0.038, 0.034, 0.078, 0.0, 12);
         let outline: Vec<[f64; 2]> = slot.iter().map(|&[u, v]| [u * back, v * back]).collect();

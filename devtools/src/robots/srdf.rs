@@ -1,10 +1,10 @@
-//! A robot's allowed collisions as SRDF text.
+//! SRDF text of a robot's allowed collisions.
 
 use std::fmt::Write;
 
 use super::model::Robot;
 
-/// One group from the first to the last link, neighbours, and what the robot itself disables.
+/// Writes one group from the first to the last link, neighbours, and the pairs that the robot itself disables.
 pub fn text(robot: &Robot) -> String {
     let ends = robot.links.first().zip(robot.links.last()).map(|(first, last)| (first.name, last.name));
     let (base, tip) = ends.unwrap_or_default();

@@ -4,7 +4,7 @@ use super::model::File;
 use crate::solid::outline::{circle, rounded_rectangle};
 use crate::solid::{Mesh, along_minus_x, along_x, along_y, binary_stl, extrude, lathe, upright};
 
-/// Every tool's mesh.
+/// Returns every tool's mesh.
 pub fn files() -> Result<Vec<File>, String> {
     let named = |name: &str, mesh: Mesh| -> Result<File, String> {
         mesh.check().map_err(|e| format!("{name}: {e}"))?;

@@ -1,4 +1,4 @@
-//! A robot as one 3DS file: hierarchy, pivots, solids, and tracks that turn each joint through its range.
+//! 3DS file of a robot: hierarchy, pivots, solids, and tracks that turn each joint through its range.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -9,10 +9,10 @@ use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 use super::model::{File, Robot, Turn};
 
-/// Between two keys a joint turns no farther, so that the way round stays clear.
+/// Largest rotation of a joint between two keys, degrees, so that its direction is unambiguous.
 const STEP_DEG: f64 = 60.0;
 
-/// The model, and what a 3DS file cannot say: names, senses and speeds of the joints.
+/// Writes the model, and the data that a 3DS file cannot hold: names, directions and speeds of the joints.
 pub fn files(robot: &Robot) -> Result<Vec<File>, String> {
     let name = robot.name;
     let file = format!("{name}/{name}.3ds");
@@ -20,7 +20,7 @@ pub fn files(robot: &Robot) -> Result<Vec<File>, String> {
     Ok(vec![(file, bytes), (format!("{name}/{name}.joints.toml"), joints(robot).into_bytes())])
 }
 
-/// Links as nodes at zero joint values.
+/// Returns the links as nodes at zero joint values.
 fn tree(robot: &Robot) -> NodeTree {
     let mut tree = NodeTree::new(robot.name);
     for link in &robot.links {
@@ -38,7 +38,7 @@ fn tree(robot: &Robot) -> NodeTree {
     tree
 }
 
-/// From zero to the upper limit, to the lower one and back, a key a second.
+/// Returns a track from zero to the upper limit, to the lower one and back, with a key per second.
 fn track(turn: &Turn, in_parent: Pose) -> Vec<Keyframe> {
     let [lower, upper] = turn.range_deg;
     let mut angles = vec![0.0];

@@ -1,10 +1,10 @@
-//! A robot as URDF text.
+//! URDF text of a robot.
 
 use std::fmt::Write;
 
 use super::model::{Joint, Link, Primitive, PrimitiveKind, Robot};
 
-/// The whole file. Meshes are relative to it.
+/// Writes the whole file. Paths of meshes are relative to it.
 pub fn text(robot: &Robot) -> String {
     let mut out = String::from("<?xml version=\"1.0\"?>\n");
     let _ = writeln!(
@@ -59,7 +59,7 @@ fn joint(out: &mut String, joint: &Joint) {
         let [lower, upper] = turn.range_deg.map(f64::to_radians);
         let speed = turn.speed_deg_s.to_radians();
         let _ = writeln!(out, "    <axis xyz=\"{}\"/>", triple(turn.axis));
-        // URDF wants an effort; nothing here uses it, and no figure is published.
+        // URDF requires an effort; it is not used here, and no value is published.
         let _ = writeln!(out, "    <limit lower=\"{lower}\" upper=\"{upper}\" velocity=\"{speed}\" effort=\"1000\"/>");
     }
     out.push_str("  </joint>\n");

@@ -1,4 +1,4 @@
-//! Every query in every setting, timed one by one.
+//! Measurement of every query in every setting, timed one by one.
 
 use std::time::Instant;
 
@@ -9,7 +9,7 @@ use super::setup::{self, LEFT, RIGHT};
 /// The tolerance of the tolerance query, m.
 pub const TOLERANCE_M: f64 = 0.05;
 
-/// What is asked.
+/// Kind of query.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Query {
     Collision,
@@ -29,7 +29,7 @@ impl Query {
     }
 }
 
-/// How it is answered.
+/// Setting in which queries are answered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Setting {
     /// The coarsest level that may answer.
@@ -39,10 +39,10 @@ pub struct Setting {
 }
 
 impl Setting {
-    /// Everything on.
+    /// The setting with everything on.
     pub const FULL: Self = Self { start: Level::L1, matrix: true, weights: true };
 
-    /// All twelve.
+    /// Returns all twelve settings.
     pub fn all() -> Vec<Self> {
         let mut all = Vec::new();
         for start in [Level::L3, Level::L2, Level::L1] {
@@ -66,18 +66,18 @@ impl Setting {
     }
 }
 
-/// One query in one setting over all states.
+/// Results of one query in one setting over all states.
 pub struct Run {
     pub setting: Setting,
     pub query: Query,
-    /// Per state: metres, or 1 for yes and 0 for no.
+    /// Answers per state: metres, or 1 for yes and 0 for no.
     pub answers: Vec<f64>,
-    /// Per query, µs.
+    /// Times per query, µs.
     pub times: Times,
     pub counts: CheckerStats,
 }
 
-/// Of one query, µs.
+/// Times of one query, µs.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Times {
     pub mean: f64,
@@ -97,11 +97,11 @@ impl Times {
     }
 }
 
-/// Passes over the states, each by a fresh checker; of each state the least time counts, which leaves out most of what
-/// other programs on the machine cost.
+/// Number of passes over the states, each by a new checker; the least time of each state counts, which excludes most of the
+/// load of other programs on the machine.
 const PASSES: usize = 3;
 
-/// All passes over the states.
+/// Makes all passes over the states.
 pub fn run(scene: &Scene, states: &[Vec<f64>], setting: Setting, query: Query) -> Result<Run, String> {
     let (mut nanoseconds, answers, counts) = pass(scene, states, setting, query)?;
     for _ in 1..PASSES {
@@ -116,7 +116,7 @@ type Pass = (Vec<u64>, Vec<f64>, CheckerStats);
 fn pass(scene: &Scene, states: &[Vec<f64>], setting: Setting, query: Query) -> Result<Pass, String> {
     let mut checker = Checker::new(scene, setting.options());
     let mut state = SceneState::new(scene);
-    // The list of pairs is made by the first question.
+    // The first query makes the list of pairs.
     ask(&mut checker, &state, query);
     checker.reset_stats();
     let mut answers = Vec::with_capacity(states.len());
@@ -141,11 +141,11 @@ fn ask(checker: &mut Checker<'_>, state: &SceneState, query: Query) -> f64 {
     }
 }
 
-/// States whose answer differs from that of the first run of the same query, and states whose three answers contradict
+/// Counts states whose answer differs from the first run of the same query, and states whose three answers contradict
 /// each other.
 pub fn disagreements(runs: &[Run]) -> usize {
     let first = |query| runs.iter().find(|run| run.query == query);
-    // Neither equal nor both NaN: NaN is not an answer and agrees with nothing.
+    // A NaN is not an answer and equals nothing, not even another NaN.
     let differ = |a: &[f64], b: &[f64]| a.iter().zip(b).filter(|(x, y)| x != y).count();
     let between = runs.iter().filter_map(|run| Some(differ(&first(run.query)?.answers, &run.answers))).sum::<usize>();
     let [Some(hit), Some(near), Some(far)] = Query::ALL.map(first) else { return between };

@@ -14,7 +14,7 @@ use measure::{Query, Setting};
 use spacing::Spacing;
 use xtask::Failure;
 
-/// What the words after `rpq` say.
+/// Options of `rpq`.
 #[derive(Debug, PartialEq)]
 struct Options {
     states: usize,
@@ -39,7 +39,7 @@ impl Options {
     }
 }
 
-/// Measures, prints, writes the figures where asked to; an error where two settings give different answers.
+/// Measures, prints, and writes the figures if requested; an error if two settings give different answers.
 pub fn run(root: &Path, words: &[&str]) -> Result<(), Failure> {
     let options = Options::parse(words).map_err(Failure::Usage)?;
     let arm = setup::arm(root)?;

@@ -1,4 +1,4 @@
-//! The measured times as tables, JSON lines and figures.
+//! Report of the measured times as tables, JSON lines and figures.
 
 use std::fmt::Write as _;
 
@@ -8,7 +8,7 @@ use super::measure::{Query, Run, Setting, TOLERANCE_M};
 use super::spacing::Spacing;
 use crate::figures::svg::{Axis, Curve, Dash, Plot};
 
-/// Everything for the terminal.
+/// Formats all tables for the terminal.
 pub fn tables(spacings: &[Spacing], triangles: usize, states: usize) -> String {
     let mut out = String::new();
     let _ = writeln!(out, "Two RX60B of {triangles} triangles each, {states} equidistributed states; µs per query\n");
@@ -45,7 +45,7 @@ fn cell(run: &Run) -> String {
     format!("{} ({}, {})", short(t.mean), short(t.p50), short(t.p99))
 }
 
-/// Three digits.
+/// Formats a number with three digits.
 fn short(v: f64) -> String {
     let digits = if v < 10.0 { 2 } else { usize::from(v < 100.0) };
     format!("{v:.digits$}")
@@ -60,7 +60,7 @@ fn levels(run: &Run) -> String {
     format!("{l1:.0} {l2:.0} {l3:.0}; {tests:.2}")
 }
 
-/// One object per line and run.
+/// Formats one JSON object per line and run.
 pub fn json(spacings: &[Spacing]) -> String {
     let mut out = String::new();
     for spacing in spacings {
@@ -94,7 +94,7 @@ pub fn json(spacings: &[Spacing]) -> String {
     out
 }
 
-/// The two halves of the paper's figure 3, by file name.
+/// Draws the two halves of the paper's figure 3; returns them by file name.
 pub fn figures(spacings: &[Spacing]) -> Vec<(&'static str, String)> {
     let setting = |start, matrix, weights| Setting { start, matrix, weights };
     let matrix = [
@@ -136,7 +136,7 @@ fn plot(title: &'static str, spacings: &[Spacing], lines: &[(&str, usize, Dash, 
     Plot { title, x, y, curves }
 }
 
-/// 1, 2 or 5 times a power of ten, for four to ten ticks.
+/// Returns a distance of ticks, 1, 2 or 5 times a power of ten, for four to ten ticks.
 fn tick(most: f64) -> f64 {
     let rough = (most / 8.0).max(1e-3);
     let power = 10_f64.powf(rough.log10().floor());

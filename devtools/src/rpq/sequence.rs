@@ -1,6 +1,6 @@
 //! Equidistributed points: the additive recurrence of Roberts ("R-sequence", 2018).
 
-/// Points of the unit cube of `dimensions`, evenly spread however many are taken.
+/// Points of the unit cube of `dimensions`, evenly spread for any number of points.
 ///
 /// Coordinate i of point n is the fraction of 1/2 + n / φⁱ⁺¹, where φ is the root of x^(dimensions + 1) = x + 1.
 pub struct Sequence {
@@ -10,7 +10,7 @@ pub struct Sequence {
 impl Sequence {
     pub fn new(dimensions: usize) -> Self {
         let mut phi = 1.5_f64;
-        // x ← (1 + x)^(1 / (d + 1)) contracts.
+        // The iteration x ← (1 + x)^(1 / (d + 1)) contracts.
         for _ in 0..200 {
             phi = (1.0 + phi).powf(1.0 / (dimensions + 1) as f64);
         }
@@ -18,7 +18,7 @@ impl Sequence {
         Self { steps: powers.take(dimensions).collect() }
     }
 
-    /// Point `n`, each coordinate in [0, 1).
+    /// Returns point `n`, each coordinate in [0, 1).
     pub fn point(&self, n: usize) -> impl Iterator<Item = f64> + '_ {
         self.steps.iter().map(move |step| (0.5 + step * (n + 1) as f64).fract())
     }

@@ -14,18 +14,18 @@ use super::sequence::Sequence;
 pub const RIGHT: Selection = Selection::Robot(RobotId(0));
 pub const LEFT: Selection = Selection::Robot(RobotId(1));
 
-/// Between the axes of the bases, m. The arm reaches 0.67 m from its shoulder: from "almost always entangled" to
+/// Distances between the axes of the bases, m. The arm reaches 0.67 m from its shoulder: from "almost always entangled" to
 /// "hardly within reach".
 pub const DISTANCES_M: [f64; 5] = [0.4, 0.6, 0.8, 1.0, 1.2];
 
-/// The model that `cargo xtask models` writes.
+/// Loads the model that `cargo xtask models` writes.
 pub fn arm(root: &Path) -> Result<Robot, String> {
     let folder = root.join("examples/models/rx60b");
     let options = LoadOptions { srdf: Some(folder.join("rx60b.srdf")), ..LoadOptions::default() };
     robot::load(&folder.join("rx60b.urdf"), &options).map(|loaded| loaded.robot).map_err(|e| e.to_string())
 }
 
-/// The second arm stands beside the first, to its left.
+/// Builds the scene: the second arm is beside the first, to its left.
 pub fn scene(arm: &Robot, distance_m: f64) -> Result<Scene, String> {
     let mut builder = Scene::builder();
     builder.robot("right", arm.clone(), Pose::IDENTITY);
@@ -33,7 +33,7 @@ pub fn scene(arm: &Robot, distance_m: f64) -> Result<Scene, String> {
     builder.build().map_err(|e| e.to_string())
 }
 
-/// Triangles of one arm.
+/// Number of triangles of one arm.
 pub fn triangles(arm: &Robot) -> usize {
     let colliders = arm.colliders.iter().flatten();
     colliders.map(|collider| if let Shape::Mesh(mesh) = &collider.shape { mesh.triangles().len() } else { 0 }).sum()
@@ -54,7 +54,8 @@ pub fn put(scene: &Scene, state: &mut SceneState, q: &[f64]) -> Result<(), Strin
     state.set_q(scene, RobotId(0), right).and_then(|()| state.set_q(scene, RobotId(1), left)).map_err(|e| e.to_string())
 }
 
-/// Pairs between the arms: (all that a joint moves, those that the allowed collision matrix proves out of reach).
+/// Numbers of pairs between the arms: (all that a joint moves, those that the allowed collision matrix proves out of
+/// reach).
 pub fn pairs(scene: &Scene) -> (usize, usize) {
     let state = SceneState::new(scene);
     let all = Checker::new(scene, CheckerOptions::default()).between(RIGHT, LEFT).len(&state);

@@ -1,11 +1,11 @@
-//! The measurements at one distance between the two robots.
+//! Measurements at one distance between the two robots.
 
 use super::measure::{Query, Run, Setting};
 
 /// All that was measured at one distance between the bases.
 pub struct Spacing {
     pub distance_m: f64,
-    /// Pairs of links, and how many of them the matrix proves out of reach.
+    /// Number of pairs of links, and how many of them the matrix proves out of reach.
     pub pairs: (usize, usize),
     pub runs: Vec<Run>,
 }

@@ -1,4 +1,4 @@
-//! A thick plate of any outline, its rims rounded.
+//! Thick plate of any outline, with rounded rims.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -7,10 +7,10 @@ use elbowroom_spatial::Vec3;
 use super::outline::{Outline, inset};
 use super::{Mesh, loft};
 
-/// Edges of a rounded rim.
+/// Number of edges of a rounded rim.
 const RIM: usize = 3;
 
-/// The outline (x, y) made solid from `from` to `to` along z, both rims rounded with radius `rim`; 0 leaves them sharp.
+/// Extrudes the outline (x, y) from `from` to `to` along z, with both rims rounded with radius `rim`; 0 leaves them sharp.
 pub fn extrude(outline: &[[f64; 2]], from: f64, to: f64, rim: f64) -> Mesh {
     let at = |flat: Outline, z: f64| -> Vec<Vec3> { flat.iter().map(|&[x, y]| Vec3::new(x, y, z)).collect() };
     if rim <= 0.0 {

@@ -6,13 +6,14 @@ use elbowroom_spatial::Vec3;
 
 use super::{Mesh, loft};
 
-/// Turns a profile of `[radius, z]` about z. It runs from bottom to top, all radii above zero; the ends are closed flat.
+/// Rotates a profile of `[radius, z]` about z. It runs from bottom to top, with all radii above zero; the ends are
+/// closed flat.
 pub fn lathe(profile: &[[f64; 2]], segments: usize) -> Mesh {
     let sections: Vec<_> = profile.iter().map(|&[radius, z]| circle(radius, z, segments)).collect();
     loft(&sections)
 }
 
-/// Turns a closed loop of `[radius, z]` about z: a solid with a bore. The loop goes up outside and down inside.
+/// Rotates a closed loop of `[radius, z]` about z: a solid with a bore. The loop goes up outside and down inside.
 pub fn ring(profile: &[[f64; 2]], segments: usize) -> Mesh {
     let rows = profile.len() as u32;
     let n = segments as u32;

@@ -1,11 +1,11 @@
-//! A skin over a row of sections.
+//! Skin over a row of sections.
 
 use elbowroom_spatial::Vec3;
 
 use super::Mesh;
 
-/// Joins closed rings of equally many points, each counter-clockwise about the direction of travel, and closes both ends
-/// with a fan about the ring's middle: the end sections must be star-shaped about it.
+/// Joins closed rings with equal numbers of points, each counter-clockwise about the direction of travel, and closes
+/// both ends with a fan about the ring's centre: the end sections must be star-shaped about it.
 pub fn loft(sections: &[Vec<Vec3>]) -> Mesh {
     let mut mesh = Mesh::new();
     let (Some(first), Some(last)) = (sections.first(), sections.last()) else { return mesh };

@@ -1,20 +1,20 @@
-//! Triangles, and the proof that they close.
+//! Triangle mesh, and the proof that it is closed.
 
 use std::collections::BTreeMap;
 
 use elbowroom_spatial::{Pose, Vec3};
 
-/// One part, or several that overlap; each part is closed by itself.
+/// One part, or several overlapping ones; each part is closed by itself.
 #[derive(Debug, Clone, Default)]
 pub struct Mesh {
-    /// Corners, metres.
+    /// Corners, m.
     pub vertices: Vec<Vec3>,
     /// Indices of three corners, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
 }
 
 impl Mesh {
-    /// Nothing yet.
+    /// Creates an empty mesh.
     pub fn new() -> Self {
         Self::default()
     }
@@ -27,18 +27,18 @@ impl Mesh {
         self
     }
 
-    /// Enclosed volume in m³ by the divergence theorem; where parts overlap, the common volume counts for each.
+    /// Enclosed volume in m³ by the divergence theorem; if parts overlap, their common volume counts for each.
     pub fn volume(&self) -> f64 {
         let six_volumes = self.corners().map(|[a, b, c]| a.dot(b.cross(c)));
         six_volumes.sum::<f64>() / 6.0
     }
 
-    /// Three corner points per triangle.
+    /// Returns three corner points per triangle.
     pub fn corners(&self) -> impl Iterator<Item = [Vec3; 3]> + '_ {
         self.triangles.iter().map(|corners| corners.map(|corner| self.vertices[corner as usize]))
     }
 
-    /// Proves that the surface is closed and faces outward once equal points (1 µm) are one: every directed edge occurs
+    /// Proves that the surface is closed and faces outward after equal points (1 µm) are merged: every directed edge occurs
     /// exactly once, so does its reverse, no triangle is degenerate, and the volume is positive.
     pub fn check(&self) -> Result<(), String> {
         let mut edges: BTreeMap<([i64; 3], [i64; 3]), usize> = BTreeMap::new();
@@ -63,7 +63,7 @@ fn micrometres(p: Vec3) -> [i64; 3] {
     [p.x, p.y, p.z].map(|v| (v * 1e6).round() as i64)
 }
 
-/// To whole micrometres: sine and cosine differ in their last bits from one C library to the next, files must not.
+/// Rounds to whole micrometres: sine and cosine differ in their last bits between C libraries; files must not.
 fn rounded(p: Vec3) -> Vec3 {
     let [x, y, z] = micrometres(p).map(|v| v as f64 / 1e6);
     Vec3::new(x, y, z)

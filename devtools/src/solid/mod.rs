@@ -1,6 +1,6 @@
-//! Closed solids made by code: outlines, and what lathe, extrusion and loft make of them.
+//! Closed solids from code: outlines, and lathe, extrusion and loft of them.
 //!
-//! Lengths are metres. Every generator gives one closed part, its triangles counter-clockwise seen from outside.
+//! Lengths are metres. Every generator returns one closed part, its triangles counter-clockwise seen from outside.
 
 mod extrude;
 mod lathe;

@@ -10,7 +10,7 @@ pub fn circle(radius: f64, segments: usize) -> Outline {
     (0..segments).map(|i| polar([0.0, 0.0], radius, TAU * i as f64 / segments as f64)).collect()
 }
 
-/// A rectangle about the origin with round corners, `arc` edges each.
+/// A rectangle about the origin with rounded corners, `arc` edges each.
 pub fn rounded_rectangle(width: f64, height: f64, radius: f64, arc: usize) -> Outline {
     let (u, v) = (width / 2.0 - radius, height / 2.0 - radius);
     let centers = [[u, v], [-u, v], [-u, -v], [u, -v]];
@@ -21,8 +21,8 @@ pub fn rounded_rectangle(width: f64, height: f64, radius: f64, arc: usize) -> Ou
     centers.into_iter().enumerate().flat_map(corner).collect()
 }
 
-/// What a belt around two circles encloses: `r0` at the origin and `r1` at `[0, length]`; its sides are drawn in by
-/// `waist` half way between.
+/// The area inside a belt around two circles: `r0` at the origin and `r1` at `[0, length]`; its sides are drawn in by
+/// `waist` half-way between.
 pub fn tapered_slot(r0: f64, r1: f64, length: f64, waist: f64, arc: usize) -> Outline {
     const SIDE: usize = 8;
     let lean = ((r0 - r1) / length).asin();
@@ -52,7 +52,7 @@ pub fn inset(outline: &[[f64; 2]], distance: f64) -> Outline {
 
 fn inset_corner(before: [f64; 2], here: [f64; 2], after: [f64; 2], distance: f64) -> [f64; 2] {
     let [a, b] = [inward(before, here), inward(here, after)];
-    // The bisector, as long as the mitre needs: |a + b|² / 2 = 1 + a·b.
+    // The bisector, scaled for the mitre: |a + b|² / 2 = 1 + a·b.
     let scale = distance / (1.0 + a[0] * b[0] + a[1] * b[1]);
     [here[0] + (a[0] + b[0]) * scale, here[1] + (a[1] + b[1]) * scale]
 }

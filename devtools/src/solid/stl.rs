@@ -1,10 +1,10 @@
-//! Binary STL, byte for byte the same on every machine.
+//! Binary STL, with the same bytes on every machine.
 
 use elbowroom_spatial::Vec3;
 
 use super::Mesh;
 
-/// The file's bytes; lengths in metres, as URDF expects.
+/// Returns the bytes of the file; lengths in metres, as URDF expects.
 pub fn binary_stl(mesh: &Mesh) -> Vec<u8> {
     let mut bytes = vec![b' '; 80];
     let title = b"elbowroom generated solid, metres";
@@ -13,7 +13,7 @@ pub fn binary_stl(mesh: &Mesh) -> Vec<u8> {
     for [a, b, c] in mesh.corners() {
         let normal = (b - a).cross(c - a).try_normalize().unwrap_or(Vec3::ZERO);
         for point in [normal, a, b, c] {
-            // Adding zero turns −0 into 0, which rounding would otherwise leave to chance.
+            // Adding zero turns −0 into 0: the sign of a rounded zero must not depend on the machine.
             let coordinates = [point.x, point.y, point.z].map(|v| (v as f32 + 0.0).to_le_bytes());
             bytes.extend(coordinates.as_flattened());
         }

@@ -1,9 +1,9 @@
-//! Lines of documents that are too long to read in a terminal or in a comparison of changes.
+//! Check of the lengths of lines: longer lines are hard to read in a terminal or in a diff.
 
-/// Characters of the longest line.
+/// Length of the longest line, characters.
 const LONGEST: usize = 200;
 
-/// Every line that is too long.
+/// Lists every line that is too long.
 pub fn problems(name: &str, text: &str) -> Vec<String> {
     let long = text.lines().map(|line| line.chars().count()).enumerate().filter(|(_, length)| *length > LONGEST);
     long.map(|(i, length)| format!("{name}:{}: {length} characters, at most {LONGEST}", i + 1)).collect()

@@ -1,8 +1,8 @@
-//! Links of documents to files and headings of the workspace.
+//! Check of the links of documents to files and headings of the workspace.
 
 use std::path::Path;
 
-/// Every link of this document to a file or heading that is not there.
+/// Lists every link of this document to a file or heading that does not exist.
 pub fn problems(root: &Path, name: &str, text: &str) -> Vec<String> {
     let folder = Path::new(name).parent().unwrap_or(Path::new(""));
     let mut found = Vec::new();
@@ -24,7 +24,7 @@ pub fn problems(root: &Path, name: &str, text: &str) -> Vec<String> {
     found
 }
 
-/// Targets of `[text](target)` with their lines; code is left out.
+/// Returns the targets of `[text](target)` with their lines; code is skipped.
 fn links(text: &str) -> Vec<(usize, &str)> {
     let mut found = Vec::new();
     let mut in_code = false;
@@ -46,7 +46,7 @@ fn links(text: &str) -> Vec<(usize, &str)> {
     found
 }
 
-/// The anchors of a document's headings, as the usual viewers make them.
+/// Returns the anchors of a document's headings, as the usual viewers make them.
 fn headings(text: &str) -> impl Iterator<Item = String> {
     let lines = text.lines().filter(|line| line.starts_with('#'));
     lines.map(|line| {

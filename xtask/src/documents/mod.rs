@@ -1,4 +1,4 @@
-//! Checks of the documents: no line too long for a reader, no broken link, no name that the sources do not have.
+//! Checks of the documents: lengths of lines, links, and names that must exist in the sources.
 
 mod lines;
 mod links;
@@ -31,7 +31,7 @@ pub fn run(root: &Path) -> Result<(), String> {
     Err(format!("{} places\n  {}", problems.len(), problems.join("\n  ")))
 }
 
-/// Rust sources, documents, cell files, scripts, pages and pictures that the project wrote itself.
+/// Finds Rust sources, documents, cell files, scripts, pages and pictures of the project itself.
 fn files(root: &Path) -> Result<Vec<PathBuf>, String> {
     const FOLDERS: [&str; 5] = ["crates", "devtools", "docs", "examples", "xtask"];
     let mut found: Vec<PathBuf> = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "Cargo.toml"]
@@ -48,7 +48,7 @@ fn files(root: &Path) -> Result<Vec<PathBuf>, String> {
 
 fn collect(folder: &Path, found: &mut Vec<PathBuf>) -> Result<(), String> {
     const ENDINGS: [&str; 10] = ["rs", "md", "toml", "py", "cpp", "hpp", "js", "html", "css", "svg"];
-    // Programs of others, as they were published.
+    // Programs of other projects, unchanged.
     const FOREIGN: [&str; 3] = ["plotly", "three", "target"];
     let Ok(entries) = std::fs::read_dir(folder) else { return Ok(()) };
     for entry in entries {

@@ -1,4 +1,4 @@
-//! Names that a document gives: types, functions, crates, examples, benches, tests and files must exist.
+//! Check of the names in a document: types, functions, crates, examples, benches, tests and files must exist.
 
 use std::collections::HashSet;
 use std::path::Path;
@@ -24,7 +24,7 @@ impl KnownNames {
         self.paths.push(path.to_owned());
     }
 
-    /// Every name in a document that nothing has.
+    /// Lists every name in a document that does not exist.
     pub fn problems(&self, root: &Path, document: &str, text: &str) -> Vec<String> {
         let mut found = Vec::new();
         let mut in_code = false;
@@ -40,7 +40,7 @@ impl KnownNames {
         found
     }
 
-    /// Crates, examples and tests that a command names and that do not exist.
+    /// Lists the crates, examples and tests that a command names and that do not exist.
     fn command_names<'a>(&'a self, line: &'a str) -> impl Iterator<Item = String> + 'a {
         let after = |option: &'static str| line.split(option).skip(1).filter_map(|rest| words(rest).next());
         let crates = after("-p elbowroom-").map(|name| (format!("/{name}/Cargo.toml"), format!("crate {name}")));
@@ -60,7 +60,7 @@ impl KnownNames {
             .map(|(_, name)| format!("there is no {name}"))
     }
 
-    /// What is wrong with a piece of code in a sentence.
+    /// Says what is wrong with a piece of code in a sentence.
     fn unknown(&self, root: &Path, code: &str) -> Option<String> {
         if is_path(code) {
             return (!root.join(code).exists()).then(|| format!("there is no file `{code}`"));
@@ -76,17 +76,17 @@ impl KnownNames {
     }
 }
 
-/// Runs of letters, digits and underscores.
+/// Splits a text into runs of letters, digits and underscores.
 fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|word| !word.is_empty())
 }
 
-/// The name of a test: words of a sentence.
+/// Whether the code is the name of a test: words of a sentence.
 fn is_sentence(code: &str) -> bool {
     code.matches('_').count() >= 4 && code.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
 }
 
-/// A file or folder of the workspace.
+/// Whether the code is a file or folder of the workspace.
 fn is_path(code: &str) -> bool {
     const FOLDERS: [&str; 5] = ["crates/", "devtools/", "docs/", "examples/", "xtask/"];
     // `NAME` and `GROUP` in a path stand for any name.
@@ -95,7 +95,7 @@ fn is_path(code: &str) -> bool {
         && !["NAME", "GROUP"].iter().any(|any| code.contains(any))
 }
 
-/// A path of Rust (`mesh::distance`), or a type with or without what follows it (`Scene`, `Scene.step()`).
+/// Whether the code is a path of Rust (`mesh::distance`), or a type, alone or with a suffix (`Scene`, `Scene.step()`).
 fn is_rust(code: &str) -> bool {
     let mut start = code.chars();
     let is_type = start.next().is_some_and(char::is_uppercase) && start.next().is_some_and(char::is_lowercase);

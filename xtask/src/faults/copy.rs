@@ -1,4 +1,4 @@
-//! A copy of the committed sources, in which faults are planted.
+//! Copy of the committed sources, in which faults are planted.
 
 use std::path::{Path, PathBuf};
 
@@ -14,10 +14,10 @@ pub struct SourceCopy {
 }
 
 impl SourceCopy {
-    /// Makes the copy in `folder`; one that an earlier run has left there is removed.
+    /// Makes the copy in `folder`; a copy that an earlier run has left there is removed.
     ///
     /// # Errors
-    /// Where git cannot make it.
+    /// If git cannot make it.
     pub fn new(root: &Path, folder: &Path) -> Result<Self, String> {
         remove(root, folder)?;
         let path = folder.to_string_lossy();
@@ -30,10 +30,10 @@ impl SourceCopy {
         &self.folder
     }
 
-    /// Plants a fault until the answer is dropped.
+    /// Plants a fault, until the returned value is dropped.
     ///
     /// # Errors
-    /// Where its text does not occur exactly once, or the file cannot be written.
+    /// If its text does not occur exactly once, or the file cannot be written.
     pub fn plant(&self, fault: &Fault) -> Result<Planted, String> {
         let path = self.folder.join(&fault.file);
         let source = std::fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
@@ -92,7 +92,7 @@ mod tests {
             replace: text("<="),
             why: text("one too many"),
         };
-        // Not a worktree: dropping it removes the folder all the same.
+        // Not a worktree: dropping the copy removes the folder nevertheless.
         let copy = SourceCopy { root: folder.clone(), folder: folder.clone() };
         let read = || std::fs::read_to_string(folder.join("crates/a.rs")).unwrap();
         let planted = copy.plant(&fault).unwrap();

@@ -1,35 +1,35 @@
-//! The list of faults, `xtask/faults.toml`.
+//! List of the faults, `xtask/faults.toml`.
 
 use std::collections::BTreeSet;
 use std::path::Path;
 
 use toml::{Table, Value};
 
-/// Where the list is, below the root.
+/// Path of the list, below the root.
 pub const LIST: &str = "xtask/faults.toml";
 
 /// A mistake that a careful engineer could make, and that the tests must find.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fault {
-    /// What it is called in the list and on the command line.
+    /// Its name in the list and on the command line.
     pub name: String,
-    /// The crate it is planted in, without `elbowroom-`.
+    /// Name of the crate, without `elbowroom-`.
     pub crate_name: String,
-    /// The source file, from the root.
+    /// Path of the source file, from the root.
     pub file: String,
     /// Text that occurs once in the file.
     pub find: String,
-    /// What replaces it.
+    /// The text that replaces it.
     pub replace: String,
-    /// What the fault would do to a user.
+    /// The effect that the fault would have for a user.
     pub why: String,
 }
 
 impl Fault {
-    /// The text of the file with the fault.
+    /// Returns the text of the file with the fault.
     ///
     /// # Errors
-    /// Where the text to find does not occur exactly once.
+    /// If the text to find does not occur exactly once.
     pub fn planted(&self, source: &str) -> Result<String, String> {
         match source.matches(&self.find).count() {
             1 => Ok(source.replacen(&self.find, &self.replace, 1)),
@@ -44,7 +44,7 @@ impl Fault {
 /// Reads the list below `root`.
 ///
 /// # Errors
-/// A file that cannot be read, or an entry that is not whole.
+/// If the file cannot be read, or an entry is incomplete.
 pub fn read(root: &Path) -> Result<Vec<Fault>, String> {
     let text = std::fs::read_to_string(root.join(LIST)).map_err(|e| format!("{LIST}: {e}"))?;
     parse(&text).map_err(|e| format!("{LIST}: {e}"))

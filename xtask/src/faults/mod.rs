@@ -1,4 +1,4 @@
-//! `cargo xtask faults`: mistakes are planted one by one, and the tests must find each.
+//! `cargo xtask faults`: plants faults one by one; the tests must find each.
 
 mod copy;
 mod list;
@@ -44,7 +44,7 @@ impl Options {
 /// Lists the faults, checks the list, or plants the chosen faults.
 ///
 /// # Errors
-/// A fault that cannot be planted, does not compile, or is not found.
+/// If a fault cannot be planted, does not compile, or is not found.
 pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
     let faults = chosen(list::read(root)?, &options.only)?;
     if options.list {
@@ -64,10 +64,10 @@ pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
     Ok(plant_all(root, &faults)?)
 }
 
-/// What is wrong with the list for the sources at `root`; nothing is compiled.
+/// Lists what is wrong with the list for the sources at `root`; nothing is compiled.
 ///
 /// # Errors
-/// A list that cannot be read.
+/// If the list cannot be read.
 pub fn problems(root: &Path) -> Result<Vec<String>, String> {
     Ok(unplantable(root, &list::read(root)?))
 }
@@ -114,7 +114,7 @@ fn plant_all(root: &Path, faults: &[Fault]) -> Result<(), String> {
     if found == faults.len() { Ok(()) } else { Err("the tests do not find every fault".into()) }
 }
 
-/// Variables for cargo and for the tests. The copy lies elsewhere, so that the data folder must be named.
+/// Returns variables for cargo and for the tests. The copy is in another folder, so the data folder must be named.
 fn environment(root: &Path, build: &Path) -> Result<Vec<(String, String)>, String> {
     let data = call::data_folder(root, None);
     println!("data: {}", data.display());
@@ -122,13 +122,13 @@ fn environment(root: &Path, build: &Path) -> Result<Vec<(String, String)>, Strin
         ("CARGO_TARGET_DIR".to_owned(), build.to_string_lossy().into_owned()),
         ("ELBOWROOM_DATA".to_owned(), data.to_string_lossy().into_owned()),
     ];
-    // Only what an earlier run of the suite has installed.
+    // Offline: only references that an earlier run of the suite has installed.
     let references = References::find(root, true)?;
     env.extend(references.environment().map(|(key, value)| (key.to_owned(), value.to_owned())));
     Ok(env)
 }
 
-/// A table as documents have it.
+/// Prints the table in the form of the documents.
 fn print_table(faults: &[Fault], outcomes: &[Outcome]) {
     println!("\n| fault | crate | found by |\n| --- | --- | --- |");
     for (fault, outcome) in faults.iter().zip(outcomes) {

@@ -1,4 +1,4 @@
-//! The tests against one fault: those of its crate, then those of the crates that depend on it.
+//! Trial of one fault: runs the tests of its crate, then the tests of the crates that depend on it.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -12,17 +12,17 @@ use super::list::Fault;
 use crate::dependents::{Package, dependents};
 use crate::test_run::{self, FirstFailure};
 
-/// A unit of tests that takes longer hangs: the fault is found.
+/// Longest time of a unit of tests; a unit that takes longer hangs, and the fault is found.
 const LONGEST: Duration = Duration::from_mins(5);
 
-/// How the tests took a fault.
+/// Result of the tests for a fault.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Outcome {
     /// A test of this package failed.
     Found { package: String, failure: FirstFailure },
     /// All tests passed.
     NotFound,
-    /// The list is wrong: the fault cannot be compiled.
+    /// The list is wrong: the fault does not compile.
     DoesNotCompile { package: String },
     /// The list is right, but the test fails without the fault too.
     FailsWithout { failure: FirstFailure },
@@ -34,7 +34,7 @@ impl Outcome {
         matches!(self, Self::Found { .. })
     }
 
-    /// The words of the table.
+    /// Describes the outcome for the table.
     pub fn words(&self, crate_name: &str) -> String {
         match self {
             Self::Found { package, failure } => {
@@ -49,7 +49,7 @@ impl Outcome {
     }
 }
 
-/// What all trials share.
+/// Data that all trials share.
 #[derive(Debug)]
 pub struct FaultRunner<'a> {
     /// The root of the workspace, which has the times of earlier test runs.
@@ -63,10 +63,10 @@ pub struct FaultRunner<'a> {
 }
 
 impl FaultRunner<'_> {
-    /// Plants the fault, runs tests until one fails, and takes it out again.
+    /// Plants the fault, runs tests until one fails, and removes the fault.
     ///
     /// # Errors
-    /// Where the fault cannot be planted, or a program does not list its tests.
+    /// If the fault cannot be planted, or a program does not list its tests.
     pub fn search(&self, fault: &Fault) -> Result<Outcome, String> {
         let _planted = self.copy.plant(fault)?;
         for package in self.nearest_first(&crates::package(&fault.crate_name)) {
@@ -80,11 +80,11 @@ impl FaultRunner<'_> {
         Ok(Outcome::NotFound)
     }
 
-    /// A test that fails without the fault too has not found it. Runs each again that is said to have found one; no fault is
-    /// planted now.
+    /// Runs each test again that has found a fault, without a fault: a test that fails without the fault too has not
+    /// found it.
     ///
     /// # Errors
-    /// Where the sources do not compile without a fault.
+    /// If the sources do not compile without a fault.
     pub fn confirm(&self, outcomes: &mut [Outcome]) -> Result<(), String> {
         let package_of = |outcome: &Outcome| match outcome {
             Outcome::Found { package, .. } => Some(package.clone()),
@@ -103,7 +103,8 @@ impl FaultRunner<'_> {
         Ok(())
     }
 
-    /// The package and all that its change can break, the nearest first, of equally near ones the lower layer.
+    /// Returns the package and all packages that its change can break: the nearest first, at equal distance the lower
+    /// layer first.
     fn nearest_first(&self, package: &str) -> Vec<String> {
         let found = dependents(&self.packages, BTreeSet::from([package.to_owned()]));
         let mut found: Vec<(usize, usize, String)> =
@@ -123,13 +124,13 @@ impl FaultRunner<'_> {
     }
 }
 
-/// The place of a package in the layers; developer tools come last.
+/// Place of a package in the layers; developer tools come last.
 fn layer(package: &str) -> usize {
     let layers = GROUPS.iter().flat_map(|(_, crates)| *crates);
     layers.clone().position(|name| crates::package(name) == package).unwrap_or_else(|| layers.count())
 }
 
-/// The words that choose the tests of a package: its library, its programs, its own test programs.
+/// Arguments that choose the tests of a package: its library, its programs, its own test programs.
 fn targets(root: &Path, package: &Package) -> Vec<String> {
     let has = |path: &str| PathBuf::from(root).join(&package.folder).join(path).exists();
     let mut words = Vec::new();
@@ -143,7 +144,7 @@ fn targets(root: &Path, package: &Package) -> Vec<String> {
     for name in tests.filter_map(|test| test.get("name").and_then(Value::as_str)) {
         words.extend(["--test".to_owned(), name.to_owned()]);
     }
-    // The step `tests` of the suite has the network too.
+    // As in the step `tests` of the suite, with the network.
     if package.manifest.get("features").is_some_and(|features| features.get("live").is_some()) {
         words.extend(["--features".to_owned(), "live".to_owned()]);
     }

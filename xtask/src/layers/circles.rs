@@ -1,17 +1,17 @@
-//! Circles of files: files of one crate that use each other, directly or through others.
+//! Cycles of files: files of one crate that use each other, directly or through others.
 //!
-//! A file that only declares and re-exports is passed through: who imports `crate::Name` uses the file that defines
-//! `Name`. Unit tests may use what they like.
+//! A file that only declares and re-exports is passed through: an import of `crate::Name` uses the file that defines
+//! `Name`. Unit tests may use any file.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use super::module::{Modules, definer, read};
 
-/// File → the files that it uses, each with the names it takes from there.
+/// File → the files that it uses, each with the names used.
 type Graph = BTreeMap<String, BTreeMap<String, BTreeSet<String>>>;
 
-/// The circles of the crate whose sources are in `src`: each as lines `a.rs -> b.rs: names`.
+/// Finds the cycles of the crate whose sources are in `src`: each as lines `a.rs -> b.rs: names`.
 pub fn circles_of(src: &Path) -> Result<Vec<Vec<String>>, String> {
     let graph = graph(&read(src)?);
     Ok(circles(&graph).iter().map(|files| described(&graph, files)).collect())
@@ -32,7 +32,7 @@ fn graph(modules: &Modules) -> Graph {
     graph
 }
 
-/// Groups of files in which each reaches each.
+/// Finds groups of files in which each file reaches every other.
 fn circles(graph: &Graph) -> Vec<Vec<String>> {
     let reached: BTreeMap<&String, BTreeSet<&String>> = graph.keys().map(|file| (file, reach(graph, file))).collect();
     let mut grouped = BTreeSet::new();
@@ -76,7 +76,7 @@ mod tests {
     use super::super::module::module;
     use super::*;
 
-    /// A crate of these files, module path and text, and its circles.
+    /// Makes a crate of these files (module path and text), and finds its cycles.
     fn found(files: &[(&str, &str)]) -> Vec<Vec<String>> {
         let path = |name: &str| -> Vec<String> {
             name.trim_end_matches(".rs")

@@ -1,6 +1,7 @@
-//! Who may depend on whom. The order of [`GROUPS`] is the architecture; `docs/architecture.md` explains it. Inside a crate
-//! no two files may use each other in a circle. A ratchet limits sizes, and public items that nothing reaches. The list of
-//! planted faults must fit the sources.
+//! Allowed dependencies. The order of [`GROUPS`] is the architecture; `docs/architecture.md` explains it.
+//!
+//! The files of a crate must not use each other in a cycle. A ratchet limits sizes, and public items that nothing
+//! reaches. The list of planted faults must fit the sources.
 
 mod circles;
 mod module;
@@ -16,10 +17,10 @@ use xtask::crates::{self, Crate, GROUPS};
 
 use crate::faults;
 
-/// Crates that may opt out of `forbid(unsafe_code)`: the glue that Python needs.
+/// Crates that may opt out of `forbid(unsafe_code)`: the Python bindings need it.
 const MAY_USE_UNSAFE: [&str; 1] = ["python"];
 
-/// Never, not even through others: (who, on whom, why).
+/// Forbidden dependencies, also through other crates: (crate, dependency, reason).
 const NEVER: [(&str, &str, &str); 3] = [
     ("monitor", "avoidance", "avoidance proposes a motion, the monitor scales it last"),
     ("monitor", "planner", "a planner can fail; the monitor must not be affected"),
@@ -70,7 +71,7 @@ fn circle_problems(name: &str, src: &Path) -> Result<Vec<String>, String> {
     Ok(circles.iter().map(|lines| format!("{name}: a circle of files\n    {}", lines.join("\n    "))).collect())
 }
 
-/// Everything wrong with these manifests (crate name → its `Cargo.toml`), in a fixed order.
+/// Lists everything that is wrong with these manifests (crate name → its `Cargo.toml`), in a fixed order.
 fn problems(workspace: &Table, manifests: &BTreeMap<String, Table>) -> Vec<String> {
     let mut found = Vec::new();
     if lookup(workspace, &["workspace", "lints", "rust", "unsafe_code"]).and_then(Value::as_str) != Some("forbid") {
@@ -93,7 +94,7 @@ fn problems(workspace: &Table, manifests: &BTreeMap<String, Table>) -> Vec<Strin
     found
 }
 
-/// The group in which the crate is, where that is not its own.
+/// Says in which group the crate is, if that is the wrong one.
 fn place_problem(found: &Crate) -> Option<String> {
     let (group, _) = GROUPS.iter().find(|(_, crates)| crates.contains(&found.name.as_str()))?;
     (found.group != *group)
@@ -134,12 +135,12 @@ fn reaches(uses: &BTreeMap<&str, BTreeSet<String>>, from: &str, to: &str, seen: 
     used.iter().any(|next| next == to || (seen.insert(next.clone()) && reaches(uses, next, to, seen)))
 }
 
-/// Crates of this workspace named by any dependency table, those of tests, build scripts and single targets included.
+/// Crates of this workspace named by any dependency table, including those of tests, build scripts and single targets.
 fn crates_used(manifest: &Table) -> BTreeSet<String> {
     crates_in(manifest, &["dependencies", "dev-dependencies", "build-dependencies"])
 }
 
-/// Crates of this workspace that a program which uses the crate links.
+/// Crates of this workspace that a program links if it uses the crate.
 fn crates_linked(manifest: &Table) -> BTreeSet<String> {
     crates_in(manifest, &["dependencies"])
 }

@@ -1,4 +1,4 @@
-//! The modules of a crate: which file holds which, what each defines, and what it hands on under another path.
+//! Modules of a crate: the file of each module, its definitions, and its re-exports.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -10,11 +10,11 @@ use super::uses::{Import, Use, uses_of};
 pub struct Module {
     /// Path of the file below the crate's `src`, as in `checker/mod.rs`.
     pub file: String,
-    /// What the file uses, paths made absolute (without `crate`).
+    /// Paths that the file uses, made absolute (without `crate`).
     pub uses: Vec<Use>,
-    /// Local names of what it imports.
+    /// Local names of its imports.
     imports: BTreeMap<String, Vec<String>>,
-    /// Modules of which it imports everything.
+    /// Modules whose whole contents it imports.
     globs: Vec<Vec<String>>,
     /// Names that the file defines itself.
     defined: BTreeSet<String>,
@@ -23,7 +23,7 @@ pub struct Module {
 /// All files of one crate by their module path; the root is the empty path.
 pub type Modules = BTreeMap<Vec<String>, Module>;
 
-/// Reads the files below `src`; those of tests and programs of their own are left out.
+/// Reads the files below `src`; files of tests and of separate programs are skipped.
 pub fn read(src: &Path) -> Result<Modules, String> {
     let mut files = Vec::new();
     collect(src, &mut Vec::new(), &mut files)?;
@@ -79,7 +79,7 @@ fn collect(folder: &Path, path: &mut Vec<String>, found: &mut Vec<Found>) -> Res
     Ok(())
 }
 
-/// Names that stand behind a word that defines something.
+/// Returns the names after words that define something.
 fn defined(tokens: &[Token]) -> BTreeSet<String> {
     const WORDS: [&str; 9] = ["fn", "struct", "enum", "union", "trait", "type", "const", "static", "macro_rules"];
     let mut names = BTreeSet::new();
@@ -92,8 +92,8 @@ fn defined(tokens: &[Token]) -> BTreeSet<String> {
     names
 }
 
-/// The module in whose file the item at this absolute path is defined; `None` if the path is a module itself or does
-/// not belong to the crate.
+/// Returns the module in whose file the item at this absolute path is defined; `None` if the path is a module itself or
+/// does not belong to the crate.
 pub fn definer(modules: &Modules, path: &[String]) -> Option<Vec<String>> {
     resolve(modules, path, &mut BTreeSet::new())
 }

@@ -1,6 +1,6 @@
-//! Rust source as words and signs: no comments, no literals, no unit tests.
+//! Rust source as tokens, without comments, literals and unit tests.
 
-/// One word or sign.
+/// A word or sign.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Token {
     /// An identifier or keyword.
@@ -26,7 +26,7 @@ impl Token {
     }
 }
 
-/// The tokens of a file up to its unit tests, which by custom are its end.
+/// Returns the tokens of a file up to its unit tests, which by convention are at its end.
 pub fn tokens(text: &str) -> Vec<Token> {
     let mut found = Vec::new();
     let mut rest = before_tests(text);
@@ -56,7 +56,7 @@ pub fn tokens(text: &str) -> Vec<Token> {
     found
 }
 
-/// The text of a file up to its unit tests, which by custom are its end.
+/// Returns the text of a file up to its unit tests, which by convention are at its end.
 pub fn before_tests(text: &str) -> &str {
     let start = text.find("#[cfg(test)]\nmod ").filter(|at| {
         let line = text[*at..].lines().nth(1).unwrap_or_default();
@@ -65,7 +65,7 @@ pub fn before_tests(text: &str) -> &str {
     start.map_or(text, |at| &text[..at])
 }
 
-/// What follows a string literal, plain, raw or of bytes.
+/// Returns the text after a string literal: plain, raw or of bytes.
 fn after_string(text: &str) -> Option<&str> {
     let plain = text.strip_prefix('b').unwrap_or(text);
     if let Some(raw) = plain.strip_prefix('r') {
@@ -88,7 +88,7 @@ fn after_string(text: &str) -> Option<&str> {
     Some("")
 }
 
-/// What follows a character literal or the tick of a lifetime.
+/// Returns the text after a character literal or the tick of a lifetime.
 fn after_quote(text: &str) -> &str {
     let inside = &text[1..];
     if let Some(escaped) = inside.strip_prefix('\\') {

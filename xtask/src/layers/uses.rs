@@ -1,4 +1,4 @@
-//! What a file uses of its own crate: `use` trees and paths in expressions.
+//! Uses of a file in its own crate: `use` trees and paths in expressions.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,15 +7,15 @@ use super::source::Token;
 /// An absolute path (without `crate`) that a file names.
 pub type Use = Vec<String>;
 
-/// A name made known in a file by `use`; no name where everything of the target is.
+/// A name imported by `use`; without a name if everything of the target is imported.
 pub struct Import {
     /// The local name.
     pub name: Option<String>,
-    /// What it stands for.
+    /// The path that it stands for.
     pub target: Use,
 }
 
-/// Everything that these tokens of the module `path` use of the crate whose modules are `paths`, and what they import.
+/// Returns everything that these tokens of the module `path` use of the crate whose modules are `paths`, and their imports.
 pub fn uses_of(tokens: &[Token], path: &[String], paths: &BTreeSet<Vec<String>>) -> (Vec<Use>, Vec<Import>) {
     let place = Place { path, paths };
     let (mut uses, mut imports, mut at) = (Vec::new(), Vec::new(), 0);
@@ -56,7 +56,7 @@ struct Place<'a> {
 }
 
 impl Place<'_> {
-    /// The path from the crate's root; `None` for other crates.
+    /// Returns the path from the crate's root; `None` for other crates.
     fn absolute(&self, words: &[String]) -> Option<Use> {
         let (first, rest) = words.split_first()?;
         let mut base = self.path.to_vec();
@@ -80,7 +80,7 @@ impl Place<'_> {
 
 type Leaf = (Vec<String>, Option<String>);
 
-/// Reads one branch of a `use` tree that starts at `at`, below `prefix`; answers where it ends.
+/// Reads one branch of a `use` tree that starts at `at`, below `prefix`; returns the position of its end.
 fn tree(tokens: &[Token], mut at: usize, prefix: &[String], leaves: &mut Vec<Leaf>) -> usize {
     let mut path = prefix.to_vec();
     while at < tokens.len() {
@@ -122,7 +122,7 @@ fn branches(tokens: &[Token], mut at: usize, path: &[String], leaves: &mut Vec<L
     at + 1
 }
 
-/// The words of a path in an expression or a type, and where it ends.
+/// Returns the words of a path in an expression or a type, and the position of its end.
 fn plain_path(tokens: &[Token], start: usize) -> (Vec<String>, usize) {
     let mut words: Vec<String> = tokens[start].word().map(str::to_owned).into_iter().collect();
     let mut at = start + 1;

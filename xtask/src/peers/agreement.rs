@@ -1,9 +1,9 @@
-//! When two libraries give the same distance.
+//! Agreement of the distances of two libraries.
 
-/// Distances agree to this share of themselves, and to a thousandth of it of the size.
+/// Relative tolerance of distances; a thousandth of it, relative to the size, is the absolute tolerance.
 const RELATIVE: f64 = 1e-9;
 
-/// Some libraries report a penetration as a negative distance; here it is 0.
+/// Whether two distances agree. A negative distance, by which some libraries report a penetration, counts as 0.
 pub fn same_distance(x: f64, y: f64, size: f64) -> bool {
     !x.is_nan() && !y.is_nan() && (x.max(0.0) - y.max(0.0)).abs() <= RELATIVE * (y.max(0.0) + 1e-3 * size)
 }

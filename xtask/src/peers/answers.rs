@@ -1,4 +1,4 @@
-//! Answers against answers: what differs must be explained by the distance.
+//! Comparison of answers: the distance must explain each difference.
 
 use std::path::Path;
 
@@ -9,17 +9,17 @@ use super::report::Line;
 use super::runner::Runner;
 use super::witness::{Classification, Witnesses};
 
-/// More differences than these in one line are counted without looking for an explanation.
+/// Number of differences per line up to which each is explained; more are only counted.
 const EXAMINED: usize = 50;
 
-/// A group's lines, and what is to be said about differences.
+/// A group's lines, and notes on differences.
 #[derive(Default)]
 pub struct Checked {
     pub lines: Vec<Line>,
     pub notes: Vec<String>,
 }
 
-/// Times, and how the answers compare.
+/// Collects times, and the comparison of the answers.
 pub fn check(group: &Group, all: &[Group], times: &[Option<Time>], runners: &mut [Runner], folder: &Path) -> Checked {
     let mut checked = Checked::default();
     if group.entries.iter().all(|entry| !entry.timed) {
@@ -37,7 +37,7 @@ pub fn check(group: &Group, all: &[Group], times: &[Option<Time>], runners: &mut
         let Some(time) = time else { continue };
         let (mut compared, mut disagreements) = (0, 0);
         if let Some(truth) = &truth {
-            // The reference counts what elbowroom was compared on.
+            // The reference counts the answers that elbowroom was compared on.
             let other = if Some(k) == reference { group.ours().unwrap_or(k) } else { k };
             compared = given[other].len().min(truth.len());
             let differing = differing(group, &given[k], truth);
@@ -62,8 +62,8 @@ pub fn check(group: &Group, all: &[Group], times: &[Option<Time>], runners: &mut
     checked
 }
 
-/// The answers to compare with: the reference's, but where elbowroom's differs and the distances of both settle it,
-/// what these say. `None` if both answers are right.
+/// Returns the true answers: those of the reference; if elbowroom's answer differs and the distances of both decide it,
+/// the decided answer; `None` if both answers are right.
 fn settle(
     group: &Group,
     given: &[Vec<f64>],
@@ -97,7 +97,8 @@ fn settle(
     truth
 }
 
-/// How many answers: all yes-or-no of elbowroom's and of the reference's; of the rest what the time allows.
+/// Number of answers to compare: all yes-or-no answers of elbowroom and of the reference; of others as many as the time
+/// allows.
 fn wanted(entry: &Entry, time: Option<Time>, is_reference: bool) -> usize {
     let all = entry.cell.records;
     let ours = entry.cell.lib.starts_with("elbowroom");
@@ -111,7 +112,7 @@ fn wanted(entry: &Entry, time: Option<Time>, is_reference: bool) -> usize {
     affordable.max(if ours || is_reference { 500 } else { 12 }).min(all)
 }
 
-/// The records on which answers are not the truth; a NaN never is.
+/// Returns the records whose answers differ from the truth; a NaN always differs.
 fn differing(group: &Group, given: &[f64], truth: &[Option<f64>]) -> Vec<usize> {
     let size = group.entries.first().map_or(0.0, |entry| entry.cell.size);
     let right = |x: f64, y: f64| if group.query == "distance" { same_distance(x, y, size) } else { x == y };

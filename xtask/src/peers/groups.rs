@@ -1,4 +1,4 @@
-//! The same question on the same set, with all who answer it.
+//! The same query on the same set, with all runners that offer it.
 
 use super::runner::{Cell, Runner};
 
@@ -10,20 +10,20 @@ pub struct Group {
 
 pub struct Entry {
     pub runner: usize,
-    /// Its number there.
+    /// Its number in that runner.
     pub number: usize,
     pub cell: Cell,
-    /// Whether its time is wanted; its answers may still be needed to check others.
+    /// Whether it is timed; its answers may still be needed to check others.
     pub timed: bool,
 }
 
 impl Group {
-    /// elbowroom's entry; the cold one, where there are two.
+    /// Index of elbowroom's entry; of the cold one, if there are two.
     pub fn ours(&self) -> Option<usize> {
         self.entries.iter().position(|entry| entry.cell.lib.starts_with("elbowroom"))
     }
 
-    /// Whose answers the others' are compared with: Coal's exact query in f64, else FCL's, else parry's.
+    /// Index of the entry whose answers are the reference: Coal's exact query in f64, else FCL's, else parry's.
     pub fn reference(&self) -> Option<usize> {
         let plain = |lib: &str| !["+ub", "+bp", "+warm", "+contact"].iter().any(|way| lib.contains(way));
         let find = |name: &str| self.entries.iter().position(|e| e.cell.lib.starts_with(name) && plain(&e.cell.lib));
@@ -31,14 +31,14 @@ impl Group {
     }
 }
 
-/// Ordered as elbowroom offers them; what does not hold `only` in `lib|set|query` is not timed.
+/// Makes the groups in elbowroom's order; entries without `only` in `lib|set|query` are not timed.
 pub fn of(runners: &[Runner], only: &str) -> Vec<Group> {
     let mut groups: Vec<Group> = Vec::new();
     for (runner, cells) in runners.iter().map(|runner| &runner.cells).enumerate() {
         for (number, cell) in cells.iter().enumerate() {
             let (set, query) = (cell.set.clone(), cell.query.clone());
             let wanted = format!("{}|{set}|{query}", cell.lib).contains(only);
-            // Distances of random poses only explain answers.
+            // Distances of random poses serve only to explain answers.
             let timed = wanted && !(set.ends_with("_random") && query == "distance");
             let entry = Entry { runner, number, cell: cell.clone(), timed };
             match groups.iter_mut().find(|group| group.set == set && group.query == query) {

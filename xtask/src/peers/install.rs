@@ -1,4 +1,4 @@
-//! Getting the other libraries: Coal from PyPI, FCL from Debian, parry from crates.io; all of it in `target/peers`.
+//! Installation of the other libraries: Coal from PyPI, FCL from Debian, parry from crates.io; all of it in `target/peers`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -14,15 +14,15 @@ const FLAGS: [&str; 7] = [
     "-march=native",
     "-DNDEBUG",
     "-w",
-    // The wheel and Debian's library were built without AVX: with wider alignment their objects would not fit ours.
+    // The wheel and Debian's library were built without AVX: with wider alignment the layouts of objects would differ.
     "-DEIGEN_MAX_ALIGN_BYTES=16",
     "-DEIGEN_MAX_STATIC_ALIGN_BYTES=16",
 ];
 
-/// A peer that can run, or why it cannot.
+/// A peer that can run, or the reason why it cannot.
 pub struct Ready {
     pub name: &'static str,
-    /// For the report.
+    /// Version, for the report.
     pub version: String,
     pub program: Result<PathBuf, String>,
 }
@@ -48,7 +48,7 @@ fn coal(root: &Path, folder: &Path) -> Result<PathBuf, String> {
     compile(root, folder, "coal", &flags, &links)
 }
 
-/// Where pip put headers and library, if it did.
+/// Finds the folder of pip's headers and library, if installed.
 fn wheel(folder: &Path) -> Option<PathBuf> {
     let versions = fs::read_dir(folder.join("venv/lib")).ok()?;
     let mut prefixes = versions.flatten().map(|entry| entry.path().join("site-packages/cmeel.prefix"));
@@ -73,7 +73,7 @@ fn compiler(folder: &Path) -> Result<(), String> {
     if native::exists("g++") { Ok(()) } else { native::apt(folder, &["g++"]) }
 }
 
-/// The folder of Eigen's headers: the system's, else PyPI's.
+/// Finds the folder of Eigen's headers: the system's, else PyPI's.
 fn eigen(folder: &Path, prefix: &Path) -> Result<String, String> {
     let system = Path::new("/usr/include/eigen3");
     if !system.is_dir() && native::apt(folder, &["libeigen3-dev"]).is_err() {
@@ -96,12 +96,12 @@ fn fcl(root: &Path, folder: &Path) -> Result<PathBuf, String> {
     compile(root, folder, "fcl", &flags, &["-lfcl", "-lccd", "-loctomap", "-loctomath"].map(str::to_owned))
 }
 
-/// FCL's headers without `extern template`: what is used gets compiled here, for this processor, and not taken from
-/// the library that Debian built for any.
+/// Copies FCL's headers without `extern template`: templates are then compiled here, for this processor, instead of being
+/// taken from Debian's library, which is built for any processor.
 fn copy_headers(from: &Path, to: &Path) -> Result<(), String> {
     let failed = |path: &Path, e: std::io::Error| format!("{}: {e}", path.display());
     xtask::shell::make_folder(to)?;
-    // The file that tells that all are there comes last.
+    // The file that marks the copy as complete comes last.
     let mut entries: Vec<PathBuf> =
         fs::read_dir(from).map_err(|e| failed(from, e))?.flatten().map(|entry| entry.path()).collect();
     entries.sort_by_key(|path| path.ends_with("config.h"));

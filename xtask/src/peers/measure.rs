@@ -1,15 +1,15 @@
-//! Times: five rounds, everybody once in each, on the same records.
+//! Times: five rounds, each entry once per round, on the same records.
 
 use super::groups::Group;
 use super::runner::Runner;
 
 const ROUNDS: usize = 5;
-/// Who needs longer than this per record gets fewer records and rounds, or nobody would wait for the rest.
+/// Time per record, ns, above which an entry gets fewer records and rounds, so that the rest need not wait.
 const SLOW_NS: f64 = 3e6;
-/// A round lasts at least this long, so that neither clock nor cold caches show.
+/// Least duration of a round, ns, so that the resolution of the clock and cold caches do not matter.
 const SHORTEST_NS: f64 = 2e7;
 
-/// One entry's figure.
+/// Measured time of one entry.
 #[derive(Debug, Clone, Copy)]
 pub struct Time {
     /// Median of the rounds, nanoseconds per record.
@@ -17,13 +17,13 @@ pub struct Time {
     pub records: usize,
 }
 
-/// Seconds per round: `BUDGET`.
+/// Duration of a round, ns: `BUDGET`, in seconds.
 pub fn budget_ns() -> f64 {
     let seconds = std::env::var("BUDGET").ok().and_then(|text| text.parse::<f64>().ok());
     seconds.filter(|s| *s > 0.0).unwrap_or(0.5) * 1e9
 }
 
-/// Figures in the order of the entries; `None` if not wanted, or where the runner has failed.
+/// Measures the entries in their order; `None` if not wanted, or if the runner has failed.
 pub fn group(group: &Group, runners: &mut [Runner]) -> Vec<Option<Time>> {
     let budget = budget_ns();
     let costs: Vec<Option<f64>> = group
@@ -32,7 +32,7 @@ pub fn group(group: &Group, runners: &mut [Runner]) -> Vec<Option<Time>> {
         .map(|e| if e.timed { rough(&mut runners[e.runner], e.number, e.cell.records) } else { None })
         .collect();
     let within = |cost: f64, least: usize, all: usize| ((budget / cost) as usize).clamp(least.min(all), all);
-    // All but the slow are timed on the same records.
+    // All entries except slow ones are timed on the same records.
     let shared = group.entries.iter().zip(&costs).filter_map(|(e, cost)| {
         let cost = cost.filter(|c| *c < SLOW_NS)?;
         Some(within(cost, 20, e.cell.records))
@@ -45,7 +45,7 @@ pub fn group(group: &Group, runners: &mut [Runner]) -> Vec<Option<Time>> {
     };
     for round in 0..ROUNDS {
         for turn in 0..costs.len() {
-            // Each round begins with another, so that nobody always follows the same.
+            // Each round begins with another entry, so that no entry always follows the same one.
             let k = (turn + round) % costs.len();
             let Some(cost) = costs[k].filter(|c| *c < SLOW_NS || round < 3) else { continue };
             let records = records_of(k, cost);
@@ -62,7 +62,7 @@ pub fn group(group: &Group, runners: &mut [Runner]) -> Vec<Option<Time>> {
     rounds.into_iter().enumerate().map(time).collect()
 }
 
-/// What a record costs, from few of them.
+/// Estimates the time per record from a few records.
 fn rough(runner: &mut Runner, number: usize, records: usize) -> Option<f64> {
     let first = runner.time(number, 1, 1)?;
     if first > 1e7 {

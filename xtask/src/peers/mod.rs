@@ -1,6 +1,6 @@
 //! `cargo xtask peers`: elbowroom and the other libraries on one workload, on one core, in one run.
 //!
-//! `xtask/peers/README.md` has the workload's format and the conversation with the runners.
+//! `xtask/peers/README.md` has the workload's format and the protocol of the runners.
 
 mod agreement;
 mod answers;
@@ -22,7 +22,7 @@ use install::Ready;
 use report::Line;
 use runner::Runner;
 
-/// What the command line asks for.
+/// Options of the command line.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Options {
     data: Option<PathBuf>,
@@ -30,7 +30,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// From the words after `peers`.
+    /// Parses the words after `peers`.
     pub fn parse(words: &[&str]) -> Result<Self, String> {
         let mut options = Self::default();
         let mut words = words.iter();
@@ -48,7 +48,7 @@ impl Options {
     }
 }
 
-/// Installs, measures, compares and prints; an answer of elbowroom's that nothing explains is an error.
+/// Installs, measures, compares and prints; an unexplained answer of elbowroom is an error.
 pub fn run(root: &Path, options: &Options) -> Result<(), String> {
     let folder = root.join("target/peers");
     shell::make_folder(&folder)?;
@@ -79,7 +79,7 @@ pub fn run(root: &Path, options: &Options) -> Result<(), String> {
     verify(&lines)
 }
 
-/// elbowroom must run; any other that does not is named and left out.
+/// Starts the runners: elbowroom must run; other runners that do not start are named and left out.
 fn start(peers: &[Ready], workload: &workload::Workload, root: &Path) -> Result<(Vec<Runner>, Vec<String>), String> {
     let core = machine::core();
     let ours = [workload.elbowroom.display().to_string(), "serve".to_owned()];
@@ -109,7 +109,7 @@ fn verify(lines: &[Line]) -> Result<(), String> {
     if wrong == 0 { Ok(()) } else { Err(format!("{wrong} answers of elbowroom differ and nothing explains them")) }
 }
 
-/// Part of `lib|set|query`; lines without it are left out.
+/// Returns the part of `lib|set|query` that selects lines; other lines are left out.
 fn only() -> String {
     std::env::var("ONLY").unwrap_or_default()
 }

@@ -1,4 +1,4 @@
-//! The lines, and the table of ratios.
+//! Report: the lines, and the table of ratios.
 
 use std::fmt::Write;
 
@@ -6,7 +6,7 @@ use super::install::Ready;
 use super::targets::asked;
 use crate::machine;
 
-/// One library's figure for one question on one set.
+/// Result of one library for one query on one set.
 #[derive(Debug, Clone)]
 pub struct Line {
     pub lib: String,
@@ -14,7 +14,7 @@ pub struct Line {
     pub query: String,
     /// Nanoseconds per record, median of the rounds.
     pub mean_ns: f64,
-    /// Records timed.
+    /// Number of timed records.
     pub n: usize,
     pub answers_checked: usize,
     pub disagreements: usize,
@@ -27,7 +27,7 @@ impl Line {
         self.lib.starts_with("elbowroom")
     }
 
-    /// Whether it carries something from step to step.
+    /// Whether it keeps state from step to step.
     fn is_warm(&self) -> bool {
         self.lib.contains("warm")
     }
@@ -41,7 +41,7 @@ impl Line {
     }
 }
 
-/// For a terminal of a hundred columns.
+/// Formats the table for a terminal of a hundred columns.
 pub fn table(lines: &[Line], peers: &[Ready], notes: &[String], missing: &[String]) -> String {
     let mut out = String::new();
     row(&mut out, ["set", "query", "elbowroom ns", "best peer", "ns", "ratio", "asked", ""]);
@@ -52,7 +52,7 @@ pub fn table(lines: &[Line], peers: &[Ready], notes: &[String], missing: &[Strin
         let target = best.and_then(|_| asked(&line.lib, &line.set, &line.query));
         rows_asked += usize::from(target.is_some());
         met += usize::from(compare(&mut out, line, best, target));
-        // A warm line's rivals may be warm too; beside it what they reach cold.
+        // The peers of a warm line may be warm too; the best cold peer is shown beside them.
         let cold = best_peer(lines, line, false).filter(|_| best.is_some_and(Line::is_warm) && line.is_warm());
         if cold.is_some() {
             compare(&mut out, line, cold, None);
@@ -68,7 +68,7 @@ pub fn table(lines: &[Line], peers: &[Ready], notes: &[String], missing: &[Strin
     out
 }
 
-/// A row; true if the ratio is reached.
+/// Formats a row; true if the ratio is reached.
 fn compare(out: &mut String, line: &Line, best: Option<&Line>, target: Option<f64>) -> bool {
     let query = format!("{}{}", line.query, if line.is_warm() { " warm" } else { "" });
     let ratio = best.map_or(f64::NAN, |best| best.mean_ns / line.mean_ns);
@@ -86,7 +86,7 @@ fn compare(out: &mut String, line: &Line, best: Option<&Line>, target: Option<f6
     met
 }
 
-/// The quickest of those whose answers are right.
+/// Finds the fastest peer whose answers are right.
 fn best_peer<'a>(lines: &'a [Line], ours: &Line, warm_too: bool) -> Option<&'a Line> {
     let rivals = lines.iter().filter(|line| {
         let same = line.set == ours.set && line.query == ours.query;
@@ -121,7 +121,7 @@ fn row(out: &mut String, [set, query, ours, peer, ns, ratio, target, result]: [&
     let _ = writeln!(out, "{}", text.trim_end());
 }
 
-/// With commas, and a decimal below a hundred.
+/// Formats a number with commas, and a decimal below a hundred.
 fn grouped(value: f64) -> String {
     if value < 100.0 && value.fract() != 0.0 {
         return format!("{value:.1}");

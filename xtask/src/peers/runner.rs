@@ -1,4 +1,4 @@
-//! A library's program, held to one core, that answers what it is asked.
+//! Runner: a library's program, bound to one core, that answers queries.
 
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
@@ -7,16 +7,16 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use super::workload::Workload;
 use crate::native;
 
-/// One question on one set, as a runner offers it.
+/// One query on one set, as a runner offers it.
 #[derive(Debug, Clone)]
 pub struct Cell {
     pub lib: String,
     pub set: String,
     pub query: String,
     pub records: usize,
-    /// Largest extent of a mesh, metres.
+    /// Largest extent of a mesh, m.
     pub size: f64,
-    /// What `tolerance` asks for, metres.
+    /// Tolerance of the query `tolerance`, m.
     pub tolerance: f64,
 }
 
@@ -30,7 +30,7 @@ pub struct Runner {
 }
 
 impl Runner {
-    /// Starts and waits until it has read everything.
+    /// Starts the program and waits until it has read everything.
     pub fn start(
         name: &str,
         command: &[String],
@@ -64,13 +64,13 @@ impl Runner {
         }
     }
 
-    /// Nanoseconds per record over the first `records`, `passes` times; `None` once the program has failed.
+    /// Time per record over the first `records`, `passes` times, ns; `None` once the program has failed.
     pub fn time(&mut self, cell: usize, records: usize, passes: usize) -> Option<f64> {
         let reply = self.ask(&format!("time {cell} {records} {passes}"))?;
         self.number(&reply)
     }
 
-    /// Answers from record `from` on, at most `count`.
+    /// Returns at most `count` answers, from record `from` on.
     pub fn answers(&mut self, cell: usize, from: usize, count: usize, folder: &Path) -> Option<Vec<f64>> {
         let file = folder.join(format!("{}.answers", self.name));
         let reply = self.ask(&format!("answers {cell} {from} {count} {}", file.display()))?;
@@ -84,7 +84,7 @@ impl Runner {
         Some(numbers)
     }
 
-    /// Why it takes no more part.
+    /// Why it was dropped from the measurement.
     pub fn failure(&self) -> Option<&str> {
         self.failure.as_deref()
     }
@@ -128,7 +128,7 @@ impl Runner {
 
 impl Drop for Runner {
     fn drop(&mut self) {
-        // An end of its input would do; one that hangs must not keep us.
+        // The end of its input would be enough, unless the program hangs.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }

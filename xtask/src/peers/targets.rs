@@ -1,6 +1,6 @@
-//! The ratios that the project asks of itself: best peer's time over elbowroom's.
+//! Target ratios of the project: best peer's time over elbowroom's.
 
-/// The ratio asked for, where one is.
+/// Returns the target ratio, if there is one.
 pub fn asked(lib: &str, set: &str, query: &str) -> Option<f64> {
     let warm = lib.contains("warm");
     let robots = set.starts_with("robots_");

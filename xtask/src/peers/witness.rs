@@ -1,4 +1,4 @@
-//! Who is right where two answers differ: the distance, measured by elbowroom and by the reference.
+//! Decision between two differing answers: by the distance, measured by elbowroom and by the reference.
 
 use std::path::Path;
 
@@ -6,20 +6,20 @@ use super::agreement::same_distance;
 use super::groups::{Entry, Group};
 use super::runner::Runner;
 
-/// Of the size: nearer to the border between yes and no than this, both are right.
+/// Distance from the border between yes and no, relative to the size, within which both answers are right.
 const BORDER: f64 = 1e-9;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Classification {
-    /// The distance is at the border: yes and no are right.
+    /// The distance is at the border: both yes and no are right.
     Either,
-    /// Both measure the same distance, off the border: this answer follows.
+    /// Both measure the same distance, off the border: it decides for this answer.
     Is(f64),
-    /// The distances differ, or there are none.
+    /// The distances differ, or are missing.
     Open,
 }
 
-/// The two that measure, for one yes-or-no question.
+/// The two queries that measure the distance, for one yes-or-no query.
 pub struct Witnesses<'a> {
     entries: [&'a Entry; 2],
     border: f64,
@@ -28,7 +28,7 @@ pub struct Witnesses<'a> {
 }
 
 impl<'a> Witnesses<'a> {
-    /// `None` for a distance, and where one of the two is missing.
+    /// Finds the two; `None` for a distance query, or if one of the two is missing.
     pub fn of(group: &Group, all: &'a [Group], runners: &'a mut [Runner], folder: &'a Path) -> Option<Self> {
         if group.query == "distance" {
             return None;
@@ -39,7 +39,7 @@ impl<'a> Witnesses<'a> {
         Some(Self { entries, border, runners, folder })
     }
 
-    /// What the distances of this record say, and the distances in words.
+    /// Classifies a record by the distances; returns them also as text.
     pub fn classify(&mut self, record: usize) -> (Classification, String) {
         let Self { entries, border, runners, folder } = self;
         let [ours, theirs] = entries.map(|entry| {
@@ -52,7 +52,7 @@ impl<'a> Witnesses<'a> {
 }
 
 fn classification(ours: f64, theirs: f64, border: f64, size: f64) -> Classification {
-    // Without a tolerance every overlap, however deep, measures 0: that is not a border.
+    // Without a tolerance every overlap, however deep, measures 0, which is then not a border.
     if border == 0.0 && ours <= 0.0 && theirs <= 0.0 {
         return Classification::Is(1.0);
     }

@@ -1,20 +1,20 @@
-//! The meshes and poses: given, or of our own making.
+//! Workload of meshes and poses: given, or generated.
 
 use std::path::{Path, PathBuf};
 
 use crate::{artifacts, native};
 
-/// Where the files are.
+/// Paths of the workload's files.
 pub struct Workload {
     /// Meshes, poses and tolerances in the shared format.
     pub data: PathBuf,
-    /// Paths and random poses made to go with them.
+    /// Paths and random poses that were generated for them.
     pub extra: PathBuf,
-    /// elbowroom's runner, which has made them.
+    /// elbowroom's runner, which has generated them.
     pub elbowroom: PathBuf,
 }
 
-/// Builds elbowroom's runner; makes the workload where none is given, and what goes with any.
+/// Builds elbowroom's runner; generates the workload if none is given, and the extra files for any workload.
 pub fn prepare(root: &Path, folder: &Path, given: Option<&Path>) -> Result<Workload, String> {
     let elbowroom = artifacts::bench(root, "elbowroom-proximity", "peers")?;
     let data = match given {
@@ -22,7 +22,7 @@ pub fn prepare(root: &Path, folder: &Path, given: Option<&Path>) -> Result<Workl
         None => own(root, &elbowroom, &folder.join("data"))?,
     };
     let extra = folder.join("extra");
-    // What an earlier workload left must not be taken for this one's.
+    // Files of an earlier workload must not be mistaken for files of this one.
     let _ = std::fs::remove_dir_all(&extra);
     xtask::shell::make_folder(&extra)?;
     ours(root, &elbowroom, "extend", &[&data, &extra])?;
@@ -36,7 +36,7 @@ fn readable(given: &Path) -> Result<PathBuf, String> {
     if any { Ok(data) } else { Err(format!("--data {}: {missing}", data.display())) }
 }
 
-/// Made once; the last file written tells that all are there.
+/// Generates the workload once; the last file written marks it as complete.
 fn own(root: &Path, elbowroom: &Path, data: &Path) -> Result<PathBuf, String> {
     let done = data.join("complete");
     if !done.is_file() {

@@ -1,10 +1,10 @@
-//! Our own side: the program, and the bench that times single states.
+//! elbowroom's programs: the command, and the bench that times single states.
 
 use std::path::Path;
 
 use crate::{artifacts, native};
 
-/// `target/release/elbowroom`, built; or what `ELBOWROOM` names.
+/// Builds and returns `target/release/elbowroom`, or returns the program that `ELBOWROOM` names.
 pub fn program(root: &Path) -> Result<String, String> {
     if let Some(named) = std::env::var_os("ELBOWROOM") {
         return Ok(named.to_string_lossy().into_owned());
@@ -13,7 +13,7 @@ pub fn program(root: &Path) -> Result<String, String> {
     Ok(xtask::shell::target_folder(root).join("release/elbowroom").display().to_string())
 }
 
-/// The bench that reads the workload, built.
+/// Builds and returns the bench that reads the workload.
 pub fn state_times(root: &Path) -> Result<String, String> {
     Ok(artifacts::bench(root, "elbowroom-validity", "state_times")?.display().to_string())
 }

@@ -1,4 +1,4 @@
-//! The problems and the robot: given, or the Panda among the real data.
+//! Problems and robot: given, or the Panda of the real data.
 
 use std::path::{Path, PathBuf};
 
@@ -6,7 +6,7 @@ use xtask::call;
 
 use super::options::Options;
 
-/// What every planner gets.
+/// Files that every planner gets.
 pub struct Files {
     problems: PathBuf,
     urdf: PathBuf,
@@ -14,7 +14,7 @@ pub struct Files {
 }
 
 impl Files {
-    /// What is given, else the default beside it; a given URDF without SRDF has none.
+    /// Returns the given files, else the default files beside them; a given URDF without an SRDF has none.
     pub fn find(root: &Path, options: &Options) -> Result<Self, String> {
         let data = call::data_folder(root, None);
         let problems =
@@ -27,7 +27,7 @@ impl Files {
         Ok(Self { problems, urdf: there("--urdf", &urdf)?, srdf })
     }
 
-    /// As words of the Python programs.
+    /// Arguments for the Python programs.
     pub fn words(&self, without_problems: bool) -> Vec<String> {
         let problems = Some(("--problems", &self.problems)).filter(|_| !without_problems);
         let srdf = self.srdf.as_ref().map(|file| ("--srdf", file));

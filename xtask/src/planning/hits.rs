@@ -1,4 +1,4 @@
-//! The program that asks Coal whether paths hit something, compiled against PyPI's Coal.
+//! Program that asks Coal whether paths hit something, compiled against PyPI's Coal.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ const FLAGS: [&str; 7] = [
     "-march=native",
     "-DNDEBUG",
     "-w",
-    // The wheel was built without AVX: with wider alignment its objects would not fit ours.
+    // The wheel was built without AVX: with wider alignment the layouts of objects would differ.
     "-DEIGEN_MAX_ALIGN_BYTES=16",
     "-DEIGEN_MAX_STATIC_ALIGN_BYTES=16",
 ];
@@ -35,7 +35,7 @@ pub fn program(root: &Path, folder: &Path) -> Result<PathBuf, String> {
     compile::program(root, folder, &parts)
 }
 
-/// Where pip put headers and library.
+/// Finds the folder of pip's headers and library.
 fn wheel(folder: &Path) -> Option<PathBuf> {
     let versions = fs::read_dir(folder.join("venv/lib")).ok()?;
     let mut prefixes = versions.flatten().map(|entry| entry.path().join("site-packages/cmeel.prefix"));

@@ -1,4 +1,4 @@
-//! The Python of the measurement and the planners that PyPI has, in `target/planning/venv`.
+//! Python of the measurement and the planners from PyPI, in `target/planning/venv`.
 
 use std::path::{Path, PathBuf};
 
@@ -7,7 +7,7 @@ use crate::native;
 const PACKAGES: [&str; 4] = ["numpy==2.4.6", "pin==4.1.0", "coal==3.0.3", "ompl==2.0.1"];
 const PROBE: &str = "import numpy, pinocchio, coal, ompl.geometric";
 const PLAINMP: &str = "plainmp==0.3.6";
-/// plainmp comes as sources.
+/// Packages for plainmp, which is compiled from its sources.
 const PLAINMP_PACKAGES: [&str; 8] = [
     "g++",
     "cmake",
@@ -19,7 +19,7 @@ const PLAINMP_PACKAGES: [&str; 8] = [
     "libboost-system-dev",
 ];
 
-/// The interpreter, with what the hits are checked with, and OMPL.
+/// Installs the interpreter, with OMPL and the packages of the collision check.
 pub fn python(folder: &Path) -> Result<PathBuf, String> {
     let python = folder.join("venv/bin/python");
     if succeeds(folder, PROBE) {
@@ -34,7 +34,7 @@ pub fn python(folder: &Path) -> Result<PathBuf, String> {
     if succeeds(folder, PROBE) { Ok(python) } else { Err(format!("{} cannot be imported", PACKAGES.join(", "))) }
 }
 
-/// plainmp, compiled by pip.
+/// Installs plainmp, compiled by pip.
 pub fn plainmp(folder: &Path) -> Result<(), String> {
     if succeeds(folder, "import plainmp.ompl_solver") {
         return Ok(());

@@ -1,6 +1,7 @@
 //! `cargo xtask planning`: elbowroom's planner and others on the same problems, on one core, in one run.
 //!
-//! `xtask/planning/README.md` has the files and programs; the measuring itself is Python, which the others need anyway.
+//! `xtask/planning/README.md` has the files and programs; the measurement itself is in Python, which other planners
+//! need anyway.
 
 mod elbowroom;
 mod files;
@@ -17,7 +18,7 @@ use crate::{machine, native};
 use files::Files;
 pub use options::Options;
 
-/// Installs, then hands over to the Python that measures; a peer that cannot be had is named and left out.
+/// Installs, then starts the Python program that measures; a peer that cannot be installed is named and left out.
 pub fn run(root: &Path, options: &Options) -> Result<(), String> {
     let files = Files::find(root, options)?;
     let folder = root.join("target/planning");
@@ -47,7 +48,7 @@ pub fn run(root: &Path, options: &Options) -> Result<(), String> {
 
 type Peer = (&'static str, Result<String, String>);
 
-/// Every planner with the file it needs, or why it cannot run.
+/// Returns every planner with the file it needs, or the reason why it cannot run.
 fn planners(root: &Path, folder: &Path, python: &Path) -> Vec<Peer> {
     let only = std::env::var("ONLY").unwrap_or_default();
     let mut peers: Vec<Peer> = Vec::new();
@@ -64,7 +65,7 @@ fn planners(root: &Path, folder: &Path, python: &Path) -> Vec<Peer> {
     peers
 }
 
-/// Who can be asked about single states.
+/// Returns the peers that can check single states.
 fn states(root: &Path, folder: &Path, python: &Path) -> Vec<Peer> {
     vec![("elbowroom", elbowroom::state_times(root)), ("vamp", vamp::program(root, folder, python, "vamp_states"))]
 }

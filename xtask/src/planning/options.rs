@@ -1,8 +1,8 @@
-//! The words after `cargo xtask planning`.
+//! Options of `cargo xtask planning`.
 
 use std::path::PathBuf;
 
-/// What the command line asks for.
+/// Options of the command line.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Options {
     pub problems: Option<PathBuf>,
@@ -13,7 +13,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// From the words after `planning`.
+    /// Parses the words after `planning`.
     pub fn parse(words: &[&str]) -> Result<Self, String> {
         let mut options = Self::default();
         let mut words = words.iter();

@@ -1,4 +1,4 @@
-//! VAMP's headers out of its source package on PyPI, and our programs compiled against them.
+//! VAMP's headers from its source package on PyPI, and the project's programs compiled against them.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,7 +7,7 @@ use crate::{compile, native};
 
 const VERSION: &str = "0.6.4";
 const DEBIAN: [&str; 3] = ["clang", "libeigen3-dev", "pdqsort-dev"];
-/// Those of its CMakeLists.txt for a release with Clang, which makes it about 5 % quicker than GCC does.
+/// Flags of VAMP's CMakeLists.txt for a release with Clang, which makes it about 5 % faster than GCC does.
 const FLAGS: [&str; 15] = [
     "-std=c++17",
     "-O3",
@@ -26,7 +26,7 @@ const FLAGS: [&str; 15] = [
     "-fapprox-func",
 ];
 
-/// `xtask/planning/cpp/{name}.cpp`, compiled.
+/// Compiles `xtask/planning/cpp/{name}.cpp`.
 pub fn program(root: &Path, folder: &Path, python: &Path, name: &str) -> Result<String, String> {
     if !cfg!(target_arch = "x86_64") {
         return Err("vamp: the recipe is for x86-64".into());
@@ -50,13 +50,13 @@ pub fn program(root: &Path, folder: &Path, python: &Path, name: &str) -> Result<
     compile::program(root, folder, &parts).map(|program| program.display().to_string())
 }
 
-/// The URDF whose collision geometry is VAMP's spheres of the Panda.
+/// Makes the URDF whose collision geometry is VAMP's spheres of the Panda.
 pub fn spheres(folder: &Path, python: &Path) -> Result<String, String> {
     let file = sources(folder, python)?.join("resources/panda/panda_spherized.urdf");
     if file.is_file() { Ok(file.display().to_string()) } else { Err(format!("vamp {VERSION} brought no spheres")) }
 }
 
-/// The unpacked source package.
+/// Downloads and unpacks the source package.
 fn sources(folder: &Path, python: &Path) -> Result<PathBuf, String> {
     let name = format!("vamp_planner-{VERSION}");
     let unpacked = folder.join(&name);
@@ -66,7 +66,7 @@ fn sources(folder: &Path, python: &Path) -> Result<PathBuf, String> {
     }
     let package = format!("vamp-planner=={VERSION}");
     let python = python.display().to_string();
-    // Not `:all:`, which would compile CMake and all else that pip needs to read the package.
+    // Not `:all:`, which would also compile CMake and everything else that pip needs to read the package.
     let download = [&python, "-m", "pip", "download", "-q", "--no-deps", "--no-binary", "vamp-planner", &package];
     native::run(folder, &download, &[("PIP_DISABLE_PIP_VERSION_CHECK", "1")])?;
     let archive = format!("{name}.tar.gz");

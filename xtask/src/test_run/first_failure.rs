@@ -1,4 +1,4 @@
-//! The first test that fails: the short units run first, and the rest is stopped.
+//! First failing test: the short units run first, and a failure stops the rest.
 
 use std::collections::VecDeque;
 use std::path::Path;
@@ -12,7 +12,7 @@ use super::programs::Program;
 use super::times::Times;
 use super::units::{Unit, units};
 
-/// A failure, and what to run again to see it.
+/// A failure, and the unit to run again to see it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FirstFailure {
     /// The program's name.
@@ -30,7 +30,7 @@ impl FirstFailure {
         Self { program: program.name.clone(), unit: Unit { tests, ..unit.clone() }, hangs: ended.is_late }
     }
 
-    /// The failing test with its program, or the unit where its process did not say which test it was.
+    /// Name of the failing test with its program, or of the unit if its process did not report the test.
     pub fn name(&self) -> String {
         match &self.unit.tests[..] {
             [test] => format!("{} {test}", self.program),
@@ -42,7 +42,7 @@ impl FirstFailure {
 /// Runs the tests of `programs`, a worker per core, until one fails. `root` has the times of earlier runs.
 ///
 /// # Errors
-/// Where a program does not list its tests.
+/// If a program does not list its tests.
 pub fn first_failure(
     root: &Path,
     programs: &[Program],
@@ -63,7 +63,7 @@ pub fn first_failure(
                 while let Some(unit) = next() {
                     let program = &programs[unit.program];
                     let ended = run_unit(program, &unit, env, Limit { longest, cancelled: Some(&cancelled) });
-                    // Only the first to fail has not been stopped by the other.
+                    // Only the unit that fails first has not been stopped by another one.
                     if !ended.ok && !cancelled.swap(true, Ordering::Relaxed) {
                         *locked(&found) = Some(FirstFailure::new(program, &unit, &ended));
                     }
@@ -74,7 +74,7 @@ pub fn first_failure(
     Ok(found.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner))
 }
 
-/// Whether what failed passes in these programs, which were compiled again.
+/// Whether the failed test passes in these programs, which were compiled again.
 pub fn passes(programs: &[Program], failure: &FirstFailure, env: &[(&str, &str)], longest: Duration) -> bool {
     let cancelled = AtomicBool::new(false);
     let limit = Limit { longest, cancelled: Some(&cancelled) };
@@ -82,8 +82,8 @@ pub fn passes(programs: &[Program], failure: &FirstFailure, env: &[(&str, &str)]
     program.is_some_and(|program| run_unit(program, &failure.unit, env, limit).ok)
 }
 
-/// The first test that the harness reports as failed: in its line, or in the list at the end if the test itself printed
-/// into that line.
+/// Finds the first test that the harness reports as failed: in its line, or in the list at the end if the test itself
+/// printed into that line.
 fn failing_test(output: &str) -> Option<String> {
     let in_line = |line: &str| {
         let name = line.strip_prefix("test ")?.strip_suffix("FAILED")?.trim_end().strip_suffix("...")?.trim_end();

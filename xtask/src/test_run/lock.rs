@@ -1,4 +1,4 @@
-//! Locks that a panic of another worker does not close.
+//! Locks that stay usable after a panic of another worker.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 

@@ -1,6 +1,6 @@
 //! Runs the tests of all programs, a worker per core, the longest first.
 //!
-//! `cargo test` runs one program after another, so that one core waits at the end of each. Each worker runs its unit on one
+//! `cargo test` runs one program after another, so that most cores wait at the end of each. Here each worker runs its unit on one
 //! thread: tests of different units run at once, tests of one module never do.
 
 mod first_failure;
@@ -26,21 +26,21 @@ pub use programs::{Program, compile};
 use times::Times;
 use units::Unit;
 
-/// A unit that takes longer hangs.
+/// Limits of a unit; a unit that takes longer hangs.
 const LIMIT: Limit = Limit { longest: Duration::from_mins(10), cancelled: None };
 
-/// Processors that rest before one unit more is run than there are processors.
+/// Number of idle processors above which one unit more runs than there are processors.
 const RESTING: f64 = 0.5;
 
-/// Which units of tests run.
+/// Choice of the units of tests to run.
 pub struct Choice<'a> {
-    /// The seconds that units of a program may take, by the last run.
+    /// Longest time of a program's units to run, s, by the last run.
     pub longest: &'a dyn Fn(&Program) -> f64,
-    /// Whether those run too that passed before and could not fail now.
+    /// Whether units run too that passed before and could not fail now.
     pub again: bool,
 }
 
-/// How many tests passed, failed, and were left out.
+/// Numbers of tests that passed, failed, and were left out.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
 pub struct Counts {
     passed: usize,
@@ -48,11 +48,11 @@ pub struct Counts {
     ignored: usize,
 }
 
-/// Compiles the tests that cargo selects by `args`, and runs the chosen ones. One of the workers does what is to be done `beside` them
-/// first, once all is compiled.
+/// Compiles the tests that cargo selects by `args`, and runs the chosen ones. Once all is compiled, one of the workers
+/// first calls `beside`.
 ///
 /// # Errors
-/// If something does not compile, a test fails, or none ran.
+/// If something does not compile, a test fails, or no test ran.
 pub fn run(
     root: &Path,
     args: &[&str],
@@ -87,7 +87,7 @@ pub fn run(
     if failed.is_empty() { Ok(()) } else { Err(format!("failed: {}", failed.join(", "))) }
 }
 
-/// What the workers share.
+/// State that the workers share.
 #[derive(Default)]
 struct Progress {
     open: VecDeque<Unit>,
@@ -115,13 +115,13 @@ fn run_units(programs: &[Program], progress: Progress, env: &[(&str, &str)], bes
     };
     let work = || {
         loop {
-            // A statement of its own: the lock must not last while the unit runs.
+            // A separate statement, so that the lock is released before the unit runs.
             let next = locked(&progress).open.pop_front();
             let Some(unit) = next else { break };
             run_one(&unit);
         }
     };
-    // Tests of live processes mostly wait: one worker more takes short units while the processors rest.
+    // Tests of live processes mostly wait: one more worker runs short units while processors are idle.
     let work_in_gaps = || {
         while let Some(idle) = idle_share(Duration::from_millis(300)) {
             if locked(&progress).open.is_empty() {
@@ -151,7 +151,7 @@ fn report(progress: &mut Progress, unit: &Unit, ended: &Ended, time: Duration) {
     let counts = if unit.tests.is_empty() {
         Counts { passed: usize::from(ended.ok), failed: usize::from(!ended.ok), ignored: 0 }
     } else {
-        // A process that dies has no result line: then all its tests count as failed.
+        // A process that dies prints no result line: all its tests count as failed.
         counts(&ended.output).unwrap_or(Counts { failed: unit.tests.len(), ..Counts::default() })
     };
     progress.counts.passed += counts.passed;
@@ -165,7 +165,7 @@ fn report(progress: &mut Progress, unit: &Unit, ended: &Ended, time: Duration) {
         unit.tests.len().max(1),
         unit.name
     );
-    // A test without its data or its reference passes, and says so.
+    // A test without its data or its reference passes, and prints a line.
     let left_out: Vec<&str> = ended.output.lines().filter(|line| line.contains("skipped:")).map(str::trim).collect();
     let all_ran = ok && counts.ignored == 0 && left_out.is_empty();
     progress.passes.keep(unit, all_ran.then_some(counts.passed));
@@ -180,7 +180,7 @@ fn report(progress: &mut Progress, unit: &Unit, ended: &Ended, time: Duration) {
     }
 }
 
-/// The numbers of the harness's last line: `test result: ok. 3 passed; 0 failed; 1 ignored; …`.
+/// Parses the numbers of the harness's last line: `test result: ok. 3 passed; 0 failed; 1 ignored; …`.
 fn counts(output: &str) -> Option<Counts> {
     let line = output.lines().rev().find(|line| line.starts_with("test result:"))?;
     let number = |what: &str| {

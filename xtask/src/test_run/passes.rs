@@ -1,7 +1,8 @@
-//! Which units passed with the very program and files that are here now: they need not run again, as in `go test`.
+//! Units that passed with exactly the present program and files: they need not run again, as in `go test`.
 //!
-//! A test may read any file of the repository and of the real data, so a change in one of them, but for documents and for the sources
-//! that are compiled, makes every unit run. Python, the browser and the C compiler are not looked at.
+//! A test may read any file of the repository and of the real data, so a change in one of them makes every unit run,
+//! except for documents and for sources that are compiled. Changes of Python, the browser and the C compiler are not
+//! noticed.
 
 use std::collections::HashMap;
 use std::collections::hash_map::DefaultHasher;
@@ -14,25 +15,25 @@ use xtask::{call, shell};
 use super::programs::Program;
 use super::units::Unit;
 
-/// A unit that passed: with what, and how many tests it has.
+/// A unit that passed: the hash of its program and files, and the number of its tests.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Pass {
     stamp: u64,
     tests: usize,
 }
 
-/// The units that passed when they ran last.
+/// Units that passed in their last run.
 #[derive(Debug, Default)]
 pub struct Passes {
     file: PathBuf,
-    /// What each program is and may read now; nothing for a program whose units always run.
+    /// Hash of each program and of the files that it may read; `None` for a program whose units always run.
     stamps: Vec<Option<u64>>,
     known: HashMap<String, Pass>,
 }
 
 impl Passes {
-    /// Reads what passed in this target folder, and looks at what there is now. The file is gone until it is written again: a run that
-    /// is cut off leaves nothing behind of which it may have shown the contrary.
+    /// Reads the passes of this target folder, and hashes the present files. The file is removed until it is written
+    /// again: an interrupted run leaves no passes that it may have disproved.
     pub fn read(root: &Path, programs: &[Program], env: &[(&str, &str)]) -> Self {
         Self::of_file(shell::target_folder(root).join("test-passes.txt"), root, programs, env)
     }
@@ -43,7 +44,7 @@ impl Passes {
         let surroundings = surroundings(root, env);
         let crates = root.join("crates");
         let stamp = |program: &Program| {
-            // The other programs read the sources.
+            // Programs outside `crates` read the sources.
             let surroundings = surroundings.filter(|_| program.folder.starts_with(&crates))?;
             let mut hasher = DefaultHasher::new();
             surroundings.hash(&mut hasher);
@@ -54,13 +55,13 @@ impl Passes {
         Self { file, stamps: programs.iter().map(stamp).collect(), known: text.lines().filter_map(entry).collect() }
     }
 
-    /// How many tests of the unit passed, if neither its program nor a file that it may read has changed since.
+    /// Number of the unit's passed tests, if neither its program nor a file that it may read has changed since.
     pub fn of(&self, unit: &Unit) -> Option<usize> {
         let pass = self.known.get(&unit.name)?;
         (self.stamps[unit.program] == Some(pass.stamp)).then_some(pass.tests)
     }
 
-    /// Keeps how a unit ended: `passed` is how many tests it has if all of them ran and passed.
+    /// Records the result of a unit: `passed` is the number of its tests if all of them ran and passed.
     pub fn keep(&mut self, unit: &Unit, passed: Option<usize>) {
         self.known.remove(&unit.name);
         if let (Some(tests), Some(stamp)) = (passed, self.stamps.get(unit.program).copied().flatten()) {
@@ -68,7 +69,7 @@ impl Passes {
         }
     }
 
-    /// Writes the file. Without it all units run next time, so a failed write is reported and is not an error.
+    /// Writes the file. Without it all units run next time, so a failed write is reported but is not an error.
     pub fn write(&self) {
         let line = |(name, Pass { stamp, tests }): (&String, &Pass)| format!("{name} {stamp:x} {tests}");
         let mut lines: Vec<String> = self.known.iter().map(line).collect();
@@ -79,14 +80,15 @@ impl Passes {
     }
 }
 
-/// A line of the file.
+/// Parses a line of the file.
 fn entry(line: &str) -> Option<(String, Pass)> {
     let mut words = line.split(' ');
     let (name, stamp, tests) = (words.next()?, words.next()?, words.next()?);
     Some((name.to_owned(), Pass { stamp: u64::from_str_radix(stamp, 16).ok()?, tests: tests.parse().ok()? }))
 }
 
-/// What tests may read besides their program: settings, files of the repository, the real data. Nothing without `git`.
+/// Hashes what tests may read besides their program: settings, files of the repository, the real data. `None` without
+/// `git`.
 fn surroundings(root: &Path, env: &[(&str, &str)]) -> Option<u64> {
     let mut hasher = DefaultHasher::new();
     env.hash(&mut hasher);
@@ -105,7 +107,7 @@ fn surroundings(root: &Path, env: &[(&str, &str)]) -> Option<u64> {
     Some(hasher.finish())
 }
 
-/// A file by its place, length and time: cargo, too, trusts these.
+/// Hashes a file's path, length and time, which cargo trusts too.
 fn look(file: &Path, hasher: &mut DefaultHasher) {
     let found = std::fs::metadata(file).ok();
     (file, found.map(|found| (found.len(), found.modified().ok()))).hash(hasher);
@@ -138,7 +140,7 @@ mod tests {
         }
     }
 
-    /// A repository of its own, with a file that tests read.
+    /// Makes a repository with a file that tests read.
     fn repository() -> tempfile::TempDir {
         let root = tempfile::tempdir().unwrap();
         std::fs::create_dir_all(root.path().join("crates/a")).unwrap();
@@ -169,17 +171,17 @@ mod tests {
             std::fs::write(root.join(file), "another text").unwrap();
             assert_eq!((passed_with(&[]), passed_with(&[])), (None, Some(3)), "{file}");
         }
-        // Sources are compiled into the program, and nobody tests documents.
+        // Sources are compiled into the program, and no test reads documents.
         for file in ["crates/a/lib.rs", "README.md"] {
             std::fs::write(root.join(file), "text").unwrap();
             assert_eq!(passed_with(&[]), Some(3), "{file}");
         }
-        // It fails now.
+        // The unit fails now.
         let mut passes = Passes::of_file(root.join("target/passes"), root, &here, &[]);
         passes.keep(&unit, None);
         passes.write();
         assert_eq!(passed_with(&[]), None);
-        // A run that is cut off keeps nothing.
+        // An interrupted run keeps nothing.
         drop(Passes::of_file(root.join("target/passes"), root, &here, &[]));
         assert_eq!(passed_with(&[]), None);
     }

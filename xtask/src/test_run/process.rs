@@ -1,4 +1,4 @@
-//! One process of tests: started, read, and stopped where it takes too long.
+//! Process of a test unit: started, read, and stopped if it takes too long.
 
 use std::io::Read;
 use std::os::unix::process::CommandExt;
@@ -9,16 +9,16 @@ use std::time::{Duration, Instant};
 use super::programs::Program;
 use super::units::Unit;
 
-/// When a process is stopped.
+/// Limits of a process.
 #[derive(Debug, Clone, Copy)]
 pub struct Limit<'a> {
-    /// A process that takes longer hangs.
+    /// Longest time; a process that takes longer hangs.
     pub longest: Duration,
-    /// Set by another thread when the result is no longer of interest.
+    /// Set by another thread when the result is no longer needed.
     pub cancelled: Option<&'a AtomicBool>,
 }
 
-/// How a unit ended: whether well, whether it was stopped because it took too long, and what it printed.
+/// Result of a unit: whether it succeeded, whether it was stopped because it took too long, and its output.
 pub struct Ended {
     pub ok: bool,
     pub is_late: bool,
@@ -81,7 +81,8 @@ fn wait(mut child: Child, limit: Limit) -> Ended {
     })
 }
 
-/// Kills the process and its group (each process leads one, so Ctrl-C does not reach it): what it has started would else hold its output open.
+/// Kills the process and its group: processes that it has started would otherwise hold its output open. Each process
+/// leads a group, so Ctrl-C does not reach it.
 fn stop(child: &mut Child) {
     // Without `kill`, the process alone is stopped.
     let _ = Command::new("kill").args(["-KILL", "--", &format!("-{}", child.id())]).status();
@@ -92,7 +93,7 @@ fn stop(child: &mut Child) {
 fn read(stream: Option<impl Read>) -> String {
     let mut bytes = Vec::new();
     if let Some(mut stream) = stream {
-        // What was read until the stream broke is still worth showing.
+        // The text read until the stream broke is still worth showing.
         let _ = stream.read_to_end(&mut bytes);
     }
     String::from_utf8_lossy(&bytes).into_owned()
@@ -118,7 +119,7 @@ mod tests {
     fn a_program_that_hangs_is_stopped_with_what_it_started() {
         let limit = Limit { longest: Duration::from_millis(300), cancelled: None };
         let started = Instant::now();
-        // The child holds the output open: without it the group would not be needed.
+        // The child process holds the output open, so the whole group must be killed.
         let ended = run("sleep 60 & wait", limit);
         assert!(!ended.ok && ended.is_late && started.elapsed() < Duration::from_secs(30));
     }

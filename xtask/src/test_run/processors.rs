@@ -1,15 +1,15 @@
-//! How much the processors of this machine rest.
+//! Idle time of the machine's processors.
 
 use std::time::Duration;
 
-/// Times that all processors together have worked or rested since the machine was started, in units of the system.
+/// Working and idle times of all processors together since the machine was started, in units of the system.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Times {
     all: u64,
     idle: u64,
 }
 
-/// The share of their time that the processors rest during `period`; `None` if the system does not say.
+/// Fraction of idle time of the processors during `period`; `None` if the system does not report it.
 pub fn idle_share(period: Duration) -> Option<f64> {
     let read = || std::fs::read_to_string("/proc/stat").ok().as_deref().and_then(parse);
     let before = read()?;
@@ -22,10 +22,10 @@ fn share(before: Times, after: Times) -> Option<f64> {
     Some(after.idle.saturating_sub(before.idle) as f64 / all as f64)
 }
 
-/// The line `cpu user nice system idle iowait …`.
+/// Parses the line `cpu user nice system idle iowait …`.
 fn parse(text: &str) -> Option<Times> {
     let line = text.lines().find_map(|line| line.strip_prefix("cpu "))?;
-    // The user's time contains the guests'.
+    // The user time includes the time of guests.
     let times: Vec<u64> = line.split_whitespace().take(8).map(str::parse).collect::<Result<_, _>>().ok()?;
     Some(Times { all: times.iter().sum(), idle: times.get(3)? + times.get(4)? })
 }

@@ -1,4 +1,4 @@
-//! The programs that the tests are in, as cargo reports them.
+//! Test programs, as cargo reports them.
 
 use std::path::{Path, PathBuf};
 
@@ -6,7 +6,7 @@ use xtask::crates;
 
 use crate::artifacts::{self, Artifact};
 
-/// A compiled program of tests.
+/// A compiled test program.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Program {
     /// Crate and target, as `proximity/main`; the unit tests of a library are `proximity/lib`.
@@ -21,7 +21,7 @@ pub struct Program {
     pub has_harness: bool,
 }
 
-/// Compiles the tests that `args` choose, and answers their programs.
+/// Compiles the tests that `args` choose, and returns their programs.
 ///
 /// # Errors
 /// If something does not compile; cargo has printed why.
@@ -29,7 +29,7 @@ pub fn compile(root: &Path, args: &[&str], env: &[(&str, &str)]) -> Result<Vec<P
     programs(&artifacts::compile(root, &[&["test", "--no-run"], args].concat(), env)?)
 }
 
-/// The programs of tests among all.
+/// Selects the test programs.
 fn programs(artifacts: &[Artifact]) -> Result<Vec<Program>, String> {
     let mut found = Vec::new();
     for Artifact { executable, manifest, kind, name, .. } in artifacts.iter().filter(|artifact| artifact.is_test) {

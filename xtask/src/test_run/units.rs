@@ -1,4 +1,4 @@
-//! What one worker runs at a time: a module of a crate's integration tests, or a whole program.
+//! Units that one worker runs at a time: a module of a crate's integration tests, or a whole program.
 
 use std::collections::BTreeMap;
 use std::process::{Command, Stdio};
@@ -8,18 +8,18 @@ use super::programs::Program;
 /// Tests of one program that run in one process.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Unit {
-    /// The program's name, with the module where it is split.
+    /// Name of the program, with the module if the program is split.
     pub name: String,
-    /// Which program, by its place in the list.
+    /// Index of the program in the list.
     pub program: usize,
-    /// The tests by their full names; empty for all that the program has.
+    /// Full names of the tests; empty for all tests of the program.
     pub tests: Vec<String>,
 }
 
-/// The units of all programs.
+/// Splits all programs into units.
 ///
 /// # Errors
-/// Where a program does not list its tests.
+/// If a program does not list its tests.
 pub fn units(programs: &[Program]) -> Result<Vec<Unit>, String> {
     let mut found = Vec::new();
     for (index, program) in programs.iter().enumerate() {
@@ -45,7 +45,7 @@ pub fn units(programs: &[Program]) -> Result<Vec<Unit>, String> {
     Ok(found)
 }
 
-/// The tests that a program lists, by their first module if they are to be split, else in one group.
+/// Groups the tests that a program lists by their first module if they are to be split, else in one group.
 fn grouped(listed: &str, is_split: bool) -> BTreeMap<String, Vec<String>> {
     let mut groups: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for test in listed.lines().filter_map(|line| line.strip_suffix(": test")) {

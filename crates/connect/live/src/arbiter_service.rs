@@ -1,4 +1,4 @@
-//! The arbiter of a cell's exchange regions, on the network.
+//! Arbiter of a cell's exchange regions, on the network.
 
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, SyncSender};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -19,26 +19,26 @@ use crate::keys::Keys;
 use crate::network::{Network, NetworkError, Publisher, Subscription, Urgency};
 use crate::silence_watch::SilenceWatch;
 
-/// Messages that wait for the arbiter; further ones are dropped, and the guards send again.
+/// Capacity of the arbiter's queue, in messages; further messages are dropped, and the guards repeat them.
 const WAITING: usize = 1024;
-/// How often it is published who holds what; a change is published at once.
+/// Interval at which the holders are published; a change is published at once.
 const PERIOD: Duration = Duration::from_millis(100);
 
-/// The thread of the arbiter answers much sooner.
+/// Longest wait for the arbiter's thread; it normally answers much sooner.
 const ANSWER: Duration = Duration::from_secs(2);
 
-/// What the thread of the arbiter receives.
+/// Input of the arbiter's thread.
 enum Incoming {
     /// Bytes under the key of a robot.
     Message { robot: RobotSlot, bytes: Vec<u8> },
-    /// A robot is to be cleared, or only asked for whether it may be.
+    /// A request to clear a robot, or only the question whether it may be cleared.
     Clear { robot: RobotSlot, is_question: bool, answer: SyncSender<Result<(), Micros>> },
 }
 
 /// Why a robot is not cleared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum NotCleared {
-    /// It has spoken lately: its grants may count still, and it may move.
+    /// The robot has sent a message lately: its grants may still be valid, and it may move.
     #[error("it has spoken lately: it must be silent for another {:.1} s, so that it holds no grant and has come to rest", .0.0 as f64 * 1e-6)]
     Spoke(Micros),
     /// The arbiter has ended.
@@ -52,7 +52,7 @@ pub struct ArbiterService {
     inbox: Option<SyncSender<Incoming>>,
     slots: Arc<Mutex<Vec<SlotStatus>>>,
     thread: Option<JoinHandle<()>>,
-    // A network may end with its last owner.
+    // Kept because a network may end with its last owner.
     _network: Arc<dyn Network>,
 }
 
@@ -75,7 +75,7 @@ impl ArbiterService {
             let (inbox, slot) = (inbox.clone(), RobotSlot(slot));
             let handler = Box::new(move |bytes: &[u8]| {
                 if bytes.len() <= wire::MAX_BYTES {
-                    // A full queue is a lost message, which the guard repeats.
+                    // A full queue drops the message; the guard repeats it.
                     let _ = inbox.try_send(Incoming::Message { robot: slot, bytes: bytes.to_vec() });
                 }
             });
@@ -103,7 +103,7 @@ impl ArbiterService {
         Ok(Some(Self { subscriptions, inbox, slots: published, thread, _network: network.clone() }))
     }
 
-    /// Who holds and waits for exchange regions.
+    /// Returns the holder and the queue of each exchange region.
     pub fn slots(&self) -> Vec<SlotStatus> {
         self.slots.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
@@ -116,8 +116,7 @@ impl ArbiterService {
         self.ask(robot, true)
     }
 
-    /// Declares that a silent robot is at rest outside of all exchange regions: somebody has seen it
-    /// ([`Arbiter::clear`]).
+    /// Declares that a silent robot was seen at rest outside all exchange regions ([`Arbiter::clear`]).
     ///
     /// # Errors
     /// [`NotCleared`]; then nothing has changed.
@@ -145,7 +144,7 @@ impl Drop for ArbiterService {
     }
 }
 
-/// What the arbiter of a cell knows of it; `None` without exchange regions.
+/// Derives the arbiter's settings from the cell; `None` without exchange regions.
 fn settings(cell: &Cell) -> Option<ArbiterSettings> {
     let slots = configure::slots(cell);
     let count = slots.iter().flatten().map(|slot| slot.0 + 1).max()?;
@@ -161,7 +160,7 @@ fn settings(cell: &Cell) -> Option<ArbiterSettings> {
     Some(ArbiterSettings { checksum: configuration_number(cell), ..settings })
 }
 
-/// Longest time in which a robot stops from full speed once its controller hears no override any more.
+/// Longest time in which a robot stops from full speed after its controller stops receiving overrides.
 fn stop_time(cell: &Cell, robot: usize) -> Micros {
     let braking = cell.robots[robot].limits.iter().map(|l| l.velocity / l.stop).fold(0.0, f64::max);
     let laws = &cell.laws;
@@ -179,7 +178,7 @@ fn slot_regions(cell: &Cell, count: usize) -> Vec<Vec<String>> {
 
 struct Running {
     arbiter: Arbiter,
-    /// Per slot the names of its regions.
+    /// Names of the regions, per slot.
     slots: Vec<Vec<String>>,
     robots: Vec<String>,
     silence: SilenceWatch,
@@ -193,14 +192,14 @@ struct Running {
 impl Running {
     fn run(mut self, waiting: &Receiver<Incoming>) {
         let mut published: Option<Instant> = None;
-        // Robots that never speak are silent from now on: the arbiter counts from the first time that it is asked.
+        // The first question starts the arbiter's silence timers: robots that never send a message are silent from now on.
         let _ = self.clear(RobotSlot(0), true);
         loop {
             let has_changed = match waiting.recv_timeout(PERIOD) {
                 Ok(Incoming::Message { robot, bytes }) => self.take(robot, &bytes),
                 Ok(Incoming::Clear { robot, is_question, answer }) => {
                     let cleared = self.clear(robot, is_question);
-                    // Whoever asked may have stopped waiting.
+                    // The caller may have stopped waiting.
                     let _ = answer.send(cleared);
                     !is_question && cleared.is_ok()
                 }
@@ -217,8 +216,8 @@ impl Running {
         }
     }
 
-    /// Takes a guard's message, if it speaks for the robot under whose key it has come, and answers. True if something has
-    /// changed.
+    /// Processes a guard's message if its robot is the one of the key, and sends the answer. Returns whether the state
+    /// of the arbiter has changed.
     fn take(&mut self, robot: RobotSlot, bytes: &[u8]) -> bool {
         let Ok(Message::State(state)) = wire::decode(bytes) else { return false };
         if state.robot != robot {
@@ -243,7 +242,7 @@ impl Running {
         Ok(())
     }
 
-    /// Sends what the arbiter says. True if something has changed.
+    /// Sends the replies of the arbiter and reports its events. Returns whether there were events.
     fn send(&mut self, outputs: Outputs) -> bool {
         for reply in outputs.replies {
             let robot = reply.robot;

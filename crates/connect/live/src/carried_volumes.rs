@@ -1,4 +1,4 @@
-//! What a simulated robot carries: exchanged tools and gripped parts, as its controller reports them to the node.
+//! Volumes that a simulated robot carries: exchanged tools and gripped parts, as its controller reports them to the node.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -11,12 +11,12 @@ use elbowroom_sim::replanning::ObjectPlaces;
 
 use crate::messages::AttachedVolume;
 
-/// The volumes that are on a simulated robot only at times.
+/// Volumes that are on a simulated robot only at times.
 pub(crate) struct CarriedVolumes {
     cell: Arc<Cell>,
     id: RobotId,
     setup: MonitorSetup,
-    /// With the tools as they are now.
+    /// The robot with its present tools.
     robot: CellRobot,
     state: ChainState,
     /// Where the objects of the cell are, as far as the simulated robots of this process have moved them.
@@ -25,7 +25,7 @@ pub(crate) struct CarriedVolumes {
 }
 
 impl CarriedVolumes {
-    /// As at the start of the cell: with the tools that are mounted, and nothing in the hand.
+    /// Creates the volumes at the start of the cell: with the mounted tools, without a gripped part.
     pub(crate) fn new(cell: &Arc<Cell>, id: RobotId, setup: MonitorSetup, objects: Arc<Mutex<ObjectPlaces>>) -> Self {
         let robot = cell.robots[id.0].clone();
         let state = ChainState::new(&robot.robot.chain);
@@ -34,12 +34,12 @@ impl CarriedVolumes {
         carried
     }
 
-    /// The volumes for the joint state.
+    /// Attached volumes for the joint state.
     pub(crate) fn volumes(&self) -> &[AttachedVolume] {
         &self.volumes
     }
 
-    /// Carries out what the program has exchanged, gripped and released since the last call. `t_s` is the time since the start.
+    /// Applies the exchanges, grips and releases of the program since the last call. `t_s` is the time since the start.
     pub(crate) fn follow(&mut self, program: &mut ProgramClock, t_s: f64) {
         let (tools, grips) = (program.take_tools(), program.take_grips());
         if tools.is_empty() && grips.is_empty() {
@@ -58,7 +58,7 @@ impl CarriedVolumes {
         self.list();
     }
 
-    /// Lists what is mounted and held now.
+    /// Lists the tools and parts that are mounted and held now.
     fn list(&mut self) {
         let Self { id, setup, robot, objects, volumes, .. } = self;
         volumes.clear();
@@ -68,7 +68,7 @@ impl CarriedVolumes {
         }
         let objects = objects.lock().unwrap_or_else(PoisonError::into_inner);
         for (object, link, in_link) in objects.held_by(*id) {
-            // What a program grips has a volume.
+            // A part that a program grips has a volume.
             let volume = setup.gripped_volume(object, link, &in_link);
             volumes.extend(volume.map(|(volume, in_link)| AttachedVolume { volume, in_link }));
         }

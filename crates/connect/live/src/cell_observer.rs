@@ -1,4 +1,4 @@
-//! Puts together what the robots of a cell publish: for the page in a browser, and for recordings.
+//! Collection of the robots' messages into one cell status, for the page in a browser and for recordings.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -16,14 +16,14 @@ use crate::keys::Keys;
 use crate::network::{Network, NetworkError, Subscription};
 use crate::ros2::CellFeed;
 
-/// How often the status of the cell is put together: the page shows 30 pictures a second.
+/// Interval between statuses of the cell: the page shows 30 pictures per second.
 const PERIOD: Duration = Duration::from_millis(33);
 /// A robot whose status is older than this is shown as silent.
 const SILENT: Micros = Micros(500_000);
-/// More events than this are not kept between two statuses of the cell.
+/// Most events kept between two statuses of the cell.
 const MAX_EVENTS: usize = 1000;
 
-/// Puts together what the robots of a cell publish. It ends when it is dropped.
+/// Collects the messages of a cell's robots into one status. It ends when it is dropped.
 pub(crate) struct CellObserver {
     _subscriptions: Vec<Subscription>,
     is_closed: Arc<AtomicBool>,
@@ -32,9 +32,9 @@ pub(crate) struct CellObserver {
 
 #[derive(Default)]
 struct Heard {
-    /// Per robot its last status, and when it was heard.
+    /// Last status per robot, and its time of arrival.
     robots: Vec<Option<(RobotStatus, Micros)>>,
-    /// What the arbiter said last, and when.
+    /// Last message of the arbiter, and its time of arrival.
     slots: (Vec<SlotStatus>, Micros),
     events: Vec<EventStatus>,
 }
@@ -46,7 +46,7 @@ fn lock(shared: &Shared) -> MutexGuard<'_, Heard> {
 }
 
 impl CellObserver {
-    /// Listens to all robots of the cell, in this process and in others.
+    /// Subscribes to all robots of the cell, in this process and in others.
     pub(crate) fn start(
         cell: &Arc<Cell>,
         network: &Arc<dyn Network>,
@@ -80,7 +80,7 @@ impl CellObserver {
         Ok(Self { _subscriptions: subscriptions, is_closed, thread: thread.ok() })
     }
 
-    /// Ends it, and gives the recorder back.
+    /// Ends the observer and returns the recorder.
     pub(crate) fn stop(mut self) -> Option<Recorder> {
         self.end()
     }
@@ -94,7 +94,7 @@ impl CellObserver {
 impl Drop for CellObserver {
     fn drop(&mut self) {
         if let Some(recorder) = self.end() {
-            // Without `stop` nobody asks for an error.
+            // Without `stop` there is no caller to report an error to.
             let _ = recorder.finish();
         }
     }
@@ -129,7 +129,7 @@ fn subscribe(
     Ok(subscriptions)
 }
 
-/// A status that was heard some time ago.
+/// Adds the time since arrival to the ages in a status.
 fn aged(status: &RobotStatus, age_s: f64) -> RobotStatus {
     RobotStatus { health: HealthStatus { age_s, ..status.health }, ..status.clone() }
 }

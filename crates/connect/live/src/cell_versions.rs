@@ -1,11 +1,11 @@
-//! The cell of a process, with its regions as they are now.
+//! Cell of a process, with its present regions.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
 use elbowroom_cell::{Cell, EditedRegions, RegionEdit, why_not_continued};
 use elbowroom_formats::FormatError;
 
-/// So many cells are kept that were built last: nodes of one process ask for the same ones.
+/// Number of built cells that are cached: the nodes of one process ask for the same cells.
 const KEPT: usize = 4;
 
 /// Why the changed regions do not make a valid cell.
@@ -14,34 +14,38 @@ pub enum NoVersion {
     /// A region is wrong.
     #[error(transparent)]
     Wrong(#[from] FormatError),
-    /// What runs cannot go on with it.
+    /// The running cell cannot continue with the changed regions.
     #[error("{0}")]
     NotContinued(String),
 }
 
-/// A cell, and what it becomes with other regions. Built once for all nodes of a process, outside of their ticks.
+/// A cell and its versions with changed regions.
+///
+/// Each version is built once for all nodes of a process, outside their ticks.
 pub struct CellVersions {
     base: Arc<Cell>,
     edited: Option<EditedRegions>,
-    /// What the service changes in every cell that it guards.
+    /// Changes that the service makes to every cell it guards.
     adapt: fn(Cell) -> Cell,
     built: Mutex<Built>,
 }
 
 #[derive(Default)]
 struct Built {
-    /// The file is the one that the cell was read from.
+    /// Whether the file was compared with the cell that was read from it.
     is_checked: bool,
     cells: Vec<(Vec<RegionEdit>, Arc<Cell>)>,
 }
 
 impl CellVersions {
-    /// Of a cell, its file, and what was changed in the cell since it was read.
+    /// Creates the versions of a cell.
+    ///
+    /// `edited` are the regions of its file; `adapt` repeats the changes made to `base` since it was read.
     pub fn new(base: &Arc<Cell>, edited: Option<EditedRegions>, adapt: fn(Cell) -> Cell) -> Self {
         Self { base: base.clone(), edited, adapt, built: Mutex::default() }
     }
 
-    /// The cell file's regions in memory.
+    /// Returns the cell file's regions in memory.
     ///
     /// # Errors
     /// [`NoVersion`] if the cell was not read from a file.
@@ -50,12 +54,12 @@ impl CellVersions {
         self.edited.as_ref().ok_or_else(no_file)
     }
 
-    /// As it was read.
+    /// The cell without edits.
     pub fn base(&self) -> &Arc<Cell> {
         &self.base
     }
 
-    /// The cell with these edits.
+    /// Returns the cell with these edits.
     ///
     /// # Errors
     /// [`NoVersion`].
@@ -64,7 +68,7 @@ impl CellVersions {
             return Ok(self.base.clone());
         }
         let edited = self.edited()?;
-        // Whoever else asks for the same cell waits for it.
+        // Other callers that ask for the same cell wait here.
         let mut built = self.built.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, cell)) = built.cells.iter().find(|(of, _)| of == edits) {
             return Ok(cell.clone());

@@ -1,37 +1,38 @@
-//! The controller's side: what to send to the node, and which override to apply.
+//! Client of a controller: encodes its messages to the node and selects the override to apply.
 
 use elbowroom_interlock::Micros;
 use thiserror::Error;
 
 use crate::messages::{AttachedVolume, JointState, MessageError, OVERRIDE_ANSWER_BYTES, OverrideAnswer};
 
-/// The times at which this many messages were sent are remembered: answers to older ones are too old anyway.
+/// Number of messages whose send times are kept: answers to older messages are too old anyway.
 const REMEMBERED: usize = 256;
 
-/// What a controller tells its node in a tick. Slices hold one value per joint in the chain's order.
+/// State that a controller sends to its node in each tick. Slices hold one value per joint in the chain's order.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ControllerState<'a> {
     /// Joint positions, rad or m.
     pub q: &'a [f64],
-    /// Joint velocities; empty if they are not known.
+    /// Joint velocities, rad/s or m/s; empty if unknown.
     pub qd: &'a [f64],
-    /// Velocities of the program at override 1; empty if they are not known.
+    /// Velocities of the program at override 1, rad/s or m/s; empty if unknown.
     pub intent: &'a [f64],
     /// The override set by the program or the operator, 0..1.
     pub programmed_override: f64,
     /// Gripped parts and exchanged tools.
     pub attached: &'a [AttachedVolume],
-    /// When the joints were read, on the same clock as all other times, where it is known better than that it is now: the nominal
-    /// time of a periodic tick.
+    /// Time at which the joints were read, on the same clock as all other times; `None` for now. In a periodic tick the
+    /// nominal time of the tick is more accurate than now.
     pub stamp: Option<Micros>,
 }
 
-/// The connection of one controller to its node, without the network: bytes go out with [`Self::joint_state`] and come in with
-/// [`Self::receive`]. Nothing is allocated after [`Self::new`].
+/// The connection of one controller to its node, without the network: [`Self::joint_state`] makes the bytes to send,
+/// [`Self::receive`] reads the bytes that arrive. Nothing is allocated after [`Self::new`].
 ///
-/// **It stops by itself**: an answer counts for [`Self::watchdog`] from the moment at which the joint values that it answers were
-/// sent, on the controller's own clock. So whatever a network delays, and whether the node has died or is cut off, the override is
-/// 0 at most that long after the last joint values that a living node has seen.
+/// **The controller stops by itself**: an answer is valid for [`Self::watchdog`] from the time at which the joint
+/// values that it answers were sent, on the controller's own clock. So the override is always 0 at most that long after
+/// the last joint values that a running node has received, whatever delays the network adds and whether the node has
+/// died or is cut off.
 ///
 /// ```
 /// use elbowroom_interlock::Micros;
@@ -59,19 +60,19 @@ pub struct ControllerClient {
     answer: Option<OverrideAnswer>,
 }
 
-/// Why an answer is not obeyed.
+/// Why an answer is rejected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum Refused {
-    /// It cannot be read.
+    /// The message cannot be read.
     #[error("{0}")]
     Message(#[from] MessageError),
-    /// It is for another start of this controller.
+    /// The answer is for another start of this controller.
     #[error("the answer is for another start of this controller")]
     OtherStart,
     /// The node guards another cell.
     #[error("the node guards another configuration: load the same cell file on both sides")]
     OtherConfiguration,
-    /// It answers what was not sent, or something older than the last answer.
+    /// The answer is to a message that was not sent, or is older than the last answer.
     #[error("the answer is late, was there before, or answers what was not sent")]
     Late,
     /// The override is not within 0..1.
@@ -80,8 +81,11 @@ pub enum Refused {
 }
 
 impl ControllerClient {
-    /// A client. `boot` must be higher than at former starts of this controller: [`boot_number`](crate::boot_number) will do.
-    /// `checksum` is that of the cell ([`configuration_number`](crate::configuration_number)), or 0 to obey any.
+    /// Creates a client.
+    ///
+    /// `boot` must be higher than at earlier starts of this controller; use [`boot_number`](crate::boot_number).
+    /// `checksum` is the number of the cell ([`configuration_number`](crate::configuration_number)), or 0 to accept any
+    /// cell.
     pub fn new(boot: u64, checksum: u64) -> Self {
         Self {
             checksum,
@@ -93,22 +97,23 @@ impl ControllerClient {
         }
     }
 
-    /// With another time for which an answer counts; the default is 20 ms. It is a part of the reaction time that the node's
-    /// stopping distances assume: `stale_ms` of the cell.
+    /// Sets the time for which an answer is valid; the default is 20 ms.
+    ///
+    /// The node's stopping distances include it in their reaction time: `stale_ms` of the cell.
     #[must_use]
     pub fn with_watchdog(self, watchdog: Micros) -> Self {
         Self { watchdog, ..self }
     }
 
-    /// How long an answer counts.
+    /// Time for which an answer is valid.
     pub fn watchdog(&self) -> Micros {
         self.watchdog
     }
 
-    /// The bytes of the next message to the node. Call it in every tick.
+    /// Returns the bytes of the next message to the node. Call it in every tick.
     ///
-    /// While no answer counts the message says that the program stands, at override 0: the node must not take a robot that stops by
-    /// itself for one whose joint values are frozen.
+    /// While no answer is valid the message reports programmed override 0, as if the program waited: otherwise the node
+    /// would take the joint values of a robot that has stopped by itself for frozen.
     pub fn joint_state(&mut self, now: Micros, state: &ControllerState<'_>) -> &[u8] {
         let programmed_override = if self.answer(now).is_some() { state.programmed_override } else { 0.0 };
         let message = &mut self.state;
@@ -127,10 +132,10 @@ impl ControllerClient {
         &self.bytes
     }
 
-    /// Takes an answer of the node.
+    /// Reads an answer of the node.
     ///
     /// # Errors
-    /// Why it is not obeyed: then the former answer counts for as long as it is fresh.
+    /// The reason for rejecting the answer; the previous answer then stays in use while it is valid.
     pub fn receive(&mut self, bytes: &[u8]) -> Result<(), Refused> {
         if bytes.len() != OVERRIDE_ANSWER_BYTES {
             return Err(MessageError::Length(bytes.len()).into());
@@ -156,17 +161,17 @@ impl ControllerClient {
         Ok(())
     }
 
-    /// The last answer, while it counts.
+    /// The last answer, while it is valid.
     pub fn answer(&self, now: Micros) -> Option<&OverrideAnswer> {
         self.answer.as_ref().filter(|answer| {
             let age = self.state.sequence - answer.echo;
             let sent = self.sent[answer.echo as usize % REMEMBERED];
-            // On a clock that was set back nothing is fresh.
+            // If the clock was set back, no answer is valid.
             age < REMEMBERED as u64 && now >= sent && now - sent <= self.watchdog
         })
     }
 
-    /// The override to apply now: 0 without an answer that counts.
+    /// The override to apply now: 0 without a valid answer.
     pub fn speed_override(&self, now: Micros) -> f64 {
         self.answer(now).map_or(0.0, |answer| answer.speed_override)
     }

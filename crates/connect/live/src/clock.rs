@@ -1,11 +1,11 @@
-//! The clock of a process, and the numbers of its starts.
+//! Clock of a process, and the number of its start.
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
 pub use elbowroom_interlock::Clock;
 
-/// A number for the start of a process that is higher for later ones, as long as the time of day is not set back: nanoseconds
-/// since 1970.
+/// Number of a process start, in nanoseconds since 1970: higher for later starts, provided that the time of day is not set
+/// back.
 pub fn boot_number() -> u64 {
     SystemTime::now().duration_since(UNIX_EPOCH).map_or(1, |t| t.as_nanos() as u64)
 }

@@ -1,14 +1,14 @@
-//! A number for the configuration of a cell.
+//! Number of the configuration of a cell.
 
 use elbowroom_cell::Cell;
 
-/// The number by which the processes of a cell know that they have loaded the same configuration: the first 8 bytes of its
-/// checksum.
+/// Number by which the processes of a cell recognize that they have loaded the same configuration: the first 8 bytes of
+/// its checksum.
 pub fn configuration_number(cell: &Cell) -> u64 {
     cell.checksum.get(..16).and_then(|digits| u64::from_str_radix(digits, 16).ok()).unwrap_or(0)
 }
 
-/// The same as text: the first 16 hexadecimal digits.
+/// The configuration number as text: the first 16 hexadecimal digits of the checksum.
 pub(crate) fn configuration_digits(cell: &Cell) -> String {
     cell.checksum.chars().take(16).collect()
 }

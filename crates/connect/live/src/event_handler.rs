@@ -1,6 +1,6 @@
-//! Events for whoever runs a service.
+//! Handler of a service's events.
 
 use std::sync::Arc;
 
-/// Called with every event, in words.
+/// Called with the text of every event.
 pub type EventHandler = Arc<dyn Fn(&str) + Send + Sync>;

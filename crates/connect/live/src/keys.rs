@@ -1,6 +1,6 @@
-//! The keys under which a cell's messages are published.
+//! Keys under which a cell's messages are published.
 
-/// The keys of a cell: `elbowroom/CELL/ROBOT/…`.
+/// Keys of a cell: `elbowroom/CELL/ROBOT/…`.
 ///
 /// ```
 /// let keys = elbowroom_live::Keys::new("welding column");
@@ -13,57 +13,58 @@ pub struct Keys {
 }
 
 impl Keys {
-    /// The keys of the cell of this name. What a key may not have (`/ * $ ? #`) is written as `_`.
+    /// Creates the keys of the cell of this name. Characters that a key cannot contain (`/ * $ ? #`) become `_`.
     pub fn new(cell: &str) -> Self {
         Self { cell: chunk(cell) }
     }
 
-    /// From the controller: [`JointState`](crate::messages::JointState).
+    /// Joint states from the controller: [`JointState`](crate::messages::JointState).
     pub fn joint_states(&self, robot: &str) -> String {
         self.of(robot, "joint_states")
     }
 
-    /// To the controller: [`OverrideAnswer`](crate::messages::OverrideAnswer).
+    /// Overrides to the controller: [`OverrideAnswer`](crate::messages::OverrideAnswer).
     pub fn speed_override(&self, robot: &str) -> String {
         self.of(robot, "override")
     }
 
-    /// For everybody: [`RobotStatus`](elbowroom_status::RobotStatus) as JSON.
+    /// Status of a robot, for all subscribers: [`RobotStatus`](elbowroom_status::RobotStatus) as JSON.
     pub fn status(&self, robot: &str) -> String {
         self.of(robot, "status")
     }
 
-    /// That a process is about to guard a robot: when it started, nanoseconds since 1970 as eight bytes, the least first, and whether it has the robot by now.
+    /// Claim of a process that is about to guard a robot: its start time (nanoseconds since 1970, `u64`, little-endian)
+    /// and a byte that says whether it has the robot by now.
     pub fn claim(&self, robot: &str) -> String {
         self.of(robot, "claim")
     }
 
-    /// From the guard of a robot to the arbiter.
+    /// Interlock state, from the guard of a robot to the arbiter.
     pub fn interlock_state(&self, robot: &str) -> String {
         self.of(robot, "interlock/state")
     }
 
-    /// From the arbiter to the guard of a robot.
+    /// Grants, from the arbiter to the guard of a robot.
     pub fn interlock_grants(&self, robot: &str) -> String {
         self.of(robot, "interlock/grants")
     }
 
-    /// That a process guards a robot: a token of Zenoh's liveliness, without messages.
+    /// Presence of the process that guards a robot: a Zenoh liveliness token, without messages.
     pub fn presence(&self, robot: &str) -> String {
         format!("elbowroom/{}/present/robots/{}", self.cell, chunk(robot))
     }
 
-    /// That the arbiter is there.
+    /// Presence of the arbiter.
     pub fn presence_of_arbiter(&self) -> String {
         format!("elbowroom/{}/present/arbiter", self.cell)
     }
 
-    /// Everybody who is there.
+    /// All presences of the cell.
     pub fn presences(&self) -> String {
         format!("elbowroom/{}/present/**", self.cell)
     }
 
-    /// With what all keys of the cell begin.
+    /// Prefix of all keys of the cell.
     pub fn prefix(&self) -> String {
         format!("elbowroom/{}", self.cell)
     }
@@ -73,17 +74,17 @@ impl Keys {
         format!("elbowroom/{}/sensor/{}/frames", self.cell, chunk(sensor))
     }
 
-    /// Which regions are switched on, from the arbiter's process: JSON.
+    /// Table of the regions and whether they are on, from the arbiter's process: JSON.
     pub fn regions(&self) -> String {
         format!("elbowroom/{}/regions", self.cell)
     }
 
-    /// A request to switch a region: JSON.
+    /// Request to switch a region: JSON.
     pub fn switch(&self) -> String {
         format!("elbowroom/{}/switch", self.cell)
     }
 
-    /// Who holds and waits for exchange regions, from the arbiter: JSON.
+    /// Holder and queue of each exchange region, from the arbiter: JSON.
     pub fn interlocks(&self) -> String {
         format!("elbowroom/{}/interlocks", self.cell)
     }

@@ -1,5 +1,7 @@
-//! The running service: a [`Node`] per controller guards its robot, an arbiter grants exchange regions, and everybody can
-//! see what happens. Joint states come in and speed overrides go out through a [`network`], of Zenoh or of UDP datagrams.
+//! Live service of a cell: a [`Node`] guards each controller's robot, an arbiter grants exchange regions.
+//!
+//! Joint states come in and speed overrides go out through a [`network`], of Zenoh or of UDP datagrams. Every process
+//! of the cell can watch.
 //!
 //! `docs/live.md` has the keys, the bytes and the bounds; `docs/interlocks.md` the protocol of exchange regions.
 //!
@@ -35,7 +37,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! **Invariant.** If a controller applies what its [`ControllerClient`] says, its override is always 0 once the
+//! **Invariant.** If a controller applies the override of its [`ControllerClient`], that override is always 0 once the
 //! watchdog's time has passed since it sent the last joint values that were answered, whatever the network and the
 //! node do.
 

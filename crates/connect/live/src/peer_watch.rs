@@ -1,4 +1,4 @@
-//! Says who else of the cell comes and goes, without a message: Zenoh tells who is connected.
+//! Reports when other processes of the cell come and go, without messages: Zenoh reports who is connected.
 
 use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -14,7 +14,7 @@ use crate::event_handler::EventHandler;
 use crate::keys::Keys;
 use crate::network::{NetworkError, Subscription, ZenohNetwork};
 
-/// Whoever is not there after this time is named once.
+/// Time after which missing parts of the cell are reported, once.
 const PATIENCE: Duration = Duration::from_secs(3);
 
 /// A part of the cell that runs in some process.
@@ -63,14 +63,14 @@ impl Part {
     }
 }
 
-/// Shows that this process is there, and says who else comes and goes. It ends when it is dropped.
+/// Shows that this process is present, and reports when others come and go. It ends when it is dropped.
 pub(crate) struct PeerWatch {
     _tokens: Vec<LivelinessToken>,
     _subscription: Option<Subscription>,
 }
 
 impl PeerWatch {
-    /// Of a process that guards these robots, and is the arbiter or not.
+    /// Starts the watch of a process that guards the robots `own`, and is the arbiter or not.
     pub(crate) fn start(
         cell: &Cell,
         own: &[RobotId],
@@ -122,7 +122,7 @@ fn watch(
     let subscriber =
         network.session().liveliness().declare_subscriber(key.clone()).history(true).callback(callback).wait();
     let subscriber = subscriber.map_err(|e| NetworkError::Key { key, why: e.to_string() })?;
-    // It ends by itself soon; whoever has come by then was named.
+    // The thread ends by itself soon; parts that come before that are not missing.
     let _ = std::thread::Builder::new().name("peers".into()).spawn(move || {
         std::thread::sleep(PATIENCE);
         let Some(missing) = remind.0.upgrade() else { return };

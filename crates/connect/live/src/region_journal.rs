@@ -1,4 +1,4 @@
-//! Which regions a cell had when its keeper ended, on disk.
+//! File with the regions that a cell had when its keeper ended.
 
 use std::fs::{self, File};
 use std::io;
@@ -8,27 +8,29 @@ use elbowroom_formats::WholeFile;
 
 use crate::regions_table::RegionTableMessage;
 
-/// Longest file, bytes: more than any table has.
+/// Longest file, bytes; every table is shorter.
 const MAX_BYTES: u64 = 4 << 20;
 
-/// The file in which a keeper writes its table, before it tells anybody: so it is never older than what a node has heard. One process
-/// keeps it at a time; the lock is a file of its own, as each table replaces the file before.
+/// The file of a keeper's table.
+///
+/// A keeper writes the table before it publishes it, so the file is never older than what a node has received. One
+/// process at a time owns the file; the lock is a separate file, because each table replaces the file before.
 #[derive(Debug)]
 pub(crate) struct RegionJournal {
     path: PathBuf,
     _lock: File,
 }
 
-/// The journal of a cell: `cell.regions.json` beside `cell.toml`.
+/// Path of the journal of a cell: `cell.regions.json` beside `cell.toml`.
 pub fn region_journal_of(cell: &Path) -> PathBuf {
     cell.with_extension("regions.json")
 }
 
 impl RegionJournal {
-    /// Locks it until it is dropped.
+    /// Locks the journal until it is dropped.
     ///
     /// # Errors
-    /// Why it is not kept, in words.
+    /// The reason, as text, if the journal cannot be locked.
     pub(crate) fn open(path: &Path) -> Result<Self, String> {
         let locked = path.with_extension("lock");
         let lock = File::options().write(true).create(true).truncate(false).open(&locked);
@@ -41,10 +43,10 @@ impl RegionJournal {
         &self.path
     }
 
-    /// The table that was written last.
+    /// Reads the last written table.
     ///
     /// # Errors
-    /// Why it is of no use, in words.
+    /// The reason, as text, if the table cannot be used.
     pub(crate) fn read(&self) -> Result<RegionTableMessage, String> {
         let name = self.path.display();
         let length = fs::metadata(&self.path).map_err(|e| match e.kind() {
@@ -58,16 +60,17 @@ impl RegionJournal {
         serde_json::from_slice(&bytes).map_err(|e| format!("{name}: is no table of regions: {e}"))
     }
 
-    /// Writes a table, and returns once it is on the disk. One that cannot be written leaves no file: with an older one the regions
-    /// would be as they were long ago.
+    /// Writes a table, and returns once it is on the disk.
+    ///
+    /// If the write fails, the file is removed: an older table would restore outdated regions.
     ///
     /// # Errors
-    /// What the system says.
+    /// The error of the operating system.
     pub(crate) fn write(&self, table: &RegionTableMessage) -> io::Result<()> {
         let written = WholeFile::begin(&self.path, |out| serde_json::to_writer(out, table).map_err(io::Error::from))
             .and_then(WholeFile::put_durably);
         if written.is_err() {
-            // There may be none.
+            // The file may not exist.
             let _ = fs::remove_file(&self.path);
         }
         written

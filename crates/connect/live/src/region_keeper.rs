@@ -1,4 +1,4 @@
-//! Keeps which regions a cell has now and which are switched on, and says so to all nodes.
+//! Keeper of the table of a cell's regions: which exist and which are on, published to all nodes.
 
 use std::collections::BTreeSet;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, SyncSender};
@@ -18,15 +18,15 @@ use crate::network::{Network, NetworkError, Publisher, Subscription, Urgency};
 use crate::region_journal::RegionJournal;
 use crate::regions_table::{RegionTable, RegionTableMessage};
 
-/// Requests that wait; further ones are dropped.
+/// Capacity of the request queue; further requests are dropped.
 const WAITING: usize = 1024;
-/// How often the table is repeated; a change is published at once.
+/// Interval at which the table is repeated; a change is published at once.
 const PERIOD: Duration = Duration::from_millis(100);
 
-/// A program switches a temporary region.
+/// A request of a program to switch a temporary region.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SwitchRequest {
-    /// The robot whose program asks.
+    /// Robot whose program makes the request.
     pub robot: String,
     /// The region.
     pub region: String,
@@ -34,16 +34,16 @@ pub struct SwitchRequest {
     pub active: bool,
 }
 
-/// Whether what arrives under [`Keys::switch`] is obeyed: nobody knows who sends it.
+/// Whether requests under [`Keys::switch`] are obeyed: their sender is unknown.
 #[derive(Clone)]
 pub enum ProgramSwitches {
-    /// Temporary regions are switched.
+    /// Requests switch temporary regions.
     Obeyed,
-    /// Nothing is switched; the first such request of each region is reported.
+    /// Requests switch nothing; the first one for each region is reported.
     Ignored(Option<EventHandler>),
 }
 
-/// A table, the cell that has these regions, and where they are written.
+/// A table, the cell with its regions, and the journal that the table is written to.
 struct Kept {
     table: RegionTable,
     cell: Arc<Cell>,
@@ -52,8 +52,8 @@ struct Kept {
 }
 
 impl Kept {
-    /// Permanent regions are on, as temporary ones are until it is known better: from the journal, if it is of this cell file and of no
-    /// other process.
+    /// Restores the table from the journal, if the journal is of this cell file and no other process has it; otherwise all
+    /// regions are on.
     fn begin(
         versions: &CellVersions,
         boot: u64,
@@ -81,7 +81,7 @@ impl Kept {
         self.cell.regions.iter().any(|r| r.region.life == Life::Temporary)
     }
 
-    /// Writes the table before anybody hears of it.
+    /// Writes the table, before it is published.
     fn record(&self) {
         let Some(journal) = &self.journal else { return };
         if let (Err(e), Some(on_event)) = (journal.write(&self.table.message(&self.cell)), &self.on_event) {
@@ -92,7 +92,7 @@ impl Kept {
         }
     }
 
-    /// Switches a temporary region; false if it was so already.
+    /// Switches a temporary region; returns false if it already has that state.
     fn switch(&mut self, region: usize, active: bool) -> bool {
         let has_changed = self.table.switch(region, active);
         if has_changed {
@@ -102,7 +102,7 @@ impl Kept {
     }
 }
 
-/// The table that goes on with one that a former start has written, and the cell with these regions; or why not.
+/// Continues the table written by an earlier start; returns it with the cell that has its regions, or the reason why not.
 fn continued(
     versions: &CellVersions,
     fresh: &RegionTable,
@@ -129,28 +129,29 @@ fn continued(
     Ok((table, cell))
 }
 
-/// The regions of a cell at one instant.
+/// Regions of a cell at one instant.
 #[derive(Debug, Clone)]
 pub(crate) struct PresentRegions {
     pub(crate) cell: Arc<Cell>,
-    /// What is not as in the cell file.
+    /// Differences from the cell file.
     pub(crate) edits: Vec<RegionEdit>,
 }
 
-/// Keeps which regions a cell has and which are switched on; one process of a cell has it. It ends when it is dropped.
+/// Keeps which regions a cell has and which are on; exactly one process of a cell runs it. It ends when it is dropped.
 pub struct RegionKeeper {
     kept: Arc<Mutex<Kept>>,
     at_start: String,
     subscription: Option<Subscription>,
     inbox: Option<SyncSender<Incoming>>,
     thread: Option<JoinHandle<()>>,
-    // A network may end with its last owner.
+    // Kept because a network may end with its last owner.
     _network: Arc<dyn Network>,
 }
 
 impl RegionKeeper {
-    /// Starts with the regions as they were when a former start ended, if that is known from the journal; else all are on. `boot` is
-    /// higher than at former starts.
+    /// Starts with the regions that the journal has from an earlier start; without a usable journal all regions are on.
+    ///
+    /// `boot` is higher than at earlier starts.
     ///
     /// # Errors
     /// [`NetworkError`] if the keys cannot be used.
@@ -173,7 +174,7 @@ impl RegionKeeper {
         let requests = inbox.clone();
         let handler = Box::new(move |bytes: &[u8]| {
             let Ok(request) = serde_json::from_slice::<SwitchRequest>(bytes) else { return };
-            // A full queue is a lost message.
+            // A full queue drops the message.
             let _ = requests.try_send(Incoming::Request(request));
         });
         let subscription = network.subscribe(&keys.switch(), handler)?;
@@ -190,37 +191,41 @@ impl RegionKeeper {
         })
     }
 
-    /// How the regions were found at the start, in words.
+    /// Origin of the regions at the start, as text.
     pub(crate) fn at_start(&self) -> &str {
         &self.at_start
     }
 
-    /// Per region of the cell as it is now whether it is on.
+    /// Whether each region of the present cell is on.
     pub fn active(&self) -> Vec<bool> {
         lock(&self.kept).table.active.clone()
     }
 
-    /// The regions as they are now.
+    /// The present regions.
     pub(crate) fn present(&self) -> PresentRegions {
         let kept = lock(&self.kept);
         PresentRegions { cell: kept.cell.clone(), edits: kept.table.edits.clone() }
     }
 
-    /// Switches a temporary region, by its index in the cell as it is now; the nodes hear of it at once. Permanent regions stay on.
+    /// Switches a temporary region, by its index in the present cell, and notifies the nodes at once.
+    ///
+    /// Permanent regions stay on.
     pub fn switch(&self, region: usize, active: bool) {
         if lock(&self.kept).switch(region, active) {
             self.publish();
         }
     }
 
-    /// From now on nodes that do not hear this keeper stop: regions may be moved, added and removed.
+    /// Allows regions to be moved, added and removed: from now on nodes that do not receive this keeper's table stop.
     pub(crate) fn allow_edits(&self) {
         lock(&self.kept).table.is_editable = true;
         self.publish();
     }
 
-    /// These are the regions from now on. Those that were there before are on or off as before; new ones are as `new_are_on`, permanent
-    /// ones on. While it is not `due`, nodes with the regions before may go on.
+    /// Replaces the regions.
+    ///
+    /// Existing regions keep their on or off state; new temporary ones get `new_are_on`, permanent ones are on. Until
+    /// it is called with `is_due`, nodes may continue with the previous regions.
     pub(crate) fn set(&self, regions: &PresentRegions, new_are_on: bool, is_due: bool) {
         let mut kept = lock(&self.kept);
         let PresentRegions { cell, edits } = regions;
@@ -245,7 +250,7 @@ impl RegionKeeper {
 
     fn publish(&self) {
         if let Some(inbox) = &self.inbox {
-            // A full queue wakes the thread, too.
+            // If the queue is full, its messages wake the thread.
             let _ = inbox.try_send(Incoming::Change);
         }
     }
@@ -255,16 +260,16 @@ fn lock(kept: &Mutex<Kept>) -> MutexGuard<'_, Kept> {
     kept.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// What the thread of the keeper receives.
+/// Input of the keeper's thread.
 enum Incoming {
-    /// A program asks for a switch.
+    /// A program requests a switch.
     Request(SwitchRequest),
     /// The table has changed.
     Change,
 }
 
-/// The thread of the keeper: repeats the table, and obeys what programs ask for. It writes the journal, for which a thread of the
-/// network must not wait.
+/// The keeper's thread: repeats the table and obeys the requests of programs. It also writes the journal, because
+/// threads of the network must not wait for the disk.
 struct Running {
     kept: Arc<Mutex<Kept>>,
     publisher: Box<dyn Publisher>,
@@ -294,7 +299,7 @@ impl Running {
         }
     }
 
-    /// Switches, or reports that it does not.
+    /// Switches the region, or reports that the request is ignored.
     fn obey(&self, request: &SwitchRequest) {
         let mut kept = lock(&self.kept);
         let Some(region) = find(&request.region, &kept.cell) else { return };
@@ -307,13 +312,13 @@ impl Running {
     }
 }
 
-/// The temporary region of this name. A permanent one is never switched.
+/// Finds the temporary region of this name. Permanent regions are never switched.
 fn find(name: &str, cell: &Cell) -> Option<usize> {
     cell.regions.iter().position(|r| r.region.name == name && r.region.life == Life::Temporary)
 }
 
-/// Requests that were not obeyed. One report per region of the cell: programs repeat themselves, and names of regions that there
-/// are not would be without end.
+/// Names of regions with ignored requests, to report each region of the cell once: programs repeat their requests, and
+/// names that are not in the cell would be unbounded.
 #[derive(Default)]
 struct Ignored(Mutex<BTreeSet<String>>);
 

@@ -1,4 +1,4 @@
-//! Which regions a cell has now, and which of them are switched on.
+//! Table of a cell's present regions, and whether they are on.
 
 use elbowroom_cell::{Cell, RegionEdit};
 use elbowroom_interlock::Micros;
@@ -7,27 +7,29 @@ use serde::{Deserialize, Serialize};
 
 use crate::configuration_number::configuration_digits;
 
-/// A node that has not heard which regions are switched on for this long guards against all of them; where regions may be added
-/// and moved, it stops.
+/// Time for which the last received table is valid.
+///
+/// Without a valid table a node guards against all regions; if regions may be edited, it stops.
 pub const TABLE_VALIDITY: Micros = Micros(1_000_000);
 
-/// Which regions a cell has and which of them are switched on: kept by one process, and repeated to all others, so that a message
-/// that is lost changes nothing for long.
+/// The regions of a cell and whether they are on.
+///
+/// One process keeps the table and repeats it to all others, so a lost message has no lasting effect.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct RegionTable {
-    /// The start of the process that keeps it, and how often it was changed: a higher pair replaces a lower one.
+    /// Number of the start of the keeping process, and count of changes since: a higher pair replaces a lower one.
     pub revision: (u64, u64),
-    /// Per region of the cell.
+    /// Whether each region of the cell is on.
     pub active: Vec<bool>,
     /// The first 16 hexadecimal digits of the checksum of the cell file's configuration.
     pub configuration: String,
-    /// The same of the configuration with the regions as they are now.
+    /// The first 16 hexadecimal digits of the checksum of the configuration with the present regions.
     pub present: String,
-    /// The regions that are not as in the cell file.
+    /// Regions that differ from the cell file.
     pub edits: Vec<RegionEdit>,
-    /// While the nodes prepare for `present`: the configuration before, with which they may go on. Empty once `present` is due.
+    /// The configuration before `present`, which nodes may still use while they prepare; empty once `present` is due.
     pub former: String,
-    /// Regions may be moved, added and removed while the cell runs.
+    /// Whether regions may be moved, added and removed while the cell runs.
     pub is_editable: bool,
 }
 
@@ -36,28 +38,30 @@ pub struct RegionTable {
 pub struct RegionTableMessage {
     /// The first 16 hexadecimal digits of the checksum of the cell file's configuration.
     pub configuration: String,
-    /// The start of the process that keeps the table.
+    /// Number of the start of the process that keeps the table.
     pub boot: u64,
-    /// How often it was changed.
+    /// Count of changes since that start.
     pub revision: u64,
-    /// Per region, in the order of the cell file, its name and whether it is on.
+    /// Name of each region and whether it is on, in the order of the cell file.
     pub regions: Vec<(String, bool)>,
     /// Like `configuration`, with the present regions; empty if no region of the file has changed.
     #[serde(default)]
     pub present: String,
-    /// The regions that are not as in the cell file.
+    /// Regions that differ from the cell file.
     #[serde(default)]
     pub edits: Vec<RegionEdit>,
-    /// Whoever runs neither with `present` nor with this one must stop; empty if only `present` counts.
+    /// A node must stop if its configuration is neither `present` nor this one; empty if only `present` is valid.
     #[serde(default)]
     pub former: String,
-    /// Regions may be moved, added and removed: whoever does not hear this any more must stop.
+    /// Whether regions may be moved, added and removed: a node that stops receiving the table must then stop its robot.
     #[serde(default)]
     pub editable: bool,
 }
 
 impl RegionTable {
-    /// Until it is known what is on: permanent regions are on, temporary ones off. Whoever uses it guards against all of them then.
+    /// Creates the table for the time before the state is known: permanent regions on, temporary ones off.
+    ///
+    /// Its user guards against all regions during that time.
     pub fn initial(cell: &Cell) -> Self {
         Self {
             active: cell.regions.iter().map(|r| r.region.life == Life::Permanent).collect(),
@@ -67,14 +71,14 @@ impl RegionTable {
         }
     }
 
-    /// With all regions on.
+    /// Switches all regions on.
     #[must_use]
     pub fn all_on(mut self) -> Self {
         self.active.fill(true);
         self
     }
 
-    /// Switches a region, by its index in the cell; false if that changes nothing. Only for temporary regions.
+    /// Switches a temporary region, by its index in the cell; returns false if that changes nothing.
     pub fn switch(&mut self, region: usize, active: bool) -> bool {
         if self.active[region] == active {
             return false;
@@ -84,7 +88,7 @@ impl RegionTable {
         true
     }
 
-    /// The message of this table. The cell is that of the table, with its edits.
+    /// Makes the message of this table. `cell` is the cell of the table, with its edits.
     pub fn message(&self, cell: &Cell) -> RegionTableMessage {
         let regions = cell.regions.iter().zip(&self.active).map(|(r, on)| (r.region.name.clone(), *on)).collect();
         RegionTableMessage {
@@ -99,13 +103,15 @@ impl RegionTable {
         }
     }
 
-    /// Whether a robot may go on with the configuration of this number.
+    /// Whether a robot may continue with the configuration of this number.
     pub fn permits(&self, number: &str) -> bool {
         self.present == number || self.former == number
     }
 
-    /// Takes over what is in a message, if it is of this cell file and not older than what is known. Returns whether it is. `cell`
-    /// is that of which this table has the regions: it may be another one than that of the message.
+    /// Applies a message if it is of this cell file and not older than this table.
+    ///
+    /// Returns whether it was applied. `cell` is the cell with the regions of this table; the message may be of another
+    /// one.
     pub fn take(&mut self, message: &RegionTableMessage, cell: &Cell) -> bool {
         let revision = (message.boot, message.revision);
         if message.configuration != self.configuration || self.configuration.len() != 16 || revision < self.revision {
@@ -120,8 +126,8 @@ impl RegionTable {
             let name = &r.region.name;
             let at_its_place = message.regions.get(i).filter(|(named, _)| named == name);
             let found = at_its_place.or_else(|| message.regions.iter().find(|(named, _)| named == name));
-            // A permanent region is never off, whatever a message says; one that the message does not have stays as it is until
-            // this process has the same regions.
+            // A permanent region is never off, whatever the message says; a region that is not in the message keeps its
+            // state until this process has the same regions.
             *active = r.region.life == Life::Permanent || found.map_or(*active, |(_, on)| *on);
         }
         true

@@ -1,4 +1,4 @@
-//! One process guards a robot: whoever starts says so until its nodes run, and does not start where somebody was first.
+//! Claims of robots: a process claims its robots until its nodes run, and does not start if another process was first.
 
 use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
@@ -9,17 +9,17 @@ use crate::keys::Keys;
 use crate::network::{Network, NetworkError, Publisher, Subscription, Urgency};
 use crate::service_error::ServiceError;
 
-/// How long a process listens before it takes its robots.
+/// Time for which a process listens before it takes its robots.
 const LISTENS: Duration = Duration::from_millis(300);
-/// How often it says meanwhile that it will: a node says as often how it is.
+/// Interval at which a process repeats its claims; a node publishes its status as often.
 const EVERY: Duration = Duration::from_millis(20);
 
 /// A process's claim of a robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Claim {
-    /// When the process started, ns since 1970.
+    /// Time of the start of the process, ns since 1970.
     boot: u64,
-    /// It has listened long enough: whoever starts now is too late, whatever its clock says.
+    /// Whether the process has listened long enough: a process that starts now is then too late, whatever its clock says.
     is_taken: bool,
 }
 
@@ -36,7 +36,7 @@ impl Claim {
         Some(Self { boot: u64::from_le_bytes(boot.try_into().ok()?), is_taken: taken != [0] })
     }
 
-    /// Whether the process of this claim goes before one that started at `boot`. Its own claims come back to a process.
+    /// Whether this claim takes precedence over a process that started at `boot`. A process also receives its own claims.
     fn precedes(self, boot: u64) -> bool {
         self.boot != boot && (self.is_taken || self.boot < boot)
     }
@@ -44,17 +44,18 @@ impl Claim {
 
 /// Claims robots until it is dropped.
 pub(crate) struct RobotClaims {
-    /// Names of robots of which a node, or a claim that goes before, was heard.
+    /// Names of robots for which a node, or a claim that takes precedence, was received.
     heard: Receiver<String>,
     listening: Vec<Subscription>,
     _publishing: Publishing,
 }
 
 impl RobotClaims {
-    /// Claims robots for the process that started at `boot`. Of two that start at once the earlier one counts.
+    /// Claims robots for the process that started at `boot`. If two processes start at once, the earlier one gets them.
     ///
     /// # Errors
-    /// [`ServiceError::GuardedAlready`] for a robot that another process guards, or claimed before; the network's own errors.
+    /// [`ServiceError::GuardedAlready`] for a robot that another process guards, or claimed before; the network's own
+    /// errors.
     pub(crate) fn new(
         network: &Arc<dyn Network>,
         keys: &Keys,
@@ -68,7 +69,7 @@ impl RobotClaims {
                 let (name, hears) = ((*robot).to_owned(), hears.clone());
                 Box::new(move |bytes: &[u8]| {
                     if counts(bytes, boot) {
-                        // The other side is gone once the nodes run.
+                        // The receiver is gone once the nodes run.
                         let _ = hears.send(name.clone());
                     }
                 })
@@ -85,10 +86,10 @@ impl RobotClaims {
         Ok(claims)
     }
 
-    /// Listens no longer: from here on the nodes of this process are heard. It claims on until they run.
+    /// Stops listening, because from now on the nodes of this process publish too. The claims continue until the nodes run.
     ///
     /// # Errors
-    /// As [`Self::new`], for what was heard in the meantime.
+    /// As [`Self::new`], for messages that were received in the meantime.
     pub(crate) fn settle(&mut self) -> Result<(), ServiceError> {
         self.listening.clear();
         self.heard.try_recv().map_or(Ok(()), |name| Err(ServiceError::GuardedAlready { name }))
@@ -112,7 +113,7 @@ impl Publishing {
                 }
             }
         };
-        // Without threads the nodes do not start either.
+        // If no thread can start, the nodes do not start either.
         let thread = std::thread::Builder::new().name("claims".into()).spawn(publish).ok();
         Self { goes_on: Some(goes_on), thread }
     }

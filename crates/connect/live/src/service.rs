@@ -1,4 +1,4 @@
-//! A process of a live cell: nodes, arbiter, simulated controllers, in any combination.
+//! Process of a live cell: nodes, arbiter and simulated controllers, in any combination.
 
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -21,7 +21,7 @@ use crate::simulated_controllers::SimulatedControllers;
 
 /// A running process of a live cell; it ends when it is dropped.
 pub struct Service {
-    // In the order in which they end: controllers stop first.
+    // In the order in which the parts end: controllers stop first.
     controllers: Option<SimulatedControllers>,
     ros2: Option<Participant>,
     nodes: Vec<Node>,
@@ -35,7 +35,7 @@ pub struct Service {
 }
 
 impl Service {
-    /// Starts what the options say.
+    /// Starts the parts that the options name.
     ///
     /// # Errors
     /// [`ServiceError`]; then nothing runs.
@@ -60,7 +60,7 @@ impl Service {
         self.nodes.len()
     }
 
-    /// True if this process keeps the regions and grants them.
+    /// Whether this process keeps the regions and grants exchange regions.
     pub fn is_arbiter(&self) -> bool {
         self.keeper.is_some()
     }
@@ -70,20 +70,20 @@ impl Service {
         self.controllers.as_ref().is_none_or(SimulatedControllers::is_running)
     }
 
-    /// The address of the page in a browser, where there is one.
+    /// Address of the page in a browser, if it is served.
     pub fn web_address(&self) -> Option<String> {
         self.server.as_ref().map(Server::url)
     }
 
-    /// The address of the control interface, where there is one.
+    /// Address of the control interface, if it is served.
     pub fn control_address(&self) -> Option<SocketAddr> {
         self.control.as_ref().map(ControlServer::address)
     }
 
-    /// Ends everything, and completes the recording.
+    /// Ends all parts, and completes the recording.
     ///
     /// # Errors
-    /// [`ServiceError::Recording`] if it could not be written.
+    /// [`ServiceError::Recording`] if the recording could not be written.
     pub fn stop(self) -> Result<(), ServiceError> {
         let Self { controllers, ros2, nodes, control, arbiter, keeper, observer, peers, server, network } = self;
         drop((peers, controllers, ros2, nodes, control, arbiter, keeper));

@@ -1,4 +1,4 @@
-//! Why a service does not start or end.
+//! Errors of starting and ending a service.
 
 use elbowroom_formats::FormatError;
 use elbowroom_recording::BagError;
@@ -24,7 +24,7 @@ pub enum ServiceError {
     /// The control interface cannot be served.
     #[error("--control: {0}")]
     Control(#[from] ControlError),
-    /// A process without the arbiter cannot change what all share.
+    /// A process without the arbiter cannot serve the control interface.
     #[error(
         "--control: this process does not have the arbiter\n  help: live CELL --arbiter --control ADDR, or the whole cell in one process"
     )]
@@ -32,7 +32,7 @@ pub enum ServiceError {
     /// The recording cannot be written.
     #[error("--record: {0}")]
     Recording(#[from] BagError),
-    /// ROS 2 cannot be spoken as asked.
+    /// The ROS 2 connection cannot be made as requested.
     #[error(transparent)]
     Ros2(#[from] Ros2Error),
     /// Another process guards the robot.
@@ -40,15 +40,15 @@ pub enum ServiceError {
         "robot {name}: another process guards it already\n  help: end that one before; two of them would answer its controller, and ask for its exchange regions, one against the other"
     )]
     GuardedAlready {
-        /// The robot.
+        /// Name of the robot.
         name: String,
     },
     /// A robot that the cell does not have.
     #[error("--robots {name}: no robot of the cell has this name\n  help: one of {}", known.join(", "))]
     Robot {
-        /// The name.
+        /// The unknown name.
         name: String,
-        /// Those that there are.
+        /// Names of the cell's robots.
         known: Vec<String>,
     },
     /// Pictures for what is no sensor, or cannot be sent.

@@ -1,4 +1,4 @@
-//! What a process of a live cell does.
+//! Options of a process of a live cell.
 
 use std::path::PathBuf;
 
@@ -10,39 +10,39 @@ use crate::event_handler::EventHandler;
 use crate::ros2::Ros2Settings;
 use crate::sensors::FrameSource;
 
-/// The address of a service without another one.
+/// Default address of a service.
 pub const DEFAULT_ADDRESS: &str = "127.0.0.1:7447";
 
-/// What a process of a live cell does.
+/// Options of a process of a live cell.
 #[derive(Clone, Default)]
 pub struct ServiceOptions {
-    /// The robots that it guards; empty: all, or none where it is only the arbiter.
+    /// The robots that the process guards; empty for all robots, or for none if `arbiter` is set.
     pub robots: Vec<String>,
-    /// Accepts connections here.
+    /// Address at which the process accepts connections.
     pub listen: Option<String>,
-    /// Connects here.
+    /// Address to which the process connects.
     pub connect: Option<String>,
-    /// Hears only those who have this key; all processes of the cell need the same.
+    /// Key of the cell's network: only processes with the same key are accepted.
     pub network_key: Option<NetworkKey>,
-    /// Takes controllers by UDP datagrams at this address, too. They are heard without the key.
+    /// Address for controllers that send UDP datagrams. Datagrams are accepted without the key.
     pub udp: Option<String>,
-    /// Grants exchange regions, and keeps which regions are switched on.
+    /// Grants exchange regions, and keeps which regions are on.
     pub arbiter: bool,
-    /// Where it keeps which regions there are and which are on, so that they are the same when it starts again
+    /// File that keeps which regions exist and which are on, to restore them at the next start
     /// ([`region_journal_of`](crate::region_journal_of)). Without it all temporary regions are on at a start.
     pub journal: Option<PathBuf>,
     /// Runs the programs of the cell file in place of the controllers.
     pub simulate: bool,
     /// Sensors whose pictures do not come from the folder of the cell file, and where they come from instead.
     pub frames: Vec<(String, FrameSource)>,
-    /// Shows the cell in a browser there.
+    /// Endpoint at which the cell is shown in a browser.
     pub web: Option<Endpoint>,
     /// Records everything that this process guards into this file.
     pub record: Option<PathBuf>,
-    /// Serves the control interface; only beside the arbiter.
+    /// Serves the control interface; requires the arbiter in the same process.
     pub control: Option<ControlOptions>,
-    /// What it has to do with ROS 2.
+    /// Settings of the ROS 2 connection.
     pub ros2: Ros2Settings,
-    /// Called with every event of the arbiter and the control interface of this process, in words.
+    /// Called with the text of every event of this process.
     pub on_event: Option<EventHandler>,
 }

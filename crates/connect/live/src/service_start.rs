@@ -1,4 +1,4 @@
-//! The parts of a process of a live cell, in the order in which they start.
+//! Parts of a process of a live cell, in the order in which they start.
 
 use std::sync::{Arc, mpsc};
 use std::time::Duration;
@@ -34,19 +34,19 @@ use crate::service_error::ServiceError;
 use crate::service_options::{DEFAULT_ADDRESS, ServiceOptions};
 use crate::simulated_controllers::SimulatedControllers;
 
-/// After this time it is said that nobody answers.
+/// Time after which a missing answer of the other process is reported.
 const NOBODY: Duration = Duration::from_secs(2);
 
-/// What all parts share.
+/// Data that all parts share.
 pub(crate) struct ServiceStart<'o> {
     options: &'o ServiceOptions,
     cell: Arc<Cell>,
     versions: Arc<CellVersions>,
-    /// Those that this process guards.
+    /// The robots that this process guards.
     robots: Vec<RobotId>,
     pub(crate) zenoh: Arc<ZenohNetwork>,
     shared: Arc<dyn Network>,
-    /// With UDP datagrams, where there is an address for them.
+    /// Network of the controllers: includes UDP datagrams if an address is given for them.
     of_controllers: Arc<dyn Network>,
     clock: Clock,
 }
@@ -54,7 +54,7 @@ pub(crate) struct ServiceStart<'o> {
 impl<'o> ServiceStart<'o> {
     /// Opens the networks.
     pub(crate) fn new(cell: Cell, options: &'o ServiceOptions) -> Result<Self, ServiceError> {
-        // A cell without a file has no other regions.
+        // A cell that was not read from a file cannot have edited regions.
         let edited = EditedRegions::read(&cell).ok();
         let cell = Arc::new(stopping_in_time(cell));
         let versions = Arc::new(CellVersions::new(&cell, edited, stopping_in_time));
@@ -70,7 +70,7 @@ impl<'o> ServiceStart<'o> {
         Ok(Self { options, cell, versions, robots, zenoh, shared, of_controllers, clock: Clock::start() })
     }
 
-    /// True if this process keeps the regions: as the arbiter, or as the only process.
+    /// Whether this process keeps the regions: as the arbiter, or as the only process.
     fn keeps_regions(&self) -> bool {
         self.options.arbiter || self.options.robots.is_empty()
     }
@@ -80,7 +80,7 @@ impl<'o> ServiceStart<'o> {
             return Ok(None);
         }
         let programs = program_switches(self.options);
-        // Of regions that nobody can switch or edit there is nothing to remember, and no file to lock.
+        // If nobody can switch or edit regions, there is nothing to keep, and no file to lock.
         let can_change =
             self.options.control.is_some() || self.cell.regions.iter().any(|r| r.region.life == Life::Temporary);
         let journal = self.options.journal.as_deref().filter(|journal| can_change || journal.exists());
@@ -121,7 +121,7 @@ impl<'o> ServiceStart<'o> {
     pub(crate) fn recorder(&self) -> Result<Option<Recorder>, ServiceError> {
         let Some(file) = &self.options.record else { return Ok(None) };
         if file.exists() {
-            // What a cell has done is not seen a second time.
+            // Never overwrite a recording: it cannot be repeated.
             return Err(BagError::Exists(file.clone()).into());
         }
         let on_event = self.options.on_event.clone();
@@ -135,16 +135,16 @@ impl<'o> ServiceStart<'o> {
         Ok(Some(Recorder::start(CellWriter::create(file, &self.cell, boot_number())?, on_error)?))
     }
 
-    /// The robots of this process are its own until its nodes say so themselves.
+    /// Claims the robots of this process until its nodes run.
     ///
     /// # Errors
-    /// Another process guards one of them.
+    /// [`ServiceError::GuardedAlready`] if another process guards one of them.
     pub(crate) fn claims(&self) -> Result<RobotClaims, ServiceError> {
         let names: Vec<&str> = self.robots.iter().map(|robot| &self.cell.robots[robot.0].name[..]).collect();
         RobotClaims::new(&self.shared, &Keys::new(&self.cell.name), &names, boot_number())
     }
 
-    /// Starts the nodes, where nobody else has claimed their robots meanwhile.
+    /// Starts the nodes, unless another process has claimed their robots in the meantime.
     pub(crate) fn nodes(
         &self,
         recorder: Option<&Recorder>,
@@ -176,7 +176,7 @@ impl<'o> ServiceStart<'o> {
         Ok(Participant::start(&self.cell, settings, &self.robots, &self.shared, self.clock, on_event)?)
     }
 
-    /// In place of the controllers, but for those that speak ROS 2.
+    /// Starts simulated controllers for all robots of this process, except for robots whose controllers use ROS 2.
     pub(crate) fn simulated_controllers(&self) -> Result<Option<SimulatedControllers>, ServiceError> {
         if !self.options.simulate {
             return Ok(None);
@@ -188,20 +188,20 @@ impl<'o> ServiceStart<'o> {
         Ok(Some(SimulatedControllers::start(&self.cell, &robots, frames, &self.shared, (self.clock, on_event))?))
     }
 
-    /// Who else of the cell comes and goes.
+    /// Starts the report of other processes that come and go.
     pub(crate) fn peers(&self) -> Result<PeerWatch, NetworkError> {
         let on_event = self.options.on_event.clone();
         PeerWatch::start(&self.cell, &self.robots, self.keeps_regions(), &self.zenoh, on_event)
     }
 
-    /// The page in a browser, and what feeds it.
+    /// Starts the page in a browser; returns it with its feed.
     pub(crate) fn web(&self) -> Result<Option<(Server, StatusFeed)>, ServiceError> {
         let Some(endpoint) = &self.options.web else { return Ok(None) };
         let feed = StatusFeed::new();
         Ok(Some((Server::watch(&self.cell, &feed, ServerSettings::new(endpoint.clone()))?, feed)))
     }
 
-    /// What sees the whole cell, where anybody wants to know.
+    /// Starts the observer of the whole cell, if the page, a recorder or ROS 2 needs it.
     pub(crate) fn observer(
         &self,
         page: Option<StatusFeed>,
@@ -215,7 +215,7 @@ impl<'o> ServiceStart<'o> {
     }
 }
 
-/// What all processes of the cell share: where there is a key, for those only who have it.
+/// Returns the network that all processes of the cell share; with a key, only processes that have the key.
 fn shared_network(
     zenoh: &Arc<ZenohNetwork>,
     cell: &Cell,
@@ -226,7 +226,7 @@ fn shared_network(
     Ok(Arc::new(AuthenticatedNetwork::new(zenoh.clone(), key, &prefix, on_event)?))
 }
 
-/// Opens a network, and says after a while that nobody answers.
+/// Opens a network, and reports after [`NOBODY`] that the other process does not answer.
 fn patiently<T>(settings: &ZenohSettings, on_event: Option<&EventHandler>, open: impl FnOnce() -> T) -> T {
     let (Some(address), Some(on_event)) = (settings.connect.clone(), on_event.cloned()) else { return open() };
     let (opened, is_open) = mpsc::channel::<()>();
@@ -243,7 +243,7 @@ fn patiently<T>(settings: &ZenohSettings, on_event: Option<&EventHandler>, open:
     result
 }
 
-/// With tokens nobody switches without one, unless that is allowed.
+/// Programs may switch regions if there is no control interface with tokens, or if that is allowed.
 fn program_switches(options: &ServiceOptions) -> ProgramSwitches {
     match &options.control {
         Some(control) if !control.program_switches => ProgramSwitches::Ignored(options.on_event.clone()),
@@ -251,14 +251,14 @@ fn program_switches(options: &ServiceOptions) -> ProgramSwitches {
     }
 }
 
-/// The network of the controllers: with UDP datagrams, where there is an address for them.
+/// Returns the network of the controllers: with UDP datagrams if an address is given for them.
 fn with_udp(zenoh: &Arc<dyn Network>, address: Option<&str>) -> Result<Arc<dyn Network>, NetworkError> {
     let Some(address) = address else { return Ok(zenoh.clone()) };
     Ok(Arc::new(JoinedNetworks::new(vec![zenoh.clone(), Arc::new(UdpNetwork::bind(address, &[])?)])))
 }
 
-/// The cell as a service guards it. A controller goes on for `stale_ms` after the last override that it has heard, so that
-/// stopping distances assume this much more; and regions that controllers exchange need stopping distances.
+/// Adapts the cell to a service. A controller continues for `stale_ms` after the last override that it received, so
+/// stopping distances assume that much more reaction time; cells with exchange regions always use stopping distances.
 fn stopping_in_time(mut cell: Cell) -> Cell {
     let has_exchange = cell.regions.iter().any(|r| matches!(r.region.kind, RegionKind::Exchange { .. }));
     let laws = &mut cell.laws;

@@ -1,38 +1,38 @@
-//! Says which robots the arbiter does not hear, and when it did not run itself: why grants pause.
+//! Reports robots that are silent, and pauses of the arbiter itself: reasons why grants pause.
 
 use elbowroom_interlock::Micros;
 use elbowroom_monitor::RobotSlot;
 
-/// Whoever is not heard for this long is named.
+/// Time without a message after which a robot is reported as silent.
 const SILENT: Micros = Micros(1_000_000);
-/// Whoever looks this late was held up.
+/// Interval between looks above which the arbiter itself was held up.
 const HELD_UP: Micros = Micros(300_000);
-/// Whoever was never heard is named later: the processes of a cell start one after another.
+/// Like [`SILENT`], for a robot without any message yet: longer, as the processes of a cell start one after another.
 const NEVER_HEARD: Micros = Micros(5_000_000);
 
-/// When each robot that can be in an exchange region was heard last, and who was named.
+/// Time of the last message of each robot that can be in an exchange region, and which robots were reported.
 pub(crate) struct SilenceWatch {
-    /// Per robot of the cell; `None` for one that no region waits for.
+    /// Per robot of the cell; `None` for a robot without exchange regions.
     robots: Vec<Option<Heard>>,
     looked: Micros,
 }
 
 struct Heard {
     name: String,
-    /// The last message; before the first, the start of this watch.
+    /// Time of the last message; before the first, the start of this watch.
     at: Micros,
     has_spoken: bool,
     is_named: bool,
 }
 
 impl SilenceWatch {
-    /// Nobody was heard yet. Robots without exchange regions have no name here: their guards have nothing to say to an arbiter.
+    /// Starts the watch. `names` has `None` for robots without exchange regions: their guards send nothing to an arbiter.
     pub(crate) fn new(names: impl Iterator<Item = Option<String>>, now: Micros) -> Self {
         let heard = |name: String| Heard { name, at: now, has_spoken: false, is_named: false };
         Self { robots: names.map(|name| name.map(heard)).collect(), looked: now }
     }
 
-    /// A message of a robot has come; says so where it was named as silent.
+    /// Records a message of a robot; returns a report if the robot was reported as silent.
     pub(crate) fn heard(&mut self, robot: RobotSlot, now: Micros) -> Option<String> {
         let robot = self.robots.get_mut(robot.0)?.as_mut()?;
         let silence = now - std::mem::replace(&mut robot.at, now);
@@ -41,19 +41,19 @@ impl SilenceWatch {
         was_named.then(|| format!("robot {}: heard {again}after {:.1} s", robot.name, seconds(silence)))
     }
 
-    /// Somebody has seen a silent robot at rest outside of all regions: they are granted without it.
+    /// Records that a silent robot was cleared: regions are granted without it, so its silence is not reported.
     pub(crate) fn cleared(&mut self, robot: RobotSlot) {
         if let Some(Some(robot)) = self.robots.get_mut(robot.0) {
             robot.is_named = true;
         }
     }
 
-    /// What is to be said now. It is asked several times a second.
+    /// Returns the present reports. To be called several times a second.
     pub(crate) fn look(&mut self, now: Micros) -> Vec<String> {
         let gap = now - std::mem::replace(&mut self.looked, now);
         let robots = self.robots.iter_mut().flatten();
         if gap >= HELD_UP {
-            // What was sent meanwhile waits to be read: nobody has been silent because of that.
+            // Messages sent during the gap still wait to be read: that is not silence of the robots.
             robots.filter(|robot| !robot.is_named).for_each(|robot| robot.at = now);
             let line = || format!("the arbiter did not run for {:.1} s, and granted nothing meanwhile", seconds(gap));
             return (gap >= SILENT).then(line).into_iter().collect();
@@ -88,7 +88,7 @@ mod tests {
 
     const TICK: u64 = 100_000;
 
-    /// Looks every 0.1 s, and hears the robots of `speaks`; the lines with their times, s.
+    /// Looks every 0.1 s, with messages of the robots in `speaks`; returns the lines with their ticks of 0.1 s.
     fn told(seconds: u64, speaks: impl Fn(usize, u64) -> bool, runs: impl Fn(u64) -> bool) -> Vec<(u64, String)> {
         let names = [Some("left"), Some("right"), None].map(|name| name.map(str::to_owned));
         let (mut watch, mut lines) = (SilenceWatch::new(names.into_iter(), Micros(0)), Vec::new());

@@ -1,4 +1,4 @@
-//! Stands in for the controllers of robots: runs the programs of the cell file under the overrides that arrive.
+//! Simulated controllers: run the programs of the cell file under the overrides that arrive.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, SyncSender};
@@ -23,10 +23,10 @@ use crate::sensors::{FrameSource, GuardedProgram, GuardedPrograms, SensorGuards}
 use crate::service_error::ServiceError;
 use crate::switch_requests::SwitchRequests;
 
-/// A thread that was late by more than this many ticks does not catch up: its robots have stood still meanwhile.
+/// A thread that is late by more than this many ticks does not catch up: its robots have paused in the meantime.
 const MOST_LATE_TICKS: u32 = 5;
 
-/// Controllers of robots that are not there. They end when they are dropped.
+/// Controllers of simulated robots. They end when they are dropped.
 pub struct SimulatedControllers {
     is_closed: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
@@ -89,15 +89,15 @@ fn run(start: &Start, robots: &[RobotId], started: &SyncSender<Result<(), Servic
     let (mut controllers, _sensors) = match controllers(start, robots) {
         Ok(controllers) => controllers,
         Err(error) => {
-            // Nobody waits for an error after the service was dropped.
+            // The service may have been dropped; then the error has no receiver.
             let _ = started.send(Err(error));
             return;
         }
     };
     let _ = started.send(Ok(()));
     let period = Duration::from_secs_f64(cell.tick_s);
-    // The joints of a simulated robot are those of the nominal time of its tick, however late the thread is. That time is the clock's,
-    // which goes on while the computer sleeps.
+    // The joint values of a simulated robot are those at the nominal time of its tick, however late the thread is. The
+    // nominal time is the clock's, which continues while the computer sleeps.
     let period_us = period.as_micros() as u64;
     let mut due = clock.micros();
     while !is_closed.load(Ordering::SeqCst) {
@@ -133,7 +133,7 @@ fn controllers(
 struct SimulatedController {
     name: String,
     program: Arc<Mutex<GuardedProgram>>,
-    /// The program once more, from its end.
+    /// The program for its repetitions, starting at its end.
     again: Option<ProgramPlan>,
     tick_s: f64,
     /// Time until a command takes effect, s.
@@ -162,7 +162,7 @@ impl SimulatedController {
         let answers = {
             let client = client.clone();
             let handler = Box::new(move |bytes: &[u8]| {
-                // An answer that is refused is of another start, or late: the watchdog sees to it.
+                // A refused answer is of another start, or late: the watchdog handles that.
                 let _ = locked(&client).receive(bytes);
             });
             network.subscribe(&keys.speed_override(&at.name), handler)?
@@ -184,7 +184,7 @@ impl SimulatedController {
         })
     }
 
-    /// Moves on by a tick under the override that counts now, and tells the node where the robot is.
+    /// Advances by a tick under the present override, and sends the joint state to the node.
     fn tick(&mut self, nominal: Micros, clock: Clock) {
         let now = clock.micros();
         let speed_override = locked(&self.client).speed_override(now);
@@ -226,8 +226,8 @@ fn locked<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
     shared.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The program once more, from where it ends: the steps of a second pass. `None` for a robot without one, or where a third pass
-/// would not begin where the second one did.
+/// Plans the repetition of a program, from its end: the steps of a second pass. `None` for a robot without a program,
+/// or if a third pass would not begin where the second one began.
 fn repetition(paths: &PlannedPaths<'_>, robot: RobotId, once: &ProgramPlan) -> Option<ProgramPlan> {
     let twice = plan(paths, robot, 2, &mut Vec::new()).ok()?;
     let steps = twice.steps.get(once.steps.len()..).filter(|steps| !steps.is_empty())?;

@@ -1,4 +1,4 @@
-//! What a simulated program wants to be switched on and off, until it is.
+//! Requests of a simulated program to switch regions, repeated until they are obeyed.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -12,13 +12,15 @@ use crate::network::{Network, NetworkError, Publisher, Subscription, Urgency};
 use crate::region_keeper::SwitchRequest;
 use crate::regions_table::RegionTableMessage;
 
-/// A request is repeated this often until the table of regions shows that it was obeyed.
+/// Interval at which a request is repeated until the table of regions shows that it was obeyed.
 const REPEATED: Duration = Duration::from_millis(250);
 
-/// The requests of one program. As a message may be lost, and the process that keeps the regions may be starting, each is repeated.
+/// The requests of one program.
 ///
-/// A program begins with the temporary regions that it switches off, as in `run`: where several programs switch a region, the first
-/// one in the cell file asks for that.
+/// Each is repeated, as a message may be lost, and the process that keeps the regions may still be starting.
+///
+/// As in `run`, a program begins with the temporary regions off that it switches; if several programs switch a region, the
+/// first one in the cell file requests that.
 pub(crate) struct SwitchRequests {
     robot: String,
     cell: Arc<Cell>,
@@ -83,13 +85,13 @@ impl SwitchRequests {
         })
     }
 
-    /// The program switches a region.
+    /// Requests that a region is switched on or off.
     pub(crate) fn want(&mut self, region: CellRegionId, active: bool) {
         self.wanted.insert(self.cell.regions[region.0].region.name.clone(), active);
         self.sent = None;
     }
 
-    /// Sends what is not obeyed yet.
+    /// Sends the requests that are not obeyed yet.
     pub(crate) fn send(&mut self) {
         if self.wanted.is_empty() {
             return;

@@ -1,4 +1,4 @@
-//! The tick of a node, what it takes in and its controller's client do not allocate. Without the test harness, because the
+//! The tick of a node, its input and its controller's client do not allocate. Without the test harness, because the
 //! counter includes all threads of the process.
 
 use std::collections::BTreeSet;
@@ -22,10 +22,10 @@ static ALLOCATOR: CountingAllocator = COUNTING_ALLOCATOR;
 
 const TICK_US: u64 = 2_000;
 const TICKS: u64 = 20_000;
-/// The first swings are not counted.
+/// Number of the first ticks, which are not counted.
 const WARM_UP: u64 = 4_000;
 
-/// An arm with two tools and a part swings past a post, through a region that robots exchange, through one that is switched,
+/// An arm with two tools and a part swings past a post, through an exchange region, through a region that is switched,
 /// and past one that follows a carriage.
 const CELL: &str = r#"
 version = 1
@@ -98,12 +98,12 @@ struct Setup {
     builder: RegionBuilder,
     /// The configuration that was due last.
     present: String,
-    /// How often the node got other regions.
+    /// Number of times that the node got other regions.
     built: usize,
     client: ControllerClient,
     carriage: ControllerClient,
     arbiter: Arbiter,
-    /// What the arm carries in turn: nothing named, tools, a part, and a volume that there is not.
+    /// Attached volumes of the arm, in turn: none named, tools, a part, and an unknown volume.
     carried: Vec<Vec<AttachedVolume>>,
 }
 
@@ -147,7 +147,7 @@ fn carried(setup: &MonitorSetup, robot: &CellRobot) -> Vec<Vec<AttachedVolume>> 
     vec![Vec::new(), gripper.clone(), torch, [gripper, vec![part]].concat(), vec![nowhere], Vec::new()]
 }
 
-/// What was seen.
+/// Observations.
 #[derive(Default)]
 struct Seen {
     allocations: usize,
@@ -194,7 +194,7 @@ fn main() {
     for n in 0..TICKS {
         let now = Micros(1 + n * TICK_US);
         if n % 25 == 0 {
-            // On the node's other thread: reading it allocates.
+            // Done by the node's other thread: reading the table allocates.
             hear_regions(&mut s, n, now);
         }
         let counter = AllocationCounter::start();
@@ -205,9 +205,9 @@ fn main() {
         }
         if let Some(answer) = s.node.take_answer() {
             answer.encode(&mut answer_bytes);
-            // Answers to what a silent controller sent before are late.
+            // Answers to earlier messages of a silent controller are late.
             let _ = s.client.receive(&answer_bytes);
-            // Damaged.
+            // A damaged answer.
             answer_bytes[9] ^= 4;
             assert!(s.client.receive(&answer_bytes).is_err());
         }
@@ -233,7 +233,8 @@ fn main() {
     assert_eq!(seen.allocations, 0);
 }
 
-/// The gate is switched, and in turn at its place, elsewhere with one more region beside it, and not there at all.
+/// Publishes tables: the gate is switched, and is in turn at its place, elsewhere with one more region beside it, and
+/// removed.
 fn hear_regions(s: &mut Setup, n: u64, now: Micros) {
     let edited = s.versions.edited().expect("a file");
     let edit = |name: &str, table: Option<String>| RegionEdit { name: name.into(), table };
@@ -254,7 +255,7 @@ fn hear_regions(s: &mut Setup, n: u64, now: Micros) {
     if let Some(gate) = cell.regions.iter().position(|r| r.region.name == "gate") {
         table.active[gate] = n % 4_000 < 2_000;
     }
-    // Not yet due at first, so that the tick goes on with the regions before.
+    // Not due at first, so that the tick continues with the former regions.
     if n % 1_500 <= 100 {
         table.former.clone_from(&s.present);
     } else {
@@ -266,14 +267,14 @@ fn hear_regions(s: &mut Setup, n: u64, now: Micros) {
     }
 }
 
-/// The arm swings, the carriage moves to and fro; every second both are silent for 40 ms.
+/// Sends joint states: the arm swings, the carriage moves back and forth; every second both are silent for 40 ms.
 fn send_joint_states(s: &mut Setup, n: u64, now: Micros, sent: &mut Vec<u8>) {
     if n % 500 < 20 && n > 500 {
         return;
     }
     let t = n as f64 * TICK_US as f64 * 1e-6;
     let (swing, speed) = ((1.5 * t).sin(), 1.5 * (1.5 * t).cos());
-    // Not a number for a tick, now and then.
+    // From time to time NaN for one tick.
     let first = if n % 500 == 400 { f64::NAN } else { swing };
     let state = ControllerState {
         q: &[first, 0.1 * swing, 0.0],
@@ -296,7 +297,7 @@ fn send_joint_states(s: &mut Setup, n: u64, now: Micros, sent: &mut Vec<u8>) {
     s.node.followed_joint_state(RobotId(1), bytes, now);
 }
 
-/// Messages that must not count: replayed, damaged, cut, without contents.
+/// Sends messages that must be refused: replayed, damaged, truncated, empty.
 fn send_hostile(node: &NodeTick, n: u64, now: Micros, sent: &[u8], old: &mut Vec<u8>, random: &mut u64) {
     match n % 7 {
         0 => {
@@ -316,8 +317,8 @@ fn send_hostile(node: &NodeTick, n: u64, now: Micros, sent: &[u8], old: &mut Vec
     }
 }
 
-/// Passes a message to the arbiter, which allocates and is not part of the node, and its answer to the node. Returns what the node
-/// allocated.
+/// Passes a message to the arbiter, which allocates and is not part of the node, and its answer to the node. Returns
+/// the number of allocations of the node.
 fn answer_interlock(s: &mut Setup, bytes: &[u8], now: Micros) -> usize {
     let mut message = StateMessage::with_slots(1);
     decode_state(bytes, &mut message).expect("a state");

@@ -1,4 +1,4 @@
-//! Strangers on the network of a cell: without its key they are not heard, with their own words or with recorded ones.
+//! Strangers on the network of a cell: without its key neither their own messages nor recorded ones are accepted.
 
 use std::sync::{Arc, Mutex};
 
@@ -20,12 +20,12 @@ use crate::common::control_setup::{ControlSetup, rails};
 const CELL: &str = concat!(rails!("900", "450, 0, 1900"), "[monitor]\nstale_ms = 200\n");
 const PREFIX: &str = "elbowroom/cell";
 const KEYS: [&str; 2] = ["elbowroom/cell/a/joint_states", "elbowroom/cell/regions"];
-/// All that a stranger hears.
+/// Keys of all messages that a stranger receives.
 const CABLE: [&str; 4] = [KEYS[0], KEYS[1], "elbowroom/cell/proof/question", "elbowroom/cell/proof/answer"];
 
 type Log = Arc<Mutex<Vec<Vec<u8>>>>;
 
-/// Keeps all that is published under a key.
+/// Records all messages of a key.
 fn log(network: &dyn Network, key: &str) -> (Log, Subscription) {
     let log = Log::default();
     let entries = log.clone();
@@ -39,9 +39,9 @@ struct Rig {
     key: NetworkKey,
     sender: Option<(AuthenticatedNetwork, Vec<Box<dyn Publisher>>)>,
     receiver: Option<(AuthenticatedNetwork, Vec<(Log, Subscription)>)>,
-    /// Number of the next message: no two have the same contents.
+    /// Number of the next message, so that all contents differ.
     next: u64,
-    /// Messages before this one were sent before the receiver or the sender started.
+    /// Number of the first message since the last start of receiver or sender.
     since: u64,
     state: u64,
 }
@@ -63,7 +63,7 @@ impl Rig {
         (self.sender, self.since) = (Some((network, publishers)), self.next);
     }
 
-    /// The receiver starts again, or only its subscriptions.
+    /// Starts the receiver again, or only its subscriptions.
     fn start_receiver(&mut self) {
         let network = self.receiver.take().map(|(network, _)| network).filter(|_| self.below(2) == 0);
         let network = network.unwrap_or_else(|| self.process());
@@ -85,7 +85,7 @@ impl Rig {
         self.receiver.as_ref().unwrap().1[key].0.lock().unwrap().clone()
     }
 
-    /// What a stranger can make of what is recorded.
+    /// Sends everything that a stranger can make from recorded messages.
     fn attack(&mut self, recorded: &[Log], strange: &AuthenticatedNetwork) {
         let (of, under) = (self.below(CABLE.len()), self.below(CABLE.len()));
         let recorded = recorded[of].lock().unwrap().clone();
@@ -107,7 +107,7 @@ impl Rig {
         self.cable.publisher(CABLE[under], Urgency::RealTime).unwrap().publish(&bytes);
     }
 
-    /// Nothing is heard under another key, twice, out of order, or of before a start.
+    /// Checks that no message is accepted under another key, twice, out of order, or from before a start.
     fn check(&self) {
         for key in 0..KEYS.len() {
             let heard = self.heard(key);
@@ -140,7 +140,7 @@ fn nothing_is_heard_that_a_stranger_sends_changes_moves_or_repeats() {
                 0 => rig.start_sender(),
                 1 => rig.start_receiver(),
                 2 => {
-                    // The sender has ended: its recordings are all that there is.
+                    // The sender has ended: only its recordings remain.
                     rig.sender = None;
                     rig.start_receiver();
                     (0..40).for_each(|_| rig.attack(&logs, &strange));
@@ -152,7 +152,7 @@ fn nothing_is_heard_that_a_stranger_sends_changes_moves_or_repeats() {
                     let key = rig.below(2);
                     let is_first = rig.next == rig.since;
                     let number = rig.send(key);
-                    // With its first message a process is asked to prove itself.
+                    // A process must prove itself with its first message.
                     let is_heard = rig.heard(key).last() == Some(&contents(key, number));
                     assert!(is_heard || is_first, "seed {seed}: {number} is not heard");
                 }
@@ -162,14 +162,14 @@ fn nothing_is_heard_that_a_stranger_sends_changes_moves_or_repeats() {
     }
 }
 
-/// The last status of the left robot that this process hears.
+/// Returns whether a region is active in the last received status of the left robot.
 fn active(statuses: &Log, region: &str) -> Option<bool> {
     let last = statuses.lock().unwrap().last().cloned()?;
     let status: RobotStatus = serde_json::from_slice(&last).ok()?;
     status.regions.iter().find(|r| r.name == region).map(|r| r.active)
 }
 
-/// A service in which programs may switch regions, and a connection to its network.
+/// Starts a service in which programs may switch regions, and a connection to its network.
 fn service(network_key: Option<NetworkKey>) -> (ControlSetup, Arc<ZenohNetwork>) {
     let setup = ControlSetup::new(CELL, true, ServiceOptions { network_key, ..ServiceOptions::default() });
     let connect = Some(setup.listen.clone());
@@ -177,7 +177,7 @@ fn service(network_key: Option<NetworkKey>) -> (ControlSetup, Arc<ZenohNetwork>)
     (setup, Arc::new(cable))
 }
 
-/// A controller of the left robot, which stands.
+/// Controller of the left robot, which does not move.
 struct Controller {
     client: ControllerClient,
     clock: Clock,
@@ -191,7 +191,7 @@ impl Controller {
         Self { client, clock: Clock::start(), publisher }
     }
 
-    /// Says where the robot is, and waits for 20 ms.
+    /// Sends the joint state, and waits for 20 ms.
     fn step(&mut self) {
         let state = ControllerState { q: &[0.1], qd: &[0.0], programmed_override: 1.0, ..ControllerState::default() };
         self.publisher.publish(self.client.joint_state(self.clock.micros(), &state));
@@ -207,13 +207,13 @@ fn is_on(setup: &ControlSetup) -> bool {
     setup.region("cart").unwrap()["active"] == true
 }
 
-/// Docs: `docs/security.md`, a hostile process on the cell's network.
+/// Documented in `docs/security.md`: a hostile process on the cell's network.
 #[test]
 fn a_stranger_on_the_network_switches_no_region() {
     let key = NetworkKey::generate().unwrap();
     let keys = Keys::new("rails");
     let on = SwitchRequest { robot: "left".into(), region: "cart".into(), active: true };
-    // A table that claims to be the newest: without the key it is believed by every node.
+    // A table that claims to be the newest: without the key every node accepts it.
     let newest = |setup: &ControlSetup| {
         let table = RegionTable { revision: (u64::MAX / 2, 1), ..RegionTable::initial(&setup.cell).all_on() };
         table.message(&setup.cell)
@@ -243,7 +243,7 @@ fn a_stranger_on_the_network_switches_no_region() {
         if is_open {
             continue;
         }
-        // Who has the key is heard; what was recorded of that is of no use.
+        // A process with the key is accepted; a recording of its messages is of no use.
         let (recorded, _subscription) = log(&*stranger, &keys.switch());
         eventually("a program with the key switches", || {
             publish(&*friend, &keys.switch(), &on);
@@ -260,7 +260,7 @@ fn a_stranger_on_the_network_switches_no_region() {
     }
 }
 
-/// Without a key a stranger is believed in many things; that a permanent region is off, elsewhere or gone is none of them.
+/// Without a key a stranger can forge many messages, but never switch off, move or remove a permanent region.
 #[test]
 fn a_permanent_region_stays_whatever_anybody_says() {
     let (setup, stranger) = service(None);
@@ -294,10 +294,10 @@ fn a_permanent_region_stays_whatever_anybody_says() {
     assert_eq!(setup.region("wall").unwrap()["active"], true);
 }
 
-/// The keys of a region far from all robots.
+/// Keys of a region far from all robots.
 const FAR: &str = "shape = \"sphere\"\ncentre = [0, 9000, 9000]\nradius = 100\nwarning = 100\n";
 
-/// A datagram may be of anybody: joint values come so, which regions there are does not.
+/// Anybody may send a datagram: joint values are accepted from datagrams, tables of regions are not.
 #[test]
 fn no_datagram_says_which_regions_there_are() {
     let udp = elbowroom_testkit::network::free_address();

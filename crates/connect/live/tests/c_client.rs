@@ -1,4 +1,4 @@
-//! The client in C: the same bytes and the same decisions as the client in Rust, and its example against a node.
+//! Client in C: the same bytes and the same decisions as the client in Rust, and its example against a node.
 
 use std::fmt::Write as _;
 use std::io::{BufRead, BufReader, Write};
@@ -16,7 +16,7 @@ use elbowroom_monitor::VolumeId;
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 use elbowroom_testkit::random::{split_mix, unit};
 
-/// Of `messages.c`.
+/// Boot number of `messages.c`.
 const BOOT: u64 = 7;
 const CONFIGURATION: u64 = 99;
 
@@ -83,7 +83,7 @@ impl InC {
 
 impl Drop for InC {
     fn drop(&mut self) {
-        // One that has ended cannot be killed.
+        // A process that has ended cannot be killed.
         let _ = self.process.kill();
         let _ = self.process.wait();
     }
@@ -91,12 +91,12 @@ impl Drop for InC {
 
 fn messages() -> Option<InC> {
     let source = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/c_client/messages.c");
-    // Tests run at the same time: a program of its own for each.
+    // Tests run at the same time, so each has its own program.
     let name = format!("messages_{:?}", std::thread::current().id()).replace(['(', ')'], "_");
     compile(&source, &name).map(|program| InC::start(&program))
 }
 
-/// The values that `messages.c` makes of a time, and of a number of joints and volumes.
+/// The values that `messages.c` makes from a time and from numbers of joints and volumes.
 struct Values {
     q: Vec<f64>,
     qd: Vec<f64>,
@@ -150,7 +150,7 @@ fn joint_states_have_the_same_bytes() {
         }
         JointState::default().decode(bytes).expect("what is sent can be read");
     }
-    // More than fit: nothing is sent, and no number is used up.
+    // More joints than fit: nothing is sent, and no number is used.
     assert_eq!(c.ask("S 1 1 33 0 0 0"), "");
     assert_eq!(c.ask("S 1 1 6 0 0 17"), "");
     let values = Values::new(5, 1, 0);
@@ -158,7 +158,7 @@ fn joint_states_have_the_same_bytes() {
     assert_eq!(c.ask("S 5 5 1 0 0 0"), hex(rust.joint_state(Micros(5), &state)));
 }
 
-/// The number by which `elbowroom_client.h` names a refusal.
+/// Returns the number of a refusal in `elbowroom_client.h`.
 fn code(taken: Result<(), Refused>) -> u8 {
     match taken {
         Ok(()) => 0,
@@ -170,7 +170,7 @@ fn code(taken: Result<(), Refused>) -> u8 {
     }
 }
 
-/// An answer of a node, or of nobody.
+/// Makes an answer of a node, or of a stranger.
 fn answer(sent: u64, random: &mut u64) -> Vec<u8> {
     let mut below = |n: u64| split_mix(random) % n;
     let mut answer = OverrideAnswer {
@@ -211,14 +211,14 @@ fn answers_are_taken_alike() {
     let (mut random, mut now, mut seen) = (11, 1_000, [0; 6]);
     let (mut stopped, mut sent) = (0, 0);
     for _ in 0..4_000 {
-        // Pauses after which no answer counts any more.
+        // Pauses after which no answer is valid any more.
         now += if split_mix(&mut random).is_multiple_of(40) { 25_000 } else { 2_000 };
         let values = Values::new(now, 2, 0);
         let state = ControllerState { q: &values.q, programmed_override: 0.75, ..ControllerState::default() };
         sent += 1;
         assert_eq!(c.ask(&format!("S {now} {now} 2 0 0 0")), hex(rust.joint_state(Micros(now), &state)));
         let bytes = answer(sent, &mut random);
-        // At times before the limit, at it, and behind it.
+        // At times before the limit, at it, and after it.
         let at = now + [0, 1_000, 20_000, 20_001, 14_000][split_mix(&mut random) as usize % 5];
         let taken = code(rust.receive(&bytes));
         let expected = rust.speed_override(Micros(at));
@@ -247,7 +247,7 @@ fn keys_and_datagrams_are_those_of_docs() {
     assert_eq!(c.ask(&format!("D a/c {}", hex(&framed(2, 1)))), "-");
 }
 
-/// The override and the position of a line that the example prints.
+/// Parses the override and the position from a line of the example's output.
 fn printed(line: &str) -> Option<(f64, f64)> {
     let (_, rest) = line.split_once("override ")?;
     let (speed_override, rest) = rest.split_once(',')?;
@@ -260,7 +260,7 @@ fn the_example_obeys_its_node_and_stops_without_one() {
     let Some(program) = compile(&clients().join("example.c"), "example") else { return };
     let network = Arc::new(UdpNetwork::bind("127.0.0.1:0", &[]).expect("a socket"));
     let address = network.local_address().expect("its address");
-    // What the example sends, which a client in Rust must write alike.
+    // Messages of the example; a client in Rust must write the same bytes.
     let heard: Arc<Mutex<Vec<Vec<u8>>>> = Arc::default();
     let taken = heard.clone();
     let handler = Box::new(move |bytes: &[u8]| taken.lock().unwrap().push(bytes.to_vec()));
@@ -294,7 +294,7 @@ fn the_example_obeys_its_node_and_stops_without_one() {
     same_bytes_in_rust(&heard.lock().unwrap());
 }
 
-/// Writes the messages of the example again, in Rust.
+/// Writes the messages of the example in Rust and compares them.
 fn same_bytes_in_rust(messages: &[Vec<u8>]) {
     assert!(messages.len() > 50, "only {} messages arrived", messages.len());
     let (mut state, mut again) = (JointState::default(), Vec::new());

@@ -1,4 +1,4 @@
-//! The control interface of a service under right, wrong and hostile requests.
+//! Control interface of a service under correct, wrong and hostile requests.
 
 use std::collections::VecDeque;
 use std::io::Write as _;
@@ -23,7 +23,7 @@ use elbowroom_testkit::network::eventually;
 use elbowroom_view::http::Endpoint;
 use serde_json::{Value, json};
 
-/// Two rails side by side, with a region that both enter, one that is switched, and one that is always there.
+/// Two rails side by side, with a region that both enter, one that is switched, and a permanent one.
 const CELL: &str = rails!("300", "150, 0, 1000");
 
 /// The whole cell, with the switches that the test makes.
@@ -59,7 +59,7 @@ impl Setup {
         self.change(class, "/switch", &json!({ "region": region, "active": active }))
     }
 
-    /// The service is as it should be: a right request is obeyed.
+    /// Checks that the service works: a correct request is obeyed.
     fn assert_alive(&self) {
         let on = self.is_on("cart");
         let (status, document) = self.switch(PROGRAMMER, "cart", !on);
@@ -68,7 +68,7 @@ impl Setup {
     }
 }
 
-/// A controller that says where its robot stands.
+/// A controller that reports where its robot is.
 struct Controller {
     client: ControllerClient,
     clock: Clock,
@@ -95,7 +95,7 @@ fn roles_decide_who_may_switch() {
     let (status, document) = setup.switch(OPERATOR, "cart", true);
     assert_eq!(status, 403);
     assert!(document["error"].as_str().unwrap().contains("takes the programmer class, and \"operator\" is operator"));
-    // A permanent region is nobody's to switch; the role counts first.
+    // Nobody may switch a permanent region; the role is checked first.
     assert_eq!(setup.switch(OPERATOR, "wall", false).0, 403);
     assert_eq!(setup.switch(PROGRAMMER, "wall", false).0, 409);
     let (status, document) = setup.switch(INTEGRATOR, "wall", false);
@@ -142,7 +142,7 @@ fn nobody_without_a_token_sees_or_changes_anything() {
             assert_eq!(setup.request("POST", path, &headers, &body.to_string()).0, 401, "{path} {headers}");
         }
     }
-    // A secret in the address is not a token: addresses end up in logs.
+    // A secret in the address is not accepted: addresses are written to logs.
     assert_eq!(setup.request("GET", &format!("/regions?token={secret}"), "", "").0, 401);
     assert!(!setup.is_on("cart"));
     assert_eq!(setup.revision(), revision, "nothing was logged");
@@ -159,7 +159,7 @@ fn pages_of_others_and_other_hosts_are_refused() {
         assert_eq!(setup.request("POST", "/switch", &headers, &body).0, 403, "{origin}");
         assert_eq!(setup.request("GET", "/regions", &headers, "").0, 403, "{origin}");
     }
-    // A browser that asks whether it may gets no permission.
+    // A browser that asks for permission in advance gets none.
     let asks = "Origin: http://evil.example\r\nAccess-Control-Request-Method: POST\r\n\
                 Access-Control-Request-Headers: authorization\r\n";
     let preflight = format!("OPTIONS /switch HTTP/1.1\r\nHost: {}\r\n{asks}\r\n", setup.address);
@@ -221,7 +221,7 @@ fn paths_bodies_and_documents_that_are_wrong_are_refused() {
     let note = json!({ "region": "cart", "active": true, "note": "x".repeat(501) }).to_string();
     assert_eq!(setup.request("POST", "/switch", &json, &note).0, 422);
     let large = format!("{{\"region\":\"{}\",\"active\":true}}", "x".repeat(4 << 20));
-    // A client that goes on writing may not read the answer.
+    // A client that continues to write may not read the answer.
     assert!(matches!(setup.request("POST", "/switch", &json, &large).0, 413 | 0));
     let host = setup.address;
     let claims = format!("POST /switch HTTP/1.1\r\nHost: {host}\r\n{json}Content-Length: 99999999999999\r\n\r\n{{}}");
@@ -243,7 +243,7 @@ fn a_request_that_is_sent_again_has_no_effect() {
     assert_eq!(status, 200);
     assert_ne!(done["revision"], json!(before));
     assert_eq!(setup.switch(PROGRAMMER, "cart", false).0, 200);
-    // Somebody has recorded the first request, and sends it again; or was slower than somebody else.
+    // The first request is recorded and sent again, or another request was faster.
     let (status, document) = setup.change_at(PROGRAMMER, "/switch", &before, &on);
     assert_eq!(status, 412);
     assert!(document["error"].as_str().unwrap().contains(&setup.revision()));
@@ -284,7 +284,7 @@ fn every_change_is_in_the_log_and_follows_the_one_before() {
     assert_eq!(done["entry"], serde_json::to_value(&entries[1]).unwrap());
     let written = std::fs::read_to_string(setup.log()).unwrap();
     assert!(setup.secrets.iter().all(|secret| !written.contains(secret)));
-    // One service at a time writes it; the next one goes on where it ended.
+    // One service at a time writes the log; the next one continues where it ended.
     drop(setup.0.service.take());
     std::fs::write(setup.log(), written.replacen("cart arrives", "cart departs", 1)).unwrap();
     assert!(control_history(&setup.log()).unwrap_err().to_string().contains("was modified"));
@@ -333,7 +333,7 @@ fn a_region_is_not_switched_on_around_a_robot() {
             right.say(0.0, 0.0);
             setup.regions()["robots"].as_array().unwrap().iter().all(|r| r["heard"] == true)
         });
-        // Until these joint values are the last that have arrived.
+        // Repeated until these joint values are the last ones received.
         for _ in 0..5 {
             left.say(q, qd);
             right.say(0.0, 0.0);
@@ -348,7 +348,7 @@ fn a_region_is_not_switched_on_around_a_robot() {
         "{document}"
     );
     assert!(!setup.is_on("cart"));
-    // 250 mm away, at 1 m/s: it cannot stop outside any more.
+    // 250 mm away, at 1 m/s: the robot cannot stop outside any more.
     let (status, document) = switched(&mut left, &mut right, 1.3, 1.0);
     let distance_m = document["distance_m"].as_f64().unwrap_or(0.0);
     assert!(status == 409 && (distance_m - 0.25).abs() < 1e-6, "{status} {document}");
@@ -359,7 +359,7 @@ fn a_region_is_not_switched_on_around_a_robot() {
     assert_eq!((status, &document["not_heard"]), (200, &json!([])), "{document}");
     assert!(setup.is_on("cart"));
     assert_eq!(setup.switch(PROGRAMMER, "cart", false).0, 200);
-    // A robot of which nothing is heard: the region is switched on, which protects, and the answer names the robots.
+    // Robots that are not heard: the region is switched on, which protects, and the answer names them.
     eventually("the robots are still heard", || {
         setup.regions()["robots"].as_array().unwrap().iter().all(|r| r["heard"] == false)
     });
@@ -367,7 +367,7 @@ fn a_region_is_not_switched_on_around_a_robot() {
     assert_eq!((status, &document["not_heard"]), (200, &json!(["left", "right"])));
 }
 
-/// The guard of a robot, as its node has it: it says where the robot is, and hears what it is granted.
+/// The guard of a robot, as its node has it: it reports where the robot is, and receives its grants.
 struct SpokenFor {
     guard: Arc<Mutex<Guard>>,
     clock: Clock,
@@ -432,12 +432,12 @@ fn a_robot_is_cleared_by_name_by_an_integrator_and_only_in_silence() {
         let (status, document) = setup.change(INTEGRATOR, "/clear", &wrong);
         assert_eq!(status, expected, "{wrong}: {document}");
     }
-    // It still speaks.
+    // The robot still reports.
     left.say(Occupancy::Inside);
     let (status, document) = setup.change(INTEGRATOR, "/clear", &right_request);
     assert!(status == 409 && document["wait_s"].as_f64().unwrap() > 0.1, "{document}");
     assert_eq!(setup.changes(), [], "what was refused is no change");
-    // It is silent from here on; right goes on waiting, and gets the region only after the clear.
+    // The left robot is silent from now on; the right one keeps waiting, and gets the region only after the clearing.
     let silent = Instant::now();
     let mut refused = 0;
     eventually("it cannot be cleared", || {
@@ -459,7 +459,7 @@ fn a_robot_is_cleared_by_name_by_an_integrator_and_only_in_silence() {
         (1, "clear robot.left", "integrator")
     );
     assert!(entries[0].changes.iter().any(|c| c.item == "robot.left" && c.field == "cleared of region.pallet"));
-    // A request that is sent again after that is of another revision.
+    // A repeated request now has an outdated revision.
     assert_eq!(setup.change_at(INTEGRATOR, "/clear", &"0".repeat(16), &right_request).0, 412);
     setup.assert_alive();
 }
@@ -477,7 +477,7 @@ fn hanging_connections_keep_nobody_out() {
         for k in 0..WAVE {
             let Ok(mut stream) = TcpStream::connect(address) else { continue };
             let sent = match k % 3 {
-                // Nothing, half a head, and a head whose body never comes.
+                // Nothing, half a head, and a head without its body.
                 0 => String::new(),
                 1 => format!("GET /regions HTTP/1.1\r\nHost: {address}\r\nX-Slow: "),
                 _ => format!("POST /switch HTTP/1.1\r\nHost: {address}\r\nContent-Length: 1000\r\n\r\n"),
@@ -493,7 +493,7 @@ fn hanging_connections_keep_nobody_out() {
     assert!(slowest < Duration::from_secs(10), "{slowest:?}");
 }
 
-/// Docs: `docs/security.md`, somebody without a token at the control address.
+/// Documented in `docs/security.md`: a client without a token at the control address.
 #[test]
 fn a_flood_of_connections_keeps_nobody_out() {
     let setup = Setup::new();
@@ -505,7 +505,7 @@ fn a_flood_of_connections_keeps_nobody_out() {
             let _ = stream.write_all(b"GET /r");
             hanging.push_back(stream);
             connections.fetch_add(1, Ordering::SeqCst);
-            // Those before are closed, so that the flood does not end for want of open files.
+            // Earlier connections are closed, so that the flood does not run out of open files.
             if hanging.len() > 150 {
                 hanging.pop_front();
             }
@@ -514,7 +514,7 @@ fn a_flood_of_connections_keeps_nobody_out() {
     let (mut answered, mut slowest) = (0, Duration::ZERO);
     std::thread::scope(|scope| {
         let _floods = [scope.spawn(flood), scope.spawn(flood)];
-        // More than the server has places for.
+        // More connections than the server has places.
         eventually("a flood", || connections.load(Ordering::SeqCst) > 400);
         for _ in 0..40 {
             let asked = Instant::now();
@@ -544,7 +544,7 @@ fn a_service_that_cannot_be_protected_does_not_start() {
         let options = ServiceOptions { listen, arbiter, robots, control: Some(control), ..ServiceOptions::default() };
         Service::start(Cell::load(&file).unwrap(), &options).map(drop).map_err(|e| e.to_string())
     };
-    // Nobody else reaches what is served without an address.
+    // By default only this computer reaches the service.
     assert!(DEFAULT_ADDRESS.parse::<SocketAddr>().unwrap().ip().is_loopback());
     assert!(start("127.0.0.1:0", true).unwrap_err().contains("tokens.toml"));
     AccessTokens::add(&tokens, AccessClass::Operator, "panel").unwrap();

@@ -1,4 +1,4 @@
-//! The tick of a node, and a controller's client, where answers are lost, cell files differ and clocks are set.
+//! The tick of a node, and a controller's client, if answers are lost, cell files differ or clocks are set.
 
 use std::sync::Arc;
 
@@ -33,7 +33,7 @@ struct Rig {
 }
 
 impl Rig {
-    /// With a controller that says this number.
+    /// Creates a rig whose controller states this configuration number.
     fn new(configuration: impl FnOnce(u64) -> u64) -> Self {
         let cell = Arc::new(two_rails(MORE));
         let checksum = configuration_number(&cell);
@@ -44,8 +44,8 @@ impl Rig {
         Self { cell, node, client, now: Micros(1) }
     }
 
-    /// The override that the robot applies after a tick in which it stands at `q` and its program moves on; `is_heard`: the answer
-    /// arrives.
+    /// Returns the override that the robot applies after a tick in which it is at `q` and its program moves on;
+    /// `is_heard`: whether the answer arrives.
     fn tick(&mut self, q: f64, is_heard: bool) -> f64 {
         self.now = self.now + TICK;
         let state = ControllerState {
@@ -60,13 +60,13 @@ impl Rig {
         if let Some(answer) = self.node.take_answer().filter(|_| is_heard) {
             let mut bytes = Vec::new();
             answer.encode(&mut bytes);
-            // One to another start of the controller is not obeyed.
+            // An answer to another start of the controller is not obeyed.
             let _ = self.client.receive(&bytes);
         }
         self.client.speed_override(self.now)
     }
 
-    /// Where the arbiter is told that the robot is.
+    /// Returns the occupancy that the node reports to the arbiter.
     fn occupancy(&mut self) -> Option<Occupancy> {
         let mut bytes = Vec::new();
         self.node.take_interlock_state(&mut bytes).then(|| match wire::decode(&bytes) {
@@ -76,8 +76,8 @@ impl Rig {
     }
 }
 
-/// On a busy machine no answer arrives for seconds, and a robot that might go stands 350 mm before a region. It was said to be unable
-/// to stop outside for ever, and both robots of the cell halted.
+/// On a busy machine no answer arrives for seconds, while a robot that may go waits 350 mm before a region. The node
+/// must not report for ever that the robot cannot stop outside, which would halt both robots of the cell.
 #[test]
 fn a_robot_whose_answers_are_lost_can_stop_and_goes_on() {
     for silent_ticks in [10, 40, 500] {
@@ -109,7 +109,7 @@ fn a_node_that_hears_another_cell_file_stops_its_robot() {
     let other = RegionTableMessage { configuration: "0123456789abcdef".into(), boot: 9, ..own.clone() };
     rig.node.regions(&own, rig.now);
     assert_eq!((0..10).map(|_| rig.tick(1.0, true)).last(), Some(1.0));
-    // One of both tables at a time, as of two arbiters.
+    // Both tables alternate, as from two arbiters.
     for table in [&other, &own, &other, &own] {
         rig.node.regions(table, rig.now);
         assert!((0..10).all(|_| rig.tick(1.0, true) == 0.0));
@@ -121,7 +121,7 @@ fn a_node_that_hears_another_cell_file_stops_its_robot() {
         rig.node.tick(rig.now).expect("a tick").reason
     };
     assert_eq!(reason_of(&mut rig), OverrideReason::Fault(Fault::Regions));
-    // Once nobody says so any more for a second it goes on.
+    // It continues a second after the last table of the other cell file.
     let goes = (0..260).position(|_| {
         rig.node.regions(&own, rig.now);
         rig.tick(1.0, true) == 1.0

@@ -1,4 +1,4 @@
-//! A region that another robot carries, heard late or without velocities.
+//! Region on another robot whose joint values arrive late or without velocities.
 
 use std::sync::Arc;
 
@@ -11,12 +11,12 @@ use elbowroom_monitor::RobotSlot;
 use elbowroom_robot::RobotId;
 
 const TICK_S: f64 = 0.004;
-/// Ticks until the answer that counts: fewer than after which values that stay the same are doubted.
+/// Number of ticks until the answer that counts: too few for unchanged values to be doubted.
 const TICKS: usize = 18;
-/// The speed of the carrier towards the other robot, m/s.
+/// Speed of the carrier towards the other robot, m/s.
 const SPEED: f64 = 0.5;
 
-/// A region on the right hand, where the left one moves.
+/// A region on the hand of the right robot, where the left one moves.
 const MORE: &str = r#"[monitor]
 stopping_distance = true
 direction_aware = true
@@ -30,8 +30,8 @@ robots = ["left"]
 follow = { robot = "right", frame = "flange" }
 "#;
 
-/// The override of the left robot, which stands at 0.5 m, while the region on the other one comes down and is `gap_m` away from it in
-/// truth. What is heard is `delay` ticks old, but at the beginning.
+/// Returns the override of the left robot, which is at 0.5 m, while the region on the other robot approaches from above
+/// with a true distance of `gap_m`. The received values are `delay` ticks old, except at the beginning.
 fn override_at(gap_m: f64, delay: usize, with_velocities: bool, program: f64) -> f64 {
     let cell = Arc::new(two_rails(MORE));
     let checksum = configuration_number(&cell);
@@ -48,7 +48,7 @@ fn override_at(gap_m: f64, delay: usize, with_velocities: bool, program: f64) ->
         let qd = if with_velocities { &qd[..] } else { &[] };
         let state = ControllerState { q: &q, qd, programmed_override: 1.0, ..ControllerState::default() };
         messages.push(right.joint_state(time(tick), &state).to_vec());
-        // The first ones show how long messages take.
+        // The first messages show how long messages take.
         let heard = if tick < 3 { Some(tick) } else { tick.checked_sub(delay).filter(|heard| *heard >= 3) };
         if let Some(heard) = heard {
             node.followed_joint_state(RobotId(1), &messages[heard], time(tick));
@@ -80,9 +80,9 @@ fn what_is_heard_late_lets_nobody_go_faster() {
         let fresh = override_at(gap_m, 0, true, 0.6);
         for delay in [1, 4, 10] {
             let late = override_at(gap_m, delay, true, 0.6);
-            // The warning zone sees the region where it was: within it the law of the zone alone may say more.
+            // The warning zone uses the former place of the region: within the zone, the zone's law alone may permit more.
             if gap_m > 0.1 + SPEED * TICK_S * delay as f64 {
-                // Less what clocks may drift apart.
+                // Less the possible drift of the clocks.
                 assert!(late <= fresh + 2e-3, "{gap_m} m, {delay} ticks late: {late} instead of {fresh}");
                 limited += i32::from(fresh > 0.0 && fresh < 0.99);
             }
@@ -98,6 +98,6 @@ fn a_carrier_without_velocities_is_not_taken_to_stand() {
         let (given, derived) = (override_at(gap_m, 0, true, 0.6), override_at(gap_m, 0, false, 0.6));
         assert!((given - derived).abs() < 1e-3, "{gap_m} m: {derived} instead of {given}");
     }
-    // Inside of a region that moves nobody begins to leave.
+    // Inside a moving region no robot starts to leave.
     assert_eq!(override_at(-0.1, 0, false, -0.6), 0.0);
 }

@@ -12,7 +12,7 @@ use elbowroom_spatial::Pose;
 use elbowroom_testkit::network::eventually;
 use elbowroom_testkit::random::{split_mix, unit};
 
-/// A node and the controller's side of its network.
+/// A node, and the controller's side of its network.
 struct Setup {
     keys: Keys,
     answers: Arc<Mutex<Vec<OverrideAnswer>>>,
@@ -42,7 +42,7 @@ fn on_one_network() -> Setup {
     start(Arc::new(network.clone()), &network)
 }
 
-/// Runs a controller far from the region until it may go, and then falls silent.
+/// Runs a controller far from the region until it may go, and then makes it silent.
 fn go_and_stop(mut s: Setup) {
     let mut client = ControllerClient::new(7, s.checksum);
     eventually("no override 1 for a robot far from its region", || {
@@ -52,7 +52,7 @@ fn go_and_stop(mut s: Setup) {
         for answer in s.answers.lock().unwrap().drain(..) {
             let mut bytes = Vec::new();
             answer.encode(&mut bytes);
-            // Those that are late are refused.
+            // Late answers are refused.
             let _ = client.receive(&bytes);
         }
         client.speed_override(s.clock.micros()) == 1.0
@@ -89,7 +89,7 @@ fn two_that_know_each_other_hear_each_datagram_once() {
     let (mut publisher, heard) = (first.publisher("k", Urgency::RealTime).unwrap(), Arc::new(Mutex::new(Vec::new())));
     let to = heard.clone();
     let _subscription = second.subscribe("k", Box::new(move |bytes| to.lock().unwrap().push(bytes[0]))).unwrap();
-    // Until its subscription has arrived it hears as one that is known, then as one that is both.
+    // Until its subscription arrives, `second` receives as a known peer; afterwards as a peer and a subscriber.
     for n in 0..100 {
         publisher.publish(&[n]);
         std::thread::sleep(Duration::from_millis(2));
@@ -98,7 +98,7 @@ fn two_that_know_each_other_hear_each_datagram_once() {
     assert_eq!(*heard.lock().unwrap(), (0..100).collect::<Vec<u8>>());
 }
 
-/// The `n`-th message of a hostile controller; `old` are messages that were valid once.
+/// Makes the `n`-th message of a hostile controller; `old` are messages that were once valid.
 fn hostile(n: u64, s: &Setup, random: &mut u64, old: &mut Vec<Vec<u8>>) -> Vec<u8> {
     let mut state = JointState {
         checksum: s.checksum,

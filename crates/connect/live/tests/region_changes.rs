@@ -1,4 +1,4 @@
-//! Regions that are moved, added and removed over the control interface of a service with nodes.
+//! Regions moved, added and removed over the control interface of a service with nodes.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::SeqCst};
 use std::sync::{Arc, Mutex};
@@ -35,7 +35,7 @@ impl Setup {
         Self(ControlSetup::new(CELL, false, options))
     }
 
-    /// A change that is made.
+    /// Makes a change, which must succeed.
     fn make(&self, path: &str, body: &Value) -> Value {
         let (status, document) = self.change(PROGRAMMER, path, body);
         assert_eq!(status, 200, "{path} {body}: {document}");
@@ -43,11 +43,11 @@ impl Setup {
     }
 }
 
-/// A controller on a thread of its own, whose robot stands where the test says.
+/// A controller on its own thread, whose robot is where the test says.
 struct Controller {
     q_mm: Arc<AtomicU64>,
     is_closed: Arc<AtomicBool>,
-    /// The last answer, and the highest override of all.
+    /// The last answer; beside it the highest override of all.
     last: Arc<Mutex<Option<OverrideAnswer>>>,
     highest: Arc<Mutex<f64>>,
     thread: Option<JoinHandle<()>>,
@@ -64,7 +64,7 @@ impl Controller {
         let obeying = client.clone();
         let handler = Box::new(move |bytes: &[u8]| {
             let answer = OverrideAnswer::decode(bytes).unwrap();
-            // One that is late is not obeyed.
+            // A late answer is not obeyed.
             let _ = obeying.lock().unwrap().receive(bytes);
             let mut most = most.lock().unwrap();
             *most = f64::max(*most, answer.speed_override);
@@ -117,7 +117,7 @@ fn a_region_is_added_moved_and_removed_and_the_robot_obeys_at_once() {
     assert_eq!(shown["checksum"], entry["checksum"]);
     let region = setup.region("table").unwrap();
     assert!(region["active"] == true && region["life"] == "temporary", "{region}");
-    // Away, and back.
+    // The region is moved away, and back.
     setup.make("/move", &json!({ "region": "table", "toml": "centre = [0, 0, 1900]" }));
     eventually("free again", || controller.speed_override() == 1.0);
     let names: Vec<Value> = setup.regions()["regions"].as_array().unwrap().iter().map(|r| r["name"].clone()).collect();
@@ -179,12 +179,12 @@ fn what_is_not_allowed_is_refused_with_the_reason_and_changes_nothing() {
         let error = document["error"].as_str().unwrap_or_default();
         assert!(status == expected && error.contains(message), "{path} {body}: {status} {document}");
     }
-    // The same file, the same message.
+    // The same file gives the same message.
     let wrong = "shape = \"sphere\"\ncentre = [0, 0, 1]\nradius = -5";
     let of_file = Cell::parse("cell.toml", &format!("{CELL}\n[region.table]\n{wrong}")).unwrap_err();
     let (_, document) = setup.change(PROGRAMMER, "/add", &add(wrong));
     assert_eq!(document["error"].as_str().unwrap(), format!("line 3: {}", of_file.what));
-    // The distance, of a region that would stop the robot; one that slows it down is nobody's obstacle.
+    // The answer names the distance of a region that would stop the robot; a region that only slows it is permitted.
     let (status, document) = setup.change(PROGRAMMER, "/add", &add(&around));
     assert_eq!((status, document["robot"].as_str(), document["distance_m"].as_f64()), (409, Some("left"), Some(0.0)));
     let revision = before["revision"].as_str().unwrap();
@@ -195,7 +195,8 @@ fn what_is_not_allowed_is_refused_with_the_reason_and_changes_nothing() {
     let (status, _) = setup.change_at(PROGRAMMER, "/add", revision, &add(TABLE));
     assert_eq!(status, 200);
     assert_eq!(setup.change_at(PROGRAMMER, "/remove", revision, &json!({ "region": "table" })).0, 412);
-    // What is on may not be moved over the robot; what the integrator has added permanently, only the integrator removes.
+    // An active region may not be moved over the robot; only an integrator removes a region that an integrator has
+    // added permanently.
     let (status, document) = setup.change(PROGRAMMER, "/move", &to("table", inside));
     assert!(status == 409 && document["distance_m"] == 0.0, "{document}");
     let lasting = json!({ "region": "lasting", "toml": permanent.replace("1000", "1900") });
@@ -207,18 +208,18 @@ fn what_is_not_allowed_is_refused_with_the_reason_and_changes_nothing() {
 #[test]
 fn a_node_that_starts_later_has_the_present_regions_before_its_robot_may_move() {
     let setup = Setup::new(true);
-    // Nobody guards the robots yet.
+    // No node guards the robots yet.
     setup.make("/add", &json!({ "region": "table", "toml": TABLE }));
     let connect = Some(setup.listen.clone());
     let options = ServiceOptions { robots: vec!["left".into()], connect, ..ServiceOptions::default() };
-    // It stands within the region that the cell file does not have.
+    // The robot is inside the region that the cell file does not have.
     let controller = Controller::start(&setup, "left", 1000);
     let node = Service::start(setup.cell.clone(), &options).unwrap_or_else(|e| panic!("{e}"));
     eventually("it answers with the region's reason", || {
         controller.last.lock().unwrap().as_ref().is_some_and(|a| a.reason == 1 && a.speed_override == 0.0)
     });
     assert_eq!(*controller.highest.lock().unwrap(), 0.0, "never more");
-    // Removed, it may go; a node that starts again has that, too.
+    // After the removal it may go; a node that starts again knows that too.
     setup.make("/remove", &json!({ "region": "table" }));
     eventually("free", || controller.speed_override() == 1.0);
     drop(node);

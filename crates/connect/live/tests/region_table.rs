@@ -12,7 +12,7 @@ use elbowroom_monitor::{AccessClass, Fault, Life, Monitor, OverrideReason, Regio
 use elbowroom_robot::RobotId;
 use elbowroom_testkit::random::{self, split_mix};
 
-/// The next number from 0 to 1.
+/// Returns the next number from 0 to 1.
 fn unit(state: &mut u64) -> f64 {
     random::unit(split_mix(state))
 }
@@ -57,14 +57,14 @@ fn a_permanent_region_stays_on_whatever_a_message_says() {
     message.regions.iter_mut().for_each(|(_, on)| *on = !*on);
     assert!(table.take(&message, &cell));
     assert_eq!(table.active, [true, true, true]);
-    // What a message does not have stays as it is, but a message of other regions switches it off neither.
+    // A region that is not in the message keeps its state, and a message of other regions does not switch it off either.
     (message.revision, message.regions[0].0) = (2, "other".into());
     message.regions[2].1 = false;
     assert!(table.take(&message, &cell));
     assert_eq!(table.active, [true, true, false]);
 }
 
-/// A node, who builds its regions, and its controller. Its clock goes on with each tick.
+/// A node, the builder of its regions, and its controller. Its clock advances with each tick.
 struct Rig {
     cell: Arc<Cell>,
     versions: Arc<CellVersions>,
@@ -73,7 +73,7 @@ struct Rig {
     client: ControllerClient,
     now: Micros,
     revision: u64,
-    /// What was announced last.
+    /// The configuration that was announced last.
     announced: String,
 }
 
@@ -98,7 +98,7 @@ impl Rig {
         edited.moved(name, &edited.table(&[], name).unwrap(), to).unwrap()
     }
 
-    /// The table with these regions, all of them on.
+    /// Makes the table with these regions, all of them on.
     fn message(&mut self, edits: &[RegionEdit], is_due: bool) -> RegionTableMessage {
         let cell = self.versions.cell(edits).unwrap_or_else(|e| panic!("{e}"));
         self.revision += 1;
@@ -122,8 +122,8 @@ impl Rig {
         self.node.regions(&message, self.now);
     }
 
-    /// The override and its reason at these joint values. A controller that has heard no answer yet has sent them once before, as a
-    /// program that stands.
+    /// Returns the override and its reason at these joint values. A controller without an answer yet has sent them once
+    /// before, with a waiting program.
     fn tick(&mut self, q: f64, qd: f64) -> (f64, OverrideReason) {
         if self.client.answer(self.now + Micros(TICK_US)).is_none() {
             self.exchange(q, qd);
@@ -168,7 +168,7 @@ impl Reference {
     }
 }
 
-/// A carriage that goes to and fro; the joint values fit the velocities.
+/// A carriage that moves back and forth; its joint values fit its velocities.
 struct Carriage {
     q: f64,
     qd: f64,
@@ -199,7 +199,7 @@ fn a_move_never_leaves_a_tick_without_the_region_before_or_the_region_after() {
         let cells = [Vec::new(), after.clone()].map(|edits| rig.versions.cell(&edits).unwrap());
         let mut old = Reference::new(&cells[0]);
         let mut new = Reference::new(&cells[1]);
-        // What is announced, step after step, and whether the region before and the region after must be obeyed then.
+        // Each step: the announced regions, and whether the former and the next regions must then be obeyed.
         let steps = [
             (Vec::new(), true, true, false),
             (both.clone(), false, true, false),
@@ -259,7 +259,7 @@ fn what_is_due_and_not_built_stops_the_robot_until_it_is_built() {
     assert_eq!(rig.tick(1.0, 0.0).0, 1.0);
     rig.node.regions(&older, rig.now);
     assert_eq!(rig.tick(1.0, 0.0).0, 1.0);
-    // A keeper that starts again begins with the file; one that is not heard any more may have changed something.
+    // A restarted keeper begins with the file; a keeper that is no longer heard may have changed something.
     for _ in 0..300 {
         rig.tick(1.0, 0.0);
     }
@@ -271,7 +271,7 @@ fn tables_that_no_keeper_would_send_are_not_built() {
     let mut rig = Rig::new();
     rig.hear(&[], true);
     assert_eq!(rig.tick(1.0, 0.0).0, 1.0);
-    // Somebody on the network takes a permanent region away, names another checksum, or sends nonsense.
+    // A stranger on the network removes a permanent region, names another checksum, or sends nonsense.
     for (edits, present) in [
         (vec![edit("end", None)], "0123456789abcdef"),
         (Vec::new(), "0123456789abcdef"),

@@ -1,4 +1,4 @@
-//! Processes of a live cell that start again, or twice.
+//! Processes of a live cell that start again, or start twice.
 
 use crate::common::control_setup::{ControlSetup, INTEGRATOR, PROGRAMMER, rails};
 use elbowroom_cell::seal::NetworkKey;
@@ -44,13 +44,13 @@ fn the_regions_are_the_same_after_a_restart_and_the_log_says_so() {
     assert_eq!((start.action.as_str(), start.name.as_str()), ("start", "the service"));
     assert!(start.note.as_ref().is_some_and(|note| note.contains("as they were")), "{start:?}");
     assert_eq!(start.changes.len(), 3);
-    // It goes on from there.
+    // The service continues from there.
     assert_eq!(setup.change(PROGRAMMER, "/remove", &json!({ "region": "table" })).0, 200);
     setup.restart();
     assert_eq!([is_on(&setup, "table"), is_on(&setup, "spare")], [None, Some(false)]);
 }
 
-/// Also in a cell whose file has no region that can be switched.
+/// The same in a cell whose file has no region that can be switched.
 #[test]
 fn a_region_that_was_removed_does_not_return() {
     let text = CELL.replace("life = \"temporary\"\n", "");
@@ -95,7 +95,7 @@ fn without_a_journal_that_can_be_trusted_all_regions_are_on() {
     assert_eq!(is_on(&setup, "cart"), Some(false));
 }
 
-/// A second service with the same cell file, as somebody starts to try something, does not write what the first one reads.
+/// A second service with the same cell file, started as a trial, does not write the file that the first one reads.
 #[test]
 fn a_journal_has_one_keeper() {
     let mut setup = setup();
@@ -120,7 +120,7 @@ fn a_journal_has_one_keeper() {
     assert_eq!(is_on(&setup, "cart"), Some(false));
 }
 
-/// The arbiter counts the silence of a robot that was never there from its own start, not from the first question.
+/// The arbiter counts the silence of a robot without messages from its own start, not from the first question.
 #[test]
 fn a_robot_that_never_spoke_is_cleared_at_the_first_request() {
     let setup = setup();
@@ -132,7 +132,7 @@ fn a_robot_that_never_spoke_is_cleared_at_the_first_request() {
 
 #[test]
 fn two_nodes_that_start_at_once_never_both_go_on() {
-    // Processes with a key prove their starts before they are heard.
+    // Processes with a key prove their starts before their messages are accepted.
     for network_key in [None, Some(NetworkKey::generate().unwrap())] {
         let options = ServiceOptions { arbiter: true, network_key: network_key.clone(), ..ServiceOptions::default() };
         let setup = ControlSetup::new(CELL, false, options);
@@ -146,7 +146,7 @@ fn two_nodes_that_start_at_once_never_both_go_on() {
         };
         let both = std::thread::scope(|scope| [scope.spawn(start), scope.spawn(start)].map(|t| t.join().unwrap()));
         let refused: Vec<String> = both.iter().filter_map(|s| s.as_ref().err().map(ToString::to_string)).collect();
-        // On a machine too busy to hear one another in time both may be: never none.
+        // On a machine that is too busy both may be refused, but never neither.
         let is_said = |why: &String| why.contains("robot left: another process guards it already");
         assert!(!refused.is_empty() && refused.iter().all(is_said), "{refused:?}");
     }
@@ -171,7 +171,8 @@ fn a_second_node_for_a_robot_does_not_start() {
     });
 }
 
-/// Each process says who else of the cell comes and goes, and that nobody answers where it connects to.
+/// Each process reports other processes of the cell that come and go, and that nobody answers at the address of
+/// `--connect`.
 #[test]
 fn whoever_comes_and_goes_is_named() {
     let mut setup = setup();
@@ -192,7 +193,7 @@ fn whoever_comes_and_goes_is_named() {
     };
     let left = robot("left", &setup.listen);
     says("the arbiter's process is there", 1);
-    // Nobody guards the other one yet.
+    // No process guards the other robot yet.
     says("robot right: no process guards it yet", 1);
     let right = robot("right", &setup.listen);
     says("robot right: its process is there", 1);
@@ -201,7 +202,7 @@ fn whoever_comes_and_goes_is_named() {
     says("robot right: its process is gone", 1);
     arbiter_says("robot right: its process is gone");
     arbiter_says("robot right: not heard for");
-    // Where nobody listens yet, it waits, and says so.
+    // If nobody listens yet, the process waits and reports that.
     drop(setup.service.take());
     says("the arbiter's process is gone", 1);
     let waits = std::thread::scope(|scope| {

@@ -1,5 +1,7 @@
-//! The service in the layout of `rmw_zenoh`: sessions of Zenoh on the loopback network stand in for nodes of ROS 2. Keys, hashes, tokens
-//! and bytes of the other side are written out, as in `rmw_zenoh`'s design document, or by `natnet_zenoh`.
+//! The service in the layout of `rmw_zenoh`: Zenoh sessions on the loopback network stand in for nodes of ROS 2.
+//!
+//! Keys, hashes, tokens and bytes of the other side are written out, from `rmw_zenoh`'s design document, or by
+//! `natnet_zenoh`.
 
 use crate::common::rail;
 use crate::ros2_peer;
@@ -18,7 +20,7 @@ use elbowroom_ros2::msgs::tf2_msgs::TFMessage;
 use elbowroom_ros2::msgs::visualization_msgs::MarkerArray;
 use elbowroom_testkit::network::{eventually, free_address};
 
-/// The name of the only joint of the cell above.
+/// Returns the name of the only joint of the cell above.
 fn joint() -> String {
     cell().robots[0].joint_names().remove(0)
 }
@@ -27,12 +29,12 @@ fn cell() -> Cell {
     stale_after(200)
 }
 
-/// The cell, in which joint values are too old after this time.
+/// Returns the cell with this age limit of joint values.
 fn stale_after(ms: u32) -> Cell {
     rail(400, &format!("[monitor]\nstale_ms = {ms}\n"))
 }
 
-/// A service that publishes its cell, whose robot is controlled over ROS 2.
+/// Starts a service that publishes its cell, whose robot is controlled over ROS 2.
 fn start(address: &str) -> (Service, Arc<Mutex<Vec<String>>>) {
     start_cell(cell(), address)
 }
@@ -82,7 +84,7 @@ fn joint_states_are_answered_by_factors_and_silence_by_zero() {
     stop(&controller);
     // `stale_ms` is 200; the rest is for a busy machine.
     assert!(silent.elapsed() < Duration::from_millis(1200), "{:?}", silent.elapsed());
-    // Near the region the factor is between the two, and moving towards it less than at rest far away.
+    // Near the region the factor is between 0 and 1, and smaller when moving towards it than at rest far away.
     let joint = joint();
     for step in 0..90 {
         let q = 1.5 + 0.005 * f64::from(step);
@@ -96,13 +98,13 @@ fn joint_states_are_answered_by_factors_and_silence_by_zero() {
     let sequences: Vec<i64> = attachments.iter().map(|a| i64::from_le_bytes(a[..8].try_into().unwrap())).collect();
     assert!(sequences.windows(2).all(|pair| pair[1] > pair[0]), "numbers rise");
     assert!(attachments.iter().all(|a| a[17..] == attachments[0][17..]), "one publisher");
-    // A service that is stopped says so.
+    // A stopped service sends the factor 0.
     go_at(&mut controller, 1.5);
     drop(service);
     stop(&controller);
 }
 
-/// So many hostile messages of one kind, for a robot that is at rest: none is a go.
+/// Sends hostile messages of one kind, `count` times, for a robot at rest: none lets it go.
 fn never_a_go(controller: &mut Controller, kind: &str, count: u32, mut send: impl FnMut(&mut Controller, u32)) {
     go(controller);
     stop(controller);
@@ -111,7 +113,7 @@ fn never_a_go(controller: &mut Controller, kind: &str, count: u32, mut send: imp
         send(controller, n);
         std::thread::sleep(Duration::from_millis(1));
     }
-    // Factors are repeated every 20 ms: the answer to the last message is among them.
+    // Factors are repeated every 20 ms, so the answer to the last message is among them.
     std::thread::sleep(Duration::from_millis(40));
     let factors = controller.factors();
     assert!(!factors.is_empty() && factors.iter().all(|f| *f == 0.0), "{kind}: {factors:?}");
@@ -120,7 +122,7 @@ fn never_a_go(controller: &mut Controller, kind: &str, count: u32, mut send: imp
 #[test]
 fn hostile_joint_states_are_no_go() {
     let address = free_address();
-    // The robot stops before each kind: soon.
+    // A short limit, as the robot stops before each kind.
     let (_service, events) = start_cell(stale_after(40), &address);
     let peer = Peer::at(&address);
     let (mut controller, joint) = (peer.controller("rail"), joint());
@@ -165,7 +167,7 @@ fn hostile_joint_states_are_no_go() {
     });
     let mut other = peer.controller_of_hash("rail", &format!("RIHS01_{}", "0".repeat(64)));
     never_a_go(&mut controller, "another hash of the type", 10, |_, _| other.send(&valid));
-    // The service is well, and has said why.
+    // The service works, and has reported the reasons.
     go(&mut controller);
     let events = events.lock().unwrap();
     for reason in ["`elbow` is no joint", "is there twice", "values in `position`", "no attachment", "little-endian"] {
@@ -180,7 +182,7 @@ fn another_publisher_of_the_same_topic_is_not_mixed_in() {
     let peer = Peer::at(&address);
     let (mut controller, mut intruder, joint) = (peer.controller("rail"), peer.controller("rail"), joint());
     go(&mut controller);
-    // The controller says that it is in the region; the other one says that it is far away.
+    // The controller says that the robot is in the region; the stranger says that it is far away.
     for _ in 0..60 {
         controller.send(&cdr_joint_state(&[&joint], &[0.2], &[0.0]));
         intruder.send(&cdr_joint_state(&[&joint], &[1.99], &[0.0]));
@@ -214,7 +216,7 @@ fn late_subscriptions_get_what_is_latched_and_every_topic_is_on_the_graph() {
     for topic in &topics {
         eventually(topic, || graph(topic));
     }
-    // Some time after they were sent.
+    // Some time after the messages were sent.
     std::thread::sleep(Duration::from_millis(500));
     let key = format!("0/robot_description/std_msgs::msg::dds_::String_/{TEXT_HASH}");
     let description = peer.transient_local(&key);

@@ -1,4 +1,4 @@
-//! Simulated controllers report what their robots carry, so that the node guards it.
+//! Simulated controllers report the parts that their robots carry, so that the node guards them.
 
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
@@ -9,7 +9,8 @@ use elbowroom_live::{Keys, Service, ServiceOptions};
 use elbowroom_status::RobotStatus;
 use elbowroom_testkit::network::free_address;
 
-/// A carriage that takes something of one metre to where only that is near a region, and comes back without it.
+/// Makes a cell of a carriage that takes a thing of one metre to a place where only that thing is near a region, and
+/// returns without it.
 fn cell(thing: &str, take: &str, leave: &str) -> String {
     format!(
         r#"
@@ -69,7 +70,7 @@ fn wait_for(statuses: &Statuses, what: &str, mut is_it: impl FnMut(&RobotStatus)
     panic!("{what}");
 }
 
-/// Carried, the part limits the override far out; without it the same place is free.
+/// Checks that the carried part limits the override far out, and that the same place is free without it.
 fn governs_while_carried(text: &str, part: &str) {
     let (service, statuses, _subscription) = start(text);
     let is_far = |status: &RobotStatus| status.q.first().is_some_and(|q| *q > 0.95);
@@ -90,17 +91,17 @@ fn a_gripped_part_and_an_exchanged_tool_are_guarded_until_they_are_gone() {
     let bar = "[object.bar]\nshape = \"box\"\nat = [0, 0, 1300]\nsize = [60, 60, 1000]";
     let tools = "[robot.rail.tools.gripper]\nbox = { at = [0, 0, 50], size = [60, 60, 100] }\n\
         [robot.rail.tools.lance]\nbox = { at = [0, 0, 500], size = [60, 60, 1000] }\nmounted = false";
-    // Side by side: what they do takes time, not work.
+    // At the same time, as the tests wait more than they compute.
     std::thread::scope(|scope| {
         scope.spawn(|| governs_while_carried(&cell(bar, "grip = \"bar\"", "release = \"bar\""), "bar"));
         scope.spawn(|| governs_while_carried(&cell(tools, "tool = \"lance\"", "tool = \"gripper\""), "lance"));
-        // A program of planned moves begins again where the last one ends, too.
+        // A program of planned moves also begins again at its end.
         let planned = cell(tools, "tool = \"lance\"", "tool = \"gripper\"").replace("\"joint\", to", "\"planned\", to");
         scope.spawn(move || governs_while_carried(&planned, "lance"));
     });
 }
 
-/// Nobody has said that the gate is off when the service starts, so that it is on. The program begins without it, as in `run`, and a
+/// The gate was never switched off when the service starts, so it is on. The program begins with it off, as in `run`, and a
 /// switch in it lasts.
 #[test]
 fn a_program_switches_off_what_it_begins_without() {
@@ -110,7 +111,7 @@ fn a_program_switches_off_what_it_begins_without() {
     let (_service, statuses, _subscription) = start(&text);
     let is_on = |status: &RobotStatus| status.regions.iter().find(|r| r.name == "gate").map(|r| r.active);
     wait_for(&statuses, "the gate is off", |status| is_on(status) == Some(false));
-    // Inside of the gate's warning zone, which would have slowed it down.
+    // Inside the gate's warning zone, which would have slowed the robot down.
     wait_for(&statuses, "it has passed", |status| status.q.first().is_some_and(|q| *q > 1.04));
     wait_for(&statuses, "the gate is on", |status| is_on(status) == Some(true));
 }

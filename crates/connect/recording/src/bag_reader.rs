@@ -1,4 +1,4 @@
-//! Reads an MCAP file from begin to end, in the order in which it was written.
+//! Reader of an MCAP file, from beginning to end, in the order of writing.
 
 use std::collections::{BTreeMap, HashMap};
 use std::io::Read;
@@ -9,23 +9,25 @@ use crate::records::{self, Framed, MAGIC, Record};
 /// A message of a recording.
 #[derive(Debug, Clone)]
 pub struct BagMessage {
-    /// Its number in the file, from 0.
+    /// Number of the message in the file, from 0.
     pub index: u64,
     /// Its topic.
     pub topic: String,
-    /// The name of its type, such as `sensor_msgs/msg/JointState`; empty if the file does not say.
+    /// Name of its type, such as `sensor_msgs/msg/JointState`; empty if the file does not name it.
     pub message_type: String,
-    /// When it was recorded, ns.
+    /// Time of recording, ns.
     pub time_ns: u64,
     /// Its payload.
     pub payload: Vec<u8>,
 }
 
-/// An MCAP file as a stream of messages. Chunks are checked before their messages are handed out; a file that ends early gives
-/// what it has, and [`BagReader::is_cut_off`] is true then.
+/// An MCAP file as a stream of messages.
+///
+/// A chunk is checked before its messages are returned; a file that ends early returns the messages that it has, and
+/// [`BagReader::is_cut_off`] is then true.
 pub struct BagReader<R: Read> {
     file: R,
-    /// What is left of the present chunk.
+    /// The present chunk.
     chunk: Vec<u8>,
     at: usize,
     schemas: HashMap<u16, String>,
@@ -46,7 +48,7 @@ enum State {
 }
 
 impl<R: Read> BagReader<R> {
-    /// Reads from a file.
+    /// Creates a reader of a file.
     pub fn new(file: R) -> Self {
         Self {
             file,
@@ -61,7 +63,7 @@ impl<R: Read> BagReader<R> {
         }
     }
 
-    /// The next message; `None` at the end.
+    /// Returns the next message; `None` at the end.
     ///
     /// # Errors
     /// [`BagError::Foreign`] and [`BagError::Damaged`].
@@ -142,22 +144,22 @@ impl<R: Read> BagReader<R> {
         Ok(None)
     }
 
-    /// Number of messages up to now.
+    /// Number of messages read so far.
     pub fn messages(&self) -> u64 {
         self.messages
     }
 
-    /// The metadata of a name that have been read up to now.
+    /// Metadata of this name, if read so far.
     pub fn metadata(&self, name: &str) -> Option<&BTreeMap<String, String>> {
         self.metadata.get(name)
     }
 
-    /// Names of the attachments that have been read up to now.
+    /// Names of the attachments read so far.
     pub fn attachments(&self) -> &[String] {
         &self.attachments
     }
 
-    /// True if the file ended before the end of its data was written.
+    /// Whether the file ended before the end of its data.
     pub fn is_cut_off(&self) -> bool {
         self.state == State::CutOff
     }

@@ -1,4 +1,4 @@
-//! Writes messages into an MCAP file.
+//! Writer of messages to an MCAP file.
 
 use std::collections::{BTreeMap, HashMap};
 use std::io::{BufWriter, Seek, Write};
@@ -9,14 +9,14 @@ use mcap::{Attachment, Compression, WriteOptions, Writer};
 
 use crate::BagError;
 
-/// Bytes of a chunk: what is lost, at most, is the last one.
+/// Size of a chunk, bytes: at most the last chunk is lost.
 const CHUNK_BYTES: u64 = 1 << 20;
 
 /// An MCAP file with the profile `ros2`: CDR messages with `ros2msg` schemas.
 pub(crate) struct BagWriter<W: Write + Seek> {
     writer: Writer<BufWriter<W>>,
     channels: HashMap<String, Channel>,
-    /// The payload of the message that is written.
+    /// Payload of the message that is being written.
     payload: Vec<u8>,
 }
 
@@ -32,7 +32,7 @@ impl<W: Write + Seek> BagWriter<W> {
             .library(concat!("elbowroom ", env!("CARGO_PKG_VERSION")))
             .compression(Some(Compression::Lz4))
             .chunk_size(Some(CHUNK_BYTES))
-            // A chunk is written when it is complete: a file that ends anywhere ends with a whole one, or a part of one.
+            // A complete chunk is written as a whole: a file that is cut off ends with a whole chunk or a part of one.
             .disable_seeking(true)
             .create(BufWriter::new(file))
             .map_err(BagError::Write)?;
@@ -60,7 +60,7 @@ impl<W: Write + Seek> BagWriter<W> {
     fn add_channel<M: Message>(&mut self, topic: &str) -> Result<u16, BagError> {
         let schema = self.writer.add_schema(M::NAME, "ros2msg", M::schema().as_bytes()).map_err(BagError::Write)?;
         let latched = ["/robot_description", "/tf_static", "/elbowroom/configuration"].contains(&topic);
-        // As recording2 writes it, so that it plays the last message to those who come later.
+        // As rosbag2 writes it, so that it plays the last message to later subscribers.
         let durability = if latched { "transient_local" } else { "volatile" };
         let qos = format!(
             "- history: keep_last\n  depth: 1\n  reliability: reliable\n  durability: {durability}\n  deadline:\n    sec: 0\n    \
@@ -87,7 +87,8 @@ impl<W: Write + Seek> BagWriter<W> {
         self.writer.write_metadata(&Metadata { name: name.to_owned(), metadata: values }).map_err(BagError::Write)
     }
 
-    /// Completes the chunk and hands it to the system: what was written before survives the end of the process.
+    /// Completes the chunk and passes it to the operating system: everything written before survives the end of the
+    /// process.
     pub(crate) fn flush(&mut self) -> Result<(), BagError> {
         self.writer.flush().map_err(BagError::Write)
     }

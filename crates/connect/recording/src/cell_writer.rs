@@ -1,4 +1,4 @@
-//! Writes the recording of a cell: its description, the ticks of its monitors, its status.
+//! Writer of a cell's recording: its description, the ticks of its monitors, its status.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -21,13 +21,13 @@ use elbowroom_status::CellStatus;
 use crate::bag_writer::BagWriter;
 use crate::{BagError, configuration, topics};
 
-/// Longest time for which what was recorded is in memory only.
+/// Longest time for which recorded data is in memory only.
 const FLUSH: Duration = Duration::from_secs(1);
-/// Time between two messages for viewers: 50 per second move smoothly. Every tick is recorded, on its own topic.
+/// Time between two messages for viewers, ns: 50 per second move smoothly. Every tick is recorded, on its own topic.
 const VIEWER_NS: u64 = 20_000_000;
-/// Time between two documents for people.
+/// Time between two documents for people, ns.
 const DOCUMENT_NS: u64 = 100_000_000;
-/// Time after which markers that do not change are written again, for those who begin in the middle.
+/// Time after which unchanged markers are written again, ns, for viewers that begin in the middle.
 const REPEAT_NS: u64 = 5_000_000_000;
 
 /// Writes the recording of a cell. It blocks while it writes: a control tick uses a [`Recorder`](crate::Recorder).
@@ -41,7 +41,7 @@ pub struct CellWriter<W: Write + Seek> {
     region_state: Vec<u8>,
     markers: Due,
     documents: Due,
-    /// Replaces the transforms that are due.
+    /// Times of the transforms and of the other messages for viewers.
     viewers: Due,
 }
 
@@ -54,7 +54,7 @@ struct RobotTopics {
     due: Due,
 }
 
-/// Whether the next message is due.
+/// Time at which the next message is due.
 #[derive(Debug, Clone, Copy, Default)]
 struct Due {
     next_ns: u64,
@@ -71,18 +71,18 @@ impl Due {
 }
 
 impl CellWriter<File> {
-    /// Begins a recording in a file, in the place of one that is there, and writes the URDF of the whole cell beside it, with the
-    /// extension `urdf`.
+    /// Begins a recording in a file, replacing an existing recording, and writes the URDF of the whole cell beside it,
+    /// with the extension `urdf`.
     ///
     /// # Errors
-    /// [`BagError::Io`] and [`BagError::Write`]; [`BagError::Exists`] for a URDF that is there without a recording.
+    /// [`BagError::Io`] and [`BagError::Write`]; [`BagError::Exists`] for a URDF without a recording.
     pub fn create(path: &Path, cell: &Cell, epoch_ns: u64) -> Result<Self, BagError> {
         let io = |file: &Path| {
             let file = file.to_owned();
             move |source| BagError::Io { file, source }
         };
         let urdf = path.with_extension("urdf");
-        // One beside a recording was written with it.
+        // A URDF beside a recording was written with it.
         if !path.exists() && urdf.exists() {
             return Err(BagError::Exists(urdf));
         }
@@ -101,8 +101,9 @@ impl CellWriter<File> {
 }
 
 impl<W: Write + Seek> CellWriter<W> {
-    /// Begins a recording: the cell file, its checksum, its description. `epoch_ns` is the time of the recording's zero, since
-    /// the Unix epoch; 0 for simulated time.
+    /// Begins a recording: the cell file, its checksum, its description.
+    ///
+    /// `epoch_ns` is the time of the recording's zero, ns since the Unix epoch; 0 for simulated time.
     ///
     /// # Errors
     /// [`BagError::Write`].
@@ -120,7 +121,7 @@ impl<W: Write + Seek> CellWriter<W> {
         ];
         let values = values.into_iter().map(|(key, value)| (key.to_owned(), value)).collect::<BTreeMap<_, _>>();
         bag.metadata(topics::METADATA, values)?;
-        // A cell that was made in memory has no file.
+        // A cell made in memory has no file.
         if let Ok(text) = std::fs::read(&cell.file) {
             bag.attach(&file_name(&cell.file), "application/toml", epoch_ns, &text)?;
         }
@@ -152,7 +153,7 @@ impl<W: Write + Seek> CellWriter<W> {
         Ok(writer)
     }
 
-    /// Records what a monitor is built from: before its first tick, and where it changes.
+    /// Records the configuration of a monitor: before its first tick, and when it changes.
     ///
     /// # Errors
     /// [`BagError::Write`].
@@ -164,7 +165,7 @@ impl<W: Write + Seek> CellWriter<W> {
         self.bag.write(topics::CONFIGURATION, self.time_ns(t_s), message)
     }
 
-    /// Records a tick, and for viewers, fifty times per second, joint values and override of the robot.
+    /// Records a tick; for viewers also joint values and override of the robot, fifty times per second.
     ///
     /// # Errors
     /// [`BagError::Write`].
@@ -201,7 +202,7 @@ impl<W: Write + Seek> CellWriter<W> {
         if self.markers.is_due(time_ns, REPEAT_NS) {
             self.bag.write(topics::REGIONS, time_ns, &self.messages.region_markers(status, &stamp))?;
         }
-        // Events are in one status only.
+        // An event is in one status only.
         if self.documents.is_due(time_ns, DOCUMENT_NS) || !status.events.is_empty() {
             self.bag.write(topics::DIAGNOSTICS, time_ns, &self.messages.diagnostics(status, &stamp))?;
             let data = serde_json::to_string(status).unwrap_or_default();
@@ -210,7 +211,7 @@ impl<W: Write + Seek> CellWriter<W> {
         self.flush_if_due()
     }
 
-    /// Records what was left out.
+    /// Records the number of omitted ticks and statuses.
     ///
     /// # Errors
     /// [`BagError::Write`].
@@ -218,8 +219,8 @@ impl<W: Write + Seek> CellWriter<W> {
         self.bag.write(topics::LOST, self.time_ns(t_s), lost)
     }
 
-    /// Hands everything to the operating system, if it is a second since that was done: then it survives the end of this
-    /// process.
+    /// Passes everything to the operating system, unless that was done less than a second ago: the data then survives the
+    /// end of this process.
     ///
     /// # Errors
     /// [`BagError::Write`].
@@ -241,7 +242,7 @@ impl<W: Write + Seek> CellWriter<W> {
     }
 
     fn time_ns(&self, t_s: f64) -> u64 {
-        // A monitor may have ticked before the zero of a run; what is not a number becomes the zero.
+        // A monitor may have ticked before the zero of a run; such times and NaN become the zero.
         self.epoch_ns.saturating_add((t_s * 1e9).round() as u64)
     }
 }
@@ -264,7 +265,7 @@ fn joint_state(header: &Header, robot: &RobotTopics, tick: &MonitorTick) -> Join
     }
 }
 
-/// The intent as reference, as a joint trajectory controller publishes it.
+/// Makes the controller state with the intent as reference, as a joint trajectory controller publishes it.
 fn controller_state(header: Header, robot: &RobotTopics, tick: &MonitorTick) -> JointTrajectoryControllerState {
     let point = |velocities: &[f64]| JointTrajectoryPoint {
         positions: tick.q.clone(),

@@ -1,19 +1,19 @@
-//! Why a recording cannot be written or read.
+//! Errors of writing and reading a recording.
 
 use std::path::PathBuf;
 
 /// Why a recording cannot be written or read.
 #[derive(Debug, thiserror::Error)]
 pub enum BagError {
-    /// The file system refuses.
+    /// Error of the file system.
     #[error("{}: {source}", file.display())]
     Io {
         /// The file.
         file: PathBuf,
-        /// Why.
+        /// The reason.
         source: std::io::Error,
     },
-    /// A file that somebody else has made would be lost.
+    /// An existing file of other origin would be overwritten.
     #[error("{}: is there already\n  write: the name of a recording that is not there yet, beside which there is no URDF of that name", .0.display())]
     Exists(PathBuf),
     /// A record cannot be written.
@@ -24,24 +24,24 @@ pub enum BagError {
         "is not an MCAP file: it does not begin with the bytes 89 M C A P 30\n  help: a file that `elbowroom run --mcap`, `elbowroom live --record` or `ros2 bag record -s mcap` wrote"
     )]
     Foreign,
-    /// The bytes of the file are not as they were written.
+    /// The bytes of the file are damaged.
     #[error("is damaged behind message {messages}: {why}")]
     Damaged {
         /// Number of messages that could be read before.
         messages: u64,
-        /// What is wrong.
+        /// The reason.
         why: String,
     },
-    /// A message is not what its channel says.
+    /// A message is not of its channel's type.
     #[error("message {message} on {topic} is not a {what}: {source}")]
     Message {
-        /// Its number in the file, from 0.
+        /// Number of the message in the file, from 0.
         message: u64,
         /// Its topic.
         topic: String,
         /// The type of the topic.
         what: &'static str,
-        /// What is wrong.
+        /// The reason.
         source: elbowroom_ros2::CdrError,
     },
     /// The file has nothing to replay.
@@ -55,7 +55,7 @@ pub enum BagError {
     /// The file has no joint states on the topic.
     #[error("has no sensor_msgs/msg/JointState on {}\n  help: {}", wanted.as_deref().unwrap_or("any topic"), topics(found))]
     NoJointStates {
-        /// The topic that was asked for.
+        /// The requested topic.
         wanted: Option<String>,
         /// Topics that have joint states.
         found: Vec<String>,
@@ -66,10 +66,10 @@ pub enum BagError {
         /// The topics.
         found: Vec<String>,
     },
-    /// Joint states that say nothing of a joint.
+    /// The number of positions differs from the number of names.
     #[error("message {message} on {topic} has {names} names and {positions} positions")]
     JointStateLength {
-        /// Its number in the file, from 0.
+        /// Number of the message in the file, from 0.
         message: u64,
         /// Its topic.
         topic: String,
@@ -83,7 +83,7 @@ pub enum BagError {
     Configuration {
         /// The robot.
         robot: String,
-        /// What is wrong.
+        /// The reason.
         why: String,
     },
     /// A recorded tick does not fit its configuration.
@@ -93,7 +93,7 @@ pub enum BagError {
         robot: String,
         /// The number of the tick.
         sequence: u64,
-        /// What is wrong.
+        /// The reason.
         why: String,
     },
 }
@@ -105,7 +105,7 @@ fn topics(found: &[String]) -> String {
     }
 }
 
-/// What to do where a record cannot be written.
+/// Returns the help for a record that cannot be written.
 fn instead(e: &mcap::McapError) -> &'static str {
     match e {
         mcap::McapError::Io(e) if e.kind() == std::io::ErrorKind::StorageFull => {

@@ -1,4 +1,4 @@
-//! Joint states out of any recording of ROS 2, as a trajectory.
+//! Joint states from any recording of ROS 2, as a trajectory.
 
 use std::io::{self, Read, Write};
 
@@ -14,21 +14,21 @@ pub struct JointRecording {
     pub topic: String,
     /// Names of the joints, in the order in which they appeared.
     pub joints: Vec<String>,
-    /// Time since the first row (s), and a value per joint (rad or m). The times rise.
+    /// Time since the first row (s), and a value per joint (rad or m). The times increase.
     pub rows: Vec<(f64, Vec<f64>)>,
-    /// True if the file ended before the end of its data was written.
+    /// Whether the file ended before the end of its data.
     pub cut_off: bool,
 }
 
 impl JointRecording {
-    /// Reads the joint states of a topic, or of the only one that has any.
+    /// Reads the joint states of a topic, or of the only topic that has joint states.
     ///
-    /// A message may have some of the joints, as where arm and gripper publish on one topic: the others keep their last value, and the
-    /// rows begin where every joint has one. Times are those of the measurement, or of the recording where the messages have none; a
-    /// message that is not later than the one before it replaces its row.
+    /// A message may have only some of the joints, for example if arm and gripper publish on one topic: the others keep
+    /// their last value, and the rows begin when every joint has a value. Times are times of measurement, or of
+    /// recording if the messages have none; a message that is not later than the one before it replaces its row.
     ///
     /// # Errors
-    /// [`BagError::NoJointStates`], [`BagError::SeveralTopics`]; a file that is not an MCAP file, or damaged.
+    /// [`BagError::NoJointStates`], [`BagError::SeveralTopics`]; errors of a file that is not an MCAP file, or damaged.
     pub fn read(file: impl Read, topic: Option<&str>) -> Result<Self, BagError> {
         let mut reader = BagReader::new(file);
         let (mut topics, mut states): (Vec<String>, Vec<(i64, JointState)>) = (Vec::new(), Vec::new());
@@ -68,7 +68,7 @@ impl JointRecording {
     }
 }
 
-/// Time (ns) and contents of a message.
+/// Reads time (ns) and contents of a message.
 fn state(message: &BagMessage) -> Result<(i64, JointState), BagError> {
     let state = JointState::decode(&message.payload).map_err(|source| BagError::Message {
         message: message.index,
@@ -91,7 +91,7 @@ fn state(message: &BagMessage) -> Result<(i64, JointState), BagError> {
     Ok((if measured_ns > 0 { measured_ns } else { recorded_ns }, state))
 }
 
-/// The joints, and a row per message from the one on at which every joint has a value.
+/// Collects the joints, and a row per message, starting when every joint has a value.
 fn rows(states: &[(i64, JointState)]) -> (Vec<String>, Vec<(f64, Vec<f64>)>) {
     let mut joints: Vec<String> = Vec::new();
     for name in states.iter().flat_map(|(_, state)| &state.name) {

@@ -1,8 +1,8 @@
 //! MCAP recordings of a cell: writer, reader and replay.
 //!
-//! [`RunRecorder`] records a simulated run, [`Recorder`] a live service. A recording has the profile `ros2`: Foxglove, Rerun
-//! and the tools of ROS 2 read it. It also has what every monitor was built from and given, bit by bit, so that [`replay`]
-//! runs the monitors again and compares their answers. `docs/recordings.md` lists the topics.
+//! [`RunRecorder`] records a simulated run, [`Recorder`] a live service. A recording has the profile `ros2`: Foxglove,
+//! Rerun and the tools of ROS 2 read it. It also has the configuration and the input of every monitor, bit by bit, so
+//! that [`replay`] runs the monitors again and compares their answers. `docs/recordings.md` lists the topics.
 //!
 //! ```
 //! use elbowroom_cell::Cell;

@@ -1,4 +1,4 @@
-//! Records a live service: the ticks of several threads, without holding any of them up.
+//! Recorder of a live service: records the ticks of several threads without delaying them.
 
 use std::io::{Seek, Write};
 use std::sync::Arc;
@@ -15,14 +15,14 @@ use elbowroom_status::CellStatus;
 use crate::tick_writer::TickWriter;
 use crate::{BagError, CellWriter, configuration};
 
-/// Items that wait for the file.
+/// Capacity of the queue to the file, in items.
 const QUEUE: usize = 8192;
-/// Ticks of one robot that wait for the file: two seconds at 500 Hz.
+/// Capacity for ticks of one robot that wait for the file: two seconds at 500 Hz.
 const TICKS_PER_ROBOT: usize = 1024;
-/// The writer looks this often: a thread that waited in the queue would have to be woken by the tick.
+/// Interval at which the writer polls: if it waited in the queue, the tick would have to wake it.
 const POLL: Duration = Duration::from_millis(5);
 
-/// Records a live service. A thread of its own writes; ticks that arrive faster than it can write are left out and counted.
+/// Records a live service. A separate thread writes; ticks that arrive faster than it can write are omitted and counted.
 pub struct Recorder {
     queue: SyncSender<Item>,
     shared: Arc<Shared>,
@@ -44,7 +44,7 @@ enum Item {
     Configuration(Box<MonitorConfiguration>, f64),
 }
 
-/// A tick for the file, and the queue to which it returns empty.
+/// A tick for the file, and the queue to which its buffer returns.
 struct TickBuffer {
     tick: MonitorTick,
     back: SyncSender<Box<TickBuffer>>,
@@ -60,8 +60,10 @@ pub struct TickRecorder {
 }
 
 impl Recorder {
-    /// Begins a recording. `on_error` is called once, at the first error, from which on nothing is recorded: whoever waits for
-    /// [`Self::finish`] would hear of it days later.
+    /// Begins a recording.
+    ///
+    /// `on_error` is called once, at the first error, after which nothing is recorded: without it the error would be
+    /// known only at [`Self::finish`], days later.
     ///
     /// # Errors
     /// [`BagError::Io`] if the thread cannot be started.
@@ -79,13 +81,14 @@ impl Recorder {
         Ok(Self { queue, shared, thread })
     }
 
-    /// The recorder of a robot (its index in the cell), and what its monitor is built from. Everything that its ticks need is
-    /// allocated here.
+    /// Creates the recorder of a robot (`robot` is its index in the cell), and records its monitor's configuration.
+    ///
+    /// All memory of its ticks is allocated here.
     pub fn robot(&self, robot: u32, monitor: &Monitor, t_s: f64) -> TickRecorder {
         let (back, free) = sync_channel(TICKS_PER_ROBOT);
         for _ in 0..TICKS_PER_ROBOT {
             let buffer = TickBuffer { tick: empty_tick(monitor.configuration()), back: back.clone() };
-            // It has the room.
+            // The queue has room for all buffers.
             let _ = back.try_send(Box::new(buffer));
         }
         let (queue, shared) = (self.queue.clone(), self.shared.clone());
@@ -94,14 +97,14 @@ impl Recorder {
         recorder
     }
 
-    /// Records the status of the cell; its time is that of the ticks. Never waits.
+    /// Records the status of the cell; its time is on the clock of the ticks. Never waits.
     pub fn status(&self, status: CellStatus) {
         if self.queue.try_send(Item::Status(Box::new(status))).is_err() {
             self.shared.lost_statuses.fetch_add(1, Relaxed);
         }
     }
 
-    /// Number of ticks that were left out.
+    /// Number of omitted ticks.
     pub fn lost_ticks(&self) -> u64 {
         self.shared.lost_ticks.load(Relaxed)
     }
@@ -111,7 +114,7 @@ impl Recorder {
         self.shared.waiting.load(Relaxed)
     }
 
-    /// Writes what waits, and the index of the file.
+    /// Writes all waiting items, and the index of the file.
     ///
     /// # Errors
     /// The first error of the recording.
@@ -123,37 +126,38 @@ impl Recorder {
 }
 
 impl TickRecorder {
-    /// A region of the monitor was switched.
+    /// Records that a region of the monitor was switched.
     pub fn switched(&mut self, region: RegionId, active: bool) {
         self.ticks.switched(region, active);
     }
 
-    /// A volume was attached to the robot.
+    /// Records that a volume was attached to the robot.
     pub fn attached(&mut self, volume: VolumeId, in_link: &Pose) {
         self.ticks.attached(volume, in_link);
     }
 
-    /// A volume was detached from the robot.
+    /// Records that a volume was detached from the robot.
     pub fn detached(&mut self, volume: VolumeId) {
         self.ticks.detached(volume);
     }
 
-    /// The monitor has forgotten its robot's position ([`Monitor::forget_position`]).
+    /// Records that the monitor has forgotten its robot's position ([`Monitor::forget_position`]).
     pub fn forgot_position(&mut self) {
         self.ticks.forgot_position();
     }
 
-    /// The monitor was built again, from another configuration. Not part of the tick: it allocates.
+    /// Records that the monitor was built again, from another configuration. Not part of the tick: it allocates.
     pub fn configuration(&self, monitor: &Monitor, t_s: f64) {
         let message = Box::new(configuration::of_monitor(self.robot, monitor));
         if self.queue.try_send(Item::Configuration(message, t_s)).is_err() {
-            // Without it the ticks that follow cannot be replayed.
+            // Without the configuration, later ticks cannot be replayed.
             self.shared.lost_ticks.fetch_add(1, Relaxed);
         }
     }
 
-    /// The monitor has ticked, at `t_s` of the recording's clock: that of the statuses, and common to all robots. `report` is the
-    /// monitor's own. Never waits, and does not allocate.
+    /// Records a tick of the monitor, at `t_s` of the recording's clock, which statuses and all robots share.
+    ///
+    /// `report` is the monitor's own. Never waits, and does not allocate.
     pub fn tick(&mut self, t_s: f64, snapshot: &Snapshot<'_>, report: &TickReport, monitor: &Monitor) {
         let Ok(mut buffer) = self.free.try_recv() else {
             self.ticks.skip();
@@ -169,7 +173,7 @@ impl TickRecorder {
     }
 }
 
-/// A tick with room for everything that a tick of this monitor has.
+/// Creates a tick with memory for everything that a tick of this monitor has.
 fn empty_tick(configuration: &Configuration) -> MonitorTick {
     let (joints, sources) = (configuration.chain().dof(), configuration.sources().len());
     MonitorTick {

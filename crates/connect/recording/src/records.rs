@@ -1,13 +1,13 @@
-//! The framing of MCAP, read from bytes that anybody may have written: nothing is believed before it is there.
+//! Framing of MCAP, read from bytes of unknown origin: a claimed length is used only if the bytes are there.
 //!
-//! The crate `mcap` writes our files. Its reader (0.26) panics on lengths that do not fit their record, so that files are read
-//! here: the few kinds of records that a replay needs.
+//! The crate `mcap` writes the recordings. Its reader (0.26) panics on lengths that do not fit their record, so files
+//! are read here: the few kinds of records that a replay needs.
 
 use std::io::Read;
 
 use ruzstd::decoding::StreamingDecoder;
 
-/// The first bytes of a file.
+/// First bytes of a file.
 pub(crate) const MAGIC: [u8; 8] = [0x89, b'M', b'C', b'A', b'P', b'0', b'\r', b'\n'];
 /// Largest record, and largest chunk after decompression, bytes.
 const MAX_BYTES: u64 = 1 << 30;
@@ -41,17 +41,17 @@ pub(crate) enum Record<'a> {
     Other,
 }
 
-/// A record of a file as it is there.
+/// A record of a file, not parsed yet.
 pub(crate) enum Framed {
     Record {
         opcode: u8,
         body: Vec<u8>,
     },
-    /// The file ends inside a record, or where another one should begin.
+    /// The file ends inside a record, or where another record should begin.
     CutOff,
 }
 
-/// The next record of a file.
+/// Reads the next record of a file.
 pub(crate) fn next(file: &mut impl Read) -> Result<Framed, String> {
     let mut head = Vec::new();
     read_into(file, 9, &mut head)?;
@@ -67,12 +67,12 @@ pub(crate) fn next(file: &mut impl Read) -> Result<Framed, String> {
     Ok(if is_whole { Framed::Record { opcode: *opcode, body } } else { Framed::CutOff })
 }
 
-/// Memory grows with what is there, not with what is claimed.
+/// Reads `count` bytes; memory grows with the bytes that are there, not with the claimed count.
 fn read_into(file: &mut impl Read, count: u64, to: &mut Vec<u8>) -> Result<(), String> {
     file.take(count).read_to_end(to).map(|_| ()).map_err(|e| format!("the file cannot be read: {e}"))
 }
 
-/// The record of an opcode and its body.
+/// Parses a record from its opcode and its body.
 pub(crate) fn parse(opcode: u8, body: &[u8]) -> Result<Record<'_>, String> {
     let mut fields = Fields(body);
     Ok(match opcode {
@@ -112,7 +112,7 @@ pub(crate) fn parse(opcode: u8, body: &[u8]) -> Result<Record<'_>, String> {
     })
 }
 
-/// The first record of the contents of a chunk, and what follows it.
+/// Splits the first record off the contents of a chunk: opcode, body, rest.
 pub(crate) fn first(contents: &[u8]) -> Result<(u8, &[u8], &[u8]), String> {
     let mut fields = Fields(contents);
     let [opcode] = fields.number()?;
@@ -121,7 +121,7 @@ pub(crate) fn first(contents: &[u8]) -> Result<(u8, &[u8], &[u8]), String> {
     Ok((opcode, body, fields.0))
 }
 
-/// The contents of a chunk, compared with their checksum.
+/// Decompresses the contents of a chunk and checks them against their checksum.
 fn chunk(fields: &mut Fields<'_>) -> Result<Vec<u8>, String> {
     let _times: [u8; 16] = fields.number()?;
     let size = u64::from_le_bytes(fields.number()?);
@@ -137,7 +137,7 @@ fn chunk(fields: &mut Fields<'_>) -> Result<Vec<u8>, String> {
         "" => contents.extend_from_slice(compressed),
         "lz4" => {
             let decoder = lz4::Decoder::new(compressed).map_err(|e| format!("a chunk is not LZ4: {e}"))?;
-            // One more than it claims, to see that it is too long.
+            // One byte more than claimed, to notice contents that are too long.
             decoder.take(size + 1).read_to_end(&mut contents).map_err(|e| format!("a chunk is not LZ4: {e}"))?;
         }
         "zstd" => {
@@ -149,7 +149,7 @@ fn chunk(fields: &mut Fields<'_>) -> Result<Vec<u8>, String> {
     if contents.len() as u64 != size {
         return Err(format!("a chunk has {} bytes, not the {size} that it claims", contents.len()));
     }
-    // 0: the writer computed none.
+    // 0 means that the writer computed no checksum.
     if checksum != 0 && crc32fast::hash(&contents) != checksum {
         return Err("a chunk does not have its checksum".into());
     }

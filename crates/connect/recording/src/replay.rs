@@ -1,4 +1,4 @@
-//! Runs the monitors of a recording again, with the recorded input, and compares their answers.
+//! Replay: runs the monitors of a recording again, with the recorded input, and compares their answers.
 
 use std::collections::BTreeMap;
 use std::io::Read;
@@ -17,7 +17,7 @@ const MAX_ROBOTS: usize = 1024;
 /// Reads a recording, builds its monitors from the recorded configurations, and ticks them again.
 ///
 /// # Errors
-/// [`BagError`] if the file is none of these recordings, is damaged, or has no ticks. One that ends early is not an error:
+/// [`BagError`] if the file is not such a recording, is damaged, or has no ticks. A file that ends early is not an error:
 /// [`Replay::cut_off`].
 pub fn replay(file: impl Read) -> Result<Replay, BagError> {
     let mut reader = BagReader::new(file);

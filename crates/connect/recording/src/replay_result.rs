@@ -1,11 +1,11 @@
-//! What a replay found.
+//! Result of a replay.
 
 use serde::Serialize;
 
-/// What a replay found.
+/// Result of a replay.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Replay {
-    /// The cell.
+    /// Name of the cell.
     pub cell: String,
     /// Checksum of its configuration.
     pub checksum: String,
@@ -13,30 +13,30 @@ pub struct Replay {
     pub messages: u64,
     /// Ticks that were run again.
     pub ticks: u64,
-    /// Ticks with another answer.
+    /// Ticks with a different answer.
     pub differences: u64,
-    /// The file ends before its end was written.
+    /// Whether the file ends early.
     pub cut_off: bool,
-    /// Ticks that the recorder had to leave out.
+    /// Ticks that the recorder had to omit.
     pub lost_ticks: u64,
-    /// Per robot.
+    /// Results per robot.
     pub robots: Vec<RobotReplay>,
 }
 
-/// What the replay of a robot found.
+/// Result of the replay of one robot.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct RobotReplay {
     /// Its name.
     pub name: String,
     /// Ticks that were run again.
     pub ticks: u64,
-    /// Time of the last of them, s.
+    /// Time of the last tick that was run again, s.
     pub until_s: f64,
-    /// Ticks that were not, as one before them is missing.
+    /// Ticks that were not run again, as a tick before them is missing.
     pub skipped: u64,
-    /// Ticks with another answer.
+    /// Ticks with a different answer.
     pub differences: u64,
-    /// The first of them.
+    /// The first difference.
     pub first: Option<Difference>,
 }
 
@@ -45,9 +45,9 @@ pub struct RobotReplay {
 pub struct Difference {
     /// Its time, s.
     pub t_s: f64,
-    /// Its number.
+    /// Sequence number of the tick.
     pub sequence: u64,
-    /// What differs: `override`, `outputs` or `reason`.
+    /// The part that differs: `override`, `outputs` or `reason`.
     pub what: &'static str,
     /// The recorded override.
     pub recorded: f64,

@@ -1,4 +1,4 @@
-//! A monitor that runs again.
+//! Monitor that runs again in a replay.
 
 use std::sync::Arc;
 
@@ -13,11 +13,11 @@ use crate::{BagError, configuration, solid, tick};
 
 /// Most slots of exchange regions.
 const MAX_SLOTS: usize = 4096;
-/// The robot, and the one that stands for all others: in the arbiter of a replay.
+/// In the arbiter of a replay, the robot itself; `OTHERS` stands for all other robots.
 const SELF: RobotSlot = RobotSlot(0);
 const OTHERS: RobotSlot = RobotSlot(1);
 
-/// The monitor of one robot, with what the replay has found.
+/// The monitor of one robot, with the result of its replay so far.
 pub(crate) struct ReplayedMonitor {
     monitor: Monitor,
     interlock: Option<Interlock>,
@@ -34,7 +34,7 @@ impl ReplayedMonitor {
         Ok(Self { monitor, interlock, slots, next: 0, found, sources: Vec::new() })
     }
 
-    /// Goes on with another configuration, as the service did.
+    /// Continues with another configuration, as the service did.
     pub(crate) fn configure(&mut self, message: &MonitorConfiguration) -> Result<(), BagError> {
         (self.monitor, self.interlock, self.slots) = build(message)?;
         Ok(())
@@ -45,7 +45,7 @@ impl ReplayedMonitor {
     }
 
     pub(crate) fn tick(&mut self, tick: &MonitorTick) -> Result<(), BagError> {
-        // A monitor remembers: after a tick that is missing its answers may be others.
+        // A monitor has a memory: after a missing tick its answers may differ.
         if self.found.skipped > 0 || tick.sequence != self.next {
             self.found.skipped += 1;
             return Ok(());
@@ -73,12 +73,12 @@ impl ReplayedMonitor {
         Ok(())
     }
 
-    /// What had changed since the tick before.
+    /// Applies the changes since the tick before.
     fn change(&mut self, tick: &MonitorTick) -> Result<(), String> {
         if tick.forgot_position {
             self.monitor.forget_position();
         }
-        // Which fault it was does not matter: each has the same effect.
+        // The kind of fault does not matter: each has the same effect.
         self.monitor.set_external_fault(tick.has_external_fault.then_some(Fault::Regions));
         for switch in &tick.switched {
             let region = switch.region as usize;
@@ -101,7 +101,7 @@ impl ReplayedMonitor {
         Ok(())
     }
 
-    /// Grants what was granted.
+    /// Grants the slots that were granted in the recording.
     fn grant(&self, tick: &MonitorTick) {
         let contains = |slots: &[u32], slot: &SlotId| slots.iter().any(|s| *s as usize == slot.0);
         for slot in &self.slots {
@@ -137,8 +137,8 @@ impl ReplayedMonitor {
     }
 }
 
-/// Lets the arbiter answer as it did: all other robots are outside of a slot that the robot was granted, and inside of any
-/// other. What the other robots did in truth does not matter to this monitor.
+/// Makes the arbiter answer as recorded: all other robots are outside a slot that the robot was granted, and inside any
+/// other slot. The real positions of the other robots do not matter to this monitor.
 fn answer(arbiter: &ZoneArbiter, slot: SlotId, is_granted: bool, now_s: f64) {
     if is_granted {
         arbiter.publish(slot, OTHERS, Occupancy::Outside, now_s);
@@ -167,7 +167,7 @@ fn build(message: &MonitorConfiguration) -> Result<Built, BagError> {
         if message.granted_from_outside {
             return Interlock::Granted(Arc::new(SlotGrants::new(count)));
         }
-        // It knows when others are silent from what the recorded arbiter answered.
+        // The recorded answers already account for silent robots.
         let arbiter = ZoneArbiter::new(&["self", "others"], &vec!["slot"; count]).silence_timeout(f64::INFINITY);
         Interlock::Shared(Arc::new(arbiter), SELF)
     });
@@ -175,7 +175,7 @@ fn build(message: &MonitorConfiguration) -> Result<Built, BagError> {
     Ok((monitor, interlock, slots))
 }
 
-/// The slots of the exchange regions, each once.
+/// Returns the slots of the exchange regions, each once.
 fn slots(configuration: &Configuration) -> Vec<SlotId> {
     let slot = |kind: RegionKind| if let RegionKind::Exchange { slot } = kind { Some(slot) } else { None };
     let mut slots: Vec<SlotId> = configuration.regions().iter().filter_map(|r| slot(r.kind)).collect();

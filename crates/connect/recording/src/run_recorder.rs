@@ -1,4 +1,4 @@
-//! Records a simulated run.
+//! Recorder of a simulated run.
 
 use std::io::{Seek, Write};
 
@@ -16,12 +16,13 @@ use crate::{BagError, CellWriter};
 /// Time between two statuses, s.
 const STATUS_S: f64 = 0.02;
 
-/// Records a run as its observer: [`simulate_observed`](elbowroom_sim::run::simulate_observed). Nothing is lost; the run waits
-/// for the file.
+/// Records a run as its observer: [`simulate_observed`](elbowroom_sim::run::simulate_observed).
+///
+/// Nothing is omitted; the run waits for the file.
 pub struct RunRecorder<W: Write + Seek> {
     writer: CellWriter<W>,
     robots: Vec<TickWriter>,
-    /// Per robot: its configuration is in the file.
+    /// Whether the configuration of each robot is in the file.
     is_configured: Vec<bool>,
     tick: MonitorTick,
     status: CellStatus,
@@ -31,7 +32,7 @@ pub struct RunRecorder<W: Write + Seek> {
 }
 
 impl<W: Write + Seek> RunRecorder<W> {
-    /// Records into a writer.
+    /// Creates a recorder that uses this writer.
     pub fn new(writer: CellWriter<W>, cell: &Cell) -> Self {
         Self {
             writer,
@@ -105,7 +106,7 @@ impl<W: Write + Seek> RunRecorder<W> {
     }
 }
 
-/// Holders of the slots, and the robots that wait there, in the order of the cell.
+/// Returns the holders of the slots, and the robots that wait, in the order of the cell.
 fn slots(arbiter: &ZoneArbiter, status: &CellStatus) -> Vec<SlotStatus> {
     let of_slot = |slot: SlotId| {
         let regions: Vec<String> = arbiter.slot_name(slot).split(", ").map(str::to_owned).collect();

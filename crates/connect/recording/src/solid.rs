@@ -6,7 +6,7 @@ use elbowroom_proximity::{Capsule, ConvexHull, Cuboid, Cylinder, HalfSpace, Shap
 use elbowroom_ros2::msgs::elbowroom_msgs::Solid;
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
-/// The message of a shape.
+/// Makes the message of a shape.
 pub(crate) fn encode(shape: &Shape) -> Solid {
     match shape {
         Shape::Sphere(s) => Solid { kind: 1, radius: s.radius, ..Solid::default() },
@@ -28,7 +28,7 @@ fn with_faces(kind: u8, vertices: &[Vec3], triangles: &[[u32; 3]]) -> Solid {
     }
 }
 
-/// The shape of a message, or what is wrong with it.
+/// Reads a shape from a message, or says what is wrong.
 pub(crate) fn decode(solid: &Solid) -> Result<Shape, String> {
     let (radius, half_length) = (solid.radius, solid.half_length);
     Ok(match solid.kind {
@@ -55,7 +55,7 @@ fn faces<T, E: ToString>(
     build(vertices.iter().map(|v| (*v).into()).collect(), triangles.to_vec()).map_err(|e| e.to_string())
 }
 
-/// A pose row by row.
+/// Converts a pose to numbers, row by row.
 pub(crate) fn pose_values(pose: &Pose) -> [f64; 12] {
     let mut values = [0.0; 12];
     let rows = pose.to_rows();
@@ -63,7 +63,7 @@ pub(crate) fn pose_values(pose: &Pose) -> [f64; 12] {
     values
 }
 
-/// The pose of twelve numbers; `None` if they are no rotation. The numbers stay as they are.
+/// Converts twelve numbers to a pose; `None` if they are not a rotation. The numbers are not changed.
 pub(crate) fn pose_of(values: &[f64; 12]) -> Option<Pose> {
     let column = |i: usize| Vec3::new(values[i], values[4 + i], values[8 + i]);
     Some(Pose::new(Rotation::from_columns(column(0), column(1), column(2))?, column(3)))

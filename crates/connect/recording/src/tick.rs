@@ -6,7 +6,7 @@ use elbowroom_spatial::{FrameMotion, Pose, Vec3};
 
 use crate::solid::{pose_of, pose_values};
 
-/// Writes a tick into a message. No allocation where the message has held such a tick before.
+/// Writes a tick into a message. Does not allocate if the message has held such a tick before.
 pub(crate) fn write(to: &mut MonitorTick, robot: u32, snapshot: &Snapshot<'_>, report: &TickReport, monitor: &Monitor) {
     let copy = |to: &mut Vec<f64>, from: &[f64]| {
         to.clear();
@@ -25,7 +25,7 @@ pub(crate) fn write(to: &mut MonitorTick, robot: u32, snapshot: &Snapshot<'_>, r
     to.sources.extend(snapshot.sources.iter().map(source));
     let grants = monitor.slot_grants();
     to.granted.clear();
-    // Who shares an arbiter was granted what it holds now.
+    // A robot that shares an arbiter was granted the slots that it holds now.
     to.granted.extend(slots(monitor, |r, slot| grants.map_or_else(|| monitor.holds(r), |g| g.may_enter(slot))));
     to.halted.clear();
     to.halted.extend(slots(monitor, |_, slot| grants.is_some_and(|g| g.must_halt(slot))));
@@ -34,7 +34,7 @@ pub(crate) fn write(to: &mut MonitorTick, robot: u32, snapshot: &Snapshot<'_>, r
     to.outputs = report.outputs;
 }
 
-/// The slots of exchange regions for which this is so, each once.
+/// Returns the slots of exchange regions that satisfy `is_so`, each once.
 fn slots(monitor: &Monitor, is_so: impl Fn(RegionId, SlotId) -> bool) -> impl Iterator<Item = u32> {
     let regions = monitor.configuration().regions();
     let slot = move |r: usize| match regions[r].kind {
@@ -52,7 +52,7 @@ fn source(state: &SourceState) -> SourceMessage {
     SourceMessage { pose: pose_values(&state.pose), motion, stamp_s: state.stamp_s }
 }
 
-/// The state of a source. A rotation that is none counts as not finite, as the monitor saw it.
+/// Reads the state of a source. An invalid rotation counts as not finite, as the monitor saw it.
 pub(crate) fn source_state(message: &SourceMessage) -> SourceState {
     let vector = |i: usize| Vec3::new(message.motion[3 * i], message.motion[3 * i + 1], message.motion[3 * i + 2]);
     let nowhere = Pose::from_translation(Vec3::new(f64::NAN, f64::NAN, f64::NAN));
@@ -68,7 +68,7 @@ pub(crate) fn source_state(message: &SourceMessage) -> SourceState {
     }
 }
 
-/// The number of a reason, and its region.
+/// Returns the number of a reason, and its region.
 pub(crate) fn reason(reason: OverrideReason) -> (u8, i32) {
     let code = match reason {
         OverrideReason::Free => 0,

@@ -1,4 +1,4 @@
-//! What belongs to the next tick of a monitor.
+//! Data of the next tick of a monitor.
 
 use elbowroom_monitor::{Monitor, RegionId, Snapshot, TickReport, VolumeId};
 use elbowroom_ros2::msgs::elbowroom_msgs::{MonitorTick, RegionSwitch, VolumeAttachment};
@@ -6,7 +6,7 @@ use elbowroom_spatial::Pose;
 
 use crate::{solid, tick};
 
-/// Collects what changes a monitor between two ticks, and numbers the ticks.
+/// Collects the changes of a monitor between two ticks, and numbers the ticks.
 #[derive(Debug, Default)]
 pub(crate) struct TickWriter {
     robot: u32,
@@ -59,8 +59,9 @@ impl TickWriter {
         self.sequence += 1;
     }
 
-    /// A tick that is not recorded: its number is missing then, and the replay ends there. What was switched is not kept for
-    /// it either, so that nothing grows while a file does not answer.
+    /// Skips a tick that is not recorded: its number is then missing, and the replay ends there.
+    ///
+    /// Its changes are dropped too, so that nothing grows while a file does not respond.
     pub(crate) fn skip(&mut self) {
         self.switched.clear();
         self.attached.clear();

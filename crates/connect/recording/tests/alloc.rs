@@ -1,5 +1,5 @@
-//! Recording a tick does not allocate. Without the test harness, because its threads allocate, too, and the counter counts the
-//! whole process.
+//! Recording a tick does not allocate. Without the test harness, because its threads also allocate, and the counter
+//! includes the whole process.
 #![allow(clippy::print_stdout)]
 
 mod common;
@@ -21,10 +21,10 @@ fn main() {
     let recorder = Recorder::start(CellWriter::new(file.clone(), &cell, 0).unwrap(), |_| ()).unwrap();
     let mut ticks = recorder.robot(0, &monitor, 0.0);
     let gate = monitor.region("gate").unwrap();
-    // The first switch makes room for all others.
+    // The first switch allocates memory for all others.
     ticks.switched(gate, false);
     std::thread::sleep(Duration::from_millis(1200));
-    // From now on the thread of the recorder waits for its file, so that it allocates nothing either.
+    // From now on the thread of the recorder waits for its file, so that it does not allocate either.
     file.is_closed.store(true, SeqCst);
     let mut run = |from: u32, to: u32| {
         for i in from..to {
@@ -39,14 +39,14 @@ fn main() {
             ticks.tick(t_s, &snapshot, &report, &monitor);
         }
     };
-    // Until the flush of the second is due, which waits for the file.
+    // Until the next flush is due, which waits for the file.
     run(0, 10);
     std::thread::sleep(Duration::from_millis(1200));
     let counter = AllocationCounter::start();
     run(10, 900);
     assert_eq!(counter.allocations(), 0);
     assert_eq!(recorder.lost_ticks(), 0);
-    // Ticks beyond the room are left out, without an allocation too.
+    // Ticks beyond the capacity are omitted, also without an allocation.
     run(900, 3000);
     assert_eq!(counter.allocations(), 0);
     assert!(recorder.lost_ticks() > 1500);

@@ -1,4 +1,4 @@
-//! Monitors whose exchange regions are granted from outside of the process replay to the bit, halts included.
+//! Monitors whose exchange regions are granted from outside the process replay to the bit, halts included.
 
 use std::sync::Arc;
 
@@ -48,7 +48,7 @@ fn grants_and_halts_replay_to_the_bit() {
     let (mut waiting, mut halted, mut free) = (0, 0, 0);
     for i in 0..20_000_u32 {
         let t_s = 0.002 * f64::from(i);
-        // The table is granted for three seconds of four; another robot is found in it now and then.
+        // The table is granted for three of every four seconds; from time to time another robot is found in it.
         grants.write(SlotId(0), i % 2000 < 1500, i % 3000 > 2900);
         grants.write(SlotId(1), i % 700 < 350, false);
         let (q, qd) = ([position(t_s)], [velocity(t_s)]);
@@ -62,7 +62,7 @@ fn grants_and_halts_replay_to_the_bit() {
         }
         ticks.tick(t_s, &snapshot, &report, &monitor);
         if i % 500 == 0 {
-            // A run of the test has no time between its ticks: the recorder gets it here.
+            // The test has no time between its ticks, so the recorder gets time here.
             while recorder.waiting_ticks() > 0 {
                 std::thread::sleep(std::time::Duration::from_millis(1));
             }

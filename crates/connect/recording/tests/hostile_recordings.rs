@@ -1,4 +1,4 @@
-//! Recordings that somebody has changed: refused or replayed, never a panic.
+//! Changed recordings are refused or replayed, and never cause a panic.
 #![allow(clippy::print_stdout)]
 
 use std::collections::BTreeMap;
@@ -73,7 +73,7 @@ fn recording() -> Vec<u8> {
     file.into_inner()
 }
 
-/// What a replay reads: the configuration and the first ticks.
+/// Returns the messages that a replay reads: the configuration and the first ticks.
 fn messages(recording: &[u8]) -> Vec<(String, Vec<u8>)> {
     let all = mcap::MessageStream::new(recording).unwrap().map(Result::unwrap);
     let mut messages: Vec<_> = all
@@ -128,7 +128,7 @@ fn changed_messages_are_refused_or_replayed() {
     let mut kinds = BTreeMap::<String, usize>::new();
     for _ in 0..CHANGES {
         let mut changed = sound.clone();
-        // The configuration is compared with its checksum: half of the changes are to ticks.
+        // A changed configuration does not match its checksum, so half of the changes are to ticks.
         let which = if random.below(2) == 0 { 0 } else { 1 + random.below(sound.len() - 1) };
         mutate(&mut changed[which].1, &mut random);
         let kind = match replay(&written(&changed)[..]) {
@@ -164,7 +164,7 @@ fn changed_files_are_refused_or_replayed() {
     assert!(read > CHANGES / 20 && refused > CHANGES / 20);
 }
 
-/// A chunk is not compressed and says its checksum: a number in it that changed would be replayed as a measured one.
+/// The chunk is not compressed and has a checksum: without the check, a changed number would be replayed as a measured one.
 #[test]
 fn a_chunk_that_changed_is_refused() {
     let messages = messages(&recording());

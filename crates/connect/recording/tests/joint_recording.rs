@@ -29,7 +29,7 @@ fn message(channel: u16, time_ns: u64, payload: &[u8]) -> Vec<u8> {
     record(5, &[&channel.to_le_bytes(), &0_u32.to_le_bytes(), &time, &time, payload])
 }
 
-/// A chunk of records, compressed as recording2 does it in its fast setting.
+/// Makes a chunk of records, compressed as rosbag2 does it in its fast setting.
 fn chunk(records: &[Vec<u8>]) -> Vec<u8> {
     let plain = records.concat();
     let compressed = compress_to_vec(&plain[..], CompressionLevel::Fastest);
@@ -43,7 +43,7 @@ fn file(records: &[Vec<u8>]) -> Vec<u8> {
     [MAGIC, &records.concat(), &record(15, &[&[0; 4]]), MAGIC].concat()
 }
 
-/// A state at a time in milliseconds; 0: without a stamp.
+/// Makes a state at a time in milliseconds; 0 for a state without a stamp.
 fn state(t_ms: u32, joints: &[(&str, f64)]) -> Vec<u8> {
     let mut state = JointState::default();
     if t_ms > 0 {

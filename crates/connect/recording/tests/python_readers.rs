@@ -1,6 +1,7 @@
-//! Recordings and messages against `mcap`, `mcap-ros2-support` and `rosbags` from PyPI.
+//! Comparison of recordings and messages with `mcap`, `mcap-ros2-support` and `rosbags` from PyPI.
 //!
-//! Needs a Python with them, named by `ELBOWROOM_PYTHON` (default `python3`); without it the tests pass with a message.
+//! Needs a Python with these packages, named by `ELBOWROOM_PYTHON` (default `python3`); without it the tests pass with
+//! a message.
 #![allow(clippy::print_stdout)]
 
 use std::path::Path;
@@ -42,7 +43,7 @@ fn cell(example: &str) -> Cell {
     Cell::load(examples.join(example).join("cell.toml")).unwrap()
 }
 
-/// Messages on a topic, as our own reader counts them.
+/// Counts the messages on each topic with elbowroom's reader.
 fn counted(file: &Path) -> std::collections::BTreeMap<String, u64> {
     let mut reader = BagReader::new(std::fs::File::open(file).unwrap());
     let mut counts = std::collections::BTreeMap::new();
@@ -75,7 +76,7 @@ fn recordings_are_read_by_three_other_readers() {
         assert_eq!(found["topics"].as_object().unwrap().len(), counts.len());
         assert_eq!(found["same_bytes"], counts.values().sum::<u64>());
         assert_eq!(found["indexed_messages"], found["same_bytes"]);
-        // The types that the tools of Jazzy have, with the same hashes there.
+        // Types that the tools of Jazzy have, with equal hashes there.
         assert!(found["hashes"].as_u64().unwrap() >= 5);
         assert_eq!(found["profile"], "ros2");
         let recording = &outcome.recording;
@@ -89,7 +90,8 @@ fn recordings_are_read_by_three_other_readers() {
     }
 }
 
-/// The URDF beside the recording is read by our own reader, meshes too, and has a link for every frame that never moves.
+/// Checks the URDF beside the recording: elbowroom's reader reads it with its meshes, and it has a link for every frame
+/// that never moves.
 fn urdf_beside(file: &Path, cell: &Cell, found: &Value) {
     let urdf = file.with_extension("urdf");
     let loaded = elbowroom_formats::robot::load(&urdf, &elbowroom_formats::LoadOptions::default()).unwrap();

@@ -1,4 +1,4 @@
-//! The recorder of a service: it never waits, counts what it loses, and leaves a file that can be read when it is killed.
+//! Recorder of a service: it never waits, counts its losses, and leaves a readable file if it is killed.
 #![allow(clippy::print_stdout)]
 
 use std::io::{self, BufRead, BufReader, Cursor, Seek, SeekFrom, Write};
@@ -40,7 +40,7 @@ fn what_a_service_records_replays_to_the_bit() {
         monitor.set_external_fault((2300..2600).contains(&i).then_some(Fault::Regions));
         recorder.status(tick(&mut monitor, &mut ticks, 0.002 * f64::from(i)));
         if i % 100 == 0 {
-            // A run of the test has no time between its ticks: the recorder gets it here.
+            // The test has no time between its ticks, so the recorder gets time here.
             while recorder.waiting_ticks() > 0 {
                 std::thread::sleep(Duration::from_millis(1));
             }
@@ -73,7 +73,7 @@ fn a_file_that_does_not_answer_costs_ticks_and_no_time() {
     println!("100,000 ticks in {:?}", begin.elapsed());
     assert!(begin.elapsed() < Duration::from_mins(1));
     let lost = recorder.lost_ticks();
-    // What is on its way is bounded: the ticks that one robot has, and a chunk.
+    // The data in memory is bounded: the ticks of one robot, and a chunk.
     assert!(lost > 80_000, "only {lost} ticks were left out");
     file.is_closed.store(false, SeqCst);
     std::thread::sleep(Duration::from_millis(200));
@@ -82,12 +82,12 @@ fn a_file_that_does_not_answer_costs_ticks_and_no_time() {
     let found = replay(&file.bytes.lock().unwrap().get_ref()[..]).unwrap();
     let robot = &found.robots[0];
     assert_eq!((found.lost_ticks, found.differences), (lost, 0));
-    // What was recorded behind the first hole is not compared.
+    // Ticks after the first missing one are not compared.
     assert!(robot.ticks >= 100 && robot.skipped >= 1);
     assert_eq!(robot.ticks + lost + robot.skipped, 100_001);
 }
 
-/// A file on a disk with room for so many bytes.
+/// A file on a disk with room for a limited number of bytes.
 struct SmallDisk {
     file: Cursor<Vec<u8>>,
     room: usize,
@@ -132,7 +132,7 @@ fn a_full_disk_is_said_once_and_at_once() {
     assert!(hears.try_recv().is_err(), "it was said twice");
 }
 
-/// Not a test of its own: the process that [`a_killed_process_leaves_a_file_up_to_its_last_second`] starts.
+/// Not a separate test: the process that [`a_killed_process_leaves_a_file_up_to_its_last_second`] starts.
 #[test]
 fn records_until_it_is_killed() {
     let Some(path) = std::env::var_os(FILE) else { return };
@@ -150,7 +150,7 @@ fn records_until_it_is_killed() {
 
 #[test]
 fn a_killed_process_leaves_a_file_up_to_its_last_second() {
-    // Killed after the first second that is written, and after the second one, both at the same time.
+    // One process is killed after its first written second, one after its second, both at the same time.
     std::thread::scope(|scope| {
         for lifetime_s in [1.7, 2.7] {
             scope.spawn(move || killed_after(lifetime_s));
@@ -177,7 +177,7 @@ fn killed_after(lifetime_s: f64) {
     let found = replay(std::fs::File::open(&file).unwrap()).unwrap();
     println!("killed at {last:.3} s, readable until {:.3} s", found.robots[0].until_s);
     assert!(found.cut_off && found.differences == 0);
-    // A second, and what a busy machine adds.
+    // A second, and the delay of a busy machine.
     assert!(last - found.robots[0].until_s < 1.5, "{} of {last}", found.robots[0].until_s);
 }
 
@@ -191,7 +191,7 @@ fn a_urdf_that_lies_there_without_a_recording_is_not_overwritten() {
     assert!(error.contains("arm.urdf: is there already\n  write: "), "{error}");
     assert_eq!(std::fs::read_to_string(&urdf).unwrap(), "made by hand");
     assert!(!recording.exists());
-    // One that was written with a recording is written anew with it.
+    // A URDF that was written with a recording is replaced together with it.
     std::fs::remove_file(&urdf).unwrap();
     for _ in 0..2 {
         CellWriter::create(&recording, &cell, 0).map(|_| ()).unwrap();

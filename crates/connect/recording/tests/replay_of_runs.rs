@@ -1,4 +1,4 @@
-//! Recordings of runs replay to the bit: all example cells, and a cell that has everything at once for two minutes, ten with
+//! Recordings of runs replay to the bit: all example cells, and a cell with all features for two minutes, ten with
 //! `ELBOWROOM_LONG=1`.
 #![allow(clippy::print_stdout)]
 
@@ -37,7 +37,8 @@ fn is_long_run() -> bool {
     std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1")
 }
 
-/// An example, of `pallet` a part: after 8 s it has evaded a cart and gripped a carton, and each tick of it is costly.
+/// Loads an example; `pallet` is shortened, as each of its ticks is slow: after 8 s it has evaded a cart and gripped a
+/// carton.
 fn loaded(example: &str) -> Cell {
     let file = examples().join(example).join("cell.toml");
     let text = std::fs::read_to_string(&file).unwrap();
@@ -169,7 +170,7 @@ fn minutes_of_everything_replay_to_the_bit() {
     let text = EVERYTHING.replace("max_s = 600", &format!("max_s = {end_s}"));
     let cell = Cell::parse("everything.toml", &text).unwrap();
     let (bytes, recording) = recorded(&cell, &RunOptions::default());
-    // Otherwise the replay would prove little.
+    // Without these events the replay would prove little.
     for event in ["granted", "waiting", "released", "on", "off", "warn_in", "output_on", "stop", "resume"] {
         let count = recording.events.iter().filter(|e| e.event.name() == event).count();
         assert!(count > 10, "{event} happened {count} times");
@@ -192,7 +193,7 @@ fn another_answer_is_found() {
     assert_eq!(first.recorded.to_bits(), first.replayed.to_bits() ^ 1);
 }
 
-/// The recording with the last bit of one override changed.
+/// Returns the recording with the last bit of one override changed.
 fn with_another_override(bytes: &[u8]) -> Vec<u8> {
     use elbowroom_ros2::Message as _;
     use elbowroom_ros2::msgs::elbowroom_msgs::MonitorTick;

@@ -1,12 +1,13 @@
 //! Common Data Representation: the bytes of a ROS 2 message (OMG XCDR version 1, little-endian, plain types).
 //!
-//! Four bytes say how what follows is written; every number is aligned to its size, counted from behind these four. A string
-//! is its length with a closing zero, then its bytes; a sequence is its length, then its elements.
+//! The first four bytes, the encapsulation, name the encoding; every number is aligned to its size, counted from the
+//! end of the encapsulation. A string is its length with a closing zero, then its bytes; a sequence is its length, then
+//! its elements.
 
-/// What every payload begins with: plain CDR, little-endian, no options.
+/// First bytes of every payload: plain CDR, little-endian, no options.
 const ENCAPSULATION: [u8; 4] = [0, 1, 0, 0];
 
-/// Why bytes are not the message that they should be.
+/// Why bytes are not a message of the expected type.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum CdrError {
     /// The payload does not begin with the four bytes of plain CDR, little-endian.
@@ -15,45 +16,45 @@ pub enum CdrError {
     /// The bytes end inside a value.
     #[error("the message ends at byte {at}, inside a value of {needed} bytes")]
     End {
-        /// Where the value begins, counted behind the encapsulation.
+        /// Position of the value, counted from the end of the encapsulation.
         at: usize,
-        /// Bytes of the value.
+        /// Size of the value, bytes.
         needed: usize,
     },
     /// A sequence claims more elements than there are bytes for.
     #[error("a sequence at byte {at} claims {count} elements, and only {remaining} bytes follow")]
     Count {
-        /// Where the sequence begins.
+        /// Position of the sequence.
         at: usize,
-        /// The claimed number.
+        /// The claimed number of elements.
         count: u32,
-        /// Bytes that follow.
+        /// Number of bytes that follow.
         remaining: usize,
     },
     /// A string is not UTF-8, or has no closing zero.
     #[error("the string at byte {at} is not UTF-8 text with a closing zero")]
     Text {
-        /// Where the string begins.
+        /// Position of the string.
         at: usize,
     },
     /// A truth value is neither 0 nor 1.
     #[error("the truth value at byte {at} is {value}, not 0 or 1")]
     Bool {
-        /// Where it is.
+        /// Position of the value.
         at: usize,
         /// Its byte.
         value: u8,
     },
-    /// Bytes are left over.
+    /// Bytes follow the message.
     #[error("{0} bytes follow the message")]
     Trailing(usize),
 }
 
-/// Writes values behind one another.
+/// Writes values one after another.
 #[derive(Debug)]
 pub struct Writer<'a> {
     bytes: &'a mut Vec<u8>,
-    /// Where the values begin, behind the encapsulation: alignment counts from here.
+    /// Position of the first value, after the encapsulation: alignment counts from here.
     origin: usize,
 }
 
@@ -64,7 +65,7 @@ impl<'a> Writer<'a> {
         Self { origin: bytes.len(), bytes }
     }
 
-    /// Fills up to a multiple of `size`.
+    /// Pads to a multiple of `size`.
     fn align(&mut self, size: usize) {
         let used = (self.bytes.len() - self.origin) % size;
         if used > 0 {
@@ -72,25 +73,27 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// A number, aligned to its size.
+    /// Writes a number, aligned to its size.
     pub fn number<const N: usize>(&mut self, little_endian: [u8; N]) {
         self.align(N);
         self.bytes.extend(little_endian);
     }
 
-    /// Bytes as they are.
+    /// Writes bytes unchanged.
     pub fn bytes(&mut self, bytes: &[u8]) {
         self.bytes.extend_from_slice(bytes);
     }
 
-    /// The length of a sequence. No sequence in memory here comes near 2³² elements; one that did would be cut.
+    /// Writes the length of a sequence, and returns it.
+    ///
+    /// Lengths above 2³² - 1 would be cut to it; no sequence here comes near.
     pub fn count(&mut self, count: usize) -> usize {
         let count = u32::try_from(count).unwrap_or(u32::MAX);
         self.number(count.to_le_bytes());
         count as usize
     }
 
-    /// A string. A zero inside would end it for readers in C: what follows is left out.
+    /// Writes a string, up to its first zero, which would end it for readers in C.
     pub fn text(&mut self, text: &str) {
         let text = text.split('\0').next().unwrap_or_default();
         self.count(text.len() + 1);
@@ -99,7 +102,7 @@ impl<'a> Writer<'a> {
     }
 }
 
-/// Reads values from bytes that anybody may have sent: nothing is believed before it is there.
+/// Reads values from bytes of unknown origin: a claimed length is used only if the bytes are there.
 #[derive(Debug)]
 pub struct Reader<'a> {
     bytes: &'a [u8],
@@ -107,7 +110,7 @@ pub struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// Reads a payload behind its encapsulation.
+    /// Creates a reader of a payload; it starts after the encapsulation.
     ///
     /// # Errors
     /// [`CdrError::Encapsulation`].
@@ -118,7 +121,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Position behind the encapsulation.
+    /// Position, counted from the end of the encapsulation.
     pub fn at(&self) -> usize {
         self.at
     }
@@ -128,7 +131,7 @@ impl<'a> Reader<'a> {
         self.bytes.len() - self.at
     }
 
-    /// The next bytes as they are.
+    /// Reads bytes unchanged.
     ///
     /// # Errors
     /// [`CdrError::End`].
@@ -139,7 +142,7 @@ impl<'a> Reader<'a> {
         Ok(taken)
     }
 
-    /// A number, aligned to its size.
+    /// Reads a number, aligned to its size.
     ///
     /// # Errors
     /// [`CdrError::End`].
@@ -151,7 +154,7 @@ impl<'a> Reader<'a> {
         taken.try_into().map_err(|_| CdrError::End { at, needed: N })
     }
 
-    /// The length of a sequence whose elements have at least `least` bytes each.
+    /// Reads the length of a sequence whose elements have at least `least` bytes each.
     ///
     /// # Errors
     /// [`CdrError::Count`] if there are not enough bytes for that many.
@@ -165,7 +168,7 @@ impl<'a> Reader<'a> {
         Ok(count as usize)
     }
 
-    /// A string; some writers give an empty one the length 0.
+    /// Reads a string; some writers give an empty string the length 0.
     ///
     /// # Errors
     /// [`CdrError::Text`].
@@ -181,7 +184,7 @@ impl<'a> Reader<'a> {
         text.and_then(|text| std::str::from_utf8(text).ok()).ok_or(CdrError::Text { at })
     }
 
-    /// Nothing may follow but the padding that some writers add.
+    /// Checks that nothing follows, except for the padding that some writers add.
     ///
     /// # Errors
     /// [`CdrError::Trailing`].

@@ -1,11 +1,11 @@
-//! Descriptions of message types: what a recording's schema and a type's hash are made of.
+//! Descriptions of message types, from which a recording's schema and a type's hash are made.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use sha2::{Digest, Sha256};
 
-/// The type of one value, by the numbers of `type_description_interfaces/msg/FieldType`.
+/// Type of one value, with the numbers of `type_description_interfaces/msg/FieldType`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ElementType {
     /// Another message, by its name: `std_msgs/msg/Header`.
@@ -19,7 +19,7 @@ pub enum ElementType {
     },
 }
 
-/// How many of them.
+/// Number of values of a field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Multiplicity {
     /// One.
@@ -35,18 +35,18 @@ pub enum Multiplicity {
 pub struct FieldType {
     /// The type of one value.
     pub element: ElementType,
-    /// How many.
+    /// Number of values.
     pub multiplicity: Multiplicity,
 }
 
-/// Number of the type of a nested message.
+/// Type number of a nested message.
 const NESTED: u8 = 1;
-/// Added to the number of an element for an array and for a sequence.
+/// Offset added to an element's number for an array; `SEQUENCE` is the offset for a sequence.
 const ARRAY: u8 = 48;
 const SEQUENCE: u8 = 144;
 
 impl FieldType {
-    /// One value.
+    /// The type of a field with one value.
     pub fn one(element: ElementType) -> Self {
         Self { element, multiplicity: Multiplicity::One }
     }
@@ -71,7 +71,7 @@ impl FieldType {
         if let ElementType::Message(name) = self.element { name } else { "" }
     }
 
-    /// As in a `.msg` file.
+    /// The type as in a `.msg` file.
     fn source(self) -> String {
         let element = match self.element {
             ElementType::Message(name) => short(name),
@@ -85,26 +85,26 @@ impl FieldType {
     }
 }
 
-/// `std_msgs/msg/Header` as `.msg` files write it: `std_msgs/Header`.
+/// Shortens `std_msgs/msg/Header` to `std_msgs/Header`, as in `.msg` files.
 fn short(name: &str) -> String {
     name.replace("/msg/", "/")
 }
 
-/// The descriptions of a message and of all that it contains.
+/// Descriptions of a message and of all messages in it.
 #[derive(Debug, Clone, Default)]
 pub struct TypeSet {
     types: BTreeMap<&'static str, Vec<(&'static str, FieldType)>>,
 }
 
 impl TypeSet {
-    /// Adds a type; false if it is there already, and so is what it contains.
+    /// Adds a type; false if it is already there, with the messages in it.
     pub fn add(&mut self, name: &'static str, fields: &[(&'static str, FieldType)]) -> bool {
         let plain = |field: &'static str| field.strip_prefix("r#").unwrap_or(field);
         let fields = fields.iter().map(|(field, kind)| (plain(field), *kind)).collect();
         self.types.insert(name, fields).is_none()
     }
 
-    /// The schema of a message in a recording (`ros2msg`): its definition, then those of the messages in it.
+    /// The schema of a message in a recording (`ros2msg`): its definition, then the definitions of the messages in it.
     pub fn schema(&self, name: &str) -> String {
         let mut text = self.definition(name);
         for other in self.types.keys().filter(|other| **other != name) {

@@ -1,8 +1,8 @@
 //! Messages, keys and byte layout of ROS 2 over Zenoh, without input or output.
 //!
-//! [`Message`] turns the structs of [`msgs`] into CDR and back, and gives their schemas and hashes. [`rmw_zenoh`] gives the
-//! keys, tokens and attachments with which a node of ROS 2 finds them. [`CellMessages`] makes the messages of a cell from its
-//! status: the same bytes go on the network and into recordings. `docs/ros2.md` lists the topics.
+//! [`Message`] converts the structs of [`msgs`] to CDR and back, and gives their schemas and hashes. [`rmw_zenoh`]
+//! gives the keys, tokens and attachments by which ROS 2 nodes find them. [`CellMessages`] makes the messages of a cell
+//! from its status: the same bytes go to the network and into recordings. `docs/ros2.md` lists the topics.
 //!
 //! ```
 //! use elbowroom_ros2::Message;
@@ -21,7 +21,7 @@
 //! ```
 //!
 //! **Invariant.** Whatever bytes arrive, [`Message::decode`] never panics and never reserves more memory than in
-//! proportion to them: they are exactly one message, or a [`CdrError`].
+//! proportion to them; it returns the one message that they are exactly, or a [`CdrError`].
 
 mod cdr;
 mod cell_messages;

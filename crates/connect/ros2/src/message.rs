@@ -3,9 +3,9 @@
 use crate::cdr::{CdrError, Reader, Writer};
 use crate::description::{ElementType, FieldType, Multiplicity, TypeSet};
 
-/// What a field of a message can be.
+/// A type that can be a field of a message.
 pub trait Field: Sized + Default {
-    /// Least number of bytes of an encoded value: bounds the claimed length of a sequence.
+    /// Least number of bytes of an encoded value; bounds the claimed length of a sequence.
     const LEAST_BYTES: usize;
 
     /// Its type.
@@ -17,10 +17,10 @@ pub trait Field: Sized + Default {
     /// Appends the value.
     fn write(&self, to: &mut Writer<'_>);
 
-    /// The next value.
+    /// Reads the next value.
     ///
     /// # Errors
-    /// [`CdrError`] if the bytes are no such value.
+    /// [`CdrError`] if the bytes are not such a value.
     fn read(from: &mut Reader<'_>) -> Result<Self, CdrError>;
 }
 
@@ -39,20 +39,20 @@ pub trait Message: Field {
     /// Its full name, such as `sensor_msgs/msg/JointState`.
     const NAME: &'static str;
 
-    /// The payload.
+    /// Encodes the payload.
     fn encode(&self) -> Vec<u8> {
         let mut bytes = Vec::new();
         self.encode_into(&mut bytes);
         bytes
     }
 
-    /// Replaces the contents of a buffer with the payload: no allocation where it is large enough.
+    /// Replaces the contents of a buffer by the payload; does not allocate if the buffer is large enough.
     fn encode_into(&self, bytes: &mut Vec<u8>) {
         bytes.clear();
         self.write(&mut Writer::new(bytes));
     }
 
-    /// The message of a payload.
+    /// Decodes the message of a payload.
     ///
     /// # Errors
     /// [`CdrError`] if the payload is not exactly one such message.
@@ -63,7 +63,7 @@ pub trait Message: Field {
         Ok(message)
     }
 
-    /// The message that a payload begins with: for types to which later releases append fields.
+    /// Decodes the message at the beginning of a payload: for types to which later releases append fields.
     ///
     /// # Errors
     /// As for [`Message::decode`], but bytes may follow.
@@ -71,7 +71,7 @@ pub trait Message: Field {
         Self::read(&mut Reader::new(payload)?)
     }
 
-    /// Its description with those of the messages in it.
+    /// Its description, with the descriptions of the messages in it.
     fn types() -> TypeSet {
         let mut types = TypeSet::default();
         Self::describe(&mut types);
@@ -116,7 +116,7 @@ number!(u64, 9, "uint64");
 number!(f32, 10, "float32");
 number!(f64, 11, "float64");
 
-/// The type `byte`, which is another than `uint8` in the hash.
+/// The type `byte`, whose hash differs from that of `uint8`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Byte(pub u8);
 

@@ -1,4 +1,4 @@
-//! A million changed messages: no panic, bounded in time and memory.
+//! A million changed messages cause no panic, in bounded time and memory.
 #![allow(clippy::print_stdout)]
 
 use std::time::{Duration, Instant};
@@ -16,7 +16,7 @@ use elbowroom_ros2::{CdrError, Message};
 use elbowroom_testkit::random::SplitMix;
 
 const MESSAGES: usize = 1_000_000;
-/// In a debug build on a busy machine.
+/// Time limit, for a debug build on a busy machine.
 const AT_MOST: Duration = Duration::from_mins(5);
 
 fn joint_state() -> JointState {
@@ -45,7 +45,7 @@ type Decode = fn(&[u8]) -> Result<(), CdrError>;
 
 fn decode<M: Message>(bytes: &[u8]) -> Result<(), CdrError> {
     let message = M::decode(bytes)?;
-    // What was read is written again, and read again as the same bytes.
+    // A message that was read is written again; reading it again gives the same bytes.
     let again = message.encode();
     assert_eq!(M::decode(&again)?.encode(), again);
     Ok(())
@@ -73,14 +73,14 @@ fn seeds() -> Vec<(Vec<u8>, Decode)> {
     ]
 }
 
-/// Changes, cuts, lengthens or repeats.
+/// Changes, truncates, lengthens or repeats bytes.
 fn mutate(bytes: &mut Vec<u8>, random: &mut SplitMix) {
     for _ in 0..=random.below(4) {
         let at = random.below(bytes.len().max(1));
         match random.below(6) {
             0 => bytes.truncate(at),
             1 => bytes.extend((0..random.below(16)).map(|_| random.below(256) as u8).collect::<Vec<_>>()),
-            // A length.
+            // A changed length.
             2 => {
                 let length = [u32::MAX, 0, 1, 1 << 16, 1 << 31][random.below(5)].to_le_bytes();
                 let at = at & !3;

@@ -1,5 +1,5 @@
-//! Bytes, hashes, keys, tokens and attachments compared with those of `natnet_zenoh` 0.1.0, which shares no code with us. What it
-//! writes is in `golden/natnet_zenoh.txt`, made by `golden/generator`.
+//! Comparison of bytes, hashes, keys, tokens and attachments with `natnet_zenoh` 0.1.0, which shares no code with
+//! elbowroom. Its output is in `golden/natnet_zenoh.txt`, made by `golden/generator`.
 
 use std::collections::HashMap;
 
@@ -15,7 +15,7 @@ use elbowroom_ros2::msgs::trajectory_msgs::JointTrajectoryPoint;
 use elbowroom_ros2::msgs::visualization_msgs::{Marker, MarkerArray};
 use elbowroom_ros2::rmw_zenoh::{Attachment, Distribution, Endpoint, EndpointKind, Gid, Node, Qos, Topic};
 
-/// What the other implementation writes, by label.
+/// Output of the other implementation, by label.
 struct Golden(HashMap<&'static str, &'static str>);
 
 impl Golden {
@@ -33,7 +33,7 @@ impl Golden {
         (0..hex.len()).step_by(2).map(|i| u8::from_str_radix(&hex[i..i + 2], 16).unwrap()).collect()
     }
 
-    /// The message has these bytes and is read from them, and its type has this hash.
+    /// Checks that the message is written to and read from these bytes, and that its type has this hash.
     fn check<M: Message + PartialEq + std::fmt::Debug>(&self, label: &str, message: &M) {
         let bytes = self.bytes(label);
         assert_eq!(message.encode(), bytes, "{label}");
@@ -48,7 +48,7 @@ fn header() -> Header {
 
 #[test]
 fn joint_states_have_the_same_bytes() {
-    // Names of every length modulo eight: every alignment of the numbers behind them.
+    // Names of every length modulo eight: every alignment of the following numbers.
     for length in 0..9 {
         let name = vec!["j".repeat(length), "joint_2".into()];
         let (position, velocity) = (vec![0.1, -0.0], vec![f64::MIN_POSITIVE]);

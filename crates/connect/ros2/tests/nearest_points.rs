@@ -1,4 +1,4 @@
-//! The nearest points of a status as markers: places in metres, the label in millimetres and percent.
+//! Nearest points of a status as markers: places in metres, the label in millimetres and percent.
 
 use elbowroom_cell::Cell;
 use elbowroom_ros2::{CellMessages, msgs::builtin_interfaces::Time, msgs::visualization_msgs::Marker};
@@ -34,7 +34,7 @@ fn the_label_says_millimetres_and_percent_beside_the_point_of_the_robot() {
     assert_eq!([text.pose.position.x, text.pose.position.y], [1.0, 2.0]);
     let y: Vec<f64> = lines.points.iter().map(|p| p.y).collect();
     assert_eq!(y, [2.0, 2.0 + 0.345, 2.0, 3.5]);
-    // What governs has a colour of its own.
+    // The governing point has its own colour.
     assert!(
         lines.colors[0] == lines.colors[1] && lines.colors[2] == lines.colors[3] && lines.colors[0] != lines.colors[2]
     );

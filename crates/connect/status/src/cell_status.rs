@@ -1,4 +1,4 @@
-//! The status of a cell: all its robots, and what else moves.
+//! Status of a cell: all its robots, and moved objects.
 
 use serde::{Deserialize, Serialize};
 
@@ -18,13 +18,13 @@ pub struct CellStatus {
     pub robots: Vec<RobotStatus>,
     /// Objects that have moved since the start.
     pub objects: Vec<PlacedStatus>,
-    /// The exchange regions and who holds them.
+    /// The exchange regions and their holders.
     pub slots: Vec<SlotStatus>,
-    /// What happened since the status before.
+    /// Events since the status before.
     pub events: Vec<EventStatus>,
 }
 
-/// A thing at a pose.
+/// An object at a pose.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PlacedStatus {
     /// Its name.
@@ -40,9 +40,9 @@ pub struct SlotStatus {
     pub regions: Vec<String>,
     /// The robot that holds them.
     pub holder: Option<String>,
-    /// The robots that wait, first come first.
+    /// The robots that wait, in the order of their requests.
     pub queue: Vec<String>,
-    /// How long ago the arbiter said so, s; 0 if this is put together in its process.
+    /// Age of the arbiter's message, s; 0 if the status is made in the arbiter's process.
     #[serde(default)]
     pub age_s: f64,
 }

@@ -1,4 +1,4 @@
-//! What has happened.
+//! Status of an event.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize};
 pub struct EventStatus {
     /// Time since the service started, s.
     pub t_s: f64,
-    /// The robot; empty if it is none.
+    /// Name of the robot; empty if the event has none.
     pub robot: String,
-    /// The region; empty if it is none.
+    /// Name of the region; empty if the event has none.
     pub region: String,
-    /// What happened.
+    /// Name of the event.
     pub event: String,
 }

@@ -1,4 +1,4 @@
-//! The status of a monitored robot and of a cell, as JSON: the same document on the network, in the browser and in recordings.
+//! Status of a monitored robot and of a cell, as JSON: the same document on the network, in the browser and in recordings.
 //!
 //! Metres, radians and seconds; poses in the world frame, quaternions as `[x, y, z, w]`. `docs/live.md` has the schema.
 //!
@@ -22,7 +22,7 @@
 //! ```
 //!
 //! **Invariant.** Once a [`StatusSample`] has been made for a monitor, filling it after a tick never allocates, as
-//! long as no more than [`SPARE_REGIONS`] regions are added.
+//! long as at most [`SPARE_REGIONS`] regions are added.
 
 mod cell_status;
 mod event_status;

@@ -1,4 +1,4 @@
-//! The status of one robot.
+//! Status of one robot.
 
 use std::collections::BTreeMap;
 
@@ -16,52 +16,52 @@ pub struct RobotStatus {
     pub t_s: f64,
     /// Name of the robot.
     pub robot: String,
-    /// Joint positions in the order of the chain, rad or m; empty while none are known.
+    /// Joint positions in the order of the chain, rad or m; empty while unknown.
     pub q: Vec<f64>,
     /// The speed override to apply, 0..1.
     #[serde(rename = "override")]
     pub speed_override: f64,
-    /// Why, in words.
+    /// Reason for the override, in words.
     pub reason: String,
-    /// The region that limits the override, where one does.
+    /// The region that limits the override, if one does.
     pub region: Option<String>,
-    /// Per exchange region `outside`, `waiting`, `granted`, `committed` or `inside`.
+    /// State of each exchange region: `outside`, `waiting`, `granted`, `committed` or `inside`.
     pub exchange: BTreeMap<String, String>,
-    /// Sequence number of the joint state that this answers.
+    /// Sequence number of the joint state that the override answers.
     pub sequence: u64,
-    /// Pose of the TCP in the world, where joint values are known.
+    /// Pose of the TCP in the world, if the joint values are known.
     pub tcp: Option<PoseStatus>,
     /// Digital outputs, bit i is channel i.
     pub outputs: u64,
-    /// The point that requests the smallest override, where one limits it.
+    /// The point that requests the smallest override, if one limits it.
     pub governing: Option<PointStatus>,
-    /// Per region near the robot the closest point of the robot.
+    /// The closest point of the robot to each region near it.
     pub virtual_tcps: Vec<PointStatus>,
     /// Every region of the robot.
     pub regions: Vec<RegionStatus>,
-    /// The first 16 hexadecimal digits of the checksum of the configuration with which the tick ran; empty if that is the cell
-    /// file's.
+    /// The first 16 hexadecimal digits of the checksum of the configuration of the tick; empty if it is the cell file's
+    /// configuration.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub configuration: String,
-    /// How the service is doing.
+    /// Health of the service.
     pub health: HealthStatus,
-    /// What happened since the status before.
+    /// Events since the status before.
     #[serde(default)]
     pub events: Vec<EventStatus>,
 }
 
-/// How the service of one robot is doing.
+/// Health of the service of one robot.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct HealthStatus {
     /// Ticks since the service started.
     pub ticks: u64,
     /// Longest tick since the status before, from joint values to override, µs.
     pub tick_max_us: u64,
-    /// Messages of the controller that did not count: late, doubled, damaged, of another start or another configuration.
+    /// Refused messages of the controller: late, doubled, damaged, of another start or another configuration.
     pub rejected: u64,
     /// Ticks without fresh joint values.
     pub stale: u64,
-    /// How long ago the node said so, s; 0 if this is put together in its process.
+    /// Age of the node's message, s; 0 if the status is made in the node's process.
     #[serde(default)]
     pub age_s: f64,
 }
@@ -96,15 +96,15 @@ pub struct PointStatus {
 pub struct RegionStatus {
     /// Its name.
     pub name: String,
-    /// It is switched on.
+    /// Whether it is on.
     pub active: bool,
-    /// The robot is inside.
+    /// Whether the robot is inside.
     pub inside: bool,
-    /// The robot is inside or in the warning zone.
+    /// Whether the robot is inside or in the warning zone.
     pub warned: bool,
-    /// It stops this robot: it is forbidden, or taken by another robot.
+    /// Whether it stops this robot: it is forbidden, or taken by another robot.
     pub closed: bool,
-    /// Where its shape is in the world.
+    /// Pose of its shape in the world.
     pub pose: PoseStatus,
 }
 
@@ -115,8 +115,9 @@ impl From<&Pose> for PoseStatus {
 }
 
 impl RobotStatus {
-    /// The status after a tick: what the monitor found at this snapshot. `t_s` is the time since the service started; `tcp` the
-    /// pose of the TCP in the world.
+    /// Makes the status after a tick: the results of the monitor at this snapshot.
+    ///
+    /// `t_s` is the time since the service started, s; `tcp` the pose of the TCP in the world.
     pub fn of_tick(
         t_s: f64,
         monitor: &Monitor,
@@ -129,7 +130,7 @@ impl RobotStatus {
         Self::of_sample(t_s, monitor.configuration(), &sample, tcp)
     }
 
-    /// The status of a sample of a tick, by a monitor of this configuration.
+    /// Makes the status from a sample of a tick, by a monitor of this configuration.
     pub fn of_sample(t_s: f64, configuration: &Configuration, sample: &StatusSample, tcp: Option<&Pose>) -> Self {
         let regions = configuration.regions();
         let name = |r: RegionId| regions[r.0].name.clone();
@@ -189,7 +190,7 @@ mod tests {
     use elbowroom_monitor::{ConfigurationParts, Guards, Laws, Region, Volume};
     use elbowroom_spatial::Vec3;
 
-    /// A carriage on a rail, before a ball.
+    /// Creates the monitor of a carriage on a rail, in front of a sphere.
     fn monitor() -> Result<Monitor, Box<dyn std::error::Error>> {
         let joint = Joint {
             name: "slide".into(),

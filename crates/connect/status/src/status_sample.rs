@@ -1,15 +1,15 @@
-//! What a tick leaves for the status, copied without allocation.
+//! Per-tick data for the status, copied without allocation.
 
 use elbowroom_monitor::{Event, ExchangeState, Monitor, OverrideReason, RegionId, Snapshot, TickReport, VirtualTcp};
 use elbowroom_spatial::Pose;
 
-/// Most events between two statuses; further ones are counted, not kept.
+/// Most events kept between two statuses; further ones are only counted.
 const MAX_EVENTS: usize = 256;
 
-/// So many regions may be added while the cell runs before a sample needs more memory.
+/// Number of regions that may be added while the cell runs before a sample needs more memory.
 pub const SPARE_REGIONS: usize = 64;
 
-/// What a tick leaves for a [`RobotStatus`](crate::RobotStatus): plain copies, into memory that was allocated before.
+/// Per-tick data for a [`RobotStatus`](crate::RobotStatus): plain copies in preallocated memory.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StatusSample {
     pub(crate) q: Vec<f64>,
@@ -46,7 +46,7 @@ impl RegionSample {
 }
 
 impl StatusSample {
-    /// An empty sample with memory for this monitor.
+    /// Creates an empty sample with memory for this monitor.
     pub fn new(monitor: &Monitor) -> Self {
         let regions = monitor.configuration().regions().len() + SPARE_REGIONS;
         let nothing = TickReport {
@@ -67,7 +67,7 @@ impl StatusSample {
         }
     }
 
-    /// Takes the result of a tick. Does not allocate.
+    /// Copies the result of a tick. Does not allocate.
     pub fn fill(&mut self, monitor: &Monitor, snapshot: &Snapshot<'_>, report: &TickReport) {
         self.q.clear();
         self.q.extend(snapshot.q.iter().take(self.q.capacity()));
@@ -79,7 +79,7 @@ impl StatusSample {
         self.virtual_tcps.extend(monitor.virtual_tcps(snapshot).take(self.virtual_tcps.capacity()));
     }
 
-    /// Takes the result of a tick without any joint values.
+    /// Copies the result of a tick without joint values.
     pub fn fill_without_input(&mut self, report: &TickReport) {
         self.report = *report;
         self.q.clear();
@@ -87,24 +87,24 @@ impl StatusSample {
         self.virtual_tcps.clear();
     }
 
-    /// The joint positions; empty without input.
+    /// Joint positions; empty without input.
     pub fn joint_positions(&self) -> &[f64] {
         &self.q
     }
 
-    /// Takes the events of a tick, so that none is lost between two statuses. Does not allocate.
+    /// Adds the events of a tick, so that no event is lost between two statuses. Does not allocate.
     pub fn add_events(&mut self, monitor: &Monitor) {
         for event in monitor.events() {
             if self.events.len() < MAX_EVENTS { self.events.push(*event) } else { self.lost_events += 1 }
         }
     }
 
-    /// The regions have other indices from now on: those of the events that were not taken yet are changed. Does not allocate.
+    /// Renumbers the regions of the events that were not taken yet, after the regions have changed. Does not allocate.
     pub fn renumber(&mut self, new: impl Fn(RegionId) -> Option<RegionId>) {
         self.events.iter_mut().for_each(|event| event.region = event.region.and_then(&new));
     }
 
-    /// The events since the last call, and how many more there were.
+    /// Takes the events since the last call, and the number of events that were dropped.
     pub fn take_events(&mut self) -> (impl Iterator<Item = Event> + '_, usize) {
         let lost = std::mem::take(&mut self.lost_events);
         (self.events.drain(..), lost)

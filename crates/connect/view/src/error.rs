@@ -1,4 +1,4 @@
-//! Why a cell cannot be shown.
+//! Errors of showing a cell.
 
 use std::io;
 use std::net::SocketAddr;
@@ -10,38 +10,38 @@ use elbowroom_formats::FormatError;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ViewError {
-    /// Not an address.
+    /// The text is not an address.
     #[error("`{0}` is no address\n  write: 127.0.0.1:0 for any free port, or 127.0.0.1:8080")]
     NoAddress(String),
-    /// An address that other computers reach, without a certificate.
+    /// Other computers can reach the address, and there is no certificate.
     #[error(
         "{0} can be reached from other computers, and without a certificate what is sent is not encrypted\n  \
          write: --certificate FILE.pem --certificate-key FILE.pem beside it; or 127.0.0.1:{port}, and on the other computer a tunnel: \
          ssh -L {port}:127.0.0.1:{port} HOST", port = .0.port()
     )]
     NotEncrypted(SocketAddr),
-    /// A certificate or its key.
+    /// A certificate or its key cannot be used.
     #[error("{}: {why}\n  write: {instead}", file.display())]
     Certificate {
         /// The file.
         file: PathBuf,
-        /// What is wrong.
+        /// The reason.
         why: String,
         /// What to write instead.
         instead: &'static str,
     },
-    /// The address cannot be served at.
+    /// The server cannot listen at the address.
     #[error("{address} cannot be served at: {source}\n  write: another port, or 0 for any free one")]
     Bind {
         /// The address.
         address: SocketAddr,
-        /// What the system says.
+        /// Error of the operating system.
         source: io::Error,
     },
-    /// The cell has no model that could be shown.
+    /// The cell has no model that can be shown.
     #[error(transparent)]
     Cell(#[from] FormatError),
-    /// The system gives no random numbers, threads or the like.
+    /// The system does not provide random numbers, threads or the like.
     #[error("the system refuses what the server needs: {0}")]
     System(#[from] io::Error),
 }

@@ -1,14 +1,14 @@
-//! The last events, with numbers.
+//! Last events, with numbers.
 
 use std::collections::VecDeque;
 
 use elbowroom_status::EventStatus;
 use serde::Serialize;
 
-/// Events that are kept.
+/// Number of events that are kept.
 const MAX_EVENTS: usize = 500;
 
-/// The last events. Their numbers rise, so that a page can be sent those that it does not have.
+/// The last events. Their numbers increase, so that a page can be sent the events that it does not have.
 #[derive(Debug, Default)]
 pub(crate) struct EventLog {
     events: VecDeque<EventStatus>,

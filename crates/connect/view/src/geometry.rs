@@ -1,4 +1,4 @@
-//! The geometry of a cell, sent to each page once.
+//! Geometry of a cell, sent to each page once.
 
 use std::io::{self, Write as _};
 
@@ -10,7 +10,7 @@ use flate2::Compression;
 use flate2::write::GzEncoder;
 use serde_json::{Value, json};
 
-/// The document of [`packed`]: what the page knows of the cell apart from the arrays.
+/// Makes the document of [`packed`] and the arrays: the data of the cell for the page.
 fn document(cell: &Cell, mode: &str) -> (Value, Vec<u8>) {
     let data = cell_data(cell);
     let mut json = data.json;
@@ -36,8 +36,8 @@ fn document(cell: &Cell, mode: &str) -> (Value, Vec<u8>) {
     (json, data.arrays)
 }
 
-/// What the page fetches: the length of a JSON document (32 bits, little-endian), the document, and the arrays that it refers to;
-/// deflated with the header of gzip.
+/// Packs the geometry for the page: the length of a JSON document (32 bits, little-endian), the document, and the
+/// arrays that it refers to; compressed as gzip.
 pub(crate) fn packed(cell: &Cell, mode: &str) -> io::Result<Vec<u8>> {
     let (json, arrays) = document(cell, mode);
     let json = json.to_string();
@@ -59,7 +59,7 @@ fn members(list: &mut Value) -> impl Iterator<Item = &mut Value> {
     list.as_array_mut().into_iter().flatten()
 }
 
-/// As the scripts read it: quaternion x y z w, then the translation.
+/// Converts a pose for the scripts: quaternion x y z w, then the translation.
 fn values(pose: &Pose) -> [f64; 7] {
     let [x, y, z, w] = pose.rotation.to_quaternion_xyzw();
     let t = pose.translation;

@@ -1,4 +1,4 @@
-//! The frames of the last minutes, for a page that is opened later.
+//! Frames of the last minutes, for a page that is opened later.
 
 use std::collections::VecDeque;
 use std::io::{self, Write as _};
@@ -8,11 +8,11 @@ use axum::extract::ws::Utf8Bytes;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 
-/// Time that is kept, s.
+/// Length of the history, s.
 const KEPT_S: f64 = 300.0;
-/// Between two kept frames, s.
+/// Time between two kept frames, s.
 const SPACING_S: f64 = 0.2;
-/// All kept frames together, bytes.
+/// Largest size of all kept frames together, bytes.
 const MAX_BYTES: usize = 32 << 20;
 
 /// Frames of the last minutes, a few per second.
@@ -28,11 +28,11 @@ struct Kept {
 }
 
 impl History {
-    /// Adds a frame, unless the one before is as good as new.
+    /// Adds a frame, unless it follows the last kept one too soon.
     pub(crate) fn add(&self, t_s: f64, frame: &Utf8Bytes) {
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         let newest = kept.frames.back().map_or(f64::NEG_INFINITY, |(t, _)| *t);
-        // A service that has started again counts from 0.
+        // A restarted service counts its time from 0.
         if t_s < newest {
             *kept = Kept::default();
         } else if t_s - newest < SPACING_S {
@@ -49,9 +49,9 @@ impl History {
         }
     }
 
-    /// A JSON list of the frames, deflated with the header of gzip.
+    /// Packs the frames as a JSON list, compressed as gzip.
     pub(crate) fn packed(&self) -> io::Result<Vec<u8>> {
-        // Clones share their text.
+        // Cloned frames share their text.
         let frames = self.kept.lock().unwrap_or_else(PoisonError::into_inner).frames.clone();
         let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
         encoder.write_all(b"[")?;

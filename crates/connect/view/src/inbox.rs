@@ -1,4 +1,4 @@
-//! What waits for the engine: the newest status, and the commands of the pages.
+//! Input that waits for the engine: the newest status, and the commands of the pages.
 
 use std::collections::VecDeque;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
@@ -9,10 +9,10 @@ use elbowroom_status::CellStatus;
 use crate::event_log::EventLog;
 use crate::source::Command;
 
-/// Commands that wait at most; older ones are dropped.
+/// Most commands that wait; older ones are dropped.
 const MAX_COMMANDS: usize = 64;
 
-/// The newest of everything. Nobody holds its lock for longer than it takes to move a value.
+/// The newest status and commands. The lock is never held for longer than it takes to move a value.
 #[derive(Debug, Default)]
 pub(crate) struct Inbox {
     waiting: Mutex<Waiting>,
@@ -27,7 +27,7 @@ struct Waiting {
     stopped: bool,
 }
 
-/// What the engine takes at once.
+/// Input that the engine takes in one call.
 #[derive(Debug, Default)]
 pub(crate) struct Taken {
     pub(crate) status: Option<CellStatus>,
@@ -36,7 +36,7 @@ pub(crate) struct Taken {
 }
 
 impl Inbox {
-    /// Replaces a status that nobody has taken; its events are kept.
+    /// Replaces a status that has not been taken; its events are kept.
     pub(crate) fn publish(&self, mut status: CellStatus) {
         let mut events = std::mem::take(&mut status.events);
         // A service may list an event at the robot, at the cell, or at both.
@@ -51,11 +51,11 @@ impl Inbox {
             waiting.status.replace(status)
         };
         self.changed.notify_one();
-        // Freed without the lock.
+        // Freed after the lock is released.
         drop(replaced);
     }
 
-    /// Adds a command. One that moves the same robot in the same way, and has not been carried out, is replaced.
+    /// Adds a command. It replaces a waiting command that moves the same robot in the same way.
     pub(crate) fn command(&self, command: Command) {
         let mut waiting = self.lock();
         waiting.commands.retain(|other| !command.replaces(other));
@@ -73,7 +73,7 @@ impl Inbox {
         self.changed.notify_one();
     }
 
-    /// What has come since the last call, at once or when something comes; empty after the time.
+    /// Takes the input since the last call; waits for input if there is none, and returns empty after `at_most`.
     pub(crate) fn take(&self, at_most: Duration) -> Taken {
         let waiting = self.lock();
         let is_empty = |w: &mut Waiting| w.status.is_none() && w.commands.is_empty() && !w.stopped;
@@ -86,7 +86,7 @@ impl Inbox {
         }
     }
 
-    /// Runs with the events so far.
+    /// Calls a function with the events so far.
     pub(crate) fn with_events<R>(&self, use_them: impl FnOnce(&EventLog) -> R) -> R {
         use_them(&self.lock().events)
     }
@@ -97,7 +97,7 @@ impl Inbox {
     }
 
     fn lock(&self) -> MutexGuard<'_, Waiting> {
-        // A panic elsewhere leaves the values whole.
+        // A panic elsewhere never leaves the values half changed.
         self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

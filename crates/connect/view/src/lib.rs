@@ -1,9 +1,9 @@
-//! A cell in a browser: the page, the server behind it, and what it shows.
+//! Cell in a browser: the page, its server, and the shown data.
 //!
-//! [`Server::watch`] shows a running cell: the caller publishes a [`CellStatus`](elbowroom_status::CellStatus) whenever it has one,
-//! and is never delayed by a browser. [`Server::jog`] shows a cell at rest, whose robots a person moves in the page
-//! (`elbowroom view`). Both compute the distances that the page shows with the engine, from the joint values of the status, so
-//! that they equal those of `elbowroom query`. `docs/view.md` says what the page shows and how it is protected.
+//! [`Server::watch`] shows a running cell: the caller publishes a [`CellStatus`](elbowroom_status::CellStatus) whenever
+//! it has one, and is never delayed by a browser. [`Server::jog`] shows a cell at rest, whose robots a person moves in
+//! the page (`elbowroom view`). Both compute the shown distances with the engine, from the joint values of the status,
+//! so that they equal the distances of `elbowroom query`. `docs/view.md` describes the page and its protection.
 //!
 //! ```
 //! use elbowroom_cell::Cell;

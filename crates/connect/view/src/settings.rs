@@ -5,16 +5,16 @@ use std::time::Duration;
 use crate::ViewError;
 use crate::http::{ConnectionLimits, Endpoint};
 
-/// Where a [`Server`](crate::Server) serves, and what it grants its clients.
+/// Endpoint of a [`Server`](crate::Server), and the limits of its clients.
 #[derive(Debug, Clone)]
 pub struct ServerSettings {
-    /// Where it serves.
+    /// Endpoint at which it serves.
     pub endpoint: Endpoint,
-    /// What clients may use.
+    /// Limits of the clients.
     pub limits: Limits,
 }
 
-/// What the clients of a server may use. A client beyond a limit is refused or closed; the others do not notice.
+/// Limits of a server's clients. A client beyond a limit is refused or closed, without effect on the others.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
     /// Connections that are not yet browsers with a token. One more closes the oldest of them.
@@ -25,9 +25,9 @@ pub struct Limits {
     pub head: Duration,
     /// Longest time of a request with its answer.
     pub request: Duration,
-    /// Longest time until a browser takes a message.
+    /// Longest time until a browser accepts a message.
     pub send: Duration,
-    /// Longest silence of a browser; it is pinged three times as often.
+    /// Longest silence of a browser; it is pinged at three times this rate.
     pub silence: Duration,
     /// Largest head of a request, bytes.
     pub head_bytes: usize,
@@ -57,7 +57,7 @@ impl Default for Limits {
 }
 
 impl Limits {
-    /// Of connections without a token.
+    /// Limits of connections without a token.
     pub(crate) fn of_connections(&self) -> ConnectionLimits {
         let Self { connections, head, request, head_bytes, .. } = *self;
         ConnectionLimits { connections, head, request, head_bytes }
@@ -65,12 +65,13 @@ impl Limits {
 }
 
 impl ServerSettings {
-    /// With the usual limits.
+    /// Creates settings with the default limits.
     pub fn new(endpoint: Endpoint) -> Self {
         Self { endpoint, limits: Limits::default() }
     }
 
-    /// Not encrypted, for the text of an option: `127.0.0.1:8080`, `localhost:8080`, `[::1]:8080`, or a port alone.
+    /// Creates settings without encryption, for the value of an option: `127.0.0.1:8080`, `localhost:8080`,
+    /// `[::1]:8080`, or a port alone.
     ///
     /// # Errors
     /// As [`Endpoint::new`] without a certificate.

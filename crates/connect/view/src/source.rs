@@ -1,4 +1,4 @@
-//! Where the shown status comes from, and what a page may change.
+//! Source of the shown status, and the commands of a page.
 
 use elbowroom_status::{CellStatus, EventStatus};
 use serde::Deserialize;
@@ -18,9 +18,9 @@ pub(crate) enum Command {
     Tcp {
         /// Index of the robot in the cell.
         robot: usize,
-        /// Where to, m.
+        /// Target position, m.
         position_m: [f64; 3],
-        /// The rotation, `[x, y, z, w]`; none keeps the present one.
+        /// Target rotation, `[x, y, z, w]`; `None` keeps the present one.
         #[serde(default)]
         quaternion_xyzw: Option<[f64; 4]>,
     },
@@ -29,7 +29,7 @@ pub(crate) enum Command {
 }
 
 impl Command {
-    /// True if it makes an earlier command pointless.
+    /// Whether it makes an earlier command pointless.
     pub(crate) fn replaces(&self, other: &Self) -> bool {
         match (self, other) {
             (
@@ -42,22 +42,22 @@ impl Command {
     }
 }
 
-/// Where the shown status comes from.
+/// Source of the shown status.
 pub(crate) trait ViewSource {
-    /// What a page may do: `watch` or `jog`.
+    /// Mode of the pages: `watch` or `jog`.
     fn mode(&self) -> &'static str;
 
     /// Carries out a command.
     ///
     /// # Errors
-    /// Why not, for the person at the page.
+    /// The reason for refusing it, for the person at the page.
     fn command(&mut self, command: Command) -> Result<(), String>;
 
-    /// The status after commands, with what happened; `None` if it does not come from here.
+    /// Returns the status after commands, with the events; `None` if statuses come from elsewhere.
     fn status(&mut self) -> Option<(CellStatus, Vec<EventStatus>)>;
 }
 
-/// A running cell: its statuses come through the feed, and pages change nothing.
+/// A running cell: its statuses come through the feed, and pages cannot change it.
 #[derive(Debug)]
 pub(crate) struct RunningCell;
 

@@ -1,8 +1,8 @@
-//! The page in headless Chromium, driven by Playwright: what it shows is what the engine says, its controls work with mouse and
-//! keyboard, it fits a narrow screen, and nothing goes wrong on the console.
+//! The page in headless Chromium, driven by Playwright: it shows what the engine computes, its controls work with mouse and
+//! keyboard, it fits a narrow screen, and the console shows no errors.
 //!
-//! Needs Chromium, named by `ELBOWROOM_CHROMIUM`, and a Python with Playwright, named by `ELBOWROOM_PLAYWRIGHT`; without them the
-//! tests pass with a message. `ELBOWROOM_SCREENSHOTS` names a folder for pictures of the page.
+//! Needs Chromium, named by `ELBOWROOM_CHROMIUM`, and a Python with Playwright, named by `ELBOWROOM_PLAYWRIGHT`;
+//! without them the tests pass with a message. `ELBOWROOM_SCREENSHOTS` names a folder for pictures of the page.
 #![allow(clippy::print_stdout, reason = "a skipped test says so, and a frame rate is a measurement")]
 
 use std::io::Write as _;
@@ -19,18 +19,18 @@ use elbowroom_status::{CellStatus, EventStatus, RobotStatus, SlotStatus};
 use elbowroom_view::{Server, ServerSettings, StatusFeed};
 use serde_json::{Value, json};
 
-/// What the page may differ by from the engine, m.
+/// Largest difference between page and engine, m.
 const AGREED_M: f64 = 1e-6;
 
-/// True at the start of the cell.
+/// Condition that is true at the start of the cell.
 const AT_START: &str = "s.robots.every((r, i) => r.q.every((q, k) => Math.abs(q - [[110, 30, 40, 0, 50, 0], [-60, 30]][i][k] * Math.PI / 180) < 1e-9)) && !s.message";
 
-/// Any free port. With the usual limits: a browser on a busy machine takes its time.
+/// Settings for any free port. With the default limits, as a browser on a busy machine is slow.
 fn settings() -> ServerSettings {
     ServerSettings::at("127.0.0.1:0").unwrap()
 }
 
-/// The browser, and the Python that drives it.
+/// Finds the browser, and the Python that drives it.
 fn tools() -> Option<(PathBuf, PathBuf)> {
     let named = |name: &str| std::env::var_os(name).map(PathBuf::from);
     let tools = named("ELBOWROOM_CHROMIUM").zip(named("ELBOWROOM_PLAYWRIGHT"));
@@ -40,7 +40,7 @@ fn tools() -> Option<(PathBuf, PathBuf)> {
     tools
 }
 
-/// Opens the page, performs steps, and answers what each saw.
+/// Opens the page, performs steps, and returns the observation of each.
 fn visit(url: &str, options: &Value, steps: &[Value]) -> Option<Vec<Value>> {
     let mut call = options.clone();
     call["steps"] = json!(steps);
@@ -50,7 +50,7 @@ fn visit(url: &str, options: &Value, steps: &[Value]) -> Option<Vec<Value>> {
     Some(seen["steps"].as_array().unwrap().clone())
 }
 
-/// What the script answers to a call.
+/// Returns the answer of the script to a call.
 fn drive(url: &str, call: &Value) -> Option<Value> {
     let (chromium, python) = tools()?;
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/page/visit.py");
@@ -68,7 +68,7 @@ fn drive(url: &str, call: &Value) -> Option<Value> {
     Some(serde_json::from_slice(&output.stdout).unwrap())
 }
 
-/// Playwright wants a path.
+/// Finds the path of a program, as Playwright requires one.
 fn which(program: &Path) -> PathBuf {
     if program.is_absolute() {
         return program.to_owned();
@@ -77,13 +77,13 @@ fn which(program: &Path) -> PathBuf {
     std::env::split_paths(&path).map(|folder| folder.join(program)).find(|p| p.is_file()).unwrap_or(program.to_owned())
 }
 
-/// Pictures, where somebody wants them.
+/// Returns steps that take pictures, if a folder for them is given.
 fn screenshots(name: &str) -> Vec<Value> {
     let Some(folder) = std::env::var_os("ELBOWROOM_SCREENSHOTS").map(PathBuf::from) else { return Vec::new() };
     vec![json!({ "do": "screenshot", "file": folder.join(format!("{name}.png")) })]
 }
 
-/// The joint values on the page.
+/// Returns the joint values on the page.
 fn shown_q(state: &Value) -> Vec<Vec<f64>> {
     let robots = state["robots"].as_array().unwrap();
     robots.iter().map(|robot| serde_json::from_value(robot["q"].clone()).unwrap()).collect()
@@ -127,7 +127,7 @@ fn sliders_and_dragging_move_the_robot_and_the_distances() {
     let server = Server::jog(&cell, settings()).unwrap();
     let mut steps = vec![
         json!({ "do": "state" }),
-        // With the mouse, then exact values.
+        // Moved with the mouse, then set to exact values.
         json!({ "do": "slide", "id": "joint-0-1", "to": 0.7 }),
         json!({ "do": "set", "id": "joint-0-0", "value": 0.9, "until": "Math.abs(s.robots[0].q[0] - 0.9) < 1e-12" }),
         json!({ "do": "set", "id": "joint-1-0-number", "value": -20, "kind": "change", "until": "Math.abs(s.robots[1].q[0] + Math.PI / 9) < 1e-12" }),
@@ -153,7 +153,7 @@ fn sliders_and_dragging_move_the_robot_and_the_distances() {
     let near =
         |a: &[Vec<f64>], b: &[Vec<f64>]| a.iter().flatten().zip(b.iter().flatten()).all(|(a, b)| (a - b).abs() < 1e-9);
     assert!(near(&q(0), &start));
-    // 0.7 of the way from -90° to 90°, less what the thumb of the slider takes.
+    // 0.7 of the way from -90° to 90°, less the width of the slider's thumb.
     assert!((q(1)[0][1].to_degrees() - 36.0).abs() < 10.0, "{}", q(1)[0][1].to_degrees());
     assert!(near(&q(4), &start));
     let tcp =
@@ -164,18 +164,18 @@ fn sliders_and_dragging_move_the_robot_and_the_distances() {
     let by_axis = moved(tcp(5), tcp(6));
     assert!(by_axis[2] < -0.01 && by_axis[0].abs() < 1e-6 && by_axis[1].abs() < 1e-6, "{by_axis:?}");
     assert_eq!(seen[7]["message"], "");
-    // What cannot be reached moves nothing, and says so.
+    // An unreachable target moves nothing, and causes a message.
     assert_eq!(tcp(7), tcp(8));
     assert!(seen[9].as_str().unwrap().contains("out of reach"), "{}", seen[9]);
     assert!(near(&q(10), &start));
-    // What is refused does not stay in its field, and the message speaks the field's unit.
+    // A refused value does not stay in its field, and the message uses the field's unit.
     let start_deg = start[0][0].to_degrees();
     let shown: f64 = seen[11].as_str().unwrap().parse().unwrap();
     assert!((shown - start_deg).abs() < 0.01, "{shown} instead of {start_deg}");
     let message = seen[12].as_str().unwrap();
     assert!(message.contains("degrees, not at 500.00"), "{message}");
     assert_eq!(seen[13], "-20.00");
-    // The drawn tool centre point is that of the program.
+    // The drawn tool centre point equals that of the program.
     let drawn: [f64; 3] = serde_json::from_value(seen[5]["robots"][0]["tcp_drawn_m"].clone()).unwrap();
     assert!(moved(drawn, tcp(5)).iter().all(|v| v.abs() < 1e-9));
 }
@@ -187,7 +187,7 @@ fn everything_has_a_name_and_is_reached_by_the_keyboard() {
     }
     let server = Server::jog(&cell(), settings()).unwrap();
     let mut steps = vec![json!({ "do": "audit" }), json!({ "do": "tab", "times": 30 })];
-    // A slider is moved by the arrow keys, the colours by D.
+    // The arrow keys move a slider, the key D changes the colours.
     steps.push(json!({ "do": "focus", "at": "#joint-0-0" }));
     steps.push(json!({ "do": "press", "key": "ArrowRight", "until": "s.robots[0].q[0] > 1.93" }));
     steps.push(json!({ "do": "press", "key": "d" }));
@@ -232,7 +232,7 @@ fn a_telephone_does_not_scroll_sideways() {
     assert!(seen[0]["scroll"].as_u64() <= Some(390), "{}", seen[0]);
 }
 
-/// Four arms around a pallet.
+/// Makes a cell of four arms around a pallet.
 fn four_arms() -> Cell {
     let models = elbowroom_testkit::folder::examples().join("models");
     let text = r#"
@@ -273,7 +273,7 @@ warning = 250
     Cell::load(&file).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// What a service would publish at a time: arms that swing, one that holds the pallet and one that waits.
+/// Makes the status of a service at a time: arms that swing, one that holds the pallet and one that waits.
 fn running(cell: &Cell, t_s: f64) -> CellStatus {
     let robot = |(i, r): (usize, &elbowroom_cell::CellRobot)| RobotStatus {
         t_s,
@@ -290,7 +290,7 @@ fn running(cell: &Cell, t_s: f64) -> CellStatus {
         let [robot, region, event] = [robot, region, event].map(str::to_owned);
         EventStatus { t_s, robot, region, event }
     };
-    // One per second, at 100 statuses per second; and a robot whose joint values come and go all the time.
+    // One event per second, at 100 statuses per second; and a robot whose joint values come and go all the time.
     let waiting = tick.is_multiple_of(100).then(|| event("east", "pallet", "waiting"));
     let flapping = ["fault", "recovered"].map(|what| event("south", "", what));
     CellStatus {
@@ -341,7 +341,7 @@ fn a_running_cell_moves_is_replayed_and_found_again() {
     ];
     steps.extend(screenshots("running"));
     let seen = std::thread::scope(|scope| {
-        // Ends the other thread, also where the visit fails.
+        // Ends the other thread, even if the visit fails.
         let _end = OnDrop(&ended);
         scope.spawn(|| {
             // The service has run for a while when the page is opened.
@@ -368,12 +368,12 @@ fn a_running_cell_moves_is_replayed_and_found_again() {
         1e3 * seen[1]["measured_in_s"].as_f64().unwrap()
     );
     assert!(passed("pictures") >= 2.0, "it moves");
-    // Paused it stays, a step back is a step back, and the time line leads to any time.
+    // A paused page stays at its time, a step back goes back by one, and the time line leads to any time.
     assert_eq!((t(2), &seen[2]["live"]), (t(3), &json!(false)));
     assert!((t(3) - t(4) - 0.1).abs() < 0.02, "{} {}", t(3), t(4));
-    // A time before the page was opened, too.
+    // Also to a time before the page was opened.
     assert!((t(5) - 1.0).abs() < 1e-9);
-    // Frames of before are some tenths of a second apart, more on a busy machine: what is shown is one of them, as it was.
+    // Earlier frames are some tenths of a second apart, more on a busy machine: the page shows one of them unchanged.
     let frame_s = seen[5]["frame_t_s"].as_f64().unwrap();
     assert!((frame_s - 1.0).abs() < 0.6, "{frame_s}");
     let expected = running(&cell, frame_s);
@@ -385,7 +385,7 @@ fn a_running_cell_moves_is_replayed_and_found_again() {
     assert!(
         seen[7].as_str().unwrap().contains("north") && seen[8].as_str().unwrap().contains("east · waiting · pallet")
     );
-    // Faults that follow each other are one line.
+    // Consecutive faults are one line.
     let events = seen[8].as_str().unwrap();
     assert_eq!(events.matches("south · fault").count(), 1, "{events}");
     // The oldest event that the page got may be the second half of a pair.

@@ -1,4 +1,4 @@
-//! A running cell: what is published arrives, and nobody holds up whoever publishes.
+//! View of a running cell: published statuses arrive, and no browser delays the publisher.
 
 use std::time::{Duration, Instant};
 
@@ -37,7 +37,7 @@ fn before_the_first_status_robots_are_unknown() {
     assert_eq!((&frame["robots"][0]["robot"], &frame["robots"][0]["q"]), (&json!("left"), &json!([])));
     assert_eq!(frame["robots"][0]["reason"], "no status has come");
     assert_eq!((&frame["nearest"], &frame["robots"][0]["override"]), (&json!(null), &json!(0.0)));
-    // One robot is known: it has distances to things, but not to the other one.
+    // Only one robot's values are known: it has distances to objects, but not to the other robot.
     let mut half = status(0.1);
     half.robots.truncate(1);
     feed.publish(half);
@@ -45,7 +45,7 @@ fn before_the_first_status_robots_are_unknown() {
     assert!(frame["robots"][0]["nearest"]["distance_m"].as_f64().unwrap() > 0.0);
     assert!(!frame["robots"][0]["nearest"]["b"].as_str().unwrap().starts_with("right"));
     assert_eq!((&frame["robots"][1]["nearest"], &frame["robots"][1]["robot"]), (&json!(null), &json!("right")));
-    // Robots come in the order of the cell, whatever the order of the status; joint values that do not fit are unknown.
+    // Robots are in the order of the cell, whatever the order of the status; joint values that do not fit are unknown.
     let mut turned = status(0.2);
     turned.robots.reverse();
     turned.robots[0].q.pop();
@@ -58,7 +58,7 @@ fn before_the_first_status_robots_are_unknown() {
 #[test]
 fn a_page_that_does_not_read_delays_neither_publisher_nor_other_pages() {
     const STATUSES: usize = 20_000;
-    // Without the limit on unshown frames the network's buffers fill up, so that the server cannot send any more.
+    // Without the limit on unshown frames the network's buffers fill up, so that the server can no longer send.
     let settings = ServerSettings {
         limits: Limits { unshown_frames: usize::MAX, frame_period: Duration::ZERO, ..limits() },
         ..settings()
@@ -78,7 +78,7 @@ fn a_page_that_does_not_read_delays_neither_publisher_nor_other_pages() {
         slowest = slowest.max(begin.elapsed());
     }
     eprintln!("slowest of {STATUSES} calls: {slowest:?}");
-    // Far below the time that sending takes at most; a busy machine may take the processor away for a while.
+    // Far below the longest time of sending; a busy machine may interrupt the process for a while.
     assert!(slowest < Duration::from_millis(200), "{slowest:?}");
     let mut received = 0;
     loop {
@@ -106,7 +106,7 @@ fn a_page_that_shows_nothing_is_sent_no_more_than_a_few_frames() {
     let numbers: Vec<u64> =
         (0..limits().unshown_frames).map(|_| page.next().unwrap()["number"].as_u64().unwrap()).collect();
     page.send(&json!({ "shown": numbers.last() }));
-    // The next one is the newest, not the one that followed.
+    // The next frame is the newest, not the one that followed.
     let next = page.next().unwrap();
     assert_eq!(next["t_s"], 20.0);
     assert!(next["number"].as_u64().unwrap() > numbers.last().unwrap() + 1);
@@ -118,7 +118,7 @@ fn every_event_arrives_once_however_fast_they_come() {
     let server = Server::watch(&cell(), &feed, settings()).unwrap();
     let mut page = Page::of(&server);
     for k in 0..400 {
-        // At the cell, at the robot, or at both: it is one event.
+        // Listed at the cell, at the robot, or at both, it is one event.
         let mut next = status(k as f64);
         next.events.extend((k % 3 != 0).then(|| event(k)));
         next.robots[0].events.extend((k % 3 != 1).then(|| event(k)));
@@ -139,7 +139,7 @@ fn every_event_arrives_once_however_fast_they_come() {
     assert_eq!(numbers, (0..400).collect::<Vec<_>>());
     assert!(seen.iter().enumerate().all(|(k, e)| e["t_s"] == k as f64 && e["event"] == "warn_in"));
     assert!(frames < 400);
-    // A page that comes later has them too.
+    // A page that is opened later has them too.
     let mut late = Page::of(&server);
     let events = loop {
         let document = late.next().unwrap();

@@ -1,4 +1,4 @@
-//! What a server refuses, and that it goes on afterwards.
+//! Requests that a server refuses, and its work afterwards.
 
 use std::io::{Read as _, Write as _};
 use std::net::TcpStream;
@@ -19,7 +19,7 @@ fn server() -> Server {
     Server::jog(&cell(), settings()).unwrap()
 }
 
-/// A page gets its frames.
+/// Checks that a page gets its frames.
 fn assert_alive(server: &Server) {
     assert_eq!(status(&get(server.address(), "/", "")), 200);
     assert!(Page::of(server).frame().unwrap()["robots"].as_array().unwrap().len() == 2);
@@ -36,7 +36,7 @@ fn a_wrong_token_sees_nothing() {
     }
     let mut silent = Page::nameless(&server);
     assert_eq!(silent.next().unwrap_err(), "1013 no token has come");
-    // A command before the token is none.
+    // A command before the token is refused.
     let mut hasty = Page::nameless(&server);
     hasty.send(&json!({ "type": "home" }));
     assert!(hasty.next().unwrap_err().starts_with("4400"));
@@ -47,7 +47,7 @@ fn a_wrong_token_sees_nothing() {
     }
     let right = format!("Authorization: Bearer {}\r\n", token(&server));
     assert_eq!(status(&get(address, "/geometry", &right)), 200);
-    // What anybody may have says nothing about the cell.
+    // Files that need no token say nothing about the cell.
     for path in ["/", "/view.js", "/view.css"] {
         assert!(!get(address, path, "").contains("two arms"));
     }
@@ -95,7 +95,7 @@ fn only_the_files_of_the_page_are_served() {
         "/view.js.map",
     ] {
         let answer = get(address, path, "");
-        // An absolute address is one of the root; anything else is not there, or no address at all.
+        // An absolute address is one of the root; any other is not found, or not an address at all.
         assert!(matches!(status(&answer), 400 | 404 | 421 | 0) || path.starts_with("http"), "{path}: {answer}");
         assert!(!answer.contains("root:"), "{path}");
     }
@@ -167,7 +167,7 @@ fn garbage_ends_only_the_page_that_sends_it() {
             std::iter::from_fn(|| page.next().err().map_or(Some(None), |e| Some(Some(e)))).flatten().next().unwrap();
         assert!(end.starts_with("4400"), "{text:?}: {end}");
     }
-    // Bytes that are no WebSocket at all, and requests that are none.
+    // Bytes that are not a WebSocket, and requests that are invalid.
     for _ in 0..200 {
         let bytes: Vec<u8> = (0..byte()).map(|_| byte()).collect();
         let mut stream = TcpStream::connect(server.address()).unwrap();
@@ -180,7 +180,7 @@ fn garbage_ends_only_the_page_that_sends_it() {
 
 #[test]
 fn a_thousand_hanging_connections_keep_nobody_out() {
-    // Two waves are more than the server keeps; more at a time would wait for a second until the system lets them in.
+    // Two waves are more than the server keeps; larger waves would wait for a second until the system accepts them.
     const WAVE: usize = 100;
     // 10,000 connections with `ELBOWROOM_LONG=1`.
     let waves = if std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1") { 100 } else { 10 };
@@ -194,7 +194,7 @@ fn a_thousand_hanging_connections_keep_nobody_out() {
         for k in 0..WAVE {
             let Ok(mut stream) = TcpStream::connect(address) else { continue };
             let sent = match k % 3 {
-                // Nothing, half a head, and the whole head of a WebSocket whose token never comes.
+                // Nothing, half a head, and the whole head of a WebSocket without its token.
                 0 => String::new(),
                 1 => format!("GET / HTTP/1.1\r\nHost: {address}\r\nX-Slow: "),
                 _ => format!(
@@ -211,7 +211,7 @@ fn a_thousand_hanging_connections_keep_nobody_out() {
     }
     eprintln!("{} connections in {:?}, the slowest answer took {slowest:?}", waves * WAVE, begin.elapsed());
     assert!(slowest < Duration::from_secs(10), "{slowest:?}");
-    // Those that still hang are closed by the server within its limits.
+    // The server closes connections that still hang within its limits.
     for mut stream in hanging {
         stream.set_read_timeout(Some(Duration::from_secs(10))).unwrap();
         let closed = std::io::copy(&mut stream, &mut std::io::sink());
@@ -220,7 +220,7 @@ fn a_thousand_hanging_connections_keep_nobody_out() {
     assert_alive(&server);
 }
 
-/// The order in which connections were accepted counts, not that in which the server comes to them.
+/// The order of acceptance counts, not the order in which the server processes connections.
 #[test]
 fn a_websocket_is_as_old_as_its_connection() {
     let long = Duration::from_secs(10);
@@ -282,7 +282,7 @@ fn a_stopped_server_is_gone() {
     assert!(TcpStream::connect_timeout(&address, Duration::from_millis(500)).is_err());
 }
 
-/// With a certificate a page is served to other computers, and nobody between reads it.
+/// With a certificate a page is served to other computers, and nobody in between can read it.
 #[test]
 fn with_a_certificate_everything_is_encrypted() {
     let folder = tempfile::tempdir().unwrap();
@@ -330,9 +330,9 @@ fn with_a_certificate_everything_is_encrypted() {
     for name in ["127.0.0.1", "cell.local"] {
         assert_eq!(status(&ask(&certificate, name).unwrap()), 200, "{name}");
     }
-    // The server is not the one of another certificate, nor of another name.
+    // A client refuses a server with another certificate or another name.
     assert!(ask(&other, "127.0.0.1").is_err() && ask(&certificate, "evil.example").is_err());
-    // Nothing is said in the clear, and the frames of the cell come encrypted as well.
+    // Nothing is sent unencrypted; the frames of the cell are encrypted as well.
     assert!(!get(address, "/", "").contains("200 OK"));
     let request = |origin: &str| {
         let mut request = format!("wss://cell.local:{}/socket", address.port()).into_client_request().unwrap();
@@ -349,7 +349,7 @@ fn with_a_certificate_everything_is_encrypted() {
     let frame = (0..5).find_map(|_| socket.read().ok()?.into_text().ok().filter(|text| text.contains("\"robots\"")));
     assert!(frame.is_some_and(|frame| frame.contains("left")), "frames come");
     assert!(open(&own.replace("https", "http")).is_err() && open("https://evil.example").is_err());
-    // Handshakes that hang are closed in the time of a head, and others go on.
+    // Handshakes that hang are closed within the time limit of a head, and other connections work.
     let hanging: Vec<TcpStream> = (0..8).map(|_| TcpStream::connect(address).unwrap()).collect();
     let begun = Instant::now();
     for mut stream in hanging {

@@ -1,4 +1,4 @@
-//! A cell at rest whose robots are moved: the distances are those of the engine.
+//! View of a cell at rest whose robots are moved: the distances equal those of the engine.
 
 use crate::common::{Page, cell, settings};
 use elbowroom_analysis::query::{Level, QueryKind, QueryStates, evaluate};
@@ -17,7 +17,7 @@ fn random_q(cell: &Cell, robot: usize, random: &mut u64) -> Vec<f64> {
     range.map(|(lower, upper)| lower + (upper - lower) * unit(split_mix(random))).collect()
 }
 
-/// What `elbowroom query CELL --ask distance --states` says of this state.
+/// Returns the answer of `elbowroom query CELL --ask distance --states` for this state.
 fn query(cell: &Cell, q: &[Vec<f64>]) -> (f64, [String; 2]) {
     let model = QueryModel::of_cell(cell);
     let names =
@@ -36,7 +36,7 @@ fn query(cell: &Cell, q: &[Vec<f64>]) -> (f64, [String; 2]) {
     found.unwrap()
 }
 
-/// The monitors' distances of a robot to its regions.
+/// Returns the monitors' distances of a robot from its regions.
 fn regions(cell: &Cell, robot: usize, q: &[f64]) -> Vec<(String, f64)> {
     let setup = &configure::setups(cell).unwrap()[robot];
     let mut sweep = RegionSweep::new(&setup.configuration);
@@ -45,7 +45,7 @@ fn regions(cell: &Cell, robot: usize, q: &[f64]) -> Vec<(String, f64)> {
     names.map(|(i, name)| (name, sweep.distance(&setup.configuration, RegionId(i), f64::INFINITY).unwrap())).collect()
 }
 
-/// JSON may change the last bit of a number.
+/// Whether a frame shows a robot at these joint values; JSON may change the last bit of a number.
 fn is_at(frame: &Value, robot: usize, q: &[f64]) -> bool {
     let shown = frame["robots"][robot]["q"].as_array().unwrap();
     shown.len() == q.len() && shown.iter().zip(q).all(|(a, b)| (a.as_f64().unwrap() - b).abs() < 1e-12)
@@ -110,7 +110,7 @@ fn the_tool_centre_point_follows_and_what_cannot_be_is_refused_with_a_reason() {
         2.0 * dot.abs().min(1.0).acos()
     };
     assert!(turned(&moved) < 1e-6, "the orientation is kept");
-    // The server's forward kinematics are the chain's.
+    // The server's forward kinematics equal the chain's.
     let robot = &cell.robots[0];
     let mut state = ChainState::new(&robot.robot.chain);
     let q: Vec<f64> = serde_json::from_value(moved["robots"][0]["q"].clone()).unwrap();
@@ -166,7 +166,7 @@ fn regions_are_entered_left_and_held() {
     page.send(&json!({ "type": "home" }));
     let home = page.frame_where(|frame| frame["robots"][1]["q"] == begin["robots"][1]["q"]);
     assert_eq!(home["slots"][0]["holder"], json!(null));
-    // A new page gets what has happened.
+    // A new page gets the earlier events.
     let mut late = Page::of(&server);
     let events = loop {
         let document = late.next().unwrap();

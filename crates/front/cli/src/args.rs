@@ -186,7 +186,7 @@ pub(crate) struct QueryArgs {
     /// Leave out pairs within one robot
     #[arg(long)]
     pub(crate) no_self: bool,
-    /// The robot holds this object, as its program grips it, else where both are at the start; may be repeated
+    /// The robot holds this object: as its program grips it, else in their relative pose at the start; may be repeated
     #[arg(long, value_name = "ROBOT=OBJECT", conflicts_with = "urdf")]
     pub(crate) carry: Vec<String>,
     /// A row for each pair no farther apart than this (metres), the nearest first, instead of one row per state
@@ -268,11 +268,11 @@ pub(crate) struct MapArgs {
     /// Obstacle model: exact, slices, sphere, spheres=N or box; or seeds, the paper's expansion, which misses cells
     #[arg(long, default_value = "exact")]
     pub(crate) model: MapModel,
-    /// The robot's own solids decide at the border, not sphere covers of its links (always so unless there are three joints)
+    /// Decide border cells by the robot's own solids, not by sphere covers of its links (always so unless there are three joints)
     #[arg(long)]
     pub(crate) exact: bool,
-    /// With --model spheres=N: one sphere around each object first, then 2, 4, 8 … up to N until so many milliseconds have
-    /// passed; any number of spheres blocks all that an object does
+    /// With --model spheres=N: one sphere around each object first, then 2, 4, 8 … up to N until this many milliseconds have
+    /// passed; any number of spheres blocks every cell that the object blocks
     #[arg(long, value_name = "MS", value_parser = milliseconds, allow_negative_numbers = true, conflicts_with = "exact")]
     pub(crate) deadline: Option<f64>,
     /// Write the occupancy to this file: one byte per cell, 0 free, 1 blocked, axes in the order of the joints
@@ -299,7 +299,7 @@ pub(crate) struct MapArgs {
 Example:
   elbowroom teach cell.toml --shape sphere --name lamp --states taught.csv >> cell.toml")]
 pub(crate) struct TeachArgs {
-    /// The cell file that has the robot
+    /// The cell file with the robot
     pub(crate) cell: PathBuf,
     /// The shape that the points determine
     #[arg(long, value_enum)]
@@ -357,7 +357,7 @@ pub(crate) struct WatchArgs {
     /// The folder of point clouds; default: `clouds` of the cloud
     #[arg(long, value_name = "DIR")]
     pub(crate) clouds: Option<PathBuf>,
-    /// Pictures per second of the stream; default: each has the time at which it arrives
+    /// Pictures per second of the stream; default: each picture has its time of arrival
     #[arg(long, value_name = "RATE", requires = "frames")]
     pub(crate) fps: Option<f64>,
     /// Joint values over time (`t_s` and a column per joint); default: `joints` of the camera, or the robots' start

@@ -7,7 +7,7 @@ use elbowroom::sim::held_object;
 
 use crate::output::Failure;
 
-/// The objects that are held, and how: as the robots' programs grip them.
+/// Returns the held objects, each attached as the robot's program grips it.
 pub(crate) fn attachments(cell: &Cell, carry: &[String]) -> Result<Vec<(ObjectId, Attachment)>, Failure> {
     let mut held: Vec<(ObjectId, Attachment)> = Vec::new();
     for text in carry {

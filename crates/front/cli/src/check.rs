@@ -17,13 +17,13 @@ struct Document<'a> {
 
 #[derive(Serialize)]
 struct Row<'a> {
-    /// Of the region.
+    /// Name of the region.
     name: &'a str,
     robot: &'a str,
     kind: &'static str,
     excluded: bool,
     reason: &'a str,
-    /// What to write into the cell file, if something is missing.
+    /// The keys to write into the cell file, if something is missing.
     write: Option<&'a str>,
     warning_m: f64,
     needed_warning_m: Option<f64>,

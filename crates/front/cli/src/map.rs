@@ -69,7 +69,7 @@ fn request(args: &MapArgs) -> MapRequest {
     MapRequest { robot: args.robot.clone(), model: args.model, exact: args.exact, deadline }
 }
 
-/// Computes the map with a progress bar, where it takes long.
+/// Computes the map, with a progress bar if it takes long.
 fn with_progress(cell: &Cell, request: &MapRequest) -> Result<CellMap, Failure> {
     let bar = Progress::share();
     let map = map::map_with(cell, request, &|p: MapProgress<'_>| bar.reach(p.share, p.what));
@@ -144,7 +144,7 @@ impl<'a> Document<'a> {
     }
 }
 
-/// The table for the terminal. Writing to a String cannot fail.
+/// Formats the table for the terminal. Writing to a String cannot fail.
 fn text(map: &CellMap) -> String {
     let share = |blocked: u64| 100.0 * blocked as f64 / map.cells().max(1) as f64;
     let mut out = format!("{}: {} cells, {:.2} % blocked\n\n", map.robot, grouped(map.cells()), share(map.blocked));
@@ -165,7 +165,7 @@ fn text(map: &CellMap) -> String {
     out
 }
 
-/// 1234567 as 1,234,567.
+/// Groups digits by thousands: 1234567 as 1,234,567.
 fn grouped(n: u64) -> String {
     let digits = n.to_string();
     let mut out = String::new();

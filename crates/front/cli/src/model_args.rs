@@ -1,4 +1,4 @@
-//! Arguments of several commands: how a model is read.
+//! Arguments shared by several commands: how a model is read.
 
 use std::path::PathBuf;
 

@@ -51,12 +51,12 @@ pub(crate) fn note(message: impl Display) {
     let _ = writeln!(io::stderr().lock(), "{message}");
 }
 
-/// The command line that starts this program: under `cargo run` it is not on the search path.
+/// The command line that starts this program; under `cargo run` the program is not on the search path.
 pub(crate) fn myself() -> &'static str {
     if std::env::var_os("CARGO").is_some() { "cargo run --release --" } else { "elbowroom" }
 }
 
-/// The error for a file that could not be written.
+/// Makes the error for a file that could not be written.
 pub(crate) fn cannot_write(path: &Path) -> impl Fn(io::Error) -> Failure + '_ {
     move |e| {
         let instead = match e.kind() {
@@ -70,18 +70,18 @@ pub(crate) fn cannot_write(path: &Path) -> impl Fn(io::Error) -> Failure + '_ {
     }
 }
 
-/// Columns of the terminal; 80 where unknown.
+/// Width of the terminal in columns; 80 if unknown.
 pub(crate) fn width() -> usize {
     std::env::var("COLUMNS").ok().and_then(|c| c.parse().ok()).filter(|c| *c >= 60).unwrap_or(80)
 }
 
-/// The text of a run: as wide as the terminal, and whole for everything else.
+/// Formats the summary of a run, as wide as the terminal; unshortened if the output is not a terminal.
 pub(crate) fn summary(recording: &Recording) -> String {
     let text = TextSummary::new(recording).width(width()).color(color());
     text.whole(!io::stdout().is_terminal()).to_string()
 }
 
-/// True if standard output is a terminal that accepts colours.
+/// Whether standard output is a terminal that accepts colours.
 pub(crate) fn color() -> bool {
     io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none()
 }

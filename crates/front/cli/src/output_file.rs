@@ -7,15 +7,15 @@ use elbowroom::formats::WholeFile;
 
 use crate::output::{Failure, cannot_write};
 
-/// Writes a file by `write`: [`WholeFile::write`].
+/// Writes a file with the function `write`: [`WholeFile::write`].
 ///
 /// # Errors
-/// What keeps the file from being written, and what to do.
+/// The reason that the file cannot be written, and what to do.
 pub(crate) fn write_file(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
     WholeFile::write(path, write).map_err(cannot_write(path))
 }
 
-/// Writes a file of these bytes: [`write_file`].
+/// Writes these bytes to a file: [`write_file`].
 pub(crate) fn write_bytes(path: &Path, bytes: impl AsRef<[u8]>) -> Result<(), Failure> {
     write_file(path, |out| out.write_all(bytes.as_ref()))
 }

@@ -70,7 +70,7 @@ fn planner(args: &PlanArgs) -> Result<PathPlanner, Failure> {
     }
 }
 
-/// The only value of an option that has one per robot.
+/// Returns the value of an option that takes one value per robot; an error if there are several.
 fn at_most_one<'a, T>(args: &PlanArgs, option: &str, given: &'a [T]) -> Result<Option<&'a T>, Failure> {
     if given.len() > 1 {
         let (count, robots) = (given.len(), args.robot.len());
@@ -91,7 +91,7 @@ fn goal(args: &PlanArgs, cell: &Cell) -> Result<PathGoal, Failure> {
     configuration(args, cell, None, to).map(PathGoal::Joints)
 }
 
-/// The pose, and which solution of inverse kinematics is wanted.
+/// Reads the pose and the wanted solution of inverse kinematics.
 fn tcp_target(args: &PlanArgs, cell: &Cell, numbers: &[f64]) -> Result<TcpTarget, Failure> {
     let in_world = pose(cell, numbers)?;
     let near = args.near.as_ref().map(|near| near_values(args, cell, near)).transpose()?;
@@ -117,7 +117,7 @@ fn near_values(args: &PlanArgs, cell: &Cell, near: &Configuration) -> Result<Vec
     Err(Failure::Wrong(format!("{what}\n  write: one value per joint, in this order: {}", joints.join(", "))))
 }
 
-/// x, y, z and roll, pitch, yaw, or a quaternion x, y, z, w.
+/// Reads a pose: x, y, z and roll, pitch, yaw, or a quaternion x, y, z, w.
 fn pose(cell: &Cell, numbers: &[f64]) -> Result<Pose, Failure> {
     let wrong =
         |what: &str| Failure::Wrong(format!("--to-pose: {what}\n  write: x,y,z,roll,pitch,yaw or x,y,z,qx,qy,qz,qw"));
@@ -142,7 +142,7 @@ fn pose(cell: &Cell, numbers: &[f64]) -> Result<Pose, Failure> {
     Ok(Pose::new(rotation, at))
 }
 
-/// The table for the terminal. Writing to a String cannot fail.
+/// Formats the table for the terminal. Writing to a String cannot fail.
 fn text(answer: &PathAnswer) -> String {
     let milliseconds = |us: u64| us as f64 / 1000.0;
     let Some(motion) = &answer.motion else {

@@ -35,23 +35,23 @@ pub(crate) struct PlanArgs {
     /// of one of the robot's `states`, or `start`; default: its `start`
     #[arg(long, value_name = "q,…|NAME", allow_hyphen_values = true)]
     pub(crate) from: Vec<Configuration>,
-    /// Goal configuration, likewise
+    /// Goal configuration, as --from
     #[arg(long, value_name = "q,…|NAME", allow_hyphen_values = true, required_unless_present_any = ["urdf", "to_pose"])]
     pub(crate) to: Vec<Configuration>,
     /// Goal as a pose of the TCP in the world, in the cell file's units: x,y,z,roll,pitch,yaw or x,y,z,qx,qy,qz,qw
     #[arg(long, value_name = "x,y,z,r,p,y", allow_hyphen_values = true, conflicts_with_all = ["to", "urdf"])]
     pub(crate) to_pose: Option<Numbers>,
-    /// Configuration at --to-pose, of six axes with a spherical wrist: front or back, up or down, `no_flip` or flip, or
+    /// Arm configuration at --to-pose, for six axes with a spherical wrist: front or back, up or down, `no_flip` or flip, or
     /// some of them
     #[arg(long, value_name = "WORD,…", value_delimiter = ',', requires = "to_pose", conflicts_with = "to")]
     pub(crate) configuration: Vec<String>,
-    /// Of the solutions for --to-pose only the one nearest to these joint values, as --from
+    /// Use only the solution for --to-pose that is nearest to these joint values, as --from
     #[arg(long, value_name = "q,…|NAME", allow_hyphen_values = true, requires = "to_pose", conflicts_with = "to")]
     pub(crate) near: Option<Configuration>,
     /// --from and --to are in the cell file's units, as in a program
     #[arg(long, conflicts_with = "urdf")]
     pub(crate) cell_units: bool,
-    /// The robot holds this object, as its program grips it, else where both are at the start; may be repeated
+    /// The robot holds this object: as its program grips it, else in their relative pose at the start; may be repeated
     #[arg(long, value_name = "ROBOT=OBJECT", conflicts_with = "urdf")]
     pub(crate) carry: Vec<String>,
     /// Write the timed trajectory to this file: `t_s` and a column per joint, linear between rows
@@ -72,7 +72,7 @@ pub(crate) struct PlanArgs {
     pub(crate) json: bool,
 }
 
-/// How a path is searched for.
+/// Search options of a path.
 #[derive(Debug, Args)]
 pub(crate) struct SearchArgs {
     /// rrt-connect: any joints, proven on sphere covers and in the exact scene; grid: through the free cells of the robot's
@@ -82,7 +82,7 @@ pub(crate) struct SearchArgs {
     /// Time limit of the search in seconds; with --problems, of each problem
     #[arg(long, value_name = "SECONDS", default_value = "5", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) time_limit: f64,
-    /// Go on until the time limit, with shorter and shorter paths
+    /// Search for shorter paths until the time limit
     #[arg(long)]
     pub(crate) optimize: bool,
     /// Security margin to all obstacles, in metres

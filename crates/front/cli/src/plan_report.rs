@@ -11,11 +11,13 @@ use crate::output::Failure;
 use crate::output_file::write_file;
 use crate::simulation::Simulation;
 
-/// A robot and the samples of its path: s, and rad or m.
+/// A robot and the samples of its path: time in s, joint values in rad or m.
 pub(crate) type PlayedPath = (RobotId, Vec<(f64, Vec<f64>)>);
 
-/// Writes the page. As in the plan, all other robots stay at their start, and objects where they are then; the monitor slows
-/// nothing down, so that the times are those of the plan.
+/// Writes the page.
+///
+/// As in the plan, all other robots stay at their start and objects at their initial poses; the monitor does not limit
+/// the speed, so the times are those of the plan.
 pub(crate) fn write(path: &Path, cell: &Cell, paths: Vec<PlayedPath>) -> Result<(), Failure> {
     let mut cell = cell.clone();
     cell.programs.iter_mut().for_each(|program| *program = None);

@@ -1,4 +1,4 @@
-//! What the options of `elbowroom plan` say of a path.
+//! Path requests from the options of `elbowroom plan`.
 
 use std::time::Duration;
 
@@ -10,7 +10,7 @@ use crate::arg_values::Configuration;
 use crate::output::Failure;
 use crate::plan_args::PlanArgs;
 
-/// Time limit, clearance and seed.
+/// Reads time limit, clearance and seed.
 pub(crate) fn settings(args: &PlanArgs) -> RrtConnectSettings {
     RrtConnectSettings {
         time_limit: Duration::from_secs_f64(args.search.time_limit),
@@ -20,7 +20,7 @@ pub(crate) fn settings(args: &PlanArgs) -> RrtConnectSettings {
     }
 }
 
-/// The values of a configuration of a robot, or of the only one that was named, rad or m.
+/// Resolves a configuration of `robot`, or of the first named robot, to joint values in rad or m.
 pub(crate) fn configuration(
     args: &PlanArgs,
     cell: &Cell,

@@ -33,7 +33,7 @@ pub(crate) fn plan(cell: &Cell, args: &PlanArgs) -> Result<ExitStatus, Failure> 
     Ok(if answer.found { ExitStatus::Success } else { ExitStatus::NegativeResult })
 }
 
-/// The columns of each robot.
+/// Splits the rows into the columns of each robot.
 fn played(cell: &Cell, answer: &SeveralPathsAnswer) -> Result<Vec<PlayedPath>, Failure> {
     let mut first = 0;
     let of_robot = |path: &RobotPath| {
@@ -46,7 +46,7 @@ fn played(cell: &Cell, answer: &SeveralPathsAnswer) -> Result<Vec<PlayedPath>, F
     answer.robots.iter().map(of_robot).collect()
 }
 
-/// The options of each robot, in the order in which they are written.
+/// Collects the options of each robot, in the order of the command line.
 fn robots(cell: &Cell, args: &PlanArgs) -> Result<Vec<RobotPathRequest>, Failure> {
     let count = args.robot.len();
     let wrong = |what: String| {
@@ -78,7 +78,7 @@ fn robots(cell: &Cell, args: &PlanArgs) -> Result<Vec<RobotPathRequest>, Failure
     args.robot.iter().enumerate().map(one).collect()
 }
 
-/// The table for the terminal. Writing to a String cannot fail.
+/// Formats the table for the terminal. Writing to a String cannot fail.
 fn text(answer: &SeveralPathsAnswer) -> String {
     let Some(duration_s) = answer.duration_s else {
         return format!("{}\n", answer.reason.as_deref().unwrap_or("no paths found"));

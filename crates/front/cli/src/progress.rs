@@ -1,14 +1,14 @@
-//! Progress on standard error, where that is a terminal.
+//! Progress on standard error, if it is a terminal.
 
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-/// Steps of a bar without a number of things.
+/// Steps of a bar that shows a fraction instead of a count.
 const STEPS: u64 = 1000;
 
-/// A bar that appears after a while, and only on a terminal.
+/// A progress bar that appears after a delay, and only on a terminal.
 pub(crate) struct Progress {
     bar: ProgressBar,
     begin: Instant,
@@ -16,7 +16,7 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    /// Of a number of things.
+    /// Creates a bar that counts `total` things.
     pub(crate) fn of(total: usize, things: &str) -> Self {
         Self::new(
             Some(total as u64),
@@ -25,12 +25,12 @@ impl Progress {
         )
     }
 
-    /// Of a share.
+    /// Creates a bar for a fraction from 0 to 1.
     pub(crate) fn share() -> Self {
         Self::new(Some(STEPS), Duration::from_secs(2), "{bar:30} {percent} %, {msg}")
     }
 
-    /// Of a length that nobody knows; it turns also while nothing is told.
+    /// Creates a spinner for work of unknown length; it also turns between messages.
     pub(crate) fn unknown() -> Self {
         let progress = Self::new(None, Duration::from_millis(700), "{spinner} {msg} [{elapsed_precise}]");
         if std::io::stderr().is_terminal() {
@@ -54,17 +54,17 @@ impl Progress {
         Self { bar, begin: Instant::now(), appears_after }
     }
 
-    /// After some of the things: what is there to say, and the time that is left.
+    /// Shows that `done` things are done, with a message and the estimated time left.
     pub(crate) fn count(&self, done: usize, message: &str) {
         self.show(done as u64, message);
     }
 
-    /// After a share from 0 to 1.
+    /// Shows a fraction from 0 to 1, with a message and the estimated time left.
     pub(crate) fn reach(&self, share: f64, message: &str) {
         self.show((share * STEPS as f64) as u64, message);
     }
 
-    /// That it goes on.
+    /// Replaces the message; the position stays.
     pub(crate) fn go_on(&self, message: String) {
         self.bar.set_message(message);
     }

@@ -17,10 +17,10 @@ use crate::output::{ExitStatus, Failure, note, print};
 use crate::progress::Progress;
 use crate::states;
 
-/// A tolerance (m) beyond this one is more likely in another unit.
+/// A tolerance (m) above this value is probably in another unit.
 const DOUBTFUL_TOLERANCE_M: f64 = 2.0;
 
-/// From this number of states on, pairs out of reach of each other are excluded first.
+/// From this number of states on, pairs that cannot reach each other are excluded first.
 const MANY: usize = 1000;
 
 pub(crate) fn query(args: &QueryArgs) -> Result<ExitStatus, Failure> {
@@ -80,7 +80,7 @@ pub(crate) fn query(args: &QueryArgs) -> Result<ExitStatus, Failure> {
     })
 }
 
-/// Says that a tolerance may be in another unit.
+/// Warns that a tolerance may be in another unit.
 fn doubt(ask: QueryKind) {
     if let QueryKind::Tolerance(metres) = ask
         && metres > DOUBTFUL_TOLERANCE_M
@@ -106,7 +106,7 @@ fn has_no_pair(scene: &Scene, start: &SceneState, pairs: &QueryPairs) -> bool {
     pairs.sides().iter().all(|&[a, b]| checker.between(a, b).is_empty(start))
 }
 
-/// The model, and the cell where it is one.
+/// Loads the model, and its cell if it comes from a cell file.
 fn query_model(args: &QueryArgs) -> Result<(QueryModel, Option<Cell>), Failure> {
     if let Some(urdf) = &args.urdf {
         let unit = args.unit.map(LengthUnit::from);
@@ -121,7 +121,7 @@ fn query_model(args: &QueryArgs) -> Result<(QueryModel, Option<Cell>), Failure> 
         loaded.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
         return Ok((QueryModel::of_robot(urdf, loaded.robot), None));
     }
-    // clap requires one of the two.
+    // clap requires a cell or --urdf.
     let path = args.cell.as_deref().unwrap_or(Path::new(""));
     if args.joints.joints.is_some() || !args.joints.joint.is_empty() {
         let what =
@@ -181,7 +181,7 @@ struct Writer<'a> {
     done: usize,
     is_first: bool,
     colliding: usize,
-    /// The last state that was counted as colliding.
+    /// Index of the last state that was counted as colliding.
     last_colliding: Option<usize>,
     progress: Progress,
 }
@@ -225,7 +225,7 @@ impl<'a> Writer<'a> {
                 text.push_str(&row.record.csv());
                 text.push('\n');
             }
-            // Several contacts of a state are one state.
+            // Several contacts of one state count as one colliding state.
             let is_new = self.args.ask != QueryKind::Contacts || self.last_colliding != Some(row.index);
             if row.collides && is_new {
                 self.colliding += 1;

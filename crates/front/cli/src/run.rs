@@ -52,8 +52,8 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
     Ok(if outcome.has_violation() { ExitStatus::NegativeResult } else { ExitStatus::Success })
 }
 
-/// The run without the monitor, whose distances the report shows beside those of the run with it. Its robots may meet where
-/// the monitor keeps them apart: where a program cannot continue then, there is nothing to compare with.
+/// Runs without the monitor; the report shows the distances beside those of the monitored run. Robots may meet that the
+/// monitor keeps apart: if a program cannot continue then, there is no comparison.
 fn planned(simulation: &Simulation<'_>, options: &RunOptions) -> Result<Option<Recording>, Failure> {
     match simulation.run(&RunOptions { apply_override: false, ..options.clone() }) {
         Ok(outcome) => Ok(Some(outcome.recording)),
@@ -74,8 +74,9 @@ struct Document<'a> {
     seal: Option<&'a Seal>,
 }
 
-/// Writes trace, events and the report. `without` is the run without the monitor: its distances are shown, and all of it with
-/// `compare`.
+/// Writes trace, events and the report.
+///
+/// `without` is the run without the monitor: the report shows its distances, with `compare` all of it.
 pub(crate) fn write_files(
     dir: &Path,
     cell: &Cell,
@@ -100,7 +101,7 @@ pub(crate) fn write_files(
     write_file(&dir.join("report.html"), |out| page.write(out))
 }
 
-/// Writes what a sensor saw: a JSON document per picture or cloud, a line each, as `watch --json` prints it.
+/// Writes the records of a sensor: one JSON document per line for each picture or cloud, as `watch --json` prints it.
 fn write_records(path: &Path, sensor: &SensorTrack) -> Result<(), Failure> {
     write_file(path, |out| {
         sensor.records.iter().try_for_each(|record| writeln!(out, "{}", serde_json::to_string(record)?))

@@ -11,10 +11,10 @@ use elbowroom::sim::{PathSearch, PlannedPaths, RunOptions, RunOutcome};
 use crate::output::{Failure, note};
 use crate::progress::Progress;
 
-/// A cell to be checked and run, several times as well: the paths of its planned moves are searched once.
+/// A cell for checks and runs, also repeated ones: the paths of its planned moves are searched only once.
 pub(crate) struct Simulation<'a> {
     pub(crate) paths: PlannedPaths<'a>,
-    /// Of what is computed now.
+    /// Progress of the present computation.
     progress: Rc<RefCell<Option<Progress>>>,
 }
 
@@ -28,12 +28,12 @@ impl<'a> Simulation<'a> {
         Self { paths, progress }
     }
 
-    /// What the laws exclude.
+    /// Checks which entries the laws exclude.
     pub(crate) fn check(&self) -> Result<Vec<EntryCheck>, Failure> {
         Ok(self.with_progress(|| check_planned(&self.paths))?)
     }
 
-    /// Warns before a run of borders that a robot can reach faster than it can stop.
+    /// Warns of borders that a robot can reach faster than it can stop.
     pub(crate) fn warn_of_overruns(&self) -> Result<(), Failure> {
         let overruns = self.with_progress(|| overruns(&self.paths))?;
         for w in overruns {
@@ -46,7 +46,7 @@ impl<'a> Simulation<'a> {
         self.observed(options, None)
     }
 
-    /// A run with an observer of the monitors.
+    /// Runs with an observer of the monitors.
     pub(crate) fn observed(
         &self,
         options: &RunOptions,

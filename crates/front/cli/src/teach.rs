@@ -51,12 +51,12 @@ fn robot<'a>(cell: &'a Cell, args: &TeachArgs) -> Result<&'a CellRobot, Failure>
     }
 }
 
-/// The position of the TCP (or of the flange) in each state.
+/// Computes the position of the TCP (or of the flange) in each state.
 fn points(cell: &Cell, robot: &CellRobot, args: &TeachArgs) -> Result<Vec<Vec3>, Failure> {
     let chain = &robot.robot.chain;
     let mut state = ChainState::new(chain);
     let states = crate::states::read(&args.states, &QueryModel::of_robot_in_cell(cell, robot))?;
-    // No robot was taught beyond its limits: the values are in another unit, or of another robot.
+    // A robot cannot be taught beyond its limits: such values are in another unit, or of another robot.
     if let Some(beyond) = states.warnings.first() {
         let write = "states in radians, and metres for joints that slide, as the robot has taken them";
         return Err(Failure::Wrong(format!("{beyond}\n  write: {write}")));
@@ -106,7 +106,7 @@ fn height_direction(
     found.map_err(|e| Failure::Wrong(format!("{}: {e}", args.states.display())))
 }
 
-/// A description of the box built from three corners and a height, with the side that it extends to.
+/// Describes the box built from three corners and a height, with the side that it extends to.
 fn box_built(region: &Region, height: &HeightDirection, cell: &Cell) -> Vec<String> {
     let unit = cell.units.length.symbol();
     let number = |metres: f64| shown(metres / cell.units.length.to_metres(1.0));
@@ -146,12 +146,12 @@ fn box_built(region: &Region, height: &HeightDirection, cell: &Cell) -> Vec<Stri
     lines
 }
 
-/// At most four digits after the decimal point.
+/// Formats a number with at most four digits after the decimal point.
 fn shown(v: f64) -> String {
     format!("{}", (v * 1e4).round() / 1e4 + 0.0)
 }
 
-/// Rejects a region that the cell file's parser would reject.
+/// Rejects a region that the parser of the cell file would reject.
 fn accepted(text: &str, cell: &Cell, args: &TeachArgs) -> Result<(), Failure> {
     let (length, angle) = (cell.units.length.symbol(), cell.units.angle.symbol());
     let head = format!("version = 1\nunits = {{ length = \"{length}\", angle = \"{angle}\" }}\n");
@@ -160,7 +160,7 @@ fn accepted(text: &str, cell: &Cell, args: &TeachArgs) -> Result<(), Failure> {
     Err(Failure::Wrong(format!("{}: the region taught: {}{hint}", args.states.display(), e.what)))
 }
 
-/// The region in cell-file syntax.
+/// Formats the region in cell-file syntax.
 fn toml(region: &Region, warning: f64, length: &dyn Fn(f64) -> f64, angle: &dyn Fn(f64) -> f64) -> String {
     let mut text = format!("[region.{}]\n", key(&region.name));
     let mut line = |key: &str, value: String| {
@@ -205,7 +205,7 @@ fn toml(region: &Region, warning: f64, length: &dyn Fn(f64) -> f64, angle: &dyn 
     text
 }
 
-/// A TOML key, bare if possible.
+/// Formats a TOML key, bare if possible.
 fn key(name: &str) -> String {
     let bare = !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-');
     if bare { name.to_owned() } else { format!("{name:?}") }

@@ -1,4 +1,4 @@
-//! `elbowroom watch`: what a camera or a source of point clouds of a cell sees, picture by picture.
+//! `elbowroom watch`: the obstacles that a camera or point-cloud source of a cell detects, picture by picture.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -42,7 +42,7 @@ fn note_warnings(watch: &mut SensorWatch) {
     watch.warnings.drain(..).for_each(|w| note(format_args!("warning: {w}")));
 }
 
-/// The period of `--fps`, s.
+/// Returns the period of `--fps`, s.
 fn period_s(fps: Option<f64>, is_stream: bool) -> Result<Option<f64>, Failure> {
     match fps {
         Some(_) if !is_stream => {
@@ -55,7 +55,7 @@ fn period_s(fps: Option<f64>, is_stream: bool) -> Result<Option<f64>, Failure> {
     }
 }
 
-/// Takes in the pictures of standard input as they arrive.
+/// Processes the pictures of standard input as they arrive.
 fn watch_stream(watch: &mut SensorWatch, period_s: Option<f64>, output: &mut WatchOutput) -> Result<(), Failure> {
     let mut stream = PngStream::new(std::io::stdin().lock());
     let begin = Instant::now();
@@ -73,7 +73,7 @@ fn watch_stream(watch: &mut SensorWatch, period_s: Option<f64>, output: &mut Wat
     Ok(())
 }
 
-/// Prints records: as JSON lines, or as a table of what changes.
+/// Prints records, as JSON lines or as a table of changes.
 struct WatchOutput {
     json: bool,
     summary: Summary,
@@ -111,7 +111,7 @@ impl WatchOutput {
     }
 }
 
-/// A line of the table: what changed.
+/// Formats a line of the table: the changes of one picture.
 fn row(record: &WatchRecord) -> String {
     let mut line =
         format!("{:9.3}  {:20}  {:9}  {:14}", record.t_s, record.frame, record.obstacles.len(), record.blocked);
@@ -120,7 +120,7 @@ fn row(record: &WatchRecord) -> String {
             let known = record.obstacles.iter().find(|o| o.id == *id);
             let place = known.map(|o| format!(" at {:.3}, {:.3} m", o.centre_m[0], o.centre_m[1])).unwrap_or_default();
             let kind = known.and_then(|o| o.kind.as_deref()).map(|kind| format!(" ({kind})")).unwrap_or_default();
-            // Writing to a text cannot fail.
+            // Writing to a String cannot fail.
             let _ = write!(line, "  #{id}{kind} {word}{place}");
         }
     }
@@ -131,7 +131,7 @@ fn row(record: &WatchRecord) -> String {
     line
 }
 
-/// What was seen in all pictures.
+/// Totals over all pictures.
 #[derive(Default)]
 struct Summary {
     last: Option<WatchStatus>,
@@ -143,7 +143,7 @@ struct Summary {
 }
 
 impl Summary {
-    /// True if an obstacle enters or leaves, and where pictures begin or cease to be accepted.
+    /// Whether an obstacle enters or leaves, or the status of the picture differs from the last one.
     fn is_news(&self, record: &WatchRecord) -> bool {
         !record.entered.is_empty() || !record.left.is_empty() || self.last != Some(record.status)
     }

@@ -1,4 +1,4 @@
-//! `query --carry` and `plan --carry`: objects in the hand of a robot.
+//! `query --carry` and `plan --carry`: objects that a robot holds.
 
 use crate::common::{Answer, elbowroom, slide_arm, with_cell};
 
@@ -26,7 +26,7 @@ steps = [
   { move = "planned", to = [60, 0, -100] },
 ]
 "#;
-/// A region where the post is.
+/// A region around the post.
 const REGION: &str =
     "[region.zone]\nshape = \"cylinder\"\nbase = [866, 500, 0]\nradius = 40\nheight = 1000\nwarning = 20\n";
 const STATES: &str = "joint_1,joint_2,joint_3\n0,0,-0.1\n0.5236,0,-0.1\n1.0472,0,-0.1\n";
@@ -66,10 +66,10 @@ fn a_carried_part_moves_with_the_hand_in_every_row() {
         (with[0].0 - corner(0.0)).abs() < 1e-3 && (with[2].0 - corner(std::f64::consts::FRAC_PI_3)).abs() < 1e-3,
         "{with:?}"
     );
-    // Where the part lies at the start it touches nothing.
+    // At its place at the start the part touches nothing.
     let without = distances(&query(&text, &["--between", "arm,post"]).expect(0));
     assert!(without.iter().all(|(metres, ..)| *metres > 0.2), "{without:?}");
-    // It is a part of the robot: pairs of the two are left out.
+    // It is a part of the robot: pairs within the robot are left out.
     let no_self = distances(&query(&text, &["--carry", "arm=bar", "--no-self"]).expect(0));
     assert!(no_self.iter().all(|(_, a, b)| (a == "bar" || a.starts_with("arm/")) && b == "post"), "{no_self:?}");
 }
@@ -95,7 +95,7 @@ fn a_path_leads_the_part_around() {
         };
         assert_eq!(plan(&[]), 2, "the empty hand moves straight");
         assert!(plan(&["--carry", "arm=bar"]) > 2);
-        // And so does the planned move of the program, by itself.
+        // The planned move of the program does so too, without options.
         let json = elbowroom(cell(&scene).path(), &["run", "cell.toml", "--json"]).expect(0).json();
         assert_eq!(json["robots"][0]["outcome"], "finished");
     }

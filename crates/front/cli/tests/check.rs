@@ -1,4 +1,4 @@
-//! `elbowroom check`, and what `run` says before it begins.
+//! `elbowroom check`, and the warnings of `run` before it begins.
 
 use crate::common::{Answer, elbowroom, examples, keys};
 use std::path::Path;
@@ -41,8 +41,8 @@ fn run(text: &str) -> Answer {
     elbowroom(cell(text).path(), &["run", "cell.toml", "--json"])
 }
 
-/// The thickness is the sum and a supplement for the reaction time of the law
-/// (docs/laws.md, section 2: (v·t)²/4 over the braking distance), and 0.3 % for what is sampled.
+/// The thickness is the sum, a supplement for the reaction time of the law
+/// (docs/laws.md, section 2: (v·t)²/4 over the braking distance), and 0.3 % for sampling.
 fn assert_close(needed: f64, sum: f64, late: f64) {
     assert!(needed >= sum && needed <= (sum + late) * 1.003, "{needed} m, the sum is {sum} m");
 }
@@ -54,7 +54,7 @@ fn an_overrun_is_said_before_the_run() {
         assert!(answer.stderr.contains(words), "{words}: {}", answer.stderr);
     }
     assert!(answer.stderr.contains("write: stopping_distance = true in [monitor], or warning = 255 in [region.wall]"));
-    // Both remedies that are named work, and say nothing more.
+    // Both named remedies work, without further warnings.
     for cured in [format!("{OVERRUN}{STOPPING}"), OVERRUN.replace("warning = 50", "warning = 255")] {
         let answer = run(&cured).expect(0);
         assert!(!answer.stderr.contains("overrun"), "{}", answer.stderr);
@@ -71,7 +71,7 @@ fn check_says_whether_entry_is_excluded_and_why() {
     assert_eq!(keys(row), ["excluded", "kind", "name", "needed_warning_m", "reason", "robot", "warning_m", "write"]);
     assert_eq!((row["name"].as_str(), row["robot"].as_str()), (Some("wall"), Some("cart")));
     assert_eq!(row["excluded"], false);
-    // 2²/(2·8) + 2·0.002; then 20 µm because the robot runs by late answers when it comes to the law's curve, and 0.2 %.
+    // 2²/(2·8) + 2·0.002; then 20 µm because the robot acts on late answers when it reaches the law's curve, and 0.2 %.
     assert_close(row["needed_warning_m"].as_f64().unwrap(), 0.254, 0.02e-3);
     assert!(row["reason"].as_str().unwrap().contains("`stopping_distance` is off"), "{row}");
     assert!(row["write"].as_str().unwrap().contains("stopping_distance = true"), "{row}");
@@ -91,14 +91,14 @@ fn check_says_whether_entry_is_excluded_and_why() {
 fn the_reaction_time_and_the_programmed_override_count() {
     let needed = |text: &str| check(text).json()["regions"][0]["needed_warning_m"].as_f64().unwrap();
     let slow = format!("{OVERRUN}[monitor]\nreaction_ms = 30\n");
-    // One tick until it is seen, 30 ms until it is obeyed.
+    // One tick until the speed is seen, 30 ms until the override is obeyed.
     assert_close(needed(&slow), 0.314, 0.064 * 0.064 / (4.0 * 0.25));
     let half = OVERRUN.replace("[program.cart]\n", "[program.cart]\noverride = 50\n");
     assert_close(needed(&half), 0.0625 + 0.002, 0.02e-3);
-    // An override that falls slower than the robot brakes: 2/s instead of 4/s.
+    // The override falls more slowly than the robot brakes: 2/s instead of 4/s.
     let rate = format!("{OVERRUN}[monitor]\noverride_rate = 2\n");
     assert_close(needed(&rate), 0.504, 0.02e-3);
-    // The stopping distance is not delayed by it.
+    // It does not delay the stopping distance.
     check(&format!("{OVERRUN}{STOPPING}override_rate = 2\n")).expect(0);
 }
 
@@ -107,9 +107,9 @@ fn a_robot_that_is_released_near_the_border_is_not_kept_out_by_any_thickness() {
     let thick = OVERRUN.replace("warning = 50", "warning = 2000");
     check(&thick).expect(0);
     let aware = format!("{thick}[monitor]\ndirection_aware = true\n");
-    // One straight move never comes back.
+    // A single straight move never comes back.
     check(&aware).expect(0);
-    // It goes to the border, a little away from it, at full speed, and in.
+    // It moves to the border, a little away from it, at full speed, and in.
     let turns =
         aware.replace("to = [2500]", "to = [500] }, { move = \"joint\", to = [400] }, { move = \"joint\", to = [2500]");
     let row = &check(&turns).expect(1).json()["regions"][0];
@@ -132,7 +132,7 @@ fn what_no_law_excludes_is_said() {
     let belt = "[encoder.belt]\nspeed = 100\n";
     let moving = stopping.replace("warning = 50", "warning = 50\nfollow = { encoder = \"belt\" }");
     reason(&format!("{moving}{belt}"), "the region moves");
-    // A belt that stands moves nothing.
+    // A stopped belt moves nothing.
     check(&format!("{moving}{}", belt.replace("100", "0"))).expect(0);
 }
 

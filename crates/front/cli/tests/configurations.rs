@@ -1,4 +1,4 @@
-//! Which of the solutions of inverse kinematics a pose is reached in: `configuration` and `near`.
+//! Choice between solutions of inverse kinematics for a pose: `configuration` and `near`.
 
 use crate::common::{Answer, elbowroom, with_cell};
 
@@ -84,7 +84,7 @@ fn run(step: &str) -> Answer {
     elbowroom(dir.path(), &["run", "cell.toml", "--out", "out", "--json"])
 }
 
-/// The last value of joint 5 in the recorded run, degrees.
+/// Returns the last value of joint 5 in the recorded run, degrees.
 fn last_of_joint_5(step: &str) -> f64 {
     let dir = with_cell(&format!("{ROBOT}[program.arm]\nsteps = [{step}]\n"));
     elbowroom(dir.path(), &["run", "cell.toml", "--out", "out", "--json"]).expect(0);

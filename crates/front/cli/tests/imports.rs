@@ -1,4 +1,4 @@
-//! What people have from other programs: planning scenes, SRDFs, files of CAD.
+//! Files from other programs: planning scenes, SRDFs, CAD files.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ const SCENE: &str = "shelf\n* board\n0.9 0 0.5\n0 0 0 1\n1\nbox\n0.6 0.4 0.1\n0 
 0 0 0\n0.5 0 0\n0 0.5 0\n0 0 0.5\n0 2 1\n0 1 3\n1 2 3\n0 3 2\n0 0 0\n0 0 0 1\n0 0 0 0\n0\n* floor\n0 0 -0.01\n0 0 0 1\n1\nplane\n0 0 1 0\n\
 0 0 0\n0 0 0 1\n0 0 0 0\n0\n.\n";
 
-/// A turning bar on a post, with the tables `more`.
+/// Makes a cell with a turning bar on a post, and the tables `more`.
 fn cell(more: &str) -> String {
     format!(
         "version = 1\nunits = {{ length = \"mm\", angle = \"deg\" }}\n[robot.bar]\n\
@@ -133,7 +133,7 @@ fn an_srdf_is_written_from_models_and_cells_and_read_again() {
     let text = std::fs::read_to_string(here.join("bar.srdf")).unwrap();
     assert!(text.contains("<chain base_link=\"base\" tip_link=\"link_1\"/>"), "{text}");
     assert!(text.contains("<group_state name=\"right\" group=\"manipulator\">"), "{text}");
-    // The states of the SRDF are those of the cell.
+    // The states of the SRDF are states of the cell.
     let states = "states = { left = [90], right = [-90] }\n";
     write(here, "again.toml", &cell("srdf = \"bar.srdf\"\n").replace(states, ""));
     elbowroom(here, &["plan", "again.toml", "--to", "right"]).expect(0);

@@ -37,7 +37,7 @@ fn json_has_the_documented_keys_and_the_table_reproduces_the_chain() {
 #[test]
 fn states_give_a_row_per_state_and_link() {
     let dir = tempfile::tempdir().unwrap();
-    // Columns in another order, and joint_1 a quarter turn in the second row.
+    // Columns in another order, and joint_1 turned by a quarter turn in the second row.
     let states = "joint_6,joint_5,joint_4,joint_3,joint_2,joint_1\n0,0,0,0,0,0\n0,0,0,0,0,1.5707963267948966\n";
     std::fs::write(dir.path().join("q.csv"), states).unwrap();
     let answer = elbowroom(dir.path(), &["inspect", &ns16(), "--states", "q.csv"]).expect(0);
@@ -150,7 +150,8 @@ fn resolution_models_report_their_deviation() {
     assert!(answer.stderr.contains("png"), "{}", answer.stderr);
 }
 
-/// A slide of 1 m whose cart is a cube; the numbers of its corners are times `size`, and `scale` is in the URDF.
+/// Inspects a slide of 1 m whose cart is a cube; the coordinates of its corners are multiplied by `size`, and `scale`
+/// is in the URDF.
 fn cart(dir: &std::path::Path, size: f64, scale: f64) -> serde_json::Value {
     let obj = format!("v 0 0 0\nv {size} 0 0\nv 0 {size} 0\nv 0 0 {size}\nf 1 3 2\nf 1 2 4\nf 1 4 3\n");
     std::fs::write(dir.join("cart.obj"), obj).unwrap();
@@ -186,7 +187,7 @@ fn wrong_units_are_reported_and_right_units_are_not() {
     }
 }
 
-/// Rows and columns of a rotation and an origin.
+/// A rotation matrix and an origin, as rows.
 type Matrix = [[f64; 4]; 3];
 
 fn times(a: &Matrix, b: &Matrix) -> Matrix {
@@ -209,7 +210,7 @@ fn along(x: f64, y: f64, z: f64) -> Matrix {
     [[1.0, 0.0, 0.0, x], [0.0, 1.0, 0.0, y], [0.0, 0.0, 1.0, z]]
 }
 
-/// The product of the rows of one of the tables, its factors multiplied out as the documents say.
+/// Multiplies the rows of one of the tables, with the factors in the order of the documents.
 fn product(rows: &serde_json::Value, q: &dyn Fn(&str) -> (f64, bool), modified: bool) -> Matrix {
     let mut at = along(0.0, 0.0, 0.0);
     for row in rows.as_array().unwrap() {
@@ -226,7 +227,7 @@ fn product(rows: &serde_json::Value, q: &dyn Fn(&str) -> (f64, bool), modified: 
     at
 }
 
-/// Elbow over a rail, about an axis; the tip stands aside of its frame's x.
+/// Makes an elbow over a rail, about an axis; the tip is beside its frame's x.
 fn railed(axis: &str, aside: f64) -> String {
     format!(
         r#"<robot name="railed"><link name="hall"/><link name="cart"/><link name="arm"/><link name="hand"/>
@@ -247,7 +248,7 @@ fn every_table_multiplies_out_to_the_tip_and_classical_is_refused_with_b() {
     for (model, joints, tip, classical) in [
         (ns16().as_str(), "joint_1,joint_2,joint_3,joint_4,joint_5,joint_6", "tool0", true),
         ("straight.urdf", "x,turn", "hand", true),
-        // The way to the tip takes two rows, and then no b.
+        // The transform to the tip takes two rows, and then no b.
         ("split.urdf", "x,turn", "hand", true),
         ("aside.urdf", "x,turn", "hand", false),
     ] {
@@ -298,7 +299,7 @@ fn every_table_multiplies_out_to_the_tip_and_classical_is_refused_with_b() {
     assert!(refused.stderr.contains("modified"), "{}", refused.stderr);
 }
 
-/// The NS16 with all meshes `scale` times as large; `edit` changes the text further.
+/// Inspects the NS16 with all meshes scaled by `scale`; `edit` changes the text further.
 fn scaled_ns16(dir: &std::path::Path, scale: f64, edit: impl Fn(String) -> String) -> common::Answer {
     let models = std::path::PathBuf::from(ns16());
     let folder = models.parent().unwrap().display().to_string();
@@ -353,7 +354,7 @@ fn limits_in_degrees_are_reported() {
     assert!(json["warnings"].to_string().contains("look like degrees (deg), read as radians"), "{}", json["warnings"]);
 }
 
-/// A ball as a file in single precision may have it: every triangle with corners of its own, a hair off.
+/// Makes a sphere as a file in single precision may have it: every triangle with corners of its own, slightly displaced.
 fn seamed_ball() -> String {
     use std::f64::consts::{PI, TAU};
     use std::fmt::Write;

@@ -1,4 +1,4 @@
-//! `elbowroom live` as processes on the loopback network, watched through what they publish.
+//! `elbowroom live` as processes on the loopback network, observed through their messages.
 #![cfg(feature = "live")]
 
 use std::collections::BTreeMap;
@@ -16,13 +16,13 @@ use elbowroom_testkit::network::free_address;
 const CELL_NAME: &str = "two arms, one pallet";
 const ROBOTS: [&str; 2] = ["left", "right"];
 
-/// What was seen of the two robots.
+/// Observations of the two robots.
 #[derive(Default)]
 struct Seen {
     statuses: BTreeMap<String, (RobotStatus, Instant)>,
     count: usize,
     entries: BTreeMap<String, usize>,
-    /// Two robots that were both heard within 0.1 s were inside.
+    /// Number of times that two robots, both heard within 0.1 s, were inside.
     shared: usize,
 }
 
@@ -110,14 +110,14 @@ fn processes_that_are_killed_never_make_two_robots_share_a_region() {
     let is_inside = |seen: &Seen, robot: &str| {
         seen.statuses.get(robot).is_some_and(|(s, _)| s.exchange.values().any(|state| state == "inside"))
     };
-    // A robot whose process dies inside: nobody else enters until it was heard again.
+    // If a robot's process dies inside, no other robot enters until it is heard again.
     observer.wait("left never leaves", 60, |seen| !is_inside(seen, "left"));
     observer.wait("left is never inside", 60, |seen| is_inside(seen, "left"));
     robots[0] = {
         let LiveProcess(child) = &mut robots[0];
         child.kill().expect("it is killed");
         let right = observer.seen.lock().unwrap().entered("right");
-        // More than a round of right, and than the time after which a silent process is given up.
+        // Longer than a round of the right robot, and than the time after which a silent process is dropped.
         std::thread::sleep(Duration::from_secs(2));
         assert_eq!(
             observer.seen.lock().unwrap().entered("right"),
@@ -126,7 +126,7 @@ fn processes_that_are_killed_never_make_two_robots_share_a_region() {
         );
         start("left")
     };
-    // An arbiter that dies: another one goes on.
+    // After the arbiter dies, another one continues.
     drop(arbiter);
     arbiter = LiveProcess::start(&["--arbiter", "--listen", &address]);
     let before = ROBOTS.map(|r| observer.seen.lock().unwrap().entered(r));

@@ -9,7 +9,7 @@ fn control(folder: &Path, arguments: &[&str]) -> Answer {
     answer(command.args(arguments).env_remove("ELBOWROOM_SECRET").output().unwrap())
 }
 
-/// A file of tokens with one of each role, and a file `ROLE.secret` for each.
+/// Makes a file of tokens with one of each role, and a file `ROLE.secret` for each.
 fn make_tokens(folder: &Path) {
     for role in ["operator", "programmer", "integrator"] {
         let made = control(folder, &["token", "--role", role, "--name", role, "--file", "tokens.toml"]);
@@ -74,7 +74,7 @@ radius = 200
 warning = 100
 "#;
 
-    /// A folder with the cell file, tokens, and their secrets.
+    /// Makes a folder with the cell file, tokens, and their secrets.
     fn cell_and_tokens() -> tempfile::TempDir {
         let folder = tempfile::tempdir().unwrap();
         make_tokens(folder.path());
@@ -94,7 +94,7 @@ warning = 100
         let mut process = LiveProcess(command.stderr(Stdio::piped()).spawn().expect("elbowroom starts"));
         let mut lines = BufReader::new(process.0.stderr.take().unwrap()).lines().map_while(Result::ok);
         let address = lines.find_map(|line| line.strip_prefix("control: ").map(str::to_owned));
-        // What is printed later must not fill the pipe.
+        // Later output must not fill the pipe.
         std::thread::spawn(move || lines.for_each(drop));
         (process, address.expect("a control address"))
     }
@@ -108,7 +108,7 @@ warning = 100
             let secret = format!("{role}.secret");
             control(folder, &[arguments, &["--at", &at, "--secret", &secret]].concat())
         };
-        // Nobody has said that it is off.
+        // It was never switched off.
         assert!(run(&["regions"], "operator").stdout.contains("temporary  on"));
         assert_eq!(run(&["switch", "cart", "off"], "programmer").status, 0);
         let listed = run(&["regions"], "operator").stdout;
@@ -147,7 +147,7 @@ warning = 100
         assert!(broken.status == 2 && broken.stderr.contains("does not follow the entry before it"));
     }
 
-    /// A panel on another computer: encrypted, or not at all.
+    /// A client on another computer connects with encryption, or not at all.
     #[test]
     fn a_service_with_a_certificate_is_controlled_from_any_address() {
         let folder = cell_and_tokens();
@@ -175,7 +175,7 @@ warning = 100
             let refused = ask(more);
             assert!(refused.status == 2 && refused.stderr.contains(message), "{more:?}: {}", refused.stderr);
         }
-        // A secret never leaves this computer in the clear, whether anybody listens or not: this address is nobody's.
+        // A secret never leaves this computer unencrypted, whether anybody listens or not: this address is unused.
         let far = control(folder, &["regions", "--at", "192.0.2.1:7448", "--secret", "operator.secret"]);
         assert!(far.status == 2 && far.stderr.contains("would travel in the clear"), "{}", far.stderr);
         let other = cell_and_tokens();

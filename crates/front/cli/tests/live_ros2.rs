@@ -11,10 +11,10 @@ use elbowroom::live::network::{Network, Subscription, ZenohNetwork, ZenohSetting
 use elbowroom_testkit::network::free_address;
 
 const BOUND: Duration = Duration::from_millis(200);
-/// What a busy machine may add to the bound.
+/// Time that a busy machine may add to the bound.
 const BUSY: Duration = Duration::from_millis(800);
 
-/// The factors of the left robot, as its controller would get them.
+/// Speed scaling factors of the left robot, as its controller would receive them.
 struct Factors {
     heard: Arc<Mutex<Vec<(f64, Instant)>>>,
     _network: ZenohNetwork,
@@ -56,13 +56,13 @@ fn the_watchdog_sends_zero_when_the_service_was_killed() {
         let arguments = ["--robots", "left,right", "--connect", &router, "--simulate", "--ros2"];
         LiveProcess::start(&[&arguments[..], &ros2].concat())
     };
-    // Without a watchdog the last factor stands: this is what it is for.
+    // Without a watchdog the last factor remains; the watchdog exists for this case.
     let stands = (0..5).any(|_| {
         let first = service();
         factors.wait("the robot never goes", Duration::from_mins(1), |factor| factor > 0.0);
         drop(first);
         std::thread::sleep(BOUND + BUSY);
-        // A service that was short of time has sent 0 just before its end: once more.
+        // A service that ran late has sent 0 just before its end: try again.
         factors.heard.lock().unwrap().last().is_some_and(|(factor, _)| *factor > 0.0)
     });
     assert!(stands, "no factor stands after a kill");
@@ -78,7 +78,7 @@ fn the_watchdog_sends_zero_when_the_service_was_killed() {
     std::thread::sleep(BOUND);
     let after = killed + BOUND + BUSY;
     assert!(factors.heard.lock().unwrap().iter().filter(|(_, at)| *at > after).all(|(factor, _)| *factor == 0.0));
-    // It makes room for the next service.
+    // The watchdog lets the next service take over.
     let _third = service();
     factors.wait("the robot does not go on after the watchdog", Duration::from_mins(1), |factor| factor > 0.0);
 }

@@ -2,7 +2,7 @@
 
 use crate::common::{Answer, elbowroom, examples, keys, with_cell};
 
-/// An arm of three joints among a table, a column and a ball.
+/// An arm of three joints among a table, a column and a sphere.
 const CELL: &str = r#"version = 1
 units = { length = "mm", angle = "deg" }
 [robot.arm]
@@ -120,7 +120,7 @@ fn a_deadline_says_how_many_spheres_were_reached() {
     };
     let (soon, coarse) = spheres(&["--model", "spheres=64", "--deadline", "0.000001"]);
     assert_eq!(soon, [1, 1, 1]);
-    // A sphere stays one.
+    // A spherical object is always covered by one sphere.
     let (late, fine) = spheres(&["--model", "spheres=8", "--deadline", "600000"]);
     assert_eq!(late, [8, 8, 1]);
     let exact = map(CELL, &["--json"]).expect(0).json()["blocked"].as_u64().unwrap();

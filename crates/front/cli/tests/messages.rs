@@ -1,11 +1,11 @@
-//! What a newcomer is told: which file, what is wrong there, what to write instead.
+//! Error messages for newcomers: which file, what is wrong there, what to write instead.
 
 use std::fs;
 use std::path::Path;
 
 use crate::common::elbowroom;
 
-/// The refusal of a call: its message.
+/// Returns the message of a refused call.
 #[track_caller]
 fn refused(dir: &Path, args: &[&str]) -> String {
     elbowroom(dir, args).expect(2).stderr
@@ -45,7 +45,7 @@ fn mistakes_of_a_first_hour_are_explained() {
     );
 }
 
-/// A person without administrator's rights only: others may read everything.
+/// Applies only to users without administrator's rights, as administrators may read everything.
 #[test]
 #[cfg(unix)]
 fn a_file_that_may_not_be_read_is_named_with_the_remedy() {

@@ -1,4 +1,4 @@
-//! Robots out of 3DS models at the command line: convert, inspect, query.
+//! Robots from 3DS models at the command line: convert, inspect, query.
 
 use crate::common;
 use crate::common::{elbowroom, model, with_cell};

@@ -1,8 +1,8 @@
-//! The file of pairs: `pairs` in a cell, `query --pairs`, `inspect --pairs`.
+//! File of pairs: `pairs` in a cell, `query --pairs`, `inspect --pairs`.
 
 use crate::common::{Answer, elbowroom, part_on_table, slide_arm, with_cell};
 
-/// An arm with a slide at its end, and a part that stands on a table.
+/// An arm with a slide at its end, and a part on a table.
 const CELL: &str = concat!(
     "version = 1\nunits = { length = \"mm\", angle = \"deg\" }\npairs = \"pairs.toml\"\n",
     slide_arm!(),
@@ -17,7 +17,7 @@ others = "start"
 
 const STANDS: &str = "{ a = \"part\", b = \"table\", reason = \"it stands there\" }";
 
-/// The cell and its file of pairs.
+/// Makes a folder with the cell and its file of pairs.
 fn folder(cell: &str, rows: &str) -> tempfile::TempDir {
     let dir = with_cell(cell);
     std::fs::write(dir.path().join("pairs.toml"), format!("version = 1\npairs = [\n{rows}\n]\n")).unwrap();
@@ -44,7 +44,7 @@ fn a_gripped_part_may_stand_on_its_table() {
     assert_eq!(run(&[grip, press].concat(), "").expect(1).json()["robots"][0]["collisions"][0]["b"], "table");
     let pressed = run(&[grip, press].concat(), STANDS).expect(0);
     assert_eq!(pressed.json()["robots"][0]["collisions"].as_array().map(Vec::len), Some(0));
-    // The arm itself may not touch the table by that.
+    // The arm itself may still not touch the table.
     let down = "{ move = \"joint\", to = [0, 0, -390] },";
     assert_eq!(run(down, STANDS).expect(1).json()["robots"][0]["collisions"][0]["b"], "part");
 }
@@ -74,7 +74,7 @@ fn query_and_map_leave_out_what_may_touch() {
     let dir = folder(CELL, "{ a = \"arm\", b = \"part\", reason = \"it is soft\" }");
     let args = ["query", "cell.toml", "--ask", "distance"];
     assert!(elbowroom(dir.path(), &args).expect(0).stdout.contains("arm/link_3,table,"));
-    // Beside the cell's own file, another one.
+    // Another file, beside the cell's own.
     std::fs::write(
         dir.path().join("more.toml"),
         "version = 1\npairs = [{ a = \"arm/link_3\", b = \"table\", reason = \"-\" }]",
@@ -82,7 +82,7 @@ fn query_and_map_leave_out_what_may_touch() {
     .unwrap();
     let more = elbowroom(dir.path(), &[&args[..], &["--pairs", "more.toml"]].concat()).expect(0);
     assert!(more.stdout.contains("arm/link_2,table,"), "{}", more.stdout);
-    // Two objects that may touch are no pair, even where both are named.
+    // Two objects that may touch are not a pair, even if both are named.
     let between = ["--between", "part,table"];
     assert!(elbowroom(dir.path(), &[&args[..], &between].concat()).expect(0).stdout.contains("part,table,"));
     let dir = folder(CELL, STANDS);
@@ -132,7 +132,8 @@ fn wrong_rows_are_errors_with_their_lines() {
     assert!(missing.stderr.contains("cell.toml:3") && missing.stderr.contains("does not exist"), "{}", missing.stderr);
 }
 
-/// A ball wrist: three joints, two links without solids, the hand always inside the forearm; and a tool that is never near it.
+/// A ball wrist: three joints, two links without solids, the hand always inside the forearm; and a tool that is never
+/// near it.
 const BALL_WRIST: &str = r#"<robot name="ball">
 <link name="forearm"><collision><geometry><sphere radius="0.05"/></geometry></collision></link>
 <link name="roll"/><link name="pitch"/>
@@ -166,7 +167,7 @@ fn inspect_writes_what_it_finds_and_accepts_what_always_touches() {
     let text = inspect(&["--accept"]);
     assert!(text.contains(&row("skipped")) && text.contains("found = \"adjacent\""), "{text}");
     assert!(!query().expect(0).stderr.contains("touch"));
-    // A row with a reason stays, and decides.
+    // A row with a reason stays, and takes precedence.
     let by_hand = "{ a = \"forearm\", b = \"hand\", state = \"tested\", reason = \"I want to know\" }";
     std::fs::write(dir.path().join("p.toml"), format!("version = 1\npairs = [{by_hand}]\n")).unwrap();
     let text = inspect(&["--accept"]);
@@ -188,13 +189,13 @@ fn inspect_writes_the_pairs_of_a_cell() {
     );
     assert!(text.contains("found = \"adjacent\""), "{text}");
     elbowroom(dir.path(), &["query", "cell.toml", "--ask", "collision"]).expect(0);
-    // The same again, although the cell names the file.
+    // The same result, although the cell already names the file.
     elbowroom(dir.path(), &["inspect", "cell.toml", "--pairs", "pairs.toml", "--accept"]).expect(0);
     assert_eq!(std::fs::read_to_string(dir.path().join("pairs.toml")).unwrap(), text);
     elbowroom(dir.path(), &["inspect", "cell.toml", "--pairs", "nowhere/p.toml"]).expect(2);
 }
 
-/// A forearm, a wrist and a hand whose hub is drawn into the forearm.
+/// A forearm, a wrist and a hand whose hub reaches into the forearm.
 const WRIST: &str = r#"<robot name="wrist">
 <link name="forearm"><collision><origin xyz="0.25 0 0"/><geometry><box size="0.4 0.1 0.1"/></geometry></collision></link>
 <link name="wrist"><collision><geometry><sphere radius="0.04"/></geometry></collision></link>
@@ -232,7 +233,7 @@ fn links_that_always_touch_at_their_joint_stop_no_run_and_no_plan() {
     assert!(ran.stderr.contains(said) && ran.stderr.contains("ignore = [[\"forearm\", \"hand\"]]"), "{}", ran.stderr);
     assert_eq!(ran.json()["robots"][0]["collisions"].as_array().map(Vec::len), Some(0));
     assert!(call(&plan).expect(0).stderr.contains(said));
-    // One rule for all verbs of a cell; a model alone has its SRDF only.
+    // One rule for all commands on a cell; a model alone has only its SRDF.
     assert!(call(&query).expect(0).stderr.contains(said));
     let distance = call(&["query", "cell.toml", "--ask", "distance"]).expect(0).stdout;
     assert!(distance.contains("index,collides") && !distance.contains("r/hand"), "{distance}");
@@ -240,7 +241,7 @@ fn links_that_always_touch_at_their_joint_stop_no_run_and_no_plan() {
     assert!(single.stderr.contains("links `forearm` and `hand` touch in all 1000 states"), "{}", single.stderr);
     cell("", "ignore = [[\"forearm\", \"hand\"]]\n");
     assert!(!call(&query).expect(0).stderr.contains("touch"));
-    // A tool that reaches back to the forearm belongs to the hand: the pair stays.
+    // A tool that reaches back to the forearm is part of the hand: the pair stays.
     cell(
         "",
         "flange = \"hand\"\ntool = { tcp = { at = [0.1, 0, 0] }, box = { at = [0.1, 0, 0], size = [0.2, 0.02, 0.02] } }\n",
@@ -249,7 +250,7 @@ fn links_that_always_touch_at_their_joint_stop_no_run_and_no_plan() {
     cell("pairs = \"tested.toml\"\n", "");
     call(&query).expect(1);
     assert_eq!(call(&run).expect(1).json()["robots"][0]["collisions"][0]["b"], "r/hand");
-    // The hand folds back onto the forearm with a bar: it touches elsewhere too, and stays a pair.
+    // A hand with a bar that folds back onto the forearm touches it elsewhere too: the pair stays.
     write("wrist.urdf", &WRIST.replace("BAR", bar));
     cell("", "");
     assert!(!call(&run).expect(1).stderr.contains(said));

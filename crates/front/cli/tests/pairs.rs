@@ -1,4 +1,4 @@
-//! Links without a collider between them are a tested pair; contacts at rest are warned of.
+//! Links without a collider between them are a tested pair; contacts at rest cause a warning.
 
 use crate::common::elbowroom;
 
@@ -74,7 +74,7 @@ fn contacts_at_rest_are_named_with_a_hint() {
     let inspect = elbowroom(dir.path(), &["inspect", "ball.urdf", "--json"]).expect(0).json();
     assert_eq!(inspect["pairs"][0]["suggestion"], "always in contact, in 1000 samples");
     assert!(inspect["warnings"].to_string().contains("link1=\\\"forearm\\\""), "{}", inspect["warnings"]);
-    // Fingers that are closed at rest, and open elsewhere.
+    // The fingers are closed at rest, and open elsewhere.
     let closed = GRIP.replace("0.05 0 0.09", "0.005 0 0.09");
     std::fs::write(dir.path().join("closed.urdf"), closed).unwrap();
     let inspect = elbowroom(dir.path(), &["inspect", "closed.urdf", "--json"]).expect(0).json();
@@ -84,7 +84,7 @@ fn contacts_at_rest_are_named_with_a_hint() {
     assert!(inspect["warnings"].to_string().contains("a query at rest answers collision"), "{}", inspect["warnings"]);
 }
 
-/// A cell in which the hand turns.
+/// Makes a cell in which the hand turns.
 fn cell(model: &str, more: &str, to: &str) -> String {
     format!(
         "version = 1\nunits = {{ length = \"m\", angle = \"rad\" }}\n[robot.r]\nmodel = \"{model}\"\n{more}[program.r]\n\
@@ -126,7 +126,7 @@ fn the_tcp_is_on_no_finger() {
     std::fs::write(dir.path().join("tool0.urdf"), tool0).unwrap();
     let tool0 = check(cell("tool0.urdf", "srdf = \"grip.srdf\"\n", "[0.1, 0, 0]")).expect(0);
     assert!(!tool0.stderr.contains("TCP"), "{}", tool0.stderr);
-    // One leaf alone is not a finger.
+    // A single leaf is not a finger.
     assert!(!check(cell("ball.urdf", "", "[0.1, 0, 0]")).expect(0).stderr.contains("TCP"));
 }
 
@@ -144,12 +144,12 @@ fn an_srdf_is_written_and_silences_what_always_touches() {
     assert!(kr125.contains("reason=\"Adjacent\""), "{kr125}");
     let query = ["query", "--urdf", "ball.urdf", "--srdf", "new.srdf", "--ask", "collision"];
     assert!(!elbowroom(dir.path(), &query).expect(0).stderr.contains("touch"));
-    // What it says of the present SRDF remains.
+    // The content of the present SRDF stays.
     let again = ["inspect", "grip.urdf", "--srdf", "grip.srdf", "--write-srdf", "again.srdf"];
     elbowroom(dir.path(), &again).expect(0);
     let text = std::fs::read_to_string(dir.path().join("again.srdf")).unwrap();
     assert!(text.contains("link1=\"f1\" link2=\"f2\" reason=\"User\""), "{text}");
-    // A file that is there stays: a person may have written pairs and groups into it.
+    // An existing file stays: a person may have written pairs and groups into it.
     let before = std::fs::read_to_string(dir.path().join("grip.srdf")).unwrap();
     let over = elbowroom(dir.path(), &["inspect", "grip.urdf", "--write-srdf", "grip.srdf"]).expect(2).stderr;
     assert!(over.contains("grip.srdf: is there already") && over.contains("the name of a new file"), "{over}");

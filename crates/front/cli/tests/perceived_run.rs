@@ -1,5 +1,6 @@
-//! `elbowroom run` with cameras and point clouds: a crate that no file names crosses the way of an arm. Pictures, clouds and cell
-//! are files, everything runs through the command line, and the truth is kept apart.
+//! `elbowroom run` with cameras and point clouds: a crate that no file names crosses the path of an arm.
+//!
+//! Pictures, clouds and cell are files, everything runs through the command line, and the ground truth is kept separate.
 
 #![allow(clippy::print_stdout, reason = "figures of the evidence")]
 
@@ -21,11 +22,11 @@ use serde_json::Value;
 
 const PERIOD_S: f64 = 0.04;
 pub(crate) const FRAMES: usize = 170;
-/// From a picture to its use, s.
+/// Time from a picture to its use, s.
 pub(crate) const LATENCY_S: f64 = 0.06;
-/// What a search takes where nothing else is stated, s.
+/// Default duration of a search, s.
 const SEARCH_S: f64 = 0.2;
-/// Pictures before the start of the run, of the empty cell.
+/// Number of pictures of the empty cell, before the start of the run.
 pub(crate) const LEARNING: usize = 30;
 /// Length, width and height of the crate, m.
 const SIZE: [f64; 3] = [0.6, 0.4, 0.9];
@@ -64,7 +65,7 @@ radius = 150
 height = 1000
 "#;
 
-/// The way from one side to the other, and a region above it: going over the crate is limited.
+/// The move from one side to the other, and a region above it, which limits motion over the crate.
 const REST: &str = r#"
 [map.kr]
 step = 4
@@ -102,24 +103,24 @@ pub(crate) fn cell(sensor: &str, kind: &str) -> String {
     head + &sensor.replace("FOCAL", &lens) + &REST.replace("KIND", kind)
 }
 
-/// Where the crate is: it comes from outside, and stands in the way of the arm from 1.5 s on, until `leaves_s`.
+/// Position of the crate: it comes from outside, and blocks the arm from 1.5 s on, until `leaves_s`.
 fn crate_at(t_s: f64, leaves_s: f64) -> Point2 {
     let arrived = (1.2 * t_s).min(1.8);
     Point2::new(3.9 - arrived + (1.5 * (t_s - leaves_s)).max(0.0), 0.0)
 }
 
-/// When each picture is taken: those of the empty cell before the run.
+/// Time of each picture; the pictures of the empty cell are before the run.
 pub(crate) fn stamp_s(i: usize) -> f64 {
     (i as f64 - LEARNING as f64) * PERIOD_S
 }
 
-/// While the empty cell is learnt the arm swings to and fro, so that every part of the floor is seen.
+/// Joint values while the empty cell is learnt: the arm swings back and forth, so that every part of the floor is seen.
 fn learning_joints(t_s: f64) -> [f64; 6] {
     [60.0 * (t_s * 5.0).cos(), -31.1, 76.6, 0.0, 44.5, 0.0].map(f64::to_radians)
 }
 
-/// Pictures of the crate and their times, as files. In those of the empty cell the arm is seen, and its joint values are known;
-/// later it goes where it wants, and the pictures do not show it.
+/// Writes pictures of the crate and their times, as files. The pictures of the empty cell show the arm, whose joint
+/// values are known; later ones do not show the arm, whose motion is not known yet.
 pub(crate) fn write_pictures(dir: &Path, frames: usize, leaves_s: f64) {
     let folder = dir.join("pictures");
     std::fs::create_dir(&folder).unwrap();
@@ -151,8 +152,8 @@ pub(crate) fn write_pictures(dir: &Path, frames: usize, leaves_s: f64) {
     std::fs::write(folder.join("times.csv"), times).unwrap();
 }
 
-/// Clouds of the crate, the floor, a known pillar and an unknown rack that stands there from the beginning, as PCD files in the
-/// frame of the sensor.
+/// Writes clouds of the crate, the floor, a known pillar and an unknown rack that is there from the beginning, as PCD
+/// files in the frame of the sensor.
 pub(crate) fn write_clouds(dir: &Path, frames: usize, leaves_s: f64) {
     let folder = dir.join("clouds");
     std::fs::create_dir(&folder).unwrap();
@@ -181,7 +182,7 @@ pub(crate) fn write_clouds(dir: &Path, frames: usize, leaves_s: f64) {
         );
         for p in points {
             let p = p + Vec3::new(noise(), noise(), noise());
-            // The sensor hangs at 6.5 m and looks down: x as the world's, y and z turned round.
+            // The sensor is at a height of 6.5 m and looks down: its x is the world's, its y and z are reversed.
             writeln!(text, "{:.4} {:.4} {:.4}", p.x - 1.7, -p.y, 6.5 - p.z).unwrap();
         }
         let name = format!("cloud_{i:04}.pcd");
@@ -191,7 +192,7 @@ pub(crate) fn write_clouds(dir: &Path, frames: usize, leaves_s: f64) {
     std::fs::write(folder.join("times.csv"), times).unwrap();
 }
 
-/// Points on the top and the sides of an upright box on the floor.
+/// Returns points on the top and the sides of an upright box on the floor.
 fn grid_of_box(at: Point2, [length, width, height]: [f64; 3], step: f64) -> Vec<Vec3> {
     let steps = |side: f64| (side / step).ceil() as usize;
     let along = |n: usize, side: f64| side * n as f64 / steps(side) as f64;
@@ -210,7 +211,8 @@ fn grid_of_box(at: Point2, [length, width, height]: [f64; 3], step: f64) -> Vec<
     points
 }
 
-/// Points on the surface of the arm, each in the frame of its link: a naive measurement, which shares no distance code with the product.
+/// Returns points on the surface of the arm, each in the frame of its link: a naive measurement, which shares no
+/// distance code with the product.
 fn surface_points(robot: &Robot) -> Vec<(LinkId, Vec3)> {
     let mut points = Vec::new();
     for (link, colliders) in robot.colliders.iter().enumerate() {
@@ -220,7 +222,7 @@ fn surface_points(robot: &Robot) -> Vec<(LinkId, Vec3)> {
                     let h = b.half_extents;
                     let closed = grid_of_box(Point2::default(), [2.0 * h.x, 2.0 * h.y, 2.0 * h.z], SURFACE_STEP_M);
                     let lowered = closed.iter().map(|p| *p - Vec3::Z * h.z);
-                    // The bottom is the top turned over.
+                    // The bottom is the mirrored top.
                     lowered.flat_map(|p| [p, Vec3::new(p.x, p.y, -p.z)]).collect()
                 }
                 Shape::Cylinder(c) => {
@@ -247,7 +249,8 @@ fn surface_points(robot: &Robot) -> Vec<(LinkId, Vec3)> {
     points
 }
 
-/// Smallest distance (m) of the arm to the crate over a run, and when: at every fourth tick, at every point of its surface.
+/// Returns the smallest distance (m) of the arm from the crate over a run, and its time: at every fourth tick, at every
+/// point of its surface.
 pub(crate) fn clearance(trace: &str, robot: &Robot, leaves_s: f64) -> (f64, f64) {
     let points = surface_points(robot);
     let mut state = ChainState::new(&robot.chain);
@@ -276,17 +279,17 @@ pub(crate) fn clearance(trace: &str, robot: &Robot, leaves_s: f64) -> (f64, f64)
     (least, when)
 }
 
-/// How what was seen compares with the truth.
+/// Comparison of the obstacles seen with the ground truth.
 #[derive(Debug, Default)]
 struct Score {
     due: usize,
     seen: usize,
     contained: usize,
     false_alarms: usize,
-    /// Errors of the centres, smallest first.
+    /// Errors of the centres, in increasing order.
     centres_m: Vec<f64>,
-    /// Errors of the centres before the camera knows the kind, and with it the height: the centre is then that of what the object
-    /// hides of the floor, which the view from one side moves outwards.
+    /// Errors of the centres before the camera knows the kind, and with it the height: the centre is then that of the
+    /// hidden floor, which the view from one side moves outwards.
     of_unknown_height_m: Vec<f64>,
 }
 
@@ -362,12 +365,12 @@ fn check_run(dir: &Path, answer: &Answer, sensors: &str, records_name: &str) {
     assert!(robot["outcome"] == "finished", "{robot}");
     assert!(score.due > 60 && score.seen == score.due && score.contained == score.due, "{score:?}");
     assert!(score.false_alarms == 0 && centre(1.0) < 50.0, "{score:?}");
-    // Twelve pictures, 0.5 s, at most; each contains the crate.
+    // At most twelve pictures, 0.5 s; each contains the crate.
     assert!(unknown.len() <= 12 && worst_unknown_m < 0.25, "{unknown:?}");
     assert!(p["replans_in_motion"].as_u64().unwrap() + p["replans_from_rest"].as_u64().unwrap() > 0, "{p}");
     let events = events(dir);
     let replan = events.lines().find(|l| l.ends_with(",kr,,replan")).unwrap_or_else(|| panic!("{events}"));
-    // A search takes its time, from when the first picture that shows the crate counts.
+    // A search takes its time, counted from the use of the first picture that shows the crate.
     let replan_s: f64 = replan.split(',').next().unwrap().parse().unwrap();
     let shows = |r: &&Value| r["status"] == "accepted" && !r["obstacles"].as_array().unwrap().is_empty();
     let shown_s = records(dir, records_name).iter().find(shows).unwrap()["t_s"].as_f64().unwrap();
@@ -386,7 +389,7 @@ fn the_arm_goes_around_a_crate_that_only_the_camera_knows() {
     let answer = run(dir.path()).expect(0);
     check_run(dir.path(), &answer, "cameras", "camera-above.jsonl");
     assert_eq!(answer.json()["cameras"][0]["learned"], LEARNING);
-    // Without the camera the same program hits the crate: the test would notice a run that does not look.
+    // Without the camera the same program hits the crate, so the test would notice a run that ignores the camera.
     let blind = cell("", "planned");
     std::fs::write(dir.path().join("cell.toml"), blind).unwrap();
     run(dir.path()).expect(0);
@@ -416,7 +419,7 @@ fn a_path_on_the_map_goes_around_the_crate_too() {
     write_clouds(dir.path(), FRAMES, f64::INFINITY);
     let answer = run(dir.path()).expect(0);
     check_run(dir.path(), &answer, "clouds", "cloud-mast.jsonl");
-    // The wrist is not in the map: it stays as it is.
+    // The wrist is not in the map, so it keeps its values.
     let trace = std::fs::read_to_string(dir.path().join("out/trace.csv")).unwrap();
     let mut rows = trace.lines();
     let columns: Vec<&str> = rows.next().unwrap().split(',').collect();
@@ -426,7 +429,7 @@ fn a_path_on_the_map_goes_around_the_crate_too() {
     assert!(wrist.len() == 1 && rows.all(is_held), "{columns:?}");
 }
 
-/// Pictures of depths of the crate before a wall that is learnt, 1 mm per step.
+/// Depth images of the crate in front of a learnt wall, 1 mm per step.
 #[test]
 fn pictures_of_depths_are_clouds() {
     const LEARNT: usize = 5;
@@ -443,7 +446,7 @@ fn pictures_of_depths_are_clouds() {
         let mut pixels = Vec::new();
         for n in 0..320 * 240 {
             let (u, v) = (f64::from(n % 320) + 0.5 - 160.0, f64::from(n / 320) + 0.5 - 120.0);
-            // Where the ray of a pixel meets a height above the floor; the picture's y is the world's, turned round.
+            // Point at which the ray of a pixel meets a height above the floor; the picture's y is the world's, reversed.
             let at = |height: f64| Point2::new(1.7 + u / fx * (6.5 - height), -v / fy * (6.5 - height));
             let on_box = |height: f64, centre: Point2, size: [f64; 2]| {
                 let p = at(height) - centre;
@@ -478,7 +481,7 @@ fn pictures_of_depths_are_clouds() {
         let height_m = obstacles[0]["height_m"].as_f64().unwrap();
         assert!(error.length() < 0.05 && (height_m - SIZE[2]).abs() < 0.06, "{line}");
     }
-    // A picture of brightness is none of depths.
+    // A brightness image is not a depth image.
     std::fs::remove_dir_all(&folder).unwrap();
     write_pictures(dir.path(), LEARNING + 2, f64::INFINITY);
     std::fs::rename(dir.path().join("pictures"), &folder).unwrap();
@@ -507,7 +510,7 @@ fn a_joint_move_waits_until_the_crate_has_left() {
     assert!(least_m > 0.03, "{least_m} m at {when_s} s");
 }
 
-/// The crate stands where the arm must end: no search can find a path, and nothing changes.
+/// The crate stands at the goal of the arm: no search can find a path, and nothing changes.
 #[test]
 fn an_unchanged_crate_is_not_searched_around_for_ever() {
     let dir = tempfile::tempdir().unwrap();
@@ -517,14 +520,16 @@ fn an_unchanged_crate_is_not_searched_around_for_ever() {
     let robot = &answer.json()["robots"][0];
     let p = &robot["perception"];
     println!("{} searches without a path, the longest {} s", p["replans_failed"], p["longest_search_s"]);
-    // It stands from 2 s on for 4 s: four searches, each longer than the one before. Searches before that are in motion.
+    // The crate stands there from 2 s on for 4 s: four searches, each longer than the one before. Earlier searches are
+    // in motion.
     assert!((1..=12).contains(&p["replans_failed"].as_u64().unwrap()), "{p}");
     assert!(p["longest_search_s"].as_f64().unwrap() < 10.0 * SEARCH_S, "{p}");
-    // The pictures end, but what stands in the way is the crate.
+    // The pictures end, but the obstacle is the crate.
     assert!(robot["outcome"] == "stopped" && robot["by"] == "above#1", "{robot}");
 }
 
-/// An arm that stands while the empty cell is learnt hides floor, which is said at once; one that moves hides none.
+/// An arm that does not move while the empty cell is learnt hides floor, which is reported at once; a moving arm hides
+/// none.
 #[test]
 fn floor_that_the_arm_hid_from_the_first_pictures_is_reported() {
     let dir = tempfile::tempdir().unwrap();
@@ -548,7 +553,7 @@ fn floor_that_the_arm_hid_from_the_first_pictures_is_reported() {
 fn a_camera_that_sees_no_more_stops_the_arm() {
     let dir = tempfile::tempdir().unwrap();
     std::fs::write(dir.path().join("cell.toml"), cell(CAMERA, "planned")).unwrap();
-    // The last picture is taken at 0.36 s: from 0.86 s on nothing is known.
+    // The last picture is taken at 0.36 s: from 0.86 s on the obstacles are unknown.
     write_pictures(dir.path(), LEARNING + 10, f64::INFINITY);
     let answer = run(dir.path()).expect(0);
     let robot = &answer.json()["robots"][0];
@@ -568,7 +573,7 @@ fn a_camera_that_sees_no_more_stops_the_arm() {
 fn an_arm_does_not_move_before_its_camera_has_seen_anything() {
     let dir = tempfile::tempdir().unwrap();
     std::fs::write(dir.path().join("cell.toml"), cell(CAMERA, "planned")).unwrap();
-    // The empty cell is learnt, and nothing comes after it.
+    // The empty cell is learnt, and no pictures follow.
     write_pictures(dir.path(), LEARNING, f64::INFINITY);
     let answer = run(dir.path()).expect(0);
     let robot = &answer.json()["robots"][0];

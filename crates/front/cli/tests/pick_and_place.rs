@@ -15,7 +15,7 @@ fn joint(q: [f64; 3]) -> String {
     format!("{{ move = \"joint\", to = {q:?} }}")
 }
 
-/// Down to the part, up, to the other place, down, up; with the steps of the hand where they are given.
+/// Moves down to the part, up, to the other place, down, up; with the given steps of the hand.
 fn transfer(grip: &str, carry: &str, release: &str) -> String {
     let (down, up) = (joint([0.0, 0.0, -270.0]), joint([0.0, 0.0, -100.0]));
     let (set_down, away) = (joint([60.0, 0.0, -270.0]), joint([60.0, 0.0, -100.0]));
@@ -94,10 +94,10 @@ fn a_planned_move_leads_the_part_around_the_post() {
 fn a_part_may_stand_but_not_sink() {
     let (down, up, away) = (joint([0.0, 0.0, -270.0]), joint([0.0, 0.0, -100.0]), joint([60.0, 0.0, -100.0]));
     let onto = [("arm/part".to_owned(), "table".to_owned())];
-    // Pressed into the table before it was ever lifted, and at its new place.
+    // Pressed into the table before the first lift, and at the new place.
     let pressed = format!("{down}\n{GRIP}\n{}\n{up}", joint([0.0, 0.0, -275.0]));
     let set_down = format!("{down}\n{GRIP}\n{up}\n{away}\n{}\n{RELEASE}\n{away}", joint([60.0, 0.0, -275.0]));
-    // Touched again although it is not set down.
+    // It touches the table again although it is not released.
     let touched = format!("{down}\n{GRIP}\n{up}\n{}\n{up}", joint([0.0, 0.0, -270.5]));
     for steps in [pressed, set_down, touched] {
         let (_dir, answer) = run("", &steps);
@@ -125,7 +125,7 @@ fn one_robot_takes_over_what_another_put_down() {
     let [x, y, z, _] = place(&answer, "part");
     let expected = [1.4 - 0.7 * angle.cos(), -0.7 * angle.sin(), 0.42];
     assert!([x, y, z].iter().zip(expected).all(|(f, e)| (f - e).abs() < 1e-6), "{x} {y} {z}");
-    // Too early: the first has it.
+    // Too early: the first robot still holds it.
     let answer = then(0.0).expect(2);
     assert!(answer.stderr.contains("which robot \"arm\" holds") && answer.stderr.contains("wait"), "{}", answer.stderr);
 }
@@ -181,7 +181,7 @@ fn what_moves_is_gripped_at_rest_only() {
         elbowroom(dir.path(), &["run", "cell.toml", "--json"])
     };
     assert!(run(belt(0.0)).expect(2).stderr.contains("grips \"part\", which moves"));
-    // It begins to move only when it is in the hand, which it stays in.
+    // It begins to move only when the hand has gripped it, and then stays in the hand.
     let answer = run(belt(1.0)).expect(0);
     assert_near(place(&answer, "part"), [0.7, 0.0, 0.42, 0.0]);
 }

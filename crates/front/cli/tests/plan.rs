@@ -3,7 +3,7 @@
 use crate::common::{Answer, elbowroom, examples, keys, with_cell};
 use serde_json::Value;
 
-/// A two-link arm whose straight path collides with a ball, and another arm beside it.
+/// A two-link arm whose straight path collides with a sphere, and another arm beside it.
 const CELL: &str = r#"version = 1
 units = { length = "mm", angle = "deg" }
 [robot.arm]
@@ -68,7 +68,7 @@ fn samples_are_free_within_speed_and_play_back() {
     let states = csv.replace("joint", "arm.joint");
     std::fs::write(dir.path().join("q.csv"), states).unwrap();
     elbowroom(dir.path(), &["query", "cell.toml", "--ask", "collision", "--states", "q.csv"]).expect(0);
-    // The cell's own player takes the file.
+    // The trajectory player of the cell accepts the file.
     std::fs::write(dir.path().join("play.toml"), format!("{CELL}[program.arm]\ntrajectory = \"path.csv\"\n")).unwrap();
     let run = elbowroom(dir.path(), &["run", "play.toml", "--json"]).expect(0).json();
     assert_eq!(run["robots"][0]["finished"], true);
@@ -76,7 +76,7 @@ fn samples_are_free_within_speed_and_play_back() {
 
 #[test]
 fn no_path_has_exit_status_1_and_a_reason() {
-    // The elbow cannot bend: the arm would have to go through the ball.
+    // The elbow cannot bend: the arm would have to pass through the sphere.
     let stiff = CELL.replace(
         "{ a = 300, min = -170, max = 170, speed = 90 }]\nlinks = [[], {",
         "{ a = 300, min = -1, max = 1, speed = 90 }]\nlinks = [[], {",
@@ -156,7 +156,7 @@ fn a_path_on_the_map_is_the_same_in_every_run() {
     assert!(elbowroom(dir.path(), &two).expect(2).stderr.contains("--planner grid is for one robot"));
 }
 
-/// Our own arm with six joints, a mesh on each link, a gripper and a pallet, and another arm beside it.
+/// The example arm with six joints, a mesh on each link, a gripper and a pallet, and another arm beside it.
 #[test]
 fn six_joints_with_meshes_find_around_the_pallet() {
     let cell = examples().join("exchange/cell.toml");
@@ -182,7 +182,7 @@ fn six_joints_with_meshes_find_around_the_pallet() {
     elbowroom(dir.path(), &["query", cell.to_str().unwrap(), "--ask", "collision", "--states", "q.csv"]).expect(0);
 }
 
-/// The arm's reach along x, kept off by a region instead of a ball.
+/// A region instead of a sphere blocks the arm's reach along x.
 #[test]
 fn forbidden_regions_are_obstacles_and_are_named() {
     let cell = CELL.replace("[object.ball]", "[region.press]") + "warning = 50\nrobots = [\"arm\"]\n";

@@ -5,10 +5,10 @@ use std::path::Path;
 use crate::common::{Answer, elbowroom, examples, keys, model};
 use serde_json::{Value, json};
 
-/// Values of the example robot with its forearm in front.
+/// Joint values of the example robot with its forearm in front.
 const READY: [f64; 6] = [-0.8, 0.5, 0.0, 0.0, 0.4, 0.0];
 
-/// From the ready posture to these values of the first joints, past a post in front of the robot.
+/// Makes a problem from the ready posture to these values of the first joints, past a post in front of the robot.
 fn problem(with_post: bool, to: &[f64]) -> Value {
     let names: Vec<String> = (1..=6).map(|i| format!("joint_{i}")).collect();
     let goal = |(value, joint): (&f64, &String)| json!({"joint_name": joint, "position": value});
@@ -29,7 +29,7 @@ fn problem(with_post: bool, to: &[f64]) -> Value {
 
 const ALL: [f64; 6] = [0.8, 0.5, 0.0, 0.0, 0.4, 0.0];
 
-/// Sets with a solvable problem each, and one with a goal in the post.
+/// Makes sets with a solvable problem each, and one with a goal in the post.
 fn sets() -> Value {
     json!({
         "post": {"0001": problem(true, &ALL), "0002": problem(true, &[0.0])},
@@ -37,7 +37,7 @@ fn sets() -> Value {
     })
 }
 
-/// `plan --urdf ns16 --problems …` on these sets, in a folder of its own.
+/// Runs `plan --urdf ns16 --problems …` on these sets, in a new folder.
 fn plan(sets: &Value, args: &[&str]) -> (tempfile::TempDir, Answer) {
     let dir = tempfile::tempdir().unwrap();
     std::fs::write(dir.path().join("sets.json"), sets.to_string()).unwrap();
@@ -89,7 +89,7 @@ fn the_document_has_the_documented_keys_and_the_files_the_paths() {
     assert!((path.last().unwrap()[0] - duration).abs() < 1e-9 && (path[1][0] - 0.01).abs() < 1e-12);
     // Only joint_1 is planned.
     assert!(rows(dir.path(), "_open-a_b.csv").iter().all(|row| row[2..] == READY[1..]));
-    // Deterministic.
+    // The result is deterministic.
     let (_, again) = plan(&sets(), &["--json"]);
     assert_eq!(again.json()["problems"][0]["cost_rad"], problems[0]["cost_rad"]);
 }
@@ -111,7 +111,7 @@ fn the_table_fits_and_selections_apply() {
 
 #[test]
 fn a_valid_problem_without_a_path_is_exit_status_1() {
-    // Only the first joint is planned, and the post is between.
+    // Only the first joint is planned, and the post is in between.
     let (dir, answer) =
         plan(&json!({"post": {"1": problem(true, &[0.8])}}), &["--time-limit", "0.2", "--paths", "paths"]);
     let text = answer.expect(1).stdout;

@@ -62,7 +62,7 @@ fn a_report_plays_the_paths() {
         let page = page(name);
         assert!(page.starts_with("<!DOCTYPE html>") && page.contains("left") && page.contains("right"), "{name}");
     }
-    // Bad: a folder that is missing, no path, problems.
+    // Errors: a missing folder, no path, problems.
     let message = go("plan cell.toml --robot left --to over --report missing/one.html").expect(2).stderr;
     assert!(message.contains("missing/one.html") && message.contains("write:"), "{message}");
     go("plan cell.toml --robot left --to middle --robot right --to middle --report none.html").expect(1);
@@ -71,7 +71,7 @@ fn a_report_plays_the_paths() {
     assert!(message.contains("--report"), "{message}");
 }
 
-/// On one rail neither gets past the other, whichever goes first: that is said, and no number of states that nobody checked.
+/// On one rail neither robot can pass the other, in any order: the message says that, without a count of unchecked states.
 #[test]
 fn robots_that_would_have_to_make_way_are_told_so() {
     let carriage = |name: &str, start: f64| {

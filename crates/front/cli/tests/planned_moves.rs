@@ -1,4 +1,4 @@
-//! Goals as people write them: poses in the cell's units, named states, and planned moves as steps of a program.
+//! Goals of planned moves: poses in the cell's units, named states, and planned moves as steps of a program.
 
 use crate::common::{Answer, elbowroom, with_cell};
 
@@ -118,7 +118,7 @@ fn a_planned_step_goes_around_what_a_joint_move_hits() {
         .json();
     let robot = &around["robots"][0];
     assert!(robot["outcome"] == "finished" && robot["collisions"].as_array().unwrap().is_empty(), "{robot}");
-    // To a pose, at half speed: longer.
+    // A move to a pose at half speed takes longer.
     let pose = "{ at = [400, 692.8203230275509, 0], rpy = [0, 0, 60] }";
     let fast = run(&format!("{{ move = \"planned\", to = {pose} }}")).expect(0).json();
     let slow = run(&format!("{{ move = \"planned\", to = {pose}, speed = 50 }}")).expect(0).json();
@@ -178,7 +178,7 @@ fn recordings_of_controllers_play_as_they_are() {
         let answer = run(trajectory).expect(2);
         assert!(answer.stderr.contains(expected), "{trajectory}: {}", answer.stderr);
     }
-    // The message about a plain file says which name differs in capitals.
+    // The message about a plain file names the name that differs only in capitals.
     std::fs::write(dir.path().join("plain.csv"), "t_s,Joint_1,joint_2,joint_3\n0,0,0,0\n").unwrap();
     assert!(run("\"plain.csv\"").expect(2).stderr.contains("`Joint_1` differs in capitals"));
 }
@@ -189,11 +189,11 @@ fn a_start_in_which_own_links_touch_shows_the_key_that_ignores_them() {
         CELL.replace("links = [[], ", "links = [{ sphere = { at = [0, 0, 0], radius = 120 } }, ")
             .replace("radius = 40 } }, []]", &format!("radius = 40 }} }}, {last}]"))
     };
-    // In contact whatever the joints do, where they are joined: they are built so.
+    // In contact at their joint for all joint values: they are built so.
     let always = with_cell(&cell("{ sphere = { at = [-100, 0, 0], radius = 230 } }"));
     let planned = elbowroom(always.path(), &["plan", "cell.toml", "--to", "left"]).expect(0);
     assert!(planned.stderr.contains("link_1") && planned.stderr.contains("link_3"), "{}", planned.stderr);
-    // In contact where the arm is straight.
+    // In contact if the arm is straight.
     let dir = with_cell(&cell("{ sphere = { at = [-150, 0, 0], radius = 170 } }"));
     let refused = elbowroom(dir.path(), &["plan", "cell.toml", "--to", "left"]).expect(2);
     assert!(refused.stderr.contains("ignore = [[\"link_1\", \"link_3\"]] in [robot.arm]"), "{}", refused.stderr);

@@ -4,7 +4,7 @@ use crate::common::{Answer, elbowroom, examples, keys, model, with_cell, with_in
 
 const HEADER: &str = "index,collides,distance_m,a,b,ax,ay,az,bx,by,bz,level";
 
-/// An arm that meets a ball when it is straight, and a second on the other side.
+/// An arm that meets a sphere when it is straight, and a second arm on the other side.
 const CELL: &str = r#"version = 1
 units = { length = "mm", angle = "deg" }
 [robot.arm]
@@ -43,7 +43,7 @@ fn distance_has_a_row_per_state_whatever_the_order_of_columns() {
         let lines: Vec<&str> = answer.stdout.lines().collect();
         assert_eq!((lines.len(), lines[0]), (3, HEADER));
         let (first, second) = (cells(lines[1]), cells(lines[2]));
-        // The tip's cap reaches to 740 mm, the ball begins at 700.
+        // The tip's cap reaches to 740 mm, the sphere begins at 700 mm.
         assert_eq!(first[..5], ["0", "1", "0.0", "arm/link_2", "ball"]);
         assert_eq!((second.len(), second[0], second[1]), (12, "1", "0"));
         let number = |i: usize| second[i].parse::<f64>().unwrap();
@@ -90,14 +90,14 @@ fn only_ask_collision_has_exit_status_1() {
     query(CELL, Some("joint_1,joint_2\n1.5,0\n"), &["--ask", "collision"]).expect(0);
     query(CELL, states, &["--ask", "distance"]).expect(0);
     query(CELL, states, &["--ask", "tolerance=0.02"]).expect(0);
-    // Without states: the start, where the arm points elsewhere.
+    // Without states: the start, at which the arm points elsewhere.
     let answer = query(CELL, None, &["--ask", "collision"]).expect(0);
     assert_eq!(answer.stdout.lines().count(), 2);
 }
 
 #[test]
 fn tolerance_names_the_nearest_pair_within_it() {
-    // Start: the arm along y; nearest to the ball is its shoulder end.
+    // At the start the arm is along y; its shoulder end is nearest to the sphere.
     let far = query(CELL, None, &["--ask", "tolerance=0.1"]).expect(0);
     assert!(far.stdout.lines().nth(1).unwrap().starts_with("0,0,,,,"), "{}", far.stdout);
     let near = query(CELL, None, &["--ask", "tolerance=2"]).expect(0);

@@ -2,7 +2,7 @@
 
 use crate::common::{Answer, elbowroom, with_cell};
 
-/// A slide that pushes a cube along z, through a plate and into a shell; and a ball beside them.
+/// A slide that pushes a cube along z, through a plate and into a shell; and a sphere beside them.
 const CELL: &str = r#"version = 1
 units = { length = "mm", angle = "deg" }
 [robot.push]
@@ -50,7 +50,7 @@ fn every_two_triangles_that_touch_are_a_row() {
         assert!((number(9) - 0.49).abs() < 1e-9 && (number(12) - 0.49).abs() < 1e-9, "{r:?}");
         assert!(number(7).abs().max(number(8).abs()) < 0.05 + 1e-9 && number(5) < 12.0 && number(6) < 12.0, "{r:?}");
     }
-    // One side of the cube is in the ball, whose triangles lie within it.
+    // One side of the cube is in the sphere, whose triangles are inside its surface.
     let ball = of("2");
     assert!(ball.len() > 4, "{ball:?}");
     for r in &ball {
@@ -65,7 +65,7 @@ fn every_two_triangles_that_touch_are_a_row() {
     assert_eq!((json["ask"].as_str(), json["colliding"].as_u64()), (Some("contacts"), Some(3)));
     assert_eq!(json["rows"].as_array().map(Vec::len), Some(rows.len()));
     assert_eq!(json["rows"][0]["triangle_a"].as_u64().map(|t| t.to_string()), Some(rows[0][5].clone()));
-    // The pairs that are asked for.
+    // The requested pairs.
     assert!(
         ask(&["--ask", "contacts", "--between", "push,ball"])
             .expect(0)

@@ -1,8 +1,8 @@
-//! `elbowroom query --between`, `--no-self`, `--all-pairs`: which pairs are tested, and what is said of wrong names.
+//! `elbowroom query --between`, `--no-self`, `--all-pairs`: the tested pairs, and the messages for wrong names.
 
 use crate::common::{Answer, elbowroom, with_cell};
 
-/// Two arms of one link each, and a third link that folds back onto the first; a ball, a post, regions.
+/// Two arms of one link each, and a third link that folds back onto the first; a sphere, a post, regions.
 const CELL: &str = r#"version = 1
 units = { length = "mm", angle = "deg" }
 [robot.left]
@@ -39,7 +39,7 @@ fn query(args: &[&str]) -> Answer {
     elbowroom(dir.path(), &[&["query", "cell.toml"], args].concat())
 }
 
-/// Distance and both names of each row.
+/// Returns distance and both names of each row.
 fn rows(answer: &Answer) -> Vec<(f64, String, String)> {
     let of = |line: &str| {
         let cells: Vec<&str> = line.split(',').collect();
@@ -60,12 +60,12 @@ fn assert_row(args: &[&str], metres: f64, a: &str, b: &str) {
 
 #[test]
 fn only_the_named_pairs_are_tested() {
-    // From link_3, at (300, 300) to (100, 300) mm, to the ball; from the tip of the right arm, at 1100 mm, to link_1.
+    // From link_3, at (300, 300) to (100, 300) mm, to the sphere; from the tip of the right arm, at 1100 mm, to link_1.
     assert_row(&["--between", "left,ball"], (100.0_f64.hypot(700.0) - 140.0) / 1e3, "left/link_3", "ball");
     assert_row(&["--between", "left/link_1,right"], 0.62, "left/link_1", "right/link_1");
     assert_row(&["--between", "ball,post"], 1.8, "ball", "post");
     assert_row(&["--between", "left,ball;left,right"], (100.0_f64.hypot(700.0) - 140.0) / 1e3, "left/link_3", "ball");
-    // One arm within itself is nearer than all others.
+    // Two links of one arm are nearer than all other pairs.
     assert_row(&[], 0.22, "left/link_1", "left/link_3");
     assert_row(&["--between", "left,left"], 0.22, "left/link_1", "left/link_3");
     assert_row(&["--no-self"], (100.0_f64.hypot(700.0) - 140.0) / 1e3, "left/link_3", "ball");
@@ -81,7 +81,7 @@ fn regions_are_partners_and_those_that_follow_a_robot_move_with_it() {
     let moved = rows(&elbowroom(dir.path(), &args).expect(0));
     let expected = (1100.0_f64.hypot(400.0) - 140.0) / 1e3;
     assert!((moved[0].0 - 0.56).abs() < 1e-9 && (moved[1].0 - expected).abs() < 1e-9, "{moved:?}");
-    // Without its name a region is not a solid.
+    // A region is a solid only if it is named.
     assert!(!query(&["--ask", "distance", "--all-pairs", "10"]).expect(0).stdout.contains("corner"));
 }
 
@@ -93,7 +93,7 @@ fn all_near_pairs_are_listed_the_nearest_first() {
     assert_eq!((&all[0].1[..], &all[0].2[..]), ("left/link_1", "left/link_3"));
     let some =
         rows(&query(&["--ask", "distance", "--all-pairs", "1.0", "--between", "left,right;right,left"]).expect(0));
-    // Both ways of one pair are one row.
+    // Both orders of one pair give one row.
     assert_eq!(some.len(), 2, "{some:?}");
     assert!(query(&["--ask", "distance", "--all-pairs", "0.01"]).expect(0).stdout.lines().count() == 1);
     let json = query(&["--ask", "distance", "--all-pairs", "1.0", "--json"]).expect(0).json();

@@ -1,4 +1,4 @@
-//! Recordings in builds with the feature `live`: what was recorded is played again as a trajectory.
+//! Recordings in builds with the feature `live`: a recorded run is played again as a trajectory.
 
 #![cfg(feature = "live")]
 

@@ -1,5 +1,5 @@
-//! Who may change what in a sealed cell, and what is noticed: as an integrator, a programmer, and an operator with an
-//! editor would try it.
+//! Permissions in a sealed cell, and detection of unsealed changes: attempts of an integrator, a programmer, and an
+//! operator with an editor.
 
 use std::io::Write;
 use std::path::Path;
@@ -8,7 +8,7 @@ use std::process::Stdio;
 use crate::common::{Answer, answer, command, keys, solid_swing};
 use tempfile::TempDir;
 
-/// A cell with comments and blanks of its owner's, a permanent region `post` and a temporary one, `cart`.
+/// Returns a cell with the owner's comments and blank lines, a permanent region `post` and a temporary one, `cart`.
 fn text() -> String {
     solid_swing().replace(
         "[program.arm]",
@@ -20,7 +20,7 @@ fn text() -> String {
 const NEW: &str =
     "[region.NAME]\nshape = \"sphere\"\ncentre = [0, -2000, 0]\nradius = 100\nwarning = 50\nlife = \"LIFE\"\n";
 
-/// No key and no trust but what a test brings along.
+/// Runs the command with only the keys and the trust that the test provides.
 fn run_in(dir: &Path, args: &[&str]) -> Answer {
     answer(quiet(dir, args).output().unwrap())
 }
@@ -47,7 +47,7 @@ fn keygen(dir: &Path, class: &str, name: &str) {
     write(dir, "trusted-keys.toml", &trusted);
 }
 
-/// A folder with a cell, the keys `programmer.key` and `integrator.key`, and no seal yet.
+/// Makes a folder with a cell, the keys `programmer.key` and `integrator.key`, and no seal yet.
 fn with_keys() -> TempDir {
     let dir = tempfile::tempdir().unwrap();
     write(dir.path(), "cell.toml", &text());
@@ -66,7 +66,7 @@ fn sealed() -> TempDir {
     dir
 }
 
-/// `elbowroom region …` as a class, with the class's own key.
+/// Runs `elbowroom region …` as a class, with the class's own key.
 fn act(dir: &Path, class: &str, args: &[&str]) -> Answer {
     let key = format!("{class}.key");
     let mut all = vec!["region"];
@@ -78,7 +78,7 @@ fn act(dir: &Path, class: &str, args: &[&str]) -> Answer {
     run_in(dir, &all)
 }
 
-/// The cell is refused by everything that reads it, with these words.
+/// Checks that everything that reads the cell refuses it, with these words.
 #[track_caller]
 fn refused(dir: &Path, words: &[&str]) {
     let verbs: &[&[&str]] = &[
@@ -152,7 +152,7 @@ fn what_is_not_edited_stays_as_it_was_written() {
     assert_eq!(read(dir.path(), "cell.toml").trim_end(), expected.trim_end());
 }
 
-/// What an operator can do with an editor, and what is then message.
+/// Edits by an operator with an editor, and the resulting messages.
 #[test]
 fn a_cell_that_was_edited_without_a_key_is_refused_with_what_differs() {
     let edits: &[(&str, &str, &[&str])] = &[
@@ -193,7 +193,7 @@ fn a_cell_that_was_edited_without_a_key_is_refused_with_what_differs() {
         let message = run_in(dir.path(), &["run", "cell.toml"]).expect(2).stderr;
         let hex = |word: &str| word.len() >= 64 && word.chars().all(|c| c.is_ascii_hexdigit());
         assert!(!message.split(|c: char| !c.is_ascii_alphanumeric()).any(hex), "nothing to paste:\n{message}");
-        // Nor can a class edit on top of it; only a seal helps.
+        // No class can edit on top of it; only a seal helps.
         act(dir.path(), "integrator", &["change", "cell.toml", "post", "radius=60"]).expect(2);
         assert!(run_in(dir.path(), &["region", "log", "cell.toml"]).expect(1).stdout.lines().count() > 1);
         act(dir.path(), "integrator", &["seal", "cell.toml"]).expect(0);
@@ -211,7 +211,7 @@ fn programs_objects_and_words_are_the_users_own() {
         .replace("name = \"my cell\" # no\n", "");
     write(dir.path(), "cell.toml", &free);
     run_in(dir.path(), &["run", "cell.toml"]).expect(0);
-    // The same values, written otherwise.
+    // The same values in another notation.
     write(
         dir.path(),
         "cell.toml",
@@ -229,14 +229,14 @@ fn a_programmer_seals_temporary_regions_and_nothing_else() {
     write(dir.path(), "cell.toml", &text().replace("radius = 50", "radius = 40"));
     let answer = act(dir.path(), "programmer", &["seal", "cell.toml"]).expect(2);
     assert!(answer.stderr.contains("`region.post`") && answer.stderr.contains("--as integrator"), "{}", answer.stderr);
-    // The first seal is the integrator's.
+    // The integrator makes the first seal.
     let dir = with_keys();
     let answer = act(dir.path(), "programmer", &["seal", "cell.toml"]).expect(2);
     assert!(answer.stderr.contains("integrator"), "{}", answer.stderr);
     assert!(!dir.path().join("cell.seal.jsonl").exists());
 }
 
-/// Regions that follow an object, a file of poses and an encoder with a file; an object that none follows.
+/// Returns regions that follow an object, a file of poses and an encoder with a file; and an object that no region follows.
 fn carried(life: &str) -> String {
     let region = |name: &str, follow: &str| {
         format!(
@@ -268,7 +268,7 @@ fn sealed_and_carried(life: &str) -> TempDir {
     dir
 }
 
-/// Whoever moves what carries a region moves the region.
+/// Moving the carrier of a region moves the region.
 #[test]
 fn what_carries_a_region_is_sealed_with_it() {
     let cart = carried("LIFE").replace("at = [0, 4000, 0]", "at = [0, 40000, 0]");
@@ -308,14 +308,14 @@ fn an_object_that_no_region_follows_is_the_users_own() {
     write(dir.path(), "cell.toml", &carried("permanent").replace("at = [0, 6000, 0]", "at = [0, 7000, 0]"));
     run_in(dir.path(), &["run", "cell.toml"]).expect(0);
     run_in(dir.path(), &["region", "log", "cell.toml"]).expect(0);
-    // Until one does; whoever adds the region seals the object with it.
+    // The object is sealed once a region follows it: adding the region seals the object.
     let add = NEW.replace("NAME", "on_free").replace("LIFE", "temporary") + "follow = { object = \"free\" }\n";
     write(dir.path(), "on_free.toml", &add);
     act(dir.path(), "programmer", &["add", "cell.toml", "on_free.toml"]).expect(0);
     let cell = read(dir.path(), "cell.toml");
     write(dir.path(), "cell.toml", &cell.replace("at = [0, 7000, 0]", "at = [0, 6000, 0]"));
     refused(dir.path(), &["`region.on_free`", "object.free.at", "--as programmer"]);
-    // And no longer once it is removed.
+    // It is no longer sealed once the region is removed.
     write(dir.path(), "cell.toml", &cell);
     act(dir.path(), "programmer", &["remove", "cell.toml", "on_free"]).expect(0);
     let cell = read(dir.path(), "cell.toml");
@@ -389,7 +389,7 @@ fn a_seal_or_log_that_was_tampered_with_is_refused() {
     }
 }
 
-/// Whoever takes the seal away leaves a cell that comes under keys, and is not sealed.
+/// If the seal is removed, the cell still falls under keys but is not sealed.
 #[test]
 fn a_seal_that_is_missing_is_missed() {
     let dir = sealed();
@@ -416,7 +416,7 @@ fn the_wrong_key_and_no_key() {
     assert!(with(&["--as", "integrator", "--key", "none.key"]).contains("none.key"));
     let message = with(&["--as", "integrator", "--key", "programmer.key"]);
     assert!(message.contains("may act as programmer, not as integrator"), "{message}");
-    // Of the right class, but not in the list of trusted keys, which is sealed too.
+    // The key is of the right class, but not in the list of trusted keys, which is sealed too.
     run_in(dir.path(), &["region", "keygen", "--as", "integrator", "--name", "M", "--out", "m.key"]).expect(0);
     let message = with(&["--as", "integrator", "--key", "m.key"]);
     assert!(message.contains("does not count here"), "{message}");
@@ -430,7 +430,7 @@ fn the_wrong_key_and_no_key() {
     write(dir.path(), "trusted-keys.toml", &before);
     write(dir.path(), "cell.toml", &text());
     run_in(dir.path(), &["run", "cell.toml"]).expect(0);
-    // What is not a key.
+    // A file that is not a key.
     write(dir.path(), "bad.key", "class = \"integrator\"\nname = \"X\"\nprivate = \"12\"\n");
     private(&dir.path().join("bad.key"));
     let message = with(&["--as", "integrator", "--key", "bad.key"]);
@@ -464,7 +464,7 @@ fn a_private_key_is_its_owners_alone() {
     assert!(!dir.path().join("o.key").exists());
 }
 
-/// A key that is no longer used opens nothing; what it sealed counts once another integrator has sealed the cell.
+/// A retired key permits nothing; its seals count once another integrator has sealed the cell.
 #[test]
 fn a_retired_key() {
     let dir = sealed();
@@ -481,7 +481,7 @@ fn a_retired_key() {
     act(dir.path(), "programmer", &["change", "cell.toml", "cart", "radius=120"]).expect(0);
 }
 
-/// Keys elsewhere: then a list beside the cell opens nothing.
+/// If keys elsewhere are named, a list beside the cell permits nothing.
 #[test]
 fn keys_named_by_the_environment_come_before_those_beside_the_cell() {
     let dir = with_keys();
@@ -502,7 +502,7 @@ fn keys_named_by_the_environment_come_before_those_beside_the_cell() {
     assert!(nowhere.expect(2).stderr.contains("no.toml"));
 }
 
-/// Whoever can name the file of keys in his own environment can seal with a key of his own; elsewhere that is found out.
+/// A user who can name another file of keys in the environment can seal with a forged key; elsewhere that is detected.
 #[test]
 fn a_forged_entry_is_found_out_where_the_keys_are_beside_the_cell() {
     let dir = sealed();
@@ -514,7 +514,7 @@ fn a_forged_entry_is_found_out_where_the_keys_are_beside_the_cell() {
     refused(dir.path(), &["cell.seal.jsonl:2:", "mallory", "was not sealed with the cell"]);
 }
 
-/// What the seal covers beyond the cell file: the models that it names.
+/// The seal also covers the models that the cell file names.
 #[test]
 fn a_file_that_the_cell_names_is_sealed_too() {
     let dir = with_keys();
@@ -542,7 +542,7 @@ fn a_round_trip() {
     let dir = with_keys();
     write(dir.path(), "cell.toml", &format!("checksum = \"00\"\n{}", text()));
     run_in(dir.path(), &["run", "cell.toml"]).expect(2);
-    // A checksum in the file is kept up with.
+    // A checksum in the file is updated.
     act(dir.path(), "integrator", &["seal", "cell.toml", "--note", "after commissioning"]).expect(0);
     let first = run_in(dir.path(), &["run", "cell.toml", "--json"]).expect(0).json();
     assert!(
@@ -630,7 +630,7 @@ fn a_program_that_grips_needs_no_new_seal() {
     let grips = before.replace("[program.arm]", part).replace("steps = [", "steps = [{ grip = \"part\" }, ");
     assert!(grips.contains("grip") && grips.contains("[object.part]"), "{grips}");
     write(dir.path(), "cell.toml", &grips);
-    // Programs and objects are not sealed, and so neither is what a program grips.
+    // Programs and objects are not sealed, and so neither are the parts that a program grips.
     let answer = run_in(dir.path(), &["query", "cell.toml", "--ask", "distance"]).expect(0);
     assert!(!answer.stderr.contains("seal"), "{}", answer.stderr);
 }

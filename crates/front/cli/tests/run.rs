@@ -56,7 +56,7 @@ fn notes_on_programs_are_called_warnings() {
     assert!(note.starts_with("warning: cell.toml:"), "{note}");
 }
 
-/// A belt that never stops, with a region on it: far away, or across the path of the arm.
+/// Makes a belt that never stops, with a region on it: far away, or across the path of the arm.
 fn with_belt(base: &str, speed: f64) -> String {
     SWING.to_owned()
         + &format!(
@@ -80,7 +80,7 @@ fn a_run_ends_where_only_an_endless_belt_moves() {
 
 #[test]
 fn a_robot_that_waits_for_the_belt_to_carry_its_region_away_is_waited_for() {
-    // The part is on the path for about 20 s; nothing else is.
+    // The region is on the path for about 20 s, and no other region is.
     let text = with_belt("[495, 495, -200]", 10.0).replacen("base = [495, 495, -500]", "base = [5000, 0, 0]", 1);
     let json = elbowroom(with_cell(&text).path(), &["run", "cell.toml", "--json"]).expect(0).json();
     assert_eq!(
@@ -168,7 +168,7 @@ fn files_have_the_documented_columns_and_a_row_per_tick() {
     assert_eq!(number(rows[0][0]), 0.0);
     let last = rows.last().unwrap();
     assert!((number(last[0]) - json["duration_s"].as_f64().unwrap()).abs() < 1e-9);
-    // The columns belong together: radians, metres, and the TCP where the joints put it.
+    // The columns are consistent: radians, metres, and the TCP at the pose that the joints give.
     for row in rows.iter().step_by(50) {
         let (q1, q2) = (number(row[2]), number(row[3]));
         let x = 0.4 * q1.cos() + 0.3 * (q1 + q2).cos();
@@ -177,7 +177,7 @@ fn files_have_the_documented_columns_and_a_row_per_tick() {
         if row[9] == "post" {
             let to_axis = (x - 0.495).hypot(y - 0.495);
             assert!((to_axis - 0.05 - number(row[10])).abs() < 1e-9, "{row:?}");
-            // The TCP is guarded: it is the part that governs, and its closest point.
+            // The TCP is guarded: it is the governing part, and the closest point of the robot.
             assert_eq!(row[11], "tcp", "{row:?}");
             assert!((x - number(row[13])).abs() < 1e-9 && (y - number(row[14])).abs() < 1e-9, "{row:?}");
         } else {
@@ -209,7 +209,7 @@ fn the_report_needs_no_network() {
     }
     let second = "<option value=\"1\">monitor off</option>";
     assert!(html.contains(second), "--compare shows the other run");
-    // Without --compare the other run gives its distances alone.
+    // Without --compare only the distances of the other run are shown.
     elbowroom(dir.path(), &["run", "cell.toml", "--out", "one"]).expect(0);
     let one = std::fs::read_to_string(dir.path().join("one/report.html")).unwrap();
     assert!(!one.contains(second) && one.contains("<th scope=\"col\">without monitor</th>"));
@@ -283,7 +283,7 @@ fn a_robot_that_waits_is_told_who_must_leave() {
     let json = elbowroom(dir.path(), &["run", "cell.toml", "--json"]).expect(0).json();
     let waits = &json["robots"][1];
     assert_eq!(waits["outcome"], "held", "{json}");
-    // Its program is over: nothing that goes on would release it.
+    // Its program is over, so nothing will release the region.
     let release = waits["release"].as_str().unwrap();
     let whose = "stays leaves it: the program of stays is over in the region or its warning zone";
     assert!(release.starts_with(whose) && release.contains("`warning` is made smaller"), "{release}");

@@ -14,7 +14,7 @@ fn without_arguments_figure_12_runs_and_writes_its_report() {
     assert!(answer.stdout.contains("passes through it"), "{}", answer.stdout);
     let report = std::fs::read_to_string(dir.path().join("elbowroom-out/figure12/report.html")).unwrap();
     assert!(report.contains("monitor on") && report.contains("monitor off"));
-    // The command that it proposes runs.
+    // The command that the output proposes works.
     let next = answer.stdout.lines().find_map(|l| l.split_once("elbowroom run ")).expect("says what to type").1;
     let next: Vec<&str> = std::iter::once("run").chain(next.split(' ')).collect();
     elbowroom(dir.path(), &next).expect(0);
@@ -82,13 +82,13 @@ fn a_closed_pipe_is_no_failure() {
         .spawn()
         .unwrap();
     let mut first = String::new();
-    // The reader is dropped, and the pipe with it, after one line of some ten megabytes.
+    // The reader is dropped, and the pipe with it, after one line of about ten megabytes.
     BufReader::new(child.stdout.take().unwrap()).read_line(&mut first).unwrap();
     assert!(first.starts_with("index,link"));
     answer(child.wait_with_output().unwrap()).expect(0);
 }
 
-/// The same for messages on standard error.
+/// As above, for messages on standard error.
 #[cfg(target_os = "linux")]
 #[test]
 fn messages_into_a_full_device_do_not_panic() {

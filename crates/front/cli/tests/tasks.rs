@@ -1,5 +1,5 @@
-//! What users do in their second hour, as typed commands on robots that the project does not have. Each test prints the command
-//! and what it answered: `cargo test -p elbowroom-cli --test main tasks:: -- --nocapture`.
+//! Tasks of users in their second hour, as typed commands on robots that the project does not include. Each test prints the
+//! command and its output: `cargo test -p elbowroom-cli --test main tasks:: -- --nocapture`.
 
 #![allow(clippy::print_stdout, reason = "shows what users type and see")]
 
@@ -10,7 +10,7 @@ use crate::common::{Answer, elbowroom, with_cell};
 use elbowroom_testkit::folder;
 use tempfile::TempDir;
 
-/// The robot of a folder of the data, as a path for a cell file.
+/// Returns the robot of a folder of the data, as a path for a cell file.
 fn urdf(data: &Path, name: &str) -> String {
     data.join("urdf").join(name).join(format!("{name}.urdf")).display().to_string()
 }
@@ -18,7 +18,7 @@ fn urdf(data: &Path, name: &str) -> String {
 /// Head of a cell file, in millimetres and degrees.
 const HEAD: &str = "version = 1\nunits = { length = \"mm\", angle = \"deg\" }\n";
 
-/// Types a command: prints it with the end of what it answered.
+/// Runs a command; prints it with the end of its output.
 #[track_caller]
 fn type_command(dir: &TempDir, line: &str, status: i32) -> Answer {
     let args: Vec<&str> = line.split_whitespace().collect();
@@ -34,7 +34,7 @@ fn type_command(dir: &TempDir, line: &str, status: i32) -> Answer {
     answer.expect(status)
 }
 
-/// Rows of a CSV after its header.
+/// Returns the rows of a CSV after its header.
 fn rows(csv: &str) -> Vec<Vec<String>> {
     csv.lines().skip(1).map(|row| row.split(',').map(str::to_owned).collect()).collect()
 }
@@ -103,7 +103,7 @@ fn distances_between_arm_and_belt() {
     assert!(rows.iter().all(|r| r[3].starts_with("arm/") && r[4] == "belt"), "the arm's own wrist is not asked for");
 }
 
-/// 5: plan to a pose and play it; 6: the same as a step of a program.
+/// 5: plan to a pose and play the path; 6: the same as a step of a program.
 #[test]
 fn plan_to_a_pose_and_play_it() {
     let Some(data) = folder::data() else { return };
@@ -191,7 +191,7 @@ fn replay_a_recording_in_degrees() {
     let Some(data) = folder::data() else { return };
     let recording = data.join("trajectories/staubli_tx40_real/pos_read_data.csv");
     let dir = tempfile::tempdir().unwrap();
-    // The first 5 s, as another program would have written them.
+    // The first 5 s, in the form that another program writes.
     let text = std::fs::read_to_string(recording).unwrap();
     let rows_of_5_s: Vec<String> = text.lines().take(1_250).map(|row| row.replace(',', ";")).collect();
     std::fs::write(dir.path().join("recorded.csv"), rows_of_5_s.join("\n")).unwrap();
@@ -217,7 +217,7 @@ trajectory = {{ file = "recorded.csv", angle = "deg", period_ms = 4 }}
     assert!(json["duration_s"].as_f64().unwrap() >= 4.9 || json["robots"][0]["finished"] == false);
 }
 
-/// 9: the allowed collision matrix of an unseen arm; 10: what is near at the start.
+/// 9: the allowed collision matrix of an unseen arm; 10: objects near the arm at the start.
 #[test]
 fn write_and_use_an_srdf() {
     let Some(data) = folder::data() else { return };
@@ -245,7 +245,7 @@ fn plan_between_named_states() {
     assert_eq!(json["found"], true);
 }
 
-/// 12: does it stop in time; 13: what is missing.
+/// 12: whether the robot stops in time; 13: what is missing.
 #[test]
 fn check_and_correct_a_warning_zone() {
     let Some(data) = folder::data() else { return };
@@ -406,7 +406,7 @@ start = "home"
     let csv = std::fs::read_to_string(dir.path().join("both.csv")).unwrap();
     assert!(csv.starts_with("t_s,left.joint_a1,") && rows(&csv).len() > 100);
     assert!(dir.path().join("plan.html").is_file());
-    // At no row do they touch.
+    // They touch in no row.
     let answer = type_command(&dir, "query cell.toml --ask collision --between left,right --states both.csv", 0);
     assert!(rows(&answer.stdout).iter().all(|row| row[1] == "0"));
 }
@@ -490,6 +490,6 @@ steps = [
     assert_eq!(json["robots"][0]["outcome"], "finished");
     let trace = std::fs::read_to_string(dir.path().join("out/trace.csv")).unwrap();
     let last = rows(&trace).pop().unwrap();
-    // The torch's tip is now where the gripper's was: the arm has moved back by 150 mm.
+    // The torch's tip is now at the former place of the gripper's: the arm has moved back by 150 mm.
     assert!((last[10].parse::<f64>().unwrap() - 0.7).abs() < 1e-4, "{last:?}");
 }

@@ -17,7 +17,7 @@ fn teach(cell: &str, shape: &str, states: &str, more: &[&str]) -> (tempfile::Tem
 
 #[test]
 fn a_taught_sphere_loads_in_the_cell_and_is_where_it_was_taught() {
-    // Centre at (0.4, 0.3), on the surface (0.7, 0).
+    // Centre at (0.4, 0.3), with (0.7, 0) on the surface.
     let states = "0,1.5707963267948966\n0,0\n";
     let (dir, answer) = teach(SWING, "sphere", states, &["--warning", "150"]);
     let answer = answer.expect(0);
@@ -61,7 +61,7 @@ fn every_shape_that_the_plane_can_teach_loads() {
     }
 }
 
-/// Three slides: the TCP is where its joint values say, in metres, along the world's axes.
+/// Three slides: the position of the TCP equals its joint values, in metres, along the world's axes.
 const GANTRY: &str = r#"
 version = 1
 units = { length = "mm", angle = "deg" }
@@ -75,7 +75,7 @@ dh = [
 links = [[], [], { sphere = { radius = 30 } }]
 "#;
 
-/// A box of the corners (joint values) taught on the gantry: its centre in the world, m, and the answer.
+/// Teaches a box by corners (joint values) on the gantry: returns its centre in the world, m, and the answer.
 fn gantry_box(corners: &str, height: &str) -> (elbowroom::spatial::Vec3, common::Answer) {
     let dir = with_cell(GANTRY);
     std::fs::write(dir.path().join("taught.csv"), format!("joint_1,joint_2,joint_3\n{corners}")).unwrap();
@@ -88,7 +88,7 @@ fn gantry_box(corners: &str, height: &str) -> (elbowroom::spatial::Vec3, common:
 
 #[test]
 fn a_positive_height_goes_up_whatever_the_order_of_corners() {
-    // In the world: (0, 0, 200), 500 mm along one level axis, 1000 mm along the other.
+    // In the world: (0, 0, 200), 500 mm along one horizontal axis, 1000 mm along the other.
     for corners in ["0,0,0.2\n0,0.5,0.2\n1,0,0.2\n", "0,0,0.2\n1,0,0.2\n0,0.5,0.2\n"] {
         for (height, z, word) in [("400", 0.4, "upwards (against gravity)"), ("-400", 0.0, "downwards (with gravity)")]
         {

@@ -1,4 +1,5 @@
-//! `elbowroom watch`: rendered pictures of a moving crate under a moving arm, through files alone; the truth is kept apart.
+//! `elbowroom watch`: rendered pictures of a moving crate under a moving arm, through files alone; the ground truth is
+//! kept separate.
 
 use crate::common;
 use std::fmt::Write;
@@ -17,7 +18,7 @@ use serde_json::Value;
 const PERIOD_S: f64 = 0.04;
 const FRAMES: usize = 140;
 const LEARNING: usize = 30;
-/// A picture that is cut off.
+/// Index of a truncated picture.
 const DAMAGED: usize = 90;
 const SIZE: [f64; 2] = [0.6, 0.4];
 
@@ -47,19 +48,19 @@ fn cell() -> String {
     head + &CAMERA.replace("FOCAL", &format!("[{:?}, {:?}]", lens().fx, lens().fy))
 }
 
-/// The arm swings to and fro over the floor while that is learnt, and waits on the other side afterwards.
+/// Joint values: the arm swings back and forth over the floor while the floor is learnt, and then waits on the other side.
 fn joints_at(t_s: f64) -> Vec<f64> {
     let waist = if t_s < LEARNING as f64 * PERIOD_S { 60.0 * (t_s * 5.0).cos() } else { 150.0 };
     [waist, -31.1, 76.6, 0.0, 44.5, 0.0].map(f64::to_radians).to_vec()
 }
 
-/// Where the crate is, from the time at which it enters.
+/// Position of the crate, from the time at which it enters.
 fn crate_at(t_s: f64) -> Option<Point2> {
     let y = -3.6 + 1.2 * (t_s - LEARNING as f64 * PERIOD_S);
     (t_s >= LEARNING as f64 * PERIOD_S).then_some(Point2::new(2.2, y))
 }
 
-/// Pictures, their times and the joint values, as files.
+/// Writes pictures, their times and the joint values, as files.
 fn write_pictures(dir: &Path) {
     let folder = dir.join("pictures");
     std::fs::create_dir(&folder).unwrap();
@@ -102,7 +103,7 @@ fn watch(dir: &Path, args: &[&str]) -> Answer {
     elbowroom(dir, &[&["watch", "cell.toml"], args].concat())
 }
 
-/// How the pictures compare with the truth.
+/// Comparison of the pictures with the ground truth.
 #[derive(Debug, Default)]
 struct Score {
     due: usize,
@@ -159,7 +160,7 @@ fn a_crate_is_tracked_from_files_alone() {
     assert_eq!(entered, 1, "{score:?}");
     let blocked = |i: usize| records[i]["blocked"].as_u64().unwrap();
     assert!((LEARNING + 60..LEARNING + 90).any(|i| blocked(i) > 0));
-    // The damaged picture changes nothing and says why.
+    // The damaged picture changes nothing, and the record gives the reason.
     let damaged = &records[DAMAGED];
     assert!(
         damaged["status"] == "rejected" && damaged["reason"].as_str().unwrap().contains("frame_0090.png"),
@@ -195,7 +196,7 @@ fn a_stream_of_pictures_gives_what_the_folder_gives() {
             .unwrap();
         let mut input = child.stdin.take().unwrap();
         let bytes = bytes.to_vec();
-        // The command prints while it reads: both pipes must move.
+        // The command prints while it reads, so both pipes must be served.
         let writer = std::thread::spawn(move || drop(input.write_all(&bytes)));
         let output = child.wait_with_output().unwrap();
         writer.join().unwrap();
@@ -214,12 +215,12 @@ fn a_stream_of_pictures_gives_what_the_folder_gives() {
                 && a["obstacles"].as_array().unwrap().len() == b["obstacles"].as_array().unwrap().len()
         );
     }
-    // Without --fps the stamps are those of the arrival: they rise.
+    // Without --fps the stamps are times of arrival: they increase.
     std::fs::write(dir.path().join("cell.toml"), cell().replace("joints = \"joints.csv\"\n", "")).unwrap();
     let arrived = parse(&stream(&["--json"], &all[..]).expect(0));
     let times: Vec<f64> = arrived.iter().map(|r| r["t_s"].as_f64().unwrap()).collect();
     assert!(times.len() == DAMAGED && times.windows(2).all(|w| w[0] < w[1]), "{times:?}");
-    // What is not a stream of pictures is reported, with the number of the picture.
+    // Bytes that are not a stream of pictures are reported, with the number of the picture.
     let cut = &all[..picture(0).len() + 100];
     let message = stream(&["--json"], cut).expect(2).stderr;
     assert!(message.contains("picture 1: the stream ends within a picture") && message.contains("ffmpeg"), "{message}");

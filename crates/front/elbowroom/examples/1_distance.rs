@@ -1,4 +1,4 @@
-//! Loads a robot, puts it beside a post and asks: how far apart, which parts, where.
+//! Loads a robot, puts it beside a post and reports their distance, the nearest parts and the nearest points.
 //!
 //! `cargo run --release -p elbowroom --example 1_distance`
 #![allow(clippy::print_stdout, reason = "an example prints")]
@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let arm = loaded.robot;
     println!("{}: {} joints, {} links", arm.chain.name(), arm.chain.dof(), arm.chain.links().len());
 
-    // A scene does not change: robots, objects, and the pairs that are compared.
+    // A scene is constant: robots, objects, and the pairs that are compared.
     let mut builder = Scene::builder();
     let robot = builder.robot("arm", arm, Pose::IDENTITY);
     builder.object(Object {
@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     });
     let scene = builder.build()?;
 
-    // The state has the joint values; the checker has the memory of the queries. Each thread has its own of both.
+    // The state holds the joint values; the checker holds the memory of the queries. Each thread has its own pair.
     let mut state = SceneState::new(&scene);
     let mut checker = Checker::new(&scene, CheckerOptions::default());
     println!("\njoint_1  to the post  nearest parts          at (m)");
@@ -49,7 +49,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         );
     }
 
-    // "Does anything touch" is a cheaper question; it includes the links of the robot among each other.
+    // Asking only whether anything touches is cheaper; the answer includes the robot's links against each other.
     match checker.collides(&state) {
         Some(contact) => println!("\nthe last one collides: {} with {}", scene.name(contact.a), scene.name(contact.b)),
         None => println!("\nthe last one does not collide"),

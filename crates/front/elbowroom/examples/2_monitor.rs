@@ -20,10 +20,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let arm = load_robot(&urdf, &LoadOptions::default())?.robot;
     let joints = arm.chain.dof();
 
-    // What the robot must not enter, and how far before it slows down.
+    // The region that the robot must not enter, and the thickness of the zone in which it slows down.
     let foot = Vec3::new(mm(900.0), 0.0, 0.0);
     let post = Region::cylinder("post", foot, mm(100.0), mm(2000.0), Rotation::IDENTITY).warning(mm(300.0));
-    // How the robot stops, and how hard its programs accelerate: the law then holds whatever the program does.
+    // How the robot stops, and how hard its programs accelerate: with these the law holds for any program.
     let stopping = StoppingSettings {
         reaction_s: 0.02,
         period_s: TICK_S,
@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let configuration = Configuration::new(ConfigurationParts {
         robot: "arm".into(),
         base_in_world: Pose::IDENTITY,
-        // Every link in a capsule or box.
+        // Encloses every link in a capsule or box.
         volumes: arm_volumes(&arm, VolumeModel::default()),
         regions: vec![post],
         sources: vec![],
@@ -49,7 +49,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut least_m = f64::INFINITY;
     for tick in 0..1000 {
         let now_s = f64::from(tick) * TICK_S;
-        // The program moves towards the post, and after 3 s away from it.
+        // The program moves towards the post for 3 s, then away from it.
         let intent = [if now_s < 3.0 { SPEED } else { -SPEED }, 0.0, 0.0, 0.0, 0.0, 0.0];
         let report = monitor.tick(&Snapshot { qd: &qd, intent: Some(&intent), ..Snapshot::stationary(now_s, &q) });
         let distance_m = monitor.distance(post, 10.0).unwrap_or(10.0);
@@ -62,7 +62,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 report.speed_override
             );
         }
-        // A real controller scales its program by the override and reads the joints; this robot brakes as it has stated.
+        // A real controller scales its program by the override and reads the joints; this one brakes at the stated deceleration.
         let wanted = report.speed_override * intent[0];
         qd[0] += (wanted - qd[0]).clamp(-6.0 * TICK_S, 6.0 * TICK_S);
         q[0] += qd[0] * TICK_S;

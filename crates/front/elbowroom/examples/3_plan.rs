@@ -1,4 +1,4 @@
-//! Plans around a post that is in the way, and makes a motion within the limits of the joints of it.
+//! Plans a path around a post and turns it into a motion within the joint limits.
 //!
 //! `cargo run --release -p elbowroom --example 3_plan`
 #![allow(clippy::print_stdout, reason = "an example prints")]
@@ -40,7 +40,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("straight on: {} hits {} at {percent} %", scene.name(contact.a), scene.name(contact.b));
     }
 
-    // Every segment of the path is proven free by continuous collision detection, with 20 mm to spare.
+    // Every segment of the path is proven free by continuous collision detection, with a margin of 20 mm.
     state.set_q(&scene, robot, &start)?;
     let settings = RrtConnectSettings { clearance_m: mm(20.0), ..RrtConnectSettings::default() };
     let mut planner = RrtConnect::new(&scene, robot)?;
@@ -56,7 +56,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("  {}", degrees.join(" "));
     }
 
-    // Corners are blended where that is proven free; the samples are what a controller follows.
+    // A corner is blended if the blend is proven free; a controller follows the samples.
     let joints = velocity.len();
     let limits = KinematicLimits { velocity, acceleration: vec![6.0; joints], jerk: vec![60.0; joints] };
     let motion = planner.time_parametrize(&state, &path, &limits, PERIOD_S, &settings)?;

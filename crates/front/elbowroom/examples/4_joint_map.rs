@@ -1,4 +1,4 @@
-//! A map of joint space and what moves in it: a trolley blocks cells as it passes, and the path is planned again.
+//! A joint-space map with a moving obstacle: a trolley blocks cells as it passes, and the path is planned again.
 //!
 //! `cargo run --release -p elbowroom --example 4_joint_map`
 #![allow(clippy::print_stdout, reason = "an example prints")]
@@ -23,7 +23,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (lower, upper) = (arm.chain.lower(), arm.chain.upper());
     let axis = |i: usize| {
         let (from, to) = (lower[i].to_degrees(), upper[i].to_degrees());
-        // A whole number of cells.
+        // Rounded to a whole number of cells.
         let cells = ((to - from) / STEP_DEG).floor();
         GridAxis::from_degrees(format!("joint_{}", i + 1), from, from + cells * STEP_DEG, STEP_DEG)
     };
@@ -45,7 +45,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let begin = Instant::now();
         let changes = map.set_layer("trolley", builder.layer(&trolley, &in_world)?).clone();
         let map_ms = 1e3 * begin.elapsed().as_secs_f64();
-        // The planner takes over only the cells that have changed.
+        // The planner updates only the cells that have changed.
         planner.apply(map.occupancy(), &changes)?;
         let begin = Instant::now();
         let path = planner.plan(start, goal, &GridPlannerSettings::default());

@@ -1,4 +1,4 @@
-//! Two robots share a pallet: one is granted the exchange region, the other waits at its border and then goes in by itself.
+//! Two robots share a pallet: one is granted the exchange region; the other waits at its border, then enters by itself.
 //!
 //! `cargo run --release -p elbowroom --example 5_exchange`
 #![allow(clippy::print_stdout, reason = "an example prints")]
@@ -25,7 +25,7 @@ struct Controller {
     monitor: Monitor,
     q: [f64; 6],
     qd: [f64; 6],
-    /// Speed of joint 1 in the program, rad/s, until the arm is over the pallet; then back.
+    /// Speed of joint 1 in the program, rad/s: forward until the arm is over the pallet, then backward.
     speed: f64,
     state: ExchangeState,
 }
@@ -43,7 +43,7 @@ impl Controller {
         let (low, high) = (Vec3::new(-0.5, -0.45, 0.0), Vec3::new(0.5, 0.45, 1.5));
         let configuration = Configuration::new(ConfigurationParts {
             robot: name.into(),
-            // The robots stand on both sides of the pallet and face it.
+            // The robots are on opposite sides of the pallet and face it.
             base_in_world: Pose::from_xyz_rpy([0.0, side * mm(1300.0), 0.0], [0.0, 0.0, -side * FRAC_PI_2]),
             volumes: arm_volumes(robot, VolumeModel::default()),
             regions: vec![Region::cuboid_from_corners("pallet", low, high).warning(mm(200.0)).kind(kind)],
@@ -56,7 +56,7 @@ impl Controller {
         Ok(Self { name, monitor, q, qd: [0.0; 6], speed, state: ExchangeState::Outside })
     }
 
-    /// One tick: the monitor publishes where the robot is and asks for the region; the robot obeys the override.
+    /// Runs one tick: the monitor publishes where the robot is and asks for the region; the robot obeys the override.
     fn tick(&mut self, now_s: f64) {
         let intent = [self.speed, 0.0, 0.0, 0.0, 0.0, 0.0];
         let snapshot = Snapshot { qd: &self.qd, intent: Some(&intent), ..Snapshot::stationary(now_s, &self.q) };
@@ -77,7 +77,7 @@ impl Controller {
 fn main() -> Result<(), Box<dyn Error>> {
     let urdf = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../examples/models/ns16/ns16.urdf");
     let robot = load_robot(&urdf, &LoadOptions::default())?.robot;
-    // One process here; `docs/live.md` has the same between controllers on a network.
+    // This example is one process; `docs/live.md` describes the same exchange between controllers on a network.
     let arbiter = Arc::new(ZoneArbiter::new(&["left", "right"], &["pallet"]));
     let mut robots = [Controller::new(&robot, 0, &arbiter, 0.8)?, Controller::new(&robot, 1, &arbiter, 0.7)?];
     let mut both_inside = 0;

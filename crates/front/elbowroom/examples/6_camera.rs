@@ -1,5 +1,6 @@
-//! A robot under a camera goes around a trolley that no file names, on its joint-space map: the pictures are rendered here, and a
-//! cell file, a run and its report follow.
+//! A robot under a camera avoids a trolley that is not an object of the cell file, on its joint-space map.
+//!
+//! The example renders the pictures and writes a cell file, a run and its report.
 //!
 //! `cargo run --release -p elbowroom --example 6_camera`
 #![allow(clippy::print_stdout, reason = "an example prints")]
@@ -70,18 +71,18 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Where the arm is while the empty cell is learnt: it swings, so that all of the floor is seen.
+/// Joint values while the empty cell is learnt: the arm swings so that the camera sees all of the floor.
 fn learning_joints(t_s: f64) -> [f64; 6] {
     [60.0 * (5.0 * t_s).cos(), -31.1, 76.6, 0.0, 44.5, 0.0].map(f64::to_radians)
 }
 
-/// The trolley drives into the way of the arm, and stands there.
+/// Position of the trolley, which drives into the way of the arm and stops there.
 fn trolley_at(t_s: f64) -> Option<RenderedSolid> {
     let at = Point2::new(3.9 - (1.2 * t_s).min(1.8), 0.0);
     (t_s >= 0.0).then(|| RenderedSolid::cuboid(at, Vec3::new(0.6, 0.4, 0.9), 0.0, 40))
 }
 
-/// Writes the cell file, what the camera sees, and where the robot was in the pictures of the empty cell.
+/// Writes the cell file, the camera pictures, and the joint values at the pictures of the empty cell.
 fn write_cell(folder: &Path) -> Result<(), Box<dyn Error>> {
     let lens = Intrinsics::pinhole(320, 240, 0.92);
     let focal = format!("[{:?}, {:?}]", lens.fx, lens.fy);
@@ -95,7 +96,7 @@ fn write_cell(folder: &Path) -> Result<(), Box<dyn Error>> {
     let mut times = "file,t_s\n".to_owned();
     for i in 0..PICTURES {
         let t_s = (i as f64 - LEARNING as f64) * PERIOD_S;
-        // The pictures of the run are taken before it: they do not show where the arm goes.
+        // The pictures of the run are rendered before it, without the arm.
         let parts = if t_s < 0.0 { arm.parts(&learning_joints(t_s)) } else { Vec::new() };
         let drawn: Vec<_> = parts.into_iter().map(|part| (part, 200)).collect();
         let conditions = RenderConditions { seed: i as u64, ..RenderConditions::default() };

@@ -15,8 +15,8 @@
 //! | [`cspace`] | obstacles as occupied cells of joint space |
 //! | [`planner`] | paths on the joint-space map or in the exact scene, replanning, time parametrization |
 //! | [`avoidance`] | reactive avoidance: fuzzy rules, least-squares evasion, return to the path |
-//! | [`vision`] | camera frames and point clouds to tracked obstacles |
-//! | [`perception`] | camera frames to a joint-space map, and the map to a replanned motion |
+//! | [`vision`] | tracked obstacles from camera frames and point clouds |
+//! | [`perception`] | a joint-space map from camera frames, and a replanned motion from the map |
 //! | [`cell`] | the cell file and the model it describes |
 //! | [`sim`] | simulation of the programs of a cell under the monitors; analysis of whether the laws exclude entry |
 //! | [`analysis`] | collision and distance queries, joint-space maps and planned paths of a cell at its initial state |
@@ -24,7 +24,7 @@
 //! | [`report`] | HTML reports, plots, images, and the text summary of a run |
 //!
 //! With the feature `live`: `live` (the service on a network), `view` (the cell in a browser), `recording` (MCAP recordings),
-//! `ros2` (messages and keys of ROS 2), `status` (what a monitored robot publishes).
+//! `ros2` (messages and keys of ROS 2), `status` (the data that a monitored robot publishes).
 //!
 //! # A guarded controller
 //!
@@ -85,7 +85,7 @@
 //!
 //! # A collision-free path
 //!
-//! Found by RRT-Connect, for any number of joints, on the exact scene; continuous collision detection proves every segment:
+//! RRT-Connect plans for any number of joints in the exact scene; continuous collision detection proves every segment:
 //!
 //! ```
 //! use elbowroom::prelude::*;
@@ -130,8 +130,7 @@
 //! ```
 //!
 //! The folder `examples` of the crate has whole programs: `1_distance`, `2_monitor`, `3_plan`, `4_joint_map`, `5_exchange`,
-//! `6_camera`
-//! (`cargo run --release -p elbowroom --example 1_distance`).
+//! `6_camera` (`cargo run --release -p elbowroom --example 1_distance`).
 //!
 //! This is not a certified safety device.
 //!

@@ -1,4 +1,4 @@
-//! The names that most programs need: `use elbowroom::prelude::*;`.
+//! Names that most programs need: `use elbowroom::prelude::*;`.
 //!
 //! | for | names |
 //! | --- | --- |

@@ -14,10 +14,10 @@ use crate::fuzz_cells::oracle::Arm;
 use crate::fuzz_cells::random::{Random, rounded};
 use crate::fuzz_cells::spec::{CellSpec, FollowSpec, MotionSpec, ObjectSpec, RegionSpec, RobotSpec, StepSpec};
 
-/// Tries to find a region that the robot's start is outside of.
+/// Number of tries to find a region that the robot's start is outside of.
 const TRIES: usize = 4;
 
-/// A robot whose path regions cross.
+/// Makes a cell with a robot whose path regions cross.
 pub fn cell(random: &mut Random, places: &Places<'_>) -> CellSpec {
     let mut spec = CellSpec { max_s: 5.0, ..settings(random) };
     spec.robots.push(if random.percent(75) { rail::slide(random) } else { robot::any(random, places) });
@@ -91,7 +91,7 @@ fn link_named(cell: &Cell, name: &str) -> Option<usize> {
     cell.robots[1].robot.chain.links().iter().position(|link| link == name)
 }
 
-/// Adds a robot on a rail that a cart drives towards the first one, with a region on its hand.
+/// Adds a robot on a rail with a region on its hand; a cart makes the robot evade towards the first robot.
 fn on_an_evading_robot(spec: &mut CellSpec, folder: &Path, random: &mut Random) {
     let Ok(cell) = spec.parse(folder) else { return };
     let Some(place) = region::point_on_the_path(spec, &cell, 0, random) else { return };
@@ -114,7 +114,7 @@ fn on_an_evading_robot(spec: &mut CellSpec, folder: &Path, random: &mut Random) 
     (region.robots, region.follow) = (vec![0], Some(FollowSpec::Robot { robot: 1, frame: "flange" }));
     spec.regions.push(region);
     if random.percent(60) {
-        // A robot at rest: it is still there when the other one comes.
+        // A robot at rest is still there when the other one comes.
         spec.robots[0].program.steps.truncate(1);
         spec.robots[0].program.steps.insert(0, StepSpec::Wait(random.between(1.0, 5.0)));
     }

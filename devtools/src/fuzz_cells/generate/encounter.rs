@@ -1,4 +1,4 @@
-//! Where the robots of a cell without regions are at some time.
+//! Places of the robots of a cell without regions at some time.
 
 use std::path::Path;
 
@@ -10,10 +10,10 @@ use crate::fuzz_cells::oracle::{Arm, Guarded};
 use crate::fuzz_cells::random::Random;
 use crate::fuzz_cells::spec::CellSpec;
 
-/// Exact enough for a meeting, and quick.
+/// Tick that is exact enough for an encounter, and fast, ms.
 const TICK_MS: f64 = 20.0;
 
-/// A time at which the first robot moves, and what would be where then.
+/// A time at which the first robot moves, and the places of the robots then.
 pub struct Encounter {
     pub cell: Cell,
     pub t_s: f64,
@@ -24,7 +24,7 @@ pub struct Encounter {
 }
 
 impl Encounter {
-    /// `None` if the cell is refused or its first robot does not move.
+    /// Finds an encounter; `None` if the cell is refused or its first robot does not move.
     pub fn new(spec: &CellSpec, folder: &Path, random: &mut Random) -> Option<Self> {
         let alone = CellSpec { tick_ms: TICK_MS, regions: Vec::new(), ..spec.clone() };
         let cell = alone.parse(folder).ok()?;

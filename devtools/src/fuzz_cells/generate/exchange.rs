@@ -9,7 +9,7 @@ use crate::fuzz_cells::spec::{
     CellSpec, DhRow, FollowSpec, HandSpec, Model, ProgramSpec, RegionSpec, RobotSpec, SolidSpec, StepSpec, Vector,
 };
 
-/// Carriages through one to four crossings, each with solids that reach some of them.
+/// Makes a cell of carriages that pass one to four crossings, each with solids that reach some of them.
 pub fn cell(random: &mut Random) -> CellSpec {
     let mut spec = CellSpec { tick_ms: random.one(&[2.0, 4.0, 8.0]), max_s: 120.0, ..settings(random) };
     let crossings = random.whole(1, 4);
@@ -67,11 +67,11 @@ fn region(random: &mut Random, index: usize, center: Vector) -> RegionSpec {
     }
 }
 
-/// A carriage that goes through one or more crossings, its balls where they pass them.
+/// Makes a carriage that passes one or more crossings, with spheres that move through them.
 fn carriage(random: &mut Random, centers: &[Vector]) -> RobotSpec {
     let speed = random.scaled(0.3, 2.0);
     let half = 2.5;
-    // Its rail points along the frame's z; the frame's x and y are where balls can stand beside it.
+    // Its rail is along the frame's z; spheres can be beside it along the frame's x and y.
     let any = random.between(0.0, TAU);
     let along = random.one(&[0.0, TAU / 2.0, TAU / 4.0, any]);
     let first = random.whole(0, centers.len() - 1);
@@ -82,7 +82,7 @@ fn carriage(random: &mut Random, centers: &[Vector]) -> RobotSpec {
         if i == first || random.percent(60) {
             continue;
         }
-        // The world's offset in the carriage's frame: z along the rail, y across it, x down.
+        // The offset in the carriage's frame: z along the rail, y across it, x down.
         let d: Vector = std::array::from_fn(|k| center[k] - at[k]);
         let (z, y) = (d[0] * cos + d[1] * sin, -d[0] * sin + d[1] * cos);
         balls.push(SolidSpec::Sphere { at: [-d[2], y, z + random.between(-0.5, 0.5)].map(rounded), radius: 0.05 });

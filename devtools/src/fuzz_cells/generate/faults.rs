@@ -15,7 +15,8 @@ pub fn add(spec: &mut CellSpec, random: &mut Random) {
             let to_s = from_s + random.scaled(0.001, 0.5);
             let kind = match random.whole(0, 4) {
                 0 => InputFaultKind::Delayed { by_s: random.scaled(0.001, 0.2) },
-                // A controller that stops at the first missing answer: what the reaction time has to contain otherwise.
+                // The controller stops at the first missing answer; a later stop would have to be part of the reaction
+                // time.
                 1 => InputFaultKind::Lost { timeout_s: 0.0 },
                 2 => InputFaultKind::Frozen,
                 3 => {

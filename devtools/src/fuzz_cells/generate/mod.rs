@@ -20,14 +20,14 @@ use super::spec::CellSpec;
 pub use settings::Places;
 use settings::settings;
 
-/// What a cell is to find out.
+/// Kind of a random cell: what it tests.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
     /// Forbidden regions, with the stopping distance on.
     Stop,
     /// Exchange regions of 2 to 6 robots, some of them on objects that move and turn.
     Exchange,
-    /// As `Stop`, with faults in the monitors' input.
+    /// Like `Stop`, with faults in the monitors' input.
     Faults,
     /// Regions on objects and robots that move and turn.
     Moving,
@@ -35,7 +35,7 @@ pub enum Kind {
     Tools,
     /// Robots that play recordings, or repeat their programs.
     Recordings,
-    /// As `Stop`, with moves that are planned.
+    /// Like `Stop`, with planned moves.
     Planned,
 }
 
@@ -55,7 +55,7 @@ impl Kind {
         }
     }
 
-    /// How many of them the test suite runs: each kind takes a few seconds.
+    /// Number of cells of this kind in the test suite: each kind takes a few seconds.
     pub fn suite_cells(self) -> usize {
         match self {
             Self::Stop => 80,
@@ -65,13 +65,13 @@ impl Kind {
         }
     }
 
-    /// The random numbers of one case.
+    /// Returns the random numbers of one case.
     pub fn random(self, seed: u64, case: u64) -> Random {
         Random::of_case(seed, case + ((self as u64) << 32))
     }
 }
 
-/// A random cell of a kind; always the same for the same stream.
+/// Makes a random cell of a kind; equal streams give equal cells.
 pub fn cell(kind: Kind, random: &mut Random, places: &Places<'_>) -> CellSpec {
     match kind {
         Kind::Exchange => exchange::cell(random),
@@ -100,7 +100,7 @@ fn stop(random: &mut Random, places: &Places<'_>) -> CellSpec {
         second.at = [random.between(-1.5, 1.5), random.between(-1.5, 1.5), random.between(-0.5, 0.5)];
         spec.robots.push(second);
     }
-    // Without regions first: they are put where the robot will come.
+    // Regions come last: they are placed where the robot will come.
     let Ok(cell) = spec.parse(places.cells) else { return spec };
     for i in 0..random.whole(1, 3) {
         if let Some(region) = region::on_the_path(&spec, &cell, &format!("g{i}"), random) {

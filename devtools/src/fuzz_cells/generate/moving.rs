@@ -1,9 +1,9 @@
-//! Some regions follow belts and other robots, and some are switched.
+//! Regions that follow belts and other robots, and regions that are switched.
 
 use crate::fuzz_cells::random::Random;
 use crate::fuzz_cells::spec::{BeltSpec, CellSpec, FollowSpec, StepSpec};
 
-/// Lets one region of some cells move, and one of some be switched on by a program.
+/// Lets one region of some cells move; in some cells a program switches one on.
 pub fn some(spec: &mut CellSpec, random: &mut Random) {
     let Some(last) = spec.regions.len().checked_sub(1) else { return };
     if random.percent(15) {
@@ -14,7 +14,7 @@ pub fn some(spec: &mut CellSpec, random: &mut Random) {
             spec.regions[last].follow = Some(FollowSpec::Belt("belt".into()));
         }
     } else if random.percent(10) && spec.robots.len() > 1 {
-        // Its coordinates are then in the flange's frame.
+        // Its coordinates are now in the flange's frame.
         spec.regions[last].follow = Some(FollowSpec::Robot { robot: 1, frame: "flange" });
         spec.regions[last].robots = vec![0];
         spec.regions[last].shape =

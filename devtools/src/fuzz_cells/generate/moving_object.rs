@@ -6,7 +6,7 @@ use crate::fuzz_cells::oracle::Frame;
 use crate::fuzz_cells::random::{Random, rounded};
 use crate::fuzz_cells::spec::{MotionSpec, ObjectSpec, Vector};
 
-/// An object beside or at a place; most of them only turn.
+/// Makes an object beside or at a place; most of them only turn.
 pub fn moving_object(random: &mut Random, name: String, place: Vec3, meets_s: f64) -> ObjectSpec {
     let near = random.scaled(0.05, 1.5);
     let away = vector(random.vector(1.0)) * if random.percent(60) { random.between(0.5, 1.5) } else { near };
@@ -39,7 +39,7 @@ pub fn moving_object(random: &mut Random, name: String, place: Vec3, meets_s: f6
     ObjectSpec { name, shape, at: text(at), rpy, motion: Some(MotionSpec { via, speed, start, repeat, turn }) }
 }
 
-/// Where the object is while it moves straight.
+/// Returns the frame of the object while it moves in a straight line.
 pub fn object_frame(object: &ObjectSpec, t_s: f64) -> Frame {
     let rest = rpy_frame(object.rpy);
     let Some(motion) = &object.motion else { return Frame::shift(vector(object.at)).then(&rest) };
@@ -55,7 +55,7 @@ fn rpy_frame([roll, pitch, yaw]: Vector) -> Frame {
     Frame::turn(Vec3::Z, yaw).then(&Frame::turn(Vec3::Y, pitch)).then(&Frame::turn(Vec3::X, roll))
 }
 
-/// A place in the coordinates of a frame.
+/// Converts a place to the coordinates of a frame.
 pub fn local(frame: &Frame, place: Vec3) -> Vector {
     text(frame.vector_back(place - frame.at))
 }

@@ -1,12 +1,12 @@
-//! Robots whose moves are planned, by random samples or on the robot's joint-space map, so that they go around the regions.
+//! Robots with planned moves, by random samples or on the robot's joint-space map, so that they go around the regions.
 
 use crate::fuzz_cells::random::Random;
 use crate::fuzz_cells::spec::{CellSpec, RobotSpec, StepSpec};
 
-/// Joints of a map.
+/// Number of joints of a map.
 const MAPPED: usize = 3;
 
-/// Most joint moves of a cell become planned ones.
+/// Turns most joint moves of a cell into planned moves.
 pub fn plan(spec: &mut CellSpec, random: &mut Random) {
     for robot in &mut spec.robots {
         plan_moves(robot, random);
@@ -15,7 +15,7 @@ pub fn plan(spec: &mut CellSpec, random: &mut Random) {
 
 fn plan_moves(robot: &mut RobotSpec, random: &mut Random) {
     let on_map = robot.start.len() >= MAPPED && random.percent(30);
-    // The joints that are not in the map stay where they are.
+    // Joints outside the map keep their values.
     let rest = if on_map { robot.start[MAPPED..].to_vec() } else { Vec::new() };
     for step in &mut robot.program.steps {
         let StepSpec::Joint { to, percent } = step else { continue };

@@ -1,4 +1,4 @@
-//! Robots of one joint, with long moves at constant speed.
+//! Robots with one joint, with long moves at constant speed.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -6,7 +6,7 @@ use super::settings::stop_time;
 use crate::fuzz_cells::random::{Random, rounded};
 use crate::fuzz_cells::spec::{DhRow, HandSpec, Model, ProgramSpec, RobotSpec, SolidSpec, StepSpec};
 
-/// A ball that slides along a line, from one end to the other.
+/// Makes a sphere that slides along a line, from one end to the other.
 pub fn slide(random: &mut Random) -> RobotSpec {
     let half = random.between(1.0, 4.0);
     let steps = vec![StepSpec::Joint { to: vec![half], percent: 100.0 }];
@@ -15,12 +15,12 @@ pub fn slide(random: &mut Random) -> RobotSpec {
     robot
 }
 
-/// A rail without a program.
+/// Makes a rail without a program.
 pub fn plain(random: &mut Random) -> RobotSpec {
     one_joint(row(true, 0.0, random), 0.0, Vec::new(), random)
 }
 
-/// An arm that turns about its only axis, mostly by more than a full turn.
+/// Makes an arm that turns about its only axis, mostly by more than a full turn.
 pub fn turner(random: &mut Random) -> RobotSpec {
     let a = random.between(0.0, 1.0);
     let (from, to) = (random.between(-6.0, 6.0), random.one(&[-6.5, 6.5]));
@@ -28,7 +28,8 @@ pub fn turner(random: &mut Random) -> RobotSpec {
     one_joint(row(false, a, random), from, steps, random)
 }
 
-/// A [`turner`] with a second joint that turns back what the first one turns: its hand goes round without turning.
+/// Makes a [`turner`] with a second joint that turns back by the angle of the first: its hand moves on a circle without
+/// turning.
 pub fn counter_turner(random: &mut Random) -> RobotSpec {
     let mut robot = turner(random);
     let Model::Dh { rows, links } = &mut robot.model else { return robot };
@@ -58,7 +59,7 @@ fn one_joint(row: DhRow, start: f64, steps: Vec<StepSpec>, random: &mut Random) 
         start: vec![start],
         hand: HandSpec::default(),
         volumes: "auto",
-        // Half of them are slow to stop: what they do not foresee, they meet.
+        // Half of them stop slowly: they hit whatever they do not foresee.
         stop_time: if random.percent(50) { random.between(0.5, 1.5) } else { stop_time(random) },
         acceleration: None,
         program: ProgramSpec::of_steps(100.0, steps),

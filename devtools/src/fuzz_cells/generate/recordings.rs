@@ -5,10 +5,10 @@ use super::{rail, region, robot};
 use crate::fuzz_cells::random::{Random, rounded};
 use crate::fuzz_cells::spec::{CellSpec, DhRow, Model, RecordingSpec, RegionSpec, RobotSpec, StepSpec};
 
-/// More rows than this are not written.
+/// Largest number of rows of a recording.
 const MOST_ROWS: usize = 3000;
 
-/// Forbidden regions near a recording, or near a program that runs several times.
+/// Makes a cell with forbidden regions near a recording, or near a program that runs several times.
 pub fn cell(random: &mut Random, places: &Places<'_>) -> CellSpec {
     let mut spec = CellSpec { max_s: 12.0, ..settings(random) };
     laws(&mut spec, random);
@@ -33,11 +33,11 @@ pub fn cell(random: &mut Random, places: &Places<'_>) -> CellSpec {
     with_regions(spec, places, regions, |_, _| {}, random)
 }
 
-/// A slow recording, and on the way back from its end to its start, which is faster, a zone that is thick enough for the
-/// recording alone.
+/// Makes a slow recording, and puts a region on the faster way back from its end to its start, with a zone that is
+/// thick enough for the recording alone.
 fn way_back(spec: CellSpec, random: &mut Random, places: &Places<'_>) -> CellSpec {
     let mut spec = CellSpec { max_s: 40.0, stopping_distance: false, direction_aware: false, repeat: 2, ..spec };
-    // With one move the way back is the way there.
+    // With a single move the way back equals the way there.
     let moves = |r: &RobotSpec| r.program.steps.iter().filter(|s| matches!(s, StepSpec::Joint { .. })).count();
     let mut one = robot::jointed(random);
     while moves(&one) < 2 {
@@ -75,7 +75,7 @@ fn with_regions(
     spec
 }
 
-/// The robot's moves as a recording; it may be harder than the joints are stated to be, and begin or end in motion.
+/// Makes a recording of the robot's moves; it may exceed the joints' stated limits, and begin or end in motion.
 fn recording(robot: &RobotSpec, joints: &[DhRow], harder: f64, random: &mut Random) -> RecordingSpec {
     let period_s = random.one(&[0.002, 0.004, 0.01, 0.02, 0.05]);
     let is_smooth = random.percent(75);
@@ -85,7 +85,7 @@ fn recording(robot: &RobotSpec, joints: &[DhRow], harder: f64, random: &mut Rand
         let (begin_s, from) = rows[rows.len() - 1].clone();
         let duration_s =
             from.iter().zip(to).zip(joints).map(|((a, b), j)| duration(b - a, j)).fold(0.02, f64::max) / harder;
-        // Rows in which the joints go straight, or a polynomial without jumps of the acceleration.
+        // The joints move in straight lines between rows, or by a polynomial without jumps of the acceleration.
         let count =
             if is_smooth { ((duration_s / period_s) as usize).clamp(4, MOST_ROWS / 4) } else { random.whole(1, 4) };
         for i in 1..=count {
@@ -109,12 +109,12 @@ fn recording(robot: &RobotSpec, joints: &[DhRow], harder: f64, random: &mut Rand
     RecordingSpec { rows }
 }
 
-/// How long (s) a joint needs for the polynomial by its speed and acceleration.
+/// Returns the time (s) that a joint needs for the polynomial by its speed and acceleration.
 fn duration(way: f64, joint: &DhRow) -> f64 {
     (1.875 * way.abs() / joint.speed).max((5.78 * way.abs() / joint.acceleration).sqrt())
 }
 
-/// To a microsecond.
+/// Rounds a time to a microsecond.
 fn rounded_time(t_s: f64) -> f64 {
     rounded(t_s * 100.0) / 100.0
 }

@@ -1,4 +1,4 @@
-//! Random regions where a robot will come.
+//! Random regions at places where a robot will come.
 
 use std::path::Path;
 
@@ -9,12 +9,12 @@ use crate::fuzz_cells::oracle::{self, Guarded};
 use crate::fuzz_cells::random::{Random, rounded};
 use crate::fuzz_cells::spec::{CellSpec, RegionSpec, StepSpec, Vector, list};
 
-/// Tries to find a place that is on the path, but not at the start.
+/// Number of tries to find a place that is on the path, but not at the start.
 const TRIES: usize = 6;
-/// What the start must be away from a region, m.
+/// Least distance of the start from a region, m.
 const START_M: f64 = 0.005;
 
-/// A forbidden region on the path of one of the robots; `None` if none was found that its start is outside of.
+/// Makes a forbidden region on the path of one of the robots; `None` if none was found that its start is outside of.
 pub fn on_the_path(spec: &CellSpec, cell: &Cell, name: &str, random: &mut Random) -> Option<RegionSpec> {
     let robot = random.whole(0, spec.robots.len() - 1);
     for _ in 0..TRIES {
@@ -28,7 +28,7 @@ pub fn on_the_path(spec: &CellSpec, cell: &Cell, name: &str, random: &mut Random
     None
 }
 
-/// A forbidden region of any shape at a place.
+/// Makes a forbidden region of any shape at a place.
 pub fn at(spec: &CellSpec, robot: usize, at: Vector, name: &str, random: &mut Random) -> RegionSpec {
     RegionSpec {
         name: name.to_owned(),
@@ -42,7 +42,7 @@ pub fn at(spec: &CellSpec, robot: usize, at: Vector, name: &str, random: &mut Ra
     }
 }
 
-/// A point on or near a guarded solid, somewhere on the program's path.
+/// Returns a point on or near a guarded solid, somewhere on the program's path.
 pub fn point_on_the_path(spec: &CellSpec, cell: &Cell, robot: usize, random: &mut Random) -> Option<Vector> {
     let r = &spec.robots[robot];
     let ends = match &r.program.recording {
@@ -53,7 +53,7 @@ pub fn point_on_the_path(spec: &CellSpec, cell: &Cell, robot: usize, random: &mu
         return None;
     }
     let last = ends.len() - 2;
-    // The last leg of a recording is the way back.
+    // The last segment of a repeated recording is the way back.
     let is_repeated = r.program.recording.is_some() && spec.repeat.max(r.program.repeat) > 1;
     let leg = if is_repeated && random.percent(80) { last } else { random.whole(0, last) };
     let u = random.between(0.2, 1.1);
@@ -64,7 +64,7 @@ pub fn point_on_the_path(spec: &CellSpec, cell: &Cell, robot: usize, random: &mu
     Some([at.x, at.y, at.z].map(rounded))
 }
 
-/// Start and targets of steps.
+/// Returns the start and the targets of the steps.
 fn ends<'s>(start: &'s Vec<f64>, steps: &'s [StepSpec]) -> Vec<&'s Vec<f64>> {
     let target = |s: &'s StepSpec| match s {
         StepSpec::Joint { to, .. } | StepSpec::Linear { to, .. } | StepSpec::Planned { to, .. } => Some(to),
@@ -73,19 +73,19 @@ fn ends<'s>(start: &'s Vec<f64>, steps: &'s [StepSpec]) -> Vec<&'s Vec<f64>> {
     std::iter::once(start).chain(steps.iter().filter_map(target)).collect()
 }
 
-/// Up to a dozen rows of a recording, and once more the first: a robot that repeats it drives back.
+/// Returns up to a dozen rows of a recording, and the first one again: a robot that repeats it drives back.
 fn some_rows(rows: &[(f64, Vec<f64>)]) -> Vec<&Vec<f64>> {
     let step = rows.len().div_ceil(10);
     rows.iter().step_by(step).chain(rows.last()).chain(rows.first()).map(|(_, q)| q).collect()
 }
 
-/// Whether the robots start outside of the last region; also where the cell is refused.
+/// Whether the robots start outside the last region; true if the cell is refused.
 pub fn starts_outside(spec: &CellSpec, folder: &Path) -> bool {
     let Ok(cell) = spec.parse(folder) else { return true };
     oracle::start_distance(&cell, cell.regions.len() - 1) > START_M
 }
 
-/// None, thin and thick.
+/// Returns the thickness of a warning zone: none, thin or thick.
 fn warning(random: &mut Random) -> f64 {
     match random.whole(0, 9) {
         0..=2 => 0.0,
@@ -108,7 +108,7 @@ fn guards(spec: &CellSpec, robot: usize, random: &mut Random) -> Vec<&'static st
     }
 }
 
-/// Any shape near a point: big ones, small ones and thin plates.
+/// Makes any shape near a point: large, small, or a thin plate.
 fn shape(random: &mut Random, at: Vector) -> String {
     let size = random.scaled(0.02, 0.6);
     let rpy = list(&random.vector(3.0));

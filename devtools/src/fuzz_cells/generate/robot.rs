@@ -6,14 +6,14 @@ use super::settings::{Places, program, stop_time};
 use crate::fuzz_cells::random::{Random, rounded};
 use crate::fuzz_cells::spec::{DhRow, HandSpec, Model, ProgramSpec, RobotSpec, SolidSpec};
 
-/// Robots of `examples/models` with the joint ranges that they may be sent through, rad.
+/// Robots of `examples/models` with the joint ranges of their random moves, rad.
 const EXAMPLES: [(&str, [f64; 6]); 3] = [
     ("ns16/ns16", [2.5, 1.2, 1.2, 2.5, 1.8, 3.0]),
     ("rx60b/rx60b", [2.5, 1.5, 1.5, 2.5, 1.5, 3.0]),
     ("kr125/kr125", [2.5, 0.7, 0.7, 2.5, 1.8, 3.0]),
 ];
 
-/// Real robots with six turning joints, where the data are.
+/// Real robots with six revolute joints, used if the data exist.
 const REAL: [&str; 4] = [
     "urdf/staubli_tx40/tx40.urdf",
     "urdf/kuka_kr6r700sixx/kr6r700sixx.urdf",
@@ -21,7 +21,7 @@ const REAL: [&str; 4] = [
     "urdf/abb_irb2400/irb2400.urdf",
 ];
 
-/// Any robot, with a program, at the origin.
+/// Makes any robot, with a program, at the origin.
 pub fn any(random: &mut Random, places: &Places<'_>) -> RobotSpec {
     let mut robot = match random.whole(0, 99) {
         0..=5 => from_file(random, places),
@@ -35,12 +35,12 @@ pub fn any(random: &mut Random, places: &Places<'_>) -> RobotSpec {
     robot
 }
 
-/// A robot of one or two joints.
+/// Makes a robot of one or two joints.
 pub fn small(random: &mut Random) -> RobotSpec {
     gantry(random)
 }
 
-/// A gantry or an arm of sliding and turning joints, with what is in its hand.
+/// Makes a gantry or an arm of prismatic and revolute joints, with its hand.
 pub fn jointed(random: &mut Random) -> RobotSpec {
     let mut robot = if random.percent(40) { gantry(random) } else { arm(random) };
     equip(&mut robot, random);
@@ -80,7 +80,7 @@ fn equip(robot: &mut RobotSpec, random: &mut Random) {
     }
 }
 
-/// One to three sliding joints at right angles, or a turning one among them.
+/// Makes one to three prismatic joints at right angles, or with a revolute one among them.
 fn gantry(random: &mut Random) -> RobotSpec {
     let joints = random.whole(1, 3);
     let rows: Vec<DhRow> = (0..joints)
@@ -140,12 +140,12 @@ fn finish(rows: Vec<DhRow>, linear: Option<(f64, f64)>, random: &mut Random) -> 
     robot
 }
 
-/// A random solid about the origin; long ones may reach back along the link.
+/// Makes a random solid about the origin; long ones may reach back along the link.
 fn solid(random: &mut Random, back: [f64; 3], most: f64) -> SolidSpec {
     let at = random.vector(most * 0.5);
     let radius = random.between(0.01, most * 0.5);
     let to = if random.percent(50) { back } else { random.vector(most) };
-    // Ends that fall together are no axis.
+    // Coincident ends define no axis.
     let to = if to.iter().zip(&at).all(|(a, b)| (a - b).abs() < 0.02) { [at[0], at[1], at[2] + 0.1] } else { to };
     match random.whole(0, 3) {
         0 => SolidSpec::Sphere { at, radius },

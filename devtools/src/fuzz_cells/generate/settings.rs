@@ -1,22 +1,22 @@
-//! What all kinds of random cells have in common: folders, laws, programs.
+//! Common parts of all kinds of random cells: folders, laws, programs.
 
 use std::path::Path;
 
 use crate::fuzz_cells::random::Random;
 use crate::fuzz_cells::spec::{CellSpec, StepSpec};
 
-/// Where files are that cells name.
+/// Folders of files that cells name.
 #[derive(Debug, Clone, Copy)]
 pub struct Places<'a> {
-    /// The folder that the cell files stand in.
+    /// Folder of the cell files.
     pub cells: &'a Path,
-    /// The workspace.
+    /// Root of the workspace.
     pub root: &'a Path,
-    /// The folder of real robots, where there is one.
+    /// Folder of real robots, if it exists.
     pub data: Option<&'a Path>,
 }
 
-/// Tick, laws and length.
+/// Chooses tick, laws and length.
 pub fn settings(random: &mut Random) -> CellSpec {
     CellSpec {
         tick_ms: random.one(&[1.0, 2.0, 4.0, 4.0, 8.0]),
@@ -29,19 +29,19 @@ pub fn settings(random: &mut Random) -> CellSpec {
     }
 }
 
-/// Lets some cells do without the stopping distance: `check` says where their warning zones are thick enough.
+/// Switches the stopping-distance law off in some cells: `check` then says whether their warning zones are thick enough.
 pub fn laws(spec: &mut CellSpec, random: &mut Random) {
     if random.percent(35) {
         (spec.stopping_distance, spec.direction_aware) = (false, random.percent(30));
     }
 }
 
-/// Full speed to rest: hard category-1 stops to the slow ones of big robots.
+/// Chooses the time from full speed to rest, s: from hard category-1 stops to slow stops of large robots.
 pub fn stop_time(random: &mut Random) -> f64 {
     random.scaled(0.05, 1.5)
 }
 
-/// Moves to these places, with waits and changes of the override in between.
+/// Makes moves to these places, with waits and changes of the override in between.
 pub fn program(places: Vec<Vec<f64>>, linear: Option<(f64, f64)>, random: &mut Random) -> Vec<StepSpec> {
     let mut steps = Vec::new();
     for to in places {

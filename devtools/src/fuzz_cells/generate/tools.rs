@@ -5,7 +5,7 @@ use super::{exchange, region, robot};
 use crate::fuzz_cells::random::Random;
 use crate::fuzz_cells::spec::{CellSpec, HandSpec, RobotSpec, StepSpec, ToolSpec};
 
-/// Forbidden regions, or exchange regions of several robots.
+/// Makes a cell with forbidden regions, or with exchange regions of several robots.
 pub fn cell(random: &mut Random, places: &Places<'_>) -> CellSpec {
     if random.percent(40) {
         let mut spec = CellSpec { max_s: 60.0, ..exchange::cell(random) };
@@ -31,11 +31,11 @@ pub fn cell(random: &mut Random, places: &Places<'_>) -> CellSpec {
     spec
 }
 
-/// Two or three tools in place of what is in the hand, the first one mounted, and steps that exchange them.
+/// Replaces the hand by two or three tools, the first one mounted, and adds steps that exchange them.
 fn equip(robot: &mut RobotSpec, random: &mut Random, reach: f64) {
     let names = ["gripper", "torch", "probe"];
     let tool = |(i, name): (usize, &&str)| {
-        // The second one is long: it may reach where the first one did not.
+        // The second tool is long: it may reach where the first one did not.
         let length = if i == 1 { random.between(0.2, reach) } else { random.between(0.02, 0.3) };
         let size = [random.between(0.02, 0.1), random.between(0.02, 0.1), length];
         let solid = random.percent(85).then_some(([0.0, 0.0, length / 2.0], size));
@@ -52,14 +52,14 @@ fn equip(robot: &mut RobotSpec, random: &mut Random, reach: f64) {
             steps.insert(at, StepSpec::Wait(random.between(0.01, 0.3)));
         }
     }
-    // Where it is exchanged it has come by a part of its first move.
+    // The exchange then happens part of the way along its first move.
     if random.percent(50) {
         part_of_the_first_move(robot, random);
     }
     robot.hand = HandSpec { tools, ..HandSpec::default() };
 }
 
-/// A stop on the way of the first move, with an exchange.
+/// Adds a stop during the first move, with an exchange.
 fn part_of_the_first_move(robot: &mut RobotSpec, random: &mut Random) {
     let is_move = |s: &StepSpec| matches!(s, StepSpec::Joint { .. });
     let Some(index) = robot.program.steps.iter().position(is_move) else { return };

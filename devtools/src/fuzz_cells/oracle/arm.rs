@@ -1,4 +1,4 @@
-//! Forward kinematics of the oracle's own, and how far a joint can carry a point.
+//! Independent forward kinematics of the oracle, and bounds of how far a joint can move a point.
 
 use elbowroom_cell::CellRobot;
 use elbowroom_kinematics::JointKind;
@@ -26,7 +26,7 @@ struct ArmJoint {
     kind: JointKind,
     /// Index in q, factor and offset; `None` for a fixed joint.
     driven: Option<(usize, f64, f64)>,
-    /// Farthest stroke of a sliding joint, m.
+    /// Largest stroke of a prismatic joint, m.
     stroke: f64,
 }
 
@@ -59,7 +59,7 @@ impl Arm {
         }
     }
 
-    /// Every link's frame in the world.
+    /// Computes every link's frame in the world.
     pub fn frames(&self, q: &[f64]) -> Vec<Frame> {
         let mut frames = vec![self.base; self.links];
         frames[self.root] = self.base;
@@ -75,7 +75,7 @@ impl Arm {
         frames
     }
 
-    /// Per value of q the farthest (m per rad or m) that it carries a point within `radius_m` of the link's origin,
+    /// Computes, per value of q, the largest motion (m per rad or m) of a point within `radius_m` of the link's origin,
     /// whatever the other joints do.
     pub fn lever_arms(&self, link: usize, radius_m: f64) -> Vec<f64> {
         let mut lever_arms = vec![0.0; self.dof];

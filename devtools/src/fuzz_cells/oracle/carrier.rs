@@ -1,4 +1,4 @@
-//! What moves a region, by the oracle's own arithmetic.
+//! Motion of the regions, by the oracle's own arithmetic.
 
 use elbowroom_cell::{Cell, CellRegion, Encoder, Follow, Travel};
 use elbowroom_sim::Recording;
@@ -7,12 +7,12 @@ use super::arm::Arm;
 use super::frame::Frame;
 use super::track::Track;
 
-/// What a region follows.
+/// Source that a region follows.
 #[derive(Debug)]
 pub enum Carrier {
     Nothing,
     Belt(Encoder),
-    /// Where it was seen in the recording.
+    /// An object, at its recorded poses.
     Object(Track),
     Robot {
         robot: usize,
@@ -22,10 +22,10 @@ pub enum Carrier {
 }
 
 impl Carrier {
-    /// Without a recording objects are where they are at the start.
+    /// Creates the carrier of a region. Without a recording objects are at their start.
     ///
     /// # Errors
-    /// Where the region follows what the oracle does not know.
+    /// If the oracle does not know what the region follows.
     pub fn new(cell: &Cell, region: &CellRegion, recording: Option<&Recording>) -> Result<Self, String> {
         Ok(match &region.follow {
             None => Self::Nothing,
@@ -46,7 +46,7 @@ impl Carrier {
         })
     }
 
-    /// Its frame in the world, with all robots' links in the world.
+    /// Returns its frame in the world; `frames` are the frames of all robots' links in the world.
     pub fn at(&self, t_s: f64, frames: &[Vec<Frame>]) -> Frame {
         match self {
             Self::Nothing => Frame::IDENTITY,
@@ -56,8 +56,8 @@ impl Carrier {
         }
     }
 
-    /// No point within `radius_m` of its frame's origin goes farther (m) between two times, at which the robots' joints
-    /// have these values.
+    /// Upper bound of the motion (m) of a point within `radius_m` of its frame's origin between two times, at which the
+    /// robots' joints have these values.
     pub fn travel_m(&self, arms: &[Arm], radius_m: f64, from: (f64, &[Vec<f64>]), to: (f64, &[Vec<f64>])) -> f64 {
         match self {
             Self::Nothing => 0.0,
@@ -84,14 +84,14 @@ impl Carrier {
         matches!(self, Self::Belt(_))
     }
 
-    /// How often its belt has begun again at 0.
+    /// Number of times that its belt has begun again at 0.
     pub fn rounds(&self, t_s: f64) -> f64 {
         let Self::Belt(encoder) = self else { return 0.0 };
         travel_of(encoder, t_s).1
     }
 }
 
-/// Travel of a belt at a time (m), and whether it has begun again at 0 how often.
+/// Returns the travel of a belt at a time (m), and how often it has begun again at 0.
 fn travel_of(encoder: &Encoder, t_s: f64) -> (f64, f64) {
     let travel = match &encoder.travel {
         Travel::Constant { at_m, speed, start_s, end_s } => at_m + speed * (t_s.min(*end_s) - start_s).max(0.0),

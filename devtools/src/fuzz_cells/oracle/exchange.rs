@@ -1,4 +1,4 @@
-//! Exchange regions: never two inside, and no deadlock in silence.
+//! Checks of exchange regions: two robots are never inside, and no deadlock is silent.
 
 use elbowroom_monitor::RegionKind;
 use elbowroom_spatial::Vec3;
@@ -9,25 +9,26 @@ use super::motion::OracleMotion;
 use super::promises::Promises;
 use super::sweep::{SweptPair, first_touch};
 
-/// A tick in which both of two robots are inside at some time is divided into so many parts.
+/// Number of parts of a tick in which two robots are inside at some time each.
 const PARTS: usize = 64;
-/// A robot that has not moved for so long (s) at the end is at rest for ever: a run goes on for a second without motion.
+/// A robot that has not moved for this long (s) at the end stays at rest: a run continues for a second without motion.
 const AT_REST_S: f64 = 0.5;
-/// Less than this (rad, m) in that time is not a motion: the override law comes to a border without end.
+/// Largest change (rad, m) in that time that is not a motion: by the override law a robot approaches a border without
+/// ever reaching it.
 const NO_MOTION: f64 = 1e-4;
 
-/// A robot that has finished so little (m) beyond a zone may still hold the region: zones end later than they begin
+/// A finished robot within this distance (m) beyond a zone may still hold the region: zones end later than they begin
 /// (hysteresis), and monitors measure volumes that enclose a link's solids, which may lie apart.
 const PARKED_M: f64 = 0.1;
 
-/// No robot is on its way into a region without being able to stop for longer, s: one whose program accelerates harder than it brakes cannot be
-/// proven to stop long before.
+/// Longest time, s, for which a robot is on its way into a region without being able to stop. A robot whose program
+/// accelerates harder than it brakes cannot be proven to stop until late.
 const COMMITTED_S: f64 = 5.0;
 
-/// A robot, what of it counts, and the ticks from which to the next it is inside at some time.
+/// A robot, its solids that count, and for each tick whether it is inside at some time until the next.
 type ZoneVisit<'a> = (usize, Vec<SweptPair<'a>>, Vec<bool>);
 
-/// `has_violation`: the run said that something went wrong.
+/// Checks all exchange regions. `has_violation`: whether the run reported that something went wrong.
 pub fn check(
     motion: &OracleMotion<'_>,
     guarded: &[Vec<Guarded>],
@@ -69,7 +70,7 @@ pub fn check(
     deadlock(motion, &in_zone, has_violation, findings);
 }
 
-/// Largest distance (m) of the middles of two of a robot's solids, at the start.
+/// Largest distance (m) between the centres of two of a robot's solids, at the start.
 fn spread_m(motion: &OracleMotion<'_>, pairs: &[SweptPair<'_>]) -> f64 {
     let frames = motion.frames(&motion.q[0]);
     let middles: Vec<_> = pairs.iter().map(|p| p.guarded.center(&frames[p.robot])).collect();
@@ -77,7 +78,7 @@ fn spread_m(motion: &OracleMotion<'_>, pairs: &[SweptPair<'_>]) -> f64 {
     middles.iter().map(from).fold(0.0, f64::max)
 }
 
-/// Marks the ticks from which to the next the solid touches the region at some time, while it is on the robot.
+/// Marks the ticks during which the solid touches the region at some time until the next tick, while it is on the robot.
 fn mark_inside(pair: &SweptPair<'_>, during: &mut [bool]) {
     let spans = pair.motion.tool_spans(pair.robot).into_iter();
     for (from, to) in spans.filter(|(from, _)| pair.is_there(*from)) {
@@ -109,7 +110,7 @@ fn two_inside(
     findings: &mut Findings,
 ) {
     let both = |k: &usize| motion.is_active(region, *k) && a.2[*k] && b.2[*k];
-    // Whoever starts inside is not brought there by the protocol: counted once one of the two has been out.
+    // The protocol does not bring a robot in that starts inside: the pair counts once one of the two has been outside.
     let apart = (0..motion.ticks()).find(|k| !(a.2[*k] && b.2[*k])).unwrap_or(motion.ticks());
     let inside =
         |s: &ZoneVisit<'_>, k: usize, u: f64| s.1.iter().any(|p| p.is_there(k) && p.distance(k, u).upper <= 0.0);
@@ -132,33 +133,34 @@ fn two_inside(
     }
 }
 
-/// The tick from which on it has been inside until tick `k`.
+/// Returns the tick since which the robot has been inside until tick `k`.
 fn entered_at(visit: &ZoneVisit<'_>, k: usize) -> usize {
     (0..k).rev().find(|before| !visit.2[*before]).map_or(0, |before| before + 1)
 }
 
-/// Whether one of two robots drove in, since these ticks, while the other one was inside. A region that moves may come over a robot at rest,
-/// and another one then go on that cannot stop outside any more.
+/// Whether one of two robots drove in, since these ticks, while the other one was inside. A moving region may come over
+/// a robot at rest while another robot, which can no longer stop outside, continues into it.
 fn is_driven_in(motion: &OracleMotion<'_>, region: usize, visits: [(&ZoneVisit<'_>, usize); 2]) -> bool {
     if motion.places[region].is_fixed() {
         return true;
     }
     let [first, last] = if visits[0].1 <= visits[1].1 { visits } else { [visits[1], visits[0]] };
     let drove = |(visit, entered): (&ZoneVisit<'_>, usize)| drove_in(motion, region, visit, entered);
-    // At the start nobody is on the way.
+    // At the start no robot is on its way.
     let could_stop = first.1 == 0 || motion.times[last.1] - motion.times[first.1] > COMMITTED_S;
     drove(last) && (could_stop || drove(first))
 }
 
-/// Whether the robot that is inside since a tick came in by its own motion, as one that keeps away from a steady region does not.
+/// Whether the robot that is inside since tick `entered` came in by its own motion, although it avoids regions with
+/// foreseeable motion.
 fn drove_in(motion: &OracleMotion<'_>, region: usize, visit: &ZoneVisit<'_>, entered: usize) -> bool {
     let keeps_away = motion.cell.laws.stopping_reaction_s.is_some();
     first_touch(&visit.1, entered, entered + 1)
         .is_some_and(|(k, u, pair)| keeps_away && pair.moves_at(k, u) && motion.is_foreseen(region, visit.0, (k, u)))
 }
 
-/// Robots at rest at the end that have not finished, each in a zone of which another of them is, in a circle. A robot that
-/// waits for one that has finished, or is at rest for another reason, is in no circle.
+/// Finds a deadlock: robots at rest at the end that have not finished, each in a zone of another of them, in a cycle. A
+/// robot that waits for a finished one, or is at rest for another reason, is in no cycle.
 fn deadlock(motion: &OracleMotion<'_>, in_zone: &[Vec<bool>], has_violation: bool, findings: &mut Findings) {
     let ticks = motion.ticks();
     let held = (AT_REST_S / motion.recording.tick_s).ceil() as usize;
@@ -170,11 +172,11 @@ fn deadlock(motion: &OracleMotion<'_>, in_zone: &[Vec<bool>], has_violation: boo
         let (then, now) = (&motion.q[ticks - 1 - held][robot], &motion.q[ticks - 1][robot]);
         !track.finished && then.iter().zip(now).all(|(a, b)| (a - b).abs() < NO_MOTION)
     };
-    // While anybody moves, as in a run that was cut off, robots at rest may still be let in.
+    // While a robot moves, for example in a run that was cut off, robots at rest may still be granted a region.
     if (0..in_zone.len()).any(|r| !motion.recording.robots[r].finished && !at_rest(r)) {
         return;
     }
-    // A region that moves on may free whoever waits, and come over whoever rests; with one that can move all are one crossing.
+    // A region that still moves may free robots that wait, and come over robots at rest.
     let moves_on = |region: &usize| {
         let [then, now] = [ticks - 1 - held, ticks - 1].map(|k| motion.region_at(*region, k));
         then.at.distance(now.at) + then.turn_to(&now).length() > NO_MOTION
@@ -184,12 +186,12 @@ fn deadlock(motion: &OracleMotion<'_>, in_zone: &[Vec<bool>], has_violation: boo
     if exchanges.any(|region| moves_on(&region)) {
         return;
     }
-    // A crossing of several regions is one: whoever is in one of their zones is in all.
+    // Overlapping regions form one crossing: a robot in the zone of one of them is in all.
     let in_crossing: Vec<Vec<bool>> = in_zone.iter().map(|zones| spread(motion, zones)).collect();
     let robots: Vec<usize> = (0..in_zone.len()).filter(|r| at_rest(*r) && in_zone[*r].contains(&true)).collect();
     let meet = |a: usize, b: usize| a != b && in_crossing[a].iter().zip(&in_crossing[b]).any(|(a, b)| *a && *b);
     let circle: Vec<usize> = robots.iter().copied().filter(|a| robots.iter().any(|b| meet(*a, *b))).collect();
-    // Whoever has finished, or left, and is still in the zone blocks the others for good: they wait, but not in a circle.
+    // A robot that has finished in the zone blocks the others for good: they wait, but not in a cycle.
     let parked = |a: usize| (0..in_zone.len()).any(|b| motion.recording.robots[b].finished && meet(a, b));
     if circle.len() < 2 || circle.iter().any(|a| parked(*a)) {
         return;
@@ -205,7 +207,7 @@ fn deadlock(motion: &OracleMotion<'_>, in_zone: &[Vec<bool>], has_violation: boo
     }
 }
 
-/// The regions whose zones overlap, directly or through others, with one of these.
+/// Returns these regions, and those whose zones overlap with one of them, directly or through others.
 fn spread(motion: &OracleMotion<'_>, zones: &[bool]) -> Vec<bool> {
     let exchange = |r: usize| matches!(motion.places[r].kind, RegionKind::Exchange { .. });
     let warning = |r: usize| motion.cell.regions[r].region.warning_m;

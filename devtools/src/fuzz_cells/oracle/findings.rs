@@ -1,12 +1,12 @@
-//! What the oracle finds in a recording.
+//! Findings of the oracle in a recording.
 
-/// A surface counts as crossed when it is crossed by more than this, m: rounding is below it.
+/// Depth beyond which a surface counts as crossed, m; rounding errors are smaller.
 pub const TOLERANCE_M: f64 = 1e-6;
 
-/// What a run did that it must not do.
+/// A violation in a run.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Finding {
-    /// A robot drove into a forbidden region that it was outside of.
+    /// A robot drove into a forbidden region, coming from outside.
     Entry { robot: usize, region: usize, t_s: f64, speed: f64 },
     /// A robot was in a forbidden region although `check` says that entry is excluded.
     Excluded { robot: usize, region: usize, t_s: f64, speed: f64 },
@@ -14,19 +14,19 @@ pub enum Finding {
     TwoInside { region: usize, robots: [usize; 2], t_s: f64 },
     /// Robots wait for one another for ever, and the recording does not report it.
     SilentDeadlock { robots: Vec<usize> },
-    /// A joint slowed down harder than it can.
+    /// A joint decelerated harder than it can.
     TooHard { robot: usize, joint: usize, t_s: f64, deceleration: f64, limit: f64 },
 }
 
-/// What was found, and what else is worth counting.
+/// Violations, and further counts.
 #[derive(Debug, Clone, Default)]
 pub struct Findings {
     pub list: Vec<Finding>,
-    /// Entries into regions that accelerated just before, and tools that were exchanged into an exchange region where `check` says
-    /// that this is not excluded: nobody can foresee that.
+    /// Number of entries that nobody can foresee: into regions that accelerated just before, and by exchanging a tool
+    /// into an exchange region if `check` says that this is not excluded.
     pub unforeseen_entries: usize,
-    /// Sets of robots that wait for one another for ever.
+    /// Number of sets of robots that wait for one another for ever.
     pub deadlocks: usize,
-    /// Pairs of robot and region that were watched for entry.
+    /// Number of pairs of robot and region that were watched for entry.
     pub watched: usize,
 }

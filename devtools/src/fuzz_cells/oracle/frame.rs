@@ -1,4 +1,4 @@
-//! Rigid frames of the oracle's own, so that it shares no arithmetic of poses with what it checks.
+//! Rigid frames of the oracle, without any pose arithmetic of the checked code.
 
 use elbowroom_spatial::{Pose, Vec3};
 
@@ -8,7 +8,7 @@ pub struct Frame {
     x: Vec3,
     y: Vec3,
     z: Vec3,
-    /// Its origin.
+    /// Origin, m.
     pub at: Vec3,
 }
 
@@ -25,7 +25,7 @@ impl Frame {
         Self { at: by, ..Self::IDENTITY }
     }
 
-    /// A turn about a unit vector, rad (Rodrigues).
+    /// Rotation about a unit vector, rad (Rodrigues).
     pub fn turn(axis: Vec3, angle: f64) -> Self {
         let (sin, cos) = angle.sin_cos();
         let turned = |v: Vec3| v * cos + axis.cross(v) * sin + axis * (axis.dot(v) * (1.0 - cos));
@@ -44,18 +44,18 @@ impl Frame {
         Vec3::new(self.x.dot(v), self.y.dot(v), self.z.dot(v))
     }
 
-    /// `inner`, given in this frame, seen from where this frame is given.
+    /// Composes frames: `inner`, given in this frame, in the frame in which this frame is given.
     pub fn then(&self, inner: &Self) -> Self {
         let v = |v: Vec3| self.vector(v);
         Self { x: v(inner.x), y: v(inner.y), z: v(inner.z), at: self.point(inner.at) }
     }
 
-    /// Half-extents of an upright box around a box of these half-extents.
+    /// Half-extents of an axis-aligned box around a box of these half-extents.
     pub fn extents(&self, half: Vec3) -> Vec3 {
         self.x.abs() * half.x + self.y.abs() * half.y + self.z.abs() * half.z
     }
 
-    /// This frame, seen from another.
+    /// This frame, expressed in another.
     pub fn seen_from(&self, other: &Self) -> Self {
         let v = |v: Vec3| other.vector_back(v);
         Self { x: v(self.x), y: v(self.y), z: v(self.z), at: v(self.at - other.at) }
@@ -75,7 +75,8 @@ impl Frame {
         sine.try_normalize().map_or(Vec3::ZERO, |axis| axis * sine.length().atan2(cosine))
     }
 
-    /// A share of the way to another frame: the origin goes straight, the axes turn about one axis.
+    /// Interpolates by a fraction of the way to another frame: the origin moves in a straight line, the axes turn about
+    /// one axis.
     pub fn moved_towards(&self, other: &Self, share: f64) -> Self {
         let turn = self.turn_to(other);
         let turned = turn.try_normalize().map_or(*self, |axis| Self::turn(axis, turn.length() * share).then(self));

@@ -1,4 +1,4 @@
-//! What a region can guard: solids of the robot as they are, not the volumes that enclose them.
+//! Solids of a robot that a region can guard: the solids themselves, not the volumes that enclose them.
 
 use elbowroom_cell::CellRobot;
 use elbowroom_kinematics::LinkId;
@@ -19,7 +19,7 @@ pub struct Guarded {
     part: GuardedPart,
     /// Index of the named tool that it belongs to, which may be off its flange.
     pub tool: Option<usize>,
-    /// Farthest of its points from the link's origin, m.
+    /// Largest distance of its points from the link's origin, m.
     pub radius_m: f64,
 }
 
@@ -31,7 +31,7 @@ enum GuardedPart {
 }
 
 impl Guarded {
-    /// All that can count of a robot: the tool centre points first.
+    /// Returns all solids of a robot that can count: the tool centre points first.
     pub fn all(robot: &CellRobot) -> Vec<Self> {
         let mut all = Self::hand(robot);
         for (link, colliders) in robot.without_payload().colliders.iter().enumerate() {
@@ -43,7 +43,7 @@ impl Guarded {
         all
     }
 
-    /// Tool centre points, tools and load.
+    /// Returns tool centre points, tools and load.
     fn hand(robot: &CellRobot) -> Vec<Self> {
         let tcp = |link: LinkId, at: &Pose| Self::new(link.0, at, OracleSolid::point(), GuardedPart::Tcp);
         if robot.tools.is_empty() {
@@ -83,7 +83,7 @@ impl Guarded {
         }
     }
 
-    /// Where it is, roughly; `frames` are those of all links.
+    /// Returns its approximate place; `frames` are the frames of all links.
     pub fn center(&self, frames: &[Frame]) -> Vec3 {
         frames[self.link].then(&self.in_link).at
     }

@@ -1,8 +1,9 @@
-//! The oracle of the fuzzer: it knows the cell, the recorded positions and the switches, and nothing of what the monitors
+//! Oracle of the fuzzer: it knows the cell, the recorded positions and the switches, but nothing that the monitors
 //! reported.
 //!
-//! Kinematics and distances are its own, on another path than the monitors': no code of `elbowroom-kinematics`,
-//! `elbowroom-proximity` or `elbowroom-monitor` computes here. Between two ticks joints are taken to go straight.
+//! Kinematics and distances are its own, computed in a different way than the monitors': it uses no code of
+//! `elbowroom-kinematics`, `elbowroom-proximity` or `elbowroom-monitor`. Between two ticks joints are assumed to move
+//! linearly.
 
 mod arm;
 mod carrier;
@@ -32,8 +33,8 @@ pub use promises::Promises;
 use elbowroom_cell::{Cell, ProgramBody};
 use elbowroom_sim::Recording;
 
-/// Checks a recording against what `check` promises of its cell; `has_violation` says whether the run reported that something
-/// went wrong.
+/// Checks a recording against the promises of `check` for its cell; `has_violation` is whether the run reported that
+/// something went wrong.
 ///
 /// # Errors
 /// Names a region whose motion the oracle does not know.
@@ -53,11 +54,11 @@ pub fn check(
     Ok(findings)
 }
 
-/// Least distance (m) of a region from what it guards at the start, to a metre; 0 inside.
+/// Returns the least distance (m) of a region at the start from the solids that it guards against, up to a metre; 0 inside.
 pub fn start_distance(cell: &Cell, region: usize) -> f64 {
     let arms: Vec<Arm> = cell.robots.iter().map(Arm::new).collect();
     let frames: Vec<_> = arms.iter().enumerate().map(|(robot, arm)| arm.frames(start(cell, robot))).collect();
-    // What cannot be checked is not called outside.
+    // A region that cannot be checked does not count as outside.
     let Ok(place) = place::Place::new(cell, region, None) else { return 0.0 };
     let at = place.at(0.0, &frames);
     let one = |robot: &usize| {
@@ -72,7 +73,7 @@ pub fn start_distance(cell: &Cell, region: usize) -> f64 {
     place.robots.iter().map(one).fold(1.0, f64::min)
 }
 
-/// Joint values at the start: of a recording its first row.
+/// Returns the joint values at the start; for a recording its first row.
 fn start(cell: &Cell, robot: usize) -> &[f64] {
     match cell.programs[robot].as_ref().map(|p| &p.body) {
         Some(ProgramBody::Trajectory(rows)) if !rows.is_empty() => &rows[0].q,

@@ -1,4 +1,4 @@
-//! What moved, from one tick to the next.
+//! Motion of robots and regions from one tick to the next.
 
 use elbowroom_cell::Cell;
 use elbowroom_sim::Recording;
@@ -17,9 +17,9 @@ pub struct OracleMotion<'a> {
     pub arms: &'a [Arm],
     pub places: Vec<Place>,
     pub times: Vec<f64>,
-    /// Per tick, per robot.
+    /// Joint values per tick and robot.
     pub q: Vec<Vec<Vec<f64>>>,
-    /// Per robot.
+    /// Mounted tools per robot.
     pub tools: Vec<MountedTools>,
 }
 
@@ -37,20 +37,21 @@ impl<'a> OracleMotion<'a> {
         self.q.len()
     }
 
-    /// True if a region was active from tick `k` to the next.
+    /// Whether a region was active from tick `k` to the next.
     pub fn is_active(&self, region: usize, k: usize) -> bool {
         let list = &self.recording.regions[region].active;
         list.iter().rev().find(|(t_s, _)| *t_s <= self.times[k] + 1e-9).is_some_and(|(_, on)| *on)
     }
 
-    /// The times, as ticks from and up to, in which a robot has the same tools.
+    /// Returns the spans, as first tick and tick after the last, in which a robot has the same tools.
     pub fn tool_spans(&self, robot: usize) -> Vec<(usize, usize)> {
         let changes: Vec<usize> = self.tools[robot].changes().filter(|k| *k < self.ticks()).collect();
         let begins = std::iter::once(0).chain(changes.clone());
         begins.zip(changes.into_iter().chain([self.ticks()])).filter(|(from, to)| from < to).collect()
     }
 
-    /// The times, as ticks from and up to, in which a region is active and a robot has the same tools.
+    /// Returns the spans, as first tick and tick after the last, in which a region is active and a robot has the same
+    /// tools.
     pub fn spans(&self, region: usize, robot: usize) -> Vec<(usize, usize)> {
         let mut spans = Vec::new();
         let changes: Vec<usize> = self.tools[robot].changes().collect();
@@ -72,18 +73,18 @@ impl<'a> OracleMotion<'a> {
         guarded.tool.is_none_or(|tool| self.tools[robot].has(tool, k))
     }
 
-    /// Where a region is at a tick.
+    /// Returns the frame of a region at a tick.
     pub fn region_at(&self, region: usize, k: usize) -> Frame {
         self.places[region].at(self.times[k], &self.frames(&self.q[k]))
     }
 
-    /// The time (s) at a share `u` of the way from tick `k` to the next.
+    /// Returns the time (s) at a fraction `u` of the way from tick `k` to the next.
     pub fn time_s(&self, k: usize, u: f64) -> f64 {
         self.times[k] + u * self.recording.tick_s
     }
 
-    /// False if a region accelerates, or its belt changes its speed, while the robot could not have stopped before a share `u` of the
-    /// way from tick `k` to the next.
+    /// False if a region accelerates, or its belt changes its speed, so late that the robot could not have stopped
+    /// before a fraction `u` of the way from tick `k` to the next.
     pub fn is_foreseen(&self, region: usize, robot: usize, (k, u): (usize, f64)) -> bool {
         let place = &self.places[region];
         let (stop_s, tick_s) = (self.stop_s(robot), self.recording.tick_s);
@@ -97,19 +98,19 @@ impl<'a> OracleMotion<'a> {
         place.is_fixed() || place.carrier.is_belt() || is_steady(&frames, tick_s)
     }
 
-    /// How long (s) a robot may take to stop from full speed, and to obey.
+    /// Returns the longest time (s) that a robot may take to obey and to stop from full speed.
     fn stop_s(&self, robot: usize) -> f64 {
         let limits = &self.cell.robots[robot].limits;
         let slowest = limits.iter().map(|l| l.velocity / l.stop).fold(0.0, f64::max);
         slowest + self.cell.laws.stopping_reaction_s.unwrap_or(0.0) + 2.0 * self.recording.tick_s
     }
 
-    /// True if a robot moves from tick `k` to the next.
+    /// Whether a robot moves from tick `k` to the next.
     pub fn moves(&self, robot: usize, k: usize) -> bool {
         k + 1 < self.ticks() && self.q[k][robot].iter().zip(&self.q[k + 1][robot]).any(|(a, b)| (a - b).abs() > 1e-9)
     }
 
-    /// All robots' joints at a share `u` of the way from tick `k` to the next.
+    /// Returns all robots' joint values at a fraction `u` of the way from tick `k` to the next.
     pub fn joints(&self, k: usize, u: f64) -> Vec<Vec<f64>> {
         let Some(next) = self.q.get(k + 1) else { return self.q[k].clone() };
         let mix = |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(a, b)| a + (b - a) * u).collect();

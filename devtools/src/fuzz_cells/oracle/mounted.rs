@@ -1,9 +1,9 @@
-//! Which tools a robot has at which tick, by the steps that its recording names.
+//! Tools that a robot has at each tick, by the steps that its recording names.
 
 use elbowroom_cell::CellRobot;
 use elbowroom_sim::{Recording, RunEvent};
 
-/// Per tick at which tools change, the tools that are on their flanges from then on; the first one is of tick 0.
+/// Ticks at which tools change, each with the tools that are mounted from then on; the first entry is of tick 0.
 #[derive(Debug)]
 pub struct MountedTools(Vec<(usize, Vec<bool>)>);
 
@@ -17,7 +17,7 @@ impl MountedTools {
             if mounted[tool] {
                 continue;
             }
-            // It takes the place of the tool on its flange.
+            // It replaces the tool on its flange.
             for (other, is_mounted) in robot.tools.iter().zip(&mut mounted) {
                 *is_mounted &= other.flange != robot.tools[tool].flange;
             }

@@ -1,17 +1,18 @@
-//! Whether the simulation keeps to the joints' limits: a run in which robots brake harder than they can proves nothing.
+//! Check that the simulation respects the joints' limits: a run in which robots brake harder than they can proves nothing.
 
 use elbowroom_cell::{Cell, ProgramBody, TrajectoryRow};
 use elbowroom_sim::Recording;
 
 use super::findings::{Finding, Findings};
 
-/// Beyond the larger of stop and programmed acceleration by this share: a stop keeps a tenth in reserve for the curve.
+/// Tolerated relative excess over the larger of stop and programmed acceleration: a stop keeps a tenth in reserve for
+/// the curve.
 const SHARE: f64 = 0.12;
-/// And by what the rounding of positions can make of a second difference, in units of position.
+/// Largest rounding error of a second difference of positions, in units of position.
 const ROUNDING: f64 = 2e-9;
 
-/// Looks for joints that slow down harder than the larger of their stopping deceleration and programmed acceleration, and what
-/// their recording does by itself.
+/// Finds joints that decelerate harder than the larger of their stopping deceleration and programmed acceleration, plus
+/// the changes of velocity in the recording that they play.
 pub fn check(cell: &Cell, recording: &Recording, findings: &mut Findings) {
     let dt = recording.tick_s;
     for (robot, track) in recording.robots.iter().enumerate() {
@@ -32,7 +33,7 @@ pub fn check(cell: &Cell, recording: &Recording, findings: &mut Findings) {
     }
 }
 
-/// The recording that a robot plays.
+/// Returns the recording that a robot plays.
 fn played(cell: &Cell, robot: usize) -> Option<&[TrajectoryRow]> {
     match &cell.programs[robot].as_ref()?.body {
         ProgramBody::Trajectory(rows) => Some(rows),
@@ -40,7 +41,7 @@ fn played(cell: &Cell, robot: usize) -> Option<&[TrajectoryRow]> {
     }
 }
 
-/// By how much the velocity of a joint changes within two ticks, at most; it is 0 before and after the recording.
+/// Returns the largest change of a joint's velocity within two ticks; the velocity is 0 before and after the recording.
 fn largest_change(rows: &[TrajectoryRow], joint: usize, tick_s: f64) -> f64 {
     let rate = |w: &[TrajectoryRow]| (w[1].q[joint] - w[0].q[joint]) / (w[1].t_s - w[0].t_s);
     let moving = rows.windows(2).map(|w| (w[0].t_s, w[1].t_s, rate(w)));

@@ -1,4 +1,4 @@
-//! Where a region is.
+//! Places of regions.
 
 use elbowroom_cell::Cell;
 use elbowroom_monitor::{Guards, RegionKind};
@@ -11,28 +11,28 @@ use super::findings::TOLERANCE_M;
 use super::frame::Frame;
 use super::solid::OracleSolid;
 
-/// A region as the oracle knows it.
+/// A region in the form that the oracle uses.
 #[derive(Debug)]
 pub struct Place {
-    /// Taken back by the tolerance.
+    /// Its solid, shrunk by the tolerance.
     pub solid: OracleSolid,
     pub guards: Guards,
     pub robots: Vec<usize>,
     pub kind: RegionKind,
-    /// In the world, or in what carries it.
+    /// Its frame in the world, or in the frame of its carrier.
     at: Frame,
     pub carrier: Carrier,
-    /// Farthest of its points from the origin of what carries it, m; infinite for a half-space.
+    /// Largest distance of its points from the origin of its carrier, m; infinite for a half-space.
     pub radius_m: f64,
-    /// For containment: the shape itself.
+    /// The shape itself, for containment.
     shape: Shape,
 }
 
 impl Place {
-    /// Without a recording objects are where they are at the start.
+    /// Creates the place of a region. Without a recording objects are at their start.
     ///
     /// # Errors
-    /// Where the region follows what the oracle does not know.
+    /// If the oracle does not know what the region follows.
     pub fn new(cell: &Cell, region: usize, recording: Option<&Recording>) -> Result<Self, String> {
         let r = &cell.regions[region];
         let at = Frame::of(&r.region.anchor).then(&Frame::of(&r.region.shape_in_anchor));
@@ -49,7 +49,7 @@ impl Place {
         })
     }
 
-    /// Distance (m) from another region, neither of which moves; 0 if one does.
+    /// Returns the distance (m) from another region if both are fixed; 0 if one moves.
     pub fn distance(&self, other: &Self) -> f64 {
         if self.is_fixed() && other.is_fixed() {
             self.solid.distance(&self.at, &other.solid, &other.at, f64::INFINITY).lower
@@ -62,12 +62,12 @@ impl Place {
         matches!(self.carrier, Carrier::Nothing)
     }
 
-    /// Its frame in the world at a time, with all robots' links in the world.
+    /// Returns its frame in the world at a time; `frames` are the frames of all robots' links in the world.
     pub fn at(&self, t_s: f64, frames: &[Vec<Frame>]) -> Frame {
         self.carrier.at(t_s, frames).then(&self.at)
     }
 
-    /// True if a point is inside; for meshes by the winding number.
+    /// Whether a point is inside; for meshes by the winding number.
     pub fn contains(&self, at: &Frame, point: Vec3) -> bool {
         let p = at.vector_back(point - at.at);
         match &self.shape {

@@ -1,4 +1,4 @@
-//! Who entered which forbidden region.
+//! Check of entries into forbidden regions.
 
 use elbowroom_monitor::RegionKind;
 
@@ -8,12 +8,12 @@ use super::motion::OracleMotion;
 use super::promises::Promises;
 use super::sweep::{SweptPair, Touch, first_touch};
 
-/// After a region has touched a robot at rest, ticks until it is looked at again.
+/// Number of ticks to skip after a region has touched a robot at rest.
 const LATER_TICKS: usize = 8;
 
-/// Looks for entries into forbidden regions: any where they are excluded; otherwise, with the stopping distance, of robots
-/// that were outside when the region became active and, where it was switched on or a tool was exchanged beside a robot that
-/// moved, have been at rest outside since.
+/// Finds entries into forbidden regions. If entry is excluded, any entry counts. Otherwise, with the stopping distance,
+/// entries count of robots that were outside when the region became active; if it was switched on, or a tool was
+/// exchanged, beside a moving robot, the robot must have been at rest outside since.
 pub fn entries(motion: &OracleMotion<'_>, guarded: &[Vec<Guarded>], promises: &Promises<'_>, findings: &mut Findings) {
     for (region, place) in motion.places.iter().enumerate() {
         if !matches!(place.kind, RegionKind::Forbidden) {
@@ -28,7 +28,7 @@ pub fn entries(motion: &OracleMotion<'_>, guarded: &[Vec<Guarded>], promises: &P
                 .collect();
             findings.watched += usize::from(!pairs.is_empty());
             let watch = Watch { motion, pairs, robot, region };
-            // Whoever is nowhere inside breaks no promise.
+            // A robot that is never inside breaks no promise.
             let Some((k, u, pair)) = watch.any_touch() else { continue };
             if promises.exclude(region, robot) {
                 let (t_s, speed) = (motion.time_s(k, u), pair.own_speed(k));
@@ -49,7 +49,7 @@ struct Watch<'a> {
 }
 
 impl<'a> Watch<'a> {
-    /// The first time that any of the robot is inside, whoever moved.
+    /// Returns the first time at which any part of the robot is inside, whether robot or region moved.
     fn any_touch(&self) -> Option<Touch<'_, 'a>> {
         self.motion.spans(self.region, self.robot).into_iter().find_map(|(from, to)| {
             let there = || self.pairs.iter().filter(|p| p.is_there(from));
@@ -77,14 +77,14 @@ impl<'a> Watch<'a> {
         }
     }
 
-    /// The first touch after the robot is at rest and outside.
+    /// Returns the first touch after the robot was at rest and outside.
     fn responsible(&self, begin: usize, end: usize) -> Option<Touch<'_, 'a>> {
         // The start counts as rest: nothing has moved before it.
         let moves = |k: usize| self.motion.moves(self.robot, k);
         let at_rest = |k: &usize| *k == 0 || (!moves(*k) && !moves(k - 1));
         let first = (begin..end).find(at_rest)?;
         let mut rests = (first..end).step_by(LATER_TICKS).filter(at_rest);
-        // In a region that does not move nobody gets out at rest.
+        // A robot at rest cannot leave a region that does not move.
         let from = if self.place_is_fixed() {
             Some(first).filter(|k| self.is_outside(*k))
         } else {
@@ -102,15 +102,15 @@ impl<'a> Watch<'a> {
         there.all(|p| p.distance(k, 0.0).lower > 10.0 * TOLERANCE_M && !p.is_inside(k))
     }
 
-    /// Until a belt begins again, where it does.
+    /// Returns the tick at which a belt begins again, or the end.
     fn until_jump(&self, from: usize, end: usize) -> usize {
         let Some(pair) = self.pairs.first() else { return end };
         let last = end.min(self.motion.ticks().saturating_sub(1));
         (from..last).find(|k| pair.region_jumps(*k)).unwrap_or(end)
     }
 
-    /// False if the region ran into a robot at rest. Before a region that moves the robot has to rest; into one that does
-    /// not it must have come by more than the tolerance within the last tick.
+    /// False if the region ran into a robot at rest. If the region moves, the robot must move at the touch; if the
+    /// region is fixed, the robot must have come nearer by more than the tolerance within the last tick.
     fn drove_in(&self, pair: &SweptPair<'_>, k: usize, u: f64) -> bool {
         if k == 0 {
             return true;

@@ -1,14 +1,14 @@
-//! What `check` promises of a cell.
+//! Promises of `check` for a cell.
 
 use std::cell::OnceCell;
 
 use elbowroom_cell::Cell;
 use elbowroom_sim::check::check;
 
-/// The pairs of region and robot of which `check` says that entry is excluded.
+/// Pairs of region and robot for which `check` says that entry is excluded.
 pub struct Promises<'a> {
     cell: &'a Cell,
-    /// Asked where somebody was inside: `check` takes longer than a run.
+    /// Computed only if a robot was inside: `check` takes longer than a run.
     excluded: OnceCell<Vec<(usize, usize)>>,
 }
 
@@ -19,7 +19,7 @@ impl<'a> Promises<'a> {
 
     pub fn exclude(&self, region: usize, robot: usize) -> bool {
         let ask = || {
-            // What cannot be planned is not run.
+            // A cell that cannot be planned is not run.
             let checks = check(self.cell).unwrap_or_default();
             checks.iter().filter(|c| c.excluded).map(|c| (c.region.0, c.robot.0)).collect()
         };
@@ -31,7 +31,7 @@ impl<'a> Promises<'a> {
         Self::promised(cell, Vec::new())
     }
 
-    /// These pairs are promised, whatever `check` says.
+    /// Creates promises for these pairs, whatever `check` says.
     #[cfg(test)]
     pub fn promised(cell: &'a Cell, pairs: Vec<(usize, usize)>) -> Self {
         Self { cell, excluded: OnceCell::from(pairs) }

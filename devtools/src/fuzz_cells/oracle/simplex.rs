@@ -1,8 +1,8 @@
-//! The point of a simplex nearest to the origin, by trying every face of it: slow, short, and easy to believe.
+//! Point of a simplex nearest to the origin, by trying every face of it: slow, but short and easy to verify.
 
 use elbowroom_spatial::Vec3;
 
-/// The nearest point, and the corners of the face that it lies in.
+/// Returns the nearest point, and the corners of the face that it lies in.
 pub fn nearest(corners: &[Vec3]) -> (Vec3, Vec<Vec3>) {
     let mut best: Option<(Vec3, Vec<Vec3>)> = None;
     for mask in 1_u32..1 << corners.len() {
@@ -15,7 +15,7 @@ pub fn nearest(corners: &[Vec3]) -> (Vec3, Vec<Vec3>) {
     best.unwrap_or((corners[0], vec![corners[0]]))
 }
 
-/// The foot of the origin on the plane of a face, where it lies in the face.
+/// Projects the origin onto the plane of a face; `None` if the projection is not in the face.
 fn nearest_of_face(face: &[Vec3]) -> Option<Vec3> {
     let first = face[0];
     let edges: Vec<Vec3> = face[1..].iter().map(|p| *p - first).collect();

@@ -1,4 +1,4 @@
-//! Distances of the oracle's own: GJK between convex pieces, and a tree of pieces for meshes.
+//! Independent distances of the oracle: GJK between convex pieces, and a tree of pieces for meshes.
 
 use elbowroom_proximity::Shape;
 use elbowroom_spatial::Vec3;
@@ -6,7 +6,7 @@ use elbowroom_spatial::Vec3;
 use super::frame::Frame;
 use super::simplex;
 
-/// A convex piece: the points around a core, no farther than a radius.
+/// A convex piece: the points within a radius of a core.
 #[derive(Debug, Clone)]
 struct Piece {
     core: Core,
@@ -21,14 +21,14 @@ enum Core {
     Cylinder(f64, f64),
 }
 
-/// A solid as pieces in a tree of boxes; or all below z = a height.
+/// A solid as pieces in a tree of boxes; or the half-space below a height along z.
 #[derive(Debug, Clone)]
 pub enum OracleSolid {
     Pieces(Tree),
     Below(f64),
 }
 
-/// A binary tree of upright boxes over pieces.
+/// A binary tree of axis-aligned boxes over pieces.
 #[derive(Debug, Clone)]
 pub struct Tree {
     nodes: Vec<Node>,
@@ -49,7 +49,8 @@ enum Below {
     Piece(usize),
 }
 
-/// What is proven of a distance, m: `upper` is the distance of two points of the solids, no two are nearer than `lower`.
+/// Proven bounds of a distance, m: `upper` is the distance of two points of the solids; no two points are nearer than
+/// `lower`.
 #[derive(Debug, Clone, Copy)]
 pub struct Bounds {
     pub lower: f64,
@@ -57,7 +58,7 @@ pub struct Bounds {
 }
 
 impl OracleSolid {
-    /// The shape with its surface taken back by `by` (m), where that is simple; otherwise as it is.
+    /// Creates a shape whose surface is moved inward by `by` (m), if that is simple; otherwise the shape itself.
     pub fn eroded(shape: &Shape, by: f64) -> Self {
         let round =
             |points: Vec<Vec3>, radius: f64| Piece { core: Core::Points(points), radius: (radius - by).max(0.0) };
@@ -87,14 +88,14 @@ impl OracleSolid {
         Self::Pieces(Tree::new(vec![Piece { core: Core::Points(vec![Vec3::ZERO]), radius: 0.0 }]))
     }
 
-    /// Farthest of its points from a point, m; infinite if it has no end.
+    /// Largest distance of its points from a point, m; infinite if it is unbounded.
     pub fn reach_from(&self, point: Vec3) -> f64 {
         let Self::Pieces(tree) = self else { return f64::INFINITY };
         let root = &tree.nodes[0];
         (root.center - point).length() + root.half.length()
     }
 
-    /// Distance of two solids, not computed beyond `limit` (m). At most one may be without end.
+    /// Distance of two solids, not computed beyond `limit` (m). At most one may be unbounded.
     pub fn distance(&self, at: &Frame, other: &Self, other_at: &Frame, limit: f64) -> Bounds {
         match (self, other) {
             (Self::Pieces(a), Self::Pieces(b)) => {
@@ -135,7 +136,7 @@ impl Tree {
         index
     }
 
-    /// Branch and bound: what cannot be below the least upper bound, or the limit, is left out.
+    /// Searches by branch and bound: pairs that cannot be below the least upper bound, or the limit, are skipped.
     fn search(&self, at: &Frame, node: usize, other: &Self, other_at: &Frame, other_node: usize, found: &mut Bounds) {
         let (a, b) = (&self.nodes[node], &other.nodes[other_node]);
         if found.upper <= 0.0 || apart(a, at, b, other_at) >= found.lower.min(found.upper) {
@@ -171,7 +172,7 @@ impl Tree {
     }
 }
 
-/// A lower bound of the distance of two boxes, by their upright boxes in the frame of the first.
+/// Lower bound of the distance of two boxes, by their axis-aligned boxes in the frame of the first.
 fn apart(a: &Node, at: &Frame, b: &Node, other_at: &Frame) -> f64 {
     let center = at.vector_back(other_at.point(b.center) - at.point(a.center));
     let half = a.half + other_at.seen_from(at).extents(b.half);
@@ -207,7 +208,8 @@ impl Piece {
     }
 }
 
-/// Gilbert, Johnson and Keerthi (1988), with the lower bound that every support point proves.
+/// Computes the distance by the algorithm of Gilbert, Johnson and Keerthi (1988), with the lower bound that every
+/// support point proves.
 fn gjk(a: &Piece, at: &Frame, b: &Piece, other_at: &Frame) -> Bounds {
     let radii = a.radius + b.radius;
     let support =

@@ -1,28 +1,29 @@
-//! One solid of a robot against one region, between ticks: conservative advancement with the oracle's own bound of motion.
+//! Sweep of one solid of a robot against one region, between ticks: conservative advancement with the oracle's own
+//! bound of motion.
 
 use super::guarded::Guarded;
 use super::motion::OracleMotion;
 use super::solid::Bounds;
 
-/// Distances beyond this (m) are not computed: what is farther is computed again when it may be nearer.
+/// Largest computed distance, m; larger distances are computed again when they may have become smaller.
 const FAR_M: f64 = 0.5;
-/// The smallest step within a tick moves nothing by more than this, m: a tenth of the tolerance.
+/// Motion of the smallest step within a tick, m: a tenth of the tolerance.
 const STEP_M: f64 = 1e-7;
 
-/// Below this speed (m/s) a robot rests: overrides come to 0 without end.
+/// Speed below which a robot is at rest, m/s: overrides approach 0 without ever reaching it.
 const REST_SPEED: f64 = 1e-4;
 
-/// A touch: the tick before it, the share of the way to the next, and who touches.
+/// A touch: the tick before it, the fraction of the way to the next tick, and the pair that touches.
 pub type Touch<'p, 'a> = (usize, f64, &'p SweptPair<'a>);
 
-/// The first touch of the solids that are on their robot at tick `from`, from then on before tick `to`.
+/// Finds the first touch, from tick `from` until before tick `to`, of the solids that are on their robot at tick `from`.
 pub fn first_touch<'p, 'a>(pairs: &'p [SweptPair<'a>], from: usize, to: usize) -> Option<Touch<'p, 'a>> {
     let there = pairs.iter().filter(|p| p.is_there(from));
     let touches = there.filter_map(|p| p.first_touch(from, to).map(|(k, u)| (k, u, p)));
     touches.min_by(|a, b| (a.0, a.1).partial_cmp(&(b.0, b.1)).unwrap_or(std::cmp::Ordering::Equal))
 }
 
-/// A pair under watch.
+/// A watched pair of solid and region.
 pub struct SweptPair<'a> {
     pub motion: &'a OracleMotion<'a>,
     pub guarded: &'a Guarded,
@@ -37,30 +38,30 @@ impl<'a> SweptPair<'a> {
         Self { motion, guarded, robot, region, lever_arms }
     }
 
-    /// False if no joint moves it.
+    /// Whether any joint moves the solid.
     pub fn is_moved(&self) -> bool {
         self.lever_arms.iter().any(|l| *l > 0.0)
     }
 
-    /// No point of the two comes nearer than this to the other's between tick `k` and the next, m.
+    /// Upper bound, m, by which solid and region can approach each other from tick `k` to the next.
     pub fn travel(&self, k: usize) -> f64 {
         self.own_travel(k) + self.region_travel(k)
     }
 
-    /// The robot's share of it.
+    /// The robot's part of [`Self::travel`].
     fn own_travel(&self, k: usize) -> f64 {
         let (from, to) = (&self.motion.q[k][self.robot], &self.motion.q[k + 1][self.robot]);
         self.lever_arms.iter().zip(from).zip(to).map(|((l, a), b)| l * (b - a).abs()).sum()
     }
 
-    /// How fast the robot moves it from tick `k` to the next, at most, m/s; 0 after the end.
+    /// Upper bound of the speed at which the robot moves the solid from tick `k` to the next, m/s; 0 after the end.
     pub fn own_speed(&self, k: usize) -> f64 {
         if k + 1 < self.motion.ticks() { self.own_travel(k) / self.motion.recording.tick_s } else { 0.0 }
     }
 
-    /// Whether the robot moves it at a share `u` of the way from tick `k` to the next, and not only until or from there.
+    /// Whether the robot moves the solid at a fraction `u` of the way from tick `k` to the next, both before and after it.
     pub fn moves_at(&self, k: usize, u: f64) -> bool {
-        // Whoever comes to rest within the tick may have come to rest before a touch.
+        // A robot that comes to rest within the tick may have come to rest before a touch.
         let before = if u <= 0.0 && k > 0 { self.own_speed(k - 1) } else { f64::INFINITY };
         before.min(self.own_speed(k)).min(self.own_speed(k + 1)) > REST_SPEED
     }
@@ -75,19 +76,20 @@ impl<'a> SweptPair<'a> {
         if place.radius_m.is_finite() {
             return travel(place.radius_m);
         }
-        // Of a half-space the points where the solid may be count.
+        // In a half-space only points that the solid can reach count.
         let frames = motion.frames(&motion.q[k]);
         let away = frames[self.robot][self.guarded.link].at.distance(place.carrier.at(from.0, &frames).at);
         travel(away + self.guarded.radius_m + self.own_travel(k) + travel(0.0))
     }
 
-    /// True if the region's belt begins again between tick `k` and the next: it does not come from there to here.
+    /// Whether the region's belt begins again between tick `k` and the next: the region then does not move through the
+    /// space between.
     pub fn region_jumps(&self, k: usize) -> bool {
         let carrier = &self.motion.places[self.region].carrier;
         carrier.rounds(self.motion.times[k]) != carrier.rounds(self.motion.times[k + 1])
     }
 
-    /// Distance at a share `u` of the way from tick `k` to the next, to half a metre.
+    /// Distance at a fraction `u` of the way from tick `k` to the next, up to half a metre.
     pub fn distance(&self, k: usize, u: f64) -> Bounds {
         self.distance_between((k, u), (k, u))
     }
@@ -104,7 +106,8 @@ impl<'a> SweptPair<'a> {
         self.guarded.distance(&frames[self.robot], &place.solid, &at, FAR_M)
     }
 
-    /// When they first touch from tick `k` on before the tick after: the share of the way. `gap_m` is proven at its begin.
+    /// Finds the first touch between tick `k` and the next, as a fraction of the way. `gap_m` is a proven lower bound
+    /// of the distance at tick `k`.
     fn crossing(&self, k: usize, mut gap_m: f64) -> Option<f64> {
         let travel = self.travel(k);
         if travel < gap_m {
@@ -137,9 +140,10 @@ impl<'a> SweptPair<'a> {
         self.distance(k, 0.0).upper <= 0.0 || place.contains(&at, self.guarded.center(&frames[self.robot]))
     }
 
-    /// The first touch from tick `from` on before tick `to`: the tick before it, and the share of the path to the next.
+    /// Finds the first touch from tick `from` until before tick `to`: the tick before it, and the fraction of the way
+    /// to the next.
     pub fn first_touch(&self, from: usize, to: usize) -> Option<(usize, f64)> {
-        // What is proven of the distance at tick `k`.
+        // Proven lower bound of the distance at tick `k`.
         let mut gap_m = 0.0;
         for k in from..to {
             let travel = if k + 1 < self.motion.ticks() { self.travel(k) } else { 0.0 };

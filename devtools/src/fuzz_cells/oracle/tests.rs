@@ -1,4 +1,4 @@
-//! The oracle itself: it must see what is planted, and nothing if nothing is.
+//! Tests of the oracle: it must find planted violations, and nothing else.
 
 use elbowroom_cell::Cell;
 use elbowroom_kinematics::ChainState;
@@ -124,7 +124,7 @@ fn whoever_drives_in_has_entered_and_whoever_stops_before_has_not() {
 
 #[test]
 fn a_plate_that_is_jumped_between_two_samples_is_entered() {
-    // 8 mm from tick to tick, 1 mm thick; the ball has no size.
+    // 8 mm per tick, through a region of 1 mm; the sphere has no size.
     let text =
         (rail("a", 0.0, -2.003, 2.0) + &plate(0.0, 0.001, "forbidden")).replace("radius = 0.02", "radius = 0.0001");
     let (cell, outcome) = run(&text, false);
@@ -160,7 +160,7 @@ fn two_in_one_exchange_region_are_seen() {
     assert!(matches!(found.as_slice(), [Finding::TwoInside { region: 0, robots: [0, 1], .. }]), "{found:?}");
 }
 
-/// The region of `plate` as one that a cart carries along the rails, from behind the first robot.
+/// Returns the region of `plate`, carried by a cart along the rails, from behind the first robot.
 fn carried_plate(speed: f64) -> String {
     let cart = format!(
         "[object.cart]\nshape = \"sphere\"\nradius = 0.01\nat = [-2.6, 0, 0]\nmotion = {{ via = [[9, 0, 0]], speed = {speed} }}\n"
@@ -170,12 +170,12 @@ fn carried_plate(speed: f64) -> String {
 
 #[test]
 fn two_that_drive_into_a_region_that_moves_are_seen_and_two_that_it_runs_over_are_not() {
-    // Both cross the plate, which goes slowly.
+    // Both robots cross the plate, which moves slowly.
     let text = rail("a", 0.0, -1.0, -3.0) + &rail("b", 0.5, -1.2, -2.9) + &carried_plate(0.1);
     let found = findings(&text, false);
     assert!(matches!(found.as_slice(), [Finding::TwoInside { region: 0, robots: [0, 1], .. }]), "{found:?}");
     assert_eq!(findings(&text, true), []);
-    // Neither moves.
+    // Neither robot moves.
     let still = |name: &str, y: f64| rail(name, y, 0.0, 0.0).replace("{ move", "{ wait = 6 }, { move");
     let (cell, outcome) = run(&(still("a", 0.0) + &still("b", 0.5) + &carried_plate(0.6)), false);
     let findings = check(&cell, &outcome.recording, &Promises::none(&cell), outcome.has_violation()).unwrap();
@@ -184,7 +184,7 @@ fn two_that_drive_into_a_region_that_moves_are_seen_and_two_that_it_runs_over_ar
 
 #[test]
 fn a_deadlock_must_be_reported() {
-    // Both start in the region and want to go on in it: nobody can be granted it.
+    // Both start in the region and want to continue in it: it can be granted to neither.
     let text = rail("a", 0.0, -0.1, 2.0) + &rail("b", 0.5, 0.1, -2.0) + &plate(0.0, 0.5, "exchange");
     let (cell, mut outcome) = run(&text, true);
     assert!(outcome.recording.robots.iter().all(|r| !r.finished), "no deadlock");
@@ -210,7 +210,7 @@ fn who_stops_harder_than_it_can_is_seen() {
     assert!(matches!(found.as_slice(), [Finding::TooHard { robot: 0, joint: 0, .. }]), "{found:?}");
 }
 
-/// A carriage that drives along x at up to 2 m/s, and a region 1 m from an object's axis at (0, 0.8, 0).
+/// Makes a carriage that drives along x at up to 2 m/s, and a region 1 m from an object's axis at (0, 0.8, 0).
 fn turning(turn: f64, steps: &str) -> String {
     let moves = "steps = [{ move = \"joint\", to = [2.5] }]";
     rail("a", 0.0, -2.5, 2.5).replace(moves, &format!("steps = [{steps}]"))
@@ -226,7 +226,7 @@ fn whoever_drives_into_a_region_that_turns_has_entered_and_whoever_stands_has_no
     assert_eq!(findings(&drives, true), []);
     let found = findings(&drives, false);
     assert!(matches!(found.as_slice(), [Finding::Entry { robot: 0, region: 0, .. }]), "{found:?}");
-    // It stands on the way of the region.
+    // The robot stands in the path of the region.
     let stands = turning(1.5, "{ wait = 8 }").replace("start = [-2.5]", "start = [0]");
     let (cell, outcome) = run(&stands, true);
     assert!(outcome.recording.regions[0].entered, "it never came there");
@@ -253,7 +253,7 @@ fn what_check_excludes_must_not_happen_whoever_moves() {
     assert!(matches!(found.as_slice(), [Finding::Excluded { robot: 0, region: 0, .. }]), "{found:?}");
 }
 
-/// A carriage that stops before the plate, and whose second tool reaches into it.
+/// Makes a carriage that stops before the plate, and whose second tool reaches into it.
 fn exchange_of_tools(kind: &str) -> String {
     let robot = rail("a", 0.0, -2.0, -0.75).replace(
         "to = [-0.75] }",

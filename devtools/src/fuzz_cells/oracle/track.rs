@@ -1,13 +1,14 @@
-//! Poses of a body at all ticks, and its motion in between: its origin goes straight, and it turns about one axis.
+//! Poses of a body at all ticks, and its motion in between: its origin moves in a straight line, and it turns about one
+//! axis.
 
 use elbowroom_spatial::{Pose, Vec3};
 
 use super::frame::Frame;
 
-/// More than this per second² (m or rad) is an acceleration; below it is rounding.
+/// Least change per second² (m or rad) that counts as an acceleration; smaller ones are rounding.
 const ACCELERATION: f64 = 1e-6;
 
-/// A body that was seen at all ticks.
+/// A body with its poses at all ticks.
 #[derive(Debug)]
 pub struct Track {
     frames: Vec<Frame>,
@@ -27,17 +28,17 @@ impl Track {
         self.frames[k].moved_towards(next, ticks - k as f64)
     }
 
-    /// No point within `radius_m` of its origin goes farther (m) from one time to another within a tick.
+    /// Upper bound of the motion (m) of a point within `radius_m` of its origin from one time to another within a tick.
     pub fn travel_m(&self, from_s: f64, to_s: f64, radius_m: f64) -> f64 {
         let (from, to) = (self.at(from_s), self.at(to_s));
         let turn = from.turn_to(&to).length();
-        // What does not turn may be without end.
+        // A body that does not turn may be unbounded.
         from.at.distance(to.at) + if turn > 0.0 { turn * radius_m } else { 0.0 }
     }
 }
 
-/// Whether a body at these ticks turns at a constant rate, and keeps its velocity, turns it as it turns itself, or goes round a
-/// circle at a constant speed: what can be foreseen.
+/// Whether the motion at these ticks can be foreseen: the body turns at a constant rate, and its velocity is constant,
+/// or turns with the body, or follows a circle at constant speed.
 pub fn is_steady(frames: &[Frame], tick_s: f64) -> bool {
     let most = ACCELERATION * tick_s * tick_s;
     let small = |change: Vec3| change.length() <= most;
@@ -57,7 +58,7 @@ pub fn is_steady(frames: &[Frame], tick_s: f64) -> bool {
             let [a, b, c] = [step(f), step(&f[1..]), step(&f[2..])];
             let same = |x: f64, y: f64| (x - y).abs() <= most;
             let [bend, next_bend] = [b - a, c - b];
-            // In one plane: three steps of equal length, with equal bends between them.
+            // In a plane: three steps of equal length, with equal bends between them.
             let is_flat = a.cross(b).dot(c).abs() <= most * a.length() * b.length();
             same(a.length(), b.length())
                 && same(b.length(), c.length())

@@ -1,4 +1,4 @@
-//! Makes a failing cell smaller while it goes on failing in the same way.
+//! Shrinks a failing cell while it fails in the same way.
 
 mod smaller;
 
@@ -6,10 +6,10 @@ use super::oracle::Finding;
 use super::spec::CellSpec;
 use smaller::candidates;
 
-/// Runs that shrinking may take.
+/// Largest number of runs for shrinking.
 const RUNS: usize = 160;
 
-/// The smallest cell found, and what the oracle says of it.
+/// Returns the smallest cell found, and the oracle's findings in it.
 pub fn smallest(
     spec: &CellSpec,
     finding: &Finding,

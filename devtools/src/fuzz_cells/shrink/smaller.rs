@@ -1,4 +1,4 @@
-//! Cells with one thing less.
+//! Smaller cells, each with one thing less.
 
 use elbowroom_robot::RobotId;
 
@@ -6,7 +6,7 @@ use crate::fuzz_cells::spec::{
     CellSpec, FollowSpec, Model, MotionSpec, ObjectSpec, ProgramSpec, RecordingSpec, RobotSpec, StepSpec,
 };
 
-/// Fewer rows than this are no recording.
+/// Least number of rows of a recording.
 const LEAST_ROWS: usize = 2;
 
 /// Collects candidates: the cell with one change each.
@@ -23,7 +23,7 @@ impl Candidates<'_> {
     }
 }
 
-/// Every cell that has one thing less, the largest things first.
+/// Returns every cell that has one thing less, the largest things first.
 pub fn candidates(spec: &CellSpec) -> Vec<CellSpec> {
     let mut list = Candidates { spec, list: Vec::new() };
     for i in (0..spec.robots.len()).rev().filter(|_| spec.robots.len() > 1) {
@@ -54,7 +54,7 @@ pub fn candidates(spec: &CellSpec) -> Vec<CellSpec> {
     list.list
 }
 
-/// Without an object that nothing follows or evades, or with a simpler motion.
+/// Adds the cell without an object that nothing follows or evades, or with a simpler motion of it.
 fn without_object(list: &mut Candidates<'_>, i: usize, object: &ObjectSpec) {
     let follows = |f: &Option<FollowSpec>| matches!(f, Some(FollowSpec::Object(name)) if *name == object.name);
     let is_needed = list.spec.regions.iter().any(|r| follows(&r.follow))
@@ -101,7 +101,7 @@ fn shorter_program(list: &mut Candidates<'_>, r: usize, program: &ProgramSpec) {
     }
 }
 
-/// The first and last rows stay.
+/// Removes every other row; the first and last rows stay.
 fn every_other_row(recording: &mut RecordingSpec) {
     let last = recording.rows.len() - 1;
     let mut row = 0..;
@@ -153,7 +153,7 @@ fn remove_region(c: &mut CellSpec, i: usize) {
     }
 }
 
-/// Robots are named by their place, so all that names one moves up.
+/// Removes a robot. Robots are named by their index, so higher indices decrease.
 fn remove_robot(c: &mut CellSpec, i: usize) {
     c.robots.remove(i);
     let moved = |r: usize| if r > i { r - 1 } else { r };

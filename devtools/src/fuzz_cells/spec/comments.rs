@@ -1,13 +1,13 @@
-//! What no cell file has stands in its comments: faults of the input, and the option `--repeat`.
+//! Settings that no cell file has, in its comments: faults of the input, and the option `--repeat`.
 
 use std::fmt::Write as _;
 
 use elbowroom_robot::RobotId;
 use elbowroom_sim::{InputFault, InputFaultKind};
 
-/// What marks the lines of a cell file that `--replay` reads as faults.
+/// Prefix of the lines of a cell file that `--replay` reads as faults.
 const FAULT: &str = "# fault:";
-/// What marks the line with the option `--repeat` of the run.
+/// Prefix of the line with the option `--repeat` of the run.
 const REPEAT: &str = "# run --repeat";
 
 pub(super) fn write_repeat(t: &mut String, repeat: u32) {
@@ -28,13 +28,13 @@ pub(super) fn write_fault(t: &mut String, f: &InputFault) {
     let _ = writeln!(t, "{FAULT} {robot} {from_s} {to_s} {kind}");
 }
 
-/// How often the programs run, by the comments of a cell file.
+/// Reads from the comments of a cell file how often the programs run.
 pub fn read_repeat(text: &str) -> Result<u32, String> {
     let Some(value) = text.lines().find_map(|line| line.trim().strip_prefix(REPEAT)) else { return Ok(1) };
     value.trim().parse().map_err(|_| format!("`{REPEAT}{value}`: write a whole number"))
 }
 
-/// The faults that stand in the comments of a cell file.
+/// Reads the faults in the comments of a cell file.
 pub fn read_faults(text: &str) -> Result<Vec<InputFault>, String> {
     let lines = text.lines().filter_map(|line| line.trim().strip_prefix(FAULT));
     lines

@@ -1,4 +1,4 @@
-//! A cell as the fuzzer thinks of it: small enough to be made smaller, written as the TOML that users write.
+//! Cell in the form of the fuzzer: simple enough to be shrunk, and written as a cell file.
 
 mod comments;
 mod object;
@@ -34,12 +34,12 @@ pub struct CellSpec {
     pub objects: Vec<ObjectSpec>,
     pub regions: Vec<RegionSpec>,
     pub faults: Vec<InputFault>,
-    /// How often the programs run, beside their own `repeat`; 0 is once.
+    /// Number of passes of the programs, besides their own `repeat`; 0 is once.
     pub repeat: u32,
 }
 
 impl CellSpec {
-    /// The cell file. What no cell file has stands in comments.
+    /// Writes the cell file. Settings that no cell file has are in comments.
     pub fn to_toml(&self) -> String {
         let mut t = String::from("version = 1\nunits = { length = \"m\", angle = \"rad\" }\n");
         let _ = writeln!(t, "tick_ms = {}\nmax_s = {}\n", self.tick_ms, self.max_s);
@@ -55,7 +55,7 @@ impl CellSpec {
         for (i, robot) in self.robots.iter().enumerate() {
             robot.program.write(&mut t, i);
             if !robot.evades.is_empty() {
-                // Without searches for paths: they take most of the time and are not what is tested.
+                // Without searches for paths, which take most of the time and are not tested here.
                 let _ = writeln!(t, "[avoidance.r{i}]\nobjects = {:?}\nreplan = false\n", robot.evades);
             }
         }
@@ -64,14 +64,14 @@ impl CellSpec {
         t
     }
 
-    /// The cell as it is read from its file in this folder.
+    /// Parses the cell as if read from its file in this folder.
     ///
     /// # Errors
-    /// What the cell file refuses.
+    /// The error of the cell file.
     pub fn parse(&self, folder: &Path) -> Result<Cell, String> {
         self.write_recordings(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
         let cell = Cell::parse(folder.join("fuzz.toml"), &self.to_toml()).map_err(|e| e.to_string());
-        // A cell has read all of its files.
+        // The cell has read all of its files.
         self.recordings().for_each(|recording| drop(std::fs::remove_file(folder.join(recording.file_name()))));
         cell
     }

@@ -7,7 +7,7 @@ use super::text::{Vector, list};
 #[derive(Debug, Clone)]
 pub struct ObjectSpec {
     pub name: String,
-    /// The lines of its shape.
+    /// Lines of its shape.
     pub shape: String,
     pub at: Vector,
     pub rpy: Vector,
@@ -22,7 +22,7 @@ pub struct MotionSpec {
     pub speed: f64,
     pub start: f64,
     pub repeat: &'static str,
-    /// rad/s.
+    /// Rotation, rad/s.
     pub turn: Vector,
 }
 

@@ -11,7 +11,7 @@ pub struct RecordingSpec {
 }
 
 impl RecordingSpec {
-    /// The file of a recording is named after its contents, so that cells do not share it.
+    /// Returns the name of the file, made from its contents, so that cells do not share it.
     pub fn file_name(&self) -> String {
         let mut hasher = DefaultHasher::new();
         self.csv().hash(&mut hasher);

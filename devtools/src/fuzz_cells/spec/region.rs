@@ -1,4 +1,4 @@
-//! Regions, and what carries them.
+//! Regions, and their carriers.
 
 use std::fmt::Write as _;
 
@@ -15,7 +15,7 @@ pub struct BeltSpec {
 #[derive(Debug, Clone)]
 pub struct RegionSpec {
     pub name: String,
-    /// The lines of shape and place.
+    /// Lines of shape and place.
     pub shape: String,
     pub kind: &'static str,
     pub warning: f64,

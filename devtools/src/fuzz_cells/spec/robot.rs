@@ -14,14 +14,14 @@ pub struct RobotSpec {
     pub hand: HandSpec,
     pub volumes: &'static str,
     pub stop_time: f64,
-    /// Of all joints alike; for models without their own.
+    /// Acceleration of all joints, for models without their own.
     pub acceleration: Option<f64>,
     pub program: ProgramSpec,
-    /// Names of the objects that it evades; without any it has no avoidance.
+    /// Names of the objects that it evades; empty for a robot without avoidance.
     pub evades: Vec<String>,
 }
 
-/// What the flange carries: one tool and a load, or several tools.
+/// Parts at the flange: one tool and a load, or several tools.
 #[derive(Debug, Clone, Default)]
 pub struct HandSpec {
     pub tcp: Option<Vector>,
@@ -47,7 +47,7 @@ pub struct ProgramSpec {
     pub override_percent: f64,
     pub repeat: u32,
     pub steps: Vec<StepSpec>,
-    /// Instead of the steps.
+    /// Recording that replaces the steps.
     pub recording: Option<RecordingSpec>,
 }
 
@@ -151,7 +151,7 @@ impl HandSpec {
 }
 
 impl ProgramSpec {
-    /// Steps that run once.
+    /// Creates a program of steps that run once.
     pub fn of_steps(override_percent: f64, steps: Vec<StepSpec>) -> Self {
         Self { override_percent, repeat: 1, steps, recording: None }
     }

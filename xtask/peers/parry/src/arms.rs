@@ -1,4 +1,4 @@
-//! Two arms of seven links: boxes of the links in the world decide which pairs are queried.
+//! Two arms of seven links: the links' boxes in the world decide which pairs are queried.
 
 use std::path::Path;
 use std::rc::Rc;
@@ -60,7 +60,7 @@ pub fn add(data: &Path, cells: &mut Vec<Cell>) {
     }
 }
 
-/// parry's closest points prune with what is known; without a bound there is only `distance`.
+/// Distance by parry's closest points, which prune with a known bound; without a bound, by `distance`.
 fn library_distance(a: &TriMesh, pa: &Pose, b: &TriMesh, pb: &Pose, best: f64) -> f64 {
     if best == f64::INFINITY {
         return query::distance(pa, a, pb, b).map_or(f64::NAN, |found| found.distance);

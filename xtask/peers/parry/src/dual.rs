@@ -1,4 +1,4 @@
-//! Both trees descended together, on parry's public `Bvh::leaf_pairs`: what a user who knows parry well writes.
+//! Simultaneous descent of both trees, on parry's public `Bvh::leaf_pairs`: code that an experienced user of parry writes.
 
 use std::cell::Cell;
 
@@ -7,7 +7,7 @@ use parry3d_f64::partitioning::BvhNode;
 use parry3d_f64::query::{ClosestPoints, DefaultQueryDispatcher, PointQuery, QueryDispatcher};
 use parry3d_f64::shape::TriMesh;
 
-/// Boxes of the second tree, turned into the first mesh's frame.
+/// Boxes of the second tree, rotated into the first mesh's frame.
 pub struct Turned {
     rotation: Matrix,
     magnitudes: [Vector; 3],
@@ -21,21 +21,21 @@ impl Turned {
         Self { rotation, magnitudes, translation: pose.translation }
     }
 
-    /// Middle and half extents of the box around the turned box.
+    /// Centre and half extents of the box around the rotated box.
     pub fn around(&self, low: Vector, high: Vector) -> (Vector, Vector) {
         let (middle, half) = ((low + high) * 0.5, (high - low) * 0.5);
         let [x, y, z] = self.magnitudes;
         (self.rotation * middle + self.translation, x * half.x + y * half.y + z * half.z)
     }
 
-    /// The gap between the boxes of two nodes along each axis; negative if they overlap.
+    /// Gap between the boxes of two nodes along each axis; negative if they overlap.
     fn gaps(&self, a: &BvhNode, b: &BvhNode) -> Vector {
         let (middle, half) = self.around(b.mins(), b.maxs());
         (a.mins() - (middle + half)).max((middle - half) - a.maxs())
     }
 }
 
-/// Is any pair of triangles within `margin`?
+/// Whether any pair of triangles is within `margin`.
 pub fn close(a: &TriMesh, b: &TriMesh, b_in_a: &Pose, margin: f64) -> bool {
     let turned = Turned::new(b_in_a);
     let mut pairs = a.bvh().leaf_pairs(b.bvh(), |x, y| turned.gaps(x, y).max_element() <= margin);
@@ -50,7 +50,7 @@ pub fn close(a: &TriMesh, b: &TriMesh, b_in_a: &Pose, margin: f64) -> bool {
     })
 }
 
-/// The distance, or `limit` where it is larger. The nearest found so far prunes as the descent goes on.
+/// Distance of the meshes, or `limit` if the distance is larger. The smallest distance found so far prunes the descent.
 pub fn distance(a: &TriMesh, b: &TriMesh, b_in_a: &Pose, limit: f64) -> f64 {
     let turned = Turned::new(b_in_a);
     let best = Cell::new(limit.min(beginning(a, b, b_in_a)));
@@ -66,7 +66,7 @@ pub fn distance(a: &TriMesh, b: &TriMesh, b_in_a: &Pose, limit: f64) -> f64 {
     best.get()
 }
 
-/// An upper bound: a point projected from one surface to the other and back.
+/// Upper bound of the distance: a point projected from one surface to the other and back.
 fn beginning(a: &TriMesh, b: &TriMesh, b_in_a: &Pose) -> f64 {
     let a_in_b = b_in_a.inverse();
     let mut on_a = a.local_aabb().center();

@@ -1,4 +1,4 @@
-//! The shared file format. A file that cannot be read ends the program: the one who asks reports it.
+//! Readers of the shared file format. A file that cannot be read ends the program; the calling program reports it.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -24,7 +24,7 @@ impl Poses {
         &self.poses[i]
     }
 
-    /// The second body's pose in the first's frame.
+    /// Pose of the second body in the frame of the first.
     pub fn between(&self, i: usize) -> Pose {
         self.poses[2 * i].inv_mul(&self.poses[2 * i + 1])
     }
@@ -34,7 +34,7 @@ fn read(path: &Path) -> Vec<u8> {
     std::fs::read(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
 }
 
-/// Vertices of equal bits become one.
+/// Reads a mesh. Vertices with equal bits are merged.
 pub fn read_mesh(path: &Path) -> TriMesh {
     let bytes = read(path);
     let (mut vertices, mut triangles, mut known) = (Vec::new(), Vec::new(), HashMap::new());
@@ -63,7 +63,7 @@ pub fn read_poses(path: &Path) -> Poses {
     Poses { bodies, poses: numbers.chunks_exact(12).map(pose).collect() }
 }
 
-/// Size and tolerance, metres.
+/// Reads size and tolerance, m.
 pub fn read_meta(path: &Path) -> [f64; 2] {
     let text = std::fs::read_to_string(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
     let mut numbers = text.split_whitespace().filter_map(|word| word.parse().ok());

@@ -1,4 +1,4 @@
-//! parry's part in `cargo xtask peers`: its own queries, and what its public tree allows.
+//! parry's runner of `cargo xtask peers`: parry's own queries, and queries built on its public tree.
 
 mod arms;
 mod dual;

@@ -1,14 +1,14 @@
-//! The conversation with xtask, word for word that of the other runners (`xtask/peers/README.md`).
+//! Protocol with xtask, the same as that of the other runners (`xtask/peers/README.md`).
 
 use std::io::{BufRead, Write};
 use std::time::Duration;
 
 use rustix::time::{ClockId, clock_gettime};
 
-/// The answer for a record: 0 or 1, or metres.
+/// Returns the answer for a record: 0 or 1, or metres.
 pub trait Query {
     fn answer(&mut self, record: usize) -> f64;
-    /// The whole loop, so that the question can be inlined into it.
+    /// Runs the whole loop, so that the query can be inlined into it.
     fn pass(&mut self, records: usize, passes: usize) -> f64;
 }
 
@@ -40,7 +40,7 @@ pub struct Cell {
 }
 
 impl Cell {
-    /// One question on this set.
+    /// Returns the cell of one query on this set.
     pub fn with(&self, lib: &str, query: &'static str, records: usize, run: Box<dyn Query>) -> Self {
         let (lib, set) = (lib.to_owned(), self.set.clone());
         Self { lib, set, query, records, size: self.size, tolerance: self.tolerance, run: Some(run) }
@@ -82,7 +82,7 @@ fn obey(line: &str, cells: &mut [Cell]) -> Option<String> {
     Some(format!("{}", bytes.len() / 8))
 }
 
-/// Nanoseconds of this thread's processor time per record, after a warm-up of a millisecond or one pass.
+/// Processor time of this thread per record, ns, after a warm-up of a millisecond or one pass.
 fn time(run: &mut dyn Query, records: usize, passes: usize) -> f64 {
     let start = processor_time();
     let mut sum = 0.0;

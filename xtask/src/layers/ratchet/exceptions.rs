@@ -1,4 +1,4 @@
-//! The list of exceptions: what was over a limit when the rule was made. It may only shrink.
+//! List of exceptions: items that were over a limit when the rule was made. It may only shrink.
 
 use std::collections::BTreeMap;
 
@@ -6,19 +6,19 @@ use toml::{Table, Value};
 
 use super::measured::Measured;
 
-/// The file of the list, below the root of the workspace.
+/// Path of the list, below the root of the workspace.
 pub const LIST: &str = "xtask/ratchet.toml";
 
 /// A limit of the ratchet.
 #[derive(Debug, Clone, Copy)]
 pub struct Rule {
-    /// The section of the list that has its exceptions.
+    /// Section of the list with its exceptions.
     pub section: &'static str,
     /// The largest size that needs no exception.
     pub limit: usize,
-    /// What is counted.
+    /// Unit of the count.
     pub unit: &'static str,
-    /// What to do about too many.
+    /// Advice for items over the limit.
     pub advice: &'static str,
 }
 
@@ -45,7 +45,7 @@ pub fn read(text: &str, rules: &[Rule]) -> Result<BTreeMap<&'static str, Excepti
     Ok(found)
 }
 
-/// What is over the limit without an exception, has grown beyond its own, or has an exception that is too large.
+/// Lists items that are over the limit without an exception or have outgrown it, and exceptions that are too large.
 pub fn problems(rule: &Rule, measured: &[Measured], exceptions: &Exceptions) -> Vec<String> {
     let Rule { section, limit, unit, advice } = rule;
     let mut found = Vec::new();
@@ -77,8 +77,8 @@ pub fn problems(rule: &Rule, measured: &[Measured], exceptions: &Exceptions) -> 
 
 const BY_COMMAND: &str = " (`cargo xtask layers --write` does it)";
 
-/// The text of the list with each entry lowered to what `sizes` has for it, or removed; nothing is added or raised.
-/// `sizes` answers for a section and a name, `None` if an exception is needed no more.
+/// Returns the text of the list with each entry lowered to its size in `sizes`, or removed; nothing is added or raised.
+/// `sizes` returns the size for a section and a name, `None` if the exception is no longer needed.
 pub fn lowered(text: &str, sizes: impl Fn(&str, &str) -> Option<usize>) -> String {
     let mut section = String::new();
     let mut kept = String::new();
@@ -98,7 +98,7 @@ pub fn lowered(text: &str, sizes: impl Fn(&str, &str) -> Option<usize>) -> Strin
     kept
 }
 
-/// The name and size of a line `"NAME" = SIZE`.
+/// Parses the name and size of a line `"NAME" = SIZE`.
 fn entry(line: &str) -> Option<(&str, usize)> {
     let (name, size) = line.strip_prefix('"')?.split_once("\" = ")?;
     Some((name, size.parse().ok()?))

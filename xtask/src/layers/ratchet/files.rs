@@ -1,4 +1,4 @@
-//! The files that the ratchet reads.
+//! Files that the ratchet reads.
 
 use std::path::Path;
 
@@ -11,11 +11,11 @@ pub struct SourceFile {
     pub path: String,
     /// Its text.
     pub text: String,
-    /// Whether it is measured: a source of a crate, no test.
+    /// Whether it is measured: a source of a crate that is not a test.
     pub is_measured: bool,
 }
 
-/// Rust sources of all crates with their tests, examples and benches; documents; programs in other languages.
+/// Reads Rust sources of all crates with their tests, examples and benches; documents; programs in other languages.
 pub fn read(root: &Path) -> Result<Vec<SourceFile>, String> {
     let mut packages: Vec<_> = crates::find(root)?.into_iter().map(|found| found.folder).collect();
     packages.extend(["devtools", "xtask"].map(|name| root.join(name)));

@@ -1,12 +1,12 @@
-//! Something that a rule limits, as it is today.
+//! Item that a rule limits, with its present size.
 
 /// A file, a function, a struct or a crate with its size.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Measured {
     /// Its name in the list of exceptions.
     pub name: String,
-    /// Where it is: `FILE:LINE`.
+    /// Its place: `FILE:LINE`.
     pub place: String,
-    /// How large it is.
+    /// Its size.
     pub value: usize,
 }

@@ -1,5 +1,5 @@
-//! Limits of size. What was over a limit when the rule was made is listed by name in `xtask/ratchet.toml`, with its size;
-//! the list may only shrink.
+//! Limits of size. Items that were over a limit when the rule was made are listed by name in `xtask/ratchet.toml`, with
+//! their size; the list may only shrink.
 
 mod exceptions;
 mod files;
@@ -41,16 +41,16 @@ const RULES: [Rule; 4] = [
     },
 ];
 
-/// What the ratchet found.
+/// Result of the ratchet.
 pub struct Outcome {
     /// Every place to change.
     pub problems: Vec<String>,
-    /// How many exceptions the list has.
+    /// Number of exceptions in the list.
     pub exceptions: usize,
 }
 
-/// Checks the workspace at `root`, whose crates have these manifests. `write` first lowers and removes what the list has
-/// too much.
+/// Checks the workspace at `root`, whose crates have these manifests. `write` first lowers and removes exceptions that are
+/// too large.
 pub fn check(root: &Path, manifests: &BTreeMap<String, Table>, write: bool) -> Result<Outcome, String> {
     let files = files::read(root)?;
     let measured = [
@@ -73,7 +73,7 @@ pub fn check(root: &Path, manifests: &BTreeMap<String, Table>, write: bool) -> R
     Ok(Outcome { problems, exceptions: list.values().map(Exceptions::len).sum() })
 }
 
-/// The size that an exception has to allow; `None` if none is needed.
+/// Returns the size that an exception has to allow; `None` if none is needed.
 fn needed(measured: &[Vec<Measured>; 4], section: &str, name: &str) -> Option<usize> {
     let (rule, measured) = RULES.iter().zip(measured).find(|(rule, _)| rule.section == section)?;
     let size = measured.iter().find(|m| m.name == name)?.value;

@@ -1,5 +1,5 @@
-//! Public items that nothing reaches: their name stands as a word in no other file of the workspace, and in no example of
-//! the documentation. This is a test by words: a common name hides an item that nothing reaches.
+//! Public items that nothing reaches: their name occurs as a word in no other file of the workspace, and in no example of
+//! the documentation. The test compares words: an unreached item with a common name is not found.
 
 use std::collections::{HashMap, HashSet};
 
@@ -7,7 +7,7 @@ use super::files::SourceFile;
 use super::sizes::line_of;
 use crate::layers::source::{Token, tokens};
 
-/// Every public item that nothing reaches, as a line with place and advice.
+/// Lists every public item that nothing reaches, as a line with place and advice.
 pub fn dead_items(files: &[SourceFile]) -> Vec<String> {
     let sources: Vec<Vec<Token>> =
         files.iter().map(|file| if is_rust(file) { tokens(&whole(&file.text)) } else { Vec::new() }).collect();
@@ -44,7 +44,7 @@ pub fn dead_items(files: &[SourceFile]) -> Vec<String> {
 
 const ADVICE: &str = "delete it, or make it private; a user's item is shown in an example of its documentation";
 
-/// The files in which a word stands.
+/// Files in which a word occurs.
 enum Holder {
     One(usize),
     Many,
@@ -62,7 +62,7 @@ fn is_rust(file: &SourceFile) -> bool {
     std::path::Path::new(&file.path).extension().is_some_and(|ending| ending == "rs")
 }
 
-/// The text with its unit tests in the middle instead of the end, so that [`tokens`] keeps them.
+/// Moves the unit tests of a text from the end to the middle, so that [`tokens`] keeps them.
 fn whole(text: &str) -> String {
     text.replace("#[cfg(test)]\nmod ", "#[cfg(test)]\n\nmod ")
 }
@@ -71,7 +71,7 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|word| !word.is_empty())
 }
 
-/// The words of the examples in documentation comments.
+/// Returns the words of the examples in documentation comments.
 fn words_of_examples(text: &str) -> Vec<String> {
     let mut found = Vec::new();
     let mut is_inside = false;
@@ -89,7 +89,7 @@ fn words_of_examples(text: &str) -> Vec<String> {
     found
 }
 
-/// Tokens without `pub use` of the crate's own items: a name that is handed on is not used yet.
+/// Removes `pub use` of the crate's own items from the tokens: a re-exported name is not used yet.
 fn without_own_exports(tokens: &[Token]) -> impl Iterator<Item = &Token> {
     let mut is_export = false;
     tokens.iter().enumerate().filter_map(move |(i, token)| {
@@ -111,7 +111,7 @@ fn is_type(kind: &str) -> bool {
     matches!(kind, "struct" | "enum" | "union" | "trait" | "type")
 }
 
-/// Kind and name of every item that is `pub` without restriction.
+/// Returns kind and name of every item that is `pub` without restriction.
 fn public_items(tokens: &[Token]) -> Vec<(&str, &str)> {
     let mut found = Vec::new();
     for i in 0..tokens.len() {
@@ -119,7 +119,7 @@ fn public_items(tokens: &[Token]) -> Vec<(&str, &str)> {
             continue;
         }
         let mut rest = tokens[i + 1..].iter().map(Token::word).peekable();
-        // `const` is an item, or stands before `fn`.
+        // `const` is an item, or a word before `fn`.
         let mut kind = rest.next().flatten();
         while matches!(kind, Some("const" | "async" | "unsafe")) && matches!(rest.peek(), Some(Some("fn" | "unsafe"))) {
             kind = rest.next().flatten();
@@ -133,8 +133,8 @@ fn public_items(tokens: &[Token]) -> Vec<(&str, &str)> {
     found
 }
 
-/// Words of signatures, fields, variants, traits, aliases and types of constants: a type that stands there is reached
-/// through them.
+/// Returns the words of signatures, fields, variants, traits, aliases and types of constants: a type that occurs there is
+/// reached through them.
 fn seen_in_signatures(tokens: &[Token]) -> HashSet<&str> {
     let mut seen = HashSet::new();
     for i in 0..tokens.len() {
@@ -144,14 +144,14 @@ fn seen_in_signatures(tokens: &[Token]) -> HashSet<&str> {
             _ => None,
         };
         if let Some(end) = end {
-            // Behind the item's own name.
+            // After the item's own name.
             seen.extend(tokens[(i + 2).min(i + end)..i + end].iter().filter_map(Token::word));
         }
     }
     seen
 }
 
-/// Where the item at the start of `tokens` ends: at its semicolon, or at its block, which is part of it if `with_block`.
+/// Finds the end of the item at the start of `tokens`: its semicolon, or its block, which is part of it if `with_block`.
 fn end_of_item(tokens: &[Token], with_block: bool) -> Option<usize> {
     let mut depth = 0_usize;
     for (i, token) in tokens.iter().enumerate() {
@@ -176,7 +176,7 @@ fn end_of_item(tokens: &[Token], with_block: bool) -> Option<usize> {
 mod tests {
     use super::*;
 
-    /// What is dead in `a.rs` of this text beside `others`.
+    /// Returns the dead items of `a.rs` with this text beside `others`.
     fn dead(text: &str, others: &[(&str, &str)]) -> Vec<String> {
         let file =
             |path: &str, text: &str, is_measured| SourceFile { path: path.into(), text: text.into(), is_measured };

@@ -1,4 +1,4 @@
-//! How large files, functions, structs and the lists of dependencies are. Unit tests at the end of a file do not count.
+//! Sizes of files, functions, structs and lists of dependencies. Unit tests at the end of a file do not count.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use super::measured::Measured;
 use crate::functions::functions;
 use crate::layers::source::{Token, before_tests, tokens};
 
-/// Lines of each file.
+/// Counts the lines of each file.
 pub fn lines_of_files(files: &[SourceFile]) -> Vec<Measured> {
     let measured = files.iter().filter(|file| file.is_measured);
     let size = |file: &SourceFile| Measured {
@@ -20,7 +20,7 @@ pub fn lines_of_files(files: &[SourceFile]) -> Vec<Measured> {
     measured.map(size).collect()
 }
 
-/// Lines of each function.
+/// Counts the lines of each function.
 pub fn lines_of_functions(files: &[SourceFile]) -> Vec<Measured> {
     each_file(files, |file| {
         let found = functions(before_tests(&file.text));
@@ -28,7 +28,7 @@ pub fn lines_of_functions(files: &[SourceFile]) -> Vec<Measured> {
     })
 }
 
-/// Fields of each struct.
+/// Counts the fields of each struct.
 pub fn fields_of_structs(files: &[SourceFile]) -> Vec<Measured> {
     each_file(files, |file| {
         let structs = structs(&tokens(&file.text)).into_iter();
@@ -36,7 +36,8 @@ pub fn fields_of_structs(files: &[SourceFile]) -> Vec<Measured> {
     })
 }
 
-/// Direct dependencies of each crate (name → its `Cargo.toml`), of the workspace and others, those of tests not counted.
+/// Counts the direct dependencies of each crate (name → its `Cargo.toml`), inside and outside the workspace, without
+/// those of tests.
 pub fn dependencies_of_crates(manifests: &BTreeMap<String, Table>) -> Vec<Measured> {
     let count = |manifest: &Table| manifest.get("dependencies").and_then(Value::as_table).map_or(0, Table::len);
     let size = |(name, manifest): (&String, &Table)| Measured {
@@ -47,7 +48,7 @@ pub fn dependencies_of_crates(manifests: &BTreeMap<String, Table>) -> Vec<Measur
     manifests.iter().map(size).collect()
 }
 
-/// The line, from 1, on which these words stand for the first time.
+/// Returns the line, from 1, on which these words occur for the first time.
 pub fn line_of(text: &str, words: &str) -> usize {
     let is_end = |line: &str, at: usize| {
         line[at + words.len()..].chars().next().is_none_or(|c| !c.is_alphanumeric() && c != '_')
@@ -56,7 +57,8 @@ pub fn line_of(text: &str, words: &str) -> usize {
     found.map_or(1, |line| line + 1)
 }
 
-/// Names, lines and sizes in each file. Of equal names in one file the second gets ` (2)`, so that each is on its own.
+/// Collects names, lines and sizes in each file. If a name occurs twice in a file, the second gets ` (2)`, so that
+/// names are unique.
 fn each_file(files: &[SourceFile], measure: impl Fn(&SourceFile) -> Vec<(String, usize, usize)>) -> Vec<Measured> {
     let mut found = Vec::new();
     for file in files.iter().filter(|file| file.is_measured) {
@@ -71,7 +73,7 @@ fn each_file(files: &[SourceFile], measure: impl Fn(&SourceFile) -> Vec<(String,
     found
 }
 
-/// Names of structs and the numbers of their fields.
+/// Returns the names of structs and the numbers of their fields.
 fn structs(tokens: &[Token]) -> Vec<(String, usize)> {
     let mut found = Vec::new();
     for (i, token) in tokens.iter().enumerate() {
@@ -91,20 +93,20 @@ fn structs(tokens: &[Token]) -> Vec<(String, usize)> {
     found
 }
 
-/// Fields up to the brace that closes: a word and a colon, outside of all brackets.
+/// Counts fields up to the closing brace: a word and a colon, outside all brackets.
 fn named_fields(body: &[Token]) -> usize {
     let is_field = |i: usize| body[i].is(':') && i > 0 && body[i - 1].word().is_some();
     outside_brackets(body).into_iter().filter(|&i| is_field(i)).count()
 }
 
-/// Types up to the parenthesis that closes, separated by commas.
+/// Counts types up to the closing parenthesis, separated by commas.
 fn unnamed_fields(body: &[Token]) -> usize {
     let outside = outside_brackets(body);
     let Some(last) = outside.last() else { return 0 };
     outside.iter().filter(|&&i| body[i].is(',')).count() + usize::from(!body[*last].is(','))
 }
 
-/// The places up to the bracket that closes `body`, without all that is in brackets of its own.
+/// Returns the positions up to the bracket that closes `body`, without those inside further brackets.
 fn outside_brackets(body: &[Token]) -> Vec<usize> {
     let (mut depth, mut outside) = (0_usize, Vec::new());
     for (i, token) in body.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! The arms: their controllers obey the overrides that arrive, and their poses are the truth.
+//! Arms whose controllers obey the overrides that arrive; their poses are the ground truth.
 
 use std::error::Error;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -20,7 +20,7 @@ struct Arm {
     /// Angular frequency of the swing at override 1, rad/s.
     rate: f64,
     phase: f64,
-    /// The override that the arm runs at: it follows the commanded one within the stop time.
+    /// The override at which the arm runs: it follows the commanded one within the stop time.
     running: f64,
     bytes: Vec<u8>,
 }
@@ -37,7 +37,7 @@ impl Arm {
         let client = Arc::new(Mutex::new(client));
         let receiver = client.clone();
         let handler = Box::new(move |bytes: &[u8]| {
-            // Refused answers are those that came too late.
+            // Refused answers have come too late.
             let _ = lock(&receiver).receive(bytes);
         });
         Ok(Self {
@@ -76,24 +76,24 @@ impl Arm {
     }
 }
 
-/// What was seen of the true poses.
+/// Observations of the true poses.
 #[derive(Debug, Default)]
 pub struct Seen {
-    /// Ticks of the controllers.
+    /// Number of ticks of the controllers.
     pub ticks: u64,
-    /// Of them, those that began more than a period late: the arms were held up too.
+    /// Number of ticks that began more than a period late: the arms were held up too.
     pub late_ticks: u64,
-    /// Per robot, how often it has entered a region.
+    /// Number of entries into a region, per robot.
     pub entries: Vec<u64>,
-    /// Per robot, when it entered a region last, s.
+    /// Time of the last entry into a region, per robot, s.
     last_entry_s: Vec<f64>,
-    /// Per robot, the longest time between two entries, s.
+    /// Longest time between two entries, per robot, s.
     pub longest_s: Vec<f64>,
-    /// In how many ticks two robots were in one region, for each two.
+    /// Number of ticks in which two robots were in one region, for each two.
     pub shared: u64,
-    /// How often a robot has entered its temporary region while that was surely on.
+    /// Number of times that a robot has entered its temporary region while it was certainly on.
     pub entered: u64,
-    /// In how many ticks a robot stood before its temporary region, which was surely on.
+    /// Number of ticks in which a robot waited before its temporary region, which was certainly on.
     pub held: u64,
     inside: Vec<Option<usize>>,
     in_cart: Vec<bool>,
@@ -151,7 +151,7 @@ pub fn run(cell: &Cell, network: &dyn Network, switches: &Switches, time: Durati
         }
         std::thread::sleep(due.saturating_duration_since(now));
     }
-    // Nobody may stand at the end.
+    // The time since the last entry counts too, so that no arm is stopped at the end unnoticed.
     for (longest_s, last_s) in seen.longest_s.iter_mut().zip(&seen.last_entry_s) {
         *longest_s = longest_s.max(began.elapsed().as_secs_f64() - last_s);
     }

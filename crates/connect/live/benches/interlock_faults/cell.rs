@@ -1,20 +1,20 @@
-//! The cell: arms with one joint in a row, an exchange region between neighbours, where their tips meet, and a temporary region
-//! in the middle of each swing.
+//! Cell of the bench: arms with one joint in a row, an exchange region between neighbours, where their tips meet, and a
+//! temporary region in the middle of each swing.
 
 use std::f64::consts::FRAC_PI_2;
 use std::fmt::Write as _;
 
 use elbowroom_cell::Cell;
 
-/// From a base to the next, m. The arms are half as long.
+/// Distance from a base to the next, m. The arms are half as long.
 const SPACING_M: f64 = 2.0;
 /// Half the edge of a region, m.
 const HALF_REGION_M: f64 = 0.15;
-/// From full speed to rest, s.
+/// Time from full speed to rest, s.
 pub const STOP_TIME_S: f64 = 0.2;
 /// Period of the controllers, ms.
 pub const TICK_MS: u64 = 20;
-/// The arms swing this far to both sides, rad: past the middles of both regions.
+/// Amplitude of the arms' swings to both sides, rad: past the centres of both regions.
 pub const AMPLITUDE: f64 = 1.1 * FRAC_PI_2;
 
 /// Name of a robot.
@@ -32,7 +32,7 @@ pub fn cart(robot: usize) -> String {
     format!("cart_{}", name(robot))
 }
 
-/// A cell of this many robots.
+/// Makes a cell of this many robots.
 pub fn cell(robots: usize) -> Result<Cell, Box<dyn std::error::Error>> {
     let mut text = format!(
         "version = 1\nname = \"interlock faults\"\nunits = {{ length = \"m\", angle = \"deg\" }}\ntick_ms = {TICK_MS}\n"
@@ -57,12 +57,13 @@ pub fn cell(robots: usize) -> Result<Cell, Box<dyn std::error::Error>> {
              size = [{edge}, {edge}, {edge}]\nwarning = 0.3\nguards = [\"tcp\"]\nrobots = [\"{a}\", \"{b}\"]"
         )?;
     }
-    // Joint values are sent and overrides applied once in a tick.
+    // Joint values are sent and overrides applied once per tick.
     writeln!(text, "[monitor]\nstopping_distance = true\ndirection_aware = true\nstale_ms = 100\nreaction_ms = 40")?;
     Ok(Cell::parse("interlock_faults.toml", &text)?)
 }
 
-/// The region that the tip of a robot is in at this joint value; `None` outside of all. From the geometry alone.
+/// Returns the region that the tip of a robot is in at this joint value; `None` outside all. Computed from the geometry
+/// alone.
 pub fn occupied(robot: usize, robots: usize, q: f64) -> Option<usize> {
     let (x, y) = (q.cos(), SPACING_M * robot as f64 + q.sin());
     (1..robots).find(|left| {
@@ -71,7 +72,7 @@ pub fn occupied(robot: usize, robots: usize, q: f64) -> Option<usize> {
     })
 }
 
-/// Whether the tip of a robot is in its temporary region. From the geometry alone.
+/// Whether the tip of a robot is in its temporary region. Computed from the geometry alone.
 pub fn is_in_cart(q: f64) -> bool {
     (q.cos() - 1.0).abs() < HALF_REGION_M && q.sin().abs() < HALF_REGION_M
 }

@@ -9,11 +9,11 @@ use elbowroom_testkit::random::{split_mix, unit};
 use crate::processes::Process;
 use crate::requests::Requests;
 
-/// The shortest and the longest fault, s.
+/// Shortest and longest duration of a fault, s.
 const LENGTH_S: [f64; 2] = [0.01, 10.0];
-/// How exactly faults begin and end.
+/// Resolution of the begin and end of faults.
 const POLL: Duration = Duration::from_millis(1);
-/// One fault in this many is the arbiter's.
+/// Every Nth fault is of the arbiter.
 const ARBITER_EVERY: u64 = 8;
 
 /// A fault of a process.
@@ -23,15 +23,15 @@ enum Fault {
     Killed,
     /// Killed, and started again at once.
     Restarted,
-    /// Neither running nor dead.
+    /// Paused: neither running nor dead.
     Paused,
-    /// Without a network; what it sent and was sent arrives afterwards.
+    /// Cut off from the network; messages from and to it arrive afterwards.
     CutOff,
 }
 
 /// Injects faults until the time is over.
 pub struct Faults {
-    /// The arbiter behind the nodes.
+    /// The nodes, then the arbiter.
     processes: Vec<Process>,
     present: Vec<Option<(Fault, Instant)>>,
     random: u64,
@@ -44,7 +44,7 @@ impl Faults {
         Self { processes, present, random: seed, counts: BTreeMap::new() }
     }
 
-    /// One fault every `every`; returns how many there were of each kind.
+    /// Injects one fault every `every`; returns the number of faults of each kind.
     pub fn run(
         mut self,
         every: Duration,
@@ -79,7 +79,7 @@ impl Faults {
         Ok(())
     }
 
-    /// An error where a process has ended that nobody has killed.
+    /// Returns an error if a process has ended without being killed.
     fn check_that_all_run(&mut self) -> Result<(), Box<dyn Error>> {
         let is_killed =
             |present: &Option<(Fault, Instant)>| matches!(present, Some((Fault::Killed | Fault::Restarted, _)));

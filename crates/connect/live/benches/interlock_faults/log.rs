@@ -1,4 +1,4 @@
-//! What the processes say, and whether it explains why a robot waited for a free region.
+//! Log of the processes' messages, and whether it explains why a robot waited for a free region.
 
 use std::io::{BufRead as _, BufReader, Read};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -6,15 +6,15 @@ use std::time::{Duration, Instant};
 
 use crate::cell::{between, name};
 
-/// A pause up to this long needs no explanation.
+/// Longest pause that needs no explanation.
 const PAUSE: Duration = Duration::from_secs(2);
-/// What a line explains begins this much before it: whoever is silent is named after a second.
+/// Time before a line that the line explains: silence is reported after a second.
 const BEFORE: Duration = Duration::from_millis(1500);
-/// Processes connect and report for this long after they are there again.
+/// Time for which processes connect and report after their return.
 const AFTER: Duration = Duration::from_secs(3);
-/// With what nodes begin to speak of the arbiter.
+/// Beginning of the nodes' lines about the arbiter.
 const ARBITER: &str = "the arbiter's process is ";
-/// What the arbiter says first.
+/// Beginning of the arbiter's first line.
 const STARTED: &str = "all temporary regions are on";
 
 /// A wait of a robot for a region.
@@ -26,10 +26,10 @@ pub struct Wait {
     pub to: Instant,
 }
 
-/// Who says something: a node, by its robot, or the arbiter.
+/// Speaker of a line: a node, by its robot, or the arbiter.
 pub type Speaker = Option<usize>;
 
-/// A line, with the time at which it came.
+/// A line, with its time of arrival.
 #[derive(Debug, Clone)]
 struct Line {
     at: Instant,
@@ -37,12 +37,12 @@ struct Line {
     text: String,
 }
 
-/// The lines that are believed: what the arbiter says, and what nodes say of the arbiter. A node that is cut off takes everybody else
-/// for gone.
+/// The credible lines: those of the arbiter, and those of nodes about the arbiter. A node that is cut off reports all
+/// others as gone.
 #[derive(Debug, Clone, Default)]
 pub struct Log(Arc<Mutex<Vec<Line>>>);
 
-/// From, to.
+/// Begin and end.
 type Span = (Instant, Instant);
 
 impl Log {
@@ -50,7 +50,7 @@ impl Log {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Reads what a process says, until it ends.
+    /// Reads the lines of a process until it ends.
     pub fn follow(&self, speaker: Speaker, output: impl Read + Send + 'static) {
         let log = self.clone();
         std::thread::spawn(move || {
@@ -62,19 +62,19 @@ impl Log {
         });
     }
 
-    /// How many lines there are.
+    /// Number of lines.
     pub fn count(&self) -> usize {
         self.lines().len()
     }
 
-    /// The waits with a pause that no line explains.
+    /// Returns the waits with a pause that no line explains.
     pub fn unexplained(&self, waits: &[Wait], end: Instant) -> Vec<Wait> {
         let lines = self.lines();
         waits.iter().copied().filter(|wait| longest_gap(wait, &explained(&lines, wait, end)) > PAUSE).collect()
     }
 }
 
-/// What the lines explain, for a wait.
+/// Returns the spans of a wait that the lines explain.
 fn explained(lines: &[Line], wait: &Wait, end: Instant) -> Vec<Span> {
     let (of_arbiter, of_nodes): (Vec<_>, Vec<_>) = lines.iter().partition(|line| line.speaker.is_none());
     let region = between(wait.slot + 1);
@@ -101,7 +101,7 @@ fn explained(lines: &[Line], wait: &Wait, end: Instant) -> Vec<Span> {
     spans
 }
 
-/// Between lines that begin so, and a while before and after.
+/// Returns the spans between lines with these beginnings, extended before and after.
 fn lasting(lines: &[&Line], begin: &str, over: &[&str], end: Instant) -> Vec<Span> {
     let mut spans = Vec::new();
     let mut since: Option<Instant> = None;
@@ -123,7 +123,7 @@ fn at_once(lines: &[&Line], begin: &str) -> Vec<Span> {
     begun.map(|line| (earlier(line.at, BEFORE), line.at + AFTER)).collect()
 }
 
-/// When another robot had the region.
+/// Returns the spans in which another robot had the region.
 fn held(lines: &[&Line], region: &str, robot: &str, end: Instant) -> Vec<Span> {
     let mut spans = Vec::new();
     let mut since: Option<Instant> = None;
@@ -150,7 +150,7 @@ fn earlier(at: Instant, by: Duration) -> Instant {
     at.checked_sub(by).unwrap_or(at)
 }
 
-/// The longest part of a wait that no span covers.
+/// Returns the longest part of a wait that no span covers.
 fn longest_gap(wait: &Wait, spans: &[Span]) -> Duration {
     let mut spans = spans.to_vec();
     spans.sort();

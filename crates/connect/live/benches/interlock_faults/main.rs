@@ -4,9 +4,10 @@
 //! cargo bench -p elbowroom-live --bench interlock_faults -- --robots 64 --seconds 1800 [--every 2] [--seed 1] [--json]
 //! ```
 //!
-//! Arms in a row swing through a region with each neighbour. Their controllers run in this process, which knows the true poses;
-//! nodes and arbiter are processes of their own, connected through relays that can be cut. A temporary region in the middle of each
-//! swing is switched at random. Whoever waits for a free region longer than two seconds must find the reason in what the processes say.
+//! Arms in a row swing through a region with each neighbour. Their controllers run in this process, which knows the
+//! true poses; nodes and arbiter are separate processes, connected through relays that can be cut. A temporary region
+//! in the middle of each swing is switched at random. If a robot waits for a free region longer than two seconds, the
+//! processes' lines must give the reason.
 #![allow(clippy::print_stdout, reason = "a program")]
 
 mod arms;
@@ -40,10 +41,10 @@ use switches::Switches;
 const MOST_ROBOTS: usize = 64;
 const MOST_SECONDS: u64 = 86_400;
 const ARBITER: &str = "arbiter";
-/// A robot enters its next region sooner than this, whatever fails.
+/// Longest time until a robot enters its next region, whatever fails, s.
 const MOST_STANDING_S: f64 = 120.0;
 
-/// The arguments.
+/// Options of the bench.
 #[derive(Debug, Clone)]
 struct Options {
     robots: usize,
@@ -51,7 +52,7 @@ struct Options {
     every_s: f64,
     seed: u64,
     json: bool,
-    /// What a process is that this one has started: its part, and the address that it connects to.
+    /// For a process that this program has started: its part, and the address that it connects to.
     part: Option<(String, String)>,
 }
 
@@ -103,17 +104,17 @@ fn serve(options: &Options, part: &str, hub: String) -> Result<(), Box<dyn Error
     let service = ServiceOptions { robots, connect: Some(hub), arbiter: is_arbiter, ..ServiceOptions::default() };
     let service = ServiceOptions { on_event: Some(on_event), ..service };
     let service = Service::start(cell::cell(options.robots)?, &service)?;
-    // Nothing is ever sent: it ends with its writer.
+    // Nothing is ever sent: the input ends with its writer.
     std::io::stdin().read_to_end(&mut Vec::new())?;
     service.stop()?;
     Ok(())
 }
 
-/// What a run gave.
+/// Results of a run.
 struct Outcome {
     seen: Seen,
     faults: BTreeMap<String, u64>,
-    /// How often temporary regions were switched on.
+    /// Number of times that temporary regions were switched on.
     switched: u64,
     measured: Measured,
     unexplained: Vec<Wait>,
@@ -127,14 +128,14 @@ impl Outcome {
 
     fn is_good(&self) -> bool {
         let Seen { shared, entered, held, ticks, .. } = self.seen;
-        // In a minute some arm comes to a region that is on: otherwise none was ever switched.
+        // Within a minute some arm reaches a region that is on; otherwise no region was ever switched.
         let is_tested = held > 0 || ticks * cell::TICK_MS < 60_000;
         is_tested && shared == 0 && entered == 0 && self.unexplained.is_empty() && self.longest_s() < MOST_STANDING_S
     }
 }
 
-/// Runs the cell under faults; false if two robots were in one region, one was in a region that was switched on, one stood for
-/// minutes, or one has waited without a reason that somebody said.
+/// Runs the cell under faults; returns false if two robots were in one region, one was in a region that was switched
+/// on, one was stopped for minutes, or one has waited without a reported reason.
 fn inject(options: &Options) -> Result<bool, Box<dyn Error>> {
     let cell = cell::cell(options.robots)?;
     let hub = std::net::TcpListener::bind("127.0.0.1:0")?.local_addr()?.to_string();

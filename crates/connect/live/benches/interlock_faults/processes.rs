@@ -1,4 +1,4 @@
-//! The processes of the cell: a node per robot and the arbiter, each connected through a relay.
+//! Processes of the cell: a node per robot and the arbiter, each connected through a relay.
 
 use std::error::Error;
 use std::process::{Child, Command, Stdio};
@@ -27,12 +27,12 @@ impl Process {
     }
 
     pub fn kill(&mut self) {
-        // One that has ended cannot be killed.
+        // A process that has ended cannot be killed.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
 
-    /// How it has ended by itself, if it has.
+    /// Returns how the process has ended by itself, if it has.
     pub fn has_ended(&mut self) -> Option<String> {
         self.child.try_wait().ok()?.map(|status| status.to_string())
     }

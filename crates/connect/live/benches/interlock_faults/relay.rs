@@ -1,4 +1,4 @@
-//! A connection through this process, which can be cut without being closed: what is sent meanwhile arrives late.
+//! Relay: a connection through this process, which can be cut without being closed; messages sent meanwhile arrive late.
 
 use std::io::{Read, Result, Write};
 use std::net::{Shutdown, TcpListener, TcpStream};
@@ -6,10 +6,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::SeqCst};
 use std::time::Duration;
 
-/// How soon a connection goes on that is not cut any more.
+/// Longest delay until a connection continues that is no longer cut.
 const POLL: Duration = Duration::from_millis(2);
 
-/// Listens at a port of its own, and connects whoever connects there to another address.
+/// Listens at its own port, and connects each client there to another address.
 pub struct Relay {
     address: String,
     is_cut: Arc<AtomicBool>,
@@ -23,7 +23,7 @@ impl Relay {
         std::thread::spawn(move || {
             for near in listener.incoming().flatten() {
                 let Ok(far) = TcpStream::connect(&address) else { continue };
-                // A connection that cannot be relayed is one that has failed: its process connects again.
+                // A connection that cannot be relayed has failed: its process connects again.
                 let _ = connect(&near, &far, &cut);
             }
         });
@@ -62,7 +62,7 @@ fn forward(mut from: TcpStream, mut to: TcpStream, is_cut: &AtomicBool) {
             break;
         }
     }
-    // Either may be closed already.
+    // Either side may be closed already.
     let _ = from.shutdown(Shutdown::Both);
     let _ = to.shutdown(Shutdown::Both);
 }

@@ -1,4 +1,4 @@
-//! How long the arbiter takes to grant a region, from the messages of both sides.
+//! Time that the arbiter takes to grant a region, from the messages of both sides.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
@@ -13,45 +13,45 @@ use crate::cell::name;
 use crate::latencies::Latencies;
 use crate::log::Wait;
 
-/// This long after its fault a process counts as disturbed: it starts, or connects again.
+/// Time after a fault for which a process counts as disturbed: it starts, or connects again.
 const RECOVERY: Duration = Duration::from_secs(3);
 
-/// A request, until its robot has the region or does not want it any more.
+/// A request, until its robot has the region or no longer wants it.
 #[derive(Debug, Clone, Copy)]
 struct Request {
     at: Instant,
-    /// No other robot had, wanted or might be in the region.
+    /// Whether no other robot had, wanted or might be in the region.
     is_free: bool,
     is_granted: bool,
 }
 
-/// What was measured.
+/// Results of the measurement.
 #[derive(Debug, Clone, Default)]
 pub struct Measured {
-    /// From the request of a free region to its grant, of robots, neighbours and an arbiter without a fault.
+    /// Times from the request of a free region to its grant, if the robots of the region and the arbiter had no fault.
     pub undisturbed: Latencies,
-    /// All others: the region was taken, or something had failed.
+    /// All other times: the region was taken, or something had failed.
     pub others: Latencies,
-    /// From the start of an arbiter's process to its first grant.
+    /// Times from the start of an arbiter's process to its first grant.
     pub restarts: Latencies,
-    /// Waits of more than a second, and those that are not over.
+    /// Waits of more than a second, and waits that are not over.
     pub waits: Vec<Wait>,
 }
 
 struct Heard {
     robots: usize,
-    /// Per robot and region.
+    /// Reports per robot and region.
     reports: Vec<Vec<SlotReport>>,
     requests: Vec<Vec<Option<Request>>>,
-    /// Per process, the arbiter behind the nodes: until when it counts as disturbed; `None` in a fault.
+    /// Time until which a process counts as disturbed, per process, the arbiter after the nodes; `None` during a fault.
     disturbed_until: Vec<Option<Instant>>,
-    /// The start of the arbiter that was heard last, and when its process was started.
+    /// Last received start number of the arbiter, and the start time of its process.
     arbiter: u64,
     arbiter_started: Option<Instant>,
     measured: Measured,
 }
 
-/// Listens to both sides.
+/// Subscriptions to the messages of both sides.
 pub struct Requests {
     heard: Arc<Mutex<Heard>>,
     _subscriptions: Vec<Subscription>,
@@ -68,7 +68,7 @@ impl Requests {
             robots,
             reports: vec![vec![SlotReport::UNKNOWN; slots]; robots],
             requests: vec![vec![None; slots]; robots],
-            // The cell starts.
+            // The cell is starting.
             disturbed_until: vec![Some(Instant::now() + 3 * RECOVERY); robots + 1],
             arbiter: 0,
             arbiter_started: None,
@@ -115,7 +115,7 @@ impl Heard {
         match wire::decode(bytes) {
             Ok(Message::State(state)) => self.take_state(&state, now),
             Ok(Message::Grants(grants)) => self.take_grants(&grants, now),
-            // Not of this cell's processes.
+            // A message that is not of this cell's processes.
             Err(_) => {}
         }
     }
@@ -144,7 +144,7 @@ impl Heard {
                     self.measured.restarts.add_us((now - started).as_micros() as u64);
                 }
             }
-            // A grant that was known before answers no request.
+            // A grant that was known before does not answer a request.
             if answer.granted == self.reports[robot][slot].token {
                 continue;
             }
@@ -157,7 +157,7 @@ impl Heard {
         }
     }
 
-    /// The processes that a request depends on: the robots of the region and the arbiter.
+    /// Returns the processes that a request depends on: the robots of the region and the arbiter.
     fn processes_of(&self, robot: usize, slot: usize) -> impl Iterator<Item = usize> + use<> {
         neighbours(robot, slot).chain([robot, self.robots])
     }
@@ -171,7 +171,7 @@ impl Heard {
         self.disturbed_until[process].is_some_and(|end| now >= end)
     }
 
-    /// Requests that are open when a process that they depend on fails are not undisturbed.
+    /// Marks open requests as disturbed when a process that they depend on fails.
     fn forget_undisturbed(&mut self, process: usize) {
         for robot in 0..self.robots {
             for slot in 0..self.robots - 1 {
@@ -184,12 +184,12 @@ impl Heard {
     }
 }
 
-/// The other robots that share a region.
+/// Returns the other robots that share a region.
 fn neighbours(robot: usize, slot: usize) -> impl Iterator<Item = usize> {
     [slot, slot + 1].into_iter().filter(move |other| *other != robot)
 }
 
-/// A wait that has lasted for more than a second.
+/// Makes a wait, if it has lasted for more than a second.
 fn wait(robot: usize, slot: usize, from: Instant, to: Instant) -> Option<Wait> {
     (to - from > Duration::from_secs(1)).then_some(Wait { robot, slot, from, to })
 }

@@ -1,4 +1,4 @@
-//! An operator who switches the temporary regions at random, and what counts as switched on.
+//! Operator who switches the temporary regions at random, and the condition under which a region counts as on.
 
 use std::error::Error;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -10,21 +10,21 @@ use elbowroom_testkit::random::{split_mix, unit};
 
 use crate::cell::{cart, name};
 
-/// How long a region is on, and off, s.
+/// Shortest and longest time for which a region is on, and off, s.
 const ON_S: [f64; 2] = [0.5, 6.0];
 const OFF_S: [f64; 2] = [3.0, 20.0];
-/// A request is repeated until the table says so.
+/// Interval at which a request is repeated until the table shows it.
 const REPEAT: Duration = Duration::from_millis(100);
-/// After the table has said that a region is on: a node that has not heard it guards against all regions after a second, and its
-/// robot stops within 0.2 s, after 0.14 s without news.
+/// Time after the table shows a region as on: a node that has not received it guards against all regions after a
+/// second, and its robot stops within 0.2 s, after 0.14 s without news.
 const SURELY_ON: Duration = Duration::from_millis(1500);
 
-/// What was asked for and heard of the temporary region of one robot.
+/// Requests and received state of the temporary region of one robot.
 #[derive(Debug, Clone, Copy, Default)]
 struct Cart {
     is_wanted: bool,
     is_on: bool,
-    /// Since when the table says that it is on; `None` from the request to switch it off.
+    /// Time since which the table shows it as on; `None` from the request to switch it off.
     on_since: Option<Instant>,
 }
 
@@ -41,7 +41,7 @@ fn lock(carts: &Mutex<Vec<Cart>>) -> MutexGuard<'_, Vec<Cart>> {
 
 impl Switches {
     pub fn listen(keys: &Keys, robots: usize, network: &dyn Network) -> Result<Self, Box<dyn Error>> {
-        // Until the table is heard they may be on.
+        // Until the table is received the regions may be on.
         let carts = Arc::new(Mutex::new(vec![Cart { is_on: true, ..Cart::default() }; robots]));
         let heard = carts.clone();
         let handler = Box::new(move |bytes: &[u8]| {
@@ -64,7 +64,7 @@ impl Switches {
         lock(&self.carts)[robot].on_since.is_some_and(|since| since.elapsed() > SURELY_ON)
     }
 
-    /// Switches until the time is over; returns how often regions were asked to be on.
+    /// Switches until the time is over; returns how often regions were requested to be on.
     pub fn run(&self, time: Duration, seed: u64) -> u64 {
         let (began, mut random, mut count) = (Instant::now(), seed ^ 0x5eed, 0);
         let mut between = |[shortest, longest]: [f64; 2]| {
@@ -90,7 +90,7 @@ impl Switches {
         cart.is_wanted
     }
 
-    /// Asks for what is not so yet.
+    /// Sends the requests that are not obeyed yet.
     fn request(&self) {
         let carts = lock(&self.carts).clone();
         for (robot, Cart { is_wanted, .. }) in carts.iter().enumerate().filter(|(_, c)| c.is_wanted != c.is_on) {

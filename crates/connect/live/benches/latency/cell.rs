@@ -1,4 +1,4 @@
-//! The cell: arms in a row, each with a table, a post and a column, and an exchange region between neighbours.
+//! Cell of the bench: arms in a row, each with a table, a post and a column, and an exchange region between neighbours.
 
 use std::fmt::Write as _;
 
@@ -6,7 +6,7 @@ use elbowroom_cell::Cell;
 
 /// Amplitudes of the joints' swings, rad, and their speeds at override 1, rad/s of phase.
 pub const SWINGS: [(f64, f64); 6] = [(0.9, 0.7), (0.25, 1.1), (0.25, 1.3), (0.6, 0.9), (0.5, 1.7), (1.2, 0.5)];
-/// Where the joints swing about, rad.
+/// Centres of the joints' swings, rad.
 pub const MIDDLE: [f64; 6] = [0.0, 0.6, 0.5, 0.0, 0.9, 0.0];
 
 /// Name of a robot.
@@ -14,7 +14,7 @@ pub fn name(robot: usize) -> String {
     format!("robot_{}", robot + 1)
 }
 
-/// A cell of this many robots.
+/// Makes a cell of this many robots.
 pub fn cell(robots: usize) -> Result<Cell, Box<dyn std::error::Error>> {
     let mut text =
         "version = 1\nname = \"latency\"\nunits = { length = \"mm\", angle = \"deg\" }\ntick_ms = 2\n".to_owned();

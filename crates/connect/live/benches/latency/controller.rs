@@ -1,4 +1,4 @@
-//! A controller: sends joint states at a fixed rate, and measures how long their answers take.
+//! Controller that sends joint states at a fixed rate, and measures how long their answers take.
 
 use std::error::Error;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -13,21 +13,21 @@ use elbowroom_live::{Clock, ControllerClient, ControllerState, Keys, boot_number
 use crate::cell::{MIDDLE, SWINGS};
 use crate::measured::Measured;
 
-/// Not counted: connections are made, the first answers arrive.
+/// Time that is not counted: connections are made, the first answers arrive.
 const WARM_UP: Duration = Duration::from_secs(2);
-/// How long the first answer may take.
+/// Longest time until the first answer.
 const FIRST_ANSWER: Duration = Duration::from_secs(30);
-/// The times at which this many joint states were sent are remembered.
+/// Number of joint states whose send times are kept.
 const REMEMBERED: usize = 4096;
 
-/// What the thread of the ticks and that of the network share.
+/// State shared by the thread of the ticks and that of the network.
 struct Shared {
     client: ControllerClient,
     sent_us: Vec<u64>,
     /// The highest number that was answered.
     answered: u64,
     is_counting: bool,
-    /// The first number that counts.
+    /// The first number that is counted.
     first: u64,
     measured: Measured,
 }
@@ -39,7 +39,7 @@ fn lock(shared: &Mutex<Shared>) -> MutexGuard<'_, Shared> {
 impl Shared {
     fn take(&mut self, bytes: &[u8], now: Micros) {
         let Ok(answer) = OverrideAnswer::decode(bytes) else { return };
-        // The answer to a silent controller repeats a number: only the first one is timed.
+        // Answers to a silent controller repeat a number: only the first one is timed.
         if self.client.receive(bytes).is_err() || answer.echo <= self.answered {
             return;
         }
@@ -111,11 +111,11 @@ pub fn measure(
         drop(s);
         joint_states.publish(&bytes);
         due += period;
-        // A controller that was held up does not send what it has missed.
+        // A controller that was held up does not send the missed joint states.
         due = due.max(Instant::now());
         std::thread::sleep(due.saturating_duration_since(Instant::now()));
     }
-    // The last answers are on their way.
+    // The last answers are still on their way.
     std::thread::sleep(Duration::from_millis(100));
     let measured = lock(&shared).measured.clone();
     Ok(measured)

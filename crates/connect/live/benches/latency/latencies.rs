@@ -1,10 +1,10 @@
-//! Times in whole microseconds, counted.
+//! Histogram of times in whole microseconds.
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-/// How often each time was measured. Exact, and small where many times are equal.
+/// Count of each measured time. Exact, and small if many times are equal.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Latencies {
     counts_us: BTreeMap<u64, u64>,
@@ -25,7 +25,8 @@ impl Latencies {
         self.counts_us.values().sum()
     }
 
-    /// The least time that at least this share of all times does not exceed, µs; 0 without any.
+    /// Returns the quantile of the times for this fraction, µs; 0 without any: the least time that at least this
+    /// fraction of all times does not exceed.
     pub fn quantile_us(&self, share: f64) -> u64 {
         let rank = (share * self.count() as f64).ceil().max(1.0) as u64;
         let mut below = 0;

@@ -5,9 +5,9 @@
 //! cargo bench -p elbowroom-live --bench latency -- --robots 8 --seconds 60 [--rate 500] [--udp | --through-arbiter] [--json]
 //! ```
 //!
-//! Each node's process accepts its controller's connection, or hears its datagrams; a node answers by Zenoh first, then by UDP.
-//! `--through-arbiter` sends both ways through the arbiter's process
-//! instead, as in a cell of which only that one listens. `ZENOH_RUNTIME='()'` measures with Zenoh's own threads.
+//! Each node's process accepts its controller's connection, or receives its datagrams; a node answers by Zenoh first,
+//! then by UDP. `--through-arbiter` sends both ways through the arbiter's process instead, as in a cell in which only
+//! the arbiter listens. `ZENOH_RUNTIME='()'` measures with Zenoh's own threads.
 #![allow(clippy::print_stdout, reason = "a program")]
 
 mod cell;
@@ -27,17 +27,17 @@ use measured::Measured;
 const MOST_ROBOTS: usize = 64;
 const MOST_SECONDS: u64 = 3_600;
 
-/// The arguments.
+/// Options of the bench.
 #[derive(Debug, Clone)]
 struct Options {
     robots: usize,
     seconds: u64,
     rate_hz: u64,
     through_arbiter: bool,
-    /// Controllers speak UDP.
+    /// Whether controllers use UDP.
     udp: bool,
     json: bool,
-    /// What a process is that this one has started: its part, the robot, its address, the arbiter's address.
+    /// For a process that this program has started: its part, the robot, its address, the arbiter's address.
     part: Option<(String, usize, String, String)>,
 }
 
@@ -91,7 +91,7 @@ struct Process(Child);
 
 impl Drop for Process {
     fn drop(&mut self) {
-        // One that has ended cannot be killed.
+        // A process that has ended cannot be killed.
         let _ = self.0.kill();
         let _ = self.0.wait();
     }
@@ -111,7 +111,7 @@ fn start(options: &Options, part: &str, robot: usize, address: &str, arbiter: &s
         command.arg("--udp");
     }
     command.args(["--part", part, &robot.to_string(), address, arbiter]);
-    // As a service should be started; another value is kept, to compare.
+    // As a service should be started; another value is kept, for comparison.
     if std::env::var_os("ZENOH_RUNTIME").is_none() {
         command.env("ZENOH_RUNTIME", ZENOH_RUNTIME);
     }
@@ -119,7 +119,7 @@ fn start(options: &Options, part: &str, robot: usize, address: &str, arbiter: &s
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().map(Process)
 }
 
-/// Of a port that nobody has: each transport has its own.
+/// Returns an address with a free port: each transport has its own ports.
 fn free_address(udp: bool) -> std::io::Result<String> {
     let any = "127.0.0.1:0";
     let address = if udp {
@@ -183,7 +183,7 @@ fn node(options: &Options, robot: usize, address: String, arbiter: String) -> Re
         std::thread::sleep(longest);
         std::process::exit(1);
     });
-    // Nothing is ever sent: it ends with its writer.
+    // Nothing is ever sent: the input ends with its writer.
     std::io::stdin().read_to_end(&mut Vec::new())?;
     service.stop()?;
     Ok(())

@@ -1,21 +1,22 @@
-//! What a controller has measured, as a table and as JSON.
+//! Results of a controller, as a table and as JSON.
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use crate::latencies::Latencies;
 
-/// What a controller has measured.
+/// Results of a controller.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Measured {
     pub robot: String,
-    /// Joint states sent.
+    /// Number of joint states sent.
     pub sent: u64,
     /// Times from sending a joint state to receiving its answer.
     pub latencies: Latencies,
-    /// Ticks at which no answer counted any more: the robot would have stopped.
+    /// Number of ticks without a valid answer: the robot would have stopped.
     pub missed: u64,
-    /// How late the ticks of the controller itself were, which only sleeps between them: what the machine adds to every wake-up.
+    /// Lateness of the controller's own ticks, between which it only sleeps: the delay that the machine adds to every
+    /// wake-up.
     pub lateness: Latencies,
 }
 

@@ -1,4 +1,4 @@
-//! How far robots are from a region that is to be switched on or moved.
+//! Distance of robots from a region that is to be switched on or moved.
 
 use elbowroom_cell::{Cell, CellRegion, Frames, configure};
 use elbowroom_formats::FormatError;
@@ -13,18 +13,20 @@ use crate::messages::JointState;
 pub(crate) struct Clearance {
     /// The robot.
     pub(crate) robot: RobotId,
-    /// A proven lower bound of the distance, 0 inside, m; `None` if it is not known where the robot is.
+    /// A proven lower bound of the distance, 0 inside, m; `None` if the robot's position is unknown.
     pub(crate) distance_m: Option<f64>,
-    /// How far any point of it may move until it stands, at most, if the region counts within [`UNTIL_IT_COUNTS_S`], m.
+    /// Upper bound of the movement of any point of the robot until it stops, m, if the region is in force within
+    /// [`UNTIL_IT_COUNTS_S`].
     pub(crate) stopping_m: f64,
 }
 
-/// The nodes hear of a change at once, or, where that message is lost, with the next one.
+/// Time until a change is in force at the nodes, s: they receive it at once, or with the next message if one is lost.
 const UNTIL_IT_COUNTS_S: f64 = 0.2;
 
-/// The robots that a region guards against, with what they carry, and how far they are from it. One that is not heard has no
-/// distance; neither has one whose region follows a robot that is not heard. What follows an encoder or a path is where it is
-/// `t_s` after the start of this process.
+/// Computes the distance from a region of each robot that it guards against, with the parts that the robot carries.
+///
+/// A robot has no distance if it is not heard, or if the region follows a robot that is not heard. A region that follows an
+/// encoder or a path is at its place `t_s` after the start of this process.
 ///
 /// # Errors
 /// [`FormatError`] if no monitor accepts the region.
@@ -57,15 +59,15 @@ pub(crate) fn clearances(
     Ok(all.map(|(i, monitor)| of_robot((&RobotId(i), monitor))).collect())
 }
 
-/// The cell with this region only, closed to everybody.
+/// Returns the cell with only this region, as a permanent forbidden region.
 fn with_only(cell: &Cell, region: &CellRegion) -> Cell {
     let mut closed = region.clone();
     (closed.region.kind, closed.region.life) = (RegionKind::Forbidden, Life::Permanent);
     Cell { regions: vec![closed], ..cell.clone() }
 }
 
-/// The joint values at which the robot stands if it goes on as it moves until the region counts, and then brakes. Without
-/// velocities it counts as standing.
+/// Joint values at which the robot comes to rest, if it continues at its velocities until the region is in force and
+/// then brakes. A robot without velocities counts as at rest.
 fn at_standstill(cell: &Cell, robot: RobotId, state: &JointState) -> Vec<f64> {
     let going_on_s = UNTIL_IT_COUNTS_S + cell.laws.reaction_s;
     let limits = &cell.robots[robot.0].limits;
@@ -88,7 +90,7 @@ fn placed(robot: &elbowroom_cell::CellRobot, state: Option<&JointState>) -> Opti
     Some(placed)
 }
 
-/// What the region follows; `None` if that is a robot that is not heard.
+/// States of the sources that the region follows; `None` if one of them is a robot that is not heard.
 fn sources(
     cell: &Cell,
     follows: &[elbowroom_cell::Follow],

@@ -1,4 +1,4 @@
-//! Where all robots of a cell are, as their controllers say.
+//! Last joint values of all robots of a cell, from their controllers.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -12,10 +12,10 @@ use crate::messages::JointState;
 use crate::network::{Network, NetworkError, Subscription};
 use crate::node::Heard;
 
-/// Joint values that are older than this say nothing about where the robot is.
+/// Age above which joint values say nothing about where the robot is.
 const TOO_OLD: Micros = Micros(500_000);
 
-/// Listens to the joint values of all robots of a cell.
+/// Subscriptions to the joint values of all robots of a cell.
 pub(crate) struct JointsHeard {
     heard: Arc<Mutex<Vec<Heard>>>,
     clock: Clock,
@@ -38,7 +38,7 @@ impl JointsHeard {
         Ok(Self { heard, clock, _subscriptions: subscriptions })
     }
 
-    /// Per robot its joint values; `None` if they are not heard.
+    /// Joint values per robot; `None` if the robot is not heard.
     pub(crate) fn states(&self) -> Vec<Option<JointState>> {
         let now = self.clock.micros();
         let mut heard = self.heard.lock().unwrap_or_else(PoisonError::into_inner);

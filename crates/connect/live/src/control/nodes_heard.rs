@@ -1,4 +1,4 @@
-//! With which regions the nodes of a cell run, as their statuses say.
+//! Region configurations of the running nodes of a cell, from their statuses.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -11,15 +11,15 @@ use crate::clock::Clock;
 use crate::keys::Keys;
 use crate::network::{Network, NetworkError, Subscription};
 
-/// A node that was not heard for this long does not run, or does not hear the table of regions and has stopped by now: the validity of
-/// the table, and half a second for messages on the way.
+/// A node without a status for this long does not run, or no longer receives the table of regions and has stopped by
+/// now: the validity of the table, plus 0.5 s for messages on the way.
 const SILENT: Micros = Micros(1_500_000);
-/// A node that is heard has built the regions by then, or stops when they are due.
+/// Longest wait for the nodes: a running node has built the regions by then, or stops when they are due.
 const LONGEST: Micros = Micros(4_000_000);
-/// How often it is looked.
+/// Interval between checks.
 const POLL: Duration = Duration::from_millis(5);
 
-/// What of a status matters here.
+/// The part of a status that is used here.
 #[derive(Deserialize)]
 struct Running {
     #[serde(default)]
@@ -29,11 +29,11 @@ struct Running {
 #[derive(Debug, Clone, Default)]
 struct Heard {
     configuration: String,
-    /// When it was heard last; a node that was never heard may have run before this process has started.
+    /// Time of the last status; before the first, the start of this process, as the node may have run before it.
     at: Micros,
 }
 
-/// Listens to the statuses of all nodes of a cell.
+/// Subscriptions to the statuses of all nodes of a cell.
 pub(crate) struct NodesHeard {
     heard: Arc<Mutex<Vec<Heard>>>,
     clock: Clock,
@@ -57,8 +57,8 @@ impl NodesHeard {
         Ok(Self { heard, clock, _subscriptions: subscriptions })
     }
 
-    /// Waits until all nodes that run have this configuration: the first digits of its checksum, empty for that of the cell file.
-    /// Returns the indices of the robots whose nodes run with another one all the same.
+    /// Waits until all running nodes have this configuration: the first digits of its checksum, or empty for the cell
+    /// file's configuration. Returns the indices of robots whose nodes still run with another one.
     pub(crate) fn wait_for(&self, configuration: &str) -> Vec<usize> {
         let since = self.clock.micros();
         loop {

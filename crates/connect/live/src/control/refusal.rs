@@ -1,4 +1,4 @@
-//! Why a request is not obeyed.
+//! Refusal of a request.
 
 use elbowroom_formats::FormatError;
 use serde::Serialize;
@@ -6,19 +6,19 @@ use serde::Serialize;
 /// A refused request: what is wrong, and what to write instead. Sent as JSON.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct Refusal {
-    /// Status of HTTP.
+    /// HTTP status.
     #[serde(skip)]
     pub(crate) status: u16,
     pub(crate) error: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) help: Option<String>,
-    /// The robot that is in the way.
+    /// The robot that prevents the change.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) robot: Option<String>,
-    /// How far it is from the region, 0 inside.
+    /// Distance of that robot from the region, m; 0 inside.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) distance_m: Option<f64>,
-    /// When the request may be repeated.
+    /// Time after which the request may be repeated, s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) wait_s: Option<f64>,
 }
@@ -33,7 +33,7 @@ impl Refusal {
     }
 }
 
-/// The log cannot be written, or a region is not accepted: the text says where.
+/// Refusal because the log cannot be written or a region is not accepted: the text says where.
 impl From<FormatError> for Refusal {
     fn from(error: FormatError) -> Self {
         Self::new(500, error.to_string())

@@ -1,4 +1,4 @@
-//! Moves, adds and removes regions while the cell runs.
+//! Changes of regions while the cell runs: move, add, remove.
 
 use std::sync::Arc;
 
@@ -15,14 +15,14 @@ use crate::cell_versions::NoVersion;
 use crate::configuration_number::configuration_digits;
 use crate::region_keeper::PresentRegions;
 
-/// Longest name of a region that is added.
+/// Longest name of an added region, bytes.
 const MAX_NAME: usize = 100;
-/// The table of regions is sent ten times a second: all keys of changed regions together have at most so many bytes.
+/// Limit of the keys of all changed regions together, bytes: the table of regions is sent ten times a second.
 const MAX_EDITS: usize = 64 * 1024;
-/// A region that is moved is at both places until all nodes have the new one.
+/// Suffix of a moved region's name at its new place: the region is at both places until all nodes have the new one.
 const AT_NEW_PLACE: &str = " (new place)";
 
-/// A change that was asked for, before it is made.
+/// A requested change, before it is made.
 struct RegionChange<'a> {
     action: &'static str,
     region: &'a str,
@@ -30,13 +30,13 @@ struct RegionChange<'a> {
     after: PresentRegions,
     /// The keys of the region before and after.
     tables: [Option<String>; 2],
-    /// Whether it is on afterwards; one that is removed is not.
+    /// Whether the region is on after the change; false for a removed region.
     is_on: bool,
     note: Option<&'a str>,
 }
 
 impl RequestHandler {
-    /// Puts a temporary region elsewhere.
+    /// Moves a region to another place.
     pub(crate) fn move_region(&self, who: &AccessToken, at: &str, request: &Move) -> Result<Done, Refusal> {
         let mut log = self.log();
         let (before, name) = (self.parts.keeper.present(), request.region.as_str());
@@ -102,7 +102,7 @@ impl RequestHandler {
         self.carry_out(&mut log, who, &change)
     }
 
-    /// Whether a region is on that this token may move or remove while the cell runs; else why it may not.
+    /// Returns whether the region is on, if this token may move or remove it while the cell runs; else the refusal.
     fn changeable(&self, who: &AccessToken, present: &PresentRegions, name: &str, what: &str) -> Result<bool, Refusal> {
         let (index, region) = find(&present.cell, name)?;
         let life = region.region.life;
@@ -123,20 +123,20 @@ impl RequestHandler {
         Ok(self.parts.keeper.active()[index])
     }
 
-    /// Who holds an exchange region, in words.
+    /// Names the holder of an exchange region in words; empty without a holder.
     fn holder(&self, name: &str) -> String {
         let slots = self.parts.arbiter.as_ref().map(|a| a.slots()).unwrap_or_default();
         let of = slots.into_iter().find(|slot| slot.regions.iter().any(|r| r == name));
         of.and_then(|slot| slot.holder).map_or_else(String::new, |holder| format!(", which robot `{holder}` holds"))
     }
 
-    /// The regions with one that is another one.
+    /// Returns the regions with the keys of one region replaced, or without that region if `table` is `None`.
     fn with(&self, before: &PresentRegions, name: &str, table: Option<&str>) -> Result<PresentRegions, Refusal> {
         let versions = &self.parts.versions;
         let edit = RegionEdit { name: name.into(), table: table.map(Into::into) };
         let edits = versions.edited().map_err(refused)?.with(&before.edits, edit);
         let bytes: usize = edits.iter().map(|e| e.name.len() + e.table.as_ref().map_or(0, String::len)).sum();
-        // One is at two places while it is moved.
+        // During a move the region is in the cell twice.
         let most = versions.base().regions.len() + SPARE_REGIONS - 1;
         let cell = versions.cell(&edits).map_err(refused)?;
         if cell.regions.len() > most || bytes > MAX_EDITS {
@@ -147,7 +147,7 @@ impl RequestHandler {
         Ok(PresentRegions { cell, edits })
     }
 
-    /// Makes and logs a change that is allowed, if no robot is in the way.
+    /// Makes and logs an allowed change, unless a robot is inside the region or cannot stop outside it.
     fn carry_out(&self, log: &mut ControlLog, who: &AccessToken, change: &RegionChange<'_>) -> Result<Done, Refusal> {
         let RegionChange { action, region, before, after, is_on, .. } = change;
         let not_heard = self.in_the_way(change)?;
@@ -159,7 +159,8 @@ impl RequestHandler {
         } else {
             self.go_to(after, *is_on);
         }
-        // From here on the region protects at its new place; whoever has come in since the first look stops, and nothing is changed.
+        // From here on the region is in force at its new place: a robot that has entered it since the first check
+        // stops, and the change is undone.
         if let Err(refusal) = self.in_the_way(change) {
             self.go_to(before, false);
             let undone = format!("{action}: not done, a robot came in the way");
@@ -171,7 +172,8 @@ impl RequestHandler {
         Ok(Done { entry, revision: revision(log), not_heard, stopped })
     }
 
-    /// An error where a robot is inside of the region at its new place, or cannot stop outside; else the robots that are not heard.
+    /// Checks that no robot is inside the region at its new place, or unable to stop outside it. Returns the robots
+    /// that are not heard.
     fn in_the_way(&self, change: &RegionChange<'_>) -> Result<Vec<String>, Refusal> {
         if !change.is_on {
             return Ok(Vec::new());
@@ -180,7 +182,7 @@ impl RequestHandler {
         self.refuse_inside(&change.after.cell, region)
     }
 
-    /// For a region that is moved and is on: it at both places.
+    /// Returns the regions with the moved region at both places; `None` unless a region is moved and is on.
     fn at_both_places(&self, change: &RegionChange<'_>) -> Result<Option<PresentRegions>, Refusal> {
         let [Some(_), Some(moved)] = &change.tables else { return Ok(None) };
         if !change.is_on {
@@ -189,7 +191,8 @@ impl RequestHandler {
         self.with(change.before, &format!("{}{AT_NEW_PLACE}", change.region), Some(moved)).map(Some)
     }
 
-    /// Lets all nodes that run go on with these regions: first they prepare, then whoever has not done so stops. Returns who that is.
+    /// Switches all running nodes to these regions: first they prepare; then nodes that have not prepared stop. Returns
+    /// the robots of those nodes.
     fn go_to(&self, regions: &PresentRegions, new_are_on: bool) -> Vec<String> {
         let ControlParts { keeper, nodes, versions, .. } = &self.parts;
         let is_base = Arc::ptr_eq(&regions.cell, versions.base());
@@ -201,7 +204,7 @@ impl RequestHandler {
     }
 }
 
-/// What is logged of a change; `is_undone` where it was made and taken back.
+/// Makes the log entry of a change; `is_undone` if the change was made and reverted.
 fn controlled<'a>(
     who: &'a AccessToken,
     action: String,
@@ -233,7 +236,7 @@ fn done_word(action: &str) -> &'static str {
     }
 }
 
-/// What is wrong with the keys of a region, in the words of a cell file.
+/// Refuses the keys of a region, with the error that the cell file's parser reports.
 fn wrong(error: FormatError) -> Refusal {
     let what = error.line.map_or_else(|| error.what.clone(), |line| format!("line {line}: {}", error.what));
     let refusal = Refusal::new(400, what);

@@ -1,4 +1,4 @@
-//! Decides about requests, makes the changes and logs them.
+//! Handler of requests: decides about them, makes the changes and logs them.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -19,10 +19,10 @@ use crate::clock::Clock;
 use crate::event_handler::EventHandler;
 use crate::region_keeper::RegionKeeper;
 
-/// Longest note.
+/// Longest note, bytes.
 const MAX_NOTE: usize = 500;
 
-/// What a request is decided and carried out with.
+/// Parts of the service that decide about requests and execute them.
 pub(crate) struct ControlParts {
     pub(crate) versions: Arc<CellVersions>,
     pub(crate) keeper: Arc<RegionKeeper>,
@@ -34,7 +34,7 @@ pub(crate) struct ControlParts {
     pub(crate) on_event: Option<EventHandler>,
 }
 
-/// Takes one request at a time.
+/// Handles one request at a time.
 pub(crate) struct RequestHandler {
     pub(super) parts: ControlParts,
     log: Mutex<ControlLog>,
@@ -43,13 +43,13 @@ pub(crate) struct RequestHandler {
 /// A change that was made.
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct Done {
-    /// What was logged.
+    /// The log entry.
     pub(crate) entry: ControlEntry,
-    /// What the next request must name.
+    /// The revision that the next request must name.
     pub(crate) revision: String,
-    /// Robots of the region of which nobody knows where they are.
+    /// Robots of the region whose position is unknown.
     pub(crate) not_heard: Vec<String>,
-    /// Robots whose nodes run, but have not taken over the regions: they stop.
+    /// Robots whose nodes run, but have not switched to the new regions: they stop.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) stopped: Vec<String>,
 }
@@ -59,7 +59,7 @@ pub(crate) struct Done {
 pub(crate) struct Overview {
     pub(crate) cell: String,
     pub(crate) checksum: String,
-    /// What a request for a change must name.
+    /// The revision that a request for a change must name.
     pub(crate) revision: String,
     pub(crate) regions: Vec<RegionOverview>,
     pub(crate) robots: Vec<RobotOverview>,
@@ -71,9 +71,9 @@ pub(crate) struct RegionOverview {
     pub(crate) kind: &'static str,
     pub(crate) life: &'static str,
     pub(crate) active: bool,
-    /// The robots that it guards against.
+    /// Robots that the region guards against.
     pub(crate) robots: Vec<String>,
-    /// Of an exchange region.
+    /// Holder of an exchange region.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) holder: Option<String>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -83,7 +83,7 @@ pub(crate) struct RegionOverview {
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct RobotOverview {
     pub(crate) name: String,
-    /// Its controller is heard.
+    /// Whether its controller is heard.
     pub(crate) heard: bool,
 }
 
@@ -92,8 +92,9 @@ impl RequestHandler {
         Self { parts, log: Mutex::new(log) }
     }
 
-    /// Logs that the service has started, and with which temporary regions on. Where the disk is full it starts all the same: every
-    /// change is refused until its entry can be written.
+    /// Logs the start of the service, and which temporary regions are on.
+    ///
+    /// If the disk is full the service starts nevertheless: every change is refused until its entry can be written.
     pub(crate) fn log_start(&self) {
         let (keeper, mut log) = (&self.parts.keeper, self.log());
         let (cell, active) = (keeper.present().cell, keeper.active());
@@ -105,7 +106,7 @@ impl RequestHandler {
             after: Some(active.to_string()),
         };
         let logged = log.append(Controlled {
-            // Nobody has asked for it.
+            // A start has no requester.
             class: AccessClass::Operator,
             name: "the service",
             action: "start".into(),
@@ -122,10 +123,10 @@ impl RequestHandler {
         self.log.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Everything that may be changed.
+    /// Lists everything that may be changed.
     pub(crate) fn overview(&self) -> Overview {
         let ControlParts { keeper, arbiter, joints, .. } = &self.parts;
-        // In this order nothing changes in between.
+        // The log is locked first, so that no request changes the regions in between.
         let log = self.log();
         let cell = keeper.present().cell;
         let (active, slots) = (keeper.active(), arbiter.as_ref().map(|a| a.slots()).unwrap_or_default());
@@ -154,7 +155,7 @@ impl RequestHandler {
         }
     }
 
-    /// Switches a temporary region. One that a robot is inside of is not switched on.
+    /// Switches a temporary region. A region is not switched on while a robot is inside it or cannot stop outside it.
     pub(crate) fn switch(&self, who: &AccessToken, at: &str, request: &Switch) -> Result<Done, Refusal> {
         let keeper = &self.parts.keeper;
         let mut log = self.log();
@@ -219,7 +220,7 @@ impl RequestHandler {
         let changes = request.regions.iter().map(change).collect();
         let entry = log.append(controlled(action.clone(), changes, note(request.note.as_deref())?))?;
         if let Err(why) = arbiter.clear(robot) {
-            // It has spoken since it was asked for: what was logged was not done.
+            // The robot has sent a message since the question: the logged clearing was not done.
             log.append(controlled(format!("{action}: not done, it has spoken"), Vec::new(), None))?;
             return Err(refused(why));
         }
@@ -227,7 +228,7 @@ impl RequestHandler {
         Ok(Done { entry, revision: revision(&log), not_heard: Vec::new(), stopped: Vec::new() })
     }
 
-    /// The robot, if it and all its exchange regions are named twice and in full.
+    /// Returns the robot, if the request names it twice and names all its exchange regions.
     fn robot_to_clear(&self, request: &Clear) -> Result<RobotId, Refusal> {
         let cell = self.parts.versions.base();
         let robot = cell.robots.iter().position(|r| r.name == request.robot).map(RobotId).ok_or_else(|| {
@@ -255,7 +256,7 @@ impl RequestHandler {
         Ok(robot)
     }
 
-    /// Refused attempts are reported: somebody with a token tried.
+    /// Checks the class of a token. Refused attempts are reported, as they come from a holder of a token.
     pub(super) fn require(&self, who: &AccessToken, least: AccessClass, what: &str) -> Result<(), Refusal> {
         if who.class >= least {
             return Ok(());
@@ -265,7 +266,9 @@ impl RequestHandler {
         Err(Refusal::new(403, error).help(format!("a token of the {} class", least.name())))
     }
 
-    /// An error where a robot is inside of a region that would stop it, or cannot stop outside; else the robots of which nobody knows where they are.
+    /// Checks that no robot is inside a region that would stop it, or unable to stop outside it.
+    ///
+    /// Returns the robots whose position is unknown.
     pub(super) fn refuse_inside(&self, cell: &Cell, region: &CellRegion) -> Result<Vec<String>, Refusal> {
         if matches!(region.region.kind, RegionKind::Monitored { .. }) {
             return Ok(Vec::new());
@@ -298,7 +301,7 @@ impl RequestHandler {
     }
 }
 
-/// The region of this name, and its index.
+/// Finds the region of this name; returns it with its index.
 pub(super) fn find<'c>(cell: &'c Cell, name: &str) -> Result<(usize, &'c CellRegion), Refusal> {
     let found = cell.regions.iter().enumerate().find(|(_, r)| r.region.name == name);
     found.ok_or_else(|| {
@@ -311,8 +314,8 @@ pub(super) fn revision(log: &ControlLog) -> String {
     log.head().chars().take(16).collect()
 }
 
-/// A request names the state that it was made for: one that was recorded and is sent again, or that somebody else was faster
-/// than, is refused.
+/// Checks that a request names the present revision: a request that was recorded and is sent again is refused, and so
+/// is one that came after another change.
 pub(super) fn is_present(log: &ControlLog, at: &str) -> Result<(), Refusal> {
     if at == revision(log) {
         return Ok(());

@@ -1,4 +1,4 @@
-//! What may be asked of a running cell, as JSON.
+//! Requests to a running cell, as JSON.
 
 use serde::Deserialize;
 
@@ -10,33 +10,33 @@ pub(crate) struct Switch {
     pub(crate) region: String,
     /// On or off.
     pub(crate) active: bool,
-    /// Why, for the log.
+    /// Reason, for the log.
     pub(crate) note: Option<String>,
 }
 
-/// Declares that a silent robot is at rest outside of exchange regions, which whoever asks has seen.
+/// Declares that a silent robot is at rest outside its exchange regions; the sender has seen it.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Clear {
     /// The robot.
     pub(crate) robot: String,
-    /// All its exchange regions: whoever asks has seen it outside of each.
+    /// All its exchange regions: the sender has seen the robot outside each of them.
     pub(crate) regions: Vec<String>,
-    /// The robot once more.
+    /// The robot again, to confirm.
     pub(crate) repeat_robot: String,
-    /// Why, for the log.
+    /// Reason, for the log.
     pub(crate) note: Option<String>,
 }
 
-/// Puts a region elsewhere.
+/// Moves a region to another place.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Move {
     /// The region.
     pub(crate) region: String,
-    /// The keys of the cell file that say where it is: `centre = [0, 0, 900]`.
+    /// Keys of the cell file for the new place, such as `centre = [0, 0, 900]`.
     pub(crate) toml: String,
-    /// Why, for the log.
+    /// Reason, for the log.
     pub(crate) note: Option<String>,
 }
 
@@ -44,13 +44,13 @@ pub(crate) struct Move {
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Add {
-    /// Its name.
+    /// Name of the region.
     pub(crate) region: String,
-    /// Its keys, as in the cell file; or the table `[region.NAME]`.
+    /// Keys of the region as in the cell file, or its table `[region.NAME]`.
     pub(crate) toml: String,
-    /// Whether it is on; so it is without this.
+    /// Whether the region is on; default: on.
     pub(crate) active: Option<bool>,
-    /// Why, for the log.
+    /// Reason, for the log.
     pub(crate) note: Option<String>,
 }
 
@@ -60,6 +60,6 @@ pub(crate) struct Add {
 pub(crate) struct Remove {
     /// The region.
     pub(crate) region: String,
-    /// Why, for the log.
+    /// Reason, for the log.
     pub(crate) note: Option<String>,
 }

@@ -1,4 +1,4 @@
-//! The requests of the control interface over HTTP: who asks, and what.
+//! Routes of the control interface over HTTP: they check the token and pass the request on.
 
 use std::sync::Arc;
 
@@ -18,17 +18,17 @@ use serde::de::DeserializeOwned;
 use super::refusal::Refusal;
 use super::request_handler::{Done, RequestHandler};
 
-/// Longest body.
+/// Longest body, bytes.
 const MAX_BODY: usize = 64 * 1024;
 
-/// What all requests share.
+/// State that all requests share.
 struct Shared {
     handler: RequestHandler,
     tokens: AccessTokens,
     hosts: Hosts,
 }
 
-/// Only these paths exist.
+/// Builds the router. Other paths and methods are refused.
 pub(crate) fn routes(handler: RequestHandler, tokens: AccessTokens, hosts: Hosts) -> Router {
     let only =
         |method: &'static str| move || async move { answer(&Refusal::new(405, format!("this path takes {method}"))) };
@@ -52,7 +52,7 @@ pub(crate) fn routes(handler: RequestHandler, tokens: AccessTokens, hosts: Hosts
         .with_state(shared)
 }
 
-/// No crowd of strangers takes the place of somebody with a token.
+/// Keeps the place of a connection whose request has a valid token, so that strangers cannot displace it.
 async fn keep_place(State(shared): State<Arc<Shared>>, request: Request, next: Next) -> Response {
     if let Some(place) = request.extensions().get::<Place>()
         && holder(&shared, request.headers()).is_ok()
@@ -62,7 +62,7 @@ async fn keep_place(State(shared): State<Arc<Shared>>, request: Request, next: N
     next.run(request).await
 }
 
-/// Refuses a body that announces that it is too long, before it arrives.
+/// Refuses a body whose announced length is too long, before it arrives.
 async fn short(request: Request, next: Next) -> Response {
     let length = request.headers().get(header::CONTENT_LENGTH).and_then(|value| value.to_str().ok());
     let is_long = length.is_some_and(|length| !length.parse::<usize>().is_ok_and(|length| length <= MAX_BODY));
@@ -101,7 +101,7 @@ async fn clear(state: State<Arc<Shared>>, headers: HeaderMap, body: Result<Bytes
     change(state, headers, body, RequestHandler::clear).await
 }
 
-/// Makes a change that a token holder asks for.
+/// Makes a change that a token's holder requests.
 async fn change<R: DeserializeOwned + Send + 'static>(
     State(shared): State<Arc<Shared>>,
     headers: HeaderMap,
@@ -117,7 +117,7 @@ async fn change<R: DeserializeOwned + Send + 'static>(
     match made.await {
         Ok(Ok(done)) => json(StatusCode::OK, &done),
         Ok(Err(refusal)) => answer(&refusal),
-        // The handler panicked: the service goes on, and whoever asked learns that it is not known what was done.
+        // The handler panicked: the service continues, and the client learns that the result is unknown.
         Err(_) => answer(&broken()),
     }
 }
@@ -126,7 +126,8 @@ fn broken() -> Refusal {
     Refusal::new(500, "the request failed inside the service").help("GET /regions says what is so now")
 }
 
-/// The token's holder. A page of somebody else in a browser could not know the secret; it is refused all the same.
+/// Returns the token's holder. Requests of another site's page in a browser are refused too, although such a page
+/// cannot know the secret.
 fn holder<'s>(shared: &'s Shared, headers: &HeaderMap) -> Result<&'s AccessToken, Refusal> {
     if headers.contains_key(header::ORIGIN) && !shared.hosts.is_own_page(headers) {
         return Err(Refusal::new(403, "a page of another server may not control this cell"));
@@ -141,7 +142,7 @@ fn holder<'s>(shared: &'s Shared, headers: &HeaderMap) -> Result<&'s AccessToken
     })
 }
 
-/// The revision that the request was made for.
+/// Reads the revision that the request was made for.
 fn revision(headers: &HeaderMap) -> Result<String, Refusal> {
     let given = headers.get(header::IF_MATCH).and_then(|value| value.to_str().ok());
     let text = given.map(|text| text.trim_matches('"')).filter(|text| !text.is_empty());

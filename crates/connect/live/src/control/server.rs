@@ -1,4 +1,4 @@
-//! The control interface of a running cell.
+//! Server of the control interface of a running cell.
 
 use std::net::SocketAddr;
 use std::path::PathBuf;
@@ -12,16 +12,16 @@ use elbowroom_view::http::{ConnectionLimits, Endpoint, Hosts, HttpServer};
 use super::request_handler::{ControlParts, RequestHandler};
 use super::routes::routes;
 
-/// The control interface of a service.
+/// Options of the control interface of a service.
 #[derive(Debug, Clone)]
 pub struct ControlOptions {
-    /// Where to serve.
+    /// Endpoint of the interface.
     pub endpoint: Endpoint,
     /// The file of tokens ([`AccessTokens`]).
     pub tokens: PathBuf,
     /// The log of changes; by default `cell.control.jsonl` beside the cell file.
     pub log: Option<PathBuf>,
-    /// Programs may switch temporary regions without a token, as in a cell without this interface.
+    /// Whether programs may switch temporary regions without a token, as in a cell without this interface.
     pub program_switches: bool,
 }
 
@@ -31,12 +31,12 @@ pub enum ControlError {
     /// The file of tokens or the log is wrong.
     #[error(transparent)]
     File(#[from] FormatError),
-    /// The address cannot be served at.
+    /// The interface cannot be served at the address.
     #[error(transparent)]
     Address(#[from] ViewError),
 }
 
-/// Serves until it is dropped.
+/// A running control interface. It ends when it is dropped.
 #[derive(Debug)]
 pub(crate) struct ControlServer(HttpServer);
 

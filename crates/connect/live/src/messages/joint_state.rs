@@ -1,4 +1,4 @@
-//! Joint values of a robot, from its controller.
+//! Message with the joint values of a robot, from its controller.
 
 use elbowroom_interlock::frame::{FRAME_BYTES, MessageError, Reader};
 use elbowroom_monitor::VolumeId;
@@ -10,7 +10,7 @@ use super::protocol::{PROTOCOL, contents};
 pub const MAX_JOINTS: usize = 32;
 /// Most attached volumes of a message.
 pub const MAX_ATTACHED: usize = 16;
-/// Length of the longest message.
+/// Length of the longest message, bytes.
 pub const MAX_JOINT_STATE_BYTES: usize = FRAME_BYTES + 44 + 3 * 8 * MAX_JOINTS + MAX_ATTACHED * 58;
 
 const KIND: u8 = 1;
@@ -30,37 +30,37 @@ const HAS_INTENT: u8 = 2;
 /// ```
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct JointState {
-    /// The first 8 bytes of the checksum of the cell that the controller expects; 0 if it does not care.
+    /// The first 8 bytes of the checksum of the cell that the controller expects; 0 to accept any cell.
     pub checksum: u64,
-    /// A number that rises with every start of the controller: the time of day in nanoseconds.
+    /// Number of the controller's start, higher for later starts: the time of day in nanoseconds.
     pub boot: u64,
-    /// Rises with every message of this start.
+    /// Number of the message, which increases with every message of this start.
     pub sequence: u64,
-    /// When the joints were read, on the monotonic clock of the controller, µs.
+    /// Time at which the joints were read, on the controller's monotonic clock, µs.
     pub stamp_us: u64,
     /// The override set by the program or the operator, 0..1.
     pub programmed_override: f64,
     /// Joint positions in the order of the chain, rad or m.
     pub q: Vec<f64>,
-    /// Joint velocities; empty if they are not known.
+    /// Joint velocities, rad/s or m/s; empty if unknown.
     pub qd: Vec<f64>,
-    /// Velocities of the program at override 1; empty if they are not known.
+    /// Velocities of the program at override 1, rad/s or m/s; empty if unknown.
     pub intent: Vec<f64>,
-    /// The optional volumes of the monitor that are on the robot now: gripped parts and exchanged tools.
+    /// Optional volumes of the monitor that are on the robot now: gripped parts and exchanged tools.
     pub attached: Vec<AttachedVolume>,
 }
 
 /// A volume that is on the robot only at times.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AttachedVolume {
-    /// Index in the monitor's configuration.
+    /// Index of the volume in the monitor's configuration.
     pub volume: VolumeId,
-    /// Its pose in its link.
+    /// Pose of the volume in the frame of its link.
     pub in_link: Pose,
 }
 
 impl JointState {
-    /// A message with memory for the longest one, so that [`Self::decode`] never allocates.
+    /// Creates a message with memory for the longest one, so that [`Self::decode`] never allocates.
     pub fn with_capacity() -> Self {
         let numbers = || Vec::with_capacity(MAX_JOINTS);
         Self {
@@ -72,8 +72,10 @@ impl JointState {
         }
     }
 
-    /// Writes the bytes into `out`, which is emptied. More than [`MAX_JOINTS`] joints or [`MAX_ATTACHED`] volumes are no message:
-    /// the other side refuses them by their number, so that no volume is left out silently.
+    /// Replaces `out` by the bytes of the message.
+    ///
+    /// With more than [`MAX_JOINTS`] joints or [`MAX_ATTACHED`] volumes the bytes are invalid: the receiver refuses
+    /// them because of their counts, so that no volume is omitted silently.
     pub fn encode(&self, out: &mut Vec<u8>) {
         PROTOCOL.begin(KIND, out);
         let flag = |is_set: bool, flag: u8| if is_set { flag } else { 0 };
@@ -97,10 +99,10 @@ impl JointState {
         PROTOCOL.end(out);
     }
 
-    /// Reads the message of these bytes. After an error the contents are of no use.
+    /// Reads the message from these bytes. After an error its contents must not be used.
     ///
     /// # Errors
-    /// Why they are none. No bytes panic; nothing is allocated after [`Self::with_capacity`].
+    /// The reason, if the bytes are not a message. No bytes panic; nothing is allocated after [`Self::with_capacity`].
     pub fn decode(&mut self, bytes: &[u8]) -> Result<(), MessageError> {
         let length = MessageError::Length(bytes.len());
         if bytes.len() > MAX_JOINT_STATE_BYTES {
@@ -131,7 +133,7 @@ impl JointState {
     }
 }
 
-/// A number of things in its byte; more than fit there are more than any message may have.
+/// Encodes a count in one byte. Larger counts saturate at 255, which is more than a message may have.
 fn count(length: usize) -> u8 {
     u8::try_from(length).unwrap_or(u8::MAX)
 }

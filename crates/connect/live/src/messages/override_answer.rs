@@ -1,24 +1,24 @@
-//! The speed override of a robot, to its controller.
+//! Message with the speed override of a robot, to its controller.
 
 use elbowroom_interlock::frame::{FRAME_BYTES, MessageError};
 
 use super::protocol::{PROTOCOL, contents};
 
-/// Length of the message.
+/// Length of the message, bytes.
 pub const OVERRIDE_ANSWER_BYTES: usize = FRAME_BYTES + 6 * 8 + 4;
 
 const KIND: u8 = 2;
 
-/// What a node answers to a [`JointState`](super::JointState).
+/// Answer of a node to a [`JointState`](super::JointState).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct OverrideAnswer {
     /// The first 8 bytes of the checksum of the cell that the node guards.
     pub checksum: u64,
-    /// The start of the controller that is answered.
+    /// Number of the controller's start that is answered.
     pub boot: u64,
-    /// The sequence number that is answered: of the newest message that the node has taken.
+    /// Sequence number of the message that is answered: the newest one that the node has accepted.
     pub echo: u64,
-    /// Rises with every answer of a start of the node.
+    /// Number of the answer, which increases with every answer of a start of the node.
     pub sequence: u64,
     /// The speed override to apply, 0..1.
     pub speed_override: f64,
@@ -27,12 +27,12 @@ pub struct OverrideAnswer {
     /// Why the override has this value: 0 free, 1 region, 2 speed zone, 3 waiting for an exchange region, 4 rate, 5 fault,
     /// 6 halted: another robot is in the same exchange region.
     pub reason: u8,
-    /// Index in the node's configuration of the region that limits the override; 0xFFFF where none does.
+    /// Index, in the node's configuration, of the region that limits the override; 0xFFFF if none does.
     pub region: u16,
 }
 
 impl OverrideAnswer {
-    /// Writes the bytes into `out`, which is emptied.
+    /// Replaces `out` by the bytes of the answer.
     pub fn encode(&self, out: &mut Vec<u8>) {
         PROTOCOL.begin(KIND, out);
         for word in [self.checksum, self.boot, self.echo, self.sequence] {
@@ -45,10 +45,10 @@ impl OverrideAnswer {
         PROTOCOL.end(out);
     }
 
-    /// The answer of these bytes.
+    /// Reads an answer from these bytes.
     ///
     /// # Errors
-    /// Why they are none. No bytes panic.
+    /// The reason, if the bytes are not an answer. No bytes panic.
     pub fn decode(bytes: &[u8]) -> Result<Self, MessageError> {
         let length = MessageError::Length(bytes.len());
         if bytes.len() != OVERRIDE_ANSWER_BYTES {

@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use super::pub_sub::{Handler, Network, NetworkError, Publisher, Subscription, Urgency};
 
-/// Several networks as one: what is published goes to each, and what arrives by any is heard. For controllers of which some use
-/// Zenoh and some UDP datagrams.
+/// Several networks as one: a message is published on each of them, and received from any of them.
+///
+/// For cells in which some controllers use Zenoh and some UDP datagrams.
 ///
 /// ```
 /// use std::sync::Arc;
@@ -26,7 +27,7 @@ pub struct JoinedNetworks {
 }
 
 impl JoinedNetworks {
-    /// These networks as one.
+    /// Combines these networks.
     pub fn new(networks: Vec<Arc<dyn Network>>) -> Self {
         Self { networks }
     }

@@ -1,4 +1,4 @@
-//! A network within one process: for tests.
+//! Network within one process, for tests.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError, Weak};
@@ -52,7 +52,7 @@ impl Network for LocalNetwork {
 
 impl Publisher for LocalPublisher {
     fn publish(&mut self, bytes: &[u8]) {
-        // Called without the lock: a handler may publish.
+        // The lock is released before the handlers are called, as a handler may publish.
         let handlers: Vec<Arc<Handler>> = {
             let mut all = self.network.handlers.lock().unwrap_or_else(PoisonError::into_inner);
             let Some(handlers) = all.get_mut(&self.key) else { return };

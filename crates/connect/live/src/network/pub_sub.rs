@@ -1,18 +1,18 @@
-//! What every network can do: publish and subscribe.
+//! Interface of every network: publish and subscribe.
 
 use std::fmt;
 
 use thiserror::Error;
 
-/// A network of processes. Nothing is guaranteed of what is published: it may be lost, late, doubled or reordered.
+/// A network of processes, without guarantees: a message may be lost, late, doubled or reordered.
 pub trait Network: Send + Sync + fmt::Debug {
-    /// A publisher of one key.
+    /// Creates a publisher of one key.
     ///
     /// # Errors
     /// The key is not accepted, or the network is closed.
     fn publisher(&self, key: &str, urgency: Urgency) -> Result<Box<dyn Publisher>, NetworkError>;
 
-    /// Calls the handler with all that is published under a key, on a thread of the network, until the subscription is dropped.
+    /// Calls the handler with every message of a key, on a thread of the network, until the subscription is dropped.
     /// The handler must return soon.
     ///
     /// # Errors
@@ -20,16 +20,16 @@ pub trait Network: Send + Sync + fmt::Debug {
     fn subscribe(&self, key: &str, handler: Handler) -> Result<Subscription, NetworkError>;
 }
 
-/// Publishes the bytes of one key.
+/// Publishes the messages of one key.
 pub trait Publisher: Send {
-    /// Sends a message, without a reply and without a promise.
+    /// Sends a message, without a reply and without a guarantee.
     fn publish(&mut self, bytes: &[u8]);
 }
 
-/// Takes a message.
+/// Called with the bytes of each message.
 pub type Handler = Box<dyn Fn(&[u8]) + Send + Sync>;
 
-/// Ends when it is dropped.
+/// A subscription. It ends when it is dropped.
 pub struct Subscription(#[allow(dead_code, reason = "held for its drop")] Box<dyn std::any::Any + Send + Sync>);
 
 impl fmt::Debug for Subscription {
@@ -44,30 +44,30 @@ impl Subscription {
     }
 }
 
-/// What a network prefers when it cannot send everything at once.
+/// Priority of a message if a network cannot send everything at once.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Urgency {
     /// Overrides, joint states and interlocks: sent at once.
     RealTime,
-    /// For people.
+    /// Information for people.
     Display,
 }
 
-/// Why a network does not work.
+/// Errors of a network.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum NetworkError {
     /// An address that cannot be used.
     #[error("{address}: {why}\n  help: write HOST:PORT, such as 127.0.0.1:7447")]
     Address {
-        /// As it was given.
+        /// The address as it was given.
         address: String,
-        /// What is wrong.
+        /// The reason.
         why: String,
     },
     /// An address at which another program listens.
     #[error("{address}: another program listens there\n  help: another port, or end that program")]
     InUse {
-        /// As it was given.
+        /// The address as it was given.
         address: String,
     },
     /// A key that cannot be used.
@@ -75,7 +75,7 @@ pub enum NetworkError {
     Key {
         /// The key.
         key: String,
-        /// What is wrong.
+        /// The reason.
         why: String,
     },
 }

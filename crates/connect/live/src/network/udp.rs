@@ -1,8 +1,9 @@
-//! A network of UDP datagrams, for controllers without Zenoh: `docs/live.md` has the layout.
+//! Network of UDP datagrams, for controllers without Zenoh: `docs/live.md` has the layout.
 //!
-//! A process that knows others tells them each second which keys it wants, and sends them what it publishes: a controller knows
-//! its node, which need not know it. What anybody publishes is also sent to those who wanted it within the last three seconds.
-//! A datagram is `EU`, version 1, kind (1 subscribe, 2 publish), length of the key (one byte), key, contents.
+//! A process sends its subscriptions every second, and everything it publishes, to the processes that it knows: a
+//! controller knows its node, and the node need not know the controller. Everything published is also sent to the
+//! subscribers of the last three seconds. A datagram is `EU`, version 1, kind (1 subscribe, 2 publish), length of the
+//! key (one byte), key, contents.
 
 use std::collections::HashMap;
 use std::fmt;
@@ -18,13 +19,13 @@ use super::pub_sub::{Handler, Network, NetworkError, Publisher, Subscription, Ur
 const HEADER: [u8; 3] = [b'E', b'U', 1];
 const SUBSCRIBE: u8 = 1;
 const PUBLISH: u8 = 2;
-/// How often a subscriber repeats what it wants.
+/// Interval at which a subscriber repeats its subscriptions.
 const REPEAT: Duration = Duration::from_secs(1);
-/// How long a subscriber is remembered.
+/// Time for which a subscriber is remembered.
 const LEASE: Duration = Duration::from_secs(3);
-/// More subscribers of one key than this are refused: a stranger cannot fill the memory.
+/// Most subscribers per key; further ones are refused, so that a stranger cannot fill the memory.
 const MAX_SUBSCRIBERS: usize = 256;
-/// Largest datagram.
+/// Largest datagram, bytes.
 const MAX_BYTES: usize = 60_000;
 
 /// Datagrams to and from one socket.
@@ -35,7 +36,7 @@ pub struct UdpNetwork {
 
 struct Shared {
     socket: UdpSocket,
-    /// Who hears what this process wants, and what it publishes.
+    /// Processes that receive the subscriptions and the messages of this process.
     peers: Vec<SocketAddr>,
     state: Mutex<State>,
     is_closed: AtomicBool,
@@ -44,7 +45,7 @@ struct Shared {
 #[derive(Default)]
 struct State {
     handlers: HashMap<String, Vec<Weak<Handler>>>,
-    /// Per published key those who want it, and when they said so.
+    /// Subscribers per published key, with the time of their last subscription.
     subscribers: HashMap<String, Vec<(SocketAddr, Instant)>>,
 }
 
@@ -55,8 +56,9 @@ impl fmt::Debug for UdpNetwork {
 }
 
 impl UdpNetwork {
-    /// Listens at an address (`HOST:PORT`; port 0 for any), and knows the processes at `peers`: they hear what this one wants and
-    /// publishes.
+    /// Binds a socket to an address (`HOST:PORT`; port 0 for any free port).
+    ///
+    /// The processes at `peers` receive the subscriptions and the messages of this one.
     ///
     /// # Errors
     /// [`NetworkError::Address`] if an address cannot be used.
@@ -66,7 +68,7 @@ impl UdpNetwork {
             move |e: io::Error| NetworkError::Address { address, why: e.to_string() }
         };
         let socket = UdpSocket::bind(listen).map_err(wrong(listen))?;
-        // So that the thread below sees that the network was closed.
+        // With a timeout the thread below notices that the network was closed.
         socket.set_read_timeout(Some(Duration::from_millis(100))).map_err(wrong(listen))?;
         let peers = peers.iter().map(|peer| address(peer)).collect::<Result<_, _>>()?;
         let state = Mutex::default();
@@ -78,10 +80,10 @@ impl UdpNetwork {
         Ok(Self { shared, receiver: Some(receiver) })
     }
 
-    /// The address of the socket.
+    /// Returns the address of the socket.
     ///
     /// # Errors
-    /// [`NetworkError::Address`] if the system does not tell it.
+    /// [`NetworkError::Address`] if the system does not report it.
     pub fn local_address(&self) -> Result<SocketAddr, NetworkError> {
         let address = self.shared.socket.local_addr();
         address.map_err(|e| NetworkError::Address { address: String::new(), why: e.to_string() })
@@ -98,7 +100,7 @@ impl Drop for UdpNetwork {
     fn drop(&mut self) {
         self.shared.is_closed.store(true, Ordering::SeqCst);
         if let Some(receiver) = self.receiver.take() {
-            // It ends by itself; a handler that panicked has ended it already.
+            // The thread ends by itself; if a handler panicked it has ended already.
             let _ = receiver.join();
         }
     }
@@ -133,7 +135,7 @@ impl Shared {
         }
     }
 
-    /// Only keys that this process publishes are remembered.
+    /// Remembers a subscriber, if this process publishes the key.
     fn remember(&self, key: &str, from: SocketAddr) {
         let mut state = self.lock();
         let Some(subscribers) = state.subscribers.get_mut(key) else { return };

@@ -1,4 +1,4 @@
-//! The network of Zenoh.
+//! Network over Zenoh.
 
 use std::fmt;
 use std::net::SocketAddr;
@@ -9,19 +9,21 @@ use zenoh::{Session, Wait};
 
 use super::pub_sub::{Handler, Network, NetworkError, Publisher, Subscription, Urgency};
 
-/// The value of the environment variable `ZENOH_RUNTIME` with which a joint state wakes the fewest threads.
+/// Value of the environment variable `ZENOH_RUNTIME` with which a joint state wakes the fewest threads.
 ///
-/// By default Zenoh reads a connection on other threads than those that wait for its sockets, so that every message wakes three of
-/// them. Zenoh reads the variable once, and a process cannot safely set its own: set it where the process is started.
+/// By default Zenoh reads a connection on other threads than those that wait for its sockets, so every message wakes
+/// three of its threads. Zenoh reads the variable once, and a process cannot safely set its own: set it where the
+/// process is started.
 pub const ZENOH_RUNTIME: &str =
     "(rx:(handover:app),acc:(handover:app),tx:(handover:app),net:(handover:app),app:(worker_threads:2))";
 
-/// How a process takes part.
+/// Addresses of a process in the network.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct ZenohSettings {
-    /// Accepts connections here, and routes between those who connect: `HOST:PORT` or `tcp/HOST:PORT`.
+    /// Address at which the process accepts connections, and routes between the connected processes: `HOST:PORT` or
+    /// `tcp/HOST:PORT`.
     pub listen: Option<String>,
-    /// Connects to the process that listens here, again and again until it is there.
+    /// Address of the process to connect to; the connection is tried until it succeeds.
     pub connect: Option<String>,
 }
 
@@ -40,18 +42,21 @@ impl ZenohNetwork {
     /// Opens a session.
     ///
     /// # Errors
-    /// [`NetworkError::Address`]: not an address, or nobody can listen there.
+    /// [`NetworkError::Address`] if the address is invalid or cannot be used; [`NetworkError::InUse`] if another
+    /// program listens there.
     pub fn open(settings: &ZenohSettings) -> Result<Self, NetworkError> {
         Ok(Self { session: open_session(settings, &[])? })
     }
 
-    /// The session, for what is beyond this trait.
+    /// The Zenoh session, for uses beyond the trait.
     pub fn session(&self) -> &Session {
         &self.session
     }
 }
 
-/// Opens a session with these settings, and further entries of Zenoh's configuration. Waits until there is a process to connect to.
+/// Opens a session with these settings and further entries of Zenoh's configuration.
+///
+/// Waits until it is connected, if it has to connect.
 pub(crate) fn open_session(settings: &ZenohSettings, further: &[(&str, &str)]) -> Result<Session, NetworkError> {
     let listen = settings.listen.as_deref().map(endpoint).transpose()?;
     let connect = settings.connect.as_deref().map(endpoint).transpose()?;
@@ -69,10 +74,10 @@ pub(crate) fn open_session(settings: &ZenohSettings, further: &[(&str, &str)]) -
         ("connect/exit_on_failure", "false".to_owned()),
         ("connect/retry", r#"{"period_init_ms":50,"period_max_ms":200,"period_increase_factor":1.5}"#.to_owned()),
         ("scouting/multicast/enabled", "false".to_owned()),
-        // A router waits so long for others to be found, which are never looked for here.
+        // A router waits this long to discover others; discovery is off here.
         ("scouting/delay", "0".to_owned()),
         ("scouting/gossip/enabled", "false".to_owned()),
-        // A process that is cut off without closing its connection is given up after this time.
+        // A process that is cut off without closing its connection is dropped after this time, ms.
         ("transport/link/tx/lease", "1000".to_owned()),
     ];
     let address = || settings.listen.clone().or_else(|| settings.connect.clone()).unwrap_or_default();
@@ -83,13 +88,13 @@ pub(crate) fn open_session(settings: &ZenohSettings, further: &[(&str, &str)]) -
         config.insert_json5(key, &value).map_err(|e| wrong(format!("{key}: {e}")))?;
     }
     zenoh::open(config).wait().map_err(|e| match e.to_string() {
-        // Zenoh's errors are texts, with the places in its sources.
+        // Zenoh's errors are texts that include positions in its sources.
         why if why.contains("Address already in use") => NetworkError::InUse { address: address() },
         why => wrong(why),
     })
 }
 
-/// `tcp/HOST:PORT` of an address with or without `tcp/`.
+/// Returns `tcp/HOST:PORT` for an address with or without `tcp/`.
 pub(crate) fn endpoint(address: &str) -> Result<String, NetworkError> {
     let host_and_port = address.strip_prefix("tcp/").unwrap_or(address);
     let wrong = |why: &str| NetworkError::Address { address: address.to_owned(), why: why.to_owned() };

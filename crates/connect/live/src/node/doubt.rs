@@ -1,10 +1,10 @@
-//! What is wrong with what a node hears, for people.
+//! Fault in the input of a node, for people.
 
 use thiserror::Error;
 
 use super::input_gate::Rejected;
 
-/// What is wrong with what a node hears.
+/// Fault in the input of a node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub(super) enum Doubt {
     /// The process that keeps the regions has another cell file.
@@ -12,19 +12,19 @@ pub(super) enum Doubt {
         "the arbiter's process has loaded another cell file: load the same one on all computers, and start them again"
     )]
     OtherCell,
-    /// Nobody says which regions there are, and they may have changed.
+    /// No table of regions arrives, and the regions may have changed.
     #[error("the arbiter's process is not heard")]
     NoTable,
-    /// The monitor is not built for the present regions yet.
+    /// The monitor for the present regions is not built yet.
     #[error("they are being taken over")]
     NotBuilt,
-    /// The last message of the controller did not count.
+    /// The last message of the controller was rejected.
     #[error("the last message was refused, as {0}")]
     Refused(Rejected),
 }
 
 impl Doubt {
-    /// True if it is not known which regions the robot must not enter.
+    /// Whether it is unknown which regions the robot must not enter.
     pub(super) fn is_of_regions(self) -> bool {
         !matches!(self, Self::Refused(_))
     }

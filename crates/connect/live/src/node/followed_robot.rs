@@ -1,26 +1,27 @@
-//! A robot whose joint values say where regions are.
+//! Robot whose joint values determine the places of regions.
 
 use elbowroom_interlock::Micros;
 use elbowroom_kinematics::{Chain, ChainState};
 
 use super::inbox::Heard;
 
-/// Two positions farther apart do not tell how fast it moves.
+/// Longest time between two positions that give a velocity.
 const SAME_MOTION: Micros = Micros(100_000);
 
-/// What is known of a robot that is followed.
+/// State of a robot that is followed.
 #[derive(Debug, Clone, Default)]
 pub(super) struct FollowedRobot {
-    /// Of the values in its chain, on the clock of its controller.
+    /// Time of the joint values in its chain, on the clock of its controller.
     stamp: Option<Micros>,
-    /// They were given, or follow from the last two positions. A robot whose speed is not known is not taken to stand.
+    /// Whether its velocities are given, or follow from the last two positions. A robot of unknown velocity does not
+    /// count as at rest.
     knows_velocities: bool,
-    /// How old its values are; `None` if it is not known where it is, or how it moves.
+    /// Age of its joint values; `None` if its position or its velocity is unknown.
     pub(super) age: Option<Micros>,
 }
 
 impl FollowedRobot {
-    /// Moves its chain to where it was heard to be.
+    /// Moves its chain to the last received position, if it is new, and updates the age.
     pub(super) fn take(&mut self, heard: &mut Heard, chain: &Chain, state: &mut ChainState, now: Micros) {
         if std::mem::take(&mut heard.is_new) {
             self.follow(heard, state);
@@ -47,7 +48,7 @@ impl FollowedRobot {
         state.qdd.fill(0.0);
     }
 
-    /// The mean velocities since the positions before; false if these do not tell.
+    /// Computes the mean velocities since the previous positions; false if they cannot be known.
     fn derive_velocities(&self, q: &[f64], passed: Option<Micros>, state: &mut ChainState) -> bool {
         let Some(passed) = passed.filter(|passed| *passed <= SAME_MOTION) else { return false };
         if passed == Micros(0) {

@@ -1,4 +1,4 @@
-//! One robot, its monitor, and what its regions follow: the tick, without threads or a network.
+//! Guarded robot with its monitor and the sources of its regions: the tick, without threads or a network.
 
 use std::sync::Arc;
 
@@ -23,29 +23,29 @@ use super::standstill::Standstill;
 use crate::messages::{JointState, MAX_JOINTS, OverrideAnswer};
 use crate::regions_table::{RegionTable, TABLE_VALIDITY};
 
-/// One guarded robot. Its memory is allocated when it is made, so that [`Self::tick`] needs no more.
+/// One guarded robot. Its memory is allocated at its creation; [`Self::tick`] allocates nothing.
 pub(super) struct GuardedRobot {
     cell: Arc<Cell>,
     setup: MonitorSetup,
     monitor: NodeMonitor,
     state: JointState,
-    /// Time of the joint values, and the present time, on the controller's clock.
+    /// Time of the joint values, on the controller's clock. `now` is the present time on that clock.
     stamp: Option<Micros>,
     now: Micros,
-    /// Chains of the robots of the cell; only those that are followed are up to date.
+    /// Chains of the robots of the cell; only the followed ones are up to date.
     chains: Vec<ChainState>,
-    /// The others; only the followed ones are up to date.
+    /// The robots of the cell as sources; only the followed ones are up to date.
     followed: Vec<FollowedRobot>,
     sources: Vec<SourceState>,
     attached: AttachedVolumes,
     standstill: Standstill,
-    /// Per region of the cell whether it is on.
+    /// Whether each region of the cell is on.
     active: Vec<bool>,
-    /// Without a table of regions the robot stops.
+    /// Whether the robot stops until it has received a table of regions.
     pub(super) awaits_regions: bool,
-    /// What is wrong with what is heard.
+    /// Fault in the input.
     pub(super) doubt: Option<Doubt>,
-    /// The configuration of the monitor, for whoever shows what it finds.
+    /// Configuration of the monitor, for display of its results.
     pub(super) version: Arc<NodeVersion>,
     answers: u64,
     checksum: u64,
@@ -84,7 +84,7 @@ impl GuardedRobot {
         }
     }
 
-    /// Takes what has arrived, in the time that the lock of the inbox is held.
+    /// Reads the input that has arrived, while the inbox is locked.
     pub(super) fn take(&mut self, inbox: &mut Contents, now: Micros) {
         if std::mem::take(&mut inbox.own.is_new) {
             std::mem::swap(&mut self.state, &mut inbox.own.state);
@@ -102,7 +102,7 @@ impl GuardedRobot {
         self.take_regions(inbox, now);
     }
 
-    /// Takes which regions there are and which are on; exchanges the monitor where another one was built.
+    /// Reads the table of regions; exchanges the monitor if another one was built.
     fn take_regions(&mut self, inbox: &mut Contents, now: Micros) {
         if let Some(mut next) = inbox.take_built() {
             self.replace(&mut next, inbox);
@@ -121,12 +121,12 @@ impl GuardedRobot {
             () if is_recent(inbox.other_cell_heard) => Some(Doubt::OtherCell),
             () if may_have_changed => Some(Doubt::NoTable),
             () if !table.permits(&inbox.number) => Some(Doubt::NotBuilt),
-            // One that is late is refused now and then; it matters where no other one arrives.
+            // A late message is refused now and then; that matters only if no other one arrives.
             () => inbox.own.refused.filter(|_| self.is_stale()).map(Doubt::Refused),
         };
     }
 
-    /// Goes on with other regions. Nothing is allocated or freed: `next` holds what this had before.
+    /// Continues with other regions. Nothing is allocated or freed: `next` then holds the former parts.
     fn replace(&mut self, next: &mut NextConfiguration, inbox: &mut Contents) {
         for (on, before) in next.active_of_inbox.iter_mut().zip(&next.before) {
             *on = before.map_or_else(|on| on, |before| inbox.regions.active[before]);
@@ -142,7 +142,7 @@ impl GuardedRobot {
         std::mem::swap(&mut self.version, &mut next.version);
         let same = &next.same;
         self.sample.renumber(|old| same.iter().position(|s| *s == Some(old)).map(RegionId));
-        // A recording is compared up to here: its monitor would not know what this one goes on with.
+        // The recording ends here for comparison: a replayed monitor would not know the state that this one continues with.
         next.recorder = self.recorder.take();
     }
 
@@ -154,17 +154,17 @@ impl GuardedRobot {
         self.monitor.monitor()
     }
 
-    /// How old the joint values are; `None` before the first.
+    /// Age of the joint values; `None` before the first ones.
     fn age(&self) -> Option<Micros> {
         self.stamp.map(|stamp| self.now - stamp)
     }
 
-    /// True if the joint values are too old, or there were none yet.
+    /// Whether the joint values are too old, or none have arrived yet.
     pub(super) fn is_stale(&self) -> bool {
         self.age().is_none_or(|age| age > Micros::from_seconds(self.cell.laws.laws.stale_s))
     }
 
-    /// The override for the joint values that arrived last. `now` is on this process's clock.
+    /// Computes the override for the joint values that arrived last. `now` is on this process's clock.
     pub(super) fn tick(&mut self, now: Micros) -> TickReport {
         self.switch_regions();
         let is_attached = self.attach();
@@ -182,7 +182,7 @@ impl GuardedRobot {
         };
         let fault = match (self.doubt.is_some_and(Doubt::is_of_regions), is_attached) {
             (true, _) => Some(Fault::Regions),
-            // The robot carries what its monitor cannot know.
+            // The monitor does not know a volume that the robot carries.
             (false, false) => Some(Fault::WrongLength),
             (false, true) => None,
         };
@@ -198,8 +198,8 @@ impl GuardedRobot {
         report
     }
 
-    /// A robot that is at rest at another place than before was moved while nobody looked: by hand, or with its controller off.
-    /// After a second of rest its new place counts; as does that of a robot whose controller has started again.
+    /// Accepts a new place of the robot after a second of rest there, if the joint values have jumped (the robot was
+    /// moved by hand or with its controller off) or its controller has started again.
     fn notice_standstill(&mut self, has_jumped: bool, now: Micros) {
         let state = &self.state;
         if self.standstill.ends(has_jumped, &state.q, &state.qd, now) {
@@ -210,7 +210,7 @@ impl GuardedRobot {
         }
     }
 
-    /// Before the first joint values.
+    /// Reports a stop before the first joint values.
     fn silent(&mut self) -> TickReport {
         let reason = OverrideReason::Fault(Fault::Stale);
         let report =
@@ -219,7 +219,7 @@ impl GuardedRobot {
         report
     }
 
-    /// The answer to the controller.
+    /// Makes the answer to the controller.
     pub(super) fn answer(&mut self, report: &TickReport) -> OverrideAnswer {
         self.answers += 1;
         OverrideAnswer {
@@ -242,17 +242,17 @@ impl GuardedRobot {
         }
     }
 
-    /// The bytes of the next message to the arbiter; empty if no region needs one.
+    /// Returns the bytes of the next message to the arbiter; empty if no region needs one.
     pub(super) fn interlock_state(&mut self, now: Micros) -> &[u8] {
         self.monitor.state(now)
     }
 
-    /// True if the last tick changed what the arbiter has to know.
+    /// Whether the last tick has changed the occupancy that the arbiter has to know.
     pub(super) fn interlock_has_news(&mut self) -> bool {
         self.monitor.has_news()
     }
 
-    /// The number of the message that the last answer was for.
+    /// Sequence number of the message that the last answer was for.
     pub(super) fn sequence(&self) -> u64 {
         self.state.sequence
     }
@@ -262,7 +262,7 @@ impl GuardedRobot {
             let (id, on) = (RegionId(local), self.active[region.0]);
             let monitor = self.monitor.monitor_mut();
             if monitor.is_active(id) != on {
-                // Permanent regions are always on in a table, so that nothing is refused.
+                // Permanent regions are always on in a table, so the switch is never refused.
                 let _ = monitor.switch(id, on, AccessClass::Programmer);
                 if let Some(recorder) = &mut self.recorder {
                     recorder.switched(id, on);
@@ -271,7 +271,7 @@ impl GuardedRobot {
         }
     }
 
-    /// Attaches and detaches the optional volumes as the controller says. False if it names one that there is not.
+    /// Attaches and detaches the optional volumes that the controller names. False if it names an unknown volume.
     fn attach(&mut self) -> bool {
         let Self { monitor, attached, state, recorder, .. } = self;
         attached.apply(&state.attached, monitor.monitor_mut(), |volume, in_link| {
@@ -288,7 +288,7 @@ impl GuardedRobot {
         let frames = Frames::new(cell);
         sources.clear();
         for follow in &setup.sources {
-            // Stamps are on the clock of the own controller, as those of the joint values.
+            // Stamps are on the clock of this robot's controller, like those of its joint values.
             let age = match follow {
                 Follow::Robot { robot, .. } => followed[robot.0].age,
                 _ => Some(Micros(0)),

@@ -1,4 +1,4 @@
-//! What has arrived for a node since its last tick.
+//! Input that has arrived for a node since its last tick.
 
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -13,16 +13,18 @@ use crate::configuration_number::configuration_digits;
 use crate::messages::JointState;
 use crate::regions_table::{RegionTable, RegionTableMessage};
 
-/// What has arrived since the last tick. Threads of the network write, the thread of the tick reads; what is written twice is
-/// read once, in its newest state.
+/// Input that has arrived since the last tick.
+///
+/// Threads of the network write, the thread of the tick reads: of several messages between two ticks the tick reads the
+/// newest.
 pub(super) struct Inbox {
     contents: Mutex<Contents>,
     news: Condvar,
-    /// For whoever builds other regions.
+    /// Wakes the thread that builds other regions.
     work: Condvar,
 }
 
-/// What is in the inbox.
+/// Contents of the inbox.
 pub(super) struct Contents {
     /// The robot's own joint state.
     pub(super) own: Heard,
@@ -31,32 +33,32 @@ pub(super) struct Contents {
     /// The bytes of the last message of the arbiter, and whether it is new.
     pub(super) grants: Vec<u8>,
     pub(super) has_grants: bool,
-    /// Which regions are on, and when that was heard last.
+    /// The table of regions, and its time of arrival.
     pub(super) regions: RegionTable,
     pub(super) regions_heard: Option<Micros>,
-    /// When somebody was heard last who keeps the regions of another cell file.
+    /// Time of the last table of another cell file.
     pub(super) other_cell_heard: Option<Micros>,
-    /// The cell with the regions that the tick has, and the first digits of its checksum.
+    /// The cell with the regions that the tick uses, and the first digits of its checksum.
     pub(super) cell: Arc<Cell>,
     pub(super) number: String,
-    /// Other regions: what is to be built, what the next tick takes, and what the last exchange has left over.
+    /// Other regions: those to be built, those that the next tick takes, and the remains of the last exchange.
     pub(super) wanted: Option<Wanted>,
     pub(super) built: Option<Box<NextConfiguration>>,
     pub(super) left_over: Option<Box<NextConfiguration>>,
     pub(super) is_closed: bool,
 }
 
-/// Regions that the tick does not have yet.
+/// Regions that the tick does not use yet.
 pub(super) struct Wanted {
-    /// The first digits of the checksum of the cell that has them.
+    /// The first digits of the checksum of the cell with these regions.
     pub(super) number: String,
     pub(super) edits: Vec<RegionEdit>,
-    /// Whether they are on.
+    /// Names of the regions, and whether they are on.
     pub(super) regions: Vec<(String, bool)>,
 }
 
 impl Contents {
-    /// What the next tick exchanges its configuration with, if it is still asked for and what the last exchange has left over is gone.
+    /// Returns the configuration for the next tick, if it is still wanted and the remains of the last exchange are freed.
     pub(super) fn take_built(&mut self) -> Option<Box<NextConfiguration>> {
         let fits = |next: &&NextConfiguration| next.number == self.regions.present && next.from == self.number;
         self.built.as_deref().filter(fits)?;
@@ -72,14 +74,14 @@ pub(crate) struct Heard {
     pub(crate) state: JointState,
     /// Time of the joint values on their controller's clock; `None` before the first ones.
     pub(crate) stamp: Option<Micros>,
-    /// It has arrived since the last tick.
+    /// Whether it has arrived since the last tick.
     pub(crate) is_new: bool,
-    /// Why the last message did not count; `None` if it did, or could not be read.
+    /// Reason for refusing the last message; `None` if it was accepted, or could not be read.
     pub(crate) refused: Option<Rejected>,
 }
 
 impl Heard {
-    /// From controllers of this configuration; also from those that expect any, where the cell has no exchange regions.
+    /// Accepts controllers of this configuration; also controllers that accept any, if the cell has no exchange regions.
     pub(crate) fn new(checksum: u64, cell: &Cell) -> Self {
         let has_exchange = configure::slots(cell).iter().any(Option::is_some);
         Self {
@@ -92,17 +94,17 @@ impl Heard {
         }
     }
 
-    /// Messages that did not count.
+    /// Number of refused messages.
     pub(crate) fn rejected(&self) -> u64 {
         self.gate.rejected
     }
 
-    /// Where the controller's clock stands when this process's clock shows `local`.
+    /// Time on the controller's clock when this process's clock shows `local`.
     pub(crate) fn now(&mut self, local: Micros) -> Micros {
         self.gate.now(local)
     }
 
-    /// Takes a message; false if it cannot be read or does not count.
+    /// Reads a message; false if it cannot be read or is refused.
     pub(crate) fn take(&mut self, bytes: &[u8], arrived: Micros) -> bool {
         if self.scratch.decode(bytes).is_err() {
             self.gate.rejected += 1;
@@ -146,14 +148,14 @@ impl Inbox {
         self.contents.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The robot's own joint state; wakes the tick.
+    /// Reads a joint state of the robot, and wakes the tick.
     pub(super) fn take_joint_state(&self, bytes: &[u8], arrived: Micros) {
         if self.lock().own.take(bytes, arrived) {
             self.news.notify_one();
         }
     }
 
-    /// A message of the arbiter. It has effect in the next tick, which is soon.
+    /// Stores a message of the arbiter for the next tick, without waking it.
     pub(super) fn take_grants(&self, bytes: &[u8]) {
         let mut contents = self.lock();
         if bytes.len() <= MAX_BYTES {
@@ -163,14 +165,14 @@ impl Inbox {
         }
     }
 
-    /// The joint state of a robot that a region follows.
+    /// Reads a joint state of a robot that a region follows.
     pub(super) fn take_followed(&self, robot: usize, bytes: &[u8], arrived: Micros) {
         if let Some(Some(heard)) = self.lock().followed.get_mut(robot) {
             heard.take(bytes, arrived);
         }
     }
 
-    /// Which regions there are, and which are switched on.
+    /// Reads a table of regions.
     pub(super) fn take_regions(&self, message: &RegionTableMessage, arrived: Micros) {
         let mut contents = self.lock();
         let cell = contents.cell.clone();
@@ -192,14 +194,14 @@ impl Inbox {
         }
     }
 
-    /// Waits until there is something to build, at most for this time; frees what is left over. False at the end.
+    /// Waits until there is something to build or to free, at most for this time. False at the end.
     pub(super) fn wait_for_wanted(&self, longest: Duration) -> bool {
         let is_idle = |c: &mut Contents| c.wanted.is_none() && c.left_over.is_none() && !c.is_closed;
         let waited = self.work.wait_timeout_while(self.lock(), longest, is_idle);
         !waited.unwrap_or_else(PoisonError::into_inner).0.is_closed
     }
 
-    /// What is to be built, and the cell as it is now.
+    /// Takes the regions to be built, and the present cell. Frees the remains of the last exchange.
     pub(super) fn take_wanted(&self) -> (Option<Wanted>, Arc<Cell>) {
         let mut contents = self.lock();
         let left_over = contents.left_over.take();
@@ -209,7 +211,7 @@ impl Inbox {
         taken
     }
 
-    /// Leaves it for the next tick.
+    /// Stores a configuration for the next tick.
     pub(super) fn put_built(&self, next: Box<NextConfiguration>) {
         let mut contents = self.lock();
         let outdated = contents.built.replace(next);
@@ -217,14 +219,14 @@ impl Inbox {
         drop(outdated);
     }
 
-    /// Ends the thread of the tick.
+    /// Ends the threads that wait.
     pub(super) fn close(&self) {
         self.lock().is_closed = true;
         self.news.notify_all();
         self.work.notify_all();
     }
 
-    /// Waits for a joint state, or until the time is over.
+    /// Waits for a joint state, at most for this time.
     pub(super) fn wait(&self, longest: Duration) -> MutexGuard<'_, Contents> {
         let contents = self.lock();
         let is_idle = |c: &mut Contents| !c.own.is_new && !c.is_closed;

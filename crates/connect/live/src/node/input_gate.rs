@@ -1,30 +1,31 @@
-//! Which joint states of a controller count, and how old they are.
+//! Gate of a controller's joint states: which are accepted, and how old they are.
 
 use elbowroom_interlock::Micros;
 use thiserror::Error;
 
 use crate::messages::JointState;
 
-/// A controller that was silent for this long may have started again with a lower number: its clock was set back.
+/// Silence after which a controller may have started again with a lower number, because its clock was set back.
 const FORGOTTEN: Micros = Micros(1_000_000);
-/// A stamp farther ahead than this is not a stamp of a clock.
+/// Largest lead of a stamp: a stamp farther ahead is not from a clock.
 const MOST_AHEAD: Micros = Micros(1_000_000);
-/// Clocks drift apart by less than a microsecond in so many: a least delay that was seen counts as this much longer as time passes.
+/// Clocks drift apart by less than 1 µs in this many µs: the least observed delay increases at this rate as time passes.
 const DRIFT_ONE_IN: u64 = 1_000;
 
-/// Why a joint state does not count.
+/// Why a joint state is refused.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum Rejected {
-    /// Its number is not higher than that of the last one: late, doubled or replayed.
+    /// Its number is not higher than the last one: it is late, doubled or replayed.
     #[error("a joint state with a higher number was there before")]
     Late,
-    /// Of a controller that was started before the present one.
+    /// It is of a controller start before the present one.
     #[error("the joint state is of a former start of the controller")]
     FormerStart,
     /// The controller expects another configuration.
     #[error("the controller expects another configuration: load the same cell file on both sides")]
     OtherConfiguration,
-    /// The controller expects any configuration, in a cell with exchange regions: an old cell file could lead it into an occupied one.
+    /// The controller accepts any configuration, in a cell with exchange regions: an old cell file could lead it into
+    /// an occupied one.
     #[error(
         "the controller does not say which configuration it expects, in a cell with exchange regions: give it the number that the service prints at its start"
     )]
@@ -34,25 +35,26 @@ pub enum Rejected {
     Stamp,
 }
 
-/// Passes the joint states of one controller in order, and tells how old they are.
+/// Accepts the joint states of one controller in order, and computes their age.
 ///
-/// Stamps stay on the controller's clock, so that their differences are exact whatever the network does. Where that clock stands
-/// now is known from the message with the least delay: a delay that was there from the start is not noticed (the controller's watchdog
-/// bounds the way there and back), every further one makes a message that much older. As the clocks may drift apart, a further delay
-/// is forgotten by a millisecond per second. A controller that starts again goes on with the time of the former one.
+/// Stamps stay on the controller's clock, so that their differences are exact whatever the network does. The message
+/// with the least delay gives the present time of that clock: a delay that is there from the start is not noticed (the
+/// controller's watchdog bounds the delay there and back); any additional delay makes a message that much older. As the
+/// clocks may drift apart, an additional delay decays by 1 ms per second. A restarted controller continues with the
+/// time of its earlier start.
 #[derive(Debug, Clone, Default)]
 pub struct InputGate {
     checksum: u64,
-    /// Controllers that expect any configuration are refused.
+    /// Whether controllers that accept any configuration are refused.
     needs_configuration: bool,
     last: Option<Last>,
-    /// Added to stamps: continues the time of a former start of the controller.
+    /// Offset added to stamps: continues the time of an earlier start of the controller.
     base_us: i64,
-    /// The least difference of arrival and stamp, and when it was seen.
+    /// The least difference between arrival and stamp, and its time.
     least: Option<Delay>,
-    /// The latest time that was shown: it never goes back.
+    /// The latest time returned by [`Self::now`], which never decreases.
     shown: Micros,
-    /// Messages that did not count.
+    /// Number of refused messages.
     pub rejected: u64,
 }
 
@@ -63,7 +65,7 @@ struct Delay {
 }
 
 impl Delay {
-    /// What it may be later, as the clocks have drifted apart, µs.
+    /// Largest value of the delay at a later time, as the clocks may have drifted apart, µs.
     fn at(self, local: Micros) -> i64 {
         self.us.saturating_add(signed_us(Micros((local - self.seen).0 / DRIFT_ONE_IN)))
     }
@@ -77,21 +79,21 @@ struct Last {
 }
 
 impl InputGate {
-    /// For controllers that expect this configuration, or say 0.
+    /// Creates a gate for controllers with this configuration, or with 0 for any.
     pub fn new(checksum: u64) -> Self {
         Self { checksum, ..Self::default() }
     }
 
-    /// For controllers that expect this configuration only, where that matters.
+    /// Sets whether controllers that accept any configuration are refused.
     #[must_use]
     pub fn needs_configuration(self, needs: bool) -> Self {
         Self { needs_configuration: needs, ..self }
     }
 
-    /// The time of the joint values on the controller's clock.
+    /// Accepts a joint state; returns the time of its values on the controller's clock.
     ///
     /// # Errors
-    /// Why they do not count.
+    /// The reason for refusing it.
     pub fn pass(&mut self, state: &JointState, arrived: Micros) -> Result<Micros, Rejected> {
         if let Err(why) = self.check(state, arrived) {
             return Err(self.reject(why));
@@ -104,7 +106,7 @@ impl InputGate {
             return Err(self.reject(Rejected::Stamp));
         }
         if is_ahead || self.last.is_none_or(|last| last.boot != state.boot) {
-            // The first one starts where this process's clock stands.
+            // The time of the first start begins at the present time of this process's clock.
             let from = if self.last.is_none() { arrived } else { now };
             self.base_us = signed_us(from).saturating_sub(raw_us);
             self.least = None;
@@ -118,8 +120,9 @@ impl InputGate {
         Ok(stamp)
     }
 
-    /// Where the controller's clock stands when this process's clock shows `local`. It never goes back, and is never before the
-    /// last stamp.
+    /// Time on the controller's clock when this process's clock shows `local`.
+    ///
+    /// It never decreases, and is never before the last stamp.
     pub fn now(&mut self, local: Micros) -> Micros {
         if let Some(least) = self.least {
             self.shown = self.shown.max(Micros(signed_us(local).saturating_sub(least.at(local)).max(0) as u64));
@@ -229,7 +232,7 @@ mod tests {
         }
     }
 
-    /// The clock of a virtual machine that its host halts stands still. What the node believes to hold has ended long ago.
+    /// The clock of a virtual machine stops while its host pauses it. Grants that the node still holds have ended long ago.
     #[test]
     fn a_node_that_stood_still_hears_nothing_from_after_the_halt_at_first() {
         let mut gate = InputGate::new(0);
@@ -271,7 +274,7 @@ mod tests {
     fn a_pause_costs_no_message() {
         let mut gate = InputGate::new(0);
         gate.pass(&state(1, 1, 0), Micros(0)).unwrap();
-        // The controller was about to send when it was paused for 2 s; then it goes on with the present time.
+        // The controller was about to send when it was paused for 2 s; then it continues with the present time.
         gate.pass(&state(1, 2, 2_000), Micros(2_002_000)).unwrap();
         assert_eq!(gate.pass(&state(1, 3, 2_004_000), Micros(2_004_000)), Ok(Micros(2_004_000)));
     }

@@ -1,8 +1,8 @@
-//! A node: guards one robot. Joint states in, overrides out.
+//! Node of a cell: guards one robot. Joint states in, overrides out.
 //!
-//! Four threads: those of the network put what arrives into the inbox; the tick's own thread computes the override, without
-//! allocation, when joint values arrive; another one sends; the last one builds monitors for regions that are moved, added and
-//! removed. So nothing that a network does delays a tick.
+//! A node has four kinds of threads: threads of the network put input into the inbox; the tick's own thread computes
+//! the override, without allocation, when joint values arrive; one thread sends; one thread builds monitors for regions
+//! that are moved, added and removed. So the network never delays a tick.
 
 mod attached_volumes;
 mod doubt;
@@ -49,38 +49,38 @@ pub use node_monitor::NodeMonitor;
 pub use node_tick::NodeTick;
 pub use region_builder::RegionBuilder;
 
-/// What a node needs.
+/// Parts of a node.
 pub struct NodeParts {
     /// The cell.
     pub cell: Arc<Cell>,
     /// The robot to guard.
     pub robot: RobotId,
-    /// Its setup.
+    /// Setup of its monitor.
     pub setup: MonitorSetup,
-    /// Its monitor, of this setup.
+    /// Its monitor, made from this setup.
     pub monitor: NodeMonitor,
     /// [`configuration_number`](crate::configuration_number) of the cell.
     pub checksum: u64,
     /// The clock of the process.
     pub clock: Clock,
-    /// Joint states, overrides and statuses.
+    /// Network of joint states, overrides and statuses.
     pub network: Arc<dyn Network>,
-    /// The way to the arbiter.
+    /// Network of the arbiter.
     pub interlocks: Arc<dyn Network>,
-    /// Records every tick.
+    /// Recorder of every tick.
     pub recorder: Option<TickRecorder>,
-    /// For regions that are moved, added and removed while the node runs; then its robot stops until a table of regions was heard.
-    /// `None` if the regions cannot change while the cell runs.
+    /// Versions of the cell, for regions that are moved, added and removed while the node runs; the robot then stops
+    /// until a table of regions is received. `None` if the regions cannot change while the cell runs.
     pub versions: Option<Arc<CellVersions>>,
 }
 
-/// A running node; it ends when it is dropped.
+/// A running node. It ends when it is dropped.
 pub struct Node {
     inbox: Arc<Inbox>,
     outbox: Arc<Outbox>,
     threads: Vec<JoinHandle<()>>,
     _subscriptions: Vec<Subscription>,
-    // A network may end with its last owner.
+    // Kept because a network may end with its last owner.
     _networks: [Arc<dyn Network>; 2],
 }
 
@@ -91,7 +91,7 @@ impl Node {
     /// [`NetworkError`] if a key cannot be used.
     ///
     /// # Panics
-    /// Where the system gives no thread.
+    /// If the system cannot start a thread.
     pub fn start(parts: NodeParts) -> Result<Self, NetworkError> {
         let NodeParts { cell, robot, setup, monitor, checksum, clock, network, interlocks, recorder, versions } = parts;
         let (keys, name) = (Keys::new(&cell.name), cell.robots[robot.0].name.clone());
@@ -138,13 +138,14 @@ impl Drop for Node {
         self.inbox.close();
         self.outbox.put(|o| o.is_closed = true);
         for thread in self.threads.drain(..) {
-            // A thread that panicked has stopped to answer: the controller has stopped by itself.
+            // A thread that panicked has stopped answering, so the controller has stopped by itself.
             let _ = thread.join();
         }
     }
 }
 
-/// Joint values come by the network of the controllers. Which regions there are never does: anybody may send a datagram.
+/// Subscribes to all inputs. Joint values come from the network of the controllers; the table of regions never does, as
+/// anybody may send a datagram.
 fn subscribe(
     [network, shared]: [&dyn Network; 2],
     keys: &Keys,
@@ -175,7 +176,7 @@ fn subscribe(
 struct Sender {
     answers: Box<dyn Publisher>,
     statuses: Box<dyn Publisher>,
-    /// To the arbiter.
+    /// Messages to the arbiter.
     states: Box<dyn Publisher>,
     sample: StatusSample,
     chain: ChainState,
@@ -251,7 +252,7 @@ impl Sender {
         events.map(event).collect()
     }
 
-    /// Pose of the TCP in the world at the joint values of the sample.
+    /// Computes the pose of the TCP in the world at the joint values of the sample.
     fn tcp(&mut self, configuration: &Configuration) -> Option<Pose> {
         let q = self.sample.joint_positions();
         if q.len() != self.chain.q.len() {

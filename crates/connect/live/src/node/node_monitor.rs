@@ -1,4 +1,4 @@
-//! The monitor of a node, with or without exchange regions.
+//! Monitor of a node, with or without exchange regions.
 
 use elbowroom_cell::configure::MonitorSetup;
 use elbowroom_interlock::{Boot, Guard, Micros};
@@ -7,11 +7,11 @@ use elbowroom_monitor::{
     TickReport,
 };
 
-/// The monitor of a robot, with a guard where it has exchange regions.
+/// The monitor of a robot, with a guard if it has exchange regions.
 #[derive(Debug)]
 pub struct NodeMonitor {
     monitor: Inner,
-    /// Per slot the occupancy that was reported last.
+    /// Last reported occupancy per slot.
     reported: Vec<Occupancy>,
 }
 
@@ -22,8 +22,9 @@ enum Inner {
 }
 
 impl NodeMonitor {
-    /// The monitor of a setup, in a cell with this number of slots and this configuration. `boot` must be higher than at former
-    /// starts of the node.
+    /// Creates the monitor of a setup, in a cell with this number of slots and this configuration.
+    ///
+    /// `boot` must be higher than at earlier starts of the node.
     ///
     /// # Errors
     /// As for [`GuardedMonitor::new`].
@@ -61,7 +62,7 @@ impl NodeMonitor {
         }
     }
 
-    /// What grants the slots of another monitor of this robot; `None` without exchange regions.
+    /// The interlock for another monitor of this robot; `None` without exchange regions.
     pub(super) fn interlock(&self) -> Option<Interlock> {
         match &self.monitor {
             Inner::Alone(_) => None,
@@ -69,7 +70,7 @@ impl NodeMonitor {
         }
     }
 
-    /// Exchanges the monitor with one for other regions, which goes on where this one has ended.
+    /// Exchanges the monitor with one for other regions, which continues from the state of this one.
     pub(super) fn replace(&mut self, next: &mut Monitor, same: &[Option<RegionId>]) {
         match &mut self.monitor {
             Inner::Alone(monitor) => {
@@ -87,7 +88,7 @@ impl NodeMonitor {
         }
     }
 
-    /// The bytes of the next message to the arbiter; empty without exchange regions.
+    /// Returns the bytes of the next message to the arbiter; empty without exchange regions.
     pub(super) fn state(&mut self, now: Micros) -> &[u8] {
         match &mut self.monitor {
             Inner::Alone(_) => &[],
@@ -95,14 +96,14 @@ impl NodeMonitor {
         }
     }
 
-    /// Takes bytes of the arbiter. What is not obeyed changes nothing.
+    /// Reads a message of the arbiter. A message that is refused changes nothing.
     pub(super) fn receive(&mut self, bytes: &[u8]) {
         if let Inner::Guarded(guarded) = &mut self.monitor {
             let _ = guarded.receive(bytes);
         }
     }
 
-    /// True if the robot's occupancy of a slot is another one than at the last call.
+    /// Whether the robot's occupancy of a slot has changed since the last call.
     pub(super) fn has_news(&mut self) -> bool {
         let Inner::Guarded(guarded) = &self.monitor else { return false };
         let mut has_news = false;

@@ -1,4 +1,4 @@
-//! The tick of a node, without its threads, its network and its clock.
+//! Tick of a node, without its threads, its network and its clock.
 
 use std::sync::{Arc, MutexGuard};
 use std::time::{Duration, Instant};
@@ -21,9 +21,9 @@ use crate::clock::Clock;
 use crate::messages::OverrideAnswer;
 use crate::regions_table::RegionTableMessage;
 
-/// How often a status is published, at most.
+/// Shortest time between two statuses.
 const STATUS_PERIOD: Micros = Micros(20_000);
-/// How often a guard writes to the arbiter; at once where something changed.
+/// Interval at which a guard writes to the arbiter; at once after a change.
 const REPORT_PERIOD: Micros = Micros(10_000);
 
 /// Whether the regions of a setup follow a robot.
@@ -31,25 +31,26 @@ pub(super) fn follows(setup: &MonitorSetup, robot: RobotId) -> bool {
     setup.sources.iter().any(|s| matches!(s, Follow::Robot { robot: r, .. } if *r == robot))
 }
 
-/// What a [`Node`](super::Node) does between a joint state and its answer, for programs that have a loop of their own: messages are
-/// put in, [`Self::tick`] is called, messages are taken out.
+/// The work of a [`Node`](super::Node) between a joint state and its answer, for programs with a loop of their own: put
+/// messages in, call [`Self::tick`], take messages out.
 ///
-/// Nothing is allocated after [`Self::new`], but by [`Self::regions`] and by a recorder; `tests/alloc.rs` counts.
+/// Nothing is allocated after [`Self::new`], except by [`Self::regions`] and by a recorder; `tests/alloc.rs` counts.
 pub struct NodeTick {
     guarded: GuardedRobot,
     inbox: Arc<Inbox>,
     outbox: Arc<Outbox>,
     stale: Micros,
     health: HealthStatus,
-    /// When a status was left last.
+    /// Time of the last status.
     published: Option<Micros>,
-    /// When the guard wrote to the arbiter last.
+    /// Time of the guard's last message to the arbiter.
     reported: Option<Micros>,
 }
 
 impl NodeTick {
-    /// The tick of the robot of a setup and a monitor of it. `checksum` is the
-    /// [`configuration_number`](crate::configuration_number) of the cell.
+    /// Creates the tick of the robot of a setup and its monitor.
+    ///
+    /// `checksum` is the [`configuration_number`](crate::configuration_number) of the cell.
     pub fn new(
         cell: Arc<Cell>,
         setup: MonitorSetup,
@@ -71,12 +72,14 @@ impl NodeTick {
         }
     }
 
-    /// Until it has heard a table of regions, the robot stops: it may not know which ones there are.
+    /// Stops the robot until a table of regions is received: the regions may have changed since the cell file.
     pub fn await_regions(&mut self) {
         self.guarded.awaits_regions = true;
     }
 
-    /// Builds what the node of this robot needs when the table of regions has others. Without it the node stops then.
+    /// Returns the builder that makes the node's configuration for changed regions.
+    ///
+    /// Without it the node stops when they are due.
     pub fn region_builder(&self, robot: RobotId, versions: Arc<CellVersions>) -> RegionBuilder {
         let (interlock, version) = (self.guarded.interlock(), self.guarded.version.clone());
         RegionBuilder::new(self.inbox.clone(), versions, robot, interlock, version)
@@ -90,12 +93,12 @@ impl NodeTick {
         &self.outbox
     }
 
-    /// Puts in a joint state of the robot. Times are those of one monotonic clock of this process.
+    /// Puts in a joint state of the robot. All times are on one monotonic clock of this process.
     pub fn joint_state(&self, bytes: &[u8], arrived: Micros) {
         self.inbox.take_joint_state(bytes, arrived);
     }
 
-    /// Puts in a joint state of another robot, which counts where a region follows that one.
+    /// Puts in a joint state of another robot; it is used if a region follows that robot.
     pub fn followed_joint_state(&self, robot: RobotId, bytes: &[u8], arrived: Micros) {
         self.inbox.take_followed(robot.0, bytes, arrived);
     }
@@ -105,36 +108,37 @@ impl NodeTick {
         self.inbox.take_grants(bytes);
     }
 
-    /// Puts in which regions there are, and which are switched on.
+    /// Puts in a table of regions.
     pub fn regions(&self, message: &RegionTableMessage, arrived: Micros) {
         self.inbox.take_regions(message, arrived);
     }
 
-    /// Answers the joint state that arrived last, if it is new; without one, ticks where the last one is stale. `None`: there was
-    /// nothing to do.
+    /// Answers the joint state that arrived last, if it is new; without a new one, ticks if the last one is stale.
+    ///
+    /// `None` if there was nothing to do.
     pub fn tick(&mut self, now: Micros) -> Option<TickReport> {
         let inbox = self.inbox.clone();
         self.tick_on(inbox.lock(), now)
     }
 
-    /// Takes the answer to the controller, where there is a new one.
+    /// Takes the answer to the controller, if there is a new one.
     pub fn take_answer(&self) -> Option<OverrideAnswer> {
         self.outbox.lock().answer.take()
     }
 
-    /// Exchanges the message to the arbiter with `bytes`; false if there is no new one.
+    /// Exchanges `bytes` with the message to the arbiter; false if there is no new one.
     pub fn take_interlock_state(&self, bytes: &mut Vec<u8>) -> bool {
         bytes.clear();
         std::mem::swap(bytes, &mut self.outbox.lock().state);
         !bytes.is_empty()
     }
 
-    /// Exchanges what a status is made of with `sample`; false if there is no new one. Fifty per second are left.
+    /// Exchanges `sample` with the data of a status; false if there is no new one. At most fifty per second are made.
     pub fn take_sample(&self, sample: &mut StatusSample) -> bool {
         self.outbox.lock().take_sample(sample).is_some()
     }
 
-    /// An empty sample for [`Self::take_sample`].
+    /// Creates an empty sample for [`Self::take_sample`].
     pub fn new_sample(&self) -> StatusSample {
         StatusSample::new(self.guarded.monitor())
     }
@@ -155,7 +159,7 @@ impl NodeTick {
         let has_joints = contents.own.is_new;
         self.health.rejected = contents.own.rejected();
         self.guarded.take(&mut contents, now);
-        // What arrives during the tick is for the next one.
+        // Input that arrives during the tick is for the next one.
         drop(contents);
         let is_stale = self.guarded.is_stale();
         if !has_joints && !is_stale {
@@ -186,7 +190,7 @@ impl NodeTick {
                 std::mem::swap(&mut outgoing.sample, &mut guarded.sample);
                 outgoing.has_sample = true;
                 if !Arc::ptr_eq(&outgoing.version, &guarded.version) {
-                    // The one before is held by who builds them: nothing is freed here.
+                    // The region builder holds the former version, so nothing is freed here.
                     outgoing.version = guarded.version.clone();
                 }
                 (outgoing.t_s, outgoing.sequence) = (now.0 as f64 * 1e-6, guarded.sequence());

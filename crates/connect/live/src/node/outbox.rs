@@ -1,4 +1,4 @@
-//! What a node has to send.
+//! Messages that a node has to send.
 
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
@@ -10,7 +10,7 @@ use super::doubt::Doubt;
 use super::next_configuration::NodeVersion;
 use crate::messages::OverrideAnswer;
 
-/// What the thread of the tick leaves for the thread that sends. A message that was not sent yet is replaced by the next one.
+/// Messages from the tick's thread to the sending thread. A message that is not sent yet is replaced by the next one.
 #[derive(Debug)]
 pub(super) struct Outbox {
     contents: Mutex<Outgoing>,
@@ -22,7 +22,7 @@ pub(super) struct Outgoing {
     pub(super) answer: Option<OverrideAnswer>,
     /// The guard's message to the arbiter; empty if there is none.
     pub(super) state: Vec<u8>,
-    /// The last tick, valid where `has_sample`.
+    /// Data of the last tick, valid if `has_sample`.
     pub(super) sample: StatusSample,
     pub(super) has_sample: bool,
     /// The configuration of that tick.
@@ -30,7 +30,7 @@ pub(super) struct Outgoing {
     pub(super) t_s: f64,
     pub(super) sequence: u64,
     pub(super) health: HealthStatus,
-    /// What is wrong with what the node hears.
+    /// Fault in the input of the node.
     pub(super) doubt: Option<Doubt>,
     pub(super) is_closed: bool,
 }
@@ -40,7 +40,7 @@ impl Outgoing {
         self.answer.is_none() && self.state.is_empty() && !self.has_sample && !self.is_closed
     }
 
-    /// Exchanges the sample with `into`, where there is a new one; with its time, its number and the health.
+    /// Exchanges `into` with the sample, if it is new; returns its time in s, its sequence number and the health.
     pub(super) fn take_sample(&mut self, into: &mut StatusSample) -> Option<(f64, u64, HealthStatus)> {
         if !std::mem::take(&mut self.has_sample) {
             return None;
@@ -71,7 +71,7 @@ impl Outbox {
         self.contents.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Changes what is to be sent, and wakes the thread that sends.
+    /// Changes the messages, and wakes the sending thread.
     pub(super) fn put(&self, change: impl FnOnce(&mut Outgoing)) {
         change(&mut self.lock());
         self.news.notify_one();

@@ -1,4 +1,4 @@
-//! Builds what a node needs for other regions, outside of the thread of its tick.
+//! Builder of a node's configuration for other regions, outside the tick's thread.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -12,17 +12,19 @@ use super::next_configuration::{NextConfiguration, NodeVersion};
 use crate::cell_versions::CellVersions;
 use crate::configuration_number::configuration_digits;
 
-/// After a region that cannot be built, how long until the next attempt: a file may be missing still.
+/// Longest wait for something to build, and base of the pause after a failure: a file may be missing for a while.
 const AGAIN_AFTER: Duration = Duration::from_secs(1);
 
-/// Builds what a node needs for other regions. [`Node`](super::Node) has one on a thread of its own; a program with its own loop calls
-/// [`Self::build`] on any thread but that of the ticks.
+/// Builds a node's configuration for other regions.
+///
+/// [`Node`](super::Node) runs one on a separate thread; a program with its own loop calls [`Self::build`] on any thread
+/// except that of the ticks.
 pub struct RegionBuilder {
     inbox: Arc<Inbox>,
     versions: Arc<CellVersions>,
     robot: RobotId,
     interlock: Option<Interlock>,
-    /// Held here, so that the tick never frees one.
+    /// Versions held here, so that the tick never frees one.
     kept: Vec<Arc<NodeVersion>>,
 }
 
@@ -37,10 +39,12 @@ impl RegionBuilder {
         Self { inbox, versions, robot, interlock, kept: vec![version] }
     }
 
-    /// Builds the monitor for the last table received, and leaves it for the next tick. Returns false if there is nothing to build.
+    /// Builds the monitor for the last table received, and stores it for the next tick.
+    ///
+    /// Returns false if there is nothing to build.
     ///
     /// # Errors
-    /// Why the node cannot have these regions, in words; then it stops once they are due.
+    /// The reason, as text, if the node cannot have these regions; it then stops once they are due.
     pub fn build(&mut self) -> Result<bool, String> {
         let (wanted, cell) = self.inbox.take_wanted();
         let Some(wanted) = wanted else { return Ok(false) };
@@ -49,11 +53,12 @@ impl RegionBuilder {
         Ok(true)
     }
 
-    /// Builds whenever there is something to build, until the node ends.
+    /// Builds whenever other regions are wanted, until the node ends.
     pub(super) fn run(mut self) {
         while self.inbox.wait_for_wanted(AGAIN_AFTER) {
             if self.build().is_err() {
-                // The next table asks for it again; the status says that the node has stopped, or goes on with the regions before.
+                // The next table requests it again; the status says that the node has stopped, or continues with the
+                // former regions.
                 std::thread::sleep(AGAIN_AFTER / 4);
             }
         }

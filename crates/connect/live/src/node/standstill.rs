@@ -1,44 +1,44 @@
-//! When the place of a robot counts again that was moved while nobody looked.
+//! Detection of rest, after which the new place of a moved robot is accepted.
 
 use elbowroom_interlock::Micros;
 
-/// How long the robot must be at rest.
+/// Time for which the robot must be at rest.
 const REST: Micros = Micros(1_000_000);
-/// Readings of a joint at rest differ by less, rad or m.
+/// Largest difference between readings of a joint at rest, rad or m.
 const JITTER: f64 = 1e-3;
 
 /// Watches a robot whose place is in doubt until it has been at rest for a second.
 ///
-/// A robot at rest says so by its velocities *and* by its positions: values that jump to and fro are those of a sensor that fails,
-/// or of two controllers.
+/// A robot at rest shows it by its velocities *and* by its positions: values that jump back and forth come from a
+/// faulty sensor or from two controllers.
 #[derive(Debug)]
 pub(super) struct Standstill {
-    /// Start of the controller that is heard.
+    /// Number of the controller's present start.
     controller: Option<u64>,
-    /// The controller has started again, and the robot has not moved since.
+    /// Whether the controller has started again, and the robot has not moved since.
     has_restarted: bool,
     since: Option<Micros>,
     q: Vec<f64>,
 }
 
 impl Standstill {
-    /// Of a robot with this number of joints.
+    /// Creates the watch for a robot with this number of joints.
     pub(super) fn new(joints: usize) -> Self {
         Self { controller: None, has_restarted: false, since: None, q: Vec::with_capacity(joints) }
     }
 
-    /// Takes that joint values of this start of the controller have arrived.
+    /// Records that joint values of this controller start have arrived.
     pub(super) fn hear(&mut self, controller: u64) {
         self.has_restarted |= self.controller.is_some_and(|before| before != controller);
         self.controller = Some(controller);
     }
 
-    /// True once where the place counts from now on: it was in doubt, because the values have jumped or the controller has started
-    /// again, and the robot has been at rest for a second.
+    /// Returns true once when the place is accepted: it was in doubt, because the values have jumped or the controller
+    /// has started again, and the robot has been at rest for a second.
     pub(super) fn ends(&mut self, has_jumped: bool, q: &[f64], qd: &[f64], now: Micros) -> bool {
         let is_at_rest = qd.iter().all(|v| *v == 0.0);
         if !is_at_rest || !(has_jumped || self.has_restarted) {
-            // A robot that moves is heard well.
+            // The place of a moving robot is not in doubt.
             self.has_restarted &= is_at_rest;
             self.since = None;
             return false;
@@ -64,7 +64,7 @@ impl Standstill {
 mod tests {
     use super::*;
 
-    /// At which of 4,000 ticks of a millisecond the place counts.
+    /// Returns the ticks, of 4000 ticks of 1 ms, at which the place is accepted.
     fn counts_at(
         has_jumped: bool,
         mut robot: impl FnMut(u64) -> (f64, f64),

@@ -1,4 +1,4 @@
-//! The speed scaling of a robot whose controller does not speak ROS 2: what its node answers, for those who watch.
+//! Speed scaling of a robot whose controller does not use ROS 2: the answer of its node, for observers.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -12,13 +12,13 @@ use crate::network::{Network, NetworkError, Subscription};
 
 /// Publishes the override that a node answers to its controller.
 pub(super) struct AnsweredFactor {
-    // In the order in which they end.
+    // In the order in which the parts end.
     _answers: Subscription,
     _speed_scaling: SpeedScaling,
 }
 
 impl AnsweredFactor {
-    /// `key` is that of the node's answers; one counts until it is `oldest`.
+    /// Starts to publish. `key` is the key of the node's answers; an answer is valid until its age is `oldest`.
     pub(super) fn start(
         network: &dyn Network,
         key: &str,

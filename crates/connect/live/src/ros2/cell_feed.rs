@@ -1,14 +1,14 @@
-//! The newest status of the cell, for a thread that publishes it.
+//! Newest status of the cell, for a thread that publishes it.
 
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::Duration;
 
 use elbowroom_status::CellStatus;
 
-/// How often a thread without news sees whether it has to end.
+/// Interval at which a thread without news checks whether it has to end.
 const POLL: Duration = Duration::from_millis(100);
 
-/// The newest status: one that was not published yet is replaced by the next one. Clones are the same feed.
+/// The newest status; a status that is not published yet is replaced by the next one. Clones share the feed.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct CellFeed(Arc<(Mutex<Latest>, Condvar)>);
 
@@ -19,12 +19,12 @@ struct Latest {
 }
 
 impl CellFeed {
-    /// Waits for nobody.
+    /// Stores a status, without waiting.
     pub(crate) fn publish(&self, status: CellStatus) {
         self.change(|latest| latest.status = Some(status));
     }
 
-    /// Ends the thread that waits.
+    /// Ends the waiting thread.
     pub(super) fn close(&self) {
         self.change(|latest| latest.is_closed = true);
     }
@@ -34,7 +34,7 @@ impl CellFeed {
         self.0.1.notify_one();
     }
 
-    /// Waits for a status, not long; false at the end.
+    /// Waits for a status for a short time; false at the end.
     pub(super) fn wait(&self, status: &mut Option<CellStatus>) -> bool {
         let latest = self.0.0.lock().unwrap_or_else(PoisonError::into_inner);
         let is_idle = |latest: &mut Latest| latest.status.is_none() && !latest.is_closed;

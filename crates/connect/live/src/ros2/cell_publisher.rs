@@ -1,4 +1,4 @@
-//! Publishes the cell: its description, transforms, joint values, markers, diagnostics.
+//! Publisher of the cell: its description, transforms, joint values, markers, diagnostics.
 
 use std::time::{Duration, Instant};
 
@@ -18,9 +18,9 @@ use super::input_report::InputReport;
 use super::session::{RosPublisher, RosSession, nanoseconds_since_1970};
 use crate::network::{NetworkError, Urgency};
 
-/// How often diagnostics are repeated, as by every publisher of `/diagnostics`; at once where a reason changes.
+/// Interval at which diagnostics are repeated, as by every publisher of `/diagnostics`; at once when a reason changes.
 const DIAGNOSTICS: Duration = Duration::from_secs(1);
-/// How often the markers of the regions are repeated; at once where a region changes.
+/// Interval at which the markers of the regions are repeated; at once when a region changes.
 const REGIONS: Duration = Duration::from_secs(5);
 
 /// The topics of a cell.
@@ -32,11 +32,11 @@ pub(super) struct CellPublisher {
     regions: Repeated<Vec<u8>>,
     nearest_points: RosPublisher,
     bytes: Vec<u8>,
-    // Their samples do not change: they are kept for those who come later.
+    // Their samples do not change; they are kept for subscribers that come later.
     _latched: [RosPublisher; 2],
 }
 
-/// A topic that is published when something changes, and again and again.
+/// A topic that is published at a change, and repeated periodically.
 struct Repeated<S> {
     publisher: RosPublisher,
     period: Duration,
@@ -54,7 +54,7 @@ impl<S: PartialEq> Repeated<S> {
 }
 
 impl CellPublisher {
-    /// Publishes what never changes.
+    /// Opens the topics, and publishes the constant ones.
     pub(super) fn start(cell: &Cell, session: &RosSession, distribution: Distribution) -> Result<Self, NetworkError> {
         let messages = CellMessages::new(cell);
         let opened = Opener { session, distribution };
@@ -76,7 +76,7 @@ impl CellPublisher {
         })
     }
 
-    /// Publishes what a status says, and how the inputs are doing at `time` of the process's clock.
+    /// Publishes a status, and the state of the inputs at `time` of the process's clock.
     pub(super) fn publish(&mut self, status: &CellStatus, inputs: &[InputReport], time: Micros) {
         let Self { messages, tf, joint_states, diagnostics, regions, nearest_points, bytes, .. } = self;
         let stamp = now();
@@ -102,7 +102,7 @@ impl CellPublisher {
     }
 }
 
-/// Opens the topics of a cell: they are for people.
+/// Opens the topics of a cell, which are for people.
 struct Opener<'a> {
     session: &'a RosSession,
     distribution: Distribution,

@@ -1,5 +1,7 @@
-//! The controller of a robot that speaks ROS 2, towards its node: joint values in its messages become those of the node's own
-//! protocol, and the node's answers become factors. So the node treats it as every other controller.
+//! Controller of a robot that uses ROS 2, towards its node.
+//!
+//! Joint values in ROS 2 messages become messages of the node's own protocol, and the node's answers become speed
+//! scaling factors. So the node treats this controller like any other.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -24,12 +26,12 @@ use crate::event_handler::EventHandler;
 use crate::keys::Keys;
 use crate::network::{Network, NetworkError, Publisher, Subscription, Urgency};
 
-/// What a controller needs.
+/// Parts that a controller needs.
 pub(super) struct ControllerParts<'a> {
     pub(super) cell: &'a Cell,
     pub(super) settings: &'a Ros2Settings,
     pub(super) session: &'a RosSession,
-    /// That of the node.
+    /// Network of the node.
     pub(super) network: &'a Arc<dyn Network>,
     pub(super) clock: Clock,
     pub(super) on_event: Option<EventHandler>,
@@ -37,13 +39,13 @@ pub(super) struct ControllerParts<'a> {
 
 /// The controller of one robot. It ends when it is dropped.
 pub(super) struct RosController {
-    // In the order in which they end: nothing arrives any more, then the last factor is sent.
+    // In the order in which the parts end: input stops first, then the last factor is sent.
     _subscriptions: Vec<Subscription>,
     _speed_scaling: SpeedScaling,
     report: InputReport,
 }
 
-/// What the messages of the controller change.
+/// State that the messages of the controller change.
 struct Input {
     joint_states: JointStateInput,
     intent: IntentInput,
@@ -101,7 +103,7 @@ impl RosController {
         Ok(Self { _subscriptions: vec![joint_states, intent, answers], _speed_scaling: speed_scaling, report })
     }
 
-    /// How its input is doing.
+    /// Report on its input.
     pub(super) fn report(&self) -> &InputReport {
         &self.report
     }
@@ -119,14 +121,14 @@ fn subscribe_to_answers(
 ) -> Result<Subscription, NetworkError> {
     let (client, wake) = (client.clone(), wake.clone());
     let handler = Box::new(move |bytes: &[u8]| {
-        // An answer that is refused is of another start, or late: the client's watchdog sees to it.
+        // A refused answer is of another start, or late: the client's watchdog handles that.
         let _ = lock(&client).receive(bytes);
         wake.notify();
     });
     network.subscribe(key, handler)
 }
 
-/// Counts what came of a message, and reports a reason when it is another one than before.
+/// Counts the result of a message, and reports a reason that differs from the one before.
 fn counter(
     report: &InputReport,
     clock: Clock,
@@ -141,7 +143,7 @@ fn counter(
 }
 
 impl Input {
-    /// Passes joint values on to the node.
+    /// Passes joint values to the node.
     fn take(&mut self, sample: RosSample<'_>, now: Micros, client: &Client) -> Result<(), RosInputError> {
         let Self { joint_states, intent, to_node, bytes, oldest } = self;
         joint_states.take(sample, now)?;

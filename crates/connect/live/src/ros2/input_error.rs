@@ -1,4 +1,4 @@
-//! Why a message of ROS 2 does not count.
+//! Reasons for refusing a ROS 2 message.
 
 use elbowroom_ros2::CdrError;
 use elbowroom_ros2::rmw_zenoh::AttachmentError;
@@ -6,25 +6,25 @@ use thiserror::Error;
 
 use crate::node::Rejected;
 
-/// Largest message that is read.
+/// Largest message that is read, bytes.
 pub const MAX_MESSAGE_BYTES: usize = 65_536;
 
-/// Why a message of a controller does not count.
+/// Why a message of a controller is refused.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum RosInputError {
-    /// It has no attachment.
+    /// The message has no attachment.
     #[error("the sample has no attachment: is its publisher one of rmw_zenoh?")]
     NoAttachment,
-    /// Its attachment cannot be read.
+    /// The attachment cannot be read.
     #[error("{0}")]
     Attachment(#[from] AttachmentError),
-    /// Too large.
+    /// The message is too large.
     #[error("a message of {0} bytes is larger than {MAX_MESSAGE_BYTES}")]
     Size(usize),
-    /// Not such a message.
+    /// The bytes are not a message of this type.
     #[error("{0}")]
     Message(#[from] CdrError),
-    /// A list that does not fit to the names.
+    /// A list has another length than the list of names.
     #[error("{names} names and {values} values in `{list}`")]
     Length {
         /// The list.
@@ -34,16 +34,16 @@ pub enum RosInputError {
         /// Number of values.
         values: usize,
     },
-    /// A name that no robot has.
+    /// No robot has a joint of this name.
     #[error("`{0}` is no joint of the robot, nor of another one that has this topic")]
     Unknown(String),
-    /// A name that two robots of the topic have.
+    /// Two robots of the topic have a joint of this name.
     #[error("several robots that have this topic have a joint `{0}`: put the robot's name before it, as in left_{0}")]
     Ambiguous(String),
-    /// A name that is there twice.
+    /// The name occurs twice.
     #[error("the joint `{0}` is there twice")]
     Twice(String),
-    /// A joint that is not in the message.
+    /// A joint is missing in the message.
     #[error("the joint `{0}` is not in the message")]
     Missing(String),
     /// Another publisher sends on the topic.
@@ -52,7 +52,7 @@ pub enum RosInputError {
     /// The number or the stamp is negative.
     #[error("the number or the stamp of the sample is negative")]
     Negative,
-    /// Late, replayed, or with a stamp that is none.
+    /// The message is late or replayed, or its stamp is invalid.
     #[error("{0}")]
     Rejected(#[from] Rejected),
 }

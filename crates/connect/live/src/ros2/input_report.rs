@@ -1,4 +1,4 @@
-//! How the input of a robot is doing, for people.
+//! Report on the input of a robot, for people.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -7,12 +7,12 @@ use elbowroom_ros2::msgs::diagnostic_msgs::{DiagnosticStatus, KeyValue};
 
 use super::input_error::RosInputError;
 
-/// Older than this is not of the present.
+/// Age up to which a message counts as present.
 const PRESENT: Micros = Micros(1_000_000);
-/// Reasons are not said more often than this.
+/// Shortest time between two reported reasons.
 const QUIET: Micros = Micros(100_000);
 
-/// What came of the messages of one topic. Clones are the same report.
+/// Results of the messages of one topic. Clones share the report.
 #[derive(Debug, Clone)]
 pub(super) struct InputReport {
     robot: String,
@@ -26,7 +26,7 @@ struct Counts {
     refused: u64,
     last_taken: Option<Micros>,
     last_refused: Option<(String, Micros)>,
-    /// The reason that was said last.
+    /// The last reported reason.
     said: Option<(String, Micros)>,
 }
 
@@ -39,7 +39,7 @@ impl InputReport {
         self.counts.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Counts a message. Returns a line for people where the reason is another one than before.
+    /// Counts a message. Returns a line to report if the reason is new.
     pub(super) fn count(&self, result: &Result<(), RosInputError>, now: Micros) -> Option<String> {
         let mut counts = self.lock();
         let Err(why) = result else {
@@ -58,7 +58,7 @@ impl InputReport {
         line
     }
 
-    /// For `/diagnostics`: an error while nothing counts.
+    /// Makes the status for `/diagnostics`: an error while no message is accepted.
     pub(super) fn diagnostic(&self, now: Micros) -> DiagnosticStatus {
         let counts = self.lock();
         let is_present = |at: Micros| now - at <= PRESENT;

@@ -1,4 +1,4 @@
-//! The intended motion out of `control_msgs/JointTrajectoryControllerState`.
+//! Intended motion from `control_msgs/JointTrajectoryControllerState`.
 
 use elbowroom_interlock::Micros;
 use elbowroom_ros2::Message;
@@ -26,11 +26,11 @@ impl IntentInput {
         Self { names, gate, places: Vec::new(), velocities: Vec::new(), stamp: None }
     }
 
-    /// Takes a sample. After one that does not count no intent is known.
+    /// Reads a sample. After a refused sample the intent is unknown.
     pub(super) fn take(&mut self, sample: RosSample<'_>, arrived: Micros) -> Result<(), RosInputError> {
         self.stamp = None;
         let attachment = attachment(sample)?;
-        // Releases append fields behind these.
+        // Later releases append fields after these.
         let message = JointTrajectoryReference::decode_prefix(sample.payload)?;
         let (names, values) = (message.joint_names.len(), message.reference.velocities.len());
         if values != names && values > 0 {
@@ -43,7 +43,7 @@ impl IntentInput {
         Ok(())
     }
 
-    /// The velocities of the program in the order of the chain; empty if none are known that are at most this old.
+    /// Velocities of the program in the order of the chain; empty unless known and at most `oldest` old.
     pub(super) fn velocities(&mut self, now: Micros, oldest: Micros) -> &[f64] {
         match self.stamp {
             Some(stamp) if self.gate.now(now) - stamp <= oldest => &self.velocities,

@@ -1,4 +1,4 @@
-//! Which joint of a robot a name in a message is.
+//! Names of a robot's joints in messages.
 
 use std::collections::{HashMap, HashSet};
 
@@ -8,21 +8,21 @@ use elbowroom_ros2::rmw_zenoh::ros_name;
 use super::input_error::RosInputError;
 use super::settings::Ros2Robot;
 
-/// The joints of one robot by the names that messages on its topic may have: as in its model, or with the name of the robot and `_`
-/// or `/` before it.
+/// The joints of one robot by the names that messages on its topic may use: the name in its model, alone or after the
+/// name of the robot and `_` or `/`.
 #[derive(Debug, Clone)]
 pub(super) struct JointNames {
-    /// In the order of the chain.
+    /// Joint names in the order of the chain.
     joints: Vec<String>,
     indices: HashMap<String, usize>,
-    /// Names of other robots that have the same topic.
+    /// Joint names of other robots with the same topic.
     others: HashSet<String>,
-    /// Names that this robot and another one of the topic have.
+    /// Names that this robot shares with another one of the topic.
     ambiguous: HashSet<String>,
 }
 
 impl JointNames {
-    /// For one of the robots whose controllers speak ROS 2.
+    /// Creates the names for one of the robots whose controllers use ROS 2.
     pub(super) fn new(cell: &Cell, robot: &Ros2Robot, all: &[Ros2Robot]) -> Self {
         let joints = joints_of(cell, &robot.robot);
         let indices: HashMap<String, usize> = names(&robot.robot, &joints).collect();
@@ -34,7 +34,9 @@ impl JointNames {
         Self { joints, indices, others, ambiguous }
     }
 
-    /// Puts the values of the robot's joints in the order of the chain. `values` has one per name, or is empty: then so is `sorted`.
+    /// Sorts the values of the robot's joints into the order of the chain.
+    ///
+    /// `values` has one value per name, or is empty; then `sorted` is too.
     pub(super) fn sort(&self, places: &[Option<usize>], values: &[f64], sorted: &mut Vec<f64>) {
         sorted.clear();
         if !values.is_empty() {
@@ -47,7 +49,9 @@ impl JointNames {
         }
     }
 
-    /// Per name the index of the robot's joint; `None` for joints of others. Every joint of the robot is there once.
+    /// Finds the index of the robot's joint for each name; `None` for joints of other robots.
+    ///
+    /// Every joint of the robot must occur once.
     pub(super) fn places(&self, names: &[String], places: &mut Vec<Option<usize>>) -> Result<(), RosInputError> {
         places.clear();
         for name in names {
@@ -68,7 +72,7 @@ impl JointNames {
     }
 }
 
-/// As much of a name as a line has room for.
+/// Shortens a name for a line of text.
 fn shown(name: &str) -> String {
     name.chars().take(60).collect()
 }
@@ -77,7 +81,7 @@ fn joints_of(cell: &Cell, robot: &str) -> Vec<String> {
     cell.robots.iter().find(|r| r.name == robot).map(CellRobot::joint_names).unwrap_or_default()
 }
 
-/// Names of the joints of a robot, with and without that of the robot.
+/// Names of the joints of a robot, with and without the robot's name.
 fn names<'a>(robot: &'a str, joints: &'a [String]) -> impl Iterator<Item = (String, usize)> + 'a {
     joints.iter().enumerate().flat_map(move |(i, joint)| {
         [joint.clone(), format!("{}_{joint}", ros_name(robot)), format!("{robot}/{joint}")].map(|name| (name, i))

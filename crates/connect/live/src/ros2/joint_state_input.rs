@@ -1,4 +1,4 @@
-//! Joint values out of `sensor_msgs/JointState`.
+//! Joint values from `sensor_msgs/JointState`.
 
 use elbowroom_interlock::Micros;
 use elbowroom_ros2::Message;
@@ -18,9 +18,9 @@ pub(super) struct JointStateInput {
     places: Vec<Option<usize>>,
     /// Positions in the order of the chain.
     pub(super) q: Vec<f64>,
-    /// Velocities; empty if they are not known.
+    /// Velocities; empty if unknown.
     pub(super) qd: Vec<f64>,
-    /// On the clock of the publisher.
+    /// Time of the values, on the clock of the publisher.
     pub(super) stamp: Micros,
 }
 
@@ -30,7 +30,7 @@ impl JointStateInput {
         Self { names, gate, places: Vec::new(), q: Vec::new(), qd: Vec::new(), stamp: Micros(0) }
     }
 
-    /// Takes a sample. Numbers that are not finite are passed on: the monitor answers them with override 0.
+    /// Reads a sample. Numbers that are not finite are passed on; the monitor answers them with override 0.
     pub(super) fn take(&mut self, sample: RosSample<'_>, arrived: Micros) -> Result<(), RosInputError> {
         let attachment = attachment(sample)?;
         let message = JointState::decode(sample.payload)?;
@@ -49,7 +49,7 @@ impl JointStateInput {
         self.stamp = self.gate.pass(&attachment, message.header.stamp.nanoseconds(), arrived)?;
         self.names.sort(&self.places, &message.position, &mut self.q);
         self.names.sort(&self.places, &message.velocity, &mut self.qd);
-        // Without an interface for velocities, joint_state_broadcaster fills the list with these.
+        // Without an interface for velocities, joint_state_broadcaster fills the list with NaN.
         if self.qd.iter().all(|v| v.is_nan()) {
             self.qd.clear();
         }
@@ -57,7 +57,7 @@ impl JointStateInput {
     }
 }
 
-/// The attachment of a sample that may be read.
+/// Reads the attachment of a sample, if the sample is not too large.
 pub(super) fn attachment(sample: RosSample<'_>) -> Result<Attachment, RosInputError> {
     if sample.payload.len() > MAX_MESSAGE_BYTES {
         return Err(RosInputError::Size(sample.payload.len()));

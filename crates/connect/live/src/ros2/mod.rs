@@ -1,8 +1,8 @@
 //! ROS 2 without ROS: the service as a node of ROS 2 in the layout of `rmw_zenoh`. `docs/ros2.md` has the topics.
 //!
-//! What arrives from a controller that speaks ROS 2 becomes joint values of the node's own protocol, so that the same gate, the same
-//! bounds and the same watchdogs count for it. The session is of its own and waited for by a thread of its own: ROS 2 can be absent,
-//! slow or hostile, and no tick notices.
+//! Messages of a controller that uses ROS 2 become joint values of the node's own protocol, so that the same gate,
+//! bounds and watchdogs apply to it. ROS 2 has a separate session, and a separate thread waits for it: a ROS 2 that is
+//! absent, slow or hostile never affects a tick.
 
 mod answered_factor;
 mod cell_feed;

@@ -1,4 +1,4 @@
-//! What a process of a live cell has to do with ROS 2.
+//! Participation of a live cell's process in ROS 2.
 
 use std::sync::{Arc, Weak};
 
@@ -21,10 +21,10 @@ use crate::event_handler::EventHandler;
 use crate::keys::Keys;
 use crate::network::{Network, NetworkError, Urgency};
 
-/// The name of the node.
+/// Name of the node.
 const NODE: &str = "elbowroom";
 
-/// A process's part in ROS 2. It ends when it is dropped: then the factor of each of its robots is 0.
+/// Participation of a process in ROS 2. It ends when it is dropped: then the factor of each of its robots is 0.
 pub(crate) struct Participant {
     feed: CellFeed,
     publishes: bool,
@@ -35,15 +35,16 @@ struct Parts {
     cell: Arc<Cell>,
     settings: Ros2Settings,
     guarded: Vec<RobotId>,
-    /// Not held while the router is waited for: the network may end before.
+    /// Weak, so that the network can end while the router is waited for.
     network: Weak<dyn Network>,
     clock: Clock,
     on_event: Option<EventHandler>,
 }
 
 impl Participant {
-    /// Takes part when the router of ROS 2 is there; `None` if the settings ask for nothing. `guarded` are the robots of this
-    /// process.
+    /// Starts, and participates as soon as the router of ROS 2 is there; `None` if the settings request nothing.
+    ///
+    /// `guarded` are the robots of this process.
     pub(crate) fn start(
         cell: &Arc<Cell>,
         settings: &Ros2Settings,
@@ -70,7 +71,7 @@ impl Participant {
         Ok(Some(Self { feed, publishes: settings.publish, _worker: worker }))
     }
 
-    /// Takes the statuses of the cell, where they are published.
+    /// Feed for the statuses of the cell, if they are published.
     pub(crate) fn feed(&self) -> Option<CellFeed> {
         self.publishes.then(|| self.feed.clone())
     }
@@ -106,7 +107,7 @@ impl Parts {
         Ok(())
     }
 
-    /// The factors of the guarded robots whose controllers do not speak ROS 2.
+    /// Starts the factors of the guarded robots whose controllers do not use ROS 2.
     fn answered_factors(
         &self,
         session: &RosSession,

@@ -1,4 +1,4 @@
-//! Which samples of a topic count: those of one publisher, in order.
+//! Gate of a topic's samples: accepts one publisher, in order.
 
 use elbowroom_interlock::Micros;
 use elbowroom_ros2::rmw_zenoh::{Attachment, Gid};
@@ -7,11 +7,11 @@ use super::input_error::RosInputError;
 use crate::messages::JointState;
 use crate::node::InputGate;
 
-/// A publisher that was silent for this long may be replaced by another one.
+/// Silence after which a publisher may be replaced by another one.
 const REPLACED: Micros = Micros(1_000_000);
 
-/// The gate of the node's own input, for samples of ROS 2: the number is that of the attachment, and each publisher is another start
-/// of the controller.
+/// The gate of the node's own input, applied to samples of ROS 2: the number is taken from the attachment, and each
+/// publisher counts as another start of the controller.
 #[derive(Debug, Default)]
 pub(super) struct PublisherGate {
     gate: InputGate,
@@ -21,7 +21,9 @@ pub(super) struct PublisherGate {
 }
 
 impl PublisherGate {
-    /// The time of the sample on its publisher's clock. `stamp_ns` is the stamp in the message; 0: that of the attachment counts.
+    /// Accepts a sample; returns its time on its publisher's clock.
+    ///
+    /// `stamp_ns` is the stamp in the message; if it is 0, the attachment's stamp is used.
     pub(super) fn pass(
         &mut self,
         attachment: &Attachment,
@@ -41,7 +43,7 @@ impl PublisherGate {
         Ok(stamp)
     }
 
-    /// Where the publisher's clock stands when this process's clock shows `local`.
+    /// Time on the publisher's clock when this process's clock shows `local`.
     pub(super) fn now(&mut self, local: Micros) -> Micros {
         self.gate.now(local)
     }

@@ -1,4 +1,4 @@
-//! A node of ROS 2 on Zenoh, in the layout of `rmw_zenoh`.
+//! Node of ROS 2 on Zenoh, in the layout of `rmw_zenoh`.
 
 use std::fmt;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -12,7 +12,7 @@ use zenoh_ext::{AdvancedPublisher, AdvancedPublisherBuilderExt, CacheConfig, Mis
 
 use crate::network::{NetworkError, Subscription, Urgency, ZenohSettings, open_session};
 
-/// How often the publisher of a transient local topic says which sample was its last, where it has sent one since: as
+/// Interval at which the publisher of a transient local topic announces its last sample, if it has sent one since: as
 /// `rmw_zenoh_cpp` does.
 const HEARTBEAT: Duration = Duration::from_millis(500);
 
@@ -24,7 +24,7 @@ pub struct RosSession {
     _token: LivelinessToken,
 }
 
-/// Publishes a topic. It is taken off the graph when it is dropped.
+/// Publishes a topic. It leaves the graph when it is dropped.
 pub struct RosPublisher {
     publisher: AdvancedPublisher<'static>,
     gid: Gid,
@@ -32,16 +32,16 @@ pub struct RosPublisher {
     _token: LivelinessToken,
 }
 
-/// What a subscription receives.
+/// A sample that a subscription receives.
 #[derive(Debug, Clone, Copy)]
 pub struct RosSample<'a> {
-    /// CDR.
+    /// The message, in CDR.
     pub payload: &'a [u8],
-    /// What accompanies it; every publisher of ROS 2 sends one.
+    /// The attachment; every publisher of ROS 2 sends one.
     pub attachment: Option<&'a [u8]>,
 }
 
-/// Takes samples, on a thread of the network: it must return soon.
+/// Called with each sample, on a thread of the network: it must return soon.
 pub type RosHandler = Box<dyn Fn(RosSample<'_>) + Send + Sync>;
 
 impl fmt::Debug for RosSession {
@@ -57,7 +57,7 @@ impl RosSession {
     /// [`NetworkError`] if the address cannot be used.
     pub fn open(router: &str, domain: u32, name: &str) -> Result<Self, NetworkError> {
         let settings = ZenohSettings { listen: None, connect: Some(router.to_owned()) };
-        // As in the sessions of ROS 2: caches order their samples by time.
+        // As in the sessions of ROS 2: caches order samples by their times.
         let session = open_session(&settings, &[("timestamping/enabled", "true")])?;
         let node =
             Node { domain, session: session.zid().to_string(), id: 0, namespace: "/".into(), name: name.to_owned() };
@@ -95,8 +95,9 @@ impl RosSession {
         Ok(RosPublisher { publisher, gid, sequence: 0, _token: token })
     }
 
-    /// Calls the handler with each sample of a topic, until the subscription is dropped. Samples of publishers that state another
-    /// hash of the type are received only with `any_release`.
+    /// Calls the handler with each sample of a topic, until the subscription is dropped.
+    ///
+    /// Samples of publishers that state another hash of the type are received only with `any_release`.
     ///
     /// # Errors
     /// [`NetworkError::Key`].
@@ -132,20 +133,20 @@ fn declare_token(session: &Session, key: String) -> Result<LivelinessToken, Netw
 }
 
 impl RosPublisher {
-    /// Sends a message, without a promise. One that cannot be sent now is superseded by the next one.
+    /// Sends a message, without a guarantee. A message that cannot be sent now is superseded by the next one.
     pub fn publish(&mut self, payload: &[u8]) {
         self.sequence += 1;
         let attachment = Attachment { sequence: self.sequence, stamp_ns: nanoseconds_since_1970(), source: self.gid };
         let _ = self.publisher.put(payload).attachment(&attachment.encode()[..]).wait();
     }
 
-    /// Its identity.
+    /// Identity of the publisher.
     pub fn gid(&self) -> Gid {
         self.gid
     }
 }
 
-/// The time of day as stamps of ROS 2 have it.
+/// Time of day in the form of ROS 2 stamps.
 pub(super) fn nanoseconds_since_1970() -> i64 {
     let since = SystemTime::now().duration_since(UNIX_EPOCH);
     since.map_or(0, |since| i64::try_from(since.as_nanos()).unwrap_or(i64::MAX))

@@ -1,4 +1,4 @@
-//! What a process has to do with ROS 2.
+//! Settings of a process for ROS 2.
 
 use std::str::FromStr;
 
@@ -8,20 +8,20 @@ use thiserror::Error;
 
 use crate::network::{NetworkError, endpoint};
 
-/// Where the sessions of ROS 2 find their router.
+/// Default address of the ROS 2 router.
 const DEFAULT_ROUTER: &str = "127.0.0.1:7447";
 
-/// The topics of the cell begin with this, but for those that ROS 2 has names for.
+/// Prefix of the cell's topics, except for topics whose names ROS 2 defines.
 const OWN: &str = "/elbowroom/";
 
-/// What a process has to do with ROS 2; by default nothing.
+/// Settings of a process for ROS 2; by default it does not participate.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Ros2Settings {
-    /// Publishes the topics of the cell, and of each robot that this process guards its speed scaling.
+    /// Publishes the topics of the cell, and the speed scaling of each robot that this process guards.
     pub publish: bool,
-    /// Robots whose controllers speak ROS 2.
+    /// Robots whose controllers use ROS 2.
     pub robots: Vec<Ros2Robot>,
-    /// `ROS_DOMAIN_ID`.
+    /// The domain, as in `ROS_DOMAIN_ID`.
     pub domain: u32,
     /// The release of ROS 2.
     pub distribution: Distribution,
@@ -29,7 +29,7 @@ pub struct Ros2Settings {
     pub router: Option<String>,
 }
 
-/// A robot whose controller speaks ROS 2, and its topics.
+/// A robot whose controller uses ROS 2, and its topics.
 ///
 /// ```
 /// use elbowroom_live::ros2::Ros2Robot;
@@ -54,31 +54,31 @@ pub struct Ros2Robot {
 /// Why the settings for ROS 2 cannot be used.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum Ros2Error {
-    /// Not ROBOT or ROBOT=TOPICS.
+    /// The text is not ROBOT or ROBOT=TOPICS.
     #[error(
         "--ros2-robot {0}: {1}\n  help: write ROBOT=JOINT_STATES,SPEED_SCALING[,CONTROLLER_STATE], such as \
          left=/joint_states,/left_controller/speed_scaling_input; ROBOT alone is /ROBOT/joint_states, \
          /ROBOT/speed_scaling_input, /ROBOT/controller_state"
     )]
     Robot(String, String),
-    /// A robot that the cell does not have.
+    /// The cell has no robot of this name.
     #[error("--ros2-robot {name}: no robot of the cell has this name\n  help: one of {}", known.join(", "))]
     Unknown {
-        /// The name.
+        /// The unknown name.
         name: String,
-        /// Those that there are.
+        /// Names of the cell's robots.
         known: Vec<String>,
     },
     /// A robot is named twice, or two robots have one topic for their speed scaling.
     #[error("--ros2-robot: {0} is named twice: each robot once, and each with a speed_scaling_input of its own")]
     Twice(String),
-    /// The address of the router.
+    /// The address of the router cannot be used.
     #[error("--ros2-router: {0}")]
     Router(#[from] NetworkError),
 }
 
 impl Ros2Robot {
-    /// A robot with the topics of its name: `/ROBOT/joint_states` and so on.
+    /// Creates the entry of a robot with the topics of its name: `/ROBOT/joint_states` and so on.
     pub fn of(robot: &str) -> Self {
         let topic = |what: &str| format!("/{}/{what}", ros_name(robot));
         Self {
@@ -114,7 +114,8 @@ impl FromStr for Ros2Robot {
     }
 }
 
-/// The rules of ROS 2 for absolute names; the topics of the service itself are refused, so that it never hears itself.
+/// Checks a topic by the rules of ROS 2 for absolute names; refuses the service's own topics, so that it never receives
+/// its own messages.
 fn check_topic(topic: &str) -> Result<(), String> {
     let is_part = |part: &str| {
         part.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') && part.starts_with(|c: char| !c.is_ascii_digit())
@@ -129,7 +130,7 @@ fn check_topic(topic: &str) -> Result<(), String> {
 }
 
 impl Ros2Settings {
-    /// True if the process has anything to do with ROS 2.
+    /// Whether the process participates in ROS 2.
     pub fn is_used(&self) -> bool {
         self.publish || !self.robots.is_empty()
     }
@@ -139,15 +140,15 @@ impl Ros2Settings {
         self.router.as_deref().unwrap_or(DEFAULT_ROUTER)
     }
 
-    /// The settings of a robot whose controller speaks ROS 2.
+    /// The entry of a robot whose controller uses ROS 2.
     pub fn robot(&self, name: &str) -> Option<&Ros2Robot> {
         self.robots.iter().find(|robot| robot.robot == name)
     }
 
-    /// Checks the settings for a cell.
+    /// Checks the settings against a cell.
     ///
     /// # Errors
-    /// What cannot be used, and what to write instead.
+    /// The setting that cannot be used, and what to write instead.
     pub fn check(&self, cell: &Cell) -> Result<(), Ros2Error> {
         endpoint(self.router())?;
         for (i, robot) in self.robots.iter().enumerate() {

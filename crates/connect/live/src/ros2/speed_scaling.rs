@@ -1,4 +1,4 @@
-//! Sends the speed scaling of one robot to its controller, on a thread of its own.
+//! Sender of a robot's speed scaling to its controller, on its own thread.
 
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::JoinHandle;
@@ -9,21 +9,22 @@ use elbowroom_ros2::msgs::control_msgs::SpeedScalingFactor;
 
 use super::session::RosPublisher;
 
-/// A factor that does not change is repeated this often: for controllers that count the time since the last one, and for watchdogs.
+/// Interval at which an unchanged factor is repeated, for watchdogs and for controllers that count the time since the
+/// last one.
 const REPEAT: Duration = Duration::from_millis(20);
-/// How often it is looked whether an answer has become too old, where none comes.
+/// Interval of checks whether an answer has become too old, if no new one arrives.
 const POLL: Duration = Duration::from_millis(5);
 
-/// The factor that counts now: 0 without a fresh answer of the node.
+/// Computes the present factor: 0 without a fresh answer of the node.
 pub(super) type CurrentFactor = Box<dyn Fn() -> f64 + Send>;
 
-/// Sends the factor when it changes, and again and again. When it is dropped, the factor 0 is the last one.
+/// Sends the factor when it changes, and repeats it periodically. When the sender is dropped, the last factor is 0.
 pub(super) struct SpeedScaling {
     wake: Wake,
     thread: Option<JoinHandle<()>>,
 }
 
-/// Wakes the thread that sends. Clones wake the same.
+/// Wakes the sending thread. Clones wake the same thread.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Wake(Arc<(Mutex<Signal>, Condvar)>);
 
@@ -34,7 +35,7 @@ struct Signal {
 }
 
 impl Wake {
-    /// There may be another factor.
+    /// Signals that the factor may have changed.
     pub(super) fn notify(&self) {
         self.change(|signal| signal.is_news = true);
     }
@@ -44,7 +45,7 @@ impl Wake {
         self.0.1.notify_one();
     }
 
-    /// Waits for news, not long. False at the end.
+    /// Waits for a signal for a short time. False at the end.
     fn wait(&self) -> bool {
         let signal = self.0.0.lock().unwrap_or_else(PoisonError::into_inner);
         let is_idle = |signal: &mut Signal| !signal.is_news && !signal.is_closed;
@@ -83,13 +84,13 @@ impl Drop for SpeedScaling {
     fn drop(&mut self) {
         self.wake.change(|signal| signal.is_closed = true);
         if let Some(thread) = self.thread.take() {
-            // A thread that panicked sends nothing more: the watchdog sees to it.
+            // A thread that panicked sends nothing more: the watchdog handles that.
             let _ = thread.join();
         }
     }
 }
 
-/// Anything but a number of 0..1 is 0.
+/// Returns the factor if it is a number in 0..1, else 0.
 fn allowed(factor: f64) -> f64 {
     if (0.0..=1.0).contains(&factor) { factor } else { 0.0 }
 }

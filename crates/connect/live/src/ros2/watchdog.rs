@@ -1,4 +1,4 @@
-//! Stops the controllers of a service that has fallen silent: a process of its own.
+//! Watchdog process: stops the controllers of a service that is silent.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -15,24 +15,24 @@ use super::worker::Worker;
 use crate::event_handler::EventHandler;
 use crate::network::{NetworkError, Subscription, Urgency};
 
-/// The name of the node.
+/// Name of the node.
 const NODE: &str = "elbowroom_watchdog";
-/// How often the factor 0 is repeated while the service is silent.
+/// Interval at which the factor 0 is repeated while the service is silent.
 const REPEAT: Duration = Duration::from_millis(100);
-/// Silence is noticed at most this much later than the bound.
+/// Longest interval of checks for silence.
 const POLL: Duration = Duration::from_millis(5);
 
-/// Publishes the factor 0 for each robot of whose service nothing was heard for longer than a bound. It ends when it is dropped.
+/// Publishes the factor 0 for each robot whose service has been silent for longer than a bound. It ends when it is dropped.
 pub struct Watchdog {
     is_closed: Arc<AtomicBool>,
     _worker: Worker,
 }
 
 impl Watchdog {
-    /// Watches these robots; none: all of the cell.
+    /// Starts to watch these robots; all robots of the cell if `robots` is empty.
     ///
     /// # Errors
-    /// What cannot be used of the settings.
+    /// The setting that cannot be used.
     pub fn start(
         cell: &Cell,
         settings: &Ros2Settings,
@@ -72,12 +72,12 @@ impl Drop for Watchdog {
     }
 }
 
-/// One robot.
+/// One watched robot.
 struct Watched {
     robot: String,
     heard: Arc<Mutex<Instant>>,
     publisher: RosPublisher,
-    /// When the factor 0 was sent last; `None` while the service is heard.
+    /// Time at which the factor 0 was sent last; `None` while the service is heard.
     sent: Option<Instant>,
     _subscription: Subscription,
 }
@@ -85,7 +85,7 @@ struct Watched {
 impl Watched {
     fn start(session: &RosSession, topic: &Topic, robot: String) -> Result<Self, NetworkError> {
         let publisher = session.publisher(topic, Qos::latched(), Urgency::RealTime)?;
-        // Nothing was heard yet, and the bound begins.
+        // Without a message yet, the bound begins now.
         let heard = Arc::new(Mutex::new(Instant::now()));
         let (own, shared) = (publisher.gid(), heard.clone());
         let handler = move |sample: RosSample<'_>| {
@@ -119,7 +119,7 @@ impl Watched {
     }
 }
 
-/// A valid factor of anybody else.
+/// Whether a sample is a valid factor of another publisher.
 fn is_of_service(sample: RosSample<'_>, own: Gid) -> bool {
     let source = sample.attachment.and_then(|bytes| Attachment::decode(bytes).ok()).map(|a| a.source);
     let is_factor = || SpeedScalingFactor::decode(sample.payload).is_ok_and(|m| (0.0..=1.0).contains(&m.factor));

@@ -1,4 +1,4 @@
-//! A thread that waits for the router of ROS 2: nothing else of the process waits for it.
+//! Thread that waits for the router of ROS 2, so that nothing else of the process has to wait.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -9,14 +9,14 @@ use super::settings::Ros2Settings;
 use crate::event_handler::EventHandler;
 use crate::network::NetworkError;
 
-/// Opens a session and does something with it.
+/// Opens a session and runs a function with it.
 pub(super) struct Worker {
     is_opened: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Worker {
-    /// `run` is called when the router is there, and must end when its owner is dropped.
+    /// Starts the thread. `run` is called when the router is there, and must end when its owner is dropped.
     pub(super) fn start(
         settings: &Ros2Settings,
         node: &'static str,
@@ -41,7 +41,7 @@ impl Worker {
 
 impl Drop for Worker {
     fn drop(&mut self) {
-        // Where there is no router yet, the thread waits for it until the process ends.
+        // Without a router, the thread waits for it until the process ends.
         if let Some(thread) = self.thread.take()
             && self.is_opened.load(Ordering::SeqCst)
         {

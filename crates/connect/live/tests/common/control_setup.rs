@@ -1,4 +1,4 @@
-//! A service with a control interface, and its clients.
+//! Service with a control interface, and its clients.
 
 use std::io::{Read as _, Write as _};
 use std::net::{SocketAddr, TcpStream};
@@ -14,8 +14,8 @@ use elbowroom_testkit::network::free_address;
 use elbowroom_view::http::Endpoint;
 use serde_json::Value;
 
-/// Two rails side by side, with a region that both enter, one that is switched, and one that is always there: where the second
-/// rail stands along x, and the middle of the region that both enter, mm.
+/// Two rails side by side, with a region that both enter, one that is switched, and a permanent one. Arguments: the x
+/// of the second rail, and the centre of the region that both enter, mm.
 macro_rules! rails {
     ($x:literal, $pallet:literal) => {
         concat!(
@@ -65,20 +65,20 @@ pub const INTEGRATOR: usize = 2;
 /// A service of a cell whose robots are controlled by the test, or silent.
 pub struct ControlSetup {
     pub folder: tempfile::TempDir,
-    /// Of the control interface.
+    /// Address of the control interface.
     pub address: SocketAddr,
-    /// Of the network.
+    /// Address of the network.
     pub listen: String,
     pub secrets: [String; 3],
     pub events: Arc<Mutex<Vec<String>>>,
     pub cell: Cell,
     options: ServiceOptions,
-    /// `None` once it was stopped.
+    /// The service; `None` after it was stopped.
     pub service: Option<Service>,
 }
 
 impl ControlSetup {
-    /// A service as in `options`, of a cell file with this text.
+    /// Starts a service with `options`, of a cell file with this text.
     pub fn new(text: &str, program_switches: bool, options: ServiceOptions) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let (file, tokens) = (folder.path().join("cell.toml"), folder.path().join("tokens.toml"));
@@ -89,7 +89,7 @@ impl ControlSetup {
         let events: Arc<Mutex<Vec<String>>> = Arc::default();
         let (heard, listen) = (events.clone(), free_address());
         let endpoint = Endpoint::new("127.0.0.1:0", None).unwrap();
-        // As a service that ended with all temporary regions off.
+        // The journal of a service that ended with all temporary regions off.
         let journal = region_journal_of(&file);
         let table = RegionTable::initial(&cell).message(&cell);
         std::fs::write(&journal, serde_json::to_vec(&table).unwrap()).unwrap();
@@ -113,7 +113,7 @@ impl ControlSetup {
         self.service = Some(service);
     }
 
-    /// What was changed since the start, as logged.
+    /// Returns the logged changes since the start.
     pub fn changes(&self) -> Vec<ControlEntry> {
         let mut entries = self.logged();
         let start = entries.remove(0);
@@ -121,7 +121,7 @@ impl ControlSetup {
         entries
     }
 
-    /// All that was logged.
+    /// Returns all log entries.
     pub fn logged(&self) -> Vec<ControlEntry> {
         control_history(&control_log_of(&self.cell.file)).unwrap().entries
     }
@@ -130,11 +130,11 @@ impl ControlSetup {
         self.service.as_ref().unwrap().network().clone()
     }
 
-    /// What the server answers to these bytes.
+    /// Returns the answer of the server to these bytes.
     pub fn answer(&self, bytes: &[u8]) -> String {
         let mut stream = TcpStream::connect(self.address).unwrap();
         stream.set_read_timeout(Some(Duration::from_secs(30))).unwrap();
-        // A server that refuses closes before everything is written.
+        // A server that refuses a request closes before everything is written.
         let _ = stream.write_all(bytes);
         let mut answer = Vec::new();
         let _ = stream.read_to_end(&mut answer);
@@ -165,7 +165,7 @@ impl ControlSetup {
         self.regions()["revision"].as_str().unwrap().to_owned()
     }
 
-    /// A change at a revision.
+    /// Requests a change at a revision.
     pub fn change_at(&self, class: usize, path: &str, revision: &str, body: &Value) -> (u16, Value) {
         let headers = format!("{}If-Match: \"{revision}\"\r\nContent-Type: application/json\r\n", self.bearer(class));
         self.request("POST", path, &headers, &body.to_string())
@@ -176,7 +176,7 @@ impl ControlSetup {
     }
 }
 
-/// Status and document of an answer; status 0 if there is none.
+/// Parses status and document of an answer; status 0 if there is none.
 pub fn read(answer: &str) -> (u16, Value) {
     let (head, body) = answer.split_once("\r\n\r\n").unwrap_or((answer, ""));
     let status = head.split(' ').nth(1).and_then(|word| word.parse().ok()).unwrap_or(0);

@@ -1,4 +1,4 @@
-//! Cells and their parts that several tests start.
+//! Cells for several tests, and the start of their parts.
 
 pub mod control_setup;
 
@@ -12,7 +12,8 @@ use elbowroom_live::{Clock, Node, configuration_number};
 use elbowroom_monitor::RobotSlot;
 use elbowroom_robot::RobotId;
 
-/// Carriages named `left` and `right`, 0.9 m apart, that move up from 0 to 2 m. `more` is added to the file.
+/// Makes a cell of two carriages named `left` and `right`, 0.9 m apart, that move up from 0 to 2 m. `more` is added to
+/// the file.
 pub fn two_rails(more: &str) -> Cell {
     let text = format!(
         r#"
@@ -34,8 +35,8 @@ base = {{ at = [900, 0, 0] }}
     Cell::parse("rails.toml", &text).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// A carriage named `rail`, which moves up from 0 to 2 m, and below the forbidden region `end` at 2.3 m a warning zone. `more` is
-/// added to the file.
+/// Makes a cell of a carriage named `rail`, which moves up from 0 to 2 m, and the forbidden region `end` at 2.3 m with
+/// a warning zone below it. `more` is added to the file.
 pub fn rail(warning_mm: u32, more: &str) -> Cell {
     let text = format!(
         r#"

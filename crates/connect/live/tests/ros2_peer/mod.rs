@@ -1,4 +1,4 @@
-//! The other side: a session as that of a node of ROS 2 with `rmw_zenoh`, of which nothing is shared with the service.
+//! The other side: a session like that of a ROS 2 node with `rmw_zenoh`, which shares no code with the service.
 
 use std::sync::{Arc, Mutex};
 use std::time::{SystemTime, UNIX_EPOCH};
@@ -10,10 +10,10 @@ use zenoh_ext::{AdvancedSubscriber, AdvancedSubscriberBuilderExt, HistoryConfig,
 pub const JOINT_STATE_HASH: &str = "RIHS01_a13ee3a330e346c9d87b5aa18d24e11690752bd33a0350f11c5882bc9179260e";
 pub const FACTOR_HASH: &str = "RIHS01_0c240f349f2b74e33e8741f83e0f196ddeb6585923663876ed3c1f51f0566037";
 
-/// Payloads, and what accompanied them.
+/// Payloads with their attachments.
 pub type Samples = Arc<Mutex<Vec<Vec<u8>>>>;
 
-/// Factors, and what accompanied them.
+/// Factors with their attachments.
 type Factors = Arc<Mutex<Vec<(f64, Vec<u8>)>>>;
 
 /// A session.
@@ -38,14 +38,14 @@ impl Peer {
         Self { session, address: address.to_owned(), kept: Mutex::default() }
     }
 
-    /// All liveliness tokens of domain 0.
+    /// Returns all liveliness tokens of domain 0.
     pub fn tokens(&self) -> Vec<String> {
         let replies = self.session.liveliness().get("@ros2_lv/0/**").wait().expect("a query");
         let tokens = std::iter::from_fn(|| replies.recv().ok());
         tokens.filter_map(|reply| reply.result().ok().map(|sample| sample.key_expr().to_string())).collect()
     }
 
-    /// As `rmw_zenoh` subscribes to a volatile topic.
+    /// Subscribes to a volatile topic as `rmw_zenoh` does.
     pub fn volatile(&self, key: &str) -> Samples {
         let (samples, callback) = collector();
         let subscriber = self.session.declare_subscriber(key.to_owned()).callback(callback).wait().expect("a key");
@@ -53,19 +53,19 @@ impl Peer {
         samples
     }
 
-    /// As `rmw_zenoh` subscribes to a transient local, reliable topic with depth 1.
+    /// Subscribes to a transient local, reliable topic with depth 1 as `rmw_zenoh` does.
     pub fn transient_local(&self, key: &str) -> Samples {
         let (samples, callback) = collector();
         self.kept.lock().unwrap().push(Box::new(latched(&self.session, key, callback)));
         samples
     }
 
-    /// A controller of this robot, with a session of its own.
+    /// Starts a controller of this robot, with its own session.
     pub fn controller(&self, robot: &str) -> Controller {
         self.controller_of_hash(robot, JOINT_STATE_HASH)
     }
 
-    /// One that states another hash for its joint states.
+    /// Starts a controller that states another hash for its joint states.
     pub fn controller_of_hash(&self, robot: &str, hash: &str) -> Controller {
         let session = Self::at(&self.address).session;
         let key = format!("0/{robot}/joint_states/sensor_msgs::msg::dds_::JointState_/{hash}");
@@ -173,7 +173,7 @@ impl Controller {
     }
 }
 
-/// `sensor_msgs/JointState` in CDR, written out: stamp 0, no frame.
+/// Encodes `sensor_msgs/JointState` in CDR by hand: stamp 0, no frame.
 pub fn cdr_joint_state(names: &[&str], position: &[f64], velocity: &[f64]) -> Vec<u8> {
     let mut contents = vec![0; 8];
     let count = |contents: &mut Vec<u8>, count: usize| {

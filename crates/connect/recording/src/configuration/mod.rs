@@ -1,6 +1,6 @@
-//! The configuration of a monitor as a message and back, bit by bit.
+//! Configuration of a monitor as a message and back, bit by bit.
 //!
-//! Both ways name every field: what is added to a configuration does not compile here until it is recorded.
+//! Both conversions name every field: a new field of a configuration does not compile here until it is recorded.
 
 use elbowroom_kinematics::{Chain, Joint, JointId, JointKind, Limits, LinkId, Mimic};
 use elbowroom_monitor::{
@@ -11,7 +11,7 @@ use elbowroom_ros2::msgs::elbowroom_msgs as msgs;
 
 use crate::solid;
 
-/// The message of what a monitor was built from.
+/// Makes the message of a monitor's configuration.
 pub(crate) fn of_monitor(robot: u32, monitor: &Monitor) -> msgs::MonitorConfiguration {
     let granted_from_outside = monitor.slot_grants().is_some();
     msgs::MonitorConfiguration { granted_from_outside, ..encode(robot, monitor.configuration()) }
@@ -142,12 +142,12 @@ fn source(source: &SourceSpec) -> msgs::Source {
     }
 }
 
-/// An index; none in a configuration comes near the largest.
+/// Converts an index; no index in a configuration comes near the limit.
 fn index(index: usize) -> u32 {
     u32::try_from(index).unwrap_or(u32::MAX)
 }
 
-/// The configuration of a message, or what is wrong with it.
+/// Reads a configuration from a message, or says what is wrong.
 pub(crate) fn decode(message: &msgs::MonitorConfiguration) -> Result<Configuration, String> {
     let joints = message.joints.iter().map(read_joint).collect::<Result<_, _>>()?;
     let chain = Chain::new(&message.chain, message.links.clone(), joints).map_err(|e| e.to_string())?;
@@ -265,7 +265,7 @@ fn read_source(message: &msgs::Source) -> Result<SourceSpec, String> {
     Ok(SourceSpec { name: message.name.clone(), limits })
 }
 
-/// The value of a field that may be missing.
+/// Reads the value of an optional field.
 fn one<T: Copy>(values: &[T]) -> Option<T> {
     values.first().copied()
 }

@@ -1,4 +1,4 @@
-//! Configurations are the same after writing and reading; changed ones never make a monitor panic.
+//! Tests: configurations are the same after writing and reading; changed ones never make a monitor panic.
 
 use elbowroom_cell::{Cell, configure};
 use elbowroom_ros2::Message;
@@ -26,7 +26,7 @@ fn every_example_is_the_same_bit_by_bit() {
     }
 }
 
-/// The checksum is made to fit, so that the monitor is built and ticks.
+/// The checksum is made to match, so that the monitor is built and ticks.
 #[test]
 fn changed_configurations_are_refused_or_tick() {
     let mut seed = 9;
@@ -42,7 +42,7 @@ fn changed_configurations_are_refused_or_tick() {
         };
         for _ in 0..3000 {
             let mut bytes = sound.clone();
-            // Most of the bytes are those of meshes: change more of the rest.
+            // Most bytes belong to meshes: change the other bytes more often.
             let span = if below(4) == 0 { bytes.len() } else { bytes.len().min(4096) };
             for _ in 0..=below(2) {
                 let at = 4 + below(span - 4);

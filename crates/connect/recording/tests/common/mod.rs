@@ -10,7 +10,7 @@ use std::time::Duration;
 use elbowroom_cell::{Cell, configure};
 use elbowroom_monitor::Monitor;
 
-/// A file in memory that does not take anything while it is closed, as a disk that does not answer.
+/// A file in memory that accepts nothing while it is closed, like a disk that does not respond.
 #[derive(Clone, Default)]
 pub struct SlowFile {
     pub bytes: Arc<Mutex<Cursor<Vec<u8>>>>,
@@ -43,7 +43,7 @@ impl Seek for SlowFile {
     }
 }
 
-/// A rail with a forbidden region, and its monitor.
+/// Makes a rail with a forbidden region, and its monitor.
 pub fn rail() -> (Cell, Monitor) {
     let text = r#"
 version = 1
@@ -71,12 +71,12 @@ guards = ["tcp"]
     (cell, monitor)
 }
 
-/// The rail's position at a time: it moves all the time.
+/// Position of the rail at a time: it always moves.
 pub fn position(t_s: f64) -> f64 {
     0.9 + 0.8 * (0.5 * t_s).sin()
 }
 
-/// Its velocity.
+/// Velocity of the rail at a time.
 pub fn velocity(t_s: f64) -> f64 {
     0.4 * (0.5 * t_s).cos()
 }

@@ -1,4 +1,4 @@
-//! Diagnostics: why robots are slow.
+//! Diagnostics: the reasons why robots are slow.
 
 use elbowroom_status::{CellStatus, RobotStatus, SlotStatus};
 
@@ -7,7 +7,7 @@ use crate::msgs::builtin_interfaces::Time;
 use crate::msgs::diagnostic_msgs::{DiagnosticArray, DiagnosticStatus, KeyValue};
 use crate::msgs::std_msgs::Header;
 
-/// A status per robot and per group of exchange regions.
+/// Makes a status per robot and per group of exchange regions.
 pub(super) fn diagnostics(status: &CellStatus, stamp: &Time) -> DiagnosticArray {
     let robots = status.robots.iter().map(|robot| of_robot(robot, &status.checksum));
     DiagnosticArray {
@@ -39,7 +39,7 @@ fn of_robot(robot: &RobotStatus, checksum: &str) -> DiagnosticStatus {
     }
 }
 
-/// Free is as it should be; slower for a region is a warning; a stop without a region is a fault.
+/// Returns the level: OK if the robot is free, ERROR if it stops without a region, otherwise WARN.
 fn level(robot: &RobotStatus) -> Byte {
     match (&robot.region, robot.reason.as_str()) {
         (None, "free") => DiagnosticStatus::OK,

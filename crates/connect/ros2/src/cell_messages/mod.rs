@@ -48,12 +48,12 @@ pub struct CellMessages {
     urdf: CellUrdf,
     transforms: Transforms,
     regions: RegionMarkers,
-    /// Per robot its name and those of its joints.
+    /// Names of each robot and of its joints.
     joints: Vec<(String, Vec<String>)>,
 }
 
 impl CellMessages {
-    /// The messages of a cell.
+    /// Prepares the messages of a cell.
     pub fn new(cell: &Cell) -> Self {
         Self {
             urdf: CellUrdf::of_cell(cell),
@@ -63,7 +63,7 @@ impl CellMessages {
         }
     }
 
-    /// The whole cell as one URDF, its meshes in it, for `/robot_description`.
+    /// The whole cell as one URDF with its meshes inside, for `/robot_description`.
     pub fn robot_description(&self) -> Text {
         Text { data: self.urdf.inline() }
     }
@@ -73,29 +73,31 @@ impl CellMessages {
         &self.urdf
     }
 
-    /// What never moves, for `/tf_static`: bases, fixed joints, objects where they are at first.
+    /// Transforms that never change, for `/tf_static`: bases, fixed joints, first poses of objects.
     pub fn static_transforms(&self, stamp: &Time) -> TFMessage {
         self.transforms.fixed(stamp)
     }
 
-    /// What moves, for `/tf`: joints and tool centre points of robots whose values are known, regions,
+    /// Transforms that change, for `/tf`: joints and tool centre points of robots whose values are known, regions,
     /// objects that have moved.
     pub fn transforms(&mut self, status: &CellStatus, stamp: &Time) -> TFMessage {
         self.transforms.moving(status, stamp)
     }
 
-    /// Regions and their warning zones, coloured by their state. They move with their frames: publish them when
-    /// [`CellMessages::region_state`] changes, and now and then.
+    /// Regions and their warning zones, coloured by their state.
+    ///
+    /// They move with their frames: publish them when [`CellMessages::region_state`] changes, and repeat them from time
+    /// to time.
     pub fn region_markers(&self, status: &CellStatus, stamp: &Time) -> MarkerArray {
         self.regions.markers(status, stamp)
     }
 
-    /// What the colours of the regions depend on.
+    /// State of the regions that determines their colours.
     pub fn region_state(&self, status: &CellStatus) -> Vec<u8> {
         self.regions.state(status)
     }
 
-    /// The nearest points of robots and regions, with the distance of the one that governs.
+    /// The nearest points of robots and regions, with the distance of the governing point.
     pub fn nearest_points(&self, status: &CellStatus, stamp: &Time) -> MarkerArray {
         nearest_points::markers(status, stamp)
     }
@@ -119,7 +121,7 @@ impl CellMessages {
         message
     }
 
-    /// The factor for a controller. Anything but a number of 0..1 is 0.
+    /// The factor for a controller; 0 unless it is a number in 0..1.
     pub fn speed_scaling(robot: &RobotStatus) -> SpeedScalingFactor {
         let valid = (0.0..=1.0).contains(&robot.speed_override);
         SpeedScalingFactor { factor: if valid { robot.speed_override } else { 0.0 } }

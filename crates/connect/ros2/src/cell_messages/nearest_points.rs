@@ -13,7 +13,7 @@ const TEXT_M: f64 = 0.06;
 const POINT: ColorRGBA = ColorRGBA { r: 0.25, g: 0.55, b: 0.95, a: 1.0 };
 const GOVERNING: ColorRGBA = ColorRGBA { r: 0.9, g: 0.15, b: 0.1, a: 1.0 };
 
-/// Per robot a line to each region near it, and the distance of the point that governs.
+/// Makes, per robot, a line to each region near it, and the distance of the governing point.
 pub(super) fn markers(status: &CellStatus, stamp: &Time) -> MarkerArray {
     let of_robot = |robot: &RobotStatus| [lines(robot, stamp), text(robot, stamp)];
     MarkerArray { markers: status.robots.iter().flat_map(of_robot).collect() }
@@ -41,7 +41,7 @@ fn lines(robot: &RobotStatus, stamp: &Time) -> Marker {
         marker.points.extend([Point::from(point.point_m), Point::from(point.on_region_m)]);
         marker.colors.extend([color.clone(), color]);
     }
-    // A list without points is an error for viewers.
+    // Viewers report an error for a list without points.
     marker.action = if marker.points.is_empty() { Marker::DELETE } else { Marker::ADD };
     marker
 }

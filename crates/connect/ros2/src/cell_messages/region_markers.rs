@@ -14,11 +14,11 @@ use crate::msgs::visualization_msgs::{Marker, MarkerArray};
 
 /// Largest chord error of curved surfaces, m.
 const CHORD_ERROR_M: f64 = 1e-3;
-/// A half-space is shown as a plate of this half width and thickness, m.
+/// Half width of the plate that shows a half-space, m; `PLATE_DEPTH_M` is its thickness.
 const PLATE_M: f64 = 2.0;
 const PLATE_DEPTH_M: f64 = 0.05;
 
-/// The markers of all regions, in the frames of the regions.
+/// Markers of all regions, in the frames of the regions.
 #[derive(Debug, Clone)]
 pub(super) struct RegionMarkers {
     regions: Vec<RegionMarker>,
@@ -32,7 +32,7 @@ struct RegionMarker {
     warning: Vec<Marker>,
 }
 
-/// How a region looks, from the least to the most important: several robots have the same region.
+/// Look of a region, from the least to the most important: several robots may have the same region.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Look {
     Inactive,
@@ -68,7 +68,7 @@ impl RegionMarkers {
         Self { regions: cell.regions.iter().map(marker).collect() }
     }
 
-    /// How each region looks.
+    /// Returns the look of each region.
     pub(super) fn state(&self, status: &CellStatus) -> Vec<u8> {
         self.regions.iter().map(|region| look(&region.name, status) as u8).collect()
     }
@@ -97,7 +97,7 @@ impl RegionMarkers {
     }
 }
 
-/// The most important look that a robot gives a region.
+/// Returns the most important look that a robot gives a region.
 fn look(name: &str, status: &CellStatus) -> Look {
     let of_robots = status.robots.iter().flat_map(|r| &r.regions).filter(|r| r.name == name);
     of_robots.map(Look::of).max().unwrap_or(Look::Inactive)
@@ -132,8 +132,8 @@ fn solid_markers(shape: &Shape) -> Vec<Marker> {
     }
 }
 
-/// The warning zone: of a cylinder or box with sharp edges, a little larger there than it is. Of hulls and meshes it is not
-/// drawn.
+/// Returns the shape of the warning zone; for a cylinder or box with sharp edges, which makes the zone a little too
+/// large there. `None` for hulls and meshes, whose zones are not drawn.
 fn warning_shape(shape: &Shape, warning_m: f64) -> Option<(Shape, Pose)> {
     if !(warning_m > 0.0 && warning_m.is_finite()) {
         return None;
@@ -153,7 +153,7 @@ fn warning_shape(shape: &Shape, warning_m: f64) -> Option<(Shape, Pose)> {
     Some((shape, Pose::IDENTITY))
 }
 
-/// A part of a layer between two heights.
+/// Returns a plate that shows a layer between two heights.
 fn plate(from_z: f64, to_z: f64) -> (Shape, Pose) {
     let half_extents = Vec3::new(PLATE_M, PLATE_M, 0.5 * (to_z - from_z));
     (Shape::Cuboid(Cuboid { half_extents }), Pose::from_translation(Vec3::Z * (0.5 * (from_z + to_z))))

@@ -11,11 +11,11 @@ use crate::msgs::geometry_msgs::{Transform, TransformStamped};
 use crate::msgs::std_msgs::Header;
 use crate::msgs::tf2_msgs::TFMessage;
 
-/// Where frames are.
+/// Poses of frames.
 #[derive(Debug, Clone)]
 pub(super) struct Transforms {
     robots: Vec<RobotFrames>,
-    /// Parent, child and pose of what never moves.
+    /// Parent, child and pose of each frame that never moves.
     fixed: Vec<(String, String, Transform)>,
 }
 
@@ -59,18 +59,18 @@ impl Transforms {
         let mut transforms = Vec::new();
         for robot in &status.robots {
             let Some(frames) = self.robots.iter().find(|f| f.name == robot.robot) else { continue };
-            // Joint values that are not known leave the links where they were last.
+            // Unknown joint values leave the links at their last poses.
             if robot.q.len() == frames.chain.dof() && robot.q.iter().all(|v| v.is_finite()) {
                 frames.write(&robot.q, stamp, &mut transforms);
             }
-            // In the world, as a robot may change its tool.
+            // In the world frame, as a robot may change its tool.
             if let Some(tcp) = &robot.tcp {
                 transforms.push(stamped(stamp, frames::WORLD, &frames::tcp(&robot.robot), transform(tcp)));
             }
         }
         let mut known: Vec<&str> = Vec::new();
         for region in status.robots.iter().flat_map(|r| &r.regions) {
-            // Several robots have the same region.
+            // Several robots may have the same region.
             if !known.contains(&region.name.as_str()) {
                 known.push(&region.name);
                 transforms.push(stamped(stamp, frames::WORLD, &frames::region(&region.name), transform(&region.pose)));

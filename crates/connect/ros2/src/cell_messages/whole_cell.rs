@@ -1,4 +1,4 @@
-//! The whole cell as one URDF: what viewers draw.
+//! The whole cell as one URDF, for viewers.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -20,14 +20,14 @@ pub struct CellUrdf {
 /// A mesh that the URDF names.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct UrdfMesh {
-    /// Its file, relative to the URDF.
+    /// Path of its file, relative to the URDF.
     pub file: String,
     /// Its bytes: binary STL.
     pub stl: Vec<u8>,
 }
 
 impl CellUrdf {
-    /// The URDF of a cell. The text is empty if names of robots and links clash so that no tree can be made.
+    /// Makes the URDF of a cell. The text is empty if names of robots and links clash, so that no tree can be made.
     pub fn of_cell(cell: &Cell) -> Self {
         let Some(robot) = whole_cell(cell) else { return Self { text: String::new(), meshes: Vec::new() } };
         let export = robot::to_urdf(&robot, &cell.name);
@@ -40,7 +40,7 @@ impl CellUrdf {
         Self { text: export.urdf, meshes: export.meshes.into_iter().map(mesh).collect() }
     }
 
-    /// The URDF, which names its meshes as files relative to it.
+    /// The URDF, with its meshes as files relative to it.
     pub fn text(&self) -> &str {
         &self.text
     }
@@ -50,12 +50,12 @@ impl CellUrdf {
         &self.meshes
     }
 
-    /// The URDF with the meshes in it, as `data:` addresses.
+    /// The URDF with its meshes inside, as `data:` addresses.
     pub fn inline(&self) -> String {
         let mut text =
             String::with_capacity(self.text.len() + self.meshes.iter().map(|m| 4 * m.stl.len() / 3).sum::<usize>());
         let mut rest = &self.text[..];
-        // One pass: the addresses are long.
+        // One pass over the text, as the addresses are long.
         while let Some((before, after)) = rest.split_once("filename=\"") {
             let (file, behind) = after.split_once('"').unwrap_or((after, ""));
             text += before;
@@ -74,7 +74,7 @@ impl CellUrdf {
     }
 }
 
-/// All robots and objects as the links of one robot.
+/// Combines all robots and objects as links of one robot.
 fn whole_cell(cell: &Cell) -> Option<Robot> {
     let mut links = vec![frames::WORLD.to_owned()];
     let mut joints: Vec<Joint> = Vec::new();

@@ -25,7 +25,7 @@ message! {
 const NANOSECONDS: i64 = 1_000_000_000;
 
 impl Time {
-    /// From nanoseconds since the epoch; what does not fit is the nearest time that does.
+    /// Converts nanoseconds since the epoch; a value out of range becomes the nearest time in range.
     pub fn from_nanoseconds(ns: i64) -> Self {
         let (sec, nanosec) = (ns.div_euclid(NANOSECONDS), ns.rem_euclid(NANOSECONDS));
         match i32::try_from(sec) {
@@ -42,7 +42,7 @@ impl Time {
 }
 
 impl Duration {
-    /// From nanoseconds.
+    /// Converts nanoseconds.
     pub fn from_nanoseconds(ns: i64) -> Self {
         let Time { sec, nanosec } = Time::from_nanoseconds(ns);
         Self { sec, nanosec }

@@ -1,4 +1,4 @@
-//! What controllers of `ros2_controllers` say and take.
+//! Messages to and from the controllers of `ros2_controllers`.
 
 use super::std_msgs::Header;
 use super::trajectory_msgs::{JointTrajectoryPoint, MultiDOFJointTrajectoryPoint};
@@ -13,7 +13,7 @@ message! {
 }
 
 message! {
-    /// The state of a joint trajectory controller. Releases differ in what follows `output`: read it with
+    /// The state of a joint trajectory controller. Releases differ in the fields after `output`: read it with
     /// [`JointTrajectoryReference`].
     JointTrajectoryControllerState = "control_msgs/msg/JointTrajectoryControllerState" {
         /// Time of the state.
@@ -44,7 +44,7 @@ message! {
 }
 
 message! {
-    /// The begin of a [`JointTrajectoryControllerState`] of any release: the intended motion. Decode it with
+    /// The beginning of a [`JointTrajectoryControllerState`] of any release: the intended motion. Decode it with
     /// [`Message::decode_prefix`](crate::Message::decode_prefix).
     JointTrajectoryReference = "control_msgs/msg/JointTrajectoryControllerState" {
         /// Time of the state.

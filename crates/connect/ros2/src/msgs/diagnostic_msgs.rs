@@ -22,7 +22,7 @@ message! {
         level: Byte,
         /// The component.
         name: String,
-        /// In words.
+        /// Description in words.
         message: String,
         /// The hardware.
         hardware_id: String,
@@ -42,18 +42,18 @@ message! {
 }
 
 impl DiagnosticStatus {
-    /// As it should be.
+    /// The component works.
     pub const OK: Byte = Byte(0);
-    /// Works, with a limit.
+    /// The component works, with a restriction.
     pub const WARN: Byte = Byte(1);
-    /// Does not work.
+    /// The component does not work.
     pub const ERROR: Byte = Byte(2);
-    /// Says nothing any more.
+    /// The component no longer reports.
     pub const STALE: Byte = Byte(3);
 }
 
 impl KeyValue {
-    /// A value with its name.
+    /// Creates a value with its name.
     pub fn new(key: &str, value: impl Display) -> Self {
         Self { key: key.to_owned(), value: format!("{value}") }
     }

@@ -1,12 +1,12 @@
-//! Messages of our own, in recordings only: what a monitor was built from, and what it was given in each tick, bit by bit.
+//! Messages of this project, in recordings only: the configuration of a monitor and its input in each tick, bit by bit.
 //!
-//! Poses are the twelve numbers of a rotation matrix with its translation, row by row, as the monitor has them: a quaternion
-//! would round.
+//! Poses are the twelve numbers of a rotation matrix with its translation, row by row, as the monitor has them: a
+//! quaternion would round.
 
 use crate::message::message;
 
 message! {
-    /// A solid. `kind` says which of the fields count.
+    /// A solid. `kind` says which of the other fields are used.
     Solid = "elbowroom_msgs/msg/Solid" {
         /// 1 sphere, 2 capsule, 3 cylinder, 4 box, 5 half-space, 6 convex hull, 7 mesh.
         kind: u8,
@@ -34,7 +34,7 @@ message! {
         parent: u32,
         /// Index of the link that it moves.
         child: u32,
-        /// Pose of the child in the parent at 0.
+        /// Pose of the child in the parent at position 0.
         origin: [f64; 12],
         /// Its axis.
         axis: [f64; 3],
@@ -42,17 +42,17 @@ message! {
         lower: f64,
         /// Largest position, rad or m.
         upper: f64,
-        /// Largest speed; empty if it is not known.
+        /// Largest speed, rad/s or m/s; empty if unknown.
         velocity: Vec<f64>,
-        /// Largest acceleration; empty if it is not known.
+        /// Largest acceleration, rad/s² or m/s²; empty if unknown.
         acceleration: Vec<f64>,
-        /// Largest effort; empty if it is not known.
+        /// Largest effort; empty if unknown.
         effort: Vec<f64>,
-        /// Index of the joint that it follows; empty for one that moves by itself.
+        /// Index of the joint that it follows; empty for an independent joint.
         mimic_joint: Vec<u32>,
         /// Multiplier of that joint's position.
         mimic_multiplier: f64,
-        /// Added to it.
+        /// Offset added to it.
         mimic_offset: f64,
     }
 }
@@ -70,7 +70,7 @@ message! {
         solid: Solid,
         /// Pose of the shape in the link.
         in_link: [f64; 12],
-        /// 0 always there, 1 attached at first, 2 detached at first.
+        /// 0 always present, 1 attached at first, 2 detached at first.
         presence: u8,
     }
 }
@@ -88,27 +88,27 @@ message! {
         shape_in_anchor: [f64; 12],
         /// 0 forbidden, 1 monitored, 2 exchange.
         kind: u8,
-        /// Of a speed zone its override, 0..1; else empty.
+        /// Override of a speed zone, 0..1; empty for other regions.
         slow_to: Vec<f64>,
-        /// Of an exchange region its slot.
+        /// Slot of an exchange region.
         slot: u32,
-        /// It cannot be switched.
+        /// Whether it is permanent: it cannot be switched.
         permanent: bool,
         /// Thickness of the warning zone, m.
         warning_m: f64,
-        /// It guards against the TCP.
+        /// Whether it guards against the TCP.
         guards_tcp: bool,
-        /// It guards against the tool.
+        /// Whether it guards against the tool.
         guards_tool: bool,
-        /// It guards against the whole arm.
+        /// Whether it guards against the whole arm.
         guards_arm: bool,
-        /// Index of the source that it follows; else empty.
+        /// Index of the source that it follows; empty if it does not move.
         follow: Vec<u32>,
         /// Hysteresis, m.
         hysteresis_m: f64,
-        /// Output that is on while the robot is inside; else empty.
+        /// Output that is on while the robot is inside; empty without an output.
         output: Vec<u8>,
-        /// Output that is on while the robot is in the warning zone; else empty.
+        /// Output that is on while the robot is in the warning zone; empty without an output.
         warning_output: Vec<u8>,
     }
 }
@@ -122,13 +122,13 @@ message! {
         speed_m_s: f64,
         /// Largest turning rate, rad/s.
         turn_rad_s: f64,
-        /// The travel after which it begins again, m; else empty.
+        /// Travel after which it begins again, m; empty if it does not.
         wrap_m: Vec<f64>,
     }
 }
 
 message! {
-    /// Everything that the monitor of one robot was built from.
+    /// The complete configuration of one robot's monitor.
     MonitorConfiguration = "elbowroom_msgs/msg/MonitorConfiguration" {
         /// Index of the robot in the recording.
         robot: u32,
@@ -148,19 +148,19 @@ message! {
         volumes: Vec<GuardedVolume>,
         /// The regions.
         regions: Vec<Region>,
-        /// Exchange regions are granted from outside of the process.
+        /// Whether exchange regions are granted from outside the process.
         granted_from_outside: bool,
-        /// What regions follow.
+        /// Sources that regions follow.
         sources: Vec<Source>,
-        /// The law that knows directions is on.
+        /// Whether the direction-aware law is on.
         direction_aware: bool,
         /// Override at which a robot may leave a region.
         recovery: f64,
-        /// Largest change of the override per second; 0: any.
+        /// Largest change of the override per second; 0 for unlimited.
         override_rate: f64,
         /// Age at which input is stale, s.
         stale_s: f64,
-        /// The stopping-distance law is on.
+        /// Whether the stopping-distance law is on.
         stopping_distance: bool,
         /// Its reaction time, s.
         reaction_s: f64,
@@ -178,7 +178,7 @@ message! {
     RegionSwitch = "elbowroom_msgs/msg/RegionSwitch" {
         /// Index of the region in the configuration.
         region: u32,
-        /// On or off.
+        /// Whether it is on now.
         active: bool,
     }
 }
@@ -188,9 +188,9 @@ message! {
     VolumeAttachment = "elbowroom_msgs/msg/VolumeAttachment" {
         /// Index of the volume in the configuration.
         volume: u32,
-        /// Attached, or detached.
+        /// Whether it was attached; otherwise it was detached.
         attached: bool,
-        /// Where it was attached.
+        /// Pose at which it was attached.
         in_link: [f64; 12],
     }
 }
@@ -208,49 +208,49 @@ message! {
 }
 
 message! {
-    /// One tick of a monitor: what had changed since the tick before, the input, and the answer.
+    /// One tick of a monitor: the changes since the tick before, the input, and the answer.
     MonitorTick = "elbowroom_msgs/msg/MonitorTick" {
         /// Index of the robot in the recording.
         robot: u32,
-        /// Number of the tick, one more for each; where one is missing, it was lost.
+        /// Number of the tick, increasing by one; a missing number is a lost tick.
         sequence: u64,
         /// Regions that were switched before it, in order.
         switched: Vec<RegionSwitch>,
         /// Volumes that were attached or detached before it, in order.
         attached: Vec<VolumeAttachment>,
-        /// The position before it was forgotten: the robot may have been moved by hand.
+        /// Whether the position before it was forgotten: the robot may have been moved by hand.
         forgot_position: bool,
-        /// A fault stopped the robot that the input does not show, such as other regions than the monitor's.
+        /// Whether the robot was stopped by a fault that the input does not show, such as other regions than the monitor's.
         has_external_fault: bool,
-        /// Time of the recording's clock, s.
+        /// Time on the recording's clock, s.
         t_s: f64,
-        /// Time of the monitor's clock, s: that of the controller, where they differ.
+        /// Time on the monitor's clock, s: the controller's clock, if they differ.
         now_s: f64,
         /// Time stamp of the joint values, s.
         stamp_s: f64,
         /// Positions, rad or m.
         q: Vec<f64>,
-        /// Velocities; empty if they are not known.
+        /// Velocities, rad/s or m/s; empty if unknown.
         qd: Vec<f64>,
-        /// Accelerations; empty if they are not known.
+        /// Accelerations, rad/s² or m/s²; empty if unknown.
         qdd: Vec<f64>,
         /// The override of the program, 0..1.
         programmed_override: f64,
-        /// The velocities of the program at override 1 are known.
+        /// Whether the velocities of the program at override 1 are known.
         has_intent: bool,
-        /// They.
+        /// Velocities of the program at override 1.
         intent: Vec<f64>,
-        /// What regions follow.
+        /// States of the sources that regions follow.
         sources: Vec<SourceState>,
         /// The exchange slots that were granted to the robot in the tick.
         granted: Vec<u32>,
-        /// The exchange slots because of which it had to halt.
+        /// The exchange slots because of which the robot had to halt.
         halted: Vec<u32>,
         /// The answer: the override to apply, 0..1.
         speed_override: f64,
         /// The answer's reason: 0 free, 1 region, 2 speed zone, 3 waiting, 4 rate, 5 fault, 6 halted.
         reason: u8,
-        /// Index of the region that limits the override; else -1.
+        /// Index of the region that limits the override; -1 if none does.
         region: i32,
         /// The digital outputs.
         outputs: u64,
@@ -258,11 +258,11 @@ message! {
 }
 
 message! {
-    /// What a recorder had to leave out, as its queue was full.
+    /// Data that a recorder had to omit because its queue was full.
     Lost = "elbowroom_msgs/msg/Lost" {
-        /// Ticks of monitors since the start.
+        /// Number of omitted ticks since the start.
         ticks: u64,
-        /// Statuses since the start.
+        /// Number of omitted statuses since the start.
         statuses: u64,
     }
 }

@@ -70,7 +70,7 @@ message! {
         header: Header,
         /// The child frame.
         child_frame_id: String,
-        /// The child in the parent.
+        /// Pose of the child in the parent.
         transform: Transform,
     }
 }
@@ -78,9 +78,9 @@ message! {
 message! {
     /// A velocity.
     Twist = "geometry_msgs/msg/Twist" {
-        /// m/s.
+        /// Linear velocity, m/s.
         linear: Vector3,
-        /// rad/s.
+        /// Angular velocity, rad/s.
         angular: Vector3,
     }
 }

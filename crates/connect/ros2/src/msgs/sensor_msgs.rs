@@ -1,10 +1,10 @@
-//! Joint states, and the picture that a marker may carry.
+//! Joint states, and the image that a marker may carry.
 
 use super::std_msgs::Header;
 use crate::message::message;
 
 message! {
-    /// The state of joints; a sequence is empty if it is not known.
+    /// The state of joints; a sequence is empty if its values are unknown.
     JointState = "sensor_msgs/msg/JointState" {
         /// Time of the measurement.
         header: Header,

@@ -4,7 +4,7 @@ use super::builtin_interfaces::Time;
 use crate::message::message;
 
 message! {
-    /// When and in which frame.
+    /// Time and frame of a message.
     Header = "std_msgs/msg/Header" {
         /// The time.
         stamp: Time,
@@ -28,7 +28,7 @@ message! {
 }
 
 message! {
-    /// A text, as on `/robot_description`. Named `Text` here, as Rust has a `String` already.
+    /// A text, as on `/robot_description`. Named `Text`, as Rust already has a `String`.
     Text = "std_msgs/msg/String" {
         /// The text.
         data: String,

@@ -21,7 +21,7 @@ message! {
 }
 
 message! {
-    /// A point of a trajectory of things that move freely in space.
+    /// A point of a trajectory of joints with several degrees of freedom.
     MultiDOFJointTrajectoryPoint = "trajectory_msgs/msg/MultiDOFJointTrajectoryPoint" {
         /// Poses.
         transforms: Vec<Transform>,

@@ -41,13 +41,13 @@ message! {
         action: i32,
         /// Pose in the frame.
         pose: Pose,
-        /// Extents, m; of lines and points their width.
+        /// Extents, m; width for lines and points.
         scale: Vector3,
         /// Colour.
         color: ColorRGBA,
-        /// Time for which it is shown; 0 for ever.
+        /// Time for which it is shown; 0 for no limit.
         lifetime: Duration,
-        /// It moves with its frame.
+        /// Whether it moves with its frame.
         frame_locked: bool,
         /// Points of lists.
         points: Vec<Point>,
@@ -65,7 +65,7 @@ message! {
         mesh_resource: String,
         /// A mesh.
         mesh_file: MeshFile,
-        /// The mesh has its own colours.
+        /// Whether the mesh has its own colours.
         mesh_use_embedded_materials: bool,
     }
 }
@@ -94,6 +94,6 @@ impl Marker {
 
     /// Adds or changes the marker.
     pub const ADD: i32 = 0;
-    /// Removes it.
+    /// Removes the marker.
     pub const DELETE: i32 = 2;
 }

@@ -1,8 +1,8 @@
-//! What accompanies each sample.
+//! Attachment of each sample.
 
 use super::gid::Gid;
 
-/// The attachment of a sample: subscriptions of ROS 2 refuse one without it.
+/// The attachment of a sample: subscriptions of ROS 2 refuse samples without one.
 ///
 /// ```
 /// use elbowroom_ros2::rmw_zenoh::{Attachment, Gid};
@@ -14,25 +14,25 @@ use super::gid::Gid;
 pub struct Attachment {
     /// Number of the sample, from 1 on.
     pub sequence: i64,
-    /// When it was published, ns since the Unix epoch.
+    /// Time of publication, ns since the Unix epoch.
     pub stamp_ns: i64,
-    /// The publisher.
+    /// Identity of the publisher.
     pub source: Gid,
 }
 
-/// An attachment that is none.
+/// The bytes are not an attachment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("an attachment of {length} bytes is not that of rmw_zenoh 0.2.4 or later: 33 bytes, the 17th of them 16")]
 pub struct AttachmentError {
-    /// Its length.
+    /// Number of the bytes.
     pub length: usize,
 }
 
 impl Attachment {
-    /// Bytes of an attachment.
+    /// Length of an attachment, bytes.
     pub const LENGTH: usize = 33;
 
-    /// Its bytes: the two numbers, little-endian, the length of the identity, the identity.
+    /// Encodes the attachment: the two numbers, little-endian, the length of the identity, the identity.
     pub fn encode(&self) -> [u8; Self::LENGTH] {
         let mut bytes = [0; Self::LENGTH];
         bytes[..8].copy_from_slice(&self.sequence.to_le_bytes());
@@ -42,10 +42,10 @@ impl Attachment {
         bytes
     }
 
-    /// From its bytes.
+    /// Decodes an attachment.
     ///
     /// # Errors
-    /// [`AttachmentError`] for any others, those of Jazzy's first releases (before 0.2.4) too.
+    /// [`AttachmentError`] for any other bytes, including the attachments of Jazzy's first releases (before 0.2.4).
     pub fn decode(bytes: &[u8]) -> Result<Self, AttachmentError> {
         let error = AttachmentError { length: bytes.len() };
         let (sequence, rest) = bytes.split_first_chunk().ok_or(error)?;

@@ -8,7 +8,7 @@ use crate::message::Message;
 /// Releases of ROS 2 that differ on the wire.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Distribution {
-    /// Humble, which knows no hashes of types.
+    /// Humble, which has no type hashes.
     Humble,
     /// Jazzy and later.
     #[default]
@@ -27,7 +27,7 @@ pub struct Topic {
 }
 
 impl Topic {
-    /// A topic with messages of this type. A leading `/` is added where it is missing.
+    /// Creates a topic with messages of this type. A missing leading `/` is added.
     pub fn of<M: Message>(name: &str, distribution: Distribution) -> Self {
         let type_hash = match distribution {
             Distribution::Humble => "TypeHashNotSupported".to_owned(),
@@ -36,7 +36,7 @@ impl Topic {
         Self { name: format!("/{}", name.trim_matches('/')), type_name: type_in_dds(M::NAME), type_hash }
     }
 
-    /// The key on which its samples are.
+    /// The key of its samples.
     ///
     /// ```
     /// use elbowroom_ros2::msgs::std_msgs::Text;
@@ -49,7 +49,7 @@ impl Topic {
         self.key_with(domain, &self.type_hash)
     }
 
-    /// The key expression for publishers of every release, whatever hash they state: for types of which releases append
+    /// The key expression for publishers of every release, whatever hash they state: for types to which releases append
     /// fields.
     pub fn key_of_any_release(&self, domain: u32) -> String {
         self.key_with(domain, "*")
@@ -60,22 +60,22 @@ impl Topic {
     }
 }
 
-/// A node: what `ros2 node list` shows.
+/// A node, as `ros2 node list` shows it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Node {
-    /// `ROS_DOMAIN_ID`.
+    /// The domain, as in `ROS_DOMAIN_ID`.
     pub domain: u32,
     /// Identity of the Zenoh session, as Zenoh prints it.
     pub session: String,
     /// Number of the node in the session.
     pub id: u64,
-    /// Its namespace, `/` for none.
+    /// Its namespace, `/` if it has none.
     pub namespace: String,
     /// Its name.
     pub name: String,
 }
 
-/// Who publishes and who subscribes.
+/// Kind of an endpoint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EndpointKind {
     /// A publisher.
@@ -89,9 +89,9 @@ pub enum EndpointKind {
 pub struct Endpoint<'a> {
     /// Its node.
     pub node: &'a Node,
-    /// Its number in the session, another than that of the node.
+    /// Its number in the session, different from the node's.
     pub id: u64,
-    /// Which of the two.
+    /// Its kind.
     pub kind: EndpointKind,
     /// Its topic.
     pub topic: &'a Topic,
@@ -130,7 +130,7 @@ impl Endpoint<'_> {
     }
 }
 
-/// A part of a key has no slashes: percent signs stand for them.
+/// Encodes a part of a key: percent signs stand for slashes.
 fn part(text: &str) -> String {
     if text.is_empty() { "%".to_owned() } else { text.replace('/', "%") }
 }

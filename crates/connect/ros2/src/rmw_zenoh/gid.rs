@@ -1,4 +1,4 @@
-//! The identity of a publisher.
+//! Identity of a publisher or subscription.
 
 use xxhash_rust::xxh3::xxh3_128;
 
@@ -7,7 +7,7 @@ use xxhash_rust::xxh3::xxh3_128;
 pub struct Gid(pub [u8; 16]);
 
 impl Gid {
-    /// That of a token.
+    /// Computes the identity of a token's owner.
     pub fn of_token(token: &str) -> Self {
         Self(xxh3_128(token.as_bytes()).to_le_bytes())
     }

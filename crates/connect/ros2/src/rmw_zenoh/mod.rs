@@ -1,4 +1,5 @@
-//! How `rmw_zenoh` puts ROS 2 on Zenoh: keys, liveliness tokens, attachments (its `docs/design.md`). Texts and bytes only.
+//! Mapping of ROS 2 to Zenoh by `rmw_zenoh`: keys, liveliness tokens, attachments (its `docs/design.md`). Texts and
+//! bytes only.
 
 mod attachment;
 mod entity;

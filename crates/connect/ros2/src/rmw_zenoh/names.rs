@@ -1,7 +1,8 @@
 //! Names that ROS 2 accepts.
 
-/// A name for a node or a part of a topic: letters, digits and underscores, no digit first. Everything else becomes an
-/// underscore.
+/// Converts a name to a valid name of a node or of a part of a topic: letters, digits and underscores, no digit first.
+///
+/// Everything else becomes an underscore.
 ///
 /// ```
 /// use elbowroom_ros2::rmw_zenoh::ros_name;
@@ -16,7 +17,7 @@ pub fn ros_name(name: &str) -> String {
     }
 }
 
-/// `std_msgs/msg/String` as DDS names it: `std_msgs::msg::dds_::String_`.
+/// Converts `std_msgs/msg/String` to its name in DDS: `std_msgs::msg::dds_::String_`.
 pub fn type_in_dds(name: &str) -> String {
     match name.rsplit_once('/') {
         Some((package, message)) => format!("{}::dds_::{message}_", package.replace('/', "::")),

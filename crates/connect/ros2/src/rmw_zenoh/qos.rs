@@ -1,26 +1,26 @@
-//! Quality of service, as a token states it.
+//! Quality of service, in the form of a token.
 
 /// Whether samples may be lost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Reliability {
-    /// None may.
+    /// Samples are not lost.
     #[default]
     Reliable,
-    /// Some may.
+    /// Samples may be lost.
     BestEffort,
 }
 
 /// Whether a subscription that comes later gets the last samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Durability {
-    /// It does: the publisher keeps them ("latched").
+    /// Late subscriptions get the last samples, which the publisher keeps ("latched").
     TransientLocal,
-    /// It does not.
+    /// Late subscriptions get only new samples.
     #[default]
     Volatile,
 }
 
-/// Quality of service: what differs from the defaults of `rmw_zenoh`.
+/// Quality of service: the settings that differ from the defaults of `rmw_zenoh`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Qos {
     /// Whether samples may be lost.
@@ -31,27 +31,27 @@ pub struct Qos {
     pub depth: usize,
 }
 
-/// The depth that is left out of a token.
+/// The depth that a token omits.
 const DEFAULT_DEPTH: usize = 42;
 
 impl Qos {
-    /// Reliable, without a history for others: `rclcpp::QoS(depth)`.
+    /// Reliable, without samples for late subscriptions: `rclcpp::QoS(depth)`.
     pub const fn keep_last(depth: usize) -> Self {
         Self { reliability: Reliability::Reliable, durability: Durability::Volatile, depth }
     }
 
-    /// Reliable, the last sample for those who come later: `/robot_description`, `/tf_static`.
+    /// Reliable, with the last sample for late subscriptions: `/robot_description`, `/tf_static`.
     pub const fn latched() -> Self {
         Self { durability: Durability::TransientLocal, ..Self::keep_last(1) }
     }
 
-    /// Best effort: measurements.
+    /// Best effort, for measurements.
     pub const fn sensor_data() -> Self {
         Self { reliability: Reliability::BestEffort, ..Self::keep_last(5) }
     }
 
-    /// The last part of a token: `reliability:durability:history,depth:deadline:lifespan:liveliness`, empty if as the default
-    /// (reliable, volatile, keep the last 42, no times, automatic).
+    /// The last part of a token: `reliability:durability:history,depth:deadline:lifespan:liveliness`; a part is empty
+    /// for the default (reliable, volatile, keep the last 42, no times, automatic).
     pub fn token(self) -> String {
         let reliability = if self.reliability == Reliability::BestEffort { "2" } else { "" };
         let durability = if self.durability == Durability::TransientLocal { "1" } else { "" };

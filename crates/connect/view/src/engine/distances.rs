@@ -1,4 +1,4 @@
-//! Distances of a status, by the engine: pairs of the scene as `query` measures them, regions as the monitors do.
+//! Distances for a status, by the engine: pairs of the scene as `query` measures them, regions as the monitors do.
 
 use elbowroom_cell::configure::MonitorSetup;
 use elbowroom_cell::{Cell, QueryModel};
@@ -12,7 +12,7 @@ use elbowroom_status::{CellStatus, PoseStatus, RobotStatus};
 
 use crate::frame::{Frame, FrameRobot, PairSeparation, RegionDistance};
 
-/// Measures statuses of a cell.
+/// Measures the distances for statuses of a cell.
 pub(crate) struct Distances<'s> {
     cell: &'s Cell,
     model: &'s QueryModel,
@@ -34,7 +34,7 @@ impl<'s> Distances<'s> {
         }
     }
 
-    /// The frame of a status: robots in the order of the cell, each with its distances where its joint values are known.
+    /// Makes the frame of a status: robots in the order of the cell, with distances if their joint values are known.
     pub(crate) fn frame(&mut self, mut status: CellStatus) -> Frame {
         let robots = self.in_order(std::mem::take(&mut status.robots));
         let known: Vec<bool> = robots.iter().enumerate().map(|(r, robot)| self.place_robot(r, &robot.q)).collect();
@@ -59,7 +59,7 @@ impl<'s> Distances<'s> {
         frame
     }
 
-    /// The statuses in the order of the cell; one without joint values for a robot that has none.
+    /// Sorts the statuses into the order of the cell; a robot without a status gets one without joint values.
     fn in_order(&self, mut given: Vec<RobotStatus>) -> Vec<RobotStatus> {
         let of = |name: &str| {
             let found = given.iter().position(|status| status.robot == name).map(|at| given.swap_remove(at));
@@ -72,7 +72,7 @@ impl<'s> Distances<'s> {
         self.cell.robots.iter().map(|r| r.name.as_str()).map(of).collect()
     }
 
-    /// False if the joint values are unknown or do not fit.
+    /// Places a robot; false if the joint values are unknown or do not fit.
     fn place_robot(&mut self, robot: usize, q: &[f64]) -> bool {
         let chain = &self.cell.robots[robot].robot.chain;
         let fits = q.len() == chain.dof() && q.iter().all(|v| v.is_finite());
@@ -87,7 +87,7 @@ impl<'s> Distances<'s> {
     fn place_object(&mut self, name: &str, pose: &PoseStatus) {
         let Some(object) = self.model.objects.iter().position(|o| o.name == name) else { return };
         if let Some(pose) = pose_of(pose) {
-            // A pose that the scene refuses leaves the object where it was.
+            // If the scene refuses the pose, the object stays where it was.
             let _ = self.state.place(self.checker.scene(), ObjectId(object), pose);
         }
     }
@@ -104,7 +104,7 @@ impl<'s> Distances<'s> {
         self.pair(this, this)
     }
 
-    /// The nearest pair as a row of `query` has it: below the accuracy of the distance the collision test decides.
+    /// Measures the nearest pair as a row of `query` does: below the accuracy of the distance the collision test decides.
     fn pair(&mut self, a: Selection, b: Selection) -> Option<PairDistance> {
         let found = self.checker.between(a, b).distance(&self.state)?;
         if !(found.metres > 0.0) || found.lower_bound > 0.0 {
@@ -124,7 +124,7 @@ impl<'s> Distances<'s> {
         }
     }
 
-    /// The regions of a robot, where its status says that they are.
+    /// Measures the distances of a robot from its regions, at the region poses of its status.
     fn regions(&self, robot: usize, status: &RobotStatus) -> Vec<RegionDistance> {
         let configuration = &self.setups[robot].configuration;
         let volumes: Vec<(&Volume, Pose)> = configuration
@@ -155,13 +155,13 @@ impl<'s> Distances<'s> {
     }
 }
 
-/// A NaN distance counts as contact.
+/// Orders pairs by distance; a NaN distance counts as contact.
 fn by_distance(a: &PairDistance, b: &PairDistance) -> std::cmp::Ordering {
     let order = |d: &PairDistance| if d.metres.is_nan() { f64::NEG_INFINITY } else { d.metres };
     order(a).total_cmp(&order(b))
 }
 
-/// `None` if a number is not finite or the quaternion has no direction.
+/// Converts a pose; `None` if a number is not finite or the quaternion has no direction.
 pub(super) fn pose_of(status: &PoseStatus) -> Option<Pose> {
     let [x, y, z] = status.position_m;
     let pose = Pose::new(Rotation::from_quaternion_xyzw(status.quaternion_xyzw)?, Vec3::new(x, y, z));

@@ -1,4 +1,4 @@
-//! A cell at rest, whose robots a person moves.
+//! Cell at rest whose robots a person moves.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -17,23 +17,23 @@ use crate::source::{Command, ViewSource};
 
 /// Time that passes for the monitors while a robot is moved, s: long enough that any move is plausible.
 const MOVE_S: f64 = 3600.0;
-/// Between two ticks at rest, s.
+/// Time between two ticks at rest, s.
 const REST_S: f64 = 0.05;
-/// Largest number of ticks until overrides that change at a limited rate rest.
+/// Largest number of ticks until overrides whose rate is limited stop changing.
 const MAX_TICKS: usize = 400;
-/// How far a joint may be beyond its limit, rad or m: rounding of a slider.
+/// Largest excess of a joint value over its limit, rad or m: rounding of a slider.
 const LIMIT_TOLERANCE: f64 = 1e-9;
-/// Independent joints that a pose needs.
+/// Number of independent joints that a pose needs.
 const POSE_JOINTS: usize = 6;
 
-/// The message for a value beyond the limits, in the units of the page: millimetres and degrees.
+/// Makes the message for a value beyond the limits, in the units of the page: millimetres and degrees.
 fn beyond_limits(joint: &Joint, value: f64) -> String {
     let (unit, one) = if joint.kind == JointKind::Prismatic { ("mm", 1e-3) } else { ("degrees", 1_f64.to_radians()) };
     let [lower, upper, value] = [joint.limits.lower, joint.limits.upper, value].map(|v| v / one);
     format!("joint `{}` may be at {lower:.2} to {upper:.2} {unit}, not at {value:.2}", joint.name)
 }
 
-/// A cell at rest under its monitors. Belts, objects and pose files stay where they are at the start.
+/// A cell at rest under its monitors. Belts, objects and pose files stay at their start.
 pub(crate) struct JogCell {
     cell: Arc<Cell>,
     setups: Arc<Vec<MonitorSetup>>,
@@ -87,7 +87,7 @@ impl JogCell {
         let base_in_world = self.robot(robot)?.base_in_world;
         let target = pose_of(target).ok_or("the pose is not finite")?;
         let in_root = base_in_world.inverse_mul(&target);
-        // First a few steps from where the arm is, so that it does not change its configuration without need.
+        // First a few steps from the present joint values, so that the arm does not change its configuration without need.
         let mut q = self.q[robot].clone();
         let solver = &mut self.solvers[robot];
         if !solver.refine(&in_root, &mut q) {
@@ -96,7 +96,7 @@ impl JogCell {
         self.jog(robot, q)
     }
 
-    /// The tool centre point in the world.
+    /// Computes the pose of the tool centre point in the world.
     fn tcp(&self, robot: usize) -> Pose {
         let r = &self.cell.robots[robot];
         r.base_in_world * self.chains[robot].link_in_root(r.flange) * r.tcp_in_flange
@@ -109,7 +109,7 @@ impl JogCell {
         }
     }
 
-    /// One tick of every monitor, with the events that concern regions.
+    /// Ticks every monitor once, and adds the events that concern regions.
     fn tick(&mut self, after_s: f64, events: &mut Vec<EventStatus>) -> Vec<(TickReport, Vec<SourceState>)> {
         self.now_s += after_s;
         let t_s = self.begin.elapsed().as_secs_f64();
@@ -118,7 +118,7 @@ impl JogCell {
             let sources = sources(&self.cell, &self.setups[r], &self.chains, self.now_s);
             let at_rest = vec![0.0; self.q[r].len()];
             let report = monitor.tick(&snapshot(self.now_s, &self.q[r], &at_rest, &sources));
-            // The jump of a move is a fault for one tick; it is none of the cell.
+            // A move is a jump, which causes a fault for one tick; that fault is not of the cell.
             let shown = monitor.events().iter().filter(|e| !matches!(e.kind, EventKind::Fault | EventKind::Recovered));
             events.extend(shown.map(|e| EventStatus {
                 t_s,
@@ -131,7 +131,7 @@ impl JogCell {
         reports
     }
 
-    /// Ticks until no override changes any more: the monitors have seen where all robots are.
+    /// Ticks until no override changes any more; the monitors then know the positions of all robots.
     fn settle(&mut self, events: &mut Vec<EventStatus>) -> Vec<(TickReport, Vec<SourceState>)> {
         self.tick(MOVE_S, events);
         let mut last = self.tick(REST_S, events);
@@ -215,17 +215,17 @@ fn snapshot<'a>(now_s: f64, q: &'a [f64], at_rest: &'a [f64], sources: &'a [Sour
     Snapshot { qd: at_rest, qdd: at_rest, sources, ..Snapshot::stationary(now_s, q) }
 }
 
-/// The frames that regions follow, at rest where they are at the start or where the robots are.
+/// States of the frames that regions follow, at rest: those of robots where the robots are, all others as at the start.
 fn sources(cell: &Cell, setup: &MonitorSetup, chains: &[ChainState], now_s: f64) -> Vec<SourceState> {
     let at_rest = |source: SourceState| SourceState { motion: FrameMotion::REST, stamp_s: now_s, ..source };
     Frames::new(cell).sources(&setup.sources, chains, 0.0).into_iter().map(at_rest).collect()
 }
 
-/// Position and orientation where the arm has the joints for it, else the position alone.
+/// Makes the solver: for position and orientation if the arm has enough joints, else for the position alone.
 fn solver(r: &CellRobot) -> IkSolver {
     let chain = &r.robot.chain;
     let moving = chain.path(r.flange).into_iter().filter(|j| chain.coupling(*j).is_some()).count();
     let task = if moving >= POSE_JOINTS { IkTask::Pose } else { IkTask::Position };
-    // Few restarts: a drag asks again at once.
+    // Few restarts are enough: during a drag the next request follows at once.
     IkSolver::new(chain, r.flange, r.tcp_in_flange, IkOptions { task, restarts: 12, ..IkOptions::default() })
 }

@@ -1,4 +1,4 @@
-//! The thread between the source and the pages: measures distances and makes frames.
+//! Thread between the source and the pages: measures distances and makes frames.
 
 mod distances;
 mod jog;

@@ -1,4 +1,4 @@
-//! The loop of the engine's thread.
+//! Loop of the engine's thread.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -17,12 +17,12 @@ use crate::history::History;
 use crate::inbox::Inbox;
 use crate::source::ViewSource;
 
-/// Between two frames while no page is open.
+/// Time between two frames while no page is open.
 const IDLE_PERIOD: Duration = Duration::from_millis(200);
 /// Longest wait for something to do.
 const WAIT: Duration = Duration::from_secs(1);
 
-/// What the engine measures with.
+/// Models that the engine measures with.
 #[derive(Debug)]
 pub(crate) struct Model {
     pub(crate) cell: Arc<Cell>,
@@ -31,7 +31,7 @@ pub(crate) struct Model {
     scene: Scene,
 }
 
-/// A frame as it is sent.
+/// A frame in the form in which it is sent.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct SentFrame {
     pub(crate) number: u64,
@@ -79,7 +79,7 @@ pub(crate) fn run(
             inbox.add_events(events);
             status
         });
-        // Before the first status the page draws the cell at its start; a refused command is answered with what is there.
+        // Before the first status the page draws the cell at its start; a refused command is answered with the last status.
         let nothing = if is_first { Some(CellStatus::default()) } else { None };
         is_first = false;
         let again = || nothing.or_else(|| last.clone().filter(|_| is_commanded));
@@ -95,7 +95,7 @@ pub(crate) fn run(
             }
             Err(_) => continue, // a map with keys that are no texts: there is none
         }
-        // One receiver is that of the server.
+        // One receiver is the server's own.
         let period = if frames.receiver_count() <= 1 && !is_commanded { IDLE_PERIOD } else { period };
         std::thread::sleep(period.saturating_sub(begin.elapsed()));
     }

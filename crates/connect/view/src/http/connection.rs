@@ -1,4 +1,4 @@
-//! Connections: accepted, served, and closed where they hang.
+//! Connections: accepted, served, and closed if they hang.
 
 use std::time::Duration;
 
@@ -17,15 +17,15 @@ use tokio_rustls::TlsAcceptor;
 use super::connection_limits::ConnectionLimits;
 use super::places::{Place, Places};
 
-/// After an error of the listener, such as too many open files.
+/// Pause after an error of the listener, such as too many open files.
 const RETRY: Duration = Duration::from_millis(20);
 
-/// What all connections share.
+/// State that all connections share.
 #[derive(Clone)]
 pub(crate) struct Served {
     pub(crate) router: Router,
     pub(crate) limits: ConnectionLimits,
-    /// `None`: not encrypted.
+    /// `None` for connections without encryption.
     pub(crate) tls: Option<TlsAcceptor>,
 }
 
@@ -38,7 +38,7 @@ pub(crate) async fn accept(listener: TcpListener, served: Served, places: Places
         };
         match accepted {
             Ok((stream, _)) => {
-                // Here, as tasks run in any order: a connection is as old as its acceptance.
+                // The place is taken here, as tasks run in any order: the age of a connection counts from its acceptance.
                 let (place, served) = (places.enter(), served.clone());
                 _ = tokio::spawn(async move {
                     tokio::select! {
@@ -53,16 +53,16 @@ pub(crate) async fn accept(listener: TcpListener, served: Served, places: Places
 }
 
 async fn converse(stream: TcpStream, place: &Place, served: &Served) {
-    // Frames are small and must not wait for more.
+    // Frames are small and must be sent at once.
     let _ = stream.set_nodelay(true);
     let Some(tls) = &served.tls else { return serve(stream, place, served).await };
-    // Whoever does not finish the handshake gets no more time than for the head of a request.
+    // The handshake has the same time limit as the head of a request.
     if let Ok(Ok(stream)) = tokio::time::timeout(served.limits.head, tls.accept(stream)).await {
         serve(stream, place, served).await;
     }
 }
 
-/// One request, or a WebSocket, which goes on by itself.
+/// Serves one request, or opens a WebSocket, which then runs by itself.
 async fn serve(stream: impl AsyncRead + AsyncWrite + Unpin + Send + 'static, place: &Place, served: &Served) {
     let Served { router, limits, .. } = served;
     let (router, held) = (TowerToHyperService::new(router.clone()), place.clone());

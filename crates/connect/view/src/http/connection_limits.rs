@@ -2,10 +2,10 @@
 
 use std::time::Duration;
 
-/// What connections may use.
+/// Limits of connections.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ConnectionLimits {
-    /// Open connections of those who have shown no token. One more closes the oldest of them.
+    /// Open connections without a token. One more closes the oldest of them.
     pub connections: usize,
     /// Longest time for the head of a request.
     pub head: Duration,

@@ -1,4 +1,4 @@
-//! Where a server serves.
+//! Endpoint of a server: its address and its certificate.
 
 use std::net::SocketAddr;
 
@@ -6,7 +6,8 @@ use super::loopback::address;
 use super::tls::TlsIdentity;
 use crate::ViewError;
 
-/// An address that only this computer reaches, or any address with a certificate: what other computers are sent is encrypted.
+/// An address that only this computer reaches, or any address with a certificate: connections of other computers are
+/// always encrypted.
 #[derive(Debug, Clone)]
 pub struct Endpoint {
     address: SocketAddr,
@@ -14,7 +15,7 @@ pub struct Endpoint {
 }
 
 impl Endpoint {
-    /// The address in a text: `127.0.0.1:8080`, `localhost:8080`, `[::1]:8080`, or a port alone.
+    /// Parses an address: `127.0.0.1:8080`, `localhost:8080`, `[::1]:8080`, or a port alone.
     ///
     /// ```
     /// use elbowroom_view::ViewError;
@@ -37,7 +38,7 @@ impl Endpoint {
         Ok(Self { address, identity })
     }
 
-    /// The address; port 0 takes any free one.
+    /// The address; port 0 takes any free port.
     pub fn address(&self) -> SocketAddr {
         self.address
     }
@@ -46,7 +47,7 @@ impl Endpoint {
         self.identity.as_ref()
     }
 
-    /// `http` or `https`.
+    /// The scheme, `http` or `https`.
     pub(crate) fn scheme(&self) -> &'static str {
         if self.identity.is_some() { "https" } else { "http" }
     }

@@ -1,14 +1,14 @@
-//! Which requests are answered: those for known hosts; where nothing but pages is served, those without a body.
+//! Guard of a server: answers only requests for known hosts; if only pages are served, also only requests without a body.
 
 use axum::extract::{Request, State};
 use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 
-/// The names under which the server is reached.
+/// Names under which the server is reached.
 #[derive(Debug, Clone)]
 pub struct Hosts {
-    /// `None`: any, as browsers compare the name with the certificate.
+    /// `None` for any name, as browsers compare the name with the certificate.
     names: Option<Vec<String>>,
     scheme: &'static str,
     policy: HeaderValue,
@@ -16,7 +16,7 @@ pub struct Hosts {
 
 impl Hosts {
     pub(crate) fn new(hosts: Vec<String>) -> Self {
-        // `'self'` includes the WebSocket in browsers of this decade; a policy cannot name a host in brackets.
+        // `'self'` includes the WebSocket in recent browsers; a policy cannot name a host in brackets.
         let named = hosts.iter().filter(|host| !host.starts_with('['));
         let sockets = named.map(|host| format!(" ws://{host}")).collect::<Vec<_>>().concat();
         let policy = format!(
@@ -27,33 +27,34 @@ impl Hosts {
         Self { names: Some(hosts), scheme: "http://", policy }
     }
 
-    /// The names in the server's certificate: whoever makes another name resolve to this computer has no certificate for it.
+    /// Accepts the names of the server's certificate: a foreign name that resolves to this computer has no certificate
+    /// here.
     pub(crate) fn certified() -> Self {
         Self { names: None, scheme: "https://", ..Self::new(Vec::new()) }
     }
 
-    /// The one `Host` of a request, where it is one of this server: another one is a name that somebody made resolve to this
-    /// computer (DNS rebinding).
+    /// Returns the only `Host` of a request, if it names this server. Another host is a foreign name that was made to
+    /// resolve to this computer (DNS rebinding).
     fn host<'h>(&self, headers: &'h HeaderMap) -> Option<&'h str> {
         let host = only(headers, &header::HOST)?;
         self.names.as_ref().is_none_or(|names| names.iter().any(|known| known == host)).then_some(host)
     }
 
-    /// True if a page of this server asks: browsers let any page ask any server, and say which one it is.
+    /// Whether a page of this server sent the request: browsers let any page call any server, and name the page's origin.
     pub fn is_own_page(&self, headers: &HeaderMap) -> bool {
         let origin = only(headers, &header::ORIGIN).and_then(|origin| origin.strip_prefix(self.scheme));
         origin.is_some() && origin == self.host(headers)
     }
 }
 
-/// The value of a header that is there once.
+/// Returns the value of a header that occurs exactly once.
 fn only<'h>(headers: &'h HeaderMap, name: &HeaderName) -> Option<&'h str> {
     let mut values = headers.get_all(name).iter();
     let value = values.next()?.to_str().ok()?;
     values.next().is_none().then_some(value)
 }
 
-/// Refuses requests for other hosts, and adds what tells browsers to keep the answer to themselves.
+/// Refuses requests for other hosts, and adds the headers that keep browsers from sharing the answer with other pages.
 pub(crate) async fn guard(State(hosts): State<Hosts>, request: Request, next: Next) -> Response {
     let mut response = match hosts.host(request.headers()) {
         None => (StatusCode::MISDIRECTED_REQUEST, "this host is not served here\n").into_response(),
@@ -62,7 +63,7 @@ pub(crate) async fn guard(State(hosts): State<Hosts>, request: Request, next: Ne
     let is_upgrade = response.status() == StatusCode::SWITCHING_PROTOCOLS;
     let headers = response.headers_mut();
     if !is_upgrade {
-        // One request per connection: none is kept for nothing.
+        // One request per connection, so that no idle connection stays open.
         headers.insert(header::CONNECTION, HeaderValue::from_static("close"));
     }
     headers.insert(header::CONTENT_SECURITY_POLICY, hosts.policy.clone());
@@ -79,7 +80,7 @@ pub(crate) async fn guard(State(hosts): State<Hosts>, request: Request, next: Ne
     response
 }
 
-/// Refuses what no page sends.
+/// Refuses requests that the page never sends: other methods, and bodies.
 pub(crate) async fn read_only(request: Request, next: Next) -> Response {
     if !matches!(*request.method(), Method::GET | Method::HEAD) {
         return (StatusCode::METHOD_NOT_ALLOWED, "only GET is served here\n").into_response();

@@ -1,8 +1,8 @@
-//! Addresses as text, and the names of those that only this computer reaches.
+//! Addresses as text, and the names of addresses that only this computer reaches.
 
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
 
-/// The address in a text. No names are looked up: a name may resolve to anything.
+/// Parses an address. Names are not looked up, as a name may resolve to anything.
 pub(super) fn address(text: &str) -> Option<SocketAddr> {
     let localhost = IpAddr::V4(Ipv4Addr::LOCALHOST);
     if let Ok(port) = text.parse::<u16>() {
@@ -20,7 +20,7 @@ pub(super) fn address(text: &str) -> Option<SocketAddr> {
     })
 }
 
-/// The names under which a loopback address is reached.
+/// Names under which a loopback address is reached.
 pub(crate) fn hosts(address: SocketAddr) -> Vec<String> {
     let port = address.port();
     let mut hosts = vec![format!("localhost:{port}"), address.to_string()];

@@ -1,5 +1,5 @@
-//! What the servers of this program share: loopback addresses or TLS, connections with limits and places, requests of unknown hosts
-//! refused, headers. [`HttpServer`] serves any routes with them.
+//! Basis of the program's servers, for any routes: [`HttpServer`] with loopback addresses or TLS, limits and places of
+//! connections, refusal of unknown hosts, and headers.
 
 mod connection;
 mod connection_limits;

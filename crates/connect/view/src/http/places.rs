@@ -1,11 +1,11 @@
-//! A limited number of places for those who are not known, of which the oldest is vacated for a newcomer.
+//! Limited number of places for connections without a token, of which the oldest is closed for a newcomer.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use tokio::sync::watch;
 
-/// Whoever hangs cannot keep others out: a newcomer takes the place of the oldest.
+/// Places for connections: a newcomer takes the place of the oldest, so connections that hang cannot block others.
 #[derive(Debug, Clone)]
 pub(crate) struct Places {
     limit: usize,
@@ -18,7 +18,9 @@ struct Taken {
     by_age: BTreeMap<u64, watch::Sender<()>>,
 }
 
-/// A place, until its last clone is dropped, or it is vacated. Its age is that of the connection that entered, whoever holds it later.
+/// A place, held until its last clone is dropped or it is vacated.
+///
+/// Its age counts from the acceptance of its connection, whoever holds it later.
 #[derive(Debug, Clone)]
 pub struct Place(Arc<Held>);
 
@@ -27,7 +29,7 @@ struct Held {
     id: u64,
     taken: Arc<Mutex<Taken>>,
     vacated: watch::Receiver<()>,
-    /// Of a place that is kept.
+    /// Sender of a kept place.
     kept: Mutex<Option<watch::Sender<()>>>,
 }
 
@@ -51,7 +53,8 @@ impl Places {
 }
 
 impl Place {
-    /// Its holder has a token: no newcomer takes the place any more, and somebody else may have it as well.
+    /// Keeps the place, as its holder has a token: it is never vacated for a newcomer, and no longer counts towards the
+    /// limit.
     pub fn keep(&self) {
         let sender = self.0.taken.lock().unwrap_or_else(PoisonError::into_inner).by_age.remove(&self.0.id);
         if sender.is_some() {
@@ -59,7 +62,7 @@ impl Place {
         }
     }
 
-    /// Ends when a newcomer needs the place.
+    /// Waits until a newcomer needs the place.
     pub(crate) async fn vacated(&self) {
         let mut vacated = self.0.vacated.clone();
         while vacated.changed().await.is_ok() {}
@@ -101,7 +104,7 @@ mod tests {
         assert_eq!(ages(&places), [9, 10]);
         assert!(known.0.vacated.has_changed().is_ok() && strangers[9].0.vacated.has_changed().is_ok());
         strangers[7].vacated().await;
-        // Too late: its place is somebody else's.
+        // Too late: another connection has its place already.
         strangers[0].keep();
         strangers[0].vacated().await;
     }

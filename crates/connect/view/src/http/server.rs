@@ -1,4 +1,4 @@
-//! A server on a thread of its own, until it is stopped.
+//! Server on its own threads, until it is stopped.
 
 use std::io;
 use std::net::SocketAddr;
@@ -18,7 +18,7 @@ use super::places::Places;
 use super::tls::TlsIdentity;
 use crate::ViewError;
 
-/// Serves at an endpoint. Its caller is not async; it ends when it is dropped.
+/// Serves at an endpoint, for a caller that is not async. It ends when it is dropped.
 #[derive(Debug)]
 pub struct HttpServer {
     address: SocketAddr,
@@ -27,7 +27,9 @@ pub struct HttpServer {
 }
 
 impl HttpServer {
-    /// Serves what `routes` makes of the names of the server: requests for other hosts never reach it.
+    /// Starts to serve the router that `routes` makes from the names of the server.
+    ///
+    /// Requests for other hosts never reach it.
     ///
     /// # Errors
     /// [`ViewError`] if the address is taken, or the routes cannot be made.
@@ -50,17 +52,17 @@ impl HttpServer {
         Ok(Self { address, stop, runtime: Some(runtime) })
     }
 
-    /// Where it serves.
+    /// Address at which it serves.
     pub fn address(&self) -> SocketAddr {
         self.address
     }
 
-    /// Returns when the program is asked to end: by Ctrl-C, or by SIGTERM where there is one.
+    /// Returns when the program is asked to end: by Ctrl-C, or by SIGTERM on systems that have it.
     pub(crate) fn wait_for_interrupt(&self) -> io::Result<()> {
         self.runtime.as_ref().map_or(Ok(()), |runtime| runtime.block_on(interrupted()))
     }
 
-    /// No connection is accepted any more.
+    /// Stops accepting connections.
     pub(crate) fn close(&self) {
         let _ = self.stop.send(true);
     }

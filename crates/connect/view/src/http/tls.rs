@@ -1,4 +1,4 @@
-//! Encrypted connections: what a server proves to be, and whom a client trusts.
+//! Encrypted connections: the identity of a server, and the certificates that a client trusts.
 
 use std::fmt;
 use std::io::{self, Read, Write};
@@ -16,23 +16,23 @@ use tokio_rustls::rustls::{ClientConfig, ClientConnection, Error, RootCertStore,
 
 use crate::ViewError;
 
-/// The certificate and the private key of a server: with them, other computers may be served, by TLS 1.3.
+/// The certificate and the private key of a server: with them it may serve other computers, by TLS 1.3.
 #[derive(Clone)]
 pub struct TlsIdentity(Arc<ServerConfig>);
 
 impl fmt::Debug for TlsIdentity {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // Nothing of the key.
+        // The output never shows the key.
         f.write_str("TlsIdentity")
     }
 }
 
 impl TlsIdentity {
-    /// Reads both from PEM files; the certificate may be followed by the certificates of its issuers.
+    /// Reads certificate and key from PEM files; the certificates of its issuers may follow the certificate.
     ///
     /// # Errors
-    /// [`ViewError::Certificate`]: a file cannot be read or has none, or the two do not belong together. [`ViewError::Cell`]: others may
-    /// read the key.
+    /// [`ViewError::Certificate`] if a file cannot be read or has none, or if the two do not belong together.
+    /// [`ViewError::Cell`] if others may read the key.
     pub fn read(certificate: &Path, key: &Path) -> Result<Self, ViewError> {
         let (chain, private) = (certificates(certificate)?, private_key(key)?);
         let config = ServerConfig::builder_with_provider(Arc::new(default_provider()))
@@ -52,15 +52,15 @@ impl TlsIdentity {
     }
 }
 
-/// A client that trusts the servers of some certificates and no others.
+/// A client that trusts the servers of given certificates and no others.
 #[derive(Debug, Clone)]
 pub struct TlsClient(Arc<ClientConfig>);
 
 impl TlsClient {
-    /// Trusts the certificates of a PEM file, and those that they have issued.
+    /// Trusts the certificates of a PEM file, and certificates that they have issued.
     ///
     /// # Errors
-    /// [`ViewError::Certificate`]: the file cannot be read, or has none that can be trusted.
+    /// [`ViewError::Certificate`] if the file cannot be read, or has no certificate that can be trusted.
     pub fn trusting(certificate: &Path) -> Result<Self, ViewError> {
         let mut roots = RootCertStore::empty();
         for one in certificates(certificate)? {
@@ -72,10 +72,10 @@ impl TlsClient {
         Ok(Self(Arc::new(config.with_root_certificates(roots).with_no_client_auth())))
     }
 
-    /// Speaks to the server of a name or an IP address over a connection.
+    /// Starts TLS with the server of a name or an IP address, over a connection.
     ///
     /// # Errors
-    /// The name is none, or the server cannot prove that it is the one. A wrong certificate is noticed at the first write or read.
+    /// The name is invalid. A server that cannot prove its identity is noticed at the first write or read.
     pub fn connect(&self, name: &str, stream: TcpStream) -> io::Result<impl Read + Write + use<>> {
         let name = ServerName::try_from(name.trim_matches(['[', ']']).to_owned()).map_err(io::Error::other)?;
         let connection = ClientConnection::new(self.0.clone(), name).map_err(io::Error::other)?;
@@ -83,7 +83,7 @@ impl TlsClient {
     }
 }
 
-/// A key that is its owner's alone.
+/// Reads a key that only its owner may read.
 fn private_key(file: &Path) -> Result<PrivateKeyDer<'static>, ViewError> {
     let text = std::fs::read_to_string(file).map_err(|e| wrong(file, &e, "its private key in PEM"))?;
     check_private_permissions(file)?;

@@ -1,4 +1,4 @@
-//! What the server serves: everything is a part of the program.
+//! Files that the server serves; all are compiled into the program.
 
 use std::io::{self, Write as _};
 
@@ -9,7 +9,7 @@ use flate2::write::GzEncoder;
 
 const PAGE: &str = include_str!("../../assets/page.html");
 const STYLE: &str = include_str!("../../assets/view.css");
-/// In order: each uses those before it.
+/// The scripts in order: each uses scripts before it.
 const SCRIPTS: [&str; 15] = [
     shared_assets::DOM,
     shared_assets::PACKING,
@@ -28,7 +28,7 @@ const SCRIPTS: [&str; 15] = [
     include_str!("../../assets/player.js"),
 ];
 
-/// A file, deflated with the header of gzip.
+/// A file, compressed as gzip.
 #[derive(Debug, Clone)]
 pub(crate) struct Asset {
     pub(crate) path: &'static str,
@@ -36,7 +36,7 @@ pub(crate) struct Asset {
     pub(crate) gzip: Bytes,
 }
 
-/// The files that anybody may have: they say nothing about the cell.
+/// Returns the files that need no token: they contain nothing about the cell.
 pub(crate) fn assets() -> io::Result<Vec<Asset>> {
     let script = format!("(async () => {{\n'use strict';\n{}\n}})();\n", SCRIPTS.join("\n"));
     let javascript = "text/javascript; charset=utf-8";

@@ -1,4 +1,4 @@
-//! The server: connections, requests, and the WebSocket of each page.
+//! Server: connections, requests, and the WebSocket of each page.
 
 mod assets;
 mod routes;

@@ -1,4 +1,4 @@
-//! The routes: the page's files, the geometry, the WebSocket.
+//! Routes: the page's files, the geometry, the WebSocket.
 
 use std::sync::Arc;
 
@@ -16,7 +16,7 @@ use super::session;
 use super::shared::Shared;
 use crate::http::{Place, read_only};
 
-/// Only these paths exist, so there is no other to escape to.
+/// Builds the router. Only these paths exist, so no path leads to other files.
 pub(crate) fn routes(shared: Arc<Shared>, assets: Vec<Asset>) -> Router {
     let with_assets = assets.into_iter().fold(Router::new(), |router, Asset { path, kind, gzip }| {
         let answer = move || async move { compressed(kind, gzip) };
@@ -35,7 +35,7 @@ fn compressed(kind: &'static str, gzip: Bytes) -> Response {
     ([(header::CONTENT_TYPE, kind), (header::CONTENT_ENCODING, "gzip")], gzip).into_response()
 }
 
-/// The geometry says what the cell is: only with the token.
+/// Serves the geometry, only with the token: it describes the cell.
 async fn geometry(State(shared): State<Arc<Shared>>, headers: HeaderMap) -> Response {
     if !has_token(&shared, &headers) {
         return no_token();
@@ -43,7 +43,7 @@ async fn geometry(State(shared): State<Arc<Shared>>, headers: HeaderMap) -> Resp
     compressed("application/octet-stream", shared.geometry.clone())
 }
 
-/// So do the frames of the last minutes.
+/// Serves the frames of the last minutes, only with the token.
 async fn history(State(shared): State<Arc<Shared>>, headers: HeaderMap) -> Response {
     if !has_token(&shared, &headers) {
         return no_token();

@@ -1,4 +1,4 @@
-//! The WebSocket of one page: the token first, then frames to the page and commands from it.
+//! WebSocket of one page: the token first, then frames to the page and commands from it.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -14,7 +14,7 @@ use crate::source::Command;
 
 /// Codes of the close message; the page shows the reason.
 const WRONG_TOKEN: u16 = 4401;
-/// Try again later: a browser on a busy computer may be too slow once.
+/// Code for "try again later": a browser on a busy computer may be too slow once.
 const LATE: u16 = 1013;
 const NOT_UNDERSTOOD: u16 = 4400;
 const TOO_MANY: u16 = 4429;
@@ -26,21 +26,21 @@ struct Hello {
     token: String,
 }
 
-/// What a page sends after its token.
+/// Messages of a page after its token.
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum Sent {
-    /// It has shown the frame of this number.
+    /// The page has shown the frame of this number.
     Shown {
         shown: u64,
     },
     Command(Command),
 }
 
-/// Why a session ends: the code and the reason, or none where the page is gone.
+/// Reason for the end of a session: code and text; `None` if the page is gone.
 type Ended = Option<(u16, &'static str)>;
 
-/// Serves a page until it goes. Until it has shown its token it keeps the place of its connection.
+/// Serves a page until it disconnects. Until the page has sent its token, it holds the place of its connection.
 pub(crate) async fn run(mut socket: WebSocket, place: Place, shared: Arc<Shared>) {
     let admitted = tokio::select! {
         admitted = timeout(shared.limits.head, admit(&mut socket, &shared)) => admitted.unwrap_or(Err(Some((LATE, "no token has come")))),
@@ -61,12 +61,12 @@ pub(crate) async fn run(mut socket: WebSocket, place: Place, shared: Arc<Shared>
     if let Some((code, reason)) = ended {
         let close = Message::Close(Some(CloseFrame { code, reason: reason.into() }));
         let _ = timeout(Duration::from_secs(1), socket.send(close)).await;
-        // Time for the page to read it before the connection is cut.
+        // The page needs time to read the message before the connection is cut.
         let _ = timeout(Duration::from_secs(1), socket.recv()).await;
     }
 }
 
-/// The first message must be the token.
+/// Checks that the first message is the token.
 async fn admit(socket: &mut WebSocket, shared: &Shared) -> Result<(), Ended> {
     let Some(Ok(first)) = socket.recv().await else { return Err(None) };
     let Message::Text(text) = first else { return Err(Some((NOT_UNDERSTOOD, "the first message is the token"))) };
@@ -78,9 +78,9 @@ async fn admit(socket: &mut WebSocket, shared: &Shared) -> Result<(), Ended> {
 struct Session<'s> {
     socket: &'s mut WebSocket,
     shared: &'s Shared,
-    /// Numbers of the frames that the page was sent and has not shown.
+    /// Numbers of the frames that were sent to the page and are not shown yet.
     unshown: VecDeque<u64>,
-    /// Number of the first event that it was not sent.
+    /// Number of the first event that was not sent.
     next_event: u64,
 }
 
@@ -140,7 +140,7 @@ impl Session<'_> {
         }
     }
 
-    /// The events that the page does not have yet.
+    /// Sends the events that the page does not have yet.
     async fn send_events(&mut self) -> bool {
         let next = self.next_event;
         let text: Option<Utf8Bytes> = self.shared.inbox.with_events(|log| {
@@ -155,7 +155,7 @@ impl Session<'_> {
         }
     }
 
-    /// False if the page does not take it in time.
+    /// Sends a message; false if the page does not accept it in time.
     async fn send(&mut self, message: Message) -> bool {
         matches!(timeout(self.shared.limits.send, self.socket.send(message)).await, Ok(Ok(())))
     }

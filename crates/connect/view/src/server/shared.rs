@@ -1,4 +1,4 @@
-//! What all requests share.
+//! State that all requests share.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use crate::http::Hosts;
 use crate::inbox::Inbox;
 use crate::settings::Limits;
 
-/// What requests share.
+/// State that all requests share.
 #[derive(Debug)]
 pub(crate) struct Shared {
     pub(crate) token: Token,

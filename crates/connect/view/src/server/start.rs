@@ -1,4 +1,4 @@
-//! The server as its caller sees it.
+//! Server from the view of its caller.
 
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -20,7 +20,7 @@ use crate::inbox::Inbox;
 use crate::source::{RunningCell, ViewSource};
 use crate::{ServerSettings, ViewError};
 
-/// A cell in a browser, until it is stopped or dropped. It has threads of its own; its caller is not async.
+/// A cell in a browser, until it is stopped or dropped. It has its own threads; its caller is not async.
 #[derive(Debug)]
 pub struct Server {
     token: Token,
@@ -31,10 +31,10 @@ pub struct Server {
 }
 
 impl Server {
-    /// Shows a running cell: what is published through the feed.
+    /// Shows a running cell: the statuses that are published through the feed.
     ///
     /// # Errors
-    /// [`ViewError`] if the address cannot be served at or the cell has no model.
+    /// [`ViewError`] if the server cannot listen at the address, or the cell has no model.
     pub fn watch(cell: &Cell, feed: &StatusFeed, settings: ServerSettings) -> Result<Self, ViewError> {
         Self::start(Model::of(cell)?, RunningCell, feed.inbox.clone(), settings)
     }
@@ -82,23 +82,24 @@ impl Server {
         Ok(Self { token, inbox, engine: Some(engine), http, scheme: endpoint.scheme() })
     }
 
-    /// Where it serves.
+    /// Address at which it serves.
     pub fn address(&self) -> SocketAddr {
         self.http.address()
     }
 
-    /// What to open in a browser, with the token: whoever has it sees the cell.
-    /// Where it serves at all addresses, `HOST` stands for a name of its certificate.
+    /// The address to open in a browser, with the token: everyone who has it sees the cell.
+    ///
+    /// If the server serves at all addresses, `HOST` stands for a name of its certificate.
     pub fn url(&self) -> String {
         let address = self.address();
         let host = if address.ip().is_unspecified() { format!("HOST:{}", address.port()) } else { address.to_string() };
         format!("{}://{host}/#token={}", self.scheme, self.token.text())
     }
 
-    /// Returns when the program is asked to end: by Ctrl-C, or by SIGTERM where there is one.
+    /// Returns when the program is asked to end: by Ctrl-C, or by SIGTERM on systems that have it.
     ///
     /// # Errors
-    /// [`ViewError::System`] where signals cannot be received.
+    /// [`ViewError::System`] if signals cannot be received.
     pub fn wait_for_interrupt(&self) -> Result<(), ViewError> {
         Ok(self.http.wait_for_interrupt()?)
     }

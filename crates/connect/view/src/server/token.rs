@@ -1,4 +1,4 @@
-//! The secret that a page must know.
+//! Secret that a page must know.
 
 use std::fmt::Write as _;
 use std::io;
@@ -19,7 +19,7 @@ impl Token {
         })))
     }
 
-    /// Takes as long wherever the first difference is.
+    /// Compares with another text, in constant time.
     pub(crate) fn is(&self, other: &str) -> bool {
         self.0.as_bytes().ct_eq(other.as_bytes()).into()
     }
@@ -29,7 +29,7 @@ impl Token {
     }
 }
 
-/// Not in logs.
+/// Hides the secret from logs.
 impl std::fmt::Debug for Token {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str("Token(…)")

@@ -12,7 +12,7 @@ use tungstenite::client::IntoClientRequest as _;
 use tungstenite::http::HeaderValue;
 use tungstenite::{Message, WebSocket};
 
-/// Two arms with six joints, things around them, and every kind of region.
+/// Two arms with six joints, objects around them, and every kind of region.
 pub const CELL: &str = r#"
 version = 1
 name = "two arms"
@@ -81,12 +81,12 @@ kind = "exchange"
 warning = 150
 "#;
 
-/// The cell.
+/// Parses the cell.
 pub fn cell() -> Cell {
     Cell::parse("two_arms.toml", CELL).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Limits that a test does not wait for.
+/// Short limits, so that a test does not have to wait.
 pub fn limits() -> Limits {
     Limits {
         head: Duration::from_millis(400),
@@ -97,33 +97,33 @@ pub fn limits() -> Limits {
     }
 }
 
-/// Any free port, with [`limits`].
+/// Settings for any free port, with [`limits`].
 pub fn settings() -> ServerSettings {
     ServerSettings { limits: limits(), ..ServerSettings::at("127.0.0.1:0").unwrap() }
 }
 
-/// The token in the address of a server.
+/// Returns the token in the address of a server.
 pub fn token(server: &Server) -> String {
     server.url().split_once("#token=").unwrap().1.to_owned()
 }
 
-/// What a server answers to these bytes, until it closes; empty if it answers nothing.
+/// Returns the answer of a server to these bytes, until it closes; empty without an answer.
 pub fn answer(server: SocketAddr, request: &[u8]) -> String {
     let mut stream = TcpStream::connect(server).unwrap();
     stream.set_read_timeout(Some(Duration::from_secs(10))).unwrap();
-    // A server that refuses closes before everything is written.
+    // A server that refuses a request closes before everything is written.
     let _ = stream.write_all(request);
     let mut bytes = Vec::new();
     let _ = stream.read_to_end(&mut bytes);
     String::from_utf8_lossy(&bytes).into_owned()
 }
 
-/// A request for a path, as a browser sends it.
+/// Requests a path as a browser does.
 pub fn get(server: SocketAddr, path: &str, headers: &str) -> String {
     answer(server, format!("GET {path} HTTP/1.1\r\nHost: {server}\r\n{headers}\r\n").as_bytes())
 }
 
-/// The status of an answer; 0 if there is none.
+/// Parses the status of an answer; 0 if there is none.
 pub fn status(answer: &str) -> u16 {
     answer.split(' ').nth(1).and_then(|word| word.parse().ok()).unwrap_or(0)
 }
@@ -133,7 +133,7 @@ pub struct Page {
     socket: WebSocket<TcpStream>,
 }
 
-/// A WebSocket with these headers.
+/// Opens a WebSocket with these headers.
 pub fn open(server: SocketAddr, host: &str, origin: Option<&str>) -> Result<Page, String> {
     let stream = TcpStream::connect(server).unwrap();
     stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
@@ -147,13 +147,13 @@ pub fn open(server: SocketAddr, host: &str, origin: Option<&str>) -> Result<Page
 }
 
 impl Page {
-    /// The page of a server, before its token.
+    /// Opens the page of a server, before its token.
     pub fn nameless(server: &Server) -> Self {
         let address = server.address();
         open(address, &address.to_string(), Some(&format!("http://{address}"))).unwrap()
     }
 
-    /// The page of a server, with its token.
+    /// Opens the page of a server, with its token.
     pub fn of(server: &Server) -> Self {
         let mut page = Self::nameless(server);
         page.send(&json!({ "token": token(server) }));
@@ -169,7 +169,7 @@ impl Page {
         self.socket.send(message).map_err(|e| e.to_string())
     }
 
-    /// The next document; `Err` with code and reason where the server has closed.
+    /// Returns the next document; `Err` with code and reason if the server has closed.
     pub fn next(&mut self) -> Result<Value, String> {
         loop {
             match self.socket.read() {
@@ -181,7 +181,7 @@ impl Page {
         }
     }
 
-    /// The next frame, which is answered as shown; events are passed over.
+    /// Returns the next frame, which is acknowledged as shown; skips events.
     pub fn frame(&mut self) -> Result<Value, String> {
         loop {
             let document = self.next()?;
@@ -192,7 +192,7 @@ impl Page {
         }
     }
 
-    /// The first frame that fulfils a condition.
+    /// Returns the first frame that satisfies a condition.
     pub fn frame_where(&mut self, is_it: impl Fn(&Value) -> bool) -> Value {
         for _ in 0..500 {
             let frame = self.frame().unwrap();

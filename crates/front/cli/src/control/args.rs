@@ -6,7 +6,7 @@ use clap::{Args, Subcommand, ValueEnum};
 
 use crate::region::args::Class;
 
-/// Verbs for a running cell (docs/control.md).
+/// Commands for a running cell (docs/control.md).
 #[derive(Debug, Subcommand)]
 pub(crate) enum ControlCommand {
     /// Make a token: its hash goes to a file of the service, its secret to standard output, once
@@ -17,13 +17,13 @@ pub(crate) enum ControlCommand {
     Regions(RegionsArgs),
     /// Switch a temporary region on or off
     Switch(SwitchArgs),
-    /// Put a temporary region elsewhere
+    /// Move a temporary region
     Move(MoveArgs),
     /// Add a region
     Add(AddArgs),
     /// Remove a temporary region
     Remove(RemoveArgs),
-    /// Declare that a silent robot is at rest outside of its exchange regions, which you have seen
+    /// Declare that you have seen a silent robot at rest outside its exchange regions
     Clear(ClearArgs),
     /// Verify and list the changes that a service has logged beside the cell file
     Log(LogArgs),
@@ -34,13 +34,13 @@ pub(crate) enum ControlCommand {
   elbowroom control token --role programmer --name \"line 4, panel\" --file tokens.toml > panel.secret
   elbowroom live cell.toml --control 127.0.0.1:7448 --tokens tokens.toml")]
 pub(crate) struct TokenArgs {
-    /// What its holder may do
+    /// The role of the token's holder
     #[arg(long, value_enum)]
     pub(crate) role: Class,
-    /// Its holder: a place or a function, for the log
+    /// The token's holder: a place or a function, for the log
     #[arg(long)]
     pub(crate) name: String,
-    /// The file of tokens; it is made where it is missing
+    /// The file of tokens; created if missing
     #[arg(long, value_name = "FILE")]
     pub(crate) file: PathBuf,
 }
@@ -55,7 +55,7 @@ pub(crate) struct NetworkKeyArgs {
     pub(crate) out: PathBuf,
 }
 
-/// The service, and the holder of a token.
+/// The service, and the secret of a token.
 #[derive(Debug, Args)]
 pub(crate) struct ServiceArgs {
     /// The control address of the service
@@ -107,7 +107,7 @@ pub(crate) struct SwitchArgs {
 pub(crate) struct MoveArgs {
     /// The region
     pub(crate) region: String,
-    /// Where it is from now on: the keys of the cell file that say so
+    /// The new place of the region, as keys of the cell file
     #[arg(value_name = "KEY=VALUE", required = true)]
     pub(crate) to: Vec<String>,
     #[command(flatten)]
@@ -122,11 +122,11 @@ pub(crate) struct MoveArgs {
   elbowroom control add trolley trolley.toml --secret panel.secret
   elbowroom teach cell.toml --shape box --name trolley --states taught.csv | elbowroom control add trolley - --secret panel.secret")]
 pub(crate) struct AddArgs {
-    /// Its name
+    /// Name of the region
     pub(crate) region: String,
     /// The file with its keys, as in a cell file, or with the table [region.NAME]; - is standard input
     pub(crate) file: PathBuf,
-    /// It is switched off at first; temporary regions only
+    /// Add the region switched off; temporary regions only
     #[arg(long)]
     pub(crate) off: bool,
     #[command(flatten)]
@@ -157,10 +157,10 @@ See the robot at rest and outside of every region that you name: others may ente
 pub(crate) struct ClearArgs {
     /// The robot
     pub(crate) robot: String,
-    /// All its exchange regions
+    /// All exchange regions of the robot
     #[arg(long, value_name = "REGIONS", value_delimiter = ',', required = true)]
     pub(crate) outside: Vec<String>,
-    /// The robot once more
+    /// The robot again, to confirm
     #[arg(long, value_name = "ROBOT")]
     pub(crate) repeat: String,
     #[command(flatten)]

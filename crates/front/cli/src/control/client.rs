@@ -11,9 +11,9 @@ use super::args::ServiceArgs;
 use super::transport::Transport;
 use crate::output::Failure;
 
-/// Longest wait for the service.
+/// Longest wait for an answer of the service.
 const WAIT: Duration = Duration::from_secs(20);
-/// Longest answer.
+/// Longest answer, bytes.
 const MAX_ANSWER: u64 = 16 << 20;
 
 /// A service and the secret of a token.
@@ -39,12 +39,12 @@ impl Client {
         Ok(Self { address: args.at.clone(), secret, transport: Transport::of(args.certificate.as_deref())? })
     }
 
-    /// What there is, and its revision.
+    /// Fetches the regions and their revision.
     pub(crate) fn regions(&self) -> Result<Value, Failure> {
         self.ask("GET", "/regions", "", None)
     }
 
-    /// Asks for a change of the present state.
+    /// Requests a change of the present state.
     pub(crate) fn change(&self, path: &str, request: &Value) -> Result<Value, Failure> {
         let now = self.regions()?;
         let revision = now["revision"].as_str().unwrap_or_default();
@@ -106,14 +106,14 @@ impl Client {
         String::from_utf8(answer).map_err(std::io::Error::other)
     }
 
-    /// Nobody is there.
+    /// Makes the error for a service that does not answer.
     fn silent(&self, error: &std::io::Error) -> Failure {
         let address = &self.address;
         let help = format!("elbowroom live CELL --arbiter --control {address} --tokens FILE, or --at ADDR here");
         Failure::Wrong(format!("{address}: the service does not answer: {error}\n  write: {help}"))
     }
 
-    /// Somebody is there who cannot be trusted, or speaks otherwise.
+    /// Makes the error for a service that is not trusted or does not speak the protocol.
     fn misunderstood(&self, error: &std::io::Error) -> Failure {
         let (address, why) = (&self.address, error.to_string());
         if !self.transport.is_encrypted() {

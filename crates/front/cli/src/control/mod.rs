@@ -50,7 +50,7 @@ pub(crate) fn control(command: &ControlCommand) -> Result<ExitStatus, Failure> {
     Ok(ExitStatus::Success)
 }
 
-/// `KEY=VALUE` as lines of TOML.
+/// Converts `KEY=VALUE` texts to lines of TOML.
 fn keys(written: &[String]) -> Result<String, Failure> {
     let line = |text: &String| match text.split_once('=') {
         Some((key, value)) => Ok(format!("{} = {}\n", key.trim(), value.trim())),

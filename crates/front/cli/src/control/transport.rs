@@ -1,4 +1,4 @@
-//! How requests travel: in the clear on this computer, encrypted to another one.
+//! Transport of requests: unencrypted on this computer, encrypted to another computer.
 
 use std::io::{self, Read, Write};
 use std::net::TcpStream;
@@ -15,13 +15,13 @@ pub(super) trait Connection: Read + Write {}
 
 impl<T: Read + Write> Connection for T {}
 
-/// How requests travel.
+/// Transport of requests: TLS, or unencrypted.
 pub(super) struct Transport {
     tls: Option<TlsClient>,
 }
 
 impl Transport {
-    /// Encrypted where there is the certificate of the service.
+    /// Makes the transport: encrypted if the certificate of the service is given.
     pub(super) fn of(certificate: Option<&Path>) -> Result<Self, Failure> {
         let tls = certificate.map(TlsClient::trusting).transpose();
         Ok(Self { tls: tls.map_err(|e| Failure::Wrong(format!("--certificate: {e}")))? })
@@ -31,7 +31,7 @@ impl Transport {
         self.tls.is_some()
     }
 
-    /// To the service of this name, over a connection.
+    /// Wraps a connection to the service of this host name.
     pub(super) fn over(&self, host: &str, stream: TcpStream) -> io::Result<Box<dyn Connection>> {
         match &self.tls {
             Some(tls) => Ok(Box::new(tls.connect(host, stream)?)),
@@ -40,7 +40,7 @@ impl Transport {
     }
 }
 
-/// The default build has no TLS, and says how to get it.
+/// Stands in for TLS in the default build; says how to get TLS.
 #[cfg(not(feature = "live"))]
 mod missing {
     use std::io;

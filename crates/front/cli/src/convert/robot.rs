@@ -44,12 +44,12 @@ pub(super) fn convert(args: &ConvertArgs, out: &Path) -> Result<ExitStatus, Fail
     Ok(ExitStatus::Success)
 }
 
-/// True for a file with this extension, in any case.
+/// Whether the file has this extension, in upper or lower case.
 pub(super) fn has_extension(path: &Path, extension: &str) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case(extension))
 }
 
-/// The robot of a model.
+/// Loads the robot of a model.
 pub(super) fn of_model(args: &ConvertArgs) -> Result<LoadedRobot, Failure> {
     if args.robot.is_some() {
         return Err(Failure::Wrong("--robot goes with a cell file\n  write: a model without --robot".to_owned()));
@@ -66,7 +66,7 @@ pub(super) fn of_model(args: &ConvertArgs) -> Result<LoadedRobot, Failure> {
     Ok(loaded)
 }
 
-/// The robot of a cell.
+/// Loads the robot of a cell.
 pub(super) fn of_cell(args: &ConvertArgs) -> Result<CellRobot, Failure> {
     let given =
         args.srdf.is_some() || args.unit.is_some() || args.joints.joints.is_some() || !args.joints.joint.is_empty();
@@ -88,7 +88,7 @@ pub(super) fn of_cell(args: &ConvertArgs) -> Result<CellRobot, Failure> {
     Ok(cell.robots.swap_remove(chosen))
 }
 
-/// The 3DS model, and a file with the joints, which 3DS cannot hold.
+/// Writes the 3DS model, and a file with the joints, which 3DS cannot hold.
 fn write_tds(robot: &Robot, path: &Path) -> Result<Vec<PathBuf>, Failure> {
     let bytes = tds::write(&robot::to_tree(robot), path)?;
     write_bytes(path, bytes)?;
@@ -97,7 +97,7 @@ fn write_tds(robot: &Robot, path: &Path) -> Result<Vec<PathBuf>, Failure> {
     Ok(vec![path.to_owned(), beside])
 }
 
-/// Files beside the model are never overwritten: its SRDF and its joints may be written by the user.
+/// Refuses to overwrite files beside the model: the user may have written its SRDF and its joints.
 fn keep_own(path: &Path, model: &Path) -> Result<(), Failure> {
     let folder = |p: &Path| p.canonicalize().ok().and_then(|p| p.parent().map(Path::to_owned));
     if path.exists() && folder(path) == folder(model) {

@@ -45,7 +45,7 @@ pub(super) fn convert(args: &ConvertArgs, file: &Path) -> Result<ExitStatus, Fai
     Ok(ExitStatus::Success)
 }
 
-/// Writes the pairs that the scene lets touch to a file of pairs beside the cell file. Returns its name, where there are any.
+/// Writes the pairs that the scene lets touch to a file of pairs beside the cell file, if any. Returns the file name.
 fn write_pairs(args: &ConvertArgs, file: &Path, cell: &Cell) -> Result<Option<String>, Failure> {
     let name = format!("{}_pairs.toml", file.file_stem().unwrap_or_default().to_string_lossy());
     let path = file.with_file_name(&name);
@@ -56,11 +56,11 @@ fn write_pairs(args: &ConvertArgs, file: &Path, cell: &Cell) -> Result<Option<St
     Ok(Some(name))
 }
 
-/// A cell that has only the scene. Where its objects are in one frame that the scene does not define, that frame is placed: there
-/// is no robot to which it could belong.
+/// Returns a cell file with only the scene. If all objects are in one frame that the scene does not define, that frame
+/// becomes the world of the cell: the cell has no robot that could define it.
 fn cell_text(file: &Path) -> Result<String, Failure> {
     let scene = planning_scene::read(file)?;
-    // The frame that each object is in the end placed by.
+    // The frame by which each object is finally placed.
     let frames = scene.objects.iter().map(|o| FixedFrame::ancestor(&scene.frames, &o.frame, |_| false).0);
     let mut frames: Vec<&str> = frames.filter(|frame| !frame.is_empty()).collect();
     frames.sort_unstable();
@@ -80,7 +80,7 @@ fn cell_text(file: &Path) -> Result<String, Failure> {
     };
     let name = file.file_name().unwrap_or_default().to_string_lossy();
     let head = "version = 1\nunits = { length = \"m\", angle = \"deg\" }\n[scene.all]\n";
-    // The pairs go to a file.
+    // The pairs go to a file of their own.
     Ok(format!("{head}file = {}\nallowed_collisions = false\n{frame}", toml_text(&name)))
 }
 

@@ -12,10 +12,10 @@ use crate::args::ConvertArgs;
 use crate::output::{ExitStatus, Failure, note, refuse_existing};
 use crate::output_file::write_bytes;
 
-/// The group of all moving joints, named as in ROS-Industrial, where no SRDF has groups.
+/// Name of the group of all moving joints if no SRDF has groups, as in ROS-Industrial.
 const GROUP: &str = "manipulator";
 
-/// Writes the SRDF of the robot of a model or cell: groups and states, and the pairs that need not be tested.
+/// Writes the SRDF of the robot of a model or cell: groups, states, and the pairs that need no test.
 pub(super) fn convert(args: &ConvertArgs, file: &Path) -> Result<ExitStatus, Failure> {
     refuse_existing(file)?;
     let (robot, given) = if has_extension(&args.model, "toml") { of_cell_file(args)? } else { of_model_file(args)? };
@@ -48,7 +48,7 @@ fn of_cell_file(args: &ConvertArgs) -> Result<(Robot, Srdf), Failure> {
     Ok((robot.robot.clone(), given))
 }
 
-/// The group of all moving joints: a chain to the flange, or a list where some are beside it.
+/// Makes the group of all moving joints: a chain to the flange, or a list if some joints are not on that chain.
 fn group(chain: &Chain, flange: LinkId) -> Group {
     let mut group = Group { name: GROUP.to_owned(), ..Group::default() };
     let path = chain.path(flange);

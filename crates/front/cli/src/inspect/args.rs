@@ -37,7 +37,7 @@ pub(crate) struct InspectArgs {
     /// print link poses instead: in mm and degrees in a terminal, else as CSV in metres
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) states: Option<PathBuf>,
-    /// With --states: print link poses in mm and degrees wherever they go
+    /// With --states: print link poses in mm and degrees, also to a file or pipe
     #[arg(long, requires = "states", conflicts_with = "json")]
     pub(crate) table: bool,
     /// Skip the slow parts: resolution levels, the allowed collision matrix, visual meshes
@@ -49,8 +49,8 @@ pub(crate) struct InspectArgs {
     /// Also write hull, middle and coarse triangles of each link as STL (metres, link frame) to this folder
     #[arg(long, value_name = "DIR", conflicts_with = "states")]
     pub(crate) models: Option<PathBuf>,
-    /// Write what sampling and geometry tell of all pairs to this file (docs/query.md); rows with a `reason` stay in it. MODEL may
-    /// be a cell file then
+    /// Write the results of sampling and geometry for all pairs to this file (docs/query.md); its rows with a `reason` stay.
+    /// MODEL may then be a cell file
     #[arg(long, value_name = "FILE.toml", conflicts_with_all = ["states", "brief"])]
     pub(crate) pairs: Option<PathBuf>,
     /// With --pairs: skip the pairs that are in contact in all samples

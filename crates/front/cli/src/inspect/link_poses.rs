@@ -12,7 +12,7 @@ use crate::output::{ExitStatus, Failure, print};
 
 const CSV_HEAD: &str = "index,link,r11,r12,r13,r21,r22,r23,r31,r32,r33,x_m,y_m,z_m\n";
 
-/// Prints the pose of every link in the root link, one row per state and link: as CSV, or as a table for people.
+/// Prints the pose of every link in the frame of the root link, one row per state and link: as CSV, or as a table.
 pub(super) fn link_poses(inspection: &Inspection, states: &Path, as_table: bool) -> Result<ExitStatus, Failure> {
     let Some(robot) = inspection.robot() else {
         return Err(Failure::Wrong(format!(
@@ -46,7 +46,7 @@ pub(super) fn link_poses(inspection: &Inspection, states: &Path, as_table: bool)
 fn csv_row(text: &mut String, pose: &Pose) {
     let rotation = pose.rotation.rows().into_iter().flatten();
     for v in rotation.chain(pose.translation.to_array()) {
-        // As Debug, so that 6e-17 does not become twenty digits.
+        // Formatted with Debug: Display would write 6e-17 with twenty digits.
         let _ = write!(text, ",{v:?}");
     }
     text.push('\n');
@@ -65,7 +65,7 @@ fn table_head(width: usize) -> String {
 fn table_row(text: &mut String, pose: &Pose) {
     let lengths = pose.translation.to_array().map(|v| 1e3 * v);
     for v in lengths.into_iter().chain(pose.rotation.to_rpy().map(f64::to_degrees)) {
-        // Adding 0 takes the sign of -0.00 away.
+        // Adding 0 removes the sign of -0.00.
         let _ = write!(text, "{:>12.2}", (v * 100.0).round() / 100.0 + 0.0);
     }
     text.push('\n');

@@ -51,7 +51,7 @@ pub(crate) fn inspect(args: &InspectArgs) -> Result<ExitStatus, Failure> {
                 args.model.display()
             ))
         };
-        // A file that is there may have pairs and groups that a person has written.
+        // An existing file may have pairs and groups that a person has written.
         refuse_existing(path)?;
         write_bytes(path, inspection.srdf().ok_or_else(what)?)?;
         note(format_args!("wrote {}", path.display()));
@@ -76,7 +76,7 @@ fn is_cell(model: &Path) -> bool {
     model.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"))
 }
 
-/// Writes the file of pairs of a model; rows that a person wrote in it stay.
+/// Writes the file of pairs of a model; rows that a person wrote in an existing file stay.
 fn write_pairs(model: &QueryModel, path: &Path, accept: bool) -> Result<(), Failure> {
     let before = path.exists().then(|| PairFile::read(path)).transpose()?;
     let (file, counts) = PairFile::survey(path, model, before.as_ref(), accept)?;

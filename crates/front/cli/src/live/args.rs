@@ -36,10 +36,10 @@ pub(crate) struct LiveArgs {
     /// Serve the control interface at this address, beside the arbiter (docs/control.md)
     #[arg(long, value_name = "ADDR", requires = "tokens")]
     pub(crate) control: Option<String>,
-    /// The tokens of those who may use the control interface
+    /// The file of tokens for the control interface
     #[arg(long, value_name = "FILE", requires = "control")]
     pub(crate) tokens: Option<PathBuf>,
-    /// Let programs switch temporary regions without a token, though there are tokens
+    /// Let programs switch temporary regions without a token, even with --tokens
     #[arg(long, requires = "control")]
     pub(crate) program_switches: bool,
     /// Record everything into this MCAP file
@@ -118,14 +118,14 @@ fn seconds(text: &str) -> Result<f64, String> {
     if value.is_finite() && value > 0.0 { Ok(value) } else { Err("must be more than 0".to_owned()) }
 }
 
-/// Where the cell is shown, and how other computers reach that.
+/// Address of the page, and its access from other computers.
 #[derive(Debug, Args)]
 #[cfg_attr(not(feature = "live"), allow(dead_code))]
 pub(crate) struct PageArgs {
     /// Show the cell in a browser at this address; port 0 takes any free one (`view`: 127.0.0.1:0 without it)
     #[arg(long, value_name = "ADDR")]
     pub(crate) web: Option<String>,
-    /// The certificate of this computer (PEM): with it the page and the control interface are encrypted, and may be at any address
+    /// The certificate of this computer (PEM): encrypts the page and the control interface, and permits any address for them
     #[arg(long, value_name = "FILE.pem", requires = "certificate_key")]
     pub(crate) certificate: Option<PathBuf>,
     /// The private key of the certificate (PEM)
@@ -133,7 +133,7 @@ pub(crate) struct PageArgs {
     pub(crate) certificate_key: Option<PathBuf>,
 }
 
-/// Where the processes of the cell meet, and who is heard there.
+/// Network addresses of the processes of a cell, and its key.
 #[derive(Debug, Args)]
 #[allow(clippy::doc_markdown)] // help texts are printed as they are
 #[cfg_attr(not(feature = "live"), allow(dead_code))]
@@ -144,10 +144,10 @@ pub(crate) struct NetworkArgs {
     /// Connect to the process at this address
     #[arg(long, value_name = "ADDR")]
     pub(crate) connect: Option<String>,
-    /// Hear only processes that have this key, made by `elbowroom control network-key` (docs/security.md)
+    /// Accept only processes that have this key, made by `elbowroom control network-key` (docs/security.md)
     #[arg(long, value_name = "FILE")]
     pub(crate) network_key: Option<PathBuf>,
-    /// Take controllers by UDP datagrams at this address, too (clients/c)
+    /// Also accept controllers by UDP datagrams at this address (clients/c)
     #[arg(long, value_name = "ADDR")]
     pub(crate) udp: Option<String>,
 }

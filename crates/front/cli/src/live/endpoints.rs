@@ -1,4 +1,4 @@
-//! Where the page and the control interface are served.
+//! Endpoints of the page and of the control interface.
 
 use elbowroom::view::ViewError;
 use elbowroom::view::http::{Endpoint, TlsIdentity};
@@ -6,7 +6,7 @@ use elbowroom::view::http::{Endpoint, TlsIdentity};
 use super::args::PageArgs;
 use crate::output::Failure;
 
-/// The endpoint in the text of an option.
+/// Parses the endpoint in the value of an option.
 pub(super) fn endpoint(option: &str, text: &str, page: &PageArgs) -> Result<Endpoint, Failure> {
     let identity = match (&page.certificate, &page.certificate_key) {
         (Some(certificate), Some(key)) => {

@@ -8,7 +8,7 @@ use elbowroom::recording::JointRecording;
 
 use crate::output::{ExitStatus, Failure, cannot_write, note, print};
 
-/// The joint states of a recording of ROS 2 as a table.
+/// Writes the joint states of a ROS 2 recording as a table.
 pub(crate) fn convert_recording(recording: &Path, topic: Option<&str>, to: &Path) -> Result<ExitStatus, Failure> {
     let file = recording.display();
     let bytes = File::open(recording).map_err(|e| Failure::Wrong(format!("{file}: cannot be read: {e}")))?;

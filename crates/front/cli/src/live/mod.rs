@@ -27,7 +27,7 @@ pub(crate) use {joint_recording::convert_recording, record::run_recorded, replay
 #[cfg(not(feature = "live"))]
 pub(crate) use missing::{convert_recording, live, replay, run_recorded, view};
 
-/// Without the feature the commands say how to get them.
+/// Stands in for the commands of the feature; says how to get them.
 #[cfg(not(feature = "live"))]
 mod missing {
     use std::path::Path;

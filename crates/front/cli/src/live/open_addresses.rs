@@ -1,10 +1,10 @@
-//! Addresses at which others than this computer reach a cell's network without a key.
+//! Warnings of addresses at which other computers reach a cell's network without a key.
 
 use std::net::IpAddr;
 
 use super::args::NetworkArgs;
 
-/// A warning for each of them.
+/// Returns a warning for each such address.
 pub(super) fn open_addresses(args: &NetworkArgs) -> Vec<String> {
     let NetworkArgs { listen, connect, network_key, udp } = args;
     let has_no_key = network_key.is_none();

@@ -1,4 +1,4 @@
-//! What `elbowroom live` has to do with ROS 2.
+//! The ROS 2 options of `elbowroom live`.
 
 use std::sync::Arc;
 use std::sync::mpsc::RecvTimeoutError;
@@ -12,7 +12,7 @@ use super::LiveArgs;
 use super::stop_signal::stop_signal;
 use crate::output::{ExitStatus, Failure, note};
 
-/// The settings of a call; where it has none, those of the environment count, as for every program of ROS 2.
+/// Reads the settings from the options; for a missing option, from the environment variables of ROS 2.
 pub(super) fn ros2_settings(args: &LiveArgs) -> Result<Ros2Settings, Failure> {
     if !(args.ros2.publish || !args.ros2.robot.is_empty() || args.ros2.watchdog.is_some()) {
         return Ok(Ros2Settings::default());
@@ -40,7 +40,7 @@ pub(super) fn ros2_settings(args: &LiveArgs) -> Result<Ros2Settings, Failure> {
     })
 }
 
-/// Watches until Ctrl-C, or for the time of the call.
+/// Runs the watchdog until Ctrl-C, or for the time given by the options.
 pub(super) fn run_watchdog(
     cell: &Cell,
     settings: &Ros2Settings,
@@ -57,7 +57,7 @@ pub(super) fn run_watchdog(
         None => stop.recv().map_err(|_| RecvTimeoutError::Disconnected),
     };
     drop(watchdog);
-    // Asked to end, or the time is over.
+    // The process was asked to end, or the time is over.
     match ended {
         Ok(()) | Err(RecvTimeoutError::Timeout) => Ok(ExitStatus::Success),
         Err(RecvTimeoutError::Disconnected) => Err(Failure::Wrong("Ctrl-C is not handled any more".into())),

@@ -18,7 +18,7 @@ use super::ros2::{ros2_settings, run_watchdog};
 use super::stop_signal::stop_signal;
 use crate::output::{ExitStatus, Failure, note};
 
-/// How often the process looks whether it has to end.
+/// Interval between checks whether the process has to end.
 const POLL: Duration = Duration::from_millis(200);
 
 pub(crate) fn live(args: &LiveArgs) -> Result<ExitStatus, Failure> {
@@ -95,8 +95,8 @@ fn control(args: &LiveArgs) -> Result<Option<ControlOptions>, Failure> {
     Ok(Some(ControlOptions { endpoint, tokens, log: None, program_switches: args.program_switches }))
 }
 
-/// Starts this program again in its place, with the threads of Zenoh that wake the fewest for a message. Zenoh reads the variable
-/// once, at its start; one that is set already is kept.
+/// Replaces this process by a new start of the program with the Zenoh thread settings that cause the fewest wake-ups per
+/// message. Zenoh reads the variable once, at its start; an existing value is kept.
 #[cfg(unix)]
 fn with_few_threads() {
     use std::os::unix::process::CommandExt;
@@ -104,7 +104,7 @@ fn with_few_threads() {
         && let Ok(program) = std::env::current_exe()
     {
         let arguments = std::env::args_os().skip(1);
-        // Returns only where it fails: then Zenoh's own threads will do.
+        // Returns only on failure; the process then keeps Zenoh's default threads.
         let _ = std::process::Command::new(program).args(arguments).env("ZENOH_RUNTIME", ZENOH_RUNTIME).exec();
     }
 }

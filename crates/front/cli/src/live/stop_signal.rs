@@ -4,7 +4,7 @@ use std::sync::mpsc::{self, Receiver};
 
 use crate::output::Failure;
 
-/// A message when the process is asked to end.
+/// Returns a receiver that gets a message when the process is asked to end.
 pub(super) fn stop_signal() -> Result<Receiver<()>, Failure> {
     let (stop, stopped) = mpsc::channel();
     // The receiver is gone only when the process ends.

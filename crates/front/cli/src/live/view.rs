@@ -1,4 +1,4 @@
-//! `elbowroom view`: the cell in a browser, its robots moved by hand.
+//! `elbowroom view`: the cell in a browser, with robots moved by hand.
 
 use elbowroom::cell::Cell;
 use elbowroom::view::{Server, ServerSettings};

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-/// A file of planning problems and the robot that it is for.
+/// A file of planning problems and its robot.
 #[derive(Debug, Args)]
 pub(crate) struct ProblemArgs {
     /// The robot of --problems: a URDF

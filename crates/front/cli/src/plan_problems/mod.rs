@@ -36,7 +36,7 @@ pub(crate) fn run(urdf: &Path, file: &Path, args: &PlanArgs) -> Result<ExitStatu
     let progress = Progress::of(problems.len(), "problems");
     let (mut done, mut unsolved) = (0, 0);
     let mut written = Ok(());
-    // The planner; another one takes its place here.
+    // To test another planner, replace this engine.
     let mut engine = CoverRrtConnectEngine::default();
     let results = run_problems(&model, &problems, &settings, &mut engine, &mut |result, motion| {
         done += 1;
@@ -69,7 +69,7 @@ fn settings(args: &PlanArgs) -> Result<ProblemSettings, Failure> {
     })
 }
 
-/// Joints without a speed: no path can be timed. That is an error where timed paths are to be written.
+/// Checks that all joints have a speed: otherwise paths cannot be timed, an error if timed paths are to be written.
 fn check_speeds(urdf: &Path, model: &ProblemModel, args: &PlanArgs) -> Result<(), Failure> {
     if model.joints_without_speed.is_empty() {
         return Ok(());

@@ -9,7 +9,7 @@ use elbowroom::analysis::problems::ProblemResult;
 use crate::output::{Failure, cannot_write};
 use crate::output_file::write_file;
 
-/// Longer names are cut: file systems allow 255 bytes.
+/// Longest name; longer names are cut, as file systems allow 255 bytes.
 const MAX_CHARS: usize = 100;
 
 /// A folder of timed paths.
@@ -32,7 +32,7 @@ impl PathFiles {
         write_file(&path, |out| motion.write_csv(joints, out))
     }
 
-    /// `SET-ID.csv`. Characters that could lead to another folder become `_`; a name that was given gets a number.
+    /// Returns `SET-ID.csv`. Characters that could lead to another folder become `_`; a name already used gets a number.
     fn unused_name(&mut self, set: &str, id: &str) -> String {
         let safe = |text: &str| -> String {
             let allowed = |c: char| if c.is_alphanumeric() || "._-+ ".contains(c) { c } else { '_' };

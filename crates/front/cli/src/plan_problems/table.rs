@@ -4,12 +4,12 @@ use std::fmt::Write;
 
 use elbowroom::analysis::problems::{ProblemResult, ProblemSummary, SetSummary, Statistics};
 
-/// Problems without a path that are listed.
+/// Most problems without a path in the list.
 const MAX_LISTED: usize = 12;
-/// Terminals from this width on get the wide table.
+/// Least terminal width, in columns, for the wide table.
 const WIDE: usize = 100;
 
-/// A row per set and one for all, then the problems without a path.
+/// Formats a row per set and one for all sets, then the problems without a path.
 pub(super) fn text(summary: &ProblemSummary, results: &[ProblemResult], width: usize) -> String {
     let columns = columns(width >= WIDE);
     let fixed: usize = columns.iter().map(|c| c.width).sum();
@@ -41,7 +41,7 @@ struct Column {
     value: fn(&SetSummary) -> String,
 }
 
-/// The columns. The narrow table lacks the totals, the mean and the raw lengths.
+/// Returns the columns. The narrow table omits the totals, the mean and the raw lengths.
 fn columns(wide: bool) -> Vec<Column> {
     let column = |heading, width, value| Column { heading, width, value };
     let all = vec![
@@ -69,7 +69,7 @@ fn number(of: Option<f64>) -> String {
     of.map_or_else(|| "-".into(), |v| format!("{v:.2}"))
 }
 
-/// The first problems of a kind, with the reason.
+/// Lists the first problems of a kind, each with its reason.
 fn list(out: &mut String, heading: &str, results: &[ProblemResult], is: &dyn Fn(&ProblemResult) -> bool) {
     let listed: Vec<&ProblemResult> = results.iter().filter(|r| is(r)).collect();
     if listed.is_empty() {

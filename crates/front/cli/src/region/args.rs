@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand, ValueEnum};
 use elbowroom::monitor::AccessClass;
 
-/// Verbs of sealed cells (docs/roles.md).
+/// Commands for sealed cells (docs/roles.md).
 #[derive(Debug, Subcommand)]
 pub(crate) enum RegionCommand {
     /// Add regions: tables [region.NAME] from a file, or from standard input

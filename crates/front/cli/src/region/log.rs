@@ -50,7 +50,7 @@ fn name(history: &History, entry: &LogEntry) -> String {
     history.trusted.get(&entry.key).map(|k| k.name.clone()).unwrap_or_default()
 }
 
-/// An entry as text.
+/// Formats an entry as text.
 pub(super) fn entry(e: &LogEntry, name: &str) -> String {
     let mut text = format!("{:>4}  {}  {} ({}, key {}): {}", e.sequence, e.time, name, e.class, e.key, e.action);
     if let Some(note) = &e.note {

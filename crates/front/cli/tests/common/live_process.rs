@@ -1,11 +1,11 @@
-//! `elbowroom live` as a process.
+//! Process of `elbowroom live`.
 
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 
 use super::command;
 
-/// `elbowroom live` with two robots that share a region, without what the environment says of ROS 2.
+/// Makes the command of `elbowroom live` with two robots that share a region, without the environment variables of ROS 2.
 pub fn live(arguments: &[&str]) -> Command {
     let mut command = command(Path::new("."), &["live"]);
     command.arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/live_cell.toml")).args(arguments);
@@ -17,7 +17,7 @@ pub fn live(arguments: &[&str]) -> Command {
 pub struct LiveProcess(pub Child);
 
 impl LiveProcess {
-    /// Starts [`live`]. However a test ends, the process ends by itself.
+    /// Starts [`live`]. The process always ends with the test.
     pub fn start(arguments: &[&str]) -> Self {
         Self(live(arguments).args(["--for", "100"]).spawn().expect("elbowroom starts"))
     }

@@ -11,7 +11,7 @@ use std::process::{Command, Output, Stdio};
 pub use elbowroom_testkit::folder::{examples, model};
 use serde_json::Value;
 
-/// How a call ended.
+/// Result of a call.
 pub struct Answer {
     pub status: i32,
     pub stdout: String,
@@ -27,7 +27,7 @@ impl Answer {
         self
     }
 
-    /// The one JSON document on standard output.
+    /// Parses the only JSON document on standard output.
     #[track_caller]
     pub fn json(&self) -> Value {
         serde_json::from_str(&self.stdout).unwrap_or_else(|e| panic!("{e}:\n{}", self.stdout))
@@ -41,12 +41,12 @@ pub fn command(dir: &Path, args: &[&str]) -> Command {
     command
 }
 
-/// `elbowroom args…` in `dir`.
+/// Runs `elbowroom args…` in `dir`.
 pub fn elbowroom(dir: &Path, args: &[&str]) -> Answer {
     answer(command(dir, args).output().unwrap())
 }
 
-/// `elbowroom args…` in `dir`, with this text on standard input.
+/// Runs `elbowroom args…` in `dir`, with this text on standard input.
 pub fn with_input(dir: &Path, args: &[&str], input: &str) -> Answer {
     let mut child =
         command(dir, args).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
@@ -63,14 +63,14 @@ pub fn answer(output: Output) -> Answer {
     }
 }
 
-/// Keys of an object, in the order of the document.
+/// Returns the keys of an object, in the order of the document.
 pub fn keys(v: &Value) -> Vec<&str> {
     let mut keys: Vec<&str> = v.as_object().expect("an object").keys().map(String::as_str).collect();
     keys.sort_unstable();
     keys
 }
 
-/// A small cell that runs in a moment: a DH arm with two joints that swings towards a post.
+/// A small cell with a short run: a DH arm with two joints that swings towards a post.
 pub const SWING: &str = r#"version = 1
 units = { length = "mm", angle = "deg" }
 
@@ -89,19 +89,19 @@ guards = ["tcp"]
 steps = [{ move = "joint", to = [90, 0], speed = 50 }]
 "#;
 
-/// A folder with [`SWING`] as `cell.toml`.
+/// Makes a folder with [`SWING`] as `cell.toml`.
 pub fn swing() -> tempfile::TempDir {
     with_cell(SWING)
 }
 
-/// A folder with this `cell.toml`.
+/// Makes a folder with this `cell.toml`.
 pub fn with_cell(text: &str) -> tempfile::TempDir {
     let dir = tempfile::tempdir().unwrap();
     std::fs::write(dir.path().join("cell.toml"), text).unwrap();
     dir
 }
 
-/// [`SWING`] with a solid, for regions that guard more than the TCP.
+/// Returns [`SWING`] with a solid, for regions that guard more than the TCP.
 pub fn solid_swing() -> String {
     let links = "links = [[], { capsule = { from = [0, 0, 0], to = [-300, 0, 0], radius = 40 } }]\n";
     SWING.replacen("\n[region", &format!("{links}\n[region"), 1)

@@ -1,17 +1,17 @@
-//! What stands behind each message: session, number, keyed hash.
+//! Seal at the end of each message: session, number, keyed hash.
 
 use std::fmt;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use elbowroom_cell::seal::NetworkKey;
 
-/// What the key is used for: hashes for anything else do not fit.
+/// Purpose of the derived key: hashes for another purpose do not match.
 const CONTEXT: &str = "elbowroom 2026 messages of a cell";
 
-/// Closes the messages of this process, and opens those of all others.
+/// Seals the messages of this process, and opens those of all others.
 pub(super) struct MessageSeal {
     key: [u8; blake3::KEY_LEN],
-    /// Known to nobody else, not even to those with the key.
+    /// Secret of this process, unknown even to other processes with the key.
     seed: [u8; blake3::KEY_LEN],
     session: u64,
     /// The number of the last message.
@@ -25,7 +25,7 @@ impl fmt::Debug for MessageSeal {
     }
 }
 
-/// A message that was written by somebody with the key.
+/// A message that was sealed by a process with the key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Opened<'b> {
     pub(super) contents: &'b [u8],
@@ -34,7 +34,7 @@ pub(super) struct Opened<'b> {
 }
 
 impl MessageSeal {
-    /// A start of a process with this key.
+    /// Starts a session of a process with this key.
     pub(super) fn new(key: &NetworkKey) -> std::io::Result<Self> {
         let key = blake3::derive_key(CONTEXT, key.as_bytes());
         let seed = *NetworkKey::generate()?.as_bytes();
@@ -42,14 +42,14 @@ impl MessageSeal {
         Ok(Self { session: seal.nonce(), ..seal })
     }
 
-    /// A number that was not there before and that nobody can know.
+    /// Returns a new number that nobody can predict.
     pub(super) fn nonce(&self) -> u64 {
         let count = self.nonces.fetch_add(1, Ordering::SeqCst);
         let hash = blake3::keyed_hash(&self.seed, &count.to_le_bytes());
         hash.as_bytes().first_chunk().map_or(count, |bytes| u64::from_le_bytes(*bytes))
     }
 
-    /// The start of this process.
+    /// Number of this process's session.
     pub(super) fn session(&self) -> u64 {
         self.session
     }
@@ -58,7 +58,7 @@ impl MessageSeal {
         self.number.load(Ordering::SeqCst)
     }
 
-    /// Replaces `out` by the message with these contents, for this key.
+    /// Replaces `out` by the sealed message with these contents, for publication under this key.
     pub(super) fn close(&self, key: &str, contents: &[u8], out: &mut Vec<u8>) {
         out.clear();
         out.extend_from_slice(contents);
@@ -69,7 +69,7 @@ impl MessageSeal {
         out.extend_from_slice(hash.as_bytes());
     }
 
-    /// `None` for a message that nobody with the cell's key has published under this key.
+    /// Opens a message; `None` unless a process with the cell's key has published it under this key.
     pub(super) fn open<'b>(&self, key: &str, bytes: &'b [u8]) -> Option<Opened<'b>> {
         let (closed, hash) = bytes.split_last_chunk::<{ blake3::OUT_LEN }>()?;
         // Compared in constant time.

@@ -1,9 +1,10 @@
-//! A network on which only those are heard who have the cell's key.
+//! Network that accepts only processes with the cell's key.
 //!
-//! Behind each message stand the session of the process that sent it, a number that rises with its messages, and a keyed hash
-//! (BLAKE3) of all this and of the key under which it is published: a message that was changed, or moved under another key, is
-//! refused. A message of a session that is known is refused unless its number is higher than the last one under this key; a
-//! session that is not known must prove first that it runs now. So nothing is heard twice, and nothing that was recorded.
+//! Each message ends with the session of its sender, a number that increases with the sender's messages, and a keyed
+//! hash (BLAKE3) of these, of the contents, and of the key under which it is published: a message that was changed, or
+//! moved under another key, is refused. A message of a known session is refused unless its number is higher than the
+//! last one under this key; an unknown session must first prove that it runs now. So a message is never accepted twice,
+//! and a recorded one never at all.
 
 mod message_seal;
 mod proofs;
@@ -23,7 +24,7 @@ use proofs::Proofs;
 use refusals::Refusals;
 use sessions::{Sessions, Standing};
 
-/// A network on which only those are heard who have the cell's key.
+/// A network that accepts only processes with the cell's key.
 ///
 /// ```
 /// use std::sync::{Arc, Mutex};
@@ -49,7 +50,7 @@ pub struct AuthenticatedNetwork {
     _proofs: [Subscription; 2],
 }
 
-/// What all keys of this process share.
+/// State that all keys of this process share.
 #[derive(Debug)]
 struct Process {
     seal: MessageSeal,
@@ -60,8 +61,10 @@ struct Process {
 }
 
 impl AuthenticatedNetwork {
-    /// A process with this key. Sessions prove themselves under keys that begin with `prefix`, which must be the same for all
-    /// processes of the cell. Messages that are refused are reported to `on_event`, every ten seconds at most.
+    /// Joins a network with this key.
+    ///
+    /// Sessions prove themselves under keys that begin with `prefix`, which must be the same for all processes of the
+    /// cell. Refused messages are reported to `on_event`, at most every ten seconds.
     ///
     /// # Errors
     /// [`NetworkError`]: keys with this prefix are not accepted, or the network is closed.
@@ -95,7 +98,7 @@ impl Process {
         }
     }
 
-    /// The contents of a message that is to be heard. `heard` has the last number of each session under this key.
+    /// Returns the contents of a message if it is accepted. `heard` has the last number of each session under this key.
     fn admit<'b>(&self, key: &str, bytes: &'b [u8], heard: &Mutex<HashMap<u64, u64>>) -> Option<&'b [u8]> {
         let Some(message) = self.seal.open(key, bytes) else {
             self.refusals.count(key);
@@ -128,7 +131,8 @@ impl Network for AuthenticatedNetwork {
 
     fn subscribe(&self, key: &str, handler: Handler) -> Result<Subscription, NetworkError> {
         let (process, own_key) = (self.process.clone(), key.to_owned());
-        // What was sent before is not heard: this process goes on from its last number, and the others prove themselves anew.
+        // Messages sent before are not accepted: this process continues from its last number, and the others must prove
+        // themselves again.
         let heard = Mutex::new(HashMap::from([(process.seal.session(), process.seal.last_number())]));
         let others = self.process.clone();
         let handler = move |bytes: &[u8]| {

@@ -1,15 +1,15 @@
-//! A process that runs now can repeat a number that nobody knew before; a recording cannot.
+//! Proof that a session runs now: it repeats an unpredictable number, which a recording cannot.
 
 use std::sync::{Mutex, PoisonError};
 
 use super::message_seal::MessageSeal;
 use crate::network::{Network, NetworkError, Publisher, Urgency};
 
-/// Asks other sessions, and answers them.
+/// Asks other sessions for proofs, and answers their questions.
 pub(super) struct Proofs {
     question_key: String,
     answer_key: String,
-    // Apart: while one process asks it may be asked.
+    // Separate channels: a process may be asked while it asks.
     questions: Mutex<Channel>,
     answers: Mutex<Channel>,
 }
@@ -20,12 +20,12 @@ impl std::fmt::Debug for Proofs {
     }
 }
 
-/// A session has repeated a number.
+/// The answer of a session that has repeated a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Proof {
     pub(super) session: u64,
     pub(super) nonce: u64,
-    /// The number of the message: what is to be heard has a higher one.
+    /// Number of the answer's message; accepted messages have higher numbers.
     pub(super) after: u64,
 }
 
@@ -34,12 +34,12 @@ struct Channel {
     bytes: Vec<u8>,
 }
 
-/// The key under which sessions are asked for proofs.
+/// Key of the questions for proofs.
 pub(super) fn question_key(prefix: &str) -> String {
     format!("{prefix}/proof/question")
 }
 
-/// The key of their answers.
+/// Key of the answers.
 pub(super) fn answer_key(prefix: &str) -> String {
     format!("{prefix}/proof/answer")
 }
@@ -59,7 +59,7 @@ impl Proofs {
         send(&self.questions, seal, &self.question_key, session, nonce);
     }
 
-    /// Repeats the number of a question for this process.
+    /// Answers a question to this process by repeating its number.
     pub(super) fn reply(&self, seal: &MessageSeal, bytes: &[u8]) {
         let Some(question) = seal.open(&self.question_key, bytes) else { return };
         match words(question.contents) {
@@ -70,7 +70,7 @@ impl Proofs {
         }
     }
 
-    /// An answer for this process.
+    /// Reads an answer to this process.
     pub(super) fn open(&self, seal: &MessageSeal, bytes: &[u8]) -> Option<Proof> {
         let answer = seal.open(&self.answer_key, bytes)?;
         let (session, nonce) = words(answer.contents)?;

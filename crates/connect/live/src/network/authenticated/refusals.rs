@@ -1,11 +1,11 @@
-//! Messages without the cell's key: counted, and reported now and then.
+//! Counter of messages without the cell's key, which are reported from time to time.
 
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use crate::event_handler::EventHandler;
 
-/// Refused messages are reported this often at most.
+/// Shortest time between two reports of refused messages.
 const PERIOD: Duration = Duration::from_secs(10);
 
 pub(super) struct Refusals {
@@ -15,7 +15,7 @@ pub(super) struct Refusals {
 
 #[derive(Default)]
 struct State {
-    /// Since the last report.
+    /// Refused messages since the last report.
     count: u64,
     reported: Option<Instant>,
 }

@@ -1,24 +1,25 @@
-//! The starts of other processes, and which of them have proved that they run now.
+//! Sessions of other processes, and their proofs that they run now.
 
 use std::collections::HashMap;
 use std::time::Duration;
 
 use super::proofs::Proof;
 
-/// A session that has not answered is asked again after this time, for the same number: its answer may be on its way.
+/// Time after which a session without an answer is asked again, for the same number: its answer may be on its way.
 const ASK_AGAIN: Duration = Duration::from_millis(50);
-/// An answer counts for so long after the number was first asked for: one that is held back proves nothing of now.
+/// Time for which an answer is valid after its number was first asked for: a delayed answer does not prove that the
+/// session runs now.
 const ANSWERS: Duration = Duration::from_millis(500);
-/// A session proves itself again and again after this time, so that nothing is heard that was held back for long.
+/// Time after which a session must prove itself again, so that messages that were held back for long are not accepted.
 const RENEW: Duration = Duration::from_millis(400);
-/// One that has not proved itself for this long is not heard.
+/// Time after which a session without a new proof is no longer accepted.
 const EXPIRES: Duration = Duration::from_millis(1500);
-/// A session of which nothing was heard for this long is forgotten where there are many.
+/// Time without a message after which a session is forgotten, if there are many sessions.
 const FORGOTTEN: Duration = Duration::from_secs(3);
-/// More sessions than this are not remembered: recordings of many starts cannot fill the memory.
+/// Most sessions that are remembered: recordings of many starts cannot fill the memory.
 const MAX_SESSIONS: usize = 256;
 
-/// What is known of other processes. All times are by one clock, which goes on while the computer sleeps.
+/// Known sessions of other processes. All times are on one clock, which continues while the computer sleeps.
 #[derive(Debug, Default)]
 pub(super) struct Sessions {
     known: HashMap<u64, Session>,
@@ -31,7 +32,7 @@ struct Session {
     heard: Duration,
 }
 
-/// A session was asked to repeat a number.
+/// A question to a session: repeat a number.
 #[derive(Debug, Clone, Copy)]
 struct Asked {
     nonce: u64,
@@ -39,27 +40,27 @@ struct Asked {
     last: Duration,
 }
 
-/// A session has proved itself.
+/// A proof of a session.
 #[derive(Debug, Clone, Copy)]
 struct Proved {
     at: Duration,
-    /// The number of its message then.
+    /// Number of the message with the proof.
     number: u64,
-    /// The same of the proof before: what was sent after that one may still be on its way.
+    /// Number of the message with the previous proof: messages sent after it may still be on their way.
     number_before: u64,
 }
 
-/// How a session stands.
+/// State of a session.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Standing {
-    /// It runs: its messages with higher numbers are heard.
+    /// Messages with higher numbers are accepted; `None` if the session has no valid proof.
     pub(super) heard_after: Option<u64>,
-    /// It is to be asked to repeat this number.
+    /// The number that the session is to be asked to repeat.
     pub(super) ask: Option<u64>,
 }
 
 impl Sessions {
-    /// How a session stands of which a message has come. `nonce` gives a number that nobody knows.
+    /// Returns the state of a session from which a message has arrived. `nonce` makes an unpredictable number.
     pub(super) fn standing(&mut self, session: u64, now: Duration, nonce: impl FnOnce() -> u64) -> Standing {
         let Some(known) = self.entry(session, now) else { return Standing { heard_after: None, ask: None } };
         known.heard = now;
@@ -84,7 +85,7 @@ impl Sessions {
         has_room.then(|| self.known.entry(session).or_insert(Session { asked: None, proved: None, heard: now }))
     }
 
-    /// A session has answered.
+    /// Records a proof, if it answers the present question.
     pub(super) fn prove(&mut self, proof: &Proof, now: Duration) {
         let Some(known) = self.known.get_mut(&proof.session) else { return };
         let is_answer = |asked: Asked| asked.nonce == proof.nonce && now.saturating_sub(asked.first) < ANSWERS;
@@ -95,7 +96,7 @@ impl Sessions {
         }
     }
 
-    /// All must prove themselves anew.
+    /// Forgets all sessions: they must prove themselves again.
     pub(super) fn forget(&mut self) {
         self.known.clear();
     }
@@ -113,21 +114,22 @@ mod tests {
         let at = |ms: u64| start + Duration::from_millis(ms);
         let proof = |nonce: u64, after: u64| Proof { session: OTHER, nonce, after };
         assert_eq!(sessions.standing(OTHER, at(0), || 41), Standing { heard_after: None, ask: Some(41) });
-        // Asked again for the same number: the answer takes longer than the time until then.
+        // Not asked again at once; later asked for the same number, as the answer takes longer.
         assert_eq!(sessions.standing(OTHER, at(10), || 42), Standing { heard_after: None, ask: None });
         assert_eq!(sessions.standing(OTHER, at(60), || 42), Standing { heard_after: None, ask: Some(41) });
         sessions.prove(&proof(40, 100), at(70));
         assert_eq!(sessions.standing(OTHER, at(80), || 42).heard_after, None, "another number");
         sessions.prove(&proof(41, 100), at(100));
         assert_eq!(sessions.standing(OTHER, at(110), || 43), Standing { heard_after: Some(100), ask: None });
-        // It proves itself again; what was sent between the last two proofs may be on its way, what was before is refused.
+        // The session proves itself again; messages sent between the last two proofs may be on their way, earlier ones
+        // are refused.
         for round in 0..10_u64 {
             let now = 600 + 500 * round;
             let expected = Standing { heard_after: Some(100 + 50 * round.saturating_sub(1)), ask: Some(50 + round) };
             assert_eq!(sessions.standing(OTHER, at(now), || 50 + round), expected, "round {round}");
             sessions.prove(&proof(50 + round, 150 + 50 * round), at(now + 1));
         }
-        // No proof any more, though old messages come: they count no longer than that.
+        // Without further proofs, messages of the session are accepted only until EXPIRES, though old ones still arrive.
         let last = 600 + 500 * 9;
         assert!(sessions.standing(OTHER, at(last + 1400), || 99).heard_after.is_some());
         assert_eq!(sessions.standing(OTHER, at(last + 1600), || 99).heard_after, None);

@@ -1,4 +1,4 @@
-//! Bytes, hashes, keys, tokens and attachments as `natnet_zenoh` writes them: a label and a text per line.
+//! Writes bytes, hashes, keys, tokens and attachments as `natnet_zenoh` makes them: a label and a text per line.
 
 use natnet_zenoh::ros::attachment::Attachment;
 use natnet_zenoh::ros::liveliness::{Entity, EntityKind, NodeInfo, TopicInfo};
@@ -11,7 +11,7 @@ use natnet_zenoh::ros::msgs::visualization_msgs::{Marker, MarkerArray};
 use natnet_zenoh::ros::{Gid, Message, QosProfile};
 
 natnet_zenoh::ros_message! {
-    /// Not in the crate: declared with its macro.
+    /// Missing in the crate, so declared with its macro.
     pub struct JointState("sensor_msgs/msg/JointState") {
         /// Header.
         pub header: Header,
@@ -27,7 +27,7 @@ natnet_zenoh::ros_message! {
 }
 
 natnet_zenoh::ros_message! {
-    /// Not in the crate: declared with its macro.
+    /// Missing in the crate, so declared with its macro.
     pub struct JointTrajectoryPoint("trajectory_msgs/msg/JointTrajectoryPoint") {
         /// Positions.
         pub positions: Vec<f64>,
@@ -43,7 +43,7 @@ natnet_zenoh::ros_message! {
 }
 
 natnet_zenoh::ros_message! {
-    /// Not in the crate: declared with its macro.
+    /// Missing in the crate, so declared with its macro.
     pub struct SpeedScalingFactor("control_msgs/msg/SpeedScalingFactor") {
         /// Factor.
         pub factor: f64,
@@ -87,7 +87,7 @@ fn messages() {
     marker.colors = vec![color(1.0, 0.0, 0.0, 0.0); 2];
     marker.text = "60 mm".into();
     marker.mesh_file.data = vec![1, 2, 3];
-    // Theirs is a valid rotation by default, ours all zeros: both are written out.
+    // The default rotation of `natnet_zenoh` is the identity, that of elbowroom is all zeros, so both are written out.
     let mut empty = Marker::default();
     empty.pose.orientation = Quaternion { x: 0.0, y: 0.0, z: 0.0, w: 0.0 };
     line("markers", &MarkerArray { markers: vec![marker.clone(), empty, marker] });
