@@ -1,11 +1,12 @@
 //! Planner of problem sets with a limit of configurations instead of time.
 
+use elbowroom_kinematics::JointLimits;
 use std::time::Duration;
 
 use elbowroom_analysis::problems::{PlanningEngine, ProblemScene, ProblemSettings, Solution};
 use elbowroom_planner::{
-    CoverModel, CoverObstacles, CoverRrtConnect, KinematicLimits, PlannedPath, RrtConnect, RrtConnectError,
-    RrtConnectSettings, TimedMotion,
+    CoverModel, CoverObstacles, CoverRrtConnect, PlannedPath, RrtConnect, RrtConnectError, RrtConnectSettings,
+    TimedMotion,
 };
 use elbowroom_robot::RobotId;
 
@@ -72,7 +73,7 @@ impl PlanningEngine for BoundedEngine {
         &mut self,
         problem: &ProblemScene,
         path: &PlannedPath,
-        limits: &KinematicLimits,
+        limits: &[JointLimits],
         settings: &ProblemSettings,
     ) -> Result<TimedMotion, RrtConnectError> {
         let mut exact = exact(problem)?;

@@ -1,11 +1,12 @@
 //! Paths on the joint-space map of the planner's example arm.
 
+use elbowroom_kinematics::JointLimits;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use elbowroom_cspace::{ConvexObstacle, Grid, JointMap};
-use elbowroom_planner::{GridPlanner, GridPlannerSettings, KinematicLimits, example};
+use elbowroom_planner::{GridPlanner, GridPlannerSettings, example};
 use elbowroom_testkit::random::SplitMix;
 
 use super::course::{Course, along};
@@ -25,11 +26,7 @@ pub fn course(folder: &Path, name: &str, obstacles: &[ConvexObstacle], pairs: us
     let mut map = JointMap::new(example::ARM, &grid).map_err(text)?;
     map.set_fixed(obstacles);
     let mut planner = GridPlanner::new(&grid, map.occupancy()).map_err(text)?;
-    let limits = KinematicLimits {
-        velocity: vec![1.5, 1.5, 2.0],
-        acceleration: vec![3.0, 3.0, 5.0],
-        jerk: vec![30.0, 30.0, 50.0],
-    };
+    let limits = [[1.5, 3.0, 30.0], [1.5, 3.0, 30.0], [2.0, 5.0, 50.0]].map(|[v, a, j]| JointLimits::new(v, a, j));
     let mut course = Course::new(name, urdf(folder, &grid)?, scene);
     let mut random = SplitMix(1);
     while course.asked < pairs {

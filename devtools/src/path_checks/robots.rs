@@ -1,10 +1,9 @@
 //! Paths of real robots among boxes.
 
+use elbowroom_kinematics::JointLimits;
 use std::time::{Duration, Instant};
 
-use elbowroom_planner::{
-    CoverModel, CoverObstacles, CoverRrtConnect, KinematicLimits, RrtConnect, RrtConnectError, RrtConnectSettings,
-};
+use elbowroom_planner::{CoverModel, CoverObstacles, CoverRrtConnect, RrtConnect, RrtConnectError, RrtConnectSettings};
 use elbowroom_proximity::{Cuboid, Shape};
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{Checker, CheckerOptions, Object, Scene, SceneState};
@@ -38,12 +37,8 @@ pub fn course(files: &Files, pairs: usize) -> Result<Course, String> {
     let robot = world::load(files, true)?;
     let size = ROBOTS.iter().find(|known| known.0 == files.name).map_or(1.0, |known| known.1);
     let speed = |i: usize| robot.chain.joints()[robot.chain.active_joints()[i].0].limits.velocity.unwrap_or(1.0);
-    let velocity: Vec<f64> = (0..robot.chain.dof()).map(speed).collect();
-    let limits = KinematicLimits {
-        acceleration: velocity.iter().map(|v| 4.0 * v).collect(),
-        jerk: velocity.iter().map(|v| 40.0 * v).collect(),
-        velocity,
-    };
+    let limits = |speed: f64| JointLimits::new(speed, 4.0 * speed, 40.0 * speed);
+    let limits: Vec<JointLimits> = (0..robot.chain.dof()).map(speed).map(limits).collect();
     let scene = world::scene(&files.name, robot, around(size))?;
     let mut course = Course::new(&files.name, files.urdf.clone(), scene.clone());
     let (options, mut state) = (RrtConnectSettings::default(), SceneState::new(&scene));

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use elbowroom_avoidance::{AvoiderSettings, Rules};
 use elbowroom_formats::Warning;
-use elbowroom_kinematics::{ChainState, LinkId};
+use elbowroom_kinematics::{ChainState, JointLimits, LinkId};
 use elbowroom_monitor::{Laws, Part, Presence, Region, SourceLimits, Volume, VolumeModel, arm_volumes};
 use elbowroom_robot::{Collider, ObjectId, Robot, RobotId};
 use elbowroom_scene::{Object, PairRules};
@@ -139,19 +139,6 @@ pub struct CellRobot {
     pub volumes: VolumeModel,
     /// Motion limits per value of `q`.
     pub limits: Vec<JointLimits>,
-}
-
-/// Motion limits of a joint, in rad or m per s, s² and s³.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct JointLimits {
-    /// Largest speed.
-    pub velocity: f64,
-    /// Largest acceleration of a programmed move.
-    pub acceleration: f64,
-    /// Largest jerk of a programmed move.
-    pub jerk: f64,
-    /// Deceleration of the joint when the override falls.
-    pub stop: f64,
 }
 
 /// A region and the robots it guards against.

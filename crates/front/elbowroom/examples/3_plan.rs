@@ -16,7 +16,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let urdf = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../examples/models/ns16/ns16.urdf");
     let options = LoadOptions { srdf: Some(urdf.with_extension("srdf")), ..LoadOptions::default() };
     let arm = load_robot(&urdf, &options)?.robot;
-    let velocity: Vec<f64> = arm.chain.joints().iter().filter_map(|joint| joint.limits.velocity).collect();
+    let velocity = arm.chain.joints().iter().filter_map(|joint| joint.limits.velocity);
+    let limits: Vec<JointLimits> = velocity.map(|velocity| JointLimits::new(velocity, 6.0, 60.0)).collect();
 
     let mut builder = Scene::builder();
     let robot = builder.robot("arm", arm, Pose::IDENTITY);
@@ -57,8 +58,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
 
     // A corner is blended if the blend is proven free; a controller follows the samples.
-    let joints = velocity.len();
-    let limits = KinematicLimits { velocity, acceleration: vec![6.0; joints], jerk: vec![60.0; joints] };
     let motion = planner.time_parametrize(&state, &path, &limits, PERIOD_S, &settings)?;
     let samples = motion.samples(PERIOD_S)?;
     println!("takes {:.2} s, {} stops, {} samples", motion.seconds(), motion.stops(), samples.len());

@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use elbowroom_kinematics::JointLimits;
 use elbowroom_planner::{PathConstraint, RrtConnect, RrtConnectSettings};
 use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_scene::{Attachment, Scene, SceneError, SweepOptions};
@@ -12,9 +13,7 @@ use crate::escape_check::EscapeClearance;
 use crate::escape_search::{EscapeSearch, EscapeTick};
 use crate::escape_trajectory::EscapeStart;
 use crate::joint_command::JointCommand;
-use crate::joint_limit::{
-    JointLimit, arrival_speed, brake, distance_s, progress, speed_fraction, stop_s, update_bounds,
-};
+use crate::joint_limits::{arrival_speed, brake, distance_s, problem, progress, speed_fraction, stop_s, update_bounds};
 use crate::objective::Objective;
 use crate::path_rate::{PathState, approach_rate, is_path_held, path_rate};
 use crate::proximity_query::{ProximityQuery, ProximityRange};
@@ -58,7 +57,7 @@ pub struct Avoider<'s> {
     escapes: EscapeSearch<'s>,
     border: BorderQuery,
     reversals: ReversalLimiter,
-    limits: Vec<JointLimit>,
+    limits: Vec<JointLimits>,
     settings: AvoiderSettings,
     command: JointCommand,
     workspace: Workspace,
@@ -106,7 +105,7 @@ impl<'s> Avoider<'s> {
         scene: &'s Scene,
         robot: RobotId,
         q: &[f64],
-        limits: &[JointLimit],
+        limits: &[JointLimits],
         rules: Rules,
         settings: AvoiderSettings,
     ) -> Result<Self, AvoidanceError> {
@@ -118,11 +117,11 @@ impl<'s> Avoider<'s> {
         if limits.len() != n {
             return Err(AvoidanceError::Limits { given: limits.len(), joints: n });
         }
-        if let Some((joint, what)) = limits.iter().enumerate().find_map(|(j, l)| Some((j, l.problem()?))) {
+        if let Some((joint, what)) = limits.iter().enumerate().find_map(|(j, l)| Some((j, problem(l)?))) {
             return Err(AvoidanceError::Limit { joint, what });
         }
         let limits = limits.to_vec();
-        let speeds: Vec<f64> = limits.iter().map(|l| l.speed).collect();
+        let speeds: Vec<f64> = limits.iter().map(|l| l.velocity).collect();
         // A distance must not decrease faster than a stop allows.
         let mut settings = settings;
         settings.reactive.closing_s = settings.reactive.closing_s.max(stop_s(&limits, &speeds));
@@ -250,7 +249,7 @@ impl<'s> Avoider<'s> {
         let escaped = Instant::now();
         let reference_q = correction.is_reference.then_some(reference.q);
         self.command.advance(dt, &self.workspace.next, &self.limits, reference_q);
-        self.reversals.record(&self.command.qd, self.limits.iter().map(|l| l.speed), dt);
+        self.reversals.record(&self.command.qd, self.limits.iter().map(|l| l.velocity), dt);
         let times = StageTimes {
             sense: sensed - begin,
             correct: corrected - sensed,
@@ -340,7 +339,7 @@ impl<'s> Avoider<'s> {
     fn find_pairs(&mut self, dt: f64, obstacles: &DynamicObstacles<'_>) {
         let max_next = &mut self.workspace.max_next;
         for (max, (v, limit)) in max_next.iter_mut().zip(self.command.qd.iter().zip(&self.limits)) {
-            *max = (v.abs() + limit.stop * dt).min(limit.speed);
+            *max = (v.abs() + limit.stop * dt).min(limit.velocity);
         }
         let ahead_s = 2.0 * dt + 0.5 * stop_s(&self.limits, max_next);
         // Fixed obstacles matter within a stop from the fastest next command and within the range of an evasion.
@@ -461,7 +460,7 @@ impl<'s> Avoider<'s> {
             }
             Objective::Return { gently } => {
                 let remaining_s = distance_s(reference.q, &self.command.q, &self.limits);
-                let rise_s = self.limits.iter().map(|l| l.speed / l.acceleration).fold(0.0, f64::max);
+                let rise_s = self.limits.iter().map(|l| l.velocity / l.acceleration).fold(0.0, f64::max);
                 let gentle = if gently { remaining_s / GENTLE_RETURN_S } else { f64::INFINITY };
                 let speed = arrival_speed(remaining_s, rise_s).min(most).min(gentle);
                 let rate = if remaining_s > 0.0 { (speed / remaining_s).min(1.0 / dt) } else { 0.0 };

@@ -1,6 +1,8 @@
 //! A planned detour that the robot follows.
 
-use crate::joint_limit::{JointLimit, arrival_speed, distance_s, speed_fraction};
+use elbowroom_kinematics::JointLimits;
+
+use crate::joint_limits::{arrival_speed, distance_s, speed_fraction};
 use crate::reversal_limiter::ReversalLimiter;
 
 /// Distance up to which two configurations count as equal, in seconds of joint motion at full speed.
@@ -13,7 +15,7 @@ pub(crate) struct JointState<'a> {
     pub(crate) q: &'a [f64],
     /// Joint velocities, rad/s or m/s.
     pub(crate) qd: &'a [f64],
-    pub(crate) limits: &'a [JointLimit],
+    pub(crate) limits: &'a [JointLimits],
 }
 
 /// The remaining waypoints of a detour: straight motions from waypoint to waypoint, with a stop at each.
@@ -58,8 +60,8 @@ impl Detour {
         let JointState { q, qd, limits } = *now;
         // After braking it continues from the remaining speed.
         self.speed = self.speed.min(speed_fraction(qd, limits));
-        let longest = |f: fn(&JointLimit) -> f64| limits.iter().map(f).fold(0.0, f64::max);
-        let (rise_s, stop_s) = (longest(|l| l.speed / l.acceleration), longest(|l| l.speed / l.stop));
+        let longest = |f: fn(&JointLimits) -> f64| limits.iter().map(f).fold(0.0, f64::max);
+        let (rise_s, stop_s) = (longest(|l| l.velocity / l.acceleration), longest(|l| l.velocity / l.stop));
         out.fill(0.0);
         while let Some(waypoint) = self.waypoints.last() {
             let remaining_s = distance_s(waypoint, q, limits);
@@ -93,7 +95,7 @@ mod tests {
 
     #[test]
     fn after_braking_it_continues_from_the_remaining_speed() {
-        let limits = [JointLimit { lower: -9.0, upper: 9.0, speed: 2.0, acceleration: 8.0, stop: 20.0 }; 2];
+        let limits = [JointLimits::new(2.0, 8.0, f64::INFINITY).within(-9.0, 9.0).stopping_at(20.0); 2];
         let (reversals, dt) = (ReversalLimiter::new(2, 0.25), 0.004);
         let mut detour = Detour::new(vec![vec![0.0, 0.0], vec![1.0, -0.5], vec![1.5, 0.5]], true);
         let (mut q, mut qd) = ([0.0, 0.0], [0.0, 0.0]);
@@ -103,7 +105,7 @@ mod tests {
             detour.follow(dt, 0.5, &JointState { q: &q, qd: &qd, limits: &limits }, &reversals, &mut next);
             // The robot brakes from time to time.
             if (20..24).contains(&(ticks % 50)) {
-                crate::joint_limit::brake(&limits, &[[-9.0, 9.0]; 2], &qd, dt, &mut next);
+                crate::joint_limits::brake(&limits, &[[-9.0, 9.0]; 2], &qd, dt, &mut next);
             }
             for j in 0..2 {
                 let rate = (next[j] - qd[j]) / dt;

@@ -38,7 +38,7 @@ pub enum AvoidanceError {
         what: LimitProblem,
     },
     /// The number of limits differs from the number of joints.
-    #[error("{given} limits for {joints} joints: give one per independent joint, `JointLimit::of` makes them")]
+    #[error("{given} limits for {joints} joints: give one per independent joint, `JointLimits::of_chain` makes them")]
     Limits {
         /// Number of given limits.
         given: usize,

@@ -423,7 +423,7 @@ impl<'s> EscapeSearch<'s> {
     fn update_point(&mut self, tick: &EscapeTick<'_>, hit: &PredictedHit) {
         let robot = &self.scene.robots()[self.robot.0];
         let in_root = robot.base_in_world.inverse_transform_point(hit.point);
-        let speeds = tick.start.limits.iter().map(|limit| limit.speed);
+        let speeds = tick.start.limits.iter().map(|limit| limit.velocity);
         self.point.update(&robot.robot.chain, |q| self.stop.q_at(hit.time_s, q), (hit.link, in_root), speeds);
     }
 

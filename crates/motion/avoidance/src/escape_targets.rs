@@ -3,7 +3,7 @@
 use elbowroom_spatial::Vec3;
 
 use crate::escape_trajectory::EscapeStart;
-use crate::joint_limit::JointLimit;
+use elbowroom_kinematics::JointLimits;
 
 /// Number of targets of a round: structured ones first, then random ones. The random ones differ from round to round.
 pub(crate) const ROUND: usize = 50;
@@ -58,12 +58,12 @@ pub(crate) fn target(
             out.copy_from_slice(rest_q);
             let sign = if n.is_multiple_of(2) { 1.0 } else { -1.0 };
             let (joint, size) = ((n / 2) % joints, SIZES_S[n / (2 * joints)]);
-            out[joint] += sign * size * start.limits[joint].speed;
+            out[joint] += sign * size * start.limits[joint].velocity;
         }
         n => {
             let size = SIZES_S[n % SIZES_S.len()];
             for (j, out) in out.iter_mut().enumerate() {
-                *out = rest_q[j] + (2.0 * quasi_random(round * ROUND + n, j) - 1.0) * size * start.limits[j].speed;
+                *out = rest_q[j] + (2.0 * quasi_random(round * ROUND + n, j) - 1.0) * size * start.limits[j].velocity;
             }
         }
     }
@@ -100,14 +100,14 @@ fn toward(
     direction: Vec3,
     size_s: f64,
     rest_q: &[f64],
-    limits: &[JointLimit],
+    limits: &[JointLimits],
     directions: &EscapeDirections<'_>,
     out: &mut [f64],
 ) {
     let shares = || directions.point.iter().map(|p| p.dot(direction));
     let largest = shares().map(f64::abs).fold(f64::MIN_POSITIVE, f64::max);
     for (j, share) in shares().enumerate() {
-        out[j] = rest_q[j] + share / largest * size_s * limits[j].speed;
+        out[j] = rest_q[j] + share / largest * size_s * limits[j].velocity;
     }
 }
 
@@ -126,7 +126,7 @@ mod tests {
 
     #[test]
     fn a_round_holds_homes_structured_and_random_targets_within_the_limits() {
-        let limits = [JointLimit { lower: -2.0, upper: 1.5, speed: 2.0, acceleration: 8.0, stop: 20.0 }; 6];
+        let limits = [JointLimits::new(2.0, 8.0, f64::INFINITY).within(-2.0, 1.5).stopping_at(20.0); 6];
         let (q, qd, home) = ([0.3; 6], [0.0; 6], [-0.7; 6]);
         let reversals = ReversalLimiter::new(6, 0.25);
         let start = EscapeStart { q: &q, qd: &qd, limits: &limits, speed_share: 1.0, reversals: &reversals };

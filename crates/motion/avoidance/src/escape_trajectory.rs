@@ -1,6 +1,8 @@
 //! An escape: every joint moves to its target in the least time, then rests.
 
-use crate::joint_limit::{JointLimit, stop_s};
+use elbowroom_kinematics::JointLimits;
+
+use crate::joint_limits::stop_s;
 use crate::joint_profile::JointProfile;
 use crate::reversal_limiter::ReversalLimiter;
 
@@ -11,7 +13,7 @@ pub(crate) struct EscapeStart<'a> {
     pub(crate) q: &'a [f64],
     /// Joint velocities, rad/s or m/s.
     pub(crate) qd: &'a [f64],
-    pub(crate) limits: &'a [JointLimit],
+    pub(crate) limits: &'a [JointLimits],
     /// Fraction of the top speeds that the override of a monitor permits, 0 to 1.
     pub(crate) speed_share: f64,
     pub(crate) reversals: &'a ReversalLimiter,
@@ -36,8 +38,8 @@ impl EscapeTrajectory {
     pub(crate) fn set_target(&mut self, target: &[f64], start: &EscapeStart<'_>) {
         for (j, profile) in self.profiles.iter_mut().enumerate() {
             let full = &start.limits[j];
-            let limit = JointLimit { speed: full.speed * start.speed_share, ..*full };
-            let wait_s = |direction| start.reversals.wait_s(j, start.qd[j], full.speed, direction);
+            let limit = full.slowed_to(start.speed_share);
+            let wait_s = |direction| start.reversals.wait_s(j, start.qd[j], full.velocity, direction);
             *profile = JointProfile::to_rest_at(target[j], start.q[j], start.qd[j], &limit, wait_s);
         }
         self.update_summary();

@@ -4,13 +4,14 @@
 //! free (a kinodynamic RRT, `LaValle` and Kuffner 2001, "Randomized kinodynamic planning"). The search tells whether a
 //! hit could have been evaded, given the motion of all obstacles. A controller does not have time for this search.
 
+use elbowroom_kinematics::JointLimits;
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{Scene, SceneError};
 
+use crate::DynamicObstacles;
 use crate::escape_check::{EscapeCheck, TimedMotion};
 use crate::escape_trajectory::{EscapeStart, EscapeTrajectory};
 use crate::reversal_limiter::ReversalLimiter;
-use crate::{DynamicObstacles, JointLimit};
 
 /// Clearance of a motion that counts as free, m.
 const CLEARANCE_M: f64 = 1e-3;
@@ -53,7 +54,7 @@ struct Node {
 pub fn search_escape_tree(
     scene: &Scene,
     robot: RobotId,
-    limits: &[JointLimit],
+    limits: &[JointLimits],
     [q, qd]: [&[f64]; 2],
     obstacles: &DynamicObstacles<'_>,
     horizon_s: f64,
@@ -72,7 +73,7 @@ pub fn search_escape_tree(
         let is_global = random() < GLOBAL_SHARE;
         for (j, limit) in limits.iter().enumerate() {
             let at = nodes[from].q[j];
-            let near = (2.0 * random() - 1.0) * LOCAL_S * limit.speed;
+            let near = (2.0 * random() - 1.0) * LOCAL_S * limit.velocity;
             let (low, high) = (limit.lower.max(at - UNLIMITED), limit.upper.min(at + UNLIMITED));
             target[j] = if is_global { low + (high - low) * random() } else { (at + near).clamp(low, high) };
         }

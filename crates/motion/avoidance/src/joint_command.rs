@@ -1,6 +1,6 @@
 //! The commanded motion of the joints.
 
-use crate::joint_limit::JointLimit;
+use elbowroom_kinematics::JointLimits;
 
 /// The commanded motion of the joints.
 #[derive(Debug)]
@@ -25,7 +25,7 @@ impl JointCommand {
     }
 
     /// Moves at the velocities `next` for `dt` seconds; the joint values of a reference are copied exactly.
-    pub(crate) fn advance(&mut self, dt: f64, next: &[f64], limits: &[JointLimit], reference_q: Option<&[f64]>) {
+    pub(crate) fn advance(&mut self, dt: f64, next: &[f64], limits: &[JointLimits], reference_q: Option<&[f64]>) {
         for (j, limit) in limits.iter().enumerate() {
             let unlimited = self.q[j] + next[j] * dt;
             let limited = unlimited.clamp(limit.lower, limit.upper);

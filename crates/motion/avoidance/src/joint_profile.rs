@@ -1,6 +1,6 @@
 //! Time-optimal motion of one joint to rest at a target: full acceleration, cruise at top speed, full deceleration.
 
-use crate::joint_limit::JointLimit;
+use elbowroom_kinematics::JointLimits;
 
 /// A stretch of constant acceleration.
 #[derive(Debug, Clone, Copy, Default)]
@@ -28,7 +28,7 @@ impl JointProfile {
         target: f64,
         q: f64,
         qd: f64,
-        limit: &JointLimit,
+        limit: &JointLimits,
         reversal_wait_s: impl Fn(f64) -> f64,
     ) -> Self {
         let stop_s = qd.abs() / limit.stop;
@@ -57,11 +57,11 @@ impl JointProfile {
 
     /// Adds phases that accelerate, cruise and brake over `distance` in the direction `sign`, from the speed `speed` to
     /// rest.
-    fn ramp(&mut self, distance: f64, speed: f64, sign: f64, limit: &JointLimit) {
+    fn ramp(&mut self, distance: f64, speed: f64, sign: f64, limit: &JointLimits) {
         let (a, d) = (limit.acceleration, limit.stop);
         // v²/(2a) − speed²/(2a) + v²/(2d) = distance
         let reachable = ((2.0 * distance + speed * speed / a) / (1.0 / a + 1.0 / d)).sqrt();
-        let top = reachable.min(limit.speed);
+        let top = reachable.min(limit.velocity);
         // If the joint is faster than the top speed (a lower override), it slows down first.
         let rate = if speed > top { -d } else { a };
         let changed = (top * top - speed * speed) / (2.0 * rate);
@@ -111,10 +111,10 @@ mod tests {
 
     /// The least time by brute force: towards full speed in one direction, then in the other, each for a number of
     /// steps.
-    fn fastest_of_many(distance: f64, speed: f64, limit: &JointLimit) -> f64 {
+    fn fastest_of_many(distance: f64, speed: f64, limit: &JointLimits) -> f64 {
         let mut best = f64::INFINITY;
         for n in 0..=4000 {
-            let top = limit.speed * f64::from(n) / 4000.0;
+            let top = limit.velocity * f64::from(n) / 4000.0;
             if top < speed {
                 continue;
             }
@@ -130,7 +130,7 @@ mod tests {
     #[test]
     fn profiles_end_at_rest_at_the_target_within_the_limits_and_none_is_faster() {
         let mut random = SplitMix(3);
-        let limit = JointLimit { lower: -9.0, upper: 9.0, speed: 2.0, acceleration: 6.0, stop: 15.0 };
+        let limit = JointLimits::new(2.0, 6.0, f64::INFINITY).within(-9.0, 9.0).stopping_at(15.0);
         let mut direct = 0;
         for case in 0..2_000 {
             let (q, qd, target) = (random.between(-2.0, 2.0), random.between(-2.0, 2.0), random.between(-3.0, 3.0));
@@ -162,7 +162,7 @@ mod tests {
 
     #[test]
     fn a_joint_rests_before_it_reverses() {
-        let limit = JointLimit { lower: -9.0, upper: 9.0, speed: 2.0, acceleration: 4.0, stop: 10.0 };
+        let limit = JointLimits::new(2.0, 4.0, f64::INFINITY).within(-9.0, 9.0).stopping_at(10.0);
         let profile =
             JointProfile::to_rest_at(-1.0, 0.0, 1.0, &limit, |direction| if direction < 0.0 { 0.25 } else { 0.0 });
         // The joint stops in 0.1 s at 0.05 rad and rests for the remaining 0.15 s.

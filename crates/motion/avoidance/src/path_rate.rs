@@ -3,8 +3,8 @@
 use elbowroom_kinematics::{Chain, ChainState};
 
 use crate::detour::SAME_CONFIGURATION_S;
-use crate::joint_limit::JointLimit;
 use crate::{PathKind, ProximityPair, ReactiveSettings, Reference};
+use elbowroom_kinematics::JointLimits;
 
 /// Fraction of the permitted decrease of a distance that the motion along the path uses; the rest is left to an
 /// evasion.
@@ -15,7 +15,7 @@ const APPROACH_SHARE: f64 = 0.5;
 pub(crate) struct PathState<'a> {
     /// Commanded joint values.
     pub(crate) q: &'a [f64],
-    pub(crate) limits: &'a [JointLimit],
+    pub(crate) limits: &'a [JointLimits],
     pub(crate) deviation_s: f64,
     /// Deviation at which a path that may be left stops, in seconds of joint motion at full speed.
     pub(crate) max_deviation_s: f64,
@@ -44,7 +44,7 @@ pub(crate) fn path_rate(reference: &Reference<'_>, state: &PathState<'_>, approa
 /// Signed lead of the robot over the reference, in the norm of the joints' speeds: positive if the robot is ahead.
 fn lead(reference: &Reference<'_>, state: &PathState<'_>) -> f64 {
     let joints = reference.qd.iter().zip(reference.q.iter().zip(state.q)).zip(state.limits);
-    joints.map(|((v, (to, from)), l)| v * (from - to) / (l.speed * l.speed)).sum()
+    joints.map(|((v, (to, from)), l)| v * (from - to) / (l.velocity * l.velocity)).sum()
 }
 
 /// Rate at which the distances of dynamic obstacles decrease as fast as [`APPROACH_SHARE`] permits.

@@ -6,10 +6,10 @@ use elbowroom_robot::{GeometryId, RobotId};
 use elbowroom_scene::{Scene, SweepMove};
 
 use crate::escape_work::EscapeWork;
-use crate::joint_limit::JointLimit;
 use crate::proximity_query::ProximityQuery;
 use crate::reactive_controller::MAX_PAIRS;
 use crate::{DynamicObstacles, ObservedObject, ProximityPair};
+use elbowroom_kinematics::JointLimits;
 
 /// Security margin of the sweep, m.
 const SECURITY_MARGIN_M: f64 = 1e-3;
@@ -26,7 +26,7 @@ pub(crate) struct VelocitySegment<'a> {
     /// Joint velocities, rad/s or m/s.
     pub(crate) qd: &'a [f64],
     /// Position limits, at which the motion ends.
-    pub(crate) limits: &'a [JointLimit],
+    pub(crate) limits: &'a [JointLimits],
     /// Duration, s.
     pub(crate) duration_s: f64,
 }
@@ -183,7 +183,7 @@ mod tests {
     #[test]
     fn the_sweep_includes_the_motion_of_a_neighbour() {
         let scene = example::two_arms();
-        let limits = JointLimit::of(&scene.robots()[0].robot.chain, 0.25, 0.1, 1.0);
+        let limits = JointLimits::of_chain(&scene.robots()[0].robot.chain, 0.25, 0.1, 1.0);
         let (mut query, mut check) = (ProximityQuery::new(&scene, RobotId(0)), SweepCheck::new(&scene, u32::MAX));
         let duration_s = 0.3;
         let mut random = Random(7);

@@ -224,7 +224,7 @@ fn a_detour_is_not_faster_than_the_path_unless_that_is_asked_for() {
             let on_detour = simulation.avoider.has_detour();
             simulation.step(&sweeping, PathKind::PointToPoint, &[ball], 1.0);
             let speeds = simulation.avoider.qd().iter().zip(&limits);
-            let speed = speeds.fold(0.0_f64, |most, (v, limit)| most.max(v.abs() / limit.speed));
+            let speed = speeds.fold(0.0_f64, |most, (v, limit)| most.max(v.abs() / limit.velocity));
             fastest = if on_detour { f64::max(fastest, speed) } else { fastest };
             if simulation.plan(&sweeping(2.0).0) {
                 simulation.tau = 2.0;

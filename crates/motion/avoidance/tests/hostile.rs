@@ -3,9 +3,10 @@
 use crate::common;
 use crate::common::{DT, Simulation, avoider, limits, scene};
 use elbowroom_avoidance::{
-    AvoidanceError, Avoider, AvoiderOutput, AvoiderSettings, DynamicObstacles, JointLimit, Neighbour, ObservedObject,
-    PathKind, Reference, Rules,
+    AvoidanceError, Avoider, AvoiderOutput, AvoiderSettings, DynamicObstacles, Neighbour, ObservedObject, PathKind,
+    Reference, Rules,
 };
+use elbowroom_kinematics::JointLimits;
 use elbowroom_planner::RrtConnectSettings;
 use elbowroom_proximity::{Cuboid, Shape, Sphere};
 use elbowroom_robot::{ObjectId, RobotId, example::arm};
@@ -47,7 +48,7 @@ fn distance(scene: &Scene, q: &[f64], place: Option<Vec3>) -> f64 {
 /// Smallest distance on a planned detour when the ball appears on it, observed in the ticks given by `observed`.
 fn min_distance(
     scene: &Scene,
-    limits: &[JointLimit],
+    limits: &[JointLimits],
     rules: Rules,
     known: bool,
     observed: impl Fn(usize) -> bool,
@@ -93,7 +94,7 @@ fn rules_with_less_reach_than_a_stop_cause_no_hit() {
         .collect();
     let rules = || Rules::from_toml(&text).unwrap();
     assert!((rules().reach_m() - 0.1 * Rules::default().reach_m()).abs() < 1e-9);
-    let limits = JointLimit::of(&scene.robots()[0].robot.chain, 0.5, 0.5, 2.0);
+    let limits = JointLimits::of_chain(&scene.robots()[0].robot.chain, 0.5, 0.5, 2.0);
     for known in [false, true] {
         assert!(min_distance(&scene, &limits, rules(), known, |_| true) > 1e-3, "known {known}");
     }
@@ -109,7 +110,7 @@ fn tenth(list: &str) -> String {
 #[test]
 fn a_robot_without_updates_is_assumed_stationary() {
     let scene = example::two_arms();
-    let limits = JointLimit::of(&scene.robots()[0].robot.chain, 0.25, 0.1, 2.0);
+    let limits = JointLimits::of_chain(&scene.robots()[0].robot.chain, 0.25, 0.1, 2.0);
     let (from, goal, other) = ([1.2, 1.2, 0.3], [-1.2, 1.2, 0.3], [0.0, -1.2, -0.3]);
     let reported = [Neighbour { robot: RobotId(1), q: &other, qd: &[0.0; 3], known: false }];
     let mut avoider =
@@ -166,7 +167,7 @@ fn many_fixed_obstacles_do_not_stop_a_detour() {
         builder.object(Object { name: format!("s{i}"), shape: Shape::Sphere(Sphere { radius: 0.01 }), in_world });
     }
     let scene = builder.build().unwrap();
-    let limits = JointLimit::of(&scene.robots()[0].robot.chain, 0.5, 0.5, 2.0);
+    let limits = JointLimits::of_chain(&scene.robots()[0].robot.chain, 0.5, 0.5, 2.0);
     let (from, to) = ([-0.8, 0.9, 0.9], [0.8, 0.9, 0.9]);
     let mut avoider =
         Avoider::new(&scene, RobotId(0), &from, &limits, Rules::default(), AvoiderSettings::default()).unwrap();
@@ -186,7 +187,7 @@ fn many_fixed_obstacles_do_not_stop_a_detour() {
 #[test]
 fn invalid_limits_are_refused() {
     let scene = scene();
-    let make = |limits: &[JointLimit]| {
+    let make = |limits: &[JointLimits]| {
         Avoider::new(&scene, RobotId(0), &HERE, limits, Rules::default(), AvoiderSettings::default())
     };
     let good = limits(&scene);
@@ -195,8 +196,8 @@ fn invalid_limits_are_refused() {
         let some: Vec<_> = good.iter().cycle().take(count).copied().collect();
         assert!(matches!(make(&some).unwrap_err(), AvoidanceError::Limits { joints: 3, .. }));
     }
-    let spoil: [fn(&mut JointLimit, f64); 5] = [
-        |l, v| l.speed = v,
+    let spoil: [fn(&mut JointLimits, f64); 5] = [
+        |l, v| l.velocity = v,
         |l, v| l.acceleration = v,
         |l, v| l.stop = v,
         |l, v| (l.lower, l.upper) = (v, -v),
@@ -207,7 +208,7 @@ fn invalid_limits_are_refused() {
             let mut bad = good.clone();
             spoil(&mut bad[1], value);
             // The range from −1 to 1 is valid.
-            let is_range = bad[1].lower <= bad[1].upper && bad[1].speed > 0.0 && bad[1].acceleration > 0.0;
+            let is_range = bad[1].lower <= bad[1].upper && bad[1].velocity > 0.0 && bad[1].acceleration > 0.0;
             if is_range && bad[1].stop == good[1].stop {
                 continue;
             }
@@ -272,7 +273,7 @@ fn a_detour_does_not_start_elsewhere() {
         };
         tick(&mut avoider, &HERE);
         let detour = avoider.plan_detour(&THERE, &RrtConnectSettings::default(), None).unwrap();
-        let to = [HERE[0] + drift_s * limits(&scene)[0].speed, HERE[1], HERE[2]];
+        let to = [HERE[0] + drift_s * limits(&scene)[0].velocity, HERE[1], HERE[2]];
         for _ in 0..200 {
             tick(&mut avoider, &to);
         }
@@ -288,7 +289,7 @@ fn a_detour_does_not_start_elsewhere() {
 #[test]
 fn a_neighbour_without_velocities_is_refused() {
     let scene = example::two_arms();
-    let limits = JointLimit::of(&scene.robots()[0].robot.chain, 0.25, 0.1, 2.0);
+    let limits = JointLimits::of_chain(&scene.robots()[0].robot.chain, 0.25, 0.1, 2.0);
     let (own, other) = ([0.0, 0.7, 0.2], [0.0, -1.2, -0.3]);
     let mut avoider =
         Avoider::new(&scene, RobotId(0), &own, &limits, Rules::default(), AvoiderSettings::default()).unwrap();
@@ -315,7 +316,7 @@ fn after_a_failed_tick_the_robot_returns_without_a_jump() {
         let before = avoider.q().to_vec();
         avoider.tick(DT, &resting_at(&on), &none, 1.0).unwrap();
         let step = (avoider.q()[0] - before[0]).abs();
-        assert!(step <= DT * limits(&scene)[0].speed, "tick {n}: {step} rad");
+        assert!(step <= DT * limits(&scene)[0].velocity, "tick {n}: {step} rad");
     }
     assert_eq!(avoider.q(), on);
 }

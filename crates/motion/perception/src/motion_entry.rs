@@ -6,7 +6,7 @@
 //! the arm's configuration, at the rate at which the two speeds are equal: position, direction and speed are
 //! continuous.
 
-use elbowroom_planner::KinematicLimits;
+use elbowroom_kinematics::JointLimits;
 
 /// Reserve of the distance in which a speed is reached: a factor, and a length in rad for speeds near 0.
 const DISTANCE_RESERVE_FACTOR: f64 = 1.05;
@@ -23,16 +23,17 @@ const ROOT_BISECTIONS: usize = 50;
 ///
 /// ```
 /// use elbowroom_perception::motion_entry::acceleration_distance;
-/// use elbowroom_planner::KinematicLimits;
-/// let limits = KinematicLimits { velocity: vec![2.0], acceleration: vec![4.0], jerk: vec![1e6] };
+/// use elbowroom_kinematics::JointLimits;
+/// let limits = [JointLimits::new(2.0, 4.0, 1e6)];
 /// // v²/2a = 0.125 rad, and five percent.
 /// assert!((acceleration_distance(1.0, &[1.0], &limits) - 0.132).abs() < 1e-3);
 /// ```
-pub fn acceleration_distance(speed: f64, along: &[f64], limits: &KinematicLimits) -> f64 {
-    let least = |of: &[f64]| {
-        of.iter().zip(along).map(|(most, part)| most / part.abs().max(MIN_COMPONENT)).fold(f64::INFINITY, f64::min)
+pub fn acceleration_distance(speed: f64, along: &[f64], limits: &[JointLimits]) -> f64 {
+    let least = |of: fn(&JointLimits) -> f64| {
+        let each = limits.iter().map(of).zip(along).map(|(most, part)| most / part.abs().max(MIN_COMPONENT));
+        each.fold(f64::INFINITY, f64::min)
     };
-    let (a, j) = (least(&limits.acceleration), least(&limits.jerk));
+    let (a, j) = (least(|l| l.acceleration), least(|l| l.jerk));
     let seconds = if speed >= a * a / j { speed / a + a / j } else { 2.0 * (speed / j).sqrt() };
     0.5 * speed * seconds * DISTANCE_RESERVE_FACTOR + DISTANCE_RESERVE_RAD
 }

@@ -6,11 +6,12 @@
 #[path = "../tests/common/mod.rs"]
 mod common;
 
+use elbowroom_kinematics::JointLimits;
 use std::time::{Duration, Instant};
 
 use common::{Random, blocked_point, connected, free_cell, grid_optimum};
 use elbowroom_cspace::{CellIndex, ConvexObstacle, Grid, JointMap};
-use elbowroom_planner::{GridPlanner, GridPlannerSettings, KinematicLimits, Path, example};
+use elbowroom_planner::{GridPlanner, GridPlannerSettings, Path, example};
 
 type Error = Box<dyn std::error::Error>;
 
@@ -78,8 +79,7 @@ fn planning(grid: &Grid, map: &JointMap) -> Result<Vec<Path>, Error> {
 /// Times the time parametrization of every path.
 fn timing(grid: &Grid, map: &JointMap, paths: &[Path]) -> Result<(), Error> {
     let planner = GridPlanner::new(grid, map.occupancy())?;
-    let [velocity, acceleration, jerk] = [[1.5, 1.5, 2.0], [3.0, 3.0, 5.0], [30.0, 30.0, 50.0]].map(Vec::from);
-    let limits = KinematicLimits { velocity, acceleration, jerk };
+    let limits = [[1.5, 3.0, 30.0], [1.5, 3.0, 30.0], [2.0, 5.0, 50.0]].map(|[v, a, j]| JointLimits::new(v, a, j));
     let (mut stops, mut timings) = (0, Vec::new());
     for path in paths {
         let clock = Instant::now();

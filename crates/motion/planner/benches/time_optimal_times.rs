@@ -5,11 +5,12 @@
 //! of it: waypoints and blend distance, then the durations.
 #![allow(clippy::print_stdout)]
 
+use elbowroom_kinematics::JointLimits;
 use std::fmt::Write as _;
 use std::time::Instant;
 
 use elbowroom_cspace::{Grid, GridAxis, OccupancyBitmap};
-use elbowroom_planner::{BlendedPath, GridPlanner, KinematicLimits, Path, TimeOptimalTrajectory};
+use elbowroom_planner::{BlendedPath, GridPlanner, Path, TimeOptimalTrajectory};
 use elbowroom_testkit::random::{split_mix, unit};
 
 type Error = Box<dyn std::error::Error>;
@@ -18,12 +19,11 @@ const PATHS: usize = 200;
 const REPEATS: u32 = 5;
 
 /// Limits of a light arm, rad/s, rad/s², rad/s³.
-fn limits(jerk_factor: f64) -> KinematicLimits {
-    KinematicLimits {
-        velocity: vec![2.175, 2.175, 2.175, 2.175, 2.61, 2.61, 2.61],
-        acceleration: vec![15.0, 7.5, 10.0, 12.5, 15.0, 20.0, 20.0],
-        jerk: [7500.0, 3750.0, 5000.0, 6250.0, 7500.0, 10_000.0, 10_000.0].map(|j| j * jerk_factor).to_vec(),
-    }
+fn limits(jerk_factor: f64) -> Vec<JointLimits> {
+    let limits = [[2.175, 15.0], [2.175, 7.5], [2.175, 10.0], [2.175, 12.5], [2.61, 15.0], [2.61, 20.0], [2.61, 20.0]];
+    limits
+        .map(|[velocity, acceleration]| JointLimits::new(velocity, acceleration, 500.0 * acceleration * jerk_factor))
+        .to_vec()
 }
 
 fn random_path(count: usize, state: &mut u64) -> Vec<Vec<f64>> {
@@ -55,7 +55,7 @@ fn beside_grid_planner() -> Result<(), Error> {
     let grid = Grid::new([axis("a")?, axis("b")?, axis("c")?])?;
     let planner = GridPlanner::new(&grid, &OccupancyBitmap::new(grid.shape()))?;
     for jerk in [20.0, 100.0, 1000.0] {
-        let limits = KinematicLimits { velocity: vec![2.0; 3], acceleration: vec![10.0; 3], jerk: vec![jerk; 3] };
+        let limits = vec![JointLimits::new(2.0, 10.0, jerk); 3];
         let mut state = 3;
         let [mut before, mut now] = [0.0; 2];
         for n in 0..PATHS {

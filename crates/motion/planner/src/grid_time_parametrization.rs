@@ -1,12 +1,13 @@
 //! Time parametrization of grid paths: a corner is blended if the triangle that is cut off lies in free cells.
 
 use elbowroom_cspace::OccupancyBitmap;
+use elbowroom_kinematics::JointLimits;
 
 use crate::grid_planner::GridPlanner;
 use crate::grid_space::GridPoint;
 use crate::line_of_sight::box_is_free;
 use crate::path::Path;
-use crate::time_parametrization::{KinematicLimits, PathSegments, TimeParametrizationError, Trajectory};
+use crate::time_parametrization::{PathSegments, TimeParametrizationError, Trajectory};
 
 /// Number of times that the triangle of a corner is halved before the trajectory stops at the corner.
 const MAX_HALVINGS: i32 = 6;
@@ -54,13 +55,14 @@ impl GridPlanner {
     ///
     /// ```
     /// # use elbowroom_cspace::{Grid, GridAxis, OccupancyBitmap};
-    /// # use elbowroom_planner::{GridPlanner, KinematicLimits, Path};
+    /// # use elbowroom_kinematics::JointLimits;
+    /// # use elbowroom_planner::{GridPlanner, Path};
     /// # let axis = |name| GridAxis::new(name, 0.0, 1.0, 0.05);
     /// # let grid = Grid::new([axis("a")?, axis("b")?, axis("c")?])?;
     /// # let planner = GridPlanner::new(&grid, &OccupancyBitmap::new(grid.shape()))?;
     /// # let waypoints = vec![[0.1, 0.1, 0.1], [0.9, 0.1, 0.1], [0.9, 0.9, 0.1]];
     /// # let path = Path { waypoints, length_rad: 1.6, start_moved_rad: 0.0, goal_moved_rad: 0.0 };
-    /// let limits = KinematicLimits { velocity: vec![2.0; 3], acceleration: vec![10.0; 3], jerk: vec![200.0; 3] };
+    /// let limits = vec![JointLimits::new(2.0, 10.0, 200.0); 3];
     /// let trajectory = planner.time_parametrize(&path, &limits)?;
     /// assert_eq!((trajectory.at(0.0).q, trajectory.stops()), (vec![0.1, 0.1, 0.1], 0));
     /// assert_eq!(trajectory.at(trajectory.seconds()).q, [0.9, 0.9, 0.1]);
@@ -72,7 +74,7 @@ impl GridPlanner {
     pub fn time_parametrize(
         &self,
         path: &Path,
-        limits: &KinematicLimits,
+        limits: &[JointLimits],
     ) -> Result<Trajectory, TimeParametrizationError> {
         let segments = PathSegments::new(&path.waypoints, limits)?;
         let mut blend_distances = vec![0.0; segments.count()];

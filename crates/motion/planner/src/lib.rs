@@ -9,7 +9,8 @@
 //! there.
 //!
 //! ```
-//! use elbowroom_planner::{KinematicLimits, RrtConnect, RrtConnectSettings};
+//! use elbowroom_kinematics::JointLimits;
+//! use elbowroom_planner::{RrtConnect, RrtConnectSettings};
 //! use elbowroom_robot::RobotId;
 //! use elbowroom_scene::{SceneState, example};
 //! let (scene, left) = (example::two_arms(), RobotId(0));
@@ -19,7 +20,7 @@
 //! // The part on the table is between start and goal.
 //! let path = planner.plan(&state, &[0.9, 1.3, 0.6], &settings)?;
 //! assert!(path.waypoints.len() > 2);
-//! let limits = KinematicLimits { velocity: vec![2.0; 3], acceleration: vec![8.0; 3], jerk: vec![80.0; 3] };
+//! let limits = vec![JointLimits::new(2.0, 8.0, 80.0); 3];
 //! let trajectory = planner.time_parametrize(&state, &path, &limits, 0.004, &settings)?;
 //! assert_eq!(trajectory.at(trajectory.seconds()).q, [0.9, 1.3, 0.6]);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -63,6 +64,5 @@ pub use rrt_connect::{
 };
 pub use task_space_region::TaskSpaceRegion;
 pub use time_parametrization::{
-    BlendedPath, CornerBlend, KinematicLimits, LimitKind, TimeOptimalTrajectory, TimeParametrizationError, Trajectory,
-    TrajectoryPoint,
+    BlendedPath, CornerBlend, LimitKind, TimeOptimalTrajectory, TimeParametrizationError, Trajectory, TrajectoryPoint,
 };

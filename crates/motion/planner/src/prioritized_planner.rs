@@ -7,6 +7,7 @@
 //! do not change, only times (Kant, Zucker: *Toward efficient trajectory planning: the path-velocity decomposition*,
 //! 1986). If a robot has no path with one priority order, the planner tries others.
 
+use elbowroom_kinematics::JointLimits;
 use std::time::{Duration, Instant};
 
 use elbowroom_robot::RobotId;
@@ -14,8 +15,8 @@ use elbowroom_scene::{Checker, CheckerOptions, Scene, SceneState, Selection, Swe
 use elbowroom_validity::{BuiltCovers, CoverSource};
 
 use crate::{
-    CoverModel, CoverObstacles, CoverRrtConnect, KinematicLimits, PathConstraint, PlannedPath, RrtConnect,
-    RrtConnectError, RrtConnectSettings, TimedMotion,
+    CoverModel, CoverObstacles, CoverRrtConnect, PathConstraint, PlannedPath, RrtConnect, RrtConnectError,
+    RrtConnectSettings, TimedMotion,
 };
 
 /// Up to this number of robots, all priority orders are tried; with more robots, each robot is tried as the first.
@@ -67,7 +68,7 @@ pub struct RobotGoal {
     /// Its goal configuration, rad (m for prismatic joints).
     pub q: Vec<f64>,
     /// Limits of its motion.
-    pub limits: KinematicLimits,
+    pub limits: Vec<JointLimits>,
 }
 
 /// The motion of one of several robots.
@@ -112,11 +113,12 @@ impl PrioritizedMotion {
 /// Plans motions for several robots of a scene by priority.
 ///
 /// ```
-/// use elbowroom_planner::{KinematicLimits, PrioritizedPlanner, RobotGoal, RrtConnectSettings};
+/// use elbowroom_kinematics::JointLimits;
+/// use elbowroom_planner::{PrioritizedPlanner, RobotGoal, RrtConnectSettings};
 /// use elbowroom_robot::RobotId;
 /// use elbowroom_scene::{SceneState, example};
 /// let scene = example::two_arms();
-/// let limits = KinematicLimits { velocity: vec![2.0; 3], acceleration: vec![10.0; 3], jerk: vec![100.0; 3] };
+/// let limits = vec![JointLimits::new(2.0, 10.0, 100.0); 3];
 /// let goal = |robot: usize, waist: f64| RobotGoal { robot: RobotId(robot), q: vec![waist, 0.4, 0.4], limits: limits.clone() };
 /// let goals = [goal(0, 0.8), goal(1, -0.8)];
 /// let planner = PrioritizedPlanner::new(&scene);

@@ -1,11 +1,10 @@
 //! Paths under a constraint in joint space, checked at many of their points.
 
+use elbowroom_kinematics::JointLimits;
 use std::time::Duration;
 
 use crate::common::robots::{Random, cabinet, crane, free_values, state_at};
-use elbowroom_planner::{
-    KinematicLimits, PathConstraint, PathEnd, PlannedPath, RrtConnect, RrtConnectError, RrtConnectSettings,
-};
+use elbowroom_planner::{PathConstraint, PathEnd, PlannedPath, RrtConnect, RrtConnectError, RrtConnectSettings};
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{Scene, SceneState, example};
 
@@ -129,8 +128,7 @@ fn paths_and_trajectories_satisfy_the_constraint() {
             assert_eq!((&path.waypoints[0], &path.waypoints[path.waypoints.len() - 1]), (&from, &to));
             assert!(least(&constraint, &path.waypoints, 5_000) > constraint.margin);
             let dof = to.len();
-            let limits =
-                KinematicLimits { velocity: vec![2.0; dof], acceleration: vec![8.0; dof], jerk: vec![80.0; dof] };
+            let limits = vec![JointLimits::new(2.0, 8.0, 80.0); dof];
             let trajectory = planner.time_parametrize(&state, &path, &limits, 0.01, &settings()).unwrap();
             let samples: Vec<_> = trajectory.samples(0.01).unwrap().into_iter().map(|r| r.1).collect();
             assert!(least(&constraint, &samples, 20) > constraint.margin);

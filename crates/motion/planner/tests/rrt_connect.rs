@@ -1,12 +1,11 @@
 //! Paths in the exact scene: free, within limits, with the requested ends; and rejected input.
 
 use crate::common::robots;
+use elbowroom_kinematics::JointLimits;
 use std::time::Duration;
 
 use crate::common::robots::{Random, cabinet, crane, free_values, halved, sheet, state_at};
-use elbowroom_planner::{
-    KinematicLimits, PathEnd, PlannedPath, RrtConnect, RrtConnectError, RrtConnectSettings, Trajectory,
-};
+use elbowroom_planner::{PathEnd, PlannedPath, RrtConnect, RrtConnectError, RrtConnectSettings, Trajectory};
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{Checker, CheckerOptions, Level, Scene, SceneError, SceneState, Selection, example};
 
@@ -27,20 +26,20 @@ fn dense_check(scene: &Scene, state: &SceneState, robot: RobotId, path: &[Vec<f6
     }
 }
 
-fn limits(dof: usize) -> KinematicLimits {
-    KinematicLimits { velocity: vec![2.0; dof], acceleration: vec![8.0; dof], jerk: vec![80.0; dof] }
+fn limits(dof: usize) -> Vec<JointLimits> {
+    vec![JointLimits::new(2.0, 8.0, 80.0); dof]
 }
 
 /// Checks speeds and accelerations of the straight lines between samples.
-fn check_samples(samples: &[(f64, Vec<f64>)], period: f64, limits: &KinematicLimits) {
+fn check_samples(samples: &[(f64, Vec<f64>)], period: f64, limits: &[JointLimits]) {
     let speed = |k: usize, i: usize| (samples[k + 1].1[i] - samples[k].1[i]) / period;
     for k in 0..samples.len() - 1 {
-        for i in 0..limits.velocity.len() {
-            assert!(speed(k, i).abs() <= limits.velocity[i] * (1.0 + 1e-9), "sample {k}, joint {i}: {}", speed(k, i));
+        for i in 0..limits.len() {
+            assert!(speed(k, i).abs() <= limits[i].velocity * (1.0 + 1e-9), "sample {k}, joint {i}: {}", speed(k, i));
             if k > 0 {
                 let acceleration = (speed(k, i) - speed(k - 1, i)) / period;
                 assert!(
-                    acceleration.abs() <= limits.acceleration[i] * (1.0 + 1e-6),
+                    acceleration.abs() <= limits[i].acceleration * (1.0 + 1e-6),
                     "sample {k}, joint {i}: {acceleration}"
                 );
             }

@@ -1,10 +1,11 @@
 //! Several robots planned together, merged to one robot or by priority; every path is checked in the original scene.
 
+use elbowroom_kinematics::JointLimits;
 use std::time::Duration;
 
 use elbowroom_planner::{
-    CoverModel, CoverObstacles, CoverRrtConnect, KinematicLimits, PrioritizedMotion, PrioritizedPlanner,
-    PrioritizedPlannerError, RobotGoal, RrtConnect, RrtConnectSettings,
+    CoverModel, CoverObstacles, CoverRrtConnect, PrioritizedMotion, PrioritizedPlanner, PrioritizedPlannerError,
+    RobotGoal, RrtConnect, RrtConnectSettings,
 };
 use elbowroom_robot::{RobotId, example};
 use elbowroom_scene::{Checker, CheckerOptions, MergedRobots, Scene, SceneState, SweepOptions};
@@ -54,8 +55,8 @@ fn two_arms_pass_each_other_beside_a_third() {
     }
 }
 
-fn limits() -> KinematicLimits {
-    KinematicLimits { velocity: vec![2.0; 3], acceleration: vec![10.0; 3], jerk: vec![100.0; 3] }
+fn limits() -> Vec<JointLimits> {
+    vec![JointLimits::new(2.0, 10.0, 100.0); 3]
 }
 
 fn goal(robot: usize, q: [f64; 3]) -> RobotGoal {

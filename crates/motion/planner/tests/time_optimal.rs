@@ -1,44 +1,45 @@
 //! Time-optimal trajectories: limits checked by independent differentiation, durations by exhaustive search and closed
 //! forms.
 
-use elbowroom_planner::{BlendedPath, KinematicLimits, TimeOptimalTrajectory, TimeParametrizationError};
+use elbowroom_kinematics::JointLimits;
+use elbowroom_planner::{BlendedPath, TimeOptimalTrajectory, TimeParametrizationError};
 use elbowroom_testkit::random::{split_mix, unit};
 use proptest::prelude::*;
 
 /// Excess over a limit that is accepted for rounding and for maxima between the planner's samples.
 const EXCESS: f64 = 1.002;
 
-fn equal_limits(joints: usize, [v, a, j]: [f64; 3]) -> KinematicLimits {
-    KinematicLimits { velocity: vec![v; joints], acceleration: vec![a; joints], jerk: vec![j; joints] }
+fn equal_limits(joints: usize, [v, a, j]: [f64; 3]) -> Vec<JointLimits> {
+    vec![JointLimits::new(v, a, j); joints]
 }
 
 /// Differentiates positions at equal steps once, twice and three times, only by differences: each difference is a mean
 /// of the derivative.
-fn check_limits(trajectory: &TimeOptimalTrajectory, limits: &KinematicLimits, orders: usize) {
+fn check_limits(trajectory: &TimeOptimalTrajectory, limits: &[JointLimits], orders: usize) {
     let seconds = trajectory.seconds();
     // 1 kHz, or the step for 2,000 steps.
     let h = (seconds / 2000.0).min(1e-3).max(seconds / 2e5);
     let steps = (seconds / h).ceil() as usize + 3;
     let points: Vec<_> = (0..=steps).map(|n| trajectory.at(n as f64 * h)).collect();
-    for joint in 0..limits.velocity.len() {
+    for joint in 0..limits.len() {
         let q: Vec<f64> = points.iter().map(|p| p.q[joint]).collect();
         let rounding = 8.0 * f64::EPSILON * q.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-        let all = [&limits.velocity, &limits.acceleration, &limits.jerk];
+        let JointLimits { velocity, acceleration, jerk, .. } = limits[joint];
         let mut differences = q;
-        for (order, limit) in (1..=orders).zip(all) {
+        for (order, limit) in (1..=orders).zip([velocity, acceleration, jerk]) {
             differences = differences.windows(2).map(|w| (w[1] - w[0]) / h).collect();
-            let most = limit[joint] * EXCESS + rounding * (2.0 / h).powf(order as f64);
+            let most = limit * EXCESS + rounding * (2.0 / h).powf(order as f64);
             for (n, value) in differences.iter().enumerate() {
                 assert!(value.abs() <= most, "order {order}, joint {joint}, step {n} of {steps}: {value} > {most}");
             }
         }
         for pair in points.windows(2) {
             let ([a, b], mean) = ([&pair[0], &pair[1]], 0.5 * (pair[0].qd[joint] + pair[1].qd[joint]));
-            let most = EXCESS * limits.acceleration[joint] * h + rounding / h;
+            let most = EXCESS * limits[joint].acceleration * h + rounding / h;
             assert!(((b.q[joint] - a.q[joint]) / h - mean).abs() <= most, "velocity is not the derivative");
             if orders == 3 {
                 let mean = 0.5 * (a.qdd[joint] + b.qdd[joint]);
-                let most = EXCESS * limits.jerk[joint] * h + rounding / h;
+                let most = EXCESS * limits[joint].jerk * h + rounding / h;
                 assert!(((b.qd[joint] - a.qd[joint]) / h - mean).abs() <= most, "acceleration is not the derivative");
             }
         }
@@ -63,22 +64,10 @@ fn waypoints() -> impl Strategy<Value = Vec<Vec<f64>>> {
 }
 
 /// Limits over several powers of ten.
-fn limits() -> impl Strategy<Value = KinematicLimits> {
-    let eight = |low: f64, high: f64| prop::collection::vec((low..high).prop_map(|x: f64| 10_f64.powf(x)), 8);
-    (eight(-1.0, 1.0), eight(-0.5, 2.0), eight(0.0, 4.0)).prop_map(|(velocity, acceleration, jerk)| KinematicLimits {
-        velocity,
-        acceleration,
-        jerk,
-    })
-}
-
-fn truncated(limits: &KinematicLimits, joints: usize) -> KinematicLimits {
-    let take = |x: &[f64]| x[..joints].to_vec();
-    KinematicLimits {
-        velocity: take(&limits.velocity),
-        acceleration: take(&limits.acceleration),
-        jerk: take(&limits.jerk),
-    }
+fn limits() -> impl Strategy<Value = Vec<JointLimits>> {
+    let power = |low: f64, high: f64| (low..high).prop_map(|x: f64| 10_f64.powf(x));
+    let limits = (power(-1.0, 1.0), power(-0.5, 2.0), power(0.0, 4.0)).prop_map(|(v, a, j)| JointLimits::new(v, a, j));
+    prop::collection::vec(limits, 8)
 }
 
 proptest! {
@@ -89,15 +78,15 @@ proptest! {
         limits in limits(),
         most in prop_oneof![Just(f64::INFINITY), Just(0.05), Just(1e-4), Just(0.0)],
     ) {
-        let limits = truncated(&limits, waypoints[0].len());
+        let limits = &limits[..waypoints[0].len()];
         let path = BlendedPath::new(&waypoints, |blend| blend.distance() <= most).unwrap();
-        let trajectory = path.time_optimal(&limits).unwrap();
+        let trajectory = path.time_optimal(limits).unwrap();
         check_ends(&trajectory, &waypoints);
-        let fast = path.time_optimal_without_jerk_limit(&limits).unwrap();
+        let fast = path.time_optimal_without_jerk_limit(limits).unwrap();
         check_ends(&fast, &waypoints);
         if trajectory.seconds() > 0.0 {
-            check_limits(&trajectory, &limits, 3);
-            check_limits(&fast, &limits, 2);
+            check_limits(&trajectory, limits, 3);
+            check_limits(&fast, limits, 2);
             prop_assert!(trajectory.seconds() > 0.9 * fast.seconds());
         }
         let aligned = trajectory.clone().aligned_to_ticks(0.008).unwrap();
@@ -106,8 +95,8 @@ proptest! {
         prop_assert!(aligned.seconds() <= trajectory.seconds() + 0.008 * (path.stops() + 1) as f64 + 1e-9);
         prop_assert_eq!(&rows.last().unwrap().1, waypoints.last().unwrap());
         for w in rows.windows(2) {
-            let slow = |i: usize| (w[1].1[i] - w[0].1[i]).abs() <= limits.velocity[i] * 0.008 * EXCESS + 1e-9;
-            prop_assert!((0..limits.velocity.len()).all(slow));
+            let slow = |i: usize| (w[1].1[i] - w[0].1[i]).abs() <= limits[i].velocity * 0.008 * EXCESS + 1e-9;
+            prop_assert!((0..limits.len()).all(slow));
         }
     }
 }
@@ -151,9 +140,9 @@ impl Curve {
 }
 
 /// Least duration by dynamic programming over all pairs of squared speeds of neighbouring nodes.
-fn exhaustive_seconds(curves: &[Curve], limits: &KinematicLimits, nodes: usize, levels: usize) -> f64 {
-    let joints = limits.velocity.len();
-    let x_top = limits.velocity.iter().map(|v| v * v).fold(0.0, f64::max) * 2.0;
+fn exhaustive_seconds(curves: &[Curve], limits: &[JointLimits], nodes: usize, levels: usize) -> f64 {
+    let joints = limits.len();
+    let x_top = limits.iter().map(|l| l.velocity * l.velocity).fold(0.0, f64::max) * 2.0;
     // Levels are finer at low speed.
     let level = |n: usize| x_top * (n as f64 / (levels - 1) as f64).powi(2);
     let mut least = vec![f64::INFINITY; levels];
@@ -170,8 +159,8 @@ fn exhaustive_seconds(curves: &[Curve], limits: &KinematicLimits, nodes: usize, 
                 samples.iter().all(|(share, joints)| {
                     let x = x + share * (next - x);
                     joints.iter().enumerate().all(|(i, [p, c])| {
-                        p * p * x <= limits.velocity[i].powi(2) * 1.000_1
-                            && (p * u + c * x).abs() <= limits.acceleration[i] * 1.000_1
+                        p * p * x <= limits[i].velocity.powi(2) * 1.000_1
+                            && (p * u + c * x).abs() <= limits[i].acceleration * 1.000_1
                     })
                 })
             };
@@ -355,8 +344,8 @@ fn degenerate_paths_and_extreme_limits() {
     let mut state = 41;
     for _ in 0..2000 {
         let mut any = |least: f64, most: f64| 10_f64.powf(least + (most - least) * unit(split_mix(&mut state)));
-        let mut two = |least: f64, most: f64| vec![any(least, most), any(least, most)];
-        let extreme = KinematicLimits { velocity: two(-6.0, 6.0), acceleration: two(-6.0, 8.0), jerk: two(-6.0, 10.0) };
+        let mut joint = || JointLimits::new(any(-6.0, 6.0), any(-6.0, 8.0), any(-6.0, 10.0));
+        let extreme = [joint(), joint()];
         for trajectory in
             [path.time_optimal(&extreme).unwrap(), path.time_optimal_without_jerk_limit(&extreme).unwrap()]
         {
@@ -380,7 +369,7 @@ fn invalid_input_is_rejected() {
     }
     let path = BlendedPath::new(&[vec![0.0, 0.0], vec![1.0, 0.0]], |_| true).unwrap();
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let limits = KinematicLimits { jerk: vec![1.0, bad], ..equal_limits(2, [1.0; 3]) };
+        let limits = [JointLimits::new(1.0, 1.0, 1.0), JointLimits::new(1.0, 1.0, bad)];
         assert!(matches!(path.time_optimal(&limits), Err(Limit { joint: 1, .. })));
     }
     assert!(matches!(path.time_optimal(&equal_limits(3, [1.0; 3])), Err(Count { .. })));

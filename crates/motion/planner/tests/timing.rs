@@ -3,13 +3,12 @@
 use crate::common;
 use crate::common::{Random, blocked_point, free_cell, grid, random_occupancy};
 use elbowroom_cspace::OccupancyBitmap;
-use elbowroom_planner::{
-    GridPlanner, GridPlannerSettings, KinematicLimits, LimitKind, Path, TimeParametrizationError, Trajectory,
-};
+use elbowroom_kinematics::JointLimits;
+use elbowroom_planner::{GridPlanner, GridPlannerSettings, LimitKind, Path, TimeParametrizationError, Trajectory};
 use proptest::prelude::*;
 
-fn fast() -> KinematicLimits {
-    KinematicLimits { velocity: vec![2.0, 1.5, 3.0], acceleration: vec![8.0, 5.0, 12.0], jerk: vec![90.0, 60.0, 200.0] }
+fn fast() -> Vec<JointLimits> {
+    vec![JointLimits::new(2.0, 8.0, 90.0), JointLimits::new(1.5, 5.0, 60.0), JointLimits::new(3.0, 12.0, 200.0)]
 }
 
 fn path(waypoints: Vec<[f64; 3]>) -> Path {
@@ -22,13 +21,13 @@ fn three(q: Vec<f64>) -> [f64; 3] {
 
 /// Checks limits and continuity at samples: positions from velocities, velocities from accelerations, accelerations
 /// from jerks.
-fn check(trajectory: &Trajectory, limits: &KinematicLimits, steps: usize) {
+fn check(trajectory: &Trajectory, limits: &[JointLimits], steps: usize) {
     let h = trajectory.seconds() / steps as f64;
     let mut before = trajectory.at(0.0);
     for n in 1..=steps {
         let now = trajectory.at(n as f64 * h);
         for i in 0..3 {
-            let (v, a, j) = (limits.velocity[i], limits.acceleration[i], limits.jerk[i]);
+            let (v, a, j) = (limits[i].velocity, limits[i].acceleration, limits[i].jerk);
             assert!(now.qd[i].abs() <= v * (1.0 + 1e-9), "velocity {} of joint {i}", now.qd[i]);
             assert!(now.qdd[i].abs() <= a * (1.0 + 1e-9), "acceleration {} of joint {i}", now.qdd[i]);
             let jerk = (now.qdd[i] - before.qdd[i]).abs() / h;
@@ -48,13 +47,9 @@ fn waypoint() -> impl Strategy<Value = [f64; 3]> {
     [value.clone(), value.clone(), value]
 }
 
-fn limits() -> impl Strategy<Value = KinematicLimits> {
-    let three = |low: f64, high: f64| prop::collection::vec(low..high, 3);
-    (three(0.1, 5.0), three(0.5, 50.0), three(1.0, 5000.0)).prop_map(|(velocity, acceleration, jerk)| KinematicLimits {
-        velocity,
-        acceleration,
-        jerk,
-    })
+fn limits() -> impl Strategy<Value = Vec<JointLimits>> {
+    let limits = (0.1..5.0, 0.5..50.0, 1.0..5000.0).prop_map(|(v, a, j)| JointLimits::new(v, a, j));
+    prop::collection::vec(limits, 3)
 }
 
 proptest! {
@@ -82,7 +77,7 @@ proptest! {
         prop_assert_eq!(&samples.last().unwrap().1[..], waypoints.last().unwrap());
         prop_assert!((samples.last().unwrap().0 - aligned.seconds()).abs() < 1e-9);
         for w in samples.windows(2) {
-            let slow = |i: usize| (w[1].1[i] - w[0].1[i]).abs() <= limits.velocity[i] * period * (1.0 + 1e-9) + 1e-12;
+            let slow = |i: usize| (w[1].1[i] - w[0].1[i]).abs() <= limits[i].velocity * period * (1.0 + 1e-9) + 1e-12;
             prop_assert!((0..3).all(slow), "{:?}", w);
         }
     }
@@ -119,7 +114,7 @@ fn trajectories_stay_in_free_cells() {
 fn a_straight_segment_takes_the_least_time() {
     let grid = grid([20, 20, 20]);
     let planner = GridPlanner::new(&grid, &OccupancyBitmap::new(grid.shape())).unwrap();
-    let limits = KinematicLimits { velocity: vec![1.0; 3], acceleration: vec![2.0; 3], jerk: vec![10.0; 3] };
+    let limits = vec![JointLimits::new(1.0, 2.0, 10.0); 3];
     let seconds =
         |far: f64| planner.time_parametrize(&path(vec![[0.0; 3], [far, 0.0, 0.0]]), &limits).unwrap().seconds();
     // If the speed limit is reached: length / v + v / a + a / j.
@@ -156,16 +151,17 @@ fn invalid_limits_and_paths_are_rejected() {
     let planner = GridPlanner::new(&grid, &OccupancyBitmap::new(grid.shape())).unwrap();
     let here = path(vec![grid.center([1, 1, 1])]);
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let limits = KinematicLimits { jerk: vec![100.0, bad, 100.0], ..fast() };
+        let mut limits = fast();
+        limits[1].jerk = bad;
         assert!(matches!(
             planner.time_parametrize(&here, &limits),
             Err(TimeParametrizationError::Limit { joint: 1, kind: LimitKind::Jerk, .. })
         ));
     }
-    let few = KinematicLimits { velocity: vec![1.0; 2], ..fast() };
+    let few = &fast()[..2];
     assert_eq!(
-        planner.time_parametrize(&here, &few).unwrap_err(),
-        TimeParametrizationError::Count { kind: LimitKind::Velocity, given: 2, joints: 3 }
+        planner.time_parametrize(&here, few).unwrap_err(),
+        TimeParametrizationError::Count { given: 2, joints: 3 }
     );
     assert_eq!(planner.time_parametrize(&path(vec![]), &fast()).unwrap_err(), TimeParametrizationError::Path);
     assert_eq!(

@@ -129,8 +129,8 @@ impl Default for PathRequest {
 /// start in a region, or nearer to it than the clearance, this planner finds no path.
 pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, FormatError> {
     let (id, robot) = request_validation::select_robot(cell, request.robot.as_deref())?;
-    let mut limits = request_validation::kinematic_limits(cell, robot)?;
-    limits.velocity.iter_mut().for_each(|v| *v *= request.speed);
+    let limits = request_validation::joint_limits(cell, robot)?.iter().map(|limits| limits.slowed_to(request.speed));
+    let limits: Vec<_> = limits.collect();
     let from = request.from.as_ref().unwrap_or(&robot.start);
     request_validation::check_joint_values(cell, robot, "start", from)?;
     let scene = QueryModel::of_cell(cell).scene(OutOfReachProofs::Omit)?;

@@ -1,8 +1,7 @@
 //! A path that is searched for with random samples.
 
-use elbowroom_planner::{
-    CoverRrtConnect, KinematicLimits, PlannedPath, RrtConnect, RrtConnectError, RrtConnectSettings, TimedMotion,
-};
+use elbowroom_kinematics::JointLimits;
+use elbowroom_planner::{CoverRrtConnect, PlannedPath, RrtConnect, RrtConnectError, RrtConnectSettings, TimedMotion};
 use elbowroom_scene::{Scene, SceneState};
 
 /// Input of a planner.
@@ -11,7 +10,7 @@ pub(super) struct Query<'q> {
     pub state: &'q SceneState,
     pub goals: &'q [Vec<f64>],
     pub settings: &'q RrtConnectSettings,
-    pub limits: &'q KinematicLimits,
+    pub limits: &'q [JointLimits],
     pub period_s: f64,
     pub optimize: bool,
 }

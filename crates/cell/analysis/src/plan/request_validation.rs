@@ -2,8 +2,8 @@
 
 use elbowroom_cell::{Cell, CellRobot, suggest};
 use elbowroom_formats::FormatError;
-use elbowroom_kinematics::JointKind;
-use elbowroom_planner::{KinematicLimits, PathEnd, RrtConnectError};
+use elbowroom_kinematics::{JointKind, JointLimits};
+use elbowroom_planner::{PathEnd, RrtConnectError};
 use elbowroom_robot::RobotId;
 
 /// The robot of this name; without a name, the only robot.
@@ -24,7 +24,7 @@ pub fn select_robot<'c>(cell: &'c Cell, name: Option<&str>) -> Result<(RobotId, 
 }
 
 /// Motion limits of the robot's joints. Speeds must be given: a guess would be unsafe.
-pub(super) fn kinematic_limits(cell: &Cell, robot: &CellRobot) -> Result<KinematicLimits, FormatError> {
+pub(super) fn joint_limits<'c>(cell: &Cell, robot: &'c CellRobot) -> Result<&'c [JointLimits], FormatError> {
     let chain = &robot.robot.chain;
     let joints = || chain.active_joints().iter().map(|id| &chain.joints()[id.0]);
     let known = |v: Option<f64>| v.is_some_and(|v| v > 0.0 && v.is_finite());
@@ -51,11 +51,7 @@ pub(super) fn kinematic_limits(cell: &Cell, robot: &CellRobot) -> Result<Kinemat
         );
         return Err(FormatError::new(&cell.file, robot.line, what).hint(hint));
     }
-    Ok(KinematicLimits {
-        velocity: robot.limits.iter().map(|l| l.velocity).collect(),
-        acceleration: robot.limits.iter().map(|l| l.acceleration).collect(),
-        jerk: robot.limits.iter().map(|l| l.jerk).collect(),
-    })
+    Ok(&robot.limits)
 }
 
 /// Checks that there is one finite value per joint.

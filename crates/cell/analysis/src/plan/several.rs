@@ -13,7 +13,7 @@ use elbowroom_robot::RobotId;
 use elbowroom_scene::SceneState;
 use serde::Serialize;
 
-use super::request_validation::{check_joint_values, kinematic_limits, planner_error, select_robot};
+use super::request_validation::{check_joint_values, joint_limits, planner_error, select_robot};
 use crate::cover_cache::CoverCache;
 
 /// Request for the path of one of the robots.
@@ -96,7 +96,7 @@ pub fn plan_several(cell: &Cell, request: &SeveralPathsRequest) -> Result<Severa
         check_joint_values(cell, robot, "start", from)?;
         check_joint_values(cell, robot, "goal", &one.to)?;
         starts[id.0].clone_from(from);
-        goals.push(RobotGoal { robot: id, q: one.to.clone(), limits: kinematic_limits(cell, robot)? });
+        goals.push(RobotGoal { robot: id, q: one.to.clone(), limits: joint_limits(cell, robot)?.to_vec() });
     }
     let mut state = SceneState::new(&scene);
     for (i, q) in starts.iter().enumerate() {

@@ -1,10 +1,9 @@
 //! RRT-Connect on sphere covers as the planner of problem sets, followed by RRT-Connect in the exact scene.
 
+use elbowroom_kinematics::JointLimits;
 use std::time::{Duration, Instant};
 
-use elbowroom_planner::{
-    CoverModel, CoverObstacles, CoverRrtConnect, KinematicLimits, PlannedPath, RrtConnectError, TimedMotion,
-};
+use elbowroom_planner::{CoverModel, CoverObstacles, CoverRrtConnect, PlannedPath, RrtConnectError, TimedMotion};
 
 use super::problem_scene::ROBOT;
 use super::rrt_connect::{found, reason, rrt_settings};
@@ -48,7 +47,7 @@ impl PlanningEngine for CoverRrtConnectEngine {
         &mut self,
         problem: &ProblemScene,
         path: &PlannedPath,
-        limits: &KinematicLimits,
+        limits: &[JointLimits],
         settings: &ProblemSettings,
     ) -> Result<TimedMotion, RrtConnectError> {
         let Some(model) = &self.model else { return RrtConnectEngine.time(problem, path, limits, settings) };

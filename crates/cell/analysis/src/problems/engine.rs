@@ -1,8 +1,9 @@
 //! Interface of the planners that solve a set of problems.
 
+use elbowroom_kinematics::JointLimits;
 use std::time::Duration;
 
-use elbowroom_planner::{KinematicLimits, PlannedPath, RrtConnectError, TimedMotion};
+use elbowroom_planner::{PlannedPath, RrtConnectError, TimedMotion};
 
 use super::ProblemScene;
 
@@ -19,7 +20,7 @@ pub trait PlanningEngine {
         &mut self,
         problem: &ProblemScene,
         path: &PlannedPath,
-        limits: &KinematicLimits,
+        limits: &[JointLimits],
         settings: &ProblemSettings,
     ) -> Result<TimedMotion, RrtConnectError>;
 }

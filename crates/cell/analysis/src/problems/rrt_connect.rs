@@ -1,8 +1,9 @@
 //! RRT-Connect in the exact scene as the planner of problem sets.
 
+use elbowroom_kinematics::JointLimits;
 use std::time::{Duration, Instant};
 
-use elbowroom_planner::{KinematicLimits, PlannedPath, RrtConnectError, RrtConnectSettings, TimedMotion};
+use elbowroom_planner::{PlannedPath, RrtConnectError, RrtConnectSettings, TimedMotion};
 
 use super::{PlanningEngine, ProblemScene, ProblemSettings, Solution};
 
@@ -35,7 +36,7 @@ impl PlanningEngine for RrtConnectEngine {
         &mut self,
         problem: &ProblemScene,
         path: &PlannedPath,
-        limits: &KinematicLimits,
+        limits: &[JointLimits],
         settings: &ProblemSettings,
     ) -> Result<TimedMotion, RrtConnectError> {
         let rrt = rrt_settings(settings, Duration::MAX);

@@ -1,7 +1,8 @@
 //! The run over the problems of a file.
 
 use elbowroom_formats::problem_set::PlanningProblem;
-use elbowroom_planner::{KinematicLimits, PlannedPath, TimedMotion};
+use elbowroom_kinematics::JointLimits;
+use elbowroom_planner::{PlannedPath, TimedMotion};
 
 use super::messages::Result;
 use super::model::ProblemModel;
@@ -74,7 +75,7 @@ fn time(
     problem: &ProblemScene,
     solution: Solution,
     settings: &ProblemSettings,
-    limits: &KinematicLimits,
+    limits: &[JointLimits],
 ) -> std::result::Result<TimedPath, String> {
     let path = PlannedPath {
         waypoints: solution.waypoints,

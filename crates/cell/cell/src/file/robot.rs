@@ -2,7 +2,7 @@
 
 use elbowroom_formats::{FormatError, Warning};
 use elbowroom_kinematics::dh::ClassicalRow;
-use elbowroom_kinematics::{Chain, Joint, JointKind, Limits};
+use elbowroom_kinematics::{Chain, JointKind, JointLimits, Limits};
 use elbowroom_monitor::VolumeModel;
 use elbowroom_proximity::Shape;
 use elbowroom_robot::{Collider, Robot, RobotId};
@@ -10,7 +10,8 @@ use elbowroom_spatial::Pose;
 
 use super::read::{Table, Value};
 use super::{flange, models, tools};
-use crate::{CellRobot, JointLimits, Units, suggest};
+use crate::model_limits::{ACCELERATION_TIME_S, JERK_TIME_S, STOP_TIME_S};
+use crate::{CellRobot, Units, suggest};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
@@ -42,27 +43,10 @@ const MAX_STOP_TIME_S: f64 = 60.0;
 /// Largest speeds, accelerations and jerks, in the file's units.
 const MAX_RATE: f64 = 1e9;
 
-/// Default time from full speed to rest.
-pub(crate) const STOP_TIME_S: f64 = 0.1;
-/// Default time from rest to full speed, if neither the model nor `acceleration` states one.
-pub(crate) const ACCELERATION_TIME_S: f64 = 0.25;
-/// Default time to full acceleration.
-pub(crate) const JERK_TIME_S: f64 = 0.1;
 /// Default speed of revolute joints, rad/s.
 const REVOLUTE_SPEED: f64 = std::f64::consts::PI;
 /// Default speed of prismatic joints, m/s.
 const PRISMATIC_SPEED: f64 = 1.0;
-
-impl JointLimits {
-    /// Limits of a joint of a model, with the defaults of a cell file for missing values. `None` if the model states no
-    /// speed.
-    pub fn of_joint(joint: &Joint) -> Option<Self> {
-        let sane = |v: Option<f64>| v.filter(|v| *v > 0.0 && v.is_finite());
-        let velocity = sane(joint.limits.velocity)?;
-        let acceleration = sane(joint.limits.acceleration).unwrap_or(velocity / ACCELERATION_TIME_S);
-        Some(Self { velocity, acceleration, jerk: acceleration / JERK_TIME_S, stop: velocity / STOP_TIME_S })
-    }
-}
 
 pub(super) fn read(name: &str, t: &Table<'_>, units: Units, warnings: &mut Vec<Warning>) -> Result<CellRobot> {
     t.only(KEYS)?;
@@ -425,7 +409,8 @@ fn limits(
             .or(sane(joint.limits.acceleration))
             .unwrap_or(velocity / ACCELERATION_TIME_S);
         let jerk = jerk.as_ref().map_or(acceleration / JERK_TIME_S, |j| j[i]);
-        limits.push(JointLimits { velocity, acceleration, jerk, stop: velocity / stop_time });
+        let rates = JointLimits::new(velocity, acceleration, jerk).stopping_at(velocity / stop_time);
+        limits.push(rates.within(joint.limits.lower, joint.limits.upper));
     }
     if !unknown.is_empty() {
         let what = format!(

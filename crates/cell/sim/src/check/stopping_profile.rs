@@ -3,8 +3,9 @@
 use std::collections::HashSet;
 use std::sync::Arc;
 
+use elbowroom_cell::Cell;
 use elbowroom_cell::trajectory::PathPoint;
-use elbowroom_cell::{Cell, JointLimits};
+use elbowroom_kinematics::JointLimits;
 use elbowroom_kinematics::{Chain, ChainState, LinkId};
 use elbowroom_robot::RobotId;
 

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use elbowroom_cell::trajectory::{PathPoint, Playback};
-use elbowroom_cell::{CellRegionId, JointLimits, PathPlanner};
+use elbowroom_cell::{CellRegionId, PathPlanner};
+use elbowroom_kinematics::JointLimits;
 use elbowroom_robot::ObjectId;
 
 use super::{Geometry, GripAction, PlanStep, ProgramPlan};

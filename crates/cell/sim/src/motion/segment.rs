@@ -1,7 +1,7 @@
 //! A move with its time law.
 
-use elbowroom_cell::JointLimits;
 use elbowroom_cell::trajectory::PathPoint;
+use elbowroom_kinematics::JointLimits;
 use rsruckig::prelude::*;
 
 use super::Geometry;

@@ -9,11 +9,10 @@ use elbowroom_cell::region_constraint::RegionConstraint;
 use elbowroom_cell::trajectory::{Playback, motion_bounds};
 use elbowroom_cell::{Cell, CellRobot, TrajectoryRow};
 use elbowroom_formats::FormatError;
-use elbowroom_kinematics::ChainState;
+use elbowroom_kinematics::{ChainState, JointLimits};
 use elbowroom_perception::motion_entry::{acceleration_distance, first_root};
 use elbowroom_planner::{
-    CoverModel, CoverObstacles, CoverRrtConnect, KinematicLimits, PlannedPath, RrtConnect, RrtConnectSettings,
-    TimedMotion,
+    CoverModel, CoverObstacles, CoverRrtConnect, PlannedPath, RrtConnect, RrtConnectSettings, TimedMotion,
 };
 use elbowroom_proximity::Shape;
 use elbowroom_robot::RobotId;
@@ -178,7 +177,7 @@ impl<'a> PathReplanner<'a> {
         deadline: Instant,
     ) -> Option<NewPath> {
         let (ahead, goal) = (motion.ahead.as_ref()?, motion.planned.as_ref()?);
-        let limits = self.limits(goal.speed);
+        let limits: Vec<JointLimits> = self.at.limits.iter().map(|limits| limits.slowed_to(goal.speed)).collect();
         let speed = norm(&motion.qd);
         let in_motion = speed > MIN_SPEED;
         let departure = if in_motion {
@@ -198,7 +197,7 @@ impl<'a> PathReplanner<'a> {
         let boxes: Vec<_> = solids.iter().flat_map(|solid| solid.boxes.iter().cloned()).collect();
         let found = attempts(in_motion, regions.are_none(), deadline).find_map(|attempt| {
             let constraint = regions.constraint(attempt.warning_share);
-            let by = (goal.planner, &limits);
+            let by = (goal.planner, &limits[..]);
             self.search((&placed, &boxes), &departure, &goal.q, by, (&attempt.settings, constraint))
         })?;
         let rows = found.rows.into_iter().map(|(t_s, q)| TrajectoryRow { t_s, q }).collect();
@@ -206,21 +205,12 @@ impl<'a> PathReplanner<'a> {
         (Instant::now() <= deadline).then_some(NewPath { replaces: motion.path, play, in_motion })
     }
 
-    fn limits(&self, speed: f64) -> KinematicLimits {
-        let of = |value: fn(&elbowroom_cell::JointLimits) -> f64| self.at.limits.iter().map(value).collect::<Vec<_>>();
-        KinematicLimits {
-            velocity: of(|l| l.velocity).into_iter().map(|v| v * speed).collect(),
-            acceleration: of(|l| l.acceleration),
-            jerk: of(|l| l.jerk),
-        }
-    }
-
     fn search(
         &mut self,
         (placed, others): (&PlacedScene, &[(Shape, Pose)]),
         departure: &Departure,
         goal: &[f64],
-        (planner, limits): (PathPlanner, &KinematicLimits),
+        (planner, limits): (PathPlanner, &[JointLimits]),
         (settings, constraint): (&RrtConnectSettings, Option<RegionConstraint<'_>>),
     ) -> Option<TimedMotion> {
         let PlacedScene { scene, state, .. } = placed;

@@ -1,13 +1,13 @@
 //! A robot with `[avoidance]` in a run, which follows its path as far as dynamic obstacles permit.
 
 use elbowroom_avoidance::{
-    AvoidanceError, Avoider, AvoiderOutput, AvoiderState, DynamicObstacles, EscapeState, JointLimit, Neighbour,
-    ObservedObject, PathKind, PlannedDetour, Reference,
+    AvoidanceError, Avoider, AvoiderOutput, AvoiderState, DynamicObstacles, EscapeState, Neighbour, ObservedObject,
+    PathKind, PlannedDetour, Reference,
 };
 use elbowroom_cell::region_constraint::RegionConstraint;
 use elbowroom_cell::{AvoidanceSpec, Cell};
 use elbowroom_formats::{FormatError, Warning};
-use elbowroom_kinematics::ChainState;
+use elbowroom_kinematics::{ChainState, JointLimits};
 use elbowroom_planner::{PathConstraint, RrtConnectSettings};
 use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_scene::{Attachment, Scene};
@@ -362,16 +362,7 @@ fn obstacles(cell: &Cell) -> Vec<String> {
 }
 
 /// Joint limits for evasion.
-pub fn evasion_limits(cell: &Cell, robot: RobotId) -> Vec<JointLimit> {
-    let robot = &cell.robots[robot.0];
-    let chain = &robot.robot.chain;
-    let bounds = chain.lower().into_iter().zip(chain.upper());
-    let limit = |((lower, upper), l): ((f64, f64), &elbowroom_cell::JointLimits)| JointLimit {
-        lower,
-        upper,
-        speed: l.velocity,
-        acceleration: l.acceleration,
-        stop: l.stop.max(l.acceleration),
-    };
-    bounds.zip(&robot.limits).map(limit).collect()
+pub fn evasion_limits(cell: &Cell, robot: RobotId) -> Vec<JointLimits> {
+    // Avoidance never brakes less than it accelerates.
+    cell.robots[robot.0].limits.iter().map(|l| l.stopping_at(l.stop.max(l.acceleration))).collect()
 }

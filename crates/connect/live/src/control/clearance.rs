@@ -71,7 +71,7 @@ fn with_only(cell: &Cell, region: &CellRegion) -> Cell {
 fn at_standstill(cell: &Cell, robot: RobotId, state: &JointState) -> Vec<f64> {
     let going_on_s = UNTIL_IT_COUNTS_S + cell.laws.reaction_s;
     let limits = &cell.robots[robot.0].limits;
-    let moved = |((q, limit), qd): ((&f64, &elbowroom_cell::JointLimits), &f64)| {
+    let moved = |((q, limit), qd): ((&f64, &elbowroom_kinematics::JointLimits), &f64)| {
         q + qd * (going_on_s + qd.abs() / (2.0 * limit.stop))
     };
     let has_velocities = state.qd.len() == state.q.len() && state.qd.iter().all(|v| v.is_finite());

@@ -2,8 +2,9 @@
 #![allow(dead_code)]
 
 use elbowroom_avoidance::{
-    Avoider, AvoiderOutput, AvoiderSettings, DynamicObstacles, JointLimit, ObservedObject, PathKind, Reference, Rules,
+    Avoider, AvoiderOutput, AvoiderSettings, DynamicObstacles, ObservedObject, PathKind, Reference, Rules,
 };
+use elbowroom_kinematics::JointLimits;
 use elbowroom_planner::RrtConnectSettings;
 use elbowroom_proximity::ccd::ConstantTwist;
 use elbowroom_proximity::{Cuboid, Shape, Sphere};
@@ -37,8 +38,8 @@ pub fn scene() -> Scene {
     builder.build().unwrap()
 }
 
-pub fn limits(scene: &Scene) -> Vec<JointLimit> {
-    JointLimit::of(&scene.robots()[0].robot.chain, 0.25, 0.1, 2.0)
+pub fn limits(scene: &Scene) -> Vec<JointLimits> {
+    JointLimits::of_chain(&scene.robots()[0].robot.chain, 0.25, 0.1, 2.0)
 }
 
 pub fn avoider<'s>(scene: &'s Scene, q: &[f64]) -> Avoider<'s> {
@@ -176,8 +177,8 @@ impl<'s> Simulation<'s> {
         for (j, limit) in limits(self.scene).iter().enumerate() {
             let (q, v) = (self.avoider.q()[j], self.avoider.qd()[j]);
             assert!(q >= limit.lower && q <= limit.upper, "joint {j} at {q}");
-            self.max_speed = self.max_speed.max(v.abs() / limit.speed);
-            if v.abs() > 1e-4 * limit.speed {
+            self.max_speed = self.max_speed.max(v.abs() / limit.velocity);
+            if v.abs() > 1e-4 * limit.velocity {
                 if self.sign[j] * v < 0.0 {
                     self.reversals[j].push(self.t);
                 }

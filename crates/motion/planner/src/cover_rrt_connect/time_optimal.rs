@@ -1,11 +1,12 @@
 //! Time-optimal motion along a planned path: corners are blended if the covers prove the blend.
 
+use elbowroom_kinematics::JointLimits;
 use elbowroom_scene::SceneState;
 
 use super::edge_validator::{CoverValidator, EdgeValidator};
 use super::planner::CoverRrtConnect;
 use crate::rrt_connect::{PlannedPath, RrtConnectError, RrtConnectSettings};
-use crate::time_parametrization::{BlendedPath, CornerBlend, KinematicLimits, Trajectory};
+use crate::time_parametrization::{BlendedPath, CornerBlend, Trajectory};
 
 /// Number of chords by which a blend is tested before it is timed.
 const BLEND_PIECES: usize = 4;
@@ -47,7 +48,7 @@ impl CoverRrtConnect<'_> {
         &mut self,
         start: &SceneState,
         path: &PlannedPath,
-        limits: &KinematicLimits,
+        limits: &[JointLimits],
         period: f64,
         settings: &RrtConnectSettings,
     ) -> Result<TimedMotion, RrtConnectError> {

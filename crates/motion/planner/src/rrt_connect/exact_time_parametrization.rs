@@ -1,12 +1,13 @@
 //! Time parametrization of paths in the exact scene: a corner is blended if the result is proven free.
 
+use elbowroom_kinematics::JointLimits;
 use elbowroom_scene::SceneState;
 
 use super::error::RrtConnectError;
 use super::planned_path::PlannedPath;
 use super::planner::RrtConnect;
 use super::settings::RrtConnectSettings;
-use crate::time_parametrization::{KinematicLimits, PathElement, PathSegments, Trajectory};
+use crate::time_parametrization::{PathElement, PathSegments, Trajectory};
 
 /// Number of times that the blend distance of a corner is halved before the trajectory stops at the corner.
 const MAX_HALVINGS: i32 = 5;
@@ -23,7 +24,8 @@ impl RrtConnect<'_> {
     /// rests only at multiples of the period.
     ///
     /// ```
-    /// use elbowroom_planner::{KinematicLimits, RrtConnect, RrtConnectSettings};
+    /// use elbowroom_kinematics::JointLimits;
+    /// use elbowroom_planner::{RrtConnect, RrtConnectSettings};
     /// use elbowroom_robot::RobotId;
     /// use elbowroom_scene::{SceneState, example};
     /// let scene = example::two_arms();
@@ -31,7 +33,7 @@ impl RrtConnect<'_> {
     /// state.set_q(&scene, RobotId(0), &[-0.9, 1.3, 0.6])?;
     /// let (mut planner, settings) = (RrtConnect::new(&scene, RobotId(0))?, RrtConnectSettings::default());
     /// let path = planner.plan(&state, &[0.9, 1.3, 0.6], &settings)?;
-    /// let limits = KinematicLimits { velocity: vec![2.0; 3], acceleration: vec![8.0; 3], jerk: vec![80.0; 3] };
+    /// let limits = vec![JointLimits::new(2.0, 8.0, 80.0); 3];
     /// let trajectory = planner.time_parametrize(&state, &path, &limits, 0.004, &settings)?;
     /// let samples = trajectory.samples(0.004)?;
     /// assert_eq!(samples.last().unwrap().1, [0.9, 1.3, 0.6]);
@@ -46,7 +48,7 @@ impl RrtConnect<'_> {
         &mut self,
         start: &SceneState,
         path: &PlannedPath,
-        limits: &KinematicLimits,
+        limits: &[JointLimits],
         period: f64,
         settings: &RrtConnectSettings,
     ) -> Result<Trajectory, RrtConnectError> {

@@ -5,7 +5,7 @@
 //! the ends, and jerks are at most 6·|v2 − v1|/T². As `S` is below its mirror image in the first half, the curve stays
 //! in the triangle of its ends and the corner.
 
-use super::limits::KinematicLimits;
+use elbowroom_kinematics::JointLimits;
 
 /// A blended corner: unit directions of both segments, and the speed along each.
 #[derive(Debug, Clone, Copy)]
@@ -18,10 +18,12 @@ pub(super) struct Blend<'l> {
 
 impl Blend<'_> {
     /// Duration at a speed along both segments (unit directions), s.
-    pub fn seconds(speed: f64, [u, v]: [&[f64]; 2], limits: &KinematicLimits) -> f64 {
+    pub fn seconds(speed: f64, [u, v]: [&[f64]; 2], limits: &[JointLimits]) -> f64 {
         let changes = u.iter().zip(v).map(|(u, v)| speed * (v - u).abs());
-        let each = changes.zip(limits.acceleration.iter().zip(&limits.jerk));
-        each.map(|(change, (a, j))| (1.5 * change / a).max((6.0 * change / j).sqrt())).fold(0.0, f64::max)
+        let each = changes.zip(limits);
+        let seconds =
+            |(change, l): (f64, &JointLimits)| (1.5 * change / l.acceleration).max((6.0 * change / l.jerk).sqrt());
+        each.map(seconds).fold(0.0, f64::max)
     }
 
     /// Position (relative to the beginning of the blend), velocity and acceleration of one joint after `t` seconds.

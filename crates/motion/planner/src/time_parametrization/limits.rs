@@ -1,25 +1,15 @@
 //! Limits of velocity, acceleration and jerk.
 
-/// Largest velocity, acceleration and jerk of each joint; all finite and above 0. For prismatic joints, read m instead
-/// of rad.
-#[derive(Debug, Clone, PartialEq)]
-pub struct KinematicLimits {
-    /// rad/s.
-    pub velocity: Vec<f64>,
-    /// rad/s².
-    pub acceleration: Vec<f64>,
-    /// rad/s³.
-    pub jerk: Vec<f64>,
-}
+use elbowroom_kinematics::JointLimits;
 
-/// A list of [`KinematicLimits`].
+/// A limit among the [`JointLimits`] of a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LimitKind {
-    /// [`KinematicLimits::velocity`].
+    /// [`JointLimits::velocity`].
     Velocity,
-    /// [`KinematicLimits::acceleration`].
+    /// [`JointLimits::acceleration`].
     Acceleration,
-    /// [`KinematicLimits::jerk`].
+    /// [`JointLimits::jerk`].
     Jerk,
 }
 
@@ -47,11 +37,9 @@ pub enum TimeParametrizationError {
         value: f64,
     },
     /// The number of limits differs from the number of joints.
-    #[error("the largest {kind} is given for {given} joints, the path has {joints}: give one number per joint")]
+    #[error("limits are given for {given} joints, the path has {joints}: give those of each joint")]
     Count {
-        /// Velocity, acceleration or jerk.
-        kind: LimitKind,
-        /// Length of the list.
+        /// Number of joints with limits.
         given: usize,
         /// Number of joints of the path.
         joints: usize,
@@ -64,45 +52,29 @@ pub enum TimeParametrizationError {
     Period(f64),
 }
 
-impl KinematicLimits {
-    /// Checks all limits, for a number of joints.
-    pub(super) fn validate(&self, joints: usize) -> Result<(), TimeParametrizationError> {
+/// Checks that there are valid limits for each of a number of joints.
+pub(super) fn validate(limits: &[JointLimits], joints: usize) -> Result<(), TimeParametrizationError> {
+    if limits.len() != joints {
+        return Err(TimeParametrizationError::Count { given: limits.len(), joints });
+    }
+    for (joint, limit) in limits.iter().enumerate() {
         let all = [
-            (LimitKind::Velocity, &self.velocity),
-            (LimitKind::Acceleration, &self.acceleration),
-            (LimitKind::Jerk, &self.jerk),
+            (LimitKind::Velocity, limit.velocity),
+            (LimitKind::Acceleration, limit.acceleration),
+            (LimitKind::Jerk, limit.jerk),
         ];
-        for (kind, values) in all {
-            if values.len() != joints {
-                return Err(TimeParametrizationError::Count { kind, given: values.len(), joints });
-            }
-            for (joint, &value) in values.iter().enumerate() {
-                if !(value.is_finite() && value > 0.0) {
-                    return Err(TimeParametrizationError::Limit { joint, kind, value });
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// Limits along a direction (unit vector), set by the joint that reaches its limit first.
-    pub(super) fn in_direction(&self, direction: &[f64]) -> DirectionalLimits {
-        let least = |limit: &[f64]| {
-            let each = limit.iter().zip(direction).filter(|(_, d)| **d != 0.0).map(|(l, d)| l / d.abs());
-            each.fold(f64::INFINITY, f64::min)
-        };
-        DirectionalLimits {
-            speed: least(&self.velocity),
-            acceleration: least(&self.acceleration),
-            jerk: least(&self.jerk),
+        if let Some((kind, value)) = all.into_iter().find(|(_, value)| !(value.is_finite() && *value > 0.0)) {
+            return Err(TimeParametrizationError::Limit { joint, kind, value });
         }
     }
+    Ok(())
 }
 
-/// Limits along a direction.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct DirectionalLimits {
-    pub speed: f64,
-    pub acceleration: f64,
-    pub jerk: f64,
+/// Limits along a direction (unit vector), set by the joint that reaches its limit first.
+pub(super) fn in_direction(limits: &[JointLimits], direction: &[f64]) -> JointLimits {
+    let least = |limit: fn(&JointLimits) -> f64| {
+        let each = limits.iter().map(limit).zip(direction).filter(|(_, d)| **d != 0.0).map(|(l, d)| l / d.abs());
+        each.fold(f64::INFINITY, f64::min)
+    };
+    JointLimits::new(least(|l| l.velocity), least(|l| l.acceleration), least(|l| l.jerk))
 }

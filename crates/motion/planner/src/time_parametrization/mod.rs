@@ -9,7 +9,7 @@ mod speed_ramp;
 mod time_optimal;
 mod trajectory;
 
-pub use limits::{KinematicLimits, LimitKind, TimeParametrizationError};
+pub use limits::{LimitKind, TimeParametrizationError};
 pub(crate) use segments::PathSegments;
 pub use time_optimal::{BlendedPath, CornerBlend, TimeOptimalTrajectory};
 pub(crate) use trajectory::PathElement;

@@ -1,9 +1,10 @@
 //! A path as straight segments with corners between them, and the speeds at the corners.
 
 use super::blend::Blend;
-use super::limits::{DirectionalLimits, KinematicLimits, TimeParametrizationError};
+use super::limits::{TimeParametrizationError, in_direction, validate};
 use super::speed_profile::bisect_greatest;
 use super::speed_ramp::SpeedRamp;
+use elbowroom_kinematics::JointLimits;
 
 /// Distance below which waypoints count as one, rad.
 const SAME_POINT_RAD: f64 = 1e-9;
@@ -13,7 +14,7 @@ const SAME_POINT_RAD: f64 = 1e-9;
 pub(crate) struct PathSegments {
     pub(super) segments: Vec<Segment>,
     pub(super) end: Vec<f64>,
-    limits: KinematicLimits,
+    limits: Vec<JointLimits>,
 }
 
 /// A straight segment.
@@ -23,7 +24,7 @@ pub(super) struct Segment {
     /// Unit vector.
     pub direction: Vec<f64>,
     pub length: f64,
-    pub limits: DirectionalLimits,
+    pub limits: JointLimits,
 }
 
 /// A corner before a segment (or an end, speed 0): its speed and the duration of its blend.
@@ -42,12 +43,12 @@ impl Corner {
 
 impl PathSegments {
     /// Checks waypoints and limits; removes repeated waypoints.
-    pub fn new<Q: AsRef<[f64]>>(waypoints: &[Q], limits: &KinematicLimits) -> Result<Self, TimeParametrizationError> {
+    pub fn new<Q: AsRef<[f64]>>(waypoints: &[Q], limits: &[JointLimits]) -> Result<Self, TimeParametrizationError> {
         let (Some(first), Some(last)) = (waypoints.first(), waypoints.last()) else {
             return Err(TimeParametrizationError::Path);
         };
         let (mut from, end) = (first.as_ref(), last.as_ref().to_vec());
-        limits.validate(from.len())?;
+        validate(limits, from.len())?;
         let is_valid = |q: &Q| q.as_ref().len() == from.len() && q.as_ref().iter().all(|x| x.is_finite());
         if !waypoints.iter().all(is_valid) {
             return Err(TimeParametrizationError::Path);
@@ -59,12 +60,12 @@ impl PathSegments {
             let length = difference.iter().map(|x| x * x).sum::<f64>().sqrt();
             if length > SAME_POINT_RAD {
                 let direction: Vec<f64> = difference.iter().map(|x| x / length).collect();
-                let limits = limits.in_direction(&direction);
+                let limits = in_direction(limits, &direction);
                 segments.push(Segment { from: from.to_vec(), direction, length, limits });
                 from = to;
             }
         }
-        Ok(Self { segments, end, limits: limits.clone() })
+        Ok(Self { segments, end, limits: limits.to_vec() })
     }
 
     /// Number of segments; corner `n` is before segment `n`, for `1..count`.
@@ -103,7 +104,7 @@ impl PathSegments {
         if !(blend_distance > 0.0) {
             return Corner::default();
         }
-        let top = self.segments[n - 1].limits.speed.min(self.segments[n].limits.speed);
+        let top = self.segments[n - 1].limits.velocity.min(self.segments[n].limits.velocity);
         let speed =
             bisect_greatest(0.0, top, |speed| self.corner_at_speed(n, speed).blend_distance() <= blend_distance);
         self.corner_at_speed(n, speed)

@@ -1,7 +1,7 @@
 //! The speed along a straight segment: a ramp up, a constant speed, a ramp down.
 
-use super::limits::DirectionalLimits;
 use super::speed_ramp::SpeedRamp;
+use elbowroom_kinematics::JointLimits;
 
 /// Number of bisections: enough to reach the rounding error of any speed.
 const BISECTIONS: usize = 60;
@@ -18,13 +18,13 @@ pub(super) struct SpeedProfile {
 
 impl SpeedProfile {
     /// The fastest profile from one speed to another over a length, which must be sufficient for the change.
-    pub fn new(length: f64, from: f64, to: f64, limits: DirectionalLimits) -> Self {
+    pub fn new(length: f64, from: f64, to: f64, limits: JointLimits) -> Self {
         let ramps = |peak: f64| (SpeedRamp::new(from, peak, limits), SpeedRamp::new(peak, to, limits));
         let over = |peak: f64| {
             let (up, down) = ramps(peak);
             up.distance() + down.distance()
         };
-        let peak = bisect_greatest(from.max(to), limits.speed, |peak| over(peak) <= length);
+        let peak = bisect_greatest(from.max(to), limits.velocity, |peak| over(peak) <= length);
         let (up, down) = ramps(peak);
         let rest = (length - up.distance() - down.distance()).max(0.0);
         Self { up, down, peak, hold: if peak > 0.0 { rest / peak } else { 0.0 } }

@@ -1,6 +1,6 @@
 //! Changes of speed: the acceleration rises, stays constant and falls again; it is 0 at both ends.
 
-use super::limits::DirectionalLimits;
+use elbowroom_kinematics::JointLimits;
 
 /// The fastest change from one speed to another within limits of acceleration and jerk.
 #[derive(Debug, Clone, Copy)]
@@ -13,7 +13,7 @@ pub(super) struct SpeedRamp {
 }
 
 impl SpeedRamp {
-    pub fn new(from: f64, to: f64, limits: DirectionalLimits) -> Self {
+    pub fn new(from: f64, to: f64, limits: JointLimits) -> Self {
         let change = (to - from).abs();
         let rise = (limits.acceleration / limits.jerk).min((change / limits.jerk).sqrt());
         let seconds = if rise > 0.0 { change / (limits.jerk * rise) + rise } else { 0.0 };

@@ -4,9 +4,10 @@
 //! With `x = ṡ²`, `b = s̈` and `c = s⃛/ṡ`, the acceleration of a joint is `q″x + q′b`, and its jerk is
 //! `√x·(q‴x + 3q″b + q′c)`. After division by √x, everything except the bound of the jerk is linear in (x, b, c).
 
+use elbowroom_kinematics::JointLimits;
 use std::ops::Range;
 
-use super::super::limits::KinematicLimits;
+use super::super::limits::in_direction;
 use super::blended_path::PathSection;
 use super::limit_excess::Ratios;
 use super::path_element::PathElement;
@@ -71,7 +72,7 @@ impl JerkConstraints {
         section: &PathSection,
         grid: &PathGrid,
         spline: &SpeedSpline,
-        limits: &KinematicLimits,
+        limits: &[JointLimits],
         most: &[f64],
     ) -> Self {
         let mut all = Self::default();
@@ -99,25 +100,25 @@ impl JerkConstraints {
     }
 
     /// The next interval begins with the acceleration that this one ends with, unless it is the last.
-    fn add_straight(&mut self, element: &PathElement, h: f64, is_last: bool, limits: &KinematicLimits) {
-        let along = limits.in_direction(&element.direction);
+    fn add_straight(&mut self, element: &PathElement, h: f64, is_last: bool, limits: &[JointLimits]) {
+        let along = in_direction(limits, &element.direction);
         for share in [0.0, 1.0] {
             let first = self.rows();
             if share == 0.0 || is_last {
                 self.accelerations.push([0.0, along.acceleration.recip()]);
             }
             self.jerks.push([0.0, 0.0, along.jerk.recip()]);
-            self.add_point(share * h, 0.5 * h, along.speed * along.speed, first);
+            self.add_point(share * h, 0.5 * h, along.velocity * along.velocity, first);
         }
     }
 
-    fn add_blend(&mut self, element: &PathElement, s: f64, h: f64, most: f64, limits: &KinematicLimits) {
+    fn add_blend(&mut self, element: &PathElement, s: f64, h: f64, most: f64, limits: &[JointLimits]) {
         for (share, weight) in [(0.0, 0.5), (0.5, 0.0), (1.0, 0.5)] {
             let first = self.rows();
-            let derivatives = (0..limits.velocity.len()).map(|joint| element.at(s + share * h, joint));
+            let derivatives = (0..limits.len()).map(|joint| element.at(s + share * h, joint));
             let mut x_max = f64::INFINITY;
             for (joint, [_, p, c, d]) in derivatives.enumerate() {
-                let [v, a, j] = [limits.velocity[joint], limits.acceleration[joint], limits.jerk[joint]];
+                let [v, a, j] = [limits[joint].velocity, limits[joint].acceleration, limits[joint].jerk];
                 x_max = x_max.min((v / p).powi(2)).min(a / c.abs());
                 if share < 1.0 {
                     self.accelerations.push([c / a, p / a]);
@@ -164,7 +165,7 @@ impl JerkConstraints {
         &self,
         section: &PathSection,
         grid: &PathGrid,
-        limits: &KinematicLimits,
+        limits: &[JointLimits],
         most: &[f64],
     ) -> Vec<f64> {
         let x = slow_profile(section, grid, limits, most);
@@ -246,7 +247,7 @@ fn retain_from<T: Copy>(rows: &mut Vec<T>, from: usize, keep: impl Fn(&T) -> boo
 }
 
 /// Squared speeds at the nodes: half of `most`, and at most the speed that constant jerk reaches from either side.
-fn slow_profile(section: &PathSection, grid: &PathGrid, limits: &KinematicLimits, most: &[f64]) -> Vec<f64> {
+fn slow_profile(section: &PathSection, grid: &PathGrid, limits: &[JointLimits], most: &[f64]) -> Vec<f64> {
     let jerks: Vec<[f64; 2]> = section.elements.iter().map(|e| path_jerk(e, limits)).collect();
     let of = |interval: usize| jerks[grid.elements[interval] as usize];
     let mut x: Vec<f64> = most.iter().map(|x| 0.5 * x).collect();
@@ -270,10 +271,10 @@ fn slow_profile(section: &PathSection, grid: &PathGrid, limits: &KinematicLimits
 
 /// Two properties of an element: the factor of s^(4/3) in the squared speed after a length s from rest, and the largest
 /// squared speed that is constant over the element.
-fn path_jerk(element: &PathElement, limits: &KinematicLimits) -> [f64; 2] {
+fn path_jerk(element: &PathElement, limits: &[JointLimits]) -> [f64; 2] {
     let along = |direction: f64, limit: f64| limit / direction.abs();
     let [mut jerk, mut x] = [f64::INFINITY; 2];
-    for (joint, limit) in limits.jerk.iter().enumerate() {
+    for (joint, JointLimits { jerk: limit, .. }) in limits.iter().enumerate() {
         let turn = element.turn.get(joint).copied().unwrap_or(0.0);
         let tangent = element.direction[joint];
         jerk = jerk.min(along(tangent.abs().max((tangent + turn).abs()), *limit));

@@ -1,10 +1,11 @@
 //! Limit excess: the factor by which a motion must be slowed down to keep all limits everywhere, not only at the points
 //! where they were imposed.
 
-use super::super::limits::KinematicLimits;
+use super::super::limits::in_direction;
 use super::blended_path::PathSection;
 use super::path_element::PathElement;
 use super::path_speed::{PathState, SpeedPiece};
+use elbowroom_kinematics::JointLimits;
 
 /// Number of intervals of a piece; between their ends, values are bounded by their second differences.
 const SAMPLES: usize = 4;
@@ -19,7 +20,7 @@ pub(super) fn ratios(
     section: &PathSection,
     elements: &[u32],
     pieces: &[SpeedPiece],
-    limits: &KinematicLimits,
+    limits: &[JointLimits],
     orders: usize,
 ) -> Vec<Ratios> {
     let each = pieces.iter().zip(elements).enumerate().map(|(n, (piece, element))| {
@@ -47,16 +48,16 @@ pub(super) fn time_stretch(ratios: &[Ratios]) -> f64 {
     stretch * (1.0 + MARGIN)
 }
 
-fn piece_ratios(element: &PathElement, states: &[PathState; SAMPLES + 1], limits: &KinematicLimits) -> Ratios {
+fn piece_ratios(element: &PathElement, states: &[PathState; SAMPLES + 1], limits: &[JointLimits]) -> Ratios {
     let mut ratios: Ratios = [0.0; 3];
     if element.is_straight() {
-        let along = limits.in_direction(&element.direction);
-        let scales = [along.speed, along.acceleration, along.jerk].map(f64::recip);
+        let along = in_direction(limits, &element.direction);
+        let scales = [along.velocity, along.acceleration, along.jerk].map(f64::recip);
         include(&mut ratios, states.map(|[_, v, a, j]| [v * scales[0], a * scales[1], j * scales[2]]));
         return ratios;
     }
-    for joint in 0..limits.velocity.len() {
-        let scales = [limits.velocity[joint], limits.acceleration[joint], limits.jerk[joint]].map(f64::recip);
+    for joint in 0..limits.len() {
+        let scales = [limits[joint].velocity, limits[joint].acceleration, limits[joint].jerk].map(f64::recip);
         include(&mut ratios, states.map(|state| joint_derivatives(element, state, joint, scales)));
     }
     ratios

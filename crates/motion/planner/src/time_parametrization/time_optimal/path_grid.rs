@@ -1,8 +1,9 @@
 //! Path grids: the path positions at which constraints are evaluated, finer near corners and rests.
 
-use super::super::limits::KinematicLimits;
+use super::super::limits::in_direction;
 use super::blended_path::PathSection;
 use super::path_element::PathElement;
+use elbowroom_kinematics::JointLimits;
 
 /// Ratio of neighbouring spacings on a straight segment.
 const GROWTH: f64 = 1.5;
@@ -35,7 +36,7 @@ struct EndSpacing {
 }
 
 impl PathGrid {
-    pub fn new(section: &PathSection, limits: &KinematicLimits, density: GridDensity) -> Self {
+    pub fn new(section: &PathSection, limits: &[JointLimits], density: GridDensity) -> Self {
         let per_blend = density.per_blend;
         let mut grid = Self { nodes: vec![0.0], elements: Vec::new() };
         let mut spacings = Vec::new();
@@ -82,28 +83,23 @@ fn end_spacing(
     neighbour: Option<&PathElement>,
     straight: &PathElement,
     section: &PathSection,
-    limits: &KinematicLimits,
+    limits: &[JointLimits],
     per_blend: usize,
 ) -> EndSpacing {
     if let Some(blend) = neighbour {
         return EndSpacing { rest: 0.0, next: blend.length / per_blend as f64 };
     }
-    let limits = limits.in_direction(&straight.direction);
-    let rise = (limits.acceleration / limits.jerk).min((limits.speed / limits.jerk).sqrt());
+    let limits = in_direction(limits, &straight.direction);
+    let rise = (limits.acceleration / limits.jerk).min((limits.velocity / limits.jerk).sqrt());
     let rest = limits.jerk * (0.25 * rise).powi(3) / 6.0;
     let rest = rest.max(REST_SHARE[0] * section.length).min(REST_SHARE[1] * straight.length);
     EndSpacing { rest, next: 0.5 * rest }
 }
 
 /// Half of the distance covered while acceleration rises, within bounds.
-fn widest_spacing(
-    straight: &PathElement,
-    section: &PathSection,
-    limits: &KinematicLimits,
-    density: GridDensity,
-) -> f64 {
-    let limits = limits.in_direction(&straight.direction);
-    let speed = limits.speed.min((limits.acceleration * section.length).sqrt());
+fn widest_spacing(straight: &PathElement, section: &PathSection, limits: &[JointLimits], density: GridDensity) -> f64 {
+    let limits = in_direction(limits, &straight.direction);
+    let speed = limits.velocity.min((limits.acceleration * section.length).sqrt());
     let [least, most] = density.per_straight;
     (0.5 * speed * limits.acceleration / limits.jerk).max(straight.length / most).min(straight.length / least)
 }

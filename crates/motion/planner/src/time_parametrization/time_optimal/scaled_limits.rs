@@ -1,7 +1,8 @@
 //! Scaled limits: limits of the joints in a unit of time such that a section of a path takes about 1 unit.
 
-use super::super::limits::{KinematicLimits, LimitKind, TimeParametrizationError};
+use super::super::limits::{LimitKind, TimeParametrizationError};
 use super::blended_path::PathSection;
+use elbowroom_kinematics::JointLimits;
 
 /// Bounds of the limits (per length of the section, in the scaled unit of time). Larger limits are never reached; they
 /// are reduced to these bounds so that sums and products stay finite.
@@ -11,7 +12,7 @@ const LARGEST: [f64; 3] = [1e6, 1e7, 1e8];
 #[derive(Debug, Clone)]
 pub(super) struct ScaledLimits {
     /// Limits per scaled unit of time and its powers.
-    pub limits: KinematicLimits,
+    pub limits: Vec<JointLimits>,
     /// The unit of time, s.
     pub unit: f64,
 }
@@ -19,14 +20,14 @@ pub(super) struct ScaledLimits {
 impl ScaledLimits {
     /// Scales limits. The unit is the longest of the least times that each joint needs for its path by each of its
     /// limits.
-    pub fn new(section: &PathSection, limits: &KinematicLimits) -> Result<Self, TimeParametrizationError> {
+    pub fn new(section: &PathSection, limits: &[JointLimits]) -> Result<Self, TimeParametrizationError> {
         let mut unit: f64 = 0.0;
-        for joint in 0..limits.velocity.len() {
+        for joint in 0..limits.len() {
             let far: f64 = section.elements.iter().map(|e| e.length * e.direction[joint].abs()).sum();
             let times = [
-                (LimitKind::Velocity, limits.velocity[joint], far / limits.velocity[joint]),
-                (LimitKind::Acceleration, limits.acceleration[joint], (far / limits.acceleration[joint]).sqrt()),
-                (LimitKind::Jerk, limits.jerk[joint], (far / limits.jerk[joint]).cbrt()),
+                (LimitKind::Velocity, limits[joint].velocity, far / limits[joint].velocity),
+                (LimitKind::Acceleration, limits[joint].acceleration, (far / limits[joint].acceleration).sqrt()),
+                (LimitKind::Jerk, limits[joint].jerk, (far / limits[joint].jerk).cbrt()),
             ];
             for (kind, value, time) in times {
                 if !time.is_finite() {
@@ -35,15 +36,13 @@ impl ScaledLimits {
                 unit = unit.max(time);
             }
         }
-        let scaled = |values: &[f64], order: i32| {
+        let scaled = |value: f64, order: i32| {
             let most = LARGEST[order as usize - 1] * section.length;
-            values.iter().map(|x| (x * unit.powi(order)).min(most).max(f64::MIN_POSITIVE)).collect()
+            (value * unit.powi(order)).min(most).max(f64::MIN_POSITIVE)
         };
-        let limits = KinematicLimits {
-            velocity: scaled(&limits.velocity, 1),
-            acceleration: scaled(&limits.acceleration, 2),
-            jerk: scaled(&limits.jerk, 3),
-        };
+        let scaled =
+            |l: &JointLimits| JointLimits::new(scaled(l.velocity, 1), scaled(l.acceleration, 2), scaled(l.jerk, 3));
+        let limits = limits.iter().map(scaled).collect();
         Ok(Self { limits, unit })
     }
 }

@@ -1,6 +1,6 @@
 //! Section motions: motion along the part of a path from one rest to the next.
 
-use super::super::limits::{KinematicLimits, TimeParametrizationError};
+use super::super::limits::TimeParametrizationError;
 use super::blended_path::PathSection;
 use super::interior_point;
 use super::jerk_constraints::JerkConstraints;
@@ -10,6 +10,7 @@ use super::path_speed::{PathState, SpeedLaw, SpeedPiece};
 use super::scaled_limits::ScaledLimits;
 use super::speed_spline::SpeedSpline;
 use super::topp_ra::ReachabilityAnalysis;
+use elbowroom_kinematics::JointLimits;
 
 /// Densities without and with the limit of jerk.
 const DENSITIES: [GridDensity; 2] = [
@@ -50,10 +51,7 @@ struct Attempt {
 
 impl SectionMotion {
     /// The fastest motion within limits of velocity and acceleration.
-    pub fn without_jerk_limit(
-        section: &PathSection,
-        limits: &KinematicLimits,
-    ) -> Result<Self, TimeParametrizationError> {
+    pub fn without_jerk_limit(section: &PathSection, limits: &[JointLimits]) -> Result<Self, TimeParametrizationError> {
         let problem = Problem::new(section, limits, 2)?;
         let mut analysis = ReachabilityAnalysis::new(section, &problem.grid, &problem.scaled.limits);
         let solve = |analysis: &ReachabilityAnalysis| {
@@ -71,7 +69,7 @@ impl SectionMotion {
     }
 
     /// The fastest motion within limits of velocity, acceleration and jerk.
-    pub fn with_jerk_limit(section: &PathSection, limits: &KinematicLimits) -> Result<Self, TimeParametrizationError> {
+    pub fn with_jerk_limit(section: &PathSection, limits: &[JointLimits]) -> Result<Self, TimeParametrizationError> {
         let problem = Problem::new(section, limits, 3)?;
         let (grid, limits) = (&problem.grid, &problem.scaled.limits);
         let most = ReachabilityAnalysis::new(section, grid, limits).squared_speeds(grid);
@@ -114,11 +112,7 @@ impl SectionMotion {
 }
 
 impl<'p> Problem<'p> {
-    fn new(
-        section: &'p PathSection,
-        limits: &KinematicLimits,
-        orders: usize,
-    ) -> Result<Self, TimeParametrizationError> {
+    fn new(section: &'p PathSection, limits: &[JointLimits], orders: usize) -> Result<Self, TimeParametrizationError> {
         let scaled = ScaledLimits::new(section, limits)?;
         let grid = PathGrid::new(section, &scaled.limits, DENSITIES[orders - 2]);
         Ok(Self { section, scaled, grid, orders })

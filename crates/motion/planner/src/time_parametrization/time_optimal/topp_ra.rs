@@ -5,10 +5,11 @@
 //! the controllable sets; they are intervals from 0, because rest is always admissible. The forward pass uses the
 //! largest `u` that stays in these sets.
 
-use super::super::limits::KinematicLimits;
+use super::super::limits::in_direction;
 use super::blended_path::PathSection;
 use super::limit_excess::Ratios;
 use super::path_grid::PathGrid;
+use elbowroom_kinematics::JointLimits;
 
 /// Largest number of Newton steps for the largest controllable `x`: each step leaves one line of a polygon.
 const MAX_STEPS: usize = 64;
@@ -73,22 +74,22 @@ impl ReachabilityAnalysis {
         }
     }
 
-    pub fn new(section: &PathSection, grid: &PathGrid, limits: &KinematicLimits) -> Self {
+    pub fn new(section: &PathSection, grid: &PathGrid, limits: &[JointLimits]) -> Self {
         let mut all = Self { x_max: vec![f64::INFINITY; grid.nodes.len()], ..Self::default() };
         for n in 0..grid.intervals() {
             all.first.push(all.rows.len());
             let element = &section.elements[grid.elements[n] as usize];
             if element.is_straight() {
-                let along = limits.in_direction(&element.direction);
+                let along = in_direction(limits, &element.direction);
                 for x in &mut all.x_max[n..=n + 1] {
-                    *x = x.min(along.speed * along.speed);
+                    *x = x.min(along.velocity * along.velocity);
                 }
                 all.rows.push(Row { a: 1.0 / along.acceleration, b: 0.0 });
                 continue;
             }
             let h = grid.spacing(n);
-            for joint in 0..limits.velocity.len() {
-                let [v, a] = [limits.velocity[joint], limits.acceleration[joint]];
+            for joint in 0..limits.len() {
+                let [v, a] = [limits[joint].velocity, limits[joint].acceleration];
                 for share in [0.0, 0.5, 1.0] {
                     let [_, p, c, _] = element.at(grid.nodes[n] + share * h, joint);
                     // At that point, x is greater by 2·share·h·u.

@@ -1,9 +1,10 @@
 //! Time-optimal trajectories: joint values as a function of time along a blended path.
 
-use super::super::limits::{KinematicLimits, TimeParametrizationError};
+use super::super::limits::{TimeParametrizationError, validate};
 use super::super::trajectory::{TrajectoryPoint, periods, validate_period};
 use super::blended_path::BlendedPath;
 use super::section_motion::SectionMotion;
+use elbowroom_kinematics::JointLimits;
 
 /// A blended path with a time-optimal parametrization, at rest at both ends.
 #[derive(Debug, Clone)]
@@ -20,10 +21,11 @@ impl BlendedPath {
     /// limits.
     ///
     /// ```
-    /// use elbowroom_planner::{BlendedPath, KinematicLimits};
+    /// use elbowroom_kinematics::JointLimits;
+    /// use elbowroom_planner::BlendedPath;
     /// let waypoints = [vec![0.0, 0.0], vec![1.0, 0.0], vec![1.0, 1.0]];
     /// let path = BlendedPath::new(&waypoints, |blend| blend.distance() <= 0.3)?;
-    /// let limits = KinematicLimits { velocity: vec![1.0; 2], acceleration: vec![4.0; 2], jerk: vec![40.0; 2] };
+    /// let limits = vec![JointLimits::new(1.0, 4.0, 40.0); 2];
     /// let trajectory = path.time_optimal(&limits)?;
     /// assert_eq!(trajectory.at(trajectory.seconds()).q, [1.0, 1.0]);
     /// // With a rest at the corner it takes 2.7 s.
@@ -33,8 +35,8 @@ impl BlendedPath {
     ///
     /// # Errors
     /// The limits are not one finite number above 0 per joint, or so small that no duration is finite.
-    pub fn time_optimal(&self, limits: &KinematicLimits) -> Result<TimeOptimalTrajectory, TimeParametrizationError> {
-        limits.validate(self.joints())?;
+    pub fn time_optimal(&self, limits: &[JointLimits]) -> Result<TimeOptimalTrajectory, TimeParametrizationError> {
+        validate(limits, self.joints())?;
         let motions = self.sections.iter().map(|section| SectionMotion::with_jerk_limit(section, limits));
         Ok(TimeOptimalTrajectory::new(self.clone(), motions.collect::<Result<_, _>>()?))
     }
@@ -46,9 +48,9 @@ impl BlendedPath {
     /// The errors of [`Self::time_optimal`].
     pub fn time_optimal_without_jerk_limit(
         &self,
-        limits: &KinematicLimits,
+        limits: &[JointLimits],
     ) -> Result<TimeOptimalTrajectory, TimeParametrizationError> {
-        limits.validate(self.joints())?;
+        validate(limits, self.joints())?;
         let motions = self.sections.iter().map(|section| SectionMotion::without_jerk_limit(section, limits));
         Ok(TimeOptimalTrajectory::new(self.clone(), motions.collect::<Result<_, _>>()?))
     }
