@@ -3,11 +3,11 @@
 use elbowroom_kinematics::JointLimits;
 use std::time::Duration;
 
-use elbowroom_analysis::problems::{PlanningEngine, ProblemScene, ProblemSettings, Solution};
 use elbowroom_planner::{
     CoverModel, CoverObstacles, CoverRrtConnect, PlannedPath, RrtConnect, RrtConnectError, RrtConnectSettings,
     TimedMotion,
 };
+use elbowroom_query::problems::{PlanningEngine, ProblemScene, ProblemSettings, Solution};
 use elbowroom_robot::RobotId;
 
 use super::digest::Digest;

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use elbowroom_analysis::problems::{ProblemModel, ProblemSettings, run};
 use elbowroom_formats::problem_set::PlanningProblem;
+use elbowroom_query::problems::{ProblemModel, ProblemSettings, run};
 
 use super::bounded_engine::BoundedEngine;
 use super::digest::Digest;

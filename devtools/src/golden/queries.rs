@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use elbowroom_analysis::query::{Level, QueryKind, QueryRecord, QueryStates, evaluate};
 use elbowroom_cell::{OutOfReachProofs, QueryModel};
+use elbowroom_query::{Level, QueryKind, QueryRecord, QueryStates, evaluate};
 
 use super::digest::Digest;
 use super::hashed_group::HashedGroup;

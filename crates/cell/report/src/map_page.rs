@@ -4,9 +4,9 @@ use std::io::{self, Write};
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use elbowroom_analysis::map::CellMap;
 use elbowroom_cell::Units;
 use elbowroom_cspace::GridAxis;
+use elbowroom_query::map::CellMap;
 use serde_json::{Value, json};
 
 use crate::palette;

@@ -4,9 +4,9 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::{fs, io};
 
-use elbowroom_analysis::map::CellMap;
 use elbowroom_cspace::GridAxis;
 use elbowroom_formats::WholeFile;
+use elbowroom_query::map::CellMap;
 
 use crate::tables::escape;
 use crate::{palette, png};

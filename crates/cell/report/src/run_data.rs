@@ -1,7 +1,7 @@
 //! Data of runs for the scripts of the page: values per frame.
 
-use elbowroom_analysis::watch::{WatchStatus, WatchedObstacle};
 use elbowroom_kinematics::LinkId;
+use elbowroom_query::watch::{WatchStatus, WatchedObstacle};
 use elbowroom_sim::{Recording, RegionPoses, RobotTrack, RunEvent, Sample, SensorTrack, Span};
 use elbowroom_spatial::Pose;
 use serde_json::{Value, json};

@@ -1,7 +1,7 @@
 //! Summary of a run as one JSON document: the output of `elbowroom run --json`.
 
-use elbowroom_analysis::watch::WatchStatus;
 use elbowroom_avoidance::AvoiderState;
+use elbowroom_query::watch::WatchStatus;
 use serde::Serialize;
 
 use crate::recording::{

@@ -12,9 +12,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use crate::common::cell;
-use elbowroom_analysis::query::{Level, QueryKind, QueryStates, evaluate};
 use elbowroom_cell::{Cell, OutOfReachProofs, QueryModel, configure};
 use elbowroom_monitor::{RegionId, RegionSweep};
+use elbowroom_query::{Level, QueryKind, QueryStates, evaluate};
 use elbowroom_status::{CellStatus, EventStatus, RobotStatus, SlotStatus};
 use elbowroom_view::{Server, ServerSettings, StatusFeed};
 use serde_json::{Value, json};

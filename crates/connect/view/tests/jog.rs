@@ -1,10 +1,10 @@
 //! View of a cell at rest whose robots are moved: the distances equal those of the engine.
 
 use crate::common::{Page, cell, settings};
-use elbowroom_analysis::query::{Level, QueryKind, QueryStates, evaluate};
 use elbowroom_cell::{Cell, OutOfReachProofs, QueryModel, configure};
 use elbowroom_kinematics::ChainState;
 use elbowroom_monitor::{RegionId, RegionSweep};
+use elbowroom_query::{Level, QueryKind, QueryStates, evaluate};
 use elbowroom_testkit::random::{split_mix, unit};
 use elbowroom_view::Server;
 use serde_json::{Value, json};

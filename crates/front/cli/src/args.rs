@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use elbowroom::analysis::map::MapModel;
-use elbowroom::analysis::query::{Level, QueryKind};
+use elbowroom::query::map::MapModel;
+use elbowroom::query::{Level, QueryKind};
 
 use crate::arg_values::{margin, milliseconds};
 use crate::model_args::{JointArgs, Unit};

@@ -4,10 +4,10 @@ use std::fmt::Write;
 use std::path::Path;
 use std::time::Duration;
 
-use elbowroom::analysis::map::{self, CellMap, MapObstacle, MapProgress, MapRequest};
 use elbowroom::cell::Cell;
 use elbowroom::cspace::{GridAxis, ObstacleModel};
 use elbowroom::formats::WholeFile;
+use elbowroom::query::map::{self, CellMap, MapObstacle, MapProgress, MapRequest};
 use elbowroom::report::{map_page, map_pictures};
 use serde::Serialize;
 

@@ -3,9 +3,9 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use elbowroom::analysis::plan::{self, PathAnswer, PathGoal, PathPlanner, PathRequest, TimedPath};
 use elbowroom::cell::{Cell, QUATERNION_TOLERANCE, TcpTarget};
 use elbowroom::kinematics::inverse::ConfigurationChoice;
+use elbowroom::query::plan::{self, PathAnswer, PathGoal, PathPlanner, PathRequest, TimedPath};
 use elbowroom::spatial::{Pose, Rotation, Vec3};
 
 use crate::arg_values::{Configuration, Numbers};

@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 
-use elbowroom::analysis::plan;
 use elbowroom::cell::{Cell, suggest};
 use elbowroom::planner::RrtConnectSettings;
+use elbowroom::query::plan;
 
 use crate::arg_values::Configuration;
 use crate::output::Failure;

@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 
-use elbowroom::analysis::plan::{
+use elbowroom::cell::Cell;
+use elbowroom::query::plan::{
     RobotPath, RobotPathRequest, SeveralPathsAnswer, SeveralPathsRequest, plan_several, select_robot,
 };
-use elbowroom::cell::Cell;
 
 use crate::output::{ExitStatus, Failure, print, print_json};
 use crate::output_file::write_file;

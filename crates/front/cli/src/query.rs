@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use elbowroom::analysis::query::{
+use elbowroom::cell::{Cell, OutOfReachProofs, PairFile, QueryModel};
+use elbowroom::formats::robot::{self, LoadOptions};
+use elbowroom::query::{
     ContactRecord, ContactRow, Level, Query, QueryKind, QueryPairs, QueryPairsError, QueryRecord, QueryRow,
     QueryStates, evaluate_contacts, evaluate_query,
 };
-use elbowroom::cell::{Cell, OutOfReachProofs, PairFile, QueryModel};
-use elbowroom::formats::robot::{self, LoadOptions};
 use elbowroom::scene::{Checker, CheckerOptions, Scene, SceneState};
 use elbowroom::spatial::units::LengthUnit;
 

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use elbowroom::analysis::query::QueryStates;
 use elbowroom::cell::QueryModel;
 use elbowroom::formats::FormatError;
+use elbowroom::query::QueryStates;
 
 /// Reads the states of `path`; `-` is standard input.
 pub(crate) fn read(path: &Path, model: &QueryModel) -> Result<QueryStates, FormatError> {

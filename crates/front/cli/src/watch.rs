@@ -4,9 +4,9 @@ use std::fmt::Write;
 use std::path::Path;
 use std::time::Instant;
 
-use elbowroom::analysis::watch::{SensorWatch, WatchInput, WatchRecord, WatchRequest, WatchStatus};
 use elbowroom::cell::Cell;
 use elbowroom::formats::PngStream;
+use elbowroom::query::watch::{SensorWatch, WatchInput, WatchRecord, WatchRequest, WatchStatus};
 
 use crate::args::WatchArgs;
 use crate::output::{ExitStatus, Failure, note, print};

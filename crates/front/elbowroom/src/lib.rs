@@ -19,7 +19,7 @@
 //! | [`perception`] | a joint-space map from camera frames, and a replanned motion from the map |
 //! | [`cell`] | the cell file and the model it describes |
 //! | [`sim`] | simulation of the programs of a cell under the monitors; analysis of whether the laws exclude entry |
-//! | [`analysis`] | collision and distance queries, joint-space maps and planned paths of a cell at its initial state |
+//! | [`query`] | collision and distance queries, joint-space maps and planned paths of a cell at its initial state |
 //! | [`inspect`] | the contents of a robot model or mesh file |
 //! | [`report`] | HTML reports, plots, images, and the text summary of a run |
 //!
@@ -143,7 +143,6 @@ pub mod prelude;
 #[doc = include_str!("../../../../README.md")]
 struct Readme;
 
-pub use elbowroom_analysis as analysis;
 pub use elbowroom_avoidance as avoidance;
 pub use elbowroom_cell as cell;
 pub use elbowroom_cspace as cspace;
@@ -157,6 +156,7 @@ pub use elbowroom_monitor as monitor;
 pub use elbowroom_perception as perception;
 pub use elbowroom_planner as planner;
 pub use elbowroom_proximity as proximity;
+pub use elbowroom_query as query;
 #[cfg(feature = "live")]
 pub use elbowroom_recording as recording;
 pub use elbowroom_report as report;

@@ -3,7 +3,6 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use elbowroom_analysis::plan::{PathGoal, PathRequest};
 use elbowroom_cell::trajectory::{Playback, motion_bounds, recording_warnings, volume_motion_bounds};
 use elbowroom_cell::{
     Cell, CellRegionId, CellRobot, MoveTarget, PathPlanner, Program, ProgramBody, ProgramStep, StepAction,
@@ -11,6 +10,7 @@ use elbowroom_cell::{
 };
 use elbowroom_formats::{FormatError, Warning};
 use elbowroom_kinematics::{ChainState, LinkId};
+use elbowroom_query::plan::{PathGoal, PathRequest};
 use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_scene::Attachment;
 
@@ -325,7 +325,7 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
             carried,
             ..PathRequest::default()
         };
-        let answer = elbowroom_analysis::plan::plan(&cell, &request)
+        let answer = elbowroom_query::plan::plan(&cell, &request)
             .map_err(|e| self.error(index, step, &e.what).hint(e.write_instead.unwrap_or_default()))?;
         let Some(motion) = answer.motion else {
             let why = answer.reason.unwrap_or_default();

@@ -1,6 +1,6 @@
 //! Observations of the sensors in a run, and the reactions of the robots.
 
-use elbowroom_analysis::watch::WatchRecord;
+use elbowroom_query::watch::WatchRecord;
 use serde::Serialize;
 
 use super::tick_times::TickTimes;

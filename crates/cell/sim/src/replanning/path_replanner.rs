@@ -3,8 +3,6 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use elbowroom_analysis::CoverCache;
-use elbowroom_analysis::plan::{MapPlanner, PathPlanner};
 use elbowroom_cell::region_constraint::RegionConstraint;
 use elbowroom_cell::trajectory::{Playback, motion_bounds};
 use elbowroom_cell::{Cell, CellRobot, TrajectoryRow};
@@ -15,6 +13,8 @@ use elbowroom_planner::{
     CoverModel, CoverObstacles, CoverRrtConnect, PlannedPath, RrtConnect, RrtConnectSettings, TimedMotion,
 };
 use elbowroom_proximity::Shape;
+use elbowroom_query::CoverCache;
+use elbowroom_query::plan::{MapPlanner, PathPlanner};
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{Scene, SceneState};
 use elbowroom_spatial::Pose;

@@ -3,11 +3,11 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use elbowroom_analysis::watch::{SensorWatch, WatchRecord, WatchStatus};
 use elbowroom_cell::{Cell, CellSensor};
 use elbowroom_formats::{FormatError, Warning};
 use elbowroom_perception::Prism;
 use elbowroom_proximity::{HullError, Shape};
+use elbowroom_query::watch::{SensorWatch, WatchRecord, WatchStatus};
 use elbowroom_robot::RobotId;
 use elbowroom_spatial::Pose;
 

@@ -8,11 +8,11 @@ mod table;
 use std::path::Path;
 use std::time::Duration;
 
-use elbowroom::analysis::problems::{
-    CoverRrtConnectEngine, ProblemModel, ProblemResult, ProblemSettings, ProblemSummary, run as run_problems,
-};
 use elbowroom::formats::problem_set;
 use elbowroom::formats::robot::{self, LoadOptions};
+use elbowroom::query::problems::{
+    CoverRrtConnectEngine, ProblemModel, ProblemResult, ProblemSettings, ProblemSummary, run as run_problems,
+};
 use serde::Serialize;
 
 use crate::output::{ExitStatus, Failure, note, print, print_json, width};

@@ -3,8 +3,8 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use elbowroom::analysis::plan::TimedPath;
-use elbowroom::analysis::problems::ProblemResult;
+use elbowroom::query::plan::TimedPath;
+use elbowroom::query::problems::ProblemResult;
 
 use crate::output::{Failure, cannot_write};
 use crate::output_file::write_file;

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use elbowroom::analysis::problems::{ProblemResult, ProblemSummary, SetSummary, Statistics};
+use elbowroom::query::problems::{ProblemResult, ProblemSummary, SetSummary, Statistics};
 
 /// Most problems without a path in the list.
 const MAX_LISTED: usize = 12;

@@ -1,7 +1,7 @@
 //! Maps of cells.
 
 use crate::common::parse;
-use elbowroom_analysis::map::{MapRequest, map};
+use elbowroom_query::map::{MapRequest, map};
 
 fn ball(radius: f64, at: [f64; 3], motion: &str) -> String {
     format!("[object.ball]\nshape = \"sphere\"\nradius = {radius}\nat = {at:?}\n{motion}\n")

@@ -7,7 +7,7 @@ use elbowroom_scene::Selection;
 /// The pairs that a query tests: all pairs of the scene, or the pairs between named sides.
 ///
 /// ```
-/// use elbowroom_analysis::query::QueryPairs;
+/// use elbowroom_query::QueryPairs;
 /// use elbowroom_cell::{Cell, QueryModel};
 /// let cell = Cell::parse("c.toml", r#"
 /// version = 1

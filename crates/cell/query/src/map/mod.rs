@@ -94,7 +94,7 @@ pub struct MapObstacle {
 ///
 /// ```
 /// use elbowroom_cell::Cell;
-/// use elbowroom_analysis::map::{MapRequest, map};
+/// use elbowroom_query::map::{MapRequest, map};
 /// let cell = Cell::parse("c.toml", r#"
 /// version = 1
 /// units = { length = "mm", angle = "deg" }

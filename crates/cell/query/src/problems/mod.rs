@@ -4,7 +4,7 @@
 //! problem then becomes a [`ProblemScene`], which a [`PlanningEngine`] solves.
 //!
 //! ```
-//! use elbowroom_analysis::problems::{ProblemModel, ProblemSettings, RrtConnectEngine, run};
+//! use elbowroom_query::problems::{ProblemModel, ProblemSettings, RrtConnectEngine, run};
 //! use elbowroom_formats::{problem_set, robot};
 //! # let dir = tempfile::tempdir()?;
 //! # let urdf = dir.path().join("arm.urdf");

@@ -3,11 +3,11 @@
 use std::time::Duration;
 
 use crate::common::{ARM, HEAD, parse, rail};
-use elbowroom_analysis::plan::{PathAnswer, PathGoal, PathRequest, plan};
-use elbowroom_analysis::query::QueryStates;
 use elbowroom_cell::{Cell, OutOfReachProofs, QueryModel};
 use elbowroom_kinematics::ChainState;
 use elbowroom_planner::RrtConnectSettings;
+use elbowroom_query::QueryStates;
+use elbowroom_query::plan::{PathAnswer, PathGoal, PathRequest, plan};
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{Checker, CheckerOptions, Level, SceneState};
 use elbowroom_spatial::Vec3;

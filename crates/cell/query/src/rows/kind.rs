@@ -35,7 +35,7 @@ impl FromStr for QueryKind {
     /// `collision`, `distance`, `tolerance=METRES`, `point` or `contacts`.
     ///
     /// ```
-    /// use elbowroom_analysis::query::QueryKind;
+    /// use elbowroom_query::QueryKind;
     /// assert_eq!("tolerance=0.02".parse(), Ok(QueryKind::Tolerance(0.02)));
     /// assert!("tolerance".parse::<QueryKind>().is_err());
     /// ```

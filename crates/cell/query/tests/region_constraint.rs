@@ -1,8 +1,8 @@
 //! Regions as path constraints: planned paths lead around permanent forbidden regions, at their poses.
 
 use crate::common::{GANTRY, HEAD, WALL, parse};
-use elbowroom_analysis::plan::{PathRequest, plan};
 use elbowroom_planner::RrtConnectSettings;
+use elbowroom_query::plan::{PathRequest, plan};
 
 fn request(from: [f64; 2], to: [f64; 2]) -> PathRequest {
     PathRequest { from: Some(from.to_vec()), to: to.to_vec().into(), ..PathRequest::default() }

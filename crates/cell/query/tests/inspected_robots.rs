@@ -3,10 +3,10 @@
 
 use std::path::PathBuf;
 
-use elbowroom_analysis::query::{Level, QueryKind, QueryRow, QueryStates, evaluate};
 use elbowroom_cell::{OutOfReachProofs, QueryModel};
 use elbowroom_formats::robot::{self, LoadOptions};
 use elbowroom_inspect::{InspectOptions, Inspection};
+use elbowroom_query::{Level, QueryKind, QueryRow, QueryStates, evaluate};
 use elbowroom_testkit::folder;
 use elbowroom_testkit::random::Random;
 

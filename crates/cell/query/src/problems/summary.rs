@@ -54,7 +54,7 @@ impl Statistics {
     /// sorted sample.
     ///
     /// ```
-    /// use elbowroom_analysis::problems::Statistics;
+    /// use elbowroom_query::problems::Statistics;
     /// let of = Statistics::of(vec![4.0, 1.0, 2.0, 3.0]).unwrap();
     /// assert_eq!((of.p50, of.mean), (2.5, 2.5));
     /// assert!((of.p95 - 3.85).abs() < 1e-12);

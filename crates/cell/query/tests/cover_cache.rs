@@ -1,7 +1,7 @@
 //! The cache of covers: the same covers with and without it, for any contents of its files.
 
-use elbowroom_analysis::CoverCache;
 use elbowroom_proximity::{Cuboid, Cylinder, Shape};
+use elbowroom_query::CoverCache;
 use elbowroom_spatial::{Pose, Vec3};
 use elbowroom_validity::{CoverSource, SphereCover};
 

@@ -1,7 +1,7 @@
 //! The weight matrix in `query`: fewer pairs are tested until the first contact, with the same results.
 
-use elbowroom_analysis::query::{Level, QueryKind, QueryRow, QueryStates, evaluate};
 use elbowroom_cell::{Cell, OutOfReachProofs, QueryModel};
+use elbowroom_query::{Level, QueryKind, QueryRow, QueryStates, evaluate};
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{Checker, CheckerOptions, CheckerStats, Scene, SceneState};
 use elbowroom_testkit::random::Random;

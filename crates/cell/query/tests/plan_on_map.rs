@@ -1,11 +1,11 @@
 //! Paths through the free cells of a map, and the reasons if no path is found.
 
-use elbowroom_analysis::map::{MapRequest, map};
-use elbowroom_analysis::plan::{PathAnswer, PathGoal, PathPlanner, PathRequest, plan};
 use elbowroom_cell::{Cell, OutOfReachProofs, QueryModel, TcpTarget};
 use elbowroom_formats::FormatError;
 use elbowroom_kinematics::ChainState;
 use elbowroom_planner::RrtConnectSettings;
+use elbowroom_query::map::{MapRequest, map};
+use elbowroom_query::plan::{PathAnswer, PathGoal, PathPlanner, PathRequest, plan};
 use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_scene::{Checker, CheckerOptions, SceneState, Selection};
 use elbowroom_spatial::Pose;

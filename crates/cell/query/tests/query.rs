@@ -2,10 +2,10 @@
 
 use std::fmt::Write as _;
 
-use elbowroom_analysis::query::{BLOCK, Level, QueryKind, QueryRecord, QueryRow, QueryStates, evaluate};
 use elbowroom_cell::{Cell, OutOfReachProofs, QueryModel};
 use elbowroom_kinematics::ChainState;
 use elbowroom_proximity::{Shape, collides, separation};
+use elbowroom_query::{BLOCK, Level, QueryKind, QueryRecord, QueryRow, QueryStates, evaluate};
 use elbowroom_robot::RobotId;
 use elbowroom_robot::collision_pairs;
 use elbowroom_robot::{Collider, GeometryId};

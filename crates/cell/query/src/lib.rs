@@ -1,12 +1,12 @@
-//! Analysis of a cell without a run: `query`, `map` and `plan`; sets of planning problems.
+//! Questions about a cell without a run: `query`, `map` and `plan`; sets of planning problems.
 //!
-//! [`query`] evaluates collision, distance and tolerance for many joint states, [`map`] computes the blocked cells of a
+//! [`evaluate`] answers collision, distance and tolerance for many joint states, [`map`] computes the blocked cells of a
 //! robot's joint space, [`plan`] finds a collision-free path and times it. All use the cell in its initial state.
 //! [`problems`] solves the planning problems of a file; [`watch`] detects the obstacles that a camera or a source of
 //! point clouds sees.
 //!
 //! ```
-//! use elbowroom_analysis::query::{QueryStates, Level, QueryKind, evaluate};
+//! use elbowroom_query::{Level, QueryKind, QueryStates, evaluate};
 //! use elbowroom_cell::{Cell, OutOfReachProofs, QueryModel};
 //! let cell = Cell::parse("c.toml", r#"
 //! version = 1
@@ -37,7 +37,12 @@ mod cover_cache;
 pub mod map;
 pub mod plan;
 pub mod problems;
-pub mod query;
+mod rows;
 pub mod watch;
 
 pub use cover_cache::CoverCache;
+pub use elbowroom_scene::Level;
+pub use rows::{
+    BLOCK, ContactRecord, ContactRow, Query, QueryKind, QueryPairs, QueryPairsError, QueryRecord, QueryRow,
+    QueryStates, UnknownQueryKind, evaluate, evaluate_contacts, evaluate_query,
+};

@@ -102,7 +102,7 @@ impl Default for PathRequest {
 ///
 /// ```
 /// use elbowroom_cell::Cell;
-/// use elbowroom_analysis::plan::{PathRequest, plan};
+/// use elbowroom_query::plan::{PathRequest, plan};
 /// let cell = Cell::parse("c.toml", r#"
 /// version = 1
 /// units = { length = "mm", angle = "deg" }

@@ -1,4 +1,4 @@
-//! Integration tests of `elbowroom-analysis` in one program: a module per subject, whose first line says what belongs there.
+//! Integration tests of `elbowroom-query` in one program: a module per subject, whose first line says what belongs there.
 
 mod common;
 mod cover_cache;

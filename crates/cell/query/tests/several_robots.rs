@@ -3,10 +3,10 @@
 use std::time::Duration;
 
 use crate::common::{HEAD, parse};
-use elbowroom_analysis::plan::{RobotPathRequest, SeveralPathsAnswer, SeveralPathsRequest, plan_several};
 use elbowroom_cell::region_constraint::RegionConstraints;
 use elbowroom_cell::{Cell, OutOfReachProofs, QueryModel};
 use elbowroom_planner::{PathConstraint, RrtConnectSettings};
+use elbowroom_query::plan::{RobotPathRequest, SeveralPathsAnswer, SeveralPathsRequest, plan_several};
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{Checker, CheckerOptions, SceneState, SweepMove, SweepOptions};
 

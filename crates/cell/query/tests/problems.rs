@@ -2,12 +2,10 @@
 
 use std::path::Path;
 
-use elbowroom_analysis::problems::{
-    ProblemModel, ProblemResult, ProblemSettings, ProblemSummary, RrtConnectEngine, run,
-};
 use elbowroom_formats::problem_set::{self, PlanningProblem};
 use elbowroom_formats::robot::{self, LoadOptions};
 use elbowroom_formats::{FormatError, Warning};
+use elbowroom_query::problems::{ProblemModel, ProblemResult, ProblemSettings, ProblemSummary, RrtConnectEngine, run};
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{Checker, CheckerOptions, SceneState};
 use elbowroom_spatial::Vec3;

@@ -1,0 +1,17 @@
+//! Collision, distance and tolerance queries for many states of a cell or of one robot (`elbowroom query`).
+//!
+//! A [`QueryModel`](elbowroom_cell::QueryModel) holds the robots and objects, [`QueryStates`] the joint values;
+//! [`evaluate`] computes one [`QueryRow`] per state, in order, in parallel. A row depends only on its state and the
+//! rows before it in its block of [`BLOCK`], so the results are independent of the number of threads.
+
+mod evaluate;
+mod kind;
+mod pairs;
+mod row;
+mod states;
+
+pub use evaluate::{BLOCK, Query, evaluate, evaluate_contacts, evaluate_query};
+pub use kind::{QueryKind, UnknownQueryKind};
+pub use pairs::{QueryPairs, QueryPairsError};
+pub use row::{ContactRecord, ContactRow, QueryRecord, QueryRow};
+pub use states::QueryStates;
