@@ -1,6 +1,6 @@
 //! Planning of a timed path for one robot of a cell (`elbowroom plan`).
 //!
-//! Planning uses the scene of [`query`](crate::query): objects, other robots at their `start`, the robot with tool and
+//! Planning uses the scene of [`evaluate`](crate::evaluate()): objects, other robots at their `start`, the robot with tool and
 //! load, the allowed collision matrix. Permanent forbidden regions of the robot are path constraints on its guarded
 //! volumes.
 
