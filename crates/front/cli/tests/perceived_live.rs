@@ -40,14 +40,21 @@ struct LiveCell {
 
 impl LiveCell {
     /// Starts the cell of a folder, and waits until its robot is heard.
-    fn start(dir: &Path, frames: &str) -> Self {
+    fn start(dir: &Path, frames: &str, others: &[&str]) -> Self {
         let address = free_address();
         let arguments = ["live", "cell.toml", "--simulate", "--listen", &address, "--frames", frames, "--for", "100"];
-        let mut process = command(dir, &arguments).stdin(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let mut process =
+            command(dir, &arguments).args(others).stdin(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         let events: Arc<Mutex<Vec<String>>> = Arc::default();
         let lines = BufReader::new(process.stderr.take().unwrap()).lines();
         let told = events.clone();
         std::thread::spawn(move || lines.map_while(Result::ok).for_each(|line| told.lock().unwrap().push(line)));
+        // A process that has ended is not waited for.
+        let began = Instant::now();
+        while !events.lock().unwrap().iter().any(|line| line.contains("robot(s) guarded")) {
+            assert!(process.try_wait().unwrap().is_none() && began.elapsed().as_secs() < 30, "{:?}", events.lock());
+            std::thread::sleep(Duration::from_millis(20));
+        }
         let settings = ZenohSettings { connect: Some(address), ..ZenohSettings::default() };
         let network = ZenohNetwork::open(&settings).unwrap();
         let keys = Keys::new(&Cell::load(dir.join("cell.toml")).unwrap().name);
@@ -126,7 +133,7 @@ fn a_live_arm_goes_around_a_crate_that_only_a_camera_on_a_pipe_knows() {
     let dir = tempfile::tempdir().unwrap();
     std::fs::write(dir.path().join("cell.toml"), cell(CAMERA, "planned")).unwrap();
     write_pictures(dir.path(), FRAMES, f64::INFINITY);
-    let mut cell = LiveCell::start(dir.path(), "above=-");
+    let mut cell = LiveCell::start(dir.path(), "above=-", &[]);
     let mut pipe = cell.child().stdin.take().unwrap();
     let has_arrived = |i: usize| cell.last().is_some_and(|q| (q[0] - GOAL).abs() < 1e-3) || i > 10 * FRAMES;
     let begun = send(&dir.path().join("pictures"), "png", has_arrived, |picture| pipe.write_all(picture).unwrap());
@@ -138,7 +145,7 @@ fn a_live_arm_goes_around_a_crate_that_only_clouds_on_a_key_know() {
     let dir = tempfile::tempdir().unwrap();
     std::fs::write(dir.path().join("cell.toml"), cell(CLOUD, "planned")).unwrap();
     write_clouds(dir.path(), FRAMES, f64::INFINITY);
-    let cell = LiveCell::start(dir.path(), "mast=key");
+    let cell = LiveCell::start(dir.path(), "mast=key", &[]);
     let mut clouds: Box<dyn Publisher> = cell.network.publisher(&cell.keys.frames("mast"), Urgency::RealTime).unwrap();
     let has_arrived = |i: usize| cell.last().is_some_and(|q| (q[0] - GOAL).abs() < 1e-3) || i > 10 * FRAMES;
     let begun = send(&dir.path().join("clouds"), "pcd", has_arrived, |cloud| clouds.publish(cloud));
@@ -150,7 +157,7 @@ fn a_live_arm_stops_if_its_camera_is_silent_and_never_starts_before_it_has_seen_
     let dir = tempfile::tempdir().unwrap();
     std::fs::write(dir.path().join("cell.toml"), cell(CAMERA, "planned")).unwrap();
     write_pictures(dir.path(), FRAMES, f64::INFINITY);
-    let mut cell = LiveCell::start(dir.path(), "above=-");
+    let mut cell = LiveCell::start(dir.path(), "above=-", &[]);
     let start = cell.last().unwrap();
     std::thread::sleep(Duration::from_secs(2));
     assert_eq!(cell.last().unwrap(), start, "it moved before its camera had seen anything");
@@ -167,6 +174,24 @@ fn a_live_arm_stops_if_its_camera_is_silent_and_never_starts_before_it_has_seen_
     let told = |what: &str| events.iter().any(|event| event.starts_with(what));
     assert!(told("sensor above: there are no more pictures"), "{events:?}");
     assert!(told("kr: waits: the sensor above"), "{events:?}");
+}
+
+#[test]
+fn a_live_arm_waits_while_another_robot_of_the_cell_is_not_heard() {
+    let dir = tempfile::tempdir().unwrap();
+    let alone = cell(CLOUD, "planned").replace("[cloud.mast]", "[cloud.mast]\nrobot = \"kr\"\nrobots = [\"kr\"]");
+    let other = "[robot.absent]\nbase = { at = [0, 9000, 0] }\ndh = [{ a = 400, min = -90, max = 90, speed = 90 }]\n\
+                 links = [{ sphere = { radius = 50 } }]\n";
+    std::fs::write(dir.path().join("cell.toml"), format!("{alone}\n{other}")).unwrap();
+    write_clouds(dir.path(), FRAMES, f64::INFINITY);
+    let cell = LiveCell::start(dir.path(), "mast=key", &["--robots", "kr", "--arbiter"]);
+    let start = cell.last().unwrap();
+    let mut clouds: Box<dyn Publisher> = cell.network.publisher(&cell.keys.frames("mast"), Urgency::RealTime).unwrap();
+    send(&dir.path().join("clouds"), "pcd", |i| i >= LEARNING + 75, |cloud| clouds.publish(cloud));
+    assert_eq!(cell.last().unwrap(), start, "it moved, though nobody knew where the other robot was");
+    let events = cell.events();
+    let told = "absent: its joint values are not received; the robots that sensors guard wait";
+    assert!(events.iter().any(|event| event == told), "{events:?}");
 }
 
 #[test]

@@ -175,7 +175,10 @@ impl<'a> PathGuard<'a> {
         let deadline = begin + Duration::from_secs_f64(search.takes_s);
         let found = self.replanner.replan(motion, path, &known, scene, &regions, deadline).filter(enter);
         let in_motion = found.as_ref().map(|new| new.in_motion);
-        self.replans.push(PathReplan { t_s, search_s: begin.elapsed().as_secs_f64(), in_motion });
+        // A live cell runs for years: nobody reads its list.
+        if self.timing == SearchTiming::Simulated {
+            self.replans.push(PathReplan { t_s, search_s: begin.elapsed().as_secs_f64(), in_motion });
+        }
         if found.is_none() {
             self.not_before_s = t_s + RETRY_S;
             self.without_path = (motion.rate <= 0.0).then(|| FutileSearch {

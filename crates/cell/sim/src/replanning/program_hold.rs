@@ -20,10 +20,16 @@ pub struct BlockedPath {
 pub struct ProgramHold {
     /// The reason, and the obstacle or the sensor; `None` if the program is not held.
     held: Option<(HoldReason, String)>,
-    holds: Vec<Hold>,
+    /// `None` if they are not recorded: a live cell runs for years.
+    holds: Option<Vec<Hold>>,
 }
 
 impl ProgramHold {
+    /// A hold whose times are recorded.
+    pub(crate) fn recorded() -> Self {
+        Self { held: None, holds: Some(Vec::new()) }
+    }
+
     /// Why the robot must brake or wait now: an obstacle in its way (which says more), or a sensor that is silent. It continues as
     /// long as it can still stop in time, `coast_s` (s) being the time until a command takes effect.
     pub fn update(
@@ -38,18 +44,25 @@ impl ProgramHold {
             .map(|b| (HoldReason::Obstacle, b.by.clone()))
             .or_else(|| stale.map(|sensor| (HoldReason::Stale, sensor.to_owned())));
         if held != self.held {
-            if let Some(open) = self.holds.last_mut().filter(|_| self.held.is_some()) {
-                open.to_s = t_s;
-            }
-            self.holds.extend(held.iter().map(|(reason, by)| Hold {
-                from_s: t_s,
-                to_s: f64::INFINITY,
-                reason: *reason,
-                by: by.clone(),
-            }));
+            self.record(t_s, held.as_ref());
             self.held = held;
         }
         self.held.as_ref()
+    }
+
+    /// Ends the present hold, and begins the next one.
+    fn record(&mut self, t_s: f64, next: Option<&(HoldReason, String)>) {
+        let Some(holds) = &mut self.holds else { return };
+        if let Some(open) = holds.last_mut().filter(|_| self.held.is_some()) {
+            open.to_s = t_s;
+        }
+        let hold = |(reason, by): &(HoldReason, String)| Hold {
+            from_s: t_s,
+            to_s: f64::INFINITY,
+            reason: *reason,
+            by: by.clone(),
+        };
+        holds.extend(next.map(hold));
     }
 
     /// Why the program is held, and by what; `None` if it is not.
@@ -67,10 +80,11 @@ impl ProgramHold {
     }
 
     /// All holds, up to the end of the run (s), and why the program is still held then.
-    pub(crate) fn finish(mut self, end_s: f64) -> (Vec<Hold>, Option<(HoldReason, String)>) {
-        for hold in &mut self.holds {
+    pub(crate) fn finish(self, end_s: f64) -> (Vec<Hold>, Option<(HoldReason, String)>) {
+        let mut holds = self.holds.unwrap_or_default();
+        for hold in &mut holds {
             hold.to_s = hold.to_s.min(end_s);
         }
-        (self.holds, self.held)
+        (holds, self.held)
     }
 }

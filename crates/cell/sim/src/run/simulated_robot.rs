@@ -80,7 +80,7 @@ impl<'a> SimulatedRobot<'a> {
             claims,
             avoiding: None,
             guard: None,
-            hold: ProgramHold::default(),
+            hold: ProgramHold::recorded(),
             present: robot.clone(),
             governing: None,
             stop_state: StopState::default(),

@@ -28,12 +28,17 @@ impl JointHistory {
         Self { joints, rows: VecDeque::new(), states, attached: vec![Vec::new(); cell.robots.len()] }
     }
 
-    /// Takes over what was said last. False if a robot is not heard: then nothing is known of where it is.
-    pub fn update(&mut self, cell: &Cell, t_s: f64) -> bool {
+    /// Takes over what was said last.
+    ///
+    /// # Errors
+    /// A robot that is not heard, so that its position is not known.
+    pub fn update(&mut self, cell: &Cell, t_s: f64) -> Result<(), RobotId> {
         let mut row = Vec::with_capacity(self.states.len());
         for (i, heard) in self.joints.states().into_iter().enumerate() {
             let (state, robot) = (&mut self.states[i], &cell.robots[i]);
-            let Some(heard) = heard.filter(|heard| heard.q.len() == state.q.len()) else { return false };
+            let Some(heard) = heard.filter(|heard| heard.q.len() == state.q.len()) else {
+                return Err(RobotId(i));
+            };
             state.q.copy_from_slice(&heard.q);
             if heard.qd.len() == state.qd.len() {
                 state.qd.copy_from_slice(&heard.qd);
@@ -46,7 +51,7 @@ impl JointHistory {
         while self.rows.front().is_some_and(|(first_s, _)| t_s - first_s > REMEMBERED_S) {
             self.rows.pop_front();
         }
-        true
+        Ok(())
     }
 
     /// The robots as they were said to be last.

@@ -28,6 +28,8 @@ use crate::switch_requests::RegionSwitches;
 
 /// So often the thread looks for pictures and new paths.
 const PERIOD: Duration = Duration::from_millis(2);
+/// A robot that is not heard for this long is named, s.
+const SILENCE_S: f64 = 1.0;
 
 /// The simulated programs of a process, and the objects that they grip.
 #[derive(Clone)]
@@ -59,11 +61,15 @@ impl SensorGuards {
         if !programs.programs.iter().any(|(robot, _)| is_guarded(robot)) {
             return Ok(None);
         }
+        // Whatever becomes of the thread: without a check of its path no guarded robot moves.
+        for (_, program) in programs.programs.iter().filter(|(robot, _)| is_guarded(robot)) {
+            program.lock().unwrap_or_else(PoisonError::into_inner).check = Some(PathCheck::default());
+        }
         let inputs = FrameInputs::start(&programs.cell, sources, network, clock, on_event.as_ref())?;
         let joints = JointHistory::new(&programs.cell, JointsHeard::start(&programs.cell, network, clock)?);
         let switches = RegionSwitches::start(&programs.cell, network)?;
         let sent = sources.iter().map(|(name, _)| name.clone()).collect();
-        let parts = Parts { programs, inputs, joints, switches, sent, clock, on_event };
+        let parts = Parts { programs, inputs, joints, switches, sent, clock, on_event, silent: None };
         let is_closed = Arc::new(AtomicBool::new(false));
         let (started, is_started) = mpsc::sync_channel(1);
         let closed = is_closed.clone();
@@ -96,6 +102,8 @@ struct Parts {
     sent: Vec<String>,
     clock: Clock,
     on_event: Option<EventHandler>,
+    /// The robot that is not heard, since when (s), and whether that was told.
+    silent: Option<(RobotId, f64, bool)>,
 }
 
 fn run(mut parts: Parts, started: &SyncSender<Result<(), ServiceError>>, is_closed: &AtomicBool) {
@@ -139,7 +147,9 @@ impl Parts {
     /// Processes what was sent, and checks the paths for which something has changed.
     fn step(&mut self, cell: &Cell, perceived: &mut PerceivedObstacles<'_>, robots: &mut [GuardedRobot<'_>]) {
         let t_s = self.clock.seconds();
-        if !self.joints.update(cell, t_s) {
+        let silent = self.joints.update(cell, t_s).err();
+        self.tell_of_silence(cell, silent, t_s);
+        if silent.is_some() {
             // Where a robot is that is not heard, nobody knows: no picture can be used, and soon the sensors count as silent.
             return;
         }
@@ -159,6 +169,21 @@ impl Parts {
                 let name = &cell.robots[robot.guard.robot().0].name;
                 tell(self.on_event.as_ref(), &format!("{name}: continues on a new path"));
             }
+        }
+    }
+
+    /// Names a robot that is not heard for a while: the robots that the sensors guard wait for it.
+    fn tell_of_silence(&mut self, cell: &Cell, silent: Option<RobotId>, t_s: f64) {
+        let since = |robot: &RobotId| self.silent.filter(|(before, ..)| before == robot);
+        self.silent = silent.map(|robot| since(&robot).unwrap_or((robot, t_s, false)));
+        if let Some((robot, since_s, is_told)) = &mut self.silent
+            && !*is_told
+            && t_s - *since_s > SILENCE_S
+        {
+            *is_told = true;
+            let name = &cell.robots[robot.0].name;
+            let what = format!("{name}: its joint values are not received; the robots that sensors guard wait");
+            tell(self.on_event.as_ref(), &what);
         }
     }
 }
