@@ -162,8 +162,9 @@ fn a_live_arm_stops_if_its_camera_is_silent_and_never_starts_before_it_has_seen_
     std::thread::sleep(Duration::from_secs(2));
     assert_eq!(cell.last().unwrap(), start, "it moved before its camera had seen anything");
     let mut pipe = cell.child().stdin.take().unwrap();
-    // A second of pictures of the empty cell: the crate is still far away.
-    send(&dir.path().join("pictures"), "png", |i| i >= LEARNING + 25, |picture| pipe.write_all(picture).unwrap());
+    // Pictures until it moves: the crate is still far away then.
+    let has_moved = |i: usize| cell.last().is_some_and(|q| (q[0] - start[0]).abs() > 0.1) || i > LEARNING + 140;
+    send(&dir.path().join("pictures"), "png", has_moved, |picture| pipe.write_all(picture).unwrap());
     assert!((cell.last().unwrap()[0] - start[0]).abs() > 0.05, "it never moved");
     drop(pipe);
     std::thread::sleep(Duration::from_secs(2));
