@@ -4,7 +4,7 @@ use crate::Chain;
 
 /// Limits of the motion of a joint, in rad or m, per s, s² and s³: of planned paths, of programs, of avoidance.
 ///
-/// Rates are always known, unlike those of a [model](crate::Limits).
+/// Rates are always known; in a [model](crate::Limits) they may be missing.
 ///
 /// ```
 /// use elbowroom_kinematics::JointLimits;

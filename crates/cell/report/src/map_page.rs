@@ -16,7 +16,7 @@ const PAGE: &str = include_str!("../assets/map/page.html");
 
 /// Largest number of cells of a page: a browser holds one byte per cell.
 const MAX_PAGE_CELLS: usize = 1 << 26;
-/// Largest number of objects: each has a separate number.
+/// Largest number of objects of a page: each has its own index, and index 0 is a free cell.
 const MAX_OBJECTS: usize = 255;
 
 /// Writes one page that opens offline: slices across any of three joints, chosen by a slider, with axes in the units of

@@ -51,14 +51,15 @@ pub enum ServiceError {
         /// Names of the cell's robots.
         known: Vec<String>,
     },
-    /// Pictures for what is no sensor, or cannot be sent.
-    #[error(
-        "--frames {sensor}: no camera of this name guards a robot\n  help: one of {}; clouds are sent on the sensor's key: --frames NAME=key", known.join(", ")
-    )]
+    /// Pictures that nobody can use.
+    #[error("--frames {sensor}: {why}")]
     Frames {
-        /// The name.
+        /// The name of the sensor.
         sensor: String,
-        /// The sensors that guard robots.
-        known: Vec<String>,
+        /// What is wrong, and what to write instead.
+        why: String,
     },
+    /// The system does not start a thread.
+    #[error("a thread cannot be started: {0}")]
+    Thread(std::io::Error),
 }

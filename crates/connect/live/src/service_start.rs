@@ -4,9 +4,9 @@ use std::sync::{Arc, mpsc};
 use std::time::Duration;
 
 use elbowroom_cell::configure::MonitorSetup;
-use elbowroom_cell::{Cell, CellSensor, EditedRegions, SensorKind, configure};
+use elbowroom_cell::{Cell, EditedRegions, configure};
 use elbowroom_formats::FormatError;
-use elbowroom_interlock::Boot;
+use elbowroom_interlock::{Boot, Micros};
 use elbowroom_monitor::{Life, RegionKind, RobotSlot};
 use elbowroom_recording::{BagError, CellWriter, Recorder};
 use elbowroom_robot::RobotId;
@@ -29,7 +29,7 @@ use crate::region_journal::RegionJournal;
 use crate::region_keeper::{ProgramSwitches, RegionKeeper};
 use crate::robot_claims::RobotClaims;
 use crate::ros2::{CellFeed, Participant};
-use crate::sensors::FrameSource;
+use crate::sensors::{check_frames, unguarded};
 use crate::service_error::ServiceError;
 use crate::service_options::{DEFAULT_ADDRESS, ServiceOptions};
 use crate::simulated_controllers::SimulatedControllers;
@@ -110,7 +110,7 @@ impl<'o> ServiceStart<'o> {
             keeper: keeper.clone(),
             arbiter: arbiter.cloned(),
             nodes: NodesHeard::start(&self.cell, &self.shared, self.clock)?,
-            joints: JointsHeard::start(&self.cell, &self.of_controllers, self.clock)?,
+            joints: JointsHeard::start(&self.cell, &self.of_controllers, self.clock, Micros(0))?,
             clock: self.clock,
             on_event: self.options.on_event.clone(),
         };
@@ -178,14 +178,19 @@ impl<'o> ServiceStart<'o> {
 
     /// Starts simulated controllers for all robots of this process, except for robots whose controllers use ROS 2.
     pub(crate) fn simulated_controllers(&self) -> Result<Option<SimulatedControllers>, ServiceError> {
+        let is_real = |robot: &RobotId| self.options.ros2.robot(&self.cell.robots[robot.0].name).is_some();
+        let is_simulated = |robot: &RobotId| self.options.simulate && !is_real(robot);
+        let robots: Vec<RobotId> = self.robots.iter().copied().filter(is_simulated).collect();
+        if let Some(on_event) = &self.options.on_event {
+            let real = self.robots.iter().copied().filter(|robot| !is_simulated(robot));
+            unguarded(&self.cell, real).for_each(|warning| on_event(&warning));
+        }
+        check_frames(&self.cell, &robots, &self.options.frames)?;
         if !self.options.simulate {
             return Ok(None);
         }
-        let is_real = |robot: &RobotId| self.options.ros2.robot(&self.cell.robots[robot.0].name).is_some();
-        let robots: Vec<RobotId> = self.robots.iter().copied().filter(|robot| !is_real(robot)).collect();
-        let frames = check_frames(&self.cell, &self.options.frames)?;
-        let on_event = self.options.on_event.clone();
-        Ok(Some(SimulatedControllers::start(&self.cell, &robots, frames, &self.shared, (self.clock, on_event))?))
+        let (networks, context) = ((&self.shared, &self.of_controllers), (self.clock, self.options.on_event.clone()));
+        Ok(Some(SimulatedControllers::start(&self.cell, &robots, &self.options.frames, networks, context)?))
     }
 
     /// Starts the report of other processes that come and go.
@@ -281,24 +286,4 @@ fn guarded_robots(cell: &Cell, options: &ServiceOptions) -> Result<Vec<RobotId>,
         })
     };
     options.robots.iter().map(find).collect()
-}
-
-/// The sources of pictures, each of a camera of the cell that guards a robot.
-fn check_frames<'o>(
-    cell: &Cell,
-    frames: &'o [(String, FrameSource)],
-) -> Result<&'o [(String, FrameSource)], ServiceError> {
-    for (name, source) in frames {
-        let sensor = cell.sensors.iter().find(|sensor| sensor.name == *name);
-        let is_usable = sensor.is_some_and(|sensor| {
-            let is_camera = matches!(sensor.kind, SensorKind::Camera { .. });
-            !sensor.robots.is_empty() && (is_camera || *source == FrameSource::Key)
-        });
-        if !is_usable {
-            let guards = |s: &&CellSensor| !s.robots.is_empty();
-            let known = cell.sensors.iter().filter(guards).map(|s| s.name.clone()).collect();
-            return Err(ServiceError::Frames { sensor: name.clone(), known });
-        }
-    }
-    Ok(frames)
 }

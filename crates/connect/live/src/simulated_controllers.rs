@@ -34,7 +34,7 @@ pub struct SimulatedControllers {
 
 impl SimulatedControllers {
     /// Starts the programs of these robots. When a program has finished it begins again, from where it ended. `frames` are the sensors
-    /// whose pictures do not come from the folder of the cell file.
+    /// whose pictures do not come from the folder of the cell file; `of_controllers` is the network of all controllers' joint values.
     ///
     /// # Errors
     /// [`ServiceError`] if a program cannot be planned, or a sensor not be used.
@@ -42,14 +42,15 @@ impl SimulatedControllers {
         cell: &Arc<Cell>,
         robots: &[RobotId],
         frames: &[(String, FrameSource)],
-        network: &Arc<dyn Network>,
+        (network, of_controllers): (&Arc<dyn Network>, &Arc<dyn Network>),
         (clock, on_event): (Clock, Option<EventHandler>),
     ) -> Result<Self, ServiceError> {
         let is_closed = Arc::new(AtomicBool::new(false));
         let (started, is_started) = mpsc::sync_channel(1);
         let thread = {
             let (robots, network, is_closed) = (robots.to_vec(), network.clone(), is_closed.clone());
-            let start = Start { cell: cell.clone(), frames: frames.to_vec(), network, clock, on_event };
+            let of_controllers = of_controllers.clone();
+            let start = Start { cell: cell.clone(), frames: frames.to_vec(), network, of_controllers, clock, on_event };
             move || run(&start, &robots, &started, &is_closed)
         };
         let thread = std::thread::Builder::new().name("controllers".into()).spawn(thread);
@@ -80,13 +81,14 @@ struct Start {
     cell: Arc<Cell>,
     frames: Vec<(String, FrameSource)>,
     network: Arc<dyn Network>,
+    of_controllers: Arc<dyn Network>,
     clock: Clock,
     on_event: Option<EventHandler>,
 }
 
 fn run(start: &Start, robots: &[RobotId], started: &SyncSender<Result<(), ServiceError>>, is_closed: &AtomicBool) {
     let Start { cell, clock, .. } = start;
-    let (mut controllers, _sensors) = match controllers(start, robots) {
+    let (mut controllers, sensors) = match controllers(start, robots) {
         Ok(controllers) => controllers,
         Err(error) => {
             // The service may have been dropped; then the error has no receiver.
@@ -100,7 +102,9 @@ fn run(start: &Start, robots: &[RobotId], started: &SyncSender<Result<(), Servic
     // nominal time is the clock's, which continues while the computer sleeps.
     let period_us = period.as_micros() as u64;
     let mut due = clock.micros();
-    while !is_closed.load(Ordering::SeqCst) {
+    // Without the thread of the sensors no robot that they guard moves: then the service ends, and says so.
+    let is_guarded = || sensors.as_ref().is_none_or(SensorGuards::is_running);
+    while !is_closed.load(Ordering::SeqCst) && is_guarded() {
         for controller in &mut controllers {
             controller.tick(due, *clock);
         }
@@ -118,14 +122,14 @@ fn controllers(
     start: &Start,
     robots: &[RobotId],
 ) -> Result<(Vec<SimulatedController>, Option<SensorGuards>), ServiceError> {
-    let Start { cell, frames, network, clock, on_event } = start;
+    let Start { cell, frames, network, of_controllers, clock, on_event } = start;
     let (objects, setups) = (Arc::new(Mutex::new(ObjectPlaces::new(cell))), configure::setups(cell)?);
     let carried = |robot: RobotId| CarriedVolumes::new(cell, robot, setups[robot.0].clone(), objects.clone());
     let controller = |robot: &RobotId| SimulatedController::new(start, *robot, carried(*robot));
     let controllers = robots.iter().map(controller).collect::<Result<Vec<_>, _>>()?;
     let programs = robots.iter().zip(&controllers).map(|(robot, c)| (*robot, c.program.clone())).collect();
     let programs = GuardedPrograms { cell: cell.clone(), programs, objects };
-    let sensors = SensorGuards::start(programs, frames, network, *clock, on_event.clone())?;
+    let sensors = SensorGuards::start(programs, frames, (network, of_controllers), *clock, on_event.clone())?;
     Ok((controllers, sensors))
 }
 
@@ -188,37 +192,44 @@ impl SimulatedController {
     fn tick(&mut self, nominal: Micros, clock: Clock) {
         let now = clock.micros();
         let speed_override = locked(&self.client).speed_override(now);
-        let mut program = locked(&self.program);
+        let shared = self.program.clone();
+        let mut program = locked(&shared);
         let (is_held, news) = program.must_hold(clock.seconds(), self.reaction_s, self.tick_s);
-        if let (Some(news), Some(on_event)) = (news, &self.on_event) {
-            on_event(&format!("{}: {news}", self.name));
-        }
-        let program = &mut program.clock;
-        program.advance(self.tick_s, if is_held { 0.0 } else { speed_override });
-        for switch in program.take_switches() {
-            self.switches.want(switch.region, switch.active);
-        }
-        self.switches.send();
-        self.carried.follow(program, clock.seconds());
-        if program.finished()
-            && let Some(again) = &self.again
-        {
-            program.restart(again.clone());
+        let clock_of_program = &mut program.clock;
+        clock_of_program.advance(self.tick_s, if is_held { 0.0 } else { speed_override });
+        self.carry_out(clock_of_program, clock.seconds());
+        if let Some(again) = self.again.as_ref().filter(|_| clock_of_program.finished()) {
+            clock_of_program.restart(again.clone());
+            // Whoever reads the new path must know what is gripped at its start.
+            self.carry_out(clock_of_program, clock.seconds());
         }
         self.velocity.clear();
-        self.velocity.extend(program.velocity());
+        self.velocity.extend(clock_of_program.velocity());
         let state = ControllerState {
-            q: &program.point().q,
+            q: &clock_of_program.point().q,
             qd: &self.velocity,
-            intent: program.intent(),
+            intent: clock_of_program.intent(),
             // A robot that is held is not commanded to move: its constant joint values are no frozen reading.
-            programmed_override: if is_held { 0.0 } else { program.programmed_override() },
+            programmed_override: if is_held { 0.0 } else { clock_of_program.programmed_override() },
             attached: self.carried.volumes(),
             stamp: Some(nominal),
         };
         self.bytes.clear();
         self.bytes.extend_from_slice(locked(&self.client).joint_state(now, &state));
+        drop(program);
         self.joint_states.publish(&self.bytes);
+        self.switches.send();
+        if let (Some(news), Some(on_event)) = (news, &self.on_event) {
+            on_event(&format!("{}: {news}", self.name));
+        }
+    }
+
+    /// Switches regions, exchanges tools, grips and releases as the program has said since the last call.
+    fn carry_out(&mut self, program: &mut ProgramClock, t_s: f64) {
+        for switch in program.take_switches() {
+            self.switches.want(switch.region, switch.active);
+        }
+        self.carried.follow(program, t_s);
     }
 }
 
@@ -235,4 +246,58 @@ fn repetition(paths: &PlannedPaths<'_>, robot: RobotId, once: &ProgramPlan) -> O
     let (first, second) = (end(once)?, end(&twice)?);
     let is_closed = first.iter().zip(&second).all(|(a, b)| (a - b).abs() < 1e-9);
     is_closed.then(|| ProgramPlan { start: first, speed_override: once.speed_override, steps: steps.to_vec() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::messages::{JointState, OverrideAnswer};
+    use crate::network::LocalNetwork;
+
+    const CELL: &str = r#"
+version = 1
+units = { length = "mm", angle = "deg" }
+[robot.arm]
+dh = [{ a = 400, min = -170, max = 170, speed = 90 }]
+links = [{ capsule = { from = [-400, 0, 0], to = [0, 0, 0], radius = 40 } }]
+[object.part]
+shape = "box"
+at = [450, 0, 0]
+size = [60, 60, 60]
+[program.arm]
+steps = [{ grip = "part" }, { move = "joint", to = [20] }, { move = "joint", to = [0] }, { release = "part" }]
+"#;
+
+    /// Whoever reads a program between two ticks sees all that it has gripped, also at the start of a repetition.
+    #[test]
+    fn between_ticks_nothing_that_a_program_gripped_is_unknown() {
+        let cell = Arc::new(Cell::parse("grip.toml", CELL).unwrap());
+        let network: Arc<dyn Network> = Arc::new(LocalNetwork::default());
+        let (of_controllers, clock) = (network.clone(), Clock::start());
+        let start = Start { cell: cell.clone(), frames: Vec::new(), network, of_controllers, clock, on_event: None };
+        let (mut controllers, _) = controllers(&start, &[RobotId(0)]).unwrap();
+        let keys = Keys::new(&cell.name);
+        let said = Arc::new(Mutex::new(Vec::new()));
+        let heard = said.clone();
+        let handler = Box::new(move |bytes: &[u8]| *locked(&heard) = bytes.to_vec());
+        let _states = start.network.subscribe(&keys.joint_states("arm"), handler).unwrap();
+        let mut answers = start.network.publisher(&keys.speed_override("arm"), Urgency::RealTime).unwrap();
+        let (mut repetitions, mut before) = (0, 0);
+        for sequence in 1..=6000 {
+            controllers[0].tick(clock.micros(), clock);
+            let mut state = JointState::default();
+            state.decode(&locked(&said)).unwrap();
+            let mut bytes = Vec::new();
+            let JointState { checksum, boot, sequence: echo, .. } = state;
+            let answer = OverrideAnswer { checksum, boot, echo, sequence, speed_override: 1.0, ..Default::default() };
+            answer.encode(&mut bytes);
+            answers.publish(&bytes);
+            let mut program = locked(&controllers[0].program);
+            assert!(program.clock.take_grips().is_empty(), "tick {sequence}");
+            let (step, _) = program.clock.position();
+            repetitions += usize::from(step < before);
+            before = step;
+        }
+        assert!(repetitions >= 2, "{repetitions}");
+    }
 }

@@ -67,7 +67,7 @@ impl RegionSwitches {
 }
 
 impl SwitchRequests {
-    /// Those of a robot's program, which is about to start.
+    /// The requests of a robot's program, which is about to start.
     ///
     /// # Errors
     /// [`NetworkError`] if the keys cannot be used.

@@ -25,6 +25,9 @@ use elbowroom_testkit::network::free_address;
 /// The first joint at the end of the move, rad.
 const GOAL: f64 = -60.0 * std::f64::consts::PI / 180.0;
 
+/// However a test ends, the process ends by itself.
+const FOR: [&str; 2] = ["--for", "100"];
+
 /// Joint values and when they arrived.
 type HeardJoints = Arc<Mutex<Vec<(Instant, Vec<f64>)>>>;
 
@@ -42,7 +45,7 @@ impl LiveCell {
     /// Starts the cell of a folder, and waits until its robot is heard.
     fn start(dir: &Path, frames: &str, others: &[&str]) -> Self {
         let address = free_address();
-        let arguments = ["live", "cell.toml", "--simulate", "--listen", &address, "--frames", frames, "--for", "100"];
+        let arguments = ["live", "cell.toml", "--simulate", "--listen", &address, "--frames", frames];
         let mut process =
             command(dir, &arguments).args(others).stdin(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         let events: Arc<Mutex<Vec<String>>> = Arc::default();
@@ -133,7 +136,7 @@ fn a_live_arm_goes_around_a_crate_that_only_a_camera_on_a_pipe_knows() {
     let dir = tempfile::tempdir().unwrap();
     std::fs::write(dir.path().join("cell.toml"), cell(CAMERA, "planned")).unwrap();
     write_pictures(dir.path(), FRAMES, f64::INFINITY);
-    let mut cell = LiveCell::start(dir.path(), "above=-", &[]);
+    let mut cell = LiveCell::start(dir.path(), "above=-", &FOR);
     let mut pipe = cell.child().stdin.take().unwrap();
     let has_arrived = |i: usize| cell.last().is_some_and(|q| (q[0] - GOAL).abs() < 1e-3) || i > 10 * FRAMES;
     let begun = send(&dir.path().join("pictures"), "png", has_arrived, |picture| pipe.write_all(picture).unwrap());
@@ -145,7 +148,7 @@ fn a_live_arm_goes_around_a_crate_that_only_clouds_on_a_key_know() {
     let dir = tempfile::tempdir().unwrap();
     std::fs::write(dir.path().join("cell.toml"), cell(CLOUD, "planned")).unwrap();
     write_clouds(dir.path(), FRAMES, f64::INFINITY);
-    let cell = LiveCell::start(dir.path(), "mast=key", &[]);
+    let cell = LiveCell::start(dir.path(), "mast=key", &FOR);
     let mut clouds: Box<dyn Publisher> = cell.network.publisher(&cell.keys.frames("mast"), Urgency::RealTime).unwrap();
     let has_arrived = |i: usize| cell.last().is_some_and(|q| (q[0] - GOAL).abs() < 1e-3) || i > 10 * FRAMES;
     let begun = send(&dir.path().join("clouds"), "pcd", has_arrived, |cloud| clouds.publish(cloud));
@@ -157,7 +160,7 @@ fn a_live_arm_stops_if_its_camera_is_silent_and_never_starts_before_it_has_seen_
     let dir = tempfile::tempdir().unwrap();
     std::fs::write(dir.path().join("cell.toml"), cell(CAMERA, "planned")).unwrap();
     write_pictures(dir.path(), FRAMES, f64::INFINITY);
-    let mut cell = LiveCell::start(dir.path(), "above=-", &[]);
+    let mut cell = LiveCell::start(dir.path(), "above=-", &FOR);
     let start = cell.last().unwrap();
     std::thread::sleep(Duration::from_secs(2));
     assert_eq!(cell.last().unwrap(), start, "it moved before its camera had seen anything");
@@ -185,7 +188,7 @@ fn a_live_arm_waits_while_another_robot_of_the_cell_is_not_heard() {
                  links = [{ sphere = { radius = 50 } }]\n";
     std::fs::write(dir.path().join("cell.toml"), format!("{alone}\n{other}")).unwrap();
     write_clouds(dir.path(), FRAMES, f64::INFINITY);
-    let cell = LiveCell::start(dir.path(), "mast=key", &["--robots", "kr", "--arbiter"]);
+    let cell = LiveCell::start(dir.path(), "mast=key", &["--robots", "kr", "--arbiter", "--for", "100"]);
     let start = cell.last().unwrap();
     let mut clouds: Box<dyn Publisher> = cell.network.publisher(&cell.keys.frames("mast"), Urgency::RealTime).unwrap();
     send(&dir.path().join("clouds"), "pcd", |i| i >= LEARNING + 75, |cloud| clouds.publish(cloud));
@@ -196,21 +199,46 @@ fn a_live_arm_waits_while_another_robot_of_the_cell_is_not_heard() {
 }
 
 #[test]
+fn clouds_that_are_too_many_or_unreadable_stop_the_arm_and_not_the_process() {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("cell.toml"), cell(CLOUD, "planned")).unwrap();
+    write_clouds(dir.path(), LEARNING + 1, f64::INFINITY);
+    let mut cell = LiveCell::start(dir.path(), "mast=key", &["--for", "4"]);
+    let mut clouds: Box<dyn Publisher> = cell.network.publisher(&cell.keys.frames("mast"), Urgency::RealTime).unwrap();
+    let cloud = std::fs::read(dir.path().join(format!("clouds/cloud_{LEARNING:04}.pcd"))).unwrap();
+    let began = Instant::now();
+    while cell.child().try_wait().unwrap().is_none() {
+        assert!(began.elapsed().as_secs() < 30, "it does not end: {:?}", cell.events());
+        let unreadable = began.elapsed().as_secs_f64() < 1.0;
+        clouds.publish(if unreadable { b"no cloud" } else { &cloud });
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    let events = cell.events();
+    assert!(events.iter().any(|event| event.starts_with("sensor mast: rejected: ")), "{events:?}");
+    assert!(events.iter().any(|event| event == "sensor mast: is used again"), "{events:?}");
+}
+
+#[test]
 fn what_is_no_sensor_or_no_pipe_is_refused() {
     let dir = tempfile::tempdir().unwrap();
     std::fs::write(dir.path().join("cell.toml"), cell(CLOUD, "planned")).unwrap();
     write_clouds(dir.path(), LEARNING, f64::INFINITY);
-    let refused = |frames: &str| {
-        let answer = command(dir.path(), &["live", "cell.toml", "--simulate", "--frames", frames]).output().unwrap();
-        assert_eq!(answer.status.code(), Some(2), "{frames}");
+    let refused = |frames: &[&str]| {
+        let frames = frames.iter().flat_map(|source| ["--frames", source]);
+        let mut live = command(dir.path(), &["live", "cell.toml", "--simulate", "--listen", "127.0.0.1:0"]);
+        let answer = live.args(frames).output().unwrap();
+        assert_eq!(answer.status.code(), Some(2));
         String::from_utf8(answer.stderr).unwrap()
     };
-    let missing = refused("mast=nowhere");
-    assert!(missing.contains("no named pipe is there\n  write: mkfifo nowhere before it"), "{missing}");
-    let folder = refused("mast=clouds");
-    assert!(folder.contains("a folder belongs into the cell file"), "{folder}");
-    for frames in ["above=-", "mast=-"] {
-        let unknown = refused(frames);
-        assert!(unknown.contains("no camera of this name guards a robot\n  help: one of mast"), "{unknown}");
+    for (frames, message) in [
+        (&["mast=nowhere"][..], "no named pipe is there\n  write: mkfifo nowhere before it"),
+        (&["mast=clouds"], "a folder belongs into the cell file"),
+        (&["mast=cell.toml"], "no named pipe is there"),
+        (&["above=-"], "no sensor of this name guards a simulated robot of this process\n  help: mast"),
+        (&["mast=-"], "clouds do not come from a pipe\n  help: --frames mast=key"),
+        (&["mast=key", "mast=key"], "is given twice\n  help: one source"),
+    ] {
+        let told = refused(frames);
+        assert!(told.contains(message), "{told}");
     }
 }

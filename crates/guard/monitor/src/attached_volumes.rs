@@ -1,4 +1,4 @@
-//! The volumes that are attached to the robot at present: some are attached and detached while it runs.
+//! The volumes that are part of the robot at present; some are attached and detached while it runs.
 
 use elbowroom_spatial::Pose;
 

@@ -1,4 +1,5 @@
-//! Program time since the joint values last changed by a bit, in which the robot may have travelled unseen.
+//! Bounds of the program time since any joint value last changed: they detect a frozen reading and bound the unseen
+//! travel.
 
 use crate::laws::{stop_time, stopping_program_time};
 use crate::override_history::OverrideRange;

@@ -270,8 +270,8 @@ impl<'s> Avoider<'s> {
     }
 
     /// Plans a detour from the present configuration to `goal` around all obstacles at their present poses, checks that
-    /// it is free, and follows it from the next tick until an obstacle has to be evaded. The detour keeps the clearance
-    /// if its ends have it ([`RrtConnect::plan_from_tight_ends`]). Planning takes time: call it outside the loop.
+    /// it is free, and follows it from the next tick until an obstacle has to be evaded. The detour keeps the clearance,
+    /// except straight at a tight end ([`RrtConnect::plan_from_tight_ends`]). Planning takes time: call it outside the loop.
     ///
     /// # Errors
     /// The robot moves, or the errors of [`RrtConnect::plan_from_tight_ends`].

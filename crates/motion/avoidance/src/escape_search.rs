@@ -1,4 +1,4 @@
-//! Search for escapes: replaces a command after which no escape would be left by the command of the known escape.
+//! Search for escapes: if no escape would remain after the rules' command, the robot follows the known escape instead.
 //!
 //! If a stop would be hit within the horizon, time-optimal joint motions are sampled ([`escape_targets`]) and proven
 //! against the predicted motion of all moving obstacles ([`EscapeCheck`]). The proven motion with the largest gap is

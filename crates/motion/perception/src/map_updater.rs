@@ -11,7 +11,7 @@ use crate::robot_prisms::RobotPrisms;
 pub(super) struct PrismSettings {
     /// Prediction horizon: an obstacle also blocks its predicted positions until this time after the frame, seconds.
     pub prediction_s: f64,
-    /// Size of changes that are ignored, metres.
+    /// Largest change of a predicted position that is ignored, metres.
     pub slack_m: f64,
 }
 

@@ -113,7 +113,7 @@ impl Log {
             .hint("elbowroom region seal CELL --as integrator --key FILE"))
     }
 
-    /// The last entry, for `run`.
+    /// Returns class, key, key name and time of the last entry, and the number of entries.
     pub fn seal(&self, trusted: &TrustedKeys) -> Seal {
         let last = self.entries.last();
         let text = |field: fn(&LogEntry) -> &String| last.map(field).cloned().unwrap_or_default();

@@ -1,6 +1,4 @@
-//! Checks the path of one robot against the obstacles of each picture, and searches for another one if it is blocked.
-
-use std::time::{Duration, Instant};
+//! Checks the path of one robot against the obstacles of each picture, and decides when another one is searched for.
 
 use elbowroom_cell::{Cell, OutOfReachProofs, QueryModel};
 use elbowroom_formats::FormatError;
@@ -10,8 +8,8 @@ use elbowroom_scene::{Checker, CheckerOptions, Scene, SceneError, Selection, Swe
 
 use super::executed_motion::ExecutedMotion;
 use super::path_ahead::PathAhead;
-use super::path_replanner::{self, NewPath, PathReplanner};
-use super::path_search::{ClosedRegions, FutileSearch, PathSearch, SearchScene};
+use super::path_replanner::{self, PathReplanner, SearchResult};
+use super::path_search::{ClosedRegions, FutileSearch, PathSearch, SearchRequest, SearchScene};
 use super::perceived_obstacles::{PerceivedObstacle, PerceivedObstacles, PerceivedSolid};
 use super::program_hold::BlockedPath;
 use super::surroundings::Surroundings;
@@ -28,18 +26,17 @@ const RETRY_S: f64 = 0.2;
 pub enum SearchTiming {
     /// A search takes its time on the clock of a simulation: it is computed at its end, from where the robot is then.
     Simulated,
-    /// A search is computed at once, while the robot goes on: a new path leaves the present one after the longest duration of a
+    /// A search is computed at once, while the robot continues: a new path leaves the present one after the longest duration of a
     /// search.
     Live,
 }
 
-/// Checks the path of one robot, and searches for another one.
+/// Checks the path of one robot, and decides when another one is searched for.
 #[derive(Debug)]
-pub struct PathGuard<'a> {
+pub struct PathGuard {
     robot: RobotId,
     /// Scene with the robots of the cell only.
     base: Scene,
-    replanner: PathReplanner<'a>,
     timing: SearchTiming,
     /// How long a search may take, s.
     search_s: f64,
@@ -53,26 +50,25 @@ pub struct PathGuard<'a> {
     replans: Vec<PathReplan>,
 }
 
-impl<'a> PathGuard<'a> {
-    /// A guard of a robot with its program, which has moved nothing yet. Its searches may take `search_s` (s). `states` are the
-    /// robots of the cell.
+impl PathGuard {
+    /// A guard of a robot with its program, which has moved nothing yet, and what searches for its paths. A search may take
+    /// `search_s` (s). `states` are the robots of the cell.
     ///
     /// # Errors
     /// [`FormatError`] if the scene refuses the cell, or a move is planned on a map that the robot does not have.
-    pub fn new(
+    pub fn new<'a>(
         cell: &'a Cell,
         (robot, clock): (RobotId, &ProgramClock),
         (search_s, timing): (f64, SearchTiming),
         states: &[ChainState],
-    ) -> Result<Self, FormatError> {
+    ) -> Result<(Self, PathReplanner<'a>), FormatError> {
         let model = QueryModel { objects: Vec::new(), ..QueryModel::of_cell(cell) };
         let base = model.scene(OutOfReachProofs::Omit)?;
-        let mut replanner = PathReplanner::new(robot, &cell.robots[robot.0], cell.tick_s).with_maps(cell, clock)?;
-        replanner.prepare(&base, states);
-        Ok(Self {
+        let mut replanner = PathReplanner::new(robot, cell, base.clone()).with_maps(cell, clock)?;
+        replanner.prepare(states);
+        let guard = Self {
             robot,
             base,
-            replanner,
             timing,
             search_s,
             path: None,
@@ -81,7 +77,8 @@ impl<'a> PathGuard<'a> {
             without_path: None,
             not_before_s: 0.0,
             replans: Vec::new(),
-        })
+        };
+        Ok((guard, replanner))
     }
 
     /// The robot.
@@ -155,38 +152,38 @@ impl<'a> PathGuard<'a> {
         self.path == Some(path) && self.search.as_ref().is_some_and(|search| t_s >= search.due_s)
     }
 
-    /// Ends a search [that is due](Self::is_search_due). It knows what sensors had seen at its beginning, and where everything else
-    /// is by now. `enter` puts the robot onto a path that was found, and says whether it could. Returns whether the robot is on it.
-    pub fn end_search<'c>(
+    /// Takes a search [that is due](Self::is_search_due). It knows what sensors had seen when it was decided on, and where everything
+    /// else is by now. `None` if there is nothing to search for any more.
+    pub fn take_search(
         &mut self,
-        t_s: f64,
-        motion: &ExecutedMotion,
+        motion: ExecutedMotion,
         surroundings: impl FnOnce(Vec<PerceivedObstacle>) -> Surroundings,
-        regions: impl FnOnce() -> ClosedRegions<'c>,
-        enter: impl FnOnce(&NewPath) -> bool,
-    ) -> bool {
-        let Some(search) = self.search.take() else { return false };
-        let (mut known, regions) = (surroundings(search.perceived), regions());
-        let Some(blocked) = &self.blocked else { return false };
+    ) -> Option<SearchRequest> {
+        let PathSearch { takes_s, lead_s, perceived, .. } = self.search.take()?;
+        let free_until_s = self.blocked.as_ref()?.free_until_s;
+        let mut known = surroundings(perceived);
         known.states[self.robot.0].q.clone_from(&motion.q);
-        let Ok(solids) = self.solids(&known) else { return false };
-        let begin = Instant::now();
-        let (path, scene) = ((blocked.free_until_s, search.lead_s), (&self.base, &solids[..]));
-        let deadline = begin + Duration::from_secs_f64(search.takes_s);
-        let found = self.replanner.replan(motion, path, &known, scene, &regions, deadline).filter(enter);
-        let in_motion = found.as_ref().map(|new| new.in_motion);
+        let solids = self.solids(&known).ok()?;
+        Some(SearchRequest { motion, known, solids, free_until_s, takes_s, lead_s })
+    }
+
+    /// Does not search now: the next picture decides again.
+    pub fn drop_search(&mut self) {
+        self.search = None;
+    }
+
+    /// Takes note of the end of a search at a time (s), and whether the robot is on the path that was found.
+    pub fn end_search(&mut self, t_s: f64, request: &SearchRequest, result: &SearchResult, is_entered: bool) {
+        let in_motion = result.new_path.as_ref().filter(|_| is_entered).map(|new| new.in_motion);
         // A live cell runs for years: nobody reads its list.
         if self.timing == SearchTiming::Simulated {
-            self.replans.push(PathReplan { t_s, search_s: begin.elapsed().as_secs_f64(), in_motion });
+            self.replans.push(PathReplan { t_s, search_s: result.search_s, in_motion });
         }
-        if found.is_none() {
+        if in_motion.is_none() && self.path == Some(request.motion.path) {
             self.not_before_s = t_s + RETRY_S;
-            self.without_path = (motion.rate <= 0.0).then(|| FutileSearch {
-                scene: SearchScene::of(&known, &regions),
-                factor: search.takes_s / self.search_s,
-            });
+            self.without_path = (request.motion.rate <= 0.0)
+                .then(|| FutileSearch { scene: result.scene.clone(), factor: request.takes_s / self.search_s });
         }
-        found.is_some()
     }
 
     /// The solid of each obstacle: where it is and will be.

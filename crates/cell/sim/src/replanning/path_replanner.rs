@@ -19,10 +19,8 @@ use elbowroom_robot::RobotId;
 use elbowroom_scene::{Scene, SceneState};
 use elbowroom_spatial::Pose;
 
-use super::executed_motion::ExecutedMotion;
-use super::path_search::ClosedRegions;
-use super::perceived_obstacles::PerceivedSolid;
-use super::surroundings::{PlacedScene, Surroundings};
+use super::path_search::{ClosedRegions, SearchRequest, SearchScene};
+use super::surroundings::PlacedScene;
 use crate::motion::ProgramClock;
 
 /// Largest number of validated states per attempt.
@@ -82,6 +80,16 @@ impl NewPath {
     }
 }
 
+/// The end of a search.
+#[derive(Debug)]
+pub struct SearchResult {
+    /// The path, if there is one.
+    pub new_path: Option<NewPath>,
+    pub(super) scene: SearchScene,
+    /// Wall-clock time that it took, s.
+    pub(super) search_s: f64,
+}
+
 /// Settings of one attempt.
 struct Attempt {
     settings: RrtConnectSettings,
@@ -110,10 +118,12 @@ struct Departure {
     from: Vec<f64>,
 }
 
-/// Replanner of one robot.
+/// Searches for paths of one robot.
 #[derive(Debug)]
-pub(super) struct PathReplanner<'a> {
+pub struct PathReplanner<'a> {
     robot: RobotId,
+    /// Scene with the robots of the cell only.
+    base: Scene,
     at: &'a CellRobot,
     tick_s: f64,
     motion_bounds: Vec<f64>,
@@ -126,11 +136,13 @@ pub(super) struct PathReplanner<'a> {
 }
 
 impl<'a> PathReplanner<'a> {
-    pub fn new(robot: RobotId, at: &'a CellRobot, tick_s: f64) -> Self {
+    pub(super) fn new(robot: RobotId, cell: &'a Cell, base: Scene) -> Self {
+        let at = &cell.robots[robot.0];
         Self {
             robot,
+            base,
             at,
-            tick_s,
+            tick_s: cell.tick_s,
             motion_bounds: motion_bounds(at),
             models: Vec::new(),
             carrying: None,
@@ -142,7 +154,7 @@ impl<'a> PathReplanner<'a> {
     ///
     /// # Errors
     /// [`FormatError`] if the robot has no map of three joints.
-    pub fn with_maps(mut self, cell: &Cell, clock: &ProgramClock) -> Result<Self, FormatError> {
+    pub(super) fn with_maps(mut self, cell: &Cell, clock: &ProgramClock) -> Result<Self, FormatError> {
         for q in clock.moves_on_map() {
             if self.maps.iter().any(|(_, map)| map.serves(&q)) {
                 continue;
@@ -155,27 +167,28 @@ impl<'a> PathReplanner<'a> {
     }
 
     /// Computes what searches need from the robot itself, so that the first search does not take that time.
-    pub fn prepare(&mut self, scene: &Scene, states: &[ChainState]) {
-        let mut state = SceneState::new(scene);
-        let placed = states.iter().enumerate().all(|(i, robot)| state.set_q(scene, RobotId(i), &robot.q).is_ok());
+    pub(super) fn prepare(&mut self, states: &[ChainState]) {
+        let scene = self.base.clone();
+        let mut state = SceneState::new(&scene);
+        let placed = states.iter().enumerate().all(|(i, robot)| state.set_q(&scene, RobotId(i), &robot.q).is_ok());
         if placed {
             for clearance_m in CLEARANCES_M {
-                let _ = self.cover_model(scene, &state, clearance_m);
+                let _ = self.cover_model(&scene, &state, clearance_m);
             }
         }
     }
 
-    /// A new path to the end of the planned move, found until a deadline. A moving robot continues for `lead_s` (s) meanwhile, and
-    /// must be able to leave the present path before `free_until_s` (time in the step).
-    pub fn replan(
-        &mut self,
-        motion: &ExecutedMotion,
-        (free_until_s, lead_s): (f64, f64),
-        surroundings: &Surroundings,
-        (base, solids): (&Scene, &[PerceivedSolid]),
-        regions: &ClosedRegions<'_>,
-        deadline: Instant,
-    ) -> Option<NewPath> {
+    /// Searches for a path to the end of the planned move, as long as the request allows.
+    pub fn search(&mut self, request: &SearchRequest, regions: &ClosedRegions<'_>) -> SearchResult {
+        let begin = Instant::now();
+        let new_path = self.new_path(request, regions, begin + Duration::from_secs_f64(request.takes_s));
+        let search_s = begin.elapsed().as_secs_f64();
+        SearchResult { new_path, scene: SearchScene::of(&request.known, regions), search_s }
+    }
+
+    /// A new path, found until a deadline. A moving robot must be able to leave the present path before it is blocked.
+    fn new_path(&mut self, request: &SearchRequest, regions: &ClosedRegions<'_>, deadline: Instant) -> Option<NewPath> {
+        let SearchRequest { motion, known, solids, free_until_s, lead_s, .. } = request;
         let (ahead, goal) = (motion.ahead.as_ref()?, motion.planned.as_ref()?);
         let limits: Vec<JointLimits> = self.at.limits.iter().map(|limits| limits.slowed_to(goal.speed)).collect();
         let speed = norm(&motion.qd);
@@ -184,7 +197,7 @@ impl<'a> PathReplanner<'a> {
             let along: Vec<f64> = motion.qd.iter().map(|v| v / speed).collect();
             let length = acceleration_distance(speed, &along, &limits);
             let (passed_s, from) = ahead.straight_ahead(&along, LEAVE_AFTER * length + lead_s * speed)?;
-            if passed_s >= free_until_s {
+            if passed_s >= *free_until_s {
                 return None;
             }
             let behind = motion.q.iter().zip(&along).map(|(q, a)| q - a * length).collect();
@@ -192,20 +205,20 @@ impl<'a> PathReplanner<'a> {
         } else {
             Departure { before: Vec::new(), from: motion.q.clone() }
         };
-        let mut placed = surroundings.everything(base, solids).ok()?;
+        let mut placed = known.everything(&self.base, solids).ok()?;
         placed.state.set_q(&placed.scene, self.robot, &departure.from).ok()?;
         let boxes: Vec<_> = solids.iter().flat_map(|solid| solid.boxes.iter().cloned()).collect();
         let found = attempts(in_motion, regions.are_none(), deadline).find_map(|attempt| {
             let constraint = regions.constraint(attempt.warning_share);
             let by = (goal.planner, &limits[..]);
-            self.search((&placed, &boxes), &departure, &goal.q, by, (&attempt.settings, constraint))
+            self.attempt((&placed, &boxes), &departure, &goal.q, by, (&attempt.settings, constraint))
         })?;
         let rows = found.rows.into_iter().map(|(t_s, q)| TrajectoryRow { t_s, q }).collect();
         let play = Arc::new(Playback::new(rows, &self.motion_bounds));
         (Instant::now() <= deadline).then_some(NewPath { replaces: motion.path, play, in_motion })
     }
 
-    fn search(
+    fn attempt(
         &mut self,
         (placed, others): (&PlacedScene, &[(Shape, Pose)]),
         departure: &Departure,

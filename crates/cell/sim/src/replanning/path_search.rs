@@ -4,7 +4,8 @@ use elbowroom_cell::region_constraint::RegionConstraint;
 use elbowroom_monitor::{Monitor, SourceState};
 use elbowroom_spatial::{Aabb, Pose};
 
-use super::perceived_obstacles::PerceivedObstacle;
+use super::executed_motion::ExecutedMotion;
+use super::perceived_obstacles::{PerceivedObstacle, PerceivedSolid};
 use super::surroundings::Surroundings;
 
 /// Change of a bounding box (m) up to which an obstacle counts as unmoved: noise of the outlines.
@@ -48,6 +49,22 @@ pub(super) struct PathSearch {
     pub perceived: Vec<PerceivedObstacle>,
 }
 
+/// Everything that a search knows, and how long it may take: it can run on another thread.
+#[derive(Debug)]
+pub struct SearchRequest {
+    /// The motion that another path replaces.
+    pub motion: ExecutedMotion,
+    pub(super) known: Surroundings,
+    /// A solid per perceived obstacle.
+    pub(super) solids: Vec<PerceivedSolid>,
+    /// Time in the step (s) before which a moving robot must leave its path.
+    pub(super) free_until_s: f64,
+    /// How long the search may take, s.
+    pub(super) takes_s: f64,
+    /// How long the robot continues meanwhile, s.
+    pub(super) lead_s: f64,
+}
+
 /// A search from rest that found no path.
 #[derive(Debug)]
 pub(super) struct FutileSearch {
@@ -67,7 +84,7 @@ impl FutileSearch {
 }
 
 /// Everything that the result of a search from rest depends on: while it is unchanged, an equal search finds no more.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct SearchScene {
     q: Vec<Vec<f64>>,
     objects: Vec<Pose>,

@@ -77,6 +77,8 @@ struct WatchedSensor<'a> {
     /// So many of the folder are processed.
     files: usize,
     last: LastSight,
+    /// Why the last picture or cloud was rejected; `None` if it was not.
+    rejected: Option<String>,
     obstacles: Vec<PerceivedObstacle>,
     records: Vec<WatchRecord>,
     processing_ns: Vec<u64>,
@@ -91,6 +93,7 @@ impl<'a> WatchedSensor<'a> {
             files: watch.files().len(),
             watch,
             last: LastSight { sensor: spec.name.clone(), taken_s: None, stale_s: spec.stale_s },
+            rejected: None,
             obstacles: Vec::new(),
             records: Vec::new(),
             processing_ns: Vec::new(),
@@ -115,6 +118,7 @@ impl<'a> WatchedSensor<'a> {
 
     /// Takes over the obstacles of a picture, unless it was rejected; returns whether it did.
     fn accept(&mut self, record: &WatchRecord) -> bool {
+        self.rejected.clone_from(&record.reason);
         let obstacles = self.watch.prisms().iter().map(|p| PerceivedObstacle::of(&self.spec.name, p));
         // A prism without a volume does not state where the obstacle is, so the picture is treated as rejected.
         if record.status == WatchStatus::Accepted
@@ -134,7 +138,7 @@ pub struct PerceivedObstacles<'a> {
 }
 
 impl<'a> PerceivedObstacles<'a> {
-    /// Opens the folders of the sensors; those without one are left out.
+    /// Opens the folders of the sensors that guard robots. Sensors without a folder are omitted.
     ///
     /// # Errors
     /// [`FormatError`] if a folder cannot be read, or the robot of a sensor has no map of three joints.
@@ -146,18 +150,22 @@ impl<'a> PerceivedObstacles<'a> {
         Ok(Self { sensors })
     }
 
-    /// All sensors of a live cell. What a sensor sends that `is_sent` names, or that has no folder, is passed one by one to
-    /// [`process`](Self::process); of its folder only what was taken before the start is processed, which shows the empty cell.
+    /// Opens the sensors of a live cell that guard one of these robots.
+    ///
+    /// A sensor that has no folder, or that `is_sent` accepts, is live: pass each of its pictures or clouds to
+    /// [`process`](Self::process). From the folder of a live sensor only files from before the start are processed; they show the
+    /// empty cell.
     ///
     /// # Errors
     /// As for [`of_cell`](Self::of_cell).
     pub fn of_live_cell(
         cell: &'a Cell,
+        robots: &[RobotId],
         is_sent: impl Fn(&CellSensor) -> bool,
         notes: &mut Vec<Warning>,
     ) -> Result<Self, FormatError> {
         let mut sensors = Vec::new();
-        for spec in cell.sensors.iter().filter(|s| !s.robots.is_empty()) {
+        for spec in cell.sensors.iter().filter(|s| s.robots.iter().any(|robot| robots.contains(robot))) {
             let has_folder = spec.folder.is_some();
             let watch = if has_folder { SensorWatch::in_run(cell, spec)? } else { SensorWatch::sent(cell, spec)? };
             let mut sensor = WatchedSensor::new(spec, watch, notes);
@@ -169,18 +177,24 @@ impl<'a> PerceivedObstacles<'a> {
         Ok(Self { sensors })
     }
 
-    /// Whether no sensor guards a robot.
-    pub fn is_empty(&self) -> bool {
-        self.sensors.is_empty()
+    /// Processes a picture or cloud that a sensor has sent: its bytes, when it was taken (s), and where the robots were then. Returns
+    /// whether it was accepted.
+    pub fn process(&mut self, sensor: &str, bytes: &[u8], t_s: f64, q: &[Vec<f64>]) -> bool {
+        let Some(sensor) = self.sensors.iter_mut().find(|s| s.spec.name == sensor) else { return false };
+        let record = sensor.watch.record_sent(bytes, Path::new(&sensor.spec.name), t_s, q);
+        sensor.accept(&record)
     }
 
-    /// Processes a picture or cloud that a sensor has sent: its bytes, when it was taken (s), and where the robots were then. Returns
-    /// what came of it, and whether it was accepted; `None` for the name of another sensor.
-    pub fn process(&mut self, sensor: &str, bytes: &[u8], t_s: f64, q: &[Vec<f64>]) -> Option<(WatchRecord, bool)> {
-        let sensor = self.sensors.iter_mut().find(|s| s.spec.name == sensor)?;
-        let record = sensor.watch.record_sent(bytes, Path::new(&sensor.spec.name), t_s, q);
-        let is_accepted = sensor.accept(&record);
-        Some((record, is_accepted))
+    /// Takes note that a picture or cloud of a sensor cannot be used.
+    pub fn reject(&mut self, sensor: &str, why: &str) {
+        if let Some(sensor) = self.sensors.iter_mut().find(|s| s.spec.name == sensor) {
+            sensor.rejected = Some(why.to_owned());
+        }
+    }
+
+    /// Per sensor why its last picture or cloud was rejected; `None` if it was not.
+    pub fn rejections(&self) -> impl Iterator<Item = (&str, Option<&str>)> {
+        self.sensors.iter().map(|s| (s.spec.name.as_str(), s.rejected.as_deref()))
     }
 
     /// Time (s) that a path search of a robot takes: the longest of its sensors; `None` if no sensor guards the robot.

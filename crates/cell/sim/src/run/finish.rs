@@ -9,7 +9,7 @@ use super::simulated_robot::SimulatedRobot;
 use super::simulation::Simulation;
 use super::{outcome, release};
 use crate::recording::{Deadlock, PerceptionTrack, Recording, RobotTrack, RunEnd, TickTimes};
-use crate::replanning::{PathGuard, PerceivedObstacles};
+use crate::replanning::PerceivedObstacles;
 
 impl Simulation<'_> {
     /// The recording of a run that has ended at `t_s`.
@@ -58,7 +58,7 @@ impl Ended<'_> {
     fn track(&self, robot: SimulatedRobot<'_>) -> RobotTrack {
         let SimulatedRobot { id, setup, mut track, avoiding, guard, hold, governing, .. } = robot;
         track.avoidance = avoiding.map(AvoidingRobot::finish);
-        track.perception = guard.map(PathGuard::into_replans).map(|replans| {
+        track.perception = guard.map(|(guard, _)| guard.into_replans()).map(|replans| {
             let (holds, ends_held) = hold.finish(self.t_s);
             PerceptionTrack { replans, holds, ends_held }
         });

@@ -33,7 +33,7 @@ use elbowroom_robot::{Robot, RobotId};
 
 use crate::motion::{PlannedPaths, ProgramClock, ProgramPlan, plan};
 use crate::recording::{Recording, RegionTrack};
-use crate::replanning::{PathGuard, PerceivedObstacles, SearchTiming};
+use crate::replanning::{PathGuard, PathReplanner, PerceivedObstacles, SearchTiming};
 use avoiding_robot::AvoidingRobot;
 pub use avoiding_robot::evasion_limits;
 use contact_recorder::ContactRecorder;
@@ -164,7 +164,7 @@ fn path_guard<'a>(
     perceived: &PerceivedObstacles<'_>,
     states: &[ChainState],
     notes: &mut Vec<Warning>,
-) -> Result<Option<PathGuard<'a>>, FormatError> {
+) -> Result<Option<(PathGuard, PathReplanner<'a>)>, FormatError> {
     let Some(search_s) = perceived.search_s(id) else { return Ok(None) };
     if !avoids {
         return PathGuard::new(cell, (id, clock), (search_s, SearchTiming::Simulated), states).map(Some);

@@ -7,7 +7,7 @@ use elbowroom_kinematics::ChainState;
 use super::simulated_robot::SimulatedRobot;
 use super::simulation::Simulation;
 use crate::recording::{HoldReason, RunEvent};
-use crate::replanning::{ClosedRegions, PathGuard, PerceivedObstacles};
+use crate::replanning::{ClosedRegions, PerceivedObstacles};
 
 impl Simulation<'_> {
     /// Loads the pictures that are due. Guarded robots replan or are held.
@@ -29,7 +29,8 @@ impl Simulation<'_> {
 
     /// Whether pictures remain, or a search is running.
     pub(super) fn expects_news(&self) -> bool {
-        let is_searching = |robot: &SimulatedRobot<'_>| robot.guard.as_ref().is_some_and(PathGuard::is_searching);
+        let is_searching =
+            |robot: &SimulatedRobot<'_>| robot.guard.as_ref().is_some_and(|(guard, _)| guard.is_searching());
         self.perceived.as_ref().is_some_and(PerceivedObstacles::has_more) || self.robots.iter().any(is_searching)
     }
 
@@ -37,14 +38,19 @@ impl Simulation<'_> {
     fn end_path_searches(&mut self, t_s: f64) {
         let Self { options, robots, states, frames, contacts, journal, .. } = self;
         for robot in robots.iter_mut().filter(|robot| !options.is_silent(robot.id, t_s)) {
-            let SimulatedRobot { id, setup, monitor, clock, guard: Some(guard), .. } = robot else { continue };
+            let SimulatedRobot { id, setup, monitor, clock, guard: Some((guard, replanner)), .. } = robot else {
+                continue;
+            };
             if !guard.is_search_due(t_s, clock.path_number()) {
                 continue;
             }
-            let regions = || ClosedRegions { monitor, sources: frames.sources(&setup.sources, states, t_s) };
             let surroundings = |perceived| contacts.surroundings(states, perceived);
-            let motion = clock.executed_motion();
-            if guard.end_search(t_s, &motion, surroundings, regions, |new| new.enter(clock)) {
+            let Some(request) = guard.take_search(clock.executed_motion(), surroundings) else { continue };
+            let regions = ClosedRegions { monitor, sources: frames.sources(&setup.sources, states, t_s) };
+            let result = replanner.search(&request, &regions);
+            let is_entered = result.new_path.as_ref().is_some_and(|new| new.enter(clock));
+            guard.end_search(t_s, &request, &result, is_entered);
+            if is_entered {
                 journal.event(t_s, *id, "", RunEvent::Replan);
             }
         }
@@ -53,7 +59,9 @@ impl Simulation<'_> {
     /// Checks the path of a robot, and holds the robot if it must brake for an obstacle or a stale sensor.
     fn keep_clear(&mut self, i: usize, perceived: &PerceivedObstacles<'_>, has_news: bool, t_s: f64) {
         let Self { cell, robots, states, frames, contacts, journal, .. } = self;
-        let SimulatedRobot { id, setup, monitor, clock, guard: Some(guard), hold, .. } = &mut robots[i] else { return };
+        let SimulatedRobot { id, setup, monitor, clock, guard: Some((guard, _)), hold, .. } = &mut robots[i] else {
+            return;
+        };
         if guard.is_due(clock.path_number(), has_news) {
             let seen = || perceived.obstacles(*id).cloned().collect();
             let surroundings = || contacts.surroundings(states, seen());

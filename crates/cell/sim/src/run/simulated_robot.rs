@@ -18,7 +18,7 @@ use super::stop_state::StopState;
 use super::zone_claims::ZoneClaims;
 use crate::motion::ProgramClock;
 use crate::recording::{GoverningPoint, RobotEnding, RobotTrack, Sample, Stop};
-use crate::replanning::{PathGuard, ProgramHold};
+use crate::replanning::{PathGuard, PathReplanner, ProgramHold};
 
 /// A robot with its program, its monitor, its avoidance or guard, and its recording.
 pub(super) struct SimulatedRobot<'a> {
@@ -32,7 +32,7 @@ pub(super) struct SimulatedRobot<'a> {
     /// `None` without avoidance.
     pub avoiding: Option<AvoidingRobot<'a>>,
     /// `None` if no sensor guards it.
-    pub guard: Option<PathGuard<'a>>,
+    pub guard: Option<(PathGuard, PathReplanner<'a>)>,
     /// Whether an obstacle or a sensor holds it in this tick.
     pub hold: ProgramHold,
     /// The robot with its present tools.

@@ -96,7 +96,7 @@ impl NodeMonitor {
         }
     }
 
-    /// Reads a message of the arbiter. A message that is refused changes nothing.
+    /// Passes a message of the arbiter to the guard. A refused message changes nothing.
     pub(super) fn receive(&mut self, bytes: &[u8]) {
         if let Inner::Guarded(guarded) = &mut self.monitor {
             let _ = guarded.receive(bytes);

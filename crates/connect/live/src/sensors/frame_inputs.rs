@@ -5,6 +5,7 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
 
 use elbowroom_cell::{Cell, CellSensor};
 use elbowroom_formats::PngStream;
@@ -12,17 +13,20 @@ use elbowroom_formats::PngStream;
 use crate::clock::Clock;
 use crate::event_handler::EventHandler;
 use crate::keys::Keys;
-use crate::network::{Network, NetworkError, Subscription};
+use crate::network::{Network, Subscription};
+use crate::service_error::ServiceError;
 
 /// So many pictures of one sensor wait to be processed; of more, the oldest ones are dropped.
 const WAITING: usize = 4;
+/// A named pipe that has ended is opened again after this time.
+const REOPENED_AFTER: Duration = Duration::from_millis(200);
 
 /// Where the pictures of a camera come from, in place of the folder of the cell file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum FrameSource {
     /// PNG pictures one after another, from standard input.
     StandardInput,
-    /// PNG pictures one after another, from a named pipe or another file.
+    /// PNG pictures one after another, from a named pipe.
     Pipe(PathBuf),
     /// The messages of the sensor's key only.
     Key,
@@ -65,14 +69,14 @@ impl FrameInputs {
     /// Each sensor that guards a robot has a key; `sources` are those with a pipe.
     ///
     /// # Errors
-    /// [`NetworkError`] if a key cannot be used.
+    /// [`ServiceError`] if a key cannot be used, or a thread not be started.
     pub fn start(
         cell: &Cell,
         sources: &[(String, FrameSource)],
         network: &Arc<dyn Network>,
         clock: Clock,
         on_event: Option<&EventHandler>,
-    ) -> Result<Self, NetworkError> {
+    ) -> Result<Self, ServiceError> {
         let waiting = Waiting { frames: Arc::default(), clock };
         let keys = Keys::new(&cell.name);
         let mut subscriptions = Vec::new();
@@ -85,33 +89,47 @@ impl FrameInputs {
                 subscriptions.push(network.subscribe(&keys.frames(&sensor.name), handler)?);
             }
             if let Some(source) = source.filter(|source| **source != FrameSource::Key) {
-                read_pipe(sensor, source.clone(), waiting.clone(), on_event.cloned());
+                read_pipe(sensor, source.clone(), waiting.clone(), on_event.cloned()).map_err(ServiceError::Thread)?;
             }
         }
         Ok(Self { waiting, _subscriptions: subscriptions })
     }
 
-    /// The next picture or cloud that was sent.
-    pub fn next(&self) -> Option<SentFrame> {
-        self.waiting.frames.lock().unwrap_or_else(PoisonError::into_inner).pop_front()
+    /// Takes what was sent up to now.
+    pub fn take(&self) -> impl Iterator<Item = SentFrame> {
+        std::mem::take(&mut *self.waiting.frames.lock().unwrap_or_else(PoisonError::into_inner)).into_iter()
     }
 }
 
-/// Reads pictures from a pipe, on a thread that ends with the pipe.
-fn read_pipe(sensor: &CellSensor, source: FrameSource, waiting: Waiting, on_event: Option<EventHandler>) {
+/// Reads pictures from a pipe, on a thread of its own. A named pipe is opened again when it has ended.
+fn read_pipe(
+    sensor: &CellSensor,
+    source: FrameSource,
+    waiting: Waiting,
+    on_event: Option<EventHandler>,
+) -> io::Result<()> {
     let (name, latency_s) = (sensor.name.clone(), sensor.latency_s);
     let read = move || {
-        let ended = match open(&source)
-            .and_then(|input| forward(input, |picture| waiting.push(&name, latency_s, picture)))
-        {
-            Ok(()) => "there are no more pictures".to_owned(),
-            Err(error) => format!("{error}\n  help: PNG pictures one after another: ffmpeg … -f image2pipe -c:v png -"),
-        };
-        if let Some(on_event) = on_event {
-            on_event(&format!("sensor {name}: {ended}; the robots that it guards stop"));
+        let push = |picture| waiting.push(&name, latency_s, picture);
+        loop {
+            let ended = match open(&source).and_then(|input| forward(input, push)) {
+                Ok(()) => "there are no more pictures".to_owned(),
+                Err(error) => format!("{error} (PNG pictures one after another: ffmpeg … -f image2pipe -c:v png -)"),
+            };
+            let remedy = match &source {
+                FrameSource::Pipe(path) => format!("write pictures to {} again", path.display()),
+                FrameSource::StandardInput | FrameSource::Key => "start this process again".to_owned(),
+            };
+            if let Some(on_event) = &on_event {
+                on_event(&format!("sensor {name}: {ended}; the robots that it guards stop\n  help: {remedy}"));
+            }
+            if !matches!(source, FrameSource::Pipe(_)) {
+                return;
+            }
+            std::thread::sleep(REOPENED_AFTER);
         }
     };
-    let _ = std::thread::Builder::new().name("pictures".into()).spawn(read);
+    std::thread::Builder::new().name("pictures".into()).spawn(read).map(|_| ())
 }
 
 fn open(source: &FrameSource) -> io::Result<Box<dyn Read>> {

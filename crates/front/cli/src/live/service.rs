@@ -79,7 +79,7 @@ fn frame_source((sensor, source): &(String, String)) -> Result<(String, FrameSou
     let source = match source.as_str() {
         "-" => FrameSource::StandardInput,
         "key" => FrameSource::Key,
-        path if Path::new(path).is_dir() || !Path::new(path).exists() => {
+        path if !is_pipe(Path::new(path)) => {
             let what = format!("--frames {sensor}={path}: no named pipe is there");
             let instead = format!("mkfifo {path} before it; a folder belongs into the cell file: frames = \"DIR\"");
             return Err(Failure::Wrong(format!("{what}\n  write: {instead}")));
@@ -87,6 +87,17 @@ fn frame_source((sensor, source): &(String, String)) -> Result<(String, FrameSou
         path => FrameSource::Pipe(path.into()),
     };
     Ok((sensor.clone(), source))
+}
+
+#[cfg(unix)]
+fn is_pipe(path: &Path) -> bool {
+    use std::os::unix::fs::FileTypeExt;
+    std::fs::metadata(path).is_ok_and(|m| m.file_type().is_fifo())
+}
+
+#[cfg(not(unix))]
+fn is_pipe(path: &Path) -> bool {
+    path.exists() && !path.is_dir()
 }
 
 fn control(args: &LiveArgs) -> Result<Option<ControlOptions>, Failure> {

@@ -37,7 +37,7 @@ pub enum TimeParametrizationError {
         value: f64,
     },
     /// The number of limits differs from the number of joints.
-    #[error("limits are given for {given} joints, the path has {joints}: give those of each joint")]
+    #[error("limits are given for {given} joints, the path has {joints}: give the limits of each joint")]
     Count {
         /// Number of joints with limits.
         given: usize,
