@@ -1,7 +1,7 @@
 //! Arbiter of a cell's exchange regions, on the network.
 
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, SyncSender};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
@@ -16,6 +16,7 @@ use crate::clock::Clock;
 use crate::configuration_number::configuration_number;
 use crate::event_handler::EventHandler;
 use crate::keys::Keys;
+use crate::locked::locked;
 use crate::network::{Network, NetworkError, Publisher, Subscription, Urgency};
 use crate::silence_watch::SilenceWatch;
 
@@ -105,7 +106,7 @@ impl ArbiterService {
 
     /// Returns the holder and the queue of each exchange region.
     pub fn slots(&self) -> Vec<SlotStatus> {
-        self.slots.lock().unwrap_or_else(PoisonError::into_inner).clone()
+        locked(&self.slots).clone()
     }
 
     /// Whether a robot has been silent for long enough to be cleared.
@@ -274,7 +275,7 @@ impl Running {
         if let Ok(json) = serde_json::to_vec(&slots) {
             self.status.publish(&json);
         }
-        *self.published.lock().unwrap_or_else(PoisonError::into_inner) = slots;
+        *locked(&self.published) = slots;
     }
 
     fn words(&self, event: &ArbiterEvent) -> String {

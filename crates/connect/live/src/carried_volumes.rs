@@ -1,6 +1,6 @@
 //! Volumes that a simulated robot carries: exchanged tools and gripped parts, as its controller reports them to the node.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use elbowroom_cell::configure::MonitorSetup;
 use elbowroom_cell::{Cell, CellRobot};
@@ -9,6 +9,7 @@ use elbowroom_robot::RobotId;
 use elbowroom_sim::motion::ProgramClock;
 use elbowroom_sim::replanning::ObjectPlaces;
 
+use crate::locked::locked;
 use crate::messages::AttachedVolume;
 
 /// Volumes that are on a simulated robot only at times.
@@ -50,7 +51,7 @@ impl CarriedVolumes {
         }
         self.state.q.copy_from_slice(&program.point().q);
         self.robot.robot.chain.forward(&mut self.state);
-        let mut objects = self.objects.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut objects = locked(&self.objects);
         for action in &grips {
             objects.apply(&self.cell, (self.id, &self.robot), action, &self.state, t_s);
         }
@@ -66,7 +67,7 @@ impl CarriedVolumes {
             let of_tool = setup.tool_volumes(tool.link);
             volumes.extend(of_tool.map(|(volume, v)| AttachedVolume { volume, in_link: v.in_link }));
         }
-        let objects = objects.lock().unwrap_or_else(PoisonError::into_inner);
+        let objects = locked(objects);
         for (object, link, in_link) in objects.held_by(*id) {
             // A part that a program grips has a volume.
             let volume = setup.gripped_volume(object, link, &in_link);

@@ -1,7 +1,7 @@
 //! Collection of the robots' messages into one cell status, for the page in a browser and for recordings.
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
@@ -13,6 +13,7 @@ use elbowroom_view::StatusFeed;
 
 use crate::clock::Clock;
 use crate::keys::Keys;
+use crate::locked::locked;
 use crate::network::{Network, NetworkError, Subscription};
 use crate::ros2::CellFeed;
 
@@ -41,10 +42,6 @@ struct Heard {
 
 type Shared = Arc<Mutex<Heard>>;
 
-fn lock(shared: &Shared) -> MutexGuard<'_, Heard> {
-    shared.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
 impl CellObserver {
     /// Subscribes to all robots of the cell, in this process and in others.
     pub(crate) fn start(
@@ -56,7 +53,7 @@ impl CellObserver {
         ros2: Option<CellFeed>,
     ) -> Result<Self, NetworkError> {
         let shared = Shared::default();
-        lock(&shared).robots.resize(cell.robots.len(), None);
+        locked(&shared).robots.resize(cell.robots.len(), None);
         let subscriptions = subscribe(cell, network, clock, &shared)?;
         let is_closed = Arc::new(AtomicBool::new(false));
         let (closed, cell) = (is_closed.clone(), cell.clone());
@@ -112,7 +109,7 @@ fn subscribe(
         let shared = shared.clone();
         let handler = Box::new(move |bytes: &[u8]| {
             let Ok(mut status) = serde_json::from_slice::<RobotStatus>(bytes) else { return };
-            let mut heard = lock(&shared);
+            let mut heard = locked(&shared);
             let room = MAX_EVENTS.saturating_sub(heard.events.len());
             heard.events.extend(status.events.drain(..).take(room));
             heard.robots[i] = Some((status, clock.micros()));
@@ -122,7 +119,7 @@ fn subscribe(
     let shared = shared.clone();
     let handler = Box::new(move |bytes: &[u8]| {
         if let Ok(slots) = serde_json::from_slice(bytes) {
-            lock(&shared).slots = (slots, clock.micros());
+            locked(&shared).slots = (slots, clock.micros());
         }
     });
     subscriptions.push(network.subscribe(&keys.interlocks(), handler)?);
@@ -135,7 +132,7 @@ fn aged(status: &RobotStatus, age_s: f64) -> RobotStatus {
 }
 
 fn together(cell: &Cell, clock: Clock, shared: &Shared) -> CellStatus {
-    let mut heard = lock(shared);
+    let mut heard = locked(shared);
     let now = clock.micros();
     let age_s = |at: Micros| (now - at).0 as f64 * 1e-6;
     let robot = |(heard, robot): (&Option<(RobotStatus, Micros)>, &elbowroom_cell::CellRobot)| match heard {

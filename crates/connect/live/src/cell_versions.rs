@@ -1,9 +1,11 @@
 //! Cell of a process, with its present regions.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use elbowroom_cell::{Cell, EditedRegions, RegionEdit, why_not_continued};
 use elbowroom_formats::FormatError;
+
+use crate::locked::locked;
 
 /// Number of built cells that are cached: the nodes of one process ask for the same cells.
 const KEPT: usize = 4;
@@ -69,7 +71,7 @@ impl CellVersions {
         }
         let edited = self.edited()?;
         // Other callers that ask for the same cell wait here.
-        let mut built = self.built.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut built = locked(&self.built);
         if let Some((_, cell)) = built.cells.iter().find(|(of, _)| of == edits) {
             return Ok(cell.clone());
         }

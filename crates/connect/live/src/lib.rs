@@ -51,6 +51,7 @@ mod configuration_number;
 mod control;
 mod event_handler;
 mod keys;
+mod locked;
 pub mod messages;
 pub mod network;
 pub mod node;

@@ -1,7 +1,7 @@
 //! Reports when other processes of the cell come and go, without messages: Zenoh reports who is connected.
 
 use std::collections::BTreeSet;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use elbowroom_cell::Cell;
@@ -12,6 +12,7 @@ use zenoh::sample::SampleKind;
 
 use crate::event_handler::EventHandler;
 use crate::keys::Keys;
+use crate::locked::locked;
 use crate::network::{NetworkError, Subscription, ZenohNetwork};
 
 /// Time after which missing parts of the cell are reported, once.
@@ -110,7 +111,7 @@ fn watch(
     let remind = (Arc::downgrade(&missing), on_event.clone());
     let callback = move |sample: zenoh::sample::Sample| {
         let Some((_, part)) = others.iter().find(|(key, _)| key == sample.key_expr().as_str()) else { return };
-        let mut missing = missing.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut missing = locked(&missing);
         let is_here = sample.kind() == SampleKind::Put;
         let has_changed = if is_here { missing.remove(part) } else { missing.insert(part.clone()) };
         drop(missing);
@@ -126,7 +127,7 @@ fn watch(
     let _ = std::thread::Builder::new().name("peers".into()).spawn(move || {
         std::thread::sleep(PATIENCE);
         let Some(missing) = remind.0.upgrade() else { return };
-        let missing = missing.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let missing = locked(&missing).clone();
         for part in &missing {
             remind.1(&part.missing());
         }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, SyncSender};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
@@ -14,6 +14,7 @@ use crate::cell_versions::CellVersions;
 use crate::configuration_number::configuration_digits;
 use crate::event_handler::EventHandler;
 use crate::keys::Keys;
+use crate::locked::locked;
 use crate::network::{Network, NetworkError, Publisher, Subscription, Urgency};
 use crate::region_journal::RegionJournal;
 use crate::regions_table::{RegionTable, RegionTableMessage};
@@ -198,12 +199,12 @@ impl RegionKeeper {
 
     /// Whether each region of the present cell is on.
     pub fn active(&self) -> Vec<bool> {
-        lock(&self.kept).table.active.clone()
+        locked(&self.kept).table.active.clone()
     }
 
     /// The present regions.
     pub(crate) fn present(&self) -> PresentRegions {
-        let kept = lock(&self.kept);
+        let kept = locked(&self.kept);
         PresentRegions { cell: kept.cell.clone(), edits: kept.table.edits.clone() }
     }
 
@@ -211,14 +212,14 @@ impl RegionKeeper {
     ///
     /// Permanent regions stay on.
     pub fn switch(&self, region: usize, active: bool) {
-        if lock(&self.kept).switch(region, active) {
+        if locked(&self.kept).switch(region, active) {
             self.publish();
         }
     }
 
     /// Allows regions to be moved, added and removed: from now on nodes that do not receive this keeper's table stop.
     pub(crate) fn allow_edits(&self) {
-        lock(&self.kept).table.is_editable = true;
+        locked(&self.kept).table.is_editable = true;
         self.publish();
     }
 
@@ -227,7 +228,7 @@ impl RegionKeeper {
     /// Existing regions keep their on or off state; new temporary ones get `new_are_on`, permanent ones are on. Until
     /// it is called with `is_due`, nodes may continue with the previous regions.
     pub(crate) fn set(&self, regions: &PresentRegions, new_are_on: bool, is_due: bool) {
-        let mut kept = lock(&self.kept);
+        let mut kept = locked(&self.kept);
         let PresentRegions { cell, edits } = regions;
         let was_on = |name: &str| {
             let before = kept.cell.regions.iter().zip(&kept.table.active);
@@ -254,10 +255,6 @@ impl RegionKeeper {
             let _ = inbox.try_send(Incoming::Change);
         }
     }
-}
-
-fn lock(kept: &Mutex<Kept>) -> MutexGuard<'_, Kept> {
-    kept.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Input of the keeper's thread.
@@ -291,7 +288,7 @@ impl Running {
 
     fn publish(&mut self) {
         let message = {
-            let kept = lock(&self.kept);
+            let kept = locked(&self.kept);
             kept.table.message(&kept.cell)
         };
         if let Ok(json) = serde_json::to_vec(&message) {
@@ -301,7 +298,7 @@ impl Running {
 
     /// Switches the region, or reports that the request is ignored.
     fn obey(&self, request: &SwitchRequest) {
-        let mut kept = lock(&self.kept);
+        let mut kept = locked(&self.kept);
         let Some(region) = find(&request.region, &kept.cell) else { return };
         match &self.programs {
             ProgramSwitches::Ignored(on_event) => self.ignored.report(request, on_event.as_ref()),
@@ -324,7 +321,7 @@ struct Ignored(Mutex<BTreeSet<String>>);
 
 impl Ignored {
     fn report(&self, request: &SwitchRequest, on_event: Option<&EventHandler>) {
-        let is_new = self.0.lock().unwrap_or_else(PoisonError::into_inner).insert(request.region.clone());
+        let is_new = locked(&self.0).insert(request.region.clone());
         if let (true, Some(on_event)) = (is_new, on_event) {
             on_event(&format!(
                 "{}: a request to switch it, without a token, was ignored (--program-switches obeys such requests)",

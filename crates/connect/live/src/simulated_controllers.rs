@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, SyncSender};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
@@ -18,6 +18,7 @@ use crate::clock::{Clock, boot_number};
 use crate::configuration_number::configuration_number;
 use crate::event_handler::EventHandler;
 use crate::keys::Keys;
+use crate::locked::locked;
 use crate::network::{Network, Publisher, Subscription, Urgency};
 use crate::sensors::{FrameSource, GuardedProgram, GuardedPrograms, SensorGuards};
 use crate::service_error::ServiceError;
@@ -231,10 +232,6 @@ impl SimulatedController {
         }
         self.carried.follow(program, t_s);
     }
-}
-
-fn locked<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
-    shared.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Plans the repetition of a program, from its end: the steps of a second pass. `None` for a robot without a program,

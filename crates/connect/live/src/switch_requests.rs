@@ -1,13 +1,14 @@
 //! Requests of a simulated program to switch regions, repeated until they are obeyed.
 
 use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use elbowroom_cell::{Cell, CellRegionId, Program, ProgramBody, StepAction};
 use elbowroom_robot::RobotId;
 
 use crate::keys::Keys;
+use crate::locked::locked;
 use crate::network::{Network, NetworkError, Publisher, Subscription, Urgency};
 use crate::region_keeper::SwitchRequest;
 use crate::regions_table::RegionTableMessage;
@@ -48,7 +49,7 @@ impl RegionSwitches {
             let heard = heard.clone();
             Box::new(move |bytes: &[u8]| {
                 let Ok(message) = serde_json::from_slice::<RegionTableMessage>(bytes) else { return };
-                *heard.lock().unwrap_or_else(PoisonError::into_inner) = message.regions.into_iter().collect();
+                *locked(&heard) = message.regions.into_iter().collect();
             })
         };
         let table = network.subscribe(&Keys::new(&cell.name).regions(), handler)?;
@@ -62,7 +63,7 @@ impl RegionSwitches {
 
     /// Whether the region of this name is on; `None` if that was not heard.
     fn heard(&self, region: &str) -> Option<bool> {
-        self.heard.lock().unwrap_or_else(PoisonError::into_inner).get(region).copied()
+        locked(&self.heard).get(region).copied()
     }
 }
 

@@ -1,7 +1,7 @@
 //! Last joint values of all robots of a cell, from their controllers.
 
 use std::collections::VecDeque;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use elbowroom_cell::Cell;
 use elbowroom_interlock::Micros;
@@ -9,6 +9,7 @@ use elbowroom_interlock::Micros;
 use crate::clock::Clock;
 use crate::configuration_number::configuration_number;
 use crate::keys::Keys;
+use crate::locked::locked;
 use crate::messages::JointState;
 use crate::network::{Network, NetworkError, Subscription};
 use crate::node::Heard;
@@ -92,8 +93,4 @@ impl JointsHeard {
     pub(crate) fn at(&self, time: Micros) -> Option<Vec<Vec<f64>>> {
         locked(&self.heard).iter().map(|robot| robot.at(time).map(<[f64]>::to_vec)).collect()
     }
-}
-
-fn locked<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
-    shared.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -1,6 +1,6 @@
 //! Region configurations of the running nodes of a cell, from their statuses.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use elbowroom_cell::Cell;
@@ -9,6 +9,7 @@ use serde::Deserialize;
 
 use crate::clock::Clock;
 use crate::keys::Keys;
+use crate::locked::locked;
 use crate::network::{Network, NetworkError, Subscription};
 
 /// A node without a status for this long does not run, or no longer receives the table of regions and has stopped by
@@ -49,7 +50,7 @@ impl NodesHeard {
             let heard = heard.clone();
             let handler = Box::new(move |bytes: &[u8]| {
                 let Ok(Running { configuration }) = serde_json::from_slice(bytes) else { return };
-                heard.lock().unwrap_or_else(PoisonError::into_inner)[i] = Heard { configuration, at: clock.micros() };
+                locked(&heard)[i] = Heard { configuration, at: clock.micros() };
             });
             network.subscribe(&keys.status(&robot.name), handler)
         };
@@ -63,7 +64,7 @@ impl NodesHeard {
         let since = self.clock.micros();
         loop {
             let now = self.clock.micros();
-            let heard = self.heard.lock().unwrap_or_else(PoisonError::into_inner).clone();
+            let heard = locked(&self.heard).clone();
             let is_missing = |h: &Heard| {
                 let has_it = h.at > since && h.configuration == configuration;
                 !has_it && now - h.at <= SILENT

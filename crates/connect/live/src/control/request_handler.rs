@@ -1,6 +1,6 @@
 //! Handler of requests: decides about them, makes the changes and logs them.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard};
 
 use elbowroom_cell::seal::{AccessToken, Change, ControlEntry, ControlLog, Controlled};
 use elbowroom_cell::{Cell, CellRegion};
@@ -17,6 +17,7 @@ use crate::arbiter_service::{ArbiterService, NotCleared};
 use crate::cell_versions::CellVersions;
 use crate::clock::Clock;
 use crate::event_handler::EventHandler;
+use crate::locked::locked;
 use crate::region_keeper::RegionKeeper;
 
 /// Longest note, bytes.
@@ -120,7 +121,7 @@ impl RequestHandler {
     }
 
     pub(super) fn log(&self) -> MutexGuard<'_, ControlLog> {
-        self.log.lock().unwrap_or_else(PoisonError::into_inner)
+        locked(&self.log)
     }
 
     /// Lists everything that may be changed.

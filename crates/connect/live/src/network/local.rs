@@ -1,9 +1,10 @@
 //! Network within one process, for tests.
 
 use std::collections::HashMap;
-use std::sync::{Arc, Mutex, PoisonError, Weak};
+use std::sync::{Arc, Mutex, Weak};
 
 use super::pub_sub::{Handler, Network, NetworkError, Publisher, Subscription, Urgency};
+use crate::locked::locked;
 
 /// A network within one process. Clones are the same network.
 ///
@@ -44,7 +45,7 @@ impl Network for LocalNetwork {
 
     fn subscribe(&self, key: &str, handler: Handler) -> Result<Subscription, NetworkError> {
         let handler = Arc::new(handler);
-        let mut handlers = self.handlers.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut handlers = locked(&self.handlers);
         handlers.entry(key.to_owned()).or_default().push(Arc::downgrade(&handler));
         Ok(Subscription::new(handler))
     }
@@ -54,7 +55,7 @@ impl Publisher for LocalPublisher {
     fn publish(&mut self, bytes: &[u8]) {
         // The lock is released before the handlers are called, as a handler may publish.
         let handlers: Vec<Arc<Handler>> = {
-            let mut all = self.network.handlers.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut all = locked(&self.network.handlers);
             let Some(handlers) = all.get_mut(&self.key) else { return };
             handlers.retain(|handler| handler.strong_count() > 0);
             handlers.iter().filter_map(Weak::upgrade).collect()

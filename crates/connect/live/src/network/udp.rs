@@ -10,11 +10,12 @@ use std::fmt;
 use std::io;
 use std::net::{SocketAddr, UdpSocket};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError, Weak};
+use std::sync::{Arc, Mutex, Weak};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use super::pub_sub::{Handler, Network, NetworkError, Publisher, Subscription, Urgency};
+use crate::locked::locked;
 
 const HEADER: [u8; 3] = [b'E', b'U', 1];
 const SUBSCRIBE: u8 = 1;
@@ -108,7 +109,7 @@ impl Drop for UdpNetwork {
 
 impl Shared {
     fn lock(&self) -> std::sync::MutexGuard<'_, State> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+        locked(&self.state)
     }
 
     fn receive(&self) {

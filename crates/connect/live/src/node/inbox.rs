@@ -10,6 +10,7 @@ use elbowroom_interlock::wire::MAX_BYTES;
 use super::input_gate::{InputGate, Rejected};
 use super::next_configuration::NextConfiguration;
 use crate::configuration_number::configuration_digits;
+use crate::locked::locked;
 use crate::messages::JointState;
 use crate::regions_table::{RegionTable, RegionTableMessage};
 
@@ -145,7 +146,7 @@ impl Inbox {
     }
 
     pub(super) fn lock(&self) -> MutexGuard<'_, Contents> {
-        self.contents.lock().unwrap_or_else(PoisonError::into_inner)
+        locked(&self.contents)
     }
 
     /// Reads a joint state of the robot, and wakes the tick.

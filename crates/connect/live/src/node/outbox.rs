@@ -8,6 +8,7 @@ use elbowroom_status::{HealthStatus, StatusSample};
 
 use super::doubt::Doubt;
 use super::next_configuration::NodeVersion;
+use crate::locked::locked;
 use crate::messages::OverrideAnswer;
 
 /// Messages from the tick's thread to the sending thread. A message that is not sent yet is replaced by the next one.
@@ -68,7 +69,7 @@ impl Outbox {
     }
 
     pub(super) fn lock(&self) -> MutexGuard<'_, Outgoing> {
-        self.contents.lock().unwrap_or_else(PoisonError::into_inner)
+        locked(&self.contents)
     }
 
     /// Changes the messages, and wakes the sending thread.

@@ -1,12 +1,13 @@
 //! Speed scaling of a robot whose controller does not use ROS 2: the answer of its node, for observers.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use elbowroom_interlock::Micros;
 
 use super::session::RosPublisher;
 use super::speed_scaling::{SpeedScaling, Wake};
 use crate::clock::Clock;
+use crate::locked::locked;
 use crate::messages::OverrideAnswer;
 use crate::network::{Network, NetworkError, Subscription};
 
@@ -33,14 +34,14 @@ impl AnsweredFactor {
             let handler = Box::new(move |bytes: &[u8]| {
                 if let Ok(answer) = OverrideAnswer::decode(bytes) {
                     let heard = (answer.speed_override, clock.micros());
-                    *last.lock().unwrap_or_else(PoisonError::into_inner) = Some(heard);
+                    *locked(&last) = Some(heard);
                     wake.notify();
                 }
             });
             network.subscribe(key, handler)?
         };
         let factor = move || {
-            let last = *last.lock().unwrap_or_else(PoisonError::into_inner);
+            let last = *locked(&last);
             last.filter(|(_, at)| clock.micros() - *at <= oldest).map_or(0.0, |(factor, _)| factor)
         };
         let speed_scaling = SpeedScaling::start(publisher, wake, Box::new(factor));

@@ -5,6 +5,8 @@ use std::time::Duration;
 
 use elbowroom_status::CellStatus;
 
+use crate::locked::locked;
+
 /// Interval at which a thread without news checks whether it has to end.
 const POLL: Duration = Duration::from_millis(100);
 
@@ -30,13 +32,13 @@ impl CellFeed {
     }
 
     fn change(&self, change: impl FnOnce(&mut Latest)) {
-        change(&mut self.0.0.lock().unwrap_or_else(PoisonError::into_inner));
+        change(&mut locked(&self.0.0));
         self.0.1.notify_one();
     }
 
     /// Waits for a status for a short time; false at the end.
     pub(super) fn wait(&self, status: &mut Option<CellStatus>) -> bool {
-        let latest = self.0.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let latest = locked(&self.0.0);
         let is_idle = |latest: &mut Latest| latest.status.is_none() && !latest.is_closed;
         let waited = self.0.1.wait_timeout_while(latest, POLL, is_idle);
         let mut latest = waited.unwrap_or_else(PoisonError::into_inner).0;

@@ -3,7 +3,7 @@
 //! Joint values in ROS 2 messages become messages of the node's own protocol, and the node's answers become speed
 //! scaling factors. So the node treats this controller like any other.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use elbowroom_cell::Cell;
 use elbowroom_interlock::Micros;
@@ -24,6 +24,7 @@ use crate::clock::{Clock, boot_number};
 use crate::configuration_number::configuration_number;
 use crate::event_handler::EventHandler;
 use crate::keys::Keys;
+use crate::locked::locked;
 use crate::network::{Network, NetworkError, Publisher, Subscription, Urgency};
 
 /// Parts that a controller needs.
@@ -76,7 +77,7 @@ impl RosController {
         let answers = subscribe_to_answers(&***network, &keys.speed_override(&robot.robot), &client, &wake)?;
         let factor = {
             let client = client.clone();
-            Box::new(move || lock(&client).speed_override(clock.micros()))
+            Box::new(move || locked(&client).speed_override(clock.micros()))
         };
         let topic = Topic::of::<SpeedScalingFactor>(&robot.speed_scaling, settings.distribution);
         let publisher = session.publisher(&topic, Qos::latched(), Urgency::RealTime)?;
@@ -84,7 +85,7 @@ impl RosController {
         let intent = {
             let (input, count) = (input.clone(), counter(&report, clock, None));
             let handler = move |sample: RosSample<'_>| {
-                let taken = lock(&input).intent.take(sample, clock.micros());
+                let taken = locked(&input).intent.take(sample, clock.micros());
                 if taken.is_err() {
                     count(&taken);
                 }
@@ -95,7 +96,7 @@ impl RosController {
         let joint_states = {
             let count = counter(&report, clock, on_event.clone());
             let handler = move |sample: RosSample<'_>| {
-                count(&lock(&input).take(sample, clock.micros(), &client));
+                count(&locked(&input).take(sample, clock.micros(), &client));
             };
             let topic = Topic::of::<JointState>(&robot.joint_states, settings.distribution);
             session.subscribe(&topic, Qos::sensor_data(), false, Box::new(handler))?
@@ -109,10 +110,6 @@ impl RosController {
     }
 }
 
-fn lock<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
-    shared.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
 fn subscribe_to_answers(
     network: &dyn Network,
     key: &str,
@@ -122,7 +119,7 @@ fn subscribe_to_answers(
     let (client, wake) = (client.clone(), wake.clone());
     let handler = Box::new(move |bytes: &[u8]| {
         // A refused answer is of another start, or late: the client's watchdog handles that.
-        let _ = lock(&client).receive(bytes);
+        let _ = locked(&client).receive(bytes);
         wake.notify();
     });
     network.subscribe(key, handler)
@@ -156,7 +153,7 @@ impl Input {
             stamp: Some(joint_states.stamp),
         };
         bytes.clear();
-        bytes.extend_from_slice(lock(client).joint_state(now, &state));
+        bytes.extend_from_slice(locked(client).joint_state(now, &state));
         to_node.publish(bytes);
         Ok(())
     }

@@ -1,11 +1,12 @@
 //! Report on the input of a robot, for people.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard};
 
 use elbowroom_interlock::Micros;
 use elbowroom_ros2::msgs::diagnostic_msgs::{DiagnosticStatus, KeyValue};
 
 use super::input_error::RosInputError;
+use crate::locked::locked;
 
 /// Age up to which a message counts as present.
 const PRESENT: Micros = Micros(1_000_000);
@@ -36,7 +37,7 @@ impl InputReport {
     }
 
     fn lock(&self) -> MutexGuard<'_, Counts> {
-        self.counts.lock().unwrap_or_else(PoisonError::into_inner)
+        locked(&self.counts)
     }
 
     /// Counts a message. Returns a line to report if the reason is new.

@@ -8,6 +8,7 @@ use elbowroom_ros2::Message;
 use elbowroom_ros2::msgs::control_msgs::SpeedScalingFactor;
 
 use super::session::RosPublisher;
+use crate::locked::locked;
 
 /// Interval at which an unchanged factor is repeated, for watchdogs and for controllers that count the time since the
 /// last one.
@@ -41,13 +42,13 @@ impl Wake {
     }
 
     fn change(&self, change: impl FnOnce(&mut Signal)) {
-        change(&mut self.0.0.lock().unwrap_or_else(PoisonError::into_inner));
+        change(&mut locked(&self.0.0));
         self.0.1.notify_one();
     }
 
     /// Waits for a signal for a short time. False at the end.
     fn wait(&self) -> bool {
-        let signal = self.0.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let signal = locked(&self.0.0);
         let is_idle = |signal: &mut Signal| !signal.is_news && !signal.is_closed;
         let waited = self.0.1.wait_timeout_while(signal, POLL, is_idle);
         let mut signal = waited.unwrap_or_else(PoisonError::into_inner).0;

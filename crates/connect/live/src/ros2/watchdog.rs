@@ -1,7 +1,7 @@
 //! Watchdog process: stops the controllers of a service that is silent.
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use elbowroom_cell::Cell;
@@ -13,6 +13,7 @@ use super::session::{RosPublisher, RosSample, RosSession};
 use super::settings::{Ros2Error, Ros2Robot, Ros2Settings};
 use super::worker::Worker;
 use crate::event_handler::EventHandler;
+use crate::locked::locked;
 use crate::network::{NetworkError, Subscription, Urgency};
 
 /// Name of the node.
@@ -90,7 +91,7 @@ impl Watched {
         let (own, shared) = (publisher.gid(), heard.clone());
         let handler = move |sample: RosSample<'_>| {
             if is_of_service(sample, own) {
-                *shared.lock().unwrap_or_else(PoisonError::into_inner) = Instant::now();
+                *locked(&shared) = Instant::now();
             }
         };
         let subscription = session.subscribe(topic, Qos::latched(), false, Box::new(handler))?;
@@ -98,7 +99,7 @@ impl Watched {
     }
 
     fn step(&mut self, bound: Duration, on_event: Option<&EventHandler>) {
-        let silence = self.heard.lock().unwrap_or_else(PoisonError::into_inner).elapsed();
+        let silence = locked(&self.heard).elapsed();
         let report = |what: &str| {
             if let Some(on_event) = on_event {
                 on_event(&format!("{}: {what}", self.robot));

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use elbowroom_cell::{Cell, CellSensor};
@@ -13,6 +13,7 @@ use elbowroom_formats::PngStream;
 use crate::clock::Clock;
 use crate::event_handler::EventHandler;
 use crate::keys::Keys;
+use crate::locked::locked;
 use crate::network::{Network, Subscription};
 use crate::service_error::ServiceError;
 
@@ -50,7 +51,7 @@ struct Waiting {
 impl Waiting {
     fn push(&self, sensor: &str, latency_s: f64, bytes: Vec<u8>) {
         let taken_s = self.clock.seconds() - latency_s;
-        let mut frames = self.frames.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut frames = locked(&self.frames);
         let mut of_sensor = frames.iter().enumerate().filter(|(_, frame)| frame.sensor == sensor).map(|(i, _)| i);
         if let Some(oldest) = of_sensor.next().filter(|_| of_sensor.count() + 1 >= WAITING) {
             frames.remove(oldest);
@@ -97,7 +98,7 @@ impl FrameInputs {
 
     /// Takes what was sent up to now.
     pub fn take(&self) -> impl Iterator<Item = SentFrame> {
-        std::mem::take(&mut *self.waiting.frames.lock().unwrap_or_else(PoisonError::into_inner)).into_iter()
+        std::mem::take(&mut *locked(&self.waiting.frames)).into_iter()
     }
 }
 

@@ -1,7 +1,7 @@
 //! A robot of a live cell whose path is checked against what sensors see.
 
 use std::sync::mpsc::{self, Receiver, Sender, SyncSender};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use elbowroom_cell::{Cell, Frames};
 use elbowroom_kinematics::ChainState;
@@ -14,6 +14,7 @@ use super::guarded_program::GuardedProgram;
 use super::joint_history::JointHistory;
 use super::path_worker::SearchJob;
 use super::robot_regions::RobotRegions;
+use crate::locked::locked;
 use crate::switch_requests::RegionSwitches;
 
 /// What a check knows of the cell.
@@ -124,8 +125,4 @@ fn states_with(view: &CellView<'_>, robot: RobotId, motion: &ExecutedMotion) -> 
     state.qd.clone_from(&motion.qd);
     view.cell.robots[robot.0].robot.chain.forward_motion(state);
     states
-}
-
-fn locked<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
-    shared.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -3,7 +3,7 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, SyncSender};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::thread::{JoinHandle, Scope};
 use std::time::Duration;
 
@@ -22,6 +22,7 @@ use super::robot_regions::RobotRegions;
 use super::sensor_news::SensorNews;
 use crate::clock::Clock;
 use crate::event_handler::EventHandler;
+use crate::locked::locked;
 use crate::network::Network;
 use crate::service_error::ServiceError;
 use crate::switch_requests::RegionSwitches;
@@ -61,7 +62,7 @@ impl SensorGuards {
         }
         // Whatever becomes of the thread: without a check of its path no guarded robot moves.
         for (_, program) in programs.programs.iter().filter(|(robot, _)| is_guarded(robot)) {
-            program.lock().unwrap_or_else(PoisonError::into_inner).check = Some(PathCheck::default());
+            locked(program).check = Some(PathCheck::default());
         }
         let inputs = Inputs {
             frames: FrameInputs::start(cell, sources, network, clock, on_event.as_ref())?,
@@ -169,7 +170,7 @@ fn path_guard<'c>(
         state
     };
     let states: Vec<ChainState> = cell.robots.iter().map(at_start).collect();
-    let program = program.lock().unwrap_or_else(PoisonError::into_inner);
+    let program = locked(program);
     PathGuard::new(cell, (robot, &program.clock), (search_s, SearchTiming::Live), &states)
 }
 

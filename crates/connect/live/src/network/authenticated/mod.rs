@@ -12,13 +12,14 @@ mod refusals;
 mod sessions;
 
 use std::collections::HashMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use elbowroom_cell::seal::NetworkKey;
 
 use super::pub_sub::{Handler, Network, NetworkError, Publisher, Subscription, Urgency};
 use crate::clock::Clock;
 use crate::event_handler::EventHandler;
+use crate::locked::locked;
 use message_seal::MessageSeal;
 use proofs::Proofs;
 use refusals::Refusals;
@@ -94,7 +95,7 @@ impl AuthenticatedNetwork {
 impl Process {
     fn take_proof(&self, bytes: &[u8]) {
         if let Some(proof) = self.proofs.open(&self.seal, bytes) {
-            self.sessions.lock().unwrap_or_else(PoisonError::into_inner).prove(&proof, self.clock.elapsed());
+            locked(&self.sessions).prove(&proof, self.clock.elapsed());
         }
     }
 
@@ -107,14 +108,14 @@ impl Process {
         let standing = if message.session == self.seal.session() {
             Standing { heard_after: Some(0), ask: None }
         } else {
-            let mut sessions = self.sessions.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut sessions = locked(&self.sessions);
             sessions.standing(message.session, self.clock.elapsed(), || self.seal.nonce())
         };
         if let Some(nonce) = standing.ask {
             self.proofs.ask(&self.seal, message.session, nonce);
         }
         let after = standing.heard_after?;
-        let mut heard = heard.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut heard = locked(heard);
         let last = heard.entry(message.session).or_insert(0);
         let is_new = message.number > after.max(*last);
         *last = message.number.max(*last);
@@ -141,7 +142,7 @@ impl Network for AuthenticatedNetwork {
             }
         };
         let subscription = self.inner.subscribe(key, Box::new(handler))?;
-        others.sessions.lock().unwrap_or_else(PoisonError::into_inner).forget();
+        locked(&others.sessions).forget();
         Ok(subscription)
     }
 }

@@ -1,8 +1,9 @@
 //! Proof that a session runs now: it repeats an unpredictable number, which a recording cannot.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::Mutex;
 
 use super::message_seal::MessageSeal;
+use crate::locked::locked;
 use crate::network::{Network, NetworkError, Publisher, Urgency};
 
 /// Asks other sessions for proofs, and answers their questions.
@@ -79,7 +80,7 @@ impl Proofs {
 }
 
 fn send(channel: &Mutex<Channel>, seal: &MessageSeal, key: &str, session: u64, nonce: u64) {
-    let mut channel = channel.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut channel = locked(channel);
     let Channel { publisher, bytes } = &mut *channel;
     let mut contents = [0; 16];
     contents[..8].copy_from_slice(&session.to_le_bytes());

@@ -1,9 +1,10 @@
 //! Counter of messages without the cell's key, which are reported from time to time.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 use crate::event_handler::EventHandler;
+use crate::locked::locked;
 
 /// Shortest time between two reports of refused messages.
 const PERIOD: Duration = Duration::from_secs(10);
@@ -34,7 +35,7 @@ impl Refusals {
     /// Counts a message under this key.
     pub(super) fn count(&self, key: &str) {
         let count = {
-            let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut state = locked(&self.state);
             state.count += 1;
             if state.reported.is_some_and(|at| at.elapsed() < PERIOD) {
                 return;
