@@ -45,3 +45,46 @@ impl GuardedProgram {
         (held.is_some() || !is_checked, news)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use elbowroom_cell::Cell;
+    use elbowroom_robot::RobotId;
+    use elbowroom_sim::motion::{PlannedPaths, plan};
+
+    const TICK_S: f64 = 0.008;
+
+    #[test]
+    fn only_a_path_that_was_checked_and_a_fresh_sight_let_a_program_move() {
+        let cell = Cell::parse(
+            "rail.toml",
+            "version = 1\nunits = { length = \"mm\", angle = \"deg\" }\n[robot.rail]\n\
+             dh = [{ kind = \"prismatic\", min = 0, max = 2000, speed = 1000 }]\n[program.rail]\n\
+             steps = [{ move = \"joint\", to = [100] }, { move = \"joint\", to = [0] }]\n",
+        );
+        let cell = cell.unwrap();
+        let steps = plan(&PlannedPaths::new(&cell), RobotId(0), 1, &mut Vec::new()).unwrap();
+        let mut program = GuardedProgram::new(ProgramClock::new(steps, cell.robots[0].limits.clone()));
+        let holds = |program: &mut GuardedProgram, t_s: f64| program.must_hold(t_s, 0.0, TICK_S).0;
+        assert!(!holds(&mut program, 0.0), "no sensor guards it");
+        program.check = Some(PathCheck::default());
+        assert!(holds(&mut program, 0.0), "nothing was checked");
+        let sight = |taken_s| LastSight { sensor: "above".into(), taken_s, stale_s: 0.3 };
+        let first = program.clock.path_number();
+        let path = Some(first);
+        program.check = Some(PathCheck { path, blocked: None, sights: vec![sight(None)] });
+        assert!(holds(&mut program, 0.0), "nothing was seen yet");
+        program.check = Some(PathCheck { path, blocked: None, sights: vec![sight(Some(1.0))] });
+        assert!(!holds(&mut program, 1.2) && holds(&mut program, 1.4), "the sight is 0.2 and 0.4 s old");
+        while program.clock.path_number() == first {
+            program.clock.advance(TICK_S, 1.0);
+        }
+        assert!(holds(&mut program, 1.2), "the next step was not checked");
+        let blocked = Some(BlockedPath { free_until_s: 0.0, by: "above#1".into() });
+        program.check =
+            Some(PathCheck { path: Some(program.clock.path_number()), blocked, sights: vec![sight(Some(1.0))] });
+        let (holds, news) = program.must_hold(1.2, 0.0, TICK_S);
+        assert!(holds && news.as_deref() == Some("waits: above#1 is in its way"), "{news:?}");
+    }
+}
