@@ -176,17 +176,18 @@ pub(crate) fn write_clouds(dir: &Path, frames: usize, leaves_s: f64) {
         if t_s >= 0.0 {
             points.extend(grid_of_box(crate_at(t_s, leaves_s), SIZE, 0.03));
         }
-        let mut text = format!(
-            "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH {0}\nHEIGHT 1\nPOINTS {0}\nDATA ascii\n",
+        let header = format!(
+            "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH {0}\nHEIGHT 1\nPOINTS {0}\nDATA binary\n",
             points.len()
         );
+        let mut bytes = header.into_bytes();
         for p in points {
             let p = p + Vec3::new(noise(), noise(), noise());
             // The sensor is at a height of 6.5 m and looks down: its x is the world's, its y and z are reversed.
-            writeln!(text, "{:.4} {:.4} {:.4}", p.x - 1.7, -p.y, 6.5 - p.z).unwrap();
+            bytes.extend([p.x - 1.7, -p.y, 6.5 - p.z].into_iter().flat_map(|value| (value as f32).to_le_bytes()));
         }
         let name = format!("cloud_{i:04}.pcd");
-        std::fs::write(folder.join(&name), text).unwrap();
+        std::fs::write(folder.join(&name), bytes).unwrap();
         writeln!(times, "{name},{t_s:.3}").unwrap();
     }
     std::fs::write(folder.join("times.csv"), times).unwrap();
