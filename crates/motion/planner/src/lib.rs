@@ -60,7 +60,7 @@ pub use prioritized_planner::{
 };
 pub use rrt_connect::{
     JointUnit, LinearMoveEnd, PathConstraint, PlannedPath, Random, RrtConnect, RrtConnectError, RrtConnectSetting,
-    RrtConnectSettings, ShortcuttingSettings,
+    RrtConnectSettings,
 };
 pub use task_space_region::TaskSpaceRegion;
 pub use time_parametrization::{

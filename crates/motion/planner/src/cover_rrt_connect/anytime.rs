@@ -5,12 +5,12 @@ use std::time::{Duration, Instant};
 use elbowroom_scene::SceneState;
 
 use super::cost_bounded_search::CostBoundedSearch;
-use super::edge_validator::EdgeValidator;
 use super::informed_sampler::InformedSampler;
 use super::planner::CoverRrtConnect;
 use super::query_ends::QueryEnds;
-use super::shortcutting::Shortcutting;
-use crate::rrt_connect::{PlannedPath, Random, RrtConnectError, RrtConnectSettings, length, path_length};
+use crate::rrt_connect::{
+    MotionValidator, PlannedPath, Random, RrtConnectError, RrtConnectSettings, Shortcutting, length, path_length,
+};
 
 /// Smallest gain of a shorter path, as a fraction of the length.
 const LEAST_GAIN: f64 = 1e-3;
@@ -45,7 +45,7 @@ impl CoverRrtConnect<'_> {
         let left = RrtConnectSettings { time_limit: settings.time_limit.saturating_sub(begin.elapsed()), ..*settings };
         let mut random = Random::new(settings.seed);
         // An end may be free in the exact scene although the covers cannot leave it.
-        let Ok(ends) = self.edges().query_ends(start, goals, &left, &mut random) else {
+        let Ok(ends) = self.validator().query_ends(start, goals, &left, &mut random) else {
             return Ok(AnytimePath { path, improvements, is_shortest: false });
         };
         let (mut best, mut is_shortest) = (path, false);
@@ -73,9 +73,9 @@ impl CoverRrtConnect<'_> {
     fn shorter(&mut self, ends: &QueryEnds, than: &PlannedPath, random: &mut Random) -> Option<PlannedPath> {
         let before = Instant::now();
         let goals: Vec<Vec<f64>> = ends.goals().map(<[f64]>::to_vec).collect();
-        let region = self.exact.bounds.sampling_region_of(ends.all());
+        let region = self.exact.validator.bounds.sampling_region_of(ends.all());
         let bound = than.length_rad * (1.0 - LEAST_GAIN) - ends.exit_length();
-        let mut search = self.edges();
+        let mut search = self.validator();
         let mut sampler = InformedSampler::new(ends.from().to_vec(), goals.clone(), region, random);
         let mut waypoints = CostBoundedSearch::new(&mut search, ends.from(), &goals, bound).run(&mut sampler)?;
         let raw_length_rad = path_length(&waypoints);

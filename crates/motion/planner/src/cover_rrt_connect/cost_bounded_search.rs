@@ -2,11 +2,8 @@
 //! Gammell: *AORRTC: almost-surely asymptotically optimal planning with RRT-Connect*, 2025): a sample is a
 //! configuration and a cost. It is joined to the nearest node that reaches it within this cost.
 
-use super::edge_validator::EdgeValidator;
 use super::informed_sampler::InformedSampler;
-use super::tree::Tree;
-use super::tree_search::LEAST_PROGRESS;
-use crate::rrt_connect::{length, lerp};
+use crate::rrt_connect::{LEAST_PROGRESS, MotionValidator, Tree, length, lerp};
 
 /// Two trees that keep only nodes that may be on a path below a bound.
 pub(super) struct CostBoundedSearch<'v, V> {
@@ -17,7 +14,7 @@ pub(super) struct CostBoundedSearch<'v, V> {
     bound: f64,
 }
 
-impl<'v, V: EdgeValidator> CostBoundedSearch<'v, V> {
+impl<'v, V: MotionValidator> CostBoundedSearch<'v, V> {
     /// Creates a search for a path from a start to one of several goals that is shorter than `bound`, rad (and m).
     pub fn new(validator: &'v mut V, start: &[f64], goals: &[Vec<f64>], bound: f64) -> Self {
         let tree = |roots: &[Vec<f64>]| Tree::new(start.len(), roots.iter().map(Vec::as_slice));
@@ -69,7 +66,7 @@ impl<'v, V: EdgeValidator> CostBoundedSearch<'v, V> {
         }
         let cost = self.trees[side].cost(near) + length(self.trees[side].q(near), &next);
         let may_be_shorter = cost + self.distance_from_roots(1 - side, &next) < self.bound;
-        if !may_be_shorter || !self.validator.edge_is_free(self.trees[side].q(near), &next) {
+        if !may_be_shorter || !self.validator.is_valid_motion(self.trees[side].q(near), &next) {
             return None;
         }
         Some(self.trees[side].add(near, &next))

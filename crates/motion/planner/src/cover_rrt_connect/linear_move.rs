@@ -7,10 +7,11 @@ use elbowroom_kinematics::{Chain, ChainState, LinkId};
 use elbowroom_scene::SceneState;
 use elbowroom_spatial::Pose;
 
-use super::edge_validator::EdgeValidator;
 use super::planner::CoverRrtConnect;
 use crate::path::PathEnd;
-use crate::rrt_connect::{LinearMoveEnd, PlannedPath, RrtConnectError, RrtConnectSettings, length, lerp, path_length};
+use crate::rrt_connect::{
+    LinearMoveEnd, MotionValidator, PlannedPath, RrtConnectError, RrtConnectSettings, length, lerp, path_length,
+};
 
 /// Largest first step along the line: translation of the tip, m, and rotation, rad.
 const STEP: f64 = 0.05;
@@ -50,7 +51,7 @@ impl CoverRrtConnect<'_> {
     ) -> Result<PlannedPath, RrtConnectError> {
         let begin = Instant::now();
         let robot = self.exact.robot();
-        let from = self.edges().ends(start, start.q(robot), settings)?[0].clone();
+        let from = self.validator().ends(start, start.q(robot), settings)?[0].clone();
         self.exact.free_margin_m(PathEnd::Start, &from)?;
         let placed = self.exact.placed_robot();
         let mut follower = LineFollower::new(&placed.robot.chain, placed.base_in_world, line, &from);
@@ -59,7 +60,7 @@ impl CoverRrtConnect<'_> {
             let before = &waypoints[waypoints.len() - 1];
             let percent = 100.0 * follower.share;
             let ended = |end: LinearMoveEnd| RrtConnectError::LinearMove { percent, end };
-            let bounds = &self.exact.bounds;
+            let bounds = &self.exact.validator.bounds;
             let next = follower.next(before).filter(|next| bounds.contains(next));
             let next = next.ok_or_else(|| ended(LinearMoveEnd::Unreachable))?;
             if !self.is_proven(before, &next) {
@@ -80,7 +81,8 @@ impl CoverRrtConnect<'_> {
 
     fn is_proven(&mut self, from: &[f64], to: &[f64]) -> bool {
         let sweep = self.exact.validator.sweep;
-        self.edges().edge_is_free(from, to) || self.covers.is_free_exactly(&mut self.exact.validator, from, to, &sweep)
+        self.validator().motion_is_free(from, to)
+            || self.covers.is_free_exactly(&mut self.exact.validator, from, to, &sweep)
     }
 }
 

@@ -2,23 +2,18 @@
 //! ends is proven in the exact scene.
 
 mod anytime;
+mod constrained_validator;
 mod cost_bounded_search;
 mod cover_model;
+mod cover_validator;
 mod disconnection_proof;
-mod edge_search;
-mod edge_validator;
 mod informed_sampler;
 mod inner_balls;
 mod linear_move;
-mod node_packs;
 mod planner;
 mod query_ends;
-mod region_sampler;
 mod separating_value;
-mod shortcutting;
 mod time_optimal;
-mod tree;
-mod tree_search;
 
 pub use anytime::AnytimePath;
 pub use cover_model::{CoverModel, CoverObstacles};

@@ -4,16 +4,16 @@ use std::time::Instant;
 
 use elbowroom_scene::SceneState;
 
+use super::constrained_validator::ConstrainedValidator;
 use super::cover_model::{CoverModel, CoverObstacles};
+use super::cover_validator::CoverValidator;
 use super::disconnection_proof::Projection;
-use super::edge_search::EdgeSearch;
-use super::edge_validator::{CoverValidator, EdgeValidator};
 use super::query_ends::QueryEnds;
-use super::region_sampler::RegionSampler;
 use super::separating_value::SeparatingValue;
-use super::shortcutting::Shortcutting;
-use super::tree_search::TreeSearch;
-use crate::rrt_connect::{PlannedPath, Random, RrtConnect, RrtConnectError, RrtConnectSettings, length, path_length};
+use crate::rrt_connect::{
+    MotionValidator, PlannedPath, Random, RegionSampler, RrtConnect, RrtConnectError, RrtConnectSettings, Shortcutting,
+    TreeSearch, length, path_length,
+};
 
 /// Fraction of the time limit after which the exact scene is searched.
 const COVER_SHARE: f64 = 0.5;
@@ -123,14 +123,14 @@ impl<'m> CoverRrtConnect<'m> {
         settings: &RrtConnectSettings,
     ) -> Result<PlannedPath, RrtConnectError> {
         let mut random = Random::new(settings.seed);
-        let ends = self.edges().query_ends(start, goals, settings, &mut random)?;
+        let ends = self.validator().query_ends(start, goals, settings, &mut random)?;
         let mut waypoints = match self.straight(&ends) {
             Some(straight) => straight,
             None => self.search(begin, &ends, settings, &mut random)?,
         };
         let planning_time = begin.elapsed();
         let raw_length_rad = path_length(&waypoints);
-        let mut search = self.edges();
+        let mut search = self.validator();
         if waypoints.len() > 2 {
             // The straight segment was tested first.
             Shortcutting::of_rejected_ends(&mut search, &waypoints).run(&mut waypoints);
@@ -146,8 +146,8 @@ impl<'m> CoverRrtConnect<'m> {
         Ok(ends.completed(path))
     }
 
-    pub(super) fn edges(&mut self) -> EdgeSearch<'_, 'm> {
-        EdgeSearch { exact: &mut self.exact, covers: &mut self.covers }
+    pub(super) fn validator(&mut self) -> ConstrainedValidator<'_, 'm> {
+        ConstrainedValidator { exact: &mut self.exact, covers: &mut self.covers }
     }
 
     /// The first straight segment to a goal that is proven free, nearest goals first.
@@ -155,8 +155,8 @@ impl<'m> CoverRrtConnect<'m> {
         let from = ends.from();
         let mut goals: Vec<&[f64]> = ends.goals().collect();
         goals.sort_by(|a, b| length(from, a).total_cmp(&length(from, b)));
-        let mut search = self.edges();
-        let reached = goals.into_iter().find(|to| search.edge_is_free(from, to))?;
+        let mut search = self.validator();
+        let reached = goals.into_iter().find(|to| search.motion_is_free(from, to))?;
         Some(vec![from.to_vec(), reached.to_vec()])
     }
 
@@ -168,11 +168,11 @@ impl<'m> CoverRrtConnect<'m> {
         settings: &RrtConnectSettings,
         random: &mut Random,
     ) -> Result<Vec<Vec<f64>>, RrtConnectError> {
-        let region = self.exact.bounds.sampling_region_of(ends.all());
+        let region = self.exact.validator.bounds.sampling_region_of(ends.all());
         let mut sampler = RegionSampler::new(region, random);
         let last_deadline = self.exact.validator.deadline;
         self.covers.extend_deadline(last_deadline.min(begin + settings.time_limit.mul_f64(FIRST_SHARE)));
-        let mut search = self.edges();
+        let mut search = self.validator();
         let mut trees = TreeSearch::new(&mut search, ends.from(), ends.goals());
         let mut found = trees.run(&mut sampler);
         if found.is_none() {
@@ -186,10 +186,10 @@ impl<'m> CoverRrtConnect<'m> {
     }
 }
 
-impl EdgeSearch<'_, '_> {
+impl ConstrainedValidator<'_, '_> {
     /// Returns an error if it is proven that no path leads from the start to any goal.
     fn expect_connected(&mut self, ends: &QueryEnds, deadline: Instant) -> Result<(), RrtConnectError> {
-        let bounds = &self.exact.bounds;
+        let bounds = &self.exact.validator.bounds;
         let ranges = bounds.ranges();
         if ends.misses_goals() {
             return Ok(());

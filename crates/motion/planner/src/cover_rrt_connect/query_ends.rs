@@ -5,7 +5,7 @@ use std::time::Duration;
 use elbowroom_scene::{SceneState, SweepOptions};
 use elbowroom_validity::Validity;
 
-use super::edge_search::EdgeSearch;
+use super::constrained_validator::ConstrainedValidator;
 use crate::path::PathEnd;
 use crate::rrt_connect::{JointBounds, PlannedPath, Random, RrtConnectError, RrtConnectSettings, length};
 
@@ -79,7 +79,7 @@ impl QueryEnds {
     }
 }
 
-impl EdgeSearch<'_, '_> {
+impl ConstrainedValidator<'_, '_> {
     /// Returns the start and all goals that are valid and can be left; prepares the validators for the query.
     pub(super) fn query_ends<G: AsRef<[f64]>>(
         &mut self,
@@ -136,7 +136,7 @@ impl EdgeSearch<'_, '_> {
         }
         self.exact.begin(start, goal, settings)?;
         self.covers.begin(self.exact.validator.deadline, settings.max_states);
-        let bounds: &JointBounds = &self.exact.bounds;
+        let bounds: &JointBounds = &self.exact.validator.bounds;
         let from = bounds.clamped_end(PathEnd::Start, start.q(self.exact.robot()))?;
         let to = bounds.clamped_end(PathEnd::Goal, goal)?;
         if self.exact.has_other_robots() {
@@ -155,7 +155,7 @@ impl EdgeSearch<'_, '_> {
         let margin = self.exact.free_margin_m([PathEnd::Start, PathEnd::Goal][which], q)?;
         let sweep = self.exact.validator.sweep;
         let sweep = SweepOptions { tolerance_m: sweep.tolerance_m.min(0.5 * margin), ..sweep };
-        let region = self.exact.bounds.sampling_region(q, q);
+        let region = self.exact.validator.bounds.sampling_region(q, q);
         let mut sample = q.clone();
         for trial in 0..EXIT_TRIALS {
             let share = EXIT_RADIUS * ((trial + 1) as f64 / EXIT_TRIALS as f64).powi(2).max(0.02);

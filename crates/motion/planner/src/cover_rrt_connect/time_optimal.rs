@@ -3,9 +3,9 @@
 use elbowroom_kinematics::JointLimits;
 use elbowroom_scene::SceneState;
 
-use super::edge_validator::{CoverValidator, EdgeValidator};
+use super::cover_validator::CoverValidator;
 use super::planner::CoverRrtConnect;
-use crate::rrt_connect::{PlannedPath, RrtConnectError, RrtConnectSettings};
+use crate::rrt_connect::{MotionValidator, PlannedPath, RrtConnectError, RrtConnectSettings};
 use crate::time_parametrization::{BlendedPath, CornerBlend, Trajectory};
 
 /// Number of chords by which a blend is tested before it is timed.
@@ -69,7 +69,7 @@ impl CoverRrtConnect<'_> {
         let sweep = self.exact.validator.sweep;
         rows.windows(2).all(|pair| {
             let (from, to) = (&pair[0].1, &pair[1].1);
-            let is_free = self.covers.edge_is_free(from, to) && self.exact.validator.constraint_allows(from, to);
+            let is_free = self.covers.motion_is_free(from, to) && self.exact.validator.constraint_allows(from, to);
             is_free || self.covers.is_free_exactly(&mut self.exact.validator, from, to, &sweep)
         })
     }
@@ -77,5 +77,5 @@ impl CoverRrtConnect<'_> {
 
 fn is_free(covers: &mut CoverValidator, blend: &CornerBlend) -> bool {
     let (points, _) = blend.polyline(BLEND_PIECES);
-    points.windows(2).all(|pair| covers.edge_is_free(&pair[0], &pair[1]))
+    points.windows(2).all(|pair| covers.motion_is_free(&pair[0], &pair[1]))
 }

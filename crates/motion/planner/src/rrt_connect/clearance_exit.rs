@@ -1,8 +1,8 @@
 //! Exits from path ends that have less than the clearance.
 
-use super::joint_bounds::JointBounds;
-use super::motion_validator::MotionValidator;
+use super::motion_validator::MotionValidator as _;
 use super::random::Random;
+use super::scene_validator::SceneValidator;
 use crate::path::PathEnd;
 
 /// Distance of the first samples from the end, as rad (or m) of the joint that moves solids most.
@@ -30,8 +30,7 @@ pub(super) enum ExitError {
 
 /// Samples exits.
 pub(super) struct ClearanceExit<'a, 's> {
-    pub validator: &'a mut MotionValidator<'s>,
-    pub bounds: &'a JointBounds,
+    pub validator: &'a mut SceneValidator<'s>,
     pub random: &'a mut Random,
 }
 
@@ -70,7 +69,7 @@ impl ClearanceExit<'_, '_> {
                     return None;
                 }
                 sample_at_distance(self.validator, end, radius, self.random, &mut candidate);
-                self.bounds.clamp(&mut candidate);
+                self.validator.bounds.clamp(&mut candidate);
                 self.validator.sweep.clearance_m = clearance_m;
                 if !self.validator.is_free(&candidate) {
                     continue;
@@ -87,13 +86,7 @@ impl ClearanceExit<'_, '_> {
 }
 
 /// A random configuration at a weighted distance.
-fn sample_at_distance(
-    validator: &MotionValidator<'_>,
-    from: &[f64],
-    radius: f64,
-    random: &mut Random,
-    out: &mut [f64],
-) {
+fn sample_at_distance(validator: &SceneValidator<'_>, from: &[f64], radius: f64, random: &mut Random, out: &mut [f64]) {
     for ((to, q), rad) in out.iter_mut().zip(from).zip(validator.equivalent_steps(1.0)) {
         *to = q + random.between(-1.0, 1.0) * rad;
     }

@@ -4,6 +4,7 @@ use elbowroom_kinematics::JointLimits;
 use elbowroom_scene::SceneState;
 
 use super::error::RrtConnectError;
+use super::motion_validator::MotionValidator as _;
 use super::planned_path::PlannedPath;
 use super::planner::RrtConnect;
 use super::settings::RrtConnectSettings;

@@ -16,18 +16,3 @@ pub(crate) fn length(a: &[f64], b: &[f64]) -> f64 {
 pub(crate) fn path_length(path: &[Vec<f64>]) -> f64 {
     path.windows(2).map(|w| length(&w[0], &w[1])).sum()
 }
-
-/// The configuration after a length along a path, and its segment.
-pub(crate) fn point_at(path: &[Vec<f64>], far: f64) -> (usize, Vec<f64>) {
-    let mut left = far;
-    for (segment, w) in path.windows(2).enumerate() {
-        let length = length(&w[0], &w[1]);
-        if left <= length && length > 0.0 {
-            let mut q = w[0].clone();
-            lerp(&w[0], &w[1], left / length, &mut q);
-            return (segment, q);
-        }
-        left -= length;
-    }
-    (path.len() - 2, path[path.len() - 1].clone())
-}

@@ -1,5 +1,5 @@
-//! Path planning for any number of joints in the exact scene: RRT-Connect, then shortcutting. A sweep proves every
-//! segment of the result.
+//! Path planning for any number of joints: RRT-Connect over a motion validator, then shortcutting; and the planner with
+//! the validator of the exact scene, in which a sweep proves every segment of the result.
 
 mod clearance_exit;
 mod error;
@@ -8,10 +8,13 @@ mod interpolation;
 mod joint_bounds;
 mod joint_weights;
 mod motion_validator;
+mod node_packs;
 mod path_constraint;
 mod planned_path;
 mod planner;
 mod random;
+mod region_sampler;
+mod scene_validator;
 mod settings;
 mod shortcutting;
 mod tree;
@@ -20,11 +23,15 @@ mod tree_search;
 pub(crate) use interpolation::{length, lerp, path_length};
 pub(crate) use joint_bounds::{JointBounds, JointRange, SamplingRegion};
 pub(crate) use motion_validator::MotionValidator;
-pub(crate) use path_constraint::ConstraintChecker;
 pub use random::Random;
+pub(crate) use region_sampler::RegionSampler;
+pub(crate) use scene_validator::SceneValidator;
+pub(crate) use shortcutting::Shortcutting;
+pub(crate) use tree::Tree;
+pub(crate) use tree_search::{LEAST_PROGRESS, TreeSearch};
 
 pub use error::{JointUnit, LinearMoveEnd, RrtConnectError};
 pub use path_constraint::PathConstraint;
 pub use planned_path::PlannedPath;
 pub use planner::RrtConnect;
-pub use settings::{RrtConnectSetting, RrtConnectSettings, ShortcuttingSettings};
+pub use settings::{RrtConnectSetting, RrtConnectSettings};

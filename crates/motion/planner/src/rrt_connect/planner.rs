@@ -8,15 +8,15 @@ use elbowroom_scene::{Scene, SceneError, SceneRobot, SceneState, SweepOptions};
 use super::clearance_exit::{ClearanceExit, ExitError};
 use super::error::RrtConnectError;
 use super::interpolation::path_length;
-use super::joint_bounds::JointBounds;
-use super::joint_weights::joint_weights;
 use super::motion_validator::MotionValidator;
 use super::path_constraint::{ConstraintChecker, PathConstraint};
 use super::planned_path::PlannedPath;
 use super::random::Random;
+use super::region_sampler::RegionSampler;
+use super::scene_validator::SceneValidator;
 use super::settings::RrtConnectSettings;
 use super::shortcutting::Shortcutting;
-use super::tree_search::BidirectionalSearch;
+use super::tree_search::TreeSearch;
 use crate::path::PathEnd;
 
 /// Longest time limit: one year. Instants cannot be as far apart as durations can be long.
@@ -30,7 +30,7 @@ fn deadline(begin: Instant, settings: &RrtConnectSettings) -> Instant {
 /// Plans for one robot of a scene; everything else stays as in a state.
 ///
 /// Two trees of configurations grow from start and goal until they meet (RRT-Connect). While the trees grow, edges are
-/// checked at discrete configurations; the edges of the path are proven by the continuous
+/// tested at discrete configurations; the edges of the path are proven by the continuous
 /// [`Checker::sweep`](elbowroom_scene::Checker::sweep). For the same scene, ends and settings the path is always the
 /// same, unless the time limit is reached.
 ///
@@ -50,8 +50,7 @@ fn deadline(begin: Instant, settings: &RrtConnectSettings) -> Instant {
 /// ```
 #[derive(Debug)]
 pub struct RrtConnect<'s> {
-    pub(crate) validator: MotionValidator<'s>,
-    pub(crate) bounds: JointBounds,
+    pub(crate) validator: SceneValidator<'s>,
     robot: RobotId,
 }
 
@@ -61,11 +60,7 @@ impl<'s> RrtConnect<'s> {
     /// # Errors
     /// The scene does not have this robot.
     pub fn new(scene: &'s Scene, robot: RobotId) -> Result<Self, SceneError> {
-        let count = scene.robots().len();
-        let r = scene.robots().get(robot.0).ok_or(SceneError::NoSuchRobot { index: robot.0, count })?;
-        let bounds = JointBounds::new(&r.robot.chain);
-        let weights = joint_weights(&r.robot, &bounds);
-        Ok(Self { validator: MotionValidator::new(scene, robot, weights), bounds, robot })
+        Ok(Self { validator: SceneValidator::new(scene, robot)?, robot })
     }
 
     /// Adds a constraint that paths satisfy.
@@ -83,7 +78,7 @@ impl<'s> RrtConnect<'s> {
     /// effect.
     #[must_use]
     pub fn with_limits(mut self, limits: impl IntoIterator<Item = (f64, f64)>) -> Self {
-        self.bounds.narrow(limits.into_iter());
+        self.validator.bounds.narrow(limits.into_iter());
         self
     }
 
@@ -174,17 +169,18 @@ impl<'s> RrtConnect<'s> {
         let mut waypoints = if self.validator.is_valid_motion(&from, &to) {
             vec![from, to]
         } else {
-            let region = self.bounds.sampling_region(&from, &to);
-            let edge_length = settings.edge_length;
-            let mut search = BidirectionalSearch::new(&mut self.validator, &region, random, [&from, &to], edge_length);
-            let found = search.run();
+            let mut sampler = RegionSampler::new(self.validator.bounds.sampling_region(&from, &to), random);
+            let mut search = TreeSearch::new(&mut self.validator, &from, [&to[..]]);
+            let found = search.run(&mut sampler);
             let nodes = search.nodes();
             found.ok_or_else(|| self.not_found(&[from, to], nodes, settings))?
         };
         let planning_time = begin.elapsed();
         let raw_length_rad = path_length(&waypoints);
-        let shortcutting = &settings.shortcutting;
-        Shortcutting { validator: &mut self.validator, random, settings: shortcutting }.run(&mut waypoints);
+        if waypoints.len() > 2 {
+            // The straight segment was tested first.
+            Shortcutting::of_rejected_ends(&mut self.validator, &waypoints).run(&mut waypoints);
+        }
         let simplification_time = begin.elapsed().saturating_sub(planning_time);
         Ok(PlannedPath {
             length_rad: path_length(&waypoints),
@@ -200,7 +196,12 @@ impl<'s> RrtConnect<'s> {
         let left = self.validator.deadline.saturating_duration_since(Instant::now());
         let seconds = settings.time_limit.min(MAX_TIME_LIMIT).saturating_sub(left).as_secs_f64();
         let states_checked = self.validator.states_checked;
-        RrtConnectError::NotFound { seconds, states_checked, nodes, nearer: self.bounds.equivalent_goals(from, to) }
+        RrtConnectError::NotFound {
+            seconds,
+            states_checked,
+            nodes,
+            nearer: self.validator.bounds.equivalent_goals(from, to),
+        }
     }
 
     /// Returns, for each end, the end itself or a nearby configuration that has the clearance and satisfies the
@@ -213,7 +214,7 @@ impl<'s> RrtConnect<'s> {
     ) -> Result<[Vec<f64>; 2], RrtConnectError> {
         let mut exits = ends.clone();
         for (end, exit) in [PathEnd::Start, PathEnd::Goal].into_iter().zip(&mut exits) {
-            let sampler = ClearanceExit { validator: &mut self.validator, bounds: &self.bounds, random: &mut *random };
+            let sampler = ClearanceExit { validator: &mut self.validator, random: &mut *random };
             let found = sampler.find(end, exit, settings.clearance_m);
             *exit = found.map_err(|e| match e {
                 ExitError::Violation { what, distance_m } => {
@@ -240,7 +241,7 @@ impl<'s> RrtConnect<'s> {
         let ends = [(PathEnd::Start, start.q(self.robot)), (PathEnd::Goal, goal)];
         let mut checked = Vec::new();
         for (end, q) in ends {
-            let q = self.bounds.clamped_end(end, q)?;
+            let q = self.validator.bounds.clamped_end(end, q)?;
             let margin = self.free_margin_m(end, &q)?;
             self.validator.sweep.tolerance_m = self.validator.sweep.tolerance_m.min(0.5 * margin);
             checked.push(q);
@@ -256,12 +257,7 @@ impl<'s> RrtConnect<'s> {
         goal: &[f64],
         settings: &RrtConnectSettings,
     ) -> Result<(), RrtConnectError> {
-        self.validator.set_start(start, goal)?;
-        self.validator.deadline = deadline(Instant::now(), settings);
-        self.validator.max_states = settings.max_states;
-        self.validator.check_resolution = settings.check_resolution;
-        self.validator.sweep = SweepOptions { clearance_m: settings.clearance_m, ..Default::default() };
-        Ok(())
+        Ok(self.validator.begin(start, goal, settings, deadline(Instant::now(), settings))?)
     }
 
     /// Distance of the nearest pair at an end minus its margin and the clearance, metres.

@@ -13,14 +13,11 @@ pub struct RrtConnectSettings {
     pub clearance_m: f64,
     /// Seed of the random numbers.
     pub seed: u64,
-    /// Longest edge of a tree: an edge moves solids about as far as this motion (rad or m) of the joint that moves them
-    /// most.
+    /// Longest edge of a tree in the exact scene, rad (and m).
     pub edge_length: f64,
-    /// Largest step of a discrete check, measured like [`edge_length`](Self::edge_length). The proof finds collisions
-    /// in between.
+    /// Largest step of a discrete check in the exact scene: a step moves solids about as far as this motion (rad or m)
+    /// of the joint that moves them most. The proof finds collisions in between.
     pub check_resolution: f64,
-    /// Settings of shortcutting.
-    pub shortcutting: ShortcuttingSettings,
 }
 
 impl Default for RrtConnectSettings {
@@ -33,27 +30,7 @@ impl Default for RrtConnectSettings {
             seed: 1,
             edge_length: 0.6,
             check_resolution: 0.06,
-            shortcutting: ShortcuttingSettings::default(),
         }
-    }
-}
-
-/// Settings of shortcutting.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ShortcuttingSettings {
-    /// Number of random shortcuts that are tried.
-    pub max_attempts: usize,
-    /// Number of consecutive failures after which trying ends.
-    pub max_failures: usize,
-    /// Number of rounds of moving corners.
-    pub max_rounds: usize,
-    /// Fraction of the length that a shortcut or a round must gain.
-    pub min_gain: f64,
-}
-
-impl Default for ShortcuttingSettings {
-    fn default() -> Self {
-        Self { max_attempts: 400, max_failures: 60, max_rounds: 12, min_gain: 1e-3 }
     }
 }
 

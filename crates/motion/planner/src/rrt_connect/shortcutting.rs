@@ -1,105 +1,119 @@
-//! Shortcutting of a path in the exact scene; every segment stays proven. For paths on the grid: `grid_shortcutting.rs`.
+//! Shortcutting of a proven path; every new edge is proven, too. For paths on the grid: `grid_shortcutting.rs`.
 
-use super::interpolation::{length, path_length, point_at};
+use super::interpolation::{length, lerp, path_length};
 use super::motion_validator::MotionValidator;
-use super::random::Random;
-use super::settings::ShortcuttingSettings;
 
-/// Fractions of the distance by which a corner is pulled towards the line between its neighbours.
-const PULL_RATIOS: [f64; 4] = [0.9, 0.5, 0.25, 0.1];
-/// Smallest gain, as a fraction of a corner's two segments, for which it is pulled: rounding errors do not pull
-/// corners.
-const MIN_PULL_GAIN: f64 = 1e-9;
+/// Largest number of rounds of removing waypoints and cutting corners.
+const ROUNDS: usize = 8;
+/// Gain, as a fraction of the length, below which a round is the last.
+const MIN_GAIN: f64 = 0.01;
+/// Distances from a corner at which it is cut, as fractions of the shorter of its edges. The remaining parts of both
+/// edges are proven already.
+const CUTS: [f64; 2] = [0.75, 0.35];
+/// Gain, as a fraction of both edges, below which a cut is not worth an edge.
+const MIN_CUT_GAIN: f64 = 0.008;
 
 /// Shortens a path.
-pub(super) struct Shortcutting<'w, 's> {
-    pub validator: &'w mut MotionValidator<'s>,
-    pub random: &'w mut Random,
-    pub settings: &'w ShortcuttingSettings,
+pub(crate) struct Shortcutting<'v, V> {
+    validator: &'v mut V,
+    /// Keys of edges that could not be proven.
+    rejected: Vec<u64>,
 }
 
-impl Shortcutting<'_, '_> {
-    /// Shortens a path, if possible.
+impl<'v, V: MotionValidator> Shortcutting<'v, V> {
+    pub fn new(validator: &'v mut V) -> Self {
+        Self { validator, rejected: Vec::new() }
+    }
+
+    /// Creates a shortcutting for a path whose ends cannot be joined by a proven edge.
+    pub fn of_rejected_ends(validator: &'v mut V, path: &[Vec<f64>]) -> Self {
+        let ends = path.first().zip(path.last());
+        Self { validator, rejected: ends.map(|(from, to)| edge_key(from, to)).into_iter().collect() }
+    }
+
     pub fn run(&mut self, path: &mut Vec<Vec<f64>>) {
         self.skip_waypoints(path);
-        self.random_shortcuts(path);
-        for _ in 0..self.settings.max_rounds {
+        for _ in 0..ROUNDS {
+            if path.len() < 3 || self.validator.is_exhausted() {
+                return;
+            }
             let before = path_length(path);
+            self.cut_corners(path);
             self.skip_waypoints(path);
-            self.pull_corners(path);
-            if self.validator.is_exhausted() || path_length(path) > before * (1.0 - self.settings.min_gain) {
-                break;
+            if path_length(path) > before * (1.0 - MIN_GAIN) {
+                return;
             }
         }
     }
 
-    /// Removes waypoints, as many at once as possible.
+    /// Joins each waypoint with the farthest one that a proven edge reaches, found by bisection.
     fn skip_waypoints(&mut self, path: &mut Vec<Vec<f64>>) {
         let mut from = 0;
-        while from + 2 < path.len() && !self.validator.is_exhausted() {
-            let far = (from + 2..path.len()).rev().find(|&to| self.validator.is_valid_motion(&path[from], &path[to]));
-            if let Some(to) = far {
-                path.drain(from + 1..to);
+        while from + 2 < path.len() {
+            let (mut reached, mut step) = (from + 1, path.len() - 1 - from);
+            while step > 0 && reached + 1 < path.len() {
+                let to = (reached + step).min(path.len() - 1);
+                if to > reached && self.is_joined(&path[from], &path[to]) {
+                    reached = to;
+                } else {
+                    step /= 2;
+                }
             }
+            path.drain(from + 1..reached);
             from += 1;
         }
     }
 
-    /// Joins random pairs of points of the path by straight segments.
-    fn random_shortcuts(&mut self, path: &mut Vec<Vec<f64>>) {
-        let mut failures = 0;
-        for _ in 0..self.settings.max_attempts {
-            if path.len() < 3 || failures >= self.settings.max_failures || self.validator.is_exhausted() {
-                return;
-            }
-            failures = if self.try_shortcut(path) { 0 } else { failures + 1 };
+    /// Whether an edge is proven free. A rejected edge is not tested again, because rounds repeat most of their tests.
+    fn is_joined(&mut self, from: &[f64], to: &[f64]) -> bool {
+        let key = edge_key(from, to);
+        if self.rejected.contains(&key) {
+            return false;
+        }
+        let is_free = self.validator.is_valid_motion(from, to);
+        if !is_free {
+            self.rejected.push(key);
+        }
+        is_free
+    }
+
+    /// Replaces each corner by an edge between points before and after it.
+    fn cut_corners(&mut self, path: &mut Vec<Vec<f64>>) {
+        let mut corner = 1;
+        while corner + 1 < path.len() {
+            corner += match self.cut(&path[corner - 1], &path[corner], &path[corner + 1]) {
+                Some(ends) => {
+                    path.splice(corner..=corner, ends);
+                    2
+                }
+                None => 1,
+            };
         }
     }
 
-    fn try_shortcut(&mut self, path: &mut Vec<Vec<f64>>) -> bool {
-        let all = path_length(path);
-        let (s, t) = (self.random.unit() * all, self.random.unit() * all);
-        let ((i, a), (j, b)) = (point_at(path, s.min(t)), point_at(path, s.max(t)));
-        // Within one segment the path is straight.
-        if i == j || (s - t).abs() - length(&a, &b) < self.settings.min_gain * all {
-            return false;
-        }
-        if !self.validator.is_valid_motion(&a, &b) {
-            return false;
-        }
-        // Parts of a proven segment are proven.
-        path.splice(i + 1..=j, [a, b]);
-        path.dedup_by(|x, y| x == y);
-        true
-    }
-
-    /// Moves corners towards the line between their neighbours.
-    fn pull_corners(&mut self, path: &mut [Vec<f64>]) {
-        for n in 1..path.len().saturating_sub(1) {
-            for share in PULL_RATIOS {
-                if self.validator.is_exhausted() {
-                    return;
-                }
-                let moved = pulled_corner(&path[n - 1], &path[n], &path[n + 1], share);
-                let around = |q: &[f64]| length(&path[n - 1], q) + length(q, &path[n + 1]);
-                if around(&moved) < around(&path[n]) * (1.0 - MIN_PULL_GAIN)
-                    && self.validator.is_valid_motion(&path[n - 1], &moved)
-                    && self.validator.is_valid_motion(&moved, &path[n + 1])
-                {
-                    path[n] = moved;
-                    break;
-                }
+    /// The ends of a proven edge across a corner, farthest first.
+    fn cut(&mut self, before: &[f64], corner: &[f64], after: &[f64]) -> Option<[Vec<f64>; 2]> {
+        let edges = [length(before, corner), length(corner, after)];
+        let shorter = edges[0].min(edges[1]);
+        for distance in CUTS.map(|share| share * shorter) {
+            let mut ends = [corner.to_vec(), corner.to_vec()];
+            lerp(corner, before, distance / edges[0], &mut ends[0]);
+            lerp(corner, after, distance / edges[1], &mut ends[1]);
+            let gain = 2.0 * distance - length(&ends[0], &ends[1]);
+            // Also false for edges of length 0.
+            if !(gain > MIN_CUT_GAIN * (edges[0] + edges[1])) {
+                return None;
+            }
+            if self.is_joined(&ends[0], &ends[1]) {
+                return Some(ends);
             }
         }
+        None
     }
 }
 
-/// A corner moved by a fraction of the distance to the foot of its perpendicular on the line between its neighbours.
-fn pulled_corner(before: &[f64], corner: &[f64], after: &[f64], share: f64) -> Vec<f64> {
-    let along: Vec<f64> = after.iter().zip(before).map(|(a, b)| a - b).collect();
-    let square: f64 = along.iter().map(|x| x * x).sum();
-    let dot: f64 = corner.iter().zip(before).zip(&along).map(|((c, b), d)| (c - b) * d).sum();
-    let t = if square > 0.0 { (dot / square).clamp(0.0, 1.0) } else { 0.0 };
-    let foot = before.iter().zip(&along).map(|(b, d)| b + d * t);
-    corner.iter().zip(foot).map(|(c, f)| c + (f - c) * share).collect()
+/// A hash of an edge. Two edges rarely have the same hash; if they do, one counts as rejected, never as free.
+fn edge_key(from: &[f64], to: &[f64]) -> u64 {
+    let mix = |key: u64, value: &f64| (key ^ value.to_bits()).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29);
+    from.iter().chain(to).fold(0, mix)
 }

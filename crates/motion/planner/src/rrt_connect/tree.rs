@@ -1,84 +1,126 @@
-//! The search tree of one path end.
+//! A tree of configurations with a nearest-neighbour search over all nodes, in single precision.
 
-/// A tree of configurations; node 0 is the root.
-#[derive(Debug, Clone)]
-pub(super) struct Tree {
+use super::interpolation::length;
+use super::node_packs::NodePacks;
+
+/// A tree of configurations.
+#[derive(Debug)]
+pub(crate) struct Tree {
     dof: usize,
-    /// All values of all nodes.
-    values: Vec<f64>,
+    /// The configurations, one after the other.
+    q: Vec<f64>,
+    packs: NodePacks,
+    /// Number of roots, which are the first nodes.
+    roots: usize,
+    /// A root is its own parent.
     parents: Vec<u32>,
-    /// Whether the edge to the parent is proven.
-    proven: Vec<bool>,
-    /// Whether some edge between the node and the root could not be proven.
-    pruned: Vec<bool>,
+    /// Length of the branch from the root, rad (and m).
+    costs: Vec<f64>,
+    /// Per node, the radius of its dynamic domain: the node is not extended to samples that are farther away.
+    pub radii: Vec<f32>,
+    /// Whether the edge to the parent is proven free.
+    is_proven: Vec<bool>,
 }
 
 impl Tree {
-    pub fn new(root: &[f64]) -> Self {
-        let values = root.to_vec();
-        Self { dof: root.len(), values, parents: vec![0], proven: vec![true], pruned: vec![false] }
+    /// Creates a tree with one or several roots, all with the same number of values.
+    pub fn new<'q>(dof: usize, roots: impl IntoIterator<Item = &'q [f64]>) -> Self {
+        let (q, parents, costs, radii, is_proven) = Default::default();
+        let mut tree = Self { dof, q, packs: NodePacks::new(dof), roots: 0, parents, costs, radii, is_proven };
+        for root in roots {
+            tree.push(tree.len(), 0.0, root);
+        }
+        tree.roots = tree.len();
+        tree
     }
 
     pub fn len(&self) -> usize {
         self.parents.len()
     }
 
+    /// Number of roots, which are the first nodes.
+    pub fn roots(&self) -> usize {
+        self.roots
+    }
+
     pub fn q(&self, node: usize) -> &[f64] {
-        &self.values[node * self.dof..(node + 1) * self.dof]
+        &self.q[node * self.dof..(node + 1) * self.dof]
     }
 
+    /// Adds a node; returns its index.
     pub fn add(&mut self, parent: usize, q: &[f64]) -> usize {
-        self.values.extend_from_slice(q);
-        self.parents.push(parent as u32);
-        self.proven.push(false);
-        self.pruned.push(false);
-        self.parents.len() - 1
+        let cost = self.costs[parent] + length(self.q(parent), q);
+        self.push(parent, cost, q)
     }
 
-    /// The node with the least weighted distance.
-    pub fn nearest(&self, q: &[f64], weights: &[f64]) -> usize {
-        let (mut best, mut least) = (0, f64::INFINITY);
-        for (node, values) in self.values.chunks_exact(self.dof.max(1)).enumerate() {
-            let mut far = 0.0;
-            for ((x, y), w) in values.iter().zip(q).zip(weights) {
-                far += ((x - y) * w).powi(2);
+    /// Length of the branch from the root to a node, rad (and m).
+    pub fn cost(&self, node: usize) -> f64 {
+        self.costs[node]
+    }
+
+    fn push(&mut self, parent: usize, cost: f64, q: &[f64]) -> usize {
+        let node = self.len();
+        self.packs.push(q);
+        self.q.extend_from_slice(q);
+        self.parents.push(parent as u32);
+        self.costs.push(cost);
+        self.radii.push(f32::INFINITY);
+        self.is_proven.push(parent == node);
+        node
+    }
+
+    /// Proves the edges from the root to a node, those near the root first, because they have the largest subtrees. Where
+    /// a proof fails, the subtree is pruned: its nodes are never nearest again.
+    pub fn prove_branch(&mut self, node: usize, mut proves: impl FnMut(&[f64], &[f64]) -> bool) -> bool {
+        for n in self.branch(node).into_iter().rev().filter(|&n| !self.is_proven[n]).collect::<Vec<_>>() {
+            if !proves(self.q(self.parents[n] as usize), self.q(n)) {
+                self.prune(n);
+                return false;
             }
-            if far < least && !self.pruned[node] {
-                (best, least) = (node, far);
+            self.is_proven[n] = true;
+        }
+        true
+    }
+
+    /// Prunes a node and its subtree. Children have greater indices than their parents.
+    fn prune(&mut self, node: usize) {
+        let mut is_pruned = vec![false; self.len()];
+        for n in node..self.len() {
+            is_pruned[n] = n == node || is_pruned[self.parents[n] as usize];
+            if is_pruned[n] {
+                self.packs.remove(n);
             }
         }
-        best
+    }
+
+    /// The nearest node and its Euclidean distance.
+    pub fn nearest(&self, q: &[f64]) -> (usize, f64) {
+        let node = self.packs.nearest(q);
+        (node, length(self.q(node), q))
+    }
+
+    /// The nearest node that reaches a configuration within a cost (including the length of the branch), and its
+    /// Euclidean distance.
+    pub fn nearest_within(&self, q: &[f64], cost: f64) -> Option<(usize, f64)> {
+        let mut best: Option<(usize, f32)> = None;
+        for (node, square) in self.packs.squared_distances(q).enumerate() {
+            let is_nearer = best.is_none_or(|(_, least)| square < least);
+            if is_nearer && self.costs[node] + f64::from(square.sqrt()) <= cost {
+                best = Some((node, square));
+            }
+        }
+        best.map(|(node, _)| (node, length(self.q(node), q)))
     }
 
     /// The nodes from `node` to the root.
     pub fn branch(&self, node: usize) -> Vec<usize> {
         let mut branch = vec![node];
         let mut at = node;
-        while at != 0 {
+        while self.parents[at] as usize != at {
             at = self.parents[at] as usize;
             branch.push(at);
         }
         branch
-    }
-
-    pub fn parent(&self, node: usize) -> usize {
-        self.parents[node] as usize
-    }
-
-    pub fn is_proven(&self, node: usize) -> bool {
-        self.proven[node]
-    }
-
-    pub fn mark_proven(&mut self, node: usize) {
-        self.proven[node] = true;
-    }
-
-    /// Prunes a node and its subtree. Children have greater indices than their parents.
-    pub fn prune(&mut self, node: usize) {
-        self.pruned[node] = true;
-        for n in node + 1..self.len() {
-            self.pruned[n] |= self.pruned[self.parents[n] as usize];
-        }
     }
 }
 
@@ -87,15 +129,23 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nodes_of_a_pruned_branch_are_never_nearest() {
-        let mut tree = Tree::new(&[0.0, 0.0]);
+    fn nodes_behind_an_edge_that_is_not_proven_are_never_nearest() {
+        let mut tree = Tree::new(2, [&[0.0, 0.0][..]]);
         let a = tree.add(0, &[1.0, 0.0]);
         let b = tree.add(a, &[2.0, 0.0]);
         let c = tree.add(0, &[0.0, 5.0]);
-        assert_eq!(tree.nearest(&[2.2, 0.0], &[1.0, 1.0]), b);
+        assert_eq!(tree.nearest(&[2.2, 0.0]), (b, length(&[2.2, 0.0], &[2.0, 0.0])));
         assert_eq!(tree.branch(b), [b, a, 0]);
-        assert_eq!(tree.nearest(&[2.2, 4.0], &[0.1, 1.0]), c);
-        tree.prune(a);
-        assert_eq!(tree.nearest(&[2.2, 0.0], &[1.0, 1.0]), 0);
+        let mut asked = Vec::new();
+        assert!(tree.prove_branch(c, |from, to| {
+            asked.push((from.to_vec(), to.to_vec()));
+            true
+        }));
+        assert_eq!(asked, [(vec![0.0, 0.0], vec![0.0, 5.0])]);
+        // A proven edge is not proven again.
+        assert!(tree.prove_branch(c, |_, _| false));
+        assert!(!tree.prove_branch(b, |_, _| false));
+        assert_eq!(tree.nearest(&[2.2, 0.0]).0, 0);
+        assert_eq!(tree.nearest_within(&[2.2, 4.0], 100.0).unwrap().0, c);
     }
 }

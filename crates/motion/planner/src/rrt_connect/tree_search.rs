@@ -1,43 +1,38 @@
-//! RRT-Connect (Kuffner, `LaValle`: *RRT-Connect: an efficient approach to single-query path planning*, 2000) with lazy
-//! proofs: edges are checked discretely when they are added, and proven when they are part of a path. An edge that
-//! cannot be proven is pruned with its subtree, and the search continues.
+//! RRT-Connect (Kuffner, `LaValle`: *RRT-Connect: an efficient approach to single-query path planning*, 2000) with a dynamic
+//! domain (Yershova, Jaillet, Siméon, `LaValle`: *Dynamic-domain RRTs*, 2005): a node from which an extension failed is extended
+//! only towards nearby samples. Proofs are lazy: edges of a path are proven when the trees meet; an edge that cannot be
+//! proven is pruned with its subtree, and the search continues.
 
-use super::interpolation::lerp;
-use super::joint_bounds::SamplingRegion;
+use super::interpolation::{length, lerp};
 use super::motion_validator::MotionValidator;
-use super::random::Random;
 use super::tree::Tree;
 
-/// Number of samples after which the whole region is sampled; before, samples stay around the ends.
-const WIDENING_ROUNDS: f64 = 300.0;
-/// Fraction of the region, around the ends, that is sampled first.
-const FIRST_SHARE: f64 = 0.1;
-/// Every Nth sample stays near the ends, in the fraction `NEAR_SHARE` of the region: exits of narrow starts and goals
-/// are there.
-const NEAR_ROUNDS: u32 = 3;
-const NEAR_SHARE: f64 = 0.3;
+/// Dynamic domain of a node after its first failure, rad (and m).
+const DOMAIN_RADIUS: f64 = 4.0;
 
-/// Two trees that grow towards each other.
-pub(super) struct BidirectionalSearch<'w, 's> {
-    validator: &'w mut MotionValidator<'s>,
-    region: &'w SamplingRegion,
-    random: &'w mut Random,
-    /// If `swapped` is false, the first tree belongs to the start.
-    trees: [Tree; 2],
-    swapped: bool,
-    edge_length: f64,
+/// Smallest gain of a step of a connection, as a fraction of the distance to its target; a step with less gain is the
+/// last.
+pub(crate) const LEAST_PROGRESS: f64 = 0.05;
+
+/// Draws configurations.
+pub(crate) trait ConfigurationSampler {
+    /// A configuration for a tree to grow towards; one of its roots is `root`.
+    fn sample(&mut self, root: &[f64], out: &mut [f64]);
 }
 
-impl<'w, 's> BidirectionalSearch<'w, 's> {
-    pub fn new(
-        validator: &'w mut MotionValidator<'s>,
-        region: &'w SamplingRegion,
-        random: &'w mut Random,
-        [start, goal]: [&[f64]; 2],
-        edge_length: f64,
-    ) -> Self {
-        let trees = [Tree::new(start), Tree::new(goal)];
-        Self { validator, region, random, trees, swapped: false, edge_length }
+/// Two trees that grow towards each other.
+pub(crate) struct TreeSearch<'v, V> {
+    pub validator: &'v mut V,
+    trees: [Tree; 2],
+    /// Whether the first tree belongs to the goal.
+    is_swapped: bool,
+}
+
+impl<'v, V: MotionValidator> TreeSearch<'v, V> {
+    /// Creates a search from a start to any of several goals.
+    pub fn new<'q>(validator: &'v mut V, start: &'q [f64], goals: impl IntoIterator<Item = &'q [f64]>) -> Self {
+        let trees = [Tree::new(start.len(), [start]), Tree::new(start.len(), goals)];
+        Self { validator, trees, is_swapped: false }
     }
 
     /// Number of nodes in both trees.
@@ -45,91 +40,84 @@ impl<'w, 's> BidirectionalSearch<'w, 's> {
         self.trees.iter().map(Tree::len).sum()
     }
 
-    /// Searches for a path. Returns the waypoints of a proven path; `None` if a limit is reached.
-    pub fn run(&mut self) -> Option<Vec<Vec<f64>>> {
+    /// Searches for a path. Returns its waypoints; `None` if a limit is reached.
+    pub fn run(&mut self, sampler: &mut impl ConfigurationSampler) -> Option<Vec<Vec<f64>>> {
         let mut sample = self.trees[0].q(0).to_vec();
-        for round in 0_u32.. {
-            if self.validator.is_exhausted() {
-                break;
+        let mut round = 0;
+        while !self.validator.is_exhausted() {
+            if self.trees[0].len() > self.trees[1].len() {
+                self.trees.swap(0, 1);
+                self.is_swapped = !self.is_swapped;
             }
-            // At first near the ends, later anywhere; every third round stays near the ends.
-            let is_near = round % NEAR_ROUNDS == NEAR_ROUNDS - 1;
-            let share = if is_near { NEAR_SHARE } else { (FIRST_SHARE + f64::from(round) / WIDENING_ROUNDS).min(1.0) };
-            self.region.sample(share, self.random, &mut sample);
-            let from = self.trees[0].nearest(&sample, &self.validator.weights);
-            if let Some((node, _)) = self.extend(0, from, &sample) {
-                let target = self.trees[0].q(node).to_vec();
-                let near = self.trees[1].nearest(&target, &self.validator.weights);
-                if let Some((other, true)) = self.extend(1, near, &target)
-                    && let Some(path) = self.proven_path(node, other)
-                {
-                    return Some(path);
-                }
+            sampler.sample(self.trees[0].q(round % self.trees[0].roots()), &mut sample);
+            round += 1;
+            let (near, distance) = self.trees[0].nearest(&sample);
+            if distance == 0.0 || f64::from(self.trees[0].radii[near]) < distance {
+                continue;
             }
-            self.trees.swap(0, 1);
-            self.swapped = !self.swapped;
+            let Some(node) = self.extend(0, near, &sample, distance) else { continue };
+            if let Some(other) = self.connect(node)
+                && self.is_proven(node, other)
+            {
+                return Some(self.path(node, other));
+            }
         }
         None
     }
 
-    /// Extends a tree towards a target, edge by edge, until an edge is not free. Returns the last added node and
-    /// whether it is the target; `None` if no edge was added.
-    fn extend(&mut self, tree: usize, from: usize, target: &[f64]) -> Option<(usize, bool)> {
-        let (mut last, mut added) = (from, None);
+    /// Adds one edge towards a target. Returns the new node.
+    fn extend(&mut self, tree: usize, near: usize, target: &[f64], distance: f64) -> Option<usize> {
         let mut next = target.to_vec();
-        loop {
-            let here = self.trees[tree].q(last).to_vec();
-            let distance = self.validator.distance(&here, target);
-            if distance == 0.0 {
-                return Some((last, true));
-            }
-            let reaches = distance <= self.edge_length;
-            if reaches {
-                next.copy_from_slice(target);
-            } else {
-                lerp(&here, target, self.edge_length / distance, &mut next);
-            }
-            if !self.validator.discrete_check(&here, &next) {
-                break;
-            }
-            last = self.trees[tree].add(last, &next);
-            added = Some((last, reaches));
-            if reaches || self.validator.is_exhausted() {
-                break;
-            }
+        let from = &self.trees[tree];
+        let longest = self.validator.longest_edge();
+        if distance > longest {
+            lerp(from.q(near), target, longest / distance, &mut next);
         }
-        added
+        if !self.validator.project(&mut next) || !self.validator.motion_is_free(from.q(near), &next) {
+            let radius = &mut self.trees[tree].radii[near];
+            *radius = radius.min(DOMAIN_RADIUS as f32) * 0.999_9;
+            if !radius.is_finite() {
+                *radius = DOMAIN_RADIUS as f32;
+            }
+            return None;
+        }
+        Some(self.trees[tree].add(near, &next))
     }
 
-    /// Joins two branches to one path and proves each edge; `None` if an edge is not proven, which is then pruned.
-    fn proven_path(&mut self, node: usize, other: usize) -> Option<Vec<Vec<f64>>> {
-        let mut path = Vec::new();
-        for (tree, end) in [(0, node), (1, other)] {
-            let branch = self.trees[tree].branch(end);
-            // From the root: edges near the root prune the largest subtrees.
-            for &n in branch.iter().rev().skip(1) {
-                if self.trees[tree].is_proven(n) {
-                    continue;
-                }
-                let (a, b) = (self.trees[tree].q(self.trees[tree].parent(n)), self.trees[tree].q(n));
-                if !self.validator.proves_motion(a, b) {
-                    self.trees[tree].prune(n);
-                    return None;
-                }
-                self.trees[tree].mark_proven(n);
+    /// Grows the second tree straight to a node of the first. Returns the node that reaches it.
+    fn connect(&mut self, node: usize) -> Option<usize> {
+        let target = self.trees[0].q(node).to_vec();
+        let (mut near, mut distance) = self.trees[1].nearest(&target);
+        while distance > 0.0 && !self.validator.is_exhausted() {
+            near = self.extend(1, near, &target, distance)?;
+            let left = length(self.trees[1].q(near), &target);
+            // A projection may lead elsewhere.
+            if left > distance * (1.0 - LEAST_PROGRESS) {
+                return None;
             }
-            let states = branch.iter().map(|n| self.trees[tree].q(*n).to_vec());
-            if tree == 0 {
-                path.extend(states);
-                path.reverse();
-            } else {
-                // The configuration at which the branches meet is in both.
-                path.extend(states.skip(1));
-            }
+            distance = left;
         }
-        if self.swapped {
+        (distance == 0.0).then_some(near)
+    }
+
+    /// Whether the branches to two nodes are proven free.
+    fn is_proven(&mut self, node: usize, other: usize) -> bool {
+        let [first, second] = &mut self.trees;
+        first.prove_branch(node, |from, to| self.validator.proves_motion(from, to))
+            && second.prove_branch(other, |from, to| self.validator.proves_motion(from, to))
+    }
+
+    fn path(&self, node: usize, other: usize) -> Vec<Vec<f64>> {
+        let branch = |tree: usize, node: usize| {
+            self.trees[tree].branch(node).into_iter().map(move |n| self.trees[tree].q(n).to_vec())
+        };
+        let mut path: Vec<Vec<f64>> = branch(0, node).collect();
+        path.reverse();
+        path.extend(branch(1, other));
+        path.dedup();
+        if self.is_swapped {
             path.reverse();
         }
-        Some(path)
+        path
     }
 }

@@ -1,10 +1,11 @@
 //! Samples of the joint space for a search.
 
+use super::joint_bounds::SamplingRegion;
+use super::random::Random;
 use super::tree_search::ConfigurationSampler;
-use crate::rrt_connect::{Random, SamplingRegion};
 
 /// Draws samples around the root of the growing tree and from the region: first around the ends, later everywhere.
-pub(super) struct RegionSampler<'r> {
+pub(crate) struct RegionSampler<'r> {
     region: SamplingRegion,
     random: &'r mut Random,
     round: u32,

@@ -38,6 +38,12 @@ impl NodePacks {
         self.len += 1;
     }
 
+    /// Removes a node from the search; the indices of the others stay.
+    pub fn remove(&mut self, node: usize) {
+        let (pack, lane) = (node / LANES, node % LANES);
+        self.rows[pack * self.dof..][..self.dof].iter_mut().for_each(|row| row[lane] = f32::INFINITY);
+    }
+
     /// The nearest node; 0 if there are no nodes. The result is the same on every instruction set.
     pub fn nearest(&self, q: &[f64]) -> usize {
         dispatch!(self.simd_level, simd => self.nearest_in_lanes(simd, q))
@@ -90,8 +96,8 @@ fn squared_distances<S: Simd>(simd: S, pack: &[[f32; LANES]], q: &[f64]) -> f32x
 
 #[cfg(test)]
 mod tests {
+    use super::super::random::Random;
     use super::*;
-    use crate::rrt_connect::Random;
 
     #[test]
     fn the_nearest_node_is_that_of_a_plain_search_on_every_instruction_set() {

@@ -1,4 +1,4 @@
-//! Validity of edges: decided by the covers, and by the exact scene for pairs that the covers leave open.
+//! Motion validator on sphere covers; the exact scene decides about pairs that the covers leave open.
 
 use std::time::{Duration, Instant};
 
@@ -8,7 +8,7 @@ use elbowroom_validity::{NotCertain, Validity, ValidityChecker};
 
 use super::cover_model::{CoverModel, CoverObstacles};
 use super::disconnection_proof::{Projection, are_disconnected};
-use crate::rrt_connect::{JointRange, MotionValidator, RrtConnectError};
+use crate::rrt_connect::{JointRange, MotionValidator, RrtConnectError, SceneValidator};
 
 /// Number of questions per reading of the clock, which costs as much as a short edge.
 const QUESTIONS_PER_CLOCK_READING: u64 = 16;
@@ -17,25 +17,6 @@ const BLOCK: u64 = 16;
 
 /// Longest edge of a tree, rad (and m).
 const EDGE_LENGTH: f64 = 1.0;
-
-/// The questions of a tree search.
-pub(super) trait EdgeValidator {
-    /// Whether the straight segment between two configurations is proven free.
-    fn edge_is_free(&mut self, from: &[f64], to: &[f64]) -> bool;
-    /// Whether the search must end.
-    fn is_exhausted(&mut self) -> bool;
-
-    /// Longest edge of a tree, rad (and m).
-    fn longest_edge(&self) -> f64 {
-        EDGE_LENGTH
-    }
-
-    /// Moves a configuration so that it satisfies a constraint. False if that fails.
-    fn project(&mut self, q: &mut [f64]) -> bool {
-        let _ = q;
-        true
-    }
-}
 
 /// Proves edges by the covers; proves pairs that the covers leave open in the exact scene.
 #[derive(Debug)]
@@ -106,7 +87,7 @@ impl<'m> CoverValidator<'m> {
     /// Whether an edge is proven free; pairs that the covers leave open are swept exactly.
     pub fn is_free_exactly(
         &mut self,
-        exact: &mut MotionValidator,
+        exact: &mut SceneValidator,
         from: &[f64],
         to: &[f64],
         sweep: &SweepOptions,
@@ -124,8 +105,8 @@ impl<'m> CoverValidator<'m> {
     }
 }
 
-impl EdgeValidator for CoverValidator<'_> {
-    fn edge_is_free(&mut self, from: &[f64], to: &[f64]) -> bool {
+impl MotionValidator for CoverValidator<'_> {
+    fn motion_is_free(&mut self, from: &[f64], to: &[f64]) -> bool {
         self.checker.edge_is_free(from, to).unwrap_or(false)
     }
 
@@ -133,5 +114,8 @@ impl EdgeValidator for CoverValidator<'_> {
         self.questions += 1;
         self.states_checked() > self.max_states
             || (self.questions.is_multiple_of(QUESTIONS_PER_CLOCK_READING) && Instant::now() >= self.deadline)
+    }
+    fn longest_edge(&self) -> f64 {
+        EDGE_LENGTH
     }
 }
