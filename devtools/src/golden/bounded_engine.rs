@@ -4,11 +4,12 @@ use elbowroom_kinematics::JointLimits;
 use std::time::Duration;
 
 use elbowroom_planner::{
-    CoverModel, CoverObstacles, CoverRrtConnect, PlannedPath, RrtConnect, RrtConnectError, RrtConnectSettings,
+    CoverModels, CoverObstacles, PlannedPath, RobotPlanner, RrtConnect, RrtConnectError, RrtConnectSettings,
     TimedMotion,
 };
 use elbowroom_query::problems::{PlanningEngine, ProblemScene, ProblemSettings, Solution};
 use elbowroom_robot::RobotId;
+use elbowroom_validity::BuiltCovers;
 
 use super::digest::Digest;
 
@@ -19,37 +20,41 @@ const TIME_LIMIT: Duration = Duration::from_hours(24);
 /// The only robot.
 const ROBOT: RobotId = RobotId(0);
 
-/// [`CoverRrtConnect`] on covers that are built instead of read from files. It hashes each solution.
+/// [`RobotPlanner`] on covers that are built instead of read from files. It hashes each solution.
 #[derive(Clone, Default)]
 pub struct BoundedEngine {
-    model: Option<CoverModel>,
+    models: CoverModels,
     pub digest: Digest,
 }
 
 impl BoundedEngine {
     /// Builds the covers of a problem's robot, unless the present covers are of the same robot.
     pub fn prepare(&mut self, problem: &ProblemScene, clearance_m: f64) -> Result<(), String> {
-        let (scene, start) = (problem.scene(), problem.start());
-        if !self.model.as_ref().is_some_and(|m| m.serves(scene, start, clearance_m)) {
-            let built = CoverModel::new(scene, start, ROBOT, clearance_m);
-            self.model = Some(built.map_err(|e| e.to_string())?);
-        }
-        Ok(())
+        let model = self.models.serving(problem.scene(), problem.start(), ROBOT, clearance_m, &BuiltCovers);
+        model.map(|_| ()).ok_or_else(|| "no covers".to_owned())
     }
 
-    fn search(&mut self, problem: &ProblemScene, settings: &ProblemSettings) -> Result<PlannedPath, String> {
-        self.prepare(problem, settings.clearance_m)?;
-        let model = self.model.as_ref().ok_or("no covers")?;
+    fn with_planner<T>(
+        &mut self,
+        problem: &ProblemScene,
+        clearance_m: f64,
+        ask: impl FnOnce(RobotPlanner) -> Result<T, RrtConnectError>,
+    ) -> Result<T, RrtConnectError> {
         let (scene, start) = (problem.scene(), problem.start());
-        let obstacles = CoverObstacles::new(model, scene, start, settings.clearance_m);
-        let mut planner = CoverRrtConnect::new(exact(problem).map_err(|e| e.to_string())?, model, &obstacles);
-        planner.plan_to_any(start, problem.goals(), &bounded(settings)).map_err(|e| e.to_string())
+        let model = self.models.serving(scene, start, ROBOT, clearance_m, &BuiltCovers);
+        let obstacles = model.map(|model| CoverObstacles::new(model, scene, start, clearance_m));
+        // Joints that the goals do not name are held.
+        let exact = RrtConnect::new(scene, ROBOT)?.with_limits(problem.limits().iter().copied());
+        ask(RobotPlanner::new(exact, model.zip(obstacles.as_ref())))
     }
 }
 
 impl PlanningEngine for BoundedEngine {
     fn solve(&mut self, problem: &ProblemScene, settings: &ProblemSettings) -> Solution {
-        let solution = match self.search(problem, settings) {
+        let found = self.with_planner(problem, settings.clearance_m, |mut planner| {
+            planner.plan_to_any(problem.start(), problem.goals(), &bounded(settings))
+        });
+        let solution = match found {
             Ok(path) => Solution {
                 found: true,
                 proven: true,
@@ -60,7 +65,7 @@ impl PlanningEngine for BoundedEngine {
                 waypoints: path.waypoints,
                 reason: None,
             },
-            Err(reason) => Solution { reason: Some(reason), ..Solution::default() },
+            Err(e) => Solution { reason: Some(e.to_string()), ..Solution::default() },
         };
         self.digest.flag(solution.found);
         self.digest.numbers([solution.cost_raw_rad, solution.cost_rad]);
@@ -76,21 +81,10 @@ impl PlanningEngine for BoundedEngine {
         limits: &[JointLimits],
         settings: &ProblemSettings,
     ) -> Result<TimedMotion, RrtConnectError> {
-        let mut exact = exact(problem)?;
-        let (scene, start) = (problem.scene(), problem.start());
-        let Some(model) = &self.model else {
-            let trajectory = exact.time_parametrize(start, path, limits, settings.period_s, &bounded(settings))?;
-            return TimedMotion::of(&trajectory, settings.period_s);
-        };
-        let obstacles = CoverObstacles::new(model, scene, start, settings.clearance_m);
-        let mut planner = CoverRrtConnect::new(exact, model, &obstacles);
-        planner.time_parametrize(start, path, limits, settings.period_s, &bounded(settings))
+        self.with_planner(problem, settings.clearance_m, |mut planner| {
+            planner.time_parametrize(problem.start(), path, limits, settings.period_s, &bounded(settings))
+        })
     }
-}
-
-/// Creates the exact planner, which holds joints that the goals do not name.
-fn exact(problem: &ProblemScene) -> Result<RrtConnect<'_>, RrtConnectError> {
-    Ok(RrtConnect::new(problem.scene(), ROBOT)?.with_limits(problem.limits().iter().copied()))
 }
 
 fn bounded(settings: &ProblemSettings) -> RrtConnectSettings {

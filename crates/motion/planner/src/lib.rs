@@ -46,6 +46,7 @@ mod nearest_free_cell;
 mod orientation_constraint;
 mod path;
 mod prioritized_planner;
+mod robot_planner;
 mod rrt_connect;
 mod task_space_region;
 mod theta_star;
@@ -58,6 +59,7 @@ pub use path::{GridPlannerError, GridPlannerSetting, Path, PathEnd};
 pub use prioritized_planner::{
     PathConstraintSource, PrioritizedMotion, PrioritizedPlanner, PrioritizedPlannerError, RobotGoal,
 };
+pub use robot_planner::{CoverModels, RobotPlanner};
 pub use rrt_connect::{
     JointUnit, LinearMoveEnd, PathConstraint, PlannedPath, Random, RrtConnect, RrtConnectError, RrtConnectSetting,
     RrtConnectSettings,

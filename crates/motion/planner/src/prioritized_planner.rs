@@ -15,7 +15,7 @@ use elbowroom_scene::{Checker, CheckerOptions, Scene, SceneState, Selection, Swe
 use elbowroom_validity::{BuiltCovers, CoverSource};
 
 use crate::{
-    CoverModel, CoverObstacles, CoverRrtConnect, PathConstraint, PlannedPath, RrtConnect, RrtConnectError,
+    CoverModels, CoverObstacles, PathConstraint, PlannedPath, RobotPlanner, RrtConnect, RrtConnectError,
     RrtConnectSettings, TimedMotion,
 };
 
@@ -163,7 +163,7 @@ impl<'s> PrioritizedPlanner<'s> {
     /// follows its path.
     ///
     /// # Errors
-    /// The errors of [`CoverRrtConnect::plan`] and [`CoverRrtConnect::time_parametrize`], for the first priority order
+    /// The errors of [`RobotPlanner::plan_to_any`] and [`RobotPlanner::time_parametrize`], for the first priority order
     /// and the first robot that fails; [`PrioritizedPlannerError::NoGoal`] without goals.
     pub fn plan(
         &self,
@@ -226,15 +226,11 @@ impl<'s> PrioritizedPlanner<'s> {
             exact = exact.with_constraint(constraint);
         }
         let clearance_m = settings.clearance_m;
-        let Ok(model) = CoverModel::with_covers(self.scene, state, goal.robot, clearance_m, self.covers) else {
-            let path = exact.plan(state, &goal.q, settings)?;
-            let trajectory = exact.time_parametrize(state, &path, &goal.limits, period_s, settings)?;
-            let motion = TimedMotion::of(&trajectory, period_s)?;
-            return Ok((path, motion));
-        };
-        let obstacles = CoverObstacles::new(&model, self.scene, state, clearance_m);
-        let mut planner = CoverRrtConnect::new(exact, &model, &obstacles);
-        let path = planner.plan(state, &goal.q, settings)?;
+        let mut models = CoverModels::default();
+        let model = models.serving(self.scene, state, goal.robot, clearance_m, self.covers);
+        let obstacles = model.map(|model| CoverObstacles::new(model, self.scene, state, clearance_m));
+        let mut planner = RobotPlanner::new(exact, model.zip(obstacles.as_ref()));
+        let path = planner.plan_to_any(state, &[&goal.q], settings)?;
         let motion = planner.time_parametrize(state, &path, &goal.limits, period_s, settings)?;
         Ok((path, motion))
     }

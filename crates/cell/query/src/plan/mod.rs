@@ -17,7 +17,7 @@ use elbowroom_cell::region_constraint::RegionConstraint;
 use elbowroom_cell::{Cell, CellRobot, OutOfReachProofs, QueryModel, TcpTarget, region_constraint};
 use elbowroom_formats::FormatError;
 use elbowroom_planner::{
-    CoverModel, CoverObstacles, CoverRrtConnect, RrtConnect, RrtConnectError, RrtConnectSettings, TaskSpaceRegion,
+    CoverModels, CoverObstacles, RobotPlanner, RrtConnect, RrtConnectError, RrtConnectSettings, TaskSpaceRegion,
 };
 use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_scene::{Attachment, Scene, SceneState};
@@ -138,13 +138,10 @@ pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, FormatErro
     let state = start_state(cell, &scene, id, from, request).map_err(|e| refused(e.into()))?;
     let goals = goals(cell, &scene, &state, id, &request.to, request.options.seed)?;
     let clearance_m = if request.options.clearance_m.is_finite() { request.options.clearance_m } else { 0.0 };
-    // A link without bounds cannot be covered; the exact scene plans for it.
-    let covers = CoverCache::of_user();
+    let (covers, mut models) = (CoverCache::of_user(), CoverModels::default());
     let is_on_map = request.planner == PathPlanner::Grid;
-    let with_covers = || CoverModel::with_covers(&scene, &state, id, clearance_m, &covers).ok();
-    let model = if is_on_map { None } else { with_covers() };
-    let obstacles =
-        model.as_ref().map(|model| CoverObstacles::with_covers(model, &scene, &state, clearance_m, &covers));
+    let model = if is_on_map { None } else { models.serving(&scene, &state, id, clearance_m, &covers) };
+    let obstacles = model.map(|model| CoverObstacles::with_covers(model, &scene, &state, clearance_m, &covers));
     let period_s = request.period_s.unwrap_or(cell.tick_s);
     region_constraint::at_start(cell, id, from, &request.carried, clearance_m, |constraint| {
         let regions = constraint.as_ref().map(RegionConstraint::names).unwrap_or_default();
@@ -160,11 +157,7 @@ pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, FormatErro
             return Ok(PathAnswer { regions, ..answer });
         }
         let begin = Instant::now();
-        let found = match (&model, &obstacles) {
-            (Some(model), Some(obstacles)) => query.on_covers(CoverRrtConnect::new(exact, model, obstacles)),
-            _ => query.exactly(exact),
-        };
-        let answer = match found {
+        let answer = match query.plan(RobotPlanner::new(exact, model.zip(obstacles.as_ref()))) {
             Ok((path, motion)) => PathAnswer::found(robot, path, motion),
             Err(e @ (RrtConnectError::NotFound { .. } | RrtConnectError::Disconnected { .. })) => {
                 PathAnswer::none(robot, begin.elapsed(), e.to_string())

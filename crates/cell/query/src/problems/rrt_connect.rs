@@ -3,7 +3,7 @@
 use elbowroom_kinematics::JointLimits;
 use std::time::{Duration, Instant};
 
-use elbowroom_planner::{PlannedPath, RrtConnectError, RrtConnectSettings, TimedMotion};
+use elbowroom_planner::{PlannedPath, RobotPlanner, RrtConnectError, RrtConnectSettings, TimedMotion};
 
 use super::{PlanningEngine, ProblemScene, ProblemSettings, Solution};
 
@@ -12,24 +12,11 @@ use super::{PlanningEngine, ProblemScene, ProblemSettings, Solution};
 pub struct RrtConnectEngine;
 
 impl PlanningEngine for RrtConnectEngine {
-    /// Tries the goals one after the other, each within its part of the remaining time.
     fn solve(&mut self, problem: &ProblemScene, settings: &ProblemSettings) -> Solution {
-        let mut planner = match problem.planner() {
-            Ok(planner) => planner,
-            Err(e) => return Solution { reason: Some(e.to_string()), ..Solution::default() },
-        };
-        let begin = Instant::now();
-        let mut solution = Solution::default();
-        for (i, goal) in problem.goals().iter().enumerate() {
-            let left = settings.time_limit.saturating_sub(begin.elapsed());
-            let share = left / u32::try_from(problem.goals().len() - i).unwrap_or(u32::MAX);
-            let before = begin.elapsed();
-            match planner.plan(problem.start(), goal, &rrt_settings(settings, share)) {
-                Ok(path) => return found(path, before),
-                Err(e) => solution.reason = Some(reason(&e)),
-            }
+        match problem.planner() {
+            Ok(exact) => solve(RobotPlanner::Exact(exact), problem, settings),
+            Err(e) => Solution { reason: Some(e.to_string()), ..Solution::default() },
         }
-        Solution { planning: begin.elapsed(), ..solution }
     }
 
     fn time(
@@ -39,33 +26,56 @@ impl PlanningEngine for RrtConnectEngine {
         limits: &[JointLimits],
         settings: &ProblemSettings,
     ) -> Result<TimedMotion, RrtConnectError> {
-        let rrt = rrt_settings(settings, Duration::MAX);
-        let trajectory = problem.planner()?.time_parametrize(problem.start(), path, limits, settings.period_s, &rrt)?;
-        TimedMotion::of(&trajectory, settings.period_s)
+        time(RobotPlanner::Exact(problem.planner()?), problem, path, limits, settings)
     }
 }
 
+/// Plans to the goal that is found first.
+pub(super) fn solve(mut planner: RobotPlanner, problem: &ProblemScene, settings: &ProblemSettings) -> Solution {
+    let begin = Instant::now();
+    let (start, goals, limits) = (problem.start(), problem.goals(), rrt_settings(settings, settings.time_limit));
+    let answer = if settings.optimize {
+        planner.plan_anytime(start, goals, &limits)
+    } else {
+        planner.plan_to_any(start, goals, &limits)
+    };
+    match answer {
+        Ok(path) => found(path),
+        // Without the prefix of the only robot's links.
+        Err(e) => {
+            let reason = Some(e.to_string().replace("`/", "`"));
+            Solution { planning: begin.elapsed(), reason, ..Solution::default() }
+        }
+    }
+}
+
+/// Times a path.
+pub(super) fn time(
+    mut planner: RobotPlanner,
+    problem: &ProblemScene,
+    path: &PlannedPath,
+    limits: &[JointLimits],
+    settings: &ProblemSettings,
+) -> Result<TimedMotion, RrtConnectError> {
+    let rrt = rrt_settings(settings, Duration::MAX);
+    planner.time_parametrize(problem.start(), path, limits, settings.period_s, &rrt)
+}
+
 /// Settings of the planner.
-pub(super) fn rrt_settings(settings: &ProblemSettings, time_limit: Duration) -> RrtConnectSettings {
+fn rrt_settings(settings: &ProblemSettings, time_limit: Duration) -> RrtConnectSettings {
     let (clearance_m, seed) = (settings.clearance_m, settings.seed);
     RrtConnectSettings { time_limit, clearance_m, seed, ..RrtConnectSettings::default() }
 }
 
-/// A path, after a time that was spent on other goals.
-pub(super) fn found(path: PlannedPath, before: Duration) -> Solution {
+fn found(path: PlannedPath) -> Solution {
     Solution {
         found: true,
         proven: true,
-        planning: before + path.planning_time,
+        planning: path.planning_time,
         simplification: path.simplification_time,
         cost_raw_rad: path.raw_length_rad,
         cost_rad: path.length_rad,
         waypoints: path.waypoints,
         reason: None,
     }
-}
-
-/// The reason without the prefix of the only robot's links.
-pub(super) fn reason(e: &RrtConnectError) -> String {
-    e.to_string().replace("`/", "`")
 }

@@ -10,7 +10,7 @@ use elbowroom_formats::FormatError;
 use elbowroom_kinematics::{ChainState, JointLimits};
 use elbowroom_perception::motion_entry::{acceleration_distance, first_root};
 use elbowroom_planner::{
-    CoverModel, CoverObstacles, CoverRrtConnect, PlannedPath, RrtConnect, RrtConnectSettings, TimedMotion,
+    CoverModels, CoverObstacles, PlannedPath, RobotPlanner, RrtConnect, RrtConnectSettings, TimedMotion,
 };
 use elbowroom_proximity::Shape;
 use elbowroom_query::CoverCache;
@@ -127,10 +127,7 @@ pub struct PathReplanner<'a> {
     at: &'a CellRobot,
     tick_s: f64,
     motion_bounds: Vec<f64>,
-    /// One per clearance, for scenes without carried parts.
-    models: Vec<CoverModel>,
-    /// Model of the last scene with carried parts.
-    carrying: Option<CoverModel>,
+    models: CoverModels,
     /// Maps with their clearances (m); empty if no move of the program is planned on the map.
     maps: Vec<(f64, MapPlanner)>,
 }
@@ -144,8 +141,7 @@ impl<'a> PathReplanner<'a> {
             at,
             tick_s: cell.tick_s,
             motion_bounds: motion_bounds(at),
-            models: Vec::new(),
-            carrying: None,
+            models: CoverModels::default(),
             maps: Vec::new(),
         }
     }
@@ -172,8 +168,9 @@ impl<'a> PathReplanner<'a> {
         let mut state = SceneState::new(&scene);
         let placed = states.iter().enumerate().all(|(i, robot)| state.set_q(&scene, RobotId(i), &robot.q).is_ok());
         if placed {
+            let covers = CoverCache::of_user();
             for clearance_m in CLEARANCES_M {
-                let _ = self.cover_model(&scene, &state, clearance_m);
+                let _ = self.models.serving(&scene, &state, self.robot, clearance_m, &covers);
             }
         }
     }
@@ -232,40 +229,18 @@ impl<'a> PathReplanner<'a> {
             exact = exact.with_constraint(constraint);
         }
         let (tick_s, clearance_m) = (self.tick_s, settings.clearance_m);
-        let timed = |exact: &mut RrtConnect<'_>, path| {
-            let path = with_departure(path, departure);
-            let motion = exact.time_parametrize(state, &path, limits, tick_s, settings).ok()?;
-            TimedMotion::of(&motion, tick_s).ok()
-        };
         if planner == PathPlanner::Grid {
             let (_, map) = self.maps.iter_mut().find(|(of, map)| *of == clearance_m && map.serves(goal))?;
             map.update(scene, state, others).ok()?;
-            let path = map.plan(&mut exact, state, goal, settings).ok()?;
-            return timed(&mut exact, path);
+            let path = with_departure(map.plan(&mut exact, state, goal, settings).ok()?, departure);
+            return RobotPlanner::Exact(exact).time_parametrize(state, &path, limits, tick_s, settings).ok();
         }
-        let Some(model) = self.cover_model(scene, state, clearance_m) else {
-            // A link without bounds cannot be covered; the planner on the exact scene is used instead.
-            let path = exact.plan(state, goal, settings).ok()?;
-            return timed(&mut exact, path);
-        };
-        let obstacles = CoverObstacles::with_covers(model, scene, state, clearance_m, &CoverCache::of_user());
-        let mut planner = CoverRrtConnect::new(exact, model, &obstacles);
-        let path = planner.plan(state, goal, settings).ok()?;
-        let path = with_departure(path, departure);
-        planner.time_parametrize(state, &path, limits, tick_s, settings).ok()
-    }
-
-    fn cover_model(&mut self, scene: &Scene, state: &SceneState, clearance_m: f64) -> Option<&CoverModel> {
-        let serves = |m: &CoverModel| m.serves(scene, state, clearance_m);
-        if let Some(known) = self.models.iter().position(serves) {
-            return self.models.get(known);
-        }
-        let model = CoverModel::with_covers(scene, state, self.robot, clearance_m, &CoverCache::of_user()).ok()?;
-        if serves(&model) {
-            self.models.push(model);
-            return self.models.last();
-        }
-        Some(self.carrying.insert(model))
+        let covers = CoverCache::of_user();
+        let model = self.models.serving(scene, state, self.robot, clearance_m, &covers);
+        let obstacles = model.map(|model| CoverObstacles::with_covers(model, scene, state, clearance_m, &covers));
+        let mut planner = RobotPlanner::new(exact, model.zip(obstacles.as_ref()));
+        let path = planner.plan_to_any(state, &[goal], settings).ok()?;
+        planner.time_parametrize(state, &with_departure(path, departure), limits, tick_s, settings).ok()
     }
 }
 

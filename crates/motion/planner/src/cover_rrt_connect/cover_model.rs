@@ -74,7 +74,7 @@ impl CoverModel {
 
     /// Whether the model also serves another scene with the same robot: it was made for the same pairs, base and
     /// clearance (m), and nothing is held.
-    pub fn serves(&self, scene: &Scene, state: &SceneState, clearance_m: f64) -> bool {
+    pub(crate) fn serves(&self, scene: &Scene, state: &SceneState, clearance_m: f64) -> bool {
         let holds = (0..scene.objects().len()).any(|i| state.attachment(ObjectId(i)).is_some());
         let held = self.covered_links.iter().any(|b| matches!(b, GeometryId::Object(_)));
         !holds

@@ -88,31 +88,10 @@ impl<'m> CoverRrtConnect<'m> {
             Err(RrtConnectError::NotFound { .. }) => {}
             other => return other,
         }
-        self.plan_exactly(begin, start, goals, settings)
-    }
-
-    /// Plans in the exact scene: one goal after the other, each in its part of the remaining time.
-    fn plan_exactly<G: AsRef<[f64]>>(
-        &mut self,
-        begin: Instant,
-        start: &SceneState,
-        goals: &[G],
-        settings: &RrtConnectSettings,
-    ) -> Result<PlannedPath, RrtConnectError> {
-        let mut answer = Err(RrtConnectError::NoGoal);
-        for (i, goal) in goals.iter().enumerate() {
-            let spent = begin.elapsed();
-            let left = settings.time_limit.saturating_sub(spent) / u32::try_from(goals.len() - i).unwrap_or(u32::MAX);
-            let found = self.exact.plan(start, goal.as_ref(), &RrtConnectSettings { time_limit: left, ..*settings });
-            if let Ok(path) = found {
-                return Ok(PlannedPath { planning_time: path.planning_time + spent, ..path });
-            }
-            // That the search found no path to one goal says more than that another goal is invalid.
-            if i == 0 || matches!(found, Err(RrtConnectError::NotFound { .. })) {
-                answer = found;
-            }
-        }
-        answer
+        let spent = begin.elapsed();
+        let left = RrtConnectSettings { time_limit: settings.time_limit.saturating_sub(spent), ..*settings };
+        let path = self.exact.plan_to_any(start, goals, &left)?;
+        Ok(PlannedPath { planning_time: path.planning_time + spent, ..path })
     }
 
     fn plan_on_covers<G: AsRef<[f64]>>(

@@ -105,6 +105,34 @@ impl<'s> RrtConnect<'s> {
         Ok(self.connect(begin, exits, &mut random, settings)?.with_ends(ends))
     }
 
+    /// Plans to the first of several goals that is reached: one after the other, each in an equal part of the remaining
+    /// time. The last waypoint is that goal.
+    ///
+    /// # Errors
+    /// [`RrtConnectError::NoGoal`] without goals. Otherwise the error of the first goal, or of a later valid goal to which
+    /// no path was found, which says more than that another goal is invalid.
+    pub fn plan_to_any<G: AsRef<[f64]>>(
+        &mut self,
+        start: &SceneState,
+        goals: &[G],
+        settings: &RrtConnectSettings,
+    ) -> Result<PlannedPath, RrtConnectError> {
+        let begin = Instant::now();
+        let mut answer = Err(RrtConnectError::NoGoal);
+        for (i, goal) in goals.iter().enumerate() {
+            let spent = begin.elapsed();
+            let left = settings.time_limit.saturating_sub(spent) / u32::try_from(goals.len() - i).unwrap_or(u32::MAX);
+            let found = self.plan(start, goal.as_ref(), &RrtConnectSettings { time_limit: left, ..*settings });
+            if let Ok(path) = found {
+                return Ok(PlannedPath { planning_time: path.planning_time + spent, ..path });
+            }
+            if i == 0 || matches!(found, Err(RrtConnectError::NotFound { .. })) {
+                answer = found;
+            }
+        }
+        answer
+    }
+
     /// Like [`plan`](Self::plan), but the ends need only be free: the path leaves (or reaches) an end with less than
     /// the clearance by a straight segment that keeps half of the distance at the end, and keeps the clearance
     /// otherwise.
