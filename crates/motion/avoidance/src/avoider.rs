@@ -1,5 +1,9 @@
 //! The control loop: sense, correct, check, command.
 
+mod command_check;
+mod conclusion;
+mod detours;
+
 use std::time::Instant;
 
 use elbowroom_kinematics::JointLimits;
@@ -29,18 +33,10 @@ use crate::{
 const MIN_OVERRIDE: f64 = 1e-6;
 /// Fraction of the desired velocity below which the robot makes no progress.
 const MIN_PROGRESS: f64 = 0.15;
-/// Path deviation up to which the robot counts as arrived, in seconds of joint motion.
-const ARRIVED_S: f64 = 2e-3;
 /// Fraction of the top speed below which the robot is stationary.
 const STATIONARY_FRACTION: f64 = 5e-3;
-/// Largest distance from the start of a detour at which a stationary robot starts it, in seconds of joint motion.
-const MAX_DETOUR_DRIFT_S: f64 = 1e-3;
 /// Time constant of the return to the path shortly after a correction, s: a faster return would work against the evasion.
 const GENTLE_RETURN_S: f64 = 0.15;
-/// Size below which a correction does not count.
-const MIN_CORRECTION: f64 = 0.02;
-/// Speed below which an obstacle is stationary, m/s.
-const STATIONARY_OBSTACLE_M_S: f64 = 0.01;
 /// Range within which fixed obstacles are found, as a multiple of the distance at which they limit an evasion (evasion
 /// speed times the time constant of the controller): the excess is a reserve for the next ticks.
 const FIXED_RANGE_FACTOR: f64 = 1.5;
@@ -269,61 +265,6 @@ impl<'s> Avoider<'s> {
         Ok(self.conclude(dt, reference, allowed, correction.progress, output))
     }
 
-    /// Plans a detour from the present configuration to `goal` around all obstacles at their present poses, checks that
-    /// it is free, and follows it from the next tick until an obstacle has to be evaded. The detour keeps the clearance,
-    /// except straight at a tight end ([`RrtConnect::plan_from_tight_ends`]). Planning takes time: call it outside the loop.
-    ///
-    /// # Errors
-    /// The robot moves, or the errors of [`RrtConnect::plan_from_tight_ends`].
-    pub fn plan_to(&mut self, goal: &[f64], options: &RrtConnectSettings) -> Result<(), AvoidanceError> {
-        let detour = self.plan_detour(goal, options, None)?;
-        self.follow_detour(detour)
-    }
-
-    /// Plans like [`plan_to`](Self::plan_to), with a constraint on the path ([`RrtConnect::with_constraint`]), such as
-    /// regions in which a monitor stops the robot. [`follow_detour`](Self::follow_detour) follows the detour later.
-    ///
-    /// # Errors
-    /// The robot moves, or the errors of [`RrtConnect::plan_from_tight_ends`].
-    pub fn plan_detour(
-        &mut self,
-        goal: &[f64],
-        options: &RrtConnectSettings,
-        constraint: Option<&mut dyn PathConstraint>,
-    ) -> Result<PlannedDetour, AvoidanceError> {
-        if !self.is_stationary() {
-            return Err(AvoidanceError::NotStationary);
-        }
-        let limits = self.limits.iter().map(|l| (l.lower, l.upper));
-        let mut planner = RrtConnect::new(self.query.scene, self.query.robot)?.with_limits(limits);
-        if let Some(constraint) = constraint {
-            planner = planner.with_constraint(constraint);
-        }
-        self.query.state.set_q(self.query.scene, self.query.robot, &self.command.q)?;
-        let route = planner.plan_from_tight_ends(&self.query.state, goal, options)?;
-        Ok(PlannedDetour { start_q: self.command.q.clone(), waypoints: route.waypoints })
-    }
-
-    /// Follows a detour from the next tick until an obstacle has to be evaded. A robot that has come to rest slightly
-    /// beyond the start of the detour returns to the start first.
-    ///
-    /// # Errors
-    /// The robot moves, or has moved away since the detour was planned.
-    pub fn follow_detour(&mut self, detour: PlannedDetour) -> Result<(), AvoidanceError> {
-        let drift_s = distance_s(&detour.start_q, &self.command.q, &self.limits);
-        if drift_s > MAX_DETOUR_DRIFT_S || !self.is_stationary() {
-            return Err(AvoidanceError::NotStationary);
-        }
-        self.machine.start_detour(Detour::new(detour.waypoints, drift_s <= SAME_CONFIGURATION_S));
-        Ok(())
-    }
-
-    /// Reports that a detour is being planned. Until the detour is known, a robot off its path rests where the detour
-    /// starts, unless it has to evade a moving obstacle. Call this method in each tick of the planning.
-    pub fn await_detour(&mut self) {
-        self.machine.await_detour();
-    }
-
     fn check_call(&self, dt: f64, reference: &Reference<'_>) -> Result<(), AvoidanceError> {
         if !(dt.is_finite() && dt > 0.0) {
             return Err(AvoidanceError::TickDuration(dt));
@@ -362,20 +303,7 @@ impl<'s> Avoider<'s> {
         self.update_bounds(dt);
         self.update_desired(dt, reference, allowed, objective);
         if allowed == 0.0 {
-            self.command.intent.fill(0.0);
-            // A robot on its path stops by following it.
-            match objective {
-                Objective::Path => self.follow_reference(dt, reference),
-                _ => self.brake(dt),
-            }
-            let is_reference = objective == Objective::Path;
-            return Correction {
-                reaction: Reaction::default(),
-                progress: 1.0,
-                is_reference,
-                can_stop: true,
-                is_braked: false,
-            };
+            return self.stop(dt, reference, objective);
         }
         self.reversals.restrict(&mut self.workspace.bounds);
         let Workspace { bounds, desired, next, .. } = &mut self.workspace;
@@ -418,6 +346,18 @@ impl<'s> Avoider<'s> {
         }
         let is_reference = objective == Objective::Path && !reaction.is_active && !is_resting;
         Correction { reaction, progress, is_reference, can_stop: true, is_braked: false }
+    }
+
+    /// Writes the next velocity of a robot that may not move.
+    fn stop(&mut self, dt: f64, reference: &Reference<'_>, objective: Objective) -> Correction {
+        self.command.intent.fill(0.0);
+        // A robot on its path stops by following it.
+        match objective {
+            Objective::Path => self.follow_reference(dt, reference),
+            _ => self.brake(dt),
+        }
+        let is_reference = objective == Objective::Path;
+        Correction { reaction: Reaction::default(), progress: 1.0, is_reference, can_stop: true, is_braked: false }
     }
 
     fn update_bounds(&mut self, dt: f64) {
@@ -469,180 +409,5 @@ impl<'s> Avoider<'s> {
                 }
             }
         }
-    }
-
-    /// Checks the next command and replaces it by braking if that is safer.
-    fn check(
-        &mut self,
-        dt: f64,
-        reference: &Reference<'_>,
-        obstacles: &DynamicObstacles<'_>,
-        objective: Objective,
-        correction: &mut Correction,
-    ) {
-        correction.can_stop = self.can_stop(dt, obstacles, objective == Objective::Detour);
-        if correction.can_stop {
-            correction.is_braked = self.brake_before_hit(dt, obstacles);
-            return;
-        }
-        self.machine.abandon_detour();
-        if objective == Objective::Path {
-            // The path is known to be free: the robot slows down on it.
-            self.follow_reference(dt, reference);
-            correction.is_reference = true;
-        } else {
-            self.brake(dt);
-        }
-        correction.is_braked = true;
-    }
-
-    /// Replaces the next command by the command of an escape if no escape would be left after it.
-    fn keep_escape(
-        &mut self,
-        dt: f64,
-        reference: &Reference<'_>,
-        obstacles: &DynamicObstacles<'_>,
-        allowed: f64,
-        constraint: Option<&mut dyn PathConstraint>,
-        correction: &mut Correction,
-    ) -> EscapeState {
-        let nearest = |counts: fn(&ObstacleKind) -> bool| {
-            self.query.pairs.iter().find(|p| counts(&p.obstacle)).map_or(f64::INFINITY, |p| p.distance_m)
-        };
-        let nearest =
-            EscapeClearance { moving_m: nearest(ObstacleKind::is_dynamic), fixed_m: nearest(|o| !o.may_move()) };
-        let start = EscapeStart {
-            q: &self.command.q,
-            qd: &self.command.qd,
-            limits: &self.limits,
-            speed_share: allowed,
-            reversals: &self.reversals,
-        };
-        let can_stop = correction.can_stop;
-        let tick = EscapeTick { dt, start, obstacles, reference_q: reference.q, can_stop, nearest };
-        let state = self.escapes.guard(&tick, constraint, &mut self.workspace.next);
-        if state == EscapeState::Escaping {
-            self.machine.abandon_detour();
-            self.command.intent.copy_from_slice(&self.workspace.next);
-            correction.is_reference = false;
-            correction.progress = 1.0;
-            correction.reaction.is_active = true;
-            correction.reaction.size = 1.0;
-        }
-        state
-    }
-
-    /// Whether the command and a stop after it hit no fixed or known obstacle. While every command satisfies this, a
-    /// collision-free stop exists: the stop of the previous command. A detour was checked against all fixed obstacles;
-    /// while the robot follows it, the obstacles that may have moved since then count instead.
-    fn can_stop(&mut self, dt: f64, obstacles: &DynamicObstacles<'_>, is_detour: bool) -> bool {
-        let duration_s = 2.0 * dt + 0.5 * stop_s(&self.limits, &self.workspace.next);
-        // Pairs in intended contact, such as a part being placed, are ignored: only their distance must not decrease.
-        let is_apart = |p: &ProximityPair| p.distance_m > SweepOptions::default().tolerance_m;
-        let has_left_detour = !self.machine.has_detour();
-        let counts = |p: &ProximityPair| match p.obstacle {
-            ObstacleKind::OwnLink(_) | ObstacleKind::Fixed => !is_detour || has_left_detour,
-            ObstacleKind::KnownMoving { .. } => true,
-            ObstacleKind::Dynamic { .. } => is_detour,
-        };
-        let segment =
-            VelocitySegment { q: &self.command.q, qd: &self.workspace.next, limits: &self.limits, duration_s };
-        let filter = |p: &ProximityPair| counts(p) && is_apart(p);
-        self.sweep.first_hit(&mut self.query, &segment, obstacles, filter).is_none()
-    }
-
-    /// Brakes if the command hits a dynamic obstacle, and braking hits later or the hit is unproven. Returns whether.
-    fn brake_before_hit(&mut self, dt: f64, obstacles: &DynamicObstacles<'_>) -> bool {
-        let Self { sweep, query, limits, command, workspace, .. } = self;
-        let Workspace { bounds, next, braked, .. } = workspace;
-        let mut first_hit = |qd: &[f64]| {
-            let segment = VelocitySegment { q: &command.q, qd, limits, duration_s: dt };
-            sweep.first_hit(query, &segment, obstacles, |p| p.obstacle.is_dynamic())
-        };
-        let Some(hit) = first_hit(next) else { return false };
-        brake(limits, &bounds.stoppable, &command.qd, dt, braked);
-        let is_better = !hit.is_proven || first_hit(braked).map_or(f64::INFINITY, |b| b.time) > hit.time;
-        if is_better {
-            next.copy_from_slice(braked);
-        }
-        is_better
-    }
-
-    /// Ends the tick: updates the state machine and completes the output.
-    fn conclude(
-        &mut self,
-        dt: f64,
-        reference: &Reference<'_>,
-        allowed: f64,
-        progress: f64,
-        mut output: AvoiderOutput,
-    ) -> AvoiderOutput {
-        output.path_deviation_s = distance_s(reference.q, &self.command.q, &self.limits);
-        let is_at_reference = output.path_deviation_s <= SAME_CONFIGURATION_S;
-        let is_following = is_at_reference && !self.machine.has_detour();
-        let is_stationary = self.is_stationary();
-        let requires_motion =
-            output.path_deviation_s > ARRIVED_S || (is_following && reference.qd.iter().any(|v| *v != 0.0));
-        let tick = TickSummary {
-            dt,
-            is_at_reference,
-            is_corrected: self.is_corrected(&output, reference.path),
-            is_stalled: requires_motion
-                && allowed > 0.0
-                && (progress < MIN_PROGRESS || (is_following && is_stationary)),
-            is_stationary,
-            is_halted: allowed == 0.0,
-        };
-        self.machine.end_tick(&tick);
-        let pairs = &self.query.pairs;
-        output.nearest_m =
-            pairs.iter().find(|p| p.obstacle.is_dynamic()).map_or(f64::INFINITY, |nearest| nearest.distance_m);
-        output.governed_by = output.reaction.governing.and_then(|g| pairs.get(g)).and_then(|p| match p.obstacle {
-            ObstacleKind::Dynamic { key, .. } => Some(key),
-            _ => None,
-        });
-        let is_idle = self.machine.state().idle_s() > 0.0;
-        output.requests_detour = !self.has_detour() && is_stationary && (is_idle || self.is_stalled());
-        output.rate = if self.has_detour() || (output.braked && is_following) {
-            0.0
-        } else {
-            self.path_rate(reference, output.path_deviation_s)
-        };
-        output.state = self.machine.reported(&tick, output.reaction.is_active);
-        output
-    }
-
-    /// Whether the tick evaded an obstacle that will move away. If the path is held, waiting beside an obstacle at rest
-    /// would never end: a detour leads past it.
-    fn is_corrected(&self, output: &AvoiderOutput, path: PathKind) -> bool {
-        let is_held = is_path_held(path, output.path_deviation_s, self.settings.max_deviation_s);
-        let is_at_rest = self.is_by_obstacle_at_rest(&output.reaction);
-        let will_move_on = !(is_at_rest && is_held) || output.escape == EscapeState::Escaping;
-        output.reaction.size > MIN_CORRECTION && will_move_on
-    }
-
-    /// Whether the obstacle that governs a reaction is at rest.
-    fn is_by_obstacle_at_rest(&self, reaction: &Reaction) -> bool {
-        let governing = reaction.governing.and_then(|g| self.query.pairs.get(g));
-        governing.is_some_and(|p| p.obstacle_velocity().length() <= STATIONARY_OBSTACLE_M_S)
-    }
-
-    /// Whether the robot has made no progress for the stall timeout and no obstacle moves.
-    fn is_stalled(&self) -> bool {
-        let moves = |p: &ProximityPair| p.obstacle_velocity().length() > STATIONARY_OBSTACLE_M_S;
-        self.machine.is_stalled() && !self.query.pairs.iter().any(moves)
-    }
-
-    /// Rate at which the path may advance.
-    fn path_rate(&mut self, reference: &Reference<'_>, deviation_s: f64) -> f64 {
-        let max_deviation_s = self.settings.max_deviation_s;
-        let state = PathState { q: &self.command.q, limits: &self.limits, deviation_s, max_deviation_s };
-        let ProximityQuery { scene, robot, chains, pairs, .. } = &self.query;
-        let (chain, chain_state) = (&scene.robots()[robot.0].robot.chain, &chains[robot.0]);
-        let columns = &mut self.workspace.columns;
-        let settings = &self.settings.reactive;
-        path_rate(reference, &state, || {
-            approach_rate(chain, chain_state, pairs.iter(), settings, reference.qd, columns)
-        })
     }
 }

@@ -185,47 +185,9 @@ impl<'s> EscapeCheck<'s> {
         let mut first = MotionCheck { hit: None, is_complete: true, gap_m: f64::INFINITY };
         let mut until_s = motion.horizon_s;
         for object in obstacles.objects.iter().filter(|o| moves(o) && counts(o.known)) {
-            let own = Selection::Robot(self.robot);
-            let speed = object.motion.velocity.length()
-                + object.motion.angular_velocity.length() * self.object_radii[object.object.0];
-            let mut t = 0.0;
-            while t < until_s {
-                let resting = self.set_time(motion, t)?;
-                let place = pose_after(object, motion.begins_s + t);
-                self.state.place(self.scene, object.object, place)?;
-                let distance = self.checker.between(own, Selection::Object(object.object)).distance(&self.state);
-                let Some(distance) = distance else { break };
-                first.gap_m = first.gap_m.min(distance.metres);
-                if self.is_overdue() {
-                    // A motion that is not proven free counts as a hit.
-                    let sides = [(distance.a, distance.on_a), (distance.b, distance.on_b)];
-                    let hit = self.object_hit(object, place.translation, sides, t);
-                    return Ok(MotionCheck { hit: first.hit.or(Some(hit)), is_complete: false, ..first });
-                }
-                let by_robot = if resting { 0.0 } else { self.bounds.max_travel(&motion.trajectory.max_speeds, 1.0) };
-                let free_s = (distance.lower_bound - clearance_m) / (speed + by_robot);
-                let stretch_s = if resting { REST_STRETCH_S } else { self.stretch_s(motion, t, clearance_m) };
-                if free_s > stretch_s {
-                    t += free_s;
-                    continue;
-                }
-                let end = (t + stretch_s).min(until_s);
-                motion.trajectory.q_at(motion.elapsed_s + end, &mut self.to);
-                let path = motion_between(object, motion.begins_s + t, motion.begins_s + end);
-                let moved = [
-                    SweepMove::Robot { robot: self.robot, to: &self.to },
-                    SweepMove::Object { object: object.object, path: &path },
-                ];
-                let options = self.sweep_options(clearance_m);
-                let mut pair = self.checker.between(own, Selection::Object(object.object));
-                if let Some(hit) = pair.sweep(&self.state, &moved, &options)? {
-                    until_s = t + hit.time * (end - t);
-                    let sides = [(hit.a, hit.on_a), (hit.b, hit.on_b)];
-                    first.hit = Some(self.object_hit(object, place.translation, sides, until_s));
-                    first.gap_m = first.gap_m.min(hit.metres);
-                    break;
-                }
-                t = end;
+            self.meets_object(motion, object, clearance_m, &mut until_s, &mut first)?;
+            if !first.is_complete {
+                return Ok(first);
             }
         }
         let own = self.robot;
@@ -238,6 +200,63 @@ impl<'s> EscapeCheck<'s> {
             }
         }
         Ok(first)
+    }
+
+    /// Checks the motion until `until_s` for one moving object; an earlier hit becomes the first one, and its time the
+    /// end.
+    fn meets_object(
+        &mut self,
+        motion: &TimedMotion<'_>,
+        object: &ObservedObject,
+        clearance_m: f64,
+        until_s: &mut f64,
+        first: &mut MotionCheck,
+    ) -> Result<(), SceneError> {
+        let own = Selection::Robot(self.robot);
+        let speed = object.motion.velocity.length()
+            + object.motion.angular_velocity.length() * self.object_radii[object.object.0];
+        let mut t = 0.0;
+        while t < *until_s {
+            let resting = self.set_time(motion, t)?;
+            let place = pose_after(object, motion.begins_s + t);
+            self.state.place(self.scene, object.object, place)?;
+            let distance = self.checker.between(own, Selection::Object(object.object)).distance(&self.state);
+            let Some(distance) = distance else { break };
+            first.gap_m = first.gap_m.min(distance.metres);
+            if self.is_overdue() {
+                // A motion that is not proven free counts as a hit.
+                let sides = [(distance.a, distance.on_a), (distance.b, distance.on_b)];
+                let hit = self.object_hit(object, place.translation, sides, t);
+                first.hit = first.hit.take().or(Some(hit));
+                first.is_complete = false;
+                return Ok(());
+            }
+            let by_robot = if resting { 0.0 } else { self.bounds.max_travel(&motion.trajectory.max_speeds, 1.0) };
+            let free_s = (distance.lower_bound - clearance_m) / (speed + by_robot);
+            let stretch_s = if resting { REST_STRETCH_S } else { self.stretch_s(motion, t, clearance_m) };
+            if free_s > stretch_s {
+                t += free_s;
+                continue;
+            }
+            let end = (t + stretch_s).min(*until_s);
+            motion.trajectory.q_at(motion.elapsed_s + end, &mut self.to);
+            let path = motion_between(object, motion.begins_s + t, motion.begins_s + end);
+            let moved = [
+                SweepMove::Robot { robot: self.robot, to: &self.to },
+                SweepMove::Object { object: object.object, path: &path },
+            ];
+            let options = self.sweep_options(clearance_m);
+            let mut pair = self.checker.between(own, Selection::Object(object.object));
+            if let Some(hit) = pair.sweep(&self.state, &moved, &options)? {
+                *until_s = t + hit.time * (end - t);
+                let sides = [(hit.a, hit.on_a), (hit.b, hit.on_b)];
+                first.hit = Some(self.object_hit(object, place.translation, sides, *until_s));
+                first.gap_m = first.gap_m.min(hit.metres);
+                break;
+            }
+            t = end;
+        }
+        Ok(())
     }
 
     /// A hit between an object, whose origin is then at `place`, and another geometry; each side has its point.

@@ -48,6 +48,13 @@ impl SoftConstraint {
     }
 }
 
+/// Minimum of a quadratic cost, and the gradient there.
+#[derive(Debug, Clone)]
+struct QuadraticMinimum {
+    x: Vec<f64>,
+    gradient: Vec<f64>,
+}
+
 /// The solver and its workspace, allocated once for a number of unknowns and constraints.
 #[derive(Debug, Clone)]
 pub struct LeastSquares {
@@ -68,9 +75,7 @@ pub struct LeastSquares {
     /// Cholesky factor of the Hessian of the free unknowns, and (in `free_step`) the step of the free unknowns.
     factor: Vec<f64>,
     free_step: Vec<f64>,
-    /// Minimum of the quadratic cost, and the gradient there.
-    target: Vec<f64>,
-    target_gradient: Vec<f64>,
+    target: QuadraticMinimum,
     step: Vec<f64>,
     free: Vec<usize>,
     active: Vec<bool>,
@@ -92,8 +97,7 @@ impl LeastSquares {
             gradient_at_zero: vec![0.0; n],
             factor: vec![0.0; n * n],
             free_step: vec![0.0; n],
-            target: vec![0.0; n],
-            target_gradient: vec![0.0; n],
+            target: QuadraticMinimum { x: vec![0.0; n], gradient: vec![0.0; n] },
             step: vec![0.0; n],
             free: Vec::with_capacity(n),
             active: vec![false; capacity],
@@ -174,15 +178,15 @@ impl LeastSquares {
     fn minimize_quadratic(&mut self, x: &[f64]) {
         let n = self.n;
         let max_curvature = (0..n).map(|j| self.hessian[j * n + j]).fold(1.0, f64::max);
-        self.target.copy_from_slice(x);
+        self.target.x.copy_from_slice(x);
         self.free.clear();
         self.free.extend((0..n).filter(|&j| x[j] > self.lower[j] && x[j] < self.upper[j]));
         for _ in 0..ACTIVE_SET_STEPS * (n + 1) {
             self.descend();
             // The unknown that reduces the cost most by leaving its bound becomes free.
             let gain = |j: usize| {
-                let at_low = self.target[j] <= self.lower[j];
-                let inward = if at_low { -self.target_gradient[j] } else { self.target_gradient[j] };
+                let at_low = self.target.x[j] <= self.lower[j];
+                let inward = if at_low { -self.target.gradient[j] } else { self.target.gradient[j] };
                 if self.lower[j] < self.upper[j] { inward } else { 0.0 }
             };
             let bound = (0..n).filter(|j| !self.free.contains(j));
@@ -205,19 +209,19 @@ impl LeastSquares {
             let mut blocked = None;
             for (place, &j) in self.free.iter().enumerate() {
                 let bound = if self.step[j] > 0.0 { self.upper[j] } else { self.lower[j] };
-                let to_bound = (bound - self.target[j]) / self.step[j];
+                let to_bound = (bound - self.target.x[j]) / self.step[j];
                 if self.step[j] != 0.0 && to_bound < length {
                     (length, blocked) = (to_bound.max(0.0), Some((place, j, bound)));
                 }
             }
             for &j in &self.free {
-                self.target[j] = (self.target[j] + length * self.step[j]).clamp(self.lower[j], self.upper[j]);
+                self.target.x[j] = (self.target.x[j] + length * self.step[j]).clamp(self.lower[j], self.upper[j]);
             }
             let Some((place, j, bound)) = blocked else {
                 self.update_target_gradient();
                 return;
             };
-            self.target[j] = bound;
+            self.target.x[j] = bound;
             self.free.swap_remove(place);
         }
     }
@@ -226,8 +230,8 @@ impl LeastSquares {
     fn update_target_gradient(&mut self) {
         let n = self.n;
         for j in 0..n {
-            let product: f64 = (0..n).map(|k| self.hessian[j * n + k] * self.target[k]).sum();
-            self.target_gradient[j] = self.gradient_at_zero[j] + product;
+            let product: f64 = (0..n).map(|k| self.hessian[j * n + k] * self.target.x[k]).sum();
+            self.target.gradient[j] = self.gradient_at_zero[j] + product;
         }
     }
 
@@ -239,7 +243,7 @@ impl LeastSquares {
             for j in 0..=i {
                 self.factor[i * n + j] = self.hessian[self.free[i] * n + self.free[j]];
             }
-            self.free_step[i] = -self.target_gradient[self.free[i]];
+            self.free_step[i] = -self.target.gradient[self.free[i]];
         }
         if !solve_spd_in_place(&mut self.factor, n, &mut self.free_step[..m]) {
             return false;
@@ -253,7 +257,7 @@ impl LeastSquares {
     /// Moves `x` towards the target as far as the true cost falls; returns whether this is the full step.
     fn line_search(&mut self, x: &mut [f64]) -> bool {
         for j in 0..self.n {
-            self.step[j] = self.target[j] - x[j];
+            self.step[j] = self.target.x[j] - x[j];
         }
         let (mut low, mut high) = (0.0, 1.0);
         if self.slope_along(x, 1.0) > 0.0 {
@@ -266,7 +270,7 @@ impl LeastSquares {
             low = 1.0;
         }
         for j in 0..self.n {
-            let to = if low == 1.0 { self.target[j] } else { x[j] + low * self.step[j] };
+            let to = if low == 1.0 { self.target.x[j] } else { x[j] + low * self.step[j] };
             x[j] = to.clamp(self.lower[j], self.upper[j]);
             self.step[j] *= low;
         }

@@ -59,7 +59,7 @@ impl CloudWatcher {
         settings: PerceptionSettings,
     ) -> Result<Self, PerceptionError> {
         settings.validate()?;
-        let of_prisms = PrismSettings { prediction_s: settings.prediction_s, slack_m: clouds.hysteresis_m };
+        let of_prisms = PrismSettings { prediction_s: settings.prediction_s, slack_m: clouds.track.hysteresis_m };
         Ok(Self {
             robots: WatchedRobots::new(robots),
             known,

@@ -38,7 +38,7 @@
 //! # Conservative assumptions
 //!
 //! - The prism that vision reports contains the observed outline, dilated by
-//!   [`CameraTrackerSettings::uncertainty_m`](elbowroom_vision::CameraTrackerSettings::uncertainty_m). This uncertainty
+//!   [`TrackSettings::uncertainty_m`](elbowroom_vision::TrackSettings::uncertainty_m). This uncertainty
 //!   must cover the motion of the obstacle until the next frame has been processed: its speed times (period + latency),
 //!   plus the calibration error.
 //! - In the map the prism also covers its predicted positions up to [`PerceptionSettings::prediction_s`], at constant

@@ -64,7 +64,8 @@ impl ObstacleWatcher {
         camera.camera()?;
         let (width, height) = camera.size()?;
         let tracker = CameraTracker::new(camera, tracker_settings)?;
-        let of_prisms = PrismSettings { prediction_s: settings.prediction_s, slack_m: tracker.settings().hysteresis_m };
+        let of_prisms =
+            PrismSettings { prediction_s: settings.prediction_s, slack_m: tracker.settings().track.hysteresis_m };
         Ok(Self {
             robots: WatchedRobots::new(robots),
             settings,

@@ -7,6 +7,7 @@ use elbowroom_spatial::{Pose, Vec3};
 use elbowroom_vision::render::{RenderConditions, RenderedSolid, Renderer};
 use elbowroom_vision::{
     Calibration, Camera, CameraTrackerSettings, Channels, FloorHomography, Frame, FrameStatus, Intrinsics, Point2,
+    TrackSettings,
 };
 
 const PERIOD_S: f64 = 0.04;
@@ -36,9 +37,9 @@ fn new(camera: Calibration, settings: PerceptionSettings) -> Result<ObstacleWatc
     let (grid, of_map) = (Grid::new(axes).unwrap(), CoverMapSettings::default());
     let builder =
         CoverMapBuilder::new(&robot, base_in_world, &grid, [0, 1, 2], RemainingJoints::Swept, of_map).unwrap();
+    let area_m = [(0.75, -3.0), (4.8, -3.0), (4.8, 3.0), (0.75, 3.0)].map(|(x, y)| Point2::new(x, y)).to_vec();
     let tracker = CameraTrackerSettings {
-        area_m: [(0.75, -3.0), (4.8, -3.0), (4.8, 3.0), (0.75, 3.0)].map(|(x, y)| Point2::new(x, y)).to_vec(),
-        uncertainty_m: 0.06,
+        track: TrackSettings { area_m, uncertainty_m: 0.06, ..TrackSettings::default() },
         learning_frames: LEARNING,
         ..CameraTrackerSettings::default()
     };

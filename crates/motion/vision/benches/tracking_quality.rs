@@ -11,7 +11,8 @@ mod synthetic;
 use elbowroom_spatial::Vec3;
 use elbowroom_vision::render::{RenderConditions, RenderedSolid};
 use elbowroom_vision::{
-    ArmPart, CameraTrackerSettings, Channels, ObstacleChange, ObstacleId, Point2, ShadowSettings, Template, polygon,
+    ArmPart, CameraTrackerSettings, Channels, ObstacleChange, ObstacleId, Point2, ShadowSettings, Template,
+    TrackSettings, polygon,
 };
 use synthetic::{SyntheticScene, cover_together, median, middle};
 
@@ -71,7 +72,7 @@ fn main() {
     println!(
         "recall: fully visible objects whose footprint and height lie within the obstacles; false: obstacles that no \
          object is near; place: error of the centre where a template matches; area: reported over true, inflated by {:.0} mm",
-        (CameraTrackerSettings::default().uncertainty_m + CameraTrackerSettings::default().hysteresis_m) * 1e3
+        (TrackSettings::default().uncertainty_m + TrackSettings::default().hysteresis_m) * 1e3
     );
 }
 

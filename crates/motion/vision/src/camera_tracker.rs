@@ -191,8 +191,8 @@ impl CameraTracker {
         self.detect(frame, mask, stopwatch);
         self.update_tracks(frame.stamp_s, mask);
         self.report.timings.track = stopwatch.lap();
-        let eye = self.calibration.eye_in_world().map(|eye| eye - Vec3::Z * self.settings.floor_z_m);
-        self.tracker.write_obstacles(&self.settings, eye, &mut self.report.obstacles);
+        let eye = self.calibration.eye_in_world().map(|eye| eye - Vec3::Z * self.settings.track.floor_z_m);
+        self.tracker.write_obstacles(self.settings.track_rules(), eye, &mut self.report.obstacles);
         self.report.timings.prisms = stopwatch.lap();
         self.background.adapt(frame, self.frames, &self.settings, &self.report.illumination);
         self.report.timings.adapt = stopwatch.lap();
@@ -222,7 +222,7 @@ impl CameraTracker {
         for track in &mut self.tracker.tracks {
             track.is_occluded = false;
             if !occluded.is_empty {
-                let floor_z_m = self.settings.floor_z_m;
+                let floor_z_m = self.settings.track.floor_z_m;
                 self.workspace_px.clear();
                 let corners = track.outline_m.iter().filter_map(|&p| self.calibration.floor_to_pixel(p, floor_z_m));
                 self.workspace_px.extend(corners);
@@ -234,7 +234,7 @@ impl CameraTracker {
         }
         let dt_s = stamp_s - self.updated_s;
         self.updated_s = stamp_s;
-        self.tracker.update(self.detector.detections(), dt_s, &self.settings);
+        self.tracker.update(self.detector.detections(), dt_s, self.settings.track_rules());
     }
 }
 

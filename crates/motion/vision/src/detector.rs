@@ -69,8 +69,8 @@ impl Detector {
             // Opening and closing change outlines by a pixel: a distance of up to two more pixels counts as touching.
             polygon::inflate(&blob.outline_px, 2.0, &mut self.grown_px, &mut self.points);
             detection.touches_arm = occluded.touches(&self.grown_px);
-            detection.z_from_m = settings.floor_z_m;
-            detection.z_to_m = settings.floor_z_m + settings.unbounded_height_m;
+            detection.z_from_m = settings.track.floor_z_m;
+            detection.z_to_m = settings.track.floor_z_m + settings.unbounded_height_m;
             self.count += 1;
         }
     }
@@ -82,7 +82,7 @@ impl Detector {
             let pieces = ((b - a).length() / longest).ceil().max(1.0);
             for piece in 0..pieces as u32 {
                 let point_px = a + (b - a) * (f64::from(piece) / pieces);
-                self.points.extend(calibration.pixel_to_floor(point_px, settings.floor_z_m));
+                self.points.extend(calibration.pixel_to_floor(point_px, settings.track.floor_z_m));
             }
         }
         polygon::convex_hull(&mut self.points, &mut self.list[self.count].outline_m);
@@ -90,7 +90,7 @@ impl Detector {
 }
 
 fn is_in_area(detection: &Detection, settings: &CameraTrackerSettings) -> bool {
-    settings.area_m.is_empty() || polygon::touches(&detection.outline_m, &settings.area_m)
+    settings.track.area_m.is_empty() || polygon::touches(&detection.outline_m, &settings.track.area_m)
 }
 
 /// Mean of a grid of pixels in the middle of the blob.

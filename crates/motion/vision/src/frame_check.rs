@@ -47,7 +47,7 @@ pub(crate) fn floor_visible(
     let (w, h) = (width as f64, height as f64);
     let corners = [(0.0, 0.0), (w, 0.0), (w, h), (0.0, h)];
     let shows_floor =
-        |&(x, y): &(f64, f64)| calibration.pixel_to_floor(Point2::new(x, y), settings.floor_z_m).is_some();
+        |&(x, y): &(f64, f64)| calibration.pixel_to_floor(Point2::new(x, y), settings.track.floor_z_m).is_some();
     if corners.iter().all(shows_floor) {
         return Ok(());
     }

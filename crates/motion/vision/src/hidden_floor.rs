@@ -23,14 +23,14 @@ impl HiddenFloor {
         settings: &CameraTrackerSettings,
     ) -> Option<Self> {
         let corner =
-            |x: usize, y: usize| calibration.pixel_to_floor(Point2::new(x as f64, y as f64), settings.floor_z_m);
+            |x: usize, y: usize| calibration.pixel_to_floor(Point2::new(x as f64, y as f64), settings.track.floor_z_m);
         let (mut pixels, mut hidden) = (0, None::<Self>);
         for (i, _) in seen.iter().enumerate().filter(|(_, count)| **count == 0) {
             let (x, y) = (i % width, i / width);
             let corners = [corner(x, y), corner(x + 1, y), corner(x + 1, y + 1), corner(x, y + 1)];
             let [Some(a), Some(b), Some(c), Some(d)] = corners else { continue };
             let middle = (a + c) * 0.5;
-            if !settings.area_m.is_empty() && !polygon::contains(&settings.area_m, middle) {
+            if !settings.track.area_m.is_empty() && !polygon::contains(&settings.track.area_m, middle) {
                 continue;
             }
             pixels += 1;

@@ -114,7 +114,9 @@ mod settings;
 mod shadow;
 mod stopwatch;
 mod template;
+mod template_match;
 mod track;
+mod track_settings;
 
 pub use calibration::Calibration;
 pub use camera::{Camera, Intrinsics};
@@ -135,3 +137,4 @@ pub use report::{FrameReport, FrameStatus, RejectReason, StageTimings};
 pub use settings::{CameraTrackerSettings, ShadowSettings};
 pub use stopwatch::Stopwatch;
 pub use template::Template;
+pub use track_settings::TrackSettings;

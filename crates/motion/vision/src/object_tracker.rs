@@ -11,8 +11,9 @@ use elbowroom_spatial::Vec3;
 use crate::association::{Association, TrackPrediction};
 use crate::detection::Detection;
 use crate::template::TemplateMatcher;
-use crate::track::{AlphaBetaGains, Track};
-use crate::{CameraTrackerSettings, Obstacle, ObstacleChange, ObstacleId, Point2, polygon};
+use crate::track::{AlphaBetaGains, HeightRange, Track};
+use crate::track_settings::TrackRules;
+use crate::{Obstacle, ObstacleChange, ObstacleId, Point2, polygon};
 
 /// All tracks; memory is reused.
 #[derive(Debug, Clone, Default)]
@@ -52,7 +53,7 @@ const MIN_SHARE: f64 = 0.1;
 
 impl ObjectTracker {
     /// Updates the tracks with the detections of a frame, `dt_s` seconds after the last call.
-    pub(crate) fn update(&mut self, detections: &[Detection], dt_s: f64, settings: &CameraTrackerSettings) {
+    pub(crate) fn update(&mut self, detections: &[Detection], dt_s: f64, settings: TrackRules<'_>) {
         self.predict(dt_s, settings);
         let track_count = self.tracks.len();
         let mut association = std::mem::take(&mut self.association);
@@ -74,7 +75,7 @@ impl ObjectTracker {
         self.association = association;
     }
 
-    fn predict(&mut self, dt_s: f64, settings: &CameraTrackerSettings) {
+    fn predict(&mut self, dt_s: f64, settings: TrackRules<'_>) {
         // The list never shrinks, so its elements keep their memory.
         let count = self.predictions.len().max(self.tracks.len());
         self.predictions.resize_with(count, TrackPrediction::default);
@@ -85,13 +86,13 @@ impl ObjectTracker {
             prediction.centre_m = track.centre_m + step;
             prediction.area = track.area;
             prediction.brightness = track.brightness;
-            prediction.gate_m = settings.max_speed_mps * dt_s * f64::from(track.frames_missed + 1);
+            prediction.gate_m = settings.track.max_speed_mps * dt_s * f64::from(track.frames_missed + 1);
             prediction.is_occluded = track.is_occluded;
         }
     }
 
     /// Updates a track that has its own detection.
-    fn update_isolated(&mut self, t: usize, detection: &Detection, dt_s: f64, settings: &CameraTrackerSettings) {
+    fn update_isolated(&mut self, t: usize, detection: &Detection, dt_s: f64, settings: TrackRules<'_>) {
         self.tracks[t].merged_z_to_m = None;
         if detection.touches_arm {
             self.extend_outline(t, detection, settings);
@@ -100,16 +101,16 @@ impl ObjectTracker {
         }
         let track = &mut self.tracks[t];
         track.outline_m.clone_from(&detection.outline_m);
-        track.full_outline_m.clone_from(&detection.outline_m);
-        track.extrapolated_s = 0.0;
-        (track.z_from_m, track.z_to_m) = (detection.z_from_m, detection.z_to_m);
+        track.complete.outline_m.clone_from(&detection.outline_m);
+        track.complete.extrapolated_s = 0.0;
+        track.heights = HeightRange::of(detection);
         track.is_truncated = detection.touches_border;
         if !track.is_truncated {
             track.area = detection.area;
             track.brightness = detection.brightness;
         }
         let predicted_m = self.predictions[t].centre_m;
-        track.correct(predicted_m, detection.centre_m, dt_s, ISOLATED_GAINS, settings.max_speed_mps);
+        track.correct(predicted_m, detection.centre_m, dt_s, ISOLATED_GAINS, settings.track.max_speed_mps);
     }
 
     /// Updates one of several tracks that share a detection: the track gets its part of the outline.
@@ -120,7 +121,7 @@ impl ObjectTracker {
         detection: &Detection,
         association: &Association,
         dt_s: f64,
-        settings: &CameraTrackerSettings,
+        settings: TrackRules<'_>,
     ) {
         self.tracks[t].merged_z_to_m = self.max_z_of_merged(d, association, settings);
         self.share_m.clone_from(&detection.outline_m);
@@ -143,24 +144,24 @@ impl ObjectTracker {
             self.share_m.extend_from_slice(&track.outline_m);
         }
         polygon::convex_hull(&mut self.share_m, &mut track.outline_m);
-        track.z_from_m = track.z_from_m.min(detection.z_from_m);
-        track.z_to_m = track.z_to_m.max(detection.z_to_m);
+        track.heights.extend(detection);
         track.is_truncated = true;
         let measured_m = polygon::centroid(&track.outline_m);
         track.correct(own.centre_m, measured_m, dt_s, MERGED_GAINS, f64::INFINITY);
     }
 
     /// Largest height of the objects in detection `d`.
-    fn max_z_of_merged(&self, d: usize, association: &Association, settings: &CameraTrackerSettings) -> Option<f64> {
+    fn max_z_of_merged(&self, d: usize, association: &Association, settings: TrackRules<'_>) -> Option<f64> {
         let merged = self.tracks.iter().zip(&association.detection_of).filter(|(_, of)| **of == Some(d));
         merged.map(|(track, _)| track.own_z_range_m(settings).1).max_by(f64::total_cmp)
     }
 
     /// Extends a track's outline by a partial detection; does not change it if the detection is within the outline.
-    fn extend_outline(&mut self, t: usize, detection: &Detection, settings: &CameraTrackerSettings) {
+    fn extend_outline(&mut self, t: usize, detection: &Detection, settings: TrackRules<'_>) {
         let track = &mut self.tracks[t];
         track.frames_missed = 0;
-        let (outline_m, tolerance_m) = (&track.outline_m, settings.uncertainty_m.min(settings.hysteresis_m));
+        let (outline_m, tolerance_m) =
+            (&track.outline_m, settings.track.uncertainty_m.min(settings.track.hysteresis_m));
         polygon::inflate(outline_m, tolerance_m, &mut self.grown_m, &mut self.workspace);
         if detection.outline_m.iter().all(|&p| polygon::convex_contains(&self.grown_m, p)) {
             return;
@@ -168,8 +169,7 @@ impl ObjectTracker {
         self.share_m.clone_from(&detection.outline_m);
         self.share_m.extend_from_slice(&track.outline_m);
         polygon::convex_hull(&mut self.share_m, &mut track.outline_m);
-        track.z_from_m = track.z_from_m.min(detection.z_from_m);
-        track.z_to_m = track.z_to_m.max(detection.z_to_m);
+        track.heights.extend(detection);
         track.is_truncated = true;
         track.centre_m = polygon::centroid(&track.outline_m);
     }
@@ -178,21 +178,21 @@ impl ObjectTracker {
     fn extrapolate(&mut self, t: usize, dt_s: f64) {
         let track = &mut self.tracks[t];
         track.frames_seen = track.frames_seen.saturating_add(1);
-        if track.velocity_mps.length() < STATIONARY_MPS || track.full_outline_m.is_empty() {
+        if track.velocity_mps.length() < STATIONARY_MPS || track.complete.outline_m.is_empty() {
             return;
         }
-        track.extrapolated_s += dt_s;
-        if track.extrapolated_s > MAX_EXTRAPOLATION_S {
+        track.complete.extrapolated_s += dt_s;
+        if track.complete.extrapolated_s > MAX_EXTRAPOLATION_S {
             track.velocity_mps = Point2::default();
             return;
         }
         let step = track.velocity_mps * dt_s;
-        track.full_outline_m.iter_mut().for_each(|p| *p = *p + step);
-        self.share_m.clone_from(&track.full_outline_m);
+        track.complete.outline_m.iter_mut().for_each(|p| *p = *p + step);
+        self.share_m.clone_from(&track.complete.outline_m);
         self.share_m.extend_from_slice(&track.outline_m);
         polygon::convex_hull(&mut self.share_m, &mut track.outline_m);
         track.is_truncated = true;
-        track.centre_m = polygon::centroid(&track.full_outline_m);
+        track.centre_m = polygon::centroid(&track.complete.outline_m);
     }
 
     fn start_track(&mut self, detection: &Detection) {
@@ -205,23 +205,23 @@ impl ObjectTracker {
     /// Writes the obstacles of this frame, including obstacles that have left, whose tracks are dropped.
     pub(crate) fn write_obstacles(
         &mut self,
-        settings: &CameraTrackerSettings,
+        settings: TrackRules<'_>,
         eye_above_floor: Option<Vec3>,
         out: &mut Vec<Obstacle>,
     ) {
         let mut count = 0;
         for t in (0..self.tracks.len()).rev() {
-            if self.tracks[t].frames_missed >= settings.leave_frames.max(1) && !self.tracks[t].is_occluded {
+            if self.tracks[t].frames_missed >= settings.track.leave_frames.max(1) && !self.tracks[t].is_occluded {
                 let mut track = self.tracks.remove(t);
                 track.obstacle.change = ObstacleChange::Left;
-                if track.is_reported {
+                if track.is_reported() {
                     write(&track.obstacle, &mut count, out, &mut self.spare_obstacles);
                 }
                 self.pool.push(track);
             }
         }
         for t in 0..self.tracks.len() {
-            if self.tracks[t].is_reported || self.tracks[t].frames_seen >= settings.enter_frames.max(1) {
+            if self.tracks[t].is_reported() || self.tracks[t].frames_seen >= settings.track.enter_frames.max(1) {
                 self.update_prism(t, settings, eye_above_floor);
                 write(&self.tracks[t].obstacle, &mut count, out, &mut self.spare_obstacles);
             }
@@ -234,7 +234,7 @@ impl ObjectTracker {
     pub(crate) fn write_unobserved(&mut self, out: &mut Vec<Obstacle>) {
         let mut count = 0;
         for track in &mut self.tracks {
-            if track.is_reported {
+            if track.is_reported() {
                 track.obstacle.change = ObstacleChange::Unchanged;
                 track.obstacle.is_unobserved = true;
                 write(&track.obstacle, &mut count, out, &mut self.spare_obstacles);
@@ -244,45 +244,43 @@ impl ObjectTracker {
     }
 
     /// Updates template and prism of a track.
-    fn update_prism(&mut self, t: usize, settings: &CameraTrackerSettings, eye_above_floor: Option<Vec3>) {
+    fn update_prism(&mut self, t: usize, settings: TrackRules<'_>, eye_above_floor: Option<Vec3>) {
         let track = &mut self.tracks[t];
         let footprint_m = &mut self.footprint_m;
         let is_whole = !track.is_truncated && track.frames_missed == 0 && !track.is_occluded;
-        if !is_whole && !track.is_truncated && track.is_reported {
+        if !is_whole && !track.is_truncated && track.is_reported() {
             track.keep_prism();
             return;
         }
         // An incomplete outline determines neither the size nor the footprint.
         footprint_m.clone_from(&track.outline_m);
         if is_whole {
-            let matched =
-                self.templates.best_match(&settings.templates, &track.outline_m, eye_above_floor, footprint_m);
-            track.update_template(matched, settings.template_frames);
-            if track.template.is_none() {
+            let matched = self.templates.best_match(settings.templates, &track.outline_m, eye_above_floor, footprint_m);
+            track.template.update(matched, settings.template_frames);
+            if track.template.accepted.is_none() {
                 footprint_m.clone_from(&track.outline_m);
             }
         }
-        polygon::inflate(footprint_m, settings.uncertainty_m, &mut self.grown_m, &mut self.workspace);
+        polygon::inflate(footprint_m, settings.track.uncertainty_m, &mut self.grown_m, &mut self.workspace);
         let (z_from_m, z_to_m) = track.z_range_m(settings);
         let obstacle = &mut track.obstacle;
         obstacle.centre_m = polygon::centroid(footprint_m);
         obstacle.velocity_mps = track.velocity_mps;
         obstacle.is_unobserved = track.frames_missed > 0 || track.is_occluded;
-        let tolerance_m = HEIGHT_HYSTERESIS_FACTOR * settings.hysteresis_m;
+        let tolerance_m = HEIGHT_HYSTERESIS_FACTOR * settings.track.hysteresis_m;
         let is_within = |excess_m: f64| (0.0..=tolerance_m).contains(&excess_m);
         let is_as_high = is_within(obstacle.z_to_m - z_to_m) && is_within(z_from_m - obstacle.z_from_m);
-        if track.is_reported && is_as_high && track.still_contains(&self.grown_m) {
+        if track.is_reported() && is_as_high && track.still_contains(&self.grown_m) {
             track.obstacle.change = ObstacleChange::Unchanged;
             return;
         }
         let obstacle = &mut track.obstacle;
-        obstacle.change = if track.is_reported { ObstacleChange::Moved } else { ObstacleChange::Entered };
+        obstacle.change = if track.is_reported() { ObstacleChange::Moved } else { ObstacleChange::Entered };
         (obstacle.z_from_m, obstacle.z_to_m) = (z_from_m, z_to_m);
-        obstacle.kind = track.template.map(|template| settings.templates[template].name.clone());
-        polygon::inflate(&self.grown_m, settings.hysteresis_m, &mut obstacle.footprint_m, &mut self.workspace);
-        polygon::simplify_outward(&mut obstacle.footprint_m, settings.max_corners);
-        track.is_reported = true;
-        track.reported_area = polygon::area(&self.grown_m);
+        obstacle.kind = track.template.accepted.map(|template| settings.templates[template].name.clone());
+        polygon::inflate(&self.grown_m, settings.track.hysteresis_m, &mut obstacle.footprint_m, &mut self.workspace);
+        polygon::simplify_outward(&mut obstacle.footprint_m, settings.track.max_corners);
+        track.reported_area = Some(polygon::area(&self.grown_m));
     }
 }
 
@@ -321,13 +319,13 @@ mod tests {
     /// growing.
     #[test]
     fn an_object_that_the_arm_occludes_does_not_grow_forever() {
-        let (settings, mut tracker) = (CameraTrackerSettings::default(), ObjectTracker::default());
+        let (settings, mut tracker) = (crate::CameraTrackerSettings::default(), ObjectTracker::default());
         for i in 0..=20 {
-            tracker.update(&[square(0.05 * f64::from(i), false)], 0.05, &settings);
+            tracker.update(&[square(0.05 * f64::from(i), false)], 0.05, settings.track_rules());
         }
         let mut far_m = Vec::new();
         for _ in 0..60 {
-            tracker.update(&[square(1.0, true)], 0.05, &settings);
+            tracker.update(&[square(1.0, true)], 0.05, settings.track_rules());
             assert_eq!(tracker.tracks.len(), 1);
             far_m.push(tracker.tracks[0].outline_m.iter().map(|p| p.x).fold(f64::NEG_INFINITY, f64::max));
         }
@@ -335,7 +333,7 @@ mod tests {
         assert!((2.0..2.2).contains(&far_m[20]) && far_m[20..].iter().all(|x| *x == far_m[20]), "{far_m:?}");
         assert_eq!(tracker.tracks[0].velocity_mps, Point2::default());
         // Seen completely, the object has its true size.
-        tracker.update(&[square(1.0, false)], 0.05, &settings);
+        tracker.update(&[square(1.0, false)], 0.05, settings.track_rules());
         assert!(tracker.tracks[0].outline_m.iter().all(|p| p.x < 1.2));
     }
 }

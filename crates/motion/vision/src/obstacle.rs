@@ -34,7 +34,7 @@ pub enum ObstacleChange {
 /// An upright prism: all points above its footprint from `z_from_m` to `z_to_m`, world frame.
 ///
 /// The prism contains the observed outline, inflated by
-/// [`CameraTrackerSettings::uncertainty_m`](crate::CameraTrackerSettings::uncertainty_m), under the assumption stated
+/// [`TrackSettings::uncertainty_m`](crate::TrackSettings::uncertainty_m), under the assumption stated
 /// in the crate's documentation (objects stand on the floor and do not overhang).
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Obstacle {

@@ -1,6 +1,7 @@
 //! Settings of the camera tracker.
 
-use crate::{Point2, Template, VisionError};
+use crate::track_settings::{TrackRules, TrackSettings};
+use crate::{Template, VisionError};
 
 /// Conditions under which a darker pixel is a shadow. All of them must hold; see [`CameraTrackerSettings::shadows`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,9 +25,10 @@ impl Default for ShadowSettings {
 /// Settings of a [`CameraTracker`](crate::CameraTracker). Lengths are metres, world frame; times are counted in frames.
 ///
 /// ```
-/// use elbowroom_vision::{CameraTrackerSettings, Point2, ShadowSettings, Template};
+/// use elbowroom_vision::{CameraTrackerSettings, Point2, ShadowSettings, Template, TrackSettings};
+/// let area_m = [(-1.5, -1.0), (1.5, -1.0), (1.5, 1.0), (-1.5, 1.0)].map(|(x, y)| Point2::new(x, y)).to_vec();
 /// let settings = CameraTrackerSettings {
-///     area_m: [(-1.5, -1.0), (1.5, -1.0), (1.5, 1.0), (-1.5, 1.0)].map(|(x, y)| Point2::new(x, y)).to_vec(),
+///     track: TrackSettings { area_m, ..TrackSettings::default() },
 ///     shadows: Some(ShadowSettings::default()),
 ///     templates: vec![Template::new("crate", 0.6, 0.4, 0.32)],
 ///     ..CameraTrackerSettings::default()
@@ -35,22 +37,11 @@ impl Default for ShadowSettings {
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct CameraTrackerSettings {
-    /// The monitored area of the floor, world x and y, metres: a simple polygon. Objects entirely outside it are
-    /// ignored. Empty: everything visible.
-    pub area_m: Vec<Point2>,
-    /// Height of the floor, world z, metres.
-    pub floor_z_m: f64,
+    /// What trackers of all sensors have.
+    pub track: TrackSettings,
     /// Height above the floor of objects without a matching template, metres: must be above everything that an arm can
     /// reach.
     pub unbounded_height_m: f64,
-    /// Inflation of footprints, metres: covers errors of the calibration and of the outline (a pixel or two), and the
-    /// motion of an object until the next frame.
-    pub uncertainty_m: f64,
-    /// Additional inflation of the reported prism, metres, so that noise and small steps do not change it. Use about
-    /// the size of a pixel on the floor.
-    pub hysteresis_m: f64,
-    /// Largest number of corners of a footprint, which is simplified outward.
-    pub max_corners: usize,
     /// Known types of objects. Objects without a matching template are `unbounded_height_m` high.
     pub templates: Vec<Template>,
     /// Number of frames in a row in which an object must match a template before the template is accepted. A single
@@ -76,23 +67,13 @@ pub struct CameraTrackerSettings {
     pub adaptation_frames: u32,
     /// Largest fraction of the image that may be foreground; frames with more are rejected.
     pub max_foreground: f64,
-    /// Speed of the fastest object, metres per second.
-    pub max_speed_mps: f64,
-    /// Number of frames in a row in which an object must be detected before it is reported.
-    pub enter_frames: u32,
-    /// Number of frames in a row without a detection after which an object that the arm does not occlude has left.
-    pub leave_frames: u32,
 }
 
 impl Default for CameraTrackerSettings {
     fn default() -> Self {
         Self {
-            area_m: Vec::new(),
-            floor_z_m: 0.0,
+            track: TrackSettings::default(),
             unbounded_height_m: 10.0,
-            uncertainty_m: 0.03,
-            hysteresis_m: 0.01,
-            max_corners: 12,
             templates: Vec::new(),
             template_frames: 5,
             min_difference: 14.0,
@@ -104,9 +85,6 @@ impl Default for CameraTrackerSettings {
             learning_frames: 30,
             adaptation_frames: 128,
             max_foreground: 0.5,
-            max_speed_mps: 4.0,
-            enter_frames: 1,
-            leave_frames: 3,
         }
     }
 }
@@ -117,13 +95,10 @@ impl CameraTrackerSettings {
     /// # Errors
     /// The first setting that is out of range, with its range.
     pub fn check(&self) -> Result<(), VisionError> {
+        self.track.check()?;
         let shadows = self.shadows.unwrap_or_default();
         let ranges = [
-            ("floor_z_m", self.floor_z_m, f64::MIN..=f64::MAX, "a finite number of metres"),
             ("unbounded_height_m", self.unbounded_height_m, 1e-3..=1e4, "0.001 to 10000 metres"),
-            ("uncertainty_m", self.uncertainty_m, 0.0..=10.0, "0 to 10 metres"),
-            ("hysteresis_m", self.hysteresis_m, 0.0..=10.0, "0 to 10 metres"),
-            ("max_corners", self.max_corners as f64, 4.0..=1e3, "4 corners or more"),
             ("min_difference", self.min_difference, 1.0..=200.0, "1 to 200 grey levels"),
             ("deviation_factor", self.deviation_factor, 1.0..=15.0, "1 to 15 mean deviations"),
             ("shadows.min_ratio", shadows.min_ratio, 0.0..=shadows.max_ratio, "from 0 to max_ratio"),
@@ -135,20 +110,11 @@ impl CameraTrackerSettings {
             ("learning_frames", f64::from(self.learning_frames), 2.0..=10_000.0, "2 to 10000 frames of the empty cell"),
             ("adaptation_frames", f64::from(self.adaptation_frames), 8.0..=4096.0, "8 to 4096 frames"),
             ("max_foreground", self.max_foreground, 1e-3..=1.0, "a fraction above 0 and up to 1"),
-            ("max_speed_mps", self.max_speed_mps, 1e-3..=1e3, "0.001 to 1000 metres per second"),
         ];
         for (name, value, range, expected) in ranges {
             if !range.contains(&value) {
                 return Err(VisionError::Setting { name, value, expected });
             }
-        }
-        self.check_lists()
-    }
-
-    fn check_lists(&self) -> Result<(), VisionError> {
-        if !self.area_m.is_empty() && (self.area_m.len() < 3 || self.area_m.iter().any(|p| !p.is_finite())) {
-            let (name, value) = ("area_m", self.area_m.len() as f64);
-            return Err(VisionError::Setting { name, value, expected: "none, or three or more finite corners" });
         }
         match self.templates.iter().find(|template| !template.is_usable()) {
             Some(template) => {
@@ -157,5 +123,9 @@ impl CameraTrackerSettings {
             }
             None => Ok(()),
         }
+    }
+
+    pub(crate) fn track_rules(&self) -> TrackRules<'_> {
+        TrackRules { track: &self.track, templates: &self.templates, template_frames: self.template_frames }
     }
 }

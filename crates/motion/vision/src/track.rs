@@ -1,17 +1,16 @@
 //! The state of one tracked obstacle.
 
 use crate::detection::Detection;
-use crate::{CameraTrackerSettings, Obstacle, ObstacleChange, ObstacleId, Point2, polygon};
+use crate::template_match::TemplateMatch;
+use crate::track_settings::TrackRules;
+use crate::{Obstacle, ObstacleChange, ObstacleId, Point2, polygon};
 
 /// One tracked obstacle.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Track {
     /// Convex outline on the floor as observed, metres.
     pub(crate) outline_m: Vec<Point2>,
-    /// Outline when it was last completely observed, moved on with the velocity while the arm occludes a part of it.
-    pub(crate) full_outline_m: Vec<Point2>,
-    /// Time for which this outline was moved on since then, s.
-    pub(crate) extrapolated_s: f64,
+    pub(crate) complete: CompleteOutline,
     /// Whether the arm occludes a part of the outline in this frame; the caller sets it before
     /// [`ObjectTracker::update`](crate::object_tracker::ObjectTracker::update).
     pub(crate) is_occluded: bool,
@@ -23,22 +22,42 @@ pub(crate) struct Track {
     pub(crate) brightness: f64,
     /// Whether the outline is incomplete, or a part of a merged one.
     pub(crate) is_truncated: bool,
-    /// The template that currently matches, and (in `candidate_frames`) the number of frames in a row in which it has
-    /// matched.
-    pub(crate) template_candidate: Option<usize>,
-    pub(crate) candidate_frames: u32,
-    pub(crate) frames_fully_visible: u32,
-    pub(crate) frames_unmatched: u32,
-    pub(crate) template: Option<usize>,
+    pub(crate) template: TemplateMatch,
     pub(crate) frames_seen: u32,
     pub(crate) frames_missed: u32,
-    pub(crate) is_reported: bool,
-    /// Area of the footprint when the prism last changed.
-    pub(crate) reported_area: f64,
-    pub(crate) z_from_m: f64,
-    pub(crate) z_to_m: f64,
+    /// Area of the footprint when the reported prism last changed; `None` if the obstacle is not reported yet.
+    pub(crate) reported_area: Option<f64>,
+    pub(crate) heights: HeightRange,
     /// Top of the highest object while several are observed as one, because the line between them is uncertain.
     pub(crate) merged_z_to_m: Option<f64>,
+}
+
+/// The outline of an object when it was last completely observed, moved on with the velocity while the arm occludes a part
+/// of it.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct CompleteOutline {
+    pub(crate) outline_m: Vec<Point2>,
+    /// Time for which the outline was moved on since then, s.
+    pub(crate) extrapolated_s: f64,
+}
+
+/// Lower and upper end, world z, metres.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct HeightRange {
+    pub(crate) from_m: f64,
+    pub(crate) to_m: f64,
+}
+
+impl HeightRange {
+    pub(crate) fn of(detection: &Detection) -> Self {
+        Self { from_m: detection.z_from_m, to_m: detection.z_to_m }
+    }
+
+    /// Extends the range by a partial detection.
+    pub(crate) fn extend(&mut self, detection: &Detection) {
+        self.from_m = self.from_m.min(detection.z_from_m);
+        self.to_m = self.to_m.max(detection.z_to_m);
+    }
 }
 
 /// Gains of an alpha-beta filter, each from 0 (keep the prediction) to 1 (P. R. Kalata: *The tracking index*, 1984).
@@ -50,9 +69,6 @@ pub(crate) struct AlphaBetaGains {
     pub(crate) velocity: f64,
 }
 
-/// At most one fully visible frame in this number may be without a matching template.
-const FRAMES_PER_MISMATCH: u32 = 10;
-
 /// Smallest speed by which the speed limit is divided, m/s: a track at rest is not limited.
 const MIN_SPEED_MPS: f64 = 1e-12;
 
@@ -63,8 +79,8 @@ const SHRUNK_AREA_RATIO: f64 = 0.8;
 impl Track {
     pub(crate) fn restart(&mut self, id: ObstacleId, detection: &Detection) {
         self.outline_m.clone_from(&detection.outline_m);
-        self.full_outline_m.clear();
-        self.extrapolated_s = 0.0;
+        self.complete.outline_m.clear();
+        self.complete.extrapolated_s = 0.0;
         self.is_occluded = false;
         self.obstacle.id = id;
         self.centre_m = detection.centre_m;
@@ -73,10 +89,9 @@ impl Track {
         self.brightness = detection.brightness;
         self.is_truncated = detection.touches_arm || detection.touches_border;
         self.merged_z_to_m = None;
-        (self.template, self.template_candidate, self.candidate_frames) = (None, None, 0);
-        (self.frames_fully_visible, self.frames_unmatched) = (0, 0);
-        (self.frames_seen, self.frames_missed, self.is_reported) = (1, 0, false);
-        (self.z_from_m, self.z_to_m) = (detection.z_from_m, detection.z_to_m);
+        self.template = TemplateMatch::default();
+        (self.frames_seen, self.frames_missed, self.reported_area) = (1, 0, None);
+        self.heights = HeightRange::of(detection);
     }
 
     /// Alpha-beta filter: corrects the predicted centre and the velocity by the measured centre.
@@ -103,7 +118,7 @@ impl Track {
         self.velocity_mps = Point2::default();
         if !self.is_occluded {
             self.frames_missed = self.frames_missed.saturating_add(1);
-            self.frames_seen = if self.is_reported { self.frames_seen } else { 0 };
+            self.frames_seen = if self.is_reported() { self.frames_seen } else { 0 };
         }
     }
 
@@ -114,35 +129,27 @@ impl Track {
         self.obstacle.is_unobserved = true;
     }
 
-    /// Accepts a template that matches in some frames in a row, if nearly all fully visible frames have matched a
-    /// template: a moving high, narrow object covers for a while the same floor as a lower, longer one.
-    pub(crate) fn update_template(&mut self, matched: Option<usize>, template_frames: u32) {
-        let is_same = matched == self.template_candidate;
-        self.candidate_frames = if is_same { self.candidate_frames.saturating_add(1) } else { 1 };
-        self.template_candidate = matched;
-        self.frames_fully_visible = self.frames_fully_visible.saturating_add(1);
-        self.frames_unmatched += u32::from(matched.is_none());
-        let is_accepted = self.candidate_frames >= template_frames
-            && self.frames_unmatched <= self.frames_fully_visible / FRAMES_PER_MISMATCH;
-        self.template = matched.filter(|_| is_accepted);
+    /// Whether the obstacle has been reported.
+    pub(crate) fn is_reported(&self) -> bool {
+        self.reported_area.is_some()
     }
 
     /// Lower and upper end, including those of objects merged with the track.
-    pub(crate) fn z_range_m(&self, settings: &CameraTrackerSettings) -> (f64, f64) {
+    pub(crate) fn z_range_m(&self, settings: TrackRules<'_>) -> (f64, f64) {
         let (from, to) = self.own_z_range_m(settings);
         (from, to.max(self.merged_z_to_m.unwrap_or(to)))
     }
 
-    pub(crate) fn own_z_range_m(&self, settings: &CameraTrackerSettings) -> (f64, f64) {
-        match self.template {
-            Some(template) => (self.z_from_m, settings.floor_z_m + settings.templates[template].max_height_m()),
-            None => (self.z_from_m, self.z_to_m),
-        }
+    pub(crate) fn own_z_range_m(&self, settings: TrackRules<'_>) -> (f64, f64) {
+        let HeightRange { from_m, to_m } = self.heights;
+        let of_template = |template: usize| settings.track.floor_z_m + settings.templates[template].max_height_m();
+        (from_m, self.template.accepted.map_or(to_m, of_template))
     }
 
     /// Whether the reported footprint still contains the present one and is not much too large.
     pub(crate) fn still_contains(&self, footprint_m: &[Point2]) -> bool {
-        let has_shrunk = polygon::area(footprint_m) < SHRUNK_AREA_RATIO * self.reported_area;
+        let has_shrunk =
+            self.reported_area.is_some_and(|before| polygon::area(footprint_m) < SHRUNK_AREA_RATIO * before);
         let contains = || footprint_m.iter().all(|&p| polygon::convex_contains(&self.obstacle.footprint_m, p));
         !has_shrunk && contains()
     }

@@ -8,8 +8,8 @@ use elbowroom_spatial::Vec3;
 use elbowroom_vision::render::RenderedSolid;
 use elbowroom_vision::{
     Calibration, Camera, CameraTracker, CameraTrackerSettings, Channels, FloorHomography, Frame, FrameSource,
-    FrameStatus, ImageFiles, Intrinsics, ObstacleChange, PixelMask, Point2, RawLayout, RejectReason, VisionError,
-    decode, encode_png,
+    FrameStatus, ImageFiles, Intrinsics, ObstacleChange, PixelMask, Point2, RawLayout, RejectReason, TrackSettings,
+    VisionError, decode, encode_png,
 };
 use proptest::prelude::*;
 
@@ -177,10 +177,16 @@ fn settings_out_of_range_are_named() {
     let camera: Calibration = synthetic::camera(64, 48).into();
     let refuse = |settings| CameraTracker::new(camera.clone(), settings).unwrap_err().to_string();
     let base = CameraTrackerSettings::default;
-    assert!(refuse(CameraTrackerSettings { uncertainty_m: f64::NAN, ..base() }).contains("`uncertainty_m` is NaN"));
+    let tracking = |track| CameraTrackerSettings { track, ..base() };
+    assert!(
+        refuse(tracking(TrackSettings { uncertainty_m: f64::NAN, ..base().track })).contains("`uncertainty_m` is NaN")
+    );
     assert!(refuse(CameraTrackerSettings { learning_frames: 0, ..base() }).contains("learning_frames"));
-    assert!(refuse(CameraTrackerSettings { area_m: vec![Point2::default(); 2], ..base() }).contains("three or more"));
-    assert!(refuse(CameraTrackerSettings { floor_z_m: f64::INFINITY, ..base() }).contains("floor_z_m"));
+    assert!(
+        refuse(tracking(TrackSettings { area_m: vec![Point2::default(); 2], ..base().track }))
+            .contains("three or more")
+    );
+    assert!(refuse(tracking(TrackSettings { floor_z_m: f64::INFINITY, ..base().track })).contains("floor_z_m"));
     let flat = elbowroom_vision::Template::new("sheet", 1.0, 1.0, 0.0);
     assert!(refuse(CameraTrackerSettings { templates: vec![flat], ..base() }).contains("templates"));
 }

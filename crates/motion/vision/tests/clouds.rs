@@ -8,7 +8,9 @@ use elbowroom_spatial::{Pose, Rotation, Vec3};
 use elbowroom_testkit::folder;
 use elbowroom_testkit::random::Xorshift;
 use elbowroom_vision::cloud::{CloudStatus, CloudTracker, CloudTrackerSettings, PointCloud};
-use elbowroom_vision::{ArmPart, Camera, Intrinsics, Obstacle, ObstacleChange, Point2, polygon, read_grey16};
+use elbowroom_vision::{
+    ArmPart, Camera, Intrinsics, Obstacle, ObstacleChange, Point2, TrackSettings, polygon, read_grey16,
+};
 use proptest::prelude::*;
 
 /// A box given by two corners.
@@ -216,7 +218,7 @@ fn clusters_agree_with_a_naive_search() {
         group.sort_unstable();
         group.dedup();
         let settings = CloudTrackerSettings {
-            floor_z_m: -10.0,
+            track: TrackSettings { floor_z_m: -10.0, ..CloudTrackerSettings::default().track },
             ceiling_m: 20.0,
             voxel_m: 0.1,
             min_points: 1,
@@ -357,7 +359,7 @@ fn real_clouds_are_read_and_clustered() {
         // Two of them are sparse: a point every 10 cm or so.
         let voxel_m = if [9311, 8000].contains(&count) { 0.3 } else { 0.03 };
         let settings = CloudTrackerSettings {
-            floor_z_m: low - 1.0,
+            track: TrackSettings { floor_z_m: low - 1.0, ..CloudTrackerSettings::default().track },
             ceiling_m: high - low + 2.0,
             voxel_m,
             ..CloudTrackerSettings::default()

@@ -6,6 +6,7 @@ use elbowroom_spatial::Vec3;
 use elbowroom_vision::render::RenderedSolid;
 use elbowroom_vision::{
     Camera, CameraTrackerSettings, Channels, Intrinsics, ObstacleChange, ObstacleId, Point2, ShadowSettings, Template,
+    TrackSettings,
 };
 
 const CRATE: Vec3 = Vec3::new(0.6, 0.4, 0.3);
@@ -179,7 +180,8 @@ fn a_light_and_a_dark_object_touch_and_rotate_about_each_other() {
 
 #[test]
 fn a_stationary_object_never_becomes_background() {
-    let mut scene = SyntheticScene::new(320, 240, CameraTrackerSettings { hysteresis_m: 0.02, ..settings() });
+    let track = TrackSettings { hysteresis_m: 0.02, ..TrackSettings::default() };
+    let mut scene = SyntheticScene::new(320, 240, CameraTrackerSettings { track, ..settings() });
     let faint = RenderedSolid::cuboid(Point2::new(0.3, 0.2), Vec3::new(0.8, 0.8, 0.05), 0.2, 145);
     let first = scene.step(std::slice::from_ref(&faint)).clone();
     assert_eq!(first.obstacles.len(), 1);
@@ -245,8 +247,9 @@ fn objects_in_a_permanent_shadow_are_detected() {
 
 #[test]
 fn objects_outside_the_monitored_area_are_ignored_until_they_reach_into_it() {
-    let cell = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| Point2::new(x, y)).to_vec();
-    let mut scene = SyntheticScene::new(320, 240, CameraTrackerSettings { area_m: cell, ..settings() });
+    let area_m = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| Point2::new(x, y)).to_vec();
+    let track = TrackSettings { area_m, ..TrackSettings::default() };
+    let mut scene = SyntheticScene::new(320, 240, CameraTrackerSettings { track, ..settings() });
     let mut first_reported = None;
     for i in 0..60 {
         let x = 2.0 - 0.02 * f64::from(i);

@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 
 use elbowroom_formats::srdf::Srdf;
 use elbowroom_formats::{FormatError, Warning, mesh, robot};
-use elbowroom_kinematics::dh::GeneralizedTable;
 use elbowroom_kinematics::{Chain, LinkId};
 use elbowroom_proximity::Shape;
 use elbowroom_robot::{Collider, Robot};
@@ -12,7 +11,8 @@ use elbowroom_spatial::Pose;
 use elbowroom_spatial::units::LengthUnit;
 use serde::Serialize;
 
-use crate::dh::{self, ClassicalDh, DhConvention, DhRow, DirectDh, ModifiedDh};
+use crate::dh::DhConvention;
+use crate::dh_tables::DhTables;
 use crate::enclosing_volume::{self, EnclosingVolume};
 use crate::pairs::{self, PairRow};
 use crate::resolution_levels::{self, LinkLevels};
@@ -68,18 +68,9 @@ pub struct Inspection {
     pub meshes: Vec<MeshRow>,
     /// Number of link pairs that the SRDF disables.
     pub disabled_pairs: usize,
-    /// The last link of the DH table; null for a mesh.
-    pub dh_tip: Option<String>,
-    /// The generalized DH table `T = Rz(θ)·Tz(d)·Tx(a)·Ty(b)·Rx(α)`.
-    pub dh: Vec<DhRow>,
-    /// Largest difference between the product of the rows and forward kinematics; null for a mesh.
-    pub dh_residual: Option<f64>,
-    /// The classical DH table, which exists if every b is 0; null for a mesh.
-    pub dh_classical: Option<ClassicalDh>,
-    /// The modified DH table (Craig); null for a mesh.
-    pub dh_modified: Option<ModifiedDh>,
-    /// The DH table with one row per frame of the model; null for a mesh.
-    pub dh_direct: Option<DirectDh>,
+    /// The DH tables of the chain to the tip.
+    #[serde(flatten)]
+    pub dh: DhTables,
     /// Resolution level L2: the enclosing volume of each solid for whole-arm guarding.
     pub levels: Vec<EnclosingVolume>,
     /// The levels of each link, including coarse, middle and fine triangles. Empty if omitted.
@@ -91,15 +82,20 @@ pub struct Inspection {
     /// Warnings.
     pub warnings: Vec<String>,
     #[serde(skip)]
-    pub(crate) dh_shown: Vec<DhConvention>,
-    #[serde(skip)]
-    robot: Option<Robot>,
-    /// The SRDF of the options.
-    #[serde(skip)]
-    srdf: Option<Srdf>,
-    /// The objects of a mesh file.
-    #[serde(skip)]
-    solids: Vec<(String, Vec<Collider>)>,
+    source: Source,
+}
+
+/// What a file contains.
+#[derive(Debug, Clone)]
+enum Source {
+    Robot {
+        robot: Box<Robot>,
+        /// The SRDF of the options.
+        srdf: Option<Srdf>,
+    },
+    Mesh {
+        solids: Vec<(String, Vec<Collider>)>,
+    },
 }
 
 impl Inspection {
@@ -124,22 +120,13 @@ impl Inspection {
         let loaded = robot::load(path, &load)?;
         let chain = &loaded.robot.chain;
         let tip = tip(chain, path, options.tip.as_deref())?;
-        let table = GeneralizedTable::extract(chain, tip);
         let mut inspection = Self::empty(path, chain.name(), ModelKind::Robot, &loaded.warnings);
         inspection.links = chain.links().to_vec();
         inspection.joints = chain.joints().iter().map(|j| joint_row(chain, j)).collect();
         inspection.dof = chain.dof();
         inspection.meshes = mesh_rows(&loaded.robot);
         inspection.disabled_pairs = loaded.robot.disabled_pairs.len();
-        inspection.dh_tip = Some(chain.links()[tip.0].clone());
-        inspection.dh = dh::generalized(&table);
-        inspection.dh_residual = Some(table.residual);
-        inspection.dh_classical = Some(ClassicalDh::of(&table));
-        inspection.dh_modified = Some(ModifiedDh::of(chain, tip));
-        inspection.dh_direct = Some(DirectDh::of(chain, tip));
-        if !options.dh.is_empty() {
-            inspection.dh_shown.clone_from(&options.dh);
-        }
+        inspection.dh = DhTables::of(chain, tip, &options.dh);
         inspection.add_suspect_units(suspect_units(&loaded.robot));
         inspection.warn_of_meshes();
         if !options.brief {
@@ -149,8 +136,7 @@ impl Inspection {
             inspection.pairs = pairs::of_robot(path, &loaded.robot)?;
             inspection.warn_of_pairs();
         }
-        inspection.robot = Some(loaded.robot);
-        inspection.srdf = loaded.srdf;
+        inspection.source = Source::Robot { robot: loaded.robot.into(), srdf: loaded.srdf };
         Ok(inspection)
     }
 
@@ -177,7 +163,7 @@ impl Inspection {
             inspection.levels = solids.iter().map(|(name, s)| enclosing_volume::of_solid(name, &s[0].shape)).collect();
             inspection.resolution = resolution_levels::of_links(&solids);
         }
-        inspection.solids = solids;
+        inspection.source = Source::Mesh { solids };
         inspection.warn_of_meshes();
         Ok(inspection)
     }
@@ -192,21 +178,13 @@ impl Inspection {
             dof: 0,
             meshes: vec![],
             disabled_pairs: 0,
-            dh_tip: None,
-            dh: vec![],
-            dh_residual: None,
-            dh_classical: None,
-            dh_modified: None,
-            dh_direct: None,
+            dh: DhTables::default(),
             levels: vec![],
             resolution: vec![],
             pairs: vec![],
             suspect_units: vec![],
             warnings: warnings.iter().map(ToString::to_string).collect(),
-            dh_shown: vec![DhConvention::Generalized],
-            robot: None,
-            srdf: None,
-            solids: vec![],
+            source: Source::Mesh { solids: vec![] },
         }
     }
 
@@ -254,18 +232,25 @@ impl Inspection {
     ///
     /// `None` for a mesh, or if [`pairs`](Self::pairs) is empty.
     pub fn srdf(&self) -> Option<String> {
-        let given = self.srdf.clone().unwrap_or_default();
-        (self.robot.is_some() && !self.pairs.is_empty()).then(|| pairs::srdf(&self.name, &self.pairs, given))
+        let Source::Robot { srdf, .. } = &self.source else { return None };
+        let given = srdf.clone().unwrap_or_default();
+        (!self.pairs.is_empty()).then(|| pairs::srdf(&self.name, &self.pairs, given))
     }
 
     /// The robot, if the model is one.
     pub fn robot(&self) -> Option<&Robot> {
-        self.robot.as_ref()
+        match &self.source {
+            Source::Robot { robot, .. } => Some(robot),
+            Source::Mesh { .. } => None,
+        }
     }
 
     /// The objects of a mesh file, with their names.
     pub fn solids(&self) -> &[(String, Vec<Collider>)] {
-        &self.solids
+        match &self.source {
+            Source::Robot { .. } => &[],
+            Source::Mesh { solids } => solids,
+        }
     }
 }
 

@@ -12,7 +12,7 @@
 //! #   <limit lower="0" upper="2" velocity="1" effort="0"/></joint></robot>"#)?;
 //! let inspection = Inspection::of(&path, &InspectOptions::default())?;
 //! assert_eq!(inspection.links, ["rail", "cart"]);
-//! assert!(inspection.dh_residual.unwrap() < 1e-12);
+//! assert!(inspection.dh.residual.unwrap() < 1e-12);
 //! println!("{inspection}");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -22,6 +22,7 @@
 
 mod deviation;
 mod dh;
+mod dh_tables;
 mod edges;
 mod enclosing_volume;
 mod inspection;
@@ -35,6 +36,7 @@ mod text;
 mod units;
 
 pub use dh::{ClassicalDh, DhConvention, DhRow, DhRow4, DirectDh, DirectRow, ModifiedDh};
+pub use dh_tables::DhTables;
 pub use enclosing_volume::EnclosingVolume;
 pub use inspection::{InspectOptions, Inspection, ModelKind, srdf};
 pub use pairs::{PairRow, ReasonKind};

@@ -5,6 +5,7 @@ use std::fmt;
 use elbowroom_kinematics::JointKind;
 
 use crate::dh::{self, DhConvention};
+use crate::dh_tables::DhTables;
 use crate::inspection::{Inspection, ModelKind};
 use crate::pairs::ReasonKind;
 use crate::resolution_levels::TrianglesRow;
@@ -130,11 +131,13 @@ impl Inspection {
     }
 
     fn fmt_dh(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (Some(tip), Some(residual)) = (&self.dh_tip, self.dh_residual) else { return Ok(()) };
-        let (classical, modified, direct) = (&self.dh_classical, &self.dh_modified, &self.dh_direct);
-        for convention in &self.dh_shown {
+        let DhTables { tip: Some(tip), rows, residual: Some(residual), classical, modified, direct, shown } = &self.dh
+        else {
+            return Ok(());
+        };
+        for convention in shown {
             match convention {
-                DhConvention::Generalized => dh::fmt_generalized(f, tip, &self.dh, residual)?,
+                DhConvention::Generalized => dh::fmt_generalized(f, tip, rows, *residual)?,
                 DhConvention::Classical => classical.iter().try_for_each(|t| dh::fmt_classical(f, tip, t))?,
                 DhConvention::Modified => modified.iter().try_for_each(|t| dh::fmt_modified(f, tip, t))?,
                 DhConvention::Direct => direct.iter().try_for_each(|t| dh::fmt_direct(f, tip, t))?,

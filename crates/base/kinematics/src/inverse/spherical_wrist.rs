@@ -40,6 +40,16 @@ struct Branches {
     straight: f64,
 }
 
+/// Whether each axis is perpendicular to the next, but for the second and the third, which are parallel.
+fn has_right_angles([a1, a2, a3, a4, a5, a6]: &[AxisInRoot; 6]) -> bool {
+    let perpendicular = |a: Vec3, b: Vec3| a.dot(b).abs() < SLACK;
+    perpendicular(a1.axis, a2.axis)
+        && a2.axis.cross(a3.axis).length() < SLACK
+        && perpendicular(a3.axis, a4.axis)
+        && perpendicular(a4.axis, a5.axis)
+        && perpendicular(a5.axis, a6.axis)
+}
+
 impl SphericalWrist {
     /// Builds the model; `None` if the arm has another structure, or if the model does not reproduce it.
     pub fn detect(arm: &Arm) -> Option<Self> {
@@ -60,16 +70,7 @@ impl SphericalWrist {
 
     fn from_axes(axes: &[AxisInRoot; 6], arm: &Arm) -> Option<Self> {
         let [a1, a2, a3, a4, a5, a6] = axes;
-        let perpendicular = |a: Vec3, b: Vec3| a.dot(b).abs() < SLACK;
-        let right_angles = perpendicular(a1.axis, a2.axis)
-            && a2.axis.cross(a3.axis).length() < SLACK
-            && perpendicular(a3.axis, a4.axis)
-            && perpendicular(a4.axis, a5.axis)
-            && perpendicular(a5.axis, a6.axis);
-        let center = wrist_center(a4, a5, a6)?;
-        if !right_angles {
-            return None;
-        }
+        let center = wrist_center(a4, a5, a6).filter(|_| has_right_angles(axes))?;
         // Offset of axis 2 from axis 1 along x.
         let z = a1.axis;
         let mut y = (a2.axis - z * z.dot(a2.axis)).try_normalize()?;

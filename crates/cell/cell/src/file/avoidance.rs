@@ -64,28 +64,7 @@ fn spec(t: &Table<'_>, cell: &Cell, own: RobotId) -> Result<AvoidanceSpec> {
         );
         return Err(t.error(what).hint("mounted tools only, or no avoidance"));
     }
-    let mut settings = AvoiderSettings::default();
-    if let Some(v) = t.get("speed") {
-        settings.reactive.speed_m_s = length(&v, units, SPEEDS_M_S, "per second")?;
-    }
-    if let Some(v) = t.get("clearance") {
-        settings.reactive.clearance_m = length(&v, units, CLEARANCES_M, "")?;
-    }
-    settings.return_speed_fraction = t.get("return_speed").map(|v| return_speed(&v)).transpose()?;
-    if let Some(v) = t.get("stall_timeout") {
-        settings.stall_timeout_s = v.positive()?;
-        if !within(STALL_TIMEOUTS_S, settings.stall_timeout_s) {
-            let (least, most) = STALL_TIMEOUTS_S;
-            let what = format!("is {} s, and can be {least} to {most} s", settings.stall_timeout_s);
-            return Err(v
-                .error(what)
-                .hint("stall_timeout = 0.6   (seconds without progress before another path is planned)"));
-        }
-    }
-    settings.escape.clearance_m = settings.reactive.clearance_m;
-    if let Some(v) = t.get("horizon") {
-        settings.escape.horizon_s = up_to(&v, MAX_HORIZON_S, "s", "horizon = 3   (seconds; 0: no prediction)")?;
-    }
+    let settings = settings(t, units)?;
     let noise_m = t.get("noise").map_or(Ok(0.0), |v| {
         let most = MAX_NOISE_M / units.length.to_metres(1.0);
         let hint = "noise = 10   (standard deviation of an observed position, in the cell's unit of length)";
@@ -117,6 +96,33 @@ fn spec(t: &Table<'_>, cell: &Cell, own: RobotId) -> Result<AvoidanceSpec> {
     };
     let replan = t.flag_or("replan", true)?;
     Ok(AvoidanceSpec { rules, settings, objects, robots, replan, noise_m, delay_s, plan_s: 1e-3 * plan_ms })
+}
+
+/// Speeds, distances and times.
+fn settings(t: &Table<'_>, units: Units) -> Result<AvoiderSettings> {
+    let mut settings = AvoiderSettings::default();
+    if let Some(v) = t.get("speed") {
+        settings.reactive.speed_m_s = length(&v, units, SPEEDS_M_S, "per second")?;
+    }
+    if let Some(v) = t.get("clearance") {
+        settings.reactive.clearance_m = length(&v, units, CLEARANCES_M, "")?;
+    }
+    settings.return_speed_fraction = t.get("return_speed").map(|v| return_speed(&v)).transpose()?;
+    if let Some(v) = t.get("stall_timeout") {
+        settings.stall_timeout_s = v.positive()?;
+        if !within(STALL_TIMEOUTS_S, settings.stall_timeout_s) {
+            let (least, most) = STALL_TIMEOUTS_S;
+            let what = format!("is {} s, and can be {least} to {most} s", settings.stall_timeout_s);
+            return Err(v
+                .error(what)
+                .hint("stall_timeout = 0.6   (seconds without progress before another path is planned)"));
+        }
+    }
+    settings.escape.clearance_m = settings.reactive.clearance_m;
+    if let Some(v) = t.get("horizon") {
+        settings.escape.horizon_s = up_to(&v, MAX_HORIZON_S, "s", "horizon = 3   (seconds; 0: no prediction)")?;
+    }
+    Ok(settings)
 }
 
 /// The speed of detours and returns, as a fraction of the joints' speeds.

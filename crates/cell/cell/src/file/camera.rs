@@ -58,12 +58,8 @@ fn refused(t: &Table<'_>, e: &VisionError) -> FormatError {
 
 fn settings(t: &Table<'_>, units: Units) -> Result<CameraTrackerSettings> {
     let default = CameraTrackerSettings::default();
-    let length = |key: &str, default: f64| t.get(key).map_or(Ok(default), |v| units.not_negative_length(&v));
     Ok(CameraTrackerSettings {
-        area_m: sensor::area(t, units)?,
-        floor_z_m: t.get("floor").map_or(Ok(default.floor_z_m), |v| units.length_of(&v))?,
-        uncertainty_m: length("uncertainty", default.uncertainty_m)?,
-        max_speed_mps: t.get("max_speed").map_or(Ok(default.max_speed_mps), |v| units.positive_length(&v))?,
+        track: sensor::track(t, units, default.track)?,
         learning_frames: t.get("learning_frames").map_or(Ok(default.learning_frames), |v| v.whole(2, 10_000))?,
         shadows: t.flag_or("shadows", false)?.then(ShadowSettings::default),
         templates: t

@@ -37,8 +37,7 @@ pub(super) fn read(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellSensor>
     let count = |key: &str, default: u32, least: u32| t.get(key).map_or(Ok(default), |v| v.whole(least, 10_000));
     let settings = CloudTrackerSettings {
         sensor_in_world: units.pose(&t.need("pose", POSE)?)?,
-        area_m: sensor::area(t, units)?,
-        floor_z_m: t.get("floor").map_or(Ok(default.floor_z_m), |v| units.length_of(&v))?,
+        track: sensor::track(t, units, default.track)?,
         floor_thickness_m: length("floor_thickness", default.floor_thickness_m)?,
         ceiling_m: positive("ceiling", default.ceiling_m)?,
         voxel_m: positive("voxel", default.voxel_m)?,
@@ -46,8 +45,6 @@ pub(super) fn read(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellSensor>
         min_voxels: count("min_voxels", default.min_voxels, 1)?,
         arm_margin_m: length("mask_margin", default.arm_margin_m)?,
         extend_to_floor: t.flag_or("to_floor", default.extend_to_floor)?,
-        uncertainty_m: length("uncertainty", default.uncertainty_m)?,
-        max_speed_mps: positive("max_speed", default.max_speed_mps)?,
         learning_clouds: count(LEARNING, default.learning_clouds, 0)?,
         ..default
     };

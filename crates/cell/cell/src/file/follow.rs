@@ -70,19 +70,31 @@ pub(super) fn read(
         }
     };
     given(&t, units, &mut limits)?;
+    warn_of_motion(&t, follow, known, &limits, units, warnings);
+    Ok((follow, limits))
+}
+
+/// Warns if the source itself moves faster than the limits.
+fn warn_of_motion(
+    t: &Table<'_>,
+    follow: Follow,
+    known: &Definitions<'_>,
+    limits: &SourceLimits,
+    units: Units,
+    warnings: &mut Vec<Warning>,
+) {
     match follow {
-        Follow::Poses(index) => warn_of_jumps(&t, &known.pose_tracks[index], &limits, units, warnings),
+        Follow::Poses(index) => warn_of_jumps(t, &known.pose_tracks[index], limits, units, warnings),
         Follow::Encoder(index) => {
             let encoder = &known.encoders[index];
             let speed = encoder.fastest(0.0, f64::INFINITY);
             if speed > limits.speed_m_s {
                 let what = format!("encoder \"{}\" moves at {}/s", encoder.name, units.show_length(speed));
-                warn_of_jump(&t, &what, warnings);
+                warn_of_jump(t, &what, warnings);
             }
         }
         Follow::Robot { .. } | Follow::Object(_) => {}
     }
-    Ok((follow, limits))
 }
 
 /// Largest limits of a source, m/s and rad/s: larger ones would permit every jump.

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use elbowroom_formats::FormatError;
 use elbowroom_robot::RobotId;
-use elbowroom_vision::{Intrinsics, Point2};
+use elbowroom_vision::{Intrinsics, Point2, TrackSettings};
 
 use super::read::{Table, Value};
 use super::robot::robot_of;
@@ -132,8 +132,20 @@ pub(super) fn intrinsics(t: &Table<'_>) -> Result<Intrinsics> {
     Ok(Intrinsics { width, height, fx, fy, cx, cy, radial })
 }
 
+/// The settings that every tracker has.
+pub(super) fn track(t: &Table<'_>, units: Units, default: TrackSettings) -> Result<TrackSettings> {
+    let length = |key: &str, default: f64| t.get(key).map_or(Ok(default), |v| units.not_negative_length(&v));
+    Ok(TrackSettings {
+        area_m: area(t, units)?,
+        floor_z_m: t.get("floor").map_or(Ok(default.floor_z_m), |v| units.length_of(&v))?,
+        uncertainty_m: length("uncertainty", default.uncertainty_m)?,
+        max_speed_mps: t.get("max_speed").map_or(Ok(default.max_speed_mps), |v| units.positive_length(&v))?,
+        ..default
+    })
+}
+
 /// The polygon of the floor that is watched, world x and y; empty if none is given.
-pub(super) fn area(t: &Table<'_>, units: Units) -> Result<Vec<Point2>> {
+fn area(t: &Table<'_>, units: Units) -> Result<Vec<Point2>> {
     let Some(v) = t.get("area") else { return Ok(Vec::new()) };
     let corners = v.list(AREA)?;
     if corners.len() < 3 {

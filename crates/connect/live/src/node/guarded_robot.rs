@@ -28,17 +28,10 @@ pub(super) struct GuardedRobot {
     cell: Arc<Cell>,
     setup: MonitorSetup,
     monitor: NodeMonitor,
-    state: JointState,
-    /// Time of the joint values, on the controller's clock. `now` is the present time on that clock.
-    stamp: Option<Micros>,
-    now: Micros,
-    /// Chains of the robots of the cell; only the followed ones are up to date.
-    chains: Vec<ChainState>,
-    /// The robots of the cell as sources; only the followed ones are up to date.
-    followed: Vec<FollowedRobot>,
+    own: OwnJoints,
+    others: OtherRobots,
     sources: Vec<SourceState>,
     attached: AttachedVolumes,
-    standstill: Standstill,
     /// Whether each region of the cell is on.
     active: Vec<bool>,
     /// Whether the robot stops until it has received a table of regions.
@@ -53,6 +46,28 @@ pub(super) struct GuardedRobot {
     recorder: Option<TickRecorder>,
 }
 
+/// What the robot's own controller has sent.
+struct OwnJoints {
+    state: JointState,
+    /// Time of the joint values, on the controller's clock. `now` is the present time on that clock.
+    stamp: Option<Micros>,
+    now: Micros,
+    standstill: Standstill,
+}
+
+impl OwnJoints {
+    /// Age of the joint values; `None` before the first ones.
+    fn age(&self) -> Option<Micros> {
+        self.stamp.map(|stamp| self.now - stamp)
+    }
+}
+
+/// The robots of the cell as sources of regions; only the followed ones are up to date.
+struct OtherRobots {
+    chains: Vec<ChainState>,
+    followed: Vec<FollowedRobot>,
+}
+
 impl GuardedRobot {
     pub(super) fn new(
         cell: Arc<Cell>,
@@ -62,14 +77,18 @@ impl GuardedRobot {
         recorder: Option<TickRecorder>,
     ) -> Self {
         Self {
-            chains: cell.robots.iter().map(|r| ChainState::new(&r.robot.chain)).collect(),
-            followed: vec![FollowedRobot::default(); cell.robots.len()],
+            own: OwnJoints {
+                state: JointState::with_capacity(),
+                stamp: None,
+                now: Micros(0),
+                standstill: Standstill::new(MAX_JOINTS),
+            },
+            others: OtherRobots {
+                chains: cell.robots.iter().map(|r| ChainState::new(&r.robot.chain)).collect(),
+                followed: vec![FollowedRobot::default(); cell.robots.len()],
+            },
             sources: Vec::with_capacity(setup.sources.len()),
             attached: AttachedVolumes::new(&setup.configuration),
-            state: JointState::with_capacity(),
-            stamp: None,
-            now: Micros(0),
-            standstill: Standstill::new(MAX_JOINTS),
             doubt: None,
             active: RegionTable::initial(&cell).active,
             awaits_regions: false,
@@ -87,14 +106,15 @@ impl GuardedRobot {
     /// Reads the input that has arrived, while the inbox is locked.
     pub(super) fn take(&mut self, inbox: &mut Contents, now: Micros) {
         if std::mem::take(&mut inbox.own.is_new) {
-            std::mem::swap(&mut self.state, &mut inbox.own.state);
-            self.stamp = inbox.own.stamp;
-            self.standstill.hear(self.state.boot);
+            std::mem::swap(&mut self.own.state, &mut inbox.own.state);
+            self.own.stamp = inbox.own.stamp;
+            self.own.standstill.hear(self.own.state.boot);
         }
-        self.now = inbox.own.now(now);
+        self.own.now = inbox.own.now(now);
         for (robot, heard) in inbox.followed.iter_mut().enumerate() {
             let Some(heard) = heard else { continue };
-            self.followed[robot].take(heard, &self.cell.robots[robot].robot.chain, &mut self.chains[robot], now);
+            let OtherRobots { chains, followed } = &mut self.others;
+            followed[robot].take(heard, &self.cell.robots[robot].robot.chain, &mut chains[robot], now);
         }
         if std::mem::take(&mut inbox.has_grants) {
             self.monitor.receive(&inbox.grants);
@@ -154,14 +174,9 @@ impl GuardedRobot {
         self.monitor.monitor()
     }
 
-    /// Age of the joint values; `None` before the first ones.
-    fn age(&self) -> Option<Micros> {
-        self.stamp.map(|stamp| self.now - stamp)
-    }
-
     /// Whether the joint values are too old, or none have arrived yet.
     pub(super) fn is_stale(&self) -> bool {
-        self.age().is_none_or(|age| age > Micros::from_seconds(self.cell.laws.laws.stale_s))
+        self.own.age().is_none_or(|age| age > Micros::from_seconds(self.cell.laws.laws.stale_s))
     }
 
     /// Computes the override for the joint values that arrived last. `now` is on this process's clock.
@@ -169,15 +184,15 @@ impl GuardedRobot {
         self.switch_regions();
         let is_attached = self.attach();
         self.place_sources(now);
-        let Some(stamp) = self.stamp else { return self.silent() };
+        let Some(stamp) = self.own.stamp else { return self.silent() };
         let snapshot = Snapshot {
-            now_s: seconds(self.now),
+            now_s: seconds(self.own.now),
             stamp_s: seconds(stamp),
-            q: &self.state.q,
-            qd: &self.state.qd,
+            q: &self.own.state.q,
+            qd: &self.own.state.qd,
             qdd: &[],
-            programmed_override: self.state.programmed_override,
-            intent: (!self.state.intent.is_empty()).then_some(&self.state.intent),
+            programmed_override: self.own.state.programmed_override,
+            intent: (!self.own.state.intent.is_empty()).then_some(&self.own.state.intent),
             sources: &self.sources,
         };
         let fault = match (self.doubt.is_some_and(Doubt::is_of_regions), is_attached) {
@@ -201,8 +216,8 @@ impl GuardedRobot {
     /// Accepts a new place of the robot after a second of rest there, if the joint values have jumped (the robot was
     /// moved by hand or with its controller off) or its controller has started again.
     fn notice_standstill(&mut self, has_jumped: bool, now: Micros) {
-        let state = &self.state;
-        if self.standstill.ends(has_jumped, &state.q, &state.qd, now) {
+        let state = &self.own.state;
+        if self.own.standstill.ends(has_jumped, &state.q, &state.qd, now) {
             self.monitor.monitor_mut().forget_position();
             if let Some(recorder) = &mut self.recorder {
                 recorder.forgot_position();
@@ -224,8 +239,8 @@ impl GuardedRobot {
         self.answers += 1;
         OverrideAnswer {
             checksum: self.checksum,
-            boot: self.state.boot,
-            echo: self.state.sequence,
+            boot: self.own.state.boot,
+            echo: self.own.state.sequence,
             sequence: self.answers,
             speed_override: report.speed_override,
             outputs: report.outputs,
@@ -254,7 +269,7 @@ impl GuardedRobot {
 
     /// Sequence number of the message that the last answer was for.
     pub(super) fn sequence(&self) -> u64 {
-        self.state.sequence
+        self.own.state.sequence
     }
 
     fn switch_regions(&mut self) {
@@ -273,8 +288,8 @@ impl GuardedRobot {
 
     /// Attaches and detaches the optional volumes that the controller names. False if it names an unknown volume.
     fn attach(&mut self) -> bool {
-        let Self { monitor, attached, state, recorder, .. } = self;
-        attached.apply(&state.attached, monitor.monitor_mut(), |volume, in_link| {
+        let Self { monitor, attached, own, recorder, .. } = self;
+        attached.apply(&own.state.attached, monitor.monitor_mut(), |volume, in_link| {
             let Some(recorder) = recorder else { return };
             match in_link {
                 Some(in_link) => recorder.attached(volume, in_link),
@@ -284,7 +299,7 @@ impl GuardedRobot {
     }
 
     fn place_sources(&mut self, now: Micros) {
-        let Self { cell, setup, chains, followed, sources, .. } = self;
+        let Self { cell, setup, others: OtherRobots { chains, followed }, sources, .. } = self;
         let frames = Frames::new(cell);
         sources.clear();
         for follow in &setup.sources {
@@ -295,7 +310,7 @@ impl GuardedRobot {
             };
             sources.push(match age {
                 Some(age) => SourceState {
-                    stamp_s: seconds(self.now) - seconds(age),
+                    stamp_s: seconds(self.own.now) - seconds(age),
                     ..frames.source(follow, chains, seconds(now))
                 },
                 None => SourceState { pose: Pose::IDENTITY, motion: FrameMotion::REST, stamp_s: f64::NEG_INFINITY },

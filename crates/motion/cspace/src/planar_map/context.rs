@@ -9,6 +9,7 @@ use super::outline::Outline;
 use super::precision::{MARGIN, ROUNDING};
 use super::simd_math::WIDTH;
 use super::span_writer::SpanWriter;
+use super::sphere::SphereObstacle;
 use crate::PlanarArm;
 
 /// Constants of one obstacle, shared by all planes.
@@ -16,10 +17,8 @@ pub(super) struct ConvexContext {
     pub simd_level: SimdLevel,
     pub arm: PlanarArm,
     pub spans: SpanWriter,
-    /// Centre of the obstacle's enclosing sphere, and (in `grown_radius`) its radius plus the largest radius of the
-    /// arm, metres.
-    pub center: Vec3,
-    pub grown_radius: f64,
+    /// The obstacle's enclosing sphere, grown by the largest radius of the arm.
+    pub grown: SphereObstacle,
     /// Tangent of half a step of θ1, and (in `stretch`) 1/cos − 1.
     pub tangent: f64,
     pub stretch: f64,
@@ -67,8 +66,7 @@ impl ConvexContext {
             simd_level: arm_grid.simd_level,
             arm,
             spans: SpanWriter::new(&arm_grid.grid.axes()[2]),
-            center,
-            grown_radius,
+            grown: SphereObstacle { center, radius: grown_radius },
             tangent: half1.tan(),
             stretch,
             max_stretch: ((center.x.hypot(center.y) + grown_radius) * stretch) as f32,
@@ -91,9 +89,10 @@ impl ConvexContext {
 
     /// Whether the enclosing sphere, grown by the largest radius of the arm, intersects the wedge.
     pub fn may_reach(&self, [cos, sin]: [f64; 2], side: f64) -> bool {
-        let x = (self.center.x * cos + self.center.y * sin) * side;
-        let y = (self.center.y * cos - self.center.x * sin).abs();
-        let radius = self.grown_radius + f64::from(self.margin);
+        let center = self.grown.center;
+        let x = (center.x * cos + center.y * sin) * side;
+        let y = (center.y * cos - center.x * sin).abs();
+        let radius = self.grown.radius + f64::from(self.margin);
         x + radius > 0.0 && y - self.tangent * x <= radius * (1.0 + self.stretch)
     }
 }

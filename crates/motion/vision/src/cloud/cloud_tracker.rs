@@ -11,7 +11,7 @@ use super::settings::CloudTrackerSettings;
 use super::voxel_grid::VoxelGrid;
 use crate::detection::Detection;
 use crate::object_tracker::ObjectTracker;
-use crate::{ArmPart, CameraTrackerSettings, Obstacle, Point2, VisionError, polygon};
+use crate::{ArmPart, Obstacle, Point2, VisionError, polygon};
 
 /// Whether the obstacles of a cloud can be used.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -98,7 +98,6 @@ pub struct CloudReport {
 #[derive(Debug, Clone)]
 pub struct CloudTracker {
     settings: CloudTrackerSettings,
-    tracking: CameraTrackerSettings,
     arm: ArmFilter,
     voxels: VoxelGrid,
     background: VoxelGrid,
@@ -125,7 +124,6 @@ impl CloudTracker {
         let mut background = VoxelGrid::default();
         background.clear();
         Ok(Self {
-            tracking: settings.for_tracking(),
             background,
             clouds_left: settings.learning_clouds,
             settings,
@@ -220,8 +218,8 @@ impl CloudTracker {
         self.detect();
         self.mark_occluded();
         let dt_s = self.last_valid_s.map_or(0.0, |last_valid_s| cloud.stamp_s - last_valid_s);
-        self.tracker.update(&self.detections[..self.detection_count], dt_s, &self.tracking);
-        self.tracker.write_obstacles(&self.tracking, None, &mut self.report.obstacles);
+        self.tracker.update(&self.detections[..self.detection_count], dt_s, self.settings.track_rules());
+        self.tracker.write_obstacles(self.settings.track_rules(), None, &mut self.report.obstacles);
         self.report.timings =
             CloudTimings { filter: filtered - began, cluster: clustered - filtered, track: clustered.elapsed() };
     }
@@ -276,10 +274,10 @@ impl CloudTracker {
             }
             detection.centre_m = polygon::centroid(&detection.outline_m);
             detection.area = polygon::area(&detection.outline_m);
-            let z_from_m = if self.settings.extend_to_floor { self.settings.floor_z_m } else { low };
-            (detection.z_from_m, detection.z_to_m) = (z_from_m, high + self.settings.uncertainty_m);
+            let z_from_m = if self.settings.extend_to_floor { self.settings.track.floor_z_m } else { low };
+            (detection.z_from_m, detection.z_to_m) = (z_from_m, high + self.settings.track.uncertainty_m);
             if !self.settings.extend_to_floor {
-                detection.z_from_m -= self.settings.uncertainty_m;
+                detection.z_from_m -= self.settings.track.uncertainty_m;
             }
             count += 1;
         }

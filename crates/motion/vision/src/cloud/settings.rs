@@ -2,17 +2,16 @@
 
 use elbowroom_spatial::{Pose, Vec3};
 
-use crate::{CameraTrackerSettings, Point2, VisionError, polygon};
+use crate::track_settings::{TrackRules, TrackSettings};
+use crate::{Point2, VisionError, polygon};
 
 /// Settings of a [`CloudTracker`](super::CloudTracker). Lengths are metres, world frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CloudTrackerSettings {
+    /// What trackers of all sensors have. The default uncertainty and hysteresis are 0.02 m.
+    pub track: TrackSettings,
     /// Pose of the sensor.
     pub sensor_in_world: Pose,
-    /// The monitored area, world x and y: a simple polygon; points outside are dropped. Empty: no limit.
-    pub area_m: Vec<Point2>,
-    /// Height of the floor, world z.
-    pub floor_z_m: f64,
     /// Height above the floor up to which points belong to the floor.
     pub floor_thickness_m: f64,
     /// Height above the floor beyond which points are dropped: the ceiling, or a height above everything an arm can
@@ -29,12 +28,6 @@ pub struct CloudTrackerSettings {
     /// Whether obstacles extend down to the floor, because a sensor above does not measure undersides; otherwise they
     /// extend to their lowest point.
     pub extend_to_floor: bool,
-    /// Inflation of obstacles on all sides.
-    pub uncertainty_m: f64,
-    /// See [`CameraTrackerSettings::hysteresis_m`].
-    pub hysteresis_m: f64,
-    /// See [`CameraTrackerSettings::max_corners`].
-    pub max_corners: usize,
     /// Largest fraction of invalid points (see [`PointCloud::dropped`](super::PointCloud::dropped)); clouds with more
     /// are rejected.
     pub max_dropped: f64,
@@ -42,20 +35,13 @@ pub struct CloudTrackerSettings {
     /// of these clouds belong to the background. 0: no background is learnt, and everything above the floor is an
     /// obstacle.
     pub learning_clouds: u32,
-    /// See [`CameraTrackerSettings::max_speed_mps`].
-    pub max_speed_mps: f64,
-    /// See [`CameraTrackerSettings::enter_frames`].
-    pub enter_frames: u32,
-    /// See [`CameraTrackerSettings::leave_frames`].
-    pub leave_frames: u32,
 }
 
 impl Default for CloudTrackerSettings {
     fn default() -> Self {
         Self {
+            track: TrackSettings { uncertainty_m: 0.02, hysteresis_m: 0.02, ..TrackSettings::default() },
             sensor_in_world: Pose::IDENTITY,
-            area_m: Vec::new(),
-            floor_z_m: 0.0,
             floor_thickness_m: 0.04,
             ceiling_m: 3.0,
             voxel_m: 0.03,
@@ -63,14 +49,8 @@ impl Default for CloudTrackerSettings {
             min_voxels: 4,
             arm_margin_m: 0.04,
             extend_to_floor: true,
-            uncertainty_m: 0.02,
-            hysteresis_m: 0.02,
-            max_corners: 12,
             max_dropped: 0.9,
             learning_clouds: 0,
-            max_speed_mps: 4.0,
-            enter_frames: 1,
-            leave_frames: 3,
         }
     }
 }
@@ -81,7 +61,7 @@ impl CloudTrackerSettings {
     /// # Errors
     /// The first setting that is out of range, with its range.
     pub fn check(&self) -> Result<(), VisionError> {
-        self.for_tracking().check()?;
+        self.track.check()?;
         let ranges = [
             ("floor_thickness_m", self.floor_thickness_m, 0.0..=self.ceiling_m, "from 0 up to ceiling_m"),
             ("ceiling_m", self.ceiling_m, 1e-3..=1e3, "0.001 to 1000 metres"),
@@ -103,22 +83,12 @@ impl CloudTrackerSettings {
 
     /// Whether a point (world) is above the floor, below the ceiling and over the monitored area.
     pub(super) fn is_watched(&self, p: Vec3) -> bool {
-        let heights = self.floor_z_m + self.floor_thickness_m..=self.floor_z_m + self.ceiling_m;
-        heights.contains(&p.z) && (self.area_m.is_empty() || polygon::contains(&self.area_m, Point2::new(p.x, p.y)))
+        let heights = self.track.floor_z_m + self.floor_thickness_m..=self.track.floor_z_m + self.ceiling_m;
+        heights.contains(&p.z)
+            && (self.track.area_m.is_empty() || polygon::contains(&self.track.area_m, Point2::new(p.x, p.y)))
     }
 
-    /// The settings of the tracking itself.
-    pub(super) fn for_tracking(&self) -> CameraTrackerSettings {
-        CameraTrackerSettings {
-            area_m: self.area_m.clone(),
-            floor_z_m: self.floor_z_m,
-            uncertainty_m: self.uncertainty_m,
-            hysteresis_m: self.hysteresis_m,
-            max_corners: self.max_corners,
-            max_speed_mps: self.max_speed_mps,
-            enter_frames: self.enter_frames,
-            leave_frames: self.leave_frames,
-            ..CameraTrackerSettings::default()
-        }
+    pub(super) fn track_rules(&self) -> TrackRules<'_> {
+        TrackRules { track: &self.track, templates: &[], template_frames: 0 }
     }
 }

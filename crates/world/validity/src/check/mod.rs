@@ -10,6 +10,7 @@ mod motion_table;
 #[cfg(test)]
 mod motion_tests;
 mod pair_table_builder;
+mod placed_centres;
 mod segment;
 mod single;
 #[cfg(test)]

@@ -4,6 +4,7 @@
 
 use fearless_simd::Simd;
 
+use super::placed_centres::PlacedCentres;
 use super::segment::joint_value;
 use crate::lanes::{LANES, PointRow, Row, V3};
 use crate::model::{CoveredRobot, Frame, JointTurns, RootSphere, SpherePack, SpherePacks};
@@ -94,10 +95,8 @@ pub(crate) struct SingleWorkspace {
     pub is_excluded: Vec<bool>,
     /// Per step: its cell in the tables.
     cells: Vec<[i32; LANES]>,
-    /// Per pack: the centres of its spheres in the world, valid if `stamps` has the number of the current configuration.
-    centres: Vec<PointRow>,
-    stamps: Vec<u32>,
-    stamp: u32,
+    /// Per pack: the centres of its spheres in the world, in blocks of one configuration.
+    centres: PlacedCentres,
     /// Packs of boxes still to visit.
     pub open: Vec<(u32, u32)>,
     pub found: Vec<u32>,
@@ -124,9 +123,7 @@ impl SingleWorkspace {
             links: vec![PointRow::ZERO; packs.links.len().div_ceil(LANES)],
             is_excluded: vec![false; robot.pairs.len()],
             cells: vec![[0; LANES]; rows],
-            centres: vec![PointRow::ZERO; packs.packs.len()],
-            stamps: vec![0; packs.packs.len()],
-            stamp: 0,
+            centres: PlacedCentres::new(packs.packs.len()),
             open: Vec::new(),
             found: Vec::new(),
             found_inner: Vec::new(),
@@ -139,11 +136,7 @@ impl SingleWorkspace {
     /// Sets the values of the joints and discards the last configuration. False if the bounds do not hold for the values.
     #[inline(always)]
     pub fn begin(&mut self, robot: &CoveredRobot, q: &[f64]) -> bool {
-        if self.stamp == u32::MAX {
-            self.stamps.fill(0);
-            self.stamp = 0;
-        }
-        self.stamp += 1;
+        self.centres.begin_block();
         self.unproven.clear();
         let mut is_valid = true;
         for (i, step) in robot.chain.steps.iter().enumerate() {
@@ -202,8 +195,8 @@ impl SingleWorkspace {
     #[inline(always)]
     pub fn centres<S: Simd>(&mut self, simd: S, pack: &SpherePack, index: u32) -> V3<S> {
         let i = index as usize;
-        if self.stamps[i] == self.stamp {
-            return self.centres[i].load(simd);
+        if self.centres.are_placed(i) {
+            return self.centres.row(i).load(simd);
         }
         let frame = &self.frames[pack.frame as usize];
         let local = pack.centres.load(simd);
@@ -211,15 +204,14 @@ impl SingleWorkspace {
         at = splat3(simd, frame.columns[0]).times_plus(local.0, at);
         at = splat3(simd, frame.columns[1]).times_plus(local.1, at);
         at = splat3(simd, frame.columns[2]).times_plus(local.2, at);
-        self.stamps[i] = self.stamp;
-        self.centres[i].store(at);
+        self.centres.place(i, at);
         at
     }
 
     /// The centre of a sphere of a pack, which must be computed already.
     #[inline(always)]
     pub fn centre(&self, pack: u32, lane: usize) -> [f32; 3] {
-        lane_of(&self.centres[pack as usize], lane)
+        lane_of(self.centres.row(pack as usize), lane)
     }
 }
 

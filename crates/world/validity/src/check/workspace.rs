@@ -2,7 +2,8 @@
 
 use super::joint_stretch::JointStretch;
 use super::motion_table::MotionTable;
-use crate::lanes::{LANES, PointRow, Row};
+use super::placed_centres::PlacedCentres;
+use crate::lanes::{LANES, Row};
 use crate::model::{CoveredRobot, FrameLanes};
 
 /// A node of a body and an obstacle.
@@ -19,10 +20,8 @@ pub(crate) struct Workspace {
     /// Per moving joint: its values.
     pub values: Vec<Row>,
     pub frames: Vec<FrameLanes>,
-    /// Per sphere node: its centres in the world, valid if `stamps` has the number of the current block.
-    centres: Vec<PointRow>,
-    stamps: Vec<u32>,
-    stamp: u32,
+    /// Per sphere node: its centres in the world.
+    centres: PlacedCentres,
     /// Per obstacle: the block, the body, and the lanes in which that body needs no further test.
     settled: Vec<(u32, usize, u32)>,
     /// Per moving joint: its values in a stretch.
@@ -55,9 +54,7 @@ impl Workspace {
         Self {
             values: vec![Row::ZERO; robot.chain.steps.len()],
             frames: robot.chain.frames(),
-            centres: vec![PointRow::ZERO; robot.nodes.len()],
-            stamps: vec![0; robot.nodes.len()],
-            stamp: 0,
+            centres: PlacedCentres::new(robot.nodes.len()),
             settled: Vec::new(),
             reach_squares: vec![Row::ZERO; rows],
             stretch: vec![JointStretch::default(); robot.chain.steps.len()],
@@ -82,18 +79,15 @@ impl Workspace {
 
     /// Discards the centres of the last block.
     pub fn begin_block(&mut self) {
-        if self.stamp == u32::MAX {
-            self.stamps.fill(0);
+        if self.centres.begin_block() {
             self.settled.clear();
-            self.stamp = 0;
         }
-        self.stamp += 1;
     }
 
     /// Lanes in which a body and an obstacle need no further test in this block.
     pub fn settled(&self, body: usize, obstacle: u32) -> u32 {
         match self.settled.get(obstacle as usize) {
-            Some(&(stamp, of_body, lanes)) if (stamp, of_body) == (self.stamp, body) => lanes,
+            Some(&(block, of_body, lanes)) if (block, of_body) == (self.centres.block(), body) => lanes,
             _ => 0,
         }
     }
@@ -104,7 +98,7 @@ impl Workspace {
         if self.settled.len() <= obstacle as usize {
             self.settled.resize(obstacle as usize + 1, (0, 0, 0));
         }
-        self.settled[obstacle as usize] = (self.stamp, body, lanes);
+        self.settled[obstacle as usize] = (self.centres.block(), body, lanes);
     }
 
     /// Centres of a node in the world.
@@ -112,13 +106,12 @@ impl Workspace {
     #[allow(clippy::inline_always, reason = "part of a kernel")]
     pub fn centre<S: fearless_simd::Simd>(&mut self, simd: S, robot: &CoveredRobot, node: u32) -> crate::lanes::V3<S> {
         let i = node as usize;
-        if self.stamps[i] == self.stamp {
-            return self.centres[i].load(simd);
+        if self.centres.are_placed(i) {
+            return self.centres.row(i).load(simd);
         }
         let n = &robot.nodes[i];
         let centre = self.frames[n.frame as usize].point(simd, n.centre);
-        self.stamps[i] = self.stamp;
-        self.centres[i].store(centre);
+        self.centres.place(i, centre);
         centre
     }
 
@@ -126,7 +119,7 @@ impl Workspace {
     #[inline(always)]
     #[allow(clippy::inline_always, reason = "part of a kernel")]
     pub fn known_centre<S: fearless_simd::Simd>(&self, simd: S, node: u32) -> crate::lanes::V3<S> {
-        self.centres[node as usize].load(simd)
+        self.centres.row(node as usize).load(simd)
     }
 
     /// Computes `reach_squares` from the radii of the bounding spheres and the chords.
