@@ -10,7 +10,7 @@ pub const GROUPS: [(&str, &[&str]); 7] = [
     ("world", &["scene", "formats", "validity", "inspect"]),
     ("guard", &["interlock", "monitor"]),
     ("motion", &["cspace", "planner", "avoidance", "shared_control", "cooperation", "vision", "perception"]),
-    ("cell", &["cell", "query", "sim", "report"]),
+    ("cell", &["access", "cell", "query", "sim", "report"]),
     ("connect", &["status", "ros2", "recording", "view", "live"]),
     ("front", &["elbowroom", "cli", "python"]),
 ];

@@ -4,7 +4,7 @@
 //! `docs/cell-file.md`). In a [`Cell`] all names are resolved and all numbers are in metres, radians and seconds.
 //! [`configure`] builds the configuration of each robot's monitor from it, [`QueryModel`] the scene,
 //! [`region_constraint`] the constraint that keeps planned paths out of regions. [`seal`] controls who may change what
-//! in the file. `elbowroom_sim` runs the programs.
+//! in the file, with the keys of [`access`]. `elbowroom_sim` runs the programs.
 //!
 //! ```
 //! use elbowroom_cell::{Cell, configure};
@@ -51,7 +51,6 @@ mod rest_pose_contacts;
 mod scene_pairs;
 pub mod seal;
 mod sensor;
-pub mod suggest;
 mod tcp_target;
 mod title;
 mod tool;
@@ -59,6 +58,7 @@ mod tool_change;
 pub mod trajectory;
 
 pub use cell::{AvoidanceSpec, Cell, CellLaws, CellRegion, CellRobot, Follow, MapSpec, Units};
+pub use elbowroom_access as access;
 pub use file::{CellFile, QUATERNION_TOLERANCE};
 pub use frames::Frames;
 pub use model_limits::model_limits;

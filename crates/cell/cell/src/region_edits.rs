@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::path::{Component, Path};
 
 use elbowroom_formats::FormatError;
+use elbowroom_formats::toml_tables::{self, Data, Entry, Node};
 use elbowroom_monitor::{Life, RegionKind};
 use serde::{Deserialize, Serialize};
 
-use crate::file::node::{self, Data, Entry, Node};
 use crate::seal::value::{key, text};
 use crate::{Cell, CellFile, CellRegion, Follow, configure};
 
@@ -78,7 +78,7 @@ impl EditedRegions {
         // The checksum is valid for the file without edits.
         file.entries.retain(|e| e.key != "checksum");
         for edit in edits {
-            let keys = edit.table.as_ref().map(|table| node::parse(&file.file, table)).transpose()?;
+            let keys = edit.table.as_ref().map(|table| toml_tables::parse(&file.file, table)).transpose()?;
             let regions = regions(&mut file.entries);
             let at = regions.iter().position(|e| e.key == edit.name);
             let entry = keys.map(|keys| Entry {
@@ -124,7 +124,7 @@ impl EditedRegions {
     /// [`FormatError`] if it is not TOML, another region's table, or names a file outside of the cell's folder.
     pub fn table_of(&self, name: &str, toml: &str) -> Result<String> {
         let path = &self.file.file;
-        let mut entries = node::parse(path, toml)?;
+        let mut entries = toml_tables::parse(path, toml)?;
         if let [Entry { key, node: Node { data: Data::Table(tables), .. }, .. }] = &entries[..]
             && key == "region"
         {
@@ -149,8 +149,8 @@ impl EditedRegions {
     /// [`FormatError`] if `to` is empty, is not TOML, or has a key that does not define a place.
     pub fn moved(&self, name: &str, table: &str, to: &str) -> Result<String> {
         let path = &self.file.file;
-        let mut keys = node::parse(path, table)?;
-        let place = node::parse(path, to)?;
+        let mut keys = toml_tables::parse(path, table)?;
+        let place = toml_tables::parse(path, to)?;
         if place.is_empty() {
             let what = format!("it is not said where region `{name}` is moved");
             return Err(FormatError::new(path, None, what).hint(hint_for(&keys)));
@@ -222,7 +222,7 @@ fn check_files(path: &Path, entries: &[Entry]) -> Result<()> {
 /// Differences between two tables of a region: key, value before, value after.
 pub fn table_changes(before: Option<&str>, after: Option<&str>) -> Vec<(String, Option<String>, Option<String>)> {
     let keys = |table: Option<&str>| -> BTreeMap<String, String> {
-        let entries = table.and_then(|table| node::parse(Path::new(""), table).ok()).unwrap_or_default();
+        let entries = table.and_then(|table| toml_tables::parse(Path::new(""), table).ok()).unwrap_or_default();
         entries.iter().map(|e| (key(&e.key), text(&e.node))).collect()
     };
     let (before, after) = (keys(before), keys(after));

@@ -4,7 +4,8 @@ use std::path::Path;
 
 use crate::common::{ARM, HEAD, rail};
 use elbowroom_cell::Cell;
-use elbowroom_cell::seal::{PrivateKey, Signer, history, seal};
+use elbowroom_cell::access::PrivateKey;
+use elbowroom_cell::seal::{Signer, history, seal};
 use elbowroom_monitor::AccessClass;
 
 /// Every kind of table that affects a monitor.

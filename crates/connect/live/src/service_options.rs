@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use elbowroom_cell::seal::NetworkKey;
+use elbowroom_cell::access::NetworkKey;
 use elbowroom_view::http::Endpoint;
 
 use crate::control::ControlOptions;

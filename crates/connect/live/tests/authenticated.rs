@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex};
 
 use elbowroom_cell::RegionEdit;
-use elbowroom_cell::seal::NetworkKey;
+use elbowroom_cell::access::NetworkKey;
 use elbowroom_live::network::{
     AuthenticatedNetwork, LocalNetwork, Network, Publisher, Subscription, Urgency, ZenohNetwork, ZenohSettings,
 };

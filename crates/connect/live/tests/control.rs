@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use crate::common::control_setup::{ControlSetup, INTEGRATOR, OPERATOR, PROGRAMMER, rails, read};
 use elbowroom_cell::Cell;
-use elbowroom_cell::seal::{AccessTokens, control_history};
+use elbowroom_cell::access::{AccessTokens, control_history};
 use elbowroom_interlock::wire::{self, Message};
 use elbowroom_interlock::{Boot, Guard};
 use elbowroom_live::network::{Network, Publisher, Subscription, Urgency};

@@ -1,7 +1,7 @@
 //! Processes of a live cell that start again, or start twice.
 
 use crate::common::control_setup::{ControlSetup, INTEGRATOR, PROGRAMMER, rails};
-use elbowroom_cell::seal::NetworkKey;
+use elbowroom_cell::access::NetworkKey;
 use elbowroom_live::{EventHandler, Service, ServiceOptions, region_journal_of};
 use elbowroom_testkit::network::{eventually, free_address};
 use serde_json::json;

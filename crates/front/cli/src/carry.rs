@@ -1,6 +1,7 @@
 //! `--carry ROBOT=OBJECT`: objects that robots hold.
 
-use elbowroom::cell::{Cell, suggest};
+use elbowroom::cell::Cell;
+use elbowroom::formats::suggest;
 use elbowroom::robot::{ObjectId, RobotId};
 use elbowroom::scene::Attachment;
 use elbowroom::sim::held_object;

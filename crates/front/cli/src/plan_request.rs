@@ -2,7 +2,8 @@
 
 use std::time::Duration;
 
-use elbowroom::cell::{Cell, suggest};
+use elbowroom::cell::Cell;
+use elbowroom::formats::suggest;
 use elbowroom::planner::RrtConnectSettings;
 use elbowroom::query::plan;
 

@@ -7,26 +7,23 @@ mod detours;
 use std::time::Instant;
 
 use elbowroom_kinematics::JointLimits;
-use elbowroom_planner::{PathConstraint, RrtConnect, RrtConnectSettings};
+use elbowroom_planner::PathConstraint;
 use elbowroom_robot::{ObjectId, RobotId};
-use elbowroom_scene::{Attachment, Scene, SceneError, SweepOptions};
+use elbowroom_scene::{Attachment, Scene, SceneError};
 
 use crate::border::BorderQuery;
-use crate::detour::{Detour, JointState, SAME_CONFIGURATION_S};
-use crate::escape_check::EscapeClearance;
-use crate::escape_search::{EscapeSearch, EscapeTick};
-use crate::escape_trajectory::EscapeStart;
+use crate::detour::JointState;
+use crate::escape_search::EscapeSearch;
 use crate::joint_command::JointCommand;
 use crate::joint_limits::{arrival_speed, brake, distance_s, problem, progress, speed_fraction, stop_s, update_bounds};
 use crate::objective::Objective;
-use crate::path_rate::{PathState, approach_rate, is_path_held, path_rate};
 use crate::proximity_query::{ProximityQuery, ProximityRange};
 use crate::reversal_limiter::ReversalLimiter;
-use crate::state_machine::{StateMachine, TickSummary};
-use crate::sweep_check::{SweepCheck, VelocitySegment};
+use crate::state_machine::StateMachine;
+use crate::sweep_check::SweepCheck;
 use crate::{
-    AvoidanceError, AvoiderOutput, AvoiderSettings, DynamicObstacles, EscapeState, ObstacleKind, PathKind,
-    ProximityPair, Reaction, ReactiveController, Reference, Rules, StageTimes, VelocityBounds, VelocityTask,
+    AvoidanceError, AvoiderOutput, AvoiderSettings, DynamicObstacles, EscapeState, Reaction, ReactiveController,
+    Reference, Rules, StageTimes, VelocityBounds, VelocityTask,
 };
 
 /// Override below which the robot is stopped.

@@ -274,8 +274,9 @@ impl ObjectTracker {
             track.obstacle.change = ObstacleChange::Unchanged;
             return;
         }
+        let is_reported = track.is_reported();
         let obstacle = &mut track.obstacle;
-        obstacle.change = if track.is_reported() { ObstacleChange::Moved } else { ObstacleChange::Entered };
+        obstacle.change = if is_reported { ObstacleChange::Moved } else { ObstacleChange::Entered };
         (obstacle.z_from_m, obstacle.z_to_m) = (z_from_m, z_to_m);
         obstacle.kind = track.template.accepted.map(|template| settings.templates[template].name.clone());
         polygon::inflate(&self.grown_m, settings.track.hysteresis_m, &mut obstacle.footprint_m, &mut self.workspace);

@@ -16,6 +16,7 @@
 //! | tables of numbers | [`number_table`] | CSV with a header |
 //! | planning scenes | [`planning_scene`] | of `MoveIt`: `.scene` text and YAML |
 //! | planning problems | [`problem_set`] | JSON in the layout of `MotionBenchMaker` |
+//! | TOML | [`toml_tables`] | the line of every key and value; typed access |
 //! | PNG | [`png`] | grey, RGB, alpha, palettes, 8 and 16 bits, interlaced; written too |
 //! | PNM | [`pnm`] | PBM, PGM, PPM, in text and in bytes |
 //!
@@ -82,8 +83,10 @@ mod resolve;
 pub mod robot;
 pub mod srdf;
 pub mod stl;
+pub mod suggest;
 pub mod tds;
 mod tokens;
+pub mod toml_tables;
 pub mod urdf;
 mod whole_file;
 mod xml;

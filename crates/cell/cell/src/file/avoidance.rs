@@ -1,13 +1,13 @@
 //! `[avoidance.ROBOT]`: avoidance of dynamic obstacles by a robot.
 
 use elbowroom_avoidance::{AvoiderSettings, Rules};
-use elbowroom_formats::FormatError;
+use elbowroom_formats::toml_tables::{Table, Value};
+use elbowroom_formats::{FormatError, suggest};
 use elbowroom_robot::{ObjectId, RobotId};
 
-use super::read::{Table, Value};
 use super::robot::robot_of;
 use super::tools::with_exchanged_tools;
-use crate::{AvoidanceSpec, Cell, Units, suggest};
+use crate::{AvoidanceSpec, Cell, Units};
 
 type Result<T> = std::result::Result<T, FormatError>;
 

@@ -1,9 +1,9 @@
 //! `[camera.NAME]`: a calibrated camera above the floor of the cell.
 
 use elbowroom_formats::FormatError;
+use elbowroom_formats::toml_tables::{Table, Value};
 use elbowroom_vision::{Camera, CameraTracker, CameraTrackerSettings, ShadowSettings, Template, VisionError};
 
-use super::read::{Table, Value};
 use super::sensor::{self, two};
 use crate::{Cell, CellSensor, SensorKind, Units};
 
@@ -59,7 +59,7 @@ fn refused(t: &Table<'_>, e: &VisionError) -> FormatError {
 fn settings(t: &Table<'_>, units: Units) -> Result<CameraTrackerSettings> {
     let default = CameraTrackerSettings::default();
     Ok(CameraTrackerSettings {
-        track: sensor::track(t, units, default.track)?,
+        track: sensor::track(t, units, &default.track)?,
         learning_frames: t.get("learning_frames").map_or(Ok(default.learning_frames), |v| v.whole(2, 10_000))?,
         shadows: t.flag_or("shadows", false)?.then(ShadowSettings::default),
         templates: t

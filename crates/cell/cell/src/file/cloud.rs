@@ -1,10 +1,10 @@
 //! `[cloud.NAME]`: a sensor of points above or beside the cell: point clouds, or pictures of depths.
 
 use elbowroom_formats::FormatError;
+use elbowroom_formats::toml_tables::Table;
 use elbowroom_vision::cloud::{CloudTracker, CloudTrackerSettings};
 use elbowroom_vision::{Camera, VisionError};
 
-use super::read::Table;
 use super::sensor;
 use crate::{Cell, CellSensor, SensorKind};
 
@@ -37,7 +37,7 @@ pub(super) fn read(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellSensor>
     let count = |key: &str, default: u32, least: u32| t.get(key).map_or(Ok(default), |v| v.whole(least, 10_000));
     let settings = CloudTrackerSettings {
         sensor_in_world: units.pose(&t.need("pose", POSE)?)?,
-        track: sensor::track(t, units, default.track)?,
+        track: sensor::track(t, units, &default.track)?,
         floor_thickness_m: length("floor_thickness", default.floor_thickness_m)?,
         ceiling_m: positive("ceiling", default.ceiling_m)?,
         voxel_m: positive("voxel", default.voxel_m)?,

@@ -1,12 +1,12 @@
 //! The definitions that a region may refer to, and their lookup by name.
 
-use elbowroom_formats::FormatError;
+use elbowroom_formats::toml_tables::Value;
+use elbowroom_formats::{FormatError, suggest};
 use elbowroom_robot::RobotId;
 use elbowroom_scene::Object;
 
-use super::read::Value;
 use crate::moving_object::{Encoder, MovingObject};
-use crate::{CellRobot, PoseTrack, suggest};
+use crate::{CellRobot, PoseTrack};
 
 type Result<T> = std::result::Result<T, FormatError>;
 

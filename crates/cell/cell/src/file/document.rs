@@ -2,9 +2,7 @@
 
 use std::path::Path;
 
-use elbowroom_formats::FormatError;
-
-use super::node;
+use elbowroom_formats::{FormatError, toml_tables};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
@@ -15,7 +13,7 @@ const MAX_BYTES: u64 = 64 << 20;
 #[derive(Debug, Clone)]
 pub struct CellFile {
     pub(crate) file: std::path::PathBuf,
-    pub(crate) entries: Vec<node::Entry>,
+    pub(crate) entries: Vec<toml_tables::Entry>,
     /// True if it was read from disk; then its seal is verified.
     pub(super) on_disk: bool,
 }
@@ -47,7 +45,7 @@ impl CellFile {
     /// [`FormatError`] if it is not TOML.
     pub fn parse(path: impl AsRef<Path>, text: &str) -> Result<Self> {
         let file = path.as_ref().to_owned();
-        let entries = node::parse(&file, text)?;
+        let entries = toml_tables::parse(&file, text)?;
         Ok(Self { file, entries, on_disk: false })
     }
 
@@ -59,7 +57,7 @@ impl CellFile {
     /// Names of the regions, in file order.
     pub(crate) fn region_names(&self) -> Vec<String> {
         let tables = self.entries.iter().filter(|e| e.key == "region").filter_map(|e| match &e.node.data {
-            node::Data::Table(tables) => Some(tables),
+            toml_tables::Data::Table(tables) => Some(tables),
             _ => None,
         });
         tables.flatten().map(|e| e.key.clone()).collect()

@@ -1,10 +1,8 @@
 //! The link that carries the tool.
 
-use elbowroom_formats::{FormatError, Warning};
+use elbowroom_formats::toml_tables::{Table, Value};
+use elbowroom_formats::{FormatError, Warning, suggest};
 use elbowroom_kinematics::{Chain, JointId, LinkId};
-
-use super::read::{Table, Value};
-use crate::suggest;
 
 /// Names of tool frames (ROS-Industrial), in order of preference.
 const NAMES: [&str; 2] = ["tool0", "flange"];

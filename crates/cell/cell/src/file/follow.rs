@@ -1,6 +1,7 @@
 //! `follow = { … }` of a region: the source that moves it, and its largest plausible speed.
 
-use elbowroom_formats::{FormatError, Warning};
+use elbowroom_formats::toml_tables::{Table, Value};
+use elbowroom_formats::{FormatError, Warning, suggest};
 use elbowroom_kinematics::motion_bound::{joint_reaches, motion_bound};
 use elbowroom_kinematics::{Chain, LinkId};
 use elbowroom_monitor::SourceLimits;
@@ -10,8 +11,7 @@ use elbowroom_spatial::Pose;
 use super::definitions::{Definitions, encoder_index, robot_id};
 use super::flange::unknown_link;
 use super::poses;
-use super::read::{Table, Value};
-use crate::{CellRobot, Follow, PoseRate, PoseTrack, Units, suggest};
+use crate::{CellRobot, Follow, PoseRate, PoseTrack, Units};
 
 type Result<T> = std::result::Result<T, FormatError>;
 

@@ -1,11 +1,11 @@
 //! Goals of moves: joint values, the name of a state, or a pose of the TCP.
 
-use elbowroom_formats::FormatError;
+use elbowroom_formats::toml_tables::{Table, Value};
+use elbowroom_formats::{FormatError, suggest};
 use elbowroom_kinematics::inverse::ConfigurationChoice;
 
-use super::read::{Table, Value};
 use super::robot::joint_values;
-use crate::{CellRobot, MoveTarget, TcpTarget, Units, suggest};
+use crate::{CellRobot, MoveTarget, TcpTarget, Units};
 
 type Result<T> = std::result::Result<T, FormatError>;
 

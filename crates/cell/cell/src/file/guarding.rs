@@ -1,11 +1,11 @@
 //! Check that a region guards a part of each robot that it applies to.
 
+use elbowroom_formats::toml_tables::Table;
 use elbowroom_formats::{FormatError, Warning};
 use elbowroom_kinematics::LinkId;
 use elbowroom_monitor::{Guards, Part, Region, RegionKind};
 use elbowroom_spatial::Vec3;
 
-use super::read::Table;
 use crate::{Cell, CellRegionId, CellRobot};
 
 type Result<T> = std::result::Result<T, FormatError>;

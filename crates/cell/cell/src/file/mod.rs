@@ -10,13 +10,11 @@ mod follow;
 mod goal;
 mod guarding;
 mod models;
-pub(crate) mod node;
 mod object;
 mod planning_scene;
 mod plausibility;
 mod poses;
 mod program;
-pub(crate) mod read;
 mod region;
 mod robot;
 mod sensor;
@@ -25,19 +23,19 @@ mod units;
 
 use std::path::Path;
 
-use elbowroom_formats::{FormatError, Warning};
+use elbowroom_formats::toml_tables::{Table, Value};
+use elbowroom_formats::{FormatError, Warning, suggest};
 use elbowroom_monitor::{Laws, RobotSet};
 use elbowroom_robot::{GeometryId, RobotId};
 use elbowroom_scene::PairRules;
 
 pub use document::CellFile;
-use read::{Table, Value};
 use robot::robot_of;
 pub use units::QUATERNION_TOLERANCE;
 
 use crate::{
     Cell, CellLaws, CellRegionId, CellRobot, CellSensor, MapSpec, PairFile, QueryModel, Units, configure,
-    joint_contacts, rest_pose_contacts, seal, suggest,
+    joint_contacts, rest_pose_contacts, seal,
 };
 
 type Result<T> = std::result::Result<T, FormatError>;

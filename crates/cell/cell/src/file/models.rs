@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use elbowroom_formats::srdf::{self as srdf_file, GroupState};
+use elbowroom_formats::toml_tables::{Table, Value};
 use elbowroom_formats::{
     FormatError, LoadOptions, NumberTable, Warning, mesh as mesh_file, read_file, robot as robot_file,
 };
@@ -10,8 +11,6 @@ use elbowroom_kinematics::Chain;
 use elbowroom_proximity::Shape;
 use elbowroom_robot::Robot;
 use elbowroom_spatial::units::LengthUnit;
-
-use super::read::{Table, Value};
 
 /// Largest SRDF, bytes.
 const MAX_SRDF_BYTES: u64 = 64 << 20;

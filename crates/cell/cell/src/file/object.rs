@@ -1,13 +1,13 @@
 //! `[object.NAME]`: solid objects, and their motion.
 
 use elbowroom_formats::FormatError;
+use elbowroom_formats::toml_tables::{Table, Value};
 use elbowroom_proximity::{HalfSpace, Shape};
 use elbowroom_robot::ObjectId;
 use elbowroom_scene::Object;
 use elbowroom_spatial::{Pose, Vec3};
 
 use super::definitions::encoder_index;
-use super::read::{Table, Value};
 use crate::{Cell, Drive, MovingObject, ObjectPath, PathRepeat, Units};
 
 type Result<T> = std::result::Result<T, FormatError>;

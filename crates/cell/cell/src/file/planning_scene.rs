@@ -4,15 +4,15 @@ use std::collections::HashSet;
 use std::ops::Range;
 
 use elbowroom_formats::planning_scene::{self, FixedFrame, PlanningScene};
-use elbowroom_formats::{FormatError, Warning};
+use elbowroom_formats::toml_tables::{Table, Value};
+use elbowroom_formats::{FormatError, Warning, suggest};
 use elbowroom_kinematics::ChainState;
 use elbowroom_scene::Object;
 use elbowroom_spatial::Pose;
 
 use super::models;
-use super::read::{Table, Value};
 use crate::scene_pairs::ScenePairs;
-use crate::{Cell, CellRobot, suggest};
+use crate::{Cell, CellRobot};
 
 type Result<T> = std::result::Result<T, FormatError>;
 

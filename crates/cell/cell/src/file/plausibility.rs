@@ -3,13 +3,13 @@
 use std::ops::Range;
 
 use elbowroom_formats::Warning;
+use elbowroom_formats::toml_tables::Table;
 use elbowroom_kinematics::{ChainState, JointKind, LinkId};
 use elbowroom_proximity::{Shape, Sphere, separation, within};
 use elbowroom_robot::{Collider, ObjectId};
 use elbowroom_spatial::units::LengthUnit;
 use elbowroom_spatial::{Pose, Vec3};
 
-use super::read::Table;
 use crate::frames::Frames;
 use crate::{Cell, CellRegion, CellRobot, Follow};
 

@@ -1,12 +1,12 @@
 //! CSV files of poses over time: `follow = { poses = "cart.csv" }`.
 
-use elbowroom_formats::{FormatError, NumberTable, TimedRow};
+use elbowroom_formats::toml_tables::Value;
+use elbowroom_formats::{FormatError, NumberTable, TimedRow, suggest};
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 use super::models;
-use super::read::Value;
-use crate::{PoseTrack, Units, suggest};
+use crate::{PoseTrack, Units};
 
 type Result<T> = std::result::Result<T, FormatError>;
 

@@ -1,17 +1,17 @@
 //! `[program.NAME]`: steps or a recorded trajectory.
 
 use elbowroom_formats::recording::{self, RecordingLayout};
-use elbowroom_formats::{FormatError, JointStateOptions, JointStates, Warning};
+use elbowroom_formats::toml_tables::{Table, Value};
+use elbowroom_formats::{FormatError, JointStateOptions, JointStates, Warning, suggest};
 use elbowroom_monitor::Life;
 use elbowroom_proximity::Shape;
 use elbowroom_robot::ObjectId;
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 
-use super::read::{Table, Value};
 use super::{goal, models};
 use crate::{
     Cell, CellRegion, CellRegionId, CellRobot, PathPlanner, Program, ProgramBody, ProgramStep, StepAction,
-    TrajectoryRow, Units, suggest,
+    TrajectoryRow, Units,
 };
 
 type Result<T> = std::result::Result<T, FormatError>;

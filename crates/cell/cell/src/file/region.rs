@@ -1,5 +1,6 @@
 //! `[region.NAME]` and `[encoder.NAME]`.
 
+use elbowroom_formats::toml_tables::{Table, Value};
 use elbowroom_formats::{FormatError, Warning};
 use elbowroom_monitor::{Guards, Life, Region, RegionKind, SlotId, SourceLimits};
 use elbowroom_proximity::{ConvexHull, Shape};
@@ -8,7 +9,6 @@ use elbowroom_spatial::Vec3;
 use elbowroom_spatial::units::LengthUnit;
 
 use super::definitions::{Definitions, robot_id};
-use super::read::{Table, Value};
 use super::{follow, models};
 use crate::{CellRegion, Encoder, Follow, Travel, Units};
 

@@ -1,6 +1,7 @@
 //! `[robot.NAME]`.
 
-use elbowroom_formats::{FormatError, Warning};
+use elbowroom_formats::toml_tables::{Table, Value};
+use elbowroom_formats::{FormatError, Warning, suggest};
 use elbowroom_kinematics::dh::ClassicalRow;
 use elbowroom_kinematics::{Chain, JointKind, JointLimits, Limits};
 use elbowroom_monitor::VolumeModel;
@@ -8,10 +9,9 @@ use elbowroom_proximity::Shape;
 use elbowroom_robot::{Collider, Robot, RobotId};
 use elbowroom_spatial::Pose;
 
-use super::read::{Table, Value};
 use super::{flange, models, tools};
 use crate::model_limits::{ACCELERATION_TIME_S, JERK_TIME_S, STOP_TIME_S};
-use crate::{CellRobot, Units, suggest};
+use crate::{CellRobot, Units};
 
 type Result<T> = std::result::Result<T, FormatError>;
 

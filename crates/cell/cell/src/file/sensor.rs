@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use elbowroom_formats::FormatError;
+use elbowroom_formats::toml_tables::{Table, Value};
 use elbowroom_robot::RobotId;
 use elbowroom_vision::{Intrinsics, Point2, TrackSettings};
 
-use super::read::{Table, Value};
 use super::robot::robot_of;
 use super::tools::with_exchanged_tools;
 use crate::{Cell, CellSensor, SensorKind, Units};
@@ -133,14 +133,14 @@ pub(super) fn intrinsics(t: &Table<'_>) -> Result<Intrinsics> {
 }
 
 /// The settings that every tracker has.
-pub(super) fn track(t: &Table<'_>, units: Units, default: TrackSettings) -> Result<TrackSettings> {
+pub(super) fn track(t: &Table<'_>, units: Units, default: &TrackSettings) -> Result<TrackSettings> {
     let length = |key: &str, default: f64| t.get(key).map_or(Ok(default), |v| units.not_negative_length(&v));
     Ok(TrackSettings {
         area_m: area(t, units)?,
         floor_z_m: t.get("floor").map_or(Ok(default.floor_z_m), |v| units.length_of(&v))?,
         uncertainty_m: length("uncertainty", default.uncertainty_m)?,
         max_speed_mps: t.get("max_speed").map_or(Ok(default.max_speed_mps), |v| units.positive_length(&v))?,
-        ..default
+        ..default.clone()
     })
 }
 

@@ -1,12 +1,12 @@
 //! `[robot.NAME.tools.TOOL]`: several named tools of a robot.
 
 use elbowroom_formats::FormatError;
+use elbowroom_formats::toml_tables::{Table, Value};
 use elbowroom_kinematics::{Chain, Joint, JointId, JointKind, Limits, LinkId};
 use elbowroom_robot::{Collider, Robot};
 use elbowroom_spatial::{Pose, Vec3};
 
 use super::flange::unknown_link;
-use super::read::{Table, Value};
 use crate::{CellRobot, CellTool, Units};
 
 type Result<T> = std::result::Result<T, FormatError>;

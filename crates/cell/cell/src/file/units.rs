@@ -1,12 +1,12 @@
 //! Units of the cell file, and values with units: lengths, angles, poses, solids.
 
 use elbowroom_formats::FormatError;
+use elbowroom_formats::toml_tables::{Table, Value};
 use elbowroom_proximity::{Capsule, Cuboid, Cylinder, Shape, Sphere};
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 use super::models;
-use super::read::{Table, Value};
 use crate::Units;
 
 type Result<T> = std::result::Result<T, FormatError>;

@@ -8,11 +8,11 @@ mod survey;
 use std::fmt;
 use std::path::PathBuf;
 
-use elbowroom_formats::FormatError;
+use elbowroom_formats::{FormatError, suggest};
 use elbowroom_robot::Exclusion;
 use elbowroom_scene::{PairEdit, PairRule, PairRules, PairState, Selection};
 
-use crate::{QueryModel, suggest};
+use crate::QueryModel;
 
 pub use counts::PairCounts;
 

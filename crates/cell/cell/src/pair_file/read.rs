@@ -2,13 +2,11 @@
 
 use std::path::Path;
 
-use elbowroom_formats::{FormatError, read_file};
+use elbowroom_formats::toml_tables::{self, Table, Value};
+use elbowroom_formats::{FormatError, read_file, suggest};
 use elbowroom_scene::PairState;
 
 use super::{ANYTHING, Note, PairFile, PairRow};
-use crate::file::node;
-use crate::file::read::{Table, Value};
-use crate::suggest;
 
 type Result<T> = std::result::Result<T, FormatError>;
 
@@ -37,7 +35,7 @@ impl PairFile {
     /// As for [`PairFile::read`].
     pub fn parse(path: impl AsRef<Path>, text: &str) -> Result<Self> {
         let file = path.as_ref();
-        let entries = node::parse(file, text)?;
+        let entries = toml_tables::parse(file, text)?;
         let root = Table { file, name: String::new(), line: 1, entries: &entries };
         if let Some(entry) = entries.iter().find(|e| !KEYS.contains(&e.key.as_str())) {
             let what = format!("a file of pairs has no key `{}`", entry.key);

@@ -4,19 +4,15 @@ use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use elbowroom_access::{Change, LogEntry, PrivateKey, TrustedKeys, text_file, trust, utc_now};
 use elbowroom_formats::FormatError;
 use elbowroom_monitor::AccessClass;
 use toml_edit::{DocumentMut, Item, TableLike, Value};
 
 use super::authorize::authorize;
-use super::change::Change;
-use super::entry::LogEntry;
-use super::keys::PrivateKey;
 use super::log::{Log, log_of};
 use super::result::Result;
 use super::state::{SealedState, least_class, without_consequences};
-use super::trust::{self, TrustedKeys};
-use super::{text, time};
 use crate::{Cell, CellFile};
 
 /// An edit. Values are TOML: `150`, `[900, 0, 0]`, `"temporary"`. Anything that is not TOML is treated as text.
@@ -80,7 +76,7 @@ pub fn edit(cell: &Path, signer: &Signer<'_>, edit: &CellEdit) -> Result<LogEntr
     let held = hold(&path)?;
     let before = CellFile::read(cell)?.resolve()?;
     let log = Log::read(&path, &trusted)?;
-    let new = edited(cell, &text::read(cell)?, edit)?;
+    let new = edited(cell, &text_file::read(cell)?, edit)?;
     let draft = Draft::new(cell, new)?;
     let changes = log.state.changes_to(&draft.state);
     let only = edit.items(&draft)?;
@@ -100,7 +96,7 @@ pub fn seal(cell: &Path, signer: &Signer<'_>) -> Result<LogEntry> {
     let trusted = trusted(cell)?;
     signer.check(cell, &trusted)?;
     let path = log_of(cell);
-    let draft = Draft::new(cell, text::read(cell)?)?;
+    let draft = Draft::new(cell, text_file::read(cell)?)?;
     // A failed first write leaves an empty log.
     let first = !std::fs::metadata(&path).is_ok_and(|m| m.len() > 0);
     if first && signer.class < AccessClass::Integrator {
@@ -135,8 +131,8 @@ fn trusted(cell: &Path) -> Result<TrustedKeys> {
 
 /// Locks the log against concurrent edits; creates it if it is missing.
 fn hold(log: &Path) -> Result<File> {
-    let file = File::options().append(true).create(true).open(log).map_err(text::unwritable(log))?;
-    file.lock().map_err(text::unwritable(log))?;
+    let file = File::options().append(true).create(true).open(log).map_err(text_file::unwritable(log))?;
+    file.lock().map_err(text_file::unwritable(log))?;
     Ok(file)
 }
 
@@ -250,7 +246,7 @@ impl Draft {
     ) -> Result<LogEntry> {
         let entry = LogEntry {
             sequence: log.entries.len() as u64 + 1,
-            time: time::now(),
+            time: utc_now(),
             class: signer.class.name().into(),
             key: signer.key.public().id(),
             program: concat!("elbowroom ", env!("CARGO_PKG_VERSION")).into(),
@@ -265,8 +261,8 @@ impl Draft {
         .signed(signer.key);
         let line = entry.line() + "\n";
         let written =
-            || held.write_all(line.as_bytes()).and_then(|()| held.sync_all()).map_err(text::unwritable(&log.file));
-        text::replace(path, &self.text, written)?;
+            || held.write_all(line.as_bytes()).and_then(|()| held.sync_all()).map_err(text_file::unwritable(&log.file));
+        text_file::replace(path, &self.text, written)?;
         Ok(entry)
     }
 }
@@ -333,7 +329,7 @@ fn regions(document: &mut DocumentMut) -> Option<&mut dyn TableLike> {
 fn unknown(cell: &Path, text: &str, region: &str) -> FormatError {
     let names: Vec<String> = CellFile::parse(cell, text).map(|f| f.region_names()).unwrap_or_default();
     FormatError::new(cell, None, format!("there is no region `{region}`"))
-        .hint(crate::suggest::hint(region, names.iter().map(String::as_str)))
+        .hint(elbowroom_formats::suggest::hint(region, names.iter().map(String::as_str)))
 }
 
 /// Appends the tables as written.

@@ -2,15 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
+use elbowroom_access::{LogEntry, TrustedKey, TrustedKeys, hex, text_file, trust};
 use elbowroom_formats::FormatError;
 use elbowroom_monitor::AccessClass;
 
-use super::entry::LogEntry;
 use super::last_seal::Seal;
 use super::result::Result;
 use super::state::{SealedState, least_class};
-use super::trust::{self, TrustedKey, TrustedKeys};
-use super::{hex, text};
 
 /// The log of a cell file: `cell.seal.jsonl` beside `cell.toml`.
 pub fn log_of(cell: &Path) -> PathBuf {
@@ -42,7 +40,7 @@ impl Log {
 
     /// Like [`read`](Self::read), but permits entries of retired keys, for an entry that approves them.
     pub fn read_to_continue(file: &Path, trusted: &TrustedKeys) -> Result<Self> {
-        let text = text::read(file)?;
+        let text = text_file::read(file)?;
         let mut log = Self::new(file);
         for line in text.lines() {
             log.take(line, trusted)?;

@@ -6,50 +6,26 @@
 //! these name. [`Cell::load`](crate::Cell::load) refuses a cell that differs from its seal, and names the differences.
 //!
 //! [`TrustedKeys`] lists the accepted keys. [`edit()`] and [`seal()`] change a sealed cell on behalf of a class;
-//! [`history`] reads the log. A running cell is changed on behalf of the holders of [`AccessTokens`]; [`ControlLog`]
-//! records who changed what. `docs/roles.md` states what this protects against, and what it does not.
+//! [`history`] reads the log. `docs/roles.md` states what this protects against, and what it does not.
 
-mod access_tokens;
 mod authorize;
-mod change;
-mod control_entry;
-mod control_history;
-mod control_log;
 mod edit;
-mod entry;
-mod hex;
-mod keys;
 mod last_seal;
 mod log;
-mod log_head;
-mod network_key;
 mod result;
-mod secret_file;
 mod source;
 mod state;
-mod text;
-mod time;
-mod trust;
 pub(crate) mod value;
 
 use std::path::Path;
 
+use elbowroom_access::{Change, LogEntry, TrustedKeys, text_file, trust};
 use elbowroom_formats::FormatError;
 use elbowroom_monitor::AccessClass;
 
-pub use access_tokens::{AccessToken, AccessTokens};
-pub use change::Change;
-pub use control_entry::ControlEntry;
-pub use control_history::{ControlHistory, control_history};
-pub use control_log::{ControlLog, Controlled, control_log_of};
 pub use edit::{CellEdit, Signer, edit, seal};
-pub use entry::LogEntry;
-pub use keys::{PrivateKey, PublicKey};
 pub use last_seal::Seal;
 pub use log::log_of;
-pub use network_key::NetworkKey;
-pub use secret_file::check_private_permissions;
-pub use trust::{TrustedKey, TrustedKeys};
 
 use crate::{Cell, CellFile};
 use log::Log;
@@ -95,7 +71,7 @@ pub fn history(cell: &Path) -> Result<History> {
         return Err(unsealed(cell, &trusted));
     }
     let log = Log::read(&path, &trusted)?;
-    let text = text::read(cell)?;
+    let text = text_file::read(cell)?;
     let mut file = CellFile::parse(cell, &text)?;
     // The history is shown even if the `checksum` key is wrong.
     file.entries.retain(|e| e.key != "checksum");

@@ -1,12 +1,12 @@
 //! The source that moves a region. It determines the region's pose, so it is sealed with the region.
 
+use elbowroom_access::hex;
+use elbowroom_formats::toml_tables::{Data, Entry, Node};
 use elbowroom_monitor::{Region, SourceLimits};
 use elbowroom_robot::ObjectId;
 use sha2::{Digest, Sha256};
 
-use super::hex;
 use super::value::{key, text};
-use crate::file::node::{Data, Entry, Node};
 use crate::{Cell, CellFile, CellRegion, Drive, Follow, MovingObject};
 
 /// The source that a region follows.

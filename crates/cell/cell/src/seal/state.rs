@@ -2,14 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use elbowroom_access::{Change, hex, trust};
 use elbowroom_formats::FormatError;
+use elbowroom_formats::toml_tables::{Data, Entry, Node};
 use elbowroom_monitor::{AccessClass, Life};
 
-use super::change::{Change, FOLLOWS, OBJECT, RESOLVED};
 use super::source::SealedSource;
 use super::value::{key, text};
-use super::{hex, trust};
-use crate::file::node::{Data, Entry, Node};
 use crate::{Cell, CellFile, configure};
 
 /// Tables and keys that do not affect the monitors. Everything else is sealed. An object that a region follows is
@@ -61,7 +60,7 @@ impl SealedState {
     }
 
     fn resolved(&mut self, item: String, line: Option<usize>, checksum: String) {
-        let at = (item, RESOLVED.to_owned());
+        let at = (item, Change::RESOLVED.to_owned());
         line.map(|line| self.lines.insert(at.clone(), line));
         self.values.insert(at, checksum);
     }
@@ -69,9 +68,9 @@ impl SealedState {
     /// Adds the source of a region as a part of the region, so that the same class may change both.
     fn add_source(&mut self, region: &str, line: usize, source: &SealedSource<'_>) {
         if let Some(object) = source.object {
-            self.add(region, &format!("{OBJECT}{}", key(&object.key)), &object.node);
+            self.add(region, &format!("{}{}", Change::OBJECT, key(&object.key)), &object.node);
         }
-        let at = (region.to_owned(), format!("{FOLLOWS}{}", source.title()));
+        let at = (region.to_owned(), format!("{}{}", Change::FOLLOWS, source.title()));
         self.lines.insert(at.clone(), source.files.first().map_or(line, |f| f.line));
         self.values.insert(at, source.checksum.clone());
     }
@@ -108,7 +107,7 @@ impl SealedState {
     /// The line of a change in the cell file; for a removed key, the line of its table.
     pub fn line(&self, change: &Change) -> Option<usize> {
         let at = |field: &str| self.lines.get(&(change.item.clone(), field.to_owned())).copied();
-        at(&change.field).or_else(|| at(RESOLVED))
+        at(&change.field).or_else(|| at(Change::RESOLVED))
     }
 
     /// All differences.
@@ -161,7 +160,7 @@ impl SealedState {
     /// The life of a region; `None` for an unknown region.
     fn life(&self, item: &str) -> Option<Life> {
         let value = |field: &str| self.values.get(&(item.to_owned(), field.to_owned()));
-        value(RESOLVED)?;
+        value(Change::RESOLVED)?;
         Some(if value("life").is_some_and(|l| l == "\"temporary\"") { Life::Temporary } else { Life::Permanent })
     }
 }
@@ -185,10 +184,11 @@ pub(super) fn without_consequences(changes: &[Change]) -> Vec<&Change> {
     // Units and laws affect everything.
     let everywhere = changes.iter().filter(made).any(|c| !NAMED.iter().any(|n| c.item.starts_with(&format!("{n}."))));
     let whole = |c: &Change| c.before.is_none() || c.after.is_none();
-    let is_new_or_removed = |item: &str| changes.iter().any(|c| c.item == item && c.field == RESOLVED && whole(c));
+    let is_new_or_removed =
+        |item: &str| changes.iter().any(|c| c.item == item && c.field == Change::RESOLVED && whole(c));
     let shown = |c: &&Change| {
         if is_new_or_removed(&c.item) {
-            return c.field == RESOLVED;
+            return c.field == Change::RESOLVED;
         }
         let covers = |other: &Change| other.item == c.item && other.is_of_source() == c.is_of_source();
         c.is_written() || !(everywhere || changes.iter().filter(made).any(covers))

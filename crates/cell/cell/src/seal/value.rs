@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::file::node::{Data, Node};
+use elbowroom_formats::toml_tables::{Data, Node};
 
 /// A key as TOML writes it.
 pub(crate) fn key(name: &str) -> String {

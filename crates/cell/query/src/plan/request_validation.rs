@@ -1,7 +1,7 @@
 //! Validation of a request: selection of the robot, joint values, limits.
 
-use elbowroom_cell::{Cell, CellRobot, suggest};
-use elbowroom_formats::FormatError;
+use elbowroom_cell::{Cell, CellRobot};
+use elbowroom_formats::{FormatError, suggest};
 use elbowroom_kinematics::{JointKind, JointLimits};
 use elbowroom_planner::{PathEnd, RrtConnectError};
 use elbowroom_robot::RobotId;

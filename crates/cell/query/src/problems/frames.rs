@@ -1,7 +1,7 @@
 //! Frames of objects: links at the start, fixed frames, the world.
 
-use elbowroom_cell::suggest;
 use elbowroom_formats::problem_set::{FixedFrame, PlanningProblem};
+use elbowroom_formats::suggest;
 use elbowroom_kinematics::{Chain, ChainState};
 use elbowroom_spatial::Pose;
 

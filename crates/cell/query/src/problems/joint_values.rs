@@ -1,7 +1,7 @@
 //! Joint values of a problem: start, goals, and which joints are planned.
 
-use elbowroom_cell::suggest;
 use elbowroom_formats::problem_set::{JointValue, PlanningProblem};
+use elbowroom_formats::suggest;
 use elbowroom_kinematics::{Chain, JointId, JointKind};
 
 use super::messages::{Notes, ProblemKey, Result};

@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 use std::path::PathBuf;
 
-use elbowroom_cell::suggest;
 use elbowroom_formats::problem_set::PlanningProblem;
+use elbowroom_formats::suggest;
 use elbowroom_kinematics::LinkId;
 use elbowroom_planner::RrtConnect;
 use elbowroom_robot::{ObjectId, RobotId};

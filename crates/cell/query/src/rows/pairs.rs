@@ -1,6 +1,7 @@
 //! The pairs that a query tests.
 
-use elbowroom_cell::{Cell, QueryModel, suggest};
+use elbowroom_cell::{Cell, QueryModel};
+use elbowroom_formats::suggest;
 use elbowroom_robot::{GeometryId, ObjectId, RobotId};
 use elbowroom_scene::Selection;
 

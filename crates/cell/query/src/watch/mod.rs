@@ -272,7 +272,7 @@ fn select_sensor<'c>(cell: &'c Cell, request: &WatchRequest) -> Result<&'c CellS
         (None, [first, ..]) => Err(refuse(format!("has several {table}s"), format!("--camera {}", first.name))),
         (Some(name), all) => all.iter().copied().find(|s| s.name == *name).ok_or_else(|| {
             let known = all.iter().map(|s| s.name.as_str());
-            refuse(format!("has no {table} \"{name}\""), elbowroom_cell::suggest::hint(name, known))
+            refuse(format!("has no {table} \"{name}\""), elbowroom_formats::suggest::hint(name, known))
         }),
     }
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use elbowroom_cell::seal::{AccessToken, Change, ControlLog, Controlled};
+use elbowroom_cell::access::{AccessToken, Change, ControlLog, Controlled};
 use elbowroom_cell::{RegionEdit, table_changes};
 use elbowroom_formats::FormatError;
 use elbowroom_monitor::{Life, RegionKind};

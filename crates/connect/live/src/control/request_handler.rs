@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex, MutexGuard};
 
-use elbowroom_cell::seal::{AccessToken, Change, ControlEntry, ControlLog, Controlled};
+use elbowroom_cell::access::{AccessToken, Change, ControlEntry, ControlLog, Controlled};
 use elbowroom_cell::{Cell, CellRegion};
 use elbowroom_monitor::{AccessClass, Life, RegionKind};
 use elbowroom_robot::RobotId;

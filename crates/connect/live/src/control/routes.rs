@@ -10,7 +10,7 @@ use axum::http::{HeaderMap, StatusCode, header};
 use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
-use elbowroom_cell::seal::{AccessToken, AccessTokens};
+use elbowroom_cell::access::{AccessToken, AccessTokens};
 use elbowroom_view::http::{Hosts, Place};
 use serde::Serialize;
 use serde::de::DeserializeOwned;

@@ -4,7 +4,7 @@ use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use elbowroom_cell::seal::{AccessTokens, ControlLog, control_log_of};
+use elbowroom_cell::access::{AccessTokens, ControlLog, control_log_of};
 use elbowroom_formats::FormatError;
 use elbowroom_view::ViewError;
 use elbowroom_view::http::{ConnectionLimits, Endpoint, Hosts, HttpServer};

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use elbowroom_cell::Cell;
-use elbowroom_cell::seal::{AccessTokens, ControlEntry, control_history, control_log_of};
+use elbowroom_cell::access::{AccessTokens, ControlEntry, control_history, control_log_of};
 use elbowroom_live::network::ZenohNetwork;
 use elbowroom_live::{ControlOptions, RegionTable, Service, ServiceOptions, region_journal_of};
 use elbowroom_monitor::AccessClass;

@@ -7,7 +7,9 @@ mod transport;
 use std::fmt::Write as _;
 use std::path::Path;
 
-use elbowroom::cell::seal::{AccessTokens, ControlEntry, ControlHistory, NetworkKey, control_history, control_log_of};
+use elbowroom::cell::access::{
+    AccessTokens, ControlEntry, ControlHistory, NetworkKey, control_history, control_log_of,
+};
 use serde_json::{Value, json};
 
 use crate::output::{ExitStatus, Failure, cannot_write, note, print, print_json};

@@ -6,7 +6,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
 use elbowroom::cell::Cell;
-use elbowroom::cell::seal::NetworkKey;
+use elbowroom::cell::access::NetworkKey;
 use elbowroom::live::network::ZENOH_RUNTIME;
 use elbowroom::live::ros2::Ros2Settings;
 use elbowroom::live::{ControlOptions, DEFAULT_ADDRESS, FrameSource, Keys, Service, ServiceOptions, region_journal_of};

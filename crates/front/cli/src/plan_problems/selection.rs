@@ -3,9 +3,8 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use elbowroom::cell::suggest;
-use elbowroom::formats::FormatError;
 use elbowroom::formats::problem_set::PlanningProblem;
+use elbowroom::formats::{FormatError, suggest};
 
 use super::args::ProblemArgs;
 use crate::output::Failure;

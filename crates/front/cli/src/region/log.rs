@@ -2,7 +2,8 @@
 
 use std::fmt::Write as _;
 
-use elbowroom::cell::seal::{self, Change, History, LogEntry};
+use elbowroom::cell::access::{Change, LogEntry};
+use elbowroom::cell::seal::{self, History};
 use serde_json::json;
 
 use super::args::LogArgs;

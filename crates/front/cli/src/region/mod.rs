@@ -6,7 +6,8 @@ mod log;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use elbowroom::cell::seal::{self, CellEdit, LogEntry, PrivateKey, Signer};
+use elbowroom::cell::access::{LogEntry, PrivateKey};
+use elbowroom::cell::seal::{self, CellEdit, Signer};
 use elbowroom::monitor::AccessClass;
 
 use crate::output::{ExitStatus, Failure, cannot_write, note, print};

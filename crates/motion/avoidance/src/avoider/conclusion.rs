@@ -4,8 +4,9 @@ use super::{Avoider, MIN_PROGRESS};
 use crate::detour::SAME_CONFIGURATION_S;
 use crate::joint_limits::distance_s;
 use crate::path_rate::{PathState, approach_rate, is_path_held, path_rate};
+use crate::proximity_query::ProximityQuery;
 use crate::state_machine::TickSummary;
-use crate::{AvoiderOutput, ObstacleKind, PathKind, ProximityPair, Reaction, Reference};
+use crate::{AvoiderOutput, EscapeState, ObstacleKind, PathKind, ProximityPair, Reaction, Reference};
 
 /// Path deviation up to which the robot counts as arrived, in seconds of joint motion.
 const ARRIVED_S: f64 = 2e-3;

@@ -296,7 +296,7 @@ impl CloudTracker {
             !arm.is_empty() && targets.any(|target| arm.occludes(sensor, target, margin_m))
         };
         for track in &mut self.tracker.tracks {
-            track.is_occluded = is_occluded(&track.outline_m, track.z_from_m, track.z_to_m);
+            track.is_occluded = is_occluded(&track.outline_m, track.heights.from_m, track.heights.to_m);
         }
         for detection in &mut self.detections[..self.detection_count] {
             detection.touches_arm = is_occluded(&detection.outline_m, detection.z_from_m, detection.z_to_m);

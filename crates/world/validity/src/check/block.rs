@@ -9,7 +9,7 @@ use fearless_simd::{Simd, f32x16, prelude::*};
 use super::block_request::{BlockRequest, BlockResult, NearPair};
 use super::motion_table::MotionTable;
 use super::workspace::{NodeObstacle, Workspace};
-use crate::lanes::{LANES, V3, splat};
+use crate::lanes::{V3, splat};
 use crate::model::{CoveredRobot, SphereNode};
 use crate::obstacles::{BroadPhase, ObstacleSet, RoundedSolid};
 

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use elbowroom_cell::seal::NetworkKey;
+use elbowroom_cell::access::NetworkKey;
 
 /// Purpose of the derived key: hashes for another purpose do not match.
 const CONTEXT: &str = "elbowroom 2026 messages of a cell";

@@ -14,7 +14,7 @@ mod sessions;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex};
 
-use elbowroom_cell::seal::NetworkKey;
+use elbowroom_cell::access::NetworkKey;
 
 use super::pub_sub::{Handler, Network, NetworkError, Publisher, Subscription, Urgency};
 use crate::clock::Clock;
@@ -29,7 +29,7 @@ use sessions::{Sessions, Standing};
 ///
 /// ```
 /// use std::sync::{Arc, Mutex};
-/// use elbowroom_cell::seal::NetworkKey;
+/// use elbowroom_cell::access::NetworkKey;
 /// use elbowroom_live::network::{AuthenticatedNetwork, LocalNetwork, Network, Urgency};
 /// let (cable, key) = (LocalNetwork::default(), NetworkKey::generate()?);
 /// let process = || AuthenticatedNetwork::new(Arc::new(cable.clone()), &key, "elbowroom/welding", None);

@@ -64,7 +64,7 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
 
     /// Descends in the trees of two links. True if the links are not proven apart.
     #[inline(always)]
-    fn bodies_near(&mut self, index: usize, pair: &LinkPair, more_m: f32) -> bool {
+    pub(super) fn bodies_near(&mut self, index: usize, pair: &LinkPair, more_m: f32) -> bool {
         let (simd, robot) = (self.simd, self.model.robot);
         let (a, b) = (&robot.covered_links[pair.a.0], &robot.covered_links[pair.b.0]);
         if a.nodes.is_empty() || b.nodes.is_empty() {

@@ -5,14 +5,13 @@ use std::io::{self, Write as _};
 use std::path::Path;
 
 use elbowroom_formats::FormatError;
+use elbowroom_formats::toml_tables::{self, Table, Value};
 use elbowroom_monitor::AccessClass;
 use sha2::{Digest as _, Sha256};
 use subtle::ConstantTimeEq as _;
 
-use super::result::Result;
-use super::{hex, text};
-use crate::file::node;
-use crate::file::read::{Table, Value};
+use crate::result::Result;
+use crate::{hex, text_file};
 
 const EXAMPLE: &str = "what `elbowroom control token --role ROLE --name NAME --file FILE` writes";
 
@@ -53,8 +52,8 @@ impl AccessTokens {
     /// tokens.
     pub fn read(file: &Path) -> Result<Self> {
         check_permissions(file)?;
-        let text = text::read(file)?;
-        let entries = node::parse(file, &text)?;
+        let text = text_file::read(file)?;
+        let entries = toml_tables::parse(file, &text)?;
         let table = Table { file, name: String::new(), line: 1, entries: &entries };
         table.only(&["token"])?;
         let mut tokens: Vec<AccessToken> = Vec::new();
@@ -77,7 +76,7 @@ impl AccessTokens {
     /// [`FormatError`] if the file has this name already, is not a file of tokens, or cannot be written.
     ///
     /// ```
-    /// use elbowroom_cell::seal::AccessTokens;
+    /// use elbowroom_access::AccessTokens;
     /// use elbowroom_monitor::AccessClass;
     /// # let folder = tempfile::tempdir()?;
     /// # let file = folder.path().join("tokens.toml");
@@ -98,9 +97,9 @@ impl AccessTokens {
             let what = format!("has a token \"{name}\" already");
             return Err(FormatError::new(file, None, what).hint("another name; or remove its table before"));
         }
-        let (token, secret) = AccessToken::generate(class, name).map_err(text::unwritable(file))?;
+        let (token, secret) = AccessToken::generate(class, name).map_err(text_file::unwritable(file))?;
         let written = open(file).and_then(|mut f| f.write_all(token.to_toml().as_bytes()).and_then(|()| f.sync_all()));
-        written.map_err(text::unwritable(file))?;
+        written.map_err(text_file::unwritable(file))?;
         Ok(secret)
     }
 

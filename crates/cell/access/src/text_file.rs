@@ -5,12 +5,16 @@ use std::path::Path;
 
 use elbowroom_formats::{FormatError, WholeFile};
 
-use super::result::Result;
+use crate::result::Result;
 
 /// Largest file, bytes.
 const MAX_BYTES: u64 = 64 << 20;
 
-pub(super) fn read(path: &Path) -> Result<String> {
+/// Reads a text file.
+///
+/// # Errors
+/// The file cannot be read, is not UTF-8, or is larger than 64 MiB.
+pub fn read(path: &Path) -> Result<String> {
     let unreadable = |e: std::io::Error| FormatError::unreadable(path, &e, "the path of a file that is there");
     if fs::metadata(path).map_err(unreadable)?.len() > MAX_BYTES {
         return Err(FormatError::new(path, None, format!("is larger than {MAX_BYTES} bytes")));
@@ -19,7 +23,7 @@ pub(super) fn read(path: &Path) -> Result<String> {
 }
 
 /// The error for a file that cannot be written.
-pub(super) fn unwritable(path: &Path) -> impl Fn(std::io::Error) -> FormatError + '_ {
+pub fn unwritable(path: &Path) -> impl Fn(std::io::Error) -> FormatError + '_ {
     move |e| {
         let instead = match e.kind() {
             std::io::ErrorKind::AlreadyExists => "the name of a new file",
@@ -32,7 +36,10 @@ pub(super) fn unwritable(path: &Path) -> impl Fn(std::io::Error) -> FormatError 
 
 /// Replaces the text of a file: writes the new file beside it, calls `before_last_step`, then moves the new file into
 /// its place.
-pub(super) fn replace(path: &Path, text: &str, before_last_step: impl FnOnce() -> Result<()>) -> Result<()> {
+///
+/// # Errors
+/// The file cannot be written; the error of `before_last_step`, after which the file is as before.
+pub fn replace(path: &Path, text: &str, before_last_step: impl FnOnce() -> Result<()>) -> Result<()> {
     let new = WholeFile::begin(path, |out| out.write_all(text.as_bytes())).map_err(unwritable(path))?;
     before_last_step()?;
     new.put_durably().map_err(unwritable(path))

@@ -4,13 +4,12 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use ed25519_dalek::{Signature, Signer as _, SigningKey, VerifyingKey};
+use elbowroom_formats::toml_tables::{self, Table, Value};
 use elbowroom_monitor::AccessClass;
 
-use super::result::Result;
-use super::secret_file::{self, check_private_permissions, create};
-use super::{hex, text};
-use crate::file::node;
-use crate::file::read::{Table, Value};
+use crate::result::Result;
+use crate::secret_file::{self, check_private_permissions, create};
+use crate::{hex, text_file};
 
 /// Context of signatures: a signature for another purpose is not valid for an edit.
 const CONTEXT: &[u8] = b"elbowroom edit 1\n";
@@ -59,8 +58,8 @@ impl PrivateKey {
     /// [`FormatError`](elbowroom_formats::FormatError) if it cannot be read, is not a key, or others than its owner may read it.
     pub fn read(path: &Path) -> Result<Self> {
         check_private_permissions(path)?;
-        let text = text::read(path)?;
-        let entries = node::parse(path, &text)?;
+        let text = text_file::read(path)?;
+        let entries = toml_tables::parse(path, &text)?;
         let table = Table { file: path, name: String::new(), line: 1, entries: &entries };
         table.only(&["class", "name", "private"])?;
         let secret = table.need("private", "the key that `elbowroom region keygen` writes")?;
@@ -87,7 +86,7 @@ impl PrivateKey {
         PublicKey(self.key.verifying_key())
     }
 
-    pub(super) fn sign(&self, message: &[u8]) -> String {
+    pub(crate) fn sign(&self, message: &[u8]) -> String {
         hex::encode(&self.key.sign(&[CONTEXT, message].concat()).to_bytes())
     }
 }
@@ -110,19 +109,19 @@ impl PublicKey {
         hex::hash(self.0.as_bytes()).chars().take(16).collect()
     }
 
-    pub(super) fn has_signed(&self, message: &[u8], signature: &str) -> bool {
+    pub(crate) fn has_signed(&self, message: &[u8], signature: &str) -> bool {
         let Some(bytes) = hex::decode(signature) else { return false };
         self.has_signed_text(&[CONTEXT, message].concat(), &Signature::from_bytes(&bytes))
     }
 
     /// Verifies a signature without the context of edits.
-    pub(super) fn has_signed_text(&self, text: &[u8], signature: &Signature) -> bool {
+    pub(crate) fn has_signed_text(&self, text: &[u8], signature: &Signature) -> bool {
         self.0.verify_strict(text, signature).is_ok()
     }
 }
 
 /// The class of a signing key.
-pub(super) fn class(value: &Value<'_>) -> Result<AccessClass> {
+pub(crate) fn class(value: &Value<'_>) -> Result<AccessClass> {
     value.word(&[("programmer", AccessClass::Programmer), ("integrator", AccessClass::Integrator)])
 }
 

@@ -6,13 +6,13 @@ use std::path::Path;
 
 use elbowroom_formats::FormatError;
 
-use super::control_entry::ControlEntry;
-use super::hex;
-use super::log_head::{LogHead, LogSigner, RESTORE};
-use super::result::Result;
+use crate::control_entry::ControlEntry;
+use crate::hex;
+use crate::log_head::{LogHead, LogSigner, RESTORE};
+use crate::result::Result;
 
 /// Longest line with its end, bytes; a request has at most 64 KiB.
-pub(super) const MAX_LINE: u64 = 16 << 20;
+pub(crate) const MAX_LINE: u64 = 16 << 20;
 
 /// A control log that was verified.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -38,20 +38,20 @@ pub fn control_history(path: &Path) -> Result<ControlHistory> {
 }
 
 /// The part of a log that is signed.
-pub(super) struct SignedPart {
+pub(crate) struct SignedPart {
     /// Length of its lines, bytes.
-    pub(super) length: u64,
-    pub(super) entries: u64,
+    pub(crate) length: u64,
+    pub(crate) entries: u64,
     /// SHA-256 (hex) of the last line; 64 zeros if it has no line.
-    pub(super) hash: String,
+    pub(crate) hash: String,
     /// Whether an unsigned rest follows, which was being written.
-    pub(super) has_rest: bool,
+    pub(crate) has_rest: bool,
 }
 
 /// Verifies the signed part of a log, and passes each entry to `take` before the rest of the log is verified.
 ///
 /// At most one more line may follow, complete or partial, which was being written.
-pub(super) fn verify(path: &Path, head: Option<&LogHead>, mut take: impl FnMut(ControlEntry)) -> Result<SignedPart> {
+pub(crate) fn verify(path: &Path, head: Option<&LogHead>, mut take: impl FnMut(ControlEntry)) -> Result<SignedPart> {
     let wrong = |line: Option<u64>, what: &str| FormatError::new(path, line.map(|n| n as usize), what).hint(RESTORE);
     let count = head.map_or(0, |head| head.entries);
     let mut lines = Lines::open(path)?;

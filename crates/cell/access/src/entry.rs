@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::change::Change;
-use super::keys::{PrivateKey, PublicKey};
+use crate::change::Change;
+use crate::keys::{PrivateKey, PublicKey};
 
 /// An edit, its author, and the state of the cell after it; signed.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -37,12 +37,13 @@ pub struct LogEntry {
 
 impl LogEntry {
     /// The line in the log.
-    pub(super) fn line(&self) -> String {
+    pub fn line(&self) -> String {
         // Serialization of texts and numbers cannot fail; an empty line would fail the signature check.
         serde_json::to_string(self).unwrap_or_default()
     }
 
-    pub(super) fn parse(line: &str) -> Option<Self> {
+    /// Reads a line of the log; `None` if it is not exactly as [`line`](Self::line) writes it.
+    pub fn parse(line: &str) -> Option<Self> {
         let entry: Self = serde_json::from_str(line).ok()?;
         // Only the canonical form is accepted: otherwise spaces or repeated keys would go unnoticed.
         (entry.line() == line).then_some(entry)
@@ -52,12 +53,15 @@ impl LogEntry {
         Self { signature: String::new(), ..self.clone() }.line()
     }
 
-    pub(super) fn signed(mut self, key: &PrivateKey) -> Self {
+    /// Signs the entry.
+    #[must_use]
+    pub fn signed(mut self, key: &PrivateKey) -> Self {
         self.signature = key.sign(self.unsigned().as_bytes());
         self
     }
 
-    pub(super) fn is_signed_by(&self, key: &PublicKey) -> bool {
+    /// Whether a key has signed the entry.
+    pub fn is_signed_by(&self, key: &PublicKey) -> bool {
         key.has_signed(self.unsigned().as_bytes(), &self.signature)
     }
 }

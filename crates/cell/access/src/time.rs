@@ -3,7 +3,7 @@
 use std::time::{SystemTime, UNIX_EPOCH};
 
 /// Now, in UTC to the second, as RFC 3339 writes it: `2026-11-22T02:10:00Z`.
-pub(super) fn now() -> String {
+pub fn utc_now() -> String {
     let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     text(since.as_secs())
 }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::change::Change;
+use crate::change::Change;
 
 /// A change of a running cell, and its requester.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -34,7 +34,7 @@ pub struct ControlEntry {
 
 impl ControlEntry {
     /// Its line in the log, without the end of the line.
-    pub(super) fn line(&self) -> String {
+    pub(crate) fn line(&self) -> String {
         // Serialization of texts and numbers cannot fail; an empty line would not be accepted again.
         serde_json::to_string(self).unwrap_or_default()
     }

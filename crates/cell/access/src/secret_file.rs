@@ -5,31 +5,30 @@ use std::io::{self, Write as _};
 use std::path::Path;
 
 use elbowroom_formats::FormatError;
+use elbowroom_formats::toml_tables::{self, Table};
 
-use super::result::Result;
-use super::{hex, text};
-use crate::file::node;
-use crate::file::read::Table;
+use crate::result::Result;
+use crate::{hex, text_file};
 
 /// 256 bits from the operating system.
-pub(super) fn random() -> io::Result<[u8; 32]> {
+pub(crate) fn random() -> io::Result<[u8; 32]> {
     let mut secret = [0; 32];
     getrandom::fill(&mut secret).map_err(|e| io::Error::other(e.to_string()))?;
     Ok(secret)
 }
 
 /// Writes `name = "…"` below a comment to a new file (mode 0600).
-pub(super) fn write(path: &Path, comment: &str, name: &str, secret: &[u8; 32]) -> io::Result<()> {
+pub(crate) fn write(path: &Path, comment: &str, name: &str, secret: &[u8; 32]) -> io::Result<()> {
     let mut file = create(path)?;
     write!(file, "# {comment}\n{name} = \"{}\"\n", hex::encode(secret))?;
     file.sync_all()
 }
 
 /// Reads what [`write`] has written; `origin` says what writes such a file.
-pub(super) fn read(path: &Path, name: &str, origin: &str) -> Result<[u8; 32]> {
+pub(crate) fn read(path: &Path, name: &str, origin: &str) -> Result<[u8; 32]> {
     check_private_permissions(path)?;
-    let text = text::read(path)?;
-    let entries = node::parse(path, &text)?;
+    let text = text_file::read(path)?;
+    let entries = toml_tables::parse(path, &text)?;
     let table = Table { file: path, name: String::new(), line: 1, entries: &entries };
     table.only(&[name])?;
     let secret = table.need(name, origin)?;
@@ -38,13 +37,13 @@ pub(super) fn read(path: &Path, name: &str, origin: &str) -> Result<[u8; 32]> {
 }
 
 #[cfg(unix)]
-pub(super) fn create(path: &Path) -> io::Result<File> {
+pub(crate) fn create(path: &Path) -> io::Result<File> {
     use std::os::unix::fs::OpenOptionsExt;
     File::options().write(true).create_new(true).mode(0o600).open(path)
 }
 
 #[cfg(not(unix))]
-pub(super) fn create(path: &Path) -> io::Result<File> {
+pub(crate) fn create(path: &Path) -> io::Result<File> {
     File::options().write(true).create_new(true).open(path)
 }
 

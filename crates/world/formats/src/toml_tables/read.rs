@@ -2,33 +2,41 @@
 
 use std::path::Path;
 
-use elbowroom_formats::FormatError;
 use elbowroom_spatial::Vec3;
 
 use super::node::{Data, Entry, Node};
-use crate::suggest;
+use crate::{FormatError, suggest};
 
 type Result<T> = std::result::Result<T, FormatError>;
 
 /// A table of the file and its full name: `robot.ns16.tool`.
-#[derive(Clone)]
-pub(crate) struct Table<'a> {
+#[derive(Debug, Clone)]
+pub struct Table<'a> {
+    /// The file, for messages.
     pub file: &'a Path,
+    /// The full name; empty for the whole file.
     pub name: String,
+    /// The line.
     pub line: usize,
+    /// The keys and values, in file order.
     pub entries: &'a [Entry],
 }
 
 /// A value of the file and its full name.
-#[derive(Clone)]
-pub(crate) struct Value<'a> {
+#[derive(Debug, Clone)]
+pub struct Value<'a> {
+    /// The file, for messages.
     pub file: &'a Path,
+    /// The full name.
     pub name: String,
+    /// The line.
     pub line: usize,
+    /// The value itself.
     pub node: &'a Node,
 }
 
 impl<'a> Table<'a> {
+    /// An error at the line of the table.
     pub fn error(&self, what: impl Into<String>) -> FormatError {
         FormatError::new(self.file, self.line, what)
     }
@@ -46,6 +54,9 @@ impl<'a> Table<'a> {
     }
 
     /// Refuses keys that are not in `known`.
+    ///
+    /// # Errors
+    /// The first other key, with the nearest known one.
     pub fn only(&self, known: &[&str]) -> Result<()> {
         let Some(entry) = self.entries.iter().find(|e| !known.contains(&e.key.as_str())) else { return Ok(()) };
         let what = format!("{} has no key `{}`", self.display_name(), entry.key);
@@ -53,11 +64,15 @@ impl<'a> Table<'a> {
         Err(FormatError::new(self.file, entry.line, what).hint(hint))
     }
 
+    /// The value of a key, if the table has it.
     pub fn get(&self, key: &str) -> Option<Value<'a>> {
         self.entries.iter().find(|e| e.key == key).map(|e| self.value(e))
     }
 
     /// The value of a required key; `example` is what to write.
+    ///
+    /// # Errors
+    /// The table does not have the key.
     pub fn need(&self, key: &str, example: &str) -> Result<Value<'a>> {
         self.get(key).ok_or_else(|| self.error(format!("{} needs the key `{key}`", self.display_name())).hint(example))
     }
@@ -68,9 +83,12 @@ impl<'a> Table<'a> {
     }
 
     /// The tables `[key.NAME]` in file order.
+    ///
+    /// # Errors
+    /// Another type, or a name that files of results cannot have.
     pub fn named(&self, key: &str) -> Result<Vec<(&'a str, Table<'a>)>> {
         let Some(group) = self.get(key) else { return Ok(Vec::new()) };
-        let group = group.table_like(&format!("[{key}.NAME]"))?;
+        let group = group.table(&format!("[{key}.NAME]"))?;
         let named: Vec<_> = group.entries.iter().map(|e| (e, group.value(e))).collect();
         named
             .into_iter()
@@ -80,22 +98,29 @@ impl<'a> Table<'a> {
                     return Err(FormatError::new(v.file, e.line, what)
                         .hint("a name without slash, comma, quote and line break, because it appears in CSV files"));
                 }
-                Ok((e.key.as_str(), v.table_like(&format!("[{key}.{}]", e.key))?.at_line(e.line)))
+                Ok((e.key.as_str(), v.table(&format!("[{key}.{}]", e.key))?.at_line(e.line)))
             })
             .collect()
     }
 
+    /// The table, with another line in its messages.
+    #[must_use]
     pub fn at_line(mut self, line: usize) -> Self {
         self.line = line;
         self
     }
 
+    /// True or false; the default without the key.
+    ///
+    /// # Errors
+    /// Another type.
     pub fn flag_or(&self, key: &str, default: bool) -> Result<bool> {
         self.get(key).map_or(Ok(default), |v| v.flag())
     }
 }
 
 impl<'a> Value<'a> {
+    /// An error at the line of the value, about its key.
     pub fn error(&self, what: impl AsRef<str>) -> FormatError {
         FormatError::new(self.file, self.line, format!("`{}` {}", self.name, what.as_ref()))
     }
@@ -104,11 +129,15 @@ impl<'a> Value<'a> {
         self.error(format!("must be {wanted}, not {}", self.node.data.type_name())).hint(example)
     }
 
+    /// The last part of the full name.
     pub fn key(&self) -> &str {
         self.name.rsplit('.').next().unwrap_or(&self.name)
     }
 
     /// A finite number.
+    ///
+    /// # Errors
+    /// Another type or number.
     pub fn number(&self) -> Result<f64> {
         match self.node.data {
             Data::Number(v) if v.is_finite() => Ok(v),
@@ -117,12 +146,20 @@ impl<'a> Value<'a> {
         }
     }
 
+    /// A finite number above 0.
+    ///
+    /// # Errors
+    /// Another type or number.
     pub fn positive(&self) -> Result<f64> {
         let v = self.number()?;
         let more = || format!("{} = a number above 0", self.key());
         if v > 0.0 { Ok(v) } else { Err(self.error(format!("must be above 0, not {v}")).hint(more())) }
     }
 
+    /// A finite number, 0 or more.
+    ///
+    /// # Errors
+    /// Another type or number.
     pub fn not_negative(&self) -> Result<f64> {
         let v = self.number()?;
         let more = || format!("{} = 0 or a number above it", self.key());
@@ -130,6 +167,9 @@ impl<'a> Value<'a> {
     }
 
     /// A percentage from 0 to 100, as a fraction.
+    ///
+    /// # Errors
+    /// Another type or number.
     pub fn percent(&self) -> Result<f64> {
         let v = self.number()?;
         if (0.0..=100.0).contains(&v) {
@@ -138,6 +178,10 @@ impl<'a> Value<'a> {
         Err(self.error(format!("is a percentage: 0 to 100, not {v}")).hint(format!("{} = 50", self.key())))
     }
 
+    /// A whole number within limits.
+    ///
+    /// # Errors
+    /// Another type or number.
     pub fn whole(&self, least: u32, most: u32) -> Result<u32> {
         let v = self.number()?;
         if v.fract() == 0.0 && (f64::from(least)..=f64::from(most)).contains(&v) {
@@ -147,6 +191,10 @@ impl<'a> Value<'a> {
         Err(self.error(what).hint(format!("{} = {least}", self.key())))
     }
 
+    /// A text.
+    ///
+    /// # Errors
+    /// Another type.
     pub fn text(&self) -> Result<&'a str> {
         match &self.node.data {
             Data::Text(t) => Ok(t),
@@ -154,6 +202,10 @@ impl<'a> Value<'a> {
         }
     }
 
+    /// True or false.
+    ///
+    /// # Errors
+    /// Another type.
     pub fn flag(&self) -> Result<bool> {
         match self.node.data {
             Data::Flag(b) => Ok(b),
@@ -162,6 +214,9 @@ impl<'a> Value<'a> {
     }
 
     /// One of a set of words.
+    ///
+    /// # Errors
+    /// Another type or word, with the nearest known one.
     pub fn word<T: Copy>(&self, words: &[(&str, T)]) -> Result<T> {
         let list = || words.iter().map(|w| w.0);
         let Data::Text(text) = &self.node.data else {
@@ -177,18 +232,25 @@ impl<'a> Value<'a> {
             .ok_or_else(|| self.error(format!("cannot be \"{text}\"")).hint(suggest::hint(text, list())))
     }
 
+    /// Whether the value is a list.
     pub fn is_list(&self) -> bool {
         matches!(self.node.data, Data::List(_))
     }
 
+    /// Whether the value is a table.
     pub fn is_table(&self) -> bool {
         matches!(self.node.data, Data::Table(_))
     }
 
+    /// Whether the value is a number.
     pub fn is_number(&self) -> bool {
         matches!(self.node.data, Data::Number(_))
     }
 
+    /// The values of a list; `example` is what to write.
+    ///
+    /// # Errors
+    /// Another type.
     pub fn list(&self, example: &str) -> Result<Vec<Value<'a>>> {
         let Data::List(nodes) = &self.node.data else { return Err(self.wrong_type("a list", example)) };
         let item = |(i, node): (usize, &'a Node)| Value {
@@ -200,11 +262,18 @@ impl<'a> Value<'a> {
         Ok(nodes.iter().enumerate().map(item).collect())
     }
 
+    /// The finite numbers of a list; `example` is what to write.
+    ///
+    /// # Errors
+    /// Another type.
     pub fn numbers(&self, example: &str) -> Result<Vec<f64>> {
         self.list(example)?.iter().map(Value::number).collect()
     }
 
     /// Three numbers, without unit.
+    ///
+    /// # Errors
+    /// Another type or number of numbers.
     pub fn three(&self) -> Result<Vec3> {
         let example = format!("{} = [0, 0, 0]", self.key());
         let v = self.numbers(&example)?;
@@ -213,11 +282,11 @@ impl<'a> Value<'a> {
             .map_err(|_| self.error(format!("needs 3 numbers, not {}", v.len())).hint(example))
     }
 
+    /// A table; `example` is what to write.
+    ///
+    /// # Errors
+    /// Another type.
     pub fn table(&self, example: &str) -> Result<Table<'a>> {
-        self.table_like(example)
-    }
-
-    pub(super) fn table_like(&self, example: &str) -> Result<Table<'a>> {
         let Data::Table(entries) = &self.node.data else { return Err(self.wrong_type("a table", example)) };
         Ok(Table { file: self.file, name: self.name.clone(), line: self.line, entries })
     }

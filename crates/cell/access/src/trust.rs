@@ -3,16 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use elbowroom_formats::FormatError;
+use elbowroom_formats::toml_tables::{self, Table, Value};
 use elbowroom_monitor::AccessClass;
 
-use super::keys::{PublicKey, class};
-use super::result::Result;
-use super::text;
-use crate::file::node;
-use crate::file::read::{Table, Value};
+use crate::keys::{PublicKey, class};
+use crate::result::Result;
+use crate::text_file;
 
 /// Name of the file, and of its entry in the sealed state.
-pub(super) const FILE: &str = "trusted-keys.toml";
+pub const FILE: &str = "trusted-keys.toml";
 /// Key file of the machine. It applies to every cell there, and users cannot name another one.
 const MACHINE: &str = "/etc/elbowroom/trusted-keys.toml";
 /// Suffix after the quoted name.
@@ -73,8 +72,8 @@ impl TrustedKeys {
     /// # Errors
     /// As for [`find`](Self::find).
     pub fn read(file: &Path) -> Result<Self> {
-        let text = text::read(file)?;
-        let entries = node::parse(file, &text)?;
+        let text = text_file::read(file)?;
+        let entries = toml_tables::parse(file, &text)?;
         let table = Table { file, name: String::new(), line: 1, entries: &entries };
         table.only(&["key"])?;
         let mut keys: Vec<TrustedKey> = Vec::new();
@@ -118,7 +117,10 @@ fn locate(machine: &Path, named: Option<PathBuf>, beside: &Path) -> Option<PathB
 }
 
 /// The keys beside a cell, as sealed with it: short id and permissions; [`may_sign`] reads them.
-pub(super) fn beside(cell: &Path) -> Result<Vec<(String, String)>> {
+///
+/// # Errors
+/// The file of the keys is not valid.
+pub fn beside(cell: &Path) -> Result<Vec<(String, String)>> {
     let file = cell.with_file_name(FILE);
     if !file.exists() {
         return Ok(Vec::new());
@@ -131,13 +133,13 @@ pub(super) fn beside(cell: &Path) -> Result<Vec<(String, String)>> {
 }
 
 /// True if the sealed entry of a key permits it to sign on behalf of a class.
-pub(super) fn may_sign(sealed: &str, who: AccessClass) -> bool {
+pub fn may_sign(sealed: &str, who: AccessClass) -> bool {
     let class = sealed.split(' ').next().and_then(AccessClass::parse);
     class.is_some_and(|c| c >= who) && !sealed.ends_with(RETIRED)
 }
 
 /// The error for a sealed cell without a key file.
-pub(super) fn missing(cell: &Path, log: &Path) -> FormatError {
+pub fn missing(cell: &Path, log: &Path) -> FormatError {
     let what = format!("is sealed by {}, but there is no file of trusted keys", log.display());
     FormatError::new(cell, None, what).hint(format!(
         "the integrator's {FILE} beside the cell file, or at {MACHINE}, or {VARIABLE}=FILE (docs/roles.md)"

@@ -2,33 +2,44 @@
 
 use std::path::Path;
 
-use elbowroom_formats::{FormatError, planning_scene_hint};
 use toml::de::{DeTable, DeValue};
+
+use crate::{FormatError, planning_scene_hint};
 
 /// A value and its line (from 1).
 #[derive(Debug, Clone)]
-pub(crate) struct Node {
+pub struct Node {
+    /// The line.
     pub line: usize,
+    /// The data.
     pub data: Data,
 }
 
 /// The data of a value.
 #[derive(Debug, Clone)]
-pub(crate) enum Data {
+pub enum Data {
+    /// A text.
     Text(String),
+    /// A whole number or a number with a fraction; NaN and infinities too.
     Number(f64),
+    /// True or false.
     Flag(bool),
+    /// A date or time, which no file here uses.
     Date,
+    /// A list.
     List(Vec<Node>),
+    /// A table, in file order.
     Table(Vec<Entry>),
 }
 
 /// `key = value`, in file order.
 #[derive(Debug, Clone)]
-pub(crate) struct Entry {
+pub struct Entry {
+    /// The key.
     pub key: String,
     /// Line of the key.
     pub line: usize,
+    /// The value.
     pub node: Node,
 }
 
@@ -59,8 +70,11 @@ impl Lines {
     }
 }
 
-/// Parses the text of a cell file.
-pub(crate) fn parse(file: &Path, text: &str) -> Result<Vec<Entry>, FormatError> {
+/// Parses the text of a file.
+///
+/// # Errors
+/// The text is not TOML, with the line and what to write instead.
+pub fn parse(file: &Path, text: &str) -> Result<Vec<Entry>, FormatError> {
     let lines = Lines::of(text);
     match DeTable::parse(text) {
         Ok(table) => Ok(entries(&lines, table.get_ref())),

@@ -4,8 +4,8 @@ use std::fmt;
 use std::io;
 use std::path::Path;
 
-use super::result::Result;
-use super::secret_file;
+use crate::result::Result;
+use crate::secret_file;
 
 const NAME: &str = "network";
 const COMMENT: &str = "The network key of an elbowroom cell, the same for all of its processes. Whoever has it can speak for each of them: keep it secret.";

@@ -7,12 +7,12 @@ use std::path::{Path, PathBuf};
 use elbowroom_formats::FormatError;
 use elbowroom_monitor::AccessClass;
 
-use super::change::Change;
-use super::control_entry::ControlEntry;
-use super::control_history::{MAX_LINE, SignedPart, verify};
-use super::log_head::{LogHead, LogSigner};
-use super::result::Result;
-use super::{hex, text, time};
+use crate::change::Change;
+use crate::control_entry::ControlEntry;
+use crate::control_history::{MAX_LINE, SignedPart, verify};
+use crate::log_head::{LogHead, LogSigner};
+use crate::result::Result;
+use crate::{hex, text_file, time};
 
 /// The log of the changes of a running cell: `cell.control.jsonl` beside `cell.toml`.
 pub fn control_log_of(cell: &Path) -> PathBuf {
@@ -61,7 +61,7 @@ impl ControlLog {
     /// # Errors
     /// [`FormatError`] at the line that was changed, if lines are missing, or if another process writes the log.
     pub fn open(path: &Path) -> Result<Self> {
-        let file = File::options().append(true).create(true).open(path).map_err(text::unwritable(path))?;
+        let file = File::options().append(true).create(true).open(path).map_err(text_file::unwritable(path))?;
         file.try_lock().map_err(|_| {
             FormatError::new(path, None, "is written by another process").hint("one service with --control per cell")
         })?;
@@ -69,7 +69,7 @@ impl ControlLog {
         let SignedPart { length, entries, hash, has_rest } = verify(path, head.as_ref(), |_| ())?;
         let signer = LogSigner::open(path, head.as_ref())?;
         if has_rest {
-            file.set_len(length).map_err(text::unwritable(path))?;
+            file.set_len(length).map_err(text_file::unwritable(path))?;
         }
         Ok(Self { path: path.to_owned(), file, signer, length, entries, head: hash, has_rest: false })
     }
@@ -80,13 +80,13 @@ impl ControlLog {
     /// [`FormatError`] if it cannot be written; then the change must not be made.
     pub fn append(&mut self, controlled: Controlled<'_>) -> Result<ControlEntry> {
         if self.has_rest {
-            self.file.set_len(self.length).map_err(text::unwritable(&self.path))?;
+            self.file.set_len(self.length).map_err(text_file::unwritable(&self.path))?;
             self.has_rest = false;
         }
         let Controlled { class, name, action, note, changes, checksums: [before, after] } = controlled;
         let entry = ControlEntry {
             sequence: self.entries + 1,
-            time: time::now(),
+            time: time::utc_now(),
             class: class.name().into(),
             name: name.into(),
             program: concat!("elbowroom ", env!("CARGO_PKG_VERSION")).into(),
@@ -104,7 +104,7 @@ impl ControlLog {
             return Err(FormatError::new(&self.path, None, what).hint("a shorter note, or fewer changes at once"));
         }
         let written = self.file.write_all(bytes.as_bytes()).and_then(|()| self.file.sync_all());
-        let written = written.map_err(text::unwritable(&self.path));
+        let written = written.map_err(text_file::unwritable(&self.path));
         if let Err(e) = written.and_then(|()| self.signer.sign(self.entries + 1, &head)) {
             // After an error, such as a full disk, readers must not find a partial line. If its removal fails, too, the
             // next line or start removes it.
@@ -125,8 +125,8 @@ impl ControlLog {
 
 #[cfg(test)]
 mod tests {
-    use super::super::control_history::control_history;
     use super::*;
+    use crate::control_history;
 
     fn switched(on: bool) -> Controlled<'static> {
         let (before, after) = (Some((!on).to_string()), Some(on.to_string()));
