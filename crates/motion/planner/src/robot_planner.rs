@@ -8,6 +8,9 @@ use elbowroom_validity::CoverSource;
 use crate::cover_rrt_connect::{CoverModel, CoverObstacles, CoverRrtConnect, TimedMotion};
 use crate::rrt_connect::{PlannedPath, RrtConnect, RrtConnectError, RrtConnectSettings};
 
+/// Largest number of models that are kept; then the oldest goes.
+const MAX_KEPT: usize = 8;
+
 /// Plans for one robot of a scene: on sphere covers, if its links have them, otherwise in the exact scene. Every path is
 /// proven free.
 ///
@@ -105,7 +108,8 @@ impl<'m> RobotPlanner<'m> {
     }
 }
 
-/// Cover models of one robot, kept for the scenes that they serve.
+/// Cover models of the robots of a scene, kept for other scenes with the same robots at the same places, whatever their
+/// objects.
 #[derive(Debug, Clone, Default)]
 pub struct CoverModels {
     kept: Vec<CoverModel>,
@@ -127,15 +131,45 @@ impl CoverModels {
         clearance_m: f64,
         source: &dyn CoverSource,
     ) -> Option<&CoverModel> {
-        let serves = |model: &CoverModel| model.serves(scene, state, clearance_m);
+        let serves = |model: &CoverModel| model.serves(scene, state, robot, clearance_m);
         if let Some(known) = self.kept.iter().position(serves) {
             return self.kept.get(known);
         }
         let model = CoverModel::with_covers(scene, state, robot, clearance_m, source).ok()?;
         if serves(&model) {
+            if self.kept.len() == MAX_KEPT {
+                self.kept.remove(0);
+            }
             self.kept.push(model);
             return self.kept.last();
         }
         Some(self.carrying.insert(model))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use elbowroom_scene::example;
+    use elbowroom_validity::BuiltCovers;
+
+    use super::*;
+
+    #[test]
+    fn each_robot_has_its_own_model_which_serves_again() {
+        let scene = example::two_arms();
+        let state = SceneState::new(&scene);
+        let mut models = CoverModels::default();
+        for kept in [1, 2, 2, 2] {
+            let robot = RobotId(1 - kept % 2);
+            let model = models.serving(&scene, &state, robot, 0.0, &BuiltCovers).unwrap();
+            assert!(
+                model.serves(&scene, &state, robot, 0.0) && !model.serves(&scene, &state, RobotId(1 - robot.0), 0.0)
+            );
+            assert_eq!(models.kept.len(), kept);
+        }
+        for mm in 0..MAX_KEPT + 2 {
+            models.serving(&scene, &state, RobotId(0), 1e-3 * mm as f64, &BuiltCovers).unwrap();
+        }
+        assert_eq!(models.kept.len(), MAX_KEPT);
     }
 }

@@ -11,7 +11,8 @@ use crate::cover_cache::CoverCache;
 /// [`CoverRrtConnect`](elbowroom_planner::CoverRrtConnect), then [`RrtConnect`](elbowroom_planner::RrtConnect). All paths
 /// are proven free.
 ///
-/// The covers of the robot are built at the first problem, and again for other pairs.
+/// The covers of the robot are built at the first problem, and again for other pairs; if the robot holds something, for
+/// each question.
 #[derive(Debug, Clone, Default)]
 pub struct CoverRrtConnectEngine {
     models: CoverModels,

@@ -74,10 +74,11 @@ impl CoverModel {
 
     /// Whether the model also serves another scene with the same robot: it was made for the same pairs, base and
     /// clearance (m), and nothing is held.
-    pub(crate) fn serves(&self, scene: &Scene, state: &SceneState, clearance_m: f64) -> bool {
+    pub(crate) fn serves(&self, scene: &Scene, state: &SceneState, robot: RobotId, clearance_m: f64) -> bool {
         let holds = (0..scene.objects().len()).any(|i| state.attachment(ObjectId(i)).is_some());
         let held = self.covered_links.iter().any(|b| matches!(b, GeometryId::Object(_)));
-        !holds
+        self.index == robot
+            && !holds
             && !held
             && self.clearance_m == clearance_m
             && scene.robots().get(self.index.0).is_some_and(|r| r.base_in_world == self.base_in_world)

@@ -106,7 +106,7 @@ impl<'s> RrtConnect<'s> {
     }
 
     /// Plans to the first of several goals that is reached: one after the other, each in an equal part of the remaining
-    /// time. The last waypoint is that goal.
+    /// time and with the whole limit of configurations. The last waypoint is that goal.
     ///
     /// # Errors
     /// [`RrtConnectError::NoGoal`] without goals. Otherwise the error of the first goal, or of a later valid goal to which

@@ -16,6 +16,9 @@ use super::motion_validator::MotionValidator;
 use super::path_constraint::ConstraintChecker;
 use super::settings::RrtConnectSettings;
 
+/// Number of questions whether the search must end that count as a checked configuration.
+const QUESTIONS_PER_STATE: u64 = 16;
+
 /// Validates motions of one robot; everything else stays as in a state.
 #[derive(Debug)]
 pub(crate) struct SceneValidator<'s> {
@@ -35,6 +38,8 @@ pub(crate) struct SceneValidator<'s> {
     check_resolution: f64,
     /// Number of checked configurations.
     pub states_checked: u64,
+    /// Number of questions whether the search must end.
+    questions: u64,
     pub deadline: Instant,
     pub max_states: u64,
 }
@@ -62,6 +67,7 @@ impl<'s> SceneValidator<'s> {
             edge_length: f64::INFINITY,
             check_resolution: f64::INFINITY,
             states_checked: 0,
+            questions: 0,
             deadline: Instant::now(),
             max_states: u64::MAX,
         })
@@ -80,7 +86,7 @@ impl<'s> SceneValidator<'s> {
     ) -> Result<(), SceneError> {
         state.check_q(self.scene, self.robot, goal)?;
         self.state.clone_from(state);
-        self.states_checked = 0;
+        (self.states_checked, self.questions) = (0, 0);
         self.deadline = deadline;
         self.max_states = settings.max_states;
         self.edge_length = settings.edge_length;
@@ -234,7 +240,10 @@ impl MotionValidator for SceneValidator<'_> {
     }
 
     fn is_exhausted(&mut self) -> bool {
-        self.states_checked >= self.max_states || Instant::now() >= self.deadline
+        // A search that is stuck may draw samples without checking any configuration.
+        self.questions += 1;
+        let rounds = self.questions / QUESTIONS_PER_STATE;
+        self.states_checked.max(rounds) >= self.max_states || Instant::now() >= self.deadline
     }
 
     fn longest_edge(&self) -> f64 {
@@ -243,5 +252,28 @@ impl MotionValidator for SceneValidator<'_> {
 
     fn project(&mut self, q: &mut [f64]) -> bool {
         self.constraint.as_mut().is_none_or(|constraint| constraint.project(q)) && self.bounds.contains(q)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use elbowroom_scene::example;
+
+    use super::*;
+
+    #[test]
+    fn a_search_that_checks_nothing_ends_too() {
+        let scene = example::two_arms();
+        let mut validator = SceneValidator::new(&scene, RobotId(0)).unwrap();
+        let settings = RrtConnectSettings { max_states: 3, ..RrtConnectSettings::default() };
+        let state = SceneState::new(&scene);
+        let deadline = Instant::now() + Duration::from_hours(1);
+        for _ in 0..2 {
+            validator.begin(&state, &[0.0; 3], &settings, deadline).unwrap();
+            let questions = (1..1000).find(|_| validator.is_exhausted()).unwrap();
+            assert_eq!((questions, validator.states_checked), (3 * QUESTIONS_PER_STATE, 0));
+        }
     }
 }

@@ -13,7 +13,8 @@ pub struct RrtConnectSettings {
     pub clearance_m: f64,
     /// Seed of the random numbers.
     pub seed: u64,
-    /// Longest edge of a tree in the exact scene, rad (and m).
+    /// Longest edge of a tree in the exact scene, Euclidean over all values, rad (and m). A constraint that projects has
+    /// its own.
     pub edge_length: f64,
     /// Largest step of a discrete check in the exact scene: a step moves solids about as far as this motion (rad or m)
     /// of the joint that moves them most. The proof finds collisions in between.

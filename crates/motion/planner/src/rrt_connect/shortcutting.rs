@@ -49,7 +49,7 @@ impl<'v, V: MotionValidator> Shortcutting<'v, V> {
     /// Joins each waypoint with the farthest one that a proven edge reaches, found by bisection.
     fn skip_waypoints(&mut self, path: &mut Vec<Vec<f64>>) {
         let mut from = 0;
-        while from + 2 < path.len() {
+        while from + 2 < path.len() && !self.validator.is_exhausted() {
             let (mut reached, mut step) = (from + 1, path.len() - 1 - from);
             while step > 0 && reached + 1 < path.len() {
                 let to = (reached + step).min(path.len() - 1);
@@ -80,7 +80,7 @@ impl<'v, V: MotionValidator> Shortcutting<'v, V> {
     /// Replaces each corner by an edge between points before and after it.
     fn cut_corners(&mut self, path: &mut Vec<Vec<f64>>) {
         let mut corner = 1;
-        while corner + 1 < path.len() {
+        while corner + 1 < path.len() && !self.validator.is_exhausted() {
             corner += match self.cut(&path[corner - 1], &path[corner], &path[corner + 1]) {
                 Some(ends) => {
                     path.splice(corner..=corner, ends);
