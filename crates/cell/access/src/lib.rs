@@ -20,8 +20,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! **Invariant.** A secret is written only to a file that nobody but its owner may read, and read only from such a file;
-//! of a token only the hash is kept. A log whose entries were changed, removed or reordered is refused.
+//! **Invariant.** On Unix a secret is written only to a file that nobody but its owner may read, and read only from such a
+//! file; of a token only the hash is kept. A control log is refused unless it begins with the entries that its service
+//! has signed; one more line may follow, which was being written.
 #![deny(missing_docs)]
 #![forbid(unsafe_code)]
 

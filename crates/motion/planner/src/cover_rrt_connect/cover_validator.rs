@@ -115,6 +115,7 @@ impl MotionValidator for CoverValidator<'_> {
         self.states_checked() > self.max_states
             || (self.questions.is_multiple_of(QUESTIONS_PER_CLOCK_READING) && Instant::now() >= self.deadline)
     }
+
     fn longest_edge(&self) -> f64 {
         EDGE_LENGTH
     }

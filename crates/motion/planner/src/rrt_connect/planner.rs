@@ -51,7 +51,6 @@ fn deadline(begin: Instant, settings: &RrtConnectSettings) -> Instant {
 #[derive(Debug)]
 pub struct RrtConnect<'s> {
     pub(crate) validator: SceneValidator<'s>,
-    robot: RobotId,
 }
 
 impl<'s> RrtConnect<'s> {
@@ -60,7 +59,7 @@ impl<'s> RrtConnect<'s> {
     /// # Errors
     /// The scene does not have this robot.
     pub fn new(scene: &'s Scene, robot: RobotId) -> Result<Self, SceneError> {
-        Ok(Self { validator: SceneValidator::new(scene, robot)?, robot })
+        Ok(Self { validator: SceneValidator::new(scene, robot)? })
     }
 
     /// Adds a constraint that paths satisfy.
@@ -266,7 +265,7 @@ impl<'s> RrtConnect<'s> {
             return Err(RrtConnectError::InvalidSetting { setting, value });
         }
         self.begin(start, goal, settings)?;
-        let ends = [(PathEnd::Start, start.q(self.robot)), (PathEnd::Goal, goal)];
+        let ends = [(PathEnd::Start, start.q(self.robot())), (PathEnd::Goal, goal)];
         let mut checked = Vec::new();
         for (end, q) in ends {
             let q = self.validator.bounds.clamped_end(end, q)?;
@@ -327,6 +326,6 @@ impl<'s> RrtConnect<'s> {
 
     /// Index of the robot.
     pub(crate) fn robot(&self) -> RobotId {
-        self.robot
+        self.validator.robot()
     }
 }

@@ -30,7 +30,7 @@ pub(crate) struct SceneValidator<'s> {
     pub sweep: SweepOptions,
     pub constraint: Option<ConstraintChecker<'s>>,
     /// Motion of the solids per value, m per rad or m; see [`super::joint_weights`].
-    pub weights: Vec<f64>,
+    weights: Vec<f64>,
     max_weight: f64,
     /// Longest edge of a tree, rad (and m).
     edge_length: f64,
@@ -93,6 +93,11 @@ impl<'s> SceneValidator<'s> {
         self.check_resolution = settings.check_resolution;
         self.sweep = SweepOptions { clearance_m: settings.clearance_m, ..Default::default() };
         Ok(())
+    }
+
+    /// Index of the robot.
+    pub fn robot(&self) -> RobotId {
+        self.robot
     }
 
     /// The robot in the scene.

@@ -46,7 +46,7 @@ impl<'a> Table<'a> {
     }
 
     fn display_name(&self) -> String {
-        if self.name.is_empty() { "the cell file".into() } else { format!("`{}`", self.name) }
+        if self.name.is_empty() { "the file".into() } else { format!("`{}`", self.name) }
     }
 
     fn value(&self, entry: &'a Entry) -> Value<'a> {
@@ -289,5 +289,24 @@ impl<'a> Value<'a> {
     pub fn table(&self, example: &str) -> Result<Table<'a>> {
         let Data::Table(entries) = &self.node.data else { return Err(self.wrong_type("a table", example)) };
         Ok(Table { file: self.file, name: self.name.clone(), line: self.line, entries })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::parse;
+    use super::*;
+
+    #[test]
+    fn errors_of_the_whole_file_name_the_file_and_not_its_kind() {
+        let entries = parse("key.toml".as_ref(), "secert = \"00\"\n").unwrap();
+        let file = Table { file: "key.toml".as_ref(), name: String::new(), line: 1, entries: &entries };
+        let unknown = file.only(&["secret"]).unwrap_err().to_string();
+        assert!(
+            unknown.contains("key.toml:1: the file has no key `secert`") && unknown.contains("secret"),
+            "{unknown}"
+        );
+        let missing = file.need("secret", "secret = \"…\"").unwrap_err().to_string();
+        assert!(missing.contains("the file needs the key `secret`"), "{missing}");
     }
 }
