@@ -1,9 +1,9 @@
 //! Cameras and point clouds of a live cell: the simulated controllers avoid what they see.
 
+mod checked_robot;
 mod frame_checks;
 mod frame_inputs;
 mod guarded_program;
-mod guarded_robot;
 mod joint_history;
 mod path_worker;
 mod robot_regions;

@@ -13,9 +13,9 @@ use elbowroom_kinematics::ChainState;
 use elbowroom_robot::RobotId;
 use elbowroom_sim::replanning::{ObjectPlaces, PathGuard, PathReplanner, PerceivedObstacles, SearchTiming};
 
+use super::checked_robot::{CellView, CheckedRobot};
 use super::frame_inputs::{FrameInputs, FrameSource};
 use super::guarded_program::{GuardedProgram, PathCheck};
-use super::guarded_robot::{CellView, GuardedRobot};
 use super::joint_history::JointHistory;
 use super::path_worker::work;
 use super::robot_regions::RobotRegions;
@@ -138,7 +138,7 @@ fn guard<'scope, 'env>(
     scope: &'scope Scope<'scope, 'env>,
     programs: &'env GuardedPrograms,
     inputs: &mut Inputs,
-) -> Result<(PerceivedObstacles<'env>, Vec<GuardedRobot>), ServiceError> {
+) -> Result<(PerceivedObstacles<'env>, Vec<CheckedRobot>), ServiceError> {
     let cell: &'env Cell = &programs.cell;
     let mut notes = Vec::new();
     let robots: Vec<RobotId> = programs.programs.iter().map(|(robot, _)| *robot).collect();
@@ -150,7 +150,7 @@ fn guard<'scope, 'env>(
         let Some(search_s) = perceived.search_s(*robot) else { continue };
         let (guard, replanner) = path_guard(cell, *robot, program, search_s)?;
         let (of_guard, of_worker) = (regions(cell, *robot)?, regions(cell, *robot)?);
-        let (robot, (jobs, results)) = GuardedRobot::new(guard, program.clone(), of_guard);
+        let (robot, (jobs, results)) = CheckedRobot::new(guard, program.clone(), of_guard);
         let work = move || work(replanner, of_worker, &jobs, &results);
         std::thread::Builder::new().name("paths".into()).spawn_scoped(scope, work).map_err(ServiceError::Thread)?;
         guarded.push(robot);
@@ -186,7 +186,7 @@ impl Inputs {
         &mut self,
         programs: &GuardedPrograms,
         perceived: &mut PerceivedObstacles<'_>,
-        robots: &mut [GuardedRobot],
+        robots: &mut [CheckedRobot],
         is_closed: &AtomicBool,
     ) {
         let cell = &*programs.cell;

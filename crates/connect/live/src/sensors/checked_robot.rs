@@ -27,7 +27,7 @@ pub(super) struct CellView<'a> {
 }
 
 /// A robot whose path is checked.
-pub(super) struct GuardedRobot {
+pub(super) struct CheckedRobot {
     guard: PathGuard,
     program: Arc<Mutex<GuardedProgram>>,
     regions: RobotRegions,
@@ -40,7 +40,7 @@ pub(super) struct GuardedRobot {
 /// The ends of the channels that belong to the thread that searches.
 pub(super) type WorkerEnds = (Receiver<SearchJob>, Sender<(SearchRequest, SearchResult)>);
 
-impl GuardedRobot {
+impl CheckedRobot {
     pub fn new(guard: PathGuard, program: Arc<Mutex<GuardedProgram>>, regions: RobotRegions) -> (Self, WorkerEnds) {
         let (jobs, of_worker) = mpsc::sync_channel(1);
         let (to_guard, results) = mpsc::channel();
