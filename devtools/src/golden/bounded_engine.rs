@@ -4,10 +4,9 @@ use elbowroom_kinematics::JointLimits;
 use std::time::Duration;
 
 use elbowroom_planner::{
-    CoverModels, CoverObstacles, PlannedPath, RobotPlanner, RrtConnect, RrtConnectError, RrtConnectSettings,
-    TimedMotion,
+    CoverModels, CoverObstacles, JointPath, RobotPlanner, RrtConnect, RrtConnectError, RrtConnectSettings, TimedPath,
 };
-use elbowroom_query::problems::{PlanningEngine, ProblemScene, ProblemSettings, Solution};
+use elbowroom_query::problems::{PlanningEngine, ProblemScene, ProblemSettings, Unsolved};
 use elbowroom_robot::RobotId;
 use elbowroom_validity::BuiltCovers;
 
@@ -50,37 +49,27 @@ impl BoundedEngine {
 }
 
 impl PlanningEngine for BoundedEngine {
-    fn solve(&mut self, problem: &ProblemScene, settings: &ProblemSettings) -> Solution {
+    fn solve(&mut self, problem: &ProblemScene, settings: &ProblemSettings) -> Result<JointPath, Unsolved> {
         let found = self.with_planner(problem, settings.clearance_m, |mut planner| {
             planner.plan_to_any(problem.start(), problem.goals(), &bounded(settings))
         });
-        let solution = match found {
-            Ok(path) => Solution {
-                found: true,
-                proven: true,
-                planning: path.planning_time,
-                simplification: path.simplification_time,
-                cost_raw_rad: path.raw_length_rad,
-                cost_rad: path.length_rad,
-                waypoints: path.waypoints,
-                reason: None,
-            },
-            Err(e) => Solution { reason: Some(e.to_string()), ..Solution::default() },
-        };
-        self.digest.flag(solution.found);
-        self.digest.numbers([solution.cost_raw_rad, solution.cost_rad]);
-        self.digest.whole(solution.waypoints.len());
-        self.digest.numbers(solution.waypoints.iter().flatten().copied());
-        solution
+        let none = Vec::new();
+        let path = found.as_ref().ok();
+        let waypoints = path.map_or(&none, |path| &path.waypoints);
+        self.digest.flag(path.is_some());
+        self.digest.numbers(path.map_or([0.0; 2], |path| [path.raw_length_rad, path.length_rad]));
+        self.digest.whole(waypoints.len());
+        self.digest.numbers(waypoints.iter().flatten().copied());
+        Ok(found?)
     }
 
     fn time(
         &mut self,
         problem: &ProblemScene,
-        path: &PlannedPath,
+        path: JointPath,
         limits: &[JointLimits],
         settings: &ProblemSettings,
-    ) -> Result<TimedMotion, RrtConnectError> {
+    ) -> Result<TimedPath, RrtConnectError> {
         self.with_planner(problem, settings.clearance_m, |mut planner| {
             planner.time_parametrize(problem.start(), path, limits, settings.period_s, &bounded(settings))
         })

@@ -64,15 +64,16 @@ fn hash(
 ) -> Result<SetHash, String> {
     let settings = ProblemSettings { seed, ..ProblemSettings::default() };
     let mut results = Digest::default();
-    let ran = run(model, problems, &settings, &mut engine, &mut |result, motion| {
+    let ran = run(model, problems, &settings, &mut engine, &mut |result, timed| {
         results.text(&result.id);
         results.flag(result.valid);
         results.flag(result.found);
-        results.flag(motion.is_some());
-        if let Some(motion) = motion {
-            results.number(motion.duration_s);
-            results.whole(motion.rows.len());
-            results.numbers(motion.rows.iter().flat_map(|(_, q)| q).copied());
+        results.flag(timed.is_some());
+        if let Some(timed) = timed {
+            let rows = timed.trajectory.rows();
+            results.number(timed.trajectory.duration_s());
+            results.whole(rows.len());
+            results.numbers(rows.iter().flat_map(|row| &row.q).copied());
         }
         true
     });

@@ -3,10 +3,8 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
+use elbowroom_kinematics::{JointTrajectory, TrajectoryRow};
 use elbowroom_scene::Scene;
-
-/// A path: a time (or length) and joint values, linear between rows.
-pub type Polyline = Vec<(f64, Vec<f64>)>;
 
 /// Result of the reference for the paths of a course.
 pub struct PathCheck {
@@ -36,8 +34,8 @@ pub struct Course {
     /// Number of corners at which a motion stops, of all corners.
     pub stops: usize,
     pub corners: usize,
-    /// Waypoints and motions of all paths.
-    pub paths: Vec<Polyline>,
+    /// Waypoints (with the length so far as the time) and motions of all paths.
+    pub paths: Vec<JointTrajectory>,
 }
 
 pub const HEAD: &str = "none: proven that no path exists. Times in ms: median and 99th percentile; stops of corners; points checked by Coal, paths on which it finds a collision\n\n\
@@ -120,15 +118,15 @@ fn spread(times: &[Duration]) -> [f64; 2] {
 }
 
 /// Returns the waypoints, each with the path length up to it.
-pub fn along<Q: AsRef<[f64]>>(waypoints: &[Q]) -> Polyline {
+pub fn along<Q: AsRef<[f64]>>(waypoints: &[Q]) -> JointTrajectory {
     let mut far = 0.0;
     let mut last: Option<&[f64]> = None;
     let mut line = Vec::with_capacity(waypoints.len());
     for q in waypoints {
         let q = q.as_ref();
         far += last.map_or(0.0, |l| l.iter().zip(q).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt());
-        line.push((far, q.to_vec()));
+        line.push(TrajectoryRow { t_s: far, q: q.to_vec() });
         last = Some(q);
     }
-    line
+    JointTrajectory::new(line)
 }

@@ -115,7 +115,7 @@ mod tests {
         let free = reference::check(&python, &folder, &course, 500).unwrap();
         // The post is where the arm points half-way.
         let through = [0.0, -0.5].map(|turn| vec![turn, 0.3, 0.2]);
-        course.paths.push(vec![(0.0, through[0].clone()), (1.0, vec![-1.57, 0.3, 0.2])]);
+        course.paths.push(course::along(&[through[0].clone(), vec![-1.57, 0.3, 0.2]]));
         let caught = reference::check(&python, &folder, &course, 500).unwrap();
         let _ = std::fs::remove_dir_all(&folder);
         assert_eq!((free.hits, free.points), (0, 500 * (course.paths.len() - 1)));

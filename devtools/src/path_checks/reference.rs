@@ -13,8 +13,10 @@ pub fn check(python: &Path, folder: &Path, course: &Course, points: usize) -> Re
     let (text, binary, _) = reference::job(&course.urdf, &course.scene, &[], &pairs, false)?;
     let mut paths = Vec::new();
     for path in &course.paths {
-        paths.extend((path.len() as f64).to_le_bytes());
-        paths.extend(path.iter().flat_map(|(t, q)| std::iter::once(t).chain(q)).flat_map(|v| v.to_le_bytes()));
+        paths.extend((path.rows().len() as f64).to_le_bytes());
+        paths.extend(
+            path.rows().iter().flat_map(|row| std::iter::once(&row.t_s).chain(&row.q)).flat_map(|v| v.to_le_bytes()),
+        );
     }
     let files: [(&str, &[u8]); 5] = [
         ("job.txt", text.as_bytes()),

@@ -69,11 +69,11 @@ pub fn course(files: &Files, pairs: usize) -> Result<Course, String> {
         course.planning.push(route.planning_time);
         course.simplifying.push(route.simplification_time);
         let clock = Instant::now();
-        let motion = connect.time_parametrize(&state, &route, &limits, PERIOD, &options).map_err(text)?;
+        let timed = connect.time_parametrize(&state, route, &limits, PERIOD, &options).map_err(text)?;
         course.timing.push(clock.elapsed());
-        course.stops += motion.stops;
-        course.paths.push(along(&route.waypoints));
-        course.paths.push(motion.rows);
+        course.stops += timed.stops;
+        course.paths.push(along(&timed.path.waypoints));
+        course.paths.push(timed.trajectory);
     }
     Ok(course)
 }

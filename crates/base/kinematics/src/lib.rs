@@ -57,9 +57,11 @@ mod joint_limits;
 pub mod motion_bound;
 mod state;
 pub mod surface_ik;
+mod trajectory;
 
 pub use chain::Chain;
 pub use error::{ChainError, JointEnd};
 pub use joint::{Joint, JointCoupling, JointId, JointKind, Limits, LinkId, Mimic};
 pub use joint_limits::JointLimits;
 pub use state::ChainState;
+pub use trajectory::{JointTrajectory, TrajectoryPoint, TrajectoryRow};

@@ -66,7 +66,7 @@ pub use moving_object::{Drive, Encoder, MovingObject, ObjectMotion, ObjectPath, 
 pub use object_tables::{ObjectTables, object_tables};
 pub use pair_file::{PairCounts, PairFile};
 pub use poses::{PoseRate, PoseTrack};
-pub use program::{MoveTarget, PathPlanner, Program, ProgramBody, ProgramStep, StepAction, TcpTarget, TrajectoryRow};
+pub use program::{MoveTarget, PathPlanner, Program, ProgramBody, ProgramStep, StepAction, TcpTarget};
 pub use query_model::{OutOfReachProofs, QueryModel, QueryRobot};
 pub use region_edits::{EditedRegions, RegionEdit, table_changes, why_not_continued};
 pub use region_id::CellRegionId;

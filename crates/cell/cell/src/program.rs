@@ -1,5 +1,6 @@
 //! Programs of robots: steps, or a recorded trajectory.
 
+use elbowroom_kinematics::JointTrajectory;
 use elbowroom_kinematics::inverse::ConfigurationChoice;
 use elbowroom_robot::ObjectId;
 use elbowroom_spatial::Pose;
@@ -25,16 +26,7 @@ pub enum ProgramBody {
     /// Executed in order, at rest in between.
     Steps(Vec<ProgramStep>),
     /// Joint values over time.
-    Trajectory(Vec<TrajectoryRow>),
-}
-
-/// A row of a recorded trajectory.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TrajectoryRow {
-    /// Time, s.
-    pub t_s: f64,
-    /// Joint values, rad or m.
-    pub q: Vec<f64>,
+    Trajectory(JointTrajectory),
 }
 
 /// One step of a program.

@@ -7,7 +7,7 @@ use elbowroom_cell::{Cell, OutOfReachProofs, QueryModel};
 use elbowroom_kinematics::ChainState;
 use elbowroom_planner::RrtConnectSettings;
 use elbowroom_query::QueryStates;
-use elbowroom_query::plan::{PathAnswer, PathGoal, PathRequest, plan};
+use elbowroom_query::plan::{PathAnswer, PathGoal, PathRequest, plan, write_csv};
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{Checker, CheckerOptions, Level, SceneState};
 use elbowroom_spatial::Vec3;
@@ -27,24 +27,25 @@ fn check(cell: &Cell, answer: &PathAnswer, request: &PathRequest) {
     for (i, r) in cell.robots.iter().enumerate() {
         state.set_q(&scene, RobotId(i), &r.start).unwrap();
     }
-    let rows = &answer.motion.as_ref().expect("a path").rows;
-    assert_eq!(&rows[0].1, request.from.as_ref().unwrap());
-    assert_eq!(PathGoal::Joints(rows[rows.len() - 1].1.clone()), request.to);
+    let rows = answer.timed.as_ref().expect("a path").trajectory.rows();
+    assert_eq!(&rows[0].q, request.from.as_ref().unwrap());
+    assert_eq!(PathGoal::Joints(rows[rows.len() - 1].q.clone()), request.to);
     for w in rows.windows(2) {
         for share in [0.0, 0.25, 0.5, 0.75] {
-            let q: Vec<f64> = w[0].1.iter().zip(&w[1].1).map(|(a, b)| a + (b - a) * share).collect();
+            let q: Vec<f64> = w[0].q.iter().zip(&w[1].q).map(|(a, b)| a + (b - a) * share).collect();
             state.set_q(&scene, RobotId(robot), &q).unwrap();
             let hit = checker.collides(&state).map(|h| [h.a, h.b].map(|m| scene.name(m)));
-            assert_eq!(hit, None, "at {} s", w[0].0);
+            assert_eq!(hit, None, "at {} s", w[0].t_s);
         }
         let limits = &cell.robots[robot].limits;
-        let slow = |i: usize| (w[1].1[i] - w[0].1[i]).abs() <= limits[i].velocity * (w[1].0 - w[0].0) * (1.0 + 1e-6);
-        assert!((0..limits.len()).all(slow), "at {} s", w[0].0);
+        let slow =
+            |i: usize| (w[1].q[i] - w[0].q[i]).abs() <= limits[i].velocity * (w[1].t_s - w[0].t_s) * (1.0 + 1e-6);
+        assert!((0..limits.len()).all(slow), "at {} s", w[0].t_s);
     }
 }
 
 fn waypoints(answer: &PathAnswer) -> usize {
-    answer.motion.as_ref().map_or(0, |m| m.waypoints.len())
+    answer.timed.as_ref().map_or(0, |timed| timed.path.waypoints.len())
 }
 
 const HERE: [f64; 6] = [-0.8, -0.9, 0.3, 0.0, 0.5, 0.0];
@@ -90,14 +91,14 @@ fn the_rows_are_a_file_that_a_cell_reads_back() {
     let cell = parse(&format!("{HEAD}[robot.arm]\n{ARM}"));
     let go = PathRequest { period_s: Some(0.01), ..request("arm", &HERE, &THERE) };
     let answer = plan(&cell, &go).unwrap();
-    let motion = answer.motion.as_ref().unwrap();
+    let trajectory = &answer.timed.as_ref().unwrap().trajectory;
     let mut text = Vec::new();
-    motion.write_csv(&answer.joints, &mut text).unwrap();
+    write_csv(&answer.joints, trajectory, &mut text).unwrap();
     let text = String::from_utf8(text).unwrap();
     let read = QueryStates::parse("path.csv".as_ref(), &text, &QueryModel::of_cell(&cell)).unwrap();
-    assert_eq!(read.len(), motion.rows.len());
-    assert!(motion.rows.iter().enumerate().all(|(i, row)| read.of(i).next() == Some((0, &row.1[..]))));
-    assert!((motion.rows[motion.rows.len() - 1].0 - motion.duration_s).abs() < 1e-9);
+    let rows = trajectory.rows();
+    assert_eq!(read.len(), rows.len());
+    assert!(rows.iter().enumerate().all(|(i, row)| read.of(i).next() == Some((0, &row.q[..]))));
 }
 
 /// Published robots with meshes and SRDF, some with prismatic or mimic joints.
@@ -129,7 +130,7 @@ fn an_optimized_path_is_free_and_no_longer_than_the_first() {
     optimized.options.time_limit = Duration::from_millis(500);
     let [first, shorter] = [&first, &optimized].map(|request| plan(&cell, request).unwrap());
     check(&cell, &shorter, &optimized);
-    let cost = |answer: &PathAnswer| answer.motion.as_ref().unwrap().cost_rad;
+    let cost = |answer: &PathAnswer| answer.timed.as_ref().unwrap().path.length_rad;
     assert!(cost(&shorter) <= cost(&first), "{} > {}", cost(&shorter), cost(&first));
     assert!(cost(&shorter) >= 1.6, "the straight segment is 1.6 rad long");
 }

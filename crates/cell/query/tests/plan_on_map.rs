@@ -2,7 +2,7 @@
 
 use elbowroom_cell::{Cell, OutOfReachProofs, QueryModel, TcpTarget};
 use elbowroom_formats::FormatError;
-use elbowroom_kinematics::ChainState;
+use elbowroom_kinematics::{ChainState, TrajectoryRow};
 use elbowroom_planner::RrtConnectSettings;
 use elbowroom_query::map::{MapRequest, map};
 use elbowroom_query::plan::{PathAnswer, PathGoal, PathPlanner, PathRequest, plan};
@@ -40,18 +40,17 @@ fn asked(cell: &Cell, from: &[f64], to: &[f64]) -> Result<PathAnswer, FormatErro
 fn a_path_goes_around_through_free_cells_and_its_samples_too() {
     let cell = parse(ARM);
     let answer = asked(&cell, &START, &GOAL).unwrap();
-    let motion = answer.motion.as_ref().expect("the arm can fold");
-    assert!(motion.waypoints.len() > 2 && answer.map_time.is_some() && answer.found);
+    let timed = answer.timed.as_ref().expect("the arm can fold");
+    assert!(timed.path.waypoints.len() > 2 && answer.map_time.is_some() && answer.found);
     let map = map(&cell, &MapRequest::default()).unwrap();
     let is_free = |q: &[f64]| map.obstacles.iter().all(|o| !o.blocks.is_blocked(q));
-    for pair in motion.waypoints.windows(2) {
+    for pair in timed.path.waypoints.windows(2) {
         for share in (0..=100).map(|n| f64::from(n) / 100.0) {
             let q: Vec<f64> = pair[0].iter().zip(&pair[1]).map(|(a, b)| a + (b - a) * share).collect();
             assert!(is_free(&q), "{q:?}");
         }
     }
-    let (first, last) = (&motion.rows[0].1, &motion.rows[motion.rows.len() - 1].1);
-    assert_eq!((&first[..], &last[..]), (&START[..], &GOAL[..]));
+    assert_eq!((timed.trajectory.first(), timed.trajectory.last()), (Some(&START[..]), Some(&GOAL[..])));
     // The straight path leads through the post.
     assert!(!is_free(&[0.0, 0.3, -0.6]));
 }
@@ -64,7 +63,7 @@ fn joints_that_are_not_in_the_map_stay_where_they_are() {
     let cell = parse(&wrist.replace("start = [-60, 20, -40]", "start = [-60, 20, -40, 0]"));
     let with = |q: [f64; 3], wrist: f64| [q[0], q[1], q[2], wrist];
     let answer = asked(&cell, &with(START, 0.4), &with(GOAL, 0.4)).unwrap();
-    assert!(answer.motion.expect("a path").rows.iter().all(|(_, q)| q[3] == 0.4));
+    assert!(answer.timed.expect("a path").trajectory.rows().iter().all(|row| row.q[3] == 0.4));
     let moved = asked(&cell, &with(START, 0.4), &with(GOAL, 0.0)).unwrap_err().to_string();
     assert!(moved.contains("`joint_4`") && moved.contains("planner rrt-connect"), "{moved}");
     // The map is valid for the present wrist: a finger that would touch the shelf if it were turned down is held level.
@@ -81,7 +80,7 @@ fn joints_that_are_not_in_the_map_stay_where_they_are() {
 fn why_there_is_no_path_is_said() {
     let no_path = |cell: &str, from: &[f64], to: &[f64]| {
         let answer = asked(&parse(cell), from, to).unwrap();
-        assert!(!answer.found && answer.motion.is_none());
+        assert!(!answer.found && answer.timed.is_none());
         answer.reason.expect("a reason")
     };
     // From beside the post towards it: first in free cells, then near it in a blocked cell that is left for a free one,
@@ -141,7 +140,7 @@ fn what_a_map_does_not_know_is_tested_afterwards() {
         ..PathRequest::default()
     };
     assert!(plan(&cell, &PathRequest { planner: PathPlanner::Grid, ..request }).unwrap().found);
-    assert!(asked(&parse(free), &START, &GOAL).unwrap().motion.is_some_and(|m| m.waypoints.len() == 2));
+    assert!(asked(&parse(free), &START, &GOAL).unwrap().timed.is_some_and(|timed| timed.path.waypoints.len() == 2));
 }
 
 #[test]
@@ -156,8 +155,8 @@ fn of_the_solutions_for_a_pose_one_that_is_reached_is_taken() {
     };
     let to = PathGoal::Tcp(TcpTarget::from(at(&GOAL)));
     let request = PathRequest { planner: PathPlanner::Grid, from: Some(START.into()), to, ..PathRequest::default() };
-    let motion = plan(&cell, &request).unwrap().motion.expect("a path");
-    let end = at(&motion.rows[motion.rows.len() - 1].1);
+    let timed = plan(&cell, &request).unwrap().timed.expect("a path");
+    let end = at(timed.trajectory.last().unwrap());
     assert!((end.translation - at(&GOAL).translation).length() < 1e-5);
 }
 
@@ -167,7 +166,7 @@ fn objects_count_where_they_are_at_the_time() {
         let planner = PathPlanner::Grid;
         let from = Some(START.into());
         let request = PathRequest { planner, placed, from, to: GOAL[..].into(), ..PathRequest::default() };
-        plan(cell, &request).unwrap().motion.expect("a path").waypoints
+        plan(cell, &request).unwrap().timed.expect("a path").path.waypoints
     };
     let cell = parse(ARM);
     let at = |x, y| vec![(ObjectId(0), Pose::from_xyz_rpy([x, y, 0.4], [0.0; 3]))];
@@ -184,11 +183,11 @@ fn a_path_keeps_its_distance_through_cells_that_are_blocked_up_to_it() {
     let options = RrtConnectSettings { clearance_m: 0.08, ..RrtConnectSettings::default() };
     let request =
         PathRequest { planner, options, from: Some(START.into()), to: GOAL[..].into(), ..PathRequest::default() };
-    let motion = plan(&cell, &request).unwrap().motion.expect("the arm can fold");
+    let timed = plan(&cell, &request).unwrap().timed.expect("the arm can fold");
     let scene = QueryModel::of_cell(&cell).scene(OutOfReachProofs::Omit).unwrap();
     let mut state = SceneState::new(&scene);
     let mut checker = Checker::new(&scene, CheckerOptions::default());
-    for (_, q) in &motion.rows {
+    for TrajectoryRow { q, .. } in timed.trajectory.rows() {
         state.set_q(&scene, RobotId(0), q).unwrap();
         let least = checker.between(Selection::Robot(RobotId(0)), Selection::Objects).distance(&state);
         assert!(least.is_none_or(|d| d.metres >= 0.08 - 1e-9), "{q:?}: {least:?}");

@@ -5,6 +5,7 @@ use std::path::Path;
 use elbowroom_formats::problem_set::{self, PlanningProblem};
 use elbowroom_formats::robot::{self, LoadOptions};
 use elbowroom_formats::{FormatError, Warning};
+use elbowroom_kinematics::TrajectoryRow;
 use elbowroom_query::problems::{ProblemModel, ProblemResult, ProblemSettings, ProblemSummary, RrtConnectEngine, run};
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{Checker, CheckerOptions, SceneState};
@@ -60,10 +61,10 @@ fn solve(problems: &[Value]) -> (Vec<(ProblemResult, Vec<f64>)>, Vec<Warning>) {
     let model = model_of(URDF, &problems).unwrap_or_else(|e| panic!("{e}"));
     let settings = ProblemSettings { time_limit: std::time::Duration::from_millis(300), ..ProblemSettings::default() };
     let mut ends = Vec::new();
-    let results = run(&model, &problems, &settings, &mut RrtConnectEngine, &mut |result, motion| {
-        let end = motion.and_then(|m| m.rows.last()).map(|(t, q)| {
-            assert_eq!(Some(*t), result.duration_s);
-            q.clone()
+    let results = run(&model, &problems, &settings, &mut RrtConnectEngine, &mut |result, timed| {
+        let end = timed.and_then(|timed| timed.trajectory.rows().last()).map(|row| {
+            assert_eq!(Some(row.t_s), result.duration_s);
+            row.q.clone()
         });
         ends.push(end.unwrap_or_default());
         true
@@ -248,14 +249,14 @@ fn first_of_each_set(urdf: &Path, srdf: &Path, file: &Path, per_set: usize, seed
     let settings =
         ProblemSettings { time_limit: std::time::Duration::from_mins(1), seed, ..ProblemSettings::default() };
     let mut n = 0;
-    let results = run(&model, &problems, &settings, &mut RrtConnectEngine, &mut |_, motion| {
-        let (problem, motion) = (model.problem_scene(&problems[n]).unwrap(), motion.expect("a timed path"));
+    let results = run(&model, &problems, &settings, &mut RrtConnectEngine, &mut |_, timed| {
+        let (problem, timed) = (model.problem_scene(&problems[n]).unwrap(), timed.expect("a timed path"));
         let scene = problem.scene();
         let mut checker = Checker::new(scene, CheckerOptions::default());
         let mut state: SceneState = problem.start().clone();
-        assert_eq!(motion.rows[0].1, state.q(RobotId(0)));
-        assert_eq!(motion.rows.last().unwrap().1, problem.goals()[0]);
-        for (_, q) in motion.rows.iter().step_by(10) {
+        assert_eq!(timed.trajectory.first(), Some(state.q(RobotId(0))));
+        assert_eq!(timed.trajectory.last(), Some(&problem.goals()[0][..]));
+        for TrajectoryRow { q, .. } in timed.trajectory.rows().iter().step_by(10) {
             state.set_q(scene, RobotId(0), q).unwrap();
             assert_eq!(checker.collides(&state), None);
         }

@@ -5,6 +5,7 @@ use std::time::Duration;
 use crate::common::{HEAD, parse};
 use elbowroom_cell::region_constraint::RegionConstraints;
 use elbowroom_cell::{Cell, OutOfReachProofs, QueryModel};
+use elbowroom_kinematics::{JointTrajectory, TrajectoryRow};
 use elbowroom_planner::{PathConstraint, RrtConnectSettings};
 use elbowroom_query::plan::{RobotPathRequest, SeveralPathsAnswer, SeveralPathsRequest, plan_several};
 use elbowroom_robot::RobotId;
@@ -40,13 +41,13 @@ fn assert_free_together(cell: &Cell, answer: &SeveralPathsAnswer, robots: [Robot
     let mut checker = Checker::new(&scene, CheckerOptions::default());
     let mut state = SceneState::new(&scene);
     let split = answer.robots[0].joints.len();
-    for rows in answer.rows.windows(2) {
-        let (from, to) = (rows[0].1.split_at(split), rows[1].1.split_at(split));
+    for rows in answer.trajectory.rows().windows(2) {
+        let (from, to) = (rows[0].q.split_at(split), rows[1].q.split_at(split));
         state.set_q(&scene, robots[0], from.0).unwrap();
         state.set_q(&scene, robots[1], from.1).unwrap();
         let moves = [SweepMove::Robot { robot: robots[0], to: to.0 }, SweepMove::Robot { robot: robots[1], to: to.1 }];
         let hit = checker.sweep(&state, &moves, &SweepOptions::default()).unwrap();
-        assert!(hit.is_none(), "at {} s: {hit:?}", rows[0].0);
+        assert!(hit.is_none(), "at {} s: {hit:?}", rows[0].t_s);
     }
 }
 
@@ -54,7 +55,7 @@ fn assert_free_together(cell: &Cell, answer: &SeveralPathsAnswer, robots: [Robot
 fn least_distance(cell: &Cell, answer: &SeveralPathsAnswer) -> f64 {
     let constraints = RegionConstraints::new(cell, cell.robots.iter().map(|r| &r.start[..]), 0.0).unwrap();
     let mut constraint = constraints.of_robot(RobotId(0)).expect("a region is closed to the left arm");
-    answer.rows.iter().map(|(_, q)| constraint.distance_m(&q[..2], 1.0)).fold(f64::INFINITY, f64::min)
+    answer.trajectory.rows().iter().map(|row| constraint.distance_m(&row.q[..2], 1.0)).fold(f64::INFINITY, f64::min)
 }
 
 const THERE: [f64; 2] = [1.047, 0.0];
@@ -68,8 +69,8 @@ fn two_arms_move_at_the_same_time_and_stay_out_of_regions() {
     for (cell, answer) in [(&free, &without), (&closed, &with)] {
         assert!(answer.found && answer.robots.len() == 2, "{answer:?}");
         assert_free_together(cell, answer, [RobotId(0), RobotId(1)]);
-        assert_eq!(answer.rows[0].1, [cell.robots[0].start.clone(), cell.robots[1].start.clone()].concat());
-        assert_eq!(answer.rows.last().unwrap().1, [THERE, THERE].concat());
+        let (start, goal) = ([&cell.robots[0].start[..], &cell.robots[1].start].concat(), [THERE, THERE].concat());
+        assert_eq!((answer.trajectory.first(), answer.trajectory.last()), (Some(&start[..]), Some(&goal[..])));
         let ends = answer.robots.iter().map(|r| r.end_s).fold(0.0, f64::max);
         assert!((answer.duration_s.unwrap() - ends).abs() < 1e-9 && answer.robots.iter().all(|r| r.cost_rad > 1.0));
     }
@@ -114,9 +115,11 @@ fn the_oracle_detects_motions_that_meet() {
     let both = request(&[("left", THERE), ("right", THERE)]);
     let mut answer = plan_several(&cell, &both).unwrap();
     let straight = |share: f64| -60_f64.to_radians() + (THERE[0] + 60_f64.to_radians()) * share;
-    answer.rows = (0..=50)
-        .map(|i| (f64::from(i), vec![straight(f64::from(i) / 50.0), 0.0, straight(f64::from(i) / 50.0), 0.0]))
-        .collect();
+    let row = |i: u32| {
+        let at = straight(f64::from(i) / 50.0);
+        TrajectoryRow { t_s: f64::from(i), q: vec![at, 0.0, at, 0.0] }
+    };
+    answer.trajectory = JointTrajectory::new((0..=50).map(row).collect());
     let found = std::panic::catch_unwind(|| assert_free_together(&cell, &answer, [RobotId(0), RobotId(1)]));
     assert!(found.is_err());
 }
@@ -129,7 +132,7 @@ fn columns_have_the_names_of_robots_and_joints() {
     answer.write_csv(&mut csv).unwrap();
     let csv = String::from_utf8(csv).unwrap();
     assert_eq!(csv.lines().next(), Some("t_s,right.joint_1,right.joint_2,left.joint_1,left.joint_2"));
-    assert_eq!(csv.lines().count(), answer.rows.len() + 1);
+    assert_eq!(csv.lines().count(), answer.trajectory.rows().len() + 1);
 }
 
 #[test]
@@ -137,7 +140,7 @@ fn a_goal_that_another_robot_does_not_leave_is_no_path() {
     let cell = parse(&format!("{HEAD}{ARMS}"));
     // Both arms stretched to the middle.
     let answer = plan_several(&cell, &request(&[("left", [0.0, 0.0]), ("right", [0.0, 0.0])])).unwrap();
-    assert!(!answer.found && answer.rows.is_empty() && answer.robots.is_empty());
+    assert!(!answer.found && answer.trajectory.rows().is_empty() && answer.robots.is_empty());
     let reason = answer.reason.unwrap();
     assert!(reason.contains("left") && reason.contains("right"), "{reason}");
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use elbowroom::cell::{Cell, QUATERNION_TOLERANCE, TcpTarget};
 use elbowroom::kinematics::inverse::ConfigurationChoice;
-use elbowroom::query::plan::{self, PathAnswer, PathGoal, PathPlanner, PathRequest, TimedPath};
+use elbowroom::query::plan::{self, PathAnswer, PathGoal, PathPlanner, PathRequest};
 use elbowroom::spatial::{Pose, Rotation, Vec3};
 
 use crate::arg_values::{Configuration, Numbers};
@@ -41,19 +41,19 @@ pub(crate) fn plan(args: &PlanArgs) -> Result<ExitStatus, Failure> {
         ..PathRequest::default()
     };
     let answer = plan::plan(&cell, &request)?;
-    if let (Some(path), Some(motion)) = (&args.out, &answer.motion) {
-        write_file(path, |out| motion.write_csv(&answer.joints, out))?;
+    if let (Some(path), Some(timed)) = (&args.out, &answer.timed) {
+        write_file(path, |out| plan::write_csv(&answer.joints, &timed.trajectory, out))?;
     }
-    if let (Some(path), Some(motion)) = (&args.report, &answer.motion) {
+    if let (Some(path), Some(timed)) = (&args.report, &answer.timed) {
         let (id, _) = plan::select_robot(&cell, request.robot.as_deref())?;
-        plan_report::write(path, &cell, vec![(id, motion.rows.clone())])?;
+        plan_report::write(path, &cell, vec![(id, timed.trajectory.clone())])?;
     }
     if args.json {
         print_json(&answer)?;
     } else {
         print(&text(&answer))?;
-        if let (Some(path), Some(motion)) = (&args.out, &answer.motion) {
-            print(&format!("\n{} rows in {}\n", motion.rows.len(), path.display()))?;
+        if let (Some(path), Some(timed)) = (&args.out, &answer.timed) {
+            print(&format!("\n{} rows in {}\n", timed.trajectory.rows().len(), path.display()))?;
         }
     }
     Ok(if answer.found { ExitStatus::Success } else { ExitStatus::NegativeResult })
@@ -145,12 +145,13 @@ fn pose(cell: &Cell, numbers: &[f64]) -> Result<Pose, Failure> {
 /// Formats the table for the terminal. Writing to a String cannot fail.
 fn text(answer: &PathAnswer) -> String {
     let milliseconds = |us: u64| us as f64 / 1000.0;
-    let Some(motion) = &answer.motion else {
+    let Some(timed) = &answer.timed else {
         let reason = answer.reason.as_deref().unwrap_or("no path found");
         return format!("{}: {reason}\n", answer.robot);
     };
-    let TimedPath { waypoints, cost_rad, duration_s, stops, .. } = motion;
-    let stops = match stops {
+    let (waypoints, cost_rad, duration_s) =
+        (&timed.path.waypoints, timed.path.length_rad, timed.trajectory.duration_s());
+    let stops = match timed.stops {
         0 => "without a stop".into(),
         1 => "one stop on the way".into(),
         n => format!("{n} stops on the way"),

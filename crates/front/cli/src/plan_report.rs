@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use elbowroom::cell::{Cell, Program, ProgramBody, TrajectoryRow, Travel};
+use elbowroom::cell::{Cell, Program, ProgramBody, Travel};
+use elbowroom::kinematics::JointTrajectory;
 use elbowroom::report::{self, ReportScene};
 use elbowroom::robot::RobotId;
 use elbowroom::sim::RunOptions;
@@ -11,14 +12,11 @@ use crate::output::Failure;
 use crate::output_file::write_file;
 use crate::simulation::Simulation;
 
-/// A robot and the samples of its path: time in s, joint values in rad or m.
-pub(crate) type PlayedPath = (RobotId, Vec<(f64, Vec<f64>)>);
-
 /// Writes the page.
 ///
 /// As in the plan, all other robots stay at their start and objects at their initial poses; the monitor does not limit
 /// the speed, so the times are those of the plan.
-pub(crate) fn write(path: &Path, cell: &Cell, paths: Vec<PlayedPath>) -> Result<(), Failure> {
+pub(crate) fn write(path: &Path, cell: &Cell, motions: Vec<(RobotId, JointTrajectory)>) -> Result<(), Failure> {
     let mut cell = cell.clone();
     cell.programs.iter_mut().for_each(|program| *program = None);
     cell.avoidance.iter_mut().for_each(|avoidance| *avoidance = None);
@@ -27,12 +25,11 @@ pub(crate) fn write(path: &Path, cell: &Cell, paths: Vec<PlayedPath>) -> Result<
         let (at_m, _) = encoder.at(0.0);
         encoder.travel = Travel::Constant { at_m, speed: 0.0, start_s: 0.0, end_s: 0.0 };
     }
-    for (robot, rows) in paths {
-        let Some((_, first)) = rows.first() else { continue };
-        cell.robots[robot.0].start.clone_from(first);
-        let rows = rows.into_iter().map(|(t_s, q)| TrajectoryRow { t_s, q }).collect();
+    for (robot, trajectory) in motions {
+        let Some(first) = trajectory.first() else { continue };
+        cell.robots[robot.0].start = first.to_vec();
         let line = cell.robots[robot.0].line;
-        let body = ProgramBody::Trajectory(rows);
+        let body = ProgramBody::Trajectory(trajectory);
         cell.programs[robot.0] = Some(Program { speed_override: 1.0, repeat: 1, body, line });
     }
     let options = RunOptions { apply_override: false, avoidance: false, ..RunOptions::default() };

@@ -3,14 +3,16 @@
 use std::fmt::Write;
 
 use elbowroom::cell::Cell;
+use elbowroom::kinematics::{JointTrajectory, TrajectoryRow};
 use elbowroom::query::plan::{
     RobotPath, RobotPathRequest, SeveralPathsAnswer, SeveralPathsRequest, plan_several, select_robot,
 };
+use elbowroom::robot::RobotId;
 
 use crate::output::{ExitStatus, Failure, print, print_json};
 use crate::output_file::write_file;
 use crate::plan_args::{PlanArgs, Planner};
-use crate::plan_report::{self, PlayedPath};
+use crate::plan_report;
 use crate::plan_request::{configuration, settings};
 
 pub(crate) fn plan(cell: &Cell, args: &PlanArgs) -> Result<ExitStatus, Failure> {
@@ -27,21 +29,21 @@ pub(crate) fn plan(cell: &Cell, args: &PlanArgs) -> Result<ExitStatus, Failure> 
     } else {
         print(&text(&answer))?;
         if let Some(path) = args.out.as_ref().filter(|_| answer.found) {
-            print(&format!("\n{} rows in {}\n", answer.rows.len(), path.display()))?;
+            print(&format!("\n{} rows in {}\n", answer.trajectory.rows().len(), path.display()))?;
         }
     }
     Ok(if answer.found { ExitStatus::Success } else { ExitStatus::NegativeResult })
 }
 
 /// Splits the rows into the columns of each robot.
-fn played(cell: &Cell, answer: &SeveralPathsAnswer) -> Result<Vec<PlayedPath>, Failure> {
+fn played(cell: &Cell, answer: &SeveralPathsAnswer) -> Result<Vec<(RobotId, JointTrajectory)>, Failure> {
     let mut first = 0;
     let of_robot = |path: &RobotPath| {
         let (id, _) = select_robot(cell, Some(&path.robot))?;
         let columns = first..first + path.joints.len();
         first = columns.end;
-        let rows = answer.rows.iter().map(|(t_s, q)| (*t_s, q[columns.clone()].to_vec())).collect();
-        Ok((id, rows))
+        let row = |row: &TrajectoryRow| TrajectoryRow { t_s: row.t_s, q: row.q[columns.clone()].to_vec() };
+        Ok((id, JointTrajectory::new(answer.trajectory.rows().iter().map(row).collect())))
     };
     answer.robots.iter().map(of_robot).collect()
 }

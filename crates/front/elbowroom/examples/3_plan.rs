@@ -6,6 +6,7 @@
 use std::error::Error;
 use std::path::Path;
 
+use elbowroom::kinematics::TrajectoryRow;
 use elbowroom::prelude::*;
 use elbowroom::proximity::Cylinder;
 
@@ -60,10 +61,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     // A corner is blended if the blend is proven free; a controller follows the samples.
     let motion = planner.time_parametrize(&state, &path, &limits, PERIOD_S, &settings)?;
     let samples = motion.samples(PERIOD_S)?;
-    println!("takes {:.2} s, {} stops, {} samples", motion.seconds(), motion.stops(), samples.len());
+    println!("takes {:.2} s, {} stops, {} samples", motion.seconds(), motion.stops(), samples.rows().len());
 
     let mut least = None;
-    for (t_s, q) in &samples {
+    for TrajectoryRow { t_s, q } in samples.rows() {
         state.set_q(&scene, robot, q)?;
         let pair = checker.distance(&state).ok_or("nothing to compare")?;
         if least.is_none_or(|(_, metres)| pair.metres < metres) {

@@ -30,7 +30,7 @@ const STATIONARY: f64 = 0.02;
 
 /// A motion that begins at an instant.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct TimedMotion<'a> {
+pub(crate) struct EscapeMotion<'a> {
     pub(crate) trajectory: &'a EscapeTrajectory,
     /// Time within the trajectory at which the check begins, s.
     pub(crate) elapsed_s: f64,
@@ -177,7 +177,7 @@ impl<'s> EscapeCheck<'s> {
     /// other robots by whether they are known. A motion that cannot be checked counts as a hit.
     pub(crate) fn meets_moving(
         &mut self,
-        motion: &TimedMotion<'_>,
+        motion: &EscapeMotion<'_>,
         obstacles: &DynamicObstacles<'_>,
         clearance_m: f64,
         counts: impl Fn(bool) -> bool,
@@ -206,7 +206,7 @@ impl<'s> EscapeCheck<'s> {
     /// end.
     fn meets_object(
         &mut self,
-        motion: &TimedMotion<'_>,
+        motion: &EscapeMotion<'_>,
         object: &ObservedObject,
         clearance_m: f64,
         until_s: &mut f64,
@@ -286,7 +286,7 @@ impl<'s> EscapeCheck<'s> {
     /// counts as a hit.
     fn meets_robot(
         &mut self,
-        motion: &TimedMotion<'_>,
+        motion: &EscapeMotion<'_>,
         other: &Neighbour<'_>,
         clearance_m: f64,
         until_s: f64,
@@ -321,7 +321,7 @@ impl<'s> EscapeCheck<'s> {
     /// obstacles count at their predicted poses at the beginning of each stretch. False if the work is used up.
     pub(crate) fn keeps_clear_of_fixed(
         &mut self,
-        motion: &TimedMotion<'_>,
+        motion: &EscapeMotion<'_>,
         obstacles: &DynamicObstacles<'_>,
         clearance_m: f64,
     ) -> Result<bool, SceneError> {
@@ -347,7 +347,7 @@ impl<'s> EscapeCheck<'s> {
     }
 
     /// Whether the motion keeps a constraint, such as regions that are closed to the robot.
-    pub(crate) fn keeps_constraint(&mut self, motion: &TimedMotion<'_>, constraint: &mut dyn PathConstraint) -> bool {
+    pub(crate) fn keeps_constraint(&mut self, motion: &EscapeMotion<'_>, constraint: &mut dyn PathConstraint) -> bool {
         let end_s = (motion.trajectory.duration_s - motion.elapsed_s).min(motion.horizon_s);
         let (mut t, mut step_s) = (0.0, STRETCH_S);
         motion.trajectory.q_at(motion.elapsed_s, &mut self.from);
@@ -376,7 +376,7 @@ impl<'s> EscapeCheck<'s> {
     }
 
     /// Duration of the stretch from `t_s` during which the motion is straight, up to a fraction of the clearance.
-    fn stretch_s(&mut self, motion: &TimedMotion<'_>, t_s: f64, clearance_m: f64) -> f64 {
+    fn stretch_s(&mut self, motion: &EscapeMotion<'_>, t_s: f64, clearance_m: f64) -> f64 {
         let (from, mut stretch_s) = (motion.elapsed_s + t_s, STRETCH_S);
         while stretch_s > MIN_STRETCH_S {
             motion.trajectory.chord_deviation(from, from + stretch_s, &mut self.deviation);
@@ -389,7 +389,7 @@ impl<'s> EscapeCheck<'s> {
     }
 
     /// Moves the robot to its configuration after `t_s` seconds; returns whether it rests from then on.
-    fn set_time(&mut self, motion: &TimedMotion<'_>, t_s: f64) -> Result<bool, SceneError> {
+    fn set_time(&mut self, motion: &EscapeMotion<'_>, t_s: f64) -> Result<bool, SceneError> {
         let at = motion.elapsed_s + t_s;
         motion.trajectory.q_at(at, &mut self.from);
         self.state.set_q(self.scene, self.robot, &self.from)?;

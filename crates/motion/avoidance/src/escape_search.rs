@@ -14,7 +14,7 @@ use elbowroom_scene::{Attachment, Scene, SceneError};
 use elbowroom_spatial::{Pose, Vec3};
 
 use crate::DynamicObstacles;
-use crate::escape_check::{EscapeCheck, EscapeClearance, MotionCheck, PredictedHit, TimedMotion, moves, robot_moves};
+use crate::escape_check::{EscapeCheck, EscapeClearance, EscapeMotion, MotionCheck, PredictedHit, moves, robot_moves};
 use crate::escape_targets::{EscapeDirections, target};
 use crate::escape_trajectory::{EscapeStart, EscapeTrajectory};
 use crate::escape_trial::{EscapeCandidate, EscapeTrial};
@@ -273,7 +273,7 @@ impl<'s> EscapeSearch<'s> {
     ) -> Result<bool, SceneError> {
         self.known.trajectory.set_target(&self.known.target, &tick.start);
         let horizon_s = self.settings.horizon_s;
-        let motion = TimedMotion { trajectory: &self.known.trajectory, elapsed_s: 0.0, begins_s: 0.0, horizon_s };
+        let motion = EscapeMotion { trajectory: &self.known.trajectory, elapsed_s: 0.0, begins_s: 0.0, horizon_s };
         Ok(self.check.meets_moving(&motion, tick.obstacles, clearance.moving_m, |_| true)?.is_free()
             && self.check.keeps_clear_of_fixed(&motion, tick.obstacles, clearance.fixed_m)?
             && constraint.as_deref_mut().is_none_or(|c| self.check.keeps_constraint(&motion, c)))
@@ -316,7 +316,7 @@ impl<'s> EscapeSearch<'s> {
         let start = EscapeStart { q: &self.next.q, qd: &self.next.qd, ..tick.start };
         self.stop.set_stop(&start);
         let horizon_s = self.settings.horizon_s - from_s;
-        let motion = TimedMotion { trajectory: &self.stop, elapsed_s: from_s, begins_s: tick.dt + from_s, horizon_s };
+        let motion = EscapeMotion { trajectory: &self.stop, elapsed_s: from_s, begins_s: tick.dt + from_s, horizon_s };
         self.check.meets_moving(&motion, tick.obstacles, clearance_m, |known| !known)
     }
 
@@ -343,7 +343,7 @@ impl<'s> EscapeSearch<'s> {
         self.known.followed_s = Some(after_s);
         let horizon_s = self.settings.horizon_s;
         let motion =
-            TimedMotion { trajectory: &self.known.trajectory, elapsed_s: after_s, begins_s: tick.dt, horizon_s };
+            EscapeMotion { trajectory: &self.known.trajectory, elapsed_s: after_s, begins_s: tick.dt, horizon_s };
         let remains = self.check.meets_moving(&motion, tick.obstacles, clearance.moving_m, |_| true)?;
         if let Some(hit) = remains.hit
             && self.find(tick, &stop_hit.unwrap_or(hit), clearance, constraint)?
@@ -401,7 +401,7 @@ impl<'s> EscapeSearch<'s> {
         let start = EscapeStart { q: &self.next.q, qd: &self.next.qd, ..tick.start };
         self.trial.trajectory.set_target(&self.trial.target, &start);
         let horizon_s = self.settings.horizon_s;
-        let motion = TimedMotion { trajectory: &self.trial.trajectory, elapsed_s: 0.0, begins_s: tick.dt, horizon_s };
+        let motion = EscapeMotion { trajectory: &self.trial.trajectory, elapsed_s: 0.0, begins_s: tick.dt, horizon_s };
         let moving = self.check.meets_moving(&motion, tick.obstacles, clearance.moving_m, |_| true)?;
         let escape = EscapeCandidate { gap_m: moving.gap_m, duration_s: self.trial.trajectory.duration_s };
         let is_worse = self.trial.best.is_some_and(|best| !escape.is_better_than(&best));

@@ -9,7 +9,7 @@ use elbowroom_robot::RobotId;
 use elbowroom_scene::{Scene, SceneError};
 
 use crate::DynamicObstacles;
-use crate::escape_check::{EscapeCheck, TimedMotion};
+use crate::escape_check::{EscapeCheck, EscapeMotion};
 use crate::escape_trajectory::{EscapeStart, EscapeTrajectory};
 use crate::reversal_limiter::ReversalLimiter;
 
@@ -82,7 +82,7 @@ pub fn search_escape_tree(
         trajectory.set_target(&target, &start);
         let left_s = horizon_s - node.t_s;
         let (t_s, gap_m) = (node.t_s, node.gap_m);
-        let mut motion = TimedMotion { trajectory: &trajectory, elapsed_s: 0.0, begins_s: t_s, horizon_s: left_s };
+        let mut motion = EscapeMotion { trajectory: &trajectory, elapsed_s: 0.0, begins_s: t_s, horizon_s: left_s };
         let moving = check.meets_moving(&motion, obstacles, CLEARANCE_M, |_| true)?;
         let free_s = moving.hit.map_or(left_s, |hit| hit.time_s);
         let gap_m = gap_m.min(moving.gap_m);

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use common::{Random, blocked_point, connected, free_cell, grid_optimum};
 use elbowroom_cspace::{CellIndex, ConvexObstacle, Grid, JointMap};
-use elbowroom_planner::{GridPlanner, GridPlannerSettings, Path, example};
+use elbowroom_planner::{GridPath, GridPlanner, GridPlannerSettings, example};
 
 type Error = Box<dyn std::error::Error>;
 
@@ -32,7 +32,7 @@ fn main() -> Result<(), Error> {
     Ok(())
 }
 
-fn planning(grid: &Grid, map: &JointMap) -> Result<Vec<Path>, Error> {
+fn planning(grid: &Grid, map: &JointMap) -> Result<Vec<GridPath>, Error> {
     let made = Instant::now();
     let mut planner = GridPlanner::new(grid, map.occupancy())?;
     println!("  planner built in {:.2?}", made.elapsed());
@@ -77,7 +77,7 @@ fn planning(grid: &Grid, map: &JointMap) -> Result<Vec<Path>, Error> {
 }
 
 /// Times the time parametrization of every path.
-fn timing(grid: &Grid, map: &JointMap, paths: &[Path]) -> Result<(), Error> {
+fn timing(grid: &Grid, map: &JointMap, paths: &[GridPath]) -> Result<(), Error> {
     let planner = GridPlanner::new(grid, map.occupancy())?;
     let limits = [[1.5, 3.0, 30.0], [1.5, 3.0, 30.0], [2.0, 5.0, 50.0]].map(|[v, a, j]| JointLimits::new(v, a, j));
     let (mut stops, mut timings) = (0, Vec::new());
@@ -91,7 +91,7 @@ fn timing(grid: &Grid, map: &JointMap, paths: &[Path]) -> Result<(), Error> {
 }
 
 /// Adds a sphere at the wrist's position on the path, and plans the path again.
-fn replanning(grid: &Grid, map: &mut JointMap, paths: &[Path]) -> Result<(), Error> {
+fn replanning(grid: &Grid, map: &mut JointMap, paths: &[GridPath]) -> Result<(), Error> {
     let settings = GridPlannerSettings::default();
     for radius in [0.05, 0.15] {
         let mut planner = GridPlanner::new(grid, map.occupancy())?;
@@ -117,7 +117,7 @@ fn replanning(grid: &Grid, map: &mut JointMap, paths: &[Path]) -> Result<(), Err
 }
 
 /// The configuration at half of the path's length.
-fn halfway(path: &Path) -> [f64; 3] {
+fn halfway(path: &GridPath) -> [f64; 3] {
     let mut left = 0.5 * path.length_rad;
     for w in path.waypoints.windows(2) {
         let far = (0..3).map(|i| (w[0][i] - w[1][i]).powi(2)).sum::<f64>().sqrt();

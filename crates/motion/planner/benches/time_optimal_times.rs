@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 use std::time::Instant;
 
 use elbowroom_cspace::{Grid, GridAxis, OccupancyBitmap};
-use elbowroom_planner::{BlendedPath, GridPlanner, Path, TimeOptimalTrajectory};
+use elbowroom_planner::{BlendedPath, GridPath, GridPlanner, TimeOptimalTrajectory};
 use elbowroom_testkit::random::{split_mix, unit};
 
 type Error = Box<dyn std::error::Error>;
@@ -63,7 +63,7 @@ fn beside_grid_planner() -> Result<(), Error> {
             let waypoints: Vec<[f64; 3]> = (0..2 + n % 9).map(|_| [value(), value(), value()]).collect();
             let path = BlendedPath::new(&waypoints, |_| true)?;
             now += path.time_optimal(&limits)?.seconds();
-            let path = Path { waypoints, length_rad: 0.0, start_moved_rad: 0.0, goal_moved_rad: 0.0 };
+            let path = GridPath { waypoints, length_rad: 0.0, start_moved_rad: 0.0, goal_moved_rad: 0.0 };
             before += planner.time_parametrize(&path, &limits)?.seconds();
         }
         println!("three joints, jerk {jerk}: S-curves {before:.1} s, time-optimal {now:.1} s (x{:.3})", now / before);

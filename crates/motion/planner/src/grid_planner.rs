@@ -5,11 +5,11 @@ use elbowroom_cspace::{CellChanges, CellIndex, Grid, OccupancyBitmap};
 use crate::cell_group_graph::{CellGroupGraph, Node};
 use crate::cell_path::CellPathSearch;
 use crate::graph_components::GraphComponents;
+use crate::grid_path::{GridPath, GridPlannerError, GridPlannerSetting, PathEnd};
 use crate::grid_shortcutting::{GridShortcutting, PathContext};
 use crate::grid_space::{CellPoint, CellScale, GridPoint, GridSpace};
 use crate::line_of_sight::line_of_sight;
 use crate::nearest_free_cell::nearest_cell;
-use crate::path::{GridPlannerError, GridPlannerSetting, Path, PathEnd};
 use crate::theta_star::{PathLink, SearchOutcome, Terminal, ThetaStarQuery, ThetaStarSearch};
 
 /// Number of nodes that a search expands after a change of cells before the connected components are computed.
@@ -144,7 +144,7 @@ impl GridPlanner {
         start: [f64; 3],
         goal: [f64; 3],
         settings: &GridPlannerSettings,
-    ) -> Result<Path, GridPlannerError> {
+    ) -> Result<GridPath, GridPlannerError> {
         let scale = self.scale(settings)?;
         let ends = self.ends([start, goal], scale, settings.max_end_shift_rad)?;
         let mut points = Vec::new();
@@ -313,7 +313,7 @@ impl GridPlanner {
         points.extend(self.cells.iter().map(|&cell| self.space.center(cell)));
     }
 
-    fn path(&self, points: &[GridPoint], scale: CellScale, ends: &[FreeEnd; 2]) -> Path {
+    fn path(&self, points: &[GridPoint], scale: CellScale, ends: &[FreeEnd; 2]) -> GridPath {
         let mut waypoints: Vec<[f64; 3]> = points.iter().map(|&p| self.space.q(p)).collect();
         // The points at the ends are within a billionth of a cell of the requested ends.
         if let Some(first) = waypoints.first_mut() {
@@ -323,7 +323,7 @@ impl GridPlanner {
             *last = ends[1].q;
         }
         waypoints.dedup();
-        Path {
+        GridPath {
             waypoints,
             length_rad: scale.length(points),
             start_moved_rad: ends[0].moved,

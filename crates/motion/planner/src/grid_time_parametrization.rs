@@ -3,11 +3,11 @@
 use elbowroom_cspace::OccupancyBitmap;
 use elbowroom_kinematics::JointLimits;
 
+use crate::grid_path::GridPath;
 use crate::grid_planner::GridPlanner;
 use crate::grid_space::GridPoint;
 use crate::line_of_sight::box_is_free;
-use crate::path::Path;
-use crate::time_parametrization::{PathSegments, TimeParametrizationError, Trajectory};
+use crate::time_parametrization::{BlendedTrajectory, PathSegments, TimeParametrizationError};
 
 /// Number of times that the triangle of a corner is halved before the trajectory stops at the corner.
 const MAX_HALVINGS: i32 = 6;
@@ -56,12 +56,12 @@ impl GridPlanner {
     /// ```
     /// # use elbowroom_cspace::{Grid, GridAxis, OccupancyBitmap};
     /// # use elbowroom_kinematics::JointLimits;
-    /// # use elbowroom_planner::{GridPlanner, Path};
+    /// # use elbowroom_planner::{GridPlanner, GridPath};
     /// # let axis = |name| GridAxis::new(name, 0.0, 1.0, 0.05);
     /// # let grid = Grid::new([axis("a")?, axis("b")?, axis("c")?])?;
     /// # let planner = GridPlanner::new(&grid, &OccupancyBitmap::new(grid.shape()))?;
     /// # let waypoints = vec![[0.1, 0.1, 0.1], [0.9, 0.1, 0.1], [0.9, 0.9, 0.1]];
-    /// # let path = Path { waypoints, length_rad: 1.6, start_moved_rad: 0.0, goal_moved_rad: 0.0 };
+    /// # let path = GridPath { waypoints, length_rad: 1.6, start_moved_rad: 0.0, goal_moved_rad: 0.0 };
     /// let limits = vec![JointLimits::new(2.0, 10.0, 200.0); 3];
     /// let trajectory = planner.time_parametrize(&path, &limits)?;
     /// assert_eq!((trajectory.at(0.0).q, trajectory.stops()), (vec![0.1, 0.1, 0.1], 0));
@@ -73,9 +73,9 @@ impl GridPlanner {
     /// The limits are not three finite numbers above 0 each, or the path has no waypoints.
     pub fn time_parametrize(
         &self,
-        path: &Path,
+        path: &GridPath,
         limits: &[JointLimits],
-    ) -> Result<Trajectory, TimeParametrizationError> {
+    ) -> Result<BlendedTrajectory, TimeParametrizationError> {
         let segments = PathSegments::new(&path.waypoints, limits)?;
         let mut blend_distances = vec![0.0; segments.count()];
         for n in 1..segments.count() {
@@ -84,6 +84,6 @@ impl GridPlanner {
                 triangle_is_free(&self.occupancy, corners)
             });
         }
-        Ok(Trajectory::new(segments, &blend_distances))
+        Ok(BlendedTrajectory::new(segments, &blend_distances))
     }
 }

@@ -37,34 +37,39 @@ mod cell_path;
 mod cover_rrt_connect;
 pub mod example;
 mod graph_components;
+mod grid_path;
 mod grid_planner;
 mod grid_shortcutting;
 mod grid_space;
 mod grid_time_parametrization;
+mod interpolation;
+mod joint_path;
 mod line_of_sight;
 mod nearest_free_cell;
 mod orientation_constraint;
-mod path;
 mod prioritized_planner;
 mod robot_planner;
 mod rrt_connect;
 mod task_space_region;
 mod theta_star;
 mod time_parametrization;
+mod timed_path;
 
-pub use cover_rrt_connect::{AnytimePath, CoverModel, CoverObstacles, CoverRrtConnect, LinearMove, TimedMotion};
+pub use cover_rrt_connect::{AnytimePath, CoverModel, CoverObstacles, CoverRrtConnect, LinearMove};
+pub use grid_path::{GridPath, GridPlannerError, GridPlannerSetting, PathEnd};
 pub use grid_planner::{GridPlanner, GridPlannerSettings};
+pub use joint_path::JointPath;
 pub use orientation_constraint::OrientationConstraint;
-pub use path::{GridPlannerError, GridPlannerSetting, Path, PathEnd};
 pub use prioritized_planner::{
     PathConstraintSource, PrioritizedMotion, PrioritizedPlanner, PrioritizedPlannerError, RobotGoal,
 };
 pub use robot_planner::{CoverModels, RobotPlanner};
 pub use rrt_connect::{
-    JointUnit, LinearMoveEnd, PathConstraint, PlannedPath, Random, RrtConnect, RrtConnectError, RrtConnectSetting,
+    JointUnit, LinearMoveEnd, PathConstraint, Random, RrtConnect, RrtConnectError, RrtConnectSetting,
     RrtConnectSettings,
 };
 pub use task_space_region::TaskSpaceRegion;
 pub use time_parametrization::{
-    BlendedPath, CornerBlend, LimitKind, TimeOptimalTrajectory, TimeParametrizationError, Trajectory, TrajectoryPoint,
+    BlendedPath, BlendedTrajectory, CornerBlend, LimitKind, TimeOptimalTrajectory, TimeParametrizationError,
 };
+pub use timed_path::TimedPath;

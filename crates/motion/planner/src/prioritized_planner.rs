@@ -15,8 +15,8 @@ use elbowroom_scene::{Checker, CheckerOptions, Scene, SceneState, Selection, Swe
 use elbowroom_validity::{BuiltCovers, CoverSource};
 
 use crate::{
-    CoverModels, CoverObstacles, PathConstraint, PlannedPath, RobotPlanner, RrtConnect, RrtConnectError,
-    RrtConnectSettings, TimedMotion,
+    CoverModels, CoverObstacles, PathConstraint, RobotPlanner, RrtConnect, RrtConnectError, RrtConnectSettings,
+    TimedPath,
 };
 
 /// Up to this number of robots, all priority orders are tried; with more robots, each robot is tried as the first.
@@ -76,10 +76,8 @@ pub struct RobotGoal {
 pub struct PrioritizedMotion {
     /// The robot.
     pub robot: RobotId,
-    /// Its path.
-    pub path: PlannedPath,
-    /// Its motion along the path; times count from its own start.
-    pub motion: TimedMotion,
+    /// Its path; times count from its own start.
+    pub timed: TimedPath,
     /// When it starts, s.
     pub start_s: f64,
     /// Period of the motion's rows, s.
@@ -94,7 +92,7 @@ impl PrioritizedMotion {
 
     /// Configuration at a multiple of the period: before the start the first configuration, after the end the last.
     pub fn at_tick(&self, tick: usize) -> &[f64] {
-        &self.motion.rows[tick.saturating_sub(self.start_tick()).min(self.last_row())].1
+        &self.timed.trajectory.rows()[tick.saturating_sub(self.start_tick()).min(self.last_row())].q
     }
 
     fn start_tick(&self) -> usize {
@@ -102,7 +100,7 @@ impl PrioritizedMotion {
     }
 
     fn last_row(&self) -> usize {
-        self.motion.rows.len() - 1
+        self.timed.trajectory.rows().len() - 1
     }
 
     fn end_tick(&self) -> usize {
@@ -206,8 +204,8 @@ impl<'s> PrioritizedPlanner<'s> {
         let mut motions: Vec<PrioritizedMotion> = Vec::new();
         for goal in order.iter().map(|&index| &goals[index]) {
             let of_robot = |error| PrioritizedPlannerError::Robot { robot: goal.robot, error };
-            let (path, motion) = self.plan_one(&state, goal, period_s, &settings).map_err(of_robot)?;
-            let next = PrioritizedMotion { robot: goal.robot, path, motion, start_s: 0.0, period_s };
+            let timed = self.plan_one(&state, goal, period_s, &settings).map_err(of_robot)?;
+            let next = PrioritizedMotion { robot: goal.robot, timed, start_s: 0.0, period_s };
             motions.push(self.as_early_as_possible(start, &motions, next, settings.clearance_m).map_err(of_robot)?);
             state.set_q(self.scene, goal.robot, &goal.q).map_err(|error| of_robot(error.into()))?;
         }
@@ -220,7 +218,7 @@ impl<'s> PrioritizedPlanner<'s> {
         goal: &RobotGoal,
         period_s: f64,
         settings: &RrtConnectSettings,
-    ) -> Result<(PlannedPath, TimedMotion), RrtConnectError> {
+    ) -> Result<TimedPath, RrtConnectError> {
         let mut exact = RrtConnect::new(self.scene, goal.robot)?;
         if let Some(constraint) = self.constraints.and_then(|all| all.constraint_of(goal.robot)) {
             exact = exact.with_constraint(constraint);
@@ -231,8 +229,7 @@ impl<'s> PrioritizedPlanner<'s> {
         let obstacles = model.map(|model| CoverObstacles::new(model, self.scene, state, clearance_m));
         let mut planner = RobotPlanner::new(exact, model.zip(obstacles.as_ref()));
         let path = planner.plan_to_any(state, &[&goal.q], settings)?;
-        let motion = planner.time_parametrize(state, &path, &goal.limits, period_s, settings)?;
-        Ok((path, motion))
+        planner.time_parametrize(state, path, &goal.limits, period_s, settings)
     }
 
     /// Sets the earliest start at which a motion is proven free beside all motions of higher priority: at the latest,

@@ -5,8 +5,10 @@ use elbowroom_robot::RobotId;
 use elbowroom_scene::{Scene, SceneState};
 use elbowroom_validity::CoverSource;
 
-use crate::cover_rrt_connect::{CoverModel, CoverObstacles, CoverRrtConnect, TimedMotion};
-use crate::rrt_connect::{PlannedPath, RrtConnect, RrtConnectError, RrtConnectSettings};
+use crate::cover_rrt_connect::{CoverModel, CoverObstacles, CoverRrtConnect};
+use crate::joint_path::JointPath;
+use crate::rrt_connect::{RrtConnect, RrtConnectError, RrtConnectSettings};
+use crate::timed_path::TimedPath;
 
 /// Largest number of models that are kept; then the oldest goes.
 const MAX_KEPT: usize = 8;
@@ -29,8 +31,8 @@ const MAX_KEPT: usize = 8;
 /// let mut planner = RobotPlanner::new(RrtConnect::new(&scene, robot)?, model.zip(obstacles.as_ref()));
 /// let path = planner.plan_to_any(&start, &[[0.9, 1.3, 0.6]], &settings)?;
 /// let limits = vec![JointLimits::new(2.0, 8.0, 80.0); 3];
-/// let motion = planner.time_parametrize(&start, &path, &limits, 0.004, &settings)?;
-/// assert_eq!(motion.rows.last().unwrap().1, [0.9, 1.3, 0.6]);
+/// let timed = planner.time_parametrize(&start, path, &limits, 0.004, &settings)?;
+/// assert_eq!(timed.trajectory.last(), Some(&[0.9, 1.3, 0.6][..]));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug)]
@@ -62,7 +64,7 @@ impl<'m> RobotPlanner<'m> {
         start: &SceneState,
         goals: &[G],
         settings: &RrtConnectSettings,
-    ) -> Result<PlannedPath, RrtConnectError> {
+    ) -> Result<JointPath, RrtConnectError> {
         match self {
             Self::Covers(planner) => planner.plan_to_any(start, goals, settings),
             Self::Exact(planner) => planner.plan_to_any(start, goals, settings),
@@ -79,7 +81,7 @@ impl<'m> RobotPlanner<'m> {
         start: &SceneState,
         goals: &[G],
         settings: &RrtConnectSettings,
-    ) -> Result<PlannedPath, RrtConnectError> {
+    ) -> Result<JointPath, RrtConnectError> {
         match self {
             Self::Covers(planner) => Ok(planner.plan_anytime(start, goals, settings)?.path),
             Self::Exact(planner) => planner.plan_to_any(start, goals, settings),
@@ -94,16 +96,14 @@ impl<'m> RobotPlanner<'m> {
     pub fn time_parametrize(
         &mut self,
         start: &SceneState,
-        path: &PlannedPath,
+        path: JointPath,
         limits: &[JointLimits],
         period_s: f64,
         settings: &RrtConnectSettings,
-    ) -> Result<TimedMotion, RrtConnectError> {
+    ) -> Result<TimedPath, RrtConnectError> {
         match self {
             Self::Covers(planner) => planner.time_parametrize(start, path, limits, period_s, settings),
-            Self::Exact(planner) => {
-                TimedMotion::of(&planner.time_parametrize(start, path, limits, period_s, settings)?, period_s)
-            }
+            Self::Exact(planner) => planner.timed(start, path, limits, period_s, settings),
         }
     }
 }

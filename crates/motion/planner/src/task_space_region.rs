@@ -7,7 +7,8 @@ use elbowroom_robot::RobotId;
 use elbowroom_scene::{Scene, SceneState};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
-use crate::rrt_connect::{Random, length};
+use crate::interpolation::length;
+use crate::rrt_connect::Random;
 
 /// Tolerance for rounding at the region's border, m or rad.
 const BORDER: f64 = 1e-8;

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use crate::common::covers::KeptCovers;
 use elbowroom_kinematics::LinkId;
 use elbowroom_planner::{
-    CoverModel, CoverObstacles, CoverRrtConnect, PlannedPath, RrtConnect, RrtConnectError, RrtConnectSettings,
+    CoverModel, CoverObstacles, CoverRrtConnect, JointPath, RrtConnect, RrtConnectError, RrtConnectSettings,
 };
 use elbowroom_proximity::{Cuboid, Shape};
 use elbowroom_robot::{GeometryId, RobotId, example};
@@ -25,12 +25,7 @@ fn scene(boxes: &[(Vec3, Vec3)]) -> Scene {
     builder.build().unwrap()
 }
 
-fn plan(
-    scene: &Scene,
-    from: &[f64],
-    to: &[f64],
-    settings: &RrtConnectSettings,
-) -> Result<PlannedPath, RrtConnectError> {
+fn plan(scene: &Scene, from: &[f64], to: &[f64], settings: &RrtConnectSettings) -> Result<JointPath, RrtConnectError> {
     let mut start = SceneState::new(scene);
     start.set_q(scene, ROBOT, from).unwrap();
     let model = CoverModel::with_covers(scene, &start, ROBOT, 0.0, &KeptCovers).unwrap();

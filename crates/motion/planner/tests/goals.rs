@@ -6,8 +6,8 @@ use std::time::Duration;
 use crate::common::robots::{Random, cabinet, free_values, state_at, within_limits};
 use elbowroom_kinematics::ChainState;
 use elbowroom_planner::{
-    CoverModel, CoverObstacles, CoverRrtConnect, LinearMove, LinearMoveEnd, OrientationConstraint, PathConstraint,
-    PlannedPath, RrtConnect, RrtConnectError, RrtConnectSettings, TaskSpaceRegion,
+    CoverModel, CoverObstacles, CoverRrtConnect, JointPath, LinearMove, LinearMoveEnd, OrientationConstraint,
+    PathConstraint, RrtConnect, RrtConnectError, RrtConnectSettings, TaskSpaceRegion,
 };
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{Checker, CheckerOptions, Scene, SceneState, SweepOptions};
@@ -27,7 +27,7 @@ fn planner<'m>(scene: &'m Scene, (model, obstacles): &'m (CoverModel, CoverObsta
     CoverRrtConnect::new(RrtConnect::new(scene, ROBOT).unwrap(), model, obstacles)
 }
 
-fn assert_free(scene: &Scene, start: &SceneState, path: &PlannedPath) {
+fn assert_free(scene: &Scene, start: &SceneState, path: &JointPath) {
     let mut exact = Checker::new(scene, CheckerOptions::default());
     let hit = exact.sweep_path(start, ROBOT, &path.waypoints, &SweepOptions::default()).unwrap();
     assert!(hit.is_none_or(|h| !h.1.certain), "{hit:?}");
@@ -42,7 +42,7 @@ fn tip(scene: &Scene, q: &[f64]) -> Pose {
 }
 
 /// Configurations along a path, `n` per segment.
-fn along(path: &PlannedPath, n: usize) -> impl Iterator<Item = Vec<f64>> + '_ {
+fn along(path: &JointPath, n: usize) -> impl Iterator<Item = Vec<f64>> + '_ {
     path.waypoints.windows(2).flat_map(move |w| {
         (0..=n).map(move |i| {
             let share = i as f64 / n as f64;

@@ -4,7 +4,7 @@ use elbowroom_kinematics::JointLimits;
 use std::time::Duration;
 
 use crate::common::robots::{Random, cabinet, crane, free_values, state_at};
-use elbowroom_planner::{PathConstraint, PathEnd, PlannedPath, RrtConnect, RrtConnectError, RrtConnectSettings};
+use elbowroom_planner::{JointPath, PathConstraint, PathEnd, RrtConnect, RrtConnectError, RrtConnectSettings};
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{Scene, SceneState, example};
 
@@ -76,7 +76,7 @@ fn plan(
     state: &SceneState,
     goal: &[f64],
     constraint: impl PathConstraint,
-) -> Result<PlannedPath, RrtConnectError> {
+) -> Result<JointPath, RrtConnectError> {
     RrtConnect::new(scene, RobotId(0)).unwrap().with_constraint(constraint).plan(state, goal, &settings())
 }
 
@@ -130,7 +130,7 @@ fn paths_and_trajectories_satisfy_the_constraint() {
             let dof = to.len();
             let limits = vec![JointLimits::new(2.0, 8.0, 80.0); dof];
             let trajectory = planner.time_parametrize(&state, &path, &limits, 0.01, &settings()).unwrap();
-            let samples: Vec<_> = trajectory.samples(0.01).unwrap().into_iter().map(|r| r.1).collect();
+            let samples: Vec<_> = trajectory.samples(0.01).unwrap().rows().iter().map(|row| row.q.clone()).collect();
             assert!(least(&constraint, &samples, 20) > constraint.margin);
         }
     }

@@ -1,11 +1,11 @@
 //! Paths in the exact scene: free, within limits, with the requested ends; and rejected input.
 
 use crate::common::robots;
-use elbowroom_kinematics::JointLimits;
+use elbowroom_kinematics::{JointLimits, TrajectoryRow};
 use std::time::Duration;
 
 use crate::common::robots::{Random, cabinet, crane, free_values, halved, sheet, state_at};
-use elbowroom_planner::{PathEnd, PlannedPath, RrtConnect, RrtConnectError, RrtConnectSettings, Trajectory};
+use elbowroom_planner::{BlendedTrajectory, JointPath, PathEnd, RrtConnect, RrtConnectError, RrtConnectSettings};
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{Checker, CheckerOptions, Level, Scene, SceneError, SceneState, Selection, example};
 
@@ -31,8 +31,8 @@ fn limits(dof: usize) -> Vec<JointLimits> {
 }
 
 /// Checks speeds and accelerations of the straight lines between samples.
-fn check_samples(samples: &[(f64, Vec<f64>)], period: f64, limits: &[JointLimits]) {
-    let speed = |k: usize, i: usize| (samples[k + 1].1[i] - samples[k].1[i]) / period;
+fn check_samples(samples: &[TrajectoryRow], period: f64, limits: &[JointLimits]) {
+    let speed = |k: usize, i: usize| (samples[k + 1].q[i] - samples[k].q[i]) / period;
     for k in 0..samples.len() - 1 {
         for i in 0..limits.len() {
             assert!(speed(k, i).abs() <= limits[i].velocity * (1.0 + 1e-9), "sample {k}, joint {i}: {}", speed(k, i));
@@ -47,10 +47,6 @@ fn check_samples(samples: &[(f64, Vec<f64>)], period: f64, limits: &[JointLimits
     }
 }
 
-fn positions(samples: &[(f64, Vec<f64>)]) -> Vec<Vec<f64>> {
-    samples.iter().map(|r| r.1.clone()).collect()
-}
-
 /// Plans, computes a trajectory, and checks both.
 fn checked(
     scene: &Scene,
@@ -58,7 +54,7 @@ fn checked(
     state: &SceneState,
     goal: &[f64],
     settings: &RrtConnectSettings,
-) -> Option<(PlannedPath, Trajectory)> {
+) -> Option<(JointPath, BlendedTrajectory)> {
     let mut planner = RrtConnect::new(scene, robot).unwrap();
     let path = match planner.plan(state, goal, settings) {
         Ok(path) => path,
@@ -72,9 +68,10 @@ fn checked(
     let (period, limits) = (0.01, limits(goal.len()));
     let trajectory = planner.time_parametrize(state, &path, &limits, period, settings).unwrap();
     let samples = trajectory.samples(period).unwrap();
-    check_samples(&samples, period, &limits);
-    assert_eq!((&samples[0].1[..], &samples.last().unwrap().1[..]), (state.q(robot), goal));
-    dense_check(scene, state, robot, &positions(&samples), 400.max(2 * samples.len()));
+    check_samples(samples.rows(), period, &limits);
+    assert_eq!((samples.first(), samples.last()), (Some(state.q(robot)), Some(goal)));
+    let positions: Vec<_> = samples.rows().iter().map(|row| row.q.clone()).collect();
+    dense_check(scene, state, robot, &positions, 400.max(2 * positions.len()));
     Some((path, trajectory))
 }
 

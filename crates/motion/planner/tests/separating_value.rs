@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use elbowroom_kinematics::{Chain, Joint, JointKind, Limits, LinkId};
 use elbowroom_planner::{
-    CoverModel, CoverObstacles, CoverRrtConnect, PlannedPath, RrtConnect, RrtConnectError, RrtConnectSettings,
+    CoverModel, CoverObstacles, CoverRrtConnect, JointPath, RrtConnect, RrtConnectError, RrtConnectSettings,
 };
 use elbowroom_proximity::tessellate::tessellate;
 use elbowroom_proximity::{Cuboid, Shape, Sphere, TriMesh};
@@ -48,7 +48,7 @@ fn plate(half_extents: Vec3) -> Shape {
     Shape::Mesh(Arc::new(TriMesh::new(vertices, triangles).unwrap()))
 }
 
-fn plan(robot: Robot, from: &[f64], to: &[f64]) -> Result<PlannedPath, RrtConnectError> {
+fn plan(robot: Robot, from: &[f64], to: &[f64]) -> Result<JointPath, RrtConnectError> {
     let mut builder = Scene::builder();
     builder.robot("arm", robot, Pose::IDENTITY);
     let scene = builder.build().unwrap();

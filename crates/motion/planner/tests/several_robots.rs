@@ -94,7 +94,7 @@ fn arms_that_cross_wait_no_longer_than_necessary() {
     let motions = PrioritizedPlanner::new(&scene).plan(&start, &goals, PERIOD_S, &settings).unwrap();
     assert_eq!(motions.iter().map(|m| m.robot.0).collect::<Vec<_>>(), [0, 1]);
     assert_free_together(&scene, &start, &motions);
-    let one_by_one: f64 = motions.iter().map(|m| m.motion.duration_s).sum();
+    let one_by_one: f64 = motions.iter().map(|m| m.timed.trajectory.duration_s()).sum();
     let together = motions.iter().map(PrioritizedMotion::end_s).fold(0.0, f64::max);
     assert!(together < one_by_one - 0.05, "{together} s instead of {one_by_one} s");
     for (motion, goal) in motions.iter().zip(&goals) {

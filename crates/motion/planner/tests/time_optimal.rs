@@ -1,7 +1,7 @@
 //! Time-optimal trajectories: limits checked by independent differentiation, durations by exhaustive search and closed
 //! forms.
 
-use elbowroom_kinematics::JointLimits;
+use elbowroom_kinematics::{JointLimits, TrajectoryRow};
 use elbowroom_planner::{BlendedPath, TimeOptimalTrajectory, TimeParametrizationError};
 use elbowroom_testkit::random::{split_mix, unit};
 use proptest::prelude::*;
@@ -34,13 +34,13 @@ fn check_limits(trajectory: &TimeOptimalTrajectory, limits: &[JointLimits], orde
             }
         }
         for pair in points.windows(2) {
-            let ([a, b], mean) = ([&pair[0], &pair[1]], 0.5 * (pair[0].qd[joint] + pair[1].qd[joint]));
+            let ([a, b], mean) = ([&pair[0], &pair[1]], 0.5 * (pair[0].dq[joint] + pair[1].dq[joint]));
             let most = EXCESS * limits[joint].acceleration * h + rounding / h;
             assert!(((b.q[joint] - a.q[joint]) / h - mean).abs() <= most, "velocity is not the derivative");
             if orders == 3 {
-                let mean = 0.5 * (a.qdd[joint] + b.qdd[joint]);
+                let mean = 0.5 * (a.ddq[joint] + b.ddq[joint]);
                 let most = EXCESS * limits[joint].jerk * h + rounding / h;
-                assert!(((b.qd[joint] - a.qd[joint]) / h - mean).abs() <= most, "acceleration is not the derivative");
+                assert!(((b.dq[joint] - a.dq[joint]) / h - mean).abs() <= most, "acceleration is not the derivative");
             }
         }
     }
@@ -50,7 +50,7 @@ fn check_ends(trajectory: &TimeOptimalTrajectory, waypoints: &[Vec<f64>]) {
     assert!(trajectory.seconds().is_finite());
     let (first, last) = (trajectory.at(0.0), trajectory.at(trajectory.seconds()));
     assert_eq!((&first.q, &last.q), (&waypoints[0], waypoints.last().unwrap()));
-    assert!(first.qd.iter().chain(&last.qd).all(|v| *v == 0.0));
+    assert!(first.dq.iter().chain(&last.dq).all(|v| *v == 0.0));
 }
 
 fn random_path(count: usize, joints: usize, state: &mut u64) -> Vec<Vec<f64>> {
@@ -90,12 +90,12 @@ proptest! {
             prop_assert!(trajectory.seconds() > 0.9 * fast.seconds());
         }
         let aligned = trajectory.clone().aligned_to_ticks(0.008).unwrap();
-        let rows = aligned.samples(0.008).unwrap();
+        let samples = aligned.samples(0.008).unwrap();
         prop_assert!(aligned.seconds() >= trajectory.seconds() * (1.0 - 1e-9));
         prop_assert!(aligned.seconds() <= trajectory.seconds() + 0.008 * (path.stops() + 1) as f64 + 1e-9);
-        prop_assert_eq!(&rows.last().unwrap().1, waypoints.last().unwrap());
-        for w in rows.windows(2) {
-            let slow = |i: usize| (w[1].1[i] - w[0].1[i]).abs() <= limits[i].velocity * 0.008 * EXCESS + 1e-9;
+        prop_assert_eq!(samples.last().unwrap(), waypoints.last().unwrap());
+        for w in samples.rows().windows(2) {
+            let slow = |i: usize| (w[1].q[i] - w[0].q[i]).abs() <= limits[i].velocity * 0.008 * EXCESS + 1e-9;
             prop_assert!((0..limits.len()).all(slow));
         }
     }
@@ -275,7 +275,7 @@ fn corners_are_passed_without_a_rest_however_small_their_blends() {
         check_limits(&trajectory, &limits, 3);
         let slowest = (100..=9900).map(|n| {
             let point = trajectory.at(trajectory.seconds() * f64::from(n) / 1e4);
-            point.qd.iter().map(|v| v * v).sum::<f64>().sqrt()
+            point.dq.iter().map(|v| v * v).sum::<f64>().sqrt()
         });
         assert!(slowest.fold(f64::INFINITY, f64::min) > 0.0);
     }
@@ -289,8 +289,8 @@ fn it_rests_where_the_path_turns_back_and_where_no_blend_is_free() {
     let trajectory = path.time_optimal(&limits).unwrap();
     assert_eq!(trajectory.stops(), 1);
     check_limits(&trajectory, &limits, 3);
-    let rows = trajectory.aligned_to_ticks(0.004).unwrap().samples(0.004).unwrap();
-    assert!(rows.iter().any(|(_, q)| (q[0] - 1.0).hypot(q[1] - 0.5) < 1e-9), "no row at the corner");
+    let samples = trajectory.aligned_to_ticks(0.004).unwrap().samples(0.004).unwrap();
+    assert!(samples.rows().iter().any(|row| (row.q[0] - 1.0).hypot(row.q[1] - 0.5) < 1e-9), "no row at the corner");
     // Almost 180 degrees.
     let nearly = [vec![0.0, 0.0], vec![1.0, 0.0], vec![0.0, 1e-3]];
     let path = BlendedPath::new(&nearly, |_| true).unwrap();
@@ -337,7 +337,7 @@ fn degenerate_paths_and_extreme_limits() {
     for waypoints in [vec![vec![0.3, 0.4]], vec![vec![0.3, 0.4]; 5]] {
         let trajectory = BlendedPath::new(&waypoints, |_| true).unwrap().time_optimal(&limits).unwrap();
         assert_eq!((trajectory.seconds(), trajectory.at(1.0).q), (0.0, vec![0.3, 0.4]));
-        assert_eq!(trajectory.samples(0.01).unwrap(), [(0.0, vec![0.3, 0.4])]);
+        assert_eq!(trajectory.samples(0.01).unwrap().rows(), [TrajectoryRow { t_s: 0.0, q: vec![0.3, 0.4] }]);
     }
     let corner = [vec![0.0, 0.0], vec![0.0, 0.0], vec![0.5, 0.0], vec![1.0, 0.0], vec![1.0, 1.0], vec![1.0, 1.0]];
     let path = BlendedPath::new(&corner, |_| true).unwrap();
@@ -351,7 +351,7 @@ fn degenerate_paths_and_extreme_limits() {
         {
             assert!(trajectory.seconds() > 0.0 && trajectory.seconds().is_finite());
             let middle = trajectory.at(0.37 * trajectory.seconds());
-            assert!(middle.q.iter().chain(&middle.qd).chain(&middle.qdd).all(|x| x.is_finite()), "{extreme:?}");
+            assert!(middle.q.iter().chain(&middle.dq).chain(&middle.ddq).all(|x| x.is_finite()), "{extreme:?}");
         }
     }
     let tiny = BlendedPath::new(&[vec![0.0], vec![1e-8], vec![3e-8]], |_| true).unwrap();

@@ -4,15 +4,17 @@ use crate::common;
 use crate::common::{Random, blocked_point, free_cell, grid, random_occupancy};
 use elbowroom_cspace::OccupancyBitmap;
 use elbowroom_kinematics::JointLimits;
-use elbowroom_planner::{GridPlanner, GridPlannerSettings, LimitKind, Path, TimeParametrizationError, Trajectory};
+use elbowroom_planner::{
+    BlendedTrajectory, GridPath, GridPlanner, GridPlannerSettings, LimitKind, TimeParametrizationError,
+};
 use proptest::prelude::*;
 
 fn fast() -> Vec<JointLimits> {
     vec![JointLimits::new(2.0, 8.0, 90.0), JointLimits::new(1.5, 5.0, 60.0), JointLimits::new(3.0, 12.0, 200.0)]
 }
 
-fn path(waypoints: Vec<[f64; 3]>) -> Path {
-    Path { waypoints, length_rad: 0.0, start_moved_rad: 0.0, goal_moved_rad: 0.0 }
+fn path(waypoints: Vec<[f64; 3]>) -> GridPath {
+    GridPath { waypoints, length_rad: 0.0, start_moved_rad: 0.0, goal_moved_rad: 0.0 }
 }
 
 fn three(q: Vec<f64>) -> [f64; 3] {
@@ -21,22 +23,22 @@ fn three(q: Vec<f64>) -> [f64; 3] {
 
 /// Checks limits and continuity at samples: positions from velocities, velocities from accelerations, accelerations
 /// from jerks.
-fn check(trajectory: &Trajectory, limits: &[JointLimits], steps: usize) {
+fn check(trajectory: &BlendedTrajectory, limits: &[JointLimits], steps: usize) {
     let h = trajectory.seconds() / steps as f64;
     let mut before = trajectory.at(0.0);
     for n in 1..=steps {
         let now = trajectory.at(n as f64 * h);
         for i in 0..3 {
             let (v, a, j) = (limits[i].velocity, limits[i].acceleration, limits[i].jerk);
-            assert!(now.qd[i].abs() <= v * (1.0 + 1e-9), "velocity {} of joint {i}", now.qd[i]);
-            assert!(now.qdd[i].abs() <= a * (1.0 + 1e-9), "acceleration {} of joint {i}", now.qdd[i]);
-            let jerk = (now.qdd[i] - before.qdd[i]).abs() / h;
+            assert!(now.dq[i].abs() <= v * (1.0 + 1e-9), "velocity {} of joint {i}", now.dq[i]);
+            assert!(now.ddq[i].abs() <= a * (1.0 + 1e-9), "acceleration {} of joint {i}", now.ddq[i]);
+            let jerk = (now.ddq[i] - before.ddq[i]).abs() / h;
             assert!(jerk <= j * (1.0 + 1e-6) + 1e-9 / h, "jerk {jerk} of joint {i} at {}", n as f64 * h);
             // Taylor's remainder with the limit of the jerk.
-            let q = before.q[i] + before.qd[i] * h + 0.5 * before.qdd[i] * h * h;
+            let q = before.q[i] + before.dq[i] * h + 0.5 * before.ddq[i] * h * h;
             assert!((now.q[i] - q).abs() <= j * h.powi(3) / 6.0 * (1.0 + 1e-6) + 1e-9, "position jumps");
-            let qd = before.qd[i] + before.qdd[i] * h;
-            assert!((now.qd[i] - qd).abs() <= 0.5 * j * h * h * (1.0 + 1e-6) + 1e-9, "velocity jumps");
+            let dq = before.dq[i] + before.ddq[i] * h;
+            assert!((now.dq[i] - dq).abs() <= 0.5 * j * h * h * (1.0 + 1e-6) + 1e-9, "velocity jumps");
         }
         before = now;
     }
@@ -60,7 +62,7 @@ proptest! {
         let trajectory = planner.time_parametrize(&path(waypoints.clone()), &limits).unwrap();
         prop_assert!(trajectory.seconds().is_finite());
         let (first, last) = (trajectory.at(0.0), trajectory.at(trajectory.seconds()));
-        prop_assert!((0..3).all(|i| (first.q[i] - waypoints[0][i]).abs() < 2e-9 && first.qd[i] == 0.0));
+        prop_assert!((0..3).all(|i| (first.q[i] - waypoints[0][i]).abs() < 2e-9 && first.dq[i] == 0.0));
         prop_assert_eq!(&last.q[..], waypoints.last().unwrap());
         if trajectory.seconds() > 0.0 {
             check(&trajectory, &limits, 3000);
@@ -74,10 +76,10 @@ proptest! {
             check(&aligned, &limits, 3000);
         }
         let samples = aligned.samples(period).unwrap();
-        prop_assert_eq!(&samples.last().unwrap().1[..], waypoints.last().unwrap());
-        prop_assert!((samples.last().unwrap().0 - aligned.seconds()).abs() < 1e-9);
-        for w in samples.windows(2) {
-            let slow = |i: usize| (w[1].1[i] - w[0].1[i]).abs() <= limits[i].velocity * period * (1.0 + 1e-9) + 1e-12;
+        prop_assert_eq!(samples.last().unwrap(), waypoints.last().unwrap());
+        prop_assert!((samples.duration_s() - aligned.seconds()).abs() < 1e-9);
+        for w in samples.rows().windows(2) {
+            let slow = |i: usize| (w[1].q[i] - w[0].q[i]).abs() <= limits[i].velocity * period * (1.0 + 1e-9) + 1e-12;
             prop_assert!((0..3).all(slow), "{:?}", w);
         }
     }

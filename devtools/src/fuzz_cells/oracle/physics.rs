@@ -1,6 +1,7 @@
 //! Check that the simulation respects the joints' limits: a run in which robots brake harder than they can proves nothing.
 
-use elbowroom_cell::{Cell, ProgramBody, TrajectoryRow};
+use elbowroom_cell::{Cell, ProgramBody};
+use elbowroom_kinematics::TrajectoryRow;
 use elbowroom_sim::Recording;
 
 use super::findings::{Finding, Findings};
@@ -36,7 +37,7 @@ pub fn check(cell: &Cell, recording: &Recording, findings: &mut Findings) {
 /// Returns the recording that a robot plays.
 fn played(cell: &Cell, robot: usize) -> Option<&[TrajectoryRow]> {
     match &cell.programs[robot].as_ref()?.body {
-        ProgramBody::Trajectory(rows) => Some(rows),
+        ProgramBody::Trajectory(trajectory) => Some(trajectory.rows()),
         ProgramBody::Steps(_) => None,
     }
 }

@@ -3,6 +3,7 @@
 use elbowroom_formats::recording::{self, RecordingLayout};
 use elbowroom_formats::toml_tables::{Table, Value};
 use elbowroom_formats::{FormatError, JointStateOptions, JointStates, Warning, suggest};
+use elbowroom_kinematics::JointTrajectory;
 use elbowroom_monitor::Life;
 use elbowroom_proximity::Shape;
 use elbowroom_robot::ObjectId;
@@ -10,8 +11,7 @@ use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 
 use super::{goal, models};
 use crate::{
-    Cell, CellRegion, CellRegionId, CellRobot, PathPlanner, Program, ProgramBody, ProgramStep, StepAction,
-    TrajectoryRow, Units,
+    Cell, CellRegion, CellRegionId, CellRobot, PathPlanner, Program, ProgramBody, ProgramStep, StepAction, Units,
 };
 
 type Result<T> = std::result::Result<T, FormatError>;
@@ -163,7 +163,7 @@ fn switch(t: &Table<'_>, regions: &[CellRegion]) -> Result<StepAction> {
     Ok(StepAction::Switch { region: CellRegionId(index), active })
 }
 
-fn trajectory(v: &Value<'_>, robot: &CellRobot, warnings: &mut Vec<Warning>) -> Result<Vec<TrajectoryRow>> {
+fn trajectory(v: &Value<'_>, robot: &CellRobot, warnings: &mut Vec<Warning>) -> Result<JointTrajectory> {
     let chain = &robot.robot.chain;
     let (states, offset_s) = if v.is_table() {
         let t = v.table(RECORDING)?;
@@ -174,15 +174,10 @@ fn trajectory(v: &Value<'_>, robot: &CellRobot, warnings: &mut Vec<Warning>) -> 
     } else {
         (JointStates::read(&models::path(v)?, &JointStateOptions::trajectory(&robot.name, chain))?, 0.0)
     };
-    let first_s = states.times_s().first().copied().unwrap_or(0.0);
-    let row = |(i, t_s): (usize, &f64)| TrajectoryRow { t_s: *t_s, q: states.q(i, 0).to_vec() };
-    let mut rows: Vec<TrajectoryRow> = states.times_s().iter().enumerate().map(row).collect();
-    if offset_s > 0.0 {
-        // The robot rests at its first row for that long.
-        rows.insert(0, TrajectoryRow { t_s: first_s - offset_s, q: states.q(0, 0).to_vec() });
-    }
+    let trajectory = states.trajectory(0);
     warnings.extend(states.warnings);
-    Ok(rows)
+    // The robot rests at its first row for that long.
+    Ok(if offset_s > 0.0 { trajectory.after_rest(offset_s) } else { trajectory })
 }
 
 const RECORDING: &str = "trajectory = { file = \"log.csv\", angle = \"deg\", period_ms = 4 }";

@@ -39,13 +39,14 @@ pub struct JointDemand {
 
 /// Demand of a robot's recording per joint; empty without a recording.
 pub fn demands(cell: &Cell, robot: RobotId) -> Vec<JointDemand> {
-    let Some(ProgramBody::Trajectory(rows)) = cell.programs.get(robot.0).and_then(Option::as_ref).map(|p| &p.body)
+    let Some(ProgramBody::Trajectory(trajectory)) =
+        cell.programs.get(robot.0).and_then(Option::as_ref).map(|p| &p.body)
     else {
         return Vec::new();
     };
     let at = &cell.robots[robot.0];
     let motion_bounds = motion_bounds(at);
-    let play = Playback::new(rows.clone(), &motion_bounds);
+    let play = Playback::new(trajectory.clone(), &motion_bounds);
     let jumps: f64 = motion_bounds.iter().enumerate().map(|(j, bound)| bound * play.largest_jump(j)).sum();
     let least_s = if jumps * cell.tick_s > SHORT_M { SHORT_M / jumps } else { cell.tick_s };
     let first = play.at(0.0);

@@ -1,7 +1,6 @@
 //! Playback of a recorded trajectory.
 
-use super::point::PathPoint;
-use crate::TrajectoryRow;
+use elbowroom_kinematics::{JointTrajectory, TrajectoryPoint};
 
 /// Half widths (s) for averaging speeds, in order of preference. Averaging is needed because readings are quantized.
 const HALF_WIDTHS: [f64; 4] = [0.02, 0.01, 0.005, 0.0025];
@@ -12,18 +11,18 @@ const LONGER: f64 = 1.1;
 /// Offset (s) to just before a row.
 const BEFORE_S: f64 = 1e-9;
 
-/// Joint values over time, linear between rows.
+/// A trajectory with times from its first row, and with speeds and accelerations.
 #[derive(Debug)]
 pub struct Playback {
-    rows: Vec<TrajectoryRow>,
+    trajectory: JointTrajectory,
     /// Half width (s) of the differences that give speed; 0 for the speed from row to row.
     half_width: f64,
 }
 
 impl Playback {
-    /// Plays `rows` (at least one, times increasing); `motion_bounds` per joint in m per unit.
-    pub fn new(rows: Vec<TrajectoryRow>, motion_bounds: &[f64]) -> Self {
-        let mut play = Self { rows, half_width: 0.0 };
+    /// Plays a trajectory of at least one row; `motion_bounds` per joint in m per unit.
+    pub fn new(trajectory: JointTrajectory, motion_bounds: &[f64]) -> Self {
+        let mut play = Self { trajectory, half_width: 0.0 };
         play.half_width = HALF_WIDTHS.into_iter().find(|h| play.stays_near(*h, motion_bounds)).unwrap_or(0.0);
         play
     }
@@ -39,53 +38,46 @@ impl Playback {
 
     /// Times of the rows from the first one, s.
     fn times(&self) -> impl Iterator<Item = f64> + '_ {
-        self.rows.iter().map(|r| r.t_s - self.start_s())
+        self.trajectory.rows().iter().map(|row| row.t_s - self.start_s())
     }
 
     fn start_s(&self) -> f64 {
-        self.rows.first().map_or(0.0, |r| r.t_s)
+        self.trajectory.start_s()
     }
 
     /// Time from the first to the last row, s.
     pub fn duration(&self) -> f64 {
-        self.rows.last().map_or(0.0, |last| last.t_s - self.start_s())
+        self.trajectory.duration_s()
     }
 
     /// Joint values `t` seconds after the first row.
     pub fn q(&self, t: f64) -> Vec<f64> {
-        let joints = self.rows.first().map_or(0, |r| r.q.len());
-        (0..joints).map(|j| self.value(j, t)).collect()
+        self.trajectory.q(self.start_s() + t)
     }
 
     /// Value of one joint `t` seconds after the first row.
     fn value(&self, joint: usize, t: f64) -> f64 {
-        let t = self.start_s() + t;
-        let next = self.rows.partition_point(|r| r.t_s <= t);
-        match (next.checked_sub(1).and_then(|i| self.rows.get(i)), self.rows.get(next)) {
-            (None, None) => 0.0,
-            (None, Some(row)) | (Some(row), None) => row.q[joint],
-            (Some(a), Some(b)) => a.q[joint] + (b.q[joint] - a.q[joint]) * ((t - a.t_s) / (b.t_s - a.t_s)),
-        }
+        self.trajectory.value(joint, self.start_s() + t)
     }
 
     /// Joint values with time derivatives.
-    pub fn at(&self, t: f64) -> PathPoint {
+    pub fn at(&self, t: f64) -> TrajectoryPoint {
         let q = self.q(t);
         let h = self.half_width.min(self.duration() / 2.0);
         let dq = (0..q.len()).map(|j| self.speed(j, t)).collect();
         if h <= 0.0 {
-            return PathPoint { ddq: vec![0.0; q.len()], q, dq };
+            return TrajectoryPoint { ddq: vec![0.0; q.len()], q, dq };
         }
         let [before, after] = [self.q((t - h).max(0.0)), self.q((t + h).min(self.duration()))];
         let ddq = (0..q.len()).map(|j| (after[j] - 2.0 * q[j] + before[j]) / (h * h)).collect();
-        PathPoint { q, dq, ddq }
+        TrajectoryPoint { q, dq, ddq }
     }
 
     /// Averaged speed of a joint, rad/s or m/s.
     fn speed(&self, joint: usize, t: f64) -> f64 {
         let h = self.half_width.min(self.duration() / 2.0);
         if h <= 0.0 {
-            return self.slope(self.rows.partition_point(|r| r.t_s <= self.start_s() + t), joint);
+            return self.slope(self.trajectory.rows_until(self.start_s() + t), joint);
         }
         let [from, to] = [(t - h).max(0.0), (t + h).min(self.duration())];
         (self.value(joint, to) - self.value(joint, from)) / (to - from).max(h)
@@ -93,8 +85,9 @@ impl Playback {
 
     /// Slope of the interval that ends at this row; beyond the last row, the slope of the last interval.
     fn slope(&self, end: usize, joint: usize) -> f64 {
-        let end = end.clamp(1, self.rows.len().saturating_sub(1).max(1));
-        match (self.rows.get(end - 1), self.rows.get(end)) {
+        let rows = self.trajectory.rows();
+        let end = end.clamp(1, rows.len().saturating_sub(1).max(1));
+        match (rows.get(end - 1), rows.get(end)) {
             (Some(a), Some(b)) => (b.q[joint] - a.q[joint]) / (b.t_s - a.t_s),
             _ => 0.0,
         }
@@ -109,7 +102,7 @@ impl Playback {
     /// The largest change of a joint's speed at a row, rad/s or m/s.
     pub fn largest_jump(&self, joint: usize) -> f64 {
         let jump = |end: usize| (self.slope(end + 1, joint) - self.slope(end, joint)).abs();
-        (1..self.rows.len().saturating_sub(1)).map(jump).fold(0.0, f64::max)
+        (1..self.trajectory.rows().len().saturating_sub(1)).map(jump).fold(0.0, f64::max)
     }
 
     /// Smallest acceleration A (rad/s² or m/s²) above `stated` that covers the motion of a joint, and its time (s, on
@@ -121,7 +114,7 @@ impl Playback {
     /// A change dv of the velocity at a row needs `2·dv / least_s`: the deviation begins at the row and only grows with
     /// u.
     pub fn hardest(&self, joint: usize, stated: f64, least_s: f64, beside: f64) -> (f64, f64) {
-        let most = (1..self.rows.len()).map(|end| self.slope(end, joint).abs()).fold(0.0, f64::max);
+        let most = (1..self.trajectory.rows().len()).map(|end| self.slope(end, joint).abs()).fold(0.0, f64::max);
         let mut hardest = (0.0, 0.0);
         for row in self.times() {
             for t in [row - BEFORE_S, row - self.half_width, row + self.half_width] {
@@ -144,11 +137,13 @@ impl Playback {
 
 #[cfg(test)]
 mod tests {
+    use elbowroom_kinematics::TrajectoryRow;
+
     use super::*;
 
     fn play(step_s: f64, count: usize, q: impl Fn(f64) -> f64) -> Playback {
         let row = |i: usize| TrajectoryRow { t_s: step_s * i as f64, q: vec![q(step_s * i as f64)] };
-        Playback::new((0..=count).map(row).collect(), &[1.0])
+        Playback::new(JointTrajectory::new((0..=count).map(row).collect()), &[1.0])
     }
 
     #[test]

@@ -5,7 +5,8 @@ use std::time::Duration;
 
 use elbowroom_cell::CellRobot;
 use elbowroom_kinematics::inverse::ArmConfiguration;
-use elbowroom_planner::{PlannedPath, TimedMotion};
+use elbowroom_kinematics::{JointTrajectory, TrajectoryRow};
+use elbowroom_planner::TimedPath;
 use serde::{Serialize, Serializer};
 
 /// Result of planning.
@@ -33,23 +34,8 @@ pub struct PathAnswer {
     pub planning_us: u64,
     /// Time of shortcutting, µs.
     pub simplify_us: u64,
-    /// The path.
-    pub motion: Option<TimedPath>,
-}
-
-/// A time-parametrized path.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TimedPath {
-    /// Waypoints, straight in joint space in between, rad or m.
-    pub waypoints: Vec<Vec<f64>>,
-    /// Euclidean length in joint space, rad (and m).
-    pub cost_rad: f64,
-    /// Duration, s.
-    pub duration_s: f64,
-    /// Number of corners with a stop.
-    pub stops: usize,
-    /// Samples, linear in between.
-    pub rows: Vec<(f64, Vec<f64>)>,
+    /// The path and its motion.
+    pub timed: Option<TimedPath>,
 }
 
 impl PathAnswer {
@@ -64,24 +50,22 @@ impl PathAnswer {
             map_time: None,
             planning_us: micros(took),
             simplify_us: 0,
-            motion: None,
+            timed: None,
         }
     }
 
-    pub(super) fn found(robot: &CellRobot, path: PlannedPath, motion: TimedMotion) -> Self {
-        let TimedMotion { duration_s, stops, rows } = motion;
-        let end = rows.last().map(|(_, q)| &q[..]);
+    pub(super) fn found(robot: &CellRobot, timed: TimedPath) -> Self {
         Self {
             found: true,
             robot: robot.name.clone(),
             joints: robot.joint_names(),
             regions: Vec::new(),
-            configuration: end.and_then(|q| robot.ik_solver().configuration(q)),
+            configuration: timed.trajectory.last().and_then(|q| robot.ik_solver().configuration(q)),
             reason: None,
             map_time: None,
-            planning_us: micros(path.planning_time),
-            simplify_us: micros(path.simplification_time),
-            motion: Some(TimedPath { waypoints: path.waypoints, cost_rad: path.length_rad, duration_s, stops, rows }),
+            planning_us: micros(timed.path.planning_time),
+            simplify_us: micros(timed.path.simplification_time),
+            timed: Some(timed),
         }
     }
 }
@@ -104,7 +88,7 @@ impl Serialize for PathAnswer {
             planning_us: u64,
             simplify_us: u64,
         }
-        let motion = self.motion.as_ref();
+        let timed = self.timed.as_ref();
         let document = Document {
             found: self.found,
             reason: self.reason.as_deref(),
@@ -112,10 +96,10 @@ impl Serialize for PathAnswer {
             joints: &self.joints,
             regions: &self.regions,
             configuration: self.configuration.map(|c| c.to_string()),
-            waypoints: motion.map_or(&[], |m| &m.waypoints),
-            cost_rad: motion.map(|m| m.cost_rad),
-            duration_s: motion.map(|m| m.duration_s),
-            stops: motion.map(|m| m.stops),
+            waypoints: timed.map_or(&[], |t| &t.path.waypoints),
+            cost_rad: timed.map(|t| t.path.length_rad),
+            duration_s: timed.map(|t| t.trajectory.duration_s()),
+            stops: timed.map(|t| t.stops),
             map_us: self.map_time.map(micros),
             planning_us: self.planning_us,
             simplify_us: self.simplify_us,
@@ -128,22 +112,15 @@ fn micros(time: Duration) -> u64 {
     u64::try_from(time.as_micros()).unwrap_or(u64::MAX)
 }
 
-impl TimedPath {
-    /// Writes `t_s` and a column per joint. The numbers read back to the same bits; the `trajectory` of a cell accepts
-    /// the file.
-    ///
-    /// # Errors
-    /// Errors of the writer.
-    pub fn write_csv(&self, joints: &[String], out: impl Write) -> io::Result<()> {
-        write_rows(joints, &self.rows, out)
-    }
-}
-
-/// Writes `t_s` and the columns.
-pub(super) fn write_rows(columns: &[String], rows: &[(f64, Vec<f64>)], mut out: impl Write) -> io::Result<()> {
+/// Writes `t_s` and a column per value of a row. The numbers read back to the same bits; the `trajectory` of a cell accepts
+/// the file.
+///
+/// # Errors
+/// Errors of the writer.
+pub fn write_csv(columns: &[String], trajectory: &JointTrajectory, mut out: impl Write) -> io::Result<()> {
     writeln!(out, "t_s,{}", columns.join(","))?;
-    for (t, q) in rows {
-        write!(out, "{t}")?;
+    for TrajectoryRow { t_s, q } in trajectory.rows() {
+        write!(out, "{t_s}")?;
         for v in q {
             write!(out, ",{v}")?;
         }

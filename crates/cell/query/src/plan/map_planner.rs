@@ -7,7 +7,7 @@ use elbowroom_cell::Cell;
 use elbowroom_cspace::{ObstacleModel, OccupancyBitmap, RemainingJoints, RobotMapError};
 use elbowroom_formats::FormatError;
 use elbowroom_planner::{
-    GridPlanner, GridPlannerError, GridPlannerSettings, PlannedPath, RrtConnect, RrtConnectError, RrtConnectSettings,
+    GridPlanner, GridPlannerError, GridPlannerSettings, JointPath, RrtConnect, RrtConnectError, RrtConnectSettings,
 };
 use elbowroom_proximity::Shape;
 use elbowroom_robot::{GeometryId, ObjectId, RobotId};
@@ -144,7 +144,7 @@ impl MapPlanner {
         start: &SceneState,
         goal: &[f64],
         settings: &RrtConnectSettings,
-    ) -> Result<PlannedPath, MapPlannerError> {
+    ) -> Result<JointPath, MapPlannerError> {
         let begin = Instant::now();
         let from = start.q(self.robot);
         if let Some(joint) = [from, goal].into_iter().find_map(|q| self.mapped.moved_otherwise(&self.held, q)) {
@@ -158,7 +158,7 @@ impl MapPlanner {
             self.mapped.joints.iter().zip(q).for_each(|(j, v)| all[*j] = *v);
             all
         };
-        let path = PlannedPath::of(found.waypoints.iter().map(whole).collect(), begin.elapsed());
+        let path = JointPath::of(found.waypoints.iter().map(whole).collect(), begin.elapsed());
         let path = path.with_ends([from, goal].map(<[f64]>::to_vec));
         match exact.first_unproven_segment(start, &path.waypoints, settings).map_err(MapPlannerError::Exact)? {
             Some(segment) => Err(MapPlannerError::Unproven { waypoints: path.waypoints, segment }),

@@ -28,7 +28,7 @@ use crate::cover_cache::CoverCache;
 use on_map::MapQuery;
 use path_query::Query;
 
-pub use answer::{PathAnswer, TimedPath};
+pub use answer::{PathAnswer, write_csv};
 pub use elbowroom_cell::PathPlanner;
 pub use map_planner::{MapPlanner, MapPlannerError};
 pub use request_validation::select_robot;
@@ -116,8 +116,9 @@ impl Default for PathRequest {
 /// "#)?;
 /// let request = PathRequest { from: Some(vec![-1.0, 0.0]), to: vec![1.0, 0.0].into(), ..PathRequest::default() };
 /// let answer = plan(&cell, &request)?;
-/// let motion = answer.motion.expect("the elbow can bend");
-/// assert!(motion.waypoints.len() > 2 && motion.rows.last().unwrap().1 == [1.0, 0.0]);
+/// let timed = answer.timed.expect("the elbow can bend");
+/// assert!(timed.path.waypoints.len() > 2);
+/// assert_eq!(timed.trajectory.last(), Some(&[1.0, 0.0][..]));
 /// # Ok::<(), elbowroom_formats::FormatError>(())
 /// ```
 ///
@@ -158,7 +159,7 @@ pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, FormatErro
         }
         let begin = Instant::now();
         let answer = match query.plan(RobotPlanner::new(exact, model.zip(obstacles.as_ref()))) {
-            Ok((path, motion)) => PathAnswer::found(robot, path, motion),
+            Ok(timed) => PathAnswer::found(robot, timed),
             Err(e @ (RrtConnectError::NotFound { .. } | RrtConnectError::Disconnected { .. })) => {
                 PathAnswer::none(robot, begin.elapsed(), e.to_string())
             }

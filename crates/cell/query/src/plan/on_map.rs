@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use elbowroom_cell::{Cell, CellRobot};
 use elbowroom_formats::FormatError;
-use elbowroom_planner::{GridPlannerError, PlannedPath, RrtConnect, RrtConnectError, TimedMotion};
+use elbowroom_planner::{GridPlannerError, RobotPlanner, RrtConnect};
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{Checker, CheckerOptions, Selection, SweepOptions};
 
@@ -32,7 +32,7 @@ impl MapQuery<'_> {
     /// or if the start or all goals are in collision or beyond limits.
     pub fn plan(&self, mut exact: RrtConnect<'_>) -> Result<PathAnswer, FormatError> {
         let robot = &self.cell.robots[self.id.0];
-        let Query { scene, state, settings, .. } = &self.query;
+        let Query { scene, state, settings, limits, period_s, .. } = &self.query;
         let goals = self.goals(robot, &MappedJoints::of(self.cell, robot, PURPOSE, &mut Vec::new())?)?;
         let goals = self.free_goals(goals, &mut exact)?;
         let begin = Instant::now();
@@ -45,8 +45,10 @@ impl MapQuery<'_> {
         for goal in &goals {
             match planner.plan(&mut exact, state, goal, settings) {
                 Ok(path) => {
-                    let motion = self.timed(&mut exact, &path).map_err(|e| planner_error(self.cell, robot, &e))?;
-                    return Ok(PathAnswer { map_time: Some(map_time), ..PathAnswer::found(robot, path, motion) });
+                    let timed = RobotPlanner::Exact(exact)
+                        .time_parametrize(state, path, limits, *period_s, settings)
+                        .map_err(|e| planner_error(self.cell, robot, &e))?;
+                    return Ok(PathAnswer { map_time: Some(map_time), ..PathAnswer::found(robot, timed) });
                 }
                 Err(MapPlannerError::Exact(e)) => return Err(planner_error(self.cell, robot, &e)),
                 Err(e) => reasons.push(self.in_words(&e)),
@@ -54,12 +56,6 @@ impl MapQuery<'_> {
         }
         let reason = reasons.into_iter().next().unwrap_or_default();
         Ok(PathAnswer { map_time: Some(map_time), ..PathAnswer::none(robot, begin.elapsed(), reason) })
-    }
-
-    fn timed(&self, exact: &mut RrtConnect<'_>, path: &PlannedPath) -> Result<TimedMotion, RrtConnectError> {
-        let Query { state, settings, limits, period_s, .. } = &self.query;
-        let motion = exact.time_parametrize(state, path, limits, *period_s, settings)?;
-        TimedMotion::of(&motion, *period_s)
     }
 
     /// The goals at which the other joints have their start values.

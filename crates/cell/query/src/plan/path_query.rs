@@ -1,7 +1,7 @@
 //! A path that is searched for with random samples.
 
 use elbowroom_kinematics::JointLimits;
-use elbowroom_planner::{PlannedPath, RobotPlanner, RrtConnectError, RrtConnectSettings, TimedMotion};
+use elbowroom_planner::{RobotPlanner, RrtConnectError, RrtConnectSettings, TimedPath};
 use elbowroom_scene::{Scene, SceneState};
 
 /// Input of a planner.
@@ -16,13 +16,12 @@ pub(super) struct Query<'q> {
 }
 
 impl Query<'_> {
-    pub fn plan(&self, mut planner: RobotPlanner) -> Result<(PlannedPath, TimedMotion), RrtConnectError> {
+    pub fn plan(&self, mut planner: RobotPlanner) -> Result<TimedPath, RrtConnectError> {
         let path = if self.optimize {
             planner.plan_anytime(self.state, self.goals, self.settings)?
         } else {
             planner.plan_to_any(self.state, self.goals, self.settings)?
         };
-        let motion = planner.time_parametrize(self.state, &path, self.limits, self.period_s, self.settings)?;
-        Ok((path, motion))
+        planner.time_parametrize(self.state, path, self.limits, self.period_s, self.settings)
     }
 }

@@ -6,6 +6,7 @@ use std::time::Instant;
 use elbowroom_cell::region_constraint::RegionConstraints;
 use elbowroom_cell::{Cell, Follow, OutOfReachProofs, QueryModel};
 use elbowroom_formats::FormatError;
+use elbowroom_kinematics::{JointTrajectory, TrajectoryRow};
 use elbowroom_planner::{
     PrioritizedMotion, PrioritizedPlanner, PrioritizedPlannerError, RobotGoal, RrtConnectError, RrtConnectSettings,
 };
@@ -13,6 +14,7 @@ use elbowroom_robot::RobotId;
 use elbowroom_scene::SceneState;
 use serde::Serialize;
 
+use super::answer::write_csv;
 use super::request_validation::{check_joint_values, joint_limits, planner_error, select_robot};
 use crate::cover_cache::CoverCache;
 
@@ -51,9 +53,9 @@ pub struct SeveralPathsAnswer {
     pub duration_s: Option<f64>,
     /// Time of the search, of shortcutting, and of the proof that the motions are free together, µs.
     pub planning_us: u64,
-    /// Samples of all joints of these robots on a common time, linear in between.
+    /// The motion of all joints of these robots on a common time.
     #[serde(skip)]
-    pub rows: Vec<(f64, Vec<f64>)>,
+    pub trajectory: JointTrajectory,
 }
 
 /// The path of one of several robots.
@@ -120,8 +122,15 @@ pub fn plan_several(cell: &Cell, request: &SeveralPathsRequest) -> Result<Severa
         Ok(motions) => Ok(found(cell, &motions, regions, period_s, planning_us)),
         Err(error) => {
             let reason = not_found(cell, &goals, &error)?;
-            let (robots, rows) = (Vec::new(), Vec::new());
-            Ok(SeveralPathsAnswer { found: false, reason: Some(reason), robots, duration_s: None, planning_us, rows })
+            let (robots, trajectory) = (Vec::new(), JointTrajectory::default());
+            Ok(SeveralPathsAnswer {
+                found: false,
+                reason: Some(reason),
+                robots,
+                duration_s: None,
+                planning_us,
+                trajectory,
+            })
         }
     }
 }
@@ -158,7 +167,7 @@ fn found(
     let last = (duration_s / period_s).round() as usize;
     let row = |tick: usize| {
         let q = motions.iter().flat_map(|motion| motion.at_tick(tick).iter().copied()).collect();
-        (tick as f64 * period_s, q)
+        TrajectoryRow { t_s: tick as f64 * period_s, q }
     };
     let path = |(motion, regions): (&PrioritizedMotion, Vec<String>)| {
         let robot = &cell.robots[motion.robot.0];
@@ -166,11 +175,11 @@ fn found(
             robot: robot.name.clone(),
             joints: robot.joint_names(),
             regions,
-            waypoints: motion.path.waypoints.clone(),
-            cost_rad: motion.path.length_rad,
+            waypoints: motion.timed.path.waypoints.clone(),
+            cost_rad: motion.timed.path.length_rad,
             start_s: motion.start_s,
             end_s: motion.end_s(),
-            stops: motion.motion.stops,
+            stops: motion.timed.stops,
         }
     };
     SeveralPathsAnswer {
@@ -179,7 +188,7 @@ fn found(
         robots: motions.iter().zip(regions).map(path).collect(),
         duration_s: Some(duration_s),
         planning_us,
-        rows: (0..=last).map(row).collect(),
+        trajectory: JointTrajectory::new((0..=last).map(row).collect()),
     }
 }
 
@@ -222,6 +231,6 @@ impl SeveralPathsAnswer {
     /// Errors of the writer.
     pub fn write_csv(&self, out: impl Write) -> io::Result<()> {
         let names = self.robots.iter().flat_map(|r| r.joints.iter().map(move |joint| format!("{}.{joint}", r.robot)));
-        super::answer::write_rows(&names.collect::<Vec<_>>(), &self.rows, out)
+        write_csv(&names.collect::<Vec<_>>(), &self.trajectory, out)
     }
 }

@@ -1,11 +1,11 @@
 //! RRT-Connect on sphere covers as the planner of problem sets, followed by RRT-Connect in the exact scene.
 
 use elbowroom_kinematics::JointLimits;
-use elbowroom_planner::{CoverModels, CoverObstacles, PlannedPath, RobotPlanner, RrtConnectError, TimedMotion};
+use elbowroom_planner::{CoverModels, CoverObstacles, JointPath, RobotPlanner, RrtConnectError, TimedPath};
 
 use super::problem_scene::ROBOT;
 use super::rrt_connect;
-use super::{PlanningEngine, ProblemScene, ProblemSettings, Solution};
+use super::{PlanningEngine, ProblemScene, ProblemSettings, Unsolved};
 use crate::cover_cache::CoverCache;
 
 /// [`CoverRrtConnect`](elbowroom_planner::CoverRrtConnect), then [`RrtConnect`](elbowroom_planner::RrtConnect). All paths
@@ -34,18 +34,17 @@ impl CoverRrtConnectEngine {
 
 impl PlanningEngine for CoverRrtConnectEngine {
     /// Plans to the goal that is found first.
-    fn solve(&mut self, problem: &ProblemScene, settings: &ProblemSettings) -> Solution {
-        let solved = self.with_planner(problem, settings, |planner| rrt_connect::solve(planner, problem, settings));
-        solved.unwrap_or_else(|e| Solution { reason: Some(e.to_string()), ..Solution::default() })
+    fn solve(&mut self, problem: &ProblemScene, settings: &ProblemSettings) -> Result<JointPath, Unsolved> {
+        self.with_planner(problem, settings, |planner| rrt_connect::solve(planner, problem, settings))?
     }
 
     fn time(
         &mut self,
         problem: &ProblemScene,
-        path: &PlannedPath,
+        path: JointPath,
         limits: &[JointLimits],
         settings: &ProblemSettings,
-    ) -> Result<TimedMotion, RrtConnectError> {
+    ) -> Result<TimedPath, RrtConnectError> {
         self.with_planner(problem, settings, |planner| rrt_connect::time(planner, problem, path, limits, settings))?
     }
 }

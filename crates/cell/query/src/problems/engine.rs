@@ -3,14 +3,17 @@
 use elbowroom_kinematics::JointLimits;
 use std::time::Duration;
 
-use elbowroom_planner::{PlannedPath, RrtConnectError, TimedMotion};
+use elbowroom_planner::{JointPath, RrtConnectError, TimedPath};
 
 use super::ProblemScene;
 
 /// A planner that solves problems one after the other. It may reuse what it computes for the robot.
 pub trait PlanningEngine {
-    /// Plans from the start to one of the goals, all of which are free.
-    fn solve(&mut self, problem: &ProblemScene, settings: &ProblemSettings) -> Solution;
+    /// Plans from the start to one of the goals, all of which are free. Every stretch of the path is proven free.
+    ///
+    /// # Errors
+    /// No path was found.
+    fn solve(&mut self, problem: &ProblemScene, settings: &ProblemSettings) -> Result<JointPath, Unsolved>;
 
     /// Times a path that it found, within limits.
     ///
@@ -19,10 +22,10 @@ pub trait PlanningEngine {
     fn time(
         &mut self,
         problem: &ProblemScene,
-        path: &PlannedPath,
+        path: JointPath,
         limits: &[JointLimits],
         settings: &ProblemSettings,
-    ) -> Result<TimedMotion, RrtConnectError>;
+    ) -> Result<TimedPath, RrtConnectError>;
 }
 
 /// Settings of a run.
@@ -47,23 +50,11 @@ impl Default for ProblemSettings {
     }
 }
 
-/// The answer of a planner to one problem.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Solution {
-    /// True if a path was found.
-    pub found: bool,
-    /// True if every stretch of the path is proven free, not sampled.
-    pub proven: bool,
+/// Why a planner has no path.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Unsolved {
+    /// The reason.
+    pub reason: String,
     /// Time of the search.
     pub planning: Duration,
-    /// Time of shortcutting.
-    pub simplification: Duration,
-    /// Length in joint space before shortcutting, rad (and m).
-    pub cost_raw_rad: f64,
-    /// Length of the path, rad (and m).
-    pub cost_rad: f64,
-    /// All values of the robot at each waypoint, straight in joint space in between; empty if none was found.
-    pub waypoints: Vec<Vec<f64>>,
-    /// Reason if no path was found.
-    pub reason: Option<String>,
 }

@@ -47,7 +47,7 @@ mod run;
 mod summary;
 
 pub use cover_rrt_connect::CoverRrtConnectEngine;
-pub use engine::{PlanningEngine, ProblemSettings, Solution};
+pub use engine::{PlanningEngine, ProblemSettings, Unsolved};
 pub use model::ProblemModel;
 pub use problem_scene::ProblemScene;
 pub use result::ProblemResult;

@@ -2,9 +2,10 @@
 
 use std::time::Duration;
 
+use elbowroom_planner::JointPath;
 use serde::Serialize;
 
-use super::Solution;
+use super::Unsolved;
 
 /// Result of one problem. Missing values are null: times of an invalid problem, lengths without a path.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -50,18 +51,21 @@ impl ProblemResult {
         }
     }
 
-    pub(super) fn of(set: &str, id: &str, solution: &Solution) -> Self {
-        let found = solution.found;
-        Self {
-            valid: true,
-            found,
-            proven: found && solution.proven,
-            planning_us: Some(micros(solution.planning)),
-            simplify_us: found.then(|| micros(solution.simplification)),
-            cost_raw_rad: found.then_some(solution.cost_raw_rad),
-            cost_rad: found.then_some(solution.cost_rad),
-            reason: solution.reason.clone().filter(|_| !found),
-            ..Self::invalid(set, id, String::new())
+    pub(super) fn of(set: &str, id: &str, solution: &Result<JointPath, Unsolved>) -> Self {
+        let of_valid = Self { valid: true, reason: None, ..Self::invalid(set, id, String::new()) };
+        match solution {
+            Ok(path) => Self {
+                found: true,
+                proven: true,
+                planning_us: Some(micros(path.planning_time)),
+                simplify_us: Some(micros(path.simplification_time)),
+                cost_raw_rad: Some(path.raw_length_rad),
+                cost_rad: Some(path.length_rad),
+                ..of_valid
+            },
+            Err(Unsolved { reason, planning }) => {
+                Self { planning_us: Some(micros(*planning)), reason: Some(reason.clone()), ..of_valid }
+            }
         }
     }
 }

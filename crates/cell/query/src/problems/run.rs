@@ -1,14 +1,12 @@
 //! The run over the problems of a file.
 
 use elbowroom_formats::problem_set::PlanningProblem;
-use elbowroom_kinematics::JointLimits;
-use elbowroom_planner::{PlannedPath, TimedMotion};
+use elbowroom_planner::{JointPath, TimedPath};
 
 use super::messages::Result;
 use super::model::ProblemModel;
 use super::problem_scene::ProblemScene;
-use super::{PlanningEngine, ProblemResult, ProblemSettings, Solution, end_validity, motion_limits};
-use crate::plan::TimedPath;
+use super::{PlanningEngine, ProblemResult, ProblemSettings, end_validity, motion_limits};
 
 /// Solves problems one after the other, and times the paths.
 ///
@@ -28,15 +26,15 @@ pub fn run(
     for problem in problems {
         let (set, id) = (&problem.set, &problem.id);
         let mut scene = model.problem_scene(problem)?;
-        let (result, motion) = if let Err(reason) = end_validity::keep_free_goals(&mut scene) {
+        let (result, timed) = if let Err(reason) = end_validity::keep_free_goals(&mut scene) {
             (ProblemResult::invalid(set, id, reason), None)
         } else {
             let solution = engine.solve(&scene, settings);
             let mut result = ProblemResult::of(set, id, &solution);
-            let motion = if solution.found { timed(engine, &scene, solution, settings, &mut result) } else { None };
-            (result, motion)
+            let timed = solution.ok().and_then(|path| timed(engine, &scene, path, settings, &mut result));
+            (result, timed)
         };
-        let goes_on = each(&result, motion.as_ref());
+        let goes_on = each(&result, timed.as_ref());
         results.push(result);
         if !goes_on {
             break;
@@ -49,43 +47,22 @@ pub fn run(
 fn timed(
     engine: &mut dyn PlanningEngine,
     problem: &ProblemScene,
-    solution: Solution,
+    path: JointPath,
     settings: &ProblemSettings,
     result: &mut ProblemResult,
 ) -> Option<TimedPath> {
-    let limits = motion_limits::of_chain(&problem.scene.robots()[0].robot.chain, &problem.planned);
-    let motion = match limits {
-        None => Err("not timed: a joint has no largest speed".into()),
-        Some(limits) => time(engine, problem, solution, settings, &limits),
+    let Some(limits) = motion_limits::of_chain(&problem.scene.robots()[0].robot.chain, &problem.planned) else {
+        result.reason = Some("not timed: a joint has no largest speed".into());
+        return None;
     };
-    match motion {
-        Ok(motion) => {
-            result.duration_s = Some(motion.duration_s);
-            Some(motion)
+    match engine.time(problem, path, &limits, settings) {
+        Ok(timed) => {
+            result.duration_s = Some(timed.trajectory.duration_s());
+            Some(timed)
         }
-        Err(why) => {
-            result.reason = Some(why);
+        Err(e) => {
+            result.reason = Some(format!("not timed: {e}"));
             None
         }
     }
-}
-
-fn time(
-    engine: &mut dyn PlanningEngine,
-    problem: &ProblemScene,
-    solution: Solution,
-    settings: &ProblemSettings,
-    limits: &[JointLimits],
-) -> std::result::Result<TimedPath, String> {
-    let path = PlannedPath {
-        waypoints: solution.waypoints,
-        length_rad: solution.cost_rad,
-        raw_length_rad: solution.cost_raw_rad,
-        planning_time: solution.planning,
-        simplification_time: solution.simplification,
-        states_checked: 0,
-    };
-    let motion = engine.time(problem, &path, limits, settings).map_err(|e| format!("not timed: {e}"))?;
-    let TimedMotion { duration_s, stops, rows } = motion;
-    Ok(TimedPath { duration_s, stops, rows, waypoints: path.waypoints, cost_rad: path.length_rad })
 }

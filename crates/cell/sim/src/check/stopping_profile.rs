@@ -4,8 +4,8 @@ use std::collections::HashSet;
 use std::sync::Arc;
 
 use elbowroom_cell::Cell;
-use elbowroom_cell::trajectory::PathPoint;
 use elbowroom_kinematics::JointLimits;
+use elbowroom_kinematics::TrajectoryPoint;
 use elbowroom_kinematics::{Chain, ChainState, LinkId};
 use elbowroom_robot::RobotId;
 
@@ -195,7 +195,7 @@ fn remaining_half_square(left: f64, a: f64, b: f64, step_s: f64, rate: f64) -> f
 ///
 /// Samples are at equal steps of time at override 1. Repeated moves are visited once. If the programmed override falls
 /// before a move, the larger value still applies, because the robot reacts `delay_s` later.
-fn for_each_move(plan: &ProgramPlan, delay_s: f64, mut visit: impl FnMut(f64, f64, &[PathPoint], &HeldObjects)) {
+fn for_each_move(plan: &ProgramPlan, delay_s: f64, mut visit: impl FnMut(f64, f64, &[TrajectoryPoint], &HeldObjects)) {
     let mut programmed = plan.speed_override;
     let mut before = programmed;
     let mut visited = HashSet::new();
@@ -229,7 +229,7 @@ fn for_each_move(plan: &ProgramPlan, delay_s: f64, mut visit: impl FnMut(f64, f6
     }
 }
 
-fn point_at(step: &PlanStep, time_s: f64) -> Option<PathPoint> {
+fn point_at(step: &PlanStep, time_s: f64) -> Option<TrajectoryPoint> {
     match step {
         PlanStep::Move(m) => Some(m.at(time_s)),
         PlanStep::Play(p) | PlanStep::Planned { play: p, .. } => Some(p.at(time_s)),
@@ -258,7 +258,7 @@ struct MoveSampler<'a> {
 }
 
 impl MoveSampler<'_> {
-    fn at(&mut self, point: &PathPoint, held: &HeldObjects) -> MoveSample {
+    fn at(&mut self, point: &TrajectoryPoint, held: &HeldObjects) -> MoveSample {
         self.state.q.copy_from_slice(&point.q);
         self.state.qd.copy_from_slice(&point.dq);
         self.chain.forward_motion(&mut self.state);

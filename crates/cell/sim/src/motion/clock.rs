@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
-use elbowroom_cell::trajectory::{PathPoint, Playback};
+use elbowroom_cell::trajectory::Playback;
 use elbowroom_cell::{CellRegionId, PathPlanner};
 use elbowroom_kinematics::JointLimits;
+use elbowroom_kinematics::TrajectoryPoint;
 use elbowroom_robot::ObjectId;
 
 use super::{Geometry, GripAction, PlanStep, ProgramPlan};
@@ -62,7 +63,7 @@ pub struct ProgramClock {
     /// Change of the rate in the last advance, 1/s.
     rate_change: f64,
     programmed: f64,
-    here: PathPoint,
+    here: TrajectoryPoint,
     intent: Vec<f64>,
     /// Largest fraction of any joint's top speed over all steps.
     speed_share: f64,
@@ -76,8 +77,7 @@ impl ProgramClock {
     /// Starts a program.
     pub fn new(plan: ProgramPlan, limits: Vec<JointLimits>) -> Self {
         let programmed = plan.speed_override;
-        let here =
-            PathPoint { dq: vec![0.0; plan.start.len()], ddq: vec![0.0; plan.start.len()], q: plan.start.clone() };
+        let here = TrajectoryPoint::at_rest(plan.start.clone());
         let fastest = plan.steps.iter().map(|step| joint_share(step, &limits)).fold(0.0, f64::max);
         // A program without moves sets no speed limit for the return of its robot.
         let speed_share = if fastest > 0.0 { fastest } else { 1.0 };
@@ -111,7 +111,7 @@ impl ProgramClock {
     }
 
     /// Current joint values, with derivatives with respect to program time (that is, at override 1).
-    pub fn point(&self) -> &PathPoint {
+    pub fn point(&self) -> &TrajectoryPoint {
         &self.here
     }
 
@@ -388,7 +388,7 @@ impl ProgramClock {
     }
 
     /// The point at a time (s) of the current step; `None` for a step without motion.
-    fn point_at(&self, time: f64) -> Option<PathPoint> {
+    fn point_at(&self, time: f64) -> Option<TrajectoryPoint> {
         match self.plan.steps.get(self.step) {
             Some(PlanStep::Move(m)) => Some(m.at(time)),
             Some(PlanStep::Play(p) | PlanStep::Planned { play: p, .. }) => Some(p.at(time)),

@@ -1,6 +1,6 @@
 //! Geometric path of a move, without time.
 
-use elbowroom_cell::trajectory::PathPoint;
+use elbowroom_kinematics::TrajectoryPoint;
 
 use super::TcpLine;
 
@@ -20,19 +20,19 @@ pub enum Geometry {
 
 impl Geometry {
     /// The joint values at `s`.
-    pub fn at(&self, s: f64) -> PathPoint {
+    pub fn at(&self, s: f64) -> TrajectoryPoint {
         match self {
             Self::Joint { from, to } => {
                 let lerp = |(a, b): (&f64, &f64)| if s >= 1.0 { *b } else { a + (b - a) * s };
                 let dq: Vec<f64> = from.iter().zip(to).map(|(a, b)| b - a).collect();
-                PathPoint { q: from.iter().zip(to).map(lerp).collect(), ddq: vec![0.0; dq.len()], dq }
+                TrajectoryPoint { q: from.iter().zip(to).map(lerp).collect(), ddq: vec![0.0; dq.len()], dq }
             }
             Self::TcpLine(line) => line.at(s),
         }
     }
 
     /// Samples of the joint motion along the path: one for a joint move, whose derivatives are constant.
-    pub fn samples(&self) -> Vec<PathPoint> {
+    pub fn samples(&self) -> Vec<TrajectoryPoint> {
         match self {
             Self::Joint { .. } => vec![self.at(0.0)],
             Self::TcpLine(line) => (0..=line.cells()).map(|i| self.at(i as f64 / line.cells() as f64)).collect(),

@@ -2,8 +2,8 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use elbowroom_cell::trajectory::PathPoint;
 use elbowroom_cell::{CellRobot, Units};
+use elbowroom_kinematics::TrajectoryPoint;
 use elbowroom_kinematics::inverse::{IkOptions, IkSolver, IkTask};
 use elbowroom_kinematics::{Chain, ChainState};
 use elbowroom_spatial::Pose;
@@ -203,13 +203,13 @@ impl TcpLine {
     }
 
     /// Joint values and their derivatives with respect to s, from differences of refined values.
-    pub fn at(&self, s: f64) -> PathPoint {
+    pub fn at(&self, s: f64) -> TrajectoryPoint {
         let h = STENCIL;
         let c = s.clamp(h, 1.0 - h);
         let [before, middle, after] = [self.q(c - h), self.q(c), self.q(c + h)];
         let ddq: Vec<f64> = (0..middle.len()).map(|j| (after[j] - 2.0 * middle[j] + before[j]) / (h * h)).collect();
         let dq = (0..middle.len()).map(|j| (after[j] - before[j]) / (2.0 * h) + ddq[j] * (s - c)).collect();
         let q = if c == s { middle } else { self.q(s) };
-        PathPoint { q, dq, ddq }
+        TrajectoryPoint { q, dq, ddq }
     }
 }

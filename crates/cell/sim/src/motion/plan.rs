@@ -6,10 +6,9 @@ use std::sync::Arc;
 use elbowroom_cell::trajectory::{Playback, motion_bounds, recording_warnings, volume_motion_bounds};
 use elbowroom_cell::{
     Cell, CellRegionId, CellRobot, MoveTarget, PathPlanner, Program, ProgramBody, ProgramStep, StepAction,
-    TrajectoryRow,
 };
 use elbowroom_formats::{FormatError, Warning};
-use elbowroom_kinematics::{ChainState, LinkId};
+use elbowroom_kinematics::{ChainState, JointTrajectory, LinkId};
 use elbowroom_query::plan::{PathGoal, PathRequest};
 use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_scene::Attachment;
@@ -132,9 +131,9 @@ fn plan_passes(
             let most = MAX_STEPS / steps.len().max(1) as u64;
             planner.steps(program, steps, wanted.min(most), required.min(most))
         }
-        ProgramBody::Trajectory(rows) => {
+        ProgramBody::Trajectory(trajectory) => {
             planner.notes.extend(recording_warnings(cell, robot));
-            planner.playback(program, rows, wanted.min(MAX_STEPS))
+            planner.playback(program, trajectory, wanted.min(MAX_STEPS))
         }
     }
 }
@@ -327,12 +326,11 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
         };
         let answer = elbowroom_query::plan::plan(&cell, &request)
             .map_err(|e| self.error(index, step, &e.what).hint(e.write_instead.unwrap_or_default()))?;
-        let Some(motion) = answer.motion else {
+        let Some(timed) = answer.timed else {
             let why = answer.reason.unwrap_or_default();
             return Err(self.error(index, step, &why).hint("another target, or a joint move over a free point"));
         };
-        let rows = motion.rows.into_iter().map(|(t_s, q)| TrajectoryRow { t_s, q }).collect();
-        Ok(Playback::new(rows, &volume_motion_bounds(&self.robot.robot.chain, &volumes)))
+        Ok(Playback::new(timed.trajectory, &volume_motion_bounds(&self.robot.robot.chain, &volumes)))
     }
 
     /// The cell with the tools as they are now.
@@ -419,11 +417,13 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
     fn playback(
         &mut self,
         program: &Program,
-        rows: &[elbowroom_cell::TrajectoryRow],
+        trajectory: &JointTrajectory,
         passes: u64,
     ) -> Result<ProgramPlan, FormatError> {
-        let (Some(first), Some(last)) = (rows.first(), rows.last()) else { return Ok(ProgramPlan::default()) };
-        let farthest = first.q.iter().zip(&self.q).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let (Some(first), Some(last)) = (trajectory.first(), trajectory.last()) else {
+            return Ok(ProgramPlan::default());
+        };
+        let farthest = first.iter().zip(&self.q).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         if self.robot.start_given && farthest > 1e-6 {
             let what = format!(
                 "the trajectory of \"{}\" does not begin at `start`: it begins at its first row",
@@ -431,10 +431,9 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
             );
             self.notes.push(Warning::new(&self.cell.file, program.line, what).hint("leave `start` out"));
         }
-        let mut plan =
-            ProgramPlan { start: first.q.clone(), speed_override: program.speed_override, steps: Vec::new() };
-        let play = Arc::new(Playback::new(rows.to_vec(), &motion_bounds(&self.robot)));
-        let back = Geometry::Joint { from: last.q.clone(), to: first.q.clone() };
+        let mut plan = ProgramPlan { start: first.to_vec(), speed_override: program.speed_override, steps: Vec::new() };
+        let play = Arc::new(Playback::new(trajectory.clone(), &motion_bounds(&self.robot)));
+        let back = Geometry::Joint { from: last.to_vec(), to: first.to_vec() };
         let back = Segment::new(back, &self.robot.limits, 0.5, f64::INFINITY)
             .map_err(|e| FormatError::new(&self.cell.file, program.line, e))?;
         let back = Arc::new(back);

@@ -1,7 +1,7 @@
 //! A move with its time law.
 
-use elbowroom_cell::trajectory::PathPoint;
 use elbowroom_kinematics::JointLimits;
+use elbowroom_kinematics::TrajectoryPoint;
 use rsruckig::prelude::*;
 
 use super::Geometry;
@@ -55,7 +55,7 @@ impl Segment {
         input.max_jerk[0] = bounds.jerk;
         let mut trajectory = Trajectory::new(None);
         otg.calculate(&input, &mut trajectory).map_err(|e| e.to_string())?;
-        let shares = |point: &PathPoint| {
+        let shares = |point: &TrajectoryPoint| {
             let share = point.dq.iter().zip(limits).map(|(dq, limit)| dq.abs() * bounds.velocity / limit.velocity);
             share.fold(0.0, f64::max)
         };
@@ -72,7 +72,7 @@ impl Segment {
     }
 
     /// Joint values at time `t` (s, at override 1), with time derivatives.
-    pub fn at(&self, t: f64) -> PathPoint {
+    pub fn at(&self, t: f64) -> TrajectoryPoint {
         let (s, v, a) = self.parameter(t);
         let mut point = self.geometry.at(s);
         for (dq, ddq) in point.dq.iter_mut().zip(&mut point.ddq) {
@@ -104,10 +104,16 @@ impl Segment {
 }
 
 /// The limits of s, and the fraction of the programmed rate that remains; `None` without motion.
-fn bounds(samples: &[PathPoint], limits: &[JointLimits], speed: f64, path_rate: f64) -> Option<(PathLimits, f64)> {
+fn bounds(
+    samples: &[TrajectoryPoint],
+    limits: &[JointLimits],
+    speed: f64,
+    path_rate: f64,
+) -> Option<(PathLimits, f64)> {
     let joints = limits.len();
-    let largest =
-        |f: &dyn Fn(&PathPoint, usize) -> f64, j: usize| samples.iter().fold(0.0_f64, |m, p| m.max(f(p, j).abs()));
+    let largest = |f: &dyn Fn(&TrajectoryPoint, usize) -> f64, j: usize| {
+        samples.iter().fold(0.0_f64, |m, p| m.max(f(p, j).abs()))
+    };
     let first: Vec<f64> = (0..joints).map(|j| largest(&|p, j| p.dq[j], j)).collect();
     let second: Vec<f64> = (0..joints).map(|j| largest(&|p, j| p.ddq[j], j)).collect();
     let third: Vec<f64> = (0..joints).map(|j| largest_change(samples, j)).collect();
@@ -131,7 +137,7 @@ fn bounds(samples: &[PathPoint], limits: &[JointLimits], speed: f64, path_rate: 
 }
 
 /// |q‴| from the change of q″ between samples at equal steps of s.
-fn largest_change(samples: &[PathPoint], j: usize) -> f64 {
+fn largest_change(samples: &[TrajectoryPoint], j: usize) -> f64 {
     let steps = (samples.len() - 1) as f64;
     samples.windows(2).fold(0.0_f64, |m, w| m.max((w[1].ddq[j] - w[0].ddq[j]).abs() * steps))
 }

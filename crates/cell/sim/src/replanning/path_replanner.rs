@@ -5,12 +5,12 @@ use std::time::{Duration, Instant};
 
 use elbowroom_cell::region_constraint::RegionConstraint;
 use elbowroom_cell::trajectory::{Playback, motion_bounds};
-use elbowroom_cell::{Cell, CellRobot, TrajectoryRow};
+use elbowroom_cell::{Cell, CellRobot};
 use elbowroom_formats::FormatError;
 use elbowroom_kinematics::{ChainState, JointLimits};
 use elbowroom_perception::motion_entry::{acceleration_distance, first_root};
 use elbowroom_planner::{
-    CoverModels, CoverObstacles, PlannedPath, RobotPlanner, RrtConnect, RrtConnectSettings, TimedMotion,
+    CoverModels, CoverObstacles, JointPath, RobotPlanner, RrtConnect, RrtConnectSettings, TimedPath,
 };
 use elbowroom_proximity::Shape;
 use elbowroom_query::CoverCache;
@@ -210,8 +210,7 @@ impl<'a> PathReplanner<'a> {
             let by = (goal.planner, &limits[..]);
             self.attempt((&placed, &boxes), &departure, &goal.q, by, (&attempt.settings, constraint))
         })?;
-        let rows = found.rows.into_iter().map(|(t_s, q)| TrajectoryRow { t_s, q }).collect();
-        let play = Arc::new(Playback::new(rows, &self.motion_bounds));
+        let play = Arc::new(Playback::new(found.trajectory, &self.motion_bounds));
         (Instant::now() <= deadline).then_some(NewPath { replaces: motion.path, play, in_motion })
     }
 
@@ -222,7 +221,7 @@ impl<'a> PathReplanner<'a> {
         goal: &[f64],
         (planner, limits): (PathPlanner, &[JointLimits]),
         (settings, constraint): (&RrtConnectSettings, Option<RegionConstraint<'_>>),
-    ) -> Option<TimedMotion> {
+    ) -> Option<TimedPath> {
         let PlacedScene { scene, state, .. } = placed;
         let mut exact = RrtConnect::new(scene, self.robot).ok()?;
         if let Some(constraint) = constraint {
@@ -233,19 +232,19 @@ impl<'a> PathReplanner<'a> {
             let (_, map) = self.maps.iter_mut().find(|(of, map)| *of == clearance_m && map.serves(goal))?;
             map.update(scene, state, others).ok()?;
             let path = with_departure(map.plan(&mut exact, state, goal, settings).ok()?, departure);
-            return RobotPlanner::Exact(exact).time_parametrize(state, &path, limits, tick_s, settings).ok();
+            return RobotPlanner::Exact(exact).time_parametrize(state, path, limits, tick_s, settings).ok();
         }
         let covers = CoverCache::of_user();
         let model = self.models.serving(scene, state, self.robot, clearance_m, &covers);
         let obstacles = model.map(|model| CoverObstacles::with_covers(model, scene, state, clearance_m, &covers));
         let mut planner = RobotPlanner::new(exact, model.zip(obstacles.as_ref()));
         let path = planner.plan_to_any(state, &[goal], settings).ok()?;
-        planner.time_parametrize(state, &with_departure(path, departure), limits, tick_s, settings).ok()
+        planner.time_parametrize(state, with_departure(path, departure), limits, tick_s, settings).ok()
     }
 }
 
-fn with_departure(path: PlannedPath, departure: &Departure) -> PlannedPath {
-    PlannedPath { waypoints: departure.before.iter().cloned().chain(path.waypoints).collect(), ..path }
+fn with_departure(path: JointPath, departure: &Departure) -> JointPath {
+    JointPath { waypoints: departure.before.iter().cloned().chain(path.waypoints).collect(), ..path }
 }
 
 /// Point at which a new path passes a configuration in the direction of a velocity: its time (s), and the rate at which

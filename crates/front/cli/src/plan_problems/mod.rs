@@ -38,12 +38,12 @@ pub(crate) fn run(urdf: &Path, file: &Path, args: &PlanArgs) -> Result<ExitStatu
     let mut written = Ok(());
     // To test another planner, replace this engine.
     let mut engine = CoverRrtConnectEngine::default();
-    let results = run_problems(&model, &problems, &settings, &mut engine, &mut |result, motion| {
+    let results = run_problems(&model, &problems, &settings, &mut engine, &mut |result, timed| {
         done += 1;
         unsolved += usize::from(result.valid && !result.found);
         progress.count(done, &format!("{unsolved} not solved"));
-        if let (Some(files), Some(motion)) = (&mut files, motion) {
-            written = files.write(result, &model.joints, motion);
+        if let (Some(files), Some(timed)) = (&mut files, timed) {
+            written = files.write(result, &model.joints, &timed.trajectory);
         }
         written.is_ok()
     })?;

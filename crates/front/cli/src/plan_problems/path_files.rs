@@ -3,7 +3,8 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use elbowroom::query::plan::TimedPath;
+use elbowroom::kinematics::JointTrajectory;
+use elbowroom::query::plan::write_csv;
 use elbowroom::query::problems::ProblemResult;
 
 use crate::output::{Failure, cannot_write};
@@ -25,11 +26,16 @@ impl PathFiles {
         Ok(Self { dir: dir.to_owned(), names: HashSet::new() })
     }
 
-    /// Writes the path of a problem.
-    pub(super) fn write(&mut self, of: &ProblemResult, joints: &[String], motion: &TimedPath) -> Result<(), Failure> {
+    /// Writes the motion of a problem.
+    pub(super) fn write(
+        &mut self,
+        of: &ProblemResult,
+        joints: &[String],
+        motion: &JointTrajectory,
+    ) -> Result<(), Failure> {
         let name = self.unused_name(&of.set, &of.id);
         let path = self.dir.join(name);
-        write_file(&path, |out| motion.write_csv(joints, out))
+        write_file(&path, |out| write_csv(joints, motion, out))
     }
 
     /// Returns `SET-ID.csv`. Characters that could lead to another folder become `_`; a name already used gets a number.

@@ -8,9 +8,9 @@ use super::cost_bounded_search::CostBoundedSearch;
 use super::informed_sampler::InformedSampler;
 use super::planner::CoverRrtConnect;
 use super::query_ends::QueryEnds;
-use crate::rrt_connect::{
-    MotionValidator, PlannedPath, Random, RrtConnectError, RrtConnectSettings, Shortcutting, length, path_length,
-};
+use crate::interpolation::{length, path_length};
+use crate::joint_path::JointPath;
+use crate::rrt_connect::{MotionValidator, Random, RrtConnectError, RrtConnectSettings, Shortcutting};
 
 /// Smallest gain of a shorter path, as a fraction of the length.
 const LEAST_GAIN: f64 = 1e-3;
@@ -19,7 +19,7 @@ const LEAST_GAIN: f64 = 1e-3;
 #[derive(Debug, Clone, PartialEq)]
 pub struct AnytimePath {
     /// The shortest path found.
-    pub path: PlannedPath,
+    pub path: JointPath,
     /// Time since the beginning and length (rad, and m) of each path that was the shortest so far; the first entry is
     /// the first path.
     pub improvements: Vec<(Duration, f64)>,
@@ -56,7 +56,7 @@ impl CoverRrtConnect<'_> {
                 continue;
             }
             let planning_time = begin.elapsed();
-            best = PlannedPath { planning_time, ..other };
+            best = JointPath { planning_time, ..other };
             improvements.push((planning_time, best.length_rad));
             is_shortest = Self::is_straight(&ends, &best);
         }
@@ -65,12 +65,12 @@ impl CoverRrtConnect<'_> {
     }
 
     /// Whether a path is hardly longer than the segment to the nearest goal.
-    fn is_straight(ends: &QueryEnds, path: &PlannedPath) -> bool {
+    fn is_straight(ends: &QueryEnds, path: &JointPath) -> bool {
         !ends.misses_goals() && path.length_rad * (1.0 - LEAST_GAIN) <= ends.straight_length()
     }
 
     /// Searches for a path that is shorter than another by at least the smallest gain.
-    fn shorter(&mut self, ends: &QueryEnds, than: &PlannedPath, random: &mut Random) -> Option<PlannedPath> {
+    fn shorter(&mut self, ends: &QueryEnds, than: &JointPath, random: &mut Random) -> Option<JointPath> {
         let before = Instant::now();
         let goals: Vec<Vec<f64>> = ends.goals().map(<[f64]>::to_vec).collect();
         let region = self.exact.validator.bounds.sampling_region_of(ends.all());
@@ -80,7 +80,7 @@ impl CoverRrtConnect<'_> {
         let mut waypoints = CostBoundedSearch::new(&mut search, ends.from(), &goals, bound).run(&mut sampler)?;
         let raw_length_rad = path_length(&waypoints);
         Shortcutting::new(&mut search).run(&mut waypoints);
-        let path = PlannedPath {
+        let path = JointPath {
             length_rad: path_length(&waypoints),
             raw_length_rad,
             waypoints,

@@ -3,7 +3,8 @@
 //! configuration and a cost. It is joined to the nearest node that reaches it within this cost.
 
 use super::informed_sampler::InformedSampler;
-use crate::rrt_connect::{LEAST_PROGRESS, MotionValidator, Tree, length, lerp};
+use crate::interpolation::{length, lerp};
+use crate::rrt_connect::{LEAST_PROGRESS, MotionValidator, Tree};
 
 /// Two trees that keep only nodes that may be on a path below a bound.
 pub(super) struct CostBoundedSearch<'v, V> {

@@ -1,7 +1,8 @@
 //! Sampler of configurations that may be on a shorter path (Gammell, Srinivasa, Barfoot: *Informed RRT\**, 2014): it
 //! draws from the ellipsoid whose foci are the start and a goal.
 
-use crate::rrt_connect::{Random, SamplingRegion, length};
+use crate::interpolation::length;
+use crate::rrt_connect::{Random, SamplingRegion};
 
 /// Number of draws outside the limits after which a sample is drawn from the region instead.
 const TRIALS: usize = 16;

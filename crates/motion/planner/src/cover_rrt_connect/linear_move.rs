@@ -8,10 +8,10 @@ use elbowroom_scene::SceneState;
 use elbowroom_spatial::Pose;
 
 use super::planner::CoverRrtConnect;
-use crate::path::PathEnd;
-use crate::rrt_connect::{
-    LinearMoveEnd, MotionValidator, PlannedPath, RrtConnectError, RrtConnectSettings, length, lerp, path_length,
-};
+use crate::grid_path::PathEnd;
+use crate::interpolation::{length, lerp, path_length};
+use crate::joint_path::JointPath;
+use crate::rrt_connect::{LinearMoveEnd, MotionValidator, RrtConnectError, RrtConnectSettings};
 
 /// Largest first step along the line: translation of the tip, m, and rotation, rad.
 const STEP: f64 = 0.05;
@@ -48,7 +48,7 @@ impl CoverRrtConnect<'_> {
         start: &SceneState,
         line: &LinearMove,
         settings: &RrtConnectSettings,
-    ) -> Result<PlannedPath, RrtConnectError> {
+    ) -> Result<JointPath, RrtConnectError> {
         let begin = Instant::now();
         let robot = self.exact.robot();
         let from = self.validator().ends(start, start.q(robot), settings)?[0].clone();
@@ -69,7 +69,7 @@ impl CoverRrtConnect<'_> {
             waypoints.push(next);
         }
         let length_rad = path_length(&waypoints);
-        Ok(PlannedPath {
+        Ok(JointPath {
             waypoints,
             length_rad,
             raw_length_rad: length_rad,

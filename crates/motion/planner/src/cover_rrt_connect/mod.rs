@@ -19,4 +19,3 @@ pub use anytime::AnytimePath;
 pub use cover_model::{CoverModel, CoverObstacles};
 pub use linear_move::LinearMove;
 pub use planner::CoverRrtConnect;
-pub use time_optimal::TimedMotion;

@@ -10,9 +10,10 @@ use super::cover_validator::CoverValidator;
 use super::disconnection_proof::Projection;
 use super::query_ends::QueryEnds;
 use super::separating_value::SeparatingValue;
+use crate::interpolation::{length, path_length};
+use crate::joint_path::JointPath;
 use crate::rrt_connect::{
-    MotionValidator, PlannedPath, Random, RegionSampler, RrtConnect, RrtConnectError, RrtConnectSettings, Shortcutting,
-    TreeSearch, length, path_length,
+    MotionValidator, Random, RegionSampler, RrtConnect, RrtConnectError, RrtConnectSettings, Shortcutting, TreeSearch,
 };
 
 /// Fraction of the time limit after which the exact scene is searched.
@@ -66,7 +67,7 @@ impl<'m> CoverRrtConnect<'m> {
         start: &SceneState,
         goal: &[f64],
         settings: &RrtConnectSettings,
-    ) -> Result<PlannedPath, RrtConnectError> {
+    ) -> Result<JointPath, RrtConnectError> {
         self.plan_to_any(start, &[goal], settings)
     }
 
@@ -81,7 +82,7 @@ impl<'m> CoverRrtConnect<'m> {
         start: &SceneState,
         goals: &[G],
         settings: &RrtConnectSettings,
-    ) -> Result<PlannedPath, RrtConnectError> {
+    ) -> Result<JointPath, RrtConnectError> {
         let begin = Instant::now();
         let on_covers = RrtConnectSettings { time_limit: settings.time_limit.mul_f64(COVER_SHARE), ..*settings };
         match self.plan_on_covers(begin, start, goals, &on_covers) {
@@ -91,7 +92,7 @@ impl<'m> CoverRrtConnect<'m> {
         let spent = begin.elapsed();
         let left = RrtConnectSettings { time_limit: settings.time_limit.saturating_sub(spent), ..*settings };
         let path = self.exact.plan_to_any(start, goals, &left)?;
-        Ok(PlannedPath { planning_time: path.planning_time + spent, ..path })
+        Ok(JointPath { planning_time: path.planning_time + spent, ..path })
     }
 
     fn plan_on_covers<G: AsRef<[f64]>>(
@@ -100,7 +101,7 @@ impl<'m> CoverRrtConnect<'m> {
         start: &SceneState,
         goals: &[G],
         settings: &RrtConnectSettings,
-    ) -> Result<PlannedPath, RrtConnectError> {
+    ) -> Result<JointPath, RrtConnectError> {
         let mut random = Random::new(settings.seed);
         let ends = self.validator().query_ends(start, goals, settings, &mut random)?;
         let mut waypoints = match self.straight(&ends) {
@@ -114,7 +115,7 @@ impl<'m> CoverRrtConnect<'m> {
             // The straight segment was tested first.
             Shortcutting::of_rejected_ends(&mut search, &waypoints).run(&mut waypoints);
         }
-        let path = PlannedPath {
+        let path = JointPath {
             length_rad: path_length(&waypoints),
             raw_length_rad,
             waypoints,

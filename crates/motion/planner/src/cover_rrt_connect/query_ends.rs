@@ -6,8 +6,10 @@ use elbowroom_scene::{SceneState, SweepOptions};
 use elbowroom_validity::Validity;
 
 use super::constrained_validator::ConstrainedValidator;
-use crate::path::PathEnd;
-use crate::rrt_connect::{JointBounds, PlannedPath, Random, RrtConnectError, RrtConnectSettings, length};
+use crate::grid_path::PathEnd;
+use crate::interpolation::length;
+use crate::joint_path::JointPath;
+use crate::rrt_connect::{JointBounds, Random, RrtConnectError, RrtConnectSettings};
 
 /// Number of configurations tried around an end that the covers leave open.
 const EXIT_TRIALS: usize = 400;
@@ -71,7 +73,7 @@ impl QueryEnds {
     }
 
     /// Extends a path between exits by the segments to the ends themselves.
-    pub fn completed(&self, path: PlannedPath) -> PlannedPath {
+    pub fn completed(&self, path: JointPath) -> JointPath {
         let reached = path.waypoints.last().and_then(|last| self.goals.iter().find(|goal| goal.exit == *last));
         let Some(goal) = reached else { return path };
         path.with_ends([self.start.constrained.clone(), goal.constrained.clone()])

@@ -3,7 +3,7 @@
 use super::motion_validator::MotionValidator as _;
 use super::random::Random;
 use super::scene_validator::SceneValidator;
-use crate::path::PathEnd;
+use crate::grid_path::PathEnd;
 
 /// Distance of the first samples from the end, as rad (or m) of the joint that moves solids most.
 const FIRST_RADIUS: f64 = 0.01;

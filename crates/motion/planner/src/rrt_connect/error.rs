@@ -3,7 +3,7 @@
 use elbowroom_scene::SceneError;
 
 use super::settings::RrtConnectSetting;
-use crate::path::PathEnd;
+use crate::grid_path::PathEnd;
 use crate::time_parametrization::TimeParametrizationError;
 
 /// Joint values above a full turn (2π, rounded up) are probably degrees if the limits are within a full turn, rad.

@@ -1,14 +1,15 @@
 //! Time parametrization of paths in the exact scene: a corner is blended if the result is proven free.
 
-use elbowroom_kinematics::JointLimits;
+use elbowroom_kinematics::{JointLimits, TrajectoryRow};
 use elbowroom_scene::SceneState;
 
 use super::error::RrtConnectError;
 use super::motion_validator::MotionValidator as _;
-use super::planned_path::PlannedPath;
 use super::planner::RrtConnect;
 use super::settings::RrtConnectSettings;
-use crate::time_parametrization::{PathElement, PathSegments, Trajectory};
+use crate::joint_path::JointPath;
+use crate::time_parametrization::{BlendedTrajectory, PathElement, PathSegments};
+use crate::timed_path::TimedPath;
 
 /// Number of times that the blend distance of a corner is halved before the trajectory stops at the corner.
 const MAX_HALVINGS: i32 = 5;
@@ -21,7 +22,7 @@ impl RrtConnect<'_> {
     ///
     /// The motion is straight along the path's segments, which are proven. A corner is blended if that is proven free;
     /// otherwise the motion stops there. The proof covers the polyline through the positions at every `period` (s),
-    /// which [`Trajectory::samples`] returns and which a controller with linear interpolation follows. The trajectory
+    /// which [`BlendedTrajectory::samples`] returns and which a controller with linear interpolation follows. The trajectory
     /// rests only at multiples of the period.
     ///
     /// ```
@@ -37,7 +38,7 @@ impl RrtConnect<'_> {
     /// let limits = vec![JointLimits::new(2.0, 8.0, 80.0); 3];
     /// let trajectory = planner.time_parametrize(&state, &path, &limits, 0.004, &settings)?;
     /// let samples = trajectory.samples(0.004)?;
-    /// assert_eq!(samples.last().unwrap().1, [0.9, 1.3, 0.6]);
+    /// assert_eq!(samples.last(), Some(&[0.9, 1.3, 0.6][..]));
     /// assert!(trajectory.seconds() > path.length_rad / 2.0_f64.hypot(2.0).hypot(2.0));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -48,18 +49,18 @@ impl RrtConnect<'_> {
     pub fn time_parametrize(
         &mut self,
         start: &SceneState,
-        path: &PlannedPath,
+        path: &JointPath,
         limits: &[JointLimits],
         period: f64,
         settings: &RrtConnectSettings,
-    ) -> Result<Trajectory, RrtConnectError> {
+    ) -> Result<BlendedTrajectory, RrtConnectError> {
         self.prepare(start, path.waypoints.last().map_or(&[], |q| q), settings)?;
         let segments = PathSegments::new(&path.waypoints, limits)?;
         let largest = |n: usize| if n > 0 { segments.max_blend_distance(n) } else { 0.0 };
         let mut blend_distances: Vec<f64> = (0..segments.count()).map(largest).collect();
         let least: Vec<f64> = blend_distances.iter().map(|distance| distance * 0.5_f64.powi(MAX_HALVINGS)).collect();
         loop {
-            let trajectory = Trajectory::new(segments.clone(), &blend_distances).aligned_to_ticks(period)?;
+            let trajectory = BlendedTrajectory::new(segments.clone(), &blend_distances).aligned_to_ticks(period)?;
             let unproven = self.unproven_corners(&trajectory, period)?;
             if unproven.is_empty() {
                 return Ok(trajectory);
@@ -71,18 +72,31 @@ impl RrtConnect<'_> {
             if blend_distances == before {
                 // No smaller blend is left. With stops at all corners, samples go from waypoint to waypoint.
                 blend_distances.fill(0.0);
-                return Ok(Trajectory::new(segments, &blend_distances).aligned_to_ticks(period)?);
+                return Ok(BlendedTrajectory::new(segments, &blend_distances).aligned_to_ticks(period)?);
             }
         }
     }
 
+    /// Like [`time_parametrize`](Self::time_parametrize), with the path and its motion at every `period` (s).
+    pub(crate) fn timed(
+        &mut self,
+        start: &SceneState,
+        path: JointPath,
+        limits: &[JointLimits],
+        period: f64,
+        settings: &RrtConnectSettings,
+    ) -> Result<TimedPath, RrtConnectError> {
+        let motion = self.time_parametrize(start, &path, limits, period, settings)?;
+        Ok(TimedPath { path, trajectory: motion.samples(period)?, stops: motion.stops() })
+    }
+
     /// The corners at which the polyline through the samples is not proven free.
-    fn unproven_corners(&mut self, trajectory: &Trajectory, period: f64) -> Result<Vec<usize>, RrtConnectError> {
+    fn unproven_corners(&mut self, trajectory: &BlendedTrajectory, period: f64) -> Result<Vec<usize>, RrtConnectError> {
         use PathElement::{Corner, Segment};
         let samples = trajectory.samples(period)?;
         let mut unproven = Vec::new();
-        for pair in samples.windows(2) {
-            let ((t, a), (next, b)) = (&pair[0], &pair[1]);
+        for pair in samples.rows().windows(2) {
+            let [TrajectoryRow { t_s: t, q: a }, TrajectoryRow { t_s: next, q: b }] = pair else { continue };
             let inset = INSET_PERIODS * period;
             let (first, last) = match (trajectory.element_at(t + inset), trajectory.element_at(next - inset)) {
                 // Both samples on one segment, which is proven.

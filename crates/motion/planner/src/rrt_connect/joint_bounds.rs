@@ -4,7 +4,7 @@ use elbowroom_kinematics::{Chain, JointId, JointKind};
 
 use super::error::{JointUnit, RrtConnectError};
 use super::random::Random;
-use crate::path::PathEnd;
+use crate::grid_path::PathEnd;
 
 /// Distance beyond both ends within which a prismatic joint without limits is sampled, m.
 const UNBOUNDED_SLIDE_M: f64 = 1.0;

@@ -4,13 +4,11 @@
 mod clearance_exit;
 mod error;
 mod exact_time_parametrization;
-mod interpolation;
 mod joint_bounds;
 mod joint_weights;
 mod motion_validator;
 mod node_packs;
 mod path_constraint;
-mod planned_path;
 mod planner;
 mod random;
 mod region_sampler;
@@ -20,7 +18,6 @@ mod shortcutting;
 mod tree;
 mod tree_search;
 
-pub(crate) use interpolation::{length, lerp, path_length};
 pub(crate) use joint_bounds::{JointBounds, JointRange, SamplingRegion};
 pub(crate) use motion_validator::MotionValidator;
 pub use random::Random;
@@ -32,6 +29,5 @@ pub(crate) use tree_search::{LEAST_PROGRESS, TreeSearch};
 
 pub use error::{JointUnit, LinearMoveEnd, RrtConnectError};
 pub use path_constraint::PathConstraint;
-pub use planned_path::PlannedPath;
 pub use planner::RrtConnect;
 pub use settings::{RrtConnectSetting, RrtConnectSettings};

@@ -2,7 +2,7 @@
 
 use std::fmt::Debug;
 
-use super::interpolation::lerp;
+use crate::interpolation::lerp;
 
 /// Margin of a proof, m, the same as for sweeps.
 const TOLERANCE_M: f64 = 1e-4;

@@ -7,17 +7,17 @@ use elbowroom_scene::{Scene, SceneError, SceneRobot, SceneState, SweepOptions};
 
 use super::clearance_exit::{ClearanceExit, ExitError};
 use super::error::RrtConnectError;
-use super::interpolation::path_length;
 use super::motion_validator::MotionValidator;
 use super::path_constraint::{ConstraintChecker, PathConstraint};
-use super::planned_path::PlannedPath;
 use super::random::Random;
 use super::region_sampler::RegionSampler;
 use super::scene_validator::SceneValidator;
 use super::settings::RrtConnectSettings;
 use super::shortcutting::Shortcutting;
 use super::tree_search::TreeSearch;
-use crate::path::PathEnd;
+use crate::grid_path::PathEnd;
+use crate::interpolation::path_length;
+use crate::joint_path::JointPath;
 
 /// Longest time limit: one year. Instants cannot be as far apart as durations can be long.
 const MAX_TIME_LIMIT: Duration = Duration::from_hours(365 * 24);
@@ -93,7 +93,7 @@ impl<'s> RrtConnect<'s> {
         start: &SceneState,
         goal: &[f64],
         settings: &RrtConnectSettings,
-    ) -> Result<PlannedPath, RrtConnectError> {
+    ) -> Result<JointPath, RrtConnectError> {
         let begin = Instant::now();
         let ends = self.prepare(start, goal, settings)?;
         let mut random = Random::new(settings.seed);
@@ -115,7 +115,7 @@ impl<'s> RrtConnect<'s> {
         start: &SceneState,
         goals: &[G],
         settings: &RrtConnectSettings,
-    ) -> Result<PlannedPath, RrtConnectError> {
+    ) -> Result<JointPath, RrtConnectError> {
         let begin = Instant::now();
         let mut answer = Err(RrtConnectError::NoGoal);
         for (i, goal) in goals.iter().enumerate() {
@@ -123,7 +123,7 @@ impl<'s> RrtConnect<'s> {
             let left = settings.time_limit.saturating_sub(spent) / u32::try_from(goals.len() - i).unwrap_or(u32::MAX);
             let found = self.plan(start, goal.as_ref(), &RrtConnectSettings { time_limit: left, ..*settings });
             if let Ok(path) = found {
-                return Ok(PlannedPath { planning_time: path.planning_time + spent, ..path });
+                return Ok(JointPath { planning_time: path.planning_time + spent, ..path });
             }
             if i == 0 || matches!(found, Err(RrtConnectError::NotFound { .. })) {
                 answer = found;
@@ -143,7 +143,7 @@ impl<'s> RrtConnect<'s> {
         start: &SceneState,
         goal: &[f64],
         settings: &RrtConnectSettings,
-    ) -> Result<PlannedPath, RrtConnectError> {
+    ) -> Result<JointPath, RrtConnectError> {
         let begin = Instant::now();
         let clearance_m = settings.clearance_m;
         let ends = self.prepare(start, goal, &RrtConnectSettings { clearance_m: 0.0, ..*settings })?;
@@ -192,7 +192,7 @@ impl<'s> RrtConnect<'s> {
         [from, to]: [Vec<f64>; 2],
         random: &mut Random,
         settings: &RrtConnectSettings,
-    ) -> Result<PlannedPath, RrtConnectError> {
+    ) -> Result<JointPath, RrtConnectError> {
         let mut waypoints = if self.validator.is_valid_motion(&from, &to) {
             vec![from, to]
         } else {
@@ -209,7 +209,7 @@ impl<'s> RrtConnect<'s> {
             Shortcutting::of_rejected_ends(&mut self.validator, &waypoints).run(&mut waypoints);
         }
         let simplification_time = begin.elapsed().saturating_sub(planning_time);
-        Ok(PlannedPath {
+        Ok(JointPath {
             length_rad: path_length(&waypoints),
             raw_length_rad,
             waypoints,

@@ -9,12 +9,12 @@ use elbowroom_scene::{
     SweepMove, SweepOptions,
 };
 
-use super::interpolation::lerp;
 use super::joint_bounds::JointBounds;
 use super::joint_weights::joint_weights;
 use super::motion_validator::MotionValidator;
 use super::path_constraint::ConstraintChecker;
 use super::settings::RrtConnectSettings;
+use crate::interpolation::lerp;
 
 /// Number of questions whether the search must end that count as a checked configuration.
 const QUESTIONS_PER_STATE: u64 = 16;

@@ -1,7 +1,7 @@
 //! Shortcutting of a proven path; every new edge is proven, too. For paths on the grid: `grid_shortcutting.rs`.
 
-use super::interpolation::{length, lerp, path_length};
 use super::motion_validator::MotionValidator;
+use crate::interpolation::{length, lerp, path_length};
 
 /// Largest number of rounds of removing waypoints and cutting corners.
 const ROUNDS: usize = 8;

@@ -1,7 +1,7 @@
 //! A tree of configurations with a nearest-neighbour search over all nodes, in single precision.
 
-use super::interpolation::length;
 use super::node_packs::NodePacks;
+use crate::interpolation::length;
 
 /// A tree of configurations.
 #[derive(Debug)]

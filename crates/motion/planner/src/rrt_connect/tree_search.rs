@@ -3,9 +3,9 @@
 //! only towards nearby samples. Proofs are lazy: edges of a path are proven when the trees meet; an edge that cannot be
 //! proven is pruned with its subtree, and the search continues.
 
-use super::interpolation::{length, lerp};
 use super::motion_validator::MotionValidator;
 use super::tree::Tree;
+use crate::interpolation::{length, lerp};
 
 /// Dynamic domain of a node after its first failure, rad (and m).
 const DOMAIN_RADIUS: f64 = 4.0;

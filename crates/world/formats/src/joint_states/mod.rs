@@ -10,7 +10,7 @@ use std::collections::HashMap;
 use std::io::BufRead;
 use std::path::{Path, PathBuf};
 
-use elbowroom_kinematics::JointKind;
+use elbowroom_kinematics::{JointKind, JointTrajectory, TrajectoryRow};
 
 use crate::csv::{self, CsvLines, missing_column};
 use crate::error::Location;
@@ -115,6 +115,15 @@ impl JointStates {
     /// The time of each state, seconds; empty unless times are required.
     pub fn times_s(&self) -> &[f64] {
         &self.times_s
+    }
+
+    /// The states of one robot over time; without rows unless times are required.
+    ///
+    /// # Panics
+    /// If `robot` is out of range.
+    pub fn trajectory(&self, robot: usize) -> JointTrajectory {
+        let row = |(state, t_s): (usize, &f64)| TrajectoryRow { t_s: *t_s, q: self.q(state, robot).to_vec() };
+        JointTrajectory::new(self.times_s.iter().enumerate().map(row).collect())
     }
 
     fn from_lines(path: &Path, mut lines: CsvLines<'_, impl BufRead>, options: &JointStateOptions<'_>) -> Result<Self> {

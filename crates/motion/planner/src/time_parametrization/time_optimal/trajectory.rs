@@ -1,10 +1,10 @@
 //! Time-optimal trajectories: joint values as a function of time along a blended path.
 
+use super::super::blended_trajectory::{periods, sampled, validate_period};
 use super::super::limits::{TimeParametrizationError, validate};
-use super::super::trajectory::{TrajectoryPoint, periods, validate_period};
 use super::blended_path::BlendedPath;
 use super::section_motion::SectionMotion;
-use elbowroom_kinematics::JointLimits;
+use elbowroom_kinematics::{JointLimits, JointTrajectory, TrajectoryPoint};
 
 /// A blended path with a time-optimal parametrization, at rest at both ends.
 #[derive(Debug, Clone)]
@@ -86,24 +86,24 @@ impl TimeOptimalTrajectory {
     pub fn at(&self, t: f64) -> TrajectoryPoint {
         let joints = self.path.joints();
         if !(t < self.seconds()) {
-            return TrajectoryPoint { q: self.path.end.clone(), qd: vec![0.0; joints], qdd: vec![0.0; joints] };
+            return TrajectoryPoint::at_rest(self.path.end.clone());
         }
         if t <= 0.0 {
-            return TrajectoryPoint { q: self.path.start.clone(), qd: vec![0.0; joints], qdd: vec![0.0; joints] };
+            return TrajectoryPoint::at_rest(self.path.start.clone());
         }
         let section = (self.times.partition_point(|time| *time <= t) - 1).min(self.motions.len() - 1);
         let ([s, v, a, _], element) = self.motions[section].at(t - self.times[section]);
         let element = &self.path.sections[section].elements[element];
         let mut point = TrajectoryPoint {
             q: Vec::with_capacity(joints),
-            qd: Vec::with_capacity(joints),
-            qdd: Vec::with_capacity(joints),
+            dq: Vec::with_capacity(joints),
+            ddq: Vec::with_capacity(joints),
         };
         for joint in 0..joints {
             let [q, p, c, _] = element.at(s, joint);
             point.q.push(q);
-            point.qd.push(p * v);
-            point.qdd.push(p * a + c * v * v);
+            point.dq.push(p * v);
+            point.ddq.push(p * a + c * v * v);
         }
         point
     }
@@ -125,18 +125,12 @@ impl TimeOptimalTrajectory {
         Ok(self)
     }
 
-    /// Times (s) and positions (rad, m for prismatic joints) at every period from 0 to the end. With linear
-    /// interpolation between them, no joint is faster than its limit.
+    /// Positions (rad, m for prismatic joints) at every period (s) from 0 to the end. With linear interpolation between
+    /// them, no joint is faster than its limit.
     ///
     /// # Errors
     /// The period is not a finite number above 0.
-    pub fn samples(&self, period: f64) -> Result<Vec<(f64, Vec<f64>)>, TimeParametrizationError> {
-        validate_period(period)?;
-        let count = periods(self.seconds(), period).max(0.0) as usize;
-        let sample = |k: usize| {
-            let t = k as f64 * period;
-            (t, if k == count { self.path.end.clone() } else { self.at(t).q })
-        };
-        Ok((0..=count).map(sample).collect())
+    pub fn samples(&self, period: f64) -> Result<JointTrajectory, TimeParametrizationError> {
+        sampled(self.seconds(), period, |t| self.at(t).q)
     }
 }

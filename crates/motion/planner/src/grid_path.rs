@@ -20,7 +20,7 @@ impl std::fmt::Display for PathEnd {
 
 /// A path through free cells: straight in joint space from each waypoint to the next.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Path {
+pub struct GridPath {
     /// Values of the map's three joints, radians; at least one waypoint. The first waypoint is the start.
     pub waypoints: Vec<[f64; 3]>,
     /// Weighted length in joint space, radians.

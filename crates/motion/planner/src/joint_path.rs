@@ -2,11 +2,11 @@
 
 use std::time::Duration;
 
-use super::interpolation::path_length;
+use crate::interpolation::path_length;
 
 /// A path from start to goal: straight in joint space from each waypoint to the next, and proven free.
 #[derive(Debug, Clone, PartialEq)]
-pub struct PlannedPath {
+pub struct JointPath {
     /// All values of the robot, rad (m for prismatic joints), at least two waypoints; the first is the start.
     pub waypoints: Vec<Vec<f64>>,
     /// Euclidean length in joint space, rad (and m).
@@ -21,7 +21,7 @@ pub struct PlannedPath {
     pub states_checked: u64,
 }
 
-impl PlannedPath {
+impl JointPath {
     /// Creates a path from waypoints (at least one) and the time of the search; a single waypoint is duplicated.
     pub fn of(mut waypoints: Vec<Vec<f64>>, planning_time: Duration) -> Self {
         if let [only] = &waypoints[..] {

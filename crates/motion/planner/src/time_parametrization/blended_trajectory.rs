@@ -1,4 +1,6 @@
-//! Trajectories: joint values as a function of time.
+//! Trajectories along straight segments with blended corners.
+
+use elbowroom_kinematics::{JointTrajectory, TrajectoryPoint, TrajectoryRow};
 
 use super::blend::Blend;
 use super::limits::TimeParametrizationError;
@@ -8,21 +10,10 @@ use super::speed_profile::SpeedProfile;
 /// Rounding error in a number of periods that is ignored.
 const PERIOD_ROUNDING: f64 = 1e-9;
 
-/// State of the joints at an instant.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TrajectoryPoint {
-    /// Positions, rad.
-    pub q: Vec<f64>,
-    /// Velocities, rad/s.
-    pub qd: Vec<f64>,
-    /// Accelerations, rad/s².
-    pub qdd: Vec<f64>,
-}
-
 /// A path with a time parametrization: at rest at both ends, with continuous velocity and acceleration and limited
 /// jerk.
 #[derive(Debug, Clone)]
-pub struct Trajectory {
+pub struct BlendedTrajectory {
     path: PathSegments,
     phases: Vec<Phase>,
     seconds: f64,
@@ -57,7 +48,7 @@ pub(crate) enum PathElement {
     Corner(usize),
 }
 
-impl Trajectory {
+impl BlendedTrajectory {
     /// The fastest trajectory along a path. `blend_distances[n]` is the largest distance from corner `n` at which its blend
     /// begins: 0 to stop there; entry 0 is not used.
     pub(crate) fn new(path: PathSegments, blend_distances: &[f64]) -> Self {
@@ -102,7 +93,7 @@ impl Trajectory {
     pub fn at(&self, t: f64) -> TrajectoryPoint {
         let joints = self.path.end.len();
         if self.phases.is_empty() || !(t < self.seconds) {
-            return TrajectoryPoint { q: self.path.end.clone(), qd: vec![0.0; joints], qdd: vec![0.0; joints] };
+            return TrajectoryPoint::at_rest(self.path.end.clone());
         }
         let phase = &self.phases[self.phase(t)];
         let (since, time_scale) = ((t - phase.begin).max(0.0) * phase.time_scale, phase.time_scale);
@@ -113,19 +104,19 @@ impl Trajectory {
                 let segment = &self.path.segments[n];
                 TrajectoryPoint {
                     q: point_along(&segment.from, &segment.direction, blend_distance + s),
-                    qd: scaled(&segment.direction, v * time_scale),
-                    qdd: scaled(&segment.direction, a * time_scale * time_scale),
+                    dq: scaled(&segment.direction, v * time_scale),
+                    ddq: scaled(&segment.direction, a * time_scale * time_scale),
                 }
             }
             PhaseKind::Blend { n, corner } => {
                 let (before, after) = (&self.path.segments[n - 1].direction, &self.path.segments[n].direction);
                 let blend = Blend { before, after, speed: corner.speed, seconds: corner.seconds };
                 let from = point_along(&self.path.segments[n].from, before, -corner.blend_distance());
-                let mut state = TrajectoryPoint { q: from, qd: vec![0.0; joints], qdd: vec![0.0; joints] };
+                let mut state = TrajectoryPoint::at_rest(from);
                 for i in 0..joints {
-                    let [q, qd, qdd] = blend.at(since, i);
+                    let [q, dq, ddq] = blend.at(since, i);
                     state.q[i] += q;
-                    (state.qd[i], state.qdd[i]) = (qd * time_scale, qdd * time_scale * time_scale);
+                    (state.dq[i], state.ddq[i]) = (dq * time_scale, ddq * time_scale * time_scale);
                 }
                 state
             }
@@ -171,19 +162,29 @@ impl Trajectory {
         Ok(self)
     }
 
-    /// Times (s) and positions (rad) at every period from 0 to the end. With linear interpolation between them, no joint is
-    /// faster than its limit.
+    /// Positions (rad) at every period (s) from 0 to the end. With linear interpolation between them, no joint is faster
+    /// than its limit.
     ///
     /// # Errors
     /// The period is not a finite number above 0.
-    pub fn samples(&self, period: f64) -> Result<Vec<(f64, Vec<f64>)>, TimeParametrizationError> {
-        validate_period(period)?;
-        let count = periods(self.seconds, period).max(0.0) as usize;
-        let sample = |k: usize| {
-            (k as f64 * period, if k == count { self.path.end.clone() } else { self.at(k as f64 * period).q })
-        };
-        Ok((0..=count).map(sample).collect())
+    pub fn samples(&self, period: f64) -> Result<JointTrajectory, TimeParametrizationError> {
+        sampled(self.seconds, period, |t| self.at(t).q)
     }
+}
+
+/// Samples at every period (s) from 0 to a duration (s); the last sample is at the end, which `q` returns for infinity.
+pub(super) fn sampled(
+    seconds: f64,
+    period: f64,
+    q: impl Fn(f64) -> Vec<f64>,
+) -> Result<JointTrajectory, TimeParametrizationError> {
+    validate_period(period)?;
+    let count = periods(seconds, period).max(0.0) as usize;
+    let row = |k: usize| {
+        let t_s = k as f64 * period;
+        TrajectoryRow { t_s, q: q(if k == count { f64::INFINITY } else { t_s }) }
+    };
+    Ok(JointTrajectory::new((0..=count).map(row).collect()))
 }
 
 /// Number of periods, rounded up; a rounding error above a whole number is ignored.
