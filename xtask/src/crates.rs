@@ -7,7 +7,7 @@ use toml::Table;
 /// Lowest layer first: a crate depends only on crates listed before it. Some are planned and not built yet.
 pub const GROUPS: [(&str, &[&str]); 7] = [
     ("base", &["testkit", "spatial", "proximity", "kinematics", "robot"]),
-    ("world", &["scene", "formats", "validity", "inspect"]),
+    ("world", &["diagnostic", "scene", "formats", "validity", "inspect"]),
     ("guard", &["interlock", "monitor"]),
     ("motion", &["cspace", "planner", "avoidance", "shared_control", "cooperation", "vision", "perception"]),
     ("cell", &["access", "cell", "query", "sim", "report"]),

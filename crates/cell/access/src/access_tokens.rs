@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{self, Write as _};
 use std::path::Path;
 
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 use elbowroom_formats::toml_tables::{self, Table, Value};
 use elbowroom_monitor::AccessClass;
 use sha2::{Digest as _, Sha256};
@@ -48,7 +48,7 @@ impl AccessTokens {
     /// Reads a file of tokens.
     ///
     /// # Errors
-    /// [`FormatError`] at the wrong line, or if others than its owner may write the file: they could add their own
+    /// [`Diagnostic`] at the wrong line, or if others than its owner may write the file: they could add their own
     /// tokens.
     pub fn read(file: &Path) -> Result<Self> {
         check_permissions(file)?;
@@ -73,7 +73,7 @@ impl AccessTokens {
     /// The file is created if it is missing (mode 0600).
     ///
     /// # Errors
-    /// [`FormatError`] if the file has this name already, is not a file of tokens, or cannot be written.
+    /// [`Diagnostic`] if the file has this name already, is not a file of tokens, or cannot be written.
     ///
     /// ```
     /// use elbowroom_access::AccessTokens;
@@ -89,13 +89,13 @@ impl AccessTokens {
     pub fn add(file: &Path, class: AccessClass, name: &str) -> Result<String> {
         if name.trim().is_empty() || name.chars().any(char::is_control) {
             return Err(
-                FormatError::new(file, None, "a token needs a name, for the log").hint("--name \"line 4, panel\"")
+                Diagnostic::new(file, None, "a token needs a name, for the log").hint("--name \"line 4, panel\"")
             );
         }
         let known = if file.exists() { Self::read(file)? } else { Self::default() };
         if known.tokens.iter().any(|t| t.name == name) {
             let what = format!("has a token \"{name}\" already");
-            return Err(FormatError::new(file, None, what).hint("another name; or remove its table before"));
+            return Err(Diagnostic::new(file, None, what).hint("another name; or remove its table before"));
         }
         let (token, secret) = AccessToken::generate(class, name).map_err(text_file::unwritable(file))?;
         let written = open(file).and_then(|mut f| f.write_all(token.to_toml().as_bytes()).and_then(|()| f.sync_all()));
@@ -171,7 +171,7 @@ fn check_permissions(file: &Path) -> Result<()> {
         return Ok(());
     }
     let what = format!("is a file of tokens that others may write (mode {mode:03o}): they could add their own");
-    Err(FormatError::new(file, None, what).hint(format!("chmod 600 {}", file.display())))
+    Err(Diagnostic::new(file, None, what).hint(format!("chmod 600 {}", file.display())))
 }
 
 #[cfg(not(unix))]

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{BufRead as _, BufReader, Read as _, Take};
 use std::path::Path;
 
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 
 use crate::control_entry::ControlEntry;
 use crate::hex;
@@ -26,7 +26,7 @@ pub struct ControlHistory {
 /// Reads a log and verifies it.
 ///
 /// # Errors
-/// [`FormatError`] at the first line that does not follow the one before it, or if lines are missing or not signed.
+/// [`Diagnostic`] at the first line that does not follow the one before it, or if lines are missing or not signed.
 pub fn control_history(path: &Path) -> Result<ControlHistory> {
     let read = || {
         let (head, mut entries) = (LogHead::read(path)?, Vec::new());
@@ -34,7 +34,7 @@ pub fn control_history(path: &Path) -> Result<ControlHistory> {
         Ok(ControlHistory { entries, signed_by: head.and_then(|head| head.key_id()).unwrap_or_default() })
     };
     // The service may write between the reads of the two files.
-    read().or_else(|_: FormatError| read())
+    read().or_else(|_: Diagnostic| read())
 }
 
 /// The part of a log that is signed.
@@ -52,7 +52,7 @@ pub(crate) struct SignedPart {
 ///
 /// At most one more line may follow, complete or partial, which was being written.
 pub(crate) fn verify(path: &Path, head: Option<&LogHead>, mut take: impl FnMut(ControlEntry)) -> Result<SignedPart> {
-    let wrong = |line: Option<u64>, what: &str| FormatError::new(path, line.map(|n| n as usize), what).hint(RESTORE);
+    let wrong = |line: Option<u64>, what: &str| Diagnostic::new(path, line.map(|n| n as usize), what).hint(RESTORE);
     let count = head.map_or(0, |head| head.entries);
     let mut lines = Lines::open(path)?;
     let mut part = SignedPart { length: 0, entries: 0, hash: "0".repeat(64), has_rest: false };
@@ -111,6 +111,6 @@ impl<'p> Lines<'p> {
     }
 }
 
-fn unreadable(path: &Path) -> impl Fn(std::io::Error) -> FormatError + '_ {
-    move |e| FormatError::unreadable(path, &e, "the path of a file that is there")
+fn unreadable(path: &Path) -> impl Fn(std::io::Error) -> Diagnostic + '_ {
+    move |e| Diagnostic::unreadable(path, &e, "the path of a file that is there")
 }

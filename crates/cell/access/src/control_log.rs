@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 use elbowroom_monitor::AccessClass;
 
 use crate::change::Change;
@@ -59,11 +59,11 @@ impl ControlLog {
     /// A line after the signed one is removed: it was being written when the power failed, and its change was not made.
     ///
     /// # Errors
-    /// [`FormatError`] at the line that was changed, if lines are missing, or if another process writes the log.
+    /// [`Diagnostic`] at the line that was changed, if lines are missing, or if another process writes the log.
     pub fn open(path: &Path) -> Result<Self> {
         let file = File::options().append(true).create(true).open(path).map_err(text_file::unwritable(path))?;
         file.try_lock().map_err(|_| {
-            FormatError::new(path, None, "is written by another process").hint("one service with --control per cell")
+            Diagnostic::new(path, None, "is written by another process").hint("one service with --control per cell")
         })?;
         let head = LogHead::read(path)?;
         let SignedPart { length, entries, hash, has_rest } = verify(path, head.as_ref(), |_| ())?;
@@ -77,7 +77,7 @@ impl ControlLog {
     /// Appends a change, and returns once it is on the disk.
     ///
     /// # Errors
-    /// [`FormatError`] if it cannot be written; then the change must not be made.
+    /// [`Diagnostic`] if it cannot be written; then the change must not be made.
     pub fn append(&mut self, controlled: Controlled<'_>) -> Result<ControlEntry> {
         if self.has_rest {
             self.file.set_len(self.length).map_err(text_file::unwritable(&self.path))?;
@@ -101,7 +101,7 @@ impl ControlLog {
         let (bytes, head) = (line.clone() + "\n", hex::hash(line.as_bytes()));
         if bytes.len() as u64 >= MAX_LINE {
             let what = format!("an entry of {} bytes is too long", bytes.len());
-            return Err(FormatError::new(&self.path, None, what).hint("a shorter note, or fewer changes at once"));
+            return Err(Diagnostic::new(&self.path, None, what).hint("a shorter note, or fewer changes at once"));
         }
         let written = self.file.write_all(bytes.as_bytes()).and_then(|()| self.file.sync_all());
         let written = written.map_err(text_file::unwritable(&self.path));
@@ -232,12 +232,12 @@ mod tests {
         let mut log = ControlLog::open(&path).unwrap();
         let note = "n".repeat(MAX_LINE as usize);
         let error = log.append(Controlled { note: Some(&note), ..switched(true) }).unwrap_err();
-        assert!(error.what.contains("is too long"), "{error}");
+        assert!(error.message.contains("is too long"), "{error}");
         assert_eq!(log.append(switched(true)).unwrap().sequence, 1);
         drop(log);
         let line = std::fs::read_to_string(&path).unwrap();
         std::fs::write(&path, note + &line).unwrap();
-        assert!(ControlLog::open(&path).unwrap_err().what.contains("longer than any line"));
+        assert!(ControlLog::open(&path).unwrap_err().message.contains("longer than any line"));
     }
 
     /// Written as the service writes it, but signed once: 1,130 lines of 60 kB.
@@ -271,7 +271,7 @@ mod tests {
         std::fs::write(&path, text.replacen("panel", "other", 1)).unwrap();
         let error = ControlLog::open(&path).unwrap_err();
         assert_eq!(
-            (error.line, error.what.as_str()),
+            (error.line, error.message.as_str()),
             (Some(2), "does not follow the entry before it, or was modified")
         );
     }

@@ -55,7 +55,7 @@ impl PrivateKey {
     /// Reads the format of [`write`](Self::write).
     ///
     /// # Errors
-    /// [`FormatError`](elbowroom_formats::FormatError) if it cannot be read, is not a key, or others than its owner may read it.
+    /// [`Diagnostic`](elbowroom_formats::Diagnostic) if it cannot be read, is not a key, or others than its owner may read it.
     pub fn read(path: &Path) -> Result<Self> {
         check_private_permissions(path)?;
         let text = text_file::read(path)?;

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use ed25519_dalek::{Signature, Signer as _, SigningKey};
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 use serde::{Deserialize, Serialize};
 
 use crate::keys::PublicKey;
@@ -36,13 +36,13 @@ impl LogHead {
     /// The head of a log, `None` if it was never signed.
     pub(crate) fn read(log: &Path) -> Result<Option<Self>> {
         let path = path_of(log);
-        let unreadable = |e: std::io::Error| FormatError::unreadable(&path, &e, "the path of a file that is there");
+        let unreadable = |e: std::io::Error| Diagnostic::unreadable(&path, &e, "the path of a file that is there");
         if !path.try_exists().map_err(unreadable)? {
             return Ok(None);
         }
         let head: Option<Self> = serde_json::from_str(&text_file::read(&path)?).ok();
         let head = head.filter(Self::is_signed);
-        head.map(Some).ok_or_else(|| FormatError::new(&path, None, "is not signed, or was modified").hint(RESTORE))
+        head.map(Some).ok_or_else(|| Diagnostic::new(&path, None, "is not signed, or was modified").hint(RESTORE))
     }
 
     fn is_signed(&self) -> bool {
@@ -92,7 +92,7 @@ impl LogSigner {
         match head {
             Some(head) if head.key != hex::encode(signer.key.verifying_key().as_bytes()) => {
                 let hint = "the key and the log from a backup; or keep both as evidence under other names, and begin a new log";
-                Err(FormatError::new(&file, None, "is not the key that has signed the log").hint(hint))
+                Err(Diagnostic::new(&file, None, "is not the key that has signed the log").hint(hint))
             }
             _ => Ok(signer),
         }

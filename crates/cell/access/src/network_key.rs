@@ -40,7 +40,7 @@ impl NetworkKey {
     /// Reads the format of [`write`](Self::write).
     ///
     /// # Errors
-    /// [`FormatError`](elbowroom_formats::FormatError) if it cannot be read, is not a key, or others than its owner may read it.
+    /// [`Diagnostic`](elbowroom_formats::Diagnostic) if it cannot be read, is not a key, or others than its owner may read it.
     pub fn read(path: &Path) -> Result<Self> {
         Ok(Self(secret_file::read(path, NAME, "what `elbowroom control network-key` writes")?))
     }

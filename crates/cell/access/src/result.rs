@@ -1,5 +1,5 @@
 //! Result type of functions that read or write files.
 
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 
-pub(crate) type Result<T> = std::result::Result<T, FormatError>;
+pub(crate) type Result<T> = std::result::Result<T, Diagnostic>;

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{self, Write as _};
 use std::path::Path;
 
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 use elbowroom_formats::toml_tables::{self, Table};
 
 use crate::result::Result;
@@ -62,7 +62,7 @@ pub fn check_private_permissions(path: &Path) -> Result<()> {
         return Ok(());
     }
     let what = format!("is a secret key that others may read or write (mode {mode:03o})");
-    Err(FormatError::new(path, None, what).hint(format!("chmod 600 {}", path.display())))
+    Err(Diagnostic::new(path, None, what).hint(format!("chmod 600 {}", path.display())))
 }
 
 #[cfg(not(unix))]

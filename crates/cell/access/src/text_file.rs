@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use elbowroom_formats::{FormatError, WholeFile};
+use elbowroom_formats::{Diagnostic, WholeFile};
 
 use crate::result::Result;
 
@@ -15,22 +15,22 @@ const MAX_BYTES: u64 = 64 << 20;
 /// # Errors
 /// The file cannot be read, is not UTF-8, or is larger than 64 MiB.
 pub fn read(path: &Path) -> Result<String> {
-    let unreadable = |e: std::io::Error| FormatError::unreadable(path, &e, "the path of a file that is there");
+    let unreadable = |e: std::io::Error| Diagnostic::unreadable(path, &e, "the path of a file that is there");
     if fs::metadata(path).map_err(unreadable)?.len() > MAX_BYTES {
-        return Err(FormatError::new(path, None, format!("is larger than {MAX_BYTES} bytes")));
+        return Err(Diagnostic::new(path, None, format!("is larger than {MAX_BYTES} bytes")));
     }
     fs::read_to_string(path).map_err(unreadable)
 }
 
 /// The error for a file that cannot be written.
-pub fn unwritable(path: &Path) -> impl Fn(std::io::Error) -> FormatError + '_ {
+pub fn unwritable(path: &Path) -> impl Fn(std::io::Error) -> Diagnostic + '_ {
     move |e| {
         let instead = match e.kind() {
             std::io::ErrorKind::AlreadyExists => "the name of a new file",
             std::io::ErrorKind::StorageFull => "a path on a disk with space left",
             _ => "a file and a folder that you may write to",
         };
-        FormatError::new(path, None, format!("cannot be written: {e}")).hint(instead)
+        Diagnostic::new(path, None, format!("cannot be written: {e}")).hint(instead)
     }
 }
 

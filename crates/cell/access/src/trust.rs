@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 use elbowroom_formats::toml_tables::{self, Table, Value};
 use elbowroom_monitor::AccessClass;
 
@@ -59,7 +59,7 @@ impl TrustedKeys {
     /// `ELBOWROOM_TRUSTED_KEYS`; otherwise `trusted-keys.toml` beside the cell file.
     ///
     /// # Errors
-    /// [`FormatError`] if the file cannot be read, or at the wrong line.
+    /// [`Diagnostic`] if the file cannot be read, or at the wrong line.
     pub fn find(cell: &Path) -> Result<Option<Self>> {
         let named = std::env::var_os(VARIABLE).filter(|v| !v.is_empty()).map(PathBuf::from);
         let beside = cell.with_file_name(FILE);
@@ -139,9 +139,9 @@ pub fn may_sign(sealed: &str, who: AccessClass) -> bool {
 }
 
 /// The error for a sealed cell without a key file.
-pub fn missing(cell: &Path, log: &Path) -> FormatError {
+pub fn missing(cell: &Path, log: &Path) -> Diagnostic {
     let what = format!("is sealed by {}, but there is no file of trusted keys", log.display());
-    FormatError::new(cell, None, what).hint(format!(
+    Diagnostic::new(cell, None, what).hint(format!(
         "the integrator's {FILE} beside the cell file, or at {MACHINE}, or {VARIABLE}=FILE (docs/roles.md)"
     ))
 }

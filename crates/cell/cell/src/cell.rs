@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use elbowroom_avoidance::{AvoiderSettings, Rules};
-use elbowroom_formats::Warning;
+use elbowroom_formats::Diagnostic;
 use elbowroom_kinematics::{ChainState, JointLimits, LinkId};
 use elbowroom_monitor::{Laws, Part, Presence, Region, SourceLimits, Volume, VolumeModel, arm_volumes};
 use elbowroom_robot::{Collider, ObjectId, Robot, RobotId};
@@ -62,7 +62,7 @@ pub struct Cell {
     /// The last seal; `None` if the cell is not sealed.
     pub seal: Option<Seal>,
     /// Non-fatal warnings about the file.
-    pub warnings: Vec<Warning>,
+    pub warnings: Vec<Diagnostic>,
 }
 
 impl Cell {

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::sync::Arc;
 
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 use elbowroom_kinematics::LinkId;
 use elbowroom_monitor::{
     ConfigError, Configuration, ConfigurationParts, Monitor, Part, Presence, Region, RegionKind, RobotSlot, SlotId,
@@ -54,8 +54,8 @@ impl MonitorSetup {
 /// One setup per robot, in order.
 ///
 /// # Errors
-/// [`FormatError`] at the line of the region or robot that a monitor would refuse.
-pub fn setups(cell: &Cell) -> Result<Vec<MonitorSetup>, FormatError> {
+/// [`Diagnostic`] at the line of the region or robot that a monitor would refuse.
+pub fn setups(cell: &Cell) -> Result<Vec<MonitorSetup>, Diagnostic> {
     let slots = slots(cell);
     let setup = |i: usize| setup(cell, RobotId(i), cell.robots[i].guarded_volumes(), &slots);
     (0..cell.robots.len()).map(setup).collect()
@@ -65,7 +65,7 @@ pub fn setups(cell: &Cell) -> Result<Vec<MonitorSetup>, FormatError> {
 ///
 /// # Errors
 /// As for [`setups`].
-pub fn setups_holding(cell: &Cell, held: &[(ObjectId, Attachment)]) -> Result<Vec<MonitorSetup>, FormatError> {
+pub fn setups_holding(cell: &Cell, held: &[(ObjectId, Attachment)]) -> Result<Vec<MonitorSetup>, Diagnostic> {
     let slots = slots(cell);
     let setup = |i: usize| setup(cell, RobotId(i), cell.volumes_holding(RobotId(i), held), &slots);
     (0..cell.robots.len()).map(setup).collect()
@@ -75,7 +75,7 @@ pub fn setups_holding(cell: &Cell, held: &[(ObjectId, Attachment)]) -> Result<Ve
 ///
 /// # Errors
 /// As for [`setups`].
-pub fn monitors(cell: &Cell, setups: &[MonitorSetup]) -> Result<Vec<Monitor>, FormatError> {
+pub fn monitors(cell: &Cell, setups: &[MonitorSetup]) -> Result<Vec<Monitor>, Diagnostic> {
     monitors_with(cell, setups, zone_arbiter(cell).as_ref())
 }
 
@@ -87,7 +87,7 @@ pub fn monitors_with(
     cell: &Cell,
     setups: &[MonitorSetup],
     arbiter: Option<&Arc<ZoneArbiter>>,
-) -> Result<Vec<Monitor>, FormatError> {
+) -> Result<Vec<Monitor>, Diagnostic> {
     let monitor = |(i, s): (usize, &MonitorSetup)| {
         Monitor::new(s.configuration.clone(), arbiter.map(|b| (b.clone(), RobotSlot(i)).into()))
             .map_err(|e| config_error(cell, &cell.robots[i], &e))
@@ -114,7 +114,7 @@ pub fn zone_arbiter(cell: &Cell) -> Option<Arc<ZoneArbiter>> {
 }
 
 /// SHA-256 (hex) over the checksums of all monitors' configurations.
-pub(crate) fn checksum(cell: &Cell) -> Result<String, FormatError> {
+pub(crate) fn checksum(cell: &Cell) -> Result<String, Diagnostic> {
     let mut hash = Sha256::new();
     for setup in setups(cell)? {
         hash.update(setup.configuration.checksum());
@@ -151,7 +151,7 @@ fn setup(
     id: RobotId,
     mut volumes: Vec<Volume>,
     slots: &[Option<SlotId>],
-) -> Result<MonitorSetup, FormatError> {
+) -> Result<MonitorSetup, Diagnostic> {
     let robot = &cell.robots[id.0];
     let mut gripped = Vec::new();
     for (object, link) in cell.grips(id) {
@@ -217,12 +217,12 @@ fn source_name(cell: &Cell, follow: &Follow) -> String {
     }
 }
 
-fn config_error(cell: &Cell, robot: &CellRobot, e: &ConfigError) -> FormatError {
+fn config_error(cell: &Cell, robot: &CellRobot, e: &ConfigError) -> Diagnostic {
     let line = match e {
         ConfigError::Region { region, .. } | ConfigError::DuplicateRegion(region) | ConfigError::NoArbiter(region) => {
             cell.regions.iter().find(|r| r.region.name == *region).map_or(robot.line, |r| r.line)
         }
         _ => robot.line,
     };
-    FormatError::new(&cell.file, line, e.to_string())
+    Diagnostic::new(&cell.file, line, e.to_string())
 }

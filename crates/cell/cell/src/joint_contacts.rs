@@ -1,13 +1,13 @@
 //! Links that touch where they are joined, which cells do not test, with a warning.
 
-use elbowroom_formats::Warning;
+use elbowroom_formats::Diagnostic;
 use elbowroom_robot::{GeometryId, JointContact, JointContactKind, Robot, RobotId, joint_contacts};
 use elbowroom_scene::{PairEdit, PairRule, PairRules, Selection};
 
 use crate::{Cell, CellRobot};
 
 /// The rules for such links in a cell, with one warning per pair.
-pub(crate) fn of_cell(cell: &Cell) -> (PairRules, Vec<Warning>) {
+pub(crate) fn of_cell(cell: &Cell) -> (PairRules, Vec<Diagnostic>) {
     let (mut rules, mut warnings) = (PairRules::default(), Vec::new());
     for (i, r) in cell.robots.iter().enumerate() {
         let robot = RobotId(i);
@@ -38,7 +38,7 @@ fn of_robot(r: &CellRobot) -> Vec<JointContact> {
     found
 }
 
-fn warning(cell: &Cell, robot: &CellRobot, found: &JointContact) -> Warning {
+fn warning(cell: &Cell, robot: &CellRobot, found: &JointContact) -> Diagnostic {
     let [a, b] = names(&robot.robot, found);
     let what = format!(
         "robot \"{}\": links `{a}` and `{b}` touch {}: this pair is not tested",
@@ -48,7 +48,7 @@ fn warning(cell: &Cell, robot: &CellRobot, found: &JointContact) -> Warning {
     let hint = format!(
         "ignore = [[\"{a}\", \"{b}\"]] in its table, if they are built so; a row `state = \"tested\"` of `pairs = FILE`, if not"
     );
-    Warning::new(&cell.file, robot.line, what).hint(hint)
+    Diagnostic::new(&cell.file, robot.line, what).hint(hint)
 }
 
 /// Place and frequency of the contact of two links.

@@ -24,7 +24,7 @@
 //! assert_eq!(cell.robots[0].joint_names(), ["joint_1"]);
 //! let setups = configure::setups(&cell)?;
 //! assert_eq!(setups[0].configuration.regions()[0].warning_m, 0.3);
-//! # Ok::<(), elbowroom_formats::FormatError>(())
+//! # Ok::<(), elbowroom_formats::Diagnostic>(())
 //! ```
 //!
 //! **Invariant.** If a cell file is accepted, every name in its [`Cell`] is resolved and every number is in SI units

@@ -29,7 +29,7 @@ pub struct ObjectTables {
 /// let text = object_tables(&[ball], "meshes").toml;
 /// assert!(text.contains("[object.\"red ball\"]\nshape = \"sphere\""));
 /// assert_eq!(Cell::parse("cell.toml", &text)?.objects[0].in_world, in_world);
-/// # Ok::<(), elbowroom_formats::FormatError>(())
+/// # Ok::<(), elbowroom_formats::Diagnostic>(())
 /// ```
 pub fn object_tables(objects: &[Object], folder: &str) -> ObjectTables {
     let mut tables = ObjectTables::default();

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use elbowroom_formats::{FormatError, Warning};
+use elbowroom_formats::Diagnostic;
 use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_robot::{GeometryId, JointContact, ObjectId, Robot, RobotId, joint_contacts};
 use elbowroom_scene::{Attachment, Object, PairRules, Scene, SceneState, Selection};
@@ -148,13 +148,13 @@ impl QueryModel {
     /// The initial state of queries, with carried objects attached to their links.
     ///
     /// # Errors
-    /// [`FormatError`] if the scene belongs to another model.
-    pub fn start_state(&self, scene: &Scene) -> Result<SceneState, FormatError> {
+    /// [`Diagnostic`] if the scene belongs to another model.
+    pub fn start_state(&self, scene: &Scene) -> Result<SceneState, Diagnostic> {
         let mut state = SceneState::new(scene);
         for (object, attachment) in &self.carried {
             state
                 .attach_at(scene, *object, attachment.clone())
-                .map_err(|e| FormatError::new(&self.file, None, e.to_string()))?;
+                .map_err(|e| Diagnostic::new(&self.file, None, e.to_string()))?;
         }
         Ok(state)
     }
@@ -162,8 +162,8 @@ impl QueryModel {
     /// Builds the scene.
     ///
     /// # Errors
-    /// [`FormatError`] if the scene refuses the model.
-    pub fn scene(&self, proofs: OutOfReachProofs) -> Result<Scene, FormatError> {
+    /// [`Diagnostic`] if the scene refuses the model.
+    pub fn scene(&self, proofs: OutOfReachProofs) -> Result<Scene, Diagnostic> {
         let mut builder = Scene::builder();
         builder.prove_out_of_reach(proofs == OutOfReachProofs::Compute);
         for r in &self.robots {
@@ -173,7 +173,7 @@ impl QueryModel {
             builder.object(o.clone());
         }
         builder.rules(self.rules.clone());
-        builder.build().map_err(|e| FormatError::new(&self.file, None, e.to_string()))
+        builder.build().map_err(|e| Diagnostic::new(&self.file, None, e.to_string()))
     }
 
     /// Warnings for links that always touch where they are joined, and for links that touch in the default state.
@@ -192,11 +192,11 @@ impl QueryModel {
     /// # std::fs::write(&path, format!("<robot name=\"g\"><link name=\"palm\"/>{}{}</robot>", finger("left"), finger("right")))?;
     /// let robot = load(&path, &LoadOptions::default())?.robot;
     /// let warnings = QueryModel::of_robot(&path, robot).touching_at_rest();
-    /// assert!(warnings[0].what.contains("`left` and `right` touch"));
-    /// assert!(warnings[0].write_instead.as_ref().unwrap().contains("<disable_collisions link1=\"left\" link2=\"right\""));
+    /// assert!(warnings[0].message.contains("`left` and `right` touch"));
+    /// assert!(warnings[0].hint.as_ref().unwrap().contains("<disable_collisions link1=\"left\" link2=\"right\""));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn touching_at_rest(&self) -> Vec<Warning> {
+    pub fn touching_at_rest(&self) -> Vec<Diagnostic> {
         let of_robot = |r: &QueryRobot| {
             let name = (!self.is_single_robot).then_some(r.name.as_str());
             let at_joints = joint_contacts(&r.robot, &r.start);
@@ -205,7 +205,7 @@ impl QueryModel {
             let at_joints = at_joints.iter().map(|found| joint_contact_warning(&r.robot, found));
             at_joints
                 .chain(warnings)
-                .map(|(what, hint)| Warning::new(&self.file, None, what).hint(hint))
+                .map(|(what, hint)| Diagnostic::new(&self.file, None, what).hint(hint))
                 .collect::<Vec<_>>()
         };
         self.robots.iter().flat_map(of_robot).collect()

@@ -1,6 +1,6 @@
 //! Interference regions as constraints of path planning.
 
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 use elbowroom_kinematics::ChainState;
 use elbowroom_monitor::{Monitor, RegionDistanceQuery, SourceState};
 use elbowroom_planner::{PathConstraint, PathConstraintSource};
@@ -97,7 +97,7 @@ impl<'c> RegionConstraints<'c> {
     ///
     /// # Errors
     /// Errors of the monitors' configurations.
-    pub fn new<'q>(cell: &'c Cell, q: impl IntoIterator<Item = &'q [f64]>, least_m: f64) -> Result<Self, FormatError> {
+    pub fn new<'q>(cell: &'c Cell, q: impl IntoIterator<Item = &'q [f64]>, least_m: f64) -> Result<Self, Diagnostic> {
         Self::of_setups(cell, configure::setups(cell)?, q, least_m)
     }
 
@@ -106,7 +106,7 @@ impl<'c> RegionConstraints<'c> {
         setups: Vec<MonitorSetup>,
         q: impl IntoIterator<Item = &'q [f64]>,
         least_m: f64,
-    ) -> Result<Self, FormatError> {
+    ) -> Result<Self, Diagnostic> {
         let monitors = configure::monitors(cell, &setups)?;
         let state = |(r, q): (&crate::CellRobot, &[f64])| {
             let mut state = ChainState::new(&r.robot.chain);
@@ -143,8 +143,8 @@ pub fn at_start<T>(
     q: &[f64],
     held: &[(ObjectId, Attachment)],
     least_m: f64,
-    plan: impl FnOnce(Option<RegionConstraint<'_>>) -> Result<T, FormatError>,
-) -> Result<T, FormatError> {
+    plan: impl FnOnce(Option<RegionConstraint<'_>>) -> Result<T, Diagnostic>,
+) -> Result<T, Diagnostic> {
     let at = |(i, r): (usize, &'_ crate::CellRobot)| if RobotId(i) == robot { q.to_vec() } else { r.start.clone() };
     let all: Vec<Vec<f64>> = cell.robots.iter().enumerate().map(at).collect();
     let setups = configure::setups_holding(cell, held)?;

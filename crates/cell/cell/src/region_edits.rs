@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Component, Path};
 
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 use elbowroom_formats::toml_tables::{self, Data, Entry, Node};
 use elbowroom_monitor::{Life, RegionKind};
 use serde::{Deserialize, Serialize};
@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use crate::seal::value::{key, text};
 use crate::{Cell, CellFile, CellRegion, Follow, configure};
 
-type Result<T> = std::result::Result<T, FormatError>;
+type Result<T> = std::result::Result<T, Diagnostic>;
 
 /// Keys for the place of a region; all other keys define what it is.
 const PLACE: [&str; 11] = ["centre", "center", "base", "at", "origin", "x", "y", "from", "to", "rpy", "quaternion"];
@@ -45,7 +45,7 @@ pub struct RegionEdit {
 /// let moved = file.moved("cart", &table, "centre = [0, 0, 2900]")?;
 /// let cell = file.cell(&[RegionEdit { name: "cart".into(), table: Some(moved) }])?;
 /// assert_eq!(cell.regions[0].region.anchor.translation.z, 2.9);
-/// # Ok::<(), elbowroom_formats::FormatError>(())
+/// # Ok::<(), elbowroom_formats::Diagnostic>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct EditedRegions {
@@ -56,7 +56,7 @@ impl EditedRegions {
     /// Reads the file of a cell.
     ///
     /// # Errors
-    /// [`FormatError`] if it cannot be read.
+    /// [`Diagnostic`] if it cannot be read.
     pub fn read(cell: &Cell) -> Result<Self> {
         Ok(Self { file: CellFile::read(&cell.file)?.unsealed() })
     }
@@ -64,7 +64,7 @@ impl EditedRegions {
     /// Parses text as the file `path`.
     ///
     /// # Errors
-    /// [`FormatError`] if it is not TOML.
+    /// [`Diagnostic`] if it is not TOML.
     pub fn parse(path: impl AsRef<Path>, text: &str) -> Result<Self> {
         Ok(Self { file: CellFile::parse(path, text)? })
     }
@@ -72,7 +72,7 @@ impl EditedRegions {
     /// The cell with these edits of its regions.
     ///
     /// # Errors
-    /// [`FormatError`] as for a cell file; lines are counted in the region's own keys.
+    /// [`Diagnostic`] as for a cell file; lines are counted in the region's own keys.
     pub fn cell(&self, edits: &[RegionEdit]) -> Result<Cell> {
         let mut file = self.file.clone();
         // The checksum is valid for the file without edits.
@@ -121,7 +121,7 @@ impl EditedRegions {
     /// Parses the keys of a new region: the keys of `[region.NAME]`, or that table itself.
     ///
     /// # Errors
-    /// [`FormatError`] if it is not TOML, another region's table, or names a file outside of the cell's folder.
+    /// [`Diagnostic`] if it is not TOML, another region's table, or names a file outside of the cell's folder.
     pub fn table_of(&self, name: &str, toml: &str) -> Result<String> {
         let path = &self.file.file;
         let mut entries = toml_tables::parse(path, toml)?;
@@ -134,7 +134,7 @@ impl EditedRegions {
                 }
                 _ => {
                     let what = format!("`region` is not the table of the region `{name}` alone");
-                    return Err(FormatError::new(path, None, what).hint(format!("[region.{name}] and its keys")));
+                    return Err(Diagnostic::new(path, None, what).hint(format!("[region.{name}] and its keys")));
                 }
             }
         }
@@ -146,20 +146,20 @@ impl EditedRegions {
     /// The keys of a region after a move.
     ///
     /// # Errors
-    /// [`FormatError`] if `to` is empty, is not TOML, or has a key that does not define a place.
+    /// [`Diagnostic`] if `to` is empty, is not TOML, or has a key that does not define a place.
     pub fn moved(&self, name: &str, table: &str, to: &str) -> Result<String> {
         let path = &self.file.file;
         let mut keys = toml_tables::parse(path, table)?;
         let place = toml_tables::parse(path, to)?;
         if place.is_empty() {
             let what = format!("it is not said where region `{name}` is moved");
-            return Err(FormatError::new(path, None, what).hint(hint_for(&keys)));
+            return Err(Diagnostic::new(path, None, what).hint(hint_for(&keys)));
         }
         for entry in place {
             if !PLACE.contains(&entry.key.as_str()) {
                 let what = format!("`{}` does not say where region `{name}` is", entry.key);
                 let help = format!("{}; a region of another shape is removed and added", hint_for(&keys));
-                return Err(FormatError::new(path, None, what).hint(help));
+                return Err(Diagnostic::new(path, None, what).hint(help));
             }
             match keys.iter_mut().find(|known| known.key == entry.key) {
                 Some(known) => *known = entry,
@@ -212,7 +212,7 @@ fn check_files(path: &Path, entries: &[Entry]) -> Result<()> {
             && !Path::new(file).components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir))
         {
             let what = format!("`{}` names a file outside of the cell's folder: {file:?}", entry.key);
-            return Err(FormatError::new(path, entry.line, what).hint("a file in that folder, or below it"));
+            return Err(Diagnostic::new(path, entry.line, what).hint("a file in that folder, or below it"));
         }
         check_files(path, keys_of(entry))?;
     }
@@ -238,7 +238,7 @@ pub fn table_changes(before: Option<&str>, after: Option<&str>) -> Vec<(String, 
 /// Robots, laws, exchange regions and permanent regions must stay the same, and no further robot may be followed.
 ///
 /// # Errors
-/// [`FormatError`] if no monitor accepts a region.
+/// [`Diagnostic`] if no monitor accepts a region.
 pub fn why_not_continued(now: &Cell, next: &Cell) -> Result<Option<String>> {
     let (before, after) = (configure::setups(now)?, configure::setups(next)?);
     let robots = |setups: &[configure::MonitorSetup]| -> Vec<String> {

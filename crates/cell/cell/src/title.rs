@@ -14,7 +14,7 @@ impl Cell {
     ///     dh = [{ kind = \"prismatic\", min = 0, max = 900, speed = 100 }]\nlinks = [{ sphere = { radius = 50 } }]\n";
     /// assert_eq!(Cell::parse("line3/cell.toml", robot)?.title(), "line3");
     /// assert_eq!(Cell::parse("line3/left.toml", robot)?.title(), "left");
-    /// # Ok::<(), elbowroom_formats::FormatError>(())
+    /// # Ok::<(), elbowroom_formats::Diagnostic>(())
     /// ```
     pub fn title(&self) -> String {
         let says_nothing = self.name == "cell" && self.file.file_stem().is_some_and(|stem| stem == "cell");

@@ -222,8 +222,8 @@ fn every_error_names_its_line_and_a_correction() {
         let at = valid[..valid.find(line).unwrap()].lines().count();
         let Err(e) = Cell::parse("test.toml", &text) else { panic!("`{by}` passed") };
         let text = e.to_string();
-        assert!(e.what.contains(what), "`{by}`: {text}");
-        let write = e.write_instead.clone().unwrap_or_default();
+        assert!(e.message.contains(what), "`{by}`: {text}");
+        let write = e.hint.clone().unwrap_or_default();
         assert!(write.contains(hint) && !write.is_empty(), "`{by}`: {text}");
         // Missing keys are reported at the table's line, other errors at their own line. Text before a match on the
         // same line counts.
@@ -250,7 +250,7 @@ fn missing_tables_and_duplicate_names_are_errors() {
     assert!(e.to_string().contains("cannot be read"), "{e}");
     let e = Cell::parse("t.toml", &format!("{HEAD}[robot.r]\nmodel = \"arm.urdf\"\n")).unwrap_err();
     assert_eq!(e.line, Some(5));
-    assert!(e.what.contains("does not exist"), "{e}");
+    assert!(e.message.contains("does not exist"), "{e}");
 }
 
 /// A box on a fixed post, as 3DS.
@@ -276,8 +276,8 @@ fn a_3d_model_without_joints_yields_a_template_of_joints_that_is_accepted() {
         Cell::parse(dir.path().join("cell.toml"), &format!("{HEAD}[robot.r]\nmodel = \"arm.3ds\"\n{more}"))
     };
     let e = parse("").unwrap_err();
-    assert!(e.what.contains("without a joint that moves"), "{e}");
-    assert!(e.write_instead.as_ref().unwrap().contains("[joint.arm]   # on post, origin at [0, 0, 1] m"), "{e}");
+    assert!(e.message.contains("without a joint that moves"), "{e}");
+    assert!(e.hint.as_ref().unwrap().contains("[joint.arm]   # on post, origin at [0, 0, 1] m"), "{e}");
     let joints =
         "units = { length = \"mm\", angle = \"deg\" }\n[joint.arm]\naxis = \"z\"\nmin = -90\nmax = 90\nspeed = 45\n";
     std::fs::write(dir.path().join("other.toml"), joints).unwrap();
@@ -287,11 +287,11 @@ fn a_3d_model_without_joints_yields_a_template_of_joints_that_is_accepted() {
     std::fs::write(dir.path().join("arm.joints.toml"), joints).unwrap();
     assert_eq!(parse("").unwrap().robots[0].robot.chain.dof(), 1);
     let e = parse("joints = \"nowhere.toml\"\n").unwrap_err();
-    assert!(e.what.contains("does not exist"), "{e}");
+    assert!(e.message.contains("does not exist"), "{e}");
     let e = parse("unit = \"ell\"\n").unwrap_err();
     assert!(e.to_string().contains("mm"), "{e}");
     let e = Cell::parse("t.toml", &format!("{HEAD}[robot.r]\ndh = [{{ a = 1 }}]\nunit = \"mm\"\n")).unwrap_err();
-    assert!(e.what.contains("belongs to `model`"), "{e}");
+    assert!(e.message.contains("belongs to `model`"), "{e}");
 }
 
 #[test]
@@ -301,7 +301,7 @@ fn a_checksum_is_verified() {
     let pinned = valid_cell().replacen("tick_ms", &format!("checksum = \"{sum}\"\ntick_ms"), 1);
     assert!(Cell::parse("t.toml", &pinned).is_ok());
     let e = Cell::parse("t.toml", &pinned.replace("radius = 150", "radius = 149")).unwrap_err();
-    assert!(e.what.contains(&sum), "{e}");
+    assert!(e.message.contains(&sum), "{e}");
 }
 
 #[test]
@@ -314,7 +314,7 @@ fn errors_of_trajectories_name_the_line() {
     };
     assert!(cell("joint_1,t_s\n0,0\n0.1,1\n").is_ok());
     let noted = cell("r.joint_1,note,t_s\n0,up,0\n0.1,,1\n").unwrap();
-    assert!(noted.warnings.iter().any(|w| w.what.contains("column `note` is not a joint of")));
+    assert!(noted.warnings.iter().any(|w| w.message.contains("column `note` is not a joint of")));
     for (csv, line, what) in [
         ("t_s,joint_2\n0,0\n", 1, "no column `joint_1`"),
         ("t_s,joint_1\n0,0\n0,0.1\n", 3, "t_s is 0 after 0"),
@@ -327,7 +327,7 @@ fn errors_of_trajectories_name_the_line() {
     ] {
         let e = cell(csv).unwrap_err();
         assert_eq!(e.line, Some(line), "{e}");
-        assert!(e.what.contains(what), "{e}");
+        assert!(e.message.contains(what), "{e}");
     }
 }
 
@@ -343,8 +343,8 @@ fn refused(file: &std::path::Path, text: &str, cases: &[(usize, &str, usize, &st
         match Cell::parse(file, &lines.join("\n")) {
             Ok(_) => wrong.push(format!("`{by}` passed")),
             Err(e) => {
-                let write = e.write_instead.as_deref().unwrap_or_default();
-                let is_taught = e.what.contains(what) && write.contains(hint) && !write.is_empty();
+                let write = e.hint.as_deref().unwrap_or_default();
+                let is_taught = e.message.contains(what) && write.contains(hint) && !write.is_empty();
                 if e.line != Some(line) || !is_taught {
                     wrong.push(format!("`{by}`, expected line {line}, `{what}`, `{hint}`:\n  {e}"));
                 }

@@ -68,10 +68,10 @@ fn an_output_that_never_rises_causes_a_warning() {
     let text =
         format!("{HEAD}{}{}{PROGRAM}", ball(""), region("kind = \"monitored\"\noutput = 1\nguards = [\"tool\"]\n"));
     let warnings = parse(&text).warnings;
-    assert!(warnings.iter().any(|w| w.what.contains("guards nothing")), "{warnings:?}");
+    assert!(warnings.iter().any(|w| w.message.contains("guards nothing")), "{warnings:?}");
     let tool_only = robot_with("tool.box = { at = [0, 0, 100], size = [50, 50, 200] }\n");
     let warnings = parse(&format!("{HEAD}{tool_only}{}{PROGRAM}", region(""))).warnings;
-    assert!(warnings.iter().any(|w| w.what.contains("guards only tool and load")), "{warnings:?}");
+    assert!(warnings.iter().any(|w| w.message.contains("guards only tool and load")), "{warnings:?}");
 }
 
 #[test]

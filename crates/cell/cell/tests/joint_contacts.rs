@@ -90,7 +90,7 @@ fn no_robot_starts_in_contact_because_of_links_that_always_touch_at_a_joint() {
                 "all 1000".to_owned()
             };
             let text = format!("`{a}` and `{b}` touch in {share} states");
-            let said = |w: &elbowroom_formats::Warning| w.what.contains(&text);
+            let said = |w: &elbowroom_formats::Diagnostic| w.message.contains(&text);
             assert!(cell.warnings.iter().any(said), "{name}: {:?}", cell.warnings);
         }
         if !pairs.is_empty() {

@@ -184,8 +184,8 @@ fn keys_have_a_good_case_and_three_bad_ones_at_their_line() {
             match Cell::parse("cell.toml", &text) {
                 Ok(_) => wrong.push(format!("{line}: accepted")),
                 Err(e) => {
-                    let hinted = e.write_instead.as_deref().is_some_and(|h| h.contains(hint));
-                    if e.line != Some(at) || !e.what.contains(what) || !hinted {
+                    let hinted = e.hint.as_deref().is_some_and(|h| h.contains(hint));
+                    if e.line != Some(at) || !e.message.contains(what) || !hinted {
                         wrong.push(format!("{line} at {at}: {e}"));
                     }
                 }
@@ -220,7 +220,7 @@ fn a_mesh_has_the_unit_that_is_named() {
     ] {
         let (read, at) = cell(line);
         let e = read.unwrap_err();
-        assert!(e.what.contains(what) && e.write_instead.as_deref().unwrap_or("").contains(hint), "{line}: {e}");
+        assert!(e.message.contains(what) && e.hint.as_deref().unwrap_or("").contains(hint), "{line}: {e}");
         assert_eq!(e.line, Some(at), "{line}");
     }
 }

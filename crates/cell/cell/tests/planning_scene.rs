@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::common::{HEAD, rail};
 use elbowroom_cell::{Cell, QueryModel, object_tables};
-use elbowroom_formats::{FormatError, stl};
+use elbowroom_formats::{Diagnostic, stl};
 use elbowroom_proximity::Shape;
 use elbowroom_robot::{GeometryId, ObjectId, RobotId};
 use elbowroom_spatial::{Pose, Vec3};
@@ -16,7 +16,7 @@ const YAML: &str = "fixed_frame_transforms:\n  - child_frame_id: desk\n    heade
 \x20   transform: {translation: [0, 0, 0.5], rotation: [0, 0, 0, 1]}\nworld:\n  collision_objects:\n    - id: can\n\
 \x20     header: {frame_id: desk}\n      primitives: [{type: sphere, dimensions: [0.1]}]\n      primitive_poses: [{position: [1, 0, 0]}]\n";
 
-fn parse(dir: &Path, tables: &str) -> Result<Cell, FormatError> {
+fn parse(dir: &Path, tables: &str) -> Result<Cell, Diagnostic> {
     Cell::parse(dir.join("cell.toml"), &format!("{HEAD}{}{tables}", rail("r", 0.0)))
 }
 
@@ -98,7 +98,7 @@ fn what_a_cell_does_not_take_is_said() {
         "{warnings:?}"
     );
     let far = parse(dir.path(), "[scene.shelf]\nfile = \"shelf.scene\"\nat = [9e7, 0, 0]\n").unwrap();
-    let far: Vec<_> = far.warnings.iter().filter(|w| w.what.contains("object \"board:1\"")).collect();
+    let far: Vec<_> = far.warnings.iter().filter(|w| w.message.contains("object \"board:1\"")).collect();
     assert_eq!((far.len(), far[0].line), (1, Some(8)), "at the table of the scene, of its first object: {far:?}");
 }
 
@@ -121,7 +121,7 @@ fn pairs_that_a_scene_allows_are_not_tested() {
     assert_eq!(skipped(&cell, link(0, "link_1")), None);
     // The pair is tested if the cell says so, in the table or in the file of pairs.
     let cell_2 = parse(dir.path(), &format!("{scene}allowed_collisions = false\n")).unwrap();
-    assert!(cell_2.pair_rules.is_empty() && !cell_2.warnings.iter().any(|w| w.what.contains("allowed_collision")));
+    assert!(cell_2.pair_rules.is_empty() && !cell_2.warnings.iter().any(|w| w.message.contains("allowed_collision")));
     std::fs::write(
         dir.path().join("pairs.toml"),
         "version = 1\npairs = [{ a = \"r/base\", b = \"can\", state = \"tested\", reason = \"it is firm\" }]\n",
@@ -141,7 +141,7 @@ fn pairs_that_a_scene_allows_are_not_tested() {
     let cell_5 = parse(dir.path(), &two).unwrap();
     assert_eq!((skipped(&cell_5, link(0, "base")), skipped(&cell_5, link(1, "base"))), (None, None));
     assert!(
-        cell_5.warnings.iter().any(|w| w.what.contains("several robots have such a link")),
+        cell_5.warnings.iter().any(|w| w.message.contains("several robots have such a link")),
         "{:?}",
         cell_5.warnings
     );
@@ -228,9 +228,12 @@ fn wrong_scenes_are_refused_with_line_and_remedy() {
     for &(tables, file, line, what, hint) in cases {
         let e = parse(dir.path(), tables).expect_err(tables);
         assert_eq!((e.file.file_name().unwrap().to_str(), e.line.unwrap_or(0)), (Some(file), line), "{e}");
-        assert!(e.what.contains(what) && e.write_instead.as_ref().is_some_and(|h| h.contains(hint)), "{e}");
+        assert!(e.message.contains(what) && e.hint.as_ref().is_some_and(|h| h.contains(hint)), "{e}");
     }
     std::fs::write(dir.path().join("desk.yaml"), YAML.replace("link_1", "odom")).unwrap();
     let e = parse(dir.path(), "[scene.s]\nfile = \"desk.yaml\"\n").unwrap_err();
-    assert!(e.what.contains("\"odom\", which is neither a link") && e.to_string().contains("frame = \"odom\""), "{e}");
+    assert!(
+        e.message.contains("\"odom\", which is neither a link") && e.to_string().contains("frame = \"odom\""),
+        "{e}"
+    );
 }

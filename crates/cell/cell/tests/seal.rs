@@ -71,7 +71,7 @@ fn whatever_changes_the_checksum_breaks_the_seal() {
         let Ok(cell) = Cell::parse(&file, &mutated) else { continue };
         std::fs::write(&file, &mutated).unwrap();
         if let Err(e) = Cell::load(&file) {
-            assert!(e.what.contains("is not as it was sealed"), "{e}");
+            assert!(e.message.contains("is not as it was sealed"), "{e}");
             assert!(!history(&file).unwrap().unsealed.is_empty());
         } else {
             assert_eq!(cell.checksum, checksum, "not detected:\n{mutated}");
@@ -114,7 +114,7 @@ fn every_number_of_an_object_that_a_region_follows_breaks_the_seal() {
         }
         std::fs::write(&file, &changed).unwrap();
         let e = Cell::load(&file).expect_err(&mutated);
-        assert!(e.what.contains("is not as it was sealed") && e.what.contains("object.cart."), "{e}");
+        assert!(e.message.contains("is not as it was sealed") && e.message.contains("object.cart."), "{e}");
         noticed += 1;
     }
     for mutated in all(&free) {
@@ -174,8 +174,8 @@ fn the_files_of_the_source_of_a_region_are_sealed() {
         for mutated in mutations(text).into_iter().filter(|m| m != text) {
             write(name, &mutated);
             if let Err(e) = Cell::load(&file) {
-                if e.what.contains("is not as it was sealed") {
-                    assert!(words.iter().all(|w| e.what.contains(w)) && !words.is_empty(), "{name}: {e}\n{mutated}");
+                if e.message.contains("is not as it was sealed") {
+                    assert!(words.iter().all(|w| e.message.contains(w)) && !words.is_empty(), "{name}: {e}\n{mutated}");
                     assert_eq!(history(&file).unwrap().unsealed.len(), 1);
                     tried += 1;
                 }

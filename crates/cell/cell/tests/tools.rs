@@ -85,7 +85,7 @@ fn mistakes_are_named_with_their_line() {
     ] {
         let line = 1 + text.lines().position(|l| l.starts_with(at)).unwrap();
         let e = Cell::parse("c.toml", &text).unwrap_err();
-        assert!(e.to_string().contains(expected) && e.write_instead.is_some(), "{e}\n{text}");
+        assert!(e.to_string().contains(expected) && e.hint.is_some(), "{e}\n{text}");
         assert_eq!(e.line, Some(line), "{e}");
     }
 }

@@ -27,7 +27,7 @@
 //!     true
 //! })?;
 //! assert_eq!(hits, [true, false]);
-//! # Ok::<(), elbowroom_formats::FormatError>(())
+//! # Ok::<(), elbowroom_formats::Diagnostic>(())
 //! ```
 //!
 //! **Invariant.** For a given cell and table of states, the rows of a query always come in the order of the table, and

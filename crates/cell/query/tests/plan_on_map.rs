@@ -1,7 +1,7 @@
 //! Paths through the free cells of a map, and the reasons if no path is found.
 
 use elbowroom_cell::{Cell, OutOfReachProofs, QueryModel, TcpTarget};
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 use elbowroom_kinematics::{ChainState, TrajectoryRow};
 use elbowroom_planner::RrtConnectSettings;
 use elbowroom_query::map::{MapRequest, map};
@@ -31,7 +31,7 @@ size = [100, 100, 800]
 const START: [f64; 3] = [-1.0, 0.3, -0.6];
 const GOAL: [f64; 3] = [1.0, 0.3, -0.6];
 
-fn asked(cell: &Cell, from: &[f64], to: &[f64]) -> Result<PathAnswer, FormatError> {
+fn asked(cell: &Cell, from: &[f64], to: &[f64]) -> Result<PathAnswer, Diagnostic> {
     let planner = PathPlanner::Grid;
     plan(cell, &PathRequest { planner, from: Some(from.into()), to: to.into(), ..PathRequest::default() })
 }

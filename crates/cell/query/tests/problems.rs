@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
+use elbowroom_formats::Diagnostic;
 use elbowroom_formats::problem_set::{self, PlanningProblem};
 use elbowroom_formats::robot::{self, LoadOptions};
-use elbowroom_formats::{FormatError, Warning};
 use elbowroom_kinematics::TrajectoryRow;
 use elbowroom_query::problems::{ProblemModel, ProblemResult, ProblemSettings, ProblemSummary, RrtConnectEngine, run};
 use elbowroom_robot::RobotId;
@@ -47,7 +47,7 @@ fn parse(problems: &[Value]) -> Vec<PlanningProblem> {
     problem_set::parse(Path::new("p.json"), json!({"set": set}).to_string().as_bytes()).unwrap().problems
 }
 
-fn model_of(urdf: &str, problems: &[PlanningProblem]) -> Result<ProblemModel, FormatError> {
+fn model_of(urdf: &str, problems: &[PlanningProblem]) -> Result<ProblemModel, Diagnostic> {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("crane.urdf");
     std::fs::write(&path, urdf).unwrap();
@@ -56,7 +56,7 @@ fn model_of(urdf: &str, problems: &[PlanningProblem]) -> Result<ProblemModel, Fo
 }
 
 /// Results with the values of the last waypoint; empty without a path.
-fn solve(problems: &[Value]) -> (Vec<(ProblemResult, Vec<f64>)>, Vec<Warning>) {
+fn solve(problems: &[Value]) -> (Vec<(ProblemResult, Vec<f64>)>, Vec<Diagnostic>) {
     let problems = parse(problems);
     let model = model_of(URDF, &problems).unwrap_or_else(|e| panic!("{e}"));
     let settings = ProblemSettings { time_limit: std::time::Duration::from_millis(300), ..ProblemSettings::default() };
@@ -185,7 +185,7 @@ fn joints_that_are_not_planned_are_held_even_beyond_their_limits() {
     unknown_start["request"]["start_state"]["joint_state"] = json!({"name": ["waist"], "position": [-1]});
     let (results, warnings) = solve(&[wide, unknown_start]);
     assert_eq!(results.iter().map(|(_, end)| end.clone()).collect::<Vec<_>>(), [[1.0, 0.15], [1.0, 0.0]]);
-    let warnings: Vec<&str> = warnings.iter().map(|w| w.what.as_str()).collect();
+    let warnings: Vec<&str> = warnings.iter().map(|w| w.message.as_str()).collect();
     for (warning, expected) in warnings.iter().zip(["`wheel`", "`lift` is held at 0.15", "no value for `lift`"]) {
         assert!(warning.contains(expected), "{warnings:?}");
     }

@@ -190,7 +190,7 @@ fn a_robot_without_columns_stays_at_its_start() {
     let q: Vec<&[f64]> = states.of(0).map(|s| s.1).collect();
     assert_eq!(q[0], [0.2, 0.1, 0.3]);
     assert_eq!(q[1], model.robots[1].start);
-    assert!(states.warnings[0].what.contains("robot `right`"));
+    assert!(states.warnings[0].message.contains("robot `right`"));
     assert_eq!(
         QueryStates::start(&model).of(0).map(|s| s.1.to_vec()).collect::<Vec<_>>(),
         [model.robots[0].start.clone(), model.robots[1].start.clone()]

@@ -67,7 +67,7 @@ fn a_goal_inside_is_refused_with_the_regions_name_and_a_start_inside_is_left() {
     let cell = parse(&format!("{HEAD}{GANTRY}{WALL}"));
     let error = plan(&cell, &request([0.2, -0.4], [0.51, -0.4])).unwrap_err();
     let text = error.to_string();
-    assert!(text.contains("region `wall`") && text.contains("goal") && error.write_instead.is_some(), "{text}");
+    assert!(text.contains("region `wall`") && text.contains("goal") && error.hint.is_some(), "{text}");
     let answer = plan(&cell, &request([0.46, -0.4], [0.9, -0.4])).unwrap();
     let timed = answer.timed.unwrap();
     assert!(timed.path.waypoints.len() > 2 && timed.trajectory.first() == Some(&[0.46, -0.4]));

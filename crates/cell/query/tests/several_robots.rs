@@ -150,7 +150,7 @@ fn wrong_requests_are_refused_with_a_hint() {
     let cell = parse(&format!("{HEAD}{ARMS}{REGION}"));
     let refused = |cell: &Cell, robots: &[(&str, [f64; 2])]| {
         let error = plan_several(cell, &request(robots)).unwrap_err();
-        assert!(error.write_instead.is_some(), "{error}");
+        assert!(error.hint.is_some(), "{error}");
         error.to_string()
     };
     assert!(refused(&cell, &[("left", THERE), ("left", THERE)]).contains("two goals"));

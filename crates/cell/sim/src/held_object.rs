@@ -1,7 +1,7 @@
 //! The attachment of an object to the robot that holds it, for queries about states.
 
 use elbowroom_cell::Cell;
-use elbowroom_formats::FormatError;
+use elbowroom_diagnostic::Diagnostic;
 use elbowroom_kinematics::ChainState;
 use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_scene::Attachment;
@@ -33,13 +33,13 @@ use crate::motion::first_grip;
 /// "#)?;
 /// let attachment = held_object(&cell, RobotId(0), ObjectId(0))?;
 /// assert!((attachment.in_link.translation.x - 0.1).abs() < 1e-12); // in the frame of the link, which is turned by 90 degrees
-/// # Ok::<(), elbowroom_formats::FormatError>(())
+/// # Ok::<(), elbowroom_diagnostic::Diagnostic>(())
 /// ```
 ///
 /// # Errors
-/// [`FormatError`] if a step before the grip is infeasible, if the place of the object is known only during the run, or
+/// [`Diagnostic`] if a step before the grip is infeasible, if the place of the object is known only during the run, or
 /// if the robot's program never grips the object and the object is too far from the hand at the start.
-pub fn held_object(cell: &Cell, robot: RobotId, object: ObjectId) -> Result<Attachment, FormatError> {
+pub fn held_object(cell: &Cell, robot: RobotId, object: ObjectId) -> Result<Attachment, Diagnostic> {
     let (at, name) = (&cell.robots[robot.0], &cell.objects[object.0].name);
     if let Some(action) = first_grip(cell, robot, object)? {
         return action.attachment.ok_or_else(|| {
@@ -47,7 +47,7 @@ pub fn held_object(cell: &Cell, robot: RobotId, object: ObjectId) -> Result<Atta
                 "where \"{name}\" is in the hand of \"{}\" is not known before the run: it moves, or another program grips it",
                 at.name
             );
-            FormatError::new(&cell.file, action.line, what).hint("a part that is at rest, and that no other program grips")
+            Diagnostic::new(&cell.file, action.line, what).hint("a part that is at rest, and that no other program grips")
         });
     }
     let mut state = ChainState::new(&at.robot.chain);
@@ -57,6 +57,6 @@ pub fn held_object(cell: &Cell, robot: RobotId, object: ObjectId) -> Result<Atta
         let what = format!("robot \"{}\" at its `start`, as no program of it grips \"{name}\": {what}", at.name);
         let hint =
             format!("{{ grip = \"{name}\" }} in [program.{}] where it is within reach, or another `start`", at.name);
-        FormatError::new(&cell.file, at.line, what).hint(hint)
+        Diagnostic::new(&cell.file, at.line, what).hint(hint)
     })
 }

@@ -26,7 +26,7 @@
 //! let outcome = simulate(&cell, &RunOptions::default())?;
 //! assert!(!outcome.recording.robots[0].finished); // it stopped at the border
 //! assert!(!outcome.has_violation());
-//! # Ok::<(), elbowroom_formats::FormatError>(())
+//! # Ok::<(), elbowroom_diagnostic::Diagnostic>(())
 //! ```
 //!
 //! **Invariant.** If [`check`](check::check) says that entry into a region is excluded, a run under the monitors never

@@ -13,7 +13,7 @@ fn the_error_of_an_unreachable_line_states_where_it_fails() {
     );
     let cell = Cell::parse("t.toml", &text).unwrap();
     let e = simulate(&cell, &RunOptions::default()).unwrap_err();
-    assert!(e.what.contains("step 1") && e.what.contains("beyond") && e.what.contains(" mm"), "{e}");
+    assert!(e.message.contains("step 1") && e.message.contains("beyond") && e.message.contains(" mm"), "{e}");
     let line = text.lines().position(|l| l.contains("move = \"linear\"")).unwrap() + 1;
     assert_eq!(e.line, Some(line));
 }

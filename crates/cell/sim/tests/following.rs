@@ -154,8 +154,8 @@ fn a_source_that_jumps_stops_the_robot() {
     assert!(recovered.is_some_and(|e| (1.38..1.5).contains(&e.t_s)), "{events:?}");
     // The warning before the run has the line of the region.
     let cell = Cell::parse(dir.path().join("cell.toml"), &text).unwrap();
-    let warning = cell.warnings.iter().find(|w| w.what.contains("takes that for a jump")).unwrap();
-    assert!(warning.what.contains("390000 mm/s") && warning.write_instead.as_ref().unwrap().contains("max_speed"));
+    let warning = cell.warnings.iter().find(|w| w.message.contains("takes that for a jump")).unwrap();
+    assert!(warning.message.contains("390000 mm/s") && warning.hint.as_ref().unwrap().contains("max_speed"));
     // Accepted if the file permits the speed.
     let (dir, text) = poses(csv, ", max_speed = 400000");
     assert!(!fault(&run_at(dir.path(), &text)));
@@ -172,7 +172,7 @@ fn an_encoder_that_jumps_stops_the_robot() {
     assert!(outcome.recording.events.iter().any(|e| e.event.name() == "fault" && e.region == "ride"));
     let cell = Cell::parse(dir.path().join("cell.toml"), &cell(belt)).unwrap();
     assert!(
-        cell.warnings.iter().any(|w| w.what.contains("encoder \"belt\" moves at 390000 mm/s")),
+        cell.warnings.iter().any(|w| w.message.contains("encoder \"belt\" moves at 390000 mm/s")),
         "{:?}",
         cell.warnings
     );
@@ -239,10 +239,10 @@ fn disabled_watchdogs_and_unbounded_zones_are_refused() {
     let e = parse(&stale("1e12")).unwrap_err().to_string();
     assert!(e.contains("`monitor.stale_ms` is 1000000000000 ms") && e.contains("at most 1000"), "{e}");
     assert!(parse(&stale("1001")).is_err() && parse(&stale("100")).unwrap().warnings.is_empty());
-    assert!(parse(&stale("101")).unwrap().warnings[0].what.contains("moves 101 mm"));
+    assert!(parse(&stale("101")).unwrap().warnings[0].message.contains("moves 101 mm"));
     let e = parse(&cell(&zone("1e9", ""))).unwrap_err().to_string();
     assert!(e.contains("`region.z.warning` is 1000000000 mm") && e.contains("up to 10000 mm"), "{e}");
-    assert!(parse(&cell(&zone("10001", ""))).unwrap().warnings[0].what.contains("more than any robot needs"));
+    assert!(parse(&cell(&zone("10001", ""))).unwrap().warnings[0].message.contains("more than any robot needs"));
     assert!(parse(&cell(&zone("10000", ""))).unwrap().warnings.is_empty());
     let e = parse(&cell(&zone("10", "hysteresis = 1e9\n"))).unwrap_err().to_string();
     assert!(e.contains("hysteresis"), "{e}");

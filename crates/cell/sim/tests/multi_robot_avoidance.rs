@@ -55,7 +55,7 @@ fn another_robot_is_evaded_unless_it_is_listed_as_known() {
 fn names_of_robots_are_checked() {
     let wrong = |list: &str, word: &str| {
         let e = Cell::parse(std::path::Path::new("cell.toml"), &cell(&format!("robots = {list}"))).unwrap_err();
-        assert!(e.to_string().contains(word) && e.line.is_some() && e.write_instead.is_some(), "{e}");
+        assert!(e.to_string().contains(word) && e.line.is_some() && e.hint.is_some(), "{e}");
     };
     wrong("[\"drivers\"]", "drives");
     wrong("[\"waits\"]", "itself");

@@ -106,7 +106,7 @@ fn errors_in_the_table_name_the_line() {
         let line = 1 + text.lines().position(|l| l.starts_with("[avoidance.kr150]")).unwrap() + 1;
         let with = text.replace("[avoidance.kr150]", &format!("[avoidance.kr150]\n{key}"));
         let e = Cell::parse(file(), &with).unwrap_err();
-        assert!(e.to_string().contains(word) && e.write_instead.is_some(), "{e}");
+        assert!(e.to_string().contains(word) && e.hint.is_some(), "{e}");
         assert_eq!(e.line, Some(line), "{e}");
     };
     wrong("speeed = 5", "speed");

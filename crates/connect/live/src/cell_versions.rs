@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex};
 
 use elbowroom_cell::{Cell, EditedRegions, RegionEdit, why_not_continued};
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 
 use crate::locked::locked;
 
@@ -15,7 +15,7 @@ const KEPT: usize = 4;
 pub enum NoVersion {
     /// A region is wrong.
     #[error(transparent)]
-    Wrong(#[from] FormatError),
+    Wrong(#[from] Diagnostic),
     /// The running cell cannot continue with the changed regions.
     #[error("{0}")]
     NotContinued(String),

@@ -1,6 +1,6 @@
 //! Errors of starting and ending a service.
 
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 use elbowroom_recording::BagError;
 use elbowroom_view::ViewError;
 use thiserror::Error;
@@ -14,7 +14,7 @@ use crate::ros2::Ros2Error;
 pub enum ServiceError {
     /// The cell cannot be guarded.
     #[error(transparent)]
-    Cell(#[from] FormatError),
+    Cell(#[from] Diagnostic),
     /// The network cannot be used.
     #[error(transparent)]
     Network(#[from] NetworkError),

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use elbowroom_cell::configure::MonitorSetup;
 use elbowroom_cell::{Cell, EditedRegions, configure};
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 use elbowroom_interlock::{Boot, Micros};
 use elbowroom_monitor::{Life, RegionKind, RobotSlot};
 use elbowroom_recording::{BagError, CellWriter, Recorder};
@@ -161,7 +161,7 @@ impl<'o> ServiceStart<'o> {
         let slots = configure::slots(cell).iter().flatten().map(|slot| slot.0 + 1).max().unwrap_or(0);
         let checksum = configuration_number(cell);
         let monitor = NodeMonitor::new(&setup, RobotSlot(robot.0), slots, checksum, Boot(boot_number()))
-            .map_err(|e| FormatError::new(&cell.file, cell.robots[robot.0].line, e.to_string()))?;
+            .map_err(|e| Diagnostic::new(&cell.file, cell.robots[robot.0].line, e.to_string()))?;
         let recorder = recorder.map(|r| r.robot(robot.0 as u32, monitor.monitor(), self.clock.seconds()));
         let (network, interlocks) = (self.of_controllers.clone(), self.shared.clone());
         let cell = cell.clone();

@@ -183,7 +183,7 @@ fn what_is_not_allowed_is_refused_with_the_reason_and_changes_nothing() {
     let wrong = "shape = \"sphere\"\ncentre = [0, 0, 1]\nradius = -5";
     let of_file = Cell::parse("cell.toml", &format!("{CELL}\n[region.table]\n{wrong}")).unwrap_err();
     let (_, document) = setup.change(PROGRAMMER, "/add", &add(wrong));
-    assert_eq!(document["error"].as_str().unwrap(), format!("line 3: {}", of_file.what));
+    assert_eq!(document["error"].as_str().unwrap(), format!("line 3: {}", of_file.message));
     // The answer names the distance of a region that would stop the robot; a region that only slows it is permitted.
     let (status, document) = setup.change(PROGRAMMER, "/add", &add(&around));
     assert_eq!((status, document["robot"].as_str(), document["distance_m"].as_f64()), (409, Some("left"), Some(0.0)));

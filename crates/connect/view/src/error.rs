@@ -4,7 +4,7 @@ use std::io;
 use std::net::SocketAddr;
 use std::path::PathBuf;
 
-use elbowroom_formats::FormatError;
+use elbowroom_diagnostic::Diagnostic;
 
 /// Why a cell cannot be shown in a browser.
 #[derive(Debug, thiserror::Error)]
@@ -40,7 +40,7 @@ pub enum ViewError {
     },
     /// The cell has no model that can be shown.
     #[error(transparent)]
-    Cell(#[from] FormatError),
+    Cell(#[from] Diagnostic),
     /// The system does not provide random numbers, threads or the like.
     #[error("the system refuses what the server needs: {0}")]
     System(#[from] io::Error),

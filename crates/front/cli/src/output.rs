@@ -25,8 +25,8 @@ pub(crate) enum Failure {
     Closed,
 }
 
-impl From<elbowroom::formats::FormatError> for Failure {
-    fn from(e: elbowroom::formats::FormatError) -> Self {
+impl From<elbowroom::Diagnostic> for Failure {
+    fn from(e: elbowroom::Diagnostic) -> Self {
         Self::Wrong(e.to_string())
     }
 }

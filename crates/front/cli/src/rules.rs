@@ -3,7 +3,8 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use elbowroom::avoidance::fuzzy::Surface;
+use elbowroom::Diagnostic;
+use elbowroom::avoidance::fuzzy::{FuzzyError, Surface};
 use elbowroom::avoidance::{DEFAULT_RULES, Rules};
 use serde::Serialize;
 
@@ -73,10 +74,8 @@ pub(crate) fn rules(args: &RulesArgs) -> Result<ExitStatus, Failure> {
 
 fn read(path: &Path) -> Result<Rules, Failure> {
     let text = std::fs::read_to_string(path).map_err(|e| Failure::Wrong(format!("{}: {e}", path.display())))?;
-    Rules::from_toml(&text).map_err(|e| {
-        let line = e.line.map_or(String::new(), |l| format!("{l}:"));
-        Failure::Wrong(format!("{}:{line} {}\n  write: {}", path.display(), e.what, e.write_instead))
-    })
+    let at_line = |e: FuzzyError| Diagnostic::new(path, e.line, e.message).hint(e.hint).into();
+    Rules::from_toml(&text).map_err(at_line)
 }
 
 fn table(rules: &Rules) -> String {

@@ -156,8 +156,8 @@ fn accepted(text: &str, cell: &Cell, args: &TeachArgs) -> Result<(), Failure> {
     let (length, angle) = (cell.units.length.symbol(), cell.units.angle.symbol());
     let head = format!("version = 1\nunits = {{ length = \"{length}\", angle = \"{angle}\" }}\n");
     let Err(e) = Cell::parse(&args.states, &(head + text)) else { return Ok(()) };
-    let hint = e.write_instead.map(|h| format!("\n  write: {h}")).unwrap_or_default();
-    Err(Failure::Wrong(format!("{}: the region taught: {}{hint}", args.states.display(), e.what)))
+    let hint = e.hint.map(|h| format!("\n  write: {h}")).unwrap_or_default();
+    Err(Failure::Wrong(format!("{}: the region taught: {}{hint}", args.states.display(), e.message)))
 }
 
 /// Formats the region in cell-file syntax.

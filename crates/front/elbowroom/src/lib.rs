@@ -2,13 +2,14 @@
 //!
 //! [`prelude`] has the names that most programs need. Everything else is in one module per crate of the workspace:
 //!
-//! | module | contents |
+//! | module or type | contents |
 //! | --- | --- |
 //! | [`spatial`] | poses, frame motions, bounding boxes, units |
 //! | [`proximity`] | shapes, and collision, distance, penetration and continuous collision detection between two of them |
 //! | [`kinematics`] | joint chains: forward, inverse, Jacobian, Denavit-Hartenberg, any surface point as end effector |
 //! | [`robot`] | a robot as data: chain, colliders, disabled pairs |
 //! | [`scene`] | robots and objects together: collision and distance queries, allowed collision matrix |
+//! | [`Diagnostic`] | an error or a warning of a file: what is wrong, where, and what to write instead |
 //! | [`formats`] | URDF, SRDF, STL, OBJ, COLLADA, glTF, PLY, OFF, 3DS |
 //! | [`monitor`] | interference regions, checked in every control tick |
 //! | [`interlock`] | exchange regions between controllers on a network: arbiter, guards, messages |
@@ -147,6 +148,7 @@ pub use elbowroom_avoidance as avoidance;
 pub use elbowroom_cell as cell;
 pub use elbowroom_cspace as cspace;
 pub use elbowroom_formats as formats;
+pub use elbowroom_formats::Diagnostic;
 pub use elbowroom_inspect as inspect;
 pub use elbowroom_interlock as interlock;
 pub use elbowroom_kinematics as kinematics;

@@ -69,7 +69,7 @@ proptest! {
             let mut text = DEFAULT_RULES.to_owned();
             text.insert(cut, letter);
             if let Err(e) = Rules::from_toml(&text) {
-                prop_assert!(!e.what.is_empty() && !e.write_instead.is_empty());
+                prop_assert!(!e.message.is_empty() && !e.hint.is_empty());
             }
         }
     }
@@ -107,23 +107,23 @@ fn errors_name_their_line() {
     let without_range = "[input.proximity]\nnear = [0, 0, 1, 1]\n";
     let wrong = |text: &str| Rules::from_toml(text).unwrap_err();
     assert_eq!(wrong(without_range).line, Some(1));
-    assert!(wrong(without_range).write_instead.contains("range = [low, high]"));
+    assert!(wrong(without_range).hint.contains("range = [low, high]"));
     let falling = DEFAULT_RULES.replace("near = [0.06, 0.16, 0.24, 0.40]", "near = [0.06, 0.16, 0.14, 0.40]");
     let e = wrong(&falling);
-    assert!(e.what.contains("`near`") && e.line == Some(8), "{e}");
+    assert!(e.message.contains("`near`") && e.line == Some(8), "{e}");
     let unknown =
         DEFAULT_RULES.replace("if proximity is far and speed is stop", "if proximity is remote and speed is stop");
     let e = wrong(&unknown);
-    assert!(e.what.contains("remote") && e.write_instead.contains("far") && e.line.is_some(), "{e}");
+    assert!(e.message.contains("remote") && e.hint.contains("far") && e.line.is_some(), "{e}");
     let hole = DEFAULT_RULES.replace("far = [0.50, 0.75, 1, 1]", "far = [0.80, 0.9, 1, 1]");
     let e = wrong(&hole);
-    assert!(e.what.contains("no rule says anything") && e.what.contains("proximity"), "{e}");
+    assert!(e.message.contains("no rule says anything") && e.message.contains("proximity"), "{e}");
     let e = wrong(&DEFAULT_RULES.replace("[rules]", "[rule]"));
-    assert!(e.what.contains("`rule`"), "{e}");
+    assert!(e.message.contains("`rule`"), "{e}");
     let e = wrong(&DEFAULT_RULES.replace("proximity", "closeness"));
-    assert!(e.what.contains("closeness"), "{e}");
+    assert!(e.message.contains("closeness"), "{e}");
     assert_eq!(wrong("[input").line, Some(1));
-    assert!(wrong("").what.contains("inputs"));
+    assert!(wrong("").message.contains("inputs"));
 }
 
 #[test]
@@ -142,6 +142,6 @@ fn variables_are_checked() {
     assert!(make(v("a", [0.0, f64::NAN], &wide), v("b", [0.0, 1.0], &wide)).is_err());
     assert!(make(v("a", [0.0, 1.0], &[]), v("b", [0.0, 1.0], &wide)).is_err());
     let needle = make(v("a", [0.0, 1.0], &wide), v("b", [0.0, 1.0], &[[0.501, 0.5011, 0.5011, 0.502]]));
-    assert!(needle.unwrap_err().what.contains("too narrow"));
+    assert!(needle.unwrap_err().message.contains("too narrow"));
     assert!(Set::new([0.0, f64::NAN, 1.0, 1.0]).is_none() && Set::new([1.0, 0.0, 1.0, 1.0]).is_none());
 }

@@ -1,6 +1,6 @@
 //! Errors of images, calibrations and settings.
 
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 
 use crate::Channels;
 
@@ -9,7 +9,7 @@ use crate::Channels;
 pub enum VisionError {
     /// A file is missing, truncated or of another format. The message states the file and what to write instead.
     #[error(transparent)]
-    File(#[from] FormatError),
+    File(#[from] Diagnostic),
     /// A frame has no pixels.
     #[error("{frame}: the frame is empty: {width} x {height} pixels")]
     Empty {

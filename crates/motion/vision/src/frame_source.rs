@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 
 use crate::image_file::{self, RawLayout};
 use crate::{Frame, VisionError};
@@ -45,7 +45,7 @@ impl ImageFiles {
     /// # Errors
     /// The folder cannot be read or contains no images.
     pub fn folder(folder: &Path, period_s: f64) -> Result<Self, VisionError> {
-        let cannot = |e: std::io::Error| FormatError::new(folder, None, format!("cannot be read: {e}"));
+        let cannot = |e: std::io::Error| Diagnostic::new(folder, None, format!("cannot be read: {e}"));
         let mut files = Vec::new();
         for entry in std::fs::read_dir(folder).map_err(cannot)? {
             let path = entry.map_err(cannot)?.path();
@@ -54,7 +54,7 @@ impl ImageFiles {
             }
         }
         if files.is_empty() {
-            return Err(FormatError::new(folder, None, "holds no picture")
+            return Err(Diagnostic::new(folder, None, "holds no picture")
                 .hint("a folder with .png, .pgm, .ppm, .pnm, .raw, .gray or .grey files")
                 .into());
         }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use elbowroom_formats::image::{ImageHeader, PixelFormat};
-use elbowroom_formats::{FormatError, png, pnm, read_file};
+use elbowroom_formats::{Diagnostic, png, pnm, read_file};
 
 use crate::{Channels, Frame, VisionError};
 
@@ -50,11 +50,11 @@ pub fn decode(bytes: &[u8], file: &Path, raw: Option<RawLayout>, frame: &mut Fra
 
 fn decode_any(bytes: &[u8], file: &Path, raw: Option<RawLayout>, frame: &mut Frame) -> Result<(), VisionError> {
     if bytes.is_empty() {
-        return Err(FormatError::new(file, None, "is empty").hint("a PNG, PGM or PPM picture, or raw bytes").into());
+        return Err(Diagnostic::new(file, None, "is empty").hint("a PNG, PGM or PPM picture, or raw bytes").into());
     }
     if !png::is_png(bytes) && is_raw(file) {
         let layout = raw.ok_or_else(|| {
-            FormatError::new(file, None, "is raw bytes, which do not say how wide the picture is")
+            Diagnostic::new(file, None, "is raw bytes, which do not say how wide the picture is")
                 .hint("width, height and channels of raw frames; or pictures as PNG, PGM or PPM")
         })?;
         return frame.fill(layout.width, layout.height, layout.channels, |pixels| {
@@ -74,18 +74,18 @@ fn is_raw(file: &Path) -> bool {
 }
 
 /// Decodes PNG or PNM, depending on the content.
-fn decode_image(bytes: &[u8], file: &Path, pixels: &mut Vec<u8>) -> Result<ImageHeader, FormatError> {
+fn decode_image(bytes: &[u8], file: &Path, pixels: &mut Vec<u8>) -> Result<ImageHeader, Diagnostic> {
     if png::is_png(bytes) {
         png::read(bytes, file, pixels)
     } else if pnm::is_pnm(bytes) {
         pnm::read(bytes, file, pixels)
     } else {
-        Err(FormatError::new(file, None, "is no picture that can be read").hint("PNG, PGM, PPM or raw bytes"))
+        Err(Diagnostic::new(file, None, "is no picture that can be read").hint("PNG, PGM, PPM or raw bytes"))
     }
 }
 
 /// Reads the bytes of an image or point cloud file.
-pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, FormatError> {
+pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, Diagnostic> {
     read_file(path, MAX_BYTES, "a smaller picture or a thinner cloud")
 }
 
@@ -106,7 +106,7 @@ pub fn decode_grey16(bytes: &[u8], path: &Path) -> Result<(usize, usize, Vec<u16
     let header = decode_image(bytes, path, &mut pixels)?;
     if header.format != PixelFormat::Grey16 {
         let what = format!("holds {} values, not depths", header.format);
-        return Err(FormatError::new(path, None, what)
+        return Err(Diagnostic::new(path, None, what)
             .hint("one grey channel of 16 bits, as depth cameras save it")
             .into());
     }
@@ -139,6 +139,6 @@ pub fn encode_png(frame: &Frame) -> Result<Vec<u8>, VisionError> {
     };
     let mut bytes = Vec::with_capacity(frame.pixels().len());
     png::write(&mut bytes, &ImageHeader { width, height, format }, frame.pixels())
-        .map_err(|e| FormatError::new(&frame.name, None, format!("cannot be written as PNG: {e}")))?;
+        .map_err(|e| Diagnostic::new(&frame.name, None, format!("cannot be written as PNG: {e}")))?;
     Ok(bytes)
 }

@@ -5,10 +5,10 @@ use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
-use crate::FormatError;
-use crate::error::Location;
+use crate::Diagnostic;
+use crate::location::Location;
 
-type Result<T> = std::result::Result<T, FormatError>;
+type Result<T> = std::result::Result<T, Diagnostic>;
 
 /// Largest length of a line, bytes.
 const MAX_LINE: usize = 1 << 20;
@@ -28,16 +28,16 @@ impl<'a> CsvLines<'a, BufReader<File>> {
     /// Opens a file of at most `max_bytes`. Pipes, which have no size, can be read too.
     pub(crate) fn open(path: &'a Path, max_bytes: u64) -> Result<Self> {
         let unreadable = |e: std::io::Error| {
-            FormatError::unreadable(path, &e, "a CSV file: a header of column names, then rows of numbers")
+            Diagnostic::unreadable(path, &e, "a CSV file: a header of column names, then rows of numbers")
         };
         let file = File::open(path).map_err(unreadable)?;
         let metadata = file.metadata().map_err(unreadable)?;
         if metadata.is_dir() {
-            return Err(FormatError::new(path, None, "is a folder").hint("a CSV file"));
+            return Err(Diagnostic::new(path, None, "is a folder").hint("a CSV file"));
         }
         if metadata.len() > max_bytes {
             let what = format!("has {} bytes; at most {max_bytes} are read", metadata.len());
-            return Err(FormatError::new(path, None, what).hint("a file with fewer rows or columns"));
+            return Err(Diagnostic::new(path, None, what).hint("a file with fewer rows or columns"));
         }
         Ok(Self::new(BufReader::with_capacity(1 << 16, file), path))
     }
@@ -55,7 +55,7 @@ impl<'a, R: BufRead> CsvLines<'a, R> {
             self.line += 1;
             self.buffer.clear();
             let wrong = |what: String| {
-                FormatError::new(self.file, self.line, what).hint("a text file of comma-separated numbers")
+                Diagnostic::new(self.file, self.line, what).hint("a text file of comma-separated numbers")
             };
             let mut limited = Read::take(&mut self.source, MAX_LINE as u64);
             let length =
@@ -68,7 +68,7 @@ impl<'a, R: BufRead> CsvLines<'a, R> {
             }
         }
         let text = std::str::from_utf8(&self.buffer)
-            .map_err(|_| FormatError::new(self.file, self.line, "is not UTF-8 text").hint("the file saved as UTF-8"))?;
+            .map_err(|_| Diagnostic::new(self.file, self.line, "is not UTF-8 text").hint("the file saved as UTF-8"))?;
         Ok(Some((Location { file: self.file, line: self.line }, text.trim_start_matches('\u{feff}').trim())))
     }
 }
@@ -93,15 +93,15 @@ pub(crate) fn finite(cell: &str, column: &str, at: Location<'_>, instead: &str) 
         Ok(value) if value.is_finite() => Ok(value),
         _ => {
             let what = format!("column `{column}` holds \"{}\", which is not a finite number", shortened(cell));
-            Err(at.error(what).hint(instead))
+            Err(at.diagnostic(what).hint(instead))
         }
     }
 }
 
 /// The error of a row with more or fewer cells than the header.
-pub(crate) fn wrong_length(text: &str, columns: &[String], at: Location<'_>) -> FormatError {
+pub(crate) fn wrong_length(text: &str, columns: &[String], at: Location<'_>) -> Diagnostic {
     let what = format!("has {} values for {} columns", text.split(',').count(), columns.len());
-    at.error(what).hint(format!("a number for each of {}", columns.join(",")))
+    at.diagnostic(what).hint(format!("a number for each of {}", columns.join(",")))
 }
 
 /// At most 40 characters of a cell.
@@ -110,8 +110,8 @@ fn shortened(cell: &str) -> String {
 }
 
 /// The error of a row whose time is not after the time of the previous row.
-pub(crate) fn not_rising(t_s: f64, last_s: f64, at: Location<'_>) -> FormatError {
-    at.error(format!("t_s is {t_s} after {last_s}")).hint("times that rise from row to row")
+pub(crate) fn not_rising(t_s: f64, last_s: f64, at: Location<'_>) -> Diagnostic {
+    at.diagnostic(format!("t_s is {t_s} after {last_s}")).hint("times that rise from row to row")
 }
 
 /// The message for a header with these names that lacks the column `of`.

@@ -6,10 +6,10 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
+use crate::Diagnostic;
 use crate::csv::{self, CsvLines};
-use crate::{FormatError, Warning};
 
-type Result<T> = std::result::Result<T, FormatError>;
+type Result<T> = std::result::Result<T, Diagnostic>;
 
 const TIMES: &str = "times.csv";
 const HEADER: &str = "the header file,t_s and a row per picture: frame_0000.png,0.0";
@@ -71,8 +71,8 @@ pub struct FrameFile {
 /// ```
 ///
 /// # Errors
-/// [`FormatError`] if the folder has no file of this kind, or if the times are missing, incomplete or do not increase.
-pub fn read(folder: &Path, kind: FrameKind) -> Result<(Vec<FrameFile>, Vec<Warning>)> {
+/// [`Diagnostic`] if the folder has no file of this kind, or if the times are missing, incomplete or do not increase.
+pub fn read(folder: &Path, kind: FrameKind) -> Result<(Vec<FrameFile>, Vec<Diagnostic>)> {
     let pictures = files(folder, kind)?;
     let file = folder.join(TIMES);
     let mut times = times(&file)?;
@@ -80,19 +80,19 @@ pub fn read(folder: &Path, kind: FrameKind) -> Result<(Vec<FrameFile>, Vec<Warni
     for path in pictures {
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let Some((line, t_s)) = times.remove(&name) else {
-            return Err(FormatError::new(&file, None, format!("has no time for {name}")).hint(format!("{name},0.0")));
+            return Err(Diagnostic::new(&file, None, format!("has no time for {name}")).hint(format!("{name},0.0")));
         };
         if let Some(last) = frames.last().filter(|last| !(t_s > last.t_s)) {
             let what =
                 format!("{name} has the time {t_s} after {}, and pictures are in the order of their names", last.t_s);
-            return Err(FormatError::new(&file, line, what).hint("names and times that rise together"));
+            return Err(Diagnostic::new(&file, line, what).hint("names and times that rise together"));
         }
         frames.push(FrameFile { path, t_s });
     }
     let mut missing: Vec<_> = times.into_iter().map(|(name, (line, _))| (line, name)).collect();
     missing.sort();
     let warning = |(line, name): &(usize, String)| {
-        Warning::new(&file, *line, format!("names {name}, which is not in the folder"))
+        Diagnostic::new(&file, *line, format!("names {name}, which is not in the folder"))
             .hint("the pictures that are there")
     };
     Ok((frames, missing.first().map(warning).into_iter().collect()))
@@ -101,7 +101,7 @@ pub fn read(folder: &Path, kind: FrameKind) -> Result<(Vec<FrameFile>, Vec<Warni
 /// All files of a kind in a folder, sorted.
 fn files(folder: &Path, kind: FrameKind) -> Result<Vec<PathBuf>> {
     let unreadable =
-        |e: std::io::Error| FormatError::new(folder, None, format!("cannot be read: {e}")).hint(kind.instead());
+        |e: std::io::Error| Diagnostic::new(folder, None, format!("cannot be read: {e}")).hint(kind.instead());
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(unreadable)? {
         let path = entry.map_err(unreadable)?.path();
@@ -111,7 +111,7 @@ fn files(folder: &Path, kind: FrameKind) -> Result<Vec<PathBuf>> {
         }
     }
     if found.is_empty() {
-        return Err(FormatError::new(folder, None, format!("has no {}", kind.name())).hint(kind.instead()));
+        return Err(Diagnostic::new(folder, None, format!("has no {}", kind.name())).hint(kind.instead()));
     }
     found.sort();
     Ok(found)
@@ -121,12 +121,12 @@ fn files(folder: &Path, kind: FrameKind) -> Result<Vec<PathBuf>> {
 fn times(file: &Path) -> Result<HashMap<String, (usize, f64)>> {
     let mut lines = CsvLines::open(file, csv::MAX_BYTES).map_err(|e| e.hint(HEADER))?;
     let Some((at, header)) = lines.next()? else {
-        return Err(FormatError::new(file, 1, "is empty").hint(HEADER));
+        return Err(Diagnostic::new(file, 1, "is empty").hint(HEADER));
     };
     let columns: Vec<String> = csv::cells(header).map(str::to_owned).collect();
     let position = |name: &str| {
         let found = columns.iter().position(|column| column == name);
-        found.ok_or_else(|| at.error(format!("has no column `{name}`")).hint(HEADER))
+        found.ok_or_else(|| at.diagnostic(format!("has no column `{name}`")).hint(HEADER))
     };
     let (name_at, time_at) = (position("file")?, position("t_s")?);
     let mut times = HashMap::new();
@@ -137,7 +137,9 @@ fn times(file: &Path) -> Result<HashMap<String, (usize, f64)>> {
         }
         let t_s = csv::finite(cells[time_at], "t_s", at, "seconds, such as 0.04")?;
         if times.insert(cells[name_at].to_owned(), (at.line, t_s)).is_some() {
-            return Err(at.error(format!("names {} for the second time", cells[name_at])).hint("each picture once"));
+            return Err(at
+                .diagnostic(format!("names {} for the second time", cells[name_at]))
+                .hint("each picture once"));
         }
     }
     Ok(times)

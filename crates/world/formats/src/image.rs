@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::Path;
 
-use crate::FormatError;
+use crate::Diagnostic;
 
 /// Largest number of columns or rows of an image, which bounds memory.
 const MAX_SIDE: usize = 16_384;
@@ -118,26 +118,26 @@ fn to_8_bit(sample: u16) -> u8 {
 }
 
 /// Refuses images without pixels, with a side above 16,384 pixels, or larger than `file_bytes` bytes can encode.
-pub(crate) fn check_size(header: &ImageHeader, file_bytes: usize, file: &Path) -> Result<(), FormatError> {
+pub(crate) fn check_size(header: &ImageHeader, file_bytes: usize, file: &Path) -> Result<(), Diagnostic> {
     let ImageHeader { width, height, .. } = *header;
     if width == 0 || height == 0 {
         let what = format!("announces {width} x {height} pixels");
-        return Err(FormatError::new(file, None, what).hint("a picture with at least one pixel"));
+        return Err(Diagnostic::new(file, None, what).hint("a picture with at least one pixel"));
     }
     if width > MAX_SIDE || height > MAX_SIDE {
         let what = format!("announces {width} x {height} pixels, more than {MAX_SIDE} a side");
-        return Err(FormatError::new(file, None, what).hint("a smaller picture"));
+        return Err(Diagnostic::new(file, None, what).hint("a smaller picture"));
     }
     if header.byte_count() > file_bytes.saturating_mul(MAX_EXPANSION) {
         let what = format!("announces {width} x {height} pixels, but has only {file_bytes} bytes");
-        return Err(FormatError::new(file, None, what).hint("the whole picture: the file is damaged or cut off"));
+        return Err(Diagnostic::new(file, None, what).hint("the whole picture: the file is damaged or cut off"));
     }
     Ok(())
 }
 
 /// The error of a decoder that failed.
-pub(crate) fn undecodable(file: &Path, why: impl fmt::Display) -> FormatError {
-    FormatError::new(file, None, format!("cannot be decoded: {why}"))
+pub(crate) fn undecodable(file: &Path, why: impl fmt::Display) -> Diagnostic {
+    Diagnostic::new(file, None, format!("cannot be decoded: {why}"))
         .hint("the whole picture: the file is damaged or was cut off while it was written")
 }
 

@@ -5,30 +5,30 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use crate::FormatError;
+use crate::Diagnostic;
 
 /// Largest size of a model file, which bounds memory, bytes.
 const MAX_BYTES: u64 = 1 << 30;
 
 /// Reads the file of a model or mesh.
-pub(crate) fn read(path: &Path) -> Result<Vec<u8>, FormatError> {
+pub(crate) fn read(path: &Path) -> Result<Vec<u8>, Diagnostic> {
     read_file(path, MAX_BYTES, "a coarser mesh: collision checking needs thousands of triangles, not millions")
 }
 
 /// Reads a whole regular file. Refuses directories, devices and pipes, which may never end.
 ///
 /// # Errors
-/// [`FormatError`] if the file cannot be read, is not a regular file, or has more than `max_bytes` bytes. In the last
+/// [`Diagnostic`] if the file cannot be read, is not a regular file, or has more than `max_bytes` bytes. In the last
 /// case `smaller` is the hint.
-pub fn read_file(path: &Path, max_bytes: u64, smaller: &str) -> Result<Vec<u8>, FormatError> {
-    let cannot = |e: std::io::Error| FormatError::unreadable(path, &e, "the path of a file that is there");
+pub fn read_file(path: &Path, max_bytes: u64, smaller: &str) -> Result<Vec<u8>, Diagnostic> {
+    let cannot = |e: std::io::Error| Diagnostic::unreadable(path, &e, "the path of a file that is there");
     let meta = std::fs::metadata(path).map_err(cannot)?;
     if !meta.is_file() {
-        return Err(FormatError::new(path, None, "is not a file").hint("the path of a file, not of a directory"));
+        return Err(Diagnostic::new(path, None, "is not a file").hint("the path of a file, not of a directory"));
     }
     if meta.len() > max_bytes {
         let what = format!("has {} bytes, more than the {max_bytes} allowed", meta.len());
-        return Err(FormatError::new(path, None, what).hint(smaller));
+        return Err(Diagnostic::new(path, None, what).hint(smaller));
     }
     let mut bytes = Vec::with_capacity(meta.len() as usize);
     File::open(path).and_then(|f| f.take(max_bytes).read_to_end(&mut bytes)).map_err(cannot)?;
@@ -36,13 +36,13 @@ pub fn read_file(path: &Path, max_bytes: u64, smaller: &str) -> Result<Vec<u8>, 
 }
 
 /// Refuses empty files, Git LFS pointers, archives, and STEP files.
-pub(crate) fn check_content(bytes: &[u8], file: &Path) -> Result<(), FormatError> {
-    let refuse = |what: &str, hint: &str| Err(FormatError::new(file, None, what).hint(hint));
+pub(crate) fn check_content(bytes: &[u8], file: &Path) -> Result<(), Diagnostic> {
+    let refuse = |what: &str, hint: &str| Err(Diagnostic::new(file, None, what).hint(hint));
     if bytes.iter().all(u8::is_ascii_whitespace) {
         return refuse("is empty", "export the model again: nothing arrived in the file");
     }
     if bytes.starts_with(b"version https://git-lfs") {
-        return Err(FormatError::new(file, 1, "is a Git LFS pointer, not the file itself")
+        return Err(Diagnostic::new(file, 1, "is a Git LFS pointer, not the file itself")
             .hint("run `git lfs pull` in the repository that it came from"));
     }
     if bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(b"PK\x05\x06") {
@@ -86,7 +86,7 @@ pub fn planning_scene_hint(file: &Path) -> Option<String> {
 }
 
 /// Decodes the text of a file: UTF-8; UTF-16 with a byte order mark or as XML; Latin-1 if the XML declaration states it.
-pub(crate) fn text<'a>(bytes: &'a [u8], file: &Path) -> Result<Cow<'a, str>, FormatError> {
+pub(crate) fn text<'a>(bytes: &'a [u8], file: &Path) -> Result<Cow<'a, str>, Diagnostic> {
     if let Some(rest) = bytes.strip_prefix(b"\xef\xbb\xbf") {
         return utf8(rest, file);
     }
@@ -99,7 +99,7 @@ pub(crate) fn text<'a>(bytes: &'a [u8], file: &Path) -> Result<Cow<'a, str>, For
     }
 }
 
-fn utf8<'a>(bytes: &'a [u8], file: &Path) -> Result<Cow<'a, str>, FormatError> {
+fn utf8<'a>(bytes: &'a [u8], file: &Path) -> Result<Cow<'a, str>, Diagnostic> {
     let error = match std::str::from_utf8(bytes) {
         Ok(text) => return Ok(Cow::Borrowed(text)),
         Err(e) => e,
@@ -109,18 +109,18 @@ fn utf8<'a>(bytes: &'a [u8], file: &Path) -> Result<Cow<'a, str>, FormatError> {
         return Ok(Cow::Owned(bytes.iter().map(|&b| b as char).collect()));
     }
     let line = bytes[..error.valid_up_to()].split(|&b| b == b'\n').count();
-    Err(FormatError::new(file, line, "is not text: a byte here is not UTF-8").hint("save the file as UTF-8"))
+    Err(Diagnostic::new(file, line, "is not text: a byte here is not UTF-8").hint("save the file as UTF-8"))
 }
 
-fn utf16<'a>(bytes: &[u8], unit: fn([u8; 2]) -> u16, file: &Path) -> Result<Cow<'a, str>, FormatError> {
+fn utf16<'a>(bytes: &[u8], unit: fn([u8; 2]) -> u16, file: &Path) -> Result<Cow<'a, str>, Diagnostic> {
     let units = bytes.chunks_exact(2).map(|c| unit([c[0], c[1]]));
     let text: Result<String, _> = char::decode_utf16(units).collect();
     text.map(Cow::Owned)
-        .map_err(|_| FormatError::new(file, None, "is not valid UTF-16 text").hint("save the file as UTF-8"))
+        .map_err(|_| Diagnostic::new(file, None, "is not valid UTF-16 text").hint("save the file as UTF-8"))
 }
 
 /// The bytes without a byte order mark; UTF-16 is converted to UTF-8.
-pub(crate) fn text_bytes<'a>(bytes: &'a [u8], file: &Path) -> Result<Cow<'a, [u8]>, FormatError> {
+pub(crate) fn text_bytes<'a>(bytes: &'a [u8], file: &Path) -> Result<Cow<'a, [u8]>, Diagnostic> {
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
         return text(bytes, file).map(|t| Cow::Owned(t.into_owned().into_bytes()));
     }

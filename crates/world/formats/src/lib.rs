@@ -20,9 +20,10 @@
 //! | PNG | [`png`] | grey, RGB, alpha, palettes, 8 and 16 bits, interlaced; written too |
 //! | PNM | [`pnm`] | PBM, PGM, PPM, in text and in bytes |
 //!
-//! All models are in metres and radians. A file either becomes a valid model, with [`Warning`]s, or gives a
-//! [`FormatError`] that names the file, the line, the fault and what to write instead. Readers do not recurse on the
-//! input and limit the number of instances. They compare counts with the remaining bytes before they reserve memory.
+//! All models are in metres and radians. A file either becomes a valid model, with a [`Diagnostic`] per warning, or is
+//! refused with a [`Diagnostic`] that names the file, the line, the fault and what to write instead. Readers do not
+//! recurse on the input and limit the number of instances. They compare counts with the remaining bytes before they
+//! reserve memory.
 //!
 //! The readers of meshes are part of this crate instead of libraries: they keep double precision, line numbers for
 //! messages, and one entry per object, and they check every count of a hostile file.
@@ -49,19 +50,19 @@
 //! ```
 //!
 //! **Invariant.** Whatever bytes a file has, reading it never panics and never reserves memory out of proportion to its
-//! size. The result is always a valid model or a [`FormatError`].
+//! size. The result is always a valid model or a [`Diagnostic`].
 
 mod affine;
 mod csv;
 mod cycles;
 pub mod dae;
-mod error;
 pub mod frame_files;
 pub mod gltf;
 pub mod image;
 mod input;
 pub mod joint_states;
 pub mod joints;
+mod location;
 pub mod mesh;
 mod mesh_data;
 mod moveit_msgs;
@@ -88,11 +89,12 @@ pub mod tds;
 mod tokens;
 pub mod toml_tables;
 pub mod urdf;
+mod warning_list;
 mod whole_file;
 mod xml;
 mod yaml;
 
-pub use error::{FormatError, Warning};
+pub use elbowroom_diagnostic::Diagnostic;
 pub use input::{planning_scene_hint, read_file};
 pub use joint_states::{JointStateOptions, JointStateRobot, JointStates};
 pub use mesh::{LoadedMeshes, MeshData, unit_warning};

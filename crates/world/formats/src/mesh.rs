@@ -7,7 +7,7 @@ use elbowroom_spatial::units::LengthUnit;
 
 pub use crate::mesh_data::{LoadedMeshes, MeshData, UpAxis};
 use crate::nodetree::NodeTree;
-use crate::{FormatError, Warning, dae, gltf, input, obj, off, ply, stl, tds, urdf};
+use crate::{Diagnostic, dae, gltf, input, obj, off, ply, stl, tds, urdf};
 
 /// A mesh file format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -41,7 +41,7 @@ impl MeshFormat {
 /// rotated so that its up axis is +z. The result has one entry per object.
 ///
 /// # Errors
-/// [`FormatError`] if the file cannot be read, has another format, is damaged, or has no triangles.
+/// [`Diagnostic`] if the file cannot be read, has another format, is damaged, or has no triangles.
 ///
 /// ```
 /// use elbowroom_formats::mesh;
@@ -54,7 +54,7 @@ impl MeshFormat {
 /// assert_eq!(plate.aabb().extent().x, 0.5);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn load(path: &Path, unit: Option<LengthUnit>) -> Result<LoadedMeshes, FormatError> {
+pub fn load(path: &Path, unit: Option<LengthUnit>) -> Result<LoadedMeshes, Diagnostic> {
     load_with(path, unit, UpAxis::ToZ)
 }
 
@@ -62,11 +62,11 @@ pub fn load(path: &Path, unit: Option<LengthUnit>) -> Result<LoadedMeshes, Forma
 ///
 /// # Errors
 /// The errors of [`load`].
-pub fn load_with(path: &Path, unit: Option<LengthUnit>, up: UpAxis) -> Result<LoadedMeshes, FormatError> {
+pub fn load_with(path: &Path, unit: Option<LengthUnit>, up: UpAxis) -> Result<LoadedMeshes, Diagnostic> {
     let bytes = input::read(path)?;
     let mut loaded = parse(&bytes, path, unit, up)?;
     if let Some(w) = unit_warning(loaded.aabb().extent()) {
-        loaded.warnings.push(Warning { file: path.to_owned(), ..w });
+        loaded.warnings.push(Diagnostic { file: path.to_owned(), ..w });
     }
     Ok(loaded)
 }
@@ -78,7 +78,7 @@ pub fn load_with(path: &Path, unit: Option<LengthUnit>, up: UpAxis) -> Result<Lo
 ///
 /// # Errors
 /// The errors of [`load`].
-pub fn parse(bytes: &[u8], file: &Path, unit: Option<LengthUnit>, up: UpAxis) -> Result<LoadedMeshes, FormatError> {
+pub fn parse(bytes: &[u8], file: &Path, unit: Option<LengthUnit>, up: UpAxis) -> Result<LoadedMeshes, Diagnostic> {
     let format = detect(bytes, file)?;
     let mut loaded = match format {
         MeshFormat::Stl => stl::parse(bytes, file),
@@ -92,7 +92,7 @@ pub fn parse(bytes: &[u8], file: &Path, unit: Option<LengthUnit>, up: UpAxis) ->
     apply_unit(&mut loaded, format, file, unit);
     loaded.meshes.retain(|m| !m.triangles.is_empty());
     if loaded.meshes.is_empty() {
-        return Err(FormatError::new(file, None, "has no triangles")
+        return Err(Diagnostic::new(file, None, "has no triangles")
             .hint("export the model as a surface; points, lines and splines cannot collide"));
     }
     refuse_overflow(&loaded, file)?;
@@ -103,7 +103,7 @@ fn apply_unit(loaded: &mut LoadedMeshes, format: MeshFormat, file: &Path, unit: 
     let Some(unit) = unit else { return };
     if format.states_its_unit() {
         let what = format!("states its own unit; the unit {} asked for is not applied", unit.symbol());
-        loaded.warnings.push(Warning::new(file, None, what));
+        loaded.warnings.push(Diagnostic::new(file, None, what));
         return;
     }
     let factor = unit.to_metres(1.0);
@@ -111,10 +111,10 @@ fn apply_unit(loaded: &mut LoadedMeshes, format: MeshFormat, file: &Path, unit: 
 }
 
 /// Refuses numbers that a transform or a unit has made infinite.
-fn refuse_overflow(loaded: &LoadedMeshes, file: &Path) -> Result<(), FormatError> {
+fn refuse_overflow(loaded: &LoadedMeshes, file: &Path) -> Result<(), Diagnostic> {
     for mesh in &loaded.meshes {
         if let Some(i) = mesh.vertices.iter().position(|v| !v.is_finite()) {
-            return Err(FormatError::new(file, None, format!("vertex {i} of `{}` is infinitely far away", mesh.name))
+            return Err(Diagnostic::new(file, None, format!("vertex {i} of `{}` is infinitely far away", mesh.name))
                 .hint("coordinates below 1e300, and a transform with finite numbers"));
         }
     }
@@ -131,16 +131,16 @@ fn refuse_overflow(loaded: &LoadedMeshes, file: &Path) -> Result<(), FormatError
 /// assert!(unit_warning(Vec3::new(350.0, 120.0, 80.0)).is_some());
 /// assert!(unit_warning(Vec3::new(0.35, 0.12, 0.08)).is_none());
 /// ```
-pub fn unit_warning(extent: Vec3) -> Option<Warning> {
+pub fn unit_warning(extent: Vec3) -> Option<Diagnostic> {
     let largest = extent.max_element();
     if largest > 20.0 {
-        return Some(Warning::new("", None, format!("is {largest:.4} m large: is its unit right?")).hint(
+        return Some(Diagnostic::new("", None, format!("is {largest:.4} m large: is its unit right?")).hint(
             "--unit mm (cm, in), or in a URDF <mesh filename=\"…\" scale=\"0.001 0.001 0.001\"/>; `elbowroom inspect` \
                  says which unit fits",
         ));
     }
     (largest < 0.005).then(|| {
-        Warning::new("", None, format!("is only {largest:.3e} m large: is its unit right?"))
+        Diagnostic::new("", None, format!("is only {largest:.3e} m large: is its unit right?"))
             .hint("--unit m, or in a URDF a mesh without scale=\"0.001 0.001 0.001\", where a unit was applied twice")
     })
 }
@@ -148,8 +148,8 @@ pub fn unit_warning(extent: Vec3) -> Option<Warning> {
 /// Detects the format of a file.
 ///
 /// # Errors
-/// [`FormatError`] for a file of another format. The message names the format, if it is known.
-pub fn detect(bytes: &[u8], file: &Path) -> Result<MeshFormat, FormatError> {
+/// [`Diagnostic`] for a file of another format. The message names the format, if it is known.
+pub fn detect(bytes: &[u8], file: &Path) -> Result<MeshFormat, Diagnostic> {
     input::check_content(bytes, file)?;
     let decoded = input::text_bytes(&bytes[..bytes.len().min(4096) & !1], file).unwrap_or_default();
     let head = decoded.trim_ascii_start();
@@ -157,21 +157,21 @@ pub fn detect(bytes: &[u8], file: &Path) -> Result<MeshFormat, FormatError> {
         return Ok(format);
     }
     if let Some((kind, hint)) = unsupported_format(head) {
-        return Err(FormatError::new(file, None, format!("is {kind}")).hint(hint));
+        return Err(Diagnostic::new(file, None, format!("is {kind}")).hint(hint));
     }
     if head.starts_with(b"<") || bytes.starts_with(b"<\0") {
         if contains(&decoded, b"<sdf") {
-            return Err(FormatError::new(file, 1, format!("{}, no mesh", urdf::SDF)).hint(urdf::SDF_HINT));
+            return Err(Diagnostic::new(file, 1, format!("{}, no mesh", urdf::SDF)).hint(urdf::SDF_HINT));
         }
         return if contains(&decoded, b"COLLADA") || extension_is(file, "dae") {
             Ok(MeshFormat::Dae)
         } else {
-            Err(FormatError::new(file, 1, "is XML, but not COLLADA").hint(READABLE))
+            Err(Diagnostic::new(file, 1, "is XML, but not COLLADA").hint(READABLE))
         };
     }
     by_extension(file).or_else(|| has_obj_vertices(head).then_some(MeshFormat::Obj)).ok_or_else(|| {
         let hint = input::planning_scene_hint(file).unwrap_or_else(|| READABLE.to_owned());
-        FormatError::new(file, None, "is of no kind that can be read, by content or by extension").hint(hint)
+        Diagnostic::new(file, None, "is of no kind that can be read, by content or by extension").hint(hint)
     })
 }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use elbowroom_proximity::TriMesh;
 use elbowroom_spatial::{Aabb, Vec3};
 
-use crate::{FormatError, Warning};
+use crate::Diagnostic;
 
 /// Largest number of vertices or triangles to which a file may expand, including instances.
 pub(crate) const MAX_ELEMENTS: usize = 20_000_000;
@@ -64,10 +64,10 @@ impl MeshData {
     ///
     /// # Errors
     /// The errors of [`TriMesh::new`]; `file` is named in the message.
-    pub fn into_trimesh(self, file: &Path) -> Result<TriMesh, FormatError> {
+    pub fn into_trimesh(self, file: &Path) -> Result<TriMesh, Diagnostic> {
         let name = self.name;
         TriMesh::new(self.vertices, self.triangles)
-            .map_err(|e| FormatError::new(file, None, format!("the object `{name}` is no solid: {e}")))
+            .map_err(|e| Diagnostic::new(file, None, format!("the object `{name}` is no solid: {e}")))
     }
 }
 
@@ -77,7 +77,7 @@ pub struct LoadedMeshes {
     /// One entry per object, whatever its materials. Never empty; every entry has triangles.
     pub meshes: Vec<MeshData>,
     /// Warnings for the user.
-    pub warnings: Vec<Warning>,
+    pub warnings: Vec<Diagnostic>,
 }
 
 impl LoadedMeshes {

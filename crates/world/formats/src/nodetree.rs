@@ -4,9 +4,9 @@ use std::path::Path;
 
 use elbowroom_spatial::{Aabb, Pose, Rotation, Vec3};
 
+use crate::Diagnostic;
 use crate::affine::Affine;
 use crate::mesh_data::{LoadedMeshes, MeshData};
-use crate::{FormatError, Warning};
 
 /// A tree of frames with meshes, parents before their children.
 ///
@@ -25,7 +25,7 @@ pub struct NodeTree {
     /// Nodes, parents before their children.
     pub nodes: Vec<Node>,
     /// Warnings for the user.
-    pub warnings: Vec<Warning>,
+    pub warnings: Vec<Diagnostic>,
 }
 
 /// A frame of a [`NodeTree`].
@@ -125,14 +125,14 @@ impl NodeTree {
     }
 
     /// Refuses frames and vertices that a scale has made infinite.
-    pub(crate) fn check_finite(&self, file: &Path) -> Result<(), FormatError> {
+    pub(crate) fn check_finite(&self, file: &Path) -> Result<(), Diagnostic> {
         let frames = self.in_world();
         for (node, frame) in self.nodes.iter().zip(&frames) {
             let moves = node.track.iter().all(|k| k.in_parent.is_finite() && k.time_s.is_finite());
             let corners = node.meshes.iter().flat_map(|m| &m.vertices).all(|v| v.is_finite());
             if !(frame.is_finite() && moves && corners) {
                 let what = format!("the node `{}` is infinitely large or far away", node.name);
-                return Err(FormatError::new(file, None, what).hint("finite numbers; export the model again"));
+                return Err(Diagnostic::new(file, None, what).hint("finite numbers; export the model again"));
             }
         }
         Ok(())

@@ -3,11 +3,11 @@
 use std::io::BufRead;
 use std::path::{Path, PathBuf};
 
-use crate::FormatError;
+use crate::Diagnostic;
 use crate::csv::{self, CsvLines, missing_column};
-use crate::error::Location;
+use crate::location::Location;
 
-type Result<T> = std::result::Result<T, FormatError>;
+type Result<T> = std::result::Result<T, Diagnostic>;
 
 /// A CSV file of finite numbers with a header of column names.
 ///
@@ -17,7 +17,7 @@ type Result<T> = std::result::Result<T, FormatError>;
 /// let travel = table.column("travel_m")?;
 /// let rows = table.timed(&[travel])?;
 /// assert_eq!((rows[1].t_s, &rows[1].values[..], rows[1].line), (0.5, &[0.1][..], 3));
-/// # Ok::<(), elbowroom_formats::FormatError>(())
+/// # Ok::<(), elbowroom_formats::Diagnostic>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct NumberTable {
@@ -44,7 +44,7 @@ impl NumberTable {
     /// Reads a file of at most 1 GiB. Blank lines are skipped.
     ///
     /// # Errors
-    /// [`FormatError`] with the line of a cell that is not a finite number, of a row whose number of cells differs from
+    /// [`Diagnostic`] with the line of a cell that is not a finite number, of a row whose number of cells differs from
     /// the header, or of a header that repeats a name.
     pub fn read(path: &Path) -> Result<Self> {
         Self::from_lines(path, CsvLines::open(path, csv::MAX_BYTES)?)
@@ -60,11 +60,11 @@ impl NumberTable {
 
     fn from_lines(path: &Path, mut lines: CsvLines<'_, impl BufRead>) -> Result<Self> {
         let Some((at, header)) = lines.next()? else {
-            return Err(FormatError::new(path, 1, "is empty").hint("a header of column names, then rows of numbers"));
+            return Err(Diagnostic::new(path, 1, "is empty").hint("a header of column names, then rows of numbers"));
         };
         let columns: Vec<String> = csv::cells(header).map(str::to_owned).collect();
         if let Some(name) = csv::duplicate(&columns) {
-            return Err(at.error(format!("two columns are named `{name}`")).hint("each name once"));
+            return Err(at.diagnostic(format!("two columns are named `{name}`")).hint("each name once"));
         }
         let mut rows = Vec::new();
         while let Some((at, text)) = lines.next()? {
@@ -80,18 +80,18 @@ impl NumberTable {
     /// Index of a column.
     ///
     /// # Errors
-    /// [`FormatError`] that lists the columns, if the table has no such column.
+    /// [`Diagnostic`] that lists the columns, if the table has no such column.
     pub fn column(&self, name: &str) -> Result<usize> {
         self.columns.iter().position(|c| c == name).ok_or_else(|| {
             let what = missing_column(name, &self.columns);
-            FormatError::new(&self.file, 1, what).hint(name)
+            Diagnostic::new(&self.file, 1, what).hint(name)
         })
     }
 
     /// The rows as times (column `t_s`) and values of some columns.
     ///
     /// # Errors
-    /// [`FormatError`] if the table has no column `t_s` or no rows, or if the time does not increase.
+    /// [`Diagnostic`] if the table has no column `t_s` or no rows, or if the time does not increase.
     pub fn timed(&self, columns: &[usize]) -> Result<Vec<TimedRow>> {
         let time = self.column("t_s")?;
         let mut last_s = f64::NEG_INFINITY;
@@ -105,7 +105,7 @@ impl NumberTable {
             rows.push(TimedRow { line: *line, t_s, values: columns.iter().map(|c| row[*c]).collect() });
         }
         if rows.is_empty() {
-            return Err(FormatError::new(&self.file, 1, "has no rows").hint("rows of numbers below the header"));
+            return Err(Diagnostic::new(&self.file, 1, "has no rows").hint("rows of numbers below the header"));
         }
         Ok(rows)
     }

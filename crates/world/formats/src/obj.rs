@@ -8,10 +8,10 @@ use std::path::Path;
 
 use elbowroom_spatial::Vec3;
 
-use crate::error::WarningList;
 use crate::mesh_data::{LoadedMeshes, MeshData, split_vertices};
 use crate::tokens::{Lines, integer, show, vector};
-use crate::{FormatError, Warning, input, polygon};
+use crate::warning_list::WarningList;
+use crate::{Diagnostic, input, polygon};
 
 /// Largest number of different unknown words with a warning.
 const MAX_UNKNOWN_WORDS: usize = 20;
@@ -19,8 +19,8 @@ const MAX_UNKNOWN_WORDS: usize = 20;
 /// Parses an OBJ file. Numbers are metres.
 ///
 /// # Errors
-/// [`FormatError`] for faces without corners, missing vertices, invalid numbers, or a file with unknown statements only.
-pub fn parse(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> {
+/// [`Diagnostic`] for faces without corners, missing vertices, invalid numbers, or a file with unknown statements only.
+pub fn parse(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, Diagnostic> {
     input::check_content(bytes, file)?;
     let text = input::text_bytes(bytes, file)?;
     let joined = join_lines(&text);
@@ -103,7 +103,7 @@ impl<'a> ObjParser<'a> {
         }
     }
 
-    fn statement(&mut self, line: usize, content: &[u8]) -> Result<(), FormatError> {
+    fn statement(&mut self, line: usize, content: &[u8]) -> Result<(), Diagnostic> {
         let mut words = content.split(u8::is_ascii_whitespace).filter(|w| !w.is_empty());
         match words.next() {
             Some(b"v") => self.vertices.push(vector(&mut words, self.file, line, "the vertex")?),
@@ -111,7 +111,7 @@ impl<'a> ObjParser<'a> {
             Some(b"o") => self.object_statement(&content[1..]),
             Some(b"g") if !self.has_objects => self.select(&content[1..]),
             Some(b"surf" | b"curv" | b"curv2") => self.warnings.push_with(|| {
-                Warning::new(self.file, line, "a free-form curve or surface is ignored").hint("polygons: f 1 2 3")
+                Diagnostic::new(self.file, line, "a free-form curve or surface is ignored").hint("polygons: f 1 2 3")
             }),
             Some(word) if !is_keyword(word) => self.unknown(line, word),
             _ => {}
@@ -125,7 +125,7 @@ impl<'a> ObjParser<'a> {
         self.first_unknown.get_or_insert_with(|| (line, word.clone()));
         if self.unknown_words.len() < MAX_UNKNOWN_WORDS && self.unknown_words.insert(word.clone()) {
             let what = format!("`{word}` is no OBJ statement: such lines are skipped");
-            self.warnings.push_with(|| Warning::new(self.file, line, what));
+            self.warnings.push_with(|| Diagnostic::new(self.file, line, what));
         }
     }
 
@@ -149,18 +149,18 @@ impl<'a> ObjParser<'a> {
         }
     }
 
-    fn face<'w>(&mut self, line: usize, words: impl Iterator<Item = &'w [u8]>) -> Result<(), FormatError> {
+    fn face<'w>(&mut self, line: usize, words: impl Iterator<Item = &'w [u8]>) -> Result<(), Diagnostic> {
         let begin = self.corners.len();
         for word in words {
             let corner = self.corner(line, word)?;
             self.corners.push(corner);
         }
         match self.corners.len() - begin {
-            0 => Err(FormatError::new(self.file, line, "a face without corners").hint("f 1 2 3")),
+            0 => Err(Diagnostic::new(self.file, line, "a face without corners").hint("f 1 2 3")),
             1 | 2 => {
                 self.corners.truncate(begin);
                 self.warnings
-                    .push_with(|| Warning::new(self.file, line, "a face with fewer than 3 corners is left out"));
+                    .push_with(|| Diagnostic::new(self.file, line, "a face with fewer than 3 corners is left out"));
                 Ok(())
             }
             _ => {
@@ -170,10 +170,10 @@ impl<'a> ObjParser<'a> {
         }
     }
 
-    fn corner(&self, line: usize, word: &[u8]) -> Result<u32, FormatError> {
+    fn corner(&self, line: usize, word: &[u8]) -> Result<u32, Diagnostic> {
         let index = word.split(|&b| b == b'/').next().and_then(integer).ok_or_else(|| {
             let what = format!("`{}` is not a corner of a face", show(word));
-            FormatError::new(self.file, line, what)
+            Diagnostic::new(self.file, line, what)
                 .hint("the number of a vertex, from 1: f 1 2 3, or f 1/1/1 2/2/1 3/3/1")
         })?;
         let known = i64::try_from(self.vertices.len()).unwrap_or(i64::MAX);
@@ -181,11 +181,11 @@ impl<'a> ObjParser<'a> {
         // Vertices may follow later, so only negative indices are refused here.
         u32::try_from(from_zero).map_err(|_| {
             let what = format!("the corner {index} does not exist: there are {known} vertices before this line");
-            FormatError::new(self.file, line, what).hint("vertices count from 1; -1 is the last one before the line")
+            Diagnostic::new(self.file, line, what).hint("vertices count from 1; -1 is the last one before the line")
         })
     }
 
-    fn finish(self) -> Result<LoadedMeshes, FormatError> {
+    fn finish(self) -> Result<LoadedMeshes, Diagnostic> {
         let mut meshes: Vec<MeshData> =
             self.names.into_iter().map(|name| MeshData { name, ..MeshData::default() }).collect();
         let known = self.vertices.len();
@@ -194,18 +194,18 @@ impl<'a> ObjParser<'a> {
             let corners = &self.corners[begin..face.end];
             if let Some(i) = corners.iter().find(|&&i| i as usize >= known) {
                 let what = format!("the corner {} does not exist: the file has {known} vertices", u64::from(*i) + 1);
-                return Err(FormatError::new(self.file, face.line, what).hint("the number of a vertex, counted from 1"));
+                return Err(Diagnostic::new(self.file, face.line, what).hint("the number of a vertex, counted from 1"));
             }
             polygon::triangulate(&self.vertices, corners, &mut meshes[face.object].triangles);
             begin = face.end;
         }
         if let (0, Some((line, word))) = (known, &self.first_unknown) {
             let what = format!("`{word}` is no OBJ statement: is this an OBJ file?");
-            return Err(FormatError::new(self.file, *line, what).hint("v x y z, then f 1 2 3"));
+            return Err(Diagnostic::new(self.file, *line, what).hint("v x y z, then f 1 2 3"));
         }
         if self.faces.is_empty() && known > 0 {
             let what = format!("is a point cloud: {known} vertices, no faces");
-            return Err(FormatError::new(self.file, None, what).hint("faces: f 1 2 3"));
+            return Err(Diagnostic::new(self.file, None, what).hint("faces: f 1 2 3"));
         }
         meshes.retain(|m| !m.triangles.is_empty());
         split_vertices(&self.vertices, &mut meshes);
@@ -284,13 +284,13 @@ mod tests {
         let text = "exported by x\nv 0 0 0\nv 1 0 0\nv 0 1 0\ntag 1\nf 1 2 3\ntag 2\nparm u 0 1\nend\n";
         let loaded = parse(text.as_bytes(), Path::new("a.obj")).unwrap();
         assert_eq!(loaded.meshes[0].triangles, [[0, 1, 2]]);
-        let warned: Vec<_> = loaded.warnings.iter().map(|w| (w.line, w.what.as_str())).collect();
+        let warned: Vec<_> = loaded.warnings.iter().map(|w| (w.line, w.message.as_str())).collect();
         let skipped = |line, word| (Some(line), format!("`{word}` is no OBJ statement: such lines are skipped"));
         let expected = [skipped(1, "exported"), skipped(5, "tag")];
         assert_eq!(warned, expected.each_ref().map(|(line, what)| (*line, what.as_str())));
         // A file without vertices is not an OBJ file.
         let error = parse(b"\nhello world\n", Path::new("a.obj")).unwrap_err();
-        assert!(error.line == Some(2) && error.what.contains("is this an OBJ file?"), "{error}");
+        assert!(error.line == Some(2) && error.message.contains("is this an OBJ file?"), "{error}");
     }
 
     #[test]

@@ -6,7 +6,7 @@ use elbowroom_spatial::Vec3;
 
 use crate::mesh_data::{LoadedMeshes, MeshData};
 use crate::tokens::{Lines, integer, show, vector};
-use crate::{FormatError, input, polygon};
+use crate::{Diagnostic, input, polygon};
 
 pub(crate) fn is_header(head: &[u8]) -> bool {
     let word = head.split(|b| b.is_ascii_whitespace() || *b == b'#').next().unwrap_or_default();
@@ -16,8 +16,8 @@ pub(crate) fn is_header(head: &[u8]) -> bool {
 /// Parses an OFF file. Numbers are metres.
 ///
 /// # Errors
-/// [`FormatError`] for declared counts that the file cannot hold, missing vertices, invalid numbers, or binary OFF.
-pub fn parse(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> {
+/// [`Diagnostic`] for declared counts that the file cannot hold, missing vertices, invalid numbers, or binary OFF.
+pub fn parse(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, Diagnostic> {
     input::check_content(bytes, file)?;
     let text = input::text_bytes(bytes, file)?;
     let mut lines = Lines::new(&text);
@@ -32,7 +32,7 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> {
     for i in 0..face_count {
         let (line, content) = next(&mut lines, file, || format!("face {} of {face_count}", i + 1))?;
         read_face(content, &vertices, &mut corners).map_err(|what| {
-            FormatError::new(file, line, what)
+            Diagnostic::new(file, line, what)
                 .hint("the number of corners, then as many vertices counted from 0: 3 0 1 2")
         })?;
         polygon::triangulate(&vertices, &corners, &mut triangles);
@@ -45,9 +45,9 @@ fn words(content: &[u8]) -> impl Iterator<Item = &[u8]> {
     content.split(u8::is_ascii_whitespace).filter(|w| !w.is_empty())
 }
 
-fn next<'a>(lines: &mut Lines<'a>, file: &Path, of: impl Fn() -> String) -> Result<(usize, &'a [u8]), FormatError> {
+fn next<'a>(lines: &mut Lines<'a>, file: &Path, of: impl Fn() -> String) -> Result<(usize, &'a [u8]), Diagnostic> {
     lines.next_content().ok_or_else(|| {
-        FormatError::new(file, lines.line(), format!("the file ends before {}", of()))
+        Diagnostic::new(file, lines.line(), format!("the file ends before {}", of()))
             .hint("copy or export the file again")
     })
 }
@@ -55,18 +55,18 @@ fn next<'a>(lines: &mut Lines<'a>, file: &Path, of: impl Fn() -> String) -> Resu
 /// The numbers of vertices and faces, on the header's line or the next line.
 ///
 /// Counts that the file cannot hold are refused before memory is allocated.
-fn counts(lines: &mut Lines<'_>, file: &Path) -> Result<(usize, usize), FormatError> {
+fn counts(lines: &mut Lines<'_>, file: &Path) -> Result<(usize, usize), Diagnostic> {
     let (mut line, mut content) = next(lines, file, || "its counts".to_owned())?;
     let mut rest: Vec<&[u8]> = words(content).collect();
     if is_header(content) {
         let header = rest.remove(0);
         if header.contains(&b'4') || header.contains(&b'n') {
             let what = format!("`{}`: only three dimensions can be read", show(header));
-            return Err(FormatError::new(file, line, what).hint("OFF"));
+            return Err(Diagnostic::new(file, line, what).hint("OFF"));
         }
         if rest.first().is_some_and(|w| w.eq_ignore_ascii_case(b"BINARY")) {
             return Err(
-                FormatError::new(file, line, "binary OFF is not read").hint("the mesh exported as ASCII OFF or STL")
+                Diagnostic::new(file, line, "binary OFF is not read").hint("the mesh exported as ASCII OFF or STL")
             );
         }
         if rest.is_empty() {
@@ -76,7 +76,7 @@ fn counts(lines: &mut Lines<'_>, file: &Path) -> Result<(usize, usize), FormatEr
     }
     let count = |i: usize, of: &str| {
         rest.get(i).and_then(|w| integer(w)).and_then(|n| usize::try_from(n).ok()).ok_or_else(|| {
-            FormatError::new(file, line, format!("the number of {of} is missing"))
+            Diagnostic::new(file, line, format!("the number of {of} is missing"))
                 .hint("VERTICES FACES EDGES, such as 8 6 12")
         })
     };
@@ -89,7 +89,7 @@ fn counts(lines: &mut Lines<'_>, file: &Path) -> Result<(usize, usize), FormatEr
             lines.remaining_bytes()
         );
         return Err(
-            FormatError::new(file, line, what).hint("the true counts: VERTICES FACES EDGES; or copy the file again")
+            Diagnostic::new(file, line, what).hint("the true counts: VERTICES FACES EDGES; or copy the file again")
         );
     }
     Ok((vertices, faces))

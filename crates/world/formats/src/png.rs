@@ -5,7 +5,7 @@ use std::path::Path;
 
 use png::{BitDepth, ColorType, Compression, Decoder, Encoder, Filter, Limits, Transformations};
 
-use crate::FormatError;
+use crate::Diagnostic;
 use crate::image::{ImageHeader, PixelFormat, check_size, cleared_on_error, undecodable};
 
 /// Memory that the decoder may use in addition to the pixels, bytes.
@@ -22,7 +22,7 @@ pub fn is_png(bytes: &[u8]) -> bool {
 /// Interlaced files are supported.
 ///
 /// # Errors
-/// [`FormatError`] if the file is damaged or cut off, or declares a side above 16,384 pixels or more pixels than its
+/// [`Diagnostic`] if the file is damaged or cut off, or declares a side above 16,384 pixels or more pixels than its
 /// bytes can encode. `pixels` is then empty.
 ///
 /// ```
@@ -36,11 +36,11 @@ pub fn is_png(bytes: &[u8]) -> bool {
 /// assert_eq!(pixels, [1, 2, 3, 4, 5, 6]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn read(bytes: &[u8], file: &Path, pixels: &mut Vec<u8>) -> Result<ImageHeader, FormatError> {
+pub fn read(bytes: &[u8], file: &Path, pixels: &mut Vec<u8>) -> Result<ImageHeader, Diagnostic> {
     cleared_on_error(pixels, |pixels| decode(bytes, file, pixels))
 }
 
-fn decode(bytes: &[u8], file: &Path, pixels: &mut Vec<u8>) -> Result<ImageHeader, FormatError> {
+fn decode(bytes: &[u8], file: &Path, pixels: &mut Vec<u8>) -> Result<ImageHeader, Diagnostic> {
     let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), Limits { bytes: MAX_DECODER_BYTES });
     decoder.set_transformations(Transformations::EXPAND);
     decoder.set_ignore_text_chunk(true);

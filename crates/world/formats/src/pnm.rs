@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::FormatError;
+use crate::Diagnostic;
 use crate::image::{ImageHeader, PixelFormat, check_size, cleared_on_error, undecodable};
 
 /// Whether these bytes are the beginning of a PNM file.
@@ -16,7 +16,7 @@ pub fn is_pnm(bytes: &[u8]) -> bool {
 /// type's maximum, samples are scaled to the full range. Bitmaps become grey images of 0 (black, 1 in the file) and 255.
 ///
 /// # Errors
-/// [`FormatError`] if the file is damaged or cut off, or declares a side above 16,384 pixels or more pixels than its
+/// [`Diagnostic`] if the file is damaged or cut off, or declares a side above 16,384 pixels or more pixels than its
 /// bytes can encode. `pixels` is then empty.
 ///
 /// ```
@@ -24,13 +24,13 @@ pub fn is_pnm(bytes: &[u8]) -> bool {
 /// let mut pixels = Vec::new();
 /// let header = pnm::read(b"P2\n# by hand\n3 1\n255\n1 2 3\n", "a.pgm".as_ref(), &mut pixels)?;
 /// assert_eq!((header.width, header.height, &pixels[..]), (3, 1, &[1, 2, 3][..]));
-/// # Ok::<(), elbowroom_formats::FormatError>(())
+/// # Ok::<(), elbowroom_formats::Diagnostic>(())
 /// ```
-pub fn read(bytes: &[u8], file: &Path, pixels: &mut Vec<u8>) -> Result<ImageHeader, FormatError> {
+pub fn read(bytes: &[u8], file: &Path, pixels: &mut Vec<u8>) -> Result<ImageHeader, Diagnostic> {
     cleared_on_error(pixels, |pixels| decode(bytes, file, pixels))
 }
 
-fn decode(bytes: &[u8], file: &Path, pixels: &mut Vec<u8>) -> Result<ImageHeader, FormatError> {
+fn decode(bytes: &[u8], file: &Path, pixels: &mut Vec<u8>) -> Result<ImageHeader, Diagnostic> {
     let refused = |why: &str| undecodable(file, why);
     let kind = match bytes {
         [b'P', kind @ b'1'..=b'6', ..] => *kind,

@@ -9,9 +9,9 @@ use std::path::Path;
 use elbowroom_kinematics::{Chain, JointKind};
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 
-use crate::{FormatError, JointStateOptions, JointStates, csv, read_file};
+use crate::{Diagnostic, JointStateOptions, JointStates, csv, read_file};
 
-type Result<T> = std::result::Result<T, FormatError>;
+type Result<T> = std::result::Result<T, Diagnostic>;
 
 /// Layout of a recording. The default is the layout of [`JointStates`]: radians, metres, a column `t_s`.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -58,10 +58,10 @@ pub struct RecordingLayout {
 /// ```
 ///
 /// # Errors
-/// [`FormatError`] with the line and the column.
+/// [`Diagnostic`] with the line and the column.
 pub fn read(path: &Path, robot: &str, chain: &Chain, layout: &RecordingLayout) -> Result<JointStates> {
     let text = String::from_utf8(read_file(path, csv::MAX_BYTES, "a file with fewer rows or columns")?)
-        .map_err(|_| FormatError::new(path, None, "is not UTF-8 text").hint("the file saved as UTF-8"))?;
+        .map_err(|_| Diagnostic::new(path, None, "is not UTF-8 text").hint("the file saved as UTF-8"))?;
     let text = Translation::new(path, &text, robot, chain, layout)?.text();
     JointStates::parse(path, &text, &JointStateOptions::trajectory(robot, chain))
 }
@@ -110,13 +110,13 @@ impl<'t> Translation<'t> {
         for (joint, column) in &layout.columns {
             if !found.iter().any(|name| name.eq_ignore_ascii_case(column)) {
                 let what = format!("has no column `{column}` for `{joint}`; its columns are {}", found.join(", "));
-                return Err(FormatError::new(path, 1, what).hint("a column of the file"));
+                return Err(Diagnostic::new(path, 1, what).hint("a column of the file"));
             }
         }
         let time = layout.time.as_deref().unwrap_or("t_s");
         if layout.period_s.is_none() && !found.iter().any(|name| name.eq_ignore_ascii_case(time)) {
             let what = format!("has no column `{time}` of the time; its columns are {}", found.join(", "));
-            return Err(FormatError::new(path, 1, what).hint("time = \"COLUMN\", or period_ms = 4 without one"));
+            return Err(Diagnostic::new(path, 1, what).hint("time = \"COLUMN\", or period_ms = 4 without one"));
         }
         let named = |name: &&str| Self::column(name, robot, chain, layout, time);
         let (names, cells) = found.iter().map(named).unzip();

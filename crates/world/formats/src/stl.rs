@@ -9,10 +9,10 @@ use std::path::Path;
 
 use elbowroom_spatial::Vec3;
 
-use crate::error::WarningList;
 use crate::mesh_data::{LoadedMeshes, MeshData};
 use crate::tokens::{Tokens, show, vector};
-use crate::{FormatError, Warning, input, polygon};
+use crate::warning_list::WarningList;
+use crate::{Diagnostic, input, polygon};
 
 const HEADER: usize = 84;
 const FACET: usize = 50;
@@ -34,8 +34,8 @@ fn promised_size(bytes: &[u8]) -> Option<usize> {
 /// Parses an STL file: one entry per `solid` of an ASCII file, one entry for a binary file. Numbers are metres.
 ///
 /// # Errors
-/// [`FormatError`] for truncated files, unexpected words, or invalid numbers.
-pub fn parse(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> {
+/// [`Diagnostic`] for truncated files, unexpected words, or invalid numbers.
+pub fn parse(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, Diagnostic> {
     input::check_content(bytes, file)?;
     let text = input::text_bytes(bytes, file)?;
     let head = &text[..text.len().min(2048)];
@@ -61,8 +61,8 @@ impl VertexMerger {
     }
 }
 
-fn parse_binary(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> {
-    let refuse = |what: String| FormatError::new(file, None, what).hint("copy or export the file again");
+fn parse_binary(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, Diagnostic> {
+    let refuse = |what: String| Diagnostic::new(file, None, what).hint("copy or export the file again");
     let size = promised_size(bytes)
         .ok_or_else(|| refuse(format!("is truncated: {} bytes, where a binary STL begins with 84", bytes.len())))?;
     let count = (size - HEADER) / FACET;
@@ -76,7 +76,7 @@ fn parse_binary(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> 
     let mut warnings = Vec::new();
     if size < bytes.len() {
         let what = format!("has {} bytes after its {count} triangles; they are ignored", bytes.len() - size);
-        warnings.push(Warning::new(file, None, what));
+        warnings.push(Diagnostic::new(file, None, what));
     }
     let mut builder =
         VertexMerger { mesh: MeshData { name: input::stem(file), ..MeshData::default() }, ..VertexMerger::default() };
@@ -87,7 +87,7 @@ fn parse_binary(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> 
         for (corner, raw) in triangle.iter_mut().zip(facet[12..48].chunks_exact(12)) {
             let v = floats(raw);
             if !v.is_finite() {
-                return Err(FormatError::new(
+                return Err(Diagnostic::new(
                     file,
                     None,
                     format!("triangle {i} (from 0) has a corner that is not finite: {v:?}"),
@@ -112,7 +112,7 @@ struct AsciiReader<'a> {
     warnings: WarningList,
 }
 
-fn parse_ascii(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> {
+fn parse_ascii(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, Diagnostic> {
     let mut reader = AsciiReader { words: Tokens::new(bytes), file, warnings: WarningList::default() };
     let mut meshes = Vec::new();
     while let Some(word) = reader.words.next() {
@@ -122,7 +122,7 @@ fn parse_ascii(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> {
         let mesh = reader.solid()?;
         if mesh.triangles.is_empty() {
             let what = format!("the solid `{}` has no triangles and is left out", mesh.name);
-            reader.warnings.push(Warning::new(file, reader.words.line(), what));
+            reader.warnings.push(Diagnostic::new(file, reader.words.line(), what));
         } else {
             meshes.push(mesh);
         }
@@ -131,11 +131,11 @@ fn parse_ascii(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> {
 }
 
 impl AsciiReader<'_> {
-    fn unexpected(&self, word: &[u8], instead: &str) -> FormatError {
-        FormatError::new(self.file, self.words.line(), format!("`{}` does not belong here", show(word))).hint(instead)
+    fn unexpected(&self, word: &[u8], instead: &str) -> Diagnostic {
+        Diagnostic::new(self.file, self.words.line(), format!("`{}` does not belong here", show(word))).hint(instead)
     }
 
-    fn expect(&mut self, keyword: &str) -> Result<(), FormatError> {
+    fn expect(&mut self, keyword: &str) -> Result<(), Diagnostic> {
         match self.words.next() {
             Some(word) if word.eq_ignore_ascii_case(keyword.as_bytes()) => Ok(()),
             Some(word) => Err(self.unexpected(word, keyword)),
@@ -143,12 +143,12 @@ impl AsciiReader<'_> {
         }
     }
 
-    fn truncated(&self, missing: &str) -> FormatError {
-        FormatError::new(self.file, self.words.line(), format!("the file ends in the middle: `{missing}` is missing"))
+    fn truncated(&self, missing: &str) -> Diagnostic {
+        Diagnostic::new(self.file, self.words.line(), format!("the file ends in the middle: `{missing}` is missing"))
             .hint("copy or export the file again")
     }
 
-    fn solid(&mut self) -> Result<MeshData, FormatError> {
+    fn solid(&mut self) -> Result<MeshData, Diagnostic> {
         let name = String::from_utf8_lossy(self.words.rest_of_line()).into_owned();
         let mut builder = VertexMerger::default();
         builder.mesh.name = if name.is_empty() { input::stem(self.file) } else { name };
@@ -163,7 +163,7 @@ impl AsciiReader<'_> {
                 None => {
                     let what =
                         format!("the solid `{}` is not closed: the end of the file may be missing", builder.mesh.name);
-                    self.warnings.push(Warning::new(self.file, self.words.line(), what).hint("endsolid"));
+                    self.warnings.push(Diagnostic::new(self.file, self.words.line(), what).hint("endsolid"));
                     break;
                 }
             }
@@ -171,7 +171,7 @@ impl AsciiReader<'_> {
         Ok(builder.mesh)
     }
 
-    fn facet(&mut self, builder: &mut VertexMerger) -> Result<(), FormatError> {
+    fn facet(&mut self, builder: &mut VertexMerger) -> Result<(), Diagnostic> {
         // The normal is not used and may be anything, including `-nan(ind)`.
         let mut words_of_normal = 0;
         while self.words.peek().is_some_and(|w| !w.eq_ignore_ascii_case(b"outer")) && words_of_normal < 4 {
@@ -195,7 +195,7 @@ impl AsciiReader<'_> {
         }
         if corners.len() < 3 {
             let what = format!("a facet has {} corners", corners.len());
-            return Err(FormatError::new(self.file, self.words.line(), what).hint("three lines: vertex x y z"));
+            return Err(Diagnostic::new(self.file, self.words.line(), what).hint("three lines: vertex x y z"));
         }
         polygon::triangulate(&builder.mesh.vertices, &corners, &mut builder.mesh.triangles);
         self.expect("endfacet")

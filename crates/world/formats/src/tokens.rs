@@ -4,7 +4,7 @@ use std::path::Path;
 
 use elbowroom_spatial::Vec3;
 
-use crate::FormatError;
+use crate::Diagnostic;
 
 /// Tokens of a text, separated by white space. `\n`, `\r\n` and a lone `\r` end a line.
 #[derive(Debug, Clone)]
@@ -146,18 +146,18 @@ pub(crate) fn vector<'a>(
     file: &Path,
     line: usize,
     of: &str,
-) -> Result<Vec3, FormatError> {
+) -> Result<Vec3, Diagnostic> {
     let mut v = [0.0; 3];
     for (axis, name) in v.iter_mut().zip(["x", "y", "z"]) {
         let word = words
             .next()
-            .ok_or_else(|| FormatError::new(file, line, format!("{of} has no {name}")).hint("three numbers: x y z"))?;
+            .ok_or_else(|| Diagnostic::new(file, line, format!("{of} has no {name}")).hint("three numbers: x y z"))?;
         *axis = number(word).ok_or_else(|| {
-            FormatError::new(file, line, format!("`{}` is not a number, for {name} of {of}", show(word)))
+            Diagnostic::new(file, line, format!("`{}` is not a number, for {name} of {of}", show(word)))
                 .hint("a decimal number such as 0.25")
         })?;
         if !axis.is_finite() {
-            return Err(FormatError::new(
+            return Err(Diagnostic::new(
                 file,
                 line,
                 format!("{name} of {of} is `{}`, which is not finite", show(word)),

@@ -5,23 +5,23 @@ use std::path::Path;
 use roxmltree::{Document, Node, ParsingOptions};
 
 use crate::tokens::show;
-use crate::{FormatError, input};
+use crate::{Diagnostic, input};
 
 /// Largest number of nodes, which bounds the memory of the tree (a node takes about 100 bytes).
 const MAX_NODES: u32 = 4_000_000;
 
-pub(crate) fn parse<'a>(text: &'a str, file: &Path) -> Result<Document<'a>, FormatError> {
+pub(crate) fn parse<'a>(text: &'a str, file: &Path) -> Result<Document<'a>, Diagnostic> {
     let options = ParsingOptions { nodes_limit: MAX_NODES, ..ParsingOptions::default() };
     Document::parse_with_options(text, options).map_err(|e| explain(&e, text, file))
 }
 
-fn explain(error: &roxmltree::Error, text: &str, file: &Path) -> FormatError {
+fn explain(error: &roxmltree::Error, text: &str, file: &Path) -> Diagnostic {
     let line = error.pos().row as usize;
-    let at = |what: String| FormatError::new(file, line, what);
+    let at = |what: String| Diagnostic::new(file, line, what);
     if !text.trim_start().starts_with('<') {
         let first = text.trim_start().lines().next().unwrap_or_default();
         let hint = input::planning_scene_hint(file);
-        return FormatError::new(file, 1, format!("is not XML: it begins with `{}`", show(first.as_bytes())))
+        return Diagnostic::new(file, 1, format!("is not XML: it begins with `{}`", show(first.as_bytes())))
             .hint(hint.unwrap_or_else(|| "an XML file; a URDF begins with <robot name=\"…\">".to_owned()));
     }
     match error {
@@ -31,14 +31,14 @@ fn explain(error: &roxmltree::Error, text: &str, file: &Path) -> FormatError {
         roxmltree::Error::UnknownNamespace(prefix, _) => at(format!("the prefix `{prefix}:` is not declared"))
             .hint(format!("xmlns:{prefix}=\"http://{prefix}\" in the root element, or remove the element")),
         roxmltree::Error::DtdDetected => {
-            FormatError::new(file, None, "has a document type definition").hint("the file without its <!DOCTYPE …>")
+            Diagnostic::new(file, None, "has a document type definition").hint("the file without its <!DOCTYPE …>")
         }
         roxmltree::Error::NodesLimitReached => {
-            FormatError::new(file, None, format!("has more than {MAX_NODES} XML nodes")).hint("a smaller model")
+            Diagnostic::new(file, None, format!("has more than {MAX_NODES} XML nodes")).hint("a smaller model")
         }
         roxmltree::Error::UnclosedRootNode | roxmltree::Error::UnexpectedEndOfStream => {
             let last = text.lines().count();
-            FormatError::new(file, last, "the XML ends before its elements are closed; is the file truncated?")
+            Diagnostic::new(file, last, "the XML ends before its elements are closed; is the file truncated?")
                 .hint("the closing tags; or copy the file again")
         }
         roxmltree::Error::InvalidChar(b'"' | b'\'', b'<', _) => {

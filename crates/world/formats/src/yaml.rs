@@ -9,7 +9,7 @@ use base64::prelude::BASE64_STANDARD;
 use saphyr_parser::{Event, Parser, ScalarStyle, ScanError, Tag};
 use serde_json::{Map, Number, Value};
 
-use crate::FormatError;
+use crate::Diagnostic;
 use crate::tokens::show;
 
 /// Largest depth of nested lists and mappings.
@@ -22,9 +22,9 @@ const MIN_COPIED: usize = 1000;
 /// Parses the first document of a text.
 ///
 /// # Errors
-/// [`FormatError`] for text that is not YAML, keys that are not text or occur twice, merge keys, or aliases that repeat
+/// [`Diagnostic`] for text that is not YAML, keys that are not text or occur twice, merge keys, or aliases that repeat
 /// more than the file has.
-pub(crate) fn parse(text: &str, file: &Path) -> Result<Value, FormatError> {
+pub(crate) fn parse(text: &str, file: &Path) -> Result<Value, Diagnostic> {
     Builder::new(text, file).build(&mut |_, _| {})
 }
 
@@ -92,7 +92,7 @@ impl<'t> Builder<'t> {
     }
 
     /// Builds the document. Calls `visit` before each value with the open containers and the line of the value.
-    fn build(mut self, visit: &mut dyn FnMut(&[Open], usize)) -> Result<Value, FormatError> {
+    fn build(mut self, visit: &mut dyn FnMut(&[Open], usize)) -> Result<Value, Diagnostic> {
         for event in Parser::new_from_str(self.text) {
             let (event, span) = event.map_err(|e| self.no_yaml(&e))?;
             let line = span.start.line();
@@ -136,16 +136,16 @@ impl<'t> Builder<'t> {
         root.ok_or_else(|| self.error(1, "has no document", "KEY: VALUE"))
     }
 
-    fn error(&self, line: usize, what: &str, hint: &str) -> FormatError {
-        FormatError::new(self.file, line, what).hint(hint)
+    fn error(&self, line: usize, what: &str, hint: &str) -> Diagnostic {
+        Diagnostic::new(self.file, line, what).hint(hint)
     }
 
-    fn no_yaml(&self, e: &ScanError) -> FormatError {
+    fn no_yaml(&self, e: &ScanError) -> Diagnostic {
         let what = format!("is not YAML: {}", e.info());
         self.error(e.marker().line(), &what, "YAML: spaces, not tabs, before a key, and a space behind its colon")
     }
 
-    fn key(&mut self, text: &str, line: usize) -> Result<(), FormatError> {
+    fn key(&mut self, text: &str, line: usize) -> Result<(), Diagnostic> {
         if text == "<<" {
             return Err(self.error(line, "has a merge key `<<`, which is not read", "the keys themselves"));
         }
@@ -158,13 +158,13 @@ impl<'t> Builder<'t> {
         Ok(())
     }
 
-    fn open(&mut self, container: Container, anchor: usize, line: usize) -> Result<(), FormatError> {
+    fn open(&mut self, container: Container, anchor: usize, line: usize) -> Result<(), Diagnostic> {
         self.check_depth(self.open.len() + 1, line)?;
         self.open.push(Open { container, anchor });
         Ok(())
     }
 
-    fn check_depth(&self, depth: usize, line: usize) -> Result<(), FormatError> {
+    fn check_depth(&self, depth: usize, line: usize) -> Result<(), Diagnostic> {
         if depth <= MAX_DEPTH {
             return Ok(());
         }
@@ -172,7 +172,7 @@ impl<'t> Builder<'t> {
     }
 
     /// Copies an anchored value.
-    fn repeat(&mut self, anchor: usize, line: usize) -> Result<Value, FormatError> {
+    fn repeat(&mut self, anchor: usize, line: usize) -> Result<Value, Diagnostic> {
         let Some(value) = self.anchored.get(&anchor) else {
             return Err(self.error(line, "has an alias within its own value", "a value that ends before its alias"));
         };
@@ -183,7 +183,7 @@ impl<'t> Builder<'t> {
     }
 
     /// Refuses copies of more values than the text has bytes.
-    fn count_copies(&mut self, count: usize, line: usize) -> Result<(), FormatError> {
+    fn count_copies(&mut self, count: usize, line: usize) -> Result<(), Diagnostic> {
         self.copied += count;
         if self.copied <= self.text.len().max(MIN_COPIED) {
             return Ok(());
@@ -193,7 +193,7 @@ impl<'t> Builder<'t> {
     }
 
     /// Adds a value to its container.
-    fn value(&mut self, value: Value, anchor: usize, line: usize) -> Result<(), FormatError> {
+    fn value(&mut self, value: Value, anchor: usize, line: usize) -> Result<(), Diagnostic> {
         if anchor > 0 {
             self.count_copies(extent(&value).0, line)?;
             self.anchored.insert(anchor, value.clone());
@@ -260,7 +260,7 @@ mod tests {
 
     use super::*;
 
-    fn read(text: &str) -> Result<Value, FormatError> {
+    fn read(text: &str) -> Result<Value, Diagnostic> {
         parse(text, Path::new("a.yaml"))
     }
 
@@ -281,8 +281,8 @@ mod tests {
         for i in 1..9 {
             writeln!(bomb, "a{i}: &a{i} [{}]", vec![format!("*a{}", i - 1); 9].join(", ")).unwrap();
         }
-        assert!(read(&bomb).unwrap_err().what.contains("aliases that repeat"));
-        assert!(read("a: &x [*x]\n").unwrap_err().what.contains("within its own value"));
+        assert!(read(&bomb).unwrap_err().message.contains("aliases that repeat"));
+        assert!(read("a: &x [*x]\n").unwrap_err().message.contains("within its own value"));
     }
 
     #[test]
@@ -298,7 +298,7 @@ mod tests {
         ];
         for (text, what) in cases {
             let e = read(text).expect_err(text);
-            assert!(e.what.contains(what) && e.line.is_some() && e.write_instead.is_some(), "{text}: {e}");
+            assert!(e.message.contains(what) && e.line.is_some() && e.hint.is_some(), "{text}: {e}");
         }
         assert_eq!(read("a: 1\na: 2\n").unwrap_err().line, Some(2));
     }

@@ -14,7 +14,7 @@ fn extension(path: &Path) -> String {
 
 /// Returns `loaded (…)`, or the message as an error.
 fn outcome(path: &Path) -> Result<String, String> {
-    let text = |e: elbowroom_formats::FormatError| e.to_string();
+    let text = |e: elbowroom_formats::Diagnostic| e.to_string();
     match extension(path).as_str() {
         "urdf" => {
             let loaded =
@@ -127,7 +127,7 @@ fn urdf_robots_are_complete() {
             assert_eq!(counts, expected, "{name}");
             compared += 1;
         }
-        assert!(!loaded.warnings.iter().any(|w| w.what.contains("no link")), "{name}: {:?}", loaded.warnings);
+        assert!(!loaded.warnings.iter().any(|w| w.message.contains("no link")), "{name}: {:?}", loaded.warnings);
         let by_package = robot::load(&directory.path().join(format!("{name}.package.urdf")), &options);
         if let Ok(by_package) = by_package {
             let again = (triangles(&by_package.robot.colliders), triangles(&by_package.robot.visuals));

@@ -24,7 +24,7 @@ fn truncation_anywhere_does_not_panic() {
         for sample in samples(parser) {
             for length in 0..sample.len() {
                 if let Err(e) = run(parser, &sample[..length]) {
-                    assert!(!e.what.is_empty());
+                    assert!(!e.message.is_empty());
                 }
             }
         }
@@ -87,11 +87,11 @@ fn deep_and_wide_trees_are_handled() {
         "<COLLADA><library_visual_scenes><visual_scene>{}</visual_scene></library_visual_scenes></COLLADA>",
         nested("<node>", "</node>")
     );
-    assert!(run("dae", scene.as_bytes()).unwrap_err().what.contains("too deeply"));
+    assert!(run("dae", scene.as_bytes()).unwrap_err().message.contains("too deeply"));
     assert!(run("gltf", nested("{\"a\":", "}").as_bytes()).is_err());
     let many = |n: usize, line: &dyn Fn(usize) -> String| (0..n).map(line).collect::<Vec<_>>().concat();
     let crowd = many(50_000, &|i| format!("<link name=\"l{i}\"/>\n"));
-    assert!(run("urdf", format!("<robot>{crowd}</robot>").as_bytes()).unwrap_err().what.contains("50000 links"));
+    assert!(run("urdf", format!("<robot>{crowd}</robot>").as_bytes()).unwrap_err().message.contains("50000 links"));
     let chain = many(20_000, &|i| {
         let joint = format!(
             "<joint name=\"j{i}\" type=\"continuous\"><parent link=\"l{i}\"/><child link=\"l{}\"/></joint>",
@@ -112,7 +112,7 @@ fn exponential_node_instances_are_refused() {
         "<COLLADA><library_nodes>{nodes}<node id=\"n40\"/></library_nodes><library_visual_scenes><visual_scene>\
          <node><instance_node url=\"#n0\"/></node></visual_scene></library_visual_scenes></COLLADA>"
     );
-    assert!(run("dae", text.as_bytes()).unwrap_err().what.contains("too deeply"));
+    assert!(run("dae", text.as_bytes()).unwrap_err().message.contains("too deeply"));
     let circle = text.replace("<node id=\"n40\"/>", "<node id=\"n40\"><instance_node url=\"#n0\"/></node>");
     assert!(run("dae", circle.as_bytes()).is_err());
 }
@@ -138,7 +138,7 @@ fn small_files_that_expand_are_refused_quickly() {
          </library_geometries></COLLADA>",
         geometries.concat()
     );
-    assert!(run("dae", dae.as_bytes()).unwrap_err().what.contains("together"));
+    assert!(run("dae", dae.as_bytes()).unwrap_err().message.contains("together"));
     assert!(started.elapsed().as_secs() < 60, "{:?}", started.elapsed());
 }
 
@@ -157,7 +157,7 @@ fn a_primitive_of_an_unknown_mode_is_refused() {
     let text = String::from_utf8(samples("gltf").remove(0)).unwrap();
     for mode in ["7", "4294967295"] {
         let error = run("gltf", text.replace("\"mode\":5", &format!("\"mode\":{mode}")).as_bytes()).unwrap_err();
-        assert!(error.what.contains(&format!("has the mode {mode}, which does not exist")), "{}", error.what);
+        assert!(error.message.contains(&format!("has the mode {mode}, which does not exist")), "{}", error.message);
     }
     assert!(run("gltf", text.replace("\"mode\":5", "\"mode\":1").as_bytes()).is_ok());
 }

@@ -71,7 +71,7 @@ fn binary_stl_may_begin_with_solid() {
     let loaded = parse("a.stl", &bytes, UpAxis::ToZ);
     assert_eq!((loaded.meshes[0].triangles.len(), loaded.warnings.len()), (12, 1));
     let short = mesh::parse(&bytes[..300], Path::new("a.stl"), None, UpAxis::ToZ).unwrap_err();
-    assert!(short.what.contains("12 triangles") && short.what.contains("has 4"), "{short}");
+    assert!(short.message.contains("12 triangles") && short.message.contains("has 4"), "{short}");
 }
 
 #[test]
@@ -165,7 +165,7 @@ fn gltf_nodes_are_transformed_mirrored_and_merged() {
     let path = directory.path().join("flag.gltf");
     std::fs::write(&path, json).unwrap();
     let missing = mesh::load(&path, None).unwrap_err();
-    assert!(missing.what.contains("flag.bin"), "{missing}");
+    assert!(missing.message.contains("flag.bin"), "{missing}");
     let points = [0.0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
     let bytes = points.iter().flat_map(|x| x.to_le_bytes()).chain([0u16, 1, 2].iter().flat_map(|i| i.to_le_bytes()));
     std::fs::write(directory.path().join("flag.bin"), bytes.collect::<Vec<u8>>()).unwrap();
@@ -178,7 +178,7 @@ fn gltf_nodes_are_transformed_mirrored_and_merged() {
         assert!((b - a).cross(c - a).z > 0.0, "a mirror image keeps its outside");
     }
     std::fs::write(&path, json.replace("flag.bin", "../flag.bin")).unwrap();
-    assert!(mesh::load(&path, None).unwrap_err().what.contains("not followed"));
+    assert!(mesh::load(&path, None).unwrap_err().message.contains("not followed"));
 }
 
 #[test]
@@ -211,11 +211,11 @@ fn robots_scale_share_and_mirror_their_meshes() {
     assert!(Arc::ptr_eq(&meshes[0], &meshes[1]), "the file is read once");
     assert!((meshes[2].report().volume - 6.0 * 0.002).abs() < 1e-6 && !meshes[2].report().inside_out);
     assert!(close(meshes[3].aabb().max, Vec3::new(0.01, 0.02, 0.03)), "the unit applies, the up axis does not");
-    let lines: Vec<_> = loaded.warnings.iter().map(|w| (w.line, w.what.as_str())).collect();
+    let lines: Vec<_> = loaded.warnings.iter().map(|w| (w.line, w.message.as_str())).collect();
     assert!(lines.iter().any(|(line, what)| *line == Some(2) && what.contains("nowhere.stl")), "{lines:?}");
     assert!(lines.iter().any(|(line, what)| *line == Some(2) && what.contains("ghost")), "{lines:?}");
     assert!(loaded.robot.disabled_pairs.is_empty());
     write("r.urdf", urdf.replace("brick.dae", "brick.obj").as_bytes());
     let error = robot::load(&path, &options).unwrap_err();
-    assert!(error.what.contains("brick.obj") && error.line == Some(1), "{error}");
+    assert!(error.message.contains("brick.obj") && error.line == Some(1), "{error}");
 }

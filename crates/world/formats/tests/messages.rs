@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use elbowroom_formats::{FormatError, mesh, srdf, urdf};
+use elbowroom_formats::{Diagnostic, mesh, srdf, urdf};
 
 const HEAD: &str = "<?xml version=\"1.0\"?>\n<robot name=\"r\">\n<link name=\"a\"/>\n<link name=\"b\"/>\n";
 
@@ -13,7 +13,7 @@ fn with_joint(kind: &str, inside: &str, after: &str) -> String {
     )
 }
 
-fn refused(text: &str) -> FormatError {
+fn refused(text: &str) -> Diagnostic {
     urdf::parse(text.as_bytes(), Path::new("arm.urdf")).expect_err(text)
 }
 
@@ -21,10 +21,10 @@ fn refused(text: &str) -> FormatError {
 fn names_are_shown_whole() {
     let name = "left_hand_of_the_second_robot_finger_joint_number_one";
     let error = refused(&with_joint("floating", "", "").replace("\"j\"", &format!("\"{name}\"")));
-    assert!(error.what.contains(name), "{error}");
+    assert!(error.message.contains(name), "{error}");
     // A name longer than any real joint name is still shortened.
     let error = refused(&with_joint("floating", "", "").replace("\"j\"", &format!("\"{}\"", "x".repeat(5000))));
-    assert!(error.what.len() < 300 && error.what.contains('…'), "{error}");
+    assert!(error.message.len() < 300 && error.message.contains('…'), "{error}");
 }
 
 #[test]
@@ -126,9 +126,9 @@ fn every_error_names_its_line_and_a_remedy() {
     for (text, line, what, hint) in table {
         let error = refused(&text);
         assert_eq!(error.line.unwrap_or(0), line, "{error}\n{text}");
-        assert!(error.what.contains(what), "{error}\nwants: {what}");
-        assert!(error.write_instead.as_ref().is_some_and(|w| w.contains(hint)), "{error}\nwants: {hint}");
-        whats.push(error.what);
+        assert!(error.message.contains(what), "{error}\nwants: {what}");
+        assert!(error.hint.as_ref().is_some_and(|w| w.contains(hint)), "{error}\nwants: {hint}");
+        whats.push(error.message);
     }
     whats.sort();
     whats.dedup();
@@ -173,9 +173,9 @@ fn utf16_and_latin1_are_read() {
 fn srdf_errors_name_their_line() {
     let parse = |text: &str| srdf::parse(text.as_bytes(), Path::new("arm.srdf"));
     let error = parse("<robot>\n<disable_collisions link1=\"a\"/>\n</robot>").unwrap_err();
-    assert_eq!((error.line, error.what.contains("link2")), (Some(2), true));
+    assert_eq!((error.line, error.message.contains("link2")), (Some(2), true));
     assert_eq!(parse("<robot>\n<disable_collisions").unwrap_err().line, Some(2));
-    assert!(parse("<sdf/>").unwrap_err().what.contains("<sdf>"));
+    assert!(parse("<sdf/>").unwrap_err().message.contains("<sdf>"));
 }
 
 #[test]
@@ -227,7 +227,7 @@ fn incomplete_and_unknown_elements_of_an_srdf_are_left_out_with_their_line() {
             format!("<robot name=\"r\">\n{element}{}\n</robot>", if element.contains("tcps") { element } else { "" });
         let srdf = srdf::parse(text.as_bytes(), Path::new("arm.srdf")).unwrap();
         let [warning] = &srdf.warnings[..] else { panic!("{element}: {:?}", srdf.warnings) };
-        assert!(warning.line == Some(2) && warning.what.contains(what), "{warning}");
-        assert!(warning.write_instead.as_ref().unwrap().contains(hint), "{warning}");
+        assert!(warning.line == Some(2) && warning.message.contains(what), "{warning}");
+        assert!(warning.hint.as_ref().unwrap().contains(hint), "{warning}");
     }
 }

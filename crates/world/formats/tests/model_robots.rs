@@ -63,7 +63,7 @@ fn a_rotation_track_is_a_revolute_joint_limited_by_its_keys() {
     assert!((joint.limits.lower.to_degrees() + 130.0).abs() < 1e-3, "{:?}", joint.limits);
     assert!((joint.limits.upper.to_degrees() - 100.0).abs() < 1e-3, "{:?}", joint.limits);
     assert!(
-        loaded.warnings.iter().any(|w| w.what.contains("`link` rotates about [0.6, 0, 0.8]")),
+        loaded.warnings.iter().any(|w| w.message.contains("`link` rotates about [0.6, 0, 0.8]")),
         "{:?}",
         loaded.warnings
     );
@@ -115,7 +115,7 @@ fn a_track_that_is_not_a_joint_is_fixed_with_a_warning() {
     };
     let loaded = bare(&one(twice));
     assert_eq!(loaded.robot.chain.dof(), 0);
-    let said = loaded.warnings.iter().map(|w| w.what.clone()).collect::<String>();
+    let said = loaded.warnings.iter().map(|w| w.message.clone()).collect::<String>();
     assert!(said.contains("rotates about [0, 0, 1] at first, but about [1, 0, 0] between 1.00 s and 2.00 s"), "{said}");
     // The joints file overrides the track.
     let side = "units = { length = \"mm\", angle = \"deg\" }\n[joint.link]\naxis = \"z\"\nmin = -10\nmax = 40\n";
@@ -128,7 +128,7 @@ fn a_track_that_is_not_a_joint_is_fixed_with_a_warning() {
             })
             .collect()
     };
-    let said = bare(&one(spiral)).warnings.iter().map(|w| w.what.clone()).collect::<String>();
+    let said = bare(&one(spiral)).warnings.iter().map(|w| w.message.clone()).collect::<String>();
     assert!(said.contains("rotates about [0, 0, 1] and translates at once"), "{said}");
 }
 
@@ -136,9 +136,9 @@ fn a_track_that_is_not_a_joint_is_fixed_with_a_warning() {
 fn a_model_without_joints_gives_a_joint_file_to_fill_in() {
     let loaded = bare(&one(|_| Vec::new()));
     assert_eq!((loaded.robot.chain.dof(), loaded.robot.chain.joints().len()), (0, 1));
-    let asked = loaded.warnings.iter().find(|w| w.what.starts_with("no joint moves")).expect("a warning");
-    assert!(asked.what.contains("`link`") && !asked.what.contains("`base`"), "{asked}");
-    let skeleton = asked.write_instead.as_ref().unwrap();
+    let asked = loaded.warnings.iter().find(|w| w.message.starts_with("no joint moves")).expect("a warning");
+    assert!(asked.message.contains("`link`") && !asked.message.contains("`base`"), "{asked}");
+    let skeleton = asked.hint.as_ref().unwrap();
     assert!(skeleton.contains("on base, origin at [0.3, -0.2, 0.5] m"), "{skeleton}");
     // The printed template is valid once the axis is filled in.
     let toml = skeleton.split_once('\n').unwrap().1;

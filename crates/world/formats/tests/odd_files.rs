@@ -29,7 +29,7 @@ fn announced_counts_are_checked_against_the_bytes() {
         let path = directory.path().join(name);
         std::fs::write(&path, text).unwrap();
         let error = mesh::load(&path, None).unwrap_err();
-        assert!(error.what.contains(what), "{error}");
+        assert!(error.message.contains(what), "{error}");
         assert_eq!(error.line, line, "{error}");
         assert_eq!(error.file, path);
     }
@@ -38,13 +38,13 @@ fn announced_counts_are_checked_against_the_bytes() {
 #[test]
 fn directories_and_missing_files_are_refused() {
     let directory = tempfile::tempdir().unwrap();
-    assert!(mesh::load(directory.path(), None).unwrap_err().what.contains("not a file"));
-    assert!(mesh::load(&directory.path().join("none.stl"), None).unwrap_err().what.contains("cannot be read"));
+    assert!(mesh::load(directory.path(), None).unwrap_err().message.contains("not a file"));
+    assert!(mesh::load(&directory.path().join("none.stl"), None).unwrap_err().message.contains("cannot be read"));
 }
 
 /// Reading a pipe might never end.
 #[cfg(unix)]
 #[test]
 fn devices_are_refused() {
-    assert!(mesh::load("/dev/zero".as_ref(), None).unwrap_err().what.contains("not a file"));
+    assert!(mesh::load("/dev/zero".as_ref(), None).unwrap_err().message.contains("not a file"));
 }

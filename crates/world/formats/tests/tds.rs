@@ -97,7 +97,7 @@ fn the_master_scale_divides_with_a_warning() {
     let tree = tds::parse(&bytes, FILE.as_ref()).unwrap();
     assert!(tree.nodes[0].in_parent.translation.distance(Vec3::new(0.25, 0.5, 0.75)) < 1e-6);
     assert!((tree.nodes[0].meshes[0].vertices[1].x - 0.25).abs() < 1e-6);
-    assert!(tree.warnings[0].what.contains("master scale 4"), "{:?}", tree.warnings);
+    assert!(tree.warnings[0].message.contains("master scale 4"), "{:?}", tree.warnings);
 }
 
 #[test]
@@ -181,7 +181,7 @@ fn a_truncated_file_is_refused_or_read_in_part() {
         match tds::parse(&bytes[..end], FILE.as_ref()) {
             Ok(tree) => assert!(tree.nodes.len() <= whole.nodes.len()),
             Err(e) => {
-                assert!(e.write_instead.is_some(), "{e}");
+                assert!(e.hint.is_some(), "{e}");
                 refused += 1;
             }
         }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use elbowroom_formats::srdf::Srdf;
-use elbowroom_formats::{FormatError, Warning, mesh, robot};
+use elbowroom_formats::{Diagnostic, mesh, robot};
 use elbowroom_kinematics::{Chain, LinkId};
 use elbowroom_proximity::Shape;
 use elbowroom_robot::{Collider, Robot};
@@ -104,12 +104,12 @@ impl Inspection {
     /// Files with the extension `urdf`, `xacro` or `xml` count as robots; for other files the content decides.
     ///
     /// # Errors
-    /// [`FormatError`] if the file or one of its collision meshes cannot be read, or if the link `tip` does not exist.
-    pub fn of(path: &Path, options: &InspectOptions) -> Result<Self, FormatError> {
+    /// [`Diagnostic`] if the file or one of its collision meshes cannot be read, or if the link `tip` does not exist.
+    pub fn of(path: &Path, options: &InspectOptions) -> Result<Self, Diagnostic> {
         if is_mesh(path) { Self::of_mesh(path, options) } else { Self::of_robot(path, options) }
     }
 
-    fn of_robot(path: &Path, options: &InspectOptions) -> Result<Self, FormatError> {
+    fn of_robot(path: &Path, options: &InspectOptions) -> Result<Self, Diagnostic> {
         let load = robot::LoadOptions {
             srdf: options.srdf.clone(),
             load_visuals: !options.brief,
@@ -140,9 +140,9 @@ impl Inspection {
         Ok(inspection)
     }
 
-    fn of_mesh(path: &Path, options: &InspectOptions) -> Result<Self, FormatError> {
+    fn of_mesh(path: &Path, options: &InspectOptions) -> Result<Self, Diagnostic> {
         if options.tip.is_some() || options.srdf.is_some() {
-            return Err(FormatError::new(path, None, "is a mesh: it has no links for --tip or --srdf")
+            return Err(Diagnostic::new(path, None, "is a mesh: it has no links for --tip or --srdf")
                 .hint("a URDF or a 3DS or glTF model, or leave these options out"));
         }
         let loaded = mesh::load(path, options.unit)?;
@@ -168,7 +168,7 @@ impl Inspection {
         Ok(inspection)
     }
 
-    fn empty(path: &Path, name: &str, kind: ModelKind, warnings: &[Warning]) -> Self {
+    fn empty(path: &Path, name: &str, kind: ModelKind, warnings: &[Diagnostic]) -> Self {
         Self {
             model: path.to_owned(),
             name: name.to_owned(),
@@ -257,8 +257,8 @@ impl Inspection {
 /// Writes the text of an SRDF for a robot: pairs that need no test, with reasons, and the groups and states of `given`.
 ///
 /// # Errors
-/// [`FormatError`] with `file` if a scene refuses the robot.
-pub fn srdf(file: &Path, robot: &Robot, given: Srdf) -> Result<String, FormatError> {
+/// [`Diagnostic`] with `file` if a scene refuses the robot.
+pub fn srdf(file: &Path, robot: &Robot, given: Srdf) -> Result<String, Diagnostic> {
     Ok(pairs::srdf(robot.chain.name(), &pairs::of_robot(file, robot)?, given))
 }
 
@@ -282,10 +282,10 @@ fn is_robot_tree(bytes: &[u8], path: &Path) -> bool {
     })
 }
 
-fn tip(chain: &Chain, path: &Path, name: Option<&str>) -> Result<LinkId, FormatError> {
+fn tip(chain: &Chain, path: &Path, name: Option<&str>) -> Result<LinkId, Diagnostic> {
     let Some(name) = name else { return Ok(chain.tip()) };
     chain.link(name).ok_or_else(|| {
-        FormatError::new(path, None, format!("there is no link `{name}`"))
+        Diagnostic::new(path, None, format!("there is no link `{name}`"))
             .hint(format!("--tip with one of {}", chain.links().join(", ")))
     })
 }

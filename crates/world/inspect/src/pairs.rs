@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 use elbowroom_formats::srdf::{DisabledPair, Srdf};
 use elbowroom_robot::{GeometryId, Robot};
 use elbowroom_scene::{PairState, Reason, Scene};
@@ -132,10 +132,10 @@ pub(super) fn srdf(robot: &str, pairs: &[PairRow], given: Srdf) -> String {
 /// Number of sampled states.
 const SAMPLES: u64 = 1000;
 
-pub(super) fn of_robot(file: &std::path::Path, robot: &Robot) -> Result<Vec<PairRow>, FormatError> {
+pub(super) fn of_robot(file: &std::path::Path, robot: &Robot) -> Result<Vec<PairRow>, Diagnostic> {
     let mut builder = Scene::builder();
     builder.prove_out_of_reach(true).robot("", robot.clone(), Pose::IDENTITY);
-    let scene = builder.build().map_err(|e| FormatError::new(file, None, e.to_string()))?;
+    let scene = builder.build().map_err(|e| Diagnostic::new(file, None, e.to_string()))?;
     let name = |id: GeometryId| match id {
         GeometryId::Link { link, .. } => robot.chain.links()[link.0].clone(),
         GeometryId::Object(_) => String::new(),

@@ -2,14 +2,14 @@
 
 use elbowroom_avoidance::{AvoiderSettings, Rules};
 use elbowroom_formats::toml_tables::{Table, Value};
-use elbowroom_formats::{FormatError, suggest};
+use elbowroom_formats::{Diagnostic, suggest};
 use elbowroom_robot::{ObjectId, RobotId};
 
 use super::robot::robot_of;
 use super::tools::with_exchanged_tools;
 use crate::{AvoidanceSpec, Cell, Units};
 
-type Result<T> = std::result::Result<T, FormatError>;
+type Result<T> = std::result::Result<T, Diagnostic>;
 
 const KEYS: &[&str] = &[
     "rules",
@@ -192,5 +192,5 @@ fn rules(v: &Value<'_>) -> Result<Rules> {
         v.error(format!("names {}, which cannot be read: {e}", path.display()))
             .hint("rules = \"my_rules.toml\", written by `elbowroom rules --write my_rules.toml`")
     })?;
-    Rules::from_toml(&text).map_err(|e| FormatError::new(&path, e.line, e.what).hint(e.write_instead))
+    Rules::from_toml(&text).map_err(|e| Diagnostic::new(&path, e.line, e.message).hint(e.hint))
 }

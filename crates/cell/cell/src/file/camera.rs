@@ -1,13 +1,13 @@
 //! `[camera.NAME]`: a calibrated camera above the floor of the cell.
 
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 use elbowroom_formats::toml_tables::{Table, Value};
 use elbowroom_vision::{Camera, CameraTracker, CameraTrackerSettings, ShadowSettings, Template, VisionError};
 
 use super::sensor::{self, two};
 use crate::{Cell, CellSensor, SensorKind, Units};
 
-type Result<T> = std::result::Result<T, FormatError>;
+type Result<T> = std::result::Result<T, Diagnostic>;
 
 const KEYS: [&str; 12] = [
     "size",
@@ -40,7 +40,7 @@ pub(super) fn read(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellSensor>
 }
 
 /// An error of the camera at the key that is wrong, in the words of the cell file.
-fn refused(t: &Table<'_>, e: &VisionError) -> FormatError {
+fn refused(t: &Table<'_>, e: &VisionError) -> Diagnostic {
     const LOOKS_DOWN: &str = "pose = { at = [0, 0, 4000], rpy = [180, 0, 0] }   (z looks along the view)";
     let key = match e {
         VisionError::Setting { name, .. } => name.trim_end_matches("_mps").trim_end_matches("_m"),

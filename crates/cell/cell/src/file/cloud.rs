@@ -1,6 +1,6 @@
 //! `[cloud.NAME]`: a sensor of points above or beside the cell: point clouds, or pictures of depths.
 
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 use elbowroom_formats::toml_tables::Table;
 use elbowroom_vision::cloud::{CloudTracker, CloudTrackerSettings};
 use elbowroom_vision::{Camera, VisionError};
@@ -8,7 +8,7 @@ use elbowroom_vision::{Camera, VisionError};
 use super::sensor;
 use crate::{Cell, CellSensor, SensorKind};
 
-type Result<T> = std::result::Result<T, FormatError>;
+type Result<T> = std::result::Result<T, Diagnostic>;
 
 const KEYS: [&str; 11] = [
     "clouds",

@@ -1,14 +1,14 @@
 //! The definitions that a region may refer to, and their lookup by name.
 
 use elbowroom_formats::toml_tables::Value;
-use elbowroom_formats::{FormatError, suggest};
+use elbowroom_formats::{Diagnostic, suggest};
 use elbowroom_robot::RobotId;
 use elbowroom_scene::Object;
 
 use crate::moving_object::{Encoder, MovingObject};
 use crate::{CellRobot, PoseTrack};
 
-type Result<T> = std::result::Result<T, FormatError>;
+type Result<T> = std::result::Result<T, Diagnostic>;
 
 /// The definitions that a region may refer to.
 pub(super) struct Definitions<'a> {

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use elbowroom_formats::{FormatError, toml_tables};
+use elbowroom_formats::{Diagnostic, toml_tables};
 
-type Result<T> = std::result::Result<T, FormatError>;
+type Result<T> = std::result::Result<T, Diagnostic>;
 
 /// Largest cell file, bytes.
 const MAX_BYTES: u64 = 64 << 20;
@@ -22,18 +22,18 @@ impl CellFile {
     /// Reads a file.
     ///
     /// # Errors
-    /// [`FormatError`] if it cannot be read or is not TOML.
+    /// [`Diagnostic`] if it cannot be read or is not TOML.
     pub fn read(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
         let unreadable =
-            |e: std::io::Error| FormatError::unreadable(path, &e, "the path of a cell file (see docs/cell-file.md)");
+            |e: std::io::Error| Diagnostic::unreadable(path, &e, "the path of a cell file (see docs/cell-file.md)");
         if std::fs::metadata(path).map_err(unreadable)?.len() > MAX_BYTES {
-            return Err(FormatError::new(path, None, format!("is larger than {MAX_BYTES} bytes")));
+            return Err(Diagnostic::new(path, None, format!("is larger than {MAX_BYTES} bytes")));
         }
         let bytes = std::fs::read(path).map_err(unreadable)?;
         let text = String::from_utf8(bytes).map_err(|e| {
             let line = String::from_utf8_lossy(&e.as_bytes()[..e.utf8_error().valid_up_to()]).split('\n').count();
-            FormatError::new(path, line, "is not UTF-8 text").hint("the file saved as UTF-8")
+            Diagnostic::new(path, line, "is not UTF-8 text").hint("the file saved as UTF-8")
         })?;
         Ok(Self { on_disk: true, ..Self::parse(path, &text)? })
     }
@@ -42,7 +42,7 @@ impl CellFile {
     /// text, so no seal is verified.
     ///
     /// # Errors
-    /// [`FormatError`] if it is not TOML.
+    /// [`Diagnostic`] if it is not TOML.
     pub fn parse(path: impl AsRef<Path>, text: &str) -> Result<Self> {
         let file = path.as_ref().to_owned();
         let entries = toml_tables::parse(&file, text)?;

@@ -1,7 +1,7 @@
 //! The link that carries the tool.
 
 use elbowroom_formats::toml_tables::{Table, Value};
-use elbowroom_formats::{FormatError, Warning, suggest};
+use elbowroom_formats::{Diagnostic, suggest};
 use elbowroom_kinematics::{Chain, JointId, LinkId};
 
 /// Names of tool frames (ROS-Industrial), in order of preference.
@@ -14,8 +14,8 @@ pub(super) fn read(
     robot: &str,
     t: &Table<'_>,
     chain: &Chain,
-    warnings: &mut Vec<Warning>,
-) -> Result<LinkId, FormatError> {
+    warnings: &mut Vec<Diagnostic>,
+) -> Result<LinkId, Diagnostic> {
     if let Some(v) = t.get("flange") {
         let name = v.text()?;
         return chain.link(name).ok_or_else(|| unknown_link(&v, name, chain));
@@ -33,7 +33,7 @@ pub(super) fn read(
         name(palm),
         leaves.join(" and ")
     );
-    warnings.push(Warning::new(t.file, t.line, what).hint(format!("flange = \"{}\", or another link", name(palm))));
+    warnings.push(Diagnostic::new(t.file, t.line, what).hint(format!("flange = \"{}\", or another link", name(palm))));
     Ok(palm)
 }
 
@@ -56,7 +56,7 @@ fn is_below(chain: &Chain, link: LinkId, above: LinkId) -> bool {
 }
 
 /// The error for an unknown link, with the links of the chain.
-pub(super) fn unknown_link(v: &Value<'_>, name: &str, chain: &Chain) -> FormatError {
+pub(super) fn unknown_link(v: &Value<'_>, name: &str, chain: &Chain) -> Diagnostic {
     let hint = suggest::hint(name, chain.links().iter().map(String::as_str));
     v.error(format!("names the link \"{name}\", which robot \"{}\" does not have", chain.name())).hint(hint)
 }

@@ -1,7 +1,7 @@
 //! `follow = { … }` of a region: the source that moves it, and its largest plausible speed.
 
 use elbowroom_formats::toml_tables::{Table, Value};
-use elbowroom_formats::{FormatError, Warning, suggest};
+use elbowroom_formats::{Diagnostic, suggest};
 use elbowroom_kinematics::motion_bound::{joint_reaches, motion_bound};
 use elbowroom_kinematics::{Chain, LinkId};
 use elbowroom_monitor::SourceLimits;
@@ -13,7 +13,7 @@ use super::flange::unknown_link;
 use super::poses;
 use crate::{CellRobot, Follow, PoseRate, PoseTrack, Units};
 
-type Result<T> = std::result::Result<T, FormatError>;
+type Result<T> = std::result::Result<T, Diagnostic>;
 
 const EXAMPLE: &str = "follow = { robot = \"r2\", frame = \"flange\" }   (or: { encoder = \"conveyor\" }, { object = \"cart\" }, \
                        { poses = \"cart.csv\" })";
@@ -27,7 +27,7 @@ pub(super) fn read(
     v: &Value<'_>,
     units: Units,
     known: &mut Definitions<'_>,
-    warnings: &mut Vec<Warning>,
+    warnings: &mut Vec<Diagnostic>,
 ) -> Result<(Follow, SourceLimits)> {
     let t = v.table(EXAMPLE)?;
     t.only(&[&SOURCES[..], &["frame", "max_speed", "max_turn"]].concat())?;
@@ -81,7 +81,7 @@ fn warn_of_motion(
     known: &Definitions<'_>,
     limits: &SourceLimits,
     units: Units,
-    warnings: &mut Vec<Warning>,
+    warnings: &mut Vec<Diagnostic>,
 ) {
     match follow {
         Follow::Poses(index) => warn_of_jumps(t, &known.pose_tracks[index], limits, units, warnings),
@@ -167,7 +167,13 @@ fn frame(v: Option<&Value<'_>>, robot: &CellRobot) -> Result<(LinkId, Pose)> {
 }
 
 /// Warns before a run if the monitors will treat a motion in the file as a jump.
-fn warn_of_jumps(t: &Table<'_>, track: &PoseTrack, limits: &SourceLimits, units: Units, warnings: &mut Vec<Warning>) {
+fn warn_of_jumps(
+    t: &Table<'_>,
+    track: &PoseTrack,
+    limits: &SourceLimits,
+    units: Units,
+    warnings: &mut Vec<Diagnostic>,
+) {
     let too_fast = |rate: &PoseRate| rate.speed_m_s > limits.speed_m_s || rate.turn_rad_s > limits.turn_rad_s;
     let Some(PoseRate { from_s, speed_m_s, turn_rad_s }) = track.rates().find(too_fast) else { return };
     let (file, speed) = (track.file.display(), units.show_length(speed_m_s));
@@ -175,10 +181,10 @@ fn warn_of_jumps(t: &Table<'_>, track: &PoseTrack, limits: &SourceLimits, units:
     warn_of_jump(t, &what, warnings);
 }
 
-fn warn_of_jump(t: &Table<'_>, what: &str, warnings: &mut Vec<Warning>) {
+fn warn_of_jump(t: &Table<'_>, what: &str, warnings: &mut Vec<Diagnostic>) {
     let what = format!("{what}: the monitor takes that for a jump and stops the robots");
     let hint = "max_speed and max_turn in `follow`, if the source can be that fast";
-    warnings.push(Warning::new(t.file, t.line, what).hint(hint));
+    warnings.push(Diagnostic::new(t.file, t.line, what).hint(hint));
 }
 
 #[cfg(test)]

@@ -1,13 +1,13 @@
 //! Goals of moves: joint values, the name of a state, or a pose of the TCP.
 
 use elbowroom_formats::toml_tables::{Table, Value};
-use elbowroom_formats::{FormatError, suggest};
+use elbowroom_formats::{Diagnostic, suggest};
 use elbowroom_kinematics::inverse::ConfigurationChoice;
 
 use super::robot::joint_values;
 use crate::{CellRobot, MoveTarget, TcpTarget, Units};
 
-type Result<T> = std::result::Result<T, FormatError>;
+type Result<T> = std::result::Result<T, Diagnostic>;
 
 /// Reads a pose, joint values, or the name of a state of the robot. `along_a_line` is true for a linear move.
 pub(super) fn read(

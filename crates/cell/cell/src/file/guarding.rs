@@ -1,19 +1,19 @@
 //! Check that a region guards a part of each robot that it applies to.
 
+use elbowroom_formats::Diagnostic;
 use elbowroom_formats::toml_tables::Table;
-use elbowroom_formats::{FormatError, Warning};
 use elbowroom_kinematics::LinkId;
 use elbowroom_monitor::{Guards, Part, Region, RegionKind};
 use elbowroom_spatial::Vec3;
 
 use crate::{Cell, CellRegionId, CellRobot};
 
-type Result<T> = std::result::Result<T, FormatError>;
+type Result<T> = std::result::Result<T, Diagnostic>;
 
 /// Refuses a region that guards no part of a robot, and warns if it does not guard the links.
 ///
 /// A monitored region without slow-down causes only a warning: its output never rises.
-pub(super) fn check(t: &Table<'_>, cell: &Cell, region: CellRegionId, warnings: &mut Vec<Warning>) -> Result<()> {
+pub(super) fn check(t: &Table<'_>, cell: &Cell, region: CellRegionId, warnings: &mut Vec<Diagnostic>) -> Result<()> {
     let (robots, region) = (&cell.robots, &cell.regions[region.0]);
     if region.robots.is_empty() && !robots.is_empty() {
         let what = format!(
@@ -21,10 +21,10 @@ pub(super) fn check(t: &Table<'_>, cell: &Cell, region: CellRegionId, warnings: 
             region.region.name
         );
         let line = t.get("follow").map_or(t.line, |v| v.line);
-        let error = FormatError::new(t.file, line, what)
+        let error = Diagnostic::new(t.file, line, what)
             .hint("robots = [\"…\"]   (the robots to keep out; or another source to follow)");
         match region.region.kind {
-            RegionKind::Monitored { .. } => warnings.push(error.into()),
+            RegionKind::Monitored { .. } => warnings.push(error),
             RegionKind::Forbidden | RegionKind::Exchange { .. } => return Err(error),
         }
     }
@@ -34,10 +34,10 @@ pub(super) fn check(t: &Table<'_>, cell: &Cell, region: CellRegionId, warnings: 
         let grips = !cell.gripped_objects(*id).is_empty();
         let Some(missing) = MissingPart::of(robot, grips, region.region.guards) else { continue };
         let error =
-            FormatError::new(t.file, line, missing.what(&region.region, robot)).hint(missing.hint(robot, robots.len()));
+            Diagnostic::new(t.file, line, missing.what(&region.region, robot)).hint(missing.hint(robot, robots.len()));
         match region.region.kind {
-            _ if missing == MissingPart::Links => warnings.push(error.into()),
-            RegionKind::Monitored { slow_to: None } => warnings.push(error.into()),
+            _ if missing == MissingPart::Links => warnings.push(error),
+            RegionKind::Monitored { slow_to: None } => warnings.push(error),
             _ => return Err(error),
         }
     }

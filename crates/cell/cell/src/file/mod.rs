@@ -24,7 +24,7 @@ mod units;
 use std::path::Path;
 
 use elbowroom_formats::toml_tables::{Table, Value};
-use elbowroom_formats::{FormatError, Warning, suggest};
+use elbowroom_formats::{Diagnostic, suggest};
 use elbowroom_monitor::{Laws, RobotSet};
 use elbowroom_robot::{GeometryId, RobotId};
 use elbowroom_scene::PairRules;
@@ -38,7 +38,7 @@ use crate::{
     joint_contacts, rest_pose_contacts, seal,
 };
 
-type Result<T> = std::result::Result<T, FormatError>;
+type Result<T> = std::result::Result<T, Diagnostic>;
 
 const KEYS: &[&str] = &[
     "version",
@@ -67,7 +67,7 @@ impl CellFile {
     /// A file from disk must match its seal, if it has one or needs one: see [`seal`](crate::seal).
     ///
     /// # Errors
-    /// [`FormatError`] at the first wrong line, or the first line that differs from the seal.
+    /// [`Diagnostic`] at the first wrong line, or the first line that differs from the seal.
     pub fn resolve(&self) -> Result<Cell> {
         let mut warnings = Vec::new();
         let root = Table { file: &self.file, name: String::new(), line: 1, entries: &self.entries };
@@ -150,7 +150,7 @@ impl Cell {
     /// Reads and resolves a cell file.
     ///
     /// # Errors
-    /// [`FormatError`] names file, line, what is wrong and what to write instead.
+    /// [`Diagnostic`] names file, line, what is wrong and what to write instead.
     pub fn load(path: impl AsRef<Path>) -> Result<Self> {
         CellFile::read(path)?.resolve()
     }
@@ -185,13 +185,13 @@ fn pairs(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
 }
 
 /// Warnings for links that touch at the start, without a link with collision geometry between them.
-fn contacts_at_start(cell: &Cell) -> Vec<Warning> {
+fn contacts_at_start(cell: &Cell) -> Vec<Diagnostic> {
     let of_robot = |(i, r): (usize, &CellRobot)| {
         let link = |link| GeometryId::Link { robot: RobotId(i), link };
         let rules = cell.all_pair_rules();
         let is_new = move |a, b| rules.skipped(link(a), link(b)).is_none();
         let warnings = rest_pose_contacts::warnings(&r.robot, &r.start, Some(&r.name), is_new);
-        warnings.map(|(what, hint)| Warning::new(&cell.file, r.line, what).hint(hint)).collect::<Vec<_>>()
+        warnings.map(|(what, hint)| Diagnostic::new(&cell.file, r.line, what).hint(hint)).collect::<Vec<_>>()
     };
     cell.robots.iter().enumerate().flat_map(of_robot).collect()
 }
@@ -221,7 +221,7 @@ fn tick_ms(v: &Value<'_>) -> Result<f64> {
 }
 
 /// Age above which input is not trusted; a large value would disable the watchdog.
-fn stale_ms(v: &Value<'_>, warnings: &mut Vec<Warning>) -> Result<f64> {
+fn stale_ms(v: &Value<'_>, warnings: &mut Vec<Diagnostic>) -> Result<f64> {
     let ms = v.positive()?;
     if ms > 1000.0 {
         let what = format!("is {ms} ms: for so long a robot would move with outdated input");
@@ -229,12 +229,12 @@ fn stale_ms(v: &Value<'_>, warnings: &mut Vec<Warning>) -> Result<f64> {
     }
     if ms > 100.0 {
         let what = format!("`{}` is {ms} ms: a robot at 1 m/s moves {ms} mm before lost input stops it", v.name);
-        warnings.push(Warning::new(v.file, v.line, what).hint("stale_ms = 20   (a few ticks)"));
+        warnings.push(Diagnostic::new(v.file, v.line, what).hint("stale_ms = 20   (a few ticks)"));
     }
     Ok(ms)
 }
 
-fn laws(root: &Table<'_>, warnings: &mut Vec<Warning>) -> Result<CellLaws> {
+fn laws(root: &Table<'_>, warnings: &mut Vec<Diagnostic>) -> Result<CellLaws> {
     // Default reaction time: one tick.
     let tick_s = root.get("tick_ms").map_or(Ok(2.0), |v| tick_ms(&v))? / 1000.0;
     let Some(v) = root.get("monitor") else {
@@ -262,7 +262,7 @@ fn laws(root: &Table<'_>, warnings: &mut Vec<Warning>) -> Result<CellLaws> {
     })
 }
 
-fn regions(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Warning>) -> Result<()> {
+fn regions(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Diagnostic>) -> Result<()> {
     let mut known = definitions::Definitions {
         robots: &cell.robots,
         encoders: &cell.encoders,
@@ -286,7 +286,7 @@ fn sensors(root: &Table<'_>, cell: &Cell) -> Result<Vec<CellSensor>> {
     cameras.chain(clouds).collect()
 }
 
-fn programs(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Warning>) -> Result<()> {
+fn programs(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Diagnostic>) -> Result<()> {
     let mut programs = vec![None; cell.robots.len()];
     for (name, t) in root.named("program")? {
         let (id, robot) = robot_of(name, &t, &cell.robots)?;
@@ -341,7 +341,7 @@ fn map_steps(v: &Value<'_>, joints: &[usize], convert: impl Fn(usize, f64) -> f6
 }
 
 /// The tables `[robot.NAME]`.
-fn read_robots(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Warning>) -> Result<()> {
+fn read_robots(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Diagnostic>) -> Result<()> {
     for (name, t) in root.named("robot")? {
         if cell.robots.len() == RobotSet::CAPACITY {
             let what =

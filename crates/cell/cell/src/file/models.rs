@@ -4,9 +4,7 @@ use std::path::{Path, PathBuf};
 
 use elbowroom_formats::srdf::{self as srdf_file, GroupState};
 use elbowroom_formats::toml_tables::{Table, Value};
-use elbowroom_formats::{
-    FormatError, LoadOptions, NumberTable, Warning, mesh as mesh_file, read_file, robot as robot_file,
-};
+use elbowroom_formats::{Diagnostic, LoadOptions, NumberTable, mesh as mesh_file, read_file, robot as robot_file};
 use elbowroom_kinematics::Chain;
 use elbowroom_proximity::Shape;
 use elbowroom_robot::Robot;
@@ -15,7 +13,7 @@ use elbowroom_spatial::units::LengthUnit;
 /// Largest SRDF, bytes.
 const MAX_SRDF_BYTES: u64 = 64 << 20;
 
-type Result<T> = std::result::Result<T, FormatError>;
+type Result<T> = std::result::Result<T, Diagnostic>;
 
 /// The file that a value names, relative to the cell file; it must exist.
 pub(super) fn path(v: &Value<'_>) -> Result<PathBuf> {
@@ -40,15 +38,15 @@ fn folder(file: &Path) -> String {
 }
 
 /// The robot of `model`, with its SRDF, joints file and unit.
-pub(super) fn robot(v: &Value<'_>, t: &Table<'_>, warnings: &mut Vec<Warning>) -> Result<Robot> {
+pub(super) fn robot(v: &Value<'_>, t: &Table<'_>, warnings: &mut Vec<Diagnostic>) -> Result<Robot> {
     let file = path(v)?;
     let unit = t.get("unit").map(|u| mesh_unit(&u)).transpose()?;
     let of = |key: &str| t.get(key).map(|v| path(&v)).transpose();
     let options = LoadOptions { srdf: of("srdf")?, joints: of("joints")?, unit, ..LoadOptions::default() };
     let loaded = robot_file::load(&file, &options)?;
     if loaded.robot.chain.dof() == 0 {
-        let why = loaded.warnings.into_iter().find(|w| w.what.starts_with("no joint moves"));
-        let hint = why.and_then(|w| w.write_instead);
+        let why = loaded.warnings.into_iter().find(|w| w.message.starts_with("no joint moves"));
+        let hint = why.and_then(|w| w.hint);
         let hint = hint.unwrap_or_else(|| "a model of a robot; solid objects go under [object.NAME]".to_owned());
         return Err(v.error("names a model without a joint that moves").hint(hint));
     }
@@ -57,7 +55,7 @@ pub(super) fn robot(v: &Value<'_>, t: &Table<'_>, warnings: &mut Vec<Warning>) -
 }
 
 /// Disables the pairs in the file of `srdf`.
-pub(super) fn srdf(v: &Value<'_>, robot: &mut Robot, warnings: &mut Vec<Warning>) -> Result<()> {
+pub(super) fn srdf(v: &Value<'_>, robot: &mut Robot, warnings: &mut Vec<Diagnostic>) -> Result<()> {
     warnings.extend(robot_file::apply_srdf(robot, &path(v)?)?);
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! `[object.NAME]`: solid objects, and their motion.
 
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 use elbowroom_formats::toml_tables::{Table, Value};
 use elbowroom_proximity::{HalfSpace, Shape};
 use elbowroom_robot::ObjectId;
@@ -10,7 +10,7 @@ use elbowroom_spatial::{Pose, Vec3};
 use super::definitions::encoder_index;
 use crate::{Cell, Drive, MovingObject, ObjectPath, PathRepeat, Units};
 
-type Result<T> = std::result::Result<T, FormatError>;
+type Result<T> = std::result::Result<T, Diagnostic>;
 
 const COMMON: &[&str] = &["shape", "at", "rpy", "quaternion", "follow", "motion"];
 const MOTION: &str = "motion = { via = [[2000, 1000, 100]], speed = 500 }";

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use elbowroom_formats::planning_scene::{self, FixedFrame, PlanningScene};
 use elbowroom_formats::toml_tables::{Table, Value};
-use elbowroom_formats::{FormatError, Warning, suggest};
+use elbowroom_formats::{Diagnostic, suggest};
 use elbowroom_kinematics::ChainState;
 use elbowroom_scene::Object;
 use elbowroom_spatial::Pose;
@@ -14,7 +14,7 @@ use super::models;
 use crate::scene_pairs::ScenePairs;
 use crate::{Cell, CellRobot};
 
-type Result<T> = std::result::Result<T, FormatError>;
+type Result<T> = std::result::Result<T, Diagnostic>;
 
 /// Keys of a scene. The keys that place it are those of `Units::place`.
 const KEYS: &[&str] = &["file", "frame", "at", "rpy", "quaternion", "allowed_collisions"];
@@ -22,7 +22,7 @@ const KEYS: &[&str] = &["file", "frame", "at", "rpy", "quaternion", "allowed_col
 const WORLD: &str = "world";
 
 /// Adds the objects of all scenes to the cell, after its own objects. Returns the range of objects of each table.
-pub(super) fn read(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Warning>) -> Result<Vec<Range<usize>>> {
+pub(super) fn read(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Diagnostic>) -> Result<Vec<Range<usize>>> {
     let mut ranges = Vec::new();
     for (_, t) in root.named("scene")? {
         let (scene, objects) = add(&t, cell)?;
@@ -37,9 +37,9 @@ pub(super) fn read(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Warning
 }
 
 /// Exempts the pairs that the scene allows from tests, unless the cell's file of pairs states otherwise.
-fn allow(scene: &PlanningScene, objects: &Range<usize>, cell: &mut Cell, warnings: &mut Vec<Warning>) {
+fn allow(scene: &PlanningScene, objects: &Range<usize>, cell: &mut Cell, warnings: &mut Vec<Diagnostic>) {
     let pairs = ScenePairs::of(scene, objects, cell);
-    let mut warn = |what: String, hint: &str| warnings.push(Warning::new(&scene.file, None, what).hint(hint));
+    let mut warn = |what: String, hint: &str| warnings.push(Diagnostic::new(&scene.file, None, what).hint(hint));
     if let Some([a, b]) = &pairs.example {
         let what = format!(
             "`allowed_collision_matrix` is applied: {} of its pairs are not tested, such as `{a}` and `{b}`",
@@ -85,7 +85,7 @@ fn refuse_attached(scene: &PlanningScene) -> Result<()> {
     let what =
         format!("`{}` is attached to the link `{}`, and a scene has fixed objects", attached.object.id, attached.link);
     let hint = "no `attached_collision_objects`; in the cell file [robot.NAME] load = { box = { at = [0, 0, 350], size = [200, 200, 200] } }";
-    Err(FormatError::new(&scene.file, None, what).hint(hint))
+    Err(Diagnostic::new(&scene.file, None, what).hint(hint))
 }
 
 /// The frame of the file that `at` and `rpy` place.
@@ -154,10 +154,10 @@ fn refuse_known_names(objects: &[Object], cell: &Cell, file: &Value<'_>) -> Resu
 }
 
 /// Warns of contents of a scene that a cell does not use.
-fn report_unused(scene: &PlanningScene, warnings: &mut Vec<Warning>) {
+fn report_unused(scene: &PlanningScene, warnings: &mut Vec<Diagnostic>) {
     if !scene.joints.is_empty() || scene.base_in_world.is_some() {
         let what = "`robot_state` is not applied: robots are where the cell file has them".to_owned();
         let hint = "[robot.NAME] start = [0, 0, 0, 0, 0, 0], base = { at = [0, 0, 0] }";
-        warnings.push(Warning::new(&scene.file, None, what).hint(hint));
+        warnings.push(Diagnostic::new(&scene.file, None, what).hint(hint));
     }
 }

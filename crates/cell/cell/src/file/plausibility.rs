@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use elbowroom_formats::Warning;
+use elbowroom_formats::Diagnostic;
 use elbowroom_formats::toml_tables::Table;
 use elbowroom_kinematics::{ChainState, JointKind, LinkId};
 use elbowroom_proximity::{Shape, Sphere, separation, within};
@@ -13,7 +13,7 @@ use elbowroom_spatial::{Pose, Vec3};
 use crate::frames::Frames;
 use crate::{Cell, CellRegion, CellRobot, Follow};
 
-type Result<T> = std::result::Result<T, elbowroom_formats::FormatError>;
+type Result<T> = std::result::Result<T, elbowroom_formats::Diagnostic>;
 
 /// Solid objects thinner than this (m) are implausible.
 const THIN_M: f64 = 1e-3;
@@ -30,7 +30,12 @@ const SAMPLES: usize = 240;
 ///
 /// The warning contains the unit in which it would be plausible. Per planning scene (`scenes`, per table), only the
 /// first implausible object is reported.
-pub(super) fn check(root: &Table<'_>, cell: &Cell, scenes: &[Range<usize>], warnings: &mut Vec<Warning>) -> Result<()> {
+pub(super) fn check(
+    root: &Table<'_>,
+    cell: &Cell,
+    scenes: &[Range<usize>],
+    warnings: &mut Vec<Diagnostic>,
+) -> Result<()> {
     let plausible = PlausibilityCheck { cell, reaches: cell.robots.iter().map(|r| Reach::of(r, true)).collect() };
     for (robot, (_, t)) in cell.robots.iter().zip(root.named("robot")?) {
         plausible.tool(&t, robot, warnings);
@@ -118,7 +123,7 @@ struct PlausibilityCheck<'a> {
 }
 
 impl PlausibilityCheck<'_> {
-    fn region(&self, t: &Table<'_>, r: &CellRegion, warnings: &mut Vec<Warning>) {
+    fn region(&self, t: &Table<'_>, r: &CellRegion, warnings: &mut Vec<Diagnostic>) {
         let region = &r.region;
         let implausibility = size(&region.shape).or_else(|| {
             let in_source = region.anchor * region.shape_in_anchor;
@@ -138,7 +143,7 @@ impl PlausibilityCheck<'_> {
         self.warn(t, &what, implausibility, warnings);
     }
 
-    fn object(&self, t: &Table<'_>, id: ObjectId, warnings: &mut Vec<Warning>) {
+    fn object(&self, t: &Table<'_>, id: ObjectId, warnings: &mut Vec<Diagnostic>) {
         let object = &self.cell.objects[id.0];
         let implausibility = size(&object.shape).or_else(|| {
             let moving_object = self.cell.moving_objects.iter().find(|m| m.object == id);
@@ -155,7 +160,7 @@ impl PlausibilityCheck<'_> {
     }
 
     /// Checks that TCP, tool and load are no farther from the flange than the arm is long.
-    fn tool(&self, t: &Table<'_>, robot: &CellRobot, warnings: &mut Vec<Warning>) {
+    fn tool(&self, t: &Table<'_>, robot: &CellRobot, warnings: &mut Vec<Diagnostic>) {
         let arm = Reach { base: Vec3::ZERO, ..Reach::of(robot, false) };
         // A chain without length may carry a tool of any plausible size.
         let arm = Reach { radius_m: arm.radius_m.max(1.0), ..arm };
@@ -190,7 +195,7 @@ impl PlausibilityCheck<'_> {
         sample_times(self.cell).map(|t_s| frames.source(&follow, &states, t_s).pose * in_source).collect()
     }
 
-    fn warn(&self, t: &Table<'_>, what: &str, implausibility: Option<Implausibility>, warnings: &mut Vec<Warning>) {
+    fn warn(&self, t: &Table<'_>, what: &str, implausibility: Option<Implausibility>, warnings: &mut Vec<Diagnostic>) {
         let Some(implausibility) = implausibility else { return };
         let units = self.cell.units;
         let show = |m: f64| units.show_length(round_to_four_digits(m));
@@ -210,14 +215,14 @@ impl PlausibilityCheck<'_> {
         let (unit, angle) = (other.symbol(), units.angle.symbol());
         let warning = if sensible {
             let meant = round_to_four_digits(value * factor);
-            Warning::new(t.file, t.line, format!("{what} {text}; were its numbers in {unit}, it would be {meant} m"))
+            Diagnostic::new(t.file, t.line, format!("{what} {text}; were its numbers in {unit}, it would be {meant} m"))
                 .hint(format!(
                     "units = {{ length = \"{unit}\", angle = \"{angle}\" }}, or these numbers in {}",
                     units.length.symbol()
                 ))
         } else {
             let hint = "a place within reach and a size from 1 mm to 100 m; no change if it is intended";
-            Warning::new(t.file, t.line, format!("{what} {text}")).hint(hint)
+            Diagnostic::new(t.file, t.line, format!("{what} {text}")).hint(hint)
         };
         warnings.push(warning);
     }

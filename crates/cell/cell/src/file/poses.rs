@@ -1,14 +1,14 @@
 //! CSV files of poses over time: `follow = { poses = "cart.csv" }`.
 
 use elbowroom_formats::toml_tables::Value;
-use elbowroom_formats::{FormatError, NumberTable, TimedRow, suggest};
+use elbowroom_formats::{Diagnostic, NumberTable, TimedRow, suggest};
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 use super::models;
 use crate::{PoseTrack, Units};
 
-type Result<T> = std::result::Result<T, FormatError>;
+type Result<T> = std::result::Result<T, Diagnostic>;
 
 const POSITION: [&str; 3] = ["x", "y", "z"];
 const RPY: [&str; 3] = ["roll", "pitch", "yaw"];
@@ -53,9 +53,9 @@ impl Columns {
         if let Some(odd) = table.columns.iter().find(|c| !names.contains(c)) {
             let what = format!("has a column `{odd}`, which is no part of a pose");
             let hint = suggest::hint(odd, names.iter().map(String::as_str));
-            return Err(FormatError::new(&table.file, 1, what).hint(hint));
+            return Err(Diagnostic::new(&table.file, 1, what).hint(hint));
         }
-        let wrong = |what: &str| FormatError::new(&table.file, 1, what).hint(EXAMPLE);
+        let wrong = |what: &str| Diagnostic::new(&table.file, 1, what).hint(EXAMPLE);
         let (position, length) =
             one_of(table, &POSITION, &lengths).ok_or_else(|| wrong("needs the columns x, y, z, all in one unit"))?;
         let turned = table.columns.len() - 4;
@@ -82,7 +82,7 @@ impl Columns {
                 let sound = (0.9..=1.1).contains(&length);
                 let turned = Rotation::from_quaternion_xyzw(q).filter(|_| sound);
                 turned.ok_or_else(|| {
-                    FormatError::new(&table.file, line, format!("has the quaternion {q:?} of length {length:.3}"))
+                    Diagnostic::new(&table.file, line, format!("has the quaternion {q:?} of length {length:.3}"))
                         .hint("qx, qy, qz, qw of length 1, qw last: 0, 0, 0, 1 for no rotation")
                 })?
             }

@@ -2,7 +2,7 @@
 
 use elbowroom_formats::recording::{self, RecordingLayout};
 use elbowroom_formats::toml_tables::{Table, Value};
-use elbowroom_formats::{FormatError, JointStateOptions, JointStates, Warning, suggest};
+use elbowroom_formats::{Diagnostic, JointStateOptions, JointStates, suggest};
 use elbowroom_kinematics::JointTrajectory;
 use elbowroom_monitor::Life;
 use elbowroom_proximity::Shape;
@@ -14,12 +14,12 @@ use crate::{
     Cell, CellRegion, CellRegionId, CellRobot, PathPlanner, Program, ProgramBody, ProgramStep, StepAction, Units,
 };
 
-type Result<T> = std::result::Result<T, FormatError>;
+type Result<T> = std::result::Result<T, Diagnostic>;
 
 /// Default TCP speed (m/s) of a linear move: the reduced speed of ISO 10218-1.
 const LINEAR_SPEED: f64 = 0.25;
 
-pub(super) fn read(t: &Table<'_>, cell: &Cell, robot: &CellRobot, warnings: &mut Vec<Warning>) -> Result<Program> {
+pub(super) fn read(t: &Table<'_>, cell: &Cell, robot: &CellRobot, warnings: &mut Vec<Diagnostic>) -> Result<Program> {
     t.only(&["override", "repeat", "steps", "trajectory"])?;
     let speed_override = t.get("override").map_or(Ok(1.0), |v| v.percent())?;
     let repeat = t.get("repeat").map_or(Ok(1), |v| v.whole(1, 1_000_000))?;
@@ -163,7 +163,7 @@ fn switch(t: &Table<'_>, regions: &[CellRegion]) -> Result<StepAction> {
     Ok(StepAction::Switch { region: CellRegionId(index), active })
 }
 
-fn trajectory(v: &Value<'_>, robot: &CellRobot, warnings: &mut Vec<Warning>) -> Result<JointTrajectory> {
+fn trajectory(v: &Value<'_>, robot: &CellRobot, warnings: &mut Vec<Diagnostic>) -> Result<JointTrajectory> {
     let chain = &robot.robot.chain;
     let (states, offset_s) = if v.is_table() {
         let t = v.table(RECORDING)?;

@@ -1,7 +1,7 @@
 //! `[region.NAME]` and `[encoder.NAME]`.
 
+use elbowroom_formats::Diagnostic;
 use elbowroom_formats::toml_tables::{Table, Value};
-use elbowroom_formats::{FormatError, Warning};
 use elbowroom_monitor::{Guards, Life, Region, RegionKind, SlotId, SourceLimits};
 use elbowroom_proximity::{ConvexHull, Shape};
 use elbowroom_robot::RobotId;
@@ -12,7 +12,7 @@ use super::definitions::{Definitions, robot_id};
 use super::{follow, models};
 use crate::{CellRegion, Encoder, Follow, Travel, Units};
 
-type Result<T> = std::result::Result<T, FormatError>;
+type Result<T> = std::result::Result<T, Diagnostic>;
 
 const COMMON: &[&str] = &[
     "shape",
@@ -44,7 +44,7 @@ pub(super) fn read(
     t: &Table<'_>,
     units: Units,
     known: &mut Definitions<'_>,
-    warnings: &mut Vec<Warning>,
+    warnings: &mut Vec<Diagnostic>,
 ) -> Result<CellRegion> {
     let mut region = solid(name, t, units)?;
     region.kind = kind(t)?;
@@ -67,7 +67,7 @@ pub(super) fn read(
 }
 
 /// A thickness or a hysteresis: beyond `plausible` metres it causes a warning, beyond [`MAX_M`] an error.
-fn thickness(v: &Value<'_>, units: Units, plausible: f64, warnings: &mut Vec<Warning>) -> Result<f64> {
+fn thickness(v: &Value<'_>, units: Units, plausible: f64, warnings: &mut Vec<Diagnostic>) -> Result<f64> {
     let metres = units.not_negative_length(v)?;
     let shown = units.show_length(metres);
     if metres > MAX_M {
@@ -82,12 +82,12 @@ fn thickness(v: &Value<'_>, units: Units, plausible: f64, warnings: &mut Vec<War
         };
         let what = format!("`{}` is {shown}, more than any robot needs{meant}", v.name);
         let hint = format!("units = {{ length = \"mm\", … }}, or a length up to {}", units.show_length(plausible));
-        warnings.push(Warning::new(v.file, v.line, what).hint(hint));
+        warnings.push(Diagnostic::new(v.file, v.line, what).hint(hint));
     }
     Ok(metres)
 }
 
-fn check_warning(name: &str, t: &Table<'_>, region: &Region, warnings: &mut Vec<Warning>) -> Result<()> {
+fn check_warning(name: &str, t: &Table<'_>, region: &Region, warnings: &mut Vec<Diagnostic>) -> Result<()> {
     match region.kind {
         // A robot without the grant stops half a millimetre before the border, and must have requested the grant by
         // then.
@@ -99,7 +99,7 @@ fn check_warning(name: &str, t: &Table<'_>, region: &Region, warnings: &mut Vec<
             .hint("warning = 250")),
         RegionKind::Forbidden if region.warning_m <= 0.0 => {
             let what = format!("region \"{name}\" has no warning zone: robots stop only when they touch it");
-            warnings.push(Warning::new(t.file, t.line, what).hint("warning = 250"));
+            warnings.push(Diagnostic::new(t.file, t.line, what).hint("warning = 250"));
             Ok(())
         }
         _ => Ok(()),

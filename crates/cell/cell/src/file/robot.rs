@@ -1,7 +1,7 @@
 //! `[robot.NAME]`.
 
 use elbowroom_formats::toml_tables::{Table, Value};
-use elbowroom_formats::{FormatError, Warning, suggest};
+use elbowroom_formats::{Diagnostic, suggest};
 use elbowroom_kinematics::dh::ClassicalRow;
 use elbowroom_kinematics::{Chain, JointKind, JointLimits, Limits};
 use elbowroom_monitor::VolumeModel;
@@ -13,7 +13,7 @@ use super::{flange, models, tools};
 use crate::model_limits::{ACCELERATION_TIME_S, JERK_TIME_S, STOP_TIME_S};
 use crate::{CellRobot, Units};
 
-type Result<T> = std::result::Result<T, FormatError>;
+type Result<T> = std::result::Result<T, Diagnostic>;
 
 const KEYS: &[&str] = &[
     "model",
@@ -48,7 +48,7 @@ const REVOLUTE_SPEED: f64 = std::f64::consts::PI;
 /// Default speed of prismatic joints, m/s.
 const PRISMATIC_SPEED: f64 = 1.0;
 
-pub(super) fn read(name: &str, t: &Table<'_>, units: Units, warnings: &mut Vec<Warning>) -> Result<CellRobot> {
+pub(super) fn read(name: &str, t: &Table<'_>, units: Units, warnings: &mut Vec<Diagnostic>) -> Result<CellRobot> {
     t.only(KEYS)?;
     let mut robot = model(t, units, warnings)?;
     if let Some(v) = t.get("ignore") {
@@ -112,7 +112,7 @@ fn ignore(v: &Value<'_>, robot: &mut Robot) -> Result<()> {
     Ok(())
 }
 
-fn model(t: &Table<'_>, units: Units, warnings: &mut Vec<Warning>) -> Result<Robot> {
+fn model(t: &Table<'_>, units: Units, warnings: &mut Vec<Diagnostic>) -> Result<Robot> {
     let example =
         "model = \"arm.urdf\"   (or: dh = [{ a = 300, alpha = 90, d = 600, theta = 0, min = -180, max = 180 }, …])";
     match (t.get("model"), t.get("dh")) {
@@ -320,7 +320,7 @@ pub(super) fn joint_values(v: &Value<'_>, chain: &Chain, units: Units) -> Result
     Ok(q)
 }
 
-fn start(name: &str, t: &Table<'_>, chain: &Chain, units: Units, warnings: &mut Vec<Warning>) -> Result<Vec<f64>> {
+fn start(name: &str, t: &Table<'_>, chain: &Chain, units: Units, warnings: &mut Vec<Diagnostic>) -> Result<Vec<f64>> {
     let clamped: Vec<f64> = chain.lower().iter().zip(chain.upper()).map(|(lo, hi)| 0.0_f64.max(*lo).min(hi)).collect();
     if let Some(v) = t.get("start") {
         return match v.text() {
@@ -332,7 +332,7 @@ fn start(name: &str, t: &Table<'_>, chain: &Chain, units: Units, warnings: &mut 
         let what =
             format!("robot \"{name}\" has no `start`, and 0 lies outside its limits: it starts at the nearest limit");
         warnings.push(
-            Warning::new(t.file, t.line, what).hint(format!("start = [{}]", vec!["…"; clamped.len()].join(", "))),
+            Diagnostic::new(t.file, t.line, what).hint(format!("start = [{}]", vec!["…"; clamped.len()].join(", "))),
         );
     }
     Ok(clamped)
@@ -389,7 +389,7 @@ fn limits(
     t: &Table<'_>,
     chain: &Chain,
     units: Units,
-    warnings: &mut Vec<Warning>,
+    warnings: &mut Vec<Diagnostic>,
 ) -> Result<Vec<JointLimits>> {
     let given = |key: &str| t.get(key).map(|v| per_joint(&v, chain, units)).transpose();
     let (speed, acceleration, jerk) = (given("speed")?, given("acceleration")?, given("jerk")?);
@@ -417,8 +417,9 @@ fn limits(
             "the model of \"{name}\" gives no speed for {}: taken as 180 deg/s (1 m/s for prismatic joints)",
             unknown.join(", ")
         );
-        warnings
-            .push(Warning::new(t.file, t.line, what).hint("speed = […]   (per joint, in the cell's units per second)"));
+        warnings.push(
+            Diagnostic::new(t.file, t.line, what).hint("speed = […]   (per joint, in the cell's units per second)"),
+        );
     }
     Ok(limits)
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 use elbowroom_formats::toml_tables::{Table, Value};
 use elbowroom_robot::RobotId;
 use elbowroom_vision::{Intrinsics, Point2, TrackSettings};
@@ -11,7 +11,7 @@ use super::robot::robot_of;
 use super::tools::with_exchanged_tools;
 use crate::{Cell, CellSensor, SensorKind, Units};
 
-type Result<T> = std::result::Result<T, FormatError>;
+type Result<T> = std::result::Result<T, Diagnostic>;
 
 /// Keys of every sensor, except the key of its folder.
 pub(super) const KEYS: [&str; 10] =

@@ -1,6 +1,6 @@
 //! `[robot.NAME.tools.TOOL]`: several named tools of a robot.
 
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 use elbowroom_formats::toml_tables::{Table, Value};
 use elbowroom_kinematics::{Chain, Joint, JointId, JointKind, Limits, LinkId};
 use elbowroom_robot::{Collider, Robot};
@@ -9,7 +9,7 @@ use elbowroom_spatial::{Pose, Vec3};
 use super::flange::unknown_link;
 use crate::{CellRobot, CellTool, Units};
 
-type Result<T> = std::result::Result<T, FormatError>;
+type Result<T> = std::result::Result<T, Diagnostic>;
 
 const EXAMPLE: &str = "[robot.NAME.tools.gripper]   (tcp, box or mesh, flange, mounted)";
 

@@ -1,6 +1,6 @@
 //! Units of the cell file, and values with units: lengths, angles, poses, solids.
 
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 use elbowroom_formats::toml_tables::{Table, Value};
 use elbowroom_proximity::{Capsule, Cuboid, Cylinder, Shape, Sphere};
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
@@ -9,7 +9,7 @@ use elbowroom_spatial::{Pose, Rotation, Vec3};
 use super::models;
 use crate::Units;
 
-type Result<T> = std::result::Result<T, FormatError>;
+type Result<T> = std::result::Result<T, Diagnostic>;
 
 impl Units {
     /// Reads the required key `units`.

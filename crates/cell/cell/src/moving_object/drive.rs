@@ -26,7 +26,7 @@ use super::path::ObjectPath;
 /// // The motion from one tick to the next, for `Checker::sweep`:
 /// let motion: ObjectMotion = cart.motion_between(1.5, 1.504);
 /// # let _ = motion;
-/// # Ok::<(), elbowroom_formats::FormatError>(())
+/// # Ok::<(), elbowroom_formats::Diagnostic>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct MovingObject {

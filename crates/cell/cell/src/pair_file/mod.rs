@@ -8,7 +8,7 @@ mod survey;
 use std::fmt;
 use std::path::PathBuf;
 
-use elbowroom_formats::{FormatError, suggest};
+use elbowroom_formats::{Diagnostic, suggest};
 use elbowroom_robot::Exclusion;
 use elbowroom_scene::{PairEdit, PairRule, PairRules, PairState, Selection};
 
@@ -44,7 +44,7 @@ const ANYTHING: &str = "*";
 /// let wrong = PairFile::parse("pairs.toml", "version = 1\npairs = [{ a = \"part\", b = \"tabel\", reason = \"-\" }]")?;
 /// let error = wrong.rules(&model).unwrap_err();
 /// assert!(error.line == Some(2) && error.to_string().contains("table"));
-/// # Ok::<(), elbowroom_formats::FormatError>(())
+/// # Ok::<(), elbowroom_formats::Diagnostic>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct PairFile {
@@ -80,7 +80,7 @@ impl PairFile {
     ///
     /// # Errors
     /// An error at the line of a row that has a name that the model does not have, or links that are never tested.
-    pub fn rules(&self, model: &QueryModel) -> Result<PairRules, FormatError> {
+    pub fn rules(&self, model: &QueryModel) -> Result<PairRules, Diagnostic> {
         let mut rules = PairRules::default();
         for row in &self.rows {
             rules.extend(self.rules_of(row, model)?);
@@ -88,7 +88,7 @@ impl PairFile {
         Ok(rules)
     }
 
-    fn rules_of(&self, row: &PairRow, model: &QueryModel) -> Result<impl Iterator<Item = PairRule>, FormatError> {
+    fn rules_of(&self, row: &PairRow, model: &QueryModel) -> Result<impl Iterator<Item = PairRule>, Diagnostic> {
         let [a, b] = [self.side(row, 0, model)?, self.side(row, 1, model)?];
         if a == b && matches!(a, Selection::Link { .. } | Selection::Object(_)) {
             return Err(self.error(row, format!("\"{}\" is named twice", row.sides[0])).hint("two different names"));
@@ -108,7 +108,7 @@ impl PairFile {
         Ok(std::iter::once(state).chain(row.weight.map(PairEdit::Weight)).map(rule))
     }
 
-    fn side(&self, row: &PairRow, side: usize, model: &QueryModel) -> Result<Selection, FormatError> {
+    fn side(&self, row: &PairRow, side: usize, model: &QueryModel) -> Result<Selection, Diagnostic> {
         let name = &row.sides[side];
         if name == ANYTHING {
             return Ok(Selection::All);
@@ -120,7 +120,7 @@ impl PairFile {
         })
     }
 
-    fn check_can_be_tested(&self, row: &PairRow, sides: [Selection; 2], model: &QueryModel) -> Result<(), FormatError> {
+    fn check_can_be_tested(&self, row: &PairRow, sides: [Selection; 2], model: &QueryModel) -> Result<(), Diagnostic> {
         let [Selection::Link { robot, link: a }, Selection::Link { robot: other, link: b }] = sides else {
             return Ok(());
         };
@@ -134,8 +134,8 @@ impl PairFile {
         Err(self.error(row, what).hint("no row for them"))
     }
 
-    fn error(&self, row: &PairRow, what: String) -> FormatError {
-        FormatError::new(&self.file, row.line, what)
+    fn error(&self, row: &PairRow, what: String) -> Diagnostic {
+        Diagnostic::new(&self.file, row.line, what)
     }
 }
 

@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use elbowroom_formats::toml_tables::{self, Table, Value};
-use elbowroom_formats::{FormatError, read_file, suggest};
+use elbowroom_formats::{Diagnostic, read_file, suggest};
 use elbowroom_scene::PairState;
 
 use super::{ANYTHING, Note, PairFile, PairRow};
 
-type Result<T> = std::result::Result<T, FormatError>;
+type Result<T> = std::result::Result<T, Diagnostic>;
 
 /// Largest file of pairs, bytes.
 const MAX_BYTES: u64 = 64 << 20;
@@ -20,12 +20,12 @@ impl PairFile {
     /// Reads a file. Names are resolved by [`PairFile::rules`].
     ///
     /// # Errors
-    /// [`FormatError`] with the line if it cannot be read or is not a file of pairs.
+    /// [`Diagnostic`] with the line if it cannot be read or is not a file of pairs.
     pub fn read(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
         let bytes = read_file(path, MAX_BYTES, "a file of pairs, as `elbowroom inspect MODEL --pairs FILE` writes it")?;
         let text = String::from_utf8(bytes)
-            .map_err(|_| FormatError::new(path, None, "is not UTF-8 text").hint("the file saved as UTF-8"))?;
+            .map_err(|_| Diagnostic::new(path, None, "is not UTF-8 text").hint("the file saved as UTF-8"))?;
         Self::parse(path, &text)
     }
 
@@ -40,10 +40,10 @@ impl PairFile {
         if let Some(entry) = entries.iter().find(|e| !KEYS.contains(&e.key.as_str())) {
             let what = format!("a file of pairs has no key `{}`", entry.key);
             let hint = suggest::hint(&entry.key, KEYS.iter().copied());
-            return Err(FormatError::new(file, entry.line, what).hint(hint));
+            return Err(Diagnostic::new(file, entry.line, what).hint(hint));
         }
         let needed = |key: &str, example: &str| {
-            let missing = || FormatError::new(file, 1, format!("a file of pairs needs the key `{key}`")).hint(example);
+            let missing = || Diagnostic::new(file, 1, format!("a file of pairs needs the key `{key}`")).hint(example);
             root.get(key).ok_or_else(missing)
         };
         let version = needed("version", "version = 1")?;
@@ -58,7 +58,7 @@ impl PairFile {
 fn row(v: &Value<'_>) -> Result<PairRow> {
     let t = v.table(ROW)?;
     t.only(&["a", "b", "state", "weight", "reason", "found"])?;
-    let side = |key: &str| Ok::<_, FormatError>(t.need(key, ROW)?.text()?.to_owned());
+    let side = |key: &str| Ok::<_, Diagnostic>(t.need(key, ROW)?.text()?.to_owned());
     let sides = [side("a")?, side("b")?];
     if sides == [ANYTHING, ANYTHING] {
         return Err(v.error("lets everything touch everything").hint(ROW));

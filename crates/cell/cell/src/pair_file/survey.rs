@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 use elbowroom_scene::{PairEntry, PairState, Reason};
 
 use super::counts::PairCounts;
@@ -23,13 +23,13 @@ impl PairFile {
     /// so the answers stay the same.
     ///
     /// # Errors
-    /// [`FormatError`] if a scene refuses the model, or a row of the previous file does not fit the model.
+    /// [`Diagnostic`] if a scene refuses the model, or a row of the previous file does not fit the model.
     pub fn survey(
         path: &Path,
         model: &QueryModel,
         before: Option<&Self>,
         accept: bool,
-    ) -> Result<(Self, PairCounts), FormatError> {
+    ) -> Result<(Self, PairCounts), Diagnostic> {
         let mut model = model.clone();
         let by_hand = |row: &&PairRow| !matches!(row.note, Note::Found(_));
         let rows: Vec<PairRow> = before.iter().flat_map(|b| b.rows.iter().filter(by_hand).cloned()).collect();

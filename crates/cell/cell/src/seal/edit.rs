@@ -5,7 +5,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use elbowroom_access::{Change, LogEntry, PrivateKey, TrustedKeys, text_file, trust, utc_now};
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 use elbowroom_monitor::AccessClass;
 use toml_edit::{DocumentMut, Item, TableLike, Value};
 
@@ -62,7 +62,7 @@ pub struct Signer<'a> {
 /// Edits a sealed cell file and logs the edit.
 ///
 /// # Errors
-/// [`FormatError`] if the cell differs from its seal, the class or the key is not permitted, or the result is not a
+/// [`Diagnostic`] if the cell differs from its seal, the class or the key is not permitted, or the result is not a
 /// valid cell. Then nothing is changed.
 pub fn edit(cell: &Path, signer: &Signer<'_>, edit: &CellEdit) -> Result<LogEntry> {
     let trusted = trusted(cell)?;
@@ -71,7 +71,7 @@ pub fn edit(cell: &Path, signer: &Signer<'_>, edit: &CellEdit) -> Result<LogEntr
     if !path.exists() {
         let what = "is not sealed yet: no class guards it";
         let hint = format!("elbowroom region seal {} --as integrator --key FILE", cell.display());
-        return Err(FormatError::new(cell, None, what).hint(hint));
+        return Err(Diagnostic::new(cell, None, what).hint(hint));
     }
     let held = hold(&path)?;
     let before = CellFile::read(cell)?.resolve()?;
@@ -81,7 +81,7 @@ pub fn edit(cell: &Path, signer: &Signer<'_>, edit: &CellEdit) -> Result<LogEntr
     let changes = log.state.changes_to(&draft.state);
     let only = edit.items(&draft)?;
     if let Some(c) = changes.iter().find(|c| !only.contains(&c.item)) {
-        return Err(FormatError::new(cell, draft.state.line(c), format!("the edit would also change this: {c}"))
+        return Err(Diagnostic::new(cell, draft.state.line(c), format!("the edit would also change this: {c}"))
             .hint("tables [region.NAME] with the keys of a region, and nothing else"));
     }
     signer.authorize(cell, &before, &draft, &log, &changes)?;
@@ -91,7 +91,7 @@ pub fn edit(cell: &Path, signer: &Signer<'_>, edit: &CellEdit) -> Result<LogEntr
 /// Seals a cell file in its present state and logs all changes since the last seal.
 ///
 /// # Errors
-/// [`FormatError`] if the class or the key is not permitted, the cell is not valid, or the log was modified.
+/// [`Diagnostic`] if the class or the key is not permitted, the cell is not valid, or the log was modified.
 pub fn seal(cell: &Path, signer: &Signer<'_>) -> Result<LogEntry> {
     let trusted = trusted(cell)?;
     signer.check(cell, &trusted)?;
@@ -101,7 +101,7 @@ pub fn seal(cell: &Path, signer: &Signer<'_>) -> Result<LogEntry> {
     let first = !std::fs::metadata(&path).is_ok_and(|m| m.len() > 0);
     if first && signer.class < AccessClass::Integrator {
         let what = format!("was never sealed: its first seal is the integrator's, not the {}'s", signer.class.name());
-        return Err(FormatError::new(cell, None, what).hint("--as integrator, with the key of an integrator"));
+        return Err(Diagnostic::new(cell, None, what).hint("--as integrator, with the key of an integrator"));
     }
     let held = hold(&path)?;
     let log = if first { Log::new(&path) } else { Log::read_to_continue(&path, &trusted)? };
@@ -117,12 +117,12 @@ pub fn seal(cell: &Path, signer: &Signer<'_>) -> Result<LogEntry> {
 fn trusted(cell: &Path) -> Result<TrustedKeys> {
     if !cell.exists() {
         return Err(
-            FormatError::new(cell, None, "does not exist").hint("the path of a cell file (see docs/cell-file.md)")
+            Diagnostic::new(cell, None, "does not exist").hint("the path of a cell file (see docs/cell-file.md)")
         );
     }
     TrustedKeys::find(cell)?.ok_or_else(|| {
         let what = format!("there is no file of trusted keys, {}", trust::FILE);
-        FormatError::new(cell, None, what).hint(
+        Diagnostic::new(cell, None, what).hint(
             "elbowroom region keygen --as integrator --name \"integration, line 4\" --out integrator.key >> trusted-keys.toml   \
              (beside the cell file; docs/roles.md)",
         )
@@ -140,7 +140,7 @@ impl Signer<'_> {
     /// Checks that the key is trusted for this class.
     fn check(&self, cell: &Path, trusted: &TrustedKeys) -> Result<()> {
         let class = self.class.name();
-        let wrong = |what: String, hint: &str| Err(FormatError::new(cell, None, what).hint(hint));
+        let wrong = |what: String, hint: &str| Err(Diagnostic::new(cell, None, what).hint(hint));
         if self.class == AccessClass::Operator {
             return wrong(
                 "an operator changes no regions and no laws".into(),
@@ -178,29 +178,29 @@ impl Signer<'_> {
             self.class.name(),
             trusted.file.display()
         );
-        Err(FormatError::new(cell, None, what).hint("with the key of an integrator that was: elbowroom region seal"))
+        Err(Diagnostic::new(cell, None, what).hint("with the key of an integrator that was: elbowroom region seal"))
     }
 
     fn authorize(&self, cell: &Path, before: &Cell, draft: &Draft, log: &Log, changes: &[Change]) -> Result<()> {
         let least = least_class(&log.state, &draft.state, changes);
         if let Err(e) = authorize(self.class, before, &draft.cell)? {
-            let refused = FormatError::new(cell, first_line(&draft.state, changes), e.to_string());
+            let refused = Diagnostic::new(cell, first_line(&draft.state, changes), e.to_string());
             return Err(refused.hint(format!("--as {}, with a key of that class", least.name())));
         }
         if self.class < least { Err(self.refusal(cell, log, &draft.state, changes)) } else { Ok(()) }
     }
 
     /// The error for a change that this class may not make.
-    fn refusal(&self, cell: &Path, log: &Log, now: &SealedState, changes: &[Change]) -> FormatError {
+    fn refusal(&self, cell: &Path, log: &Log, now: &SealedState, changes: &[Change]) -> Diagnostic {
         let least = |c: &Change| least_class(&log.state, now, std::slice::from_ref(c));
         let shown = without_consequences(changes);
         let Some(change) = shown.into_iter().find(|c| least(c) > self.class) else {
-            return FormatError::new(cell, None, "needs another class")
+            return Diagnostic::new(cell, None, "needs another class")
                 .hint("--as integrator, with a key of that class");
         };
         let needed = least(change).name();
         let what = format!("{change}: that needs the {needed} class, not {}", self.class.name());
-        FormatError::new(cell, now.line(change), what).hint(format!("--as {needed}, with a key of that class"))
+        Diagnostic::new(cell, now.line(change), what).hint(format!("--as {needed}, with a key of that class"))
     }
 }
 
@@ -310,7 +310,7 @@ fn edited(cell: &Path, text: &str, edit: &CellEdit) -> Result<String> {
         }
         CellEdit::Laws { set, unset } => {
             let item = document.as_table_mut().entry("monitor").or_insert_with(toml_edit::table);
-            let what = || FormatError::new(cell, None, "`monitor` is no table").hint("[monitor]");
+            let what = || Diagnostic::new(cell, None, "`monitor` is no table").hint("[monitor]");
             change(cell, item.as_table_like_mut().ok_or_else(what)?, "monitor", set, unset)?;
         }
     }
@@ -319,16 +319,16 @@ fn edited(cell: &Path, text: &str, edit: &CellEdit) -> Result<String> {
 
 fn document(path: &Path, text: &str) -> Result<DocumentMut> {
     // The file was already parsed; errors there have lines.
-    text.parse().map_err(|e: toml_edit::TomlError| FormatError::new(path, None, e.message().to_owned()))
+    text.parse().map_err(|e: toml_edit::TomlError| Diagnostic::new(path, None, e.message().to_owned()))
 }
 
 fn regions(document: &mut DocumentMut) -> Option<&mut dyn TableLike> {
     document.get_mut("region").and_then(Item::as_table_like_mut)
 }
 
-fn unknown(cell: &Path, text: &str, region: &str) -> FormatError {
+fn unknown(cell: &Path, text: &str, region: &str) -> Diagnostic {
     let names: Vec<String> = CellFile::parse(cell, text).map(|f| f.region_names()).unwrap_or_default();
-    FormatError::new(cell, None, format!("there is no region `{region}`"))
+    Diagnostic::new(cell, None, format!("there is no region `{region}`"))
         .hint(elbowroom_formats::suggest::hint(region, names.iter().map(String::as_str)))
 }
 
@@ -336,7 +336,7 @@ fn unknown(cell: &Path, text: &str, region: &str) -> FormatError {
 fn added(cell: &Path, document: &DocumentMut, text: &str, toml: &str, from: &Path) -> Result<String> {
     let new = CellFile::parse(from, toml)?;
     let wrong = |line: Option<usize>, what: String| {
-        FormatError::new(from, line, what).hint("[region.NAME] and its keys, as `elbowroom teach` prints them")
+        Diagnostic::new(from, line, what).hint("[region.NAME] and its keys, as `elbowroom teach` prints them")
     };
     let first = toml.lines().map(str::trim).find(|l| !l.is_empty() && !l.starts_with('#'));
     if !first.is_some_and(|l| l.starts_with('[')) {
@@ -350,7 +350,7 @@ fn added(cell: &Path, document: &DocumentMut, text: &str, toml: &str, from: &Pat
     if let Some(name) = names.iter().find(|n| known.is_some_and(|k| k.contains_key(n))) {
         let what = format!("there is a region `{name}` already");
         let hint = format!("elbowroom region change {} {name} KEY=VALUE --as CLASS --key FILE", cell.display());
-        return Err(FormatError::new(cell, None, what).hint(hint));
+        return Err(Diagnostic::new(cell, None, what).hint(hint));
     }
     let gap = if toml.starts_with('\n') { "" } else { "\n" };
     Ok(format!("{}\n{gap}{}\n", text.trim_end_matches('\n'), toml.trim_end_matches('\n')))
@@ -365,7 +365,7 @@ fn change(
 ) -> Result<()> {
     for key in unset {
         if table.remove(key).is_none() {
-            return Err(FormatError::new(cell, None, format!("`{name}` has no key `{key}` to take out")));
+            return Err(Diagnostic::new(cell, None, format!("`{name}` has no key `{key}` to take out")));
         }
     }
     for (key, value) in set {

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use elbowroom_access::{LogEntry, TrustedKey, TrustedKeys, hex, text_file, trust};
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 use elbowroom_monitor::AccessClass;
 
 use super::last_seal::Seal;
@@ -46,14 +46,14 @@ impl Log {
             log.take(line, trusted)?;
         }
         if log.entries.is_empty() {
-            return Err(FormatError::new(file, None, "is empty: the seal was removed").hint(RESTORE));
+            return Err(Diagnostic::new(file, None, "is empty: the seal was removed").hint(RESTORE));
         }
         Ok(log)
     }
 
     fn take(&mut self, line: &str, trusted: &TrustedKeys) -> Result<()> {
         let number = self.entries.len() + 1;
-        let wrong = |what: String| FormatError::new(&self.file, number, what).hint(RESTORE);
+        let wrong = |what: String| Diagnostic::new(&self.file, number, what).hint(RESTORE);
         let entry =
             LogEntry::parse(line).ok_or_else(|| wrong("is not an entry of an edit log, or was modified".into()))?;
         if entry.sequence != number as u64 || entry.previous != self.head {
@@ -92,7 +92,7 @@ impl Log {
     fn signer<'a>(&self, entry: &LogEntry, trusted: &'a TrustedKeys) -> Result<&'a TrustedKey> {
         trusted.get(&entry.key).ok_or_else(|| {
             let what = format!("was signed with the key {}, which {} does not name", entry.key, trusted.file.display());
-            FormatError::new(&self.file, self.entries.len() + 1, what).hint(
+            Diagnostic::new(&self.file, self.entries.len() + 1, what).hint(
                 "a key that is no longer used stays there with `retired = true`; an unknown key means a forged log",
             )
         })
@@ -107,7 +107,7 @@ impl Log {
         let key = &self.entries[rest + at].key;
         let what =
             format!("was signed with the key {key}, which is retired, and no integrator has sealed the cell since");
-        Err(FormatError::new(&self.file, rest + at + 1, what)
+        Err(Diagnostic::new(&self.file, rest + at + 1, what)
             .hint("elbowroom region seal CELL --as integrator --key FILE"))
     }
 

@@ -20,7 +20,7 @@ pub(crate) mod value;
 use std::path::Path;
 
 use elbowroom_access::{Change, LogEntry, TrustedKeys, text_file, trust};
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 use elbowroom_monitor::AccessClass;
 
 pub use edit::{CellEdit, Signer, edit, seal};
@@ -63,7 +63,7 @@ pub(crate) fn verify(file: &CellFile, cell: &Cell) -> Result<Option<Seal>> {
 /// Reads and verifies the log of a cell file, whether or not the cell matches its seal.
 ///
 /// # Errors
-/// [`FormatError`] if the cell cannot be read or is not sealed, or at the line of the log that is not valid.
+/// [`Diagnostic`] if the cell cannot be read or is not sealed, or at the line of the log that is not valid.
 pub fn history(cell: &Path) -> Result<History> {
     let path = log_of(cell);
     let Some(trusted) = TrustedKeys::find(cell)? else { return Err(trust::missing(cell, &path)) };
@@ -85,13 +85,13 @@ pub fn shown(changes: &[Change]) -> Vec<&Change> {
     state::without_consequences(changes)
 }
 
-fn unsealed(cell: &Path, trusted: &TrustedKeys) -> FormatError {
+fn unsealed(cell: &Path, trusted: &TrustedKeys) -> Diagnostic {
     let what = format!(
         "is not sealed, and cells that come under {} must be: {} is missing",
         trusted.file.display(),
         log_of(cell).display()
     );
-    FormatError::new(cell, None, what).hint(seal_command(cell, AccessClass::Integrator))
+    Diagnostic::new(cell, None, what).hint(seal_command(cell, AccessClass::Integrator))
 }
 
 fn seal_command(cell: &Path, class: AccessClass) -> String {
@@ -105,7 +105,7 @@ fn seal_command(cell: &Path, class: AccessClass) -> String {
 /// Largest number of differences in a message.
 const NAMED: usize = 5;
 
-fn differs(file: &CellFile, log: &Log, now: &SealedState, changes: &[Change]) -> FormatError {
+fn differs(file: &CellFile, log: &Log, now: &SealedState, changes: &[Change]) -> Diagnostic {
     let shown = state::without_consequences(changes);
     let mut what = String::from("is not as it was sealed: ");
     let named: Vec<String> = shown.iter().take(NAMED).map(std::string::ToString::to_string).collect();
@@ -115,5 +115,5 @@ fn differs(file: &CellFile, log: &Log, now: &SealedState, changes: &[Change]) ->
     }
     let line = shown.first().and_then(|c| now.line(c));
     let least = state::least_class(&log.state, now, changes);
-    FormatError::new(&file.file, line, what).hint(format!("the sealed version; or {}", seal_command(&file.file, least)))
+    Diagnostic::new(&file.file, line, what).hint(format!("the sealed version; or {}", seal_command(&file.file, least)))
 }

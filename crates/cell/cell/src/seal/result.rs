@@ -1,5 +1,5 @@
 //! Result type of the functions that read or write a sealed cell.
 
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 
-pub(super) type Result<T> = std::result::Result<T, FormatError>;
+pub(super) type Result<T> = std::result::Result<T, Diagnostic>;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use elbowroom_access::{Change, hex, trust};
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 use elbowroom_formats::toml_tables::{Data, Entry, Node};
 use elbowroom_monitor::{AccessClass, Life};
 
@@ -30,7 +30,7 @@ pub(super) struct SealedState {
 
 impl SealedState {
     /// The state of a cell file and the files it names.
-    pub fn of(file: &CellFile, cell: &Cell) -> Result<Self, FormatError> {
+    pub fn of(file: &CellFile, cell: &Cell) -> Result<Self, Diagnostic> {
         let mut state = Self::default();
         for e in file.entries.iter().filter(|e| !FREE.contains(&e.key.as_str())) {
             match &e.node.data {

@@ -1,6 +1,6 @@
 //! Speeds and accelerations of a recording beyond the limits of the cell.
 
-use elbowroom_formats::Warning;
+use elbowroom_formats::Diagnostic;
 use elbowroom_kinematics::Chain;
 use elbowroom_kinematics::motion_bound::max_motion_bounds;
 use elbowroom_monitor::Volume;
@@ -70,7 +70,7 @@ pub fn accelerations(cell: &Cell, robot: RobotId) -> Vec<f64> {
 
 /// Warns of joints whose speed in a recording exceeds their limit, that begin in motion, or, with the stopping-distance
 /// law, whose acceleration exceeds the stated one.
-pub fn recording_warnings(cell: &Cell, robot: RobotId) -> Vec<Warning> {
+pub fn recording_warnings(cell: &Cell, robot: RobotId) -> Vec<Diagnostic> {
     let Some(program) = cell.programs.get(robot.0).and_then(Option::as_ref) else { return Vec::new() };
     let mut warnings = Vec::new();
     for (j, demand) in demands(cell, robot).iter().enumerate() {
@@ -92,7 +92,7 @@ struct RecordedJoint<'a> {
 }
 
 impl RecordedJoint<'_> {
-    fn too_fast(&self, demand: &JointDemand) -> Option<Warning> {
+    fn too_fast(&self, demand: &JointDemand) -> Option<Diagnostic> {
         let (stated, demanded) = (self.robot.limits[self.j].velocity, demand.speed * self.program.speed_override);
         if demanded <= stated * (1.0 + 1e-6) {
             return None;
@@ -107,7 +107,7 @@ impl RecordedJoint<'_> {
         Some(self.warning(&what, format!("times in the recording that are farther apart, or override = {share}")))
     }
 
-    fn begins_in_motion(&self, demand: &JointDemand) -> Option<Warning> {
+    fn begins_in_motion(&self, demand: &JointDemand) -> Option<Diagnostic> {
         let needed_s = demand.first_speed / self.robot.limits[self.j].acceleration;
         if needed_s <= self.cell.tick_s * UNSEEN_TICKS {
             return None;
@@ -120,7 +120,7 @@ impl RecordedJoint<'_> {
         Some(self.warning(&what, "a recording that begins at rest".into()))
     }
 
-    fn too_hard(&self, demand: &JointDemand) -> Option<Warning> {
+    fn too_hard(&self, demand: &JointDemand) -> Option<Diagnostic> {
         if demand.acceleration <= 0.0 {
             return None;
         }
@@ -135,10 +135,10 @@ impl RecordedJoint<'_> {
         Some(self.warning(&what, write.into()))
     }
 
-    fn warning(&self, what: &str, write: String) -> Warning {
+    fn warning(&self, what: &str, write: String) -> Diagnostic {
         let (robot, joint) = (&self.robot.name, &self.robot.joint_names()[self.j]);
         let what = format!("the recording in [program.{robot}]: joint \"{joint}\" {what}");
-        Warning::new(&self.cell.file, self.program.line, what).hint(write)
+        Diagnostic::new(&self.cell.file, self.program.line, what).hint(write)
     }
 
     /// To four digits, in the file's unit.

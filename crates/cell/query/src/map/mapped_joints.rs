@@ -2,7 +2,7 @@
 
 use elbowroom_cell::{Cell, CellRobot};
 use elbowroom_cspace::{Grid, GridAxis};
-use elbowroom_formats::{FormatError, Warning};
+use elbowroom_formats::Diagnostic;
 
 use super::{axes, select_map};
 
@@ -26,11 +26,11 @@ impl MappedJoints {
         cell: &Cell,
         robot: &CellRobot,
         (purpose, otherwise): (&str, Option<&str>),
-        warnings: &mut Vec<Warning>,
-    ) -> Result<Self, FormatError> {
+        warnings: &mut Vec<Diagnostic>,
+    ) -> Result<Self, Diagnostic> {
         let (_, spec) = select_map(cell, Some(&robot.name))?;
         let wrong = |what: String, hint: String| {
-            FormatError::new(&cell.file, spec.line, format!("the map of robot \"{}\" {what}", robot.name)).hint(hint)
+            Diagnostic::new(&cell.file, spec.line, format!("the map of robot \"{}\" {what}", robot.name)).hint(hint)
         };
         let names = robot.joint_names();
         let joints = <[usize; 3]>::try_from(&spec.joints[..]).map_err(|_| {

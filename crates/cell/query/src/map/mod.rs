@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use elbowroom_cell::{Cell, CellRobot, MapSpec};
 use elbowroom_cspace::{GridAxis, GridAxisError, ObstacleModel, OccupancyArray, RemainingJoints, RobotMapError};
-use elbowroom_formats::{FormatError, Warning};
+use elbowroom_formats::Diagnostic;
 use elbowroom_kinematics::JointKind;
 use elbowroom_proximity::Shape;
 use elbowroom_robot::ObjectId;
@@ -72,7 +72,7 @@ pub struct CellMap {
     /// The union of all obstacles, cell by cell; `None` if there are too many cells.
     pub dense: Option<OccupancyArray>,
     /// Warnings.
-    pub warnings: Vec<Warning>,
+    pub warnings: Vec<Diagnostic>,
 }
 
 /// The cells blocked by one object.
@@ -111,13 +111,13 @@ pub struct MapObstacle {
 /// let map = map(&cell, &MapRequest::default())?;
 /// assert_eq!(map.axes.iter().map(|a| a.count()).collect::<Vec<_>>(), [170, 170]);
 /// assert!(map.obstacles[0].blocks.is_blocked(&[0.0, 0.0]) && map.blocked < 170 * 170 / 2);
-/// # Ok::<(), elbowroom_formats::FormatError>(())
+/// # Ok::<(), elbowroom_formats::Diagnostic>(())
 /// ```
 ///
 /// # Errors
 /// An unknown or ambiguous robot, a joint without limits, too many cells for the memory; a deadline with another model than
 /// spheres, or for a map that is not on sphere covers.
-pub fn map(cell: &Cell, request: &MapRequest) -> Result<CellMap, FormatError> {
+pub fn map(cell: &Cell, request: &MapRequest) -> Result<CellMap, Diagnostic> {
     map_with(cell, request, &|_| ())
 }
 
@@ -129,9 +129,9 @@ pub fn map_with(
     cell: &Cell,
     request: &MapRequest,
     progress: &(dyn Fn(MapProgress<'_>) + Sync),
-) -> Result<CellMap, FormatError> {
+) -> Result<CellMap, Diagnostic> {
     let (robot, spec) = select_map(cell, request.robot.as_deref())?;
-    let wrong = |what: String, hint: &str| FormatError::new(&cell.file, spec.line, what).hint(hint);
+    let wrong = |what: String, hint: &str| Diagnostic::new(&cell.file, spec.line, what).hint(hint);
     let mut warnings = Vec::new();
     let (axes, is_angle) = axes(cell, robot, &spec, &mut warnings)?;
     let others = if spec.others_at_start { RemainingJoints::Fixed(&robot.start) } else { RemainingJoints::Swept };
@@ -166,7 +166,7 @@ pub fn map_with(
             map.fill(model, &solids, &report).map(|all| all.blocks.blocked()).map_err(refuse)
         };
         // If links may touch only some objects, cells that several maps block count several times.
-        let counts = maps.each().map(of_map).collect::<Result<Vec<u64>, FormatError>>()?;
+        let counts = maps.each().map(of_map).collect::<Result<Vec<u64>, Diagnostic>>()?;
         Ok(counts.into_iter().fold(0, u64::saturating_add))
     };
     let dense = blocked_cells::union(&axes, obstacles.iter().map(|o| &o.blocks));
@@ -182,19 +182,19 @@ pub fn map_with(
 }
 
 /// Notes on what a map omits, and on what it must not be used for.
-fn notes(cell: &Cell, robot: &CellRobot, line: usize, model: MapModel) -> Vec<Warning> {
+fn notes(cell: &Cell, robot: &CellRobot, line: usize, model: MapModel) -> Vec<Diagnostic> {
     let mut notes = Vec::new();
     for m in &cell.moving_objects {
         let what = format!("object \"{}\" moves: the map has it at its initial pose", cell.objects[m.object.0].name);
-        notes.push(Warning::new(&cell.file, line, what));
+        notes.push(Diagnostic::new(&cell.file, line, what));
     }
     if !model.is_conservative() {
         let what = "the model `seeds` misses blocked cells that no seed leads to: for comparison only, no robot may rely on it";
-        notes.push(Warning::new(&cell.file, line, what));
+        notes.push(Diagnostic::new(&cell.file, line, what));
     }
     if cell.robots.len() > 1 {
         let what = format!("the map of \"{}\" leaves the other robots out: they move", robot.name);
-        notes.push(Warning::new(&cell.file, line, what));
+        notes.push(Diagnostic::new(&cell.file, line, what));
     }
     notes
 }
@@ -209,8 +209,8 @@ fn fill(
     request: &MapRequest,
     maps: &LinkMaps,
     progress: &(dyn Fn(MapProgress<'_>) + Sync),
-    wrong: &dyn Fn(String, &str) -> FormatError,
-) -> Result<Result<Vec<FilledCells>, RobotMapError>, FormatError> {
+    wrong: &dyn Fn(String, &str) -> Diagnostic,
+) -> Result<Result<Vec<FilledCells>, RobotMapError>, Diagnostic> {
     let every_link = || {
         maps.of_every_link().ok_or_else(|| {
             let what = "the file of pairs lets links touch objects: such maps have neither a deadline nor seeds";
@@ -248,8 +248,8 @@ fn expand_each(
     cell: &Cell,
     solids_map: &SolidsMap,
     progress: &(dyn Fn(MapProgress<'_>) + Sync),
-    wrong: &dyn Fn(String, &str) -> FormatError,
-) -> Result<Result<Vec<FilledCells>, RobotMapError>, FormatError> {
+    wrong: &dyn Fn(String, &str) -> Diagnostic,
+) -> Result<Result<Vec<FilledCells>, RobotMapError>, Diagnostic> {
     let mut filled = Vec::with_capacity(cell.objects.len());
     for (number, object) in cell.objects.iter().enumerate() {
         progress(MapProgress { share: number as f64 / cell.objects.len() as f64, what: &object.name });
@@ -273,8 +273,8 @@ fn fill_until(
     solids_map: &SolidsMap,
     model: MapModel,
     limit: Duration,
-    wrong: &dyn Fn(String, &str) -> FormatError,
-) -> Result<Result<Vec<FilledCells>, RobotMapError>, FormatError> {
+    wrong: &dyn Fn(String, &str) -> Diagnostic,
+) -> Result<Result<Vec<FilledCells>, RobotMapError>, Diagnostic> {
     let MapModel::Solids(ObstacleModel::Spheres(most)) = model else {
         let what = format!("a deadline is for the model of spheres, which is refined until then, not for `{model}`");
         return Err(wrong(what, "--model spheres=64 --deadline 5"));
@@ -299,7 +299,7 @@ impl CellMap {
 }
 
 /// The requested robot, otherwise the only one with a map, otherwise the only one.
-pub(crate) fn select_map<'c>(cell: &'c Cell, name: Option<&str>) -> Result<(&'c CellRobot, MapSpec), FormatError> {
+pub(crate) fn select_map<'c>(cell: &'c Cell, name: Option<&str>) -> Result<(&'c CellRobot, MapSpec), Diagnostic> {
     let robot = match (name, &cell.maps[..]) {
         (None, [only]) => only.robot,
         _ => select_robot(cell, name)?.0,
@@ -314,8 +314,8 @@ pub(crate) fn axes(
     cell: &Cell,
     robot: &CellRobot,
     spec: &MapSpec,
-    warnings: &mut Vec<Warning>,
-) -> Result<(Vec<GridAxis>, Vec<bool>), FormatError> {
+    warnings: &mut Vec<Diagnostic>,
+) -> Result<(Vec<GridAxis>, Vec<bool>), Diagnostic> {
     let chain = &robot.robot.chain;
     let mut axes = Vec::new();
     let mut is_angle = Vec::new();
@@ -324,7 +324,7 @@ pub(crate) fn axes(
         let limits = match joint.kind {
             JointKind::Continuous => {
                 let what = format!("joint \"{}\" is continuous: the map covers -180 to 180 degrees", joint.name);
-                warnings.push(Warning::new(&cell.file, spec.line, what));
+                warnings.push(Diagnostic::new(&cell.file, spec.line, what));
                 [-std::f64::consts::PI, std::f64::consts::PI]
             }
             _ => [joint.limits.lower, joint.limits.upper],
@@ -336,7 +336,7 @@ pub(crate) fn axes(
                 }
                 _ => "lower and upper limits for the joint in the robot's model, or joints = [...] without it",
             };
-            FormatError::new(&cell.file, spec.line, format!("robot \"{}\": {e}", robot.name)).hint(hint)
+            Diagnostic::new(&cell.file, spec.line, format!("robot \"{}\": {e}", robot.name)).hint(hint)
         })?;
         axes.push(axis);
         is_angle.push(joint.kind.turns());

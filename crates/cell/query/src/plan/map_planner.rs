@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use elbowroom_cell::Cell;
 use elbowroom_cspace::{ObstacleModel, OccupancyBitmap, RemainingJoints, RobotMapError};
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 use elbowroom_planner::{
     GridPlanner, GridPlannerError, GridPlannerSettings, JointPath, RrtConnect, RrtConnectError, RrtConnectSettings,
 };
@@ -82,13 +82,12 @@ impl MapPlanner {
     /// sphere covers, cells count as blocked up to the distance `clearance_m` (m) from an object.
     ///
     /// # Errors
-    /// [`FormatError`] if the robot's map does not have three joints, or has too many cells.
-    pub fn new(cell: &Cell, id: RobotId, held: &[f64], clearance_m: f64) -> Result<Self, FormatError> {
+    /// [`Diagnostic`] if the robot's map does not have three joints, or has too many cells.
+    pub fn new(cell: &Cell, id: RobotId, held: &[f64], clearance_m: f64) -> Result<Self, Diagnostic> {
         let robot = &cell.robots[id.0];
         // `elbowroom map` gives the warnings.
         let mapped = MappedJoints::of(cell, robot, PURPOSE, &mut Vec::new())?;
-        let wrong =
-            |what: String| FormatError::new(&cell.file, robot.line, format!("robot \"{}\": {what}", robot.name));
+        let wrong = |what: String| Diagnostic::new(&cell.file, robot.line, format!("robot \"{}\": {what}", robot.name));
         let axes = mapped.grid.axes();
         let maps = LinkMaps::new(cell, id, |robot| {
             SolidsMap::new(robot, axes, &mapped.joints, RemainingJoints::Fixed(held), Some(clearance_m))

@@ -15,7 +15,7 @@ use std::time::Instant;
 
 use elbowroom_cell::region_constraint::RegionConstraint;
 use elbowroom_cell::{Cell, CellRobot, OutOfReachProofs, QueryModel, TcpTarget, region_constraint};
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 use elbowroom_planner::{
     CoverModels, CoverObstacles, RobotPlanner, RrtConnect, RrtConnectError, RrtConnectSettings, TaskSpaceRegion,
 };
@@ -119,7 +119,7 @@ impl Default for PathRequest {
 /// let timed = answer.timed.expect("the elbow can bend");
 /// assert!(timed.path.waypoints.len() > 2);
 /// assert_eq!(timed.trajectory.last(), Some(&[1.0, 0.0][..]));
-/// # Ok::<(), elbowroom_formats::FormatError>(())
+/// # Ok::<(), elbowroom_formats::Diagnostic>(())
 /// ```
 ///
 /// # Errors
@@ -128,7 +128,7 @@ impl Default for PathRequest {
 ///
 /// With [`PathPlanner::Grid`] also a map that does not have three joints, and a request that moves other joints. From a
 /// start in a region, or nearer to it than the clearance, this planner finds no path.
-pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, FormatError> {
+pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, Diagnostic> {
     let (id, robot) = request_validation::select_robot(cell, request.robot.as_deref())?;
     let limits = request_validation::joint_limits(cell, robot)?.iter().map(|limits| limits.slowed_to(request.speed));
     let limits: Vec<_> = limits.collect();
@@ -177,7 +177,7 @@ fn goals(
     id: RobotId,
     to: &PathGoal,
     seed: u64,
-) -> Result<Vec<Vec<f64>>, FormatError> {
+) -> Result<Vec<Vec<f64>>, Diagnostic> {
     let robot = &cell.robots[id.0];
     let target = match to {
         PathGoal::Joints(q) => {
@@ -196,7 +196,7 @@ fn goals(
         };
         let hint = other_unit(cell, &target.in_world, is_reached);
         let hint = hint.unwrap_or_else(|| "a pose within reach, or joint values".to_owned());
-        FormatError::new(&cell.file, robot.line, what).hint(hint)
+        Diagnostic::new(&cell.file, robot.line, what).hint(hint)
     })
 }
 

@@ -4,7 +4,7 @@
 use std::time::Instant;
 
 use elbowroom_cell::{Cell, CellRobot};
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 use elbowroom_planner::{GridPlannerError, RobotPlanner, RrtConnect};
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{Checker, CheckerOptions, Selection, SweepOptions};
@@ -28,9 +28,9 @@ impl MapQuery<'_> {
     /// Plans a path to the first goal that is reached, or states why the first goal is not reached.
     ///
     /// # Errors
-    /// [`FormatError`] if the map does not have three joints or has too many cells, if the request moves other joints,
+    /// [`Diagnostic`] if the map does not have three joints or has too many cells, if the request moves other joints,
     /// or if the start or all goals are in collision or beyond limits.
-    pub fn plan(&self, mut exact: RrtConnect<'_>) -> Result<PathAnswer, FormatError> {
+    pub fn plan(&self, mut exact: RrtConnect<'_>) -> Result<PathAnswer, Diagnostic> {
         let robot = &self.cell.robots[self.id.0];
         let Query { scene, state, settings, limits, period_s, .. } = &self.query;
         let goals = self.goals(robot, &MappedJoints::of(self.cell, robot, PURPOSE, &mut Vec::new())?)?;
@@ -39,7 +39,7 @@ impl MapQuery<'_> {
         let mut planner = MapPlanner::new(self.cell, self.id, state.q(self.id), settings.clearance_m)?;
         planner
             .update(scene, state, &[])
-            .map_err(|e| FormatError::new(&self.cell.file, robot.line, format!("robot \"{}\": {e}", robot.name)))?;
+            .map_err(|e| Diagnostic::new(&self.cell.file, robot.line, format!("robot \"{}\": {e}", robot.name)))?;
         let map_time = begin.elapsed();
         let mut reasons = Vec::new();
         for goal in &goals {
@@ -59,7 +59,7 @@ impl MapQuery<'_> {
     }
 
     /// The goals at which the other joints have their start values.
-    fn goals(&self, robot: &CellRobot, mapped: &MappedJoints) -> Result<Vec<&Vec<f64>>, FormatError> {
+    fn goals(&self, robot: &CellRobot, mapped: &MappedJoints) -> Result<Vec<&Vec<f64>>, Diagnostic> {
         let moved = |goal: &[f64]| mapped.moved_otherwise(self.query.state.q(self.id), goal);
         let goals: Vec<&Vec<f64>> = self.query.goals.iter().filter(|goal| moved(goal).is_none()).collect();
         let Some(other) = self.query.goals.first().and_then(|goal| moved(goal)).filter(|_| goals.is_empty()) else {
@@ -69,7 +69,7 @@ impl MapQuery<'_> {
         let of_map = mapped.joints.map(|j| names[j].as_str()).join(", ");
         let what = format!("the map of robot \"{}\" is of {of_map}, and the goal moves `{}`", robot.name, names[other]);
         let hint = "a goal with the other joints as at the start, or the planner rrt-connect";
-        Err(FormatError::new(&self.cell.file, robot.line, what).hint(hint))
+        Err(Diagnostic::new(&self.cell.file, robot.line, what).hint(hint))
     }
 
     /// The goals that are free and within limits, as the start must be: a contact would appear only as a blocked cell.
@@ -77,7 +77,7 @@ impl MapQuery<'_> {
         &self,
         goals: Vec<&'g Vec<f64>>,
         exact: &mut RrtConnect<'_>,
-    ) -> Result<Vec<&'g Vec<f64>>, FormatError> {
+    ) -> Result<Vec<&'g Vec<f64>>, Diagnostic> {
         let mut free = Vec::new();
         let mut refused = None;
         for goal in goals {

@@ -1,7 +1,7 @@
 //! Validation of a request: selection of the robot, joint values, limits.
 
 use elbowroom_cell::{Cell, CellRobot};
-use elbowroom_formats::{FormatError, suggest};
+use elbowroom_formats::{Diagnostic, suggest};
 use elbowroom_kinematics::{JointKind, JointLimits};
 use elbowroom_planner::{PathEnd, RrtConnectError};
 use elbowroom_robot::RobotId;
@@ -10,9 +10,9 @@ use elbowroom_robot::RobotId;
 ///
 /// # Errors
 /// An error if the robot does not exist, or if there are several robots and no name.
-pub fn select_robot<'c>(cell: &'c Cell, name: Option<&str>) -> Result<(RobotId, &'c CellRobot), FormatError> {
+pub fn select_robot<'c>(cell: &'c Cell, name: Option<&str>) -> Result<(RobotId, &'c CellRobot), Diagnostic> {
     let names = || cell.robots.iter().map(|r| r.name.as_str());
-    let wrong = |what: String, hint: String| Err(FormatError::new(&cell.file, None, what).hint(hint));
+    let wrong = |what: String, hint: String| Err(Diagnostic::new(&cell.file, None, what).hint(hint));
     match (name, &cell.robots[..]) {
         (None, [only]) => Ok((RobotId(0), only)),
         (None, _) => wrong(format!("has {} robots: name one", cell.robots.len()), suggest::hint("", names())),
@@ -24,7 +24,7 @@ pub fn select_robot<'c>(cell: &'c Cell, name: Option<&str>) -> Result<(RobotId, 
 }
 
 /// Motion limits of the robot's joints. Speeds must be given: a guess would be unsafe.
-pub(super) fn joint_limits<'c>(cell: &Cell, robot: &'c CellRobot) -> Result<&'c [JointLimits], FormatError> {
+pub(super) fn joint_limits<'c>(cell: &Cell, robot: &'c CellRobot) -> Result<&'c [JointLimits], Diagnostic> {
     let chain = &robot.robot.chain;
     let joints = || chain.active_joints().iter().map(|id| &chain.joints()[id.0]);
     let known = |v: Option<f64>| v.is_some_and(|v| v > 0.0 && v.is_finite());
@@ -49,16 +49,16 @@ pub(super) fn joint_limits<'c>(cell: &Cell, robot: &'c CellRobot) -> Result<&'c 
             cell.units.angle.symbol(),
             cell.units.length.symbol(),
         );
-        return Err(FormatError::new(&cell.file, robot.line, what).hint(hint));
+        return Err(Diagnostic::new(&cell.file, robot.line, what).hint(hint));
     }
     Ok(&robot.limits)
 }
 
 /// Checks that there is one finite value per joint.
-pub(super) fn check_joint_values(cell: &Cell, robot: &CellRobot, end: &str, q: &[f64]) -> Result<(), FormatError> {
+pub(super) fn check_joint_values(cell: &Cell, robot: &CellRobot, end: &str, q: &[f64]) -> Result<(), Diagnostic> {
     let names = robot.joint_names();
     let order = || format!("one value per joint in this order, rad (m for prismatic joints): {}", names.join(","));
-    let wrong = |what: String| FormatError::new(&cell.file, robot.line, what).hint(order());
+    let wrong = |what: String| Diagnostic::new(&cell.file, robot.line, what).hint(order());
     if q.len() != names.len() {
         let joints = names.len();
         return Err(wrong(format!(
@@ -76,8 +76,8 @@ pub(super) fn check_joint_values(cell: &Cell, robot: &CellRobot, end: &str, q: &
 }
 
 /// The error if the planner rejects the request.
-pub(super) fn planner_error(cell: &Cell, robot: &CellRobot, e: &RrtConnectError) -> FormatError {
-    let error = |what: String| FormatError::new(&cell.file, robot.line, what);
+pub(super) fn planner_error(cell: &Cell, robot: &CellRobot, e: &RrtConnectError) -> Diagnostic {
+    let error = |what: String| Diagnostic::new(&cell.file, robot.line, what);
     let of = |end: &PathEnd| format!("the {end} of robot \"{}\"", robot.name);
     match e {
         RrtConnectError::OutOfLimits { end, joint, value, lower, upper, unit } => {

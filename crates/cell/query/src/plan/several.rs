@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use elbowroom_cell::region_constraint::RegionConstraints;
 use elbowroom_cell::{Cell, Follow, OutOfReachProofs, QueryModel};
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 use elbowroom_kinematics::{JointTrajectory, TrajectoryRow};
 use elbowroom_planner::{
     PrioritizedMotion, PrioritizedPlanner, PrioritizedPlannerError, RobotGoal, RrtConnectError, RrtConnectSettings,
@@ -85,14 +85,14 @@ pub struct RobotPath {
 /// # Errors
 /// As for [`plan`](super::plan), for each robot; also a robot that is named twice, and a region that one of the robots
 /// must avoid and another one carries.
-pub fn plan_several(cell: &Cell, request: &SeveralPathsRequest) -> Result<SeveralPathsAnswer, FormatError> {
+pub fn plan_several(cell: &Cell, request: &SeveralPathsRequest) -> Result<SeveralPathsAnswer, Diagnostic> {
     let scene = QueryModel::of_cell(cell).scene(OutOfReachProofs::Omit)?;
     let (mut goals, mut starts) = (Vec::new(), cell.robots.iter().map(|r| r.start.clone()).collect::<Vec<_>>());
     for one in &request.robots {
         let (id, robot) = select_robot(cell, Some(&one.robot))?;
         if goals.iter().any(|goal: &RobotGoal| goal.robot == id) {
             let what = format!("robot \"{}\" has two goals", robot.name);
-            return Err(FormatError::new(&cell.file, robot.line, what).hint("each robot once"));
+            return Err(Diagnostic::new(&cell.file, robot.line, what).hint("each robot once"));
         }
         let from = one.from.as_ref().unwrap_or(&robot.start);
         check_joint_values(cell, robot, "start", from)?;
@@ -136,7 +136,7 @@ pub fn plan_several(cell: &Cell, request: &SeveralPathsRequest) -> Result<Severa
 }
 
 /// Refuses a region that moves with a robot: while that robot moves, the region is not where it was at the start.
-fn refuse_carried_regions(cell: &Cell, goals: &[RobotGoal], regions: &[Vec<String>]) -> Result<(), FormatError> {
+fn refuse_carried_regions(cell: &Cell, goals: &[RobotGoal], regions: &[Vec<String>]) -> Result<(), Diagnostic> {
     for (goal, names) in goals.iter().zip(regions) {
         for region in cell.regions.iter().filter(|r| names.contains(&r.region.name)) {
             if let Some(Follow::Robot { robot, .. }) = region.follow
@@ -149,7 +149,7 @@ fn refuse_carried_regions(cell: &Cell, goals: &[RobotGoal], regions: &[Vec<Strin
                     "region \"{name}\" moves with robot \"{carrier}\": no path of robot \"{moved}\" at the same time stays out of it for certain"
                 );
                 let hint = format!("a plan for \"{carrier}\", then one for \"{moved}\" from there");
-                return Err(FormatError::new(&cell.file, region.line, what).hint(&hint));
+                return Err(Diagnostic::new(&cell.file, region.line, what).hint(&hint));
             }
         }
     }
@@ -193,14 +193,14 @@ fn found(
 }
 
 /// Reason why no paths were found; an error if the request is wrong.
-fn not_found(cell: &Cell, goals: &[RobotGoal], error: &PrioritizedPlannerError) -> Result<String, FormatError> {
+fn not_found(cell: &Cell, goals: &[RobotGoal], error: &PrioritizedPlannerError) -> Result<String, Diagnostic> {
     let (robot, error) = match error {
         PrioritizedPlannerError::Robot { robot, error } => (robot, error),
         PrioritizedPlannerError::NoPriority { robot, .. } => {
             return Ok(format!("robot \"{}\": {error}", cell.robots[robot.0].name));
         }
         PrioritizedPlannerError::NoGoal => {
-            return Err(FormatError::new(&cell.file, None, error.to_string()).hint("--robot NAME --to q,…"));
+            return Err(Diagnostic::new(&cell.file, None, error.to_string()).hint("--robot NAME --to q,…"));
         }
     };
     let of_robot = &cell.robots[robot.0];

@@ -3,10 +3,10 @@
 use std::collections::HashSet;
 use std::path::Path;
 
+use elbowroom_formats::Diagnostic;
 use elbowroom_formats::problem_set::PlanningProblem;
-use elbowroom_formats::{FormatError, Warning};
 
-pub(super) type Result<T> = std::result::Result<T, FormatError>;
+pub(super) type Result<T> = std::result::Result<T, Diagnostic>;
 
 /// Largest number of different warnings.
 const MAX_WARNINGS: usize = 50;
@@ -24,8 +24,8 @@ impl<'a> ProblemKey<'a> {
         Self { file, set: &problem.set, id: &problem.id }
     }
 
-    pub(super) fn error(self, what: impl std::fmt::Display) -> FormatError {
-        FormatError::new(self.file, None, format!("set `{}`, problem `{}`: {what}", self.set, self.id))
+    pub(super) fn error(self, what: impl std::fmt::Display) -> Diagnostic {
+        Diagnostic::new(self.file, None, format!("set `{}`, problem `{}`: {what}", self.set, self.id))
     }
 }
 
@@ -33,14 +33,14 @@ impl<'a> ProblemKey<'a> {
 #[derive(Debug, Default)]
 pub(super) struct Notes {
     seen: HashSet<String>,
-    pub warnings: Vec<Warning>,
+    pub warnings: Vec<Diagnostic>,
 }
 
 impl Notes {
     /// Warns at the first problem.
     pub(super) fn once(&mut self, key: ProblemKey<'_>, what: &str) {
         if self.seen.len() < MAX_WARNINGS && self.seen.insert(what.to_owned()) {
-            self.warnings.push(key.error(format!("{what} (reported once)")).into());
+            self.warnings.push(key.error(format!("{what} (reported once)")));
         }
     }
 }

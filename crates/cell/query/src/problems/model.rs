@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use elbowroom_cell::{OutOfReachProofs, QueryModel};
+use elbowroom_formats::Diagnostic;
 use elbowroom_formats::problem_set::PlanningProblem;
-use elbowroom_formats::{FormatError, Warning};
 use elbowroom_kinematics::Chain;
 use elbowroom_robot::Robot;
 use elbowroom_scene::Scene;
@@ -22,7 +22,7 @@ pub struct ProblemModel {
     /// Planned joints without a largest speed, whose paths cannot be timed.
     pub joints_without_speed: Vec<String>,
     /// Warnings for the user, each once.
-    pub warnings: Vec<Warning>,
+    pub warnings: Vec<Diagnostic>,
 }
 
 impl ProblemModel {
@@ -46,7 +46,7 @@ impl ProblemModel {
         }
         let joints: Vec<_> = active_names(&robot.chain);
         let joints_without_speed = without_speed(&robot.chain, &values);
-        robot.chain = widened(&robot.chain, &values).map_err(|e| FormatError::new(urdf, None, e.to_string()))?;
+        robot.chain = widened(&robot.chain, &values).map_err(|e| Diagnostic::new(urdf, None, e.to_string()))?;
         let query_model = QueryModel::of_robot(urdf, robot);
         notes.warnings.extend(query_model.touching_at_rest());
         let scene = query_model.scene(OutOfReachProofs::Compute)?;

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
 
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{
     Checker, CheckerOptions, CheckerStats, ContactSurfaces, Detail, Level, PairContact, PairDistance, Scene,
@@ -45,7 +45,7 @@ pub fn evaluate(
     kind: QueryKind,
     level: Level,
     take: &mut dyn FnMut(&[QueryRow]) -> bool,
-) -> Result<CheckerStats, FormatError> {
+) -> Result<CheckerStats, Diagnostic> {
     let (pairs, start) = (QueryPairs::all(), SceneState::new(scene));
     evaluate_query(scene, states, &Query { kind, level, pairs: &pairs, all_pairs_m: None, start: &start }, take)
 }
@@ -56,13 +56,13 @@ pub fn evaluate(
 /// is answered like [`QueryKind::Point`]: [`evaluate_contacts`] has its rows.
 ///
 /// # Errors
-/// [`FormatError`] if a state does not fit the scene. States that were read for the scene's model always fit.
+/// [`Diagnostic`] if a state does not fit the scene. States that were read for the scene's model always fit.
 pub fn evaluate_query(
     scene: &Scene,
     states: &QueryStates,
     query: &Query<'_>,
     take: &mut dyn FnMut(&[QueryRow]) -> bool,
-) -> Result<CheckerStats, FormatError> {
+) -> Result<CheckerStats, Diagnostic> {
     evaluate_blocks(states, &|block| rows_of_block(scene, states, query, block), take)
 }
 
@@ -75,7 +75,7 @@ pub fn evaluate_contacts(
     states: &QueryStates,
     query: &Query<'_>,
     take: &mut dyn FnMut(&[ContactRow]) -> bool,
-) -> Result<CheckerStats, FormatError> {
+) -> Result<CheckerStats, Diagnostic> {
     evaluate_blocks(states, &|block| contacts_of_block(scene, states, query, block), take)
 }
 
@@ -87,10 +87,10 @@ fn evaluate_blocks<R: Send>(
     states: &QueryStates,
     rows_of_block: &(dyn Fn(usize) -> BlockRows<R> + Sync),
     take: &mut dyn FnMut(&[R]) -> bool,
-) -> Result<CheckerStats, FormatError> {
+) -> Result<CheckerStats, Diagnostic> {
     let blocks = states.len().div_ceil(BLOCK);
     let cores = std::thread::available_parallelism().map_or(1, usize::from).min(blocks);
-    let wrong = |e: SceneError| FormatError::new(&states.file, None, e.to_string());
+    let wrong = |e: SceneError| Diagnostic::new(&states.file, None, e.to_string());
     let mut done = CheckerStats::default();
     if cores <= 1 {
         for block in 0..blocks {

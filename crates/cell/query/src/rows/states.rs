@@ -4,10 +4,10 @@ use std::io::BufRead;
 use std::path::{Path, PathBuf};
 
 use elbowroom_cell::{QueryModel, QueryRobot};
+use elbowroom_formats::Diagnostic;
 use elbowroom_formats::joint_states::{self, JointStateOptions, JointStateRobot, LimitCheck};
-use elbowroom_formats::{FormatError, Warning};
 
-type Result<T> = std::result::Result<T, FormatError>;
+type Result<T> = std::result::Result<T, Diagnostic>;
 
 /// The states of a query: joint values that fit its model.
 #[derive(Debug, Clone)]
@@ -15,7 +15,7 @@ pub struct QueryStates {
     /// The file, for messages.
     pub file: PathBuf,
     /// Warnings.
-    pub warnings: Vec<Warning>,
+    pub warnings: Vec<Diagnostic>,
     states: joint_states::JointStates,
 }
 
@@ -34,7 +34,7 @@ impl QueryStates {
     /// ignored.
     ///
     /// # Errors
-    /// [`FormatError`] names the line and the column.
+    /// [`Diagnostic`] names the line and the column.
     pub fn read(path: &Path, model: &QueryModel) -> Result<Self> {
         joint_states::JointStates::read(path, &options(model)).map(Self::new)
     }

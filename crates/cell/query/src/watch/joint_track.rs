@@ -4,7 +4,7 @@ use std::path::Path;
 
 use elbowroom_cell::{Cell, CellRobot};
 use elbowroom_formats::joint_states::{ExtraColumns, JointStateOptions, JointStateRobot, LimitCheck, TimeColumn};
-use elbowroom_formats::{FormatError, JointStates, Warning};
+use elbowroom_formats::{Diagnostic, JointStates};
 use elbowroom_kinematics::JointTrajectory;
 
 /// Time before the first row, or after the last one, beyond which pictures have no joint values, s.
@@ -22,7 +22,7 @@ impl JointTrack {
     /// Reads a file with `t_s` and a column per joint (`robot.joint` if there are several robots).
     ///
     /// Without a file all robots stay at their start.
-    pub fn read(cell: &Cell, file: Option<&Path>, warnings: &mut Vec<Warning>) -> Result<Self, FormatError> {
+    pub fn read(cell: &Cell, file: Option<&Path>, warnings: &mut Vec<Diagnostic>) -> Result<Self, Diagnostic> {
         let start = cell.robots.iter().map(|r| r.start.clone()).collect();
         let Some(file) = file else { return Ok(Self { start, recorded: None }) };
         let may_stay = cell.robots.len() > 1;

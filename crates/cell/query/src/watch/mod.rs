@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use elbowroom_cell::{Cell, CellSensor, SensorKind};
 use elbowroom_cspace::{CoverMapBuilder, CoverMapSettings, LayerMap, RemainingJoints};
 use elbowroom_formats::frame_files::{self, FrameFile, FrameKind};
-use elbowroom_formats::{FormatError, Warning, read_file};
+use elbowroom_formats::{Diagnostic, read_file};
 use elbowroom_perception::{Prism, WatchedRobot};
 use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_vision::ArmPart;
@@ -58,9 +58,9 @@ pub enum WatchInput {
 #[derive(Debug)]
 pub struct SensorWatch {
     /// Warnings for the user; records can add to them.
-    pub warnings: Vec<Warning>,
+    pub warnings: Vec<Diagnostic>,
     /// A warning about the sensor, still without text.
-    about: Warning,
+    about: Diagnostic,
     files: Vec<FrameFile>,
     joints: JointTrack,
     sensor: Sensor,
@@ -81,8 +81,8 @@ impl SensorWatch {
     /// Opens the sensor and the files of a request.
     ///
     /// # Errors
-    /// [`FormatError`] names the file and the line, or the key that is missing.
-    pub fn new(cell: &Cell, request: &WatchRequest) -> Result<Self, FormatError> {
+    /// [`Diagnostic`] names the file and the line, or the key that is missing.
+    pub fn new(cell: &Cell, request: &WatchRequest) -> Result<Self, Diagnostic> {
         let sensor = select_sensor(cell, request)?;
         let folder = match &request.input {
             WatchInput::Pictures(folder) | WatchInput::Clouds(folder) => Some(folder),
@@ -100,7 +100,7 @@ impl SensorWatch {
     ///
     /// # Errors
     /// As for [`SensorWatch::new`].
-    pub fn in_run(cell: &Cell, sensor: &CellSensor) -> Result<Self, FormatError> {
+    pub fn in_run(cell: &Cell, sensor: &CellSensor) -> Result<Self, Diagnostic> {
         let folder = sensor.folder.as_ref().ok_or_else(|| without_folder(cell, sensor))?;
         let (files, warnings) = read_folder(sensor, folder, &WatchInput::CellFile)?;
         let mut watch = Self::of_sensor(cell, sensor, files, None)?;
@@ -111,8 +111,8 @@ impl SensorWatch {
     /// A sensor of a live cell: what it sees is sent, one by one ([`record_sent`](Self::record_sent)).
     ///
     /// # Errors
-    /// [`FormatError`] if its robot has no map of three joints.
-    pub fn sent(cell: &Cell, sensor: &CellSensor) -> Result<Self, FormatError> {
+    /// [`Diagnostic`] if its robot has no map of three joints.
+    pub fn sent(cell: &Cell, sensor: &CellSensor) -> Result<Self, Diagnostic> {
         Self::of_sensor(cell, sensor, Vec::new(), None)
     }
 
@@ -121,7 +121,7 @@ impl SensorWatch {
         sensor: &CellSensor,
         files: Vec<FrameFile>,
         joints: Option<&Path>,
-    ) -> Result<Self, FormatError> {
+    ) -> Result<Self, Diagnostic> {
         let mut warnings = Vec::new();
         let joints = JointTrack::read(cell, joints.or(sensor.joints.as_deref()), &mut warnings)?;
         let (builder, mapped) = map_builder(cell, sensor, &mut warnings)?;
@@ -131,7 +131,7 @@ impl SensorWatch {
             .map(|r| WatchedRobot { robot: r.robot.clone(), base_in_world: r.base_in_world })
             .collect();
         let refuse = |what: String| refusal(cell, sensor, &what);
-        let about = Warning::new(&cell.file, sensor.line, format!("{} \"{}\": ", sensor.table(), sensor.name));
+        let about = Diagnostic::new(&cell.file, sensor.line, format!("{} \"{}\": ", sensor.table(), sensor.name));
         let sensor = Sensor::new(sensor, robots, fixed_objects(cell), builder).map_err(|e| refuse(e.to_string()))?;
         Ok(Self { warnings, about, files, joints, sensor, mapped })
     }
@@ -224,18 +224,19 @@ impl SensorWatch {
         let record = WatchRecord::of(name, t_s, result, &self.sensor);
         if let Some(hidden) = &record.hidden_floor {
             let about = self.about.clone();
-            self.warnings
-                .push(Warning { what: format!("{}{hidden}", about.what), ..about }.hint(record::SHOW_THE_FLOOR));
+            self.warnings.push(
+                Diagnostic { message: format!("{}{hidden}", about.message), ..about }.hint(record::SHOW_THE_FLOOR),
+            );
         }
         record
     }
 }
 
-fn refusal(cell: &Cell, sensor: &CellSensor, what: &str) -> FormatError {
-    FormatError::new(&cell.file, sensor.line, format!("{} \"{}\": {what}", sensor.table(), sensor.name))
+fn refusal(cell: &Cell, sensor: &CellSensor, what: &str) -> Diagnostic {
+    Diagnostic::new(&cell.file, sensor.line, format!("{} \"{}\": {what}", sensor.table(), sensor.name))
 }
 
-fn without_folder(cell: &Cell, sensor: &CellSensor) -> FormatError {
+fn without_folder(cell: &Cell, sensor: &CellSensor) -> Diagnostic {
     let (what, hint) = match sensor.kind {
         SensorKind::Camera { .. } => ("has no pictures", "--frames DIR, or frames = \"DIR\""),
         SensorKind::Cloud { .. } => ("has no clouds", "--clouds DIR, or clouds = \"DIR\""),
@@ -248,7 +249,7 @@ fn read_folder(
     sensor: &CellSensor,
     folder: &Path,
     input: &WatchInput,
-) -> Result<(Vec<FrameFile>, Vec<Warning>), FormatError> {
+) -> Result<(Vec<FrameFile>, Vec<Diagnostic>), Diagnostic> {
     let kind = match (&sensor.kind, input) {
         (SensorKind::Cloud { depth: None, .. }, WatchInput::CellFile | WatchInput::Clouds(_)) => FrameKind::Cloud,
         _ => FrameKind::Picture,
@@ -257,8 +258,8 @@ fn read_folder(
 }
 
 /// The sensor that a request names, or the only one that fits.
-fn select_sensor<'c>(cell: &'c Cell, request: &WatchRequest) -> Result<&'c CellSensor, FormatError> {
-    let refuse = |what: String, hint: String| FormatError::new(&cell.file, None, what).hint(hint);
+fn select_sensor<'c>(cell: &'c Cell, request: &WatchRequest) -> Result<&'c CellSensor, Diagnostic> {
+    let refuse = |what: String, hint: String| Diagnostic::new(&cell.file, None, what).hint(hint);
     let fits = |s: &&CellSensor| match request.input {
         WatchInput::CellFile => true,
         WatchInput::Pictures(_) | WatchInput::Stream => matches!(s.kind, SensorKind::Camera { .. }),
@@ -288,11 +289,11 @@ fn fixed_objects(cell: &Cell) -> Vec<ArmPart> {
 fn map_builder(
     cell: &Cell,
     sensor: &CellSensor,
-    warnings: &mut Vec<Warning>,
-) -> Result<(CoverMapBuilder, MapScope), FormatError> {
+    warnings: &mut Vec<Diagnostic>,
+) -> Result<(CoverMapBuilder, MapScope), Diagnostic> {
     let (robot, spec) = select_map(cell, Some(&cell.robots[sensor.robot.0].name))?;
     let refuse = |what: String, hint: &str| {
-        FormatError::new(&cell.file, spec.line, format!("robot \"{}\": {what}", robot.name)).hint(hint)
+        Diagnostic::new(&cell.file, spec.line, format!("robot \"{}\": {what}", robot.name)).hint(hint)
     };
     let purpose = format!("obstacles of a {}", sensor.table());
     let MappedJoints { joints, grid } = MappedJoints::of(cell, robot, (&purpose, None), warnings)?;

@@ -1,7 +1,7 @@
 //! Decides whether a robot is kept out of a region, by which law, and what is missing if it is not.
 
 use elbowroom_cell::{Cell, CellRegion, CellRegionId, CellRobot, StepAction};
-use elbowroom_formats::Warning;
+use elbowroom_diagnostic::Diagnostic;
 use elbowroom_kinematics::JointKind;
 use elbowroom_monitor::{Life, RegionKind};
 use elbowroom_proximity::Shape;
@@ -71,14 +71,14 @@ impl EntryAnalysis<'_> {
     }
 
     /// Warning before a run if the robot can reach the border faster than it can stop.
-    pub fn overrun(&self) -> Option<Warning> {
+    pub fn overrun(&self) -> Option<Diagnostic> {
         if matches!(self.region().region.kind, RegionKind::Monitored { .. }) {
             return None;
         }
         let MissingGuarantee { why, write } = self.too_fast()?;
         let (region, robot) = (&self.region().region.name, &self.robot().name);
         let what = format!("robot \"{robot}\" can overrun the border of region \"{region}\": {why}");
-        Some(Warning::new(&self.cell.file, self.region().line, what).hint(write))
+        Some(Diagnostic::new(&self.cell.file, self.region().line, what).hint(write))
     }
 
     fn region(&self) -> &CellRegion {

@@ -1,7 +1,7 @@
 //! Result of `check` for one region and one robot.
 
 use elbowroom_cell::{Cell, CellRegionId};
-use elbowroom_formats::Warning;
+use elbowroom_diagnostic::Diagnostic;
 use elbowroom_monitor::RegionKind;
 use elbowroom_robot::RobotId;
 
@@ -24,7 +24,7 @@ pub struct EntryCheck {
     /// `None` for a monitored region, and if no thickness is enough.
     pub needed_warning_m: Option<f64>,
     /// Warning before a run if the robot can overrun the border.
-    pub overrun: Option<Warning>,
+    pub overrun: Option<Diagnostic>,
 }
 
 impl EntryCheck {

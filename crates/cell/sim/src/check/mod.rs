@@ -28,7 +28,7 @@
 //! assert!((without_law[0].needed_warning_m.unwrap() - 0.254).abs() < 1e-3); // 2²/(2·8) + 2·0.002, and a margin
 //! let stopping = check(&Cell::parse("cart.toml", &format!("{text}[monitor]\nstopping_distance = true\n"))?)?;
 //! assert!(stopping[0].excluded);
-//! # Ok::<(), elbowroom_formats::FormatError>(())
+//! # Ok::<(), elbowroom_diagnostic::Diagnostic>(())
 //! ```
 
 mod entry_analysis;
@@ -44,7 +44,7 @@ mod thickness;
 
 use elbowroom_cell::trajectory::recording_warnings;
 use elbowroom_cell::{Cell, CellRegionId, configure};
-use elbowroom_formats::{FormatError, Warning};
+use elbowroom_diagnostic::Diagnostic;
 use elbowroom_robot::RobotId;
 
 use entry_analysis::{EntryAnalysis, EntryDecision};
@@ -60,8 +60,8 @@ pub use table::table;
 /// Analyses every region for every robot that it guards; regions in file order.
 ///
 /// # Errors
-/// [`FormatError`] at the line of an infeasible step of a program.
-pub fn check(cell: &Cell) -> Result<Vec<EntryCheck>, FormatError> {
+/// [`Diagnostic`] at the line of an infeasible step of a program.
+pub fn check(cell: &Cell) -> Result<Vec<EntryCheck>, Diagnostic> {
     check_planned(&PlannedPaths::new(cell))
 }
 
@@ -69,7 +69,7 @@ pub fn check(cell: &Cell) -> Result<Vec<EntryCheck>, FormatError> {
 ///
 /// # Errors
 /// As for [`check`].
-pub fn check_planned(paths: &PlannedPaths<'_>) -> Result<Vec<EntryCheck>, FormatError> {
+pub fn check_planned(paths: &PlannedPaths<'_>) -> Result<Vec<EntryCheck>, Diagnostic> {
     let (cell, programs) = (paths.cell(), programs(paths)?);
     let slots = configure::slots(cell);
     let states = start_states(cell, &programs);
@@ -103,11 +103,11 @@ pub fn check_planned(paths: &PlannedPaths<'_>) -> Result<Vec<EntryCheck>, Format
 ///
 /// # Errors
 /// As for [`check`].
-pub fn overruns(paths: &PlannedPaths<'_>) -> Result<Vec<Warning>, FormatError> {
+pub fn overruns(paths: &PlannedPaths<'_>) -> Result<Vec<Diagnostic>, Diagnostic> {
     Ok(check_planned(paths)?.into_iter().filter_map(|c| c.overrun).collect())
 }
 
 /// Warnings for recordings that exceed the joint limits of the cell; a run repeats them in its notes.
-pub fn recordings(cell: &Cell) -> Vec<Warning> {
+pub fn recordings(cell: &Cell) -> Vec<Diagnostic> {
     (0..cell.robots.len()).flat_map(|robot| recording_warnings(cell, RobotId(robot))).collect()
 }

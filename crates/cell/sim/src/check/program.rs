@@ -1,7 +1,7 @@
 //! The guarded volumes of each robot, and their speeds in its program.
 
 use elbowroom_cell::CellRobot;
-use elbowroom_formats::FormatError;
+use elbowroom_diagnostic::Diagnostic;
 use elbowroom_monitor::{Guards, Volume};
 use elbowroom_robot::RobotId;
 
@@ -41,7 +41,7 @@ pub(super) enum Mount {
 }
 
 impl RobotProgram {
-    fn of(paths: &PlannedPaths<'_>, robot: RobotId) -> Result<Self, FormatError> {
+    fn of(paths: &PlannedPaths<'_>, robot: RobotId) -> Result<Self, Diagnostic> {
         let (cell, plan) = (paths.cell(), repeated_plan(paths, robot)?);
         let volumes = cell.robots[robot.0].guarded_volumes();
         let mounts = mounts(&cell.robots[robot.0], &plan);
@@ -102,6 +102,6 @@ fn mounts(robot: &CellRobot, plan: &ProgramPlan) -> Vec<PlannedMount> {
     mounts
 }
 
-pub(super) fn programs(paths: &PlannedPaths<'_>) -> Result<Vec<RobotProgram>, FormatError> {
+pub(super) fn programs(paths: &PlannedPaths<'_>) -> Result<Vec<RobotProgram>, Diagnostic> {
     (0..paths.cell().robots.len()).map(|robot| RobotProgram::of(paths, RobotId(robot))).collect()
 }

@@ -1,7 +1,7 @@
 //! Largest speed of a dynamic region.
 
 use elbowroom_cell::{Cell, CellRegion, Drive, Follow, PoseRate};
-use elbowroom_formats::FormatError;
+use elbowroom_diagnostic::Diagnostic;
 use elbowroom_robot::RobotId;
 
 use super::sphere_swept_hull::SphereSweptHull;
@@ -11,7 +11,7 @@ use crate::motion::{PlannedPaths, repeated_plan};
 /// Largest speed (m/s) of any point of the region, as its source moves it.
 ///
 /// 0 for a fixed region, infinite for a region on a robot that may leave its program.
-pub(super) fn max_region_speed_m_s(paths: &PlannedPaths<'_>, region: &CellRegion) -> Result<f64, FormatError> {
+pub(super) fn max_region_speed_m_s(paths: &PlannedPaths<'_>, region: &CellRegion) -> Result<f64, Diagnostic> {
     let Some(follow) = region.follow else { return Ok(0.0) };
     let cell = paths.cell();
     let in_source = region.region.anchor * region.region.shape_in_anchor;

@@ -20,7 +20,7 @@ const INDENT: &str = "      ";
 /// use elbowroom_sim::check;
 /// let cell = Cell::parse("c.toml", "version = 1\nunits = { length = \"mm\", angle = \"deg\" }\n")?;
 /// assert!(check::table(&cell, &check::check(&cell)?).contains("no region"));
-/// # Ok::<(), elbowroom_formats::FormatError>(())
+/// # Ok::<(), elbowroom_diagnostic::Diagnostic>(())
 /// ```
 pub fn table(cell: &Cell, checks: &[EntryCheck]) -> String {
     let mut text = format!("{} · {}\n", shortened(&cell.name, 40), laws(cell));

@@ -7,7 +7,7 @@ use elbowroom_cell::trajectory::{Playback, motion_bounds, recording_warnings, vo
 use elbowroom_cell::{
     Cell, CellRegionId, CellRobot, MoveTarget, PathPlanner, Program, ProgramBody, ProgramStep, StepAction,
 };
-use elbowroom_formats::{FormatError, Warning};
+use elbowroom_diagnostic::Diagnostic;
 use elbowroom_kinematics::{ChainState, JointTrajectory, LinkId};
 use elbowroom_query::plan::{PathGoal, PathRequest};
 use elbowroom_robot::{ObjectId, RobotId};
@@ -85,13 +85,13 @@ impl PlanStep {
 /// Plans the program of one robot of the cell of `paths`, run `repeat` times (times the program's own `repeat`).
 ///
 /// # Errors
-/// [`FormatError`] at the line of an infeasible step: out of reach, through a singularity, beyond limits.
+/// [`Diagnostic`] at the line of an infeasible step: out of reach, through a singularity, beyond limits.
 pub fn plan(
     paths: &PlannedPaths<'_>,
     robot: RobotId,
     repeat: u32,
-    notes: &mut Vec<Warning>,
-) -> Result<ProgramPlan, FormatError> {
+    notes: &mut Vec<Diagnostic>,
+) -> Result<ProgramPlan, Diagnostic> {
     let passes = repeat.max(1);
     plan_passes(paths, robot, Passes { wanted: passes, required: passes }, notes)
 }
@@ -100,7 +100,7 @@ pub fn plan(
 ///
 /// # Errors
 /// As for [`plan`].
-pub fn repeated_plan(paths: &PlannedPaths<'_>, robot: RobotId) -> Result<ProgramPlan, FormatError> {
+pub fn repeated_plan(paths: &PlannedPaths<'_>, robot: RobotId) -> Result<ProgramPlan, Diagnostic> {
     plan_passes(paths, robot, Passes { wanted: 2, required: 1 }, &mut Vec::new())
 }
 
@@ -116,8 +116,8 @@ fn plan_passes(
     paths: &PlannedPaths<'_>,
     robot: RobotId,
     passes: Passes,
-    notes: &mut Vec<Warning>,
-) -> Result<ProgramPlan, FormatError> {
+    notes: &mut Vec<Diagnostic>,
+) -> Result<ProgramPlan, Diagnostic> {
     let cell = paths.cell();
     let at = &cell.robots[robot.0];
     let Some(program) = &cell.programs[robot.0] else {
@@ -141,8 +141,8 @@ fn plan_passes(
 /// Plans the step in which the program of a robot first grips an object; `None` if it never does.
 ///
 /// # Errors
-/// [`FormatError`] at the line of the grip, or of an earlier step, if that step is infeasible.
-pub fn first_grip(cell: &Cell, robot: RobotId, object: ObjectId) -> Result<Option<GripAction>, FormatError> {
+/// [`Diagnostic`] at the line of the grip, or of an earlier step, if that step is infeasible.
+pub fn first_grip(cell: &Cell, robot: RobotId, object: ObjectId) -> Result<Option<GripAction>, Diagnostic> {
     let Some(program) = &cell.programs[robot.0] else { return Ok(None) };
     let ProgramBody::Steps(steps) = &program.body else { return Ok(None) };
     let grips = |s: &ProgramStep| matches!(s.action, StepAction::Grip(o) if o == object);
@@ -164,7 +164,7 @@ struct ProgramPlanner<'p, 'a> {
     robot: CellRobot,
     /// Joint values after the steps so far.
     q: Vec<f64>,
-    notes: &'p mut Vec<Warning>,
+    notes: &'p mut Vec<Diagnostic>,
     /// Moves of earlier passes.
     planned_moves: Vec<PlannedMoveEntry>,
     /// The objects after the steps so far.
@@ -180,7 +180,7 @@ struct PlannedMoveEntry {
 }
 
 impl<'p, 'a> ProgramPlanner<'p, 'a> {
-    fn new(paths: &'p PlannedPaths<'a>, id: RobotId, notes: &'p mut Vec<Warning>) -> Self {
+    fn new(paths: &'p PlannedPaths<'a>, id: RobotId, notes: &'p mut Vec<Diagnostic>) -> Self {
         let cell = paths.cell();
         let robot = cell.robots[id.0].clone();
         Self {
@@ -201,7 +201,7 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
         steps: &[ProgramStep],
         passes: u64,
         required: u64,
-    ) -> Result<ProgramPlan, FormatError> {
+    ) -> Result<ProgramPlan, Diagnostic> {
         let mut plan = ProgramPlan { start: self.q.clone(), speed_override: program.speed_override, steps: Vec::new() };
         for pass in 0..passes {
             if pass > 0 {
@@ -218,7 +218,7 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
         Ok(plan)
     }
 
-    fn step(&mut self, i: usize, step: &ProgramStep) -> Result<PlanStep, FormatError> {
+    fn step(&mut self, i: usize, step: &ProgramStep) -> Result<PlanStep, Diagnostic> {
         Ok(match &step.action {
             StepAction::Switch { region, active } => PlanStep::Switch { region: *region, active: *active },
             StepAction::Wait(s) => PlanStep::Wait(*s),
@@ -244,7 +244,7 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
         })
     }
 
-    fn change_tool(&mut self, index: usize, step: &ProgramStep, tool: usize) -> Result<(), FormatError> {
+    fn change_tool(&mut self, index: usize, step: &ProgramStep, tool: usize) -> Result<(), Diagnostic> {
         let changed = self.robot.with_tool(tool);
         let is_taken_off = |link: LinkId| changed.tools.iter().any(|t| t.link == link && !t.mounted);
         if let Some(part) = self.parts.held_by(is_taken_off) {
@@ -265,7 +265,7 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
         GripAction { object, grips, link: self.robot.flange, attachment, line: step.line }
     }
 
-    fn segment(&mut self, index: usize, step: &ProgramStep) -> Result<Arc<Segment>, FormatError> {
+    fn segment(&mut self, index: usize, step: &ProgramStep) -> Result<Arc<Segment>, Diagnostic> {
         let flange = self.robot.flange;
         let is_known = |k: &&PlannedMoveEntry| k.step == index && k.from == self.q && k.flange == flange;
         let planned = self.planned_moves.iter().find(is_known).map(|k| k.segment.clone());
@@ -288,7 +288,7 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
         index: usize,
         step: &ProgramStep,
         planned: (&MoveTarget, f64, PathPlanner),
-    ) -> Result<Arc<Playback>, FormatError> {
+    ) -> Result<Arc<Playback>, Diagnostic> {
         let origin = PathOrigin {
             robot: self.id,
             step: index,
@@ -307,7 +307,7 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
         index: usize,
         step: &ProgramStep,
         (to, speed, planner): (&MoveTarget, f64, PathPlanner),
-    ) -> Result<Playback, FormatError> {
+    ) -> Result<Playback, Diagnostic> {
         let carried = self.parts.carried().map_err(|e| self.part_error(index, step, e))?;
         let cell = self.cell_now();
         let volumes = cell.volumes_holding(self.id, &carried);
@@ -325,7 +325,7 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
             ..PathRequest::default()
         };
         let answer = elbowroom_query::plan::plan(&cell, &request)
-            .map_err(|e| self.error(index, step, &e.what).hint(e.write_instead.unwrap_or_default()))?;
+            .map_err(|e| self.error(index, step, &e.message).hint(e.hint.unwrap_or_default()))?;
         let Some(timed) = answer.timed else {
             let why = answer.reason.unwrap_or_default();
             return Err(self.error(index, step, &why).hint("another target, or a joint move over a free point"));
@@ -343,16 +343,16 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
         Cow::Owned(cell)
     }
 
-    fn part_error(&self, index: usize, step: &ProgramStep, e: PartError) -> FormatError {
-        self.error(index, step, &e.what).hint(e.hint)
+    fn part_error(&self, index: usize, step: &ProgramStep, e: PartError) -> Diagnostic {
+        self.error(index, step, &e.message).hint(e.hint)
     }
 
-    fn error(&self, index: usize, step: &ProgramStep, what: &str) -> FormatError {
+    fn error(&self, index: usize, step: &ProgramStep, what: &str) -> Diagnostic {
         let what = format!("`program.{}`, step {}: {what}", self.robot.name, index + 1);
-        FormatError::new(&self.cell.file, step.line, what)
+        Diagnostic::new(&self.cell.file, step.line, what)
     }
 
-    fn timed(&mut self, index: usize, step: &ProgramStep) -> Result<Segment, FormatError> {
+    fn timed(&mut self, index: usize, step: &ProgramStep) -> Result<Segment, Diagnostic> {
         let limits = &self.robot.limits;
         match &step.action {
             StepAction::Linear { to, speed } => {
@@ -361,7 +361,7 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
                 if !line.keeps_orientation {
                     let what = "the robot has too few axes to turn the tool along this line: only the TCP follows it";
                     let note = self.error(index, step, what);
-                    self.notes.push(note.into());
+                    self.notes.push(note);
                 }
                 let segment = Segment::new(Geometry::TcpLine(Box::new(line)), limits, 1.0, rate)
                     .map_err(|e| self.error(index, step, &e))?;
@@ -371,7 +371,7 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
                     let what =
                         format!("the joints allow {share:.0} % of the programmed speed on this line: {reached}/s");
                     let note = self.error(index, step, &what);
-                    self.notes.push(note.into());
+                    self.notes.push(note);
                 }
                 Ok(segment)
             }
@@ -384,7 +384,7 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
         }
     }
 
-    fn line(&self, index: usize, step: &ProgramStep, to: &MoveTarget) -> Result<TcpLine, FormatError> {
+    fn line(&self, index: usize, step: &ProgramStep, to: &MoveTarget) -> Result<TcpLine, Diagnostic> {
         let to_in_root = match to {
             MoveTarget::Tcp(target) => self.robot.base_in_world.inverse_mul(&target.in_world),
             MoveTarget::Joints(q) => self.tcp_in_root(q),
@@ -405,7 +405,7 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
         state.link_in_root(self.robot.flange) * self.robot.tcp_in_flange
     }
 
-    fn joint_target(&self, index: usize, step: &ProgramStep, to: &MoveTarget) -> Result<Vec<f64>, FormatError> {
+    fn joint_target(&self, index: usize, step: &ProgramStep, to: &MoveTarget) -> Result<Vec<f64>, Diagnostic> {
         match to {
             MoveTarget::Joints(q) => Ok(q.clone()),
             MoveTarget::Tcp(target) => target
@@ -419,7 +419,7 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
         program: &Program,
         trajectory: &JointTrajectory,
         passes: u64,
-    ) -> Result<ProgramPlan, FormatError> {
+    ) -> Result<ProgramPlan, Diagnostic> {
         let (Some(first), Some(last)) = (trajectory.first(), trajectory.last()) else {
             return Ok(ProgramPlan::default());
         };
@@ -429,13 +429,13 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
                 "the trajectory of \"{}\" does not begin at `start`: it begins at its first row",
                 self.robot.name
             );
-            self.notes.push(Warning::new(&self.cell.file, program.line, what).hint("leave `start` out"));
+            self.notes.push(Diagnostic::new(&self.cell.file, program.line, what).hint("leave `start` out"));
         }
         let mut plan = ProgramPlan { start: first.to_vec(), speed_override: program.speed_override, steps: Vec::new() };
         let play = Arc::new(Playback::new(trajectory.clone(), &motion_bounds(&self.robot)));
         let back = Geometry::Joint { from: last.to_vec(), to: first.to_vec() };
         let back = Segment::new(back, &self.robot.limits, 0.5, f64::INFINITY)
-            .map_err(|e| FormatError::new(&self.cell.file, program.line, e))?;
+            .map_err(|e| Diagnostic::new(&self.cell.file, program.line, e))?;
         let back = Arc::new(back);
         for pass in 0..passes {
             if pass > 0 {

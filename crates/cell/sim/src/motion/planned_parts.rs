@@ -19,13 +19,13 @@ enum PlannedPart {
 
 /// A step that cannot be executed: what is wrong, and what to write instead.
 pub(super) struct PartError {
-    pub what: String,
+    pub message: String,
     pub hint: String,
 }
 
 impl PartError {
-    fn new(what: String, hint: impl Into<String>) -> Self {
-        Self { what, hint: hint.into() }
+    fn new(message: String, hint: impl Into<String>) -> Self {
+        Self { message, hint: hint.into() }
     }
 }
 

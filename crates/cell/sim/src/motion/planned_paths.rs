@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use elbowroom_cell::trajectory::Playback;
 use elbowroom_cell::{Cell, ProgramBody, StepAction};
-use elbowroom_formats::FormatError;
+use elbowroom_diagnostic::Diagnostic;
 use elbowroom_kinematics::LinkId;
 use elbowroom_robot::RobotId;
 
@@ -34,7 +34,7 @@ use super::planned_parts::PlannedParts;
 /// let by_check = searches.get(); // the move, and once more from where it ends: programs may be repeated
 /// simulate_observed(&paths, &RunOptions::default(), &mut |_| (), None)?;
 /// assert_eq!((by_check, searches.get()), (2, 2));
-/// # Ok::<(), elbowroom_formats::FormatError>(())
+/// # Ok::<(), elbowroom_diagnostic::Diagnostic>(())
 /// ```
 pub struct PlannedPaths<'a> {
     cell: &'a Cell,
@@ -43,7 +43,7 @@ pub struct PlannedPaths<'a> {
 }
 
 /// A path, or the error of its search.
-type SearchedPath = Result<Arc<Playback>, FormatError>;
+type SearchedPath = Result<Arc<Playback>, Diagnostic>;
 
 /// A search that starts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -90,7 +90,7 @@ impl<'a> PlannedPaths<'a> {
     pub(super) fn known_or(
         &self,
         origin: PathOrigin<'a>,
-        search: impl FnOnce() -> Result<Playback, FormatError>,
+        search: impl FnOnce() -> Result<Playback, Diagnostic>,
     ) -> SearchedPath {
         let known = self.known.borrow().iter().find(|(known, _)| *known == origin).map(|(_, path)| path.clone());
         if let Some(path) = known {

@@ -1,7 +1,7 @@
 //! Checks the path of one robot against the obstacles of each picture, and decides when another one is searched for.
 
 use elbowroom_cell::{Cell, OutOfReachProofs, QueryModel};
-use elbowroom_formats::FormatError;
+use elbowroom_diagnostic::Diagnostic;
 use elbowroom_kinematics::ChainState;
 use elbowroom_robot::{GeometryId, RobotId};
 use elbowroom_scene::{Checker, CheckerOptions, Scene, SceneError, Selection, SweepOptions};
@@ -55,13 +55,13 @@ impl PathGuard {
     /// `search_s` (s). `states` are the robots of the cell.
     ///
     /// # Errors
-    /// [`FormatError`] if the scene refuses the cell, or a move is planned on a map that the robot does not have.
+    /// [`Diagnostic`] if the scene refuses the cell, or a move is planned on a map that the robot does not have.
     pub fn new<'a>(
         cell: &'a Cell,
         (robot, clock): (RobotId, &ProgramClock),
         (search_s, timing): (f64, SearchTiming),
         states: &[ChainState],
-    ) -> Result<(Self, PathReplanner<'a>), FormatError> {
+    ) -> Result<(Self, PathReplanner<'a>), Diagnostic> {
         let model = QueryModel { objects: Vec::new(), ..QueryModel::of_cell(cell) };
         let base = model.scene(OutOfReachProofs::Omit)?;
         let mut replanner = PathReplanner::new(robot, cell, base.clone()).with_maps(cell, clock)?;

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use elbowroom_cell::region_constraint::RegionConstraint;
 use elbowroom_cell::trajectory::{Playback, motion_bounds};
 use elbowroom_cell::{Cell, CellRobot};
-use elbowroom_formats::FormatError;
+use elbowroom_diagnostic::Diagnostic;
 use elbowroom_kinematics::{ChainState, JointLimits};
 use elbowroom_perception::motion_entry::{acceleration_distance, first_root};
 use elbowroom_planner::{
@@ -149,8 +149,8 @@ impl<'a> PathReplanner<'a> {
     /// Adds the maps for the moves that are planned on them.
     ///
     /// # Errors
-    /// [`FormatError`] if the robot has no map of three joints.
-    pub(super) fn with_maps(mut self, cell: &Cell, clock: &ProgramClock) -> Result<Self, FormatError> {
+    /// [`Diagnostic`] if the robot has no map of three joints.
+    pub(super) fn with_maps(mut self, cell: &Cell, clock: &ProgramClock) -> Result<Self, Diagnostic> {
         for q in clock.moves_on_map() {
             if self.maps.iter().any(|(_, map)| map.serves(&q)) {
                 continue;

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use elbowroom_cell::{Cell, CellSensor};
-use elbowroom_formats::{FormatError, Warning};
+use elbowroom_diagnostic::Diagnostic;
 use elbowroom_perception::Prism;
 use elbowroom_proximity::{HullError, Shape};
 use elbowroom_query::watch::{SensorWatch, WatchRecord, WatchStatus};
@@ -85,7 +85,7 @@ struct WatchedSensor<'a> {
 }
 
 impl<'a> WatchedSensor<'a> {
-    fn new(spec: &'a CellSensor, mut watch: SensorWatch, notes: &mut Vec<Warning>) -> Self {
+    fn new(spec: &'a CellSensor, mut watch: SensorWatch, notes: &mut Vec<Diagnostic>) -> Self {
         notes.append(&mut watch.warnings);
         Self {
             spec,
@@ -141,8 +141,8 @@ impl<'a> PerceivedObstacles<'a> {
     /// Opens the folders of the sensors that guard robots. Sensors without a folder are omitted.
     ///
     /// # Errors
-    /// [`FormatError`] if a folder cannot be read, or the robot of a sensor has no map of three joints.
-    pub fn of_cell(cell: &'a Cell, notes: &mut Vec<Warning>) -> Result<Self, FormatError> {
+    /// [`Diagnostic`] if a folder cannot be read, or the robot of a sensor has no map of three joints.
+    pub fn of_cell(cell: &'a Cell, notes: &mut Vec<Diagnostic>) -> Result<Self, Diagnostic> {
         let mut sensors = Vec::new();
         for spec in cell.sensors.iter().filter(|s| s.folder.is_some() && !s.robots.is_empty()) {
             sensors.push(WatchedSensor::new(spec, SensorWatch::in_run(cell, spec)?, notes));
@@ -162,8 +162,8 @@ impl<'a> PerceivedObstacles<'a> {
         cell: &'a Cell,
         robots: &[RobotId],
         is_sent: impl Fn(&CellSensor) -> bool,
-        notes: &mut Vec<Warning>,
-    ) -> Result<Self, FormatError> {
+        notes: &mut Vec<Diagnostic>,
+    ) -> Result<Self, Diagnostic> {
         let mut sensors = Vec::new();
         for spec in cell.sensors.iter().filter(|s| s.robots.iter().any(|robot| robots.contains(robot))) {
             let has_folder = spec.folder.is_some();
@@ -244,7 +244,7 @@ impl<'a> PerceivedObstacles<'a> {
     }
 
     /// Moves the warnings of the sensors to `notes`.
-    pub fn take_warnings(&mut self, notes: &mut Vec<Warning>) {
+    pub fn take_warnings(&mut self, notes: &mut Vec<Diagnostic>) {
         self.sensors.iter_mut().for_each(|s| notes.append(&mut s.watch.warnings));
     }
 

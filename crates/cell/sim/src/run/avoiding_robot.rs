@@ -6,7 +6,7 @@ use elbowroom_avoidance::{
 };
 use elbowroom_cell::region_constraint::RegionConstraint;
 use elbowroom_cell::{AvoidanceSpec, Cell};
-use elbowroom_formats::{FormatError, Warning};
+use elbowroom_diagnostic::Diagnostic;
 use elbowroom_kinematics::{ChainState, JointLimits};
 use elbowroom_planner::{PathConstraint, RrtConnectSettings};
 use elbowroom_robot::{ObjectId, RobotId};
@@ -104,7 +104,7 @@ impl<'s> AvoidingRobot<'s> {
         scene: &'s Scene,
         robot: RobotId,
         clock: &ProgramClock,
-    ) -> Result<Option<Self>, FormatError> {
+    ) -> Result<Option<Self>, Diagnostic> {
         let spec = cell.avoidance.get(robot.0).and_then(Option::as_ref);
         spec.map(|spec| Self::new(cell, scene, robot, spec, clock)).transpose()
     }
@@ -115,8 +115,8 @@ impl<'s> AvoidingRobot<'s> {
         robot: RobotId,
         spec: &'s AvoidanceSpec,
         clock: &ProgramClock,
-    ) -> Result<Self, FormatError> {
-        let refused = |e: AvoidanceError| FormatError::new(&cell.file, cell.robots[robot.0].line, e.to_string());
+    ) -> Result<Self, Diagnostic> {
+        let refused = |e: AvoidanceError| Diagnostic::new(&cell.file, cell.robots[robot.0].line, e.to_string());
         let (q, limits) = (&clock.point().q, evasion_limits(cell, robot));
         let avoider = Avoider::new(scene, robot, q, &limits, spec.rules.clone(), spec.settings).map_err(refused)?;
         Ok(Self {
@@ -186,15 +186,11 @@ impl<'s> AvoidingRobot<'s> {
     }
 
     /// Warning if a tick failed and the robot was stopped; `None` if all ticks succeeded.
-    pub fn fault_warning(&self, cell: &Cell) -> Option<Warning> {
+    pub fn fault_warning(&self, cell: &Cell) -> Option<Diagnostic> {
         let (t_s, why) = self.fault.as_ref()?;
         let robot = &cell.robots[self.robot.0];
-        Some(Warning {
-            file: cell.file.clone(),
-            line: Some(robot.line),
-            what: format!("avoidance of '{}' failed at {t_s:.3} s, and it was stopped: {why}", robot.name),
-            write_instead: None,
-        })
+        let what = format!("avoidance of '{}' failed at {t_s:.3} s, and it was stopped: {why}", robot.name);
+        Some(Diagnostic::new(&cell.file, robot.line, what))
     }
 
     /// The recording.

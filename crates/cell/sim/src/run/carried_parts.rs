@@ -1,7 +1,7 @@
 //! Gripping and releasing of objects during a run.
 
 use elbowroom_cell::{Cell, CellRobot};
-use elbowroom_formats::FormatError;
+use elbowroom_diagnostic::Diagnostic;
 use elbowroom_kinematics::ChainState;
 use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_scene::{Attachment, FirstContacts};
@@ -66,7 +66,7 @@ impl<'a> CarriedParts<'a> {
         at: &CellRobot,
         checker: &mut FirstContacts<'_>,
         states: &[&ChainState],
-    ) -> Result<(), FormatError> {
+    ) -> Result<(), Diagnostic> {
         let object = action.object;
         if !action.grips {
             self.attachments[object.0] = None;
@@ -76,7 +76,7 @@ impl<'a> CarriedParts<'a> {
         let (cell, name) = (self.cell, &self.cell.objects[object.0].name);
         let error = |what: &str| {
             let robot = &cell.robots[robot.0].name;
-            FormatError::new(&cell.file, action.line, format!("`program.{robot}` {what} (at {t_s:.3} s of the run)"))
+            Diagnostic::new(&cell.file, action.line, format!("`program.{robot}` {what} (at {t_s:.3} s of the run)"))
         };
         if let Some(carrier) = self.carrier(object) {
             let carrier = &cell.robots[carrier.0].name;

@@ -1,7 +1,7 @@
 //! Carried volumes of robots: exchanged tools, and parts that are gripped and released.
 
 use elbowroom_cell::CellRobot;
-use elbowroom_formats::FormatError;
+use elbowroom_diagnostic::Diagnostic;
 use elbowroom_kinematics::ChainState;
 use elbowroom_monitor::VolumeId;
 use elbowroom_spatial::Pose;
@@ -13,7 +13,7 @@ use crate::recording::RunEvent;
 
 impl Simulation<'_> {
     /// Makes tools active, and exchanges tools that are not mounted.
-    pub(super) fn apply_tools(&mut self, t_s: f64) -> Result<(), FormatError> {
+    pub(super) fn apply_tools(&mut self, t_s: f64) -> Result<(), Diagnostic> {
         for i in 0..self.robots.len() {
             for tool in self.robots[i].clock.take_tools() {
                 let robot = &mut self.robots[i];
@@ -29,7 +29,7 @@ impl Simulation<'_> {
     }
 
     /// Attaches and detaches the exchanged tools, for collisions and for regions.
-    fn exchange_volumes(&mut self, i: usize, before: &CellRobot) -> Result<(), FormatError> {
+    fn exchange_volumes(&mut self, i: usize, before: &CellRobot) -> Result<(), Diagnostic> {
         let robot = &self.robots[i];
         let (id, setup, line) = (robot.id, robot.setup, robot.present.line);
         let tools = robot.present.tools.iter().zip(&before.tools);
@@ -45,7 +45,7 @@ impl Simulation<'_> {
 
     /// Guards a part or a tool that a robot carries from now on, at its pose in the link. Without a pose, marks it for
     /// detachment.
-    fn carry(&mut self, i: usize, volume: VolumeId, in_link: Option<&Pose>, line: usize) -> Result<(), FormatError> {
+    fn carry(&mut self, i: usize, volume: VolumeId, in_link: Option<&Pose>, line: usize) -> Result<(), Diagnostic> {
         self.released.retain(|released| *released != (i, volume));
         let Some(in_link) = in_link else {
             self.released.push((i, volume));
@@ -54,17 +54,17 @@ impl Simulation<'_> {
         let robot = &mut self.robots[i];
         let attached = robot.monitor.attach(volume, in_link);
         let attached = attached.and_then(|()| self.regions.attach(i, volume, in_link));
-        attached.map_err(|e| FormatError::new(&self.cell.file, line, e.to_string()))?;
+        attached.map_err(|e| Diagnostic::new(&self.cell.file, line, e.to_string()))?;
         self.journal.attached(robot.id, volume, in_link);
         Ok(())
     }
 
     /// Detaches what robots have released. It counts up to the instant of the release.
-    pub(super) fn detach_released(&mut self) -> Result<(), FormatError> {
+    pub(super) fn detach_released(&mut self) -> Result<(), Diagnostic> {
         for (i, volume) in std::mem::take(&mut self.released) {
             let robot = &mut self.robots[i];
             let detached = robot.monitor.detach(volume).and_then(|()| self.regions.detach(i, volume));
-            detached.map_err(|e| FormatError::new(&self.cell.file, self.cell.robots[i].line, e.to_string()))?;
+            detached.map_err(|e| Diagnostic::new(&self.cell.file, self.cell.robots[i].line, e.to_string()))?;
             self.journal.detached(robot.id, volume);
         }
         Ok(())
@@ -74,7 +74,7 @@ impl Simulation<'_> {
     ///
     /// A robot that grips what another one holds waits for the other's steps of this instant, so that it can take a
     /// part over.
-    pub(super) fn apply_grips(&mut self, t_s: f64) -> Result<(), FormatError> {
+    pub(super) fn apply_grips(&mut self, t_s: f64) -> Result<(), Diagnostic> {
         let mut late = Vec::new();
         for i in 0..self.robots.len() {
             let mut actions = self.robots[i].clock.take_grips().into_iter();
@@ -90,7 +90,7 @@ impl Simulation<'_> {
         late.into_iter().try_for_each(|(i, action)| self.apply_grip(i, &action, t_s))
     }
 
-    fn apply_grip(&mut self, i: usize, action: &GripAction, t_s: f64) -> Result<(), FormatError> {
+    fn apply_grip(&mut self, i: usize, action: &GripAction, t_s: f64) -> Result<(), Diagnostic> {
         let states: Vec<&ChainState> = self.states.iter().collect();
         let (robot, contacts) = (&self.robots[i], &mut self.contacts);
         contacts.parts.apply(robot.id, action, t_s, &robot.present, &mut contacts.checker, &states)?;
@@ -100,7 +100,7 @@ impl Simulation<'_> {
     }
 
     /// Updates the guarded volumes after a grip or a release, also in the avoidance of all robots.
-    fn guard_part(&mut self, i: usize, action: &GripAction) -> Result<(), FormatError> {
+    fn guard_part(&mut self, i: usize, action: &GripAction) -> Result<(), Diagnostic> {
         let attachment = self.contacts.checker.attachment(action.object).cloned();
         let in_link = attachment.as_ref().map_or(Pose::IDENTITY, |a| a.in_link);
         for avoiding in self.robots.iter_mut().filter_map(|robot| robot.avoiding.as_mut()) {
@@ -108,10 +108,10 @@ impl Simulation<'_> {
                 Some(attachment) => avoiding.attach(action.object, attachment.clone()),
                 None => avoiding.detach(action.object),
             };
-            applied.map_err(|e| FormatError::new(&self.cell.file, action.line, e.to_string()))?;
+            applied.map_err(|e| Diagnostic::new(&self.cell.file, action.line, e.to_string()))?;
         }
         let slot = self.robots[i].setup.gripped_volume(action.object, action.link, &in_link);
-        let none = || FormatError::new(&self.cell.file, action.line, "grips what its monitor has no volume for");
+        let none = || Diagnostic::new(&self.cell.file, action.line, "grips what its monitor has no volume for");
         let (volume, in_link) = slot.ok_or_else(none)?;
         self.carry(i, volume, action.grips.then_some(&in_link), action.line)
     }

@@ -27,7 +27,7 @@ mod zone_claims;
 
 use elbowroom_cell::configure;
 use elbowroom_cell::{Cell, CellRobot, Frames, OutOfReachProofs, QueryModel};
-use elbowroom_formats::{FormatError, Warning};
+use elbowroom_diagnostic::Diagnostic;
 use elbowroom_kinematics::ChainState;
 use elbowroom_robot::{Robot, RobotId};
 
@@ -55,7 +55,7 @@ pub struct RunOutcome {
     /// The recording.
     pub recording: Recording,
     /// Notes on the programs: speeds beyond the joint limits, and the like.
-    pub notes: Vec<Warning>,
+    pub notes: Vec<Diagnostic>,
 }
 
 impl RunOutcome {
@@ -74,9 +74,9 @@ impl RunOutcome {
 /// override of a tick applies to the motion from this tick to the next.
 ///
 /// # Errors
-/// [`FormatError`] at the line of an infeasible step. The error comes before any motion, except if a part that another
+/// [`Diagnostic`] at the line of an infeasible step. The error comes before any motion, except if a part that another
 /// robot moves cannot be gripped.
-pub fn simulate(cell: &Cell, options: &RunOptions) -> Result<RunOutcome, FormatError> {
+pub fn simulate(cell: &Cell, options: &RunOptions) -> Result<RunOutcome, Diagnostic> {
     simulate_observed(&PlannedPaths::new(cell), options, &mut |_| {}, None)
 }
 
@@ -92,7 +92,7 @@ pub fn simulate_observed(
     options: &RunOptions,
     progress: &mut dyn FnMut(RunProgress),
     observer: Option<&mut dyn RunObserver>,
-) -> Result<RunOutcome, FormatError> {
+) -> Result<RunOutcome, Diagnostic> {
     let (cell, mut notes) = (paths.cell(), Vec::new());
     let setups = configure::setups(cell)?;
     let arbiter = configure::zone_arbiter(cell);
@@ -163,8 +163,8 @@ fn path_guard<'a>(
     avoids: bool,
     perceived: &PerceivedObstacles<'_>,
     states: &[ChainState],
-    notes: &mut Vec<Warning>,
-) -> Result<Option<(PathGuard, PathReplanner<'a>)>, FormatError> {
+    notes: &mut Vec<Diagnostic>,
+) -> Result<Option<(PathGuard, PathReplanner<'a>)>, Diagnostic> {
     let Some(search_s) = perceived.search_s(id) else { return Ok(None) };
     if !avoids {
         return PathGuard::new(cell, (id, clock), (search_s, SearchTiming::Simulated), states).map(Some);
@@ -174,6 +174,8 @@ fn path_guard<'a>(
         "robot \"{}\" has [avoidance.{}], which does not know what sensors see: it does not keep clear of that",
         robot.name, robot.name
     );
-    notes.push(Warning::new(&cell.file, robot.line, what).hint("run --no-avoidance, or robots = [...] of the sensor"));
+    notes.push(
+        Diagnostic::new(&cell.file, robot.line, what).hint("run --no-avoidance, or robots = [...] of the sensor"),
+    );
     Ok(None)
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use elbowroom_cell::region_constraint::RegionConstraint;
 use elbowroom_cell::{Cell, Frames};
-use elbowroom_formats::FormatError;
+use elbowroom_diagnostic::Diagnostic;
 use elbowroom_kinematics::ChainState;
 use elbowroom_monitor::{AccessClass, OverrideReason, RegionId, RegionKind, VolumeId, ZoneArbiter};
 
@@ -46,8 +46,8 @@ impl Simulation<'_> {
     /// Runs to the end. Returns the time (s) and the reason of the end.
     ///
     /// # Errors
-    /// [`FormatError`] if a part cannot be gripped, or a volume cannot be attached.
-    pub fn run(&mut self, progress: &mut dyn FnMut(RunProgress)) -> Result<(f64, RunEnd), FormatError> {
+    /// [`Diagnostic`] if a part cannot be gripped, or a volume cannot be attached.
+    pub fn run(&mut self, progress: &mut dyn FnMut(RunProgress)) -> Result<(f64, RunEnd), Diagnostic> {
         self.publish_initial_occupancy();
         let mut tick = 0_u64;
         loop {
@@ -82,7 +82,7 @@ impl Simulation<'_> {
     }
 
     /// Evaluates one instant; nothing moves.
-    fn tick(&mut self, t_s: f64) -> Result<(), FormatError> {
+    fn tick(&mut self, t_s: f64) -> Result<(), Diagnostic> {
         self.apply_switches(t_s);
         self.update_states(t_s);
         self.perceive(t_s);

@@ -1,7 +1,7 @@
 //! Distance of robots from a region that is to be switched on or moved.
 
 use elbowroom_cell::{Cell, CellRegion, Frames, configure};
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 use elbowroom_kinematics::ChainState;
 use elbowroom_monitor::{Life, Monitor, RegionKind};
 use elbowroom_robot::RobotId;
@@ -29,13 +29,13 @@ const UNTIL_IT_COUNTS_S: f64 = 0.2;
 /// encoder or a path is at its place `t_s` after the start of this process.
 ///
 /// # Errors
-/// [`FormatError`] if no monitor accepts the region.
+/// [`Diagnostic`] if no monitor accepts the region.
 pub(crate) fn clearances(
     cell: &Cell,
     region: &CellRegion,
     states: &[Option<JointState>],
     t_s: f64,
-) -> Result<Vec<Clearance>, FormatError> {
+) -> Result<Vec<Clearance>, Diagnostic> {
     let alone = with_only(cell, region);
     let chains: Vec<Option<ChainState>> = alone.robots.iter().zip(states).map(|(r, s)| placed(r, s.as_ref())).collect();
     let setups = configure::setups(&alone)?;

@@ -1,6 +1,6 @@
 //! Refusal of a request.
 
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 use serde::Serialize;
 
 /// A refused request: what is wrong, and what to write instead. Sent as JSON.
@@ -34,8 +34,8 @@ impl Refusal {
 }
 
 /// Refusal because the log cannot be written or a region is not accepted: the text says where.
-impl From<FormatError> for Refusal {
-    fn from(error: FormatError) -> Self {
+impl From<Diagnostic> for Refusal {
+    fn from(error: Diagnostic) -> Self {
         Self::new(500, error.to_string())
     }
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use elbowroom_cell::access::{AccessToken, Change, ControlLog, Controlled};
 use elbowroom_cell::{RegionEdit, table_changes};
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 use elbowroom_monitor::{Life, RegionKind};
 use elbowroom_status::SPARE_REGIONS;
 
@@ -237,10 +237,10 @@ fn done_word(action: &str) -> &'static str {
 }
 
 /// Refuses the keys of a region, with the error that the cell file's parser reports.
-fn wrong(error: FormatError) -> Refusal {
-    let what = error.line.map_or_else(|| error.what.clone(), |line| format!("line {line}: {}", error.what));
+fn wrong(error: Diagnostic) -> Refusal {
+    let what = error.line.map_or_else(|| error.message.clone(), |line| format!("line {line}: {}", error.message));
     let refusal = Refusal::new(400, what);
-    match error.write_instead {
+    match error.hint {
         Some(help) => refusal.help(help),
         None => refusal,
     }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use elbowroom_cell::access::{AccessTokens, ControlLog, control_log_of};
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 use elbowroom_view::ViewError;
 use elbowroom_view::http::{ConnectionLimits, Endpoint, Hosts, HttpServer};
 
@@ -30,7 +30,7 @@ pub struct ControlOptions {
 pub enum ControlError {
     /// The file of tokens or the log is wrong.
     #[error(transparent)]
-    File(#[from] FormatError),
+    File(#[from] Diagnostic),
     /// The interface cannot be served at the address.
     #[error(transparent)]
     Address(#[from] ViewError),

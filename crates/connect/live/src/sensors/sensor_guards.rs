@@ -8,7 +8,7 @@ use std::thread::{JoinHandle, Scope};
 use std::time::Duration;
 
 use elbowroom_cell::{Cell, CellRobot, CellSensor, configure};
-use elbowroom_formats::FormatError;
+use elbowroom_formats::Diagnostic;
 use elbowroom_kinematics::ChainState;
 use elbowroom_robot::RobotId;
 use elbowroom_sim::replanning::{ObjectPlaces, PathGuard, PathReplanner, PerceivedObstacles, SearchTiming};
@@ -163,7 +163,7 @@ fn path_guard<'c>(
     robot: RobotId,
     program: &Mutex<GuardedProgram>,
     search_s: f64,
-) -> Result<(PathGuard, PathReplanner<'c>), FormatError> {
+) -> Result<(PathGuard, PathReplanner<'c>), Diagnostic> {
     let at_start = |robot: &CellRobot| {
         let mut state = ChainState::new(&robot.robot.chain);
         state.q.copy_from_slice(&robot.start);
@@ -174,7 +174,7 @@ fn path_guard<'c>(
     PathGuard::new(cell, (robot, &program.clock), (search_s, SearchTiming::Live), &states)
 }
 
-fn regions(cell: &Cell, robot: RobotId) -> Result<RobotRegions, FormatError> {
+fn regions(cell: &Cell, robot: RobotId) -> Result<RobotRegions, Diagnostic> {
     let mut setups = configure::setups(cell)?;
     let mut monitors = configure::monitors(cell, &setups)?;
     Ok(RobotRegions::new(setups.swap_remove(robot.0), monitors.swap_remove(robot.0)))

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use elbowroom_cell::Cell;
-use elbowroom_formats::Warning;
+use elbowroom_formats::Diagnostic;
 use elbowroom_robot::RobotId;
 
 use crate::event_handler::EventHandler;
@@ -31,7 +31,7 @@ impl SensorNews {
         }
     }
 
-    pub fn warn(&self, notes: &[Warning]) {
+    pub fn warn(&self, notes: &[Diagnostic]) {
         for note in notes {
             self.tell(&format!("warning: {note}"));
         }

@@ -41,7 +41,7 @@ pub use whole_cell::{CellUrdf, UrdfMesh};
 /// assert_eq!(CellMessages::speed_scaling(&rail).factor, 0.25);
 /// let status = CellStatus { robots: vec![rail], ..CellStatus::default() };
 /// assert!(!messages.transforms(&status, &Time::from_nanoseconds(0)).transforms.is_empty());
-/// # Ok::<(), elbowroom_formats::FormatError>(())
+/// # Ok::<(), elbowroom_formats::Diagnostic>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct CellMessages {

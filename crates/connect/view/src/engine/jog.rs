@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use elbowroom_cell::configure::{self, MonitorSetup};
 use elbowroom_cell::{Cell, CellRobot, Frames};
-use elbowroom_formats::FormatError;
+use elbowroom_diagnostic::Diagnostic;
 use elbowroom_kinematics::inverse::{IkOptions, IkSolver, IkTask};
 use elbowroom_kinematics::{ChainState, Joint, JointKind};
 use elbowroom_monitor::{EventKind, Monitor, RobotSlot, SlotId, Snapshot, SourceState, TickReport, ZoneArbiter};
@@ -48,7 +48,7 @@ pub(crate) struct JogCell {
 }
 
 impl JogCell {
-    pub(crate) fn new(cell: Arc<Cell>, setups: Arc<Vec<MonitorSetup>>) -> Result<Self, FormatError> {
+    pub(crate) fn new(cell: Arc<Cell>, setups: Arc<Vec<MonitorSetup>>) -> Result<Self, Diagnostic> {
         let arbiter = configure::zone_arbiter(&cell);
         Ok(Self {
             monitors: configure::monitors_with(&cell, &setups, arbiter.as_ref())?,

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use axum::extract::ws::Utf8Bytes;
 use elbowroom_cell::configure::{self, MonitorSetup};
 use elbowroom_cell::{Cell, OutOfReachProofs, QueryModel};
-use elbowroom_formats::FormatError;
+use elbowroom_diagnostic::Diagnostic;
 use elbowroom_scene::Scene;
 use elbowroom_status::CellStatus;
 use tokio::sync::watch;
@@ -39,7 +39,7 @@ pub(crate) struct SentFrame {
 }
 
 impl Model {
-    pub(crate) fn of(cell: &Cell) -> Result<Self, FormatError> {
+    pub(crate) fn of(cell: &Cell) -> Result<Self, Diagnostic> {
         let query = QueryModel::of_cell(cell);
         Ok(Self {
             setups: Arc::new(configure::setups(cell)?),

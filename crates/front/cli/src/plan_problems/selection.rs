@@ -3,8 +3,9 @@
 use std::collections::HashMap;
 use std::path::Path;
 
+use elbowroom::Diagnostic;
 use elbowroom::formats::problem_set::PlanningProblem;
-use elbowroom::formats::{FormatError, suggest};
+use elbowroom::formats::suggest;
 
 use super::args::ProblemArgs;
 use crate::output::Failure;
@@ -18,7 +19,7 @@ pub(super) fn select(
     let mut sets: Vec<&str> = problems.iter().map(|p| p.set.as_str()).collect();
     sets.dedup();
     if let Some(unknown) = args.only.iter().find(|name| !sets.contains(&name.as_str())) {
-        let error = FormatError::new(file, None, format!("has no set `{unknown}`, which --only names"));
+        let error = Diagnostic::new(file, None, format!("has no set `{unknown}`, which --only names"));
         return Err(error.hint(suggest::hint(unknown, sets.iter().copied())).into());
     }
     let mut taken: HashMap<String, u32> = HashMap::new();

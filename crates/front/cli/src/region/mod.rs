@@ -52,7 +52,7 @@ fn edit(cell: &Path, edit: &CellEdit, sign: &SignArgs) -> Result<ExitStatus, Fai
 fn signed(
     cell: &Path,
     sign: &SignArgs,
-    act: impl FnOnce(&Signer<'_>) -> Result<LogEntry, elbowroom::formats::FormatError>,
+    act: impl FnOnce(&Signer<'_>) -> Result<LogEntry, elbowroom::Diagnostic>,
 ) -> Result<ExitStatus, Failure> {
     let class = AccessClass::from(sign.class);
     if class == AccessClass::Operator {

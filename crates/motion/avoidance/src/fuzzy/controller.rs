@@ -11,19 +11,19 @@ const SAMPLES: usize = 129;
 
 /// Why variables and rules are not a valid controller.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{}{what}\n  write: {write_instead}", line.map(|l| format!("line {l}: ")).unwrap_or_default())]
+#[error("{}{message}\n  write: {hint}", line.map(|l| format!("line {l}: ")).unwrap_or_default())]
 pub struct FuzzyError {
     /// Line of the text, from 1, if known.
     pub line: Option<usize>,
     /// The problem.
-    pub what: String,
+    pub message: String,
     /// What to write instead.
-    pub write_instead: String,
+    pub hint: String,
 }
 
 impl FuzzyError {
-    pub(crate) fn new(what: impl Into<String>, write_instead: impl Into<String>) -> Self {
-        Self { line: None, what: what.into(), write_instead: write_instead.into() }
+    pub(crate) fn new(message: impl Into<String>, hint: impl Into<String>) -> Self {
+        Self { line: None, message: message.into(), hint: hint.into() }
     }
 
     pub(crate) fn at(self, line: impl Into<Option<usize>>) -> Self {

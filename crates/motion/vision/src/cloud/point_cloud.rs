@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use elbowroom_formats::{FormatError, pcd, ply};
+use elbowroom_formats::{Diagnostic, pcd, ply};
 use elbowroom_spatial::Vec3;
 
 use crate::VisionError;
@@ -73,6 +73,6 @@ impl PointCloud {
             self.fill(pcd::parse_points(bytes, file)?);
             return Ok(());
         }
-        Err(FormatError::new(file, None, "is no point cloud that can be read").hint("a .pcd or a .ply file").into())
+        Err(Diagnostic::new(file, None, "is no point cloud that can be read").hint("a .pcd or a .ply file").into())
     }
 }

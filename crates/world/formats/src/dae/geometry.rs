@@ -7,9 +7,9 @@ use elbowroom_spatial::Vec3;
 use roxmltree::{Node, NodeId};
 
 use super::source::{indices, points, target};
-use crate::error::WarningList;
 use crate::mesh_data::{MAX_ELEMENTS, MeshData, split_vertices};
-use crate::{FormatError, Warning, polygon, xml};
+use crate::warning_list::WarningList;
+use crate::{Diagnostic, polygon, xml};
 
 type Ids<'a, 'i> = HashMap<&'a str, Node<'a, 'i>>;
 
@@ -20,7 +20,7 @@ pub(super) fn read<'a, 'i>(
     file: &Path,
     warnings: &mut WarningList,
     points_read: &mut usize,
-) -> Result<MeshData, FormatError> {
+) -> Result<MeshData, Diagnostic> {
     let name = geometry.attribute("name").or(geometry.attribute("id")).unwrap_or("geometry");
     let mut reader = GeometryReader {
         ids,
@@ -66,7 +66,7 @@ struct Layout {
 }
 
 impl<'a, 'i> GeometryReader<'a, 'i, '_> {
-    fn primitive(&mut self, node: Node<'a, 'i>) -> Result<(), FormatError> {
+    fn primitive(&mut self, node: Node<'a, 'i>) -> Result<(), Diagnostic> {
         let lists: Vec<Node<'a, 'i>> = xml::children(node, "p").collect();
         let holed: Vec<Node<'a, 'i>> = xml::children(node, "ph").collect();
         if lists.is_empty() && holed.is_empty() {
@@ -75,7 +75,7 @@ impl<'a, 'i> GeometryReader<'a, 'i, '_> {
         let layout = self.layout(node)?;
         if let Some(first) = holed.first() {
             let what = "polygons with holes are read without their holes";
-            self.warnings.push_with(|| Warning::new(self.file, xml::line(*first), what).hint("triangles"));
+            self.warnings.push_with(|| Diagnostic::new(self.file, xml::line(*first), what).hint("triangles"));
         }
         let outlines = holed.iter().filter_map(|ph| xml::child(*ph, "p"));
         for list in lists.iter().copied().chain(outlines) {
@@ -91,13 +91,13 @@ impl<'a, 'i> GeometryReader<'a, 'i, '_> {
         Ok(())
     }
 
-    fn layout(&mut self, node: Node<'a, 'i>) -> Result<Layout, FormatError> {
+    fn layout(&mut self, node: Node<'a, 'i>) -> Result<Layout, Diagnostic> {
         let (mut stride, mut vertex) = (1, None);
         for input in xml::children(node, "input") {
             let text = input.attribute("offset").unwrap_or("0");
             // Exporters never write a larger offset; a huge offset would only cause a huge stride.
             let offset = text.trim().parse::<usize>().ok().filter(|&o| o < 1000).ok_or_else(|| {
-                FormatError::new(self.file, xml::line(input), "the input's offset is no small integer")
+                Diagnostic::new(self.file, xml::line(input), "the input's offset is no small integer")
                     .hint("offset=\"0\"")
             })?;
             stride = stride.max(offset + 1);
@@ -106,7 +106,7 @@ impl<'a, 'i> GeometryReader<'a, 'i, '_> {
             }
         }
         let (input, offset) = vertex.ok_or_else(|| {
-            FormatError::new(
+            Diagnostic::new(
                 self.file,
                 xml::line(node),
                 format!("<{}> does not state its vertices", node.tag_name().name()),
@@ -118,12 +118,12 @@ impl<'a, 'i> GeometryReader<'a, 'i, '_> {
     }
 
     /// Reads the points of an input, once per source.
-    fn positions(&mut self, input: Node<'a, 'i>) -> Result<(u32, u32), FormatError> {
+    fn positions(&mut self, input: Node<'a, 'i>) -> Result<(u32, u32), Diagnostic> {
         let mut source = target(self.ids, input, "source", self.file)?;
         if source.tag_name().name() == "vertices" {
             let position = xml::children(source, "input").find(|i| i.attribute("semantic") == Some("POSITION"));
             let position = position.ok_or_else(|| {
-                FormatError::new(self.file, xml::line(source), "<vertices> has no positions")
+                Diagnostic::new(self.file, xml::line(source), "<vertices> has no positions")
                     .hint("<input semantic=\"POSITION\" source=\"#POSITIONS\"/>")
             })?;
             source = target(self.ids, position, "source", self.file)?;
@@ -135,7 +135,7 @@ impl<'a, 'i> GeometryReader<'a, 'i, '_> {
         *self.points_read += points.len();
         if *self.points_read > MAX_ELEMENTS {
             let what = format!("the geometries together read more than {MAX_ELEMENTS} points");
-            return Err(FormatError::new(self.file, xml::line(source), what).hint("a coarser mesh"));
+            return Err(Diagnostic::new(self.file, xml::line(source), what).hint("a coarser mesh"));
         }
         let range = (self.vertices.len() as u32, points.len() as u32);
         self.vertices.extend(points);
@@ -143,7 +143,7 @@ impl<'a, 'i> GeometryReader<'a, 'i, '_> {
         Ok(range)
     }
 
-    fn corners(&self, list: Node<'a, 'i>, layout: &Layout) -> Result<Vec<u32>, FormatError> {
+    fn corners(&self, list: Node<'a, 'i>, layout: &Layout) -> Result<Vec<u32>, Diagnostic> {
         let numbers = indices(list, self.file)?;
         if !numbers.len().is_multiple_of(layout.stride) {
             let what = format!(
@@ -151,7 +151,7 @@ impl<'a, 'i> GeometryReader<'a, 'i, '_> {
                 numbers.len(),
                 layout.stride
             );
-            return Err(FormatError::new(self.file, xml::line(list), what).hint("one number per input and corner"));
+            return Err(Diagnostic::new(self.file, xml::line(list), what).hint("one number per input and corner"));
         }
         let corners = numbers.chunks_exact(layout.stride).map(|c| c[layout.offset]);
         corners
@@ -159,27 +159,27 @@ impl<'a, 'i> GeometryReader<'a, 'i, '_> {
             .collect::<Result<_, u32>>()
             .map_err(|i| {
                 let what = format!("<p> names the vertex {i}, but there are {}", layout.count);
-                FormatError::new(self.file, xml::line(list), what).hint("numbers of vertices, counted from 0")
+                Diagnostic::new(self.file, xml::line(list), what).hint("numbers of vertices, counted from 0")
             })
     }
 
-    fn triangles(&mut self, list: Node<'a, 'i>, corners: &[u32]) -> Result<(), FormatError> {
+    fn triangles(&mut self, list: Node<'a, 'i>, corners: &[u32]) -> Result<(), Diagnostic> {
         if !corners.len().is_multiple_of(3) {
             let what = format!("<triangles> with {} corners", corners.len());
-            return Err(FormatError::new(self.file, xml::line(list), what).hint("three corners for each triangle"));
+            return Err(Diagnostic::new(self.file, xml::line(list), what).hint("three corners for each triangle"));
         }
         self.triangles.extend(corners.chunks_exact(3).map(|c| [c[0], c[1], c[2]]));
         Ok(())
     }
 
-    fn polylist(&mut self, node: Node<'a, 'i>, list: Node<'a, 'i>, corners: &[u32]) -> Result<(), FormatError> {
+    fn polylist(&mut self, node: Node<'a, 'i>, list: Node<'a, 'i>, corners: &[u32]) -> Result<(), Diagnostic> {
         let sizes = xml::child(node, "vcount").map_or(Ok(Vec::new()), |v| indices(v, self.file))?;
         let mut rest = corners;
         for size in sizes {
             let Some((polygon, after)) = rest.split_at_checked(size as usize) else {
                 let what = format!("<vcount> needs more corners than the {} of <p>", corners.len());
                 return Err(
-                    FormatError::new(self.file, xml::line(list), what).hint("as many corners as the sum of <vcount>")
+                    Diagnostic::new(self.file, xml::line(list), what).hint("as many corners as the sum of <vcount>")
                 );
             };
             polygon::triangulate(&self.vertices, polygon, &mut self.triangles);
@@ -188,7 +188,7 @@ impl<'a, 'i> GeometryReader<'a, 'i, '_> {
         if !rest.is_empty() {
             let what = format!("{} corners of <p> belong to no polygon of <vcount>; they are dropped", rest.len());
             self.warnings.push_with(|| {
-                Warning::new(self.file, xml::line(list), what).hint("as many corners as the sum of <vcount>")
+                Diagnostic::new(self.file, xml::line(list), what).hint("as many corners as the sum of <vcount>")
             });
         }
         Ok(())

@@ -15,24 +15,24 @@ use std::path::Path;
 use roxmltree::Node;
 
 use crate::affine::Affine;
-use crate::error::WarningList;
 use crate::mesh_data::{LoadedMeshes, UpAxis};
 use crate::tokens::show;
-use crate::{FormatError, input, xml};
+use crate::warning_list::WarningList;
+use crate::{Diagnostic, input, xml};
 
 /// Parses a COLLADA file and applies its unit. A file that states no unit is in metres.
 ///
 /// # Errors
-/// [`FormatError`] for invalid XML, references to missing elements, missing vertices, invalid numbers, or nodes in a
+/// [`Diagnostic`] for invalid XML, references to missing elements, missing vertices, invalid numbers, or nodes in a
 /// cycle.
-pub fn parse(bytes: &[u8], file: &Path, up: UpAxis) -> Result<LoadedMeshes, FormatError> {
+pub fn parse(bytes: &[u8], file: &Path, up: UpAxis) -> Result<LoadedMeshes, Diagnostic> {
     input::check_content(bytes, file)?;
     let text = input::text(bytes, file)?;
     let document = xml::parse(&text, file)?;
     let root = document.root_element();
     if root.tag_name().name() != "COLLADA" {
         let what = format!("the root element is <{}>, not <COLLADA>", show(root.tag_name().name().as_bytes()));
-        return Err(FormatError::new(file, xml::line(root), what).hint("a COLLADA file, exported as .dae"));
+        return Err(Diagnostic::new(file, xml::line(root), what).hint("a COLLADA file, exported as .dae"));
     }
     let mut warnings = WarningList::default();
     let asset = xml::child(root, "asset");
@@ -46,13 +46,13 @@ pub fn parse(bytes: &[u8], file: &Path, up: UpAxis) -> Result<LoadedMeshes, Form
     Ok(LoadedMeshes { meshes, warnings: warnings.finish(file) })
 }
 
-fn unit_in_metres(asset: Option<Node<'_, '_>>, file: &Path) -> Result<f64, FormatError> {
+fn unit_in_metres(asset: Option<Node<'_, '_>>, file: &Path) -> Result<f64, Diagnostic> {
     let Some(unit) = asset.and_then(|a| xml::child(a, "unit")) else { return Ok(1.0) };
     let Some(meter) = unit.attribute("meter") else { return Ok(1.0) };
     let metres = meter.trim().parse().ok().filter(|m: &f64| m.is_finite() && *m > 0.0);
     metres.ok_or_else(|| {
         let what = format!("the unit `{}` is not a length in metres", show(meter.as_bytes()));
-        FormatError::new(file, xml::line(unit), what).hint("<unit name=\"millimeter\" meter=\"0.001\"/>")
+        Diagnostic::new(file, xml::line(unit), what).hint("<unit name=\"millimeter\" meter=\"0.001\"/>")
     })
 }
 
@@ -68,7 +68,7 @@ fn upright(asset: Option<Node<'_, '_>>, file: &Path, warnings: &mut WarningList)
         "Y_UP" => Affine::rotation(Y_UP),
         other => {
             let what = format!("the up axis `{}` is unknown; Y_UP, the default, is taken", show(other.as_bytes()));
-            warnings.push(crate::Warning::new(file, xml::line(node), what).hint("<up_axis>Z_UP</up_axis>"));
+            warnings.push(Diagnostic::new(file, xml::line(node), what).hint("<up_axis>Z_UP</up_axis>"));
             Affine::rotation(Y_UP)
         }
     }

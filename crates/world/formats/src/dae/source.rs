@@ -7,7 +7,7 @@ use elbowroom_spatial::Vec3;
 use roxmltree::Node;
 
 use crate::tokens::{Tokens, number, show};
-use crate::{FormatError, xml};
+use crate::{Diagnostic, xml};
 
 /// The element to which a `#reference` in an attribute refers.
 pub(super) fn target<'a, 'i>(
@@ -15,9 +15,9 @@ pub(super) fn target<'a, 'i>(
     node: Node<'a, 'i>,
     attribute: &str,
     file: &Path,
-) -> Result<Node<'a, 'i>, FormatError> {
+) -> Result<Node<'a, 'i>, Diagnostic> {
     let name = node.tag_name().name();
-    let error = |what: String| FormatError::new(file, xml::attribute_line(node, attribute), what);
+    let error = |what: String| Diagnostic::new(file, xml::attribute_line(node, attribute), what);
     let url = node
         .attribute(attribute)
         .ok_or_else(|| error(format!("<{name}> has no {attribute}")).hint(format!("<{name} {attribute}=\"#ID\">")))?;
@@ -32,9 +32,9 @@ pub(super) fn target<'a, 'i>(
 }
 
 /// The points of a `<source>`: its array, read through its accessor.
-pub(super) fn points(source: Node<'_, '_>, file: &Path) -> Result<Vec<Vec3>, FormatError> {
+pub(super) fn points(source: Node<'_, '_>, file: &Path) -> Result<Vec<Vec3>, Diagnostic> {
     let array = xml::child(source, "float_array").ok_or_else(|| {
-        FormatError::new(file, xml::line(source), "the source has no <float_array>")
+        Diagnostic::new(file, xml::line(source), "the source has no <float_array>")
             .hint("<float_array count=\"9\">0 0 0 …</float_array>")
     })?;
     let numbers = floats(array, file)?;
@@ -46,7 +46,7 @@ pub(super) fn points(source: Node<'_, '_>, file: &Path) -> Result<Vec<Vec3>, For
         None => Ok(default),
         Some(text) => text.trim().parse::<usize>().map_err(|_| {
             let what = format!("{name}=\"{}\" of the accessor is no count", show(text.as_bytes()));
-            FormatError::new(file, xml::attribute_line(accessor, name), what).hint(format!("{name}=\"3\""))
+            Diagnostic::new(file, xml::attribute_line(accessor, name), what).hint(format!("{name}=\"3\""))
         }),
     };
     let (offset, stride) = (attribute("offset", 0)?, attribute("stride", 3)?.max(1));
@@ -58,7 +58,7 @@ pub(super) fn points(source: Node<'_, '_>, file: &Path) -> Result<Vec<Vec3>, For
     if needed > numbers.len() {
         let what =
             format!("the accessor promises {count} points = {needed} numbers, but the array has {}", numbers.len());
-        return Err(FormatError::new(file, xml::line(accessor), what)
+        return Err(Diagnostic::new(file, xml::line(accessor), what)
             .hint(format!("count=\"{}\", or the missing numbers", numbers.len() / stride)));
     }
     Ok((0..count).map(|i| &numbers[offset + i * stride..]).map(|p| Vec3::new(p[x], p[y], p[z])).collect())
@@ -75,7 +75,7 @@ fn coordinate_columns(accessor: Node<'_, '_>) -> [usize; 3] {
 }
 
 /// Reads finite numbers. Only arrays of positions are read.
-fn floats(node: Node<'_, '_>, file: &Path) -> Result<Vec<f64>, FormatError> {
+fn floats(node: Node<'_, '_>, file: &Path) -> Result<Vec<f64>, Diagnostic> {
     let text = xml::text(node);
     let mut numbers = Vec::with_capacity(text.len() / 12);
     let mut words = Tokens::at_line(text.as_bytes(), 0);
@@ -85,7 +85,7 @@ fn floats(node: Node<'_, '_>, file: &Path) -> Result<Vec<f64>, FormatError> {
             other => {
                 let why = if other.is_some() { "is not finite" } else { "is not a number" };
                 let what = format!("`{}` {why}, as number {} of the array", show(word), numbers.len());
-                return Err(FormatError::new(file, xml::line(node) + words.line(), what)
+                return Err(Diagnostic::new(file, xml::line(node) + words.line(), what)
                     .hint("a finite decimal number such as 0.25"));
             }
         }
@@ -94,7 +94,7 @@ fn floats(node: Node<'_, '_>, file: &Path) -> Result<Vec<f64>, FormatError> {
 }
 
 /// Reads non-negative integers: indices and counts.
-pub(super) fn indices(node: Node<'_, '_>, file: &Path) -> Result<Vec<u32>, FormatError> {
+pub(super) fn indices(node: Node<'_, '_>, file: &Path) -> Result<Vec<u32>, Diagnostic> {
     let text = xml::text(node);
     let mut numbers = Vec::with_capacity(text.len() / 6);
     let mut words = Tokens::at_line(text.as_bytes(), 0);
@@ -102,7 +102,7 @@ pub(super) fn indices(node: Node<'_, '_>, file: &Path) -> Result<Vec<u32>, Forma
         let index = std::str::from_utf8(word).ok().and_then(|w| w.parse().ok());
         numbers.push(index.ok_or_else(|| {
             let what = format!("`{}` in <{}> is not a whole number from 0", show(word), node.tag_name().name());
-            FormatError::new(file, xml::line(node) + words.line(), what).hint("0, 1, 2, …")
+            Diagnostic::new(file, xml::line(node) + words.line(), what).hint("0, 1, 2, …")
         })?);
     }
     Ok(numbers)

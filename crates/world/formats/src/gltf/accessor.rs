@@ -6,7 +6,7 @@ use std::path::Path;
 use elbowroom_spatial::Vec3;
 
 use super::document::{Accessor, Document, Sparse};
-use crate::FormatError;
+use crate::Diagnostic;
 
 /// Largest number of zeros per sparse value.
 ///
@@ -105,12 +105,12 @@ pub(super) struct AccessorReader<'a> {
 }
 
 impl<'a> AccessorReader<'a> {
-    pub(super) fn error(&self, place: &str, what: &str) -> FormatError {
-        FormatError::new(self.file, None, format!("{place} {what}"))
+    pub(super) fn error(&self, place: &str, what: &str) -> Diagnostic {
+        Diagnostic::new(self.file, None, format!("{place} {what}"))
     }
 
     /// The accessor with an index. Messages name its purpose `what`.
-    pub(super) fn accessor(&self, index: usize, place: &str, what: &str) -> Result<&'a Accessor, FormatError> {
+    pub(super) fn accessor(&self, index: usize, place: &str, what: &str) -> Result<&'a Accessor, Diagnostic> {
         self.document.accessors.get(index).ok_or_else(|| {
             self.error(place, &format!("has its {what} in accessor {index}, which does not exist"))
                 .hint("the number of an accessor, counted from 0")
@@ -118,7 +118,7 @@ impl<'a> AccessorReader<'a> {
     }
 
     /// Reads positions. Integers as in `KHR_mesh_quantization` are also supported.
-    pub(super) fn points(&self, accessor: &Accessor, place: &str) -> Result<Vec<Vec3>, FormatError> {
+    pub(super) fn points(&self, accessor: &Accessor, place: &str) -> Result<Vec<Vec3>, Diagnostic> {
         if accessor.element_type != "VEC3" {
             return Err(self.error(place, "has positions that are no vectors of three").hint("\"type\": \"VEC3\""));
         }
@@ -134,7 +134,7 @@ impl<'a> AccessorReader<'a> {
         Ok(points)
     }
 
-    pub(super) fn indices(&self, accessor: &Accessor, vertices: usize, place: &str) -> Result<Vec<u32>, FormatError> {
+    pub(super) fn indices(&self, accessor: &Accessor, vertices: usize, place: &str) -> Result<Vec<u32>, Diagnostic> {
         let is_index = ComponentType::of(accessor.component_type).is_some_and(ComponentType::is_index);
         if accessor.element_type != "SCALAR" || !is_index {
             return Err(self
@@ -150,7 +150,7 @@ impl<'a> AccessorReader<'a> {
     }
 
     /// Reads floats or normalized integers, `width` per element.
-    pub(super) fn vectors(&self, accessor: &Accessor, width: usize, place: &str) -> Result<Vec<f64>, FormatError> {
+    pub(super) fn vectors(&self, accessor: &Accessor, width: usize, place: &str) -> Result<Vec<f64>, Diagnostic> {
         let found = self::width(&accessor.element_type);
         if found != Some(width) {
             let found = found.map_or_else(|| accessor.element_type.clone(), |n| n.to_string());
@@ -165,12 +165,12 @@ impl<'a> AccessorReader<'a> {
         Ok(rows)
     }
 
-    fn factor(&self, accessor: &Accessor, place: &str) -> Result<f64, FormatError> {
+    fn factor(&self, accessor: &Accessor, place: &str) -> Result<f64, Diagnostic> {
         let component = self.component(accessor.component_type, place)?;
         Ok(if accessor.normalized { component.normalization() } else { 1.0 })
     }
 
-    fn component(&self, code: u32, place: &str) -> Result<ComponentType, FormatError> {
+    fn component(&self, code: u32, place: &str) -> Result<ComponentType, Diagnostic> {
         ComponentType::of(code).ok_or_else(|| {
             self.error(place, &format!("has numbers of the unknown type {code}"))
                 .hint("\"componentType\": 5120, 5121, 5122, 5123, 5125 or 5126")
@@ -178,7 +178,7 @@ impl<'a> AccessorReader<'a> {
     }
 
     /// Reads `count × width` numbers and applies sparse replacements.
-    fn rows(&self, accessor: &Accessor, place: &str, width: usize) -> Result<Vec<f64>, FormatError> {
+    fn rows(&self, accessor: &Accessor, place: &str, width: usize) -> Result<Vec<f64>, Diagnostic> {
         let (count, component) = (accessor.count, self.component(accessor.component_type, place)?);
         // Read first, because the number of sparse values limits the number of zeros.
         let sparse = accessor.sparse.as_ref().map(|s| self.sparse_rows(s, component, place, width)).transpose()?;
@@ -213,7 +213,7 @@ impl<'a> AccessorReader<'a> {
         component: ComponentType,
         place: &str,
         width: usize,
-    ) -> Result<(Vec<f64>, Vec<f64>), FormatError> {
+    ) -> Result<(Vec<f64>, Vec<f64>), Diagnostic> {
         let (indices, values, count) = (&sparse.indices, &sparse.values, sparse.count);
         let index_type = ComponentType::of(indices.component_type).filter(|c| c.is_index()).ok_or_else(|| {
             self.error(place, "has sparse indices that are no unsigned integers").hint("\"componentType\": 5125")
@@ -224,7 +224,7 @@ impl<'a> AccessorReader<'a> {
         Ok((rows, self.read(&Elements { buffer_view, offset, count, width, component }, place)?))
     }
 
-    fn read(&self, elements: &Elements, place: &str) -> Result<Vec<f64>, FormatError> {
+    fn read(&self, elements: &Elements, place: &str) -> Result<Vec<f64>, Diagnostic> {
         let Elements { count, width, component, .. } = *elements;
         let short =
             || self.error(place, "needs more bytes than its buffer view has").hint("copy or export the file again");

@@ -7,7 +7,7 @@ use elbowroom_spatial::{Rotation, Vec3};
 use super::accessor::AccessorReader;
 use super::document::{Interpolation, Node, Sampler};
 use super::scene::decomposed;
-use crate::FormatError;
+use crate::Diagnostic;
 use crate::affine::Affine;
 use crate::mesh_data::MAX_ELEMENTS;
 use crate::nodetree::sample;
@@ -43,7 +43,7 @@ impl NodeAnimation {
 pub(super) fn node_animations(
     reader: &AccessorReader<'_>,
     elements: &mut usize,
-) -> Result<HashMap<usize, NodeAnimation>, FormatError> {
+) -> Result<HashMap<usize, NodeAnimation>, Diagnostic> {
     let document = reader.document;
     let mut nodes: HashMap<usize, NodeAnimation> = HashMap::new();
     for (a, animation) in document.animations.iter().enumerate() {
@@ -94,7 +94,7 @@ impl Keys<'_, '_> {
         elements: &mut usize,
         width: usize,
         value: impl Fn(&[f64]) -> Option<T>,
-    ) -> Result<Vec<(f64, T)>, FormatError> {
+    ) -> Result<Vec<(f64, T)>, Diagnostic> {
         let (reader, place) = (self.reader, self.place);
         let input = reader.accessor(self.sampler.input, place, "times")?;
         let output = reader.accessor(self.sampler.output, place, "values")?;

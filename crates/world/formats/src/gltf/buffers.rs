@@ -7,17 +7,17 @@ use base64::Engine;
 
 use super::document::Document;
 use crate::tokens::show;
-use crate::{FormatError, input};
+use crate::{Diagnostic, input};
 
 /// The JSON of a file, and the binary chunk of a GLB.
 type Chunks<'a> = (Cow<'a, [u8]>, Option<&'a [u8]>);
 
 /// Splits a file into its chunks. A plain glTF is JSON only.
-pub(super) fn split<'a>(bytes: &'a [u8], file: &Path) -> Result<Chunks<'a>, FormatError> {
+pub(super) fn split<'a>(bytes: &'a [u8], file: &Path) -> Result<Chunks<'a>, Diagnostic> {
     if !bytes.starts_with(b"glTF") {
         return input::text_bytes(bytes, file).map(|json| (json, None));
     }
-    let bad = |what: String| FormatError::new(file, None, what).hint("copy or export the file again, as glTF 2.0");
+    let bad = |what: String| Diagnostic::new(file, None, what).hint("copy or export the file again, as glTF 2.0");
     let word = |at: usize| {
         let raw = bytes.get(at..at + 4).ok_or_else(|| bad(format!("the GLB is truncated at byte {}", bytes.len())))?;
         Ok(u32::from_le_bytes([raw[0], raw[1], raw[2], raw[3]]) as usize)
@@ -51,28 +51,28 @@ pub(super) fn load<'a>(
     document: &Document,
     binary: Option<&'a [u8]>,
     file: &Path,
-) -> Result<Vec<Cow<'a, [u8]>>, FormatError> {
+) -> Result<Vec<Cow<'a, [u8]>>, Diagnostic> {
     let mut buffers = Vec::new();
     for (i, buffer) in document.buffers.iter().enumerate() {
         let place = format!("buffer {i}");
         let bytes = match &buffer.uri {
             None => Cow::Borrowed(binary.ok_or_else(|| {
-                FormatError::new(file, None, format!("{place} has no uri, and the file has no binary chunk"))
+                Diagnostic::new(file, None, format!("{place} has no uri, and the file has no binary chunk"))
                     .hint("\"uri\": \"model.bin\"")
             })?),
             Some(uri) => Cow::Owned(fetch(uri, &place, file)?),
         };
         if bytes.len() < buffer.byte_length {
             let what = format!("{place} announces {} bytes and has {}", buffer.byte_length, bytes.len());
-            return Err(FormatError::new(file, None, what).hint("copy or export the files again"));
+            return Err(Diagnostic::new(file, None, what).hint("copy or export the files again"));
         }
         buffers.push(bytes);
     }
     Ok(buffers)
 }
 
-fn fetch(uri: &str, place: &str, file: &Path) -> Result<Vec<u8>, FormatError> {
-    let error = |what: String| FormatError::new(file, None, format!("{place}: {what}"));
+fn fetch(uri: &str, place: &str, file: &Path) -> Result<Vec<u8>, Diagnostic> {
+    let error = |what: String| Diagnostic::new(file, None, format!("{place}: {what}"));
     if let Some(data) = uri.strip_prefix("data:") {
         let encoded = data.split_once(";base64,").map(|(_, d)| d);
         let encoded = encoded
@@ -93,6 +93,6 @@ fn fetch(uri: &str, place: &str, file: &Path) -> Result<Vec<u8>, FormatError> {
     }
     let path = file.parent().unwrap_or(Path::new("")).join(relative);
     input::read(&path).map_err(|e| {
-        error(format!("{} {}", path.display(), e.what)).hint("the file beside the .gltf; or export as .glb")
+        error(format!("{} {}", path.display(), e.message)).hint("the file beside the .gltf; or export as .glb")
     })
 }

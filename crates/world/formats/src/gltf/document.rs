@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde::Deserialize;
 
-use crate::FormatError;
+use crate::Diagnostic;
 use crate::tokens::show;
 
 /// The root object.
@@ -44,12 +44,12 @@ struct Versioned {
 }
 
 impl Asset {
-    fn check(&self, file: &Path) -> Result<(), FormatError> {
+    fn check(&self, file: &Path) -> Result<(), Diagnostic> {
         if self.version.split('.').next() == Some("2") {
             return Ok(());
         }
         let what = format!("is glTF of version {}; only 2 is read", show(self.version.as_bytes()));
-        Err(FormatError::new(file, None, what).hint("the model exported as glTF 2.0"))
+        Err(Diagnostic::new(file, None, what).hint("the model exported as glTF 2.0"))
     }
 }
 
@@ -193,12 +193,12 @@ pub(super) enum Interpolation {
 }
 
 /// Parses the JSON; refuses files that require an extension.
-pub(super) fn parse(json: &[u8], file: &Path) -> Result<Document, FormatError> {
+pub(super) fn parse(json: &[u8], file: &Path) -> Result<Document, Diagnostic> {
     let document: Document = serde_json::from_slice(json).map_err(|e| {
         if let Some(other) = serde_json::from_slice(json).ok().and_then(|v: Versioned| v.asset.check(file).err()) {
             return other;
         }
-        FormatError::new(file, e.line(), format!("the JSON is not glTF: {e}"))
+        Diagnostic::new(file, e.line(), format!("the JSON is not glTF: {e}"))
             .hint("the model exported again as glTF 2.0")
     })?;
     document.asset.check(file)?;
@@ -207,9 +207,9 @@ pub(super) fn parse(json: &[u8], file: &Path) -> Result<Document, FormatError> {
         required => {
             let is_compression = |e: &&String| e.contains("draco") || e.contains("meshopt");
             Err(match required.iter().find(is_compression) {
-                Some(extension) => FormatError::new(file, None, format!("the geometry is compressed ({extension})"))
+                Some(extension) => Diagnostic::new(file, None, format!("the geometry is compressed ({extension})"))
                     .hint("the model exported without mesh compression"),
-                None => FormatError::new(file, None, format!("requires extensions: {}", required.join(", ")))
+                None => Diagnostic::new(file, None, format!("requires extensions: {}", required.join(", ")))
                     .hint("the model exported again as glTF 2.0, without extensions"),
             })
         }

@@ -15,16 +15,16 @@ use std::path::Path;
 
 use crate::mesh_data::LoadedMeshes;
 use crate::nodetree::NodeTree;
-use crate::{FormatError, Warning, input};
+use crate::{Diagnostic, input};
 use accessor::AccessorReader;
 use scene::SceneReader;
 
 /// Parses a glTF or GLB file.
 ///
 /// # Errors
-/// [`FormatError`] for damaged JSON or chunks, references to missing elements, missing or too short buffers, required
+/// [`Diagnostic`] for damaged JSON or chunks, references to missing elements, missing or too short buffers, required
 /// extensions, or nodes in a cycle.
-pub fn parse(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> {
+pub fn parse(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, Diagnostic> {
     let mut meshes = Vec::new();
     let warnings = read_scene(bytes, file, |scene| {
         for node in std::mem::take(&mut scene.nodes) {
@@ -45,7 +45,7 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> {
 ///
 /// # Errors
 /// The errors of [`parse`], and animations with missing numbers.
-pub fn parse_tree(bytes: &[u8], file: &Path) -> Result<NodeTree, FormatError> {
+pub fn parse_tree(bytes: &[u8], file: &Path) -> Result<NodeTree, Diagnostic> {
     let mut tree = NodeTree::new(input::stem(file));
     tree.warnings = read_scene(bytes, file, |scene| tree::build(scene, &mut tree))?;
     tree.check_finite(file)?;
@@ -56,8 +56,8 @@ pub fn parse_tree(bytes: &[u8], file: &Path) -> Result<NodeTree, FormatError> {
 fn read_scene(
     bytes: &[u8],
     file: &Path,
-    then: impl FnOnce(&mut SceneReader<'_>) -> Result<(), FormatError>,
-) -> Result<Vec<Warning>, FormatError> {
+    then: impl FnOnce(&mut SceneReader<'_>) -> Result<(), Diagnostic>,
+) -> Result<Vec<Diagnostic>, Diagnostic> {
     input::check_content(bytes, file)?;
     let (json, binary) = buffers::split(bytes, file)?;
     let document = document::parse(&json, file)?;

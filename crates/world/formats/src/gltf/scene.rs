@@ -6,7 +6,7 @@ use super::accessor::AccessorReader;
 use super::document::{Mesh, Node, Primitive};
 use crate::affine::Affine;
 use crate::mesh_data::{MAX_ELEMENTS, MeshData};
-use crate::{FormatError, Warning, input, polygon};
+use crate::{Diagnostic, input, polygon};
 
 const MAX_DEPTH: usize = 200;
 const MAX_VISITS: usize = 100_000;
@@ -23,7 +23,7 @@ pub(super) struct SceneReader<'a> {
     pub(super) reader: AccessorReader<'a>,
     /// Visited nodes, parents before their children.
     pub(super) nodes: Vec<SceneNode>,
-    pub(super) warnings: Vec<Warning>,
+    pub(super) warnings: Vec<Diagnostic>,
     /// Number of vertices, corners and keys read so far.
     pub(super) elements: usize,
 }
@@ -47,31 +47,27 @@ impl<'a> SceneReader<'a> {
     }
 
     /// Visits all nodes of the scene.
-    pub(super) fn read(&mut self) -> Result<(), FormatError> {
+    pub(super) fn read(&mut self) -> Result<(), Diagnostic> {
         let mut stack: Vec<_> = self.roots()?.into_iter().map(|n| (n, Affine::IDENTITY, None, 0)).rev().collect();
         while let Some((index, parent_to_scene, parent, depth)) = stack.pop() {
             let file = self.reader.file;
             let node = self.node(index)?;
             if depth > MAX_DEPTH || self.nodes.len() >= MAX_VISITS {
                 let what = format!("node {index}: nodes contain each other too deeply, or in a cycle");
-                return Err(FormatError::new(file, None, what).hint("nodes as a tree"));
+                return Err(Diagnostic::new(file, None, what).hint("nodes as a tree"));
             }
             let to_scene = parent_to_scene.after(&local(node));
             let mut name = node.name.clone();
             let mut merged = None;
             if let Some(mesh_index) = node.mesh {
                 let mesh = self.reader.document.meshes.get(mesh_index).ok_or_else(|| {
-                    FormatError::new(
-                        file,
-                        None,
-                        format!("node {index} has the mesh {mesh_index}, which does not exist"),
-                    )
-                    .hint("the number of a mesh, counted from 0")
+                    Diagnostic::new(file, None, format!("node {index} has the mesh {mesh_index}, which does not exist"))
+                        .hint("the number of a mesh, counted from 0")
                 })?;
                 name = name.or_else(|| Some(mesh.name.clone().unwrap_or_else(|| input::stem(file))));
                 merged = self.mesh(name.clone().unwrap_or_default(), mesh_index, mesh)?;
                 if node.skin.is_some() && self.warnings.is_empty() {
-                    self.warnings.push(Warning::new(file, None, "skinned meshes are read in their rest shape"));
+                    self.warnings.push(Diagnostic::new(file, None, "skinned meshes are read in their rest shape"));
                 }
             }
             let name = name.unwrap_or_else(|| format!("node_{index}"));
@@ -82,22 +78,22 @@ impl<'a> SceneReader<'a> {
         Ok(())
     }
 
-    fn node(&self, index: usize) -> Result<&'a Node, FormatError> {
+    fn node(&self, index: usize) -> Result<&'a Node, Diagnostic> {
         self.reader.document.nodes.get(index).ok_or_else(|| {
-            FormatError::new(self.reader.file, None, format!("the scene refers to node {index}, which does not exist"))
+            Diagnostic::new(self.reader.file, None, format!("the scene refers to node {index}, which does not exist"))
                 .hint("the number of a node, counted from 0")
         })
     }
 
     /// The top nodes: of the default scene, else of the first scene, else all nodes that are not a child.
-    fn roots(&self) -> Result<Vec<usize>, FormatError> {
+    fn roots(&self) -> Result<Vec<usize>, Diagnostic> {
         let document = self.reader.document;
         let index = document.scene.unwrap_or(0);
         match document.scenes.get(index) {
             Some(scene) => Ok(scene.nodes.clone()),
             None if document.scene.is_some() => {
                 let what = format!("shows scene {index}, which does not exist");
-                Err(FormatError::new(self.reader.file, None, what).hint("the number of a scene, counted from 0"))
+                Err(Diagnostic::new(self.reader.file, None, what).hint("the number of a scene, counted from 0"))
             }
             None => {
                 let mut is_child = vec![false; document.nodes.len()];
@@ -110,7 +106,7 @@ impl<'a> SceneReader<'a> {
         }
     }
 
-    fn mesh(&mut self, name: String, index: usize, mesh: &Mesh) -> Result<Option<MeshData>, FormatError> {
+    fn mesh(&mut self, name: String, index: usize, mesh: &Mesh) -> Result<Option<MeshData>, Diagnostic> {
         let mut merged = MeshData { name, ..MeshData::default() };
         for (i, primitive) in mesh.primitives.iter().enumerate() {
             self.primitive(&format!("mesh {index}, primitive {i}"), primitive, &mut merged)?;
@@ -118,7 +114,7 @@ impl<'a> SceneReader<'a> {
         Ok((!merged.triangles.is_empty()).then_some(merged))
     }
 
-    fn primitive(&mut self, place: &str, primitive: &Primitive, merged: &mut MeshData) -> Result<(), FormatError> {
+    fn primitive(&mut self, place: &str, primitive: &Primitive, merged: &mut MeshData) -> Result<(), Diagnostic> {
         let mode = primitive.mode;
         match mode {
             ..=LINE_STRIP => return Ok(()),

@@ -4,16 +4,16 @@ use elbowroom_spatial::Pose;
 
 use super::animation::node_animations;
 use super::scene::SceneReader;
+use crate::Diagnostic;
 use crate::affine::Affine;
 use crate::nodetree::{Keyframe, Node, NodeTree, rigid};
-use crate::{FormatError, Warning};
 
-pub(super) fn build(scene: &mut SceneReader<'_>, tree: &mut NodeTree) -> Result<(), FormatError> {
+pub(super) fn build(scene: &mut SceneReader<'_>, tree: &mut NodeTree) -> Result<(), Diagnostic> {
     let animations = node_animations(&scene.reader, &mut scene.elements)?;
     let document = scene.reader.document;
     if document.animations.len() > 1 {
         let what = "has several animations: of each node the first that moves it counts";
-        scene.warnings.push(Warning::new(scene.reader.file, None, what));
+        scene.warnings.push(Diagnostic::new(scene.reader.file, None, what));
     }
     let nodes = std::mem::take(&mut scene.nodes);
     let frames: Vec<Pose> = nodes.iter().map(|n| rigid(&n.to_scene)).collect();

@@ -12,13 +12,13 @@ use std::path::{Path, PathBuf};
 
 use elbowroom_kinematics::{JointKind, JointTrajectory, TrajectoryRow};
 
+use crate::Diagnostic;
 use crate::csv::{self, CsvLines, missing_column};
-use crate::error::Location;
-use crate::{FormatError, Warning};
+use crate::location::Location;
 
 pub use options::{ExtraColumns, JointStateOptions, JointStateRobot, LimitCheck, TimeColumn};
 
-type Result<T> = std::result::Result<T, FormatError>;
+type Result<T> = std::result::Result<T, Diagnostic>;
 
 /// Joint values of one or more robots, row by row, eight bytes each.
 ///
@@ -35,7 +35,7 @@ type Result<T> = std::result::Result<T, FormatError>;
 /// let states = JointStates::parse("q.csv".as_ref(), "elbow,arm.shoulder\n0.1,0.2\n", &options)?;
 /// assert_eq!(states.q(0, 0), [0.2, 0.1]);
 /// let error = JointStates::parse("q.csv".as_ref(), "elbow\n0.1\n", &options).unwrap_err();
-/// assert_eq!(error.what, "has no column `shoulder`; its columns are elbow");
+/// assert_eq!(error.message, "has no column `shoulder`; its columns are elbow");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
@@ -43,7 +43,7 @@ pub struct JointStates {
     /// Path of the file, for messages.
     pub file: PathBuf,
     /// Warnings for the user.
-    pub warnings: Vec<Warning>,
+    pub warnings: Vec<Diagnostic>,
     /// Per robot: end of its values in a row.
     ends: Vec<usize>,
     values: Vec<f64>,
@@ -65,7 +65,7 @@ impl JointStates {
     /// Reads a file.
     ///
     /// # Errors
-    /// [`FormatError`] with the line and the column.
+    /// [`Diagnostic`] with the line and the column.
     pub fn read(path: &Path, options: &JointStateOptions<'_>) -> Result<Self> {
         Self::from_lines(path, CsvLines::open(path, options.max_bytes)?, options)
     }
@@ -130,7 +130,7 @@ impl JointStates {
         let joints = Joints::new(options);
         let (mut last_line, mut warnings) = (1, Vec::new());
         let Some((at, header)) = lines.next()? else {
-            return Err(FormatError::new(path, 1, "is empty").hint(format!("the header {}", joints.header())));
+            return Err(Diagnostic::new(path, 1, "is empty").hint(format!("the header {}", joints.header())));
         };
         let header = Header::parse(at, header, &joints, &mut warnings)?;
         let defaults = joints.defaults();
@@ -163,16 +163,16 @@ impl JointStates {
             }
         }
         if let Some(mut first) = first_beyond {
-            let what = &first.what;
-            first.what =
+            let what = &first.message;
+            first.message =
                 format!("{what}; {beyond} of {} states are beyond limits and are evaluated unchanged", states.rows);
             states.warnings.push(first);
         }
         if states.rows == 0 {
             if options.time == TimeColumn::Required {
-                return Err(FormatError::new(path, 1, "has no rows").hint("rows of numbers below the header"));
+                return Err(Diagnostic::new(path, 1, "has no rows").hint("rows of numbers below the header"));
             }
-            states.warnings.push(Warning::new(path, last_line, "there is no state below the header"));
+            states.warnings.push(Diagnostic::new(path, last_line, "there is no state below the header"));
         }
         Ok(states)
     }
@@ -259,15 +259,15 @@ impl<'a> Joints<'a> {
         let joint = &self.list[i];
         let what = format!("joint `{}` is at {}, outside its limits", self.shown(joint), values[i]);
         let hint = format!("radians (metres for a prismatic joint) from {} to {}", joint.lower, joint.upper);
-        Err(at.error(what).hint(hint))
+        Err(at.diagnostic(what).hint(hint))
     }
 
-    fn warning(&self, joint: usize, value: f64, at: Location<'_>) -> Warning {
+    fn warning(&self, joint: usize, value: f64, at: Location<'_>) -> Diagnostic {
         let joint = &self.list[joint];
         let degrees =
             if value.abs() > FULL_TURN_RAD && joint.upper < FULL_TURN_RAD { "; are these degrees?" } else { "" };
         let (name, lower, upper) = (self.shown(joint), joint.lower, joint.upper);
-        at.warning(format!("`{name}` is {value}, beyond its limits {lower:.4} to {upper:.4}{degrees}"))
+        at.diagnostic(format!("`{name}` is {value}, beyond its limits {lower:.4} to {upper:.4}{degrees}"))
     }
 
     /// Why a column is not the column of an independent joint.
@@ -303,9 +303,9 @@ struct Header {
 }
 
 impl Header {
-    fn parse(at: Location<'_>, text: &str, joints: &Joints<'_>, warnings: &mut Vec<Warning>) -> Result<Self> {
+    fn parse(at: Location<'_>, text: &str, joints: &Joints<'_>, warnings: &mut Vec<Diagnostic>) -> Result<Self> {
         let names: Vec<String> = csv::cells(text).map(str::to_owned).collect();
-        let wrong = |what: String| at.error(what).hint(format!("the header {}", joints.header()));
+        let wrong = |what: String| at.diagnostic(what).hint(format!("the header {}", joints.header()));
         if names.iter().all(|n| n.parse::<f64>().is_ok()) {
             return Err(wrong("has numbers where the joint names should be".into()));
         }
@@ -327,7 +327,7 @@ impl Header {
         for (robot, missing) in joints.options.robots.iter().zip(&missing) {
             if missing.len() == robot.chain.dof() && robot.default_q.is_some() {
                 let what = format!("has no column for robot `{}`, which stays at its start", robot.name);
-                warnings.push(at.warning(what));
+                warnings.push(at.diagnostic(what));
             } else if !missing.is_empty() {
                 return Err(no_column(&missing.join("`, `")));
             }
@@ -343,7 +343,7 @@ impl Header {
         Ok(header)
     }
 
-    fn check_extra(&self, at: Location<'_>, joints: &Joints<'_>, warnings: &mut Vec<Warning>) -> Result<()> {
+    fn check_extra(&self, at: Location<'_>, joints: &Joints<'_>, warnings: &mut Vec<Diagnostic>) -> Result<()> {
         let is_extra = |c: Column, name: &str| c == Column::Skipped && !["t_s", "index"].contains(&name);
         let mut extra = self.columns.iter().zip(&self.names).filter(|(c, name)| is_extra(**c, name)).map(|(_, n)| n);
         let Some(name) = extra.next() else { return Ok(()) };
@@ -351,12 +351,12 @@ impl Header {
         match joints.options.extra_columns {
             ExtraColumns::Refused => {
                 let what = format!("column `{name}` {}", joints.why_extra(name));
-                Err(at.error(what).hint(hint))
+                Err(at.diagnostic(what).hint(hint))
             }
             ExtraColumns::Skipped => {
                 let of = joints.options.robots.first().map_or("", |r| r.chain.name());
                 let what = format!("column `{name}` is not a joint of \"{of}\": ignored");
-                warnings.push(at.warning(what).hint(hint));
+                warnings.push(at.diagnostic(what).hint(hint));
                 Ok(())
             }
         }

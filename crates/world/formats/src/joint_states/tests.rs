@@ -111,7 +111,7 @@ fn several_robots_need_their_prefixes_and_may_stay_at_their_defaults() {
     let states = parse(only_left, &options).unwrap();
     assert_eq!((states.q(0, 0), states.q(0, 1)), (&[2.0, 0.1][..], &start[..]));
     assert_eq!(states.warnings.len(), 1);
-    assert_eq!(states.warnings[0].what, "has no column for robot `right`, which stays at its start");
+    assert_eq!(states.warnings[0].message, "has no column for robot `right`, which stays at its start");
     assert!(message("left.turn\n2\n", &options).contains("has no column `left.slide`"));
     assert!(message("index\n2\n", &options).contains("has no column of a joint"));
 }
@@ -146,7 +146,7 @@ fn trajectories_need_increasing_times() {
     let states = parse("turn,t_s,slide,note\n0,0,0.1,x\n1,0.5,0.2,y\n", &options).unwrap();
     assert_eq!((states.times_s(), states.q(1, 0)), (&[0.0, 0.5][..], &[1.0, 0.2][..]));
     assert_eq!(states.warnings.len(), 1);
-    assert_eq!(states.warnings[0].what, "column `note` is not a joint of \"gripper\": ignored");
+    assert_eq!(states.warnings[0].message, "column `note` is not a joint of \"gripper\": ignored");
     for (text, part) in [
         (
             "turn,slide\n0,0\n",
@@ -167,7 +167,7 @@ fn trajectories_need_increasing_times() {
 fn a_file_without_states_is_warned_of_and_a_single_state_needs_no_file() {
     let chain = chain();
     let states = parse("turn,slide\n", &JointStateOptions::states(vec![robot("", &chain)])).unwrap();
-    assert!(states.is_empty() && states.warnings[0].what.contains("no state below the header"));
+    assert!(states.is_empty() && states.warnings[0].message.contains("no state below the header"));
     let single = JointStates::single("cell.toml".as_ref(), [&[1.0, 2.0][..], &[3.0]]);
     assert_eq!((single.len(), single.q(0, 0), single.q(0, 1)), (1, &[1.0, 2.0][..], &[3.0][..]));
 }
@@ -180,7 +180,7 @@ fn files_beyond_the_largest_size_are_refused() {
     let states = JointStateOptions::states(vec![robot("", &chain)]);
     assert_eq!(JointStates::read(file.path(), &states).unwrap().len(), 1);
     let error = JointStates::read(file.path(), &JointStateOptions { max_bytes: 14, ..states }).unwrap_err();
-    assert_eq!(error.what, "has 15 bytes; at most 14 are read");
+    assert_eq!(error.message, "has 15 bytes; at most 14 are read");
 }
 
 proptest! {

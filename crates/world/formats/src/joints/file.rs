@@ -7,11 +7,11 @@ use toml::de::{DeTable, DeValue};
 
 use super::spec::{JointSpec, JointUnits};
 use super::value::{Data, Value};
-use crate::FormatError;
-use crate::error::Location;
+use crate::Diagnostic;
+use crate::location::Location;
 use crate::tokens::LineIndex;
 
-type Result<T> = std::result::Result<T, FormatError>;
+type Result<T> = std::result::Result<T, Diagnostic>;
 
 const UNITS: &str = "units = { length = \"mm\", angle = \"deg\" }   (m or mm, rad or deg)";
 
@@ -20,7 +20,7 @@ pub(super) fn parse(content: &str, file: &Path) -> Result<Vec<JointSpec>> {
     let table = DeTable::parse(content).map_err(|e| {
         let line = e.span().map(|span| lines.line_at(span.start));
         let what = format!("this is not TOML: {}", e.message().trim().replace('\n', ", "));
-        FormatError::new(file, line, what).hint("key = value, with texts in \"double quotes\"; [joint.NODE] above them")
+        Diagnostic::new(file, line, what).hint("key = value, with texts in \"double quotes\"; [joint.NODE] above them")
     })?;
     let table = table.get_ref();
     let units = units(table, &lines, file)?;
@@ -34,14 +34,14 @@ pub(super) fn parse(content: &str, file: &Path) -> Result<Vec<JointSpec>> {
                     let line = lines.line_at(node.span().start);
                     let DeValue::Table(entries) = value.get_ref() else {
                         let what = format!("`joint.{}` is not a table", node.get_ref());
-                        return Err(FormatError::new(file, line, what).hint("[joint.NODE], and below it axis = \"z\""));
+                        return Err(Diagnostic::new(file, line, what).hint("[joint.NODE], and below it axis = \"z\""));
                     };
                     specs.push(joint(node.get_ref(), entries, Location { file, line }, &lines, units)?);
                 }
             }
             (other, _) => {
                 let what = format!("`{other}` is not known here");
-                return Err(FormatError::new(file, line, what).hint("units, and tables [joint.NODE]"));
+                return Err(Diagnostic::new(file, line, what).hint("units, and tables [joint.NODE]"));
             }
         }
     }
@@ -51,9 +51,9 @@ pub(super) fn parse(content: &str, file: &Path) -> Result<Vec<JointSpec>> {
 
 fn units(table: &DeTable<'_>, lines: &LineIndex, file: &Path) -> Result<JointUnits> {
     let Some((key, value)) = table.iter().find(|(key, _)| key.get_ref() == "units") else {
-        return Err(FormatError::new(file, None, "has no `units`: a guessed unit is a wrong unit").hint(UNITS));
+        return Err(Diagnostic::new(file, None, "has no `units`: a guessed unit is a wrong unit").hint(UNITS));
     };
-    let wrong = || FormatError::new(file, lines.line_at(key.span().start), "`units` is not understood").hint(UNITS);
+    let wrong = || Diagnostic::new(file, lines.line_at(key.span().start), "`units` is not understood").hint(UNITS);
     let DeValue::Table(entries) = value.get_ref() else { return Err(wrong()) };
     let of = |name: &str| {
         let found = entries.iter().find(|(key, _)| key.get_ref() == name);

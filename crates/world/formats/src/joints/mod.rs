@@ -30,7 +30,7 @@ mod value;
 
 use std::path::{Path, PathBuf};
 
-use crate::{FormatError, input};
+use crate::{Diagnostic, input};
 
 pub use spec::{AxisFrame, JointSpec};
 pub(crate) use to_toml::key;
@@ -49,8 +49,8 @@ pub fn default_path(model: &Path) -> PathBuf {
 /// Reads a file of joints.
 ///
 /// # Errors
-/// [`FormatError`] with the line, if the file is not TOML or has unknown keys.
-pub fn load(path: &Path) -> Result<Vec<JointSpec>, FormatError> {
+/// [`Diagnostic`] with the line, if the file is not TOML or has unknown keys.
+pub fn load(path: &Path) -> Result<Vec<JointSpec>, Diagnostic> {
     let bytes = input::read(path)?;
     let content = input::text(&bytes, path)?;
     parse(&content, path)
@@ -66,9 +66,9 @@ pub fn load(path: &Path) -> Result<Vec<JointSpec>, FormatError> {
 /// let text = "units = { length = \"mm\", angle = \"deg\" }\n[joint.link_2]\naxis = \"y\"\nmin = -150\nmax = 20\n";
 /// let specs = joints::parse(text, "arm.joints.toml".as_ref())?;
 /// assert_eq!((specs[0].node.as_str(), specs[0].max), ("link_2", Some(20.0)));
-/// # Ok::<(), elbowroom_formats::FormatError>(())
+/// # Ok::<(), elbowroom_formats::Diagnostic>(())
 /// ```
-pub fn parse(content: &str, path: &Path) -> Result<Vec<JointSpec>, FormatError> {
+pub fn parse(content: &str, path: &Path) -> Result<Vec<JointSpec>, Diagnostic> {
     file::parse(content, path)
 }
 
@@ -77,7 +77,7 @@ pub fn parse(content: &str, path: &Path) -> Result<Vec<JointSpec>, FormatError> 
 /// A vector is three numbers separated by spaces.
 ///
 /// # Errors
-/// [`FormatError`] with the text, for any other input.
+/// [`Diagnostic`] with the text, for any other input.
 ///
 /// ```
 /// use elbowroom_formats::joints;
@@ -85,8 +85,8 @@ pub fn parse(content: &str, path: &Path) -> Result<Vec<JointSpec>, FormatError> 
 /// let spec = joints::parse_option("link_2: axis=0 1 0, min=-150, max=20, speed=110, kind=revolute")?;
 /// assert_eq!(spec.axis, Some(Vec3::Y));
 /// assert!(joints::parse_option("link_2: axis=up").unwrap_err().to_string().contains("axis"));
-/// # Ok::<(), elbowroom_formats::FormatError>(())
+/// # Ok::<(), elbowroom_formats::Diagnostic>(())
 /// ```
-pub fn parse_option(option: &str) -> Result<JointSpec, FormatError> {
+pub fn parse_option(option: &str) -> Result<JointSpec, Diagnostic> {
     option::parse(option)
 }

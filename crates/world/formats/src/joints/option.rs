@@ -6,13 +6,13 @@ use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 
 use super::spec::{JointSpec, JointUnits};
 use super::value::{Data, Value};
-use crate::FormatError;
+use crate::Diagnostic;
 
 const EXAMPLE: &str = "--joint \"link_2: axis=y, min=-150, max=20, speed=110\"   (metres and degrees)";
 
-pub(super) fn parse(option: &str) -> Result<JointSpec, FormatError> {
+pub(super) fn parse(option: &str) -> Result<JointSpec, Diagnostic> {
     let file = Path::new("--joint");
-    let wrong = |what: String| FormatError::new(file, None, what).hint(EXAMPLE);
+    let wrong = |what: String| Diagnostic::new(file, None, what).hint(EXAMPLE);
     let Some((node, rest)) = option.rsplit_once(':') else {
         return Err(wrong(format!("`{option}` names no node before a colon")));
     };

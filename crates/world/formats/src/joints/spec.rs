@@ -6,7 +6,7 @@ use elbowroom_kinematics::JointKind;
 use elbowroom_spatial::Vec3;
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 
-use crate::FormatError;
+use crate::Diagnostic;
 
 /// The joint that the user specifies for one node.
 #[derive(Debug, Clone, PartialEq)]
@@ -95,7 +95,7 @@ impl JointSpec {
     }
 
     /// Refuses limits in the wrong order.
-    pub(super) fn check(&self) -> Result<(), FormatError> {
+    pub(super) fn check(&self) -> Result<(), Diagnostic> {
         if let (Some(min), Some(max)) = (self.min, self.max)
             && min > max
         {
@@ -105,7 +105,7 @@ impl JointSpec {
         Ok(())
     }
 
-    pub(crate) fn error(&self, what: impl Into<String>) -> FormatError {
-        FormatError::new(&self.file, self.line, what)
+    pub(crate) fn error(&self, what: impl std::fmt::Display) -> Diagnostic {
+        Diagnostic::new(&self.file, self.line, what)
     }
 }

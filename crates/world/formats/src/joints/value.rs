@@ -6,9 +6,9 @@ use elbowroom_kinematics::JointKind;
 use elbowroom_spatial::Vec3;
 
 use super::spec::{AxisFrame, JointSpec};
-use crate::FormatError;
+use crate::Diagnostic;
 
-type Result<T> = std::result::Result<T, FormatError>;
+type Result<T> = std::result::Result<T, Diagnostic>;
 
 const KEYS: &str = "axis, in, at, kind, min, max, speed, acceleration, name, mimic";
 const AXIS: &str = "axis = \"z\"   (x, y, z, -x, -y, -z, or a vector: [0, 0, 1])";
@@ -29,8 +29,8 @@ pub(super) enum Data {
 }
 
 impl Value<'_> {
-    fn error(&self, what: &str, write: &str) -> FormatError {
-        FormatError::new(self.file, self.line, format!("`{}` {what}", self.key)).hint(write)
+    fn error(&self, what: &str, write: &str) -> Diagnostic {
+        Diagnostic::new(self.file, self.line, format!("`{}` {what}", self.key)).hint(write)
     }
 
     fn number(&self) -> Result<f64> {

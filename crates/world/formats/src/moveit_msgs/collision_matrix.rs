@@ -2,10 +2,10 @@
 
 use super::field::{Field, Reading};
 use super::types::AllowedCollisions;
-use crate::FormatError;
+use crate::Diagnostic;
 
 /// Parses the matrix; empty if the scene has none.
-pub(crate) fn parse(scene: &Field<'_>, reading: &mut Reading) -> Result<AllowedCollisions, FormatError> {
+pub(crate) fn parse(scene: &Field<'_>, reading: &mut Reading) -> Result<AllowedCollisions, Diagnostic> {
     let Some(field) = scene.get("allowed_collision_matrix")? else { return Ok(AllowedCollisions::default()) };
     let names = field.names("entry_names")?;
     let rows: Vec<Field<'_>> = field.list("entry_values")?;
@@ -45,7 +45,7 @@ fn symmetric(field: &Field<'_>, values: &[Vec<bool>], reading: &mut Reading) -> 
     allowed
 }
 
-fn allowed_by_default(field: &Field<'_>) -> Result<Vec<String>, FormatError> {
+fn allowed_by_default(field: &Field<'_>) -> Result<Vec<String>, Diagnostic> {
     let mut names = Vec::new();
     for (name, value) in field.paired_lists(["default_entry_names", "default_entry_values"])? {
         if value.flag()? {

@@ -8,7 +8,7 @@ use elbowroom_proximity::TriMesh;
 
 use serde_json::Value;
 
-use crate::{FormatError, Warning, yaml};
+use crate::{Diagnostic, yaml};
 
 /// Largest joint value, rad or m. Poses computed from larger values would not be finite.
 const MAX_JOINT_VALUE: f64 = 1e6;
@@ -37,14 +37,9 @@ impl<'a> Field<'a> {
         Self { location, path: String::new(), value }
     }
 
-    /// Creates an error at this field.
-    pub(crate) fn error(&self, what: impl std::fmt::Display, hint: impl Into<String>) -> FormatError {
-        FormatError::new(self.location.file, self.line(), self.sentence(what)).hint(hint)
-    }
-
-    /// Creates a warning at this field.
-    fn warning(&self, what: impl std::fmt::Display, hint: impl Into<String>) -> Warning {
-        Warning::new(self.location.file, self.line(), self.sentence(what)).hint(hint)
+    /// Creates a diagnostic at this field.
+    pub(crate) fn error(&self, what: impl std::fmt::Display, hint: impl Into<String>) -> Diagnostic {
+        Diagnostic::new(self.location.file, self.line(), self.sentence(what)).hint(hint)
     }
 
     fn line(&self) -> Option<usize> {
@@ -57,7 +52,7 @@ impl<'a> Field<'a> {
     }
 
     /// The field of an object; `None` if it is missing or null.
-    pub(crate) fn get(&self, key: &str) -> Result<Option<Self>, FormatError> {
+    pub(crate) fn get(&self, key: &str) -> Result<Option<Self>, Diagnostic> {
         let Value::Object(fields) = self.value else {
             return Err(self.error(format!("is {}", kind(self.value)), "an object: {\"NAME\": …}"));
         };
@@ -67,7 +62,7 @@ impl<'a> Field<'a> {
     }
 
     /// A required field of an object.
-    pub(crate) fn require(&self, key: &str, hint: &str) -> Result<Self, FormatError> {
+    pub(crate) fn require(&self, key: &str, hint: &str) -> Result<Self, Diagnostic> {
         self.get(key)?.ok_or_else(|| self.error(format!("has no `{key}`"), hint))
     }
 
@@ -76,7 +71,7 @@ impl<'a> Field<'a> {
     }
 
     /// The elements of a list.
-    pub(crate) fn elements(&self) -> Result<Vec<Self>, FormatError> {
+    pub(crate) fn elements(&self) -> Result<Vec<Self>, Diagnostic> {
         let Value::Array(values) = self.value else {
             return Err(self.error(format!("is {}", kind(self.value)), "a list: […]"));
         };
@@ -85,12 +80,12 @@ impl<'a> Field<'a> {
     }
 
     /// The elements of a list in an object; empty if the list is missing.
-    pub(crate) fn list(&self, key: &str) -> Result<Vec<Self>, FormatError> {
+    pub(crate) fn list(&self, key: &str) -> Result<Vec<Self>, Diagnostic> {
         self.get(key)?.map_or_else(|| Ok(Vec::new()), |field| field.elements())
     }
 
     /// Two lists of equal length, element by element.
-    pub(crate) fn paired_lists(&self, keys: [&str; 2]) -> Result<Vec<(Self, Self)>, FormatError> {
+    pub(crate) fn paired_lists(&self, keys: [&str; 2]) -> Result<Vec<(Self, Self)>, Diagnostic> {
         let [a, b] = [self.list(keys[0])?, self.list(keys[1])?];
         if a.len() != b.len() {
             let what = format!("has {} in `{}` and {} in `{}`", a.len(), keys[0], b.len(), keys[1]);
@@ -99,37 +94,37 @@ impl<'a> Field<'a> {
         Ok(a.into_iter().zip(b).collect())
     }
 
-    pub(crate) fn text(&self) -> Result<&'a str, FormatError> {
+    pub(crate) fn text(&self) -> Result<&'a str, Diagnostic> {
         self.value.as_str().ok_or_else(|| self.error(format!("is {}", kind(self.value)), "a text: \"…\""))
     }
 
     /// The text of a field of an object; empty if it is missing.
-    pub(crate) fn text_of(&self, key: &str) -> Result<&'a str, FormatError> {
+    pub(crate) fn text_of(&self, key: &str) -> Result<&'a str, Diagnostic> {
         self.get(key)?.map_or(Ok(""), |field| field.text())
     }
 
     /// A non-empty text.
-    pub(crate) fn name(&self) -> Result<&'a str, FormatError> {
+    pub(crate) fn name(&self) -> Result<&'a str, Diagnostic> {
         Some(self.text()?).filter(|name| !name.is_empty()).ok_or_else(|| self.error("is empty", "a name"))
     }
 
-    pub(crate) fn names(&self, key: &str) -> Result<Vec<String>, FormatError> {
+    pub(crate) fn names(&self, key: &str) -> Result<Vec<String>, Diagnostic> {
         self.list(key)?.iter().map(|field| Ok(field.name()?.to_owned())).collect()
     }
 
-    pub(crate) fn flag(&self) -> Result<bool, FormatError> {
+    pub(crate) fn flag(&self) -> Result<bool, Diagnostic> {
         let word = || format!("is {}", kind(self.value));
         self.value.as_bool().or(self.value.as_u64().map(|n| n != 0)).ok_or_else(|| self.error(word(), "true or false"))
     }
 
     /// A finite number.
-    pub(crate) fn number(&self) -> Result<f64, FormatError> {
+    pub(crate) fn number(&self) -> Result<f64, Diagnostic> {
         let number = self.value.as_f64().filter(|v| v.is_finite());
         number.ok_or_else(|| self.error(format!("is {}", kind(self.value)), "a finite number, as 0.25"))
     }
 
     /// The value of a joint, rad or m.
-    pub(crate) fn joint_value(&self) -> Result<f64, FormatError> {
+    pub(crate) fn joint_value(&self) -> Result<f64, Diagnostic> {
         let value = self.number()?;
         if value.abs() <= MAX_JOINT_VALUE {
             return Ok(value);
@@ -138,18 +133,18 @@ impl<'a> Field<'a> {
     }
 
     /// A whole number, 0 or more.
-    pub(crate) fn index(&self) -> Result<u32, FormatError> {
+    pub(crate) fn index(&self) -> Result<u32, Diagnostic> {
         let index = self.value.as_u64().and_then(|n| u32::try_from(n).ok());
         index.ok_or_else(|| self.error(format!("is {}", kind(self.value)), "a whole number, 0 or more"))
     }
 
     /// A list of any number of numbers.
-    pub(crate) fn numbers(&self) -> Result<Vec<f64>, FormatError> {
+    pub(crate) fn numbers(&self) -> Result<Vec<f64>, Diagnostic> {
         self.elements()?.iter().map(Self::number).collect()
     }
 
     /// A fixed number of numbers: a list, or an object with these names.
-    pub(crate) fn tuple<const N: usize>(&self, names: [&str; N]) -> Result<[f64; N], FormatError> {
+    pub(crate) fn tuple<const N: usize>(&self, names: [&str; N]) -> Result<[f64; N], Diagnostic> {
         let hint = format!("[{}]", names.join(", "));
         let numbers = match self.value {
             Value::Object(_) => {
@@ -193,7 +188,7 @@ fn kind(value: &Value) -> &'static str {
 #[derive(Debug, Default)]
 pub(crate) struct Reading {
     seen: HashSet<&'static str>,
-    pub(crate) warnings: Vec<Warning>,
+    pub(crate) warnings: Vec<Diagnostic>,
     /// Meshes by reference, as written, and scale.
     pub(crate) mesh_files: HashMap<(String, [u64; 3]), Arc<TriMesh>>,
 }
@@ -202,7 +197,7 @@ impl Reading {
     /// Warns about the first case of a kind.
     pub(crate) fn once(&mut self, kind: &'static str, at: &Field<'_>, what: impl std::fmt::Display, hint: &str) {
         if self.seen.insert(kind) {
-            self.warnings.push(at.warning(format!("{what} (reported once)"), hint));
+            self.warnings.push(at.error(format!("{what} (reported once)"), hint));
         }
     }
 }

@@ -8,17 +8,17 @@ use elbowroom_spatial::Pose;
 use super::field::{Field, Reading};
 use super::types::{AttachedObject, CollisionObject};
 use super::{pose, solid};
-use crate::FormatError;
+use crate::Diagnostic;
 
 /// The objects of `scene.world`.
-pub(crate) fn world(scene: &Field<'_>, reading: &mut Reading) -> Result<Vec<CollisionObject>, FormatError> {
+pub(crate) fn world(scene: &Field<'_>, reading: &mut Reading) -> Result<Vec<CollisionObject>, Diagnostic> {
     let Some(world) = scene.get("world")? else { return Ok(Vec::new()) };
     refuse_octomap(&world)?;
     world.list("collision_objects")?.iter().map(|field| object(field, reading)).collect()
 }
 
 /// Refuses an octomap with data: the reader ignores octomaps, so its obstacles would be missing.
-fn refuse_octomap(world: &Field<'_>) -> Result<(), FormatError> {
+fn refuse_octomap(world: &Field<'_>) -> Result<(), Diagnostic> {
     let Some(octomap) = world.get("octomap")?.map(|o| Ok(o.get("octomap")?.unwrap_or(o))).transpose()? else {
         return Ok(());
     };
@@ -29,7 +29,7 @@ fn refuse_octomap(world: &Field<'_>) -> Result<(), FormatError> {
 }
 
 /// An object with its shapes in its frame.
-fn object(field: &Field<'_>, reading: &mut Reading) -> Result<CollisionObject, FormatError> {
+fn object(field: &Field<'_>, reading: &mut Reading) -> Result<CollisionObject, Diagnostic> {
     let id = field.require("id", "\"id\": \"NAME\"")?.name()?.to_owned();
     if let Some(operation) = field.get("operation")?.filter(|o| !o.is("add", 0)) {
         let what = format!("is {}: only objects that are added are read", operation.shown());
@@ -59,7 +59,7 @@ fn object(field: &Field<'_>, reading: &mut Reading) -> Result<CollisionObject, F
 }
 
 /// Shapes with their poses. Shapes without poses have the pose of the object, if it `has_own`.
-fn posed<'a>(field: &Field<'a>, keys: [&str; 2], has_own: bool) -> Result<Vec<(Field<'a>, Pose)>, FormatError> {
+fn posed<'a>(field: &Field<'a>, keys: [&str; 2], has_own: bool) -> Result<Vec<(Field<'a>, Pose)>, Diagnostic> {
     if has_own && field.list(keys[1])?.is_empty() {
         return Ok(field.list(keys[0])?.into_iter().map(|shape| (shape, Pose::IDENTITY)).collect());
     }
@@ -68,7 +68,7 @@ fn posed<'a>(field: &Field<'a>, keys: [&str; 2], has_own: bool) -> Result<Vec<(F
 }
 
 /// An object that a link carries.
-pub(crate) fn attached(field: &Field<'_>, reading: &mut Reading) -> Result<AttachedObject, FormatError> {
+pub(crate) fn attached(field: &Field<'_>, reading: &mut Reading) -> Result<AttachedObject, Diagnostic> {
     let link = field.require("link_name", "\"link_name\": the link that carries the object")?.name()?.to_owned();
     let mut object = object(&field.require("object", "\"object\": {\"id\": …}")?, reading)?;
     if object.frame.is_empty() {
@@ -82,7 +82,7 @@ pub(crate) fn check_ids(
     root: &Field<'_>,
     objects: &[CollisionObject],
     attached: &[AttachedObject],
-) -> Result<(), FormatError> {
+) -> Result<(), Diagnostic> {
     let attached = attached.iter().map(|a| &a.object);
     match duplicate(objects.iter().chain(attached)) {
         Some(id) => Err(root.error(format!("has two objects `{id}`"), "a name of its own for each object")),

@@ -7,7 +7,7 @@ use elbowroom_spatial::Pose;
 use super::field::{Field, Reading};
 use super::types::{AttachedObject, JointValue};
 use super::{object, pose};
-use crate::FormatError;
+use crate::Diagnostic;
 
 /// Rotations (rad) and translations (m) up to this count as zero.
 const IDENTITY_TOLERANCE: f64 = 1e-9;
@@ -33,7 +33,7 @@ impl RobotState {
     }
 }
 
-pub(crate) fn parse(field: &Field<'_>, reading: &mut Reading) -> Result<RobotState, FormatError> {
+pub(crate) fn parse(field: &Field<'_>, reading: &mut Reading) -> Result<RobotState, Diagnostic> {
     let joints = field.get("joint_state")?.map_or(Ok(Vec::new()), |f| joint_values(&f, ["name", "position"]))?;
     let base_in_world = match field.get("multi_dof_joint_state")? {
         Some(joints) => base(&joints)?,
@@ -45,7 +45,7 @@ pub(crate) fn parse(field: &Field<'_>, reading: &mut Reading) -> Result<RobotSta
 }
 
 /// Names and values of joints, each joint once.
-fn joint_values(field: &Field<'_>, keys: [&str; 2]) -> Result<Vec<JointValue>, FormatError> {
+fn joint_values(field: &Field<'_>, keys: [&str; 2]) -> Result<Vec<JointValue>, Diagnostic> {
     let mut values = Vec::new();
     let mut known = HashSet::new();
     for (name, value) in field.paired_lists(keys)? {
@@ -58,7 +58,7 @@ fn joint_values(field: &Field<'_>, keys: [&str; 2]) -> Result<Vec<JointValue>, F
 }
 
 /// The pose of the base: the pose of the joint that moves it. `None` if all joints are at rest.
-fn base(field: &Field<'_>) -> Result<Option<Pose>, FormatError> {
+fn base(field: &Field<'_>) -> Result<Option<Pose>, Diagnostic> {
     let mut moved = None;
     for (_, transform) in field.paired_lists(["joint_names", "transforms"])? {
         let pose = pose::transform(&transform)?;

@@ -9,7 +9,7 @@ use elbowroom_spatial::{Pose, Rotation, Vec3};
 use super::field::{Field, Reading};
 use super::pose;
 use crate::mesh_data::UpAxis;
-use crate::{FormatError, mesh as mesh_file, resolve};
+use crate::{Diagnostic, mesh as mesh_file, resolve};
 
 /// Largest number of mesh files that one document may name.
 const MAX_MESH_FILES: usize = 1000;
@@ -18,7 +18,7 @@ const MAX_MESH_FILES: usize = 1000;
 pub(crate) const CONE: &str = "is a cone, which is enclosed by its cylinder";
 
 /// Reads a box, sphere, cylinder or cone.
-pub(crate) fn primitive(field: &Field<'_>, reading: &mut Reading) -> Result<Shape, FormatError> {
+pub(crate) fn primitive(field: &Field<'_>, reading: &mut Reading) -> Result<Shape, Diagnostic> {
     let kind = field.require("type", "\"type\": \"box\", \"sphere\", \"cylinder\" or \"cone\"")?;
     let dimensions = field.require("dimensions", "\"dimensions\": the numbers of the shape, metres")?;
     if kind.is("box", 1) {
@@ -47,7 +47,7 @@ pub(crate) fn is_size(v: f64) -> bool {
 }
 
 /// Reads a fixed number of non-negative dimensions.
-fn sizes<const N: usize>(field: &Field<'_>, names: [&str; N]) -> Result<[f64; N], FormatError> {
+fn sizes<const N: usize>(field: &Field<'_>, names: [&str; N]) -> Result<[f64; N], Diagnostic> {
     let sizes = field.tuple(names)?;
     match sizes.iter().position(|v| !is_size(*v)) {
         Some(i) => Err(field.error(format!("has {} as {}", sizes[i], names[i]), "metres, 0 or more")),
@@ -56,7 +56,7 @@ fn sizes<const N: usize>(field: &Field<'_>, names: [&str; N]) -> Result<[f64; N]
 }
 
 /// Reads a mesh from its vertices and triangles, or from its file.
-pub(crate) fn mesh(field: &Field<'_>, reading: &mut Reading) -> Result<Shape, FormatError> {
+pub(crate) fn mesh(field: &Field<'_>, reading: &mut Reading) -> Result<Shape, Diagnostic> {
     let layout = "\"vertices\": [[x, y, z], …], \"triangles\": [[0, 1, 2], …]";
     if let (None, Some(resource)) = (field.get("vertices")?, field.get("resource")?) {
         let scale = field.get("dimensions")?.map_or(Ok([1.0; 3]), |d| d.tuple(["x", "y", "z"]))?;
@@ -71,7 +71,7 @@ pub(crate) fn mesh(field: &Field<'_>, reading: &mut Reading) -> Result<Shape, Fo
 }
 
 /// Reads the mesh of a file, in metres. The file is found as in a URDF.
-fn mesh_file(resource: &Field<'_>, scale: [f64; 3], reading: &mut Reading) -> Result<Arc<TriMesh>, FormatError> {
+fn mesh_file(resource: &Field<'_>, scale: [f64; 3], reading: &mut Reading) -> Result<Arc<TriMesh>, Diagnostic> {
     let name = resource.text()?;
     let key = (name.to_owned(), scale.map(f64::to_bits));
     if let Some(mesh) = reading.mesh_files.get(&key) {
@@ -96,7 +96,7 @@ fn mesh_file(resource: &Field<'_>, scale: [f64; 3], reading: &mut Reading) -> Re
     Ok(mesh)
 }
 
-fn triangle(field: &Field<'_>) -> Result<[u32; 3], FormatError> {
+fn triangle(field: &Field<'_>) -> Result<[u32; 3], Diagnostic> {
     let hint = "three indices of vertices: [0, 1, 2]";
     let corners =
         if field.is_list() { field.elements()? } else { field.require("vertex_indices", hint)?.elements()? };
@@ -105,7 +105,7 @@ fn triangle(field: &Field<'_>) -> Result<[u32; 3], FormatError> {
 }
 
 /// Reads a plane from its coefficients.
-pub(crate) fn plane(field: &Field<'_>) -> Result<(Shape, Pose), FormatError> {
+pub(crate) fn plane(field: &Field<'_>) -> Result<(Shape, Pose), Diagnostic> {
     let coefficients = if field.is_list() { None } else { field.get("coef")? };
     let [a, b, c, d] = coefficients.as_ref().unwrap_or(field).tuple(["a", "b", "c", "d"])?;
     let hint = "a, b, c, d of a x + b y + c z + d = 0: [0, 0, 1, 0]";

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use elbowroom_spatial::Vec3;
 
-use crate::FormatError;
+use crate::Diagnostic;
 use crate::tokens::show;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,11 +48,11 @@ struct Header {
 /// Numbers are metres; sensors write NaN for points that they did not measure.
 ///
 /// # Errors
-/// [`FormatError`] for invalid headers, more declared points than the file can hold, damaged compression, or words that
+/// [`Diagnostic`] for invalid headers, more declared points than the file can hold, damaged compression, or words that
 /// are not numbers.
-pub fn parse_points(bytes: &[u8], file: &Path) -> Result<Vec<Vec3>, FormatError> {
+pub fn parse_points(bytes: &[u8], file: &Path) -> Result<Vec<Vec3>, Diagnostic> {
     if bytes.is_empty() {
-        return Err(FormatError::new(file, None, "is empty").hint("a PCD header and points"));
+        return Err(Diagnostic::new(file, None, "is empty").hint("a PCD header and points"));
     }
     let (header, body) = header(bytes, file)?;
     match header.encoding {
@@ -62,7 +62,7 @@ pub fn parse_points(bytes: &[u8], file: &Path) -> Result<Vec<Vec3>, FormatError>
     }
 }
 
-fn header<'a>(bytes: &'a [u8], file: &Path) -> Result<(Header, &'a [u8]), FormatError> {
+fn header<'a>(bytes: &'a [u8], file: &Path) -> Result<(Header, &'a [u8]), Diagnostic> {
     let mut lists: [Vec<&str>; 4] = Default::default(); // FIELDS, SIZE, TYPE, COUNT
     let (mut width, mut height, mut points) = (None, None, None);
     let mut rest = bytes;
@@ -70,17 +70,17 @@ fn header<'a>(bytes: &'a [u8], file: &Path) -> Result<(Header, &'a [u8]), Format
     loop {
         line += 1;
         let Some(end) = rest.iter().position(|&b| b == b'\n') else {
-            return Err(FormatError::new(file, line, "the header does not end").hint("DATA ascii, or DATA binary"));
+            return Err(Diagnostic::new(file, line, "the header does not end").hint("DATA ascii, or DATA binary"));
         };
         let text = std::str::from_utf8(&rest[..end]).map_err(|_| {
-            FormatError::new(file, line, "the header is damaged: a line is not text").hint("copy the file again")
+            Diagnostic::new(file, line, "the header is damaged: a line is not text").hint("copy the file again")
         })?;
         rest = &rest[end + 1..];
         let mut words = text.split_ascii_whitespace();
         let count = |words: &mut std::str::SplitAsciiWhitespace<'_>| {
             let word = words.next().unwrap_or_default();
             word.parse::<usize>().map(Some).map_err(|_| {
-                FormatError::new(file, line, format!("`{}` is no count", show(word.as_bytes()))).hint("a whole number")
+                Diagnostic::new(file, line, format!("`{}` is no count", show(word.as_bytes()))).hint("a whole number")
             })
         };
         match words.next() {
@@ -95,7 +95,7 @@ fn header<'a>(bytes: &'a [u8], file: &Path) -> Result<(Header, &'a [u8]), Format
                 let encoding = encoding(words.next().unwrap_or_default(), file, line)?;
                 let product = width.zip(height).and_then(|(w, h): (usize, usize)| w.checked_mul(h));
                 let points = points.or(product).ok_or_else(|| {
-                    FormatError::new(file, line, "the header does not state the number of points").hint("POINTS 8")
+                    Diagnostic::new(file, line, "the header does not state the number of points").hint("POINTS 8")
                 })?;
                 let fields = fields(&lists, file, line)?;
                 let xyz = coordinates(&lists[0], &fields, file, line)?;
@@ -107,20 +107,20 @@ fn header<'a>(bytes: &'a [u8], file: &Path) -> Result<(Header, &'a [u8]), Format
     }
 }
 
-fn encoding(word: &str, file: &Path, line: usize) -> Result<Encoding, FormatError> {
+fn encoding(word: &str, file: &Path, line: usize) -> Result<Encoding, Diagnostic> {
     match word {
         "ascii" => Ok(Encoding::Ascii),
         "binary" => Ok(Encoding::Binary),
         "binary_compressed" => Ok(Encoding::Compressed),
-        _ => Err(FormatError::new(file, line, format!("DATA `{}` is unknown", show(word.as_bytes())))
+        _ => Err(Diagnostic::new(file, line, format!("DATA `{}` is unknown", show(word.as_bytes())))
             .hint("DATA ascii, DATA binary or DATA binary_compressed")),
     }
 }
 
-fn fields(lists: &[Vec<&str>; 4], file: &Path, line: usize) -> Result<Vec<Field>, FormatError> {
+fn fields(lists: &[Vec<&str>; 4], file: &Path, line: usize) -> Result<Vec<Field>, Diagnostic> {
     let [names, sizes, kinds, counts] = lists;
     let inconsistent = |what: String| {
-        FormatError::new(file, line, what).hint("FIELDS x y z, SIZE 4 4 4, TYPE F F F, COUNT 1 1 1: one word per field")
+        Diagnostic::new(file, line, what).hint("FIELDS x y z, SIZE 4 4 4, TYPE F F F, COUNT 1 1 1: one word per field")
     };
     if names.is_empty() || sizes.len() != names.len() || kinds.len() != names.len() {
         let (n, s, k) = (names.len(), sizes.len(), kinds.len());
@@ -150,27 +150,27 @@ fn fields(lists: &[Vec<&str>; 4], file: &Path, line: usize) -> Result<Vec<Field>
     Ok(fields)
 }
 
-fn coordinates(names: &[&str], fields: &[Field], file: &Path, line: usize) -> Result<[Field; 3], FormatError> {
+fn coordinates(names: &[&str], fields: &[Field], file: &Path, line: usize) -> Result<[Field; 3], Diagnostic> {
     let mut found = [fields[0]; 3];
     for (slot, name) in found.iter_mut().zip(["x", "y", "z"]) {
         let index = names.iter().position(|n| *n == name).filter(|&i| fields[i].count == 1);
         let index = index
-            .ok_or_else(|| FormatError::new(file, line, format!("the points have no {name}")).hint("FIELDS x y z …"))?;
+            .ok_or_else(|| Diagnostic::new(file, line, format!("the points have no {name}")).hint("FIELDS x y z …"))?;
         *slot = fields[index];
     }
     Ok(found)
 }
 
 /// Refuses counts that the remaining bytes cannot hold.
-fn check_remaining(header: &Header, bytes_per_point: usize, left: usize, file: &Path) -> Result<(), FormatError> {
+fn check_remaining(header: &Header, bytes_per_point: usize, left: usize, file: &Path) -> Result<(), Diagnostic> {
     if header.points.checked_mul(bytes_per_point).is_some_and(|needed| needed <= left) {
         return Ok(());
     }
     let what = format!("{} points are announced, but only {left} bytes are left for them", header.points);
-    Err(FormatError::new(file, header.line, what).hint("the true number of points; or copy or export the file again"))
+    Err(Diagnostic::new(file, header.line, what).hint("the true number of points; or copy or export the file again"))
 }
 
-fn ascii(header: &Header, body: &[u8], file: &Path) -> Result<Vec<Vec3>, FormatError> {
+fn ascii(header: &Header, body: &[u8], file: &Path) -> Result<Vec<Vec3>, Diagnostic> {
     let per_point: usize = header.fields.iter().map(|f| f.count).sum();
     check_remaining(header, 2 * per_point, body.len() + 1, file)?;
     let mut points = Vec::with_capacity(header.points);
@@ -178,7 +178,7 @@ fn ascii(header: &Header, body: &[u8], file: &Path) -> Result<Vec<Vec3>, FormatE
     while points.len() < header.points {
         let Some((i, text)) = lines.next() else {
             let what = format!("the file ends after {} of {} points", points.len(), header.points);
-            return Err(FormatError::new(file, header.line, what).hint("copy or export the file again"));
+            return Err(Diagnostic::new(file, header.line, what).hint("copy or export the file again"));
         };
         let line = header.line + 1 + i;
         let words = || text.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
@@ -190,7 +190,7 @@ fn ascii(header: &Header, body: &[u8], file: &Path) -> Result<Vec<Vec3>, FormatE
             let word = words().nth(field.first_word);
             let number = word.and_then(|w| std::str::from_utf8(w).ok()).and_then(|w| w.parse::<f64>().ok());
             *value = number.ok_or_else(|| {
-                FormatError::new(file, line, format!("`{}` is no point", show(text)))
+                Diagnostic::new(file, line, format!("`{}` is no point", show(text)))
                     .hint("numbers in the order of FIELDS; nan where nothing was measured")
             })?;
         }
@@ -199,7 +199,7 @@ fn ascii(header: &Header, body: &[u8], file: &Path) -> Result<Vec<Vec3>, FormatE
     Ok(points)
 }
 
-fn binary(header: &Header, body: &[u8], file: &Path) -> Result<Vec<Vec3>, FormatError> {
+fn binary(header: &Header, body: &[u8], file: &Path) -> Result<Vec<Vec3>, Diagnostic> {
     let stride: usize = header.fields.iter().map(|f| f.size * f.count).sum();
     check_remaining(header, stride, body.len(), file)?;
     let point = |record: &[u8]| Vec3::from(header.xyz.map(|field| number(&record[field.first_byte..], field)));
@@ -207,10 +207,10 @@ fn binary(header: &Header, body: &[u8], file: &Path) -> Result<Vec<Vec3>, Format
 }
 
 /// Reads all points of one compressed block, which is stored field by field instead of point by point.
-fn compressed(header: &Header, body: &[u8], file: &Path) -> Result<Vec<Vec3>, FormatError> {
+fn compressed(header: &Header, body: &[u8], file: &Path) -> Result<Vec<Vec3>, Diagnostic> {
     let stride: usize = header.fields.iter().map(|f| f.size * f.count).sum();
     let damaged = || {
-        FormatError::new(file, header.line, "the compressed points are damaged or cut off")
+        Diagnostic::new(file, header.line, "the compressed points are damaged or cut off")
             .hint("copy or export the file again")
     };
     let size = |from: usize| body.get(from..from + 4).and_then(|b| b.try_into().ok()).map(u32::from_le_bytes);
@@ -219,7 +219,7 @@ fn compressed(header: &Header, body: &[u8], file: &Path) -> Result<Vec<Vec3>, Fo
     let expected = header.points.checked_mul(stride).ok_or_else(damaged)?;
     if expected != unpacked as usize {
         let what = format!("{} points need {expected} bytes, but {unpacked} are packed", header.points);
-        return Err(FormatError::new(file, header.line, what).hint("the true number of points"));
+        return Err(Diagnostic::new(file, header.line, what).hint("the true number of points"));
     }
     let bytes = lzf::decompress(packed, expected).ok_or_else(damaged)?;
     let point = |i: usize| {

@@ -20,7 +20,7 @@ mod yaml_form;
 
 use std::path::Path;
 
-use crate::{FormatError, input};
+use crate::{Diagnostic, input};
 
 pub use crate::moveit_msgs::types::{AllowedCollisions, AttachedObject, CollisionObject, FixedFrame, JointValue};
 pub use scene::PlanningScene;
@@ -32,7 +32,7 @@ const MAX_BYTES: u64 = 64 << 20;
 ///
 /// # Errors
 /// The errors of [`parse`], or a file that cannot be read.
-pub fn read(path: &Path) -> Result<PlanningScene, FormatError> {
+pub fn read(path: &Path) -> Result<PlanningScene, Diagnostic> {
     parse(path, &input::read_file(path, MAX_BYTES, "a scene whose meshes have fewer triangles")?)
 }
 
@@ -45,12 +45,12 @@ pub fn read(path: &Path) -> Result<PlanningScene, FormatError> {
 /// let text = b"workshop\n* table\n1 0 0.35\n0 0 0 1\n1\nbox\n0.6 0.4 0.7\n0 0 0\n0 0 0 1\n0 0 0 0\n0\n.\n";
 /// let scene = planning_scene::parse("workshop.scene".as_ref(), text)?;
 /// assert_eq!((scene.objects[0].id.as_str(), scene.objects[0].solids[0].1.translation.z), ("table", 0.35));
-/// # Ok::<(), elbowroom_formats::FormatError>(())
+/// # Ok::<(), elbowroom_formats::Diagnostic>(())
 /// ```
 ///
 /// # Errors
-/// [`FormatError`] with the line, if the text is not a planning scene.
-pub fn parse(file: &Path, bytes: &[u8]) -> Result<PlanningScene, FormatError> {
+/// [`Diagnostic`] with the line, if the text is not a planning scene.
+pub fn parse(file: &Path, bytes: &[u8]) -> Result<PlanningScene, Diagnostic> {
     input::check_content(bytes, file)?;
     let text = input::text(bytes, file)?;
     let mut scene =

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use elbowroom_spatial::Pose;
 
-use crate::Warning;
+use crate::Diagnostic;
 use crate::moveit_msgs::types::{AllowedCollisions, AttachedObject, CollisionObject, FixedFrame, JointValue};
 
 /// The content of a planning scene.
@@ -27,5 +27,5 @@ pub struct PlanningScene {
     /// Pose of the robot's root link, if the scene has it.
     pub base_in_world: Option<Pose>,
     /// Warnings for the user.
-    pub warnings: Vec<Warning>,
+    pub warnings: Vec<Diagnostic>,
 }

@@ -20,7 +20,7 @@ const YAML: &str = "name: shelf\nworld:\n  collision_objects:\n    - id: can\n  
 allowed_collision_matrix:\n  entry_names: [can, board]\n  entry_values:\n  - enabled: [true, true]\n  - enabled: [true, true]\n\
 robot_state:\n  joint_state:\n    name: [waist]\n    position: [0.5]\n---\nworld: a second document\n";
 
-fn read(name: &str, text: &str) -> Result<PlanningScene, FormatError> {
+fn read(name: &str, text: &str) -> Result<PlanningScene, Diagnostic> {
     parse(Path::new(name), text.as_bytes())
 }
 
@@ -149,7 +149,7 @@ fn errors_name_the_line_and_a_remedy() {
         assert!(text.contains(from), "{from}");
         let e = read(file, &text.replacen(from, to, 1)).expect_err(to);
         assert_eq!(e.line.unwrap_or(0), line, "{e}");
-        assert!(e.what.contains(what) && e.write_instead.as_ref().is_some_and(|h| h.contains(hint)), "{e}");
+        assert!(e.message.contains(what) && e.hint.as_ref().is_some_and(|h| h.contains(hint)), "{e}");
     }
 }
 

@@ -9,11 +9,11 @@ use elbowroom_proximity::{Cuboid, Cylinder, Shape, Sphere, TriMesh};
 use elbowroom_spatial::{Pose, Vec3};
 
 use super::scene::PlanningScene;
-use crate::error::WarningList;
+use crate::Diagnostic;
 use crate::moveit_msgs::types::CollisionObject;
 use crate::moveit_msgs::{object, pose, solid};
 use crate::tokens::{Lines, Tokens, number, show, show_name};
-use crate::{FormatError, Warning};
+use crate::warning_list::WarningList;
 
 const OBJECT: &str = "* NAME, and on the next lines its position, its quaternion, and the number of its shapes";
 const END: &str = "a last line with a dot: the file may be truncated, save it again";
@@ -27,7 +27,7 @@ pub(super) fn is_scene_text(text: &str, file: &Path) -> bool {
         || text.lines().skip(1).any(|l| is_marker(l.trim_end()))
 }
 
-pub(super) fn parse(text: &str, file: &Path) -> Result<PlanningScene, FormatError> {
+pub(super) fn parse(text: &str, file: &Path) -> Result<PlanningScene, Diagnostic> {
     let mut tokens = Tokens::new(text.as_bytes());
     let name = String::from_utf8_lossy(tokens.rest_of_line()).into_owned();
     let mut reader =
@@ -35,7 +35,7 @@ pub(super) fn parse(text: &str, file: &Path) -> Result<PlanningScene, FormatErro
     let objects = reader.objects()?;
     if let Some(id) = object::duplicate(objects.iter()) {
         let what = format!("has two objects `{}`", show_name(id));
-        return Err(FormatError::new(file, None, what).hint("a name of its own for each object"));
+        return Err(Diagnostic::new(file, None, what).hint("a name of its own for each object"));
     }
     Ok(PlanningScene { name, objects, warnings: reader.warnings.finish(file), ..PlanningScene::default() })
 }
@@ -58,7 +58,7 @@ struct SceneText<'a> {
 }
 
 impl<'a> SceneText<'a> {
-    fn objects(&mut self) -> Result<Vec<CollisionObject>, FormatError> {
+    fn objects(&mut self) -> Result<Vec<CollisionObject>, Diagnostic> {
         let mut objects = Vec::new();
         loop {
             match self.tokens.next() {
@@ -66,7 +66,7 @@ impl<'a> SceneText<'a> {
                     let (line, object) = (self.tokens.line(), self.object()?);
                     if object.solids.is_empty() {
                         let what = format!("the object `{}` has no shape: left out", show_name(&object.id));
-                        self.warnings.push(Warning::new(self.file, line, what));
+                        self.warnings.push(Diagnostic::new(self.file, line, what));
                     } else {
                         objects.push(object);
                     }
@@ -81,12 +81,12 @@ impl<'a> SceneText<'a> {
         }
         if let Some(word) = self.tokens.next() {
             let what = format!("has `{}` behind the dot that ends it: ignored", show(word));
-            self.warnings.push(Warning::new(self.file, self.tokens.line(), what));
+            self.warnings.push(Diagnostic::new(self.file, self.tokens.line(), what));
         }
         Ok(objects)
     }
 
-    fn object(&mut self) -> Result<CollisionObject, FormatError> {
+    fn object(&mut self) -> Result<CollisionObject, Diagnostic> {
         let id = String::from_utf8_lossy(self.tokens.rest_of_line()).into_owned();
         if id.is_empty() {
             return Err(self.error("has an object without a name", OBJECT));
@@ -110,7 +110,7 @@ impl<'a> SceneText<'a> {
     }
 
     /// Reads a shape, and its pose in the frame whose pose the file states.
-    fn shape(&mut self, of: &str) -> Result<(Shape, Pose), FormatError> {
+    fn shape(&mut self, of: &str) -> Result<(Shape, Pose), Diagnostic> {
         const SHAPES: &str = "box, sphere, cylinder, cone, plane or mesh";
         let word = self.word(&format!("`{of}` has fewer shapes than it says"), SHAPES)?;
         let shape = match word {
@@ -127,7 +127,7 @@ impl<'a> SceneText<'a> {
                 let [radius, length] = self.sizes(["radius", "length"], of)?;
                 if word == b"cone" {
                     let what = format!("the object `{of}` {}", solid::CONE);
-                    self.warnings.push(Warning::new(self.file, line, what));
+                    self.warnings.push(Diagnostic::new(self.file, line, what));
                 }
                 Shape::Cylinder(Cylinder { half_length: 0.5 * length, radius })
             }
@@ -142,7 +142,7 @@ impl<'a> SceneText<'a> {
         Ok((shape, Pose::IDENTITY))
     }
 
-    fn mesh(&mut self, of: &str) -> Result<TriMesh, FormatError> {
+    fn mesh(&mut self, of: &str) -> Result<TriMesh, Diagnostic> {
         let [vertices, triangles] = [self.count("vertices", of)?, self.count("triangles", of)?];
         let bytes = self.tokens.rest().len();
         if (vertices + triangles).saturating_mul(MIN_ROW_BYTES) > bytes {
@@ -157,20 +157,20 @@ impl<'a> SceneText<'a> {
         let triangles = (0..triangles).map(|_| triangle(self)).collect::<Result<Vec<_>, _>>()?;
         TriMesh::new(vertices, triangles).map_err(|e| {
             let what = format!("the mesh of `{of}` is no solid: {e}");
-            FormatError::new(self.file, line, what).hint("the numbers of vertices and triangles, then x y z and i j k")
+            Diagnostic::new(self.file, line, what).hint("the numbers of vertices and triangles, then x y z and i j k")
         })
     }
 
-    fn error(&self, what: impl Into<String>, hint: &str) -> FormatError {
-        FormatError::new(self.file, self.tokens.line(), what).hint(hint)
+    fn error(&self, what: impl std::fmt::Display, hint: &str) -> Diagnostic {
+        Diagnostic::new(self.file, self.tokens.line(), what).hint(hint)
     }
 
-    fn word(&mut self, missing: &str, hint: &str) -> Result<&'a [u8], FormatError> {
+    fn word(&mut self, missing: &str, hint: &str) -> Result<&'a [u8], Diagnostic> {
         let word = self.tokens.next();
         word.ok_or_else(|| self.error(missing, hint))
     }
 
-    fn numbers<const N: usize>(&mut self, names: [&str; N], of: &str) -> Result<[f64; N], FormatError> {
+    fn numbers<const N: usize>(&mut self, names: [&str; N], of: &str) -> Result<[f64; N], Diagnostic> {
         let mut numbers = [0.0; N];
         for (value, name) in numbers.iter_mut().zip(names) {
             let word = self.word(&format!("{of} has no {name}"), END)?;
@@ -183,7 +183,7 @@ impl<'a> SceneText<'a> {
         Ok(numbers)
     }
 
-    fn sizes<const N: usize>(&mut self, names: [&str; N], of: &str) -> Result<[f64; N], FormatError> {
+    fn sizes<const N: usize>(&mut self, names: [&str; N], of: &str) -> Result<[f64; N], Diagnostic> {
         let sizes = self.numbers(names, &format!("`{of}`"))?;
         match sizes.iter().position(|v| !solid::is_size(*v)) {
             Some(i) => Err(self.error(format!("`{of}` has {} as {}", sizes[i], names[i]), "metres, 0 or more")),
@@ -191,13 +191,13 @@ impl<'a> SceneText<'a> {
         }
     }
 
-    fn position(&mut self, of: &str) -> Result<Vec3, FormatError> {
+    fn position(&mut self, of: &str) -> Result<Vec3, Diagnostic> {
         let point = Vec3::from(self.numbers(["x", "y", "z"], of)?);
         let far = || self.error(format!("{of} has a coordinate above 1e9 m"), "coordinates in metres");
         if pose::is_position(point) { Ok(point) } else { Err(far()) }
     }
 
-    fn pose(&mut self, of: &str) -> Result<Pose, FormatError> {
+    fn pose(&mut self, of: &str) -> Result<Pose, Diagnostic> {
         let translation = self.position(&format!("the position of `{of}`"))?;
         let rotation = pose::rotation(self.numbers(["x", "y", "z", "w"], &format!("the quaternion of `{of}`"))?);
         let none =
@@ -205,7 +205,7 @@ impl<'a> SceneText<'a> {
         Ok(Pose::new(rotation.ok_or_else(none)?, translation))
     }
 
-    fn whole(&mut self, name: &str, of: &str) -> Result<u32, FormatError> {
+    fn whole(&mut self, name: &str, of: &str) -> Result<u32, Diagnostic> {
         let word = self.word(&format!("`{of}` has no {name}"), END)?;
         let parsed = std::str::from_utf8(word).ok().and_then(|w| w.parse().ok());
         parsed.ok_or_else(|| {
@@ -214,7 +214,7 @@ impl<'a> SceneText<'a> {
         })
     }
 
-    fn count(&mut self, name: &str, of: &str) -> Result<usize, FormatError> {
+    fn count(&mut self, name: &str, of: &str) -> Result<usize, Diagnostic> {
         self.whole(&format!("number of {name}"), of).map(|n| n as usize)
     }
 }

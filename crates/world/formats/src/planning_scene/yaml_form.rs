@@ -5,13 +5,13 @@ use std::path::Path;
 use super::scene::PlanningScene;
 use crate::moveit_msgs::field::{Field, Location, Reading};
 use crate::moveit_msgs::{collision_matrix, object, pose, robot_state};
-use crate::{FormatError, yaml};
+use crate::{Diagnostic, yaml};
 
 /// The layout, for messages.
 const LAYOUT: &str =
     "world: {collision_objects: [{id: table, primitives: [{type: box, dimensions: [x, y, z]}], primitive_poses: …}]}";
 
-pub(super) fn parse(text: &str, file: &Path) -> Result<PlanningScene, FormatError> {
+pub(super) fn parse(text: &str, file: &Path) -> Result<PlanningScene, Diagnostic> {
     let document = yaml::parse(text, file)?;
     let location = Location { file, part: String::new(), yaml: Some(text) };
     let root = Field::root(&location, &document);

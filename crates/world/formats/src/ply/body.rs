@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::header::{Element, Encoding, Property, ScalarType};
-use crate::FormatError;
+use crate::Diagnostic;
 use crate::tokens::{Tokens, number, show};
 
 pub(super) struct BodyReader<'a> {
@@ -18,17 +18,17 @@ impl<'a> BodyReader<'a> {
         Self { encoding, tokens: Tokens::at_line(body, header_lines + 1), bytes: body, file }
     }
 
-    pub(super) fn error(&self, what: String) -> FormatError {
+    pub(super) fn error(&self, what: String) -> Diagnostic {
         let line = (self.encoding == Encoding::Ascii).then(|| self.tokens.line());
-        FormatError::new(self.file, line, what)
+        Diagnostic::new(self.file, line, what)
     }
 
-    pub(super) fn error_at(&self, line: usize, what: String) -> FormatError {
-        FormatError::new(self.file, line, what)
+    pub(super) fn error_at(&self, line: usize, what: String) -> Diagnostic {
+        Diagnostic::new(self.file, line, what)
     }
 
     /// Refuses an element whose count is larger than the rest of the file can hold.
-    pub(super) fn check_remaining(&self, element: &Element) -> Result<(), FormatError> {
+    pub(super) fn check_remaining(&self, element: &Element) -> Result<(), Diagnostic> {
         let (left, least) = if self.encoding == Encoding::Ascii {
             // At least a digit and a blank for each value; the last blank may be missing.
             (self.tokens.rest().len() + 1, 2 * element.properties.len())
@@ -46,7 +46,7 @@ impl<'a> BodyReader<'a> {
         Ok(())
     }
 
-    pub(super) fn scalar(&mut self, kind: ScalarType) -> Result<f64, FormatError> {
+    pub(super) fn scalar(&mut self, kind: ScalarType) -> Result<f64, Diagnostic> {
         if self.encoding == Encoding::Ascii {
             let word = self.tokens.next().ok_or_else(|| self.truncated())?;
             return number(word)
@@ -64,11 +64,11 @@ impl<'a> BodyReader<'a> {
         Ok(decode(kind, le))
     }
 
-    fn truncated(&self) -> FormatError {
+    fn truncated(&self) -> Diagnostic {
         self.error("the file ends before all announced elements".into()).hint("copy or export the file again")
     }
 
-    fn list_length(&mut self, count: ScalarType) -> Result<usize, FormatError> {
+    fn list_length(&mut self, count: ScalarType) -> Result<usize, Diagnostic> {
         let n = self.scalar(count)?;
         let left = if self.encoding == Encoding::Ascii { self.tokens.rest().len() } else { self.bytes.len() };
         if n >= 0.0 && n.fract() == 0.0 && n <= left as f64 {
@@ -79,7 +79,7 @@ impl<'a> BodyReader<'a> {
             .hint("the true count; or export the file again"))
     }
 
-    pub(super) fn list(&mut self, property: &Property, out: &mut Vec<f64>) -> Result<(), FormatError> {
+    pub(super) fn list(&mut self, property: &Property, out: &mut Vec<f64>) -> Result<(), Diagnostic> {
         let n = self.list_length(property.list_count.unwrap_or(ScalarType::U8))?;
         for _ in 0..n {
             let value = self.scalar(property.kind)?;
@@ -93,7 +93,7 @@ impl<'a> BodyReader<'a> {
         Ok(())
     }
 
-    pub(super) fn skip(&mut self, property: &Property) -> Result<(), FormatError> {
+    pub(super) fn skip(&mut self, property: &Property) -> Result<(), Diagnostic> {
         let n = property.list_count.map_or(Ok(1), |count| self.list_length(count))?;
         for _ in 0..n {
             self.scalar(property.kind)?;

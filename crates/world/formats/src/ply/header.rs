@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::FormatError;
+use crate::Diagnostic;
 use crate::tokens::show;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -77,18 +77,18 @@ impl Header {
 }
 
 /// Parses the header, and returns it with the body.
-pub(super) fn parse<'a>(bytes: &'a [u8], file: &Path) -> Result<(Header, &'a [u8]), FormatError> {
+pub(super) fn parse<'a>(bytes: &'a [u8], file: &Path) -> Result<(Header, &'a [u8]), Diagnostic> {
     let mut encoding = None;
     let mut elements: Vec<Element> = Vec::new();
     let mut rest = bytes;
     let mut line = 0;
     loop {
         let Some((text, after)) = split_line(rest) else {
-            return Err(FormatError::new(file, line, "the header does not end").hint("end_header"));
+            return Err(Diagnostic::new(file, line, "the header does not end").hint("end_header"));
         };
         rest = after;
         line += 1;
-        let bad = |what: String, hint: &str| Err(FormatError::new(file, line, what).hint(hint));
+        let bad = |what: String, hint: &str| Err(Diagnostic::new(file, line, what).hint(hint));
         let Ok(text) = std::str::from_utf8(text).map(str::trim) else {
             return bad("the header is damaged: a line is not text".into(), "copy or export the file again");
         };
@@ -122,7 +122,7 @@ pub(super) fn parse<'a>(bytes: &'a [u8], file: &Path) -> Result<(Header, &'a [u8
             }
         }
     }
-    let missing = || FormatError::new(file, line, "the header does not state its format").hint("format ascii 1.0");
+    let missing = || Diagnostic::new(file, line, "the header does not state its format").hint("format ascii 1.0");
     Ok((Header { encoding: encoding.ok_or_else(missing)?, elements, lines: line }, rest))
 }
 
@@ -133,13 +133,13 @@ fn split_line(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
     Some((line, rest.strip_prefix(b"\r\n").unwrap_or(&rest[1..])))
 }
 
-fn element(name: &str, count: &str, before: &[Element], file: &Path, line: usize) -> Result<Element, FormatError> {
+fn element(name: &str, count: &str, before: &[Element], file: &Path, line: usize) -> Result<Element, Diagnostic> {
     if let Some(first) = before.iter().find(|e| e.name == name) {
         let what = format!("a second element `{}`; the first is on line {}", show(name.as_bytes()), first.line);
-        return Err(FormatError::new(file, line, what).hint("one element of each name"));
+        return Err(Diagnostic::new(file, line, what).hint("one element of each name"));
     }
     let count = count.parse().map_err(|_| {
-        FormatError::new(file, line, format!("`{}` is no count", show(count.as_bytes())))
+        Diagnostic::new(file, line, format!("`{}` is no count", show(count.as_bytes())))
             .hint(format!("element {name} 8"))
     })?;
     Ok(Element { name: name.to_owned(), count, properties: Vec::new(), line })

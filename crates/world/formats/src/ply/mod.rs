@@ -8,15 +8,15 @@ use std::path::Path;
 use elbowroom_spatial::Vec3;
 
 use crate::mesh_data::{LoadedMeshes, MeshData};
-use crate::{FormatError, input, polygon};
+use crate::{Diagnostic, input, polygon};
 use body::BodyReader;
 use header::{Element, Header};
 
 /// Parses a PLY file. Numbers are metres.
 ///
 /// # Errors
-/// [`FormatError`] for invalid headers, declared counts that the file cannot hold, missing vertices, or invalid numbers.
-pub fn parse(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> {
+/// [`Diagnostic`] for invalid headers, declared counts that the file cannot hold, missing vertices, or invalid numbers.
+pub fn parse(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, Diagnostic> {
     input::check_content(bytes, file)?;
     let (header, body) = header::parse(bytes, file)?;
     let mut body_reader = BodyReader::new(body, header.encoding, header.lines, file);
@@ -49,12 +49,12 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, FormatError> {
 /// let text = b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n";
 /// let points = elbowroom_formats::ply::parse_points(text, "one.ply".as_ref())?;
 /// assert_eq!(points, [elbowroom_spatial::Vec3::new(1.0, 2.0, 3.0)]);
-/// # Ok::<(), elbowroom_formats::FormatError>(())
+/// # Ok::<(), elbowroom_formats::Diagnostic>(())
 /// ```
 ///
 /// # Errors
-/// [`FormatError`] for invalid headers, declared counts that the file cannot hold, or words that are not numbers.
-pub fn parse_points(bytes: &[u8], file: &Path) -> Result<Vec<Vec3>, FormatError> {
+/// [`Diagnostic`] for invalid headers, declared counts that the file cannot hold, or words that are not numbers.
+pub fn parse_points(bytes: &[u8], file: &Path) -> Result<Vec<Vec3>, Diagnostic> {
     input::check_content(bytes, file)?;
     let (header, body) = header::parse(bytes, file)?;
     let mut body_reader = BodyReader::new(body, header.encoding, header.lines, file);
@@ -70,7 +70,7 @@ pub fn parse_points(bytes: &[u8], file: &Path) -> Result<Vec<Vec3>, FormatError>
     Ok(points)
 }
 
-fn refuse_non_finite(body_reader: &BodyReader<'_>, vertices: &[Vec3]) -> Result<(), FormatError> {
+fn refuse_non_finite(body_reader: &BodyReader<'_>, vertices: &[Vec3]) -> Result<(), Diagnostic> {
     match vertices.iter().position(|v| !v.is_finite()) {
         None => Ok(()),
         Some(i) => Err(body_reader
@@ -79,16 +79,16 @@ fn refuse_non_finite(body_reader: &BodyReader<'_>, vertices: &[Vec3]) -> Result<
     }
 }
 
-fn refuse_point_cloud(header: &Header, mesh: &MeshData, file: &Path) -> Result<(), FormatError> {
+fn refuse_point_cloud(header: &Header, mesh: &MeshData, file: &Path) -> Result<(), Diagnostic> {
     if !mesh.triangles.is_empty() {
         return Ok(());
     }
     let what = format!("is a point cloud: {} vertices, no faces", mesh.vertices.len());
-    Err(FormatError::new(file, header.line_of("face"), what)
+    Err(Diagnostic::new(file, header.line_of("face"), what)
         .hint("element face N and property list uchar int vertex_indices; or a mesh exported as a surface"))
 }
 
-fn skip(body_reader: &mut BodyReader<'_>, element: &Element) -> Result<(), FormatError> {
+fn skip(body_reader: &mut BodyReader<'_>, element: &Element) -> Result<(), Diagnostic> {
     if element.properties.is_empty() {
         return Ok(());
     }
@@ -105,12 +105,12 @@ fn read_vertices(
     element: &Element,
     file: &Path,
     out: &mut Vec<Vec3>,
-) -> Result<(), FormatError> {
+) -> Result<(), Diagnostic> {
     let mut axes = [usize::MAX; 3];
     for (axis, name) in axes.iter_mut().zip(["x", "y", "z"]) {
         let found = element.properties.iter().position(|p| p.name == name && p.list_count.is_none());
         *axis = found.ok_or_else(|| {
-            FormatError::new(file, element.line, format!("the vertices have no {name}"))
+            Diagnostic::new(file, element.line, format!("the vertices have no {name}"))
                 .hint(format!("property float {name}"))
         })?;
     }
@@ -137,7 +137,7 @@ struct FaceLists {
 }
 
 impl FaceLists {
-    fn read(&mut self, body_reader: &mut BodyReader<'_>, element: &Element) -> Result<(), FormatError> {
+    fn read(&mut self, body_reader: &mut BodyReader<'_>, element: &Element) -> Result<(), Diagnostic> {
         let list = element
             .properties
             .iter()
@@ -160,7 +160,7 @@ impl FaceLists {
         Ok(())
     }
 
-    fn triangulate(&self, mesh: &mut MeshData, file: &Path) -> Result<(), FormatError> {
+    fn triangulate(&self, mesh: &mut MeshData, file: &Path) -> Result<(), Diagnostic> {
         let mut polygon_corners = Vec::new();
         let mut begin = 0;
         for (i, &end) in self.ends.iter().enumerate() {
@@ -177,7 +177,7 @@ impl FaceLists {
                         "face {i} (from 0) has the corner {corner}, but there are {} vertices",
                         mesh.vertices.len()
                     );
-                    return Err(FormatError::new(file, None, what).hint("numbers of vertices, counted from 0"));
+                    return Err(Diagnostic::new(file, None, what).hint("numbers of vertices, counted from 0"));
                 }
             }
             if self.are_strips {

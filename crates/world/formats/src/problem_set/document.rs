@@ -8,7 +8,7 @@ use std::path::Path;
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
 use serde_json::error::Category;
 
-use crate::FormatError;
+use crate::Diagnostic;
 
 /// The layout, for messages.
 pub(super) const LAYOUT: &str = "{\"SET\": {\"ID\": {\"scene\": {…}, \"request\": {…}}}}";
@@ -48,8 +48,8 @@ impl<'de, T: Deserialize<'de>> Visitor<'de> for EntriesVisitor<T> {
 /// Parses the text.
 ///
 /// # Errors
-/// [`FormatError`] with the line, if the text is not JSON or has another layout.
-pub(super) fn parse<'de, T: Deserialize<'de>>(text: &'de str, file: &Path) -> Result<T, FormatError> {
+/// [`Diagnostic`] with the line, if the text is not JSON or has another layout.
+pub(super) fn parse<'de, T: Deserialize<'de>>(text: &'de str, file: &Path) -> Result<T, Diagnostic> {
     serde_json::from_str(text).map_err(|e| {
         let line = (e.line() > 0).then_some(e.line());
         let (what, hint) = match e.classify() {
@@ -59,6 +59,6 @@ pub(super) fn parse<'de, T: Deserialize<'de>>(text: &'de str, file: &Path) -> Re
                 (format!("is not JSON: {e}"), "JSON, in which all numbers are finite (it has no NaN and no Infinity)")
             }
         };
-        FormatError::new(file, line, what).hint(hint)
+        Diagnostic::new(file, line, what).hint(hint)
     })
 }

@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use crate::FormatError;
+use crate::Diagnostic;
 use crate::moveit_msgs::field::Field;
 use crate::moveit_msgs::types::JointValue;
 
@@ -12,7 +12,7 @@ const OTHER_CONSTRAINTS: [&str; 3] = ["position_constraints", "orientation_const
 const JOINTS: &str = "\"joint_constraints\": [{\"joint_name\": \"NAME\", \"position\": 0.5}, …]";
 
 /// Reads the alternative goals of a request, each as joint values.
-pub(super) fn goals(request: &Field<'_>) -> Result<Vec<Vec<JointValue>>, FormatError> {
+pub(super) fn goals(request: &Field<'_>) -> Result<Vec<Vec<JointValue>>, Diagnostic> {
     if let Some(constraints) = request.get("path_constraints")? {
         for key in OTHER_CONSTRAINTS.into_iter().chain(["joint_constraints"]) {
             if !constraints.list(key)?.is_empty() {
@@ -29,7 +29,7 @@ pub(super) fn goals(request: &Field<'_>) -> Result<Vec<Vec<JointValue>>, FormatE
     goals.iter().map(goal).collect()
 }
 
-fn goal(field: &Field<'_>) -> Result<Vec<JointValue>, FormatError> {
+fn goal(field: &Field<'_>) -> Result<Vec<JointValue>, Diagnostic> {
     for key in OTHER_CONSTRAINTS {
         if !field.list(key)?.is_empty() {
             return Err(field.error(format!("has `{key}`: goals are joint values only"), JOINTS));

@@ -26,7 +26,7 @@ use serde_json::Value;
 
 use crate::moveit_msgs::field::{Field, Location, Reading};
 use crate::moveit_msgs::{collision_matrix, object, pose, robot_state};
-use crate::{FormatError, Warning, input};
+use crate::{Diagnostic, input};
 use document::{Entries, LAYOUT};
 
 pub use crate::moveit_msgs::types::{AllowedCollisions, AttachedObject, CollisionObject, FixedFrame, JointValue};
@@ -43,14 +43,14 @@ pub struct ProblemFile {
     /// Problems in the order of the file.
     pub problems: Vec<PlanningProblem>,
     /// Warnings for the user, one per kind.
-    pub warnings: Vec<Warning>,
+    pub warnings: Vec<Diagnostic>,
 }
 
 /// Reads a file of at most 256 MiB.
 ///
 /// # Errors
 /// The errors of [`parse`], or a file that cannot be read.
-pub fn read(path: &Path) -> Result<ProblemFile, FormatError> {
+pub fn read(path: &Path) -> Result<ProblemFile, Diagnostic> {
     let smaller = "fewer problems per file: the sets can be in files of their own";
     parse(path, &input::read_file(path, MAX_BYTES, smaller)?)
 }
@@ -70,12 +70,12 @@ pub fn read(path: &Path) -> Result<ProblemFile, FormatError> {
 /// let problem = &file.problems[0];
 /// assert_eq!((problem.set.as_str(), problem.objects[0].solids.len()), ("shelf", 1));
 /// assert_eq!(problem.goals[0][0].value, -0.5);
-/// # Ok::<(), elbowroom_formats::FormatError>(())
+/// # Ok::<(), elbowroom_formats::Diagnostic>(())
 /// ```
 ///
 /// # Errors
-/// [`FormatError`] if the text is not JSON of this layout. The message has the line, or the set, problem and field.
-pub fn parse(file: &Path, bytes: &[u8]) -> Result<ProblemFile, FormatError> {
+/// [`Diagnostic`] if the text is not JSON of this layout. The message has the line, or the set, problem and field.
+pub fn parse(file: &Path, bytes: &[u8]) -> Result<ProblemFile, Diagnostic> {
     input::check_content(bytes, file)?;
     let text = input::text(bytes, file)?;
     let sets: Entries<Entries<Value>> = document::parse(&text, file)?;
@@ -88,12 +88,12 @@ pub fn parse(file: &Path, bytes: &[u8]) -> Result<ProblemFile, FormatError> {
         }
     }
     if problems.is_empty() {
-        return Err(FormatError::new(file, None, "has no planning problem").hint(LAYOUT));
+        return Err(Diagnostic::new(file, None, "has no planning problem").hint(LAYOUT));
     }
     Ok(ProblemFile { file: file.to_owned(), problems, warnings: reading.warnings })
 }
 
-fn problem([set, id]: [&str; 2], root: &Field<'_>, reading: &mut Reading) -> Result<PlanningProblem, FormatError> {
+fn problem([set, id]: [&str; 2], root: &Field<'_>, reading: &mut Reading) -> Result<PlanningProblem, Diagnostic> {
     let scene = root.require("scene", LAYOUT)?;
     let request = root.require("request", LAYOUT)?;
     let mut state = robot_state::RobotState::default();

@@ -54,7 +54,7 @@ fn complete() -> Value {
     })
 }
 
-fn parse_problem(problem: &Value) -> Result<ProblemFile, FormatError> {
+fn parse_problem(problem: &Value) -> Result<ProblemFile, Diagnostic> {
     parse(Path::new("set.json"), json!({"shelf": {"7": problem}}).to_string().as_bytes())
 }
 
@@ -183,7 +183,7 @@ fn errors_name_file_set_problem_field_and_a_remedy() {
     }
     let mut constrained = complete();
     constrained["request"]["path_constraints"] = json!({"orientation_constraints": [{}]});
-    assert!(parse_problem(&constrained).unwrap_err().what.contains("not supported"));
+    assert!(parse_problem(&constrained).unwrap_err().message.contains("not supported"));
 }
 
 #[test]

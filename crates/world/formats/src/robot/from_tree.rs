@@ -12,11 +12,11 @@ use elbowroom_spatial::{Pose, Vec3};
 use super::joint_candidates::missing_joints_warning;
 use super::pose_difference::{SAME_POSE, pose_difference};
 use super::track_joint::{InferredJoint, TrackJoint, infer_joint, show_vector};
-use crate::error::WarningList;
+use crate::Diagnostic;
 use crate::joints::{AxisFrame, JointSpec};
 use crate::names::{UniqueNames, list_names};
 use crate::nodetree::NodeTree;
-use crate::{FormatError, Warning};
+use crate::warning_list::WarningList;
 
 /// Largest number of links of a robot, which bounds the size of its allowed collision matrix.
 pub const MAX_LINKS: usize = 2000;
@@ -30,10 +30,10 @@ pub(super) fn robot(
     file: &Path,
     default_path: &Path,
     warnings: &mut WarningList,
-) -> Result<Robot, FormatError> {
+) -> Result<Robot, Diagnostic> {
     if tree.nodes.len() > MAX_LINKS {
         let what = format!("has {} nodes; a robot has at most {MAX_LINKS} links", tree.nodes.len());
-        return Err(FormatError::new(file, None, what).hint("the robot alone, without its surroundings"));
+        return Err(Diagnostic::new(file, None, what).hint("the robot alone, without its surroundings"));
     }
     let builder = RobotBuilder::new(tree, file);
     let node_joints = builder.node_joints(specs, warnings)?;
@@ -81,7 +81,7 @@ impl<'a> RobotBuilder<'a> {
         &self,
         specs: &[JointSpec],
         warnings: &mut WarningList,
-    ) -> Result<Vec<Option<NodeJoint>>, FormatError> {
+    ) -> Result<Vec<Option<NodeJoint>>, Diagnostic> {
         let size = self.tree.aabb().extent().max_element();
         let size = if size.is_finite() && size > 0.0 { size } else { 1.0 };
         let mut by_node: HashMap<usize, &JointSpec> = HashMap::new();
@@ -103,7 +103,7 @@ impl<'a> RobotBuilder<'a> {
                             self.names[i]
                         );
                         warnings.push_with(|| {
-                            Warning::new(self.file, None, what)
+                            Diagnostic::new(self.file, None, what)
                                 .hint("keys that rotate about one axis, or the axis in a file of joints")
                         });
                     }
@@ -118,7 +118,7 @@ impl<'a> RobotBuilder<'a> {
         Ok(node_joints)
     }
 
-    fn node(&self, spec: &JointSpec) -> Result<usize, FormatError> {
+    fn node(&self, spec: &JointSpec) -> Result<usize, Diagnostic> {
         if let Some(i) = self.names.iter().position(|n| *n == spec.node) {
             return Ok(i);
         }
@@ -142,7 +142,7 @@ impl<'a> RobotBuilder<'a> {
         i: usize,
         spec: &JointSpec,
         inferred: Option<InferredJoint>,
-    ) -> Result<Option<NodeJoint>, FormatError> {
+    ) -> Result<Option<NodeJoint>, Diagnostic> {
         let bounded = spec.min.is_some() || spec.max.is_some();
         let kind = spec.kind.or(inferred.map(|f| f.kind));
         let kind = kind.unwrap_or(if bounded { JointKind::Revolute } else { JointKind::Continuous });
@@ -192,7 +192,7 @@ impl<'a> RobotBuilder<'a> {
         Ok(Some(NodeJoint { name, kind, axis, at, limits, mimic }))
     }
 
-    fn build(self, node_joints: &[Option<NodeJoint>]) -> Result<Robot, FormatError> {
+    fn build(self, node_joints: &[Option<NodeJoint>]) -> Result<Robot, Diagnostic> {
         let nodes = &self.tree.nodes;
         // The frame of a link is the frame of its node, translated to the axis of the joint.
         let link_in_node: Vec<Pose> =
@@ -235,7 +235,7 @@ impl<'a> RobotBuilder<'a> {
         }
         self.set_mimics(node_joints, &mut joints)?;
         let name = if self.tree.name.is_empty() { "model".to_owned() } else { self.tree.name.clone() };
-        let chain = Chain::new(name, links, joints).map_err(|e| FormatError::new(self.file, None, e.to_string()))?;
+        let chain = Chain::new(name, links, joints).map_err(|e| Diagnostic::new(self.file, None, e.to_string()))?;
         let mut robot = Robot::new(chain);
         for (i, node) in self.tree.nodes.into_iter().enumerate() {
             for mesh in node.meshes {
@@ -247,7 +247,7 @@ impl<'a> RobotBuilder<'a> {
         Ok(robot)
     }
 
-    fn set_mimics(&self, node_joints: &[Option<NodeJoint>], joints: &mut [Joint]) -> Result<(), FormatError> {
+    fn set_mimics(&self, node_joints: &[Option<NodeJoint>], joints: &mut [Joint]) -> Result<(), Diagnostic> {
         for i in 0..joints.len() {
             let Some((name, multiplier, offset)) =
                 node_joints[joints[i].child.0].as_ref().and_then(|m| m.mimic.clone())
@@ -256,7 +256,7 @@ impl<'a> RobotBuilder<'a> {
             };
             let Some(source) = joints.iter().position(|j| j.name == name && j.kind.moves()) else {
                 let what = format!("the joint `{}` follows `{name}`, which does not move or exist", joints[i].name);
-                return Err(FormatError::new(self.file, None, what).hint("the name of another joint that moves"));
+                return Err(Diagnostic::new(self.file, None, what).hint("the name of another joint that moves"));
             };
             joints[i].mimic = Some(Mimic { joint: JointId(source), multiplier, offset });
         }
@@ -301,7 +301,7 @@ fn warn_of_inferred_joints(
         inferred_list.join("; ")
     );
     let hint = format!("where that is wrong, [joint.NODE] with axis, min, max, speed in {}", default_path.display());
-    warnings.push(Warning::new(file, None, what).hint(hint));
+    warnings.push(Diagnostic::new(file, None, what).hint(hint));
 }
 
 fn named(name: &str) -> &str {

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::pose_difference::{SAME_POSE, pose_difference};
 use super::track_joint::show_vector;
-use crate::Warning;
+use crate::Diagnostic;
 use crate::joints::key;
 use crate::names::list_names;
 use crate::nodetree::NodeTree;
@@ -20,7 +20,7 @@ pub(super) fn missing_joints_warning(
     names: &[String],
     file: &Path,
     default_path: &Path,
-) -> Vec<Warning> {
+) -> Vec<Diagnostic> {
     let candidates = candidates(tree);
     if candidates.is_empty() {
         return Vec::new();
@@ -50,7 +50,7 @@ pub(super) fn missing_joints_warning(
     if candidates.len() > MAX_LISTED {
         let _ = writeln!(template, "    # and {} more", candidates.len() - MAX_LISTED);
     }
-    vec![Warning::new(file, None, what).hint(template.trim_end())]
+    vec![Diagnostic::new(file, None, what).hint(template.trim_end())]
 }
 
 /// Nodes with meshes at or below them that are displaced from their parent, or have several children.

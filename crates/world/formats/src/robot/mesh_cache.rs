@@ -2,23 +2,23 @@
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
 
 use elbowroom_proximity::TriMesh;
 use elbowroom_spatial::Vec3;
 use elbowroom_spatial::units::LengthUnit;
-use rayon::prelude::*;
 
 use crate::mesh;
 use crate::mesh_data::{MeshData, UpAxis};
 use crate::urdf::{Geometry, LinkGeometry};
-use crate::{FormatError, Warning, input, resolve};
+use crate::{Diagnostic, input, resolve};
 
 /// The meshes of one file at one scale, with the names of its objects.
 pub(super) type TriMeshes = Arc<Vec<(String, Arc<TriMesh>)>>;
 
 type Scale = [u64; 3];
-type Loaded = Result<(HashMap<Scale, TriMeshes>, Vec<Warning>), FormatError>;
+type Loaded = Result<(HashMap<Scale, TriMeshes>, Vec<Diagnostic>), Diagnostic>;
 
 pub(super) struct MeshCache {
     /// Per reference as written: the file, or a description of the search.
@@ -57,8 +57,8 @@ impl MeshCache {
     }
 
     /// The meshes of a file, and on the first call its warnings.
-    pub(super) fn meshes(&mut self, path: &Path, scale: Vec3) -> Result<(TriMeshes, Vec<Warning>), FormatError> {
-        let missing = || FormatError::new(path, None, "was not loaded");
+    pub(super) fn meshes(&mut self, path: &Path, scale: Vec3) -> Result<(TriMeshes, Vec<Diagnostic>), Diagnostic> {
+        let missing = || Diagnostic::new(path, None, "was not loaded");
         match self.files.get_mut(path) {
             Some(Ok((by_scale, warnings))) => {
                 let meshes = by_scale.get(&key(scale)).ok_or_else(missing)?;
@@ -82,7 +82,17 @@ fn load_files(scales_of: HashMap<PathBuf, Vec<Vec3>>, unit: Option<LengthUnit>) 
         let loaded = load_file(&path, &scales, unit);
         (path, loaded)
     };
-    jobs.into_par_iter().with_max_len(1).map(load).collect()
+    let count = thread::available_parallelism().map_or(1, usize::from).min(jobs.len());
+    let jobs = Mutex::new(jobs.into_iter());
+    let next = || jobs.lock().unwrap_or_else(PoisonError::into_inner).next();
+    thread::scope(|scope| {
+        // Threads take the next file when they have finished one: files differ in size.
+        let work = || std::iter::from_fn(next).map(load).collect::<Vec<_>>();
+        let workers: Vec<_> = (0..count).map(|_| scope.spawn(work)).collect();
+        let finish =
+            |w: thread::ScopedJoinHandle<'_, Vec<_>>| w.join().unwrap_or_else(|e| std::panic::resume_unwind(e));
+        workers.into_iter().flat_map(finish).collect()
+    })
 }
 
 fn load_file(path: &Path, scales: &[Vec3], unit: Option<LengthUnit>) -> Loaded {
@@ -95,7 +105,7 @@ fn load_file(path: &Path, scales: &[Vec3], unit: Option<LengthUnit>) -> Loaded {
     Ok((by_scale, loaded.warnings))
 }
 
-fn tri_mesh(mut mesh: MeshData, scale: Vec3, path: &Path) -> Result<(String, Arc<TriMesh>), FormatError> {
+fn tri_mesh(mut mesh: MeshData, scale: Vec3, path: &Path) -> Result<(String, Arc<TriMesh>), Diagnostic> {
     if scale != Vec3::splat(1.0) {
         mesh.scale(scale);
     }

@@ -18,13 +18,13 @@ use elbowroom_robot::{Collider, Robot};
 use elbowroom_spatial::units::LengthUnit;
 use elbowroom_spatial::{Pose, Vec3};
 
-use crate::error::WarningList;
 use crate::joints;
 use crate::mesh::{self, MeshFormat};
 use crate::nodetree::NodeTree;
 use crate::srdf::Srdf;
 use crate::urdf::{Geometry, LinkGeometry, UrdfModel};
-use crate::{FormatError, Warning, gltf, input, srdf, tds, urdf};
+use crate::warning_list::WarningList;
+use crate::{Diagnostic, gltf, input, srdf, tds, urdf};
 use mesh_cache::MeshCache;
 
 pub use from_tree::MAX_LINKS;
@@ -56,7 +56,7 @@ pub struct LoadedRobot {
     /// The SRDF of the options. Its warnings are in `warnings`.
     pub srdf: Option<Srdf>,
     /// Warnings about the URDF, its meshes and the SRDF.
-    pub warnings: Vec<Warning>,
+    pub warnings: Vec<Diagnostic>,
 }
 
 /// Loads a robot: a URDF with its collision meshes, or a 3DS or glTF model.
@@ -72,7 +72,7 @@ pub struct LoadedRobot {
 /// gives a warning with a template of a joints file.
 ///
 /// # Errors
-/// [`FormatError`] for an invalid model, joints file or SRDF, and for every collision mesh that is missing or cannot be
+/// [`Diagnostic`] for an invalid model, joints file or SRDF, and for every collision mesh that is missing or cannot be
 /// read. Visual meshes only give warnings.
 ///
 /// ```
@@ -91,7 +91,7 @@ pub struct LoadedRobot {
 /// assert_eq!(loaded.robot.colliders[1].len(), 1);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn load(path: &Path, options: &LoadOptions) -> Result<LoadedRobot, FormatError> {
+pub fn load(path: &Path, options: &LoadOptions) -> Result<LoadedRobot, Diagnostic> {
     let bytes = input::read(path)?;
     let (mut robot, mut warnings) = match tree_format(&bytes, path) {
         Some(format) => load_tree(&bytes, format, path, options)?,
@@ -104,8 +104,8 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<LoadedRobot, FormatErr
 /// Adds the disabled pairs of an SRDF to a robot, and returns warnings.
 ///
 /// # Errors
-/// [`FormatError`] if the file cannot be read or is not an SRDF.
-pub fn apply_srdf(robot: &mut Robot, path: &Path) -> Result<Vec<Warning>, FormatError> {
+/// [`Diagnostic`] if the file cannot be read or is not an SRDF.
+pub fn apply_srdf(robot: &mut Robot, path: &Path) -> Result<Vec<Diagnostic>, Diagnostic> {
     let mut warnings = WarningList::default();
     disable_pairs(robot, path, &mut warnings)?;
     Ok(warnings.finish(path))
@@ -129,12 +129,12 @@ pub fn parse_tree(
     format: MeshFormat,
     file: &Path,
     unit: Option<LengthUnit>,
-) -> Result<NodeTree, FormatError> {
+) -> Result<NodeTree, Diagnostic> {
     let mut tree = if format == MeshFormat::Tds { tds::parse(bytes, file)? } else { gltf::parse_tree(bytes, file)? };
     let Some(unit) = unit else { return Ok(tree) };
     if format.states_its_unit() {
         let what = format!("states its own unit; the unit {} asked for is not applied", unit.symbol());
-        tree.warnings.push(Warning::new(file, None, what));
+        tree.warnings.push(Diagnostic::new(file, None, what));
     } else {
         tree.scale(unit.to_metres(1.0));
     }
@@ -147,7 +147,7 @@ fn load_tree(
     format: MeshFormat,
     path: &Path,
     options: &LoadOptions,
-) -> Result<(Robot, WarningList), FormatError> {
+) -> Result<(Robot, WarningList), Diagnostic> {
     let mut tree = parse_tree(bytes, format, path, options.unit)?;
     let mut warnings = WarningList::default();
     warnings.extend(std::mem::take(&mut tree.warnings));
@@ -161,15 +161,15 @@ fn load_tree(
     specs.retain(|s| !more.iter().any(|m| m.node == s.node));
     specs.extend(more);
     if let Some(w) = mesh::unit_warning(tree.aabb().extent()).filter(|_| !format.states_its_unit()) {
-        warnings.push(Warning { file: path.to_owned(), ..w });
+        warnings.push(Diagnostic { file: path.to_owned(), ..w });
     }
     let robot = from_tree::robot(tree, &specs, path, &default_path, &mut warnings)?;
     Ok((robot, warnings))
 }
 
-fn load_urdf(bytes: &[u8], urdf_path: &Path, options: &LoadOptions) -> Result<(Robot, WarningList), FormatError> {
+fn load_urdf(bytes: &[u8], urdf_path: &Path, options: &LoadOptions) -> Result<(Robot, WarningList), Diagnostic> {
     if options.joints.is_some() || !options.joint.is_empty() {
-        return Err(FormatError::new(urdf_path, None, "is a URDF, which has its own joints")
+        return Err(Diagnostic::new(urdf_path, None, "is a URDF, which has its own joints")
             .hint("leave the joints out, or name a 3DS or glTF model"));
     }
     let model = urdf::parse(bytes, urdf_path)?;
@@ -190,7 +190,7 @@ fn load_urdf(bytes: &[u8], urdf_path: &Path, options: &LoadOptions) -> Result<(R
         for solid in visuals_to_load(link, options) {
             match loader.colliders(solid) {
                 Ok(colliders) => robot.visuals[i].extend(colliders),
-                Err(e) => loader.warnings.push(e.into()),
+                Err(e) => loader.warnings.push(e),
             }
         }
     }
@@ -207,7 +207,7 @@ fn visuals_to_load<'a>(link: &'a urdf::UrdfLink, options: &LoadOptions) -> &'a [
 /// # Errors
 /// The errors of [`Chain::new`] beyond the checks of [`urdf::parse`], with the line of the joint or link that the message
 /// names.
-pub fn chain(model: &UrdfModel, file: &Path) -> Result<Chain, FormatError> {
+pub fn chain(model: &UrdfModel, file: &Path) -> Result<Chain, Diagnostic> {
     let links = model.links.iter().map(|l| l.name.clone()).collect();
     let joint = |j: &urdf::UrdfJoint| kinematics::Joint {
         name: j.name.clone(),
@@ -228,7 +228,7 @@ pub fn chain(model: &UrdfModel, file: &Path) -> Result<Chain, FormatError> {
         let named = |name: &str| message.contains(&format!("`{name}`"));
         let joint = model.joints.iter().find(|j| named(&j.name)).map(|j| j.line);
         let line = joint.or_else(|| model.links.iter().find(|l| named(&l.name)).map(|l| l.line));
-        FormatError::new(file, line, message)
+        Diagnostic::new(file, line, message)
     })
 }
 
@@ -241,7 +241,7 @@ struct Loader<'a> {
 }
 
 impl Loader<'_> {
-    fn colliders(&mut self, solid: &LinkGeometry) -> Result<Vec<Collider>, FormatError> {
+    fn colliders(&mut self, solid: &LinkGeometry) -> Result<Vec<Collider>, Diagnostic> {
         let name = solid.name.clone();
         let kind = |g: &Geometry| match g {
             Geometry::Box(_) => "box",
@@ -261,7 +261,7 @@ impl Loader<'_> {
             }
             Geometry::Mesh { filename, scale } => return self.mesh_colliders(solid, filename, *scale),
         };
-        shape.validate().map_err(|e| FormatError::new(self.urdf_path, solid.line, e.to_string()))?;
+        shape.validate().map_err(|e| Diagnostic::new(self.urdf_path, solid.line, e.to_string()))?;
         self.note_extent(shape.aabb(&Pose::IDENTITY).extent(), solid);
         Ok(vec![Collider {
             name: name.unwrap_or_else(|| kind(&solid.geometry).to_owned()),
@@ -275,13 +275,13 @@ impl Loader<'_> {
         solid: &LinkGeometry,
         filename: &str,
         scale: Vec3,
-    ) -> Result<Vec<Collider>, FormatError> {
+    ) -> Result<Vec<Collider>, Diagnostic> {
         let path = self.meshes.path(filename).map(Path::to_owned).map_err(|why| {
-            FormatError::new(self.urdf_path, solid.line, format!("the mesh `{filename}` is not found: {why}"))
+            Diagnostic::new(self.urdf_path, solid.line, format!("the mesh `{filename}` is not found: {why}"))
                 .hint("a path relative to the URDF, or package://NAME/… with a directory NAME beside the URDF or above")
         })?;
         let (solids, warnings) = self.meshes.meshes(&path, scale).map_err(|mut e| {
-            e.what = format!("{} (named in {}:{})", e.what, self.urdf_path.display(), solid.line);
+            e.message = format!("{} (named in {}:{})", e.message, self.urdf_path.display(), solid.line);
             e
         })?;
         self.warnings.extend(warnings);
@@ -301,7 +301,7 @@ impl Loader<'_> {
         let largest = extent.max_element();
         self.largest = self.largest.max(largest);
         if let Some(warning) = mesh::unit_warning(extent).filter(|_| largest > 20.0) {
-            self.warnings.push(Warning { file: self.urdf_path.to_owned(), line: Some(solid.line), ..warning });
+            self.warnings.push(Diagnostic { file: self.urdf_path.to_owned(), line: Some(solid.line), ..warning });
         }
     }
 
@@ -309,30 +309,34 @@ impl Loader<'_> {
     fn check_units(&mut self, model: &UrdfModel) {
         let is_tiny = self.largest > 0.0 && self.largest < 1.0;
         if let Some(warning) = mesh::unit_warning(Vec3::splat(self.largest)).filter(|_| is_tiny) {
-            self.warnings.push(Warning { file: self.urdf_path.to_owned(), ..warning });
+            self.warnings.push(Diagnostic { file: self.urdf_path.to_owned(), ..warning });
         }
         if let Some(far) = model.joints.iter().find(|j| j.origin.translation.length() > 20.0) {
             let metres = far.origin.translation.length();
             let what = format!("the joint `{}` is {metres:.4} m away from its parent: are these metres?", far.name);
-            self.warnings.push(Warning::new(self.urdf_path, far.line, what).hint("<origin xyz=\"…\"/> in metres"));
+            self.warnings.push(Diagnostic::new(self.urdf_path, far.line, what).hint("<origin xyz=\"…\"/> in metres"));
         }
     }
 }
 
-fn disable_pairs(robot: &mut Robot, path: &Path, warnings: &mut WarningList) -> Result<Srdf, FormatError> {
+fn disable_pairs(robot: &mut Robot, path: &Path, warnings: &mut WarningList) -> Result<Srdf, Diagnostic> {
     let mut srdf = srdf::parse(&input::read(path)?, path)?;
     warnings.extend(std::mem::take(&mut srdf.warnings));
     if let Some(name) = srdf.robot.as_ref().filter(|name| *name != robot.chain.name()) {
         let what = format!("is for the robot `{name}`, but the URDF describes `{}`", robot.chain.name());
-        warnings.push(Warning::new(path, None, what).hint("the same name in both files"));
+        warnings.push(Diagnostic::new(path, None, what).hint("the same name in both files"));
     }
     for pair in &srdf.disabled {
         let mut link = |name: &str| {
             let found = robot.chain.link(name);
             if found.is_none() {
                 warnings.push_with(|| {
-                    Warning::new(path, pair.line, format!("there is no link `{name}` in the URDF; the pair is ignored"))
-                        .hint("the name of a link, or remove the line")
+                    Diagnostic::new(
+                        path,
+                        pair.line,
+                        format!("there is no link `{name}` in the URDF; the pair is ignored"),
+                    )
+                    .hint("the name of a link, or remove the line")
                 });
             }
             found
@@ -340,7 +344,7 @@ fn disable_pairs(robot: &mut Robot, path: &Path, warnings: &mut WarningList) -> 
         let (Some(a), Some(b)) = (link(&pair.link1), link(&pair.link2)) else { continue };
         if a == b {
             let what = format!("the link `{}` is paired with itself; the pair is ignored", pair.link1);
-            warnings.push_with(|| Warning::new(path, pair.line, what).hint("two different links"));
+            warnings.push_with(|| Diagnostic::new(path, pair.line, what).hint("two different links"));
             continue;
         }
         robot.disabled_pairs.push((a, b, pair.reason.clone()));

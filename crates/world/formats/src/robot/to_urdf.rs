@@ -11,7 +11,7 @@ use elbowroom_spatial::{Pose, Vec3};
 use crate::mesh_data::MeshData;
 use crate::srdf::{DisabledPair, Srdf};
 use crate::xml::escaped;
-use crate::{FormatError, WholeFile, stl};
+use crate::{Diagnostic, WholeFile, stl};
 
 /// Limit that replaces the limit of an unlimited prismatic joint, m. A URDF requires a limit.
 const UNLIMITED_M: f64 = 1e6;
@@ -59,13 +59,13 @@ pub fn to_urdf(robot: &Robot, name: &str) -> UrdfExport {
 /// Returns the files, the URDF first.
 ///
 /// # Errors
-/// [`FormatError`] if a file cannot be written.
-pub fn write_urdf(robot: &Robot, dir: &Path, name: &str) -> Result<Vec<PathBuf>, FormatError> {
+/// [`Diagnostic`] if a file cannot be written.
+pub fn write_urdf(robot: &Robot, dir: &Path, name: &str) -> Result<Vec<PathBuf>, Diagnostic> {
     let export = to_urdf(robot, name);
     let cannot = |path: &Path| {
         let path = path.to_owned();
         move |e: std::io::Error| {
-            FormatError::new(&path, None, format!("cannot be written: {e}")).hint("a folder that you may write to")
+            Diagnostic::new(&path, None, format!("cannot be written: {e}")).hint("a folder that you may write to")
         }
     };
     std::fs::create_dir_all(dir.join("meshes").join(plain_name(name))).map_err(cannot(dir))?;

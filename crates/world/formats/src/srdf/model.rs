@@ -1,6 +1,6 @@
 //! Content of an SRDF.
 
-use crate::Warning;
+use crate::Diagnostic;
 
 /// The content of an SRDF, in the order of the file.
 #[derive(Debug, Clone, Default)]
@@ -20,7 +20,7 @@ pub struct Srdf {
     /// Disabled pairs of links, which are not tested.
     pub disabled: Vec<DisabledPair>,
     /// Warnings for the user.
-    pub warnings: Vec<Warning>,
+    pub warnings: Vec<Diagnostic>,
 }
 
 /// One `<group>`.

@@ -6,9 +6,9 @@ use std::path::Path;
 use roxmltree::Node;
 
 use super::model::{DisabledPair, EndEffector, Group, GroupState, Srdf, VirtualJoint};
-use crate::error::WarningList;
 use crate::tokens::{LineIndex, show};
-use crate::{FormatError, Warning, input, xml};
+use crate::warning_list::WarningList;
+use crate::{Diagnostic, input, xml};
 
 /// Elements that are read, and elements that have no effect here.
 const READ: [&str; 6] =
@@ -18,29 +18,29 @@ const WITHOUT_EFFECT: [&str; 2] = ["link_sphere_approximation", "joint_property"
 /// Parses an SRDF. `file` is named in messages. Elements with other names give a warning.
 ///
 /// # Errors
-/// [`FormatError`] for malformed XML, a root element other than `<robot>`, or pairs without their links.
+/// [`Diagnostic`] for malformed XML, a root element other than `<robot>`, or pairs without their links.
 ///
 /// ```
 /// use elbowroom_formats::srdf;
 /// let text = r#"<robot name="arm"><disable_collisions link1="a" link2="b" reason="Adjacent"/></robot>"#;
 /// let srdf = srdf::parse(text.as_bytes(), "arm.srdf".as_ref())?;
 /// assert_eq!(srdf.disabled[0].reason, "Adjacent");
-/// # Ok::<(), elbowroom_formats::FormatError>(())
+/// # Ok::<(), elbowroom_formats::Diagnostic>(())
 /// ```
-pub fn parse(bytes: &[u8], file: &Path) -> Result<Srdf, FormatError> {
+pub fn parse(bytes: &[u8], file: &Path) -> Result<Srdf, Diagnostic> {
     input::check_content(bytes, file)?;
     let text = input::text(bytes, file)?;
     let document = xml::parse(&text, file)?;
     let root = document.root_element();
     if root.tag_name().name() != "robot" {
         let what = format!("the root element is <{}>, not <robot>", show(root.tag_name().name().as_bytes()));
-        return Err(FormatError::new(file, xml::line(root), what).hint("<robot name=\"arm\"> … </robot>"));
+        return Err(Diagnostic::new(file, xml::line(root), what).hint("<robot name=\"arm\"> … </robot>"));
     }
     let mut reader = Reader { file, warnings: WarningList::default() };
     let is_urdf = xml::child(root, "link").is_some() && xml::child(root, "disable_collisions").is_none();
     if is_urdf {
         let hint = "<disable_collisions link1=\"…\" link2=\"…\" reason=\"…\"/>";
-        reader.warnings.push(Warning::new(file, xml::line(root), "is a URDF rather than an SRDF").hint(hint));
+        reader.warnings.push(Diagnostic::new(file, xml::line(root), "is a URDF rather than an SRDF").hint(hint));
     } else {
         reader.report_ignored(root);
     }
@@ -69,10 +69,10 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<Srdf, FormatError> {
     })
 }
 
-fn disabled_pair(node: Node<'_, '_>, file: &Path) -> Result<DisabledPair, FormatError> {
+fn disabled_pair(node: Node<'_, '_>, file: &Path) -> Result<DisabledPair, Diagnostic> {
     let link = |attribute: &str| {
         node.attribute(attribute).map(|n| n.trim().to_owned()).filter(|n| !n.is_empty()).ok_or_else(|| {
-            FormatError::new(file, xml::line(node), format!("<disable_collisions> has no {attribute}"))
+            Diagnostic::new(file, xml::line(node), format!("<disable_collisions> has no {attribute}"))
                 .hint("<disable_collisions link1=\"…\" link2=\"…\" reason=\"Never\"/>")
         })
     };
@@ -112,7 +112,7 @@ impl Reader<'_> {
                 } else {
                     "<group>, <group_state>, <end_effector>, <virtual_joint> and <disable_collisions> are read"
                 };
-                self.warnings.push_with(|| Warning::new(self.file, xml::line(node), what()).hint(hint));
+                self.warnings.push_with(|| Diagnostic::new(self.file, xml::line(node), what()).hint(hint));
             }
         }
     }
@@ -123,7 +123,7 @@ impl Reader<'_> {
         if found.is_none() {
             let element = node.tag_name().name();
             let what = || format!("<{element}> has no {name}: ignored");
-            self.warnings.push_with(|| Warning::new(self.file, xml::line(node), what()).hint(example(element)));
+            self.warnings.push_with(|| Diagnostic::new(self.file, xml::line(node), what()).hint(example(element)));
         }
         found
     }

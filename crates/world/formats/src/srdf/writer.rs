@@ -17,7 +17,7 @@ impl Srdf {
     /// let again = srdf::parse(text.as_bytes(), "arm.srdf".as_ref())?;
     /// assert_eq!((&again.groups, &again.disabled[0].link2[..]), (&srdf.groups, "b"));
     /// assert!(text.contains("<!-- c and d are still tested -->"));
-    /// # Ok::<(), elbowroom_formats::FormatError>(())
+    /// # Ok::<(), elbowroom_formats::Diagnostic>(())
     /// ```
     pub fn text(&self, comments: &[String]) -> String {
         let mut out = String::new();

@@ -12,12 +12,12 @@ use super::object::Object;
 use super::track::FRAMES_PER_SECOND;
 use crate::affine::Affine;
 use crate::cycles::find_cycles;
-use crate::error::WarningList;
 use crate::mesh_data::{MAX_ELEMENTS, MeshData};
 use crate::nodetree::{Keyframe, Node, NodeTree, rigid, sample};
-use crate::{FormatError, Warning, input};
+use crate::warning_list::WarningList;
+use crate::{Diagnostic, input};
 
-pub(super) fn tree(content: TdsFile, file: &Path, warnings: &mut WarningList) -> Result<NodeTree, FormatError> {
+pub(super) fn tree(content: TdsFile, file: &Path, warnings: &mut WarningList) -> Result<NodeTree, Diagnostic> {
     let TdsFile { objects, nodes, master_scale } = content;
     let parents = parents(&nodes, file, warnings);
     let order = order(&nodes, &parents);
@@ -63,7 +63,7 @@ fn apply_master_scale(tree: &mut NodeTree, scale: f64, file: &Path, warnings: &m
         return;
     }
     tree.scale(1.0 / scale);
-    warnings.push(Warning::new(file, None, format!("has the master scale {scale}: all lengths are divided by it")));
+    warnings.push(Diagnostic::new(file, None, format!("has the master scale {scale}: all lengths are divided by it")));
 }
 
 /// The parent of each node. Nodes with a missing parent, and one node of each cycle, become top nodes.
@@ -78,7 +78,7 @@ fn parents(nodes: &[FileNode], file: &Path, warnings: &mut WarningList) -> Vec<O
             let found = by_number.get(&usize::from(number)).copied();
             if found.is_none() {
                 let what = format!("the node `{}` has the parent {number}, which does not exist", node.display_name());
-                warnings.push_with(|| Warning::new(file, None, what).hint("it is put to the top"));
+                warnings.push_with(|| Diagnostic::new(file, None, what).hint("it is put to the top"));
             }
             found
         });
@@ -86,7 +86,7 @@ fn parents(nodes: &[FileNode], file: &Path, warnings: &mut WarningList) -> Vec<O
     }
     for i in find_cycles(nodes.len(), |i| parents[i]) {
         let what = format!("the node `{}` is its own ancestor", nodes[i].display_name());
-        warnings.push_with(|| Warning::new(file, None, what).hint("it is put to the top"));
+        warnings.push_with(|| Diagnostic::new(file, None, what).hint("it is put to the top"));
         parents[i] = None;
     }
     parents
@@ -190,7 +190,7 @@ impl Frames {
                 unplaced.push(format!("`{}`", nodes[i].display_name()));
             }
         }
-        warnings.push(Warning::new(
+        warnings.push(Diagnostic::new(
             file,
             None,
             "has no tracks: vertices are taken as given in their object's own frame, as assimp writes them",
@@ -204,7 +204,7 @@ impl Frames {
                  parent: {}{tail}",
                 unplaced.join(", ")
             );
-            warnings.push(Warning::new(file, None, what));
+            warnings.push(Diagnostic::new(file, None, what));
         }
         let rigid = full.iter().map(rigid).collect();
         Self { full, rigid, is_local: true }
@@ -276,12 +276,12 @@ struct Assembler<'a> {
 
 impl Assembler<'_> {
     /// Adds an object to a node, in the frame of the node.
-    fn mesh(&mut self, object: usize, to_frame: &Affine, node: &mut Node) -> Result<(), FormatError> {
+    fn mesh(&mut self, object: usize, to_frame: &Affine, node: &mut Node) -> Result<(), Diagnostic> {
         let Object { name, vertices, triangles, .. } = &self.objects[object];
         self.elements = self.elements.saturating_add(vertices.len()).saturating_add(triangles.len());
         if self.elements > MAX_ELEMENTS {
             let what = format!("expands to more than {MAX_ELEMENTS} vertices and triangles");
-            return Err(FormatError::new(self.file, None, what).hint(format!("fewer instances of `{name}`")));
+            return Err(Diagnostic::new(self.file, None, what).hint(format!("fewer instances of `{name}`")));
         }
         if triangles.is_empty() {
             return Ok(());
@@ -293,7 +293,7 @@ impl Assembler<'_> {
     }
 
     /// Adds an object that no node refers to, at its position in the file.
-    fn unreferenced_object(&mut self, object: usize) -> Result<(), FormatError> {
+    fn unreferenced_object(&mut self, object: usize) -> Result<(), Diagnostic> {
         let Object { name, axes, .. } = &self.objects[object];
         let frame = axes.as_ref().map_or(Pose::IDENTITY, rigid);
         let mut node = Node::new(name, None, frame);

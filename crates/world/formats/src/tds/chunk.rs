@@ -4,7 +4,7 @@ use std::path::Path;
 
 use elbowroom_spatial::Vec3;
 
-use crate::FormatError;
+use crate::Diagnostic;
 
 /// Size of id and length, bytes.
 const HEAD: usize = 6;
@@ -19,9 +19,9 @@ pub(super) struct Chunk<'a> {
 }
 
 /// The chunk of the whole file. Its length is ignored if it does not fit: some writers leave it at 0.
-pub(super) fn main<'a>(bytes: &'a [u8], file: &Path) -> Result<Chunk<'a>, FormatError> {
+pub(super) fn main<'a>(bytes: &'a [u8], file: &Path) -> Result<Chunk<'a>, Diagnostic> {
     if bytes.len() < HEAD || !bytes.starts_with(&[0x4d, 0x4d]) {
-        return Err(FormatError::new(file, None, "is no 3DS file: it does not begin with the bytes 4D 4D")
+        return Err(Diagnostic::new(file, None, "is no 3DS file: it does not begin with the bytes 4D 4D")
             .hint("a model saved as .3ds by 3D Studio, 3ds Max or another program"));
     }
     let length = u32::from_le_bytes([bytes[2], bytes[3], bytes[4], bytes[5]]) as usize;
@@ -45,7 +45,7 @@ pub(super) struct Children<'a, 'f> {
 }
 
 impl<'a> Iterator for Children<'a, '_> {
-    type Item = Result<Chunk<'a>, FormatError>;
+    type Item = Result<Chunk<'a>, Diagnostic>;
 
     fn next(&mut self) -> Option<Self::Item> {
         // Some writers pad with a few bytes.
@@ -70,15 +70,15 @@ pub(super) struct Cursor<'a, 'f> {
 }
 
 impl<'a, 'f> Cursor<'a, 'f> {
-    pub(super) fn error(&self, what: &str) -> FormatError {
-        FormatError::new(self.file, None, format!("chunk {:04X}, byte {}: {what}", self.id, self.at))
+    pub(super) fn error(&self, what: &str) -> Diagnostic {
+        Diagnostic::new(self.file, None, format!("chunk {:04X}, byte {}: {what}", self.id, self.at))
     }
 
     pub(super) fn children(self) -> Children<'a, 'f> {
         Children { cursor: self }
     }
 
-    fn chunk(&mut self) -> Result<Chunk<'a>, FormatError> {
+    fn chunk(&mut self) -> Result<Chunk<'a>, Diagnostic> {
         let (id, length) = (self.u16()?, self.u32()? as usize);
         let Some(body) = length.checked_sub(HEAD).and_then(|n| self.rest.get(..n)) else {
             let left = self.rest.len() + HEAD;
@@ -90,7 +90,7 @@ impl<'a, 'f> Cursor<'a, 'f> {
         Ok(chunk)
     }
 
-    fn take<const N: usize>(&mut self) -> Result<[u8; N], FormatError> {
+    fn take<const N: usize>(&mut self) -> Result<[u8; N], Diagnostic> {
         let Some((first, rest)) = self.rest.split_first_chunk::<N>() else {
             return Err(self.error("ends too early").hint("the whole file: copy or export it again"));
         };
@@ -99,7 +99,7 @@ impl<'a, 'f> Cursor<'a, 'f> {
         Ok(*first)
     }
 
-    pub(super) fn skip(&mut self, bytes: usize) -> Result<(), FormatError> {
+    pub(super) fn skip(&mut self, bytes: usize) -> Result<(), Diagnostic> {
         let Some(rest) = self.rest.get(bytes..) else {
             return Err(self.error("ends too early").hint("the whole file: copy or export it again"));
         };
@@ -109,7 +109,7 @@ impl<'a, 'f> Cursor<'a, 'f> {
     }
 
     /// Checks a count of elements of `bytes_each` bytes against the remaining bytes.
-    pub(super) fn count(&self, count: usize, bytes_each: usize, of: &str) -> Result<usize, FormatError> {
+    pub(super) fn count(&self, count: usize, bytes_each: usize, of: &str) -> Result<usize, Diagnostic> {
         if self.rest.len() / bytes_each < count {
             let what = format!("claims {count} {of}, and has bytes for {}", self.rest.len() / bytes_each);
             return Err(self.error(&what).hint("the whole file: copy or export it again"));
@@ -117,16 +117,16 @@ impl<'a, 'f> Cursor<'a, 'f> {
         Ok(count)
     }
 
-    pub(super) fn u16(&mut self) -> Result<u16, FormatError> {
+    pub(super) fn u16(&mut self) -> Result<u16, Diagnostic> {
         self.take().map(u16::from_le_bytes)
     }
 
-    pub(super) fn u32(&mut self) -> Result<u32, FormatError> {
+    pub(super) fn u32(&mut self) -> Result<u32, Diagnostic> {
         self.take().map(u32::from_le_bytes)
     }
 
     /// Reads a finite number.
-    pub(super) fn f32(&mut self) -> Result<f32, FormatError> {
+    pub(super) fn f32(&mut self) -> Result<f32, Diagnostic> {
         let number = self.take().map(f32::from_le_bytes)?;
         if number.is_finite() {
             return Ok(number);
@@ -134,12 +134,12 @@ impl<'a, 'f> Cursor<'a, 'f> {
         Err(self.error(&format!("has a number that is not finite: {number}")).hint("finite numbers; export again"))
     }
 
-    pub(super) fn vector(&mut self) -> Result<Vec3, FormatError> {
+    pub(super) fn vector(&mut self) -> Result<Vec3, Diagnostic> {
         Ok(Vec3::new(f64::from(self.f32()?), f64::from(self.f32()?), f64::from(self.f32()?)))
     }
 
     /// Reads a text that ends with a zero byte; one byte is one character.
-    pub(super) fn text(&mut self) -> Result<String, FormatError> {
+    pub(super) fn text(&mut self) -> Result<String, Diagnostic> {
         let Some(length) = self.rest.iter().position(|&b| b == 0) else {
             return Err(self.error("has a name without an end").hint("the whole file: copy or export it again"));
         };

@@ -5,8 +5,8 @@ use std::path::Path;
 use super::chunk;
 use super::keyframer::{self, FileNode};
 use super::object::{self, Object};
-use crate::FormatError;
-use crate::error::WarningList;
+use crate::Diagnostic;
+use crate::warning_list::WarningList;
 
 /// The content of a 3DS file.
 pub(super) struct TdsFile {
@@ -16,7 +16,7 @@ pub(super) struct TdsFile {
 }
 
 /// Reads the chunks of objects and nodes.
-pub(super) fn read(bytes: &[u8], file: &Path, warnings: &mut WarningList) -> Result<TdsFile, FormatError> {
+pub(super) fn read(bytes: &[u8], file: &Path, warnings: &mut WarningList) -> Result<TdsFile, Diagnostic> {
     let mut content = TdsFile { objects: Vec::new(), nodes: Vec::new(), master_scale: 1.0 };
     let main = chunk::main(bytes, file)?;
     for section in main.children(file) {

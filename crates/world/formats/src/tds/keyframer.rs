@@ -6,8 +6,8 @@ use elbowroom_spatial::{Rotation, Vec3};
 
 use super::chunk::Chunk;
 use super::track::{self, Track};
-use crate::error::WarningList;
-use crate::{FormatError, Warning};
+use crate::Diagnostic;
+use crate::warning_list::WarningList;
 
 /// The kind of a node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -54,11 +54,7 @@ impl FileNode {
 }
 
 /// Reads a node; `None` for other chunks.
-pub(super) fn read(
-    chunk: &Chunk<'_>,
-    file: &Path,
-    warnings: &mut WarningList,
-) -> Result<Option<FileNode>, FormatError> {
+pub(super) fn read(chunk: &Chunk<'_>, file: &Path, warnings: &mut WarningList) -> Result<Option<FileNode>, Diagnostic> {
     let kind = match chunk.id {
         0xb002 => NodeKind::Object,
         0xb003 | 0xb007 => NodeKind::Aimed,
@@ -99,7 +95,7 @@ pub(super) fn read(
     }
     if !node.rotation.is_sorted_by(|a, b| a.0 <= b.0) {
         let what = format!("the rotation keys of `{}` are not in order of time; only the first counts", node.name);
-        warnings.push(Warning::new(file, None, what).hint("keys in order; export the animation again"));
+        warnings.push(Diagnostic::new(file, None, what).hint("keys in order; export the animation again"));
         node.rotation.truncate(1);
     }
     Ok(Some(node))

@@ -33,16 +33,16 @@ mod writer;
 
 use std::path::Path;
 
-use crate::error::WarningList;
 use crate::nodetree::NodeTree;
-use crate::{FormatError, input};
+use crate::warning_list::WarningList;
+use crate::{Diagnostic, input};
 
 pub use writer::write;
 
 /// Parses a 3DS file. `file` is named in messages, and its stem is the name of the tree.
 ///
 /// # Errors
-/// [`FormatError`] for another format, chunks longer than their parent, faces with missing vertices, or numbers that are
+/// [`Diagnostic`] for another format, chunks longer than their parent, faces with missing vertices, or numbers that are
 /// not finite.
 ///
 /// ```
@@ -59,9 +59,9 @@ pub use writer::write;
 /// let again = tds::parse(&bytes, "flag.3ds".as_ref())?;
 /// assert_eq!(again.nodes[1].meshes, tree.nodes[1].meshes);
 /// assert_eq!(again.nodes[1].parent, Some(pole));
-/// # Ok::<(), elbowroom_formats::FormatError>(())
+/// # Ok::<(), elbowroom_formats::Diagnostic>(())
 /// ```
-pub fn parse(bytes: &[u8], file: &Path) -> Result<NodeTree, FormatError> {
+pub fn parse(bytes: &[u8], file: &Path) -> Result<NodeTree, Diagnostic> {
     input::check_content(bytes, file)?;
     let mut warnings = WarningList::default();
     let content = content::read(bytes, file, &mut warnings)?;

@@ -5,7 +5,7 @@ use std::path::Path;
 use elbowroom_spatial::Vec3;
 
 use super::chunk::{Chunk, Cursor};
-use crate::FormatError;
+use crate::Diagnostic;
 use crate::affine::Affine;
 
 /// A mesh as in the file.
@@ -19,7 +19,7 @@ pub(super) struct Object {
 }
 
 /// Reads an object; `None` for cameras and lights.
-pub(super) fn read(chunk: &Chunk<'_>, file: &Path) -> Result<Option<Object>, FormatError> {
+pub(super) fn read(chunk: &Chunk<'_>, file: &Path) -> Result<Option<Object>, Diagnostic> {
     let mut cursor = chunk.cursor(file);
     let name = cursor.text()?;
     for child in cursor.children() {
@@ -31,7 +31,7 @@ pub(super) fn read(chunk: &Chunk<'_>, file: &Path) -> Result<Option<Object>, For
     Ok(None)
 }
 
-fn mesh(name: String, chunk: &Chunk<'_>, file: &Path) -> Result<Object, FormatError> {
+fn mesh(name: String, chunk: &Chunk<'_>, file: &Path) -> Result<Object, Diagnostic> {
     let mut object = Object { name, vertices: Vec::new(), triangles: Vec::new(), axes: None };
     for child in chunk.children(file) {
         let child = child?;
@@ -46,18 +46,18 @@ fn mesh(name: String, chunk: &Chunk<'_>, file: &Path) -> Result<Object, FormatEr
     let count = object.vertices.len();
     if let Some(bad) = object.triangles.iter().flatten().find(|&&i| i as usize >= count) {
         let what = format!("a face of `{}` has the corner {bad}, but there are {count} vertices", object.name);
-        return Err(FormatError::new(file, None, what).hint("the model exported again, or the object left out"));
+        return Err(Diagnostic::new(file, None, what).hint("the model exported again, or the object left out"));
     }
     Ok(object)
 }
 
-fn vertices(cursor: &mut Cursor<'_, '_>) -> Result<Vec<Vec3>, FormatError> {
+fn vertices(cursor: &mut Cursor<'_, '_>) -> Result<Vec<Vec3>, Diagnostic> {
     let count = usize::from(cursor.u16()?);
     let count = cursor.count(count, 12, "vertices")?;
     (0..count).map(|_| cursor.vector()).collect()
 }
 
-fn triangles(cursor: &mut Cursor<'_, '_>) -> Result<Vec<[u32; 3]>, FormatError> {
+fn triangles(cursor: &mut Cursor<'_, '_>) -> Result<Vec<[u32; 3]>, Diagnostic> {
     let count = usize::from(cursor.u16()?);
     let count = cursor.count(count, 8, "faces")?;
     let mut corner = || cursor.u16().map(u32::from);
@@ -67,7 +67,7 @@ fn triangles(cursor: &mut Cursor<'_, '_>) -> Result<Vec<[u32; 3]>, FormatError> 
 }
 
 /// Reads three axes and the origin, as columns.
-fn axes(cursor: &mut Cursor<'_, '_>) -> Result<Affine, FormatError> {
+fn axes(cursor: &mut Cursor<'_, '_>) -> Result<Affine, Diagnostic> {
     let (x, y, z, origin) = (cursor.vector()?, cursor.vector()?, cursor.vector()?, cursor.vector()?);
     let row = |i: usize| [x, y, z, origin].map(|v| v.to_array()[i]);
     Ok(Affine([row(0), row(1), row(2)]))

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use elbowroom_spatial::{Rotation, Vec3};
 
 use super::chunk::Cursor;
-use crate::FormatError;
+use crate::Diagnostic;
 
 /// Frame rate of 3D Studio, frames per second. Files do not state it.
 pub(super) const FRAMES_PER_SECOND: f64 = 30.0;
@@ -22,8 +22,8 @@ pub(super) type Track<T> = Vec<(f64, T)>;
 fn keys<'a, 'f, T>(
     cursor: &mut Cursor<'a, 'f>,
     bytes_each: usize,
-    mut value: impl FnMut(&mut Cursor<'a, 'f>) -> Result<T, FormatError>,
-) -> Result<Track<T>, FormatError> {
+    mut value: impl FnMut(&mut Cursor<'a, 'f>) -> Result<T, Diagnostic>,
+) -> Result<Track<T>, Diagnostic> {
     // Flags and two reserved numbers.
     cursor.skip(10)?;
     let count = cursor.u32()? as usize;
@@ -38,13 +38,13 @@ fn keys<'a, 'f, T>(
     Ok(track)
 }
 
-pub(super) fn vectors(cursor: &mut Cursor<'_, '_>) -> Result<Track<Vec3>, FormatError> {
+pub(super) fn vectors(cursor: &mut Cursor<'_, '_>) -> Result<Track<Vec3>, Diagnostic> {
     let mut track = keys(cursor, 12, Cursor::vector)?;
     track.sort_by(|a, b| a.0.total_cmp(&b.0));
     Ok(track)
 }
 
-pub(super) fn numbers(cursor: &mut Cursor<'_, '_>) -> Result<Track<f64>, FormatError> {
+pub(super) fn numbers(cursor: &mut Cursor<'_, '_>) -> Result<Track<f64>, Diagnostic> {
     keys(cursor, 4, |c| c.f32().map(f64::from))
 }
 
@@ -52,7 +52,7 @@ pub(super) fn numbers(cursor: &mut Cursor<'_, '_>) -> Result<Track<f64>, FormatE
 ///
 /// A key is an angle (left-handed) and an axis, relative to the previous key. Large rotations get keys in between, so
 /// that neighbouring keys are less than half a turn apart.
-pub(super) fn rotations(cursor: &mut Cursor<'_, '_>) -> Result<Track<Rotation>, FormatError> {
+pub(super) fn rotations(cursor: &mut Cursor<'_, '_>) -> Result<Track<Rotation>, Diagnostic> {
     let keys = keys(cursor, 16, |c| Ok((f64::from(c.f32()?), c.vector()?)))?;
     let mut track: Track<Rotation> = Vec::with_capacity(keys.len());
     for (frame, (angle, axis)) in keys {

@@ -5,7 +5,7 @@ use std::path::Path;
 use elbowroom_spatial::{Pose, Vec3};
 
 use super::track::FRAMES_PER_SECOND;
-use crate::FormatError;
+use crate::Diagnostic;
 use crate::mesh_data::MeshData;
 use crate::names::UniqueNames;
 use crate::nodetree::{Keyframe, NodeTree};
@@ -21,9 +21,9 @@ const MAX_COUNT: usize = 65_535;
 /// can read them. `file` is named in messages. For an example see [`parse`](super::parse).
 ///
 /// # Errors
-/// [`FormatError`] for a parent that is not before its child, a triangle with a missing vertex, more than 65 535 nodes,
+/// [`Diagnostic`] for a parent that is not before its child, a triangle with a missing vertex, more than 65 535 nodes,
 /// or numbers beyond single precision.
-pub fn write(tree: &NodeTree, file: &Path) -> Result<Vec<u8>, FormatError> {
+pub fn write(tree: &NodeTree, file: &Path) -> Result<Vec<u8>, Diagnostic> {
     let records = records(tree, file)?;
     let last_frame = records.iter().flat_map(|p| &p.track).map(|k| frame(k.time_s)).max().unwrap_or(0);
     let mut main = Writer::default();
@@ -49,7 +49,7 @@ pub fn write(tree: &NodeTree, file: &Path) -> Result<Vec<u8>, FormatError> {
     let mut whole = Writer::default();
     whole.chunk(0x4d4d, |w| w.bytes.extend_from_slice(&main.bytes));
     if whole.overflow || main.overflow {
-        return Err(FormatError::new(file, None, "has numbers or lengths that a 3DS file cannot hold")
+        return Err(Diagnostic::new(file, None, "has numbers or lengths that a 3DS file cannot hold")
             .hint("coordinates below 1e38 and less than 4 GB; or export as URDF with STL meshes"));
     }
     Ok(whole.bytes)
@@ -65,7 +65,7 @@ struct NodeRecord {
     track: Vec<Keyframe>,
 }
 
-fn records(tree: &NodeTree, file: &Path) -> Result<Vec<NodeRecord>, FormatError> {
+fn records(tree: &NodeTree, file: &Path) -> Result<Vec<NodeRecord>, Diagnostic> {
     let frames = tree.in_world();
     let mut names = UniqueNames::default();
     let mut records: Vec<NodeRecord> = Vec::new();
@@ -73,7 +73,7 @@ fn records(tree: &NodeTree, file: &Path) -> Result<Vec<NodeRecord>, FormatError>
     for (i, (node, in_world)) in tree.nodes.iter().zip(frames).enumerate() {
         if node.parent.is_some_and(|p| p >= i) {
             let what = format!("the node `{}` comes before its parent", node.name);
-            return Err(FormatError::new(file, None, what).hint("parents before their children"));
+            return Err(Diagnostic::new(file, None, what).hint("parents before their children"));
         }
         let parent = node.parent.map(|p| of_node[p]);
         let (name, in_parent, track) = (names.unique(&plain(&node.name)), node.in_parent, node.track.clone());
@@ -98,7 +98,7 @@ fn records(tree: &NodeTree, file: &Path) -> Result<Vec<NodeRecord>, FormatError>
         }));
     }
     if records.len() > MAX_COUNT {
-        return Err(FormatError::new(
+        return Err(Diagnostic::new(
             file,
             None,
             format!("has {} nodes; a 3DS file numbers {MAX_COUNT}", records.len()),
@@ -108,10 +108,10 @@ fn records(tree: &NodeTree, file: &Path) -> Result<Vec<NodeRecord>, FormatError>
     Ok(records)
 }
 
-fn check(mesh: &MeshData, file: &Path) -> Result<(), FormatError> {
+fn check(mesh: &MeshData, file: &Path) -> Result<(), Diagnostic> {
     if mesh.triangles.iter().flatten().any(|&i| i as usize >= mesh.vertices.len()) {
         let what = format!("a triangle of `{}` has a corner that does not exist", mesh.name);
-        return Err(FormatError::new(file, None, what).hint("indices below the number of vertices"));
+        return Err(Diagnostic::new(file, None, what).hint("indices below the number of vertices"));
     }
     Ok(())
 }

@@ -7,7 +7,7 @@
 //! let (name, tool) = file.named("tool")?.remove(0);
 //! let error = tool.need("mass", "mass = 2")?.positive().unwrap_err();
 //! assert_eq!((name, error.line), ("gripper", Some(2)));
-//! # Ok::<(), elbowroom_formats::FormatError>(())
+//! # Ok::<(), elbowroom_formats::Diagnostic>(())
 //! ```
 
 mod node;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use toml::de::{DeTable, DeValue};
 
-use crate::{FormatError, planning_scene_hint};
+use crate::{Diagnostic, planning_scene_hint};
 
 /// A value and its line (from 1).
 #[derive(Debug, Clone)]
@@ -74,7 +74,7 @@ impl Lines {
 ///
 /// # Errors
 /// The text is not TOML, with the line and what to write instead.
-pub fn parse(file: &Path, text: &str) -> Result<Vec<Entry>, FormatError> {
+pub fn parse(file: &Path, text: &str) -> Result<Vec<Entry>, Diagnostic> {
     let lines = Lines::of(text);
     match DeTable::parse(text) {
         Ok(table) => Ok(entries(&lines, table.get_ref())),
@@ -84,7 +84,7 @@ pub fn parse(file: &Path, text: &str) -> Result<Vec<Entry>, FormatError> {
             let named = named.map_or_else(String::new, |key| format!(" `{key}`"));
             let what = format!("this is not TOML: {}{named}", e.message().trim().replace('\n', ", "));
             let hint = planning_scene_hint(file).unwrap_or_else(|| syntax_hint(e.message()).to_owned());
-            Err(FormatError::new(file, line, what).hint(hint))
+            Err(Diagnostic::new(file, line, what).hint(hint))
         }
     }
 }

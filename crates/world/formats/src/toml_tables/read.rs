@@ -5,9 +5,9 @@ use std::path::Path;
 use elbowroom_spatial::Vec3;
 
 use super::node::{Data, Entry, Node};
-use crate::{FormatError, suggest};
+use crate::{Diagnostic, suggest};
 
-type Result<T> = std::result::Result<T, FormatError>;
+type Result<T> = std::result::Result<T, Diagnostic>;
 
 /// A table of the file and its full name: `robot.ns16.tool`.
 #[derive(Debug, Clone)]
@@ -37,8 +37,8 @@ pub struct Value<'a> {
 
 impl<'a> Table<'a> {
     /// An error at the line of the table.
-    pub fn error(&self, what: impl Into<String>) -> FormatError {
-        FormatError::new(self.file, self.line, what)
+    pub fn error(&self, what: impl std::fmt::Display) -> Diagnostic {
+        Diagnostic::new(self.file, self.line, what)
     }
 
     fn full_name(&self, key: &str) -> String {
@@ -61,7 +61,7 @@ impl<'a> Table<'a> {
         let Some(entry) = self.entries.iter().find(|e| !known.contains(&e.key.as_str())) else { return Ok(()) };
         let what = format!("{} has no key `{}`", self.display_name(), entry.key);
         let hint = suggest::hint(&entry.key, known.iter().copied());
-        Err(FormatError::new(self.file, entry.line, what).hint(hint))
+        Err(Diagnostic::new(self.file, entry.line, what).hint(hint))
     }
 
     /// The value of a key, if the table has it.
@@ -95,7 +95,7 @@ impl<'a> Table<'a> {
             .map(|(e, v)| {
                 if e.key.trim().is_empty() || e.key.contains(['/', ',', '"', '\n', '\r']) {
                     let what = format!("`{}` is not a name for a {key}", e.key.escape_debug());
-                    return Err(FormatError::new(v.file, e.line, what)
+                    return Err(Diagnostic::new(v.file, e.line, what)
                         .hint("a name without slash, comma, quote and line break, because it appears in CSV files"));
                 }
                 Ok((e.key.as_str(), v.table(&format!("[{key}.{}]", e.key))?.at_line(e.line)))
@@ -121,11 +121,11 @@ impl<'a> Table<'a> {
 
 impl<'a> Value<'a> {
     /// An error at the line of the value, about its key.
-    pub fn error(&self, what: impl AsRef<str>) -> FormatError {
-        FormatError::new(self.file, self.line, format!("`{}` {}", self.name, what.as_ref()))
+    pub fn error(&self, what: impl AsRef<str>) -> Diagnostic {
+        Diagnostic::new(self.file, self.line, format!("`{}` {}", self.name, what.as_ref()))
     }
 
-    fn wrong_type(&self, wanted: &str, example: &str) -> FormatError {
+    fn wrong_type(&self, wanted: &str, example: &str) -> Diagnostic {
         self.error(format!("must be {wanted}, not {}", self.node.data.type_name())).hint(example)
     }
 

@@ -6,13 +6,13 @@ use roxmltree::Node;
 use super::model::Geometry;
 use super::parser::UrdfParser;
 use crate::tokens::show;
-use crate::{FormatError, xml};
+use crate::{Diagnostic, xml};
 
 const SHAPES: &str = "<box size=\"1 1 1\"/>, <sphere radius=\"0.1\"/>, <cylinder radius=\"0.1\" length=\"1\"/>, \
                       <capsule radius=\"0.1\" length=\"1\"/> or <mesh filename=\"part.stl\"/>";
 
 impl UrdfParser<'_> {
-    pub(super) fn geometry(&self, solid: Node<'_, '_>) -> Result<Geometry, FormatError> {
+    pub(super) fn geometry(&self, solid: Node<'_, '_>) -> Result<Geometry, Diagnostic> {
         let element = solid.tag_name().name();
         let geometry = xml::child(solid, "geometry").ok_or_else(|| {
             self.error(solid, format!("<{element}> has no <geometry>")).hint(format!("<geometry> with {SHAPES}"))
@@ -40,7 +40,7 @@ impl UrdfParser<'_> {
         }
     }
 
-    fn mesh(&self, node: Node<'_, '_>) -> Result<Geometry, FormatError> {
+    fn mesh(&self, node: Node<'_, '_>) -> Result<Geometry, Diagnostic> {
         let filename = self.required(node, "filename")?.to_owned();
         let scale = self.vector(node, "scale")?.map_or(Vec3::splat(1.0), Vec3::from);
         if scale.abs().min_element() == 0.0 {
@@ -52,7 +52,7 @@ impl UrdfParser<'_> {
     }
 
     /// Reads a required, non-negative length.
-    fn dimension(&self, node: Node<'_, '_>, attribute: &str) -> Result<f64, FormatError> {
+    fn dimension(&self, node: Node<'_, '_>, attribute: &str) -> Result<f64, Diagnostic> {
         let name = node.tag_name().name();
         let hint = format!("<{name} {attribute}=\"0.1\" …>");
         let value = self.number(node, attribute)?;
@@ -63,7 +63,7 @@ impl UrdfParser<'_> {
         Ok(value)
     }
 
-    fn dimensions(&self, node: Node<'_, '_>, attribute: &str) -> Result<Vec3, FormatError> {
+    fn dimensions(&self, node: Node<'_, '_>, attribute: &str) -> Result<Vec3, Diagnostic> {
         let hint = "<box size=\"1 1 1\"/>: whole edges in metres";
         let size = self.vector(node, attribute)?.map(Vec3::from);
         let size = size.ok_or_else(|| self.error(node, "<box> has no size").hint(hint))?;

@@ -10,12 +10,12 @@ use super::parser::UrdfParser;
 use crate::cycles::find_cycles;
 use crate::names::list_names;
 use crate::tokens::{show, show_name};
-use crate::{FormatError, xml};
+use crate::{Diagnostic, xml};
 
 const LIMIT: &str = "<limit lower=\"-3.14\" upper=\"3.14\" velocity=\"1.5\" effort=\"0\"/>, or type=\"continuous\"";
 
 impl UrdfParser<'_> {
-    pub(super) fn joints(&mut self, root: Node<'_, '_>, links: &[UrdfLink]) -> Result<Vec<UrdfJoint>, FormatError> {
+    pub(super) fn joints(&mut self, root: Node<'_, '_>, links: &[UrdfLink]) -> Result<Vec<UrdfJoint>, Diagnostic> {
         let index: HashMap<&str, usize> = links.iter().enumerate().map(|(i, l)| (l.name.as_str(), i)).collect();
         let nodes: Vec<_> = xml::children(root, "joint").collect();
         let mut numbers: HashMap<&str, usize> = HashMap::new();
@@ -58,7 +58,7 @@ impl UrdfParser<'_> {
         node: Node<'_, '_>,
         links: &HashMap<&str, usize>,
         joints: &HashMap<&str, usize>,
-    ) -> Result<UrdfJoint, FormatError> {
+    ) -> Result<UrdfJoint, Diagnostic> {
         let name = self.required(node, "name")?.to_owned();
         let kind = self.kind(node)?;
         let limits = self.limits(node, kind)?;
@@ -75,7 +75,7 @@ impl UrdfParser<'_> {
         })
     }
 
-    fn kind(&self, node: Node<'_, '_>) -> Result<JointKind, FormatError> {
+    fn kind(&self, node: Node<'_, '_>) -> Result<JointKind, Diagnostic> {
         let kind = self.required(node, "type")?;
         let instead = match kind {
             "fixed" => return Ok(JointKind::Fixed),
@@ -94,7 +94,7 @@ impl UrdfParser<'_> {
         let line = xml::attribute_line(node, "type");
         let name = node.attribute("name").unwrap_or_default();
         let what = format!("the joint `{}` is of type `{}`, which is not read", show_name(name), show(kind.as_bytes()));
-        Err(FormatError::new(self.file, line, what).hint(instead))
+        Err(Diagnostic::new(self.file, line, what).hint(instead))
     }
 
     fn end(
@@ -102,7 +102,7 @@ impl UrdfParser<'_> {
         node: Node<'_, '_>,
         element: &'static str,
         links: &HashMap<&str, usize>,
-    ) -> Result<usize, FormatError> {
+    ) -> Result<usize, Diagnostic> {
         let hint = format!("<{element} link=\"NAME\"/>");
         let end = xml::child(node, element)
             .ok_or_else(|| self.error(node, format!("the joint has no {element}")).hint(hint))?;
@@ -110,12 +110,12 @@ impl UrdfParser<'_> {
         links.get(link).copied().ok_or_else(|| {
             let what = format!("there is no link `{}`", show_name(link));
             let line = xml::attribute_line(end, "link");
-            FormatError::new(self.file, line, what)
+            Diagnostic::new(self.file, line, what)
                 .hint(format!("<link name=\"{}\"/>, or the name of another link", show_name(link)))
         })
     }
 
-    fn limits(&mut self, joint: Node<'_, '_>, kind: JointKind) -> Result<Limits, FormatError> {
+    fn limits(&mut self, joint: Node<'_, '_>, kind: JointKind) -> Result<Limits, Diagnostic> {
         if !kind.moves() {
             return Ok(Limits::UNLIMITED);
         }
@@ -142,7 +142,7 @@ impl UrdfParser<'_> {
         Ok(Limits { lower, upper, velocity, acceleration, effort })
     }
 
-    fn bounds(&mut self, node: Node<'_, '_>, name: &str) -> Result<(f64, f64), FormatError> {
+    fn bounds(&mut self, node: Node<'_, '_>, name: &str) -> Result<(f64, f64), Diagnostic> {
         let (lower, upper) = (self.number(node, "lower")?, self.number(node, "upper")?);
         if lower.is_none() && upper.is_none() {
             return Err(self.error(node, format!("the limit of `{name}` has neither lower nor upper")).hint(LIMIT));
@@ -158,7 +158,7 @@ impl UrdfParser<'_> {
         Ok((lower, upper))
     }
 
-    fn mimic(&self, joint: Node<'_, '_>, joints: &HashMap<&str, usize>) -> Result<Option<UrdfMimic>, FormatError> {
+    fn mimic(&self, joint: Node<'_, '_>, joints: &HashMap<&str, usize>) -> Result<Option<UrdfMimic>, Diagnostic> {
         let Some(node) = xml::child(joint, "mimic") else { return Ok(None) };
         let source = self.required(node, "joint")?;
         let source = joints.get(source).copied().ok_or_else(|| {
@@ -171,7 +171,7 @@ impl UrdfParser<'_> {
     }
 
     /// Checks that a fixed joint neither mimics nor is mimicked, and that mimics form no cycle.
-    fn check_mimics(&mut self, nodes: &[Node<'_, '_>], joints: &mut [UrdfJoint]) -> Result<(), FormatError> {
+    fn check_mimics(&mut self, nodes: &[Node<'_, '_>], joints: &mut [UrdfJoint]) -> Result<(), Diagnostic> {
         for i in 0..joints.len() {
             let Some(mimic) = joints[i].mimic else { continue };
             let node = xml::child(nodes[i], "mimic").unwrap_or(nodes[i]);

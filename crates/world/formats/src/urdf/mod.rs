@@ -10,9 +10,9 @@ use std::path::Path;
 
 use roxmltree::Node;
 
-use crate::error::WarningList;
 use crate::tokens::{LineIndex, show};
-use crate::{FormatError, input, xml};
+use crate::warning_list::WarningList;
+use crate::{Diagnostic, input, xml};
 pub use model::{Geometry, LinkGeometry, UrdfJoint, UrdfLink, UrdfMimic, UrdfModel};
 
 /// Description of a file with the root element `<sdf>`.
@@ -23,7 +23,7 @@ pub(crate) const SDF_HINT: &str = "the URDF that the SDF was made from, or the o
 /// Parses a URDF. Meshes are named, not opened. `file` is named in messages.
 ///
 /// # Errors
-/// [`FormatError`] for content that is not a tree of links with finite numbers, an unexpanded xacro, or another format.
+/// [`Diagnostic`] for content that is not a tree of links with finite numbers, an unexpanded xacro, or another format.
 ///
 /// ```
 /// use elbowroom_formats::urdf;
@@ -39,9 +39,9 @@ pub(crate) const SDF_HINT: &str = "the URDF that the SDF was made from, or the o
 ///
 /// let error = urdf::parse(text.replace("<limit", "<!-- limit").replace("\"0\"/>", "\"0\" -->").as_bytes(), "slide.urdf".as_ref());
 /// assert_eq!(error.unwrap_err().line, Some(4));
-/// # Ok::<(), elbowroom_formats::FormatError>(())
+/// # Ok::<(), elbowroom_formats::Diagnostic>(())
 /// ```
-pub fn parse(bytes: &[u8], file: &Path) -> Result<UrdfModel, FormatError> {
+pub fn parse(bytes: &[u8], file: &Path) -> Result<UrdfModel, Diagnostic> {
     input::check_content(bytes, file)?;
     let text = input::text(bytes, file)?;
     let document = xml::parse(&text, file)?;
@@ -58,7 +58,7 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<UrdfModel, FormatError> {
     Ok(UrdfModel { name, links, joints, warnings: parser.warnings.finish(file) })
 }
 
-fn check_root(root: Node<'_, '_>, file: &Path) -> Result<(), FormatError> {
+fn check_root(root: Node<'_, '_>, file: &Path) -> Result<(), Diagnostic> {
     let name = root.tag_name().name();
     if name == "robot" && xml::children(root, "link").next().is_some() {
         return Ok(());
@@ -77,10 +77,10 @@ fn check_root(root: Node<'_, '_>, file: &Path) -> Result<(), FormatError> {
     };
     // An unexpanded xacro may have no links.
     refuse_xacro(root, file)?;
-    Err(FormatError::new(file, xml::line(root), what).hint(hint))
+    Err(Diagnostic::new(file, xml::line(root), what).hint(hint))
 }
 
-fn refuse_xacro(root: Node<'_, '_>, file: &Path) -> Result<(), FormatError> {
+fn refuse_xacro(root: Node<'_, '_>, file: &Path) -> Result<(), Diagnostic> {
     let is_macro = |n: &Node<'_, '_>| n.tag_name().namespace().is_some_and(|ns| ns.contains("xacro"));
     let has_expression =
         |n: &Node<'_, '_>| n.attributes().any(|a| a.value().contains("${") || a.value().contains("$("));
@@ -92,12 +92,12 @@ fn refuse_xacro(root: Node<'_, '_>, file: &Path) -> Result<(), FormatError> {
     } else {
         "an expression, ${…} or $(…)".to_owned()
     };
-    Err(FormatError::new(file, xml::line(node), format!("is a xacro file that is not expanded: {found}"))
+    Err(Diagnostic::new(file, xml::line(node), format!("is a xacro file that is not expanded: {found}"))
         .hint(xml::xacro_hint(file)))
 }
 
 /// Refuses `<drake:joint>` and `<drake:link>`. They belong to the tree: without them the robot would be a different one.
-fn refuse_extensions(root: Node<'_, '_>, file: &Path) -> Result<(), FormatError> {
+fn refuse_extensions(root: Node<'_, '_>, file: &Path) -> Result<(), Diagnostic> {
     let is_foreign = |n: &Node<'_, '_>| n.is_element() && n.tag_name().namespace() != root.tag_name().namespace();
     let extension = root.children().filter(is_foreign).find(|n| matches!(n.tag_name().name(), "joint" | "link"));
     extension.map_or(Ok(()), |node| {
@@ -108,7 +108,7 @@ fn refuse_extensions(root: Node<'_, '_>, file: &Path) -> Result<(), FormatError>
             show(node.attribute("name").unwrap_or_default().as_bytes()),
             show(node.attribute("type").unwrap_or_default().as_bytes())
         );
-        Err(FormatError::new(file, xml::line(node), what).hint(format!(
+        Err(Diagnostic::new(file, xml::line(node), what).hint(format!(
             "<{name} …> without prefix; a joint of type \"revolute\", \"continuous\", \"prismatic\" or \"fixed\""
         )))
     })

@@ -3,7 +3,7 @@
 use elbowroom_kinematics::{JointKind, Limits};
 use elbowroom_spatial::{Pose, Vec3};
 
-use crate::Warning;
+use crate::Diagnostic;
 
 /// The content of a URDF.
 #[derive(Debug, Clone)]
@@ -15,7 +15,7 @@ pub struct UrdfModel {
     /// Joints in the order of the file. They form a tree over all links.
     pub joints: Vec<UrdfJoint>,
     /// Warnings for the user.
-    pub warnings: Vec<Warning>,
+    pub warnings: Vec<Diagnostic>,
 }
 
 /// A link and its geometry.

@@ -7,9 +7,9 @@ use elbowroom_spatial::{Pose, Vec3};
 use roxmltree::Node;
 
 use super::model::{LinkGeometry, UrdfLink};
-use crate::error::WarningList;
 use crate::tokens::{LineIndex, show, show_name};
-use crate::{FormatError, Warning, xml};
+use crate::warning_list::WarningList;
+use crate::{Diagnostic, xml};
 
 /// The use of a geometry.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -35,30 +35,30 @@ pub(super) struct UrdfParser<'w> {
 }
 
 impl UrdfParser<'_> {
-    pub(super) fn error(&self, node: Node<'_, '_>, what: impl Into<String>) -> FormatError {
-        FormatError::new(self.file, self.lines.line_at(node.range().start), what)
+    pub(super) fn error(&self, node: Node<'_, '_>, what: impl std::fmt::Display) -> Diagnostic {
+        Diagnostic::new(self.file, self.lines.line_at(node.range().start), what)
     }
 
-    pub(super) fn warn(&mut self, node: Node<'_, '_>, what: impl Into<String>, hint: &str) {
+    pub(super) fn warn(&mut self, node: Node<'_, '_>, what: impl std::fmt::Display, hint: &str) {
         let line = self.lines.line_at(node.range().start);
-        self.warnings.push(Warning::new(self.file, line, what).hint(hint));
+        self.warnings.push(Diagnostic::new(self.file, line, what).hint(hint));
     }
 
     /// An attribute that is present and not empty.
-    pub(super) fn required<'a>(&self, node: Node<'a, '_>, attribute: &str) -> Result<&'a str, FormatError> {
+    pub(super) fn required<'a>(&self, node: Node<'a, '_>, attribute: &str) -> Result<&'a str, Diagnostic> {
         let element = node.tag_name().name();
         node.attribute(attribute).map(str::trim).filter(|n| !n.is_empty()).ok_or_else(|| {
             self.error(node, format!("<{element}> has no {attribute}")).hint(format!("<{element} {attribute}=\"…\">"))
         })
     }
 
-    pub(super) fn number(&self, node: Node<'_, '_>, attribute: &str) -> Result<Option<f64>, FormatError> {
+    pub(super) fn number(&self, node: Node<'_, '_>, attribute: &str) -> Result<Option<f64>, Diagnostic> {
         let Some(text) = node.attribute(attribute) else { return Ok(None) };
         let [value] = self.numbers(node, attribute, text, "one finite number, such as 0.25")?;
         Ok(Some(value))
     }
 
-    pub(super) fn vector(&self, node: Node<'_, '_>, attribute: &str) -> Result<Option<[f64; 3]>, FormatError> {
+    pub(super) fn vector(&self, node: Node<'_, '_>, attribute: &str) -> Result<Option<[f64; 3]>, Diagnostic> {
         let Some(text) = node.attribute(attribute) else { return Ok(None) };
         self.numbers(node, attribute, text, "three finite numbers: \"0 0 1\"").map(Some)
     }
@@ -69,10 +69,10 @@ impl UrdfParser<'_> {
         attribute: &str,
         text: &str,
         hint: &str,
-    ) -> Result<[f64; N], FormatError> {
+    ) -> Result<[f64; N], Diagnostic> {
         let error = |why: &str| {
             let what = format!("{attribute}=\"{}\" of <{}> {why}", show(text.as_bytes()), node.tag_name().name());
-            FormatError::new(self.file, xml::attribute_line(node, attribute), what).hint(hint)
+            Diagnostic::new(self.file, xml::attribute_line(node, attribute), what).hint(hint)
         };
         let numbers: Option<Vec<f64>> = text.split_ascii_whitespace().take(N + 1).map(|w| w.parse().ok()).collect();
         let numbers = numbers.ok_or_else(|| error("is not made of numbers"))?;
@@ -83,14 +83,14 @@ impl UrdfParser<'_> {
     }
 
     /// Reads `<origin xyz="…" rpy="…"/>`; missing attributes are zero.
-    pub(super) fn origin(&self, node: Node<'_, '_>) -> Result<Pose, FormatError> {
+    pub(super) fn origin(&self, node: Node<'_, '_>) -> Result<Pose, Diagnostic> {
         let Some(origin) = xml::child(node, "origin") else { return Ok(Pose::IDENTITY) };
         let xyz = self.vector(origin, "xyz")?.unwrap_or_default();
         let rpy = self.vector(origin, "rpy")?.unwrap_or_default();
         Ok(Pose::from_xyz_rpy(xyz, rpy))
     }
 
-    pub(super) fn links(&mut self, root: Node<'_, '_>) -> Result<Vec<UrdfLink>, FormatError> {
+    pub(super) fn links(&mut self, root: Node<'_, '_>) -> Result<Vec<UrdfLink>, Diagnostic> {
         let mut links = Vec::new();
         let mut lines: HashMap<&str, usize> = HashMap::new();
         for node in xml::children(root, "link") {
@@ -108,19 +108,19 @@ impl UrdfParser<'_> {
     }
 
     /// Reads the geometries of a link. Invalid collision geometry is an error, invalid visual geometry a warning.
-    fn geometries(&mut self, link: Node<'_, '_>, role: GeometryRole) -> Result<Vec<LinkGeometry>, FormatError> {
+    fn geometries(&mut self, link: Node<'_, '_>, role: GeometryRole) -> Result<Vec<LinkGeometry>, Diagnostic> {
         let mut geometries = Vec::new();
         for node in xml::children(link, role.element()) {
             match self.link_geometry(node) {
                 Ok(geometry) => geometries.push(geometry),
-                Err(e) if role == GeometryRole::Visual => self.warnings.push(e.into()),
+                Err(e) if role == GeometryRole::Visual => self.warnings.push(e),
                 Err(e) => return Err(e),
             }
         }
         Ok(geometries)
     }
 
-    fn link_geometry(&self, node: Node<'_, '_>) -> Result<LinkGeometry, FormatError> {
+    fn link_geometry(&self, node: Node<'_, '_>) -> Result<LinkGeometry, Diagnostic> {
         let name = node.attribute("name").filter(|n| !n.is_empty()).map(str::to_owned);
         Ok(LinkGeometry {
             name,
@@ -145,7 +145,7 @@ impl UrdfParser<'_> {
         }
     }
 
-    pub(super) fn axis(&self, joint: Node<'_, '_>, moves: bool) -> Result<Vec3, FormatError> {
+    pub(super) fn axis(&self, joint: Node<'_, '_>, moves: bool) -> Result<Vec3, Diagnostic> {
         let Some(node) = xml::child(joint, "axis") else { return Ok(Vec3::X) };
         let xyz = self.vector(node, "xyz")?;
         match xyz.map_or(Vec3::X, Vec3::from).try_normalize() {

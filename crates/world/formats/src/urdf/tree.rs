@@ -3,18 +3,18 @@
 use std::path::Path;
 
 use super::model::{UrdfJoint, UrdfLink};
-use crate::FormatError;
+use crate::Diagnostic;
 use crate::cycles::find_cycles;
 use crate::tokens::show_name;
 
-pub(super) fn check(links: &[UrdfLink], joints: &[UrdfJoint], file: &Path) -> Result<(), FormatError> {
+pub(super) fn check(links: &[UrdfLink], joints: &[UrdfJoint], file: &Path) -> Result<(), Diagnostic> {
     let name = |i: usize| show_name(&links[i].name);
     let mut parent_joint: Vec<Option<usize>> = vec![None; links.len()];
     for (j, joint) in joints.iter().enumerate() {
         if joint.parent == joint.child {
             let what =
                 format!("the joint `{}` joins the link `{}` to itself", show_name(&joint.name), name(joint.child));
-            return Err(FormatError::new(file, joint.line, what).hint("two different links as <parent> and <child>"));
+            return Err(Diagnostic::new(file, joint.line, what).hint("two different links as <parent> and <child>"));
         }
         if let Some(first) = parent_joint[joint.child].replace(j) {
             let what = format!(
@@ -22,7 +22,7 @@ pub(super) fn check(links: &[UrdfLink], joints: &[UrdfJoint], file: &Path) -> Re
                 name(joint.child),
                 joints[first].line
             );
-            return Err(FormatError::new(file, joint.line, what)
+            return Err(Diagnostic::new(file, joint.line, what)
                 .hint("one joint for each child; a closed chain is opened at one joint"));
         }
     }
@@ -31,7 +31,7 @@ pub(super) fn check(links: &[UrdfLink], joints: &[UrdfJoint], file: &Path) -> Re
         let names: Vec<String> = roots.iter().take(5).map(|&i| format!("`{}`", name(i))).collect();
         let more = if roots.len() > 5 { ", …" } else { "" };
         let what = format!("{} links have no parent: {}{more}; a robot has one root", roots.len(), names.join(", "));
-        return Err(FormatError::new(file, links[second].line, what).hint(format!(
+        return Err(Diagnostic::new(file, links[second].line, what).hint(format!(
             "<joint name=\"…\" type=\"fixed\"><parent link=\"{}\"/><child link=\"{}\"/></joint>",
             name(first),
             name(second)
@@ -46,9 +46,9 @@ fn refuse_cycles(
     joints: &[UrdfJoint],
     parent_joint: &[Option<usize>],
     file: &Path,
-) -> Result<(), FormatError> {
+) -> Result<(), Diagnostic> {
     let cycles = find_cycles(links.len(), |link| parent_joint[link].map(|j| joints[j].parent));
     let Some(joint) = cycles.first().and_then(|&link| parent_joint[link]).map(|j| &joints[j]) else { return Ok(()) };
     let what = format!("the joint `{}` closes a cycle of links", show_name(&joint.name));
-    Err(FormatError::new(file, joint.line, what).hint("a tree: open the cycle at one joint"))
+    Err(Diagnostic::new(file, joint.line, what).hint("a tree: open the cycle at one joint"))
 }

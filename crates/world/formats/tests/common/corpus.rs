@@ -8,7 +8,7 @@ use std::path::Path;
 use elbowroom_formats::mesh::{self, UpAxis};
 use elbowroom_formats::nodetree::{Node, NodeTree};
 use elbowroom_formats::planning_scene::{self, PlanningScene};
-use elbowroom_formats::{FormatError, LoadedMeshes, dae, gltf, obj, off, ply, robot, srdf, stl, tds, urdf};
+use elbowroom_formats::{Diagnostic, LoadedMeshes, dae, gltf, obj, off, ply, robot, srdf, stl, tds, urdf};
 use elbowroom_proximity::Shape;
 use elbowroom_spatial::Pose;
 pub use elbowroom_testkit::random::Xorshift;
@@ -17,7 +17,7 @@ pub const PARSERS: [&str; 12] =
     ["stl", "obj", "dae", "gltf", "ply", "off", "3ds", "urdf", "srdf", "scene", "yaml", "mesh"];
 
 /// Runs a reader and returns the approximate size of its result, bytes.
-pub fn run(parser: &str, bytes: &[u8]) -> Result<usize, FormatError> {
+pub fn run(parser: &str, bytes: &[u8]) -> Result<usize, Diagnostic> {
     let file = Path::new("fuzz").with_extension(parser);
     let size = |loaded: LoadedMeshes| {
         for m in &loaded.meshes {
