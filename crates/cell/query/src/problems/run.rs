@@ -2,13 +2,22 @@
 
 use elbowroom_formats::problem_set::PlanningProblem;
 use elbowroom_kinematics::JointLimits;
-use elbowroom_planner::{PlannedPath, TimedMotion};
+use elbowroom_planner::{PlannedPath, RrtConnectError, TimedMotion};
 
 use super::messages::Result;
 use super::model::ProblemModel;
 use super::problem_scene::ProblemScene;
 use super::{PlanningEngine, ProblemResult, ProblemSettings, Solution, end_validity, motion_limits};
 use crate::plan::TimedPath;
+
+/// Why a path has no time.
+#[derive(Debug, thiserror::Error)]
+enum NotTimed {
+    #[error("not timed: a joint has no largest speed")]
+    NoSpeed,
+    #[error("not timed: {0}")]
+    Planner(#[from] RrtConnectError),
+}
 
 /// Solves problems one after the other, and times the paths.
 ///
@@ -28,8 +37,8 @@ pub fn run(
     for problem in problems {
         let (set, id) = (&problem.set, &problem.id);
         let mut scene = model.problem_scene(problem)?;
-        let (result, motion) = if let Err(reason) = end_validity::keep_free_goals(&mut scene) {
-            (ProblemResult::invalid(set, id, reason), None)
+        let (result, motion) = if let Err(why) = end_validity::keep_free_goals(&mut scene) {
+            (ProblemResult::invalid(set, id, why.to_string()), None)
         } else {
             let solution = engine.solve(&scene, settings);
             let mut result = ProblemResult::of(set, id, &solution);
@@ -55,7 +64,7 @@ fn timed(
 ) -> Option<TimedPath> {
     let limits = motion_limits::of_chain(&problem.scene.robots()[0].robot.chain, &problem.planned);
     let motion = match limits {
-        None => Err("not timed: a joint has no largest speed".into()),
+        None => Err(NotTimed::NoSpeed),
         Some(limits) => time(engine, problem, solution, settings, &limits),
     };
     match motion {
@@ -64,7 +73,7 @@ fn timed(
             Some(motion)
         }
         Err(why) => {
-            result.reason = Some(why);
+            result.reason = Some(why.to_string());
             None
         }
     }
@@ -76,7 +85,7 @@ fn time(
     solution: Solution,
     settings: &ProblemSettings,
     limits: &[JointLimits],
-) -> std::result::Result<TimedPath, String> {
+) -> std::result::Result<TimedPath, NotTimed> {
     let path = PlannedPath {
         waypoints: solution.waypoints,
         length_rad: solution.cost_rad,
@@ -85,7 +94,7 @@ fn time(
         simplification_time: solution.simplification,
         states_checked: 0,
     };
-    let motion = engine.time(problem, &path, limits, settings).map_err(|e| format!("not timed: {e}"))?;
+    let motion = engine.time(problem, &path, limits, settings)?;
     let TimedMotion { duration_s, stops, rows } = motion;
     Ok(TimedPath { duration_s, stops, rows, waypoints: path.waypoints, cost_rad: path.length_rad })
 }

@@ -9,6 +9,15 @@ use elbowroom_formats::{Diagnostic, JointStates};
 /// Time before the first row, or after the last one, beyond which pictures have no joint values, s.
 const MARGIN_S: f64 = 0.1;
 
+/// A time that the file of joint values does not cover.
+#[derive(Debug, thiserror::Error)]
+#[error("no joint values are known at {t_s} s: they are from {} to {} s", covered_s[0], covered_s[1])]
+pub(super) struct NoJointValues {
+    t_s: f64,
+    /// Times of the first and the last row.
+    covered_s: [f64; 2],
+}
+
 /// Joint values of all robots over time, linear between rows; or their start.
 #[derive(Debug)]
 pub(super) struct JointTrack {
@@ -43,12 +52,12 @@ impl JointTrack {
     }
 
     /// The values of each robot at a time; an error if they are not known.
-    pub fn at(&self, t_s: f64) -> Result<Vec<Vec<f64>>, String> {
+    pub fn at(&self, t_s: f64) -> Result<Vec<Vec<f64>>, NoJointValues> {
         let Some(states) = &self.states else { return Ok(self.start.clone()) };
         let times = states.times_s();
         let (first, last) = (times[0], times[times.len() - 1]);
         if !(t_s >= first - MARGIN_S && t_s <= last + MARGIN_S) {
-            return Err(format!("no joint values are known at {t_s} s: they are from {first} to {last} s"));
+            return Err(NoJointValues { t_s, covered_s: [first, last] });
         }
         let next = times.partition_point(|t| *t <= t_s).clamp(1, times.len().max(2) - 1).min(times.len() - 1);
         let before = next.saturating_sub(1);
