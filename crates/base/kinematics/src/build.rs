@@ -16,9 +16,9 @@ impl Chain {
     /// unknown links, duplicate names, an axis without direction, limits out of order, mimics of unknown or fixed joints
     /// or of each other, and numbers that are not finite.
     pub fn new(name: impl Into<String>, links: Vec<String>, mut joints: Vec<Joint>) -> Result<Self, ChainError> {
-        let link_by_name = index_names(&links).map_err(|name| ChainError::DuplicateLink { name })?;
-        let joint_by_name =
-            index_names(joints.iter().map(|j| &j.name)).map_err(|name| ChainError::DuplicateJoint { name })?;
+        let link_by_name = index_names(&links, |name| ChainError::DuplicateLink { name })?;
+        let joint_names = joints.iter().map(|j| &j.name);
+        let joint_by_name = index_names(joint_names, |name| ChainError::DuplicateJoint { name })?;
         for joint in &mut joints {
             check_joint(joint, links.len())?;
         }
@@ -45,11 +45,14 @@ impl Chain {
     }
 }
 
-fn index_names<'a>(names: impl IntoIterator<Item = &'a String>) -> Result<HashMap<String, usize>, String> {
+fn index_names<'a>(
+    names: impl IntoIterator<Item = &'a String>,
+    duplicate: impl FnOnce(String) -> ChainError,
+) -> Result<HashMap<String, usize>, ChainError> {
     let mut index = HashMap::new();
     for (i, name) in names.into_iter().enumerate() {
         if index.insert(name.clone(), i).is_some() {
-            return Err(name.clone());
+            return Err(duplicate(name.clone()));
         }
     }
     Ok(index)

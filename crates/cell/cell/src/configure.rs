@@ -224,5 +224,5 @@ fn config_error(cell: &Cell, robot: &CellRobot, e: &ConfigError) -> Diagnostic {
         }
         _ => robot.line,
     };
-    Diagnostic::new(&cell.file, line, e.to_string())
+    Diagnostic::new(&cell.file, line, e)
 }

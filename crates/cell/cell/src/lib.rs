@@ -31,11 +31,11 @@
 //! and radians; a key that the format does not have is always an error with its line.
 
 mod cell;
+mod cell_ik_error;
 pub mod configure;
 mod file;
 mod frames;
 mod gripped_objects;
-mod ik_message;
 mod joint_contacts;
 mod model_limits;
 mod moving_object;
@@ -58,6 +58,7 @@ mod tool_change;
 pub mod trajectory;
 
 pub use cell::{AvoidanceSpec, Cell, CellLaws, CellRegion, CellRobot, Follow, MapSpec, Units};
+pub use cell_ik_error::CellIkError;
 pub use elbowroom_access as access;
 pub use file::{CellFile, QUATERNION_TOLERANCE};
 pub use frames::Frames;
@@ -71,4 +72,5 @@ pub use query_model::{OutOfReachProofs, QueryModel, QueryRobot};
 pub use region_edits::{EditedRegions, RegionEdit, table_changes, why_not_continued};
 pub use region_id::CellRegionId;
 pub use sensor::{CellSensor, SensorKind};
+pub use tcp_target::TcpTargetError;
 pub use tool::CellTool;

@@ -152,9 +152,7 @@ impl QueryModel {
     pub fn start_state(&self, scene: &Scene) -> Result<SceneState, Diagnostic> {
         let mut state = SceneState::new(scene);
         for (object, attachment) in &self.carried {
-            state
-                .attach_at(scene, *object, attachment.clone())
-                .map_err(|e| Diagnostic::new(&self.file, None, e.to_string()))?;
+            state.attach_at(scene, *object, attachment.clone()).map_err(|e| Diagnostic::new(&self.file, None, e))?;
         }
         Ok(state)
     }
@@ -173,7 +171,7 @@ impl QueryModel {
             builder.object(o.clone());
         }
         builder.rules(self.rules.clone());
-        builder.build().map_err(|e| Diagnostic::new(&self.file, None, e.to_string()))
+        builder.build().map_err(|e| Diagnostic::new(&self.file, None, e))
     }
 
     /// Warnings for links that always touch where they are joined, and for links that touch in the default state.

@@ -1,6 +1,8 @@
 //! The hand of a robot, and how it grips parts.
 
-use elbowroom_cell::{Cell, CellRobot};
+use std::fmt;
+
+use elbowroom_cell::{Cell, CellRobot, Units};
 use elbowroom_kinematics::{ChainState, JointId, LinkId};
 use elbowroom_proximity::{Shape, Sphere, collides, separation};
 use elbowroom_robot::{ObjectId, RobotId};
@@ -59,10 +61,31 @@ impl<'a> Hand<'a> {
     }
 }
 
+/// A part that is too far from the hand to be gripped.
+#[derive(Debug)]
+pub(crate) struct OutOfGrip {
+    part: String,
+    distance_m: f64,
+    /// Units of the message.
+    units: Units,
+}
+
+impl fmt::Display for OutOfGrip {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let show = |metres: f64| self.units.show_length((metres * 1e4).round() / 1e4);
+        let [distance, limit] = [self.distance_m, MAX_GRIP_DISTANCE_M].map(show);
+        write!(
+            f,
+            "grips \"{}\", which is {distance} from the flange, the tool and the TCP: at most {limit} is within grip",
+            self.part
+        )
+    }
+}
+
 /// Attachment of a part at `part_in_world` that a robot grips with its present tool.
 ///
 /// # Errors
-/// A message with the distance if the part is too far from the hand.
+/// [`OutOfGrip`] if the part is too far from the hand.
 pub(crate) fn grip(
     cell: &Cell,
     id: RobotId,
@@ -70,16 +93,11 @@ pub(crate) fn grip(
     object: ObjectId,
     part_in_world: &Pose,
     state: &ChainState,
-) -> Result<Attachment, String> {
+) -> Result<Attachment, OutOfGrip> {
     let (hand, part) = (Hand::of(robot), &cell.objects[object.0]);
     let distance_m = hand.distance_m(state, &part.shape, part_in_world);
     if distance_m > MAX_GRIP_DISTANCE_M {
-        let [distance, limit] =
-            [distance_m, MAX_GRIP_DISTANCE_M].map(|m| cell.units.show_length((m * 1e4).round() / 1e4));
-        return Err(format!(
-            "grips \"{}\", which is {distance} from the flange, the tool and the TCP: at most {limit} is within grip",
-            part.name
-        ));
+        return Err(OutOfGrip { part: part.name.clone(), distance_m, units: cell.units });
     }
     Ok(hand.attachment(id, state, &part.shape, part_in_world))
 }

@@ -53,8 +53,8 @@ pub fn held_object(cell: &Cell, robot: RobotId, object: ObjectId) -> Result<Atta
     let mut state = ChainState::new(&at.robot.chain);
     state.q.copy_from_slice(&at.start);
     at.robot.chain.forward(&mut state);
-    grip(cell, robot, at, object, &cell.objects[object.0].in_world, &state).map_err(|what| {
-        let what = format!("robot \"{}\" at its `start`, as no program of it grips \"{name}\": {what}", at.name);
+    grip(cell, robot, at, object, &cell.objects[object.0].in_world, &state).map_err(|e| {
+        let what = format!("robot \"{}\" at its `start`, as no program of it grips \"{name}\": {e}", at.name);
         let hint =
             format!("{{ grip = \"{name}\" }} in [program.{}] where it is within reach, or another `start`", at.name);
         Diagnostic::new(&cell.file, at.line, what).hint(hint)

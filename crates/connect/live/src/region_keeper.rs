@@ -16,7 +16,7 @@ use crate::event_handler::EventHandler;
 use crate::keys::Keys;
 use crate::locked::locked;
 use crate::network::{Network, NetworkError, Publisher, Subscription, Urgency};
-use crate::region_journal::RegionJournal;
+use crate::region_journal::{JournalError, RegionJournal};
 use crate::regions_table::{RegionTable, RegionTableMessage};
 
 /// Capacity of the request queue; further requests are dropped.
@@ -58,20 +58,20 @@ impl Kept {
     fn begin(
         versions: &CellVersions,
         boot: u64,
-        journal: Result<RegionJournal, String>,
+        journal: Result<RegionJournal, JournalError>,
         on_event: Option<EventHandler>,
     ) -> (Self, String) {
         let base = versions.base();
         let fresh = RegionTable { revision: (boot, 0), ..RegionTable::initial(base).all_on() };
-        let continued = journal
-            .as_ref()
-            .map_err(Clone::clone)
-            .and_then(|journal| journal.read().and_then(|written| continued(versions, &fresh, &written, journal)));
+        let (continued, journal) = match journal {
+            Ok(journal) => (continued(versions, &fresh, &journal), Some(journal)),
+            Err(why) => (Err(why), None),
+        };
         let (table, cell, how) = match continued {
             Ok((table, cell)) => (table, cell, "the regions are as they were when this process ended".to_owned()),
             Err(why) => (fresh, base.clone(), format!("all temporary regions are on until they are switched: {why}")),
         };
-        let kept = Self { table, cell, journal: journal.ok(), on_event };
+        let kept = Self { table, cell, journal, on_event };
         if kept.switches_regions() || !kept.table.edits.is_empty() {
             kept.record();
         }
@@ -103,18 +103,18 @@ impl Kept {
     }
 }
 
-/// Continues the table written by an earlier start; returns it with the cell that has its regions, or the reason why not.
+/// Continues the table written by an earlier start; returns it with the cell that has its regions.
 fn continued(
     versions: &CellVersions,
     fresh: &RegionTable,
-    written: &RegionTableMessage,
     journal: &RegionJournal,
-) -> Result<(RegionTable, Arc<Cell>), String> {
-    let name = journal.path().display();
+) -> Result<(RegionTable, Arc<Cell>), JournalError> {
+    let written = journal.read()?;
+    let file = || journal.path().to_owned();
     if written.configuration != fresh.configuration {
-        return Err(format!("{name} is of another cell file"));
+        return Err(JournalError::OtherCell(file()));
     }
-    let cell = versions.cell(&written.edits).map_err(|e| format!("{name}: {e}"))?;
+    let cell = versions.cell(&written.edits).map_err(|source| JournalError::Regions { file: file(), source })?;
     let mut table = fresh.clone();
     table.active = vec![true; cell.regions.len()];
     table.take(
@@ -161,7 +161,7 @@ impl RegionKeeper {
         network: &Arc<dyn Network>,
         boot: u64,
         programs: ProgramSwitches,
-        journal: Result<RegionJournal, String>,
+        journal: Result<RegionJournal, JournalError>,
         on_event: Option<EventHandler>,
     ) -> Result<Self, NetworkError> {
         let cell = versions.base();

@@ -25,7 +25,7 @@ use crate::network::{
 };
 use crate::node::{Node, NodeMonitor, NodeParts};
 use crate::peer_watch::PeerWatch;
-use crate::region_journal::RegionJournal;
+use crate::region_journal::{JournalError, RegionJournal};
 use crate::region_keeper::{ProgramSwitches, RegionKeeper};
 use crate::robot_claims::RobotClaims;
 use crate::ros2::{CellFeed, Participant};
@@ -84,7 +84,7 @@ impl<'o> ServiceStart<'o> {
         let can_change =
             self.options.control.is_some() || self.cell.regions.iter().any(|r| r.region.life == Life::Temporary);
         let journal = self.options.journal.as_deref().filter(|journal| can_change || journal.exists());
-        let journal = journal.map_or_else(|| Err("no journal is kept".to_owned()), RegionJournal::open);
+        let journal = journal.ok_or(JournalError::NotKept).and_then(RegionJournal::open);
         let on_event = self.options.on_event.clone();
         let keeper = RegionKeeper::start(&self.versions, &self.shared, boot_number(), programs, journal, on_event)?;
         Ok(Some(Arc::new(keeper)))
@@ -161,7 +161,7 @@ impl<'o> ServiceStart<'o> {
         let slots = configure::slots(cell).iter().flatten().map(|slot| slot.0 + 1).max().unwrap_or(0);
         let checksum = configuration_number(cell);
         let monitor = NodeMonitor::new(&setup, RobotSlot(robot.0), slots, checksum, Boot(boot_number()))
-            .map_err(|e| Diagnostic::new(&cell.file, cell.robots[robot.0].line, e.to_string()))?;
+            .map_err(|e| Diagnostic::new(&cell.file, cell.robots[robot.0].line, e))?;
         let recorder = recorder.map(|r| r.robot(robot.0 as u32, monitor.monitor(), self.clock.seconds()));
         let (network, interlocks) = (self.of_controllers.clone(), self.shared.clone());
         let cell = cell.clone();

@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, HashMap};
 use std::io::Read;
 
-use crate::BagError;
 use crate::records::{self, Framed, MAGIC, Record};
+use crate::{BagError, Damage};
 
 /// A message of a recording.
 #[derive(Debug, Clone)]
@@ -74,7 +74,7 @@ impl<R: Read> BagReader<R> {
         while self.state == State::Data {
             let messages = self.messages;
             let found = if self.at < self.chunk.len() { self.next_in_chunk() } else { self.next_in_file() };
-            if let Some(message) = found.map_err(|why| BagError::Damaged { messages, why })? {
+            if let Some(message) = found.map_err(|source| BagError::Damaged { messages, source })? {
                 return Ok(Some(message));
             }
         }
@@ -84,7 +84,7 @@ impl<R: Read> BagReader<R> {
     fn begin(&mut self) -> Result<(), BagError> {
         let mut magic = Vec::new();
         let read = (&mut self.file).take(MAGIC.len() as u64).read_to_end(&mut magic);
-        read.map_err(|e| BagError::Damaged { messages: 0, why: format!("the file cannot be read: {e}") })?;
+        read.map_err(|e| BagError::Damaged { messages: 0, source: Damage::Unreadable(e) })?;
         if magic != MAGIC {
             return Err(BagError::Foreign);
         }
@@ -92,7 +92,7 @@ impl<R: Read> BagReader<R> {
         Ok(())
     }
 
-    fn next_in_file(&mut self) -> Result<Option<BagMessage>, String> {
+    fn next_in_file(&mut self) -> Result<Option<BagMessage>, Damage> {
         match records::next(&mut self.file)? {
             Framed::CutOff => {
                 self.state = State::CutOff;
@@ -105,24 +105,23 @@ impl<R: Read> BagReader<R> {
         }
     }
 
-    fn next_in_chunk(&mut self) -> Result<Option<BagMessage>, String> {
+    fn next_in_chunk(&mut self) -> Result<Option<BagMessage>, Damage> {
         let chunk = std::mem::take(&mut self.chunk);
         let (opcode, body, rest) = records::first(&chunk[self.at..])?;
         let at = chunk.len() - rest.len();
         let found = match records::parse(opcode, body)? {
-            Record::Chunk(_) => return Err("a chunk is inside of another one".into()),
+            Record::Chunk(_) => return Err(Damage::NestedChunk),
             record => self.take(record),
         };
         (self.chunk, self.at) = (chunk, at);
         found
     }
 
-    fn take(&mut self, record: Record<'_>) -> Result<Option<BagMessage>, String> {
+    fn take(&mut self, record: Record<'_>) -> Result<Option<BagMessage>, Damage> {
         match record {
             Record::Message { channel, time_ns, payload } => {
                 let known = self.channels.get(&channel).cloned();
-                let (topic, message_type) =
-                    known.ok_or_else(|| format!("a message is on channel {channel}, which there is not"))?;
+                let (topic, message_type) = known.ok_or(Damage::Channel(channel))?;
                 let index = self.messages;
                 self.messages += 1;
                 return Ok(Some(BagMessage { index, topic, message_type, time_ns, payload: payload.to_vec() }));

@@ -2,6 +2,10 @@
 
 use std::path::PathBuf;
 
+use elbowroom_monitor::{AttachError, SwitchError};
+
+use crate::{ConfigurationDefect, Damage};
+
 /// Why a recording cannot be written or read.
 #[derive(Debug, thiserror::Error)]
 pub enum BagError {
@@ -25,12 +29,12 @@ pub enum BagError {
     )]
     Foreign,
     /// The bytes of the file are damaged.
-    #[error("is damaged behind message {messages}: {why}")]
+    #[error("is damaged behind message {messages}: {source}")]
     Damaged {
         /// Number of messages that could be read before.
         messages: u64,
         /// The reason.
-        why: String,
+        source: Damage,
     },
     /// A message is not of its channel's type.
     #[error("message {message} on {topic} is not a {what}: {source}")]
@@ -79,23 +83,43 @@ pub enum BagError {
         positions: usize,
     },
     /// A recorded configuration cannot be built.
-    #[error("the configuration of robot {robot} is not valid: {why}")]
+    #[error("the configuration of robot {robot} is not valid: {source}")]
     Configuration {
         /// The robot.
         robot: String,
         /// The reason.
-        why: String,
+        source: ConfigurationDefect,
     },
     /// A recorded tick does not fit its configuration.
-    #[error("tick {sequence} of robot {robot}: {why}")]
+    #[error("tick {sequence} of robot {robot}: {source}")]
     Tick {
         /// The robot.
         robot: String,
         /// The number of the tick.
         sequence: u64,
         /// The reason.
-        why: String,
+        source: TickDefect,
     },
+}
+
+/// Why a recorded tick does not fit its configuration.
+#[derive(Debug, thiserror::Error)]
+pub enum TickDefect {
+    /// The recording has no configuration of the robot.
+    #[error("no configuration of the robot comes before it")]
+    NoConfiguration,
+    /// The configuration has no region with this index.
+    #[error("region {0} was switched, and there is none")]
+    NoRegion(usize),
+    /// The monitor does not switch the region.
+    #[error(transparent)]
+    Switch(#[from] SwitchError),
+    /// The pose of an attached volume is not valid.
+    #[error("a volume was attached at a pose that is none")]
+    Pose,
+    /// The monitor does not attach or detach the volume.
+    #[error(transparent)]
+    Attach(#[from] AttachError),
 }
 
 fn topics(found: &[String]) -> String {

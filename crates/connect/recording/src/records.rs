@@ -3,14 +3,14 @@
 //! The crate `mcap` writes the recordings. Its reader (0.26) panics on lengths that do not fit their record, so files
 //! are read here: the few kinds of records that a replay needs.
 
-use std::io::Read;
+use std::io::{self, Read};
 
 use ruzstd::decoding::StreamingDecoder;
 
+use crate::damage::{Damage, MAX_BYTES};
+
 /// First bytes of a file.
 pub(crate) const MAGIC: [u8; 8] = [0x89, b'M', b'C', b'A', b'P', b'0', b'\r', b'\n'];
-/// Largest record, and largest chunk after decompression, bytes.
-const MAX_BYTES: u64 = 1 << 30;
 
 /// A record that a replay needs.
 pub(crate) enum Record<'a> {
@@ -52,14 +52,14 @@ pub(crate) enum Framed {
 }
 
 /// Reads the next record of a file.
-pub(crate) fn next(file: &mut impl Read) -> Result<Framed, String> {
+pub(crate) fn next(file: &mut impl Read) -> Result<Framed, Damage> {
     let mut head = Vec::new();
     read_into(file, 9, &mut head)?;
     let [opcode, length @ ..] = &head[..] else { return Ok(Framed::CutOff) };
     let Ok(length) = <[u8; 8]>::try_from(length) else { return Ok(Framed::CutOff) };
     let length = u64::from_le_bytes(length);
     if length > MAX_BYTES {
-        return Err(format!("a record claims {length} bytes, more than the {MAX_BYTES} that are read"));
+        return Err(Damage::LongRecord(length));
     }
     let mut body = Vec::new();
     read_into(file, length, &mut body)?;
@@ -68,12 +68,12 @@ pub(crate) fn next(file: &mut impl Read) -> Result<Framed, String> {
 }
 
 /// Reads `count` bytes; memory grows with the bytes that are there, not with the claimed count.
-fn read_into(file: &mut impl Read, count: u64, to: &mut Vec<u8>) -> Result<(), String> {
-    file.take(count).read_to_end(to).map(|_| ()).map_err(|e| format!("the file cannot be read: {e}"))
+fn read_into(file: &mut impl Read, count: u64, to: &mut Vec<u8>) -> Result<(), Damage> {
+    file.take(count).read_to_end(to).map(|_| ()).map_err(Damage::Unreadable)
 }
 
 /// Parses a record from its opcode and its body.
-pub(crate) fn parse(opcode: u8, body: &[u8]) -> Result<Record<'_>, String> {
+pub(crate) fn parse(opcode: u8, body: &[u8]) -> Result<Record<'_>, Damage> {
     let mut fields = Fields(body);
     Ok(match opcode {
         0x03 => {
@@ -113,7 +113,7 @@ pub(crate) fn parse(opcode: u8, body: &[u8]) -> Result<Record<'_>, String> {
 }
 
 /// Splits the first record off the contents of a chunk: opcode, body, rest.
-pub(crate) fn first(contents: &[u8]) -> Result<(u8, &[u8], &[u8]), String> {
+pub(crate) fn first(contents: &[u8]) -> Result<(u8, &[u8], &[u8]), Damage> {
     let mut fields = Fields(contents);
     let [opcode] = fields.number()?;
     let length = u64::from_le_bytes(fields.number()?);
@@ -122,7 +122,7 @@ pub(crate) fn first(contents: &[u8]) -> Result<(u8, &[u8], &[u8]), String> {
 }
 
 /// Decompresses the contents of a chunk and checks them against their checksum.
-fn chunk(fields: &mut Fields<'_>) -> Result<Vec<u8>, String> {
+fn chunk(fields: &mut Fields<'_>) -> Result<Vec<u8>, Damage> {
     let _times: [u8; 16] = fields.number()?;
     let size = u64::from_le_bytes(fields.number()?);
     let checksum = u32::from_le_bytes(fields.number()?);
@@ -130,28 +130,30 @@ fn chunk(fields: &mut Fields<'_>) -> Result<Vec<u8>, String> {
     let compressed_size = u64::from_le_bytes(fields.number()?);
     let compressed = fields.take(usize::try_from(compressed_size).unwrap_or(usize::MAX))?;
     if size > MAX_BYTES {
-        return Err(format!("a chunk claims {size} bytes, more than the {MAX_BYTES} that are read"));
+        return Err(Damage::LongChunk(size));
     }
     let mut contents = Vec::new();
     match compression {
         "" => contents.extend_from_slice(compressed),
         "lz4" => {
-            let decoder = lz4::Decoder::new(compressed).map_err(|e| format!("a chunk is not LZ4: {e}"))?;
+            let damage = |source| Damage::Compressed { format: "LZ4", source };
+            let decoder = lz4::Decoder::new(compressed).map_err(damage)?;
             // One byte more than claimed, to notice contents that are too long.
-            decoder.take(size + 1).read_to_end(&mut contents).map_err(|e| format!("a chunk is not LZ4: {e}"))?;
+            decoder.take(size + 1).read_to_end(&mut contents).map_err(damage)?;
         }
         "zstd" => {
-            let decoder = StreamingDecoder::new(compressed).map_err(|e| format!("a chunk is not Zstandard: {e}"))?;
-            decoder.take(size + 1).read_to_end(&mut contents).map_err(|e| format!("a chunk is not Zstandard: {e}"))?;
+            let damage = |source| Damage::Compressed { format: "Zstandard", source };
+            let decoder = StreamingDecoder::new(compressed).map_err(|e| damage(io::Error::other(e.to_string())))?;
+            decoder.take(size + 1).read_to_end(&mut contents).map_err(damage)?;
         }
-        other => return Err(format!("a chunk is compressed with \"{other}\"; lz4 and zstd can be read")),
+        other => return Err(Damage::Compression(other.to_owned())),
     }
     if contents.len() as u64 != size {
-        return Err(format!("a chunk has {} bytes, not the {size} that it claims", contents.len()));
+        return Err(Damage::ChunkLength { found: contents.len(), claimed: size });
     }
     // 0 means that the writer computed no checksum.
     if checksum != 0 && crc32fast::hash(&contents) != checksum {
-        return Err("a chunk does not have its checksum".into());
+        return Err(Damage::Checksum);
     }
     Ok(contents)
 }
@@ -160,20 +162,20 @@ fn chunk(fields: &mut Fields<'_>) -> Result<Vec<u8>, String> {
 struct Fields<'a>(&'a [u8]);
 
 impl<'a> Fields<'a> {
-    fn take(&mut self, count: usize) -> Result<&'a [u8], String> {
-        let (taken, rest) = self.0.split_at_checked(count).ok_or("a record is shorter than its fields")?;
+    fn take(&mut self, count: usize) -> Result<&'a [u8], Damage> {
+        let (taken, rest) = self.0.split_at_checked(count).ok_or(Damage::ShortRecord)?;
         self.0 = rest;
         Ok(taken)
     }
 
-    fn number<const N: usize>(&mut self) -> Result<[u8; N], String> {
-        let (taken, rest) = self.0.split_first_chunk().ok_or("a record is shorter than its fields")?;
+    fn number<const N: usize>(&mut self) -> Result<[u8; N], Damage> {
+        let (taken, rest) = self.0.split_first_chunk().ok_or(Damage::ShortRecord)?;
         self.0 = rest;
         Ok(*taken)
     }
 
-    fn text(&mut self) -> Result<&'a str, String> {
+    fn text(&mut self) -> Result<&'a str, Damage> {
         let length = u32::from_le_bytes(self.number()?);
-        std::str::from_utf8(self.take(length as usize)?).map_err(|_| "a text in a record is not UTF-8".into())
+        std::str::from_utf8(self.take(length as usize)?).map_err(|_| Damage::Text)
     }
 }

@@ -9,7 +9,7 @@ use elbowroom_ros2::msgs::elbowroom_msgs::{Lost, MonitorConfiguration, MonitorTi
 use crate::bag_reader::{BagMessage, BagReader};
 use crate::replay_result::{Replay, RobotReplay};
 use crate::replayed_monitor::ReplayedMonitor;
-use crate::{BagError, topics};
+use crate::{BagError, ConfigurationDefect, TickDefect, topics};
 
 /// Most robots of a recording.
 const MAX_ROBOTS: usize = 1024;
@@ -69,8 +69,8 @@ impl Replayer {
             return robot.configure(message);
         }
         if self.robots.len() >= MAX_ROBOTS {
-            let why = format!("there are {MAX_ROBOTS} robots already");
-            return Err(BagError::Configuration { robot: message.name.clone(), why });
+            let source = ConfigurationDefect::ManyRobots(MAX_ROBOTS);
+            return Err(BagError::Configuration { robot: message.name.clone(), source });
         }
         self.robots.insert(message.robot, ReplayedMonitor::new(message)?);
         Ok(())
@@ -84,7 +84,7 @@ impl Replayer {
 
 fn without_configuration(tick: &MonitorTick) -> BagError {
     let robot = format!("number {}", tick.robot);
-    BagError::Tick { robot, sequence: tick.sequence, why: "no configuration of the robot comes before it".into() }
+    BagError::Tick { robot, sequence: tick.sequence, source: TickDefect::NoConfiguration }
 }
 
 fn decode<M: Message>(message: &BagMessage) -> Result<M, BagError> {

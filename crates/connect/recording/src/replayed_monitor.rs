@@ -9,7 +9,7 @@ use elbowroom_monitor::{
 use elbowroom_ros2::msgs::elbowroom_msgs::{MonitorConfiguration, MonitorTick};
 
 use crate::replay_result::{Difference, RobotReplay};
-use crate::{BagError, configuration, solid, tick};
+use crate::{BagError, ConfigurationDefect, TickDefect, configuration, solid, tick};
 
 /// Most slots of exchange regions.
 const MAX_SLOTS: usize = 4096;
@@ -29,14 +29,14 @@ pub(crate) struct ReplayedMonitor {
 
 impl ReplayedMonitor {
     pub(crate) fn new(message: &MonitorConfiguration) -> Result<Self, BagError> {
-        let (monitor, interlock, slots) = build(message)?;
+        let (monitor, interlock, slots) = built(message)?;
         let found = RobotReplay { name: message.name.clone(), ..RobotReplay::default() };
         Ok(Self { monitor, interlock, slots, next: 0, found, sources: Vec::new() })
     }
 
     /// Continues with another configuration, as the service did.
     pub(crate) fn configure(&mut self, message: &MonitorConfiguration) -> Result<(), BagError> {
-        (self.monitor, self.interlock, self.slots) = build(message)?;
+        (self.monitor, self.interlock, self.slots) = built(message)?;
         Ok(())
     }
 
@@ -51,10 +51,10 @@ impl ReplayedMonitor {
             return Ok(());
         }
         self.next = self.next.wrapping_add(1);
-        self.change(tick).map_err(|why| BagError::Tick {
+        self.change(tick).map_err(|source| BagError::Tick {
             robot: self.found.name.clone(),
             sequence: tick.sequence,
-            why,
+            source,
         })?;
         self.grant(tick);
         self.sources.clear();
@@ -74,7 +74,7 @@ impl ReplayedMonitor {
     }
 
     /// Applies the changes since the tick before.
-    fn change(&mut self, tick: &MonitorTick) -> Result<(), String> {
+    fn change(&mut self, tick: &MonitorTick) -> Result<(), TickDefect> {
         if tick.forgot_position {
             self.monitor.forget_position();
         }
@@ -83,20 +83,18 @@ impl ReplayedMonitor {
         for switch in &tick.switched {
             let region = switch.region as usize;
             if region >= self.monitor.configuration().regions().len() {
-                return Err(format!("region {region} was switched, and there is none"));
+                return Err(TickDefect::NoRegion(region));
             }
-            let switched = self.monitor.switch(RegionId(region), switch.active, AccessClass::Integrator);
-            switched.map_err(|e| e.to_string())?;
+            self.monitor.switch(RegionId(region), switch.active, AccessClass::Integrator)?;
         }
         for change in &tick.attached {
             let volume = VolumeId(change.volume as usize);
-            let changed = if change.attached {
-                let pose = solid::pose_of(&change.in_link).ok_or("a volume was attached at a pose that is none")?;
-                self.monitor.attach(volume, &pose)
+            if change.attached {
+                let pose = solid::pose_of(&change.in_link).ok_or(TickDefect::Pose)?;
+                self.monitor.attach(volume, &pose)?;
             } else {
-                self.monitor.detach(volume)
-            };
-            changed.map_err(|e| e.to_string())?;
+                self.monitor.detach(volume)?;
+            }
         }
         Ok(())
     }
@@ -152,15 +150,18 @@ fn answer(arbiter: &ZoneArbiter, slot: SlotId, is_granted: bool, now_s: f64) {
 
 type Built = (Monitor, Option<Interlock>, Vec<SlotId>);
 
-fn build(message: &MonitorConfiguration) -> Result<Built, BagError> {
-    let error = |why: String| BagError::Configuration { robot: message.name.clone(), why };
-    let configuration = configuration::decode(message).map_err(error)?;
+fn built(message: &MonitorConfiguration) -> Result<Built, BagError> {
+    build(message).map_err(|source| BagError::Configuration { robot: message.name.clone(), source })
+}
+
+fn build(message: &MonitorConfiguration) -> Result<Built, ConfigurationDefect> {
+    let configuration = configuration::decode(message)?;
     if configuration.checksum() != message.checksum {
-        return Err(error("it does not have the checksum that was recorded with it".into()));
+        return Err(ConfigurationDefect::Checksum);
     }
     let slots = slots(&configuration);
     if let Some(slot) = slots.iter().find(|s| s.0 >= MAX_SLOTS) {
-        return Err(error(format!("slot {} is beyond the {MAX_SLOTS} that a replay has", slot.0)));
+        return Err(ConfigurationDefect::Slot { slot: slot.0, limit: MAX_SLOTS });
     }
     let count = slots.iter().map(|s| s.0 + 1).max();
     let interlock = count.map(|count| {
@@ -171,7 +172,7 @@ fn build(message: &MonitorConfiguration) -> Result<Built, BagError> {
         let arbiter = ZoneArbiter::new(&["self", "others"], &vec!["slot"; count]).silence_timeout(f64::INFINITY);
         Interlock::Shared(Arc::new(arbiter), SELF)
     });
-    let monitor = Monitor::new(configuration, interlock.clone()).map_err(|e| error(e.to_string()))?;
+    let monitor = Monitor::new(configuration, interlock.clone())?;
     Ok((monitor, interlock, slots))
 }
 

@@ -6,6 +6,8 @@ use elbowroom_proximity::{Capsule, ConvexHull, Cuboid, Cylinder, HalfSpace, Shap
 use elbowroom_ros2::msgs::elbowroom_msgs::Solid;
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
+use crate::ConfigurationDefect;
+
 /// Makes the message of a shape.
 pub(crate) fn encode(shape: &Shape) -> Solid {
     match shape {
@@ -28,8 +30,8 @@ fn with_faces(kind: u8, vertices: &[Vec3], triangles: &[[u32; 3]]) -> Solid {
     }
 }
 
-/// Reads a shape from a message, or says what is wrong.
-pub(crate) fn decode(solid: &Solid) -> Result<Shape, String> {
+/// Reads a shape from a message.
+pub(crate) fn decode(solid: &Solid) -> Result<Shape, ConfigurationDefect> {
     let (radius, half_length) = (solid.radius, solid.half_length);
     Ok(match solid.kind {
         1 => Shape::Sphere(Sphere { radius }),
@@ -39,20 +41,20 @@ pub(crate) fn decode(solid: &Solid) -> Result<Shape, String> {
         5 => Shape::HalfSpace(HalfSpace),
         6 => Shape::Hull(Arc::new(faces(solid, ConvexHull::from_faces)?)),
         7 => Shape::Mesh(Arc::new(faces(solid, TriMesh::new)?)),
-        other => return Err(format!("there is no shape of kind {other}")),
+        number => return Err(ConfigurationDefect::Kind { what: "shape of kind", number }),
     })
 }
 
-fn faces<T, E: ToString>(
+fn faces<T, E: Into<ConfigurationDefect>>(
     solid: &Solid,
     build: impl FnOnce(Vec<Vec3>, Vec<[u32; 3]>) -> Result<T, E>,
-) -> Result<T, String> {
+) -> Result<T, ConfigurationDefect> {
     let (vertices, rest) = solid.vertices.as_chunks::<3>();
     let (triangles, more) = solid.triangles.as_chunks::<3>();
     if !(rest.is_empty() && more.is_empty()) {
-        return Err("vertices and triangles have three numbers each".into());
+        return Err(ConfigurationDefect::Faces);
     }
-    build(vertices.iter().map(|v| (*v).into()).collect(), triangles.to_vec()).map_err(|e| e.to_string())
+    build(vertices.iter().map(|v| (*v).into()).collect(), triangles.to_vec()).map_err(E::into)
 }
 
 /// Converts a pose to numbers, row by row.

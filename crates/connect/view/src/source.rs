@@ -1,5 +1,6 @@
 //! Source of the shown status, and the commands of a page.
 
+use elbowroom_kinematics::inverse::IkError;
 use elbowroom_status::{CellStatus, EventStatus};
 use serde::Deserialize;
 
@@ -42,6 +43,29 @@ impl Command {
     }
 }
 
+/// Why a command is not carried out.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum CommandRefusal {
+    /// The page cannot move the robots.
+    #[error("this page shows a running cell: its robots are moved by their controllers")]
+    RunningCell,
+    /// The cell has no robot with this index.
+    #[error("there is no robot {0}")]
+    NoRobot(usize),
+    /// The number of values differs from the number of joints.
+    #[error("`{robot}` has {joints} joints, not {values}")]
+    JointCount { robot: String, joints: usize, values: usize },
+    /// A value beyond the limits, in the unit of the page: mm or degrees.
+    #[error("joint `{joint}` may be at {lower:.2} to {upper:.2} {unit}, not at {value:.2}")]
+    Limits { joint: String, unit: &'static str, lower: f64, upper: f64, value: f64 },
+    /// A number of the pose is not finite.
+    #[error("the pose is not finite")]
+    Pose,
+    /// Inverse kinematics finds no joint values.
+    #[error(transparent)]
+    Ik(#[from] IkError),
+}
+
 /// Source of the shown status.
 pub(crate) trait ViewSource {
     /// Mode of the pages: `watch` or `jog`.
@@ -50,8 +74,8 @@ pub(crate) trait ViewSource {
     /// Carries out a command.
     ///
     /// # Errors
-    /// The reason for refusing it, for the person at the page.
-    fn command(&mut self, command: Command) -> Result<(), String>;
+    /// [`CommandRefusal`], for the person at the page.
+    fn command(&mut self, command: Command) -> Result<(), CommandRefusal>;
 
     /// Returns the status after commands, with the events; `None` if statuses come from elsewhere.
     fn status(&mut self) -> Option<(CellStatus, Vec<EventStatus>)>;
@@ -66,8 +90,8 @@ impl ViewSource for RunningCell {
         "watch"
     }
 
-    fn command(&mut self, _: Command) -> Result<(), String> {
-        Err("this page shows a running cell: its robots are moved by their controllers".into())
+    fn command(&mut self, _: Command) -> Result<(), CommandRefusal> {
+        Err(CommandRefusal::RunningCell)
     }
 
     fn status(&mut self) -> Option<(CellStatus, Vec<EventStatus>)> {

@@ -4,6 +4,7 @@ use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
 
+use elbowroom::Diagnostic;
 use elbowroom::report::TextSummary;
 use elbowroom::sim::Recording;
 
@@ -25,8 +26,8 @@ pub(crate) enum Failure {
     Closed,
 }
 
-impl From<elbowroom::Diagnostic> for Failure {
-    fn from(e: elbowroom::Diagnostic) -> Self {
+impl From<Diagnostic> for Failure {
+    fn from(e: Diagnostic) -> Self {
         Self::Wrong(e.to_string())
     }
 }
@@ -66,8 +67,13 @@ pub(crate) fn cannot_write(path: &Path) -> impl Fn(io::Error) -> Failure + '_ {
             io::ErrorKind::IsADirectory => "the name of a file: this is a folder",
             _ => "a file and a folder that you may write to",
         };
-        Failure::Wrong(format!("{}: cannot be written: {e}\n  write: {instead}", path.display()))
+        Diagnostic::new(path, None, format!("cannot be written: {e}")).hint(instead).into()
     }
+}
+
+/// Makes the error for a file that could not be read.
+pub(crate) fn cannot_read(path: &Path) -> impl Fn(io::Error) -> Failure + '_ {
+    move |e| Diagnostic::new(path, None, format!("cannot be read: {e}")).into()
 }
 
 /// Width of the terminal in columns; 80 if unknown.

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use elbowroom::Diagnostic;
 use elbowroom::cell::{Cell, CellRobot, QueryModel};
 use elbowroom::kinematics::ChainState;
 use elbowroom::monitor::Region;
@@ -156,8 +157,7 @@ fn accepted(text: &str, cell: &Cell, args: &TeachArgs) -> Result<(), Failure> {
     let (length, angle) = (cell.units.length.symbol(), cell.units.angle.symbol());
     let head = format!("version = 1\nunits = {{ length = \"{length}\", angle = \"{angle}\" }}\n");
     let Err(e) = Cell::parse(&args.states, &(head + text)) else { return Ok(()) };
-    let hint = e.hint.map(|h| format!("\n  write: {h}")).unwrap_or_default();
-    Err(Failure::Wrong(format!("{}: the region taught: {}{hint}", args.states.display(), e.message)))
+    Err(Diagnostic { line: None, message: format!("the region taught: {}", e.message), ..e }.into())
 }
 
 /// Formats the region in cell-file syntax.

@@ -72,6 +72,11 @@ impl Diagnostic {
         };
         Self::new(file, None, format!("cannot be read: {e}")).hint(instead)
     }
+
+    /// Creates the diagnostic of a text file with a byte that is not UTF-8.
+    pub fn not_utf8(file: impl AsRef<Path>, line: impl Into<Option<usize>>) -> Self {
+        Self::new(file, line, "is not UTF-8 text").hint("the file saved as UTF-8")
+    }
 }
 
 impl fmt::Display for Diagnostic {

@@ -67,8 +67,7 @@ impl<'a, R: BufRead> CsvLines<'a, R> {
                 _ => break,
             }
         }
-        let text = std::str::from_utf8(&self.buffer)
-            .map_err(|_| Diagnostic::new(self.file, self.line, "is not UTF-8 text").hint("the file saved as UTF-8"))?;
+        let text = std::str::from_utf8(&self.buffer).map_err(|_| Diagnostic::not_utf8(self.file, self.line))?;
         Ok(Some((Location { file: self.file, line: self.line }, text.trim_start_matches('\u{feff}').trim())))
     }
 }

@@ -31,10 +31,11 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<LoadedMeshes, Diagnostic> {
     let mut corners = Vec::new();
     for i in 0..face_count {
         let (line, content) = next(&mut lines, file, || format!("face {} of {face_count}", i + 1))?;
-        read_face(content, &vertices, &mut corners).map_err(|what| {
+        let wrong = |what: String| {
             Diagnostic::new(file, line, what)
                 .hint("the number of corners, then as many vertices counted from 0: 3 0 1 2")
-        })?;
+        };
+        read_face(content, &vertices, &mut corners, wrong)?;
         polygon::triangulate(&vertices, &corners, &mut triangles);
     }
     let mesh = MeshData { name: input::stem(file), vertices, triangles };
@@ -95,21 +96,27 @@ fn counts(lines: &mut Lines<'_>, file: &Path) -> Result<(usize, usize), Diagnost
     Ok((vertices, faces))
 }
 
-fn read_face(content: &[u8], vertices: &[Vec3], corners: &mut Vec<u32>) -> Result<(), String> {
+/// Reads the corners of a face; `wrong` makes the diagnostic of its line.
+fn read_face(
+    content: &[u8],
+    vertices: &[Vec3],
+    corners: &mut Vec<u32>,
+    wrong: impl Fn(String) -> Diagnostic,
+) -> Result<(), Diagnostic> {
     let mut words = words(content);
     let number = words.next().unwrap_or_default();
     let size = integer(number).and_then(|n| usize::try_from(n).ok());
-    let size = size.ok_or_else(|| format!("`{}` is no number of corners", show(number)))?;
+    let size = size.ok_or_else(|| wrong(format!("`{}` is no number of corners", show(number))))?;
     if size < 3 {
-        return Err(format!("a face with {size} corners"));
+        return Err(wrong(format!("a face with {size} corners")));
     }
     corners.clear();
     for _ in 0..size {
-        let word = words.next().ok_or_else(|| format!("a face of {size} corners lists only {}", corners.len()))?;
+        let too_few = || wrong(format!("a face of {size} corners lists only {}", corners.len()));
+        let word = words.next().ok_or_else(too_few)?;
         let index = integer(word).and_then(|i| u32::try_from(i).ok()).filter(|&i| (i as usize) < vertices.len());
-        let index =
-            index.ok_or_else(|| format!("the corner `{}` does not exist: {} vertices", show(word), vertices.len()))?;
-        corners.push(index);
+        let missing = || wrong(format!("the corner `{}` does not exist: {} vertices", show(word), vertices.len()));
+        corners.push(index.ok_or_else(missing)?);
     }
     Ok(())
 }

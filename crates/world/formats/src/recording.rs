@@ -61,7 +61,7 @@ pub struct RecordingLayout {
 /// [`Diagnostic`] with the line and the column.
 pub fn read(path: &Path, robot: &str, chain: &Chain, layout: &RecordingLayout) -> Result<JointStates> {
     let text = String::from_utf8(read_file(path, csv::MAX_BYTES, "a file with fewer rows or columns")?)
-        .map_err(|_| Diagnostic::new(path, None, "is not UTF-8 text").hint("the file saved as UTF-8"))?;
+        .map_err(|_| Diagnostic::not_utf8(path, None))?;
     let text = Translation::new(path, &text, robot, chain, layout)?.text();
     JointStates::parse(path, &text, &JointStateOptions::trajectory(robot, chain))
 }

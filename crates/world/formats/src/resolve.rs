@@ -1,17 +1,49 @@
 //! Resolution of the `filename` of a URDF to a file.
 
+use std::fmt;
 use std::path::{Path, PathBuf};
 
 /// Largest number of searched directories above the file, and of entries of each that are searched for a `package.xml`.
 const MAX_LEVELS: usize = 24;
 const MAX_ENTRIES: usize = 2000;
 
-/// Returns the file to which a reference refers, or a description of the search.
+/// Why a reference refers to no file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Unresolved {
+    /// The package is there, but it has no such file.
+    NotInPackage { path: String, package: PathBuf },
+    /// No package of this name is in a folder or above it.
+    NoPackage { name: String, folder: PathBuf },
+    /// The file does not exist.
+    NoFile(PathBuf),
+    /// References with this scheme are not followed.
+    Scheme(String),
+}
+
+impl fmt::Display for Unresolved {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotInPackage { path, package } => write!(f, "there is no {path} in {}", package.display()),
+            Self::NoPackage { name, folder } => {
+                write!(f, "no directory called `{name}`, and none with that name in its package.xml, in ")?;
+                if folder.as_os_str().is_empty() {
+                    f.write_str("the current folder or above")
+                } else {
+                    write!(f, "{} or above", folder.display())
+                }
+            }
+            Self::NoFile(file) => write!(f, "there is no file {}", file.display()),
+            Self::Scheme(scheme) => write!(f, "`{scheme}://` is not followed"),
+        }
+    }
+}
+
+/// Returns the file to which a reference refers.
 ///
 /// `package://NAME/PATH` (and `model://`) is searched in every directory from `base` upward: in a directory named NAME,
 /// or with a `package.xml` of that name, in this directory or directly below. `file://` is absolute; all other references
 /// are relative to `base`. The case of the last component of the path may differ.
-pub(crate) fn resolve(reference: &str, base: &Path) -> Result<PathBuf, String> {
+pub(crate) fn resolve(reference: &str, base: &Path) -> Result<PathBuf, Unresolved> {
     let reference = reference.trim();
     let try_both =
         |make: &dyn Fn(&str) -> Option<PathBuf>| make(reference).or_else(|| make(&percent_decode(reference)));
@@ -24,30 +56,22 @@ pub(crate) fn resolve(reference: &str, base: &Path) -> Result<PathBuf, String> {
             None => existing_file(&base.join(&text)),
         }
     });
-    found.ok_or_else(|| describe_search(reference, base))
+    found.ok_or_else(|| why_unresolved(reference, base))
 }
 
-fn describe_search(reference: &str, base: &Path) -> String {
+fn why_unresolved(reference: &str, base: &Path) -> Unresolved {
     match reference.split_once("://") {
         Some(("package" | "model", rest)) => {
             let (name, path) = rest.split_once('/').unwrap_or((rest, ""));
             match package_directories(name, base).next() {
-                Some(directory) => format!("there is no {path} in {}", directory.display()),
-                None => format!(
-                    "no directory called `{name}`, and none with that name in its package.xml, in {} or above",
-                    folder(base)
-                ),
+                Some(package) => Unresolved::NotInPackage { path: path.to_owned(), package },
+                None => Unresolved::NoPackage { name: name.to_owned(), folder: base.to_owned() },
             }
         }
-        Some(("file", path)) => format!("there is no file {path}"),
-        Some((scheme, _)) => format!("`{scheme}://` is not followed"),
-        None => format!("there is no file {}", base.join(reference).display()),
+        Some(("file", path)) => Unresolved::NoFile(path.into()),
+        Some((scheme, _)) => Unresolved::Scheme(scheme.to_owned()),
+        None => Unresolved::NoFile(base.join(reference)),
     }
-}
-
-/// The name of a folder; "the current folder" for an empty relative path.
-fn folder(base: &Path) -> String {
-    if base.as_os_str().is_empty() { "the current folder".to_owned() } else { base.display().to_string() }
 }
 
 fn in_package(rest: &str, base: &Path) -> Option<PathBuf> {
@@ -137,13 +161,13 @@ mod tests {
         assert_eq!(ends("package://arm_support/meshes/link.stl").unwrap(), Path::new("arm_support/meshes/Link.STL"));
         assert_eq!(ends("package://gripper/finger%20a.stl").unwrap(), Path::new("cloned-repository/finger a.stl"));
         assert_eq!(ends("../../meshes/Link.stl").unwrap().file_name().unwrap(), "Link.STL");
-        assert!(ends("package://nobody/a.stl").unwrap_err().contains("nobody"));
-        assert!(ends("http://example.org/a.stl").unwrap_err().contains("http"));
+        assert!(ends("package://nobody/a.stl").unwrap_err().to_string().contains("nobody"));
+        assert_eq!(ends("http://example.org/a.stl").unwrap_err(), Unresolved::Scheme("http".into()));
     }
 
     #[test]
     fn the_search_from_the_current_folder_is_said() {
-        let why = resolve("package://nobody/a.stl", Path::new("")).unwrap_err();
+        let why = resolve("package://nobody/a.stl", Path::new("")).unwrap_err().to_string();
         assert!(why.ends_with("in the current folder or above"), "{why}");
     }
 

@@ -135,7 +135,7 @@ const SAMPLES: u64 = 1000;
 pub(super) fn of_robot(file: &std::path::Path, robot: &Robot) -> Result<Vec<PairRow>, Diagnostic> {
     let mut builder = Scene::builder();
     builder.prove_out_of_reach(true).robot("", robot.clone(), Pose::IDENTITY);
-    let scene = builder.build().map_err(|e| Diagnostic::new(file, None, e.to_string()))?;
+    let scene = builder.build().map_err(|e| Diagnostic::new(file, None, e))?;
     let name = |id: GeometryId| match id {
         GeometryId::Link { link, .. } => robot.chain.links()[link.0].clone(),
         GeometryId::Object(_) => String::new(),

@@ -52,7 +52,7 @@ fn refused(t: &Table<'_>, e: &VisionError) -> Diagnostic {
     match e {
         VisionError::Setting { expected, .. } => v.error("is out of its range").hint(*expected),
         _ if key == "pose" => v.error(format!("does not show the floor: {e}")).hint(LOOKS_DOWN),
-        _ => v.error(e.to_string()).hint("the numbers of the calibration, for pictures of this `size`"),
+        _ => v.error(e).hint("the numbers of the calibration, for pictures of this `size`"),
     }
 }
 

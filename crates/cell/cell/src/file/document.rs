@@ -33,7 +33,7 @@ impl CellFile {
         let bytes = std::fs::read(path).map_err(unreadable)?;
         let text = String::from_utf8(bytes).map_err(|e| {
             let line = String::from_utf8_lossy(&e.as_bytes()[..e.utf8_error().valid_up_to()]).split('\n').count();
-            Diagnostic::new(path, line, "is not UTF-8 text").hint("the file saved as UTF-8")
+            Diagnostic::not_utf8(path, line)
         })?;
         Ok(Self { on_disk: true, ..Self::parse(path, &text)? })
     }

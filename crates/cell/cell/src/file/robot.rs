@@ -381,7 +381,7 @@ fn with_speeds(t: &Table<'_>, chain: &Chain, limits: &[JointLimits]) -> Result<C
     for (id, limit) in chain.active_joints().iter().zip(limits) {
         joints[id.0].limits.velocity = Some(limit.velocity);
     }
-    Chain::new(chain.name(), chain.links().to_vec(), joints).map_err(|e| t.error(e.to_string()))
+    Chain::new(chain.name(), chain.links().to_vec(), joints).map_err(|e| t.error(e))
 }
 
 fn limits(

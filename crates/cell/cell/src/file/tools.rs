@@ -2,7 +2,7 @@
 
 use elbowroom_formats::Diagnostic;
 use elbowroom_formats::toml_tables::{Table, Value};
-use elbowroom_kinematics::{Chain, Joint, JointId, JointKind, Limits, LinkId};
+use elbowroom_kinematics::{Chain, ChainError, Joint, JointId, JointKind, Limits, LinkId};
 use elbowroom_robot::{Collider, Robot};
 use elbowroom_spatial::{Pose, Vec3};
 
@@ -83,7 +83,7 @@ fn tool(
     if robot.chain.link(name).is_some() {
         return Err(v.error("has the name of a link of the robot").hint("another name: it appears where links do"));
     }
-    let link = add_link(robot, name, flange).map_err(|why| v.error(why))?;
+    let link = add_link(robot, name, flange).map_err(|e| v.error(format!("cannot be added: {e}")))?;
     let mounted = t.flag_or("mounted", true)?;
     Ok(CellTool { name: name.to_owned(), flange, link, tcp_in_link, collider, mounted })
 }
@@ -95,7 +95,7 @@ pub(super) fn with_exchanged_tools<'c>(robots: impl IntoIterator<Item = &'c Cell
 }
 
 /// Adds a link that is fixed to another one, at its frame.
-fn add_link(robot: &mut Robot, name: &str, parent: LinkId) -> std::result::Result<LinkId, String> {
+fn add_link(robot: &mut Robot, name: &str, parent: LinkId) -> std::result::Result<LinkId, ChainError> {
     let chain = &robot.chain;
     let (mut links, mut joints) = (chain.links().to_vec(), chain.joints().to_vec());
     let link = LinkId(links.len());
@@ -115,7 +115,7 @@ fn add_link(robot: &mut Robot, name: &str, parent: LinkId) -> std::result::Resul
         limits: Limits::range(0.0, 0.0),
         mimic: None,
     });
-    robot.chain = Chain::new(chain.name(), links, joints).map_err(|e| format!("cannot be added: {e}"))?;
+    robot.chain = Chain::new(chain.name(), links, joints)?;
     robot.colliders.push(Vec::new());
     robot.visuals.push(Vec::new());
     Ok(link)

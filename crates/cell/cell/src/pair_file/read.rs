@@ -24,8 +24,7 @@ impl PairFile {
     pub fn read(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
         let bytes = read_file(path, MAX_BYTES, "a file of pairs, as `elbowroom inspect MODEL --pairs FILE` writes it")?;
-        let text = String::from_utf8(bytes)
-            .map_err(|_| Diagnostic::new(path, None, "is not UTF-8 text").hint("the file saved as UTF-8"))?;
+        let text = String::from_utf8(bytes).map_err(|_| Diagnostic::not_utf8(path, None))?;
         Self::parse(path, &text)
     }
 

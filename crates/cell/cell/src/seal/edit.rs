@@ -184,7 +184,7 @@ impl Signer<'_> {
     fn authorize(&self, cell: &Path, before: &Cell, draft: &Draft, log: &Log, changes: &[Change]) -> Result<()> {
         let least = least_class(&log.state, &draft.state, changes);
         if let Err(e) = authorize(self.class, before, &draft.cell)? {
-            let refused = Diagnostic::new(cell, first_line(&draft.state, changes), e.to_string());
+            let refused = Diagnostic::new(cell, first_line(&draft.state, changes), e);
             return Err(refused.hint(format!("--as {}, with a key of that class", least.name())));
         }
         if self.class < least { Err(self.refusal(cell, log, &draft.state, changes)) } else { Ok(()) }

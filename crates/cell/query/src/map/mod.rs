@@ -16,7 +16,7 @@ use elbowroom_spatial::Pose;
 
 pub use self::blocked_cells::BlockedCells;
 pub(crate) use self::link_maps::LinkMaps;
-pub use self::model::MapModel;
+pub use self::model::{MapModel, UnknownMapModel};
 use self::solids_map::FilledCells;
 pub(crate) use self::solids_map::SolidsMap;
 use crate::plan::request_validation::select_robot;

@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use elbowroom_cspace::ObstacleModel;
+use elbowroom_cspace::{ObstacleModel, UnknownObstacleModel};
 
 /// Obstacle model of a map: what represents an object (the joint-space paper, sections II to V).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,16 +32,18 @@ impl From<ObstacleModel> for MapModel {
     }
 }
 
-impl FromStr for MapModel {
-    type Err = String;
+/// A word that is not the name of a map's obstacle model.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{0}, or seeds")]
+pub struct UnknownMapModel(UnknownObstacleModel);
 
-    fn from_str(word: &str) -> Result<Self, String> {
+impl FromStr for MapModel {
+    type Err = UnknownMapModel;
+
+    fn from_str(word: &str) -> Result<Self, UnknownMapModel> {
         match word {
             "seeds" => Ok(Self::Seeds),
-            _ => word
-                .parse()
-                .map(Self::Solids)
-                .map_err(|e: elbowroom_cspace::UnknownObstacleModel| format!("{e}, or seeds")),
+            _ => word.parse().map(Self::Solids).map_err(UnknownMapModel),
         }
     }
 }

@@ -200,7 +200,7 @@ fn not_found(cell: &Cell, goals: &[RobotGoal], error: &PrioritizedPlannerError) 
             return Ok(format!("robot \"{}\": {error}", cell.robots[robot.0].name));
         }
         PrioritizedPlannerError::NoGoal => {
-            return Err(Diagnostic::new(&cell.file, None, error.to_string()).hint("--robot NAME --to q,…"));
+            return Err(Diagnostic::new(&cell.file, None, error).hint("--robot NAME --to q,…"));
         }
     };
     let of_robot = &cell.robots[robot.0];

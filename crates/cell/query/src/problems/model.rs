@@ -46,7 +46,7 @@ impl ProblemModel {
         }
         let joints: Vec<_> = active_names(&robot.chain);
         let joints_without_speed = without_speed(&robot.chain, &values);
-        robot.chain = widened(&robot.chain, &values).map_err(|e| Diagnostic::new(urdf, None, e.to_string()))?;
+        robot.chain = widened(&robot.chain, &values).map_err(|e| Diagnostic::new(urdf, None, e))?;
         let query_model = QueryModel::of_robot(urdf, robot);
         notes.warnings.extend(query_model.touching_at_rest());
         let scene = query_model.scene(OutOfReachProofs::Compute)?;

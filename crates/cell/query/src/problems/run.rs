@@ -27,7 +27,7 @@ pub fn run(
         let (set, id) = (&problem.set, &problem.id);
         let mut scene = model.problem_scene(problem)?;
         let (result, timed) = if let Err(reason) = end_validity::keep_free_goals(&mut scene) {
-            (ProblemResult::invalid(set, id, reason), None)
+            (ProblemResult::invalid(set, id, reason.to_string()), None)
         } else {
             let solution = engine.solve(&scene, settings);
             let mut result = ProblemResult::of(set, id, &solution);

@@ -90,7 +90,7 @@ fn evaluate_blocks<R: Send>(
 ) -> Result<CheckerStats, Diagnostic> {
     let blocks = states.len().div_ceil(BLOCK);
     let cores = std::thread::available_parallelism().map_or(1, usize::from).min(blocks);
-    let wrong = |e: SceneError| Diagnostic::new(&states.file, None, e.to_string());
+    let wrong = |e: SceneError| Diagnostic::new(&states.file, None, e);
     let mut done = CheckerStats::default();
     if cores <= 1 {
         for block in 0..blocks {

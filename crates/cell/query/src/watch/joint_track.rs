@@ -10,6 +10,15 @@ use elbowroom_kinematics::JointTrajectory;
 /// Time before the first row, or after the last one, beyond which pictures have no joint values, s.
 const MARGIN_S: f64 = 0.1;
 
+/// A time that the file of joint values does not cover.
+#[derive(Debug, thiserror::Error)]
+#[error("no joint values are known at {t_s} s: they are from {} to {} s", covered_s[0], covered_s[1])]
+pub(super) struct NoJointValues {
+    t_s: f64,
+    /// Times of the first and the last row.
+    covered_s: [f64; 2],
+}
+
 /// Joint values of all robots over time, linear between rows; or their start.
 #[derive(Debug)]
 pub(super) struct JointTrack {
@@ -46,11 +55,11 @@ impl JointTrack {
     }
 
     /// The values of each robot at a time; an error if they are not known.
-    pub fn at(&self, t_s: f64) -> Result<Vec<Vec<f64>>, String> {
+    pub fn at(&self, t_s: f64) -> Result<Vec<Vec<f64>>, NoJointValues> {
         let Some(recorded) = &self.recorded else { return Ok(self.start.clone()) };
         let (first, last) = recorded.first().map_or((0.0, 0.0), |r| (r.start_s(), r.start_s() + r.duration_s()));
         if !(t_s >= first - MARGIN_S && t_s <= last + MARGIN_S) {
-            return Err(format!("no joint values are known at {t_s} s: they are from {first} to {last} s"));
+            return Err(NoJointValues { t_s, covered_s: [first, last] });
         }
         Ok(recorded.iter().map(|trajectory| trajectory.q(t_s)).collect())
     }

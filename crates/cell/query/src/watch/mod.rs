@@ -21,6 +21,7 @@ use crate::map::select_map;
 use joint_track::JointTrack;
 use sensor::Sensor;
 
+use self::record::NoUpdate;
 pub use record::{HiddenFloorRecord, WatchRecord, WatchStatus, WatchedObstacle};
 
 /// Largest picture or cloud, bytes.
@@ -203,7 +204,7 @@ impl SensorWatch {
         let bytes = read_file(&path, MAX_BYTES, "a smaller picture or a thinner cloud");
         match bytes {
             Ok(bytes) => self.process(&bytes, &path, t_s, q),
-            Err(e) => WatchRecord::of(&path, t_s, Err(e.to_string()), &self.sensor),
+            Err(e) => WatchRecord::of(&path, t_s, Err(e.into()), &self.sensor),
         }
     }
 
@@ -220,7 +221,7 @@ impl SensorWatch {
 
     fn process(&mut self, bytes: &[u8], name: &Path, t_s: f64, q: Option<&[Vec<f64>]>) -> WatchRecord {
         let q = q.map_or_else(|| self.joints.at(t_s), |q| Ok(q.to_vec()));
-        let result = q.and_then(|q| self.sensor.process(bytes, name, t_s, &q).map_err(|e| e.to_string()));
+        let result = q.map_err(NoUpdate::from).and_then(|q| Ok(self.sensor.process(bytes, name, t_s, &q)?));
         let record = WatchRecord::of(name, t_s, result, &self.sensor);
         if let Some(hidden) = &record.hidden_floor {
             let about = self.about.clone();

@@ -2,10 +2,12 @@
 
 use std::path::Path;
 
-use elbowroom_perception::{ObstacleUpdate, Prism};
+use elbowroom_formats::Diagnostic;
+use elbowroom_perception::{ObstacleUpdate, PerceptionError, Prism};
 use elbowroom_vision::{FrameStatus, HiddenFloor, RejectReason};
 use serde::Serialize;
 
+use super::joint_track::NoJointValues;
 use super::sensor::Sensor;
 
 /// Whether the obstacles of a picture can be used.
@@ -75,6 +77,20 @@ impl std::fmt::Display for HiddenFloorRecord {
 pub(crate) const SHOW_THE_FLOOR: &str =
     "robots that move while the empty cell is learnt, or an `area` without the floor that they always hide";
 
+/// Why a picture or cloud cannot be evaluated.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum NoUpdate {
+    /// Its file cannot be read.
+    #[error(transparent)]
+    File(#[from] Diagnostic),
+    /// The positions of the robots are not known.
+    #[error(transparent)]
+    JointValues(#[from] NoJointValues),
+    /// It is not a picture or cloud of this sensor.
+    #[error(transparent)]
+    Perception(#[from] PerceptionError),
+}
+
 /// Result of one picture.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct WatchRecord {
@@ -102,7 +118,7 @@ pub struct WatchRecord {
 }
 
 impl WatchRecord {
-    pub(super) fn of(path: &Path, t_s: f64, result: Result<ObstacleUpdate, String>, sensor: &Sensor) -> Self {
+    pub(super) fn of(path: &Path, t_s: f64, result: Result<ObstacleUpdate, NoUpdate>, sensor: &Sensor) -> Self {
         let frame = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let blocked = sensor.map().occupancy().blocked() as u64;
         match result {
@@ -123,11 +139,11 @@ impl WatchRecord {
                     time_us: u64::try_from(update.times.total().as_micros()).unwrap_or(u64::MAX),
                 }
             }
-            Err(reason) => Self {
+            Err(why) => Self {
                 t_s,
                 frame,
                 status: WatchStatus::Rejected,
-                reason: Some(reason),
+                reason: Some(why.to_string()),
                 hidden_floor: None,
                 obstacles: sensor.prisms().iter().map(WatchedObstacle::of).collect(),
                 entered: Vec::new(),

@@ -1,11 +1,12 @@
 //! A straight line of the TCP: joint values by inverse kinematics, continuous from end to end.
 
+use std::fmt;
 use std::sync::{Mutex, PoisonError};
 
-use elbowroom_cell::{CellRobot, Units};
+use elbowroom_cell::{CellIkError, CellRobot, Units};
 use elbowroom_kinematics::TrajectoryPoint;
 use elbowroom_kinematics::inverse::{IkOptions, IkSolver, IkTask};
-use elbowroom_kinematics::{Chain, ChainState};
+use elbowroom_kinematics::{Chain, ChainState, Limits};
 use elbowroom_spatial::Pose;
 
 /// Largest distance between two knots, m.
@@ -47,7 +48,50 @@ pub struct LineError {
     /// Its length, m.
     pub length_m: f64,
     /// The cause.
-    pub why: String,
+    pub why: LineFault,
+}
+
+/// Why the TCP cannot pass a point of a line.
+#[derive(Debug, Clone, PartialEq)]
+pub enum LineFault {
+    /// Inverse kinematics has no solution.
+    Ik(CellIkError),
+    /// A joint would leave its limits, rad or m.
+    Limits {
+        /// Name of the joint.
+        joint: String,
+        /// Its value at the point.
+        value: f64,
+        /// Its lower limit.
+        lower: f64,
+        /// Its upper limit.
+        upper: f64,
+    },
+    /// A joint would have to jump, because the line passes a singularity.
+    Jump {
+        /// Name of the joint.
+        joint: String,
+        /// The jump, rad or m; `None` if it is between two knots.
+        by: Option<f64>,
+    },
+}
+
+impl fmt::Display for LineFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Ik(error) => error.fmt(f),
+            Self::Limits { joint, value, lower, upper } => write!(
+                f,
+                "joint \"{joint}\" would have to be at {value:.4}, outside its limits {lower:.4} to {upper:.4} (rad or m)"
+            ),
+            Self::Jump { joint, by: Some(by) } => {
+                write!(f, "joint \"{joint}\" would have to jump by {by:.2} (rad or m): the line passes a singularity")
+            }
+            Self::Jump { joint, by: None } => {
+                write!(f, "joint \"{joint}\" would have to jump: the line passes a singularity")
+            }
+        }
+    }
 }
 
 impl TcpLine {
@@ -95,8 +139,8 @@ impl TcpLine {
         }
         for i in 0..cells {
             if let Some((s, joint)) = line.branch_change(i) {
-                let name = &chain.joints()[chain.active_joints()[joint].0].name;
-                let why = format!("joint \"{name}\" would have to jump: the line passes a singularity");
+                let joint = chain.joints()[chain.active_joints()[joint].0].name.clone();
+                let why = LineFault::Jump { joint, by: None };
                 return Err(LineError { at_m: s * line.length(), length_m: line.length(), why });
             }
         }
@@ -117,7 +161,7 @@ impl TcpLine {
         })
     }
 
-    fn step(&self, chain: &Chain, s: f64, i: usize) -> Result<Vec<f64>, String> {
+    fn step(&self, chain: &Chain, s: f64, i: usize) -> Result<Vec<f64>, LineFault> {
         let last = &self.knots[i - 1];
         // Linear extrapolation of the last two knots is the initial guess.
         let mut q: Vec<f64> = match i.checked_sub(2).map(|k| &self.knots[k]) {
@@ -127,22 +171,18 @@ impl TcpLine {
         let mut solver = self.solver.lock().unwrap_or_else(PoisonError::into_inner);
         let target = self.pose(s);
         if !solver.refine(&target, &mut q) {
-            q = solver.solve(&target, last).map_err(|e| self.units.describe_ik_error(&e, chain))?.q;
+            let refused = |e| LineFault::Ik(CellIkError::new(e, self.units, chain));
+            q = solver.solve(&target, last).map_err(refused)?.q;
         }
         for (j, id) in chain.active_joints().iter().enumerate() {
             let joint = &chain.joints()[id.0];
-            if !joint.limits.contains(q[j], 1e-9) {
-                return Err(format!(
-                    "joint \"{}\" would have to be at {:.4}, outside its limits {:.4} to {:.4} (rad or m)",
-                    joint.name, q[j], joint.limits.lower, joint.limits.upper
-                ));
+            let (name, value) = (|| joint.name.clone(), q[j]);
+            if !joint.limits.contains(value, 1e-9) {
+                let Limits { lower, upper, .. } = joint.limits;
+                return Err(LineFault::Limits { joint: name(), value, lower, upper });
             }
-            if (q[j] - last[j]).abs() > JUMP {
-                return Err(format!(
-                    "joint \"{}\" would have to jump by {:.2} (rad or m): the line passes a singularity",
-                    joint.name,
-                    q[j] - last[j]
-                ));
+            if (value - last[j]).abs() > JUMP {
+                return Err(LineFault::Jump { joint: name(), by: Some(value - last[j]) });
             }
         }
         Ok(q)

@@ -347,7 +347,7 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
         self.error(index, step, &e.message).hint(e.hint)
     }
 
-    fn error(&self, index: usize, step: &ProgramStep, what: &str) -> Diagnostic {
+    fn error(&self, index: usize, step: &ProgramStep, what: impl std::fmt::Display) -> Diagnostic {
         let what = format!("`program.{}`, step {}: {what}", self.robot.name, index + 1);
         Diagnostic::new(&self.cell.file, step.line, what)
     }

@@ -72,7 +72,7 @@ impl<'a> PlannedParts<'a> {
         };
         let attachment = pose.map(|pose| grip(self.cell, self.id, robot, object, &pose, &self.state(q))).transpose();
         let closer = "a move to the part before it, or the tool and its `tcp` in the robot's table";
-        let attachment = attachment.map_err(|what| PartError::new(what, closer))?;
+        let attachment = attachment.map_err(|e| PartError::new(e.to_string(), closer))?;
         self.parts[object.0] = PlannedPart::Carried(attachment.clone());
         Ok(attachment)
     }

@@ -41,8 +41,8 @@ impl Segment {
     /// `|q′|ṡ ≤ v`, `|q′|s̈ + |q″|ṡ² ≤ a`, `|q′|s⃛ + 3|q″|ṡs̈ + |q‴|ṡ³ ≤ j`.
     ///
     /// # Errors
-    /// Message of the time law's library.
-    pub fn new(geometry: Geometry, limits: &[JointLimits], speed: f64, path_rate: f64) -> Result<Self, String> {
+    /// Error of the time law's library.
+    pub fn new(geometry: Geometry, limits: &[JointLimits], speed: f64, path_rate: f64) -> Result<Self, RuckigError> {
         let samples = geometry.samples();
         let Some((bounds, share)) = bounds(&samples, limits, speed, path_rate) else {
             return Ok(Self { geometry, law: TimeLaw::Rest, speed_share: 1.0, joint_share: 0.0 });
@@ -54,7 +54,7 @@ impl Segment {
         input.max_acceleration[0] = bounds.acceleration;
         input.max_jerk[0] = bounds.jerk;
         let mut trajectory = Trajectory::new(None);
-        otg.calculate(&input, &mut trajectory).map_err(|e| e.to_string())?;
+        otg.calculate(&input, &mut trajectory)?;
         let shares = |point: &TrajectoryPoint| {
             let share = point.dq.iter().zip(limits).map(|(dq, limit)| dq.abs() * bounds.velocity / limit.velocity);
             share.fold(0.0, f64::max)

@@ -116,7 +116,7 @@ impl<'s> AvoidingRobot<'s> {
         spec: &'s AvoidanceSpec,
         clock: &ProgramClock,
     ) -> Result<Self, Diagnostic> {
-        let refused = |e: AvoidanceError| Diagnostic::new(&cell.file, cell.robots[robot.0].line, e.to_string());
+        let refused = |e: AvoidanceError| Diagnostic::new(&cell.file, cell.robots[robot.0].line, e);
         let (q, limits) = (&clock.point().q, evasion_limits(cell, robot));
         let avoider = Avoider::new(scene, robot, q, &limits, spec.rules.clone(), spec.settings).map_err(refused)?;
         Ok(Self {

@@ -90,8 +90,8 @@ impl<'a> CarriedParts<'a> {
             return Err(error(&format!("grips \"{name}\", which moves")).hint(hint));
         }
         let pose = checker.object_in_world(object);
-        let attachment = hand::grip(cell, robot, at, object, &pose, states[robot.0]).map_err(|what| {
-            error(&what).hint("a move to the part before it, or the tool and its `tcp` in the robot's table")
+        let attachment = hand::grip(cell, robot, at, object, &pose, states[robot.0]).map_err(|e| {
+            error(&e.to_string()).hint("a move to the part before it, or the tool and its `tcp` in the robot's table")
         })?;
         checker.attach(object, attachment.clone(), states);
         (self.attachments[object.0], self.taken[object.0]) = (Some(attachment), true);

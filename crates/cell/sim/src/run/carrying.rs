@@ -54,7 +54,7 @@ impl Simulation<'_> {
         let robot = &mut self.robots[i];
         let attached = robot.monitor.attach(volume, in_link);
         let attached = attached.and_then(|()| self.regions.attach(i, volume, in_link));
-        attached.map_err(|e| Diagnostic::new(&self.cell.file, line, e.to_string()))?;
+        attached.map_err(|e| Diagnostic::new(&self.cell.file, line, e))?;
         self.journal.attached(robot.id, volume, in_link);
         Ok(())
     }
@@ -64,7 +64,7 @@ impl Simulation<'_> {
         for (i, volume) in std::mem::take(&mut self.released) {
             let robot = &mut self.robots[i];
             let detached = robot.monitor.detach(volume).and_then(|()| self.regions.detach(i, volume));
-            detached.map_err(|e| Diagnostic::new(&self.cell.file, self.cell.robots[i].line, e.to_string()))?;
+            detached.map_err(|e| Diagnostic::new(&self.cell.file, self.cell.robots[i].line, e))?;
             self.journal.detached(robot.id, volume);
         }
         Ok(())
@@ -108,7 +108,7 @@ impl Simulation<'_> {
                 Some(attachment) => avoiding.attach(action.object, attachment.clone()),
                 None => avoiding.detach(action.object),
             };
-            applied.map_err(|e| Diagnostic::new(&self.cell.file, action.line, e.to_string()))?;
+            applied.map_err(|e| Diagnostic::new(&self.cell.file, action.line, e))?;
         }
         let slot = self.robots[i].setup.gripped_volume(action.object, action.link, &in_link);
         let none = || Diagnostic::new(&self.cell.file, action.line, "grips what its monitor has no volume for");

@@ -47,7 +47,7 @@ pub(crate) use inbox::Heard;
 pub use input_gate::{InputGate, Rejected};
 pub use node_monitor::NodeMonitor;
 pub use node_tick::NodeTick;
-pub use region_builder::RegionBuilder;
+pub use region_builder::{RegionBuilder, RegionsError};
 
 /// Parts of a node.
 pub struct NodeParts {

@@ -4,16 +4,38 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use elbowroom_cell::{Cell, configure};
-use elbowroom_monitor::{Interlock, Monitor, RegionKind, same_regions};
+use elbowroom_formats::Diagnostic;
+use elbowroom_monitor::{ConfigError, Interlock, Monitor, RegionKind, same_regions};
 use elbowroom_robot::RobotId;
+use thiserror::Error;
 
 use super::inbox::{Inbox, Wanted};
 use super::next_configuration::{NextConfiguration, NodeVersion};
-use crate::cell_versions::CellVersions;
+use crate::cell_versions::{CellVersions, NoVersion};
 use crate::configuration_number::configuration_digits;
 
 /// Longest wait for something to build, and base of the pause after a failure: a file may be missing for a while.
 const AGAIN_AFTER: Duration = Duration::from_secs(1);
+
+/// Why a node cannot have the regions of a table.
+#[derive(Debug, Error)]
+pub enum RegionsError {
+    /// The cell cannot have these regions.
+    #[error(transparent)]
+    Cell(#[from] NoVersion),
+    /// The regions are not as another process built them.
+    #[error("this process builds other regions from the same keys: its cell file, or a file that it names, differs")]
+    OtherFiles,
+    /// The monitors of the cell cannot be configured.
+    #[error(transparent)]
+    Setup(#[from] Diagnostic),
+    /// The cell does not have the robot of the node.
+    #[error("no such robot")]
+    NoRobot,
+    /// The monitor refuses the regions.
+    #[error(transparent)]
+    Monitor(#[from] ConfigError),
+}
 
 /// Builds a node's configuration for other regions.
 ///
@@ -44,8 +66,8 @@ impl RegionBuilder {
     /// Returns false if there is nothing to build.
     ///
     /// # Errors
-    /// The reason, as text, if the node cannot have these regions; it then stops once they are due.
-    pub fn build(&mut self) -> Result<bool, String> {
+    /// [`RegionsError`] if the node cannot have these regions; it then stops once they are due.
+    pub fn build(&mut self) -> Result<bool, RegionsError> {
         let (wanted, cell) = self.inbox.take_wanted();
         let Some(wanted) = wanted else { return Ok(false) };
         let next = self.next(&wanted, &cell)?;
@@ -64,26 +86,19 @@ impl RegionBuilder {
         }
     }
 
-    fn next(&mut self, wanted: &Wanted, now: &Arc<Cell>) -> Result<Box<NextConfiguration>, String> {
-        let cell = self.versions.cell(&wanted.edits).map_err(|e| e.to_string())?;
+    fn next(&mut self, wanted: &Wanted, now: &Arc<Cell>) -> Result<Box<NextConfiguration>, RegionsError> {
+        let cell = self.versions.cell(&wanted.edits)?;
         if configuration_digits(&cell) != wanted.number {
-            return Err(
-                "this process builds other regions from the same keys: its cell file, or a file that it names, differs"
-                    .into(),
-            );
+            return Err(RegionsError::OtherFiles);
         }
         let setup_of = |cell: &Cell| {
-            let mut setups = configure::setups(cell).map_err(|e| e.to_string())?;
-            if self.robot.0 < setups.len() {
-                Ok(setups.swap_remove(self.robot.0))
-            } else {
-                Err("no such robot".to_owned())
-            }
+            let mut setups = configure::setups(cell)?;
+            if self.robot.0 < setups.len() { Ok(setups.swap_remove(self.robot.0)) } else { Err(RegionsError::NoRobot) }
         };
         let (setup, former) = (setup_of(&cell)?, setup_of(now)?);
         let has_exchange = setup.configuration.regions().iter().any(|r| matches!(r.kind, RegionKind::Exchange { .. }));
         let interlock = self.interlock.clone().filter(|_| has_exchange);
-        let monitor = Monitor::new(setup.configuration.clone(), interlock).map_err(|e| e.to_string())?;
+        let monitor = Monitor::new(setup.configuration.clone(), interlock)?;
         let is_base = Arc::ptr_eq(&cell, self.versions.base());
         let number = if is_base { String::new() } else { wanted.number.clone() };
         let version = Arc::new(NodeVersion { number, configuration: setup.configuration.clone() });

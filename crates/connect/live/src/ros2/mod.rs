@@ -25,5 +25,5 @@ pub(crate) use cell_feed::CellFeed;
 pub use input_error::{MAX_MESSAGE_BYTES, RosInputError};
 pub(crate) use participant::Participant;
 pub use session::{RosHandler, RosPublisher, RosSample, RosSession};
-pub use settings::{Ros2Error, Ros2Robot, Ros2Settings};
+pub use settings::{RobotArgumentError, Ros2Error, Ros2Robot, Ros2Settings};
 pub use watchdog::Watchdog;

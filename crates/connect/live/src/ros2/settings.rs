@@ -51,6 +51,23 @@ pub struct Ros2Robot {
     pub controller_state: String,
 }
 
+/// Why a text is not ROBOT or ROBOT=TOPICS.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum RobotArgumentError {
+    /// Nothing is before the `=`.
+    #[error("the name of the robot is missing")]
+    NoName,
+    /// More than three topics.
+    #[error("at most three topics")]
+    ManyTopics,
+    /// ROS 2 has no topic of this name.
+    #[error("{0} is no name of a topic: letters, digits and underscores between slashes")]
+    NoTopic(String),
+    /// The service would receive its own messages.
+    #[error("{0} is published by the service itself")]
+    OwnTopic(String),
+}
+
 /// Why the settings for ROS 2 cannot be used.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum Ros2Error {
@@ -60,7 +77,7 @@ pub enum Ros2Error {
          left=/joint_states,/left_controller/speed_scaling_input; ROBOT alone is /ROBOT/joint_states, \
          /ROBOT/speed_scaling_input, /ROBOT/controller_state"
     )]
-    Robot(String, String),
+    Robot(String, RobotArgumentError),
     /// The cell has no robot of this name.
     #[error("--ros2-robot {name}: no robot of the cell has this name\n  help: one of {}", known.join(", "))]
     Unknown {
@@ -94,20 +111,20 @@ impl FromStr for Ros2Robot {
     type Err = Ros2Error;
 
     fn from_str(text: &str) -> Result<Self, Ros2Error> {
-        let wrong = |why: &str| Ros2Error::Robot(text.to_owned(), why.to_owned());
+        let wrong = |why: RobotArgumentError| Ros2Error::Robot(text.to_owned(), why);
         let (robot, topics) = text.split_once('=').map_or((text, None), |(robot, topics)| (robot, Some(topics)));
         if robot.is_empty() {
-            return Err(wrong("the name of the robot is missing"));
+            return Err(wrong(RobotArgumentError::NoName));
         }
         let mut settings = Self::of(robot);
         let given: Vec<&str> = topics.map(|topics| topics.split(',').collect()).unwrap_or_default();
         let places = [&mut settings.joint_states, &mut settings.speed_scaling, &mut settings.controller_state];
         if given.len() > places.len() {
-            return Err(wrong("at most three topics"));
+            return Err(wrong(RobotArgumentError::ManyTopics));
         }
         for (place, topic) in places.into_iter().zip(given) {
             let topic = format!("/{}", topic.strip_prefix('/').unwrap_or(topic));
-            check_topic(&topic).map_err(|why| wrong(&why))?;
+            check_topic(&topic).map_err(wrong)?;
             *place = topic;
         }
         Ok(settings)
@@ -116,15 +133,15 @@ impl FromStr for Ros2Robot {
 
 /// Checks a topic by the rules of ROS 2 for absolute names; refuses the service's own topics, so that it never receives
 /// its own messages.
-fn check_topic(topic: &str) -> Result<(), String> {
+fn check_topic(topic: &str) -> Result<(), RobotArgumentError> {
     let is_part = |part: &str| {
         part.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') && part.starts_with(|c: char| !c.is_ascii_digit())
     };
     if !topic.split('/').skip(1).all(is_part) {
-        return Err(format!("{topic} is no name of a topic: letters, digits and underscores between slashes"));
+        return Err(RobotArgumentError::NoTopic(topic.to_owned()));
     }
     if topic.starts_with(OWN) {
-        return Err(format!("{topic} is published by the service itself"));
+        return Err(RobotArgumentError::OwnTopic(topic.to_owned()));
     }
     Ok(())
 }

@@ -9,7 +9,7 @@ use elbowroom_monitor::{
 };
 use elbowroom_ros2::msgs::elbowroom_msgs as msgs;
 
-use crate::solid;
+use crate::{ConfigurationDefect, solid};
 
 /// Makes the message of a monitor's configuration.
 pub(crate) fn of_monitor(robot: u32, monitor: &Monitor) -> msgs::MonitorConfiguration {
@@ -147,10 +147,10 @@ fn index(index: usize) -> u32 {
     u32::try_from(index).unwrap_or(u32::MAX)
 }
 
-/// Reads a configuration from a message, or says what is wrong.
-pub(crate) fn decode(message: &msgs::MonitorConfiguration) -> Result<Configuration, String> {
+/// Reads a configuration from a message.
+pub(crate) fn decode(message: &msgs::MonitorConfiguration) -> Result<Configuration, ConfigurationDefect> {
     let joints = message.joints.iter().map(read_joint).collect::<Result<_, _>>()?;
-    let chain = Chain::new(&message.chain, message.links.clone(), joints).map_err(|e| e.to_string())?;
+    let chain = Chain::new(&message.chain, message.links.clone(), joints)?;
     let stopping = StoppingSettings {
         reaction_s: message.reaction_s,
         period_s: message.period_s,
@@ -173,14 +173,14 @@ pub(crate) fn decode(message: &msgs::MonitorConfiguration) -> Result<Configurati
         sources: message.sources.iter().map(read_source).collect::<Result<_, _>>()?,
         laws,
     };
-    Configuration::new(parts).map_err(|e| e.to_string())
+    Ok(Configuration::new(parts)?)
 }
 
-fn pose(values: &[f64; 12], what: &str) -> Result<elbowroom_spatial::Pose, String> {
-    solid::pose_of(values).ok_or_else(|| format!("the pose of {what} has no rotation matrix"))
+fn pose(values: &[f64; 12], what: &str) -> Result<elbowroom_spatial::Pose, ConfigurationDefect> {
+    solid::pose_of(values).ok_or_else(|| ConfigurationDefect::Pose(what.to_owned()))
 }
 
-fn read_joint(message: &msgs::ChainJoint) -> Result<Joint, String> {
+fn read_joint(message: &msgs::ChainJoint) -> Result<Joint, ConfigurationDefect> {
     let mimic = one(&message.mimic_joint).map(|joint| Mimic {
         joint: JointId(joint as usize),
         multiplier: message.mimic_multiplier,
@@ -193,7 +193,7 @@ fn read_joint(message: &msgs::ChainJoint) -> Result<Joint, String> {
             1 => JointKind::Revolute,
             2 => JointKind::Continuous,
             3 => JointKind::Prismatic,
-            other => return Err(format!("there is no joint of kind {other}")),
+            number => return Err(ConfigurationDefect::Kind { what: "joint of kind", number }),
         },
         parent: LinkId(message.parent as usize),
         child: LinkId(message.child as usize),
@@ -210,7 +210,7 @@ fn read_joint(message: &msgs::ChainJoint) -> Result<Joint, String> {
     })
 }
 
-fn read_volume(message: &msgs::GuardedVolume) -> Result<Volume, String> {
+fn read_volume(message: &msgs::GuardedVolume) -> Result<Volume, ConfigurationDefect> {
     Ok(Volume {
         name: message.name.clone(),
         part: match message.part {
@@ -219,7 +219,7 @@ fn read_volume(message: &msgs::GuardedVolume) -> Result<Volume, String> {
             2 => Part::Tool,
             3 => Part::Load,
             4 => Part::Arm,
-            other => return Err(format!("there is no part {other}")),
+            number => return Err(ConfigurationDefect::Kind { what: "part", number }),
         },
         link: LinkId(message.link as usize),
         shape: solid::decode(&message.solid)?,
@@ -228,12 +228,12 @@ fn read_volume(message: &msgs::GuardedVolume) -> Result<Volume, String> {
             0 => Presence::Always,
             1 => Presence::Attached,
             2 => Presence::Detached,
-            other => return Err(format!("there is no presence {other}")),
+            number => return Err(ConfigurationDefect::Kind { what: "presence", number }),
         },
     })
 }
 
-fn read_region(message: &msgs::Region) -> Result<Region, String> {
+fn read_region(message: &msgs::Region) -> Result<Region, ConfigurationDefect> {
     Ok(Region {
         name: message.name.clone(),
         shape: solid::decode(&message.solid)?,
@@ -243,7 +243,7 @@ fn read_region(message: &msgs::Region) -> Result<Region, String> {
             0 => RegionKind::Forbidden,
             1 => RegionKind::Monitored { slow_to: one(&message.slow_to) },
             2 => RegionKind::Exchange { slot: SlotId(message.slot as usize) },
-            other => return Err(format!("there is no region of kind {other}")),
+            number => return Err(ConfigurationDefect::Kind { what: "region of kind", number }),
         },
         life: if message.permanent { Life::Permanent } else { Life::Temporary },
         warning_m: message.warning_m,
@@ -255,11 +255,11 @@ fn read_region(message: &msgs::Region) -> Result<Region, String> {
     })
 }
 
-fn read_source(message: &msgs::Source) -> Result<SourceSpec, String> {
+fn read_source(message: &msgs::Source) -> Result<SourceSpec, ConfigurationDefect> {
     let wrap_m = match message.wrap_m[..] {
         [] => None,
         [x, y, z] => Some([x, y, z].into()),
-        _ => return Err("the travel of a source has three coordinates".into()),
+        _ => return Err(ConfigurationDefect::Travel),
     };
     let limits = SourceLimits { speed_m_s: message.speed_m_s, turn_rad_s: message.turn_rad_s, wrap_m };
     Ok(SourceSpec { name: message.name.clone(), limits })

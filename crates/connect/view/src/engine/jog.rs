@@ -13,7 +13,7 @@ use elbowroom_spatial::{FrameMotion, Pose};
 use elbowroom_status::{CellStatus, EventStatus, PoseStatus, RobotStatus, SlotStatus};
 
 use super::distances::pose_of;
-use crate::source::{Command, ViewSource};
+use crate::source::{Command, CommandRefusal, ViewSource};
 
 /// Time that passes for the monitors while a robot is moved, s: long enough that any move is plausible.
 const MOVE_S: f64 = 3600.0;
@@ -26,11 +26,11 @@ const LIMIT_TOLERANCE: f64 = 1e-9;
 /// Number of independent joints that a pose needs.
 const POSE_JOINTS: usize = 6;
 
-/// Makes the message for a value beyond the limits, in the units of the page: millimetres and degrees.
-fn beyond_limits(joint: &Joint, value: f64) -> String {
+/// Makes the refusal of a value beyond the limits, in the units of the page: millimetres and degrees.
+fn beyond_limits(joint: &Joint, value: f64) -> CommandRefusal {
     let (unit, one) = if joint.kind == JointKind::Prismatic { ("mm", 1e-3) } else { ("degrees", 1_f64.to_radians()) };
     let [lower, upper, value] = [joint.limits.lower, joint.limits.upper, value].map(|v| v / one);
-    format!("joint `{}` may be at {lower:.2} to {upper:.2} {unit}, not at {value:.2}", joint.name)
+    CommandRefusal::Limits { joint: joint.name.clone(), unit, lower, upper, value }
 }
 
 /// A cell at rest under its monitors. Belts, objects and pose files stay at their start.
@@ -63,15 +63,16 @@ impl JogCell {
         })
     }
 
-    fn robot(&self, index: usize) -> Result<&CellRobot, String> {
-        self.cell.robots.get(index).ok_or_else(|| format!("there is no robot {index}"))
+    fn robot(&self, index: usize) -> Result<&CellRobot, CommandRefusal> {
+        self.cell.robots.get(index).ok_or(CommandRefusal::NoRobot(index))
     }
 
-    fn jog(&mut self, robot: usize, q: Vec<f64>) -> Result<(), String> {
+    fn jog(&mut self, robot: usize, q: Vec<f64>) -> Result<(), CommandRefusal> {
         let r = self.robot(robot)?;
         let chain = &r.robot.chain;
         if q.len() != chain.dof() {
-            return Err(format!("`{}` has {} joints, not {}", r.name, chain.dof(), q.len()));
+            let (robot, joints) = (r.name.clone(), chain.dof());
+            return Err(CommandRefusal::JointCount { robot, joints, values: q.len() });
         }
         for (value, id) in q.iter().zip(chain.active_joints()) {
             let joint = &chain.joints()[id.0];
@@ -83,15 +84,15 @@ impl JogCell {
         Ok(())
     }
 
-    fn move_tcp(&mut self, robot: usize, target: &PoseStatus) -> Result<(), String> {
+    fn move_tcp(&mut self, robot: usize, target: &PoseStatus) -> Result<(), CommandRefusal> {
         let base_in_world = self.robot(robot)?.base_in_world;
-        let target = pose_of(target).ok_or("the pose is not finite")?;
+        let target = pose_of(target).ok_or(CommandRefusal::Pose)?;
         let in_root = base_in_world.inverse_mul(&target);
         // First a few steps from the present joint values, so that the arm does not change its configuration without need.
         let mut q = self.q[robot].clone();
         let solver = &mut self.solvers[robot];
         if !solver.refine(&in_root, &mut q) {
-            q = solver.solve(&in_root, &self.q[robot]).map_err(|e| e.to_string())?.q;
+            q = solver.solve(&in_root, &self.q[robot])?.q;
         }
         self.jog(robot, q)
     }
@@ -175,7 +176,7 @@ impl ViewSource for JogCell {
         "jog"
     }
 
-    fn command(&mut self, command: Command) -> Result<(), String> {
+    fn command(&mut self, command: Command) -> Result<(), CommandRefusal> {
         match command {
             Command::Jog { robot, q } => self.jog(robot, q)?,
             Command::Tcp { robot, position_m, quaternion_xyzw } => {

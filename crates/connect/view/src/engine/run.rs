@@ -72,7 +72,7 @@ pub(crate) fn run(
         let begin = Instant::now();
         let is_commanded = !taken.commands.is_empty();
         for command in taken.commands {
-            message = source.command(command).err().unwrap_or_default();
+            message = source.command(command).err().map_or_else(String::new, |why| why.to_string());
         }
         let own = if is_commanded || is_first { source.status() } else { None };
         let own = own.map(|(status, events)| {

@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use super::args::ServiceArgs;
 use super::transport::Transport;
-use crate::output::Failure;
+use crate::output::{Failure, cannot_read};
 
 /// Longest wait for an answer of the service.
 const WAIT: Duration = Duration::from_secs(20);
@@ -30,8 +30,7 @@ impl Client {
             let help = "--secret FILE, or ELBOWROOM_SECRET=FILE in the environment (elbowroom control token makes one)";
             Failure::Wrong(format!("the service asks for a token\n  write: {help}"))
         })?;
-        let unreadable = |e: std::io::Error| Failure::Wrong(format!("{}: cannot be read: {e}", file.display()));
-        let secret = std::fs::read_to_string(&file).map_err(unreadable)?.trim().to_owned();
+        let secret = std::fs::read_to_string(&file).map_err(cannot_read(&file))?.trim().to_owned();
         if secret.is_empty() || !secret.chars().all(|c| c.is_ascii_alphanumeric()) {
             let what = format!("{}: is no secret: 64 hexadecimal digits on one line", file.display());
             return Err(Failure::Wrong(what));

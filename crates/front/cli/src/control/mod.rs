@@ -12,7 +12,7 @@ use elbowroom::cell::access::{
 };
 use serde_json::{Value, json};
 
-use crate::output::{ExitStatus, Failure, cannot_write, note, print, print_json};
+use crate::output::{ExitStatus, Failure, cannot_read, cannot_write, note, print, print_json};
 use args::{ControlCommand, NetworkKeyArgs, State, TokenArgs};
 use client::Client;
 
@@ -62,11 +62,13 @@ fn keys(written: &[String]) -> Result<String, Failure> {
 }
 
 fn read(file: &Path) -> Result<String, Failure> {
-    let unreadable = |e: std::io::Error| Failure::Wrong(format!("{}: cannot be read: {e}", file.display()));
-    if file == Path::new("-") {
-        return std::io::read_to_string(std::io::stdin().lock()).map_err(unreadable);
-    }
-    std::fs::read_to_string(file).map_err(unreadable)
+    let is_standard_input = file == Path::new("-");
+    let text = if is_standard_input {
+        std::io::read_to_string(std::io::stdin().lock())
+    } else {
+        std::fs::read_to_string(file)
+    };
+    text.map_err(cannot_read(file))
 }
 
 fn token(args: &TokenArgs) -> Result<ExitStatus, Failure> {

@@ -4,16 +4,16 @@ use std::fs::File;
 use std::io::{BufReader, BufWriter};
 use std::path::Path;
 
+use elbowroom::Diagnostic;
 use elbowroom::recording::JointRecording;
 
-use crate::output::{ExitStatus, Failure, cannot_write, note, print};
+use crate::output::{ExitStatus, Failure, cannot_read, cannot_write, note, print};
 
 /// Writes the joint states of a ROS 2 recording as a table.
 pub(crate) fn convert_recording(recording: &Path, topic: Option<&str>, to: &Path) -> Result<ExitStatus, Failure> {
-    let file = recording.display();
-    let bytes = File::open(recording).map_err(|e| Failure::Wrong(format!("{file}: cannot be read: {e}")))?;
+    let bytes = File::open(recording).map_err(cannot_read(recording))?;
     let read = JointRecording::read(BufReader::new(bytes), topic);
-    let read = read.map_err(|e| Failure::Wrong(format!("{file}: {e}")))?;
+    let read = read.map_err(|e| Diagnostic::new(recording, None, e))?;
     if read.cut_off {
         note("warning: the recording was cut off: it is read up to its last complete chunk");
     }

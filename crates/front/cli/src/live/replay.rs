@@ -4,15 +4,16 @@ use std::fmt::Write as _;
 use std::fs::File;
 use std::io::BufReader;
 
+use elbowroom::Diagnostic;
 use elbowroom::recording::{self, Replay, RobotReplay};
 
 use super::ReplayArgs;
-use crate::output::{ExitStatus, Failure, note, print, print_json};
+use crate::output::{ExitStatus, Failure, cannot_read, note, print, print_json};
 
 pub(crate) fn replay(args: &ReplayArgs) -> Result<ExitStatus, Failure> {
-    let file = args.recording.display();
-    let bytes = File::open(&args.recording).map_err(|e| Failure::Wrong(format!("{file}: cannot be read: {e}")))?;
-    let replay = recording::replay(BufReader::new(bytes)).map_err(|e| Failure::Wrong(format!("{file}: {e}")))?;
+    let file = &args.recording;
+    let bytes = File::open(file).map_err(cannot_read(file))?;
+    let replay = recording::replay(BufReader::new(bytes)).map_err(|e| Diagnostic::new(file, None, e))?;
     warn(&replay);
     if args.json {
         print_json(&replay)?;

@@ -10,7 +10,7 @@ use elbowroom::cell::access::{LogEntry, PrivateKey};
 use elbowroom::cell::seal::{self, CellEdit, Signer};
 use elbowroom::monitor::AccessClass;
 
-use crate::output::{ExitStatus, Failure, cannot_write, note, print};
+use crate::output::{ExitStatus, Failure, cannot_read, cannot_write, note, print};
 use args::{AddArgs, KeygenArgs, RegionCommand, SignArgs};
 
 pub(crate) fn region(command: &RegionCommand) -> Result<ExitStatus, Failure> {
@@ -33,7 +33,7 @@ pub(crate) fn region(command: &RegionCommand) -> Result<ExitStatus, Failure> {
 
 fn add(args: &AddArgs) -> Result<ExitStatus, Failure> {
     let from = &args.regions;
-    let unreadable = |e: std::io::Error| Failure::Wrong(format!("{}: cannot be read: {e}", from.display()));
+    let unreadable = cannot_read(from);
     let (toml, from) = if from == Path::new("-") {
         let mut text = String::new();
         std::io::stdin().lock().read_to_string(&mut text).map_err(unreadable)?;

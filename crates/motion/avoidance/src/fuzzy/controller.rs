@@ -1,6 +1,6 @@
 //! Mamdani inference.
 
-use super::{Rule, Variable};
+use super::{FuzzyError, Rule, Variable};
 
 /// Largest number of inputs, outputs, and sets of one variable: the arrays of the inference are on the stack.
 const MAX_SETS: usize = 16;
@@ -8,28 +8,6 @@ const MAX_SETS: usize = 16;
 const MAX_GRID_POINTS: usize = 200_000;
 /// Number of samples of the sets of an output.
 const SAMPLES: usize = 129;
-
-/// Why variables and rules are not a valid controller.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{}{message}\n  write: {hint}", line.map(|l| format!("line {l}: ")).unwrap_or_default())]
-pub struct FuzzyError {
-    /// Line of the text, from 1, if known.
-    pub line: Option<usize>,
-    /// The problem.
-    pub message: String,
-    /// What to write instead.
-    pub hint: String,
-}
-
-impl FuzzyError {
-    pub(crate) fn new(message: impl Into<String>, hint: impl Into<String>) -> Self {
-        Self { line: None, message: message.into(), hint: hint.into() }
-    }
-
-    pub(crate) fn at(self, line: impl Into<Option<usize>>) -> Self {
-        Self { line: line.into(), ..self }
-    }
-}
 
 /// A fuzzy controller: computes outputs from inputs by rules.
 ///

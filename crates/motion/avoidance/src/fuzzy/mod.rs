@@ -5,6 +5,7 @@
 //! Assilian 1975, "An experiment in linguistic synthesis with a fuzzy logic controller"). Inference does not allocate.
 
 mod controller;
+mod fuzzy_error;
 mod rule;
 mod set;
 mod surface;
@@ -12,7 +13,8 @@ mod svg;
 mod toml_format;
 mod variable;
 
-pub use controller::{Controller, FuzzyError};
+pub use controller::Controller;
+pub use fuzzy_error::FuzzyError;
 pub use rule::Rule;
 pub use set::Set;
 pub use surface::Surface;

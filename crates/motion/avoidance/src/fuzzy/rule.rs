@@ -1,6 +1,9 @@
 //! Fuzzy rules.
 
-use super::Variable;
+use super::{FuzzyError, Variable};
+
+/// Hint for a sentence of another form.
+const EXAMPLE: &str = "a rule as: if INPUT is SET then OUTPUT is SET";
 
 /// A rule: `if` all conditions hold, `then` all conclusions hold to the degree of the weakest condition.
 ///
@@ -17,14 +20,14 @@ impl Rule {
     /// Reads a sentence.
     ///
     /// # Errors
-    /// The sentence has another form or contains an unknown name; the message lists the known names.
-    pub fn parse(sentence: &str, inputs: &[Variable], outputs: &[Variable]) -> Result<Self, String> {
+    /// [`FuzzyError`] without a line, if the sentence has another form or contains an unknown name; the hint lists the
+    /// known names.
+    pub fn parse(sentence: &str, inputs: &[Variable], outputs: &[Variable]) -> Result<Self, FuzzyError> {
         let words: Vec<&str> = sentence.split_whitespace().collect();
         let then = words.iter().position(|w| *w == "then");
         let (Some(&"if"), Some(then)) = (words.first(), then) else {
-            return Err(
-                "a rule has the form: if INPUT is SET and INPUT is SET then OUTPUT is SET and OUTPUT is SET".into()
-            );
+            let what = "a rule has the form: if INPUT is SET and INPUT is SET then OUTPUT is SET and OUTPUT is SET";
+            return Err(FuzzyError::new(what, EXAMPLE));
         };
         let conditions = clauses(&words[1..then], inputs, "input")?;
         let conclusions = clauses(&words[then + 1..], outputs, "output")?;
@@ -41,22 +44,24 @@ impl Rule {
     }
 }
 
-fn clauses(words: &[&str], variables: &[Variable], role: &str) -> Result<Vec<(usize, usize)>, String> {
+fn clauses(words: &[&str], variables: &[Variable], role: &str) -> Result<Vec<(usize, usize)>, FuzzyError> {
+    let unknown = |what: String, known: Vec<&str>| FuzzyError::new(what, format!("one of {}", known.join(", ")));
     let mut list = Vec::new();
     for clause in words.split(|w| *w == "and") {
         let &[name, "is", set] = clause else {
-            return Err(format!("`{}` is no clause: write NAME is SET, joined by `and`", clause.join(" ")));
+            let what = format!("`{}` is no clause", clause.join(" "));
+            return Err(FuzzyError::new(what, "NAME is SET, joined by `and`"));
         };
         let Some(variable) = variables.iter().position(|v| v.name == name) else {
-            let known: Vec<&str> = variables.iter().map(|v| v.name.as_str()).collect();
-            return Err(format!("there is no {role} `{name}`: write one of {}", known.join(", ")));
+            let known = variables.iter().map(|v| v.name.as_str()).collect();
+            return Err(unknown(format!("there is no {role} `{name}`"), known));
         };
         let Some(number) = variables[variable].set(set) else {
-            let known: Vec<&str> = variables[variable].sets.iter().map(|(n, _)| n.as_str()).collect();
-            return Err(format!("{name} has no set `{set}`: write one of {}", known.join(", ")));
+            let known = variables[variable].sets.iter().map(|(n, _)| n.as_str()).collect();
+            return Err(unknown(format!("{name} has no set `{set}`"), known));
         };
         if list.iter().any(|(v, _)| *v == variable) {
-            return Err(format!("`{name}` is named twice: give each {role} one set"));
+            return Err(FuzzyError::new(format!("`{name}` is named twice: give each {role} one set"), EXAMPLE));
         }
         list.push((variable, number));
     }

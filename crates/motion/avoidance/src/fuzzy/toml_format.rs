@@ -52,9 +52,9 @@ impl Controller {
                 }
             }
         }
-        let rules = rules.unwrap_or_default().into_iter().map(|(line, sentence)| {
-            Rule::parse(&sentence, &inputs, &outputs).map_err(|what| split_hint(&what).at(line))
-        });
+        let parse =
+            |(line, sentence): (usize, String)| Rule::parse(&sentence, &inputs, &outputs).map_err(|e| e.at(line));
+        let rules = rules.unwrap_or_default().into_iter().map(parse);
         let rules = rules.collect::<Result<_, _>>()?;
         Self::new(inputs, outputs, rules)
     }
@@ -78,13 +78,6 @@ impl Controller {
         }
         text + "]\n"
     }
-}
-
-/// Splits "problem: write this" into its two parts.
-fn split_hint(message: &str) -> FuzzyError {
-    let (what, hint) =
-        message.split_once(": write ").unwrap_or((message, "a rule as: if INPUT is SET then OUTPUT is SET"));
-    FuzzyError::new(what, hint)
 }
 
 /// Line numbers of a text.

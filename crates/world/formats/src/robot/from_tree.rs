@@ -235,7 +235,7 @@ impl<'a> RobotBuilder<'a> {
         }
         self.set_mimics(node_joints, &mut joints)?;
         let name = if self.tree.name.is_empty() { "model".to_owned() } else { self.tree.name.clone() };
-        let chain = Chain::new(name, links, joints).map_err(|e| Diagnostic::new(self.file, None, e.to_string()))?;
+        let chain = Chain::new(name, links, joints).map_err(|e| Diagnostic::new(self.file, None, e))?;
         let mut robot = Robot::new(chain);
         for (i, node) in self.tree.nodes.into_iter().enumerate() {
             for mesh in node.meshes {

@@ -11,8 +11,9 @@ use elbowroom_spatial::units::LengthUnit;
 
 use crate::mesh;
 use crate::mesh_data::{MeshData, UpAxis};
+use crate::resolve::{Unresolved, resolve};
 use crate::urdf::{Geometry, LinkGeometry};
-use crate::{Diagnostic, input, resolve};
+use crate::{Diagnostic, input};
 
 /// The meshes of one file at one scale, with the names of its objects.
 pub(super) type TriMeshes = Arc<Vec<(String, Arc<TriMesh>)>>;
@@ -21,8 +22,8 @@ type Scale = [u64; 3];
 type Loaded = Result<(HashMap<Scale, TriMeshes>, Vec<Diagnostic>), Diagnostic>;
 
 pub(super) struct MeshCache {
-    /// Per reference as written: the file, or a description of the search.
-    paths: HashMap<String, Result<PathBuf, String>>,
+    /// Per reference as written: its file.
+    paths: HashMap<String, Result<PathBuf, Unresolved>>,
     files: HashMap<PathBuf, Loaded>,
 }
 
@@ -33,11 +34,11 @@ impl MeshCache {
         base: &Path,
         unit: Option<LengthUnit>,
     ) -> Self {
-        let mut paths: HashMap<String, Result<PathBuf, String>> = HashMap::new();
+        let mut paths = HashMap::new();
         let mut scales_of: HashMap<PathBuf, Vec<Vec3>> = HashMap::new();
         for tri_mesh in meshes {
             let Geometry::Mesh { filename, scale } = &tri_mesh.geometry else { continue };
-            let path = paths.entry(filename.clone()).or_insert_with(|| resolve::resolve(filename, base));
+            let path = paths.entry(filename.clone()).or_insert_with(|| resolve(filename, base));
             if let Ok(path) = path {
                 let scales = scales_of.entry(path.clone()).or_default();
                 if !scales.contains(scale) {
@@ -48,12 +49,10 @@ impl MeshCache {
         Self { paths, files: load_files(scales_of, unit) }
     }
 
-    pub(super) fn path(&self, filename: &str) -> Result<&Path, String> {
-        match self.paths.get(filename) {
-            Some(Ok(path)) => Ok(path),
-            Some(Err(why)) => Err(why.clone()),
-            None => Err("it was not loaded".into()),
-        }
+    /// The file of a reference in one of the geometries.
+    pub(super) fn path(&self, filename: &str) -> Result<&Path, Unresolved> {
+        let path = self.paths.get(filename).map(|path| path.as_deref().map_err(Clone::clone));
+        path.unwrap_or_else(|| Err(Unresolved::NoFile(filename.into())))
     }
 
     /// The meshes of a file, and on the first call its warnings.

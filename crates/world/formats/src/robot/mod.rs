@@ -261,7 +261,7 @@ impl Loader<'_> {
             }
             Geometry::Mesh { filename, scale } => return self.mesh_colliders(solid, filename, *scale),
         };
-        shape.validate().map_err(|e| Diagnostic::new(self.urdf_path, solid.line, e.to_string()))?;
+        shape.validate().map_err(|e| Diagnostic::new(self.urdf_path, solid.line, e))?;
         self.note_extent(shape.aabb(&Pose::IDENTITY).extent(), solid);
         Ok(vec![Collider {
             name: name.unwrap_or_else(|| kind(&solid.geometry).to_owned()),

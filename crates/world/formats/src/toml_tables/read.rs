@@ -1,5 +1,6 @@
 //! Typed access to the nodes, with instructive errors.
 
+use std::fmt::Display;
 use std::path::Path;
 
 use elbowroom_spatial::Vec3;
@@ -37,7 +38,7 @@ pub struct Value<'a> {
 
 impl<'a> Table<'a> {
     /// An error at the line of the table.
-    pub fn error(&self, what: impl std::fmt::Display) -> Diagnostic {
+    pub fn error(&self, what: impl Display) -> Diagnostic {
         Diagnostic::new(self.file, self.line, what)
     }
 
@@ -121,8 +122,8 @@ impl<'a> Table<'a> {
 
 impl<'a> Value<'a> {
     /// An error at the line of the value, about its key.
-    pub fn error(&self, what: impl AsRef<str>) -> Diagnostic {
-        Diagnostic::new(self.file, self.line, format!("`{}` {}", self.name, what.as_ref()))
+    pub fn error(&self, what: impl Display) -> Diagnostic {
+        Diagnostic::new(self.file, self.line, format!("`{}` {what}", self.name))
     }
 
     fn wrong_type(&self, wanted: &str, example: &str) -> Diagnostic {

@@ -6,7 +6,7 @@ use petgraph::algo::kosaraju_scc;
 use petgraph::graph::{DiGraph, NodeIndex};
 use petgraph::visit::{Dfs, EdgeRef, Reversed, Visitable};
 
-use super::model::{ModelState, ProtocolModel, Step};
+use super::model::{ModelState, ProtocolModel, Step, Violation};
 
 /// The graph of the reachable states.
 pub(super) struct StateGraph(DiGraph<ModelState, Step>);
@@ -14,8 +14,8 @@ pub(super) struct StateGraph(DiGraph<ModelState, Step>);
 /// Explores the states breadth first.
 ///
 /// # Errors
-/// Describes the first property that does not hold.
-pub(super) fn explore(model: &ProtocolModel) -> Result<StateGraph, String> {
+/// The first property that does not hold.
+pub(super) fn explore(model: &ProtocolModel) -> Result<StateGraph, Violation> {
     let mut graph = DiGraph::new();
     let mut known = HashMap::from([(model.start(), graph.add_node(model.start()))]);
     let mut explored = 0;

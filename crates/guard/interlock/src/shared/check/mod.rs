@@ -122,7 +122,7 @@ fn no_robot_waits_for_ever() {
 fn injected_faults_are_detected() {
     let assert_detected = |name: &str, model: ProtocolModel| {
         let found = match explore(&model) {
-            Err(broken) => Some(broken),
+            Err(broken) => Some(broken.to_string()),
             Ok(graph) => {
                 let (stuck, first) = graph.stuck_states(&model);
                 (stuck > 0).then(|| format!("{stuck} states from which not all can finish: {first}"))

@@ -68,6 +68,16 @@ pub(super) enum Step {
     Jog(usize),
 }
 
+/// A property that does not hold.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum Violation {
+    #[error("robot {robot} releases slot {slot} although it cannot stop")]
+    EarlyRelease { robot: usize, slot: usize },
+    /// States are described as [`ProtocolModel::describe`] does.
+    #[error("robot {robot} enters slot {slot} while {other} occupies it ({after}) after {step:?} in {before}")]
+    Entry { robot: usize, slot: usize, other: usize, step: Step, before: String, after: String },
+}
+
 impl ProtocolModel {
     /// Builds a model from one word per robot and slot: `_` is outside, `.` in the warning zone, `X` inside.
     pub(super) fn new(programs: &[&[&str]]) -> Self {
@@ -261,8 +271,8 @@ impl ProtocolModel {
     /// The state after a step.
     ///
     /// # Errors
-    /// Describes a property that does not hold.
-    pub(super) fn next(&self, state: &ModelState, step: Step) -> Result<ModelState, String> {
+    /// A property that does not hold.
+    pub(super) fn next(&self, state: &ModelState, step: Step) -> Result<ModelState, Violation> {
         self.restore(state);
         let (mut robots, mut on) = (state.robots.clone(), state.on);
         match step {
@@ -283,7 +293,7 @@ impl ProtocolModel {
             }
         }
         let next = self.save(robots, on);
-        self.check(state, step, &next).map_err(|what| format!("{what} after {step:?} in {}", self.describe(state)))?;
+        self.check(state, step, &next)?;
         Ok(next)
     }
 
@@ -293,7 +303,7 @@ impl ProtocolModel {
         }
     }
 
-    fn tick(&self, robot: usize, current: RobotState, on: bool, may_move: bool) -> Result<RobotState, String> {
+    fn tick(&self, robot: usize, current: RobotState, on: bool, may_move: bool) -> Result<RobotState, Violation> {
         let (me, slots) = (RobotSlot(robot), self.slots());
         if !on {
             (0..slots).for_each(|s| self.arbiter.publish(SlotId(s), me, Occupancy::Outside, NOW_S));
@@ -318,7 +328,7 @@ impl ProtocolModel {
             self.advance(robot, current, may_move)
         };
         let early = (0..slots).find(|s| held[*s] && !holds(*s) && self.actual(robot, current, *s).occupies());
-        early.map_or(Ok(moved), |s| Err(format!("robot {robot} releases slot {s} although it cannot stop")))
+        early.map_or(Ok(moved), |slot| Err(Violation::EarlyRelease { robot, slot }))
     }
 
     /// The next operation of a tick: publish for one slot, check whether it may be acquired, acquire it, or move.
@@ -372,7 +382,7 @@ impl ProtocolModel {
     }
 
     /// Checks that no robot enters a slot, or passes the last point where it can stop, while another robot occupies it.
-    fn check(&self, before: &ModelState, step: Step, after: &ModelState) -> Result<(), String> {
+    fn check(&self, before: &ModelState, step: Step, after: &ModelState) -> Result<(), Violation> {
         if !before.on || matches!(step, Step::Jog(_)) {
             return Ok(());
         }
@@ -381,10 +391,8 @@ impl ProtocolModel {
             let entered = |r: &usize| occupies(after, *r) && !occupies(before, *r);
             let Some(robot) = (0..self.robots()).find(entered) else { continue };
             if let Some(other) = (0..self.robots()).find(|o| *o != robot && occupies(after, *o)) {
-                return Err(format!(
-                    "robot {robot} enters slot {slot} while {other} occupies it ({})",
-                    self.describe(after)
-                ));
+                let [before, after] = [before, after].map(|state| self.describe(state));
+                return Err(Violation::Entry { robot, slot, other, step, before, after });
             }
         }
         Ok(())
