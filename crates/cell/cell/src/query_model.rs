@@ -53,12 +53,12 @@ pub enum OutOfReachProofs {
 }
 
 impl QueryModel {
-    /// The model of a cell, with its rules of pairs ([`Cell::all_pair_rules`]).
+    /// The model of a cell, with its rules of pairs ([`CellPairRules::all`](crate::CellPairRules::all)).
     ///
     /// Tools and loads are colliders of the links that carry them.
     pub fn of_cell(cell: &Cell) -> Self {
         let mut model = Self::without_rules(cell);
-        model.add_rules(cell.all_pair_rules());
+        model.add_rules(cell.pair_rules.all());
         model
     }
 

@@ -20,20 +20,21 @@ pub(crate) type PlayedPath = (RobotId, Vec<(f64, Vec<f64>)>);
 /// the speed, so the times are those of the plan.
 pub(crate) fn write(path: &Path, cell: &Cell, paths: Vec<PlayedPath>) -> Result<(), Failure> {
     let mut cell = cell.clone();
-    cell.programs.iter_mut().for_each(|program| *program = None);
-    cell.avoidance.iter_mut().for_each(|avoidance| *avoidance = None);
+    for robot in &mut cell.robots {
+        (robot.program, robot.avoidance) = (None, None);
+    }
     cell.moving_objects.clear();
-    for encoder in &mut cell.encoders {
+    for encoder in &mut cell.frame_sources.encoders {
         let (at_m, _) = encoder.at(0.0);
         encoder.travel = Travel::Constant { at_m, speed: 0.0, start_s: 0.0, end_s: 0.0 };
     }
     for (robot, rows) in paths {
         let Some((_, first)) = rows.first() else { continue };
-        cell.robots[robot.0].start.clone_from(first);
+        let robot = &mut cell.robots[robot.0];
+        robot.start.clone_from(first);
         let rows = rows.into_iter().map(|(t_s, q)| TrajectoryRow { t_s, q }).collect();
-        let line = cell.robots[robot.0].line;
         let body = ProgramBody::Trajectory(rows);
-        cell.programs[robot.0] = Some(Program { speed_override: 1.0, repeat: 1, body, line });
+        robot.program = Some(Program { speed_override: 1.0, repeat: 1, body, line: robot.line });
     }
     let options = RunOptions { apply_override: false, avoidance: false, ..RunOptions::default() };
     let played = Simulation::of(&cell).run(&options)?.recording;

@@ -92,12 +92,12 @@ fn tool(t: &Table<'_>, robot: &CellRobot) -> Result<usize> {
     t.only(&["tool"])?;
     let v = t.need("tool", "tool = \"gripper\"")?;
     let name = v.text()?;
-    robot.tools.iter().position(|tool| tool.name == name).ok_or_else(|| {
+    robot.payload.tools.iter().position(|tool| tool.name == name).ok_or_else(|| {
         let what = format!("names the tool \"{name}\", which robot \"{}\" does not have", robot.name);
-        let hint = if robot.tools.is_empty() {
+        let hint = if robot.payload.tools.is_empty() {
             format!("[robot.{}.tools.{name}] with its tcp and box", robot.name)
         } else {
-            suggest::hint(name, robot.tools.iter().map(|tool| tool.name.as_str()))
+            suggest::hint(name, robot.payload.tools.iter().map(|tool| tool.name.as_str()))
         };
         v.error(what).hint(hint)
     })

@@ -28,7 +28,7 @@ impl MappedJoints {
         (purpose, otherwise): (&str, Option<&str>),
         warnings: &mut Vec<Warning>,
     ) -> Result<Self, FormatError> {
-        let (_, spec) = select_map(cell, Some(&robot.name))?;
+        let (_, _, spec) = select_map(cell, Some(&robot.name))?;
         let wrong = |what: String, hint: String| {
             FormatError::new(&cell.file, spec.line, format!("the map of robot \"{}\" {what}", robot.name)).hint(hint)
         };

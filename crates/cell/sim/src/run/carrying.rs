@@ -22,7 +22,7 @@ impl Simulation<'_> {
                 self.exchange_volumes(i, &before)?;
                 let robot = &mut self.robots[i];
                 robot.track.absent_links.extend(absent_links(&robot.present).map(|links| (t_s, links)));
-                self.journal.event(t_s, robot.id, &robot.present.tools[tool].name, RunEvent::Tool);
+                self.journal.event(t_s, robot.id, &robot.present.payload.tools[tool].name, RunEvent::Tool);
             }
         }
         Ok(())
@@ -32,7 +32,7 @@ impl Simulation<'_> {
     fn exchange_volumes(&mut self, i: usize, before: &CellRobot) -> Result<(), FormatError> {
         let robot = &self.robots[i];
         let (id, setup, line) = (robot.id, robot.setup, robot.present.line);
-        let tools = robot.present.tools.iter().zip(&before.tools);
+        let tools = robot.present.payload.tools.iter().zip(&before.payload.tools);
         let changed = tools.filter(|(now, old)| now.mounted != old.mounted).map(|(now, _)| (now.link, now.mounted));
         for (link, is_mounted) in changed.collect::<Vec<_>>() {
             self.contacts.checker.set_present(id, link, is_mounted, &self.states.iter().collect::<Vec<_>>());

@@ -28,7 +28,7 @@ impl Simulation<'_> {
         Recording {
             cell: cell.name.clone(),
             checksum: cell.checksum.clone(),
-            tick_s: cell.tick_s,
+            tick_s: cell.timing.tick_s,
             duration_s: t_s,
             end,
             monitored: self.options.apply_override,

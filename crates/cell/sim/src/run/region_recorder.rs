@@ -156,7 +156,7 @@ impl<'a> RegionRecorder<'a> {
             span(&mut observer.inside_since, inside, t_s, observer.robot, &mut track.inside_spans);
         }
         for (track, _) in self.tracks.iter_mut().zip(&self.warned).filter(|w| *w.1) {
-            track.warned_s += self.cell.tick_s;
+            track.warned_s += self.cell.timing.tick_s;
         }
     }
 
