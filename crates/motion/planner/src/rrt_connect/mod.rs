@@ -8,7 +8,6 @@ mod interpolation;
 mod joint_bounds;
 mod joint_weights;
 mod motion_validator;
-mod node_packs;
 mod path_constraint;
 mod planned_path;
 mod planner;
