@@ -104,9 +104,9 @@ pub fn zone_arbiter(cell: &Cell) -> Option<Arc<ZoneArbiter>> {
     let slots = slots(cell);
     let count = slots.iter().flatten().map(|s| s.0 + 1).max()?;
     let robots: Vec<&str> = cell.robots.iter().map(|r| r.name.as_str()).collect();
-    let members = |slot: usize| slots.iter().zip(&cell.regions).filter(move |(s, _)| **s == Some(SlotId(slot)));
-    let name = |slot: usize| members(slot).map(|(_, r)| r.region.name.as_str()).collect::<Vec<_>>().join(", ");
-    let names: Vec<String> = (0..count).map(name).collect();
+    let members = |slot: SlotId| slots.iter().zip(&cell.regions).filter(move |(s, _)| **s == Some(slot));
+    let name = |slot: SlotId| members(slot).map(|(_, r)| r.region.name.as_str()).collect::<Vec<_>>().join(", ");
+    let names: Vec<String> = (0..count).map(SlotId).map(name).collect();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     // Five ticks of silence, at least 0.1 s.
     let silence_timeout_s = (5.0 * cell.timing.tick_s).max(0.1);

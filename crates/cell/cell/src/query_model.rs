@@ -225,14 +225,14 @@ impl QueryModel {
     /// Selection by a name: a robot, a link (`robot/link`; in a single robot only the link's name, and `robot` for
     /// all), or an object.
     pub fn selection(&self, name: &str) -> Option<Selection> {
-        let link = |robot: usize, link: &str| {
-            let link = self.robots.get(robot)?.robot.chain.link(link)?;
-            Some(Selection::Link { robot: RobotId(robot), link })
+        let link = |robot: RobotId, link: &str| {
+            let link = self.robots.get(robot.0)?.robot.chain.link(link)?;
+            Some(Selection::Link { robot, link })
         };
         let robot = if self.is_single_robot {
-            link(0, name).or_else(|| (name == "robot").then_some(Selection::Robot(RobotId(0))))
+            link(RobotId(0), name).or_else(|| (name == "robot").then_some(Selection::Robot(RobotId(0))))
         } else if let Some((robot, of_robot)) = name.split_once('/') {
-            self.robots.iter().position(|r| r.name == robot).and_then(|robot| link(robot, of_robot))
+            self.robots.iter().position(|r| r.name == robot).and_then(|robot| link(RobotId(robot), of_robot))
         } else {
             self.robots.iter().position(|r| r.name == name).map(|r| Selection::Robot(RobotId(r)))
         };

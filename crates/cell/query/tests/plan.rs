@@ -96,7 +96,7 @@ fn the_rows_are_a_file_that_a_cell_reads_back() {
     let text = String::from_utf8(text).unwrap();
     let read = QueryStates::parse("path.csv".as_ref(), &text, &QueryModel::of_cell(&cell)).unwrap();
     assert_eq!(read.len(), motion.rows.len());
-    assert!(motion.rows.iter().enumerate().all(|(i, row)| read.of(i).next() == Some((0, &row.1[..]))));
+    assert!(motion.rows.iter().enumerate().all(|(i, row)| read.of(i).next() == Some((RobotId(0), &row.1[..]))));
     assert!((motion.rows[motion.rows.len() - 1].0 - motion.duration_s).abs() < 1e-9);
 }
 

@@ -5,7 +5,7 @@ use elbowroom_formats::toml_tables::{Table, Value};
 use elbowroom_formats::{FormatError, JointStateOptions, JointStates, Warning, suggest};
 use elbowroom_monitor::Life;
 use elbowroom_proximity::Shape;
-use elbowroom_robot::ObjectId;
+use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 
 use super::{goal, models};
@@ -175,11 +175,11 @@ fn trajectory(v: &Value<'_>, robot: &CellRobot, warnings: &mut Vec<Warning>) -> 
         (JointStates::read(&models::path(v)?, &JointStateOptions::trajectory(&robot.name, chain))?, 0.0)
     };
     let first_s = states.times_s().first().copied().unwrap_or(0.0);
-    let row = |(i, t_s): (usize, &f64)| TrajectoryRow { t_s: *t_s, q: states.q(i, 0).to_vec() };
+    let row = |(i, t_s): (usize, &f64)| TrajectoryRow { t_s: *t_s, q: states.q(i, RobotId(0)).to_vec() };
     let mut rows: Vec<TrajectoryRow> = states.times_s().iter().enumerate().map(row).collect();
     if offset_s > 0.0 {
         // The robot rests at its first row for that long.
-        rows.insert(0, TrajectoryRow { t_s: first_s - offset_s, q: states.q(0, 0).to_vec() });
+        rows.insert(0, TrajectoryRow { t_s: first_s - offset_s, q: states.q(0, RobotId(0)).to_vec() });
     }
     warnings.extend(states.warnings);
     Ok(rows)

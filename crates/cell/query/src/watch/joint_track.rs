@@ -5,6 +5,7 @@ use std::path::Path;
 use elbowroom_cell::{Cell, CellRobot};
 use elbowroom_formats::joint_states::{ExtraColumns, JointStateOptions, JointStateRobot, LimitCheck, TimeColumn};
 use elbowroom_formats::{FormatError, JointStates, Warning};
+use elbowroom_robot::RobotId;
 
 /// Time before the first row, or after the last one, beyond which pictures have no joint values, s.
 const MARGIN_S: f64 = 0.1;
@@ -54,11 +55,11 @@ impl JointTrack {
         let before = next.saturating_sub(1);
         let width = times[next] - times[before];
         let share = if width > 0.0 { ((t_s - times[before]) / width).clamp(0.0, 1.0) } else { 0.0 };
-        let between = |robot: usize| {
+        let between = |robot: RobotId| {
             let ends = states.q(before, robot).iter().zip(states.q(next, robot));
             ends.map(|(a, b)| a + (b - a) * share).collect()
         };
-        Ok((0..states.robots()).map(between).collect())
+        Ok((0..states.robots()).map(RobotId).map(between).collect())
     }
 }
 

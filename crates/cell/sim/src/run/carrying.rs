@@ -53,7 +53,7 @@ impl Simulation<'_> {
         };
         let robot = &mut self.robots[i];
         let attached = robot.monitor.attach(volume, in_link);
-        let attached = attached.and_then(|()| self.regions.attach(i, volume, in_link));
+        let attached = attached.and_then(|()| self.regions.attach(robot.id, volume, in_link));
         attached.map_err(|e| FormatError::new(&self.cell.file, line, e.to_string()))?;
         self.journal.attached(robot.id, volume, in_link);
         Ok(())
@@ -63,7 +63,7 @@ impl Simulation<'_> {
     pub(super) fn detach_released(&mut self) -> Result<(), FormatError> {
         for (i, volume) in std::mem::take(&mut self.released) {
             let robot = &mut self.robots[i];
-            let detached = robot.monitor.detach(volume).and_then(|()| self.regions.detach(i, volume));
+            let detached = robot.monitor.detach(volume).and_then(|()| self.regions.detach(robot.id, volume));
             detached.map_err(|e| FormatError::new(&self.cell.file, self.cell.robots[i].line, e.to_string()))?;
             self.journal.detached(robot.id, volume);
         }

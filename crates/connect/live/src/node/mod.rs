@@ -160,7 +160,7 @@ fn subscribe(
     let mut subscriptions = vec![network.subscribe(&keys.joint_states(&cell.robots[robot.0].name), handler)?];
     for other in (0..followed.len()).filter(|r| followed[*r]) {
         let inbox = inbox.clone();
-        let handler = Box::new(move |bytes: &[u8]| inbox.take_followed(other, bytes, clock.micros()));
+        let handler = Box::new(move |bytes: &[u8]| inbox.take_followed(RobotId(other), bytes, clock.micros()));
         subscriptions.push(network.subscribe(&keys.joint_states(&cell.robots[other].name), handler)?);
     }
     let inbox = inbox.clone();
