@@ -83,7 +83,8 @@ pub fn run(root: &Path, words: &[&str]) -> Result<(), Failure> {
 fn compare(root: &Path, options: &Options) -> Result<(), Box<dyn Error>> {
     let mut table = options.csv.as_deref().map(Table::create).transpose()?;
     let cell = load(root, options)?;
-    let seen = cell.avoidance.first().and_then(Option::as_ref).ok_or("the first robot has no avoidance")?;
+    let seen =
+        cell.robots.first().and_then(|robot| robot.avoidance.as_ref()).ok_or("the first robot has no avoidance")?;
     let moves = |o: &&ObjectId| cell.moving_objects.iter().any(|m| m.object == **o);
     let object = *seen.objects.iter().find(moves).ok_or("no moving object is evaded")?;
     let free = crossing::without_obstacle(&cell)?;
@@ -126,7 +127,7 @@ fn load(root: &Path, options: &Options) -> Result<Cell, Box<dyn Error>> {
         text += &read(add)?;
     }
     let mut cell = Cell::parse(file, &text)?;
-    for spec in cell.avoidance.iter_mut().flatten() {
+    for spec in cell.robots.iter_mut().filter_map(|robot| robot.avoidance.as_mut()) {
         spec.noise_m = options.noise_mm.map_or(spec.noise_m, |mm| 1e-3 * mm);
         spec.delay_s = options.delay_ms.map_or(spec.delay_s, |ms| 1e-3 * ms);
     }

@@ -80,7 +80,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         let started = Instant::now();
         let outcome = catch_unwind(AssertUnwindSafe(|| {
             Cell::parse(file, &spoiled).is_ok_and(|mut cell| {
-                cell.max_s = cell.tick_s * 5.0;
+                cell.timing.max_s = cell.timing.tick_s * 5.0;
                 let _ = simulate(&cell, &RunOptions::default());
                 true
             })

@@ -6,13 +6,13 @@ use elbowroom_avoidance::{AvoiderSettings, Rules};
 use elbowroom_formats::Diagnostic;
 use elbowroom_kinematics::{ChainState, JointLimits, LinkId};
 use elbowroom_monitor::{Laws, Part, Presence, Region, SourceLimits, Volume, VolumeModel, arm_volumes};
-use elbowroom_robot::{Collider, ObjectId, Robot, RobotId};
+use elbowroom_robot::{ObjectId, Robot, RobotId};
 use elbowroom_scene::{Object, PairRules};
 use elbowroom_spatial::Pose;
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 
 use crate::seal::Seal;
-use crate::{CellSensor, CellTool, Encoder, MovingObject, PoseTrack, Program};
+use crate::{CellSensor, CellTool, Encoder, MovingObject, Payload, PoseTrack, Program};
 
 /// A tool centre point within this distance (m) of a collider counts as on its surface, such as a flange frame on the
 /// flange's face.
@@ -27,10 +27,8 @@ pub struct Cell {
     pub name: String,
     /// The units of its file, for messages.
     pub units: Units,
-    /// Period of the control tick, s.
-    pub tick_s: f64,
-    /// Longest simulated time of a run, s.
-    pub max_s: f64,
+    /// Control tick, and longest run.
+    pub timing: CellTiming,
     /// Robots, in file order.
     pub robots: Vec<CellRobot>,
     /// Objects in file order, at their initial poses.
@@ -39,24 +37,14 @@ pub struct Cell {
     pub moving_objects: Vec<MovingObject>,
     /// Regions, in file order.
     pub regions: Vec<CellRegion>,
-    /// Encoders, in file order.
-    pub encoders: Vec<Encoder>,
-    /// Pose files that regions follow.
-    pub pose_tracks: Vec<PoseTrack>,
+    /// Encoders and pose files that regions follow.
+    pub frame_sources: FrameSources,
     /// The laws of all monitors; joint decelerations are set per robot.
     pub laws: CellLaws,
-    /// One per robot; `None` for a robot that stays at its start.
-    pub programs: Vec<Option<Program>>,
-    /// One per robot; `None` for a robot without avoidance.
-    pub avoidance: Vec<Option<AvoidanceSpec>>,
     /// Cameras in file order, then sources of point clouds.
     pub sensors: Vec<CellSensor>,
-    /// Joint-space maps.
-    pub maps: Vec<MapSpec>,
-    /// Rules of the file of pairs. [`Self::robots`] are as in their models.
-    pub pair_rules: PairRules,
-    /// Rules for links that always touch where they are joined; see [`Self::all_pair_rules`].
-    pub joint_contacts: PairRules,
+    /// Rules of pairs. [`Self::robots`] are as in their models.
+    pub pair_rules: CellPairRules,
     /// SHA-256 of the monitors' configurations, hex.
     pub checksum: String,
     /// The last seal; `None` if the cell is not sealed.
@@ -65,12 +53,38 @@ pub struct Cell {
     pub warnings: Vec<Diagnostic>,
 }
 
-impl Cell {
-    /// Pair rules of all commands: [links that always touch where they are joined](elbowroom_robot::joint_contacts),
-    /// then the rules of the file of pairs, which take precedence.
-    pub fn all_pair_rules(&self) -> PairRules {
+/// Control tick, and longest run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CellTiming {
+    /// Period of the control tick, s.
+    pub tick_s: f64,
+    /// Longest simulated time of a run, s.
+    pub max_s: f64,
+}
+
+/// Sources of frames outside the cell's robots and objects, which regions follow by index: [`Follow`].
+#[derive(Debug, Clone, Default)]
+pub struct FrameSources {
+    /// Encoders, in file order.
+    pub encoders: Vec<Encoder>,
+    /// Pose files, in the order of the regions that follow them.
+    pub pose_tracks: Vec<PoseTrack>,
+}
+
+/// Rules of a cell for pairs of links and objects.
+#[derive(Debug, Clone, Default)]
+pub struct CellPairRules {
+    /// Rules of the file of pairs and of planning scenes.
+    pub given: PairRules,
+    /// Rules for [links that always touch where they are joined](elbowroom_robot::joint_contacts).
+    pub joint_contacts: PairRules,
+}
+
+impl CellPairRules {
+    /// The rules of all commands: joint contacts, then the given rules, which take precedence.
+    pub fn all(&self) -> PairRules {
         let mut rules = self.joint_contacts.clone();
-        rules.extend(self.pair_rules.clone());
+        rules.extend(self.given.clone());
         rules
     }
 }
@@ -105,7 +119,7 @@ pub struct Units {
     pub angle: AngleUnit,
 }
 
-/// A robot with its pose and tool.
+/// A robot with its pose, payload and task.
 #[derive(Debug, Clone)]
 pub struct CellRobot {
     /// Its name in the cell.
@@ -120,15 +134,8 @@ pub struct CellRobot {
     pub flange: LinkId,
     /// Tool centre point frame in the flange link.
     pub tcp_in_flange: Pose,
-    /// The tool's collider, in the flange link.
-    pub tool: Option<Collider>,
-    /// The named tools, in file order; empty for a robot with one `tool`.
-    ///
-    /// With named tools, `flange` is the link of the active one and `tool` is empty. The colliders of mounted tools are
-    /// in `robot`.
-    pub tools: Vec<CellTool>,
-    /// The load's collider, in the flange link.
-    pub load: Option<Collider>,
+    /// Tool and load, or named tools. With named tools, `flange` is the link of the active one.
+    pub payload: Payload,
     /// Joint values at the start, rad or m.
     pub start: Vec<f64>,
     /// True if the file gives `start`.
@@ -139,6 +146,12 @@ pub struct CellRobot {
     pub volumes: VolumeModel,
     /// Motion limits per value of `q`.
     pub limits: Vec<JointLimits>,
+    /// Its program; `None` if it stays at its start.
+    pub program: Option<Program>,
+    /// Its avoidance; `None` if it does not avoid dynamic obstacles.
+    pub avoidance: Option<AvoidanceSpec>,
+    /// Settings of its joint-space map, if the file has a table for it.
+    pub map: Option<MapSpec>,
 }
 
 /// A region and the robots it guards against.
@@ -192,8 +205,6 @@ pub struct CellLaws {
 /// Settings of the joint-space map of a robot.
 #[derive(Debug, Clone)]
 pub struct MapSpec {
-    /// The robot.
-    pub robot: RobotId,
     /// Line of its table, or of the robot if the map has no table.
     pub line: usize,
     /// Indices of its joints in `q`.
@@ -207,10 +218,10 @@ pub struct MapSpec {
 impl MapSpec {
     /// Default settings for a robot: its first three joints, cells of 2 degrees (0.02 m for prismatic joints), all
     /// values of the other joints.
-    pub fn of(id: RobotId, robot: &CellRobot) -> Self {
+    pub fn of(robot: &CellRobot) -> Self {
         let joints: Vec<usize> = (0..robot.robot.chain.dof().min(3)).collect();
         let step = joints.iter().map(|&j| Self::default_step(robot, j)).collect();
-        Self { robot: id, line: robot.line, joints, step, others_at_start: false }
+        Self { line: robot.line, joints, step, others_at_start: false }
     }
 
     /// Default cell width, rad or m.
@@ -247,11 +258,11 @@ impl CellRobot {
     ///
     /// For a robot with named tools: their TCPs, the tools, and the links.
     pub fn guarded_volumes(&self) -> Vec<Volume> {
-        if !self.tools.is_empty() {
+        if !self.payload.tools.is_empty() {
             return self.volumes_of_tools();
         }
         let mut volumes = vec![Volume::tcp(self.flange, self.tcp_in_flange.translation)];
-        let parts = [("tool", Part::Tool, &self.tool), ("load", Part::Load, &self.load)];
+        let parts = [("tool", Part::Tool, &self.payload.tool), ("load", Part::Load, &self.payload.load)];
         volumes.extend(parts.into_iter().filter_map(|(name, part, collider)| {
             let collider = collider.as_ref()?;
             let (shape, in_link) = self.volumes.of_solid(&collider.shape, collider.in_link);
@@ -266,7 +277,7 @@ impl CellRobot {
 
     fn volumes_of_tools(&self) -> Vec<Volume> {
         let mut links = arm_volumes(&self.robot, self.volumes);
-        links.retain(|v| self.tools.iter().all(|t| t.link != v.link));
+        links.retain(|v| self.payload.tools.iter().all(|t| t.link != v.link));
         let tool = |t: &CellTool| {
             let c = t.collider.as_ref()?;
             let (shape, in_link) = self.volumes.of_solid(&c.shape, c.in_link);
@@ -289,8 +300,8 @@ impl CellRobot {
             }
             tcp
         };
-        let tcps: Vec<Volume> = self.tools.iter().map(tcp).collect();
-        tcps.into_iter().chain(self.tools.iter().filter_map(tool)).chain(links.iter().cloned()).collect()
+        let tcps: Vec<Volume> = self.payload.tools.iter().map(tcp).collect();
+        tcps.into_iter().chain(self.payload.tools.iter().filter_map(tool)).chain(links.iter().cloned()).collect()
     }
 
     /// True if a solid that is fixed relative to the flange contains the point.
@@ -317,12 +328,7 @@ impl CellRobot {
     pub fn without_payload(&self) -> Robot {
         let mut robot = self.robot.clone();
         let colliders = &mut robot.colliders[self.flange.0];
-        colliders.truncate(colliders.len().saturating_sub(self.payload().count()));
+        colliders.truncate(colliders.len().saturating_sub(self.payload.colliders().count()));
         robot
-    }
-
-    /// Tool and load, in the flange's frame.
-    pub fn payload(&self) -> impl Iterator<Item = &Collider> {
-        [&self.tool, &self.load].into_iter().flatten()
     }
 }

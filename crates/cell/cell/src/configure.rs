@@ -104,12 +104,12 @@ pub fn zone_arbiter(cell: &Cell) -> Option<Arc<ZoneArbiter>> {
     let slots = slots(cell);
     let count = slots.iter().flatten().map(|s| s.0 + 1).max()?;
     let robots: Vec<&str> = cell.robots.iter().map(|r| r.name.as_str()).collect();
-    let members = |slot: usize| slots.iter().zip(&cell.regions).filter(move |(s, _)| **s == Some(SlotId(slot)));
-    let name = |slot: usize| members(slot).map(|(_, r)| r.region.name.as_str()).collect::<Vec<_>>().join(", ");
-    let names: Vec<String> = (0..count).map(name).collect();
+    let members = |slot: SlotId| slots.iter().zip(&cell.regions).filter(move |(s, _)| **s == Some(slot));
+    let name = |slot: SlotId| members(slot).map(|(_, r)| r.region.name.as_str()).collect::<Vec<_>>().join(", ");
+    let names: Vec<String> = (0..count).map(SlotId).map(name).collect();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     // Five ticks of silence, at least 0.1 s.
-    let silence_timeout_s = (5.0 * cell.tick_s).max(0.1);
+    let silence_timeout_s = (5.0 * cell.timing.tick_s).max(0.1);
     Some(Arc::new(ZoneArbiter::new(&robots, &names).silence_timeout(silence_timeout_s)))
 }
 
@@ -180,7 +180,7 @@ fn setup(
     let stopping_distance = cell.laws.stopping_reaction_s.map(|reaction_s| StoppingSettings {
         reaction_s,
         // A simulated controller stops by itself if an answer is missing for longer.
-        period_s: MISSED_ANSWERS * cell.tick_s,
+        period_s: MISSED_ANSWERS * cell.timing.tick_s,
         joint_deceleration: robot.limits.iter().map(|l| l.stop).collect(),
         joint_acceleration: crate::trajectory::accelerations(cell, id),
     });
@@ -204,10 +204,10 @@ fn setup(
 
 fn source_name(cell: &Cell, follow: &Follow) -> String {
     match follow {
-        Follow::Encoder(i) => format!("encoder {}", cell.encoders[*i].name),
+        Follow::Encoder(i) => format!("encoder {}", cell.frame_sources.encoders[*i].name),
         Follow::Object(i) => format!("object {}", cell.objects[i.0].name),
         Follow::Poses(i) => {
-            let file = cell.pose_tracks[*i].file.file_name();
+            let file = cell.frame_sources.pose_tracks[*i].file.file_name();
             format!("poses {}", file.map_or_else(String::new, |name| name.to_string_lossy().into_owned()))
         }
         Follow::Robot { robot, link, .. } => {

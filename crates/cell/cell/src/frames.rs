@@ -28,8 +28,8 @@ impl<'a> Frames<'a> {
     pub fn source(&self, follow: &Follow, states: &[ChainState], t_s: f64) -> SourceState {
         match follow {
             Follow::Encoder(e) => {
-                let (travel, speed) = self.cell.encoders[*e].at(t_s);
-                let direction = self.cell.encoders[*e].direction;
+                let (travel, speed) = self.cell.frame_sources.encoders[*e].at(t_s);
+                let direction = self.cell.frame_sources.encoders[*e].direction;
                 let motion = FrameMotion { velocity: direction * speed, ..FrameMotion::REST };
                 SourceState { pose: Pose::from_translation(direction * travel), motion, stamp_s: t_s }
             }
@@ -40,7 +40,7 @@ impl<'a> Frames<'a> {
                 None => SourceState { pose: self.cell.objects[o.0].in_world, motion: FrameMotion::REST, stamp_s: t_s },
             },
             Follow::Poses(p) => {
-                let track = &self.cell.pose_tracks[*p];
+                let track = &self.cell.frame_sources.pose_tracks[*p];
                 SourceState { pose: track.pose(t_s), motion: track.motion(t_s), stamp_s: t_s }
             }
             Follow::Robot { robot, link, in_link } => {
@@ -73,7 +73,8 @@ impl<'a> Frames<'a> {
 
     /// Like [`Frames::is_any_moving`], without the belts that never stop and the objects on them.
     pub fn is_any_moving_but_endless_belts(&self, t_s: f64) -> bool {
-        let is_endless = |f: &Follow| matches!(f, Follow::Encoder(e) if self.cell.encoders[*e].is_endless());
+        let is_endless =
+            |f: &Follow| matches!(f, Follow::Encoder(e) if self.cell.frame_sources.encoders[*e].is_endless());
         let is_carried = |drive: &Drive| matches!(drive, Drive::Belt(encoder) if encoder.is_endless());
         let follows = self.cell.regions.iter().filter_map(|r| r.follow);
         follows.filter(|f| !is_object(f) && !is_endless(f)).any(|f| self.travels(&f, t_s))
@@ -83,8 +84,8 @@ impl<'a> Frames<'a> {
     /// True if a followed frame moves by itself; frames of robots do not.
     pub fn travels(&self, follow: &Follow, t_s: f64) -> bool {
         match follow {
-            Follow::Encoder(e) => self.cell.encoders[*e].at(t_s).1 != 0.0,
-            Follow::Poses(p) => self.cell.pose_tracks[*p].motion(t_s) != FrameMotion::REST,
+            Follow::Encoder(e) => self.cell.frame_sources.encoders[*e].at(t_s).1 != 0.0,
+            Follow::Poses(p) => self.cell.frame_sources.pose_tracks[*p].motion(t_s) != FrameMotion::REST,
             Follow::Object(o) => self.cell.moving_objects.iter().any(|m| m.object == *o && m.is_moving(t_s)),
             Follow::Robot { .. } => false,
         }

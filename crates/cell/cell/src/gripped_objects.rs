@@ -16,14 +16,13 @@ impl Cell {
 
     /// The objects that the program of a robot grips and the links that grip them, each pair once, in the order of the program.
     pub fn grips(&self, robot: RobotId) -> Vec<(ObjectId, LinkId)> {
-        let program = self.programs.get(robot.0).and_then(Option::as_ref);
-        let Some(ProgramBody::Steps(steps)) = program.map(|p| &p.body) else { return Vec::new() };
         let at = &self.robots[robot.0];
+        let Some(ProgramBody::Steps(steps)) = at.program.as_ref().map(|p| &p.body) else { return Vec::new() };
         let (mut grips, mut link) = (Vec::new(), at.flange);
         // A repeated program begins with the tool that it ended with.
         for step in steps.iter().chain(steps) {
             match step.action {
-                StepAction::Tool(tool) => link = at.tools.get(tool).map_or(link, |t| t.link),
+                StepAction::Tool(tool) => link = at.payload.tools.get(tool).map_or(link, |t| t.link),
                 StepAction::Grip(object) if !grips.contains(&(object, link)) => grips.push((object, link)),
                 _ => {}
             }

@@ -14,7 +14,7 @@ pub(crate) fn of_cell(cell: &Cell) -> (PairRules, Vec<Diagnostic>) {
         for found in of_robot(r) {
             let [one, other] = [found.a, found.b].map(|link| GeometryId::Link { robot, link });
             // The file of pairs decides whether they are tested.
-            if cell.pair_rules.decide(one, other) {
+            if cell.pair_rules.given.decide(one, other) {
                 continue;
             }
             let [a, b] = [one, other].map(Selection::from);
@@ -31,7 +31,7 @@ pub(crate) fn of_cell(cell: &Cell) -> (PairRules, Vec<Diagnostic>) {
 /// sample.
 fn of_robot(r: &CellRobot) -> Vec<JointContact> {
     let mut found = joint_contacts(&r.robot, &r.start);
-    if !found.is_empty() && r.payload().next().is_some() {
+    if !found.is_empty() && r.payload.colliders().next().is_some() {
         let without = joint_contacts(&r.without_payload(), &r.start);
         found.retain(|contact| without.contains(contact));
     }

@@ -41,6 +41,7 @@ mod model_limits;
 mod moving_object;
 mod object_tables;
 mod pair_file;
+mod payload;
 mod poses;
 mod program;
 mod query_model;
@@ -57,7 +58,10 @@ mod tool;
 mod tool_change;
 pub mod trajectory;
 
-pub use cell::{AvoidanceSpec, Cell, CellLaws, CellRegion, CellRobot, Follow, MapSpec, Units};
+pub use cell::{
+    AvoidanceSpec, Cell, CellLaws, CellPairRules, CellRegion, CellRobot, CellTiming, Follow, FrameSources, MapSpec,
+    Units,
+};
 pub use cell_ik_error::CellIkError;
 pub use elbowroom_access as access;
 pub use file::{CellFile, QUATERNION_TOLERANCE};
@@ -66,6 +70,7 @@ pub use model_limits::model_limits;
 pub use moving_object::{Drive, Encoder, MovingObject, ObjectMotion, ObjectPath, PathRepeat, Travel};
 pub use object_tables::{ObjectTables, object_tables};
 pub use pair_file::{PairCounts, PairFile};
+pub use payload::Payload;
 pub use poses::{PoseRate, PoseTrack};
 pub use program::{MoveTarget, PathPlanner, Program, ProgramBody, ProgramStep, StepAction, TcpTarget};
 pub use query_model::{OutOfReachProofs, QueryModel, QueryRobot};

@@ -53,12 +53,12 @@ pub enum OutOfReachProofs {
 }
 
 impl QueryModel {
-    /// The model of a cell, with its rules of pairs ([`Cell::all_pair_rules`]).
+    /// The model of a cell, with its rules of pairs ([`CellPairRules::all`](crate::CellPairRules::all)).
     ///
     /// Tools and loads are colliders of the links that carry them.
     pub fn of_cell(cell: &Cell) -> Self {
         let mut model = Self::without_rules(cell);
-        model.add_rules(cell.all_pair_rules());
+        model.add_rules(cell.pair_rules.all());
         model
     }
 
@@ -223,14 +223,14 @@ impl QueryModel {
     /// Selection by a name: a robot, a link (`robot/link`; in a single robot only the link's name, and `robot` for
     /// all), or an object.
     pub fn selection(&self, name: &str) -> Option<Selection> {
-        let link = |robot: usize, link: &str| {
-            let link = self.robots.get(robot)?.robot.chain.link(link)?;
-            Some(Selection::Link { robot: RobotId(robot), link })
+        let link = |robot: RobotId, link: &str| {
+            let link = self.robots.get(robot.0)?.robot.chain.link(link)?;
+            Some(Selection::Link { robot, link })
         };
         let robot = if self.is_single_robot {
-            link(0, name).or_else(|| (name == "robot").then_some(Selection::Robot(RobotId(0))))
+            link(RobotId(0), name).or_else(|| (name == "robot").then_some(Selection::Robot(RobotId(0))))
         } else if let Some((robot, of_robot)) = name.split_once('/') {
-            self.robots.iter().position(|r| r.name == robot).and_then(|robot| link(robot, of_robot))
+            self.robots.iter().position(|r| r.name == robot).and_then(|robot| link(RobotId(robot), of_robot))
         } else {
             self.robots.iter().position(|r| r.name == name).map(|r| Selection::Robot(RobotId(r)))
         };

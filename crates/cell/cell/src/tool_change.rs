@@ -14,13 +14,15 @@ impl CellRobot {
     #[must_use]
     pub fn with_tool(&self, index: usize) -> Self {
         let mut robot = self.clone();
-        let Some(CellTool { flange, link, tcp_in_link, mounted, .. }) = self.tools.get(index) else { return robot };
+        let Some(CellTool { flange, link, tcp_in_link, mounted, .. }) = self.payload.tools.get(index) else {
+            return robot;
+        };
         (robot.flange, robot.tcp_in_flange) = (*link, *tcp_in_link);
         if !mounted {
-            robot.tools.iter_mut().filter(|t| t.flange == *flange).for_each(|t| t.mounted = false);
-            robot.tools[index].mounted = true;
+            robot.payload.tools.iter_mut().filter(|t| t.flange == *flange).for_each(|t| t.mounted = false);
+            robot.payload.tools[index].mounted = true;
         }
-        for tool in &robot.tools {
+        for tool in &robot.payload.tools {
             robot.robot.colliders[tool.link.0] = tool.collider.iter().filter(|_| tool.mounted).cloned().collect();
         }
         robot
@@ -29,7 +31,7 @@ impl CellRobot {
     /// The robot with the colliders of all its tools, mounted or not.
     pub fn with_all_tools(&self) -> Robot {
         let mut robot = self.robot.clone();
-        for tool in &self.tools {
+        for tool in &self.payload.tools {
             robot.colliders[tool.link.0] = tool.collider.iter().cloned().collect();
         }
         robot
@@ -37,7 +39,7 @@ impl CellRobot {
 
     /// Presence of a tool: always, if all tools of its flange are mounted; otherwise attached or detached.
     pub(crate) fn presence(&self, tool: &CellTool) -> Presence {
-        let is_changed = self.tools.iter().any(|t| t.flange == tool.flange && !t.mounted);
+        let is_changed = self.payload.tools.iter().any(|t| t.flange == tool.flange && !t.mounted);
         match (is_changed, tool.mounted) {
             (false, _) => Presence::Always,
             (true, true) => Presence::Attached,

@@ -105,7 +105,7 @@ fn what_a_cell_does_not_take_is_said() {
 /// The reason why the object `can` and another geometry are not tested.
 fn skipped(cell: &Cell, other: GeometryId) -> Option<&str> {
     let can = cell.objects.iter().position(|o| o.name.starts_with("can")).unwrap();
-    cell.pair_rules.skipped(GeometryId::Object(ObjectId(can)), other)
+    cell.pair_rules.given.skipped(GeometryId::Object(ObjectId(can)), other)
 }
 
 #[test]
@@ -121,7 +121,9 @@ fn pairs_that_a_scene_allows_are_not_tested() {
     assert_eq!(skipped(&cell, link(0, "link_1")), None);
     // The pair is tested if the cell says so, in the table or in the file of pairs.
     let cell_2 = parse(dir.path(), &format!("{scene}allowed_collisions = false\n")).unwrap();
-    assert!(cell_2.pair_rules.is_empty() && !cell_2.warnings.iter().any(|w| w.message.contains("allowed_collision")));
+    assert!(
+        cell_2.pair_rules.given.is_empty() && !cell_2.warnings.iter().any(|w| w.message.contains("allowed_collision"))
+    );
     std::fs::write(
         dir.path().join("pairs.toml"),
         "version = 1\npairs = [{ a = \"r/base\", b = \"can\", state = \"tested\", reason = \"it is firm\" }]\n",

@@ -21,7 +21,7 @@ fn each_tool_has_a_link_a_tcp_and_a_volume() {
     let cell = parse(&cell("", "flange = \"link_3\"", ""));
     let robot = &cell.robots[0];
     let link = |name: &str| robot.robot.chain.link(name).unwrap();
-    assert_eq!((robot.flange, robot.tools[1].flange), (link("gripper"), link("link_3")));
+    assert_eq!((robot.flange, robot.payload.tools[1].flange), (link("gripper"), link("link_3")));
     assert_eq!(robot.tcp_in_flange.translation.z, 0.2);
     let volumes = robot.guarded_volumes();
     let of = |name: &str| volumes.iter().find(|v| v.name == name).unwrap();
@@ -32,7 +32,7 @@ fn each_tool_has_a_link_a_tcp_and_a_volume() {
     assert_eq!(volumes.iter().filter(|v| v.part == Part::Arm).count(), 5);
     let active = robot.with_tool(1);
     assert_eq!((active.flange, active.tcp_in_flange.translation.z), (link("welder"), 0.3));
-    assert!(active.tools.iter().all(|t| t.mounted));
+    assert!(active.payload.tools.iter().all(|t| t.mounted));
 }
 
 #[test]
@@ -41,8 +41,9 @@ fn a_change_mounts_one_and_takes_off_the_other() {
     let robot = &cell.robots[0];
     let presence = |name: &str| robot.guarded_volumes().into_iter().find(|v| v.name == name).unwrap().presence;
     assert_eq!([presence("gripper"), presence("welder")], [Presence::Attached, Presence::Detached]);
-    let solids =
-        |r: &elbowroom_cell::CellRobot| r.tools.iter().map(|t| r.robot.colliders[t.link.0].len()).collect::<Vec<_>>();
+    let solids = |r: &elbowroom_cell::CellRobot| {
+        r.payload.tools.iter().map(|t| r.robot.colliders[t.link.0].len()).collect::<Vec<_>>()
+    };
     let changed = robot.with_tool(1);
     assert_eq!((solids(robot), solids(&changed), solids(&changed.with_tool(0))), (vec![1, 0], vec![0, 1], vec![1, 0]));
     assert_eq!(robot.with_all_tools().colliders.iter().map(Vec::len).sum::<usize>(), 7);
@@ -52,7 +53,7 @@ fn a_change_mounts_one_and_takes_off_the_other() {
 fn a_robot_with_one_tool_has_no_other_links() {
     let none = format!("{HEAD}[robot.c]\n{ARM}\n");
     let one = parse(&format!("{none}[robot.c.tool]\ntcp = {{ at = [0, 0, 200] }}\n"));
-    assert!(one.robots[0].tools.is_empty());
+    assert!(one.robots[0].payload.tools.is_empty());
     assert_eq!(one.robots[0].robot.chain.links(), parse(&none).robots[0].robot.chain.links());
 }
 

@@ -98,7 +98,7 @@ fn the_rows_are_a_file_that_a_cell_reads_back() {
     let read = QueryStates::parse("path.csv".as_ref(), &text, &QueryModel::of_cell(&cell)).unwrap();
     let rows = trajectory.rows();
     assert_eq!(read.len(), rows.len());
-    assert!(rows.iter().enumerate().all(|(i, row)| read.of(i).next() == Some((0, &row.q[..]))));
+    assert!(rows.iter().enumerate().all(|(i, row)| read.of(i).next() == Some((RobotId(0), &row.q[..]))));
 }
 
 /// Published robots with meshes and SRDF, some with prismatic or mimic joints.

@@ -2,7 +2,6 @@
 
 use elbowroom_cell::{Cell, OutOfReachProofs, QueryModel};
 use elbowroom_query::{Level, QueryKind, QueryRow, QueryStates, evaluate};
-use elbowroom_robot::RobotId;
 use elbowroom_scene::{Checker, CheckerOptions, CheckerStats, Scene, SceneState};
 use elbowroom_testkit::random::Random;
 
@@ -75,7 +74,7 @@ fn in_order_of_the_hierarchy(scene: &Scene, states: &QueryStates, level: Level) 
     let mut checker = Checker::new(scene, CheckerOptions { level, weights: false, ..CheckerOptions::default() });
     let mut state = SceneState::new(scene);
     let collides = (0..states.len()).map(|i| {
-        states.of(i).for_each(|(robot, q)| state.set_q(scene, RobotId(robot), q).unwrap());
+        states.of(i).for_each(|(robot, q)| state.set_q(scene, robot, q).unwrap());
         checker.collides(&state).is_some()
     });
     (collides.collect(), checker.stats())
@@ -102,7 +101,7 @@ fn testing_likely_pairs_first_does_not_change_the_results() {
     for (i, (row, exact)) in rows.iter().zip(&exact).enumerate() {
         assert_eq!(row.pair, exact.pair, "state {i}");
         let Some((a, b)) = row.pair else { continue };
-        states.of(i).for_each(|(robot, q)| state.set_q(&scene, RobotId(robot), q).unwrap());
+        states.of(i).for_each(|(robot, q)| state.set_q(&scene, robot, q).unwrap());
         assert!(checker.between(a.into(), b.into()).collides(&state).is_some(), "state {i}");
     }
     // A tolerance query is a boolean query, too.

@@ -9,11 +9,11 @@ pub fn of_region(index: usize) -> &'static str {
     COLORS[index % COLORS.len()]
 }
 
-/// Colour of a curve: red with control, blue without, as in the paper's figure 12; each further robot has its own pair.
-pub fn of_run(robot: usize, monitored: bool) -> &'static str {
+/// Colour of the curve of the robot with this index: red with control, blue without, as in the paper's figure 12; each further robot has its own pair.
+pub fn of_run(index: usize, monitored: bool) -> &'static str {
     const PAIRS: [(&str, &str); 4] =
         [("#d6203a", "#1f6fd6"), ("#ef8a17", "#12a5a5"), ("#9b51c9", "#5b6b7b"), ("#8c6d31", "#74c476")];
-    let (on, off) = PAIRS[robot % PAIRS.len()];
+    let (on, off) = PAIRS[index % PAIRS.len()];
     if monitored { on } else { off }
 }
 

@@ -1,5 +1,6 @@
 //! Distance of every region over time, from the joint values of a recording.
 
+use elbowroom_cell::CellRegionId;
 use elbowroom_kinematics::ChainState;
 use elbowroom_monitor::Volume;
 use elbowroom_proximity::separation_within;
@@ -12,22 +13,21 @@ use crate::scene::{ReportRobot, ReportScene};
 /// Distance of the guarded volumes of one robot to one region.
 #[derive(Debug, Clone)]
 pub struct DistanceCurve {
-    /// Index of the region.
-    pub region: usize,
+    /// The region.
+    pub region: CellRegionId,
     /// Distance per requested tick, m; NaN while the region is inactive.
     pub metres: Vec<f64>,
 }
 
 /// The curves of one robot at these ticks: one per region that applies to it. Empty if the scene has no guarded
 /// volumes.
-pub fn curves(scene: &ReportScene, rec: &Recording, robot: usize, ticks: &[usize]) -> Vec<DistanceCurve> {
-    let (Some(model), Some(track)) = (scene.robots.get(robot), rec.robots.get(robot)) else { return Vec::new() };
-    let applies = |r: &RegionTrack| {
-        r.robots.contains(&RobotId(robot)) && model.volumes.iter().any(|v| v.part.counts_for(r.guards))
-    };
+pub fn curves(scene: &ReportScene, rec: &Recording, robot: RobotId, ticks: &[usize]) -> Vec<DistanceCurve> {
+    let (Some(model), Some(track)) = (scene.robots.get(robot.0), rec.robots.get(robot.0)) else { return Vec::new() };
+    let applies =
+        |r: &RegionTrack| r.robots.contains(&robot) && model.volumes.iter().any(|v| v.part.counts_for(r.guards));
     let all = rec.regions.iter().enumerate().filter(|(_, r)| applies(r));
-    let mut curves: Vec<DistanceCurve> =
-        all.map(|(region, _)| DistanceCurve { region, metres: Vec::with_capacity(ticks.len()) }).collect();
+    let curve = |region: usize| DistanceCurve { region: CellRegionId(region), metres: Vec::with_capacity(ticks.len()) };
+    let mut curves: Vec<DistanceCurve> = all.map(|(region, _)| curve(region)).collect();
     let mut state = ChainState::new(&model.chain);
     for &tick in ticks {
         let Some(sample) = track.samples.get(tick).filter(|s| s.q.len() == state.q.len()) else { continue };
@@ -35,7 +35,7 @@ pub fn curves(scene: &ReportScene, rec: &Recording, robot: usize, ticks: &[usize
         model.chain.forward(&mut state);
         let volumes = placed(model, &state);
         for curve in &mut curves {
-            curve.metres.push(distance(&volumes, &rec.regions[curve.region], tick, sample.t_s));
+            curve.metres.push(distance(&volumes, &rec.regions[curve.region.0], tick, sample.t_s));
         }
     }
     curves

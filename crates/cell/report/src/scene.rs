@@ -82,12 +82,12 @@ impl ReportScene {
     /// The geometry of a cell.
     pub fn of_cell(cell: &Cell) -> Self {
         let mut scene = cell.robots.iter().fold(Self::new(), |scene, r| {
-            let payload: Vec<Collider> = r.payload().cloned().collect();
-            let model = if r.tools.is_empty() { r.without_payload() } else { r.with_all_tools() };
+            let payload: Vec<Collider> = r.payload.colliders().cloned().collect();
+            let model = if r.payload.tools.is_empty() { r.without_payload() } else { r.with_all_tools() };
             scene
                 .robot(&r.name, &model, r.base_in_world, r.flange, r.tcp_in_flange, &payload)
                 .guarded_by(r.guarded_volumes())
-                .with_tools(r.tools.iter().map(|t| (t.name.clone(), t.link, t.tcp_in_link)).collect())
+                .with_tools(r.payload.tools.iter().map(|t| (t.name.clone(), t.link, t.tcp_in_link)).collect())
         });
         for (r, robot) in scene.robots.iter_mut().enumerate() {
             let volume = |(object, link)| (object, cell.gripped_volume(RobotId(r), object, link));

@@ -263,7 +263,7 @@ fn engine(cell: &Cell, q: &[f64]) -> Vec<(String, f64)> {
     let setup = &configure::setups(cell).unwrap()[0];
     let config = &setup.configuration;
     let mut sweep = RegionSweep::new(config);
-    assert!(sweep.advance(config, q, &[], cell.tick_s));
+    assert!(sweep.advance(config, q, &[], cell.timing.tick_s));
     let regions = cell
         .regions
         .iter()

@@ -45,7 +45,7 @@ fn the_page_knows_what_is_held_and_which_tool_is_mounted_when() {
     write_html(&mut page, &ReportScene::of_cell(&cell), &[("run", &outcome.recording)]).unwrap();
     let data = page_data::block(&String::from_utf8(page).unwrap(), "scene-data");
     let (robot, run) = (&data["robots"][0], &data["runs"][0]);
-    let [hand, lance] = [0, 1].map(|i| cell.robots[0].tools[i].link.0);
+    let [hand, lance] = [0, 1].map(|i| cell.robots[0].payload.tools[i].link.0);
 
     let held = run["objects"][0]["held"].as_array().unwrap();
     assert_eq!((held.len(), &held[0][0]), (1, &json!(0)));

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::recording::{
     AvoidanceSample, AvoidanceTrack, Hold, HoldReason, ObjectTrack, Outcome, PartKind, PerceptionTrack,
-    RecordedRegionKind, Recording, RunEnd, SensorTrack, Stop, TickTimes,
+    RecordedRegionKind, Recording, RobotEnding, RunEnd, SensorTrack, Stop, TickTimes,
 };
 
 /// Figures of a run, in SI units.
@@ -86,20 +86,9 @@ pub struct RobotSummary {
     pub flange: String,
     /// True if its program was completed.
     pub finished: bool,
-    /// `finished`, `stopped`, `held` (waiting for an exchange region), `collided` or `deadlock`.
-    pub outcome: Outcome,
-    /// Time at which it stopped at its final configuration, s; null if it finished or was still moving.
-    pub stopped_at_s: Option<f64>,
-    /// The region or obstacle that stopped it, or what it collided with first; null if unknown.
-    pub by: Option<String>,
-    /// The link, tool or load that was closest to the region, or collided first.
-    pub part: Option<String>,
-    /// Kind of that part: `tcp`, `tool`, `load` or `link`.
-    pub part_kind: Option<PartKind>,
-    /// The point of that part closest to the region, in the world, m.
-    pub point_m: Option<[f64; 3]>,
-    /// Condition under which it would continue, in words; null if none is known.
-    pub release: Option<String>,
+    /// How its run ended.
+    #[serde(flatten)]
+    pub ending: EndingSummary,
     /// Time stopped by the monitor, s.
     pub stopped_s: f64,
     /// Stops by the monitor, in order of time.
@@ -114,6 +103,39 @@ pub struct RobotSummary {
     /// Reactions to the obstacles that sensors see; omitted for a robot that no sensor guards.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub perception: Option<PerceptionSummary>,
+}
+
+/// End of the run of one robot.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct EndingSummary {
+    /// `finished`, `stopped`, `held` (waiting for an exchange region), `collided` or `deadlock`.
+    pub outcome: Outcome,
+    /// Time at which it stopped at its final configuration, s; null if it finished or was still moving.
+    pub stopped_at_s: Option<f64>,
+    /// The region or obstacle that stopped it, or what it collided with first; null if unknown.
+    pub by: Option<String>,
+    /// The link, tool or load that was closest to the region, or collided first.
+    pub part: Option<String>,
+    /// Kind of that part: `tcp`, `tool`, `load` or `link`.
+    pub part_kind: Option<PartKind>,
+    /// The point of that part closest to the region, in the world, m.
+    pub point_m: Option<[f64; 3]>,
+    /// Condition under which it would continue, in words; null if none is known.
+    pub release: Option<String>,
+}
+
+impl From<&RobotEnding> for EndingSummary {
+    fn from(ending: &RobotEnding) -> Self {
+        Self {
+            outcome: ending.outcome,
+            stopped_at_s: ending.stopped_at_s,
+            by: ending.by.clone(),
+            part: ending.part.clone(),
+            part_kind: ending.part_kind,
+            point_m: ending.point.map(|p| [p.x, p.y, p.z]),
+            release: ending.release.clone(),
+        }
+    }
 }
 
 /// Reactions of one robot to the obstacles that sensors see.
@@ -340,13 +362,7 @@ impl From<&Recording> for RunSummary {
             name: t.name.clone(),
             flange: t.flange.clone(),
             finished: t.finished,
-            outcome: t.ending.outcome,
-            stopped_at_s: t.ending.stopped_at_s,
-            by: t.ending.by.clone(),
-            part: t.ending.part.clone(),
-            part_kind: t.ending.part_kind,
-            point_m: t.ending.point.map(|p| [p.x, p.y, p.z]),
-            release: t.ending.release.clone(),
+            ending: EndingSummary::from(&t.ending),
             stopped_s: t.stopped_s,
             stops: t.stops.iter().map(StopSummary::from).collect(),
             min_override: t.min_override,

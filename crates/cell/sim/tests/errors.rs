@@ -21,7 +21,7 @@ fn the_error_of_an_unreachable_line_states_where_it_fails() {
 /// Never a panic; a cell that still parses is also simulated for a few ticks.
 fn parse_and_run(text: &str) {
     if let Ok(mut cell) = Cell::parse("fuzz.toml", text) {
-        cell.max_s = 0.02;
+        cell.timing.max_s = 0.02;
         let _ = simulate(&cell, &RunOptions::default());
     }
 }

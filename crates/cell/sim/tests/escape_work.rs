@@ -18,7 +18,7 @@ fn hard_runs_do_not_hit() {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/evade.toml");
     let cell = Cell::load(file).unwrap();
     let moves = |o: &ObjectId| cell.moving_objects.iter().any(|m| m.object == *o);
-    let object = cell.avoidance[0].as_ref().unwrap().objects.iter().copied().find(moves).unwrap();
+    let object = cell.robots[0].avoidance.as_ref().unwrap().objects.iter().copied().find(moves).unwrap();
     let seconds = crossing::without_obstacle(&cell).unwrap().duration_s;
     let only = std::env::var("ELBOWROOM_EVADE_RUNS").ok();
     let long = std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1");
@@ -29,7 +29,7 @@ fn hard_runs_do_not_hit() {
         let mut cell = cell.clone();
         // After that time, the arm of these runs is on its path.
         if let Some((_, back_s)) = HARD.iter().find(|(hard, _)| *hard == n && !long) {
-            cell.max_s = back_s + 0.5;
+            cell.timing.max_s = back_s + 0.5;
         }
         cell.moving_objects.iter_mut().find(|m| m.object == object).unwrap().drive = Drive::Path(paths[n].clone());
         let recording = simulate(&cell, &RunOptions::default()).unwrap().recording;

@@ -103,7 +103,7 @@ fn the_angular_velocity_of_poses_counts() {
     let (dir, _) = poses("t_s,x,y,z,roll,pitch,yaw\n0,0,-900,0,0,0,-90\n4,0,-900,0,0,0,89\n", "");
     let bar = "[region.bar]\nshape = \"box\"\nbase = [0, 450, -50]\nsize = [60, 900, 100]\nfollow = { poses = \"poses.csv\" }\n";
     let cell = Cell::parse(dir.path().join("c.toml"), &cell(bar)).unwrap();
-    let motion = cell.pose_tracks[0].motion(1.0);
+    let motion = cell.frame_sources.pose_tracks[0].motion(1.0);
     assert!((motion.angular_velocity.z - 179.0_f64.to_radians() / 4.0).abs() < 1e-9, "{motion:?}");
     let needed = elbowroom_sim::check::check(&cell).unwrap()[0].needed_warning_m.unwrap();
     // 1 m/s: 50 mm to brake, 4 mm of reaction; the bar's end, 0.9 m away, moves for (0.1 + 0.004) s meanwhile.

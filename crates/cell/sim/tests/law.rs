@@ -120,7 +120,7 @@ fn two_regions_combine_by_the_minimum_and_the_programmed_override_multiplies() {
 #[test]
 fn the_programs_of_the_parsed_cell_are_in_si() {
     let cell = parse(&figure_12(""));
-    let ProgramBody::Steps(steps) = &cell.programs[0].as_ref().unwrap().body else { panic!() };
+    let ProgramBody::Steps(steps) = &cell.robots[0].program.as_ref().unwrap().body else { panic!() };
     let StepAction::Linear { speed, .. } = steps[1].action else { panic!() };
     assert_eq!(speed, 0.5);
 }

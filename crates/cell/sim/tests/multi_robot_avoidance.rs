@@ -61,5 +61,5 @@ fn names_of_robots_are_checked() {
     wrong("[\"waits\"]", "itself");
     wrong("\"drives\"", "list");
     wrong("[3]", "robots");
-    assert_eq!(parse(&cell("")).avoidance[0].as_ref().unwrap().robots, [RobotId(1)]);
+    assert_eq!(parse(&cell("")).robots[0].avoidance.as_ref().unwrap().robots, [RobotId(1)]);
 }

@@ -133,12 +133,12 @@ fn errors_in_the_table_name_the_line() {
     wrong("rules = \"nowhere.toml\"", "nowhere.toml");
     let seen = "horizon = 2\nnoise = 12\ndelay_ms = 60";
     let seen = Cell::parse(file(), &text.replace("[avoidance.kr150]", &format!("[avoidance.kr150]\n{seen}"))).unwrap();
-    let spec = seen.avoidance[0].as_ref().unwrap();
+    let spec = seen.robots[0].avoidance.as_ref().unwrap();
     assert_eq!((spec.settings.escape.horizon_s, spec.noise_m, spec.delay_s), (2.0, 0.012, 0.06));
     let sound = "speed = 20000\nclearance = 0.1\nreturn_speed = 1\nstall_timeout = 60";
     let sound = text.replace("[avoidance.kr150]", &format!("[avoidance.kr150]\n{sound}"));
     let cell = Cell::parse(file(), &sound).unwrap();
-    let settings = cell.avoidance[0].as_ref().unwrap().settings;
+    let settings = cell.robots[0].avoidance.as_ref().unwrap().settings;
     assert_eq!((settings.reactive.speed_m_s, settings.reactive.clearance_m), (20.0, 1e-4));
     assert_eq!((settings.return_speed_fraction, settings.stall_timeout_s), (Some(0.01), 60.0));
     let unknown = text.replace("objects = [\"cart\"]", "objects = [\"card\"]");

@@ -34,7 +34,7 @@ fn a_stop_is_recorded_with_its_cause_also_where_the_robot_goes_on() {
     assert!((stop.distance_m.unwrap() - ((centre - ball).length() - 0.15)).abs() < 1e-9);
     assert_eq!(at.governing.unwrap().point, stop.point.unwrap());
     let summary = &RunSummary::from(&recording).robots[0];
-    assert_eq!((summary.stops.len(), summary.stops[0].from_s, summary.release.clone()), (1, stop.from_s, None));
+    assert_eq!((summary.stops.len(), summary.stops[0].from_s, summary.ending.release.clone()), (1, stop.from_s, None));
 
     let stays = run(&gate(false)).recording;
     let robot = &stays.robots[0];

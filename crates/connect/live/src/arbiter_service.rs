@@ -155,26 +155,26 @@ fn settings(cell: &Cell) -> Option<ArbiterSettings> {
         let mut own: Vec<SlotId> = of_robot.filter_map(|(slot, _)| *slot).collect();
         own.sort_unstable();
         own.dedup();
-        RobotSettings { stop_time: stop_time(cell, i), ..RobotSettings::new(&cell.robots[i].name, own) }
+        RobotSettings { stop_time: stop_time(cell, RobotId(i)), ..RobotSettings::new(&cell.robots[i].name, own) }
     });
     let settings = ArbiterSettings::new(robots.collect(), count);
     Some(ArbiterSettings { checksum: configuration_number(cell), ..settings })
 }
 
 /// Longest time in which a robot stops from full speed after its controller stops receiving overrides.
-fn stop_time(cell: &Cell, robot: usize) -> Micros {
-    let braking = cell.robots[robot].limits.iter().map(|l| l.velocity / l.stop).fold(0.0, f64::max);
+fn stop_time(cell: &Cell, robot: RobotId) -> Micros {
+    let braking = cell.robots[robot.0].limits.iter().map(|l| l.velocity / l.stop).fold(0.0, f64::max);
     let laws = &cell.laws;
     Micros::from_seconds(braking + laws.reaction_s + 2.0 * laws.laws.stale_s)
 }
 
 fn slot_regions(cell: &Cell, count: usize) -> Vec<Vec<String>> {
     let slots = configure::slots(cell);
-    let of = |slot: usize| {
-        let members = slots.iter().zip(&cell.regions).filter(move |(s, _)| **s == Some(SlotId(slot)));
+    let of = |slot: SlotId| {
+        let members = slots.iter().zip(&cell.regions).filter(move |(s, _)| **s == Some(slot));
         members.map(|(_, r)| r.region.name.clone()).collect()
     };
-    (0..count).map(of).collect()
+    (0..count).map(SlotId).map(of).collect()
 }
 
 struct Running {

@@ -63,7 +63,7 @@ impl CarriedVolumes {
     fn list(&mut self) {
         let Self { id, setup, robot, objects, volumes, .. } = self;
         volumes.clear();
-        for tool in robot.tools.iter().filter(|tool| tool.mounted) {
+        for tool in robot.payload.tools.iter().filter(|tool| tool.mounted) {
             let of_tool = setup.tool_volumes(tool.link);
             volumes.extend(of_tool.map(|(volume, v)| AttachedVolume { volume, in_link: v.in_link }));
         }

@@ -8,7 +8,7 @@ use std::time::Duration;
 use elbowroom_cell::Cell;
 use elbowroom_interlock::Micros;
 use elbowroom_recording::Recorder;
-use elbowroom_status::{CellStatus, EventStatus, HealthStatus, RobotStatus, SlotStatus};
+use elbowroom_status::{CellStatus, EventStatus, HealthStatus, RobotStatus, ServiceStatus, SlotStatus};
 use elbowroom_view::StatusFeed;
 
 use crate::clock::Clock;
@@ -111,7 +111,7 @@ fn subscribe(
             let Ok(mut status) = serde_json::from_slice::<RobotStatus>(bytes) else { return };
             let mut heard = locked(&shared);
             let room = MAX_EVENTS.saturating_sub(heard.events.len());
-            heard.events.extend(status.events.drain(..).take(room));
+            heard.events.extend(status.service.events.drain(..).take(room));
             heard.robots[i] = Some((status, clock.micros()));
         });
         subscriptions.push(network.subscribe(&keys.status(&robot.name), handler)?);
@@ -128,7 +128,9 @@ fn subscribe(
 
 /// Adds the time since arrival to the ages in a status.
 fn aged(status: &RobotStatus, age_s: f64) -> RobotStatus {
-    RobotStatus { health: HealthStatus { age_s, ..status.health }, ..status.clone() }
+    let mut status = status.clone();
+    status.service.health.age_s = age_s;
+    status
 }
 
 fn together(cell: &Cell, clock: Clock, shared: &Shared) -> CellStatus {
@@ -146,7 +148,10 @@ fn together(cell: &Cell, clock: Clock, shared: &Shared) -> CellStatus {
             robot: robot.name.clone(),
             q: robot.start.clone(),
             reason: "no status yet; shown at its start".to_owned(),
-            health: HealthStatus { age_s: clock.seconds(), ..HealthStatus::default() },
+            service: ServiceStatus {
+                health: HealthStatus { age_s: clock.seconds(), ..HealthStatus::default() },
+                ..ServiceStatus::default()
+            },
             ..RobotStatus::default()
         },
     };

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use elbowroom_cell::{Cell, RegionEdit};
+use elbowroom_cell::{Cell, CellRegion, CellRegionId, RegionEdit};
 use elbowroom_monitor::Life;
 use serde::{Deserialize, Serialize};
 
@@ -94,7 +94,7 @@ impl Kept {
     }
 
     /// Switches a temporary region; returns false if it already has that state.
-    fn switch(&mut self, region: usize, active: bool) -> bool {
+    fn switch(&mut self, region: CellRegionId, active: bool) -> bool {
         let has_changed = self.table.switch(region, active);
         if has_changed {
             self.record();
@@ -208,10 +208,10 @@ impl RegionKeeper {
         PresentRegions { cell: kept.cell.clone(), edits: kept.table.edits.clone() }
     }
 
-    /// Switches a temporary region, by its index in the present cell, and notifies the nodes at once.
+    /// Switches a temporary region of the present cell, and notifies the nodes at once.
     ///
     /// Permanent regions stay on.
-    pub fn switch(&self, region: usize, active: bool) {
+    pub fn switch(&self, region: CellRegionId, active: bool) {
         if locked(&self.kept).switch(region, active) {
             self.publish();
         }
@@ -310,8 +310,9 @@ impl Running {
 }
 
 /// Finds the temporary region of this name. Permanent regions are never switched.
-fn find(name: &str, cell: &Cell) -> Option<usize> {
-    cell.regions.iter().position(|r| r.region.name == name && r.region.life == Life::Temporary)
+fn find(name: &str, cell: &Cell) -> Option<CellRegionId> {
+    let is_found = |r: &CellRegion| r.region.name == name && r.region.life == Life::Temporary;
+    cell.regions.iter().position(is_found).map(CellRegionId)
 }
 
 /// Names of regions with ignored requests, to report each region of the cell once: programs repeat their requests, and

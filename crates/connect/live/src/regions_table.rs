@@ -1,6 +1,6 @@
 //! Table of a cell's present regions, and whether they are on.
 
-use elbowroom_cell::{Cell, RegionEdit};
+use elbowroom_cell::{Cell, CellRegionId, RegionEdit};
 use elbowroom_interlock::Micros;
 use elbowroom_monitor::Life;
 use serde::{Deserialize, Serialize};
@@ -78,12 +78,12 @@ impl RegionTable {
         self
     }
 
-    /// Switches a temporary region, by its index in the cell; returns false if that changes nothing.
-    pub fn switch(&mut self, region: usize, active: bool) -> bool {
-        if self.active[region] == active {
+    /// Switches a temporary region; returns false if that changes nothing.
+    pub fn switch(&mut self, region: CellRegionId, active: bool) -> bool {
+        if self.active[region.0] == active {
             return false;
         }
-        self.active[region] = active;
+        self.active[region.0] = active;
         self.revision.1 += 1;
         true
     }

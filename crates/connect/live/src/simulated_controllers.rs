@@ -98,7 +98,7 @@ fn run(start: &Start, robots: &[RobotId], started: &SyncSender<Result<(), Servic
         }
     };
     let _ = started.send(Ok(()));
-    let period = Duration::from_secs_f64(cell.tick_s);
+    let period = Duration::from_secs_f64(cell.timing.tick_s);
     // The joint values of a simulated robot are those at the nominal time of its tick, however late the thread is. The
     // nominal time is the clock's, which continues while the computer sleeps.
     let period_us = period.as_micros() as u64;
@@ -176,7 +176,7 @@ impl SimulatedController {
             name: at.name.clone(),
             program: Arc::new(Mutex::new(GuardedProgram::new(ProgramClock::new(once, at.limits.clone())))),
             again,
-            tick_s: cell.tick_s,
+            tick_s: cell.timing.tick_s,
             reaction_s: cell.laws.reaction_delay_s,
             carried,
             client,

@@ -74,7 +74,8 @@ impl SwitchRequests {
     /// [`NetworkError`] if the keys cannot be used.
     pub(crate) fn new(cell: &Arc<Cell>, robot: RobotId, network: &Arc<dyn Network>) -> Result<Self, NetworkError> {
         let keys = Keys::new(&cell.name);
-        let first = |region: CellRegionId| cell.programs.iter().position(|program| switches(program.as_ref(), region));
+        let first =
+            |region: CellRegionId| cell.robots.iter().position(|robot| switches(robot.program.as_ref(), region));
         let off = (0..cell.regions.len()).filter(|region| first(CellRegionId(*region)) == Some(robot.0));
         Ok(Self {
             robot: cell.robots[robot.0].name.clone(),

@@ -135,7 +135,7 @@ impl Setup {
 
 fn carried(setup: &MonitorSetup, robot: &CellRobot) -> Vec<Vec<AttachedVolume>> {
     let of_tool = |tool: usize| -> Vec<AttachedVolume> {
-        let volumes = setup.tool_volumes(robot.tools[tool].link);
+        let volumes = setup.tool_volumes(robot.payload.tools[tool].link);
         volumes.map(|(volume, v)| AttachedVolume { volume, in_link: v.in_link }).collect()
     };
     let [gripper, torch] = [of_tool(0), of_tool(1)];

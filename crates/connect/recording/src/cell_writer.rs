@@ -116,7 +116,7 @@ impl<W: Write + Seek> CellWriter<W> {
             ("cell", cell.name.clone()),
             ("cell_file", file_name(&cell.file)),
             ("checksum", cell.checksum.clone()),
-            ("tick_s", cell.tick_s.to_string()),
+            ("tick_s", cell.timing.tick_s.to_string()),
             ("robots", robots.join("\n")),
         ];
         let values = values.into_iter().map(|(key, value)| (key.to_owned(), value)).collect::<BTreeMap<_, _>>();

@@ -61,7 +61,7 @@ fn every_example_replays_to_the_bit() {
 fn runs_without_the_override_and_with_faulty_input_replay_to_the_bit() {
     let mut cell = Cell::load(examples().join("exchange/cell.toml")).unwrap();
     // The faults end at 1.5 s.
-    cell.max_s = 4.0;
+    cell.timing.max_s = 4.0;
     let free = RunOptions { apply_override: false, ..RunOptions::default() };
     assert_eq!(replayed(&cell, &free).differences, 0);
     let kinds = [InputFaultKind::NotANumber, InputFaultKind::Frozen];

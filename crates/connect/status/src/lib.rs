@@ -31,5 +31,5 @@ mod status_sample;
 
 pub use cell_status::{CellStatus, PlacedStatus, SlotStatus};
 pub use event_status::EventStatus;
-pub use robot_status::{HealthStatus, PointStatus, PoseStatus, RegionStatus, RobotStatus};
+pub use robot_status::{HealthStatus, PointStatus, PoseStatus, RegionStatus, RobotStatus, ServiceStatus};
 pub use status_sample::{SPARE_REGIONS, StatusSample};

@@ -39,6 +39,14 @@ pub struct RobotStatus {
     pub virtual_tcps: Vec<PointStatus>,
     /// Every region of the robot.
     pub regions: Vec<RegionStatus>,
+    /// The part about the service that runs the monitor; its fields are fields of the JSON object of the robot.
+    #[serde(flatten)]
+    pub service: ServiceStatus,
+}
+
+/// Status of the service of one robot.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct ServiceStatus {
     /// The first 16 hexadecimal digits of the checksum of the configuration of the tick; empty if it is the cell file's
     /// configuration.
     #[serde(default, skip_serializing_if = "String::is_empty")]
@@ -151,9 +159,7 @@ impl RobotStatus {
             governing: report.governing.as_ref().map(point),
             virtual_tcps: sample.virtual_tcps.iter().map(point).collect(),
             regions: of_region().map(|(s, r)| RegionStatus::of(&r.name, s)).collect(),
-            configuration: String::new(),
-            health: HealthStatus::default(),
-            events: Vec::new(),
+            service: ServiceStatus::default(),
         }
     }
 }

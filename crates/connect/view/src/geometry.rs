@@ -18,7 +18,7 @@ fn document(cell: &Cell, mode: &str) -> (Value, Vec<u8>) {
     json["checksum"] = cell.checksum.as_str().into();
     json["mode"] = mode.into();
     for (robot, r) in members(&mut json["robots"]).zip(&cell.robots) {
-        let absent: Vec<usize> = r.tools.iter().filter(|t| !t.mounted).map(|t| t.link.0).collect();
+        let absent: Vec<usize> = r.payload.tools.iter().filter(|t| !t.mounted).map(|t| t.link.0).collect();
         robot["start"] = r.start.clone().into();
         robot["absent"] = absent.into();
         robot["tcp"] = json!({ "link": r.flange.0, "pose": values(&r.tcp_in_flange) });

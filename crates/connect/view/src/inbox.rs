@@ -40,7 +40,7 @@ impl Inbox {
     pub(crate) fn publish(&self, mut status: CellStatus) {
         let mut events = std::mem::take(&mut status.events);
         // A service may list an event at the robot, at the cell, or at both.
-        for event in status.robots.iter_mut().flat_map(|robot| std::mem::take(&mut robot.events)) {
+        for event in status.robots.iter_mut().flat_map(|robot| std::mem::take(&mut robot.service.events)) {
             if !events.contains(&event) {
                 events.push(event);
             }

@@ -1,6 +1,7 @@
 //! Source of the shown status, and the commands of a page.
 
 use elbowroom_kinematics::inverse::IkError;
+use elbowroom_robot::RobotId;
 use elbowroom_status::{CellStatus, EventStatus};
 use serde::Deserialize;
 
@@ -50,8 +51,8 @@ pub(crate) enum CommandRefusal {
     #[error("this page shows a running cell: its robots are moved by their controllers")]
     RunningCell,
     /// The cell has no robot with this index.
-    #[error("there is no robot {0}")]
-    NoRobot(usize),
+    #[error("there is no robot {}", .0.0)]
+    NoRobot(RobotId),
     /// The number of values differs from the number of joints.
     #[error("`{robot}` has {joints} joints, not {values}")]
     JointCount { robot: String, joints: usize, values: usize },

@@ -109,7 +109,7 @@ fn compare(cell: &Cell, state: &Value) {
     .unwrap();
     for (robot, setup) in configure::setups(cell).unwrap().iter().enumerate() {
         let mut sweep = RegionSweep::new(&setup.configuration);
-        assert!(sweep.advance(&setup.configuration, &q[robot], &[], cell.tick_s));
+        assert!(sweep.advance(&setup.configuration, &q[robot], &[], cell.timing.tick_s));
         for (i, shown) in state["robots"][robot]["regions"].as_array().unwrap().iter().enumerate() {
             let engine = sweep.distance(&setup.configuration, RegionId(i), f64::INFINITY).unwrap();
             let page = shown["distance_m"].as_f64().unwrap();

@@ -121,7 +121,7 @@ fn every_event_arrives_once_however_fast_they_come() {
         // Listed at the cell, at the robot, or at both, it is one event.
         let mut next = status(k as f64);
         next.events.extend((k % 3 != 0).then(|| event(k)));
-        next.robots[0].events.extend((k % 3 != 1).then(|| event(k)));
+        next.robots[0].service.events.extend((k % 3 != 1).then(|| event(k)));
         feed.publish(next);
     }
     let mut seen = Vec::new();

@@ -40,7 +40,7 @@ fn query(cell: &Cell, q: &[Vec<f64>]) -> (f64, [String; 2]) {
 fn regions(cell: &Cell, robot: usize, q: &[f64]) -> Vec<(String, f64)> {
     let setup = &configure::setups(cell).unwrap()[robot];
     let mut sweep = RegionSweep::new(&setup.configuration);
-    assert!(sweep.advance(&setup.configuration, q, &[], cell.tick_s));
+    assert!(sweep.advance(&setup.configuration, q, &[], cell.timing.tick_s));
     let names = setup.configuration.regions().iter().map(|r| r.name.clone()).enumerate();
     names.map(|(i, name)| (name, sweep.distance(&setup.configuration, RegionId(i), f64::INFINITY).unwrap())).collect()
 }

@@ -18,19 +18,20 @@ use crate::simulation::Simulation;
 /// the speed, so the times are those of the plan.
 pub(crate) fn write(path: &Path, cell: &Cell, motions: Vec<(RobotId, JointTrajectory)>) -> Result<(), Failure> {
     let mut cell = cell.clone();
-    cell.programs.iter_mut().for_each(|program| *program = None);
-    cell.avoidance.iter_mut().for_each(|avoidance| *avoidance = None);
+    for robot in &mut cell.robots {
+        (robot.program, robot.avoidance) = (None, None);
+    }
     cell.moving_objects.clear();
-    for encoder in &mut cell.encoders {
+    for encoder in &mut cell.frame_sources.encoders {
         let (at_m, _) = encoder.at(0.0);
         encoder.travel = Travel::Constant { at_m, speed: 0.0, start_s: 0.0, end_s: 0.0 };
     }
     for (robot, trajectory) in motions {
         let Some(first) = trajectory.first() else { continue };
-        cell.robots[robot.0].start = first.to_vec();
-        let line = cell.robots[robot.0].line;
+        let robot = &mut cell.robots[robot.0];
+        robot.start = first.to_vec();
         let body = ProgramBody::Trajectory(trajectory);
-        cell.programs[robot.0] = Some(Program { speed_override: 1.0, repeat: 1, body, line });
+        robot.program = Some(Program { speed_override: 1.0, repeat: 1, body, line: robot.line });
     }
     let options = RunOptions { apply_override: false, avoidance: false, ..RunOptions::default() };
     let played = Simulation::of(&cell).run(&options)?.recording;

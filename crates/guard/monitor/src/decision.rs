@@ -30,14 +30,14 @@ impl<'a> Decision<'a> {
         s: &Snapshot,
     ) -> Self {
         if let Some(region) = zone_client.and_then(ZoneClient::halted_by) {
-            return Self::stop(OverrideReason::Halted(region), clearances.get(region.0));
+            return Self::stop(OverrideReason::Halted(region), clearances.get(region));
         }
         let v0 = s.programmed_override;
         let mut decision =
             Self { speed_override: v0, immediate_limit: v0, reason: OverrideReason::Free, governing: None };
-        for r in clearances.near().iter().map(|r| *r as usize).filter(|r| regions.is_active(*r)) {
-            let Some(clearance) = clearances.get(r) else { continue };
-            let (id, kind) = (RegionId(r), config.regions[r].kind);
+        for id in clearances.near().iter().map(|r| RegionId(*r as usize)).filter(|id| regions.is_active(*id)) {
+            let Some(clearance) = clearances.get(id) else { continue };
+            let kind = config.regions[id.0].kind;
             let may_enter = |slot| zone_client.is_some_and(|client| client.may_enter(slot, s.now_s));
             let reason = match kind {
                 RegionKind::Exchange { slot } if may_enter(slot) => continue,
@@ -48,7 +48,7 @@ impl<'a> Decision<'a> {
             decision.immediate_limit = decision.immediate_limit.min(clearance.immediate_limit);
             let requested = clearance.requested_override;
             let is_tie =
-                requested == decision.speed_override && decision.governing.is_some_and(|g| r < g.governing.region);
+                requested == decision.speed_override && decision.governing.is_some_and(|g| id < g.governing.region);
             if requested < decision.speed_override || is_tie {
                 (decision.speed_override, decision.reason, decision.governing) = (requested, reason, Some(clearance));
             }

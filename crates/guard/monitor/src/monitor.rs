@@ -122,10 +122,10 @@ impl Monitor {
         if let Some(zone_client) = &mut self.zone_client {
             let Self { regions, clearances, log, .. } = self;
             let status = |r: RegionId| RegionStatus {
-                is_active: regions.is_active(r.0),
+                is_active: regions.is_active(r),
                 is_measured: regions.measured[r.0],
                 zone: regions.get(r).presence,
-                stops_outside: clearances.get(r.0).is_none_or(|c| c.stops_outside),
+                stops_outside: clearances.get(r).is_none_or(|c| c.stops_outside),
             };
             zone_client.update(status, s.now_s, log);
         }
@@ -249,11 +249,10 @@ impl Monitor {
     fn check_sources(&mut self, s: &Snapshot) -> Result<(), Fault> {
         self.source_check.update(&self.config.sources, s.sources, s.now_s, self.config.laws.stale_s);
         self.regions.choose_measured(&self.config);
-        for DynamicRegion { region, source } in &self.now.dynamic_regions {
-            let region = RegionId(*region);
+        for &DynamicRegion { region, source } in &self.now.dynamic_regions {
             match self.source_check.status(source.0) {
                 SourceStatus::Valid => {}
-                _ if !self.regions.is_active(region.0) => self.regions.measured[region.0] = false,
+                _ if !self.regions.is_active(region) => self.regions.measured[region.0] = false,
                 SourceStatus::Lost => return Err(Fault::Source { region }),
                 SourceStatus::Jumped => return Err(Fault::SourceJump { region }),
             }

@@ -35,7 +35,7 @@ impl Monitor {
 
     /// Whether the region is active.
     pub fn is_active(&self, region: RegionId) -> bool {
-        self.regions.is_active(region.0)
+        self.regions.is_active(region)
     }
 
     /// The region with this name.
@@ -56,7 +56,8 @@ impl Monitor {
     /// The virtual TCPs of the last tick: for every region near the robot, the point that requests the smallest
     /// override.
     pub fn virtual_tcps<'a>(&'a self, s: &'a Snapshot<'a>) -> impl Iterator<Item = VirtualTcp> + 'a {
-        let active = self.clearances.near().iter().map(|r| *r as usize).filter(|r| self.regions.is_active(*r));
+        let active =
+            self.clearances.near().iter().map(|r| RegionId(*r as usize)).filter(|r| self.regions.is_active(*r));
         active.filter_map(|r| self.clearances.get(r)).map(|c| self.virtual_tcp(c, s))
     }
 
@@ -135,9 +136,9 @@ impl Monitor {
         let (position, on_region) = (pair.separation.on_a, pair.separation.on_b);
         let link = self.config.volumes[pair.volume].link;
         let point = LinkPoint::new(&self.config, &self.now.chain, link, position);
-        let region_motion = region_point_motion(&self.config.regions[pair.region], s.sources, on_region);
+        let region_motion = region_point_motion(&self.config.regions[pair.region.0], s.sources, on_region);
         VirtualTcp {
-            region: RegionId(pair.region),
+            region: pair.region,
             volume: VolumeId(pair.volume),
             distance_m: pair.separation.distance,
             position,

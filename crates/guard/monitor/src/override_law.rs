@@ -60,7 +60,7 @@ impl OverrideLaw<'_> {
     /// exact.
     pub(crate) fn requested_override(&self, pair: &VolumeRegionPair, so_far: f64) -> RequestedOverride {
         let v0 = self.tick.snapshot.programmed_override;
-        let region = &self.tick.config.regions[pair.region];
+        let region = &self.tick.config.regions[pair.region.0];
         match region.kind {
             RegionKind::Forbidden | RegionKind::Exchange { .. } => self.forbidden(pair, so_far),
             RegionKind::Monitored { slow_to: None } => RequestedOverride::gradual(v0, v0),
@@ -94,7 +94,7 @@ impl OverrideLaw<'_> {
     fn forbidden(&self, pair: &VolumeRegionPair, so_far: f64) -> RequestedOverride {
         let config = self.tick.config;
         let v0 = self.tick.snapshot.programmed_override;
-        let warned = v0 * warning_factor(pair.separation.distance, config.regions[pair.region].warning_m);
+        let warned = v0 * warning_factor(pair.separation.distance, config.regions[pair.region.0].warning_m);
         // Proving that the request of the warning zone or of another pair is slow enough is cheaper than searching the
         // limit. With a limited rate of change the override may exceed the request of the zone: then the limit itself is
         // needed.
@@ -133,7 +133,7 @@ impl OverrideLaw<'_> {
         if !(free_m > 0.0) {
             return None;
         }
-        let (volume, region) = (pair.volume, &config.regions[pair.region]);
+        let (volume, region) = (pair.volume, &config.regions[pair.region.0]);
         // Two convex solids have a separating plane, and only motion across it counts. Other solids may approach in any
         // direction.
         let is_convex = |shape: &Shape| !matches!(shape, Shape::Mesh(_));
@@ -157,11 +157,11 @@ impl OverrideLaw<'_> {
 
     /// The approach of the region by its own motion: against `towards`, or in any direction.
     fn region_approach(&self, pair: &VolumeRegionPair, law: &StoppingLaw, towards: Option<Vec3>) -> RegionApproach {
-        let region = &self.tick.config.regions[pair.region];
+        let region = &self.tick.config.regions[pair.region.0];
         let Some(source) = region.source_state(self.tick.snapshot.sources) else { return RegionApproach::default() };
         let older_s = older_s(self.tick.snapshot, source);
         let origin = source.pose.translation;
-        let bounds = &self.tick.now.region_box[pair.region];
+        let bounds = &self.tick.now.region_box[pair.region.0];
         if bounds.extent().is_finite() {
             let motion = TurningMotion::new(&source.motion, bounds.max_distance(origin));
             let approach = match towards {
@@ -182,8 +182,8 @@ impl OverrideLaw<'_> {
 
     /// Largest speed (m/s) of the points of a bounded region against `towards`.
     fn closing_speed(&self, pair: &VolumeRegionPair, source: &SourceState, towards: Vec3) -> f64 {
-        let region = &self.tick.config.regions[pair.region];
-        let in_world = &self.tick.now.region_in_world[pair.region];
+        let region = &self.tick.config.regions[pair.region.0];
+        let in_world = &self.tick.now.region_in_world[pair.region.0];
         let lever = (-towards).cross(source.motion.angular_velocity);
         let farthest = in_world.transform_point(region.shape.support(in_world.inverse_transform_vector(lever)));
         source.motion.velocity_at(farthest - source.pose.translation).dot(-towards)
@@ -203,7 +203,7 @@ impl OverrideLaw<'_> {
     fn direction(&self, pair: &VolumeRegionPair) -> Direction {
         let tick = &self.tick;
         let (Some(predicted), Some(intent)) = (tick.predicted, tick.intent) else { return Direction::Approaching };
-        let (v, r) = (pair.volume, pair.region);
+        let (v, r) = (pair.volume, pair.region.0);
         let away = (pair.separation.on_a - pair.separation.on_b).try_normalize();
         let Some(away) = away.filter(|_| pair.separation.distance > 0.0) else {
             // Where a moving region will be when the robot is at rest is not known well enough for motion inside it.
@@ -240,6 +240,6 @@ fn older_s(snapshot: &Snapshot<'_>, source: &SourceState) -> f64 {
 fn dynamic_region_speed(now: &Placement, source: &SourceState, dynamic: &DynamicRegion) -> f64 {
     let SourceState { pose, motion, .. } = source;
     let angular_speed = motion.angular_velocity.length();
-    let lever = || now.region_box[dynamic.region].max_distance(pose.translation);
+    let lever = || now.region_box[dynamic.region.0].max_distance(pose.translation);
     motion.velocity.length() + if angular_speed > 0.0 { angular_speed * lever() } else { 0.0 }
 }

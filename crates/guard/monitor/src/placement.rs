@@ -4,13 +4,12 @@ use elbowroom_kinematics::ChainState;
 use elbowroom_spatial::{Aabb, FrameMotion, Pose, Rotation};
 
 use crate::attached_volumes::AttachedVolumes;
-use crate::{Configuration, Region, Snapshot, SourceId, SourceState};
+use crate::{Configuration, Region, RegionId, Snapshot, SourceId, SourceState};
 
 /// A region that follows a source of motion.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct DynamicRegion {
-    /// Index of the region in the configuration.
-    pub(crate) region: usize,
+    pub(crate) region: RegionId,
     pub(crate) source: SourceId,
 }
 
@@ -31,7 +30,7 @@ impl Placement {
     pub(crate) fn new(config: &Configuration) -> Self {
         let region_in_world: Vec<Pose> = config.regions.iter().map(|r| r.anchor * r.shape_in_anchor).collect();
         let aabb = |(r, pose): (&Region, &Pose)| r.shape.aabb(pose);
-        let dynamic = |(region, r): (usize, &Region)| Some(DynamicRegion { region, source: r.follow? });
+        let dynamic = |(i, r): (usize, &Region)| Some(DynamicRegion { region: RegionId(i), source: r.follow? });
         Self {
             chain: ChainState::new(&config.chain),
             attached: AttachedVolumes::new(config),
@@ -93,7 +92,7 @@ impl Placement {
     }
 
     fn place_regions(&mut self, config: &Configuration, source_in_world: impl Fn(SourceId) -> Pose) {
-        for DynamicRegion { region: r, source } in &self.dynamic_regions {
+        for DynamicRegion { region: RegionId(r), source } in &self.dynamic_regions {
             let region = &config.regions[*r];
             let pose = source_in_world(*source) * region.anchor * region.shape_in_anchor;
             self.region_in_world[*r] = pose;

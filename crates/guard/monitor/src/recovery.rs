@@ -48,7 +48,7 @@ pub(crate) fn leads_out(
     intent: &ChainState,
     predicted: &Placement,
 ) -> bool {
-    let (v, r) = (pair.volume, pair.region);
+    let (v, r) = (pair.volume, pair.region.0);
     let (volume, region) = (&tick.config.volumes[v].shape, &tick.config.regions[r].shape);
     let (volume_predicted, region_predicted) = (&predicted.volume_in_world[v], &predicted.region_in_world[r]);
     let Some(now) = penetration(volume, &tick.now.volume_in_world[v], region, &tick.now.region_in_world[r]) else {
@@ -71,15 +71,15 @@ pub(crate) fn leads_out(
 /// Upper bound of the speed (m/s) at which the border of a region moves next to a volume. The border of a ball that
 /// turns about its centre, or of a cylinder that turns about its axis, does not move.
 pub(crate) fn border_speed(tick: &TickContext<'_>, pair: &VolumeRegionPair) -> f64 {
-    let region = &tick.config.regions[pair.region];
+    let region = &tick.config.regions[pair.region.0];
     let Some(source) = region.source_state(tick.snapshot.sources) else { return 0.0 };
-    let in_world = &tick.now.region_in_world[pair.region];
+    let in_world = &tick.now.region_in_world[pair.region.0];
     let (turn, axis) = (source.motion.angular_velocity, in_world.transform_vector(Vec3::Z));
     let across = (turn - axis * turn.dot(axis)).length();
     let velocity = |at: Vec3| source.motion.velocity_at(at - source.pose.translation);
     let of_center = velocity(in_world.translation).length();
     let turning = |rate: f64| {
-        let radius = || tick.now.region_box[pair.region].max_distance(in_world.translation);
+        let radius = || tick.now.region_box[pair.region.0].max_distance(in_world.translation);
         if rate > 0.0 { rate * radius() } else { 0.0 }
     };
     match &region.shape {
@@ -102,7 +102,7 @@ fn leads_out_ahead(
     intent: &ChainState,
     now: &Penetration,
 ) -> bool {
-    let (v, r) = (pair.volume, pair.region);
+    let (v, r) = (pair.volume, pair.region.0);
     let center = tick.now.volume_box[v].center();
     let twist = Twist::of(tick, pair, intent, center);
     let speed =
@@ -147,7 +147,7 @@ struct Twist {
 
 impl Twist {
     fn of(tick: &TickContext<'_>, pair: &VolumeRegionPair, intent: &ChainState, center: Vec3) -> Self {
-        let region = &tick.config.regions[pair.region];
+        let region = &tick.config.regions[pair.region.0];
         let base = &tick.config.base_in_world;
         let link = tick.config.volumes[pair.volume].link;
         let region_angular_velocity =

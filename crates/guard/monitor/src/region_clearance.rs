@@ -10,7 +10,7 @@ use crate::placement::Placement;
 use crate::rounded_box::RoundedBox;
 use crate::volume_region_pair::{RequestedOverride, VolumeRegionPair};
 use crate::warm_start_cache::{IndexedShape, WarmStartCache};
-use crate::{Configuration, RegionKind};
+use crate::{Configuration, RegionId, RegionKind};
 
 /// Result of the distance queries of one region in one tick.
 #[derive(Debug, Clone, Copy)]
@@ -67,7 +67,7 @@ impl RegionClearances {
             previous_distance: 0.0,
             requested_override: 0.0,
             immediate_limit: 0.0,
-            governing: VolumeRegionPair { region: 0, volume: 0, separation },
+            governing: VolumeRegionPair { region: RegionId(0), volume: 0, separation },
             stops_outside: true,
         };
         Self {
@@ -96,8 +96,8 @@ impl RegionClearances {
     }
 
     /// The region's clearance, if a guarded volume is near.
-    pub(crate) fn get(&self, region: usize) -> Option<&RegionClearance> {
-        let clearance = &self.of_region[region];
+    pub(crate) fn get(&self, region: RegionId) -> Option<&RegionClearance> {
+        let clearance = &self.of_region[region.0];
         (clearance.tick == self.tick && self.tick > 0).then_some(clearance)
     }
 
@@ -184,7 +184,7 @@ impl Measurement<'_> {
             limit,
         );
         let Some(separation) = found else { return };
-        self.record(VolumeRegionPair { region: r, volume: v, separation }, is_first);
+        self.record(VolumeRegionPair { region: RegionId(r), volume: v, separation }, is_first);
     }
 
     /// True if cheap bounds prove that the distance of the pair exceeds `limit`.
@@ -202,24 +202,24 @@ impl Measurement<'_> {
 
     /// Adds a pair to the clearance of its region; `is_first` if it is the first pair of the region in this tick.
     fn record(&mut self, pair: VolumeRegionPair, is_first: bool) {
-        let of_region = if is_first { f64::INFINITY } else { self.of_region[pair.region].requested_override };
+        let of_region = if is_first { f64::INFINITY } else { self.of_region[pair.region.0].requested_override };
         let RequestedOverride { speed_override: requested_override, immediate_limit } =
             self.law.requested_override(&pair, of_region.min(self.smallest_request));
         let distance = pair.separation.distance;
-        let is_exchange = matches!(self.config.regions[pair.region].kind, RegionKind::Exchange { .. });
+        let is_exchange = matches!(self.config.regions[pair.region.0].kind, RegionKind::Exchange { .. });
         // The request of an exchange region is void while this robot holds it.
         if !is_exchange {
             self.smallest_request = self.smallest_request.min(requested_override);
         }
         let stops_outside = !is_exchange || self.law.stops_outside(&pair);
-        let clearance = &mut self.of_region[pair.region];
+        let clearance = &mut self.of_region[pair.region.0];
         if is_first {
-            self.near.push(pair.region as u32);
+            self.near.push(pair.region.0 as u32);
             // A region that was not near in the previous tick was farther away than its reach.
             let previous_distance = if clearance.tick + 1 == self.tick {
                 clearance.distance
             } else {
-                self.config.regions[pair.region].reach()
+                self.config.regions[pair.region.0].reach()
             };
             *clearance = RegionClearance {
                 tick: self.tick,

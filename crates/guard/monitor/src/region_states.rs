@@ -54,8 +54,8 @@ impl RegionStates {
         &self.states[region.0]
     }
 
-    pub(crate) fn is_active(&self, region: usize) -> bool {
-        self.states[region].active
+    pub(crate) fn is_active(&self, region: RegionId) -> bool {
+        self.states[region.0].active
     }
 
     /// The digital outputs, one bit each.
@@ -100,13 +100,13 @@ impl RegionStates {
         std::mem::swap(&mut self.warned, &mut self.previously_warned);
         self.warned.clear();
         let Self { states, warned, previously_warned, just_switched, outputs, .. } = self;
-        let left = previously_warned.iter().filter(|r| clearances.get(**r as usize).is_none());
+        let left = previously_warned.iter().filter(|r| clearances.get(RegionId(**r as usize)).is_none());
         for r in clearances.near().iter().chain(left) {
             let (id, region) = (RegionId(*r as usize), &config.regions[*r as usize]);
             let state = &mut states[id.0];
             let from = state.presence;
-            let mut to = from.next(clearances.get(id.0).map_or(f64::INFINITY, |c| c.distance), region);
-            if let Some(clearance) = clearances.get(id.0).filter(|_| !to.inside && !just_switched.contains(&id))
+            let mut to = from.next(clearances.get(id).map_or(f64::INFINITY, |c| c.distance), region);
+            if let Some(clearance) = clearances.get(id).filter(|_| !to.inside && !just_switched.contains(&id))
                 && let Some(passed_m) =
                     sweep.passed(config, id, [clearance.previous_distance, clearance.distance], to.warned)
             {

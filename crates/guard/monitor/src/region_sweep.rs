@@ -155,7 +155,7 @@ impl RegionSweep {
         }
         self.at.place_sources(config, sources);
         for (motion, dynamic) in self.region_motions.iter_mut().zip(&self.at.dynamic_regions) {
-            (motion.from, motion.to) = (motion.to, self.at.region_in_world[dynamic.region]);
+            (motion.from, motion.to) = (motion.to, self.at.region_in_world[dynamic.region.0]);
         }
         self.step(config, q, dt_s, sources);
         true
@@ -164,7 +164,7 @@ impl RegionSweep {
     /// Like [`RegionSweep::advance`], for a snapshot that is valid and placed, `dt_s` (s) after the previous one.
     pub(crate) fn advance_to(&mut self, config: &Configuration, now: &Placement, dt_s: f64, sources: &[SourceState]) {
         for (motion, dynamic) in self.region_motions.iter_mut().zip(&now.dynamic_regions) {
-            (motion.from, motion.to) = (motion.to, now.region_in_world[dynamic.region]);
+            (motion.from, motion.to) = (motion.to, now.region_in_world[dynamic.region.0]);
         }
         self.step(config, &now.chain.q, dt_s, sources);
     }
@@ -181,7 +181,7 @@ impl RegionSweep {
             let shift = (motion.to.translation - motion.from.translation).length();
             let reported = sources[dynamic.source.0].motion.velocity.length() * dt_s;
             let turned = (motion.from.rotation.inverse() * motion.to.rotation).angle().abs();
-            let bounds = config.regions[dynamic.region].shape.aabb(&Pose::IDENTITY);
+            let bounds = config.regions[dynamic.region.0].shape.aabb(&Pose::IDENTITY);
             let lever = bounds.max_distance(Vec3::ZERO).min(UNBOUNDED_SIZE_M);
             let jumped = shift > 2.0 * (reported + turned * lever.max(motion.to.translation.length())) + JUMP_M;
             motion.travel_m = if jumped { f64::INFINITY } else { shift + turned * lever };
@@ -304,7 +304,7 @@ impl RegionSweep {
     }
 
     fn dynamic_index(&self, region: RegionId) -> Option<usize> {
-        self.at.dynamic_regions.iter().position(|d| d.region == region.0)
+        self.at.dynamic_regions.iter().position(|d| d.region == region)
     }
 }
 

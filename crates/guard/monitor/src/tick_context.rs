@@ -6,7 +6,7 @@ use elbowroom_spatial::Vec3;
 use crate::placement::Placement;
 use crate::point_motion::{LinkPoint, region_point_motion};
 use crate::volume_region_pair::VolumeRegionPair;
-use crate::{Configuration, Snapshot};
+use crate::{Configuration, RegionId, Snapshot};
 
 /// Settings of the direction-aware law and of recovery.
 #[derive(Debug, Clone, Copy)]
@@ -45,8 +45,8 @@ impl TickContext<'_> {
     }
 
     /// Velocity (m/s) of the point of a region at `point` (world, m).
-    pub(crate) fn region_point_velocity(&self, region: usize, point: Vec3) -> Vec3 {
-        region_point_motion(&self.config.regions[region], self.snapshot.sources, point).velocity
+    pub(crate) fn region_point_velocity(&self, region: RegionId, point: Vec3) -> Vec3 {
+        region_point_motion(&self.config.regions[region.0], self.snapshot.sources, point).velocity
     }
 
     /// True if the program leaves the region along `away`, and the robot's actual motion is not towards the region.

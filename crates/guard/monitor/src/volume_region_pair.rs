@@ -2,11 +2,13 @@
 
 use elbowroom_proximity::Separation;
 
+use crate::RegionId;
+
 /// A guarded volume near a region.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct VolumeRegionPair {
-    /// Index of the region in the configuration.
-    pub(crate) region: usize,
+    /// The region.
+    pub(crate) region: RegionId,
     /// Index of the volume in the configuration.
     pub(crate) volume: usize,
     /// Closest points: `on_a` lies on the volume, `on_b` on the region.

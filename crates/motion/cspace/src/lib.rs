@@ -30,6 +30,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! [`NearestNeighbours`] searches among configurations, for planners.
+//!
 //! **Invariant.** For the robot model and the obstacles from which a builder made a layer, a free cell never contains a
 //! configuration that collides with them. A configuration outside the grid always counts as blocked.
 
@@ -43,6 +45,7 @@ mod joint_map;
 mod layer;
 mod layer_map;
 mod map_reader;
+mod nearest_neighbours;
 mod npy;
 mod obstacle_model;
 mod occupancy_bitmap;
@@ -59,6 +62,7 @@ pub use joint_map::JointMap;
 pub use layer::{Layer, RowSpan};
 pub use layer_map::LayerMap;
 pub use map_reader::{MapReader, MapSnapshot};
+pub use nearest_neighbours::NearestNeighbours;
 pub use obstacle_model::{ObstacleModel, UnknownObstacleModel, spheres_until};
 pub use occupancy_bitmap::OccupancyBitmap;
 pub use planar_arm::{ArmDimension, ArmError, PlanarArm};

@@ -37,6 +37,7 @@ pub struct RecordingLayout {
 /// ```
 /// use elbowroom_formats::recording::{RecordingLayout, read};
 /// use elbowroom_kinematics::{Chain, JointKind, Limits, dh::ClassicalRow};
+/// use elbowroom_robot::RobotId;
 /// use elbowroom_spatial::units::AngleUnit;
 /// let row = |name: &str| ClassicalRow {
 ///     joint: name.into(), kind: JointKind::Revolute, a: 0.3, alpha: 0.0, d: 0.5, theta: 0.0,
@@ -53,7 +54,7 @@ pub struct RecordingLayout {
 ///     ..RecordingLayout::default()
 /// };
 /// let states = read(&path, "arm", &chain, &layout)?;
-/// assert_eq!((states.times_s(), states.q(0, 0)), (&[0.0, 0.004][..], &[std::f64::consts::FRAC_PI_2, 0.0][..]));
+/// assert_eq!((states.times_s(), states.q(0, RobotId(0))), (&[0.0, 0.004][..], &[std::f64::consts::FRAC_PI_2, 0.0][..]));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
@@ -195,6 +196,7 @@ fn unquoted(cell: &str) -> &str {
 mod tests {
     use elbowroom_kinematics::Limits;
     use elbowroom_kinematics::dh::ClassicalRow;
+    use elbowroom_robot::RobotId;
 
     use super::*;
 
@@ -247,7 +249,11 @@ mod tests {
         ] {
             let states = read_text(text, &layout).unwrap();
             assert_eq!(states.times_s(), expected.times_s(), "{text}");
-            assert!((0..2).all(|i| states.q(i, 0) == expected.q(i, 0)), "{text}: {:?}", states.q(0, 0));
+            assert!(
+                (0..2).all(|i| states.q(i, RobotId(0)) == expected.q(i, RobotId(0))),
+                "{text}: {:?}",
+                states.q(0, RobotId(0))
+            );
         }
     }
 

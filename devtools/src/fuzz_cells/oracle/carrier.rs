@@ -37,9 +37,9 @@ impl Carrier {
                 let object = &cell.objects[object.0];
                 let seen = recording.and_then(|r| r.objects.iter().find(|o| o.name == object.name));
                 let rest = std::slice::from_ref(&object.in_world);
-                Self::Object(Track::new(seen.map_or(rest, |o| &o.poses), cell.tick_s))
+                Self::Object(Track::new(seen.map_or(rest, |o| &o.poses), cell.timing.tick_s))
             }
-            Some(Follow::Encoder(e)) => Self::Belt(cell.encoders[*e].clone()),
+            Some(Follow::Encoder(e)) => Self::Belt(cell.frame_sources.encoders[*e].clone()),
             Some(Follow::Robot { robot, link, in_link }) => {
                 Self::Robot { robot: robot.0, link: link.0, in_link: Frame::of(in_link) }
             }

@@ -35,7 +35,7 @@ impl Guarded {
     pub fn all(robot: &CellRobot) -> Vec<Self> {
         let mut all = Self::hand(robot);
         for (link, colliders) in robot.without_payload().colliders.iter().enumerate() {
-            if robot.tools.iter().any(|t| t.link.0 == link) {
+            if robot.payload.tools.iter().any(|t| t.link.0 == link) {
                 continue;
             }
             all.extend(colliders.iter().map(|b| Self::of_collider(link, b, GuardedPart::Arm)));
@@ -46,13 +46,12 @@ impl Guarded {
     /// Returns tool centre points, tools and load.
     fn hand(robot: &CellRobot) -> Vec<Self> {
         let tcp = |link: LinkId, at: &Pose| Self::new(link.0, at, OracleSolid::point(), GuardedPart::Tcp);
-        if robot.tools.is_empty() {
-            let carried = [&robot.tool, &robot.load].into_iter().flatten();
-            let solids = carried.map(|c| Self::of_collider(robot.flange.0, c, GuardedPart::Tool));
+        if robot.payload.tools.is_empty() {
+            let solids = robot.payload.colliders().map(|c| Self::of_collider(robot.flange.0, c, GuardedPart::Tool));
             return std::iter::once(tcp(robot.flange, &robot.tcp_in_flange)).chain(solids).collect();
         }
         let mut all = Vec::new();
-        for (index, t) in robot.tools.iter().enumerate() {
+        for (index, t) in robot.payload.tools.iter().enumerate() {
             let solid = t.collider.iter().map(|c| Self::of_collider(t.link.0, c, GuardedPart::Tool));
             let parts = std::iter::once(tcp(t.link, &t.tcp_in_link)).chain(solid);
             all.extend(parts.map(|part| Self { tool: Some(index), ..part }));
@@ -72,7 +71,7 @@ impl Guarded {
 
     /// Whether it is on the robot before anything moves.
     pub fn is_there_at_start(&self, robot: &CellRobot) -> bool {
-        self.tool.is_none_or(|tool| robot.tools[tool].mounted)
+        self.tool.is_none_or(|tool| robot.payload.tools[tool].mounted)
     }
 
     pub fn counts_for(&self, guards: Guards) -> bool {

@@ -9,17 +9,17 @@ pub struct MountedTools(Vec<(usize, Vec<bool>)>);
 
 impl MountedTools {
     pub fn new(robot: &CellRobot, recording: &Recording) -> Self {
-        let mut mounted: Vec<bool> = robot.tools.iter().map(|t| t.mounted).collect();
+        let mut mounted: Vec<bool> = robot.payload.tools.iter().map(|t| t.mounted).collect();
         let mut changes = vec![(0, mounted.clone())];
         let steps = recording.events.iter().filter(|e| e.event == RunEvent::Tool && e.robot == robot.name);
         for step in steps {
-            let Some(tool) = robot.tools.iter().position(|t| t.name == step.region) else { continue };
+            let Some(tool) = robot.payload.tools.iter().position(|t| t.name == step.region) else { continue };
             if mounted[tool] {
                 continue;
             }
             // It replaces the tool on its flange.
-            for (other, is_mounted) in robot.tools.iter().zip(&mut mounted) {
-                *is_mounted &= other.flange != robot.tools[tool].flange;
+            for (other, is_mounted) in robot.payload.tools.iter().zip(&mut mounted) {
+                *is_mounted &= other.flange != robot.payload.tools[tool].flange;
             }
             mounted[tool] = true;
             changes.push(((step.t_s / recording.tick_s).round() as usize, mounted.clone()));

@@ -36,7 +36,7 @@ pub fn check(cell: &Cell, recording: &Recording, findings: &mut Findings) {
 
 /// Returns the recording that a robot plays.
 fn played(cell: &Cell, robot: usize) -> Option<&[TrajectoryRow]> {
-    match &cell.programs[robot].as_ref()?.body {
+    match &cell.robots[robot].program.as_ref()?.body {
         ProgramBody::Trajectory(trajectory) => Some(trajectory.rows()),
         ProgramBody::Steps(_) => None,
     }

@@ -31,20 +31,24 @@ impl Deepest {
     }
 }
 
-/// The contact of the surfaces; `None` if the other shape is wholly inside the mesh.
-pub(super) fn mesh_smooth(
-    mesh: &TriMesh,
-    in_world: &Pose,
-    other: &Shape,
-    other_in_mesh: &Pose,
-) -> Option<ContactPoint> {
-    let resolution = (1e-10 * mesh.aabb().extent().max_element()).max(f64::MIN_POSITIVE);
-    let mut best = Deepest { resolution, height: f64::INFINITY, at: Vec3::ZERO, triangle: usize::MAX };
-    let (radius, axis) = (radius(other), other_in_mesh.rotation.z_axis());
-    let center = other_in_mesh.translation;
-    let deepest_of = |triangle: usize| {
-        let t = mesh.corners(triangle);
-        match other {
+/// The other shape, in the mesh's frame.
+struct PlacedShape<'a> {
+    shape: &'a Shape,
+    in_mesh: &'a Pose,
+    center: Vec3,
+    axis: Vec3,
+}
+
+impl<'a> PlacedShape<'a> {
+    fn new(shape: &'a Shape, in_mesh: &'a Pose) -> Self {
+        Self { shape, in_mesh, center: in_mesh.translation, axis: in_mesh.rotation.z_axis() }
+    }
+
+    /// The deepest point of a triangle, and its distance from the centre or the axis, or its height.
+    #[inline]
+    fn deepest_of(&self, t: [Vec3; 3]) -> (f64, Vec3) {
+        let Self { shape, in_mesh, center, axis } = *self;
+        match shape {
             Shape::Capsule(c) => {
                 let near = segment_triangle(center - axis * c.half_length, center + axis * c.half_length, t);
                 (near.squared.sqrt(), near.on_b)
@@ -52,8 +56,8 @@ pub(super) fn mesh_smooth(
             Shape::Cylinder(c) => {
                 // The depth has one maximum over a triangle; these candidates contain it in most cases.
                 let near = segment_triangle(center - axis * c.half_length, center + axis * c.half_length, t);
-                let common = nearest_to_cylinder(c, other_in_mesh, t);
-                let height = |p: Vec3| (project_point(other, other_in_mesh, p).signed_distance, p);
+                let common = nearest_to_cylinder(c, in_mesh, t);
+                let height = |p: Vec3| (project_point(shape, in_mesh, p).signed_distance, p);
                 let candidates = [common, near.on_b, t[0], t[1], t[2]].map(height);
                 candidates.into_iter().min_by(|x, y| x.0.total_cmp(&y.0)).unwrap_or((f64::INFINITY, t[0]))
             }
@@ -67,9 +71,21 @@ pub(super) fn mesh_smooth(
                 (at.distance(center), at)
             }
         }
-    };
+    }
+}
+
+/// The contact of the surfaces; `None` if the other shape is wholly inside the mesh.
+pub(super) fn mesh_smooth(
+    mesh: &TriMesh,
+    in_world: &Pose,
+    other: &Shape,
+    other_in_mesh: &Pose,
+) -> Option<ContactPoint> {
+    let resolution = (1e-10 * mesh.aabb().extent().max_element()).max(f64::MIN_POSITIVE);
+    let mut best = Deepest { resolution, height: f64::INFINITY, at: Vec3::ZERO, triangle: usize::MAX };
+    let (radius, placed) = (radius(other), PlacedShape::new(other, other_in_mesh));
     let mut visit = |triangle: usize| {
-        let (height, at) = deepest_of(triangle);
+        let (height, at) = placed.deepest_of(mesh.corners(triangle));
         best.offer(height, at, triangle);
     };
     if matches!(other, Shape::HalfSpace(_)) {
@@ -79,7 +95,7 @@ pub(super) fn mesh_smooth(
         // The box of the core; a cylinder is its own core.
         let shrink = Vec3::splat(radius);
         let core = Aabb { min: bounds.min + shrink, max: bounds.max - shrink };
-        let size = mesh.aabb().extent().max_element() + bounds.extent().max_element() + center.length();
+        let size = mesh.aabb().extent().max_element() + bounds.extent().max_element() + placed.center.length();
         let limit = BoxDistance::limit(&mesh.bvh, radius + 1e-12 * size);
         mesh.bvh.traverse(&BoxDistance::new(&mesh.bvh, &core, other_in_mesh), limit, &mut |triangle| {
             visit(triangle);

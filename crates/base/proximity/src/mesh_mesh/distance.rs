@@ -108,14 +108,20 @@ pub fn mesh_separation_with(
     }
     *warm_start = found.warm_start;
     workspace.closest_features = Some(MeshFeatures::Triangles(found.triangles.0, found.triangles.1));
+    Some(in_world(&found, touching, a, a_in_world, placement.f64_error))
+}
+
+/// The separation in metres, with points in the world, from the nearest pair in the frame and units of A.
+fn in_world(found: &NearestPair, touching: bool, a: &TriMesh, a_in_world: &Pose, error: f64) -> Separation {
+    let unit = a.bvh.frame.unit;
     let to_world = |p: Vec3| a_in_world.transform_point(p * unit + a.bvh.frame.center);
     let distance = if touching { 0.0 } else { found.distance * unit };
-    Some(Separation {
+    Separation {
         distance,
-        lower_bound: (distance - placement.f64_error * unit).max(0.0),
+        lower_bound: (distance - error * unit).max(0.0),
         on_a: to_world(found.points.on_a),
         on_b: to_world(found.points.on_b),
-    })
+    }
 }
 
 /// An upper bound of the distance of two meshes, metres: the distance of a pair of triangles that is likely near.

@@ -91,7 +91,7 @@ fn test_children<S: Simd, const MODE: u8>(
     b: Side,
     placement: &RelativePlacement,
     cutoff: &Cutoff,
-    mut emit: impl FnMut(usize, usize, f32),
+    emit: impl FnMut(usize, usize, f32),
 ) -> u32 {
     let (b_in_a, a_in_b) = (&placement.b_in_a, &placement.a_in_b);
     let (ca, ha) = (load16(simd, &a.node.center), load16(simd, &a.node.half));
@@ -129,9 +129,26 @@ fn test_children<S: Simd, const MODE: u8>(
     let slabs_b = SlabsOfB::new(simd, b.node, b_in_a);
     let lanes_a = LanesOfA { ca, ha, ca_in_b, ha_in_b, slab: slab_a };
     let (cb_in_a, hb_in_a) = (store16(cb_in_a), store16(hb_in_a));
+    let rows_b = RowsOfB { node: b.node, center_in_a: &cb_in_a, half_in_a: &hb_in_a, slabs: &slabs_b, b_in_a };
+    test_rows::<S, MODE>(simd, (rows, columns), &lanes_a, &rows_b, intervals.as_ref(), cutoff, emit)
+}
+
+/// Tests children of B (the bits of `rows`), one at a time, against all children of A (the bits of `columns`).
+///
+/// Calls `emit` as [`test_children`] does; returns the number of 16-lane tests, with the two of whole nodes before.
+#[inline(always)]
+fn test_rows<S: Simd, const MODE: u8>(
+    simd: S,
+    (mut rows, columns): (u32, u32),
+    lanes_a: &LanesOfA<S>,
+    b: &RowsOfB,
+    intervals: Option<&WitnessIntervals<S>>,
+    cutoff: &Cutoff,
+    mut emit: impl FnMut(usize, usize, f32),
+) -> u32 {
     let mut keys = [0.0f32; 16];
     let zero = W16::splat(simd, 0.0);
-    let square_scale = b_in_a.scale * b_in_a.scale;
+    let square_scale = b.b_in_a.scale * b.b_in_a.scale;
     let mut tests = 2;
     while rows != 0 {
         let j = rows.trailing_zeros() as usize;
@@ -139,18 +156,22 @@ fn test_children<S: Simd, const MODE: u8>(
         tests += 1;
         let mut square = W16::splat(simd, 0.0);
         if MODE != INTERSECTION
-            && let Some(intervals) = &intervals
+            && let Some(intervals) = intervals
         {
             square = intervals.square(simd, j);
             if columns & !(square.simd_gt(cutoff.squared).to_bitmask() as u32) == 0 {
                 continue;
             }
         }
-        let (gap_a, square_a) = gaps::<S, MODE>(simd, lanes_a.ca, lanes_a.ha, lane(&cb_in_a, j), lane(&hb_in_a, j));
+        let (gap_a, square_a) =
+            gaps::<S, MODE>(simd, lanes_a.ca, lanes_a.ha, lane(b.center_in_a, j), lane(b.half_in_a, j));
         let (gap_b, square_b) =
             gaps::<S, MODE>(simd, lanes_a.ca_in_b, lanes_a.ha_in_b, lane(&b.node.center, j), lane(&b.node.half, j));
-        let slab = lanes_a.slab.gap(simd, lane(&cb_in_a, j), lane(&b.node.half, j)).max(slabs_b.gap(simd, j, ca, ha));
-        let gap = gap_a.max(gap_b * b_in_a.scale).max(slab);
+        let slab = lanes_a
+            .slab
+            .gap(simd, lane(b.center_in_a, j), lane(&b.node.half, j))
+            .max(b.slabs.gap(simd, j, lanes_a.ca, lanes_a.ha));
+        let gap = gap_a.max(gap_b * b.b_in_a.scale).max(slab);
         let (key, out) = if MODE == INTERSECTION {
             (gap, gap.simd_gt(cutoff.gap))
         } else {
@@ -182,6 +203,16 @@ fn absolute(v: [f32; 3]) -> [f32; 3] {
     [v[0].abs(), v[1].abs(), v[2].abs()]
 }
 
+/// Children of B, taken one at a time.
+struct RowsOfB<'a> {
+    node: &'a Node,
+    center_in_a: &'a [[f32; 16]; 3],
+    half_in_a: &'a [[f32; 16]; 3],
+    slabs: &'a SlabsOfB,
+    b_in_a: &'a AffineF32,
+}
+
+/// Children of A, in sixteen lanes.
 struct LanesOfA<S: Simd> {
     ca: V3<W16<S>>,
     ha: V3<W16<S>>,

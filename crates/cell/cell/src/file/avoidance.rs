@@ -45,14 +45,13 @@ const MAX_DELAY_MS: f64 = 2000.0;
 const MAX_PLAN_MS: f64 = 10_000.0;
 const PLAN_MS: f64 = 70.0;
 
-pub(super) fn read(root: &Table<'_>, cell: &Cell) -> Result<Vec<Option<AvoidanceSpec>>> {
-    let mut all = vec![None; cell.robots.len()];
+pub(super) fn read(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
     for (name, t) in root.named("avoidance")? {
         t.only(KEYS)?;
         let (robot, _) = robot_of(name, &t, &cell.robots)?;
-        all[robot.0] = Some(spec(&t, cell, robot)?);
+        cell.robots[robot.0].avoidance = Some(spec(&t, cell, robot)?);
     }
-    Ok(all)
+    Ok(())
 }
 
 fn spec(t: &Table<'_>, cell: &Cell, own: RobotId) -> Result<AvoidanceSpec> {

@@ -70,7 +70,8 @@ impl MissingPart {
         }
         let links =
             robot.without_payload().colliders.iter().enumerate().any(|(i, b)| !b.is_empty() && moves(LinkId(i)));
-        let has_tool = robot.payload().next().is_some() || robot.tools.iter().any(|t| t.collider.is_some());
+        let has_tool =
+            robot.payload.colliders().next().is_some() || robot.payload.tools.iter().any(|t| t.collider.is_some());
         let carried = flange_moves && (grips || has_tool);
         // A point is guarded in place of a tool's solid only if the file defines a tool.
         let point_tool = || {

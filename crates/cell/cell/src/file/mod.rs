@@ -27,15 +27,14 @@ use elbowroom_formats::toml_tables::{Table, Value};
 use elbowroom_formats::{Diagnostic, suggest};
 use elbowroom_monitor::{Laws, RobotSet};
 use elbowroom_robot::{GeometryId, RobotId};
-use elbowroom_scene::PairRules;
 
 pub use document::CellFile;
 use robot::robot_of;
 pub use units::QUATERNION_TOLERANCE;
 
 use crate::{
-    Cell, CellLaws, CellRegionId, CellRobot, CellSensor, MapSpec, PairFile, QueryModel, Units, configure,
-    joint_contacts, rest_pose_contacts, seal,
+    Cell, CellLaws, CellPairRules, CellRegionId, CellRobot, CellSensor, CellTiming, FrameSources, MapSpec, PairFile,
+    QueryModel, Units, configure, joint_contacts, rest_pose_contacts, seal,
 };
 
 type Result<T> = std::result::Result<T, Diagnostic>;
@@ -78,34 +77,31 @@ impl CellFile {
             file: self.file.clone(),
             name: name(&root)?,
             units,
-            tick_s: root.get("tick_ms").map_or(Ok(2.0), |v| tick_ms(&v))? / 1000.0,
-            max_s: root.get("max_s").map_or(Ok(600.0), |v| v.positive())?,
+            timing: CellTiming {
+                tick_s: root.get("tick_ms").map_or(Ok(2.0), |v| tick_ms(&v))? / 1000.0,
+                max_s: root.get("max_s").map_or(Ok(600.0), |v| v.positive())?,
+            },
             robots: Vec::new(),
             objects: Vec::new(),
             moving_objects: Vec::new(),
             regions: Vec::new(),
-            encoders: Vec::new(),
-            pose_tracks: Vec::new(),
+            frame_sources: FrameSources::default(),
             laws: laws(&root, &mut warnings)?,
-            programs: Vec::new(),
-            avoidance: Vec::new(),
             sensors: Vec::new(),
-            maps: Vec::new(),
-            pair_rules: PairRules::default(),
-            joint_contacts: PairRules::default(),
+            pair_rules: CellPairRules::default(),
             checksum: String::new(),
             seal: None,
             warnings: Vec::new(),
         };
         read_robots(&root, &mut cell, &mut warnings)?;
         for (name, t) in root.named("encoder")? {
-            cell.encoders.push(region::encoder(name, &t, units)?);
+            cell.frame_sources.encoders.push(region::encoder(name, &t, units)?);
         }
         object::read(&root, &mut cell)?;
         let scenes = planning_scene::read(&root, &mut cell, &mut warnings)?;
         pairs(&root, &mut cell)?;
         let (rules, found) = joint_contacts::of_cell(&cell);
-        cell.joint_contacts = rules;
+        cell.pair_rules.joint_contacts = rules;
         warnings.extend(found);
         warnings.extend(contacts_at_start(&cell));
         regions(&root, &mut cell, &mut warnings)?;
@@ -114,8 +110,8 @@ impl CellFile {
         for ((_, t), index) in root.named("region")?.into_iter().zip(0..) {
             guarding::check(&t, &cell, CellRegionId(index), &mut warnings)?;
         }
-        cell.maps = maps(&root, &cell)?;
-        cell.avoidance = avoidance::read(&root, &cell)?;
+        maps(&root, &mut cell)?;
+        avoidance::read(&root, &mut cell)?;
         cell.sensors = sensors(&root, &cell)?;
         // Builds the monitors' configurations, so that anything they refuse is refused here, with its line.
         cell.checksum = configure::checksum(&cell)?;
@@ -180,7 +176,7 @@ fn pairs(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
     let Some(v) = root.get("pairs") else { return Ok(()) };
     // After the rules of planning scenes, because the file takes precedence.
     let rules = PairFile::read(models::path(&v)?)?.rules(&QueryModel::without_rules(cell))?;
-    cell.pair_rules.extend(rules);
+    cell.pair_rules.given.extend(rules);
     Ok(())
 }
 
@@ -188,7 +184,7 @@ fn pairs(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
 fn contacts_at_start(cell: &Cell) -> Vec<Diagnostic> {
     let of_robot = |(i, r): (usize, &CellRobot)| {
         let link = |link| GeometryId::Link { robot: RobotId(i), link };
-        let rules = cell.all_pair_rules();
+        let rules = cell.pair_rules.all();
         let is_new = move |a, b| rules.skipped(link(a), link(b)).is_none();
         let warnings = rest_pose_contacts::warnings(&r.robot, &r.start, Some(&r.name), is_new);
         warnings.map(|(what, hint)| Diagnostic::new(&cell.file, r.line, what).hint(hint)).collect::<Vec<_>>()
@@ -265,7 +261,7 @@ fn laws(root: &Table<'_>, warnings: &mut Vec<Diagnostic>) -> Result<CellLaws> {
 fn regions(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Diagnostic>) -> Result<()> {
     let mut known = definitions::Definitions {
         robots: &cell.robots,
-        encoders: &cell.encoders,
+        encoders: &cell.frame_sources.encoders,
         objects: &cell.objects,
         moving_objects: &cell.moving_objects,
         pose_tracks: Vec::new(),
@@ -274,7 +270,7 @@ fn regions(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Diagnostic>) ->
     for (name, t) in root.named("region")? {
         regions.push(region::read(name, &t, cell.units, &mut known, warnings)?);
     }
-    cell.pose_tracks = known.pose_tracks;
+    cell.frame_sources.pose_tracks = known.pose_tracks;
     cell.regions = regions;
     Ok(())
 }
@@ -287,22 +283,20 @@ fn sensors(root: &Table<'_>, cell: &Cell) -> Result<Vec<CellSensor>> {
 }
 
 fn programs(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Diagnostic>) -> Result<()> {
-    let mut programs = vec![None; cell.robots.len()];
     for (name, t) in root.named("program")? {
         let (id, robot) = robot_of(name, &t, &cell.robots)?;
-        programs[id.0] = Some(program::read(&t, cell, robot, warnings)?);
+        let program = program::read(&t, cell, robot, warnings)?;
+        cell.robots[id.0].program = Some(program);
     }
-    cell.programs = programs;
     Ok(())
 }
 
-fn maps(root: &Table<'_>, cell: &Cell) -> Result<Vec<MapSpec>> {
-    let mut maps = Vec::new();
+fn maps(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
     for (name, t) in root.named("map")? {
         t.only(&["joints", "step", "others"])?;
         let (id, robot) = robot_of(name, &t, &cell.robots)?;
         let names = robot.joint_names();
-        let default = MapSpec::of(id, robot);
+        let default = MapSpec::of(robot);
         let joints = match t.get("joints") {
             None => default.joints,
             Some(v) => {
@@ -314,9 +308,9 @@ fn maps(root: &Table<'_>, cell: &Cell) -> Result<Vec<MapSpec>> {
             Some(v) => map_steps(&v, &joints, |j, x| cell.units.joint(robot.slides(j), x))?,
         };
         let others_at_start = t.get("others").map_or(Ok(false), |v| v.word(&[("any", false), ("start", true)]))?;
-        maps.push(MapSpec { robot: id, line: t.line, joints, step, others_at_start });
+        cell.robots[id.0].map = Some(MapSpec { line: t.line, joints, step, others_at_start });
     }
-    Ok(maps)
+    Ok(())
 }
 
 fn map_joint(v: &Value<'_>, names: &[String]) -> Result<usize> {

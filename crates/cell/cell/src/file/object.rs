@@ -83,8 +83,8 @@ fn belt(v: &Value<'_>, cell: &Cell) -> Result<Drive> {
             .hint("[robot.NAME] load = { box = { at = [0, 0, 350], size = [200, 200, 200] } }"));
     }
     t.only(&["encoder"])?;
-    let index = encoder_index(&t.need("encoder", "encoder = \"belt\"")?, &cell.encoders)?;
-    Ok(Drive::Belt(cell.encoders[index].clone()))
+    let index = encoder_index(&t.need("encoder", "encoder = \"belt\"")?, &cell.frame_sources.encoders)?;
+    Ok(Drive::Belt(cell.frame_sources.encoders[index].clone()))
 }
 
 fn path(v: &Value<'_>, units: Units, rest_in_world: Pose) -> Result<ObjectPath> {

@@ -52,7 +52,7 @@ fn allow(scene: &PlanningScene, objects: &Range<usize>, cell: &mut Cell, warning
             format!("`{a}` and `{b}` may touch by the scene, but several robots have such a link: they are tested");
         warn(what, &format!("pairs = \"pairs.toml\" with {{ a = \"ROBOT/{a}\", b = \"{b}\", reason = \"…\" }}"));
     }
-    cell.pair_rules.extend(pairs.rules);
+    cell.pair_rules.given.extend(pairs.rules);
 }
 
 fn add(t: &Table<'_>, cell: &mut Cell) -> Result<(PlanningScene, Range<usize>)> {

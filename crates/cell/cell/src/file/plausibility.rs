@@ -164,7 +164,7 @@ impl PlausibilityCheck<'_> {
         let arm = Reach { base: Vec3::ZERO, ..Reach::of(robot, false) };
         // A chain without length may carry a tool of any plausible size.
         let arm = Reach { radius_m: arm.radius_m.max(1.0), ..arm };
-        for (key, collider) in [("tool", &robot.tool), ("load", &robot.load)] {
+        for (key, collider) in [("tool", &robot.payload.tool), ("load", &robot.payload.load)] {
             let Some(collider) = collider else { continue };
             let implausibility =
                 size(&collider.shape).or_else(|| beyond(&[arm], &collider.shape, &[collider.in_link], 0.0));
@@ -235,7 +235,7 @@ fn at<'a>(t: &Table<'a>, key: &str) -> Table<'a> {
 }
 
 fn sample_times(cell: &Cell) -> impl Iterator<Item = f64> {
-    let end_s = cell.max_s.min(SAMPLED_S);
+    let end_s = cell.timing.max_s.min(SAMPLED_S);
     (0..=SAMPLES).map(move |i| end_s * i as f64 / SAMPLES as f64)
 }
 

@@ -6,7 +6,7 @@ use elbowroom_formats::{Diagnostic, JointStateOptions, JointStates, suggest};
 use elbowroom_kinematics::JointTrajectory;
 use elbowroom_monitor::Life;
 use elbowroom_proximity::Shape;
-use elbowroom_robot::ObjectId;
+use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 
 use super::{goal, models};
@@ -92,12 +92,12 @@ fn tool(t: &Table<'_>, robot: &CellRobot) -> Result<usize> {
     t.only(&["tool"])?;
     let v = t.need("tool", "tool = \"gripper\"")?;
     let name = v.text()?;
-    robot.tools.iter().position(|tool| tool.name == name).ok_or_else(|| {
+    robot.payload.tools.iter().position(|tool| tool.name == name).ok_or_else(|| {
         let what = format!("names the tool \"{name}\", which robot \"{}\" does not have", robot.name);
-        let hint = if robot.tools.is_empty() {
+        let hint = if robot.payload.tools.is_empty() {
             format!("[robot.{}.tools.{name}] with its tcp and box", robot.name)
         } else {
-            suggest::hint(name, robot.tools.iter().map(|tool| tool.name.as_str()))
+            suggest::hint(name, robot.payload.tools.iter().map(|tool| tool.name.as_str()))
         };
         v.error(what).hint(hint)
     })
@@ -174,7 +174,7 @@ fn trajectory(v: &Value<'_>, robot: &CellRobot, warnings: &mut Vec<Diagnostic>) 
     } else {
         (JointStates::read(&models::path(v)?, &JointStateOptions::trajectory(&robot.name, chain))?, 0.0)
     };
-    let trajectory = states.trajectory(0);
+    let trajectory = states.trajectory(RobotId(0));
     warnings.extend(states.warnings);
     // The robot rests at its first row for that long.
     Ok(if offset_s > 0.0 { trajectory.after_rest(offset_s) } else { trajectory })

@@ -11,7 +11,7 @@ use elbowroom_spatial::Pose;
 
 use super::{flange, models, tools};
 use crate::model_limits::{ACCELERATION_TIME_S, JERK_TIME_S, STOP_TIME_S};
-use crate::{CellRobot, Units};
+use crate::{CellRobot, Payload, Units};
 
 type Result<T> = std::result::Result<T, Diagnostic>;
 
@@ -76,14 +76,15 @@ pub(super) fn read(name: &str, t: &Table<'_>, units: Units, warnings: &mut Vec<D
         base_in_world,
         flange,
         tcp_in_flange,
-        tool,
-        tools,
-        load,
+        payload: Payload { tool, load, tools },
         start,
         start_given: t.get("start").is_some(),
         states,
         volumes: t.get("volumes").map_or(Ok(VolumeModel::default()), |v| volume_model(&v))?,
         limits,
+        program: None,
+        avoidance: None,
+        map: None,
         robot,
     })
 }

@@ -91,7 +91,7 @@ fn tool(
 /// Finds a robot whose program exchanges tools. Planning and avoidance know only the tools that are mounted at the
 /// start.
 pub(super) fn with_exchanged_tools<'c>(robots: impl IntoIterator<Item = &'c CellRobot>) -> Option<&'c CellRobot> {
-    robots.into_iter().find(|robot| robot.tools.iter().any(|tool| !tool.mounted))
+    robots.into_iter().find(|robot| robot.payload.tools.iter().any(|tool| !tool.mounted))
 }
 
 /// Adds a link that is fixed to another one, at its frame.

@@ -31,7 +31,7 @@ impl<'a> SealedSource<'a> {
         let (name, object, files) = match follow {
             Follow::Robot { robot, .. } => (format!("robot {}", key(&cell.robots[robot.0].name)), None, [None, None]),
             Follow::Encoder(i) => {
-                let name = &cell.encoders[i].name;
+                let name = &cell.frame_sources.encoders[i].name;
                 (format!("encoder {}", key(name)), None, [encoder_file(name), None])
             }
             Follow::Object(i) => {
@@ -89,8 +89,8 @@ fn checksum(cell: &Cell, follow: Follow, limits: &SourceLimits) -> String {
             number(link.0 as f64);
             in_link.to_rows().into_iter().flatten().for_each(&mut number);
         }
-        Follow::Encoder(i) => cell.encoders[i].numbers(&mut number),
-        Follow::Poses(i) => cell.pose_tracks[i].numbers(&mut number),
+        Follow::Encoder(i) => cell.frame_sources.encoders[i].numbers(&mut number),
+        Follow::Poses(i) => cell.frame_sources.pose_tracks[i].numbers(&mut number),
         Follow::Object(i) => {
             let at_rest = object(cell, i, &mut number);
             hash.update(at_rest);

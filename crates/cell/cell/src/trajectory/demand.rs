@@ -39,16 +39,12 @@ pub struct JointDemand {
 
 /// Demand of a robot's recording per joint; empty without a recording.
 pub fn demands(cell: &Cell, robot: RobotId) -> Vec<JointDemand> {
-    let Some(ProgramBody::Trajectory(trajectory)) =
-        cell.programs.get(robot.0).and_then(Option::as_ref).map(|p| &p.body)
-    else {
-        return Vec::new();
-    };
     let at = &cell.robots[robot.0];
+    let Some(ProgramBody::Trajectory(trajectory)) = at.program.as_ref().map(|p| &p.body) else { return Vec::new() };
     let motion_bounds = motion_bounds(at);
     let play = Playback::new(trajectory.clone(), &motion_bounds);
     let jumps: f64 = motion_bounds.iter().enumerate().map(|(j, bound)| bound * play.largest_jump(j)).sum();
-    let least_s = if jumps * cell.tick_s > SHORT_M { SHORT_M / jumps } else { cell.tick_s };
+    let least_s = if jumps * cell.timing.tick_s > SHORT_M { SHORT_M / jumps } else { cell.timing.tick_s };
     let first = play.at(0.0);
     let of = |(j, bound): (usize, &f64)| {
         let stated = ACCELERATION_MARGIN * at.limits[j].acceleration;
@@ -71,7 +67,7 @@ pub fn accelerations(cell: &Cell, robot: RobotId) -> Vec<f64> {
 /// Warns of joints whose speed in a recording exceeds their limit, that begin in motion, or, with the stopping-distance
 /// law, whose acceleration exceeds the stated one.
 pub fn recording_warnings(cell: &Cell, robot: RobotId) -> Vec<Diagnostic> {
-    let Some(program) = cell.programs.get(robot.0).and_then(Option::as_ref) else { return Vec::new() };
+    let Some(program) = &cell.robots[robot.0].program else { return Vec::new() };
     let mut warnings = Vec::new();
     for (j, demand) in demands(cell, robot).iter().enumerate() {
         let joint = RecordedJoint { cell, robot: &cell.robots[robot.0], program, j };
@@ -109,7 +105,7 @@ impl RecordedJoint<'_> {
 
     fn begins_in_motion(&self, demand: &JointDemand) -> Option<Diagnostic> {
         let needed_s = demand.first_speed / self.robot.limits[self.j].acceleration;
-        if needed_s <= self.cell.tick_s * UNSEEN_TICKS {
+        if needed_s <= self.cell.timing.tick_s * UNSEEN_TICKS {
             return None;
         }
         let what = format!(

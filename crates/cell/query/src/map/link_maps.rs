@@ -72,7 +72,7 @@ impl LinkMaps {
 fn links_that_may_touch(cell: &Cell, robot: RobotId, object: ObjectId) -> Option<Vec<LinkId>> {
     let may_touch = |link: &LinkId| {
         let link = GeometryId::Link { robot, link: *link };
-        cell.pair_rules.skipped(link, GeometryId::Object(object)).is_some()
+        cell.pair_rules.given.skipped(link, GeometryId::Object(object)).is_some()
     };
     let all: Vec<LinkId> = cell.robots[robot.0].robot.links_with_colliders().collect();
     let some: Vec<LinkId> = all.iter().copied().filter(may_touch).collect();

@@ -28,7 +28,7 @@ impl MappedJoints {
         (purpose, otherwise): (&str, Option<&str>),
         warnings: &mut Vec<Diagnostic>,
     ) -> Result<Self, Diagnostic> {
-        let (_, spec) = select_map(cell, Some(&robot.name))?;
+        let (_, _, spec) = select_map(cell, Some(&robot.name))?;
         let wrong = |what: String, hint: String| {
             Diagnostic::new(&cell.file, spec.line, format!("the map of robot \"{}\" {what}", robot.name)).hint(hint)
         };

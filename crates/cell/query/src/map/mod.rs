@@ -10,7 +10,7 @@ use elbowroom_cspace::{GridAxis, GridAxisError, ObstacleModel, OccupancyArray, R
 use elbowroom_formats::Diagnostic;
 use elbowroom_kinematics::JointKind;
 use elbowroom_proximity::Shape;
-use elbowroom_robot::ObjectId;
+use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_scene::Object;
 use elbowroom_spatial::Pose;
 
@@ -130,7 +130,7 @@ pub fn map_with(
     request: &MapRequest,
     progress: &(dyn Fn(MapProgress<'_>) + Sync),
 ) -> Result<CellMap, Diagnostic> {
-    let (robot, spec) = select_map(cell, request.robot.as_deref())?;
+    let (id, robot, spec) = select_map(cell, request.robot.as_deref())?;
     let wrong = |what: String, hint: &str| Diagnostic::new(&cell.file, spec.line, what).hint(hint);
     let mut warnings = Vec::new();
     let (axes, is_angle) = axes(cell, robot, &spec, &mut warnings)?;
@@ -144,7 +144,7 @@ pub fn map_with(
         wrong(format!("robot \"{}\": {e}", robot.name), hint)
     };
     progress(MapProgress { share: 0.0, what: &robot.name });
-    let maps = LinkMaps::new(cell, spec.robot, |robot| {
+    let maps = LinkMaps::new(cell, id, |robot| {
         SolidsMap::new(robot, &axes, &spec.joints, others, (!request.exact).then_some(0.0)).map_err(refuse)
     })?;
     let filled = fill(cell, request, &maps, progress, &wrong)?.map_err(refuse)?;
@@ -299,14 +299,17 @@ impl CellMap {
 }
 
 /// The requested robot, otherwise the only one with a map, otherwise the only one.
-pub(crate) fn select_map<'c>(cell: &'c Cell, name: Option<&str>) -> Result<(&'c CellRobot, MapSpec), Diagnostic> {
-    let robot = match (name, &cell.maps[..]) {
-        (None, [only]) => only.robot,
+pub(crate) fn select_map<'c>(
+    cell: &'c Cell,
+    name: Option<&str>,
+) -> Result<(RobotId, &'c CellRobot, MapSpec), Diagnostic> {
+    let mut mapped = (0..cell.robots.len()).map(RobotId).filter(|id| cell.robots[id.0].map.is_some());
+    let id = match (name, mapped.next(), mapped.next()) {
+        (None, Some(only), None) => only,
         _ => select_robot(cell, name)?.0,
     };
-    let spec = cell.maps.iter().find(|m| m.robot == robot).cloned();
-    let spec = spec.unwrap_or_else(|| MapSpec::of(robot, &cell.robots[robot.0]));
-    Ok((&cell.robots[robot.0], spec))
+    let robot = &cell.robots[id.0];
+    Ok((id, robot, robot.map.clone().unwrap_or_else(|| MapSpec::of(robot))))
 }
 
 /// The joint axes. Continuous joints have a range of one turn.

@@ -143,7 +143,7 @@ pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, Diagnostic
     let is_on_map = request.planner == PathPlanner::Grid;
     let model = if is_on_map { None } else { models.serving(&scene, &state, id, clearance_m, &covers) };
     let obstacles = model.map(|model| CoverObstacles::with_covers(model, &scene, &state, clearance_m, &covers));
-    let period_s = request.period_s.unwrap_or(cell.tick_s);
+    let period_s = request.period_s.unwrap_or(cell.timing.tick_s);
     region_constraint::at_start(cell, id, from, &request.carried, clearance_m, |constraint| {
         let regions = constraint.as_ref().map(RegionConstraint::names).unwrap_or_default();
         let mut exact = RrtConnect::new(&scene, id).map_err(|e| refused(e.into()))?;

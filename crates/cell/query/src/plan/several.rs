@@ -112,7 +112,7 @@ pub fn plan_several(cell: &Cell, request: &SeveralPathsRequest) -> Result<Severa
         .map(|goal| constraints.of_robot(goal.robot).map(|constraint| constraint.names()).unwrap_or_default())
         .collect();
     refuse_carried_regions(cell, &goals, &regions)?;
-    let period_s = request.period_s.unwrap_or(cell.tick_s);
+    let period_s = request.period_s.unwrap_or(cell.timing.tick_s);
     let begin = Instant::now();
     let covers = CoverCache::of_user();
     let planner = PrioritizedPlanner::new(&scene).with_covers(&covers).with_constraints(&constraints);

@@ -5,7 +5,6 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
 
 use elbowroom_formats::Diagnostic;
-use elbowroom_robot::RobotId;
 use elbowroom_scene::{
     Checker, CheckerOptions, CheckerStats, ContactSurfaces, Detail, Level, PairContact, PairDistance, Scene,
     SceneError, SceneState, Selection,
@@ -152,7 +151,7 @@ fn contacts_of_block(scene: &Scene, states: &QueryStates, query: &Query<'_>, blo
     let mut rows = Vec::new();
     for index in block * BLOCK..states.len().min((block + 1) * BLOCK) {
         for (robot, q) in states.of(index) {
-            state.set_q(scene, RobotId(robot), q)?;
+            state.set_q(scene, robot, q)?;
         }
         let mut pairs = BTreeSet::new();
         for &[a, b] in query.pairs.sides() {
@@ -173,7 +172,7 @@ fn rows_of_block(scene: &Scene, states: &QueryStates, query: &Query<'_>, block: 
     let mut rows = Vec::with_capacity(BLOCK);
     for index in block * BLOCK..states.len().min((block + 1) * BLOCK) {
         for (robot, q) in states.of(index) {
-            state.set_q(scene, RobotId(robot), q)?;
+            state.set_q(scene, robot, q)?;
         }
         match query.all_pairs_m {
             None => rows.push(QueryRow { index, ..pairs.row(&state, query.kind) }),

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use elbowroom_cell::{QueryModel, QueryRobot};
 use elbowroom_formats::Diagnostic;
 use elbowroom_formats::joint_states::{self, JointStateOptions, JointStateRobot, LimitCheck};
+use elbowroom_robot::RobotId;
 
 type Result<T> = std::result::Result<T, Diagnostic>;
 
@@ -71,9 +72,9 @@ impl QueryStates {
     }
 
     /// The joint values of each robot in one state; empty beyond the last state.
-    pub fn of(&self, index: usize) -> impl Iterator<Item = (usize, &[f64])> {
+    pub fn of(&self, index: usize) -> impl Iterator<Item = (RobotId, &[f64])> {
         let robots = if index < self.len() { self.states.robots() } else { 0 };
-        (0..robots).map(move |robot| (robot, self.states.q(index, robot)))
+        (0..robots).map(RobotId).map(move |robot| (robot, self.states.q(index, robot)))
     }
 }
 

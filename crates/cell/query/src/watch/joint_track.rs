@@ -6,6 +6,7 @@ use elbowroom_cell::{Cell, CellRobot};
 use elbowroom_formats::joint_states::{ExtraColumns, JointStateOptions, JointStateRobot, LimitCheck, TimeColumn};
 use elbowroom_formats::{Diagnostic, JointStates};
 use elbowroom_kinematics::JointTrajectory;
+use elbowroom_robot::RobotId;
 
 /// Time before the first row, or after the last one, beyond which pictures have no joint values, s.
 const MARGIN_S: f64 = 0.1;
@@ -44,7 +45,7 @@ impl JointTrack {
         };
         let mut states = JointStates::read(file, &options)?;
         warnings.append(&mut states.warnings);
-        let recorded = (0..states.robots()).map(|robot| states.trajectory(robot)).collect();
+        let recorded = (0..states.robots()).map(|robot| states.trajectory(RobotId(robot))).collect();
         Ok(Self { start, recorded: Some(recorded) })
     }
 

@@ -292,7 +292,7 @@ fn map_builder(
     sensor: &CellSensor,
     warnings: &mut Vec<Diagnostic>,
 ) -> Result<(CoverMapBuilder, MapScope), Diagnostic> {
-    let (robot, spec) = select_map(cell, Some(&cell.robots[sensor.robot.0].name))?;
+    let (_, robot, spec) = select_map(cell, Some(&cell.robots[sensor.robot.0].name))?;
     let refuse = |what: String, hint: &str| {
         Diagnostic::new(&cell.file, spec.line, format!("robot \"{}\": {what}", robot.name)).hint(hint)
     };

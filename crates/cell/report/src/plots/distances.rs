@@ -1,5 +1,6 @@
 //! Distances of one robot to every region over time, with the monitor and without it.
 
+use elbowroom_robot::RobotId;
 use elbowroom_sim::{Recording, RobotTrack};
 use serde_json::{Value, json};
 
@@ -15,8 +16,8 @@ use crate::scene::ReportScene;
 const MAX_REGIONS: usize = 24;
 
 /// The plot of a robot in one run; `planned` is the run without the monitor, whose curves are dotted.
-pub fn chart(scene: &ReportScene, run: &Recording, planned: Option<&Recording>, robot: usize) -> Option<Figure> {
-    let track = run.robots.get(robot)?;
+pub fn chart(scene: &ReportScene, run: &Recording, planned: Option<&Recording>, robot: RobotId) -> Option<Figure> {
+    let track = run.robots.get(robot.0)?;
     let mut plot = Plot::new(layout(axis("time (s)"), with(axis("distance (mm)"), json!({ "rangemode": "tozero" }))));
     if let Some(planned) = planned {
         add_curves(&mut plot, scene, planned, robot, true);
@@ -44,15 +45,15 @@ pub fn chart(scene: &ReportScene, run: &Recording, planned: Option<&Recording>, 
     })
 }
 
-fn add_curves(plot: &mut Plot, scene: &ReportScene, run: &Recording, robot: usize, planned: bool) {
+fn add_curves(plot: &mut Plot, scene: &ReportScene, run: &Recording, robot: RobotId, planned: bool) {
     let all = frames(run);
     let ticks: Vec<usize> = every(all.len(), MAX_POINTS).into_iter().map(|i| all[i]).collect();
-    let Some(samples) = run.robots.get(robot).map(|r| &r.samples) else { return };
+    let Some(samples) = run.robots.get(robot.0).map(|r| &r.samples) else { return };
     let t: Vec<Option<f64>> = ticks.iter().map(|&i| samples.get(i).and_then(|s| round(s.t_s))).collect();
     for curve in curves(scene, run, robot, &ticks).iter().take(MAX_REGIONS) {
-        let region = &run.regions[curve.region];
+        let region = &run.regions[curve.region.0];
         let name = plain(&region.name);
-        let color = palette::of_region(curve.region);
+        let color = palette::of_region(curve.region.0);
         let style = if planned { with(stroke(color, 1.3), json!({ "dash": "dot" })) } else { stroke(color, 2.2) };
         let warning = format!("{name} (warning {:.0} mm)", 1e3 * region.warning_m);
         let mode = if planned { " without the monitor" } else { "" };

@@ -1,5 +1,6 @@
 //! The four plots of the paper's figure 12.
 
+use elbowroom_robot::RobotId;
 use elbowroom_sim::{Recording, RegionPoses, RegionTrack, RobotTrack, Sample};
 use elbowroom_spatial::{Pose, Vec3};
 use serde_json::{Value, json};
@@ -12,7 +13,7 @@ use crate::{palette, region_surface};
 
 pub fn all(scene: &ReportScene, runs: &[(&str, &Recording)]) -> Vec<Figure> {
     let mut figures = vec![path(runs)];
-    let base = |robot: usize| scene.robots.get(robot).map_or(Vec3::ZERO, |r| r.base_in_world.translation);
+    let base = |robot: RobotId| scene.robots.get(robot.0).map_or(Vec3::ZERO, |r| r.base_in_world.translation);
     let norm = over_time("‖p‖ (m)", runs, |robot, s| s.tcp.distance(base(robot)));
     let note = "Distance of the tool centre point from the robot's base.";
     figures.push(figure("Norm of position over time", note, 460, norm));
@@ -104,10 +105,10 @@ fn figure(title: &str, note: &str, height: usize, plot: Plot) -> Figure {
     Figure { title: title.into(), note: note.into(), over_time: true, run: None, height, wide: false, drawing }
 }
 
-fn over_time(unit: &str, runs: &[(&str, &Recording)], value: impl Fn(usize, &Sample) -> f64) -> Plot {
+fn over_time(unit: &str, runs: &[(&str, &Recording)], value: impl Fn(RobotId, &Sample) -> f64) -> Plot {
     let mut plot = Plot::new(with(layout(axis("time (s)"), axis(unit)), json!({ "hovermode": "x" })));
     for (label, recording, robot, track) in tracks(runs) {
-        let at = |i: usize| value(robot, &track.samples[i]);
+        let at = |i: usize| value(RobotId(robot), &track.samples[i]);
         let kept = pick(track.samples.len(), MAX_POINTS, &[&at]);
         let t = kept.iter().map(|&i| round(track.samples[i].t_s)).collect();
         let y = kept.iter().map(|&i| round(at(i))).collect();

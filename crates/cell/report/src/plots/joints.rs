@@ -1,6 +1,7 @@
 //! Joint positions over time.
 
 use elbowroom_kinematics::JointKind;
+use elbowroom_robot::RobotId;
 use elbowroom_sim::Recording;
 
 use super::figure::{Figure, plain, round};
@@ -17,7 +18,7 @@ pub fn chart(scene: &ReportScene, runs: &[(&str, &Recording)], run: usize) -> Op
     for (robot, track) in recording.robots.iter().enumerate() {
         let prefix = if recording.robots.len() > 1 { format!("{} · ", track.name) } else { String::new() };
         for (k, joint) in track.joints.iter().enumerate() {
-            let prismatic = is_prismatic(scene, robot, joint);
+            let prismatic = is_prismatic(scene, RobotId(robot), joint);
             lengths |= prismatic;
             let scale = if prismatic { 1e3 } else { 1f64.to_degrees() };
             let at = |i: usize| track.samples[i].q.get(k).map_or(f64::NAN, |q| scale * q);
@@ -44,7 +45,7 @@ pub fn chart(scene: &ReportScene, runs: &[(&str, &Recording)], run: usize) -> Op
     })
 }
 
-fn is_prismatic(scene: &ReportScene, robot: usize, joint: &str) -> bool {
-    let chain = scene.robots.get(robot).map(|r| &r.chain);
+fn is_prismatic(scene: &ReportScene, robot: RobotId, joint: &str) -> bool {
+    let chain = scene.robots.get(robot.0).map(|r| &r.chain);
     chain.and_then(|c| c.joint(joint).map(|id| c.joints()[id.0].kind == JointKind::Prismatic)).unwrap_or(false)
 }

@@ -9,6 +9,7 @@ mod overrides;
 mod plot;
 mod timing;
 
+use elbowroom_robot::RobotId;
 use elbowroom_sim::Recording;
 
 use crate::scene::ReportScene;
@@ -20,7 +21,7 @@ pub fn all(scene: &ReportScene, runs: &[(&str, &Recording)], planned: Option<&Re
     let mut figures = Vec::new();
     if let Some((_, first)) = runs.first() {
         let planned = planned.filter(|_| first.monitored);
-        figures.extend((0..first.robots.len()).filter_map(|r| distances::chart(scene, first, planned, r)));
+        figures.extend((0..first.robots.len()).map(RobotId).filter_map(|r| distances::chart(scene, first, planned, r)));
     }
     figures.extend(overrides::all(runs));
     figures.extend(figure12::all(scene, runs));

@@ -139,7 +139,7 @@ impl EntryAnalysis<'_> {
             let write = format!("warning_output = 1 in [region.{name}], wired to a stop of the carrier of the region");
             return Some(MissingGuarantee::new(why, write));
         }
-        if self.cell.avoidance.get(self.robot.0).is_some_and(Option::is_some) {
+        if self.robot().avoidance.is_some() {
             return Some(MissingGuarantee::new(
                 "the robot has avoidance: its speeds off its program are not known in advance",
                 format!("no [avoidance.{}]", self.robot().name),
@@ -265,14 +265,14 @@ impl EntryAnalysis<'_> {
     fn never_reverses(&self) -> bool {
         let is_prismatic_or_fixed =
             |j: &elbowroom_kinematics::Joint| matches!(j.kind, JointKind::Prismatic | JointKind::Fixed);
-        let program = self.cell.programs.get(self.robot.0).and_then(Option::as_ref);
+        let program = self.robot().program.as_ref();
         self.robot().robot.chain.joints().iter().all(is_prismatic_or_fixed)
             && program.is_none_or(is_one_move)
             && !matches!(self.region().region.shape, Shape::Mesh(_))
     }
 
     fn plays_trajectory(&self) -> bool {
-        let program = self.cell.programs.get(self.robot.0).and_then(Option::as_ref);
+        let program = self.robot().program.as_ref();
         program.is_some_and(|p| matches!(p.body, elbowroom_cell::ProgramBody::Trajectory(_)))
     }
 

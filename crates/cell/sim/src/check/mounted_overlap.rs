@@ -63,10 +63,10 @@ impl<'a> RobotAtMount<'a, '_> {
             Mount::Tool(tool) => {
                 let after = at.with_tool(*tool);
                 let is_new = |v: &Volume| {
-                    let mounted = |robot: &CellRobot| robot.tools.iter().any(|t| t.link == v.link && t.mounted);
+                    let mounted = |robot: &CellRobot| robot.payload.tools.iter().any(|t| t.link == v.link && t.mounted);
                     mounted(&after) && !mounted(at)
                 };
-                let name = &at.tools[*tool].name;
+                let name = &at.payload.tools[*tool].name;
                 let step = format!("exchanges its tool for \"{name}\"");
                 let enters = after.guarded_volumes().iter().any(|v| is_new(v) && self.is_inside(v));
                 enters.then(|| MountedOverlap { step, name, is_certain: true })

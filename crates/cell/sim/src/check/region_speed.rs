@@ -16,19 +16,19 @@ pub(super) fn max_region_speed_m_s(paths: &PlannedPaths<'_>, region: &CellRegion
     let cell = paths.cell();
     let in_source = region.region.anchor * region.region.shape_in_anchor;
     match follow {
-        Follow::Encoder(e) => Ok(cell.encoders[e].fastest(0.0, cell.max_s)),
+        Follow::Encoder(e) => Ok(cell.frame_sources.encoders[e].fastest(0.0, cell.timing.max_s)),
         Follow::Object(o) => {
             let drive = cell.moving_objects.iter().find(|m| m.object == o).map(|m| &m.drive);
             let hull = SphereSweptHull::new(&region.region.shape, &in_source);
             Ok(match drive {
                 None => 0.0,
-                Some(Drive::Belt(encoder)) => encoder.fastest(0.0, cell.max_s),
+                Some(Drive::Belt(encoder)) => encoder.fastest(0.0, cell.timing.max_s),
                 Some(Drive::Path(path)) => path.fastest(hull.farthest_m()),
             })
         }
         Follow::Poses(p) => {
             let hull = SphereSweptHull::new(&region.region.shape, &in_source);
-            let rates = cell.pose_tracks[p].rates();
+            let rates = cell.frame_sources.pose_tracks[p].rates();
             // A half-space in pure translation has one velocity everywhere.
             let fastest = |rate: PoseRate| {
                 let PoseRate { speed_m_s, turn_rad_s, .. } = rate;
@@ -48,11 +48,11 @@ pub(super) fn max_region_speed_m_s(paths: &PlannedPaths<'_>, region: &CellRegion
 
 /// Whether a robot may leave its program, because it evades, or replans around obstacles that sensors see.
 fn leaves_its_program(cell: &Cell, robot: RobotId) -> bool {
-    let evades = cell.avoidance.get(robot.0).is_some_and(Option::is_some);
+    let evades = cell.robots[robot.0].avoidance.is_some();
     evades || replans(cell, robot)
 }
 
 /// Whether a robot with a program replans around obstacles that sensors see.
 pub(super) fn replans(cell: &Cell, robot: RobotId) -> bool {
-    cell.programs[robot.0].is_some() && cell.sensors.iter().any(|sensor| sensor.robots.contains(&robot))
+    cell.robots[robot.0].program.is_some() && cell.sensors.iter().any(|sensor| sensor.robots.contains(&robot))
 }

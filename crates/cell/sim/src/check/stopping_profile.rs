@@ -121,7 +121,7 @@ impl StoppingProfile {
 
 /// Delay of the robots of a cell: one tick until the monitor sees their state, and the reaction time.
 pub(super) fn response_delay(cell: &Cell) -> ResponseDelay {
-    ResponseDelay { delay_s: cell.tick_s + cell.laws.reaction_delay_s, tick_s: cell.tick_s }
+    ResponseDelay { delay_s: cell.timing.tick_s + cell.laws.reaction_delay_s, tick_s: cell.timing.tick_s }
 }
 
 /// A move, sampled every `step_s`.

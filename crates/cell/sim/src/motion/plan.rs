@@ -120,7 +120,7 @@ fn plan_passes(
 ) -> Result<ProgramPlan, Diagnostic> {
     let cell = paths.cell();
     let at = &cell.robots[robot.0];
-    let Some(program) = &cell.programs[robot.0] else {
+    let Some(program) = &at.program else {
         return Ok(ProgramPlan { start: at.start.clone(), speed_override: 1.0, steps: Vec::new() });
     };
     let of_program = |passes: u32| u64::from(passes) * u64::from(program.repeat);
@@ -143,7 +143,7 @@ fn plan_passes(
 /// # Errors
 /// [`Diagnostic`] at the line of the grip, or of an earlier step, if that step is infeasible.
 pub fn first_grip(cell: &Cell, robot: RobotId, object: ObjectId) -> Result<Option<GripAction>, Diagnostic> {
-    let Some(program) = &cell.programs[robot.0] else { return Ok(None) };
+    let Some(program) = &cell.robots[robot.0].program else { return Ok(None) };
     let ProgramBody::Steps(steps) = &program.body else { return Ok(None) };
     let grips = |s: &ProgramStep| matches!(s.action, StepAction::Grip(o) if o == object);
     let Some(index) = steps.iter().position(grips) else { return Ok(None) };
@@ -246,7 +246,7 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
 
     fn change_tool(&mut self, index: usize, step: &ProgramStep, tool: usize) -> Result<(), Diagnostic> {
         let changed = self.robot.with_tool(tool);
-        let is_taken_off = |link: LinkId| changed.tools.iter().any(|t| t.link == link && !t.mounted);
+        let is_taken_off = |link: LinkId| changed.payload.tools.iter().any(|t| t.link == link && !t.mounted);
         if let Some(part) = self.parts.held_by(is_taken_off) {
             let what = format!("takes off the tool that holds \"{part}\"");
             return Err(self.error(index, step, &what).hint(format!("{{ release = \"{part}\" }} before it")));
@@ -294,7 +294,7 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
             step: index,
             from: self.q.clone(),
             flange: self.robot.flange,
-            mounted: self.robot.tools.iter().map(|tool| tool.mounted).collect(),
+            mounted: self.robot.payload.tools.iter().map(|tool| tool.mounted).collect(),
             parts: self.parts.clone(),
         };
         let play = self.paths.known_or(origin, || self.path(index, step, planned))?;
@@ -335,7 +335,7 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
 
     /// The cell with the tools as they are now.
     fn cell_now(&self) -> Cow<'a, Cell> {
-        if self.robot.tools.is_empty() {
+        if self.robot.payload.tools.is_empty() {
             return Cow::Borrowed(self.cell);
         }
         let mut cell = self.cell.clone();

@@ -112,7 +112,7 @@ impl fmt::Debug for PlannedPaths<'_> {
 
 /// Number of planned moves in all programs.
 fn planned_moves(cell: &Cell) -> usize {
-    let steps = cell.programs.iter().flatten().map(|program| match &program.body {
+    let steps = cell.robots.iter().filter_map(|robot| robot.program.as_ref()).map(|program| match &program.body {
         ProgramBody::Steps(steps) => steps.as_slice(),
         ProgramBody::Trajectory(_) => &[],
     });

@@ -139,7 +139,7 @@ impl<'a> PathReplanner<'a> {
             robot,
             base,
             at,
-            tick_s: cell.tick_s,
+            tick_s: cell.timing.tick_s,
             motion_bounds: motion_bounds(at),
             models: CoverModels::default(),
             maps: Vec::new(),

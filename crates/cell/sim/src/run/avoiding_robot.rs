@@ -105,7 +105,7 @@ impl<'s> AvoidingRobot<'s> {
         robot: RobotId,
         clock: &ProgramClock,
     ) -> Result<Option<Self>, Diagnostic> {
-        let spec = cell.avoidance.get(robot.0).and_then(Option::as_ref);
+        let spec = cell.robots[robot.0].avoidance.as_ref();
         spec.map(|spec| Self::new(cell, scene, robot, spec, clock)).transpose()
     }
 
@@ -226,7 +226,7 @@ impl<'s> AvoidingRobot<'s> {
         clock.hold(!self.is_on_path());
         // The time of a wait stops while the robot is off its path.
         if !(clock.waiting() && self.output.rate == 0.0) {
-            clock.advance(cell.tick_s, allowed * self.output.rate);
+            clock.advance(cell.timing.tick_s, allowed * self.output.rate);
         }
         // Only a robot that may leave its path needs the regions.
         let is_near = self.output.nearest_m.is_finite() || self.output.escape != EscapeState::Free;
@@ -284,7 +284,7 @@ impl<'s> AvoidingRobot<'s> {
         let (here, speed_share) = (clock.point(), clock.speed_share());
         let reference = Reference { q: &here.q, qd: &here.dq, speed_share, path };
         let obstacles = DynamicObstacles { objects: &objects, robots: &robots };
-        match self.avoider.tick_constrained(cell.tick_s, &reference, &obstacles, allowed, constraint) {
+        match self.avoider.tick_constrained(cell.timing.tick_s, &reference, &obstacles, allowed, constraint) {
             Ok(output) => {
                 self.output = output;
                 self.step_ns.push(output.times.total().as_nanos() as u64);

@@ -22,7 +22,7 @@ impl Simulation<'_> {
                 self.exchange_volumes(i, &before)?;
                 let robot = &mut self.robots[i];
                 robot.track.absent_links.extend(absent_links(&robot.present).map(|links| (t_s, links)));
-                self.journal.event(t_s, robot.id, &robot.present.tools[tool].name, RunEvent::Tool);
+                self.journal.event(t_s, robot.id, &robot.present.payload.tools[tool].name, RunEvent::Tool);
             }
         }
         Ok(())
@@ -32,7 +32,7 @@ impl Simulation<'_> {
     fn exchange_volumes(&mut self, i: usize, before: &CellRobot) -> Result<(), Diagnostic> {
         let robot = &self.robots[i];
         let (id, setup, line) = (robot.id, robot.setup, robot.present.line);
-        let tools = robot.present.tools.iter().zip(&before.tools);
+        let tools = robot.present.payload.tools.iter().zip(&before.payload.tools);
         let changed = tools.filter(|(now, old)| now.mounted != old.mounted).map(|(now, _)| (now.link, now.mounted));
         for (link, is_mounted) in changed.collect::<Vec<_>>() {
             self.contacts.checker.set_present(id, link, is_mounted, &self.states.iter().collect::<Vec<_>>());
@@ -53,7 +53,7 @@ impl Simulation<'_> {
         };
         let robot = &mut self.robots[i];
         let attached = robot.monitor.attach(volume, in_link);
-        let attached = attached.and_then(|()| self.regions.attach(i, volume, in_link));
+        let attached = attached.and_then(|()| self.regions.attach(robot.id, volume, in_link));
         attached.map_err(|e| Diagnostic::new(&self.cell.file, line, e))?;
         self.journal.attached(robot.id, volume, in_link);
         Ok(())
@@ -63,7 +63,7 @@ impl Simulation<'_> {
     pub(super) fn detach_released(&mut self) -> Result<(), Diagnostic> {
         for (i, volume) in std::mem::take(&mut self.released) {
             let robot = &mut self.robots[i];
-            let detached = robot.monitor.detach(volume).and_then(|()| self.regions.detach(i, volume));
+            let detached = robot.monitor.detach(volume).and_then(|()| self.regions.detach(robot.id, volume));
             detached.map_err(|e| Diagnostic::new(&self.cell.file, self.cell.robots[i].line, e))?;
             self.journal.detached(robot.id, volume);
         }

@@ -29,9 +29,9 @@ impl<'a> ContactRecorder<'a> {
         let placed = models.iter().zip(&cell.robots).map(|(model, r)| (model, r.base_in_world));
         let moving: Vec<ObjectId> = cell.moving_objects.iter().map(|m| m.object).collect();
         let mut checker =
-            FirstContacts::new(placed.collect(), &cell.objects).skipping(cell.all_pair_rules()).moving(&moving);
+            FirstContacts::new(placed.collect(), &cell.objects).skipping(cell.pair_rules.all()).moving(&moving);
         for (robot, r) in cell.robots.iter().enumerate() {
-            let absent = r.tools.iter().filter(|t| !t.mounted);
+            let absent = r.payload.tools.iter().filter(|t| !t.mounted);
             absent.for_each(|tool| checker.set_present(RobotId(robot), tool.link, false, &[]));
         }
         let gripped: Vec<ObjectId> = CarriedParts::gripped_by_programs(cell).collect();

@@ -19,17 +19,13 @@ impl DeadlockDetector {
 
     /// Observes one tick. A cycle counts while all its robots are stopped, because a moving robot may still clear it.
     pub fn observe(&mut self, t_s: f64, arbiter: &ZoneArbiter, robots: &[SimulatedRobot<'_>]) {
-        let is_stopped = |robot: usize| robots[robot].stop_state.stopped;
-        for robot in 0..robots.len() {
-            let cycle = if is_stopped(robot) { arbiter.wait_cycle(RobotSlot(robot), t_s) } else { Vec::new() };
-            let holds = !cycle.is_empty() && cycle.iter().all(|(r, _)| is_stopped(r.0));
-            self.since_s[robot] = if holds { self.since_s[robot].or(Some(t_s)) } else { None };
+        let is_stopped = |robot: RobotSlot| robots[robot.0].stop_state.stopped;
+        for (robot, since_s) in self.since_s.iter_mut().enumerate() {
+            let robot = RobotSlot(robot);
+            let cycle = if is_stopped(robot) { arbiter.wait_cycle(robot, t_s) } else { Vec::new() };
+            let holds = !cycle.is_empty() && cycle.iter().all(|(r, _)| is_stopped(*r));
+            *since_s = if holds { since_s.or(Some(t_s)) } else { None };
         }
-    }
-
-    /// True if the robot is in a deadlock now.
-    pub fn holds(&self, robot: usize) -> bool {
-        self.since_s[robot].is_some()
     }
 
     /// The deadlocks at the end of the run.
@@ -37,7 +33,7 @@ impl DeadlockDetector {
         let mut found: Vec<Deadlock> = Vec::new();
         let mut reported = vec![false; self.since_s.len()];
         for robot in 0..self.since_s.len() {
-            if reported[robot] || !self.holds(robot) {
+            if reported[robot] || self.since_s[robot].is_none() {
                 continue;
             }
             let cycle = arbiter.wait_cycle(RobotSlot(robot), t_s);

@@ -6,6 +6,7 @@
 use elbowroom_cell::configure::MonitorSetup;
 use elbowroom_cell::{Cell, CellRegionId, Follow};
 use elbowroom_monitor::{RegionKind, RobotSet, RobotSlot, WaitForGraph, ZoneArbiter};
+use elbowroom_robot::RobotId;
 
 use super::outcome::stopped_at;
 use super::simulated_robot::SimulatedRobot;
@@ -29,8 +30,8 @@ impl<'a> FinalWaits<'a> {
         let stopped_by: Vec<Option<CellRegionId>> = robots.iter().map(stopped_by).collect();
         let mut graph = WaitForGraph::default();
         for (robot, region) in robots.iter().zip(&stopped_by) {
-            for blocker in region.iter().flat_map(|region| blockers(cell, robot.setup, arbiter, robot.id.0, *region)) {
-                graph.add(RobotSlot(robot.id.0), RobotSlot(blocker));
+            for blocker in region.iter().flat_map(|region| blockers(cell, robot.setup, arbiter, robot.id, *region)) {
+                graph.add(RobotSlot(robot.id.0), RobotSlot(blocker.0));
             }
         }
         Self { cell, robots, stopped_by, graph }
@@ -60,11 +61,11 @@ pub(super) fn blockers(
     cell: &Cell,
     setup: &MonitorSetup,
     arbiter: Option<&ZoneArbiter>,
-    robot: usize,
+    robot: RobotId,
     region: CellRegionId,
-) -> Vec<usize> {
+) -> Vec<RobotId> {
     let carrier = match cell.regions[region.0].follow {
-        Some(Follow::Robot { robot, .. }) => Some(robot.0),
+        Some(Follow::Robot { robot, .. }) => Some(robot),
         _ => None,
     };
     let local = setup.regions.iter().position(|r| *r == region);
@@ -72,7 +73,8 @@ pub(super) fn blockers(
     let (Some(RegionKind::Exchange { slot }), Some(arbiter)) = (kind, arbiter) else {
         return carrier.into_iter().collect();
     };
-    let holds =
-        |r: &usize| arbiter.holder(slot) == Some(RobotSlot(*r)) || arbiter.occupancy(slot, RobotSlot(*r)).occupies();
-    (0..arbiter.robots()).filter(|r| *r != robot && (holds(r) || Some(*r) == carrier)).collect()
+    let holds = |r: &RobotId| {
+        arbiter.holder(slot) == Some(RobotSlot(r.0)) || arbiter.occupancy(slot, RobotSlot(r.0)).occupies()
+    };
+    (0..arbiter.robots()).map(RobotId).filter(|r| *r != robot && (holds(r) || Some(*r) == carrier)).collect()
 }

@@ -28,7 +28,7 @@ impl Simulation<'_> {
         Recording {
             cell: cell.name.clone(),
             checksum: cell.checksum.clone(),
-            tick_s: cell.tick_s,
+            tick_s: cell.timing.tick_s,
             duration_s: t_s,
             end,
             monitored: self.options.apply_override,
@@ -67,7 +67,7 @@ impl Ended<'_> {
         let region = track.samples.last().and_then(|s| s.region).map(|r| &*self.cell.regions[r.0].region.name);
         let is_deadlocked = self.deadlocks.iter().any(|d| d.robots.contains(&track.name));
         track.ending = outcome::ending(&track, is_deadlocked, region, governing.as_ref(), &setup.configuration);
-        track.ending.release = release::release(self.cell, setup, self.arbiter, id.0, &track, self.finished);
+        track.ending.release = release::release(self.cell, setup, self.arbiter, id, &track, self.finished);
         track
     }
 }

@@ -151,7 +151,7 @@ fn keeps_to_plan(
     plan: &ProgramPlan,
     perceived: &PerceivedObstacles<'_>,
 ) -> bool {
-    let avoids = options.avoidance && cell.avoidance.get(robot.0).is_some_and(Option::is_some);
+    let avoids = options.avoidance && cell.robots[robot.0].avoidance.is_some();
     let replans = plan.has_planned_moves() && perceived.search_s(robot).is_some();
     options.apply_override && !avoids && !replans
 }

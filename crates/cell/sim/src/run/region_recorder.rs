@@ -94,20 +94,20 @@ impl<'a> RegionRecorder<'a> {
     }
 
     /// Attaches a volume of a robot, as its monitor does.
-    pub fn attach(&mut self, robot: usize, volume: VolumeId, in_link: &Pose) -> Result<(), AttachError> {
+    pub fn attach(&mut self, robot: RobotId, volume: VolumeId, in_link: &Pose) -> Result<(), AttachError> {
         self.forget(robot);
-        self.sweeps[robot].attach(&self.setups[robot].configuration, volume, in_link)
+        self.sweeps[robot.0].attach(&self.setups[robot.0].configuration, volume, in_link)
     }
 
     /// Detaches a volume of a robot.
-    pub fn detach(&mut self, robot: usize, volume: VolumeId) -> Result<(), AttachError> {
+    pub fn detach(&mut self, robot: RobotId, volume: VolumeId) -> Result<(), AttachError> {
         self.forget(robot);
-        self.sweeps[robot].detach(&self.setups[robot].configuration, volume)
+        self.sweeps[robot.0].detach(&self.setups[robot.0].configuration, volume)
     }
 
     /// Discards the measured distances, which apply to the volumes attached so far.
-    fn forget(&mut self, robot: usize) {
-        self.observers.iter_mut().filter(|o| o.robot.0 == robot).for_each(|o| o.measured = None);
+    fn forget(&mut self, robot: RobotId) {
+        self.observers.iter_mut().filter(|o| o.robot == robot).for_each(|o| o.measured = None);
     }
 
     /// Observes one tick and the motion since the last one, after the monitors' ticks.
@@ -156,7 +156,7 @@ impl<'a> RegionRecorder<'a> {
             span(&mut observer.inside_since, inside, t_s, observer.robot, &mut track.inside_spans);
         }
         for (track, _) in self.tracks.iter_mut().zip(&self.warned).filter(|w| *w.1) {
-            track.warned_s += self.cell.tick_s;
+            track.warned_s += self.cell.timing.tick_s;
         }
     }
 

@@ -3,11 +3,12 @@
 use elbowroom_cell::configure::MonitorSetup;
 use elbowroom_cell::{Cell, CellRegionId, Follow};
 use elbowroom_monitor::{Life, OverrideReason, ZoneArbiter};
+use elbowroom_robot::RobotId;
 
 use super::final_waits::blockers;
 use crate::recording::{HoldReason, Outcome, RobotTrack};
 
-/// Condition under which the robot with this index would continue, in words; `None` for a moving robot, or if none is
+/// Condition under which this robot would continue, in words; `None` for a moving robot, or if none is
 /// known.
 ///
 /// `finished` states per robot whether its program is over.
@@ -15,7 +16,7 @@ pub(super) fn release(
     cell: &Cell,
     setup: &MonitorSetup,
     arbiter: Option<&ZoneArbiter>,
-    robot: usize,
+    robot: RobotId,
     track: &RobotTrack,
     finished: &[bool],
 ) -> Option<String> {
@@ -40,15 +41,15 @@ pub(super) fn release(
     }
 }
 
-fn holders_leave(holders: &[usize], cell: &Cell, finished: &[bool]) -> String {
-    let name = |robot: &usize| cell.robots[*robot].name.as_str();
+fn holders_leave(holders: &[RobotId], cell: &Cell, finished: &[bool]) -> String {
+    let name = |robot: &RobotId| cell.robots[robot.0].name.as_str();
     let names: Vec<&str> = holders.iter().map(name).collect();
     let leave = match names[..] {
         [] => return "the regions that are granted with it become free".to_owned(),
         [one] => format!("{one} leaves it"),
         _ => format!("{} leave it", names.join(", ")),
     };
-    let resting: Vec<&str> = holders.iter().filter(|robot| finished[**robot]).map(name).collect();
+    let resting: Vec<&str> = holders.iter().filter(|robot| finished[robot.0]).map(name).collect();
     if resting.is_empty() {
         return leave;
     }

@@ -11,7 +11,7 @@ impl Simulation<'_> {
         if present().all(SimulatedRobot::is_finished) {
             return Some(RunEnd::Finished);
         }
-        if t_s >= self.cell.max_s {
+        if t_s >= self.cell.timing.max_s {
             return Some(RunEnd::TimeLimit);
         }
         // A robot that is held may continue after the next picture, or when its search ends.

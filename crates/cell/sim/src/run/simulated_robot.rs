@@ -245,6 +245,6 @@ fn new_track(robot: &CellRobot, setup: &MonitorSetup) -> RobotTrack {
 
 /// Links of the tools that are not mounted; `None` if all tools are mounted.
 pub(super) fn absent_links(robot: &CellRobot) -> Option<Vec<LinkId>> {
-    let absent: Vec<LinkId> = robot.tools.iter().filter(|t| !t.mounted).map(|t| t.link).collect();
+    let absent: Vec<LinkId> = robot.payload.tools.iter().filter(|t| !t.mounted).map(|t| t.link).collect();
     (!absent.is_empty()).then_some(absent)
 }

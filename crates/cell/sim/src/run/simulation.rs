@@ -51,7 +51,7 @@ impl Simulation<'_> {
         self.publish_initial_occupancy();
         let mut tick = 0_u64;
         loop {
-            let t_s = tick_time_s(tick, self.cell.tick_s);
+            let t_s = tick_time_s(tick, self.cell.timing.tick_s);
             if tick.is_multiple_of(256) {
                 let finished = self.robots.iter().filter(|robot| robot.clock.finished()).count();
                 progress(RunProgress { t_s, finished, robots: self.robots.len() });
@@ -77,7 +77,7 @@ impl Simulation<'_> {
         let Self { cell, options, robots, states, frames, journal, .. } = self;
         for (robot, state) in robots.iter_mut().zip(&*states).filter(|(r, _)| !options.is_silent(r.id, 0.0)) {
             let sources = frames.sources(&robot.setup.sources, states, 0.0);
-            robot.publish_occupancy(-cell.tick_s, state, sources, journal);
+            robot.publish_occupancy(-cell.timing.tick_s, state, sources, journal);
         }
     }
 
@@ -171,7 +171,7 @@ impl Simulation<'_> {
             journal.event(t_s, robot.id, &by, event);
         }
         if robot.stop_state.stopped {
-            robot.track.stopped_s += cell.tick_s;
+            robot.track.stopped_s += cell.timing.tick_s;
         }
     }
 
@@ -182,7 +182,7 @@ impl Simulation<'_> {
             let SimulatedRobot { id, setup, monitor, clock, avoiding, applied, delay, .. } = robot;
             let Some(avoiding) = avoiding else {
                 delay.send(t_s, *applied);
-                delay.advance(clock, t_s, cell.tick_s);
+                delay.advance(clock, t_s, cell.timing.tick_s);
                 continue;
             };
             let regions = |share: f64| {

@@ -71,7 +71,8 @@ impl ZoneClaims {
         }
         let mut held = HeldObjects::default();
         let mut now = Cow::Borrowed(cell);
-        let mounted_in = |cell: &Cell| cell.robots[robot.0].tools.iter().map(|tool| tool.mounted).collect::<Vec<_>>();
+        let mounted_in =
+            |cell: &Cell| cell.robots[robot.0].payload.tools.iter().map(|tool| tool.mounted).collect::<Vec<_>>();
         let mut mounted = mounted_in(cell);
         let mut zones = ZoneTester::new(setup, cell.volumes_holding(robot, &[]));
         let mut here = plan.start.clone();

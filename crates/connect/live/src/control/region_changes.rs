@@ -104,7 +104,7 @@ impl RequestHandler {
 
     /// Returns whether the region is on, if this token may move or remove it while the cell runs; else the refusal.
     fn changeable(&self, who: &AccessToken, present: &PresentRegions, name: &str, what: &str) -> Result<bool, Refusal> {
-        let (index, region) = find(&present.cell, name)?;
+        let (id, region) = find(&present.cell, name)?;
         let life = region.region.life;
         self.require(who, life.needed_class(), &format!("{what} {} region `{name}`", life.name()))?;
         let in_the_file = "elbowroom region change, or an editor (docs/roles.md), and start the processes again";
@@ -120,7 +120,7 @@ impl RequestHandler {
                 format!("region `{name}` is permanent and in the cell file: it stays as it is while the cell runs");
             return Err(Refusal::new(409, error).help(in_the_file));
         }
-        Ok(self.parts.keeper.active()[index])
+        Ok(self.parts.keeper.active()[id.0])
     }
 
     /// Names the holder of an exchange region in words; empty without a holder.

@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex, MutexGuard};
 
 use elbowroom_cell::access::{AccessToken, Change, ControlEntry, ControlLog, Controlled};
-use elbowroom_cell::{Cell, CellRegion};
+use elbowroom_cell::{Cell, CellRegion, CellRegionId};
 use elbowroom_monitor::{AccessClass, Life, RegionKind};
 use elbowroom_robot::RobotId;
 use serde::Serialize;
@@ -161,7 +161,7 @@ impl RequestHandler {
         let keeper = &self.parts.keeper;
         let mut log = self.log();
         let cell = keeper.present().cell;
-        let (index, region) = find(&cell, &request.region)?;
+        let (id, region) = find(&cell, &request.region)?;
         self.require(who, Life::Temporary.needed_class(), &format!("switch region `{}`", request.region))?;
         if region.region.life == Life::Permanent {
             let error = format!("region `{}` is permanent: it is always on", request.region);
@@ -170,7 +170,7 @@ impl RequestHandler {
             );
         }
         is_present(&log, at)?;
-        let before = keeper.active()[index];
+        let before = keeper.active()[id.0];
         let not_heard = if request.active && !before { self.refuse_inside(&cell, region)? } else { Vec::new() };
         let change = Change {
             item: format!("region.{}", request.region),
@@ -186,7 +186,7 @@ impl RequestHandler {
             changes: vec![change],
             checksums: [&cell.checksum, &cell.checksum],
         })?;
-        keeper.switch(index, request.active);
+        keeper.switch(id, request.active);
         let state = if request.active { "on" } else { "off" };
         self.report(&format!("{}: switched {state} by {} ({})", request.region, who.name, who.class.name()));
         Ok(Done { entry, revision: revision(&log), not_heard, stopped: Vec::new() })
@@ -303,8 +303,9 @@ impl RequestHandler {
 }
 
 /// Finds the region of this name; returns it with its index.
-pub(super) fn find<'c>(cell: &'c Cell, name: &str) -> Result<(usize, &'c CellRegion), Refusal> {
+pub(super) fn find<'c>(cell: &'c Cell, name: &str) -> Result<(CellRegionId, &'c CellRegion), Refusal> {
     let found = cell.regions.iter().enumerate().find(|(_, r)| r.region.name == name);
+    let found = found.map(|(index, region)| (CellRegionId(index), region));
     found.ok_or_else(|| {
         let names: Vec<&str> = cell.regions.iter().map(|r| r.region.name.as_str()).collect();
         Refusal::new(404, format!("there is no region `{name}`")).help(format!("one of {}", names.join(", ")))

@@ -6,6 +6,7 @@ use std::time::Duration;
 use elbowroom_cell::{Cell, RegionEdit, configure};
 use elbowroom_interlock::Micros;
 use elbowroom_interlock::wire::MAX_BYTES;
+use elbowroom_robot::RobotId;
 
 use super::input_gate::{InputGate, Rejected};
 use super::next_configuration::NextConfiguration;
@@ -167,8 +168,8 @@ impl Inbox {
     }
 
     /// Reads a joint state of a robot that a region follows.
-    pub(super) fn take_followed(&self, robot: usize, bytes: &[u8], arrived: Micros) {
-        if let Some(Some(heard)) = self.lock().followed.get_mut(robot) {
+    pub(super) fn take_followed(&self, robot: RobotId, bytes: &[u8], arrived: Micros) {
+        if let Some(Some(heard)) = self.lock().followed.get_mut(robot.0) {
             heard.take(bytes, arrived);
         }
     }

@@ -27,7 +27,7 @@ use elbowroom_kinematics::ChainState;
 use elbowroom_monitor::Configuration;
 use elbowroom_robot::RobotId;
 use elbowroom_spatial::Pose;
-use elbowroom_status::{EventStatus, HealthStatus, RobotStatus, StatusSample};
+use elbowroom_status::{EventStatus, HealthStatus, RobotStatus, ServiceStatus, StatusSample};
 
 use elbowroom_recording::TickRecorder;
 
@@ -160,7 +160,7 @@ fn subscribe(
     let mut subscriptions = vec![network.subscribe(&keys.joint_states(&cell.robots[robot.0].name), handler)?];
     for other in (0..followed.len()).filter(|r| followed[*r]) {
         let inbox = inbox.clone();
-        let handler = Box::new(move |bytes: &[u8]| inbox.take_followed(other, bytes, clock.micros()));
+        let handler = Box::new(move |bytes: &[u8]| inbox.take_followed(RobotId(other), bytes, clock.micros()));
         subscriptions.push(network.subscribe(&keys.joint_states(&cell.robots[other].name), handler)?);
     }
     let inbox = inbox.clone();
@@ -223,15 +223,15 @@ impl Sender {
     ) {
         let tcp = self.tcp(&version.configuration);
         let mut status = RobotStatus::of_sample(t_s, &version.configuration, &self.sample, tcp.as_ref());
-        (status.sequence, status.health) = (sequence, health);
-        status.configuration.clone_from(&version.number);
+        status.sequence = sequence;
         if self.sample.joint_positions().is_empty() {
             "no joint values from the controller yet".clone_into(&mut status.reason);
         }
         if let Some(doubt) = doubt {
             status.reason = format!("{}: {doubt}", status.reason);
         }
-        status.events = self.events(t_s, &version.configuration);
+        let events = self.events(t_s, &version.configuration);
+        status.service = ServiceStatus { configuration: version.number.clone(), health, events };
         if let Ok(json) = serde_json::to_vec(&status) {
             self.statuses.publish(&json);
         }

@@ -100,7 +100,7 @@ impl NodeTick {
 
     /// Puts in a joint state of another robot; it is used if a region follows that robot.
     pub fn followed_joint_state(&self, robot: RobotId, bytes: &[u8], arrived: Micros) {
-        self.inbox.take_followed(robot.0, bytes, arrived);
+        self.inbox.take_followed(robot, bytes, arrived);
     }
 
     /// Puts in a message of the arbiter.

@@ -35,26 +35,28 @@ impl<'s> Distances<'s> {
     }
 
     /// Makes the frame of a status: robots in the order of the cell, with distances if their joint values are known.
-    pub(crate) fn frame(&mut self, mut status: CellStatus) -> Frame {
-        let robots = self.in_order(std::mem::take(&mut status.robots));
-        let known: Vec<bool> = robots.iter().enumerate().map(|(r, robot)| self.place_robot(r, &robot.q)).collect();
-        for object in &status.objects {
+    pub(crate) fn frame(&mut self, mut cell_status: CellStatus) -> Frame {
+        let robots = self.in_order(std::mem::take(&mut cell_status.robots));
+        let known: Vec<bool> =
+            robots.iter().enumerate().map(|(r, robot)| self.place_robot(RobotId(r), &robot.q)).collect();
+        for object in &cell_status.objects {
             self.place_object(&object.name, &object.pose);
         }
         let mut nearest: Option<PairDistance> = None;
         let mut measured = Vec::with_capacity(robots.len());
-        for (r, robot) in robots.into_iter().enumerate() {
-            let mut out = FrameRobot { status: robot, ..FrameRobot::default() };
+        for (r, status) in robots.into_iter().enumerate() {
+            let robot = RobotId(r);
+            let mut out = FrameRobot { status, ..FrameRobot::default() };
             if known[r] {
-                let (others, itself) = (self.nearest_other(r, &known), self.nearest_self(r));
+                let (others, itself) = (self.nearest_other(robot, &known), self.nearest_self(robot));
                 out.nearest = others.map(|d| self.named(&d));
                 out.nearest_self = itself.map(|d| self.named(&d));
-                out.distances = self.regions(r, &out.status);
+                out.distances = self.regions(robot, &out.status);
                 nearest = [others, itself].into_iter().flatten().chain(nearest).min_by(by_distance);
             }
             measured.push(out);
         }
-        let mut frame = Frame::of(status, measured);
+        let mut frame = Frame::of(cell_status, measured);
         frame.nearest = nearest.map(|d| self.named(&d));
         frame
     }
@@ -73,14 +75,14 @@ impl<'s> Distances<'s> {
     }
 
     /// Places a robot; false if the joint values are unknown or do not fit.
-    fn place_robot(&mut self, robot: usize, q: &[f64]) -> bool {
-        let chain = &self.cell.robots[robot].robot.chain;
+    fn place_robot(&mut self, robot: RobotId, q: &[f64]) -> bool {
+        let chain = &self.cell.robots[robot.0].robot.chain;
         let fits = q.len() == chain.dof() && q.iter().all(|v| v.is_finite());
-        if !fits || self.state.set_q(self.checker.scene(), RobotId(robot), q).is_err() {
+        if !fits || self.state.set_q(self.checker.scene(), robot, q).is_err() {
             return false;
         }
-        self.chains[robot].q.copy_from_slice(q);
-        chain.forward(&mut self.chains[robot]);
+        self.chains[robot.0].q.copy_from_slice(q);
+        chain.forward(&mut self.chains[robot.0]);
         true
     }
 
@@ -92,15 +94,15 @@ impl<'s> Distances<'s> {
         }
     }
 
-    fn nearest_other(&mut self, robot: usize, known: &[bool]) -> Option<PairDistance> {
-        let this = Selection::Robot(RobotId(robot));
-        let others = (0..known.len()).filter(|other| *other != robot && known[*other]);
-        let sides = others.map(|other| Selection::Robot(RobotId(other))).chain([Selection::Objects]);
+    fn nearest_other(&mut self, robot: RobotId, known: &[bool]) -> Option<PairDistance> {
+        let this = Selection::Robot(robot);
+        let others = (0..known.len()).map(RobotId).filter(|other| *other != robot && known[other.0]);
+        let sides = others.map(Selection::Robot).chain([Selection::Objects]);
         sides.filter_map(|side| self.pair(this, side)).min_by(by_distance)
     }
 
-    fn nearest_self(&mut self, robot: usize) -> Option<PairDistance> {
-        let this = Selection::Robot(RobotId(robot));
+    fn nearest_self(&mut self, robot: RobotId) -> Option<PairDistance> {
+        let this = Selection::Robot(robot);
         self.pair(this, this)
     }
 
@@ -125,13 +127,13 @@ impl<'s> Distances<'s> {
     }
 
     /// Measures the distances of a robot from its regions, at the region poses of its status.
-    fn regions(&self, robot: usize, status: &RobotStatus) -> Vec<RegionDistance> {
-        let configuration = &self.setups[robot].configuration;
+    fn regions(&self, robot: RobotId, status: &RobotStatus) -> Vec<RegionDistance> {
+        let configuration = &self.setups[robot.0].configuration;
         let volumes: Vec<(&Volume, Pose)> = configuration
             .volumes()
             .iter()
             .filter(|v| v.presence != Presence::Detached)
-            .map(|v| (v, *configuration.base_in_world() * self.chains[robot].link_in_root(v.link) * v.in_link))
+            .map(|v| (v, *configuration.base_in_world() * self.chains[robot.0].link_in_root(v.link) * v.in_link))
             .collect();
         let distance = |region: &elbowroom_monitor::Region| {
             let pose = pose_of(&status.regions.iter().find(|r| r.name == region.name)?.pose)?;

@@ -9,6 +9,7 @@ use elbowroom_diagnostic::Diagnostic;
 use elbowroom_kinematics::inverse::{IkOptions, IkSolver, IkTask};
 use elbowroom_kinematics::{ChainState, Joint, JointKind};
 use elbowroom_monitor::{EventKind, Monitor, RobotSlot, SlotId, Snapshot, SourceState, TickReport, ZoneArbiter};
+use elbowroom_robot::RobotId;
 use elbowroom_spatial::{FrameMotion, Pose};
 use elbowroom_status::{CellStatus, EventStatus, PoseStatus, RobotStatus, SlotStatus};
 
@@ -63,11 +64,11 @@ impl JogCell {
         })
     }
 
-    fn robot(&self, index: usize) -> Result<&CellRobot, CommandRefusal> {
-        self.cell.robots.get(index).ok_or(CommandRefusal::NoRobot(index))
+    fn robot(&self, robot: RobotId) -> Result<&CellRobot, CommandRefusal> {
+        self.cell.robots.get(robot.0).ok_or(CommandRefusal::NoRobot(robot))
     }
 
-    fn jog(&mut self, robot: usize, q: Vec<f64>) -> Result<(), CommandRefusal> {
+    fn jog(&mut self, robot: RobotId, q: Vec<f64>) -> Result<(), CommandRefusal> {
         let r = self.robot(robot)?;
         let chain = &r.robot.chain;
         if q.len() != chain.dof() {
@@ -80,27 +81,27 @@ impl JogCell {
                 return Err(beyond_limits(joint, *value));
             }
         }
-        self.q[robot] = q;
+        self.q[robot.0] = q;
         Ok(())
     }
 
-    fn move_tcp(&mut self, robot: usize, target: &PoseStatus) -> Result<(), CommandRefusal> {
+    fn move_tcp(&mut self, robot: RobotId, target: &PoseStatus) -> Result<(), CommandRefusal> {
         let base_in_world = self.robot(robot)?.base_in_world;
         let target = pose_of(target).ok_or(CommandRefusal::Pose)?;
         let in_root = base_in_world.inverse_mul(&target);
         // First a few steps from the present joint values, so that the arm does not change its configuration without need.
-        let mut q = self.q[robot].clone();
-        let solver = &mut self.solvers[robot];
+        let mut q = self.q[robot.0].clone();
+        let solver = &mut self.solvers[robot.0];
         if !solver.refine(&in_root, &mut q) {
-            q = solver.solve(&in_root, &self.q[robot])?.q;
+            q = solver.solve(&in_root, &self.q[robot.0])?.q;
         }
         self.jog(robot, q)
     }
 
     /// Computes the pose of the tool centre point in the world.
-    fn tcp(&self, robot: usize) -> Pose {
-        let r = &self.cell.robots[robot];
-        r.base_in_world * self.chains[robot].link_in_root(r.flange) * r.tcp_in_flange
+    fn tcp(&self, robot: RobotId) -> Pose {
+        let r = &self.cell.robots[robot.0];
+        r.base_in_world * self.chains[robot.0].link_in_root(r.flange) * r.tcp_in_flange
     }
 
     fn place(&mut self) {
@@ -150,8 +151,7 @@ impl JogCell {
     fn slots(&self) -> Vec<SlotStatus> {
         let Some(arbiter) = &self.arbiter else { return Vec::new() };
         let of_region = configure::slots(&self.cell);
-        let slot = |slot: usize| {
-            let slot = SlotId(slot);
+        let slot = |slot: SlotId| {
             let regions = of_region.iter().zip(&self.cell.regions).filter(|(s, _)| **s == Some(slot));
             let waits = |r: &usize| {
                 self.setups[*r].regions.iter().enumerate().any(|(own, id)| {
@@ -167,7 +167,7 @@ impl JogCell {
                 age_s: 0.0,
             }
         };
-        (0..arbiter.slots()).map(slot).collect()
+        (0..arbiter.slots()).map(SlotId).map(slot).collect()
     }
 }
 
@@ -178,8 +178,9 @@ impl ViewSource for JogCell {
 
     fn command(&mut self, command: Command) -> Result<(), CommandRefusal> {
         match command {
-            Command::Jog { robot, q } => self.jog(robot, q)?,
+            Command::Jog { robot, q } => self.jog(RobotId(robot), q)?,
             Command::Tcp { robot, position_m, quaternion_xyzw } => {
+                let robot = RobotId(robot);
                 self.robot(robot)?;
                 let quaternion_xyzw = quaternion_xyzw.unwrap_or_else(|| self.tcp(robot).rotation.to_quaternion_xyzw());
                 self.move_tcp(robot, &PoseStatus { position_m, quaternion_xyzw })?;
@@ -198,7 +199,7 @@ impl ViewSource for JogCell {
         let robot = |(r, (report, sources)): (usize, &(TickReport, Vec<SourceState>))| {
             let at_rest = vec![0.0; self.q[r].len()];
             let snapshot = snapshot(self.now_s, &self.q[r], &at_rest, sources);
-            RobotStatus::of_tick(t_s, &self.monitors[r], &snapshot, report, Some(&self.tcp(r)))
+            RobotStatus::of_tick(t_s, &self.monitors[r], &snapshot, report, Some(&self.tcp(RobotId(r))))
         };
         let status = CellStatus {
             t_s,

@@ -332,7 +332,7 @@ impl Arbiter {
         let mut deadlocks = Vec::new();
         for cycle in wait_for_graph(&self.slots).cycles() {
             match self.least_important(cycle, now) {
-                Some(slot) => self.slots[slot].release_requested = true,
+                Some(slot) => self.slots[slot.0].release_requested = true,
                 None => deadlocks.push(cycle.iter().collect()),
             }
         }
@@ -343,13 +343,13 @@ impl Arbiter {
 
     /// The slot to give up in a cycle: its holder in the cycle can give it up, and another robot of the cycle waits for
     /// it. Chooses the holder with the lowest priority; among equals, the slot that was granted last.
-    fn least_important(&self, cycle: RobotSet, now: Micros) -> Option<usize> {
-        let holder = |slot: usize| self.slots[slot].holder.map(|h| h.robot).filter(|robot| cycle.contains(*robot));
-        let is_waited_for = |slot: usize| self.slots[slot].queue.iter().any(|robot| cycle.contains(*robot));
-        let held = (0..self.slots.len()).filter_map(|slot| Some((slot, holder(slot)?)));
-        let able = held.filter(|(slot, robot)| is_waited_for(*slot) && self.can_give_up(SlotId(*slot), *robot, now));
-        let rank = |(slot, robot): &(usize, RobotSlot)| {
-            (self.settings.robots[robot.0].priority, std::cmp::Reverse(self.slots[*slot].token_of(*robot)))
+    fn least_important(&self, cycle: RobotSet, now: Micros) -> Option<SlotId> {
+        let holder = |slot: SlotId| self.slots[slot.0].holder.map(|h| h.robot).filter(|robot| cycle.contains(*robot));
+        let is_waited_for = |slot: SlotId| self.slots[slot.0].queue.iter().any(|robot| cycle.contains(*robot));
+        let held = (0..self.slots.len()).map(SlotId).filter_map(|slot| Some((slot, holder(slot)?)));
+        let able = held.filter(|(slot, robot)| is_waited_for(*slot) && self.can_give_up(*slot, *robot, now));
+        let rank = |(slot, robot): &(SlotId, RobotSlot)| {
+            (self.settings.robots[robot.0].priority, std::cmp::Reverse(self.slots[slot.0].token_of(*robot)))
         };
         able.min_by_key(rank).map(|(slot, _)| slot)
     }
@@ -363,12 +363,12 @@ impl Arbiter {
     fn answer(&mut self, robot: RobotSlot) -> GrantsMessage {
         self.serial += 1;
         let record = &self.robots[robot.0];
-        let answer = |slot: usize| {
-            let is_held = record.is_trusted && self.slots[slot].is_held_by(robot);
+        let answer = |(index, slot): (usize, &SlotRecord)| {
+            let is_held = record.is_trusted && slot.is_held_by(robot);
             SlotAnswer {
-                granted: self.slots[slot].token_of(robot).filter(|_| is_held),
-                release_requested: is_held && self.slots[slot].release_requested,
-                halt: self.must_halt(SlotId(slot), robot),
+                granted: slot.token_of(robot).filter(|_| is_held),
+                release_requested: is_held && slot.release_requested,
+                halt: self.must_halt(SlotId(index), robot),
             }
         };
         GrantsMessage {
@@ -378,7 +378,7 @@ impl Arbiter {
             robot,
             robot_boot: record.boot,
             echo: record.sequence,
-            slots: (0..self.slots.len()).map(answer).collect(),
+            slots: self.slots.iter().enumerate().map(answer).collect(),
         }
     }
 

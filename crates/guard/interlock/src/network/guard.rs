@@ -273,15 +273,15 @@ impl Guard {
     }
 
     /// Visits the grant that is obeyed and the last grant given up, per slot.
-    pub(crate) fn each_token(&mut self, f: &mut impl FnMut(usize, &mut Option<Token>)) {
+    pub(crate) fn each_token(&mut self, f: &mut impl FnMut(SlotId, &mut Option<Token>)) {
         for (s, slot) in self.slots.iter_mut().enumerate() {
-            f(s, &mut slot.token);
-            f(s, &mut slot.released);
+            f(SlotId(s), &mut slot.token);
+            f(SlotId(s), &mut slot.released);
         }
     }
 
-    pub(crate) fn released_mut(&mut self, slot: usize) -> &mut Option<Token> {
-        &mut self.slots[slot].released
+    pub(crate) fn released_mut(&mut self, slot: SlotId) -> &mut Option<Token> {
+        &mut self.slots[slot.0].released
     }
 
     pub(crate) fn serial_mut(&mut self) -> &mut u64 {

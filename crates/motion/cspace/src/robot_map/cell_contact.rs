@@ -1,6 +1,7 @@
 //! Cells that are not proven free immediately: bisected until a contact is found or excluded.
 
-use elbowroom_proximity::DistanceSettings;
+use elbowroom_proximity::{DistanceSettings, Separation};
+use elbowroom_spatial::Pose;
 
 use super::motion_bound::MotionBound;
 use super::pair_evaluator::{JointBox, PairEvaluator, PieceObstaclePair};
@@ -43,11 +44,8 @@ impl PairEvaluator<'_> {
         let displacement = bound.max_displacement(piece, &joint_box.half);
         let in_world = self.in_world(pair.piece as usize);
         // If the solids overlap, a collision query is cheaper.
-        if checked_corner.is_none() {
-            self.stats.collision_queries += 1;
-            if self.workspace.collides(&piece.shape, &in_world, &obstacle.shape, &obstacle.in_world) {
-                return true;
-            }
+        if checked_corner.is_none() && self.collides(&pair, &in_world) {
+            return true;
         }
         self.stats.distance_queries += 1;
         let (shapes, poses) = ((&piece.shape, &obstacle.shape), (&in_world, &obstacle.in_world));
@@ -61,23 +59,13 @@ impl PairEvaluator<'_> {
         if gap.distance <= 0.0 {
             return true;
         }
-        let line = (gap.on_b - gap.on_a) * gap.distance.recip();
-        let mut corner = joint_box.center;
-        let mut displacements = [0.0; MAX_JOINTS];
-        let mut nearer = 0.0;
-        for axis in 0..piece.depth {
-            let speed = bound.point_velocity(axis, gap.on_a).dot(line);
-            nearer += joint_box.half[axis] * speed.abs();
-            corner[axis] += joint_box.half[axis] * if speed < 0.0 { -1.0 } else { 1.0 };
-            displacements[axis] = bound.axis_displacement(piece, axis, &joint_box.half);
-        }
+        let (corner, nearer) = nearer_corner(joint_box, &bound, piece.depth, &gap);
         // If the corner is hardly nearer, a contact is unlikely.
         let is_worthwhile = nearer > CORNER_GAIN * gap.distance;
         if is_worthwhile && checked_corner.is_none_or(|checked| !is_same_configuration(checked, &corner)) {
             self.set_configuration(&corner);
             let at_corner = self.in_world(pair.piece as usize);
-            self.stats.collision_queries += 1;
-            if self.workspace.collides(&piece.shape, &at_corner, &obstacle.shape, &obstacle.in_world) {
+            if self.collides(&pair, &at_corner) {
                 return true;
             }
         }
@@ -86,6 +74,8 @@ impl PairEvaluator<'_> {
             self.stats.undecided += 1;
             return true;
         }
+        let displacements: [f64; MAX_JOINTS] =
+            std::array::from_fn(|axis| bound.axis_displacement(piece, axis, &joint_box.half));
         let longest = (0..piece.depth).max_by(|&a, &b| displacements[a].total_cmp(&displacements[b]));
         let Some(axis) = longest else { return true };
         let toward = if corner[axis] < joint_box.center[axis] { -1.0 } else { 1.0 };
@@ -96,6 +86,32 @@ impl PairEvaluator<'_> {
             self.may_touch(pair, &half, Some(&corner), bisections - 1)
         })
     }
+
+    /// Whether the solids of a pair overlap, with the piece at this pose.
+    fn collides(&mut self, pair: &PieceObstaclePair, in_world: &Pose) -> bool {
+        let piece = &self.task.pieces.pieces[pair.piece as usize];
+        let obstacle = &self.task.obstacles[pair.obstacle as usize];
+        self.stats.collision_queries += 1;
+        self.workspace.collides(&piece.shape, in_world, &obstacle.shape, &obstacle.in_world)
+    }
+}
+
+/// The corner of a box at which a piece is nearest to the obstacle to first order, and the decrease of the distance from
+/// the centre to it, metres.
+fn nearer_corner(
+    joint_box: &JointBox,
+    bound: &MotionBound,
+    depth: usize,
+    gap: &Separation,
+) -> ([f64; MAX_JOINTS], f64) {
+    let line = (gap.on_b - gap.on_a) * gap.distance.recip();
+    let (mut corner, mut nearer) = (joint_box.center, 0.0);
+    for axis in 0..depth {
+        let speed = bound.point_velocity(axis, gap.on_a).dot(line);
+        nearer += joint_box.half[axis] * speed.abs();
+        corner[axis] += joint_box.half[axis] * if speed < 0.0 { -1.0 } else { 1.0 };
+    }
+    (corner, nearer)
 }
 
 /// Whether two configurations are equal up to rounding.

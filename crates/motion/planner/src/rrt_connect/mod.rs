@@ -7,7 +7,6 @@ mod exact_time_parametrization;
 mod joint_bounds;
 mod joint_weights;
 mod motion_validator;
-mod node_packs;
 mod path_constraint;
 mod planner;
 mod random;

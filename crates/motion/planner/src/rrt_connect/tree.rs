@@ -1,6 +1,7 @@
 //! A tree of configurations with a nearest-neighbour search over all nodes, in single precision.
 
-use super::node_packs::NodePacks;
+use elbowroom_cspace::NearestNeighbours;
+
 use crate::interpolation::length;
 
 /// A tree of configurations.
@@ -9,7 +10,7 @@ pub(crate) struct Tree {
     dof: usize,
     /// The configurations, one after the other.
     q: Vec<f64>,
-    packs: NodePacks,
+    nodes: NearestNeighbours,
     /// Number of roots, which are the first nodes.
     roots: usize,
     /// A root is its own parent.
@@ -26,7 +27,7 @@ impl Tree {
     /// Creates a tree with one or several roots, all with the same number of values.
     pub fn new<'q>(dof: usize, roots: impl IntoIterator<Item = &'q [f64]>) -> Self {
         let (q, parents, costs, radii, is_proven) = Default::default();
-        let mut tree = Self { dof, q, packs: NodePacks::new(dof), roots: 0, parents, costs, radii, is_proven };
+        let mut tree = Self { dof, q, nodes: NearestNeighbours::new(dof), roots: 0, parents, costs, radii, is_proven };
         for root in roots {
             tree.push(tree.len(), 0.0, root);
         }
@@ -60,7 +61,7 @@ impl Tree {
 
     fn push(&mut self, parent: usize, cost: f64, q: &[f64]) -> usize {
         let node = self.len();
-        self.packs.push(q);
+        self.nodes.push(q);
         self.q.extend_from_slice(q);
         self.parents.push(parent as u32);
         self.costs.push(cost);
@@ -88,14 +89,14 @@ impl Tree {
         for n in node..self.len() {
             is_pruned[n] = n == node || is_pruned[self.parents[n] as usize];
             if is_pruned[n] {
-                self.packs.remove(n);
+                self.nodes.remove(n);
             }
         }
     }
 
     /// The nearest node and its Euclidean distance.
     pub fn nearest(&self, q: &[f64]) -> (usize, f64) {
-        let node = self.packs.nearest(q);
+        let node = self.nodes.nearest(q);
         (node, length(self.q(node), q))
     }
 
@@ -103,7 +104,7 @@ impl Tree {
     /// Euclidean distance.
     pub fn nearest_within(&self, q: &[f64], cost: f64) -> Option<(usize, f64)> {
         let mut best: Option<(usize, f32)> = None;
-        for (node, square) in self.packs.squared_distances(q).enumerate() {
+        for (node, square) in self.nodes.squared_distances(q).enumerate() {
             let is_nearer = best.is_none_or(|(_, least)| square < least);
             if is_nearer && self.costs[node] + f64::from(square.sqrt()) <= cost {
                 best = Some((node, square));

@@ -11,6 +11,7 @@ use std::io::BufRead;
 use std::path::{Path, PathBuf};
 
 use elbowroom_kinematics::{JointKind, JointTrajectory, TrajectoryRow};
+use elbowroom_robot::RobotId;
 
 use crate::Diagnostic;
 use crate::csv::{self, CsvLines, missing_column};
@@ -25,6 +26,7 @@ type Result<T> = std::result::Result<T, Diagnostic>;
 /// ```
 /// use elbowroom_formats::joint_states::{JointStateOptions, JointStateRobot, JointStates};
 /// use elbowroom_kinematics::{Chain, JointKind, Limits, dh::ClassicalRow};
+/// use elbowroom_robot::RobotId;
 /// let row = |name: &str| ClassicalRow {
 ///     joint: name.into(), kind: JointKind::Revolute, a: 0.3, alpha: 0.0, d: 0.5, theta: 0.0,
 ///     limits: Limits::symmetric(2.5),
@@ -33,7 +35,7 @@ type Result<T> = std::result::Result<T, Diagnostic>;
 /// let options =
 ///     JointStateOptions::states(vec![JointStateRobot { name: "arm", chain: &chain, default_q: None }]);
 /// let states = JointStates::parse("q.csv".as_ref(), "elbow,arm.shoulder\n0.1,0.2\n", &options)?;
-/// assert_eq!(states.q(0, 0), [0.2, 0.1]);
+/// assert_eq!(states.q(0, RobotId(0)), [0.2, 0.1]);
 /// let error = JointStates::parse("q.csv".as_ref(), "elbow\n0.1\n", &options).unwrap_err();
 /// assert_eq!(error.message, "has no column `shoulder`; its columns are elbow");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -105,7 +107,7 @@ impl JointStates {
     ///
     /// # Panics
     /// If `state` or `robot` is out of range.
-    pub fn q(&self, state: usize, robot: usize) -> &[f64] {
+    pub fn q(&self, state: usize, RobotId(robot): RobotId) -> &[f64] {
         assert!(state < self.rows, "state {state} of {}", self.rows);
         let width = self.ends.last().copied().unwrap_or(0);
         let begin = if robot == 0 { 0 } else { self.ends[robot - 1] };
@@ -121,7 +123,7 @@ impl JointStates {
     ///
     /// # Panics
     /// If `robot` is out of range.
-    pub fn trajectory(&self, robot: usize) -> JointTrajectory {
+    pub fn trajectory(&self, robot: RobotId) -> JointTrajectory {
         let row = |(state, t_s): (usize, &f64)| TrajectoryRow { t_s: *t_s, q: self.q(state, robot).to_vec() };
         JointTrajectory::new(self.times_s.iter().enumerate().map(row).collect())
     }
@@ -193,7 +195,7 @@ const FULL_TURN_RAD: f64 = 6.3;
 
 /// A joint with a column.
 struct JointColumn {
-    robot: usize,
+    robot: RobotId,
     /// Name as in the chain, without prefix.
     name: String,
     lower: f64,
@@ -209,6 +211,7 @@ struct Joints<'a> {
 impl<'a> Joints<'a> {
     fn new(options: &'a JointStateOptions<'a>) -> Self {
         let list = options.robots.iter().enumerate().flat_map(|(robot, r)| {
+            let robot = RobotId(robot);
             r.chain.active_joints().iter().map(move |id| {
                 let joint = &r.chain.joints()[id.0];
                 let (lower, upper) = (joint.limits.lower, joint.limits.upper);
@@ -219,23 +222,23 @@ impl<'a> Joints<'a> {
     }
 
     fn ends(&self) -> Vec<usize> {
-        let count = |robot: usize| self.list.iter().filter(|j| j.robot <= robot).count();
-        (0..self.options.robots.len()).map(count).collect()
+        let count = |robot: RobotId| self.list.iter().filter(|j| j.robot <= robot).count();
+        (0..self.options.robots.len()).map(RobotId).map(count).collect()
     }
 
     /// Values of a row for robots without columns in the file; 0 for robots that must have columns.
     fn defaults(&self) -> Vec<f64> {
-        let dof = |robot: usize| self.list.iter().filter(|j| j.robot == robot).count();
+        let dof = |robot: RobotId| self.list.iter().filter(|j| j.robot == robot).count();
         let of_robot = |(robot, r): (usize, &JointStateRobot<'_>)| {
             let mut q = r.default_q.unwrap_or_default().to_vec();
-            q.resize(dof(robot), 0.0);
+            q.resize(dof(RobotId(robot)), 0.0);
             q
         };
         self.options.robots.iter().enumerate().flat_map(of_robot).collect()
     }
 
     fn prefixed(&self, joint: &JointColumn) -> String {
-        format!("{}.{}", self.options.robots[joint.robot].name, joint.name)
+        format!("{}.{}", self.options.robots[joint.robot.0].name, joint.name)
     }
 
     /// The name that a user should write: with prefix if there are several robots.
@@ -320,7 +323,7 @@ impl Header {
             let bare = || index_of.get(joint.name.as_str()).filter(|_| bare_names_count);
             match index_of.get(joints.prefixed(joint).as_str()).or_else(bare) {
                 Some(&column) => columns[column] = Column::Joint(i),
-                None => missing[joint.robot].push(joints.shown(joint)),
+                None => missing[joint.robot.0].push(joints.shown(joint)),
             }
         }
         let no_column = |of: &str| wrong(missing_column(of, &names));

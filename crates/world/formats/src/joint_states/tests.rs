@@ -50,7 +50,7 @@ fn columns_may_be_in_any_order_prefixed_and_quoted() {
     ] {
         let states = parse(text, &options).unwrap();
         assert_eq!((states.len(), states.robots(), states.times_s().len()), (2, 1, 0), "{text}");
-        assert_eq!((states.q(0, 0), states.q(1, 0)), (&[1.0, 0.25][..], &[-1.0, 0.5][..]), "{text}");
+        assert_eq!((states.q(0, RobotId(0)), states.q(1, RobotId(0))), (&[1.0, 0.25][..], &[-1.0, 0.5][..]), "{text}");
         assert_eq!(states.warnings, []);
     }
 }
@@ -95,7 +95,7 @@ fn several_robots_need_their_prefixes_and_may_stay_at_their_defaults() {
     let both = JointStateOptions::states(vec![left, right]);
     let text = "right.turn,left.turn,left.slide,right.slide\n1,2,0.1,0.2\n";
     let states = parse(text, &both).unwrap();
-    assert_eq!((states.q(0, 0), states.q(0, 1)), (&[2.0, 0.1][..], &[1.0, 0.2][..]));
+    assert_eq!((states.q(0, RobotId(0)), states.q(0, RobotId(1))), (&[2.0, 0.1][..], &[1.0, 0.2][..]));
     let message = |text: &str, options: &JointStateOptions<'_>| parse(text, options).unwrap_err().to_string();
     let semicolons = message("right.turn;left.turn\n0;0\n", &both);
     assert!(semicolons.contains("; commas separate columns"), "{semicolons}");
@@ -109,7 +109,7 @@ fn several_robots_need_their_prefixes_and_may_stay_at_their_defaults() {
     let defaults = [left, right].map(|r| JointStateRobot { default_q: Some(&start), ..r });
     let options = JointStateOptions::states(defaults.to_vec());
     let states = parse(only_left, &options).unwrap();
-    assert_eq!((states.q(0, 0), states.q(0, 1)), (&[2.0, 0.1][..], &start[..]));
+    assert_eq!((states.q(0, RobotId(0)), states.q(0, RobotId(1))), (&[2.0, 0.1][..], &start[..]));
     assert_eq!(states.warnings.len(), 1);
     assert_eq!(states.warnings[0].message, "has no column for robot `right`, which stays at its start");
     assert!(message("left.turn\n2\n", &options).contains("has no column `left.slide`"));
@@ -124,7 +124,7 @@ fn limit_violations_are_one_warning_or_an_error() {
     assert_eq!(parse(text, &options).unwrap().warnings, []);
     options.limits = LimitCheck::Warn;
     let states = parse(text, &options).unwrap();
-    assert_eq!((states.q(1, 0), states.warnings.len()), (&[90.0, 0.1][..], 1));
+    assert_eq!((states.q(1, RobotId(0)), states.warnings.len()), (&[90.0, 0.1][..], 1));
     assert_eq!(
         states.warnings[0].to_string(),
         "q.csv:3: `turn` is 90, beyond its limits -3.0000 to 3.0000; are these degrees?; 2 of 4 states are beyond limits \
@@ -144,7 +144,7 @@ fn trajectories_need_increasing_times() {
     let chain = chain();
     let options = JointStateOptions::trajectory("r", &chain);
     let states = parse("turn,t_s,slide,note\n0,0,0.1,x\n1,0.5,0.2,y\n", &options).unwrap();
-    assert_eq!((states.times_s(), states.q(1, 0)), (&[0.0, 0.5][..], &[1.0, 0.2][..]));
+    assert_eq!((states.times_s(), states.q(1, RobotId(0))), (&[0.0, 0.5][..], &[1.0, 0.2][..]));
     assert_eq!(states.warnings.len(), 1);
     assert_eq!(states.warnings[0].message, "column `note` is not a joint of \"gripper\": ignored");
     for (text, part) in [
@@ -169,7 +169,7 @@ fn a_file_without_states_is_warned_of_and_a_single_state_needs_no_file() {
     let states = parse("turn,slide\n", &JointStateOptions::states(vec![robot("", &chain)])).unwrap();
     assert!(states.is_empty() && states.warnings[0].message.contains("no state below the header"));
     let single = JointStates::single("cell.toml".as_ref(), [&[1.0, 2.0][..], &[3.0]]);
-    assert_eq!((single.len(), single.q(0, 0), single.q(0, 1)), (1, &[1.0, 2.0][..], &[3.0][..]));
+    assert_eq!((single.len(), single.q(0, RobotId(0)), single.q(0, RobotId(1))), (1, &[1.0, 2.0][..], &[3.0][..]));
 }
 
 #[test]
@@ -192,7 +192,7 @@ proptest! {
         for limits in [LimitCheck::None, LimitCheck::Warn, LimitCheck::Refuse] {
             let options = JointStateOptions { limits, ..JointStateOptions::states(vec![robot("", &chain)]) };
             if let Ok(states) = parse(&text, &options) {
-                prop_assert!((0..states.len()).all(|i| states.q(i, 0).iter().all(|x| x.is_finite())));
+                prop_assert!((0..states.len()).all(|i| states.q(i, RobotId(0)).iter().all(|x| x.is_finite())));
             }
         }
     }

@@ -26,13 +26,13 @@ impl Arbiter {
         }
     }
 
-    pub(crate) fn holder_token_mut(&mut self, slot: usize) -> Option<(RobotSlot, &mut Token)> {
-        let holder = self.slots[slot].holder.as_mut()?;
+    pub(crate) fn holder_token_mut(&mut self, slot: SlotId) -> Option<(RobotSlot, &mut Token)> {
+        let holder = self.slots[slot.0].holder.as_mut()?;
         Some((holder.robot, holder.token.as_mut()?))
     }
 
-    pub(crate) fn sequence_mut(&mut self, robot: usize) -> &mut u64 {
-        &mut self.robots[robot].sequence
+    pub(crate) fn sequence_mut(&mut self, robot: RobotSlot) -> &mut u64 {
+        &mut self.robots[robot.0].sequence
     }
 
     /// Sets the counters of messages and grants to values above all that were given.

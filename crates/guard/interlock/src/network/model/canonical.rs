@@ -6,7 +6,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 
 use super::renaming::what_counts;
 use super::state::{CellState, NOW};
-use crate::{Boot, Micros, RobotSlot, SlotReport, Token};
+use crate::{Boot, Micros, RobotSlot, SlotId, SlotReport, Token};
 
 /// Serial number of the arbiter, above all ranks.
 const SERIAL: u64 = 100;
@@ -24,16 +24,16 @@ pub(super) fn pass(state: &mut CellState, step: Micros) {
 pub(super) fn canonicalize(state: &mut CellState, oldest: Micros, classes: &[usize]) {
     each_time(state, |time| *time = (*time).max(NOW - oldest));
     state.arbiter.forget_unread();
-    for robot in 0..state.guards.len() {
-        state.guards[robot].forget_expired(NOW);
+    for robot in (0..state.guards.len()).map(RobotSlot) {
+        state.guards[robot.0].forget_expired(NOW);
         drop_past_messages(state, robot);
         forget_past_releases(state, robot);
         rank_sequences(state, robot);
         rank_serials(state, robot);
     }
-    let mut held: Vec<Token> = (0..state.slots()).filter_map(|slot| held_token(state, slot)).collect();
+    let mut held: Vec<Token> = state.slots().filter_map(|slot| held_token(state, slot)).collect();
     held.sort_unstable();
-    for slot in 0..state.slots() {
+    for slot in state.slots() {
         rank_tokens(state, slot, &held);
     }
     state.arbiter.set_counters(SERIAL, TOKENS);
@@ -73,7 +73,7 @@ fn each_time(state: &mut CellState, mut f: impl FnMut(&mut Micros)) {
 
 /// Removes messages that change nothing, unless an arbiter may still start again. Of all others, keeps only what is
 /// read.
-fn drop_past_messages(state: &mut CellState, robot: usize) {
+fn drop_past_messages(state: &mut CellState, RobotSlot(robot): RobotSlot) {
     let CellState { arbiter, guards, to_arbiter, to_guard, faults, .. } = state;
     let any = Some(Token { boot: Boot(1), number: 1 });
     let guard = &guards[robot];
@@ -98,38 +98,39 @@ fn drop_past_messages(state: &mut CellState, robot: usize) {
 
 /// Forgets grants that were given up and do not count any more. Such a grant counts only while a late message may
 /// grant it to the robot again, or while the arbiter still has the robot as its holder.
-fn forget_past_releases(state: &mut CellState, robot: usize) {
-    for slot in 0..state.slots() {
-        let held =
-            state.arbiter.holder_token_mut(slot).filter(|(holder, _)| holder.0 == robot).map(|(_, token)| *token);
-        let granted = state.to_guard[robot].iter().filter_map(|m| m.slots[slot].granted);
+fn forget_past_releases(state: &mut CellState, robot: RobotSlot) {
+    for slot in state.slots() {
+        let held = state.arbiter.holder_token_mut(slot).filter(|(holder, _)| *holder == robot).map(|(_, token)| *token);
+        let granted = state.to_guard[robot.0].iter().filter_map(|m| m.slots[slot.0].granted);
         let least = granted.chain(held).min();
         let forget = |released: &mut Option<Token>, least: Option<Token>| {
             *released = released.filter(|r| least.is_some_and(|least| *r >= least));
         };
-        forget(state.guards[robot].released_mut(slot), least);
-        state.to_arbiter[robot].iter_mut().for_each(|m| forget(&mut m.slots[slot].released, held));
+        forget(state.guards[robot.0].released_mut(slot), least);
+        state.to_arbiter[robot.0].iter_mut().for_each(|m| forget(&mut m.slots[slot.0].released, held));
     }
 }
 
 /// Replaces sequence numbers by ranks. For messages under way to the arbiter and its last received message only the
 /// order of the numbers counts. For answered messages only the times at which they were sent count. The guard has
 /// sent all of these messages, and sends higher numbers from now on.
-fn rank_sequences(state: &mut CellState, robot: usize) {
+fn rank_sequences(state: &mut CellState, robot: RobotSlot) {
     let CellState { arbiter, guards, to_arbiter, to_guard, .. } = state;
-    let guard = &mut guards[robot];
+    let (guard, to_arbiter, to_guard) = (&mut guards[robot.0], &mut to_arbiter[robot.0], &mut to_guard[robot.0]);
     let heard = arbiter.sequence_mut(robot);
-    let mut seen: Vec<u64> = to_arbiter[robot].iter().map(|m| m.sequence).chain([0, *heard]).collect();
+    let mut seen: Vec<u64> = to_arbiter.iter().map(|m| m.sequence).chain([0, *heard]).collect();
     seen.sort_unstable();
     seen.dedup();
     let mut sent: Vec<Option<Micros>> = seen.iter().map(|sequence| guard.sent_at(*sequence)).collect();
     let rank = |n: &mut u64| *n = seen.binary_search(n).unwrap_or(0) as u64;
     rank(heard);
-    to_arbiter[robot].iter_mut().for_each(|m| rank(&mut m.sequence));
-    let mut times: Vec<Micros> = to_guard[robot].iter().filter_map(|m| guard.sent_at(m.echo)).collect();
+    for message in to_arbiter.iter_mut() {
+        rank(&mut message.sequence);
+    }
+    let mut times: Vec<Micros> = to_guard.iter().filter_map(|m| guard.sent_at(m.echo)).collect();
     times.sort_unstable();
     times.dedup();
-    for message in &mut to_guard[robot] {
+    for message in to_guard {
         let time = guard.sent_at(message.echo).and_then(|sent| times.iter().position(|time| *time == sent));
         message.echo = time.map_or(0, |i| (seen.len() + i) as u64);
     }
@@ -138,7 +139,7 @@ fn rank_sequences(state: &mut CellState, robot: usize) {
 }
 
 /// Replaces serial numbers by ranks. Each guard compares them within one start of the arbiter.
-fn rank_serials(state: &mut CellState, robot: usize) {
+fn rank_serials(state: &mut CellState, RobotSlot(robot): RobotSlot) {
     let (guard, messages) = (&mut state.guards[robot], &mut state.to_guard[robot]);
     let obeyed = (guard.arbiter(), *guard.serial_mut());
     let mut seen: Vec<(Boot, u64)> = messages.iter().map(|m| (m.arbiter, m.serial)).chain([obeyed]).collect();
@@ -152,13 +153,13 @@ fn rank_serials(state: &mut CellState, robot: usize) {
 }
 
 /// The grant of a slot that the arbiter issued last.
-fn held_token(state: &mut CellState, slot: usize) -> Option<Token> {
+fn held_token(state: &mut CellState, slot: SlotId) -> Option<Token> {
     state.arbiter.holder_token_mut(slot).map(|(_, token)| *token)
 }
 
 /// Replaces the numbers of grants by ranks. Grants are compared within one slot; held grants (`held`, in their
 /// order) are also compared over all slots.
-fn rank_tokens(state: &mut CellState, slot: usize, held: &[Token]) {
+fn rank_tokens(state: &mut CellState, slot: SlotId, held: &[Token]) {
     let mut seen = BTreeSet::new();
     each_token(state, slot, &mut |token| _ = seen.insert(*token));
     let of_slot = held_token(state, slot);
@@ -169,14 +170,14 @@ fn rank_tokens(state: &mut CellState, slot: usize, held: &[Token]) {
     each_token(state, slot, &mut |token| token.number = rank(*token));
 }
 
-fn each_token(state: &mut CellState, slot: usize, f: &mut impl FnMut(&mut Token)) {
+fn each_token(state: &mut CellState, slot: SlotId, f: &mut impl FnMut(&mut Token)) {
     if let Some((_, token)) = state.arbiter.holder_token_mut(slot) {
         f(token);
     }
     for guard in &mut state.guards {
         guard.each_token(&mut |s, token| token.iter_mut().filter(|_| s == slot).for_each(&mut *f));
     }
-    let released = state.to_arbiter.iter_mut().flatten().filter_map(|m| m.slots[slot].released.as_mut());
+    let released = state.to_arbiter.iter_mut().flatten().filter_map(|m| m.slots[slot.0].released.as_mut());
     released.for_each(&mut *f);
-    state.to_guard.iter_mut().flatten().filter_map(|m| m.slots[slot].granted.as_mut()).for_each(f);
+    state.to_guard.iter_mut().flatten().filter_map(|m| m.slots[slot.0].granted.as_mut()).for_each(f);
 }

@@ -95,17 +95,17 @@ enum Step {
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Action {
-    Tick(usize, Step),
+    Tick(RobotSlot, Step),
     /// The guard sends a message.
-    Send(usize),
+    Send(RobotSlot),
     /// The arbiter receives a message, which may be delivered again.
-    ToArbiter(usize, usize),
-    ToGuard(usize, usize),
+    ToArbiter(RobotSlot, usize),
+    ToGuard(RobotSlot, usize),
     TimePasses,
-    CrashGuard(usize),
+    CrashGuard(RobotSlot),
     CrashArbiter,
-    Clear(usize),
-    TakeBack(usize),
+    Clear(RobotSlot),
+    TakeBack(SlotId),
 }
 
 impl CellModel {
@@ -118,68 +118,76 @@ impl CellModel {
         Self { programs, slots, under_way: 1, clock, faults, planted, classes }
     }
 
+    fn slots(&self) -> impl Iterator<Item = SlotId> + use<> {
+        (0..self.slots).map(SlotId)
+    }
+
+    fn robots(&self) -> impl Iterator<Item = RobotSlot> + use<> {
+        (0..self.programs.len()).map(RobotSlot)
+    }
+
     fn settings(&self) -> ArbiterSettings {
         let (validity, silence, stop_time) = (self.clock.validity(), self.clock.silence(), self.clock.stop_time());
-        let robot = |r: usize| {
-            let slots = (0..self.slots).map(SlotId).filter(|s| self.programs[r].uses(*s));
+        let robot = |program: &Program| {
+            let slots = self.slots().filter(|s| program.uses(*s));
             RobotSettings { stop_time, ..RobotSettings::new("robot", slots) }
         };
-        let robots = (0..self.programs.len()).map(robot).collect();
+        let robots = self.programs.iter().map(robot).collect();
         ArbiterSettings { silence, validity, ..ArbiterSettings::new(robots, self.slots) }
     }
 
-    fn guard(&self, robot: usize, boot: Boot) -> Guard {
+    fn guard(&self, robot: RobotSlot, boot: Boot) -> Guard {
         let endless = self.planted == PlantedFault::HastyClear;
         let validity = if endless { Micros(u64::MAX) } else { self.clock.validity() };
-        Guard::new(RobotSlot(robot), self.slots, 0, boot).validity(validity)
+        Guard::new(robot, self.slots, 0, boot).validity(validity)
     }
 
-    fn occupies(&self, robot: usize, place: usize, slot: SlotId) -> bool {
-        self.programs[robot].occupancy(place, slot).occupies()
+    fn occupies(&self, robot: RobotSlot, place: usize, slot: SlotId) -> bool {
+        self.programs[robot.0].occupancy(place, slot).occupies()
     }
 
     /// Whether the robot is in a slot, or will be in it whatever is decided now.
-    fn is_in(&self, state: &CellState, robot: usize, slot: SlotId) -> bool {
-        let RobotState { place, enters } = state.robots[robot];
-        self.occupies(robot, place, slot) || enters && self.occupies(robot, self.programs[robot].next(place), slot)
+    fn is_in(&self, state: &CellState, robot: RobotSlot, slot: SlotId) -> bool {
+        let RobotState { place, enters } = state.robots[robot.0];
+        self.occupies(robot, place, slot) || enters && self.occupies(robot, self.programs[robot.0].next(place), slot)
     }
 
     /// The slots that the robot must be granted to move on from a place.
-    fn needed(&self, robot: usize, place: usize) -> impl Iterator<Item = SlotId> + '_ {
-        let next = self.programs[robot].next(place);
+    fn needed(&self, robot: RobotSlot, place: usize) -> impl Iterator<Item = SlotId> + '_ {
+        let next = self.programs[robot.0].next(place);
         let enters = move |s: &SlotId| self.occupies(robot, next, *s) && !self.occupies(robot, place, *s);
-        (0..self.slots).map(SlotId).filter(enters)
+        self.slots().filter(enters)
     }
 
     /// Performs one tick; `None` if the step is impossible.
-    fn tick(&self, state: &mut CellState, r: usize, step: Step) -> Option<()> {
-        let RobotState { place, enters } = state.robots[r];
+    fn tick(&self, state: &mut CellState, r: RobotSlot, step: Step) -> Option<()> {
+        let RobotState { place, enters } = state.robots[r.0];
         let is_advance = step == Step::Advance;
         if is_advance && (enters || self.needed(r, place).next().is_some()) {
             return None;
         }
-        let found = if enters || is_advance { self.programs[r].next(place) } else { place };
+        let found = if enters || is_advance { self.programs[r.0].next(place) } else { place };
         if step == Step::Enter {
-            let guard = &state.guards[r];
+            let guard = &state.guards[r.0];
             let mut needed = self.needed(r, found).peekable();
             needed.peek()?;
             if !needed.all(|slot| guard.may_enter(slot, NOW)) {
                 return None;
             }
         }
-        state.robots[r] = RobotState { place: found, enters: step == Step::Enter };
-        for slot in (0..self.slots).map(SlotId) {
-            state.guards[r].observe(slot, self.programs[r].occupancy(found, slot));
+        state.robots[r.0] = RobotState { place: found, enters: step == Step::Enter };
+        for slot in self.slots() {
+            state.guards[r.0].observe(slot, self.programs[r.0].occupancy(found, slot));
         }
         Some(())
     }
 
-    fn send(&self, state: &mut CellState, r: usize) {
-        let message = state.guards[r].state(NOW);
+    fn send(&self, state: &mut CellState, r: RobotSlot) {
+        let message = state.guards[r.0].state(NOW);
         if self.planted == PlantedFault::UnseenRelease {
-            state.guards[r].give_up_at_once();
+            state.guards[r.0].give_up_at_once();
         }
-        self.push(&mut state.to_arbiter[r], message);
+        self.push(&mut state.to_arbiter[r.0], message);
     }
 
     fn reply(&self, state: &mut CellState, replies: Vec<GrantsMessage>) {
@@ -197,9 +205,9 @@ impl CellModel {
 
     /// Makes all robots, which are outside, known to the arbiter.
     fn know_each_other(&self, state: &mut CellState) {
-        for r in (0..2).flat_map(|_| 0..self.programs.len()) {
+        for r in (0..2).flat_map(|_| self.robots()) {
             self.tick(state, r, Step::Remain);
-            let message = state.guards[r].state(NOW);
+            let message = state.guards[r.0].state(NOW);
             for reply in state.arbiter.receive(&message, NOW).replies {
                 let _ = state.guards[reply.robot.0].receive(&reply);
             }
@@ -207,22 +215,22 @@ impl CellModel {
     }
 
     /// Clears a robot that is at rest outside, as an integrator does; `None` if that is refused.
-    fn clear(&self, state: &mut CellState, robot: usize) -> Option<()> {
-        if (0..self.slots).any(|s| self.is_in(state, robot, SlotId(s))) {
+    fn clear(&self, state: &mut CellState, robot: RobotSlot) -> Option<()> {
+        if self.slots().any(|slot| self.is_in(state, robot, slot)) {
             return None;
         }
         state.faults.clears -= 1;
         let outputs = if self.planted == PlantedFault::HastyClear {
-            state.arbiter.clear_at_once(RobotSlot(robot), NOW)
+            state.arbiter.clear_at_once(robot, NOW)
         } else {
-            state.arbiter.clear(RobotSlot(robot), NOW).ok()?
+            state.arbiter.clear(robot, NOW).ok()?
         };
         self.reply(state, outputs.replies);
         Some(())
     }
 
-    fn to_arbiter(&self, state: &mut CellState, robot: usize, index: usize) {
-        let mut message = state.to_arbiter[robot][index].clone();
+    fn to_arbiter(&self, state: &mut CellState, robot: RobotSlot, index: usize) {
+        let mut message = state.to_arbiter[robot.0][index].clone();
         if self.planted == PlantedFault::TokensUnchecked {
             give_up_all(&mut message);
         }
@@ -237,20 +245,20 @@ impl CellModel {
             Action::Send(r) => self.send(state, r),
             Action::ToArbiter(r, i) => self.to_arbiter(state, r, i),
             Action::ToGuard(r, i) => {
-                let message = state.to_guard[r][i].clone();
-                let _ = state.guards[r].receive(&message);
+                let message = state.to_guard[r.0][i].clone();
+                let _ = state.guards[r.0].receive(&message);
             }
             Action::TimePasses => canonical::pass(state, STEP),
             Action::CrashGuard(r) => {
                 state.faults.guard_crashes -= 1;
-                state.guards[r] = self.guard(r, state.guards[r].boot().next());
+                state.guards[r.0] = self.guard(r, state.guards[r.0].boot().next());
             }
             Action::CrashArbiter => {
                 state.faults.arbiter_crashes -= 1;
                 state.arbiter = Arbiter::new(self.settings(), state.arbiter.boot().next());
             }
             Action::Clear(r) => self.clear(state, r)?,
-            Action::TakeBack(s) => state.arbiter.take_back(SlotId(s)),
+            Action::TakeBack(slot) => state.arbiter.take_back(slot),
         }
         Some(())
     }
@@ -264,7 +272,7 @@ impl Model for CellModel {
         let robots = self.programs.len();
         let mut state = CellState {
             arbiter: Arbiter::new(self.settings(), Boot(1)),
-            guards: (0..robots).map(|r| self.guard(r, Boot(1))).collect(),
+            guards: self.robots().map(|r| self.guard(r, Boot(1))).collect(),
             robots: vec![RobotState { place: 0, enters: false }; robots],
             to_arbiter: vec![Vec::new(); robots],
             to_guard: vec![Vec::new(); robots],
@@ -276,11 +284,11 @@ impl Model for CellModel {
     }
 
     fn actions(&self, state: &CellState, actions: &mut Vec<Action>) {
-        for r in 0..self.programs.len() {
+        for r in self.robots() {
             actions.extend([Step::Remain, Step::Advance, Step::Enter].map(|step| Action::Tick(r, step)));
             actions.push(Action::Send(r));
-            actions.extend((0..state.to_arbiter[r].len()).map(|i| Action::ToArbiter(r, i)));
-            actions.extend((0..state.to_guard[r].len()).map(|i| Action::ToGuard(r, i)));
+            actions.extend((0..state.to_arbiter[r.0].len()).map(|i| Action::ToArbiter(r, i)));
+            actions.extend((0..state.to_guard[r.0].len()).map(|i| Action::ToGuard(r, i)));
             if state.faults.guard_crashes > 0 {
                 actions.push(Action::CrashGuard(r));
             }
@@ -293,7 +301,7 @@ impl Model for CellModel {
             actions.push(Action::CrashArbiter);
         }
         if self.planted == PlantedFault::UnilateralRelease {
-            actions.extend((0..self.slots).map(Action::TakeBack));
+            actions.extend(self.slots().map(Action::TakeBack));
         }
     }
 
@@ -306,9 +314,9 @@ impl Model for CellModel {
 
     fn properties(&self) -> Vec<Property<Self>> {
         vec![Property::always(EXCLUSION, |model: &Self, state: &CellState| {
-            (0..model.slots).map(SlotId).all(|slot| {
-                let claims = |r: &usize| model.is_in(state, *r, slot) || state.guards[*r].may_enter(slot, NOW);
-                (0..model.programs.len()).filter(claims).count() <= 1
+            model.slots().all(|slot| {
+                let claims = |r: &RobotSlot| model.is_in(state, *r, slot) || state.guards[r.0].may_enter(slot, NOW);
+                model.robots().filter(claims).count() <= 1
             })
         })]
     }

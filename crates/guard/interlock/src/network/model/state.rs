@@ -1,7 +1,7 @@
 //! State of a model.
 
 use super::renaming::permute;
-use crate::{Arbiter, GrantsMessage, Guard, Micros, RobotSlot, StateMessage};
+use crate::{Arbiter, GrantsMessage, Guard, Micros, RobotSlot, SlotId, StateMessage};
 
 /// Time of every state.
 pub(super) const NOW: Micros = Micros(1_000);
@@ -35,8 +35,8 @@ pub(super) struct FaultBudget {
 }
 
 impl CellState {
-    pub(super) fn slots(&self) -> usize {
-        self.guards[0].slots()
+    pub(super) fn slots(&self) -> impl Iterator<Item = SlotId> + use<> {
+        (0..self.guards[0].slots()).map(SlotId)
     }
 
     /// Gives robot `r` the index `to[r]`.

@@ -90,7 +90,7 @@ impl StateGraph {
         let mut ticks = vec![false; robots];
         for edge in component.iter().flat_map(|state| self.0.edges(*state)) {
             if let (Step::Tick(r), true) = (edge.weight(), inside.contains(&edge.target())) {
-                ticks[*r] = true;
+                ticks[r.0] = true;
             }
         }
         ticks

@@ -58,24 +58,24 @@ pub(super) struct ModelState {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Step {
     /// A tick (or one operation of it) after which the robot moves if it may.
-    Tick(usize),
+    Tick(RobotSlot),
     /// A tick after which the robot rests although it may move.
-    Rest(usize),
-    BecomeSilent(usize),
-    Resume(usize),
-    Clear(usize),
+    Rest(RobotSlot),
+    BecomeSilent(RobotSlot),
+    Resume(RobotSlot),
+    Clear(RobotSlot),
     SwitchOn,
-    Jog(usize),
+    Jog(RobotSlot),
 }
 
 /// A property that does not hold.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum Violation {
-    #[error("robot {robot} releases slot {slot} although it cannot stop")]
-    EarlyRelease { robot: usize, slot: usize },
+    #[error("robot {} releases slot {} although it cannot stop", .robot.0, .slot.0)]
+    EarlyRelease { robot: RobotSlot, slot: SlotId },
     /// States are described as [`ProtocolModel::describe`] does.
-    #[error("robot {robot} enters slot {slot} while {other} occupies it ({after}) after {step:?} in {before}")]
-    Entry { robot: usize, slot: usize, other: usize, step: Step, before: String, after: String },
+    #[error("robot {} enters slot {} while {} occupies it ({after}) after {step:?} in {before}", .robot.0, .slot.0, .other.0)]
+    Entry { robot: RobotSlot, slot: SlotId, other: RobotSlot, step: Step, before: String, after: String },
 }
 
 impl ProtocolModel {
@@ -145,38 +145,47 @@ impl ProtocolModel {
         self.programs.len()
     }
 
-    fn slots(&self) -> usize {
-        self.programs[0].len()
+    fn slots(&self) -> impl Iterator<Item = SlotId> + use<> {
+        (0..self.programs[0].len()).map(SlotId)
     }
 
-    fn places(&self, robot: usize) -> usize {
-        self.programs[robot][0].len()
+    fn robot_slots(&self) -> impl Iterator<Item = RobotSlot> + use<> {
+        (0..self.robots()).map(RobotSlot)
+    }
+
+    fn places(&self, robot: RobotSlot) -> usize {
+        self.programs[robot.0][0].len()
     }
 
     /// The initial state: every robot is at the first place of its program and known to be outside.
     pub(super) fn start(&self) -> ModelState {
         for (slot, robot) in self.pairs() {
-            self.arbiter.publish(SlotId(slot), RobotSlot(robot), Occupancy::Outside, NOW_S);
+            self.arbiter.publish(slot, robot, Occupancy::Outside, NOW_S);
         }
         let start = RobotState { at: 0, moving: false, silent: false, phase: 0 };
         self.save(vec![start; self.robots()], !self.switchable)
     }
 
-    fn pairs(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
+    fn pairs(&self) -> impl Iterator<Item = (SlotId, RobotSlot)> + use<> {
         let robots = self.robots();
-        (0..self.slots()).flat_map(move |s| (0..robots).map(move |r| (s, r)))
+        self.slots().flat_map(move |slot| (0..robots).map(move |r| (slot, RobotSlot(r))))
     }
 
     /// Saves the memory of the arbiter, with the tickets of the queue as ranks: only their order counts.
     fn save(&self, robots: Vec<RobotState>, on: bool) -> ModelState {
-        let ticket = |(s, r): (usize, usize)| self.arbiter.state.ticket(SlotId(s), RobotSlot(r));
+        let ticket = |(slot, robot): (SlotId, RobotSlot)| self.arbiter.state.ticket(slot, robot);
         let mut tickets: Vec<u64> = self.pairs().map(ticket).filter(|t| *t > 0).collect();
         tickets.sort_unstable();
         let rank = |t: u64| if t == 0 { 0 } else { tickets.partition_point(|o| *o < t) as u8 + 1 };
-        let entry = |(s, r): (usize, usize)| {
-            let e = self.arbiter.state.entry(SlotId(s), RobotSlot(r));
+        let entry = |(slot, robot): (SlotId, RobotSlot)| {
+            let e = self.arbiter.state.entry(slot, robot);
             let known = f64::from_bits(e.published_s.load(SeqCst)) >= NOW_S;
-            [u8::from(e.registered.load(SeqCst)), e.occupancy.load(SeqCst), u8::from(known), rank(ticket((s, r)))]
+            [
+                u8::from(e.registered.load(SeqCst)),
+                e.occupancy.load(SeqCst),
+                u8::from(known),
+                rank(ticket((slot, robot))),
+            ]
         };
         let holders = self.arbiter.state.slots.iter().map(|s| s.holder.load(SeqCst) as u8).collect();
         ModelState { robots, on, holders, entries: self.pairs().map(entry).collect() }
@@ -186,8 +195,8 @@ impl ProtocolModel {
         for (slot, holder) in self.arbiter.state.slots.iter().zip(&state.holders) {
             slot.holder.store(u32::from(*holder), SeqCst);
         }
-        for ((s, r), [registered, occupancy, known, rank]) in self.pairs().zip(&state.entries) {
-            let e = self.arbiter.state.entry(SlotId(s), RobotSlot(r));
+        for ((slot, robot), [registered, occupancy, known, rank]) in self.pairs().zip(&state.entries) {
+            let e = self.arbiter.state.entry(slot, robot);
             e.registered.store(*registered == 1, SeqCst);
             e.occupancy.store(*occupancy, SeqCst);
             e.published_s.store(if *known == 1 { NOW_S } else { 0.0 }.to_bits(), SeqCst);
@@ -195,25 +204,25 @@ impl ProtocolModel {
         }
         let last = state.entries.iter().map(|e| u64::from(e[3])).max().unwrap_or(0);
         self.arbiter.state.next_ticket.store(last + 1, SeqCst);
-        for robot in 0..self.robots() {
-            self.declare(robot, state.robots[robot].at);
+        for robot in self.robot_slots() {
+            self.declare(robot, state.robots[robot.0].at);
         }
     }
 
     /// Declares the slots of the rest of the robot's stretch: up to the next place outside all slots.
-    fn declare(&self, robot: usize, at: u8) {
+    fn declare(&self, robot: RobotSlot, at: u8) {
         if !self.declares {
             return;
         }
-        let near = |place: usize, slot: usize| self.programs[robot][slot][place] > Occupancy::Outside;
-        let places = (usize::from(at)..self.places(robot)).take_while(|p| (0..self.slots()).any(|s| near(*p, s)));
-        let claims: Vec<usize> = places.flat_map(|p| (0..self.slots()).filter(move |s| near(p, *s))).collect();
-        self.arbiter.declare(RobotSlot(robot), claims.into_iter().map(SlotId));
+        let near = |place: usize, slot: SlotId| self.programs[robot.0][slot.0][place] > Occupancy::Outside;
+        let places = (usize::from(at)..self.places(robot)).take_while(|p| self.slots().any(|s| near(*p, s)));
+        let claims: Vec<SlotId> = places.flat_map(|p| self.slots().filter(move |s| near(p, *s))).collect();
+        self.arbiter.declare(robot, claims);
     }
 
     /// The actual occupancy: `Committed` if the robot comes to rest inside although it is commanded to stop.
-    fn actual(&self, robot: usize, current: RobotState, slot: usize) -> Occupancy {
-        let place = |at: usize| self.programs[robot][slot][at.min(self.places(robot) - 1)];
+    fn actual(&self, robot: RobotSlot, current: RobotState, slot: SlotId) -> Occupancy {
+        let place = |at: usize| self.programs[robot.0][slot.0][at.min(self.places(robot) - 1)];
         let at = usize::from(current.at);
         match place(at) {
             occupancy if occupancy != Occupancy::Inside && current.moving && place(at + 1) == Occupancy::Inside => {
@@ -224,18 +233,23 @@ impl ProtocolModel {
     }
 
     /// The occupancy that the robot publishes.
-    fn published(&self, robot: usize, current: RobotState, slot: usize) -> Occupancy {
+    fn published(&self, robot: RobotSlot, current: RobotState, slot: SlotId) -> Occupancy {
         let actual = self.actual(robot, current, slot);
-        let holds = self.arbiter.holder(SlotId(slot)) == Some(RobotSlot(robot));
+        let holds = self.arbiter.holder(slot) == Some(robot);
         match actual {
-            Occupancy::Committed if !self.publishes_commitment => self.programs[robot][slot][usize::from(current.at)],
+            Occupancy::Committed if !self.publishes_commitment => {
+                self.programs[robot.0][slot.0][usize::from(current.at)]
+            }
             Occupancy::Warning if !self.braking_known && holds && current.moving => Occupancy::Committed,
             actual => actual,
         }
     }
 
     pub(super) fn finished(&self, state: &ModelState) -> bool {
-        (0..self.robots()).all(|r| usize::from(state.robots[r].at) + 1 == self.places(r) && !state.robots[r].moving)
+        self.robot_slots().all(|robot| {
+            let RobotState { at, moving, .. } = state.robots[robot.0];
+            usize::from(at) + 1 == self.places(robot) && !moving
+        })
     }
 
     pub(super) fn steps(&self, state: &ModelState) -> Vec<Step> {
@@ -243,26 +257,26 @@ impl ProtocolModel {
         if !state.on {
             steps.push(Step::SwitchOn);
         }
-        for (r, current) in state.robots.iter().enumerate() {
+        for (robot, current) in self.robot_slots().zip(&state.robots) {
             let may_fail = match self.faults {
                 Faults::None => false,
-                Faults::First => r == 0,
+                Faults::First => robot == RobotSlot(0),
                 Faults::All => true,
             };
             if current.silent {
-                steps.extend([Step::Resume(r), Step::Clear(r)]);
-                let registered = (0..self.slots()).all(|s| state.entries[s * self.robots() + r][0] == 1);
-                if self.joggable && registered && usize::from(current.at) + 1 < self.places(r) {
-                    steps.push(Step::Jog(r));
+                steps.extend([Step::Resume(robot), Step::Clear(robot)]);
+                let registered = self.slots().all(|slot| state.entries[slot.0 * self.robots() + robot.0][0] == 1);
+                if self.joggable && registered && usize::from(current.at) + 1 < self.places(robot) {
+                    steps.push(Step::Jog(robot));
                 }
                 continue;
             }
-            steps.push(Step::Tick(r));
+            steps.push(Step::Tick(robot));
             if !self.repeats {
-                steps.push(Step::Rest(r));
+                steps.push(Step::Rest(robot));
             }
             if may_fail && current.phase == 0 {
-                steps.push(Step::BecomeSilent(r));
+                steps.push(Step::BecomeSilent(robot));
             }
         }
         steps
@@ -276,20 +290,22 @@ impl ProtocolModel {
         self.restore(state);
         let (mut robots, mut on) = (state.robots.clone(), state.on);
         match step {
-            Step::Tick(r) | Step::Rest(r) => robots[r] = self.tick(r, robots[r], on, matches!(step, Step::Tick(_)))?,
+            Step::Tick(r) | Step::Rest(r) => {
+                robots[r.0] = self.tick(r, robots[r.0], on, matches!(step, Step::Tick(_)))?;
+            }
             Step::BecomeSilent(r) => {
                 // Its controller stops it; its publications become stale.
-                robots[r] = RobotState { silent: true, ..self.stopped(r, robots[r]) };
-                for slot in 0..self.slots() {
-                    self.arbiter.state.entry(SlotId(slot), RobotSlot(r)).published_s.store(0, SeqCst);
+                robots[r.0] = RobotState { silent: true, ..self.stopped(r, robots[r.0]) };
+                for slot in self.slots() {
+                    self.arbiter.state.entry(slot, r).published_s.store(0, SeqCst);
                 }
             }
-            Step::Resume(r) => robots[r].silent = false,
-            Step::Clear(r) => self.clear(r, robots[r]),
-            Step::Jog(r) => robots[r].at += 1,
+            Step::Resume(r) => robots[r.0].silent = false,
+            Step::Clear(r) => self.clear(r, robots[r.0]),
+            Step::Jog(r) => robots[r.0].at += 1,
             Step::SwitchOn => {
                 on = true;
-                self.pairs().for_each(|(slot, robot)| self.arbiter.invalidate(SlotId(slot), RobotSlot(robot)));
+                self.pairs().for_each(|(slot, robot)| self.arbiter.invalidate(slot, robot));
             }
         }
         let next = self.save(robots, on);
@@ -297,16 +313,15 @@ impl ProtocolModel {
         Ok(next)
     }
 
-    fn clear(&self, robot: usize, current: RobotState) {
-        for slot in (0..self.slots()).filter(|s| !self.actual(robot, current, *s).occupies()) {
-            self.arbiter.clear(SlotId(slot), RobotSlot(robot), AccessClass::Integrator, NOW_S);
+    fn clear(&self, robot: RobotSlot, current: RobotState) {
+        for slot in self.slots().filter(|s| !self.actual(robot, current, *s).occupies()) {
+            self.arbiter.clear(slot, robot, AccessClass::Integrator, NOW_S);
         }
     }
 
-    fn tick(&self, robot: usize, current: RobotState, on: bool, may_move: bool) -> Result<RobotState, Violation> {
-        let (me, slots) = (RobotSlot(robot), self.slots());
+    fn tick(&self, robot: RobotSlot, current: RobotState, on: bool, may_move: bool) -> Result<RobotState, Violation> {
         if !on {
-            (0..slots).for_each(|s| self.arbiter.publish(SlotId(s), me, Occupancy::Outside, NOW_S));
+            self.slots().for_each(|slot| self.arbiter.publish(slot, robot, Occupancy::Outside, NOW_S));
             let at = current.at + u8::from(may_move && usize::from(current.at) + 1 < self.places(robot));
             return Ok(RobotState {
                 at,
@@ -314,51 +329,52 @@ impl ProtocolModel {
                 ..current
             });
         }
-        let publish = |s: usize| self.arbiter.publish(SlotId(s), me, self.published(robot, current, s), NOW_S);
-        let holds = |s: usize| self.arbiter.holder(SlotId(s)) == Some(me);
-        let held: Vec<bool> = (0..slots).map(holds).collect();
-        let near = |s: &usize| self.published(robot, current, *s) > Occupancy::Outside;
+        let publish = |s: SlotId| self.arbiter.publish(s, robot, self.published(robot, current, s), NOW_S);
+        let holds = |s: SlotId| self.arbiter.holder(s) == Some(robot);
+        let held: Vec<bool> = self.slots().map(holds).collect();
+        let near = |s: &SlotId| self.published(robot, current, *s) > Occupancy::Outside;
         let moved = if self.interleaves {
             self.operation(robot, current, may_move)
         } else {
-            (0..slots).for_each(publish);
-            for slot in (0..slots).filter(near) {
-                self.arbiter.request(SlotId(slot), me, NOW_S);
+            self.slots().for_each(publish);
+            for slot in self.slots().filter(near) {
+                self.arbiter.request(slot, robot, NOW_S);
             }
             self.advance(robot, current, may_move)
         };
-        let early = (0..slots).find(|s| held[*s] && !holds(*s) && self.actual(robot, current, *s).occupies());
+        let early = self.slots().find(|s| held[s.0] && !holds(*s) && self.actual(robot, current, *s).occupies());
         early.map_or(Ok(moved), |slot| Err(Violation::EarlyRelease { robot, slot }))
     }
 
     /// The next operation of a tick: publish for one slot, check whether it may be acquired, acquire it, or move.
-    fn operation(&self, robot: usize, current: RobotState, may_move: bool) -> RobotState {
-        let (me, slots, phase) = (RobotSlot(robot), self.slots(), usize::from(current.phase));
+    fn operation(&self, robot: RobotSlot, current: RobotState, may_move: bool) -> RobotState {
+        let (slots, phase) = (self.slots().count(), usize::from(current.phase));
         let then = |phases: u8| RobotState { phase: current.phase + phases, ..current };
         if phase < slots {
-            self.arbiter.publish(SlotId(phase), me, self.published(robot, current, phase), NOW_S);
+            let slot = SlotId(phase);
+            self.arbiter.publish(slot, robot, self.published(robot, current, slot), NOW_S);
             return then(1);
         }
-        let (slot, acquiring) = ((phase - slots) / 2, (phase - slots) % 2 == 1);
-        if slot >= slots {
+        let (slot, acquiring) = (SlotId((phase - slots) / 2), (phase - slots) % 2 == 1);
+        if slot.0 >= slots {
             return RobotState { phase: 0, ..self.advance(robot, current, may_move) };
         }
         if acquiring {
-            self.arbiter.acquire(SlotId(slot), me, NOW_S);
+            self.arbiter.acquire(slot, robot, NOW_S);
             return then(1);
         }
         let near = self.published(robot, current, slot) > Occupancy::Outside;
-        if near && self.arbiter.check(SlotId(slot), me, NOW_S).is_none() { then(1) } else { then(2) }
+        if near && self.arbiter.check(slot, robot, NOW_S).is_none() { then(1) } else { then(2) }
     }
 
     /// Moves the robot as the laws allow: never into a slot that it does not hold.
-    fn advance(&self, robot: usize, current: RobotState, may_move: bool) -> RobotState {
+    fn advance(&self, robot: RobotSlot, current: RobotState, may_move: bool) -> RobotState {
         let last = self.places(robot) - 1;
         let at = usize::from(current.at);
         let free = |place: usize| {
-            (0..self.slots()).all(|s| {
-                let held = self.arbiter.holder(SlotId(s)) == Some(RobotSlot(robot));
-                held || self.programs[robot][s][place.min(last)] != Occupancy::Inside
+            self.slots().all(|s| {
+                let held = self.arbiter.holder(s) == Some(robot);
+                held || self.programs[robot.0][s.0][place.min(last)] != Occupancy::Inside
             })
         };
         if !may_move || at == last || !free(at) {
@@ -376,7 +392,7 @@ impl ProtocolModel {
     }
 
     /// The state after a stop: a moving robot stops one place farther on.
-    fn stopped(&self, robot: usize, current: RobotState) -> RobotState {
+    fn stopped(&self, robot: RobotSlot, current: RobotState) -> RobotState {
         let on = u8::from(current.moving && usize::from(current.at) + 1 < self.places(robot));
         RobotState { at: current.at + on, moving: false, ..current }
     }
@@ -386,11 +402,11 @@ impl ProtocolModel {
         if !before.on || matches!(step, Step::Jog(_)) {
             return Ok(());
         }
-        for slot in 0..self.slots() {
-            let occupies = |state: &ModelState, r: usize| self.actual(r, state.robots[r], slot).occupies();
-            let entered = |r: &usize| occupies(after, *r) && !occupies(before, *r);
-            let Some(robot) = (0..self.robots()).find(entered) else { continue };
-            if let Some(other) = (0..self.robots()).find(|o| *o != robot && occupies(after, *o)) {
+        for slot in self.slots() {
+            let occupies = |state: &ModelState, r: RobotSlot| self.actual(r, state.robots[r.0], slot).occupies();
+            let entered = |r: &RobotSlot| occupies(after, *r) && !occupies(before, *r);
+            let Some(robot) = self.robot_slots().find(entered) else { continue };
+            if let Some(other) = self.robot_slots().find(|o| *o != robot && occupies(after, *o)) {
                 let [before, after] = [before, after].map(|state| self.describe(state));
                 return Err(Violation::Entry { robot, slot, other, step, before, after });
             }
@@ -401,15 +417,16 @@ impl ProtocolModel {
     /// True if the arbiter reports robots that wait for each other in a cycle.
     pub(super) fn reports_cycle(&self, state: &ModelState) -> bool {
         self.restore(state);
-        (0..self.robots()).any(|r| !self.arbiter.wait_cycle(RobotSlot(r), NOW_S).is_empty())
+        self.robot_slots().any(|robot| !self.arbiter.wait_cycle(robot, NOW_S).is_empty())
     }
 
     pub(super) fn describe(&self, state: &ModelState) -> String {
         let mut text = String::new();
         for (r, b) in state.robots.iter().enumerate() {
-            let held: Vec<usize> = (0..self.slots()).filter(|s| usize::from(state.holders[*s]) == r + 1).collect();
+            let held: Vec<usize> =
+                self.slots().map(|s| s.0).filter(|s| usize::from(state.holders[*s]) == r + 1).collect();
             let moving = if b.moving { " moving" } else { "" };
-            let waits: Vec<u8> = (0..self.slots()).map(|s| state.entries[s * self.robots() + r][3]).collect();
+            let waits: Vec<u8> = self.slots().map(|s| state.entries[s.0 * self.robots() + r][3]).collect();
             let _ = write!(text, "[phase {} queue {waits:?}]", b.phase);
             let _ = write!(text, "[{r} at {}{moving}{} holds {held:?}]", b.at, if b.silent { " silent" } else { "" });
         }

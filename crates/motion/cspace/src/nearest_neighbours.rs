@@ -1,4 +1,4 @@
-//! Nearest neighbours by a linear search, sixteen nodes at a time in single precision.
+//! Nearest neighbours of configurations by a linear search, sixteen nodes at a time in single precision.
 //!
 //! Up to about ten thousand nodes this is faster than a tree of nodes, and nothing needs balancing.
 
@@ -10,9 +10,20 @@ use fearless_simd::{Level as SimdLevel, Simd, dispatch, f32x16, prelude::*};
 
 const LANES: usize = 16;
 
-/// Configurations in packs of sixteen: the values of the first joint, then of the second, …
+/// Configurations, the nodes, among which the one nearest to another configuration is searched.
+///
+/// The distance of two configurations is Euclidean, with 1 m like 1 rad. Nodes are stored in packs of sixteen: the values
+/// of the first joint, then of the second, …
+///
+/// ```
+/// use elbowroom_cspace::NearestNeighbours;
+/// let mut nodes = NearestNeighbours::new(2);
+/// nodes.push(&[0.0, 0.0]);
+/// nodes.push(&[1.0, 0.5]);
+/// assert_eq!(nodes.nearest(&[0.9, 0.9]), 1);
+/// ```
 #[derive(Debug, Clone)]
-pub(super) struct NodePacks {
+pub struct NearestNeighbours {
     dof: usize,
     len: usize,
     /// Unused nodes are infinitely far away.
@@ -20,13 +31,14 @@ pub(super) struct NodePacks {
     simd_level: SimdLevel,
 }
 
-impl NodePacks {
+impl NearestNeighbours {
+    /// No nodes yet, of configurations with this number of values.
     pub fn new(dof: usize) -> Self {
         static DETECTED: OnceLock<SimdLevel> = OnceLock::new();
         Self { dof, len: 0, rows: Vec::new(), simd_level: *DETECTED.get_or_init(SimdLevel::new) }
     }
 
-    /// Adds a node.
+    /// Adds a node, with the next index.
     pub fn push(&mut self, q: &[f64]) {
         let (pack, lane) = (self.len / LANES, self.len % LANES);
         if lane == 0 {
@@ -96,14 +108,15 @@ fn squared_distances<S: Simd>(simd: S, pack: &[[f32; LANES]], q: &[f64]) -> f32x
 
 #[cfg(test)]
 mod tests {
-    use super::super::random::Random;
+    use elbowroom_testkit::random::SplitMix;
+
     use super::*;
 
     #[test]
     fn the_nearest_node_is_that_of_a_plain_search_on_every_instruction_set() {
-        let mut random = Random::new(5);
+        let mut random = SplitMix(5);
         for dof in [1, 2, 7] {
-            let (mut packs, mut nodes) = (NodePacks::new(dof), Vec::new());
+            let (mut packs, mut nodes) = (NearestNeighbours::new(dof), Vec::new());
             assert_eq!(packs.nearest(&vec![0.0; dof]), 0);
             for n in 0..200 {
                 let q: Vec<f64> = (0..dof).map(|_| random.between(-3.0, 3.0)).collect();
