@@ -59,7 +59,7 @@ pub mod trajectory;
 
 pub use cell::{AvoidanceSpec, Cell, CellLaws, CellRegion, CellRobot, Follow, MapSpec, Units};
 pub use elbowroom_access as access;
-pub use file::{CellFile, QUATERNION_TOLERANCE};
+pub use file::{CellFile, QUATERNION_TOLERANCE, key_reference};
 pub use frames::Frames;
 pub use model_limits::model_limits;
 pub use moving_object::{Drive, Encoder, MovingObject, ObjectMotion, ObjectPath, PathRepeat, Travel};
