@@ -204,6 +204,7 @@ pub fn announce_data(root: &Path) {
 }
 
 /// Runs commands of `elbowroom-devtools` in the profile and with the features of the tests, which have compiled it already.
+/// The command `elbowroom` is compiled with it.
 pub fn devtools(root: &Path, words: &[&str]) -> Result<(), String> {
     let program = program(root, "elbowroom-devtools")?;
     shell::run(root, &program.to_string_lossy(), words, &[])
