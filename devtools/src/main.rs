@@ -14,6 +14,7 @@ mod fuzz_files;
 mod golden;
 mod models;
 mod path_checks;
+mod reference;
 mod robots;
 mod rpq;
 mod scaling;
@@ -37,6 +38,8 @@ fn dispatch(words: &[&str]) -> Result<(), Failure> {
         ["models", "--check"] => Ok(models::check(&root)?),
         ["figures"] => Ok(figures::write(&root)?),
         ["figures", "--check"] => Ok(figures::check(&root)?),
+        ["reference"] => Ok(reference::write(&root)?),
+        ["reference", "--check"] => Ok(reference::check(&root)?),
         ["fuzz", "cells", "--fixed"] => Ok(fuzz_cells::check(&root)?),
         ["fuzz", "cells", rest @ ..] => {
             fuzz_cells::run(&root, &fuzz_cells::Options::parse(rest).map_err(Failure::Usage)?)

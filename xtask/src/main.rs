@@ -61,6 +61,8 @@ cargo xtask COMMAND
         writes the generated robots and tools under examples/models; --check compares instead
   figures [--check]
         writes the figures of docs/laws.md under docs/figures; --check compares instead
+  reference [--check]
+        writes the keys of docs/cell-file.md, the verbs of docs/commands.md and docs/options.md; --check compares instead
   fuzz [SECONDS]
         throws mutated files at every parser, SECONDS each (default 60)
   fuzz parser PARSER SECONDS [DIR [SEED]]
@@ -141,6 +143,8 @@ fn dispatch(words: &[&str]) -> Result<(), Failure> {
         ["inventory", folder] => Ok(inventory::run(Path::new(folder))?),
         ["faults", options @ ..] => faults::run(&root, &faults::Options::parse(options).map_err(Failure::Usage)?),
         ["documents"] => Ok(documents::run(&root)?),
+        // It asks the command for its options, so both programs are compiled.
+        ["reference", ..] => Ok(suite::devtools(&root, words)?),
         ["models" | "figures", ..] | ["fuzz", "cells", ..] => devtools(&root, words, &[]),
         [command, ..] if MEASURING.contains(command) => devtools(&root, words, &["--release"]),
         ["fuzz", "parser" | "cell-file", ..] => devtools(&root, words, &["--release"]),

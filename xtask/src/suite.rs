@@ -64,13 +64,13 @@ static STEPS: [Step; 10] = [
     Step { name: "doctests", what: "the examples of the documentation", check: doctests },
     Step {
         name: "generated",
-        what: "committed robots, tools and figures are what the generators write",
+        what: "committed robots, tools, figures and references are what the generators write",
         check: generated,
     },
     Step {
         name: "fuzz",
         what: "random cells under an independent oracle, a fixed choice of them",
-        check: |c| devtools(c, &["fuzz", "cells", "--fixed"]),
+        check: |c| devtools(c.root, &["fuzz", "cells", "--fixed"]),
     },
     Step { name: "snippets", what: "commands that the documents promise", check: |c| snippets::run(c.root) },
 ];
@@ -204,14 +204,16 @@ pub fn announce_data(root: &Path) {
 }
 
 /// Runs commands of `elbowroom-devtools` in the profile and with the features of the tests, which have compiled it already.
-fn devtools(context: &Context, words: &[&str]) -> Result<(), String> {
-    let program = program(context.root, "elbowroom-devtools")?;
-    shell::run(context.root, &program.to_string_lossy(), words, &[])
+/// The command `elbowroom` is compiled with it.
+pub fn devtools(root: &Path, words: &[&str]) -> Result<(), String> {
+    let program = program(root, "elbowroom-devtools")?;
+    shell::run(root, &program.to_string_lossy(), words, &[])
 }
 
 fn generated(context: &Context) -> Result<(), String> {
-    devtools(context, &["models", "--check"])?;
-    devtools(context, &["figures", "--check"])
+    devtools(context.root, &["models", "--check"])?;
+    devtools(context.root, &["figures", "--check"])?;
+    devtools(context.root, &["reference", "--check"])
 }
 
 /// Documents libraries and `elbowroom-devtools`. An example is named because cargo then gives all crates

@@ -64,7 +64,7 @@ pub use cell::{
 };
 pub use cell_ik_error::CellIkError;
 pub use elbowroom_access as access;
-pub use file::{CellFile, QUATERNION_TOLERANCE};
+pub use file::{CellFile, QUATERNION_TOLERANCE, key_reference};
 pub use frames::Frames;
 pub use model_limits::model_limits;
 pub use moving_object::{Drive, Encoder, MovingObject, ObjectMotion, ObjectPath, PathRepeat, Travel};

@@ -6,25 +6,11 @@ use elbowroom_formats::{Diagnostic, suggest};
 use elbowroom_robot::{ObjectId, RobotId};
 
 use super::robot::robot_of;
+use super::schema::{AVOIDANCE, names};
 use super::tools::with_exchanged_tools;
 use crate::{AvoidanceSpec, Cell, Units};
 
 type Result<T> = std::result::Result<T, Diagnostic>;
-
-const KEYS: &[&str] = &[
-    "rules",
-    "objects",
-    "robots",
-    "speed",
-    "clearance",
-    "return_speed",
-    "stall_timeout",
-    "replan",
-    "horizon",
-    "noise",
-    "delay_ms",
-    "plan_ms",
-];
 
 /// Range of the speed of an evasion, m/s.
 const SPEEDS_M_S: (f64, f64) = (0.01, 20.0);
@@ -47,7 +33,7 @@ const PLAN_MS: f64 = 70.0;
 
 pub(super) fn read(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
     for (name, t) in root.named("avoidance")? {
-        t.only(KEYS)?;
+        t.only(&names(&[AVOIDANCE]))?;
         let (robot, _) = robot_of(name, &t, &cell.robots)?;
         cell.robots[robot.0].avoidance = Some(spec(&t, cell, robot)?);
     }

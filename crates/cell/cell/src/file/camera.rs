@@ -4,29 +4,16 @@ use elbowroom_formats::Diagnostic;
 use elbowroom_formats::toml_tables::{Table, Value};
 use elbowroom_vision::{Camera, CameraTracker, CameraTrackerSettings, ShadowSettings, Template, VisionError};
 
+use super::schema::{self, CAMERA, LENS, SENSOR, names};
 use super::sensor::{self, two};
 use crate::{Cell, CellSensor, SensorKind, Units};
 
 type Result<T> = std::result::Result<T, Diagnostic>;
 
-const KEYS: [&str; 12] = [
-    "size",
-    "focal_px",
-    "centre_px",
-    "center_px",
-    "distortion",
-    "learning_frames",
-    "templates",
-    "uncertainty",
-    "max_speed",
-    "shadows",
-    "mask_margin",
-    "frames",
-];
 const TEMPLATE: &str = "templates = [{ name = \"crate\", size = [600, 400], height = 320 }]";
 
 pub(super) fn read(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellSensor> {
-    t.only(&[&KEYS[..], &sensor::KEYS[..]].concat())?;
+    t.only(&names(&[LENS, CAMERA, SENSOR]))?;
     let units = cell.units;
     let of_vision = |e: VisionError| refused(t, &e);
     let pose =
@@ -72,7 +59,7 @@ fn settings(t: &Table<'_>, units: Units) -> Result<CameraTrackerSettings> {
 /// A known kind of object: `size` of its footprint (or `diameter`) and `height`.
 fn template(v: &Value<'_>, units: Units) -> Result<Template> {
     let t = v.table(TEMPLATE)?;
-    t.only(&["name", "size", "diameter", "height", "tolerance", "height_tolerance"])?;
+    t.only(&names(&[schema::TEMPLATE]))?;
     let name = t.need("name", TEMPLATE)?.text()?;
     let height = units.positive_length(&t.need("height", TEMPLATE)?)?;
     let mut template = match (t.get("size"), t.get("diameter")) {

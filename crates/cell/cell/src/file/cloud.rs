@@ -5,30 +5,17 @@ use elbowroom_formats::toml_tables::Table;
 use elbowroom_vision::cloud::{CloudTracker, CloudTrackerSettings};
 use elbowroom_vision::{Camera, VisionError};
 
+use super::schema::{self, names};
 use super::sensor;
 use crate::{Cell, CellSensor, SensorKind};
 
 type Result<T> = std::result::Result<T, Diagnostic>;
 
-const KEYS: [&str; 11] = [
-    "clouds",
-    "depth",
-    "floor_thickness",
-    "ceiling",
-    "voxel",
-    "min_points",
-    "min_voxels",
-    "mask_margin",
-    "to_floor",
-    "uncertainty",
-    "max_speed",
-];
-const LEARNING: &str = "learning_clouds";
 const POSE: &str = "pose = { at = [0, 0, 4000], rpy = [180, 0, 0] }   (of the sensor, in whose frame the points are)";
 const DEPTH: &str = "depth = { size = [640, 480], focal_px = [600, 600], step = 1 }   (step: the length of depth 1)";
 
 pub(super) fn read(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellSensor> {
-    t.only(&[&KEYS[..], &[LEARNING], &sensor::KEYS[..]].concat())?;
+    t.only(&names(&[schema::CLOUD, schema::SENSOR]))?;
     let units = cell.units;
     let of_vision = |e: VisionError| t.error(format!("`{}`: {e}", t.name));
     let default = CloudTrackerSettings::default();
@@ -45,13 +32,13 @@ pub(super) fn read(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellSensor>
         min_voxels: count("min_voxels", default.min_voxels, 1)?,
         arm_margin_m: length("mask_margin", default.arm_margin_m)?,
         extend_to_floor: t.flag_or("to_floor", default.extend_to_floor)?,
-        learning_clouds: count(LEARNING, default.learning_clouds, 0)?,
+        learning_clouds: count(schema::LEARNING_CLOUDS, default.learning_clouds, 0)?,
         ..default
     };
     CloudTracker::new(settings.clone()).map_err(of_vision)?;
     let depth = t.get("depth").map(|v| {
         let lens = v.table(DEPTH)?;
-        lens.only(&["size", "focal_px", "centre_px", "center_px", "distortion", "step"])?;
+        lens.only(&names(&[schema::LENS, schema::DEPTH]))?;
         let camera = Camera::new(sensor::intrinsics(&lens)?, settings.sensor_in_world).map_err(of_vision)?;
         Ok((camera, units.positive_length(&lens.need("step", DEPTH)?)?))
     });

@@ -11,14 +11,13 @@ use elbowroom_spatial::Pose;
 use super::definitions::{Definitions, encoder_index, robot_id};
 use super::flange::unknown_link;
 use super::poses;
+use super::schema::{FOLLOW, FOLLOW_SOURCES, names};
 use crate::{CellRobot, Follow, PoseRate, PoseTrack, Units};
 
 type Result<T> = std::result::Result<T, Diagnostic>;
 
 const EXAMPLE: &str = "follow = { robot = \"r2\", frame = \"flange\" }   (or: { encoder = \"conveyor\" }, { object = \"cart\" }, \
                        { poses = \"cart.csv\" })";
-/// Sources of regions.
-const SOURCES: [&str; 4] = ["robot", "encoder", "object", "poses"];
 /// Factor on the rated joint speeds for plausibility, as in the monitor's watchdog.
 const FASTER: f64 = 1.5;
 
@@ -30,8 +29,8 @@ pub(super) fn read(
     warnings: &mut Vec<Diagnostic>,
 ) -> Result<(Follow, SourceLimits)> {
     let t = v.table(EXAMPLE)?;
-    t.only(&[&SOURCES[..], &["frame", "max_speed", "max_turn"]].concat())?;
-    let mut named = SOURCES.iter().filter_map(|k| Some((*k, t.get(k)?)));
+    t.only(&names(&[FOLLOW_SOURCES, FOLLOW]))?;
+    let mut named = FOLLOW_SOURCES.iter().filter_map(|k| Some((k.name, t.get(k.name)?)));
     let Some((kind, source)) = named.next() else { return Err(v.error("names nothing to follow").hint(EXAMPLE)) };
     if let Some((_, other)) = named.next() {
         return Err(other.error(format!("contradicts `{kind}`: a region follows one source")).hint(EXAMPLE));

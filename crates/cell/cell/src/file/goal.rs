@@ -5,6 +5,7 @@ use elbowroom_formats::{Diagnostic, suggest};
 use elbowroom_kinematics::inverse::ConfigurationChoice;
 
 use super::robot::joint_values;
+use super::schema::{GOAL, POSE, names};
 use crate::{CellRobot, MoveTarget, TcpTarget, Units};
 
 type Result<T> = std::result::Result<T, Diagnostic>;
@@ -41,7 +42,7 @@ fn configuration(v: &Value<'_>, neither: &str, example: &str, units: Units, robo
 
 /// `{ at, rpy, configuration, near }`.
 fn tcp(t: &Table<'_>, units: Units, robot: &CellRobot, along_a_line: bool) -> Result<TcpTarget> {
-    t.only(&["at", "rpy", "quaternion", "configuration", "near"])?;
+    t.only(&names(&[POSE, GOAL]))?;
     let choices = [t.get("configuration"), t.get("near")];
     if let (true, Some(v)) = (along_a_line, choices.iter().flatten().next()) {
         let what = "chooses a configuration, and a linear move keeps the one that it begins in";

@@ -17,6 +17,7 @@ mod poses;
 mod program;
 mod region;
 mod robot;
+mod schema;
 mod sensor;
 mod tools;
 mod units;
@@ -30,6 +31,8 @@ use elbowroom_robot::{GeometryId, RobotId};
 
 pub use document::CellFile;
 use robot::robot_of;
+pub use schema::key_reference;
+use schema::names;
 pub use units::QUATERNION_TOLERANCE;
 
 use crate::{
@@ -38,27 +41,6 @@ use crate::{
 };
 
 type Result<T> = std::result::Result<T, Diagnostic>;
-
-const KEYS: &[&str] = &[
-    "version",
-    "name",
-    "units",
-    "tick_ms",
-    "max_s",
-    "checksum",
-    "robot",
-    "object",
-    "scene",
-    "region",
-    "encoder",
-    "camera",
-    "cloud",
-    "monitor",
-    "map",
-    "pairs",
-    "avoidance",
-    "program",
-];
 
 impl CellFile {
     /// Resolves all names, reads the named files, and converts to SI units.
@@ -70,7 +52,7 @@ impl CellFile {
     pub fn resolve(&self) -> Result<Cell> {
         let mut warnings = Vec::new();
         let root = Table { file: &self.file, name: String::new(), line: 1, entries: &self.entries };
-        root.only(KEYS)?;
+        root.only(&names(&[schema::TOP]))?;
         version(&root)?;
         let units = Units::read(&root)?;
         let mut cell = Cell {
@@ -237,7 +219,7 @@ fn laws(root: &Table<'_>, warnings: &mut Vec<Diagnostic>) -> Result<CellLaws> {
         return Ok(CellLaws { reaction_s: tick_s, ..CellLaws::default() });
     };
     let t = v.table("[monitor]")?;
-    t.only(&["direction_aware", "recovery", "stopping_distance", "reaction_ms", "override_rate", "stale_ms"])?;
+    t.only(&names(&[schema::MONITOR]))?;
     let mut laws = Laws { direction_aware: t.flag_or("direction_aware", false)?, ..Laws::default() };
     if let Some(v) = t.get("recovery") {
         laws.recovery = v.percent()?;
@@ -293,7 +275,7 @@ fn programs(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Diagnostic>) -
 
 fn maps(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
     for (name, t) in root.named("map")? {
-        t.only(&["joints", "step", "others"])?;
+        t.only(&names(&[schema::MAP]))?;
         let (id, robot) = robot_of(name, &t, &cell.robots)?;
         let names = robot.joint_names();
         let default = MapSpec::of(robot);

@@ -8,11 +8,11 @@ use elbowroom_scene::Object;
 use elbowroom_spatial::{Pose, Vec3};
 
 use super::definitions::encoder_index;
+use super::schema::{OBJECT, OBJECT_FOLLOW, OBJECT_MOTION, OBJECT_SHAPES, names};
 use crate::{Cell, Drive, MovingObject, ObjectPath, PathRepeat, Units};
 
 type Result<T> = std::result::Result<T, Diagnostic>;
 
-const COMMON: &[&str] = &["shape", "at", "rpy", "quaternion", "follow", "motion"];
 const MOTION: &str = "motion = { via = [[2000, 1000, 100]], speed = 500 }";
 /// Corners closer than this (m) are one point.
 const ONE_POINT_M: f64 = 1e-9;
@@ -21,17 +21,10 @@ pub(super) fn read(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
     for (name, t) in root.named("object")? {
         let units = cell.units;
         let word = t.need("shape", "shape = \"box\"   (or sphere, cylinder, capsule, plane, mesh)")?;
-        let words = ["box", "sphere", "cylinder", "capsule", "plane", "mesh"].map(|w| (w, w));
-        let shape = word.word(&words)?;
-        let own: &[&str] = match shape {
-            "box" => &["size"],
-            "sphere" => &["radius"],
-            "cylinder" | "capsule" => &["radius", "height", "from", "to"],
-            "plane" => &[],
-            _ => &["mesh", "mesh_unit"],
-        };
-        t.only(&[COMMON, own].concat())?;
-        let (shape, in_world) = match shape {
+        let words: Vec<_> = OBJECT_SHAPES.iter().map(|s| (s.word, s)).collect();
+        let own = word.word(&words)?;
+        t.only(&names(&[OBJECT, own.keys]))?;
+        let (shape, in_world) = match own.word {
             "box" => units.cuboid(&t),
             "sphere" => units.sphere(&t),
             "cylinder" => units.cylinder(&t),
@@ -82,14 +75,14 @@ fn belt(v: &Value<'_>, cell: &Cell) -> Result<Drive> {
             .error(what)
             .hint("[robot.NAME] load = { box = { at = [0, 0, 350], size = [200, 200, 200] } }"));
     }
-    t.only(&["encoder"])?;
+    t.only(&names(&[OBJECT_FOLLOW]))?;
     let index = encoder_index(&t.need("encoder", "encoder = \"belt\"")?, &cell.frame_sources.encoders)?;
     Ok(Drive::Belt(cell.frame_sources.encoders[index].clone()))
 }
 
 fn path(v: &Value<'_>, units: Units, rest_in_world: Pose) -> Result<ObjectPath> {
     let t = v.table(MOTION)?;
-    t.only(&["via", "speed", "start", "repeat", "turn"])?;
+    t.only(&names(&[OBJECT_MOTION]))?;
     let angular_velocity =
         t.get("turn").map_or(Ok(Vec3::ZERO), |v| v.three().map(|w| w * units.angle.to_radians(1.0)))?;
     let start_s = t.get("start").map_or(Ok(0.0), |v| v.not_negative())?;

@@ -11,13 +11,12 @@ use elbowroom_scene::Object;
 use elbowroom_spatial::Pose;
 
 use super::models;
+use super::schema::{SCENE, names};
 use crate::scene_pairs::ScenePairs;
 use crate::{Cell, CellRobot};
 
 type Result<T> = std::result::Result<T, Diagnostic>;
 
-/// Keys of a scene. The keys that place it are those of `Units::place`.
-const KEYS: &[&str] = &["file", "frame", "at", "rpy", "quaternion", "allowed_collisions"];
 /// The frame that a scene is placed by, unless `frame` names another.
 const WORLD: &str = "world";
 
@@ -56,7 +55,7 @@ fn allow(scene: &PlanningScene, objects: &Range<usize>, cell: &mut Cell, warning
 }
 
 fn add(t: &Table<'_>, cell: &mut Cell) -> Result<(PlanningScene, Range<usize>)> {
-    t.only(KEYS)?;
+    t.only(&names(&[SCENE]))?;
     let file = t.need("file", "file = \"workshop.scene\"")?;
     let scene = planning_scene::read(&models::path(&file)?)?;
     refuse_attached(&scene)?;

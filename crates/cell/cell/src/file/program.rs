@@ -9,6 +9,7 @@ use elbowroom_proximity::Shape;
 use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 
+use super::schema::{self, STEPS, names};
 use super::{goal, models};
 use crate::{
     Cell, CellRegion, CellRegionId, CellRobot, PathPlanner, Program, ProgramBody, ProgramStep, StepAction, Units,
@@ -20,7 +21,7 @@ type Result<T> = std::result::Result<T, Diagnostic>;
 const LINEAR_SPEED: f64 = 0.25;
 
 pub(super) fn read(t: &Table<'_>, cell: &Cell, robot: &CellRobot, warnings: &mut Vec<Diagnostic>) -> Result<Program> {
-    t.only(&["override", "repeat", "steps", "trajectory"])?;
+    t.only(&names(&[schema::PROGRAM]))?;
     let speed_override = t.get("override").map_or(Ok(1.0), |v| v.percent())?;
     let repeat = t.get("repeat").map_or(Ok(1), |v| v.whole(1, 1_000_000))?;
     let body = match (t.get("steps"), t.get("trajectory")) {
@@ -39,27 +40,14 @@ pub(super) fn read(t: &Table<'_>, cell: &Cell, robot: &CellRobot, warnings: &mut
 }
 
 fn step(v: &Value<'_>, cell: &Cell, robot: &CellRobot) -> Result<ProgramStep> {
-    const KINDS: [&str; 7] = ["move", "region", "wait", "override", "grip", "release", "tool"];
     const EXAMPLE: &str = "{ move = \"joint\", to = […] }, { region = \"column\", active = false }, { wait = 0.5 }, \
                            { override = 50 }, { grip = \"part\" }, { release = \"part\" } or { tool = \"gripper\" }";
     let t = v.table(EXAMPLE)?;
-    let given: Vec<&str> = KINDS.into_iter().filter(|k| t.get(k).is_some()).collect();
-    let action = match given.as_slice() {
-        ["move"] => movement(&t, cell.units, robot)?,
-        ["region"] => switch(&t, &cell.regions)?,
-        ["grip"] => StepAction::Grip(part(&t, "grip", cell)?),
-        ["release"] => StepAction::Release(part(&t, "release", cell)?),
-        ["tool"] => StepAction::Tool(tool(&t, robot)?),
-        ["wait"] => {
-            t.only(&["wait"])?;
-            StepAction::Wait(t.need("wait", "wait = 0.5")?.not_negative()?)
-        }
-        ["override"] => {
-            t.only(&["override"])?;
-            StepAction::Override(t.need("override", "override = 50")?.percent()?)
-        }
+    let given: Vec<_> = STEPS.iter().filter(|kind| t.get(kind.word).is_some()).collect();
+    let kind = match given[..] {
+        [kind] => kind,
         [] => {
-            t.only(&["move", "to", "speed", "region", "active", "wait", "override", "grip", "release", "tool"])?;
+            t.only(&STEPS.iter().flat_map(|kind| names(&[kind.keys])).collect::<Vec<_>>())?;
             return Err(v.error("is not a step").hint(EXAMPLE));
         }
         _ => {
@@ -67,12 +55,21 @@ fn step(v: &Value<'_>, cell: &Cell, robot: &CellRobot) -> Result<ProgramStep> {
             return Err(v.error("is several steps in one").hint(hint));
         }
     };
+    t.only(&names(&[kind.keys]))?;
+    let action = match kind.word {
+        "move" => movement(&t, cell.units, robot)?,
+        "region" => switch(&t, &cell.regions)?,
+        "grip" => StepAction::Grip(part(&t, "grip", cell)?),
+        "release" => StepAction::Release(part(&t, "release", cell)?),
+        "tool" => StepAction::Tool(tool(&t, robot)?),
+        "wait" => StepAction::Wait(t.need("wait", "wait = 0.5")?.not_negative()?),
+        _ => StepAction::Override(t.need("override", "override = 50")?.percent()?),
+    };
     Ok(ProgramStep { line: t.line, action })
 }
 
 /// The object that a step grips or releases.
 fn part(t: &Table<'_>, key: &'static str, cell: &Cell) -> Result<ObjectId> {
-    t.only(&[key])?;
     let v = t.need(key, &format!("{key} = \"part\""))?;
     let name = v.text()?;
     let index = cell.objects.iter().position(|o| o.name == name).ok_or_else(|| {
@@ -89,7 +86,6 @@ fn part(t: &Table<'_>, key: &'static str, cell: &Cell) -> Result<ObjectId> {
 
 /// The tool that a step makes active.
 fn tool(t: &Table<'_>, robot: &CellRobot) -> Result<usize> {
-    t.only(&["tool"])?;
     let v = t.need("tool", "tool = \"gripper\"")?;
     let name = v.text()?;
     robot.payload.tools.iter().position(|tool| tool.name == name).ok_or_else(|| {
@@ -112,7 +108,6 @@ enum Movement {
 }
 
 fn movement(t: &Table<'_>, units: Units, robot: &CellRobot) -> Result<StepAction> {
-    t.only(&["move", "to", "speed", "planner"])?;
     let kinds = [("joint", Movement::Joint), ("linear", Movement::Linear), ("planned", Movement::Planned)];
     let kind = t.need("move", "move = \"joint\"")?.word(&kinds)?;
     let example = if kind == Movement::Linear {
@@ -143,7 +138,6 @@ fn movement(t: &Table<'_>, units: Units, robot: &CellRobot) -> Result<StepAction
 }
 
 fn switch(t: &Table<'_>, regions: &[CellRegion]) -> Result<StepAction> {
-    t.only(&["region", "active"])?;
     let v = t.need("region", "region = \"column\"")?;
     let name = v.text()?;
     let Some(index) = regions.iter().position(|r| r.region.name == name) else {
@@ -167,7 +161,7 @@ fn trajectory(v: &Value<'_>, robot: &CellRobot, warnings: &mut Vec<Diagnostic>) 
     let chain = &robot.robot.chain;
     let (states, offset_s) = if v.is_table() {
         let t = v.table(RECORDING)?;
-        t.only(&["file", "angle", "length", "time", "time_unit", "period_ms", "columns", "offset"])?;
+        t.only(&names(&[schema::RECORDING]))?;
         let layout = recording_layout(&t, robot)?;
         let offset_s = t.get("offset").map_or(Ok(0.0), |v| v.not_negative())?;
         (recording::read(&models::path(&t.need("file", RECORDING)?)?, &robot.name, chain, &layout)?, offset_s)

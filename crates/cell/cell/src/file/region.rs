@@ -9,26 +9,11 @@ use elbowroom_spatial::Vec3;
 use elbowroom_spatial::units::LengthUnit;
 
 use super::definitions::{Definitions, robot_id};
+use super::schema::{ENCODER, REGION, REGION_SHAPES, names};
 use super::{follow, models};
 use crate::{CellRegion, Encoder, Follow, Travel, Units};
 
 type Result<T> = std::result::Result<T, Diagnostic>;
-
-const COMMON: &[&str] = &[
-    "shape",
-    "rpy",
-    "quaternion",
-    "kind",
-    "life",
-    "warning",
-    "slow_to",
-    "guards",
-    "robots",
-    "follow",
-    "hysteresis",
-    "output",
-    "warning_output",
-];
 
 /// Largest warning zone and hysteresis, m.
 const MAX_M: f64 = 10_000.0;
@@ -107,24 +92,15 @@ fn check_warning(name: &str, t: &Table<'_>, region: &Region, warnings: &mut Vec<
 }
 
 fn solid(name: &str, t: &Table<'_>, units: Units) -> Result<Region> {
-    const SHAPES: &[(&str, &[&str])] = &[
-        ("sphere", &["centre", "center", "radius"]),
-        ("cylinder", &["base", "radius", "height"]),
-        ("plane", &["origin", "x", "y"]),
-        ("box", &["from", "to", "base", "size"]),
-        ("capsule", &["at", "radius", "height"]),
-        ("mesh", &["at", "mesh", "mesh_unit"]),
-        ("convex", &["at", "mesh", "mesh_unit"]),
-    ];
     let shape = t.need("shape", "shape = \"cylinder\"   (or sphere, plane, box, capsule, mesh, convex)")?;
-    let words: Vec<_> = SHAPES.iter().map(|s| (s.0, *s)).collect();
-    let (shape, own_keys) = shape.word(&words)?;
-    t.only(&[COMMON, own_keys].concat())?;
+    let words: Vec<_> = REGION_SHAPES.iter().map(|s| (s.word, s)).collect();
+    let own = shape.word(&words)?;
+    t.only(&names(&[REGION, own.keys]))?;
     let rotation = units.rotation(t)?;
     let point = |key: &str| units.point(&t.need(key, &format!("{key} = [900, 0, 0]"))?);
     let radius = || units.positive_length(&t.need("radius", "radius = 150")?);
     let height = || units.positive_length(&t.need("height", "height = 1200")?);
-    match shape {
+    match own.word {
         "sphere" => {
             let centre = if t.get("center").is_some() { "center" } else { "centre" };
             Ok(Region::sphere(name, point(centre)?, radius()?))
@@ -145,7 +121,7 @@ fn solid(name: &str, t: &Table<'_>, units: Units) -> Result<Region> {
         }
         _ => {
             let (solid, pose) = units.mesh(t, "mesh")?;
-            let solid = if shape == "convex" { hull(t, &solid)? } else { solid };
+            let solid = if own.word == "convex" { hull(t, &solid)? } else { solid };
             Ok(Region::solid(name, solid, pose))
         }
     }
@@ -238,7 +214,7 @@ fn robots(t: &Table<'_>, known: &Definitions<'_>, follow: Option<Follow>) -> Res
 }
 
 pub(super) fn encoder(name: &str, t: &Table<'_>, units: Units) -> Result<Encoder> {
-    t.only(&["direction", "speed", "at", "start", "end", "wrap", "file"])?;
+    t.only(&names(&[ENCODER]))?;
     let direction = t.get("direction").map_or(Ok(Vec3::X), |v| {
         v.three()?.try_normalize().ok_or_else(|| v.error("has no length").hint("direction = [1, 0, 0]"))
     })?;

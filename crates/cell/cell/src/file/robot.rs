@@ -9,34 +9,12 @@ use elbowroom_proximity::Shape;
 use elbowroom_robot::{Collider, Robot, RobotId};
 use elbowroom_spatial::Pose;
 
+use super::schema::{self, names};
 use super::{flange, models, tools};
 use crate::model_limits::{ACCELERATION_TIME_S, JERK_TIME_S, STOP_TIME_S};
 use crate::{CellRobot, Payload, Units};
 
 type Result<T> = std::result::Result<T, Diagnostic>;
-
-const KEYS: &[&str] = &[
-    "model",
-    "srdf",
-    "ignore",
-    "joints",
-    "unit",
-    "dh",
-    "links",
-    "base_link",
-    "base",
-    "flange",
-    "start",
-    "states",
-    "tool",
-    "tools",
-    "load",
-    "volumes",
-    "speed",
-    "acceleration",
-    "jerk",
-    "stop_time",
-];
 
 /// Longest stop time, s.
 const MAX_STOP_TIME_S: f64 = 60.0;
@@ -49,7 +27,7 @@ const REVOLUTE_SPEED: f64 = std::f64::consts::PI;
 const PRISMATIC_SPEED: f64 = 1.0;
 
 pub(super) fn read(name: &str, t: &Table<'_>, units: Units, warnings: &mut Vec<Diagnostic>) -> Result<CellRobot> {
-    t.only(KEYS)?;
+    t.only(&names(&[schema::ROBOT]))?;
     let mut robot = model(t, units, warnings)?;
     if let Some(v) = t.get("ignore") {
         ignore(&v, &mut robot)?;
@@ -166,7 +144,7 @@ fn dh_robot(t: &Table<'_>, dh: &Value<'_>, units: Units) -> Result<Robot> {
 
 fn dh_row(index: usize, v: &Value<'_>, units: Units) -> Result<ClassicalRow> {
     let t = v.table("{ a = 300, alpha = 90, d = 600, theta = 0, min = -180, max = 180, speed = 170 }")?;
-    t.only(&["name", "kind", "a", "alpha", "d", "theta", "min", "max", "speed", "acceleration"])?;
+    t.only(&names(&[schema::DH_ROW]))?;
     let prismatic = t.get("kind").map_or(Ok(false), |k| k.word(&[("revolute", false), ("prismatic", true)]))?;
     let length = |key: &str| t.get(key).map_or(Ok(0.0), |v| units.length_of(&v));
     let angle = |key: &str| t.get(key).map_or(Ok(0.0), |v| v.number().map(|x| units.joint(false, x)));
@@ -217,10 +195,9 @@ fn solids(v: &Value<'_>, units: Units, name: &str) -> Result<Vec<Collider>> {
 
 /// `{ capsule = { … } }`, or box, sphere, cylinder, mesh.
 fn solid(v: &Value<'_>, units: Units, name: &str) -> Result<Collider> {
-    const KINDS: &[&str] = &["box", "sphere", "cylinder", "capsule", "mesh"];
     const EXAMPLE: &str = "{ capsule = { from = [0, 0, 0], to = [0, 0, 400], radius = 60 } }";
     let t = v.table(EXAMPLE)?;
-    t.only(KINDS)?;
+    t.only(&schema::SOLIDS.iter().map(|s| s.word).collect::<Vec<_>>())?;
     let mut kinds = t.each();
     let (Some((kind, inner)), None) = (kinds.next(), kinds.next()) else {
         return Err(v.error("must be exactly one of box, sphere, cylinder, capsule, mesh").hint(EXAMPLE));
@@ -234,23 +211,21 @@ fn named_solid(kind: &str, inner: &Value<'_>, outer: &Table<'_>, units: Units) -
         return units.mesh(outer, "mesh");
     }
     let t = inner.table("{ at = [0, 0, 0], … }")?;
+    let own = schema::SOLIDS.iter().filter(|solid| solid.word == kind).flat_map(|solid| names(&[solid.keys]));
+    t.only(&names(&[schema::POSE]).into_iter().chain(own).collect::<Vec<_>>())?;
     match kind {
-        "box" => t.only(&["at", "rpy", "quaternion", "size"]).and_then(|()| units.cuboid(&t)),
-        "sphere" => t.only(&["at", "rpy", "quaternion", "radius"]).and_then(|()| units.sphere(&t)),
-        "cylinder" => {
-            t.only(&["at", "rpy", "quaternion", "radius", "height", "from", "to"]).and_then(|()| units.cylinder(&t))
-        }
-        "capsule" => {
-            t.only(&["at", "rpy", "quaternion", "radius", "height", "from", "to"]).and_then(|()| units.capsule(&t))
-        }
-        _ => t.only(&["at", "rpy", "quaternion", "file", "mesh_unit"]).and_then(|()| units.mesh(&t, "file")),
+        "box" => units.cuboid(&t),
+        "sphere" => units.sphere(&t),
+        "cylinder" => units.cylinder(&t),
+        "capsule" => units.capsule(&t),
+        _ => units.mesh(&t, "file"),
     }
 }
 
 const TOOL: &str = "tcp = { at = [0, 0, 250], rpy = [0, 0, 0] }";
 
 fn tool(t: &Table<'_>, units: Units) -> Result<(Pose, Option<Collider>)> {
-    t.only(&["tcp", "box", "mesh", "mesh_unit", "at", "rpy", "quaternion"])?;
+    t.only(&names(&[schema::TOOL]))?;
     if let (None, Some(v)) = (t.get("mesh"), ["at", "rpy", "quaternion", "mesh_unit"].iter().find_map(|k| t.get(k))) {
         return Err(v
             .error("places the tool's mesh, but there is none")

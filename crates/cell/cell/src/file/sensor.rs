@@ -13,9 +13,6 @@ use crate::{Cell, CellSensor, SensorKind, Units};
 
 type Result<T> = std::result::Result<T, Diagnostic>;
 
-/// Keys of every sensor, except the key of its folder.
-pub(super) const KEYS: [&str; 10] =
-    ["pose", "area", "floor", "robot", "prediction", "joints", "latency_ms", "search_ms", "stale_ms", "robots"];
 const AREA: &str = "area = [[-1500, -1000], [1500, -1000], [1500, 1000], [-1500, 1000]]";
 /// Largest picture, pixels along a side.
 const MOST_PIXELS: u32 = 16_384;

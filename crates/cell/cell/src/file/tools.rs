@@ -7,6 +7,7 @@ use elbowroom_robot::{Collider, Robot};
 use elbowroom_spatial::{Pose, Vec3};
 
 use super::flange::unknown_link;
+use super::schema::NAMED_TOOL;
 use crate::{CellRobot, CellTool, Units};
 
 type Result<T> = std::result::Result<T, Diagnostic>;
@@ -73,7 +74,7 @@ fn tool(
             robot.chain.link(name).ok_or_else(|| unknown_link(&v, name, &robot.chain))?
         }
     };
-    let own: Vec<_> = t.entries.iter().filter(|e| !["flange", "mounted"].contains(&e.key.as_str())).cloned().collect();
+    let own: Vec<_> = t.entries.iter().filter(|e| NAMED_TOOL.iter().all(|k| k.name != e.key)).cloned().collect();
     let (tcp_in_link, collider) =
         read_tool(&Table { file: t.file, name: t.name.clone(), line: t.line, entries: &own }, units)?;
     let collider = collider.map(|c| Collider { name: name.to_owned(), ..c });

@@ -7,6 +7,7 @@ use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 use super::models;
+use super::schema::{POSE, UNITS, names};
 use crate::Units;
 
 type Result<T> = std::result::Result<T, Diagnostic>;
@@ -16,7 +17,7 @@ impl Units {
     pub(super) fn read(root: &Table<'_>) -> Result<Self> {
         const EXAMPLE: &str = "units = { length = \"mm\", angle = \"deg\" }";
         let table = root.need("units", EXAMPLE)?.table(EXAMPLE)?;
-        table.only(&["length", "angle"])?;
+        table.only(&names(&[UNITS]))?;
         let length = table.need("length", "length = \"mm\"   (or \"m\")")?;
         let angle = table.need("angle", "angle = \"deg\"   (or \"rad\")")?;
         Ok(Self {
@@ -109,7 +110,7 @@ impl Units {
     /// `{ at = […], rpy = […] }`.
     pub(super) fn pose(self, v: &Value<'_>) -> Result<Pose> {
         let t = v.table("{ at = [0, 0, 0], rpy = [0, 0, 0] }")?;
-        t.only(&["at", "rpy", "quaternion"])?;
+        t.only(&names(&[POSE]))?;
         self.place(&t)
     }
 
