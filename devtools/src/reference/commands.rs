@@ -1,5 +1,6 @@
 //! The verbs of the command and their options, as `--help` prints them.
 
+use std::fmt::Write as _;
 use std::path::Path;
 
 use xtask::shell;
@@ -50,13 +51,14 @@ impl Commands {
     /// # Errors
     /// A verb is not in [`GUIDES`].
     pub fn table(&self) -> Result<String, String> {
+        // Writing to a String cannot fail.
         let mut table = "| verb | does | guide |\n| --- | --- | --- |\n".to_owned();
         for Verb { name, help, .. } in &self.0 {
             // The first paragraph.
             let about = help.lines().take_while(|line| !line.is_empty()).map(str::trim).collect::<Vec<_>>().join(" ");
             let guide = GUIDES.iter().find(|(verb, _)| verb == name);
             let (_, guide) = guide.ok_or_else(|| format!("the verb `{name}` has no guide in {}", file!()))?;
-            table += &format!("| [`{name}`](options.md#{name}) | {about} | {guide} |\n");
+            let _ = writeln!(table, "| [`{name}`](options.md#{name}) | {about} | {guide} |");
         }
         Ok(table)
     }
