@@ -26,6 +26,9 @@ const GUIDES: [(&str, &str); 17] = [
     ("completions", ""),
 ];
 
+/// Columns to which help texts are wrapped, whatever the terminal.
+const WIDTH: &str = "100";
+
 /// A verb with what `--help` prints about it.
 struct Verb {
     name: String,
@@ -42,7 +45,8 @@ impl Commands {
     pub fn read(root: &Path) -> Result<Self, String> {
         let own = std::env::current_exe().map_err(|e| format!("the path of this program: {e}"))?;
         let program = own.with_file_name("elbowroom").to_string_lossy().into_owned();
-        let help = |words: &[&str]| shell::output(root, &program, &[words, &["--help"]].concat());
+        let help =
+            |words: &[&str]| shell::output_with(root, &program, &[words, &["--help"]].concat(), &[("COLUMNS", WIDTH)]);
         Ok(Self(verbs(&[], &help(&[])?, &help)?))
     }
 

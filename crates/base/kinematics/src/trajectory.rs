@@ -68,9 +68,14 @@ impl JointTrajectory {
         self.rows.first().map_or(0.0, |first| first.t_s)
     }
 
+    /// Time of the last row, s; 0 without rows.
+    pub fn end_s(&self) -> f64 {
+        self.rows.last().map_or(0.0, |last| last.t_s)
+    }
+
     /// Time from the first to the last row, s.
     pub fn duration_s(&self) -> f64 {
-        self.rows.last().map_or(0.0, |last| last.t_s - self.start_s())
+        self.end_s() - self.start_s()
     }
 
     /// Joint values of the first row.

@@ -391,7 +391,6 @@ fn the_earliest_time_is_not_after_the_contact() {
 
 /// The kept faces alone give the same contact. If the first contact were on a culled face, the whole mesh would
 /// already be in contact at the time of impact of the kept faces.
-/// contact at the time of impact of the kept faces.
 #[test]
 fn the_first_contact_is_on_a_face_that_was_kept() {
     let mut rng = SplitMix(7);

@@ -76,7 +76,7 @@ pub enum StepAction {
     Grip(ObjectId),
     /// Detaches an object from the flange; its pose stays.
     Release(ObjectId),
-    /// Makes one of the robot's [tools](crate::CellRobot::tools) the active one.
+    /// Makes one of the robot's [tools](crate::Payload::tools) the active one.
     Tool(usize),
     /// Waits, s.
     Wait(f64),

@@ -91,3 +91,24 @@ impl fmt::Display for Diagnostic {
 }
 
 impl std::error::Error for Diagnostic {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_text_has_the_file_the_line_and_the_hint_if_they_are_known() {
+        let bare = Diagnostic::new("a/b.stl", None, "is empty");
+        assert_eq!(bare.to_string(), "a/b.stl: is empty");
+        assert_eq!(bare.hint("a mesh").to_string(), "a/b.stl: is empty\n  write: a mesh");
+        let binary = Diagnostic::not_utf8("c.csv", 3);
+        assert_eq!(binary.to_string(), "c.csv:3: is not UTF-8 text\n  write: the file saved as UTF-8");
+    }
+
+    #[test]
+    fn a_file_that_may_not_be_read_has_another_hint_than_a_missing_one() {
+        let of = |kind: std::io::ErrorKind| Diagnostic::unreadable("c.toml", &kind.into(), "a cell file").hint.unwrap();
+        assert_eq!(of(std::io::ErrorKind::NotFound), "a cell file");
+        assert!(of(std::io::ErrorKind::PermissionDenied).contains("chmod u+r"));
+    }
+}

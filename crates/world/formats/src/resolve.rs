@@ -18,6 +18,8 @@ pub(crate) enum Unresolved {
     NoFile(PathBuf),
     /// References with this scheme are not followed.
     Scheme(String),
+    /// The reference was not among those that were loaded.
+    NotLoaded,
 }
 
 impl fmt::Display for Unresolved {
@@ -34,6 +36,7 @@ impl fmt::Display for Unresolved {
             }
             Self::NoFile(file) => write!(f, "there is no file {}", file.display()),
             Self::Scheme(scheme) => write!(f, "`{scheme}://` is not followed"),
+            Self::NotLoaded => f.write_str("it was not loaded"),
         }
     }
 }

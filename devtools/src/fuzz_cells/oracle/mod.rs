@@ -76,7 +76,7 @@ pub fn start_distance(cell: &Cell, region: usize) -> f64 {
 /// Returns the joint values at the start; for a recording its first row.
 fn start(cell: &Cell, robot: usize) -> &[f64] {
     match cell.robots[robot].program.as_ref().map(|p| &p.body) {
-        Some(ProgramBody::Trajectory(trajectory)) => trajectory.first().unwrap_or(&[]),
+        Some(ProgramBody::Trajectory(trajectory)) => trajectory.first().unwrap_or(&cell.robots[robot].start),
         _ => &cell.robots[robot].start,
     }
 }

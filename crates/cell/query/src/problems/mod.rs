@@ -23,8 +23,8 @@
 //! let robot = robot::load(&urdf, &robot::LoadOptions::default())?.robot;
 //! let model = ProblemModel::new(&urdf, robot, "post.json".as_ref(), &problems)?;
 //! let mut durations = Vec::new();
-//! let results = run(&model, &problems, &ProblemSettings::default(), &mut RrtConnectEngine, &mut |result, motion| {
-//!     durations.extend(motion.map(|m| m.duration_s));
+//! let results = run(&model, &problems, &ProblemSettings::default(), &mut RrtConnectEngine, &mut |result, timed| {
+//!     durations.extend(timed.map(|timed| timed.trajectory.duration_s()));
 //!     result.found
 //! })?;
 //! assert!(results[0].proven && results[0].cost_rad == Some(2.0) && durations[0] > 2.0);

@@ -58,7 +58,7 @@ impl JointTrack {
     /// The values of each robot at a time; an error if they are not known.
     pub fn at(&self, t_s: f64) -> Result<Vec<Vec<f64>>, NoJointValues> {
         let Some(recorded) = &self.recorded else { return Ok(self.start.clone()) };
-        let (first, last) = recorded.first().map_or((0.0, 0.0), |r| (r.start_s(), r.start_s() + r.duration_s()));
+        let (first, last) = recorded.first().map_or((0.0, 0.0), |r| (r.start_s(), r.end_s()));
         if !(t_s >= first - MARGIN_S && t_s <= last + MARGIN_S) {
             return Err(NoJointValues { t_s, covered_s: [first, last] });
         }

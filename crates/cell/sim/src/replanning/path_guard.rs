@@ -51,7 +51,7 @@ pub struct PathGuard {
 }
 
 impl PathGuard {
-    /// A guard of a robot with its program, which has moved nothing yet, and what searches for its paths. A search may take
+    /// Creates the guard of a robot's path before its program moves, and the replanner of its paths. A search may take
     /// `search_s` (s). `states` are the robots of the cell.
     ///
     /// # Errors

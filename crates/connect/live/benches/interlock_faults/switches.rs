@@ -59,7 +59,7 @@ impl Switches {
         Ok(Self { carts, requests, _table: network.subscribe(&keys.regions(), handler)? })
     }
 
-    /// Whether no robot may enter the temporary region of this one now, whatever has failed.
+    /// Whether the temporary region of this robot has been on for so long that no fault excuses an entry.
     pub fn is_surely_on(&self, robot: usize) -> bool {
         lock(&self.carts)[robot].on_since.is_some_and(|since| since.elapsed() > SURELY_ON)
     }

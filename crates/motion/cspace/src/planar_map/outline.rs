@@ -208,7 +208,7 @@ fn valid_lanes(normals: &OutlineNormals, at: usize) -> u64 {
 /// An outline seen from the shoulder.
 #[derive(Clone, Copy)]
 struct ShoulderView {
-    /// Unit vector against the normal of the line that the shoulder is farthest outside of.
+    /// Reversed unit normal of the line of the outline from which the shoulder is farthest outside.
     ahead: [f32; 2],
     /// Distance of the shoulder from that line: the whole outline is beyond the line.
     depth: f32,

@@ -52,7 +52,7 @@ impl MeshCache {
     /// The file of a reference in one of the geometries.
     pub(super) fn path(&self, filename: &str) -> Result<&Path, Unresolved> {
         let path = self.paths.get(filename).map(|path| path.as_deref().map_err(Clone::clone));
-        path.unwrap_or_else(|| Err(Unresolved::NoFile(filename.into())))
+        path.unwrap_or(Err(Unresolved::NotLoaded))
     }
 
     /// The meshes of a file, and on the first call its warnings.

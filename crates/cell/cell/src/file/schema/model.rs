@@ -62,7 +62,7 @@ pub(in crate::file) const DH_ROW: &[Key] = &[
     key("d", "length", "0", "distance along z"),
     key("theta", "angle", "0", "θ, about z"),
     key("min", "joint value", "continuous; required for prismatic joints", "lower limit"),
-    key("max", "joint value", "as `min`", "upper limit"),
+    key("max", "joint value", "continuous; required for prismatic joints", "upper limit"),
     key("speed", "joint value per second", "as for the robot", "highest speed of this joint"),
     key("acceleration", "joint value per second²", "as for the robot", "highest acceleration of this joint"),
 ];

@@ -10,7 +10,7 @@ pub(in crate::file) const REGION: &[Key] = &[
     key("quaternion", "`[x, y, z, w]`", "none", "instead of `rpy`"),
     key("kind", "`\"forbidden\"` `\"monitored\"` `\"exchange\"`", "`\"forbidden\"`: the safe one", "override 0 at the surface · outputs only · open to one robot at a time"),
     key("life", "`\"permanent\"` `\"temporary\"`", "`\"permanent\"`: the safe one", "a temporary region starts inactive, in `live` [as it was](live.md#how-a-robot-is-guarded); programs switch it"),
-    key("warning", "length, at most 10 km; above 10 m with a warning", "0, with a warning: no size suits every robot; required for exchange", "thickness δ of the warning zone"),
+    key("warning", "length, at most 10 km; above 10 m with a warning", "0 (with a warning for a forbidden region): no size suits every robot; exchange: required, at least 1 mm", "thickness δ of the warning zone"),
     key("slow_to", "percent", "none", "a monitored region becomes a speed zone: at most this override inside, ramped through the warning zone"),
     key("guards", "any of `\"tcp\"` `\"tool\"` `\"arm\"`", "`[\"arm\"]`: everything that moves", "guarded: the TCP, the tool's solid (with the load), the links with tool and load"),
     key("robots", "names", "all except the one that carries it", "robots that it concerns"),
@@ -37,16 +37,16 @@ pub(in crate::file) const REGION_SHAPES: &[Variant] = &[
 /// Sources of a region that moves.
 #[rustfmt::skip] // a row per key, as in the document
 pub(in crate::file) const FOLLOW_SOURCES: &[Key] = &[
-    key("robot", "name", "one of the first four is required", "coordinates in the `frame` of this robot, which is not guarded against the region"),
-    key("encoder", "name", "", "coordinates in the world at travel 0; the region moves as the encoder does"),
-    key("object", "name", "", "coordinates in the object's frame (its centre, or its mesh's origin), turning with it; a static object holds it still"),
-    key("poses", "path", "", "coordinates in the frame whose poses in the world the file lists: straight and by the shortest turn between them, static before and after"),
+    key("robot", "name", "none; exactly one of `robot`, `encoder`, `object`, `poses` is required", "coordinates in the `frame` of this robot, which is not guarded against the region"),
+    key("encoder", "name", "none", "coordinates in the world at travel 0; the region moves as the encoder does"),
+    key("object", "name", "none", "coordinates in the object's frame (its centre, or its mesh's origin), turning with it; a static object holds it still"),
+    key("poses", "path", "none", "coordinates in the frame whose poses in the world the file lists: straight and by the shortest turn between them, static before and after"),
 ];
 
 #[rustfmt::skip] // a row per key, as in the document
 pub(in crate::file) const FOLLOW: &[Key] = &[
     key("frame", "`\"flange\"` `\"tool\"` `\"tcp\"` or a link", "`\"flange\"`", "frame of the robot; `\"tool\"` and `\"tcp\"` are both that of the tool centre point"),
-    key("max_speed", "length per second", "10 m/s", "a faster source is a fault (it has jumped), and the robot stops ([watchdog](laws.md#9-watchdog))"),
+    key("max_speed", "length per second", "10 m/s; with `robot` at least 1.5 × its joints' speeds", "a faster source is a fault (it has jumped), and the robot stops ([watchdog](laws.md#9-watchdog))"),
     key("max_turn", "angle per second", "20 rad/s", "limit for turning, likewise"),
 ];
 
