@@ -9,6 +9,9 @@ use super::measured::Measured;
 use crate::functions::functions;
 use crate::layers::source::{Token, before_tests, tokens};
 
+/// The crate that a Rust user names.
+const FACADE: &str = "elbowroom";
+
 /// Counts the lines of each file.
 pub fn lines_of_files(files: &[SourceFile]) -> Vec<Measured> {
     let measured = files.iter().filter(|file| file.is_measured);
@@ -37,7 +40,7 @@ pub fn fields_of_structs(files: &[SourceFile]) -> Vec<Measured> {
 }
 
 /// Counts the direct dependencies of each crate (name → its `Cargo.toml`), inside and outside the workspace, without
-/// those of tests.
+/// those of tests. The façade exports every crate: it has no limit.
 pub fn dependencies_of_crates(manifests: &BTreeMap<String, Table>) -> Vec<Measured> {
     let count = |manifest: &Table| manifest.get("dependencies").and_then(Value::as_table).map_or(0, Table::len);
     let size = |(name, manifest): (&String, &Table)| Measured {
@@ -45,7 +48,7 @@ pub fn dependencies_of_crates(manifests: &BTreeMap<String, Table>) -> Vec<Measur
         place: format!("Cargo.toml of {name}"),
         value: count(manifest),
     };
-    manifests.iter().map(size).collect()
+    manifests.iter().filter(|(name, _)| *name != FACADE).map(size).collect()
 }
 
 /// Returns the line, from 1, on which these words occur for the first time.
@@ -179,7 +182,8 @@ mod tests {
     fn dependencies_of_tests_do_not_count() {
         let manifest: Table =
             "[dependencies]\na = \"1\"\nb.workspace = true\n[dev-dependencies]\nc = \"1\"".parse().unwrap();
-        let found = dependencies_of_crates(&BTreeMap::from([("cell".to_owned(), manifest)]));
+        let crates = ["cell", FACADE].map(|name| (name.to_owned(), manifest.clone()));
+        let found = dependencies_of_crates(&BTreeMap::from(crates));
         assert_eq!(sizes(&found), [("cell", "Cargo.toml of cell", 2)]);
     }
 }

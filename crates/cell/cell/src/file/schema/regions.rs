@@ -10,7 +10,7 @@ pub(in crate::file) const REGION: &[Key] = &[
     key("quaternion", "`[x, y, z, w]`", "none", "instead of `rpy`"),
     key("kind", "`\"forbidden\"` `\"monitored\"` `\"exchange\"`", "`\"forbidden\"`: the safe one", "override 0 at the surface · outputs only · open to one robot at a time"),
     key("life", "`\"permanent\"` `\"temporary\"`", "`\"permanent\"`: the safe one", "a temporary region starts inactive, in `live` [as it was](live.md#how-a-robot-is-guarded); programs switch it"),
-    key("warning", "length, at most 10 km; above 10 m with a warning", "0 (with a warning for a forbidden region): no size suits every robot; exchange: required, at least 1 mm", "thickness δ of the warning zone"),
+    key("warning", "length, at most 10 km; above 10 m with a warning", "0, with a warning if forbidden; exchange: required, at least 1 mm", "thickness δ of the warning zone"),
     key("slow_to", "percent", "none", "a monitored region becomes a speed zone: at most this override inside, ramped through the warning zone"),
     key("guards", "any of `\"tcp\"` `\"tool\"` `\"arm\"`", "`[\"arm\"]`: everything that moves", "guarded: the TCP, the tool's solid (with the load), the links with tool and load"),
     key("robots", "names", "all except the one that carries it", "robots that it concerns"),
