@@ -2,12 +2,12 @@
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
-use std::thread;
+use std::sync::Arc;
 
 use elbowroom_proximity::TriMesh;
 use elbowroom_spatial::Vec3;
 use elbowroom_spatial::units::LengthUnit;
+use rayon::prelude::*;
 
 use crate::mesh;
 use crate::mesh_data::{MeshData, UpAxis};
@@ -81,17 +81,7 @@ fn load_files(scales_of: HashMap<PathBuf, Vec<Vec3>>, unit: Option<LengthUnit>) 
         let loaded = load_file(&path, &scales, unit);
         (path, loaded)
     };
-    let count = thread::available_parallelism().map_or(1, usize::from).min(jobs.len());
-    let jobs = Mutex::new(jobs.into_iter());
-    let next = || jobs.lock().unwrap_or_else(PoisonError::into_inner).next();
-    thread::scope(|scope| {
-        // Threads take the next file when they have finished one: files differ in size.
-        let work = || std::iter::from_fn(next).map(load).collect::<Vec<_>>();
-        let workers: Vec<_> = (0..count).map(|_| scope.spawn(work)).collect();
-        let finish =
-            |w: thread::ScopedJoinHandle<'_, Vec<_>>| w.join().unwrap_or_else(|e| std::panic::resume_unwind(e));
-        workers.into_iter().flat_map(finish).collect()
-    })
+    jobs.into_par_iter().with_max_len(1).map(load).collect()
 }
 
 fn load_file(path: &Path, scales: &[Vec3], unit: Option<LengthUnit>) -> Loaded {
