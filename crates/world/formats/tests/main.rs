@@ -7,6 +7,7 @@ mod data;
 mod dh_of_models;
 mod hostile;
 mod kr125;
+mod loading;
 mod meshes;
 mod messages;
 mod model_robots;
