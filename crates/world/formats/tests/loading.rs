@@ -14,7 +14,7 @@ use rayon::prelude::*;
 #[test]
 fn robots_are_loaded_by_every_task_of_the_pool() {
     let dir = tempfile::tempdir().unwrap();
-    let mut links = String::new();
+    let mut links = Vec::new();
     for i in 0..4 {
         // So fine that its tree is built by several tasks.
         let (vertices, triangles) = tessellate(&Shape::Sphere(Sphere { radius: 0.1 }), 1e-6);
@@ -22,16 +22,15 @@ fn robots_are_loaded_by_every_task_of_the_pool() {
         let mut bytes = Vec::new();
         stl::write_binary(&mut bytes, &[mesh]).unwrap();
         std::fs::write(dir.path().join(format!("{i}.stl")), bytes).unwrap();
-        links += &format!(
-            "<link name=\"l{i}\"><collision><geometry><mesh filename=\"{i}.stl\"/></geometry></collision></link>"
-        );
+        let mesh = format!("<mesh filename=\"{i}.stl\"/>");
+        links.push(format!("<link name=\"l{i}\"><collision><geometry>{mesh}</geometry></collision></link>"));
     }
     let joint = |i: usize| {
         format!("<joint name=\"j{i}\" type=\"fixed\"><parent link=\"l{}\"/><child link=\"l{i}\"/></joint>", i - 1)
     };
     let joints: String = (1..4).map(joint).collect();
     let urdf = dir.path().join("balls.urdf");
-    std::fs::write(&urdf, format!("<robot name=\"balls\">{links}{joints}</robot>")).unwrap();
+    std::fs::write(&urdf, format!("<robot name=\"balls\">{}{joints}</robot>", links.concat())).unwrap();
     let (done, waits) = mpsc::channel();
     std::thread::spawn(move || {
         let load = |_| robot::load(&urdf, &LoadOptions::default()).unwrap().robot.colliders.len();
