@@ -137,7 +137,9 @@ fn mesh(m: &TriMesh, p: Vec3) -> PointProjection {
     let normal = (b - a).cross(c - a).try_normalize().unwrap_or(Vec3::Z);
     let normal = if m.report().inside_out { -normal } else { normal };
     let distance = (p - on_surface).length();
-    let away = (p - on_surface).try_normalize();
+    // The direction of a distance made of rounding is not one.
+    let rounding = 16.0 * f64::EPSILON * (p.abs().max_element() + m.aabb().extent().max_element());
+    let away = if distance > rounding { (p - on_surface).try_normalize() } else { None };
     if m.contains(p) {
         return PointProjection { signed_distance: -distance, on_surface, outward: away.map_or(normal, |v| -v) };
     }

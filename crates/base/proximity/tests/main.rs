@@ -7,6 +7,7 @@ mod contact;
 mod continuous_witness;
 mod degenerate;
 mod golden;
+mod local_minima;
 mod mesh_groups;
 mod mesh_pairs;
 mod motion_culling;

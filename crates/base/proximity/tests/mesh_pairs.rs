@@ -10,7 +10,7 @@ use elbowroom_testkit::random::Random;
 use fearless_simd::Level as SimdLevel;
 
 /// Random meshes and rotations, the same on every machine: by integer arithmetic, without library functions.
-trait RandomMeshes {
+pub trait RandomMeshes {
     fn vector(&mut self) -> Vec3;
 
     fn rotation(&mut self) -> Rotation;

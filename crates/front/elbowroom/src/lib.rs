@@ -166,6 +166,7 @@ pub use elbowroom_robot as robot;
 #[cfg(feature = "live")]
 pub use elbowroom_ros2 as ros2;
 pub use elbowroom_scene as scene;
+pub use elbowroom_shared_control as shared_control;
 pub use elbowroom_sim as sim;
 pub use elbowroom_spatial as spatial;
 #[cfg(feature = "live")]

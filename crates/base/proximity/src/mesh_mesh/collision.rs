@@ -5,9 +5,9 @@ use elbowroom_spatial::Pose;
 use super::containment::contained_point;
 use super::cutoff::Cutoff;
 use super::leaf_kernel::{LeafPair, touching_pairs};
+use super::leaf_pairs::visit_leaf_pairs;
 use super::mesh_features::MeshFeatures;
 use super::mesh_pair::MeshPair;
-use super::node_kernel::{INTERSECTION, expand};
 use super::node_pair::NodePair;
 use super::relative_placement::{RelativePlacement, spheres_farther_than};
 use super::triangle_batch::{TriangleBatch, corners_in_a, robust_closest_points};
@@ -124,18 +124,9 @@ impl CollisionTraversal<'_> {
         let cutoff = Cutoff::new(meshes.placement.f64_error, meshes.placement);
         let Workspace { stack, batch, stats, .. } = workspace;
         batch.clear();
-        stack.clear();
-        stack.push(NodePair::root(&meshes.a.bvh, &meshes.b.bvh));
-        while let Some(pair) = stack.pop() {
-            if pair.is_leaves() {
-                stats.leaves += 1;
-                if self.visit_leaves(&pair, &cutoff, batch, stats) {
-                    return true;
-                }
-            } else {
-                stats.nodes += 1;
-                stats.boxes += expand::<INTERSECTION>(meshes, &pair, &cutoff, stack);
-            }
+        let visit = |pair: &NodePair, stats: &mut QueryStats| self.visit_leaves(pair, &cutoff, batch, stats);
+        if visit_leaf_pairs(meshes, &cutoff, stack, stats, |_| true, visit) {
+            return true;
         }
         self.measure(batch, stats)
     }

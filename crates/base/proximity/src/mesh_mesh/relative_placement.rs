@@ -65,6 +65,14 @@ impl RelativePlacement {
         self.f64_error.is_finite() && self.f32_error < F32_ERROR * 1e15
     }
 
+    /// Rotates a unit vector from A's axes to B's axes.
+    #[inline]
+    pub fn direction_to_b(&self, d: Vec3) -> Vec3 {
+        let [x, y, z] = &self.exact;
+        let along = |k: usize| (x[k] * d.x + y[k] * d.y + z[k] * d.z) * (self.frame_a.unit * self.frame_b.inverse);
+        Vec3::new(along(0), along(1), along(2))
+    }
+
     /// Maps a point from B's unit frame to A's unit frame.
     #[inline]
     pub fn map_to_a(&self, p: Vec3) -> Vec3 {

@@ -1,0 +1,38 @@
+//! Traversal of two trees down to the pairs of leaves that may be within a cutoff.
+
+use super::cutoff::Cutoff;
+use super::mesh_pair::MeshPair;
+use super::node_kernel::{INTERSECTION, expand};
+use super::node_pair::{NodePair, NodePairStack};
+use super::workspace::QueryStats;
+
+/// Calls `visit` with each pair of leaves that may be within the cutoff until it returns true, and returns whether it did.
+///
+/// `keep` returns false for pairs of nodes and leaves that need no visit.
+#[inline(always)]
+pub(super) fn visit_leaf_pairs(
+    meshes: &MeshPair,
+    cutoff: &Cutoff,
+    stack: &mut NodePairStack,
+    stats: &mut QueryStats,
+    keep: impl Fn(&NodePair) -> bool,
+    mut visit: impl FnMut(&NodePair, &mut QueryStats) -> bool,
+) -> bool {
+    stack.clear();
+    stack.push(NodePair::root(&meshes.a.bvh, &meshes.b.bvh));
+    while let Some(pair) = stack.pop() {
+        if !keep(&pair) {
+            continue;
+        }
+        if pair.is_leaves() {
+            stats.leaves += 1;
+            if visit(&pair, stats) {
+                return true;
+            }
+        } else {
+            stats.nodes += 1;
+            stats.boxes += expand::<INTERSECTION>(meshes, &pair, cutoff, stack);
+        }
+    }
+    false
+}

@@ -1,0 +1,45 @@
+//! A surface that a tool must not enter.
+
+use std::sync::Arc;
+
+use elbowroom_proximity::TriMesh;
+use elbowroom_proximity::advanced::NormalConeHierarchy;
+use elbowroom_spatial::Pose;
+
+use crate::NavigatorError;
+
+/// The closed surface of a solid, placed in the world.
+#[derive(Debug, Clone)]
+pub struct ProtectedSurface {
+    pub(crate) surface: NormalConeHierarchy,
+    pub(crate) in_world: Pose,
+}
+
+impl ProtectedSurface {
+    /// Places a mesh.
+    ///
+    /// # Errors
+    /// A mesh that is open, inside out or not oriented, or a pose that is not finite.
+    pub fn new(mesh: Arc<TriMesh>, in_world: Pose) -> Result<Self, NavigatorError> {
+        check_solid(&mesh)?;
+        let surface = NormalConeHierarchy::new(mesh);
+        if !surface.is_solid() {
+            return Err(NavigatorError::Unoriented);
+        }
+        if !in_world.is_finite() {
+            return Err(NavigatorError::PoseNotFinite("a protected surface"));
+        }
+        Ok(Self { surface, in_world })
+    }
+}
+
+/// Refuses a mesh that bounds no solid.
+pub(crate) fn check_solid(mesh: &TriMesh) -> Result<(), NavigatorError> {
+    if !mesh.report().closed {
+        return Err(NavigatorError::Open);
+    }
+    if mesh.report().inside_out {
+        return Err(NavigatorError::InsideOut);
+    }
+    Ok(())
+}

@@ -1,0 +1,234 @@
+//! The navigator: one step of a tool towards a desired pose, around protected surfaces.
+
+use std::sync::Arc;
+
+use elbowroom_proximity::advanced::{LocalMinimum, NormalConeHierarchy, for_each_local_minimum, mesh_separation_with};
+use elbowroom_proximity::{DistanceSettings, Separation, TriMesh, WarmStart, Workspace};
+use elbowroom_spatial::{Pose, Rotation, Vec3};
+
+use crate::constraint_set::ConstraintSet;
+use crate::navigation_step::{Limit, NavigationStep};
+use crate::{LinearConstraint, NavigatorError, NavigatorSettings, ProtectedSurface, project_onto_constraints};
+
+/// Most distance queries per step and surface in the proof of a step that is longer than the gap.
+const PROOF_STEPS: usize = 32;
+/// Distance below which the line between two nearest points has no usable direction, metres.
+const TOUCHING_M: f64 = 1e-9;
+
+/// Moves a tool towards a desired pose, step by step, around surfaces that it never enters.
+///
+/// The tool is a mesh in the frame of the tool point. Steps never allocate, and equal input gives equal bits.
+#[derive(Debug)]
+pub struct SurfaceNavigator {
+    tool: NormalConeHierarchy,
+    /// Largest distance of a point of the tool from the tool point, metres.
+    tool_reach_m: f64,
+    surfaces: Vec<ProtectedSurface>,
+    settings: NavigatorSettings,
+    tool_in_world: Pose,
+    velocity: Vec3,
+    /// The velocities that the surfaces nearby admit, and the displacements.
+    velocities: ConstraintSet,
+    displacements: ConstraintSet,
+    workspace: Box<Workspace>,
+}
+
+impl SurfaceNavigator {
+    /// Places the tool, at rest.
+    ///
+    /// # Errors
+    /// A setting that is not usable, a pose that is not finite, or a start that is nearer to a surface than the least
+    /// gap.
+    pub fn new(
+        tool: Arc<TriMesh>,
+        surfaces: Vec<ProtectedSurface>,
+        tool_in_world: Pose,
+        settings: NavigatorSettings,
+    ) -> Result<Self, NavigatorError> {
+        settings.check()?;
+        if !tool_in_world.is_finite() {
+            return Err(NavigatorError::PoseNotFinite("the tool"));
+        }
+        let tool_reach_m = tool.vertices().iter().map(|v| v.length()).fold(0.0, f64::max);
+        let mut navigator = Self {
+            tool: NormalConeHierarchy::new(tool),
+            tool_reach_m,
+            surfaces,
+            settings,
+            tool_in_world,
+            velocity: Vec3::ZERO,
+            velocities: ConstraintSet::EMPTY,
+            displacements: ConstraintSet::EMPTY,
+            workspace: Box::new(Workspace::new()),
+        };
+        let gap_m = navigator.least_distance(tool_in_world, 2.0 * settings.least_gap_m);
+        if gap_m < settings.least_gap_m {
+            return Err(NavigatorError::TooNear { gap_m, least_gap_m: settings.least_gap_m });
+        }
+        Ok(navigator)
+    }
+
+    /// Pose of the tool in the world.
+    pub fn tool_in_world(&self) -> Pose {
+        self.tool_in_world
+    }
+
+    /// Moves the tool for `dt_s` seconds towards the desired pose.
+    ///
+    /// The tool point takes the admissible velocity nearest to the desired one. The orientation follows as far as the
+    /// gap proves that turning is free. After input that is not usable the tool stands, and the result says why.
+    pub fn step(&mut self, desired: &Pose, dt_s: f64) -> NavigationStep {
+        if !desired.is_finite() {
+            return self.stand(Limit::PoseNotFinite);
+        }
+        if !(dt_s > 0.0 && dt_s <= self.settings.longest_step_s) {
+            return self.stand(Limit::StepDuration);
+        }
+        let Some(gap_m) = self.collect_constraints(dt_s) else {
+            return self.stand(Limit::DistanceUnknown);
+        };
+        let wanted = self.wanted_velocity(desired, dt_s);
+        let (velocity, active_rows) = project(wanted, &mut self.velocities);
+        let travel = velocity * dt_s;
+        let slack_m = (gap_m - self.settings.least_gap_m).max(0.0);
+        let proven = if travel.length() <= slack_m { 1.0 } else { self.proven_share(travel) };
+        self.velocity = velocity * proven;
+        self.tool_in_world.translation += travel * proven;
+        let left_m = if proven < 1.0 { 0.0 } else { (slack_m - travel.length()).max(0.0) };
+        let turned_m = self.turn_towards(desired, dt_s, left_m);
+        let limit = if proven < 1.0 { Some(Limit::Proof) } else { (active_rows > 0).then_some(Limit::Surface) };
+        let gap_m = (gap_m - travel.length() - turned_m).max(self.settings.least_gap_m);
+        NavigationStep { tool_in_world: self.tool_in_world, velocity: self.velocity, gap_m, active_rows, limit }
+    }
+
+    fn stand(&mut self, limit: Limit) -> NavigationStep {
+        self.velocity = Vec3::ZERO;
+        NavigationStep {
+            tool_in_world: self.tool_in_world,
+            velocity: Vec3::ZERO,
+            gap_m: self.settings.least_gap_m,
+            active_rows: 0,
+            limit: Some(limit),
+        }
+    }
+
+    /// The velocity with which the tool point would follow if it could: towards the admissible point nearest to the
+    /// desired one, within the limits of speed and acceleration, and slow enough to stop there.
+    ///
+    /// The desired point is projected before the speed is limited, so that a hand deep inside a solid does not slow the
+    /// tool down along its surface.
+    fn wanted_velocity(&mut self, desired: &Pose, dt_s: f64) -> Vec3 {
+        let way = desired.translation - self.tool_in_world.translation;
+        let (way, _) = project(way, &mut self.displacements);
+        let s = &self.settings;
+        let distance = way.length();
+        let speed = (distance / dt_s).min(s.speed_m_s).min((2.0 * s.acceleration_m_s2 * distance).sqrt());
+        let wanted = if distance > 0.0 { way * (speed / distance) } else { Vec3::ZERO };
+        let change = wanted - self.velocity;
+        let largest = s.acceleration_m_s2 * dt_s;
+        if change.length() > largest { self.velocity + change * (largest / change.length()) } else { wanted }
+    }
+
+    /// Collects a constraint for every local minimum of the distance in the range that limits the speed of this step.
+    /// Returns a lower bound of the distance; `None` if it is unknown.
+    fn collect_constraints(&mut self, dt_s: f64) -> Option<f64> {
+        let Self { tool, surfaces, settings, tool_in_world, velocities, displacements, workspace, .. } = self;
+        velocities.clear();
+        displacements.clear();
+        let speed_m_s = settings.speed_m_s.min(self.velocity.length() + settings.acceleration_m_s2 * dt_s);
+        let range_m = settings.influence_m(speed_m_s, dt_s);
+        let mut gap_m = range_m;
+        for protected in surfaces {
+            let (surface, in_world) = (&protected.surface, &protected.in_world);
+            let add = |near: LocalMinimum| {
+                let distance_m = near.separation.distance;
+                gap_m = gap_m.min(near.separation.lower_bound);
+                let normal = away_from_surface(&near, surface, in_world);
+                velocities.push(LinearConstraint { normal, least: -settings.approach_speed(distance_m, dt_s) });
+                displacements.push(LinearConstraint { normal, least: settings.gap_m - distance_m });
+            };
+            if !for_each_local_minimum(tool, tool_in_world, surface, in_world, range_m, workspace, add) {
+                return None;
+            }
+        }
+        Some(gap_m)
+    }
+
+    /// The share of the travel along which the distance is proven to stay above the least gap: from each point the tool
+    /// goes on by what is left of the distance there.
+    fn proven_share(&mut self, travel: Vec3) -> f64 {
+        let length = travel.length();
+        let mut at = self.tool_in_world;
+        let mut gone = 0.0;
+        for _ in 0..PROOF_STEPS {
+            let left = length - gone;
+            let slack = self.least_distance(at, left + self.settings.least_gap_m) - self.settings.least_gap_m;
+            if slack >= left {
+                return 1.0;
+            }
+            if slack <= 1e-6 * self.settings.least_gap_m {
+                break;
+            }
+            gone += slack;
+            at.translation = self.tool_in_world.translation + travel * (gone / length);
+        }
+        gone / length
+    }
+
+    /// A lower bound of the distance between the tool at this pose and the surfaces, at most `limit_m`; 0 inside.
+    fn least_distance(&mut self, tool_in_world: Pose, limit_m: f64) -> f64 {
+        let mut least = limit_m;
+        for protected in &self.surfaces {
+            let settings = DistanceSettings { limit: least, warm_start: None::<&mut WarmStart>, ..Default::default() };
+            let found: Option<Separation> = mesh_separation_with(
+                self.tool.mesh(),
+                &tool_in_world,
+                protected.surface.mesh(),
+                &protected.in_world,
+                settings,
+                &mut self.workspace,
+            );
+            least = found.map_or(least, |s| s.lower_bound.min(least));
+        }
+        least
+    }
+
+    /// Turns the tool about its point as far as the slack proves, and returns by how much a point of it moved at most.
+    fn turn_towards(&mut self, desired: &Pose, dt_s: f64, slack_m: f64) -> f64 {
+        let way = (desired.rotation * self.tool_in_world.rotation.inverse()).to_rotation_vector();
+        let angle = way.length();
+        let provable = if self.tool_reach_m > 0.0 { slack_m / self.tool_reach_m } else { f64::INFINITY };
+        let turned = angle.min(self.settings.turn_rad_s * dt_s).min(provable);
+        if !(turned > 0.0) {
+            return 0.0;
+        }
+        let turn = Rotation::from_rotation_vector(way * (turned / angle));
+        self.tool_in_world.rotation = (turn * self.tool_in_world.rotation).renormalized();
+        turned * self.tool_reach_m
+    }
+}
+
+/// The admissible vector nearest to the wanted one, and the number of constraints that decide it.
+fn project(wanted: Vec3, constraints: &mut ConstraintSet) -> (Vec3, usize) {
+    project_onto_constraints(wanted, constraints.as_slice())
+        .or_else(|_| {
+            // Two walls that both ask for more distance: neither gets it.
+            constraints.allow_rest();
+            project_onto_constraints(wanted, constraints.as_slice())
+        })
+        .unwrap_or((Vec3::ZERO, constraints.as_slice().len()))
+}
+
+/// The unit vector along which the distance grows.
+fn away_from_surface(near: &LocalMinimum, surface: &NormalConeHierarchy, surface_in_world: &Pose) -> Vec3 {
+    let apart = near.separation.on_a - near.separation.on_b;
+    if near.separation.distance > TOUCHING_M
+        && let Some(direction) = apart.try_normalize()
+    {
+        return direction;
+    }
+    let mesh = surface.mesh();
+    let [a, b, c] = mesh.triangles()[near.triangle_b as usize].map(|v| mesh.vertices()[v as usize]);
+    let normal = (b - a).cross(c - a).try_normalize().unwrap_or(Vec3::Z);
+    surface_in_world.transform_vector(normal)
+}

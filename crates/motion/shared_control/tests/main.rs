@@ -1,0 +1,8 @@
+//! Integration tests of `elbowroom-shared_control` in one program: a module per subject, whose first line says what belongs there.
+
+mod common;
+mod constraint_projection;
+mod refusals;
+mod shields;
+mod smoothness;
+mod surface_navigation;

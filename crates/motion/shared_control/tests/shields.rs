@@ -1,0 +1,167 @@
+//! Shields: closed, outside of what they protect, open along their target; compared with the formula.
+
+use std::sync::Arc;
+
+use elbowroom_proximity::advanced::{MeshFeatures, for_each_contact};
+use elbowroom_proximity::{Shape, TriMesh, Workspace, project_point};
+use elbowroom_shared_control::{
+    NavigatorSettings, ProtectedSurface, Shield, ShieldError, ShieldSettings, ShieldTarget, SurfaceNavigator,
+    generate_shield,
+};
+use elbowroom_spatial::{Pose, Vec3};
+use elbowroom_testkit::random::SplitMix;
+
+use crate::common::{ball, block, point, relief};
+
+const SETTINGS: ShieldSettings =
+    ShieldSettings { offset_m: 0.004, width_m: 0.012, depth_m: 0.005, flare_rad: 0.3, tolerance_m: 0.003 };
+
+/// Distances from the solid moved outwards and from the opening, negative inside. By the formula, foot by foot.
+fn formula(solid: &Shape, shield: &Shield, s: &ShieldSettings, p: Vec3) -> (f64, f64) {
+    let around = project_point(solid, &Pose::IDENTITY, p).signed_distance - s.offset_m;
+    let opening = |(foot, axis): &(Vec3, Vec3)| {
+        let z = axis.dot(p - *foot);
+        let across = (p - *foot - *axis * z).length();
+        let wall = s.flare_rad.cos() * (across - 0.5 * s.width_m) - s.flare_rad.sin() * (z + s.depth_m);
+        wall.max(-(z + s.depth_m)).max(z - 2.0 * s.offset_m - 4.0 * s.tolerance_m)
+    };
+    (around, shield.passage.iter().map(opening).fold(f64::INFINITY, f64::min))
+}
+
+/// A point of the surface, by a ray from far away towards a point near the middle.
+fn on_surface(mesh: &Arc<TriMesh>, random: &mut SplitMix) -> Vec3 {
+    let far = point(random, 1.0) * 0.3;
+    project_point(&Shape::Mesh(mesh.clone()), &Pose::IDENTITY, far).on_surface
+}
+
+fn random_target(mesh: &Arc<TriMesh>, random: &mut SplitMix) -> ShieldTarget {
+    let at = on_surface(mesh, random);
+    match random.below(3) {
+        0 => ShieldTarget::FacesWithin { at, radius_m: 0.01 },
+        1 => ShieldTarget::Drill {
+            at,
+            axis: -project_point(&Shape::Mesh(mesh.clone()), &Pose::IDENTITY, at * 1.001).outward,
+        },
+        _ => {
+            let near = project_point(&Shape::Mesh(mesh.clone()), &Pose::IDENTITY, at + point(random, 0.02));
+            ShieldTarget::Line(vec![at, near.on_surface])
+        }
+    }
+}
+
+#[test]
+fn shields_protect_everything_but_the_opening() {
+    let mut random = SplitMix(12);
+    let solids = [ball(0.05, 10), block(Vec3::new(0.1, 0.06, 0.04)), relief(16)];
+    let (mut bare, mut protected, mut opened) = (0, 0, 0);
+    for (case, solid) in solids.iter().cycle().take(12).enumerate() {
+        let target = random_target(solid, &mut random);
+        let settings = if case >= 6 { ShieldSettings { flare_rad: 0.0, depth_m: 0.0, ..SETTINGS } } else { SETTINGS };
+        let shield = match generate_shield(solid, &target, &settings) {
+            Ok(shield) => shield,
+            Err(ShieldError::LeavesSurface { .. }) => continue,
+            Err(error) => panic!("{target:?}: {error}"),
+        };
+        let report = shield.mesh.report();
+        assert!(report.closed && !report.inside_out && report.degenerate == 0, "{case}: {report:?}");
+        assert!(ProtectedSurface::new(shield.mesh.clone(), Pose::IDENTITY).is_ok());
+        let shape = Shape::Mesh(solid.clone());
+        let bounds = *shield.mesh.aabb();
+        for k in 0..3000 {
+            let p = if k % 2 == 0 {
+                bounds.min + Vec3::from(random.within(0.5)).scale(bounds.extent()) + bounds.extent() * 0.5
+            } else {
+                let (foot, axis) = shield.passage[random.below(shield.passage.len())];
+                foot + axis * random.between(-0.01, 0.02) + point(&mut random, 0.01)
+            };
+            let (solid, opening) = formula(&shape, &shield, &settings, p);
+            if solid <= 0.0 && opening > settings.tolerance_m {
+                protected += 1;
+                assert!(shield.mesh.contains(p), "{case}: {p:?} is bare: {solid} {opening}");
+            } else if solid > settings.tolerance_m || opening < -settings.tolerance_m {
+                bare += 1;
+                opened += k % 2;
+                assert!(!shield.mesh.contains(p), "{case}: {p:?} is blocked: {solid} {opening}");
+            }
+        }
+    }
+    assert!(protected > 5000 && bare > 5000 && opened > 2000, "{protected} protected, {bare} bare, {opened} opened");
+}
+
+#[test]
+fn no_triangle_of_a_shield_crosses_another() {
+    let target = ShieldTarget::Line(vec![Vec3::new(0.02, 0.0, 0.0458), Vec3::new(-0.02, 0.01, 0.0447)]);
+    let solid = ball(0.05, 12);
+    let shield = generate_shield(&solid, &target, &SETTINGS).unwrap().mesh;
+    let here = &Pose::IDENTITY;
+    let mut neighbours = 0;
+    for_each_contact(&shield, here, &shield, here, &mut Workspace::new(), |pair| {
+        let MeshFeatures::Triangles(i, j) = pair else { panic!("{pair:?}") };
+        let (s, t) = (shield.triangles()[i as usize], shield.triangles()[j as usize]);
+        assert!(s.iter().any(|v| t.contains(v)), "{s:?} meets {t:?}");
+        neighbours += 1;
+    });
+    assert!(neighbours > 10 * shield.triangles().len(), "{neighbours}");
+}
+
+#[test]
+fn a_tool_reaches_the_ground_of_a_drilled_opening_and_nothing_beside_it() {
+    let solid = block(Vec3::new(0.1, 0.1, 0.05));
+    let top = Vec3::Z * 0.025;
+    let settings = ShieldSettings { flare_rad: 0.0, tolerance_m: 0.001, ..SETTINGS };
+    let target = ShieldTarget::Drill { at: top, axis: -Vec3::Z };
+    let shield = generate_shield(&solid, &target, &settings).unwrap();
+    let surface = ProtectedSurface::new(shield.mesh, Pose::IDENTITY).unwrap();
+    let drill = block(Vec3::new(0.004, 0.004, 0.02));
+    let start = Pose::from_translation(Vec3::new(0.03, 0.0, 0.06));
+    let mut navigator = SurfaceNavigator::new(drill, vec![surface], start, NavigatorSettings::default()).unwrap();
+    // First beside the opening, pushed into the solid, then over the opening and down.
+    let mut tip = |x: f64| {
+        for _ in 0..2000 {
+            navigator.step(&Pose::from_translation(Vec3::new(x, 0.0, 0.0)), 1e-3);
+        }
+        navigator.tool_in_world().translation.z - 0.01
+    };
+    let beside = tip(0.03);
+    assert!(beside > 0.025 + settings.offset_m && beside < 0.025 + settings.offset_m + 0.002, "{beside}");
+    let inside = tip(0.0);
+    assert!(inside < 0.025 - settings.depth_m + 0.002 && inside > 0.025 - settings.depth_m - 0.001, "{inside}");
+}
+
+#[test]
+fn targets_off_the_surface_are_refused_with_the_place() {
+    let solid = ball(0.05, 12);
+    let refuse = |target: ShieldTarget| generate_shield(&solid, &target, &SETTINGS).unwrap_err();
+    let above = Vec3::Z * 0.0562;
+    let error = refuse(ShieldTarget::Line(vec![Vec3::X * 0.05, above]));
+    assert!(matches!(error, ShieldError::OffSurface { number: 2, .. }), "{error}");
+    assert!(error.to_string().contains("6.200 mm off the surface; at most 3.000 mm"), "{error}");
+    assert_eq!(refuse(ShieldTarget::Line(vec![Vec3::X * 0.05])), ShieldError::TooFewPoints { needed: 2 });
+    // From one side of the ball to the other, through its middle.
+    let through = ShieldTarget::Line(vec![Vec3::X * 0.05, Vec3::X * -0.05]);
+    assert!(matches!(refuse(through), ShieldError::LeavesSurface { number: 1, .. }));
+    let fine = ShieldSettings { tolerance_m: 1e-5, ..SETTINGS };
+    let error =
+        generate_shield(&solid, &ShieldTarget::Drill { at: Vec3::Z * 0.05, axis: -Vec3::Z }, &fine).unwrap_err();
+    assert!(matches!(error, ShieldError::TooFine { .. }), "{error}");
+    let bad = ShieldSettings { width_m: f64::NAN, ..SETTINGS };
+    assert!(generate_shield(&solid, &ShieldTarget::Drill { at: Vec3::Z * 0.05, axis: -Vec3::Z }, &bad).is_err());
+    let open = TriMesh::new(solid.vertices().to_vec(), solid.triangles()[2..].to_vec()).unwrap();
+    let drill = ShieldTarget::Drill { at: Vec3::Z * 0.05, axis: -Vec3::Z };
+    assert!(generate_shield(&Arc::new(open), &drill, &SETTINGS).unwrap_err().to_string().contains("is open"));
+}
+
+#[test]
+fn an_area_is_open_inside_its_border_and_closed_outside() {
+    let solid = block(Vec3::new(0.1, 0.1, 0.05));
+    let corner = |x: f64, y: f64| Vec3::new(x, y, 0.025);
+    let border = vec![corner(-0.02, -0.02), corner(0.02, -0.02), corner(0.02, 0.02), corner(-0.02, 0.02)];
+    let settings = ShieldSettings { width_m: 0.006, flare_rad: 0.0, tolerance_m: 0.002, ..SETTINGS };
+    let shield = generate_shield(&solid, &ShieldTarget::Area(border), &settings).unwrap().mesh;
+    for (x, y) in [(0.0, 0.0), (0.015, -0.015), (-0.02, 0.02), (0.0, 0.021)] {
+        assert!(!shield.contains(corner(x, y)), "({x}, {y}) is to be open");
+    }
+    for (x, y) in [(0.03, 0.0), (0.0, -0.028), (0.04, 0.04)] {
+        assert!(shield.contains(corner(x, y)), "({x}, {y}) is to be protected");
+    }
+}
