@@ -6,7 +6,7 @@ use std::path::Path;
 use xtask::shell;
 
 /// Links to the guide of each verb.
-const GUIDES: [(&str, &str); 17] = [
+const GUIDES: [(&str, &str); 18] = [
     ("run", "[cell file](cell-file.md#how-a-run-proceeds)"),
     ("check", "[laws](laws.md#2-what-the-warning-law-does-to-a-robot)"),
     ("query", "[queries](query.md)"),
@@ -15,6 +15,7 @@ const GUIDES: [(&str, &str); 17] = [
     ("map", "[map](map.md)"),
     ("plan", "[planning](plan.md)"),
     ("rules", "[avoidance](avoidance.md#the-rules)"),
+    ("fixture", "[virtual fixtures](fixtures.md)"),
     ("teach", "[quickstart](quickstart.md#5-teach-a-region)"),
     ("watch", "[vision](vision.md#from-the-command-line)"),
     ("region", "[roles](roles.md)"),

@@ -12,7 +12,7 @@ use elbowroom_spatial::Pose;
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 
 use crate::seal::Seal;
-use crate::{CellSensor, CellTool, Encoder, MovingObject, Payload, PoseTrack, Program};
+use crate::{CellFixture, CellSensor, CellTool, Encoder, MovingObject, Payload, PoseTrack, Program};
 
 /// A tool centre point within this distance (m) of a collider counts as on its surface, such as a flange frame on the
 /// flange's face.
@@ -45,12 +45,21 @@ pub struct Cell {
     pub sensors: Vec<CellSensor>,
     /// Rules of pairs. [`Self::robots`] are as in their models.
     pub pair_rules: CellPairRules,
+    /// Virtual fixtures, in file order.
+    pub fixtures: Vec<CellFixture>,
+    /// What identifies the configuration, and who approved it.
+    pub approval: Approval,
+    /// Non-fatal warnings about the file.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// What identifies a configuration, and who approved it.
+#[derive(Debug, Clone, Default)]
+pub struct Approval {
     /// SHA-256 of the monitors' configurations, hex.
     pub checksum: String,
     /// The last seal; `None` if the cell is not sealed.
     pub seal: Option<Seal>,
-    /// Non-fatal warnings about the file.
-    pub warnings: Vec<Diagnostic>,
 }
 
 /// Control tick, and longest run.

@@ -34,6 +34,8 @@ mod cell;
 mod cell_ik_error;
 pub mod configure;
 mod file;
+mod fixture;
+mod fixture_shield;
 mod frames;
 mod gripped_objects;
 mod joint_contacts;
@@ -59,12 +61,13 @@ mod tool_change;
 pub mod trajectory;
 
 pub use cell::{
-    AvoidanceSpec, Cell, CellLaws, CellPairRules, CellRegion, CellRobot, CellTiming, Follow, FrameSources, MapSpec,
-    Units,
+    Approval, AvoidanceSpec, Cell, CellLaws, CellPairRules, CellRegion, CellRobot, CellTiming, Follow, FrameSources,
+    MapSpec, Units,
 };
 pub use cell_ik_error::CellIkError;
 pub use elbowroom_access as access;
 pub use file::{CellFile, QUATERNION_TOLERANCE, key_reference};
+pub use fixture::{CellFixture, FixtureTool};
 pub use frames::Frames;
 pub use model_limits::model_limits;
 pub use moving_object::{Drive, Encoder, MovingObject, ObjectMotion, ObjectPath, PathRepeat, Travel};

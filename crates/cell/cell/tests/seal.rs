@@ -74,7 +74,7 @@ fn whatever_changes_the_checksum_breaks_the_seal() {
             assert!(e.message.contains("is not as it was sealed"), "{e}");
             assert!(!history(&file).unwrap().unsealed.is_empty());
         } else {
-            assert_eq!(cell.checksum, checksum, "not detected:\n{mutated}");
+            assert_eq!(cell.approval.checksum, checksum, "not detected:\n{mutated}");
             free += 1;
         }
         tried += 1;

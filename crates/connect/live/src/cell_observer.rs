@@ -160,7 +160,7 @@ fn together(cell: &Cell, clock: Clock, shared: &Shared) -> CellStatus {
     CellStatus {
         t_s: clock.seconds(),
         cell: cell.name.clone(),
-        checksum: cell.checksum.clone(),
+        checksum: cell.approval.checksum.clone(),
         robots: heard.robots.iter().zip(&cell.robots).map(robot).collect(),
         objects: Vec::new(),
         slots,

@@ -121,7 +121,7 @@ impl Setup {
         Self {
             carried,
             builder: node.region_builder(RobotId(0), versions.clone()),
-            present: cell.checksum.chars().take(16).collect(),
+            present: cell.approval.checksum.chars().take(16).collect(),
             built: 0,
             versions,
             node,
@@ -248,7 +248,7 @@ fn hear_regions(s: &mut Setup, n: u64, now: Micros) {
         _ => vec![edit("gate", None)],
     };
     let cell = s.versions.cell(&edits).expect("a cell");
-    let present = cell.checksum.chars().take(16).collect();
+    let present = cell.approval.checksum.chars().take(16).collect();
     let of_cell = RegionTable::initial(&cell);
     let mut table =
         RegionTable { revision: (1, n), edits, present, active: of_cell.active, ..RegionTable::initial(&s.cell) };

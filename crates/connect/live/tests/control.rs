@@ -279,7 +279,10 @@ fn every_change_is_in_the_log_and_follows_the_one_before() {
     assert_eq!(said(1), "3 integrator switch region.cart region.cart active true false");
     assert_eq!((entries[0].note.as_deref(), entries[0].name.as_str()), (Some("cart arrives"), "programmer"));
     for entry in &entries {
-        assert_eq!((&entry.checksum_before, &entry.checksum), (&setup.cell.checksum, &setup.cell.checksum));
+        assert_eq!(
+            (&entry.checksum_before, &entry.checksum),
+            (&setup.cell.approval.checksum, &setup.cell.approval.checksum)
+        );
     }
     assert_eq!(done["entry"], serde_json::to_value(&entries[1]).unwrap());
     let written = std::fs::read_to_string(setup.log()).unwrap();

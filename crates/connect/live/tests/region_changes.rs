@@ -111,7 +111,7 @@ fn a_region_is_added_moved_and_removed_and_the_robot_obeys_at_once() {
     assert!(done["stopped"].is_null(), "{done}");
     let entry = &done["entry"];
     assert_eq!((entry["action"].as_str(), entry["note"].as_str()), (Some("add region.table"), Some("set up")));
-    assert_eq!(entry["checksum_before"], setup.cell.checksum.as_str());
+    assert_eq!(entry["checksum_before"], setup.cell.approval.checksum.as_str());
     assert_ne!(entry["checksum"], entry["checksum_before"]);
     let shown = setup.regions();
     assert_eq!(shown["checksum"], entry["checksum"]);
@@ -129,7 +129,7 @@ fn a_region_is_added_moved_and_removed_and_the_robot_obeys_at_once() {
     setup.make("/remove", &json!({ "region": "table" }));
     eventually("free at the end", || controller.speed_override() == 1.0);
     assert_eq!(setup.region("table"), None);
-    assert_eq!(setup.regions()["checksum"], setup.cell.checksum.as_str(), "as it began");
+    assert_eq!(setup.regions()["checksum"], setup.cell.approval.checksum.as_str(), "as it began");
     // A temporary region of the file, switched off, is moved and switched on.
     setup.make("/move", &json!({ "region": "cart", "toml": "centre = [0, 0, 1000]" }));
     std::thread::sleep(Duration::from_millis(300));

@@ -89,7 +89,7 @@ impl Rig {
         node.await_regions();
         let builder = node.region_builder(RobotId(0), versions.clone());
         let client = ControllerClient::new(1, checksum);
-        let announced = cell.checksum.chars().take(16).collect();
+        let announced = cell.approval.checksum.chars().take(16).collect();
         Self { cell, versions, node, builder, client, now: Micros(1), revision: 0, announced }
     }
 
@@ -102,7 +102,7 @@ impl Rig {
     fn message(&mut self, edits: &[RegionEdit], is_due: bool) -> RegionTableMessage {
         let cell = self.versions.cell(edits).unwrap_or_else(|e| panic!("{e}"));
         self.revision += 1;
-        let present: String = cell.checksum.chars().take(16).collect();
+        let present: String = cell.approval.checksum.chars().take(16).collect();
         let before = std::mem::replace(&mut self.announced, present.clone());
         let former = if is_due { String::new() } else { before };
         let table = RegionTable {

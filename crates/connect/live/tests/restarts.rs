@@ -74,7 +74,7 @@ fn without_a_journal_that_can_be_trusted_all_regions_are_on() {
         None,
         Some(String::new()),
         Some(off.chars().take(off.len() / 2).collect()),
-        Some(off.replace(&setup.cell.checksum[..16], &"0".repeat(16))),
+        Some(off.replace(&setup.cell.approval.checksum[..16], &"0".repeat(16))),
         Some(off.replace("\"edits\":[]", "\"edits\":[{\"name\":\"table\",\"table\":\"shape = 3\"}]")),
     ];
     for (case, text) in wrong.into_iter().enumerate() {

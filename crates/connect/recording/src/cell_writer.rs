@@ -115,7 +115,7 @@ impl<W: Write + Seek> CellWriter<W> {
             ("version", env!("CARGO_PKG_VERSION").to_owned()),
             ("cell", cell.name.clone()),
             ("cell_file", file_name(&cell.file)),
-            ("checksum", cell.checksum.clone()),
+            ("checksum", cell.approval.checksum.clone()),
             ("tick_s", cell.timing.tick_s.to_string()),
             ("robots", robots.join("\n")),
         ];

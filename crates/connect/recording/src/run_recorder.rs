@@ -39,7 +39,11 @@ impl<W: Write + Seek> RunRecorder<W> {
             robots: (0..).map(TickWriter::new).take(cell.robots.len()).collect(),
             is_configured: vec![false; cell.robots.len()],
             tick: MonitorTick::default(),
-            status: CellStatus { cell: cell.name.clone(), checksum: cell.checksum.clone(), ..CellStatus::default() },
+            status: CellStatus {
+                cell: cell.name.clone(),
+                checksum: cell.approval.checksum.clone(),
+                ..CellStatus::default()
+            },
             next_status_s: 0.0,
             error: None,
         }

@@ -83,7 +83,7 @@ fn recordings_are_read_by_three_other_readers() {
         let samples: usize = recording.robots.iter().map(|r| r.samples.len()).sum();
         let before_the_first = if example == "exchange" { cell.robots.len() } else { 0 };
         assert_eq!(counts["/elbowroom/tick"], (samples + before_the_first) as u64);
-        assert_eq!(found["metadata"]["elbowroom"]["checksum"], cell.checksum);
+        assert_eq!(found["metadata"]["elbowroom"]["checksum"], cell.approval.checksum);
         let text = std::fs::read(&cell.file).unwrap();
         assert_eq!(found["attachments"]["cell.toml"], text.len());
         urdf_beside(&file, &cell, &found);

@@ -27,7 +27,7 @@ fn replayed(cell: &Cell, options: &RunOptions) -> Replay {
 fn replayed_bytes(cell: &Cell, bytes: &[u8]) -> Replay {
     let found = replay(bytes).unwrap();
     println!("{}: {} bytes, {} messages, {} ticks", found.cell, bytes.len(), found.messages, found.ticks);
-    assert_eq!(found.checksum, cell.checksum);
+    assert_eq!(found.checksum, cell.approval.checksum);
     assert!(!found.cut_off);
     assert_eq!(found.robots.len(), cell.robots.len());
     found

@@ -15,7 +15,7 @@ fn document(cell: &Cell, mode: &str) -> (Value, Vec<u8>) {
     let data = cell_data(cell);
     let mut json = data.json;
     json["cell"] = cell.name.as_str().into();
-    json["checksum"] = cell.checksum.as_str().into();
+    json["checksum"] = cell.approval.checksum.as_str().into();
     json["mode"] = mode.into();
     for (robot, r) in members(&mut json["robots"]).zip(&cell.robots) {
         let absent: Vec<usize> = r.payload.tools.iter().filter(|t| !t.mounted).map(|t| t.link.0).collect();

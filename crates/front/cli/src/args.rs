@@ -43,6 +43,8 @@ pub(crate) enum Command {
     Rules(RulesArgs),
     /// Build a region for the cell file from taught points
     Teach(TeachArgs),
+    /// Generate the shield of a virtual fixture, and report whether its tool reaches the target
+    Fixture(FixtureArgs),
     /// Report what a camera of a cell sees, picture by picture: obstacles, and the joint-space cells that they block
     #[command(name = "watch")]
     WatchCamera(WatchArgs),
@@ -86,6 +88,27 @@ pub(crate) struct RulesArgs {
     #[arg(long, value_name = "DIR")]
     pub(crate) picture: Option<PathBuf>,
     /// Print one JSON document instead of the table
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  elbowroom fixture cell.toml --name cut                  width of the opening, and whether the tool reaches the target
+  elbowroom fixture cell.toml --name cut --out shield.stl  and the shield as a mesh in metres, in the world
+  elbowroom fixture cell.toml --name cut --json | jq .reachable
+
+Exit status: 1 if the tool does not reach the target, 2 if the target is not on the surface.")]
+pub(crate) struct FixtureArgs {
+    /// The cell file
+    pub(crate) cell: PathBuf,
+    /// Name of the fixture: [fixture.NAME] of the cell; default: the only one
+    #[arg(long)]
+    pub(crate) name: Option<String>,
+    /// Write the shield to this STL file
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print one JSON document instead of the text
     #[arg(long)]
     pub(crate) json: bool,
 }

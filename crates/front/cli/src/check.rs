@@ -39,7 +39,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<ExitStatus, Failure> {
     if args.json {
         print_json(&Document {
             cell: &cell.name,
-            checksum: &cell.checksum,
+            checksum: &cell.approval.checksum,
             regions: checks.iter().map(|c| row(&cell, c)).collect(),
         })?;
     } else {

@@ -12,6 +12,7 @@ mod check;
 mod control;
 mod convert;
 mod example;
+mod fixture;
 mod inspect;
 mod live;
 mod map;
@@ -52,6 +53,7 @@ fn main() -> ExitCode {
         Some(Command::Convert(args)) => convert::convert(&args),
         Some(Command::Map(args)) => map::map(&args),
         Some(Command::Plan(args)) => plan::plan(&args),
+        Some(Command::Fixture(args)) => fixture::fixture(&args),
         Some(Command::Rules(args)) => rules::rules(&args),
         Some(Command::Teach(args)) => teach::teach(&args),
         Some(Command::WatchCamera(args)) => watch::watch(&args),

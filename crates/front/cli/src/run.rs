@@ -36,10 +36,10 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
         write_files(dir, &cell, &outcome.recording, without.as_ref(), args.compare)?;
     }
     if args.json {
-        print_json(&Document { summary: RunSummary::from(&outcome.recording), seal: cell.seal.as_ref() })?;
+        print_json(&Document { summary: RunSummary::from(&outcome.recording), seal: cell.approval.seal.as_ref() })?;
     } else {
         print(&summary(&outcome.recording))?;
-        if let Some(seal) = &cell.seal {
+        if let Some(seal) = &cell.approval.seal {
             print(&format!("\nSealed by {} ({}, key {}), {}\n", seal.name, seal.class, seal.key, seal.time))?;
         }
         if let Some(dir) = &args.out {

@@ -1,6 +1,6 @@
 //! Time of a step of the navigator in contact, for surfaces of 1,000 to 100,000 triangles.
 //!
-//! `cargo bench -p elbowroom-shared_control --bench step_times` prints one row per size: a ball of 5,040 triangles (10 mm)
+//! `cargo bench -p elbowroom-shared_control --bench step_times` prints one row per size: a ball of 5,120 triangles (10 mm)
 //! that a hand drags over a wavy relief, from below its ground.
 
 #![allow(clippy::print_stdout, reason = "a bench prints")]
@@ -16,7 +16,7 @@ mod common;
 const STEPS: usize = 10_000;
 
 fn main() {
-    let tool = common::ball(0.01, 36);
+    let tool = common::ball(0.01, 4);
     println!("tool of {} triangles, {STEPS} steps of 1 ms per row", tool.triangles().len());
     println!("triangles   median µs   p99 µs   largest µs   in contact   largest change m/s");
     for side in [24, 72, 225] {

@@ -49,5 +49,5 @@ pub use error::NavigatorError;
 pub use navigation_step::{Limit, NavigationStep};
 pub use navigator_settings::NavigatorSettings;
 pub use protected_surface::ProtectedSurface;
-pub use shield::{Shield, ShieldError, ShieldSettings, ShieldTarget, generate_shield};
+pub use shield::{Passage, Shield, ShieldError, ShieldSettings, ShieldTarget, generate_shield};
 pub use surface_navigator::SurfaceNavigator;

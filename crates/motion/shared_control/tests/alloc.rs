@@ -17,7 +17,7 @@ fn main() {
     let surfaces = vec![ProtectedSurface::new(relief(24), Pose::IDENTITY).unwrap(), plate.unwrap()];
     let start = Pose::from_translation(Vec3::Z * 0.03);
     let settings = NavigatorSettings { speed_m_s: 2.0, ..Default::default() };
-    let mut navigator = SurfaceNavigator::new(ball(0.01, 12), surfaces, start, settings).unwrap();
+    let mut navigator = SurfaceNavigator::new(ball(0.01, 3), surfaces, start, settings).unwrap();
     let mut random = SplitMix(1);
     let mut in_contact = 0;
     for _ in 0..300 {

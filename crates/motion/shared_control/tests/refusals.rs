@@ -45,7 +45,7 @@ fn a_tool_that_starts_too_near_or_inside_is_refused_with_its_distance() {
 
 #[test]
 fn settings_that_protect_nothing_are_refused() {
-    let with = |settings| SurfaceNavigator::new(ball(0.01, 4), vec![], Pose::IDENTITY, settings).err();
+    let with = |settings| SurfaceNavigator::new(ball(0.01, 1), vec![], Pose::IDENTITY, settings).err();
     let good = NavigatorSettings::default();
     assert_eq!(with(good), None);
     for bad in [
@@ -62,7 +62,7 @@ fn settings_that_protect_nothing_are_refused() {
 #[test]
 fn after_input_that_is_not_usable_the_tool_stands_and_goes_on_later() {
     let mut navigator =
-        SurfaceNavigator::new(ball(0.01, 4), vec![], Pose::IDENTITY, NavigatorSettings::default()).unwrap();
+        SurfaceNavigator::new(ball(0.01, 1), vec![], Pose::IDENTITY, NavigatorSettings::default()).unwrap();
     let goal = Pose::from_translation(Vec3::X * 0.1);
     for _ in 0..100 {
         navigator.step(&goal, 1e-3);

@@ -52,7 +52,7 @@ fn random_target(mesh: &Arc<TriMesh>, random: &mut SplitMix) -> ShieldTarget {
 #[test]
 fn shields_protect_everything_but_the_opening() {
     let mut random = SplitMix(12);
-    let solids = [ball(0.05, 10), block(Vec3::new(0.1, 0.06, 0.04)), relief(16)];
+    let solids = [ball(0.05, 2), block(Vec3::new(0.1, 0.06, 0.04)), relief(16)];
     let (mut bare, mut protected, mut opened) = (0, 0, 0);
     for (case, solid) in solids.iter().cycle().take(12).enumerate() {
         let target = random_target(solid, &mut random);
@@ -91,7 +91,7 @@ fn shields_protect_everything_but_the_opening() {
 #[test]
 fn no_triangle_of_a_shield_crosses_another() {
     let target = ShieldTarget::Line(vec![Vec3::new(0.02, 0.0, 0.0458), Vec3::new(-0.02, 0.01, 0.0447)]);
-    let solid = ball(0.05, 12);
+    let solid = ball(0.05, 3);
     let shield = generate_shield(&solid, &target, &SETTINGS).unwrap().mesh;
     let here = &Pose::IDENTITY;
     let mut neighbours = 0;
@@ -130,7 +130,7 @@ fn a_tool_reaches_the_ground_of_a_drilled_opening_and_nothing_beside_it() {
 
 #[test]
 fn targets_off_the_surface_are_refused_with_the_place() {
-    let solid = ball(0.05, 12);
+    let solid = ball(0.05, 3);
     let refuse = |target: ShieldTarget| generate_shield(&solid, &target, &SETTINGS).unwrap_err();
     let above = Vec3::Z * 0.0562;
     let error = refuse(ShieldTarget::Line(vec![Vec3::X * 0.05, above]));

@@ -66,7 +66,7 @@ fn no_desired_pose_brings_the_tool_into_a_relief_or_through_a_thin_plate() {
         (block(Vec3::new(1e-4, 0.3, 0.3)), Pose::new(Rotation::from_rpy(0.2, 0.1, 0.3), Vec3::new(0.08, 0.0, 0.1))),
     ];
     let mut random = SplitMix(5);
-    for (tool, steps) in [(ball(0.01, 12), 4000), (block(Vec3::new(0.02, 0.004, 0.03)), 4000), (ball(0.01, 40), 600)] {
+    for (tool, steps) in [(ball(0.01, 3), 4000), (block(Vec3::new(0.02, 0.004, 0.03)), 4000), (ball(0.01, 4), 600)] {
         let surfaces: Vec<_> = [(relief(24), Pose::IDENTITY)].into_iter().chain(plates.clone()).collect();
         for speed_m_s in [0.25, 20.0] {
             let settings = NavigatorSettings { speed_m_s, turn_rad_s: 10.0 * speed_m_s, ..Default::default() };
@@ -81,7 +81,7 @@ fn no_desired_pose_brings_the_tool_into_a_relief_or_through_a_thin_plate() {
 fn a_jump_of_a_metre_does_not_pass_a_plate_of_a_tenth_of_a_millimetre() {
     let plate = (block(Vec3::new(2.0, 2.0, 1e-4)), Pose::IDENTITY);
     let settings = NavigatorSettings { speed_m_s: 100.0, acceleration_m_s2: 1e6, ..Default::default() };
-    let mut bench = Bench::new(&ball(0.01, 12), &[plate], Pose::from_translation(Vec3::Z * 0.2), settings);
+    let mut bench = Bench::new(&ball(0.01, 3), &[plate], Pose::from_translation(Vec3::Z * 0.2), settings);
     for _ in 0..200 {
         bench.step(&Pose::from_translation(Vec3::new(0.3, 0.0, -0.8)), 0.01, settings.least_gap_m);
     }
@@ -114,7 +114,7 @@ fn the_tool_comes_to_rest_at_the_nearest_point_of_a_convex_solid() {
     let mut random = SplitMix(8);
     let settings = NavigatorSettings::default();
     for _ in 0..20 {
-        let tool = ball(0.01, 6);
+        let tool = ball(0.01, 2);
         let start = Pose::from_translation(Vec3::new(0.0, 0.0, 0.1));
         let mut bench = Bench::new(&tool, &[(solid.clone(), Pose::IDENTITY)], start, settings);
         let inside = Vec3::new(random.between(-0.05, 0.05), random.between(-0.1, 0.1), random.between(0.03, 0.05));
@@ -154,7 +154,7 @@ fn equal_input_gives_equal_bits() {
     let run = || {
         let start = Pose::from_translation(Vec3::Z * 0.035);
         let mut bench =
-            Bench::new(&ball(0.01, 8), &[(relief(12), Pose::IDENTITY)], start, NavigatorSettings::default());
+            Bench::new(&ball(0.01, 2), &[(relief(12), Pose::IDENTITY)], start, NavigatorSettings::default());
         wander(&mut bench, &mut SplitMix(9), 300, &NavigatorSettings::default());
         bench.navigator.tool_in_world()
     };

@@ -7,7 +7,7 @@ use super::leaf_kernel::{LeafPair, touching_pairs};
 use super::leaf_pairs::visit_leaf_pairs;
 use super::mesh_pair::MeshPair;
 use super::node_pair::NodePair;
-use super::normal_cones::NormalConeHierarchy;
+use super::normal_cones::{FacingTest, NormalConeHierarchy};
 use super::relative_placement::{RelativePlacement, spheres_farther_than};
 use super::triangle_batch::{TriangleBatch, robust_closest_points};
 use super::triangle_kernel::BATCH;
@@ -110,19 +110,19 @@ impl LocalMinimumSearch<'_> {
     fn run(&self, workspace: &mut Workspace, found: &mut dyn FnMut((u32, u32), &ClosestPoints)) {
         let meshes = &self.meshes;
         let cutoff = Cutoff::new(self.limit, meshes.placement);
-        let rows = &meshes.placement.b_in_a.r;
+        let test = FacingTest::new(meshes.placement, self.limit);
         let Workspace { stack, batch, stats, .. } = workspace;
         batch.clear();
         let mut slots = [(0, 0); BATCH];
         let may_face = |pair: &NodePair| {
-            let cone = self.a.of_node(pair.height_a, pair.a);
-            cone.may_face(self.b.of_node(pair.height_b, pair.b), rows)
+            let patch = self.a.of_node(pair.height_a, pair.a);
+            patch.may_face(self.b.of_node(pair.height_b, pair.b), &test)
         };
         visit_leaf_pairs(meshes, &cutoff, stack, stats, may_face, |pair, stats| {
             let near = touching_pairs(meshes, LeafPair { a: pair.a as usize, b: pair.b as usize }, &cutoff);
             for (i, j) in near.lanes() {
                 let (slot_a, slot_b) = (pair.a * LEAF_SIZE as u32 + i, pair.b * LEAF_SIZE as u32 + j);
-                if !self.a.of_slot(slot_a).may_face(self.b.of_slot(slot_b), rows) {
+                if !self.a.of_slot(slot_a).may_face(self.b.of_slot(slot_b), &test) {
                     continue;
                 }
                 slots[batch.len()] = (slot_a, slot_b);
@@ -173,7 +173,7 @@ impl LocalMinimumSearch<'_> {
             return true;
         }
         let Some(toward_b) = apart.try_normalize() else { return true };
-        self.a.of_slot(slot_a).may_contain(toward_b)
-            && self.b.of_slot(slot_b).may_contain(self.meshes.placement.direction_to_b(-toward_b))
+        self.a.of_slot(slot_a).cone.may_contain(toward_b)
+            && self.b.of_slot(slot_b).cone.may_contain(self.meshes.placement.direction_to_b(-toward_b))
     }
 }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use elbowroom_spatial::Vec3;
 
+use super::relative_placement::{AffineF32, RelativePlacement};
 use super::vertex_faces::VertexFaces;
 use crate::TriMesh;
 use crate::bvh::{ARITY, LEAF_SIZE};
@@ -47,15 +48,11 @@ impl NormalCone {
         (Vec3::from(self.axis.map(f64::from)), f64::from(self.half_angle))
     }
 
-    /// False if no direction of this cone is opposite to one of the other, whose axes `rows` rotates into this frame.
+    /// False if no direction of this cone is opposite to one of a cone with this axis, given in the same frame.
     #[inline(always)]
-    pub fn may_face(&self, other: &Self, rows: &[[f32; 3]; 3]) -> bool {
-        if self.half_angle + other.half_angle >= std::f32::consts::PI {
-            return true;
-        }
-        let [x, y, z] = other.axis;
-        let along = |k: usize| self.axis[k] * (rows[k][0] * x + rows[k][1] * y + rows[k][2] * z);
-        -(along(0) + along(1) + along(2)) >= self.cos * other.cos - self.sin * other.sin
+    fn may_face(&self, other: &Self, other_axis: [f32; 3]) -> bool {
+        self.half_angle + other.half_angle >= std::f32::consts::PI
+            || -dot(self.axis, other_axis) >= self.cos * other.cos - self.sin * other.sin
     }
 
     /// False if the unit vector is outside the cone.
@@ -64,6 +61,99 @@ impl NormalCone {
         let axis = Vec3::from(self.axis.map(f64::from));
         axis.dot(direction) >= f64::from(self.cos) - 1e-6
     }
+}
+
+/// A part of a surface: a ball around it, in the unit frame of its mesh, and the cone of its normals.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SurfacePatch {
+    center: [f32; 3],
+    radius: f32,
+    pub cone: NormalCone,
+}
+
+impl SurfacePatch {
+    /// A patch around others: the ball around the middle of their box.
+    fn around(patches: &[Self]) -> Self {
+        let bounds = |side: f32| -> [f32; 3] {
+            std::array::from_fn(|k| {
+                let ends = patches.iter().map(|p| side.mul_add(p.radius, p.center[k]) * side);
+                ends.fold(f32::NEG_INFINITY, f32::max) * side
+            })
+        };
+        let (low, high) = (bounds(-1.0), bounds(1.0));
+        let center: [f32; 3] = std::array::from_fn(|k| 0.5 * (low[k] + high[k]));
+        let reach = |p: &Self| {
+            let offset: [f32; 3] = std::array::from_fn(|k| p.center[k] - center[k]);
+            dot(offset, offset).sqrt() + p.radius
+        };
+        let radius = patches.iter().map(reach).fold(0.0, f32::max) * 1.000_01;
+        Self { center, radius, cone: NormalCone::around(patches.iter().map(|p| p.cone.axis_and_half_angle())) }
+    }
+
+    /// A patch of one triangle with the corners in the unit frame.
+    fn of_triangle([a, b, c]: [Vec3; 3], cone: NormalCone) -> Self {
+        let center = (a + b + c) / 3.0;
+        let radius = a.distance(center).max(b.distance(center)).max(c.distance(center));
+        Self { center: center.to_array().map(|x| x as f32), radius: radius as f32 * 1.000_01 + 1e-6, cone }
+    }
+
+    /// False if no point of this patch and of one of the other mesh can be nearest to each other in their neighbourhoods
+    /// and no farther apart than the limit.
+    ///
+    /// The direction between them would lie in both cones, so it is at most the smaller half-angle θ away from an axis. The
+    /// way from centre to centre would be that of the points up to both radii: along the axis between 0 and the limit,
+    /// across it up to the limit times sin θ.
+    #[inline(always)]
+    pub fn may_face(&self, other: &Self, pair: &FacingTest) -> bool {
+        let other_axis = rotated(&pair.rows, other.cone.axis);
+        if !self.cone.may_face(&other.cone, other_axis) {
+            return false;
+        }
+        let center = rotated(&pair.scaled_rows, other.center);
+        let way: [f32; 3] = std::array::from_fn(|k| center[k] + pair.shift[k] - self.center[k]);
+        let reach = self.radius + other.radius * pair.scale + pair.error;
+        let (axis, sin, cos) = if self.cone.half_angle <= other.cone.half_angle {
+            (self.cone.axis, self.cone.sin, self.cone.cos)
+        } else {
+            (other_axis.map(|x| -x), other.cone.sin, other.cone.cos)
+        };
+        if cos < 0.0 {
+            return true;
+        }
+        let along = dot(way, axis);
+        let across = (dot(way, way) - along * along).max(0.0).sqrt();
+        along >= -reach && along <= pair.limit + reach && across <= reach + pair.limit * sin
+    }
+}
+
+/// What the test of two patches needs of the placement of the meshes, in units of A.
+pub(super) struct FacingTest {
+    rows: [[f32; 3]; 3],
+    scaled_rows: [[f32; 3]; 3],
+    shift: [f32; 3],
+    scale: f32,
+    /// Added to every radius: errors of f32.
+    error: f32,
+    /// Largest distance of two points.
+    limit: f32,
+}
+
+impl FacingTest {
+    pub fn new(placement: &RelativePlacement, limit: f64) -> Self {
+        let AffineF32 { r, m, t, scale, .. } = placement.b_in_a;
+        let error = 4.0 * placement.f32_error as f32;
+        Self { rows: r, scaled_rows: m, shift: t, scale: scale * 1.000_01, error, limit: limit as f32 * 1.000_01 }
+    }
+}
+
+#[inline(always)]
+fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[inline(always)]
+fn rotated(rows: &[[f32; 3]; 3], v: [f32; 3]) -> [f32; 3] {
+    [dot(rows[0], v), dot(rows[1], v), dot(rows[2], v)]
 }
 
 /// A mesh with cones around its normals: what [`for_each_local_minimum`](super::for_each_local_minimum) needs (Johnson
@@ -87,10 +177,10 @@ impl NormalCone {
 pub struct NormalConeHierarchy {
     mesh: Arc<TriMesh>,
     pub(super) vertex_faces: VertexFaces,
-    /// A cone per slot of the tree.
-    slots: Vec<NormalCone>,
-    /// Cones by height, then by number; height 0 has the leaves.
-    levels: Vec<Vec<NormalCone>>,
+    /// A patch per slot of the tree.
+    slots: Vec<SurfacePatch>,
+    /// Patches by height, then by number; height 0 has the leaves.
+    levels: Vec<Vec<SurfacePatch>>,
 }
 
 impl NormalConeHierarchy {
@@ -98,7 +188,11 @@ impl NormalConeHierarchy {
     pub fn new(mesh: Arc<TriMesh>) -> Self {
         let vertex_faces = VertexFaces::new(&mesh);
         let triangles = cones_of_triangles(&mesh, &vertex_faces);
-        let slots: Vec<NormalCone> = mesh.bvh.order.iter().map(|&t| triangles[t as usize]).collect();
+        let patch = |&t: &u32| {
+            let corners = mesh.corners(t as usize).map(|p| mesh.bvh.frame.to_units(p));
+            SurfacePatch::of_triangle(corners, triangles[t as usize])
+        };
+        let slots: Vec<SurfacePatch> = mesh.bvh.order.iter().map(patch).collect();
         let mut levels = vec![merged(&slots, LEAF_SIZE)];
         for height in 0..mesh.bvh.height() {
             levels.push(merged(&levels[height], ARITY));
@@ -117,18 +211,18 @@ impl NormalConeHierarchy {
     }
 
     #[inline(always)]
-    pub(super) fn of_node(&self, height: u8, number: u32) -> &NormalCone {
+    pub(super) fn of_node(&self, height: u8, number: u32) -> &SurfacePatch {
         &self.levels[usize::from(height)][number as usize]
     }
 
     #[inline(always)]
-    pub(super) fn of_slot(&self, slot: u32) -> &NormalCone {
+    pub(super) fn of_slot(&self, slot: u32) -> &SurfacePatch {
         &self.slots[slot as usize]
     }
 }
 
-fn merged(cones: &[NormalCone], arity: usize) -> Vec<NormalCone> {
-    cones.chunks(arity).map(|c| NormalCone::around(c.iter().map(NormalCone::axis_and_half_angle))).collect()
+fn merged(patches: &[SurfacePatch], arity: usize) -> Vec<SurfacePatch> {
+    patches.chunks(arity).map(SurfacePatch::around).collect()
 }
 
 /// The outward normal of every triangle; `None` if it has none.

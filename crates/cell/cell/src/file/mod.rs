@@ -5,6 +5,7 @@ mod camera;
 mod cloud;
 mod definitions;
 mod document;
+mod fixture;
 mod flange;
 mod follow;
 mod goal;
@@ -36,8 +37,8 @@ use schema::names;
 pub use units::QUATERNION_TOLERANCE;
 
 use crate::{
-    Cell, CellLaws, CellPairRules, CellRegionId, CellRobot, CellSensor, CellTiming, FrameSources, MapSpec, PairFile,
-    QueryModel, Units, configure, joint_contacts, rest_pose_contacts, seal,
+    Approval, Cell, CellLaws, CellPairRules, CellRegionId, CellRobot, CellSensor, CellTiming, FrameSources, MapSpec,
+    PairFile, QueryModel, Units, configure, joint_contacts, rest_pose_contacts, seal,
 };
 
 type Result<T> = std::result::Result<T, Diagnostic>;
@@ -71,8 +72,8 @@ impl CellFile {
             laws: laws(&root, &mut warnings)?,
             sensors: Vec::new(),
             pair_rules: CellPairRules::default(),
-            checksum: String::new(),
-            seal: None,
+            fixtures: Vec::new(),
+            approval: Approval::default(),
             warnings: Vec::new(),
         };
         read_robots(&root, &mut cell, &mut warnings)?;
@@ -95,11 +96,12 @@ impl CellFile {
         maps(&root, &mut cell)?;
         avoidance::read(&root, &mut cell)?;
         cell.sensors = sensors(&root, &cell)?;
+        cell.fixtures = fixture::read(&root, &cell)?;
         // Builds the monitors' configurations, so that anything they refuse is refused here, with its line.
-        cell.checksum = configure::checksum(&cell)?;
+        cell.approval.checksum = configure::checksum(&cell)?;
         if self.on_disk {
             // Before the checksum, because the seal names the differences.
-            cell.seal = seal::verify(self, &cell)?;
+            cell.approval.seal = seal::verify(self, &cell)?;
         }
         check(&root, &cell)?;
         plausibility::check(&root, &cell, &scenes, &mut warnings)?;
@@ -112,7 +114,7 @@ impl CellFile {
 fn check(root: &Table<'_>, cell: &Cell) -> Result<()> {
     let Some(v) = root.get("checksum") else { return Ok(()) };
     let expected = v.text()?;
-    if expected.eq_ignore_ascii_case(&cell.checksum) {
+    if expected.eq_ignore_ascii_case(&cell.approval.checksum) {
         return Ok(());
     }
     // The new checksum is not printed: otherwise it could simply be copied into the file.

@@ -155,7 +155,7 @@ impl fmt::Display for PairFile {
 
 impl fmt::Display for PairRow {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let text = |text: &str| toml::Value::from(text).to_string();
+        let text = |text: &str| toml_edit::Value::from(text).to_string();
         let [a, b] = &self.sides;
         write!(f, "{{ a = {}, b = {}, state = \"{}\"", text(a), text(b), self.state)?;
         if let Some(weight) = self.weight {

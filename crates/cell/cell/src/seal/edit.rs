@@ -224,7 +224,7 @@ impl Draft {
             file.entries.retain(|e| e.key != "checksum");
             let cell = file.resolve()?;
             let mut document = document(path, &text)?;
-            put(document.as_table_mut(), "checksum", Value::from(cell.checksum.as_str()));
+            put(document.as_table_mut(), "checksum", Value::from(cell.approval.checksum.as_str()));
             text = document.to_string();
             file = CellFile::parse(path, &text)?;
             cell
@@ -254,7 +254,7 @@ impl Draft {
             note: signer.note.map(Into::into),
             changes,
             state: self.state.digest(),
-            checksum: self.cell.checksum.clone(),
+            checksum: self.cell.approval.checksum.clone(),
             previous: log.head,
             signature: String::new(),
         }

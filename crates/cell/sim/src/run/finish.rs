@@ -27,7 +27,7 @@ impl Simulation<'_> {
         let robots = self.robots.into_iter().map(|robot| ended.track(robot)).collect();
         Recording {
             cell: cell.name.clone(),
-            checksum: cell.checksum.clone(),
+            checksum: cell.approval.checksum.clone(),
             tick_s: cell.timing.tick_s,
             duration_s: t_s,
             end,

@@ -213,7 +213,7 @@ fn controlled<'a>(
 ) -> Controlled<'a> {
     let item = format!("region.{}", change.region);
     let [mut before, mut after] = change.tables.each_ref().map(Option::as_deref);
-    let mut checksums = [change.before, &change.after].map(|regions| regions.cell.checksum.as_str());
+    let mut checksums = [change.before, &change.after].map(|regions| regions.cell.approval.checksum.as_str());
     if is_undone {
         std::mem::swap(&mut before, &mut after);
         checksums.reverse();

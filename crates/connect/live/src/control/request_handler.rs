@@ -113,7 +113,7 @@ impl RequestHandler {
             action: "start".into(),
             note: Some(keeper.at_start()),
             changes: temporary.map(change).collect(),
-            checksums: [&self.parts.versions.base().checksum, &cell.checksum],
+            checksums: [&self.parts.versions.base().checksum, &cell.approval.checksum],
         });
         if let Err(e) = logged {
             self.report(&format!("the start is not logged: {e}"));
@@ -149,7 +149,7 @@ impl RequestHandler {
         };
         Overview {
             cell: cell.name.clone(),
-            checksum: cell.checksum.clone(),
+            checksum: cell.approval.checksum.clone(),
             revision: revision(&log),
             regions: cell.regions.iter().zip(active).map(region).collect(),
             robots: cell.robots.iter().zip(joints.states()).map(robot).collect(),
@@ -184,7 +184,7 @@ impl RequestHandler {
             action: format!("switch region.{}", request.region),
             note: note(request.note.as_deref())?,
             changes: vec![change],
-            checksums: [&cell.checksum, &cell.checksum],
+            checksums: [&cell.approval.checksum, &cell.approval.checksum],
         })?;
         keeper.switch(id, request.active);
         let state = if request.active { "on" } else { "off" };
@@ -215,7 +215,7 @@ impl RequestHandler {
             action,
             note,
             changes,
-            checksums: [&cell.checksum, &cell.checksum],
+            checksums: [&cell.approval.checksum, &cell.approval.checksum],
         };
         let action = format!("clear robot.{}", request.robot);
         let changes = request.regions.iter().map(change).collect();

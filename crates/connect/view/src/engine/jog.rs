@@ -204,7 +204,7 @@ impl ViewSource for JogCell {
         let status = CellStatus {
             t_s,
             cell: self.cell.name.clone(),
-            checksum: self.cell.checksum.clone(),
+            checksum: self.cell.approval.checksum.clone(),
             robots: reports.iter().enumerate().map(robot).collect(),
             slots: self.slots(),
             ..CellStatus::default()

@@ -52,7 +52,7 @@ pub(crate) fn live(args: &LiveArgs) -> Result<ExitStatus, Failure> {
         on_event: Some(Arc::new(|event: &str| note(event))),
     };
     let stop = stop_signal()?;
-    let checksum = cell.checksum.clone();
+    let checksum = cell.approval.checksum.clone();
     let service = Service::start(cell, &options).map_err(|e| Failure::Wrong(e.to_string()))?;
     let address = args.network.listen.as_deref().or(args.network.connect.as_deref()).unwrap_or(DEFAULT_ADDRESS);
     note(format_args!(

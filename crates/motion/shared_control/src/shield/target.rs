@@ -3,7 +3,7 @@
 use elbowroom_proximity::{Shape, project_point};
 use elbowroom_spatial::{Pose, Vec3};
 
-use super::ShieldError;
+use super::error::ShieldError;
 use super::opening::Foot;
 
 /// What the tool is to reach, in the frame of the protected mesh.

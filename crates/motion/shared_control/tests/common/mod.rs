@@ -1,6 +1,6 @@
 //! Meshes that tests and benches share: a wavy relief with valleys, thin plates, balls.
 
-use std::f64::consts::{PI, TAU};
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use elbowroom_proximity::contact::triangle_surface;
@@ -42,30 +42,41 @@ pub fn relief(side: usize) -> Arc<TriMesh> {
     Arc::new(TriMesh::new(vertices, triangles).unwrap())
 }
 
-/// A ball of about 2 · rings² · 2 triangles.
-pub fn ball(radius: f64, rings: usize) -> Arc<TriMesh> {
-    let sectors = 2 * rings;
-    let mut vertices = vec![Vec3::Z * radius];
-    for ring in 1..rings {
-        let polar = PI * ring as f64 / rings as f64;
-        for sector in 0..sectors {
-            let around = TAU * sector as f64 / sectors as f64;
-            vertices.push(Vec3::new(polar.sin() * around.cos(), polar.sin() * around.sin(), polar.cos()) * radius);
+/// A ball of 20 · 4ⁿ triangles: an icosahedron, subdivided `n` times.
+pub fn ball(radius: f64, n: usize) -> Arc<TriMesh> {
+    let golden = 0.5 * (1.0 + 5.0_f64.sqrt());
+    let mut vertices: Vec<Vec3> = Vec::new();
+    for (s, t) in [(1.0, golden), (1.0, -golden), (-1.0, golden), (-1.0, -golden)] {
+        vertices.extend([Vec3::new(s, t, 0.0), Vec3::new(0.0, s, t), Vec3::new(t, 0.0, s)]);
+    }
+    let edge = |i: usize, j: usize, v: &[Vec3]| (v[i].distance(v[j]) - 2.0).abs() < 1e-9;
+    let mut triangles: Vec<[u32; 3]> = Vec::new();
+    for i in 0..12 {
+        for j in i + 1..12 {
+            for k in j + 1..12 {
+                if edge(i, j, &vertices) && edge(j, k, &vertices) && edge(i, k, &vertices) {
+                    let outward = (vertices[j] - vertices[i]).cross(vertices[k] - vertices[i]).dot(vertices[i]) > 0.0;
+                    triangles.push(if outward { [i, j, k] } else { [i, k, j] }.map(|v| v as u32));
+                }
+            }
         }
     }
-    vertices.push(Vec3::Z * -radius);
-    let at = |ring: usize, sector: usize| (1 + (ring - 1) * sectors + sector % sectors) as u32;
-    let last = vertices.len() as u32 - 1;
-    let mut faces = Vec::new();
-    for s in 0..sectors {
-        faces.push([0, at(1, s), at(1, s + 1)]);
-        for r in 1..rings - 1 {
-            faces.push([at(r, s), at(r + 1, s), at(r + 1, s + 1)]);
-            faces.push([at(r, s), at(r + 1, s + 1), at(r, s + 1)]);
-        }
-        faces.push([last, at(rings - 1, s + 1), at(rings - 1, s)]);
+    for _ in 0..n {
+        let mut middles = HashMap::new();
+        let mut middle = |a: u32, b: u32| {
+            *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
+                vertices.push((vertices[a as usize] + vertices[b as usize]) * 0.5);
+                vertices.len() as u32 - 1
+            })
+        };
+        let divided = triangles.iter().flat_map(|&[a, b, c]| {
+            let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
+            [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+        });
+        triangles = divided.collect();
     }
-    Arc::new(TriMesh::new(vertices, faces).unwrap())
+    let vertices = vertices.into_iter().map(|v| v * (radius / v.length())).collect();
+    Arc::new(TriMesh::new(vertices, triangles).unwrap())
 }
 
 /// A box of this size around the origin.

@@ -1,5 +1,6 @@
 //! The keys of the cell file: the readers accept these, and the tables of `docs/cell-file.md` are made of them.
 
+mod fixtures;
 mod key;
 mod model;
 mod motion;
@@ -8,6 +9,7 @@ mod regions;
 mod sensors;
 mod settings;
 
+pub(super) use fixtures::*;
 pub(super) use key::names;
 pub(super) use model::*;
 pub(super) use motion::*;

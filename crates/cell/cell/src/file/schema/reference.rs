@@ -1,7 +1,7 @@
 //! The tables of `docs/cell-file.md`.
 
 use super::key::{Key, Variant};
-use super::{model, motion, regions, sensors, settings};
+use super::{fixtures, model, motion, regions, sensors, settings};
 
 /// Lists of keys, as the document calls them.
 const KEYS: &[(&str, &[Key])] = &[
@@ -18,6 +18,10 @@ const KEYS: &[(&str, &[Key])] = &[
     ("keys of [scene.NAME]", model::SCENE),
     ("keys of [region.NAME]", regions::REGION),
     ("keys of [encoder.NAME]", regions::ENCODER),
+    ("keys of [fixture.NAME]", fixtures::FIXTURE),
+    ("keys of `target`", fixtures::FIXTURE_TARGET),
+    ("keys of `drill`", fixtures::FIXTURE_DRILL),
+    ("keys of `faces_within`", fixtures::FIXTURE_FACES),
     ("keys of a sensor", sensors::SENSOR),
     ("keys of a lens", sensors::LENS),
     ("keys of [camera.NAME]", sensors::CAMERA),

@@ -15,6 +15,7 @@ pub(in crate::file) const TOP: &[Key] = &[
     key("scene", "tables", "none", "objects of planning scenes: [`[scene.NAME]`](#scenename)"),
     key("region", "tables", "none", "regions: [`[region.NAME]`](#regionname)"),
     key("encoder", "tables", "none", "conveyors: [`[encoder.NAME]`](#encodername)"),
+    key("fixture", "tables", "none", "virtual fixtures: [`[fixture.NAME]`](#fixturename)"),
     key("camera", "tables", "none", "cameras: [`[camera.NAME]`](#cameraname)"),
     key("cloud", "tables", "none", "sensors of points: [`[cloud.NAME]`](#cloudname)"),
     key("monitor", "table", "the defaults", "the laws: [`[monitor]`](#monitor)"),

@@ -1,0 +1,75 @@
+//! Shields of the fixtures of a cell, and how their tools pass.
+
+use std::sync::Arc;
+
+use elbowroom_formats::Diagnostic;
+use elbowroom_proximity::contact::triangle_surface;
+use elbowroom_proximity::{Shape, TriMesh};
+use elbowroom_robot::Collider;
+use elbowroom_shared_control::{Passage, Shield, ShieldError, generate_shield};
+use elbowroom_spatial::Pose;
+
+use crate::{Cell, CellFixture, CellRobot, CellTool, FixtureTool};
+
+impl FixtureTool {
+    /// The solid of the tool, and the frame of its tool point in the solid's link.
+    pub fn solid(self, cell: &Cell) -> Option<(&Collider, Pose)> {
+        let CellRobot { payload, tcp_in_flange, .. } = &cell.robots[self.robot.0];
+        match self.named.map(|index| &payload.tools[index]) {
+            Some(CellTool { collider, tcp_in_link, .. }) => Some((collider.as_ref()?, *tcp_in_link)),
+            None => Some((payload.tool.as_ref()?, *tcp_in_flange)),
+        }
+    }
+}
+
+impl CellFixture {
+    /// Generates the shield, in the frame of the protected object.
+    ///
+    /// # Errors
+    /// [`Diagnostic`] at the line of the table: an object that bounds no solid, or a target off its surface.
+    pub fn shield(&self, cell: &Cell) -> Result<Shield, Diagnostic> {
+        let object = &cell.objects[self.protects.0];
+        let refused = |what: String| Diagnostic::new(&cell.file, self.line, what);
+        let mesh: Arc<TriMesh> =
+            triangle_surface(&object.shape, 0.25 * self.settings.tolerance_m).ok_or_else(|| {
+                refused(format!("\"{}\" has no surface of triangles, so it cannot be protected", object.name))
+            })?;
+        generate_shield(&mesh, &self.target, &self.settings).map_err(|e| refused(self.in_words(e, cell)))
+    }
+
+    /// How the tool of the fixture passes the opening of its shield; `None` without a tool that has a solid.
+    pub fn passage(&self, shield: &Shield, cell: &Cell) -> Option<Passage> {
+        let (collider, tcp_in_link) = self.tool?.solid(cell)?;
+        let tool_in_tcp = tcp_in_link.inverse() * collider.in_link;
+        Some(shield.passage_of(&collider.shape, &tool_in_tcp, &self.settings))
+    }
+
+    /// An error in the units of the file, with places in the world.
+    fn in_words(&self, e: ShieldError, cell: &Cell) -> String {
+        let (units, object) = (cell.units, &cell.objects[self.protects.0]);
+        let place = |p| {
+            let p = object.in_world.transform_point(p).to_array().map(|x| units.show_length(x));
+            format!("[{}, {}, {}]", p[0], p[1], p[2])
+        };
+        let surface = match &object.shape {
+            Shape::Mesh(_) => format!("the mesh of \"{}\"", object.name),
+            _ => format!("\"{}\"", object.name),
+        };
+        match e {
+            ShieldError::OffSurface { number, point, distance_m, tolerance_m } => format!(
+                "point {number} of the target, {}, is {} off the surface of {surface}; `tolerance` allows {}",
+                place(point),
+                units.show_length(distance_m),
+                units.show_length(tolerance_m)
+            ),
+            ShieldError::LeavesSurface { number, place: at } => format!(
+                "the target leaves the surface of {surface} at {}, between its points {number} and {}; add points where \
+                 it turns",
+                place(at),
+                number + 1
+            ),
+            ShieldError::Surface(why) => format!("{surface} cannot be protected: {why}"),
+            other => other.to_string(),
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! `elbowroom fixture`: the shield of a virtual fixture.
+
+use std::fmt::Write;
+
+use elbowroom::Diagnostic;
+use elbowroom::cell::{Cell, CellFixture};
+use elbowroom::formats::{MeshData, stl};
+use elbowroom::proximity::TriMesh;
+use elbowroom::shared_control::{Passage, Shield};
+use elbowroom::spatial::Pose;
+use serde::Serialize;
+
+use crate::args::FixtureArgs;
+use crate::output::{ExitStatus, Failure, note, print, print_json};
+use crate::output_file::write_bytes;
+
+#[derive(Serialize)]
+struct Answer<'a> {
+    name: &'a str,
+    protects: &'a str,
+    active: bool,
+    triangles: usize,
+    closed: bool,
+    components: usize,
+    tolerance_m: f64,
+    narrowest_m: f64,
+    tool_width_m: Option<f64>,
+    /// `None` if the file names no tool.
+    reachable: Option<bool>,
+    /// A point of the target that the tool does not reach, in the world.
+    blocked_at_m: Option<[f64; 3]>,
+}
+
+pub(crate) fn fixture(args: &FixtureArgs) -> Result<ExitStatus, Failure> {
+    let cell = Cell::load(&args.cell)?;
+    let fixture = named(&cell, args)?;
+    let shield = fixture.shield(&cell)?;
+    let object = &cell.objects[fixture.protects.0];
+    let passage = fixture.passage(&shield, &cell);
+    if let Some(path) = &args.out {
+        let mut bytes = Vec::new();
+        stl::write_binary(&mut bytes, &[in_world(&shield.mesh, &object.in_world, &fixture.name)])
+            .map_err(|e| Failure::Wrong(e.to_string()))?;
+        write_bytes(path, bytes)?;
+    }
+    let answer = answer(fixture, &object.name, &shield, passage, &object.in_world);
+    if args.json {
+        print_json(&answer)?;
+    } else {
+        print(&text(&answer, &cell))?;
+    }
+    if let Some(path) = args.out.as_ref().filter(|_| !args.json) {
+        note(format!("The shield is in {}, in metres and in the world.", path.display()));
+    }
+    Ok(if answer.reachable == Some(false) { ExitStatus::NegativeResult } else { ExitStatus::Success })
+}
+
+fn named<'a>(cell: &'a Cell, args: &FixtureArgs) -> Result<&'a CellFixture, Failure> {
+    let names: Vec<&str> = cell.fixtures.iter().map(|f| f.name.as_str()).collect();
+    let wrong = |what: String, hint: String| Err(Diagnostic::new(&args.cell, None, what).hint(hint).into());
+    match (&args.name, cell.fixtures.as_slice()) {
+        (_, []) => wrong("has no fixture".into(), "a table [fixture.NAME]: docs/fixtures.md".into()),
+        (None, [only]) => Ok(only),
+        (None, _) => wrong("has several fixtures".into(), format!("--name with one of {}", names.join(", "))),
+        (Some(name), all) => match all.iter().find(|f| f.name == *name) {
+            Some(fixture) => Ok(fixture),
+            None => wrong(format!("has no fixture \"{name}\""), format!("--name with one of {}", names.join(", "))),
+        },
+    }
+}
+
+fn in_world(mesh: &TriMesh, in_world: &Pose, name: &str) -> MeshData {
+    let vertices = mesh.vertices().iter().map(|p| in_world.transform_point(*p)).collect();
+    MeshData { name: name.to_owned(), vertices, triangles: mesh.triangles().to_vec() }
+}
+
+fn answer<'a>(
+    fixture: &'a CellFixture,
+    protects: &'a str,
+    shield: &Shield,
+    passage: Option<Passage>,
+    object_in_world: &Pose,
+) -> Answer<'a> {
+    let report = shield.mesh.report();
+    let blocked_at = passage.and_then(|p| p.blocked_at);
+    Answer {
+        name: &fixture.name,
+        protects,
+        active: fixture.active,
+        triangles: shield.mesh.triangles().len(),
+        closed: report.closed && !report.inside_out,
+        components: shield.mesh.component_vertices().len(),
+        tolerance_m: fixture.settings.tolerance_m,
+        narrowest_m: passage.map_or_else(|| shield.narrowest_m(&fixture.settings), |p| p.narrowest_m),
+        tool_width_m: passage.map(|p| p.tool_width_m),
+        reachable: passage.map(|p| p.blocked_at.is_none()),
+        blocked_at_m: blocked_at.map(|p| object_in_world.transform_point(p).to_array()),
+    }
+}
+
+fn text(answer: &Answer<'_>, cell: &Cell) -> String {
+    let length = |metres: f64| cell.units.show_length(metres);
+    let mut text = format!("{}: a shield around {}, {} triangles", answer.name, answer.protects, answer.triangles);
+    if answer.components > 1 {
+        _ = write!(text, ", {} separate parts", answer.components);
+    }
+    _ = write!(text, "\n  opening  at least {} wide above the surface", length(answer.narrowest_m));
+    match (answer.tool_width_m, answer.reachable) {
+        (Some(width), Some(true)) => _ = write!(text, "\n  tool     {} wide: it reaches the target", length(width)),
+        (Some(width), _) => {
+            let at = answer.blocked_at_m.unwrap_or_default().map(length).join(", ");
+            _ = write!(text, "\n  tool     {} wide: it does not reach the target at [{at}]", length(width));
+            _ = write!(text, "\n  write    a larger `width` or `flare`, or a narrower tool");
+        }
+        _ => _ = write!(text, "\n  tool     none: add `tool` to see whether it passes"),
+    }
+    text + "\n"
+}
