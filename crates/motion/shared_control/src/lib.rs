@@ -3,6 +3,7 @@
 //! | | |
 //! | --- | --- |
 //! | [`SurfaceNavigator`] | one tick: moves a tool towards a desired pose, around [`ProtectedSurface`]s |
+//! | [`GuidedArm`] | moves a whole arm with its tool; the arm never touches anything |
 //! | [`NavigatorSettings`] | gap, speed, acceleration |
 //! | [`generate_shield`] | a surface that protects a solid and is opened along a target |
 //! | [`project_onto_constraints`] | the admissible velocity nearest to a desired one, or displacement |
@@ -38,6 +39,7 @@
 mod constraint_projection;
 mod constraint_set;
 mod error;
+mod guided_arm;
 mod navigation_step;
 mod navigator_settings;
 mod protected_surface;
@@ -46,6 +48,7 @@ mod surface_navigator;
 
 pub use constraint_projection::{Contradiction, LinearConstraint, project_onto_constraints};
 pub use error::NavigatorError;
+pub use guided_arm::{ArmLimit, GuidedArm, GuidedStep};
 pub use navigation_step::{Limit, NavigationStep};
 pub use navigator_settings::NavigatorSettings;
 pub use protected_surface::ProtectedSurface;

@@ -12,7 +12,7 @@ pub struct NavigationStep {
     /// A lower bound of the distance between tool and surfaces after the step, metres. Surfaces beyond the range in
     /// which they influence the motion count as at the end of that range.
     pub gap_m: f64,
-    /// Number of surface points that constrained the velocity.
+    /// Number of surface points, up to three, that constrained the velocity or keep the tool from the desired point.
     pub active_rows: usize,
     /// What kept the tool from following the desired pose as fast as the settings allow; `None` if it followed.
     pub limit: Option<Limit>,

@@ -27,6 +27,8 @@ pub struct SurfaceNavigator {
     settings: NavigatorSettings,
     tool_in_world: Pose,
     velocity: Vec3,
+    /// Pose and velocity before the last step.
+    before: (Pose, Vec3),
     /// The velocities that the surfaces nearby admit, and the displacements.
     velocities: ConstraintSet,
     displacements: ConstraintSet,
@@ -57,6 +59,7 @@ impl SurfaceNavigator {
             settings,
             tool_in_world,
             velocity: Vec3::ZERO,
+            before: (tool_in_world, Vec3::ZERO),
             velocities: ConstraintSet::EMPTY,
             displacements: ConstraintSet::EMPTY,
             workspace: Box::new(Workspace::new()),
@@ -78,6 +81,7 @@ impl SurfaceNavigator {
     /// The tool point takes the admissible velocity nearest to the desired one. The orientation follows as far as the
     /// gap proves that turning is free. After input that is not usable the tool stands, and the result says why.
     pub fn step(&mut self, desired: &Pose, dt_s: f64) -> NavigationStep {
+        self.before = (self.tool_in_world, self.velocity);
         if !desired.is_finite() {
             return self.stand(Limit::PoseNotFinite);
         }
@@ -87,8 +91,9 @@ impl SurfaceNavigator {
         let Some(gap_m) = self.collect_constraints(dt_s) else {
             return self.stand(Limit::DistanceUnknown);
         };
-        let wanted = self.wanted_velocity(desired, dt_s);
-        let (velocity, active_rows) = project(wanted, &mut self.velocities);
+        let (wanted, on_the_way) = self.wanted_velocity(desired, dt_s);
+        let (velocity, now) = project(wanted, &mut self.velocities);
+        let active_rows = now.max(on_the_way);
         let travel = velocity * dt_s;
         let slack_m = (gap_m - self.settings.least_gap_m).max(0.0);
         let proven = if travel.length() <= slack_m { 1.0 } else { self.proven_share(travel) };
@@ -101,32 +106,43 @@ impl SurfaceNavigator {
         NavigationStep { tool_in_world: self.tool_in_world, velocity: self.velocity, gap_m, active_rows, limit }
     }
 
-    fn stand(&mut self, limit: Limit) -> NavigationStep {
+    /// Takes the last step back: what carries the tool could not follow it.
+    pub fn undo(&mut self) {
+        (self.tool_in_world, self.velocity) = self.before;
+    }
+
+    /// Stops the tool where it is.
+    pub fn stand_still(&mut self) -> NavigationStep {
         self.velocity = Vec3::ZERO;
         NavigationStep {
             tool_in_world: self.tool_in_world,
             velocity: Vec3::ZERO,
             gap_m: self.settings.least_gap_m,
             active_rows: 0,
-            limit: Some(limit),
+            limit: None,
         }
+    }
+
+    fn stand(&mut self, limit: Limit) -> NavigationStep {
+        NavigationStep { limit: Some(limit), ..self.stand_still() }
     }
 
     /// The velocity with which the tool point would follow if it could: towards the admissible point nearest to the
     /// desired one, within the limits of speed and acceleration, and slow enough to stop there.
     ///
     /// The desired point is projected before the speed is limited, so that a hand deep inside a solid does not slow the
-    /// tool down along its surface.
-    fn wanted_velocity(&mut self, desired: &Pose, dt_s: f64) -> Vec3 {
+    /// tool down along its surface. Also returns the number of constraints that keep it from the desired point.
+    fn wanted_velocity(&mut self, desired: &Pose, dt_s: f64) -> (Vec3, usize) {
         let way = desired.translation - self.tool_in_world.translation;
-        let (way, _) = project(way, &mut self.displacements);
+        let (way, active) = project(way, &mut self.displacements);
         let s = &self.settings;
         let distance = way.length();
         let speed = (distance / dt_s).min(s.speed_m_s).min((2.0 * s.acceleration_m_s2 * distance).sqrt());
         let wanted = if distance > 0.0 { way * (speed / distance) } else { Vec3::ZERO };
         let change = wanted - self.velocity;
         let largest = s.acceleration_m_s2 * dt_s;
-        if change.length() > largest { self.velocity + change * (largest / change.length()) } else { wanted }
+        let share = if change.length() > largest { largest / change.length() } else { 1.0 };
+        (self.velocity + change * share, active)
     }
 
     /// Collects a constraint for every local minimum of the distance in the range that limits the speed of this step.

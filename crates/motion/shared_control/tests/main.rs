@@ -2,6 +2,7 @@
 
 mod common;
 mod constraint_projection;
+mod guided_arm;
 mod refusals;
 mod shields;
 mod smoothness;

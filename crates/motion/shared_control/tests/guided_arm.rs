@@ -1,0 +1,142 @@
+//! A whole arm whose tool is guided: it follows, glides, and stops before anything touches.
+
+use std::sync::Arc;
+
+use elbowroom_formats::{LoadOptions, robot};
+use elbowroom_kinematics::inverse::{IkOptions, IkSolver};
+use elbowroom_kinematics::{ChainState, LinkId};
+use elbowroom_proximity::{Cuboid, Shape, TriMesh};
+use elbowroom_robot::{Collider, Robot, RobotId};
+use elbowroom_scene::{Checker, CheckerOptions, Object, Scene, SceneState};
+use elbowroom_shared_control::{ArmLimit, GuidedArm, Limit, NavigatorSettings, ProtectedSurface, SurfaceNavigator};
+use elbowroom_spatial::{Pose, Vec3};
+use elbowroom_testkit::random::SplitMix;
+
+use crate::common::{block, point};
+
+const START: [f64; 6] = [0.0, 0.0, 0.0, 0.0, 0.6, 0.0];
+const DT_S: f64 = 0.002;
+
+/// A six-axis arm with a tool of 8 by 8 by 100 mm; its tool point is at the tip.
+fn arm() -> (Robot, LinkId, Pose, Arc<TriMesh>) {
+    let file = elbowroom_testkit::folder::model("ns16");
+    let mut robot = robot::load(&file, &LoadOptions::default()).unwrap().robot;
+    let flange = robot.chain.link("tool0").unwrap();
+    let tcp_in_flange = Pose::from_translation(Vec3::Z * 0.1);
+    let shape = Shape::Cuboid(Cuboid { half_extents: Vec3::new(0.004, 0.004, 0.05) });
+    robot.colliders[flange.0].push(Collider {
+        name: "tool".into(),
+        shape,
+        in_link: Pose::from_translation(Vec3::Z * 0.05),
+    });
+    let tool = block(Vec3::new(0.008, 0.008, 0.1));
+    let vertices = tool.vertices().iter().map(|v| *v - Vec3::Z * 0.05).collect();
+    let tool = Arc::new(TriMesh::new(vertices, tool.triangles().to_vec()).unwrap());
+    (robot, flange, tcp_in_flange, tool)
+}
+
+/// A scene with the arm, and a block below its tool point if a gap (m) is given.
+fn scene(gap_m: Option<f64>) -> (Scene, Pose) {
+    let (robot, flange, tcp_in_flange, _) = arm();
+    let mut state = ChainState::new(&robot.chain);
+    state.q.copy_from_slice(&START);
+    robot.chain.forward(&mut state);
+    let tool_in_world = state.link_in_root(flange) * tcp_in_flange;
+    let mut builder = Scene::builder();
+    builder.robot("arm", robot, Pose::IDENTITY);
+    if let Some(gap_m) = gap_m {
+        let below = tool_in_world.translation - Vec3::Z * (0.05 + gap_m);
+        let shape = Shape::Cuboid(Cuboid { half_extents: Vec3::new(0.2, 0.2, 0.05) });
+        builder.object(Object { name: "work".into(), shape, in_world: Pose::from_translation(below) });
+    }
+    (builder.build().unwrap(), tool_in_world)
+}
+
+fn guided(scene: &Scene, tool_in_world: Pose, protect: bool) -> GuidedArm<'_> {
+    let (robot, flange, tcp_in_flange, tool) = arm();
+    let surfaces = if protect {
+        let work = &scene.objects()[0];
+        vec![ProtectedSurface::new(block(Vec3::new(0.4, 0.4, 0.1)), work.in_world).unwrap()]
+    } else {
+        vec![]
+    };
+    let navigator = SurfaceNavigator::new(tool, surfaces, tool_in_world, NavigatorSettings::default()).unwrap();
+    let solver = IkSolver::new(&robot.chain, flange, tcp_in_flange, IkOptions::default());
+    let mut state = SceneState::new(scene);
+    state.set_q(scene, RobotId(0), &START).unwrap();
+    GuidedArm::new(navigator, solver, (scene, RobotId(0)), state, vec![1.5; 6]).unwrap()
+}
+
+fn moved_by(pose: Pose, offset: Vec3) -> Pose {
+    Pose::new(pose.rotation, pose.translation + offset)
+}
+
+#[test]
+fn the_arm_follows_its_tool_in_free_space() {
+    let (scene, start) = scene(None);
+    let mut arm = guided(&scene, start, false);
+    let desired = moved_by(start, Vec3::new(-0.05, 0.06, 0.04));
+    for _ in 0..1500 {
+        let before = arm.q().to_vec();
+        arm.step(&desired, DT_S);
+        assert!(before.iter().zip(arm.q()).all(|(a, b)| (a - b).abs() <= 1.5 * DT_S * (1.0 + 1e-6)));
+    }
+    assert!(arm.tool_in_world().translation.distance(desired.translation) < 1e-6, "{:?}", arm.tool_in_world());
+}
+
+#[test]
+fn the_tool_glides_and_nothing_of_the_arm_ever_touches() {
+    let (scene, start) = scene(Some(0.02));
+    let mut arm = guided(&scene, start, true);
+    let mut random = SplitMix(4);
+    let mut checker = Checker::new(&scene, CheckerOptions::default());
+    let (mut state, mut glided) = (SceneState::new(&scene), 0);
+    let mut desired = start;
+    for k in 0..3000 {
+        if k % 100 == 0 {
+            desired = moved_by(start, point(&mut random, 0.15) - Vec3::Z * 0.1);
+        }
+        let step = arm.step(&desired, DT_S);
+        glided += usize::from(step.limit == Some(ArmLimit::Tool(Limit::Surface)));
+        state.set_q(&scene, RobotId(0), arm.q()).unwrap();
+        let nearest = checker.distance(&state).unwrap();
+        assert!(nearest.metres >= NavigatorSettings::default().least_gap_m - 1e-6, "{nearest:?} after {step:?}");
+    }
+    assert!(glided > 500, "{glided} of 3000 steps along the surface");
+}
+
+#[test]
+fn what_is_not_protected_stops_the_arm_with_the_pair() {
+    let (scene, start) = scene(Some(0.02));
+    let mut arm = guided(&scene, start, false);
+    let mut limit = None;
+    for _ in 0..1500 {
+        limit = arm.step(&moved_by(start, Vec3::Z * -0.1), DT_S).limit;
+    }
+    let Some(ArmLimit::Contact(a, b)) = limit else { panic!("{limit:?}") };
+    assert_eq!((scene.name(a).as_str(), scene.name(b).as_str()), ("arm/tool0", "work"));
+    assert!(arm.tool_in_world().translation.z > start.translation.z - 0.02);
+}
+
+#[test]
+fn beyond_its_reach_the_arm_stands_and_says_so() {
+    let (scene, start) = scene(None);
+    let mut arm = guided(&scene, start, false);
+    let mut limit = None;
+    for _ in 0..8000 {
+        limit = arm.step(&moved_by(start, Vec3::X * 5.0), DT_S).limit;
+    }
+    assert!(matches!(limit, Some(ArmLimit::Reach | ArmLimit::JointSpeed(_))), "{limit:?}");
+}
+
+#[test]
+fn a_navigator_elsewhere_is_refused() {
+    let (scene, start) = scene(None);
+    let (robot, flange, tcp_in_flange, tool) = arm();
+    let elsewhere = moved_by(start, Vec3::X * 0.01);
+    let navigator = SurfaceNavigator::new(tool, vec![], elsewhere, NavigatorSettings::default()).unwrap();
+    let solver = IkSolver::new(&robot.chain, flange, tcp_in_flange, IkOptions::default());
+    let mut state = SceneState::new(&scene);
+    state.set_q(&scene, RobotId(0), &START).unwrap();
+    assert!(GuidedArm::new(navigator, solver, (&scene, RobotId(0)), state, vec![1.5; 6]).is_err());
+}
