@@ -12,7 +12,7 @@ use elbowroom_spatial::Pose;
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 
 use crate::seal::Seal;
-use crate::{CellFixture, CellSensor, CellTool, Encoder, MovingObject, Payload, PoseTrack, Program};
+use crate::{CellSensor, CellTool, Encoder, Guidance, MovingObject, Payload, PoseTrack, Program};
 
 /// A tool centre point within this distance (m) of a collider counts as on its surface, such as a flange frame on the
 /// flange's face.
@@ -45,8 +45,8 @@ pub struct Cell {
     pub sensors: Vec<CellSensor>,
     /// Rules of pairs. [`Self::robots`] are as in their models.
     pub pair_rules: CellPairRules,
-    /// Virtual fixtures, in file order.
-    pub fixtures: Vec<CellFixture>,
+    /// Virtual fixtures and operators.
+    pub guidance: Guidance,
     /// What identifies the configuration, and who approved it.
     pub approval: Approval,
     /// Non-fatal warnings about the file.

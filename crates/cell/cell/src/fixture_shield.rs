@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use elbowroom_formats::Diagnostic;
+use elbowroom_kinematics::LinkId;
 use elbowroom_proximity::contact::triangle_surface;
 use elbowroom_proximity::{Shape, TriMesh};
 use elbowroom_robot::Collider;
@@ -12,6 +13,12 @@ use elbowroom_spatial::Pose;
 use crate::{Cell, CellFixture, CellRobot, CellTool, FixtureTool};
 
 impl FixtureTool {
+    /// The link that carries its solid.
+    pub fn link(self, cell: &Cell) -> LinkId {
+        let robot = &cell.robots[self.robot.0];
+        self.named.map_or(robot.flange, |index| robot.payload.tools[index].link)
+    }
+
     /// The solid of the tool, and the frame of its tool point in the solid's link.
     pub fn solid(self, cell: &Cell) -> Option<(&Collider, Pose)> {
         let CellRobot { payload, tcp_in_flange, .. } = &cell.robots[self.robot.0];

@@ -334,7 +334,7 @@ kind = "exchange"
         let file = edited();
         let names = |cell: &Cell| cell.regions.iter().map(|r| r.region.name.clone()).collect::<Vec<_>>();
         let base = file.cell(&[]).unwrap();
-        assert_eq!(base.checksum, Cell::parse("rail.toml", FILE).unwrap().checksum);
+        assert_eq!(base.approval.checksum, Cell::parse("rail.toml", FILE).unwrap().approval.checksum);
         let table = file.table_of("cart", CART).unwrap();
         assert_eq!(file.table_of("cart", &format!("[region.cart]\n{CART}")).unwrap(), table);
         let edits = file.with(&[], edit("cart", Some(&table)));

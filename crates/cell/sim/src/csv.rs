@@ -1,4 +1,4 @@
-//! Writers of `trace.csv` and `events.csv`. Every number reads back to the same bits.
+//! Writers of `trace.csv`, `events.csv` and `operator.csv`. Every number reads back to the same bits.
 
 use std::io::{self, Write};
 
@@ -58,6 +58,31 @@ pub fn write_events(recording: &Recording, mut out: impl Write) -> io::Result<()
     writeln!(out, "t_s,robot,region,event")?;
     for e in &recording.events {
         writeln!(out, "{},{},{},{}", e.t_s, e.robot, e.region, e.event.name())?;
+    }
+    out.flush()
+}
+
+/// Writes `t_s,operator,wanted_x_m,wanted_y_m,wanted_z_m,x_m,y_m,z_m,qx,qy,qz,qw,gap_m,active_rows`: one row per tick and
+/// guided robot, by robot. Poses are those of the tool point, in the world.
+///
+/// # Errors
+/// Errors of the writer.
+pub fn write_operators(recording: &Recording, mut out: impl Write) -> io::Result<()> {
+    writeln!(out, "t_s,operator,wanted_x_m,wanted_y_m,wanted_z_m,x_m,y_m,z_m,qx,qy,qz,qw,gap_m,active_rows")?;
+    for track in recording.robots.iter().filter_map(|robot| robot.guidance.as_ref()) {
+        for s in &track.samples {
+            write!(out, "{},{},", s.t_s, track.operator)?;
+            match s.wanted.map(|pose| pose.translation) {
+                Some(p) => write!(out, "{},{},{},", p.x, p.y, p.z)?,
+                None => write!(out, ",,,")?,
+            }
+            let (p, [qx, qy, qz, qw]) = (s.tool_in_world.translation, s.tool_in_world.rotation.to_quaternion_xyzw());
+            write!(out, "{},{},{},{qx},{qy},{qz},{qw},", p.x, p.y, p.z)?;
+            if let Some(gap_m) = s.gap_m.filter(|gap_m| gap_m.is_finite()) {
+                write!(out, "{gap_m}")?;
+            }
+            writeln!(out, ",{}", s.active)?;
+        }
     }
     out.flush()
 }

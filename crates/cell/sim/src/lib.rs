@@ -45,9 +45,10 @@ mod summary;
 pub use held_object::held_object;
 pub use motion::{PathSearch, PlannedPaths};
 pub use recording::{
-    AvoidanceSample, AvoidanceTrack, Collision, Deadlock, EventRow, GoverningPoint, Hold, HoldReason, ObjectTrack,
-    Outcome, PartKind, PathReplan, PerceptionTrack, RecordedRegionKind, Recording, RegionPoses, RegionTrack,
-    ReplanRecord, RobotEnding, RobotTrack, RunEnd, RunEvent, Sample, SensorTrack, Span, Stop, TickTimes,
+    AvoidanceSample, AvoidanceTrack, Collision, Deadlock, EventRow, GoverningPoint, GuidanceSample, GuidanceState,
+    GuidanceTrack, Hold, HoldReason, ObjectTrack, Outcome, PartKind, PathReplan, PerceptionTrack, RecordedRegionKind,
+    Recording, RegionPoses, RegionTrack, ReplanRecord, RobotEnding, RobotTrack, RunEnd, RunEvent, Sample, SensorTrack,
+    Span, Stop, TickTimes,
 };
 pub use run::{InputFault, InputFaultKind, RunOptions, RunOutcome, SilentFrom, simulate};
 pub use summary::{AvoidanceSummary, PerceptionSummary, RunSummary, SensorSummary};

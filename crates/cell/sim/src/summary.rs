@@ -5,7 +5,7 @@ use elbowroom_query::watch::WatchStatus;
 use serde::Serialize;
 
 use crate::recording::{
-    AvoidanceSample, AvoidanceTrack, Hold, HoldReason, ObjectTrack, Outcome, PartKind, PerceptionTrack,
+    AvoidanceSample, AvoidanceTrack, GuidanceSample, Hold, HoldReason, ObjectTrack, Outcome, PartKind, PerceptionTrack,
     RecordedRegionKind, Recording, RobotEnding, RunEnd, SensorTrack, Stop, TickTimes,
 };
 
@@ -30,6 +30,9 @@ pub struct RunSummary {
     pub regions: Vec<RegionSummary>,
     /// Deadlocks at the end of the run.
     pub deadlocks: Vec<DeadlockSummary>,
+    /// Per operator; omitted if empty.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub operators: Vec<OperatorSummary>,
     /// Per camera with loaded pictures; omitted if empty.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub cameras: Vec<SensorSummary>,
@@ -39,6 +42,43 @@ pub struct RunSummary {
     /// Final poses of the objects that move or are gripped; omitted if empty.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub objects: Vec<ObjectSummary>,
+}
+
+/// Guidance of a robot by its operator.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct OperatorSummary {
+    /// Name of the operator.
+    pub name: String,
+    /// The robot.
+    pub robot: String,
+    /// Time in which the tool followed without a surface, s.
+    pub free_s: f64,
+    /// Time at surfaces, s.
+    pub contact_s: f64,
+    /// Time in which it had no wish to follow, was stopped by the monitor, or could not follow, s.
+    pub stopped_s: f64,
+    /// Least bound of the distance between tool and surfaces, m; null if none was near.
+    pub least_gap_m: Option<f64>,
+    /// Largest change of the tool's velocity from one tick to the next, m/s.
+    pub largest_speed_change_m_s: f64,
+}
+
+impl OperatorSummary {
+    fn of(robot: &crate::recording::RobotTrack, tick_s: f64) -> Option<Self> {
+        let track = robot.guidance.as_ref()?;
+        let time =
+            |which: fn(&GuidanceSample) -> bool| track.samples.iter().filter(|s| which(s)).count() as f64 * tick_s;
+        let change = |w: &[GuidanceSample]| w[0].velocity.distance(w[1].velocity);
+        Some(Self {
+            name: track.operator.clone(),
+            robot: robot.name.clone(),
+            free_s: time(|s| s.follows() && s.active == 0),
+            contact_s: time(|s| s.follows() && s.active > 0),
+            stopped_s: time(|s| !s.follows()),
+            least_gap_m: track.samples.iter().filter_map(|s| s.gap_m).filter(|gap| gap.is_finite()).reduce(f64::min),
+            largest_speed_change_m_s: track.samples.windows(2).map(change).fold(0.0, f64::max),
+        })
+    }
 }
 
 /// An object at the end of a run.
@@ -389,6 +429,7 @@ impl From<&Recording> for RunSummary {
         };
         Self {
             deadlocks: r.deadlocks.iter().map(deadlock).collect(),
+            operators: r.robots.iter().filter_map(|robot| OperatorSummary::of(robot, r.tick_s)).collect(),
             cell: r.cell.clone(),
             checksum: r.checksum.clone(),
             duration_s: r.duration_s,

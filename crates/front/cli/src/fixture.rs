@@ -56,9 +56,9 @@ pub(crate) fn fixture(args: &FixtureArgs) -> Result<ExitStatus, Failure> {
 }
 
 fn named<'a>(cell: &'a Cell, args: &FixtureArgs) -> Result<&'a CellFixture, Failure> {
-    let names: Vec<&str> = cell.fixtures.iter().map(|f| f.name.as_str()).collect();
+    let names: Vec<&str> = cell.guidance.fixtures.iter().map(|f| f.name.as_str()).collect();
     let wrong = |what: String, hint: String| Err(Diagnostic::new(&args.cell, None, what).hint(hint).into());
-    match (&args.name, cell.fixtures.as_slice()) {
+    match (&args.name, cell.guidance.fixtures.as_slice()) {
         (_, []) => wrong("has no fixture".into(), "a table [fixture.NAME]: docs/fixtures.md".into()),
         (None, [only]) => Ok(only),
         (None, _) => wrong("has several fixtures".into(), format!("--name with one of {}", names.join(", "))),

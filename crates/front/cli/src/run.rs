@@ -87,6 +87,9 @@ pub(crate) fn write_files(
     std::fs::create_dir_all(dir).map_err(cannot_write(dir))?;
     write_file(&dir.join("trace.csv"), |out| csv::write_trace(run, out))?;
     write_file(&dir.join("events.csv"), |out| csv::write_events(run, out))?;
+    if run.robots.iter().any(|robot| robot.guidance.is_some()) {
+        write_file(&dir.join("operator.csv"), |out| csv::write_operators(run, out))?;
+    }
     for sensor in &run.sensors {
         write_records(&dir.join(format!("{}-{}.jsonl", sensor.kind, sensor.name)), sensor)?;
     }

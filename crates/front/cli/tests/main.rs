@@ -13,6 +13,7 @@ mod live_ros2;
 mod map;
 mod messages;
 mod models;
+mod operators;
 mod pair_file;
 mod pairs;
 mod perceived_live;

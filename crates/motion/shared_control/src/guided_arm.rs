@@ -123,6 +123,11 @@ impl<'s> GuidedArm<'s> {
         GuidedStep { tool: self.navigator.stand_still(), limit }
     }
 
+    /// Stops the arm where it is.
+    pub fn stand_still(&mut self) {
+        self.navigator.stand_still();
+    }
+
     /// Moves the joints so that the tool is there, if the whole motion is free.
     fn follow(&mut self, tool_in_world: &Pose, dt_s: f64) -> Result<(), ArmLimit> {
         let Self { checker, state, robot, next, joint_speeds, .. } = self;

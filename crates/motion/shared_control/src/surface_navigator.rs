@@ -102,7 +102,11 @@ impl SurfaceNavigator {
         let left_m = if proven < 1.0 { 0.0 } else { (slack_m - travel.length()).max(0.0) };
         let turned_m = self.turn_towards(desired, dt_s, left_m);
         let limit = if proven < 1.0 { Some(Limit::Proof) } else { (active_rows > 0).then_some(Limit::Surface) };
-        let gap_m = (gap_m - travel.length() - turned_m).max(self.settings.least_gap_m);
+        let gap_m = if self.velocities.as_slice().is_empty() {
+            f64::INFINITY
+        } else {
+            (gap_m - travel.length() - turned_m).max(self.settings.least_gap_m)
+        };
         NavigationStep { tool_in_world: self.tool_in_world, velocity: self.velocity, gap_m, active_rows, limit }
     }
 

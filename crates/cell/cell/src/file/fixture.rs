@@ -9,7 +9,7 @@ use elbowroom_spatial::{Pose, Vec3};
 
 use super::schema::{FIXTURE, FIXTURE_DRILL, FIXTURE_FACES, FIXTURE_TARGET, names};
 use crate::fixture::{CellFixture, FixtureTool};
-use crate::{Cell, Units};
+use crate::{Cell, CellRobot, Units};
 
 type Result<T> = std::result::Result<T, Diagnostic>;
 
@@ -113,14 +113,20 @@ fn tool(v: &Value<'_>, cell: &Cell) -> Result<FixtureTool> {
         v.error(format!("names the robot \"{robot_name}\", which is not in this cell"))
             .hint(suggest::hint(robot_name, robots()))
     })?;
-    let tools = &cell.robots[robot].payload.tools;
+    tool_of(v, cell, RobotId(robot), tool_name)
+}
+
+/// The tool of this name of a robot; it must have a solid.
+pub(super) fn tool_of(v: &Value<'_>, cell: &Cell, robot: RobotId, tool_name: &str) -> Result<FixtureTool> {
+    let CellRobot { name: robot_name, payload, .. } = &cell.robots[robot.0];
+    let tools = &payload.tools;
     let named = tools.iter().position(|t| t.name == tool_name);
     if named.is_none() && !(tools.is_empty() && tool_name == "tool") {
         let what = format!("names the tool \"{tool_name}\", which robot \"{robot_name}\" does not have");
         let known = tools.iter().map(|t| t.name.as_str()).chain(tools.is_empty().then_some("tool"));
         return Err(v.error(what).hint(suggest::hint(tool_name, known)));
     }
-    let tool = FixtureTool { robot: RobotId(robot), named };
+    let tool = FixtureTool { robot, named };
     if tool.solid(cell).is_none() {
         let what = format!("has no solid, so nothing says whether it passes: robot \"{robot_name}\"");
         return Err(v.error(what).hint(format!("`box` or `mesh` in [robot.{robot_name}.tool]; or {TOOL}")));

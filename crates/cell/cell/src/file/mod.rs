@@ -12,6 +12,7 @@ mod goal;
 mod guarding;
 mod models;
 mod object;
+mod operator;
 mod planning_scene;
 mod plausibility;
 mod poses;
@@ -37,8 +38,8 @@ use schema::names;
 pub use units::QUATERNION_TOLERANCE;
 
 use crate::{
-    Approval, Cell, CellLaws, CellPairRules, CellRegionId, CellRobot, CellSensor, CellTiming, FrameSources, MapSpec,
-    PairFile, QueryModel, Units, configure, joint_contacts, rest_pose_contacts, seal,
+    Approval, Cell, CellLaws, CellPairRules, CellRegionId, CellRobot, CellSensor, CellTiming, FrameSources, Guidance,
+    MapSpec, PairFile, QueryModel, Units, configure, joint_contacts, rest_pose_contacts, seal,
 };
 
 type Result<T> = std::result::Result<T, Diagnostic>;
@@ -72,7 +73,7 @@ impl CellFile {
             laws: laws(&root, &mut warnings)?,
             sensors: Vec::new(),
             pair_rules: CellPairRules::default(),
-            fixtures: Vec::new(),
+            guidance: Guidance::default(),
             approval: Approval::default(),
             warnings: Vec::new(),
         };
@@ -96,7 +97,8 @@ impl CellFile {
         maps(&root, &mut cell)?;
         avoidance::read(&root, &mut cell)?;
         cell.sensors = sensors(&root, &cell)?;
-        cell.fixtures = fixture::read(&root, &cell)?;
+        cell.guidance.fixtures = fixture::read(&root, &cell)?;
+        operator::read(&root, &mut cell)?;
         // Builds the monitors' configurations, so that anything they refuse is refused here, with its line.
         cell.approval.checksum = configure::checksum(&cell)?;
         if self.on_disk {

@@ -31,16 +31,35 @@ enum RotationColumns {
 
 /// Reads the file that a value names.
 pub(super) fn read(v: &Value<'_>, units: Units) -> Result<PoseTrack> {
-    let table = models::number_table(v)?;
-    let columns = Columns::of(&table, units)?;
-    let all: Vec<usize> = (0..table.columns.len()).collect();
-    let row = |row: TimedRow| Ok((row.t_s, columns.pose(&table, row.line, &row.values)?));
-    let rows = table.timed(&all)?.into_iter().map(row).collect::<Result<Vec<_>>>()?;
+    let (table, rows) = read_with(v, units, &[])?;
+    let rows = rows.into_iter().map(|row| (row.t_s, row.pose)).collect();
     PoseTrack::new(table.file.clone(), rows).ok_or_else(|| v.error("names a file without rows").hint(EXAMPLE))
 }
 
+/// A row of a file of poses.
+pub(super) struct PoseRow {
+    pub t_s: f64,
+    pub pose: Pose,
+    /// The values of the other columns, in their order; `None` for a column that the file does not have.
+    pub others: Vec<Option<f64>>,
+}
+
+/// Reads the file that a value names, which may have other columns too.
+pub(super) fn read_with(v: &Value<'_>, units: Units, others: &[&str]) -> Result<(NumberTable, Vec<PoseRow>)> {
+    let table = models::number_table(v)?;
+    let columns = Columns::of(&table, units, others)?;
+    let all: Vec<usize> = (0..table.columns.len()).collect();
+    let at: Vec<Option<usize>> = others.iter().map(|name| table.columns.iter().position(|c| c == name)).collect();
+    let row = |row: TimedRow| {
+        let pose = columns.pose(&table, row.line, &row.values)?;
+        Ok(PoseRow { t_s: row.t_s, pose, others: at.iter().map(|c| c.map(|c| row.values[c])).collect() })
+    };
+    let rows = table.timed(&all)?.into_iter().map(row).collect::<Result<Vec<_>>>()?;
+    Ok((table, rows))
+}
+
 impl Columns {
-    fn of(table: &NumberTable, units: Units) -> Result<Self> {
+    fn of(table: &NumberTable, units: Units, others: &[&str]) -> Result<Self> {
         let lengths = [("", units.length), ("_m", LengthUnit::Metre), ("_mm", LengthUnit::Millimetre)];
         let angles = [("", units.angle), ("_rad", AngleUnit::Radian), ("_deg", AngleUnit::Degree)];
         let known = |suffixes: &[&str], names: &[&str]| -> Vec<String> {
@@ -50,6 +69,7 @@ impl Columns {
         names.extend(known(&["", "_m", "_mm"], &POSITION));
         names.extend(known(&["", "_rad", "_deg"], &RPY));
         names.extend(known(&[""], &QUATERNION));
+        names.extend(others.iter().map(|&name| name.to_owned()));
         if let Some(odd) = table.columns.iter().find(|c| !names.contains(c)) {
             let what = format!("has a column `{odd}`, which is no part of a pose");
             let hint = suggest::hint(odd, names.iter().map(String::as_str));
@@ -58,7 +78,8 @@ impl Columns {
         let wrong = |what: &str| Diagnostic::new(&table.file, 1, what).hint(EXAMPLE);
         let (position, length) =
             one_of(table, &POSITION, &lengths).ok_or_else(|| wrong("needs the columns x, y, z, all in one unit"))?;
-        let turned = table.columns.len() - 4;
+        let other = table.columns.iter().filter(|c| others.contains(&c.as_str())).count();
+        let turned = table.columns.len() - 4 - other;
         let rotation = match (one_of(table, &RPY, &angles), all(table, &QUATERNION, "")) {
             _ if turned == 0 => RotationColumns::None,
             (Some((rpy, unit)), None) if turned == 3 => RotationColumns::Rpy(rpy, unit),

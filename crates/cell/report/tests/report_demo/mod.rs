@@ -187,6 +187,7 @@ pub fn recording(monitored: bool, ticks: usize, name: &str) -> Recording {
                 vec![Collision { t_s: 3.1, a: "ns16/fore".into(), b: "table".into() }]
             },
             avoidance: None,
+            guidance: None,
             perception: None,
             ending: elbowroom_sim::RobotEnding::default(),
         }],

@@ -1,6 +1,7 @@
 //! Recording of a run, for the report and the CSV writers.
 
 mod avoidance_track;
+mod guidance_track;
 mod perception_track;
 mod region_track;
 mod robot_ending;
@@ -14,6 +15,7 @@ use elbowroom_spatial::{Pose, Vec3};
 use serde::Serialize;
 
 pub use avoidance_track::{AvoidanceSample, AvoidanceTrack, ReplanRecord};
+pub use guidance_track::{GuidanceSample, GuidanceState, GuidanceTrack};
 pub use perception_track::{Hold, HoldReason, PathReplan, PerceptionTrack, SensorTrack};
 pub use region_track::{RecordedRegionKind, RegionPoses, RegionTrack, Span};
 pub use robot_ending::{Deadlock, Outcome, PartKind, RobotEnding, Stop};
@@ -94,6 +96,8 @@ pub struct RobotTrack {
     pub collisions: Vec<Collision>,
     /// Evasion; `None` for a robot without avoidance.
     pub avoidance: Option<AvoidanceTrack>,
+    /// Guidance by a person; `None` for a robot without operator.
+    pub guidance: Option<GuidanceTrack>,
     /// Reactions to the obstacles that sensors see; `None` for a robot that no sensor guards.
     pub perception: Option<PerceptionTrack>,
     /// How its run ended.

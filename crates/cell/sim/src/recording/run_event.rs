@@ -3,6 +3,8 @@
 use elbowroom_avoidance::AvoiderState;
 use elbowroom_monitor::EventKind;
 
+use super::guidance_track::GuidanceState;
+
 /// A line of `events.csv`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EventRow {
@@ -43,6 +45,8 @@ pub enum RunEvent {
     Tool,
     /// The avoidance of a robot changed to this state.
     Avoidance(AvoiderState),
+    /// The tool of a guided robot changed to this state.
+    Guided(GuidanceState),
 }
 
 impl RunEvent {
@@ -65,6 +69,7 @@ impl RunEvent {
             Self::Avoidance(AvoiderState::Detouring) => "go_around",
             Self::Wait | Self::Avoidance(AvoiderState::Waiting) => "wait",
             Self::Avoidance(AvoiderState::Halted) => "halt",
+            Self::Guided(state) => state.name(),
         }
     }
 }

@@ -103,7 +103,7 @@ impl Simulation<'_> {
     fn guard_part(&mut self, i: usize, action: &GripAction) -> Result<(), Diagnostic> {
         let attachment = self.contacts.checker.attachment(action.object).cloned();
         let in_link = attachment.as_ref().map_or(Pose::IDENTITY, |a| a.in_link);
-        for avoiding in self.robots.iter_mut().filter_map(|robot| robot.avoiding.as_mut()) {
+        for avoiding in self.robots.iter_mut().filter_map(|robot| robot.own_motion.avoiding_mut()) {
             let applied = match &attachment {
                 Some(attachment) => avoiding.attach(action.object, attachment.clone()),
                 None => avoiding.detach(action.object),

@@ -3,8 +3,8 @@
 use elbowroom_cell::Cell;
 use elbowroom_monitor::ZoneArbiter;
 
-use super::avoiding_robot::AvoidingRobot;
 use super::final_waits::FinalWaits;
+use super::own_motion::OwnMotion;
 use super::simulated_robot::SimulatedRobot;
 use super::simulation::Simulation;
 use super::{outcome, release};
@@ -56,8 +56,12 @@ struct Ended<'a> {
 impl Ended<'_> {
     /// The recording of a robot, with how its run ended.
     fn track(&self, robot: SimulatedRobot<'_>) -> RobotTrack {
-        let SimulatedRobot { id, setup, mut track, avoiding, guard, hold, governing, .. } = robot;
-        track.avoidance = avoiding.map(AvoidingRobot::finish);
+        let SimulatedRobot { id, setup, mut track, own_motion, guard, hold, governing, .. } = robot;
+        match own_motion {
+            OwnMotion::None => {}
+            OwnMotion::Avoiding(avoiding) => track.avoidance = Some(avoiding.finish()),
+            OwnMotion::Guided(guided) => track.guidance = Some(guided.finish()),
+        }
         track.perception = guard.map(|(guard, _)| guard.into_replans()).map(|replans| {
             let (holds, ends_held) = hold.finish(self.t_s);
             PerceptionTrack { replans, holds, ends_held }

@@ -9,6 +9,7 @@ mod end_detector;
 mod fault_injection;
 mod final_waits;
 mod finish;
+mod guided_robot;
 mod idle_detector;
 mod journal;
 mod observation;
@@ -16,6 +17,7 @@ mod observer;
 mod options;
 mod outcome;
 mod override_delay;
+mod own_motion;
 mod region_recorder;
 mod release;
 mod run_end;
@@ -41,9 +43,11 @@ use deadlock_detector::DeadlockDetector;
 use end_detector::EndDetector;
 use fault_injection::FaultInjector;
 pub use fault_injection::{InputFault, InputFaultKind};
+use guided_robot::GuidedRobot;
 use journal::Journal;
 pub use observer::{ObservedInstant, ObservedTick, RunObserver};
 pub use options::{RunOptions, RunProgress, SilentFrom};
+use own_motion::OwnMotion;
 use region_recorder::RegionRecorder;
 use simulated_robot::SimulatedRobot;
 use simulation::Simulation;
@@ -109,13 +113,20 @@ pub fn simulate_observed(
     let scene = QueryModel::of_cell(cell).scene(OutOfReachProofs::Omit)?;
     if options.avoidance {
         for robot in &mut robots {
-            robot.avoiding = AvoidingRobot::of_robot(cell, &scene, robot.id, &robot.clock)?;
+            if let Some(avoiding) = AvoidingRobot::of_robot(cell, &scene, robot.id, &robot.clock)? {
+                robot.own_motion = OwnMotion::Avoiding(Box::new(avoiding));
+            }
+        }
+    }
+    for robot in &mut robots {
+        if let Some(guided) = GuidedRobot::of_robot(cell, &scene, robot.id, &mut notes)? {
+            robot.own_motion = OwnMotion::Guided(Box::new(guided));
         }
     }
     let models: Vec<Robot> = cell.robots.iter().map(CellRobot::with_all_tools).collect();
     let states: Vec<ChainState> = cell.robots.iter().map(|r| ChainState::new(&r.robot.chain)).collect();
     for robot in &mut robots {
-        let avoids = robot.avoiding.is_some();
+        let avoids = robot.own_motion.avoiding().is_some();
         robot.guard = path_guard(cell, (robot.id, &robot.clock), avoids, &perceived, &states, &mut notes)?;
     }
     let journal = Journal::new(cell, observer.map(|observer| observer as &mut dyn RunObserver));
@@ -136,7 +147,7 @@ pub fn simulate_observed(
         robots,
     };
     let (t_s, end) = run.run(progress)?;
-    notes.extend(run.robots.iter().filter_map(|robot| robot.avoiding.as_ref()?.fault_warning(cell)));
+    notes.extend(run.robots.iter().filter_map(|robot| robot.own_motion.avoiding()?.fault_warning(cell)));
     run.perceived.iter_mut().for_each(|p| p.take_warnings(&mut notes));
     Ok(RunOutcome { recording: run.finish(t_s, end), notes })
 }

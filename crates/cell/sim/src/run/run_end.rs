@@ -15,7 +15,10 @@ impl Simulation<'_> {
             return Some(RunEnd::TimeLimit);
         }
         // A robot that is held may continue after the next picture, or when its search ends.
-        let waiting = present().any(|robot| robot.clock.waiting() && robot.is_on_path()) || self.expects_news();
+        let waits = |robot: &SimulatedRobot<'_>| {
+            robot.clock.waiting() && robot.is_on_path() || robot.own_motion.awaits_operator()
+        };
+        let waiting = present().any(waits) || self.expects_news();
         let ends_here = |robot| self.is_held_for_good(robot, t_s);
         let can_continue = waiting
             || self.frames.is_any_moving_but_endless_belts(t_s)

@@ -8,12 +8,12 @@ use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_monitor::{Fault, Monitor, OverrideReason, Snapshot, SourceState, TickReport, VirtualTcp};
 use elbowroom_robot::RobotId;
 
-use super::avoiding_robot::AvoidingRobot;
 use super::fault_injection::FaultInjector;
 use super::journal::Journal;
 use super::observer::ObservedTick;
 use super::outcome::part_name;
 use super::override_delay::OverrideDelay;
+use super::own_motion::OwnMotion;
 use super::stop_state::StopState;
 use super::zone_claims::ZoneClaims;
 use crate::motion::ProgramClock;
@@ -29,8 +29,8 @@ pub(super) struct SimulatedRobot<'a> {
     pub clock: ProgramClock,
     /// The claims of its program; `None` if the program declares none.
     pub claims: Option<ZoneClaims>,
-    /// `None` without avoidance.
-    pub avoiding: Option<AvoidingRobot<'a>>,
+    /// What moves it besides its program.
+    pub own_motion: OwnMotion<'a>,
     /// `None` if no sensor guards it.
     pub guard: Option<(PathGuard, PathReplanner<'a>)>,
     /// Whether an obstacle or a sensor holds it in this tick.
@@ -62,7 +62,7 @@ impl Governed {
 }
 
 impl<'a> SimulatedRobot<'a> {
-    /// Creates a robot without avoidance and guard.
+    /// Creates a robot that only its program moves, without a guard.
     pub fn new(
         cell: &Cell,
         id: RobotId,
@@ -78,7 +78,7 @@ impl<'a> SimulatedRobot<'a> {
             monitor,
             clock,
             claims,
-            avoiding: None,
+            own_motion: OwnMotion::None,
             guard: None,
             hold: ProgramHold::recorded(),
             present: robot.clone(),
@@ -93,12 +93,12 @@ impl<'a> SimulatedRobot<'a> {
 
     /// Whether the robot is on its programmed path.
     pub fn is_on_path(&self) -> bool {
-        self.avoiding.as_ref().is_none_or(AvoidingRobot::is_on_path)
+        self.own_motion.is_on_path()
     }
 
     /// Whether its program is over.
     pub fn is_finished(&self) -> bool {
-        self.clock.finished() && self.is_on_path()
+        self.clock.finished() && self.own_motion.is_over()
     }
 
     /// Writes position and motion. A silent robot is assumed to be stationary.
@@ -107,8 +107,8 @@ impl<'a> SimulatedRobot<'a> {
         state.q.copy_from_slice(&self.clock.point().q);
         state.qd.iter_mut().zip(self.clock.velocity()).for_each(|(to, v)| *to = v * scale);
         state.qdd.iter_mut().zip(self.clock.acceleration()).for_each(|(to, v)| *to = v * scale);
-        if let Some(avoiding) = self.avoiding.as_ref().filter(|a| !a.is_on_path()) {
-            avoiding.write_state(state);
+        if !self.own_motion.is_on_path() {
+            self.own_motion.write_state(state);
             state.qd.iter_mut().chain(&mut state.qdd).for_each(|v| *v *= scale);
         }
         cell.robots[self.id.0].robot.chain.forward_motion(state);
@@ -137,7 +137,7 @@ impl<'a> SimulatedRobot<'a> {
             qd: &state.qd,
             qdd: &state.qdd,
             programmed_override: self.programmed_override(),
-            intent: Some(self.avoiding.as_ref().map_or(self.clock.intent(), |a| a.intent(&self.clock))),
+            intent: Some(self.own_motion.intent(&self.clock)),
             sources,
         };
         let snapshot = injector.apply(self.id, &snapshot)?;
@@ -179,7 +179,7 @@ impl<'a> SimulatedRobot<'a> {
         let (tcp, tcp_speed) = self.present.tcp(state);
         // A robot off its path does not move by the time of its program.
         let rate = if self.is_on_path() { self.clock.rate() } else { 1.0 };
-        if let Some(avoiding) = &mut self.avoiding {
+        if let Some(avoiding) = self.own_motion.avoiding_mut() {
             avoiding.record();
         }
         let programmed_speed = if rate > 1e-3 {
@@ -238,6 +238,7 @@ fn new_track(robot: &CellRobot, setup: &MonitorSetup) -> RobotTrack {
         min_override: 1.0,
         collisions: Vec::new(),
         avoidance: None,
+        guidance: None,
         perception: None,
         ending: RobotEnding::default(),
     }

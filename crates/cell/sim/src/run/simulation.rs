@@ -14,6 +14,7 @@ use super::end_detector::EndDetector;
 use super::fault_injection::FaultInjector;
 use super::journal::Journal;
 use super::options::{RunOptions, RunProgress};
+use super::own_motion::OwnMotion;
 use super::region_recorder::RegionRecorder;
 use super::simulated_robot::{Governed, SimulatedRobot};
 use crate::motion::RegionSwitch;
@@ -179,11 +180,21 @@ impl Simulation<'_> {
     fn advance(&mut self, t_s: f64) {
         let Self { cell, options, robots, states, frames, journal, .. } = self;
         for robot in robots.iter_mut().filter(|robot| !options.is_silent(robot.id, t_s)) {
-            let SimulatedRobot { id, setup, monitor, clock, avoiding, applied, delay, .. } = robot;
-            let Some(avoiding) = avoiding else {
-                delay.send(t_s, *applied);
-                delay.advance(clock, t_s, cell.timing.tick_s);
-                continue;
+            let SimulatedRobot { id, setup, monitor, clock, own_motion, applied, delay, .. } = robot;
+            let avoiding = match own_motion {
+                OwnMotion::Avoiding(avoiding) => avoiding,
+                OwnMotion::None => {
+                    delay.send(t_s, *applied);
+                    delay.advance(clock, t_s, cell.timing.tick_s);
+                    continue;
+                }
+                OwnMotion::Guided(guided) => {
+                    // A scene that cannot be placed moves nothing.
+                    if let Ok(Some(event)) = guided.advance(cell, states, t_s, *applied) {
+                        journal.event(t_s, *id, "", event);
+                    }
+                    continue;
+                }
             };
             let regions = |share: f64| {
                 let sources = frames.sources(&setup.sources, states, t_s);

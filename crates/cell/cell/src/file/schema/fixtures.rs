@@ -16,6 +16,18 @@ pub(in crate::file) const FIXTURE: &[Key] = &[
 ];
 
 #[rustfmt::skip] // a row per key, as in the document
+pub(in crate::file) const OPERATOR: &[Key] = &[
+    key("robot", "name", "required", "the guided robot; it has no program and no avoidance"),
+    key("tool", "name", "the only one, or the one that is mounted", "the tool whose point is guided; it needs a solid"),
+    key("stream", "path", "required", "CSV of desired poses of the tool point in the world: `t_s,x,y,z,qx,qy,qz,qw`, and `enable`, `clutch` (0 or 1) if wanted; a row holds until the next"),
+    key("scale", "0.001 to 100", "1", "motions of the hand count so many times, from the first row on and from where the clutch closes"),
+    key("gap", "length", "0.5 mm", "distance at which the tool glides along surfaces; half of it is never undercut"),
+    key("speed", "length per second", "250 mm/s", "largest speed of the tool point"),
+    key("acceleration", "length per second squared", "5 m/s²", "acceleration with which the tool follows"),
+    key("stale_ms", "ms, at most 1000", "100", "the robot stands if the last row is older"),
+];
+
+#[rustfmt::skip] // a row per key, as in the document
 pub(in crate::file) const FIXTURE_TARGET: &[Key] = &[
     key("line", "list of points", "none", "a line on the surface, through two points or more in the world"),
     key("area", "list of points", "none", "the part of the surface inside a closed line through three points or more"),

@@ -19,6 +19,7 @@ const KEYS: &[(&str, &[Key])] = &[
     ("keys of [region.NAME]", regions::REGION),
     ("keys of [encoder.NAME]", regions::ENCODER),
     ("keys of [fixture.NAME]", fixtures::FIXTURE),
+    ("keys of [operator.NAME]", fixtures::OPERATOR),
     ("keys of `target`", fixtures::FIXTURE_TARGET),
     ("keys of `drill`", fixtures::FIXTURE_DRILL),
     ("keys of `faces_within`", fixtures::FIXTURE_FACES),

@@ -1,0 +1,116 @@
+//! `[operator.NAME]`: a robot that a person guides.
+
+use elbowroom_formats::Diagnostic;
+use elbowroom_formats::toml_tables::Table;
+use elbowroom_robot::{GeometryId, RobotId};
+use elbowroom_scene::{PairEdit, PairRule, Selection};
+use elbowroom_shared_control::NavigatorSettings;
+
+use super::definitions::robot_id;
+use super::fixture::tool_of;
+use super::poses::read_with;
+use super::schema::{OPERATOR, names};
+use crate::operator::{CellOperator, OperatorRow, OperatorStream};
+use crate::{Cell, CellFixture, FixtureTool};
+
+type Result<T> = std::result::Result<T, Diagnostic>;
+
+const STREAM: &str = "stream = \"hand.csv\"   (t_s,x,y,z,qx,qy,qz,qw and, if wanted, enable,clutch)";
+/// Range of the scale of motions.
+const SCALES: (f64, f64) = (1e-3, 100.0);
+/// Most age of a row, ms.
+const MOST_STALE_MS: f64 = 1000.0;
+
+pub(super) fn read(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
+    for (name, t) in root.named("operator")? {
+        let operator = operator(name, &t, cell)?;
+        if let Some(other) = cell.guidance.operators.iter().find(|o| o.robot == operator.robot) {
+            let what = format!("`{}`: the robot has the operator \"{}\" already", t.name, other.name);
+            return Err(t.error(what).hint("one operator per robot"));
+        }
+        let rules: Vec<PairRule> = cell.guidance.fixtures.iter().filter_map(|f| opened(f, &operator, cell)).collect();
+        cell.pair_rules.given.extend(rules);
+        cell.guidance.operators.push(operator);
+    }
+    Ok(())
+}
+
+fn operator(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellOperator> {
+    t.only(&names(&[OPERATOR]))?;
+    let units = cell.units;
+    let robot_value = t.need("robot", "robot = \"arm\"")?;
+    let robot = robot_id(&robot_value, &cell.robots)?;
+    refuse_other_motion(&robot_value, cell, robot)?;
+    let default = NavigatorSettings::default();
+    let length = |key: &str, default: f64| t.get(key).map_or(Ok(default), |v| units.positive_length(&v));
+    let gap_m = length("gap", default.gap_m)?;
+    let stale = t.get("stale_ms");
+    let stale_ms = stale.as_ref().map_or(Ok(100.0), |v| v.positive())?;
+    if let Some(v) = stale.filter(|_| stale_ms > MOST_STALE_MS) {
+        let what = format!("is {stale_ms} ms: for so long a robot would follow a hand that is gone");
+        return Err(v.error(what).hint("stale_ms = 100   (at most 1000)"));
+    }
+    let scale = t.get("scale").map_or(Ok(1.0), |v| {
+        let scale = v.positive()?;
+        let is_usable = (SCALES.0..=SCALES.1).contains(&scale);
+        if is_usable { Ok(scale) } else { Err(v.error(format!("is {scale}")).hint("scale = 1   (0.001 to 100)")) }
+    })?;
+    let (table, rows) = read_with(&t.need("stream", STREAM)?, units, &["enable", "clutch"])?;
+    let row = |r: super::poses::PoseRow| OperatorRow {
+        t_s: r.t_s,
+        pose: r.pose,
+        enabled: r.others[0].is_none_or(|x| x != 0.0),
+        clutch: r.others[1].is_some_and(|x| x != 0.0),
+    };
+    let rows: Vec<OperatorRow> = rows.into_iter().map(row).collect();
+    Ok(CellOperator {
+        name: name.to_owned(),
+        line: t.line,
+        robot,
+        tool: tool(t, cell, robot)?,
+        stream: OperatorStream::new(table.file.clone(), &rows, scale, 1e-3 * stale_ms),
+        settings: NavigatorSettings {
+            gap_m,
+            least_gap_m: 0.5 * gap_m,
+            speed_m_s: length("speed", default.speed_m_s)?,
+            acceleration_m_s2: length("acceleration", default.acceleration_m_s2)?,
+            ..default
+        },
+    })
+}
+
+/// A robot moves by its program, or by an operator.
+fn refuse_other_motion(v: &elbowroom_formats::toml_tables::Value<'_>, cell: &Cell, robot: RobotId) -> Result<()> {
+    let r = &cell.robots[robot.0];
+    let other = match (&r.program, &r.avoidance) {
+        (Some(_), _) => "program",
+        (None, Some(_)) => "avoidance",
+        (None, None) => return Ok(()),
+    };
+    let what = format!("has a table [{other}.{}]: a robot moves by itself, or is guided", r.name);
+    Err(v.error(what).hint(format!("either [{other}.{}] or the operator", r.name)))
+}
+
+fn tool(t: &Table<'_>, cell: &Cell, robot: RobotId) -> Result<FixtureTool> {
+    let r = &cell.robots[robot.0];
+    match t.get("tool") {
+        Some(v) => tool_of(&v, cell, robot, v.text()?),
+        None => match r.payload.tools.iter().find(|tool| tool.mounted) {
+            Some(tool) => tool_of(&t.need("robot", "robot = \"arm\"")?, cell, robot, &tool.name),
+            None => tool_of(&t.need("robot", "robot = \"arm\"")?, cell, robot, "tool"),
+        },
+    }
+}
+
+/// The tool of an operator may touch what the shield of its fixture opens.
+fn opened(fixture: &CellFixture, operator: &CellOperator, cell: &Cell) -> Option<PairRule> {
+    if !(fixture.active && fixture.tool == Some(operator.tool)) {
+        return None;
+    }
+    let link = GeometryId::Link { robot: operator.robot, link: operator.tool.link(cell) };
+    Some(PairRule {
+        a: Selection::from(link),
+        b: Selection::Object(fixture.protects),
+        edit: PairEdit::Skip(format!("the shield of {} guards it", fixture.name)),
+    })
+}

@@ -1,0 +1,12 @@
+//! What a person who guides a robot has: fixtures, and who guides which robot.
+
+use crate::{CellFixture, CellOperator};
+
+/// Fixtures and operators of a cell.
+#[derive(Debug, Clone, Default)]
+pub struct Guidance {
+    /// Virtual fixtures, in file order.
+    pub fixtures: Vec<CellFixture>,
+    /// Operators, in file order; at most one per robot.
+    pub operators: Vec<CellOperator>,
+}

@@ -1,0 +1,112 @@
+//! The guided arm of an operator.
+
+use std::sync::Arc;
+
+use elbowroom_formats::Diagnostic;
+use elbowroom_kinematics::ChainState;
+use elbowroom_kinematics::inverse::{IkOptions, IkSolver};
+use elbowroom_proximity::TriMesh;
+use elbowroom_proximity::contact::triangle_surface;
+use elbowroom_robot::ObjectId;
+use elbowroom_scene::{Scene, SceneState};
+use elbowroom_shared_control::{GuidedArm, NavigatorError, ProtectedSurface, SurfaceNavigator};
+use elbowroom_spatial::Pose;
+
+use crate::{Cell, CellOperator};
+
+/// Chord error of curved surfaces and tools, metres.
+const CHORD_M: f64 = 1e-4;
+
+impl CellOperator {
+    /// The arm that this operator guides, at its start in the scene of the cell.
+    ///
+    /// Its tool glides along all objects that stand still and are closed, and along the shields of the fixtures that are
+    /// on for it, instead of the objects that they protect. Everything else stops it: planes, open meshes and objects that
+    /// move are named in `notes`.
+    ///
+    /// # Errors
+    /// [`Diagnostic`] at the line of the operator, or of a fixture: a start that is too near to a surface, or a shield that
+    /// cannot be made.
+    pub fn arm<'s>(
+        &self,
+        cell: &Cell,
+        scene: &'s Scene,
+        notes: &mut Vec<Diagnostic>,
+    ) -> Result<GuidedArm<'s>, Diagnostic> {
+        let robot = &cell.robots[self.robot.0];
+        let refused = |what: String| Diagnostic::new(&cell.file, self.line, what);
+        let Some((collider, tcp_in_link)) = self.tool.solid(cell) else {
+            return Err(refused(format!("the tool of \"{}\" has no solid", robot.name)));
+        };
+        let link = self.tool.link(cell);
+        let tool = placed(&collider.shape, &(tcp_in_link.inverse() * collider.in_link));
+        let tool = tool.ok_or_else(|| refused(format!("the tool of \"{}\" has no surface", robot.name)))?;
+        let mut chain_state = ChainState::new(&robot.robot.chain);
+        chain_state.q.copy_from_slice(&robot.start);
+        robot.robot.chain.forward(&mut chain_state);
+        let tool_in_world = robot.base_in_world * chain_state.link_in_root(link) * tcp_in_link;
+        let surfaces = self.surfaces(cell, notes)?;
+        let navigator = SurfaceNavigator::new(tool, surfaces, tool_in_world, self.settings)
+            .map_err(|e| refused(format!("operator \"{}\": {}", self.name, in_words(e, cell))))?;
+        let solver = IkSolver::new(&robot.robot.chain, link, tcp_in_link, IkOptions::default());
+        let mut state = SceneState::new(scene);
+        for (index, r) in cell.robots.iter().enumerate() {
+            let set = state.set_q(scene, elbowroom_robot::RobotId(index), &r.start);
+            set.map_err(|e| refused(e.to_string()))?;
+        }
+        let speeds = robot.limits.iter().map(|limits| limits.velocity).collect();
+        GuidedArm::new(navigator, solver, (scene, self.robot), state, speeds)
+            .map_err(|_| refused(format!("\"{}\" cannot hold its tool point at its start", robot.name)))
+    }
+
+    fn surfaces(&self, cell: &Cell, notes: &mut Vec<Diagnostic>) -> Result<Vec<ProtectedSurface>, Diagnostic> {
+        let mut surfaces = Vec::new();
+        let shields: Vec<_> = cell.guidance.fixtures.iter().filter(|f| f.active && f.tool == Some(self.tool)).collect();
+        for (index, object) in cell.objects.iter().enumerate() {
+            let id = ObjectId(index);
+            if cell.moving_objects.iter().any(|m| m.object == id) || shields.iter().any(|f| f.protects == id) {
+                continue;
+            }
+            let surface = triangle_surface(&object.shape, CHORD_M);
+            let protected = surface.map(|mesh| ProtectedSurface::new(mesh, object.in_world));
+            match protected {
+                Some(Ok(surface)) => surfaces.push(surface),
+                Some(Err(e)) => {
+                    let what = format!(
+                        "\"{}\" stops the tool of operator \"{}\", which cannot glide along it: {e}",
+                        object.name, self.name
+                    );
+                    notes.push(Diagnostic::new(&cell.file, self.line, what));
+                }
+                None => {}
+            }
+        }
+        for fixture in shields {
+            let in_world = cell.objects[fixture.protects.0].in_world;
+            let shield = ProtectedSurface::new(fixture.shield(cell)?.mesh, in_world);
+            let refused =
+                |e: NavigatorError| Diagnostic::new(&cell.file, fixture.line, format!("the shield is not usable: {e}"));
+            surfaces.push(shield.map_err(refused)?);
+        }
+        Ok(surfaces)
+    }
+}
+
+/// The surface of a solid in another frame.
+fn placed(shape: &elbowroom_proximity::Shape, in_frame: &Pose) -> Option<Arc<TriMesh>> {
+    let mesh = triangle_surface(shape, CHORD_M)?;
+    let vertices = mesh.vertices().iter().map(|p| in_frame.transform_point(*p)).collect();
+    TriMesh::new(vertices, mesh.triangles().to_vec()).ok().map(Arc::new)
+}
+
+fn in_words(e: NavigatorError, cell: &Cell) -> String {
+    let length = |metres: f64| cell.units.show_length(metres);
+    match e {
+        NavigatorError::TooNear { gap_m, least_gap_m } => format!(
+            "the tool starts {} from a surface; `start` of the robot must keep at least {} (half of `gap`)",
+            length(gap_m),
+            length(least_gap_m)
+        ),
+        other => other.to_string(),
+    }
+}

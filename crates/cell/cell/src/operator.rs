@@ -1,0 +1,149 @@
+//! Operators: who guides a robot, and by which stream of desired poses.
+
+use std::path::PathBuf;
+
+use elbowroom_robot::RobotId;
+use elbowroom_shared_control::NavigatorSettings;
+use elbowroom_spatial::Pose;
+
+use crate::FixtureTool;
+
+/// An operator: `[operator.NAME]`.
+#[derive(Debug, Clone)]
+pub struct CellOperator {
+    /// Its name.
+    pub name: String,
+    /// Line of its table.
+    pub line: usize,
+    /// The guided robot.
+    pub robot: RobotId,
+    /// Its tool.
+    pub tool: FixtureTool,
+    /// The desired poses of its tool point.
+    pub stream: OperatorStream,
+    /// Distances and speeds.
+    pub settings: NavigatorSettings,
+}
+
+/// What an operator wants at one time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum OperatorInput {
+    /// This pose of the tool point, in the world.
+    Pose(Pose),
+    /// Nothing: the enabling switch is not pressed, or the stream has not begun.
+    Disabled,
+    /// Unknown: the last row is too old.
+    Stale,
+    /// Nothing more: the stream is over.
+    Over,
+}
+
+/// A row of a stream.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OperatorRow {
+    /// Time, s.
+    pub t_s: f64,
+    /// Pose of the hand controller, in the world.
+    pub pose: Pose,
+    /// Whether the enabling switch is pressed.
+    pub enabled: bool,
+    /// Whether the clutch is open: the hand moves without the tool.
+    pub clutch: bool,
+}
+
+/// A recorded or generated stream of desired poses; a row holds until the next one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OperatorStream {
+    /// The file.
+    pub file: PathBuf,
+    /// Age (s) from which a row is too old.
+    pub stale_s: f64,
+    /// Times (s, increasing) and desired poses of the tool point; `None` while the operator is not enabled.
+    rows: Vec<(f64, Option<Pose>)>,
+}
+
+impl OperatorStream {
+    /// The desired poses of these rows, in order of time.
+    ///
+    /// Motions of the hand count `scale` times, from the first row on and again from each row at which the clutch closes:
+    /// while it is open, the desired pose stays.
+    pub fn new(file: PathBuf, rows: &[OperatorRow], scale: f64, stale_s: f64) -> Self {
+        let mut wanted = Vec::with_capacity(rows.len());
+        let Some(first) = rows.first() else { return Self { file, stale_s, rows: wanted } };
+        // The hand and the tool at the last engagement.
+        let (mut hand, mut tool) = (first.pose, first.pose);
+        let (mut last, mut was_open) = (first.pose, first.clutch);
+        for row in rows {
+            if row.clutch {
+                (hand, tool) = (row.pose, last);
+            } else {
+                if was_open {
+                    (hand, tool) = (row.pose, last);
+                }
+                let moved = (row.pose.translation - hand.translation) * scale;
+                let turned = row.pose.rotation * hand.rotation.inverse();
+                last = Pose::new((turned * tool.rotation).renormalized(), tool.translation + moved);
+            }
+            was_open = row.clutch;
+            wanted.push((row.t_s, row.enabled.then_some(last)));
+        }
+        Self { file, stale_s, rows: wanted }
+    }
+
+    /// What the operator wants at a time (s).
+    pub fn at(&self, t_s: f64) -> OperatorInput {
+        let next = self.rows.partition_point(|row| row.0 <= t_s);
+        let Some((since_s, wanted)) = next.checked_sub(1).and_then(|k| self.rows.get(k)) else {
+            return if self.rows.is_empty() { OperatorInput::Over } else { OperatorInput::Disabled };
+        };
+        if t_s - since_s > self.stale_s {
+            return if next == self.rows.len() { OperatorInput::Over } else { OperatorInput::Stale };
+        }
+        wanted.map_or(OperatorInput::Disabled, OperatorInput::Pose)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use elbowroom_spatial::Vec3;
+
+    use super::*;
+
+    fn row(t_s: f64, x: f64, clutch: bool) -> OperatorRow {
+        OperatorRow { t_s, pose: Pose::from_translation(Vec3::X * x), enabled: true, clutch }
+    }
+
+    fn x(input: OperatorInput) -> f64 {
+        let OperatorInput::Pose(pose) = input else { panic!("{input:?}") };
+        pose.translation.x
+    }
+
+    #[test]
+    fn an_open_clutch_moves_the_hand_alone_and_motions_are_scaled() {
+        let rows = [
+            row(0.0, 1.0, false),
+            row(1.0, 1.2, false),
+            row(2.0, 1.2, true),
+            row(3.0, 0.8, true),
+            row(4.0, 0.9, false),
+            row(5.0, 1.0, false),
+        ];
+        let stream = OperatorStream::new("hand.csv".into(), &rows, 0.5, 2.0);
+        let found = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0].map(|t| x(stream.at(t)));
+        for (found, expected) in found.into_iter().zip([1.0, 1.1, 1.1, 1.1, 1.1, 1.15]) {
+            assert!((found - expected).abs() < 1e-12, "{found} instead of {expected}");
+        }
+    }
+
+    #[test]
+    fn old_rows_are_stale_and_the_end_is_the_end() {
+        let rows = [row(1.0, 0.0, false), row(3.0, 0.1, false), OperatorRow { enabled: false, ..row(3.1, 0.2, false) }];
+        let stream = OperatorStream::new("hand.csv".into(), &rows, 1.0, 0.5);
+        assert_eq!(stream.at(0.5), OperatorInput::Disabled);
+        assert_eq!(x(stream.at(1.4)), 0.0);
+        assert_eq!(stream.at(1.6), OperatorInput::Stale);
+        assert_eq!(x(stream.at(3.0)), 0.1);
+        assert_eq!(stream.at(3.2), OperatorInput::Disabled);
+        assert_eq!(stream.at(3.7), OperatorInput::Over);
+    }
+}

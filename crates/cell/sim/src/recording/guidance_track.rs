@@ -1,0 +1,68 @@
+//! Recording of a robot that a person guides.
+
+use elbowroom_cell::shared_control::{ArmLimit, Limit};
+use elbowroom_spatial::{Pose, Vec3};
+
+/// Guidance of one robot by its operator.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GuidanceTrack {
+    /// Name of the operator.
+    pub operator: String,
+    /// One per tick.
+    pub samples: Vec<GuidanceSample>,
+}
+
+/// A tick of a guided robot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GuidanceSample {
+    /// Seconds since the run began, at the start of the tick.
+    pub t_s: f64,
+    /// The desired pose of the tool point, in the world; `None` if there is none.
+    pub wanted: Option<Pose>,
+    /// Its actual pose at the end of the tick.
+    pub tool_in_world: Pose,
+    /// Its velocity in the tick, m/s.
+    pub velocity: Vec3,
+    /// A lower bound of the distance between tool and surfaces, m, infinite far from them; `None` at override 0.
+    pub gap_m: Option<f64>,
+    /// Number of surface points that decide the motion.
+    pub active: usize,
+    /// What kept it from following.
+    pub limit: Option<ArmLimit>,
+}
+
+impl GuidanceSample {
+    /// Whether the arm followed the hand, at a surface or not.
+    pub fn follows(&self) -> bool {
+        let of_tool = matches!(self.limit, None | Some(ArmLimit::Tool(Limit::Surface | Limit::Proof)));
+        self.wanted.is_some() && self.gap_m.is_some() && of_tool
+    }
+}
+
+/// What a guided tool does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum GuidanceState {
+    /// It follows the hand.
+    Free,
+    /// It touches a surface, at the gap.
+    Touching,
+    /// It glides along a surface.
+    Gliding,
+    /// The arm cannot follow: its reach, a joint, or contact with something else.
+    Refused,
+    /// It stands: the operator is not enabled, the input is old, or the override is 0.
+    Held,
+}
+
+impl GuidanceState {
+    /// Name of its beginning in `events.csv`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Free => "leave",
+            Self::Touching => "contact",
+            Self::Gliding => "glide",
+            Self::Refused => "refuse",
+            Self::Held => "hold",
+        }
+    }
+}

@@ -1,0 +1,179 @@
+//! `elbowroom run` with `[operator.NAME]`: a guided arm glides, brakes, refuses, and says so.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use crate::common::elbowroom;
+
+const CELL: &str = r#"
+version = 1
+units = { length = "mm", angle = "deg" }
+[robot.arm]
+model = "MODEL"
+start = [0, 0, 0, 0, 35, 0]
+[robot.arm.tool]
+tcp = { at = [0, 0, 100] }
+box = { at = [0, 0, 50], size = [8, 8, 100] }
+[object.work]
+shape = "box"
+size = [400, 400, 200]
+at = [1150, 0, 1200]
+[operator.hand]
+robot = "arm"
+stream = "hand.csv"
+"#;
+
+/// Orientation of the tool at the start: it looks ahead and down.
+const TURN: &str = "0.887010833178222,0,0.46174861323503386,0";
+
+fn write(dir: &Path, cell: &str, hand: impl Fn(f64) -> [f64; 3], seconds: f64) {
+    let model = elbowroom_testkit::folder::model("ns16");
+    std::fs::write(dir.join("cell.toml"), cell.replace("MODEL", &model.display().to_string())).unwrap();
+    let mut text = "t_s,x,y,z,qx,qy,qz,qw\n".to_owned();
+    for k in 0..=(seconds * 50.0) as usize {
+        let t_s = k as f64 * 0.02;
+        let [x, y, z] = hand(t_s);
+        writeln!(text, "{t_s},{x},{y},{z},{TURN}").unwrap();
+    }
+    std::fs::write(dir.join("hand.csv"), text).unwrap();
+}
+
+/// From the start into the block, along it, and up again.
+fn across(t_s: f64) -> [f64; 3] {
+    let y = 100.0 * (t_s - 1.0).clamp(0.0, 2.0) - 100.0 * t_s.min(1.0);
+    let z = if t_s < 3.0 { 1358.8 - 100.0 * t_s.min(1.0) } else { 1258.8 + 100.0 * (t_s - 3.0) };
+    [1104.2, y, z]
+}
+
+struct Row {
+    z_m: f64,
+    gap_m: Option<f64>,
+    active: usize,
+}
+
+fn rows(dir: &Path) -> Vec<Row> {
+    let text = std::fs::read_to_string(dir.join("out/operator.csv")).unwrap();
+    let mut lines = text.lines();
+    let head: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let column = |name: &str| head.iter().position(|h| *h == name).unwrap();
+    let (z, gap, active) = (column("z_m"), column("gap_m"), column("active_rows"));
+    let row = |line: &str| {
+        let cells: Vec<&str> = line.split(',').collect();
+        Row { z_m: cells[z].parse().unwrap(), gap_m: cells[gap].parse().ok(), active: cells[active].parse().unwrap() }
+    };
+    lines.map(row).collect()
+}
+
+#[test]
+fn a_tool_pushed_into_a_block_glides_along_it_and_leaves_it() {
+    let dir = tempfile::tempdir().unwrap();
+    write(dir.path(), CELL, across, 4.0);
+    let answer = elbowroom(dir.path(), &["run", "cell.toml", "--json", "--out", "out"]).expect(0).json();
+    let operator = &answer["operators"][0];
+    let number = |key: &str| operator[key].as_f64().unwrap_or_else(|| panic!("{key} of {operator}"));
+    assert!(number("contact_s") > 2.0 && number("free_s") > 0.5, "{operator}");
+    assert!(number("least_gap_m") >= 0.25e-3 - 1e-9, "{operator}");
+    assert!(number("largest_speed_change_m_s") < 0.025, "{operator}");
+    let rows = rows(dir.path());
+    // The block ends at a height of 1.3 m.
+    assert!(rows.iter().all(|row| row.z_m > 1.3), "{}", rows.iter().map(|row| row.z_m).fold(9.0, f64::min));
+    assert!(rows.iter().any(|row| row.active > 0 && row.gap_m.is_some_and(|gap| gap < 0.6e-3)));
+    let events = std::fs::read_to_string(dir.path().join("out/events.csv")).unwrap();
+    let names: Vec<&str> = events.lines().skip(1).filter_map(|line| line.rsplit(',').next()).collect();
+    assert_eq!(names, ["contact", "glide", "leave"], "{events}");
+}
+
+#[test]
+fn a_stale_or_disabled_hand_stops_the_arm_smoothly() {
+    let dir = tempfile::tempdir().unwrap();
+    let up = |t_s: f64| [1104.2, 0.0, 1358.8 + 100.0 * t_s];
+    write(dir.path(), CELL, up, 2.0);
+    let text = std::fs::read_to_string(dir.path().join("hand.csv")).unwrap();
+    // No rows between 0.5 and 1.2 s.
+    let gap = |line: &&str| line.split(',').next().unwrap().parse::<f64>().is_ok_and(|t| t > 0.5 && t < 1.2);
+    let kept: Vec<&str> = text.lines().filter(|line| !gap(line)).collect();
+    std::fs::write(dir.path().join("hand.csv"), kept.join("\n")).unwrap();
+    let answer = elbowroom(dir.path(), &["run", "cell.toml", "--json", "--out", "out"]).expect(0).json();
+    let operator = &answer["operators"][0];
+    let stopped_s = operator["stopped_s"].as_f64().unwrap();
+    assert!((0.5..0.8).contains(&stopped_s), "{operator}");
+    assert!(operator["largest_speed_change_m_s"].as_f64().unwrap() < 0.025, "{operator}");
+    let events = std::fs::read_to_string(dir.path().join("out/events.csv")).unwrap();
+    assert!(events.contains("hold") && events.contains("leave"), "{events}");
+}
+
+#[test]
+fn a_region_slows_the_guided_tool_down_and_keeps_it_out() {
+    let dir = tempfile::tempdir().unwrap();
+    let region = "[monitor]\nstopping_distance = true\n[region.ceiling]\nshape = \"box\"\nfrom = [500, -500, 1500]\nto = [1500, 500, 2500]\nwarning = 100\nguards = [\"tcp\"]\n";
+    write(dir.path(), &format!("{CELL}{region}"), |t_s| [1104.2, 0.0, 1358.8 + 150.0 * t_s], 3.0);
+    let answer = elbowroom(dir.path(), &["run", "cell.toml", "--json", "--out", "out"]).expect(0).json();
+    assert_eq!(answer["regions"][0]["entered"], false, "{answer}");
+    assert!(answer["robots"][0]["min_override"].as_f64().unwrap() < 0.1, "{answer}");
+    assert!(rows(dir.path()).iter().all(|row| row.z_m < 1.5));
+}
+
+#[test]
+fn the_end_of_the_reach_and_a_start_in_the_work_are_told() {
+    let dir = tempfile::tempdir().unwrap();
+    write(dir.path(), CELL, |t_s| [1104.2, 1500.0 * t_s, 1358.8 + 1500.0 * t_s], 6.0);
+    elbowroom(dir.path(), &["run", "cell.toml", "--json", "--out", "out"]).expect(0);
+    let events = std::fs::read_to_string(dir.path().join("out/events.csv")).unwrap();
+    assert!(events.contains("refuse"), "{events}");
+    write(dir.path(), &CELL.replace("at = [1150, 0, 1200]", "at = [1150, 0, 1258.7]"), across, 1.0);
+    let message = elbowroom(dir.path(), &["run", "cell.toml"]).expect(2).stderr;
+    assert!(message.contains("cell.toml:14") && message.contains("from a surface"), "{message}");
+}
+
+#[test]
+fn a_fixture_opens_the_work_for_its_tool() {
+    let dir = tempfile::tempdir().unwrap();
+    // The tool looks straight down.
+    let down = CELL.replace("start = [0, 0, 0, 0, 35, 0]", "start = [0, 0, 0, 0, 90, 0]");
+    let fixture = "[fixture.hole]\nprotects = \"work\"\ntarget = { drill = { at = [1016.5, 0, 1240], axis = [0, 0, -1], depth = 20 } }\nwidth = 24\noffset = 5\ntolerance = 2\ntool = \"arm\"\n";
+    let cell = down.replace("at = [1150, 0, 1200]", "at = [1016.5, 0, 1140]");
+    let hand = |t_s: f64| [1016.5, 0.0, 1330.0 - 60.0 * t_s.min(2.0)];
+    let lowest = |cell: &str| {
+        write(dir.path(), cell, hand, 4.0);
+        let text = std::fs::read_to_string(dir.path().join("hand.csv")).unwrap().replace(TURN, "1,0,0,0");
+        std::fs::write(dir.path().join("hand.csv"), text).unwrap();
+        elbowroom(dir.path(), &["run", "cell.toml", "--json", "--out", "out"]).expect(0);
+        rows(dir.path()).iter().map(|row| row.z_m).fold(f64::INFINITY, f64::min)
+    };
+    let (closed, opened) = (lowest(&cell), lowest(&format!("{cell}{fixture}")));
+    assert!(closed > 1.24 && closed < 1.242, "{closed}");
+    assert!(opened < 1.224 && opened > 1.218, "{opened}");
+}
+
+#[test]
+fn operators_that_contradict_the_cell_are_refused_with_their_line() {
+    let dir = tempfile::tempdir().unwrap();
+    for (old, new, expected) in [
+        ("robot = \"arm\"", "robot = \"leg\"", &["cell.toml:15", "\"leg\"", "arm"][..]),
+        ("box = { at = [0, 0, 50], size = [8, 8, 100] }", "", &["has no solid"]),
+        ("stream = \"hand.csv\"", "stream = \"hands.csv\"", &["cell.toml:16", "hands.csv"]),
+        ("stream = \"hand.csv\"", "stream = \"hand.csv\"\nscale = 0", &["cell.toml:17", "scale"]),
+        ("stream = \"hand.csv\"", "stream = \"hand.csv\"\nstale_ms = 5000", &["cell.toml:17", "at most 1000"]),
+        (
+            "[operator.hand]",
+            "[program.arm]\nsteps = [{ wait = 1 }]\n[operator.hand]",
+            &["cell.toml:17", "[program.arm]"],
+        ),
+        (
+            "[operator.hand]",
+            "[operator.other]\nrobot = \"arm\"\nstream = \"hand.csv\"\n[operator.hand]",
+            &["cell.toml:17", "\"other\" already"],
+        ),
+    ] {
+        assert!(CELL.contains(old), "{old}");
+        write(dir.path(), &CELL.replacen(old, new, 1), across, 0.1);
+        let message = elbowroom(dir.path(), &["run", "cell.toml"]).expect(2).stderr;
+        for word in expected {
+            assert!(message.contains(word), "{new}: {word} is not in {message}");
+        }
+    }
+    write(dir.path(), CELL, across, 0.1);
+    std::fs::write(dir.path().join("hand.csv"), "t_s,x,y,z,qx,qy,qz,qw,grip\n0,0,0,0,0,0,0,1,1\n").unwrap();
+    let message = elbowroom(dir.path(), &["run", "cell.toml"]).expect(2).stderr;
+    assert!(message.contains("grip") && message.contains("hand.csv"), "{message}");
+}
