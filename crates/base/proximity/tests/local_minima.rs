@@ -116,24 +116,9 @@ fn the_distance_itself_and_touching_triangles_are_local_minima() {
 fn open_and_inverted_surfaces_leave_no_direction_out() {
     // A sheet seen from its back, and a cube inside out: their normals say nothing about where the free side is.
     let sheet = TriMesh::new(vec![Vec3::ZERO, Vec3::X, Vec3::Y], vec![[0, 1, 2]]).unwrap();
-    let cube = TriMesh::new(
-        (0..8).map(|i| Vec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2))).collect(),
-        vec![
-            [0, 1, 2],
-            [1, 3, 2],
-            [4, 6, 5],
-            [5, 6, 7],
-            [0, 4, 1],
-            [1, 4, 5],
-            [2, 3, 6],
-            [3, 7, 6],
-            [0, 2, 4],
-            [2, 6, 4],
-            [1, 5, 3],
-            [3, 5, 7],
-        ],
-    )
-    .unwrap();
+    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    cube(Vec3::splat(0.5), 1.0, false, &mut vertices, &mut triangles);
+    let cube = TriMesh::new(vertices, triangles).unwrap();
     assert!(cube.report().closed && cube.report().inside_out);
     let (sheet, cube) = (NormalConeHierarchy::new(Arc::new(sheet)), NormalConeHierarchy::new(Arc::new(cube)));
     for side in [-1.0, 1.0] {
@@ -142,6 +127,73 @@ fn open_and_inverted_surfaces_leave_no_direction_out() {
     }
     let above = Pose::from_translation(Vec3::new(0.1, 0.1, 1.05));
     assert!(!minima(&cube, &Pose::IDENTITY, &cube, &above, 0.1).is_empty());
+}
+
+/// A cube of edge 1 about a point, with triangles that face outwards or inwards.
+fn cube(center: Vec3, edge: f64, outward: bool, vertices: &mut Vec<Vec3>, triangles: &mut Vec<[u32; 3]>) {
+    let first = vertices.len() as u32;
+    let corner = |i: u32| Vec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)) - Vec3::splat(0.5);
+    vertices.extend((0..8).map(|i| center + corner(i) * edge));
+    let inward = [
+        [0, 1, 2],
+        [1, 3, 2],
+        [4, 6, 5],
+        [5, 6, 7],
+        [0, 4, 1],
+        [1, 4, 5],
+        [2, 3, 6],
+        [3, 7, 6],
+        [0, 2, 4],
+        [2, 6, 4],
+        [1, 5, 3],
+        [3, 5, 7],
+    ];
+    triangles.extend(inward.map(|[a, b, c]: [u32; 3]| if outward { [a, c, b] } else { [a, b, c] }.map(|v| v + first)));
+}
+
+#[test]
+fn a_part_that_is_inside_out_beside_one_that_is_not_hides_nothing() {
+    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    cube(Vec3::ZERO, 1.0, true, &mut vertices, &mut triangles);
+    cube(Vec3::X * 1.5, 0.5, false, &mut vertices, &mut triangles);
+    let pair = TriMesh::new(vertices, triangles).unwrap();
+    assert!(pair.report().closed && !pair.report().inside_out, "the larger part decides");
+    let pair = NormalConeHierarchy::new(Arc::new(pair));
+    let mut single = (Vec::new(), Vec::new());
+    cube(Vec3::ZERO, 0.2, true, &mut single.0, &mut single.1);
+    let single = NormalConeHierarchy::new(Arc::new(TriMesh::new(single.0, single.1).unwrap()));
+    let above = Pose::from_translation(Vec3::new(1.5, 0.03, 0.36));
+    for found in
+        [minima(&pair, &Pose::IDENTITY, &single, &above, 0.05), minima(&single, &above, &pair, &Pose::IDENTITY, 0.05)]
+    {
+        assert!(found.iter().any(|m| (m.separation.distance - 0.01).abs() < 1e-12), "{found:?}");
+    }
+}
+
+#[test]
+fn seams_that_were_closed_hide_nothing() {
+    let mut random = Random(23);
+    for _ in 0..20 {
+        let lump = random.lump(4);
+        // Every triangle has corners of its own, a little off.
+        let vertices: Vec<Vec3> = lump
+            .triangles()
+            .iter()
+            .flatten()
+            .map(|&v| lump.vertices()[v as usize] + Vec3::from(random.within(2e-8)))
+            .collect();
+        let triangles = (0..vertices.len() as u32 / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        let torn = Arc::new(TriMesh::new(vertices, triangles).unwrap());
+        let (cones, other) = (NormalConeHierarchy::new(torn.clone()), Arc::new(random.lump(3)));
+        let there = Pose::new(random.rotation(), random.vector() * 0.7);
+        let shapes = (Shape::Mesh(torn), Shape::Mesh(other.clone()));
+        let expected = separation(&shapes.0, &Pose::IDENTITY, &shapes.1, &there).distance;
+        if expected > 0.0 {
+            let found = minima(&cones, &Pose::IDENTITY, &NormalConeHierarchy::new(other), &there, expected + 0.01);
+            let least = found.iter().map(|m| m.separation.distance).fold(f64::INFINITY, f64::min);
+            assert!((least - expected).abs() < 1e-11, "{least} instead of {expected}");
+        }
+    }
 }
 
 #[test]

@@ -75,6 +75,11 @@ impl CellFixture {
                 place(at),
                 number + 1
             ),
+            ShieldError::TooFine { tolerance_m, triangles } => format!(
+                "a `tolerance` of {} needs about {triangles} triangles, at most {} are allowed; choose a larger one",
+                units.show_length(tolerance_m),
+                ShieldError::MOST_TRIANGLES
+            ),
             ShieldError::Surface(why) => format!("{surface} cannot be protected: {why}"),
             other => other.to_string(),
         }

@@ -299,7 +299,7 @@ fn a_3d_model_without_joints_yields_a_template_of_joints_that_is_accepted() {
 
 #[test]
 fn a_checksum_is_verified() {
-    let sum = Cell::parse("t.toml", &valid_cell()).unwrap().checksum;
+    let sum = Cell::parse("t.toml", &valid_cell()).unwrap().approval.checksum;
     assert_eq!(sum.len(), 64);
     let pinned = valid_cell().replacen("tick_ms", &format!("checksum = \"{sum}\"\ntick_ms"), 1);
     assert!(Cell::parse("t.toml", &pinned).is_ok());

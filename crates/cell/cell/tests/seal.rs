@@ -65,7 +65,7 @@ fn whatever_changes_the_checksum_breaks_the_seal() {
     let dir = tempfile::tempdir().unwrap();
     let file = dir.path().join("cell.toml");
     sealed(dir.path(), &text());
-    let checksum = Cell::load(&file).unwrap_or_else(|e| panic!("{e}")).checksum;
+    let checksum = Cell::load(&file).unwrap_or_else(|e| panic!("{e}")).approval.checksum;
     let (mut tried, mut free) = (0, 0);
     for mutated in mutations(&text()) {
         let Ok(cell) = Cell::parse(&file, &mutated) else { continue };
@@ -87,9 +87,9 @@ fn text_that_is_no_file_needs_no_seal() {
     let dir = tempfile::tempdir().unwrap();
     let file = dir.path().join("cell.toml");
     sealed(dir.path(), &text());
-    let seal = Cell::load(&file).unwrap().seal.expect("sealed");
+    let seal = Cell::load(&file).unwrap().approval.seal.expect("sealed");
     assert_eq!((seal.class.as_str(), seal.name.as_str(), seal.entries), ("integrator", "I", 1));
-    assert!(Cell::parse(&file, &text().replace("radius = 150", "radius = 140")).unwrap().seal.is_none());
+    assert!(Cell::parse(&file, &text().replace("radius = 150", "radius = 140")).unwrap().approval.seal.is_none());
 }
 
 /// An object with its own path.

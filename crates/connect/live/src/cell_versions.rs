@@ -76,7 +76,7 @@ impl CellVersions {
             return Ok(cell.clone());
         }
         if !built.is_checked {
-            if edited.cell(&[])?.checksum != self.base.checksum {
+            if edited.cell(&[])?.approval.checksum != self.base.approval.checksum {
                 return Err(NoVersion::NotContinued("the cell file has changed since the start".into()));
             }
             built.is_checked = true;

@@ -171,7 +171,7 @@ impl ActiveSet {
                 for j in 0..k {
                     let part = basis[j].dot(rest);
                     upper[j][k] += part;
-                    rest = rest - basis[j] * part;
+                    rest -= basis[j] * part;
                 }
             }
             upper[k][k] = rest.length();
@@ -182,7 +182,7 @@ impl ActiveSet {
             for k in 0..self.len {
                 let part = basis[k].dot(rest);
                 parts[k] += part;
-                rest = rest - basis[k] * part;
+                rest -= basis[k] * part;
             }
         }
         let mut shares = [0.0; 3];

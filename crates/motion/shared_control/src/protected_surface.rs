@@ -23,7 +23,7 @@ impl ProtectedSurface {
     pub fn new(mesh: Arc<TriMesh>, in_world: Pose) -> Result<Self, NavigatorError> {
         check_solid(&mesh)?;
         let surface = NormalConeHierarchy::new(mesh);
-        if !surface.is_solid() {
+        if !surface.is_oriented() {
             return Err(NavigatorError::Unoriented);
         }
         if !in_world.is_finite() {

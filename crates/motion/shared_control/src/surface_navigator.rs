@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use elbowroom_proximity::advanced::{LocalMinimum, NormalConeHierarchy, for_each_local_minimum, mesh_separation_with};
-use elbowroom_proximity::{DistanceSettings, Separation, TriMesh, WarmStart, Workspace};
+use elbowroom_proximity::{DistanceSettings, TriMesh, WarmStart, Workspace};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 use crate::constraint_set::ConstraintSet;
@@ -24,6 +24,8 @@ pub struct SurfaceNavigator {
     /// Largest distance of a point of the tool from the tool point, metres.
     tool_reach_m: f64,
     surfaces: Vec<ProtectedSurface>,
+    /// Where the last distance to each surface was found.
+    warm_starts: Vec<WarmStart>,
     settings: NavigatorSettings,
     tool_in_world: Pose,
     velocity: Vec3,
@@ -55,6 +57,7 @@ impl SurfaceNavigator {
         let mut navigator = Self {
             tool: NormalConeHierarchy::new(tool),
             tool_reach_m,
+            warm_starts: vec![WarmStart::default(); surfaces.len()],
             surfaces,
             settings,
             tool_in_world,
@@ -82,7 +85,7 @@ impl SurfaceNavigator {
     /// gap proves that turning is free. After input that is not usable the tool stands, and the result says why.
     pub fn step(&mut self, desired: &Pose, dt_s: f64) -> NavigationStep {
         self.before = (self.tool_in_world, self.velocity);
-        if !desired.is_finite() {
+        if !(desired.is_finite() && desired.translation.length().is_finite()) {
             return self.stand(Limit::PoseNotFinite);
         }
         if !(dt_s > 0.0 && dt_s <= self.settings.longest_step_s) {
@@ -93,19 +96,27 @@ impl SurfaceNavigator {
         };
         let (wanted, on_the_way) = self.wanted_velocity(desired, dt_s);
         let (velocity, now) = project(wanted, &mut self.velocities);
+        // Two walls that are nearly opposite can ask for a velocity far above that of either.
+        let velocity = velocity * (self.settings.speed_m_s / velocity.length()).min(1.0);
         let active_rows = now.max(on_the_way);
         let travel = velocity * dt_s;
-        let slack_m = (gap_m - self.settings.least_gap_m).max(0.0);
+        // The proof does not rely on the constraints: their search uses normals, and this distance does not.
+        let turn_m = self.tool_reach_m * self.settings.turn_rad_s * dt_s;
+        let slack_limit_m = travel.length() + turn_m + self.settings.least_gap_m;
+        let distance_m = self.least_distance(self.tool_in_world, slack_limit_m);
+        let slack_m = (distance_m - self.settings.least_gap_m).max(0.0);
         let proven = if travel.length() <= slack_m { 1.0 } else { self.proven_share(travel) };
         self.velocity = velocity * proven;
         self.tool_in_world.translation += travel * proven;
         let left_m = if proven < 1.0 { 0.0 } else { (slack_m - travel.length()).max(0.0) };
         let turned_m = self.turn_towards(desired, dt_s, left_m);
         let limit = if proven < 1.0 { Some(Limit::Proof) } else { (active_rows > 0).then_some(Limit::Surface) };
-        let gap_m = if self.velocities.as_slice().is_empty() {
-            f64::INFINITY
+        let is_near = distance_m < slack_limit_m;
+        let gap_m = if is_near || !self.velocities.as_slice().is_empty() {
+            let before_m = if is_near { gap_m.min(distance_m) } else { gap_m };
+            (before_m - travel.length() - turned_m).max(self.settings.least_gap_m)
         } else {
-            (gap_m - travel.length() - turned_m).max(self.settings.least_gap_m)
+            f64::INFINITY
         };
         NavigationStep { tool_in_world: self.tool_in_world, velocity: self.velocity, gap_m, active_rows, limit }
     }
@@ -150,7 +161,7 @@ impl SurfaceNavigator {
     }
 
     /// Collects a constraint for every local minimum of the distance in the range that limits the speed of this step.
-    /// Returns a lower bound of the distance; `None` if it is unknown.
+    /// Returns the least of these distances, at most the range; `None` if it is unknown.
     fn collect_constraints(&mut self, dt_s: f64) -> Option<f64> {
         let Self { tool, surfaces, settings, tool_in_world, velocities, displacements, workspace, .. } = self;
         velocities.clear();
@@ -198,9 +209,9 @@ impl SurfaceNavigator {
     /// A lower bound of the distance between the tool at this pose and the surfaces, at most `limit_m`; 0 inside.
     fn least_distance(&mut self, tool_in_world: Pose, limit_m: f64) -> f64 {
         let mut least = limit_m;
-        for protected in &self.surfaces {
-            let settings = DistanceSettings { limit: least, warm_start: None::<&mut WarmStart>, ..Default::default() };
-            let found: Option<Separation> = mesh_separation_with(
+        for (protected, warm_start) in self.surfaces.iter().zip(&mut self.warm_starts) {
+            let settings = DistanceSettings { limit: least, warm_start: Some(warm_start), ..Default::default() };
+            let found = mesh_separation_with(
                 self.tool.mesh(),
                 &tool_in_world,
                 protected.surface.mesh(),

@@ -11,7 +11,7 @@ use elbowroom_shared_control::{
 use elbowroom_spatial::{Pose, Vec3};
 use elbowroom_testkit::random::SplitMix;
 
-use crate::common::{ball, block, point, relief};
+use crate::common::{ball, block, point};
 
 const SETTINGS: ShieldSettings =
     ShieldSettings { offset_m: 0.004, width_m: 0.012, depth_m: 0.005, flare_rad: 0.3, tolerance_m: 0.003 };
@@ -23,7 +23,7 @@ fn formula(solid: &Shape, shield: &Shield, s: &ShieldSettings, p: Vec3) -> (f64,
         let z = axis.dot(p - *foot);
         let across = (p - *foot - *axis * z).length();
         let wall = s.flare_rad.cos() * (across - 0.5 * s.width_m) - s.flare_rad.sin() * (z + s.depth_m);
-        wall.max(-(z + s.depth_m)).max(z - 2.0 * s.offset_m - 4.0 * s.tolerance_m)
+        wall.max(-(z + s.depth_m)).max(z - s.offset_m - 2.0 * s.tolerance_m)
     };
     (around, shield.passage.iter().map(opening).fold(f64::INFINITY, f64::min))
 }
@@ -52,11 +52,11 @@ fn random_target(mesh: &Arc<TriMesh>, random: &mut SplitMix) -> ShieldTarget {
 #[test]
 fn shields_protect_everything_but_the_opening() {
     let mut random = SplitMix(12);
-    let solids = [ball(0.05, 2), block(Vec3::new(0.1, 0.06, 0.04)), relief(16)];
+    let solids = [ball(0.03, 2), block(Vec3::new(0.06, 0.04, 0.03)), ball(0.02, 1)];
     let (mut bare, mut protected, mut opened) = (0, 0, 0);
-    for (case, solid) in solids.iter().cycle().take(12).enumerate() {
+    for (case, solid) in solids.iter().cycle().take(9).enumerate() {
         let target = random_target(solid, &mut random);
-        let settings = if case >= 6 { ShieldSettings { flare_rad: 0.0, depth_m: 0.0, ..SETTINGS } } else { SETTINGS };
+        let settings = if case >= 5 { ShieldSettings { flare_rad: 0.0, depth_m: 0.0, ..SETTINGS } } else { SETTINGS };
         let shield = match generate_shield(solid, &target, &settings) {
             Ok(shield) => shield,
             Err(ShieldError::LeavesSurface { .. }) => continue,
@@ -108,7 +108,7 @@ fn no_triangle_of_a_shield_crosses_another() {
 fn a_tool_reaches_the_ground_of_a_drilled_opening_and_nothing_beside_it() {
     let solid = block(Vec3::new(0.1, 0.1, 0.05));
     let top = Vec3::Z * 0.025;
-    let settings = ShieldSettings { flare_rad: 0.0, tolerance_m: 0.001, ..SETTINGS };
+    let settings = ShieldSettings { flare_rad: 0.0, tolerance_m: 0.002, ..SETTINGS };
     let target = ShieldTarget::Drill { at: top, axis: -Vec3::Z };
     let shield = generate_shield(&solid, &target, &settings).unwrap();
     let surface = ProtectedSurface::new(shield.mesh, Pose::IDENTITY).unwrap();
@@ -123,9 +123,9 @@ fn a_tool_reaches_the_ground_of_a_drilled_opening_and_nothing_beside_it() {
         navigator.tool_in_world().translation.z - 0.01
     };
     let beside = tip(0.03);
-    assert!(beside > 0.025 + settings.offset_m && beside < 0.025 + settings.offset_m + 0.002, "{beside}");
+    assert!(beside > 0.025 + settings.offset_m && beside < 0.025 + settings.offset_m + 0.003, "{beside}");
     let inside = tip(0.0);
-    assert!(inside < 0.025 - settings.depth_m + 0.002 && inside > 0.025 - settings.depth_m - 0.001, "{inside}");
+    assert!(inside < 0.025 - settings.depth_m + 0.002 && inside > 0.025 - settings.depth_m - 0.002, "{inside}");
 }
 
 #[test]
@@ -149,6 +149,62 @@ fn targets_off_the_surface_are_refused_with_the_place() {
     let open = TriMesh::new(solid.vertices().to_vec(), solid.triangles()[2..].to_vec()).unwrap();
     let drill = ShieldTarget::Drill { at: Vec3::Z * 0.05, axis: -Vec3::Z };
     assert!(generate_shield(&Arc::new(open), &drill, &SETTINGS).unwrap_err().to_string().contains("is open"));
+}
+
+#[test]
+fn the_other_side_of_a_thin_part_stays_protected() {
+    let plate = block(Vec3::new(0.1, 0.1, 0.01));
+    let corner = |x: f64, y: f64| Vec3::new(x, y, 0.005);
+    let border = vec![corner(-0.02, -0.02), corner(0.02, -0.02), corner(0.02, 0.02), corner(-0.02, 0.02)];
+    let settings = ShieldSettings { depth_m: 0.0, width_m: 0.006, flare_rad: 0.0, tolerance_m: 0.002, ..SETTINGS };
+    for target in [ShieldTarget::Area(border), ShieldTarget::FacesWithin { at: corner(0.0, 0.0), radius_m: 0.02 }] {
+        let shield = generate_shield(&plate, &target, &settings).unwrap();
+        assert!(shield.passage.iter().all(|(foot, axis)| foot.z > 0.0 && axis.z > 0.9), "{target:?}");
+        assert!(!shield.mesh.contains(Vec3::Z * 0.008) && shield.mesh.contains(Vec3::Z * -0.005), "{target:?}");
+    }
+}
+
+#[test]
+fn the_width_of_a_shallow_opening_is_that_between_its_walls() {
+    let solid = block(Vec3::new(0.05, 0.03, 0.05));
+    for (depth_m, flare_rad) in [(0.0, 0.0), (0.002, 0.0), (0.01, 0.3)] {
+        let settings = ShieldSettings { depth_m, flare_rad, tolerance_m: 0.0015, ..SETTINGS };
+        let top = |x: f64| Vec3::new(x, 0.0, 0.025);
+        for target in
+            [ShieldTarget::Drill { at: top(0.0), axis: -Vec3::Z }, ShieldTarget::Line(vec![top(-0.015), top(0.015)])]
+        {
+            let width = generate_shield(&solid, &target, &settings).unwrap().narrowest_m(&settings);
+            let expected = settings.width_m + 2.0 * (depth_m + settings.tolerance_m) * flare_rad.tan();
+            assert!((width - expected).abs() < 2.5 * settings.tolerance_m, "{width} instead of {expected}: {target:?}");
+        }
+    }
+}
+
+#[test]
+fn targets_that_lead_elsewhere_or_need_too_much_are_refused() {
+    let solid = block(Vec3::new(0.1, 0.1, 0.05));
+    let top = Vec3::Z * 0.025;
+    let refuse =
+        |target: &ShieldTarget, settings: ShieldSettings| generate_shield(&solid, target, &settings).err().unwrap();
+    let outwards = ShieldTarget::Drill { at: top, axis: Vec3::Z };
+    let error = refuse(&outwards, SETTINGS);
+    assert!(error.to_string().contains("180° off the direction into the solid"), "{error}");
+    // Over the edge of the block, without a point on it.
+    let over = ShieldTarget::Line(vec![Vec3::new(0.036, 0.0, 0.025), Vec3::new(0.05, 0.0, 0.011)]);
+    assert!(matches!(refuse(&over, SETTINGS), ShieldError::LeavesSurface { number: 1, .. }));
+    let drill = ShieldTarget::Drill { at: top, axis: -Vec3::Z };
+    for offset_m in [1.0, 1e9] {
+        let error = refuse(&drill, ShieldSettings { offset_m, ..SETTINGS });
+        assert!(matches!(error, ShieldError::TooFine { .. }), "{error}");
+    }
+    let narrow = ShieldSettings { width_m: 1e-12, ..SETTINGS };
+    let line = ShieldTarget::Line(vec![top, top + Vec3::X * 0.03]);
+    let faces = ShieldTarget::FacesWithin { at: top, radius_m: 0.03 };
+    for target in [line, faces] {
+        assert_eq!(refuse(&target, narrow), ShieldError::TooManyFeet, "{target:?}");
+    }
+    let all = ShieldSettings { width_m: 1.0, depth_m: 1.0, ..SETTINGS };
+    assert_eq!(refuse(&drill, all), ShieldError::NothingLeft);
 }
 
 #[test]

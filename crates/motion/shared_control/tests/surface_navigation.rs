@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use elbowroom_proximity::ccd::{CcdOptions, ConstantTwist, time_of_impact};
 use elbowroom_proximity::{Shape, TriMesh, separation};
 use elbowroom_shared_control::{NavigatorSettings, ProtectedSurface, SurfaceNavigator};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
@@ -32,6 +33,13 @@ impl Bench {
     fn step(&mut self, desired: &Pose, dt_s: f64, least_gap_m: f64) {
         let before = self.navigator.tool_in_world();
         let step = self.navigator.step(desired, dt_s);
+        // The way of the tool point, by continuous collision detection: nothing is passed through.
+        let way = step.tool_in_world.translation - before.translation;
+        let options = CcdOptions { tolerance: 1e-6, ..CcdOptions::default() };
+        for (surface, in_world) in &self.surfaces {
+            let hit = time_of_impact(&self.tool, &ConstantTwist::linear(before, way), surface, in_world, &options);
+            assert_eq!(hit, None, "{step:?}");
+        }
         for k in 1..=4 {
             let share = f64::from(k) / 4.0;
             let at = if k == 4 { step.tool_in_world } else { before.interpolate(&step.tool_in_world, share) };
@@ -147,6 +155,45 @@ fn the_tool_turns_where_there_is_room_and_stays_where_there_is_none() {
     }
     let up = bench.navigator.tool_in_world().transform_vector(Vec3::X).z.abs();
     assert!(up < 0.045, "the blade of 100 mm cannot rise by more than 4 mm in a slot of 14 mm: {up}");
+}
+
+#[test]
+fn the_speed_limit_holds_in_a_tapered_slot() {
+    // Two walls, each half a degree off the vertical, nearer to the ball than the gap: both push it upwards.
+    let half_angle: f64 = 0.5_f64.to_radians();
+    let (radius, gap) = (0.005, 0.3e-3);
+    let wall = |side: f64| {
+        let turned = Rotation::from_rpy(0.0, side * half_angle, 0.0);
+        let away = turned * Vec3::X * (side * (0.05 + radius + gap));
+        (block(Vec3::new(0.1, 0.1, 1.0)), Pose::new(turned, away))
+    };
+    let settings = NavigatorSettings::default();
+    let mut bench = Bench::new(&ball(radius, 2), &[wall(-1.0), wall(1.0)], Pose::IDENTITY, settings);
+    for _ in 0..300 {
+        let before = bench.navigator.tool_in_world().translation;
+        bench.step(&Pose::IDENTITY, 1e-3, settings.least_gap_m);
+        let speed = bench.navigator.tool_in_world().translation.distance(before) / 1e-3;
+        assert!(speed <= settings.speed_m_s * (1.0 + 1e-9), "{speed} m/s");
+    }
+}
+
+#[test]
+fn a_tool_with_a_part_inside_out_is_guarded_as_a_whole() {
+    let (outer, inner) = (block(Vec3::splat(0.02)), block(Vec3::splat(0.01)));
+    let mut vertices = outer.vertices().to_vec();
+    let mut triangles = outer.triangles().to_vec();
+    let first = vertices.len() as u32;
+    vertices.extend(inner.vertices().iter().map(|v| *v - Vec3::Z * 0.03));
+    triangles.extend(inner.triangles().iter().map(|[a, b, c]| [a + first, c + first, b + first]));
+    let tool = Arc::new(TriMesh::new(vertices, triangles).unwrap());
+    let table = (block(Vec3::new(1.0, 1.0, 0.1)), Pose::from_translation(Vec3::Z * -0.05));
+    let settings = NavigatorSettings::default();
+    let mut bench = Bench::new(&tool, &[table], Pose::from_translation(Vec3::Z * 0.06), settings);
+    for _ in 0..1000 {
+        bench.step(&Pose::from_translation(Vec3::Z * -0.1), 1e-3, settings.least_gap_m);
+    }
+    let z = bench.navigator.tool_in_world().translation.z;
+    assert!((z - 0.035 - settings.gap_m).abs() < 1e-5, "{z}");
 }
 
 #[test]

@@ -81,7 +81,13 @@ pub fn for_each_local_minimum(
         let tolerance = DIRECTION_TOLERANCE + 4.0 * error / distance.max(error);
         let is_nearest = |cones: &NormalConeHierarchy, in_world: &Pose, triangle, point, toward: Vec3| {
             let local = (in_world.inverse_transform_point(point), in_world.inverse_transform_vector(toward));
-            cones.vertex_faces.is_nearest_around(cones.mesh(), triangle, local, tolerance, 16.0 * error)
+            cones.vertex_faces.is_nearest_around(
+                cones.mesh(),
+                triangle,
+                local,
+                tolerance,
+                16.0 * error + cones.mesh().report().weld_tolerance,
+            )
         };
         let is_minimum = (on_b - on_a).try_normalize().filter(|_| distance > 2.0 * error).is_none_or(|toward_b| {
             is_nearest(a, a_in_world, triangle_a, on_a, toward_b)

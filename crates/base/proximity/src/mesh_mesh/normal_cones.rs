@@ -161,7 +161,8 @@ fn rotated(rows: &[[f32; 3]; 3], v: [f32; 3]) -> [f32; 3] {
 ///
 /// The cone of a part contains every outward direction in which a point of the part can be the nearest of its
 /// neighbourhood: the normals of its triangles and of all triangles that share a corner with them. Parts that are open,
-/// inside out or without a usable normal have a cone of all directions, so they are slower and not left out.
+/// not outward, joined across a seam or beside a triangle without a usable normal have a cone of all directions, so
+/// they are slower and not left out.
 ///
 /// ```
 /// use std::sync::Arc;
@@ -187,7 +188,8 @@ impl NormalConeHierarchy {
     /// Computes the cones.
     pub fn new(mesh: Arc<TriMesh>) -> Self {
         let vertex_faces = VertexFaces::new(&mesh);
-        let triangles = cones_of_triangles(&mesh, &vertex_faces);
+        let outward = outward_triangles(&mesh, &vertex_faces);
+        let triangles = cones_of_triangles(&mesh, &vertex_faces, &outward);
         let patch = |&t: &u32| {
             let corners = mesh.corners(t as usize).map(|p| mesh.bvh.frame.to_units(p));
             SurfacePatch::of_triangle(corners, triangles[t as usize])
@@ -205,9 +207,10 @@ impl NormalConeHierarchy {
         &self.mesh
     }
 
-    /// True if every part of the surface is closed and all its triangles face outwards.
-    pub fn is_solid(&self) -> bool {
-        (0..self.mesh.triangles().len()).all(|t| is_solid(&self.mesh, t))
+    /// True if every part of the surface is closed and its triangles face the same side.
+    pub fn is_oriented(&self) -> bool {
+        let mesh = &self.mesh;
+        (0..mesh.triangles().len()).all(|t| mesh.in_closed_component[t] && mesh.in_oriented_component[t])
     }
 
     #[inline(always)]
@@ -236,16 +239,32 @@ fn normals(mesh: &TriMesh) -> Vec<Option<Vec3>> {
     (0..mesh.triangles().len()).map(normal).collect()
 }
 
-/// True if a triangle belongs to the closed surface of a solid and faces outwards.
-fn is_solid(mesh: &TriMesh, t: usize) -> bool {
-    mesh.in_closed_component[t] && mesh.in_oriented_component[t] && !mesh.report().inside_out
+/// Whether each triangle belongs to a closed part of the surface that encloses a volume and faces out of it. The wall of a
+/// cavity does not, although it faces out of the solid.
+fn outward_triangles(mesh: &TriMesh, vertex_faces: &VertexFaces) -> Vec<bool> {
+    let mut outward = vec![false; mesh.triangles().len()];
+    for part in vertex_faces.parts(mesh) {
+        let is_oriented = part.iter().all(|&t| mesh.in_closed_component[t] && mesh.in_oriented_component[t]);
+        let origin = mesh.closed_corners(part[0])[0];
+        let volume = |&t: &usize| {
+            let [a, b, c] = mesh.closed_corners(t).map(|p| p - origin);
+            a.dot(b.cross(c))
+        };
+        if is_oriented && part.iter().map(volume).sum::<f64>() > 0.0 {
+            for &t in &part {
+                outward[t] = true;
+            }
+        }
+    }
+    outward
 }
 
-fn cones_of_triangles(mesh: &TriMesh, vertex_faces: &VertexFaces) -> Vec<NormalCone> {
+fn cones_of_triangles(mesh: &TriMesh, vertex_faces: &VertexFaces, outward: &[bool]) -> Vec<NormalCone> {
     let normals = normals(mesh);
     let cone = |t: usize| {
         let neighbours = vertex_faces.neighbours(mesh, t);
-        if !neighbours.clone().all(|t| is_solid(mesh, t)) {
+        let is_clear = |t: usize| outward[t] && normals[t].is_some() && !vertex_faces.is_welded(mesh, t);
+        if !neighbours.clone().all(is_clear) {
             return NormalCone::EVERY_DIRECTION;
         }
         NormalCone::around(neighbours.filter_map(|t| normals[t]).map(|n| (n, ANGLE_MARGIN)))

@@ -41,6 +41,34 @@ impl VertexFaces {
         &self.faces[self.first[v] as usize..self.first[v + 1] as usize]
     }
 
+    /// True if a corner of a triangle is represented by a vertex at another place.
+    pub fn is_welded(&self, mesh: &TriMesh, triangle: usize) -> bool {
+        let place = |v: u32| mesh.vertices()[v as usize];
+        mesh.triangles()[triangle].iter().any(|&v| place(self.welded[v as usize]) != place(v))
+    }
+
+    /// The triangles of each connected part of the surface.
+    pub fn parts(&self, mesh: &TriMesh) -> Vec<Vec<usize>> {
+        let mut is_known = vec![false; mesh.triangles().len()];
+        let mut parts = Vec::new();
+        for first in 0..mesh.triangles().len() {
+            if std::mem::replace(&mut is_known[first], true) {
+                continue;
+            }
+            let (mut part, mut next) = (vec![first], 0);
+            while let Some(&t) = part.get(next) {
+                next += 1;
+                for neighbour in self.neighbours(mesh, t) {
+                    if !std::mem::replace(&mut is_known[neighbour], true) {
+                        part.push(neighbour);
+                    }
+                }
+            }
+            parts.push(part);
+        }
+        parts
+    }
+
     /// The triangles that share a corner with one, some of them twice.
     pub fn neighbours<'a>(&'a self, mesh: &'a TriMesh, triangle: usize) -> impl Iterator<Item = usize> + Clone + 'a {
         mesh.triangles()[triangle].iter().flat_map(|&v| self.around(v)).map(|&t| t as usize)

@@ -31,7 +31,11 @@ fn fixture(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellFixture> {
     if let (Some(depth), Some(_)) = (&depth, depth_m) {
         return Err(depth.error("contradicts the depth of `drill`").hint("the depth in `drill` alone"));
     }
-    let flare_rad = t.get("flare").map_or(Ok(0.0), |v| v.not_negative())?;
+    let flare_rad = t.get("flare").map_or(Ok(0.0), |v| {
+        let flare_rad = units.angle.to_radians(v.not_negative()?);
+        let is_usable = flare_rad.to_degrees() <= 80.0;
+        if is_usable { Ok(flare_rad) } else { Err(v.error("is more than 80°").hint("flare = 15   (degrees)")) }
+    })?;
     Ok(CellFixture {
         name: name.to_owned(),
         line: t.line,
@@ -41,7 +45,7 @@ fn fixture(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellFixture> {
             offset_m: length("offset", 0.002)?,
             width_m: units.positive_length(&t.need("width", "width = 8   (of the opening)")?)?,
             depth_m: depth_m.map_or_else(|| length("depth", 0.0), Ok)?,
-            flare_rad: units.angle.to_radians(flare_rad),
+            flare_rad,
             tolerance_m: t.get("tolerance").map_or(Ok(0.002), |v| units.positive_length(&v))?,
         },
         tool: t.get("tool").map(|v| tool(&v, cell)).transpose()?,
@@ -120,7 +124,8 @@ fn tool(v: &Value<'_>, cell: &Cell) -> Result<FixtureTool> {
 pub(super) fn tool_of(v: &Value<'_>, cell: &Cell, robot: RobotId, tool_name: &str) -> Result<FixtureTool> {
     let CellRobot { name: robot_name, payload, .. } = &cell.robots[robot.0];
     let tools = &payload.tools;
-    let named = tools.iter().position(|t| t.name == tool_name);
+    let is_only = tool_name == "tool" && tools.len() == 1;
+    let named = tools.iter().position(|t| t.name == tool_name || is_only);
     if named.is_none() && !(tools.is_empty() && tool_name == "tool") {
         let what = format!("names the tool \"{tool_name}\", which robot \"{robot_name}\" does not have");
         let known = tools.iter().map(|t| t.name.as_str()).chain(tools.is_empty().then_some("tool"));

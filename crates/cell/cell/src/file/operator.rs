@@ -1,7 +1,7 @@
 //! `[operator.NAME]`: a robot that a person guides.
 
 use elbowroom_formats::Diagnostic;
-use elbowroom_formats::toml_tables::Table;
+use elbowroom_formats::toml_tables::{Table, Value};
 use elbowroom_robot::{GeometryId, RobotId};
 use elbowroom_scene::{PairEdit, PairRule, Selection};
 use elbowroom_shared_control::NavigatorSettings;
@@ -45,7 +45,7 @@ fn operator(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellOperator> {
     let length = |key: &str, default: f64| t.get(key).map_or(Ok(default), |v| units.positive_length(&v));
     let gap_m = length("gap", default.gap_m)?;
     let stale = t.get("stale_ms");
-    let stale_ms = stale.as_ref().map_or(Ok(100.0), |v| v.positive())?;
+    let stale_ms = stale.as_ref().map_or(Ok(100.0), Value::positive)?;
     if let Some(v) = stale.filter(|_| stale_ms > MOST_STALE_MS) {
         let what = format!("is {stale_ms} ms: for so long a robot would follow a hand that is gone");
         return Err(v.error(what).hint("stale_ms = 100   (at most 1000)"));
@@ -80,7 +80,7 @@ fn operator(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellOperator> {
 }
 
 /// A robot moves by its program, or by an operator.
-fn refuse_other_motion(v: &elbowroom_formats::toml_tables::Value<'_>, cell: &Cell, robot: RobotId) -> Result<()> {
+fn refuse_other_motion(v: &Value<'_>, cell: &Cell, robot: RobotId) -> Result<()> {
     let r = &cell.robots[robot.0];
     let other = match (&r.program, &r.avoidance) {
         (Some(_), _) => "program",

@@ -113,7 +113,7 @@ impl RequestHandler {
             action: "start".into(),
             note: Some(keeper.at_start()),
             changes: temporary.map(change).collect(),
-            checksums: [&self.parts.versions.base().checksum, &cell.approval.checksum],
+            checksums: [&self.parts.versions.base().approval.checksum, &cell.approval.checksum],
         });
         if let Err(e) = logged {
             self.report(&format!("the start is not logged: {e}"));

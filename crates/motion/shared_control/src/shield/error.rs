@@ -36,6 +36,21 @@ pub enum ShieldError {
         /// The least number.
         needed: usize,
     },
+    /// The axis of a drill does not lead into the solid.
+    #[error("the axis of the drill is {:.0}° off the direction into the solid, at most 75° are allowed", angle_rad.to_degrees())]
+    DrillAxis {
+        /// Angle between the axis and the direction into the solid, rad.
+        angle_rad: f64,
+    },
+    /// The opening is so narrow beside its length that too many points are needed.
+    #[error("the target is too large beside the width of its opening; choose a larger `width` or `tolerance`")]
+    TooManyFeet,
+    /// The opening swallows the whole solid, so nothing is left to protect.
+    #[error("the opening swallows everything that is to be protected")]
+    NothingLeft,
+    /// The generated surface is not closed.
+    #[error("the shield is not closed; choose another `tolerance`")]
+    NotClosed,
     /// No part of the surface is inside the target.
     #[error("no part of the surface is inside the target")]
     EmptyArea,

@@ -65,37 +65,48 @@ pub fn generate_shield(
     check_solid(protected)?;
     settings.check()?;
     let edge_m = settings.tolerance_m / EDGES_PER_TOLERANCE;
-    check_fineness(protected, settings.tolerance_m)?;
+    check_fineness(protected, settings)?;
     let solid = Shape::Mesh(protected.clone());
-    let corners = protected.triangles().iter().map(|t| t.map(|v| protected.vertices()[v as usize])).collect();
-    let surface = TargetSurface::new(&solid, corners, settings.tolerance_m);
     // Openings this far apart leave ridges of a quarter of the tolerance between them.
     let spacing_m = (settings.width_m * settings.tolerance_m).sqrt();
-    let feet = surface.feet(target, spacing_m, settings.width_m)?;
+    let surface = TargetSurface::new(&solid, protected, settings.tolerance_m, spacing_m, settings.width_m);
+    let feet = surface.feet(target)?;
     // The level lies half the tolerance outside, so that no facet cuts into what is protected; the opening is wider by as
     // much.
     let level = 0.5 * settings.tolerance_m;
-    let opening = Opening::new(&feet, settings.cut(level));
+    let obliqueness = feet.iter().map(|f| surface.cosine(f)).fold(1.0, f64::min);
+    let opening = Opening::new(&feet, settings.cut(level, obliqueness));
     let field = ShieldField { solid: &solid, opening: &opening, offset_m: settings.offset_m };
     let margin = Vec3::splat(settings.offset_m + 2.0 * settings.tolerance_m);
     let bounds = Aabb { min: protected.aabb().min - margin, max: protected.aabb().max + margin };
     let (vertices, triangles) = level_set(&field, level, &bounds, edge_m);
-    let mesh = TriMesh::new(vertices, triangles).map_err(|_| ShieldError::EmptyArea)?;
+    let mesh = TriMesh::new(vertices, triangles).map_err(|_| ShieldError::NothingLeft)?;
+    if !mesh.report().closed || mesh.report().inside_out {
+        return Err(ShieldError::NotClosed);
+    }
     let passage = feet.iter().map(|Foot { point, axis }| (*point, *axis)).collect();
     Ok(Shield { mesh: Arc::new(mesh), passage })
 }
 
-/// Facets cut corners of the field by up to 0.6 edges, measured; half the tolerance is 0.63 edges.
-const EDGES_PER_TOLERANCE: f64 = 1.25;
+/// A point of a tetrahedron of the grid is at most 0.87 edges from its corners, averaged as the field is interpolated,
+/// and vertices keep 1/64 of an edge from them. Half the tolerance is 0.9 edges, so the surface lies between the field's
+/// values 0 and the tolerance.
+const EDGES_PER_TOLERANCE: f64 = 1.8;
+/// Most cubes along an axis of the grid.
+const MOST_CUBES: f64 = 1_048_576.0;
 
 /// Marching tetrahedra give about nine triangles per square of the grid.
-fn check_fineness(mesh: &TriMesh, tolerance_m: f64) -> Result<(), ShieldError> {
-    let edge_m = tolerance_m / EDGES_PER_TOLERANCE;
+fn check_fineness(mesh: &TriMesh, settings: &ShieldSettings) -> Result<(), ShieldError> {
+    let edge_m = settings.tolerance_m / EDGES_PER_TOLERANCE;
     let corner = |v: u32| mesh.vertices()[v as usize];
     let area = |&[a, b, c]: &[u32; 3]| 0.5 * (corner(b) - corner(a)).cross(corner(c) - corner(a)).length();
-    let triangles = 9.0 * mesh.triangles().iter().map(area).sum::<f64>() / (edge_m * edge_m);
-    if triangles > ShieldError::MOST_TRIANGLES as f64 {
-        return Err(ShieldError::TooFine { tolerance_m, triangles: triangles as usize });
+    // The surface of a box around the offset solid bounds what the offset adds.
+    let box_area = |e: Vec3| 2.0 * (e.x * e.y + e.y * e.z + e.z * e.x);
+    let (size, grown) = (mesh.aabb().extent(), mesh.aabb().extent() + Vec3::splat(2.0 * settings.offset_m));
+    let area = mesh.triangles().iter().map(area).sum::<f64>() + box_area(grown) - box_area(size);
+    let triangles = 9.0 * area / (edge_m * edge_m);
+    if triangles > ShieldError::MOST_TRIANGLES as f64 || grown.max_element() / edge_m > MOST_CUBES {
+        return Err(ShieldError::TooFine { tolerance_m: settings.tolerance_m, triangles: triangles as usize });
     }
     Ok(())
 }

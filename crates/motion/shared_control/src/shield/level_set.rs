@@ -30,8 +30,12 @@ pub(super) fn level_set(field: &impl Field, level: f64, bounds: &Aabb, edge_m: f
         vertices: Vec::new(),
         triangles: Vec::new(),
     };
-    let cubes = (bounds.extent().max_element() / edge_m).ceil() as i32 + 2;
-    surface.divide([0; 3], (cubes as u32).next_power_of_two() as i32);
+    let cubes = (bounds.extent().max_element() / edge_m).ceil() + 2.0;
+    let mut size = 1;
+    while f64::from(size) < cubes {
+        size *= 2;
+    }
+    surface.divide([0; 3], size);
     (surface.vertices, surface.triangles)
 }
 

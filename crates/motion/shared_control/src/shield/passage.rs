@@ -11,8 +11,12 @@ use super::settings::ShieldSettings;
 const TURNS: usize = 12;
 /// Largest number of points of the target at which the tool is tried, evenly spread.
 const MOST_POINTS: usize = 200;
-/// Points on the axis of the opening at which its width is measured.
-const WIDTH_POINTS: usize = 5;
+/// Heights above a point of the target at which the width of the opening is measured.
+const WIDTH_HEIGHTS: usize = 3;
+/// Directions across the axis in which the width is measured, over half a turn.
+const WIDTH_DIRECTIONS: usize = 8;
+/// Most steps to a wall.
+const WIDTH_STEPS: usize = 64;
 /// Chord error of curved tools, metres.
 const TOOL_CHORD_M: f64 = 1e-4;
 
@@ -29,15 +33,20 @@ pub struct Passage {
 }
 
 impl Shield {
-    /// Smallest width of the opening along the whole target, between the protected surface and the shield, metres.
+    /// Smallest width of the opening along the whole target, between the protected surface and the shield, metres; at most
+    /// four times the width at its ground.
     pub fn narrowest_m(&self, settings: &ShieldSettings) -> f64 {
         let shield = Shape::Mesh(self.mesh.clone());
+        let most_m = 2.0 * settings.width_m;
+        let step = self.passage.len().div_ceil(MOST_POINTS).max(1);
         let width = |(foot, axis): &(Vec3, Vec3)| {
-            let heights = (0..WIDTH_POINTS).map(|k| settings.offset_m * k as f64 / (WIDTH_POINTS - 1) as f64);
-            let clear = heights.map(|z| project_point(&shield, &Pose::IDENTITY, *foot + *axis * z).signed_distance);
-            2.0 * clear.fold(f64::INFINITY, f64::min).max(0.0)
+            // The ground of a shallow opening may be as high as the tolerance.
+            let lowest = settings.tolerance_m.min(settings.offset_m);
+            let share = |k: usize| k as f64 / (WIDTH_HEIGHTS - 1) as f64;
+            let heights = (0..WIDTH_HEIGHTS).map(|k| lowest + (settings.offset_m - lowest) * share(k));
+            heights.map(|z| chord_m(&shield, *foot + *axis * z, *axis, most_m)).fold(f64::INFINITY, f64::min)
         };
-        self.passage.iter().map(width).fold(f64::INFINITY, f64::min)
+        self.passage.iter().step_by(step).map(width).fold(f64::INFINITY, f64::min)
     }
 
     /// Tries the tool along the axis of the opening at points of the target, at the full depth less the tolerance.
@@ -57,8 +66,10 @@ impl Shield {
     fn admits(&self, tool: &Shape, tool_in_tcp: &Pose, (foot, axis): (Vec3, Vec3), settings: &ShieldSettings) -> bool {
         let shield = Shape::Mesh(self.mesh.clone());
         let ground = foot - axis * (settings.depth_m - settings.tolerance_m).max(0.0);
-        // From outside of the shield's box.
-        let way = axis * self.mesh.aabb().extent().length();
+        // From outside of the shield's box, wherever the tool's point is.
+        let bounds = tool.aabb(tool_in_tcp);
+        let reach = bounds.min.length().max(bounds.max.length());
+        let way = axis * (self.mesh.aabb().extent().length() + reach + (foot - ground).length());
         let down = Rotation::from_z(-axis);
         let options = CcdOptions { tolerance: 1e-6, ..CcdOptions::default() };
         (0..TURNS).any(|k| {
@@ -68,6 +79,29 @@ impl Shield {
             time_of_impact(tool, &motion, &shield, &Pose::IDENTITY, &options).is_none()
         })
     }
+}
+
+/// The shortest chord of the free space around a point across an axis, metres. It is at most twice `most_m`; 0 inside.
+fn chord_m(shield: &Shape, point: Vec3, axis: Vec3, most_m: f64) -> f64 {
+    let (u, v) = (axis.any_perpendicular(), axis.cross(axis.any_perpendicular()));
+    let wall = |direction: Vec3| {
+        // Sphere tracing: nothing is nearer than the distance.
+        let mut gone = 0.0;
+        for _ in 0..WIDTH_STEPS {
+            let free = project_point(shield, &Pose::IDENTITY, point + direction * gone).signed_distance;
+            gone += free.max(0.0);
+            if free < 1e-3 * most_m || gone > most_m {
+                break;
+            }
+        }
+        gone.min(most_m)
+    };
+    let chords = (0..WIDTH_DIRECTIONS).map(|k| {
+        let (sin, cos) = (std::f64::consts::PI * k as f64 / WIDTH_DIRECTIONS as f64).sin_cos();
+        let direction = u * cos + v * sin;
+        wall(direction) + wall(-direction)
+    });
+    chords.fold(f64::INFINITY, f64::min)
 }
 
 /// Twice the largest distance from the tool's axis among the points of the tool up to `length_m` behind its tip, metres.

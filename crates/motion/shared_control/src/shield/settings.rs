@@ -30,20 +30,23 @@ impl ShieldSettings {
         if let Some(&(name, value)) = not_negative.iter().find(|(_, x)| !(x.is_finite() && *x >= 0.0)) {
             return Err(NavigatorError::Setting { name, value, wanted: "0 or more" }.into());
         }
-        if self.flare_rad > 1.4 {
+        if self.flare_rad > 80.0_f64.to_radians() + 1e-9 {
             let (name, value) = ("flare_rad", self.flare_rad);
-            return Err(NavigatorError::Setting { name, value, wanted: "at most 1.4 (80°)" }.into());
+            return Err(NavigatorError::Setting { name, value, wanted: "at most 1.396 (80°)" }.into());
         }
         Ok(())
     }
 
-    /// The opening, wider by `margin_m` on all sides.
-    pub(super) fn cut(&self, margin_m: f64) -> Cut {
+    /// The opening, wider by `margin_m` on all sides. `cosine` is the smallest one between its axes and the normals of the
+    /// surface.
+    pub(super) fn cut(&self, margin_m: f64, cosine: f64) -> Cut {
+        let radius_m = 0.5 * self.width_m + margin_m;
+        let tangent = (1.0 - cosine * cosine).max(0.0).sqrt() / cosine;
         Cut {
-            radius_m: 0.5 * self.width_m + margin_m,
+            radius_m,
             depth_m: self.depth_m + margin_m,
             // Through the shield, and no farther: a flare without an end would open what overhangs.
-            height_m: 2.0 * self.offset_m + 4.0 * self.tolerance_m,
+            height_m: (self.offset_m + 2.0 * self.tolerance_m) / cosine + radius_m * tangent,
             flare: self.flare_rad.sin_cos(),
         }
     }

@@ -1,4 +1,5 @@
 //! Meshes that tests and benches share: a wavy relief with valleys, thin plates, balls.
+#![allow(dead_code, reason = "every program uses a part of it")]
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -85,7 +86,6 @@ pub fn block(size: Vec3) -> Arc<TriMesh> {
 }
 
 /// A prism along y that lies with a V-shaped valley at the origin; its walls rise at `slope` to both sides.
-#[allow(dead_code, reason = "the bench has no valley")]
 pub fn valley(slope: f64) -> Arc<TriMesh> {
     let section = [(-0.2, 0.2 * slope), (0.0, 0.0), (0.2, 0.2 * slope), (0.2, -0.1), (-0.2, -0.1)];
     let mut vertices: Vec<Vec3> = section.iter().map(|&(x, z)| Vec3::new(x, -0.3, z)).collect();
@@ -110,7 +110,6 @@ pub fn point(random: &mut SplitMix, half_width: f64) -> Vec3 {
 }
 
 /// A pose in a cube of this half width, turned by up to `angle` about any axis.
-#[allow(dead_code, reason = "the bench keeps the orientation")]
 pub fn pose(random: &mut SplitMix, half_width: f64, angle: f64) -> Pose {
     Pose::new(Rotation::from_rotation_vector(point(random, angle)), point(random, half_width))
 }
