@@ -109,6 +109,10 @@ fn a_region_slows_the_guided_tool_down_and_keeps_it_out() {
     write(dir.path(), &format!("{CELL}{region}"), |t_s| [1104.2, 0.0, 1358.8 + 150.0 * t_s], 3.0);
     let answer = elbowroom(dir.path(), &["run", "cell.toml", "--json", "--out", "out"]).expect(0).json();
     assert_eq!(answer["regions"][0]["entered"], false, "{answer}");
+    // In advance nothing is known about where a person moves a robot.
+    let check = elbowroom(dir.path(), &["check", "cell.toml", "--json"]).expect(1).json();
+    let reason = check["regions"][0]["reason"].as_str().unwrap();
+    assert!(check["regions"][0]["excluded"] == false && reason.contains("a person guides the robot"), "{check}");
     assert!(answer["robots"][0]["min_override"].as_f64().unwrap() < 0.1, "{answer}");
     assert!(rows(dir.path()).iter().all(|row| row.z_m < 1.5));
 }

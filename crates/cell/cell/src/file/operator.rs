@@ -24,7 +24,7 @@ const MOST_STALE_MS: f64 = 1000.0;
 pub(super) fn read(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
     for (name, t) in root.named("operator")? {
         let operator = operator(name, &t, cell)?;
-        if let Some(other) = cell.guidance.operators.iter().find(|o| o.robot == operator.robot) {
+        if let Some(other) = cell.guidance.operator_of(operator.robot) {
             let what = format!("`{}`: the robot has the operator \"{}\" already", t.name, other.name);
             return Err(t.error(what).hint("one operator per robot"));
         }

@@ -145,6 +145,12 @@ impl EntryAnalysis<'_> {
                 format!("no [avoidance.{}]", self.robot().name),
             ));
         }
+        if let Some(operator) = self.cell.guidance.operator_of(self.robot) {
+            return Some(MissingGuarantee::new(
+                "a person guides the robot: its speeds and ways are not known in advance",
+                format!("a program instead of [operator.{}]", operator.name),
+            ));
+        }
         None
     }
 

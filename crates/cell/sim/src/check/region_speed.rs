@@ -46,10 +46,10 @@ pub(super) fn max_region_speed_m_s(paths: &PlannedPaths<'_>, region: &CellRegion
     }
 }
 
-/// Whether a robot may leave its program, because it evades, or replans around obstacles that sensors see.
+/// Whether a robot may leave its program, because it evades, replans around obstacles that sensors see, or is guided.
 fn leaves_its_program(cell: &Cell, robot: RobotId) -> bool {
     let evades = cell.robots[robot.0].avoidance.is_some();
-    evades || replans(cell, robot)
+    evades || replans(cell, robot) || cell.guidance.operator_of(robot).is_some()
 }
 
 /// Whether a robot with a program replans around obstacles that sensors see.

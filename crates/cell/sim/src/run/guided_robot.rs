@@ -33,7 +33,7 @@ impl<'s> GuidedRobot<'s> {
         robot: RobotId,
         notes: &mut Vec<Diagnostic>,
     ) -> Result<Option<Self>, Diagnostic> {
-        let Some(operator) = cell.guidance.operators.iter().find(|o| o.robot == robot) else { return Ok(None) };
+        let Some(operator) = cell.guidance.operator_of(robot) else { return Ok(None) };
         let arm = operator.arm(cell, scene, notes)?;
         let rest = vec![0.0; arm.q().len()];
         let track = GuidanceTrack { operator: operator.name.clone(), samples: Vec::new() };

@@ -154,7 +154,8 @@ pub fn simulate_observed(
 
 /// True if the robot keeps to its program, so that its claims are known.
 ///
-/// A robot with avoidance, or with planned moves around obstacles that sensors see, may leave its program.
+/// A robot with avoidance, or with planned moves around obstacles that sensors see, may leave its program; a guided one
+/// has none.
 fn keeps_to_plan(
     cell: &Cell,
     options: &RunOptions,
@@ -164,7 +165,8 @@ fn keeps_to_plan(
 ) -> bool {
     let avoids = options.avoidance && cell.robots[robot.0].avoidance.is_some();
     let replans = plan.has_planned_moves() && perceived.search_s(robot).is_some();
-    options.apply_override && !avoids && !replans
+    let is_guided = cell.guidance.operator_of(robot).is_some();
+    options.apply_override && !avoids && !replans && !is_guided
 }
 
 /// The guard of a robot against what sensors see; `None` for one that no sensor guards.
