@@ -3,11 +3,11 @@
 //! It contains place and time of a stop, what governed, the duration, and what would release the robot.
 
 use elbowroom_monitor::OverrideReason;
-use elbowroom_sim::{AvoidanceSummary, Outcome, Recording, RegionTrack, RobotTrack, Stop};
+use elbowroom_sim::{AvoidanceSummary, OperatorSummary, Outcome, Recording, RegionTrack, RobotTrack, Stop};
 use elbowroom_spatial::Vec3;
 
 use crate::explanation::{collision_text, reason_text};
-use crate::summary::{last_motion_s, millimetres};
+use crate::summary::{followed, last_motion_s, millimetres};
 
 /// Fraction of the programmed override below which a robot counts as slowed down.
 const SLOWED: f64 = 0.995;
@@ -85,9 +85,14 @@ fn finished(robot: &RobotTrack, rec: &Recording) -> String {
             };
             format!("{at}; before, the monitor {times}{}", at_region(first, rec))
         }
-        None if rec.regions.is_empty() => at + &evaded(robot, rec),
-        None => format!("{at}; {}{}", slowed(robot, rec), evaded(robot, rec)),
+        None if rec.regions.is_empty() => at + &evaded(robot, rec) + &guided(robot, rec),
+        None => format!("{at}; {}{}{}", slowed(robot, rec), evaded(robot, rec), guided(robot, rec)),
     }
+}
+
+/// Description of the guidance.
+fn guided(robot: &RobotTrack, rec: &Recording) -> String {
+    OperatorSummary::of(robot, rec.tick_s).map_or_else(String::new, |guided| format!("; {}", followed(&guided)))
 }
 
 /// Description of the evasion.

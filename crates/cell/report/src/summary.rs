@@ -3,8 +3,9 @@
 use std::fmt;
 
 use elbowroom_sim::{
-    AvoidanceSummary, AvoidanceTrack, Collision, Deadlock, Outcome, PartKind, PerceptionSummary, PerceptionTrack,
-    RecordedRegionKind, Recording, RegionTrack, RobotEnding, RobotTrack, RunEnd, SensorSummary, SensorTrack, Stop,
+    AvoidanceSummary, AvoidanceTrack, Collision, Deadlock, OperatorSummary, Outcome, PartKind, PerceptionSummary,
+    PerceptionTrack, RecordedRegionKind, Recording, RegionTrack, RobotEnding, RobotTrack, RunEnd, SensorSummary,
+    SensorTrack, Stop,
 };
 
 use crate::explanation::explanation;
@@ -192,6 +193,9 @@ fn robot_lines(robot: &RobotTrack, rec: &Recording, names: usize, width: usize) 
     if let Some(track) = &robot.avoidance {
         lines.push(vec![(format!("{indent}{}", evaded(track, rec.tick_s)), Style::Dim)]);
     }
+    if let Some(guided) = OperatorSummary::of(robot, rec.tick_s) {
+        lines.push(vec![(format!("{indent}{}", followed(&guided)), Style::Dim)]);
+    }
     if let Some(track) = &robot.perception {
         lines.extend(kept_clear(track).into_iter().map(|text| vec![(format!("{indent}{text}"), Style::Dim)]));
     }
@@ -257,6 +261,13 @@ fn evaded(track: &AvoidanceTrack, tick_s: f64) -> String {
     let [evading, off_path, waiting] = [a.evading_s, a.off_path_s, a.waiting_s];
     let step = duration(a.step_ns.p50);
     format!("evaded {evading:.2} s, off its path {off_path:.2} s, waited {waiting:.2} s, {nearest}{plans}; step {step}")
+}
+
+/// Summary of a guided robot.
+pub fn followed(guided: &OperatorSummary) -> String {
+    let OperatorSummary { name, free_s, contact_s, stopped_s, least_gap_m, .. } = guided;
+    let gap = least_gap_m.map_or_else(String::new, |gap| format!(", no nearer than {}", millimetres(Some(gap))));
+    format!("guided by {name}: {free_s:.2} s free, {contact_s:.2} s at surfaces{gap}, stood {stopped_s:.2} s")
 }
 
 /// Summary of a robot's reactions to the obstacles that sensors see.

@@ -51,4 +51,4 @@ pub use recording::{
     Span, Stop, TickTimes,
 };
 pub use run::{InputFault, InputFaultKind, RunOptions, RunOutcome, SilentFrom, simulate};
-pub use summary::{AvoidanceSummary, PerceptionSummary, RunSummary, SensorSummary};
+pub use summary::{AvoidanceSummary, OperatorSummary, PerceptionSummary, RunSummary, SensorSummary};

@@ -64,7 +64,8 @@ pub struct OperatorSummary {
 }
 
 impl OperatorSummary {
-    fn of(robot: &crate::recording::RobotTrack, tick_s: f64) -> Option<Self> {
+    /// Summary of a robot; `None` for a robot without operator.
+    pub fn of(robot: &crate::recording::RobotTrack, tick_s: f64) -> Option<Self> {
         let track = robot.guidance.as_ref()?;
         let time =
             |which: fn(&GuidanceSample) -> bool| track.samples.iter().filter(|s| which(s)).count() as f64 * tick_s;

@@ -81,6 +81,8 @@ fn a_tool_pushed_into_a_block_glides_along_it_and_leaves_it() {
     let events = std::fs::read_to_string(dir.path().join("out/events.csv")).unwrap();
     let names: Vec<&str> = events.lines().skip(1).filter_map(|line| line.rsplit(',').next()).collect();
     assert_eq!(names, ["contact", "glide", "leave"], "{events}");
+    let text = elbowroom(dir.path(), &["run", "cell.toml"]).expect(0).stdout;
+    assert!(text.contains("guided by hand: ") && text.contains(" s at surfaces, no nearer than 0."), "{text}");
 }
 
 #[test]
