@@ -57,7 +57,7 @@ pub struct OperatorSummary {
     pub contact_s: f64,
     /// Time in which it had no wish to follow, was stopped by the monitor, or could not follow, s.
     pub stopped_s: f64,
-    /// Least bound of the distance between tool and surfaces, m; null if none was near.
+    /// Least distance between tool and surfaces, m; null if none was near.
     pub least_gap_m: Option<f64>,
     /// Largest change of the tool's velocity from one tick to the next, m/s.
     pub largest_speed_change_m_s: f64,

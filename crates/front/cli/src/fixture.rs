@@ -99,7 +99,8 @@ fn answer<'a>(
 }
 
 fn text(answer: &Answer<'_>, cell: &Cell) -> String {
-    let length = |metres: f64| cell.units.show_length(metres);
+    // To a hundredth of a millimetre.
+    let length = |metres: f64| cell.units.show_length((metres * 1e5).round() / 1e5);
     let mut text = format!("{}: a shield around {}, {} triangles", answer.name, answer.protects, answer.triangles);
     if answer.components > 1 {
         _ = write!(text, ", {} separate parts", answer.components);

@@ -9,8 +9,8 @@ pub struct NavigationStep {
     pub tool_in_world: Pose,
     /// Velocity of the tool point during the step, m/s, world axes.
     pub velocity: Vec3,
-    /// A lower bound of the distance between tool and surfaces after the step, metres; infinite if no surface was in
-    /// the range in which surfaces influence the motion.
+    /// The distance between tool and surfaces at the start of the step, metres; infinite if no surface is in the range in
+    /// which surfaces influence the motion.
     pub gap_m: f64,
     /// Number of surface points, up to three, that constrained the velocity or keep the tool from the desired point.
     pub active_rows: usize,

@@ -2,7 +2,7 @@
 
 use crate::NavigatorError;
 
-/// How fast the tool follows, and how far it stays from surfaces.
+/// Speed and clearance of a navigator.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NavigatorSettings {
     /// Distance at which the tool glides along a surface, metres. It rounds the path at ridges with this radius: a

@@ -109,15 +109,12 @@ impl SurfaceNavigator {
         self.velocity = velocity * proven;
         self.tool_in_world.translation += travel * proven;
         let left_m = if proven < 1.0 { 0.0 } else { (slack_m - travel.length()).max(0.0) };
-        let turned_m = self.turn_towards(desired, dt_s, left_m);
+        self.turn_towards(desired, dt_s, left_m);
         let limit = if proven < 1.0 { Some(Limit::Proof) } else { (active_rows > 0).then_some(Limit::Surface) };
         let is_near = distance_m < slack_limit_m;
-        let gap_m = if is_near || !self.velocities.as_slice().is_empty() {
-            let before_m = if is_near { gap_m.min(distance_m) } else { gap_m };
-            (before_m - travel.length() - turned_m).max(self.settings.least_gap_m)
-        } else {
-            f64::INFINITY
-        };
+        let is_in_range = is_near || !self.velocities.as_slice().is_empty();
+        let gap_m = if is_near { gap_m.min(distance_m) } else { gap_m };
+        let gap_m = if is_in_range { gap_m } else { f64::INFINITY };
         NavigationStep { tool_in_world: self.tool_in_world, velocity: self.velocity, gap_m, active_rows, limit }
     }
 
@@ -185,8 +182,8 @@ impl SurfaceNavigator {
         Some(gap_m)
     }
 
-    /// The share of the travel along which the distance is proven to stay above the least gap: from each point the tool
-    /// goes on by what is left of the distance there.
+    /// The share of the travel for which the distance provably stays above the least gap. Each step of the proof advances
+    /// by the distance there less the least gap.
     fn proven_share(&mut self, travel: Vec3) -> f64 {
         let length = travel.length();
         let mut at = self.tool_in_world;
@@ -224,18 +221,17 @@ impl SurfaceNavigator {
         least
     }
 
-    /// Turns the tool about its point as far as the slack proves, and returns by how much a point of it moved at most.
-    fn turn_towards(&mut self, desired: &Pose, dt_s: f64, slack_m: f64) -> f64 {
+    /// Turns the tool about its point as far as the slack proves.
+    fn turn_towards(&mut self, desired: &Pose, dt_s: f64, slack_m: f64) {
         let way = (desired.rotation * self.tool_in_world.rotation.inverse()).to_rotation_vector();
         let angle = way.length();
         let provable = if self.tool_reach_m > 0.0 { slack_m / self.tool_reach_m } else { f64::INFINITY };
         let turned = angle.min(self.settings.turn_rad_s * dt_s).min(provable);
         if !(turned > 0.0) {
-            return 0.0;
+            return;
         }
         let turn = Rotation::from_rotation_vector(way * (turned / angle));
         self.tool_in_world.rotation = (turn * self.tool_in_world.rotation).renormalized();
-        turned * self.tool_reach_m
     }
 }
 

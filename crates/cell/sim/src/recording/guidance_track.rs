@@ -23,7 +23,7 @@ pub struct GuidanceSample {
     pub tool_in_world: Pose,
     /// Its velocity in the tick, m/s.
     pub velocity: Vec3,
-    /// A lower bound of the distance between tool and surfaces, m, infinite far from them; `None` at override 0.
+    /// Distance between tool and surfaces at the start of the tick, m, infinite far from them; `None` at override 0.
     pub gap_m: Option<f64>,
     /// Number of surface points that decide the motion.
     pub active: usize,
