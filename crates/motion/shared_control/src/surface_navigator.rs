@@ -113,7 +113,7 @@ impl SurfaceNavigator {
         let limit = if proven < 1.0 { Some(Limit::Proof) } else { (active_rows > 0).then_some(Limit::Surface) };
         let is_near = distance_m < slack_limit_m;
         let is_in_range = is_near || !self.velocities.as_slice().is_empty();
-        let gap_m = if is_near { gap_m.min(distance_m) } else { gap_m };
+        let gap_m = if is_near { distance_m } else { gap_m };
         let gap_m = if is_in_range { gap_m } else { f64::INFINITY };
         NavigationStep { tool_in_world: self.tool_in_world, velocity: self.velocity, gap_m, active_rows, limit }
     }
