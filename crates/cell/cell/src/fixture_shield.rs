@@ -6,11 +6,12 @@ use elbowroom_formats::Diagnostic;
 use elbowroom_kinematics::LinkId;
 use elbowroom_proximity::contact::triangle_surface;
 use elbowroom_proximity::{Shape, TriMesh};
-use elbowroom_robot::Collider;
+use elbowroom_robot::{Collider, GeometryId};
+use elbowroom_scene::{PairEdit, PairRule, PairRules, Selection};
 use elbowroom_shared_control::{Passage, Shield, ShieldError, generate_shield};
 use elbowroom_spatial::Pose;
 
-use crate::{Cell, CellFixture, CellRobot, CellTool, FixtureTool};
+use crate::{Cell, CellFixture, CellOperator, CellRobot, CellTool, FixtureTool};
 
 impl FixtureTool {
     /// The link that carries its solid.
@@ -26,6 +27,20 @@ impl FixtureTool {
             Some(CellTool { collider, tcp_in_link, .. }) => Some((collider.as_ref()?, *tcp_in_link)),
             None => Some((payload.tool.as_ref()?, *tcp_in_flange)),
         }
+    }
+}
+
+impl Cell {
+    /// Rules of a run: a guided tool may touch what the shield of its fixture opens.
+    pub fn opened_pairs(&self) -> PairRules {
+        let opened = |fixture: &CellFixture| {
+            let is_on = |o: &&CellOperator| fixture.active && fixture.tool == Some(o.tool);
+            let operator = self.guidance.operators.iter().find(is_on)?;
+            let link = GeometryId::Link { robot: operator.robot, link: operator.tool.link(self) };
+            let edit = PairEdit::Skip(format!("the shield of {} guards it", fixture.name));
+            Some(PairRule { a: link.into(), b: Selection::Object(fixture.protects), edit })
+        };
+        self.guidance.fixtures.iter().filter_map(opened).collect()
     }
 }
 

@@ -78,7 +78,7 @@ pub fn write_operators(recording: &Recording, mut out: impl Write) -> io::Result
             }
             let (p, [qx, qy, qz, qw]) = (s.tool_in_world.translation, s.tool_in_world.rotation.to_quaternion_xyzw());
             write!(out, "{},{},{},{qx},{qy},{qz},{qw},", p.x, p.y, p.z)?;
-            if let Some(gap_m) = s.gap_m.filter(|gap_m| gap_m.is_finite()) {
+            if let Some(gap_m) = s.gap_m {
                 write!(out, "{gap_m}")?;
             }
             writeln!(out, ",{}", s.active)?;

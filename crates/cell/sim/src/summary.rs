@@ -76,7 +76,7 @@ impl OperatorSummary {
             free_s: time(|s| s.follows() && s.active == 0),
             contact_s: time(|s| s.follows() && s.active > 0),
             stopped_s: time(|s| !s.follows()),
-            least_gap_m: track.samples.iter().filter_map(|s| s.gap_m).filter(|gap| gap.is_finite()).reduce(f64::min),
+            least_gap_m: track.samples.iter().filter_map(|s| s.gap_m).reduce(f64::min),
             largest_speed_change_m_s: track.samples.windows(2).map(change).fold(0.0, f64::max),
         })
     }

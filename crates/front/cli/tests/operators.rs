@@ -120,12 +120,28 @@ fn a_region_slows_the_guided_tool_down_and_keeps_it_out() {
 }
 
 #[test]
+fn a_hand_that_turns_back_at_a_region_takes_the_robot_along() {
+    let dir = tempfile::tempdir().unwrap();
+    let region = "[monitor]\nstopping_distance = true\ndirection_aware = true\n[region.ceiling]\nshape = \"box\"\nfrom = [500, -500, 1500]\nto = [1500, 500, 2500]\nwarning = 100\nguards = [\"tcp\"]\n";
+    let up_and_down = |t_s: f64| [1104.2, 0.0, 1358.8 + 150.0 * t_s.min(2.0) - 150.0 * (t_s - 2.0).max(0.0)];
+    write(dir.path(), &format!("{CELL}{region}"), up_and_down, 4.0);
+    let answer = elbowroom(dir.path(), &["run", "cell.toml", "--json", "--out", "out"]).expect(0).json();
+    assert_eq!(answer["regions"][0]["entered"], false, "{answer}");
+    let rows = rows(dir.path());
+    let highest = rows.iter().map(|row| row.z_m).fold(0.0, f64::max);
+    assert!(highest > 1.49 && highest < 1.5, "{highest}");
+    assert!(rows[rows.len() - 1].z_m < 1.38, "{}", rows[rows.len() - 1].z_m);
+}
+
+#[test]
 fn the_end_of_the_reach_and_a_start_in_the_work_are_told() {
     let dir = tempfile::tempdir().unwrap();
     write(dir.path(), CELL, |t_s| [1104.2, 1500.0 * t_s, 1358.8 + 1500.0 * t_s], 6.0);
-    elbowroom(dir.path(), &["run", "cell.toml", "--json", "--out", "out"]).expect(0);
+    let answer = elbowroom(dir.path(), &["run", "cell.toml", "--json", "--out", "out"]).expect(0).json();
     let events = std::fs::read_to_string(dir.path().join("out/events.csv")).unwrap();
     assert!(events.contains("refuse"), "{events}");
+    // Far from the work no gap is told.
+    assert!(answer["operators"][0]["least_gap_m"].is_null(), "{answer}");
     write(dir.path(), &CELL.replace("at = [1150, 0, 1200]", "at = [1150, 0, 1258.7]"), across, 1.0);
     let message = elbowroom(dir.path(), &["run", "cell.toml"]).expect(2).stderr;
     assert!(message.contains("cell.toml:14") && message.contains("from a surface"), "{message}");
@@ -150,6 +166,15 @@ fn a_fixture_opens_the_work_for_its_tool() {
     let (closed, opened) = (lowest(&cell), lowest(&format!("{cell}{fixture}")));
     assert!(closed > 1.24 && closed < 1.242, "{closed}");
     assert!(opened < 1.224 && opened > 1.218, "{opened}");
+    // Only a run leaves the pair out: elsewhere a tool in the work is a collision.
+    let inside = cell.replace("at = [1016.5, 0, 1210]", "at = [924, 0, 1250]");
+    write(
+        dir.path(),
+        &format!("{inside}{fixture}").replace("drill = { at = [1016.5, 0, 1240]", "drill = { at = [924, 0, 1280]"),
+        hand,
+        0.1,
+    );
+    elbowroom(dir.path(), &["query", "cell.toml", "--ask", "collision"]).expect(1);
 }
 
 #[test]
@@ -179,6 +204,10 @@ fn operators_that_contradict_the_cell_are_refused_with_their_line() {
             assert!(message.contains(word), "{new}: {word} is not in {message}");
         }
     }
+    let carrier = "[robot.other]\ndh = [{ a = 100, speed = 90 }]\nbase = { at = [-3000, 0, 0] }\n[program.other]\nsteps = [{ grip = \"work\" }]\n[operator.hand]";
+    write(dir.path(), &CELL.replace("[operator.hand]", carrier), across, 0.1);
+    let message = elbowroom(dir.path(), &["run", "cell.toml"]).expect(2).stderr;
+    assert!(message.contains("does not see parts that are carried, as those of robot \"other\""), "{message}");
     write(dir.path(), CELL, across, 0.1);
     std::fs::write(dir.path().join("hand.csv"), "t_s,x,y,z,qx,qy,qz,qw,grip\n0,0,0,0,0,0,0,1,1\n").unwrap();
     let message = elbowroom(dir.path(), &["run", "cell.toml"]).expect(2).stderr;

@@ -23,6 +23,9 @@ pub enum NavigatorError {
         /// The least distance, metres.
         least_gap_m: f64,
     },
+    /// The arm does not hold its tool at the pose of the navigator, so nothing would be proven.
+    #[error("the arm does not hold its tool at the pose of the navigator; make both of one configuration")]
+    NotAtTool,
     /// A setting is not usable.
     #[error("{name} is {value}; it must be {wanted}")]
     Setting {

@@ -5,7 +5,7 @@ use elbowroom_robot::{GeometryId, RobotId};
 use elbowroom_scene::{Checker, CheckerOptions, Scene, SceneError, SceneState, SweepMove, SweepOptions};
 use elbowroom_spatial::Pose;
 
-use crate::{Limit, NavigationStep, SurfaceNavigator};
+use crate::{Limit, NavigationStep, NavigatorError, SurfaceNavigator};
 
 /// How often a step that the arm cannot follow is halved.
 const HALVINGS: usize = 4;
@@ -39,7 +39,7 @@ pub struct GuidedStep {
 ///
 /// The tool keeps its gap from the protected surfaces. The rest of the arm, and the tool against everything that is not
 /// protected, never touches anything in the scene: each motion of the joints is swept before it is executed. If the arm
-/// cannot follow, the step is shortened on its path, never bent. Steps of an arm that has moved before do not allocate.
+/// cannot follow, the step is shortened on its path, never bent.
 #[derive(Debug)]
 pub struct GuidedArm<'s> {
     navigator: SurfaceNavigator,
@@ -60,14 +60,14 @@ impl<'s> GuidedArm<'s> {
     /// In the scene, pairs of the tool and what a navigator protects may be skipped.
     ///
     /// # Errors
-    /// The navigator's pose is not that of the arm, so nothing would be proven: returns the distance (m) between the two.
+    /// [`NavigatorError::NotAtTool`] if the navigator's pose is not that of the arm.
     pub fn new(
         navigator: SurfaceNavigator,
         solver: IkSolver,
         (scene, robot): (&'s Scene, RobotId),
         state: SceneState,
         joint_speeds: Vec<f64>,
-    ) -> Result<Self, f64> {
+    ) -> Result<Self, NavigatorError> {
         let mut arm = Self {
             navigator,
             scene,
@@ -78,10 +78,9 @@ impl<'s> GuidedArm<'s> {
             solver,
             joint_speeds,
         };
-        let tool_in_root = arm.tool_in_root(&arm.navigator.tool_in_world());
-        let there = arm.solver.refine(&tool_in_root, &mut arm.next);
+        let there = arm.solve(&arm.navigator.tool_in_world());
         let moved = arm.next.iter().zip(arm.state.q(robot)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        if there && moved < 1e-6 { Ok(arm) } else { Err(moved) }
+        if there && moved < 1e-6 { Ok(arm) } else { Err(NavigatorError::NotAtTool) }
     }
 
     /// Joint values, rad or m.
@@ -105,37 +104,43 @@ impl<'s> GuidedArm<'s> {
         change(self.scene, &mut self.state)
     }
 
-    /// Moves the tool point for `dt_s` seconds towards the desired pose, and the arm with it.
-    pub fn step(&mut self, desired: &Pose, dt_s: f64) -> GuidedStep {
-        let mut limit = None;
-        let mut part_s = dt_s;
+    /// Moves the tool point for `dt_s` seconds towards the desired pose, and the arm with it, with the velocity scaled by
+    /// an override, 0 to 1.
+    pub fn step(&mut self, desired: &Pose, dt_s: f64, speed_override: f64) -> GuidedStep {
+        let (mut limit, mut gap_m) = (None, None);
+        let mut share = speed_override;
         for _ in 0..=HALVINGS {
-            let tool = self.navigator.step(desired, part_s);
+            let tool = self.navigator.step_at_override(desired, dt_s, share);
             match self.follow(&tool.tool_in_world, dt_s) {
                 Ok(()) => return GuidedStep { tool, limit: limit.or(tool.limit.map(ArmLimit::Tool)) },
                 Err(why) => {
-                    limit = Some(why);
+                    (limit, gap_m) = (Some(why), tool.gap_m);
                     self.navigator.undo();
-                    part_s *= 0.5;
+                    share *= 0.5;
                 }
             }
         }
-        GuidedStep { tool: self.navigator.stand_still(), limit }
+        GuidedStep { tool: NavigationStep { gap_m, ..self.navigator.stand_still() }, limit }
     }
 
-    /// Stops the arm where it is.
-    pub fn stand_still(&mut self) {
-        self.navigator.stand_still();
+    /// Writes the joint velocities (rad/s or m/s) with which [`step`](Self::step) would follow, and moves nothing; 0 if the
+    /// arm cannot.
+    pub fn intent(&mut self, desired: &Pose, dt_s: f64, velocities: &mut [f64]) {
+        let tool_in_world = self.navigator.step(desired, dt_s).tool_in_world;
+        self.navigator.undo();
+        let is_reached = self.solve(&tool_in_world);
+        let q = self.state.q(self.robot);
+        for ((velocity, to), from) in velocities.iter_mut().zip(&self.next).zip(q) {
+            *velocity = if is_reached { (to - from) / dt_s } else { 0.0 };
+        }
     }
 
     /// Moves the joints so that the tool is there, if the whole motion is free.
     fn follow(&mut self, tool_in_world: &Pose, dt_s: f64) -> Result<(), ArmLimit> {
-        let Self { checker, state, robot, next, joint_speeds, .. } = self;
-        next.copy_from_slice(state.q(*robot));
-        let tool_in_root = self.scene.robots()[robot.0].base_in_world.inverse_mul(tool_in_world);
-        if !self.solver.refine(&tool_in_root, next) {
+        if !self.solve(tool_in_world) {
             return Err(ArmLimit::Reach);
         }
+        let Self { checker, state, robot, next, joint_speeds, .. } = self;
         let too_fast = |(j, (to, from)): (usize, (&f64, &f64))| {
             let largest = joint_speeds.get(j).copied().unwrap_or(0.0) * dt_s;
             ((to - from).abs() > largest * (1.0 + 1e-9)).then_some(j)
@@ -153,7 +158,10 @@ impl<'s> GuidedArm<'s> {
         state.set_q(self.scene, *robot, next).map_err(|_| ArmLimit::Unproven)
     }
 
-    fn tool_in_root(&self, tool_in_world: &Pose) -> Pose {
-        self.scene.robots()[self.robot.0].base_in_world.inverse_mul(tool_in_world)
+    /// Finds the joint values near the present ones that hold the tool there.
+    fn solve(&mut self, tool_in_world: &Pose) -> bool {
+        self.next.copy_from_slice(self.state.q(self.robot));
+        let tool_in_root = self.scene.robots()[self.robot.0].base_in_world.inverse_mul(tool_in_world);
+        self.solver.refine(&tool_in_root, &mut self.next)
     }
 }

@@ -9,9 +9,9 @@ pub struct NavigationStep {
     pub tool_in_world: Pose,
     /// Velocity of the tool point during the step, m/s, world axes.
     pub velocity: Vec3,
-    /// The distance between tool and surfaces at the start of the step, metres; infinite if no surface is in the range in
-    /// which surfaces influence the motion.
-    pub gap_m: f64,
+    /// The distance between tool and surfaces at the start of the step, metres; `None` if no surface is in the range in
+    /// which surfaces influence the motion, or the tool stands because of its input.
+    pub gap_m: Option<f64>,
     /// Number of surface points, up to three, that constrained the velocity or keep the tool from the desired point.
     pub active_rows: usize,
     /// What kept the tool from following the desired pose as fast as the settings allow; `None` if it followed.

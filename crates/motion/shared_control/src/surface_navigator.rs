@@ -28,6 +28,7 @@ pub struct SurfaceNavigator {
     warm_starts: Vec<WarmStart>,
     settings: NavigatorSettings,
     tool_in_world: Pose,
+    /// Velocity of the tool point at override 1, m/s.
     velocity: Vec3,
     /// Pose and velocity before the last step.
     before: (Pose, Vec3),
@@ -84,6 +85,15 @@ impl SurfaceNavigator {
     /// The tool point takes the admissible velocity nearest to the desired one. The orientation follows as far as the
     /// gap proves that turning is free. After input that is not usable the tool stands, and the result says why.
     pub fn step(&mut self, desired: &Pose, dt_s: f64) -> NavigationStep {
+        self.step_at_override(desired, dt_s, 1.0)
+    }
+
+    /// Like [`step`](Self::step), with the velocity scaled by an override, 0 to 1 (NaN counts as 0).
+    ///
+    /// The limit of acceleration is for the scaled velocity: at a small override the tool turns back as soon as the hand
+    /// does.
+    pub fn step_at_override(&mut self, desired: &Pose, dt_s: f64, speed_override: f64) -> NavigationStep {
+        let speed_override = if speed_override > 0.0 { speed_override.min(1.0) } else { 0.0 };
         self.before = (self.tool_in_world, self.velocity);
         if !(desired.is_finite() && desired.translation.length().is_finite()) {
             return self.stand(Limit::PoseNotFinite);
@@ -91,17 +101,20 @@ impl SurfaceNavigator {
         if !(dt_s > 0.0 && dt_s <= self.settings.longest_step_s) {
             return self.stand(Limit::StepDuration);
         }
-        let Some(gap_m) = self.collect_constraints(dt_s) else {
+        // Of the velocity at override 1; without a limit at override 0.
+        let largest_change = self.settings.acceleration_m_s2 * dt_s / speed_override;
+        let Some(gap_m) = self.collect_constraints(dt_s, largest_change) else {
             return self.stand(Limit::DistanceUnknown);
         };
-        let (wanted, on_the_way) = self.wanted_velocity(desired, dt_s);
+        let (wanted, on_the_way) = self.wanted_velocity(desired, dt_s, largest_change);
         let (velocity, now) = project(wanted, &mut self.velocities);
         // Two walls that are nearly opposite can ask for a velocity far above that of either.
         let velocity = velocity * (self.settings.speed_m_s / velocity.length()).min(1.0);
         let active_rows = now.max(on_the_way);
-        let travel = velocity * dt_s;
+        let travel = velocity * (dt_s * speed_override);
         // The proof does not rely on the constraints: their search uses normals, and this distance does not.
-        let turn_m = self.tool_reach_m * self.settings.turn_rad_s * dt_s;
+        let turn_rad = self.settings.turn_rad_s * dt_s * speed_override;
+        let turn_m = self.tool_reach_m * turn_rad;
         let slack_limit_m = travel.length() + turn_m + self.settings.least_gap_m;
         let distance_m = self.least_distance(self.tool_in_world, slack_limit_m);
         let slack_m = (distance_m - self.settings.least_gap_m).max(0.0);
@@ -109,13 +122,13 @@ impl SurfaceNavigator {
         self.velocity = velocity * proven;
         self.tool_in_world.translation += travel * proven;
         let left_m = if proven < 1.0 { 0.0 } else { (slack_m - travel.length()).max(0.0) };
-        self.turn_towards(desired, dt_s, left_m);
+        self.turn_towards(desired, turn_rad, left_m);
         let limit = if proven < 1.0 { Some(Limit::Proof) } else { (active_rows > 0).then_some(Limit::Surface) };
         let is_near = distance_m < slack_limit_m;
-        let is_in_range = is_near || !self.velocities.as_slice().is_empty();
-        let gap_m = if is_near { distance_m } else { gap_m };
-        let gap_m = if is_in_range { gap_m } else { f64::INFINITY };
-        NavigationStep { tool_in_world: self.tool_in_world, velocity: self.velocity, gap_m, active_rows, limit }
+        let is_in_range = !self.velocities.as_slice().is_empty();
+        let gap_m = if is_near { Some(distance_m) } else { is_in_range.then_some(gap_m) };
+        let velocity = self.velocity * speed_override;
+        NavigationStep { tool_in_world: self.tool_in_world, velocity, gap_m, active_rows, limit }
     }
 
     /// Takes the last step back: what carries the tool could not follow it.
@@ -129,7 +142,7 @@ impl SurfaceNavigator {
         NavigationStep {
             tool_in_world: self.tool_in_world,
             velocity: Vec3::ZERO,
-            gap_m: self.settings.least_gap_m,
+            gap_m: None,
             active_rows: 0,
             limit: None,
         }
@@ -144,7 +157,7 @@ impl SurfaceNavigator {
     ///
     /// The desired point is projected before the speed is limited, so that a hand deep inside a solid does not slow the
     /// tool down along its surface. Also returns the number of constraints that keep it from the desired point.
-    fn wanted_velocity(&mut self, desired: &Pose, dt_s: f64) -> (Vec3, usize) {
+    fn wanted_velocity(&mut self, desired: &Pose, dt_s: f64, largest_change: f64) -> (Vec3, usize) {
         let way = desired.translation - self.tool_in_world.translation;
         let (way, active) = project(way, &mut self.displacements);
         let s = &self.settings;
@@ -152,18 +165,17 @@ impl SurfaceNavigator {
         let speed = (distance / dt_s).min(s.speed_m_s).min((2.0 * s.acceleration_m_s2 * distance).sqrt());
         let wanted = if distance > 0.0 { way * (speed / distance) } else { Vec3::ZERO };
         let change = wanted - self.velocity;
-        let largest = s.acceleration_m_s2 * dt_s;
-        let share = if change.length() > largest { largest / change.length() } else { 1.0 };
+        let share = if change.length() > largest_change { largest_change / change.length() } else { 1.0 };
         (self.velocity + change * share, active)
     }
 
     /// Collects a constraint for every local minimum of the distance in the range that limits the speed of this step.
     /// Returns the least of these distances, at most the range; `None` if it is unknown.
-    fn collect_constraints(&mut self, dt_s: f64) -> Option<f64> {
+    fn collect_constraints(&mut self, dt_s: f64, largest_change: f64) -> Option<f64> {
         let Self { tool, surfaces, settings, tool_in_world, velocities, displacements, workspace, .. } = self;
         velocities.clear();
         displacements.clear();
-        let speed_m_s = settings.speed_m_s.min(self.velocity.length() + settings.acceleration_m_s2 * dt_s);
+        let speed_m_s = settings.speed_m_s.min(self.velocity.length() + largest_change);
         let range_m = settings.influence_m(speed_m_s, dt_s);
         let mut gap_m = range_m;
         for protected in surfaces {
@@ -222,11 +234,11 @@ impl SurfaceNavigator {
     }
 
     /// Turns the tool about its point as far as the slack proves.
-    fn turn_towards(&mut self, desired: &Pose, dt_s: f64, slack_m: f64) {
+    fn turn_towards(&mut self, desired: &Pose, turn_rad: f64, slack_m: f64) {
         let way = (desired.rotation * self.tool_in_world.rotation.inverse()).to_rotation_vector();
         let angle = way.length();
         let provable = if self.tool_reach_m > 0.0 { slack_m / self.tool_reach_m } else { f64::INFINITY };
-        let turned = angle.min(self.settings.turn_rad_s * dt_s).min(provable);
+        let turned = angle.min(turn_rad).min(provable);
         if !(turned > 0.0) {
             return;
         }

@@ -8,7 +8,9 @@ use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_proximity::{Cuboid, Shape, TriMesh};
 use elbowroom_robot::{Collider, Robot, RobotId};
 use elbowroom_scene::{Checker, CheckerOptions, Object, Scene, SceneState};
-use elbowroom_shared_control::{ArmLimit, GuidedArm, Limit, NavigatorSettings, ProtectedSurface, SurfaceNavigator};
+use elbowroom_shared_control::{
+    ArmLimit, GuidedArm, Limit, NavigatorError, NavigatorSettings, ProtectedSurface, SurfaceNavigator,
+};
 use elbowroom_spatial::{Pose, Vec3};
 use elbowroom_testkit::random::SplitMix;
 
@@ -78,7 +80,7 @@ fn the_arm_follows_its_tool_in_free_space() {
     let desired = moved_by(start, Vec3::new(-0.05, 0.06, 0.04));
     for _ in 0..1500 {
         let before = arm.q().to_vec();
-        arm.step(&desired, DT_S);
+        arm.step(&desired, DT_S, 1.0);
         assert!(before.iter().zip(arm.q()).all(|(a, b)| (a - b).abs() <= 1.5 * DT_S * (1.0 + 1e-6)));
     }
     assert!(arm.tool_in_world().translation.distance(desired.translation) < 1e-6, "{:?}", arm.tool_in_world());
@@ -96,7 +98,7 @@ fn the_tool_glides_and_nothing_of_the_arm_ever_touches() {
         if k % 100 == 0 {
             desired = moved_by(start, point(&mut random, 0.15) - Vec3::Z * 0.1);
         }
-        let step = arm.step(&desired, DT_S);
+        let step = arm.step(&desired, DT_S, 1.0);
         glided += usize::from(step.limit == Some(ArmLimit::Tool(Limit::Surface)));
         state.set_q(&scene, RobotId(0), arm.q()).unwrap();
         let nearest = checker.distance(&state).unwrap();
@@ -111,7 +113,7 @@ fn what_is_not_protected_stops_the_arm_with_the_pair() {
     let mut arm = guided(&scene, start, false);
     let mut limit = None;
     for _ in 0..1500 {
-        limit = arm.step(&moved_by(start, Vec3::Z * -0.1), DT_S).limit;
+        limit = arm.step(&moved_by(start, Vec3::Z * -0.1), DT_S, 1.0).limit;
     }
     let Some(ArmLimit::Contact(a, b)) = limit else { panic!("{limit:?}") };
     assert_eq!((scene.name(a).as_str(), scene.name(b).as_str()), ("arm/tool0", "work"));
@@ -124,7 +126,7 @@ fn beyond_its_reach_the_arm_stands_and_says_so() {
     let mut arm = guided(&scene, start, false);
     let mut limit = None;
     for _ in 0..8000 {
-        limit = arm.step(&moved_by(start, Vec3::X * 5.0), DT_S).limit;
+        limit = arm.step(&moved_by(start, Vec3::X * 5.0), DT_S, 1.0).limit;
     }
     assert!(matches!(limit, Some(ArmLimit::Reach | ArmLimit::JointSpeed(_))), "{limit:?}");
 }
@@ -138,5 +140,8 @@ fn a_navigator_elsewhere_is_refused() {
     let solver = IkSolver::new(&robot.chain, flange, tcp_in_flange, IkOptions::default());
     let mut state = SceneState::new(&scene);
     state.set_q(&scene, RobotId(0), &START).unwrap();
-    assert!(GuidedArm::new(navigator, solver, (&scene, RobotId(0)), state, vec![1.5; 6]).is_err());
+    assert_eq!(
+        GuidedArm::new(navigator, solver, (&scene, RobotId(0)), state, vec![1.5; 6]).err(),
+        Some(NavigatorError::NotAtTool)
+    );
 }

@@ -242,21 +242,15 @@ fn normals(mesh: &TriMesh) -> Vec<Option<Vec3>> {
 /// Whether each triangle belongs to a closed part of the surface that encloses a volume and faces out of it. The wall of a
 /// cavity does not, although it faces out of the solid.
 fn outward_triangles(mesh: &TriMesh, vertex_faces: &VertexFaces) -> Vec<bool> {
-    let mut outward = vec![false; mesh.triangles().len()];
-    for part in vertex_faces.parts(mesh) {
-        let is_oriented = part.iter().all(|&t| mesh.in_closed_component[t] && mesh.in_oriented_component[t]);
-        let origin = mesh.closed_corners(part[0])[0];
-        let volume = |&t: &usize| {
-            let [a, b, c] = mesh.closed_corners(t).map(|p| p - origin);
-            a.dot(b.cross(c))
-        };
-        if is_oriented && part.iter().map(volume).sum::<f64>() > 0.0 {
-            for &t in &part {
-                outward[t] = true;
-            }
-        }
+    let parts = vertex_faces.parts(mesh);
+    let origin = mesh.aabb().center();
+    let mut volumes = vec![0.0; mesh.vertices().len()];
+    for (t, &part) in parts.iter().enumerate() {
+        let [a, b, c] = mesh.closed_corners(t).map(|p| p - origin);
+        volumes[part as usize] += a.dot(b.cross(c));
     }
-    outward
+    let is_oriented = |t: usize| mesh.in_closed_component[t] && mesh.in_oriented_component[t];
+    parts.iter().enumerate().map(|(t, &part)| is_oriented(t) && volumes[part as usize] > 0.0).collect()
 }
 
 fn cones_of_triangles(mesh: &TriMesh, vertex_faces: &VertexFaces, outward: &[bool]) -> Vec<NormalCone> {

@@ -3,6 +3,7 @@
 use elbowroom_spatial::Vec3;
 
 use crate::TriMesh;
+use crate::shape::topology::components;
 use crate::triangle::nearest_on_segment;
 
 /// The triangles around each vertex. Vertices that represent the same corner count as one.
@@ -47,26 +48,11 @@ impl VertexFaces {
         mesh.triangles()[triangle].iter().any(|&v| place(self.welded[v as usize]) != place(v))
     }
 
-    /// The triangles of each connected part of the surface.
-    pub fn parts(&self, mesh: &TriMesh) -> Vec<Vec<usize>> {
-        let mut is_known = vec![false; mesh.triangles().len()];
-        let mut parts = Vec::new();
-        for first in 0..mesh.triangles().len() {
-            if std::mem::replace(&mut is_known[first], true) {
-                continue;
-            }
-            let (mut part, mut next) = (vec![first], 0);
-            while let Some(&t) = part.get(next) {
-                next += 1;
-                for neighbour in self.neighbours(mesh, t) {
-                    if !std::mem::replace(&mut is_known[neighbour], true) {
-                        part.push(neighbour);
-                    }
-                }
-            }
-            parts.push(part);
-        }
-        parts
+    /// The root vertex of the connected part of each triangle.
+    pub fn parts(&self, mesh: &TriMesh) -> Vec<u32> {
+        let faces: Vec<[u32; 3]> = mesh.triangles().iter().map(|t| t.map(|v| self.welded[v as usize])).collect();
+        let part_of = components(self.welded.len(), &faces);
+        faces.iter().map(|face| part_of[face[0] as usize]).collect()
     }
 
     /// The triangles that share a corner with one, some of them twice.

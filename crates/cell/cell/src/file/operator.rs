@@ -2,16 +2,16 @@
 
 use elbowroom_formats::Diagnostic;
 use elbowroom_formats::toml_tables::{Table, Value};
-use elbowroom_robot::{GeometryId, RobotId};
-use elbowroom_scene::{PairEdit, PairRule, Selection};
+use elbowroom_robot::RobotId;
 use elbowroom_shared_control::NavigatorSettings;
 
 use super::definitions::robot_id;
 use super::fixture::tool_of;
 use super::poses::read_with;
 use super::schema::{OPERATOR, names};
+use super::tools::with_exchanged_tools;
 use crate::operator::{CellOperator, OperatorRow, OperatorStream};
-use crate::{Cell, CellFixture, FixtureTool};
+use crate::{Cell, FixtureTool};
 
 type Result<T> = std::result::Result<T, Diagnostic>;
 
@@ -28,8 +28,6 @@ pub(super) fn read(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
             let what = format!("`{}`: the robot has the operator \"{}\" already", t.name, other.name);
             return Err(t.error(what).hint("one operator per robot"));
         }
-        let rules: Vec<PairRule> = cell.guidance.fixtures.iter().filter_map(|f| opened(f, &operator, cell)).collect();
-        cell.pair_rules.given.extend(rules);
         cell.guidance.operators.push(operator);
     }
     Ok(())
@@ -41,6 +39,7 @@ fn operator(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellOperator> {
     let robot_value = t.need("robot", "robot = \"arm\"")?;
     let robot = robot_id(&robot_value, &cell.robots)?;
     refuse_other_motion(&robot_value, cell, robot)?;
+    refuse_unseen_changes(t, cell)?;
     let default = NavigatorSettings::default();
     let length = |key: &str, default: f64| t.get(key).map_or(Ok(default), |v| units.positive_length(&v));
     let gap_m = length("gap", default.gap_m)?;
@@ -91,6 +90,26 @@ fn refuse_other_motion(v: &Value<'_>, cell: &Cell, robot: RobotId) -> Result<()>
     Err(v.error(what).hint(format!("either [{other}.{}] or the operator", r.name)))
 }
 
+/// A guided arm knows robots and objects as they are at the start, and how objects move by themselves.
+fn refuse_unseen_changes(t: &Table<'_>, cell: &Cell) -> Result<()> {
+    if let Some(robot) = with_exchanged_tools(&cell.robots) {
+        let what = format!(
+            "`{}`: a guided arm does not see tools that are changed, as those of robot \"{}\"",
+            t.name, robot.name
+        );
+        return Err(t.error(what).hint("mounted tools only, or no operator"));
+    }
+    let mut robots = cell.robots.iter().enumerate();
+    if let Some((_, robot)) = robots.find(|(i, _)| !cell.gripped_objects(RobotId(*i)).is_empty()) {
+        let what = format!(
+            "`{}`: a guided arm does not see parts that are carried, as those of robot \"{}\"",
+            t.name, robot.name
+        );
+        return Err(t.error(what).hint("programs without grips, or no operator"));
+    }
+    Ok(())
+}
+
 fn tool(t: &Table<'_>, cell: &Cell, robot: RobotId) -> Result<FixtureTool> {
     let r = &cell.robots[robot.0];
     match t.get("tool") {
@@ -100,17 +119,4 @@ fn tool(t: &Table<'_>, cell: &Cell, robot: RobotId) -> Result<FixtureTool> {
             None => tool_of(&t.need("robot", "robot = \"arm\"")?, cell, robot, "tool"),
         },
     }
-}
-
-/// The tool of an operator may touch what the shield of its fixture opens.
-fn opened(fixture: &CellFixture, operator: &CellOperator, cell: &Cell) -> Option<PairRule> {
-    if !(fixture.active && fixture.tool == Some(operator.tool)) {
-        return None;
-    }
-    let link = GeometryId::Link { robot: operator.robot, link: operator.tool.link(cell) };
-    Some(PairRule {
-        a: Selection::from(link),
-        b: Selection::Object(fixture.protects),
-        edit: PairEdit::Skip(format!("the shield of {} guards it", fixture.name)),
-    })
 }

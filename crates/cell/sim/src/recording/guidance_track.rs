@@ -23,7 +23,9 @@ pub struct GuidanceSample {
     pub tool_in_world: Pose,
     /// Its velocity in the tick, m/s.
     pub velocity: Vec3,
-    /// Distance between tool and surfaces at the start of the tick, m, infinite far from them; `None` at override 0.
+    /// False at override 0.
+    pub is_moving: bool,
+    /// Distance between tool and surfaces at the start of the tick, m; `None` far from them.
     pub gap_m: Option<f64>,
     /// Number of surface points that decide the motion.
     pub active: usize,
@@ -35,7 +37,7 @@ impl GuidanceSample {
     /// Whether the arm followed the hand, at a surface or not.
     pub fn follows(&self) -> bool {
         let of_tool = matches!(self.limit, None | Some(ArmLimit::Tool(Limit::Surface | Limit::Proof)));
-        self.wanted.is_some() && self.gap_m.is_some() && of_tool
+        self.wanted.is_some() && self.is_moving && of_tool
     }
 }
 

@@ -28,8 +28,9 @@ impl<'a> ContactRecorder<'a> {
     pub fn new(cell: &'a Cell, models: &'a [Robot]) -> Self {
         let placed = models.iter().zip(&cell.robots).map(|(model, r)| (model, r.base_in_world));
         let moving: Vec<ObjectId> = cell.moving_objects.iter().map(|m| m.object).collect();
-        let mut checker =
-            FirstContacts::new(placed.collect(), &cell.objects).skipping(cell.pair_rules.all()).moving(&moving);
+        let mut rules = cell.pair_rules.all();
+        rules.extend(cell.opened_pairs());
+        let mut checker = FirstContacts::new(placed.collect(), &cell.objects).skipping(rules).moving(&moving);
         for (robot, r) in cell.robots.iter().enumerate() {
             let absent = r.payload.tools.iter().filter(|t| !t.mounted);
             absent.for_each(|tool| checker.set_present(RobotId(robot), tool.link, false, &[]));

@@ -19,6 +19,8 @@ pub(super) struct GuidedRobot<'s> {
     arm: GuidedArm<'s>,
     /// Joint velocities of the last tick, rad/s or m/s.
     velocity: Vec<f64>,
+    /// Joint velocities at override 1.
+    intent: Vec<f64>,
     rest: Vec<f64>,
     state: GuidanceState,
     is_over: bool,
@@ -37,8 +39,8 @@ impl<'s> GuidedRobot<'s> {
         let arm = operator.arm(cell, scene, notes)?;
         let rest = vec![0.0; arm.q().len()];
         let track = GuidanceTrack { operator: operator.name.clone(), samples: Vec::new() };
-        let (velocity, state) = (rest.clone(), GuidanceState::Free);
-        Ok(Some(Self { operator, arm, velocity, rest, state, is_over: false, track }))
+        let (velocity, intent, state) = (rest.clone(), rest.clone(), GuidanceState::Free);
+        Ok(Some(Self { operator, arm, velocity, intent, rest, state, is_over: false, track }))
     }
 
     /// True when the stream is over and the robot has come to rest.
@@ -53,9 +55,9 @@ impl<'s> GuidedRobot<'s> {
         state.qdd.copy_from_slice(&self.rest);
     }
 
-    /// Joint velocities at override 1, as far as the last tick tells.
+    /// Joint velocities at override 1.
     pub fn intent(&self) -> &[f64] {
-        &self.velocity
+        &self.intent
     }
 
     /// The recording.
@@ -71,19 +73,23 @@ impl<'s> GuidedRobot<'s> {
         states: &[ChainState],
         t_s: f64,
         allowed: f64,
-    ) -> Result<Option<RunEvent>, SceneError> {
+    ) -> Result<Option<RunEvent>, Diagnostic> {
         let tick_s = cell.timing.tick_s;
-        self.arm.surroundings(|scene, state| place(cell, scene, state, states, self.operator.robot, t_s))?;
+        self.arm
+            .surroundings(|scene, state| place(cell, scene, state, states, self.operator.robot, t_s))
+            .map_err(|e| Diagnostic::new(&cell.file, self.operator.line, e))?;
         let before = self.arm.tool_in_world();
         self.velocity.copy_from_slice(self.arm.q());
         let input = self.operator.stream.at(t_s);
         let wanted = if let OperatorInput::Pose(pose) = input { Some(pose) } else { None };
-        // Without a wish the tool brakes. The override slows it down on its path: a step of less time.
+        // Without a wish the tool brakes.
         let goal = wanted.unwrap_or(before);
-        let step = (allowed > 0.0).then(|| self.arm.step(&goal, tick_s * allowed.min(1.0)));
+        let step = self.arm.step(&goal, tick_s, allowed);
         for (velocity, q) in self.velocity.iter_mut().zip(self.arm.q()) {
             *velocity = (q - *velocity) / tick_s;
         }
+        // What the hand wants, also while the override lets nothing move: it may lead away from a region.
+        self.arm.intent(&goal, tick_s, &mut self.intent);
         let tool_in_world = self.arm.tool_in_world();
         let is_at_rest = self.velocity.iter().all(|v| *v == 0.0);
         self.is_over = input == OperatorInput::Over && is_at_rest;
@@ -92,12 +98,13 @@ impl<'s> GuidedRobot<'s> {
             wanted,
             tool_in_world,
             velocity: (tool_in_world.translation - before.translation) / tick_s,
-            gap_m: step.map(|s| s.tool.gap_m),
-            active: step.map_or(0, |s| s.tool.active_rows),
-            limit: step.and_then(|s| s.limit),
+            is_moving: allowed > 0.0,
+            gap_m: step.tool.gap_m,
+            active: step.tool.active_rows,
+            limit: step.limit,
         };
         self.track.samples.push(sample);
-        let is_held = step.is_none() || matches!(input, OperatorInput::Disabled | OperatorInput::Stale);
+        let is_held = allowed <= 0.0 || matches!(input, OperatorInput::Disabled | OperatorInput::Stale);
         let now = next_state(self.state, &sample, is_held);
         let changed = now != self.state;
         self.state = now;

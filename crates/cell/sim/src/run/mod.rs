@@ -110,7 +110,9 @@ pub fn simulate_observed(
         let clock = ProgramClock::new(plan, cell.robots[i].limits.clone());
         robots.push(SimulatedRobot::new(cell, RobotId(i), setup, monitor, clock, claims));
     }
-    let scene = QueryModel::of_cell(cell).scene(OutOfReachProofs::Omit)?;
+    let mut model = QueryModel::of_cell(cell);
+    model.add_rules(cell.opened_pairs());
+    let scene = model.scene(OutOfReachProofs::Omit)?;
     if options.avoidance {
         for robot in &mut robots {
             if let Some(avoiding) = AvoidingRobot::of_robot(cell, &scene, robot.id, &robot.clock)? {

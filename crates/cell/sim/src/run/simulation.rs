@@ -61,7 +61,7 @@ impl Simulation<'_> {
             if let Some(end) = self.end(t_s) {
                 return Ok((t_s, end));
             }
-            self.advance(t_s);
+            self.advance(t_s)?;
             tick += 1;
         }
     }
@@ -177,7 +177,7 @@ impl Simulation<'_> {
     }
 
     /// Moves the robots from `t_s` to the next tick.
-    fn advance(&mut self, t_s: f64) {
+    fn advance(&mut self, t_s: f64) -> Result<(), Diagnostic> {
         let Self { cell, options, robots, states, frames, journal, .. } = self;
         for robot in robots.iter_mut().filter(|robot| !options.is_silent(robot.id, t_s)) {
             let SimulatedRobot { id, setup, monitor, clock, own_motion, applied, delay, .. } = robot;
@@ -189,8 +189,7 @@ impl Simulation<'_> {
                     continue;
                 }
                 OwnMotion::Guided(guided) => {
-                    // A scene that cannot be placed moves nothing.
-                    if let Ok(Some(event)) = guided.advance(cell, states, t_s, *applied) {
+                    if let Some(event) = guided.advance(cell, states, t_s, *applied)? {
                         journal.event(t_s, *id, "", event);
                     }
                     continue;
@@ -204,6 +203,7 @@ impl Simulation<'_> {
                 journal.event(t_s, *id, "", event);
             }
         }
+        Ok(())
     }
 }
 
