@@ -32,6 +32,7 @@ use elbowroom_cell::{Cell, CellRobot, Frames, OutOfReachProofs, QueryModel};
 use elbowroom_diagnostic::Diagnostic;
 use elbowroom_kinematics::ChainState;
 use elbowroom_robot::{Robot, RobotId};
+use elbowroom_scene::Scene;
 
 use crate::motion::{PlannedPaths, ProgramClock, ProgramPlan, plan};
 use crate::recording::{Recording, RegionTrack};
@@ -110,9 +111,7 @@ pub fn simulate_observed(
         let clock = ProgramClock::new(plan, cell.robots[i].limits.clone());
         robots.push(SimulatedRobot::new(cell, RobotId(i), setup, monitor, clock, claims));
     }
-    let mut model = QueryModel::of_cell(cell);
-    model.add_rules(cell.opened_pairs());
-    let scene = model.scene(OutOfReachProofs::Omit)?;
+    let scene = scene(cell)?;
     if options.avoidance {
         for robot in &mut robots {
             if let Some(avoiding) = AvoidingRobot::of_robot(cell, &scene, robot.id, &robot.clock)? {
@@ -152,6 +151,13 @@ pub fn simulate_observed(
     notes.extend(run.robots.iter().filter_map(|robot| robot.own_motion.avoiding()?.fault_warning(cell)));
     run.perceived.iter_mut().for_each(|p| p.take_warnings(&mut notes));
     Ok(RunOutcome { recording: run.finish(t_s, end), notes })
+}
+
+/// The scene of a run, in which guided tools may enter the openings of their shields.
+fn scene(cell: &Cell) -> Result<Scene, Diagnostic> {
+    let mut model = QueryModel::of_cell(cell);
+    model.add_rules(cell.opened_pairs());
+    model.scene(OutOfReachProofs::Omit)
 }
 
 /// True if the robot keeps to its program, so that its claims are known.
