@@ -60,7 +60,7 @@ cargo xtask COMMAND
   models [--check]
         writes the generated robots and tools under examples/models; --check compares instead
   figures [--check]
-        writes the figures of docs/laws.md under docs/figures; --check compares instead
+        writes the figures of the documents under docs/figures; --check compares instead
   reference [--check]
         writes the keys of docs/cell-file.md, the verbs of docs/commands.md and docs/options.md; --check compares instead
   fuzz [SECONDS]

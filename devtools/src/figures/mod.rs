@@ -1,5 +1,7 @@
-//! Figures of `docs/laws.md`: written, or compared with the committed files. Their curves are the laws' own functions.
+//! Figures of the documents: written, or compared with the committed files. Their curves are the laws' own functions.
 
+mod curves;
+mod forces;
 mod plots;
 mod rail;
 pub mod svg;

@@ -3,6 +3,8 @@
 use elbowroom_monitor::laws::{rate_limited, speed_zone, warning_factor};
 use elbowroom_monitor::{Laws, StoppingSettings};
 
+use super::curves::{curve, distance, over};
+use super::forces;
 use super::rail::{Rail, TICK_S};
 use super::svg::{Axis, Curve, Dash, Plot};
 
@@ -26,6 +28,8 @@ pub fn all() -> Result<Vec<(&'static str, Plot)>, String> {
         ("hysteresis", hysteresis()?),
         ("stopping", stopping()),
         ("rate", rate()),
+        ("forces", forces::laws()),
+        ("virtual-mass", forces::mass()),
     ])
 }
 
@@ -267,21 +271,8 @@ fn direction_aware() -> Laws {
     Laws { direction_aware: true, ..Laws::default() }
 }
 
-fn curve(label: &str, colour: usize, dash: Dash, points: Vec<(f64, f64)>) -> Curve {
-    Curve { label: label.into(), colour, dash, points }
-}
-
-fn distance(from: f64, to: f64, step: f64) -> Axis {
-    Axis { title: "distance d (mm)", from, to, step }
-}
-
 fn override_axis() -> Axis {
     Axis { title: "speed override (%)", from: 0.0, to: 100.0, step: 20.0 }
-}
-
-/// Samples a function of x at 201 points.
-fn over(from: f64, to: f64, y: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
-    (0..=200).map(|i| from + (to - from) * f64::from(i) / 200.0).map(|x| (x, y(x))).collect()
 }
 
 #[cfg(test)]

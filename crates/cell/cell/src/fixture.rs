@@ -1,9 +1,12 @@
 //! Virtual fixtures of a cell.
 
-use elbowroom_robot::{ObjectId, RobotId};
-use elbowroom_shared_control::{ShieldSettings, ShieldTarget};
+use std::sync::Arc;
 
-/// A fixture: `[fixture.NAME]`.
+use elbowroom_proximity::TriMesh;
+use elbowroom_robot::{ObjectId, RobotId};
+use elbowroom_shared_control::{Guide, ShieldSettings, ShieldTarget};
+
+/// A fixture that protects: `[fixture.NAME]` without `guide`.
 #[derive(Debug, Clone)]
 pub struct CellFixture {
     /// Its name.
@@ -12,10 +15,8 @@ pub struct CellFixture {
     pub line: usize,
     /// The protected object.
     pub protects: ObjectId,
-    /// What the tool is to reach, in the frame of the object.
-    pub target: ShieldTarget,
-    /// Dimensions of the shield.
-    pub settings: ShieldSettings,
+    /// Its surface.
+    pub shield: ShieldSource,
     /// The tool that it is for; `None` if the file names none.
     pub tool: Option<FixtureTool>,
     /// Whether it is on at the start.
@@ -29,4 +30,33 @@ pub struct FixtureTool {
     pub robot: RobotId,
     /// Index of a named tool; `None` for the only one.
     pub named: Option<usize>,
+}
+
+/// Where the surface of a shield comes from.
+#[derive(Debug, Clone)]
+pub enum ShieldSource {
+    /// It is generated around the object.
+    Generated {
+        /// What the tool is to reach, in the frame of the object.
+        target: ShieldTarget,
+        /// Dimensions of the shield.
+        settings: ShieldSettings,
+    },
+    /// A mesh, in the frame of the object.
+    Mesh(Arc<TriMesh>),
+}
+
+/// A fixture that guides: `[fixture.NAME]` with `guide`.
+#[derive(Debug, Clone)]
+pub struct CellGuide {
+    /// Its name.
+    pub name: String,
+    /// Line of its table.
+    pub line: usize,
+    /// Where the hand is kept, in the world.
+    pub guide: Guide,
+    /// The tool that it is for.
+    pub tool: FixtureTool,
+    /// Whether it is on at the start.
+    pub active: bool,
 }

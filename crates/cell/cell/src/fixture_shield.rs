@@ -8,10 +8,10 @@ use elbowroom_proximity::contact::triangle_surface;
 use elbowroom_proximity::{Shape, TriMesh};
 use elbowroom_robot::{Collider, GeometryId};
 use elbowroom_scene::{PairEdit, PairRule, PairRules, Selection};
-use elbowroom_shared_control::{Passage, Shield, ShieldError, generate_shield};
+use elbowroom_shared_control::{Passage, Shield, ShieldError, ShieldSettings, generate_shield};
 use elbowroom_spatial::Pose;
 
-use crate::{Cell, CellFixture, CellOperator, CellRobot, CellTool, FixtureTool};
+use crate::{Cell, CellFixture, CellOperator, CellRobot, CellTool, FixtureTool, ShieldSource};
 
 impl FixtureTool {
     /// The link that carries its solid.
@@ -45,25 +45,34 @@ impl Cell {
 }
 
 impl CellFixture {
-    /// Generates the shield, in the frame of the protected object.
+    /// Generates the shield, or returns the one that was read, in the frame of the protected object.
     ///
     /// # Errors
     /// [`Diagnostic`] at the line of the table: an object that bounds no solid, or a target off its surface.
     pub fn shield(&self, cell: &Cell) -> Result<Shield, Diagnostic> {
+        let (target, settings) = match &self.shield {
+            ShieldSource::Mesh(mesh) => return Ok(Shield { mesh: mesh.clone(), passage: Vec::new() }),
+            ShieldSource::Generated { target, settings } => (target, settings),
+        };
         let object = &cell.objects[self.protects.0];
         let refused = |what: String| Diagnostic::new(&cell.file, self.line, what);
-        let mesh: Arc<TriMesh> =
-            triangle_surface(&object.shape, 0.25 * self.settings.tolerance_m).ok_or_else(|| {
-                refused(format!("\"{}\" has no surface of triangles, so it cannot be protected", object.name))
-            })?;
-        generate_shield(&mesh, &self.target, &self.settings).map_err(|e| refused(self.in_words(e, cell)))
+        let mesh: Arc<TriMesh> = triangle_surface(&object.shape, 0.25 * settings.tolerance_m).ok_or_else(|| {
+            refused(format!("\"{}\" has no surface of triangles, so it cannot be protected", object.name))
+        })?;
+        generate_shield(&mesh, target, settings).map_err(|e| refused(self.in_words(e, cell)))
     }
 
-    /// How the tool of the fixture passes the opening of its shield; `None` without a tool that has a solid.
+    /// Dimensions of a generated shield; `None` for one that was read.
+    pub fn settings(&self) -> Option<&ShieldSettings> {
+        if let ShieldSource::Generated { settings, .. } = &self.shield { Some(settings) } else { None }
+    }
+
+    /// How the tool of the fixture passes the opening of its shield; `None` without a tool that has a solid, or a shield
+    /// that was read: nothing says what the tool is to reach.
     pub fn passage(&self, shield: &Shield, cell: &Cell) -> Option<Passage> {
         let (collider, tcp_in_link) = self.tool?.solid(cell)?;
         let tool_in_tcp = tcp_in_link.inverse() * collider.in_link;
-        Some(shield.passage_of(&collider.shape, &tool_in_tcp, &self.settings))
+        Some(shield.passage_of(&collider.shape, &tool_in_tcp, self.settings()?))
     }
 
     /// An error in the units of the file, with places in the world.

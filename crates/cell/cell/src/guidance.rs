@@ -2,15 +2,19 @@
 
 use elbowroom_robot::RobotId;
 
-use crate::{CellFixture, CellOperator};
+use crate::{CellFixture, CellForce, CellGuide, CellOperator};
 
-/// Fixtures and operators of a cell.
+/// Fixtures, operators and forces of a cell.
 #[derive(Debug, Clone, Default)]
 pub struct Guidance {
-    /// Virtual fixtures, in file order.
+    /// Virtual fixtures that protect, in file order.
     pub fixtures: Vec<CellFixture>,
+    /// Virtual fixtures that guide, in file order; at most one is on for a tool.
+    pub guides: Vec<CellGuide>,
     /// Operators, in file order; at most one per robot.
     pub operators: Vec<CellOperator>,
+    /// Forces, in file order.
+    pub forces: Vec<CellForce>,
 }
 
 impl Guidance {

@@ -3,16 +3,19 @@
 use std::sync::Arc;
 
 use elbowroom_formats::Diagnostic;
-use elbowroom_kinematics::ChainState;
 use elbowroom_kinematics::inverse::{IkOptions, IkSolver};
+use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_proximity::TriMesh;
 use elbowroom_proximity::contact::triangle_surface;
 use elbowroom_robot::ObjectId;
-use elbowroom_scene::{Scene, SceneState};
+use elbowroom_scene::{Scene, SceneState, Selection};
+use elbowroom_shared_control::force::{
+    ArmField, ArmForces, BodySettings, FieldPair, ImpedancePort, Response, VirtualBody,
+};
 use elbowroom_shared_control::{GuidedArm, NavigatorError, ProtectedSurface, SurfaceNavigator};
-use elbowroom_spatial::Pose;
+use elbowroom_spatial::{Pose, Vec3};
 
-use crate::{Cell, CellOperator};
+use crate::{Cell, CellFixture, CellForce, CellOperator, ForceOther, ForceResponse};
 
 /// Chord error of curved surfaces and tools, metres.
 const CHORD_M: f64 = 1e-4;
@@ -45,7 +48,7 @@ impl CellOperator {
         chain_state.q.copy_from_slice(&robot.start);
         robot.robot.chain.forward(&mut chain_state);
         let tool_in_world = robot.base_in_world * chain_state.link_in_root(link) * tcp_in_link;
-        let surfaces = self.surfaces(cell, notes)?;
+        let (surfaces, shields_from) = self.surfaces(cell, notes)?;
         let navigator = SurfaceNavigator::new(tool, surfaces, tool_in_world, self.settings)
             .map_err(|e| refused(format!("operator \"{}\": {}", self.name, in_words(e, cell))))?;
         let solver = IkSolver::new(&robot.robot.chain, link, tcp_in_link, IkOptions::default());
@@ -55,13 +58,61 @@ impl CellOperator {
             set.map_err(|e| refused(e.to_string()))?;
         }
         let speeds = robot.limits.iter().map(|limits| limits.velocity).collect();
-        GuidedArm::new(navigator, solver, (scene, self.robot), state, speeds)
-            .map_err(|_| refused(format!("\"{}\" cannot hold its tool point at its start", robot.name)))
+        let mut arm = GuidedArm::new(navigator, solver, (scene, self.robot), state, speeds)
+            .map_err(|_| refused(format!("\"{}\" cannot hold its tool point at its start", robot.name)))?;
+        let guide = cell.guidance.guides.iter().find(|g| g.active && g.tool == self.tool);
+        arm.set_guide(guide.map(|g| g.guide.clone()));
+        let forces = self.forces(cell, scene, shields_from, (link, tcp_in_link.translation));
+        if let Some(forces) = forces.map_err(|e| refused(e.to_string()))? {
+            arm.set_forces(forces);
+        }
+        Ok(arm)
     }
 
-    fn surfaces(&self, cell: &Cell, notes: &mut Vec<Diagnostic>) -> Result<Vec<ProtectedSurface>, Diagnostic> {
+    /// The forces of the tool; `None` without. `shields_from` is the index of its first shield among the surfaces.
+    fn forces<'s>(
+        &self,
+        cell: &Cell,
+        scene: &'s Scene,
+        shields_from: usize,
+        tool: (LinkId, Vec3),
+    ) -> Result<Option<ArmForces<'s>>, NavigatorError> {
+        let own: Vec<&CellForce> = cell.guidance.forces.iter().filter(|f| f.tool == self.tool).collect();
+        if own.is_empty() {
+            return Ok(None);
+        }
+        let robot = self.robot;
+        let field = |force: &CellForce| -> Option<Result<ArmField, NavigatorError>> {
+            let one = if force.whole_arm { Selection::Robot(robot) } else { Selection::Link { robot, link: tool.0 } };
+            let pair = match force.other {
+                ForceOther::Object(object) => FieldPair::Scene(one, Selection::Object(object)),
+                ForceOther::Shield(index) => {
+                    let before = cell.guidance.fixtures[..index].iter().filter(|f| self.is_shielded_by(f)).count();
+                    FieldPair::Surface(shields_from + before)
+                }
+            };
+            Some(ArmField::new(force.field?, pair))
+        };
+        let fields = own.iter().filter_map(|force| field(force)).collect::<Result<Vec<_>, _>>()?;
+        let response = own.iter().find_map(|force| match force.response {
+            ForceResponse::Field => None,
+            ForceResponse::Admittance(settings) => Some(VirtualBody::new(settings).map(Response::Admittance)),
+            ForceResponse::Impedance(settings) => Some(ImpedancePort::new(settings).map(Response::Impedance)),
+        });
+        let response =
+            response.unwrap_or_else(|| VirtualBody::new(BodySettings::default()).map(Response::Admittance))?;
+        Ok(Some(ArmForces::new(response, fields, (scene, robot), tool)))
+    }
+
+    /// Whether the shield of a fixture guards the tool.
+    fn is_shielded_by(&self, fixture: &CellFixture) -> bool {
+        fixture.active && fixture.tool == Some(self.tool)
+    }
+
+    /// The surfaces along which the tool glides, and the index of the first one that is a shield.
+    fn surfaces(&self, cell: &Cell, notes: &mut Vec<Diagnostic>) -> Result<(Vec<ProtectedSurface>, usize), Diagnostic> {
         let mut surfaces = Vec::new();
-        let shields: Vec<_> = cell.guidance.fixtures.iter().filter(|f| f.active && f.tool == Some(self.tool)).collect();
+        let shields: Vec<_> = cell.guidance.fixtures.iter().filter(|f| self.is_shielded_by(f)).collect();
         for (index, object) in cell.objects.iter().enumerate() {
             let id = ObjectId(index);
             if cell.moving_objects.iter().any(|m| m.object == id) || shields.iter().any(|f| f.protects == id) {
@@ -81,6 +132,7 @@ impl CellOperator {
                 None => {}
             }
         }
+        let shields_from = surfaces.len();
         for fixture in shields {
             let in_world = cell.objects[fixture.protects.0].in_world;
             let shield = ProtectedSurface::new(fixture.shield(cell)?.mesh, in_world);
@@ -88,7 +140,7 @@ impl CellOperator {
                 |e: NavigatorError| Diagnostic::new(&cell.file, fixture.line, format!("the shield is not usable: {e}"));
             surfaces.push(shield.map_err(refused)?);
         }
-        Ok(surfaces)
+        Ok((surfaces, shields_from))
     }
 }
 

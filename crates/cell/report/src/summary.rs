@@ -265,9 +265,10 @@ fn evaded(track: &AvoidanceTrack, tick_s: f64) -> String {
 
 /// Summary of a guided robot.
 pub fn followed(guided: &OperatorSummary) -> String {
-    let OperatorSummary { name, free_s, contact_s, stopped_s, least_gap_m, .. } = guided;
+    let OperatorSummary { name, free_s, contact_s, stopped_s, least_gap_m, largest_force_n, .. } = guided;
+    let force = largest_force_n.map_or_else(String::new, |force| format!(", felt at most {force:.1} N"));
     let gap = least_gap_m.map_or_else(String::new, |gap| format!(", no nearer than {}", millimetres(Some(gap))));
-    format!("guided by {name}: {free_s:.2} s free, {contact_s:.2} s at surfaces{gap}, stood {stopped_s:.2} s")
+    format!("guided by {name}: {free_s:.2} s free, {contact_s:.2} s at surfaces{gap}, stood {stopped_s:.2} s{force}")
 }
 
 /// Summary of a robot's reactions to the obstacles that sensors see.

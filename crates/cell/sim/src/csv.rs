@@ -63,13 +63,17 @@ pub fn write_events(recording: &Recording, mut out: impl Write) -> io::Result<()
 }
 
 /// Writes `t_s,operator,wanted_x_m,wanted_y_m,wanted_z_m,x_m,y_m,z_m,qx,qy,qz,qw,gap_m,active_rows`: one row per tick and
-/// guided robot, by robot. Poses are those of the tool point, in the world.
+/// guided robot, by robot. Poses are those of the tool point, in the world. If a tool has forces, `fx_n,fy_n,fz_n,energy_j`
+/// follow: the force on the hand, and the energy that was put in and not given back.
 ///
 /// # Errors
 /// Errors of the writer.
 pub fn write_operators(recording: &Recording, mut out: impl Write) -> io::Result<()> {
-    writeln!(out, "t_s,operator,wanted_x_m,wanted_y_m,wanted_z_m,x_m,y_m,z_m,qx,qy,qz,qw,gap_m,active_rows")?;
-    for track in recording.robots.iter().filter_map(|robot| robot.guidance.as_ref()) {
+    write!(out, "t_s,operator,wanted_x_m,wanted_y_m,wanted_z_m,x_m,y_m,z_m,qx,qy,qz,qw,gap_m,active_rows")?;
+    let tracks = || recording.robots.iter().filter_map(|robot| robot.guidance.as_ref());
+    let has_forces = tracks().any(|track| track.samples.iter().any(|s| s.force.is_some()));
+    writeln!(out, "{}", if has_forces { ",fx_n,fy_n,fz_n,energy_j" } else { "" })?;
+    for track in tracks() {
         for s in &track.samples {
             write!(out, "{},{},", s.t_s, track.operator)?;
             match s.wanted.map(|pose| pose.translation) {
@@ -81,7 +85,11 @@ pub fn write_operators(recording: &Recording, mut out: impl Write) -> io::Result
             if let Some(gap_m) = s.gap_m {
                 write!(out, "{gap_m}")?;
             }
-            writeln!(out, ",{}", s.active)?;
+            write!(out, ",{}", s.active)?;
+            match s.force.map(|f| (f.on_hand_n, f.energy_j)) {
+                Some((f, energy_j)) => writeln!(out, ",{},{},{},{energy_j}", f.x, f.y, f.z)?,
+                None => writeln!(out, "{}", if has_forces { ",,,," } else { "" })?,
+            }
         }
     }
     out.flush()

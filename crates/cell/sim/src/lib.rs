@@ -37,6 +37,7 @@ pub mod csv;
 mod hand;
 mod held_object;
 pub mod motion;
+mod operator_summary;
 mod recording;
 pub mod replanning;
 pub mod run;
@@ -44,11 +45,12 @@ mod summary;
 
 pub use held_object::held_object;
 pub use motion::{PathSearch, PlannedPaths};
+pub use operator_summary::OperatorSummary;
 pub use recording::{
-    AvoidanceSample, AvoidanceTrack, Collision, Deadlock, EventRow, GoverningPoint, GuidanceSample, GuidanceState,
-    GuidanceTrack, Hold, HoldReason, ObjectTrack, Outcome, PartKind, PathReplan, PerceptionTrack, RecordedRegionKind,
-    Recording, RegionPoses, RegionTrack, ReplanRecord, RobotEnding, RobotTrack, RunEnd, RunEvent, Sample, SensorTrack,
-    Span, Stop, TickTimes,
+    AvoidanceSample, AvoidanceTrack, Collision, Deadlock, EventRow, ForceSample, GoverningPoint, GuidanceSample,
+    GuidanceState, GuidanceTrack, Hold, HoldReason, ObjectTrack, Outcome, PartKind, PathReplan, PerceptionTrack,
+    RecordedRegionKind, Recording, RegionPoses, RegionTrack, ReplanRecord, RobotEnding, RobotTrack, RunEnd, RunEvent,
+    Sample, SensorTrack, Span, Stop, TickTimes,
 };
 pub use run::{InputFault, InputFaultKind, RunOptions, RunOutcome, SilentFrom, simulate};
-pub use summary::{AvoidanceSummary, OperatorSummary, PerceptionSummary, RunSummary, SensorSummary};
+pub use summary::{AvoidanceSummary, PerceptionSummary, RunSummary, SensorSummary};

@@ -4,8 +4,9 @@ use elbowroom_avoidance::AvoiderState;
 use elbowroom_query::watch::WatchStatus;
 use serde::Serialize;
 
+use crate::operator_summary::OperatorSummary;
 use crate::recording::{
-    AvoidanceSample, AvoidanceTrack, GuidanceSample, Hold, HoldReason, ObjectTrack, Outcome, PartKind, PerceptionTrack,
+    AvoidanceSample, AvoidanceTrack, Hold, HoldReason, ObjectTrack, Outcome, PartKind, PerceptionTrack,
     RecordedRegionKind, Recording, RobotEnding, RunEnd, SensorTrack, Stop, TickTimes,
 };
 
@@ -42,44 +43,6 @@ pub struct RunSummary {
     /// Final poses of the objects that move or are gripped; omitted if empty.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub objects: Vec<ObjectSummary>,
-}
-
-/// Guidance of a robot by its operator.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct OperatorSummary {
-    /// Name of the operator.
-    pub name: String,
-    /// The robot.
-    pub robot: String,
-    /// Time in which the tool followed without a surface, s.
-    pub free_s: f64,
-    /// Time at surfaces, s.
-    pub contact_s: f64,
-    /// Time in which it had no wish to follow, was stopped by the monitor, or could not follow, s.
-    pub stopped_s: f64,
-    /// Least distance between tool and surfaces, m; null if none was near.
-    pub least_gap_m: Option<f64>,
-    /// Largest change of the tool's velocity from one tick to the next, m/s.
-    pub largest_speed_change_m_s: f64,
-}
-
-impl OperatorSummary {
-    /// Summary of a robot; `None` for a robot without operator.
-    pub fn of(robot: &crate::recording::RobotTrack, tick_s: f64) -> Option<Self> {
-        let track = robot.guidance.as_ref()?;
-        let time =
-            |which: fn(&GuidanceSample) -> bool| track.samples.iter().filter(|s| which(s)).count() as f64 * tick_s;
-        let change = |w: &[GuidanceSample]| w[0].velocity.distance(w[1].velocity);
-        Some(Self {
-            name: track.operator.clone(),
-            robot: robot.name.clone(),
-            free_s: time(|s| s.follows() && s.active == 0),
-            contact_s: time(|s| s.follows() && s.active > 0),
-            stopped_s: time(|s| !s.follows()),
-            least_gap_m: track.samples.iter().filter_map(|s| s.gap_m).reduce(f64::min),
-            largest_speed_change_m_s: track.samples.windows(2).map(change).fold(0.0, f64::max),
-        })
-    }
 }
 
 /// An object at the end of a run.

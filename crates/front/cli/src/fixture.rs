@@ -22,8 +22,9 @@ struct Answer<'a> {
     triangles: usize,
     closed: bool,
     components: usize,
-    tolerance_m: f64,
-    narrowest_m: f64,
+    /// `None` for a shield that was read.
+    tolerance_m: Option<f64>,
+    narrowest_m: Option<f64>,
     tool_width_m: Option<f64>,
     /// `None` if the file names no tool.
     reachable: Option<bool>,
@@ -57,13 +58,20 @@ pub(crate) fn fixture(args: &FixtureArgs) -> Result<ExitStatus, Failure> {
 
 fn named<'a>(cell: &'a Cell, args: &FixtureArgs) -> Result<&'a CellFixture, Failure> {
     let names: Vec<&str> = cell.guidance.fixtures.iter().map(|f| f.name.as_str()).collect();
+    let guides: Vec<&str> = cell.guidance.guides.iter().map(|g| g.name.as_str()).collect();
     let wrong = |what: String, hint: String| Err(Diagnostic::new(&args.cell, None, what).hint(hint).into());
     match (&args.name, cell.guidance.fixtures.as_slice()) {
-        (_, []) => wrong("has no fixture".into(), "a table [fixture.NAME]: docs/fixtures.md".into()),
+        (_, []) if guides.is_empty() => {
+            wrong("has no fixture with a shield".into(), "a table [fixture.NAME]: docs/fixtures.md".into())
+        }
+        (None, []) => wrong("has guides only, which have no shield".into(), "a fixture with `protects`".into()),
         (None, [only]) => Ok(only),
         (None, _) => wrong("has several fixtures".into(), format!("--name with one of {}", names.join(", "))),
         (Some(name), all) => match all.iter().find(|f| f.name == *name) {
             Some(fixture) => Ok(fixture),
+            None if guides.contains(&name.as_str()) => {
+                wrong(format!("has the guide \"{name}\", which has no shield"), "run".into())
+            }
             None => wrong(format!("has no fixture \"{name}\""), format!("--name with one of {}", names.join(", "))),
         },
     }
@@ -90,8 +98,8 @@ fn answer<'a>(
         triangles: shield.mesh.triangles().len(),
         closed: report.closed && !report.inside_out,
         components: shield.mesh.component_vertices().len(),
-        tolerance_m: fixture.settings.tolerance_m,
-        narrowest_m: passage.map_or_else(|| shield.narrowest_m(&fixture.settings), |p| p.narrowest_m),
+        tolerance_m: fixture.settings().map(|s| s.tolerance_m),
+        narrowest_m: passage.map(|p| p.narrowest_m).or_else(|| fixture.settings().map(|s| shield.narrowest_m(s))),
         tool_width_m: passage.map(|p| p.tool_width_m),
         reachable: passage.map(|p| p.blocked_at.is_none()),
         blocked_at_m: blocked_at.map(|p| object_in_world.transform_point(p).to_array()),
@@ -105,13 +113,18 @@ fn text(answer: &Answer<'_>, cell: &Cell) -> String {
     if answer.components > 1 {
         _ = write!(text, ", {} separate parts", answer.components);
     }
-    _ = write!(text, "\n  opening  at least {} wide above the surface", length(answer.narrowest_m));
+    if let Some(narrowest_m) = answer.narrowest_m {
+        _ = write!(text, "\n  opening  at least {} wide above the surface", length(narrowest_m));
+    }
     match (answer.tool_width_m, answer.reachable) {
         (Some(width), Some(true)) => _ = write!(text, "\n  tool     {} wide: it reaches the target", length(width)),
         (Some(width), _) => {
             let at = answer.blocked_at_m.unwrap_or_default().map(length).join(", ");
             _ = write!(text, "\n  tool     {} wide: it does not reach the target at [{at}]", length(width));
             _ = write!(text, "\n  write    a larger `width` or `flare`, or a narrower tool");
+        }
+        _ if answer.narrowest_m.is_none() => {
+            _ = write!(text, "\n  read from a file: what it leaves open is not examined");
         }
         _ => _ = write!(text, "\n  tool     none: add `tool` to see whether it passes"),
     }

@@ -95,3 +95,42 @@ fn targets_and_keys_that_are_wrong_are_refused_with_line_and_place() {
     let text = elbowroom(dir.path(), &["fixture", "cell.toml", "--name", "cut"]).expect(2).stderr;
     assert!(text.contains("has no fixture \"cut\"") && text.contains("--name with one of hole"), "{text}");
 }
+
+#[test]
+fn a_shield_that_was_written_is_read_again_and_a_broken_one_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    write(dir.path(), CELL);
+    let made = elbowroom(dir.path(), &["fixture", "cell.toml", "--json", "--out", "shield.stl"]).expect(0).json();
+    let read = |keys: &str| {
+        let at = CELL.find("target").unwrap();
+        format!("{}{keys}\ntool = \"arm\"\n", &CELL[..at])
+    };
+    write(dir.path(), &read("mesh = \"shield.stl\""));
+    let answer = elbowroom(dir.path(), &["fixture", "cell.toml", "--json", "--out", "again.stl"]).expect(0).json();
+    assert_eq!(answer["triangles"], made["triangles"]);
+    assert!(answer["closed"] == true && answer["reachable"].is_null() && answer["tolerance_m"].is_null(), "{answer}");
+    let load = |name: &str| elbowroom::formats::mesh::load(&dir.path().join(name), None).unwrap().meshes.remove(0);
+    let (first, second) = (load("shield.stl"), load("again.stl"));
+    let farthest = first.vertices.iter().zip(&second.vertices).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
+    assert!(farthest < 1e-6, "{farthest} m");
+    let text = elbowroom(dir.path(), &["fixture", "cell.toml"]).expect(0).stdout;
+    assert!(text.contains("what it leaves open is not examined"), "{text}");
+    let facet = |corner: &str| {
+        format!("facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex {corner}\nvertex 0 0 1\nendloop\nendfacet\n")
+    };
+    let open = format!("solid open\n{}{}endsolid open\n", facet("1 0 0"), facet("0 1 0"));
+    std::fs::write(dir.path().join("open.stl"), open).unwrap();
+    for (keys, expected) in [
+        ("mesh = \"open.stl\"", "the protected mesh is open"),
+        ("mesh = \"shield.stl\"\nwidth = 3", "either `mesh` or `target`"),
+        (
+            "mesh_unit = \"mm\"\ntarget = { faces_within = { at = [500, 0, 125], radius = 9 } }\nwidth = 9",
+            "no `mesh_unit`",
+        ),
+        ("guide = \"line\"\npoints = [[0, 0, 0], [9, 0, 0]]", "`protects`"),
+    ] {
+        write(dir.path(), &read(keys));
+        let text = elbowroom(dir.path(), &["fixture", "cell.toml"]).expect(2).stderr;
+        assert!(text.contains(expected), "{expected}: {text}");
+    }
+}

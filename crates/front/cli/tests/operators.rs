@@ -82,7 +82,12 @@ fn a_tool_pushed_into_a_block_glides_along_it_and_leaves_it() {
     let names: Vec<&str> = events.lines().skip(1).filter_map(|line| line.rsplit(',').next()).collect();
     assert_eq!(names, ["contact", "glide", "leave"], "{events}");
     let text = elbowroom(dir.path(), &["run", "cell.toml"]).expect(0).stdout;
-    assert!(text.contains("guided by hand: ") && text.contains(" s at surfaces, no nearer than 0."), "{text}");
+    assert!(
+        !text.contains("felt")
+            && text.contains("guided by hand: ")
+            && text.contains(" s at surfaces, no nearer than 0."),
+        "{text}"
+    );
 }
 
 #[test]
@@ -212,4 +217,103 @@ fn operators_that_contradict_the_cell_are_refused_with_their_line() {
     std::fs::write(dir.path().join("hand.csv"), "t_s,x,y,z,qx,qy,qz,qw,grip\n0,0,0,0,0,0,0,1,1\n").unwrap();
     let message = elbowroom(dir.path(), &["run", "cell.toml"]).expect(2).stderr;
     assert!(message.contains("grip") && message.contains("hand.csv"), "{message}");
+}
+
+/// A column of `operator.csv`.
+fn column(dir: &Path, name: &str) -> Vec<Option<f64>> {
+    let text = std::fs::read_to_string(dir.join("out/operator.csv")).unwrap();
+    let at = text.lines().next().unwrap().split(',').position(|h| h == name).unwrap_or_else(|| panic!("no {name}"));
+    text.lines().skip(1).map(|line| line.split(',').nth(at).unwrap().parse().ok()).collect()
+}
+
+#[test]
+fn forces_hold_the_tool_off_and_are_told() {
+    let force = |keys: &str| format!("{CELL}[force.soft]\nbetween = [\"arm/tool\", \"work\"]\n{keys}\n");
+    // In the middle of the run the hand is 41.2 mm inside the block: it ends at 1300 mm.
+    for (keys, least_z, most_z, least_n, most_n) in [
+        ("law = \"spring_damper\"\nrange = 30\nstiffness = 2000", 1.305, 1.32, 40.0, 46.0),
+        ("law = \"khatib\"\nrange = 30\nstiffness = 2000", 1.305, 1.325, 40.0, 50.0),
+        ("law = \"admittance\"\nstiffness = 1000\nmass = 1", 1.3, 1.305, 40.0, 48.0),
+        ("law = \"impedance\"\nstiffness = 1000", 1.3, 1.305, 40.0, 48.0),
+        ("law = \"impedance\"\nstiffness = 1000\nrange = 4", 1.3, 1.305, 43.0, 52.0),
+    ] {
+        let dir = tempfile::tempdir().unwrap();
+        write(dir.path(), &force(keys), across, 4.0);
+        let answer = elbowroom(dir.path(), &["run", "cell.toml", "--json", "--out", "out"]).expect(0).json();
+        let operator = &answer["operators"][0];
+        let largest_n = operator["largest_force_n"].as_f64().unwrap();
+        assert!((least_n..most_n).contains(&largest_n), "{keys}: {operator}");
+        assert!(operator["energy_j"].as_f64().unwrap() > 0.0, "{keys}: {operator}");
+        assert!(operator["largest_speed_change_m_s"].as_f64().unwrap() < 0.03, "{keys}: {operator}");
+        let least = rows(dir.path()).iter().map(|row| row.z_m).fold(9.0, f64::min);
+        assert!((least_z..most_z).contains(&least), "{keys}: {least} m");
+        let (energy, up) = (column(dir.path(), "energy_j"), column(dir.path(), "fz_n"));
+        assert!(energy.iter().all(|e| e.unwrap() >= -0.01) && up[1000].unwrap() > 30.0, "{keys}");
+    }
+}
+
+#[test]
+fn a_field_around_the_whole_arm_turns_it_away() {
+    let wall = "[object.wall]\nshape = \"box\"\nsize = [300, 20, 900]\nat = [600, 260, 1300]\n[force.soft]\nbetween = [\"arm\", \"wall\"]\nlaw = \"repulsive\"\nrange = 150\nstiffness = 3000\n";
+    let most_y = |force: bool| {
+        let dir = tempfile::tempdir().unwrap();
+        let wall = if force { wall.to_owned() } else { wall.split("[force").next().unwrap().to_owned() };
+        // The hand draws the arm towards the wall, which the tool itself passes in front.
+        write(dir.path(), &format!("{CELL}{wall}"), |t_s| [1104.2, 100.0 * t_s.min(2.0), 1400.0], 3.0);
+        let text = elbowroom(dir.path(), &["run", "cell.toml", "--out", "out"]).expect(0).stdout;
+        assert_eq!(text.contains(", felt at most "), force, "{text}");
+        column(dir.path(), "y_m").into_iter().flatten().fold(0.0, f64::max)
+    };
+    let (with, without) = (most_y(true), most_y(false));
+    assert!(with < without - 0.005 && with > 0.05, "{with} m with a force, {without} m without");
+}
+
+#[test]
+fn a_guide_keeps_the_tool_on_its_line() {
+    let dir = tempfile::tempdir().unwrap();
+    let guide = "[fixture.seam]\nguide = \"line\"\ntool = \"arm\"\npoints = [[1104.2, 0, 1358.8], [1104.2, -100, 1330], [1104.2, 50, 1320]]\n";
+    write(dir.path(), &format!("{CELL}{guide}"), across, 4.0);
+    elbowroom(dir.path(), &["run", "cell.toml", "--json", "--out", "out"]).expect(0);
+    let corners = [[0.0, 1.3588], [-0.1, 1.33], [0.05, 1.32]];
+    let off = |y: f64, z: f64| {
+        let of = |w: &[[f64; 2]]| {
+            let way = [w[1][0] - w[0][0], w[1][1] - w[0][1]];
+            let share = ((y - w[0][0]) * way[0] + (z - w[0][1]) * way[1]) / (way[0] * way[0] + way[1] * way[1]);
+            let share = share.clamp(0.0, 1.0);
+            (y - w[0][0] - share * way[0]).hypot(z - w[0][1] - share * way[1])
+        };
+        corners.windows(2).map(of).fold(f64::INFINITY, f64::min)
+    };
+    let (y, z) = (column(dir.path(), "y_m"), column(dir.path(), "z_m"));
+    let farthest = y.iter().zip(&z).map(|(y, z)| off(y.unwrap(), z.unwrap())).fold(0.0, f64::max);
+    assert!(farthest < 1e-3, "{farthest} m from the line");
+    assert!(y.iter().any(|y| y.unwrap() > 0.049), "the end of the line");
+}
+
+#[test]
+fn forces_and_guides_that_mean_nothing_are_refused_with_the_remedy() {
+    let force = |keys: &str| format!("{CELL}[force.soft]\n{keys}\n");
+    let guide = |keys: &str| format!("{CELL}[fixture.seam]\ntool = \"arm\"\n{keys}\n");
+    let between = "between = [\"arm/tool\", \"work\"]\n";
+    for (cell, expected) in [
+        (force("between = [\"arm/tool\"]\nlaw = \"repulsive\""), "has 1 names instead of two"),
+        (force("between = [\"crane\", \"work\"]\nlaw = \"repulsive\""), "names \"crane\", which no operator guides"),
+        (force("between = [\"arm\", \"wrok\"]\nlaw = \"repulsive\""), "write: work"),
+        (force(&format!("{between}law = \"repulsive\"")), "range = 20"),
+        (force(&format!("{between}law = \"repulsive\"\nrange = 9\nmass = 2")), "belongs to `law = \"admittance\"`"),
+        (force(&format!("{between}law = \"impedance\"\ndevice_damping = 0.5")), "`stiffness` of at most 500"),
+        (
+            force(&format!("{between}law = \"impedance\"\n[force.more]\n{between}law = \"admittance\"")),
+            "one `admittance` or one `impedance` per tool",
+        ),
+        (guide("guide = \"line\"\npoints = [[0, 0, 0]]"), "two points or more"),
+        (guide("guide = \"cone\"\nat = [0, 0, 0]\naxis = [0, 0, 1]\nhalf_angle = 95"), "not below 90°"),
+        (guide("guide = \"plane\"\nat = [0, 0, 0]\nnormal = [0, 0, 0]"), "must be a direction"),
+        (guide("guide = \"plane\"\nat = [0, 0, 0]\nnormal = [0, 0, 1]\nradius = 3"), "does not belong to a plane"),
+    ] {
+        let dir = tempfile::tempdir().unwrap();
+        write(dir.path(), &cell, across, 1.0);
+        let text = elbowroom(dir.path(), &["run", "cell.toml"]).expect(2).stderr;
+        assert!(text.contains(expected) && text.contains("cell.toml:"), "{expected}: {text}");
+    }
 }

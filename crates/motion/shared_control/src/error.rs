@@ -26,6 +26,12 @@ pub enum NavigatorError {
     /// The arm does not hold its tool at the pose of the navigator, so nothing would be proven.
     #[error("the arm does not hold its tool at the pose of the navigator; make both of one configuration")]
     NotAtTool,
+    /// A guide along a line has too few points.
+    #[error("a guide along a line needs two points or more, all finite, and no two successive equal ones")]
+    GuideLine,
+    /// The axis of a guide has no length.
+    #[error("the axis or normal of a guide must be a direction, and its point finite")]
+    GuideDirection,
     /// A setting is not usable.
     #[error("{name} is {value}; it must be {wanted}")]
     Setting {
@@ -36,4 +42,28 @@ pub enum NavigatorError {
         /// What it must be.
         wanted: &'static str,
     },
+}
+
+impl NavigatorError {
+    /// Refuses the first setting that is not a positive number.
+    pub(crate) fn check_positive(settings: &[(&'static str, f64)]) -> Result<(), Self> {
+        first(settings, |x| x.is_finite() && x > 0.0, "a positive number")
+    }
+
+    /// Refuses the first setting that is not a number, or negative.
+    pub(crate) fn check_not_negative(settings: &[(&'static str, f64)]) -> Result<(), Self> {
+        first(settings, |x| x.is_finite() && x >= 0.0, "a number that is not negative")
+    }
+}
+
+/// The first setting that is not as it must be.
+fn first(
+    settings: &[(&'static str, f64)],
+    is_usable: impl Fn(f64) -> bool,
+    wanted: &'static str,
+) -> Result<(), NavigatorError> {
+    match settings.iter().find(|(_, value)| !is_usable(*value)) {
+        Some(&(name, value)) => Err(NavigatorError::Setting { name, value, wanted }),
+        None => Ok(()),
+    }
 }

@@ -5,7 +5,8 @@ use elbowroom_robot::{GeometryId, RobotId};
 use elbowroom_scene::{Checker, CheckerOptions, Scene, SceneError, SceneState, SweepMove, SweepOptions};
 use elbowroom_spatial::Pose;
 
-use crate::{Limit, NavigationStep, NavigatorError, SurfaceNavigator};
+use crate::force::{ArmForces, ArmPlace};
+use crate::{Guide, Limit, NavigationStep, NavigatorError, SurfaceNavigator};
 
 /// How often a step that the arm cannot follow is halved.
 const HALVINGS: usize = 4;
@@ -51,6 +52,10 @@ pub struct GuidedArm<'s> {
     /// Largest speed of each joint, rad/s or m/s.
     joint_speeds: Vec<f64>,
     next: Vec<f64>,
+    /// Joint values at the start of the step.
+    before: Vec<f64>,
+    guide: Option<Guide>,
+    forces: Option<Box<ArmForces<'s>>>,
 }
 
 impl<'s> GuidedArm<'s> {
@@ -74,6 +79,9 @@ impl<'s> GuidedArm<'s> {
             robot,
             checker: Checker::new(scene, CheckerOptions::default()),
             next: state.q(robot).to_vec(),
+            before: state.q(robot).to_vec(),
+            guide: None,
+            forces: None,
             state,
             solver,
             joint_speeds,
@@ -104,13 +112,47 @@ impl<'s> GuidedArm<'s> {
         change(self.scene, &mut self.state)
     }
 
+    /// Keeps the hand within a guide from the next step on; `None` lets it move freely.
+    pub fn set_guide(&mut self, guide: Option<Guide>) {
+        self.guide = guide;
+    }
+
+    /// Lets the tool answer to forces from the next step on.
+    pub fn set_forces(&mut self, forces: ArmForces<'s>) {
+        self.forces = Some(Box::new(forces));
+    }
+
+    /// The forces, if the tool answers to them.
+    pub fn forces(&self) -> Option<&ArmForces<'s>> {
+        self.forces.as_deref()
+    }
+
     /// Moves the tool point for `dt_s` seconds towards the desired pose, and the arm with it, with the velocity scaled by
-    /// an override, 0 to 1.
-    pub fn step(&mut self, desired: &Pose, dt_s: f64, speed_override: f64) -> GuidedStep {
+    /// an override, 0 to 1. Without a desired pose the tool slows down.
+    pub fn step(&mut self, desired: Option<&Pose>, dt_s: f64, speed_override: f64) -> GuidedStep {
+        let desired = self.guided(desired);
+        self.before.copy_from_slice(self.state.q(self.robot));
+        let Some(mut forces) = self.forces.take() else {
+            return self.step_after_hand(desired.as_ref(), dt_s, speed_override);
+        };
+        let step = if forces.is_admittance() {
+            self.step_by_forces(&mut forces, desired.as_ref(), dt_s, speed_override)
+        } else {
+            let step = self.step_after_hand(desired.as_ref(), dt_s, speed_override);
+            forces.feel(self.place(), desired.map(|d| d.translation), step.tool.velocity, dt_s);
+            step
+        };
+        self.forces = Some(forces);
+        step
+    }
+
+    /// Moves the tool after the hand.
+    fn step_after_hand(&mut self, desired: Option<&Pose>, dt_s: f64, speed_override: f64) -> GuidedStep {
+        let desired = desired.copied().unwrap_or_else(|| self.navigator.tool_in_world());
         let (mut limit, mut gap_m) = (None, None);
         let mut share = speed_override;
         for _ in 0..=HALVINGS {
-            let tool = self.navigator.step_at_override(desired, dt_s, share);
+            let tool = self.navigator.step_at_override(&desired, dt_s, share);
             match self.follow(&tool.tool_in_world, dt_s) {
                 Ok(()) => return GuidedStep { tool, limit: limit.or(tool.limit.map(ArmLimit::Tool)) },
                 Err(why) => {
@@ -125,8 +167,20 @@ impl<'s> GuidedArm<'s> {
 
     /// Writes the joint velocities (rad/s or m/s) with which [`step`](Self::step) would follow, and moves nothing; 0 if the
     /// arm cannot.
-    pub fn intent(&mut self, desired: &Pose, dt_s: f64, velocities: &mut [f64]) {
-        let tool_in_world = self.navigator.step(desired, dt_s).tool_in_world;
+    pub fn intent(&mut self, desired: Option<&Pose>, dt_s: f64, velocities: &mut [f64]) {
+        let desired = self.guided(desired);
+        let mut forces = self.forces.take();
+        let tool_in_world = match &mut forces {
+            Some(forces) if forces.is_admittance() && desired.is_some() => {
+                let velocity = forces.wanted_velocity(self.place(), desired.map(|d| d.translation), dt_s);
+                self.navigator.step_at_velocity(velocity, dt_s, 1.0).tool_in_world
+            }
+            _ => {
+                let desired = desired.unwrap_or_else(|| self.navigator.tool_in_world());
+                self.navigator.step(&desired, dt_s).tool_in_world
+            }
+        };
+        self.forces = forces;
         self.navigator.undo();
         let is_reached = self.solve(&tool_in_world);
         let q = self.state.q(self.robot);
@@ -135,17 +189,94 @@ impl<'s> GuidedArm<'s> {
         }
     }
 
+    /// The desired pose within the guide.
+    fn guided(&mut self, desired: Option<&Pose>) -> Option<Pose> {
+        let desired = *desired?;
+        let tool = self.navigator.tool_in_world().translation;
+        let translation = match &mut self.guide {
+            Some(guide) if desired.is_finite() => guide.toward(tool, desired.translation),
+            _ => desired.translation,
+        };
+        Some(Pose::new(desired.rotation, translation))
+    }
+
+    fn place(&mut self) -> ArmPlace<'_> {
+        ArmPlace { scene: self.scene, state: &self.state, robot: self.robot, navigator: &mut self.navigator }
+    }
+
+    /// Moves the tool as its virtual mass goes, then turns it as the hand does.
+    fn step_by_forces(
+        &mut self,
+        forces: &mut ArmForces<'s>,
+        desired: Option<&Pose>,
+        dt_s: f64,
+        speed_override: f64,
+    ) -> GuidedStep {
+        // Under an override, time goes by more slowly for the mass.
+        let hand = desired.map(|d| d.translation);
+        let scaled = if speed_override > 0.0 { speed_override.min(1.0) } else { 0.0 };
+        let velocity = forces.begin(self.place(), hand, dt_s * scaled);
+        let (mut limit, mut gap_m) = (None, None);
+        let mut share = scaled;
+        for _ in 0..=HALVINGS {
+            let mut tool = match desired {
+                Some(_) => self.navigator.step_at_velocity(velocity, dt_s, share),
+                // Nobody holds the tool: it does not coast.
+                None => self.navigator.step_at_override(&self.navigator.tool_in_world(), dt_s, share),
+            };
+            match self.follow(&tool.tool_in_world, dt_s) {
+                Ok(()) if scaled > 0.0 => {
+                    if forces.end(self.place(), tool.velocity * (1.0 / scaled)) {
+                        let is_usable = desired.is_some_and(Pose::is_finite);
+                        if let Some(desired) = desired.filter(|_| is_usable) {
+                            self.turn_by_hand(forces, desired, dt_s, share);
+                        }
+                        tool.tool_in_world = self.navigator.tool_in_world();
+                        return GuidedStep { tool, limit: limit.or(tool.limit.map(ArmLimit::Tool)) };
+                    }
+                    self.go_back();
+                    gap_m = tool.gap_m;
+                }
+                Ok(()) => break,
+                Err(why) => (limit, gap_m) = (Some(why), tool.gap_m),
+            }
+            self.navigator.undo();
+            share *= 0.5;
+        }
+        forces.stand();
+        GuidedStep { tool: NavigationStep { gap_m, ..self.navigator.stand_still() }, limit }
+    }
+
+    /// Turns the tool, if the arm can follow.
+    fn turn_by_hand(&mut self, forces: &mut ArmForces<'s>, desired: &Pose, dt_s: f64, share: f64) {
+        if !self.navigator.turn(desired, dt_s, share) {
+            return;
+        }
+        let tool_in_world = self.navigator.tool_in_world();
+        if self.follow(&tool_in_world, dt_s).is_ok() {
+            forces.turned(self.place());
+        } else {
+            self.navigator.undo();
+        }
+    }
+
+    /// Takes the joints back to where they were at the start of the step.
+    fn go_back(&mut self) {
+        // They were accepted before.
+        let _ = self.state.set_q(self.scene, self.robot, &self.before);
+    }
+
     /// Moves the joints so that the tool is there, if the whole motion is free.
     fn follow(&mut self, tool_in_world: &Pose, dt_s: f64) -> Result<(), ArmLimit> {
         if !self.solve(tool_in_world) {
             return Err(ArmLimit::Reach);
         }
-        let Self { checker, state, robot, next, joint_speeds, .. } = self;
+        let Self { checker, state, robot, next, before, joint_speeds, .. } = self;
         let too_fast = |(j, (to, from)): (usize, (&f64, &f64))| {
             let largest = joint_speeds.get(j).copied().unwrap_or(0.0) * dt_s;
             ((to - from).abs() > largest * (1.0 + 1e-9)).then_some(j)
         };
-        if let Some(joint) = next.iter().zip(state.q(*robot)).enumerate().find_map(too_fast) {
+        if let Some(joint) = next.iter().zip(before.iter()).enumerate().find_map(too_fast) {
             return Err(ArmLimit::JointSpeed(joint));
         }
         let moves = [SweepMove::Robot { robot: *robot, to: next }];

@@ -5,6 +5,8 @@
 //! | [`SurfaceNavigator`] | one tick: moves a tool towards a desired pose, around [`ProtectedSurface`]s |
 //! | [`GuidedArm`] | moves a whole arm with its tool; the arm never touches anything |
 //! | [`NavigatorSettings`] | gap, speed, acceleration |
+//! | [`Guide`] | keeps the hand on a line, in a plane, in a cone or in a tube |
+//! | [`force`] | a tool with a mass, fields that repel it, and what the hand feels |
 //! | [`generate_shield`] | a surface that protects a solid and is opened along a target |
 //! | [`project_onto_constraints`] | the admissible velocity nearest to a desired one, or displacement |
 //!
@@ -39,6 +41,8 @@
 mod constraint_projection;
 mod constraint_set;
 mod error;
+pub mod force;
+mod guide;
 mod guided_arm;
 mod navigation_step;
 mod navigator_settings;
@@ -48,6 +52,7 @@ mod surface_navigator;
 
 pub use constraint_projection::{Contradiction, LinearConstraint, project_onto_constraints};
 pub use error::NavigatorError;
+pub use guide::Guide;
 pub use guided_arm::{ArmLimit, GuidedArm, GuidedStep};
 pub use navigation_step::{Limit, NavigationStep};
 pub use navigator_settings::NavigatorSettings;

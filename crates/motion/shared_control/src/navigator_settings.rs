@@ -45,7 +45,7 @@ impl NavigatorSettings {
     /// # Errors
     /// The first setting that is not a positive number, or a least gap that is not below the gap.
     pub(crate) fn check(&self) -> Result<(), NavigatorError> {
-        let positive = [
+        NavigatorError::check_positive(&[
             ("gap_m", self.gap_m),
             ("least_gap_m", self.least_gap_m),
             ("speed_m_s", self.speed_m_s),
@@ -53,10 +53,7 @@ impl NavigatorSettings {
             ("acceleration_m_s2", self.acceleration_m_s2),
             ("approach_rate_1_s", self.approach_rate_1_s),
             ("longest_step_s", self.longest_step_s),
-        ];
-        if let Some(&(name, value)) = positive.iter().find(|(_, x)| !(x.is_finite() && *x > 0.0)) {
-            return Err(NavigatorError::Setting { name, value, wanted: "a positive number" });
-        }
+        ])?;
         if self.least_gap_m >= self.gap_m {
             let wanted = "less than gap_m";
             return Err(NavigatorError::Setting { name: "least_gap_m", value: self.least_gap_m, wanted });

@@ -38,6 +38,13 @@ pub struct SurfaceNavigator {
     workspace: Box<Workspace>,
 }
 
+/// What the tool is to do in a step.
+#[derive(Clone, Copy)]
+enum Wish<'a> {
+    Pose(&'a Pose),
+    Velocity(Vec3),
+}
+
 impl SurfaceNavigator {
     /// Places the tool, at rest.
     ///
@@ -93,11 +100,64 @@ impl SurfaceNavigator {
     /// The limit of acceleration is for the scaled velocity: at a small override the tool turns back as soon as the hand
     /// does.
     pub fn step_at_override(&mut self, desired: &Pose, dt_s: f64, speed_override: f64) -> NavigationStep {
-        let speed_override = if speed_override > 0.0 { speed_override.min(1.0) } else { 0.0 };
-        self.before = (self.tool_in_world, self.velocity);
         if !(desired.is_finite() && desired.translation.length().is_finite()) {
+            self.before = (self.tool_in_world, self.velocity);
             return self.stand(Limit::PoseNotFinite);
         }
+        self.advance(Wish::Pose(desired), dt_s, speed_override)
+    }
+
+    /// Moves the tool for `dt_s` seconds with a desired velocity (m/s, at override 1), and keeps its orientation.
+    ///
+    /// The tool takes the admissible velocity nearest to the desired one, within the limit of speed. It speeds up within
+    /// the limit of acceleration, and slows down at once.
+    pub fn step_at_velocity(&mut self, velocity: Vec3, dt_s: f64, speed_override: f64) -> NavigationStep {
+        if !velocity.length().is_finite() {
+            self.before = (self.tool_in_world, self.velocity);
+            return self.stand(Limit::PoseNotFinite);
+        }
+        self.advance(Wish::Velocity(velocity), dt_s, speed_override)
+    }
+
+    /// Turns the tool about its point towards the desired orientation for `dt_s` seconds, as far as the gap proves that
+    /// turning is free. Returns false if it stays as it is.
+    pub fn turn(&mut self, desired: &Pose, dt_s: f64, speed_override: f64) -> bool {
+        self.before = (self.tool_in_world, self.velocity);
+        let turn_rad = self.settings.turn_rad_s * dt_s * within_unit(speed_override);
+        if !(desired.is_finite() && turn_rad > 0.0 && dt_s <= self.settings.longest_step_s) {
+            return false;
+        }
+        let least_gap_m = self.settings.least_gap_m;
+        let distance_m = self.least_distance(self.tool_in_world, least_gap_m + self.tool_reach_m * turn_rad);
+        self.turn_towards(desired, turn_rad, (distance_m - least_gap_m).max(0.0));
+        self.tool_in_world != self.before.0
+    }
+
+    /// Distance (m) of the tool from a protected surface, by its index, and the unit vector along which the distance
+    /// grows (0 on contact). `None` if the distance exceeds `limit_m`, or there is no such surface.
+    pub fn separation_from(&mut self, surface: usize, limit_m: f64) -> Option<(f64, Vec3)> {
+        let protected = self.surfaces.get(surface)?;
+        let settings = DistanceSettings { limit: limit_m, ..DistanceSettings::default() };
+        let found = mesh_separation_with(
+            self.tool.mesh(),
+            &self.tool_in_world,
+            protected.surface.mesh(),
+            &protected.in_world,
+            settings,
+            &mut self.workspace,
+        )?;
+        Some((found.distance, (found.on_a - found.on_b).try_normalize().unwrap_or(Vec3::ZERO)))
+    }
+
+    /// The settings.
+    pub fn settings(&self) -> &NavigatorSettings {
+        &self.settings
+    }
+
+    /// Moves, then turns, as far as it is proven.
+    fn advance(&mut self, wish: Wish<'_>, dt_s: f64, speed_override: f64) -> NavigationStep {
+        let speed_override = within_unit(speed_override);
+        self.before = (self.tool_in_world, self.velocity);
         if !(dt_s > 0.0 && dt_s <= self.settings.longest_step_s) {
             return self.stand(Limit::StepDuration);
         }
@@ -106,14 +166,24 @@ impl SurfaceNavigator {
         let Some(gap_m) = self.collect_constraints(dt_s, largest_change) else {
             return self.stand(Limit::DistanceUnknown);
         };
-        let (wanted, on_the_way) = self.wanted_velocity(desired, dt_s, largest_change);
-        let (velocity, now) = project(wanted, &mut self.velocities);
+        let (wanted, on_the_way) = match wish {
+            Wish::Pose(desired) => self.wanted_velocity(desired, dt_s),
+            Wish::Velocity(velocity) => (velocity * (self.settings.speed_m_s / velocity.length()).min(1.0), 0),
+        };
+        let change = wanted - self.velocity;
+        // What forces demand is physics, and a limit would make energy.
+        let slows = matches!(wish, Wish::Velocity(_)) && wanted.length_squared() <= self.velocity.length_squared();
+        let share = if change.length() > largest_change && !slows { largest_change / change.length() } else { 1.0 };
+        let (velocity, now) = project(self.velocity + change * share, &mut self.velocities);
         // Two walls that are nearly opposite can ask for a velocity far above that of either.
         let velocity = velocity * (self.settings.speed_m_s / velocity.length()).min(1.0);
         let active_rows = now.max(on_the_way);
         let travel = velocity * (dt_s * speed_override);
         // The proof does not rely on the constraints: their search uses normals, and this distance does not.
-        let turn_rad = self.settings.turn_rad_s * dt_s * speed_override;
+        let turn_rad = match wish {
+            Wish::Pose(_) => self.settings.turn_rad_s * dt_s * speed_override,
+            Wish::Velocity(_) => 0.0,
+        };
         let turn_m = self.tool_reach_m * turn_rad;
         let slack_limit_m = travel.length() + turn_m + self.settings.least_gap_m;
         let distance_m = self.least_distance(self.tool_in_world, slack_limit_m);
@@ -121,8 +191,10 @@ impl SurfaceNavigator {
         let proven = if travel.length() <= slack_m { 1.0 } else { self.proven_share(travel) };
         self.velocity = velocity * proven;
         self.tool_in_world.translation += travel * proven;
-        let left_m = if proven < 1.0 { 0.0 } else { (slack_m - travel.length()).max(0.0) };
-        self.turn_towards(desired, turn_rad, left_m);
+        if let Wish::Pose(desired) = wish {
+            let left_m = if proven < 1.0 { 0.0 } else { (slack_m - travel.length()).max(0.0) };
+            self.turn_towards(desired, turn_rad, left_m);
+        }
         let limit = if proven < 1.0 { Some(Limit::Proof) } else { (active_rows > 0).then_some(Limit::Surface) };
         let is_near = distance_m < slack_limit_m;
         let is_in_range = !self.velocities.as_slice().is_empty();
@@ -153,20 +225,17 @@ impl SurfaceNavigator {
     }
 
     /// The velocity with which the tool point would follow if it could: towards the admissible point nearest to the
-    /// desired one, within the limits of speed and acceleration, and slow enough to stop there.
+    /// desired one, within the limit of speed, and slow enough to stop there.
     ///
     /// The desired point is projected before the speed is limited, so that a hand deep inside a solid does not slow the
     /// tool down along its surface. Also returns the number of constraints that keep it from the desired point.
-    fn wanted_velocity(&mut self, desired: &Pose, dt_s: f64, largest_change: f64) -> (Vec3, usize) {
+    fn wanted_velocity(&mut self, desired: &Pose, dt_s: f64) -> (Vec3, usize) {
         let way = desired.translation - self.tool_in_world.translation;
         let (way, active) = project(way, &mut self.displacements);
         let s = &self.settings;
         let distance = way.length();
         let speed = (distance / dt_s).min(s.speed_m_s).min((2.0 * s.acceleration_m_s2 * distance).sqrt());
-        let wanted = if distance > 0.0 { way * (speed / distance) } else { Vec3::ZERO };
-        let change = wanted - self.velocity;
-        let share = if change.length() > largest_change { largest_change / change.length() } else { 1.0 };
-        (self.velocity + change * share, active)
+        (if distance > 0.0 { way * (speed / distance) } else { Vec3::ZERO }, active)
     }
 
     /// Collects a constraint for every local minimum of the distance in the range that limits the speed of this step.
@@ -245,6 +314,11 @@ impl SurfaceNavigator {
         let turn = Rotation::from_rotation_vector(way * (turned / angle));
         self.tool_in_world.rotation = (turn * self.tool_in_world.rotation).renormalized();
     }
+}
+
+/// A share of a speed, 0 to 1; NaN counts as 0.
+fn within_unit(share: f64) -> f64 {
+    if share > 0.0 { share.min(1.0) } else { 0.0 }
 }
 
 /// The admissible vector nearest to the wanted one, and the number of constraints that decide it.

@@ -2,7 +2,9 @@
 
 mod common;
 mod constraint_projection;
+mod forces;
 mod guided_arm;
+mod guides;
 mod refusals;
 mod shields;
 mod smoothness;

@@ -1,56 +1,99 @@
 //! `[fixture.NAME]`: a shield that protects an object and is opened along a target.
 
+use std::sync::Arc;
+
 use elbowroom_formats::toml_tables::{Table, Value};
 use elbowroom_formats::{Diagnostic, suggest};
-use elbowroom_proximity::Shape;
-use elbowroom_robot::{ObjectId, RobotId};
-use elbowroom_shared_control::{ShieldSettings, ShieldTarget};
+use elbowroom_proximity::{Shape, TriMesh};
+use elbowroom_robot::ObjectId;
+use elbowroom_shared_control::{ProtectedSurface, ShieldSettings, ShieldTarget};
+use elbowroom_spatial::units::LengthUnit;
 use elbowroom_spatial::{Pose, Vec3};
 
+use super::fixture_tool::tool;
+use super::models;
+
 use super::schema::{FIXTURE, FIXTURE_DRILL, FIXTURE_FACES, FIXTURE_TARGET, names};
-use crate::fixture::{CellFixture, FixtureTool};
-use crate::{Cell, CellRobot, Units};
+use crate::fixture::{CellFixture, ShieldSource};
+use crate::{Cell, Units};
 
 type Result<T> = std::result::Result<T, Diagnostic>;
 
 const TARGET: &str = "target = { line = [[0, 0, 100], [50, 0, 100]] }   (or area, drill, faces_within)";
-const TOOL: &str = "tool = \"ROBOT/TOOL\"   (or the robot alone, if it has one tool)";
 
-pub(super) fn read(root: &Table<'_>, cell: &Cell) -> Result<Vec<CellFixture>> {
-    root.named("fixture")?.into_iter().map(|(name, t)| fixture(name, &t, cell)).collect()
+pub(super) fn read(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
+    for (name, t) in root.named("fixture")? {
+        if t.get("guide").is_some() {
+            let guide = super::guide::read(name, &t, cell)?;
+            cell.guidance.guides.push(guide);
+        } else {
+            let fixture = fixture(name, &t, cell)?;
+            cell.guidance.fixtures.push(fixture);
+        }
+    }
+    Ok(())
 }
 
+/// A shield around an object.
 fn fixture(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellFixture> {
     t.only(&names(&[FIXTURE]))?;
-    let units = cell.units;
     let protects = object(&t.need("protects", "protects = \"bone\"   (an object)")?, cell)?;
     let object_in_world = cell.objects[protects.0].in_world;
+    let shield = match t.get("mesh") {
+        Some(file) => ShieldSource::Mesh(shield_of_file(&file, t, object_in_world)?),
+        None => generated(t, cell.units, object_in_world)?,
+    };
+    Ok(CellFixture {
+        name: name.to_owned(),
+        line: t.line,
+        protects,
+        shield,
+        tool: t.get("tool").map(|v| tool(&v, cell)).transpose()?,
+        active: t.flag_or("active", true)?,
+    })
+}
+
+fn generated(t: &Table<'_>, units: Units, object_in_world: Pose) -> Result<ShieldSource> {
     let (target, depth_m) = target(&t.need("target", TARGET)?, units, object_in_world)?;
     let length = |key: &str, default_m: f64| t.get(key).map_or(Ok(default_m), |v| units.not_negative_length(&v));
     let depth = t.get("depth");
     if let (Some(depth), Some(_)) = (&depth, depth_m) {
         return Err(depth.error("contradicts the depth of `drill`").hint("the depth in `drill` alone"));
     }
+    if let Some(unit) = t.get("mesh_unit") {
+        return Err(unit.error("is of a `mesh`, which this fixture does not have").hint("no `mesh_unit`"));
+    }
     let flare_rad = t.get("flare").map_or(Ok(0.0), |v| {
         let flare_rad = units.angle.to_radians(v.not_negative()?);
         let is_usable = flare_rad.to_degrees() <= 80.0;
         if is_usable { Ok(flare_rad) } else { Err(v.error("is more than 80°").hint("flare = 15   (degrees)")) }
     })?;
-    Ok(CellFixture {
-        name: name.to_owned(),
-        line: t.line,
-        protects,
-        target,
-        settings: ShieldSettings {
-            offset_m: length("offset", 0.002)?,
-            width_m: units.positive_length(&t.need("width", "width = 8   (of the opening)")?)?,
-            depth_m: depth_m.map_or_else(|| length("depth", 0.0), Ok)?,
-            flare_rad,
-            tolerance_m: t.get("tolerance").map_or(Ok(0.002), |v| units.positive_length(&v))?,
-        },
-        tool: t.get("tool").map(|v| tool(&v, cell)).transpose()?,
-        active: t.flag_or("active", true)?,
-    })
+    let settings = ShieldSettings {
+        offset_m: length("offset", 0.002)?,
+        width_m: units.positive_length(&t.need("width", "width = 8   (of the opening)")?)?,
+        depth_m: depth_m.map_or_else(|| length("depth", 0.0), Ok)?,
+        flare_rad,
+        tolerance_m: t.get("tolerance").map_or(Ok(0.002), |v| units.positive_length(&v))?,
+    };
+    Ok(ShieldSource::Generated { target, settings })
+}
+
+/// A shield from a file in the world, in the frame of the object.
+fn shield_of_file(file: &Value<'_>, t: &Table<'_>, object_in_world: Pose) -> Result<Arc<TriMesh>> {
+    for key in ["target", "width", "offset", "depth", "flare", "tolerance"] {
+        if let Some(v) = t.get(key) {
+            return Err(v.error("is of a generated shield, and this one is read").hint("either `mesh` or `target`"));
+        }
+    }
+    let unit = t.get("mesh_unit").map_or(Ok(LengthUnit::Metre), |v| models::mesh_unit(&v))?;
+    let Shape::Mesh(mesh) = models::mesh(file, unit)? else {
+        return Err(file.error("holds no mesh").hint("an STL, OBJ or PLY file"));
+    };
+    let vertices = mesh.vertices().iter().map(|p| object_in_world.inverse_transform_point(*p)).collect();
+    let mesh =
+        TriMesh::new(vertices, mesh.triangles().to_vec()).map(Arc::new).map_err(|e| file.error(e.to_string()))?;
+    ProtectedSurface::new(mesh.clone(), object_in_world).map_err(|e| file.error(e.to_string()))?;
+    Ok(mesh)
 }
 
 fn object(v: &Value<'_>, cell: &Cell) -> Result<ObjectId> {
@@ -107,34 +150,4 @@ fn target(v: &Value<'_>, units: Units, object_in_world: Pose) -> Result<(ShieldT
             Ok((ShieldTarget::FacesWithin { at, radius_m }, None))
         }
     }
-}
-
-fn tool(v: &Value<'_>, cell: &Cell) -> Result<FixtureTool> {
-    let text = v.text()?;
-    let (robot_name, tool_name) = text.split_once('/').unwrap_or((text, "tool"));
-    let robots = || cell.robots.iter().map(|r| r.name.as_str());
-    let robot = robots().position(|n| n == robot_name).ok_or_else(|| {
-        v.error(format!("names the robot \"{robot_name}\", which is not in this cell"))
-            .hint(suggest::hint(robot_name, robots()))
-    })?;
-    tool_of(v, cell, RobotId(robot), tool_name)
-}
-
-/// The tool of this name of a robot; it must have a solid.
-pub(super) fn tool_of(v: &Value<'_>, cell: &Cell, robot: RobotId, tool_name: &str) -> Result<FixtureTool> {
-    let CellRobot { name: robot_name, payload, .. } = &cell.robots[robot.0];
-    let tools = &payload.tools;
-    let is_only = tool_name == "tool" && tools.len() == 1;
-    let named = tools.iter().position(|t| t.name == tool_name || is_only);
-    if named.is_none() && !(tools.is_empty() && tool_name == "tool") {
-        let what = format!("names the tool \"{tool_name}\", which robot \"{robot_name}\" does not have");
-        let known = tools.iter().map(|t| t.name.as_str()).chain(tools.is_empty().then_some("tool"));
-        return Err(v.error(what).hint(suggest::hint(tool_name, known)));
-    }
-    let tool = FixtureTool { robot, named };
-    if tool.solid(cell).is_none() {
-        let what = format!("has no solid, so nothing says whether it passes: robot \"{robot_name}\"");
-        return Err(v.error(what).hint(format!("`box` or `mesh` in [robot.{robot_name}.tool]; or {TOOL}")));
-    }
-    Ok(tool)
 }

@@ -6,10 +6,13 @@ mod cloud;
 mod definitions;
 mod document;
 mod fixture;
+mod fixture_tool;
 mod flange;
 mod follow;
+mod force;
 mod goal;
 mod guarding;
+mod guide;
 mod models;
 mod object;
 mod operator;
@@ -97,8 +100,9 @@ impl CellFile {
         maps(&root, &mut cell)?;
         avoidance::read(&root, &mut cell)?;
         cell.sensors = sensors(&root, &cell)?;
-        cell.guidance.fixtures = fixture::read(&root, &cell)?;
+        fixture::read(&root, &mut cell)?;
         operator::read(&root, &mut cell)?;
+        force::read(&root, &mut cell)?;
         // Builds the monitors' configurations, so that anything they refuse is refused here, with its line.
         cell.approval.checksum = configure::checksum(&cell)?;
         if self.on_disk {

@@ -6,7 +6,7 @@ use elbowroom_robot::RobotId;
 use elbowroom_shared_control::NavigatorSettings;
 
 use super::definitions::robot_id;
-use super::fixture::tool_of;
+use super::fixture_tool::tool_of;
 use super::poses::read_with;
 use super::schema::{OPERATOR, names};
 use super::tools::with_exchanged_tools;

@@ -4,6 +4,7 @@ mod avoidance;
 mod distances;
 mod figure;
 mod figure12;
+mod guidance;
 mod joints;
 mod overrides;
 mod plot;
@@ -27,6 +28,7 @@ pub fn all(scene: &ReportScene, runs: &[(&str, &Recording)], planned: Option<&Re
     figures.extend(figure12::all(scene, runs));
     for run in 0..runs.len() {
         figures.extend(avoidance::all(runs, run));
+        figures.extend(guidance::all(runs, run));
         figures.extend(timing::chart(runs, run));
         figures.extend(joints::chart(scene, runs, run));
     }

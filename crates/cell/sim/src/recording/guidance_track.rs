@@ -31,6 +31,17 @@ pub struct GuidanceSample {
     pub active: usize,
     /// What kept it from following.
     pub limit: Option<ArmLimit>,
+    /// What the hand feels; `None` without forces.
+    pub force: Option<ForceSample>,
+}
+
+/// Forces of a guided tool in one tick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ForceSample {
+    /// Force on the hand at the end of the tick, N, world axes.
+    pub on_hand_n: Vec3,
+    /// Energy that was put in and not given back, J.
+    pub energy_j: f64,
 }
 
 impl GuidanceSample {

@@ -7,7 +7,7 @@ use elbowroom_kinematics::ChainState;
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{Scene, SceneError, SceneState};
 
-use crate::recording::{GuidanceSample, GuidanceState, GuidanceTrack, RunEvent};
+use crate::recording::{ForceSample, GuidanceSample, GuidanceState, GuidanceTrack, RunEvent};
 
 /// Speed of the tool point from which a tool in contact glides, m/s.
 const GLIDING_M_S: f64 = 2e-3;
@@ -82,14 +82,12 @@ impl<'s> GuidedRobot<'s> {
         self.velocity.copy_from_slice(self.arm.q());
         let input = self.operator.stream.at(t_s);
         let wanted = if let OperatorInput::Pose(pose) = input { Some(pose) } else { None };
-        // Without a wish the tool brakes.
-        let goal = wanted.unwrap_or(before);
-        let step = self.arm.step(&goal, tick_s, allowed);
+        let step = self.arm.step(wanted.as_ref(), tick_s, allowed);
         for (velocity, q) in self.velocity.iter_mut().zip(self.arm.q()) {
             *velocity = (q - *velocity) / tick_s;
         }
         // What the hand wants, also while the override lets nothing move: it may lead away from a region.
-        self.arm.intent(&goal, tick_s, &mut self.intent);
+        self.arm.intent(wanted.as_ref(), tick_s, &mut self.intent);
         let tool_in_world = self.arm.tool_in_world();
         let is_at_rest = self.velocity.iter().all(|v| *v == 0.0);
         self.is_over = input == OperatorInput::Over && is_at_rest;
@@ -102,6 +100,7 @@ impl<'s> GuidedRobot<'s> {
             gap_m: step.tool.gap_m,
             active: step.tool.active_rows,
             limit: step.limit,
+            force: self.arm.forces().map(|f| ForceSample { on_hand_n: f.force_on_hand(), energy_j: f.energy_j() }),
         };
         self.track.samples.push(sample);
         let is_held = allowed <= 0.0 || matches!(input, OperatorInput::Disabled | OperatorInput::Stale);

@@ -5,14 +5,45 @@ use super::key::{Key, key};
 #[rustfmt::skip] // a row per key, as in the document
 pub(in crate::file) const FIXTURE: &[Key] = &[
     key("protects", "name", "required", "the object that the shield protects; not a plane"),
-    key("target", "table", "required", "what the tool is to reach: one of the keys below"),
-    key("width", "length", "required", "width of the opening at its ground"),
+    key("target", "table", "required without `mesh`", "what the tool is to reach: one of the keys below"),
+    key("mesh", "path", "none", "instead of `target` and its dimensions: a closed shield in the world, as `elbowroom fixture --out` writes it"),
+    key("mesh_unit", "`\"m\"` `\"mm\"` `\"cm\"` `\"in\"`", "`\"m\"`", "unit of the mesh"),
+    key("width", "length", "required with `target`", "width of the opening at its ground"),
     key("offset", "length", "2 mm", "distance of the shield from the surface"),
     key("depth", "length", "0", "how far the opening reaches into the object; of `drill`: its own depth"),
     key("flare", "angle", "0: parallel walls", "angle between the wall of the opening and its axis, at most 80°"),
     key("tolerance", "length", "2 mm", "largest error of the shield, and distance of the target from the surface; a fine one takes longer"),
     key("tool", "`\"ROBOT/TOOL\"`", "none: whether a tool passes is not examined", "the tool that works in the opening; `\"ROBOT\"` or `\"ROBOT/tool\"` for the only one"),
     key("active", "true, false", "true", "whether it is on at the start"),
+];
+
+#[rustfmt::skip] // a row per key, as in the document
+pub(in crate::file) const GUIDE: &[Key] = &[
+    key("guide", "`\"line\"` `\"tube\"` `\"plane\"` `\"cone\"`", "required", "where the hand is kept, instead of a shield"),
+    key("tool", "`\"ROBOT/TOOL\"`", "required", "the guided tool; `\"ROBOT\"` or `\"ROBOT/tool\"` for the only one"),
+    key("points", "list of points", "required by `line` and `tube`", "the line, which may bend, or the axis of the tube; in the world"),
+    key("radius", "length", "required by `tube`", "radius of the tube"),
+    key("tolerance", "length", "0.5 mm", "of `line` and `tube`: distance from the line in bends, at sharp corners up to twice as much; a small one makes the tool slow there"),
+    key("at", "point", "required by `plane` and `cone`", "a point of the plane, or the apex of the cone; in the world"),
+    key("normal", "vector", "required by `plane`", "normal of the plane"),
+    key("axis", "vector", "required by `cone`", "from the apex into the cone"),
+    key("half_angle", "angle", "required by `cone`", "angle between the axis and the side of the cone, below 90°"),
+    key("active", "true, false", "true", "whether it is on at the start"),
+];
+
+#[rustfmt::skip] // a row per key, as in the document
+pub(in crate::file) const FORCE: &[Key] = &[
+    key("between", "`[\"ROBOT/TOOL\", \"OBJECT\"]`", "required", "a guided tool, or `\"ROBOT\"` for its whole arm, and an object or a fixture with a shield that is on for the tool"),
+    key("law", "`\"repulsive\"` `\"khatib\"` `\"spring_damper\"` `\"admittance\"` `\"impedance\"`", "required", "the force: [force laws](fixtures.md#forces)"),
+    key("range", "length", "required, 0 for `admittance` and `impedance`", "distance at which the two begin to repel each other"),
+    key("stiffness", "N/m", "1000, 800 for `admittance`", "of the repulsion; of `admittance` and `impedance`: of the spring between hand and tool too"),
+    key("damping", "N·s/m", "0, 50 for `spring_damper`, critical for `admittance`", "of the approach; of `admittance`: of every motion; of `impedance`: between hand and tool"),
+    key("reaction_ms", "ms", "0", "the range grows by the way of the approach in this time"),
+    key("deceleration", "length per second squared", "none", "the range grows by the way of braking with it"),
+    key("mass", "kg", "2", "of `admittance`: mass of the tool as the hand feels it"),
+    key("jerk", "length per second cubed", "500 m/s³", "of `admittance`: largest jerk while the tool speeds up"),
+    key("tank", "J", "0.01", "of `impedance`: energy that the hand may get before it has put any in"),
+    key("device_damping", "N·s/m", "none: not examined", "of `impedance`: damping of the hand controller, which limits the stiffness"),
 ];
 
 #[rustfmt::skip] // a row per key, as in the document

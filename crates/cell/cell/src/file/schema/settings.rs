@@ -16,6 +16,7 @@ pub(in crate::file) const TOP: &[Key] = &[
     key("region", "tables", "none", "regions: [`[region.NAME]`](#regionname)"),
     key("encoder", "tables", "none", "conveyors: [`[encoder.NAME]`](#encodername)"),
     key("fixture", "tables", "none", "virtual fixtures: [`[fixture.NAME]`](#fixturename)"),
+    key("force", "tables", "none", "forces between guided tools and their surroundings: [`[force.NAME]`](#forcename)"),
     key("operator", "tables", "none", "robots that a person guides: [`[operator.NAME]`](#operatorname)"),
     key("camera", "tables", "none", "cameras: [`[camera.NAME]`](#cameraname)"),
     key("cloud", "tables", "none", "sensors of points: [`[cloud.NAME]`](#cloudname)"),
