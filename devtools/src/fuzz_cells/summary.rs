@@ -40,6 +40,8 @@ struct FailingCells {
     two_inside: usize,
     silent: usize,
     too_hard: usize,
+    too_near: usize,
+    energy_made: usize,
     any: usize,
 }
 
@@ -51,6 +53,8 @@ impl FailingCells {
         self.two_inside += has(|f| matches!(f, Finding::TwoInside { .. }));
         self.silent += has(|f| matches!(f, Finding::SilentDeadlock { .. }));
         self.too_hard += has(|f| matches!(f, Finding::TooHard { .. }));
+        self.too_near += has(|f| matches!(f, Finding::TooNear { .. }));
+        self.energy_made += has(|f| matches!(f, Finding::EnergyMade { .. }));
         self.any += usize::from(!findings.is_empty());
     }
 }
@@ -87,7 +91,7 @@ impl Summary {
 
     pub fn progress(&self) -> String {
         format!(
-            "{}: {} cells, {} refused, {} entries, {} broken promises, {} two inside, {} silent deadlocks, {} too hard",
+            "{}: {} cells, {} refused, {} entries, {} broken promises, {} two inside, {} silent deadlocks, {} too hard, {} guided too near, {} with energy made",
             self.kind,
             self.cells,
             self.refused.values().sum::<usize>(),
@@ -95,11 +99,13 @@ impl Summary {
             self.failing.broken_promises,
             self.failing.two_inside,
             self.failing.silent,
-            self.failing.too_hard
+            self.failing.too_hard,
+            self.failing.too_near,
+            self.failing.energy_made
         )
     }
 
-    fn rows(&self) -> [(&'static str, String); 15] {
+    fn rows(&self) -> [(&'static str, String); 17] {
         let share = |n: usize| format!("{:.1} %", 100.0 * n as f64 / self.robots.max(1) as f64);
         [
             ("cells", self.cells.to_string()),
@@ -115,6 +121,8 @@ impl Summary {
             ("deadlocks", self.deadlocks.to_string()),
             ("silent deadlocks", self.failing.silent.to_string()),
             ("braked too hard", self.failing.too_hard.to_string()),
+            ("guided too near", self.failing.too_near.to_string()),
+            ("energy made", self.failing.energy_made.to_string()),
             ("unforeseen", self.unforeseen.to_string()),
             ("took s", format!("{:.1}", self.took.as_secs_f64())),
         ]
@@ -148,7 +156,7 @@ pub fn json(seed: u64, summaries: &[Summary]) -> String {
         let _ = write!(
             text,
             "{comma}{{\"kind\":\"{}\",\"cells\":{},\"refused\":{},\"robots\":{},\"finished\":{},\"slowed\":{},\"stopped\":{},\
-             \"entries\":{},\"broken_promises\":{},\"two_inside\":{},\"deadlocks\":{},\"silent_deadlocks\":{},\"too_hard\":{},\"unforeseen_entries\":{},\
+             \"entries\":{},\"broken_promises\":{},\"two_inside\":{},\"deadlocks\":{},\"silent_deadlocks\":{},\"too_hard\":{},\"too_near\":{},\"energy_made\":{},\"unforeseen_entries\":{},\
              \"failed\":{},\"simulated_s\":{:.3},\"took_s\":{:.3}}}",
             s.kind,
             s.cells,
@@ -163,6 +171,8 @@ pub fn json(seed: u64, summaries: &[Summary]) -> String {
             s.deadlocks,
             s.failing.silent,
             s.failing.too_hard,
+            s.failing.too_near,
+            s.failing.energy_made,
             s.unforeseen,
             s.failing.any,
             s.simulated_s,
@@ -202,6 +212,14 @@ pub fn in_words(finding: &Finding, cell: &Cell) -> String {
         Finding::SilentDeadlock { robots } => {
             let names: Vec<&str> = robots.iter().map(robot).collect();
             format!("robots {} wait for one another for ever, and the run does not report it", names.join(", "))
+        }
+        Finding::TooNear { robot: r, object, t_s, distance_m, least_m } => format!(
+            "guided robot {} was {distance_m:.6} m from {} at {t_s:.4} s, at least {least_m:.6} m are promised",
+            robot(r),
+            cell.objects[*object].name
+        ),
+        Finding::EnergyMade { robot: r, t_s, energy_j } => {
+            format!("the forces of robot {} made {:.6} J until {t_s:.4} s", robot(r), -energy_j)
         }
         Finding::TooHard { robot: r, joint, t_s, deceleration, limit } => format!(
             "robot {}: joint {joint} slowed down with {deceleration:.3} at {t_s:.4} s, its limit is {limit:.3} (rad/s² or m/s²)",

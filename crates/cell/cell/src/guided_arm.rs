@@ -10,7 +10,7 @@ use elbowroom_proximity::contact::triangle_surface;
 use elbowroom_robot::ObjectId;
 use elbowroom_scene::{Scene, SceneState, Selection};
 use elbowroom_shared_control::force::{
-    ArmField, ArmForces, BodySettings, FieldPair, ImpedancePort, Response, VirtualBody,
+    ArmField, ArmForces, BodySettings, FieldPair, ImpedancePort, ImpedanceSettings, Response, VirtualBody,
 };
 use elbowroom_shared_control::{GuidedArm, NavigatorError, ProtectedSurface, SurfaceNavigator};
 use elbowroom_spatial::{Pose, Vec3};
@@ -97,7 +97,13 @@ impl CellOperator {
         let response = own.iter().find_map(|force| match force.response {
             ForceResponse::Field => None,
             ForceResponse::Admittance(settings) => Some(VirtualBody::new(settings).map(Response::Admittance)),
-            ForceResponse::Impedance(settings) => Some(ImpedancePort::new(settings).map(Response::Impedance)),
+            ForceResponse::Impedance(settings) => {
+                // A row holds until the next one, and then the hand moves within one tick.
+                let fastest = self.stream.largest_step_m(ArmForces::REGRIP_M) / cell.timing.tick_s;
+                let hand_speed_m_s = settings.hand_speed_m_s.max(fastest);
+                let settings = ImpedanceSettings { hand_speed_m_s, ..settings };
+                Some(ImpedancePort::new(settings).map(Response::Impedance))
+            }
         });
         let response =
             response.unwrap_or_else(|| VirtualBody::new(BodySettings::default()).map(Response::Admittance))?;

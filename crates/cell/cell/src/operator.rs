@@ -90,6 +90,12 @@ impl OperatorStream {
         Self { file, stale_s, rows: wanted }
     }
 
+    /// Largest motion of the desired point from one row to the next, metres, up to a limit beyond which it is none.
+    pub fn largest_step_m(&self, limit_m: f64) -> f64 {
+        let step = |w: &[(f64, Option<Pose>)]| Some(w[0].1?.translation.distance(w[1].1?.translation));
+        self.rows.windows(2).filter_map(step).filter(|step| *step <= limit_m).fold(0.0, f64::max)
+    }
+
     /// What the operator wants at a time (s).
     pub fn at(&self, t_s: f64) -> OperatorInput {
         let next = self.rows.partition_point(|row| row.0 <= t_s);

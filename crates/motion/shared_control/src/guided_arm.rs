@@ -130,6 +130,7 @@ impl<'s> GuidedArm<'s> {
     /// Moves the tool point for `dt_s` seconds towards the desired pose, and the arm with it, with the velocity scaled by
     /// an override, 0 to 1. Without a desired pose the tool slows down.
     pub fn step(&mut self, desired: Option<&Pose>, dt_s: f64, speed_override: f64) -> GuidedStep {
+        let hand = desired.map(|d| d.translation);
         let desired = self.guided(desired);
         self.before.copy_from_slice(self.state.q(self.robot));
         let Some(mut forces) = self.forces.take() else {
@@ -139,7 +140,7 @@ impl<'s> GuidedArm<'s> {
             self.step_by_forces(&mut forces, desired.as_ref(), dt_s, speed_override)
         } else {
             let step = self.step_after_hand(desired.as_ref(), dt_s, speed_override);
-            forces.feel(self.place(), desired.map(|d| d.translation), step.tool.velocity, dt_s);
+            forces.feel(self.place(), hand, step.tool.velocity, dt_s);
             step
         };
         self.forces = Some(forces);

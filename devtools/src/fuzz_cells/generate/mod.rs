@@ -4,6 +4,7 @@ mod carried;
 mod encounter;
 mod exchange;
 mod faults;
+mod guided;
 mod moving;
 mod moving_object;
 mod planned;
@@ -37,11 +38,21 @@ pub enum Kind {
     Recordings,
     /// Like `Stop`, with planned moves.
     Planned,
+    /// Robots that a person guides into objects, with shields, guides and forces.
+    Guided,
 }
 
 impl Kind {
-    pub const ALL: [Self; 7] =
-        [Self::Stop, Self::Exchange, Self::Faults, Self::Moving, Self::Tools, Self::Recordings, Self::Planned];
+    pub const ALL: [Self; 8] = [
+        Self::Stop,
+        Self::Exchange,
+        Self::Faults,
+        Self::Moving,
+        Self::Tools,
+        Self::Recordings,
+        Self::Planned,
+        Self::Guided,
+    ];
 
     pub fn name(self) -> &'static str {
         match self {
@@ -52,6 +63,7 @@ impl Kind {
             Self::Tools => "tools",
             Self::Recordings => "recordings",
             Self::Planned => "planned",
+            Self::Guided => "guided",
         }
     }
 
@@ -62,6 +74,7 @@ impl Kind {
             Self::Faults | Self::Moving | Self::Recordings => 35,
             Self::Exchange | Self::Tools => 20,
             Self::Planned => 8,
+            Self::Guided => 6,
         }
     }
 
@@ -84,6 +97,7 @@ pub fn cell(kind: Kind, random: &mut Random, places: &Places<'_>) -> CellSpec {
         Kind::Moving => carried::cell(random, places),
         Kind::Tools => tools::cell(random, places),
         Kind::Recordings => recordings::cell(random, places),
+        Kind::Guided => guided::cell(random, places),
         Kind::Planned => {
             let mut spec = stop(random, places);
             planned::plan(&mut spec, random);

@@ -35,6 +35,11 @@ pub fn any(random: &mut Random, places: &Places<'_>) -> RobotSpec {
     robot
 }
 
+/// Makes a robot of six axes from a file, with a program.
+pub fn example(random: &mut Random, places: &Places<'_>) -> RobotSpec {
+    from_file(random, places)
+}
+
 /// Makes a robot of one or two joints.
 pub fn small(random: &mut Random) -> RobotSpec {
     gantry(random)

@@ -14,6 +14,10 @@ pub enum Finding {
     TwoInside { region: usize, robots: [usize; 2], t_s: f64 },
     /// Robots wait for one another for ever, and the recording does not report it.
     SilentDeadlock { robots: Vec<usize> },
+    /// A guided robot was nearer to an object than promised, or inside its shield (negative).
+    TooNear { robot: usize, object: usize, t_s: f64, distance_m: f64, least_m: f64 },
+    /// The forces of a guided tool gave more energy than they got.
+    EnergyMade { robot: usize, t_s: f64, energy_j: f64 },
     /// A joint decelerated harder than it can.
     TooHard { robot: usize, joint: usize, t_s: f64, deceleration: f64, limit: f64 },
 }

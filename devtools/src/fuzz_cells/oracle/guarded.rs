@@ -74,6 +74,11 @@ impl Guarded {
         self.tool.is_none_or(|tool| robot.payload.tools[tool].mounted)
     }
 
+    /// Whether it is a tool or a load, and not the arm or a point.
+    pub fn is_tool(&self) -> bool {
+        self.part == GuardedPart::Tool
+    }
+
     pub fn counts_for(&self, guards: Guards) -> bool {
         match self.part {
             GuardedPart::Tcp => guards.tcp,

@@ -11,6 +11,7 @@ mod exchange;
 pub mod findings;
 mod frame;
 mod guarded;
+mod guided;
 mod motion;
 mod mounted;
 mod physics;
@@ -28,6 +29,7 @@ pub use arm::Arm;
 pub use findings::{Finding, Findings};
 pub use frame::Frame;
 pub use guarded::Guarded;
+pub use guided::is_clear as is_clear_at_start;
 pub use promises::Promises;
 
 use elbowroom_cell::{Cell, ProgramBody};
@@ -51,6 +53,7 @@ pub fn check(
     presence::entries(&motion, &guarded, promises, &mut findings);
     exchange::check(&motion, &guarded, promises, has_violation, &mut findings);
     physics::check(cell, recording, &mut findings);
+    guided::check(cell, recording, &arms, &mut findings);
     Ok(findings)
 }
 

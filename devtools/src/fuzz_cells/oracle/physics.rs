@@ -16,7 +16,9 @@ const ROUNDING: f64 = 2e-9;
 /// the changes of velocity in the recording that they play.
 pub fn check(cell: &Cell, recording: &Recording, findings: &mut Findings) {
     let dt = recording.tick_s;
-    for (robot, track) in recording.robots.iter().enumerate() {
+    // A surface stops a guided tool as fast as it must.
+    let is_guided = |robot: usize| cell.guidance.operators.iter().any(|o| o.robot.0 == robot);
+    for (robot, track) in recording.robots.iter().enumerate().filter(|(robot, _)| !is_guided(*robot)) {
         for (joint, l) in cell.robots[robot].limits.iter().enumerate() {
             let played = played(cell, robot).map_or(0.0, |rows| largest_change(rows, joint, dt) / dt);
             let limit = (l.stop.max(l.acceleration) + played) * (1.0 + SHARE) + ROUNDING / (dt * dt);

@@ -301,3 +301,50 @@ fn objects_are_where_their_motion_says_between_ticks_too() {
         assert!((center - by_hand).length() < 1e-9, "{t_s} {center:?} {by_hand:?}");
     }
 }
+
+/// A guided robot with a tool of 8 mm above a block.
+fn guided(extra: &str, folder: &std::path::Path) -> (Cell, RunOutcome) {
+    let rows: Vec<String> = (0..=50)
+        .map(|k| {
+            format!(
+                "{},1.1042,0,{},0.887010833178222,0,0.46174861323503386,0,1,0",
+                0.02 * f64::from(k),
+                1.3588 - 0.002 * f64::from(k)
+            )
+        })
+        .collect();
+    let stream = format!("t_s,x,y,z,qx,qy,qz,qw,enable,clutch\n{}\n", rows.join("\n"));
+    std::fs::write(folder.join("hand.csv"), stream).unwrap();
+    let text = format!(
+        "{HEAD}[robot.r0]\nmodel = \"{}/examples/models/ns16/ns16.urdf\"\nstart = [0, 0, 0, 0, 0.6108652, 0]\n\
+         [robot.r0.tool]\ntcp = {{ at = [0, 0, 0.1] }}\nbox = {{ at = [0, 0, 0.05], size = [0.008, 0.008, 0.1] }}\n\
+         [object.block]\nshape = \"box\"\nsize = [0.4, 0.4, 0.2]\nat = [1.15, 0, 1.2]\n\
+         [operator.hand]\nrobot = \"r0\"\nstream = \"hand.csv\"\n{extra}",
+        env!("CARGO_MANIFEST_DIR").trim_end_matches("/devtools")
+    );
+    let cell = Cell::parse(folder.join("guided.toml"), &text).unwrap();
+    let outcome = simulate(&cell, &RunOptions::default()).unwrap();
+    (cell, outcome)
+}
+
+#[test]
+fn a_guided_tool_that_is_too_near_and_energy_that_is_made_are_found() {
+    let folder = std::env::temp_dir().join(format!("elbowroom-guided-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let force = "[force.soft]\nbetween = [\"r0/tool\", \"block\"]\nlaw = \"repulsive\"\nrange = 0.02\n";
+    let (cell, mut outcome) = guided(force, &folder);
+    std::fs::remove_dir_all(&folder).unwrap();
+    let findings = |outcome: &RunOutcome| check(&cell, &outcome.recording, &Promises::none(&cell), false).unwrap().list;
+    assert_eq!(findings(&outcome), []);
+    let track = &mut outcome.recording.robots[0];
+    let last = track.guidance.as_mut().unwrap().samples.last_mut().unwrap();
+    last.force.as_mut().unwrap().energy_j -= 2.0;
+    assert!(matches!(findings(&outcome)[..], [Finding::EnergyMade { robot: 0, .. }]), "{:?}", findings(&outcome));
+    // The second joint leans up or down; down is the block.
+    let mut near = 0;
+    for by in [0.3, -0.6] {
+        outcome.recording.robots[0].samples.last_mut().unwrap().q[1] += by;
+        near += findings(&outcome).iter().filter(|f| matches!(f, Finding::TooNear { object: 0, .. })).count();
+    }
+    assert_eq!(near, 1);
+}

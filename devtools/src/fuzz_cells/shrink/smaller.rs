@@ -3,7 +3,7 @@
 use elbowroom_robot::RobotId;
 
 use crate::fuzz_cells::spec::{
-    CellSpec, FollowSpec, Model, MotionSpec, ObjectSpec, ProgramSpec, RecordingSpec, RobotSpec, StepSpec,
+    CellSpec, FollowSpec, GuidanceSpec, Model, MotionSpec, ObjectSpec, ProgramSpec, RecordingSpec, RobotSpec, StepSpec,
 };
 
 /// Least number of rows of a recording.
@@ -26,7 +26,9 @@ impl Candidates<'_> {
 /// Returns every cell that has one thing less, the largest things first.
 pub fn candidates(spec: &CellSpec) -> Vec<CellSpec> {
     let mut list = Candidates { spec, list: Vec::new() };
-    for i in (0..spec.robots.len()).rev().filter(|_| spec.robots.len() > 1) {
+    // The first robot is the one that is guided.
+    let least = usize::from(spec.guidance.is_some());
+    for i in (least..spec.robots.len()).rev().filter(|_| spec.robots.len() > 1) {
         list.push(|c| remove_robot(c, i));
     }
     for i in 0..spec.regions.len() {
@@ -34,6 +36,9 @@ pub fn candidates(spec: &CellSpec) -> Vec<CellSpec> {
     }
     for (i, object) in spec.objects.iter().enumerate() {
         without_object(&mut list, i, object);
+    }
+    if let Some(guidance) = &spec.guidance {
+        shorter_guidance(&mut list, guidance);
     }
     for i in 0..spec.faults.len() {
         list.push(|c| c.faults.retain(|f| *f != spec.faults[i]));
@@ -58,7 +63,8 @@ pub fn candidates(spec: &CellSpec) -> Vec<CellSpec> {
 fn without_object(list: &mut Candidates<'_>, i: usize, object: &ObjectSpec) {
     let follows = |f: &Option<FollowSpec>| matches!(f, Some(FollowSpec::Object(name)) if *name == object.name);
     let is_needed = list.spec.regions.iter().any(|r| follows(&r.follow))
-        || list.spec.robots.iter().any(|r| r.evades.contains(&object.name));
+        || list.spec.robots.iter().any(|r| r.evades.contains(&object.name))
+        || list.spec.guidance.iter().flat_map(|g| &g.tables).any(|t| t.contains(&format!("\"{}\"", object.name)));
     if !is_needed {
         list.push(|c| drop(c.objects.remove(i)));
         return;
@@ -98,6 +104,16 @@ fn shorter_program(list: &mut Candidates<'_>, r: usize, program: &ProgramSpec) {
         for change in changes.into_iter().filter(|_| rows / 2 >= LEAST_ROWS) {
             list.push(|c| c.robots[r].program.recording.iter_mut().for_each(change));
         }
+    }
+}
+
+fn shorter_guidance(list: &mut Candidates<'_>, guidance: &GuidanceSpec) {
+    for i in 0..guidance.tables.len() {
+        list.push(|c| c.guidance.iter_mut().for_each(|g| drop(g.tables.remove(i))));
+    }
+    if guidance.rows.len() / 2 >= LEAST_ROWS {
+        list.push(|c| c.guidance.iter_mut().for_each(|g| g.rows.truncate(g.rows.len() / 2)));
+        list.push(|c| c.guidance.iter_mut().for_each(|g| drop(g.rows.drain(..g.rows.len() / 2))));
     }
 }
 

@@ -1,6 +1,7 @@
 //! Cell in the form of the fuzzer: simple enough to be shrunk, and written as a cell file.
 
 mod comments;
+mod guidance;
 mod object;
 mod recording;
 mod region;
@@ -14,6 +15,7 @@ use elbowroom_cell::Cell;
 use elbowroom_sim::InputFault;
 
 pub use comments::{read_faults, read_repeat};
+pub use guidance::{GuidanceSpec, HandRow};
 pub use object::{MotionSpec, ObjectSpec};
 pub use recording::RecordingSpec;
 pub use region::{BeltSpec, FollowSpec, RegionSpec};
@@ -36,6 +38,8 @@ pub struct CellSpec {
     pub faults: Vec<InputFault>,
     /// Number of passes of the programs, besides their own `repeat`; 0 is once.
     pub repeat: u32,
+    /// Guidance of the first robot.
+    pub guidance: Option<GuidanceSpec>,
 }
 
 impl CellSpec {
@@ -59,6 +63,7 @@ impl CellSpec {
                 let _ = writeln!(t, "[avoidance.r{i}]\nobjects = {:?}\nreplan = false\n", robot.evades);
             }
         }
+        self.guidance.iter().for_each(|guidance| guidance.write(&mut t));
         comments::write_repeat(&mut t, self.repeat);
         self.faults.iter().for_each(|f| comments::write_fault(&mut t, f));
         t
@@ -72,12 +77,15 @@ impl CellSpec {
         self.write_recordings(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
         let cell = Cell::parse(folder.join("fuzz.toml"), &self.to_toml()).map_err(|e| e.to_string());
         // The cell has read all of its files.
-        self.recordings().for_each(|recording| drop(std::fs::remove_file(folder.join(recording.file_name()))));
+        let streams = self.guidance.iter().map(GuidanceSpec::file_name);
+        let files = self.recordings().map(RecordingSpec::file_name).chain(streams);
+        files.for_each(|name| drop(std::fs::remove_file(folder.join(name))));
         cell
     }
 
     /// Writes the recordings that the cell file names into its folder.
     pub fn write_recordings(&self, folder: &Path) -> std::io::Result<()> {
+        self.guidance.iter().try_for_each(|guidance| guidance.write_file(folder))?;
         self.recordings().try_for_each(|recording| recording.write_file(folder))
     }
 

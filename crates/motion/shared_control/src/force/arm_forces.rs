@@ -74,6 +74,8 @@ pub struct ArmForces<'s> {
     point_columns: Vec<[f64; 6]>,
     sample: FieldSample,
     force_on_hand: Vec3,
+    /// Where the hand was in the last step of [`Response::Impedance`].
+    hand: Option<Vec3>,
 }
 
 /// The arm at which forces are evaluated.
@@ -85,6 +87,12 @@ pub(crate) struct ArmPlace<'a> {
 }
 
 impl<'s> ArmForces<'s> {
+    /// A hand that is farther away after one step was let go and took the tool elsewhere, metres: no energy passes. The
+    /// speed of smaller motions is that of [`ImpedanceSettings::hand_speed_m_s`].
+    ///
+    /// [`ImpedanceSettings::hand_speed_m_s`]: super::ImpedanceSettings::hand_speed_m_s
+    pub const REGRIP_M: f64 = 0.1;
+
     /// Forces of an arm in a scene; `tool` is the link of its tool, and the tool point in the frame of that link (m).
     pub fn new(
         response: Response,
@@ -103,6 +111,7 @@ impl<'s> ArmForces<'s> {
             point_columns: vec![[0.0; 6]; chain.dof()],
             sample: FieldSample::default(),
             force_on_hand: Vec3::ZERO,
+            hand: None,
         }
     }
 
@@ -180,10 +189,11 @@ impl<'s> ArmForces<'s> {
         let at = place.navigator.tool_in_world().translation;
         let field = self.evaluate(&mut place, velocity);
         if let Response::Impedance(port) = &mut self.response {
-            self.force_on_hand = match hand {
-                Some(hand) => port.step(at, hand, field.force_n, dt_s),
-                None => port.release(),
-            };
+            if self.hand.zip(hand).is_none_or(|(before, now)| now.distance(before) > Self::REGRIP_M) {
+                port.release();
+            }
+            self.force_on_hand = hand.map_or(Vec3::ZERO, |hand| port.step(at, hand, field.force_n, dt_s));
+            self.hand = hand;
         }
     }
 

@@ -68,7 +68,8 @@ impl ImpedancePort {
     /// finite, or a duration that is not positive.
     pub fn step(&mut self, tool: Vec3, hand: Vec3, field_n: Vec3, dt_s: f64) -> Vec3 {
         if !(tool.is_finite() && hand.is_finite() && field_n.is_finite() && dt_s > 0.0) {
-            return self.release();
+            self.release();
+            return Vec3::ZERO;
         }
         let s = &self.settings;
         let mut force = (tool - hand) * s.stiffness_n_m + field_n;
@@ -86,9 +87,8 @@ impl ImpedancePort {
     }
 
     /// The hand lets go: no force until the next step.
-    pub fn release(&mut self) -> Vec3 {
+    pub fn release(&mut self) {
         self.last = None;
-        Vec3::ZERO
     }
 
     /// Energy taken from the hand, less what was given back, J; at least −[`ImpedanceSettings::tank_j`].

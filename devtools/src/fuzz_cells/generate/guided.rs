@@ -1,0 +1,238 @@
+//! Robots that a person guides into objects, with shields, guides and forces.
+
+use std::fmt::Write as _;
+
+use elbowroom_cell::Cell;
+use elbowroom_kinematics::ChainState;
+use elbowroom_spatial::{Pose, Rotation, Vec3};
+
+use super::region;
+use super::robot;
+use super::settings::{Places, settings};
+use crate::fuzz_cells::oracle;
+use crate::fuzz_cells::random::{Random, rounded};
+use crate::fuzz_cells::spec::{CellSpec, GuidanceSpec, HandRow, ObjectSpec, ProgramSpec, list};
+
+/// Laws of forces; the first three are fields alone.
+const LAWS: [&str; 5] = ["repulsive", "khatib", "spring_damper", "admittance", "impedance"];
+/// Tries to place an object without touching the robot.
+const TRIES: usize = 8;
+
+/// Makes a guided robot among objects.
+pub fn cell(random: &mut Random, places: &Places<'_>) -> CellSpec {
+    let mut spec = settings(random);
+    spec.max_s = 4.0;
+    let mut robot = robot::example(random, places);
+    robot.program = ProgramSpec::of_steps(100.0, Vec::new());
+    let (width, length) = (random.scaled(0.006, 0.06), random.between(0.04, 0.2));
+    robot.hand.tcp = Some([0.0, 0.0, length]);
+    robot.hand.tool_box = Some(([0.0, 0.0, rounded(0.5 * length)], [width, width, length]));
+    spec.robots.push(robot);
+    let Ok(cell) = spec.parse(places.cells) else { return spec };
+    let tool = tool_in_world(&cell);
+    for i in 0..random.whole(1, 3) {
+        for _ in 0..TRIES {
+            let object = object(&format!("o{i}"), tool.translation, random);
+            let mut with = spec.clone();
+            with.objects.push(object);
+            if with.parse(places.cells).is_ok_and(|cell| oracle::is_clear_at_start(&cell, 0.005)) {
+                spec = with;
+                break;
+            }
+        }
+    }
+    let mut guidance = GuidanceSpec { rows: hand(tool, &spec.objects, random), ..GuidanceSpec::default() };
+    guidance.operator = operator(random);
+    tables(&mut guidance, &spec.objects, tool, random);
+    let on_the_way = guidance.rows[random.whole(0, guidance.rows.len() - 1)].at.map(|v| v as f64 * 1e-6);
+    spec.guidance = Some(guidance);
+    if random.percent(40) {
+        let region = region::at(&spec, 0, on_the_way.map(rounded), "g0", random);
+        let with = CellSpec { regions: vec![region], ..spec.clone() };
+        if region::starts_outside(&with, places.cells) {
+            spec = with;
+        }
+    }
+    spec
+}
+
+fn tool_in_world(cell: &Cell) -> Pose {
+    let robot = &cell.robots[0];
+    let mut state = ChainState::new(&robot.robot.chain);
+    state.q.copy_from_slice(&robot.start);
+    robot.robot.chain.forward(&mut state);
+    robot.base_in_world * state.link_in_root(robot.flange) * robot.tcp_in_flange
+}
+
+fn vector(random: &mut Random, most: f64) -> Vec3 {
+    let [x, y, z] = random.vector(most);
+    Vec3::new(x, y, z)
+}
+
+/// An object near the tool: a large one with a side before it, or a small one anywhere around.
+fn object(name: &str, tool: Vec3, random: &mut Random) -> ObjectSpec {
+    let gap = random.scaled(0.006, 0.1);
+    let is_large = random.percent(50);
+    let size: [f64; 3] =
+        std::array::from_fn(|_| if is_large { random.between(0.2, 0.6) } else { random.between(0.02, 0.12) });
+    let out = if is_large {
+        let axis = random.one(&[Vec3::X, Vec3::Y, Vec3::Z]);
+        axis * random.one(&[-1.0, 1.0])
+    } else {
+        vector(random, 1.0).try_normalize().unwrap_or(Vec3::Z)
+    };
+    let half = 0.5 * (size[0] * out.x.abs() + size[1] * out.y.abs() + size[2] * out.z.abs());
+    let at = tool + out * (half + gap);
+    let (shape, rpy) = match random.whole(0, 5) {
+        0..=2 => {
+            (format!("shape = \"box\"\nsize = {}\n", list(&size)), if is_large { [0.0; 3] } else { random.vector(1.5) })
+        }
+        3 => (format!("shape = \"sphere\"\nradius = {}\n", rounded(0.5 * size[0])), [0.0; 3]),
+        4 => (
+            format!("shape = \"cylinder\"\nradius = {}\nlength = {}\n", rounded(0.5 * size[0]), size[2]),
+            random.vector(1.5),
+        ),
+        _ => ("shape = \"mesh\"\nmesh = \"corner.obj\"\n".to_owned(), random.vector(1.5)),
+    };
+    ObjectSpec { name: name.into(), shape, at: at.to_array().map(rounded), rpy, motion: None }
+}
+
+fn operator(random: &mut Random) -> String {
+    let mut keys = String::new();
+    if random.percent(60) {
+        _ = write!(keys, "gap = {}\n", random.scaled(0.0002, 0.004));
+    }
+    if random.percent(50) {
+        _ = write!(keys, "speed = {}\n", random.scaled(0.02, 1.0));
+    }
+    if random.percent(30) {
+        _ = write!(keys, "acceleration = {}\n", random.scaled(0.5, 20.0));
+    }
+    if random.percent(20) {
+        _ = write!(keys, "scale = {}\n", random.scaled(0.2, 3.0));
+    }
+    keys + "stale_ms = 150\n"
+}
+
+/// A hand that pushes into objects, jumps, trembles, turns, lets go and is lost.
+fn hand(tool: Pose, objects: &[ObjectSpec], random: &mut Random) -> Vec<HandRow> {
+    let mut rows = Vec::new();
+    let (mut t_ms, mut at, mut turn) = (0, tool.translation, Vec3::ZERO);
+    let centres: Vec<Vec3> = objects.iter().map(|o| Vec3::new(o.at[0], o.at[1], o.at[2])).collect();
+    while t_ms < 2500 {
+        let to = match random.whole(0, 9) {
+            0..=5 if !centres.is_empty() => random.one(&centres) + vector(random, 0.1),
+            6..=8 => tool.translation + vector(random, 0.2),
+            _ => tool.translation + vector(random, 1.0),
+        };
+        let steps = if random.percent(10) { 1 } else { random.whole(5, 30) };
+        let turned = if random.percent(40) { vector(random, 0.6) } else { turn };
+        let tremble = if random.percent(20) { 0.003 } else { 0.0 };
+        let (enable, clutch) = (!random.percent(6), random.percent(6));
+        for k in 1..=steps {
+            let share = k as f64 / steps as f64;
+            let p = at + (to - at) * share + vector(random, 1.0) * tremble;
+            let rotation = Rotation::from_rotation_vector(turn + (turned - turn) * share) * tool.rotation;
+            rows.push(HandRow {
+                t_ms,
+                at: p.to_array().map(|v| (v * 1e6).round() as i64),
+                turn: rotation.to_quaternion_xyzw().map(|v| (v * 1e6).round() as i64),
+                enable,
+                clutch,
+            });
+            t_ms += 20;
+        }
+        (at, turn) = (to, turned);
+        if random.percent(8) {
+            t_ms += 300;
+        }
+    }
+    rows
+}
+
+/// Adds a shield around a box, a guide and forces to some cells.
+fn tables(guidance: &mut GuidanceSpec, objects: &[ObjectSpec], tool: Pose, random: &mut Random) {
+    let boxed = objects.iter().find(|o| o.shape.contains("\"box\"")).filter(|_| random.percent(35));
+    if let Some(table) = boxed.and_then(|object| shield(object, random)) {
+        guidance.tables.push(table);
+    }
+    if random.percent(20) {
+        guidance.tables.push(guide(tool.translation, random));
+    }
+    let other = match boxed {
+        Some(_) if guidance.tables.iter().any(|t| t.contains("protects")) => "shield",
+        _ => match objects.first() {
+            Some(object) => object.name.as_str(),
+            None => return,
+        },
+    };
+    if random.percent(50) {
+        guidance.tables.push(force("soft", "r0/tool", other, &LAWS, random));
+    }
+    if let Some(object) = objects.last().filter(|_| random.percent(25)) {
+        guidance.tables.push(force("arm", "r0", &object.name, &LAWS[..3], random));
+    }
+}
+
+/// A hole in a random side of a box.
+fn shield(object: &ObjectSpec, random: &mut Random) -> Option<String> {
+    let size: Vec<f64> =
+        object.shape.split(['[', ']']).nth(1)?.split(',').filter_map(|v| v.trim().parse().ok()).collect();
+    let side = random.whole(0, 2);
+    let mut out = [0.0; 3];
+    out[side] = random.one(&[-1.0, 1.0]);
+    let [roll, pitch, yaw] = object.rpy;
+    let rotation = Rotation::from_rpy(roll, pitch, yaw);
+    let out = rotation * Vec3::new(out[0], out[1], out[2]);
+    let at = Vec3::new(object.at[0], object.at[1], object.at[2]) + out * (0.5 * size[side]);
+    let tolerance = rounded(size.iter().copied().fold(0.0, f64::max) / 60.0).max(0.002);
+    let (width, depth) = (random.between(0.02, 0.06), random.between(0.0, 0.5 * size[side]));
+    let (offset, flare) = (random.between(0.002, 0.02), random.between(0.0, 0.6));
+    Some(format!(
+        "[fixture.shield]\nprotects = \"{}\"\ntarget = {{ drill = {{ at = {}, axis = {}, depth = {depth} }} }}\n\
+         width = {width}\noffset = {offset}\nflare = {flare}\ntolerance = {tolerance}\ntool = \"r0\"\n",
+        object.name,
+        list(&at.to_array()),
+        list(&(-out).to_array())
+    ))
+}
+
+fn guide(tool: Vec3, random: &mut Random) -> String {
+    let near = |random: &mut Random, most: f64| list(&(tool + vector(random, most)).to_array());
+    let head = "[fixture.guide]\ntool = \"r0\"\n";
+    let line = |random: &mut Random| {
+        let points: Vec<String> = (0..random.whole(2, 6)).map(|_| near(random, 0.15)).collect();
+        format!("points = [{}]\n", points.join(", "))
+    };
+    match random.whole(0, 3) {
+        0 => format!("{head}guide = \"line\"\n{}", line(random)),
+        1 => format!("{head}guide = \"tube\"\n{}radius = {}\n", line(random), random.scaled(0.002, 0.05)),
+        2 => format!("{head}guide = \"plane\"\nat = {}\nnormal = {}\n", near(random, 0.02), list(&random.vector(1.0))),
+        _ => format!(
+            "{head}guide = \"cone\"\nat = {}\naxis = {}\nhalf_angle = {}\n",
+            near(random, 0.1),
+            list(&random.vector(1.0)),
+            random.between(0.05, 1.5)
+        ),
+    }
+}
+
+fn force(name: &str, own: &str, other: &str, laws: &[&str], random: &mut Random) -> String {
+    let law = random.one(laws);
+    let is_response = matches!(law, "admittance" | "impedance");
+    let mut t = format!("[force.{name}]\nbetween = [\"{own}\", \"{other}\"]\nlaw = \"{law}\"\n");
+    if !is_response || random.percent(50) {
+        _ = write!(t, "range = {}\n", random.scaled(0.002, 0.1));
+    }
+    _ = write!(t, "stiffness = {}\n", random.scaled(20.0, 50_000.0));
+    if random.percent(50) {
+        _ = write!(t, "damping = {}\n", random.scaled(1.0, 300.0));
+    }
+    if random.percent(30) {
+        _ = write!(t, "reaction_ms = {}\ndeceleration = {}\n", random.whole(0, 200), random.scaled(0.5, 10.0));
+    }
+    if law == "admittance" && random.percent(50) {
+        _ = write!(t, "mass = {}\n", random.scaled(0.1, 20.0));
+    }
+    t
+}

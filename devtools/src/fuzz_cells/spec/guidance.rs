@@ -1,0 +1,55 @@
+//! An operator who guides the first robot, and tables of fixtures and forces.
+
+use std::fmt::Write as _;
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
+use std::path::Path;
+
+/// Guidance of the first robot.
+#[derive(Debug, Clone, Default)]
+pub struct GuidanceSpec {
+    /// Keys of the operator.
+    pub operator: String,
+    pub rows: Vec<HandRow>,
+    /// Tables `[fixture.NAME]` and `[force.NAME]`.
+    pub tables: Vec<String>,
+}
+
+/// A row of the stream: pose of the hand in the world, metres.
+#[derive(Debug, Clone, Copy, Hash)]
+pub struct HandRow {
+    /// Milliseconds.
+    pub t_ms: u32,
+    /// Micrometres.
+    pub at: [i64; 3],
+    /// Components x, y, z, w of the quaternion, in millionths.
+    pub turn: [i64; 4],
+    pub enable: bool,
+    pub clutch: bool,
+}
+
+impl GuidanceSpec {
+    pub(super) fn write(&self, t: &mut String) {
+        let _ = writeln!(t, "[operator.hand]\nrobot = \"r0\"\nstream = \"{}\"\n{}", self.file_name(), self.operator);
+        for table in &self.tables {
+            let _ = writeln!(t, "{table}");
+        }
+    }
+
+    /// Name of the stream's file, made from its contents, so that cells do not share it.
+    pub fn file_name(&self) -> String {
+        let mut hasher = DefaultHasher::new();
+        self.rows.hash(&mut hasher);
+        format!("hand-{:016x}.csv", hasher.finish())
+    }
+
+    pub(super) fn write_file(&self, folder: &Path) -> std::io::Result<()> {
+        let mut text = String::from("t_s,x,y,z,qx,qy,qz,qw,enable,clutch\n");
+        for row in &self.rows {
+            let [x, y, z] = row.at.map(|v| v as f64 * 1e-6);
+            let [a, b, c, d] = row.turn.map(|v| v as f64 * 1e-6);
+            let (enable, clutch) = (u8::from(row.enable), u8::from(row.clutch));
+            let _ = writeln!(text, "{},{x},{y},{z},{a},{b},{c},{d},{enable},{clutch}", f64::from(row.t_ms) * 1e-3);
+        }
+        std::fs::write(folder.join(self.file_name()), text)
+    }
+}
