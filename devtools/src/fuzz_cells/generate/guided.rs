@@ -100,16 +100,16 @@ fn object(name: &str, tool: Vec3, random: &mut Random) -> ObjectSpec {
 fn operator(random: &mut Random) -> String {
     let mut keys = String::new();
     if random.percent(60) {
-        _ = write!(keys, "gap = {}\n", random.scaled(0.0002, 0.004));
+        _ = writeln!(keys, "gap = {}", random.scaled(0.0002, 0.004));
     }
     if random.percent(50) {
-        _ = write!(keys, "speed = {}\n", random.scaled(0.02, 1.0));
+        _ = writeln!(keys, "speed = {}", random.scaled(0.02, 1.0));
     }
     if random.percent(30) {
-        _ = write!(keys, "acceleration = {}\n", random.scaled(0.5, 20.0));
+        _ = writeln!(keys, "acceleration = {}", random.scaled(0.5, 20.0));
     }
     if random.percent(20) {
-        _ = write!(keys, "scale = {}\n", random.scaled(0.2, 3.0));
+        _ = writeln!(keys, "scale = {}", random.scaled(0.2, 3.0));
     }
     keys + "stale_ms = 150\n"
 }
@@ -222,17 +222,17 @@ fn force(name: &str, own: &str, other: &str, laws: &[&str], random: &mut Random)
     let is_response = matches!(law, "admittance" | "impedance");
     let mut t = format!("[force.{name}]\nbetween = [\"{own}\", \"{other}\"]\nlaw = \"{law}\"\n");
     if !is_response || random.percent(50) {
-        _ = write!(t, "range = {}\n", random.scaled(0.002, 0.1));
+        _ = writeln!(t, "range = {}", random.scaled(0.002, 0.1));
     }
-    _ = write!(t, "stiffness = {}\n", random.scaled(20.0, 50_000.0));
+    _ = writeln!(t, "stiffness = {}", random.scaled(20.0, 50_000.0));
     if random.percent(50) {
-        _ = write!(t, "damping = {}\n", random.scaled(1.0, 300.0));
+        _ = writeln!(t, "damping = {}", random.scaled(1.0, 300.0));
     }
     if random.percent(30) {
-        _ = write!(t, "reaction_ms = {}\ndeceleration = {}\n", random.whole(0, 200), random.scaled(0.5, 10.0));
+        _ = writeln!(t, "reaction_ms = {}\ndeceleration = {}", random.whole(0, 200), random.scaled(0.5, 10.0));
     }
     if law == "admittance" && random.percent(50) {
-        _ = write!(t, "mass = {}\n", random.scaled(0.1, 20.0));
+        _ = writeln!(t, "mass = {}", random.scaled(0.1, 20.0));
     }
     t
 }
