@@ -63,6 +63,19 @@ fn a_robot_with_another_configuration_is_neither_granted_nor_believed() {
     }
 }
 
+/// A guard with another configuration ignores the arbiter; the arbiter does not rely on that.
+#[test]
+fn a_robot_whose_cell_file_changes_is_not_believed_although_it_knows_the_arbiter() {
+    let mut arbiter = arbiter();
+    let mut guards = [guard(0, CHECKSUM), guard(1, CHECKSUM)];
+    until_heard(&mut guards, &mut arbiter, 0, 2000);
+    assert!(arbiter.is_known(RobotSlot(0), ms(2000)));
+    let changed = StateMessage { checksum: 8, ..guards[0].state(ms(2010)) };
+    let outputs = arbiter.receive(&changed, ms(2010));
+    assert!(outputs.events.contains(&ArbiterEvent::OtherConfiguration(RobotSlot(0))), "{:?}", outputs.events);
+    assert!(!arbiter.is_known(RobotSlot(0), ms(2010)));
+}
+
 /// The age of an answer is the age of the message that it answers, not of the last message sent.
 #[test]
 fn a_late_answer_confirms_a_grant_for_the_rest_of_its_validity_only() {

@@ -1,10 +1,13 @@
-//! Test that steps of a navigator do not allocate.
+//! Test that steps of a navigator and of a guided arm do not allocate.
 //!
 //! It runs without the test harness, whose threads allocate too: the counter is for the whole process.
 mod common;
 
-use common::{ball, block, point, relief};
-use elbowroom_shared_control::{NavigatorSettings, ProtectedSurface, SurfaceNavigator};
+use common::{arm, ball, block, point, relief};
+use elbowroom_robot::{ObjectId, RobotId};
+use elbowroom_scene::Selection;
+use elbowroom_shared_control::force::{ArmField, ArmForces, BodySettings, FieldPair, ForceLaw, Response, VirtualBody};
+use elbowroom_shared_control::{Guide, NavigatorSettings, ProtectedSurface, SurfaceNavigator};
 use elbowroom_spatial::{Pose, Vec3};
 use elbowroom_testkit::allocation::{AllocationCounter, COUNTING_ALLOCATOR, CountingAllocator};
 use elbowroom_testkit::random::SplitMix;
@@ -29,4 +32,34 @@ fn main() {
         assert_eq!(counter.changes(), 0);
     }
     assert!(in_contact > 500, "{in_contact} of 6000 steps in contact");
+    whole_arm();
+}
+
+/// An arm with a virtual mass, a field around the tool, one around the arm, and a guide.
+fn whole_arm() {
+    let (scene, start) = arm::scene(Some(0.03));
+    let mut guided = arm::guided(&scene, start, true);
+    let (_, flange, tcp_in_flange, _) = arm::arm();
+    let robot = RobotId(0);
+    let whole = FieldPair::Scene(Selection::Robot(robot), Selection::Object(ObjectId(0)));
+    let field = |pair| ArmField::new(ForceLaw::spring(0.02, 2000.0), pair).unwrap();
+    let fields = vec![field(FieldPair::Surface(0)), field(whole)];
+    let body = Response::Admittance(VirtualBody::new(BodySettings::default()).unwrap());
+    guided.set_forces(ArmForces::new(body, fields, (&scene, robot), (flange, tcp_in_flange.translation)));
+    guided.set_guide(Some(Guide::plane(start.translation, Vec3::X).unwrap()));
+    let mut random = SplitMix(2);
+    let (mut pushed, mut velocities) = (0, [0.0; 6]);
+    for k in 0..200 {
+        let to = start.translation + point(&mut random, 0.05) - Vec3::Z * 0.03;
+        let desired = Pose::new(start.rotation, to);
+        let counter = AllocationCounter::start();
+        for _ in 0..20 {
+            guided.step(Some(&desired), arm::DT_S, 1.0);
+            guided.intent(Some(&desired), arm::DT_S, &mut velocities);
+            pushed += usize::from(guided.forces().is_some_and(|f| f.sample().force_n.length() > 0.0));
+        }
+        // Lists of pairs are made in the first steps.
+        assert!(k == 0 || counter.changes() == 0, "{} in round {k}", counter.changes());
+    }
+    assert!(pushed > 500, "{pushed} of 4000 steps with a force");
 }

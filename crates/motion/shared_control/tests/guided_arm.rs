@@ -1,76 +1,18 @@
 //! A whole arm whose tool is guided: it follows, glides, and stops before anything touches.
 
-use std::sync::Arc;
-
-use elbowroom_formats::{LoadOptions, robot};
+use elbowroom_kinematics::ChainState;
 use elbowroom_kinematics::inverse::{IkOptions, IkSolver};
-use elbowroom_kinematics::{ChainState, LinkId};
-use elbowroom_proximity::{Cuboid, Shape, TriMesh};
-use elbowroom_robot::{Collider, Robot, RobotId};
-use elbowroom_scene::{Checker, CheckerOptions, Object, Scene, SceneState, Selection};
+use elbowroom_robot::{ObjectId, RobotId};
+use elbowroom_scene::{Checker, CheckerOptions, Scene, SceneState, Selection};
 use elbowroom_shared_control::force::{
     ArmField, ArmForces, Aureole, BodySettings, Field, FieldPair, ForceLaw, Response, VirtualBody,
 };
-use elbowroom_shared_control::{
-    ArmLimit, GuidedArm, Limit, NavigatorError, NavigatorSettings, ProtectedSurface, SurfaceNavigator,
-};
+use elbowroom_shared_control::{ArmLimit, GuidedArm, Limit, NavigatorError, NavigatorSettings, SurfaceNavigator};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 use elbowroom_testkit::random::SplitMix;
 
-use crate::common::{block, point};
-
-const START: [f64; 6] = [0.0, 0.0, 0.0, 0.0, 0.6, 0.0];
-const DT_S: f64 = 0.002;
-
-/// A six-axis arm with a tool of 8 by 8 by 100 mm; its tool point is at the tip.
-fn arm() -> (Robot, LinkId, Pose, Arc<TriMesh>) {
-    let file = elbowroom_testkit::folder::model("ns16");
-    let mut robot = robot::load(&file, &LoadOptions::default()).unwrap().robot;
-    let flange = robot.chain.link("tool0").unwrap();
-    let tcp_in_flange = Pose::from_translation(Vec3::Z * 0.1);
-    let shape = Shape::Cuboid(Cuboid { half_extents: Vec3::new(0.004, 0.004, 0.05) });
-    robot.colliders[flange.0].push(Collider {
-        name: "tool".into(),
-        shape,
-        in_link: Pose::from_translation(Vec3::Z * 0.05),
-    });
-    let tool = block(Vec3::new(0.008, 0.008, 0.1));
-    let vertices = tool.vertices().iter().map(|v| *v - Vec3::Z * 0.05).collect();
-    let tool = Arc::new(TriMesh::new(vertices, tool.triangles().to_vec()).unwrap());
-    (robot, flange, tcp_in_flange, tool)
-}
-
-/// A scene with the arm, and a block below its tool point if a gap (m) is given.
-fn scene(gap_m: Option<f64>) -> (Scene, Pose) {
-    let (robot, flange, tcp_in_flange, _) = arm();
-    let mut state = ChainState::new(&robot.chain);
-    state.q.copy_from_slice(&START);
-    robot.chain.forward(&mut state);
-    let tool_in_world = state.link_in_root(flange) * tcp_in_flange;
-    let mut builder = Scene::builder();
-    builder.robot("arm", robot, Pose::IDENTITY);
-    if let Some(gap_m) = gap_m {
-        let below = tool_in_world.translation - Vec3::Z * (0.05 + gap_m);
-        let shape = Shape::Cuboid(Cuboid { half_extents: Vec3::new(0.2, 0.2, 0.05) });
-        builder.object(Object { name: "work".into(), shape, in_world: Pose::from_translation(below) });
-    }
-    (builder.build().unwrap(), tool_in_world)
-}
-
-fn guided(scene: &Scene, tool_in_world: Pose, protect: bool) -> GuidedArm<'_> {
-    let (robot, flange, tcp_in_flange, tool) = arm();
-    let surfaces = if protect {
-        let work = &scene.objects()[0];
-        vec![ProtectedSurface::new(block(Vec3::new(0.4, 0.4, 0.1)), work.in_world).unwrap()]
-    } else {
-        vec![]
-    };
-    let navigator = SurfaceNavigator::new(tool, surfaces, tool_in_world, NavigatorSettings::default()).unwrap();
-    let solver = IkSolver::new(&robot.chain, flange, tcp_in_flange, IkOptions::default());
-    let mut state = SceneState::new(scene);
-    state.set_q(scene, RobotId(0), &START).unwrap();
-    GuidedArm::new(navigator, solver, (scene, RobotId(0)), state, vec![1.5; 6]).unwrap()
-}
+use crate::common::arm::{self, DT_S, START, guided, scene};
+use crate::common::point;
 
 fn moved_by(pose: Pose, offset: Vec3) -> Pose {
     Pose::new(pose.rotation, pose.translation + offset)
@@ -137,7 +79,7 @@ fn beyond_its_reach_the_arm_stands_and_says_so() {
 #[test]
 fn a_navigator_elsewhere_is_refused() {
     let (scene, start) = scene(None);
-    let (robot, flange, tcp_in_flange, tool) = arm();
+    let (robot, flange, tcp_in_flange, tool) = arm::arm();
     let elsewhere = moved_by(start, Vec3::X * 0.01);
     let navigator = SurfaceNavigator::new(tool, vec![], elsewhere, NavigatorSettings::default()).unwrap();
     let solver = IkSolver::new(&robot.chain, flange, tcp_in_flange, IkOptions::default());
@@ -151,7 +93,7 @@ fn a_navigator_elsewhere_is_refused() {
 
 /// An arm with a virtual mass and one field.
 fn in_field(scene: &Scene, start: Pose, pair: FieldPair, law: ForceLaw) -> GuidedArm<'_> {
-    let (_, flange, tcp_in_flange, _) = arm();
+    let (_, flange, tcp_in_flange, _) = arm::arm();
     let mut arm = guided(scene, start, true);
     let body = VirtualBody::new(BodySettings::default()).unwrap();
     let field = ArmField::new(law, pair).unwrap();
@@ -169,7 +111,7 @@ fn a_field_holds_the_tool_off_and_the_hand_feels_it() {
     let (scene, start) = scene(Some(0.05));
     let law = ForceLaw { damping_n_s_m: 20.0, ..ForceLaw::spring(0.02, 4000.0) };
     let robot = Selection::Robot(RobotId(0));
-    let work = Selection::Object(elbowroom_robot::ObjectId(0));
+    let work = Selection::Object(ObjectId(0));
     let mut state = SceneState::new(&scene);
     state.set_q(&scene, RobotId(0), &START).unwrap();
     let distance_m =
@@ -191,7 +133,7 @@ fn a_field_holds_the_tool_off_and_the_hand_feels_it() {
         let mut torques = [0.0; 6];
         forces.joint_torques(&Pose::IDENTITY, &mut torques);
         // By the principle of virtual work, from finite differences.
-        let (robot, flange, tcp_in_flange, _) = self::arm();
+        let (robot, flange, tcp_in_flange, _) = arm::arm();
         let mut state = ChainState::new(&robot.chain);
         for (joint, torque) in torques.iter().enumerate() {
             let mut z = |h: f64| {
@@ -211,7 +153,7 @@ fn a_whole_arm_in_a_field_makes_no_energy_and_keeps_its_gap() {
     let (scene, start) = scene(Some(0.05));
     let aureole = Some(Aureole { reaction_s: 0.05, deceleration_m_s2: 5.0 });
     let law = ForceLaw { aureole, field: Field::Khatib, ..ForceLaw::spring(0.03, 8000.0) };
-    let (robot, work) = (Selection::Robot(RobotId(0)), Selection::Object(elbowroom_robot::ObjectId(0)));
+    let (robot, work) = (Selection::Robot(RobotId(0)), Selection::Object(ObjectId(0)));
     let mut arm = in_field(&scene, start, FieldPair::Scene(robot, work), law);
     let mut random = SplitMix(9);
     let mut checker = Checker::new(&scene, CheckerOptions::default());

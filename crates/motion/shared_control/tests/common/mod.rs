@@ -1,6 +1,8 @@
 //! Meshes that tests and benches share: a wavy relief with valleys, thin plates, balls.
 #![allow(dead_code, reason = "every program uses a part of it")]
 
+pub mod arm;
+
 use std::collections::HashMap;
 use std::sync::Arc;
 
