@@ -19,6 +19,8 @@ use crate::{Cell, CellFixture, CellForce, CellOperator, ForceOther, ForceRespons
 
 /// Chord error of curved surfaces and tools, metres.
 const CHORD_M: f64 = 1e-4;
+/// Distance from a guide at the start that is told, metres.
+const FAR_FROM_GUIDE_M: f64 = 2e-3;
 
 impl CellOperator {
     /// The arm that this operator guides, at its start in the scene of the cell.
@@ -61,6 +63,13 @@ impl CellOperator {
         let mut arm = GuidedArm::new(navigator, solver, (scene, self.robot), state, speeds)
             .map_err(|_| refused(format!("\"{}\" cannot hold its tool point at its start", robot.name)))?;
         let guide = cell.guidance.guides.iter().find(|g| g.active && g.tool == self.tool);
+        if let Some(g) = guide
+            && g.guide.distance_m(tool_in_world.translation) > FAR_FROM_GUIDE_M
+        {
+            let distance = cell.units.show_length(g.guide.distance_m(tool_in_world.translation));
+            let what = format!("the tool starts {distance} from the guide \"{}\", and moves there at once", g.name);
+            notes.push(Diagnostic::new(&cell.file, g.line, what).hint("a guide through the tool point at its start"));
+        }
         arm.set_guide(guide.map(|g| g.guide.clone()));
         let forces = self.forces(cell, scene, shields_from, (link, tcp_in_link.translation));
         if let Some(forces) = forces.map_err(|e| refused(e.to_string()))? {
@@ -82,18 +91,25 @@ impl CellOperator {
             return Ok(None);
         }
         let robot = self.robot;
-        let field = |force: &CellForce| -> Option<Result<ArmField, NavigatorError>> {
-            let one = if force.whole_arm { Selection::Robot(robot) } else { Selection::Link { robot, link: tool.0 } };
-            let pair = match force.other {
-                ForceOther::Object(object) => FieldPair::Scene(one, Selection::Object(object)),
+        let colliders = &cell.robots[robot.0].robot.colliders;
+        let links = (0..colliders.len()).map(LinkId).filter(|link| !colliders[link.0].is_empty());
+        let pairs = |force: &CellForce| -> Vec<FieldPair> {
+            match force.other {
+                // A field per link: the nearest point of a whole arm jumps from link to link.
+                ForceOther::Object(object) => links
+                    .clone()
+                    .filter(|link| force.whole_arm || *link == tool.0)
+                    .map(|link| FieldPair::Scene(Selection::Link { robot, link }, Selection::Object(object)))
+                    .collect(),
                 ForceOther::Shield(index) => {
                     let before = cell.guidance.fixtures[..index].iter().filter(|f| self.is_shielded_by(f)).count();
-                    FieldPair::Surface(shields_from + before)
+                    vec![FieldPair::Surface(shields_from + before)]
                 }
-            };
-            Some(ArmField::new(force.field?, pair))
+            }
         };
-        let fields = own.iter().filter_map(|force| field(force)).collect::<Result<Vec<_>, _>>()?;
+        let laws = own.iter().filter_map(|force| Some((force.field?, pairs(force))));
+        let fields = laws.flat_map(|(law, pairs)| pairs.into_iter().map(move |pair| ArmField::new(law, pair)));
+        let fields = fields.collect::<Result<Vec<_>, _>>()?;
         let response = own.iter().find_map(|force| match force.response {
             ForceResponse::Field => None,
             ForceResponse::Admittance(settings) => Some(VirtualBody::new(settings).map(Response::Admittance)),

@@ -8,6 +8,8 @@ use elbowroom_spatial::Pose;
 use crate::force::{ArmForces, ArmPlace};
 use crate::{Guide, Limit, NavigationStep, NavigatorError, SurfaceNavigator};
 
+/// Override below which a virtual mass has no velocity: it turns back as soon as the hand does.
+const LEAST_OVERRIDE: f64 = 0.02;
 /// How often a step that the arm cannot follow is halved.
 const HALVINGS: usize = 4;
 
@@ -25,6 +27,8 @@ pub enum ArmLimit {
     Contact(GeometryId, GeometryId),
     /// The motion could not be proven.
     Unproven,
+    /// Fields push the tool back with all the energy that there is.
+    Energy,
 }
 
 /// What one step of a guided arm did.
@@ -54,6 +58,8 @@ pub struct GuidedArm<'s> {
     next: Vec<f64>,
     /// Joint values at the start of the step.
     before: Vec<f64>,
+    /// Joint values between moving and turning.
+    moved: Vec<f64>,
     guide: Option<Guide>,
     forces: Option<Box<ArmForces<'s>>>,
 }
@@ -80,6 +86,7 @@ impl<'s> GuidedArm<'s> {
             checker: Checker::new(scene, CheckerOptions::default()),
             next: state.q(robot).to_vec(),
             before: state.q(robot).to_vec(),
+            moved: state.q(robot).to_vec(),
             guide: None,
             forces: None,
             state,
@@ -131,12 +138,16 @@ impl<'s> GuidedArm<'s> {
     /// an override, 0 to 1. Without a desired pose the tool slows down.
     pub fn step(&mut self, desired: Option<&Pose>, dt_s: f64, speed_override: f64) -> GuidedStep {
         let hand = desired.map(|d| d.translation);
+        let is_usable = desired.is_none_or(|d| d.is_finite() && d.translation.length().is_finite());
         let desired = self.guided(desired);
         self.before.copy_from_slice(self.state.q(self.robot));
         let Some(mut forces) = self.forces.take() else {
             return self.step_after_hand(desired.as_ref(), dt_s, speed_override);
         };
-        let step = if forces.is_admittance() {
+        if !is_usable || speed_override < LEAST_OVERRIDE {
+            forces.halt();
+        }
+        let step = if forces.is_admittance() && is_usable {
             self.step_by_forces(&mut forces, desired.as_ref(), dt_s, speed_override)
         } else {
             let step = self.step_after_hand(desired.as_ref(), dt_s, speed_override);
@@ -173,7 +184,7 @@ impl<'s> GuidedArm<'s> {
         let mut forces = self.forces.take();
         let tool_in_world = match &mut forces {
             Some(forces) if forces.is_admittance() && desired.is_some() => {
-                let velocity = forces.wanted_velocity(self.place(), desired.map(|d| d.translation), dt_s);
+                let velocity = forces.wanted_velocity(&self.place(), desired.map(|d| d.translation), dt_s);
                 self.navigator.step_at_velocity(velocity, dt_s, 1.0).tool_in_world
             }
             _ => {
@@ -217,7 +228,7 @@ impl<'s> GuidedArm<'s> {
         let hand = desired.map(|d| d.translation);
         let scaled = if speed_override > 0.0 { speed_override.min(1.0) } else { 0.0 };
         let velocity = forces.begin(self.place(), hand, dt_s * scaled);
-        let (mut limit, mut gap_m) = (None, None);
+        let (mut limit, mut energy, mut gap_m) = (None, None, None);
         let mut share = scaled;
         for _ in 0..=HALVINGS {
             let mut tool = match desired {
@@ -228,15 +239,13 @@ impl<'s> GuidedArm<'s> {
             match self.follow(&tool.tool_in_world, dt_s) {
                 Ok(()) if scaled > 0.0 => {
                     if forces.end(self.place(), tool.velocity * (1.0 / scaled)) {
-                        let is_usable = desired.is_some_and(Pose::is_finite);
-                        if let Some(desired) = desired.filter(|_| is_usable) {
-                            self.turn_by_hand(forces, desired, dt_s, share);
-                        }
+                        let turned = desired.map_or(Ok(()), |d| self.turn_by_hand(forces, d, dt_s, share));
                         tool.tool_in_world = self.navigator.tool_in_world();
-                        return GuidedStep { tool, limit: limit.or(tool.limit.map(ArmLimit::Tool)) };
+                        let limit = limit.or(turned.err()).or(tool.limit.map(ArmLimit::Tool));
+                        return GuidedStep { tool, limit };
                     }
                     self.go_back();
-                    gap_m = tool.gap_m;
+                    (energy, gap_m) = (Some(ArmLimit::Energy), tool.gap_m);
                 }
                 Ok(()) => break,
                 Err(why) => (limit, gap_m) = (Some(why), tool.gap_m),
@@ -245,20 +254,31 @@ impl<'s> GuidedArm<'s> {
             share *= 0.5;
         }
         forces.stand();
+        let limit = limit.or(energy);
         GuidedStep { tool: NavigationStep { gap_m, ..self.navigator.stand_still() }, limit }
     }
 
-    /// Turns the tool, if the arm can follow.
-    fn turn_by_hand(&mut self, forces: &mut ArmForces<'s>, desired: &Pose, dt_s: f64, share: f64) {
+    /// Turns the tool, if the arm can follow and the fields let it.
+    fn turn_by_hand(
+        &mut self,
+        forces: &mut ArmForces<'s>,
+        desired: &Pose,
+        dt_s: f64,
+        share: f64,
+    ) -> Result<(), ArmLimit> {
+        self.moved.copy_from_slice(self.state.q(self.robot));
         if !self.navigator.turn(desired, dt_s, share) {
-            return;
+            return Ok(());
         }
         let tool_in_world = self.navigator.tool_in_world();
-        if self.follow(&tool_in_world, dt_s).is_ok() {
-            forces.turned(self.place());
-        } else {
-            self.navigator.undo();
+        let followed = self.follow(&tool_in_world, dt_s);
+        if followed.is_ok() && forces.turned(self.place()) {
+            return Ok(());
         }
+        self.navigator.undo();
+        // It was accepted before.
+        let _ = self.state.set_q(self.scene, self.robot, &self.moved);
+        followed
     }
 
     /// Takes the joints back to where they were at the start of the step.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use elbowroom_proximity::advanced::{LocalMinimum, NormalConeHierarchy, for_each_local_minimum, mesh_separation_with};
-use elbowroom_proximity::{DistanceSettings, TriMesh, WarmStart, Workspace};
+use elbowroom_proximity::{DistanceSettings, Separation, TriMesh, WarmStart, Workspace};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 use crate::constraint_set::ConstraintSet;
@@ -109,8 +109,8 @@ impl SurfaceNavigator {
 
     /// Moves the tool for `dt_s` seconds with a desired velocity (m/s, at override 1), and keeps its orientation.
     ///
-    /// The tool takes the admissible velocity nearest to the desired one, within the limit of speed. It speeds up within
-    /// the limit of acceleration, and slows down at once.
+    /// The tool takes the admissible velocity nearest to the desired one, within the limit of speed. It slows down at once,
+    /// and changes its velocity otherwise within the limit of acceleration.
     pub fn step_at_velocity(&mut self, velocity: Vec3, dt_s: f64, speed_override: f64) -> NavigationStep {
         if !velocity.length().is_finite() {
             self.before = (self.tool_in_world, self.velocity);
@@ -133,20 +133,19 @@ impl SurfaceNavigator {
         self.tool_in_world != self.before.0
     }
 
-    /// Distance (m) of the tool from a protected surface, by its index, and the unit vector along which the distance
-    /// grows (0 on contact). `None` if the distance exceeds `limit_m`, or there is no such surface.
-    pub fn separation_from(&mut self, surface: usize, limit_m: f64) -> Option<(f64, Vec3)> {
+    /// Distance of the tool from a protected surface, by its index. `None` if the distance exceeds `limit_m`, or there is
+    /// no such surface.
+    pub fn separation_from(&mut self, surface: usize, limit_m: f64) -> Option<Separation> {
         let protected = self.surfaces.get(surface)?;
         let settings = DistanceSettings { limit: limit_m, ..DistanceSettings::default() };
-        let found = mesh_separation_with(
+        mesh_separation_with(
             self.tool.mesh(),
             &self.tool_in_world,
             protected.surface.mesh(),
             &protected.in_world,
             settings,
             &mut self.workspace,
-        )?;
-        Some((found.distance, (found.on_a - found.on_b).try_normalize().unwrap_or(Vec3::ZERO)))
+        )
     }
 
     /// The settings.
@@ -171,10 +170,13 @@ impl SurfaceNavigator {
             Wish::Velocity(velocity) => (velocity * (self.settings.speed_m_s / velocity.length()).min(1.0), 0),
         };
         let change = wanted - self.velocity;
-        // What forces demand is physics, and a limit would make energy.
-        let slows = matches!(wish, Wish::Velocity(_)) && wanted.length_squared() <= self.velocity.length_squared();
-        let share = if change.length() > largest_change && !slows { largest_change / change.length() } else { 1.0 };
-        let (velocity, now) = project(self.velocity + change * share, &mut self.velocities);
+        let (braking, change) = match wish {
+            Wish::Pose(_) => (Vec3::ZERO, change),
+            // What forces demand is physics: slowing down has no limit, up to standing.
+            Wish::Velocity(_) => split_braking(self.velocity, change),
+        };
+        let share = if change.length() > largest_change { largest_change / change.length() } else { 1.0 };
+        let (velocity, now) = project(self.velocity + braking + change * share, &mut self.velocities);
         // Two walls that are nearly opposite can ask for a velocity far above that of either.
         let velocity = velocity * (self.settings.speed_m_s / velocity.length()).min(1.0);
         let active_rows = now.max(on_the_way);
@@ -314,6 +316,13 @@ impl SurfaceNavigator {
         let turn = Rotation::from_rotation_vector(way * (turned / angle));
         self.tool_in_world.rotation = (turn * self.tool_in_world.rotation).renormalized();
     }
+}
+
+/// The part of a change of velocity that slows down, at most to rest, and the other part.
+pub(crate) fn split_braking(velocity: Vec3, change: Vec3) -> (Vec3, Vec3) {
+    let Some(ahead) = velocity.try_normalize() else { return (Vec3::ZERO, change) };
+    let braking = ahead * ahead.dot(change).clamp(-velocity.length(), 0.0);
+    (braking, change - braking)
 }
 
 /// A share of a speed, 0 to 1; NaN counts as 0.

@@ -15,10 +15,18 @@ type Result<T> = std::result::Result<T, Diagnostic>;
 const BETWEEN: &str = "between = [\"arm/tool\", \"bone\"]   (a guided tool, or its robot; an object or a fixture)";
 /// Stiffness of a repulsion, and of the spring of `impedance`, N/m.
 const STIFFNESS: f64 = 1000.0;
+/// Stiffness of the coupling of `admittance`, N/m.
+const COUPLING: f64 = 800.0;
 /// Damping of `spring_damper`, N·s/m.
 const DAMPING: f64 = 50.0;
-/// Largest stiffness, N/m: a hand holds against less.
+/// Largest numbers, in the units of the keys.
 const MOST_STIFFNESS: f64 = 1e6;
+const MOST_DAMPING: f64 = 1e6;
+const MOST_FORCE: f64 = 1e4;
+const MOST_RANGE_M: f64 = 10.0;
+const MOST_MASS_KG: f64 = 1e4;
+const MOST_TANK_J: f64 = 10.0;
+const MOST_REACTION_MS: f64 = 1e4;
 
 /// The words of `law`.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -78,6 +86,9 @@ fn refuse_keys_of_other_laws(t: &Table<'_>, law: Law) -> Result<()> {
         ("tank", Law::Impedance, "impedance"),
         ("device_damping", Law::Impedance, "impedance"),
     ];
+    if let Some(v) = t.get("largest_force").filter(|_| !matches!(law, Law::Admittance | Law::Impedance)) {
+        return Err(v.error("belongs to `admittance` and `impedance`").hint("another law, or without this key"));
+    }
     match owned.into_iter().filter(|(_, owner, _)| *owner != law).find_map(|(key, _, word)| Some((t.get(key)?, word))) {
         Some((v, word)) => {
             Err(v.error(format!("belongs to `law = \"{word}\"`")).hint("another law, or without this key"))
@@ -127,41 +138,54 @@ fn other_side(v: &Value<'_>, cell: &Cell, tool: FixtureTool, whole_arm: bool) ->
     }
 }
 
+/// A number of a key up to a bound that nobody exceeds, in its unit.
+fn up_to(v: &Value<'_>, number: f64, most: f64, unit: &str) -> Result<f64> {
+    if number <= most {
+        return Ok(number);
+    }
+    Err(v.error(format!("is {number} {unit}")).hint(format!("at most {most} {unit}")))
+}
+
 /// A stiffness, N/m.
 fn stiffness(t: &Table<'_>, default: f64) -> Result<f64> {
-    let Some(v) = t.get("stiffness") else { return Ok(default) };
-    let stiffness = v.positive()?;
-    if stiffness > MOST_STIFFNESS {
-        let what = format!("is {stiffness} N/m: nobody feels a difference");
-        return Err(v.error(what).hint("stiffness = 1000   (N/m, at most 1000000)"));
-    }
-    Ok(stiffness)
+    t.get("stiffness").map_or(Ok(default), |v| up_to(&v, v.positive()?, MOST_STIFFNESS, "N/m"))
 }
 
 fn damping(t: &Table<'_>, default: f64) -> Result<f64> {
-    t.get("damping").map_or(Ok(default), |v| v.not_negative())
+    t.get("damping").map_or(Ok(default), |v| up_to(&v, v.not_negative()?, MOST_DAMPING, "N·s/m"))
+}
+
+fn largest_force(t: &Table<'_>, default: f64) -> Result<f64> {
+    t.get("largest_force").map_or(Ok(default), |v| up_to(&v, v.positive()?, MOST_FORCE, "N"))
 }
 
 /// The repulsion; `None` without a range.
 fn field(t: &Table<'_>, cell: &Cell, law: Law) -> Result<Option<ForceLaw>> {
     let is_field = !matches!(law, Law::Admittance | Law::Impedance);
+    let far = |v: &Value<'_>, range_m: f64| up_to(v, range_m, MOST_RANGE_M, "m");
     let range_m = match t.get("range") {
-        Some(v) if is_field => cell.units.positive_length(&v)?,
-        Some(v) => cell.units.not_negative_length(&v)?,
+        Some(v) if is_field => far(&v, cell.units.positive_length(&v)?)?,
+        Some(v) => far(&v, cell.units.not_negative_length(&v)?)?,
         None if is_field => cell.units.positive_length(&t.need("range", "range = 20")?)?,
         None => 0.0,
     };
     let deceleration = t.get("deceleration").map(|v| cell.units.positive_length(&v)).transpose()?;
-    let reaction_s = t.get("reaction_ms").map_or(Ok(0.0), |v| v.not_negative())? * 1e-3;
+    let reaction_ms = t.get("reaction_ms");
+    let reaction_s =
+        reaction_ms.as_ref().map_or(Ok(0.0), |v| up_to(v, v.not_negative()?, MOST_REACTION_MS, "ms"))? * 1e-3;
     if range_m == 0.0 {
-        return Ok(None);
+        let of_a_range = reaction_ms.or_else(|| t.get("deceleration"));
+        return match of_a_range.or_else(|| t.get("range").filter(|_| is_field)) {
+            Some(v) => Err(v.error("changes nothing without a `range`").hint("range = 20")),
+            None => Ok(None),
+        };
     }
     let is_growing = reaction_s > 0.0 || deceleration.is_some();
     let aureole = is_growing.then_some(Aureole { reaction_s, deceleration_m_s2: deceleration.unwrap_or(f64::MAX) });
     let law = ForceLaw {
         field: if law == Law::Khatib { Field::Khatib } else { Field::Linear },
         range_m,
-        stiffness_n_m: stiffness(t, STIFFNESS)?,
+        stiffness_n_m: stiffness(t, if law == Law::Admittance { COUPLING } else { STIFFNESS })?,
         damping_n_s_m: match law {
             Law::SpringDamper => damping(t, DAMPING)?,
             Law::Repulsive | Law::Khatib => damping(t, 0.0)?,
@@ -175,31 +199,38 @@ fn field(t: &Table<'_>, cell: &Cell, law: Law) -> Result<Option<ForceLaw>> {
 
 fn body(t: &Table<'_>, cell: &Cell) -> Result<BodySettings> {
     let default = BodySettings::default();
-    let mass_kg = t.get("mass").map_or(Ok(default.mass_kg), |v| v.positive())?;
-    let coupling_n_m = stiffness(t, default.coupling_n_m)?;
+    let mass_kg = t.get("mass").map_or(Ok(default.mass_kg), |v| up_to(&v, v.positive()?, MOST_MASS_KG, "kg"))?;
+    let coupling_n_m = stiffness(t, COUPLING)?;
     Ok(BodySettings {
         mass_kg,
         coupling_n_m,
         damping_n_s_m: damping(t, 2.0 * (mass_kg * coupling_n_m).sqrt())?,
+        largest_force_n: largest_force(t, default.largest_force_n)?,
         jerk_m_s3: t.get("jerk").map_or(Ok(default.jerk_m_s3), |v| cell.units.positive_length(&v))?,
     })
 }
 
 fn port(t: &Table<'_>, cell: &Cell) -> Result<ImpedanceSettings> {
+    let default = ImpedanceSettings::default();
     let settings = ImpedanceSettings {
         stiffness_n_m: stiffness(t, STIFFNESS)?,
         damping_n_s_m: damping(t, 0.0)?,
-        tank_j: t.get("tank").map_or(Ok(ImpedanceSettings::default().tank_j), |v| v.positive())?,
-        ..ImpedanceSettings::default()
+        tank_j: t.get("tank").map_or(Ok(default.tank_j), |v| up_to(&v, v.positive()?, MOST_TANK_J, "J"))?,
+        largest_force_n: largest_force(t, default.largest_force_n)?,
+        ..default
     };
     let tick_s = cell.timing.tick_s;
     let port = ImpedancePort::new(settings).map_err(|e| t.error(format!("`{}`: {e}", t.name)))?;
     if let Some(v) = t.get("device_damping") {
         let (has, needs) = (v.not_negative()?, port.least_device_damping(tick_s));
         if has < needs {
-            let most = 2.0 * (has - settings.damping_n_s_m).max(0.0) / tick_s;
+            let most = 2.0 * (has - settings.damping_n_s_m) / tick_s;
             let what = format!("is {has} N·s/m; the wall needs {needs} at a tick of {} ms, or it shakes", tick_s * 1e3);
-            return Err(v.error(what).hint(format!("`stiffness` of at most {most}, or a shorter `tick_ms`")));
+            let remedy = match most > 0.0 {
+                true => format!("`stiffness` of at most {most}, or a shorter `tick_ms`"),
+                false => format!("`damping` below {has}"),
+            };
+            return Err(v.error(what).hint(remedy));
         }
     }
     Ok(settings)

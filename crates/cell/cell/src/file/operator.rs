@@ -30,6 +30,13 @@ pub(super) fn read(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
         }
         cell.guidance.operators.push(operator);
     }
+    let guidance = &cell.guidance;
+    let idle = guidance.guides.iter().filter(|g| !guidance.operators.iter().any(|o| o.tool == g.tool));
+    let warnings = idle.map(|g| {
+        let what = format!("the guide \"{}\" does nothing: no operator guides its tool", g.name);
+        Diagnostic::new(&cell.file, g.line, what).hint("a table [operator.NAME]")
+    });
+    cell.warnings.extend(warnings.collect::<Vec<_>>());
     Ok(())
 }
 

@@ -43,9 +43,10 @@ fn curves(track: &GuidanceTrack, name: &str, run: usize) -> Figure {
     add("speed of the tool (mm/s)", "#1f77b4", "y2", &|s| Some(1e3 * s.velocity.length()));
     if has_forces {
         add("force on the hand (N)", "#d62728", "y3", &|s| Some(s.force?.on_hand_n.length()));
-        add("energy put in (J)", "#9467bd", "y3", &|s| Some(s.force?.energy_j));
+        add("energy not given back (J)", "#9467bd", "y3", &|s| Some(s.force?.energy_j));
     }
-    let of_forces = if has_forces { ", the force on the hand and the energy that it put in" } else { "" };
+    let of_forces =
+        if has_forces { ", the force on the hand, and the energy that it put in and did not get back" } else { "" };
     Figure {
         title: format!("Guided by {}: {name}", track.operator),
         note: format!("Distance from the desired point to the tool, gap to the nearest surface, speed{of_forces}."),

@@ -3,8 +3,8 @@
 use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_robot::{GeometryId, RobotId};
 use elbowroom_scene::{Checker, CheckerOptions, PairDistance, Scene, SceneState, Selection};
+use elbowroom_spatial::Vec3;
 use elbowroom_spatial::linalg::solve_spd;
-use elbowroom_spatial::{Pose, Vec3};
 
 use super::field::FieldSample;
 use super::impedance_port::ImpedancePort;
@@ -31,6 +31,8 @@ pub struct ArmField {
     pair: FieldPair,
     /// The range now: it changes only while the bodies are farther apart, where it stores nothing.
     range_m: f64,
+    /// Distance at the last evaluation; infinite if it was out of range.
+    last_m: f64,
 }
 
 impl ArmField {
@@ -40,7 +42,7 @@ impl ArmField {
     /// A constant of the law that is not usable.
     pub fn new(law: ForceLaw, pair: FieldPair) -> Result<Self, NavigatorError> {
         law.check()?;
-        Ok(Self { law, pair, range_m: law.range_m })
+        Ok(Self { law, pair, range_m: law.range_m, last_m: f64::INFINITY })
     }
 
     /// Lets the range follow the speed of the approach, unless the bodies are within it.
@@ -72,6 +74,10 @@ pub struct ArmForces<'s> {
     /// Jacobians of the tool point and of a point of the arm, a column per joint.
     tool_columns: Vec<[f64; 6]>,
     point_columns: Vec<[f64; 6]>,
+    /// Change of the last distance per motion of each joint, m/rad or m/m.
+    rates: Vec<f64>,
+    /// Torques of the fields, N·m or N.
+    torques: Vec<f64>,
     sample: FieldSample,
     force_on_hand: Vec3,
     /// Where the hand was in the last step of [`Response::Impedance`].
@@ -109,6 +115,8 @@ impl<'s> ArmForces<'s> {
             tool,
             tool_columns: vec![[0.0; 6]; chain.dof()],
             point_columns: vec![[0.0; 6]; chain.dof()],
+            rates: vec![0.0; chain.dof()],
+            torques: vec![0.0; chain.dof()],
             sample: FieldSample::default(),
             force_on_hand: Vec3::ZERO,
             hand: None,
@@ -144,17 +152,17 @@ impl<'s> ArmForces<'s> {
         let at = place.navigator.tool_in_world().translation;
         let Response::Admittance(body) = &self.response else { return Vec3::ZERO };
         let velocity = body.velocity();
-        let field = self.evaluate(&mut place, velocity);
+        let field = self.evaluate(&mut place, velocity, dt_s);
         let Response::Admittance(body) = &mut self.response else { return Vec3::ZERO };
         body.begin(at, hand, &field, dt_s)
     }
 
     /// The velocity of a step that is not made.
-    pub(crate) fn wanted_velocity(&mut self, place: ArmPlace<'_>, hand: Option<Vec3>, dt_s: f64) -> Vec3 {
-        let response = self.response.clone();
-        let velocity = self.begin(place, hand, dt_s);
-        self.response = response;
-        velocity
+    pub(crate) fn wanted_velocity(&self, place: &ArmPlace<'_>, hand: Option<Vec3>, dt_s: f64) -> Vec3 {
+        // A question changes nothing: neither the mass nor the ranges.
+        let Response::Admittance(body) = &self.response else { return Vec3::ZERO };
+        let mut body = body.clone();
+        body.begin(place.navigator.tool_in_world().translation, hand, &self.sample, dt_s)
     }
 
     /// Ends a step where the arm is now; false if the fields would store more energy than there is.
@@ -176,50 +184,71 @@ impl<'s> ArmForces<'s> {
         }
     }
 
-    /// The hand turned the tool.
-    pub(crate) fn turned(&mut self, mut place: ArmPlace<'_>) {
+    /// The hand turned the tool; false if there is not the energy for it.
+    pub(crate) fn turned(&mut self, mut place: ArmPlace<'_>) -> bool {
+        let at = place.navigator.tool_in_world().translation;
         let potential_j = self.potential_j(&mut place);
+        let Response::Admittance(body) = &mut self.response else { return true };
+        body.turned(at, potential_j)
+    }
+
+    /// Stops the virtual mass.
+    pub(crate) fn halt(&mut self) {
         if let Response::Admittance(body) = &mut self.response {
-            body.turned(potential_j);
+            body.halt();
         }
     }
 
     /// What the hand feels after a step in which the tool followed it as far as surfaces and the arm allow.
     pub(crate) fn feel(&mut self, mut place: ArmPlace<'_>, hand: Option<Vec3>, velocity: Vec3, dt_s: f64) {
         let at = place.navigator.tool_in_world().translation;
-        let field = self.evaluate(&mut place, velocity);
+        let field = self.evaluate(&mut place, velocity, dt_s);
         if let Response::Impedance(port) = &mut self.response {
             if self.hand.zip(hand).is_none_or(|(before, now)| now.distance(before) > Self::REGRIP_M) {
                 port.release();
             }
-            self.force_on_hand = hand.map_or(Vec3::ZERO, |hand| port.step(at, hand, field.force_n, dt_s));
+            self.force_on_hand =
+                hand.map_or(Vec3::ZERO, |hand| port.step(at, hand, field.damped_force_n(velocity), dt_s));
             self.hand = hand;
         }
     }
 
-    /// Evaluates the fields where the arm is, and adapts their ranges to its velocity.
-    fn evaluate(&mut self, place: &mut ArmPlace<'_>, velocity: Vec3) -> FieldSample {
-        let fastest = velocity.length();
+    /// Evaluates the fields where the arm is, and adapts their ranges to the approach in the last `dt_s` seconds.
+    fn evaluate(&mut self, place: &mut ArmPlace<'_>, velocity: Vec3, dt_s: f64) -> FieldSample {
         let chain = &place.scene.robots()[place.robot.0].robot.chain;
         self.chain_state.q.copy_from_slice(place.state.q(place.robot));
         chain.forward(&mut self.chain_state);
         chain.jacobian(&self.chain_state, self.tool.0, self.tool.1, &mut self.tool_columns);
+        self.torques.fill(0.0);
         let mut sum = FieldSample::default();
         for index in 0..self.fields.len() {
             let field = self.fields[index];
-            let margin_m = field.range_m.max(field.law.range_at(fastest));
+            // A body that comes nearer by itself is seen as early as one twice as fast as the tool at its fastest.
+            let margin_m = field.range_m.max(field.law.range_at(2.0 * place.navigator.settings().speed_m_s));
             let found = match field.pair {
-                FieldPair::Surface(surface) => place.navigator.separation_from(surface, margin_m),
+                FieldPair::Surface(surface) => place.navigator.separation_from(surface, margin_m).map(|near| {
+                    let away = (near.on_a - near.on_b).try_normalize().unwrap_or(Vec3::ZERO);
+                    self.rates.fill(0.0);
+                    self.add_rates(place, self.tool.0, near.on_a, away);
+                    (near.distance, away)
+                }),
                 FieldPair::Scene(one, other) => nearest(&mut self.checker, place.state, (one, other), margin_m)
                     .map(|pair| (pair.metres, self.gradient(place, &pair))),
             };
+            let field = &mut self.fields[index];
             let Some((distance_m, gradient)) = found else {
-                self.fields[index].range_m = field.law.range_m;
+                (field.range_m, field.last_m) = (field.law.range_m, f64::INFINITY);
                 continue;
             };
-            let field = &mut self.fields[index];
-            field.adapt_range(distance_m, -gradient.dot(velocity));
+            let measured =
+                if dt_s > 0.0 && field.last_m.is_finite() { (field.last_m - distance_m) / dt_s } else { 0.0 };
+            field.adapt_range(distance_m, measured.max(-gradient.dot(velocity)));
+            field.last_m = distance_m;
             sum.add(&field.law, field.range_m, distance_m, gradient, velocity);
+            let force_n = field.law.force_n(distance_m, field.range_m);
+            for (torque, rate) in self.torques.iter_mut().zip(&self.rates) {
+                *torque += force_n * rate;
+            }
         }
         self.sample = sum;
         sum
@@ -232,7 +261,7 @@ impl<'s> ArmForces<'s> {
         for field in &self.fields {
             let distance_m = match field.pair {
                 FieldPair::Surface(surface) => {
-                    place.navigator.separation_from(surface, field.range_m).map(|(distance_m, _)| distance_m)
+                    place.navigator.separation_from(surface, field.range_m).map(|near| near.distance)
                 }
                 FieldPair::Scene(one, other) => {
                     nearest(checker, place.state, (one, other), field.range_m).map(|pair| pair.metres)
@@ -243,35 +272,36 @@ impl<'s> ArmForces<'s> {
         sum
     }
 
-    /// Writes the joint torques (N·m, or N) of the fields of the last evaluation: what the force on the tool point asks of
-    /// the joints.
-    pub fn joint_torques(&self, base_in_world: &Pose, torques: &mut [f64]) {
-        let force = base_in_world.inverse_transform_vector(self.sample.force_n);
-        for (torque, column) in torques.iter_mut().zip(&self.tool_columns) {
-            *torque = (0..3).map(|i| column[i] * force[i]).sum();
-        }
+    /// Joint torques (N·m, or N) of the fields of the last evaluation, without dampers: each force at the nearest point of
+    /// the arm, through the Jacobian there.
+    pub fn joint_torques(&self) -> &[f64] {
+        &self.torques
     }
 
     /// The change of a distance per motion of the tool point, in the world: what the arm does at the nearest point while
     /// the tool moves and keeps its orientation, by the pseudoinverse of the Jacobian.
     fn gradient(&mut self, place: &ArmPlace<'_>, pair: &PairDistance) -> Vec3 {
-        let mut sum = Vec3::ZERO;
-        let base = place.scene.robots()[place.robot.0].base_in_world;
+        self.rates.fill(0.0);
         for (geometry, own, other) in [(pair.a, pair.on_a, pair.on_b), (pair.b, pair.on_b, pair.on_a)] {
             let GeometryId::Link { robot, link } = geometry else { continue };
-            let Some(away) = (own - other).try_normalize() else { continue };
-            if robot != place.robot {
-                continue;
+            if let Some(away) = (own - other).try_normalize().filter(|_| robot == place.robot) {
+                self.add_rates(place, link, own, away);
             }
-            let chain = &place.scene.robots()[robot.0].robot.chain;
-            let link_in_root = self.chain_state.link_in_root(link);
-            let point = link_in_root.inverse_transform_point(base.inverse_transform_point(own));
-            chain.jacobian(&self.chain_state, link, point, &mut self.point_columns);
-            let away = base.inverse_transform_vector(away);
-            let rates = self.point_columns.iter().map(|c| c[0] * away.x + c[1] * away.y + c[2] * away.z);
-            sum += base.transform_vector(along_tool(&self.tool_columns, rates));
         }
-        sum
+        let base = place.scene.robots()[place.robot.0].base_in_world;
+        base.transform_vector(along_tool(&self.tool_columns, &self.rates))
+    }
+
+    /// Adds the motion of a point of a link (world) along a direction, per motion of each joint.
+    fn add_rates(&mut self, place: &ArmPlace<'_>, link: LinkId, point: Vec3, away: Vec3) {
+        let robot = &place.scene.robots()[place.robot.0];
+        let in_root = robot.base_in_world.inverse_transform_point(point);
+        let in_link = self.chain_state.link_in_root(link).inverse_transform_point(in_root);
+        robot.robot.chain.jacobian(&self.chain_state, link, in_link, &mut self.point_columns);
+        let away = robot.base_in_world.inverse_transform_vector(away);
+        for (rate, c) in self.rates.iter_mut().zip(&self.point_columns) {
+            *rate += c[0] * away.x + c[1] * away.y + c[2] * away.z;
+        }
     }
 }
 
@@ -293,7 +323,7 @@ fn nearest(
 
 /// The rate per motion of the tool point of what changes at `rates` per motion of the joints: the linear part of
 /// (J Jᵀ)⁻¹ J · rates.
-fn along_tool(columns: &[[f64; 6]], rates: impl Iterator<Item = f64>) -> Vec3 {
+fn along_tool(columns: &[[f64; 6]], rates: &[f64]) -> Vec3 {
     let (mut matrix, mut right) = ([[0.0; 6]; 6], [0.0; 6]);
     for (column, rate) in columns.iter().zip(rates) {
         for i in 0..6 {

@@ -17,6 +17,12 @@ pub struct FieldSample {
 }
 
 impl FieldSample {
+    /// Force with the dampers at a velocity of the tool point (m/s), N.
+    pub fn damped_force_n(&self, velocity: Vec3) -> Vec3 {
+        let row = |i: usize| (0..3).map(|j| self.damping[i][j] * velocity[j]).sum();
+        self.force_n - Vec3::new(row(0), row(1), row(2))
+    }
+
     /// Adds a pair of bodies `distance_m` apart. `gradient` is the change of the distance per motion of the tool point:
     /// the unit vector away from the other body if the tool itself is near. `velocity` is that of the tool point, m/s.
     pub fn add(&mut self, law: &ForceLaw, range_m: f64, distance_m: f64, gradient: Vec3, velocity: Vec3) {

@@ -16,12 +16,14 @@ pub struct ImpedanceSettings {
     pub tank_j: f64,
     /// Speed of the hand for which the energy suffices, m/s.
     pub hand_speed_m_s: f64,
+    /// Largest force, N.
+    pub largest_force_n: f64,
 }
 
 impl Default for ImpedanceSettings {
-    /// 1000 N/m, no damping, 10 mJ, 1 m/s.
+    /// 1000 N/m, no damping, 10 mJ, 1 m/s, 150 N.
     fn default() -> Self {
-        Self { stiffness_n_m: 1000.0, damping_n_s_m: 0.0, tank_j: 0.01, hand_speed_m_s: 1.0 }
+        Self { stiffness_n_m: 1000.0, damping_n_s_m: 0.0, tank_j: 0.01, hand_speed_m_s: 1.0, largest_force_n: 150.0 }
     }
 }
 
@@ -59,6 +61,7 @@ impl ImpedancePort {
             ("stiffness_n_m", settings.stiffness_n_m),
             ("tank_j", settings.tank_j),
             ("hand_speed_m_s", settings.hand_speed_m_s),
+            ("largest_force_n", settings.largest_force_n),
         ])?;
         NavigatorError::check_not_negative(&[("damping_n_s_m", settings.damping_n_s_m)])?;
         Ok(Self { settings, last: None, energy_j: 0.0 })
@@ -78,7 +81,7 @@ impl ImpedancePort {
             force += ((tool - old_tool) - (hand - old_hand)) * (s.damping_n_s_m / dt_s);
         }
         let available_j = (self.energy_j + s.tank_j).max(0.0);
-        let payable_n = available_j / (s.hand_speed_m_s * dt_s);
+        let payable_n = (available_j / (s.hand_speed_m_s * dt_s)).min(s.largest_force_n);
         if force.length() > payable_n {
             force = force * (payable_n / force.length());
         }

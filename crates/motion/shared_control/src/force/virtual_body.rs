@@ -6,6 +6,7 @@ use elbowroom_spatial::linalg::solve_spd;
 use super::energy_account::EnergyAccount;
 use super::field::FieldSample;
 use crate::NavigatorError;
+use crate::surface_navigator::split_braking;
 
 /// Share of the energy by which rounding may exceed it.
 const ROUNDING: f64 = 1e-13;
@@ -19,14 +20,16 @@ pub struct BodySettings {
     pub damping_n_s_m: f64,
     /// Stiffness of the coupling to the hand, N/m.
     pub coupling_n_m: f64,
-    /// Largest jerk while the tool speeds up, m/s³. It slows down as fast as forces demand.
+    /// Largest jerk while the acceleration grows, m/s³. The mass slows down as fast as forces demand.
     pub jerk_m_s3: f64,
+    /// Largest force of the coupling, N: a hand that is farther away pulls no harder.
+    pub largest_force_n: f64,
 }
 
 impl Default for BodySettings {
     /// 2 kg that follow the hand within 0.1 s without overshoot: ω = 20 rad/s, critical damping.
     fn default() -> Self {
-        Self { mass_kg: 2.0, damping_n_s_m: 80.0, coupling_n_m: 800.0, jerk_m_s3: 500.0 }
+        Self { mass_kg: 2.0, damping_n_s_m: 80.0, coupling_n_m: 800.0, jerk_m_s3: 500.0, largest_force_n: 150.0 }
     }
 }
 
@@ -36,7 +39,12 @@ impl BodySettings {
     /// # Errors
     /// The first one that is not a positive number; damping may be 0.
     pub fn check(&self) -> Result<(), NavigatorError> {
-        let positive = [("mass_kg", self.mass_kg), ("coupling_n_m", self.coupling_n_m), ("jerk_m_s3", self.jerk_m_s3)];
+        let positive = [
+            ("mass_kg", self.mass_kg),
+            ("coupling_n_m", self.coupling_n_m),
+            ("jerk_m_s3", self.jerk_m_s3),
+            ("largest_force_n", self.largest_force_n),
+        ];
         NavigatorError::check_positive(&positive)?;
         NavigatorError::check_not_negative(&[("damping_n_s_m", self.damping_n_s_m)])
     }
@@ -116,7 +124,11 @@ impl VirtualBody {
     pub fn begin(&mut self, at: Vec3, hand: Option<Vec3>, field: &FieldSample, dt_s: f64) -> Vec3 {
         self.before = at;
         self.dt_s = if dt_s > 0.0 { dt_s } else { 0.0 };
-        let hand = hand.filter(|h| h.is_finite());
+        let longest_m = self.settings.largest_force_n / self.settings.coupling_n_m;
+        let hand = hand.filter(|h| h.is_finite()).map(|hand| {
+            let way = hand - at;
+            if way.length() > longest_m { at + way * (longest_m / way.length()) } else { hand }
+        });
         // Moving the end of the spring puts energy in; releasing the spring gives its energy to nobody.
         let (old, new) = (self.spring_j(self.hand, at), self.spring_j(hand, at));
         if hand.is_some() {
@@ -171,24 +183,40 @@ impl VirtualBody {
         self.force_on_hand(self.before)
     }
 
-    /// The tool was turned by the hand, which changes the energy of the fields.
-    pub fn turned(&mut self, potential_j: f64) {
-        self.account.put_in(potential_j - self.potential_j);
-        self.potential_j = potential_j;
+    /// The tool was turned where it is, and the fields store `potential_j` now.
+    ///
+    /// The hand feels no torque, so it does not pay for that: the mass does. Returns false, and changes nothing, if it
+    /// cannot: turn back.
+    pub fn turned(&mut self, at: Vec3, potential_j: f64) -> bool {
+        let acceleration = self.acceleration;
+        let is_paid = self.end(at, self.velocity, potential_j);
+        self.acceleration = acceleration;
+        is_paid
+    }
+
+    /// Stops the mass: its motion becomes heat.
+    pub fn halt(&mut self) {
+        let kinetic_j = 0.5 * self.settings.mass_kg * self.velocity.length_squared();
+        self.account.keep(self.account.stored_j() - kinetic_j);
+        (self.velocity, self.acceleration) = (Vec3::ZERO, Vec3::ZERO);
     }
 
     fn spring_j(&self, hand: Option<Vec3>, at: Vec3) -> f64 {
         hand.map_or(0.0, |hand| 0.5 * self.settings.coupling_n_m * (hand - at).length_squared())
     }
 
-    /// Limits the jerk of a body that speeds up.
+    /// Limits the jerk, except of slowing down.
     fn within_jerk(&self, velocity: Vec3) -> Vec3 {
-        if self.dt_s == 0.0 || velocity.length_squared() <= self.velocity.length_squared() {
+        if self.dt_s == 0.0 {
             return velocity;
         }
-        let change = (velocity - self.velocity) / self.dt_s - self.acceleration;
-        let largest = self.settings.jerk_m_s3 * self.dt_s;
-        let share = (largest / change.length()).min(1.0);
-        self.velocity + (self.acceleration + change * share) * self.dt_s
+        let (braking, change) = split_braking(self.velocity, velocity - self.velocity);
+        let before = split_braking(self.velocity, self.acceleration * self.dt_s).1;
+        if change.length_squared() <= before.length_squared() {
+            return velocity;
+        }
+        let largest = self.settings.jerk_m_s3 * self.dt_s * self.dt_s;
+        let share = (largest / (change - before).length()).min(1.0);
+        self.velocity + braking + before + (change - before) * share
     }
 }
