@@ -226,9 +226,10 @@ fn port(t: &Table<'_>, cell: &Cell) -> Result<ImpedanceSettings> {
         if has < needs {
             let most = 2.0 * (has - settings.damping_n_s_m) / tick_s;
             let what = format!("is {has} N·s/m; the wall needs {needs} at a tick of {} ms, or it shakes", tick_s * 1e3);
-            let remedy = match most > 0.0 {
-                true => format!("`stiffness` of at most {most}, or a shorter `tick_ms`"),
-                false => format!("`damping` below {has}"),
+            let remedy = if most > 0.0 {
+                format!("`stiffness` of at most {most}, or a shorter `tick_ms`")
+            } else {
+                format!("`damping` below {has}")
             };
             return Err(v.error(what).hint(remedy));
         }
