@@ -129,13 +129,16 @@ fn a_hand_that_turns_back_at_a_region_takes_the_robot_along() {
     let dir = tempfile::tempdir().unwrap();
     let region = "[monitor]\nstopping_distance = true\ndirection_aware = true\n[region.ceiling]\nshape = \"box\"\nfrom = [500, -500, 1500]\nto = [1500, 500, 2500]\nwarning = 100\nguards = [\"tcp\"]\n";
     let up_and_down = |t_s: f64| [1104.2, 0.0, 1358.8 + 150.0 * t_s.min(2.0) - 150.0 * (t_s - 2.0).max(0.0)];
-    write(dir.path(), &format!("{CELL}{region}"), up_and_down, 4.0);
-    let answer = elbowroom(dir.path(), &["run", "cell.toml", "--json", "--out", "out"]).expect(0).json();
-    assert_eq!(answer["regions"][0]["entered"], false, "{answer}");
-    let rows = rows(dir.path());
-    let highest = rows.iter().map(|row| row.z_m).fold(0.0, f64::max);
-    assert!(highest > 1.49 && highest < 1.5, "{highest}");
-    assert!(rows[rows.len() - 1].z_m < 1.38, "{}", rows[rows.len() - 1].z_m);
+    let force = "[force.soft]\nbetween = [\"arm/tool\", \"work\"]\nlaw = \"admittance\"\n";
+    for (extra, head, down_to) in [("", "", 1.38), (force, "", 1.40), (force, "tick_ms = 1\n", 1.40)] {
+        write(dir.path(), &format!("{head}{CELL}{region}{extra}"), up_and_down, 4.0);
+        let answer = elbowroom(dir.path(), &["run", "cell.toml", "--json", "--out", "out"]).expect(0).json();
+        assert_eq!(answer["regions"][0]["entered"], false, "{answer}");
+        let rows = rows(dir.path());
+        let highest = rows.iter().map(|row| row.z_m).fold(0.0, f64::max);
+        assert!(highest > 1.48 && highest < 1.5, "{highest}");
+        assert!(rows[rows.len() - 1].z_m < down_to, "{extra} {head}: {}", rows[rows.len() - 1].z_m);
+    }
 }
 
 #[test]

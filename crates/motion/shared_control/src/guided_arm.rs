@@ -61,6 +61,8 @@ pub struct GuidedArm<'s> {
     /// Joint values between moving and turning.
     moved: Vec<f64>,
     guide: Option<Guide>,
+    /// Whether the virtual mass was at rest at the start of the last step, because of the override.
+    is_halted: bool,
     forces: Option<Box<ArmForces<'s>>>,
 }
 
@@ -88,6 +90,7 @@ impl<'s> GuidedArm<'s> {
             before: state.q(robot).to_vec(),
             moved: state.q(robot).to_vec(),
             guide: None,
+            is_halted: false,
             forces: None,
             state,
             solver,
@@ -144,7 +147,8 @@ impl<'s> GuidedArm<'s> {
         let Some(mut forces) = self.forces.take() else {
             return self.step_after_hand(desired.as_ref(), dt_s, speed_override);
         };
-        if !is_usable || speed_override < LEAST_OVERRIDE {
+        self.is_halted = !is_usable || speed_override < LEAST_OVERRIDE;
+        if self.is_halted {
             forces.halt();
         }
         let step = if forces.is_admittance() && is_usable {
@@ -184,7 +188,15 @@ impl<'s> GuidedArm<'s> {
         let mut forces = self.forces.take();
         let tool_in_world = match &mut forces {
             Some(forces) if forces.is_admittance() && desired.is_some() => {
-                let velocity = forces.wanted_velocity(&self.place(), desired.map(|d| d.translation), dt_s);
+                let hand = desired.map(|d| d.translation);
+                let mut velocity = forces.wanted_velocity(&self.place(), hand, dt_s);
+                if self.is_halted {
+                    // In one step from rest the mass goes hardly anywhere; the question is where it would go.
+                    let (s, at) = (*self.navigator.settings(), self.navigator.tool_in_world().translation);
+                    let way_m = hand.map_or(0.0, |hand| hand.distance(at));
+                    let speed = s.speed_m_s.min((2.0 * s.acceleration_m_s2 * way_m).sqrt());
+                    velocity = velocity.try_normalize().map_or(velocity, |direction| direction * speed);
+                }
                 self.navigator.step_at_velocity(velocity, dt_s, 1.0).tool_in_world
             }
             _ => {
