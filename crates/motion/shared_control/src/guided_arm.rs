@@ -187,7 +187,7 @@ impl<'s> GuidedArm<'s> {
         let desired = self.guided(desired);
         let mut forces = self.forces.take();
         let tool_in_world = match &mut forces {
-            Some(forces) if forces.is_admittance() && desired.is_some() => {
+            Some(forces) if forces.is_admittance() && desired.is_some_and(|d| d.is_finite()) => {
                 let hand = desired.map(|d| d.translation);
                 let mut velocity = forces.wanted_velocity(&self.place(), hand, dt_s);
                 if self.is_halted {
@@ -239,7 +239,7 @@ impl<'s> GuidedArm<'s> {
         // Under an override, time goes by more slowly for the mass.
         let hand = desired.map(|d| d.translation);
         let scaled = if speed_override > 0.0 { speed_override.min(1.0) } else { 0.0 };
-        let velocity = forces.begin(self.place(), hand, dt_s * scaled);
+        let velocity = forces.begin(self.place(), hand, dt_s, scaled);
         let (mut limit, mut energy, mut gap_m) = (None, None, None);
         let mut share = scaled;
         for _ in 0..=HALVINGS {

@@ -11,24 +11,23 @@ use super::robot;
 use super::settings::{Places, settings};
 use crate::fuzz_cells::oracle;
 use crate::fuzz_cells::random::{Random, rounded};
-use crate::fuzz_cells::spec::{CellSpec, GuidanceSpec, HandRow, ObjectSpec, ProgramSpec, list};
+use crate::fuzz_cells::spec::{CellSpec, GuidanceSpec, HandRow, ObjectSpec, ProgramSpec, RobotSpec, list};
 
 /// Laws of forces; the first three are fields alone.
 const LAWS: [&str; 5] = ["repulsive", "khatib", "spring_damper", "admittance", "impedance"];
-/// Tries to place an object without touching the robot.
+/// Tries to make a robot, and to place an object that does not touch it.
 const TRIES: usize = 8;
 
 /// Makes a guided robot among objects.
 pub fn cell(random: &mut Random, places: &Places<'_>) -> CellSpec {
     let mut spec = settings(random);
     spec.max_s = 4.0;
-    let mut robot = robot::example(random, places);
-    robot.program = ProgramSpec::of_steps(100.0, Vec::new());
-    let (width, length) = (random.scaled(0.006, 0.06), random.between(0.04, 0.2));
-    robot.hand.tcp = Some([0.0, 0.0, length]);
-    robot.hand.tool_box = Some(([0.0, 0.0, rounded(0.5 * length)], [width, width, length]));
-    spec.robots.push(robot);
-    let Ok(cell) = spec.parse(places.cells) else { return spec };
+    // A start beyond a joint's limit is refused.
+    let cell = (0..TRIES).find_map(|_| {
+        spec.robots = vec![with_tool(random, places)];
+        spec.parse(places.cells).ok()
+    });
+    let Some(cell) = cell else { return spec };
     let tool = tool_in_world(&cell);
     for i in 0..random.whole(1, 3) {
         for _ in 0..TRIES {
@@ -54,6 +53,16 @@ pub fn cell(random: &mut Random, places: &Places<'_>) -> CellSpec {
         }
     }
     spec
+}
+
+/// A robot of six axes with a box as its tool.
+fn with_tool(random: &mut Random, places: &Places<'_>) -> RobotSpec {
+    let mut robot = robot::example(random, places);
+    robot.program = ProgramSpec::of_steps(100.0, Vec::new());
+    let (width, length) = (random.scaled(0.006, 0.06), random.between(0.04, 0.2));
+    robot.hand.tcp = Some([0.0, 0.0, length]);
+    robot.hand.tool_box = Some(([0.0, 0.0, rounded(0.5 * length)], [width, width, length]));
+    robot
 }
 
 fn tool_in_world(cell: &Cell) -> Pose {
@@ -228,7 +237,7 @@ fn force(name: &str, own: &str, other: &str, laws: &[&str], random: &mut Random)
     if random.percent(50) {
         _ = writeln!(t, "damping = {}", random.scaled(1.0, 300.0));
     }
-    if random.percent(30) {
+    if t.contains("range") && random.percent(30) {
         _ = writeln!(t, "reaction_ms = {}\ndeceleration = {}", random.whole(0, 200), random.scaled(0.5, 10.0));
     }
     if law == "admittance" && random.percent(50) {

@@ -74,7 +74,7 @@ impl Kind {
             Self::Faults | Self::Moving | Self::Recordings => 35,
             Self::Exchange | Self::Tools => 20,
             Self::Planned => 8,
-            Self::Guided => 6,
+            Self::Guided => 12,
         }
     }
 

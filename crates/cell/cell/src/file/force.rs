@@ -138,12 +138,12 @@ fn other_side(v: &Value<'_>, cell: &Cell, tool: FixtureTool, whole_arm: bool) ->
     }
 }
 
-/// A number of a key up to a bound that nobody exceeds, in its unit.
+/// A number of a key, refused above a bound in its unit.
 fn up_to(v: &Value<'_>, number: f64, most: f64, unit: &str) -> Result<f64> {
     if number <= most {
         return Ok(number);
     }
-    Err(v.error(format!("is {number} {unit}")).hint(format!("at most {most} {unit}")))
+    Err(v.error(format!("is more than {most} {unit}")).hint(format!("at most {most} {unit}")))
 }
 
 /// A stiffness, N/m.

@@ -147,14 +147,15 @@ impl<'s> ArmForces<'s> {
         matches!(self.response, Response::Admittance(_))
     }
 
-    /// Begins a step of the virtual mass: the velocity with which the tool would move for `dt_s` seconds.
-    pub(crate) fn begin(&mut self, mut place: ArmPlace<'_>, hand: Option<Vec3>, dt_s: f64) -> Vec3 {
+    /// Begins a step of the virtual mass: the velocity with which the tool would move. The step takes `dt_s` seconds, of
+    /// which a share goes by for the mass.
+    pub(crate) fn begin(&mut self, mut place: ArmPlace<'_>, hand: Option<Vec3>, dt_s: f64, share: f64) -> Vec3 {
         let at = place.navigator.tool_in_world().translation;
         let Response::Admittance(body) = &self.response else { return Vec3::ZERO };
         let velocity = body.velocity();
         let field = self.evaluate(&mut place, velocity, dt_s);
         let Response::Admittance(body) = &mut self.response else { return Vec3::ZERO };
-        body.begin(at, hand, &field, dt_s)
+        body.begin(at, hand, &field, dt_s * share)
     }
 
     /// The velocity of a step that is not made.
