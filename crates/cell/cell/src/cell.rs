@@ -263,6 +263,18 @@ impl CellRobot {
         chain.active_joints().iter().map(|j| chain.joints()[j.0].name.clone()).collect()
     }
 
+    /// Links of the hand: the flange, the links fixed to it, and the fingers that it carries.
+    pub fn hand_links(&self) -> Vec<LinkId> {
+        let chain = &self.robot.chain;
+        let moving = |link: LinkId| {
+            let mut joints = chain.path(link);
+            joints.retain(|j| chain.joints()[j.0].kind.moves());
+            joints
+        };
+        let of_flange = moving(self.flange);
+        (0..chain.links().len()).map(LinkId).filter(|link| moving(*link).starts_with(&of_flange)).collect()
+    }
+
     /// Guarded volumes: the TCP first, then tool and load, then the links.
     ///
     /// For a robot with named tools: their TCPs, the tools, and the links.

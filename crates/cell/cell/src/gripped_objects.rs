@@ -9,14 +9,17 @@ use elbowroom_spatial::Pose;
 use crate::{Cell, ProgramBody, StepAction};
 
 impl Cell {
-    /// The objects that the program of a robot grips.
+    /// The objects that the program of a robot grips, or the virtual robot that it is a member of.
     pub fn gripped_objects(&self, robot: RobotId) -> Vec<ObjectId> {
         self.grips(robot).into_iter().map(|(object, _)| object).collect()
     }
 
-    /// The objects that the program of a robot grips and the links that grip them, each pair once, in the order of the program.
+    /// The objects that a robot grips and the links that grip them, each pair once, in the order of the program.
     pub fn grips(&self, robot: RobotId) -> Vec<(ObjectId, LinkId)> {
         let at = &self.robots[robot.0];
+        if let Some((virtual_robot, _)) = self.guidance.virtual_robot_of(robot) {
+            return vec![(virtual_robot.work_piece, at.flange)];
+        }
         let Some(ProgramBody::Steps(steps)) = at.program.as_ref().map(|p| &p.body) else { return Vec::new() };
         let (mut grips, mut link) = (Vec::new(), at.flange);
         // A repeated program begins with the tool that it ended with.

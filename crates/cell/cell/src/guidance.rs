@@ -2,9 +2,9 @@
 
 use elbowroom_robot::RobotId;
 
-use crate::{CellFixture, CellForce, CellGuide, CellOperator};
+use crate::{CellFixture, CellForce, CellGuide, CellOperator, CellVirtualRobot};
 
-/// Fixtures, operators and forces of a cell.
+/// Fixtures, operators, forces and virtual robots of a cell.
 #[derive(Debug, Clone, Default)]
 pub struct Guidance {
     /// Virtual fixtures that protect, in file order.
@@ -15,11 +15,19 @@ pub struct Guidance {
     pub operators: Vec<CellOperator>,
     /// Forces, in file order.
     pub forces: Vec<CellForce>,
+    /// Robots that act as one, in file order; a robot is a member of at most one.
+    pub virtual_robots: Vec<CellVirtualRobot>,
 }
 
 impl Guidance {
     /// The operator of a robot; `None` for a robot without.
     pub fn operator_of(&self, robot: RobotId) -> Option<&CellOperator> {
         self.operators.iter().find(|operator| operator.robot == robot)
+    }
+
+    /// The virtual robot that a robot is a member of, and its index among the members.
+    pub fn virtual_robot_of(&self, robot: RobotId) -> Option<(&CellVirtualRobot, usize)> {
+        let member = |v: &CellVirtualRobot| v.members.iter().position(|m| m.robot == robot);
+        self.virtual_robots.iter().find_map(|v| Some((v, member(v)?)))
     }
 }

@@ -63,6 +63,8 @@ mod title;
 mod tool;
 mod tool_change;
 pub mod trajectory;
+mod virtual_robot;
+mod virtual_robot_start;
 
 pub use cell::{
     Approval, AvoidanceSpec, Cell, CellLaws, CellPairRules, CellRegion, CellRobot, CellTiming, Follow, FrameSources,
@@ -70,6 +72,7 @@ pub use cell::{
 };
 pub use cell_ik_error::CellIkError;
 pub use elbowroom_access as access;
+pub use elbowroom_cooperation as cooperation;
 pub use elbowroom_shared_control as shared_control;
 pub use file::{CellFile, QUATERNION_TOLERANCE, key_reference};
 pub use fixture::{CellFixture, CellGuide, FixtureTool, ShieldSource};
@@ -90,3 +93,4 @@ pub use region_id::CellRegionId;
 pub use sensor::{CellSensor, SensorKind};
 pub use tcp_target::TcpTargetError;
 pub use tool::CellTool;
+pub use virtual_robot::{CellVirtualRobot, VirtualRobotMember};

@@ -96,6 +96,12 @@ impl OperatorStream {
         self.rows.windows(2).filter_map(step).filter(|step| *step <= limit_m).fold(0.0, f64::max)
     }
 
+    /// Time of the row that holds at a time (s); `None` before the first.
+    pub fn row_s(&self, t_s: f64) -> Option<f64> {
+        let next = self.rows.partition_point(|row| row.0 <= t_s);
+        Some(self.rows.get(next.checked_sub(1)?)?.0)
+    }
+
     /// What the operator wants at a time (s).
     pub fn at(&self, t_s: f64) -> OperatorInput {
         let next = self.rows.partition_point(|row| row.0 <= t_s);

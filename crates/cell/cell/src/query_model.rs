@@ -140,7 +140,10 @@ impl QueryModel {
         self.objects.push(Object { name: name.to_owned(), shape: region.region.shape.clone(), in_world });
         if let Some(Follow::Robot { robot, link, in_link }) = region.follow {
             let touch_links = (0..cell.robots[robot.0].robot.chain.links().len()).map(LinkId).collect();
-            self.carried.push((id, Attachment { robot, link, in_link: in_link * in_source, touch_links }));
+            self.carried.push((
+                id,
+                Attachment { robot, link, in_link: in_link * in_source, touch_links, visiting_links: Vec::new() },
+            ));
         }
         true
     }

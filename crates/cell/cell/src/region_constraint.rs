@@ -1,9 +1,9 @@
 //! Interference regions as constraints of path planning.
 
+use elbowroom_avoidance::{PathConstraint, PathConstraintSource};
 use elbowroom_formats::Diagnostic;
 use elbowroom_kinematics::ChainState;
 use elbowroom_monitor::{Monitor, RegionDistanceQuery, SourceState};
-use elbowroom_planner::{PathConstraint, PathConstraintSource};
 use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_scene::Attachment;
 

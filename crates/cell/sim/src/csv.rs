@@ -1,4 +1,4 @@
-//! Writers of `trace.csv`, `events.csv` and `operator.csv`. Every number reads back to the same bits.
+//! Writers of `trace.csv`, `events.csv`, `operator.csv` and `work_piece.csv`. Every number reads back to the same bits.
 
 use std::io::{self, Write};
 
@@ -90,6 +90,23 @@ pub fn write_operators(recording: &Recording, mut out: impl Write) -> io::Result
                 Some((f, energy_j)) => writeln!(out, ",{},{},{},{energy_j}", f.x, f.y, f.z)?,
                 None => writeln!(out, "{}", if has_forces { ",,,," } else { "" })?,
             }
+        }
+    }
+    out.flush()
+}
+
+/// Writes `t_s,name,holder,x_m,y_m,z_m,qx,qy,qz,qw`: one row per tick and virtual robot, by virtual robot. Poses are those of
+/// the work-piece, in the world.
+///
+/// # Errors
+/// Errors of the writer.
+pub fn write_work_pieces(recording: &Recording, mut out: impl Write) -> io::Result<()> {
+    writeln!(out, "t_s,name,holder,x_m,y_m,z_m,qx,qy,qz,qw")?;
+    for track in &recording.virtual_robots {
+        for s in &track.samples {
+            let holder = track.robots.get(s.holder).map_or("", String::as_str);
+            let (p, [qx, qy, qz, qw]) = (s.part_in_world.translation, s.part_in_world.rotation.to_quaternion_xyzw());
+            writeln!(out, "{},{},{holder},{},{},{},{qx},{qy},{qz},{qw}", s.t_s, track.name, p.x, p.y, p.z)?;
         }
     }
     out.flush()

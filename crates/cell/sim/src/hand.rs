@@ -3,7 +3,7 @@
 use std::fmt;
 
 use elbowroom_cell::{Cell, CellRobot, Units};
-use elbowroom_kinematics::{ChainState, JointId, LinkId};
+use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_proximity::{Shape, Sphere, collides, separation};
 use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_scene::Attachment;
@@ -20,14 +20,7 @@ pub(crate) struct Hand<'a> {
 
 impl<'a> Hand<'a> {
     pub(crate) fn of(robot: &'a CellRobot) -> Self {
-        let chain = &robot.robot.chain;
-        let moving = |link: LinkId| -> Vec<JointId> {
-            chain.path(link).into_iter().filter(|j| chain.joints()[j.0].kind.moves()).collect()
-        };
-        let of_flange = moving(robot.flange);
-        let is_in_hand = |link: &LinkId| moving(*link).starts_with(&of_flange);
-        let links = (0..chain.links().len()).map(LinkId).filter(is_in_hand).collect();
-        Self { robot, links }
+        Self { robot, links: robot.hand_links() }
     }
 
     /// Distance (m) from a part to the nearest solid of the hand, or to the TCP if that is nearer.
@@ -53,7 +46,7 @@ impl<'a> Hand<'a> {
         let touch_links = robot.links_with_colliders().filter(|l| self.links.contains(l) || touches(*l)).collect();
         let flange_in_world = self.link_in_world(state, self.robot.flange);
         let in_link = flange_in_world.inverse_mul(part_in_world);
-        Attachment { robot: id, link: self.robot.flange, in_link, touch_links }
+        Attachment { robot: id, link: self.robot.flange, in_link, touch_links, visiting_links: Vec::new() }
     }
 
     fn link_in_world(&self, state: &ChainState, link: LinkId) -> Pose {

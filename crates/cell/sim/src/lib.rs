@@ -42,15 +42,17 @@ mod recording;
 pub mod replanning;
 pub mod run;
 mod summary;
+mod virtual_robot_summary;
 
 pub use held_object::held_object;
 pub use motion::{PathSearch, PlannedPaths};
 pub use operator_summary::OperatorSummary;
 pub use recording::{
     AvoidanceSample, AvoidanceTrack, Collision, Deadlock, EventRow, ForceSample, GoverningPoint, GuidanceSample,
-    GuidanceState, GuidanceTrack, Hold, HoldReason, ObjectTrack, Outcome, PartKind, PathReplan, PerceptionTrack,
-    RecordedRegionKind, Recording, RegionPoses, RegionTrack, ReplanRecord, RobotEnding, RobotTrack, RunEnd, RunEvent,
-    Sample, SensorTrack, Span, Stop, TickTimes,
+    GuidanceState, GuidanceTrack, HandOverRecord, Hold, HoldReason, ObjectTrack, Outcome, PartKind, PathReplan,
+    PerceptionTrack, RecordedRegionKind, Recording, RegionPoses, RegionTrack, ReplanRecord, RobotEnding, RobotTrack,
+    RunEnd, RunEvent, Sample, SensorTrack, Span, Stop, TickTimes, VirtualRobotSample, VirtualRobotTrack,
 };
 pub use run::{InputFault, InputFaultKind, RunOptions, RunOutcome, SilentFrom, simulate};
 pub use summary::{AvoidanceSummary, PerceptionSummary, RunSummary, SensorSummary};
+pub use virtual_robot_summary::{HandOverSummary, VirtualRobotSummary};

@@ -9,6 +9,7 @@ use crate::recording::{
     AvoidanceSample, AvoidanceTrack, Hold, HoldReason, ObjectTrack, Outcome, PartKind, PerceptionTrack,
     RecordedRegionKind, Recording, RobotEnding, RunEnd, SensorTrack, Stop, TickTimes,
 };
+use crate::virtual_robot_summary::VirtualRobotSummary;
 
 /// Figures of a run, in SI units.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -34,6 +35,9 @@ pub struct RunSummary {
     /// Per operator; omitted if empty.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub operators: Vec<OperatorSummary>,
+    /// Per virtual robot; omitted if empty.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub virtual_robots: Vec<VirtualRobotSummary>,
     /// Per camera with loaded pictures; omitted if empty.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub cameras: Vec<SensorSummary>,
@@ -394,6 +398,7 @@ impl From<&Recording> for RunSummary {
         Self {
             deadlocks: r.deadlocks.iter().map(deadlock).collect(),
             operators: r.robots.iter().filter_map(|robot| OperatorSummary::of(robot, r.tick_s)).collect(),
+            virtual_robots: r.virtual_robots.iter().map(|v| VirtualRobotSummary::new(v, r.tick_s)).collect(),
             cell: r.cell.clone(),
             checksum: r.checksum.clone(),
             duration_s: r.duration_s,

@@ -90,6 +90,9 @@ pub(crate) fn write_files(
     if run.robots.iter().any(|robot| robot.guidance.is_some()) {
         write_file(&dir.join("operator.csv"), |out| csv::write_operators(run, out))?;
     }
+    if !run.virtual_robots.is_empty() {
+        write_file(&dir.join("work_piece.csv"), |out| csv::write_work_pieces(run, out))?;
+    }
     for sensor in &run.sensors {
         write_records(&dir.join(format!("{}-{}.jsonl", sensor.kind, sensor.name)), sensor)?;
     }

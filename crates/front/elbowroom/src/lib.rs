@@ -16,6 +16,7 @@
 //! | [`cspace`] | obstacles as occupied cells of joint space |
 //! | [`planner`] | paths on the joint-space map or in the exact scene, replanning, time parametrization |
 //! | [`avoidance`] | reactive avoidance: fuzzy rules, least-squares evasion, return to the path |
+//! | [`cooperation`] | several arms that carry one work-piece as one robot |
 //! | [`vision`] | tracked obstacles from camera frames and point clouds |
 //! | [`perception`] | a joint-space map from camera frames, and a replanned motion from the map |
 //! | [`cell`] | the cell file and the model it describes |
@@ -146,6 +147,7 @@ struct Readme;
 
 pub use elbowroom_avoidance as avoidance;
 pub use elbowroom_cell as cell;
+pub use elbowroom_cooperation as cooperation;
 pub use elbowroom_cspace as cspace;
 pub use elbowroom_formats as formats;
 pub use elbowroom_formats::Diagnostic;

@@ -85,6 +85,7 @@ mod velocity_bounds;
 pub use avoider::{Avoider, PlannedDetour};
 pub use border::Border;
 pub use dynamic_obstacles::{DynamicObstacles, Neighbour, ObservedObject};
+pub use elbowroom_planner::{PathConstraint, PathConstraintSource};
 pub use error::AvoidanceError;
 pub use escape_search::{EscapeSettings, EscapeState};
 pub use escape_tree::{EscapeTreeReport, search_escape_tree};

@@ -43,7 +43,8 @@ impl SceneState {
         touch_links: &[LinkId],
     ) -> Result<(), SceneError> {
         let in_link = Pose::IDENTITY;
-        let mut attachment = Attachment { robot, link, in_link, touch_links: touch_links.to_vec() };
+        let touch_links = touch_links.to_vec();
+        let mut attachment = Attachment { robot, link, in_link, touch_links, visiting_links: Vec::new() };
         self.check_attach(scene, object, &attachment)?;
         let object_in_world = self.in_world[scene.object_model(object)];
         attachment.in_link = self.link_in_world(scene, robot, link).inverse_mul(&object_in_world);
@@ -106,8 +107,7 @@ impl SceneState {
                 return skipped(Reason::Attached(scene.link_name(robot, link)));
             }
             if let GeometryId::Link { robot, link } = other
-                && robot == held.robot
-                && held.touch_links.contains(&link)
+                && held.may_touch(robot, link)
             {
                 return skipped(Reason::MayTouch(scene.link_name(robot, link)));
             }
@@ -132,11 +132,13 @@ impl SceneState {
     fn check_attach(&self, scene: &Scene, object: ObjectId, attachment: &Attachment) -> Result<(), SceneError> {
         let (objects, robots) = (scene.objects.len(), scene.robots.len());
         let o = scene.objects.get(object.0).ok_or(SceneError::NoSuchObject { index: object.0, count: objects })?;
-        let Attachment { robot, link, touch_links, .. } = attachment;
-        let r = scene.robots.get(robot.0).ok_or(SceneError::NoSuchRobot { index: robot.0, count: robots })?;
-        let count = r.robot.chain.links().len();
-        if let Some(bad) = touch_links.iter().chain([link]).find(|l| l.0 >= count) {
-            return Err(SceneError::NoSuchLink { robot: r.name.clone(), index: bad.0, count });
+        let own = attachment.touch_links.iter().chain([&attachment.link]).map(|link| (attachment.robot, *link));
+        for (robot, link) in own.chain(attachment.visiting_links.iter().copied()) {
+            let r = scene.robots.get(robot.0).ok_or(SceneError::NoSuchRobot { index: robot.0, count: robots })?;
+            let count = r.robot.chain.links().len();
+            if link.0 >= count {
+                return Err(SceneError::NoSuchLink { robot: r.name.clone(), index: link.0, count });
+            }
         }
         if let Some(a) = &self.attached[object.0] {
             let link = scene.link_name(a.robot, a.link);

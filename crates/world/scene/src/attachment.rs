@@ -15,4 +15,13 @@ pub struct Attachment {
     pub in_link: Pose,
     /// Links of the robot that may touch the object, such as fingers.
     pub touch_links: Vec<LinkId>,
+    /// Links of other robots that may touch it, such as the fingers that take it over.
+    pub visiting_links: Vec<(RobotId, LinkId)>,
+}
+
+impl Attachment {
+    /// Whether a link may touch the object.
+    pub fn may_touch(&self, robot: RobotId, link: LinkId) -> bool {
+        robot == self.robot && self.touch_links.contains(&link) || self.visiting_links.contains(&(robot, link))
+    }
 }

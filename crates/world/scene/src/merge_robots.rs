@@ -167,14 +167,22 @@ impl MergedRobots {
     }
 
     fn attachment(&self, held: &Attachment, in_object: Pose) -> Attachment {
-        let first = self.first_link(held.robot).unwrap_or(0);
-        let link = |link: &LinkId| LinkId(first + link.0);
+        let link = |link: &LinkId| self.link_id(held.robot, *link);
         Attachment {
             robot: self.robot_id(held.robot),
             link: link(&held.link),
             in_link: held.in_link * in_object,
             touch_links: held.touch_links.iter().map(link).collect(),
+            visiting_links: held
+                .visiting_links
+                .iter()
+                .map(|(r, l)| (self.robot_id(*r), self.link_id(*r, *l)))
+                .collect(),
         }
+    }
+
+    fn link_id(&self, robot: RobotId, link: LinkId) -> LinkId {
+        LinkId(self.first_link(robot).unwrap_or(0) + link.0)
     }
 
     fn is_merged(&self, robot: RobotId) -> bool {

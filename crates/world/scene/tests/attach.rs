@@ -5,7 +5,9 @@ use crate::common::{Random, RandomGeometry, apart, link, scene_of};
 use elbowroom_kinematics::LinkId;
 use elbowroom_robot::{GeometryId, ObjectId, RobotId};
 
-use elbowroom_scene::{Attachment, Checker, CheckerOptions, PairEdit, PairState, Reason, SceneState, Selection};
+use elbowroom_scene::{
+    Attachment, Checker, CheckerOptions, PairEdit, PairState, Reason, SceneError, SceneState, Selection,
+};
 use elbowroom_spatial::{Pose, Vec3};
 
 #[test]
@@ -18,7 +20,8 @@ fn an_attached_object_answers_as_the_object_at_its_pose() {
     let mut checker = Checker::new(&scene, CheckerOptions::default());
     let mut plain = Checker::new(&scene, CheckerOptions { weights: false, matrix: false, ..CheckerOptions::default() });
     let in_link = Pose::from_translation(Vec3::Z * 0.55);
-    let attachment = Attachment { robot: RobotId(0), link: LinkId(3), in_link, touch_links: vec![] };
+    let attachment =
+        Attachment { robot: RobotId(0), link: LinkId(3), in_link, touch_links: vec![], visiting_links: vec![] };
     held.attach_at(&scene, ObjectId(5), attachment).unwrap();
     let part = Selection::Object(ObjectId(5));
     let mut seen = [0; 2];
@@ -91,6 +94,36 @@ fn pairs_of_attached_objects_have_their_reasons() {
     state.attach(&scene, ObjectId(1), RobotId(1), LinkId(0), &[]).unwrap();
     let pair = state.pair(&scene, GeometryId::Object(ObjectId(1)), GeometryId::Object(ObjectId(2)));
     assert_eq!(pair, Some((PairState::Skipped, Reason::NoJointBetween)));
+}
+
+#[test]
+fn links_of_another_robot_may_touch_an_object_while_they_visit() {
+    let scene = scene_of(22, |_| {});
+    let (object, part) = (ObjectId(0), GeometryId::Object(ObjectId(0)));
+    let mut state = SceneState::new(&scene);
+    let held = Attachment {
+        robot: RobotId(0),
+        link: LinkId(3),
+        in_link: Pose::IDENTITY,
+        touch_links: vec![],
+        visiting_links: vec![(RobotId(1), LinkId(3))],
+    };
+    state.attach_at(&scene, object, held.clone()).unwrap();
+    let of = |state: &SceneState, m| state.pair(&scene, part, m).unwrap().0;
+    assert_eq!([link(1, 3), link(1, 2), link(0, 2)].map(|m| of(&state, m)), {
+        use PairState::{Skipped, Tested};
+        [Skipped, Tested, Tested]
+    });
+    // The visitor does not count in queries either: without it, the pair is found.
+    let mut checker = Checker::new(&scene, CheckerOptions::default());
+    let visitor = Selection::Link { robot: RobotId(1), link: LinkId(3) };
+    assert!(checker.between(part.into(), visitor).is_empty(&state));
+    state.detach(&scene, object).unwrap();
+    state.attach_at(&scene, object, Attachment { visiting_links: vec![], ..held.clone() }).unwrap();
+    assert!(!checker.between(part.into(), visitor).is_empty(&state));
+    state.detach(&scene, object).unwrap();
+    let unknown = Attachment { visiting_links: vec![(RobotId(1), LinkId(99))], ..held };
+    assert!(matches!(state.attach_at(&scene, object, unknown), Err(SceneError::NoSuchLink { index: 99, .. })));
 }
 
 #[test]

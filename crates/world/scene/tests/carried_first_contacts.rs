@@ -95,7 +95,8 @@ fn a_carried_object_meets_links_robots_and_objects() {
         let start = setup.states(&goals, 0.0);
         checker.check(&[&start[0], &start[1]], &[], |_| {});
         let in_link = start[0].link_in_root(HAND).inverse_mul(&setup.objects[PART.0].in_world);
-        let attachment = Attachment { robot: RobotId(0), link: HAND, in_link, touch_links: vec![HAND] };
+        let attachment =
+            Attachment { robot: RobotId(0), link: HAND, in_link, touch_links: vec![HAND], visiting_links: vec![] };
         checker.attach(PART, attachment, &[&start[0], &start[1]]);
         let mut known = Vec::new();
         for step in 0..steps {

@@ -40,7 +40,13 @@ fn state(scene: &Scene, random: &mut SplitMix) -> SceneState {
         state.set_q(scene, RobotId(robot), &q).unwrap();
     }
     let in_link = Pose::from_translation(Vec3::Z * 0.42);
-    let held = Attachment { robot: RobotId(1), link: LinkId(3), in_link, touch_links: vec![LinkId(3)] };
+    let held = Attachment {
+        robot: RobotId(1),
+        link: LinkId(3),
+        in_link,
+        touch_links: vec![LinkId(3)],
+        visiting_links: vec![],
+    };
     state.attach_at(scene, ObjectId(1), held).unwrap();
     let moved = Vec3::new(random.between(-0.5, 0.5), random.between(0.0, 0.9), random.between(0.2, 1.0));
     state.place(scene, ObjectId(2), Pose::from_translation(moved)).unwrap();

@@ -239,7 +239,8 @@ fn an_attached_object_moves_along() {
     let options = SweepOptions::default();
     assert_eq!(checker.sweep(&start, &swing, &options).unwrap(), None, "the arm alone passes");
     let in_link = Pose::from_translation(Vec3::Z * 0.56);
-    let attachment = Attachment { robot: RobotId(0), link: LinkId(3), in_link, touch_links: vec![] };
+    let attachment =
+        Attachment { robot: RobotId(0), link: LinkId(3), in_link, touch_links: vec![], visiting_links: vec![] };
     start.attach_at(&scene, ObjectId(0), attachment).unwrap();
     let hit = checker.sweep(&start, &swing, &options).unwrap().expect("the rod does not");
     assert_eq!((hit.a, hit.b), (GeometryId::Object(ObjectId(0)), GeometryId::Object(ObjectId(1))));

@@ -26,6 +26,7 @@ mod schema;
 mod sensor;
 mod tools;
 mod units;
+mod virtual_robot;
 
 use std::path::Path;
 
@@ -100,9 +101,7 @@ impl CellFile {
         maps(&root, &mut cell)?;
         avoidance::read(&root, &mut cell)?;
         cell.sensors = sensors(&root, &cell)?;
-        fixture::read(&root, &mut cell)?;
-        operator::read(&root, &mut cell)?;
-        force::read(&root, &mut cell)?;
+        guidance(&root, &mut cell)?;
         // Builds the monitors' configurations, so that anything they refuse is refused here, with its line.
         cell.approval.checksum = configure::checksum(&cell)?;
         if self.on_disk {
@@ -159,6 +158,14 @@ impl Cell {
     pub fn robot(&self, name: &str) -> Option<RobotId> {
         self.robots.iter().position(|r| r.name == name).map(RobotId)
     }
+}
+
+/// Reads what a person guides.
+fn guidance(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
+    fixture::read(root, cell)?;
+    operator::read(root, cell)?;
+    force::read(root, cell)?;
+    virtual_robot::read(root, cell)
 }
 
 /// Reads the file of pairs that the cell names.

@@ -11,7 +11,7 @@ use super::poses::read_with;
 use super::schema::{OPERATOR, names};
 use super::tools::with_exchanged_tools;
 use crate::operator::{CellOperator, OperatorRow, OperatorStream};
-use crate::{Cell, FixtureTool};
+use crate::{Cell, FixtureTool, Units};
 
 type Result<T> = std::result::Result<T, Diagnostic>;
 
@@ -50,31 +50,18 @@ fn operator(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellOperator> {
     let default = NavigatorSettings::default();
     let length = |key: &str, default: f64| t.get(key).map_or(Ok(default), |v| units.positive_length(&v));
     let gap_m = length("gap", default.gap_m)?;
-    let stale = t.get("stale_ms");
-    let stale_ms = stale.as_ref().map_or(Ok(100.0), Value::positive)?;
-    if let Some(v) = stale.filter(|_| stale_ms > MOST_STALE_MS) {
-        let what = format!("is {stale_ms} ms: for so long a robot would follow a hand that is gone");
-        return Err(v.error(what).hint("stale_ms = 100   (at most 1000)"));
-    }
+    let stale_s = stale_s(t, 100.0)?;
     let scale = t.get("scale").map_or(Ok(1.0), |v| {
         let scale = v.positive()?;
         let is_usable = (SCALES.0..=SCALES.1).contains(&scale);
         if is_usable { Ok(scale) } else { Err(v.error(format!("is {scale}")).hint("scale = 1   (0.001 to 100)")) }
     })?;
-    let (table, rows) = read_with(&t.need("stream", STREAM)?, units, &["enable", "clutch"])?;
-    let row = |r: super::poses::PoseRow| OperatorRow {
-        t_s: r.t_s,
-        pose: r.pose,
-        enabled: r.others[0].is_none_or(|x| x != 0.0),
-        clutch: r.others[1].is_some_and(|x| x != 0.0),
-    };
-    let rows: Vec<OperatorRow> = rows.into_iter().map(row).collect();
     Ok(CellOperator {
         name: name.to_owned(),
         line: t.line,
         robot,
         tool: tool(t, cell, robot)?,
-        stream: OperatorStream::new(table.file.clone(), &rows, scale, 1e-3 * stale_ms),
+        stream: stream(t, units, scale, stale_s)?,
         settings: NavigatorSettings {
             gap_m,
             least_gap_m: 0.5 * gap_m,
@@ -85,8 +72,32 @@ fn operator(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellOperator> {
     })
 }
 
+/// Age (s) from which a row is too old.
+pub(super) fn stale_s(t: &Table<'_>, default_ms: f64) -> Result<f64> {
+    let stale = t.get("stale_ms");
+    let stale_ms = stale.as_ref().map_or(Ok(default_ms), Value::positive)?;
+    if let Some(v) = stale.filter(|_| stale_ms > MOST_STALE_MS) {
+        let what = format!("is {stale_ms} ms: for so long a robot would follow a hand that is gone");
+        return Err(v.error(what).hint("stale_ms = 100   (at most 1000)"));
+    }
+    Ok(1e-3 * stale_ms)
+}
+
+/// The stream that a table names.
+pub(super) fn stream(t: &Table<'_>, units: Units, scale: f64, stale_s: f64) -> Result<OperatorStream> {
+    let (table, rows) = read_with(&t.need("stream", STREAM)?, units, &["enable", "clutch"])?;
+    let row = |r: super::poses::PoseRow| OperatorRow {
+        t_s: r.t_s,
+        pose: r.pose,
+        enabled: r.others[0].is_none_or(|x| x != 0.0),
+        clutch: r.others[1].is_some_and(|x| x != 0.0),
+    };
+    let rows: Vec<OperatorRow> = rows.into_iter().map(row).collect();
+    Ok(OperatorStream::new(table.file.clone(), &rows, scale, stale_s))
+}
+
 /// A robot moves by its program, or by an operator.
-fn refuse_other_motion(v: &Value<'_>, cell: &Cell, robot: RobotId) -> Result<()> {
+pub(super) fn refuse_other_motion(v: &Value<'_>, cell: &Cell, robot: RobotId) -> Result<()> {
     let r = &cell.robots[robot.0];
     let other = match (&r.program, &r.avoidance) {
         (Some(_), _) => "program",

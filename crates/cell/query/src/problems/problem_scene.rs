@@ -129,7 +129,13 @@ fn attach(
         let link_in_root: Pose = chain_state.link_in_root(carrier);
         for &id in ids.get(attached.object.id.as_str()).into_iter().flatten() {
             let in_link = link_in_root.inverse_mul(&scene.objects()[id.0].in_world);
-            let attachment = Attachment { robot: ROBOT, link: carrier, in_link, touch_links: touch.clone() };
+            let attachment = Attachment {
+                robot: ROBOT,
+                link: carrier,
+                in_link,
+                touch_links: touch.clone(),
+                visiting_links: Vec::new(),
+            };
             state.attach_at(scene, id, attachment).map_err(|e| key.error(e))?;
         }
     }

@@ -193,6 +193,7 @@ pub fn recording(monitored: bool, ticks: usize, name: &str) -> Recording {
         }],
         objects: vec![],
         sensors: vec![],
+        virtual_robots: vec![],
         deadlocks: vec![],
         regions: vec![
             RegionTrack {

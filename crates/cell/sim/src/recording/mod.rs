@@ -7,6 +7,7 @@ mod region_track;
 mod robot_ending;
 mod run_event;
 mod tick_times;
+mod virtual_robot_track;
 
 use elbowroom_cell::CellRegionId;
 use elbowroom_kinematics::LinkId;
@@ -21,6 +22,7 @@ pub use region_track::{RecordedRegionKind, RegionPoses, RegionTrack, Span};
 pub use robot_ending::{Deadlock, Outcome, PartKind, RobotEnding, Stop};
 pub use run_event::{EventRow, RunEvent};
 pub use tick_times::TickTimes;
+pub use virtual_robot_track::{HandOverRecord, VirtualRobotSample, VirtualRobotTrack};
 
 /// One run of a cell.
 #[derive(Debug, Clone)]
@@ -45,6 +47,8 @@ pub struct Recording {
     pub objects: Vec<ObjectTrack>,
     /// One per sensor with loaded pictures or clouds.
     pub sensors: Vec<SensorTrack>,
+    /// One per virtual robot, in the order of the cell file.
+    pub virtual_robots: Vec<VirtualRobotTrack>,
     /// Deadlocks at the end of the run.
     pub deadlocks: Vec<Deadlock>,
     /// In order of time.

@@ -47,6 +47,12 @@ pub enum RunEvent {
     Avoidance(AvoiderState),
     /// The tool of a guided robot changed to this state.
     Guided(GuidanceState),
+    /// A robot took over the work-piece of its virtual robot, which is named in place of the region.
+    HandOver,
+    /// A robot of a virtual robot keeps out of the way.
+    Yield,
+    /// The work-piece of a virtual robot, which is named in place of the region, stands although it should move.
+    Hold,
 }
 
 impl RunEvent {
@@ -70,6 +76,9 @@ impl RunEvent {
             Self::Wait | Self::Avoidance(AvoiderState::Waiting) => "wait",
             Self::Avoidance(AvoiderState::Halted) => "halt",
             Self::Guided(state) => state.name(),
+            Self::HandOver => "hand_over",
+            Self::Yield => "yield",
+            Self::Hold => GuidanceState::Held.name(),
         }
     }
 }

@@ -54,6 +54,18 @@ impl<'a> CarriedParts<'a> {
         &self.attachments
     }
 
+    /// A member of a virtual robot holds an object.
+    pub fn hold(
+        &mut self,
+        object: ObjectId,
+        attachment: &Attachment,
+        checker: &mut FirstContacts<'_>,
+        states: &[&ChainState],
+    ) {
+        checker.attach(object, attachment.clone(), states);
+        (self.attachments[object.0], self.taken[object.0]) = (Some(attachment.clone()), true);
+    }
+
     /// Grips or releases an object; `at` is the robot with its present tool.
     ///
     /// # Errors

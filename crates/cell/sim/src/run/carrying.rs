@@ -1,11 +1,12 @@
 //! Carried volumes of robots: exchanged tools, and parts that are gripped and released.
 
-use elbowroom_cell::CellRobot;
+use elbowroom_cell::{CellRobot, VirtualRobotMember};
 use elbowroom_diagnostic::Diagnostic;
 use elbowroom_kinematics::ChainState;
 use elbowroom_monitor::VolumeId;
 use elbowroom_spatial::Pose;
 
+use super::own_motion::OwnMotion;
 use super::simulated_robot::absent_links;
 use super::simulation::Simulation;
 use crate::motion::GripAction;
@@ -114,5 +115,61 @@ impl Simulation<'_> {
         let none = || Diagnostic::new(&self.cell.file, action.line, "grips what its monitor has no volume for");
         let (volume, in_link) = slot.ok_or_else(none)?;
         self.carry(i, volume, action.grips.then_some(&in_link), action.line)
+    }
+
+    /// The members of virtual robots hold their work-pieces, before anything moves.
+    pub(super) fn hold_work_pieces(&mut self) -> Result<(), Diagnostic> {
+        self.update_states(0.0);
+        (0..self.virtual_robots.len()).try_for_each(|index| self.hold_work_piece(index, 0.0))
+    }
+
+    /// Moves the members of the virtual robots from `t_s` to the next tick.
+    pub(super) fn cooperate(&mut self, t_s: f64) -> Result<(), Diagnostic> {
+        for index in 0..self.virtual_robots.len() {
+            let Self { cell, options, robots, states, journal, virtual_robots, .. } = self;
+            let virtual_robot = &mut virtual_robots[index];
+            let spec = virtual_robot.spec;
+            let of_member =
+                |m: &VirtualRobotMember| if options.is_silent(m.robot, t_s) { 0.0 } else { robots[m.robot.0].applied };
+            let overrides: Vec<f64> = spec.members.iter().map(of_member).collect();
+            let part = &cell.objects[spec.work_piece.0].name;
+            virtual_robot.advance(cell, states, (t_s, &overrides), |robot, event| {
+                let concerns = if event == RunEvent::Yield { "" } else { part };
+                journal.event(t_s, robot, concerns, event);
+            })?;
+            for (member, m) in spec.members.iter().enumerate() {
+                if let OwnMotion::Cooperating(own) = &mut robots[m.robot.0].own_motion {
+                    virtual_robot.write(member, cell.timing.tick_s, overrides[member], own);
+                }
+            }
+            self.hold_work_piece(index, t_s)?;
+        }
+        Ok(())
+    }
+
+    /// Follows a change of how a work-piece is held: for contacts, and in the monitors of giver and receiver.
+    fn hold_work_piece(&mut self, index: usize, t_s: f64) -> Result<(), Diagnostic> {
+        let spec = self.virtual_robots[index].spec;
+        let (object, held) = (spec.work_piece, self.virtual_robots[index].attachment());
+        let before = self.contacts.checker.attachment(object).cloned();
+        if held == before.as_ref() {
+            return Ok(());
+        }
+        let Some(held) = held.cloned() else { return Ok(()) };
+        let states: Vec<&ChainState> = self.states.iter().collect();
+        self.contacts.parts.hold(object, &held, &mut self.contacts.checker, &states);
+        if before.as_ref().is_some_and(|b| (b.robot, b.link, b.in_link) == (held.robot, held.link, held.in_link)) {
+            return Ok(());
+        }
+        for (attachment, holds) in before.iter().map(|b| (b, false)).chain([(&held, true)]) {
+            let robot = attachment.robot.0;
+            let slot = self.robots[robot].setup.gripped_volume(object, attachment.link, &attachment.in_link);
+            let none = || Diagnostic::new(&self.cell.file, spec.line, "carries what a monitor has no volume for");
+            let (volume, in_link) = slot.ok_or_else(none)?;
+            self.carry(robot, volume, holds.then_some(&in_link), spec.line)?;
+            let event = if holds { RunEvent::Grip } else { RunEvent::Release };
+            self.journal.event(t_s, attachment.robot, &self.cell.objects[object.0].name, event);
+        }
+        Ok(())
     }
 }

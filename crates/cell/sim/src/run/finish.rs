@@ -7,6 +7,7 @@ use super::final_waits::FinalWaits;
 use super::own_motion::OwnMotion;
 use super::simulated_robot::SimulatedRobot;
 use super::simulation::Simulation;
+use super::virtual_robot::CooperatingRobots;
 use super::{outcome, release};
 use crate::recording::{Deadlock, PerceptionTrack, Recording, RobotTrack, RunEnd, TickTimes};
 use crate::replanning::PerceivedObstacles;
@@ -36,6 +37,7 @@ impl Simulation<'_> {
             regions: self.regions.finish(t_s),
             objects: self.contacts.objects,
             sensors: self.perceived.map(PerceivedObstacles::finish).unwrap_or_default(),
+            virtual_robots: self.virtual_robots.into_iter().map(CooperatingRobots::finish).collect(),
             deadlocks,
             events: self.journal.events,
             tick_ns: TickTimes::of(self.journal.tick_ns),
@@ -58,7 +60,7 @@ impl Ended<'_> {
     fn track(&self, robot: SimulatedRobot<'_>) -> RobotTrack {
         let SimulatedRobot { id, setup, mut track, own_motion, guard, hold, governing, .. } = robot;
         match own_motion {
-            OwnMotion::None => {}
+            OwnMotion::None | OwnMotion::Cooperating(_) => {}
             OwnMotion::Avoiding(avoiding) => track.avoidance = Some(avoiding.finish()),
             OwnMotion::Guided(guided) => track.guidance = Some(guided.finish()),
         }

@@ -76,7 +76,7 @@ impl<'s> GuidedRobot<'s> {
     ) -> Result<Option<RunEvent>, Diagnostic> {
         let tick_s = cell.timing.tick_s;
         self.arm
-            .surroundings(|scene, state| place(cell, scene, state, states, self.operator.robot, t_s))
+            .surroundings(|scene, state| place(cell, scene, state, states, &[self.operator.robot], t_s))
             .map_err(|e| Diagnostic::new(&cell.file, self.operator.line, e))?;
         let before = self.arm.tool_in_world();
         self.velocity.copy_from_slice(self.arm.q());
@@ -128,16 +128,16 @@ fn next_state(before: GuidanceState, sample: &GuidanceSample, is_held: bool) -> 
     }
 }
 
-/// Places everything but the guided robot.
-fn place(
+/// Places everything but robots that decide their motion themselves.
+pub(super) fn place(
     cell: &Cell,
     scene: &Scene,
     state: &mut SceneState,
     states: &[ChainState],
-    own: RobotId,
+    own: &[RobotId],
     t_s: f64,
 ) -> Result<(), SceneError> {
-    for (index, other) in states.iter().enumerate().filter(|(index, _)| RobotId(*index) != own) {
+    for (index, other) in states.iter().enumerate().filter(|(index, _)| !own.contains(&RobotId(*index))) {
         state.set_q(scene, RobotId(index), &other.q)?;
     }
     cell.moving_objects.iter().try_for_each(|m| state.place(scene, m.object, m.pose(t_s)))

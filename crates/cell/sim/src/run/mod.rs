@@ -25,6 +25,7 @@ mod sensor_guards;
 mod simulated_robot;
 mod simulation;
 mod stop_state;
+mod virtual_robot;
 mod zone_claims;
 
 use elbowroom_cell::configure;
@@ -52,6 +53,7 @@ use own_motion::OwnMotion;
 use region_recorder::RegionRecorder;
 use simulated_robot::SimulatedRobot;
 use simulation::Simulation;
+use virtual_robot::{CooperatingRobot, CooperatingRobots};
 use zone_claims::ZoneClaims;
 
 /// Result of a simulation.
@@ -112,18 +114,7 @@ pub fn simulate_observed(
         robots.push(SimulatedRobot::new(cell, RobotId(i), setup, monitor, clock, claims));
     }
     let scene = scene(cell)?;
-    if options.avoidance {
-        for robot in &mut robots {
-            if let Some(avoiding) = AvoidingRobot::of_robot(cell, &scene, robot.id, &robot.clock)? {
-                robot.own_motion = OwnMotion::Avoiding(Box::new(avoiding));
-            }
-        }
-    }
-    for robot in &mut robots {
-        if let Some(guided) = GuidedRobot::of_robot(cell, &scene, robot.id, &mut notes)? {
-            robot.own_motion = OwnMotion::Guided(Box::new(guided));
-        }
-    }
+    let virtual_robots = own_motions(cell, &scene, options, &mut robots, &mut notes)?;
     let models: Vec<Robot> = cell.robots.iter().map(CellRobot::with_all_tools).collect();
     let states: Vec<ChainState> = cell.robots.iter().map(|r| ChainState::new(&r.robot.chain)).collect();
     for robot in &mut robots {
@@ -143,6 +134,7 @@ pub fn simulate_observed(
         regions: RegionRecorder::new(cell, &setups),
         contacts: ContactRecorder::new(cell, &models),
         released: Vec::new(),
+        virtual_robots,
         ends: EndDetector::new(cell),
         journal,
         robots,
@@ -151,6 +143,37 @@ pub fn simulate_observed(
     notes.extend(run.robots.iter().filter_map(|robot| robot.own_motion.avoiding()?.fault_warning(cell)));
     run.perceived.iter_mut().for_each(|p| p.take_warnings(&mut notes));
     Ok(RunOutcome { recording: run.finish(t_s, end), notes })
+}
+
+/// Gives robots what moves them besides their programs; returns the virtual robots.
+fn own_motions<'a>(
+    cell: &'a Cell,
+    scene: &'a Scene,
+    options: &RunOptions,
+    robots: &mut [SimulatedRobot<'a>],
+    notes: &mut Vec<Diagnostic>,
+) -> Result<Vec<CooperatingRobots<'a>>, Diagnostic> {
+    if options.avoidance {
+        for robot in robots.iter_mut() {
+            if let Some(avoiding) = AvoidingRobot::of_robot(cell, scene, robot.id, &robot.clock)? {
+                robot.own_motion = OwnMotion::Avoiding(Box::new(avoiding));
+            }
+        }
+    }
+    for robot in robots.iter_mut() {
+        if let Some(guided) = GuidedRobot::of_robot(cell, scene, robot.id, notes)? {
+            robot.own_motion = OwnMotion::Guided(Box::new(guided));
+        }
+    }
+    let mut virtual_robots = Vec::new();
+    for spec in &cell.guidance.virtual_robots {
+        virtual_robots.push(CooperatingRobots::new(spec, cell, scene)?);
+        for member in &spec.members {
+            let own_motion = CooperatingRobot::new(&cell.robots[member.robot.0].start);
+            robots[member.robot.0].own_motion = OwnMotion::Cooperating(Box::new(own_motion));
+        }
+    }
+    Ok(virtual_robots)
 }
 
 /// The scene of a run, in which guided tools may enter the openings of their shields.
@@ -173,7 +196,8 @@ fn keeps_to_plan(
 ) -> bool {
     let avoids = options.avoidance && cell.robots[robot.0].avoidance.is_some();
     let replans = plan.has_planned_moves() && perceived.search_s(robot).is_some();
-    let is_guided = cell.guidance.operator_of(robot).is_some();
+    let guidance = &cell.guidance;
+    let is_guided = guidance.operator_of(robot).is_some() || guidance.virtual_robot_of(robot).is_some();
     options.apply_override && !avoids && !replans && !is_guided
 }
 

@@ -4,6 +4,7 @@ use elbowroom_kinematics::ChainState;
 
 use super::avoiding_robot::AvoidingRobot;
 use super::guided_robot::GuidedRobot;
+use super::virtual_robot::CooperatingRobot;
 use crate::motion::ProgramClock;
 
 /// What moves a robot besides its program.
@@ -15,6 +16,8 @@ pub(super) enum OwnMotion<'s> {
     Avoiding(Box<AvoidingRobot<'s>>),
     /// A person.
     Guided(Box<GuidedRobot<'s>>),
+    /// The virtual robot that it is a member of.
+    Cooperating(Box<CooperatingRobot>),
 }
 
 impl<'s> OwnMotion<'s> {
@@ -33,18 +36,22 @@ impl<'s> OwnMotion<'s> {
         match self {
             Self::None => true,
             Self::Avoiding(avoiding) => avoiding.is_on_path(),
-            Self::Guided(_) => false,
+            Self::Guided(_) | Self::Cooperating(_) => false,
         }
     }
 
     /// Whether it has nothing left to do, besides its program.
     pub fn is_over(&self) -> bool {
-        if let Self::Guided(guided) = self { guided.is_over() } else { self.is_on_path() }
+        match self {
+            Self::Guided(guided) => guided.is_over(),
+            Self::Cooperating(member) => member.is_over,
+            Self::None | Self::Avoiding(_) => self.is_on_path(),
+        }
     }
 
     /// Whether it may move at any time by itself.
     pub fn awaits_operator(&self) -> bool {
-        matches!(self, Self::Guided(guided) if !guided.is_over())
+        matches!(self, Self::Guided(_) | Self::Cooperating(_)) && !self.is_over()
     }
 
     /// Writes joint values, velocities and accelerations of a robot that is not on its programmed path.
@@ -53,6 +60,7 @@ impl<'s> OwnMotion<'s> {
             Self::None => {}
             Self::Avoiding(avoiding) => avoiding.write_state(state),
             Self::Guided(guided) => guided.write_state(state),
+            Self::Cooperating(member) => member.write_state(state),
         }
     }
 
@@ -62,6 +70,7 @@ impl<'s> OwnMotion<'s> {
             Self::None => clock.intent(),
             Self::Avoiding(avoiding) => avoiding.intent(clock),
             Self::Guided(guided) => guided.intent(),
+            Self::Cooperating(member) => &member.intent,
         }
     }
 }

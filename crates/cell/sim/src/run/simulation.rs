@@ -17,6 +17,7 @@ use super::options::{RunOptions, RunProgress};
 use super::own_motion::OwnMotion;
 use super::region_recorder::RegionRecorder;
 use super::simulated_robot::{Governed, SimulatedRobot};
+use super::virtual_robot::CooperatingRobots;
 use crate::motion::RegionSwitch;
 use crate::recording::{RunEnd, RunEvent};
 use crate::replanning::PerceivedObstacles;
@@ -39,6 +40,7 @@ pub(super) struct Simulation<'a> {
     pub contacts: ContactRecorder<'a>,
     /// Volumes that were released at this instant, each with its robot.
     pub released: Vec<(usize, VolumeId)>,
+    pub virtual_robots: Vec<CooperatingRobots<'a>>,
     pub ends: EndDetector,
     pub journal: Journal<'a>,
 }
@@ -50,6 +52,7 @@ impl Simulation<'_> {
     /// [`Diagnostic`] if a part cannot be gripped, or a volume cannot be attached.
     pub fn run(&mut self, progress: &mut dyn FnMut(RunProgress)) -> Result<(f64, RunEnd), Diagnostic> {
         self.publish_initial_occupancy();
+        self.hold_work_pieces()?;
         let mut tick = 0_u64;
         loop {
             let t_s = tick_time_s(tick, self.cell.timing.tick_s);
@@ -112,7 +115,7 @@ impl Simulation<'_> {
         }
     }
 
-    fn update_states(&mut self, t_s: f64) {
+    pub(super) fn update_states(&mut self, t_s: f64) {
         for (robot, state) in self.robots.iter().zip(&mut self.states) {
             robot.write_state(self.cell, self.options.is_silent(robot.id, t_s), state);
         }
@@ -188,6 +191,8 @@ impl Simulation<'_> {
                     delay.advance(clock, t_s, cell.timing.tick_s);
                     continue;
                 }
+                // All members of a virtual robot move together.
+                OwnMotion::Cooperating(_) => continue,
                 OwnMotion::Guided(guided) => {
                     if let Some(event) = guided.advance(cell, states, t_s, *applied)? {
                         journal.event(t_s, *id, "", event);
@@ -203,7 +208,7 @@ impl Simulation<'_> {
                 journal.event(t_s, *id, "", event);
             }
         }
-        Ok(())
+        self.cooperate(t_s)
     }
 }
 

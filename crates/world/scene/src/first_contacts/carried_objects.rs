@@ -76,7 +76,7 @@ impl FirstContacts<'_> {
 
     fn may_meet(&self, object: ObjectId, robot: RobotId, link: LinkId) -> bool {
         match self.held[object.0].as_ref().map(|h| &h.attachment) {
-            Some(a) => a.robot != robot || (a.link != link && !a.touch_links.contains(&link)),
+            Some(a) => (a.robot, a.link) != (robot, link) && !a.may_touch(robot, link),
             None => self.robots[robot.0].0.chain.is_movable(link),
         }
     }

@@ -60,6 +60,30 @@ pub(in crate::file) const OPERATOR: &[Key] = &[
 ];
 
 #[rustfmt::skip] // a row per key, as in the document
+pub(in crate::file) const VIRTUAL_ROBOT: &[Key] = &[
+    key("robots", "list of names", "required", "two to eight robots, each without program, avoidance and operator"),
+    key("work_piece", "name", "required", "the object that they carry; no program grips it, and it does not move by itself"),
+    key("holder", "name", "required", "the robot that holds it at the start"),
+    key("grasps", "table of lists", "required", "per robot its grasps: `grasps = { left = [{ at = [0, 0, 80], rpy = [180, 0, 0], approach = 60 }] }`"),
+    key("stream", "path", "required", "CSV of desired poses of the work-piece in the world: `t_s,x,y,z,qx,qy,qz,qw`, and `enable`, `clutch` (0 or 1) if wanted"),
+    key("speed", "length per second", "250 mm/s", "largest speed of the origin of the work-piece"),
+    key("turn_speed", "angle per second", "57.3°/s", "largest angular speed of the work-piece"),
+    key("gap", "length", "10 mm", "distance from everything that a free robot keeps"),
+    key("approach_speed", "length per second", "100 mm/s", "speed of a hand on its approach to the grasp and away from it"),
+    key("settle_ms", "ms", "300", "time that a hand takes to close or to open"),
+    key("horizon_s", "s", "5", "time that the motion is foreseen"),
+    key("stale_ms", "ms, at most 1000", "500", "nothing more is desired if the last row is older"),
+];
+
+#[rustfmt::skip] // a row per key, as in the document
+pub(in crate::file) const GRASP: &[Key] = &[
+    key("at", "point", "[0, 0, 0]", "the tool centre point in the frame of the work-piece"),
+    key("rpy", "angles", "[0, 0, 0]", "its orientation there; or `quaternion`"),
+    key("quaternion", "four numbers", "none", "qx, qy, qz, qw in place of `rpy`"),
+    key("approach", "length, or vector", "50 mm", "way from the pre-grasp to the grasp: along the z axis of the tool, or a motion in the frame of the work-piece"),
+];
+
+#[rustfmt::skip] // a row per key, as in the document
 pub(in crate::file) const FIXTURE_TARGET: &[Key] = &[
     key("line", "list of points", "none", "a line on the surface, through two points or more in the world"),
     key("area", "list of points", "none", "the part of the surface inside a closed line through three points or more"),

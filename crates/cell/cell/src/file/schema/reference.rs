@@ -21,6 +21,8 @@ const KEYS: &[(&str, &[Key])] = &[
     ("keys of [fixture.NAME]", fixtures::FIXTURE),
     ("keys of a guide", fixtures::GUIDE),
     ("keys of [operator.NAME]", fixtures::OPERATOR),
+    ("keys of [virtual_robot.NAME]", fixtures::VIRTUAL_ROBOT),
+    ("keys of a grasp", fixtures::GRASP),
     ("keys of [force.NAME]", fixtures::FORCE),
     ("keys of `target`", fixtures::FIXTURE_TARGET),
     ("keys of `drill`", fixtures::FIXTURE_DRILL),

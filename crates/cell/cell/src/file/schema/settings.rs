@@ -17,6 +17,7 @@ pub(in crate::file) const TOP: &[Key] = &[
     key("encoder", "tables", "none", "conveyors: [`[encoder.NAME]`](#encodername)"),
     key("fixture", "tables", "none", "virtual fixtures: [`[fixture.NAME]`](#fixturename)"),
     key("force", "tables", "none", "forces between guided tools and their surroundings: [`[force.NAME]`](#forcename)"),
+    key("virtual_robot", "tables", "none", "robots that act as one: [`[virtual_robot.NAME]`](#virtual_robotname)"),
     key("operator", "tables", "none", "robots that a person guides: [`[operator.NAME]`](#operatorname)"),
     key("camera", "tables", "none", "cameras: [`[camera.NAME]`](#cameraname)"),
     key("cloud", "tables", "none", "sensors of points: [`[cloud.NAME]`](#cloudname)"),

@@ -1,0 +1,146 @@
+//! `[virtual_robot.NAME]`: robots that act as one.
+
+use elbowroom_cooperation::{CooperationSettings, Grasp};
+use elbowroom_formats::toml_tables::{Table, Value};
+use elbowroom_formats::{Diagnostic, suggest};
+use elbowroom_robot::{ObjectId, RobotId};
+use elbowroom_spatial::Vec3;
+
+use super::definitions::robot_id;
+use super::operator::{refuse_other_motion, stale_s, stream};
+use super::schema::{GRASP, VIRTUAL_ROBOT, names};
+use super::tools::with_exchanged_tools;
+use crate::virtual_robot::{CellVirtualRobot, VirtualRobotMember};
+use crate::{Cell, Units};
+
+type Result<T> = std::result::Result<T, Diagnostic>;
+
+const GRASPS: &str = "grasps = { left = [{ at = [0, 0, 80], rpy = [180, 0, 0], approach = 60 }], right = [...] }";
+/// Most robots that act as one.
+const MOST: usize = 8;
+
+pub(super) fn read(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
+    for (name, t) in root.named("virtual_robot")? {
+        let virtual_robot = virtual_robot(name, &t, cell)?;
+        cell.guidance.virtual_robots.push(virtual_robot);
+    }
+    Ok(())
+}
+
+fn virtual_robot(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellVirtualRobot> {
+    t.only(&names(&[VIRTUAL_ROBOT]))?;
+    let robots = robots(&t.need("robots", "robots = [\"left\", \"right\"]")?, cell)?;
+    if let Some(robot) = with_exchanged_tools(&cell.robots) {
+        let what = format!("`{}`: tools that are changed, as those of robot \"{}\", are not seen", t.name, robot.name);
+        return Err(t.error(what).hint("mounted tools only, or no virtual robot"));
+    }
+    let work_piece = work_piece(&t.need("work_piece", "work_piece = \"part\"   (an object)")?, cell)?;
+    let holder_value = t.need("holder", "holder = \"left\"   (one of `robots`)")?;
+    let holder = robot_id(&holder_value, &cell.robots)?;
+    let Some(holder) = robots.iter().position(|r| *r == holder) else {
+        return Err(holder_value.error("is not one of `robots`").hint("a robot of the list `robots`"));
+    };
+    let grasps = t.need("grasps", GRASPS)?;
+    let grasps = grasps.table(GRASPS)?;
+    let known: Vec<&str> = robots.iter().map(|r| cell.robots[r.0].name.as_str()).collect();
+    grasps.only(&known)?;
+    let members = robots.iter().zip(&known).map(|(robot, name)| {
+        let list = grasps.need(name, GRASPS)?;
+        let of_robot = list.list(GRASPS)?.iter().map(|v| grasp(v, cell.units)).collect::<Result<Vec<Grasp>>>()?;
+        if of_robot.is_empty() {
+            return Err(list.error("has no grasp, so the robot never holds the work-piece").hint(GRASPS));
+        }
+        Ok(VirtualRobotMember { robot: *robot, grasps: of_robot })
+    });
+    Ok(CellVirtualRobot {
+        name: name.to_owned(),
+        line: t.line,
+        work_piece,
+        members: members.collect::<Result<_>>()?,
+        holder,
+        stream: stream(t, cell.units, 1.0, stale_s(t, 500.0)?)?,
+        settings: settings(t, cell.units)?,
+    })
+}
+
+fn settings(t: &Table<'_>, units: Units) -> Result<CooperationSettings> {
+    let default = CooperationSettings::default();
+    let length = |key: &str, default: f64| t.get(key).map_or(Ok(default), |v| units.positive_length(&v));
+    let angular_speed_rad_s = match t.get("turn_speed") {
+        Some(v) => units.angle.to_radians(v.positive()?),
+        None => default.angular_speed_rad_s,
+    };
+    Ok(CooperationSettings {
+        speed_m_s: length("speed", default.speed_m_s)?,
+        angular_speed_rad_s,
+        gap_m: length("gap", default.gap_m)?,
+        approach_m_s: length("approach_speed", default.approach_m_s)?,
+        settle_s: t.get("settle_ms").map_or(Ok(default.settle_s), |v| Ok(1e-3 * v.positive()?))?,
+        horizon_s: t.get("horizon_s").map_or(Ok(default.horizon_s), |v| v.positive())?,
+        ..default
+    })
+}
+
+/// The robots, which are not moved by anything else.
+fn robots(v: &Value<'_>, cell: &Cell) -> Result<Vec<RobotId>> {
+    let mut robots = Vec::new();
+    for v in v.list("robots = [\"left\", \"right\"]")? {
+        let robot = robot_id(&v, &cell.robots)?;
+        let name = &cell.robots[robot.0].name;
+        if robots.contains(&robot) {
+            return Err(v.error(format!("names \"{name}\" twice")).hint("each robot once"));
+        }
+        refuse_other_motion(&v, cell, robot)?;
+        if let Some(operator) = cell.guidance.operator_of(robot) {
+            let what = format!("is guided by the operator \"{}\"", operator.name);
+            return Err(v.error(what).hint("a robot without an operator"));
+        }
+        if let Some((other, _)) = cell.guidance.virtual_robot_of(robot) {
+            let what = format!("is a member of the virtual robot \"{}\" already", other.name);
+            return Err(v.error(what).hint("each robot in one virtual robot"));
+        }
+        robots.push(robot);
+    }
+    if (2..=MOST).contains(&robots.len()) {
+        return Ok(robots);
+    }
+    Err(v.error(format!("has {} robots", robots.len())).hint("two to eight robots"))
+}
+
+/// The work-piece, which nothing else moves.
+fn work_piece(v: &Value<'_>, cell: &Cell) -> Result<ObjectId> {
+    let name = v.text()?;
+    let names = || cell.objects.iter().map(|o| o.name.as_str());
+    let object = names().position(|n| n == name).map(ObjectId).ok_or_else(|| {
+        v.error(format!("names the object \"{name}\", which is not in this cell")).hint(suggest::hint(name, names()))
+    })?;
+    if cell.moving_objects.iter().any(|m| m.object == object) {
+        return Err(v.error(format!("names \"{name}\", which moves by itself")).hint("an object that is at rest"));
+    }
+    let robots = (0..cell.robots.len()).map(RobotId);
+    if let Some(robot) = robots.into_iter().find(|r| cell.gripped_objects(*r).contains(&object)) {
+        let what = format!("names \"{name}\", which robot \"{}\" grips", cell.robots[robot.0].name);
+        return Err(v.error(what).hint("an object that no program grips and no other virtual robot carries"));
+    }
+    Ok(object)
+}
+
+/// `{ at, rpy, approach }`.
+fn grasp(v: &Value<'_>, units: Units) -> Result<Grasp> {
+    let t = v.table("{ at = [0, 0, 80], rpy = [180, 0, 0], approach = 60 }")?;
+    t.only(&names(&[GRASP]))?;
+    let tool_in_part = units.place(&t)?;
+    let along = |length_m: f64| tool_in_part.rotation.z_axis() * length_m;
+    let approach = match t.get("approach") {
+        None => along(0.05),
+        Some(v) if v.is_list() => {
+            let approach: Vec3 = units.point(&v)?;
+            if approach.length() < 1e-6 {
+                return Err(v.error("is no motion").hint("approach = 60   (a length), or a vector"));
+            }
+            approach
+        }
+        Some(v) => along(units.positive_length(&v)?),
+    };
+    Ok(Grasp { tool_in_part, approach })
+}

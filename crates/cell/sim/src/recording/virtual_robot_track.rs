@@ -1,0 +1,50 @@
+//! Recording of robots that act as one.
+
+use elbowroom_spatial::Pose;
+
+/// The motion of the work-piece of a virtual robot.
+#[derive(Debug, Clone, PartialEq)]
+pub struct VirtualRobotTrack {
+    /// Name of the virtual robot.
+    pub name: String,
+    /// Names of its robots.
+    pub robots: Vec<String>,
+    /// One per tick.
+    pub samples: Vec<VirtualRobotSample>,
+    /// Hand-overs, in order of time.
+    pub hand_overs: Vec<HandOverRecord>,
+    /// Share of the desired motion that was carried out, 0 to 1.
+    pub carried_share: f64,
+}
+
+/// A tick of a virtual robot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VirtualRobotSample {
+    /// Seconds since the run began, at the start of the tick.
+    pub t_s: f64,
+    /// The robot that holds the work-piece, an index in [`VirtualRobotTrack::robots`].
+    pub holder: usize,
+    /// The work-piece in the world at the end of the tick.
+    pub part_in_world: Pose,
+    /// The pose of the desired path that it should have there.
+    pub on_path: Pose,
+    /// Share of the desired speed.
+    pub rate: f64,
+    /// Whether it stands although it should move.
+    pub is_stopped: bool,
+    /// Least distance between two of the robots, with the work-piece, m; what may touch does not count.
+    pub gap_m: f64,
+}
+
+/// A hand-over.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HandOverRecord {
+    /// Time at which the receiver took the work-piece, s.
+    pub t_s: f64,
+    /// The giver, an index in [`VirtualRobotTrack::robots`].
+    pub from: usize,
+    /// The receiver.
+    pub to: usize,
+    /// Why it was decided, in words.
+    pub reason: String,
+}

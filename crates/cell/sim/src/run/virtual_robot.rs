@@ -1,0 +1,210 @@
+//! Robots that act as one in a run.
+
+use elbowroom_cell::cooperation::{HandedOver, Hold, HoldLimit, VirtualRobot};
+use elbowroom_cell::{Cell, CellVirtualRobot, OperatorInput};
+use elbowroom_diagnostic::Diagnostic;
+use elbowroom_kinematics::ChainState;
+use elbowroom_robot::{GeometryId, RobotId};
+use elbowroom_scene::{Attachment, Scene};
+
+use super::guided_robot::place;
+use crate::recording::{HandOverRecord, RunEvent, VirtualRobotSample, VirtualRobotTrack};
+
+/// Time for which a work-piece stands until the run may end, s.
+const STUCK_S: f64 = 10.0;
+/// Override below which the intent of a robot is not its velocity, scaled.
+const LEAST_OVERRIDE: f64 = 0.02;
+
+/// A member of a virtual robot: its motion, which the virtual robot decides.
+#[derive(Debug)]
+pub(super) struct CooperatingRobot {
+    /// Joint values, rad or m.
+    pub q: Vec<f64>,
+    /// Joint velocities of the last tick, rad/s or m/s.
+    pub velocity: Vec<f64>,
+    /// Joint velocities at override 1.
+    pub intent: Vec<f64>,
+    /// Whether the virtual robot has nothing left to do.
+    pub is_over: bool,
+}
+
+impl CooperatingRobot {
+    /// A robot at rest.
+    pub fn new(q: &[f64]) -> Self {
+        let rest = vec![0.0; q.len()];
+        Self { q: q.to_vec(), velocity: rest.clone(), intent: rest, is_over: false }
+    }
+
+    /// Writes the robot's joint values and velocities.
+    pub fn write_state(&self, state: &mut ChainState) {
+        state.q.copy_from_slice(&self.q);
+        state.qd.copy_from_slice(&self.velocity);
+        state.qdd.fill(0.0);
+    }
+}
+
+/// A virtual robot.
+#[derive(Debug)]
+pub(super) struct CooperatingRobots<'s> {
+    pub spec: &'s CellVirtualRobot,
+    robot: VirtualRobot<'s>,
+    /// Time of the last row that was desired, s.
+    desired_s: Option<f64>,
+    stopped_s: f64,
+    is_held: bool,
+    yields: Vec<bool>,
+    is_over: bool,
+    track: VirtualRobotTrack,
+}
+
+impl<'s> CooperatingRobots<'s> {
+    /// The virtual robot at its start.
+    pub fn new(spec: &'s CellVirtualRobot, cell: &'s Cell, scene: &'s Scene) -> Result<Self, Diagnostic> {
+        let robots = spec.members.iter().map(|m| cell.robots[m.robot.0].name.clone()).collect();
+        Ok(Self {
+            spec,
+            robot: spec.start(cell, scene)?,
+            desired_s: None,
+            stopped_s: 0.0,
+            is_held: false,
+            yields: vec![false; spec.members.len()],
+            is_over: false,
+            track: VirtualRobotTrack {
+                name: spec.name.clone(),
+                robots,
+                samples: Vec::new(),
+                hand_overs: Vec::new(),
+                carried_share: 0.0,
+            },
+        })
+    }
+
+    /// How the work-piece is attached.
+    pub fn attachment(&self) -> Option<&Attachment> {
+        self.robot.attachment()
+    }
+
+    /// Moves the robots from `t_s` to the next tick, each under the override of its monitor. Reports events with the robot
+    /// that they concern.
+    pub fn advance(
+        &mut self,
+        cell: &Cell,
+        states: &[ChainState],
+        (t_s, overrides): (f64, &[f64]),
+        mut event: impl FnMut(RobotId, RunEvent),
+    ) -> Result<(), Diagnostic> {
+        let members: Vec<RobotId> = self.spec.members.iter().map(|m| m.robot).collect();
+        self.robot
+            .surroundings(|scene, state| place(cell, scene, state, states, &members, t_s))
+            .map_err(|e| Diagnostic::new(&cell.file, self.spec.line, e))?;
+        let input = self.desire(t_s);
+        let tick_s = cell.timing.tick_s;
+        let step = self.robot.step(tick_s, overrides);
+        if let Some(handed_over) = step.handed_over {
+            let reason = in_words(cell, self.spec, &handed_over);
+            self.track.hand_overs.push(HandOverRecord { t_s, from: handed_over.from, to: handed_over.to, reason });
+            event(members[handed_over.to], RunEvent::HandOver);
+        }
+        for (member, yielded) in self.yields.iter_mut().enumerate() {
+            let yields = self.robot.is_yielding(member);
+            if yields && !*yielded {
+                event(members[member], RunEvent::Yield);
+            }
+            *yielded = yields;
+        }
+        let holder = self.robot.holder();
+        let is_held = step.hold.is_some();
+        if is_held && !self.is_held {
+            event(members[holder], RunEvent::Hold);
+        }
+        self.is_held = is_held;
+        self.stopped_s = if is_held && step.hold != Some(Hold::Override) { self.stopped_s + tick_s } else { 0.0 };
+        let (on_path, left_s) = self.robot.on_path();
+        self.is_over = input == OperatorInput::Over && (left_s < 1e-6 || self.stopped_s > STUCK_S);
+        self.track.samples.push(VirtualRobotSample {
+            t_s,
+            holder,
+            part_in_world: self.robot.part_in_world(),
+            on_path,
+            rate: step.rate,
+            is_stopped: is_held,
+            gap_m: self.robot.gap_m(),
+        });
+        Ok(())
+    }
+
+    /// Hands the row of this time on, if it is a new one.
+    fn desire(&mut self, t_s: f64) -> OperatorInput {
+        let input = self.spec.stream.at(t_s);
+        let row_s = self.spec.stream.row_s(t_s);
+        match input {
+            OperatorInput::Pose(pose) if row_s != self.desired_s => {
+                // A pose that is refused, because too many wait, is one that the work-piece leaves out.
+                if let Some(row_s) = row_s
+                    && self.robot.desire(row_s, &pose).is_ok()
+                {
+                    self.desired_s = Some(row_s);
+                }
+            }
+            OperatorInput::Pose(_) => {}
+            OperatorInput::Disabled | OperatorInput::Stale | OperatorInput::Over => self.robot.pause(),
+        }
+        input
+    }
+
+    /// Writes the motion of a member, under the override of its monitor.
+    pub fn write(&mut self, member: usize, tick_s: f64, speed_override: f64, to: &mut CooperatingRobot) {
+        to.q.copy_from_slice(self.robot.q(member));
+        to.velocity.copy_from_slice(self.robot.qd(member));
+        to.is_over = self.is_over;
+        if speed_override > LEAST_OVERRIDE {
+            to.intent.iter_mut().zip(&to.velocity).for_each(|(intent, v)| *intent = v / speed_override.min(1.0));
+        } else {
+            self.robot.intent(member, tick_s, &mut to.intent);
+        }
+    }
+
+    /// The recording.
+    pub fn finish(mut self) -> VirtualRobotTrack {
+        let (_, left_s) = self.robot.on_path();
+        let done_s = self.robot.path_s();
+        // What is left of the stream counts as the time between its rows.
+        let last_s = self.spec.stream.row_s(f64::INFINITY);
+        let unread_s = last_s.map_or(0.0, |last| (last - self.desired_s.unwrap_or(0.0)).max(0.0));
+        let whole_s = done_s + left_s + unread_s;
+        self.track.carried_share = if whole_s > 0.0 { done_s / whole_s } else { 1.0 };
+        self.track
+    }
+}
+
+/// Why a hand-over was decided.
+fn in_words(cell: &Cell, spec: &CellVirtualRobot, handed_over: &HandedOver) -> String {
+    let robot = |member: usize| &cell.robots[spec.members[member].robot.0];
+    let (giver, receiver, reason) = (robot(handed_over.from), robot(handed_over.to), &handed_over.reason);
+    let geometry = |id: GeometryId| match id {
+        GeometryId::Object(object) => cell.objects[object.0].name.clone(),
+        GeometryId::Link { robot, link } => {
+            let r = &cell.robots[robot.0];
+            format!("{}/{}", r.name, r.robot.chain.links()[link.0])
+        }
+    };
+    let joint = |index: usize| giver.joint_names().get(index).cloned().unwrap_or_default();
+    let limit = match reason.limit {
+        None => "goes on".to_owned(),
+        Some(HoldLimit::Reach) => "comes to the end of its reach".to_owned(),
+        Some(HoldLimit::JointRange(index)) => format!("comes to the limit of {}", joint(index)),
+        Some(HoldLimit::JointSpeed(index)) => format!("needs more than the speed of {}", joint(index)),
+        Some(HoldLimit::Singularity) => "comes near a singularity".to_owned(),
+        Some(HoldLimit::Retreat) => "could not let go any more".to_owned(),
+        Some(HoldLimit::Contact(a, b)) => format!("would bring {} and {} together", geometry(a), geometry(b)),
+    };
+    let holds = if reason.receiver_holds_s.is_finite() {
+        format!("can hold {:.1} s", reason.receiver_holds_s)
+    } else {
+        "can hold as long as is foreseen".to_owned()
+    };
+    format!(
+        "{} {limit} in {:.1} s; {} {holds}; hand-over {:.1} s",
+        giver.name, reason.giver_holds_s, receiver.name, reason.takes_s
+    )
+}

@@ -1,0 +1,61 @@
+//! What a run with virtual robots tells in numbers.
+
+use serde::Serialize;
+
+use crate::recording::VirtualRobotTrack;
+
+/// Robots that acted as one.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct VirtualRobotSummary {
+    /// Name of the virtual robot.
+    pub name: String,
+    /// Share of the desired motion that was carried out, 0 to 1.
+    pub carried_share: f64,
+    /// Time for which the work-piece stood although it should have moved, s.
+    pub stopped_s: f64,
+    /// Hand-overs, in order of time.
+    pub hand_overs: Vec<HandOverSummary>,
+    /// Least distance between two of the robots, with the work-piece, m; what may touch does not count; null without ticks.
+    pub least_gap_m: Option<f64>,
+    /// Largest distance of the work-piece from the desired path, m.
+    pub path_deviation_m: f64,
+}
+
+/// A hand-over.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct HandOverSummary {
+    /// Time at which the receiver took the work-piece, s.
+    pub t_s: f64,
+    /// The giver.
+    pub from: String,
+    /// The receiver.
+    pub to: String,
+    /// Why it was decided, in words.
+    pub reason: String,
+}
+
+impl VirtualRobotSummary {
+    /// Summary of a track recorded with this tick (s).
+    pub fn new(track: &VirtualRobotTrack, tick_s: f64) -> Self {
+        let name = |index: usize| track.robots.get(index).cloned().unwrap_or_default();
+        let hand_over = |h: &crate::recording::HandOverRecord| HandOverSummary {
+            t_s: h.t_s,
+            from: name(h.from),
+            to: name(h.to),
+            reason: h.reason.clone(),
+        };
+        let deviation = track
+            .samples
+            .iter()
+            .map(|s| s.part_in_world.translation.distance(s.on_path.translation))
+            .fold(0.0, f64::max);
+        Self {
+            name: track.name.clone(),
+            carried_share: track.carried_share,
+            stopped_s: track.samples.iter().filter(|s| s.is_stopped).count() as f64 * tick_s,
+            hand_overs: track.hand_overs.iter().map(hand_over).collect(),
+            least_gap_m: track.samples.iter().map(|s| s.gap_m).filter(|gap| gap.is_finite()).reduce(f64::min),
+            path_deviation_m: deviation,
+        }
+    }
+}

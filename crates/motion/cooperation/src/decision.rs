@@ -1,0 +1,148 @@
+//! When the work-piece is handed over, and to whom.
+
+use crate::hand_over::HandOver;
+use crate::holding::Margins;
+use crate::{HandOverReason, VirtualRobot};
+
+/// What a hand-over must gain while the work-piece stands, s.
+const STOPPED_GAIN_S: f64 = 0.15;
+/// Share of the joint speeds that a receiver may need at the desired speed; the work-piece then slows down.
+const RECEIVER_SPEED: f64 = 2.0;
+/// A free arm waits for another grasp only if that is better by this, s.
+const BETTER_S: f64 = 0.5;
+/// Pieces of the forecasts of the other grasps, per piece of the holder's.
+const PIECES: usize = 2;
+
+impl VirtualRobot<'_> {
+    /// Goes on with the forecasts: that of the holder, and the others in turn.
+    pub(crate) fn foresee(&mut self) {
+        self.foresee_one(self.carried.holder);
+        for _ in 0..PIECES {
+            let k = self.decision.turn;
+            if k != self.carried.holder {
+                self.foresee_one(k);
+            }
+            // The turn ends with a result.
+            if k == self.carried.holder || self.forecasts[k].is_at_start() {
+                self.decision.turn = (k + 1) % self.holdings.len();
+            }
+        }
+    }
+
+    fn foresee_one(&mut self, k: usize) {
+        // While the work-piece stands at a limit, anything that gets it further is welcome.
+        let margins = match self.carried.ahead.limit {
+            Some(_) if self.carried.rate == 0.0 => Margins::executed(&self.settings, true),
+            _ => Margins::foreseen(&self.settings),
+        };
+        let holder = &self.arms[self.holder()];
+        let giver = (k != self.carried.holder).then_some((holder.robot, holder.state.q.as_slice()));
+        // A receiver that is a little slow is better than none.
+        let speed_share = if giver.is_some() { margins.speed_share.max(RECEIVER_SPEED) } else { margins.speed_share };
+        let (holding, forecast) = (&mut self.holdings[k], &mut self.forecasts[k]);
+        let q = &self.arms[holding.member].state.q;
+        let margins = Margins { speed_share, ..margins };
+        forecast.proceed(holding, &self.carried.path, self.carried.path_s, (q, giver), (&self.settings, &margins));
+    }
+
+    /// How long the arm with the grasp of this index could hold, s.
+    fn holds_s(&self, k: usize) -> f64 {
+        self.forecasts[k].seconds(self.carried.path_s)
+    }
+
+    /// Time until the receiver of this index holds the work-piece, s; infinite if it cannot.
+    fn takes_s(&self, k: usize) -> f64 {
+        let (holding, forecast) = (&self.holdings[k], &self.forecasts[k]);
+        if forecast.grasped.is_none() {
+            return f64::INFINITY;
+        }
+        let (limits, q) = (&self.members[holding.member].limits, &self.arms[holding.member].state.q);
+        let joint = |((to, from), l): ((&f64, &f64), &elbowroom_kinematics::JointLimits)| {
+            (to - from).abs() / l.velocity
+                + (l.velocity / l.acceleration).min(((to - from).abs() / l.acceleration).sqrt())
+        };
+        let reaching = forecast.pre_grasp.iter().zip(q).zip(limits).map(joint).fold(0.0, f64::max);
+        reaching + holding.grasp.length_m() / self.settings.approach_m_s + self.settings.settle_s + 0.3
+    }
+
+    /// How long the receiver of this index could hold, less how long it takes; the more, the better. Beyond the horizon
+    /// every time is the same.
+    fn value_s(&self, k: usize) -> f64 {
+        self.holds_s(k).min(self.settings.horizon_s) - self.takes_s(k)
+    }
+
+    /// Whether another arm could take the work-piece and hold it for a while.
+    pub(crate) fn has_receiver(&self) -> bool {
+        let is_usable = |k: usize| {
+            self.holdings[k].member != self.holder()
+                && self.decision.refused_s[k] == 0.0
+                && self.forecasts[k].grasped.is_some()
+                && self.holds_s(k) > STOPPED_GAIN_S
+        };
+        self.hand_over.is_some() || (0..self.holdings.len()).any(is_usable)
+    }
+
+    /// Chooses the grasp for which each free arm waits: where a hand-over would be quickest and last longest.
+    pub(crate) fn choose_waiting(&mut self) {
+        for member in 0..self.members.len() {
+            let of_hand_over = self.hand_over.as_ref().map(|h| h.receiver);
+            let in_hand_over = of_hand_over.filter(|k| self.holdings[*k].member == member);
+            if let Some(k) = in_hand_over {
+                self.limbs[member].waits_for = Some(k);
+                continue;
+            }
+            let own = |k: &usize| self.holdings[*k].member == member && self.forecasts[*k].grasped.is_some();
+            let by_value = |a: &usize, b: &usize| self.value_s(*a).total_cmp(&self.value_s(*b));
+            let best = (0..self.holdings.len()).filter(own).max_by(by_value);
+            let present = self.limbs[member].waits_for.filter(|k| self.forecasts[*k].grasped.is_some());
+            self.limbs[member].waits_for = match (best, present) {
+                (Some(best), Some(now)) if self.value_s(best) < self.value_s(now) + BETTER_S => Some(now),
+                (best, _) => best,
+            };
+        }
+    }
+
+    /// Begins a hand-over if the holder will fail before a later one could be complete.
+    pub(crate) fn decide(&mut self, dt_s: f64) {
+        self.decision.since_s += dt_s;
+        self.decision.refused_s.iter_mut().for_each(|s| *s = (*s - dt_s).max(0.0));
+        let is_early = self.decision.since_s < self.settings.rest_s && self.carried.rate > 0.0;
+        if self.hand_over.is_some() || is_early || !self.carried.wants_to_move() {
+            return;
+        }
+        let giver = self.carried.holder;
+        let stopped = self.carried.ahead.limit;
+        let Some(held) = self.forecasts[giver].result else { return };
+        let (giver_holds_s, limit) = match stopped {
+            Some(limit) => (self.carried.ahead.free_to_s - self.carried.path_s, Some(limit)),
+            None => (self.holds_s(giver), held.limit),
+        };
+        // An arm that stands at its limit gives the work-piece to whoever gets any further.
+        let gain_s =
+            if self.carried.rate == 0.0 { self.settings.gain_s.min(STOPPED_GAIN_S) } else { self.settings.gain_s };
+        // Until its hand has moved back, the giver must be able to follow.
+        let leaving_s = self.settings.settle_s + self.holdings[giver].grasp.length_m() / self.settings.approach_m_s;
+        let is_useful = |k: &usize| {
+            let takes_s = self.takes_s(*k);
+            self.holdings[*k].member != self.holdings[giver].member
+                && self.decision.refused_s[*k] == 0.0
+                && takes_s.is_finite()
+                && giver_holds_s < (1.0 + self.settings.reserve) * takes_s + leaving_s
+                && self.holds_s(*k) >= giver_holds_s + gain_s
+        };
+        let by_value = |a: &usize, b: &usize| self.value_s(*a).total_cmp(&self.value_s(*b));
+        let Some(receiver) = (0..self.holdings.len()).filter(is_useful).max_by(by_value) else { return };
+        let (holding, part_in_world) = (&mut self.holdings[giver], self.carried.pose());
+        if !holding.can_retreat(&part_in_world, &self.arms[holding.member].state.q) {
+            return;
+        }
+        self.decision.reason = Some(HandOverReason {
+            limit,
+            giver_holds_s,
+            receiver_holds_s: self.holds_s(receiver),
+            takes_s: self.takes_s(receiver),
+        });
+        let joints = self.members[self.holdings[receiver].member].limits.len();
+        self.hand_over = Some(HandOver::new(giver, receiver, &self.holdings, joints));
+    }
+}

@@ -1,0 +1,225 @@
+//! The motion of an arm without the work-piece: towards where it waits, out of the way of everything.
+
+use elbowroom_avoidance::LeastSquares;
+use elbowroom_kinematics::{ChainState, JointLimits, LinkId};
+use elbowroom_robot::{GeometryId, RobotId};
+use elbowroom_scene::{Checker, PairDistance, Scene, SceneState, Selection};
+use elbowroom_spatial::{Pose, Vec3};
+
+use crate::CooperationSettings;
+
+/// Most pairs that an arm keeps away from at the same time.
+const ROWS: usize = 16;
+/// Distance beyond the boundary distance at which a pair is still looked at, m.
+const NOTICE_M: f64 = 0.02;
+/// Largest boundary distance that is looked at, m.
+const MOST_NOTICE_M: f64 = 0.12;
+/// Distance of a point of an arm from the axis of a joint that the boundary distance counts on, m.
+const REACH_M: f64 = 1.0;
+/// Weight of the repulsion against the attraction.
+const REPULSION: f64 = 1e4;
+/// Share of the deceleration that the boundary distance counts on.
+const DECELERATION_SHARE: f64 = 0.5;
+/// Time in which an arm that is too near moves away by as much as is missing, s.
+const RECOVERY_S: f64 = 0.1;
+
+/// Where an arm is and how it moves, for the others.
+#[derive(Debug)]
+pub(crate) struct ArmMotion {
+    pub robot: RobotId,
+    /// Joint values and velocities, with the poses and motions of the links.
+    pub state: ChainState,
+    pub base_in_world: Pose,
+}
+
+impl ArmMotion {
+    /// Velocity of the point of a link that is at a place in the world, m/s.
+    fn velocity(&self, link: LinkId, in_world: Vec3) -> Vec3 {
+        let in_root = self.base_in_world.inverse_transform_point(in_world);
+        self.base_in_world.transform_vector(self.state.point_velocity(link, in_root))
+    }
+}
+
+/// What draws a free arm.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Attraction<'a> {
+    /// Where it wants to be.
+    pub q: &'a [f64],
+    /// How fast that place moves, rad/s or m/s.
+    pub velocity: Option<&'a [f64]>,
+}
+
+/// The solver of a free arm.
+#[derive(Debug)]
+pub(crate) struct FreeArm {
+    limits: Vec<JointLimits>,
+    problem: LeastSquares,
+    pairs: Vec<PairDistance>,
+    columns: Vec<[f64; 6]>,
+    other_columns: Vec<[f64; 6]>,
+    /// Joint velocities of the result, rad/s or m/s.
+    pub velocity: Vec<f64>,
+    /// Whether something pushed the arm in the last step.
+    pub is_yielding: bool,
+}
+
+impl FreeArm {
+    pub fn new(limits: &[JointLimits]) -> Self {
+        let n = limits.len();
+        Self {
+            limits: limits.to_vec(),
+            problem: LeastSquares::new(n, ROWS),
+            pairs: Vec::with_capacity(ROWS),
+            columns: vec![[0.0; 6]; n],
+            other_columns: vec![[0.0; 6]; n],
+            velocity: vec![0.0; n],
+            is_yielding: false,
+        }
+    }
+
+    /// Finds the joint velocities of the arm `own` among `arms` for `dt_s` seconds.
+    ///
+    /// It moves towards its attraction. Towards anything else it never moves faster than it can stop before the gap: the
+    /// distance from which that slows it down is the boundary distance of the requirement, `v²/(2·a)` with the closing
+    /// speed v and what the joints can decelerate along the line between the nearest points, a.
+    pub fn react(
+        &mut self,
+        (scene, state, checker): (&Scene, &SceneState, &mut Checker<'_>),
+        (arms, own): (&[ArmMotion], usize),
+        attraction: Attraction<'_>,
+        settings: &CooperationSettings,
+        dt_s: f64,
+    ) {
+        self.attract(&arms[own].state, attraction, dt_s);
+        let boundary_m = self.boundary_m(arms, own, dt_s);
+        self.notice(state, checker, arms[own].robot, boundary_m, settings);
+        self.problem.clear();
+        for pair in std::mem::take(&mut self.pairs) {
+            self.repel(scene, (arms, own), state, &pair, settings);
+        }
+        let mut x = std::mem::take(&mut self.velocity);
+        if !self.problem.solve(&mut x) {
+            x.fill(0.0);
+        }
+        self.is_yielding = self.problem.constraints().iter().any(|row| {
+            let wanted: f64 = row.a.iter().zip(&self.problem.desired).map(|(a, v)| a * v).sum();
+            wanted < row.b - 1e-6
+        });
+        self.velocity = x;
+    }
+
+    /// Desired velocities and their bounds: speed, acceleration, and what still stops before the limit of a joint.
+    fn attract(&mut self, own: &ChainState, attraction: Attraction<'_>, dt_s: f64) {
+        let problem = &mut self.problem;
+        for (j, l) in self.limits.iter().enumerate() {
+            let (q, qd) = (own.q[j], own.qd[j]);
+            let drift = attraction.velocity.map_or(0.0, |v| v[j]);
+            let error = attraction.q[j] - q;
+            let towards = (l.acceleration * error.abs()).sqrt().min(error.abs() / (2.0 * dt_s)).copysign(error);
+            problem.desired[j] = (drift + towards).clamp(-l.velocity, l.velocity);
+            let stop = |room: f64| (2.0 * l.acceleration * room.max(0.0)).sqrt().min(room.max(0.0) / dt_s);
+            let (lower, upper) = (-l.velocity.min(stop(q - l.lower)), l.velocity.min(stop(l.upper - q)));
+            problem.lower[j] = lower.max(qd - l.acceleration * dt_s).min(upper);
+            problem.upper[j] = upper.min(qd + l.acceleration * dt_s).max(problem.lower[j]);
+            self.velocity[j] = qd;
+        }
+    }
+
+    /// An upper bound on the boundary distance of any pair, m.
+    ///
+    /// Along any direction, the ratio of what the joints move and what they can decelerate is at most the longest time T in
+    /// which one of them stops, so `v²/(2·a) ≤ v·T/2`.
+    fn boundary_m(&self, arms: &[ArmMotion], own: usize, dt_s: f64) -> f64 {
+        let (mut speed_m_s, mut stop_s) = (0.0, 0.0_f64);
+        for (qd, l) in arms[own].state.qd.iter().zip(&self.limits) {
+            let fastest = (qd.abs() + l.acceleration * dt_s).min(l.velocity);
+            speed_m_s += fastest * REACH_M;
+            stop_s = stop_s.max(fastest / (l.acceleration * DECELERATION_SHARE));
+        }
+        let others = arms.iter().enumerate().filter(|(index, _)| *index != own);
+        let other_m_s = others.map(|(_, arm)| arm.state.qd.iter().map(|v| v.abs() * REACH_M).sum()).fold(0.0, f64::max);
+        let speed_m_s: f64 = speed_m_s + other_m_s;
+        (NOTICE_M + 0.5 * speed_m_s * stop_s).min(MOST_NOTICE_M)
+    }
+
+    /// The nearest pairs between the arm and everything.
+    fn notice(
+        &mut self,
+        state: &SceneState,
+        checker: &mut Checker<'_>,
+        own: RobotId,
+        boundary_m: f64,
+        settings: &CooperationSettings,
+    ) {
+        let pairs = &mut self.pairs;
+        pairs.clear();
+        let farthest = |pairs: &[PairDistance]| {
+            let by_distance =
+                |a: &(usize, &PairDistance), b: &(usize, &PairDistance)| a.1.metres.total_cmp(&b.1.metres);
+            pairs.iter().enumerate().max_by(by_distance).map(|(index, pair)| (index, pair.metres))
+        };
+        let reach_m = settings.gap_m + boundary_m;
+        checker.between(Selection::Robot(own), Selection::All).distances_within(state, reach_m, |pair| {
+            if pairs.len() < ROWS {
+                pairs.push(pair);
+            } else if let Some((index, metres)) = farthest(pairs)
+                && pair.metres < metres
+            {
+                pairs[index] = pair;
+            }
+        });
+    }
+
+    /// Adds the repulsion of a pair.
+    fn repel(
+        &mut self,
+        scene: &Scene,
+        (arms, own): (&[ArmMotion], usize),
+        state: &SceneState,
+        pair: &PairDistance,
+        settings: &CooperationSettings,
+    ) {
+        let (arm, chain) = (&arms[own], &scene.robots()[arms[own].robot.0].robot.chain);
+        let link_of = |id: GeometryId| match id {
+            GeometryId::Link { robot, link } => Some((robot, link)),
+            GeometryId::Object(object) => state.attachment(object).map(|a| (a.robot, a.link)),
+        };
+        let is_own = |id| link_of(id).is_some_and(|(robot, _)| robot == arm.robot);
+        let (mine, on_mine, other, on_other) = if is_own(pair.a) {
+            (pair.a, pair.on_a, pair.b, pair.on_b)
+        } else {
+            (pair.b, pair.on_b, pair.a, pair.on_a)
+        };
+        let (Some((_, link)), Some(normal)) = (link_of(mine), (on_mine - on_other).try_normalize()) else { return };
+        let in_root = arm.base_in_world.inverse_transform_vector(normal);
+        let in_link = |link: LinkId, p: Vec3| {
+            let link_in_world = arm.base_in_world * arm.state.link_in_root(link);
+            link_in_world.inverse_transform_point(p)
+        };
+        chain.jacobian(&arm.state, link, in_link(link, on_mine), &mut self.columns);
+        let mut leaves_at = 0.0;
+        match link_of(other) {
+            Some((robot, link)) if robot == arm.robot => {
+                chain.jacobian(&arm.state, link, in_link(link, on_other), &mut self.other_columns);
+                for (column, other) in self.columns.iter_mut().zip(&self.other_columns) {
+                    column.iter_mut().zip(other).for_each(|(a, b)| *a -= b);
+                }
+            }
+            Some((robot, link)) => {
+                let moving = arms.iter().find(|arm| arm.robot == robot);
+                leaves_at = moving.map_or(0.0, |arm| normal.dot(arm.velocity(link, on_other)));
+            }
+            None => {}
+        }
+        let Some(row) = self.problem.add_constraint() else { return };
+        let mut deceleration = 0.0;
+        for ((a, column), limits) in row.a.iter_mut().zip(&self.columns).zip(&self.limits) {
+            *a = in_root.dot(Vec3::new(column[0], column[1], column[2]));
+            deceleration += a.abs() * limits.acceleration * DECELERATION_SHARE;
+        }
+        let room_m = pair.metres - settings.gap_m;
+        let closing = if room_m > 0.0 { (2.0 * deceleration * room_m).sqrt() } else { room_m / RECOVERY_S };
+        row.b = leaves_at - closing;
+        (row.weight, row.at_least) = (REPULSION, true);
+    }
+}

@@ -1,0 +1,75 @@
+//! The work-piece on its way: carried by one arm, handed over, never off its path.
+
+use elbowroom_cooperation::{CooperationSettings, Hold};
+use elbowroom_spatial::{Pose, Rotation, Vec3};
+use elbowroom_testkit::random::SplitMix;
+
+use crate::common::{DT_S, Pair, Reach, carry, motion, part_pose, straight};
+
+#[test]
+fn a_short_motion_needs_one_arm() {
+    let pair = Pair::new(2, 0.6);
+    let start = part_pose(&pair);
+    let way = straight(start, Pose::new(start.rotation, start.translation + Vec3::new(-0.03, 0.05, 0.02)), 0.1);
+    let outcome = carry(&pair, CooperationSettings::default(), &way);
+    assert!(outcome.share > 0.999_999 && outcome.hand_overs.is_empty() && outcome.stopped_s == 0.0, "{outcome:?}");
+    assert!(outcome.deviation_m < 1e-9 && outcome.contacts == 0, "{outcome:?}");
+}
+
+#[test]
+fn the_bar_crosses_to_where_only_the_other_arm_reaches() {
+    let pair = Pair::new(2, 0.6);
+    let start = part_pose(&pair);
+    let end = Pose::new(start.rotation, Vec3::new(0.3, 0.0, 0.45));
+    let mut reach = Reach::new(&pair);
+    assert!(!reach.holds(&pair, 0, &end) && reach.holds(&pair, 1, &end), "a motion that needs both");
+    let outcome = carry(&pair, CooperationSettings::default(), &straight(start, end, 0.05));
+    assert!(outcome.share > 0.999_999, "{outcome:?}");
+    let from_to: Vec<(usize, usize)> = outcome.hand_overs.iter().map(|(_, h)| (h.from, h.to)).collect();
+    assert_eq!(from_to, [(0, 1)]);
+    let (_, handed_over) = outcome.hand_overs[0];
+    assert!(handed_over.reason.limit.is_some() && handed_over.reason.receiver_holds_s > 0.5, "{handed_over:?}");
+    assert!(outcome.deviation_m < 1e-9 && outcome.contacts == 0, "{outcome:?}");
+    assert!(outcome.stopped_s == 0.0, "handed over on its way: {outcome:?}");
+}
+
+#[test]
+fn random_motions_never_leave_their_path_and_nothing_touches() {
+    let pair = Pair::new(2, 0.6);
+    let start = part_pose(&pair);
+    let mut random = SplitMix(7);
+    let (mut share, mut hand_overs) = (0.0, 0);
+    for _ in 0..5 {
+        let way = motion(&mut random, &pair, start, 0.4, 2);
+        let outcome = carry(&pair, CooperationSettings::default(), &way);
+        assert!(outcome.deviation_m < 1e-9 && outcome.contacts == 0, "{outcome:?}");
+        assert!(outcome.largest_speed_share < 1.0 + 1e-9, "{outcome:?}");
+        assert!(outcome.share > 0.999 || outcome.last_hold.is_some(), "a stop has a reason: {outcome:?}");
+        share += outcome.share / 5.0;
+        hand_overs += outcome.hand_overs.len();
+    }
+    assert!(share > 0.5 && hand_overs >= 5, "{share} with {hand_overs} hand-overs");
+}
+
+#[test]
+fn where_no_arm_reaches_the_bar_stops_in_time_and_says_why() {
+    let pair = Pair::new(2, 0.6);
+    let start = part_pose(&pair);
+    let way = straight(start, Pose::new(start.rotation, start.translation + Vec3::Z * 1.5), 0.1);
+    let outcome = carry(&pair, CooperationSettings::default(), &way);
+    assert!(outcome.share < 0.6, "{outcome:?}");
+    assert!(matches!(outcome.last_hold, Some(Hold::Limit(..))), "{outcome:?}");
+    assert!(outcome.largest_rate_change <= DT_S / CooperationSettings::default().ramp_s + 1e-9, "no jerk: {outcome:?}");
+}
+
+#[test]
+fn a_pose_a_metre_away_is_approached_at_the_speed_of_the_settings() {
+    let pair = Pair::new(2, 0.6);
+    let start = part_pose(&pair);
+    let turn = Rotation::from_axis_angle(Vec3::Z, 1.0);
+    let jump = vec![start, Pose::new(turn * start.rotation, start.translation + Vec3::new(0.8, 0.0, 0.6))];
+    let settings = CooperationSettings::default();
+    let outcome = carry(&pair, settings, &jump);
+    assert!(outcome.largest_speed_m_s <= settings.speed_m_s * (1.0 + 1e-6), "{outcome:?}");
+    assert!(outcome.deviation_m < 1e-9 && outcome.contacts == 0, "{outcome:?}");
+}

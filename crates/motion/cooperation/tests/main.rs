@@ -1,0 +1,6 @@
+//! Integration tests of `elbowroom-cooperation` in one program: a module per subject, whose first line says what belongs there.
+
+mod carrying;
+mod common;
+mod refusals;
+mod yielding;
