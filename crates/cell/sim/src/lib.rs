@@ -51,7 +51,7 @@ pub use recording::{
     AvoidanceSample, AvoidanceTrack, Collision, Deadlock, EventRow, ForceSample, GoverningPoint, GuidanceSample,
     GuidanceState, GuidanceTrack, HandOverRecord, Hold, HoldReason, ObjectTrack, Outcome, PartKind, PathReplan,
     PerceptionTrack, RecordedRegionKind, Recording, RegionPoses, RegionTrack, ReplanRecord, RobotEnding, RobotTrack,
-    RunEnd, RunEvent, Sample, SensorTrack, Span, Stop, TickTimes, VirtualRobotSample, VirtualRobotTrack,
+    RunEnd, RunEvent, Sample, SensorTrack, Span, Stop, TickTimes, VirtualRobotSample, VirtualRobotTrack, WorkPieceStop,
 };
 pub use run::{InputFault, InputFaultKind, RunOptions, RunOutcome, SilentFrom, simulate};
 pub use summary::{AvoidanceSummary, PerceptionSummary, RunSummary, SensorSummary};

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::recording::VirtualRobotTrack;
+use crate::recording::{HandOverRecord, VirtualRobotTrack, WorkPieceStop};
 
 /// Robots that acted as one.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -13,9 +13,12 @@ pub struct VirtualRobotSummary {
     pub carried_share: f64,
     /// Time for which the work-piece stood although it should have moved, s.
     pub stopped_s: f64,
+    /// These periods.
+    pub stops: Vec<WorkPieceStop>,
     /// Hand-overs, in order of time.
     pub hand_overs: Vec<HandOverSummary>,
-    /// Least distance between two of the robots, with the work-piece, m; what may touch does not count; null without ticks.
+    /// Least distance between two of the robots, with the work-piece, m; what may touch does not count; null
+    /// if it was always more than 0.1 m.
     pub least_gap_m: Option<f64>,
     /// Largest distance of the work-piece from the desired path, m.
     pub path_deviation_m: f64,
@@ -38,7 +41,7 @@ impl VirtualRobotSummary {
     /// Summary of a track recorded with this tick (s).
     pub fn new(track: &VirtualRobotTrack, tick_s: f64) -> Self {
         let name = |index: usize| track.robots.get(index).cloned().unwrap_or_default();
-        let hand_over = |h: &crate::recording::HandOverRecord| HandOverSummary {
+        let hand_over = |h: &HandOverRecord| HandOverSummary {
             t_s: h.t_s,
             from: name(h.from),
             to: name(h.to),
@@ -53,6 +56,7 @@ impl VirtualRobotSummary {
             name: track.name.clone(),
             carried_share: track.carried_share,
             stopped_s: track.samples.iter().filter(|s| s.is_stopped).count() as f64 * tick_s,
+            stops: track.stops.clone(),
             hand_overs: track.hand_overs.iter().map(hand_over).collect(),
             least_gap_m: track.samples.iter().map(|s| s.gap_m).filter(|gap| gap.is_finite()).reduce(f64::min),
             path_deviation_m: deviation,

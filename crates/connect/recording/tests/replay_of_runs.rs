@@ -37,19 +37,22 @@ fn is_long_run() -> bool {
     std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1")
 }
 
-/// Loads an example; `pallet` is shortened, as each of its ticks is slow: after 8 s it has evaded a cart and gripped a
-/// carton.
+/// Loads an example; `pallet` and `inspection` are shortened, as each of their ticks is slow: after 8 s a cart was evaded and
+/// a carton gripped, after 10 s a bar was handed over.
 fn loaded(example: &str) -> Cell {
     let file = examples().join(example).join("cell.toml");
     let text = std::fs::read_to_string(&file).unwrap();
-    let part = example == "pallet" && !is_long_run();
-    let text = if part { text.replace("tick_ms = 4", "tick_ms = 8\nmax_s = 8") } else { text };
+    let max_s = [("pallet", 8), ("inspection", 10)].iter().find(|(name, _)| *name == example && !is_long_run());
+    let text = match max_s {
+        Some((_, max_s)) => text.replace("tick_ms = 4", &format!("tick_ms = 8\nmax_s = {max_s}")),
+        None => text,
+    };
     Cell::parse(file, &text).unwrap()
 }
 
 #[test]
 fn every_example_replays_to_the_bit() {
-    for example in ["conveyor", "exchange", "figure12", "guided", "pallet", "tool_box"] {
+    for example in ["conveyor", "exchange", "figure12", "guided", "inspection", "pallet", "tool_box"] {
         let cell = loaded(example);
         let found = replayed(&cell, &RunOptions::default());
         assert_eq!(found.differences, 0, "{example}: {:?}", found.robots);

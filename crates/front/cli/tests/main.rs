@@ -33,4 +33,5 @@ mod run;
 mod surface;
 mod tasks;
 mod teach;
+mod virtual_robots;
 mod watch;

@@ -29,15 +29,23 @@ impl VirtualRobot<'_> {
         if let Some(follower) = hand_over.as_ref().and_then(HandOver::follower).or(arriving) {
             carried.follower_ahead.extend(&mut holdings[follower], &carried.path, carried.path_s, (settings, true));
         }
+        self.watch_members();
+    }
+
+    /// Finds the members that are in the way of the holder where it will be. A free one moves away; one that carries the
+    /// work-piece too must first let go or take over.
+    fn watch_members(&mut self) {
         let holder = self.holder();
-        self.state_ahead.clone_from(&self.state);
         let robot = self.members[holder].robot;
-        let is_placed = self.state_ahead.set_q(self.scene, robot, &self.carried.ahead.q).is_ok();
+        self.state_ahead.clone_from(&self.state);
+        let mut is_placed = self.state_ahead.set_q(self.scene, robot, &self.carried.ahead.q).is_ok();
+        if let Some(follower) = self.hand_over.as_ref().and_then(HandOver::follower) {
+            let robot = self.members[self.holdings[follower].member].robot;
+            is_placed &= self.state_ahead.set_q(self.scene, robot, &self.carried.follower_ahead.q).is_ok();
+        }
         for member in 0..self.members.len() {
-            let other = self.members[member].robot;
-            let is_free = !self.carries(member);
-            let pair = (Selection::Robot(robot), Selection::Robot(other));
-            self.limbs[member].is_in_the_way = is_free
+            let pair = (Selection::Robot(robot), Selection::Robot(self.members[member].robot));
+            self.limbs[member].is_in_the_way = member != holder
                 && is_placed
                 && self.checker.between(pair.0, pair.1).within(&self.state_ahead, 0.5 * self.settings.gap_m).is_some();
         }
@@ -104,10 +112,8 @@ impl VirtualRobot<'_> {
     /// What the arms that carry the work-piece come to ahead.
     fn limit_ahead(&self) -> Option<Hold> {
         let in_the_way = self.limbs.iter().position(|limb| limb.is_in_the_way);
-        let link =
-            |member: usize| GeometryId::Link { robot: self.members[member].robot, link: self.members[member].tip };
         if let Some(member) = in_the_way {
-            return Some(Hold::Contact(link(self.holder()), link(member)));
+            return Some(Hold::InTheWay(member));
         }
         let of_holder = self.carried.ahead.limit.map(|limit| Hold::Limit(self.holder(), limit));
         let follower = self.hand_over.as_ref().and_then(HandOver::follower).map(|k| self.holdings[k].member);

@@ -1,13 +1,16 @@
 //! When the work-piece is handed over, and to whom.
 
+use crate::forecast::Giver;
 use crate::hand_over::HandOver;
 use crate::holding::Margins;
-use crate::{HandOverReason, VirtualRobot};
+use crate::{HandOverReason, HoldLimit, VirtualRobot};
 
 /// What a hand-over must gain while the work-piece stands, s.
 const STOPPED_GAIN_S: f64 = 0.15;
 /// Share of the joint speeds that a receiver may need at the desired speed; the work-piece then slows down.
 const RECEIVER_SPEED: f64 = 2.0;
+/// Time for which the work-piece waits for a receiver where the holder can go on, but not let go any more, s.
+const PATIENCE_S: f64 = 2.0;
 /// A free arm waits for another grasp only if that is better by this, s.
 const BETTER_S: f64 = 0.5;
 /// Pieces of the forecasts of the other grasps, per piece of the holder's.
@@ -36,13 +39,20 @@ impl VirtualRobot<'_> {
             _ => Margins::foreseen(&self.settings),
         };
         let holder = &self.arms[self.holder()];
-        let giver = (k != self.carried.holder).then_some((holder.robot, holder.state.q.as_slice()));
+        // Lent by the forecast of the holder.
+        let of_holder = if k == self.carried.holder { None } else { self.forecasts.get_mut(self.carried.holder) };
+        let trace = of_holder.map(|f| std::mem::take(&mut f.trace)).unwrap_or_default();
+        let giver = Giver { robot: holder.robot, q: &holder.state.q, trace: &trace };
+        let giver = (k != self.carried.holder).then_some(giver);
         // A receiver that is a little slow is better than none.
         let speed_share = if giver.is_some() { margins.speed_share.max(RECEIVER_SPEED) } else { margins.speed_share };
         let (holding, forecast) = (&mut self.holdings[k], &mut self.forecasts[k]);
         let q = &self.arms[holding.member].state.q;
         let margins = Margins { speed_share, ..margins };
         forecast.proceed(holding, &self.carried.path, self.carried.path_s, (q, giver), (&self.settings, &margins));
+        if k != self.carried.holder {
+            self.forecasts[self.carried.holder].trace = trace;
+        }
     }
 
     /// How long the arm with the grasp of this index could hold, s.
@@ -71,7 +81,7 @@ impl VirtualRobot<'_> {
         self.holds_s(k).min(self.settings.horizon_s) - self.takes_s(k)
     }
 
-    /// Whether another arm could take the work-piece and hold it for a while.
+    /// Whether another arm could take the work-piece and hold it for a while; not if that was hoped for too long already.
     pub(crate) fn has_receiver(&self) -> bool {
         let is_usable = |k: usize| {
             self.holdings[k].member != self.holder()
@@ -79,7 +89,8 @@ impl VirtualRobot<'_> {
                 && self.forecasts[k].grasped.is_some()
                 && self.holds_s(k) > STOPPED_GAIN_S
         };
-        self.hand_over.is_some() || (0..self.holdings.len()).any(is_usable)
+        let is_under_way = self.hand_over.as_ref().is_some_and(|h| h.follower().is_some());
+        is_under_way || self.decision.no_retreat_s < PATIENCE_S && (0..self.holdings.len()).any(is_usable)
     }
 
     /// Chooses the grasp for which each free arm waits: where a hand-over would be quickest and last longest.
@@ -105,6 +116,10 @@ impl VirtualRobot<'_> {
     /// Begins a hand-over if the holder will fail before a later one could be complete.
     pub(crate) fn decide(&mut self, dt_s: f64) {
         self.decision.since_s += dt_s;
+        let waits = self.carried.rate == 0.0 && self.carried.ahead.limit == Some(HoldLimit::Retreat);
+        if waits && self.hand_over.as_ref().is_none_or(|h| h.follower().is_none()) {
+            self.decision.no_retreat_s += dt_s;
+        }
         self.decision.refused_s.iter_mut().for_each(|s| *s = (*s - dt_s).max(0.0));
         let is_early = self.decision.since_s < self.settings.rest_s && self.carried.rate > 0.0;
         if self.hand_over.is_some() || is_early || !self.carried.wants_to_move() {

@@ -13,13 +13,15 @@ pub(crate) struct DecisionMemory {
     pub refused_s: Vec<f64>,
     /// The forecast whose turn it is.
     pub turn: usize,
+    /// Time for which the work-piece has stood where the hand of the holder could not move back any more, s.
+    pub no_retreat_s: f64,
     /// Why the present hand-over was decided.
     pub reason: Option<HandOverReason>,
 }
 
 impl DecisionMemory {
     pub fn new(holdings: usize) -> Self {
-        Self { since_s: f64::INFINITY, refused_s: vec![0.0; holdings], turn: 0, reason: None }
+        Self { since_s: f64::INFINITY, refused_s: vec![0.0; holdings], turn: 0, no_retreat_s: 0.0, reason: None }
     }
 
     /// A receiver gave up.
@@ -29,6 +31,6 @@ impl DecisionMemory {
 
     /// The work-piece was handed over.
     pub fn handed_over(&mut self) {
-        self.since_s = 0.0;
+        (self.since_s, self.no_retreat_s) = (0.0, 0.0);
     }
 }

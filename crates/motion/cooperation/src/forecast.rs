@@ -5,10 +5,14 @@ use elbowroom_spatial::Pose;
 
 use crate::desired_path::DesiredPath;
 use crate::holding::{Holding, Margins};
+use crate::trace::Trace;
 use crate::{CooperationSettings, HoldLimit};
 
 /// Number of configurations that are foreseen within the horizon.
 const SAMPLES: usize = 32;
+
+/// Time ahead for which both arms must have room, s: a hand-over takes about as long.
+const BOTH_S: f64 = 3.0;
 
 /// Result of a forecast.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,6 +22,16 @@ pub(crate) struct HoldTime {
     pub to_s: f64,
     /// Why.
     pub limit: Option<HoldLimit>,
+}
+
+/// The arm that would give the work-piece.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Giver<'a> {
+    pub robot: RobotId,
+    /// Its joint values.
+    pub q: &'a [f64],
+    /// Where it will be.
+    pub trace: &'a Trace,
 }
 
 /// The forecast of one arm with one grasp.
@@ -31,6 +45,9 @@ pub(crate) struct Forecast {
     pub pre_grasp: Vec<f64>,
     /// The last result; `None` before the first.
     pub result: Option<HoldTime>,
+    /// Of an arm that holds: the foreseen configurations of the last whole forecast, and of the present one.
+    pub trace: Trace,
+    next_trace: Trace,
     /// The foreseen configuration.
     q: Vec<f64>,
     /// Path time at which this forecast began, s, and the number of configurations so far.
@@ -44,13 +61,15 @@ impl Forecast {
     /// An arm of so many joints, of which nothing is known.
     pub fn new(joints: usize) -> Self {
         let (q, pre_grasp) = (vec![0.0; joints], vec![0.0; joints]);
-        Self { grasped: None, pre_grasp, result: None, q, from_s: 0.0, done: 0, pause: 0 }
+        let [trace, next_trace] = [0, 1].map(|_| Trace::new(joints, SAMPLES + 1));
+        Self { grasped: None, pre_grasp, result: None, trace, next_trace, q, from_s: 0.0, done: 0, pause: 0 }
     }
 
     /// Begins anew.
     pub fn restart(&mut self) {
         self.done = 0;
         self.result = None;
+        self.trace.clear();
     }
 
     /// Time until the arm could not hold the work-piece any longer, which is at `path_s` now, s; 0 if unknown.
@@ -69,13 +88,13 @@ impl Forecast {
         holding: &mut Holding<'_>,
         path: &DesiredPath,
         path_s: f64,
-        (q, giver): (&[f64], Option<(RobotId, &[f64])>),
+        (q, giver): (&[f64], Option<Giver<'_>>),
         (settings, margins): (&CooperationSettings, &Margins),
     ) {
         if self.done == 0 {
             self.from_s = path_s;
             let is_possible = match giver {
-                None => self.begin_held(q),
+                None => self.begin_held(holding, path, q),
                 Some(giver) => self.begin(holding, &path.at(path_s), (q, giver), margins),
             };
             if !is_possible {
@@ -87,7 +106,8 @@ impl Forecast {
         }
         let step_s = settings.horizon_s / SAMPLES as f64;
         let ahead_s = self.done as f64 * step_s;
-        match holding.follow(&path.foreseen(self.from_s + ahead_s), step_s, &mut self.q, margins) {
+        let followed = holding.follow(&path.foreseen(self.from_s + ahead_s), step_s, &mut self.q, margins);
+        match followed.and_then(|()| self.meets_giver(holding, path, (giver, ahead_s), margins)) {
             Ok(()) if self.done < SAMPLES => self.done += 1,
             Ok(()) => self.conclude(HoldTime { to_s: f64::INFINITY, limit: None }),
             Err(limit) => {
@@ -96,13 +116,42 @@ impl Forecast {
         }
     }
 
+    /// Whether there is room beside the giver until its hand has left; an arm that holds notes where it will be.
+    fn meets_giver(
+        &mut self,
+        holding: &mut Holding<'_>,
+        path: &DesiredPath,
+        (giver, ahead_s): (Option<Giver<'_>>, f64),
+        margins: &Margins,
+    ) -> Result<(), HoldLimit> {
+        let path_s = self.from_s + ahead_s;
+        let Some(giver) = giver else {
+            self.note(holding, path, path_s);
+            return Ok(());
+        };
+        let Some((q, retreated)) = giver.trace.at(path_s).filter(|_| ahead_s < BOTH_S) else { return Ok(()) };
+        let is_clear = [q, retreated].iter().all(|q| holding.clears(&self.q, giver.robot, q, margins.gap_m));
+        if is_clear { Ok(()) } else { Err(HoldLimit::OtherArm) }
+    }
+
+    /// Notes where an arm that holds will be.
+    fn note(&mut self, holding: &mut Holding<'_>, path: &DesiredPath, path_s: f64) {
+        self.pre_grasp.copy_from_slice(&self.q);
+        // It can, or the forecast ends here.
+        let _ = holding.retreat(&path.foreseen(path_s), &mut self.pre_grasp);
+        self.next_trace.push(path_s, &self.q, &self.pre_grasp);
+    }
+
     fn conclude(&mut self, result: HoldTime) {
         self.result = Some(result);
         self.done = 0;
+        std::mem::swap(&mut self.trace, &mut self.next_trace);
     }
 
-    fn begin_held(&mut self, q: &[f64]) -> bool {
+    fn begin_held(&mut self, holding: &mut Holding<'_>, path: &DesiredPath, q: &[f64]) -> bool {
         self.q.copy_from_slice(q);
+        self.next_trace.clear();
+        self.note(holding, path, self.from_s);
         self.grasped = None;
         true
     }
@@ -112,7 +161,7 @@ impl Forecast {
         &mut self,
         holding: &mut Holding<'_>,
         part_in_world: &Pose,
-        (q, giver): (&[f64], (RobotId, &[f64])),
+        (q, giver): (&[f64], Giver<'_>),
         margins: &Margins,
     ) -> bool {
         let grasp = holding.grasp;
@@ -135,7 +184,7 @@ impl Forecast {
         self.q.copy_from_slice(grasped);
         self.pre_grasp.copy_from_slice(grasped);
         if holding.solve(part_in_world, &grasp.at(grasp.length_m()), &mut self.pre_grasp)
-            && holding.clears(&self.q, giver.0, giver.1, 0.5 * margins.gap_m)
+            && holding.clears(&self.q, giver.robot, giver.q, 0.5 * margins.gap_m)
         {
             return true;
         }

@@ -14,6 +14,10 @@ const ROWS: usize = 16;
 const NOTICE_M: f64 = 0.02;
 /// Largest boundary distance that is looked at, m.
 const MOST_NOTICE_M: f64 = 0.12;
+/// Distance between its own links from which an arm keeps them apart, m.
+const SELF_NOTICE_M: f64 = 0.02;
+/// Distance between its own links that an arm keeps, m.
+const SELF_GAP_M: f64 = 0.002;
 /// Distance of a point of an arm from the axis of a joint that the boundary distance counts on, m.
 const REACH_M: f64 = 1.0;
 /// Weight of the repulsion against the attraction.
@@ -54,7 +58,8 @@ pub(crate) struct Attraction<'a> {
 pub(crate) struct FreeArm {
     limits: Vec<JointLimits>,
     problem: LeastSquares,
-    pairs: Vec<PairDistance>,
+    /// Pairs that are near, and the gap that the arm keeps, m.
+    pairs: Vec<(PairDistance, f64)>,
     columns: Vec<[f64; 6]>,
     other_columns: Vec<[f64; 6]>,
     /// Joint velocities of the result, rad/s or m/s.
@@ -92,11 +97,13 @@ impl FreeArm {
     ) {
         self.attract(&arms[own].state, attraction, dt_s);
         let boundary_m = self.boundary_m(arms, own, dt_s);
-        self.notice(state, checker, arms[own].robot, boundary_m, settings);
+        self.notice((scene, state, checker), arms[own].robot, (boundary_m, settings.gap_m));
         self.problem.clear();
-        for pair in std::mem::take(&mut self.pairs) {
-            self.repel(scene, (arms, own), state, &pair, settings);
+        let pairs = std::mem::take(&mut self.pairs);
+        for (pair, gap_m) in &pairs {
+            self.repel(scene, (arms, own), state, (pair, *gap_m));
         }
+        self.pairs = pairs;
         let mut x = std::mem::take(&mut self.velocity);
         if !self.problem.solve(&mut x) {
             x.fill(0.0);
@@ -142,32 +149,36 @@ impl FreeArm {
         (NOTICE_M + 0.5 * speed_m_s * stop_s).min(MOST_NOTICE_M)
     }
 
-    /// The nearest pairs between the arm and everything.
+    /// The nearest pairs between the arm and everything, with the gap of each, m.
     fn notice(
         &mut self,
-        state: &SceneState,
-        checker: &mut Checker<'_>,
+        (scene, state, checker): (&Scene, &SceneState, &mut Checker<'_>),
         own: RobotId,
-        boundary_m: f64,
-        settings: &CooperationSettings,
+        (boundary_m, gap_m): (f64, f64),
     ) {
         let pairs = &mut self.pairs;
         pairs.clear();
-        let farthest = |pairs: &[PairDistance]| {
-            let by_distance =
-                |a: &(usize, &PairDistance), b: &(usize, &PairDistance)| a.1.metres.total_cmp(&b.1.metres);
-            pairs.iter().enumerate().max_by(by_distance).map(|(index, pair)| (index, pair.metres))
-        };
-        let reach_m = settings.gap_m + boundary_m;
-        checker.between(Selection::Robot(own), Selection::All).distances_within(state, reach_m, |pair| {
+        let mut add = |pair: PairDistance, gap_m: f64| {
             if pairs.len() < ROWS {
-                pairs.push(pair);
-            } else if let Some((index, metres)) = farthest(pairs)
-                && pair.metres < metres
+                pairs.push((pair, gap_m));
+            } else if let Some(farthest) = pairs.iter_mut().max_by(|a, b| a.0.metres.total_cmp(&b.0.metres))
+                && pair.metres < farthest.0.metres
             {
-                pairs[index] = pair;
+                *farthest = (pair, gap_m);
             }
-        });
+        };
+        let arm = Selection::Robot(own);
+        checker.between(arm, arm).distances_within(state, SELF_NOTICE_M, |pair| add(pair, SELF_GAP_M));
+        let others = (0..scene.robots().len()).map(RobotId).filter(|other| *other != own).map(Selection::Robot);
+        for other in others.chain([Selection::Objects]) {
+            let is_carried = |id: GeometryId| matches!(id, GeometryId::Object(o) if state.attachment(o).is_some());
+            checker.between(arm, other).distances_within(state, gap_m + boundary_m, |pair| {
+                // What a robot carries belongs to the robot.
+                if other != Selection::Objects || !(is_carried(pair.a) || is_carried(pair.b)) {
+                    add(pair, gap_m);
+                }
+            });
+        }
     }
 
     /// Adds the repulsion of a pair.
@@ -176,8 +187,7 @@ impl FreeArm {
         scene: &Scene,
         (arms, own): (&[ArmMotion], usize),
         state: &SceneState,
-        pair: &PairDistance,
-        settings: &CooperationSettings,
+        (pair, gap_m): (&PairDistance, f64),
     ) {
         let (arm, chain) = (&arms[own], &scene.robots()[arms[own].robot.0].robot.chain);
         let link_of = |id: GeometryId| match id {
@@ -217,7 +227,7 @@ impl FreeArm {
             *a = in_root.dot(Vec3::new(column[0], column[1], column[2]));
             deceleration += a.abs() * limits.acceleration * DECELERATION_SHARE;
         }
-        let room_m = pair.metres - settings.gap_m;
+        let room_m = pair.metres - gap_m;
         let closing = if room_m > 0.0 { (2.0 * deceleration * room_m).sqrt() } else { room_m / RECOVERY_S };
         row.b = leaves_at - closing;
         (row.weight, row.at_least) = (REPULSION, true);

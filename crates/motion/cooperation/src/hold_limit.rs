@@ -15,6 +15,8 @@ pub enum HoldLimit {
     Singularity,
     /// Its hand could not move back from the work-piece any more.
     Retreat,
+    /// There is no room beside the arm that holds the work-piece.
+    OtherArm,
     /// Two parts would be too near to each other.
     Contact(GeometryId, GeometryId),
 }

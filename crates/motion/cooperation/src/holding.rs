@@ -165,14 +165,17 @@ impl<'s> Holding<'s> {
 
     /// Whether the hand can move back to its pre-grasp from `q`, where it holds the work-piece.
     pub fn can_retreat(&mut self, part_in_world: &Pose, q: &[f64]) -> bool {
-        let grasp = self.grasp;
         let mut retreated = std::mem::take(&mut self.before);
         retreated.copy_from_slice(q);
-        let can_retreat = [0.3, 0.6, 1.0]
-            .iter()
-            .all(|share| self.solve(part_in_world, &grasp.at(share * grasp.length_m()), &mut retreated));
+        let can_retreat = self.retreat(part_in_world, &mut retreated);
         self.before = retreated;
         can_retreat
+    }
+
+    /// Moves `q`, where the arm holds the work-piece, to where its hand has moved back to its pre-grasp; false if it cannot.
+    pub fn retreat(&mut self, part_in_world: &Pose, q: &mut [f64]) -> bool {
+        let grasp = self.grasp;
+        [0.3, 0.6, 1.0].iter().all(|share| self.solve(part_in_world, &grasp.at(share * grasp.length_m()), q))
     }
 
     /// Whether the arm with the work-piece keeps the margins at a configuration.

@@ -78,6 +78,7 @@ mod member;
 mod proceed;
 mod settings;
 mod step;
+mod trace;
 mod virtual_robot;
 
 pub use error::{CooperationError, PoseRefusal};

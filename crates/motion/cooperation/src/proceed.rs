@@ -34,7 +34,7 @@ impl VirtualRobot<'_> {
                 }
             }
             HandOverPhase::Opening if since_s >= self.settings.settle_s => hand_over.enter(HandOverPhase::Retreating),
-            HandOverPhase::Retreating if hand_over.before_m >= length_m(hand_over.giver) => {
+            HandOverPhase::Retreating if hand_over.has_left(length_m(hand_over.giver), self.settings.gap_m) => {
                 let giver = hand_over.giver;
                 self.hand_over = None;
                 self.allow_visit(None);

@@ -199,14 +199,14 @@ impl<'s> VirtualRobot<'s> {
         self.limbs[member].is_in_the_way || self.limbs[member].free.is_yielding && !self.carries(member)
     }
 
-    /// Least distance between two members, with the work-piece, m; what may touch does not count.
-    pub fn gap_m(&mut self) -> f64 {
-        let robots: Vec<RobotId> = self.members.iter().map(|m| m.robot).collect();
+    /// Least distance between two members, with the work-piece, m, up to a distance beyond which it is infinite; what may
+    /// touch does not count.
+    pub fn gap_m(&mut self, most_m: f64) -> f64 {
         let mut least = f64::INFINITY;
-        for (i, a) in robots.iter().enumerate() {
-            for b in &robots[i + 1..] {
-                let nearest = self.checker.between(Selection::Robot(*a), Selection::Robot(*b)).distance(&self.state);
-                least = nearest.map_or(least, |pair| least.min(pair.metres));
+        for (i, a) in self.members.iter().enumerate() {
+            for b in &self.members[i + 1..] {
+                let mut pair = self.checker.between(Selection::Robot(a.robot), Selection::Robot(b.robot));
+                pair.distances_within(&self.state, most_m, |pair| least = least.min(pair.metres));
             }
         }
         least

@@ -1,6 +1,7 @@
 //! Recording of robots that act as one.
 
 use elbowroom_spatial::Pose;
+use serde::Serialize;
 
 /// The motion of the work-piece of a virtual robot.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,6 +14,8 @@ pub struct VirtualRobotTrack {
     pub samples: Vec<VirtualRobotSample>,
     /// Hand-overs, in order of time.
     pub hand_overs: Vec<HandOverRecord>,
+    /// Periods in which the work-piece stood although it should have moved, in order of time.
+    pub stops: Vec<WorkPieceStop>,
     /// Share of the desired motion that was carried out, 0 to 1.
     pub carried_share: f64,
 }
@@ -32,7 +35,8 @@ pub struct VirtualRobotSample {
     pub rate: f64,
     /// Whether it stands although it should move.
     pub is_stopped: bool,
-    /// Least distance between two of the robots, with the work-piece, m; what may touch does not count.
+    /// Least distance between two of the robots, with the work-piece, m; infinite beyond 0.1 m; what may touch does not
+    /// count.
     pub gap_m: f64,
 }
 
@@ -46,5 +50,16 @@ pub struct HandOverRecord {
     /// The receiver.
     pub to: usize,
     /// Why it was decided, in words.
+    pub reason: String,
+}
+
+/// A period in which the work-piece of a virtual robot stood although it should have moved.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct WorkPieceStop {
+    /// Start, s.
+    pub from_s: f64,
+    /// Time at which it moved on, or the end of the run, s.
+    pub to_s: f64,
+    /// Why it stood, in words: the first reason.
     pub reason: String,
 }

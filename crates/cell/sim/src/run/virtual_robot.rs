@@ -1,17 +1,19 @@
 //! Robots that act as one in a run.
 
 use elbowroom_cell::cooperation::{HandedOver, Hold, HoldLimit, VirtualRobot};
-use elbowroom_cell::{Cell, CellVirtualRobot, OperatorInput};
+use elbowroom_cell::{Cell, CellRobot, CellVirtualRobot, OperatorInput};
 use elbowroom_diagnostic::Diagnostic;
 use elbowroom_kinematics::ChainState;
 use elbowroom_robot::{GeometryId, RobotId};
 use elbowroom_scene::{Attachment, Scene};
 
 use super::guided_robot::place;
-use crate::recording::{HandOverRecord, RunEvent, VirtualRobotSample, VirtualRobotTrack};
+use crate::recording::{HandOverRecord, RunEvent, VirtualRobotSample, VirtualRobotTrack, WorkPieceStop};
 
-/// Time for which a work-piece stands until the run may end, s.
-const STUCK_S: f64 = 10.0;
+/// Time for which a work-piece stands after the end of its stream until the run may end, s.
+const STUCK_S: f64 = 5.0;
+/// Distance between two robots beyond which it is not recorded, m.
+const FAR_M: f64 = 0.1;
 /// Override below which the intent of a robot is not its velocity, scaled.
 const LEAST_OVERRIDE: f64 = 0.02;
 
@@ -74,6 +76,7 @@ impl<'s> CooperatingRobots<'s> {
                 robots,
                 samples: Vec::new(),
                 hand_overs: Vec::new(),
+                stops: Vec::new(),
                 carried_share: 0.0,
             },
         })
@@ -113,12 +116,17 @@ impl<'s> CooperatingRobots<'s> {
             *yielded = yields;
         }
         let holder = self.robot.holder();
-        let is_held = step.hold.is_some();
-        if is_held && !self.is_held {
+        if let Some(hold) = step.hold.filter(|_| !self.is_held) {
             event(members[holder], RunEvent::Hold);
+            let reason = hold_in_words(cell, self.spec, &hold);
+            self.track.stops.push(WorkPieceStop { from_s: t_s, to_s: f64::INFINITY, reason });
+        }
+        let is_held = step.hold.is_some();
+        if let Some(stop) = self.track.stops.last_mut().filter(|_| self.is_held) {
+            stop.to_s = t_s;
         }
         self.is_held = is_held;
-        self.stopped_s = if is_held && step.hold != Some(Hold::Override) { self.stopped_s + tick_s } else { 0.0 };
+        self.stopped_s = if is_held { self.stopped_s + tick_s } else { 0.0 };
         let (on_path, left_s) = self.robot.on_path();
         self.is_over = input == OperatorInput::Over && (left_s < 1e-6 || self.stopped_s > STUCK_S);
         self.track.samples.push(VirtualRobotSample {
@@ -128,7 +136,7 @@ impl<'s> CooperatingRobots<'s> {
             on_path,
             rate: step.rate,
             is_stopped: is_held,
-            gap_m: self.robot.gap_m(),
+            gap_m: self.robot.gap_m(FAR_M),
         });
         Ok(())
     }
@@ -166,6 +174,9 @@ impl<'s> CooperatingRobots<'s> {
 
     /// The recording.
     pub fn finish(mut self) -> VirtualRobotTrack {
+        if let (Some(stop), Some(last)) = (self.track.stops.last_mut(), self.track.samples.last()) {
+            stop.to_s = stop.to_s.min(last.t_s);
+        }
         let (_, left_s) = self.robot.on_path();
         let done_s = self.robot.path_s();
         // What is left of the stream counts as the time between its rows.
@@ -177,27 +188,51 @@ impl<'s> CooperatingRobots<'s> {
     }
 }
 
-/// Why a hand-over was decided.
-fn in_words(cell: &Cell, spec: &CellVirtualRobot, handed_over: &HandedOver) -> String {
-    let robot = |member: usize| &cell.robots[spec.members[member].robot.0];
-    let (giver, receiver, reason) = (robot(handed_over.from), robot(handed_over.to), &handed_over.reason);
-    let geometry = |id: GeometryId| match id {
+/// The name of a part, for messages.
+fn part_name(cell: &Cell, id: GeometryId) -> String {
+    match id {
         GeometryId::Object(object) => cell.objects[object.0].name.clone(),
         GeometryId::Link { robot, link } => {
             let r = &cell.robots[robot.0];
             format!("{}/{}", r.name, r.robot.chain.links()[link.0])
         }
-    };
-    let joint = |index: usize| giver.joint_names().get(index).cloned().unwrap_or_default();
-    let limit = match reason.limit {
-        None => "goes on".to_owned(),
-        Some(HoldLimit::Reach) => "comes to the end of its reach".to_owned(),
-        Some(HoldLimit::JointRange(index)) => format!("comes to the limit of {}", joint(index)),
-        Some(HoldLimit::JointSpeed(index)) => format!("needs more than the speed of {}", joint(index)),
-        Some(HoldLimit::Singularity) => "comes near a singularity".to_owned(),
-        Some(HoldLimit::Retreat) => "could not let go any more".to_owned(),
-        Some(HoldLimit::Contact(a, b)) => format!("would bring {} and {} together", geometry(a), geometry(b)),
-    };
+    }
+}
+
+/// What an arm comes to.
+fn limit_in_words(cell: &Cell, robot: &CellRobot, limit: &HoldLimit) -> String {
+    let joint = |index: usize| robot.joint_names().get(index).cloned().unwrap_or_default();
+    match *limit {
+        HoldLimit::Reach => "comes to the end of its reach".to_owned(),
+        HoldLimit::JointRange(index) => format!("comes to the limit of {}", joint(index)),
+        HoldLimit::JointSpeed(index) => format!("needs more than the speed of {}", joint(index)),
+        HoldLimit::Singularity => "comes near a singularity".to_owned(),
+        HoldLimit::Retreat => "could not let go any more".to_owned(),
+        HoldLimit::OtherArm => "has no room beside the other robot".to_owned(),
+        HoldLimit::Contact(a, b) => format!("would bring {} and {} together", part_name(cell, a), part_name(cell, b)),
+    }
+}
+
+/// Why the work-piece stands.
+fn hold_in_words(cell: &Cell, spec: &CellVirtualRobot, hold: &Hold) -> String {
+    match hold {
+        Hold::Override => "a monitor has stopped a robot that carries it".to_owned(),
+        Hold::Limit(member, limit) => {
+            let robot = &cell.robots[spec.members[*member].robot.0];
+            format!("{} {}", robot.name, limit_in_words(cell, robot, limit))
+        }
+        Hold::InTheWay(member) => format!("{} is in the way", cell.robots[spec.members[*member].robot.0].name),
+        Hold::Contact(a, b) => format!("{} and {} would touch", part_name(cell, *a), part_name(cell, *b)),
+        Hold::Unproven => "a motion could not be proven free".to_owned(),
+        Hold::Input => "a step without a duration".to_owned(),
+    }
+}
+
+/// Why a hand-over was decided.
+fn in_words(cell: &Cell, spec: &CellVirtualRobot, handed_over: &HandedOver) -> String {
+    let robot = |member: usize| &cell.robots[spec.members[member].robot.0];
+    let (giver, receiver, reason) = (robot(handed_over.from), robot(handed_over.to), &handed_over.reason);
+    let limit = reason.limit.map_or_else(|| "goes on".to_owned(), |limit| limit_in_words(cell, giver, &limit));
     let holds = if reason.receiver_holds_s.is_finite() {
         format!("can hold {:.1} s", reason.receiver_holds_s)
     } else {

@@ -1,0 +1,103 @@
+//! `elbowroom run` with `[virtual_robot.NAME]`: a work-piece is carried and handed over, stops before regions, and wrong
+//! tables are refused at their line.
+
+use std::path::Path;
+
+use crate::common::elbowroom;
+
+/// The example `inspection` in a folder, with a change of its cell; of its stream the first seconds.
+fn write(dir: &Path, change: impl Fn(String) -> String, seconds: f64) {
+    let examples = elbowroom_testkit::folder::examples();
+    let read = |name: &str| std::fs::read_to_string(examples.join("inspection").join(name)).unwrap();
+    let cell = read("cell.toml").replace("../models", &examples.join("models").display().to_string());
+    std::fs::write(dir.join("cell.toml"), change(cell.replace("tick_ms = 4", "tick_ms = 8"))).unwrap();
+    let stream = read("bar.csv");
+    let is_early = |line: &&str| line.split(',').next().unwrap().parse::<f64>().map_or(true, |t_s| t_s <= seconds);
+    let rows: Vec<&str> = stream.lines().filter(is_early).collect();
+    std::fs::write(dir.join("bar.csv"), rows.join("\n")).unwrap();
+}
+
+fn run(dir: &Path, status: i32) -> serde_json::Value {
+    let answer = elbowroom(dir, &["run", "cell.toml", "--json", "--out", "out"]);
+    assert_eq!(answer.status, status, "{}", answer.stderr);
+    serde_json::from_str(&answer.stdout).unwrap()
+}
+
+#[test]
+fn a_bar_is_handed_over_in_motion_and_stays_on_its_path() {
+    let dir = tempfile::tempdir().unwrap();
+    write(dir.path(), |cell| cell, 8.0);
+    let summary = run(dir.path(), 0);
+    let trio = &summary["virtual_robots"][0];
+    assert!(trio["carried_share"].as_f64().unwrap() > 0.999, "{trio}");
+    assert!(trio["path_deviation_m"].as_f64().unwrap() < 1e-9, "{trio}");
+    let hand_overs = trio["hand_overs"].as_array().unwrap();
+    assert!(!hand_overs.is_empty(), "{trio}");
+    let reason = hand_overs[0]["reason"].as_str().unwrap();
+    assert!(reason.starts_with("one ") && reason.contains("can hold"), "{reason}");
+    for robot in summary["robots"].as_array().unwrap() {
+        assert_eq!(robot["collisions"].as_array().unwrap().len(), 0, "{robot}");
+    }
+    let events = std::fs::read_to_string(dir.path().join("out/events.csv")).unwrap();
+    let of = |event: &str| events.lines().filter(|line| line.ends_with(&format!(",bar,{event}"))).count();
+    assert_eq!(
+        (of("hand_over"), of("grip"), of("release")),
+        (hand_overs.len(), hand_overs.len() + 1, hand_overs.len())
+    );
+    // Per tick the holder changes when the receiver takes the bar, and the bar never jumps.
+    let rows = std::fs::read_to_string(dir.path().join("out/work_piece.csv")).unwrap();
+    let mut lines = rows.lines();
+    assert_eq!(lines.next(), Some("t_s,name,holder,x_m,y_m,z_m,qx,qy,qz,qw"));
+    let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
+    let changes = rows.windows(2).filter(|w| w[0][2] != w[1][2]).count();
+    assert_eq!(changes, hand_overs.len());
+    let place = |row: &[&str]| [3, 4, 5].map(|column| row[column].parse::<f64>().unwrap());
+    for w in rows.windows(2) {
+        let (a, b) = (place(&w[0]), place(&w[1]));
+        let moved = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt();
+        assert!(moved <= 0.25 * 0.008 * 1.000_001, "{moved} m from {:?} to {:?}", w[0], w[1]);
+    }
+}
+
+#[test]
+fn the_bar_stops_before_a_region_and_the_reason_is_told() {
+    let dir = tempfile::tempdir().unwrap();
+    let region = "\n[region.wall]\nshape = \"box\"\nfrom = [-60, 50, 300]\nto = [60, 150, 600]\nwarning = 30\n";
+    write(dir.path(), |cell| cell + region, 9.0);
+    let summary = run(dir.path(), 0);
+    assert_eq!(summary["regions"][0]["entered"], false, "{summary}");
+    let trio = &summary["virtual_robots"][0];
+    assert!(trio["carried_share"].as_f64().unwrap() < 0.999, "{trio}");
+    let stops = trio["stops"].as_array().unwrap();
+    assert!(stops.iter().any(|s| s["reason"] == "a monitor has stopped a robot that carries it"), "{trio}");
+}
+
+#[test]
+fn wrong_tables_are_refused_at_their_line() {
+    let dir = tempfile::tempdir().unwrap();
+    let cases = [
+        ("robots = [\"one\", \"two\", \"three\"]", "robots = [\"one\"]", "two to eight"),
+        ("robots = [\"one\", \"two\", \"three\"]", "robots = [\"one\", \"two\", \"two\"]", "twice"),
+        ("robots = [\"one\", \"two\", \"three\"]", "robots = [\"one\", \"two\", \"free\"]", "three"),
+        ("work_piece = \"bar\"", "work_piece = \"bat\"", "bar"),
+        ("holder = \"one\"", "holder = \"four\"", "not in this cell"),
+        ("holder = \"one\"", "holder = \"two\"", "does not hold"),
+        ("stream = \"bar.csv\"", "stream = \"bor.csv\"", "bor.csv"),
+        ("stream = \"bar.csv\"", "stream = \"bar.csv\"\nspeed = -1", "speed"),
+        ("stream = \"bar.csv\"", "stream = \"bar.csv\"\nspeeed = 1", "speed"),
+        ("approach = 60 }", "approach = [0, 0, 0] }", "no motion"),
+        ("approach = 60 }", "aproach = 60 }", "approach"),
+        ("at = [20, 0, 450]", "at = [40, 0, 450]", "the grasp where the tool is"),
+    ];
+    for (from, to, expected) in cases {
+        let change = |cell: String| {
+            assert!(cell.contains(from), "{from}");
+            cell.replacen(from, to, 1)
+        };
+        write(dir.path(), change, 1.0);
+        let answer = elbowroom(dir.path(), &["run", "cell.toml"]);
+        assert_eq!(answer.status, 2, "{to}: {}", answer.stderr);
+        assert!(answer.stderr.contains(expected), "{to}: {}", answer.stderr);
+        assert!(answer.stderr.contains("cell.toml:") || answer.stderr.contains("bor.csv"), "{to}: {}", answer.stderr);
+    }
+}
