@@ -42,6 +42,7 @@ struct FailingCells {
     too_hard: usize,
     too_near: usize,
     energy_made: usize,
+    cooperating: usize,
     any: usize,
 }
 
@@ -55,6 +56,12 @@ impl FailingCells {
         self.too_hard += has(|f| matches!(f, Finding::TooHard { .. }));
         self.too_near += has(|f| matches!(f, Finding::TooNear { .. }));
         self.energy_made += has(|f| matches!(f, Finding::EnergyMade { .. }));
+        self.cooperating += has(|f| {
+            matches!(
+                f,
+                Finding::NotHeld { .. } | Finding::OffPath { .. } | Finding::Touched { .. } | Finding::TooFast { .. }
+            )
+        });
         self.any += usize::from(!findings.is_empty());
     }
 }
@@ -91,7 +98,7 @@ impl Summary {
 
     pub fn progress(&self) -> String {
         format!(
-            "{}: {} cells, {} refused, {} entries, {} broken promises, {} two inside, {} silent deadlocks, {} too hard, {} guided too near, {} with energy made",
+            "{}: {} cells, {} refused, {} entries, {} broken promises, {} two inside, {} silent deadlocks, {} too hard, {} guided too near, {} with energy made, {} cooperating wrongly",
             self.kind,
             self.cells,
             self.refused.values().sum::<usize>(),
@@ -101,11 +108,12 @@ impl Summary {
             self.failing.silent,
             self.failing.too_hard,
             self.failing.too_near,
-            self.failing.energy_made
+            self.failing.energy_made,
+            self.failing.cooperating
         )
     }
 
-    fn rows(&self) -> [(&'static str, String); 17] {
+    fn rows(&self) -> [(&'static str, String); 18] {
         let share = |n: usize| format!("{:.1} %", 100.0 * n as f64 / self.robots.max(1) as f64);
         [
             ("cells", self.cells.to_string()),
@@ -123,6 +131,7 @@ impl Summary {
             ("braked too hard", self.failing.too_hard.to_string()),
             ("guided too near", self.failing.too_near.to_string()),
             ("energy made", self.failing.energy_made.to_string()),
+            ("cooperating wrongly", self.failing.cooperating.to_string()),
             ("unforeseen", self.unforeseen.to_string()),
             ("took s", format!("{:.1}", self.took.as_secs_f64())),
         ]
@@ -220,6 +229,14 @@ pub fn in_words(finding: &Finding, cell: &Cell) -> String {
         ),
         Finding::EnergyMade { robot: r, t_s, energy_j } => {
             format!("the forces of robot {} made {:.6} J until {t_s:.4} s", robot(r), -energy_j)
+        }
+        Finding::NotHeld { robot: r, t_s, by_m } => {
+            format!("the work-piece moved by {by_m:.9} m in the hand of robot {} at {t_s:.4} s", robot(r))
+        }
+        Finding::OffPath { t_s, off_m } => format!("the work-piece was {off_m:.9} m off its path at {t_s:.4} s"),
+        Finding::Touched { robot: r, t_s } => format!("robot {} touched something at {t_s:.4} s", robot(r)),
+        Finding::TooFast { robot: r, t_s, share } => {
+            format!("a joint of robot {} had {share:.6} of its speed at {t_s:.4} s", robot(r))
         }
         Finding::TooHard { robot: r, joint, t_s, deceleration, limit } => format!(
             "robot {}: joint {joint} slowed down with {deceleration:.3} at {t_s:.4} s, its limit is {limit:.3} (rad/s² or m/s²)",

@@ -2,9 +2,22 @@
 
 use std::path::PathBuf;
 
+use elbowroom_robot::GeometryId;
+
 use crate::Cell;
 
 impl Cell {
+    /// Name of a part: an object, or `robot/link`.
+    pub fn part_name(&self, id: GeometryId) -> String {
+        match id {
+            GeometryId::Object(object) => self.objects[object.0].name.clone(),
+            GeometryId::Link { robot, link } => {
+                let r = &self.robots[robot.0];
+                format!("{}/{}", r.name, r.robot.chain.links()[link.0])
+            }
+        }
+    }
+
     /// The title of the cell: its name, or the name of the folder if the file is called `cell.toml` and states no other
     /// name.
     ///

@@ -55,6 +55,10 @@ impl CellVirtualRobot {
     fn not_started(&self, cell: &Cell, e: &CooperationError, tool_in_part: &Pose) -> Diagnostic {
         let (part, holder) =
             (&cell.objects[self.work_piece.0].name, &cell.robots[self.members[self.holder].robot.0].name);
+        if let CooperationError::Touching(a, b) = e {
+            let what = format!("{} and {} touch at the start", cell.part_name(*a), cell.part_name(*b));
+            return Diagnostic::new(&cell.file, self.line, what).hint("a `start` and objects that leave room");
+        }
         let CooperationError::NotGrasped { distance_m, angle_rad } = *e else {
             return Diagnostic::new(&cell.file, self.line, format!("virtual robot \"{}\": {e}", self.name));
         };

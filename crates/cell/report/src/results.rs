@@ -3,14 +3,20 @@
 //! It contains place and time of a stop, what governed, the duration, and what would release the robot.
 
 use elbowroom_monitor::OverrideReason;
-use elbowroom_sim::{AvoidanceSummary, OperatorSummary, Outcome, Recording, RegionTrack, RobotTrack, Stop};
+use elbowroom_sim::{
+    AvoidanceSummary, OperatorSummary, Outcome, Recording, RegionTrack, RobotTrack, Stop, VirtualRobotSummary,
+    VirtualRobotTrack,
+};
 use elbowroom_spatial::Vec3;
 
 use crate::explanation::{collision_text, reason_text};
-use crate::summary::{followed, last_motion_s, millimetres};
+use crate::summary::{carried, followed, last_motion_s, millimetres};
 
 /// Fraction of the programmed override below which a robot counts as slowed down.
 const SLOWED: f64 = 0.995;
+
+/// Share of its desired motion from which a work-piece counts as carried.
+const CARRIED: f64 = 0.999;
 
 /// Override below which the duration of the slow motion is stated.
 const CRAWLING: f64 = 0.05;
@@ -33,11 +39,11 @@ pub struct ResultLine {
     pub text: String,
 }
 
-/// One line per robot, then one per region that was entered although it must not be.
+/// One line per robot, one per virtual robot, then one per region that was entered although it must not be.
 pub fn results(rec: &Recording) -> Vec<ResultLine> {
     let robots = rec.robots.iter().map(|robot| of_robot(robot, rec));
     let entries = rec.regions.iter().filter(|r| r.is_violated()).map(|r| entry(r, rec));
-    robots.chain(entries).collect()
+    robots.chain(rec.virtual_robots.iter().map(|track| together(track, rec.tick_s))).chain(entries).collect()
 }
 
 fn of_robot(robot: &RobotTrack, rec: &Recording) -> ResultLine {
@@ -48,6 +54,12 @@ fn of_robot(robot: &RobotTrack, rec: &Recording) -> ResultLine {
         (None, _) => (Grade::Stopped, stopped(robot, rec)),
     };
     ResultLine { grade, text: format!("{} {what}.", robot.name) }
+}
+
+/// What a virtual robot carried out.
+fn together(track: &VirtualRobotTrack, tick_s: f64) -> ResultLine {
+    let grade = if track.carried_share > CARRIED { Grade::Good } else { Grade::Stopped };
+    ResultLine { grade, text: format!("{} {}.", track.name, carried(&VirtualRobotSummary::new(track, tick_s))) }
 }
 
 /// The robots that entered a region, and the time of the first entry.

@@ -5,7 +5,7 @@ use std::fmt;
 use elbowroom_sim::{
     AvoidanceSummary, AvoidanceTrack, Collision, Deadlock, OperatorSummary, Outcome, PartKind, PerceptionSummary,
     PerceptionTrack, RecordedRegionKind, Recording, RegionTrack, RobotEnding, RobotTrack, RunEnd, SensorSummary,
-    SensorTrack, Stop,
+    SensorTrack, Stop, VirtualRobotSummary,
 };
 
 use crate::explanation::explanation;
@@ -116,6 +116,10 @@ impl fmt::Display for TextSummary<'_> {
         if !rec.regions.is_empty() {
             lines.push(Line::new());
             lines.extend(region_lines(rec, self.longest_line()));
+        }
+        for track in &rec.virtual_robots {
+            let text = carried(&VirtualRobotSummary::new(track, rec.tick_s));
+            lines.push(vec![(format!("  {}  {text}", pad(&track.name, names)), Style::Plain)]);
         }
         if !rec.deadlocks.is_empty() {
             lines.push(Line::new());
@@ -261,6 +265,22 @@ fn evaded(track: &AvoidanceTrack, tick_s: f64) -> String {
     let [evading, off_path, waiting] = [a.evading_s, a.off_path_s, a.waiting_s];
     let step = duration(a.step_ns.p50);
     format!("evaded {evading:.2} s, off its path {off_path:.2} s, waited {waiting:.2} s, {nearest}{plans}; step {step}")
+}
+
+/// What a virtual robot carried out.
+pub fn carried(v: &VirtualRobotSummary) -> String {
+    let times = match v.hand_overs.len() {
+        0 => "without a hand-over".to_owned(),
+        1 => "with one hand-over".to_owned(),
+        n => format!("with {n} hand-overs"),
+    };
+    // The longest stop says most.
+    let longest = v.stops.iter().max_by(|a, b| (a.to_s - a.from_s).total_cmp(&(b.to_s - b.from_s)));
+    let stopped = longest.map_or_else(
+        || "it never stood".to_owned(),
+        |stop| format!("it stood for {:.2} s, longest from {:.2} s on: {}", v.stopped_s, stop.from_s, stop.reason),
+    );
+    format!("carried out {:.1} % of the desired motion {times}; {stopped}", 100.0 * v.carried_share)
 }
 
 /// Summary of a guided robot.

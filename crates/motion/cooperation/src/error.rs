@@ -1,5 +1,6 @@
 //! Why a virtual robot cannot be made, or does not take a pose.
 
+use elbowroom_robot::GeometryId;
 use thiserror::Error;
 
 /// Why a [`VirtualRobot`](crate::VirtualRobot) cannot be made.
@@ -25,6 +26,9 @@ pub enum CooperationError {
         /// Angle between tool and grasp, rad.
         angle_rad: f64,
     },
+    /// Two parts touch at the start.
+    #[error("two parts touch at the start")]
+    Touching(GeometryId, GeometryId),
     /// The scene does not have the work-piece, or a robot, or a link.
     #[error("{0}")]
     Scene(String),

@@ -177,7 +177,7 @@ impl Forecast {
             None if self.pause > 0 => self.pause -= 1,
             None => {
                 self.grasped = holding.search(part_in_world, q, margins);
-                self.pause = 5;
+                self.pause = 12;
             }
         }
         let Some(grasped) = &self.grasped else { return false };

@@ -10,7 +10,7 @@ use elbowroom_spatial::{Pose, Vec3};
 use crate::{CooperationSettings, Grasp, HoldLimit, Member};
 
 /// Starting points of a search for another branch of the inverse kinematics.
-const RESTARTS: usize = 8;
+const RESTARTS: usize = 3;
 
 /// What a configuration must keep.
 #[derive(Debug, Clone, Copy)]

@@ -97,6 +97,10 @@ impl<'s> VirtualRobot<'s> {
             state.detach(scene, work_piece).map_err(in_scene)?;
         }
         state.attach_at(scene, work_piece, attachment(&members[holder.0], &tool_in_part)).map_err(in_scene)?;
+        let mut checker = Checker::new(scene, CheckerOptions::default());
+        if let Some(pair) = checker.collides(&state) {
+            return Err(CooperationError::Touching(pair.a, pair.b));
+        }
         let limbs = members.iter().zip(&arms).map(|(member, arm)| Limb::new(member, &arm.state.q)).collect();
         let forecasts = holdings.iter().map(|h| Forecast::new(members[h.member].limits.len())).collect();
         let carried = Carried {
@@ -109,7 +113,7 @@ impl<'s> VirtualRobot<'s> {
         };
         Ok(Self {
             scene,
-            checker: Checker::new(scene, CheckerOptions::default()),
+            checker,
             state_ahead: state.clone(),
             decision: DecisionMemory::new(holdings.len()),
             state,

@@ -16,7 +16,7 @@ use crate::fuzz_cells::spec::{CellSpec, GuidanceSpec, HandRow, ObjectSpec, Progr
 /// Laws of forces; the first three are fields alone.
 const LAWS: [&str; 5] = ["repulsive", "khatib", "spring_damper", "admittance", "impedance"];
 /// Tries to make a robot, and to place an object that does not touch it.
-const TRIES: usize = 8;
+pub const TRIES: usize = 8;
 
 /// Makes a guided robot among objects.
 pub fn cell(random: &mut Random, places: &Places<'_>) -> CellSpec {
@@ -28,7 +28,7 @@ pub fn cell(random: &mut Random, places: &Places<'_>) -> CellSpec {
         spec.parse(places.cells).ok()
     });
     let Some(cell) = cell else { return spec };
-    let tool = tool_in_world(&cell);
+    let tool = tool_in_world(&cell, 0);
     for i in 0..random.whole(1, 3) {
         for _ in 0..TRIES {
             let object = object(&format!("o{i}"), tool.translation, random);
@@ -56,7 +56,7 @@ pub fn cell(random: &mut Random, places: &Places<'_>) -> CellSpec {
 }
 
 /// A robot of six axes with a box as its tool.
-fn with_tool(random: &mut Random, places: &Places<'_>) -> RobotSpec {
+pub fn with_tool(random: &mut Random, places: &Places<'_>) -> RobotSpec {
     let mut robot = robot::example(random, places);
     robot.program = ProgramSpec::of_steps(100.0, Vec::new());
     let (width, length) = (random.scaled(0.006, 0.06), random.between(0.04, 0.2));
@@ -65,21 +65,22 @@ fn with_tool(random: &mut Random, places: &Places<'_>) -> RobotSpec {
     robot
 }
 
-fn tool_in_world(cell: &Cell) -> Pose {
-    let robot = &cell.robots[0];
+/// The tool point of a robot at its start.
+pub fn tool_in_world(cell: &Cell, robot: usize) -> Pose {
+    let robot = &cell.robots[robot];
     let mut state = ChainState::new(&robot.robot.chain);
     state.q.copy_from_slice(&robot.start);
     robot.robot.chain.forward(&mut state);
     robot.base_in_world * state.link_in_root(robot.flange) * robot.tcp_in_flange
 }
 
-fn vector(random: &mut Random, most: f64) -> Vec3 {
+pub fn vector(random: &mut Random, most: f64) -> Vec3 {
     let [x, y, z] = random.vector(most);
     Vec3::new(x, y, z)
 }
 
 /// An object near the tool: a large one with a side before it, or a small one anywhere around.
-fn object(name: &str, tool: Vec3, random: &mut Random) -> ObjectSpec {
+pub fn object(name: &str, tool: Vec3, random: &mut Random) -> ObjectSpec {
     let gap = random.scaled(0.006, 0.1);
     let is_large = random.percent(50);
     let size: [f64; 3] =
@@ -124,7 +125,7 @@ fn operator(random: &mut Random) -> String {
 }
 
 /// A hand that pushes into objects, jumps, trembles, turns, lets go and is lost.
-fn hand(tool: Pose, objects: &[ObjectSpec], random: &mut Random) -> Vec<HandRow> {
+pub fn hand(tool: Pose, objects: &[ObjectSpec], random: &mut Random) -> Vec<HandRow> {
     let mut rows = Vec::new();
     let (mut t_ms, mut at, mut turn) = (0, tool.translation, Vec3::ZERO);
     let centres: Vec<Vec3> = objects.iter().map(|o| Vec3::new(o.at[0], o.at[1], o.at[2])).collect();

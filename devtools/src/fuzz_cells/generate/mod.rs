@@ -1,6 +1,7 @@
 //! Random cells.
 
 mod carried;
+mod cooperating;
 mod encounter;
 mod exchange;
 mod faults;
@@ -40,10 +41,12 @@ pub enum Kind {
     Planned,
     /// Robots that a person guides into objects, with shields, guides and forces.
     Guided,
+    /// Robots that carry a bar as one, among objects and before regions.
+    Cooperating,
 }
 
 impl Kind {
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Stop,
         Self::Exchange,
         Self::Faults,
@@ -52,6 +55,7 @@ impl Kind {
         Self::Recordings,
         Self::Planned,
         Self::Guided,
+        Self::Cooperating,
     ];
 
     pub fn name(self) -> &'static str {
@@ -64,6 +68,7 @@ impl Kind {
             Self::Recordings => "recordings",
             Self::Planned => "planned",
             Self::Guided => "guided",
+            Self::Cooperating => "cooperating",
         }
     }
 
@@ -75,6 +80,7 @@ impl Kind {
             Self::Exchange | Self::Tools => 20,
             Self::Planned => 8,
             Self::Guided => 12,
+            Self::Cooperating => 6,
         }
     }
 
@@ -98,6 +104,7 @@ pub fn cell(kind: Kind, random: &mut Random, places: &Places<'_>) -> CellSpec {
         Kind::Tools => tools::cell(random, places),
         Kind::Recordings => recordings::cell(random, places),
         Kind::Guided => guided::cell(random, places),
+        Kind::Cooperating => cooperating::cell(random, places),
         Kind::Planned => {
             let mut spec = stop(random, places);
             planned::plan(&mut spec, random);

@@ -18,6 +18,14 @@ pub enum Finding {
     TooNear { robot: usize, object: usize, t_s: f64, distance_m: f64, least_m: f64 },
     /// The forces of a guided tool gave more energy than they got.
     EnergyMade { robot: usize, t_s: f64, energy_j: f64 },
+    /// The work-piece of a virtual robot moved in the hand that holds it.
+    NotHeld { robot: usize, t_s: f64, by_m: f64 },
+    /// The work-piece of a virtual robot left its desired path.
+    OffPath { t_s: f64, off_m: f64 },
+    /// A robot of a virtual robot touched something.
+    Touched { robot: usize, t_s: f64 },
+    /// A joint was faster than it can, by this share of its speed.
+    TooFast { robot: usize, t_s: f64, share: f64 },
     /// A joint decelerated harder than it can.
     TooHard { robot: usize, joint: usize, t_s: f64, deceleration: f64, limit: f64 },
 }

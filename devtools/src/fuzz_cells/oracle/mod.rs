@@ -7,6 +7,7 @@
 
 mod arm;
 mod carrier;
+mod cooperating;
 mod exchange;
 pub mod findings;
 mod frame;
@@ -54,6 +55,7 @@ pub fn check(
     exchange::check(&motion, &guarded, promises, has_violation, &mut findings);
     physics::check(cell, recording, &mut findings);
     guided::check(cell, recording, &arms, &mut findings);
+    cooperating::check(cell, recording, &arms, &mut findings);
     Ok(findings)
 }
 

@@ -2,6 +2,7 @@
 
 use elbowroom_cell::{Cell, ProgramBody};
 use elbowroom_kinematics::TrajectoryRow;
+use elbowroom_robot::RobotId;
 use elbowroom_sim::Recording;
 
 use super::findings::{Finding, Findings};
@@ -16,8 +17,11 @@ const ROUNDING: f64 = 2e-9;
 /// the changes of velocity in the recording that they play.
 pub fn check(cell: &Cell, recording: &Recording, findings: &mut Findings) {
     let dt = recording.tick_s;
-    // A surface stops a guided tool as fast as it must.
-    let is_guided = |robot: usize| cell.guidance.operators.iter().any(|o| o.robot.0 == robot);
+    // A surface stops a guided tool as fast as it must, and a proof a robot that acts with others.
+    let is_guided = |robot: usize| {
+        let (guidance, robot) = (&cell.guidance, RobotId(robot));
+        guidance.operator_of(robot).is_some() || guidance.virtual_robot_of(robot).is_some()
+    };
     for (robot, track) in recording.robots.iter().enumerate().filter(|(robot, _)| !is_guided(*robot)) {
         for (joint, l) in cell.robots[robot].limits.iter().enumerate() {
             let played = played(cell, robot).map_or(0.0, |rows| largest_change(rows, joint, dt) / dt);

@@ -8,7 +8,7 @@ use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 use super::frame::Frame;
 use super::solid::OracleSolid;
-use super::{Arm, Finding, Promises, check};
+use super::{Arm, Finding, Findings, Promises, check};
 use crate::fuzz_cells::random::Random;
 
 const HEAD: &str =
@@ -347,4 +347,28 @@ fn a_guided_tool_that_is_too_near_and_energy_that_is_made_are_found() {
         near += findings(&outcome).iter().filter(|f| matches!(f, Finding::TooNear { object: 0, .. })).count();
     }
     assert_eq!(near, 1);
+}
+
+#[test]
+fn a_work_piece_that_is_dropped_or_off_its_path_and_joints_that_are_too_fast_are_found() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let mut cell = Cell::load(root.join("examples/inspection/cell.toml")).unwrap();
+    cell.timing.max_s = 1.0;
+    let outcome = simulate(&cell, &RunOptions::default()).unwrap();
+    let found = |recording: &elbowroom_sim::Recording| {
+        let arms: Vec<Arm> = cell.robots.iter().map(Arm::new).collect();
+        let mut findings = Findings::default();
+        super::cooperating::check(&cell, recording, &arms, &mut findings);
+        findings.list
+    };
+    assert_eq!(found(&outcome.recording), []);
+    let last = outcome.recording.virtual_robots[0].samples.len() - 2;
+    let mut dropped = outcome.recording.clone();
+    dropped.virtual_robots[0].samples[last].part_in_world.translation.z += 1e-5;
+    let list = found(&dropped);
+    assert!(matches!(list[..], [Finding::NotHeld { robot: 0, .. }, Finding::OffPath { .. }]), "{list:?}");
+    let mut fast = outcome.recording.clone();
+    fast.robots[1].samples[last].q[0] += 1.1 * cell.robots[1].limits[0].velocity * fast.tick_s;
+    let list = found(&fast);
+    assert!(matches!(list[..], [Finding::TooFast { robot: 1, .. }]), "{list:?}");
 }

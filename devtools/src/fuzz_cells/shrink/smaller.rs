@@ -26,8 +26,8 @@ impl Candidates<'_> {
 /// Returns every cell that has one thing less, the largest things first.
 pub fn candidates(spec: &CellSpec) -> Vec<CellSpec> {
     let mut list = Candidates { spec, list: Vec::new() };
-    // The first robot is the one that is guided.
-    let least = usize::from(spec.guidance.is_some());
+    // The first robot is the one that is guided; all of them carry a bar.
+    let least = spec.guidance.as_ref().map_or(0, |g| if g.virtual_robot.is_empty() { 1 } else { spec.robots.len() });
     for i in (least..spec.robots.len()).rev().filter(|_| spec.robots.len() > 1) {
         list.push(|c| remove_robot(c, i));
     }
@@ -64,7 +64,12 @@ fn without_object(list: &mut Candidates<'_>, i: usize, object: &ObjectSpec) {
     let follows = |f: &Option<FollowSpec>| matches!(f, Some(FollowSpec::Object(name)) if *name == object.name);
     let is_needed = list.spec.regions.iter().any(|r| follows(&r.follow))
         || list.spec.robots.iter().any(|r| r.evades.contains(&object.name))
-        || list.spec.guidance.iter().flat_map(|g| &g.tables).any(|t| t.contains(&format!("\"{}\"", object.name)));
+        || list
+            .spec
+            .guidance
+            .iter()
+            .flat_map(|g| g.tables.iter().chain([&g.virtual_robot]))
+            .any(|t| t.contains(&format!("\"{}\"", object.name)));
     if !is_needed {
         list.push(|c| drop(c.objects.remove(i)));
         return;
@@ -108,7 +113,9 @@ fn shorter_program(list: &mut Candidates<'_>, r: usize, program: &ProgramSpec) {
 }
 
 fn shorter_guidance(list: &mut Candidates<'_>, guidance: &GuidanceSpec) {
-    for i in 0..guidance.tables.len() {
+    // The only table of a virtual robot has its grasps.
+    let tables = if guidance.virtual_robot.is_empty() { guidance.tables.len() } else { 0 };
+    for i in 0..tables {
         list.push(|c| c.guidance.iter_mut().for_each(|g| drop(g.tables.remove(i))));
     }
     if guidance.rows.len() / 2 >= LEAST_ROWS {

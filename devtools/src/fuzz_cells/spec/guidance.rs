@@ -9,6 +9,8 @@ use std::path::Path;
 pub struct GuidanceSpec {
     /// Keys of the operator.
     pub operator: String,
+    /// Keys of a virtual robot, which has the stream instead of an operator; empty for an operator.
+    pub virtual_robot: String,
     pub rows: Vec<HandRow>,
     /// Tables `[fixture.NAME]` and `[force.NAME]`.
     pub tables: Vec<String>,
@@ -29,7 +31,12 @@ pub struct HandRow {
 
 impl GuidanceSpec {
     pub(super) fn write(&self, t: &mut String) {
-        let _ = writeln!(t, "[operator.hand]\nrobot = \"r0\"\nstream = \"{}\"\n{}", self.file_name(), self.operator);
+        if !self.virtual_robot.is_empty() {
+            let _ = writeln!(t, "[virtual_robot.pair]\nstream = \"{}\"\n{}", self.file_name(), self.virtual_robot);
+        } else {
+            let _ =
+                writeln!(t, "[operator.hand]\nrobot = \"r0\"\nstream = \"{}\"\n{}", self.file_name(), self.operator);
+        }
         for table in &self.tables {
             let _ = writeln!(t, "{table}");
         }

@@ -1,6 +1,7 @@
 //! The plots: distances and override, figure 12 of the paper, then timing and joints.
 
 mod avoidance;
+mod cooperation;
 mod distances;
 mod figure;
 mod figure12;
@@ -29,6 +30,7 @@ pub fn all(scene: &ReportScene, runs: &[(&str, &Recording)], planned: Option<&Re
     for run in 0..runs.len() {
         figures.extend(avoidance::all(runs, run));
         figures.extend(guidance::all(runs, run));
+        figures.extend(cooperation::all(runs, run));
         figures.extend(timing::chart(runs, run));
         figures.extend(joints::chart(scene, runs, run));
     }

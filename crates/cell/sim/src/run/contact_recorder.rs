@@ -73,10 +73,7 @@ impl<'a> ContactRecorder<'a> {
         }
         let name = |m: GeometryId| match m {
             GeometryId::Object(o) => parts.name(o),
-            GeometryId::Link { robot, link } => {
-                let r = &cell.robots[robot.0];
-                format!("{}/{}", r.name, r.robot.chain.links()[link.0])
-            }
+            link @ GeometryId::Link { .. } => cell.part_name(link),
         };
         let robot = |m: GeometryId| match m {
             GeometryId::Link { robot, .. } => Some(robot.0),

@@ -4,7 +4,7 @@ use elbowroom_cell::cooperation::{HandedOver, Hold, HoldLimit, VirtualRobot};
 use elbowroom_cell::{Cell, CellRobot, CellVirtualRobot, OperatorInput};
 use elbowroom_diagnostic::Diagnostic;
 use elbowroom_kinematics::ChainState;
-use elbowroom_robot::{GeometryId, RobotId};
+use elbowroom_robot::RobotId;
 use elbowroom_scene::{Attachment, Scene};
 
 use super::guided_robot::place;
@@ -188,17 +188,6 @@ impl<'s> CooperatingRobots<'s> {
     }
 }
 
-/// The name of a part, for messages.
-fn part_name(cell: &Cell, id: GeometryId) -> String {
-    match id {
-        GeometryId::Object(object) => cell.objects[object.0].name.clone(),
-        GeometryId::Link { robot, link } => {
-            let r = &cell.robots[robot.0];
-            format!("{}/{}", r.name, r.robot.chain.links()[link.0])
-        }
-    }
-}
-
 /// What an arm comes to.
 fn limit_in_words(cell: &Cell, robot: &CellRobot, limit: &HoldLimit) -> String {
     let joint = |index: usize| robot.joint_names().get(index).cloned().unwrap_or_default();
@@ -209,7 +198,7 @@ fn limit_in_words(cell: &Cell, robot: &CellRobot, limit: &HoldLimit) -> String {
         HoldLimit::Singularity => "comes near a singularity".to_owned(),
         HoldLimit::Retreat => "could not let go any more".to_owned(),
         HoldLimit::OtherArm => "has no room beside the other robot".to_owned(),
-        HoldLimit::Contact(a, b) => format!("would bring {} and {} together", part_name(cell, a), part_name(cell, b)),
+        HoldLimit::Contact(a, b) => format!("would bring {} and {} together", cell.part_name(a), cell.part_name(b)),
     }
 }
 
@@ -222,7 +211,7 @@ fn hold_in_words(cell: &Cell, spec: &CellVirtualRobot, hold: &Hold) -> String {
             format!("{} {}", robot.name, limit_in_words(cell, robot, limit))
         }
         Hold::InTheWay(member) => format!("{} is in the way", cell.robots[spec.members[*member].robot.0].name),
-        Hold::Contact(a, b) => format!("{} and {} would touch", part_name(cell, *a), part_name(cell, *b)),
+        Hold::Contact(a, b) => format!("{} and {} would touch", cell.part_name(*a), cell.part_name(*b)),
         Hold::Unproven => "a motion could not be proven free".to_owned(),
         Hold::Input => "a step without a duration".to_owned(),
     }

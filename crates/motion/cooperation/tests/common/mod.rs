@@ -1,4 +1,5 @@
 //! Two arms that face each other with a bar between them, and random motions of the bar.
+#![allow(dead_code, reason = "every program uses a part of it")]
 
 use elbowroom_cooperation::{CooperationSettings, CooperationStep, Grasp, HandedOver, Hold, Member, VirtualRobot};
 use elbowroom_formats::{LoadOptions, robot};
@@ -86,6 +87,15 @@ impl Pair {
         Self { scene, members, start: all }
     }
 
+    /// Like [`Self::new`], but only the first arm can grasp the bar.
+    pub fn alone(count: usize, distance_m: f64) -> Self {
+        let mut pair = Self::new(count, distance_m);
+        for member in &mut pair.members[1..] {
+            member.grasps.iter_mut().for_each(|grasp| grasp.tool_in_part.translation = Vec3::Z * 10.0);
+        }
+        pair
+    }
+
     pub fn state(&self) -> SceneState {
         let mut state = SceneState::new(&self.scene);
         for (member, q) in self.members.iter().zip(&self.start) {
@@ -167,6 +177,8 @@ pub struct Outcome {
     pub deviation_m: f64,
     pub contacts: usize,
     pub last_hold: Option<Hold>,
+    /// Wall-clock times of the steps, µs.
+    pub step_us: Vec<f64>,
     /// Largest share of the speed of a joint.
     pub largest_speed_share: f64,
     /// Largest speed of the work-piece, m/s.
@@ -190,7 +202,9 @@ pub fn carry(pair: &Pair, settings: CooperationSettings, motion: &[Pose]) -> Out
             robot.desire(t_s, pose).unwrap();
         }
         let before = robot.part_in_world().translation;
+        let begin = std::time::Instant::now();
         let step: CooperationStep = robot.step(DT_S, &vec![1.0; pair.members.len()]);
+        outcome.step_us.push(begin.elapsed().as_secs_f64() * 1e6);
         outcome.largest_rate_change = outcome.largest_rate_change.max((step.rate - rate).abs());
         rate = step.rate;
         outcome.largest_speed_m_s =

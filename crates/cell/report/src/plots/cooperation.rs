@@ -1,0 +1,50 @@
+//! Plots of robots that act as one over time: who holds the work-piece, how fast it moves, how near the robots are.
+
+use elbowroom_sim::{Recording, VirtualRobotSample, VirtualRobotTrack};
+use serde_json::json;
+
+use super::figure::{Figure, round};
+use super::plot::{Plot, axis, layout, line, stroke, with};
+use crate::downsample::{MAX_POINTS, pick};
+
+/// Curves of every virtual robot in a run.
+pub fn all(runs: &[(&str, &Recording)], run: usize) -> Vec<Figure> {
+    let (label, recording) = runs[run];
+    let name = |track: &VirtualRobotTrack| {
+        if runs.len() > 1 { format!("{} · {label}", track.name) } else { track.name.clone() }
+    };
+    recording.virtual_robots.iter().map(|track| curves(track, &name(track), run)).collect()
+}
+
+fn curves(track: &VirtualRobotTrack, name: &str, run: usize) -> Figure {
+    let s = &track.samples;
+    let axis_at = |title: &str, domain: [f64; 2]| with(axis(title), json!({ "domain": domain }));
+    let robots: Vec<usize> = (0..track.robots.len()).collect();
+    let holder = with(axis_at("holder", [0.7, 1.0]), json!({ "tickvals": robots, "ticktext": track.robots }));
+    let axes = json!({
+        "yaxis2": with(axis_at("%", [0.36, 0.64]), json!({ "rangemode": "tozero" })),
+        "yaxis3": with(axis_at("mm", [0.0, 0.3]), json!({ "rangemode": "tozero" })),
+    });
+    let mut plot = Plot::new(with(layout(with(axis("time (s)"), json!({ "anchor": "y3" })), holder), axes));
+    let mut add = |what: &str, color: &str, y_axis: &str, at: &dyn Fn(&VirtualRobotSample) -> f64| {
+        let value = |i: usize| at(&s[i]);
+        let kept = pick(s.len(), MAX_POINTS, &[&value]);
+        let (x, y) = kept.iter().map(|&i| (round(s[i].t_s), round(value(i)))).unzip();
+        plot.add(with(line(x, y, what, stroke(color, 2.0)), json!({ "yaxis": y_axis })));
+    };
+    add("robot that holds", "#1f77b4", "y", &|s| s.holder as f64);
+    add("share of the desired speed (%)", "#2ca02c", "y2", &|s| 100.0 * s.rate);
+    let gap = |s: &VirtualRobotSample| if s.gap_m.is_finite() { 1e3 * s.gap_m } else { f64::NAN };
+    add("least distance between two robots (mm)", "#d62728", "y3", &gap);
+    Figure {
+        title: format!("Robots that act as one: {name}"),
+        note: "The robot that holds the work-piece, its speed as a share of the desired one, and the least distance between two \
+               of the robots, as far as it is below 100 mm."
+            .into(),
+        over_time: true,
+        run: Some(run),
+        height: 460,
+        wide: true,
+        drawing: plot.into(),
+    }
+}
