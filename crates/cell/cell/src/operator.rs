@@ -96,10 +96,12 @@ impl OperatorStream {
         self.rows.windows(2).filter_map(step).filter(|step| *step <= limit_m).fold(0.0, f64::max)
     }
 
-    /// Time of the row that holds at a time (s); `None` before the first.
-    pub fn row_s(&self, t_s: f64) -> Option<f64> {
-        let next = self.rows.partition_point(|row| row.0 <= t_s);
-        Some(self.rows.get(next.checked_sub(1)?)?.0)
+    /// The rows after one time (s; from the first if `None`) until another: their times, and the desired poses while the
+    /// operator is enabled.
+    pub fn rows_between(&self, after_s: Option<f64>, until_s: f64) -> impl Iterator<Item = (f64, Option<Pose>)> + '_ {
+        let first = after_s.map_or(0, |after_s| self.rows.partition_point(|row| row.0 <= after_s));
+        let end = self.rows.partition_point(|row| row.0 <= until_s).max(first);
+        self.rows[first..end].iter().copied()
     }
 
     /// What the operator wants at a time (s).

@@ -44,6 +44,7 @@
 //! **Invariant.** For any cell and recording, a page never loads anything from a network, and a name in it is always
 //! text, never markup.
 
+mod carried_motion;
 mod downsample;
 mod explanation;
 mod html;

@@ -9,8 +9,9 @@ use elbowroom_sim::{
 };
 use elbowroom_spatial::Vec3;
 
+use crate::carried_motion::carried;
 use crate::explanation::{collision_text, reason_text};
-use crate::summary::{carried, followed, last_motion_s, millimetres};
+use crate::summary::{followed, last_motion_s, millimetres};
 
 /// Fraction of the programmed override below which a robot counts as slowed down.
 const SLOWED: f64 = 0.995;

@@ -8,6 +8,7 @@ use elbowroom_sim::{
     SensorTrack, Stop, VirtualRobotSummary,
 };
 
+use crate::carried_motion::carried;
 use crate::explanation::explanation;
 use crate::sparkline::sparkline;
 
@@ -265,22 +266,6 @@ fn evaded(track: &AvoidanceTrack, tick_s: f64) -> String {
     let [evading, off_path, waiting] = [a.evading_s, a.off_path_s, a.waiting_s];
     let step = duration(a.step_ns.p50);
     format!("evaded {evading:.2} s, off its path {off_path:.2} s, waited {waiting:.2} s, {nearest}{plans}; step {step}")
-}
-
-/// What a virtual robot carried out.
-pub fn carried(v: &VirtualRobotSummary) -> String {
-    let times = match v.hand_overs.len() {
-        0 => "without a hand-over".to_owned(),
-        1 => "with one hand-over".to_owned(),
-        n => format!("with {n} hand-overs"),
-    };
-    // The longest stop says most.
-    let longest = v.stops.iter().max_by(|a, b| (a.to_s - a.from_s).total_cmp(&(b.to_s - b.from_s)));
-    let stopped = longest.map_or_else(
-        || "it never stood".to_owned(),
-        |stop| format!("it stood for {:.2} s, longest from {:.2} s on: {}", v.stopped_s, stop.from_s, stop.reason),
-    );
-    format!("carried out {:.1} % of the desired motion {times}; {stopped}", 100.0 * v.carried_share)
 }
 
 /// Summary of a guided robot.

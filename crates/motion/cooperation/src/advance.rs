@@ -11,6 +11,8 @@ use crate::{Hold, HoldLimit, VirtualRobot};
 /// that approaches or leaves it.
 const ATTEMPTS: [(f64, f64); 9] =
     [(1.0, 1.0), (1.0, 0.3), (1.0, 0.0), (0.5, 0.3), (0.25, 0.3), (0.1, 0.1), (0.0, 1.0), (0.0, 0.2), (0.0, 0.04)];
+/// Override below which the work-piece stands instead of creeping.
+const LEAST_RATE: f64 = 1e-3;
 /// Time in which a hand that begins to move with the work-piece comes to its exact place, s.
 const ALIGNMENT_S: f64 = 0.05;
 /// Share of the joint speeds that the arms that carry the work-piece may use.
@@ -20,14 +22,19 @@ const MOST_ARMS: usize = 8;
 
 impl VirtualRobot<'_> {
     /// Looks ahead along the path: what the arms that carry the work-piece can do, and who is in the way.
-    pub(crate) fn look_ahead(&mut self) {
+    pub(crate) fn look_ahead(&mut self, dt_s: f64) {
         let has_receiver = self.has_receiver();
         let Self { holdings, carried, settings, hand_over, .. } = self;
         let holder = &mut holdings[carried.holder];
-        carried.ahead.extend(holder, &carried.path, carried.path_s, (settings, has_receiver));
+        carried.ahead.extend(holder, &carried.path, carried.path_s, (settings, has_receiver, dt_s));
         let arriving = hand_over.as_ref().filter(|h| h.looks_ahead).map(|h| h.receiver);
         if let Some(follower) = hand_over.as_ref().and_then(HandOver::follower).or(arriving) {
-            carried.follower_ahead.extend(&mut holdings[follower], &carried.path, carried.path_s, (settings, true));
+            carried.follower_ahead.extend(
+                &mut holdings[follower],
+                &carried.path,
+                carried.path_s,
+                (settings, true, dt_s),
+            );
         }
         self.watch_members();
     }
@@ -58,8 +65,8 @@ impl VirtualRobot<'_> {
         if self.hand_over.as_ref().is_some_and(|h| h.follower().is_some()) {
             room_s = room_s.min(carried.follower_ahead.free_to_s - carried.path_s);
         }
-        if self.limbs.iter().any(|limb| limb.is_in_the_way) {
-            // Slow down until the other arm is away.
+        if carried.is_paused || self.limbs.iter().any(|limb| limb.is_in_the_way) {
+            // Slow down, until the other arm is away or a pose is desired again.
             room_s = room_s.min(0.5 * carried.rate * carried.rate * self.settings.ramp_s);
         }
         room_s
@@ -81,10 +88,11 @@ impl VirtualRobot<'_> {
         let allowed = carriers.map(|m| usable(overrides[m])).fold(1.0, f64::min);
         let fastest = self.joint_rate().min(allowed);
         let wanted = self.carried.next_rate(self.room_s(), fastest, dt_s, &self.settings);
-        let mut hold = if allowed == 0.0 { Some(Hold::Override) } else { self.limit_ahead() };
+        let wanted = if wanted < LEAST_RATE && allowed < LEAST_RATE { 0.0 } else { wanted };
+        let mut hold = if allowed < LEAST_RATE { Some(Hold::Override) } else { self.limit_ahead() };
         self.react(dt_s, overrides);
         for (of_rate, of_hand) in ATTEMPTS {
-            let (rate, hand) = (wanted * of_rate, if allowed > 0.0 { of_hand } else { 0.0 });
+            let (rate, hand) = (wanted * of_rate, allowed * of_hand);
             let tried = self.carry(rate, hand, dt_s).and_then(|before_m| self.sweep().map(|()| before_m));
             match tried {
                 Ok(before_m) => {
@@ -102,15 +110,16 @@ impl VirtualRobot<'_> {
             self.commit(0.0, before_m, dt_s);
         } else {
             self.stand();
-        }
-        if let Some(hand_over) = &mut self.hand_over {
-            hand_over.stuck_s += dt_s;
+            self.hand_over.iter_mut().for_each(|h| h.stuck_s += dt_s);
         }
         hold
     }
 
     /// What the arms that carry the work-piece come to ahead.
     fn limit_ahead(&self) -> Option<Hold> {
+        if self.carried.is_paused {
+            return Some(Hold::Paused);
+        }
         let in_the_way = self.limbs.iter().position(|limb| limb.is_in_the_way);
         if let Some(member) = in_the_way {
             return Some(Hold::InTheWay(member));
@@ -123,7 +132,7 @@ impl VirtualRobot<'_> {
     /// Joint values of the arms that carry the work-piece, after `dt_s` seconds at a rate; a hand that approaches or leaves
     /// moves with the share `hand` of its speed. Returns the distance of the
     /// following hand from its grasp then (m).
-    fn carry(&mut self, rate: f64, hand: f64, dt_s: f64) -> Result<f64, Hold> {
+    pub(crate) fn carry(&mut self, rate: f64, hand: f64, dt_s: f64) -> Result<f64, Hold> {
         let part_in_world = self.carried.path.at(self.carried.path_s + rate * dt_s);
         let holder = self.holder();
         let (limb, arm) = (&mut self.limbs[holder], &self.arms[holder]);
@@ -188,6 +197,7 @@ impl VirtualRobot<'_> {
         }
     }
 
+    /// The first contact of an arm that moves.
     fn first_hit(&mut self) -> Result<Option<SweepHit>, Hold> {
         let idle = SweepMove::Robot { robot: RobotId(0), to: &[] };
         let mut moves = [idle; MOST_ARMS];
@@ -201,7 +211,16 @@ impl VirtualRobot<'_> {
             count += 1;
         }
         let options = SweepOptions { tolerance_m: 1e-5, ..SweepOptions::default() };
-        self.checker.sweep(&self.state, &moves[..count], &options).map_err(|_| Hold::Unproven)
+        let moves = &moves[..count];
+        for moving in moves {
+            // What rests in contact elsewhere is none of its business.
+            let SweepMove::Robot { robot, .. } = moving else { continue };
+            let mut pairs = self.checker.between(Selection::Robot(*robot), Selection::All);
+            if let Some(hit) = pairs.sweep(&self.state, moves, &options).map_err(|_| Hold::Unproven)? {
+                return Ok(Some(hit));
+            }
+        }
+        Ok(None)
     }
 
     /// The free arm that moves this geometry in this step.

@@ -14,6 +14,8 @@ pub(crate) struct Carried {
     pub path_s: f64,
     /// Share of the desired speed, 0 to 1.
     pub rate: f64,
+    /// Whether it stops until the next desired pose.
+    pub is_paused: bool,
     /// Index of the holding that carries it.
     pub holder: usize,
     /// What the holder can do ahead.

@@ -11,6 +11,8 @@ const STOPPED_GAIN_S: f64 = 0.15;
 const RECEIVER_SPEED: f64 = 2.0;
 /// Time for which the work-piece waits for a receiver where the holder can go on, but not let go any more, s.
 const PATIENCE_S: f64 = 2.0;
+/// Duration of a step with one piece of the holder's forecast, s.
+const STEP_S: f64 = 4e-3;
 /// A free arm waits for another grasp only if that is better by this, s.
 const BETTER_S: f64 = 0.5;
 /// Pieces of the forecasts of the other grasps, per piece of the holder's.
@@ -18,9 +20,11 @@ const PIECES: usize = 2;
 
 impl VirtualRobot<'_> {
     /// Goes on with the forecasts: that of the holder, and the others in turn.
-    pub(crate) fn foresee(&mut self) {
-        self.foresee_one(self.carried.holder);
-        for _ in 0..PIECES {
+    pub(crate) fn foresee(&mut self, dt_s: f64) {
+        // A long step has time for more.
+        let steps = (dt_s / STEP_S).clamp(1.0, 16.0) as usize;
+        (0..steps).for_each(|_| self.foresee_one(self.carried.holder));
+        for _ in 0..PIECES * steps {
             let k = self.decision.turn;
             if k != self.carried.holder {
                 self.foresee_one(k);

@@ -9,6 +9,9 @@ use crate::{CooperationSettings, PoseRefusal};
 /// Number of poses that can wait to be carried out.
 const CAPACITY: usize = 16_384;
 
+/// Longest way from one pose to the next, s.
+const LONGEST_S: f64 = 86_400.0;
+
 /// The poses that have arrived, joined by straight motions.
 ///
 /// Places on it are named by the path time at which the work-piece gets there at the earliest: between two poses it takes
@@ -46,11 +49,14 @@ impl DesiredPath {
         }
         let (end_s, end) = self.end();
         let since_s = if self.is_paused { 0.0 } else { self.arrived_s.map_or(0.0, |last| t_s - last) };
-        self.is_paused = false;
+
         let moved_s = end.translation.distance(pose.translation) / settings.speed_m_s;
         let turned_s = angle_between(&end.rotation, &pose.rotation) / settings.angular_speed_rad_s;
         let takes_s = since_s.max(moved_s).max(turned_s);
-        self.arrived_s = Some(t_s);
+        if takes_s.is_nan() || takes_s > LONGEST_S {
+            return Err(PoseRefusal::Far);
+        }
+        (self.arrived_s, self.is_paused) = (Some(t_s), false);
         if takes_s > 0.0 {
             self.poses.push_back((end_s + takes_s, *pose));
         }

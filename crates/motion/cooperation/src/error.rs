@@ -43,6 +43,9 @@ pub enum PoseRefusal {
     /// Its time is not after that of the pose before.
     #[error("the time of the desired pose is not after that of the last one")]
     Time,
+    /// It is so far away that the work-piece would take more than a day.
+    #[error("the desired pose is too far away")]
+    Far,
     /// Too many poses wait to be carried out.
     #[error("too many desired poses are not carried out yet")]
     Full,

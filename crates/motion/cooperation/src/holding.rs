@@ -2,7 +2,7 @@
 
 use elbowroom_kinematics::inverse::{IkOptions, IkSolver};
 use elbowroom_kinematics::{ChainState, JointLimits};
-use elbowroom_robot::{ObjectId, RobotId};
+use elbowroom_robot::{GeometryId, ObjectId, RobotId};
 use elbowroom_scene::{Attachment, Checker, CheckerOptions, Scene, SceneError, SceneState, Selection};
 use elbowroom_spatial::linalg::symmetric_eigen;
 use elbowroom_spatial::{Pose, Vec3};
@@ -64,6 +64,8 @@ pub(crate) struct Holding<'s> {
     chain_state: ChainState,
     columns: Vec<[f64; 6]>,
     before: Vec<f64>,
+    /// Joint values at the start of the last [`follow`](Self::follow).
+    from: Vec<f64>,
     /// Largest share of a joint speed that the last [`follow`](Self::follow) needs.
     pub effort: f64,
     /// Robots that are not members.
@@ -99,6 +101,7 @@ impl<'s> Holding<'s> {
             chain_state: ChainState::new(chain),
             columns: vec![[0.0; 6]; chain.dof()],
             before: vec![0.0; chain.dof()],
+            from: vec![0.0; chain.dof()],
             effort: 0.0,
             bystanders: (0..scene.robots().len()).map(RobotId).filter(|r| !members.contains(r)).collect(),
         })
@@ -138,6 +141,7 @@ impl<'s> Holding<'s> {
         margins: &Margins,
     ) -> Result<(), HoldLimit> {
         self.before.copy_from_slice(q);
+        self.from.copy_from_slice(q);
         let tool_in_part = self.grasp.tool_in_part;
         if !self.solve(part_in_world, &tool_in_part, q) {
             let is_at_limit = |(q, l): (&f64, &JointLimits)| (q - l.lower).min(l.upper - q) < 1e-6;
@@ -160,7 +164,44 @@ impl<'s> Holding<'s> {
         if margins.retreat && !self.can_retreat(part_in_world, q) {
             return Err(HoldLimit::Retreat);
         }
-        self.is_free(q, margins)
+        match self.is_free(q, margins) {
+            Err(HoldLimit::Contact(a, b)) if !self.leaves(q, margins.gap_m) => Err(HoldLimit::Contact(a, b)),
+            Ok(()) | Err(HoldLimit::Contact(..)) => Ok(()),
+            Err(other) => Err(other),
+        }
+    }
+
+    /// Whether the last step leaves what is near: a part may be lifted from a table.
+    fn leaves(&mut self, q: &[f64], gap_m: f64) -> bool {
+        let from = std::mem::take(&mut self.from);
+        let (before_m, after_m) = (self.clearance_m(&from, gap_m), self.clearance_m(q, gap_m));
+        self.from = from;
+        let own = Selection::Robot(self.arm.robot);
+        after_m > 0.0 && after_m >= before_m && self.checker.between(own, own).collides(&self.state).is_none()
+    }
+
+    /// Distance of the arm with the work-piece from everything but the members, up to a gap, m; infinite beyond.
+    fn clearance_m(&mut self, q: &[f64], gap_m: f64) -> f64 {
+        if self.state.set_q(self.scene, self.arm.robot, q).is_err() {
+            return 0.0;
+        }
+        let Self { checker, state, bystanders, arm, .. } = self;
+        let robot = arm.robot;
+        let is_own = |id: GeometryId| match id {
+            GeometryId::Link { robot: of, .. } => of == robot,
+            GeometryId::Object(object) => state.attachment(object).is_some_and(|a| a.robot == robot),
+        };
+        let others = bystanders.iter().map(|r| Selection::Robot(*r)).chain([Selection::Objects]);
+        let mut least = f64::INFINITY;
+        for other in others {
+            checker.between(Selection::Robot(robot), other).distances_within(state, gap_m, |pair| {
+                // The work-piece in its hand is near by design.
+                if !(is_own(pair.a) && is_own(pair.b)) {
+                    least = least.min(pair.metres);
+                }
+            });
+        }
+        least
     }
 
     /// Whether the hand can move back to its pre-grasp from `q`, where it holds the work-piece.
@@ -193,11 +234,16 @@ impl<'s> Holding<'s> {
         let Self { checker, state, bystanders, arm, .. } = self;
         let own = Selection::Robot(arm.robot);
         let mut near = checker.between(own, own).collides(state);
-        near = near.or_else(|| checker.between(own, Selection::Objects).within(state, margins.gap_m));
+        if let Some(pair) = near {
+            return Err(HoldLimit::Contact(pair.a, pair.b));
+        }
+        near = checker.between(own, Selection::Objects).within(state, margins.gap_m);
         for other in bystanders.iter() {
             near = near.or_else(|| checker.between(own, Selection::Robot(*other)).within(state, margins.gap_m));
         }
-        near.map_or(Ok(()), |pair| Err(HoldLimit::Contact(pair.a, pair.b)))
+        let Some(pair) = near else { return Ok(()) };
+        // Perhaps only the work-piece in the hand.
+        if self.clearance_m(q, margins.gap_m).is_infinite() { Ok(()) } else { Err(HoldLimit::Contact(pair.a, pair.b)) }
     }
 
     /// The nearest free configuration that holds the work-piece there, on any branch, and can let it go.

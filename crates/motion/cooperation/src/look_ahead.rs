@@ -10,8 +10,10 @@ use crate::{CooperationSettings, HoldLimit};
 const STEP_S: f64 = 5e-3;
 /// Path time beyond the stopping distance that is tested, s.
 const RESERVE_S: f64 = 0.05;
-/// Most configurations that are tested in one step of the virtual robot.
-const MOST: usize = 3;
+/// Configurations that are tested in one step of the virtual robot, beyond those that it uses up.
+const MOST: usize = 2;
+/// Most configurations that a step uses up.
+const LONGEST_STEP: f64 = 200.0;
 /// Most places ahead at which a joint is too slow.
 const SLOW: usize = 128;
 /// Share of the joint speeds that is used.
@@ -66,7 +68,7 @@ impl LookAhead {
         holding: &mut Holding<'_>,
         path: &DesiredPath,
         path_s: f64,
-        (settings, has_receiver): (&CooperationSettings, bool),
+        (settings, has_receiver, dt_s): (&CooperationSettings, bool, f64),
     ) {
         if self.limit.is_some() && self.wait > 0 {
             self.wait -= 1;
@@ -78,7 +80,9 @@ impl LookAhead {
         // With nobody there to take the work-piece, it is better to go on.
         let margins = Margins::executed(settings, self.can_retreat && has_receiver);
         let needed_s = (path_s + settings.ramp_s + RESERVE_S).min(path.end().0);
-        for _ in 0..MOST {
+        // A long step uses up more of the path.
+        let most = MOST + (dt_s / STEP_S).min(LONGEST_STEP).ceil() as usize;
+        for _ in 0..most {
             let left_s = needed_s - self.free_to_s;
             if left_s <= 0.0 {
                 break;

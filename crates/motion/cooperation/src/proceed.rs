@@ -40,7 +40,7 @@ impl VirtualRobot<'_> {
                 self.allow_visit(None);
                 self.release(giver);
             }
-            HandOverPhase::Withdrawing if hand_over.before_m >= length_m(receiver) => self.give_up(),
+            HandOverPhase::Withdrawing if hand_over.has_left(length_m(receiver), self.settings.gap_m) => self.give_up(),
             _ => {}
         }
         None

@@ -11,6 +11,8 @@ pub enum Hold {
     Override,
     /// An arm that carries it, by its index, cannot go on.
     Limit(usize, HoldLimit),
+    /// Nothing is desired: the enabling switch is open, or the input is old.
+    Paused,
     /// An arm, by its index, must first get out of the way.
     InTheWay(usize),
     /// Two arms would be too near to each other.

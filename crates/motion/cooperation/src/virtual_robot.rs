@@ -77,18 +77,7 @@ impl<'s> VirtualRobot<'s> {
         let in_scene = |e: SceneError| CooperationError::Scene(e.to_string());
         let part_in_world = state.pose(scene, GeometryId::Object(work_piece));
         let part_in_world = part_in_world.ok_or(CooperationError::NoSuchGrasp)?;
-        let robots: Vec<RobotId> = members.iter().map(|m| m.robot).collect();
-        let mut holdings = Vec::new();
-        let mut first = None;
-        for (index, member) in members.iter().enumerate() {
-            for number in 0..member.grasps.len() {
-                if (index, number) == holder {
-                    first = Some(holdings.len());
-                }
-                let holding = Holding::new(scene, &state, work_piece, (index, member), number, &robots);
-                holdings.push(holding.map_err(in_scene)?);
-            }
-        }
+        let (mut holdings, first) = holdings(scene, &state, work_piece, &members, holder).map_err(in_scene)?;
         let first = first.ok_or(CooperationError::NoSuchGrasp)?;
         let arms: Vec<ArmMotion> = members.iter().map(|m| arm_motion(scene, &state, m.robot)).collect();
         let tool_in_part = grasped(scene, &state, &members[holder.0], &part_in_world, &holdings[first])?;
@@ -98,8 +87,11 @@ impl<'s> VirtualRobot<'s> {
         }
         state.attach_at(scene, work_piece, attachment(&members[holder.0], &tool_in_part)).map_err(in_scene)?;
         let mut checker = Checker::new(scene, CheckerOptions::default());
-        if let Some(pair) = checker.collides(&state) {
-            return Err(CooperationError::Touching(pair.a, pair.b));
+        for member in &members {
+            let touching = checker.between(Selection::Robot(member.robot), Selection::All).collides(&state);
+            if let Some(pair) = touching {
+                return Err(CooperationError::Touching(pair.a, pair.b));
+            }
         }
         let limbs = members.iter().zip(&arms).map(|(member, arm)| Limb::new(member, &arm.state.q)).collect();
         let forecasts = holdings.iter().map(|h| Forecast::new(members[h.member].limits.len())).collect();
@@ -108,6 +100,7 @@ impl<'s> VirtualRobot<'s> {
             path_s: 0.0,
             rate: 0.0,
             holder: first,
+            is_paused: false,
             ahead: LookAhead::new(&arms[holder.0].state.q, 0.0),
             follower_ahead: LookAhead::new(&arms[holder.0].state.q, 0.0),
         };
@@ -137,11 +130,19 @@ impl<'s> VirtualRobot<'s> {
     /// # Errors
     /// [`PoseRefusal`]; the pose is then ignored.
     pub fn desire(&mut self, t_s: f64, part_in_world: &Pose) -> Result<(), PoseRefusal> {
-        self.carried.path.push(t_s, part_in_world, &self.settings)
+        self.carried.path.push(t_s, part_in_world, &self.settings)?;
+        self.carried.is_paused = false;
+        Ok(())
     }
 
-    /// Nothing is desired until the next pose, to which the work-piece then goes as fast as it may.
+    /// The work-piece stops on its path until the next desired pose, to which it then goes as fast as it may.
     pub fn pause(&mut self) {
+        self.carried.path.pause();
+        self.carried.is_paused = true;
+    }
+
+    /// No more poses come: the work-piece goes on to the last one.
+    pub fn end(&mut self) {
         self.carried.path.pause();
     }
 
@@ -232,12 +233,12 @@ impl<'s> VirtualRobot<'s> {
             return CooperationStep { hold: Some(Hold::Input), ..CooperationStep::default() };
         }
         let handed_over = self.proceed(dt_s);
-        self.look_ahead();
+        self.look_ahead(dt_s);
         self.choose_waiting();
         self.track(dt_s);
         let hold = self.advance(dt_s, overrides);
         self.carried.path.passed(self.carried.path_s);
-        self.foresee();
+        self.foresee(dt_s);
         self.decide(dt_s);
         let hold = hold.filter(|_| self.carried.wants_to_move() && self.carried.rate == 0.0);
         CooperationStep { rate: self.carried.rate, hold, handed_over }
@@ -245,29 +246,25 @@ impl<'s> VirtualRobot<'s> {
 
     /// Writes the joint velocities (rad/s or m/s) with which an arm would go on at override 1, and moves nothing.
     pub fn intent(&mut self, member: usize, dt_s: f64, velocities: &mut [f64]) {
-        if member != self.holder() {
-            let limb = &self.limbs[member];
-            let free = !self.carries(member);
-            velocities
-                .iter_mut()
-                .zip(&limb.free.velocity)
-                .for_each(|(v, wanted)| *v = if free { *wanted } else { 0.0 });
+        if !self.carries(member) {
+            velocities.copy_from_slice(&self.limbs[member].free.velocity);
             return;
         }
-        let holding = &mut self.holdings[self.carried.holder];
-        let (limb, q) = (&mut self.limbs[member], &self.arms[member].state.q);
-        limb.next.copy_from_slice(q);
-        let (ahead, tool_in_part) = (self.carried.path.at(self.carried.path_s + dt_s), holding.grasp.tool_in_part);
-        let is_reached = holding.solve(&ahead, &tool_in_part, &mut limb.next);
-        for ((v, to), from) in velocities.iter_mut().zip(&limb.next).zip(q) {
-            *v = if is_reached { (to - from) / dt_s } else { 0.0 };
+        // What they would do if they could; a hand that leaves moves also while the work-piece stands.
+        let is_possible = self.carry(1.0, 1.0, dt_s).is_ok() || self.carry(0.0, 1.0, dt_s).is_ok();
+        let (next, q) = (&self.limbs[member].next, &self.arms[member].state.q);
+        for ((v, to), from) in velocities.iter_mut().zip(next).zip(q) {
+            *v = if is_possible { (to - from) / dt_s } else { 0.0 };
         }
     }
 
     /// Everything stands.
     pub(crate) fn stand(&mut self) {
         self.carried.rate = 0.0;
-        self.arms.iter_mut().for_each(|arm| arm.state.qd.fill(0.0));
+        for arm in &mut self.arms {
+            arm.state.qd.fill(0.0);
+            self.scene.robots()[arm.robot.0].robot.chain.forward_motion(&mut arm.state);
+        }
     }
 
     /// Moves the arms that do not hold the work-piece towards where they wait.
@@ -329,6 +326,27 @@ impl Limb {
 /// An override as a share; what is not a number is 0.
 pub(crate) fn usable(speed_override: f64) -> f64 {
     if speed_override > 0.0 { speed_override.min(1.0) } else { 0.0 }
+}
+
+/// Every arm with every grasp, and the index of the holder's among them.
+fn holdings<'s>(
+    scene: &'s Scene,
+    state: &SceneState,
+    work_piece: ObjectId,
+    members: &[Member],
+    holder: (usize, usize),
+) -> Result<(Vec<Holding<'s>>, Option<usize>), SceneError> {
+    let robots: Vec<RobotId> = members.iter().map(|m| m.robot).collect();
+    let (mut all, mut first) = (Vec::new(), None);
+    for (index, member) in members.iter().enumerate() {
+        for number in 0..member.grasps.len() {
+            if (index, number) == holder {
+                first = Some(all.len());
+            }
+            all.push(Holding::new(scene, state, work_piece, (index, member), number, &robots)?);
+        }
+    }
+    Ok((all, first))
 }
 
 fn arm_motion(scene: &Scene, state: &SceneState, robot: RobotId) -> ArmMotion {

@@ -11,7 +11,7 @@ use super::operator::{refuse_other_motion, stale_s, stream};
 use super::schema::{GRASP, VIRTUAL_ROBOT, names};
 use super::tools::with_exchanged_tools;
 use crate::virtual_robot::{CellVirtualRobot, VirtualRobotMember};
-use crate::{Cell, Units};
+use crate::{Cell, CellRobot, Units};
 
 type Result<T> = std::result::Result<T, Diagnostic>;
 
@@ -34,6 +34,7 @@ fn virtual_robot(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellVirtualRo
         let what = format!("`{}`: tools that are changed, as those of robot \"{}\", are not seen", t.name, robot.name);
         return Err(t.error(what).hint("mounted tools only, or no virtual robot"));
     }
+    refuse_unseen_changes(t, cell)?;
     let work_piece = work_piece(&t.need("work_piece", "work_piece = \"part\"   (an object)")?, cell)?;
     let holder_value = t.need("holder", "holder = \"left\"   (one of `robots`)")?;
     let holder = robot_id(&holder_value, &cell.robots)?;
@@ -79,6 +80,22 @@ fn settings(t: &Table<'_>, units: Units) -> Result<CooperationSettings> {
         horizon_s: t.get("horizon_s").map_or(Ok(default.horizon_s), |v| v.positive())?,
         ..default
     })
+}
+
+/// The members do not see what others carry, and others do not see the work-piece.
+fn refuse_unseen_changes(t: &Table<'_>, cell: &Cell) -> Result<()> {
+    let carries = |(index, _): &(usize, &CellRobot)| !cell.gripped_objects(RobotId(*index)).is_empty();
+    let mut robots = cell.robots.iter().enumerate();
+    let other = match (robots.find(carries), cell.guidance.operators.first()) {
+        (Some((_, robot)), _) => format!("robot \"{}\", which carries something else", robot.name),
+        (None, Some(operator)) => format!("the operator \"{}\"", operator.name),
+        (None, None) => match cell.robots.iter().find(|r| r.avoidance.is_some()) {
+            Some(robot) => format!("robot \"{}\", which avoids obstacles", robot.name),
+            None => return Ok(()),
+        },
+    };
+    let what = format!("`{}` is beside {other}: they do not see what the others carry", t.name);
+    Err(t.error(what).hint("one virtual robot, beside robots whose programs do not grip"))
 }
 
 /// The robots, which are not moved by anything else.

@@ -141,6 +141,7 @@ pub fn simulate_observed(
     };
     let (t_s, end) = run.run(progress)?;
     notes.extend(run.robots.iter().filter_map(|robot| robot.own_motion.avoiding()?.fault_warning(cell)));
+    notes.extend(run.virtual_robots.iter().filter_map(|robots| robots.warning(cell)));
     run.perceived.iter_mut().for_each(|p| p.take_warnings(&mut notes));
     Ok(RunOutcome { recording: run.finish(t_s, end), notes })
 }

@@ -52,6 +52,8 @@ pub(super) struct CooperatingRobots<'s> {
     robot: VirtualRobot<'s>,
     /// Time of the last row that was desired, s.
     desired_s: Option<f64>,
+    /// Number of rows that were refused.
+    left_out: usize,
     stopped_s: f64,
     is_held: bool,
     yields: Vec<bool>,
@@ -67,6 +69,7 @@ impl<'s> CooperatingRobots<'s> {
             spec,
             robot: spec.start(cell, scene)?,
             desired_s: None,
+            left_out: 0,
             stopped_s: 0.0,
             is_held: false,
             yields: vec![false; spec.members.len()],
@@ -141,21 +144,20 @@ impl<'s> CooperatingRobots<'s> {
         Ok(())
     }
 
-    /// Hands the row of this time on, if it is a new one.
+    /// Hands on the rows that have come until this time.
     fn desire(&mut self, t_s: f64) -> OperatorInput {
-        let input = self.spec.stream.at(t_s);
-        let row_s = self.spec.stream.row_s(t_s);
+        let stream = &self.spec.stream;
+        for (row_s, pose) in stream.rows_between(self.desired_s, t_s) {
+            // A pose that is refused, because too many wait or it is too far away, is left out.
+            let taken = pose.map_or(Ok(()), |pose| self.robot.desire(row_s, &pose));
+            self.left_out += usize::from(taken.is_err());
+            self.desired_s = Some(row_s);
+        }
+        let input = stream.at(t_s);
         match input {
-            OperatorInput::Pose(pose) if row_s != self.desired_s => {
-                // A pose that is refused, because too many wait, is one that the work-piece leaves out.
-                if let Some(row_s) = row_s
-                    && self.robot.desire(row_s, &pose).is_ok()
-                {
-                    self.desired_s = Some(row_s);
-                }
-            }
             OperatorInput::Pose(_) => {}
-            OperatorInput::Disabled | OperatorInput::Stale | OperatorInput::Over => self.robot.pause(),
+            OperatorInput::Disabled | OperatorInput::Stale => self.robot.pause(),
+            OperatorInput::Over => self.robot.end(),
         }
         input
     }
@@ -172,6 +174,13 @@ impl<'s> CooperatingRobots<'s> {
         }
     }
 
+    /// A warning if poses of the stream were left out.
+    pub fn warning(&self, cell: &Cell) -> Option<Diagnostic> {
+        let what = format!("{} poses of the stream of \"{}\" were left out", self.left_out, self.spec.name);
+        let hint = "fewer than 16,000 poses that wait, each within a day of the one before";
+        (self.left_out > 0).then(|| Diagnostic::new(&cell.file, self.spec.line, what).hint(hint))
+    }
+
     /// The recording.
     pub fn finish(mut self) -> VirtualRobotTrack {
         if let (Some(stop), Some(last)) = (self.track.stops.last_mut(), self.track.samples.last()) {
@@ -179,9 +188,10 @@ impl<'s> CooperatingRobots<'s> {
         }
         let (_, left_s) = self.robot.on_path();
         let done_s = self.robot.path_s();
-        // What is left of the stream counts as the time between its rows.
-        let last_s = self.spec.stream.row_s(f64::INFINITY);
-        let unread_s = last_s.map_or(0.0, |last| (last - self.desired_s.unwrap_or(0.0)).max(0.0));
+        // What did not come before the end of the run counts as the time between its rows.
+        let unread = self.spec.stream.rows_between(self.desired_s, f64::INFINITY);
+        let last_s = unread.filter(|(_, pose)| pose.is_some()).map(|(t_s, _)| t_s).fold(0.0, f64::max);
+        let unread_s = (last_s - self.desired_s.unwrap_or(0.0)).max(0.0);
         let whole_s = done_s + left_s + unread_s;
         self.track.carried_share = if whole_s > 0.0 { done_s / whole_s } else { 1.0 };
         self.track
@@ -210,6 +220,7 @@ fn hold_in_words(cell: &Cell, spec: &CellVirtualRobot, hold: &Hold) -> String {
             let robot = &cell.robots[spec.members[*member].robot.0];
             format!("{} {}", robot.name, limit_in_words(cell, robot, limit))
         }
+        Hold::Paused => "nothing is desired: the operator is not enabled, or the last row is old".to_owned(),
         Hold::InTheWay(member) => format!("{} is in the way", cell.robots[spec.members[*member].robot.0].name),
         Hold::Contact(a, b) => format!("{} and {} would touch", cell.part_name(*a), cell.part_name(*b)),
         Hold::Unproven => "a motion could not be proven free".to_owned(),
