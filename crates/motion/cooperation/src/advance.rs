@@ -11,7 +11,7 @@ use crate::{Hold, HoldLimit, VirtualRobot};
 /// that approaches or leaves it.
 const ATTEMPTS: [(f64, f64); 9] =
     [(1.0, 1.0), (1.0, 0.3), (1.0, 0.0), (0.5, 0.3), (0.25, 0.3), (0.1, 0.1), (0.0, 1.0), (0.0, 0.2), (0.0, 0.04)];
-/// Override below which the work-piece stands instead of creeping.
+/// Override or rate below which the work-piece stands instead of creeping.
 const LEAST_RATE: f64 = 1e-3;
 /// Time in which a hand that begins to move with the work-piece comes to its exact place, s.
 const ALIGNMENT_S: f64 = 0.05;
@@ -65,11 +65,15 @@ impl VirtualRobot<'_> {
         if self.hand_over.as_ref().is_some_and(|h| h.follower().is_some()) {
             room_s = room_s.min(carried.follower_ahead.free_to_s - carried.path_s);
         }
-        if carried.is_paused || self.limbs.iter().any(|limb| limb.is_in_the_way) {
-            // Slow down, until the other arm is away or a pose is desired again.
+        if self.must_wait() {
             room_s = room_s.min(0.5 * carried.rate * carried.rate * self.settings.ramp_s);
         }
         room_s
+    }
+
+    /// Whether the work-piece slows down until another arm is away, or a pose is desired again.
+    fn must_wait(&self) -> bool {
+        self.carried.is_paused || self.limbs.iter().any(|limb| limb.is_in_the_way)
     }
 
     /// Share of the desired speed that the joints of the arms that carry the work-piece can go.
@@ -88,7 +92,8 @@ impl VirtualRobot<'_> {
         let allowed = carriers.map(|m| usable(overrides[m])).fold(1.0, f64::min);
         let fastest = self.joint_rate().min(allowed);
         let wanted = self.carried.next_rate(self.room_s(), fastest, dt_s, &self.settings);
-        let wanted = if wanted < LEAST_RATE && allowed < LEAST_RATE { 0.0 } else { wanted };
+        let is_halted = allowed < LEAST_RATE || self.must_wait();
+        let wanted = if wanted < LEAST_RATE && is_halted { 0.0 } else { wanted };
         let mut hold = if allowed < LEAST_RATE { Some(Hold::Override) } else { self.limit_ahead() };
         self.react(dt_s, overrides);
         for (of_rate, of_hand) in ATTEMPTS {

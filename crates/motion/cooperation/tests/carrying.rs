@@ -1,6 +1,6 @@
 //! The work-piece on its way: carried by one arm, handed over, never off its path.
 
-use elbowroom_cooperation::{CooperationSettings, Hold};
+use elbowroom_cooperation::{CooperationSettings, HandOverPhase, Hold, HoldLimit, VirtualRobot};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 use elbowroom_testkit::random::SplitMix;
 
@@ -72,4 +72,69 @@ fn a_pose_a_metre_away_is_approached_at_the_speed_of_the_settings() {
     let outcome = carry(&pair, settings, &jump);
     assert!(outcome.largest_speed_m_s <= settings.speed_m_s * (1.0 + 1e-6), "{outcome:?}");
     assert!(outcome.deviation_m < 1e-9 && outcome.contacts == 0, "{outcome:?}");
+}
+
+#[test]
+fn a_hand_obeys_its_override_and_says_where_it_would_go() {
+    let pair = Pair::new(2, 0.6);
+    let start = part_pose(&pair);
+    let way = straight(start, Pose::new(start.rotation, Vec3::new(0.3, 0.0, 0.45)), 0.05);
+    let mut robot = pair.robot(CooperationSettings::default());
+    let mut halted = None;
+    for (k, pose) in way.iter().flat_map(|pose| std::iter::repeat_n(pose, 5)).enumerate() {
+        if k % 5 == 0 {
+            robot.desire(k as f64 * DT_S, pose).unwrap();
+        }
+        robot.step(DT_S, &[1.0; 2]);
+        if robot.phase() == Some(HandOverPhase::Approaching) {
+            let before: Vec<Vec<f64>> = [0, 1].map(|member| robot.q(member).to_vec()).to_vec();
+            for _ in 0..20 {
+                assert_eq!(robot.step(DT_S, &[1.0, 0.0]).hold, Some(Hold::Override));
+            }
+            assert_eq!(before, [0, 1].map(|member| robot.q(member).to_vec()).to_vec());
+            let mut intent = vec![0.0; 6];
+            robot.intent(1, DT_S, &mut intent);
+            halted = Some(intent);
+            break;
+        }
+    }
+    let intent = halted.expect("a hand-over");
+    assert!(intent.iter().any(|v| v.abs() > 1e-3), "{intent:?}");
+}
+
+#[test]
+fn a_pause_stops_the_work_piece_on_its_path_until_the_next_pose() {
+    let pair = Pair::new(2, 0.6);
+    let (start, settings) = (part_pose(&pair), CooperationSettings::default());
+    let mut robot = pair.robot(settings);
+    let end = Pose::new(start.rotation, start.translation + Vec3::Y * 0.1);
+    robot.desire(0.0, &end).unwrap();
+    let steps = |robot: &mut VirtualRobot<'_>, count: usize| (0..count).map(|_| robot.step(DT_S, &[1.0; 2])).last();
+    steps(&mut robot, 50);
+    robot.pause();
+    steps(&mut robot, (settings.ramp_s / DT_S).ceil() as usize + 8);
+    let stopped = robot.part_in_world();
+    assert_eq!(robot.step(DT_S, &[1.0; 2]).hold, Some(Hold::Paused));
+    steps(&mut robot, 50);
+    assert_eq!(robot.part_in_world(), stopped);
+    assert!(stopped.translation.distance(end.translation) > 0.02);
+    robot.desire(2.0, &end).unwrap();
+    steps(&mut robot, 500);
+    assert!(robot.part_in_world().translation.distance(end.translation) < 1e-9);
+}
+
+#[test]
+fn a_part_that_is_near_a_table_can_leave_it_and_does_not_come_nearer() {
+    let start = part_pose(&Pair::new(2, 0.6));
+    // The bar lies along x, 1 mm above the table.
+    let at = start.translation - Vec3::Z * (0.02 + 0.001 + 0.05);
+    let pair = Pair::among(2, 0.6, Some((at, Vec3::new(0.03, 0.1, 0.05))));
+    let settings = CooperationSettings::default();
+    let up = straight(start, Pose::new(start.rotation, start.translation + Vec3::Z * 0.05), 0.1);
+    let lifted = carry(&pair, settings, &up);
+    assert!(lifted.share > 0.999_999 && lifted.contacts == 0, "{lifted:?}");
+    let down = straight(start, Pose::new(start.rotation, start.translation - Vec3::Z * 0.05), 0.1);
+    let pressed = carry(&pair, settings, &down);
+    assert!(pressed.share < 0.01 && pressed.contacts == 0, "{pressed:?}");
+    assert!(matches!(pressed.last_hold, Some(Hold::Limit(0, HoldLimit::Contact(..)))), "{pressed:?}");
 }

@@ -55,6 +55,11 @@ pub struct Pair {
 impl Pair {
     /// `count` arms at a distance (m) from the middle.
     pub fn new(count: usize, distance_m: f64) -> Self {
+        Self::among(count, distance_m, None)
+    }
+
+    /// Like [`Self::new`], with a block: its middle, and half of its size.
+    pub fn among(count: usize, distance_m: f64, block: Option<(Vec3, Vec3)>) -> Self {
         let (robot, tip) = arm();
         let mut builder = Scene::builder();
         let limits = JointLimits::of_chain(&robot.chain, 0.3, 0.3, 2.0);
@@ -77,6 +82,10 @@ impl Pair {
         let start = Pose::new(Rotation::from_z(Vec3::X), Vec3::new(0.62 - distance_m, 0.0, 0.45));
         let shape = Shape::Cuboid(Cuboid { half_extents: Vec3::new(THIN_M, THIN_M, BAR_M) });
         builder.object(Object { name: "bar".into(), shape, in_world: start });
+        if let Some((at, half_extents)) = block {
+            let shape = Shape::Cuboid(Cuboid { half_extents });
+            builder.object(Object { name: "table".into(), shape, in_world: Pose::from_translation(at) });
+        }
         let scene = builder.build().unwrap();
         let chain = &robot.chain;
         let mut solver = IkSolver::new(chain, tip, members[0].tool_in_tip, IkOptions::default());
