@@ -1,6 +1,8 @@
 //! How much of random motions two or three arms carry out, and how often they stop, beside one arm alone and hand-overs only
 //! at a limit: `cargo bench -p elbowroom-cooperation --bench carrying -- [MOTIONS] [ARMS]`.
 
+#![allow(clippy::print_stdout, reason = "a bench prints")]
+
 #[path = "../tests/common/mod.rs"]
 mod common;
 

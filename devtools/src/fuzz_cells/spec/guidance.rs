@@ -31,12 +31,12 @@ pub struct HandRow {
 
 impl GuidanceSpec {
     pub(super) fn write(&self, t: &mut String) {
-        if !self.virtual_robot.is_empty() {
-            let _ = writeln!(t, "[virtual_robot.pair]\nstream = \"{}\"\n{}", self.file_name(), self.virtual_robot);
+        let file = self.file_name();
+        let _ = if self.virtual_robot.is_empty() {
+            writeln!(t, "[operator.hand]\nrobot = \"r0\"\nstream = \"{file}\"\n{}", self.operator)
         } else {
-            let _ =
-                writeln!(t, "[operator.hand]\nrobot = \"r0\"\nstream = \"{}\"\n{}", self.file_name(), self.operator);
-        }
+            writeln!(t, "[virtual_robot.pair]\nstream = \"{file}\"\n{}", self.virtual_robot)
+        };
         for table in &self.tables {
             let _ = writeln!(t, "{table}");
         }
