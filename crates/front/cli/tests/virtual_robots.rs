@@ -62,8 +62,15 @@ fn a_bar_is_handed_over_in_motion_and_stays_on_its_path() {
 #[test]
 fn the_bar_stops_before_a_region_and_the_reason_is_told() {
     let dir = tempfile::tempdir().unwrap();
-    let region = "\n[region.wall]\nshape = \"box\"\nfrom = [-60, 50, 300]\nto = [60, 150, 600]\nwarning = 30\n";
-    write(dir.path(), |cell| cell + region, 9.0);
+    let region = "\n[region.wall]\nshape = \"box\"\nfrom = [-100, 90, 350]\nto = [200, 300, 550]\nwarning = 40\n";
+    write(dir.path(), |cell| cell + region, 0.0);
+    // 150 mm towards the wall, with the orientation of the start.
+    let first = std::fs::read_to_string(dir.path().join("bar.csv")).unwrap();
+    let row: Vec<&str> = first.lines().nth(1).unwrap().split(',').collect();
+    let turn = row[4..].join(",");
+    let at = |k: i32| format!("{},{},{},{},{turn}", 0.04 * f64::from(k), row[1], 3 * k, row[3]);
+    let rows: Vec<String> = (0..=50).map(at).collect();
+    std::fs::write(dir.path().join("bar.csv"), format!("t_s,x,y,z,qx,qy,qz,qw\n{}\n", rows.join("\n"))).unwrap();
     let summary = run(dir.path(), 0);
     assert_eq!(summary["regions"][0]["entered"], false, "{summary}");
     let trio = &summary["virtual_robots"][0];
