@@ -9,7 +9,7 @@ use elbowroom_spatial::Pose;
 use crate::{Cell, ProgramBody, StepAction};
 
 impl Cell {
-    /// The objects that the program of a robot grips, or the virtual robot that it is a member of.
+    /// The objects that a robot grips: by its program, or as a member of a virtual robot.
     pub fn gripped_objects(&self, robot: RobotId) -> Vec<ObjectId> {
         self.grips(robot).into_iter().map(|(object, _)| object).collect()
     }
@@ -17,7 +17,7 @@ impl Cell {
     /// The objects that a robot grips and the links that grip them, each pair once, in the order of the program.
     pub fn grips(&self, robot: RobotId) -> Vec<(ObjectId, LinkId)> {
         let at = &self.robots[robot.0];
-        if let Some((virtual_robot, _)) = self.guidance.virtual_robot_of(robot) {
+        if let Some(virtual_robot) = self.guidance.virtual_robot_of(robot) {
             return vec![(virtual_robot.work_piece, at.flange)];
         }
         let Some(ProgramBody::Steps(steps)) = at.program.as_ref().map(|p| &p.body) else { return Vec::new() };

@@ -25,9 +25,8 @@ impl Guidance {
         self.operators.iter().find(|operator| operator.robot == robot)
     }
 
-    /// The virtual robot that a robot is a member of, and its index among the members.
-    pub fn virtual_robot_of(&self, robot: RobotId) -> Option<(&CellVirtualRobot, usize)> {
-        let member = |v: &CellVirtualRobot| v.members.iter().position(|m| m.robot == robot);
-        self.virtual_robots.iter().find_map(|v| Some((v, member(v)?)))
+    /// The virtual robot that a robot is a member of.
+    pub fn virtual_robot_of(&self, robot: RobotId) -> Option<&CellVirtualRobot> {
+        self.virtual_robots.iter().find(|v| v.members.iter().any(|m| m.robot == robot))
     }
 }

@@ -92,7 +92,7 @@ fn wrong_tables_are_refused_at_their_line() {
         ("stream = \"bar.csv\"", "stream = \"bor.csv\"", "bor.csv"),
         ("stream = \"bar.csv\"", "stream = \"bar.csv\"\nspeed = -1", "speed"),
         ("stream = \"bar.csv\"", "stream = \"bar.csv\"\nspeeed = 1", "speed"),
-        ("approach = 60 }", "approach = [0, 0, 0] }", "no motion"),
+        ("approach = 60 }", "approach = [0, 0, 0] }", "length 0"),
         ("approach = 60 }", "aproach = 60 }", "approach"),
         ("at = [20, 0, 450]", "at = [40, 0, 450]", "the grasp where the tool is"),
     ];

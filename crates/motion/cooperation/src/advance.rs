@@ -135,8 +135,7 @@ impl VirtualRobot<'_> {
     }
 
     /// Joint values of the arms that carry the work-piece, after `dt_s` seconds at a rate; a hand that approaches or leaves
-    /// moves with the share `hand` of its speed. Returns the distance of the
-    /// following hand from its grasp then (m).
+    /// moves with the share `hand` of its speed. Returns the distance of that hand from its grasp then (m).
     pub(crate) fn carry(&mut self, rate: f64, hand: f64, dt_s: f64) -> Result<f64, Hold> {
         let part_in_world = self.carried.path.at(self.carried.path_s + rate * dt_s);
         let holder = self.holder();
@@ -158,7 +157,7 @@ impl VirtualRobot<'_> {
         let is_aligned = hand_over.residual.iter().all(|r| r.abs() < 1e-6);
         let speed_m_s = if is_aligned { self.settings.approach_m_s * hand } else { 0.0 };
         let before_m = hand_over.before_next_m(grasp.length_m(), speed_m_s, dt_s);
-        let fade = (-dt_s * hand / ALIGNMENT_S).exp();
+        let fade = fade(hand, dt_s);
         let limb = &mut self.limbs[member];
         for ((next, q), residual) in limb.next.iter_mut().zip(&self.arms[member].state.q).zip(&hand_over.residual) {
             *next = q - residual;
@@ -239,7 +238,7 @@ impl VirtualRobot<'_> {
     /// The hand that approaches or leaves has come nearer to its exact place.
     fn align(&mut self, hand: f64, dt_s: f64) {
         let Some(hand_over) = self.hand_over.as_mut().filter(|h| h.follower().is_some()) else { return };
-        let fade = (-dt_s * hand / ALIGNMENT_S).exp();
+        let fade = fade(hand, dt_s);
         hand_over.residual.iter_mut().for_each(|r| *r *= fade);
     }
 
@@ -263,4 +262,9 @@ impl VirtualRobot<'_> {
         }
         hand_over.stuck_s = if is_still { hand_over.stuck_s + dt_s } else { 0.0 };
     }
+}
+
+/// Share of its distance from the exact place that a hand still has after `dt_s` seconds at a share of its speed.
+fn fade(hand: f64, dt_s: f64) -> f64 {
+    (-dt_s * hand / ALIGNMENT_S).exp()
 }

@@ -4,6 +4,7 @@ use crate::HandOverReason;
 
 /// Time for which a receiver that gave up is not asked again, s.
 const REFUSED_S: f64 = 3.0;
+
 /// What the decision remembers.
 #[derive(Debug)]
 pub(crate) struct DecisionMemory {

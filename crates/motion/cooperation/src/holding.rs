@@ -53,8 +53,8 @@ impl Margins {
 pub(crate) struct Holding<'s> {
     /// Index of the arm among the members.
     pub member: usize,
-    /// Index of the grasp among those of the arm.
-    pub number: usize,
+    /// Index in the grasps of the arm.
+    number: usize,
     pub grasp: Grasp,
     arm: Member,
     solver: IkSolver,
@@ -63,7 +63,8 @@ pub(crate) struct Holding<'s> {
     state: SceneState,
     chain_state: ChainState,
     columns: Vec<[f64; 6]>,
-    before: Vec<f64>,
+    /// Workspace of [`can_retreat`](Self::can_retreat).
+    retreated: Vec<f64>,
     /// Joint values at the start of the last [`follow`](Self::follow).
     from: Vec<f64>,
     /// Largest share of a joint speed that the last [`follow`](Self::follow) needs.
@@ -100,7 +101,7 @@ impl<'s> Holding<'s> {
             state,
             chain_state: ChainState::new(chain),
             columns: vec![[0.0; 6]; chain.dof()],
-            before: vec![0.0; chain.dof()],
+            retreated: vec![0.0; chain.dof()],
             from: vec![0.0; chain.dof()],
             effort: 0.0,
             bystanders: (0..scene.robots().len()).map(RobotId).filter(|r| !members.contains(r)).collect(),
@@ -108,10 +109,16 @@ impl<'s> Holding<'s> {
     }
 
     /// Holds the work-piece with the tool at another pose in its frame.
-    pub fn regrasp(&mut self, work_piece: ObjectId, arm: &Member, tool_in_part: &Pose) -> Result<(), SceneError> {
+    pub fn regrasp(&mut self, work_piece: ObjectId, tool_in_part: &Pose) -> Result<(), SceneError> {
         self.grasp.tool_in_part = *tool_in_part;
         self.state.detach(self.scene, work_piece)?;
-        self.state.attach_at(self.scene, work_piece, attachment(arm, tool_in_part))
+        self.state.attach_at(self.scene, work_piece, attachment(&self.arm, tool_in_part))
+    }
+
+    /// Holds the work-piece as its grasp says.
+    pub fn regrasp_exactly(&mut self, work_piece: ObjectId) -> Result<(), SceneError> {
+        let tool_in_part = self.arm.grasps[self.number].tool_in_part;
+        self.regrasp(work_piece, &tool_in_part)
     }
 
     /// Moves everything but the members.
@@ -140,7 +147,6 @@ impl<'s> Holding<'s> {
         q: &mut [f64],
         margins: &Margins,
     ) -> Result<(), HoldLimit> {
-        self.before.copy_from_slice(q);
         self.from.copy_from_slice(q);
         let tool_in_part = self.grasp.tool_in_part;
         if !self.solve(part_in_world, &tool_in_part, q) {
@@ -149,7 +155,7 @@ impl<'s> Holding<'s> {
             return Err(joint.map_or(HoldLimit::Reach, HoldLimit::JointRange));
         }
         self.effort = 0.0;
-        for (joint, ((to, from), limits)) in q.iter().zip(&self.before).zip(&self.arm.limits).enumerate() {
+        for (joint, ((to, from), limits)) in q.iter().zip(&self.from).zip(&self.arm.limits).enumerate() {
             let effort = (to - from).abs() / (limits.velocity * dt_s);
             if effort > margins.speed_share {
                 return Err(HoldLimit::JointSpeed(joint));
@@ -206,10 +212,10 @@ impl<'s> Holding<'s> {
 
     /// Whether the hand can move back to its pre-grasp from `q`, where it holds the work-piece.
     pub fn can_retreat(&mut self, part_in_world: &Pose, q: &[f64]) -> bool {
-        let mut retreated = std::mem::take(&mut self.before);
+        let mut retreated = std::mem::take(&mut self.retreated);
         retreated.copy_from_slice(q);
         let can_retreat = self.retreat(part_in_world, &mut retreated);
-        self.before = retreated;
+        self.retreated = retreated;
         can_retreat
     }
 

@@ -116,11 +116,8 @@ impl VirtualRobot<'_> {
 
     /// The giver is free: the next time it takes the work-piece in its own grasp, not as it held it at the start.
     fn release(&mut self, giver: usize) {
-        let holding = &mut self.holdings[giver];
-        let arm = &self.members[holding.member];
-        let own = arm.grasps.get(holding.number).copied().unwrap_or(holding.grasp);
         // It was accepted before.
-        let _ = holding.regrasp(self.work_piece, arm, &own.tool_in_part);
+        let _ = self.holdings[giver].regrasp_exactly(self.work_piece);
         self.forecasts[giver].restart();
     }
 

@@ -81,7 +81,7 @@ impl<'s> VirtualRobot<'s> {
         let first = first.ok_or(CooperationError::NoSuchGrasp)?;
         let arms: Vec<ArmMotion> = members.iter().map(|m| arm_motion(scene, &state, m.robot)).collect();
         let tool_in_part = grasped(scene, &state, &members[holder.0], &part_in_world, &holdings[first])?;
-        holdings[first].regrasp(work_piece, &members[holder.0], &tool_in_part).map_err(in_scene)?;
+        holdings[first].regrasp(work_piece, &tool_in_part).map_err(in_scene)?;
         if state.attachment(work_piece).is_some() {
             state.detach(scene, work_piece).map_err(in_scene)?;
         }

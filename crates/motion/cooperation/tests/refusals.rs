@@ -24,7 +24,7 @@ fn steps_without_a_duration_or_with_wrong_overrides_move_nothing() {
 }
 
 #[test]
-fn an_override_that_is_no_number_stands() {
+fn an_override_that_is_not_a_number_stands() {
     let pair = Pair::new(2, 0.6);
     let mut robot = pair.robot(CooperationSettings::default());
     let start = part_pose(&pair);

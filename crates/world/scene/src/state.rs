@@ -52,7 +52,10 @@ impl Clone for SceneState {
         self.chains.clone_from(chains);
         self.in_world.clone_from(in_world);
         self.boxes.clone_from(boxes);
-        self.attached.clone_from(attached);
+        // Equal numbers mean equal attachments: nothing is allocated then.
+        if self.arrangement != *arrangement || self.attached.len() != attached.len() {
+            self.attached.clone_from(attached);
+        }
         self.displaced.clone_from(displaced);
         self.beyond_limits.clone_from(beyond_limits);
         (self.all_proofs_hold, self.arrangement) = (*all_proofs_hold, *arrangement);

@@ -112,7 +112,7 @@ fn robots(v: &Value<'_>, cell: &Cell) -> Result<Vec<RobotId>> {
             let what = format!("is guided by the operator \"{}\"", operator.name);
             return Err(v.error(what).hint("a robot without an operator"));
         }
-        if let Some((other, _)) = cell.guidance.virtual_robot_of(robot) {
+        if let Some(other) = cell.guidance.virtual_robot_of(robot) {
             let what = format!("is a member of the virtual robot \"{}\" already", other.name);
             return Err(v.error(what).hint("each robot in one virtual robot"));
         }
@@ -153,7 +153,7 @@ fn grasp(v: &Value<'_>, units: Units) -> Result<Grasp> {
         Some(v) if v.is_list() => {
             let approach: Vec3 = units.point(&v)?;
             if approach.length() < 1e-6 {
-                return Err(v.error("is no motion").hint("approach = 60   (a length), or a vector"));
+                return Err(v.error("has length 0").hint("approach = 60   (a length), or a vector"));
             }
             approach
         }

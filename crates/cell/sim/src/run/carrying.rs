@@ -151,11 +151,11 @@ impl Simulation<'_> {
     fn hold_work_piece(&mut self, index: usize, t_s: f64) -> Result<(), Diagnostic> {
         let spec = self.virtual_robots[index].spec;
         let (object, held) = (spec.work_piece, self.virtual_robots[index].attachment());
-        let before = self.contacts.checker.attachment(object).cloned();
-        if held == before.as_ref() {
+        let before = self.contacts.checker.attachment(object);
+        if held == before {
             return Ok(());
         }
-        let Some(held) = held.cloned() else { return Ok(()) };
+        let (before, Some(held)) = (before.cloned(), held.cloned()) else { return Ok(()) };
         let states: Vec<&ChainState> = self.states.iter().collect();
         self.contacts.parts.hold(object, &held, &mut self.contacts.checker, &states);
         if before.as_ref().is_some_and(|b| (b.robot, b.link, b.in_link) == (held.robot, held.link, held.in_link)) {

@@ -72,7 +72,7 @@ pub(in crate::file) const VIRTUAL_ROBOT: &[Key] = &[
     key("approach_speed", "length per second", "100 mm/s", "speed of a hand on its approach to the grasp and away from it"),
     key("settle_ms", "ms", "300", "time that a hand takes to close or to open"),
     key("horizon_s", "s", "5", "time that the motion is foreseen"),
-    key("stale_ms", "ms, at most 1000", "500", "nothing more is desired if the last row is older"),
+    key("stale_ms", "ms, at most 1000", "500", "the work-piece stands if the last row is older"),
 ];
 
 #[rustfmt::skip] // a row per key, as in the document
