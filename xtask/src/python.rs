@@ -1,4 +1,4 @@
-//! Python that a few tests use as an independent reference: Pinocchio for kinematics, readers of recordings.
+//! Python that a few tests use as an independent reference: Pinocchio for kinematics, Coal for distances, readers of recordings.
 
 use std::path::{Path, PathBuf};
 
@@ -9,7 +9,7 @@ const PACKAGES: [&str; 5] =
     ["pin==4.1.0", "numpy==2.4.6", "mcap==1.6.0", "mcap-ros2-support==0.6.0", "rosbags==0.11.9"];
 
 /// Checks that the pinned versions are installed.
-const PROBE: &str = "import pinocchio, numpy, mcap_ros2.decoder, rosbags.typesys
+const PROBE: &str = "import pinocchio, coal, numpy, mcap_ros2.decoder, rosbags.typesys
 from importlib.metadata import version
 assert pinocchio.__version__ == '4.1.0' and numpy.__version__ == '2.4.6'
 assert (version('mcap'), version('mcap-ros2-support'), version('rosbags')) == ('1.6.0', '0.6.0', '0.11.9')";
@@ -57,7 +57,7 @@ fn create(root: &Path) -> Result<(), String> {
 
 fn explain(reason: &str) -> String {
     format!(
-        "{reason}\n  The tests of kinematics and recordings compare with {} in target/venv. Install python3 (3.11 or later) with venv and \
+        "{reason}\n  The tests of kinematics, shapes and recordings compare with {} in target/venv. Install python3 (3.11 or later) with venv and \
          give pip a registry, or run `cargo xtask test --offline`, which leaves that comparison out and says so.",
         PACKAGES.join(" and ")
     )

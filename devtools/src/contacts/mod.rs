@@ -30,8 +30,7 @@ struct Options {
 
 impl Options {
     fn parse(words: &[&str]) -> Result<Self, String> {
-        let long = std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1");
-        let mut options = Self { data: None, states: if long { 2_500 } else { 100 }, only: None };
+        let mut options = Self { data: None, states: elbowroom_testkit::extent::amount(100, 2_500), only: None };
         let mut words = words.iter();
         while let Some(word) = words.next() {
             let mut value = || words.next().copied().ok_or(format!("`contacts {word}` needs a value"));

@@ -24,8 +24,8 @@ struct Options {
 
 impl Options {
     fn parse(words: &[&str]) -> Result<Self, String> {
-        let long = std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1");
-        let mut options = Self { data: None, states: if long { 10_000 } else { 200 }, only: None, json: false };
+        let mut options =
+            Self { data: None, states: elbowroom_testkit::extent::amount(200, 10_000), only: None, json: false };
         let mut words = words.iter();
         while let Some(word) = words.next() {
             let mut value = || words.next().copied().ok_or(format!("`cross-validate {word}` needs a value"));

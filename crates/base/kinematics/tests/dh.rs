@@ -62,8 +62,7 @@ fn worst(chain: &Chain, table: &GeneralizedTable, tip: LinkId, random: &mut Spli
 fn awkward_chains() {
     let mut random = SplitMix(42);
     let (mut largest, mut with_b, mut auxiliary) = (0.0_f64, 0, 0);
-    let long = std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1");
-    for _ in 0..if long { 100_000 } else { 20_000 } {
+    for _ in 0..elbowroom_testkit::extent::amount(20_000, 100_000) {
         let chain = awkward_chain(&mut random);
         let table = GeneralizedTable::extract(&chain, chain.tip());
         let residual = worst(&chain, &table, chain.tip(), &mut random, 3);

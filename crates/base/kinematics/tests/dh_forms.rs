@@ -172,7 +172,7 @@ impl Forms {
 }
 
 fn chains(usual: usize) -> usize {
-    if std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1") { 100_000 } else { usual }
+    elbowroom_testkit::extent::amount(usual, 100_000)
 }
 
 #[test]

@@ -11,7 +11,7 @@ fn every_robot_reaches_reachable_targets() {
     println!("{}", Line::HEAD);
     for (name, path) in robots() {
         let chain = common::load(&path);
-        let line = measure(&chain, if std::env::var_os("ELBOWROOM_LONG").is_some() { 5000 } else { 300 });
+        let line = measure(&chain, elbowroom_testkit::extent::amount(300, 5000));
         println!("{}", line.text(&name));
         assert!(line.worst_m <= 1e-12 && line.worst_rad <= 1e-12, "{name}");
         let wanted = if line.method == IkMethod::SphericalWrist { 100.0 } else { 99.0 };

@@ -18,7 +18,7 @@ const TOLERANCE: f64 = 1e-9;
 
 /// Number of random configurations of each robot.
 fn states() -> usize {
-    if std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1") { 1000 } else { 100 }
+    elbowroom_testkit::extent::amount(100, 1000)
 }
 
 fn python() -> Option<String> {

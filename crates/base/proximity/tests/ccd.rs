@@ -14,7 +14,7 @@ use elbowroom_spatial::{FrameMotion, Pose, Rotation, Vec3};
 
 /// Number of motions; 100,000 with `ELBOWROOM_LONG=1`.
 fn motions(usual: usize) -> usize {
-    if std::env::var_os("ELBOWROOM_LONG").is_some() { usual * 50 } else { usual }
+    elbowroom_testkit::extent::amount(usual, usual * 50)
 }
 
 fn mesh_of(shape: &Shape) -> Shape {

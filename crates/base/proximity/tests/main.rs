@@ -2,6 +2,7 @@
 
 mod bvh_bound;
 mod ccd;
+mod coal;
 mod common;
 mod contact;
 mod continuous_witness;

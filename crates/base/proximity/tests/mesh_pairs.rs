@@ -5,6 +5,7 @@ use elbowroom_proximity::advanced::{
 };
 use elbowroom_proximity::{DistanceSettings, Separation, Shape, TriMesh, WarmStart, Workspace, collides, separation};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
+use elbowroom_testkit::extent::amount;
 use elbowroom_testkit::hash::Fnv;
 use elbowroom_testkit::random::Random;
 use fearless_simd::Level as SimdLevel;
@@ -239,14 +240,10 @@ fn compare(a: &TriMesh, here: &Pose, b: &TriMesh, there: &Pose, n: &mut Random, 
     assert!(all.iter().all(|&(i, j)| triangles(of_a[i as usize], of_b[j as usize]) <= close), "no contact");
 }
 
-fn rounds(short: usize, long: usize) -> usize {
-    if std::env::var_os("ELBOWROOM_LONG").is_some() { long } else { short }
-}
-
 #[test]
 fn s3_2_lumps_against_all_pairs() {
     let (mut n, mut s) = (Random(1), Workspace::new());
-    for round in 0..rounds(60, 3_000) {
+    for round in 0..amount(60, 3_000) {
         let (a, b) = (n.lump(2 + round % 4), n.lump(1 + round % 5));
         let apart = 0.2 + n.unit();
         let here = Pose { rotation: n.rotation(), translation: n.vector() };
@@ -258,7 +255,7 @@ fn s3_2_lumps_against_all_pairs() {
 #[test]
 fn s3_2_soups_of_degenerate_triangles_against_all_pairs() {
     let (mut n, mut s) = (Random(2), Workspace::new());
-    for round in 0..rounds(150, 10_000) {
+    for round in 0..amount(150, 10_000) {
         let (a, b) = (n.soup(1 + round % 70), n.soup(1 + (round * 7) % 50));
         let spread = if round % 3 == 0 { 0.5 } else { 3.0 };
         let rotation = if round % 4 == 0 { Rotation::IDENTITY } else { n.rotation() };
@@ -270,7 +267,7 @@ fn s3_2_soups_of_degenerate_triangles_against_all_pairs() {
 #[test]
 fn meshes_of_very_different_size_and_far_away() {
     let (mut n, mut s) = (Random(3), Workspace::new());
-    for round in 0..rounds(60, 2_000) {
+    for round in 0..amount(60, 2_000) {
         let scale = [1e-3, 1e3, 1e-6][round % 3];
         let big = n.lump(3);
         let small = n.lump(3);

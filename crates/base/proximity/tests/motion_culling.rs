@@ -14,7 +14,7 @@ use elbowroom_proximity::{Shape, TriMesh, separation};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 fn motions() -> usize {
-    if std::env::var_os("ELBOWROOM_LONG").is_some() { 100_000 } else { 600 }
+    elbowroom_testkit::extent::amount(600, 100_000)
 }
 
 /// A wavy ball.

@@ -1,4 +1,4 @@
-//! Point projection, penetration, fits, hulls, meshes: compared with sampling and with parry, and checked for invariants.
+//! Point projection, penetration, fits, hulls, meshes: compared with sampling, and checked for invariants.
 
 use std::sync::Arc;
 
@@ -8,42 +8,6 @@ use elbowroom_proximity::{
     tessellate::tessellate,
 };
 use elbowroom_spatial::{Pose, Rotation, Vec3};
-use parry3d_f64::{math, query, shape as parry};
-
-fn to_parry(s: &Shape) -> Box<dyn parry::Shape> {
-    let v = |p: Vec3| math::Vector::new(p.x, p.y, p.z);
-    match s {
-        Shape::Sphere(s) => Box::new(parry::Ball::new(s.radius)),
-        Shape::Capsule(c) => Box::new(parry::Capsule::new_z(c.half_length, c.radius)),
-        Shape::Cuboid(c) => Box::new(parry::Cuboid::new(v(c.half_extents))),
-        Shape::Hull(h) => {
-            let points: Vec<_> = h.vertices().iter().map(|&p| v(p)).collect();
-            Box::new(parry::ConvexPolyhedron::from_convex_hull(&points).unwrap())
-        }
-        _ => unreachable!("not compared"),
-    }
-}
-
-fn pose_to_parry(p: &Pose) -> math::Pose {
-    let (t, r) = (p.translation, p.rotation.to_rotation_vector());
-    math::Pose::new(math::Vector::new(t.x, t.y, t.z), math::Vector::new(r.x, r.y, r.z))
-}
-
-#[test]
-fn distances_agree_with_parry() {
-    let mut rng = SplitMix(21);
-    for first in ["sphere", "capsule", "box", "hull"] {
-        for second in ["sphere", "capsule", "box", "hull"] {
-            for _ in 0..cases(2_000) / 4 {
-                let (a, b, pa, pb) = (rng.shape(first), rng.shape(second), rng.pose(1.5), rng.pose(1.5));
-                let ours = separation(&a, &pa, &b, &pb).distance;
-                let (qa, qb) = (pose_to_parry(&pa), pose_to_parry(&pb));
-                let theirs = query::distance(&qa, to_parry(&a).as_ref(), &qb, to_parry(&b).as_ref()).unwrap().distance;
-                assert!((ours - theirs).abs() < 1e-5, "{first} {second}: {ours} {theirs}\n{a:?} {pa:?}\n{b:?} {pb:?}");
-            }
-        }
-    }
-}
 
 #[test]
 fn projected_points_lie_on_the_surface_along_the_normal() {

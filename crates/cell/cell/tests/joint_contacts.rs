@@ -8,6 +8,7 @@ use std::path::PathBuf;
 use elbowroom_cell::{Cell, OutOfReachProofs, QueryModel};
 use elbowroom_robot::{GeometryId, JointContact, JointContactKind, RobotId, joint_contacts};
 use elbowroom_scene::{Checker, CheckerOptions, Scene, SceneState};
+use elbowroom_testkit::extent::is_long_run;
 use elbowroom_testkit::folder;
 
 /// With a pair at the wrist, with pairs between every second link, with loops, with a contact that does not belong to a
@@ -16,10 +17,6 @@ const SOME: [&str; 7] =
     ["abb_irb2400", "motoman_motomini", "abb_irb6600_225_255", "fanuc_m900ia260l", "panda", "kuka_kr16_2", "ur5e"];
 /// Further robots with pairs and without.
 const MORE: [&str; 2] = ["abb_irb4400l_30_243", "staubli_tx60"];
-
-fn is_long_run() -> bool {
-    std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1")
-}
 
 fn robots() -> Vec<PathBuf> {
     let mut robots = folder::robots(&["urdf"]);

@@ -24,7 +24,8 @@ fn crossing(wait_a: f64, wait_b: f64) -> String {
 fn an_exchange_region_is_never_shared_and_all_robots_pass() {
     let mut random = random::Random(0x9e37_79b9_7f4a_7c15);
     let mut waited = 0;
-    for _ in 0..1000 {
+    let cells = elbowroom_testkit::extent::amount(400, 1000);
+    for _ in 0..cells {
         let outcome = run(&crossing(random.between(0.0, 1.5), random.between(0.0, 1.5)));
         let r = &outcome.recording;
         assert!(r.robots.iter().all(|r| r.finished), "a robot was left waiting");
@@ -37,7 +38,7 @@ fn an_exchange_region_is_never_shared_and_all_robots_pass() {
         assert!(a.iter().zip(&b).all(|(a, b)| !(a & b)), "both inside");
         waited += usize::from(r.robots.iter().any(|r| r.min_override < 1.0));
     }
-    assert!(waited > 300, "the timings hardly ever met: {waited}");
+    assert!(waited * 10 > cells * 3, "the timings hardly ever met: {waited}");
 }
 
 #[test]

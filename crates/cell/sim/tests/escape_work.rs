@@ -21,7 +21,7 @@ fn hard_runs_do_not_hit() {
     let object = cell.robots[0].avoidance.as_ref().unwrap().objects.iter().copied().find(moves).unwrap();
     let seconds = crossing::without_obstacle(&cell).unwrap().duration_s;
     let only = std::env::var("ELBOWROOM_EVADE_RUNS").ok();
-    let long = std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1");
+    let long = elbowroom_testkit::extent::is_long_run();
     let runs: Vec<usize> =
         only.map_or(HARD.map(|(n, _)| n).to_vec(), |o| o.split(',').map(|n| n.trim().parse().unwrap()).collect());
     let paths = crossing::paths(&cell, object, seconds, runs.iter().max().unwrap() + 1).unwrap();

@@ -16,7 +16,7 @@ const ROUNDING_M: f64 = 1e-6;
 
 /// Number of random settings: a hundred with `ELBOWROOM_LONG=1`.
 fn cases() -> u32 {
-    if std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1") { 100 } else { 50 }
+    elbowroom_testkit::extent::amount(25, 100)
 }
 
 /// A random robot, program and region.

@@ -21,7 +21,7 @@ fn run(text: &str, avoidance: bool) -> RunOutcome {
 /// Otherwise only the first carton, up to its place on the pallet, at ticks of 10 ms: the arm evades without and with a
 /// load, and each tick of evasion is costly.
 fn evading() -> String {
-    if std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1") {
+    if elbowroom_testkit::extent::is_long_run() {
         return std::fs::read_to_string(file()).unwrap();
     }
     until("release = \"carton_5\"").replace("tick_ms = 4", "tick_ms = 10")

@@ -9,9 +9,13 @@ use elbowroom_cell::Cell;
 use elbowroom_recording::{CellWriter, RunRecorder, replay};
 use elbowroom_sim::run::simulate_observed;
 use elbowroom_sim::{PlannedPaths, RunOptions};
+use elbowroom_testkit::extent::amount;
 use elbowroom_testkit::random::SplitMix;
 
-const CHANGES: usize = 20_000;
+/// Number of changes: 20,000 with `ELBOWROOM_LONG=1`.
+fn changes() -> usize {
+    amount(8_000, 20_000)
+}
 
 /// Every kind of shape, a source, an exchange region, a tool.
 const CELL: &str = r#"
@@ -126,7 +130,7 @@ fn changed_messages_are_refused_or_replayed() {
     let mut random = SplitMix(3);
     let begin = Instant::now();
     let mut kinds = BTreeMap::<String, usize>::new();
-    for _ in 0..CHANGES {
+    for _ in 0..changes() {
         let mut changed = sound.clone();
         // A changed configuration does not match its checksum, so half of the changes are to ticks.
         let which = if random.below(2) == 0 { 0 } else { 1 + random.below(sound.len() - 1) };
@@ -139,7 +143,7 @@ fn changed_messages_are_refused_or_replayed() {
         };
         *kinds.entry(kind).or_default() += 1;
     }
-    println!("{CHANGES} in {:?}: {kinds:#?}", begin.elapsed());
+    println!("{} in {:?}: {kinds:#?}", changes(), begin.elapsed());
     assert!(begin.elapsed() < Duration::from_mins(5));
     assert!(kinds["differs"] > 100 && kinds["same"] > 100 && kinds.len() > 10);
 }
@@ -149,7 +153,7 @@ fn changed_files_are_refused_or_replayed() {
     let sound = written(&messages(&recording()));
     let mut random = SplitMix(4);
     let (mut refused, mut read) = (0, 0);
-    for _ in 0..CHANGES {
+    for _ in 0..changes() {
         let mut changed = sound.clone();
         mutate(&mut changed, &mut random);
         match replay(&changed[..]) {
@@ -161,7 +165,7 @@ fn changed_files_are_refused_or_replayed() {
         }
     }
     println!("{read} read, {refused} refused");
-    assert!(read > CHANGES / 20 && refused > CHANGES / 20);
+    assert!(read > changes() / 20 && refused > changes() / 20);
 }
 
 /// The chunk is not compressed and has a checksum: without the check, a changed number would be replayed as a measured one.

@@ -9,6 +9,7 @@ use elbowroom_recording::{CellWriter, Replay, RunRecorder, replay};
 use elbowroom_robot::RobotId;
 use elbowroom_sim::run::simulate_observed;
 use elbowroom_sim::{InputFault, InputFaultKind, PlannedPaths, Recording, RunOptions};
+use elbowroom_testkit::extent::{amount, is_long_run};
 use elbowroom_testkit::folder::examples;
 
 fn recorded(cell: &Cell, options: &RunOptions) -> (Vec<u8>, Recording) {
@@ -31,10 +32,6 @@ fn replayed_bytes(cell: &Cell, bytes: &[u8]) -> Replay {
     assert!(!found.cut_off);
     assert_eq!(found.robots.len(), cell.robots.len());
     found
-}
-
-fn is_long_run() -> bool {
-    std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1")
 }
 
 /// Loads an example; `pallet` and `inspection` are shortened, as each of their ticks is slow: after 8 s a cart was evaded and
@@ -169,7 +166,7 @@ steps = [
 
 #[test]
 fn minutes_of_everything_replay_to_the_bit() {
-    let end_s = if is_long_run() { 600 } else { 120 };
+    let end_s = amount(120, 600);
     let text = EVERYTHING.replace("max_s = 600", &format!("max_s = {end_s}"));
     let cell = Cell::parse("everything.toml", &text).unwrap();
     let (bytes, recording) = recorded(&cell, &RunOptions::default());

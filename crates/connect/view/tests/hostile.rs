@@ -183,7 +183,7 @@ fn a_thousand_hanging_connections_keep_nobody_out() {
     // Two waves are more than the server keeps; larger waves would wait for a second until the system accepts them.
     const WAVE: usize = 100;
     // 10,000 connections with `ELBOWROOM_LONG=1`.
-    let waves = if std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1") { 100 } else { 10 };
+    let waves = elbowroom_testkit::extent::amount(10, 100);
     let server = server();
     let address = server.address();
     let begin = Instant::now();

@@ -17,7 +17,7 @@ tcp = { at = [0, 0, 60] }
 box = { at = [0, 0, 30], size = [6, 6, 60] }
 [object.block]
 shape = "box"
-size = [100, 80, 50]
+size = [60, 50, 50]
 at = [500, 0, 100]
 rpy = [0, 0, 30]
 [fixture.hole]
@@ -79,7 +79,7 @@ fn targets_and_keys_that_are_wrong_are_refused_with_line_and_place() {
         ("width = 14", "wide = 14", &["cell.toml:17", "wide", "width"]),
         ("axis = [0, 0, -1]", "axis = [0, 0, 0]", &["cell.toml:16", "has no length"]),
         (
-            "shape = \"box\"\nsize = [100, 80, 50]\nat = [500, 0, 100]\nrpy = [0, 0, 30]",
+            "shape = \"box\"\nsize = [60, 50, 50]\nat = [500, 0, 100]\nrpy = [0, 0, 30]",
             "shape = \"plane\"\n\n\n",
             &["cell.toml:15", "is a plane"],
         ),

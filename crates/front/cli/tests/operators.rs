@@ -161,7 +161,7 @@ fn a_fixture_opens_the_work_for_its_tool() {
     // The tool looks straight down.
     let down = CELL.replace("start = [0, 0, 0, 0, 35, 0]", "start = [0, 0, 0, 0, 90, 0]");
     let fixture = "[fixture.hole]\nprotects = \"work\"\ntarget = { drill = { at = [1016.5, 0, 1240], axis = [0, 0, -1], depth = 20 } }\nwidth = 24\noffset = 5\ntolerance = 2\ntool = \"arm\"\n";
-    let work = "size = [200, 200, 60]\nat = [1016.5, 0, 1210]";
+    let work = "size = [80, 80, 60]\nat = [1016.5, 0, 1210]";
     let cell = down.replace("size = [400, 400, 200]\nat = [1150, 0, 1200]", work);
     let hand = |t_s: f64| [1016.5, 0.0, 1330.0 - 60.0 * t_s.min(2.0)];
     let lowest = |cell: &str| {

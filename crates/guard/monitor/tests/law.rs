@@ -4,10 +4,15 @@ use crate::common::{RandomGeometry, XorshiftStar, configuration, gantry};
 use elbowroom_kinematics::LinkId;
 use elbowroom_monitor::{Guards, Monitor, Region, Snapshot, Volume};
 use elbowroom_spatial::{Rotation, Vec3};
+use elbowroom_testkit::extent::amount;
 
-const CASES: usize = 1_000_000;
 /// Number of regions per monitor: building a monitor costs more than a tick.
 const PER_MONITOR: usize = 100;
+
+/// Number of points per shape: a million with `ELBOWROOM_LONG=1`.
+fn points() -> usize {
+    amount(200_000, 1_000_000)
+}
 
 /// Builds a region and the oracle's distance function for a point.
 type Sample = fn(&mut XorshiftStar, Rotation) -> (Region, Box<dyn Fn(Vec3) -> f64>);
@@ -65,7 +70,7 @@ fn cuboid(r: &mut XorshiftStar, rotation: Rotation) -> (Region, Box<dyn Fn(Vec3)
 fn worst_deviation(sample: Sample, turned: bool, seed: u64) -> (f64, usize) {
     let mut r = XorshiftStar(seed);
     let (mut worst, mut warned) = (0.0_f64, 0);
-    for _ in 0..CASES / PER_MONITOR {
+    for _ in 0..points() / PER_MONITOR {
         let rotation =
             if turned { Rotation::from_axis_angle(r.direction(), r.between(-3.1, 3.1)) } else { Rotation::IDENTITY };
         let (region, oracle) = sample(&mut r, rotation);
@@ -95,9 +100,10 @@ fn the_override_is_the_law_of_s1_for_every_shape_and_pose() {
         for turned in [false, true] {
             let (worst, warned) = worst_deviation(sample, turned, 1 + seed as u64);
             println!(
-                "{name:15} turned {turned:5}: {CASES} points, {warned} in warning zones, worst deviation {worst:.1e}"
+                "{name:15} turned {turned:5}: {} points, {warned} in warning zones, worst deviation {worst:.1e}",
+                points()
             );
-            assert!(worst < 1e-12 && warned > CASES / 20, "{name} {turned}: {worst}");
+            assert!(worst < 1e-12 && warned > points() / 20, "{name} {turned}: {worst}");
         }
     }
 }

@@ -101,7 +101,7 @@ fn a_goal_that_cannot_be_left_keeps_the_question_open() {
 fn no_proof_contradicts_a_path() {
     let mut random = SplitMix(7);
     let (mut paths, mut proofs) = (0, 0);
-    let cases = if std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1") { 60 } else { 24_usize };
+    let cases = elbowroom_testkit::extent::amount(24_usize, 60);
     for case in 0..cases {
         let boxes: Vec<_> = (0..6)
             .map(|_| {

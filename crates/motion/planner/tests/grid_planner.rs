@@ -53,7 +53,7 @@ fn paths_are_hardly_longer_than_the_grid_optimum() {
     let (mut sum, mut worst, mut count) = (0.0, 0.0_f64, 0);
     let weights = [[1.0; 3], [2.0, 1.0, 0.5]];
     // The exhaustive search takes nearly all of the time.
-    let rounds: u32 = if std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1") { 150 } else { 30 };
+    let rounds: u32 = elbowroom_testkit::extent::amount(30, 150);
     for round in 0..rounds as usize {
         let shape = [14 + random.index(20), 14 + random.index(20), 14 + random.index(60)];
         let (grid, occupancy) = (grid(shape), random_occupancy(shape, &mut random));

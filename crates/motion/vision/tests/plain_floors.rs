@@ -69,11 +69,10 @@ fn watch(floor: &mut PlainFloor, pictures: u32) {
 
 #[test]
 fn no_picture_of_a_plain_floor_is_rejected_and_no_crate_missed() {
-    let long = std::env::var_os("ELBOWROOM_LONG").is_some();
     let cases = [0.0, 1.0, 4.0, 8.0, 20.0, 40.0].into_iter().flat_map(|c| [1.0, 2.0, 4.0, 8.0].map(|n| (c, n)));
     for (seed, (contrast, noise)) in (1..).zip(cases) {
         println!("contrast {contrast} levels, noise {noise} levels");
-        watch(&mut PlainFloor::new(seed, contrast, noise), if long { 4200 } else { 150 });
+        watch(&mut PlainFloor::new(seed, contrast, noise), elbowroom_testkit::extent::amount(150, 4200));
     }
 }
 

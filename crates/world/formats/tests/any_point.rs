@@ -12,8 +12,7 @@ use crate::surface::{SplitMix, Surface};
 #[test]
 fn reachable_surface_points_are_reached() {
     let Some(data) = elbowroom_testkit::folder::data() else { return };
-    let long = std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1");
-    let points_per_link = if long { 16_667 } else { 200 };
+    let points_per_link = elbowroom_testkit::extent::amount(200, 16_667);
     for name in ["kuka_kr150_2", "staubli_tx60", "ur5e", "abb_irb2400"] {
         let path = data.join(format!("urdf/{name}/{name}.urdf"));
         let robot = robot::load(&path, &LoadOptions::default()).unwrap().robot;

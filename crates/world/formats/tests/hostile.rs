@@ -121,10 +121,10 @@ fn exponential_node_instances_are_refused() {
 #[test]
 fn small_files_that_expand_are_refused_quickly() {
     let started = std::time::Instant::now();
-    let attributes: Vec<String> = (0..20_000).map(|i| format!("a{i}=\"\" ")).collect();
+    let attributes: Vec<String> = (0..8_000).map(|i| format!("a{i}=\"\" ")).collect();
     drop(run("urdf", format!("<robot {}/>", attributes.concat()).as_bytes()));
-    let corners: Vec<String> = (0..20_000).map(|i| format!("v {} {} 0\n", i % 7, (i * i) % 11)).collect();
-    let face: Vec<String> = (1..=20_000).map(|i| format!(" {i}")).collect();
+    let corners: Vec<String> = (0..8_000).map(|i| format!("v {} {} 0\n", i % 7, (i * i) % 11)).collect();
+    let face: Vec<String> = (1..=8_000).map(|i| format!(" {i}")).collect();
     drop(run("obj", format!("{}f{}\n", corners.concat(), face.concat()).as_bytes()));
     let zeros = "0 ".repeat(30_000);
     let geometry = |i: usize| {
@@ -139,7 +139,7 @@ fn small_files_that_expand_are_refused_quickly() {
         geometries.concat()
     );
     assert!(run("dae", dae.as_bytes()).unwrap_err().message.contains("together"));
-    assert!(started.elapsed().as_secs() < 60, "{:?}", started.elapsed());
+    assert!(started.elapsed().as_secs() < 20, "{:?}", started.elapsed());
 }
 
 /// Counts near 2^64 must not overflow a sum.

@@ -274,10 +274,10 @@ fn object(name: &str) -> Vec<u8> {
     chunk(0x4000, &[name.as_bytes(), &[0], &mesh[..]].concat())
 }
 
-/// Searching all nodes for each camera, or for each object, would take 10¹¹ comparisons here.
+/// Searching all nodes for each camera, or for each object, would take 10¹⁰ comparisons here.
 #[test]
-fn hundreds_of_thousands_of_cameras_lights_and_objects_are_read_quickly() {
-    const MANY: usize = 200_000;
+fn many_thousands_of_cameras_lights_and_objects_are_read_quickly() {
+    const MANY: usize = 60_000;
     let mut nodes = Vec::new();
     for i in 0..MANY {
         nodes.extend(node(0xb003, &format!("c{i}"), [0.0; 3]));
@@ -296,7 +296,10 @@ fn hundreds_of_thousands_of_cameras_lights_and_objects_are_read_quickly() {
     // Targets have no children, so they are dropped.
     assert_eq!(tree.nodes.len(), 3 * MANY);
     let look = |i: usize| tree.nodes[2 * i].in_parent.transform_vector(-Vec3::Z);
-    assert_eq!((tree.nodes[MANY].name.as_str(), tree.nodes[2 * MANY].name.as_str()), ("c100000", "o0"));
+    assert_eq!(
+        (tree.nodes[MANY].name.as_str(), tree.nodes[2 * MANY].name.as_str()),
+        (&*format!("c{}", MANY / 2), "o0")
+    );
     for i in [0, 2, MANY / 2, MANY - 2] {
         assert!(look(i).distance(Vec3::X) < 1e-6 && look(i + 1).distance(-Vec3::Z) < 1e-6, "{i}: {:?}", look(i));
     }

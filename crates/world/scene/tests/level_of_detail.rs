@@ -17,7 +17,7 @@ use elbowroom_scene::{
 use elbowroom_spatial::{FrameMotion, Pose, Vec3};
 
 fn count() -> usize {
-    if std::env::var_os("ELBOWROOM_LONG").is_some() { 100_000 } else { 2_000 }
+    elbowroom_testkit::extent::amount(2_000, 100_000)
 }
 
 fn scene() -> Scene {

@@ -16,13 +16,10 @@ use elbowroom_scene::{
     SweepOptions, example,
 };
 use elbowroom_spatial::{Pose, Vec3};
+use elbowroom_testkit::extent::amount;
 
 /// Distance (m) that exceeds the rounding of poses and distances at 1 m.
 const DOUBT: f64 = 1e-9;
-
-fn is_long_run() -> bool {
-    std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1")
-}
 
 fn at(scene: &Scene, start: &SceneState, moves: &[SweepMove], t: f64) -> SceneState {
     let mut state = start.clone();
@@ -310,7 +307,7 @@ fn a_larger_clearance_or_tolerance_is_never_later() {
     let mut r = Random(66);
     let mut checker = Checker::new(&scene, CheckerOptions::default());
     // With a tolerance of 0, the search continues to the last digit.
-    for _ in 0..if is_long_run() { 60 } else { 15 } {
+    for _ in 0..amount(15, 60) {
         let start = start(&scene, &mut r);
         let to = r.q();
         let moves = [SweepMove::Robot { robot: RobotId(0), to: &to }];
@@ -460,7 +457,7 @@ fn cage(r: &mut Random) -> Scene {
 
 #[test]
 fn random_motions_of_the_rx60b_among_thin_plates_and_wires() {
-    let (motions, samples) = if is_long_run() { (100_000, 40) } else { (300, 40) };
+    let (motions, samples) = (amount(300, 100_000), 40);
     let mut r = Random(70);
     let (mut time, mut asking) = (Duration::ZERO, Duration::ZERO);
     let (mut free, mut at_start, mut later, mut missed_by_samples, mut steps) = (0, 0, 0, 0, 0_u64);

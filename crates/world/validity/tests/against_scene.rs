@@ -14,11 +14,12 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use crate::common::{Kind, ROBOT, Random, RandomGeometry, Surroundings, coal_job, is_long_run, scene};
+use crate::common::{Kind, ROBOT, Random, RandomGeometry, Surroundings, coal_job, scene};
 use elbowroom_kinematics::LinkId;
 use elbowroom_robot::{GeometryId, Robot};
 use elbowroom_scene::{Checker, CheckerOptions, Scene, SceneState, SweepMove, SweepOptions};
 use elbowroom_spatial::Pose;
+use elbowroom_testkit::extent::{amount, is_long_run};
 use elbowroom_testkit::folder;
 use elbowroom_validity::{CoveredRobot, Validity, ValidityChecker};
 use fearless_simd::Level as SimdLevel;
@@ -243,7 +244,7 @@ fn random_robots_among_random_obstacles() {
     let mut all = Counts::default();
     // All robots share the obstacles: covering these takes longer than the rest of the test.
     let surroundings = [3, 10, 30].map(|count| Surroundings::new(&mut random, Kind::Mixed, count, 1.2));
-    let rounds = if is_long_run() { 12 } else { 6 };
+    let rounds = amount(6, 12);
     for round in 0..rounds {
         let joints = 2 + random.index(6);
         let robot = random.robot(joints);
@@ -379,7 +380,7 @@ fn compare(path: &Path, random: &mut Random, (states, extent): (usize, Extent)) 
 fn real_robots_among_random_obstacles() {
     let paths = robots();
     let extent = if states_wanted().is_some() { LONG } else { SHORT };
-    let short = if is_long_run() { 1500 } else { 600 };
+    let short = amount(600, 1500);
     let per_robot = states_wanted().map_or(short, |n| n.div_ceil(paths.len().max(1)));
     println!("| robot | states | free | hit | not certain | edges | proven free | of the free | contradictions |");
     println!("| --- | --- | --- | --- | --- | --- | --- | --- | --- |");

@@ -1,11 +1,12 @@
 //! Boxes in joint space proven to be in collision: every configuration in them collides in the exact scene.
 
-use crate::common::{ROBOT, Random, RandomGeometry, is_long_run, obstacle_set, obstacles, scene, single_joint};
+use crate::common::{ROBOT, Random, RandomGeometry, obstacle_set, obstacles, scene, single_joint};
 use elbowroom_kinematics::{Chain, JointKind, Limits};
 use elbowroom_proximity::{Shape, Sphere};
 use elbowroom_robot::{Collider, Robot, example};
 use elbowroom_scene::{Checker, CheckerOptions, SceneState};
 use elbowroom_spatial::{Pose, Vec3};
+use elbowroom_testkit::extent::amount;
 use elbowroom_validity::{CoveredRobot, ObstacleSet, ValidityChecker, ValidityError};
 
 #[test]
@@ -15,7 +16,7 @@ fn every_configuration_of_a_proven_box_collides() {
     // All robots share the obstacles: covering these takes longer than the rest of the test.
     let surroundings = [3, 10, 24].map(|count| obstacles(&mut random, count, 0.8));
     let sets = surroundings.each_ref().map(|solids| obstacle_set(solids));
-    let rounds = if is_long_run() { 18 } else { 6 };
+    let rounds = amount(6, 18);
     for round in 0..rounds {
         let joints = 2 + random.index(5);
         let robot = random.robot(joints);

@@ -79,8 +79,7 @@ impl Kind {
             Self::Faults | Self::Moving | Self::Recordings => 35,
             Self::Exchange | Self::Tools => 20,
             Self::Planned => 8,
-            Self::Guided => 12,
-            Self::Cooperating => 6,
+            Self::Cooperating | Self::Guided => 6,
         }
     }
 

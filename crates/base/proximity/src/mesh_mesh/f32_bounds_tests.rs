@@ -56,7 +56,7 @@ impl RandomMeshes for Random {
 
 /// Number of decisions to check.
 fn cases(usual: usize) -> usize {
-    if std::env::var_os("ELBOWROOM_LONG").is_some() { 10_000_000 } else { usual }
+    elbowroom_testkit::extent::amount(usual, 10_000_000)
 }
 
 #[test]

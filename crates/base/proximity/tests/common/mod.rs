@@ -86,7 +86,7 @@ impl RandomGeometry for SplitMix {
 
 /// Number of cases per pair: a million with `ELBOWROOM_LONG=1`.
 pub fn cases(usual: usize) -> usize {
-    if std::env::var_os("ELBOWROOM_LONG").is_some() { 1_000_000 } else { usual }
+    elbowroom_testkit::extent::amount(usual, 1_000_000)
 }
 
 pub const CONVEX: [&str; 5] = ["sphere", "capsule", "cylinder", "box", "hull"];

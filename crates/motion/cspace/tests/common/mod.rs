@@ -16,7 +16,7 @@ pub use elbowroom_testkit::random::Xorshift;
 
 /// Number of random cases: `cases` in a long run (`ELBOWROOM_LONG=1`), otherwise `cases / one_of`.
 pub fn long_run(cases: usize, one_of: usize) -> usize {
-    if std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1") { cases } else { cases / one_of }
+    elbowroom_testkit::extent::amount(cases / one_of, cases)
 }
 
 /// Random vectors and configurations.

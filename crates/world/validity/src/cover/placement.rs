@@ -61,8 +61,7 @@ mod tests {
 
     #[test]
     fn no_point_of_a_curved_surface_is_farther_from_the_triangles() {
-        let long = std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1");
-        for i in (0..120).step_by(if long { 1 } else { 7 }) {
+        for i in (0..120).step_by(elbowroom_testkit::extent::amount(7, 1)) {
             let radius = 0.001 * 1.09_f64.powi(i);
             let half_length = 0.3 * radius;
             for shape in [

@@ -200,11 +200,6 @@ pub fn scene(robot: &Robot, base: Pose, solids: &[(Shape, Pose)]) -> Scene {
     builder.build().unwrap()
 }
 
-/// Whether the random tests run all their rounds: `ELBOWROOM_LONG=1`.
-pub fn is_long_run() -> bool {
-    std::env::var_os("ELBOWROOM_LONG").is_some_and(|v| v == "1")
-}
-
 pub fn obstacle_set(solids: &[(Shape, Pose)]) -> ObstacleSet {
     let mut set = ObstacleSet::default();
     for (shape, pose) in solids {
