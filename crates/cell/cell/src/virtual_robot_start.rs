@@ -52,12 +52,26 @@ impl CellVirtualRobot {
         cell.objects[self.work_piece.0].in_world.inverse_mul(&tool_in_world)
     }
 
+    fn short_approach(&self, cell: &Cell, member: usize, grasp: usize) -> Diagnostic {
+        let (robot, part) = (&cell.robots[self.members[member].robot.0].name, &cell.objects[self.work_piece.0].name);
+        let gap = cell.units.show_length(self.settings.gap_m);
+        let what = format!(
+            "grasp {} of robot \"{robot}\": before its approach the hand is nearer to \"{part}\" than the gap of {gap}, so it cannot get there",
+            grasp + 1
+        );
+        Diagnostic::new(&cell.file, self.line, what)
+            .hint("a longer `approach`, away from the work-piece, or a smaller `gap`")
+    }
+
     fn not_started(&self, cell: &Cell, e: &CooperationError, tool_in_part: &Pose) -> Diagnostic {
         let (part, holder) =
             (&cell.objects[self.work_piece.0].name, &cell.robots[self.members[self.holder].robot.0].name);
         if let CooperationError::Touching(a, b) = e {
             let what = format!("{} and {} touch at the start", cell.part_name(*a), cell.part_name(*b));
             return Diagnostic::new(&cell.file, self.line, what).hint("a `start` and objects that leave room");
+        }
+        if let CooperationError::ShortApproach { member, grasp } = *e {
+            return self.short_approach(cell, member, grasp);
         }
         let CooperationError::NotGrasped { distance_m, angle_rad } = *e else {
             return Diagnostic::new(&cell.file, self.line, format!("virtual robot \"{}\": {e}", self.name));

@@ -94,6 +94,7 @@ fn wrong_tables_are_refused_at_their_line() {
         ("stream = \"bar.csv\"", "stream = \"bar.csv\"\nspeeed = 1", "speed"),
         ("approach = 60 }", "approach = [0, 0, 0] }", "length 0"),
         ("approach = 60 }", "aproach = 60 }", "approach"),
+        ("approach = 60 }", "approach = 5 }", "nearer to \"bar\" than the gap of 10 mm"),
         ("at = [20, 0, 450]", "at = [40, 0, 450]", "the grasp where the tool is"),
     ];
     for (from, to, expected) in cases {

@@ -3,6 +3,7 @@
 use elbowroom_robot::{GeometryId, RobotId};
 use elbowroom_scene::{Selection, SweepHit, SweepMove, SweepOptions};
 
+use crate::carried::LEAST_RATE;
 use crate::hand_over::HandOver;
 use crate::virtual_robot::usable;
 use crate::{Hold, HoldLimit, VirtualRobot};
@@ -11,8 +12,6 @@ use crate::{Hold, HoldLimit, VirtualRobot};
 /// that approaches or leaves it.
 const ATTEMPTS: [(f64, f64); 9] =
     [(1.0, 1.0), (1.0, 0.3), (1.0, 0.0), (0.5, 0.3), (0.25, 0.3), (0.1, 0.1), (0.0, 1.0), (0.0, 0.2), (0.0, 0.04)];
-/// Override or rate below which the work-piece stands instead of creeping.
-const LEAST_RATE: f64 = 1e-3;
 /// Time in which a hand that begins to move with the work-piece comes to its exact place, s.
 const ALIGNMENT_S: f64 = 0.05;
 /// Share of the joint speeds that the arms that carry the work-piece may use.
@@ -96,8 +95,14 @@ impl VirtualRobot<'_> {
         let wanted = if wanted < LEAST_RATE && is_halted { 0.0 } else { wanted };
         let mut hold = if allowed < LEAST_RATE { Some(Hold::Override) } else { self.limit_ahead() };
         self.react(dt_s, overrides);
+        let has_follower = self.hand_over.as_ref().is_some_and(|h| h.follower().is_some());
+        let mut before = None;
         for (of_rate, of_hand) in ATTEMPTS {
-            let (rate, hand) = (wanted * of_rate, allowed * of_hand);
+            let (rate, hand) = (wanted * of_rate, if has_follower { allowed * of_hand } else { 0.0 });
+            // The same motion would fail again.
+            if before.replace((rate, hand)) == Some((rate, hand)) {
+                continue;
+            }
             let tried = self.carry(rate, hand, dt_s).and_then(|before_m| self.sweep().map(|()| before_m));
             match tried {
                 Ok(before_m) => {

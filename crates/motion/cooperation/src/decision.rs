@@ -144,6 +144,7 @@ impl VirtualRobot<'_> {
         let is_useful = |k: &usize| {
             let takes_s = self.takes_s(*k);
             self.holdings[*k].member != self.holdings[giver].member
+                && self.limbs[self.holdings[*k].member].may_move
                 && self.decision.refused_s[*k] == 0.0
                 && takes_s.is_finite()
                 && giver_holds_s < (1.0 + self.settings.reserve) * takes_s + leaving_s

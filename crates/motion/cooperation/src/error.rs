@@ -26,6 +26,16 @@ pub enum CooperationError {
         /// Angle between tool and grasp, rad.
         angle_rad: f64,
     },
+    /// A hand at the pre-grasp is nearer to the work-piece than the gap: it would never get there.
+    #[error(
+        "at the pre-grasp of its grasp {grasp}, the hand of robot {member} is nearer to the work-piece than the gap"
+    )]
+    ShortApproach {
+        /// Index of the arm.
+        member: usize,
+        /// Index of its grasp.
+        grasp: usize,
+    },
     /// Two parts touch at the start.
     #[error("two parts touch at the start")]
     Touching(GeometryId, GeometryId),

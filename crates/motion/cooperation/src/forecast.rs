@@ -11,8 +11,8 @@ use crate::{CooperationSettings, HoldLimit};
 /// Number of configurations that are foreseen within the horizon.
 const SAMPLES: usize = 32;
 
-/// Time ahead for which both arms must have room, s: a hand-over takes about as long.
-const BOTH_S: f64 = 3.0;
+/// Time ahead for which both arms must have room beyond a hand-over without waiting, s.
+const SPARE_S: f64 = 1.0;
 
 /// Result of a forecast.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -107,7 +107,8 @@ impl Forecast {
         let step_s = settings.horizon_s / SAMPLES as f64;
         let ahead_s = self.done as f64 * step_s;
         let followed = holding.follow(&path.foreseen(self.from_s + ahead_s), step_s, &mut self.q, margins);
-        match followed.and_then(|()| self.meets_giver(holding, path, (giver, ahead_s), margins)) {
+        let both_s = SPARE_S + 2.0 * (settings.settle_s + holding.grasp.length_m() / settings.approach_m_s);
+        match followed.and_then(|()| self.meets_giver(holding, path, (giver, ahead_s, both_s), margins)) {
             Ok(()) if self.done < SAMPLES => self.done += 1,
             Ok(()) => self.conclude(HoldTime { to_s: f64::INFINITY, limit: None }),
             Err(limit) => {
@@ -121,7 +122,7 @@ impl Forecast {
         &mut self,
         holding: &mut Holding<'_>,
         path: &DesiredPath,
-        (giver, ahead_s): (Option<Giver<'_>>, f64),
+        (giver, ahead_s, both_s): (Option<Giver<'_>>, f64, f64),
         margins: &Margins,
     ) -> Result<(), HoldLimit> {
         let path_s = self.from_s + ahead_s;
@@ -129,7 +130,7 @@ impl Forecast {
             self.note(holding, path, path_s);
             return Ok(());
         };
-        let Some((q, retreated)) = giver.trace.at(path_s).filter(|_| ahead_s < BOTH_S) else { return Ok(()) };
+        let Some((q, retreated)) = giver.trace.at(path_s).filter(|_| ahead_s < both_s) else { return Ok(()) };
         let is_clear = [q, retreated].iter().all(|q| holding.clears(&self.q, giver.robot, q, margins.gap_m));
         if is_clear { Ok(()) } else { Err(HoldLimit::OtherArm) }
     }

@@ -54,7 +54,7 @@ pub(crate) struct Holding<'s> {
     /// Index of the arm among the members.
     pub member: usize,
     /// Index in the grasps of the arm.
-    number: usize,
+    pub number: usize,
     pub grasp: Grasp,
     arm: Member,
     solver: IkSolver,
@@ -119,6 +119,21 @@ impl<'s> Holding<'s> {
     pub fn regrasp_exactly(&mut self, work_piece: ObjectId) -> Result<(), SceneError> {
         let tool_in_part = self.arm.grasps[self.number].tool_in_part;
         self.regrasp(work_piece, &tool_in_part)
+    }
+
+    /// Whether the hand at its pre-grasp keeps a distance (m) from the work-piece.
+    pub fn is_apart_at_pre_grasp(&mut self, work_piece: ObjectId, gap_m: f64) -> Result<bool, SceneError> {
+        let mut state = self.state.clone();
+        let pre_grasp = self.grasp.at(self.grasp.length_m());
+        state.detach(self.scene, work_piece)?;
+        state.attach_at(self.scene, work_piece, attachment(&self.arm, &pre_grasp))?;
+        // It stays there, and the hand may not touch it.
+        state.detach(self.scene, work_piece)?;
+        let Self { checker, arm, .. } = self;
+        Ok(arm.hand.iter().all(|&link| {
+            let link = Selection::Link { robot: arm.robot, link };
+            checker.between(link, Selection::Object(work_piece)).within(&state, gap_m).is_none()
+        }))
     }
 
     /// Moves everything but the members.

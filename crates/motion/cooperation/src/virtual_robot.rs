@@ -5,7 +5,7 @@ use elbowroom_robot::{GeometryId, ObjectId, RobotId};
 use elbowroom_scene::{Attachment, Checker, CheckerOptions, Scene, SceneError, SceneState, Selection};
 use elbowroom_spatial::Pose;
 
-use crate::carried::Carried;
+use crate::carried::{Carried, LEAST_RATE};
 use crate::decision_memory::DecisionMemory;
 use crate::desired_path::{DesiredPath, angle_between};
 use crate::forecast::Forecast;
@@ -34,6 +34,8 @@ pub(crate) struct Limb {
     pub waits_for: Option<usize>,
     /// Whether it stands in the way of the work-piece.
     pub is_in_the_way: bool,
+    /// Whether its monitor lets it move.
+    pub may_move: bool,
 }
 
 /// Several arms that act as one: they carry one work-piece along a desired motion.
@@ -79,6 +81,11 @@ impl<'s> VirtualRobot<'s> {
         let part_in_world = part_in_world.ok_or(CooperationError::NoSuchGrasp)?;
         let (mut holdings, first) = holdings(scene, &state, work_piece, &members, holder).map_err(in_scene)?;
         let first = first.ok_or(CooperationError::NoSuchGrasp)?;
+        for holding in &mut holdings {
+            if !holding.is_apart_at_pre_grasp(work_piece, settings.gap_m).map_err(in_scene)? {
+                return Err(CooperationError::ShortApproach { member: holding.member, grasp: holding.number });
+            }
+        }
         let arms: Vec<ArmMotion> = members.iter().map(|m| arm_motion(scene, &state, m.robot)).collect();
         let tool_in_part = grasped(scene, &state, &members[holder.0], &part_in_world, &holdings[first])?;
         holdings[first].regrasp(work_piece, &tool_in_part).map_err(in_scene)?;
@@ -232,6 +239,9 @@ impl<'s> VirtualRobot<'s> {
             self.stand();
             return CooperationStep { hold: Some(Hold::Input), ..CooperationStep::default() };
         }
+        for (limb, speed_override) in self.limbs.iter_mut().zip(overrides) {
+            limb.may_move = usable(*speed_override) >= LEAST_RATE;
+        }
         let handed_over = self.proceed(dt_s);
         self.look_ahead(dt_s);
         self.choose_waiting();
@@ -319,6 +329,7 @@ impl Limb {
             drift: vec![0.0; q.len()],
             waits_for: None,
             is_in_the_way: false,
+            may_move: true,
         }
     }
 }

@@ -34,6 +34,31 @@ fn the_bar_crosses_to_where_only_the_other_arm_reaches() {
 }
 
 #[test]
+fn an_arm_that_its_monitor_stops_is_not_asked_to_take_over() {
+    let pair = Pair::new(2, 0.6);
+    let start = part_pose(&pair);
+    let way = straight(start, Pose::new(start.rotation, Vec3::new(0.3, 0.0, 0.45)), 0.05);
+    let mut robot = pair.robot(CooperationSettings::default());
+    let per_row = (0.02 / DT_S).round() as usize;
+    let mut run = |steps: std::ops::Range<usize>, of_the_other: f64| {
+        let mut phases = 0;
+        for k in steps {
+            if let Some(pose) = way.get(k / per_row).filter(|_| k % per_row == 0) {
+                robot.desire(k as f64 * DT_S, pose).unwrap();
+            }
+            robot.step(DT_S, &[1.0, of_the_other]);
+            phases += usize::from(robot.phase().is_some());
+        }
+        (phases, robot.on_path().1, robot.holder())
+    };
+    let steps = way.len() * per_row + 1000;
+    let (phases, left_s, holder) = run(0..steps, 0.0);
+    assert!(phases == 0 && left_s > 0.3 && holder == 0, "{phases} steps of hand-overs, {left_s} s left");
+    let (phases, left_s, holder) = run(steps..3 * steps, 1.0);
+    assert!(phases > 0 && left_s < 1e-6 && holder == 1, "{phases} steps of hand-overs, {left_s} s left");
+}
+
+#[test]
 fn random_motions_never_leave_their_path_and_nothing_touches() {
     let pair = Pair::new(2, 0.6);
     let start = part_pose(&pair);

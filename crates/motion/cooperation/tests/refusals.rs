@@ -67,6 +67,13 @@ fn virtual_robots_that_make_no_sense_are_refused() {
     assert_eq!(new(pair.members.clone(), part, (0, 99), settings), CooperationError::NoSuchGrasp);
     assert!(matches!(new(pair.members.clone(), part, (0, 0), settings), CooperationError::NotGrasped { .. }));
     assert!(matches!(new(pair.members.clone(), ObjectId(7), (0, 1), settings), CooperationError::Scene(_)));
+    // The second arm would stop before its pre-grasp, 5 mm from the bar.
+    let mut near = pair.members.clone();
+    near[1].grasps[3].approach = near[1].grasps[3].approach * (1.0 / 12.0);
+    let expected = CooperationError::ShortApproach { member: 1, grasp: 3 };
+    assert_eq!(new(near.clone(), part, (0, 1), settings), expected);
+    let smaller = CooperationSettings { gap_m: 0.004, ..settings };
+    assert!(VirtualRobot::new(&pair.scene, pair.state(), part, near, (0, 1), smaller).is_ok());
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let settings = CooperationSettings { speed_m_s: bad, ..settings };
         assert_eq!(new(pair.members.clone(), part, (0, 1), settings), CooperationError::Settings);

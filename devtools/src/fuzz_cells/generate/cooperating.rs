@@ -62,12 +62,14 @@ fn try_cell(random: &mut Random, places: &Places<'_>) -> CellSpec {
             spec = with;
         }
     }
+    // The approach of 50 mm, if none is given, is longer too.
+    let gap_m = if random.percent(40) { random.scaled(0.001, 0.045) } else { 0.01 };
     let mut guidance = GuidanceSpec {
         rows: hand(bar, &spec.objects, random),
-        virtual_robot: keys(count, random),
+        virtual_robot: keys(count, gap_m, random),
         ..Default::default()
     };
-    guidance.tables.push(grasps(count, width, length, random));
+    guidance.tables.push(grasps(count, [width, length, gap_m], random));
     let on_the_way = guidance.rows[random.whole(0, guidance.rows.len() - 1)].at.map(|v| v as f64 * 1e-6);
     spec.objects.push(ObjectSpec {
         name: BAR.into(),
@@ -87,9 +89,10 @@ fn try_cell(random: &mut Random, places: &Places<'_>) -> CellSpec {
     spec
 }
 
-fn keys(count: usize, random: &mut Random) -> String {
+fn keys(count: usize, gap_m: f64, random: &mut Random) -> String {
     let robots: Vec<String> = (0..count).map(|i| format!("\"r{i}\"")).collect();
-    let mut keys = format!("robots = [{}]\nwork_piece = \"{BAR}\"\nholder = \"r0\"\n", robots.join(", "));
+    let mut keys =
+        format!("robots = [{}]\nwork_piece = \"{BAR}\"\nholder = \"r0\"\ngap = {gap_m}\n", robots.join(", "));
     let mut add = |key: &str, percent: u32, low: f64, high: f64| {
         if random.percent(percent) {
             _ = writeln!(keys, "{key} = {}", random.scaled(low, high));
@@ -97,15 +100,14 @@ fn keys(count: usize, random: &mut Random) -> String {
     };
     add("speed", 50, 0.02, 1.5);
     add("turn_speed", 40, 0.1, 4.0);
-    add("gap", 40, 0.001, 0.05);
     add("approach_speed", 30, 0.02, 0.5);
     add("settle_ms", 30, 10.0, 600.0);
     add("horizon_s", 20, 0.5, 8.0);
     keys
 }
 
-/// Both ends and the sides of the bar; the first robot has the lower end.
-fn grasps(count: usize, width: f64, length: f64, random: &mut Random) -> String {
+/// Both ends and the sides of the bar; the first robot has the lower end. Every approach is longer than the gap.
+fn grasps(count: usize, [width, length, gap_m]: [f64; 3], random: &mut Random) -> String {
     let mut t = String::from("[virtual_robot.pair.grasps]\n");
     for robot in 0..count {
         let mut all = Vec::new();
@@ -114,9 +116,9 @@ fn grasps(count: usize, width: f64, length: f64, random: &mut Random) -> String 
                 let rotation = if out == -Vec3::Z { Rotation::IDENTITY } else { Rotation::from_z(-out) };
                 let (at, rpy) = ((out * (0.5 * distance)).to_array(), rotation.to_rpy());
                 let approach = if random.percent(50) {
-                    format!("{}", random.scaled(0.01, 0.2))
+                    format!("{}", rounded(gap_m + random.scaled(0.001, 0.2)))
                 } else {
-                    list(&(out * -random.scaled(0.02, 0.15)).to_array())
+                    list(&(out * -rounded(gap_m + random.scaled(0.001, 0.15))).to_array())
                 };
                 all.push(format!("{{ at = {}, rpy = {}, approach = {approach} }}", list(&at), list(&rpy)));
             }

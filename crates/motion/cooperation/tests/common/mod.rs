@@ -14,11 +14,13 @@ use elbowroom_testkit::random::SplitMix;
 /// Duration of a step, s.
 pub const DT_S: f64 = 0.004;
 /// Length of the hand, m.
-const HAND_M: f64 = 0.06;
+pub const HAND_M: f64 = 0.06;
+/// Half of the width of the hand, m.
+pub const HAND_WIDE_M: f64 = 0.015;
 /// Half of the length of the bar, m.
-const BAR_M: f64 = 0.15;
+pub const BAR_M: f64 = 0.15;
 /// Half of its thickness, m.
-const THIN_M: f64 = 0.02;
+pub const THIN_M: f64 = 0.02;
 
 /// An arm with a hand; its tool centre point is at the tip.
 fn arm() -> (Robot, LinkId) {
@@ -27,7 +29,7 @@ fn arm() -> (Robot, LinkId) {
     let flange = robot.chain.link("tool0").unwrap();
     robot.colliders[flange.0].push(Collider {
         name: "hand".into(),
-        shape: Shape::Cuboid(Cuboid { half_extents: Vec3::new(0.015, 0.015, 0.5 * HAND_M) }),
+        shape: Shape::Cuboid(Cuboid { half_extents: Vec3::new(HAND_WIDE_M, HAND_WIDE_M, 0.5 * HAND_M) }),
         in_link: Pose::from_translation(Vec3::Z * (0.5 * HAND_M)),
     });
     (robot, flange)
@@ -198,6 +200,16 @@ pub struct Outcome {
 
 /// Carries out a motion. Every step is checked by a checker of its own.
 pub fn carry(pair: &Pair, settings: CooperationSettings, motion: &[Pose]) -> Outcome {
+    carry_seen(pair, settings, motion, &mut |_, _| {})
+}
+
+/// Like [`carry`]; `see` gets the time (s) and the state after each step.
+pub fn carry_seen(
+    pair: &Pair,
+    settings: CooperationSettings,
+    motion: &[Pose],
+    see: &mut dyn FnMut(f64, &VirtualRobot<'_>),
+) -> Outcome {
     let mut robot = pair.robot(settings);
     let mut checker = Checker::new(&pair.scene, CheckerOptions::default());
     let (mut state, mut outcome, mut still_s, mut rate) = (pair.state(), Outcome::default(), 0.0, 0.0);
@@ -243,6 +255,7 @@ pub fn carry(pair: &Pair, settings: CooperationSettings, motion: &[Pose]) -> Out
             state.set_q(&pair.scene, m.robot, robot.q(member)).unwrap();
         }
         outcome.contacts += usize::from(checker.collides(&state).is_some());
+        see(t_s + DT_S, &robot);
         let is_over = k > motion.len() * per_row && left_s < 1e-6;
         if is_over || still_s > 15.0 {
             break;
