@@ -114,7 +114,7 @@ fn recorded(pair: &Pair, settings: CooperationSettings, way: &[Pose], file: &Pat
     let outcome = carry_seen(pair, settings, way, &mut |t_s, robot: &VirtualRobot<'_>| {
         let held = robot.attachment().unwrap();
         let member = |id| pair.members.iter().position(|m| m.robot == id).unwrap();
-        let visitor = held.visiting_links.first().map_or(-1, |(id, _)| member(*id) as i32);
+        let visitor = held.visiting_links.first().map_or("-1".to_owned(), |(id, _)| member(*id).to_string());
         let bar = Pose::from_translation(HAND_IN_LINK).inverse_mul(&held.in_link);
         let numbers = bar.translation.to_array().into_iter().chain(bar.rotation.to_quaternion_xyzw());
         let joints = (0..pair.members.len()).flat_map(|m| robot.q(m).iter().copied());

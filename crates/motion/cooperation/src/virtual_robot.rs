@@ -81,11 +81,7 @@ impl<'s> VirtualRobot<'s> {
         let part_in_world = part_in_world.ok_or(CooperationError::NoSuchGrasp)?;
         let (mut holdings, first) = holdings(scene, &state, work_piece, &members, holder).map_err(in_scene)?;
         let first = first.ok_or(CooperationError::NoSuchGrasp)?;
-        for holding in &mut holdings {
-            if !holding.is_apart_at_pre_grasp(work_piece, settings.gap_m).map_err(in_scene)? {
-                return Err(CooperationError::ShortApproach { member: holding.member, grasp: holding.number });
-            }
-        }
+        check_approaches(&mut holdings, work_piece, settings.gap_m)?;
         let arms: Vec<ArmMotion> = members.iter().map(|m| arm_motion(scene, &state, m.robot)).collect();
         let tool_in_part = grasped(scene, &state, &members[holder.0], &part_in_world, &holdings[first])?;
         holdings[first].regrasp(work_piece, &tool_in_part).map_err(in_scene)?;
@@ -358,6 +354,17 @@ fn holdings<'s>(
         }
     }
     Ok((all, first))
+}
+
+/// Every hand must keep the gap from the work-piece before its approach.
+fn check_approaches(holdings: &mut [Holding<'_>], work_piece: ObjectId, gap_m: f64) -> Result<(), CooperationError> {
+    for holding in holdings {
+        let is_apart = holding.is_apart_at_pre_grasp(work_piece, gap_m);
+        if !is_apart.map_err(|e| CooperationError::Scene(e.to_string()))? {
+            return Err(CooperationError::ShortApproach { member: holding.member, grasp: holding.number });
+        }
+    }
+    Ok(())
 }
 
 fn arm_motion(scene: &Scene, state: &SceneState, robot: RobotId) -> ArmMotion {

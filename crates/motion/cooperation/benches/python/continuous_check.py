@@ -63,21 +63,21 @@ class Cell:
                              coal.Transform3s(there.rotation, there.translation), self.request, self.result)
 
     def nearest(self, row, moved):
-        """The least distance less what the pair can move, and the pair."""
+        """The least distance less what the pair can move, the distance of that pair, and the pair."""
         placed = [arm.place(q) for arm, q in zip(self.arms, row["q"])]
         holder = row["holder"]
         bar = placed[holder][-1] * row["bar_in_hand"]
-        worst = (np.inf, None)
+        worst = (np.inf, np.inf, None)
         for a, b in self.pairs:
             d = self.distance(self.arms[a[0]].geometry[a[1]], placed[a[0]][a[1]], self.arms[b[0]].geometry[b[1]], placed[b[0]][b[1]])
             self.least_m = min(self.least_m, d)
-            worst = min(worst, (d - moved[a[0]] - moved[b[0]], (a, b)), key=lambda x: x[0])
+            worst = min(worst, (d - moved[a[0]] - moved[b[0]], d, (a, b)), key=lambda x: x[0])
         for i, j in self.with_bar:
             is_hand = j == len(self.arms[i].geometry) - 1
             if is_hand and i in (holder, row["visitor"]):
                 continue
             d = self.distance(self.arms[i].geometry[j], placed[i][j], self.bar, bar)
-            worst = min(worst, (d - moved[holder] - (moved[i] if i != holder else 0.0), ((i, j), "bar")), key=lambda x: x[0])
+            worst = min(worst, (d - moved[holder] - (moved[i] if i != holder else 0.0), d, ((i, j), "bar")), key=lambda x: x[0])
         return worst
 
     def name(self, part):
@@ -102,11 +102,11 @@ def check(cell, rows):
         a, b, share = rows[first], rows[last], 0.5 * (low + high)
         row = dict(a, q=[x + share * (y - x) for x, y in zip(a["q"], b["q"])])
         moved = cell.reach_m * 0.5 * (high - low) * (way[last] - way[first])
-        left_m, pair = cell.nearest(row, moved)
+        left_m, distance_m, pair = cell.nearest(row, moved)
         if left_m > 0.0:
             continue
-        if moved.max() < SHORTEST_M:
-            found.append((a["t_s"], [cell.name(part) for part in pair], left_m))
+        if distance_m <= 0.0 or moved.max() < SHORTEST_M:
+            found.append((a["t_s"], [cell.name(part) for part in pair], distance_m))
             continue
         open_ += [(first, last, low, share), (first, last, share, high)]
     return found
@@ -132,8 +132,8 @@ def main():
         found = check(cell, rows)
         steps += len(rows)
         contacts += len(found)
-        for t_s, pair, left_m in found[:3]:
-            print(f"{file.name}: {t_s:.3f} s: {pair[0]} and {pair[1]}, {left_m * 1e3:.3f} mm")
+        for t_s, pair, distance_m in found[:3]:
+            print(f"{file.name}: {t_s:.3f} s: {pair[0]} and {pair[1]}, {distance_m * 1e3:.3f} mm")
     print(f"{steps} rows, {cell.queries} distances, {contacts} contacts, least distance of two robots {cell.least_m * 1e3:.2f} mm")
     sys.exit(contacts > 0)
 
