@@ -13,22 +13,13 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
 use crate::common::{RandomGeometry, SplitMix, robots};
 use elbowroom_kinematics::{Chain, ChainState, LinkId};
+use elbowroom_testkit::python::with_modules;
 
 const TOLERANCE: f64 = 1e-9;
 
 /// Number of random configurations of each robot.
 fn states() -> usize {
     elbowroom_testkit::extent::amount(100, 1000)
-}
-
-fn python() -> Option<String> {
-    let python = std::env::var("ELBOWROOM_PYTHON").unwrap_or_else(|_| "python3".into());
-    let probe = Command::new(&python).args(["-c", "import pinocchio, numpy"]).stderr(Stdio::null()).status();
-    if probe.is_ok_and(|s| s.success()) {
-        return Some(python);
-    }
-    println!("skipped: no `pin` and `numpy` in {python}; name a Python that has them in ELBOWROOM_PYTHON");
-    None
 }
 
 /// A Python process with Pinocchio that answers for all robots in turn: starting it takes longer than its answers.
@@ -73,7 +64,7 @@ impl Reference {
 
 #[test]
 fn poses_velocities_and_accelerations_match_pinocchio() {
-    let Some(python) = python() else { return };
+    let Some(python) = with_modules("pinocchio, numpy", "`pin` and `numpy`") else { return };
     let mut reference = Reference::start(&python);
     let mut worst = [0.0_f64; 3];
     for (name, path) in robots() {

@@ -1,7 +1,6 @@
 //! Distances of convex shapes compared with Coal: every pair of kinds, near, far and overlapping, degenerate sizes among them.
 //!
 //! Needs a Python with `pin`, given by `ELBOWROOM_PYTHON` (default `python3`); without it the test prints a message and passes.
-#![allow(clippy::print_stdout)]
 
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -12,16 +11,7 @@ use crate::common::{CONVEX, RandomGeometry, SplitMix};
 use elbowroom_proximity::{Shape, separation};
 use elbowroom_spatial::Pose;
 use elbowroom_testkit::extent::amount;
-
-fn python() -> Option<String> {
-    let python = std::env::var("ELBOWROOM_PYTHON").unwrap_or_else(|_| "python3".into());
-    let probe = Command::new(&python).args(["-c", "import coal, numpy"]).stderr(Stdio::null()).status();
-    if probe.is_ok_and(|s| s.success()) {
-        return Some(python);
-    }
-    println!("skipped: no `pin`, which has Coal, in {python}; name a Python that has it in ELBOWROOM_PYTHON");
-    None
-}
+use elbowroom_testkit::python::with_modules;
 
 /// A shape and its pose as the script reads them.
 fn words(shape: &Shape, pose: &Pose) -> String {
@@ -58,7 +48,7 @@ fn coal(python: &str, pairs: &str) -> Vec<f64> {
 
 #[test]
 fn distances_agree_with_coal() {
-    let Some(python) = python() else { return };
+    let Some(python) = with_modules("coal, numpy", "`pin`, which has Coal,") else { return };
     let mut rng = SplitMix(21);
     let (mut pairs, mut ours) = (String::new(), Vec::new());
     for (first, second) in CONVEX.into_iter().flat_map(|a| CONVEX.map(|b| (a, b))) {

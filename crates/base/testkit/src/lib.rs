@@ -1,6 +1,6 @@
 //! Utilities that tests, benches and developers' tools of several crates share.
 //!
-//! It has generators of pseudo-random numbers, folders of data, the extent of tests, a counter of allocations, a hash, free addresses,
+//! It has generators of pseudo-random numbers, folders of data, the extent of tests, a counter of allocations, a hash, free addresses, a Python,
 //! certificates and arguments of benches. Shipped crates never link this crate.
 //!
 //! ```
@@ -23,4 +23,5 @@ pub mod extent;
 pub mod folder;
 pub mod hash;
 pub mod network;
+pub mod python;
 pub mod random;

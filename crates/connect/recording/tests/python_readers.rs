@@ -5,7 +5,7 @@
 #![allow(clippy::print_stdout)]
 
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Command;
 
 use elbowroom_cell::Cell;
 use elbowroom_recording::{BagReader, CellWriter, RunRecorder};
@@ -17,18 +17,11 @@ use elbowroom_ros2::msgs::tf2_msgs::TFMessage;
 use elbowroom_ros2::msgs::visualization_msgs::MarkerArray;
 use elbowroom_sim::run::simulate_observed;
 use elbowroom_sim::{PlannedPaths, RunOptions};
+use elbowroom_testkit::python::with_modules;
 use serde_json::Value;
 
 fn python() -> Option<String> {
-    let python = std::env::var("ELBOWROOM_PYTHON").unwrap_or_else(|_| "python3".into());
-    let probe = ["-c", "import mcap_ros2.decoder, rosbags.typesys"];
-    if Command::new(&python).args(probe).stderr(Stdio::null()).status().is_ok_and(|s| s.success()) {
-        return Some(python);
-    }
-    println!(
-        "skipped: no `mcap-ros2-support` and `rosbags` in {python}; name a Python that has them in ELBOWROOM_PYTHON"
-    );
-    None
+    with_modules("mcap_ros2.decoder, rosbags.typesys", "`mcap-ros2-support` and `rosbags`")
 }
 
 fn script(python: &str, arguments: &[&str]) -> String {

@@ -3,7 +3,6 @@
 use elbowroom_robot::{GeometryId, RobotId};
 use elbowroom_scene::{Selection, SweepHit, SweepMove, SweepOptions};
 
-use crate::carried::LEAST_RATE;
 use crate::hand_over::HandOver;
 use crate::virtual_robot::usable;
 use crate::{Hold, HoldLimit, VirtualRobot};
@@ -12,6 +11,8 @@ use crate::{Hold, HoldLimit, VirtualRobot};
 /// that approaches or leaves it.
 const ATTEMPTS: [(f64, f64); 9] =
     [(1.0, 1.0), (1.0, 0.3), (1.0, 0.0), (0.5, 0.3), (0.25, 0.3), (0.1, 0.1), (0.0, 1.0), (0.0, 0.2), (0.0, 0.04)];
+/// Override or rate below which the work-piece stands instead of creeping.
+pub(crate) const LEAST_RATE: f64 = 1e-3;
 /// Time in which a hand that begins to move with the work-piece comes to its exact place, s.
 const ALIGNMENT_S: f64 = 0.05;
 /// Share of the joint speeds that the arms that carry the work-piece may use.

@@ -6,9 +6,6 @@ use crate::CooperationSettings;
 use crate::desired_path::DesiredPath;
 use crate::look_ahead::LookAhead;
 
-/// Override or rate below which the work-piece stands instead of creeping.
-pub(crate) const LEAST_RATE: f64 = 1e-3;
-
 /// The work-piece on its desired path.
 #[derive(Debug)]
 pub(crate) struct Carried {

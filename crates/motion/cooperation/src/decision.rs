@@ -1,8 +1,10 @@
 //! When the work-piece is handed over, and to whom.
 
+use crate::advance::LEAST_RATE;
 use crate::forecast::Giver;
 use crate::hand_over::HandOver;
 use crate::holding::Margins;
+use crate::virtual_robot::usable;
 use crate::{HandOverReason, HoldLimit, VirtualRobot};
 
 /// What a hand-over must gain while the work-piece stands, s.
@@ -117,8 +119,9 @@ impl VirtualRobot<'_> {
         }
     }
 
-    /// Begins a hand-over if the holder will fail before a later one could be complete.
-    pub(crate) fn decide(&mut self, dt_s: f64) {
+    /// Begins a hand-over if the holder will fail before a later one could be complete, to an arm that its override lets
+    /// move.
+    pub(crate) fn decide(&mut self, dt_s: f64, overrides: &[f64]) {
         self.decision.since_s += dt_s;
         let waits = self.carried.rate == 0.0 && self.carried.ahead.limit == Some(HoldLimit::Retreat);
         if waits && self.hand_over.as_ref().is_none_or(|h| h.follower().is_none()) {
@@ -144,7 +147,7 @@ impl VirtualRobot<'_> {
         let is_useful = |k: &usize| {
             let takes_s = self.takes_s(*k);
             self.holdings[*k].member != self.holdings[giver].member
-                && self.limbs[self.holdings[*k].member].may_move
+                && usable(overrides[self.holdings[*k].member]) >= LEAST_RATE
                 && self.decision.refused_s[*k] == 0.0
                 && takes_s.is_finite()
                 && giver_holds_s < (1.0 + self.settings.reserve) * takes_s + leaving_s

@@ -5,7 +5,7 @@ use elbowroom_robot::{GeometryId, ObjectId, RobotId};
 use elbowroom_scene::{Attachment, Checker, CheckerOptions, Scene, SceneError, SceneState, Selection};
 use elbowroom_spatial::Pose;
 
-use crate::carried::{Carried, LEAST_RATE};
+use crate::carried::Carried;
 use crate::decision_memory::DecisionMemory;
 use crate::desired_path::{DesiredPath, angle_between};
 use crate::forecast::Forecast;
@@ -34,8 +34,6 @@ pub(crate) struct Limb {
     pub waits_for: Option<usize>,
     /// Whether it stands in the way of the work-piece.
     pub is_in_the_way: bool,
-    /// Whether its monitor lets it move.
-    pub may_move: bool,
 }
 
 /// Several arms that act as one: they carry one work-piece along a desired motion.
@@ -235,9 +233,6 @@ impl<'s> VirtualRobot<'s> {
             self.stand();
             return CooperationStep { hold: Some(Hold::Input), ..CooperationStep::default() };
         }
-        for (limb, speed_override) in self.limbs.iter_mut().zip(overrides) {
-            limb.may_move = usable(*speed_override) >= LEAST_RATE;
-        }
         let handed_over = self.proceed(dt_s);
         self.look_ahead(dt_s);
         self.choose_waiting();
@@ -245,7 +240,7 @@ impl<'s> VirtualRobot<'s> {
         let hold = self.advance(dt_s, overrides);
         self.carried.path.passed(self.carried.path_s);
         self.foresee(dt_s);
-        self.decide(dt_s);
+        self.decide(dt_s, overrides);
         let hold = hold.filter(|_| self.carried.wants_to_move() && self.carried.rate == 0.0);
         CooperationStep { rate: self.carried.rate, hold, handed_over }
     }
@@ -325,7 +320,6 @@ impl Limb {
             drift: vec![0.0; q.len()],
             waits_for: None,
             is_in_the_way: false,
-            may_move: true,
         }
     }
 }

@@ -4,7 +4,7 @@ use elbowroom_cooperation::{CooperationSettings, HandOverPhase, Hold, HoldLimit,
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 use elbowroom_testkit::random::SplitMix;
 
-use crate::common::{DT_S, Pair, Reach, carry, motion, part_pose, straight};
+use crate::common::{DT_S, PER_ROW, Pair, Reach, carry, desire_in_step, motion, part_pose, straight};
 
 #[test]
 fn a_short_motion_needs_one_arm() {
@@ -39,19 +39,16 @@ fn an_arm_that_its_monitor_stops_is_not_asked_to_take_over() {
     let start = part_pose(&pair);
     let way = straight(start, Pose::new(start.rotation, Vec3::new(0.3, 0.0, 0.45)), 0.05);
     let mut robot = pair.robot(CooperationSettings::default());
-    let per_row = (0.02 / DT_S).round() as usize;
     let mut run = |steps: std::ops::Range<usize>, of_the_other: f64| {
         let mut phases = 0;
         for k in steps {
-            if let Some(pose) = way.get(k / per_row).filter(|_| k % per_row == 0) {
-                robot.desire(k as f64 * DT_S, pose).unwrap();
-            }
+            desire_in_step(&mut robot, &way, k);
             robot.step(DT_S, &[1.0, of_the_other]);
             phases += usize::from(robot.phase().is_some());
         }
         (phases, robot.on_path().1, robot.holder())
     };
-    let steps = way.len() * per_row + 1000;
+    let steps = way.len() * PER_ROW + 1000;
     let (phases, left_s, holder) = run(0..steps, 0.0);
     assert!(phases == 0 && left_s > 0.3 && holder == 0, "{phases} steps of hand-overs, {left_s} s left");
     let (phases, left_s, holder) = run(steps..3 * steps, 1.0);
@@ -106,10 +103,8 @@ fn a_hand_obeys_its_override_and_says_where_it_would_go() {
     let way = straight(start, Pose::new(start.rotation, Vec3::new(0.3, 0.0, 0.45)), 0.05);
     let mut robot = pair.robot(CooperationSettings::default());
     let mut halted = None;
-    for (k, pose) in way.iter().flat_map(|pose| std::iter::repeat_n(pose, 5)).enumerate() {
-        if k % 5 == 0 {
-            robot.desire(k as f64 * DT_S, pose).unwrap();
-        }
+    for k in 0..way.len() * PER_ROW {
+        desire_in_step(&mut robot, &way, k);
         robot.step(DT_S, &[1.0; 2]);
         if robot.phase() == Some(HandOverPhase::Approaching) {
             let before: Vec<Vec<f64>> = [0, 1].map(|member| robot.q(member).to_vec()).to_vec();

@@ -32,7 +32,7 @@ def placed(words):
 
 def main():
     request, result = coal.DistanceRequest(), coal.DistanceResult()
-    # Beyond this, the default algorithm ends with errors of 1e-6 of the distance.
+    # Far below the tolerance of the test.
     request.gjk_tolerance = 1e-10
     request.gjk_max_iterations = 1000
     for line in sys.stdin:

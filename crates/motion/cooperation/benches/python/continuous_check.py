@@ -134,7 +134,7 @@ def main():
         contacts += len(found)
         for t_s, pair, distance_m in found[:3]:
             print(f"{file.name}: {t_s:.3f} s: {pair[0]} and {pair[1]}, {distance_m * 1e3:.3f} mm")
-    print(f"{steps} rows, {cell.queries} distances, {contacts} contacts, least distance of two robots {cell.least_m * 1e3:.2f} mm")
+    print(f"{steps} rows, {cell.queries} distances, {contacts} contacts; wherever it was looked at, two robots were at least {cell.least_m * 1e3:.2f} mm apart")
     sys.exit(contacts > 0)
 
 

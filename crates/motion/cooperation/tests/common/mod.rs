@@ -198,6 +198,16 @@ pub struct Outcome {
     pub largest_rate_change: f64,
 }
 
+/// Steps per desired pose.
+pub const PER_ROW: usize = 5;
+
+/// The pose of a motion that arrives in this step, if any.
+pub fn desire_in_step(robot: &mut VirtualRobot<'_>, motion: &[Pose], step: usize) {
+    if let Some(pose) = motion.get(step / PER_ROW).filter(|_| step.is_multiple_of(PER_ROW)) {
+        robot.desire(step as f64 * DT_S, pose).unwrap();
+    }
+}
+
 /// Carries out a motion. Every step is checked by a checker of its own.
 pub fn carry(pair: &Pair, settings: CooperationSettings, motion: &[Pose]) -> Outcome {
     carry_seen(pair, settings, motion, &mut |_, _| {})
@@ -213,15 +223,10 @@ pub fn carry_seen(
     let mut robot = pair.robot(settings);
     let mut checker = Checker::new(&pair.scene, CheckerOptions::default());
     let (mut state, mut outcome, mut still_s, mut rate) = (pair.state(), Outcome::default(), 0.0, 0.0);
-    let per_row = (0.02 / DT_S).round() as usize;
-    let most = motion.len() * per_row * 4 + 5000;
+    let most = motion.len() * PER_ROW * 4 + 5000;
     for k in 0..most {
         let t_s = k as f64 * DT_S;
-        if k % per_row == 0
-            && let Some(pose) = motion.get(k / per_row)
-        {
-            robot.desire(t_s, pose).unwrap();
-        }
+        desire_in_step(&mut robot, motion, k);
         let before = robot.part_in_world().translation;
         let begin = std::time::Instant::now();
         let step: CooperationStep = robot.step(DT_S, &vec![1.0; pair.members.len()]);
@@ -256,7 +261,7 @@ pub fn carry_seen(
         }
         outcome.contacts += usize::from(checker.collides(&state).is_some());
         see(t_s + DT_S, &robot);
-        let is_over = k > motion.len() * per_row && left_s < 1e-6;
+        let is_over = k > motion.len() * PER_ROW && left_s < 1e-6;
         if is_over || still_s > 15.0 {
             break;
         }
